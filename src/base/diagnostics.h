@@ -1,0 +1,68 @@
+// The one diagnostic type and the one sink (design decision 12). Nothing aborts: errors are values that reach the user once.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace alpenglow {
+
+enum class Severity { Info = 0, Warning = 1, Error = 2, Severe = 3 }; ///< RIE_INFO .. RIE_SEVERE
+
+/// RIE error codes, ri.md section 12.
+enum class Rie : int {
+    NoError = 0, NoMem = 1, System = 2, NoFile = 3, BadFile = 4, Version = 5, DiskFull = 6, Incapable = 11, Unimplement = 12,
+    Limit = 13, Bug = 14, NotStarted = 23, Nesting = 24, NotOptions = 25, NotAttribs = 26, NotPrims = 27, IllState = 28,
+    BadMotion = 29, BadSolid = 30, BadToken = 41, Range = 42, Consistency = 43, BadHandle = 44, NoShader = 45,
+    MissingData = 46, Syntax = 47, Math = 61
+};
+
+/// A place in a text; line and column count from 1, 0 = unknown. Columns count bytes.
+struct SourcePlace {
+    std::string file;
+    int line = 0, column = 0;
+};
+
+struct Diagnostic {
+    Severity severity = Severity::Error;
+    Rie code = Rie::NoError;
+    SourcePlace place;
+    std::string message;
+    std::string hint;       ///< "did you mean ...", or empty
+    std::string sourceLine; ///< the offending line, for the caret; or empty
+};
+
+/// "file:line:column: error: message", then the line and a caret, then "  hint: ...". Ends with a newline.
+std::string toString(const Diagnostic&);
+
+/// Collects diagnostics, counts them, and passes each to a handler. Thread safe.
+class Diagnostics {
+public:
+    using Handler = std::function<void(const Diagnostic&)>;
+    /// Without a handler they are only stored.
+    explicit Diagnostics(Handler h = {});
+    void report(Diagnostic d);
+    void report(Severity s, Rie code, SourcePlace place, std::string message, std::string hint = {});
+    /// Reports only the first time this key is seen ("unknown things are reported once each").
+    void reportOnce(const std::string& key, Diagnostic d);
+    int errors() const;   ///< Error and Severe
+    int warnings() const;
+    std::vector<Diagnostic> all() const;
+    void setHandler(Handler h);
+
+private:
+    mutable std::mutex mutex_;
+    Handler handler_;
+    std::vector<Diagnostic> all_;
+    std::set<std::string> seen_;
+    int errors_ = 0, warnings_ = 0;
+};
+
+/// The candidate nearest to word by edit distance, or "" when none is near enough for a hint.
+std::string nearestName(std::string_view word, const std::vector<std::string>& candidates);
+
+} // namespace alpenglow

@@ -1,0 +1,150 @@
+// The checked syntax tree. The parser builds it, the checker resolves names, overloads and conversions in place; what leaves the
+// checker without errors is fully typed: every conversion is an explicit Cast node, every call is bound.
+#pragma once
+#include "base/diagnostics.h"
+#include "shadeops/descriptor.h"
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace alpenglow::rsl {
+
+enum class Storage : uint8_t { Unspecified, Uniform, Varying };
+enum class ShaderKind : uint8_t { Surface, Displacement, Light, Volume, Imager, Transformation };
+const char* toString(ShaderKind);
+Context contextOf(ShaderKind);
+
+/// Position in the file set of a Program: file index, line and column from 1.
+struct Place { int file = 0, line = 0, column = 0; };
+
+struct Expr;
+struct Stmt;
+struct Function;
+using ExprPtr = std::unique_ptr<Expr>;
+using StmtPtr = std::unique_ptr<Stmt>;
+
+/// A variable of any origin. Address identity: two uses of one variable share the Symbol.
+struct Symbol {
+    enum class Origin : uint8_t { Local, ShaderParameter, FunctionParameter, Global };
+    std::string name;
+    Type type;
+    Storage storage = Storage::Unspecified; ///< after checking: parameters of shaders default to Uniform, locals to Varying
+    Origin origin = Origin::Local;
+    bool output = false;      ///< shader: AOV; function: by reference
+    bool writable = true;     ///< globals: by shader kind (rsl.md section 8)
+    bool isConstant = false;
+    Place place;
+};
+
+enum class ExprKind : uint8_t {
+    Number,      ///< number
+    String,      ///< text
+    Variable,    ///< symbol
+    Index,       ///< args[0][args[1]]: array element, or component of a tuple (type Float), or matrix row is not allowed
+    Unary,       ///< op Negate, Not
+    Binary,      ///< op; operands already of matching types; Float operand of a tuple operation has been cast to the tuple
+    Assign,      ///< args[0] = args[1]; op Assign (compound forms keep op: `a op= b`, args[1] cast to what op needs); value = new value
+    Conditional, ///< args[0] ? args[1] : args[2]
+    Tuple,       ///< (a,b,c) of type Color/Point/Vector/Normal; args = three floats; `space` = optional space name expression
+    MatrixTuple, ///< 16 floats; `space` optional
+    ArrayList,   ///< {a, b, ...} of an array type
+    Cast,        ///< to `type`, from args[0]; `space` when written `point "shader" p` (value given in that space) or color "hsv" c
+    ShadeopCall, ///< shadeop, signature; args = positional; pairs; `channel` for texture(name[channel]); outputs are lvalues
+    FunctionCall ///< function; args
+};
+enum class ExprOp : uint8_t { None, Add, Sub, Mul, Div, Dot, Cross, Less, LessEqual, Greater, GreaterEqual, Equal, NotEqual, And, Or, Negate, Not, Assign };
+
+struct NamedArg { std::string name; ExprPtr value; bool output = false; Place place; };
+
+struct Expr {
+    ExprKind kind{};
+    ExprOp op = ExprOp::None;
+    Type type;
+    bool varying = true;              ///< by declaration and operands; the IR infers more
+    Place place;
+    double number = 0;
+    std::string text;                 ///< String; callee name before binding
+    Symbol* symbol = nullptr;
+    std::vector<ExprPtr> args;
+    ExprPtr space;                    ///< Tuple, MatrixTuple, Cast
+    ExprPtr channel;                  ///< texture-like calls
+    std::vector<NamedArg> pairs;      ///< token/value pairs of calls
+    const Shadeop* shadeop = nullptr;
+    const Signature* signature = nullptr;
+    Function* function = nullptr;     ///< user's function, or the RSL body of a Lowering::Rsl shadeop (then shadeop is set too)
+};
+
+enum class StmtKind : uint8_t {
+    Block, Declare, Expression, If, While, For, Break, Continue, Return,
+    Illuminance, ///< exprs: P [, axis, angle]; category; pairs; body
+    Illuminate,  ///< exprs: from [, axis, angle]; body
+    Solar,       ///< exprs: nothing or axis, angle; body
+    Gather       ///< exprs: P, dir, angle, samples; category; pairs; body, elseBody
+};
+
+struct Stmt {
+    StmtKind kind{};
+    Place place;
+    std::vector<StmtPtr> body;        ///< Block: statements. Others: body[0]; For: init expr statements are exprs below
+    StmtPtr elseBody;                 ///< If, Gather
+    ExprPtr condition;                ///< If, While, For
+    ExprPtr init, step;               ///< For
+    ExprPtr value;                    ///< Expression, Return
+    int levels = 1;                   ///< Break, Continue
+    /// Declare: one symbol each, with optional initialisers.
+    struct Declarator { Symbol* symbol; ExprPtr init; };
+    std::vector<Declarator> declarators;
+    std::vector<ExprPtr> exprs;       ///< light statements
+    ExprPtr category;
+    std::vector<NamedArg> pairs;
+};
+
+struct Function {
+    std::string name;
+    Type result;
+    std::vector<Symbol*> parameters;
+    StmtPtr body;
+    std::vector<std::unique_ptr<Symbol>> symbols; ///< owns parameters and locals
+    std::vector<std::unique_ptr<Function>> nested;
+    Place place;
+};
+
+struct ShaderParameter { Symbol* symbol; ExprPtr defaultValue; };
+
+struct Shader {
+    ShaderKind kind{};
+    std::string name;
+    std::vector<ShaderParameter> parameters;
+    StmtPtr body;
+    std::vector<std::unique_ptr<Symbol>> symbols; ///< owns parameters, locals, and the globals used
+    std::vector<std::unique_ptr<Function>> nested;
+    Place place;
+    /// `#pragma annotation` key/value pairs, in order.
+    std::vector<std::pair<std::string, std::string>> annotations;
+};
+
+/// One source file with its includes: shaders (usually one) and functions.
+struct Program {
+    std::vector<std::string> files;                 ///< Place::file indexes this
+    std::vector<std::unique_ptr<Shader>> shaders;
+    std::vector<std::unique_ptr<Function>> functions;
+    std::string preprocessed;                       ///< text after includes and macros: part of the cache key
+    std::vector<std::string> dependencies;          ///< every file read
+};
+
+struct FrontOptions {
+    std::vector<std::string> includePaths;
+    std::vector<std::pair<std::string, std::string>> defines;
+};
+
+/// Preprocesses, parses and checks. Returns null when there were errors (all of them reported, none that follow from another).
+std::unique_ptr<Program> compileFile(const std::string& path, const FrontOptions&, Diagnostics&);
+std::unique_ptr<Program> compileText(const std::string& text, const std::string& name, const FrontOptions&, Diagnostics&);
+
+/// A predefined variable (rsl.md section 8) in one kind of shader.
+struct GlobalVariable { const char* name; Type type; bool uniform; bool writable; const char* doc; };
+/// All predefined variables of a kind of shader.
+std::span<const GlobalVariable> globalVariables(ShaderKind);
+
+} // namespace alpenglow::rsl

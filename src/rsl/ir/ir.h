@@ -1,0 +1,139 @@
+// Our IR: structured SSA between the checker and LLVM. Values, not variables; regions, not jumps: masks, derivatives and the affine
+// proof all become walks over a tree. Printable (print.h) and verified (verify.h).
+#pragma once
+#include "rsl/front/ast.h"
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace alpenglow::rsl::ir {
+
+/// What a value is made of. Points, vectors, normals and colours are all Triple: spaces were resolved by the builder.
+enum class Kind : uint8_t { None, Bool, Float, Triple, Matrix, String, Array };
+int components(Kind); ///< Float 1, Triple 3, Matrix 16, String 1 (interned id), Bool 1
+
+enum class Op : uint8_t {
+    // leaves
+    Const,       ///< numbers[0..components): the value
+    ConstString, ///< text
+    Input,       ///< index: Kernel::inputs
+    RegionParam, ///< index: position in Region::params
+    Result,      ///< args[0] = If, Loop, LightLoop, Runtime, Service or Request instruction with several results; index
+    // arithmetic: Float, Triple (component-wise), both operands of one kind
+    Add, Sub, Mul,
+    Div,         ///< x / 0 = 0 (the language forbids a trap; written down in docs/language.md)
+    Neg,
+    Splat,       ///< Float to Triple
+    Triple,      ///< three Floats
+    Extract,     ///< component `index` of a Triple or Matrix
+    MatrixOf,    ///< sixteen Floats, row by row
+    // comparison of Floats, or of Strings (Equal, NotEqual): Bool
+    Less, LessEqual, Equal, NotEqual,
+    And, Or, Not,
+    Select,      ///< args: Bool, a, b; any kind but Array
+    ToFloat,     ///< Bool to 0 or 1
+    // calls
+    Runtime,     ///< symbol = Signature::symbol of a pure shadeop; args flattened by type; results by `Result`, or itself when single
+    Service,     ///< site: Kernel::sites; args; effect unless the site says pure
+    Request,     ///< site: rays or lights; see passes/affine.h
+    Emit,        ///< affine form of a Request: args[0] = weight (Triple), then the request's arguments; site. No result.
+    Mark,        ///< affine form: Float, the number of pairs emitted so far by these lanes' strip (for Rescale)
+    Rescale,     ///< affine form: args = mark, factor (Triple): pairs emitted since the mark are multiplied by factor
+    // derivatives: d/du, d/dv of a Float or Triple; the operand carries one order more than the result
+    Du, Dv,
+    // arrays are storage, not values
+    ArrayNew,    ///< index = length; element kind in `element`; zeroed
+    ArrayInput,  ///< a shader parameter that is an array: index = Kernel::inputs (length there)
+    ArrayLoad,   ///< array, index (Float, truncated; out of range reads the nearest element and is reported by the builder if constant)
+    ArrayStore,  ///< array, index, value; masked
+    // control: regions
+    If,          ///< args[0] = Bool; regions then, else; results = yields of the taken region
+    Loop,        ///< args = initial values; regions[0]: params = carried, yields = {Bool continue}; regions[1]: params = carried, yields = next
+    LightLoop,   ///< illuminance. args: P, axis, angle, then initial carried values; site: category, pairs. regions[0]: params =
+                 ///< L, Cl, Ol (Triples), lightIndex (Float), then carried; yields = next carried
+    // effects
+    Output       ///< index: Kernel::outputs; args[0] = value
+};
+const char* name(Op);
+
+struct Inst;
+struct Region {
+    std::vector<Inst*> params; ///< RegionParam instructions
+    std::vector<Inst*> body;   ///< in order
+    std::vector<Inst*> yields;
+};
+
+struct Inst {
+    Op op{};
+    Kind kind{};                  ///< kind of the (single) result; None with several results (then `results`)
+    Kind element = Kind::None;    ///< arrays
+    std::vector<Kind> results;    ///< of instructions with several results
+    std::vector<Inst*> args;
+    std::vector<Region> regions;
+    int index = 0;
+    int site = -1;
+    std::vector<float> numbers;
+    std::string text;             ///< symbol or string constant
+    Place place;
+    uint32_t id = 0;              ///< for printing
+    // filled by passes
+    bool varying = true;          ///< passes/uniform.h
+    uint8_t order = 0;            ///< jet order that must be carried, 0..2 (passes/derivatives.h)
+    bool constraint = false;      ///< reserved for a pass's own marking; cleared before each pass
+};
+
+/// A value that comes from outside: a predefined variable, an instance parameter, a matrix between spaces.
+/// Names: "P" "N" "Ng" "u" ... for predefined variables; "param:Kd" for shader parameters; "space:FROM>TO" (Matrix) for named
+/// spaces, always with "current" on one side; "inverse:..." is not needed, the caller supplies both.
+struct Input {
+    std::string name;
+    Kind kind = Kind::Float;      ///< element kind when an array
+    Type type;                    ///< language type, for callers that fill it
+    int array = 0;
+    bool uniform = false;
+    uint8_t order = 0;            ///< derivatives the kernel reads (passes/derivatives.h)
+};
+struct OutputSlot { std::string name; Kind kind = Kind::Float; Type type; };
+
+/// A call site of a Service, Request or LightLoop: everything about it that is constant.
+struct Site {
+    std::string op;                          ///< "texture", "trace", "diffuse", "illuminance", "printf", ...
+    std::vector<std::string> strings;        ///< positional string arguments that are constant ("" where not constant)
+    std::vector<std::string> names;          ///< names of the optional pairs, in the order their values follow in args
+    std::vector<std::string> pairStrings;    ///< the pair's constant string value, "" for numeric pairs
+    std::vector<Kind> argKinds;              ///< flattened argument kinds, positional then pairs (Strings that are constant are left out)
+    std::vector<Type> argTypes;
+    std::vector<Kind> resultKinds;
+    std::vector<std::string> resultNames;    ///< result "" for the value, then names of output pairs / output arguments
+    Type resultType;
+    bool pure = false;
+    const Shadeop* shadeop = nullptr;
+    Place place;
+};
+
+/// What the passes found out, for `alpenglow info` and the scheduler.
+struct KernelFacts {
+    bool affine = true;          ///< every Request was turned into Emit
+    std::string whyNot;          ///< the first place that is not affine, in words
+    bool suspends = false;       ///< Requests are left: the kernel becomes a coroutine
+    bool lightLoops = false;
+    std::vector<std::string> writes; ///< predefined variables that the shader assigns
+};
+
+struct Kernel {
+    std::string name;
+    ShaderKind kind{};
+    std::vector<Input> inputs;
+    std::vector<OutputSlot> outputs;
+    std::vector<Site> sites;
+    std::vector<std::string> files;  ///< Place::file
+    Region body;
+    KernelFacts facts;
+    std::deque<std::unique_ptr<Inst>> pool;
+
+    Inst* make(Op op, Kind kind, std::vector<Inst*> args = {});
+};
+
+} // namespace alpenglow::rsl::ir

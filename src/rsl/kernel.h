@@ -1,0 +1,94 @@
+// The one door between generated code and the renderer. Plain C layout: generated code knows these offsets.
+#pragma once
+#include "rsl/ir/ir.h"
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace alpenglow::rsl {
+
+struct KernelCall;
+
+/// Called by kernels for a Service, an Emit, a suspending Request, or the steps of a light loop.
+/// `first`: index of the strip's first point in the batch; `mask`: bit i = point first + i is active (W <= 64 lanes).
+/// in/out: arguments and results flattened, component after component, each W floats. Strings: interned ids (StringTable) as
+/// bit-cast int32. Emit: in[0..3) is the weight. Returns nothing; must not throw.
+using ServiceFn = void (*)(KernelCall*, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out);
+
+/// Steps of an illuminance loop, in this order: begin gives the number of lights (the same for all lanes of the strip), then for each
+/// light: fetch writes L, Cl, Ol (nine rows of W floats) and returns the mask of the lanes the body runs for.
+struct KernelCall {
+    const float* const* in;   ///< per Kernel::inputs: varying: component c, jet part j at in[k] + (c * parts + j) * stride;
+                              ///< uniform (build S): in[k][c], arrays in[k][e * components + c]
+    float* const* out;        ///< per Kernel::outputs: component c at out[k] + c * stride; lanes beyond n may be written (padding)
+    int32_t n;                ///< points
+    int32_t stride;           ///< floats between rows; a multiple of 64; rows are 64-byte aligned
+    const int32_t* strings;   ///< ids of the kernel's string constants (CompiledKernel::strings), in order
+    void* user;               ///< the caller's
+    ServiceFn service;
+    int32_t (*lightBegin)(KernelCall*, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* pAxisAngle);
+    uint64_t (*lightFetch)(KernelCall*, int32_t site, int32_t light, int32_t first, uint64_t mask, int32_t lanes, float* lClOl);
+    const volatile int32_t* stop; ///< loops leave early when *stop != 0
+    const int32_t* pairCount; ///< not used by generated code; room for the caller's bookkeeping
+};
+
+/// Strings at run time are ids. Ids are assigned in order of first use, never travel between processes; "" is 0. Thread safe.
+int32_t internString(const std::string&);
+const std::string& internedString(int32_t id);
+
+/// What kind of machine code is wanted. All of it is part of the cache key.
+struct KernelOptions {
+    int lanes = 16;            ///< 4, 8 or 16: the width of the machine's vectors
+    int vectors = 0;           ///< vectors in flight (K): the kernel works on lanes*K points at a time; 0 = chosen from the code
+    bool mixed = false;        ///< build V: uniform inputs come in lanes
+    int optimize = 2;          ///< 0 or 2
+    bool suspend = false;      ///< force the suspending form even where the affine one is possible (tests)
+    bool path = false;         ///< lobe shadeops (diffuse, specular, ...) are requests to the light transport engine
+    std::vector<std::string> outputs;  ///< requested; empty: what the shader kind gives (Ci Oi, P N, L Cl Ol, ...)
+    /// Values of string parameters, and of numeric ones known to be 0 or 1 for good: specialised into the code.
+    std::vector<std::pair<std::string, std::string>> stringParameters;
+    std::vector<std::string> varyingParameters; ///< parameters overridden by varying primitive variables
+};
+
+/// One compiled kernel. Immutable, shared between threads.
+class CompiledKernel {
+public:
+    virtual ~CompiledKernel() = default;
+    const std::vector<ir::Input>& inputs() const { return inputs_; }
+    const std::vector<ir::OutputSlot>& outputs() const { return outputs_; }
+    const std::vector<ir::Site>& sites() const { return sites_; }
+    const std::vector<std::string>& files() const { return files_; }
+    const ir::KernelFacts& facts() const { return facts_; }
+    const std::vector<int32_t>& strings() const { return strings_; }
+    int lanes() const { return lanes_; } ///< points per strip: KernelOptions::lanes * vectors
+    bool fromCache() const { return fromCache_; }
+
+    /// Non-suspending kernels: shades all n points.
+    void run(KernelCall* c) const { entry_(c); }
+    /// Suspending kernels: starts the strip that begins at point `first`. Frame memory comes from alloc/release of the call's
+    /// scheduler. Returns the coroutine; done when finished(handle). A Request calls service (which notes it), then suspends;
+    /// before resume the caller must have stored the results in the row block that service was given as `out`.
+    void* start(KernelCall* c, int32_t first) const { return start_(c, first); }
+    void resume(void* handle) const { resume_(handle); }
+    bool finished(void* handle) const { return finished_(handle); }
+    void destroy(void* handle) const { destroy_(handle); }
+
+protected:
+    std::vector<ir::Input> inputs_;
+    std::vector<ir::OutputSlot> outputs_;
+    std::vector<ir::Site> sites_;
+    std::vector<std::string> files_;
+    ir::KernelFacts facts_;
+    std::vector<int32_t> strings_;
+    int lanes_ = 16;
+    bool fromCache_ = false;
+    void (*entry_)(KernelCall*) = nullptr;
+    void* (*start_)(KernelCall*, int32_t) = nullptr;
+    void (*resume_)(void*) = nullptr;
+    int32_t (*finished_)(void*) = nullptr; 
+    void (*destroy_)(void*) = nullptr;
+};
+
+} // namespace alpenglow::rsl

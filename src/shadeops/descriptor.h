@@ -1,0 +1,89 @@
+// What a shadeop is: one object that the checker, the code generator, `alpenglow info --shadeops`, the manual and the tests read.
+// The code of a runtime shadeop stands beside its descriptor, in the file of its section of rsl.md chapter 10.
+#pragma once
+#include "shadeops/types.h"
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace alpenglow::rsl {
+
+/// How the IR builder turns a call into IR.
+enum class Lowering : uint8_t {
+    Runtime,     ///< pure arithmetic in the bitcode runtime; one symbol a signature, instantiated on jets (see Signature::symbol)
+    Rsl,         ///< the body is RSL text (Shadeop::rsl), inlined like a user's function
+    Special,     ///< the IR builder knows it by name (Du, transform, spline, format, ...)
+    Service,     ///< answered by the renderer at once, through KernelCall::service (texture, attribute, printf, ...)
+    Request,     ///< answered by rays or lights: affine pair or suspension (trace, transmission, diffuse under path, ...)
+    Unavailable  ///< type-checks; reported once with its place as not yet available
+};
+
+/// How derivatives pass through (design decision 7).
+enum class DerivativeRule : uint8_t {
+    Jet,      ///< the runtime template is instantiated on Jet1 and Jet2: exact
+    Zero,     ///< mathematically zero almost everywhere (floor, cellnoise, step)
+    ZeroWarn, ///< results of rays, lights, textures: taken as zero, warned once
+    Inherent  ///< the lowering makes the derivative itself (Rsl and Special)
+};
+
+enum class Bias : uint8_t { Unbiased, Consistent, Biased };
+
+struct Parameter {
+    Type type;
+    std::string name;
+    bool output = false;  ///< by reference
+    bool uniform = false; ///< must be uniform
+};
+
+/// One way to call a shadeop: "float noise(point p; float w)".
+struct Signature {
+    Type result;
+    std::vector<Parameter> parameters;
+    bool repeats = false; ///< the last parameter may be given any number of times ("...")
+    bool pairs = false;   ///< token/value pairs may follow ("; ..." pairs)
+    /// Runtime: base name of the bitcode functions. `symbol` + "_0", "_1", "_2" are the instantiations on plain lanes, Jet1, Jet2:
+    ///   extern "C" void sym_k(const vf* in, vf* out)
+    /// in: the arguments flattened, component after component, each component as its jet parts {v}, {v,du,dv} or
+    /// {v,du,dv,duu,duv,dvv}; out: the result (if not void), then the output parameters, flattened the same way.
+    /// The matrix m[r][c] is flattened row by row. Strings are interned ids, bit-cast int32 lanes.
+    std::string symbol;
+    std::string text; ///< as written
+};
+
+struct OptionalParameter { Type type; std::string name; bool output = false; std::string defaultText, doc; };
+
+/// "radians(180)" gives "3.141593" under `alpenglow eval`.
+struct Example { std::string expression, value; };
+
+struct Shadeop {
+    std::string name;
+    std::vector<Signature> signatures;
+    uint32_t contexts = kAnyContext;
+    Lowering lowering = Lowering::Runtime;
+    DerivativeRule derivative = DerivativeRule::Jet;
+    bool pure = true;            ///< same arguments, same result, no effect: may be folded, merged, removed
+    bool outOfLine = false;      ///< large (noise): called, not inlined
+    Bias bias = Bias::Unbiased;
+    std::string biasReason;
+    std::string section;         ///< "Mathematics", "Noise", ... as in rsl.md chapter 10
+    std::string doc;             ///< semantics and edge cases
+    std::string source;          ///< seed, RISpec, (k)
+    std::vector<Example> examples;
+    std::vector<OptionalParameter> optional;
+    std::string rsl;             ///< Lowering::Rsl: the functions in RSL; names as in signatures
+};
+
+/// All shadeops, sorted by name. Built once, immutable.
+std::span<const Shadeop> shadeops();
+const Shadeop* findShadeop(std::string_view name);
+
+/// Parses "float noise(point p; float w)", "type min(type x, y, ...)" is not accepted here: list generics one by one.
+/// In a parameter list "uniform" and "output" may precede a type; a final "..." sets `repeats`; a final "; pairs" sets `pairs`.
+Signature parseSignature(std::string_view text, std::string symbol = {});
+
+/// Evaluates a Runtime shadeop on one point, order 0, with the code that kernels run (compiled into the program at 4 lanes).
+/// in/out flattened as for Signature::symbol. False when the symbol is unknown.
+bool evaluateRuntime(std::string_view symbol, const float* in, int inCount, float* out, int outCount);
+
+} // namespace alpenglow::rsl

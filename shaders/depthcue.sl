@@ -1,0 +1,6 @@
+/* depthcue: fades to a background colour with depth between the clipping planes. RISpec standard shader. */
+volume depthcue(float mindistance = 0, maxdistance = 1; color background = 0;) {
+    float d = clamp((depth(P) - mindistance) / (maxdistance - mindistance), 0, 1);
+    Ci = mix(Ci, background, color(d));
+    Oi = mix(Oi, color(1), color(d));
+}

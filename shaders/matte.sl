@@ -1,0 +1,6 @@
+/* matte: an ideal diffuse surface. RISpec standard shader. */
+surface matte(float Ka = 1, Kd = 1;) {
+    normal Nf = faceforward(normalize(N), I);
+    Oi = Os;
+    Ci = Os * Cs * (Ka * ambient() + Kd * diffuse(Nf));
+}

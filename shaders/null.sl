@@ -1,0 +1,5 @@
+/* null: draws nothing. */
+surface null() {
+    Ci = 0;
+    Oi = 0;
+}

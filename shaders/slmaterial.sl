@@ -1,0 +1,46 @@
+/* slmaterial: the materials of SLProject's path tracer as one RSL surface: diffuse, reflective, transparent, emissive; the first of
+   them that is not black decides, in that order. reference: pathtracer.md section 3.
+     shininess, translucency: Phong exponents of the reflected and transmitted lobe; 1000 and above are perfect
+     kn: index of refraction; fresnel "schlick" or "exact"
+   trace() is the estimator: it samples lights and lobe, weights both, plays roulette. */
+surface slmaterial(color diffusecolor = 1, specularcolor = 0, transmissive = 0, emissive = 0;
+                   float shininess = 1000, translucency = 1000, kn = 1;
+                   string texturename = "", fresnel = "schlick";) {
+    normal Nn = normalize(N);
+    vector In = normalize(I);
+    color zero = 0;
+    Oi = 1;
+    Ci = emissive;
+    if (emissive == zero) {
+        if (diffusecolor != zero) {
+            color albedo = diffusecolor * Cs;
+            if (texturename != "")
+                albedo *= color texture(texturename);
+            normal Nf = faceforward(Nn, In);
+            Ci += albedo * trace(P, Nf, "distribution", "cosine", "samplecone", PI / 2, "samplearealights", 1, "type", "diffuse");
+        } else if (specularcolor != zero) {
+            vector R = reflect(In, Nn);
+            Ci += specularcolor * Cs * trace(P, R, "distribution", "phong", "exponent", shininess, "type", "specular");
+        } else if (transmissive != zero) {
+            float into = In . Nn;
+            normal Nf = faceforward(Nn, In);
+            float eta = (into < 0) ? 1 / kn : kn;
+            vector T = refract(In, Nf, eta);
+            vector R = reflect(In, Nf);
+            float Kr, Kt;
+            if (T . T == 0) {
+                Kr = 1;
+            } else if (fresnel == "exact") {
+                fresnel(In, Nf, eta, Kr, Kt);
+            } else {
+                float r0 = (kn - 1) / (kn + 1);
+                r0 *= r0;
+                float c = 1 - ((into < 0) ? -into : abs(T . Nf));
+                Kr = r0 + (1 - r0) * pow(c, 5);
+            }
+            Kt = 1 - Kr;
+            Ci += transmissive * Cs * (Kr * trace(P, R, "distribution", "phong", "exponent", shininess, "type", "specular")
+                + Kt * trace(P, T, "distribution", "phong", "exponent", translucency, "type", "specular"));
+        }
+    }
+}

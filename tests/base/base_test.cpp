@@ -1,0 +1,79 @@
+#include "base/diagnostics.h"
+#include "base/matrix.h"
+#include <gtest/gtest.h>
+
+using namespace alpenglow;
+
+namespace {
+
+TEST(Matrix, RotateAboutZFollowsTheReference) { // ri.md 5: x' = x cos - y sin, y' = x sin + y cos
+    Vec3d p = transformPoint(rotateMatrix(90, 0, 0, 1), {1, 0, 0});
+    EXPECT_NEAR(p.x, 0, 1e-15);
+    EXPECT_NEAR(p.y, 1, 1e-15);
+    Vec3d q = transformPoint(rotateMatrix(90, 1, 0, 0), {0, 1, 0});
+    EXPECT_NEAR(q.z, 1, 1e-15);
+    Vec3d r = transformPoint(rotateMatrix(90, 0, 1, 0), {0, 0, 1});
+    EXPECT_NEAR(r.x, 1, 1e-15);
+}
+
+TEST(Matrix, RowVectorsComposeLeftToRight) {
+    Matrix m = scaleMatrix(2, 2, 2) * translateMatrix(1, 0, 0); // scale first
+    EXPECT_EQ(transformPoint(m, {1, 1, 1}), Vec3d(3, 2, 2));
+    EXPECT_EQ(transformVector(m, {1, 1, 1}), Vec3d(2, 2, 2));
+}
+
+TEST(Matrix, InverseAndDeterminant) {
+    Matrix m = rotateMatrix(33, 1, 2, 3) * scaleMatrix(2, 3, 4) * translateMatrix(5, -6, 7);
+    EXPECT_NEAR(determinant(m), 24, 1e-12);
+    EXPECT_NEAR(determinant3(m), 24, 1e-12);
+    Matrix i = m * inverse(m);
+    for (int r = 0; r < 4; ++r)
+        for (int c = 0; c < 4; ++c) EXPECT_NEAR(i.m[r][c], r == c, 1e-14);
+    bool singular = false;
+    inverse(scaleMatrix(1, 0, 1), &singular);
+    EXPECT_TRUE(singular);
+}
+
+TEST(Matrix, NormalsStayPerpendicular) {
+    Matrix m = scaleMatrix(1, 4, 1) * rotateMatrix(20, 0, 0, 1);
+    Vec3d t(1, 1, 0), n(1, -1, 0);
+    EXPECT_NEAR(dot(transformVector(m, t), transformNormal(m, n)), 0, 1e-14);
+}
+
+TEST(Matrix, SkewTurnsTheFirstAxisTowardTheSecond) { // ri.md 5: d1 ends at angle `deg` less from d2
+    Matrix m = skewMatrix(30, {0, 1, 0}, {1, 0, 0});
+    Vec3d p = transformPoint(m, {0, 1, 0});
+    EXPECT_NEAR(p.y, 1, 1e-15);
+    EXPECT_NEAR(p.x, std::tan(30 * kPi / 180), 1e-14);
+}
+
+TEST(Matrix, PerspectiveFormula) { // x' = x/(z t), z' = (z-1)/z
+    Vec3d p = transformPoint(perspectiveMatrix(90), {2, 4, 8});
+    EXPECT_NEAR(p.x, 0.25, 1e-14);
+    EXPECT_NEAR(p.y, 0.5, 1e-14);
+    EXPECT_NEAR(p.z, 7.0 / 8, 1e-14);
+}
+
+TEST(Diagnostics, TextHasPlaceCaretAndHint) {
+    Diagnostic d{Severity::Error, Rie::Syntax, {"a.sl", 3, 5}, "no such thing", "did you mean \"that\"?", "\tfoo bar"};
+    EXPECT_EQ(toString(d), "a.sl:3:5: error: no such thing\n  \tfoo bar\n  \t   ^\n  hint: did you mean \"that\"?\n");
+}
+
+TEST(Diagnostics, CountsAndReportsOnce) {
+    int seen = 0;
+    Diagnostics ds([&](const Diagnostic&) { ++seen; });
+    ds.reportOnce("k", {Severity::Warning, Rie::NoError, {}, "w", {}, {}});
+    ds.reportOnce("k", {Severity::Warning, Rie::NoError, {}, "w", {}, {}});
+    ds.report(Severity::Error, Rie::Range, {}, "e");
+    EXPECT_EQ(seen, 2);
+    EXPECT_EQ(ds.warnings(), 1);
+    EXPECT_EQ(ds.errors(), 1);
+}
+
+TEST(Diagnostics, NearestName) {
+    EXPECT_EQ(nearestName("smothstep", {"step", "smoothstep", "spline"}), "smoothstep");
+    EXPECT_EQ(nearestName("Spere", {"Sphere", "Torus"}), "Sphere");
+    EXPECT_EQ(nearestName("xyzzy", {"Sphere", "Torus"}), "");
+}
+
+} // namespace

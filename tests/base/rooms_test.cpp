@@ -1,0 +1,68 @@
+// The include table of docs/architecture.md, checked: nothing lower knows anything higher, and foreign headers stay behind one door.
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <map>
+#include <set>
+#include <string>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Room -> rooms it may include besides itself. "rsl" is one room to the outside; inside it front < ir, passes < jit.
+const std::map<std::string, std::set<std::string>> kAllowed = {
+    {"base", {}},
+    {"shadeops", {"base"}},
+    {"rsl", {"base", "shadeops"}},
+    {"scene", {"base"}},
+    {"ri", {"base", "scene"}},
+    {"geometry", {"base", "scene"}},
+    {"accel", {"base", "scene", "geometry"}},
+    {"texture", {"base", "display"}},
+    {"display", {"base", "scene"}},
+    {"shading", {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture"}},
+    {"transport", {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading"}},
+    {"render", {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "transport", "display"}},
+    {"cli", {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "transport", "display", "render", "ri"}},
+};
+
+// Header prefix -> the only folders that may include it.
+const std::map<std::string, std::set<std::string>> kForeign = {
+    {"llvm", {"rsl/jit"}},        {"llvm-c", {"rsl/jit"}}, {"embree3", {"accel"}},  {"OpenImageIO", {"texture"}},
+    {"opensubdiv", {"geometry"}}, {"OpenEXR", {"display"}}, {"png.h", {"display"}}, {"tiffio.h", {"display"}},
+    {"jpeglib.h", {"display"}},   {"CLI", {"cli"}},
+};
+
+TEST(Rooms, IncludeTable) {
+    fs::path src = fs::path(ALPENGLOW_SOURCE_DIR) / "src";
+    int files = 0;
+    for (const auto& e : fs::recursive_directory_iterator(src)) {
+        auto ext = e.path().extension();
+        if (ext != ".cpp" && ext != ".h") continue;
+        ++files;
+        std::string relative = fs::relative(e.path(), src).string();
+        std::string room = relative.substr(0, relative.find('/'));
+        ASSERT_TRUE(kAllowed.count(room)) << relative << " is in no known room";
+        std::ifstream in(e.path());
+        std::string line;
+        for (int n = 1; std::getline(in, line); ++n) {
+            if (line.rfind("#include ", 0) != 0) continue;
+            char open = line.size() > 9 ? line[9] : 0;
+            size_t close = line.find(open == '<' ? '>' : '"', 10);
+            if (close == std::string::npos) continue;
+            std::string header = line.substr(10, close - 10), first = header.substr(0, header.find('/'));
+            if (open == '"' && header.find('/') != std::string::npos && kAllowed.count(first)) {
+                EXPECT_TRUE(first == room || kAllowed.at(room).count(first)) << relative << ":" << n << " may not include " << header;
+            }
+            if (auto f = kForeign.find(first); open == '<' && f != kForeign.end()) {
+                bool ok = false;
+                for (const auto& folder : f->second) ok |= relative.rfind(folder + "/", 0) == 0;
+                EXPECT_TRUE(ok) << relative << ":" << n << " may not include <" << header << ">";
+            }
+        }
+    }
+    EXPECT_GT(files, 8);
+}
+
+} // namespace

@@ -1,0 +1,2 @@
+room(shading DEPS accel geometry scene texture rsl_jit base)
+room_tests(shading DEPS base)

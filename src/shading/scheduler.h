@@ -1,0 +1,248 @@
+// The scheduler: coroutine shaders and rays without recursion (design decision 2).
+//
+// A unit of work is a Task (a ray to follow) or a Strip (a suspended kernel). A task adds what it finds to its Target. A strip that
+// suspends makes one target a lane, spawns tasks for them, and waits; when the last of them is complete the strip is ready. Work is
+// taken deepest first, tasks in slices of at most limits::kSliceRays, so memory grows with depth and not with the size of the image.
+// Sums are exact (base/exactsum.h), so no order of work, slice or batch changes a bit.
+//
+// One scheduler serves one thread. It knows no geometry and no shader: the RayService does; tests use a fake one.
+#pragma once
+#include "base/exactsum.h"
+#include "base/limits.h"
+#include "base/vec.h"
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace alpenglow::shading {
+
+using TargetId = int32_t;
+inline constexpr TargetId kNoTarget = -1;
+
+/// What a request for light comes back with. `radiance` is a sum over all tasks that aim at the target; the rest is written at most
+/// once, by the task that was spawned first.
+struct TargetValue {
+    Color radiance{0};
+    Color transmission{1};
+    float distance = 1e38f; ///< to the nearest hit; > 1e30 on a miss (rsl.md 12.1)
+};
+
+template <class Payload> class Scheduler {
+public:
+    struct Task {
+        int depth = 0;              ///< 0 = camera
+        TargetId target = kNoTarget;
+        Payload payload{};
+    };
+
+    /// A suspended kernel strip.
+    class Strip {
+    public:
+        virtual ~Strip() = default;
+        virtual int depth() const = 0;
+        /// Bytes its frame holds while it waits.
+        virtual size_t frameBytes() const = 0;
+        /// All children are complete: `results[i]` belongs to the i-th target of the last wait. Runs on to the next suspension
+        /// (calls Scheduler::wait again and returns false) or to its end (returns true and is destroyed).
+        virtual bool resume(Scheduler&, std::span<const TargetValue> results) = 0;
+    };
+
+    class RayService {
+    public:
+        virtual ~RayService() = default;
+        /// Follows every task of the slice: adds to targets, spawns children, starts strips. All tasks have the same depth.
+        virtual void follow(std::span<const Task> slice, Scheduler&) = 0;
+    };
+
+    /// `stop`: polled between slices; when it is set run() gives up what is left. May be null.
+    explicit Scheduler(RayService& service, const volatile int32_t* stop = nullptr, size_t frameLimit = limits::kFrameBytesPerThread,
+                       int sliceRays = limits::kSliceRays)
+        : service_(service), stop_(stop), frameLimit_(frameLimit), sliceRays_(sliceRays) {}
+
+    /// A root target, read with value() after run().
+    TargetId newRoot() { return newTarget(-1); }
+    void spawn(Task t) {
+        ++targets_[t.target].pending;
+        queues_[t.depth].push_back(std::move(t));
+        ++queued_;
+    }
+    /// Adds light to a target. Order does not matter: the sum is exact. Non-finite values are counted and dropped.
+    void add(TargetId id, const Color& c) {
+        Target& t = targets_[id];
+        if (!std::isfinite(c.x) || !std::isfinite(c.y) || !std::isfinite(c.z)) { ++nonFinite_; return; }
+        t.sum[0].add(c.x); t.sum[1].add(c.y); t.sum[2].add(c.z);
+    }
+    void setTransmission(TargetId id, const Color& c) { targets_[id].value.transmission = c; }
+    void setDistance(TargetId id, float d) { targets_[id].value.distance = d; }
+
+    /// Called by a strip (or whoever starts it) when it suspends: makes `count` targets, calls make(i, target) so that the caller
+    /// spawns the tasks of each, and keeps the strip until all are complete. A target for which nothing is spawned is complete at once.
+    template <class Make> void wait(std::unique_ptr<Strip> strip, int count, Make make) {
+        int slot = newStrip();
+        Waiting& w = strips_[slot];
+        w.strip = std::move(strip);
+        frameBytes_ += w.bytes = w.strip->frameBytes();
+        peakFrameBytes_ = std::max(peakFrameBytes_, frameBytes_);
+        ++suspensions_;
+        std::vector<TargetId> ids(count);
+        for (int i = 0; i < count; ++i) ids[i] = newTarget(slot);
+        strips_[slot].targets = ids;
+        strips_[slot].open = count + 1; // one for this loop, so that nothing becomes ready while it runs
+        for (int i = 0; i < count; ++i) {
+            make(i, ids[i]);
+            if (targets_[ids[i]].pending == 0) closeChild(slot);
+        }
+        closeChild(slot);
+    }
+
+    /// Works until everything is done or stop is set. Returns false when it was stopped.
+    bool run() {
+        std::vector<Task> slice;
+        while (queued_ > 0 || !ready_.empty()) {
+            if (stop_ && *stop_) { abandon(); return false; }
+            int rayDepth = queued_ > 0 ? deepestQueue() : -1;
+            if (!ready_.empty() && ready_.rbegin()->first >= rayDepth) {
+                resumeOne();
+                continue;
+            }
+            auto& q = queues_[rayDepth];
+            // Near the frame limit only as many rays are taken as one strip can hold, so that depth, not breadth, uses what is left.
+            size_t most = frameBytes_ > frameLimit_ / 2 ? kStripRays : size_t(sliceRays_);
+            size_t n = std::min(q.size(), most);
+            slice.assign(std::make_move_iterator(q.begin()), std::make_move_iterator(q.begin() + n));
+            q.erase(q.begin(), q.begin() + n);
+            queued_ -= n;
+            if (frameBytes_ > frameLimit_) {
+                overLimit_ += n; // these rays bring nothing: a bias, counted and reported by the caller
+            } else {
+                ++slices_;
+                largestSlice_ = std::max(largestSlice_, n);
+                service_.follow(slice, *this);
+            }
+            for (const Task& t : slice) complete(t.target);
+        }
+        return true;
+    }
+
+    TargetValue value(TargetId id) const {
+        const Target& t = targets_[id];
+        TargetValue v = t.value;
+        v.radiance = {t.sum[0].toFloat(), t.sum[1].toFloat(), t.sum[2].toFloat()};
+        return v;
+    }
+    /// Forgets all targets; only when nothing is pending.
+    void reset() { targets_.clear(); freeTargets_.clear(); strips_.clear(); freeStrips_.clear(); queues_.clear(); queued_ = 0; ready_.clear(); frameBytes_ = 0; }
+
+    size_t peakFrameBytes() const { return peakFrameBytes_; }
+    size_t largestSlice() const { return largestSlice_; }
+    uint64_t suspensions() const { return suspensions_; }
+    uint64_t overLimit() const { return overLimit_; }
+    uint64_t nonFinite() const { return nonFinite_; }
+
+    static constexpr size_t kStripRays = 64; ///< the widest strip
+
+private:
+    struct Target {
+        ExactSum sum[3];
+        TargetValue value;
+        int pending = 0;
+        int strip = -1; ///< -1: a root
+    };
+    struct Waiting {
+        std::unique_ptr<Strip> strip;
+        std::vector<TargetId> targets;
+        int open = 0;
+        size_t bytes = 0;
+    };
+
+    TargetId newTarget(int strip) {
+        TargetId id;
+        if (freeTargets_.empty()) {
+            id = TargetId(targets_.size());
+            targets_.emplace_back();
+        } else {
+            id = freeTargets_.back();
+            freeTargets_.pop_back();
+            targets_[id] = Target{};
+        }
+        targets_[id].strip = strip;
+        return id;
+    }
+    int newStrip() {
+        if (!freeStrips_.empty()) {
+            int s = freeStrips_.back();
+            freeStrips_.pop_back();
+            return s;
+        }
+        strips_.emplace_back();
+        return int(strips_.size()) - 1;
+    }
+    void complete(TargetId id) {
+        Target& t = targets_[id];
+        if (--t.pending == 0 && t.strip >= 0) closeChild(t.strip);
+    }
+    void closeChild(int slot) {
+        Waiting& w = strips_[slot];
+        if (--w.open == 0) ready_[w.strip->depth()].push_back(slot);
+    }
+    int deepestQueue() const {
+        for (auto i = queues_.rbegin(); i != queues_.rend(); ++i)
+            if (!i->second.empty()) return i->first;
+        return -1;
+    }
+    void resumeOne() {
+        auto last = std::prev(ready_.end());
+        int slot = last->second.front();
+        last->second.pop_front();
+        if (last->second.empty()) ready_.erase(last);
+        Waiting w = std::move(strips_[slot]);
+        strips_[slot] = Waiting{};
+        freeStrips_.push_back(slot);
+        frameBytes_ -= w.bytes;
+        std::vector<TargetValue> results;
+        results.reserve(w.targets.size());
+        for (TargetId id : w.targets) {
+            results.push_back(value(id));
+            freeTargets_.push_back(id);
+        }
+        Strip* s = w.strip.get();
+        resuming_ = std::move(w.strip);
+        if (s->resume(*this, results)) resuming_.reset();
+    }
+    void abandon() {
+        queues_.clear();
+        queued_ = 0;
+        ready_.clear();
+        strips_.clear();
+        frameBytes_ = 0;
+    }
+
+public:
+    /// For Strip::resume: takes ownership of the strip that is being resumed, to hand it to wait() again.
+    std::unique_ptr<Strip> takeResuming() { return std::move(resuming_); }
+    /// A strip that holds a task's target open until it ends: the task's own count is closed by run(), so the strip adds one more.
+    void hold(TargetId id) { ++targets_[id].pending; }
+    void release(TargetId id) { complete(id); }
+
+private:
+    RayService& service_;
+    const volatile int32_t* stop_;
+    size_t frameLimit_;
+    int sliceRays_;
+    std::deque<Target> targets_;
+    std::vector<TargetId> freeTargets_;
+    std::deque<Waiting> strips_;
+    std::vector<int> freeStrips_;
+    std::map<int, std::deque<Task>> queues_;
+    size_t queued_ = 0;
+    std::map<int, std::deque<int>> ready_;
+    std::unique_ptr<Strip> resuming_;
+    size_t frameBytes_ = 0, peakFrameBytes_ = 0, largestSlice_ = 0;
+    uint64_t suspensions_ = 0, overLimit_ = 0, nonFinite_ = 0, slices_ = 0;
+};
+
+} // namespace alpenglow::shading

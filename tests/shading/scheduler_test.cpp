@@ -1,0 +1,228 @@
+// The scheduler on a fake ray service: "shaders" here are little state machines whose results have closed forms.
+#include "shading/scheduler.h"
+#include <functional>
+#include <gtest/gtest.h>
+#include <random>
+
+using namespace alpenglow;
+using namespace alpenglow::shading;
+
+namespace {
+
+struct Payload { float value = 0; int fan = 0; int levels = 0; bool suspends = false; };
+using S = Scheduler<Payload>;
+
+// A strip of `lanes` rays that hit a shader which sends `fan` rays one level down, one after the other (a suspension each), and
+// returns value + sum of what came back. Masks: lane i only takes part while i % (step + 1) == 0 or step == 0.
+class FakeStrip : public S::Strip {
+public:
+    FakeStrip(std::vector<S::Task> tasks) : tasks_(std::move(tasks)), sums_(tasks_.size(), 0.f) {}
+    int depth() const override { return tasks_[0].depth; }
+    size_t frameBytes() const override { return 1000; }
+    bool resume(S& s, std::span<const TargetValue> results) override {
+        for (size_t k = 0; k < results.size(); ++k) sums_[lanes_[k]] += results[k].radiance.x;
+        return advance(s, s.takeResuming());
+    }
+    static void start(S& s, std::vector<S::Task> tasks) {
+        auto strip = std::make_unique<FakeStrip>(std::move(tasks));
+        for (auto& t : strip->tasks_) s.hold(t.target);
+        auto* p = strip.get();
+        p->advance(s, std::move(strip));
+    }
+
+private:
+    bool advance(S& s, std::unique_ptr<S::Strip> self) {
+        while (step_ < tasks_[0].payload.fan) {
+            int step = step_++;
+            lanes_.clear();
+            for (size_t i = 0; i < tasks_.size(); ++i)
+                if (step == 0 || i % (step + 1) == 0) lanes_.push_back(int(i));
+            if (lanes_.empty()) continue;
+            std::vector<S::Task> children;
+            for (int lane : lanes_) {
+                S::Task c = tasks_[lane];
+                c.depth++;
+                c.payload.levels--;
+                c.payload.value = c.payload.value * 0.5f;
+                children.push_back(c);
+            }
+            s.wait(std::move(self), int(lanes_.size()), [&](int i, TargetId id) {
+                children[i].target = id;
+                s.spawn(children[i]);
+            });
+            return false;
+        }
+        for (size_t i = 0; i < tasks_.size(); ++i) {
+            s.add(tasks_[i].target, Color(tasks_[i].payload.value + sums_[i]));
+            s.release(tasks_[i].target);
+        }
+        return true;
+    }
+    std::vector<S::Task> tasks_;
+    std::vector<float> sums_;
+    std::vector<int> lanes_;
+    int step_ = 0;
+};
+
+class FakeService : public S::RayService {
+public:
+    int strip = 16;
+    std::vector<size_t> slices;
+    int deepest = 0;
+    std::function<void()> onSlice;
+    void follow(std::span<const S::Task> slice, S& s) override {
+        slices.push_back(slice.size());
+        if (onSlice) onSlice();
+        std::vector<S::Task> group;
+        auto flush = [&] {
+            if (!group.empty()) FakeStrip::start(s, std::move(group));
+            group.clear();
+        };
+        for (const auto& t : slice) {
+            deepest = std::max(deepest, t.depth);
+            if (t.payload.levels == 0) {
+                s.add(t.target, Color(t.payload.value));
+            } else if (t.payload.suspends) {
+                group.push_back(t);
+                if (int(group.size()) == strip) flush();
+            } else { // affine: pairs, no wait
+                s.add(t.target, Color(t.payload.value));
+                for (int f = 0; f < t.payload.fan; ++f) {
+                    S::Task c = t;
+                    c.depth++;
+                    c.payload.levels--;
+                    c.payload.value *= 0.5f;
+                    s.spawn(c);
+                }
+            }
+        }
+        flush();
+    }
+};
+
+// The value of one root without masks: v + fan * value(v/2, levels-1).
+float expected(float v, int fan, int levels) {
+    float sum = 0, factor = 1;
+    for (int l = 0; l <= levels; ++l, factor *= fan * 0.5f) sum += v * factor;
+    return sum;
+}
+
+TEST(Scheduler, AffineTreesSumUp) {
+    FakeService service;
+    S s(service);
+    auto root = s.newRoot();
+    s.spawn({0, root, {1, 3, 4, false}});
+    EXPECT_TRUE(s.run());
+    EXPECT_EQ(s.value(root).radiance.x, expected(1, 3, 4));
+    EXPECT_EQ(s.suspensions(), 0u);
+}
+
+TEST(Scheduler, NestedSuspension) {
+    FakeService service;
+    service.strip = 1; // one lane a strip: no masks, the closed form holds
+    S s(service);
+    auto root = s.newRoot();
+    s.spawn({0, root, {1, 2, 6, true}});
+    EXPECT_TRUE(s.run());
+    EXPECT_EQ(s.value(root).radiance.x, expected(1, 2, 6));
+    EXPECT_EQ(service.deepest, 6);
+    EXPECT_GT(s.suspensions(), 60u); // 1 + 2 + ... + 32 strips, each waiting twice
+}
+
+TEST(Scheduler, MasksAcrossSuspensions) {
+    // 16 lanes, one level: lane i gets v/2 for each step in which it takes part.
+    FakeService service;
+    S s(service);
+    std::vector<TargetId> roots;
+    for (int i = 0; i < 16; ++i) {
+        roots.push_back(s.newRoot());
+        s.spawn({0, roots.back(), {1, 4, 1, true}});
+    }
+    EXPECT_TRUE(s.run());
+    for (int i = 0; i < 16; ++i) {
+        float want = 1;
+        for (int step = 0; step < 4; ++step)
+            if (step == 0 || i % (step + 1) == 0) want += 0.5f;
+        EXPECT_EQ(s.value(roots[i]).radiance.x, want) << i;
+    }
+}
+
+TEST(Scheduler, SameBitsForAnySliceAndStrip) {
+    std::vector<float> first;
+    for (int slice : {1, 7, 64, 4096}) {
+        FakeService service;
+        service.strip = 1;
+        S s(service, nullptr, limits::kFrameBytesPerThread, slice);
+        std::mt19937 rng(7);
+        std::vector<TargetId> roots;
+        for (int i = 0; i < 40; ++i) {
+            roots.push_back(s.newRoot());
+            s.spawn({0, roots.back(), {std::uniform_real_distribution<float>(0, 1e3f)(rng), 3, 4, i % 2 == 0}});
+        }
+        EXPECT_TRUE(s.run());
+        std::vector<float> values;
+        for (auto r : roots) values.push_back(s.value(r).radiance.x);
+        if (first.empty()) first = values;
+        EXPECT_EQ(first, values) << "slice " << slice;
+        EXPECT_LE(s.largestSlice(), size_t(slice));
+    }
+}
+
+TEST(Scheduler, DeepestFirstBoundsTheFrames) {
+    // 4,096 camera rays, each a tree of depth 8: breadth-first would hold 4096 * 2^7 strips.
+    FakeService service;
+    S s(service, nullptr, 600'000);
+    for (int i = 0; i < 4096; ++i) s.spawn({0, s.newRoot(), {1, 2, 8, true}});
+    EXPECT_TRUE(s.run());
+    EXPECT_EQ(s.overLimit(), 0u);
+    EXPECT_LE(s.peakFrameBytes(), 600'000u);
+}
+
+TEST(Scheduler, OverTheLimitIsCountedNotHung) {
+    FakeService service;
+    service.strip = 1;
+    S s(service, nullptr, 2'500); // room for two strips, the tree needs five at a time
+    auto root = s.newRoot();
+    s.spawn({0, root, {1, 1, 5, true}});
+    EXPECT_TRUE(s.run());
+    EXPECT_GT(s.overLimit(), 0u);
+}
+
+TEST(Scheduler, Cancellation) {
+    volatile int32_t stop = 0;
+    FakeService service;
+    int slices = 0;
+    service.onSlice = [&] { if (++slices == 5) stop = 1; };
+    S s(service, &stop, limits::kFrameBytesPerThread, 8);
+    for (int i = 0; i < 100; ++i) s.spawn({0, s.newRoot(), {1, 3, 5, true}});
+    EXPECT_FALSE(s.run());
+    EXPECT_EQ(slices, 5);
+}
+
+TEST(Scheduler, NonFiniteIsCountedAndDropped) {
+    FakeService service;
+    S s(service);
+    auto root = s.newRoot();
+    s.add(root, Color(NAN, 0, 0));
+    s.add(root, Color(1, 2, 3));
+    EXPECT_EQ(s.value(root).radiance, Color(1, 2, 3));
+    EXPECT_EQ(s.nonFinite(), 1u);
+}
+
+TEST(ExactSum, OrderDoesNotMatter) {
+    std::mt19937 rng(3);
+    std::vector<float> v(10000);
+    for (auto& x : v) x = std::ldexp(std::uniform_real_distribution<float>(-1, 1)(rng), int(rng() % 60) - 35);
+    ExactSum a;
+    for (float x : v) a.add(x);
+    std::shuffle(v.begin(), v.end(), rng);
+    ExactSum b, c;
+    for (size_t i = 0; i < v.size(); ++i) (i % 2 ? b : c).add(v[i]);
+    b.merge(c);
+    EXPECT_EQ(a.toDouble(), b.toDouble());
+    ExactSum d;
+    for (int i = 0; i < 1000; ++i) d.add(0.1f);
+    EXPECT_EQ(d.toDouble(), 1000.0 * double(0.1f));
+}
+
+} // namespace

@@ -47,6 +47,8 @@ struct Signature {
     /// in: the arguments flattened, component after component, each component as its jet parts {v}, {v,du,dv} or
     /// {v,du,dv,duu,duv,dvv}; out: the result (if not void), then the output parameters, flattened the same way.
     /// The matrix m[r][c] is flattened row by row. Strings are interned ids, bit-cast int32 lanes.
+    /// Output parameters are among the arguments too: `in` holds the value they had before the call.
+    /// A Runtime signature that `repeats` names a function of two arguments, to be folded from the left: min(min(a, b), c).
     std::string symbol;
     std::string text; ///< as written
 };
@@ -79,6 +81,8 @@ std::span<const Shadeop> shadeops();
 const Shadeop* findShadeop(std::string_view name);
 
 /// Parses "float noise(point p; float w)", "type min(type x, y, ...)" is not accepted here: list generics one by one.
+/// "any" as a parameter's type is Base::Void: every type is accepted (printf). "shader" is Base::Void too: handles are not typed yet.
+/// Arrays: "float p[]", "float p[4]", "float[] p", result "color[]".
 /// In a parameter list "uniform" and "output" may precede a type; a final "..." sets `repeats`; a final "; pairs" sets `pairs`.
 Signature parseSignature(std::string_view text, std::string symbol = {});
 

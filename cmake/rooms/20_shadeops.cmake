@@ -1,0 +1,2 @@
+room(shadeops DEPS base)
+room_tests(shadeops DEPS shadeops)

@@ -1,0 +1,80 @@
+// Derivatives: rsl.md 10.1 and 10.3. Du and Dv are known to the code generator; the rest is RSL over them, so exact where they are.
+#include "shadeops/describe.h"
+
+namespace alpenglow::rsl {
+
+std::vector<Shadeop> derivativeShadeops() {
+    std::vector<Shadeop> list;
+    const auto add = [&](const char* name, std::vector<Signature> signatures, Lowering lowering, const char* doc, const char* rsl) -> Shadeop& {
+        Shadeop op;
+        op.section = "Derivatives";
+        op.source = "seed";
+        op.name = name;
+        op.signatures = std::move(signatures);
+        op.contexts = kSurface | kDisplacement | kVolume | kLight;
+        op.lowering = lowering;
+        op.derivative = DerivativeRule::Inherent;
+        op.doc = doc;
+        op.rsl = rsl;
+        list.push_back(std::move(op));
+        return list.back();
+    };
+    for (const char* name : {"Du", "Dv"}) {
+        const std::string n = name;
+        Shadeop& op = add(name, {}, Lowering::Special, "", "");
+        op.doc = "Exact derivative of the argument per unit of the surface parameter " + std::string(n == "Du" ? "u" : "v") +
+                 ". Results of rays, lights and textures count as constant.";
+        op.signatures = sigs({{("float " + n + "(float x)").c_str()},
+                              {("color " + n + "(color x)").c_str()},
+                              {("vector " + n + "(point x)").c_str()},
+                              {("vector " + n + "(vector x)").c_str()},
+                              {("vector " + n + "(normal x)").c_str()}});
+    }
+    add("Deriv",
+        sigs({{"float Deriv(float num; float den)"}, {"color Deriv(color num; float den)"}, {"vector Deriv(point num; float den)"},
+              {"vector Deriv(vector num; float den)"}, {"vector Deriv(normal num; float den)"}}),
+        Lowering::Rsl, "Du(num) / Du(den) + Dv(num) / Dv(den); a quotient by 0 counts as 0.", R"(
+float Deriv(float num; float den) { return Du(num) / Du(den) + Dv(num) / Dv(den); }
+color Deriv(color num; float den) { return Du(num) / Du(den) + Dv(num) / Dv(den); }
+vector Deriv(point num; float den) { return Du(num) / Du(den) + Dv(num) / Dv(den); }
+vector Deriv(vector num; float den) { return Du(num) / Du(den) + Dv(num) / Dv(den); }
+vector Deriv(normal num; float den) { return Du(num) / Du(den) + Dv(num) / Dv(den); }
+)").source = "seed; formula (k)";
+    add("area", sigs({{"float area(point p)"}, {"float area(point p; string strategy)"}}), Lowering::Rsl,
+        "Area of one micropolygon of the surface p: length(Du(p) ^ Dv(p)) du dv. A hit is a grid of one point, so both strategies, \"shading\" and "
+        "\"dicing\", give this.",
+        R"(
+float area(point p) { extern float du, dv; return length(Du(p) ^ Dv(p)) * abs(du * dv); }
+float area(point p; string strategy) { extern float du, dv; return length(Du(p) ^ Dv(p)) * abs(du * dv); }
+)");
+    add("calculatenormal", sigs({{"normal calculatenormal(point p)"}}), Lowering::Rsl,
+        "Normal of the surface p: Du(p) ^ Dv(p), not normalised, on the side that the orientation of the primitive says (that of Ng).", R"(
+normal calculatenormal(point p) {
+    extern vector dPdu, dPdv;
+    extern normal Ng;
+    normal n = Du(p) ^ Dv(p);
+    return ((dPdu ^ dPdv) . Ng) < 0 ? -n : n;
+}
+)").contexts = kSurface | kDisplacement;
+
+    Shadeop& filterstep = add("filterstep",
+                              sigs({{"float filterstep(float edge, float value; pairs)"}, {"float filterstep(float edge, float value1, float value2; pairs)"}}),
+                              Lowering::Rsl,
+                              "step(edge, value) filtered over the footprint of the sample, or over value1..value2. The \"filter\" chooses which of the functions "
+                              "__filterstep_catmullrom (default), __filterstep_box, __filterstep_triangle, __filterstep_gaussian gets (edge, value1, value2); "
+                              "\"width\" widens the interval about its middle. Outside surfaces du and dv are 0 and the result is step().",
+                              R"(
+float filterstep(float edge, value) {
+    extern float du, dv;
+    float w = abs(Du(value) * du) + abs(Dv(value) * dv);
+    return __filterstep_catmullrom(edge, value - 0.5 * w, value + 0.5 * w);
+}
+float filterstep(float edge, value1, value2) { return __filterstep_catmullrom(edge, value1, value2); }
+)");
+    filterstep.optional = {{{Base::String, 0}, "filter", false, "\"catmull-rom\"", "gaussian, box, triangle or catmull-rom"},
+                           {{Base::Float, 0}, "width", false, "1", "multiplies the width of the filter"}};
+    filterstep.examples = {{"filterstep(0, -1, 1)", "0.5"}};
+    return list;
+}
+
+} // namespace alpenglow::rsl

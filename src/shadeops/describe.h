@@ -1,0 +1,46 @@
+// Helpers for writing descriptors, and the list of the sections. Host only: nothing here goes into the bitcode.
+#pragma once
+#include "shadeops/descriptor.h"
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+namespace alpenglow::rsl {
+
+struct SignatureText {
+    const char* text;
+    const char* symbol = "";
+};
+
+/// Parses each text.
+std::vector<Signature> sigs(std::initializer_list<SignatureText> texts);
+
+/// One signature per type in `types` (separated by spaces): every '$' in the pattern becomes the type's name. Floats take the symbol
+/// `symbol` + "_f", tuples `symbol` + "_t"; an empty symbol stays empty.
+std::vector<Signature> each(const std::string& types, const std::string& pattern, const std::string& symbol = {});
+
+std::vector<Signature> operator+(std::vector<Signature> a, const std::vector<Signature>& b);
+std::vector<OptionalParameter> operator+(std::vector<OptionalParameter> a, const std::vector<OptionalParameter>& b);
+
+inline constexpr const char* kTuples = "color point vector normal";
+inline constexpr const char* kFloatAndTuples = "float color point vector normal";
+inline constexpr const char* kAllTypes = "float color point vector normal matrix string";
+
+/// Parameters of the distributions of trace() and bsdf() (rsl.md 12.1).
+std::vector<OptionalParameter> distributionParameters();
+
+std::vector<Shadeop> mathematicsShadeops();
+std::vector<Shadeop> noiseShadeops();
+std::vector<Shadeop> geometryShadeops();
+std::vector<Shadeop> matrixShadeops();
+std::vector<Shadeop> colourShadeops();
+std::vector<Shadeop> splineShadeops();
+std::vector<Shadeop> derivativeShadeops();
+std::vector<Shadeop> lightingShadeops();
+std::vector<Shadeop> messageShadeops();
+std::vector<Shadeop> stringShadeops();
+std::vector<Shadeop> arrayShadeops();
+std::vector<Shadeop> textureShadeops();
+std::vector<Shadeop> raytracingShadeops();
+
+} // namespace alpenglow::rsl

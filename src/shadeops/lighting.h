@@ -1,0 +1,116 @@
+// Lighting: rsl.md 10.4 (seed 6.4.4). Code for all lane widths above, descriptors below (host only).
+#pragma once
+//CODE
+#ifdef ALPENGLOW_DESCRIBE
+namespace alpenglow::rsl {
+std::vector<Shadeop> lightingShadeops() {
+    std::vector<Shadeop> list;
+    const auto add = [&](const char* name, std::vector<Signature> signatures, Lowering lowering, const char* doc) -> Shadeop& {
+        Shadeop op;
+        op.section = "Lighting";
+        op.source = "seed";
+        op.name = name;
+        op.signatures = std::move(signatures);
+        op.contexts = kSurface | kVolume;
+        op.lowering = lowering;
+        op.derivative = lowering == Lowering::Runtime ? DerivativeRule::Jet : lowering == Lowering::Rsl ? DerivativeRule::Inherent : DerivativeRule::ZeroWarn;
+        op.doc = doc;
+        list.push_back(std::move(op));
+        return list.back();
+    };
+    add("ambient", sigs({{"color ambient()"}}), Lowering::Service,
+        "Sum of Cl over the ambient lights: those without illuminate() and solar(). Under path, ambient light is what escaping diffuse rays see.");
+
+    Shadeop& diffuse = add("diffuse", sigs({{"color diffuse(vector n)"}}), Lowering::Rsl,
+                           "Sum over lights of Cl max(0, n . L) (1 - __nondiffuse), L unit; no 1/PI. n is unit. Under path the indirect light of the "
+                           "same lobe is added by the light transport engine.");
+    diffuse.rsl = R"(
+color diffuse(vector n) {
+    extern point P;
+    color sum = 0;
+    illuminance(P, n, PI/2) {
+        extern vector L;
+        extern color Cl;
+        float nondiffuse = 0;
+        lightsource("__nondiffuse", nondiffuse);
+        sum += Cl * (max(0, normalize(L) . n) * (1 - nondiffuse));
+    }
+    return sum;
+}
+)";
+    Shadeop& specular = add("specular", sigs({{"color specular(vector n, vector v; float roughness)"}}), Lowering::Rsl,
+                            "Sum over lights of Cl specularbrdf(L, n, v, roughness) (1 - __nonspecular). n and v are unit, v toward the eye.");
+    specular.source = "seed; the model of 3Delight is not published, see specularbrdf";
+    specular.rsl = R"(
+color specular(vector n, v; float roughness) {
+    extern point P;
+    color sum = 0;
+    illuminance(P, n, PI/2) {
+        extern vector L;
+        extern color Cl;
+        float nonspecular = 0;
+        lightsource("__nonspecular", nonspecular);
+        sum += Cl * (1 - nonspecular) * specularbrdf(normalize(L), n, v, roughness);
+    }
+    return sum;
+}
+)";
+    Shadeop& brdf = add("specularbrdf", sigs({{"color specularbrdf(vector l, vector n, vector v; float roughness)", "al_specularbrdf"}}), Lowering::Runtime,
+                        "One direction of specular(): pow(max(0, n . h), 8 / roughness), h = normalize(l + v), l, n, v unit. The factor 8 stands in one place "
+                        "of the code (kSpecularExponent). 0 for roughness 0.");
+    brdf.source = "seed; 8 / roughness from an open-source renderer [f]";
+    brdf.contexts = kAnyContext;
+    brdf.examples = {{"specularbrdf(vector(0,0,1), vector(0,0,1), vector(0,0,1), 0.1)", "1 1 1"}};
+    Shadeop& standard = add("specularstd", sigs({{"color specularstd(normal n; vector v; float roughness)"}}), Lowering::Rsl,
+                            "The text-book model: sum over lights of Cl pow(max(0, n . h), 1 / roughness) (1 - __nonspecular), h = normalize(normalize(L) + v).");
+    standard.rsl = R"(
+color specularstd(normal n; vector v; float roughness) {
+    extern point P;
+    color sum = 0;
+    vector nn = normalize(n);
+    vector vn = normalize(v);
+    illuminance(P, nn, PI/2) {
+        extern vector L;
+        extern color Cl;
+        float nonspecular = 0;
+        lightsource("__nonspecular", nonspecular);
+        vector h = normalize(normalize(L) + vn);
+        sum += Cl * ((1 - nonspecular) * pow(max(0, nn . h), 1 / roughness));
+    }
+    return sum;
+}
+)";
+    Shadeop& phong = add("phong", sigs({{"color phong(vector n, vector v; float size)"}}), Lowering::Rsl,
+                         "Phong's highlight: sum over lights of Cl pow(max(0, r . L), size) (1 - __nonspecular), r = reflect(-v, n), L unit.");
+    phong.rsl = R"(
+color phong(vector n, v; float size) {
+    extern point P;
+    color sum = 0;
+    vector r = reflect(-normalize(v), n);
+    illuminance(P, n, PI/2) {
+        extern vector L;
+        extern color Cl;
+        float nonspecular = 0;
+        lightsource("__nonspecular", nonspecular);
+        sum += Cl * ((1 - nonspecular) * pow(max(0, r . normalize(L)), size));
+    }
+    return sum;
+}
+)";
+    Shadeop& bsdf = add("bsdf", sigs({{"color bsdf(vector l; normal n; pairs)"}, {"color[] bsdf(vector l; normal n; pairs)"}}), Lowering::Unavailable,
+                        "One of the distributions of trace() for a single light direction l, times the cosine.");
+    bsdf.optional = distributionParameters();
+
+    Shadeop& fresnel = add("fresnel",
+                           sigs({{"void fresnel(vector i, vector n; float eta; output float Kr, output float Kt)", "al_fresnel"},
+                                 {"void fresnel(vector i, vector n; float eta; output float Kr, output float Kt; output vector R, output vector T)",
+                                  "al_fresnelrt"}}),
+                           Lowering::Runtime,
+                           "Fresnel reflectance Kr of an unpolarised ray i (unit) at the unit normal n facing it, eta = index of the side of i / index "
+                           "entered; Kt = 1 - Kr. R and T are the reflected and refracted directions; T is 0 and Kr 1 on total reflection.");
+    fresnel.contexts = kAnyContext;
+    fresnel.source = "seed; energy form of Kt (k)";
+    return list;
+}
+} // namespace alpenglow::rsl
+#endif

@@ -1,0 +1,105 @@
+// Message passing and information: rsl.md 11.1 (seed 6.4.8). Values live in the renderer; here are the signatures.
+#include "shadeops/describe.h"
+
+namespace alpenglow::rsl {
+namespace {
+
+constexpr uint32_t kNoImager = kSurface | kDisplacement | kVolume | kLight;
+
+/// "T name(string what; output T value)" for every type, arrays too.
+std::vector<Signature> query(const std::string& name, const std::string& head = "string name") {
+    return each(kAllTypes, "float " + name + "(" + head + "; output $ value)") + each(kAllTypes, "float " + name + "(" + head + "; output $ value[])");
+}
+
+} // namespace
+
+std::vector<Shadeop> messageShadeops() {
+    std::vector<Shadeop> list;
+    const auto add = [&](const char* name, std::vector<Signature> signatures, Lowering lowering, uint32_t contexts, const char* doc) -> Shadeop& {
+        Shadeop op;
+        op.section = "Messages";
+        op.source = "seed";
+        op.name = name;
+        op.signatures = std::move(signatures);
+        op.contexts = contexts;
+        op.lowering = lowering;
+        op.derivative = DerivativeRule::ZeroWarn;
+        op.pure = false; // what a message brings may change while the shader runs
+        op.doc = doc;
+        list.push_back(std::move(op));
+        return list.back();
+    };
+    const std::string tail = " 1 on success; 0, and value untouched, when the shader or the parameter is missing or the type does not fit.";
+    const auto message = [&](const char* name, Lowering lowering, uint32_t contexts, const std::string& doc) {
+        add(name, query(name), lowering, contexts, (doc + tail).c_str());
+    };
+    message("surface", Lowering::Service, kNoImager, "Parameter of the surface shader of the primitive being shaded.");
+    message("displacement", Lowering::Service, kNoImager, "Parameter of the displacement shader of the primitive being shaded.");
+    message("atmosphere", Lowering::Service, kNoImager, "Parameter of the atmosphere shader of the primitive being shaded.");
+    message("lightsource", Lowering::Service, kSurface | kVolume, "Parameter of the light of the current turn; only inside illuminance.");
+    message("incident", Lowering::Unavailable, kSurface, "Parameter of the volume shader on the side of the incident ray.");
+    message("opposite", Lowering::Unavailable, kSurface, "Parameter of the volume shader on the other side of the surface.");
+    message("attribute", Lowering::Unavailable, kAnyContext,
+            "Attribute of the primitive (\"class:name\", \"Ri:...\", \"user:...\"); with \"light:\" in front, inside illuminance, of the light.");
+    message("option", Lowering::Unavailable, kAnyContext, "Option of the frame.");
+    message("rendererinfo", Lowering::Unavailable, kAnyContext, "\"renderer\" string, \"version\" float[4], \"versionstring\" string.");
+    message("rayinfo", Lowering::Service, kNoImager,
+            "About the ray that hit the point: \"type\" string (camera, specular, diffuse, transmission, light, subsurface), \"depth\", \"speculardepth\", "
+            "\"diffusedepth\" float, \"label\" string, \"origin\" point, \"direction\" vector, \"length\" float.");
+    Shadeop& textureinfo = add("textureinfo", query("textureinfo", "string texture, string field"), Lowering::Unavailable, kAnyContext,
+                               "About a texture: \"resolution\" float[2], \"type\" string, \"channels\" float, \"viewingmatrix\" and \"projectionmatrix\" matrix; "
+                               "\"exists\" with a literal 0 as value: 1 if the file is there and valid.");
+    textureinfo.signatures = textureinfo.signatures + sigs({{"float textureinfo(string texture, string field; float none)"}});
+    const auto rayFunction = [&](const char* name, const char* doc) {
+        add(name, sigs({{(std::string("float ") + name + "()").c_str()}}), Lowering::Unavailable, kSurface | kVolume, doc);
+    };
+    rayFunction("raylevel", "Depth of the ray. Deprecated: rayinfo(\"depth\").");
+    rayFunction("isindirectray", "1 for indirect rays. Deprecated: rayinfo(\"type\").");
+    rayFunction("isshadowray", "1 for shadow rays. Deprecated: rayinfo(\"type\").");
+    add("isoutput", each(kAllTypes, "float isoutput($ variable)"), Lowering::Unavailable, kAnyContext,
+        "1 if the variable, or the one of that name (\"outputs[1]\" too), is an output that a display asks for.");
+    add("outputchannel", each("float color point vector normal matrix", "void outputchannel(uniform string name; $ value)"), Lowering::Unavailable,
+        kAnyContext, "Creates or assigns an output of the main shader; \"light:\" or \"local:\" keep it where it is.");
+    add("gridmin", sigs({{"float gridmin(float value)"}, {"void gridmin(float value)"}}), Lowering::Unavailable, kNoImager,
+        "Smallest value over the grid. A hit is a grid of one point: the value minus half its footprint.");
+    add("gridmax", sigs({{"float gridmax(float value)"}, {"void gridmax(float value)"}}), Lowering::Unavailable, kNoImager,
+        "Largest value over the grid: the value plus half its footprint.");
+    add("getshader", sigs({{"shader getshader(string handle)"}}), Lowering::Unavailable, kNoImager, "Co-shader by its handle; null if absent.");
+    add("getshaders", sigs({{"shader[] getshaders(pairs)"}}), Lowering::Unavailable, kAnyContext, "All co-shaders, or those of a category.").optional = {
+        {{Base::String, 0}, "category", false, "\"\"", "names of categories"}};
+    add("getlight", sigs({{"shader getlight(string handle)"}}), Lowering::Unavailable, kSurface | kVolume, "Light by its handle.");
+    add("getlights", sigs({{"shader[] getlights(pairs)"}}), Lowering::Unavailable, kSurface | kVolume, "The active lights, or those of a category.").optional = {
+        {{Base::String, 0}, "category", false, "\"\"", "names of categories"}};
+    add("getvar", sigs({{"float getvar(shader handle; string name)"}}) + each(kAllTypes, "float getvar(shader handle; string name; output $ value)"),
+        Lowering::Unavailable, kAnyContext, "Member variable of a co-shader; null handle: the primitive's variables. 1 if found.");
+    add("islightcategory", sigs({{"float islightcategory(string category)"}}), Lowering::Unavailable, kSurface | kVolume,
+        "1 if the current light belongs to the category.").source = "seen in 3Delight shaders";
+    add("shadername", sigs({{"string shadername()"}, {"string shadername(string type)"}}), Lowering::Unavailable, kAnyContext, "Name of the shader attached.")
+        .source = "(k)";
+    return list;
+}
+
+std::vector<Shadeop> arrayShadeops() {
+    std::vector<Shadeop> list;
+    const auto add = [&](const char* name, std::vector<Signature> signatures, Lowering lowering, const char* doc) {
+        Shadeop op;
+        op.section = "Arrays";
+        op.source = "seed";
+        op.name = name;
+        op.signatures = std::move(signatures);
+        op.lowering = lowering;
+        op.derivative = lowering == Lowering::Special ? DerivativeRule::Zero : DerivativeRule::ZeroWarn;
+        op.pure = lowering == Lowering::Special;
+        op.doc = doc;
+        list.push_back(std::move(op));
+    };
+    add("arraylength", each(kAllTypes, "float arraylength($ a[])"), Lowering::Special, "Number of elements.");
+    add("resize", each(kAllTypes, "void resize(output $ a[]; uniform float length)"), Lowering::Unavailable, "Sets the length; new elements are undefined.");
+    add("reserve", each(kAllTypes, "void reserve(output $ a[]; uniform float length)"), Lowering::Unavailable, "Sets the capacity.");
+    add("push", each(kAllTypes, "void push(output $ a[]; $ value)"), Lowering::Unavailable, "Appends a value.");
+    add("pop", each(kAllTypes, "$ pop(output $ a[])"), Lowering::Unavailable, "Removes and returns the last element.");
+    add("capacity", each(kAllTypes, "float capacity($ a[])"), Lowering::Unavailable, "Elements that fit without new memory.");
+    return list;
+}
+
+} // namespace alpenglow::rsl

@@ -1,0 +1,89 @@
+// Texture mapping: rsl.md 12.3 (seed 6.4.6). The renderer answers; `name` may carry a channel, name[channel].
+#include "shadeops/describe.h"
+
+namespace alpenglow::rsl {
+namespace {
+
+constexpr Type kF{Base::Float, 0}, kS{Base::String, 0};
+
+std::vector<OptionalParameter> filterParameters() {
+    return {{kS, "filter", false, "\"gaussian\"", "box, triangle, gaussian, catmull-rom"},
+            {kF, "width", false, "1", "multiplies the filter size in s and t"},
+            {kF, "swidth", false, "1", "multiplies the filter size in s"},
+            {kF, "twidth", false, "1", "multiplies the filter size in t"},
+            {kF, "blur", false, "0", "added to the filter size, fraction of the map"},
+            {kF, "sblur", false, "0", "as blur, in s"},
+            {kF, "tblur", false, "0", "as blur, in t"},
+            {kF, "fill", false, "0", "value of channels that the file does not have"},
+            {kF, "lerp", false, "0", "1 interpolates between map levels"},
+            {kF, "samples", false, "4", "number of samples (shadow)"},
+            {kF, "bias", false, "-1", "depth bias (shadow); negative: the option's"}};
+}
+
+} // namespace
+
+std::vector<Shadeop> textureShadeops() {
+    std::vector<Shadeop> list;
+    const auto add = [&](const char* name, std::vector<Signature> signatures, Lowering lowering, const char* doc) -> Shadeop& {
+        Shadeop op;
+        op.section = "Texture";
+        op.source = "seed";
+        op.name = name;
+        op.signatures = std::move(signatures);
+        op.lowering = lowering;
+        op.derivative = DerivativeRule::ZeroWarn;
+        op.bias = Bias::Biased;
+        op.biasReason = "values are filtered over the footprint before they are used";
+        op.doc = doc;
+        op.optional = filterParameters();
+        list.push_back(std::move(op));
+        return list.back();
+    };
+    const std::string quad = "float s1, float t1, float s2, float t2, float s3, float t3, float s4, float t4; pairs)";
+    add("texture",
+        each("float color", "$ texture(string name; pairs)") + each("float color", "$ texture(string name; float s, float t; pairs)") +
+            each("float color", "$ texture(string name; " + quad),
+        Lowering::Service,
+        "Filtered lookup at s, t (default: those of the sample), or over an explicit quadrilateral; the same point four times: no filter. Float: one "
+        "channel, color: three, from the channel in brackets. Linear colours.");
+    add("environment",
+        each("float color", "$ environment(string name; vector v; pairs)") +
+            each("float color", "$ environment(string name; vector v1, vector v2, vector v3, vector v4; pairs)"),
+        Lowering::Service, "Lookup of an environment map (latitude-longitude, or cube faces) in direction v. The name \"raytrace\" traces rays.");
+    add("shadow",
+        each("float color", "$ shadow(string name; point p; pairs)") +
+            each("float color", "$ shadow(string name; point p1, point p2, point p3, point p4; pairs)"),
+        Lowering::Unavailable, "Occlusion in 0..1 from a shadow map, a deep shadow map, or rays (\"raytrace\").")
+        .contexts = kSurface | kVolume | kLight;
+    add("ptexture",
+        each("float color", "$ ptexture(string name; uniform float channel; float face; pairs)") +
+            each("float color", "$ ptexture(string name; uniform float channel; float face, float s, float t; pairs)") +
+            each("float color", "$ ptexture(string name; uniform float channel; float face; " + quad),
+        Lowering::Unavailable, "Lookup in a texture that has one image per face.");
+    Shadeop& bake = add("bake", each("float color point", "void bake(string file; float s, float t; $ value)"), Lowering::Unavailable,
+                        "Writes (s, t, value) to a file; binary when the name ends with \"&binary\".");
+    bake.pure = false;
+    bake.optional.clear();
+    bake.bias = Bias::Unbiased;
+    bake.biasReason.clear();
+    bake.contexts = kSurface | kDisplacement | kVolume;
+    Shadeop& bake3d = add("bake3d", sigs({{"float bake3d(string file, string channels; point p; normal n; pairs)"}}), Lowering::Unavailable,
+                          "Writes values, given as pairs, to a point cloud. 1 on success.");
+    bake3d.pure = false;
+    bake3d.bias = Bias::Unbiased;
+    bake3d.biasReason.clear();
+    bake3d.contexts = kSurface | kDisplacement | kVolume;
+    bake3d.optional = {{kS, "coordsystem", false, "\"world\"", "space of the file"},
+                       {kF, "radius", false, "from the footprint", "radius of the sample"},
+                       {kF, "radiusscale", false, "1", "multiplies the radius"},
+                       {kF, "interpolate", false, "0", "1 writes the middles of micropolygons"}};
+    add("texture3d", sigs({{"float texture3d(string file; point p; normal n; pairs)"}}), Lowering::Unavailable,
+        "Reads values, named as output pairs, from a point cloud or brick map. 1 on success.")
+        .optional = {{kS, "coordsystem", false, "\"world\"", "space of the file"},
+                     {kF, "filterradius", false, "from the footprint", "radius of the filter"},
+                     {kF, "filterscale", false, "1", "multiplies the radius"},
+                     {kF, "maxdepth", false, "deepest", "limit of the lookup's depth"}};
+    return list;
+}
+
+} // namespace alpenglow::rsl

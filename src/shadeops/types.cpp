@@ -1,0 +1,30 @@
+#include "shadeops/types.h"
+
+namespace alpenglow::rsl {
+
+int componentCount(Base base) {
+    switch (base) {
+    case Base::Void: return 0;
+    case Base::Bool:
+    case Base::Float:
+    case Base::String: return 1;
+    case Base::Color:
+    case Base::Point:
+    case Base::Vector:
+    case Base::Normal: return 3;
+    case Base::Matrix: return 16;
+    }
+    return 0;
+}
+
+std::string toString(Type type) {
+    static constexpr const char* kNames[] = {"void", "bool", "float", "color", "point", "vector", "normal", "matrix", "string"};
+    std::string text = kNames[static_cast<int>(type.base)];
+    if (type.array > 0)
+        text += "[" + std::to_string(type.array) + "]";
+    else if (type.array < 0)
+        text += "[]";
+    return text;
+}
+
+} // namespace alpenglow::rsl

@@ -5,10 +5,23 @@
 namespace alpenglow::limits {
 
 inline constexpr int kArchiveDepth = 64;
+inline constexpr int kArchiveReads = 1'000'000;                 ///< ReadArchive and the like executed by one reader
 inline constexpr int kStackDepth = 4096;                       ///< attribute, transform, motion stacks
 inline constexpr size_t kStringBytes = 16u << 20;
 inline constexpr size_t kTokenBytes = 64u << 10;
+inline constexpr size_t kGzipRatio = 1000;                     ///< inflated : compressed, beyond the first MiB
+inline constexpr size_t kGzipBytes = size_t(64) << 30;         ///< inflated bytes of one RIB stream
+inline constexpr int kReportedProblems = 1000;                 ///< messages of one RIB reader; the rest is only counted
+inline constexpr int kConditionDepth = 256;                    ///< nesting inside one IfBegin expression
+inline constexpr size_t kLights = 10'000'000;                  ///< lights of one frame
+inline constexpr size_t kObjectPrimitives = 10'000'000;         ///< of one Object, instances inside it expanded
 inline constexpr int kImageSide = 65536;
+inline constexpr size_t kImageBytes = size_t(32) << 30;        ///< decoded, as floats
+inline constexpr int kImageChannels = 1024;
+inline constexpr size_t kImageExpansion = 4096;                ///< decoded bytes per byte of file, above kImageSmallBytes
+inline constexpr size_t kImageSmallBytes = size_t(64) << 20;   ///< decoded size that needs no proof by the size of the file
+inline constexpr int kImageScans = 200;                        ///< of a progressive JPEG
+inline constexpr int kTextureTaps = 32;                        ///< probes of one filtered lookup along the major axis
 inline constexpr size_t kMicroQuads = 100'000'000;             ///< per primitive
 inline constexpr float kDisplacementBound = 1e6f;
 inline constexpr int kPathDepth = 10'000;                      ///< hard cap, counted when hit: it is a bias
@@ -17,5 +30,16 @@ inline constexpr size_t kFrameBytesPerThread = 64u << 20;      ///< suspended ke
 inline constexpr int kSliceRays = 4096;                        ///< children of one suspension, per slice
 inline constexpr int kExpressionDepth = 256;                   ///< nesting of RSL expressions and statements
 inline constexpr size_t kInlinedInstructions = 400'000;        ///< IR of one kernel after inlining
+
+inline constexpr size_t kDiceQuads = 4'000'000;                ///< micro-quads dicing makes of one primitive (geometry/)
+inline constexpr int kDiceEdge = 4096;                         ///< steps along one edge of a patch
+inline constexpr size_t kTriangulationTests = 400'000'000;     ///< vertex tests for one concave polygon; then it is fanned
+inline constexpr size_t kShapes = 50'000'000;                  ///< shapes of a frame, instances expanded
+inline constexpr size_t kControlPoints = 100'000'000;          ///< of one patch mesh
+inline constexpr double kFilterWidth = 64;                     ///< pixels, full width of a pixel or display filter
+inline constexpr unsigned kSamplesPerPixel = 1u << 27;         ///< of one film: beyond it the exact sums could overflow
+inline constexpr int kFilmChannels = 1024;                     ///< AOV channels of one film
+inline constexpr size_t kPartFileBytes = size_t(64) << 30;     ///< of one part file or checkpoint on disk
+inline constexpr size_t kPartHeaderBytes = size_t(16) << 20;   ///< of its header: names, metadata, ranges
 
 } // namespace alpenglow::limits

@@ -1,0 +1,6 @@
+find_package(OpenEXR REQUIRED)
+find_package(TIFF REQUIRED)
+find_package(PNG REQUIRED)
+find_package(JPEG REQUIRED)
+room(display DEPS base scene OpenEXR::OpenEXR TIFF::TIFF PNG::PNG JPEG::JPEG)
+room_tests(display DEPS display)

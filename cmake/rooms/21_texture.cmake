@@ -1,0 +1,2 @@
+room(texture DEPS base display)
+room_tests(texture DEPS texture)

@@ -1,0 +1,324 @@
+#include "base/file.h"
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <filesystem>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace fs = std::filesystem;
+
+namespace alpenglow {
+namespace {
+
+bool isSeparator(char c) { return c == '/' || c == '\\'; }
+
+bool hasDrive(const std::string& s) {
+    return s.size() >= 3 && std::isalpha((unsigned char)s[0]) && s[1] == ':' && isSeparator(s[2]);
+}
+
+std::string baseName(const std::string& s) {
+    size_t p = s.find_last_of("/\\");
+    return p == std::string::npos ? s : s.substr(p + 1);
+}
+
+bool climbs(const std::string& s) {
+    for (size_t i = 0; i <= s.size();) {
+        size_t j = i;
+        while (j < s.size() && !isSeparator(s[j])) ++j;
+        if (j - i == 2 && s[i] == '.' && s[i + 1] == '.') return true;
+        i = j + 1;
+    }
+    return false;
+}
+
+/// Whether a path below root stays there once symbolic links are followed.
+bool staysBelow(const fs::path& root, const fs::path& path) {
+    std::error_code e;
+    fs::path r = fs::weakly_canonical(root, e);
+    if (e) return false;
+    fs::path p = fs::weakly_canonical(path.parent_path(), e);
+    if (e) return false;
+    auto m = std::mismatch(r.begin(), r.end(), p.begin(), p.end());
+    return m.first == r.end() || m.first->empty(); // a trailing slash leaves an empty component
+}
+
+Rie codeOf(int error) { return error == ENOSPC || error == EDQUOT ? Rie::DiskFull : Rie::System; }
+
+bool isRegular(const fs::path& p) {
+    std::error_code e;
+    return fs::is_regular_file(p, e);
+}
+
+std::string lower(std::string s) {
+    for (char& c : s) c = char(std::tolower((unsigned char)c));
+    return s;
+}
+
+/// The entry of a directory whose name equals `name` but for case; of several the first in byte order.
+std::optional<std::string> entryIgnoringCase(const fs::path& dir, const std::string& name) {
+    std::error_code e;
+    std::optional<std::string> best;
+    std::string want = lower(name);
+    for (fs::directory_iterator i(dir.empty() ? fs::path(".") : dir, e), end; !e && i != end; i.increment(e)) {
+        std::string n = i->path().filename().string();
+        if (n.size() == want.size() && lower(n) == want && (!best || n < *best)) best = n;
+    }
+    return best;
+}
+
+std::optional<std::string> existingIgnoringCase(const std::string& dir, const std::string& name) {
+    fs::path at = dir;
+    fs::path rest = name;
+    if (rest.is_absolute()) { at = rest.root_path(); rest = rest.relative_path(); }
+    for (const fs::path& part : rest) {
+        std::string p = part.string();
+        if (p == "." || p == ".." || p.empty()) { at /= p; continue; }
+        auto entry = entryIgnoringCase(at, p);
+        if (!entry) return {};
+        at /= *entry;
+    }
+    if (!isRegular(at)) return {};
+    return at.string();
+}
+
+} // namespace
+
+std::optional<std::string> resolveOutputPath(const std::string& name, const OutputPolicy& policy, Diagnostics& diags,
+                                             const SourcePlace& place) {
+    if (name.empty() || name.find('\0') != std::string::npos) {
+        diags.report(Severity::Error, Rie::NoFile, place, "cannot write a file without a proper name");
+        return {};
+    }
+    fs::path root = policy.root.empty() ? fs::path(".") : fs::path(policy.root);
+    if (policy.allowWrite) {
+        fs::path p = name;
+        return (p.is_absolute() ? p : root / p).string();
+    }
+    std::string below = name;
+    bool outside = isSeparator(name[0]) || hasDrive(name) || climbs(name) || !staysBelow(root, root / name);
+    if (outside) {
+        below = baseName(name);
+        if (below.empty() || below == "." || below == "..") {
+            diags.report(Severity::Error, Rie::NoFile, place, "\"" + name + "\" lies outside the output directory",
+                         "--allow-write permits it");
+            return {};
+        }
+    }
+    std::string path = (policy.root.empty() || policy.root == ".") ? below : (root / below).string();
+    if (outside) {
+        Diagnostic d;
+        d.severity = Severity::Warning;
+        d.code = Rie::NoError;
+        d.place = place;
+        d.message = "\"" + name + "\" lies outside the output directory; written as \"" + path + "\"";
+        d.hint = "--allow-write permits any path";
+        diags.reportOnce("output-path:" + name, d);
+    }
+    return path;
+}
+
+std::optional<OutputFile> OutputFile::open(const std::string& name, const OutputPolicy& policy, Diagnostics& diags,
+                                           const SourcePlace& place) {
+    auto resolved = resolveOutputPath(name, policy, diags, place);
+    if (!resolved) return {};
+    OutputFile f;
+    f.path_ = *resolved;
+    f.place_ = place;
+    f.failAfter_ = policy.failAfterBytes;
+    std::error_code e;
+    fs::path target = f.path_;
+    fs::file_status status = fs::status(target, e);
+    if (fs::exists(status) && !fs::is_regular_file(status)) {
+        diags.report(Severity::Error, Rie::System, place, "cannot write \"" + f.path_ + "\": it is not a regular file",
+                     "the display type \"null\" writes nothing");
+        return {};
+    }
+    fs::path dir = target.parent_path();
+    if (!dir.empty() && !fs::exists(dir, e)) fs::create_directories(dir, e);
+    // The name holds the process, so that two processes never share one; O_EXCL settles threads.
+    int fd = -1;
+    for (int n = 0; n < 10000 && fd < 0; ++n) {
+        f.temporary_ = (dir / (".alpenglow-" + std::to_string(getpid()) + "-" + std::to_string(n) + ".tmp")).string();
+        fd = ::open(f.temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (fd < 0 && errno != EEXIST) break;
+    }
+    if (fd < 0) {
+        int error = errno;
+        f.temporary_.clear();
+        diags.report(Severity::Error, codeOf(error), place, "cannot write \"" + f.path_ + "\": " + std::strerror(error));
+        return {};
+    }
+    f.file_ = fdopen(fd, "w+b");
+    if (!f.file_) {
+        ::close(fd);
+        f.fail(ENOMEM);
+    }
+    return f;
+}
+
+OutputFile::OutputFile(OutputFile&& o) noexcept
+    : file_(o.file_), path_(std::move(o.path_)), temporary_(std::move(o.temporary_)), place_(std::move(o.place_)),
+      failAfter_(o.failAfter_), written_(o.written_), error_(o.error_), lastWasRead_(o.lastWasRead_) {
+    o.file_ = nullptr;
+    o.temporary_.clear();
+}
+
+OutputFile::~OutputFile() { discard(); }
+
+void OutputFile::discard() {
+    if (file_) std::fclose(file_);
+    file_ = nullptr;
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+    temporary_.clear();
+}
+
+void OutputFile::fail(int error) {
+    if (!error_) error_ = error ? error : EIO;
+}
+
+bool OutputFile::write(const void* bytes, size_t n) {
+    if (!file_ || error_) return false;
+    if (lastWasRead_) std::fseek(file_, 0, SEEK_CUR); // stdio wants a seek between reading and writing
+    lastWasRead_ = false;
+    written_ += n;
+    if (failAfter_ >= 0 && written_ > uint64_t(failAfter_)) { fail(ENOSPC); return false; }
+    if (n && std::fwrite(bytes, 1, n, file_) != n) fail(errno);
+    return !error_;
+}
+
+size_t OutputFile::read(void* bytes, size_t n) {
+    if (!file_ || error_) return 0;
+    if (!lastWasRead_) std::fseek(file_, 0, SEEK_CUR);
+    lastWasRead_ = true;
+    return std::fread(bytes, 1, n, file_);
+}
+
+bool OutputFile::seek(uint64_t position) {
+    if (!file_ || error_) return false;
+    if (fseeko(file_, off_t(position), SEEK_SET) != 0) fail(errno);
+    return !error_;
+}
+
+uint64_t OutputFile::tell() {
+    off_t p = file_ ? ftello(file_) : 0;
+    return p < 0 ? 0 : uint64_t(p);
+}
+
+uint64_t OutputFile::size() {
+    if (!file_) return 0;
+    struct stat st {};
+    if (std::fflush(file_) != 0) fail(errno);
+    return fstat(fileno(file_), &st) == 0 ? uint64_t(st.st_size) : 0;
+}
+
+bool OutputFile::commit(Diagnostics& diags) {
+    if (file_) {
+        if (!error_ && std::fflush(file_) != 0) fail(errno);
+        if (!error_ && fsync(fileno(file_)) != 0 && errno != EINVAL) fail(errno);
+        if (std::fclose(file_) != 0) fail(errno);
+        file_ = nullptr;
+    } else if (!error_) {
+        fail(EBADF);
+    }
+    if (!error_ && std::rename(temporary_.c_str(), path_.c_str()) != 0) fail(errno);
+    if (!error_) {
+        temporary_.clear();
+        return true;
+    }
+    diags.report(Severity::Error, codeOf(error_), place_, "cannot write \"" + path_ + "\": " + std::strerror(error_));
+    discard();
+    return false;
+}
+
+std::optional<std::vector<uint8_t>> readWholeFile(const std::string& path, size_t maxBytes, Diagnostics& diags,
+                                                  const SourcePlace& place) {
+    auto refuse = [&](Rie code, const std::string& why) {
+        diags.report(Severity::Error, code, place, "cannot read \"" + path + "\": " + why);
+        return std::nullopt;
+    };
+    // O_NONBLOCK: opening a pipe that nobody writes must not wait.
+    int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (fd < 0) return refuse(Rie::NoFile, std::strerror(errno));
+    struct Closer {
+        int fd;
+        ~Closer() { ::close(fd); }
+    } closer{fd};
+    struct stat st {};
+    if (fstat(fd, &st) != 0) return refuse(Rie::System, std::strerror(errno));
+    if (!S_ISREG(st.st_mode)) return refuse(Rie::NoFile, "it is not a regular file");
+    if (st.st_size < 0 || uint64_t(st.st_size) > maxBytes) return refuse(Rie::Limit, "it is larger than the limit");
+    std::vector<uint8_t> bytes;
+    try {
+        bytes.resize(size_t(st.st_size));
+    } catch (const std::exception&) {
+        return refuse(Rie::NoMem, "out of memory");
+    }
+    size_t at = 0;
+    while (at < bytes.size()) {
+        ssize_t n = ::read(fd, bytes.data() + at, bytes.size() - at);
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) return refuse(Rie::System, std::strerror(errno));
+        if (n == 0) break;
+        at += size_t(n);
+    }
+    bytes.resize(at);
+    return bytes;
+}
+
+std::vector<std::string> splitSearchPath(const std::string& path, const std::vector<std::string>& defaults,
+                                         const std::vector<std::string>& previous) {
+    std::vector<std::string> out;
+    std::string word;
+    auto flush = [&] {
+        if (word == "@") out.insert(out.end(), defaults.begin(), defaults.end());
+        else if (word == "&") out.insert(out.end(), previous.begin(), previous.end());
+        else if (!word.empty()) out.push_back(word);
+        word.clear();
+    };
+    for (size_t i = 0; i < path.size(); ++i) {
+        char c = path[i];
+        bool drive = c == ':' && word.size() == 1 && std::isalpha((unsigned char)word[0]) && i + 1 < path.size() && isSeparator(path[i + 1])
+                     && path[i + 1] == '\\';
+        if ((c == ':' && !drive) || c == ';') flush();
+        else word += c;
+    }
+    flush();
+    return out;
+}
+
+std::optional<FoundFile> findFile(const std::string& name, const std::vector<std::string>& directories) {
+    if (name.empty() || name.find('\0') != std::string::npos) return {};
+    std::string slashed = name;
+    std::replace(slashed.begin(), slashed.end(), '\\', '/');
+    bool absolute = fs::path(slashed).is_absolute();
+    std::vector<std::string> names{name};
+    if (slashed != name) names.push_back(slashed);
+    auto look = [&](const std::string& n, bool anyCase) -> std::optional<std::string> {
+        if (fs::path(n).is_absolute()) {
+            if (!anyCase && isRegular(n)) return n;
+            return anyCase ? existingIgnoringCase("", n) : std::nullopt;
+        }
+        for (const std::string& d : directories) {
+            if (anyCase) {
+                if (auto p = existingIgnoringCase(d, n)) return p;
+            } else {
+                std::string p = (fs::path(d) / n).string();
+                if (isRegular(p)) return p;
+            }
+        }
+        return {};
+    };
+    for (bool anyCase : {false, true})
+        for (const std::string& n : names)
+            if (auto p = look(n, anyCase)) return FoundFile{*p, anyCase, false};
+    std::string base = baseName(slashed);
+    if (base == slashed && !absolute) return {};
+    for (bool anyCase : {false, true})
+        if (auto p = look(base, anyCase); p && !base.empty()) return FoundFile{*p, anyCase, true};
+    return {};
+}
+
+} // namespace alpenglow

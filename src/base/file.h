@@ -1,0 +1,78 @@
+// Files: the one door for everything the renderer writes (reliability: no write outside what was asked for, no torn files),
+// bounded reading of whole files, and looking names up along search paths.
+#pragma once
+#include "base/diagnostics.h"
+#include <cstdint>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace alpenglow {
+
+/// Where files may be written.
+struct OutputPolicy {
+    std::string root = ".";      ///< relative names are below it
+    bool allowWrite = false;     ///< --allow-write: absolute names and ".." are taken as they are
+    int64_t failAfterBytes = -1; ///< fault injection for tests: the write that passes this many bytes fails as a full disk
+};
+
+/// The path that a file called `name` will be written to. Without allowWrite a name that is absolute (also "C:\x" and
+/// "\\host\x"), has a ".." component, or leads out of the root through a symbolic link, becomes its base name below the root;
+/// this is said once per name. Nothing: the name is unusable, and an error was reported.
+std::optional<std::string> resolveOutputPath(const std::string& name, const OutputPolicy&, Diagnostics&, const SourcePlace& = {});
+
+/// A file under a temporary name in the directory of its target, renamed to it when whole. Until commit() succeeds the old
+/// file stays as it is; the destructor removes the temporary.
+class OutputFile {
+public:
+    /// Resolves the name by the policy, makes missing directories below the root, opens. Nothing: an error was reported.
+    static std::optional<OutputFile> open(const std::string& name, const OutputPolicy&, Diagnostics&, const SourcePlace& = {});
+    OutputFile(OutputFile&&) noexcept;
+    OutputFile& operator=(OutputFile&&) = delete;
+    ~OutputFile();
+
+    /// False once any write, read or seek has failed; the reason is kept for commit().
+    bool write(const void* bytes, size_t n);
+    /// Number of bytes read (for formats that patch what they wrote).
+    size_t read(void* bytes, size_t n);
+    bool seek(uint64_t position);
+    uint64_t tell();
+    uint64_t size();
+    bool ok() const { return error_ == 0; }
+    /// Flushes, syncs, renames. False: an error was reported, the old file is intact, the temporary gone.
+    bool commit(Diagnostics&);
+    const std::string& path() const { return path_; } ///< where it will be
+
+private:
+    OutputFile() = default;
+    void fail(int error);
+    void discard();
+    std::FILE* file_ = nullptr;
+    std::string path_, temporary_;
+    SourcePlace place_;
+    int64_t failAfter_ = -1;
+    uint64_t written_ = 0;
+    int error_ = 0; ///< errno of the first failure
+    bool lastWasRead_ = false;
+};
+
+/// The whole of a regular file of at most maxBytes. Nothing: an error was reported (NoFile when it is not there).
+std::optional<std::vector<uint8_t>> readWholeFile(const std::string& path, size_t maxBytes, Diagnostics&, const SourcePlace& = {});
+
+/// Directories of a search path: separated by ':' (or ';'; a drive letter's colon does not separate). "@" stands for
+/// `defaults`, "&" for `previous`; nothing else is expanded.
+std::vector<std::string> splitSearchPath(const std::string& path, const std::vector<std::string>& defaults = {},
+                                         const std::vector<std::string>& previous = {});
+
+/// How a name was found, when not simply.
+struct FoundFile {
+    std::string path;
+    bool otherCase = false; ///< letters differ from the name on disk
+    bool baseNameOnly = false; ///< the directories of the name were dropped
+};
+/// Looks for a name: as it is when absolute, else below each directory in order ("" = the working directory). Backslashes count
+/// as slashes. Then again without regard to case, then the base name alone (absolute paths of other machines).
+std::optional<FoundFile> findFile(const std::string& name, const std::vector<std::string>& directories);
+
+} // namespace alpenglow

@@ -1,0 +1,56 @@
+// Display drivers: what becomes of the pixels of a Display request. A driver is one file in drivers/, described by one object that
+// holds its names, its manual text and its factory; drivers() lists them.
+#pragma once
+#include "display/imageio.h"
+#include "display/quantize.h"
+#include <memory>
+
+namespace alpenglow::display {
+
+/// What a driver is told before the first pixel.
+struct DriverSetup {
+    std::string name;                  ///< of the Display request: a file name, or a window title
+    std::string type;                  ///< as the request named it
+    int width = 0, height = 0;         ///< of what is delivered (the crop window), pixels
+    int originX = 0, originY = 0;      ///< of its first pixel in the full picture
+    int fullWidth = 0, fullHeight = 0; ///< of the full picture; 0 = the same
+    float pixelAspect = 1;
+    std::vector<std::string> channels; ///< channelNames(parseMode(...))
+    scene::ParamList params;           ///< of the Display request
+    Quantization rgba, z;              ///< by quantizationOf; z is for the channel "z", rgba for all others
+    bool quantizeAsked = false;        ///< false: rgba and z are RI's defaults, which drivers of float formats pass over
+    std::map<std::string, std::string> metadata;
+    std::optional<Matrix> worldToCamera, worldToNDC;
+    OutputPolicy policy;
+    SourcePlace place;                 ///< of the Display request
+};
+
+/// Receives one picture. Calls come from one thread, in the order open, rows..., close. Nothing becomes visible under the final
+/// name before close() succeeds, and then all of it; destroying an unclosed driver leaves no trace.
+class Driver {
+public:
+    virtual ~Driver() = default;
+    /// False: the driver cannot show this; an error was reported.
+    virtual bool open(const DriverSetup&, Diagnostics&) = 0;
+    /// `count` rows from row y (0 = top), each width * channels floats, in any order of y. Unquantised, after exposure.
+    virtual bool rows(int y, int count, const float* data) = 0;
+    /// Publishes. May be called again after further rows() (progressive renders): each call publishes a whole picture.
+    virtual bool close(Diagnostics&) = 0;
+};
+
+struct DriverDescriptor {
+    std::vector<std::string> names; ///< display types it answers to, any case
+    std::string doc;                ///< for the manual: what it writes, which parameters it reads
+    std::unique_ptr<Driver> (*make)();
+};
+
+/// All drivers, in the order of the manual.
+const std::vector<const DriverDescriptor*>& drivers();
+/// By display type, ignoring case; null when there is none.
+const DriverDescriptor* findDriver(const std::string& type);
+/// The driver of a display type. An unknown type gets a picture driver that chooses by the name's extension; this is said once.
+std::unique_ptr<Driver> makeDriver(const std::string& type, Diagnostics&, const SourcePlace& = {});
+/// open, all rows, close of a finished picture. The image's channels must be setup.channels. False: an error was reported.
+bool writeDisplay(const DriverSetup&, const Image&, Diagnostics&);
+
+} // namespace alpenglow::display

@@ -1,0 +1,25 @@
+// Display types of formats we do not write, and unknown ones: a picture under the given name, and a word about it.
+#include "display/drivers/picture.h"
+
+namespace alpenglow::display {
+namespace {
+
+class Other : public PictureDriver {
+    Format format(const DriverSetup& s, Diagnostics& diags) override {
+        Format f = formatOfExtension(s.name).value_or(Format::Tiff);
+        const char* name = f == Format::Exr ? "OpenEXR" : f == Format::Png ? "PNG" : "TIFF";
+        diags.report(Severity::Warning, Rie::Incapable, s.place,
+                     "display \"" + s.name + "\": type \"" + s.type + "\" is not available; a " + name + " is written under that name");
+        return f;
+    }
+};
+
+} // namespace
+
+const DriverDescriptor otherDriver{
+    {"targa", "tga", "bmp", "bitmap", "jpeg", "jpg", "gif", "sgi", "iff", "alias", "cineon", "avs", "pic", "dspy_s_avs", "texture"},
+    "Formats that are not written here (Targa, BMP, ...): a picture file under the given name, by its extension (OpenEXR, PNG, else "
+    "TIFF), and this is said.",
+    []() -> std::unique_ptr<Driver> { return std::make_unique<Other>(); }};
+
+} // namespace alpenglow::display

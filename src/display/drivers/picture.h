@@ -1,0 +1,33 @@
+// The common part of drivers that write a picture file when closed.
+#pragma once
+#include "display/driver.h"
+
+namespace alpenglow::display {
+
+class PictureDriver : public Driver {
+public:
+    bool open(const DriverSetup&, Diagnostics&) override;
+    bool rows(int y, int count, const float* data) override;
+    bool close(Diagnostics&) override;
+
+protected:
+    /// Chooses the format; says so where that is not what the type says.
+    virtual Format format(const DriverSetup&, Diagnostics&) = 0;
+    /// Whether the numbers are data that must stay floats (depth).
+    virtual bool data() const { return false; }
+
+private:
+    WriteOptions chooseSamples(Diagnostics&);
+    void quantiseInto(Image&) const;
+    DriverSetup setup_;
+    Format format_ = Format::Exr;
+    Image image_;
+};
+
+/// Reads a string parameter; `fallback` when absent; anything outside `allowed` is reported.
+std::string stringParam(const DriverSetup&, const std::string& name, const std::vector<std::string>& allowed, const std::string& fallback, Diagnostics&);
+
+// The descriptors, one per file.
+extern const DriverDescriptor openexrDriver, tiffDriver, fileDriver, pngDriver, framebufferDriver, nullDriver, zfileDriver, otherDriver;
+
+} // namespace alpenglow::display

@@ -1,0 +1,37 @@
+// What imageio.cpp and the codecs share. One codec per file; none throws.
+#pragma once
+#include "display/imageio.h"
+
+namespace alpenglow::display {
+
+using Bytes = std::span<const uint8_t>;
+
+/// What a decoder needs to speak.
+struct DecodeContext {
+    const std::string& name;
+    Diagnostics& diags;
+    const ReadOptions& options;
+    size_t fileBytes;
+    /// Reports `cannot read "name": why` and returns nothing.
+    std::nullopt_t refuse(const std::string& why, Rie code = Rie::BadFile) const;
+    void warn(const std::string& why) const;
+    /// The limits on sides, channels, bytes and expansion; false after an error. Ask before allocating.
+    bool sizeAllowed(uint64_t width, uint64_t height, uint64_t channels) const;
+};
+
+std::optional<Image> decodeExr(Bytes, const DecodeContext&);
+std::optional<Image> decodeTiff(Bytes, const DecodeContext&);
+std::optional<Image> decodePng(Bytes, const DecodeContext&);
+std::optional<Image> decodeJpeg(Bytes, const DecodeContext&);
+std::optional<Image> decodeZfile(Bytes, const DecodeContext&);
+std::optional<Image> decodeRadiance(Bytes, const DecodeContext&);
+
+/// Encoders write to an open file; false: `why` says what went wrong (or the file holds the error).
+bool encodeExr(OutputFile&, const Image&, const WriteOptions&, std::string& why);
+bool encodeTiff(OutputFile&, const Image&, const WriteOptions&, std::string& why);
+bool encodePng(OutputFile&, const Image&, const WriteOptions&, Diagnostics&, std::string& why);
+
+/// A sample as an integer code of 8 or 16 bits: as it is when quantised, else value * maximum; rounded, clamped; NaN is 0.
+unsigned toCode(float value, unsigned maximum, bool quantised);
+
+} // namespace alpenglow::display

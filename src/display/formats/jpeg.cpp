@@ -1,0 +1,111 @@
+// JPEG by libjpeg, reading only: grey and colour, 8 bits. As in png.cpp, errors jump, so the jumping frame holds no objects.
+#include "base/limits.h"
+#include "display/formats/codecs.h"
+#include <csetjmp>
+#include <cstdio>
+#include <cstring>
+#include <jpeglib.h>
+
+namespace alpenglow::display {
+namespace {
+
+struct Reader {
+    jpeg_error_mgr errors{};
+    jpeg_progress_mgr progress{};
+    std::jmp_buf jump;
+    jpeg_decompress_struct info{};
+    char error[JMSG_LENGTH_MAX] = "", warning[JMSG_LENGTH_MAX] = "";
+    const DecodeContext* ctx = nullptr;
+    Image image;
+    std::vector<uint8_t> row;
+    bool refused = false;
+};
+
+Reader& self(j_common_ptr c) { return *static_cast<Reader*>(c->client_data); }
+
+void onError(j_common_ptr c) {
+    Reader& r = self(c);
+    c->err->format_message(c, r.error);
+    std::longjmp(r.jump, 1);
+}
+void onMessage(j_common_ptr c, int level) {
+    if (level >= 0) return;
+    Reader& r = self(c);
+    if (!r.warning[0]) c->err->format_message(c, r.warning);
+    ++c->err->num_warnings;
+}
+void onOutput(j_common_ptr) {}
+/// A progressive file can ask for any number of passes over all pixels.
+void onProgress(j_common_ptr c) {
+    if (c->is_decompressor && reinterpret_cast<j_decompress_ptr>(c)->input_scan_number > limits::kImageScans) {
+        Reader& r = self(c);
+        std::snprintf(r.error, sizeof r.error, "it has more than %d scans", limits::kImageScans);
+        std::longjmp(r.jump, 1);
+    }
+}
+
+bool prepare(Reader& r) {
+    int n = r.info.output_components;
+    if (!r.ctx->sizeAllowed(r.info.output_width, r.info.output_height, uint64_t(n))) {
+        r.refused = true;
+        return false;
+    }
+    r.image = makeImage(int(r.info.output_width), int(r.info.output_height), defaultChannels(n));
+    r.image.bits = 8;
+    r.image.floating = false;
+    r.row.resize(size_t(r.info.output_width) * size_t(n));
+    return true;
+}
+
+bool decode(Reader& r, Bytes b) {
+    if (setjmp(r.jump)) return false;
+    jpeg_create_decompress(&r.info);
+    r.info.client_data = &r;
+    r.info.progress = &r.progress;
+    jpeg_mem_src(&r.info, b.data(), b.size());
+    jpeg_read_header(&r.info, TRUE);
+    if (r.info.num_components == 4) {
+        std::snprintf(r.error, sizeof r.error, "CMYK JPEG is not supported");
+        return false;
+    }
+    r.info.out_color_space = r.info.num_components == 1 ? JCS_GRAYSCALE : JCS_RGB;
+    r.info.dct_method = JDCT_ISLOW;
+    jpeg_calc_output_dimensions(&r.info);
+    if (!prepare(r)) return false;
+    jpeg_start_decompress(&r.info);
+    while (r.info.output_scanline < r.info.output_height) {
+        float* to = r.image.pixel(0, int(r.info.output_scanline));
+        JSAMPROW row = r.row.data();
+        if (jpeg_read_scanlines(&r.info, &row, 1) != 1) break;
+        for (size_t i = 0; i < r.row.size(); ++i) to[i] = float(r.row[i]) / 255.0f;
+    }
+    jpeg_finish_decompress(&r.info);
+    return true;
+}
+
+} // namespace
+
+std::optional<Image> decodeJpeg(Bytes b, const DecodeContext& ctx) {
+    Reader r;
+    r.ctx = &ctx;
+    r.info.err = jpeg_std_error(&r.errors);
+    r.errors.error_exit = onError;
+    r.errors.emit_message = onMessage;
+    r.errors.output_message = onOutput;
+    r.progress.progress_monitor = onProgress;
+    r.info.client_data = &r;
+    bool ok = false;
+    try {
+        ok = decode(r, b);
+    } catch (...) {
+        jpeg_destroy_decompress(&r.info);
+        throw;
+    }
+    jpeg_destroy_decompress(&r.info);
+    if (r.refused) return {};
+    if (!ok) return ctx.refuse(r.error);
+    if (r.warning[0]) ctx.warn(std::string(r.warning) + "; what could be read is used");
+    return std::move(r.image);
+}
+
+} // namespace alpenglow::display

@@ -1,0 +1,127 @@
+#include "display/imageio.h"
+#include "base/limits.h"
+#include "display/formats/codecs.h"
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <set>
+
+namespace alpenglow::display {
+
+std::nullopt_t DecodeContext::refuse(const std::string& why, Rie code) const {
+    diags.report(Severity::Error, code, options.place, "cannot read \"" + name + "\": " + why);
+    return std::nullopt;
+}
+
+void DecodeContext::warn(const std::string& why) const {
+    diags.report(Severity::Warning, Rie::BadFile, options.place, "\"" + name + "\": " + why);
+}
+
+bool DecodeContext::sizeAllowed(uint64_t width, uint64_t height, uint64_t channels) const {
+    if (width == 0 || height == 0 || channels == 0) {
+        refuse("it has no pixels");
+        return false;
+    }
+    if (width > uint64_t(limits::kImageSide) || height > uint64_t(limits::kImageSide)) {
+        refuse("a side is longer than " + std::to_string(limits::kImageSide) + " pixels", Rie::Limit);
+        return false;
+    }
+    if (channels > uint64_t(limits::kImageChannels)) {
+        refuse("it has more than " + std::to_string(limits::kImageChannels) + " channels", Rie::Limit);
+        return false;
+    }
+    uint64_t bytes = width * height * channels * sizeof(float);
+    if (bytes > limits::kImageBytes) {
+        refuse("its pixels would take more than " + std::to_string(limits::kImageBytes >> 30) + " GiB", Rie::Limit);
+        return false;
+    }
+    if (bytes > limits::kImageSmallBytes && bytes / limits::kImageExpansion > fileBytes) {
+        refuse("it is too short for its stated size", Rie::BadFile);
+        return false;
+    }
+    return true;
+}
+
+unsigned toCode(float value, unsigned maximum, bool quantised) {
+    float v = quantised ? value : value * float(maximum);
+    if (!(v > 0)) return 0; // also NaN
+    if (v >= float(maximum)) return maximum;
+    return unsigned(std::floor(v + 0.5f));
+}
+
+std::optional<Image> decodeImage(std::span<const uint8_t> b, const std::string& name, Diagnostics& diags, const ReadOptions& options) {
+    DecodeContext ctx{name, diags, options, b.size()};
+    auto starts = [&](std::initializer_list<int> magic) {
+        if (b.size() < magic.size()) return false;
+        size_t i = 0;
+        for (int m : magic)
+            if (b[i++] != uint8_t(m)) return false;
+        return true;
+    };
+    if (b.empty()) return ctx.refuse("the file is empty");
+    try {
+        if (starts({0x76, 0x2f, 0x31, 0x01})) return decodeExr(b, ctx);
+        if (starts({'I', 'I', 42, 0}) || starts({'M', 'M', 0, 42}) || starts({'I', 'I', 43, 0}) || starts({'M', 'M', 0, 43}))
+            return decodeTiff(b, ctx);
+        if (starts({0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'})) return decodePng(b, ctx);
+        if (starts({0xff, 0xd8, 0xff})) return decodeJpeg(b, ctx);
+        if (starts({0x2f, 0x08, 0x67, 0xab}) || starts({0xab, 0x67, 0x08, 0x2f})) return decodeZfile(b, ctx);
+        if (starts({'#', '?'})) return decodeRadiance(b, ctx);
+    } catch (const std::bad_alloc&) {
+        return ctx.refuse("out of memory", Rie::NoMem);
+    } catch (const std::length_error&) {
+        return ctx.refuse("out of memory", Rie::NoMem);
+    }
+    if (starts({0xfa, 0xce}) || starts({0xce, 0xfa}))
+        return ctx.refuse("it is a texture in Pixar's native format, which is not published; make it again from the picture",
+                          Rie::Unimplement);
+    return ctx.refuse("it is not a picture in a known format (OpenEXR, TIFF, PNG, JPEG, Radiance, zfile)");
+}
+
+std::optional<Image> readImage(const std::string& path, Diagnostics& diags, const ReadOptions& options) {
+    auto bytes = readWholeFile(path, limits::kImageBytes, diags, options.place);
+    if (!bytes) return {};
+    return decodeImage(*bytes, path, diags, options);
+}
+
+bool writeImage(const std::string& path, const Image& image, const WriteOptions& options, Diagnostics& diags) {
+    auto refuse = [&](Rie code, const std::string& why) {
+        diags.report(Severity::Error, code, options.place, "cannot write \"" + path + "\": " + why);
+        return false;
+    };
+    if (image.width <= 0 || image.height <= 0 || image.channels.empty()) return refuse(Rie::Range, "it has no pixels");
+    if (image.width > limits::kImageSide || image.height > limits::kImageSide || image.channelCount() > limits::kImageChannels
+        || image.sampleCount() > limits::kImageBytes / sizeof(float))
+        return refuse(Rie::Limit, "it is too large");
+    if (image.data.size() != image.sampleCount()) return refuse(Rie::Consistency, "its pixels do not match its size");
+    if (std::set<std::string>(image.channels.begin(), image.channels.end()).size() != image.channels.size())
+        return refuse(Rie::Consistency, "two channels have the same name");
+    auto file = OutputFile::open(path, options.policy, diags, options.place);
+    if (!file) return false;
+    std::string why;
+    bool ok = false;
+    try {
+        switch (options.format) {
+        case Format::Exr: ok = encodeExr(*file, image, options, why); break;
+        case Format::Tiff: ok = encodeTiff(*file, image, options, why); break;
+        case Format::Png: ok = encodePng(*file, image, options, diags, why); break;
+        }
+    } catch (const std::bad_alloc&) {
+        return refuse(Rie::NoMem, "out of memory");
+    }
+    if (!ok && file->ok()) return refuse(Rie::System, why.empty() ? "the encoder failed" : why);
+    return file->commit(diags) && ok;
+}
+
+std::optional<Format> formatOfExtension(const std::string& path) {
+    size_t dot = path.find_last_of('.');
+    if (dot == std::string::npos) return {};
+    std::string e = path.substr(dot + 1);
+    for (char& c : e) c = char(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+    if (e == "exr") return Format::Exr;
+    if (e == "png") return Format::Png;
+    if (e == "tif" || e == "tiff") return Format::Tiff;
+    return {};
+}
+
+} // namespace alpenglow::display

@@ -1,0 +1,44 @@
+// Reading and writing pictures: OpenEXR, TIFF, PNG; reading only: JPEG, Radiance, zfiles.
+#pragma once
+#include "base/file.h"
+#include "display/image.h"
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace alpenglow::display {
+
+enum class Format { Exr, Tiff, Png };
+enum class Sample { UInt8, UInt16, Half, Float };
+
+struct ReadOptions {
+    bool levels = false; ///< also the reduced levels of a MIP-mapped file
+    SourcePlace place;   ///< where the file was named
+};
+
+/// The picture in a file, recognised by its first bytes, not by its name. Nothing: an error was reported. Damaged, truncated and
+/// oversized files are errors (limits.h); they never crash and never allocate beyond what their size makes plausible.
+std::optional<Image> readImage(const std::string& path, Diagnostics&, const ReadOptions& = {});
+/// The same from memory; `name` is for messages.
+std::optional<Image> decodeImage(std::span<const uint8_t> bytes, const std::string& name, Diagnostics&, const ReadOptions& = {});
+
+struct WriteOptions {
+    Format format = Format::Exr;
+    /// EXR: Half or Float. TIFF: UInt8, UInt16, Float. PNG: UInt8, UInt16. Others fall to the nearest the format has: nothing is
+    /// lost silently, drivers decide before.
+    Sample sample = Sample::Float;
+    bool quantised = false;       ///< integer formats: data are codes (0..255) already; else [0,1] is scaled, rounded and clamped
+    std::string compression = "zip"; ///< EXR: none rle zips zip piz; TIFF: none zip lzw
+    int tile = 0;                 ///< > 0: tiles of that side (EXR only); image.levels are then written as MIP-map levels
+    OutputPolicy policy;
+    SourcePlace place;
+};
+
+/// Writes a picture whole or not at all (base/file.h). False: an error was reported.
+bool writeImage(const std::string& path, const Image&, const WriteOptions&, Diagnostics&);
+
+/// The format of a name's extension (.exr .png .tif .tiff, any case); nothing for others.
+std::optional<Format> formatOfExtension(const std::string& path);
+
+} // namespace alpenglow::display

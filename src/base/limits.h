@@ -29,6 +29,12 @@ inline constexpr int kShaderNesting = 1024;
 inline constexpr size_t kFrameBytesPerThread = 64u << 20;      ///< suspended kernel frames (design decision 2)
 inline constexpr int kSliceRays = 4096;                        ///< children of one suspension, per slice
 inline constexpr int kExpressionDepth = 256;                   ///< nesting of RSL expressions and statements
+inline constexpr int kTreeHeight = 1024;                       ///< of an RSL expression tree, long sums included
+inline constexpr int kIncludeDepth = 64;                       ///< of RSL #include
+inline constexpr int kMacroDepth = 128;                        ///< macro calls inside arguments of macro calls
+inline constexpr size_t kMacroTokens = 2'000'000;              ///< tokens of one RSL program while macros are expanded
+inline constexpr int kShaderArray = 16384;                     ///< elements of an RSL array
+inline constexpr int kFrontErrors = 100;                       ///< errors reported for one RSL file
 inline constexpr size_t kInlinedInstructions = 400'000;        ///< IR of one kernel after inlining
 
 inline constexpr size_t kDiceQuads = 4'000'000;                ///< micro-quads dicing makes of one primitive (geometry/)

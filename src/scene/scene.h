@@ -31,7 +31,8 @@ struct Param {
 using ParamList = std::vector<Param>;
 const Param* find(const ParamList&, std::string_view name);
 
-/// A value that may move: keys[i] at times[i], in shutter units. One key when static.
+/// A value that may move: keys[i] at times[i], in shutter units, times increasing. One key when static. Between keys interpolate
+/// linearly, element by element; outside hold the end. (A moving Rotate comes with keys close enough for that.)
 template <class T> struct Moving {
     std::vector<float> times{0};
     std::vector<T> keys{T{}};
@@ -51,7 +52,12 @@ struct ShaderCall {
 };
 using ShaderRef = std::shared_ptr<const ShaderCall>;
 
-struct Basis { double m[4][4]; int step = 3; std::string name; };
+/// Rows as in ri.md 8.3: value at t = (t^3 t^2 t 1) * m * (P0 P1 P2 P3). Bezier by default.
+struct Basis {
+    double m[4][4] = {{-1, 3, -3, 1}, {3, -6, 3, 0}, {-3, 3, 0, 0}, {1, 0, 0, 0}};
+    int step = 3;
+    std::string name = "bezier"; ///< "" for a matrix of the file's own
+};
 
 /// The attribute state, an immutable snapshot shared by the primitives that were made under it.
 struct Attributes {
@@ -87,7 +93,21 @@ using AttributesRef = std::shared_ptr<const Attributes>;
 ///   NuPatch: ints = {nu, uorder, nv, vorder}, knots in params "uknot" "vknot", numbers = {umin, umax, vmin, vmax}.
 ///   Curves: strings = {type, wrap}, ints = nvertices.  SubdivisionMesh: strings = {scheme, tags...}, ints = nverts, ints2 = verts,
 ///   ints3 = nargs, params "intargs" "floatargs".  Procedural and others: strings, numbers as given.
+///   HierarchicalSubdivisionMesh: as SubdivisionMesh, nargs in threes, param "stringargs".  Points: none.
+///   Blobby: ints = {nleaf}, ints2 = code, numbers = floats, strings = strings.  Geometry: strings[0] = name.
+///   Volume: strings[0] = type, numbers = bound, ints = dimensions.
 /// Moving primitives hold one Primitive per key in `motionKeys` after the first, with times in motionTimes.
+///
+/// What ri/ guarantees, so that nobody need look again (scene/counts.h has the counts, ri.md 7.1):
+/// - The arguments agree with each other: sums of counts match index arrays, indices are not negative, knots do not decrease,
+///   meshes fit the steps of their bases. Numbers are finite. PatchMesh and Patch types are "bilinear" or "bicubic".
+/// - Polygons, meshes, patches, curves and points have exactly one of "P", "Pw" (HPoint), "Pz" (Float; patches only), class Vertex,
+///   of exactly counts.vertex elements (unused points at the end of a mesh are cut off).
+/// - Every other variable has exactly counts.of(cls) * max(arrayLength, 1) * componentCount(type) numbers, all finite (or that
+///   many strings). Names are unique. A variable with declared == false has the class and arrayLength its length fits best.
+///   The argument params named above ("uknot", "intargs" ...) have class Constant and any length.
+/// - Keys of a moving primitive have the same kind, arguments that are counts, and variables of the same names, classes and sizes.
+///   motionTimes (one per key, the first included) increase.
 struct Primitive {
     std::string kind;
     std::vector<float> numbers;
@@ -99,6 +119,9 @@ struct Primitive {
     std::vector<float> motionTimes;
     std::vector<std::shared_ptr<Primitive>> motionKeys;
     SourcePlace place;
+    /// Inside an Object only: attributes were set between ObjectBegin and here, so they hold in every instance.
+    /// Otherwise an instance's own attributes count (ri.md 9.2). Never null either way.
+    bool attributesInside = false;
 };
 using PrimitiveRef = std::shared_ptr<const Primitive>;
 
@@ -144,7 +167,8 @@ struct Options {
     ShaderRef imager;
     Quantize quantizeRgba{255, 0, 255, 0.5f, false}, quantizeZ{0, 0, 0, 0, false};
     std::vector<Display> displays;     ///< empty: ri.pic
-    std::map<std::string, Param> displayChannels;
+    std::map<std::string, Param> displayChannels;          ///< by name: the declaration, no values
+    std::map<std::string, ParamList> displayChannelParams; ///< by name: "quantize", "filter" etc. of that channel
     std::string hider = "hidden";
     ParamList hiderParams;
     float relativeDetail = 1;

@@ -1,0 +1,3 @@
+find_package(ZLIB REQUIRED)
+room(ri DEPS scene base ZLIB::ZLIB)
+room_tests(ri DEPS ri)

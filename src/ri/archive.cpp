@@ -1,0 +1,167 @@
+// ReadArchive and inline archives (ri.md 10.2).
+#include "base/limits.h"
+#include "ri/interpreter.h"
+#include "ri/parser.h"
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fmt/format.h>
+
+namespace alpenglow::ri {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool regular(const fs::path& p) {
+    std::error_code ec;
+    return fs::is_regular_file(p, ec); // no devices or pipes: an archive ends
+}
+
+bool sameButCase(const std::string& a, const std::string& b) {
+    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+}
+
+std::string along(const std::string& name, const std::vector<std::string>& folders) {
+    if (fs::path(name).is_absolute()) return regular(name) ? name : std::string();
+    for (const std::string& f : folders) {
+        fs::path p = fs::path(f) / name;
+        if (regular(p)) return p.string();
+    }
+    return {};
+}
+
+} // namespace
+
+std::vector<std::string> splitSearchPath(const std::string& text) {
+    std::vector<std::string> out;
+    std::string item;
+    for (size_t i = 0; i <= text.size(); ++i) {
+        bool drive = i < text.size() && text[i] == ':' && item.size() == 1 && std::isalpha(static_cast<unsigned char>(item[0])) && i + 1 < text.size() &&
+                     (text[i + 1] == '/' || text[i + 1] == '\\');
+        if (i < text.size() && (drive || (text[i] != ':' && text[i] != ';'))) {
+            item += text[i];
+            continue;
+        }
+        if (!item.empty()) out.push_back(std::move(item));
+        item.clear();
+    }
+    return out;
+}
+
+std::string findFile(const std::string& name, const std::vector<std::string>& folders, std::string* fallback) {
+    fallback->clear();
+    if (name.empty() || name.find('\0') != std::string::npos) return {};
+    if (std::string p = along(name, folders); !p.empty()) return p;
+    std::string slashes = name;
+    std::replace(slashes.begin(), slashes.end(), '\\', '/');
+    if (slashes != name) {
+        *fallback = "with / for \\";
+        if (std::string p = along(slashes, folders); !p.empty()) return p;
+    }
+    std::string base = fs::path(slashes).filename().string();
+    if (base.empty()) return {};
+    if (base != slashes) {
+        *fallback = "by its base name";
+        if (std::string p = along(base, folders); !p.empty()) return p;
+    }
+    *fallback = "with other upper and lower case";
+    for (const std::string& f : folders) {
+        std::string best; // the first in order of name: folders list their files in any order
+        std::error_code ec;
+        for (fs::directory_iterator i(f, ec), e; !ec && i != e; i.increment(ec)) {
+            std::string n = i->path().filename().string();
+            if (sameButCase(n, base) && regular(i->path()) && (best.empty() || i->path().string() < best)) best = i->path().string();
+        }
+        if (!best.empty()) return best;
+    }
+    return {};
+}
+
+void Interpreter::beginRecording(const Call& call) { recording_ = Recording{call.text(0), std::make_shared<std::vector<Call>>(), 0, call.place}; }
+
+/// True when the call was taken into an archive instead of being executed.
+bool Interpreter::record(const Call& call) {
+    if (!recording_) return false;
+    if (call.request->name == "ArchiveBegin") ++recording_->depth;
+    if (call.request->name == "ArchiveEnd" && recording_->depth-- == 0) {
+        inlineArchives_[recording_->name] = std::move(recording_->calls);
+        recording_.reset();
+        return true;
+    }
+    recording_->calls->push_back(call);
+    return true;
+}
+
+void Interpreter::readArchive(const std::string& name, const SourcePlace& place) {
+    if (openArchives_.size() >= size_t(limits::kArchiveDepth)) {
+        reporter.error(Rie::Limit, place, fmt::format("archives are nested deeper than {}", limits::kArchiveDepth));
+        return;
+    }
+    if (++archiveReads_ > limits::kArchiveReads) {
+        reporter.once("ri:archivereads", Severity::Error, Rie::Limit, place, fmt::format("more than {} archives are read", limits::kArchiveReads));
+        return;
+    }
+    std::shared_ptr<std::vector<Call>> calls;
+    std::unique_ptr<ByteSource> source;
+    std::string key, file;
+    if (auto i = inlineArchives_.find(name); i != inlineArchives_.end()) {
+        calls = i->second;
+        key = "inline:" + name;
+        file = place.file;
+    } else {
+        std::vector<std::string> folders;
+        if (auto o = options.values.find("searchpath:archive"); o != options.values.end() && !o->second.strings.empty())
+            folders = splitSearchPath(o->second.strings[0]);
+        folders.insert(folders.end(), settings.searchPaths.begin(), settings.searchPaths.end());
+        std::string beside = fs::path(place.file).parent_path().string();
+        folders.push_back(beside.empty() ? "." : beside);
+        folders.push_back(".");
+        std::string fallback, why;
+        file = findFile(name, folders, &fallback);
+        if (file.empty()) {
+            std::string looked;
+            for (const std::string& f : folders) looked += (looked.empty() ? "" : ", ") + f;
+            reporter.error(Rie::NoFile, place, fmt::format("archive \"{}\" was not found", name), "looked in " + looked);
+            return;
+        }
+        if (!fallback.empty())
+            reporter.once("ri:found:" + name, Severity::Warning, Rie::NoFile, place, fmt::format("archive \"{}\" was found {}: {}", name, fallback, file));
+        source = fileSource(file, &why);
+        if (!source) {
+            reporter.error(Rie::NoFile, place, fmt::format("archive \"{}\" cannot be read: {}", file, why));
+            return;
+        }
+        std::error_code ec;
+        key = fs::weakly_canonical(file, ec).string();
+        if (ec || key.empty()) key = file;
+    }
+    if (std::find(openArchives_.begin(), openArchives_.end(), key) != openArchives_.end()) {
+        reporter.error(Rie::Nesting, place, fmt::format("archive \"{}\" reads itself", name));
+        return;
+    }
+    openArchives_.push_back(key);
+    barriers_.push_back(blocks_.size());
+    size_t conditions = conditions_.size();
+    bool wasMoving = motion_.has_value();
+    SourcePlace end = place;
+    if (calls) {
+        for (const Call& c : *calls) {
+            if (stopped()) break;
+            execute(c);
+        }
+    } else {
+        Parser parser(inflating(std::move(source)), file, reporter, settings.comments);
+        run(parser);
+        end = parser.here();
+    }
+    if (motion_.has_value() && !wasMoving) closeOpenEnds(std::max(conditions, conditions_.size()), end);
+    while (conditions_.size() > conditions) {
+        reporter.error(Rie::Nesting, conditions_.back().place, "IfBegin without IfEnd in an archive");
+        conditions_.pop_back();
+    }
+    unwind(barriers_.back(), end, true);
+    barriers_.pop_back();
+    openArchives_.pop_back();
+}
+
+} // namespace alpenglow::ri

@@ -1,0 +1,136 @@
+// The binary tokens of RIB, ri.md 17. Integers and fixed point numbers are signed, as the specification says.
+#include "base/limits.h"
+#include "ri/lexer.h"
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace alpenglow::ri {
+namespace {
+
+uint64_t bigEndian(const std::string& s) {
+    uint64_t v = 0;
+    for (unsigned char c : s) v = v << 8 | c;
+    return v;
+}
+
+} // namespace
+
+bool Lexer::truncated(const char* what) {
+    reporter_.error(Rie::BadFile, here(), std::string("the stream ends inside ") + what);
+    return false;
+}
+
+bool Lexer::byte(unsigned& out) {
+    if (!at()) return false;
+    out = peek();
+    ++pos_;
+    return true;
+}
+
+bool Lexer::bytes(size_t n, std::string& out) {
+    out.clear();
+    while (out.size() < n) { // grows with what really comes, so a lying length costs nothing
+        if (!at()) return false;
+        size_t take = std::min(n - out.size(), end_ - pos_);
+        out.append(buffer_.data() + pos_, take);
+        pos_ += take;
+    }
+    return true;
+}
+
+/// The string operand of a define: any of the string forms.
+bool Lexer::binaryString(std::string& out, const char* what) {
+    if (!skipSpace()) return truncated(what);
+    unsigned c = peek();
+    Token t;
+    if (c == '"') {
+        quoted(out, line_, int(column()));
+        return true;
+    }
+    bool stringForm = (c >= 0220 && c <= 0243) || c == 0317 || c == 0320;
+    if (stringForm && binary(t)) {
+        out = t.text;
+        return true;
+    }
+    if (!stringForm) reporter_.error(Rie::BadFile, here(), std::string("a string is missing in ") + what);
+    return false;
+}
+
+bool Lexer::binary(Token& t) {
+    SourcePlace where = here();
+    unsigned c = 0, b = 0;
+    byte(c);
+    std::string data;
+    t.kind = Token::Kind::Number;
+    if (c <= 0217) { // integer, or fixed point with d bytes after the point
+        unsigned w = c & 3, d = (c >> 2) & 3;
+        if (!bytes(w + 1, data)) return truncated("a binary number");
+        int64_t v = int64_t(bigEndian(data) << (64 - 8 * (w + 1))) >> (64 - 8 * (w + 1));
+        t.number = std::ldexp(double(v), -8 * int(d));
+        return true;
+    }
+    if (c <= 0243) { // strings
+        size_t n = c - 0220;
+        if (c >= 0240) {
+            if (!bytes(c - 0240 + 1, data)) return truncated("a string's length");
+            n = bigEndian(data);
+        }
+        if (n > limits::kStringBytes) {
+            reporter_.error(Rie::Limit, where, "a string is longer than " + std::to_string(limits::kStringBytes) + " bytes");
+            return false; // what follows cannot be told from noise; the request is lost, the reader resynchronises
+        }
+        t.kind = Token::Kind::String;
+        return bytes(n, t.text) || truncated("a binary string");
+    }
+    if (c == 0244 || c == 0245) {
+        if (!bytes(c == 0244 ? 4 : 8, data)) return truncated("a binary number");
+        t.number = c == 0244 ? double(std::bit_cast<float>(uint32_t(bigEndian(data)))) : std::bit_cast<double>(bigEndian(data));
+        return true; // NaN and infinity are refused where values are checked
+    }
+    if (c == 0246) {
+        if (!byte(b)) return truncated("a request code");
+        t.kind = Token::Kind::Identifier;
+        t.text = requestCodes_[b];
+        if (!t.text.empty()) return true;
+        reporter_.error(Rie::BadFile, where, "request code " + std::to_string(b) + " was not defined");
+        return false;
+    }
+    if (c >= 0310 && c <= 0313) {
+        if (!bytes(c - 0310 + 1, data)) return truncated("an array's length");
+        uint64_t n = bigEndian(data);
+        t.kind = Token::Kind::Floats;
+        t.floats.clear();
+        for (uint64_t i = 0; i < n; ++i) {
+            if (!bytes(4, data)) return truncated("a binary array");
+            t.floats.push_back(double(std::bit_cast<float>(uint32_t(bigEndian(data)))));
+        }
+        return true;
+    }
+    if (c == 0314) {
+        if (!byte(b)) return truncated("a request definition");
+        if (binaryString(data, "a request definition")) requestCodes_[b] = data;
+        return false;
+    }
+    if (c >= 0315 && c <= 0320) {
+        bool define = c <= 0316, two = c == 0316 || c == 0320;
+        if (!bytes(two ? 2 : 1, data)) return truncated("a string code");
+        unsigned code = unsigned(bigEndian(data));
+        if (define) {
+            if (binaryString(data, "a string definition")) stringCodes_[code] = data;
+            return false;
+        }
+        auto i = stringCodes_.find(code);
+        if (i == stringCodes_.end()) {
+            reporter_.error(Rie::BadFile, where, "string code " + std::to_string(code) + " was not defined");
+            return false;
+        }
+        t.kind = Token::Kind::String;
+        t.text = i->second;
+        return true;
+    }
+    reporter_.error(Rie::BadFile, where, "byte " + std::to_string(c) + " is reserved in binary RIB");
+    return false;
+}
+
+} // namespace alpenglow::ri

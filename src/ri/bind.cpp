@@ -1,0 +1,131 @@
+// "token" value pairs to typed parameters: declarations, type and count checks, ColorSamples.
+#include "ri/interpreter.h"
+#include <cmath>
+#include <fmt/format.h>
+
+namespace alpenglow::ri {
+namespace {
+
+/// Type by value: numbers are floats, strings are strings (wild.md).
+void guess(scene::Param& p, const Value& v) {
+    p.declared = false;
+    bool text = v.kind == Value::Kind::Strings;
+    p.type = text ? scene::Type::String : scene::Type::Float;
+    size_t n = text ? v.strings.size() : v.numbers.size();
+    p.arrayLength = n == 1 ? 0 : int(std::min<size_t>(n, 1u << 30));
+}
+
+} // namespace
+
+std::vector<float> Interpreter::toRgb(const std::vector<double>& c) const {
+    std::vector<float> out;
+    if (nRGB.empty()) {
+        for (double d : c) out.push_back(toFloat(d));
+        return out;
+    }
+    size_t n = nRGB.size() / 3;
+    for (size_t i = 0; i + n <= c.size(); i += n)
+        for (size_t k = 0; k < 3; ++k) {
+            double s = 0;
+            for (size_t j = 0; j < n; ++j) s += c[i + j] * nRGB[j * 3 + k];
+            out.push_back(toFloat(s));
+        }
+    return out;
+}
+
+scene::Param Interpreter::bindOne(const Call& call, const RawParam& raw, Use use, const std::string& category, bool* keep) {
+    scene::Param p;
+    p.place = call.at(raw);
+    const Value& v = raw.value;
+    std::string_view request = call.request->name;
+    *keep = false;
+    Resolved r = declarations.resolve(raw.token, category);
+    p.name = r.name;
+    if (r.malformed) {
+        reporter.error(Rie::Syntax, p.place, fmt::format("{}: \"{}\" is not a declaration", request, raw.token.substr(0, 80)),
+                       "class type[n] name, for example \"varying color Cs\"");
+        return p;
+    }
+    bool text = v.kind == Value::Kind::Strings;
+    bool guessed = !r.declaration;
+    if (r.declaration) {
+        p.cls = r.declaration->cls;
+        p.type = r.declaration->type;
+        p.arrayLength = r.declaration->arrayLength;
+        bool wantsText = p.type == scene::Type::String;
+        if (wantsText != text && v.kind != Value::Kind::Empty) {
+            // A shader may well declare a standard name otherwise ("background" as a file name): its own declaration decides.
+            guessed = use == Use::Shader && !r.inlineForm;
+            if (!guessed) {
+                reporter.error(Rie::Consistency, p.place, fmt::format("{}: \"{}\" is {}, not {}", request, p.name, wantsText ? "a string" : toString(p.type),
+                                                                      text ? "a string" : "numbers"));
+                return p;
+            }
+        }
+    } else if (use == Use::Primitive) {
+        reporter.once(fmt::format("ri:undeclared:{}", p.name), Severity::Warning, Rie::BadToken, p.place,
+                      fmt::format("primitive variable \"{}\" is not declared: its type is guessed from the values", p.name));
+    } else if (use == Use::Option || use == Use::Attribute) {
+        if (category != "user")
+            reporter.once(fmt::format("ri:{}:{}:{}", request, category, p.name), Severity::Info, Rie::BadToken, p.place,
+                          fmt::format("{} \"{}\" \"{}\" is not known here", request, category, p.name));
+    }
+    if (guessed) guess(p, v);
+    if (text) {
+        p.strings = v.strings;
+    } else {
+        p.numbers.reserve(v.numbers.size());
+        if (p.type == scene::Type::Color && !nRGB.empty()) {
+            p.numbers = toRgb(v.numbers);
+        } else {
+            for (double d : v.numbers) p.numbers.push_back(toFloat(d));
+        }
+        for (float f : p.numbers) {
+            if (std::isfinite(f)) continue;
+            reporter.error(Rie::Range, p.place, fmt::format("{}: \"{}\" has a value that is not finite", request, p.name));
+            return p;
+        }
+        if (p.type == scene::Type::Integer && use != Use::Shader)
+            for (float f : p.numbers)
+                if (f != std::floor(f)) {
+                    reporter.error(Rie::Syntax, p.place, fmt::format("{}: \"{}\" is an integer, not {}", request, p.name, f));
+                    return p;
+                }
+    }
+    *keep = true;
+    if (guessed || use == Use::Primitive) return p; // fitVariables counts those
+    size_t have = text ? p.strings.size() : p.numbers.size();
+    size_t per = size_t(scene::componentCount(p.type)), want = per * size_t(std::max(p.arrayLength, 1));
+    if (have == want) return p;
+    if (have > want && p.arrayLength == 0 && !r.inlineForm && have % per == 0) {
+        // More than was declared: an array parameter of a shader, or of a renderer that knows more about this name.
+        p.declared = false;
+        p.arrayLength = int(have / per);
+        return p;
+    }
+    reporter.error(Rie::Consistency, p.place, fmt::format("{}: \"{}\" needs {} {}, not {}", request, p.name, want, text ? "strings" : "numbers", have));
+    *keep = false;
+    return p;
+}
+
+scene::ParamList Interpreter::bind(const Call& call, Use use, const std::string& category) {
+    scene::ParamList list;
+    list.reserve(call.params.size());
+    for (const RawParam& raw : call.params) {
+        bool keep = false;
+        scene::Param p = bindOne(call, raw, use, category, &keep);
+        if (keep) list.push_back(std::move(p));
+    }
+    return list;
+}
+
+scene::ShaderRef Interpreter::shader(const Call& call) {
+    auto s = std::make_shared<scene::ShaderCall>();
+    s->name = call.text(0);
+    s->params = bind(call, Use::Shader);
+    s->toWorld = state.ctm;
+    s->place = call.place;
+    return s;
+}
+
+} // namespace alpenglow::ri

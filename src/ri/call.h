@@ -1,0 +1,56 @@
+// A request as read: its arguments matched to its signature, its parameter list not yet typed.
+#pragma once
+#include "base/diagnostics.h"
+#include <string>
+#include <vector>
+
+namespace alpenglow::ri {
+
+struct Request;
+
+/// Consecutive bare numbers, one bare string, or one bracketed array.
+struct Value {
+    enum class Kind { Empty /* [ ] */, Numbers, Strings };
+    Kind kind = Kind::Empty;
+    bool array = false;
+    int line = 0, column = 0;
+    std::vector<double> numbers;
+    std::vector<std::string> strings;
+};
+
+/// One argument of a signature; `given` is false for an optional one that was left out.
+struct Argument {
+    bool given = false;
+    std::vector<double> numbers;
+    std::vector<std::string> strings;
+};
+
+/// "token" value, before declarations are looked up.
+struct RawParam {
+    std::string token;
+    Value value;
+    int line = 0, column = 0;
+};
+
+struct Call {
+    const Request* request = nullptr;
+    std::vector<Argument> arguments; ///< one per entry of the signature
+    std::vector<RawParam> params;
+    SourcePlace place;
+
+    bool given(size_t i) const { return i < arguments.size() && arguments[i].given; }
+    double number(size_t i, size_t k = 0) const { return arguments[i].numbers[k]; }
+    float real(size_t i, size_t k = 0) const; ///< as float, clamped to +-3.4e38
+    int integer(size_t i) const { return int(arguments[i].numbers[0]); } ///< matched: whole and in range
+    const std::string& text(size_t i) const { return arguments[i].strings[0]; }
+    const std::vector<double>& numbers(size_t i) const { return arguments[i].numbers; }
+    const std::vector<std::string>& strings(size_t i) const { return arguments[i].strings; }
+    std::vector<float> reals(size_t i) const;
+    std::vector<int> ints(size_t i) const;
+    SourcePlace at(const RawParam& p) const { return {place.file, p.line, p.column}; }
+};
+
+/// d as float; beyond the range of float the nearest finite one. NaN stays.
+float toFloat(double d);
+
+} // namespace alpenglow::ri

@@ -1,0 +1,41 @@
+// Declarations of parameters: "class type[n] name", Declare, and what is known without either (ri.md 2.2, 2.3, 15).
+#pragma once
+#include "scene/scene.h"
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace alpenglow::ri {
+
+struct Declaration {
+    scene::Class cls = scene::Class::Uniform;
+    scene::Type type = scene::Type::Float;
+    int arrayLength = 0; ///< 0 = not an array
+};
+
+/// "[class] type [[n]]"; empty when it is not one.
+std::optional<Declaration> parseDeclaration(std::string_view text);
+
+/// A token of a parameter list, taken apart.
+struct Resolved {
+    std::string name;
+    std::optional<Declaration> declaration; ///< empty: nobody declared it
+    bool malformed = false;                 ///< an inline declaration that does not parse
+    bool inlineForm = false;
+};
+
+class Declarations {
+public:
+    void declare(const std::string& name, const Declaration& d) { user_[name] = d; }
+    /// `category`: class of an Option or Attribute ("searchpath"), or "" elsewhere; its known names are looked up first.
+    Resolved resolve(std::string_view token, std::string_view category) const;
+
+private:
+    std::map<std::string, Declaration, std::less<>> user_;
+};
+
+const char* toString(scene::Class);
+const char* toString(scene::Type);
+
+} // namespace alpenglow::ri

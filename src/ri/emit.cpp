@@ -1,0 +1,152 @@
+// What reaches the frame: lights, primitives, instances; and the current transformation.
+#include "base/limits.h"
+#include "ri/interpreter.h"
+#include "ri/motion.h"
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace alpenglow::ri {
+
+void Interpreter::replaceCtm(const scene::Transform& m, const Call& call) {
+    for (const Matrix& k : m.keys) {
+        if (!finite(k)) {
+            reporter.error(Rie::Range, call.place, fmt::format("{}: the transformation is not finite", call.request->name));
+            return;
+        }
+        if (determinant3(k) == 0 && determinant(k) == 0)
+            reporter.once("ri:singular", Severity::Warning, Rie::Math, call.place, "the transformation is singular: what it holds is flattened");
+    }
+    state.ctm = m;
+}
+
+void Interpreter::concat(const scene::Transform& m, const Call& call) { replaceCtm(compose(m, state.ctm), call); }
+
+void Interpreter::nameSystem(const std::string& name, bool scoped) {
+    if (scoped) {
+        auto s = std::make_shared<NamedSystems>(*state.scoped);
+        (*s)[name] = state.ctm;
+        state.scoped = std::move(s);
+        systems_.insert({name, state.ctm}); // shaders look names up in one list: the first scoped one is there too
+        return;
+    }
+    systems_[name] = state.ctm;
+}
+
+std::optional<scene::Transform> Interpreter::namedSystem(const std::string& name) const {
+    if (auto i = state.scoped->find(name); i != state.scoped->end()) return i->second;
+    if (auto i = systems_.find(name); i != systems_.end()) return i->second;
+    if (name == "current" || name == "object" || name == "shader") return state.ctm;
+    if (name == "camera" || name == "eye") return inWorld() ? inverse(worldToCamera_) : scene::Transform();
+    if (name == "world" && inWorld()) return scene::Transform();
+    return {};
+}
+
+void Interpreter::light(const Call& call, bool area) {
+    if (area && (call.text(0).empty() || call.text(0) == "null")) {
+        attributes().areaLight = -1;
+        return;
+    }
+    if (lights().size() >= limits::kLights) {
+        reporter.once("ri:lights", Severity::Error, Rie::Limit, call.place, "there are too many lights");
+        return;
+    }
+    scene::Light l;
+    l.shader = shader(call);
+    l.handle = call.text(1);
+    l.area = area;
+    l.attributes = snapshot();
+    int index = int(lights().size());
+    lights().push_back(std::move(l));
+    if (!call.text(1).empty()) handles_[call.text(1)] = index;
+    attributes().lights.push_back(index); // declared last: the list stays sorted
+    if (area) attributes().areaLight = index;
+}
+
+void Interpreter::illuminate(const Call& call) {
+    auto i = handles_.find(call.text(0));
+    if (i == handles_.end()) {
+        std::vector<std::string> known;
+        for (auto& h : handles_) known.push_back(h.first);
+        std::string near = nearestName(call.text(0), known);
+        reporter.error(Rie::BadHandle, call.place, fmt::format("Illuminate: there is no light \"{}\"", call.text(0)),
+                       near.empty() ? "" : "did you mean " + near + "?");
+        return;
+    }
+    std::vector<int>& on = attributes().lights;
+    auto at = std::lower_bound(on.begin(), on.end(), i->second);
+    bool is = at != on.end() && *at == i->second;
+    if (call.integer(1) != 0 && !is) on.insert(at, i->second);
+    if (call.integer(1) == 0 && is) on.erase(at);
+}
+
+void Interpreter::emit(scene::Primitive p, const Call& call) {
+    if (!inWorld() && !openObject()) {
+        reporter.once("ri:noworld", Severity::Error, Rie::NotPrims, call.place,
+                      fmt::format("{} outside WorldBegin and WorldEnd is not drawn", call.request->name));
+        return;
+    }
+    p.kind = std::string(call.request->name);
+    p.place = call.place;
+    p.attributes = snapshot();
+    p.toWorld = state.ctm;
+    if (!fitVariables(p, reporter)) return;
+    const Block* object = innermost(BlockKind::Object);
+    p.attributesInside = object && object->saved.attributes != state.attributes;
+    auto ref = std::make_shared<scene::Primitive>(std::move(p));
+    if (capture_) capture_->push_back(std::move(ref));
+    else store(std::move(ref));
+}
+
+void Interpreter::store(std::shared_ptr<scene::Primitive> p) {
+    if (scene::Object* o = openObject()) {
+        if (o->primitives.size() < limits::kObjectPrimitives) {
+            o->primitives.push_back(std::move(p));
+            return;
+        }
+        reporter.once("ri:object:" + o->handle, Severity::Error, Rie::Limit, p->place, fmt::format("object {} has too many primitives", o->handle));
+        return;
+    }
+    if (frame_ && frameWanted()) frame_->primitives.push_back(std::move(p));
+}
+
+void Interpreter::instance(const Call& call) {
+    auto i = objects_.find(call.text(0));
+    if (i == objects_.end()) {
+        std::vector<std::string> known;
+        for (auto& o : objects_) known.push_back(o.first);
+        std::string near = nearestName(call.text(0), known);
+        reporter.error(Rie::BadHandle, call.place, fmt::format("ObjectInstance: there is no object \"{}\"", call.text(0)),
+                       near.empty() ? "" : "did you mean " + near + "?");
+        return;
+    }
+    if (openObject()) { // objects are flat: an instance inside one is copied in
+        for (const scene::PrimitiveRef& p : i->second->primitives) {
+            auto copy = std::make_shared<scene::Primitive>(*p);
+            copy->toWorld = compose(p->toWorld, state.ctm);
+            if (!p->attributesInside) {
+                copy->attributes = snapshot();
+                copy->attributesInside = innermost(BlockKind::Object)->saved.attributes != state.attributes;
+            }
+            if (openObject()->primitives.size() >= limits::kObjectPrimitives) {
+                store(std::move(copy)); // reports the limit
+                return;
+            }
+            store(std::move(copy));
+        }
+        return;
+    }
+    if (!inWorld()) {
+        reporter.once("ri:noworld", Severity::Error, Rie::NotPrims, call.place, "ObjectInstance outside WorldBegin and WorldEnd is not drawn");
+        return;
+    }
+    auto [slot, fresh] = objectIndex_.try_emplace(i->second.get(), int(frame_->objects.size()));
+    if (fresh) frame_->objects.push_back(*i->second);
+    scene::Instance n;
+    n.object = slot->second;
+    n.toWorld = state.ctm;
+    n.attributes = snapshot();
+    n.place = call.place;
+    frame_->instances.push_back(std::move(n));
+}
+
+} // namespace alpenglow::ri

@@ -1,0 +1,188 @@
+// The graphics state and what requests do to it. Handlers in requests/ are short because the rules live here:
+// scopes and dispatch (interpreter.cpp), blocks (blocks.cpp), motion (motion_block.cpp), parameter lists (bind.cpp),
+// primitives (emit.cpp, fit.cpp), archives (archive.cpp).
+#pragma once
+#include "ri/call.h"
+#include "ri/declare.h"
+#include "ri/reader.h"
+#include "ri/reporter.h"
+#include "ri/requests/request.h"
+#include "ri/source.h"
+#include <map>
+#include <set>
+
+namespace alpenglow::ri {
+
+enum class BlockKind { Frame, World, Attribute, Transform, Solid, Object, Resource, Edit };
+const char* beginName(BlockKind);
+const char* endName(BlockKind);
+
+/// What a parameter list is for: decides how strictly its counts are checked and who declares its names.
+enum class Use { Shader, Primitive, Option, Attribute, Other };
+
+using NamedSystems = std::map<std::string, scene::Transform>;
+
+/// What AttributeBegin saves.
+struct GraphicsState {
+    std::shared_ptr<scene::Attributes> attributes;
+    scene::Transform ctm;                        ///< current to world; before WorldBegin to camera
+    std::shared_ptr<const NamedSystems> scoped;  ///< ScopedCoordinateSystem
+};
+
+/// A stored object: primitives in its own space.
+using ObjectRef = std::shared_ptr<scene::Object>;
+
+class Interpreter {
+public:
+    Interpreter(ReaderOptions options, scene::FrameConsumer& consumer, Diagnostics& diagnostics);
+
+    /// Reads a whole stream at the outermost level and closes what it leaves open.
+    void readStream(std::unique_ptr<ByteSource> raw, const std::string& name);
+    void execute(const Call& call);
+    /// ErrorHandler "abort" has met an error.
+    bool stopped() const { return abort_ && reporter.errors() > errorsBefore_; }
+
+    // --- for handlers ---
+    Reporter reporter;
+    ReaderOptions settings;
+    scene::FrameConsumer& consumer;
+    Declarations declarations;
+    scene::Options options;
+    GraphicsState state;
+    std::vector<double> nRGB;                            ///< ColorSamples: n x 3; empty = colours are RGB
+
+    bool inWorld() const { return frame_ != nullptr; }
+    /// The attributes to write to; a snapshot handed out before stays as it is.
+    scene::Attributes& attributes();
+    scene::AttributesRef snapshot();
+    scene::ParamList bind(const Call& call, Use use, const std::string& category = {});
+    /// n numbers of ColorSamples (or 3) to RGB; `numbers` may hold several colours.
+    std::vector<float> toRgb(const std::vector<double>& numbers) const;
+    scene::ShaderRef shader(const Call& call);
+
+    /// False when the stack is full (reported): nothing was saved, its End will be ignored.
+    bool begin(BlockKind kind, const Call& call);
+    void end(BlockKind kind, const Call& call);
+    void worldBegin(const Call& call);
+    void objectBegin(const Call& call);
+    void beginMotion(const Call& call);
+    void endMotion(const Call& call);
+
+    void concat(const scene::Transform& m, const Call& call);
+    void replaceCtm(const scene::Transform& m, const Call& call);
+    void nameSystem(const std::string& name, bool scoped);
+    /// Null when unknown. "world", "camera", "object", "current" and "shader" are known too.
+    std::optional<scene::Transform> namedSystem(const std::string& name) const;
+
+    void light(const Call& call, bool area);
+    void illuminate(const Call& call);
+    void emit(scene::Primitive primitive, const Call& call);
+    void instance(const Call& call);
+
+    void readArchive(const std::string& name, const SourcePlace& place);
+    void beginRecording(const Call& call);
+    void resource(const Call& call);
+    /// True when MakeTexture and its kin of this frame are wanted.
+    bool frameWanted() const;
+    void setAbort(bool on) {
+        abort_ = on;
+        errorsBefore_ = reporter.errors();
+    }
+    /// Reports once per request that it is read but has no effect.
+    void incapable(const Call& call, const std::string& what);
+
+private:
+    struct Block {
+        BlockKind kind;
+        SourcePlace place;
+        GraphicsState saved;
+        std::unique_ptr<scene::Options> options;          ///< Frame, World
+        size_t lights = 0;                                ///< Frame: lights declared before
+        std::map<std::string, int> handles;               ///< Frame, World
+        NamedSystems systems;                             ///< Frame, World
+        std::map<std::string, GraphicsState> resources;   ///< Resource
+        ObjectRef object;                                 ///< Object
+    };
+    struct Motion {
+        std::vector<float> times;
+        std::vector<Call> calls;
+        SourcePlace place;
+    };
+    struct Condition {
+        SourcePlace place;
+        bool outer;   ///< the surroundings are executed
+        bool taken;   ///< a branch has been executed
+        bool active;  ///< this branch is
+        bool elseSeen;
+    };
+    struct Recording {
+        std::string name;
+        std::shared_ptr<std::vector<Call>> calls;
+        int depth = 0;
+        SourcePlace place;
+    };
+
+    void run(class Parser& parser);
+    void dispatch(const Call& call);
+    bool conditional(const Call& call);
+    bool record(const Call& call);
+    void checkScope(const Call& call);
+    unsigned scope() const;
+    void pop();
+    void unwind(size_t depth, const SourcePlace& where, bool keepWorld);
+    void closeOpenEnds(size_t conditions, const SourcePlace& where);
+    void worldEnd(Block& block);
+    void rebase(scene::Attributes& a, const scene::Transform& cameraToWorld);
+    bool evaluate(const Call& call);
+    void moveTransform(const Motion& m);
+    void movePrimitive(const Motion& m);
+    void store(std::shared_ptr<scene::Primitive> p);
+    scene::Param bindOne(const Call& call, const RawParam& raw, Use use, const std::string& category, bool* keep);
+    scene::Object* openObject();
+    const Block* innermost(BlockKind kind) const;
+    std::vector<scene::Light>& lights() { return frame_ ? frame_->lights : lights_; }
+
+    bool shared_ = true;                                  ///< state.attributes is referenced by a snapshot
+    bool abort_ = false;
+    int errorsBefore_ = 0;                                ///< when ErrorHandler "abort" was read
+    std::vector<Block> blocks_;
+    int overflow_ = 0;                                    ///< Begins beyond limits::kStackDepth, whose Ends are ignored
+    std::optional<Motion> motion_;
+    std::vector<Condition> conditions_;
+    std::optional<Recording> recording_;
+    std::vector<std::shared_ptr<scene::Primitive>>* capture_ = nullptr; ///< primitives of a motion block go here
+    std::vector<scene::Light> lights_;                    ///< before WorldBegin; shader spaces to camera
+    std::map<std::string, int> handles_;                  ///< light handle -> index
+    NamedSystems systems_;                                ///< before WorldBegin to camera, inside to world
+    NamedSystems worldCameraSystems_;                     ///< those of before WorldBegin, to camera
+    std::map<std::string, GraphicsState> resources_;
+    std::map<std::string, ObjectRef> objects_;
+    std::map<const scene::Object*, int> objectIndex_;     ///< of this frame
+    std::shared_ptr<scene::Frame> frame_;
+    scene::Transform worldToCamera_;
+    std::map<std::string, std::shared_ptr<std::vector<Call>>> inlineArchives_;
+    std::vector<std::string> openArchives_;
+    std::vector<size_t> barriers_;                        ///< block depth at each open archive's start
+    int archiveReads_ = 0;
+};
+
+/// Checks and completes a primitive's variables (the guarantees in scene/scene.h). False (reported): do not draw it.
+bool fitVariables(scene::Primitive& p, Reporter& reporter);
+
+/// Value of an IfBegin expression, ri.md 10.3. `lookup` gives a variable's numbers or strings, or nothing.
+struct ConditionValue {
+    bool isString = false;
+    double number = 0;
+    std::string text;
+};
+using ConditionLookup = std::function<std::optional<ConditionValue>(const std::string& name)>;
+/// Unknown variables and syntax errors are reported; they are false.
+bool evaluateCondition(const std::string& text, const ConditionLookup& lookup, Reporter& reporter, const SourcePlace& place);
+
+/// The path of an archive along folders: as given, then with '/' for '\', its base name, other case. "" = not found.
+/// *fallback says which liberty was taken, or is "".
+std::string findFile(const std::string& name, const std::vector<std::string>& folders, std::string* fallback);
+/// "a:b;c" to folders; a single letter before ":/" or ":\" is a drive, "&" and "@" are left to the caller.
+std::vector<std::string> splitSearchPath(const std::string& text);
+
+} // namespace alpenglow::ri

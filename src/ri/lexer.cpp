@@ -1,0 +1,279 @@
+#include "ri/lexer.h"
+#include "base/limits.h"
+#include <cmath>
+#include <cstring>
+#include <fast_float/fast_float.h>
+
+namespace alpenglow::ri {
+namespace {
+
+bool letter(unsigned char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_'; }
+bool digit(unsigned char c) { return c >= '0' && c <= '9'; }
+bool startsNumber(unsigned char c) { return digit(c) || c == '-' || c == '+' || c == '.'; }
+/// Bytes that cannot directly follow a number.
+bool sticks(unsigned char c) { return letter(c) || startsNumber(c); }
+constexpr size_t kBuffer = 256u << 10; // comfortably above limits::kTokenBytes: a token always fits
+constexpr size_t kLineKept = 1024;     // bytes of the current line kept for messages
+
+} // namespace
+
+Lexer::Lexer(std::unique_ptr<ByteSource> source, std::string file, Reporter& reporter, Comments comments)
+    : source_(std::move(source)), file_(std::move(file)), reporter_(reporter), comments_(std::move(comments)), buffer_(kBuffer) {
+    static_assert(kBuffer > 2 * limits::kTokenBytes + kLineKept);
+    // A UTF-8 mark: its first byte would be a reserved binary code.
+    if (at() && peek() == 0xef) {
+        while (end_ - pos_ < 3 && more()) {}
+        if (end_ - pos_ >= 3 && std::memcmp(&buffer_[pos_], "\xef\xbb\xbf", 3) == 0) {
+            pos_ += 3;
+            lineStart_ = 3;
+        }
+    }
+}
+
+Lexer::~Lexer() = default;
+
+bool Lexer::more() {
+    if (ended_) return false;
+    size_t keep = pos_;
+    size_t lineOffset = lineStart_ >= base_ ? lineStart_ - base_ : 0;
+    if (lineStart_ >= base_ && lineOffset <= pos_ && pos_ - lineOffset <= kLineKept) keep = lineOffset;
+    if (keep > 0) {
+        std::memmove(buffer_.data(), buffer_.data() + keep, end_ - keep);
+        base_ += keep;
+        pos_ -= keep;
+        end_ -= keep;
+    }
+    if (end_ == buffer_.size()) return false; // cannot happen: tokens are shorter than the buffer
+    size_t n = source_->read(buffer_.data() + end_, buffer_.size() - end_);
+    if (n == 0) {
+        ended_ = true;
+        if (!source_->failure().empty())
+            reporter_.error(source_->limitHit() ? Rie::Limit : Rie::BadFile, here(), source_->failure());
+        return false;
+    }
+    end_ += n;
+    return true;
+}
+
+std::string Lexer::lineText(const SourcePlace& p) const {
+    if (p.line != line_ || p.file != file_ || lineStart_ < base_) return {};
+    size_t from = lineStart_ - base_, to = from;
+    while (to < end_ && to - from < 200 && buffer_[to] != '\n' && buffer_[to] != '\r') {
+        if (static_cast<unsigned char>(buffer_[to]) >= 0x80 || buffer_[to] == 0) return {}; // binary: nothing to read for people
+        ++to;
+    }
+    return std::string(buffer_.data() + from, to - from);
+}
+
+void Lexer::newline() {
+    ++pos_;
+    ++line_;
+    lineStart_ = base_ + pos_;
+}
+
+void Lexer::comment() {
+    std::string text;
+    ++pos_;
+    while (at() && peek() != '\n' && peek() != '\r') {
+        if (comments_ && text.size() < limits::kTokenBytes) text += buffer_[pos_];
+        ++pos_;
+    }
+    if (!comments_) return;
+    bool structure = !text.empty() && text[0] == '#';
+    comments_(structure ? "structure" : "comment", structure ? text.substr(1) : text);
+}
+
+bool Lexer::skipSpace() {
+    while (at()) {
+        switch (peek()) {
+        case ' ': case '\t': case '\f': case '\v': case 0377: ++pos_; break; // 0377 ends a RunProgram answer: nothing elsewhere
+        case '\n': newline(); break;
+        case '\r': // a line end of its own only when no \n follows
+            if (pos_ + 1 >= end_) more();
+            if (pos_ + 1 < end_ && buffer_[pos_ + 1] == '\n') ++pos_;
+            else newline();
+            break;
+        case '#': comment(); break;
+        default: return true;
+        }
+    }
+    return false;
+}
+
+bool Lexer::number(double& out) {
+    for (;;) {
+        const char* p = buffer_.data() + pos_;
+        const char* e = buffer_.data() + end_;
+        const char* digits = p;
+        if (digits < e && (*digits == '+' || *digits == '-')) ++digits;
+        const char* q = digits;
+        bool good = false, huge = false;
+        if (digits < e && (digit(static_cast<unsigned char>(*digits)) || *digits == '.')) {
+            auto r = fast_float::from_chars(*p == '+' ? digits : p, e, out);
+            // Too small to represent is zero; too large is an error.
+            good = r.ec == std::errc() || (r.ec == std::errc::result_out_of_range && std::isfinite(out));
+            huge = (good || r.ec == std::errc::result_out_of_range) && !std::isfinite(out);
+            q = r.ptr;
+        }
+        const char* stop = q;
+        while (stop < e && sticks(static_cast<unsigned char>(*stop)) && size_t(stop - p) <= limits::kTokenBytes) ++stop;
+        if (stop == e && !ended_ && size_t(e - p) <= limits::kTokenBytes) {
+            if (more()) continue; // the rest of the number may only just have arrived
+        }
+        size_t length = size_t(stop - p);
+        if (good && !huge && stop == q && length <= limits::kTokenBytes) {
+            pos_ += length;
+            return true;
+        }
+        SourcePlace where = here();
+        if (length > limits::kTokenBytes) {
+            reporter_.error(Rie::Limit, where, "a number is longer than " + std::to_string(limits::kTokenBytes) + " bytes");
+        } else if (huge && stop == q) {
+            reporter_.error(Rie::Range, where, "the number " + std::string(p, std::min<size_t>(length, 40)) + " is out of range");
+        } else {
+            reporter_.error(Rie::Syntax, where, "'" + std::string(p, std::min<size_t>(length, 40)) + "' is not a number");
+        }
+        pos_ += std::max<size_t>(length, 1);
+        while (at() && sticks(peek())) ++pos_;
+        return false;
+    }
+}
+
+void Lexer::numbers(std::vector<double>& out) {
+    while (skipSpace() && startsNumber(peek())) {
+        double v;
+        if (number(v)) out.push_back(v);
+    }
+}
+
+void Lexer::identifier(std::string& out) {
+    out.clear();
+    SourcePlace where = here();
+    while (at() && (letter(peek()) || digit(peek()))) {
+        if (out.size() == limits::kTokenBytes) {
+            reporter_.error(Rie::Limit, where, "a name is longer than " + std::to_string(limits::kTokenBytes) + " bytes");
+            while (at() && (letter(peek()) || digit(peek()))) ++pos_;
+            return;
+        }
+        out += buffer_[pos_++];
+    }
+}
+
+/// After a backslash; ri.md 16.
+void Lexer::escape(std::string& out) {
+    if (!at()) return;
+    unsigned char c = peek();
+    if (c >= '0' && c <= '7') {
+        unsigned v = 0;
+        for (int i = 0; i < 3 && at() && peek() >= '0' && peek() <= '7'; ++i, ++pos_) v = v * 8 + (peek() - '0');
+        out += char(v & 0xff);
+        return;
+    }
+    if (c == '\r') { // continuation
+        ++pos_;
+        if (at() && peek() == '\n') newline();
+        return;
+    }
+    if (c == '\n') {
+        newline();
+        return;
+    }
+    ++pos_;
+    switch (c) {
+    case 'n': out += '\n'; break;
+    case 'r': out += '\r'; break;
+    case 't': out += '\t'; break;
+    case 'b': out += '\b'; break;
+    case 'f': out += '\f'; break;
+    case '"': case '\\': out += char(c); break;
+    default: // names of Windows files: the backslash was meant
+        out += '\\';
+        out += char(c);
+    }
+}
+
+void Lexer::quoted(std::string& out, int line, int column) {
+    out.clear();
+    ++pos_;
+    bool tooLong = false;
+    while (at()) {
+        unsigned char c = peek();
+        if (c == '"') {
+            ++pos_;
+            return;
+        }
+        if (out.size() >= limits::kStringBytes) {
+            if (!tooLong)
+                reporter_.error(Rie::Limit, place(line, column), "a string is longer than " + std::to_string(limits::kStringBytes) + " bytes");
+            tooLong = true;
+            out.resize(limits::kStringBytes - 1);
+        }
+        if (c == '\\') {
+            ++pos_;
+            escape(out);
+        } else if (c == '\n') {
+            out += '\n';
+            newline();
+        } else {
+            out += char(c);
+            ++pos_;
+        }
+    }
+    reporter_.error(Rie::Syntax, place(line, column), "a string has no closing quote");
+}
+
+void Lexer::badBytes() {
+    SourcePlace where = here();
+    unsigned first = peek();
+    size_t n = 0;
+    while (at()) {
+        unsigned char c = peek();
+        if (letter(c) || startsNumber(c) || std::strchr(" \t\f\v\r\n#\"[]", c) != nullptr || c >= 0200) {
+            if (c != 0) break;
+        }
+        ++pos_;
+        ++n;
+    }
+    std::string shown = first > 32 && first < 127 ? std::string("'") + char(first) + "'" : "byte " + std::to_string(first);
+    reporter_.error(Rie::Syntax, where, shown + (n > 1 ? " and " + std::to_string(n - 1) + " more bytes are" : " is") + " not part of any RIB token");
+}
+
+void Lexer::next(Token& t) {
+    t.text.clear();
+    t.floats.clear();
+    for (;;) {
+        bool any = skipSpace();
+        t.line = line_;
+        t.column = int(column());
+        if (!any) {
+            t.kind = Token::Kind::End;
+            return;
+        }
+        unsigned char c = peek();
+        if (letter(c)) {
+            t.kind = Token::Kind::Identifier;
+            return identifier(t.text);
+        }
+        if (startsNumber(c)) {
+            t.kind = Token::Kind::Number;
+            if (number(t.number)) return;
+            continue;
+        }
+        if (c == '"') {
+            t.kind = Token::Kind::String;
+            return quoted(t.text, t.line, t.column);
+        }
+        if (c == '[' || c == ']') {
+            t.kind = c == '[' ? Token::Kind::Open : Token::Kind::Close;
+            ++pos_;
+            return;
+        }
+        if (c >= 0200) {
+            if (binary(t)) return;
+            continue;
+        }
+        badBytes();
+    }
+}
+
+} // namespace alpenglow::ri

@@ -1,0 +1,112 @@
+#include "ri/parser.h"
+#include "ri/requests/request.h"
+
+namespace alpenglow::ri {
+
+Parser::Parser(std::unique_ptr<ByteSource> source, std::string file, Reporter& reporter, Lexer::Comments comments)
+    : lexer_(std::move(source), std::move(file), reporter, std::move(comments)), reporter_(reporter) {}
+
+/// After '['. A missing ']' ends the array where something comes that cannot be in it (wild.md).
+void Parser::array(Value& v) {
+    v.array = true;
+    SourcePlace open = lexer_.place(v.line, v.column);
+    for (;;) {
+        if (v.kind != Value::Kind::Strings) {
+            lexer_.numbers(v.numbers);
+            if (!v.numbers.empty()) v.kind = Value::Kind::Numbers;
+        }
+        lexer_.next(token_);
+        switch (token_.kind) {
+        case Token::Kind::Close: return;
+        case Token::Kind::Number:
+            if (v.kind == Value::Kind::Strings) break;
+            v.kind = Value::Kind::Numbers;
+            v.numbers.push_back(token_.number);
+            continue;
+        case Token::Kind::String:
+            if (v.kind == Value::Kind::Numbers) break;
+            v.kind = Value::Kind::Strings;
+            v.strings.push_back(std::move(token_.text));
+            continue;
+        default: break;
+        }
+        pending_ = true;
+        reporter_.warning(Rie::Syntax, open, "this array has no closing ']'", "it ends before line " + std::to_string(token_.line) + " column " +
+                                                                                  std::to_string(token_.column));
+        return;
+    }
+}
+
+/// All values up to the next name.
+void Parser::collect(std::vector<Value>& out) {
+    for (;;) {
+        if (!pending_) lexer_.next(token_);
+        pending_ = false;
+        Value v;
+        v.line = token_.line;
+        v.column = token_.column;
+        switch (token_.kind) {
+        case Token::Kind::End: case Token::Kind::Identifier: pending_ = true; return;
+        case Token::Kind::Close:
+            reporter_.warning(Rie::Syntax, lexer_.place(token_.line, token_.column), "']' without '['");
+            continue;
+        case Token::Kind::Number:
+            v.kind = Value::Kind::Numbers;
+            v.numbers.push_back(token_.number);
+            lexer_.numbers(v.numbers);
+            // Binary numbers come as tokens; they belong to the same run.
+            if (!out.empty() && out.back().kind == Value::Kind::Numbers && !out.back().array) {
+                out.back().numbers.insert(out.back().numbers.end(), v.numbers.begin(), v.numbers.end());
+                continue;
+            }
+            break;
+        case Token::Kind::String:
+            v.kind = Value::Kind::Strings;
+            v.strings.push_back(std::move(token_.text));
+            break;
+        case Token::Kind::Floats:
+            v.array = true;
+            v.kind = token_.floats.empty() ? Value::Kind::Empty : Value::Kind::Numbers;
+            v.numbers = std::move(token_.floats);
+            break;
+        case Token::Kind::Open: array(v); break;
+        }
+        out.push_back(std::move(v));
+    }
+}
+
+bool Parser::next(Call& call) {
+    std::vector<Value> values;
+    for (;;) {
+        values.clear();
+        if (!pending_) lexer_.next(token_);
+        pending_ = false;
+        if (token_.kind == Token::Kind::End) {
+            pending_ = true;
+            return false;
+        }
+        SourcePlace place = lexer_.place(token_.line, token_.column);
+        if (token_.kind != Token::Kind::Identifier) {
+            reporter_.error(Rie::Syntax, place, "a request is expected here");
+            pending_ = true;
+            collect(values);
+            continue;
+        }
+        call = Call{};
+        call.place = place;
+        call.request = findRequest(token_.text);
+        if (!call.request) {
+            std::string shown = token_.text.substr(0, 60);
+            std::string near = nearestName(shown, requestNames());
+            reporter_.error(Rie::BadToken, place, "unknown request '" + shown + "'", near.empty() ? "" : "did you mean " + near + "?");
+            collect(values);
+            continue;
+        }
+        // Without arguments it is done at once: a pipe's WorldEnd renders before the next request is written.
+        if (call.request->args.empty() && !call.request->parameters) return true;
+        collect(values);
+        if (matchArguments(values, call, reporter_)) return true;
+    }
+}
+
+} // namespace alpenglow::ri

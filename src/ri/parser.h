@@ -1,0 +1,29 @@
+// Tokens to calls. A request ends where the next name begins, so after any error the reader is in step again at the next request.
+#pragma once
+#include "ri/call.h"
+#include "ri/lexer.h"
+
+namespace alpenglow::ri {
+
+class Parser {
+public:
+    Parser(std::unique_ptr<ByteSource> source, std::string file, Reporter& reporter, Lexer::Comments comments = {});
+    /// The next well-formed call; false at the end of the stream. Bad requests are reported and passed over.
+    bool next(Call& out);
+    SourcePlace here() const { return lexer_.here(); }
+    std::string lineText(const SourcePlace& p) const { return lexer_.lineText(p); }
+
+private:
+    void collect(std::vector<Value>& out);
+    void array(Value& out);
+
+    Lexer lexer_;
+    Reporter& reporter_;
+    Token token_;
+    bool pending_ = false; ///< token_ was read ahead
+};
+
+/// Fits values to the signature of call.request and fills arguments and params. False (reported) when they do not fit.
+bool matchArguments(std::vector<Value>& values, Call& call, Reporter& reporter);
+
+} // namespace alpenglow::ri

@@ -1,0 +1,31 @@
+#include "ri/reader.h"
+#include "ri/interpreter.h"
+
+namespace alpenglow::ri {
+
+struct RibReader::Inside {
+    Interpreter interpreter;
+    bool read(std::unique_ptr<ByteSource> source, const std::string& name) {
+        int before = interpreter.reporter.errors();
+        interpreter.readStream(std::move(source), name);
+        return interpreter.reporter.errors() == before;
+    }
+};
+
+RibReader::RibReader(ReaderOptions o, scene::FrameConsumer& c, Diagnostics& d) : in_(new Inside{Interpreter(std::move(o), c, d)}) {}
+RibReader::~RibReader() = default;
+
+bool RibReader::readFile(const std::string& path) {
+    std::string why;
+    auto source = fileSource(path, &why);
+    if (!source) {
+        in_->interpreter.reporter.error(Rie::NoFile, {path, 0, 0}, "the file cannot be read: " + why);
+        return false;
+    }
+    return in_->read(std::move(source), path);
+}
+
+bool RibReader::readMemory(std::string_view text, const std::string& name) { return in_->read(memorySource(text), name); }
+bool RibReader::readStream(std::istream& in, const std::string& name) { return in_->read(streamSource(in), name); }
+
+} // namespace alpenglow::ri

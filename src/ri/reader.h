@@ -1,0 +1,41 @@
+// The door to ri/: RIB streams in, frames out.
+#pragma once
+#include "scene/scene.h"
+#include <functional>
+#include <istream>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace alpenglow::ri {
+
+struct ReaderOptions {
+    std::vector<std::string> searchPaths; ///< folders for archives, after those of Option "searchpath" "archive"
+    bool allowExec = false;               ///< RunProgram, DynamicLoad, System were asked for by the user
+    std::vector<int> frames;              ///< only these FrameBegin numbers are rendered; empty = all. Worlds outside frames always are
+    /// Called for each frame on its own copy of the options, just before it is handed over: the command line has the last word.
+    std::function<void(scene::Options&)> overrides;
+    /// Comments of the stream, as ReadArchive's callback gets them: kind "comment" or "structure", text after # or ##.
+    std::function<void(const std::string& kind, const std::string& text)> comments;
+};
+
+/// Reads streams one after the other into one graphics state. Every problem is reported; nothing throws, nothing stops early
+/// but ErrorHandler "abort". Not thread safe.
+class RibReader {
+public:
+    /// The consumer and the diagnostics must outlive the reader.
+    RibReader(ReaderOptions, scene::FrameConsumer&, Diagnostics&);
+    ~RibReader();
+    /// Each returns true when this stream brought no error. Blocks left open at its end are closed with an error, an open world
+    /// renders what there is; options, attributes and declarations stay for the next stream.
+    bool readFile(const std::string& path);
+    bool readMemory(std::string_view text, const std::string& name);
+    bool readStream(std::istream& in, const std::string& name);
+
+private:
+    struct Inside;
+    std::unique_ptr<Inside> in_;
+};
+
+} // namespace alpenglow::ri

@@ -1,0 +1,31 @@
+// One reader's way to the diagnostics: adds the source line, bounds how much a hostile file can say.
+#pragma once
+#include "base/diagnostics.h"
+#include <functional>
+
+namespace alpenglow::ri {
+
+class Reporter {
+public:
+    explicit Reporter(Diagnostics& d) : sink_(d) {}
+    void report(Severity, Rie, const SourcePlace&, std::string message, std::string hint = {});
+    void error(Rie c, const SourcePlace& p, std::string m, std::string hint = {}) { report(Severity::Error, c, p, std::move(m), std::move(hint)); }
+    void warning(Rie c, const SourcePlace& p, std::string m, std::string hint = {}) {
+        report(Severity::Warning, c, p, std::move(m), std::move(hint));
+    }
+    /// Only the first time this key is seen by the sink.
+    void once(const std::string& key, Severity, Rie, const SourcePlace&, std::string message, std::string hint = {});
+    /// Errors reported so far, shown or not.
+    int errors() const { return errors_; }
+    /// Says how many messages were left out since the last call, if any.
+    void flush(const SourcePlace&);
+    /// Text of a line that is still at hand, for the caret; may return "".
+    std::function<std::string(const SourcePlace&)> lineText;
+
+private:
+    bool admit(Severity);
+    Diagnostics& sink_;
+    int shown_ = 0, errors_ = 0, hidden_ = 0;
+};
+
+} // namespace alpenglow::ri

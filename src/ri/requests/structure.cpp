@@ -1,0 +1,94 @@
+// Blocks, motion, conditions, version, declarations, error handling (ri.md 1.1, 10.3, 12).
+#include "ri/interpreter.h"
+#include <fmt/format.h>
+
+namespace alpenglow::ri {
+namespace {
+
+template <BlockKind K> void beginBlock(Interpreter& in, const Call& c) { in.begin(K, c); }
+template <BlockKind K> void endBlock(Interpreter& in, const Call& c) { in.end(K, c); }
+void nothing(Interpreter&, const Call&) {}
+
+void version(Interpreter& in, const Call& c) {
+    constexpr double kSupported = 3.04;
+    if (c.number(0) > kSupported + 1e-6)
+        in.reporter.warning(Rie::Version, c.place, fmt::format("version {} is newer than {}", c.number(0), kSupported));
+}
+
+void declare(Interpreter& in, const Call& c) {
+    const std::string& name = c.text(0);
+    auto d = parseDeclaration(c.text(1));
+    if (!d || name.empty() || name.find(' ') != name.npos)
+        in.reporter.error(Rie::Syntax, c.place, fmt::format("Declare \"{}\": \"{}\" is not a declaration", name, c.text(1)),
+                          "[class] type [[n]], for example \"varying color\"");
+    else in.declarations.declare(name, *d);
+}
+
+void frameBegin(Interpreter& in, const Call& c) {
+    if (in.begin(BlockKind::Frame, c)) in.options.frameNumber = c.integer(0);
+}
+
+void solidBegin(Interpreter& in, const Call& c) {
+    const std::string& op = c.text(0);
+    if (op != "primitive" && op != "union" && op != "intersection" && op != "difference")
+        in.reporter.error(Rie::BadSolid, c.place, fmt::format("SolidBegin: \"{}\" is not a solid operation", op),
+                          "primitive, union, intersection or difference");
+    else if (op == "intersection" || op == "difference")
+        in.incapable(c, "solids are not computed: their primitives are all drawn, as a union");
+    in.begin(BlockKind::Solid, c);
+}
+
+void errorHandler(Interpreter& in, const Call& c) {
+    const std::string& h = c.text(0);
+    if (h != "ignore" && h != "print" && h != "abort")
+        in.reporter.error(Rie::BadToken, c.place, fmt::format("ErrorHandler: \"{}\" is not known", h), "ignore, print or abort");
+    in.setAbort(h == "abort"); // "ignore" does not hide messages: who runs the program decides that
+}
+
+} // namespace
+
+std::vector<Request> structureRequests() {
+    using B = BlockKind;
+    const unsigned bf = kBase | kFrame, all = kAnywhere;
+    return {
+        {"version", "number version", Kind::Other, all, false, "RIB version of the file; newer than 3.04 is warned about.", "3.03", version},
+        {"Declare", "string name; string declaration", Kind::Other, all, false, "Declares the class and type of a parameter name.",
+         "\"myparam\" \"varying color\"", declare},
+        {"ErrorHandler", "string style", Kind::Other, all, false, "\"abort\" stops reading at the first error; \"ignore\" and \"print\" read on.",
+         "\"print\"", errorHandler},
+        {"FrameBegin", "int number", Kind::Structure, kBase, false, "Saves options and attributes and sets the frame number.", "1", frameBegin},
+        {"FrameEnd", "", Kind::Structure, all, false, "Restores what FrameBegin saved.", "", endBlock<B::Frame>},
+        {"WorldBegin", "", Kind::Structure, bf, false,
+         "Freezes the options, makes the current transformation the camera, saves the attributes, starts the scene.", "",
+         [](Interpreter& in, const Call& c) { in.worldBegin(c); }},
+        {"WorldEnd", "", Kind::Structure, all, false, "Renders the scene and restores what WorldBegin saved.", "", endBlock<B::World>},
+        {"AttributeBegin", "", Kind::Structure, kFrame | kWorld | kObject, false, "Saves all attributes, the transformation and the light list.", "",
+         beginBlock<B::Attribute>},
+        {"AttributeEnd", "", Kind::Structure, all, false, "Restores what AttributeBegin saved.", "", endBlock<B::Attribute>},
+        {"TransformBegin", "", Kind::Structure, all, false, "Saves the current transformation.", "", beginBlock<B::Transform>},
+        {"TransformEnd", "", Kind::Structure, all, false, "Restores what TransformBegin saved.", "", endBlock<B::Transform>},
+        {"SolidBegin", "string operation", Kind::Structure, kWorld | kObject, false,
+         "Starts a solid: primitive, union, intersection or difference. Solids are drawn as unions.", "\"union\"", solidBegin},
+        {"SolidEnd", "", Kind::Structure, all, false, "Ends a solid.", "", endBlock<B::Solid>},
+        {"ObjectBegin", "handle object", Kind::Structure, all, false, "Stores the primitives up to ObjectEnd under a handle.", "1",
+         [](Interpreter& in, const Call& c) { in.objectBegin(c); }},
+        {"ObjectEnd", "", Kind::Structure, all, false, "Ends the object.", "", endBlock<B::Object>},
+        {"MotionBegin", "number[] times", Kind::Structure, all, false, "The next calls of one request are samples of it at these times.", "[0 1]",
+         [](Interpreter& in, const Call& c) { in.beginMotion(c); }},
+        {"MotionEnd", "", Kind::Structure, all, false, "Ends the motion block.", "", [](Interpreter& in, const Call& c) { in.endMotion(c); }},
+        {"ResourceBegin", "", Kind::Structure, all, false, "Starts a scope of Resource handles.", "", beginBlock<B::Resource>},
+        {"ResourceEnd", "", Kind::Structure, all, false, "Ends the scope of Resource handles.", "", endBlock<B::Resource>},
+        {"Resource", "string handle; string type; ..", Kind::Attribute, all, false,
+         "Type \"attributes\": saves or restores (\"string operation\") a subset of the attributes.",
+         "\"a\" \"attributes\" \"string operation\" \"save\"", [](Interpreter& in, const Call& c) { in.resource(c); }},
+        {"EditBegin", "..", Kind::Structure, bf, false, "Start of a re-rendering edit; its requests are read as usual.", "\"string type\" \"attribute\"",
+         [](Interpreter& in, const Call& c) { if (in.begin(B::Edit, c)) in.incapable(c, "edits are read as ordinary requests"); }},
+        {"EditEnd", "", Kind::Structure, all, false, "End of an edit.", "", endBlock<B::Edit>},
+        {"IfBegin", "string expression; ..", Kind::Structure, all, false, "What follows is done when the expression is true.", "\"1 == 1\"", nothing},
+        {"ElseIf", "string expression; ..", Kind::Structure, all, false, "Otherwise, when this one is.", "\"0\"", nothing},
+        {"Else", "", Kind::Structure, all, false, "Otherwise.", "", nothing},
+        {"IfEnd", "", Kind::Structure, all, false, "Ends the conditional block.", "", nothing},
+    };
+}
+
+} // namespace alpenglow::ri

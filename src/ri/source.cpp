@@ -1,0 +1,176 @@
+#include "ri/source.h"
+#include "base/limits.h"
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <vector>
+#include <zlib.h>
+
+namespace alpenglow::ri {
+namespace {
+
+class Memory : public ByteSource {
+public:
+    explicit Memory(std::string_view t) : text_(t) {}
+    size_t read(char* out, size_t size) override {
+        size_t n = std::min(size, text_.size());
+        if (n) std::memcpy(out, text_.data(), n);
+        text_.remove_prefix(n);
+        return n;
+    }
+
+private:
+    std::string_view text_;
+};
+
+class Stream : public ByteSource {
+public:
+    explicit Stream(std::istream& in) : in_(in) {}
+    size_t read(char* out, size_t size) override {
+        // One blocking byte, then what is buffered: a pipe's requests are seen as soon as they are written.
+        if (!size || !in_.get(*out)) return 0;
+        return 1 + size_t(std::max<std::streamsize>(0, in_.readsome(out + 1, std::streamsize(size - 1))));
+    }
+
+private:
+    std::istream& in_;
+};
+
+class File : public ByteSource {
+public:
+    explicit File(std::FILE* f) : file_(f) {}
+    ~File() override { std::fclose(file_); }
+    size_t read(char* out, size_t size) override {
+        size_t n = std::fread(out, 1, size, file_);
+        if (n == 0 && std::ferror(file_)) failure_ = std::string("read error: ") + std::strerror(errno);
+        return n;
+    }
+
+private:
+    std::FILE* file_;
+};
+
+/// Bytes already taken from a stream, then the rest of it.
+class Prefixed : public ByteSource {
+public:
+    Prefixed(std::string head, std::unique_ptr<ByteSource> rest) : head_(std::move(head)), rest_(std::move(rest)) {}
+    size_t read(char* out, size_t size) override {
+        if (used_ < head_.size()) {
+            size_t n = std::min(size, head_.size() - used_);
+            std::memcpy(out, head_.data() + used_, n);
+            used_ += n;
+            return n;
+        }
+        size_t n = rest_->read(out, size);
+        if (n == 0) failure_ = rest_->failure();
+        return n;
+    }
+
+private:
+    std::string head_;
+    size_t used_ = 0;
+    std::unique_ptr<ByteSource> rest_;
+};
+
+class Gzip : public ByteSource {
+public:
+    explicit Gzip(std::unique_ptr<ByteSource> raw) : raw_(std::move(raw)), in_(64 << 10) {
+        ok_ = inflateInit2(&z_, 15 + 16) == Z_OK;
+        if (!ok_) failure_ = "zlib could not be started";
+    }
+    ~Gzip() override { inflateEnd(&z_); }
+    size_t read(char* out, size_t size) override {
+        if (!ok_ || size == 0) return 0;
+        size_t want = std::min<size_t>(size, 1u << 30);
+        z_.next_out = reinterpret_cast<Bytef*>(out);
+        z_.avail_out = uInt(want);
+        while (z_.avail_out == want) {
+            if (z_.avail_in == 0 && !refill()) return end(between_ ? "" : "the gzip data ends early");
+            if (between_ && !nextMember()) return 0;
+            int r = inflate(&z_, Z_NO_FLUSH);
+            if (r == Z_STREAM_END) {
+                between_ = true;
+            } else if (r != Z_OK && r != Z_BUF_ERROR) {
+                size_t n = want - z_.avail_out;
+                if (n == 0) return end(std::string("damaged gzip data") + (z_.msg ? std::string(": ") + z_.msg : ""));
+                ok_ = false;
+                failure_ = "damaged gzip data";
+                return n;
+            }
+        }
+        size_t n = want - z_.avail_out;
+        total_ += n;
+        constexpr size_t kFree = 1 << 20; // small files compress well and hurt nobody
+        if (total_ > limits::kGzipBytes || (total_ > kFree && total_ / limits::kGzipRatio > consumed_)) {
+            limitHit_ = true;
+            return end("the gzip data inflates beyond the limit");
+        }
+        return n;
+    }
+
+private:
+    size_t end(std::string why) {
+        ok_ = false;
+        failure_ = std::move(why);
+        return 0;
+    }
+    bool refill() {
+        size_t n = raw_->read(in_.data(), in_.size());
+        z_.next_in = reinterpret_cast<Bytef*>(in_.data());
+        z_.avail_in = uInt(n);
+        consumed_ += n;
+        return n > 0;
+    }
+    /// After a member: another one, or padding, which is skipped like gunzip does.
+    bool nextMember() {
+        if (*z_.next_in != 0x1f) {
+            end("");
+            return false;
+        }
+        between_ = false;
+        return inflateReset(&z_) == Z_OK;
+    }
+
+    std::unique_ptr<ByteSource> raw_;
+    std::vector<char> in_;
+    z_stream z_{};
+    bool ok_ = false, between_ = false;
+    size_t total_ = 0, consumed_ = 0;
+};
+
+} // namespace
+
+std::unique_ptr<ByteSource> memorySource(std::string_view text) { return std::make_unique<Memory>(text); }
+std::unique_ptr<ByteSource> streamSource(std::istream& in) { return std::make_unique<Stream>(in); }
+
+std::unique_ptr<ByteSource> fileSource(const std::string& path, std::string* why) {
+    std::error_code ec;
+    if (std::filesystem::is_directory(path, ec)) {
+        if (why) *why = "it is a directory";
+        return nullptr;
+    }
+    std::FILE* f = std::fopen(path.c_str(), "rb");
+    if (!f) {
+        if (why) *why = std::strerror(errno);
+        return nullptr;
+    }
+    return std::make_unique<File>(f);
+}
+
+std::unique_ptr<ByteSource> inflating(std::unique_ptr<ByteSource> raw) {
+    std::string head;
+    while (head.size() < 2) {
+        char c;
+        if (raw->read(&c, 1) == 0) break;
+        head += c;
+        if (head[0] != '\x1f') break;
+    }
+    bool gzip = head == "\x1f\x8b";
+    auto whole = std::make_unique<Prefixed>(std::move(head), std::move(raw));
+    if (gzip) return std::make_unique<Gzip>(std::move(whole));
+    return whole;
+}
+
+} // namespace alpenglow::ri

@@ -1,0 +1,37 @@
+// Where a RIB stream's bytes come from: memory, a file, an istream, each possibly gzip-compressed.
+#pragma once
+#include <cstddef>
+#include <istream>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace alpenglow::ri {
+
+/// A one-way stream of bytes.
+class ByteSource {
+public:
+    virtual ~ByteSource() = default;
+    /// Up to `size` bytes into `out`, as many as are there now, at least one; 0 = end or failure.
+    virtual size_t read(char* out, size_t size) = 0;
+    /// Why the stream ended early (damaged gzip, read error, limit), or "". Valid once read() has returned 0.
+    const std::string& failure() const { return failure_; }
+    /// True when `failure` is a limit (RIE_LIMIT) rather than damage (RIE_BADFILE).
+    bool limitHit() const { return limitHit_; }
+
+protected:
+    std::string failure_;
+    bool limitHit_ = false;
+};
+
+/// The text must outlive the source.
+std::unique_ptr<ByteSource> memorySource(std::string_view text);
+/// The stream must outlive the source.
+std::unique_ptr<ByteSource> streamSource(std::istream& in);
+/// Null when the file cannot be opened or is a directory; *why says which.
+std::unique_ptr<ByteSource> fileSource(const std::string& path, std::string* why);
+/// Inflates when the stream starts with 1f 8b (concatenated members too), else passes it through.
+/// Limits: limits::kGzipRatio, limits::kGzipBytes.
+std::unique_ptr<ByteSource> inflating(std::unique_ptr<ByteSource> raw);
+
+} // namespace alpenglow::ri

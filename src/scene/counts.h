@@ -1,0 +1,19 @@
+// How many values a primitive variable has, by class (ri.md 7.1).
+#pragma once
+#include "scene/scene.h"
+#include <cstdint>
+
+namespace alpenglow::scene {
+
+struct VariableCounts {
+    int64_t uniform = 1, varying = 0, vertex = 0, faceVarying = 0;
+    /// Elements of a variable of this class; constant: 1.
+    int64_t of(Class c) const;
+};
+
+/// Counts from the primitive's own arguments (for Polygon and Points from the length of P or Pw; mesh steps from its attributes' bases).
+/// False when the arguments contradict themselves; *why then says how, for people. Kinds without vertices of their own
+/// (Procedural, Geometry, Volume) count 1 of everything.
+bool variableCounts(const Primitive& p, VariableCounts* counts, std::string* why);
+
+} // namespace alpenglow::scene

@@ -8,6 +8,8 @@ int Image::channel(std::string_view name) const {
     return -1;
 }
 
+Matrix screenToNDC() { return scaleMatrix(0.5, -0.5, 1) * translateMatrix(0.5, 0.5, 0); }
+
 Image makeImage(int width, int height, std::vector<std::string> channels) {
     Image m;
     m.width = width;

@@ -19,7 +19,8 @@ struct Image {
     /// Text attributes. Known keys: "wrapmodes" ("periodic,clamp": s then t), "textureformat" ("Plain Texture",
     /// "LatLong Environment", "Shadow"), "gamma" (file value = linear ^ gamma, declared by the file), "colorspace" ("sRGB").
     std::map<std::string, std::string> metadata;
-    std::optional<Matrix> worldToCamera, worldToNDC; ///< row vectors (base/matrix.h)
+    /// Row vectors (base/matrix.h). NDC: (0,0) upper left, (1,1) lower right, as OpenEXR's attribute and RI's "NDC" space have it.
+    std::optional<Matrix> worldToCamera, worldToNDC;
     int originX = 0, originY = 0;                    ///< of the first pixel in the full picture (crop window)
     int fullWidth = 0, fullHeight = 0;               ///< of the full picture; 0 = not cropped
     float pixelAspect = 1;
@@ -35,6 +36,8 @@ struct Image {
     int channel(std::string_view name) const;
 };
 
+/// From screen space as zfiles, Pixar's TIFF tags and textureinfo() have it (x -1..1 to the right, y 1..-1 downward) to NDC.
+Matrix screenToNDC();
 /// An image of zeros.
 Image makeImage(int width, int height, std::vector<std::string> channels);
 /// Names where a format has none: y | y a | r g b | r g b a | r g b a channel4 ...

@@ -186,6 +186,8 @@ TEST(ImageIo, ZfileBothByteOrders) {
         EXPECT_EQ(m->channels, V{"z"});
         EXPECT_EQ(m->data, (std::vector<float>{7.5f, 1e30f}));
         EXPECT_EQ(m->worldToNDC->m[1][2], 6);
+        EXPECT_EQ(m->worldToNDC->m[0][0], 1.5); // x' = (x + w) / 2 with the file's row 0 1 2 3
+        EXPECT_EQ(m->worldToNDC->m[0][1], 1);   // y' = (w - y) / 2
         EXPECT_EQ(m->worldToCamera->m[0][1], 17);
         b.pop_back();
         EXPECT_FALSE(decodeImage(b, "z", d));

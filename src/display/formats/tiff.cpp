@@ -269,6 +269,7 @@ std::optional<Image> readDirectory(TIFF* t, const DecodeContext& ctx, const Mess
         for (int i = 0; i < 16; ++i) to->m[i / 4][i % 4] = f[i];
     };
     matrix(TIFFTAG_PIXAR_MATRIX_WORLDTOSCREEN, m.worldToNDC);
+    if (m.worldToNDC) m.worldToNDC = *m.worldToNDC * screenToNDC();
     matrix(TIFFTAG_PIXAR_MATRIX_WORLDTOCAMERA, m.worldToCamera);
     return m;
 }
@@ -356,7 +357,9 @@ bool encodeTiff(OutputFile& out, const Image& m, const WriteOptions& o, std::str
         for (int i = 0; i < 16; ++i) v[i] = float(from->m[i / 4][i % 4]);
         TIFFSetField(f, tag, v);
     };
-    matrix(TIFFTAG_PIXAR_MATRIX_WORLDTOSCREEN, m.worldToNDC);
+    std::optional<Matrix> screen;
+    if (m.worldToNDC) screen = *m.worldToNDC * inverse(screenToNDC());
+    matrix(TIFFTAG_PIXAR_MATRIX_WORLDTOSCREEN, screen);
     matrix(TIFFTAG_PIXAR_MATRIX_WORLDTOCAMERA, m.worldToCamera);
 
     std::vector<uint8_t> row(rowBytes);

@@ -25,6 +25,7 @@ std::optional<Image> decodeZfile(Bytes b, const DecodeContext& ctx) {
         m.worldToNDC->m[i / 4][i % 4] = f32(8 + 4 * i);
         m.worldToCamera->m[i / 4][i % 4] = f32(72 + 4 * i);
     }
+    m.worldToNDC = *m.worldToNDC * screenToNDC();
     for (size_t i = 0; i < m.data.size(); ++i) m.data[i] = f32(header + 4 * i);
     m.metadata["textureformat"] = "Shadow";
     return m;

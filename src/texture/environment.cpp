@@ -1,0 +1,94 @@
+// Latitude-longitude maps. Known limit: reduced levels weigh texels by area on the map, not by solid angle, so very wide blurs give
+// the poles too much weight.
+#include "texture/lookup.h"
+#include <algorithm>
+#include <cmath>
+
+namespace alpenglow::texture {
+namespace {
+
+/// Angle of (x, y) in [0, 2 pi); by series, so that it is the same with every C library. Error below 1e-9.
+double angleOf(double y, double x) {
+    double ax = std::fabs(x), ay = std::fabs(y);
+    if (ax == 0 && ay == 0) return 0;
+    bool steep = ay > ax;
+    double q = steep ? ax / ay : ay / ax, offset = 0; // in [0, 1]
+    if (q > 0.41421356237309503) { // tan(pi/8): turn by pi/4 towards 0
+        q = (q - 1) / (q + 1);
+        offset = kPi / 4;
+    }
+    double q2 = q * q, sum = 0;
+    for (int k = 12; k >= 0; --k) sum = (k % 2 ? -1.0 : 1.0) / (2 * k + 1) + q2 * sum;
+    double angle = offset + q * sum;
+    if (steep) angle = kPi / 2 - angle;
+    if (x < 0) angle = kPi - angle;
+    return y < 0 ? 2 * kPi - angle : angle;
+}
+
+} // namespace
+
+void LatLong::project(const Vec3& d, float& s, float& t) const {
+    Vec3d v(d);
+    double m = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+    if (!(m > 0) || !std::isfinite(m)) {
+        s = t = 0.5f;
+        return;
+    }
+    v /= m;
+    double x = dot(v, Vec3d(zero)), y = dot(v, Vec3d(quarter)), z = dot(v, Vec3d(pole));
+    s = float(angleOf(y, x) / (2 * kPi));
+    t = float(angleOf(std::sqrt(x * x + y * y), z) / kPi);
+}
+
+void LatLong::differentiate(const Vec3& d, const Vec3& change, float& ds, float& dt) const {
+    Vec3d v(d), c(change);
+    double x = dot(v, Vec3d(zero)), y = dot(v, Vec3d(quarter)), z = dot(v, Vec3d(pole));
+    double cx = dot(c, Vec3d(zero)), cy = dot(c, Vec3d(quarter)), cz = dot(c, Vec3d(pole));
+    double r2 = x * x + y * y, r = std::sqrt(r2), all = r2 + z * z;
+    double turn = x * cy - y * cx, dr = r > 0 ? (x * cx + y * cy) / r : std::sqrt(cx * cx + cy * cy);
+    double s = r2 > 0 ? turn / r2 / (2 * kPi) : dr > 0 ? 1.0 : 0.0;
+    ds = float(std::clamp(s, -1.0, 1.0));
+    dt = all > 0 ? float(std::clamp((z * dr - r * cz) / all / kPi, -1.0, 1.0)) : 0.0f;
+    if (std::isnan(ds)) ds = 0;
+    if (std::isnan(dt)) dt = 0;
+}
+
+Vec3 LatLong::direction(float s, float t) const {
+    double phi = 2 * kPi * double(s), theta = kPi * double(t);
+    Vec3d d = Vec3d(zero) * (std::cos(phi) * std::sin(theta)) + Vec3d(quarter) * (std::sin(phi) * std::sin(theta)) + Vec3d(pole) * std::cos(theta);
+    return Vec3(d);
+}
+
+void environmentLatLong(Handle h, const LatLong& map, int first, int count, const Vec3& direction, const Vec3& ddx, const Vec3& ddy,
+                        const LookupOptions& o, float* out) {
+    if (!h || h->levels.empty()) {
+        for (int c = 0; c < count; ++c) out[c] = o.fill;
+        return;
+    }
+    float s, t, dsdx, dtdx, dsdy, dtdy;
+    map.project(direction, s, t);
+    map.differentiate(direction, ddx, dsdx, dtdx);
+    map.differentiate(direction, ddy, dsdy, dtdy);
+    filteredLookup(*h, first, count, s, t, Footprint::sides(dsdx, dtdx, dsdy, dtdy), o, Wrap::Periodic, Wrap::Clamp, out);
+}
+
+void environmentLatLongQuad(Handle h, const LatLong& map, int first, int count, const Vec3 d[4], const LookupOptions& o, float* out) {
+    if (!h || h->levels.empty()) {
+        for (int c = 0; c < count; ++c) out[c] = o.fill;
+        return;
+    }
+    Vec3 mean = (d[0] + d[1] + d[2] + d[3]) * 0.25f;
+    float s, t;
+    map.project(mean, s, t);
+    Footprint fp;
+    for (int i = 0; i < 4; ++i) {
+        float ds, dt;
+        map.differentiate(mean, d[i] - mean, ds, dt);
+        fp.ss += ds * ds;
+        fp.st += ds * dt;
+        fp.tt += dt * dt;
+    }
+    filteredLookup(*h, first, count, s, t, fp, o, Wrap::Periodic, Wrap::Clamp, out);
+}
+
+} // namespace alpenglow::texture

@@ -1,0 +1,11 @@
+// The core that lookup.cpp and environment.cpp share.
+#pragma once
+#include "texture/texture.h"
+
+namespace alpenglow::texture {
+
+/// lookup() on one map that has levels, with wrap modes that may differ from the map's own.
+void filteredLookup(const Texture&, int first, int count, float s, float t, const Footprint&, const LookupOptions&, Wrap swrap, Wrap twrap,
+                    float* out);
+
+} // namespace alpenglow::texture

@@ -1,0 +1,207 @@
+#include "texture/pyramid.h"
+#include "base/vec.h"
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace alpenglow::texture {
+namespace {
+
+constexpr std::array<float, 256> codeValues = [] {
+    std::array<float, 256> v{};
+    for (int i = 0; i < 256; ++i) v[size_t(i)] = float(i) / 255.0f;
+    return v;
+}();
+
+/// The two texels around a coordinate along one axis, and the weight of the second. -1: outside a black border.
+struct Pair {
+    int i0, i1;
+    float f;
+};
+
+Pair texelsAt(float coordinate, int n, Wrap wrap) {
+    if (!std::isfinite(coordinate)) coordinate = 0;
+    if (wrap == Wrap::Periodic) coordinate -= std::floor(coordinate);
+    float x = coordinate * float(n) - 0.5f;
+    if (wrap != Wrap::Periodic) x = std::clamp(x, -2.0f, float(n) + 1.0f); // beyond there nothing changes
+    float fl = std::floor(x);
+    int i0 = int(fl), i1 = i0 + 1;
+    auto place = [&](int i) {
+        switch (wrap) {
+        case Wrap::Periodic: return i < 0 ? i + n : i >= n ? i - n : i;
+        case Wrap::Clamp: return std::clamp(i, 0, n - 1);
+        case Wrap::Black: break;
+        }
+        return i < 0 || i >= n ? -1 : i;
+    };
+    return {place(i0), place(i1), x - fl};
+}
+
+/// Kernel over [-1/2, 1/2] scaled to its full width.
+struct Kernel {
+    enum Kind { Box, Triangle, Gaussian, CatmullRom, Mitchell, Lanczos } kind;
+    float width; ///< own full width, in destination texels
+};
+Kernel kernelOf(std::string_view f) {
+    if (f == "triangle") return {Kernel::Triangle, 2};
+    if (f == "catmull-rom" || f == "separable-catmull-rom") return {Kernel::CatmullRom, 4};
+    if (f == "mitchell") return {Kernel::Mitchell, 4};
+    if (f == "lanczos" || f == "sinc") return {Kernel::Lanczos, 4};
+    if (f == "box" || f == "disk" || f == "point") return {Kernel::Box, 1};
+    return {Kernel::Gaussian, 2};
+}
+
+/// Weight at distance x for full width w (ri.md 14, one-dimensional forms).
+double weightAt(Kernel::Kind kind, double x, double w) {
+    x = std::fabs(x);
+    if (x > w / 2) return 0;
+    double t = 4 * x / w; // support 2 on the half width
+    switch (kind) {
+    case Kernel::Box: return 1;
+    case Kernel::Triangle: return 1 - x / (w / 2);
+    case Kernel::Gaussian: return std::exp(-8 * x * x / (w * w));
+    case Kernel::CatmullRom: return t < 1 ? (3 * t * t * t - 5 * t * t + 2) / 2 : (-t * t * t + 5 * t * t - 8 * t + 4) / 2;
+    case Kernel::Mitchell: {
+        constexpr double B = 1.0 / 3, C = 1.0 / 3;
+        return t < 1 ? ((12 - 9 * B - 6 * C) * t * t * t + (-18 + 12 * B + 6 * C) * t * t + (6 - 2 * B)) / 6
+                     : ((-B - 6 * C) * t * t * t + (6 * B + 30 * C) * t * t + (-12 * B - 48 * C) * t + (8 * B + 24 * C)) / 6;
+    }
+    case Kernel::Lanczos: {
+        auto sinc = [](double v) { return v == 0 ? 1.0 : std::sin(kPi * v) / (kPi * v); };
+        return sinc(t) * sinc(t / 2);
+    }
+    }
+    return 0;
+}
+
+/// For each destination texel: source texels (wrapped; -1 = black) and weights that sum to 1.
+struct Taps {
+    std::vector<size_t> begin; ///< destination n+1 offsets
+    std::vector<int> source;
+    std::vector<float> weight;
+};
+
+Taps tapsFor(int from, int to, const Kernel& k, float width, Wrap wrap) {
+    Taps taps;
+    double scale = double(from) / double(to), full = double(k.width) * double(width);
+    if (!(full > 0)) full = double(k.width);
+    full = std::min(full, 64.0); // a wider reduction would only blur, at quadratic cost
+    for (int i = 0; i < to; ++i) {
+        taps.begin.push_back(taps.source.size());
+        double centre = (i + 0.5) * scale, radius = full / 2 * scale;
+        int lo = int(std::floor(centre - radius)), hi = int(std::ceil(centre + radius));
+        std::vector<double> w;
+        double sum = 0;
+        for (int j = lo; j < hi; ++j) {
+            double v;
+            if (k.kind == Kernel::Box) v = std::max(0.0, std::min(j + 1.0, centre + radius) - std::max(double(j), centre - radius));
+            else v = weightAt(k.kind, (j + 0.5 - centre) / scale, full);
+            w.push_back(v);
+            sum += v;
+        }
+        if (!(std::fabs(sum) > 1e-12)) { // narrower than a texel and between centres: the nearest
+            lo = int(std::floor(centre));
+            w = {1};
+            sum = 1;
+        }
+        for (size_t j = 0; j < w.size(); ++j) {
+            if (w[j] == 0) continue;
+            int s = lo + int(j);
+            if (wrap == Wrap::Periodic) s = ((s % from) + from) % from;
+            else if (wrap == Wrap::Clamp) s = std::clamp(s, 0, from - 1);
+            else if (s < 0 || s >= from) continue; // black: its weight counts, its value is 0
+            taps.source.push_back(s);
+            taps.weight.push_back(float(w[j] / sum));
+        }
+    }
+    taps.begin.push_back(taps.source.size());
+    return taps;
+}
+
+} // namespace
+
+std::optional<Wrap> wrapByName(std::string_view n) {
+    if (n == "black") return Wrap::Black;
+    if (n == "clamp") return Wrap::Clamp;
+    if (n == "periodic") return Wrap::Periodic;
+    return {};
+}
+
+const char* nameOf(Wrap w) { return w == Wrap::Black ? "black" : w == Wrap::Clamp ? "clamp" : "periodic"; }
+
+bool isReductionFilter(std::string_view n) {
+    for (const char* k : {"box", "triangle", "gaussian", "catmull-rom", "separable-catmull-rom", "mitchell", "lanczos", "sinc", "disk", "bessel",
+                          "b-spline", "blackman-harris", "point"})
+        if (n == k) return true;
+    return false;
+}
+
+void Level::addBilinear(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* sum) const {
+    Pair x = texelsAt(s, width, swrap), y = texelsAt(t, height, twrap);
+    const float w[4] = {(1 - x.f) * (1 - y.f), x.f * (1 - y.f), (1 - x.f) * y.f, x.f * y.f};
+    const int xs[4] = {x.i0, x.i1, x.i0, x.i1}, ys[4] = {y.i0, y.i0, y.i1, y.i1};
+    size_t at[4];
+    float k[4];
+    for (int i = 0; i < 4; ++i) {
+        bool outside = xs[i] < 0 || ys[i] < 0;
+        at[i] = outside ? 0 : (size_t(ys[i]) * size_t(width) + size_t(xs[i])) * size_t(channels) + size_t(first);
+        k[i] = outside ? 0 : w[i];
+    }
+    for (int c = 0; c < count; ++c) {
+        float v[4];
+        for (int i = 0; i < 4; ++i) v[i] = codes.empty() ? values[at[i] + size_t(c)] : codeValues[codes[at[i] + size_t(c)]];
+        // Only texels that take part: 0 * infinity would spoil a neighbour.
+        float r = 0;
+        for (int i = 0; i < 4; ++i)
+            if (k[i] != 0) r += k[i] * v[i];
+        sum[c] += weight * r;
+    }
+}
+
+display::Image reduced(const display::Image& m, const Reduction& how, Wrap swrap, Wrap twrap) {
+    int w = std::max(1, m.width / 2), h = std::max(1, m.height / 2);
+    size_t n = m.channels.size();
+    Kernel k = kernelOf(how.filter);
+    Taps tx = tapsFor(m.width, w, k, how.swidth, swrap), ty = tapsFor(m.height, h, k, how.twidth, twrap);
+    // Rows first, in double, so that the mean survives many levels.
+    std::vector<double> half(size_t(w) * size_t(m.height) * n);
+    for (int y = 0; y < m.height; ++y)
+        for (int x = 0; x < w; ++x)
+            for (size_t i = tx.begin[size_t(x)]; i < tx.begin[size_t(x) + 1]; ++i)
+                for (size_t c = 0; c < n; ++c)
+                    half[(size_t(y) * size_t(w) + size_t(x)) * n + c] += double(tx.weight[i]) * double(m.pixel(tx.source[i], y)[c]);
+    display::Image out = display::makeImage(w, h, m.channels);
+    std::vector<double> row(size_t(w) * n);
+    for (int y = 0; y < h; ++y) {
+        std::fill(row.begin(), row.end(), 0.0);
+        for (size_t i = ty.begin[size_t(y)]; i < ty.begin[size_t(y) + 1]; ++i) {
+            const double* from = &half[size_t(ty.source[i]) * row.size()];
+            for (size_t j = 0; j < row.size(); ++j) row[j] += double(ty.weight[i]) * from[j];
+        }
+        for (size_t j = 0; j < row.size(); ++j) out.pixel(0, y)[j] = float(row[j]);
+    }
+    return out;
+}
+
+std::vector<display::Image> reducedLevels(const display::Image& m, const Reduction& how, Wrap swrap, Wrap twrap) {
+    std::vector<display::Image> levels;
+    const display::Image* last = &m;
+    while (last->width > 1 || last->height > 1) {
+        display::Image next = reduced(*last, how, swrap, twrap);
+        levels.push_back(std::move(next));
+        last = &levels.back();
+    }
+    return levels;
+}
+
+bool hasAllLevels(const display::Image& m) {
+    int w = m.width, h = m.height;
+    for (const display::Image& l : m.levels) {
+        w = std::max(1, w / 2);
+        h = std::max(1, h / 2);
+        if (l.width != w || l.height != h || l.channels.size() != m.channels.size()) return false;
+    }
+    return w == 1 && h == 1;
+}
+
+} // namespace alpenglow::texture

@@ -1,0 +1,46 @@
+// MIP-map levels: how they are stored, built and read.
+#pragma once
+#include "display/image.h"
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace alpenglow::texture {
+
+/// What lies outside 0..1. Black: zeros.
+enum class Wrap { Black, Clamp, Periodic };
+std::optional<Wrap> wrapByName(std::string_view name);
+const char* nameOf(Wrap);
+
+/// One level. 8-bit pictures keep their codes at level 0 (a quarter of the memory; the values k/255 are the same floats);
+/// reduced levels are floats.
+struct Level {
+    int width = 0, height = 0, channels = 0;
+    std::vector<float> values;
+    std::vector<uint8_t> codes; ///< when not empty, instead of values
+    size_t bytes() const { return values.size() * sizeof(float) + codes.size(); }
+
+    /// Adds weight times the bilinearly interpolated channels first, first+1, ... (count, all present) at (s, t) to `sum`. Texel
+    /// centres are at ((i + 1/2) / width, (j + 1/2) / height); row 0 is t = 0, the top. s and t may be anything, also not finite.
+    void addBilinear(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* sum) const;
+};
+
+/// Kernel of the reduction, in texels of the level that is made. Widths are full widths and multiply the filter's own:
+/// box 1, triangle 2, gaussian 2, catmull-rom, mitchell 4, lanczos 4 (sinc is lanczos, disk is box, bessel and others gaussian).
+struct Reduction {
+    std::string_view filter = "box";
+    float swidth = 1, twidth = 1;
+};
+/// Whether Reduction knows the filter by name.
+bool isReductionFilter(std::string_view name);
+
+/// The next level: each side max(1, n / 2). Each texel weighs the texels that it covers by exact overlap (box), so that the mean of
+/// the picture is kept whatever its size; other kernels are sampled at texel centres and normalised.
+display::Image reduced(const display::Image&, const Reduction& = {}, Wrap swrap = Wrap::Clamp, Wrap twrap = Wrap::Clamp);
+/// All levels below a picture, down to 1x1.
+std::vector<display::Image> reducedLevels(const display::Image&, const Reduction& = {}, Wrap swrap = Wrap::Clamp, Wrap twrap = Wrap::Clamp);
+/// Whether image.levels are all of them, each half the one before.
+bool hasAllLevels(const display::Image&);
+
+} // namespace alpenglow::texture

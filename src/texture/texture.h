@@ -1,0 +1,140 @@
+// Textures for shaders: texture(), environment() on lat-long maps, textureinfo(). Loaded whole on first need, then only read, so
+// lookups take no lock and do not depend on threads.
+//
+// Coordinates: (s, t) = (0, 0) is the upper left corner of the picture, s to the right, t downward (ri.md 11).
+// Wrap modes: those stored in the file ("wrapmodes", written by MakeTexture); a plain picture has none and is clamped, so that no
+// edge bleeds (TextureSettings::plainWrap).
+// Filtering: the footprint is the parallelogram of the derivatives, as a matrix of squared widths; blur adds to it in quadrature
+// (convolution of boxes). Probes with trilinear interpolation lie along the major axis so that the variance of the whole kernel is
+// that of the filter over the footprint; the minor axis chooses the level. A kernel is never narrower than bilinear interpolation.
+// Not done: separate treatment of parallelogram and ellipse; sharpening (negative lobes) in lookups.
+#pragma once
+#include "base/diagnostics.h"
+#include "base/matrix.h"
+#include "texture/pyramid.h"
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace alpenglow::texture {
+
+enum class Kind { Texture, LatLong, Shadow };
+
+/// A loaded map; immutable. Of a UDIM set: no levels, only tiles.
+struct Texture {
+    std::string path;
+    Kind kind = Kind::Texture;
+    std::vector<std::string> channels;
+    std::vector<Level> levels; ///< 0 is the picture
+    Wrap swrap = Wrap::Clamp, twrap = Wrap::Clamp;
+    std::optional<Matrix> worldToCamera, worldToNDC;
+    int bits = 8;
+    bool floating = false;
+    std::map<int, std::shared_ptr<const Texture>> tiles; ///< by UDIM number, 1001 + floor(s) + 10 floor(t)
+    int width() const { return levels.empty() ? 0 : levels[0].width; }
+    int height() const { return levels.empty() ? 0 : levels[0].height; }
+    size_t bytes() const;
+};
+/// Null: the map is missing; every lookup gives the fill value. Valid as long as the system is, or until forget().
+using Handle = const Texture*;
+
+/// Lookup filters. Negative-lobed ones of RISpec are taken as Box, the sharpest without ringing.
+enum class Filter { Box, Triangle, Gaussian };
+/// By RISpec name; nothing when unknown.
+std::optional<Filter> filterByName(std::string_view name);
+
+/// Table 6.16 of rsl.md.
+struct LookupOptions {
+    float swidth = 1, twidth = 1; ///< multiply the derivatives
+    float sblur = 0, tblur = 0;   ///< as a fraction of the map
+    Filter filter = Filter::Gaussian;
+    float fill = 0;               ///< value of channels that the map does not have
+    float lerp = 0;               ///< accepted; levels are always interpolated, a switch would show as an edge
+};
+
+/// A footprint as squared widths in (s, t): the sum of the outer products of its two side vectors.
+struct Footprint {
+    float ss = 0, st = 0, tt = 0;
+    static Footprint sides(float dsdx, float dtdx, float dsdy, float dtdy);
+};
+
+/// Channels first, first+1, ... (count of them) of the map at (s, t), filtered over the footprint, into out[0..count).
+void lookup(Handle, int first, int count, float s, float t, const Footprint&, const LookupOptions&, float* out);
+/// The same with the change of (s, t) from pixel to pixel (or sample to sample).
+void lookup2D(Handle, int first, int count, float s, float t, float dsdx, float dtdx, float dsdy, float dtdy, const LookupOptions&, float* out);
+/// texture() with four corners, in any order. Four equal corners: no filtering beyond bilinear interpolation.
+void lookupQuad(Handle, int first, int count, const float s[4], const float t[4], const LookupOptions&, float* out);
+/// n lanes; lanes with active[i] == 0 are left alone (active may be null). Options are one, or one per lane (perLane).
+/// out[c * n + i] is channel c of lane i.
+void lookup2DLanes(Handle, int first, int count, int n, const unsigned char* active, const float* s, const float* t, const float* dsdx,
+                   const float* dtdx, const float* dsdy, const float* dtdy, const LookupOptions* options, bool perLane, float* out);
+
+/// Where a direction lies on a lat-long map: latitude +90 (along pole) at the top, longitude 0 (towards zero) at the left edge,
+/// growing towards `quarter`. Renderers differ in axes and sense (ri.md 11). The default has z up, as RISpec-era maps have it,
+/// longitude from +x towards +y.
+struct LatLong {
+    Vec3 pole{0, 0, 1}, zero{1, 0, 0}, quarter{0, 1, 0};
+    /// (s, t) of a direction of any length but 0 (which gives the middle).
+    void project(const Vec3& direction, float& s, float& t) const;
+    /// Change of (s, t) when the direction changes by d. At the poles s changes by at most the whole map.
+    void differentiate(const Vec3& direction, const Vec3& d, float& ds, float& dt) const;
+    /// The direction of length 1 at (s, t).
+    Vec3 direction(float s, float t) const;
+};
+
+/// environment(): along a direction with its changes per pixel. Longitude wraps, latitude is clamped.
+void environmentLatLong(Handle, const LatLong&, int first, int count, const Vec3& direction, const Vec3& ddx, const Vec3& ddy,
+                        const LookupOptions&, float* out);
+/// environment() with four directions.
+void environmentLatLongQuad(Handle, const LatLong&, int first, int count, const Vec3 directions[4], const LookupOptions&, float* out);
+
+/// textureinfo() fields.
+struct TextureInfo {
+    int width = 0, height = 0, channels = 0, bits = 0;
+    bool floating = false;
+    std::string type; ///< "texture", "environment", "shadow"
+    Wrap swrap = Wrap::Clamp, twrap = Wrap::Clamp;
+    std::optional<Matrix> viewing, projection; ///< world to camera, world to screen (x -1..1, y 1..-1) of the map
+};
+
+struct TextureSettings {
+    Wrap plainWrap = Wrap::Clamp; ///< of pictures that state none
+    bool linearise = true;        ///< colours of files that declare a gamma (PNG) become linear on loading
+    LatLong latLong;
+};
+
+/// The maps of a render. Thread safe.
+class TextureSystem {
+public:
+    explicit TextureSystem(Diagnostics&, TextureSettings = {});
+    ~TextureSystem();
+    /// The map called name along a search path (base/file.h findFile: also with other case, backslashes, or by its base name, which
+    /// is said). "UDIM" in the name opens tiles 1001 to 1100 that exist. A missing or damaged file is reported once; the handle is
+    /// null. Threads that ask for the same file wait for one load.
+    Handle open(const std::string& name, const std::vector<std::string>& searchPath = {""}, const SourcePlace& = {});
+    std::optional<TextureInfo> info(Handle) const;
+    const LatLong& latLong() const { return settings_.latLong; }
+    const TextureSettings& settings() const { return settings_; }
+    /// Memory held by maps, in bytes.
+    size_t bytes() const;
+    /// Drops every map, so that files made anew are read anew. No handle survives; no lookup may run.
+    void forget();
+
+private:
+    struct Entry;
+    std::shared_ptr<const Texture> load(const std::string& path, const SourcePlace&);
+    std::shared_ptr<const Texture> loadFile(const std::string& name, const std::vector<std::string>& searchPath, const SourcePlace&);
+    std::shared_ptr<const Texture> loadTiles(const std::string& name, const std::vector<std::string>& searchPath, const SourcePlace&);
+    Diagnostics& diags_;
+    TextureSettings settings_;
+    mutable std::mutex mutex_;
+    std::map<std::string, std::shared_ptr<Entry>> byRequest_, byPath_;
+};
+
+/// A texture from a picture already in memory (its levels are used when complete, else built).
+std::shared_ptr<const Texture> makeTextureFrom(const display::Image&, const TextureSettings& = {});
+
+} // namespace alpenglow::texture

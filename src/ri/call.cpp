@@ -1,10 +1,12 @@
 #include "ri/call.h"
+#include <cmath>
 #include <limits>
 
 namespace alpenglow::ri {
 
 float toFloat(double d) {
     constexpr double kMax = std::numeric_limits<float>::max();
+    if (!std::isfinite(d)) return float(d); // whoever asked for a value checks that it is one
     return d > kMax ? float(kMax) : d < -kMax ? float(-kMax) : float(d);
 }
 

@@ -50,7 +50,7 @@ struct Call {
     SourcePlace at(const RawParam& p) const { return {place.file, p.line, p.column}; }
 };
 
-/// d as float; beyond the range of float the nearest finite one. NaN stays.
+/// d as float; beyond the range of float the nearest finite one. NaN and infinity stay.
 float toFloat(double d);
 
 } // namespace alpenglow::ri

@@ -27,6 +27,11 @@ struct Collected : scene::FrameConsumer {
         return s;
     }
     size_t count() const { return diagnostics.all().size(); }
+    /// The first message; a failure when there is none.
+    Diagnostic first() const {
+        EXPECT_GE(count(), 1u);
+        return count() ? diagnostics.all()[0] : Diagnostic{};
+    }
     /// The only message; a failure when there is not exactly one.
     Diagnostic only() const {
         EXPECT_EQ(count(), 1u) << messages();

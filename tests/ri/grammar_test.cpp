@@ -21,7 +21,7 @@ TEST(Grammar, BadNumbersAreReportedInPlace) {
     EXPECT_EQ(all[0].place.column, 15); // "Sphere 1 -1 1 " has 14 bytes
     EXPECT_EQ(all[0].sourceLine, "Sphere 1 -1 1 3x6");
     EXPECT_EQ(all[1].code, Rie::MissingData);
-    EXPECT_EQ(world("Sphere 1e999 -1 1 360")->diagnostics.all()[0].code, Rie::Range);
+    EXPECT_EQ(world("Sphere 1e999 -1 1 360")->first().code, Rie::Range);
     EXPECT_TRUE(world("Translate 1e-999 0 0")->ok);
     for (const char* bad : {"-", "+", ".", "1.2.3", "--1", "1e", "0x10", "nan", "-inf"})
         EXPECT_FALSE(world(std::string("Translate 0 0 ") + bad)->ok) << bad;
@@ -91,8 +91,8 @@ TEST(Grammar, MissingBracket) {
     EXPECT_EQ(c->frame().primitives.size(), 3u) << c->messages();
     EXPECT_NE(scene::find(c->primitive(0).params, "Cs"), nullptr);
     ASSERT_EQ(c->count(), 2u) << c->messages();
-    EXPECT_EQ(c->diagnostics.all()[0].place.column, 13);
-    EXPECT_EQ(c->diagnostics.all()[0].code, Rie::Syntax);
+    EXPECT_EQ(c->first().place.column, 13);
+    EXPECT_EQ(c->first().code, Rie::Syntax);
     EXPECT_EQ(world("Color 1 0 0 ] Sphere 1 -1 1 360")->only().code, Rie::Syntax);
 }
 
@@ -127,8 +127,8 @@ TEST(Grammar, TooManyNumbersAreNamed) {
 }
 
 TEST(Grammar, LongTokensAndStringsAreBounded) {
-    EXPECT_EQ(read("Translate 0 0 " + std::string(limits::kTokenBytes + 10, '1'))->diagnostics.all()[0].code, Rie::Limit);
-    EXPECT_EQ(read(std::string(limits::kTokenBytes + 10, 'A'))->diagnostics.all()[0].code, Rie::Limit);
+    EXPECT_EQ(read("Translate 0 0 " + std::string(limits::kTokenBytes + 10, '1'))->first().code, Rie::Limit);
+    EXPECT_EQ(read(std::string(limits::kTokenBytes + 10, 'A'))->first().code, Rie::Limit);
     auto c = read("Surface \"" + std::string(limits::kStringBytes + 10, 'a') + "\"\nColor 1 0 0");
     EXPECT_EQ(c->only().code, Rie::Limit);
     // Just below is fine.

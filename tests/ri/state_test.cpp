@@ -61,7 +61,7 @@ TEST(Transforms, CoordinateSystems) {
                    "CoordSysTransform \"nowhere\"");
     EXPECT_EQ(c->only().code, Rie::BadToken);
     EXPECT_EQ(c->primitive(0).toWorld.first(), translateMatrix(1, 2, 3));
-    EXPECT_EQ(c->primitive(1).toWorld.first(), scaleMatrix(2, 2, 2));
+    EXPECT_EQ(c->primitive(1).toWorld.first(), scaleMatrix(2, 2, 2) * translateMatrix(1, 2, 3));
     EXPECT_EQ(c->frame().coordinateSystems.at("here").first(), translateMatrix(1, 2, 3));
 }
 

@@ -1,0 +1,119 @@
+// ReadArchive, inline archives, DelayedReadArchive, search paths (ri.md 10.2, reliability).
+#include "base/limits.h"
+#include "collect.h"
+#include "ri/interpreter.h"
+#include <filesystem>
+#include <fstream>
+
+using namespace alpenglow;
+using namespace alpenglow::ri;
+namespace fs = std::filesystem;
+
+class Archives : public ::testing::Test {
+protected:
+    void SetUp() override {
+        dir = fs::temp_directory_path() / ("alpenglow_ri_" + std::to_string(::getpid()) + "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+        fs::create_directories(dir / "sub");
+    }
+    void TearDown() override { fs::remove_all(dir); }
+    void write(const std::string& name, const std::string& text) { std::ofstream(dir / name, std::ios::binary) << text; }
+    std::unique_ptr<Collected> readHere(const std::string& text) {
+        write("main.rib", text);
+        auto c = std::make_unique<Collected>();
+        RibReader reader({}, *c, c->diagnostics);
+        c->ok = reader.readFile((dir / "main.rib").string());
+        return c;
+    }
+    fs::path dir;
+};
+
+TEST_F(Archives, AreFoundBesideTheFileAndAlongThePath) {
+    write("part.rib", "Sphere 1 -1 1 360\n");
+    write("sub/deep.rib", "Sphere 2 -2 2 360");
+    auto c = readHere("WorldBegin ReadArchive \"part.rib\" ReadArchive \"sub/deep.rib\" WorldEnd");
+    EXPECT_EQ(c->count(), 0u) << c->messages();
+    EXPECT_EQ(c->frame().primitives.size(), 2u);
+    EXPECT_EQ(c->primitive(0).place.file, (dir / "part.rib").string());
+    EXPECT_EQ(c->primitive(0).place.line, 1);
+    auto d = readHere("Option \"searchpath\" \"archive\" \"/nowhere:" + (dir / "sub").string() + "\" WorldBegin ReadArchive \"deep.rib\" WorldEnd");
+    EXPECT_EQ(d->frame().primitives.size(), 1u) << d->messages();
+}
+
+TEST_F(Archives, NamesFromOtherMachines) {
+    write("sub/Part.rib", "Sphere 1 -1 1 360");
+    for (const char* name : {"sub\\\\Part.rib", "C:\\\\scenes\\\\x\\\\Part.rib", "/other/machine/Part.rib", "part.RIB"}) {
+        auto c = readHere("Option \"searchpath\" \"archive\" \"" + (dir / "sub").string() + "\" WorldBegin ReadArchive \"" + name + "\" WorldEnd");
+        EXPECT_EQ(c->frame().primitives.size(), 1u) << name << c->messages();
+        EXPECT_EQ(c->only().severity, Severity::Warning) << name;
+    }
+    auto c = readHere("ReadArchive \"missing.rib\"");
+    EXPECT_EQ(c->only().code, Rie::NoFile);
+    EXPECT_NE(c->only().hint.find(dir.string()), std::string::npos);
+    EXPECT_EQ(readHere("ReadArchive \"\"")->only().code, Rie::NoFile);
+    EXPECT_EQ(readHere("ReadArchive \"sub\"")->only().code, Rie::NoFile);
+}
+
+TEST_F(Archives, CyclesAndDepth) {
+    write("a.rib", "ReadArchive \"b.rib\"");
+    write("b.rib", "ReadArchive \"a.rib\"");
+    EXPECT_EQ(readHere("ReadArchive \"a.rib\"")->only().code, Rie::Nesting);
+    std::string chain;
+    for (int i = 0; i < limits::kArchiveDepth + 5; ++i)
+        chain += "ArchiveBegin \"n" + std::to_string(i) + "\" ReadArchive \"n" + std::to_string(i + 1) + "\" ArchiveEnd\n";
+    EXPECT_EQ(readHere(chain + "ReadArchive \"n0\"")->only().code, Rie::Limit);
+}
+
+TEST_F(Archives, MustBeBalanced) {
+    write("open.rib", "AttributeBegin Color 1 0 0");
+    write("close.rib", "AttributeEnd");
+    auto c = readHere("WorldBegin ReadArchive \"open.rib\"\nSphere 1 -1 1 360 AttributeBegin ReadArchive \"close.rib\" AttributeEnd WorldEnd");
+    ASSERT_EQ(c->count(), 2u) << c->messages();
+    EXPECT_EQ(c->first().code, Rie::Nesting);
+    EXPECT_EQ(c->diagnostics.all()[1].code, Rie::Nesting);
+    EXPECT_EQ(c->primitive().attributes->color, Color(1, 1, 1));
+    write("if.rib", "IfBegin \"0\"");
+    EXPECT_EQ(readHere("WorldBegin ReadArchive \"if.rib\" Sphere 1 -1 1 360 WorldEnd")->frame().primitives.size(), 1u);
+}
+
+TEST_F(Archives, MayHoldTheSamplesOfAMotionBlock) {
+    write("a.rib", "Sphere 1 -1 1 360");
+    write("b.rib", "Sphere 2 -2 2 360");
+    auto c = readHere("WorldBegin MotionBegin [0 1] ReadArchive \"a.rib\" ReadArchive \"b.rib\" MotionEnd WorldEnd");
+    EXPECT_EQ(c->count(), 0u) << c->messages();
+    EXPECT_EQ(c->primitive().motionKeys.size(), 1u);
+}
+
+TEST_F(Archives, Delayed) {
+    write("d.rib", "Color 1 0 0 Sphere 1 -1 1 360");
+    auto c = readHere("WorldBegin Procedural \"DelayedReadArchive\" [\"d.rib\"] [-1 1 -1 1 -1 1] Sphere 1 -1 1 360 WorldEnd");
+    EXPECT_EQ(c->count(), 0u) << c->messages();
+    EXPECT_EQ(c->primitive(0).attributes->color, Color(1, 0, 0));
+    EXPECT_EQ(c->primitive(1).attributes->color, Color(1, 1, 1));
+}
+
+TEST(InlineArchives, AreRecordedNotExecuted) {
+    auto c = read("ArchiveBegin \"ball\" Sphere 1 -1 1 360 ArchiveBegin \"inner\" ArchiveEnd ArchiveEnd WorldBegin ReadArchive \"ball\" Translate 1 0 0 ReadArchive \"ball\" WorldEnd");
+    EXPECT_EQ(c->count(), 0u) << c->messages();
+    ASSERT_EQ(c->frame().primitives.size(), 2u);
+    EXPECT_EQ(c->primitive(1).toWorld.first(), translateMatrix(1, 0, 0));
+    EXPECT_EQ(read("ArchiveBegin \"x\" ReadArchive \"x\" ArchiveEnd ReadArchive \"x\"")->only().code, Rie::Nesting);
+    EXPECT_EQ(read("ArchiveBegin \"x\" Sphere 1 -1 1 360")->only().code, Rie::Nesting);
+}
+
+TEST(SearchPath, Splits) {
+    using V = std::vector<std::string>;
+    EXPECT_EQ(splitSearchPath("a:b;c::d"), (V{"a", "b", "c", "d"}));
+    EXPECT_EQ(splitSearchPath("C:/x:D:\\y;e"), (V{"C:/x", "D:\\y", "e"}));
+    EXPECT_EQ(splitSearchPath(""), V{});
+}
+
+TEST(Files, ThatCannotBeRead) {
+    Collected c;
+    RibReader reader({}, c, c.diagnostics);
+    EXPECT_FALSE(reader.readFile("/nonexistent/x.rib"));
+    EXPECT_EQ(c.only().code, Rie::NoFile);
+    Collected d;
+    RibReader second({}, d, d.diagnostics);
+    EXPECT_FALSE(second.readFile("/"));
+    EXPECT_EQ(d.only().code, Rie::NoFile);
+}

@@ -1,0 +1,151 @@
+// Scopes, crossed and forgotten blocks, conditions, foreign code: what is mended and what is said.
+#include "base/limits.h"
+#include "collect.h"
+
+using namespace alpenglow;
+using namespace alpenglow::ri;
+
+TEST(Scopes, OutOfScopeIsDoneAndWarnedAboutOnce) {
+    auto c = read("WorldBegin Imager \"background\" Imager \"background\" Sphere 1 -1 1 360 WorldEnd");
+    EXPECT_EQ(c->only().severity, Severity::Warning);
+    EXPECT_EQ(c->only().code, Rie::NotOptions);
+    EXPECT_EQ(c->frame().options.imager->name, "background");
+    auto d = read("AttributeBegin Color 1 0 0 WorldBegin Sphere 1 -1 1 360 WorldEnd AttributeEnd AttributeBegin AttributeEnd");
+    EXPECT_EQ(d->only().code, Rie::Nesting);
+    EXPECT_EQ(d->primitive().attributes->color, Color(1, 0, 0));
+    auto e = read("FrameBegin 1 MakeShadow \"a\" \"b\" FrameEnd");
+    EXPECT_EQ(e->only().code, Rie::IllState);
+    EXPECT_EQ(e->textures.size(), 1u);
+}
+
+TEST(Scopes, WorldOptionsEndWithTheWorld) {
+    auto c = read("WorldBegin Format 10 10 1 WorldEnd WorldBegin WorldEnd");
+    ASSERT_EQ(c->frames.size(), 2u);
+    EXPECT_EQ(c->frames[0]->options.xres, 10);
+    EXPECT_EQ(c->frames[1]->options.xres, 640);
+}
+
+TEST(Scopes, PrimitivesOutsideTheWorld) {
+    auto c = read("Sphere 1 -1 1 360\nSphere 1 -1 1 360");
+    EXPECT_EQ(c->only().code, Rie::NotPrims);
+    EXPECT_EQ(c->only().severity, Severity::Error);
+}
+
+TEST(Nesting, CrossedBlocksAreMended) {
+    auto c = world("AttributeBegin TransformBegin Translate 1 0 0 AttributeEnd\nSphere 1 -1 1 360");
+    EXPECT_EQ(c->only().code, Rie::Nesting);
+    EXPECT_EQ(c->primitive().toWorld.first(), Matrix{});
+    auto d = read("WorldBegin AttributeBegin Sphere 1 -1 1 360 WorldEnd WorldBegin WorldEnd");
+    EXPECT_EQ(d->only().code, Rie::Nesting);
+    EXPECT_EQ(d->frames.size(), 2u);
+    auto e = read("FrameBegin 1 WorldBegin Sphere 1 -1 1 360 FrameEnd");
+    EXPECT_EQ(e->only().code, Rie::Nesting);
+    EXPECT_EQ(e->frame().primitives.size(), 1u);
+    auto f = read("WorldBegin Sphere 1 -1 1 360 WorldBegin Sphere 1 -1 1 360 WorldEnd");
+    EXPECT_EQ(f->frames.size(), 2u) << f->messages();
+}
+
+TEST(Nesting, EndsWithoutBegin) {
+    for (const char* end : {"AttributeEnd", "TransformEnd", "WorldEnd", "FrameEnd", "SolidEnd", "ObjectEnd", "MotionEnd", "ResourceEnd", "ArchiveEnd", "IfEnd", "Else",
+                            "ElseIf \"1\"", "EditEnd"}) {
+        auto c = read(end);
+        ASSERT_FALSE(c->diagnostics.all().empty()) << end;
+        EXPECT_EQ(c->diagnostics.all().back().code, Rie::Nesting) << end;
+    }
+    auto c = world("AttributeEnd TransformEnd Sphere 1 -1 1 360"); // do not close the world
+    EXPECT_EQ(c->count(), 2u);
+    EXPECT_EQ(c->frame().primitives.size(), 1u);
+}
+
+TEST(Nesting, StreamEndsInsideAWorld) {
+    auto c = read("FrameBegin 1 WorldBegin AttributeBegin Sphere 1 -1 1 360\n");
+    EXPECT_FALSE(c->ok);
+    EXPECT_EQ(c->count(), 3u) << c->messages(); // Attribute, World, Frame
+    EXPECT_EQ(c->frame().primitives.size(), 1u);
+}
+
+TEST(Nesting, DepthIsBounded) {
+    std::string deep;
+    int n = limits::kStackDepth + 100;
+    for (int i = 0; i < n; ++i) deep += "AttributeBegin ";
+    for (int i = 0; i < n; ++i) deep += "AttributeEnd ";
+    auto c = world(deep + "Sphere 1 -1 1 360");
+    EXPECT_EQ(c->only().code, Rie::Limit);
+    EXPECT_EQ(c->frame().primitives.size(), 1u);
+    std::string objects;
+    for (int i = 0; i < n; ++i) objects += "ObjectBegin 1 FrameBegin 1 ";
+    EXPECT_FALSE(read(objects)->ok);
+}
+
+TEST(Solids, AreDrawnAsTheirUnion) {
+    auto c = world("SolidBegin \"difference\" SolidBegin \"primitive\" Color 1 0 0 Sphere 1 -1 1 360 SolidEnd SolidBegin \"primitive\" Sphere 1 -1 1 360 SolidEnd SolidEnd");
+    EXPECT_EQ(c->only().code, Rie::Incapable);
+    EXPECT_EQ(c->frame().primitives.size(), 2u);
+    EXPECT_EQ(c->primitive(1).attributes->color, Color(1, 1, 1)); // a solid is an attribute block
+    EXPECT_EQ(world("SolidBegin \"xor\" SolidEnd")->only().code, Rie::BadSolid);
+}
+
+TEST(ForeignCode, IsNotRun) {
+    auto c = world("System \"ls\" Procedural \"RunProgram\" [\"p\" \"d\"] [-1 1 -1 1 -1 1] Procedural \"DynamicLoad\" [\"l\" \"d\"] [-1 1 -1 1 -1 1]");
+    ASSERT_EQ(c->count(), 3u) << c->messages();
+    for (const Diagnostic& d : c->diagnostics.all()) {
+        EXPECT_EQ(d.code, Rie::Incapable);
+        EXPECT_NE(d.message.find("--allow-exec"), std::string::npos);
+    }
+    EXPECT_EQ(world("Procedural \"Magic\" [\"a\"] [-1 1 -1 1 -1 1]")->only().code, Rie::BadToken);
+}
+
+TEST(Handler, AbortStopsReading) {
+    auto c = read("ErrorHandler \"abort\" WorldBegin Sphere 1 -1 1 360 foo Sphere 1 -1 1 360 WorldEnd");
+    EXPECT_FALSE(c->ok);
+    EXPECT_EQ(c->frame().primitives.size(), 1u);
+    EXPECT_EQ(read("ErrorHandler \"shout\"")->only().code, Rie::BadToken);
+}
+
+namespace {
+/// Whether `expression` is true, with user:x = 3 (option) and user:s = 'abc' (attribute).
+bool holds(const std::string& expression, size_t messages = 0) {
+    auto c = read("Option \"user\" \"float x\" 3 Attribute \"user\" \"string s\" \"abc\" WorldBegin IfBegin \"" + expression + "\" Sphere 1 -1 1 360 IfEnd WorldEnd");
+    EXPECT_EQ(c->count(), messages) << expression << "\n" << c->messages();
+    return c->frame().primitives.size() == 1;
+}
+} // namespace
+
+TEST(Conditions, Expressions) {
+    EXPECT_TRUE(holds("1"));
+    EXPECT_FALSE(holds("0"));
+    EXPECT_TRUE(holds("1 + 2 * 3 == 7"));
+    EXPECT_TRUE(holds("(1 + 2) * 3 == 9"));
+    EXPECT_TRUE(holds("-1 < 0 && !(2 < 1)"));
+    EXPECT_TRUE(holds("0 || 10 / 4 == 2.5"));
+    EXPECT_TRUE(holds("$Option:user:x == 3"));
+    EXPECT_TRUE(holds("$user:x >= 3"));
+    EXPECT_TRUE(holds("$Attribute:user:s == 'abc'"));
+    EXPECT_TRUE(holds("$Attribute:user:s != 'abd'"));
+    EXPECT_TRUE(holds("defined(Option:user:x)"));
+    EXPECT_TRUE(holds("defined($user:s) && !defined(user:nothing)"));
+    EXPECT_TRUE(holds("concat('a', 'b', 'c') == $user:s"));
+    EXPECT_TRUE(holds("$(concat('user:', 'x')) == 3"));
+    EXPECT_FALSE(holds("$user:nothing == 1", 1));
+    EXPECT_FALSE(holds("defined(user:nothing) && $user:nothing == 1")); // not looked at
+    EXPECT_FALSE(holds("1 +", 1));
+    EXPECT_FALSE(holds("1 2", 1));
+    EXPECT_FALSE(holds("1 / 0", 1));
+    EXPECT_FALSE(holds("'abc", 1));
+    EXPECT_FALSE(holds("", 1));
+    EXPECT_FALSE(holds(std::string(100000, '('), 1));
+    EXPECT_FALSE(holds(std::string(100000, '!'), 1));
+}
+
+TEST(Conditions, Branches) {
+    auto color = [](const std::string& a, const std::string& b) {
+        return world("IfBegin \"" + a + "\" Color 1 0 0 ElseIf \"" + b + "\" Color 0 1 0 Else Color 0 0 1 IfEnd Sphere 1 -1 1 360")->primitive().attributes->color;
+    };
+    EXPECT_EQ(color("1", "1"), Color(1, 0, 0));
+    EXPECT_EQ(color("0", "1"), Color(0, 1, 0));
+    EXPECT_EQ(color("0", "0"), Color(0, 0, 1));
+    auto c = world("IfBegin \"0\" IfBegin \"1\" Sphere 1 -1 1 360 Else Sphere 1 -1 1 360 IfEnd Else Sphere 2 -2 2 360 IfEnd");
+    EXPECT_EQ(c->primitive().numbers[0], 2);
+    EXPECT_EQ(c->frame().primitives.size(), 1u);
+    EXPECT_EQ(read("IfBegin \"1\"")->only().code, Rie::Nesting);
+}

@@ -1,5 +1,5 @@
-// Latitude-longitude maps. Known limit: reduced levels weigh texels by area on the map, not by solid angle, so very wide blurs give
-// the poles too much weight.
+// Environment maps: latitude-longitude and cube faces. Known limit: reduced levels weigh texels by area on the map, not by solid angle, so very wide blurs give
+// the poles too much weight. A footprint stays on one cube face.
 #include "texture/lookup.h"
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,84 @@ double angleOf(double y, double x) {
     return y < 0 ? 2 * kPi - angle : angle;
 }
 
+/// Axes of the cube faces: right, up and outward.
+struct Face {
+    Vec3 right, up, out;
+};
+constexpr Face faces[6] = {{{0, 0, -1}, {0, 1, 0}, {1, 0, 0}}, {{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}}, {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}},
+                           {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},  {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}}};
+
+const Texture* faceMap(Handle h, int face) {
+    auto i = h->tiles.find(face);
+    return i == h->tiles.end() || i->second->levels.empty() ? nullptr : i->second.get();
+}
+
+void fillAll(int count, const LookupOptions& o, float* out) {
+    for (int c = 0; c < count; ++c) out[c] = o.fill;
+}
+
+/// The footprint of four corners, as changes from their mean (lookupQuad has the reason).
+template <class Differentiate> Footprint quadFootprint(const Vec3 d[4], const Vec3& mean, Differentiate differentiate) {
+    Footprint fp;
+    for (int i = 0; i < 4; ++i) {
+        float ds, dt;
+        differentiate(d[i] - mean, ds, dt);
+        fp.ss += ds * ds;
+        fp.st += ds * dt;
+        fp.tt += dt * dt;
+    }
+    return fp;
+}
+
 } // namespace
+
+int cubeFace(const Vec3& d, float cot, float& s, float& t) {
+    float x = std::fabs(d.x), y = std::fabs(d.y), z = std::fabs(d.z);
+    int face = x >= y && x >= z ? (d.x >= 0 ? 0 : 1) : y >= z ? (d.y >= 0 ? 2 : 3) : d.z >= 0 ? 4 : 5;
+    float ahead = dot(d, faces[face].out);
+    if (!(ahead > 0) || !std::isfinite(ahead)) {
+        s = t = 0.5f;
+        return face;
+    }
+    s = 0.5f + 0.5f * cot * dot(d, faces[face].right) / ahead;
+    t = 0.5f - 0.5f * cot * dot(d, faces[face].up) / ahead;
+    return face;
+}
+
+void cubeDifferentiate(int face, const Vec3& d, const Vec3& change, float cot, float& ds, float& dt) {
+    const Face& f = faces[face];
+    double a = dot(Vec3d(d), Vec3d(f.out)), da = dot(Vec3d(change), Vec3d(f.out));
+    auto one = [&](const Vec3& axis) {
+        double v = dot(Vec3d(d), Vec3d(axis)), dv = dot(Vec3d(change), Vec3d(axis));
+        double r = 0.5 * double(cot) * (dv * a - v * da) / (a * a);
+        return std::isfinite(r) ? float(std::clamp(r, -1.0, 1.0)) : 0.0f;
+    };
+    ds = one(f.right);
+    dt = -one(f.up);
+}
+
+void environment(Handle h, const LatLong& map, int first, int count, const Vec3& d, const Vec3& ddx, const Vec3& ddy, const LookupOptions& o,
+                 float* out) {
+    if (!h || h->kind != Kind::Cube) return environmentLatLong(h, map, first, count, d, ddx, ddy, o, out);
+    float s, t, dsdx, dtdx, dsdy, dtdy;
+    int face = cubeFace(d, h->fovCotangent, s, t);
+    const Texture* tex = faceMap(h, face);
+    if (!tex) return fillAll(count, o, out);
+    cubeDifferentiate(face, d, ddx, h->fovCotangent, dsdx, dtdx);
+    cubeDifferentiate(face, d, ddy, h->fovCotangent, dsdy, dtdy);
+    filteredLookup(*tex, first, count, s, t, Footprint::sides(dsdx, dtdx, dsdy, dtdy), o, Wrap::Clamp, Wrap::Clamp, out);
+}
+
+void environmentQuad(Handle h, const LatLong& map, int first, int count, const Vec3 d[4], const LookupOptions& o, float* out) {
+    if (!h || h->kind != Kind::Cube) return environmentLatLongQuad(h, map, first, count, d, o, out);
+    Vec3 mean = (d[0] + d[1] + d[2] + d[3]) * 0.25f;
+    float s, t;
+    int face = cubeFace(mean, h->fovCotangent, s, t);
+    const Texture* tex = faceMap(h, face);
+    if (!tex) return fillAll(count, o, out);
+    Footprint fp = quadFootprint(d, mean, [&](const Vec3& c, float& ds, float& dt) { cubeDifferentiate(face, mean, c, h->fovCotangent, ds, dt); });
+    filteredLookup(*tex, first, count, s, t, fp, o, Wrap::Clamp, Wrap::Clamp, out);
+}
 
 void LatLong::project(const Vec3& d, float& s, float& t) const {
     Vec3d v(d);
@@ -61,10 +138,7 @@ Vec3 LatLong::direction(float s, float t) const {
 
 void environmentLatLong(Handle h, const LatLong& map, int first, int count, const Vec3& direction, const Vec3& ddx, const Vec3& ddy,
                         const LookupOptions& o, float* out) {
-    if (!h || h->levels.empty()) {
-        for (int c = 0; c < count; ++c) out[c] = o.fill;
-        return;
-    }
+    if (!h || h->levels.empty()) return fillAll(count, o, out);
     float s, t, dsdx, dtdx, dsdy, dtdy;
     map.project(direction, s, t);
     map.differentiate(direction, ddx, dsdx, dtdx);
@@ -73,21 +147,11 @@ void environmentLatLong(Handle h, const LatLong& map, int first, int count, cons
 }
 
 void environmentLatLongQuad(Handle h, const LatLong& map, int first, int count, const Vec3 d[4], const LookupOptions& o, float* out) {
-    if (!h || h->levels.empty()) {
-        for (int c = 0; c < count; ++c) out[c] = o.fill;
-        return;
-    }
+    if (!h || h->levels.empty()) return fillAll(count, o, out);
     Vec3 mean = (d[0] + d[1] + d[2] + d[3]) * 0.25f;
     float s, t;
     map.project(mean, s, t);
-    Footprint fp;
-    for (int i = 0; i < 4; ++i) {
-        float ds, dt;
-        map.differentiate(mean, d[i] - mean, ds, dt);
-        fp.ss += ds * ds;
-        fp.st += ds * dt;
-        fp.tt += dt * dt;
-    }
+    Footprint fp = quadFootprint(d, mean, [&](const Vec3& c, float& ds, float& dt) { map.differentiate(mean, c, ds, dt); });
     filteredLookup(*h, first, count, s, t, fp, o, Wrap::Periodic, Wrap::Clamp, out);
 }
 

@@ -99,7 +99,7 @@ void filteredLookup(const Texture& tex, int first, int count, float s, float t, 
 
 void lookup(Handle h, int first, int count, float s, float t, const Footprint& fp, const LookupOptions& o, float* out) {
     const Texture* tex = h;
-    if (tex && !tex->tiles.empty()) {
+    if (tex && tex->kind != Kind::Cube && !tex->tiles.empty()) {
         // Tiles are numbered in rows of ten; outside them, and where none was found, there is nothing.
         float fs = std::floor(finiteOr(s, -1)), ft = std::floor(finiteOr(t, -1));
         bool inside = fs >= 0 && fs < 10 && ft >= 0 && ft < 10;

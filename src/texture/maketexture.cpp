@@ -1,5 +1,7 @@
 #include "texture/maketexture.h"
 #include "display/imageio.h"
+#include "texture/lookup.h"
+#include <cmath>
 
 namespace alpenglow::texture {
 namespace {
@@ -93,6 +95,72 @@ bool makeShadow(const std::string& zfile, const std::string& shadow, const MakeO
     if (!z.worldToCamera || !z.worldToNDC)
         diags.report(Severity::Warning, Rie::MissingData, o.place, "depth picture \"" + zfile + "\" has no matrices; shadow() cannot place the map");
     return writeMap(shadow, z, o, diags);
+}
+
+bool makeCubeFaceEnvironment(const std::vector<std::string>& pictures, const std::string& texture, float fov, const MakeOptions& o,
+                             Diagnostics& diags) {
+    auto refuse = [&](const std::string& why) {
+        diags.report(Severity::Error, Rie::Consistency, o.place, "cube map \"" + texture + "\": " + why);
+        return false;
+    };
+    if (pictures.size() != 6) return refuse("it takes six pictures, not " + std::to_string(pictures.size()));
+    if (!(fov > 0 && fov < 180)) return refuse("its field of view is above 0 and below 180 degrees");
+    display::Image all;
+    int height = 0; // of one face
+    for (const std::string& name : pictures) {
+        auto face = readPicture(name, o, diags);
+        if (!face) return false;
+        if (all.channels.empty()) {
+            all = *face;
+            all.height = 0;
+            all.data.clear();
+            all.worldToCamera.reset();
+            all.worldToNDC.reset();
+        }
+        if (height == 0) height = face->height;
+        if (face->width != all.width || face->height != height || face->channels != all.channels)
+            return refuse("\"" + name + "\" differs from the first picture in size or channels");
+        all.height += face->height;
+        all.data.insert(all.data.end(), face->data.begin(), face->data.end());
+    }
+    all.metadata = {{"textureformat", cubeFormat}, {"wrapmodes", "clamp,clamp"}, {"Software", "Alpenglow"},
+                    {"fovcot", std::to_string(1 / std::tan(double(fov) * kPi / 360))}};
+    return writeMap(texture, all, o, diags);
+}
+
+bool runMakeRequest(const std::string& request, const std::vector<std::string>& strings, const std::vector<float>& numbers, const MakeOptions& base,
+                    Diagnostics& diags) {
+    MakeOptions o = base;
+    size_t needed = request == "MakeCubeFaceEnvironment" ? 7 : 2;
+    if (strings.size() < needed) {
+        diags.report(Severity::Error, Rie::Consistency, o.place, request + " takes " + std::to_string(needed) + " names");
+        return false;
+    }
+    auto string = [&](size_t i, std::string& to) { if (i < strings.size()) to = strings[i]; };
+    auto widths = [&](size_t i) {
+        if (i < numbers.size()) o.swidth = numbers[i];
+        if (i + 1 < numbers.size()) o.twidth = numbers[i + 1];
+    };
+    if (request == "MakeTexture" || request == "MakeBump") {
+        string(2, o.swrap);
+        string(3, o.twrap);
+        string(4, o.filter);
+        widths(0);
+        return makeTexture(strings[0], strings[1], o, diags);
+    }
+    if (request == "MakeLatLongEnvironment") {
+        string(2, o.filter);
+        widths(0);
+        return makeLatLongEnvironment(strings[0], strings[1], o, diags);
+    }
+    if (request == "MakeCubeFaceEnvironment") {
+        string(7, o.filter);
+        widths(1);
+        return makeCubeFaceEnvironment({strings.begin(), strings.begin() + 6}, strings[6], numbers.empty() ? 90.0f : numbers[0], o, diags);
+    }
+    if (request == "MakeShadow") return makeShadow(strings[0], strings[1], o, diags);
+    diags.report(Severity::Error, Rie::Unimplement, o.place, request + " is not available");
+    return false;
 }
 
 } // namespace alpenglow::texture

@@ -1,11 +1,15 @@
 // TextureSystem: finding, loading and keeping maps.
 #include "base/file.h"
 #include "display/imageio.h"
+#include "texture/lookup.h"
 #include "texture/texture.h"
 #include <algorithm>
 #include <cmath>
 
 namespace alpenglow::texture {
+
+const char* const cubeFormat = "CubeFace Environment";
+
 namespace {
 
 Level levelOf(const display::Image& m, bool codes) {
@@ -80,6 +84,19 @@ std::shared_ptr<const Texture> makeTextureFrom(const display::Image& image, cons
         if (auto w = wrapByName(wraps.substr(comma + 1))) tex->twrap = *w;
     std::string format = text("textureformat");
     tex->kind = format == "Shadow" ? Kind::Shadow : format.rfind("LatLong", 0) == 0 ? Kind::LatLong : Kind::Texture;
+    if (format == cubeFormat && image.height >= 6 && image.height % 6 == 0) {
+        tex->kind = Kind::Cube;
+        double cot = std::atof(text("fovcot").c_str());
+        tex->fovCotangent = cot > 0 && cot <= 1000 ? float(cot) : 1.0f;
+        display::Image face = display::makeImage(image.width, image.height / 6, image.channels);
+        face.bits = image.bits;
+        face.floating = image.floating;
+        for (int i = 0; i < 6; ++i) {
+            std::copy_n(image.pixel(0, i * face.height), face.data.size(), face.data.data());
+            tex->tiles[i] = makeTextureFrom(face, settings);
+        }
+        return tex;
+    }
     tex->levels.push_back(levelOf(image, image.bits == 8 && !image.floating));
     if (tex->kind == Kind::Shadow) return tex; // depths have no mean
     if (hasAllLevels(image)) {
@@ -205,7 +222,7 @@ std::optional<TextureInfo> TextureSystem::info(Handle h) const {
     i.channels = int(t.channels.size());
     i.bits = t.bits;
     i.floating = t.floating;
-    i.type = t.kind == Kind::Shadow ? "shadow" : t.kind == Kind::LatLong ? "environment" : "texture";
+    i.type = t.kind == Kind::Shadow ? "shadow" : h->kind == Kind::LatLong || h->kind == Kind::Cube ? "environment" : "texture";
     i.swrap = t.swrap;
     i.twrap = t.twrap;
     i.viewing = t.worldToCamera;

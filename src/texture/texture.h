@@ -21,9 +21,9 @@
 
 namespace alpenglow::texture {
 
-enum class Kind { Texture, LatLong, Shadow };
+enum class Kind { Texture, LatLong, Cube, Shadow };
 
-/// A loaded map; immutable. Of a UDIM set: no levels, only tiles.
+/// A loaded map; immutable. Of a UDIM set and of a cube map: no levels, only tiles.
 struct Texture {
     std::string path;
     Kind kind = Kind::Texture;
@@ -33,7 +33,9 @@ struct Texture {
     std::optional<Matrix> worldToCamera, worldToNDC;
     int bits = 8;
     bool floating = false;
-    std::map<int, std::shared_ptr<const Texture>> tiles; ///< by UDIM number, 1001 + floor(s) + 10 floor(t)
+    /// By UDIM number, 1001 + floor(s) + 10 floor(t); faces of a cube by 0..5: px nx py ny pz nz.
+    std::map<int, std::shared_ptr<const Texture>> tiles;
+    float fovCotangent = 1; ///< of a cube face: 1 / tan(fov / 2)
     int width() const { return levels.empty() ? 0 : levels[0].width; }
     int height() const { return levels.empty() ? 0 : levels[0].height; }
     size_t bytes() const;
@@ -85,10 +87,22 @@ struct LatLong {
     Vec3 direction(float s, float t) const;
 };
 
-/// environment(): along a direction with its changes per pixel. Longitude wraps, latitude is clamped.
+/// environment(): the form that the map has, cube faces or (also for pictures that are neither) latitude-longitude.
+void environment(Handle, const LatLong&, int first, int count, const Vec3& direction, const Vec3& ddx, const Vec3& ddy, const LookupOptions&,
+                 float* out);
+/// environment() with four directions, in any order.
+void environmentQuad(Handle, const LatLong&, int first, int count, const Vec3 directions[4], const LookupOptions&, float* out);
+
+/// Where a direction meets a cube face (0..5: px nx py ny pz nz) of the given cotangent of half the field of view. Faces are seen
+/// from inside: pz has x to the right and y up, the side faces follow by turning about y, py has -z up, ny has +z up.
+int cubeFace(const Vec3& direction, float fovCotangent, float& s, float& t);
+/// Change of (s, t) on that face when the direction changes by d.
+void cubeDifferentiate(int face, const Vec3& direction, const Vec3& d, float fovCotangent, float& ds, float& dt);
+
+/// Lat-long maps: along a direction with its changes per pixel. Longitude wraps, latitude is clamped.
 void environmentLatLong(Handle, const LatLong&, int first, int count, const Vec3& direction, const Vec3& ddx, const Vec3& ddy,
                         const LookupOptions&, float* out);
-/// environment() with four directions.
+/// The same with four directions.
 void environmentLatLongQuad(Handle, const LatLong&, int first, int count, const Vec3 directions[4], const LookupOptions&, float* out);
 
 /// textureinfo() fields.

@@ -72,10 +72,16 @@ std::optional<std::string> entryIgnoringCase(const fs::path& dir, const std::str
 std::optional<std::string> existingIgnoringCase(const std::string& dir, const std::string& name) {
     fs::path at = dir;
     fs::path rest = name;
-    if (rest.is_absolute()) { at = rest.root_path(); rest = rest.relative_path(); }
+    if (rest.is_absolute()) {
+        at = rest.root_path();
+        rest = rest.relative_path();
+    }
     for (const fs::path& part : rest) {
         std::string p = part.string();
-        if (p == "." || p == ".." || p.empty()) { at /= p; continue; }
+        if (p == "." || p == ".." || p.empty()) {
+            at /= p;
+            continue;
+        }
         auto entry = entryIgnoringCase(at, p);
         if (!entry) return {};
         at /= *entry;
@@ -184,7 +190,10 @@ bool OutputFile::write(const void* bytes, size_t n) {
     if (lastWasRead_) std::fseek(file_, 0, SEEK_CUR); // stdio wants a seek between reading and writing
     lastWasRead_ = false;
     written_ += n;
-    if (failAfter_ >= 0 && written_ > uint64_t(failAfter_)) { fail(ENOSPC); return false; }
+    if (failAfter_ >= 0 && written_ > uint64_t(failAfter_)) {
+        fail(ENOSPC);
+        return false;
+    }
     if (n && std::fwrite(bytes, 1, n, file_) != n) fail(errno);
     return !error_;
 }
@@ -209,7 +218,7 @@ uint64_t OutputFile::tell() {
 
 uint64_t OutputFile::size() {
     if (!file_) return 0;
-    struct stat st {};
+    struct stat st{};
     if (std::fflush(file_) != 0) fail(errno);
     return fstat(fileno(file_), &st) == 0 ? uint64_t(st.st_size) : 0;
 }
@@ -246,16 +255,14 @@ std::optional<std::vector<uint8_t>> readWholeFile(const std::string& path, size_
         int fd;
         ~Closer() { ::close(fd); }
     } closer{fd};
-    struct stat st {};
+    struct stat st{};
     if (fstat(fd, &st) != 0) return refuse(Rie::System, std::strerror(errno));
     if (!S_ISREG(st.st_mode)) return refuse(Rie::NoFile, "it is not a regular file");
     if (st.st_size < 0 || uint64_t(st.st_size) > maxBytes) return refuse(Rie::Limit, "it is larger than the limit");
     std::vector<uint8_t> bytes;
     try {
         bytes.resize(size_t(st.st_size));
-    } catch (const std::exception&) {
-        return refuse(Rie::NoMem, "out of memory");
-    }
+    } catch (const std::exception&) { return refuse(Rie::NoMem, "out of memory"); }
     size_t at = 0;
     while (at < bytes.size()) {
         ssize_t n = ::read(fd, bytes.data() + at, bytes.size() - at);
@@ -280,8 +287,8 @@ std::vector<std::string> splitSearchPath(const std::string& path, const std::vec
     };
     for (size_t i = 0; i < path.size(); ++i) {
         char c = path[i];
-        bool drive = c == ':' && word.size() == 1 && std::isalpha((unsigned char)word[0]) && i + 1 < path.size() && isSeparator(path[i + 1])
-                     && path[i + 1] == '\\';
+        bool drive = c == ':' && word.size() == 1 && std::isalpha((unsigned char)word[0]) && i + 1 < path.size() &&
+                     isSeparator(path[i + 1]) && path[i + 1] == '\\';
         if ((c == ':' && !drive) || c == ';') flush();
         else word += c;
     }

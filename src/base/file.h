@@ -58,7 +58,8 @@ private:
 };
 
 /// The whole of a regular file of at most maxBytes. Nothing: an error was reported (NoFile when it is not there).
-std::optional<std::vector<uint8_t>> readWholeFile(const std::string& path, size_t maxBytes, Diagnostics&, const SourcePlace& = {});
+std::optional<std::vector<uint8_t>> readWholeFile(const std::string& path, size_t maxBytes, Diagnostics&,
+                                                  const SourcePlace& = {});
 
 /// Directories of a search path: separated by ':' (or ';'; a drive letter's colon does not separate). "@" stands for
 /// `defaults`, "&" for `previous`; nothing else is expanded.
@@ -68,7 +69,7 @@ std::vector<std::string> splitSearchPath(const std::string& path, const std::vec
 /// How a name was found, when not simply.
 struct FoundFile {
     std::string path;
-    bool otherCase = false; ///< letters differ from the name on disk
+    bool otherCase = false;    ///< letters differ from the name on disk
     bool baseNameOnly = false; ///< the directories of the name were dropped
 };
 /// Looks for a name: as it is when absolute, else below each directory in order ("" = the working directory). Backslashes count

@@ -8,7 +8,8 @@ namespace alpenglow::display {
 
 std::optional<DiffResult> compareImages(const Image& a, const Image& b, Diagnostics& diags) {
     auto size = [](const Image& m) {
-        return std::to_string(m.width) + "x" + std::to_string(m.height) + " with " + std::to_string(m.channels.size()) + " channels";
+        return std::to_string(m.width) + "x" + std::to_string(m.height) + " with " + std::to_string(m.channels.size()) +
+               " channels";
     };
     if (a.width != b.width || a.height != b.height || a.channels.size() != b.channels.size()) {
         diags.report(Severity::Error, Rie::Consistency, {}, "the pictures differ in size: " + size(a) + " and " + size(b));
@@ -47,7 +48,10 @@ std::optional<DiffResult> compareImages(const Image& a, const Image& b, Diagnost
             abs += e;
             squares += e * e;
             ++count;
-            if (std::isfinite(x)) { ma += x; mb += y; }
+            if (std::isfinite(x)) {
+                ma += x;
+                mb += y;
+            }
             if (e > largest) {
                 largest = e;
                 d.maxX = int(p % size_t(a.width));
@@ -85,7 +89,8 @@ std::string toString(const DiffResult& r) {
     std::string out;
     auto line = [&](const ChannelDiff& d) {
         char text[320];
-        std::snprintf(text, sizeof text, "%s mean %.7g rmse %.7g max %.7g at %d,%d", d.name.c_str(), d.meanAbs, d.rmse, d.max, d.maxX, d.maxY);
+        std::snprintf(text, sizeof text, "%s mean %.7g rmse %.7g max %.7g at %d,%d", d.name.c_str(), d.meanAbs, d.rmse, d.max,
+                      d.maxX, d.maxY);
         out += text;
         if (d.nonFinite) out += " non-finite " + std::to_string(d.nonFinite);
         out += "\n";

@@ -41,8 +41,10 @@ std::unique_ptr<Driver> makeDriver(const std::string& type, Diagnostics& diags, 
 }
 
 bool writeDisplay(const DriverSetup& setup, const Image& image, Diagnostics& diags) {
-    if (image.channels != setup.channels || image.width != setup.width || image.height != setup.height || image.data.size() != image.sampleCount()) {
-        diags.report(Severity::Error, Rie::Bug, setup.place, "display \"" + setup.name + "\": the picture does not fit what was announced");
+    if (image.channels != setup.channels || image.width != setup.width || image.height != setup.height ||
+        image.data.size() != image.sampleCount()) {
+        diags.report(Severity::Error, Rie::Bug, setup.place,
+                     "display \"" + setup.name + "\": the picture does not fit what was announced");
         return false;
     }
     auto driver = makeDriver(setup.type, diags, setup.place);

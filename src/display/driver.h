@@ -1,5 +1,5 @@
-// Display drivers: what becomes of the pixels of a Display request. A driver is one file in drivers/, described by one object that
-// holds its names, its manual text and its factory; drivers() lists them.
+// Display drivers: what becomes of the pixels of a Display request. A driver is one file in drivers/, described by one object
+// that holds its names, its manual text and its factory; drivers() lists them.
 #pragma once
 #include "display/imageio.h"
 #include "display/quantize.h"
@@ -22,7 +22,7 @@ struct DriverSetup {
     std::map<std::string, std::string> metadata;
     std::optional<Matrix> worldToCamera, worldToNDC;
     OutputPolicy policy;
-    SourcePlace place;                 ///< of the Display request
+    SourcePlace place; ///< of the Display request
 };
 
 /// Receives one picture. Calls come from one thread, in the order open, rows..., close. Nothing becomes visible under the final

@@ -19,13 +19,14 @@ struct Image {
     /// Text attributes. Known keys: "wrapmodes" ("periodic,clamp": s then t), "textureformat" ("Plain Texture",
     /// "LatLong Environment", "Shadow"), "gamma" (file value = linear ^ gamma, declared by the file), "colorspace" ("sRGB").
     std::map<std::string, std::string> metadata;
-    /// Row vectors (base/matrix.h). NDC: (0,0) upper left, (1,1) lower right, as OpenEXR's attribute and RI's "NDC" space have it.
+    /// Row vectors (base/matrix.h). NDC: (0,0) upper left, (1,1) lower right, as OpenEXR's attribute and RI's "NDC" space have
+    /// it.
     std::optional<Matrix> worldToCamera, worldToNDC;
-    int originX = 0, originY = 0;                    ///< of the first pixel in the full picture (crop window)
-    int fullWidth = 0, fullHeight = 0;               ///< of the full picture; 0 = not cropped
+    int originX = 0, originY = 0;      ///< of the first pixel in the full picture (crop window)
+    int fullWidth = 0, fullHeight = 0; ///< of the full picture; 0 = not cropped
     float pixelAspect = 1;
-    int bits = 32;            ///< per channel in the file it came from
-    bool floating = true;     ///< that file held floating point
+    int bits = 32;             ///< per channel in the file it came from
+    bool floating = true;      ///< that file held floating point
     std::vector<Image> levels; ///< reduced MIP-map levels 1, 2, ... when the file has them and they were asked for
 
     int channelCount() const { return int(channels.size()); }

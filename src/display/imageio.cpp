@@ -49,7 +49,8 @@ unsigned toCode(float value, unsigned maximum, bool quantised) {
     return unsigned(std::floor(v + 0.5f));
 }
 
-std::optional<Image> decodeImage(std::span<const uint8_t> b, const std::string& name, Diagnostics& diags, const ReadOptions& options) {
+std::optional<Image> decodeImage(std::span<const uint8_t> b, const std::string& name, Diagnostics& diags,
+                                 const ReadOptions& options) {
     DecodeContext ctx{name, diags, options, b.size()};
     auto starts = [&](std::initializer_list<int> magic) {
         if (b.size() < magic.size()) return false;
@@ -67,9 +68,7 @@ std::optional<Image> decodeImage(std::span<const uint8_t> b, const std::string& 
         if (starts({0xff, 0xd8, 0xff})) return decodeJpeg(b, ctx);
         if (starts({0x2f, 0x08, 0x67, 0xab}) || starts({0xab, 0x67, 0x08, 0x2f})) return decodeZfile(b, ctx);
         if (starts({'#', '?'})) return decodeRadiance(b, ctx);
-    } catch (const std::bad_alloc&) {
-        return ctx.refuse("out of memory", Rie::NoMem);
-    } catch (const std::length_error&) {
+    } catch (const std::bad_alloc&) { return ctx.refuse("out of memory", Rie::NoMem); } catch (const std::length_error&) {
         return ctx.refuse("out of memory", Rie::NoMem);
     }
     if (starts({0xfa, 0xce}) || starts({0xce, 0xfa}))
@@ -90,8 +89,8 @@ bool writeImage(const std::string& path, const Image& image, const WriteOptions&
         return false;
     };
     if (image.width <= 0 || image.height <= 0 || image.channels.empty()) return refuse(Rie::Range, "it has no pixels");
-    if (image.width > limits::kImageSide || image.height > limits::kImageSide || image.channelCount() > limits::kImageChannels
-        || image.sampleCount() > limits::kImageBytes / sizeof(float))
+    if (image.width > limits::kImageSide || image.height > limits::kImageSide || image.channelCount() > limits::kImageChannels ||
+        image.sampleCount() > limits::kImageBytes / sizeof(float))
         return refuse(Rie::Limit, "it is too large");
     if (image.data.size() != image.sampleCount()) return refuse(Rie::Consistency, "its pixels do not match its size");
     if (std::set<std::string>(image.channels.begin(), image.channels.end()).size() != image.channels.size())
@@ -102,13 +101,17 @@ bool writeImage(const std::string& path, const Image& image, const WriteOptions&
     bool ok = false;
     try {
         switch (options.format) {
-        case Format::Exr: ok = encodeExr(*file, image, options, why); break;
-        case Format::Tiff: ok = encodeTiff(*file, image, options, why); break;
-        case Format::Png: ok = encodePng(*file, image, options, diags, why); break;
+        case Format::Exr:
+            ok = encodeExr(*file, image, options, why);
+            break;
+        case Format::Tiff:
+            ok = encodeTiff(*file, image, options, why);
+            break;
+        case Format::Png:
+            ok = encodePng(*file, image, options, diags, why);
+            break;
         }
-    } catch (const std::bad_alloc&) {
-        return refuse(Rie::NoMem, "out of memory");
-    }
+    } catch (const std::bad_alloc&) { return refuse(Rie::NoMem, "out of memory"); }
     if (!ok && file->ok()) return refuse(Rie::System, why.empty() ? "the encoder failed" : why);
     return file->commit(diags) && ok;
 }

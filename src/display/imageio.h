@@ -28,9 +28,9 @@ struct WriteOptions {
     /// EXR: Half or Float. TIFF: UInt8, UInt16, Float. PNG: UInt8, UInt16. Others fall to the nearest the format has: nothing is
     /// lost silently, drivers decide before.
     Sample sample = Sample::Float;
-    bool quantised = false;       ///< integer formats: data are codes (0..255) already; else [0,1] is scaled, rounded and clamped
+    bool quantised = false; ///< integer formats: data are codes (0..255) already; else [0,1] is scaled, rounded and clamped
     std::string compression = "zip"; ///< EXR: none rle zips zip piz; TIFF: none zip lzw
-    int tile = 0;                 ///< > 0: tiles of that side (EXR only); image.levels are then written as MIP-map levels
+    int tile = 0;                    ///< > 0: tiles of that side (EXR only); image.levels are then written as MIP-map levels
     OutputPolicy policy;
     SourcePlace place;
 };

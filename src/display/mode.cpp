@@ -9,16 +9,18 @@ namespace {
 using scene::Type;
 
 constexpr std::pair<const char*, Type> typeNames[] = {
-    {"float", Type::Float}, {"integer", Type::Integer}, {"int", Type::Integer}, {"color", Type::Color}, {"point", Type::Point},
-    {"vector", Type::Vector}, {"normal", Type::Normal}, {"hpoint", Type::HPoint}, {"matrix", Type::Matrix}};
+    {"float", Type::Float},   {"integer", Type::Integer}, {"int", Type::Integer},
+    {"color", Type::Color},   {"point", Type::Point},     {"vector", Type::Vector},
+    {"normal", Type::Normal}, {"hpoint", Type::HPoint},   {"matrix", Type::Matrix}};
 constexpr const char* classNames[] = {"constant", "uniform", "varying", "vertex", "facevarying", "facevertex"};
 
 /// Predefined variables of RSL that can be shown (rsl.md 8.1).
 constexpr std::pair<const char*, Type> predefined[] = {
-    {"Ci", Type::Color}, {"Oi", Type::Color}, {"Cs", Type::Color}, {"Os", Type::Color}, {"P", Type::Point}, {"E", Type::Point},
-    {"N", Type::Normal}, {"Ng", Type::Normal}, {"I", Type::Vector}, {"dPdu", Type::Vector}, {"dPdv", Type::Vector}, {"dPdtime", Type::Vector},
-    {"L", Type::Vector}, {"s", Type::Float}, {"t", Type::Float}, {"u", Type::Float}, {"v", Type::Float}, {"du", Type::Float},
-    {"dv", Type::Float}, {"time", Type::Float}, {"dtime", Type::Float}, {"alpha", Type::Float}, {"ncomps", Type::Float}};
+    {"Ci", Type::Color},    {"Oi", Type::Color},       {"Cs", Type::Color},    {"Os", Type::Color}, {"P", Type::Point},
+    {"E", Type::Point},     {"N", Type::Normal},       {"Ng", Type::Normal},   {"I", Type::Vector}, {"dPdu", Type::Vector},
+    {"dPdv", Type::Vector}, {"dPdtime", Type::Vector}, {"L", Type::Vector},    {"s", Type::Float},  {"t", Type::Float},
+    {"u", Type::Float},     {"v", Type::Float},        {"du", Type::Float},    {"dv", Type::Float}, {"time", Type::Float},
+    {"dtime", Type::Float}, {"alpha", Type::Float},    {"ncomps", Type::Float}};
 
 std::vector<std::string> words(const std::string& s, const char* separators) {
     std::vector<std::string> out;
@@ -100,7 +102,8 @@ std::vector<ModeVariable> parseMode(const std::string& mode, Diagnostics& diags,
         // Ci is known both as "rgb" and by name; what may not repeat is a channel.
         for (const std::string& c : v.channels)
             if (!seen.insert(c).second) {
-                diags.report(Severity::Warning, Rie::Consistency, place, "display mode \"" + mode + "\" names \"" + c + "\" twice; it is written once");
+                diags.report(Severity::Warning, Rie::Consistency, place,
+                             "display mode \"" + mode + "\" names \"" + c + "\" twice; it is written once");
                 return;
             }
         out.push_back(std::move(v));
@@ -122,7 +125,8 @@ std::vector<ModeVariable> parseMode(const std::string& mode, Diagnostics& diags,
                 continue;
             }
             if (!isIdentifier(name)) {
-                diags.report(Severity::Error, Rie::BadToken, place, "display mode \"" + mode + "\": \"" + part + "\" is not understood",
+                diags.report(Severity::Error, Rie::BadToken, place,
+                             "display mode \"" + mode + "\": \"" + part + "\" is not understood",
                              "modes are rgb rgba rgbz rgbaz a z az, names of output variables, or \"varying color name\"");
                 break;
             }
@@ -144,7 +148,8 @@ std::vector<ModeVariable> parseMode(const std::string& mode, Diagnostics& diags,
     }
     if (out.empty()) {
         if (!words(mode, " ,\t\r\n").empty())
-            diags.report(Severity::Error, Rie::BadToken, place, "display mode \"" + mode + "\" names nothing to show; rgba is used");
+            diags.report(Severity::Error, Rie::BadToken, place,
+                         "display mode \"" + mode + "\" names nothing to show; rgba is used");
         standardMode("rgba", out);
     }
     return out;

@@ -8,8 +8,8 @@
 
 namespace alpenglow::display {
 
-/// One variable of a mode. "rgb" is Ci with channels r g b; "a" is "alpha" with channel a; "z" is "z" with channel z (camera space).
-/// An AOV N has N.x N.y N.z, a colour c c.r c.g c.b, a float f f, others name.000 ... (ri.md 19).
+/// One variable of a mode. "rgb" is Ci with channels r g b; "a" is "alpha" with channel a; "z" is "z" with channel z (camera
+/// space). An AOV N has N.x N.y N.z, a colour c c.r c.g c.b, a float f f, others name.000 ... (ri.md 19).
 struct ModeVariable {
     std::string name;
     scene::Type type = scene::Type::Float;
@@ -18,10 +18,10 @@ struct ModeVariable {
     std::vector<std::string> channels;
 };
 
-/// Variables of rgb rgba rgbz rgbaz a z az, of a variable's name, of an inline declaration ("varying color mycolor"), or of a comma
-/// separated list of these. Types come from the declaration, else from DisplayChannel (keys are names), else from RSL's predefined
-/// variables. A mode that is not understood is an error, and its parts that are understood remain; an empty mode means rgba.
-/// A variable named twice is kept once, with a warning.
+/// Variables of rgb rgba rgbz rgbaz a z az, of a variable's name, of an inline declaration ("varying color mycolor"), or of a
+/// comma separated list of these. Types come from the declaration, else from DisplayChannel (keys are names), else from RSL's
+/// predefined variables. A mode that is not understood is an error, and its parts that are understood remain; an empty mode means
+/// rgba. A variable named twice is kept once, with a warning.
 std::vector<ModeVariable> parseMode(const std::string& mode, Diagnostics&, const SourcePlace& = {},
                                     const std::map<std::string, scene::Param>& displayChannels = {});
 

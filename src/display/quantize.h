@@ -15,11 +15,12 @@ struct Quantization {
     friend bool operator==(const Quantization&, const Quantization&) = default;
 };
 
-/// A code. Half rounds up (floor(v + 1/2)), so that dither 1/2 leaves exact 8-bit codes exact. NaN becomes min. Returns the value itself
-/// when floating().
+/// A code. Half rounds up (floor(v + 1/2)), so that dither 1/2 leaves exact 8-bit codes exact. NaN becomes min. Returns the value
+/// itself when floating().
 float quantise(const Quantization&, float value, float noise);
 
-/// Noise in (-1, 1), the same for a pixel of the full picture (raster coordinates, not those of a crop) and channel in every render.
+/// Noise in (-1, 1), the same for a pixel of the full picture (raster coordinates, not those of a crop) and channel in every
+/// render.
 float ditherNoise(int x, int y, int channel);
 
 /// What one display does: RiQuantize's values, overridden by the display's "quantize" [zero one min max] and "dither" [amplitude]

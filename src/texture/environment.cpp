@@ -1,5 +1,5 @@
-// Environment maps: latitude-longitude and cube faces. Known limit: reduced levels weigh texels by area on the map, not by solid angle, so very wide blurs give
-// the poles too much weight. A footprint stays on one cube face.
+// Environment maps: latitude-longitude and cube faces. Known limit: reduced levels weigh texels by area on the map, not by solid
+// angle, so very wide blurs give the poles too much weight. A footprint stays on one cube face.
 #include "texture/lookup.h"
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@ double angleOf(double y, double x) {
     if (ax == 0 && ay == 0) return 0;
     bool steep = ay > ax;
     double q = steep ? ax / ay : ay / ax, offset = 0; // in [0, 1]
-    if (q > 0.41421356237309503) { // tan(pi/8): turn by pi/4 towards 0
+    if (q > 0.41421356237309503) {                    // tan(pi/8): turn by pi/4 towards 0
         q = (q - 1) / (q + 1);
         offset = kPi / 4;
     }
@@ -29,8 +29,9 @@ double angleOf(double y, double x) {
 struct Face {
     Vec3 right, up, out;
 };
-constexpr Face faces[6] = {{{0, 0, -1}, {0, 1, 0}, {1, 0, 0}}, {{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}}, {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}},
-                           {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},  {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}}};
+constexpr Face faces[6] = {{{0, 0, -1}, {0, 1, 0}, {1, 0, 0}}, {{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}},
+                           {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}, {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}},
+                           {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},  {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}}};
 
 const Texture* faceMap(Handle h, int face) {
     auto i = h->tiles.find(face);
@@ -81,8 +82,8 @@ void cubeDifferentiate(int face, const Vec3& d, const Vec3& change, float cot, f
     dt = -one(f.up);
 }
 
-void environment(Handle h, const LatLong& map, int first, int count, const Vec3& d, const Vec3& ddx, const Vec3& ddy, const LookupOptions& o,
-                 float* out) {
+void environment(Handle h, const LatLong& map, int first, int count, const Vec3& d, const Vec3& ddx, const Vec3& ddy,
+                 const LookupOptions& o, float* out) {
     if (!h || h->kind != Kind::Cube) return environmentLatLong(h, map, first, count, d, ddx, ddy, o, out);
     float s, t, dsdx, dtdx, dsdy, dtdy;
     int face = cubeFace(d, h->fovCotangent, s, t);
@@ -100,7 +101,8 @@ void environmentQuad(Handle h, const LatLong& map, int first, int count, const V
     int face = cubeFace(mean, h->fovCotangent, s, t);
     const Texture* tex = faceMap(h, face);
     if (!tex) return fillAll(count, o, out);
-    Footprint fp = quadFootprint(d, mean, [&](const Vec3& c, float& ds, float& dt) { cubeDifferentiate(face, mean, c, h->fovCotangent, ds, dt); });
+    Footprint fp = quadFootprint(
+        d, mean, [&](const Vec3& c, float& ds, float& dt) { cubeDifferentiate(face, mean, c, h->fovCotangent, ds, dt); });
     filteredLookup(*tex, first, count, s, t, fp, o, Wrap::Clamp, Wrap::Clamp, out);
 }
 
@@ -132,12 +134,13 @@ void LatLong::differentiate(const Vec3& d, const Vec3& change, float& ds, float&
 
 Vec3 LatLong::direction(float s, float t) const {
     double phi = 2 * kPi * double(s), theta = kPi * double(t);
-    Vec3d d = Vec3d(zero) * (std::cos(phi) * std::sin(theta)) + Vec3d(quarter) * (std::sin(phi) * std::sin(theta)) + Vec3d(pole) * std::cos(theta);
+    Vec3d d = Vec3d(zero) * (std::cos(phi) * std::sin(theta)) + Vec3d(quarter) * (std::sin(phi) * std::sin(theta)) +
+              Vec3d(pole) * std::cos(theta);
     return Vec3(d);
 }
 
-void environmentLatLong(Handle h, const LatLong& map, int first, int count, const Vec3& direction, const Vec3& ddx, const Vec3& ddy,
-                        const LookupOptions& o, float* out) {
+void environmentLatLong(Handle h, const LatLong& map, int first, int count, const Vec3& direction, const Vec3& ddx,
+                        const Vec3& ddy, const LookupOptions& o, float* out) {
     if (!h || h->levels.empty()) return fillAll(count, o, out);
     float s, t, dsdx, dtdx, dsdy, dtdy;
     map.project(direction, s, t);
@@ -146,7 +149,8 @@ void environmentLatLong(Handle h, const LatLong& map, int first, int count, cons
     filteredLookup(*h, first, count, s, t, Footprint::sides(dsdx, dtdx, dsdy, dtdy), o, Wrap::Periodic, Wrap::Clamp, out);
 }
 
-void environmentLatLongQuad(Handle h, const LatLong& map, int first, int count, const Vec3 d[4], const LookupOptions& o, float* out) {
+void environmentLatLongQuad(Handle h, const LatLong& map, int first, int count, const Vec3 d[4], const LookupOptions& o,
+                            float* out) {
     if (!h || h->levels.empty()) return fillAll(count, o, out);
     Vec3 mean = (d[0] + d[1] + d[2] + d[3]) * 0.25f;
     float s, t;

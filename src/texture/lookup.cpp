@@ -1,6 +1,6 @@
 // Filtered lookups on a loaded texture.
-#include "base/limits.h"
 #include "texture/lookup.h"
+#include "base/limits.h"
 #include "texture/texture.h"
 #include <algorithm>
 #include <cmath>
@@ -42,10 +42,10 @@ Footprint Footprint::sides(float dsdx, float dtdx, float dsdy, float dtdy) {
     return {dsdx * dsdx + dsdy * dsdy, dsdx * dtdx + dsdy * dtdy, dtdx * dtdx + dtdy * dtdy};
 }
 
-void filteredLookup(const Texture& tex, int first, int count, float s, float t, const Footprint& fp, const LookupOptions& o, Wrap swrap,
-                    Wrap twrap, float* out) {
+void filteredLookup(const Texture& tex, int first, int count, float s, float t, const Footprint& fp, const LookupOptions& o,
+                    Wrap swrap, Wrap twrap, float* out) {
     for (int c = 0; c < count; ++c) out[c] = 0;
-    int skip = first < 0 ? std::min(count, -first) : 0; // a negative channel exists as little as one beyond the last
+    int skip = first < -count ? count : first < 0 ? -first : 0; // a negative channel exists as little as one beyond the last
     int present = std::clamp(int(tex.channels.size()) - (first + skip), 0, count - skip);
     for (int c = 0; c < count; ++c)
         if (c < skip || c >= skip + present) out[c] = o.fill;
@@ -57,7 +57,8 @@ void filteredLookup(const Texture& tex, int first, int count, float s, float t, 
     // Squared widths in texels of level 0. A footprint beyond a thousand maps is the average of all.
     constexpr float most = 1e6f;
     float sw = finiteOr(o.swidth, 1), tw = finiteOr(o.twidth, 1), sb = finiteOr(o.sblur, 0), tb = finiteOr(o.tblur, 0);
-    float ss = std::min(finiteOr(fp.ss * sw * sw, most) + sb * sb, most), tt = std::min(finiteOr(fp.tt * tw * tw, most) + tb * tb, most);
+    float ss = std::min(finiteOr(fp.ss * sw * sw, most) + sb * sb, most),
+          tt = std::min(finiteOr(fp.tt * tw * tw, most) + tb * tb, most);
     float st = finiteOr(fp.st * sw * tw, 0), bound = std::sqrt(ss * tt);
     st = std::clamp(st, -bound, bound);
     float a = ss * W * W, b = st * W * H, c = tt * H * H;
@@ -66,19 +67,26 @@ void filteredLookup(const Texture& tex, int first, int count, float s, float t, 
     float major = mean + root, minor = std::max(0.0f, mean - root);
     float ax = diff >= 0 ? diff + root : std::fabs(b), ay = diff >= 0 ? b : (b < 0 ? diff - root : root - diff);
     float al = std::sqrt(ax * ax + ay * ay);
-    if (al > 0) { ax /= al; ay /= al; } else { ax = 1; ay = 0; }
+    if (al > 0) {
+        ax /= al;
+        ay /= al;
+    } else {
+        ax = 1;
+        ay = 0;
+    }
 
-    // Trilinear interpolation at texel size u has variance u^2/4 (box 1/12 + tent 1/6). u: that of the filter across the minor axis,
-    // at least a texel, and large enough for the probes to cover the major axis without gaps.
+    // Trilinear interpolation at texel size u has variance u^2/4 (box 1/12 + tent 1/6). u: that of the filter across the minor
+    // axis, at least a texel, and large enough for the probes to cover the major axis without gaps.
     constexpr float cap = float(limits::kTextureTaps);
     float v = varianceOf(o.filter);
     float u = std::max({1.0f, 2 * std::sqrt(v * minor), std::sqrt(12 * v * major / (cap * cap + 2))});
-    // A footprint that covers the map in every direction means the whole map, not its edges again and again: from half a map (k) on,
-    // the level goes to the last, continuously.
+    // A footprint that covers the map in every direction means the whole map, not its edges again and again: from half a map (k)
+    // on, the level goes to the last, continuously.
     float widest = std::max(ss, tt), k = widest > 0 ? 2 * std::sqrt(v * std::max(0.0f, (ss * tt - st * st) / widest)) : 0.0f;
     if (k > 0.5f) u = std::max(u, std::max(W, H) * (2 * k - 1));
     float spread = std::max(0.0f, v * major - u * u / 4); // variance left to the probes
-    // n uniform probes at distance d have variance d^2 (n^2 - 1) / 12; d <= u. Tails of the smooth weights take 1.53 times the length.
+    // n uniform probes at distance d have variance d^2 (n^2 - 1) / 12; d <= u. Tails of the smooth weights take 1.53 times the
+    // length.
     float length = std::sqrt(12 * spread) * (o.filter == Filter::Box ? 1.0f : 1.53f);
     Probes probes;
     probes.n = std::clamp(int(std::ceil(std::sqrt(1 + (length / u) * (length / u)) - 0.25f)), 1, limits::kTextureTaps);
@@ -115,7 +123,8 @@ void lookup(Handle h, int first, int count, float s, float t, const Footprint& f
     filteredLookup(*tex, first, count, s, t, fp, o, tex->swrap, tex->twrap, out);
 }
 
-void lookup2D(Handle h, int first, int count, float s, float t, float dsdx, float dtdx, float dsdy, float dtdy, const LookupOptions& o, float* out) {
+void lookup2D(Handle h, int first, int count, float s, float t, float dsdx, float dtdx, float dsdy, float dtdy,
+              const LookupOptions& o, float* out) {
     lookup(h, first, count, s, t, Footprint::sides(dsdx, dtdx, dsdy, dtdy), o, out);
 }
 
@@ -132,8 +141,9 @@ void lookupQuad(Handle h, int first, int count, const float s[4], const float t[
     lookup(h, first, count, ms, mt, fp, o, out);
 }
 
-void lookup2DLanes(Handle h, int first, int count, int n, const unsigned char* active, const float* s, const float* t, const float* dsdx,
-                   const float* dtdx, const float* dsdy, const float* dtdy, const LookupOptions* options, bool perLane, float* out) {
+void lookup2DLanes(Handle h, int first, int count, int n, const unsigned char* active, const float* s, const float* t,
+                   const float* dsdx, const float* dtdx, const float* dsdy, const float* dtdy, const LookupOptions* options,
+                   bool perLane, float* out) {
     float few[16];
     std::vector<float> many(count > 16 ? size_t(count) : 0);
     float* one = count > 16 ? many.data() : few;

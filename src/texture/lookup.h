@@ -8,7 +8,7 @@ namespace alpenglow::texture {
 extern const char* const cubeFormat;
 
 /// lookup() on one map that has levels, with wrap modes that may differ from the map's own.
-void filteredLookup(const Texture&, int first, int count, float s, float t, const Footprint&, const LookupOptions&, Wrap swrap, Wrap twrap,
-                    float* out);
+void filteredLookup(const Texture&, int first, int count, float s, float t, const Footprint&, const LookupOptions&, Wrap swrap,
+                    Wrap twrap, float* out);
 
 } // namespace alpenglow::texture

@@ -15,7 +15,8 @@ std::optional<display::Image> readPicture(const std::string& name, const MakeOpt
         return {};
     }
     if (found->otherCase || found->baseNameOnly)
-        diags.report(Severity::Warning, Rie::NoError, o.place, "picture \"" + name + "\" was not found as named; \"" + found->path + "\" is used");
+        diags.report(Severity::Warning, Rie::NoError, o.place,
+                     "picture \"" + name + "\" was not found as named; \"" + found->path + "\" is used");
     display::ReadOptions r;
     r.place = o.place;
     auto image = display::readImage(found->path, diags, r);
@@ -38,7 +39,8 @@ bool writeMap(const std::string& name, const display::Image& image, const MakeOp
 
 Wrap wrapOr(const std::string& name, Wrap fallback, const MakeOptions& o, Diagnostics& diags) {
     if (auto w = wrapByName(name)) return *w;
-    diags.report(Severity::Error, Rie::BadToken, o.place, "unknown wrap mode \"" + name + "\"; \"" + nameOf(fallback) + "\" is used",
+    diags.report(Severity::Error, Rie::BadToken, o.place,
+                 "unknown wrap mode \"" + name + "\"; \"" + nameOf(fallback) + "\" is used",
                  "wrap modes are black, clamp, periodic");
     return fallback;
 }
@@ -57,8 +59,8 @@ Reduction reductionOf(const MakeOptions& o, Diagnostics& diags) {
     return r;
 }
 
-bool makeMap(const std::string& picture, const std::string& texture, const MakeOptions& o, Wrap swrap, Wrap twrap, const char* format,
-             Diagnostics& diags) {
+bool makeMap(const std::string& picture, const std::string& texture, const MakeOptions& o, Wrap swrap, Wrap twrap,
+             const char* format, Diagnostics& diags) {
     auto image = readPicture(picture, o, diags);
     if (!image) return false;
     image->metadata["wrapmodes"] = std::string(nameOf(swrap)) + "," + nameOf(twrap);
@@ -93,12 +95,13 @@ bool makeShadow(const std::string& zfile, const std::string& shadow, const MakeO
     z.metadata["Software"] = "Alpenglow";
     z.bits = 32;
     if (!z.worldToCamera || !z.worldToNDC)
-        diags.report(Severity::Warning, Rie::MissingData, o.place, "depth picture \"" + zfile + "\" has no matrices; shadow() cannot place the map");
+        diags.report(Severity::Warning, Rie::MissingData, o.place,
+                     "depth picture \"" + zfile + "\" has no matrices; shadow() cannot place the map");
     return writeMap(shadow, z, o, diags);
 }
 
-bool makeCubeFaceEnvironment(const std::vector<std::string>& pictures, const std::string& texture, float fov, const MakeOptions& o,
-                             Diagnostics& diags) {
+bool makeCubeFaceEnvironment(const std::vector<std::string>& pictures, const std::string& texture, float fov,
+                             const MakeOptions& o, Diagnostics& diags) {
     auto refuse = [&](const std::string& why) {
         diags.report(Severity::Error, Rie::Consistency, o.place, "cube map \"" + texture + "\": " + why);
         return false;
@@ -123,20 +126,24 @@ bool makeCubeFaceEnvironment(const std::vector<std::string>& pictures, const std
         all.height += face->height;
         all.data.insert(all.data.end(), face->data.begin(), face->data.end());
     }
-    all.metadata = {{"textureformat", cubeFormat}, {"wrapmodes", "clamp,clamp"}, {"Software", "Alpenglow"},
+    all.metadata = {{"textureformat", cubeFormat},
+                    {"wrapmodes", "clamp,clamp"},
+                    {"Software", "Alpenglow"},
                     {"fovcot", std::to_string(1 / std::tan(double(fov) * kPi / 360))}};
     return writeMap(texture, all, o, diags);
 }
 
-bool runMakeRequest(const std::string& request, const std::vector<std::string>& strings, const std::vector<float>& numbers, const MakeOptions& base,
-                    Diagnostics& diags) {
+bool runMakeRequest(const std::string& request, const std::vector<std::string>& strings, const std::vector<float>& numbers,
+                    const MakeOptions& base, Diagnostics& diags) {
     MakeOptions o = base;
     size_t needed = request == "MakeCubeFaceEnvironment" ? 7 : 2;
     if (strings.size() < needed) {
         diags.report(Severity::Error, Rie::Consistency, o.place, request + " takes " + std::to_string(needed) + " names");
         return false;
     }
-    auto string = [&](size_t i, std::string& to) { if (i < strings.size()) to = strings[i]; };
+    auto string = [&](size_t i, std::string& to) {
+        if (i < strings.size()) to = strings[i];
+    };
     auto widths = [&](size_t i) {
         if (i < numbers.size()) o.swidth = numbers[i];
         if (i + 1 < numbers.size()) o.twidth = numbers[i + 1];
@@ -156,7 +163,8 @@ bool runMakeRequest(const std::string& request, const std::vector<std::string>& 
     if (request == "MakeCubeFaceEnvironment") {
         string(7, o.filter);
         widths(1);
-        return makeCubeFaceEnvironment({strings.begin(), strings.begin() + 6}, strings[6], numbers.empty() ? 90.0f : numbers[0], o, diags);
+        return makeCubeFaceEnvironment({strings.begin(), strings.begin() + 6}, strings[6], numbers.empty() ? 90.0f : numbers[0],
+                                       o, diags);
     }
     if (request == "MakeShadow") return makeShadow(strings[0], strings[1], o, diags);
     diags.report(Severity::Error, Rie::Unimplement, o.place, request + " is not available");

@@ -10,7 +10,7 @@ struct MakeOptions {
     std::string swrap = "black", twrap = "black"; ///< RISpec's default; lat-long maps: periodic, clamp
     std::string filter = "box";                   ///< of the reduction; widths multiply the filter's own (pyramid.h)
     float swidth = 1, twidth = 1;
-    std::vector<std::string> searchPath{""};      ///< of the picture
+    std::vector<std::string> searchPath{""}; ///< of the picture
     OutputPolicy policy;
     SourcePlace place;
 };
@@ -19,17 +19,18 @@ struct MakeOptions {
 /// positive, are reported and replaced by the defaults.
 bool makeTexture(const std::string& picture, const std::string& texture, const MakeOptions&, Diagnostics&);
 bool makeLatLongEnvironment(const std::string& picture, const std::string& texture, const MakeOptions&, Diagnostics&);
-/// Six pictures of the same size, in the order px nx py ny pz nz (texture.h cubeFace has their orientation), each seen with a field
-/// of view of fov degrees. Their reduced levels are made when the map is loaded.
-bool makeCubeFaceEnvironment(const std::vector<std::string>& pictures, const std::string& texture, float fov, const MakeOptions&, Diagnostics&);
+/// Six pictures of the same size, in the order px nx py ny pz nz (texture.h cubeFace has their orientation), each seen with a
+/// field of view of fov degrees. Their reduced levels are made when the map is loaded.
+bool makeCubeFaceEnvironment(const std::vector<std::string>& pictures, const std::string& texture, float fov, const MakeOptions&,
+                             Diagnostics&);
 /// A depth picture (zfile, or with a "z" channel, else its first) to a shadow map; the matrices are kept. Without them the map is
 /// written, with a warning that shadow() cannot place it.
 bool makeShadow(const std::string& zfile, const std::string& shadow, const MakeOptions&, Diagnostics&);
 
-/// A request of RIB by its name: strings and numbers in the order of its arguments (MakeTexture: picture texture swrap twrap filter;
-/// swidth twidth). Where it has wrap modes, filter and widths they replace those of the options. Requests that are not done
-/// here (MakeBrickMap, MakeOcclusion) are reported. False: an error was reported.
-bool runMakeRequest(const std::string& request, const std::vector<std::string>& strings, const std::vector<float>& numbers, const MakeOptions&,
-                    Diagnostics&);
+/// A request of RIB by its name: strings and numbers in the order of its arguments (MakeTexture: picture texture swrap twrap
+/// filter; swidth twidth). Where it has wrap modes, filter and widths they replace those of the options. Requests that are not
+/// done here (MakeBrickMap, MakeOcclusion) are reported. False: an error was reported.
+bool runMakeRequest(const std::string& request, const std::vector<std::string>& strings, const std::vector<float>& numbers,
+                    const MakeOptions&, Diagnostics&);
 
 } // namespace alpenglow::texture

@@ -28,9 +28,12 @@ Pair texelsAt(float coordinate, int n, Wrap wrap) {
     int i0 = int(fl), i1 = i0 + 1;
     auto place = [&](int i) {
         switch (wrap) {
-        case Wrap::Periodic: return i < 0 ? i + n : i >= n ? i - n : i;
-        case Wrap::Clamp: return std::clamp(i, 0, n - 1);
-        case Wrap::Black: break;
+        case Wrap::Periodic:
+            return i < 0 ? i + n : i >= n ? i - n : i;
+        case Wrap::Clamp:
+            return std::clamp(i, 0, n - 1);
+        case Wrap::Black:
+            break;
         }
         return i < 0 || i >= n ? -1 : i;
     };
@@ -57,10 +60,14 @@ double weightAt(Kernel::Kind kind, double x, double w) {
     if (x > w / 2) return 0;
     double t = 4 * x / w; // support 2 on the half width
     switch (kind) {
-    case Kernel::Box: return 1;
-    case Kernel::Triangle: return 1 - x / (w / 2);
-    case Kernel::Gaussian: return std::exp(-8 * x * x / (w * w));
-    case Kernel::CatmullRom: return t < 1 ? (3 * t * t * t - 5 * t * t + 2) / 2 : (-t * t * t + 5 * t * t - 8 * t + 4) / 2;
+    case Kernel::Box:
+        return 1;
+    case Kernel::Triangle:
+        return 1 - x / (w / 2);
+    case Kernel::Gaussian:
+        return std::exp(-8 * x * x / (w * w));
+    case Kernel::CatmullRom:
+        return t < 1 ? (3 * t * t * t - 5 * t * t + 2) / 2 : (-t * t * t + 5 * t * t - 8 * t + 4) / 2;
     case Kernel::Mitchell: {
         constexpr double B = 1.0 / 3, C = 1.0 / 3;
         return t < 1 ? ((12 - 9 * B - 6 * C) * t * t * t + (-18 + 12 * B + 6 * C) * t * t + (6 - 2 * B)) / 6
@@ -94,7 +101,8 @@ Taps tapsFor(int from, int to, const Kernel& k, float width, Wrap wrap) {
         double sum = 0;
         for (int j = lo; j < hi; ++j) {
             double v;
-            if (k.kind == Kernel::Box) v = std::max(0.0, std::min(j + 1.0, centre + radius) - std::max(double(j), centre - radius));
+            if (k.kind == Kernel::Box)
+                v = std::max(0.0, std::min(j + 1.0, centre + radius) - std::max(double(j), centre - radius));
             else v = weightAt(k.kind, (j + 0.5 - centre) / scale, full);
             w.push_back(v);
             sum += v;
@@ -130,8 +138,8 @@ std::optional<Wrap> wrapByName(std::string_view n) {
 const char* nameOf(Wrap w) { return w == Wrap::Black ? "black" : w == Wrap::Clamp ? "clamp" : "periodic"; }
 
 bool isReductionFilter(std::string_view n) {
-    for (const char* k : {"box", "triangle", "gaussian", "catmull-rom", "separable-catmull-rom", "mitchell", "lanczos", "sinc", "disk", "bessel",
-                          "b-spline", "blackman-harris", "point"})
+    for (const char* k : {"box", "triangle", "gaussian", "catmull-rom", "separable-catmull-rom", "mitchell", "lanczos", "sinc",
+                          "disk", "bessel", "b-spline", "blackman-harris", "point"})
         if (n == k) return true;
     return false;
 }
@@ -169,7 +177,8 @@ display::Image reduced(const display::Image& m, const Reduction& how, Wrap swrap
         for (int x = 0; x < w; ++x)
             for (size_t i = tx.begin[size_t(x)]; i < tx.begin[size_t(x) + 1]; ++i)
                 for (size_t c = 0; c < n; ++c)
-                    half[(size_t(y) * size_t(w) + size_t(x)) * n + c] += double(tx.weight[i]) * double(m.pixel(tx.source[i], y)[c]);
+                    half[(size_t(y) * size_t(w) + size_t(x)) * n + c] +=
+                        double(tx.weight[i]) * double(m.pixel(tx.source[i], y)[c]);
     display::Image out = display::makeImage(w, h, m.channels);
     std::vector<double> row(size_t(w) * n);
     for (int y = 0; y < h; ++y) {

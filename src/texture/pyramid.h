@@ -35,11 +35,12 @@ struct Reduction {
 /// Whether Reduction knows the filter by name.
 bool isReductionFilter(std::string_view name);
 
-/// The next level: each side max(1, n / 2). Each texel weighs the texels that it covers by exact overlap (box), so that the mean of
-/// the picture is kept whatever its size; other kernels are sampled at texel centres and normalised.
+/// The next level: each side max(1, n / 2). Each texel weighs the texels that it covers by exact overlap (box), so that the mean
+/// of the picture is kept whatever its size; other kernels are sampled at texel centres and normalised.
 display::Image reduced(const display::Image&, const Reduction& = {}, Wrap swrap = Wrap::Clamp, Wrap twrap = Wrap::Clamp);
 /// All levels below a picture, down to 1x1.
-std::vector<display::Image> reducedLevels(const display::Image&, const Reduction& = {}, Wrap swrap = Wrap::Clamp, Wrap twrap = Wrap::Clamp);
+std::vector<display::Image> reducedLevels(const display::Image&, const Reduction& = {}, Wrap swrap = Wrap::Clamp,
+                                          Wrap twrap = Wrap::Clamp);
 /// Whether image.levels are all of them, each half the one before.
 bool hasAllLevels(const display::Image&);
 

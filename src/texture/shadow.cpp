@@ -16,7 +16,8 @@ bool project(const Matrix& m, const Vec3d& p, double& x, double& y) {
 
 /// Bilinear part of the four texels around (s, t) that shadow depth z; texels outside do not.
 double shadowed(const Level& map, double s, double t, double z) {
-    double x = std::clamp(s * map.width - 0.5, -2.0, map.width + 1.0), y = std::clamp(t * map.height - 0.5, -2.0, map.height + 1.0);
+    double x = std::clamp(s * map.width - 0.5, -2.0, map.width + 1.0),
+           y = std::clamp(t * map.height - 0.5, -2.0, map.height + 1.0);
     int x0 = int(std::floor(x)), y0 = int(std::floor(y));
     double fx = x - x0, fy = y - y0, sum = 0;
     for (int j = 0; j < 2; ++j)
@@ -35,8 +36,14 @@ double shadowed(const Level& map, double s, double t, double z) {
 float shadowLookup(Handle h, const Vec3d& p, const Vec3d& ddx, const Vec3d& ddy, const ShadowOptions& o) {
     double s, t, xs, xt, ys, yt;
     if (!h || h->levels.empty() || !h->worldToCamera || !h->worldToNDC || !project(*h->worldToNDC, p, s, t)) return 0;
-    if (!project(*h->worldToNDC, p + ddx, xs, xt)) { xs = s; xt = t; }
-    if (!project(*h->worldToNDC, p + ddy, ys, yt)) { ys = s; yt = t; }
+    if (!project(*h->worldToNDC, p + ddx, xs, xt)) {
+        xs = s;
+        xt = t;
+    }
+    if (!project(*h->worldToNDC, p + ddy, ys, yt)) {
+        ys = s;
+        yt = t;
+    }
     double z = transformPoint(*h->worldToCamera, p).z - double(o.bias);
     double ws = std::min(1.0, (std::fabs(xs - s) + std::fabs(ys - s)) * double(o.swidth) + double(o.sblur));
     double wt = std::min(1.0, (std::fabs(xt - t) + std::fabs(yt - t)) * double(o.twidth) + double(o.tblur));
@@ -47,7 +54,8 @@ float shadowLookup(Handle h, const Vec3d& p, const Vec3d& ddx, const Vec3d& ddy,
     if (ws * h->width() < 0.5 && wt * h->height() < 0.5) k = 1;
     double sum = 0;
     for (int j = 0; j < k; ++j)
-        for (int i = 0; i < k; ++i) sum += shadowed(h->levels[0], s + ((i + 0.5) / k - 0.5) * ws, t + ((j + 0.5) / k - 0.5) * wt, z);
+        for (int i = 0; i < k; ++i)
+            sum += shadowed(h->levels[0], s + ((i + 0.5) / k - 0.5) * ws, t + ((j + 0.5) / k - 0.5) * wt, z);
     return float(sum / (double(k) * k));
 }
 

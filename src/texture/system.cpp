@@ -57,7 +57,8 @@ size_t Texture::bytes() const {
 }
 
 std::optional<Filter> filterByName(std::string_view n) {
-    for (const char* k : {"box", "disk", "point", "catmull-rom", "separable-catmull-rom", "mitchell", "lanczos", "sinc", "bessel"})
+    for (const char* k :
+         {"box", "disk", "point", "catmull-rom", "separable-catmull-rom", "mitchell", "lanczos", "sinc", "bessel"})
         if (n == k) return Filter::Box;
     if (n == "triangle") return Filter::Triangle;
     for (const char* k : {"gaussian", "b-spline", "blackman-harris", "radial-bspline"})
@@ -104,7 +105,8 @@ std::shared_ptr<const Texture> makeTextureFrom(const display::Image& image, cons
         return tex;
     }
     bool round = tex->kind == Kind::LatLong;
-    for (const display::Image& l : reducedLevels(image, {}, round ? Wrap::Periodic : tex->swrap, round ? Wrap::Clamp : tex->twrap))
+    for (const display::Image& l :
+         reducedLevels(image, {}, round ? Wrap::Periodic : tex->swrap, round ? Wrap::Clamp : tex->twrap))
         tex->levels.push_back(levelOf(l, false));
     return tex;
 }
@@ -147,7 +149,8 @@ std::shared_ptr<const Texture> TextureSystem::load(const std::string& path, cons
     return entry->texture;
 }
 
-std::shared_ptr<const Texture> TextureSystem::loadFile(const std::string& name, const std::vector<std::string>& searchPath, const SourcePlace& place) {
+std::shared_ptr<const Texture> TextureSystem::loadFile(const std::string& name, const std::vector<std::string>& searchPath,
+                                                       const SourcePlace& place) {
     auto found = findFile(name, searchPath);
     Diagnostic d;
     d.place = place;
@@ -169,9 +172,13 @@ std::shared_ptr<const Texture> TextureSystem::loadFile(const std::string& name, 
     return load(found->path, place);
 }
 
-std::shared_ptr<const Texture> TextureSystem::loadTiles(const std::string& name, const std::vector<std::string>& searchPath, const SourcePlace& place) {
+std::shared_ptr<const Texture> TextureSystem::loadTiles(const std::string& name, const std::vector<std::string>& searchPath,
+                                                        const SourcePlace& place) {
     size_t at = name.find("UDIM"), from = at, length = 4;
-    if (at > 0 && name[at - 1] == '<' && at + 4 < name.size() && name[at + 4] == '>') { --from; length = 6; }
+    if (at > 0 && name[at - 1] == '<' && at + 4 < name.size() && name[at + 4] == '>') {
+        --from;
+        length = 6;
+    }
     auto tex = std::make_shared<Texture>();
     tex->path = name;
     for (int number = 1001; number <= 1100; ++number) {

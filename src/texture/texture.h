@@ -5,9 +5,9 @@
 // Wrap modes: those stored in the file ("wrapmodes", written by MakeTexture); a plain picture has none and is clamped, so that no
 // edge bleeds (TextureSettings::plainWrap).
 // Filtering: the footprint is the parallelogram of the derivatives, as a matrix of squared widths; blur adds to it in quadrature
-// (convolution of boxes). Probes with trilinear interpolation lie along the major axis so that the variance of the whole kernel is
-// that of the filter over the footprint; the minor axis chooses the level. A kernel is never narrower than bilinear interpolation.
-// Not done: separate treatment of parallelogram and ellipse; sharpening (negative lobes) in lookups.
+// (convolution of boxes). Probes with trilinear interpolation lie along the major axis so that the variance of the whole kernel
+// is that of the filter over the footprint; the minor axis chooses the level. A kernel is never narrower than bilinear
+// interpolation. Not done: separate treatment of parallelogram and ellipse; sharpening (negative lobes) in lookups.
 #pragma once
 #include "base/diagnostics.h"
 #include "base/matrix.h"
@@ -53,8 +53,8 @@ struct LookupOptions {
     float swidth = 1, twidth = 1; ///< multiply the derivatives
     float sblur = 0, tblur = 0;   ///< as a fraction of the map
     Filter filter = Filter::Gaussian;
-    float fill = 0;               ///< value of channels that the map does not have
-    float lerp = 0;               ///< accepted; levels are always interpolated, a switch would show as an edge
+    float fill = 0; ///< value of channels that the map does not have
+    float lerp = 0; ///< accepted; levels are always interpolated, a switch would show as an edge
 };
 
 /// A footprint as squared widths in (s, t): the sum of the outer products of its two side vectors.
@@ -66,13 +66,15 @@ struct Footprint {
 /// Channels first, first+1, ... (count of them) of the map at (s, t), filtered over the footprint, into out[0..count).
 void lookup(Handle, int first, int count, float s, float t, const Footprint&, const LookupOptions&, float* out);
 /// The same with the change of (s, t) from pixel to pixel (or sample to sample).
-void lookup2D(Handle, int first, int count, float s, float t, float dsdx, float dtdx, float dsdy, float dtdy, const LookupOptions&, float* out);
+void lookup2D(Handle, int first, int count, float s, float t, float dsdx, float dtdx, float dsdy, float dtdy,
+              const LookupOptions&, float* out);
 /// texture() with four corners, in any order. Four equal corners: no filtering beyond bilinear interpolation.
 void lookupQuad(Handle, int first, int count, const float s[4], const float t[4], const LookupOptions&, float* out);
 /// n lanes; lanes with active[i] == 0 are left alone (active may be null). Options are one, or one per lane (perLane).
 /// out[c * n + i] is channel c of lane i.
-void lookup2DLanes(Handle, int first, int count, int n, const unsigned char* active, const float* s, const float* t, const float* dsdx,
-                   const float* dtdx, const float* dsdy, const float* dtdy, const LookupOptions* options, bool perLane, float* out);
+void lookup2DLanes(Handle, int first, int count, int n, const unsigned char* active, const float* s, const float* t,
+                   const float* dsdx, const float* dtdx, const float* dsdy, const float* dtdy, const LookupOptions* options,
+                   bool perLane, float* out);
 
 /// Where a direction lies on a lat-long map: latitude +90 (along pole) at the top, longitude 0 (towards zero) at the left edge,
 /// growing towards `quarter`. Renderers differ in axes and sense (ri.md 11). The default has z up, as RISpec-era maps have it,
@@ -88,8 +90,8 @@ struct LatLong {
 };
 
 /// environment(): the form that the map has, cube faces or (also for pictures that are neither) latitude-longitude.
-void environment(Handle, const LatLong&, int first, int count, const Vec3& direction, const Vec3& ddx, const Vec3& ddy, const LookupOptions&,
-                 float* out);
+void environment(Handle, const LatLong&, int first, int count, const Vec3& direction, const Vec3& ddx, const Vec3& ddy,
+                 const LookupOptions&, float* out);
 /// environment() with four directions, in any order.
 void environmentQuad(Handle, const LatLong&, int first, int count, const Vec3 directions[4], const LookupOptions&, float* out);
 
@@ -103,7 +105,8 @@ void cubeDifferentiate(int face, const Vec3& direction, const Vec3& d, float fov
 void environmentLatLong(Handle, const LatLong&, int first, int count, const Vec3& direction, const Vec3& ddx, const Vec3& ddy,
                         const LookupOptions&, float* out);
 /// The same with four directions.
-void environmentLatLongQuad(Handle, const LatLong&, int first, int count, const Vec3 directions[4], const LookupOptions&, float* out);
+void environmentLatLongQuad(Handle, const LatLong&, int first, int count, const Vec3 directions[4], const LookupOptions&,
+                            float* out);
 
 /// textureinfo() fields.
 struct TextureInfo {
@@ -125,9 +128,9 @@ class TextureSystem {
 public:
     explicit TextureSystem(Diagnostics&, TextureSettings = {});
     ~TextureSystem();
-    /// The map called name along a search path (base/file.h findFile: also with other case, backslashes, or by its base name, which
-    /// is said). "UDIM" in the name opens tiles 1001 to 1100 that exist. A missing or damaged file is reported once; the handle is
-    /// null. Threads that ask for the same file wait for one load.
+    /// The map called name along a search path (base/file.h findFile: also with other case, backslashes, or by its base name,
+    /// which is said). "UDIM" in the name opens tiles 1001 to 1100 that exist. A missing or damaged file is reported once; the
+    /// handle is null. Threads that ask for the same file wait for one load.
     Handle open(const std::string& name, const std::vector<std::string>& searchPath = {""}, const SourcePlace& = {});
     std::optional<TextureInfo> info(Handle) const;
     const LatLong& latLong() const { return settings_.latLong; }
@@ -140,8 +143,10 @@ public:
 private:
     struct Entry;
     std::shared_ptr<const Texture> load(const std::string& path, const SourcePlace&);
-    std::shared_ptr<const Texture> loadFile(const std::string& name, const std::vector<std::string>& searchPath, const SourcePlace&);
-    std::shared_ptr<const Texture> loadTiles(const std::string& name, const std::vector<std::string>& searchPath, const SourcePlace&);
+    std::shared_ptr<const Texture> loadFile(const std::string& name, const std::vector<std::string>& searchPath,
+                                            const SourcePlace&);
+    std::shared_ptr<const Texture> loadTiles(const std::string& name, const std::vector<std::string>& searchPath,
+                                             const SourcePlace&);
     Diagnostics& diags_;
     TextureSettings settings_;
     mutable std::mutex mutex_;

@@ -4,9 +4,9 @@
 #include "display/mode.h"
 #include "support.h"
 #include <bit>
-#include <set>
 #include <cmath>
 #include <limits>
+#include <set>
 
 using namespace alpenglow;
 using namespace alpenglow::display;
@@ -83,14 +83,14 @@ TEST(Quantise, ClosedForms) {
     Quantization q{0, 255, 0, 255, 0};
     EXPECT_EQ(quantise(q, 0, 0), 0);
     EXPECT_EQ(quantise(q, 1, 0), 255);
-    EXPECT_EQ(quantise(q, 0.5f, 0), 128);           // floor(127.5 + 0.5)
+    EXPECT_EQ(quantise(q, 0.5f, 0), 128); // floor(127.5 + 0.5)
     EXPECT_EQ(quantise(q, 127.4f / 255, 0), 127);
     EXPECT_EQ(quantise(q, -3, 0), 0);
     EXPECT_EQ(quantise(q, 7, 0), 255);
     EXPECT_EQ(quantise(q, std::numeric_limits<float>::quiet_NaN(), 0), 0);
     EXPECT_EQ(quantise(q, std::numeric_limits<float>::infinity(), 0), 255);
-    EXPECT_EQ(quantise({16, 235, 0, 255, 0}, 0.5f, 0), 126); // 16 + 0.5 * 219 = 125.5
-    EXPECT_EQ(quantise({0, 0, 0, 0, 0}, 0.123f, 1), 0.123f); // one = 0: as it is
+    EXPECT_EQ(quantise({16, 235, 0, 255, 0}, 0.5f, 0), 126);   // 16 + 0.5 * 219 = 125.5
+    EXPECT_EQ(quantise({0, 0, 0, 0, 0}, 0.123f, 1), 0.123f);   // one = 0: as it is
     EXPECT_EQ(quantise({0, 100, 0, 255, 2}, 0.5f, -0.5f), 49); // 50 + 2 * -0.5
 }
 
@@ -140,18 +140,26 @@ TEST(Drivers, EachIsDescribedAndFound) {
         EXPECT_TRUE(d->make());
         for (auto& n : d->names) EXPECT_TRUE(names.insert(n).second) << n;
     }
-    for (const char* t : {"openexr", "exr", "tiff", "TIFF", "file", "png", "framebuffer", "it", "idisplay", "null", "zfile", "shadow", "Targa", "bmp"})
+    for (const char* t : {"openexr", "exr", "tiff", "TIFF", "file", "png", "framebuffer", "it", "idisplay", "null", "zfile",
+                          "shadow", "Targa", "bmp"})
         EXPECT_TRUE(findDriver(t)) << t;
     EXPECT_FALSE(findDriver("nonesuch"));
 }
 
 TEST(Drivers, WriteTheFormatAsked) {
     Image m = pattern(8, 5, {"r", "g", "b", "a"});
-    struct Case { const char *type, *name; bool exr, floating; int bits; int said; };
-    for (auto c : {Case{"openexr", "a.exr", true, true, 32, 0}, Case{"exr", "a", true, true, 32, 0}, Case{"tiff", "a.tif", false, false, 8, 0},
-                   Case{"file", "a.exr", true, true, 32, 0}, Case{"file", "ri.pic", false, false, 8, 0}, Case{"file", "a.png", false, false, 8, 0},
+    struct Case {
+        const char *type, *name;
+        bool exr, floating;
+        int bits;
+        int said;
+    };
+    for (auto c : {Case{"openexr", "a.exr", true, true, 32, 0}, Case{"exr", "a", true, true, 32, 0},
+                   Case{"tiff", "a.tif", false, false, 8, 0}, Case{"file", "a.exr", true, true, 32, 0},
+                   Case{"file", "ri.pic", false, false, 8, 0}, Case{"file", "a.png", false, false, 8, 0},
                    Case{"png", "a.png", false, false, 8, 0}, Case{"framebuffer", "a.tif", false, false, 8, 1},
-                   Case{"Targa", "a.tga", false, false, 8, 1}, Case{"bmp", "a.bmp", false, false, 8, 1}, Case{"nonesuch", "a.exr", true, true, 32, 2}}) {
+                   Case{"Targa", "a.tga", false, false, 8, 1}, Case{"bmp", "a.bmp", false, false, 8, 1},
+                   Case{"nonesuch", "a.exr", true, true, 32, 2}}) {
         Scratch s;
         Diagnostics d;
         ASSERT_TRUE(writeDisplay(setupFor(s, c.type, c.name, m), m, d)) << messages(d);

@@ -1,4 +1,6 @@
 // JPEG seeds, and random damage to every format: many bytes at once, where imageio_test.cpp changes one.
+#include "base/limits.h"
+#include "display/formats/codecs.h"
 #include "support.h"
 #include <csetjmp>
 #include <cstdio>
@@ -81,7 +83,8 @@ TEST(Jpeg, GreyAndColourComeBackNearly) {
             EXPECT_EQ(r->channels, defaultChannels(n));
             EXPECT_EQ(r->width, 24);
             EXPECT_EQ(r->bits, 8);
-            for (size_t i = 0; i < m.data.size(); ++i) EXPECT_NEAR(r->data[i], m.data[i], 4.0f / 255); // quality 100; chroma is subsampled
+            for (size_t i = 0; i < m.data.size(); ++i)
+                EXPECT_NEAR(r->data[i], m.data[i], 4.0f / 255); // quality 100; chroma is subsampled
         }
 }
 
@@ -119,4 +122,56 @@ TEST(HostileImage, RandomDamage) {
         }
     EXPECT_GT(read, 0);
     EXPECT_GT(refused, 100);
+}
+
+TEST(ImageLimits, SidesChannelsBytesExpansion) {
+    Diagnostics d;
+    ReadOptions o;
+    std::string name = "x";
+    const uint64_t side = uint64_t(limits::kImageSide), channels = uint64_t(limits::kImageChannels);
+    DecodeContext large{name, d, o, size_t(1) << 40}, small{name, d, o, 1000};
+    EXPECT_TRUE(large.sizeAllowed(side, 1, 1));
+    EXPECT_FALSE(large.sizeAllowed(side + 1, 1, 1));
+    EXPECT_FALSE(large.sizeAllowed(1, side + 1, 1));
+    EXPECT_TRUE(large.sizeAllowed(1, 1, channels));
+    EXPECT_FALSE(large.sizeAllowed(1, 1, channels + 1));
+    EXPECT_TRUE(large.sizeAllowed(side, side, 2)); // 32 GiB exactly
+    EXPECT_FALSE(large.sizeAllowed(side, side, 3));
+    EXPECT_TRUE(small.sizeAllowed(4096, 4096, 1)); // 64 MiB: needs no proof
+    EXPECT_FALSE(small.sizeAllowed(4096, 4097, 1));
+    EXPECT_FALSE(small.sizeAllowed(0, 5, 1));
+    EXPECT_EQ(d.errors(), 6);
+}
+
+TEST(ImageLimits, ScansOfAJpeg) {
+    // Each of 63 coefficients in a scan of its own, four bits deep: 1 + 4 * 63 = 253 scans.
+    std::vector<jpeg_scan_info> scans(1);
+    scans[0] = {1, {0, 0, 0, 0}, 0, 0, 0, 0};
+    for (int depth = 3; depth >= 0; --depth)
+        for (int k = 1; k < 64; ++k) scans.push_back({1, {0, 0, 0, 0}, k, k, depth == 3 ? 0 : depth + 1, depth});
+    for (size_t count : {scans.size(), size_t(64)}) {
+        jpeg_compress_struct c{};
+        jpeg_error_mgr e{};
+        c.err = jpeg_std_error(&e);
+        jpeg_create_compress(&c);
+        unsigned char* out = nullptr;
+        unsigned long size = 0;
+        jpeg_mem_dest(&c, &out, &size);
+        c.image_width = c.image_height = 8;
+        c.input_components = 1;
+        c.in_color_space = JCS_GRAYSCALE;
+        jpeg_set_defaults(&c);
+        c.scan_info = scans.data();
+        c.num_scans = int(count);
+        jpeg_start_compress(&c, TRUE);
+        uint8_t row[8] = {0, 30, 60, 90, 120, 150, 180, 210};
+        JSAMPROW p = row;
+        for (int y = 0; y < 8; ++y) jpeg_write_scanlines(&c, &p, 1);
+        jpeg_finish_compress(&c);
+        Diagnostics d;
+        auto m = decodeImage(std::span<const uint8_t>(out, size), "scans.jpg", d);
+        EXPECT_EQ(bool(m), int(count) <= limits::kImageScans) << messages(d);
+        jpeg_destroy_compress(&c);
+        std::free(out);
+    }
 }

@@ -2,9 +2,9 @@
 #include "base/limits.h"
 #include "support.h"
 #include <bit>
-#include <set>
 #include <cmath>
 #include <limits>
+#include <set>
 
 using namespace alpenglow;
 using namespace alpenglow::display;
@@ -50,7 +50,8 @@ TEST(ImageIo, FloatFormatsAreExact) {
     m.pixel(4, 2)[1] = -2.5f;
     m.pixel(5, 2)[2] = std::numeric_limits<float>::infinity();
     m.pixel(6, 2)[3] = std::numeric_limits<float>::denorm_min();
-    for (const char* c : {"none", "rle", "zips", "zip", "piz"}) expectSame(roundTrip(s, m, as(Format::Exr, Sample::Float, false, c)), m);
+    for (const char* c : {"none", "rle", "zips", "zip", "piz"})
+        expectSame(roundTrip(s, m, as(Format::Exr, Sample::Float, false, c)), m);
     for (const char* c : {"none", "zip", "lzw"}) {
         Image r = roundTrip(s, m, as(Format::Tiff, Sample::Float, false, c));
         expectSame(r, m);
@@ -64,8 +65,9 @@ TEST(ImageIo, HalfRoundsToElevenBits) {
     Image m = pattern(16, 16, {"r", "g", "b"});
     Image r = roundTrip(s, m, as(Format::Exr, Sample::Half));
     EXPECT_EQ(r.bits, 16);
-    for (size_t i = 0; i < m.data.size(); ++i) EXPECT_NEAR(r.data[i], m.data[i], m.data[i] / 2048 + 1e-7f); // half: 11 significant bits
-    m.pixel(0, 0)[0] = 2048; // exact in half
+    for (size_t i = 0; i < m.data.size(); ++i)
+        EXPECT_NEAR(r.data[i], m.data[i], m.data[i] / 2048 + 1e-7f); // half: 11 significant bits
+    m.pixel(0, 0)[0] = 2048;                                         // exact in half
     EXPECT_EQ(roundTrip(s, m, as(Format::Exr, Sample::Half)).pixel(0, 0)[0], 2048.0f);
 }
 
@@ -292,7 +294,8 @@ TEST(HostileImage, EveryPrefix) {
         EXPECT_TRUE(decodeImage(seed.bytes, seed.name, whole, levels)) << seed.name << messages(whole);
         for (size_t n = 0; n < seed.bytes.size(); ++n) {
             Diagnostics d;
-            std::vector<uint8_t> cut(seed.bytes.begin(), seed.bytes.begin() + std::ptrdiff_t(n)); // exact size, for the address sanitizer
+            std::vector<uint8_t> cut(seed.bytes.begin(),
+                                     seed.bytes.begin() + std::ptrdiff_t(n)); // exact size, for the address sanitizer
             auto m = decodeImage(cut, seed.name, d, levels);
             if (!m) EXPECT_EQ(d.errors(), 1) << seed.name << " " << n; // refused means said
         }
@@ -342,8 +345,8 @@ TEST(HostileImage, HugeDimensionsAreRefusedBeforeAllocation) {
 
 TEST(HostileImage, JpegPrefixesAndDamage) {
     // A 1x1 grey baseline JPEG with the standard luminance tables' shape is long to spell; a header alone must be refused.
-    std::vector<uint8_t> b{0xff, 0xd8, 0xff, 0xe0, 0, 16, 'J', 'F', 'I', 'F', 0, 1, 1, 0, 0, 1, 0, 1, 0, 0,
-                           0xff, 0xc0, 0, 11, 8, 0xff, 0xff, 0xff, 0xff, 1, 1, 0x11, 0};
+    std::vector<uint8_t> b{0xff, 0xd8, 0xff, 0xe0, 0,    16, 'J', 'F', 'I',  'F',  0,    1,    1, 0, 0,    1, 0,
+                           1,    0,    0,    0xff, 0xc0, 0,  11,  8,   0xff, 0xff, 0xff, 0xff, 1, 1, 0x11, 0};
     for (size_t n = 3; n <= b.size(); ++n) {
         Diagnostics d;
         EXPECT_FALSE(decodeImage(std::span(b).first(n), "j", d));

@@ -14,7 +14,8 @@ struct Scratch {
     std::filesystem::path dir;
     Scratch() {
         auto* info = testing::UnitTest::GetInstance()->current_test_info();
-        std::string name = std::string("alpenglow-") + info->test_suite_name() + "-" + info->name() + "-" + std::to_string(getpid());
+        std::string name =
+            std::string("alpenglow-") + info->test_suite_name() + "-" + info->name() + "-" + std::to_string(getpid());
         for (char& c : name)
             if (c == '/') c = '_';
         dir = std::filesystem::temp_directory_path() / name;

@@ -16,8 +16,9 @@ namespace {
 std::vector<std::string> directionFaces(const Scratch& s, int n, float cot) {
     const char* names[] = {"px", "nx", "py", "ny", "pz", "nz"};
     // Right, up, outward of a left-handed camera turned towards each axis.
-    const Vec3 axes[6][3] = {{{0, 0, -1}, {0, 1, 0}, {1, 0, 0}}, {{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}}, {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}},
-                             {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},  {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}}};
+    const Vec3 axes[6][3] = {{{0, 0, -1}, {0, 1, 0}, {1, 0, 0}}, {{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}},
+                             {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}, {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}},
+                             {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},  {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}}};
     std::vector<std::string> files;
     for (int f = 0; f < 6; ++f) {
         // Left-handed: right x up points towards the viewer in a right-handed rule, so right x up = out by components.

@@ -103,13 +103,14 @@ TEST(Texture, UpperLeftIsTheOrigin) {
 TEST(Texture, WrapModes) {
     Image m = makeImage(4, 1, {"y"});
     m.data = {1, 2, 3, 4};
-    auto black = makeTextureFrom(withWrap(m, "black")), clamp = makeTextureFrom(withWrap(m, "clamp")), periodic = makeTextureFrom(withWrap(m, "periodic"));
+    auto black = makeTextureFrom(withWrap(m, "black")), clamp = makeTextureFrom(withWrap(m, "clamp")),
+         periodic = makeTextureFrom(withWrap(m, "periodic"));
     EXPECT_EQ(at(black, 1.5f, 0.5f), 0);
     EXPECT_EQ(at(clamp, 1.5f, 0.5f), 4);
     EXPECT_EQ(at(clamp, -1.5f, 0.5f), 1);
     EXPECT_EQ(at(periodic, 1.125f, 0.5f), 1);
     EXPECT_EQ(at(periodic, -0.125f, 0.5f), 4);
-    EXPECT_EQ(at(black, 0.0f, 0.5f), 0.5f);    // half of texel 0, half of the black outside
+    EXPECT_EQ(at(black, 0.0f, 0.5f), 0.5f); // half of texel 0, half of the black outside
     EXPECT_EQ(at(clamp, 0.0f, 0.5f), 1);
     EXPECT_EQ(at(periodic, 0.0f, 0.5f), 2.5f); // texels 3 and 0
     EXPECT_EQ(at(periodic, 1e30f, 0.5f), at(periodic, 0.0f, 0.5f));
@@ -146,9 +147,9 @@ TEST(Texture, CheckerboardGoesToOneHalf) {
 }
 
 TEST(Texture, VarianceOfTheKernelIsThatOfTheFilter) {
-    // A texture v = s^2 filtered symmetrically about s gives s^2 + variance along s. Interpolation makes it depend on the place in
-    // a texel, so it is averaged over a
-    // quarter of the map, a whole number of texels of every level in use; clamped edges are far away.
+    // A texture v = s^2 filtered symmetrically about s gives s^2 + variance along s. Interpolation makes it depend on the place
+    // in a texel, so it is averaged over a quarter of the map, a whole number of texels of every level in use; clamped edges are
+    // far away.
     const int n = 512;
     Image m = makeImage(n, n, {"y"});
     for (int y = 0; y < n; ++y)
@@ -230,8 +231,25 @@ TEST(Texture, ChannelsAndFill) {
     EXPECT_EQ((std::vector<float>(v, v + 3)), (std::vector<float>{9, 9, 9}));
     lookup(t.get(), -1, 3, 0.5f, 0.5f, {}, o, v);
     EXPECT_EQ((std::vector<float>(v, v + 3)), (std::vector<float>{9, 1, 2}));
+    for (int far : {std::numeric_limits<int>::min(), std::numeric_limits<int>::max()}) {
+        lookup(t.get(), far, 3, 0.5f, 0.5f, {}, o, v);
+        EXPECT_EQ((std::vector<float>(v, v + 3)), (std::vector<float>{9, 9, 9}));
+    }
     lookup(nullptr, 0, 3, 0.5f, 0.5f, {}, o, v);
     EXPECT_EQ((std::vector<float>(v, v + 3)), (std::vector<float>{9, 9, 9}));
+}
+
+TEST(Texture, ProbesAreBounded) {
+    // A footprint of aspect 10^6 asks for as many probes; the limit makes the short axis wider instead: rows that a sharp filter
+    // would keep apart mix.
+    Image m = makeImage(256, 256, {"y"});
+    for (int y = 0; y < 256; ++y)
+        for (int x = 0; x < 256; ++x) m.pixel(x, y)[0] = float(y & 1);
+    auto t = makeTextureFrom(withWrap(m, "periodic"));
+    float centre = 129.5f / 256;
+    EXPECT_NEAR(at(t, 0.5f, centre, {}, Footprint::sides(0.05f, 0, 0, 1e-9f)), 1, 1e-5f); // 13 texels: enough probes
+    EXPECT_NEAR(at(t, 0.5f, centre, {}, Footprint::sides(4, 0, 0, 1e-9f)), 0.5f, 1e-5f);  // 1024 texels: more than kTextureTaps
+    static_assert(limits::kTextureTaps < 1024 / 4);
 }
 
 TEST(Texture, NonFiniteArgumentsAreHarmless) {
@@ -369,7 +387,8 @@ TEST(LatLong, ProjectionIsTheInverseOfDirection) {
                 map.project(d - e * h, sb, tb);
                 map.differentiate(d, e, ds, dt);
                 float numeric = (sa - sb) / (2 * h);
-                if (std::fabs(numeric) < 5) EXPECT_NEAR(ds, std::clamp(numeric, -1.0f, 1.0f), 2e-3f + 2e-3f * std::fabs(numeric)); // not across the seam
+                if (std::fabs(numeric) < 5)
+                    EXPECT_NEAR(ds, std::clamp(numeric, -1.0f, 1.0f), 2e-3f + 2e-3f * std::fabs(numeric)); // not across the seam
                 EXPECT_NEAR(dt, (ta - tb) / (2 * h), 1e-3f);
             }
         }
@@ -517,6 +536,37 @@ TEST(TextureSystem, Udim) {
     EXPECT_EQ(d.errors(), 1);
 }
 
+TEST(TextureSystem, DeclaredGammaBecomesLinear) {
+    Scratch s;
+    Image m = constant(4, 4, 0, 4);
+    for (size_t i = 0; i < m.data.size(); ++i) m.data[i] = i % 4 == 3 ? 128 / 255.0f : 64 / 255.0f;
+    save(s, "plain.png", m, display::Format::Png);
+    // The same file with a gAMA chunk (1/2 * 100000) after the 8 + 25 bytes of signature and IHDR.
+    std::vector<uint8_t> b = bytesOf(s / "plain.png"), chunk{'g', 'A', 'M', 'A', 0, 0, 0xc3, 0x50};
+    uint32_t crc = 0xffffffff; // CRC-32 of PNG, appendix D
+    for (uint8_t c : chunk) {
+        crc ^= c;
+        for (int k = 0; k < 8; ++k) crc = crc & 1 ? crc >> 1 ^ 0xedb88320 : crc >> 1;
+    }
+    crc = ~crc;
+    chunk.insert(chunk.begin(), {0, 0, 0, 4});
+    for (int k = 24; k >= 0; k -= 8) chunk.push_back(uint8_t(crc >> k));
+    b.insert(b.begin() + 33, chunk.begin(), chunk.end());
+    putBytes(s / "half.png", b);
+    Diagnostics d;
+    TextureSystem sys(d), raw(d, {Wrap::Clamp, false, {}});
+    auto value = [&](TextureSystem& system, const char* name, int c) {
+        float v;
+        lookup(system.open(name, {s.dir.string()}), c, 1, 0.4f, 0.4f, {}, {}, &v);
+        return v;
+    };
+    EXPECT_NEAR(value(sys, "plain.png", 0), 64 / 255.0f, 1e-6f);
+    EXPECT_NEAR(value(sys, "half.png", 0), (64 / 255.0f) * (64 / 255.0f), 1e-6f); // v^(1 / 0.5)
+    EXPECT_NEAR(value(sys, "half.png", 3), 128 / 255.0f, 1e-6f);                  // alpha is linear as it is
+    EXPECT_NEAR(value(raw, "half.png", 0), 64 / 255.0f, 1e-6f);
+    EXPECT_TRUE(d.all().empty()) << messages(d);
+}
+
 TEST(MakeTexture, LevelsAreReadAsTheyAre) {
     Scratch s;
     Image m = pattern(48, 20, {"r", "g", "b"});
@@ -594,11 +644,11 @@ TEST(MakeTexture, LatLongAndShadow) {
     ASSERT_TRUE(sys.info(h)->projection);
     EXPECT_NEAR(sys.info(h)->projection->m[1][1], 1, 1e-12); // back to screen: y up
     ShadowOptions so;
-    EXPECT_EQ(shadowLookup(h, {-0.5, 0, 3}, {}, {}, so), 1);  // behind the near half
-    EXPECT_EQ(shadowLookup(h, {0.5, 0, 3}, {}, {}, so), 0);   // before the far half
+    EXPECT_EQ(shadowLookup(h, {-0.5, 0, 3}, {}, {}, so), 1); // behind the near half
+    EXPECT_EQ(shadowLookup(h, {0.5, 0, 3}, {}, {}, so), 0);  // before the far half
     EXPECT_EQ(shadowLookup(h, {0.5, 0, 6}, {}, {}, so), 1);
-    EXPECT_EQ(shadowLookup(h, {-0.5, 0, 2}, {}, {}, so), 0);  // on the surface itself
-    EXPECT_EQ(shadowLookup(h, {3, 0, 100}, {}, {}, so), 0);   // where the map does not look
+    EXPECT_EQ(shadowLookup(h, {-0.5, 0, 2}, {}, {}, so), 0);        // on the surface itself
+    EXPECT_EQ(shadowLookup(h, {3, 0, 100}, {}, {}, so), 0);         // where the map does not look
     EXPECT_NEAR(shadowLookup(h, {0, 0, 3}, {}, {}, so), 0.5, 1e-6); // the edge, between two texels
     so.sblur = so.tblur = 0.2f;
     EXPECT_NEAR(shadowLookup(h, {0, 0, 3}, {}, {}, so), 0.5, 1e-6);

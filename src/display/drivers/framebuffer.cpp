@@ -6,16 +6,17 @@ namespace {
 
 class Framebuffer : public PictureDriver {
     Format format(const DriverSetup& s, Diagnostics& diags) override {
-        diags.report(Severity::Info, Rie::NoError, s.place, "display \"" + s.name + "\": no viewer; the picture is written to a file of that name");
+        diags.report(Severity::Info, Rie::NoError, s.place,
+                     "display \"" + s.name + "\": no viewer; the picture is written to a file of that name");
         return formatOfExtension(s.name).value_or(Format::Tiff);
     }
 };
 
 } // namespace
 
-const DriverDescriptor framebufferDriver{
-    {"framebuffer", "it", "idisplay", "rgbframebuffer", "x11", "windows"},
-    "A window. Without a viewer a picture file is written under the given name, by its extension (OpenEXR, PNG, else TIFF), and this is said.",
-    []() -> std::unique_ptr<Driver> { return std::make_unique<Framebuffer>(); }};
+const DriverDescriptor framebufferDriver{{"framebuffer", "it", "idisplay", "rgbframebuffer", "x11", "windows"},
+                                         "A window. Without a viewer a picture file is written under the given name, by its "
+                                         "extension (OpenEXR, PNG, else TIFF), and this is said.",
+                                         []() -> std::unique_ptr<Driver> { return std::make_unique<Framebuffer>(); }};
 
 } // namespace alpenglow::display

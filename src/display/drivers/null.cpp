@@ -12,7 +12,8 @@ class Null : public Driver {
 
 } // namespace
 
-const DriverDescriptor nullDriver{
-    {"null", "none"}, "Nothing: the picture is rendered and thrown away.", []() -> std::unique_ptr<Driver> { return std::make_unique<Null>(); }};
+const DriverDescriptor nullDriver{{"null", "none"},
+                                  "Nothing: the picture is rendered and thrown away.",
+                                  []() -> std::unique_ptr<Driver> { return std::make_unique<Null>(); }};
 
 } // namespace alpenglow::display

@@ -10,10 +10,10 @@ class OpenExr : public PictureDriver {
 
 } // namespace
 
-const DriverDescriptor openexrDriver{
-    {"openexr", "exr"},
-    "OpenEXR. Floating point whatever Quantize says; AOVs are layers. Parameters: \"string exrpixeltype\" float (default) or half; "
-    "\"string exrcompression\" none, rle, zips, zip (default), piz.",
-    []() -> std::unique_ptr<Driver> { return std::make_unique<OpenExr>(); }};
+const DriverDescriptor openexrDriver{{"openexr", "exr"},
+                                     "OpenEXR. Floating point whatever Quantize says; AOVs are layers. Parameters: \"string "
+                                     "exrpixeltype\" float (default) or half; "
+                                     "\"string exrcompression\" none, rle, zips, zip (default), piz.",
+                                     []() -> std::unique_ptr<Driver> { return std::make_unique<OpenExr>(); }};
 
 } // namespace alpenglow::display

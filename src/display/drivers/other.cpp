@@ -9,17 +9,19 @@ class Other : public PictureDriver {
         Format f = formatOfExtension(s.name).value_or(Format::Tiff);
         const char* name = f == Format::Exr ? "OpenEXR" : f == Format::Png ? "PNG" : "TIFF";
         diags.report(Severity::Warning, Rie::Incapable, s.place,
-                     "display \"" + s.name + "\": type \"" + s.type + "\" is not available; a " + name + " is written under that name");
+                     "display \"" + s.name + "\": type \"" + s.type + "\" is not available; a " + name +
+                         " is written under that name");
         return f;
     }
 };
 
 } // namespace
 
-const DriverDescriptor otherDriver{
-    {"targa", "tga", "bmp", "bitmap", "jpeg", "jpg", "gif", "sgi", "iff", "alias", "cineon", "avs", "pic", "dspy_s_avs", "texture"},
-    "Formats that are not written here (Targa, BMP, ...): a picture file under the given name, by its extension (OpenEXR, PNG, else "
-    "TIFF), and this is said.",
-    []() -> std::unique_ptr<Driver> { return std::make_unique<Other>(); }};
+const DriverDescriptor otherDriver{{"targa", "tga", "bmp", "bitmap", "jpeg", "jpg", "gif", "sgi", "iff", "alias", "cineon", "avs",
+                                    "pic", "dspy_s_avs", "texture"},
+                                   "Formats that are not written here (Targa, BMP, ...): a picture file under the given name, by "
+                                   "its extension (OpenEXR, PNG, else "
+                                   "TIFF), and this is said.",
+                                   []() -> std::unique_ptr<Driver> { return std::make_unique<Other>(); }};
 
 } // namespace alpenglow::display

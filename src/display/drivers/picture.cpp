@@ -12,15 +12,13 @@ bool PictureDriver::open(const DriverSetup& s, Diagnostics& diags) {
         return false;
     };
     if (s.width <= 0 || s.height <= 0 || s.channels.empty()) return refuse(Rie::Range, "it has no pixels");
-    if (s.width > limits::kImageSide || s.height > limits::kImageSide || s.channels.size() > size_t(limits::kImageChannels)
-        || size_t(s.width) * size_t(s.height) * s.channels.size() > limits::kImageBytes / sizeof(float))
+    if (s.width > limits::kImageSide || s.height > limits::kImageSide || s.channels.size() > size_t(limits::kImageChannels) ||
+        size_t(s.width) * size_t(s.height) * s.channels.size() > limits::kImageBytes / sizeof(float))
         return refuse(Rie::Limit, "it is too large");
     format_ = format(s, diags);
     try {
         image_ = makeImage(s.width, s.height, s.channels);
-    } catch (const std::exception&) {
-        return refuse(Rie::NoMem, "out of memory");
-    }
+    } catch (const std::exception&) { return refuse(Rie::NoMem, "out of memory"); }
     image_.originX = s.originX;
     image_.originY = s.originY;
     if (s.fullWidth > 0 && s.fullHeight > 0 && (s.fullWidth != s.width || s.fullHeight != s.height || s.originX || s.originY)) {
@@ -36,7 +34,8 @@ bool PictureDriver::open(const DriverSetup& s, Diagnostics& diags) {
 
 bool PictureDriver::rows(int y, int count, const float* data) {
     if (y < 0 || count < 0 || y > image_.height || count > image_.height - y) return false;
-    if (count) std::memcpy(image_.pixel(0, y), data, sizeof(float) * size_t(count) * size_t(image_.width) * image_.channels.size());
+    if (count)
+        std::memcpy(image_.pixel(0, y), data, sizeof(float) * size_t(count) * size_t(image_.width) * image_.channels.size());
     return true;
 }
 
@@ -54,8 +53,10 @@ WriteOptions PictureDriver::chooseSamples(Diagnostics& diags) {
     };
     if (format_ == Format::Exr) {
         o.compression = stringParam(setup_, "exrcompression", {"none", "rle", "zips", "zip", "piz"}, "zip", diags);
-        o.sample = stringParam(setup_, "exrpixeltype", {"float", "half"}, "float", diags) == "half" ? Sample::Half : Sample::Float;
-        if (setup_.quantizeAsked && !setup_.rgba.floating() && !data()) say(Severity::Info, "OpenEXR holds floating point; quantisation does not apply");
+        o.sample =
+            stringParam(setup_, "exrpixeltype", {"float", "half"}, "float", diags) == "half" ? Sample::Half : Sample::Float;
+        if (setup_.quantizeAsked && !setup_.rgba.floating() && !data())
+            say(Severity::Info, "OpenEXR holds floating point; quantisation does not apply");
         return o;
     }
     o.compression = stringParam(setup_, "compression", {"none", "lzw", "zip", "deflate"}, "zip", diags);
@@ -103,8 +104,8 @@ bool PictureDriver::close(Diagnostics& diags) {
     return writeImage(setup_.name, codes, o, diags);
 }
 
-std::string stringParam(const DriverSetup& s, const std::string& name, const std::vector<std::string>& allowed, const std::string& fallback,
-                        Diagnostics& diags) {
+std::string stringParam(const DriverSetup& s, const std::string& name, const std::vector<std::string>& allowed,
+                        const std::string& fallback, Diagnostics& diags) {
     const scene::Param* p = scene::find(s.params, name);
     if (!p) return fallback;
     if (p->strings.size() == 1 && std::find(allowed.begin(), allowed.end(), p->strings[0]) != allowed.end()) return p->strings[0];

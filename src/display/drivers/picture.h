@@ -25,9 +25,11 @@ private:
 };
 
 /// Reads a string parameter; `fallback` when absent; anything outside `allowed` is reported.
-std::string stringParam(const DriverSetup&, const std::string& name, const std::vector<std::string>& allowed, const std::string& fallback, Diagnostics&);
+std::string stringParam(const DriverSetup&, const std::string& name, const std::vector<std::string>& allowed,
+                        const std::string& fallback, Diagnostics&);
 
 // The descriptors, one per file.
-extern const DriverDescriptor openexrDriver, tiffDriver, fileDriver, pngDriver, framebufferDriver, nullDriver, zfileDriver, otherDriver;
+extern const DriverDescriptor openexrDriver, tiffDriver, fileDriver, pngDriver, framebufferDriver, nullDriver, zfileDriver,
+    otherDriver;
 
 } // namespace alpenglow::display

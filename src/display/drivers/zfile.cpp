@@ -30,7 +30,8 @@ public:
 
 const DriverDescriptor zfileDriver{
     {"zfile", "shadow", "shadowmap", "z", "deepshad"},
-    "Depth, camera space, as floating point OpenEXR whatever the extension, with the matrices worldToCamera and worldToNDC in its header. "
+    "Depth, camera space, as floating point OpenEXR whatever the extension, with the matrices worldToCamera and worldToNDC in "
+    "its header. "
     "MakeShadow and shadow() read it. \"deepshad\" writes the same, without the layers behind the first surface.",
     []() -> std::unique_ptr<Driver> { return std::make_unique<Zfile>(); }};
 

@@ -2,6 +2,7 @@
 // Not read: deep pictures, subsampled chroma; of several parts the first.
 #include "base/limits.h"
 #include "display/formats/codecs.h"
+#include <Iex.h>
 #include <ImathBox.h>
 #include <ImfChannelList.h>
 #include <ImfFloatAttribute.h>
@@ -18,7 +19,6 @@
 #include <ImfStringAttribute.h>
 #include <ImfTiledInputPart.h>
 #include <ImfTiledOutputFile.h>
-#include <Iex.h>
 #include <algorithm>
 #include <cstring>
 
@@ -44,7 +44,10 @@ std::string checkHeaders(Bytes b) {
         uint64_t tileW = 0, tileH = 0, w = 0, h = 0;
         while (true) {
             if (at >= b.size()) return "it is truncated";
-            if (b[at] == 0) { ++at; break; }
+            if (b[at] == 0) {
+                ++at;
+                break;
+            }
             auto text = [&](std::string& s) {
                 while (at < b.size() && b[at] && s.size() < 256) s += char(b[at++]);
                 return at < b.size() && b[at++] == 0;
@@ -146,8 +149,8 @@ ChannelOrder orderOf(const std::string& name) {
     size_t dot = name.rfind('.');
     std::string layer = dot == std::string::npos ? "" : name.substr(0, dot);
     std::string leaf = dot == std::string::npos ? name : name.substr(dot + 1);
-    static constexpr const char* ranks[] = {"r", "R", "red", "x", "X", "Y", "y", "g", "G", "green", "b", "B", "blue",
-                                            "z", "Z", "a",   "A", "alpha"};
+    static constexpr const char* ranks[] = {"r",     "R", "red", "x",    "X", "Y", "y", "g", "G",
+                                            "green", "b", "B",   "blue", "z", "Z", "a", "A", "alpha"};
     static constexpr int values[] = {0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 2, 3, 3, 3};
     int rank = 10;
     for (size_t i = 0; i < std::size(values); ++i)
@@ -195,7 +198,8 @@ void readAttributes(const Imf::Header& h, Image& m) {
         std::string name = i.name();
         if (name == "name" || name == "type") continue;
         if (auto* s = dynamic_cast<const Imf::StringAttribute*>(&i.attribute())) m.metadata[name] = s->value();
-        else if (auto* f = dynamic_cast<const Imf::FloatAttribute*>(&i.attribute()); f && name != "pixelAspectRatio" && name != "screenWindowWidth")
+        else if (auto* f = dynamic_cast<const Imf::FloatAttribute*>(&i.attribute());
+                 f && name != "pixelAspectRatio" && name != "screenWindowWidth")
             m.metadata[name] = std::to_string(f->value());
         else if (auto* n = dynamic_cast<const Imf::IntAttribute*>(&i.attribute()); n && name != "chunkCount" && name != "version")
             m.metadata[name] = std::to_string(n->value());
@@ -213,7 +217,8 @@ std::optional<Image> decodeExr(Bytes b, const DecodeContext& ctx) {
         Imf::MultiPartInputFile file(stream, 0);
         const Imf::Header& h = file.header(0);
         if (file.parts() > 1) ctx.warn("it has " + std::to_string(file.parts()) + " parts; the first is used");
-        if (h.hasType() && h.type() != Imf::SCANLINEIMAGE && h.type() != Imf::TILEDIMAGE) return ctx.refuse("deep pictures are not supported");
+        if (h.hasType() && h.type() != Imf::SCANLINEIMAGE && h.type() != Imf::TILEDIMAGE)
+            return ctx.refuse("deep pictures are not supported");
         Imath::Box2i dw = h.dataWindow(), full = h.displayWindow();
         Image m;
         m.bits = 0;
@@ -263,9 +268,7 @@ std::optional<Image> decodeExr(Bytes b, const DecodeContext& ctx) {
             part.readTiles(0, part.numXTiles(l) - 1, 0, part.numYTiles(l) - 1, l);
         }
         return m;
-    } catch (const std::bad_alloc&) {
-        throw;
-    } catch (const std::exception& e) {
+    } catch (const std::bad_alloc&) { throw; } catch (const std::exception& e) {
         return ctx.refuse(e.what());
     }
 }
@@ -310,7 +313,8 @@ bool encodeExr(OutputFile& out, const Image& m, const WriteOptions& o, std::stri
             return true;
         }
         bool mip = !m.levels.empty();
-        h.setTileDescription(Imf::TileDescription(unsigned(o.tile), unsigned(o.tile), mip ? Imf::MIPMAP_LEVELS : Imf::ONE_LEVEL, Imf::ROUND_DOWN));
+        h.setTileDescription(
+            Imf::TileDescription(unsigned(o.tile), unsigned(o.tile), mip ? Imf::MIPMAP_LEVELS : Imf::ONE_LEVEL, Imf::ROUND_DOWN));
         Imf::TiledOutputFile file(stream, h, 0);
         if (mip && file.numLevels() != int(m.levels.size()) + 1) {
             why = "its levels are not a MIP-map";
@@ -319,8 +323,8 @@ bool encodeExr(OutputFile& out, const Image& m, const WriteOptions& o, std::stri
         for (int l = 0; l < file.numLevels(); ++l) {
             const Image& level = l == 0 ? m : m.levels[size_t(l - 1)];
             Imath::Box2i w = file.dataWindowForLevel(l);
-            if (level.width != w.max.x - w.min.x + 1 || level.height != w.max.y - w.min.y + 1 || level.channels.size() != m.channels.size()
-                || level.data.size() != level.sampleCount()) {
+            if (level.width != w.max.x - w.min.x + 1 || level.height != w.max.y - w.min.y + 1 ||
+                level.channels.size() != m.channels.size() || level.data.size() != level.sampleCount()) {
                 why = "its levels are not a MIP-map";
                 return false;
             }
@@ -328,9 +332,7 @@ bool encodeExr(OutputFile& out, const Image& m, const WriteOptions& o, std::stri
             file.writeTiles(0, file.numXTiles(l) - 1, 0, file.numYTiles(l) - 1, l);
         }
         return true;
-    } catch (const std::bad_alloc&) {
-        throw;
-    } catch (const std::exception& e) {
+    } catch (const std::bad_alloc&) { throw; } catch (const std::exception& e) {
         why = e.what();
         return false;
     }

@@ -177,12 +177,15 @@ bool encodePng(OutputFile& out, const Image& m, const WriteOptions& o, Diagnosti
     if (e.index.size() < m.channels.size()) {
         std::string left;
         for (int c = 0; c < m.channelCount(); ++c)
-            if (std::find(e.index.begin(), e.index.end(), c) == e.index.end()) left += (left.empty() ? "" : ", ") + m.channels[size_t(c)];
-        diags.report(Severity::Warning, Rie::Incapable, o.place, "PNG holds no more than one picture; left out of \"" + out.path() + "\": " + left,
+            if (std::find(e.index.begin(), e.index.end(), c) == e.index.end())
+                left += (left.empty() ? "" : ", ") + m.channels[size_t(c)];
+        diags.report(Severity::Warning, Rie::Incapable, o.place,
+                     "PNG holds no more than one picture; left out of \"" + out.path() + "\": " + left,
                      "OpenEXR holds any channels");
     }
     for (auto& [key, value] : m.metadata) {
-        bool plain = !key.empty() && key.size() < 80 && key.front() != ' ' && key.back() != ' ' && key != "gamma" && key != "colorspace";
+        bool plain =
+            !key.empty() && key.size() < 80 && key.front() != ' ' && key.back() != ' ' && key != "gamma" && key != "colorspace";
         for (char c : key) plain = plain && c >= 32 && c < 127;
         if (!plain) continue;
         png_text t{};

@@ -44,12 +44,14 @@ std::optional<Image> decodeRadiance(Bytes b, const DecodeContext& ctx) {
     std::string s;
     do {
         if (!line(s)) return ctx.refuse("it is truncated");
-        if (s.rfind("FORMAT=", 0) == 0 && s != "FORMAT=32-bit_rle_rgbe") return ctx.refuse("its colour format is not RGBE", Rie::Unimplement);
+        if (s.rfind("FORMAT=", 0) == 0 && s != "FORMAT=32-bit_rle_rgbe")
+            return ctx.refuse("its colour format is not RGBE", Rie::Unimplement);
     } while (!s.empty());
     if (!line(s)) return ctx.refuse("it is truncated");
     unsigned w = 0, h = 0;
     char end = 0;
-    if (std::sscanf(s.c_str(), "-Y %8u +X %8u%c", &h, &w, &end) != 2) return ctx.refuse("its orientation is not supported", Rie::Unimplement);
+    if (std::sscanf(s.c_str(), "-Y %8u +X %8u%c", &h, &w, &end) != 2)
+        return ctx.refuse("its orientation is not supported", Rie::Unimplement);
     if (!ctx.sizeAllowed(w, h, 3)) return {};
     Image m = makeImage(int(w), int(h), defaultChannels(3));
     m.bits = 8;

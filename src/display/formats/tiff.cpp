@@ -1,13 +1,13 @@
-// TIFF by libtiff, with its per-file handlers and memory callbacks: nothing global is touched. Read: 8, 16, 32 bit integers, 16, 32,
-// 64 bit floats, contiguous or separate planes, strips or tiles, any compression the library has; the rest (palettes, YCbCr, CMYK,
-// 1 to 4 bits) through its RGBA conversion. Written: 8, 16, float, contiguous strips.
+// TIFF by libtiff, with its per-file handlers and memory callbacks: nothing global is touched. Read: 8, 16, 32 bit integers, 16,
+// 32, 64 bit floats, contiguous or separate planes, strips or tiles, any compression the library has; the rest (palettes, YCbCr,
+// CMYK, 1 to 4 bits) through its RGBA conversion. Written: 8, 16, float, contiguous strips.
 #include "base/limits.h"
 #include "display/formats/codecs.h"
 #include <algorithm>
-#include <half.h>
 #include <cmath>
 #include <cstdarg>
 #include <cstring>
+#include <half.h>
 #include <memory>
 #include <tiffio.h>
 
@@ -34,8 +34,12 @@ struct Messages {
     static int warning(TIFF*, void*, const char*, const char*, va_list) { return 1; } // unknown tags and such: no loss of pixels
 };
 
-struct OptionsDeleter { void operator()(TIFFOpenOptions* o) const { TIFFOpenOptionsFree(o); } };
-struct TiffDeleter { void operator()(TIFF* t) const { TIFFClose(t); } };
+struct OptionsDeleter {
+    void operator()(TIFFOpenOptions* o) const { TIFFOpenOptionsFree(o); }
+};
+struct TiffDeleter {
+    void operator()(TIFF* t) const { TIFFClose(t); }
+};
 using TiffHandle = std::unique_ptr<TIFF, TiffDeleter>;
 
 std::unique_ptr<TIFFOpenOptions, OptionsDeleter> openOptions(Messages& messages) {
@@ -82,12 +86,14 @@ toff_t fileSize(thandle_t h) { return static_cast<OutputFile*>(h)->size(); }
 
 struct Layout {
     uint32_t width = 0, height = 0;
-    uint16_t bits = 1, samples = 1, format = SAMPLEFORMAT_UINT, planar = PLANARCONFIG_CONTIG, photometric = PHOTOMETRIC_MINISBLACK;
+    uint16_t bits = 1, samples = 1, format = SAMPLEFORMAT_UINT, planar = PLANARCONFIG_CONTIG,
+             photometric = PHOTOMETRIC_MINISBLACK;
     uint16_t orientation = ORIENTATION_TOPLEFT;
     bool direct() const {
-        bool photo = photometric == PHOTOMETRIC_MINISBLACK || photometric == PHOTOMETRIC_MINISWHITE || photometric == PHOTOMETRIC_RGB;
-        bool integer = (format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_INT || format == SAMPLEFORMAT_VOID)
-                       && (bits == 8 || bits == 16 || bits == 32);
+        bool photo =
+            photometric == PHOTOMETRIC_MINISBLACK || photometric == PHOTOMETRIC_MINISWHITE || photometric == PHOTOMETRIC_RGB;
+        bool integer = (format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_INT || format == SAMPLEFORMAT_VOID) &&
+                       (bits == 8 || bits == 16 || bits == 32);
         bool real = format == SAMPLEFORMAT_IEEEFP && (bits == 16 || bits == 32 || bits == 64);
         return photo && (integer || real);
     }
@@ -102,7 +108,8 @@ Layout layoutOf(TIFF* t) {
     TIFFGetFieldDefaulted(t, TIFFTAG_SAMPLEFORMAT, &l.format);
     TIFFGetFieldDefaulted(t, TIFFTAG_PLANARCONFIG, &l.planar);
     TIFFGetFieldDefaulted(t, TIFFTAG_ORIENTATION, &l.orientation);
-    if (!TIFFGetField(t, TIFFTAG_PHOTOMETRIC, &l.photometric)) l.photometric = l.samples >= 3 ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK;
+    if (!TIFFGetField(t, TIFFTAG_PHOTOMETRIC, &l.photometric))
+        l.photometric = l.samples >= 3 ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK;
     return l;
 }
 
@@ -156,8 +163,8 @@ bool readDirect(TIFF* t, const Layout& l, Image& m) {
     TIFFGetField(t, TIFFTAG_TILEWIDTH, &tw);
     TIFFGetField(t, TIFFTAG_TILELENGTH, &th);
     tmsize_t need = TIFFTileSize(t);
-    if (!tw || !th || tw > uint32_t(limits::kImageSide) || th > uint32_t(limits::kImageSide) || need <= 0
-        || size_t(need) > (size_t(1) << 30) || size_t(need) < size_t(tw) * th * perPixel * unit)
+    if (!tw || !th || tw > uint32_t(limits::kImageSide) || th > uint32_t(limits::kImageSide) || need <= 0 ||
+        size_t(need) > (size_t(1) << 30) || size_t(need) < size_t(tw) * th * perPixel * unit)
         return false;
     std::vector<uint8_t> tile((size_t(need)));
     for (size_t plane = 0; plane < (separate ? n : 1); ++plane)
@@ -228,7 +235,8 @@ std::optional<Image> readDirectory(TIFF* t, const DecodeContext& ctx, const Mess
         ok = readDirect(t, l, m);
         if (ok && l.photometric == PHOTOMETRIC_MINISWHITE)
             for (float& v : m.data) v = 1 - v;
-        if (l.orientation >= ORIENTATION_LEFTTOP && l.orientation <= ORIENTATION_LEFTBOT) ctx.warn("its orientation (turned by 90 degrees) is ignored");
+        if (l.orientation >= ORIENTATION_LEFTTOP && l.orientation <= ORIENTATION_LEFTBOT)
+            ctx.warn("its orientation (turned by 90 degrees) is ignored");
         flip(m, l.orientation == ORIENTATION_TOPRIGHT || l.orientation == ORIENTATION_BOTRIGHT,
              l.orientation == ORIENTATION_BOTRIGHT || l.orientation == ORIENTATION_BOTLEFT);
     } else {
@@ -249,8 +257,8 @@ std::optional<Image> readDirectory(TIFF* t, const DecodeContext& ctx, const Mess
     if (std::string s = text(TIFFTAG_PIXAR_WRAPMODES); !s.empty()) m.metadata["wrapmodes"] = s;
     if (std::string s = text(TIFFTAG_PIXAR_TEXTUREFORMAT); !s.empty()) m.metadata["textureformat"] = s;
     uint32_t full = 0, fullH = 0;
-    if (TIFFGetField(t, TIFFTAG_PIXAR_IMAGEFULLWIDTH, &full) && TIFFGetField(t, TIFFTAG_PIXAR_IMAGEFULLLENGTH, &fullH)
-        && full <= uint32_t(limits::kImageSide) && fullH <= uint32_t(limits::kImageSide)) {
+    if (TIFFGetField(t, TIFFTAG_PIXAR_IMAGEFULLWIDTH, &full) && TIFFGetField(t, TIFFTAG_PIXAR_IMAGEFULLLENGTH, &fullH) &&
+        full <= uint32_t(limits::kImageSide) && fullH <= uint32_t(limits::kImageSide)) {
         m.fullWidth = int(full);
         m.fullHeight = int(fullH);
         float x = 0, y = 0, rx = 1, ry = 1;
@@ -280,8 +288,8 @@ std::optional<Image> decodeTiff(Bytes b, const DecodeContext& ctx) {
     Messages messages;
     auto options = openOptions(messages);
     MemoryClient client{b};
-    TiffHandle t(TIFFClientOpenExt(ctx.name.c_str(), "r", &client, memoryRead, noWrite, memorySeek, noClose, memorySize, memoryMap,
-                                   memoryUnmap, options.get()));
+    TiffHandle t(TIFFClientOpenExt(ctx.name.c_str(), "r", &client, memoryRead, noWrite, memorySeek, noClose, memorySize,
+                                   memoryMap, memoryUnmap, options.get()));
     if (!t) return ctx.refuse(messages.first.empty() ? "it is damaged" : messages.first);
     auto m = readDirectory(t.get(), ctx, messages);
     if (!m || !ctx.options.levels) return m;
@@ -306,8 +314,8 @@ bool encodeTiff(OutputFile& out, const Image& m, const WriteOptions& o, std::str
     unsigned bits = o.sample == Sample::UInt8 ? 8 : o.sample == Sample::UInt16 ? 16 : 32;
     size_t n = m.channels.size(), rowBytes = n * size_t(m.width) * bits / 8;
     bool big = rowBytes * size_t(m.height) > (size_t(3) << 30);
-    TiffHandle t(TIFFClientOpenExt(out.path().c_str(), big ? "w8" : "w", &out, fileRead, fileWrite, fileSeek, noClose, fileSize, nullptr,
-                                   nullptr, options.get()));
+    TiffHandle t(TIFFClientOpenExt(out.path().c_str(), big ? "w8" : "w", &out, fileRead, fileWrite, fileSeek, noClose, fileSize,
+                                   nullptr, nullptr, options.get()));
     if (!t) {
         why = messages.first;
         return false;

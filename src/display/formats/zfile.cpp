@@ -1,5 +1,5 @@
-// The depth files of the eighties: magic 2F 08 67 AB, two 16-bit sizes, world to screen and world to camera as 16 floats each, then
-// the depths, all in the byte order of the machine that wrote them.
+// The depth files of the eighties: magic 2F 08 67 AB, two 16-bit sizes, world to screen and world to camera as 16 floats each,
+// then the depths, all in the byte order of the machine that wrote them.
 #include "display/formats/codecs.h"
 #include <bit>
 #include <cstring>

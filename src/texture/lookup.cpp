@@ -46,7 +46,7 @@ void filteredLookup(const Texture& tex, int first, int count, float s, float t, 
                     Wrap swrap, Wrap twrap, float* out) {
     for (int c = 0; c < count; ++c) out[c] = 0;
     int skip = first < -count ? count : first < 0 ? -first : 0; // a negative channel exists as little as one beyond the last
-    int present = std::clamp(int(tex.channels.size()) - (first + skip), 0, count - skip);
+    int present = first < -count ? 0 : std::clamp(int(tex.channels.size()) - (first + skip), 0, count - skip);
     for (int c = 0; c < count; ++c)
         if (c < skip || c >= skip + present) out[c] = o.fill;
     if (!present) return;

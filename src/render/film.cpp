@@ -1,0 +1,268 @@
+#include "render/film.h"
+#include "base/limits.h"
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace alpenglow::render {
+namespace {
+
+// Min and Max channels keep a float as an integer with the same order, so that merging them is a comparison of integers.
+int32_t orderKey(float f) {
+    int32_t b = std::bit_cast<int32_t>(f == 0 ? 0.0f : f); // -0 and 0 are one value
+    return b < 0 ? int32_t(b ^ 0x7fffffff) : b;
+}
+float fromKey(int32_t k) { return std::bit_cast<float>(k < 0 ? int32_t(k ^ 0x7fffffff) : k); }
+
+Int128 emptyValue(ChannelRule r) {
+    constexpr float inf = std::numeric_limits<float>::infinity();
+    return r == ChannelRule::Average ? 0 : orderKey(r == ChannelRule::Min ? inf : -inf);
+}
+
+void tally(uint64_t& counter) { std::atomic_ref<uint64_t>(counter).fetch_add(1, std::memory_order_relaxed); }
+
+bool insertRange(std::vector<SampleRange>& ranges, SampleRange r) {
+    if (r.begin >= r.end)
+        return false;
+    auto at = std::lower_bound(ranges.begin(), ranges.end(), r, [](auto a, auto b) { return a.begin < b.begin; });
+    if ((at != ranges.end() && at->begin < r.end) || (at != ranges.begin() && std::prev(at)->end > r.begin))
+        return false;
+    at = ranges.insert(at, r);
+    if (std::next(at) != ranges.end() && std::next(at)->begin == at->end) {
+        at->end = std::next(at)->end;
+        ranges.erase(std::next(at));
+    }
+    if (at != ranges.begin() && std::prev(at)->end == at->begin) {
+        std::prev(at)->end = at->end;
+        ranges.erase(at);
+    }
+    return true;
+}
+
+uint64_t total(const std::vector<SampleRange>& ranges) {
+    uint64_t n = 0;
+    for (auto r : ranges)
+        n += r.end - r.begin;
+    return n;
+}
+
+} // namespace
+
+bool Film::check(const FilmDescription& d, Diagnostics& diag, const SourcePlace& place) {
+    auto bad = [&](const std::string& what) {
+        diag.report(Severity::Error, Rie::Limit, place, what);
+        return false;
+    };
+    const Window& w = d.window;
+    if (d.width < 1 || d.height < 1 || d.width > limits::kImageSide || d.height > limits::kImageSide)
+        return bad("picture size " + std::to_string(d.width) + " x " + std::to_string(d.height) + " is outside 1 .. " +
+                   std::to_string(limits::kImageSide));
+    if (w.x0 < 0 || w.y0 < 0 || w.x1 > d.width || w.y1 > d.height || w.x0 >= w.x1 || w.y0 >= w.y1)
+        return bad("crop window " + std::to_string(w.x0) + "," + std::to_string(w.y0) + " to " + std::to_string(w.x1) + "," +
+                   std::to_string(w.y1) + " is empty or outside the picture");
+    if (d.channels.size() > size_t(limits::kFilmChannels))
+        return bad(std::to_string(d.channels.size()) + " channels; at most " + std::to_string(limits::kFilmChannels));
+    return true;
+}
+
+Film::Film(FilmDescription d) : description_(std::move(d)) {
+    pixels_.resize(window().pixels());
+    size_t n = description_.channels.size();
+    aovs_.resize(pixels_.size() * n);
+    for (size_t i = 0; i < aovs_.size(); ++i)
+        aovs_[i] = emptyValue(description_.channels[i % n].rule);
+}
+
+bool Film::add(int x, int y, uint32_t sampleIndex, const FilmSample& s) {
+    const Color& c = s.radiance;
+    if (!std::isfinite(c.x) || !std::isfinite(c.y) || !std::isfinite(c.z) || !std::isfinite(s.alpha)) {
+        tally(nonFinite_);
+        std::atomic_ref<uint8_t> lock(dropLock_[0]);
+        while (lock.exchange(1, std::memory_order_acquire)) {}
+        uint64_t key = uint64_t(sampleIndex) << 32 | uint32_t(y);
+        if (key < firstDropped_[0] || (key == firstDropped_[0] && uint64_t(x) < firstDropped_[1])) {
+            firstDropped_[0] = key;
+            firstDropped_[1] = uint64_t(x);
+        }
+        lock.store(0, std::memory_order_release);
+        return false;
+    }
+    size_t at = index(x, y);
+    Pixel& p = pixels_[at];
+    bool saturated = false;
+    p.rgb[0] += toFixed(c.x, &saturated);
+    p.rgb[1] += toFixed(c.y, &saturated);
+    p.rgb[2] += toFixed(c.z, &saturated);
+    p.alpha += toFixed(s.alpha, &saturated);
+    // The square is taken of the rounded luminance, so that the variance of equal samples is exactly 0.
+    Int128 lum = toFixed(luminance(Vec3d(c)), &saturated);
+    p.replicaY[sampleIndex % kReplicas] += lum;
+    p.replicaCount[sampleIndex % kReplicas]++;
+    p.y2 += square(lum);
+    size_t n = description_.channels.size();
+    for (size_t i = 0; i < n; ++i) {
+        float v = i < s.aovs.size() ? s.aovs[i] : 0.0f;
+        Int128& sum = aovs_[at * n + i];
+        ChannelRule rule = description_.channels[i].rule;
+        if (std::isnan(v) || (rule == ChannelRule::Average && std::isinf(v)))
+            tally(nonFiniteAovs_);
+        else if (rule == ChannelRule::Average)
+            sum += toFixed(v, &saturated);
+        else if (rule == ChannelRule::Min)
+            sum = std::min<Int128>(sum, orderKey(v));
+        else
+            sum = std::max<Int128>(sum, orderKey(v));
+    }
+    if (saturated)
+        tally(saturated_);
+    return true;
+}
+
+bool Film::addRange(SampleRange r) {
+    auto next = ranges_;
+    if (!insertRange(next, r) || total(next) > limits::kSamplesPerPixel)
+        return false;
+    ranges_ = std::move(next);
+    return true;
+}
+
+uint32_t Film::samplesPerPixel() const { return uint32_t(total(ranges_)); }
+
+bool Film::merge(const Film& o, Diagnostics& diag, const SourcePlace& place) {
+    auto bad = [&](Rie code, const std::string& what) {
+        diag.report(Severity::Error, code, place, what);
+        return false;
+    };
+    const auto &a = description_, &b = o.description_;
+    if (a.width != b.width || a.height != b.height || a.window != b.window)
+        return bad(Rie::Consistency, "the parts have different sizes or crop windows");
+    if (a.channels != b.channels)
+        return bad(Rie::Consistency, "the parts have different channels");
+    if (a.seed != b.seed)
+        return bad(Rie::Consistency, "the parts have different seeds (" + std::to_string(a.seed) + " and " + std::to_string(b.seed) + ")");
+    if (a.scene != b.scene)
+        return bad(Rie::Consistency, "the parts come from different scenes or options");
+    auto next = ranges_;
+    for (auto r : o.ranges_)
+        if (!insertRange(next, r))
+            return bad(Rie::Consistency, "the parts share samples: " + std::to_string(r.begin) + ":" + std::to_string(r.end) +
+                                             " overlaps what is already there");
+    if (total(next) > limits::kSamplesPerPixel)
+        return bad(Rie::Limit, "more than " + std::to_string(limits::kSamplesPerPixel) + " samples per pixel");
+    ranges_ = std::move(next);
+    for (size_t i = 0; i < pixels_.size(); ++i) {
+        Pixel& p = pixels_[i];
+        const Pixel& q = o.pixels_[i];
+        for (int k = 0; k < 3; ++k)
+            p.rgb[k] += q.rgb[k];
+        p.alpha += q.alpha;
+        p.y2 += q.y2;
+        for (uint32_t k = 0; k < kReplicas; ++k) {
+            p.replicaY[k] += q.replicaY[k];
+            p.replicaCount[k] += q.replicaCount[k];
+        }
+    }
+    size_t n = a.channels.size();
+    for (size_t i = 0; i < aovs_.size(); ++i) {
+        ChannelRule rule = a.channels[i % n].rule;
+        if (rule == ChannelRule::Average)
+            aovs_[i] += o.aovs_[i];
+        else
+            aovs_[i] = rule == ChannelRule::Min ? std::min(aovs_[i], o.aovs_[i]) : std::max(aovs_[i], o.aovs_[i]);
+    }
+    nonFinite_ += o.nonFinite_;
+    nonFiniteAovs_ += o.nonFiniteAovs_;
+    saturated_ += o.saturated_;
+    if (std::lexicographical_compare(o.firstDropped_, o.firstDropped_ + 2, firstDropped_, firstDropped_ + 2))
+        std::copy(o.firstDropped_, o.firstDropped_ + 2, firstDropped_);
+    metadata.insert(o.metadata.begin(), o.metadata.end());
+    return true;
+}
+
+uint32_t Film::count(int x, int y) const {
+    uint32_t n = 0;
+    for (uint32_t c : pixel(x, y).replicaCount)
+        n += c;
+    return n;
+}
+
+Color Film::mean(int x, int y) const {
+    const Pixel& p = pixel(x, y);
+    uint32_t n = count(x, y);
+    return n ? Color(float(fromFixed(p.rgb[0]) / n), float(fromFixed(p.rgb[1]) / n), float(fromFixed(p.rgb[2]) / n)) : Color();
+}
+
+float Film::alpha(int x, int y) const {
+    uint32_t n = count(x, y);
+    return n ? float(fromFixed(pixel(x, y).alpha) / n) : 0;
+}
+
+float Film::aov(int x, int y, int channel) const {
+    const Int128& v = aovs_[index(x, y) * description_.channels.size() + size_t(channel)];
+    if (description_.channels[size_t(channel)].rule != ChannelRule::Average)
+        return fromKey(int32_t(v));
+    uint32_t n = count(x, y);
+    return n ? float(fromFixed(v) / n) : 0;
+}
+
+Moments Film::moments(int x, int y) const {
+    const Pixel& p = pixel(x, y);
+    Moments m;
+    m.n = count(x, y);
+    Int128 sum = 0;
+    for (Int128 v : p.replicaY)
+        sum += v;
+    m.s1 = fromFixed(sum);
+    m.s2 = p.y2.toDouble() * 0x1p-80;
+    if (m.n < 2)
+        return m;
+    // n * S2 - S1^2 is never negative (Cauchy-Schwarz on integers) and fits: 27 + 227 bits.
+    UInt256 d = p.y2;
+    d *= m.n;
+    d -= square(sum);
+    m.variance = d.toDouble() * 0x1p-80 / (double(m.n) * (double(m.n) - 1));
+    return m;
+}
+
+void Film::replica(int x, int y, uint32_t r, double* sum, uint32_t* n) const {
+    const Pixel& p = pixel(x, y);
+    *sum = fromFixed(p.replicaY[r]);
+    *n = p.replicaCount[r];
+}
+
+std::optional<DroppedSample> Film::firstDropped() const {
+    if (firstDropped_[0] == ~0ull)
+        return {};
+    return DroppedSample{uint32_t(firstDropped_[0] >> 32), int(firstDropped_[1]), int(uint32_t(firstDropped_[0]))};
+}
+
+uint64_t Film::digest() const {
+    uint64_t h = 0;
+    auto mix = [&](uint64_t v) { h = mix64(h ^ v) + 0x9e3779b97f4a7c15ull; };
+    auto mix128 = [&](Int128 v) {
+        mix(uint64_t(v));
+        mix(uint64_t(v >> 64));
+    };
+    for (const Pixel& p : pixels_) {
+        for (Int128 v : p.rgb)
+            mix128(v);
+        mix128(p.alpha);
+        for (Int128 v : p.replicaY)
+            mix128(v);
+        for (uint64_t v : p.y2.limb)
+            mix(v);
+        for (uint32_t v : p.replicaCount)
+            mix(v);
+    }
+    for (Int128 v : aovs_)
+        mix128(v);
+    for (auto r : ranges_)
+        mix(uint64_t(r.begin) << 32 | r.end);
+    for (uint64_t v : {nonFinite_, nonFiniteAovs_, saturated_})
+        mix(v);
+    return h;
+}
+
+} // namespace alpenglow::render

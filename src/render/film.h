@@ -1,0 +1,143 @@
+// The film of `path`: exact sums per pixel (design decision 10). Everything an image or a noise figure needs derives from them.
+#pragma once
+#include "base/diagnostics.h"
+#include "base/vec.h"
+#include "render/fixed.h"
+#include "render/sampler.h"
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace alpenglow::render {
+
+/// Pixels x0 <= x < x1, y0 <= y < y1 of the raster; y grows downward.
+struct Window {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+    int width() const { return x1 - x0; }
+    int height() const { return y1 - y0; }
+    size_t pixels() const { return size_t(width()) * size_t(height()); }
+    bool contains(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
+    friend bool operator==(const Window&, const Window&) = default;
+};
+
+/// How the samples of an AOV channel become a pixel.
+enum class ChannelRule : uint8_t {
+    Average, ///< mean over the samples, like Ci
+    Min,     ///< least value (depth filter "min"); +infinity when no sample gave a finite one
+    Max      ///< greatest value; -infinity likewise
+};
+
+struct Channel {
+    std::string name;
+    ChannelRule rule = ChannelRule::Average;
+    friend bool operator==(const Channel&, const Channel&) = default;
+};
+
+/// Samples begin <= index < end of every pixel (--samples A:B).
+struct SampleRange {
+    uint32_t begin = 0, end = 0;
+    friend bool operator==(const SampleRange&, const SampleRange&) = default;
+};
+
+/// What makes two films parts of one render. Parts merge only when all of it is equal.
+struct FilmDescription {
+    int width = 0, height = 0; ///< of the whole picture, pixels
+    Window window;             ///< the crop window; must lie inside the picture
+    uint64_t seed = 0;
+    std::string scene;         ///< a digest of the scene and of every option that changes the picture; chosen by the caller
+    std::vector<Channel> channels; ///< AOVs
+    friend bool operator==(const FilmDescription&, const FilmDescription&) = default;
+};
+
+/// One sample of one pixel. Linear, unclamped; already multiplied by its filter weight.
+struct FilmSample {
+    Color radiance;
+    float alpha = 0;
+    std::span<const float> aovs; ///< one value per channel; missing ones count as 0
+};
+
+/// The first (least sample index, then y, then x) sample that was dropped: its reproducer.
+struct DroppedSample { uint32_t sample = 0; int x = 0, y = 0; };
+
+/// The moments of a pixel's sample luminance Y (Rec. 709 weights), from exact sums.
+struct Moments {
+    uint32_t n = 0;      ///< samples counted
+    double s1 = 0, s2 = 0; ///< sum Y, sum Y^2
+    double variance = 0; ///< (s2 - s1^2 / n) / (n - 1), the difference taken exactly; 0 for n < 2
+};
+
+/// Exact sums over a crop window. Radiance, alpha and luminance are fixed point (fixed.h): values are rounded to 2^-40 one by
+/// one and saturate (counted) at 2^60; from there on every sum is an integer. So the sums do not depend on the order of the
+/// samples, on threads, on how a render was split over machines, or on interruptions.
+///
+/// Threads: different pixels may be added to at the same time, one pixel by one thread at a time (tiles own their pixels). All
+/// other members must not run beside add().
+class Film {
+public:
+    /// The description must be valid: see check().
+    explicit Film(FilmDescription);
+    /// False with an error reported when sizes or channel counts are beyond the limits or the window is outside the picture.
+    static bool check(const FilmDescription&, Diagnostics&, const SourcePlace& = {});
+
+    const FilmDescription& description() const { return description_; }
+    const Window& window() const { return description_.window; }
+
+    /// Adds a sample. A sample with a NaN or an infinity in radiance or alpha is dropped, counted, and false returned. Such a
+    /// value in an averaged AOV counts as 0 and is counted; Min and Max channels accept infinities and pass over NaN, counted.
+    bool add(int x, int y, uint32_t sampleIndex, const FilmSample&);
+
+    /// Says that these samples of every pixel have been added (whole passes only). False when they overlap a range already
+    /// there, are empty, or make more samples than limits::kSamplesPerPixel; then nothing changes.
+    bool addRange(SampleRange);
+    /// The samples held, ascending, neighbours joined.
+    const std::vector<SampleRange>& ranges() const { return ranges_; }
+    /// Samples per pixel: the sum of the ranges' lengths.
+    uint32_t samplesPerPixel() const;
+
+    /// Adds the other film's integers. False with an error when the descriptions differ or sample ranges overlap.
+    bool merge(const Film& other, Diagnostics&, const SourcePlace& = {});
+
+    uint32_t count(int x, int y) const;
+    Color mean(int x, int y) const;  ///< 0 where nothing was counted
+    float alpha(int x, int y) const; ///< mean alpha
+    float aov(int x, int y, int channel) const;
+    Moments moments(int x, int y) const;
+    /// Luminance sum and count of one replica.
+    void replica(int x, int y, uint32_t r, double* sum, uint32_t* n) const;
+
+    uint64_t nonFinite() const { return nonFinite_; }        ///< samples dropped
+    uint64_t nonFiniteAovs() const { return nonFiniteAovs_; } ///< AOV values not counted
+    uint64_t saturated() const { return saturated_; }        ///< values clamped at 2^60
+    std::optional<DroppedSample> firstDropped() const;
+
+    /// A 64-bit digest of all sums: equal films have equal digests.
+    uint64_t digest() const;
+
+    /// Free text that travels with a part file (display names, version); not compared by merge, which keeps this film's own
+    /// entries and adds the missing ones.
+    std::map<std::string, std::string> metadata;
+
+private:
+    friend struct FilmIo;
+    struct Pixel {
+        Int128 rgb[3] = {0, 0, 0};
+        Int128 alpha = 0;
+        Int128 replicaY[kReplicas] = {}; ///< their sum is the first moment
+        UInt256 y2;                      ///< unit 2^-80
+        uint32_t replicaCount[kReplicas] = {};
+    };
+    size_t index(int x, int y) const { return size_t(y - window().y0) * size_t(window().width()) + size_t(x - window().x0); }
+    const Pixel& pixel(int x, int y) const { return pixels_[index(x, y)]; }
+
+    FilmDescription description_;
+    std::vector<Pixel> pixels_;
+    std::vector<Int128> aovs_;      ///< pixels x channels; Min and Max hold the key of the value (film.cpp)
+    std::vector<SampleRange> ranges_;
+    uint64_t nonFinite_ = 0, nonFiniteAovs_ = 0, saturated_ = 0;
+    uint64_t firstDropped_[2] = {~0ull, 0}; ///< {sample << 32 | y, x}; all ones: none
+    std::vector<uint8_t> dropLock_ = {0};   ///< spin lock of firstDropped_, a vector so that films can move
+};
+
+} // namespace alpenglow::render

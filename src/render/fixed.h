@@ -1,0 +1,81 @@
+// Fixed-point sums of the film: integers, so that any order, split, merge or resume gives the same bits (design decision 10).
+#pragma once
+#include <cmath>
+#include <cstdint>
+
+namespace alpenglow::render {
+
+using Int128 = __int128;
+using UInt128 = unsigned __int128;
+
+/// Unit 2^-40. One value reaches +-2^60; 2^27 of them (limits::kSamplesPerPixel) fit the 128 bits.
+inline constexpr int kFixedBits = 40;
+inline constexpr double kFixedMost = 0x1p60;
+
+/// v in units of 2^-40, rounded to the nearest (ties to even). v must be finite; beyond +-2^60 it is clamped and *saturated set.
+inline Int128 toFixed(double v, bool* saturated) {
+    if (!(v <= kFixedMost && v >= -kFixedMost)) {
+        *saturated = true;
+        v = v > 0 ? kFixedMost : -kFixedMost;
+    }
+    return Int128(std::nearbyint(v * 0x1p40));
+}
+
+/// The double nearest to a sum of fixed-point values.
+inline double fromFixed(Int128 v) { return double(v) * 0x1p-40; }
+
+/// 256 bits, unsigned, for sums of squares (unit 2^-80) and their differences. Least significant limb first.
+struct UInt256 {
+    uint64_t limb[4] = {0, 0, 0, 0};
+
+    UInt256& operator+=(const UInt256& o) {
+        uint64_t carry = 0;
+        for (int i = 0; i < 4; ++i) {
+            UInt128 s = UInt128(limb[i]) + o.limb[i] + carry;
+            limb[i] = uint64_t(s);
+            carry = uint64_t(s >> 64);
+        }
+        return *this;
+    }
+    UInt256& operator-=(const UInt256& o) {
+        uint64_t borrow = 0;
+        for (int i = 0; i < 4; ++i) {
+            UInt128 d = UInt128(limb[i]) - o.limb[i] - borrow;
+            limb[i] = uint64_t(d);
+            borrow = uint64_t(d >> 64) & 1;
+        }
+        return *this;
+    }
+    /// Times a 32-bit number, modulo 2^256.
+    UInt256& operator*=(uint32_t n) {
+        uint64_t carry = 0;
+        for (int i = 0; i < 4; ++i) {
+            UInt128 p = UInt128(limb[i]) * n + carry;
+            limb[i] = uint64_t(p);
+            carry = uint64_t(p >> 64);
+        }
+        return *this;
+    }
+    friend bool operator==(const UInt256&, const UInt256&) = default;
+    /// Rounded to within 2^-52 of the value.
+    double toDouble() const {
+        double v = 0;
+        for (int i = 3; i >= 0; --i)
+            v = v * 0x1p64 + double(limb[i]);
+        return v;
+    }
+};
+
+/// v * v, exactly.
+inline UInt256 square(Int128 v) {
+    UInt128 a = v < 0 ? -UInt128(v) : UInt128(v);
+    uint64_t lo = uint64_t(a), hi = uint64_t(a >> 64);
+    UInt128 ll = UInt128(lo) * lo, lh = UInt128(lo) * hi, hh = UInt128(hi) * hi;
+    UInt256 r{{uint64_t(ll), uint64_t(ll >> 64), uint64_t(hh), uint64_t(hh >> 64)}};
+    UInt256 cross{{0, uint64_t(lh), uint64_t(lh >> 64), 0}};
+    r += cross;
+    r += cross;
+    return r;
+}
+
+} // namespace alpenglow::render

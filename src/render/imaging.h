@@ -1,0 +1,29 @@
+// The imaging pipeline after filtering (reference ri.md sections 3.2 and 6): exposure, then quantise and dither. The imager
+// shader runs between the two and is the caller's. Also the sample clamp (pathtracer.md section 6).
+#pragma once
+#include "base/vec.h"
+#include <cstdint>
+
+namespace alpenglow::render {
+
+/// RiExposure: (gain * v)^(1/gamma). Negative values (filters with negative lobes) keep their sign. gamma <= 0 counts as 1.
+float expose(float v, float gain, float gamma);
+Color expose(Color, float gain, float gamma);
+
+/// RiQuantize and the Display parameter "quantize" [zero one min max]. one == zero == 0: floating point output.
+struct QuantizeRule {
+    double zero = 0, one = 0, min = 0, max = 0, dither = 0;
+    bool floating() const { return one == 0 && zero == 0; }
+};
+
+/// round(zero + v (one - zero) + dither * r), clamped to [min, max]; ties to even; NaN gives min. r in [-1, 1) depends on
+/// (seed, x, y, channel) only. Floating rules return v unchanged, without rounding or clamping.
+double quantize(double v, const QuantizeRule&, uint64_t seed, int x, int y, int channel);
+/// The r above.
+double ditherValue(uint64_t seed, int x, int y, int channel);
+
+/// Cap on the brightest channel of one sample, before accumulation: with m = max(r,g,b) > limit > 0 the colour is scaled by
+/// limit / m, hue kept. limit <= 0: off. The only deliberate bias (never applied to means).
+Color clampSample(Color, float limit);
+
+} // namespace alpenglow::render

@@ -1,0 +1,144 @@
+#include "render/noise.h"
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace alpenglow::render {
+namespace {
+
+double relative(double se, double mean) { return se / (std::max(mean, 0.0) + kNoiseEps); }
+
+// P(|T| <= t), Abramowitz and Stegun 26.7.3 and 26.7.4: finite sums for whole degrees of freedom.
+double studentWithin(double t, int dof) {
+    double theta = std::atan(t / std::sqrt(double(dof))), s = std::sin(theta), c = std::cos(theta);
+    if (dof % 2) {
+        double term = c, sum = 0;
+        for (int k = 1; k <= dof - 2; k += 2) {
+            sum += term;
+            term *= c * c * (k + 1) / (k + 2);
+        }
+        return 2 / kPi * (theta + s * sum);
+    }
+    double term = 1, sum = 0;
+    for (int k = 0; k <= dof - 2; k += 2) {
+        sum += term;
+        term *= c * c * (k + 1) / (k + 2);
+    }
+    return s * sum;
+}
+
+// c4 by its recurrence from Gamma(1/2) and Gamma(1): exact, and needs no library function whose last bit may differ.
+double c4(int r) {
+    double ratio = r % 2 ? std::sqrt(kPi) / 2 : 1 / std::sqrt(kPi); // Gamma(r/2)/Gamma((r-1)/2) for r = 3 and r = 2
+    for (int k = r % 2 ? 3 : 2; k < r; k += 2)
+        ratio *= (k / 2.0) / ((k - 1) / 2.0);
+    return std::sqrt(2.0 / (r - 1)) * ratio;
+}
+
+} // namespace
+
+double relativeStandardError(double s1, double s2, uint64_t n) {
+    if (n < 2)
+        return 0;
+    double variance = std::max(0.0, (s2 - s1 * s1 / double(n)) / double(n - 1));
+    return relative(std::sqrt(variance / double(n)), s1 / double(n));
+}
+
+double relativeStandardError(const Moments& m) {
+    return m.n < 2 ? 0 : relative(std::sqrt(m.variance / m.n), m.s1 / m.n);
+}
+
+void summarise(std::vector<double>& rse, double* noiseRSE, double* noiseRSE999) {
+    *noiseRSE = *noiseRSE999 = 0;
+    if (rse.empty())
+        return;
+    double sum = 0;
+    for (double v : rse)
+        sum += v;
+    *noiseRSE = sum / double(rse.size());
+    size_t k = std::min(size_t(std::floor(0.999 * double(rse.size()))), rse.size() - 1);
+    std::nth_element(rse.begin(), rse.begin() + long(k), rse.end());
+    *noiseRSE999 = rse[k];
+}
+
+ReplicaError replicaError(std::span<const double> sums, std::span<const uint32_t> counts) {
+    ReplicaError e;
+    double sum = 0, n = 0;
+    for (size_t r = 0; r < sums.size(); ++r) {
+        sum += sums[r];
+        n += counts[r];
+        e.replicas += counts[r] > 0;
+    }
+    if (n == 0)
+        return e;
+    e.mean = sum / n;
+    if (e.replicas < 2)
+        return e;
+    double s = 0;
+    for (size_t r = 0; r < sums.size(); ++r) {
+        double d = (sums[r] - counts[r] * e.mean) / n; // (n_r / n) (m_r - m)
+        s += d * d;
+    }
+    e.se = std::sqrt(s * e.replicas / (e.replicas - 1));
+    return e;
+}
+
+ReplicaError replicaError(const Film& film, int x, int y) {
+    std::array<double, kReplicas> sums;
+    std::array<uint32_t, kReplicas> counts;
+    for (uint32_t r = 0; r < kReplicas; ++r)
+        film.replica(x, y, r, &sums[r], &counts[r]);
+    return replicaError(sums, counts);
+}
+
+double relativeReplicaError(const ReplicaError& e) { return e.replicas < 2 ? 0 : relative(e.se / c4(e.replicas), e.mean); }
+
+double studentQuantile(double level, int dof) {
+    double hi = 1;
+    while (studentWithin(hi, dof) < level && hi < 1e12)
+        hi *= 2;
+    double lo = 0;
+    for (int i = 0; i < 100; ++i) {
+        double m = (lo + hi) / 2;
+        (studentWithin(m, dof) < level ? lo : hi) = m;
+    }
+    return hi;
+}
+
+Interval confidenceInterval(const ReplicaError& e, double level) {
+    if (e.replicas < 2)
+        return {e.mean, std::numeric_limits<double>::infinity()};
+    return {e.mean, studentQuantile(level, e.replicas - 1) * e.se};
+}
+
+NoiseFigures noiseFigures(const Film& film) {
+    NoiseFigures f;
+    const Window& w = film.window();
+    std::vector<double> rse;
+    rse.reserve(w.pixels());
+    double relativeSum = 0, square = 0;
+    uint32_t most = 0;
+    for (int y = w.y0; y < w.y1; ++y)
+        for (int x = w.x0; x < w.x1; ++x) {
+            Moments m = film.moments(x, y);
+            most = std::max(most, m.n);
+            rse.push_back(relativeStandardError(m));
+            ReplicaError e = replicaError(film, x, y);
+            relativeSum += relativeReplicaError(e);
+            square += e.se * e.se;
+        }
+    if (most >= 2)
+        summarise(rse, &f.noiseRSE, &f.noiseRSE999);
+    f.noiseQMC = relativeSum / double(w.pixels());
+    f.imageError = std::sqrt(square / double(w.pixels()));
+    return f;
+}
+
+double efficiency(double noiseRSE, double renderSec) {
+    return noiseRSE > 0 && renderSec > 0 ? 1 / (noiseRSE * noiseRSE * renderSec) : 0;
+}
+
+double raysPerMS(uint64_t totalRays, double renderSec) { return renderSec > 0 ? double(totalRays) / renderSec / 1000 : 0; }
+
+} // namespace alpenglow::render

@@ -1,0 +1,57 @@
+// What a render knows about its own noise (reference pathtracer.md section 7; design decision 10).
+#pragma once
+#include "render/film.h"
+
+namespace alpenglow::render {
+
+/// Added to the mean so that black pixels have a finite relative error.
+inline constexpr double kNoiseEps = 1e-3;
+
+/// From the sums of a pixel: mu = S1/n, s^2 = (S2 - S1^2/n)/(n-1) not below 0, SE = sqrt(s^2/n), RSE = SE / (mu + 1e-3). 0 for n < 2.
+/// A mean below 0 (only negative filter lobes make one) counts as 0.
+double relativeStandardError(double s1, double s2, uint64_t n);
+/// The same with the variance already known exactly.
+double relativeStandardError(const Moments&);
+
+struct NoiseFigures {
+    double noiseRSE = 0;    ///< mean of the pixels' RSE
+    double noiseRSE999 = 0; ///< the k-th smallest RSE, k = min(floor(0.999 N), N - 1)
+    double noiseQMC = 0;    ///< mean of the pixels' relative error from replicas; what --noise compares
+    double imageError = 0;  ///< absolute: sqrt of the mean of SE_QMC^2; estimates the image's luminance RMSE
+};
+
+/// noiseRSE and noiseRSE999 of a set of pixels, which is reordered. {0, 0} when empty.
+void summarise(std::vector<double>& rse, double* noiseRSE, double* noiseRSE999);
+
+/// The error of a pixel's mean from its independently scrambled replicas (sampler.h). With R replicas of n_r samples, means
+/// m_r, n = sum n_r, m = sum n_r m_r / n:  SE^2 = R/(R-1) sum (n_r/n)^2 (m_r - m)^2, which for equal n_r is
+/// sum (m_r - m)^2 / (R ). Unbiased for the variance of m whatever the dependence of samples inside a replica; the moment
+/// formula above is not: it takes stratified samples for independent ones and says too much noise.
+struct ReplicaError {
+    double mean = 0;
+    double se = 0;    ///< 0 when replicas < 2
+    int replicas = 0; ///< that hold samples, at most 8
+};
+ReplicaError replicaError(const Film&, int x, int y);
+/// The same from sums and counts of each replica.
+ReplicaError replicaError(std::span<const double> sums, std::span<const uint32_t> counts);
+/// SE / (mean + 1e-3), SE divided by c4(R) = sqrt(2/(R-1)) Gamma(R/2) / Gamma((R-1)/2), since the root of an unbiased variance
+/// is on average too small (c4(8) = 0.9650 for normal replica means). 0 for fewer than 2 replicas.
+double relativeReplicaError(const ReplicaError&);
+
+/// Mean and half width of an interval that covers the true value with the given probability: m +- t SE, t of Student's
+/// distribution with R - 1 degrees of freedom. Half width infinite when fewer than 2 replicas. 0 < level < 1.
+struct Interval { double mean = 0, halfWidth = 0; };
+Interval confidenceInterval(const ReplicaError&, double level = 0.95);
+/// t with P(|T| <= t) = level for Student's distribution with dof >= 1 degrees of freedom.
+double studentQuantile(double level, int dof);
+
+/// All figures of a film. noiseRSE and noiseRSE999 are 0 below two samples per pixel.
+NoiseFigures noiseFigures(const Film&);
+
+/// 1 / (noiseRSE^2 * renderSec), 0 when either is not positive. Higher is better; does not depend on the number of samples.
+double efficiency(double noiseRSE, double renderSec);
+/// Rays per millisecond of one render: totalRays / renderSec / 1000; 0 when no time has passed.
+double raysPerMS(uint64_t totalRays, double renderSec);
+
+} // namespace alpenglow::render

@@ -1,0 +1,84 @@
+// Image samples of `hidden` and `raytrace` and their reconstruction as RISpec says: stratified samples, shared between
+// neighbouring pixels, weighted by each display's own filter; depth by its depth filter.
+//
+// The value of a pixel is a sum over the samples near it in a fixed order, each sample a function of (seed, pixel, number).
+// Tiles, bands and threads change nothing: a buffer over a part of the raster, border included, gives the same bits.
+#pragma once
+#include "render/film.h"
+#include "render/pixelfilter.h"
+#include <limits>
+
+namespace alpenglow::render {
+
+/// Hider parameter "jitter".
+enum class Jitter {
+    Grid = 0,      ///< centres of the nx x ny cells of a pixel
+    Jittered = 1,  ///< one random place per cell
+    Scrambled = 2  ///< the pixel's own (0,2)-sequence (sampler.h), no cells
+};
+
+/// Place of sample k (0 <= k < nx * ny) inside its pixel, each in [0,1).
+Vec2 stratifiedOffset(uint64_t seed, int x, int y, int k, int nx, int ny, Jitter);
+
+/// One image sample. Colour and AOVs as composited over the sample's surfaces, premultiplied by opacity.
+struct ImageSample {
+    Color color, opacity;
+    float z = std::numeric_limits<float>::infinity();      ///< camera-space depth of the first surface that counts; inf: none
+    float zSecond = std::numeric_limits<float>::infinity(); ///< of the one behind it, for depth filter "midpoint"
+    std::span<const float> aovs;
+};
+
+enum class DepthFilter { Min, Max, Average, Midpoint };
+/// "min" "max" "average" "midpoint", also "zmin" "zmax".
+std::optional<DepthFilter> depthFilterByName(std::string_view);
+
+/// A rectangle of pixels, channels interleaved, rows from the top.
+struct Image {
+    Window window;
+    std::vector<std::string> channels; ///< "r" "g" "b" "a" "Or" "Og" "Ob" "z", then the AOVs
+    std::vector<float> data;
+    float at(int x, int y, int c) const {
+        return data[(size_t(y - window.y0) * size_t(window.width()) + size_t(x - window.x0)) * channels.size() + size_t(c)];
+    }
+};
+inline constexpr int kImageFixedChannels = 8;
+
+class SampleBuffer {
+public:
+    /// Samples for reconstructing `window` with filters whose full widths do not exceed maxXw, maxYw. nx, ny >= 1 per pixel.
+    SampleBuffer(Window window, double maxXw, double maxYw, int nx, int ny, std::vector<Channel> aovs, uint64_t seed, Jitter);
+
+    /// All pixels that need samples: the window and its border. Parts of it may lie outside the picture.
+    const Window& sampled() const { return sampled_; }
+    int samplesPerPixel() const { return nx_ * ny_; }
+    /// Raster position of a sample, pixels.
+    Vec2 position(int x, int y, int k) const;
+    /// Stores sample k of a pixel of sampled(). One pixel by one thread at a time. A sample whose colour or opacity is not
+    /// finite is dropped and counted, false; a NaN in an AOV or depth makes that value 0 or "none", counted.
+    bool set(int x, int y, int k, const ImageSample&);
+    uint64_t nonFinite() const { return nonFinite_; }
+
+    /// The pixels of `out`, which must lie inside the constructor's window. Colours, opacities and averaged AOVs: weighted by
+    /// the filter and divided by the sum of weights; where the filter meets no sample, or its weights cancel, the plain mean
+    /// of the pixel's own samples. Alpha: mean of the three opacities. z and Min/Max AOVs: from the pixel's own samples.
+    /// z: "max" counts misses as infinite; "average" is over hits; "midpoint" is the least of the mid-depths of two
+    /// surfaces, infinite where no sample has a second surface (nothing lies behind that could be shadowed).
+    Image reconstruct(const PixelFilter&, DepthFilter, Window out) const;
+
+private:
+    size_t base(int x, int y, int k) const {
+        return ((size_t(y - sampled_.y0) * size_t(sampled_.width()) + size_t(x - sampled_.x0)) * size_t(nx_ * ny_) + size_t(k)) * stride_;
+    }
+    void pixel(const PixelFilter&, DepthFilter, int x, int y, float* out) const;
+
+    Window window_, sampled_;
+    int nx_, ny_;
+    std::vector<Channel> aovs_;
+    uint64_t seed_;
+    Jitter jitter_;
+    size_t stride_;
+    std::vector<float> data_; ///< per sample: offset x (-1: no sample), offset y, colour, opacity, z, second z, AOVs
+    uint64_t nonFinite_ = 0;
+};
+
+} // namespace alpenglow::render

@@ -1,0 +1,50 @@
+// The numbers of a sample (design decision 10): Owen-scrambled (0,2)-sequence pairs, padded by hash.
+//
+// Each pair of numbers is the first two dimensions of the Sobol sequence under a nested uniform scramble: the flip of bit k of
+// a coordinate is a random bit that depends on the stream and on the k bits above it, and on nothing else. Such a scramble
+// keeps every elementary interval filled as it was (Owen, "Randomly permuted (t,m,s)-nets", 1995), and each single point is
+// uniform, so every estimate is unbiased at every sample count. Different pairs walk the sequence in independently shuffled
+// orders (a nested shuffle, which keeps every aligned block of 2^m points a (0,m,2)-net), so they are not correlated.
+//
+// A pixel has kReplicas independently scrambled sequences: sample i is point i / 8 of replica i % 8. So after 8 * 2^m samples
+// each replica holds a complete (0,m,2)-net, every prefix that is a multiple of 8 is well stratified, and the spread of the
+// eight replica means tells the true error of the mean, which the spread of dependent samples does not (testing.md rule 7).
+#pragma once
+#include "base/vec.h"
+#include "render/hash.h"
+
+namespace alpenglow::render {
+
+inline constexpr uint32_t kReplicas = 8;
+
+/// The stratified numbers of one pixel. Stateless: a number depends on (seed, pixel, sample, vertex, site, occurrence) only.
+class Sampler {
+public:
+    /// Raster coordinates may be negative (filter borders); |x|, |y| < 2^29. Distinct pixels have distinct keys.
+    Sampler(uint64_t seed, int x, int y);
+
+    /// Two numbers in [0,1). vertex: path vertex, 0 = camera; site: call site; occurrence: how often that site has asked
+    /// already at this vertex. sampleIndex counts the samples of the pixel from 0.
+    Vec2 get2(uint32_t vertex, uint32_t site, uint32_t occurrence, uint32_t sampleIndex) const;
+    /// One number in [0,1), stratified by itself and independent of get2 with the same arguments.
+    float get1(uint32_t vertex, uint32_t site, uint32_t occurrence, uint32_t sampleIndex) const;
+
+    /// The key of one stream: what get2 and get1 hash. Public so that the absence of collisions can be tested.
+    uint64_t streamKey(uint32_t replica, uint32_t vertex, uint32_t site, uint32_t occurrence) const;
+
+private:
+    uint64_t seed_ = 0, pixel_ = 0;
+};
+
+/// Nested uniform scramble of v, most significant bit first: each node of the binary tree has its own random bit, drawn from
+/// (key, domain). domain < 4 separates scrambles that share a key.
+uint32_t nestedScramble(uint32_t v, uint64_t key, uint32_t domain);
+/// Like nestedScramble, but 0 stays 0; then v keeps its bit width, so the first 2^m indices are permuted among themselves.
+/// Fixing the flips on the path of 0 costs no randomness: they would be an XOR of all indices by one constant, which moves the
+/// points by a digital shift, and the scramble of the coordinates contains every digital shift.
+uint32_t nestedShuffle(uint32_t v, uint64_t key, uint32_t domain);
+/// Point i of the first (van der Corput) and second Sobol dimension, as 32-bit binary fractions.
+uint32_t sobol0(uint32_t i);
+uint32_t sobol1(uint32_t i);
+
+} // namespace alpenglow::render

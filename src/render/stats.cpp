@@ -1,0 +1,107 @@
+#include "render/stats.h"
+#include "render/progress.h"
+#include <cmath>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+
+namespace alpenglow::render {
+namespace {
+
+constexpr const char* kRayTypes[] = {"camera", "diffuse", "specular", "transmission", "shadow"};
+
+double finite(double v) { return std::isfinite(v) ? v : 0; }
+
+std::string bytesText(uint64_t b) {
+    if (b >= 1ull << 30)
+        return fmt::format("{:.2f} GiB", double(b) / double(1ull << 30));
+    return fmt::format("{:.1f} MiB", double(b) / double(1ull << 20));
+}
+
+std::string grouped(uint64_t n) {
+    std::string s = std::to_string(n);
+    for (int i = int(s.size()) - 3; i > 0; i -= 3)
+        s.insert(size_t(i), ",");
+    return s;
+}
+
+} // namespace
+
+std::string toJson(const RenderStats& s) {
+    nlohmann::ordered_json j;
+    j["width"] = s.width;
+    j["height"] = s.height;
+    j["spp"] = s.spp;
+    j["renderSec"] = finite(s.renderSec);
+    j["cpuSec"] = finite(s.cpuSec);
+    j["raysPerMS"] = finite(raysPerMS(s.totalRays, s.renderSec));
+    j["noiseRSE"] = finite(s.noise.noiseRSE);
+    j["noiseRSE999"] = finite(s.noise.noiseRSE999);
+    j["efficiency"] = finite(efficiency(s.noise.noiseRSE, s.renderSec));
+    j["noiseQMC"] = finite(s.noise.noiseQMC);
+    j["imageError"] = finite(s.noise.imageError);
+    j["threads"] = s.threads;
+    j["peakMemoryBytes"] = s.peakMemoryBytes;
+    j["parseSec"] = finite(s.parseSec);
+    j["compileSec"] = finite(s.compileSec);
+    j["buildSec"] = finite(s.buildSec);
+    j["nonFinite"] = s.nonFinite;
+    j["saturated"] = s.saturated;
+    j["totalRays"] = s.totalRays;
+    auto& rays = j["rays"] = nlohmann::ordered_json::object();
+    for (const char* t : kRayTypes)
+        rays[t] = 0;
+    for (const auto& [type, n] : s.rays)
+        rays[type] = n;
+    j["shading"] = {{"points", s.shading.points}, {"batches", s.shading.batches}, {"laneOccupancy", finite(s.shading.laneOccupancy)},
+                    {"affineKernels", s.shading.affineKernels}, {"suspendingKernels", s.shading.suspendingKernels},
+                    {"kernels", s.shading.kernels}, {"cacheHits", s.shading.cacheHits}};
+    j["depth"] = {{"maximum", s.depth.maximum}, {"average", finite(s.depth.average)}};
+    j["errors"] = s.errors;
+    j["warnings"] = s.warnings;
+    // Ray types come from the renderer, but a stranger's bytes must not throw here either.
+    return j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+std::string toTable(const RenderStats& s) {
+    std::string t;
+    auto row = [&](const char* name, const std::string& value) { t += fmt::format("  {:<12} {}\n", name, value); };
+    row("picture", fmt::format("{} x {}, {} samples per pixel", s.width, s.height, s.spp));
+    row("time", fmt::format("{:.2f} s ({:.2f} s of processor, {} threads)", s.renderSec, s.cpuSec, s.threads));
+    row("before", fmt::format("parse {:.2f} s, compile {:.2f} s, build {:.2f} s", s.parseSec, s.compileSec, s.buildSec));
+    std::string types;
+    for (const auto& [type, n] : s.rays)
+        if (n)
+            types += fmt::format("{}{} {}", types.empty() ? "" : ", ", type, grouped(n));
+    row("rays", fmt::format("{}, {:.0f} per ms{}", grouped(s.totalRays), raysPerMS(s.totalRays, s.renderSec), types.empty() ? "" : " (" + types + ")"));
+    if (s.depth.maximum)
+        row("depth", fmt::format("{} at most, {:.2f} on average", s.depth.maximum, s.depth.average));
+    if (s.shading.points)
+        row("shading", fmt::format("{} points in {} batches, {:.1f} % of lanes busy; {} kernels ({} affine, {} suspending), {} from the cache",
+                                   grouped(s.shading.points), grouped(s.shading.batches), 100 * s.shading.laneOccupancy, s.shading.kernels,
+                                   s.shading.affineKernels, s.shading.suspendingKernels, s.shading.cacheHits));
+    row("noise", fmt::format("noiseRSE {:.5f}, noiseRSE999 {:.5f}, noiseQMC {:.5f}", s.noise.noiseRSE, s.noise.noiseRSE999, s.noise.noiseQMC));
+    row("efficiency", fmt::format("{:.1f}", efficiency(s.noise.noiseRSE, s.renderSec)));
+    row("memory", bytesText(s.peakMemoryBytes) + " at most");
+    if (s.nonFinite)
+        row("dropped", fmt::format("{} samples that were not finite", grouped(s.nonFinite)));
+    if (s.saturated)
+        row("saturated", fmt::format("{} values beyond 2^60", grouped(s.saturated)));
+    if (s.errors || s.warnings)
+        row("messages", fmt::format("{} errors, {} warnings", s.errors, s.warnings));
+    return t;
+}
+
+uint64_t peakMemoryBytes() {
+    rusage u{};
+    return getrusage(RUSAGE_SELF, &u) == 0 ? uint64_t(u.ru_maxrss) * 1024 : 0; // Linux counts in KiB
+}
+
+double processCpuSeconds() {
+    rusage u{};
+    if (getrusage(RUSAGE_SELF, &u) != 0)
+        return 0;
+    return double(u.ru_utime.tv_sec + u.ru_stime.tv_sec) + 1e-6 * double(u.ru_utime.tv_usec + u.ru_stime.tv_usec);
+}
+
+} // namespace alpenglow::render

@@ -1,0 +1,45 @@
+// The figures of one render: `--stats FILE.json` and the table at the end.
+#pragma once
+#include "render/noise.h"
+#include <cstdint>
+#include <map>
+#include <string>
+
+namespace alpenglow::render {
+
+/// Field names are the keys of the JSON object (design, "Fixed from outside").
+struct RenderStats {
+    int width = 0, height = 0;
+    uint64_t spp = 0;               ///< samples per pixel
+    double renderSec = 0, cpuSec = 0; ///< wall and processor time of rendering
+    uint64_t totalRays = 0;         ///< primary, reflected, refracted, internally reflected, sub-sampled and shadow rays
+    NoiseFigures noise;
+    int threads = 0;
+    uint64_t peakMemoryBytes = 0;
+    double parseSec = 0, compileSec = 0, buildSec = 0;
+    uint64_t nonFinite = 0;         ///< samples dropped
+    uint64_t saturated = 0;         ///< values clamped by the exact sums
+    std::map<std::string, uint64_t> rays; ///< by type: camera, diffuse, specular, transmission, shadow, ...; missing ones of these are written as 0
+    struct Shading {
+        uint64_t points = 0, batches = 0;
+        double laneOccupancy = 0; ///< active lanes / lanes, 0..1
+        int affineKernels = 0, suspendingKernels = 0, kernels = 0, cacheHits = 0;
+    } shading;
+    struct Depth {
+        int maximum = 0;
+        double average = 0;
+    } depth;
+    int errors = 0, warnings = 0;
+};
+
+/// One JSON object, keys as above plus raysPerMS and efficiency, ending with a newline. Numbers that are not finite become 0.
+std::string toJson(const RenderStats&);
+/// The table printed at the end of a render, one figure a line, ending with a newline.
+std::string toTable(const RenderStats&);
+
+/// Largest resident size of this process so far, bytes; 0 when the system does not say.
+uint64_t peakMemoryBytes();
+/// Processor time of all threads of this process so far, seconds.
+double processCpuSeconds();
+
+} // namespace alpenglow::render

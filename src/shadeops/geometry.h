@@ -1,7 +1,82 @@
 // Geometry: rsl.md 10.3 (seed 6.4.3). Code for all lane widths above, descriptors below (host only).
 #pragma once
-//CODE
+#include "shadeops/call.h"
+
+namespace alpenglow::rsl::AL_NAMESPACE {
+
+template <class T> AL_INLINE T opX(const Triple<T>& p) { return p.x; }
+template <class T> AL_INLINE T opY(const Triple<T>& p) { return p.y; }
+template <class T> AL_INLINE T opZ(const Triple<T>& p) { return p.z; }
+template <class T> AL_INLINE void opSetX(Triple<T>& p, const T& v) { p.x = v; }
+template <class T> AL_INLINE void opSetY(Triple<T>& p, const T& v) { p.y = v; }
+template <class T> AL_INLINE void opSetZ(Triple<T>& p, const T& v) { p.z = v; }
+template <class T> AL_INLINE T opDistance(const Triple<T>& a, const Triple<T>& b) { return length(b - a); }
+template <class T> AL_INLINE T opLength(const Triple<T>& v) { return length(v); }
+template <class T> AL_INLINE Triple<T> opNormalize(const Triple<T>& v) { return normalize(v); }
+template <class T> AL_INLINE T opPtlined(const Triple<T>& a, const Triple<T>& b, const Triple<T>& q) {
+    const Triple<T> d = b - a, e = q - a;
+    const T t = divide(dot(d, e), dot(d, d));
+    const T s = larger(T(vf(0)), smaller(t, T(vf(1))));
+    return length(e - times(d, s));
+}
+
+/// Rodrigues' formula about the line through a along b - a.
+template <class T> AL_INLINE Triple<T> opRotatePoint(const Triple<T>& q, const T& angle, const Triple<T>& a, const Triple<T>& b) {
+    const Triple<T> k = normalize(b - a), d = q - a;
+    const T c = cosine(angle), s = sine(angle);
+    const Triple<T> r = mad3(k, dot(k, d) * (vf(1) - c), mad3(cross(k, d), s, times(d, c)));
+    return select3(value(dot(k, k)) == 0, q, a + r);
+}
+
+template <class T> AL_INLINE Triple<T> opReflect(const Triple<T>& i, const Triple<T>& n) { return mad3(n, dot(i, n) * vf(-2), i); }
+template <class T> AL_INLINE Triple<T> opRefract(const Triple<T>& i, const Triple<T>& n, const T& eta) {
+    const T d = dot(i, n), k = vf(1) - eta * eta * (vf(1) - d * d);
+    const T zero = T(vf(0));
+    return select3(value(k) < 0, Triple<T>{zero, zero, zero}, times(i, eta) - times(n, eta * d + root(k)));
+}
+
+/// Row vectors: p' = (p, 1) M, divided by the fourth component.
+template <class T> AL_INLINE Triple<T> opTransformPoint(const Matrix<T>& a, const Triple<T>& p) {
+    const auto column = [&](int c) __attribute__((always_inline)) {
+        return mad(p.x, a.m[c], mad(p.y, a.m[4 + c], mad(p.z, a.m[8 + c], a.m[12 + c])));
+    };
+    const T w = column(3);
+    return {divide(column(0), w), divide(column(1), w), divide(column(2), w)};
+}
+template <class T> AL_INLINE Triple<T> opTransformVector(const Matrix<T>& a, const Triple<T>& p) {
+    const auto column = [&](int c) __attribute__((always_inline)) { return mad(p.x, a.m[c], mad(p.y, a.m[4 + c], p.z * a.m[8 + c])); };
+    return {column(0), column(1), column(2)};
+}
+/// By the inverse transpose of the upper 3x3, which is its matrix of cofactors over the determinant. 0 for a singular matrix.
+template <class T> AL_INLINE Triple<T> opTransformNormal(const Matrix<T>& a, const Triple<T>& n) {
+    const Triple<T> r0{a.m[0], a.m[1], a.m[2]}, r1{a.m[4], a.m[5], a.m[6]}, r2{a.m[8], a.m[9], a.m[10]};
+    const Triple<T> c0 = cross(r1, r2), c1 = cross(r2, r0), c2 = cross(r0, r1);
+    const T inverse = divide(T(vf(1)), dot(r0, c0));
+    return times(mad3(c0, n.x, mad3(c1, n.y, times(c2, n.z))), inverse);
+}
+
+AL_RUNTIME(al_xcomp_t, opX)
+AL_RUNTIME(al_ycomp_t, opY)
+AL_RUNTIME(al_zcomp_t, opZ)
+AL_RUNTIME(al_setxcomp_t, opSetX)
+AL_RUNTIME(al_setycomp_t, opSetY)
+AL_RUNTIME(al_setzcomp_t, opSetZ)
+AL_RUNTIME(al_distance, opDistance)
+AL_RUNTIME(al_length, opLength)
+AL_RUNTIME(al_normalize_t, opNormalize)
+AL_RUNTIME(al_ptlined, opPtlined)
+AL_RUNTIME(al_rotatepoint, opRotatePoint)
+AL_RUNTIME(al_reflect, opReflect)
+AL_RUNTIME(al_refract, opRefract)
+AL_RUNTIME(al_transformpoint, opTransformPoint)
+AL_RUNTIME(al_transformvector, opTransformVector)
+AL_RUNTIME(al_transformnormal, opTransformNormal)
+
+} // namespace alpenglow::rsl::AL_NAMESPACE
+
 #ifdef ALPENGLOW_DESCRIBE
+#include "shadeops/describe.h"
+
 namespace alpenglow::rsl {
 std::vector<Shadeop> geometryShadeops() {
     std::vector<Shadeop> list;

@@ -1,7 +1,46 @@
 // Lighting: rsl.md 10.4 (seed 6.4.4). Code for all lane widths above, descriptors below (host only).
 #pragma once
-//CODE
+#include "shadeops/call.h"
+#include "shadeops/geometry.h"
+
+namespace alpenglow::rsl::AL_NAMESPACE {
+
+/// The exponent of specular() and specularbrdf() is this number over the roughness.
+inline constexpr float kSpecularExponent = 8;
+
+template <class T> AL_INLINE Triple<T> opSpecularBrdf(const Triple<T>& l, const Triple<T>& n, const Triple<T>& v, const T& roughness) {
+    const T cosine = larger(T(vf(0)), dot(n, normalize(normalize(l) + v)));
+    const T p = power(cosine, divide(T(vf(kSpecularExponent)), roughness));
+    const T r = select(value(roughness) > 0, p, T(vf(0)));
+    return {r, r, r};
+}
+
+/// Reflectance at a dielectric; c = cosine of the incident angle, eta = index before / index behind.
+template <class T> AL_INLINE T dielectricReflectance(const T& c, const T& eta) {
+    const T k = vf(1) - eta * eta * (vf(1) - c * c), cosT = root(k);
+    const T s = divide(eta * c - cosT, eta * c + cosT), p = divide(eta * cosT - c, eta * cosT + c);
+    return select(value(k) <= 0, T(vf(1)), smaller((s * s + p * p) * vf(0.5f), T(vf(1))));
+}
+template <class T> AL_INLINE void opFresnel(const Triple<T>& i, const Triple<T>& n, const T& eta, T& kr, T& kt) {
+    kr = dielectricReflectance(smaller(absolute(dot(i, n)), T(vf(1))), eta);
+    kt = vf(1) - kr;
+}
+template <class T>
+AL_INLINE void opFresnelRt(const Triple<T>& i, const Triple<T>& n, const T& eta, T& kr, T& kt, Triple<T>& reflected, Triple<T>& refracted) {
+    opFresnel(i, n, eta, kr, kt);
+    reflected = opReflect(i, n);
+    refracted = opRefract(i, n, eta);
+}
+
+AL_RUNTIME(al_specularbrdf, opSpecularBrdf)
+AL_RUNTIME(al_fresnel, opFresnel)
+AL_RUNTIME(al_fresnelrt, opFresnelRt)
+
+} // namespace alpenglow::rsl::AL_NAMESPACE
+
 #ifdef ALPENGLOW_DESCRIBE
+#include "shadeops/describe.h"
+
 namespace alpenglow::rsl {
 std::vector<Shadeop> lightingShadeops() {
     std::vector<Shadeop> list;

@@ -1,7 +1,144 @@
 // Mathematics: rsl.md 10.1 (seed 6.4.1). Code for all lane widths above, descriptors below (host only).
 #pragma once
-//CODE
+#include "shadeops/call.h"
+
+namespace alpenglow::rsl::AL_NAMESPACE {
+
+template <class T> AL_INLINE T opRadians(const T& x) { return x * vf(kPi / 180); }
+template <class T> AL_INLINE T opDegrees(const T& x) { return x * vf(180 / kPi); }
+template <class T> AL_INLINE T opLogBase(const T& x, const T& base) { return divide(logarithm2(x), logarithm2(base)); }
+template <class T> AL_INLINE T opSign(const T& x) { return T(select(value(x) < 0, vf(-1), vf(1))); }
+template <class T> AL_INLINE T opFloor(const T& x) { return T(floorLanes(value(x))); }
+template <class T> AL_INLINE T opCeil(const T& x) { return T(ceilLanes(value(x))); }
+template <class T> AL_INLINE T opRound(const T& x) {
+    const vf v = value(x), t = truncLanes(v);
+    return T(select(absLanes(v - t) >= 0.5f, t + copySign(vf(1), v), t));
+}
+
+/// x - y floor(x / y). The quotient may round across an integer: one correction. 0 where it is too large to have a fraction.
+template <class T> AL_INLINE T opMod(const T& x, const T& y) {
+    const vf q = divide(value(x), value(y)), n = floorLanes(q);
+    const vm sane = absLanes(q) < 16777216.0f;
+    const T r = mad(T(select(sane, -n, vf(0))), y, x);
+    const vm outside = select(value(y) < 0, -value(r), value(r)) < 0;
+    return select(sane, select(value(y) == 0, T(vf(0)), select(outside, r + y, r)), T(vf(0)));
+}
+
+template <class T> AL_INLINE T opMin(const T& a, const T& b) { return smaller(a, b); }
+template <class T> AL_INLINE T opMax(const T& a, const T& b) { return larger(a, b); }
+template <class T> AL_INLINE T opClamp(const T& x, const T& lo, const T& hi) {
+    return select(value(x) < value(lo), lo, select(value(x) > value(hi), hi, x));
+}
+template <class T> AL_INLINE T opStep(const T& edge, const T& x) { return T(select(value(x) < value(edge), vf(0), vf(1))); }
+template <class T> AL_INLINE T opSmoothstep(const T& lo, const T& hi, const T& x) {
+    const T t = divide(x - lo, hi - lo);
+    const T s = t * t * (vf(3) - t * vf(2));
+    return select(value(x) < value(lo), T(vf(0)), select(value(x) >= value(hi), T(vf(1)), s));
+}
+template <class T> AL_INLINE T opMix(const T& x, const T& y, const T& alpha) { return mad(y, alpha, x * (vf(1) - alpha)); }
+
+#define AL_COMPONENTS1(name, f)                                                                                                              \
+    template <class T> AL_INLINE Triple<T> name(const Triple<T>& a, const Triple<T>& b) { return {f(a.x, b.x), f(a.y, b.y), f(a.z, b.z)}; }
+#define AL_COMPONENTS2(name, f)                                                                                                              \
+    template <class T> AL_INLINE Triple<T> name(const Triple<T>& a, const Triple<T>& b, const Triple<T>& c) {                               \
+        return {f(a.x, b.x, c.x), f(a.y, b.y, c.y), f(a.z, b.z, c.z)};                                                                       \
+    }
+AL_COMPONENTS1(opMin3, opMin)
+AL_COMPONENTS1(opMax3, opMax)
+AL_COMPONENTS1(opStep3, opStep)
+AL_COMPONENTS2(opClamp3, opClamp)
+AL_COMPONENTS2(opSmoothstep3, opSmoothstep)
+AL_COMPONENTS2(opMix3, opMix)
+#undef AL_COMPONENTS1
+#undef AL_COMPONENTS2
+template <class T> AL_INLINE Triple<T> opMixFloat(const Triple<T>& x, const Triple<T>& y, const T& alpha) {
+    return {opMix(x.x, y.x, alpha), opMix(x.y, y.y, alpha), opMix(x.z, y.z, alpha)};
+}
+
+// Filtered steps: 1/2 + sign(d) G(|d|), d = (middle - edge) / width, G the integral of the kernel from 0, clamped to [0,1]. Supports in
+// widths: box 1, triangle 2, gaussian 2 (exp(-2 d^2)), catmull-rom 4.
+
+template <class T> AL_INLINE T boxIntegral(const T& d) { return d; }
+template <class T> AL_INLINE T triangleIntegral(const T& d) { return d - d * d * vf(0.5f); }
+/// Taylor series of the integral of exp(-2 d^2), terms (-2)^n d^(2n+1) / (n! (2n+1)), over its value at 1.
+template <class T> AL_INLINE T gaussianIntegral(const T& d) {
+    constexpr double kWhole = 0.59814400666130410; // integral of exp(-2 x^2) over [0, 1]
+    const T s = d * d;
+    double c[16];
+    double power = 1;
+    for (int n = 0; n < 16; ++n) {
+        c[n] = power / (2 * n + 1) / (2 * kWhole);
+        power *= -2.0 / (n + 1);
+    }
+    T r = T(vf(static_cast<float>(c[15])));
+#pragma clang loop unroll(full)
+    for (int n = 14; n >= 0; --n)
+        r = mad(r, s, T(vf(static_cast<float>(c[n]))));
+    return r * d;
+}
+template <class T> AL_INLINE T catmullromIntegral(const T& d) {
+    const T s = d * d;
+    const T inner = d * (vf(1) + s * (d * vf(0.375f) - vf(2.5f / 3)));
+    const T outer = d * (vf(2) + d * (d * (vf(2.5f / 3) - d * vf(0.125f)) - vf(2))) - vf(0.708333333f - 0.541666667f);
+    return select(value(d) < 1, inner, outer);
+}
+template <class T, T (*Integral)(const T&), int Support> AL_INLINE T filteredStep(const T& edge, const T& a, const T& b) {
+    const T width = absolute(b - a), middle = (a + b) * vf(0.5f) - edge;
+    const T d = divide(middle, width), m = absolute(d);
+    const T g = Integral(smaller(m, T(vf(0.5f * Support))));
+    const T half = select(value(d) < 0, -g, g) + vf(0.5f);
+    const T clamped = larger(T(vf(0)), smaller(half, T(vf(1))));
+    return select(absLanes(value(middle)) * 2.0f >= value(width) * float(Support), T(select(value(middle) < 0, vf(0), vf(1))), clamped);
+}
+template <class T> AL_INLINE T opFilterBox(const T& e, const T& a, const T& b) { return filteredStep<T, boxIntegral<T>, 1>(e, a, b); }
+template <class T> AL_INLINE T opFilterTriangle(const T& e, const T& a, const T& b) { return filteredStep<T, triangleIntegral<T>, 2>(e, a, b); }
+template <class T> AL_INLINE T opFilterGaussian(const T& e, const T& a, const T& b) { return filteredStep<T, gaussianIntegral<T>, 2>(e, a, b); }
+template <class T> AL_INLINE T opFilterCatmullrom(const T& e, const T& a, const T& b) { return filteredStep<T, catmullromIntegral<T>, 4>(e, a, b); }
+
+AL_RUNTIME(al_radians, opRadians)
+AL_RUNTIME(al_degrees, opDegrees)
+AL_RUNTIME(al_sin, sine)
+AL_RUNTIME(al_cos, cosine)
+AL_RUNTIME(al_tan, tangent)
+AL_RUNTIME(al_asin, arcSine)
+AL_RUNTIME(al_acos, arcCosine)
+AL_RUNTIME(al_atan, arcTangent)
+AL_RUNTIME(al_atan2, arcTangent2)
+AL_RUNTIME(al_sqrt, root)
+AL_RUNTIME(al_inversesqrt, inverseRoot)
+AL_RUNTIME(al_pow, power)
+AL_RUNTIME(al_exp, exponential)
+AL_RUNTIME(al_log, logarithm)
+AL_RUNTIME(al_logbase, opLogBase)
+AL_RUNTIME(al_sign, opSign)
+AL_RUNTIME(al_mod, opMod)
+AL_RUNTIME(al_abs, absolute)
+AL_RUNTIME(al_floor, opFloor)
+AL_RUNTIME(al_ceil, opCeil)
+AL_RUNTIME(al_round, opRound)
+AL_RUNTIME(al_min_f, opMin)
+AL_RUNTIME(al_min_t, opMin3)
+AL_RUNTIME(al_max_f, opMax)
+AL_RUNTIME(al_max_t, opMax3)
+AL_RUNTIME(al_clamp_f, opClamp)
+AL_RUNTIME(al_clamp_t, opClamp3)
+AL_RUNTIME(al_step_f, opStep)
+AL_RUNTIME(al_step_t, opStep3)
+AL_RUNTIME(al_smoothstep_f, opSmoothstep)
+AL_RUNTIME(al_smoothstep_t, opSmoothstep3)
+AL_RUNTIME(al_mix_f, opMix)
+AL_RUNTIME(al_mix_t, opMix3)
+AL_RUNTIME(al_mixf_t, opMixFloat)
+AL_RUNTIME(al_filterstep_box, opFilterBox)
+AL_RUNTIME(al_filterstep_triangle, opFilterTriangle)
+AL_RUNTIME(al_filterstep_gaussian, opFilterGaussian)
+AL_RUNTIME(al_filterstep_catmullrom, opFilterCatmullrom)
+
+} // namespace alpenglow::rsl::AL_NAMESPACE
+
 #ifdef ALPENGLOW_DESCRIBE
+#include "shadeops/describe.h"
+
 namespace alpenglow::rsl {
 namespace {
 Shadeop mathOp(const char* name, std::initializer_list<SignatureText> texts, const char* doc, const char* source,

@@ -1,7 +1,175 @@
 // Noise and random: rsl.md 10.2 (seed 6.4.2). Code for all lane widths above, descriptors below (host only).
 #pragma once
-//CODE
+#include "shadeops/call.h"
+
+namespace alpenglow::rsl::AL_NAMESPACE {
+
+// The lattice: a coordinate times an odd constant, neighbours by addition, one xor of the coordinates and one multiplication per corner.
+// Channels multiply the corner's hash once more. The constants are odd numbers with no structure, chosen by the tests of noise_test.cpp.
+inline constexpr unsigned kLattice[4] = {0x9e3779b1u, 0x85ebca77u, 0xc2b2ae3du, 0x27d4eb2fu};
+inline constexpr unsigned kCorner = 0x2c1b3c6du, kMix = 0x297a2d39u;
+inline constexpr unsigned kChannel[3] = {0x9c8f2d35u, 0x6a09e667u, 0xb5297a4du};
+inline constexpr float kFarAway = 0x1p30f;
+/// Largest |sum| of the interpolated gradients in 1 to 4 dimensions: suprema over the cell, rounded up.
+inline constexpr float kNoiseBound[5] = {0, 0.5f, 0.71527f, 1.03632f, 1.5400f};
+
+template <class T, int C> struct Channels {
+    T c[C];
+};
+
+/// One evaluation in N dimensions with C channels, depth first over the corners so that few values are alive at a time.
+template <class T, int N, int C> struct NoiseCell {
+    T low[N], high[N], fade[N]; // distances to the two lattice planes, and the weight of the high one
+    vu hash[N][2];
+
+    /// Gradients: one dimension: slopes of random size; two: eight directions; three and four: to the middles of edges of the cube
+    /// (one component 0, the others +-1).
+    static AL_MEMBER T gradient(vu h, const T* d) {
+        const vi s = __builtin_bit_cast(vi, h);
+        if constexpr (N == 1) {
+            return d[0] * signedSlope(h);
+        } else if constexpr (N == 2) {
+            const auto swap = s < 0;
+            const T u = select(swap, d[0], d[1]), v = select(swap, d[1], d[0]);
+            return mad(flipSign(v, h << 3), vf(0.41421356f), flipSign(u, h << 2));
+        } else if constexpr (N == 3) {
+            const T u = select(s < -715827883, d[1], d[0]), v = select(s < 715827883, d[2], d[1]);
+            return flipSign(u, h << 12) + flipSign(v, h << 13);
+        } else {
+            const T u = select(s < -1073741824, d[1], d[0]), v = select(s < 0, d[2], d[1]), w = select(s < 1073741824, d[3], d[2]);
+            return flipSign(u, h << 12) + flipSign(v, h << 13) + flipSign(w, h << 14);
+        }
+    }
+
+    template <int D> AL_MEMBER Channels<T, C> sum(T* d, vu h) const {
+        Channels<T, C> r;
+        if constexpr (D < 0) {
+            h = h * kCorner;
+            h = h ^ (h >> 15);
+#pragma clang loop unroll(full)
+            for (int i = 0; i < C; ++i)
+                r.c[i] = gradient(h * (C == 1 ? kMix : kChannel[i]), d);
+        } else {
+            d[D] = low[D];
+            const Channels<T, C> a = sum<D - 1>(d, h ^ hash[D][0]);
+            d[D] = high[D];
+            const Channels<T, C> b = sum<D - 1>(d, h ^ hash[D][1]);
+#pragma clang loop unroll(full)
+            for (int i = 0; i < C; ++i)
+                r.c[i] = mad(fade[D], b.c[i] - a.c[i], a.c[i]);
+        }
+        return r;
+    }
+};
+
+/// 6t^5 - 15t^4 + 10t^3: value, first and second derivative vanish at the ends, so noise has continuous second derivatives.
+template <class T> AL_INLINE T noiseFade(const T& x) {
+    const vf t = value(x), u = t * t;
+    const vf f = u * t * mad(t, mad(t, vf(6), vf(-15)), vf(10));
+    const vf g = t * (1 - t); // 30 g^2, 60 g (1 - 2t)
+    return chain(x, f, 30 * g * g, 60 * g * mad(t, vf(-2), vf(1)));
+}
+
+/// Periods: rounded, at least 1, at most 2^22.
+AL_INLINE vf roundPeriod(vf p) { return minLanes(maxLanes(floorLanes(p + 0.5f), vf(1)), vf(4194304)); }
+/// n - p floor(n / p), 0..p-1, for whole n: the quotient may round across an integer.
+AL_INLINE vf wrapWhole(vf n, vf p) {
+    const vf r = mad(floorLanes(n / p), -p, n);
+    return select(r < 0, r + p, select(r >= p, r - p, r));
+}
+AL_INLINE vf clampFar(vf x) { return minLanes(maxLanes(x, vf(-kFarAway)), vf(kFarAway)); }
+
+template <int N, int C, bool Periodic, class T> AL_INLINE Channels<T, C> noiseSum(const T* p, const T* period) {
+    NoiseCell<T, N, C> cell;
+#pragma clang loop unroll(full)
+    for (int i = 0; i < N; ++i) {
+        const vf x = clampFar(value(p[i])), n = floorLanes(x);
+        cell.low[i] = withValue(p[i], x - n);
+        cell.high[i] = cell.low[i] - vf(1);
+        cell.fade[i] = noiseFade(cell.low[i]);
+        if constexpr (Periodic) {
+            const vf q = roundPeriod(value(period[i])), a = minLanes(maxLanes(wrapWhole(n, q), vf(0)), q), b = a + 1;
+            cell.hash[i][0] = __builtin_bit_cast(vu, toInt(a)) * kLattice[i];
+            cell.hash[i][1] = __builtin_bit_cast(vu, toInt(select(b >= q, vf(0), b))) * kLattice[i];
+        } else {
+            cell.hash[i][0] = __builtin_bit_cast(vu, toInt(n)) * kLattice[i];
+            cell.hash[i][1] = cell.hash[i][0] + kLattice[i];
+        }
+    }
+    T d[N];
+    Channels<T, C> r = cell.template sum<N - 1>(d, vu(0));
+#pragma clang loop unroll(full)
+    for (int i = 0; i < C; ++i)
+        r.c[i] = mad(r.c[i], vf(0.49999f / kNoiseBound[N]), vf(0.5f));
+    return r;
+}
+
+/// Hash of the cell floor(p), mixed well enough to be shown as it is.
+template <int N, class T> AL_INLINE vu cellHash(const T* p) {
+    vu h = vu(0x51ed270bu);
+#pragma clang loop unroll(full)
+    for (int i = 0; i < N; ++i)
+        h = h ^ (__builtin_bit_cast(vu, toInt(floorLanes(clampFar(value(p[i]))))) * kLattice[i]);
+    h = (h ^ (h >> 16)) * 0x21f0aaadu;
+    h = (h ^ (h >> 15)) * 0x735a2d97u;
+    return h ^ (h >> 15);
+}
+template <class T> AL_INLINE Triple<T> tripleOf(const Channels<T, 3>& r) { return {r.c[0], r.c[1], r.c[2]}; }
+template <class T> AL_INLINE Triple<T> unitTriple(vu h) {
+    return {T(unitReal(h)), T(unitReal(h * kChannel[1])), T(unitReal(h * kChannel[2]))};
+}
+
+#define AL_NOISE_FORMS(N, PARAMETERS, PERIODS, POINT, PERIOD)                                                                               \
+    template <class T> AL_INLINE T opNoise##N##f PARAMETERS {                                                                               \
+        const T p[] = POINT;                                                                                                                 \
+        return noiseSum<N, 1, false, T>(p, nullptr).c[0];                                                                                    \
+    }                                                                                                                                        \
+    template <class T> AL_INLINE Triple<T> opNoise##N##t PARAMETERS {                                                                       \
+        const T p[] = POINT;                                                                                                                 \
+        return tripleOf(noiseSum<N, 3, false, T>(p, nullptr));                                                                               \
+    }                                                                                                                                        \
+    template <class T> AL_INLINE T opPnoise##N##f PERIODS {                                                                                 \
+        const T p[] = POINT, q[] = PERIOD;                                                                                                   \
+        return noiseSum<N, 1, true, T>(p, q).c[0];                                                                                           \
+    }                                                                                                                                        \
+    template <class T> AL_INLINE Triple<T> opPnoise##N##t PERIODS {                                                                         \
+        const T p[] = POINT, q[] = PERIOD;                                                                                                   \
+        return tripleOf(noiseSum<N, 3, true, T>(p, q));                                                                                      \
+    }                                                                                                                                        \
+    template <class T> AL_INLINE T opCellnoise##N##f PARAMETERS {                                                                           \
+        const T p[] = POINT;                                                                                                                 \
+        return T(unitReal(cellHash<N, T>(p)));                                                                                               \
+    }                                                                                                                                        \
+    template <class T> AL_INLINE Triple<T> opCellnoise##N##t PARAMETERS {                                                                   \
+        const T p[] = POINT;                                                                                                                 \
+        return unitTriple<T>(cellHash<N, T>(p));                                                                                             \
+    }                                                                                                                                        \
+    AL_RUNTIME(al_noise##N##_f, opNoise##N##f)                                                                                               \
+    AL_RUNTIME(al_noise##N##_t, opNoise##N##t)                                                                                               \
+    AL_RUNTIME(al_pnoise##N##_f, opPnoise##N##f)                                                                                             \
+    AL_RUNTIME(al_pnoise##N##_t, opPnoise##N##t)                                                                                             \
+    AL_RUNTIME(al_cellnoise##N##_f, opCellnoise##N##f)                                                                                       \
+    AL_RUNTIME(al_cellnoise##N##_t, opCellnoise##N##t)
+#define AL_LIST(...) {__VA_ARGS__}
+AL_NOISE_FORMS(1, (const T& x), (const T& x, const T& px), AL_LIST(x), AL_LIST(px))
+AL_NOISE_FORMS(2, (const T& x, const T& y), (const T& x, const T& y, const T& px, const T& py), AL_LIST(x, y), AL_LIST(px, py))
+AL_NOISE_FORMS(3, (const Triple<T>& a), (const Triple<T>& a, const Triple<T>& b), AL_LIST(a.x, a.y, a.z), AL_LIST(b.x, b.y, b.z))
+AL_NOISE_FORMS(4, (const Triple<T>& a, const T& w), (const Triple<T>& a, const T& w, const Triple<T>& b, const T& pw),
+               AL_LIST(a.x, a.y, a.z, w), AL_LIST(b.x, b.y, b.z, pw))
+#undef AL_NOISE_FORMS
+#undef AL_LIST
+
+/// The value of random() from a hash, which comes as the bits of a lane.
+template <class T> AL_INLINE T opRandom(const T& hash) { return T(unitReal(payload(value(hash)))); }
+template <class T> AL_INLINE Triple<T> opRandom3(const T& hash) { return unitTriple<T>(payload(value(hash))); }
+AL_RUNTIME(al_random_f, opRandom)
+AL_RUNTIME(al_random_t, opRandom3)
+
+} // namespace alpenglow::rsl::AL_NAMESPACE
+
 #ifdef ALPENGLOW_DESCRIBE
+#include "shadeops/describe.h"
+
 namespace alpenglow::rsl {
 namespace {
 /// The forms of one family for the results float, color, point, vector, normal.

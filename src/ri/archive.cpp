@@ -92,6 +92,14 @@ bool Interpreter::record(const Call& call) {
     return true;
 }
 
+/// Archives that read archives can repeat a few lines without end; what is read once is bounded by its own length.
+bool Interpreter::mayReplay(const Call& call) {
+    if (!replaying_ || ++replayedCalls_ <= limits::kReplayedCalls) return true;
+    reporter.once("ri:replayed", Severity::Error, Rie::Limit, call.place,
+                  fmt::format("archives that are read again execute more than {} requests", limits::kReplayedCalls));
+    return false;
+}
+
 void Interpreter::readArchive(const std::string& name, const SourcePlace& place) {
     if (openArchives_.size() >= size_t(limits::kArchiveDepth)) {
         reporter.error(Rie::Limit, place, fmt::format("archives are nested deeper than {}", limits::kArchiveDepth));
@@ -139,6 +147,8 @@ void Interpreter::readArchive(const std::string& name, const SourcePlace& place)
         reporter.error(Rie::Nesting, place, fmt::format("archive \"{}\" reads itself", name));
         return;
     }
+    bool wasReplaying = replaying_;
+    if (!archivesRead_.insert(key).second) replaying_ = true;
     openArchives_.push_back(key);
     barriers_.push_back(blocks_.size());
     size_t conditions = conditions_.size();
@@ -146,7 +156,7 @@ void Interpreter::readArchive(const std::string& name, const SourcePlace& place)
     SourcePlace end = place;
     if (calls) {
         for (const Call& c : *calls) {
-            if (stopped()) break;
+            if (stopped() || !mayReplay(c)) break;
             execute(c);
         }
     } else {
@@ -162,6 +172,7 @@ void Interpreter::readArchive(const std::string& name, const SourcePlace& place)
     unwind(barriers_.back(), end, true);
     barriers_.pop_back();
     openArchives_.pop_back();
+    replaying_ = wasReplaying;
 }
 
 } // namespace alpenglow::ri

@@ -66,7 +66,7 @@ scene::Param Interpreter::bindOne(const Call& call, const RawParam& raw, Use use
         reporter.once(fmt::format("ri:undeclared:{}", p.name), Severity::Warning, Rie::BadToken, p.place,
                       fmt::format("primitive variable \"{}\" is not declared: its type is guessed from the values", p.name));
     } else if (use == Use::Option || use == Use::Attribute) {
-        if (category != "user")
+        if (category != "user" && !r.byValue)
             reporter.once(fmt::format("ri:{}:{}:{}", request, category, p.name), Severity::Info, Rie::BadToken, p.place,
                           fmt::format("{} \"{}\" \"{}\" is not known here", request, category, p.name));
     }
@@ -74,14 +74,16 @@ scene::Param Interpreter::bindOne(const Call& call, const RawParam& raw, Use use
     if (text) {
         p.strings = v.strings;
     } else {
-        p.numbers.reserve(v.numbers.size());
         if (p.type == scene::Type::Color && !nRGB.empty()) {
             p.numbers = toRgb(v.numbers);
         } else {
-            for (double d : v.numbers) p.numbers.push_back(toFloat(d));
+            p.numbers.resize(v.numbers.size());
+            for (size_t i = 0; i < v.numbers.size(); ++i) p.numbers[i] = toFloat(v.numbers[i]);
         }
-        for (float f : p.numbers) {
-            if (std::isfinite(f)) continue;
+        // x - x is 0 for finite x and NaN otherwise, in every order of summing.
+        float sum = 0;
+        for (float f : p.numbers) sum += f - f;
+        if (sum != 0 || std::isnan(sum)) {
             reporter.error(Rie::Range, p.place, fmt::format("{}: \"{}\" has a value that is not finite", request, p.name));
             return p;
         }

@@ -60,6 +60,9 @@ constexpr Known kImplementation[] = {
     {"light:samplingstrategy", "string"}, {"light:emitphotons", "int"}, {"trimcurve:sense", "string"},
 };
 
+// Numbers in one file, strings in another: the value decides.
+constexpr const char* kByValue[] = {"visibility:transmission", "visibility:photon", "photon:estimator", "light:shadows", "shade:resolution"};
+
 using Table = std::map<std::string, Declaration, std::less<>>;
 
 template <size_t N> Table makeTable(const Known (&rows)[N]) {
@@ -170,7 +173,9 @@ Resolved Declarations::resolve(std::string_view token, std::string_view category
         return r;
     }
     if (!category.empty()) {
-        if (auto i = implementation.find(std::string(category) + ":" + r.name); i != implementation.end()) r.declaration = i->second;
+        std::string key = std::string(category) + ":" + r.name;
+        if (auto i = implementation.find(key); i != implementation.end()) r.declaration = i->second;
+        for (const char* k : kByValue) r.byValue = r.byValue || key == k;
         return r;
     }
     if (auto i = standard.find(r.name); i != standard.end()) r.declaration = i->second;

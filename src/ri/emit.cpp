@@ -99,11 +99,7 @@ void Interpreter::emit(scene::Primitive p, const Call& call) {
 
 void Interpreter::store(std::shared_ptr<scene::Primitive> p) {
     if (scene::Object* o = openObject()) {
-        if (o->primitives.size() < limits::kObjectPrimitives) {
-            o->primitives.push_back(std::move(p));
-            return;
-        }
-        reporter.once("ri:object:" + o->handle, Severity::Error, Rie::Limit, p->place, fmt::format("object {} has too many primitives", o->handle));
+        o->primitives.push_back(std::move(p));
         return;
     }
     if (frame_ && frameWanted()) frame_->primitives.push_back(std::move(p));
@@ -121,15 +117,16 @@ void Interpreter::instance(const Call& call) {
     }
     if (openObject()) { // objects are flat: an instance inside one is copied in
         for (const scene::PrimitiveRef& p : i->second->primitives) {
+            if (++objectCopies_ > limits::kObjectCopies) { // a few lines can ask for any number
+                reporter.once("ri:objectcopies", Severity::Error, Rie::Limit, call.place,
+                              fmt::format("instances inside objects copy more than {} primitives", limits::kObjectCopies));
+                return;
+            }
             auto copy = std::make_shared<scene::Primitive>(*p);
             copy->toWorld = compose(p->toWorld, state.ctm);
             if (!p->attributesInside) {
                 copy->attributes = snapshot();
                 copy->attributesInside = innermost(BlockKind::Object)->saved.attributes != state.attributes;
-            }
-            if (openObject()->primitives.size() >= limits::kObjectPrimitives) {
-                store(std::move(copy)); // reports the limit
-                return;
             }
             store(std::move(copy));
         }

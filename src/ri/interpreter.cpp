@@ -26,7 +26,7 @@ void Interpreter::run(Parser& parser) {
     auto outer = std::move(reporter.lineText);
     reporter.lineText = [&](const SourcePlace& p) { return parser.lineText(p); };
     Call call;
-    while (!stopped() && parser.next(call) && !stopped()) execute(call);
+    while (!stopped() && parser.next(call) && !stopped() && mayReplay(call)) execute(call);
     reporter.lineText = std::move(outer);
 }
 

@@ -122,6 +122,8 @@ private:
         SourcePlace place;
     };
 
+    /// False when an archive that is read again has used up its calls.
+    bool mayReplay(const Call& call);
     void run(class Parser& parser);
     void dispatch(const Call& call);
     bool conditional(const Call& call);
@@ -164,6 +166,9 @@ private:
     std::vector<std::string> openArchives_;
     std::vector<size_t> barriers_;                        ///< block depth at each open archive's start
     int archiveReads_ = 0;
+    size_t objectCopies_ = 0, replayedCalls_ = 0;
+    std::set<std::string> archivesRead_;
+    bool replaying_ = false;                              ///< inside an archive that was read before
 };
 
 /// Checks and completes a primitive's variables (the guarantees in scene/scene.h). False (reported): do not draw it.

@@ -13,6 +13,7 @@ bool startsNumber(unsigned char c) { return digit(c) || c == '-' || c == '+' || 
 /// Bytes that cannot directly follow a number.
 bool sticks(unsigned char c) { return letter(c) || startsNumber(c); }
 constexpr size_t kBuffer = 256u << 10; // comfortably above limits::kTokenBytes: a token always fits
+constexpr size_t kPlainNumber = 64;     // bytes that the fast way through numbers looks at
 constexpr size_t kLineKept = 1024;     // bytes of the current line kept for messages
 
 } // namespace
@@ -37,7 +38,7 @@ bool Lexer::more() {
     size_t keep = pos_;
     size_t lineOffset = lineStart_ >= base_ ? lineStart_ - base_ : 0;
     if (lineStart_ >= base_ && lineOffset <= pos_ && pos_ - lineOffset <= kLineKept) keep = lineOffset;
-    if (keep > 0) {
+    if (keep > 0 && (end_ > buffer_.size() / 2 || pos_ == end_)) { // not for every few bytes of a pipe
         std::memmove(buffer_.data(), buffer_.data() + keep, end_ - keep);
         base_ += keep;
         pos_ -= keep;
@@ -139,10 +140,39 @@ bool Lexer::number(double& out) {
     }
 }
 
+/// Plain numbers between blanks and line ends, well inside the buffer: nearly all of a large file. Stops before anything else.
+void Lexer::plainNumbers(std::vector<double>& out) {
+    const char* const begin = buffer_.data();
+    const char* p = begin + pos_;
+    const char* const safe = begin + end_ - std::min(end_ - pos_, kPlainNumber); // a whole number and its end lie beyond every start
+    while (p < safe) {
+        if (*p == ' ') {
+            ++p;
+            continue;
+        }
+        if (*p == '\n') {
+            ++p;
+            ++line_;
+            lineStart_ = base_ + size_t(p - begin);
+            continue;
+        }
+        const char* digits = *p == '-' ? p + 1 : p;
+        if (!digit(static_cast<unsigned char>(*digits)) && *digits != '.') break;
+        double v;
+        auto r = fast_float::from_chars(p, p + kPlainNumber, v);
+        if (r.ec != std::errc() || (*r.ptr != ' ' && *r.ptr != '\n' && *r.ptr != ']') || !std::isfinite(v) || r.ptr >= p + kPlainNumber - 1) break;
+        out.push_back(v);
+        p = r.ptr;
+    }
+    pos_ = size_t(p - begin);
+}
+
 void Lexer::numbers(std::vector<double>& out) {
+    plainNumbers(out);
     while (skipSpace() && startsNumber(peek())) {
         double v;
         if (number(v)) out.push_back(v);
+        plainNumbers(out);
     }
 }
 

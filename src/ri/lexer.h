@@ -43,6 +43,7 @@ private:
     bool skipSpace();                  ///< to the next token; false at the end
     void newline();                    ///< the byte at pos_ is one: counts and passes it
     void comment();
+    void plainNumbers(std::vector<double>& out);
     bool number(double& out);          ///< false (reported) when malformed
     void identifier(std::string& out);
     void quoted(std::string& out, int line, int column);

@@ -16,6 +16,7 @@ RibReader::RibReader(ReaderOptions o, scene::FrameConsumer& c, Diagnostics& d) :
 RibReader::~RibReader() = default;
 
 bool RibReader::readFile(const std::string& path) {
+    if (path == "-") return in_->read(standardInput(), "standard input");
     std::string why;
     auto source = fileSource(path, &why);
     if (!source) {

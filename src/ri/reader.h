@@ -29,7 +29,7 @@ public:
     ~RibReader();
     /// Each returns true when this stream brought no error. Blocks left open at its end are closed with an error, an open world
     /// renders what there is; options, attributes and declarations stay for the next stream.
-    bool readFile(const std::string& path);
+    bool readFile(const std::string& path); ///< "-" is standard input
     bool readMemory(std::string_view text, const std::string& name);
     bool readStream(std::istream& in, const std::string& name);
 

@@ -2,9 +2,10 @@
 #include "base/limits.h"
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
+#include <fcntl.h>
 #include <filesystem>
+#include <unistd.h>
 #include <vector>
 #include <zlib.h>
 
@@ -40,16 +41,22 @@ private:
 
 class File : public ByteSource {
 public:
-    explicit File(std::FILE* f) : file_(f) {}
-    ~File() override { std::fclose(file_); }
+    File(int fd, bool owned) : fd_(fd), owned_(owned) {}
+    ~File() override {
+        if (owned_) ::close(fd_);
+    }
     size_t read(char* out, size_t size) override {
-        size_t n = std::fread(out, 1, size, file_);
-        if (n == 0 && std::ferror(file_)) failure_ = std::string("read error: ") + std::strerror(errno);
-        return n;
+        ssize_t n;
+        do {
+            n = ::read(fd_, out, size); // what is there: a pipe's requests are seen as they come
+        } while (n < 0 && errno == EINTR);
+        if (n < 0) failure_ = std::string("read error: ") + std::strerror(errno);
+        return n > 0 ? size_t(n) : 0;
     }
 
 private:
-    std::FILE* file_;
+    int fd_;
+    bool owned_;
 };
 
 /// Bytes already taken from a stream, then the rest of it.
@@ -151,13 +158,15 @@ std::unique_ptr<ByteSource> fileSource(const std::string& path, std::string* why
         if (why) *why = "it is a directory";
         return nullptr;
     }
-    std::FILE* f = std::fopen(path.c_str(), "rb");
-    if (!f) {
+    int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (fd < 0) {
         if (why) *why = std::strerror(errno);
         return nullptr;
     }
-    return std::make_unique<File>(f);
+    return std::make_unique<File>(fd, true);
 }
+
+std::unique_ptr<ByteSource> standardInput() { return std::make_unique<File>(STDIN_FILENO, false); }
 
 std::unique_ptr<ByteSource> inflating(std::unique_ptr<ByteSource> raw) {
     std::string head;

@@ -30,6 +30,8 @@ std::unique_ptr<ByteSource> memorySource(std::string_view text);
 std::unique_ptr<ByteSource> streamSource(std::istream& in);
 /// Null when the file cannot be opened or is a directory; *why says which.
 std::unique_ptr<ByteSource> fileSource(const std::string& path, std::string* why);
+/// Descriptor 0, unbuffered.
+std::unique_ptr<ByteSource> standardInput();
 /// Inflates when the stream starts with 1f 8b (concatenated members too), else passes it through.
 /// Limits: limits::kGzipRatio, limits::kGzipBytes.
 std::unique_ptr<ByteSource> inflating(std::unique_ptr<ByteSource> raw);

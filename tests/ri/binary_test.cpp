@@ -157,15 +157,35 @@ TEST(Hostile, Noise) {
 }
 
 TEST(Hostile, ObjectsOfObjectsAreBounded) {
-    // 10 copies of 10 copies of ...: 10^9 primitives if nothing stopped it.
-    std::string s = "ObjectBegin 0 Sphere 1 -1 1 360 ObjectEnd\n";
-    for (int i = 1; i <= 9; ++i) {
-        s += "ObjectBegin " + std::to_string(i);
-        for (int k = 0; k < 10; ++k) s += " ObjectInstance " + std::to_string(i - 1);
-        s += " ObjectEnd\n";
-        if (i == 4) break; // 10^4 suffice here; the limit itself is checked where it is cheap
-    }
-    auto c = read(s + "WorldBegin ObjectInstance 4 WorldEnd");
+    // Ten copies of ten copies of ...: 10^k primitives.
+    auto nested = [](int levels) {
+        std::string s = "ObjectBegin 0 Sphere 1 -1 1 360 ObjectEnd\n";
+        for (int i = 1; i <= levels; ++i) {
+            s += "ObjectBegin " + std::to_string(i);
+            for (int k = 0; k < 10; ++k) s += " ObjectInstance " + std::to_string(i - 1);
+            s += " ObjectEnd\n";
+        }
+        return read(s + "WorldBegin ObjectInstance " + std::to_string(levels) + " WorldEnd");
+    };
+    auto c = nested(3);
     EXPECT_TRUE(c->ok);
-    EXPECT_EQ(c->frame().objects.at(0).primitives.size(), 10000u);
+    EXPECT_EQ(c->frame().objects.at(0).primitives.size(), 1000u);
+    EXPECT_EQ(nested(9)->only().code, Rie::Limit);
+}
+
+TEST(Hostile, ArchivesOfArchivesAreBounded) {
+    // A thousand times a thousand times a thousand reads of an empty archive.
+    std::string s = "ArchiveBegin \"a0\" ArchiveEnd\n";
+    for (int i = 1; i <= 3; ++i) {
+        s += "ArchiveBegin \"a" + std::to_string(i) + "\"";
+        for (int k = 0; k < 1000; ++k) s += " ReadArchive \"a" + std::to_string(i - 1) + "\"";
+        s += " ArchiveEnd\n";
+    }
+    EXPECT_EQ(read(s + "ReadArchive \"a3\"")->only().code, Rie::Limit); // limits::kArchiveReads
+    // 10^4 reads of 10^4 requests: limits::kReplayedCalls.
+    std::string t = "ArchiveBegin \"b0\"";
+    for (int k = 0; k < 10000; ++k) t += " ReverseOrientation";
+    t += " ArchiveEnd\n";
+    for (int k = 0; k < 10000; ++k) t += "ReadArchive \"b0\" ";
+    EXPECT_EQ(read(t)->only().code, Rie::Limit);
 }

@@ -149,3 +149,14 @@ TEST(Conditions, Branches) {
     EXPECT_EQ(c->frame().primitives.size(), 1u);
     EXPECT_EQ(read("IfBegin \"1\"")->only().code, Rie::Nesting);
 }
+
+TEST(Hints, WrongBoundIsOnlyAWarning) {
+    auto c = world("Bound 1 -1 0 1 0 1 Sphere 1 -1 1 360");
+    EXPECT_TRUE(c->ok);
+    EXPECT_EQ(c->only().code, Rie::Range);
+    EXPECT_FALSE(c->primitive().attributes->bound);
+}
+
+TEST(Hints, VisibilityTakesNumbersAndWords) {
+    EXPECT_EQ(world("Attribute \"visibility\" \"transmission\" 1 Attribute \"visibility\" \"transmission\" \"Os\"")->count(), 0u);
+}

@@ -1,6 +1,7 @@
 // Every request of the table: its sample is read and executed; the table and the reference agree.
 #include "collect.h"
 #include "ri/parser.h"
+#include "ri/requests/manual.h"
 #include "ri/requests/request.h"
 #include <set>
 
@@ -103,4 +104,9 @@ TEST(Table, EverySampleExecutesInItsScope) {
         EXPECT_TRUE(c->ok) << whole << c->messages();
         for (const Diagnostic& d : c->diagnostics.all()) EXPECT_EQ(d.code, Rie::Incapable) << whole << toString(d);
     }
+}
+
+TEST(Table, ManualNamesEveryRequest) {
+    std::string m = requestManual();
+    for (const Request& r : requestTable()) EXPECT_NE(m.find("\n| " + std::string(r.name) + " | "), std::string::npos) << r.name;
 }

@@ -87,7 +87,10 @@ void basis(Interpreter& in, const Call& c) {
 
 bool boundOf(Interpreter& in, const Call& c, std::vector<float>& out) {
     out = c.reals(0);
-    return within(in, c, out[0] <= out[1] && out[2] <= out[3] && out[4] <= out[5], "a bound is xmin xmax ymin ymax zmin zmax");
+    if (out[0] <= out[1] && out[2] <= out[3] && out[4] <= out[5]) return true;
+    // A hint only, and often wrong in old files: no reason for the render to count as failed.
+    in.reporter.warning(Rie::Range, c.place, fmt::format("{}: a bound is xmin xmax ymin ymax zmin zmax: ignored", c.request->name));
+    return false;
 }
 
 void trimCurve(Interpreter& in, const Call& c) {

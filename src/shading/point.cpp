@@ -1,0 +1,43 @@
+#include "shading/point.h"
+
+namespace alpenglow::shading {
+
+const char* toString(RayType t) {
+    switch (t) {
+    case RayType::Camera: return "camera";
+    case RayType::Diffuse: return "diffuse";
+    case RayType::Specular: return "specular";
+    default: return "transmission";
+    }
+}
+
+void setFootprint(ShadePoint& p, const PathRay& ray, float distance, float shadingRate) {
+    // Two steps across the ray, as long as the footprint is wide, are projected along the ray onto the tangent plane and expressed
+    // in dPdu, dPdv by least squares; the larger of the two steps counts.
+    float w = 2 * (ray.width + ray.spread * distance);
+    const Vec3 &a = p.surface.dPdu, &b = p.surface.dPdv;
+    Vec3 n = p.surface.n, d = ray.dir;
+    Vec3 ex = normalize(std::fabs(d.x) > 0.6f ? cross(d, Vec3(0, 1, 0)) : cross(d, Vec3(1, 0, 0))), ey = cross(d, ex);
+    float dn = dot(d, n);
+    if (std::fabs(dn) < 0.05f) dn = dn < 0 ? -0.05f : 0.05f; // a grazing footprint has no useful limit
+    float aa = dot(a, a), bb = dot(b, b), ab = dot(a, b), det = aa * bb - ab * ab;
+    float best[2] = {0, 0};
+    for (const Vec3& e : {ex, ey}) {
+        Vec3 step = (e - d * (dot(e, n) / dn)) * w;
+        float sa = dot(step, a), sb = dot(step, b), u, v;
+        if (det > 1e-12f * aa * bb) {
+            u = (sa * bb - sb * ab) / det;
+            v = (sb * aa - sa * ab) / det;
+        } else { // a pole or a collapsed edge
+            u = aa > 0 ? sa / aa : 0;
+            v = bb > 0 ? sb / bb : 0;
+        }
+        best[0] = std::max(best[0], std::fabs(u));
+        best[1] = std::max(best[1], std::fabs(v));
+    }
+    float rate = std::sqrt(std::max(shadingRate, 1e-6f));
+    p.du = std::max(best[0] * rate, 1e-12f);
+    p.dv = std::max(best[1] * rate, 1e-12f);
+}
+
+} // namespace alpenglow::shading

@@ -1,0 +1,55 @@
+// What the renderer knows about a point that a shader is going to run at, and about the ray that found it. Camera space ("current").
+#pragma once
+#include "geometry/shape.h"
+#include "scene/scene.h"
+#include "shading/scheduler.h"
+
+namespace alpenglow::shading {
+
+enum class RayType : uint8_t { Camera, Diffuse, Specular, Transmission };
+const char* toString(RayType);
+
+/// A ray on its way, with all that its hit needs: who pays for what it finds, which random numbers it may use, how it was made.
+struct PathRay {
+    Vec3 origin, dir;                 ///< dir: unit
+    float maxDistance = 1e38f;
+    Color weight{1};                  ///< throughput since its target
+    // Key of its random numbers (design decision 10).
+    int px = 0, py = 0;
+    uint32_t sample = 0, vertex = 0;  ///< vertex: hash of the path of call sites that led here; 0 = camera
+    RayType type = RayType::Camera;
+    int16_t bounces = 0, diffuseBounces = 0, specularBounces = 0;
+    float time = 0;
+    /// Density per steradian with which this direction was drawn, times the probability of drawing it at all; < 0: light sampling
+    /// cannot have produced this direction, so emission counts in full (pathtracer.md 3).
+    float lobePdf = -1;
+    bool wantsLight = true;           ///< false: emission of area lights is not counted (they are not sampled by this trace())
+    float width = 0, spread = 0;      ///< footprint: half width at the origin, and its growth with distance
+    uint32_t shape = geometry::kNone; ///< surface it leaves, for the exclusion of its own primitive
+    uint32_t prim = geometry::kNone;
+    int cameraSample = -1;            ///< index of the sample whose opacity, depth and AOVs this ray's hit writes; -1: none
+    bool first = true;                ///< first task of its target: writes distance and transmission
+};
+
+using Sched = Scheduler<PathRay>;
+
+/// A point with everything that predefined variables are read from.
+struct ShadePoint {
+    const geometry::Shape* shape = nullptr; ///< null for imagers and for lights without geometry
+    geometry::SurfacePoint surface;
+    Vec3 P, N;                        ///< after displacement; N unit only if the surface's is
+    Vec3 I, E;                        ///< incident vector with its length, and the ray's origin
+    float du = 1, dv = 1;             ///< largest footprint over x and y (design decision 7)
+    float time = 0;
+    Color Ci{0}, Oi{0};               ///< volumes and imagers: on entry
+    float alpha = 0;
+    Vec3 Ps, Ns;                      ///< lights: the point being lit and its normal
+    Vec3 viewI;                       ///< lights: the incident vector at the lit point
+    const PathRay* ray = nullptr;
+    int task = -1;                    ///< index in the slice
+};
+
+/// Fills du and dv from the ray's footprint at distance t.
+void setFootprint(ShadePoint&, const PathRay&, float distance, float shadingRate);
+
+} // namespace alpenglow::shading

@@ -1,0 +1,106 @@
+#include "transport/arealight.h"
+#include "transport/sampling.h"
+
+namespace alpenglow::transport {
+
+namespace {
+// A whole sphere whose transform keeps it one: rows of the upper 3x3 of equal length and orthogonal.
+bool wholeSphere(const geometry::Shape& s, Vec3& centre, float& radius) {
+    const auto& p = *s.source().primitive;
+    if (p.kind != "Sphere" || p.numbers.size() < 4 || !s.exact()) return false;
+    double r = std::fabs(p.numbers[0]);
+    double lo = std::min(p.numbers[1], p.numbers[2]), hi = std::max(p.numbers[1], p.numbers[2]);
+    if (lo > -r || hi < r || std::fabs(p.numbers[3]) < 360) return false;
+    const auto& m = s.toCamera().m;
+    Vec3d rows[3];
+    for (int i = 0; i < 3; ++i) rows[i] = {m[i][0], m[i][1], m[i][2]};
+    double l = dot(rows[0], rows[0]);
+    for (int i = 0; i < 3; ++i) {
+        if (std::fabs(dot(rows[i], rows[i]) - l) > 1e-6 * l) return false;
+        if (std::fabs(dot(rows[i], rows[(i + 1) % 3])) > 1e-6 * l) return false;
+    }
+    centre = Vec3(Vec3d(m[3][0], m[3][1], m[3][2]));
+    radius = float(r * std::sqrt(l));
+    return true;
+}
+
+// 1 - cos of the half angle under which the sphere is seen from outside, without cancellation.
+double capOneMinusCos(double radius, double distance) {
+    double s2 = radius * radius / (distance * distance);
+    return s2 / (1 + std::sqrt(std::max(0.0, 1 - s2)));
+}
+} // namespace
+
+Emitter::Emitter(std::vector<const geometry::Shape*> shapes) {
+    for (const auto* s : shapes) {
+        double a = s->area();
+        if (!(a > 0) || !std::isfinite(a)) continue;
+        Entry e{s, a, 0};
+        e.sphere = wholeSphere(*s, e.centre, e.radius);
+        entries_.push_back(e);
+        area_ += a;
+    }
+    double sum = 0;
+    for (auto& e : entries_) {
+        e.share /= area_;
+        e.cumulative = sum += e.share;
+    }
+}
+
+float Emitter::areaPdf(const Entry& e, const geometry::SurfacePoint& p, const Vec3& from) const {
+    Vec3 d = p.P - from;
+    float d2 = dot(d, d), cosine = std::fabs(dot(d, p.n)) / std::sqrt(d2);
+    if (!(d2 > 0) || !(cosine > 1e-7f)) return 0;
+    return float(e.share * e.shape->sampleDensity(p) * d2 / cosine);
+}
+
+std::optional<Emitter::Sample> Emitter::sample(const Vec3& from, Vec2 u, float choose) const {
+    if (entries_.empty()) return {};
+    size_t i = 0;
+    while (i + 1 < entries_.size() && choose >= entries_[i].cumulative) ++i;
+    const Entry& e = entries_[i];
+    Sample out;
+    out.shape = e.shape;
+    if (e.sphere) {
+        Vec3 axis = e.centre - from;
+        double dc = length(Vec3d(axis));
+        if (dc > e.radius * 1.0001) {
+            double cap = capOneMinusCos(e.radius, dc);
+            Vec3 w = Basis(normalize(axis)).toWorld(sampleCone(float(cap), u));
+            geometry::ExactHit hits[4];
+            Vec3d far = Vec3d(from);
+            int n = e.shape->exactHits(far, Vec3d(w), hits);
+            // The line grazes the rim in rounding: then this draw is lost, with a probability of the order of float epsilon.
+            int k = 0;
+            while (k < n && !(hits[k].t > 0)) ++k;
+            if (k == n) return {};
+            out.point = e.shape->evaluateHit(0, hits[k].u, hits[k].v);
+            out.pdf = float(e.share / (2 * kPi * cap));
+            out.direction = w;
+            out.distance = float(hits[k].t);
+            return out;
+        }
+    }
+    out.point = e.shape->sampleArea(u.x, u.y);
+    Vec3 d = out.point.P - from;
+    out.distance = length(d);
+    if (!(out.distance > 0)) return {};
+    out.direction = d / out.distance;
+    out.pdf = areaPdf(e, out.point, from);
+    if (!(out.pdf > 0) || !std::isfinite(out.pdf)) return {};
+    return out;
+}
+
+float Emitter::pdf(const geometry::Shape* shape, const geometry::SurfacePoint& hit, const Vec3& from) const {
+    for (const Entry& e : entries_) {
+        if (e.shape != shape) continue;
+        if (e.sphere) {
+            double dc = length(Vec3d(e.centre) - Vec3d(from));
+            if (dc > e.radius * 1.0001) return float(e.share / (2 * kPi * capOneMinusCos(e.radius, dc)));
+        }
+        return areaPdf(e, hit, from);
+    }
+    return 0;
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,41 @@
+// Where on an emitter a light sample lies, and with which density a given hit would have been chosen (design decision 4).
+#pragma once
+#include "geometry/shape.h"
+#include <optional>
+
+namespace alpenglow::transport {
+
+/// The geometry of one area light: its shapes, chosen in proportion to area. Full spheres that are still spheres in camera space
+/// are sampled by the solid angle they fill; everything else over its area.
+class Emitter {
+public:
+    explicit Emitter(std::vector<const geometry::Shape*> shapes);
+    bool empty() const { return entries_.empty(); }
+    double area() const { return area_; }
+
+    struct Sample {
+        const geometry::Shape* shape = nullptr;
+        geometry::SurfacePoint point;
+        float pdf = 0; ///< per steradian as seen from the lit point; > 0
+        Vec3 direction; ///< unit, from the lit point to the light
+        float distance = 0;
+    };
+    /// A point of the light for the lit point at `from`. Nothing when the draw faces edge-on or coincides with `from`.
+    std::optional<Sample> sample(const Vec3& from, Vec2 u, float choose) const;
+    /// Density per steradian with which sample() gives this hit as seen from `from`; 0 for shapes of other lights.
+    float pdf(const geometry::Shape* shape, const geometry::SurfacePoint& hit, const Vec3& from) const;
+
+private:
+    struct Entry {
+        const geometry::Shape* shape;
+        double share, cumulative; ///< probability, and its sum up to and with this shape
+        bool sphere = false;
+        Vec3 centre;
+        float radius = 0;
+    };
+    float areaPdf(const Entry&, const geometry::SurfacePoint&, const Vec3& from) const;
+    std::vector<Entry> entries_;
+    double area_ = 0;
+};
+
+} // namespace alpenglow::transport

@@ -1,0 +1,2 @@
+room(geometry DEPS scene base)
+room_tests(geometry DEPS geometry)

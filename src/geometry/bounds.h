@@ -1,0 +1,23 @@
+// Axis-aligned boxes.
+#pragma once
+#include "base/matrix.h"
+#include "base/vec.h"
+#include <algorithm>
+#include <limits>
+
+namespace alpenglow::geometry {
+
+/// Empty when lo > hi.
+struct Bounds {
+    Vec3 lo{std::numeric_limits<float>::infinity()}, hi{-std::numeric_limits<float>::infinity()};
+    bool empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }
+    void add(const Vec3& p) {
+        for (int i = 0; i < 3; ++i) {
+            lo[i] = std::min(lo[i], p[i]);
+            hi[i] = std::max(hi[i], p[i]);
+        }
+    }
+    void add(const Bounds& b) { add(b.lo); add(b.hi); }
+};
+
+} // namespace alpenglow::geometry

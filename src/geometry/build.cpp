@@ -1,0 +1,114 @@
+#include "geometry/build.h"
+#include "base/limits.h"
+#include "geometry/factories.h"
+#include <cmath>
+#include <cstring>
+
+namespace alpenglow::geometry {
+namespace {
+
+struct Entry { const char* kind; ShapeRef (*make)(ShapeSource, Diagnostics&); };
+constexpr Entry kTable[] = {
+    {"Sphere", makeSphere}, {"Cone", makeCone}, {"Cylinder", makeCylinder}, {"Hyperboloid", makeHyperboloid},
+    {"Paraboloid", makeParaboloid}, {"Disk", makeDisk}, {"Torus", makeTorus},
+    {"Polygon", makePolygon}, {"GeneralPolygon", makeGeneralPolygon}, {"PointsPolygons", makePointsPolygons},
+    {"PointsGeneralPolygons", makePointsGeneralPolygons}, {"Patch", makePatch}, {"PatchMesh", makePatchMesh}, {"NuPatch", makeNuPatch},
+};
+
+void once(Diagnostics& diag, const std::string& key, Rie code, const SourcePlace& place, const std::string& message) {
+    Diagnostic d;
+    d.severity = Severity::Warning;
+    d.code = code;
+    d.place = place;
+    d.message = message;
+    diag.reportOnce("geometry:" + key, d);
+}
+
+// RenderMan's defaults where a caller gave no attributes or no basis.
+void fillBasis(scene::Basis& b) {
+    bool zero = true;
+    for (auto& row : b.m)
+        for (double x : row)
+            if (x != 0) zero = false;
+    if (!zero) return;
+    static constexpr double bezier[4][4] = {{-1, 3, -3, 1}, {3, -6, 3, 0}, {-3, 3, 0, 0}, {1, 0, 0, 0}};
+    std::memcpy(b.m, bezier, sizeof bezier);
+    b.step = 3;
+}
+
+} // namespace
+
+ShapeRef buildShape(const scene::PrimitiveRef& prim, const scene::AttributesRef& given, const Matrix& toCamera, int instance, Diagnostics& diag) {
+    const Entry* entry = nullptr;
+    for (const Entry& e : kTable)
+        if (prim->kind == e.kind) entry = &e;
+    if (!entry) {
+        std::string what = prim->kind;
+        if (what == "Geometry" && !prim->strings.empty()) what += " \"" + prim->strings[0] + "\"";
+        once(diag, "kind:" + what, Rie::Unimplement, prim->place, what + " is not yet drawn");
+        return nullptr;
+    }
+    bool affine = toCamera.m[0][3] == 0 && toCamera.m[1][3] == 0 && toCamera.m[2][3] == 0 && toCamera.m[3][3] == 1;
+    bool finite = true;
+    for (auto& row : toCamera.m)
+        for (double x : row) finite = finite && std::isfinite(x);
+    if (!finite || determinant3(toCamera) == 0) {
+        diag.report(Severity::Warning, Rie::Math, prim->place, prim->kind + " has a transformation without inverse; it is not drawn");
+        return nullptr;
+    }
+    if (!affine) once(diag, "projective", Rie::Incapable, prim->place, "a transformation of this " + prim->kind + " holds a perspective; derivatives and quadrics ignore it");
+    ShapeSource s;
+    s.primitive = prim;
+    s.toCamera = toCamera;
+    s.instance = instance;
+    auto a = given ? std::make_shared<scene::Attributes>(*given) : nullptr;
+    bool bases = prim->kind == "Patch" || prim->kind == "PatchMesh";
+    if (!given || bases) {
+        if (!a) a = std::make_shared<scene::Attributes>();
+        scene::Basis u = a->ubasis, v = a->vbasis;
+        fillBasis(a->ubasis);
+        fillBasis(a->vbasis);
+        bool changed = !given || std::memcmp(u.m, a->ubasis.m, sizeof u.m) || std::memcmp(v.m, a->vbasis.m, sizeof v.m);
+        s.attributes = changed ? scene::AttributesRef(a) : given;
+    } else {
+        s.attributes = given;
+    }
+    return entry->make(std::move(s), diag);
+}
+
+std::vector<ShapeRef> buildShapes(const scene::Frame& f, Diagnostics& diag) {
+    std::vector<ShapeRef> out;
+    const Matrix& camera = f.options.worldToCamera.first();
+    auto sayMotion = [&](const scene::Primitive& p, bool moves) {
+        if (moves || !p.motionKeys.empty() || p.toWorld.moves())
+            once(diag, "motion", Rie::Unimplement, p.place, "motion is not yet drawn: moving primitives stand where they are at their first key");
+    };
+    auto add = [&](const scene::PrimitiveRef& p, const scene::AttributesRef& a, const Matrix& m, int instance) {
+        if (out.size() >= limits::kShapes) {
+            once(diag, "limit", Rie::Limit, p->place, "the frame has more than " + std::to_string(limits::kShapes) + " primitives; the rest is not drawn");
+            return;
+        }
+        if (ShapeRef s = buildShape(p, a, m, instance, diag)) out.push_back(std::move(s));
+    };
+    for (const scene::PrimitiveRef& p : f.primitives) {
+        if (!p) continue;
+        sayMotion(*p, f.options.worldToCamera.moves());
+        add(p, p->attributes, p->toWorld.first() * camera, -1);
+    }
+    for (size_t i = 0; i < f.instances.size(); ++i) {
+        const scene::Instance& inst = f.instances[i];
+        if (inst.object < 0 || size_t(inst.object) >= f.objects.size()) {
+            diag.report(Severity::Error, Rie::BadHandle, inst.place, "ObjectInstance of an object that does not exist");
+            continue;
+        }
+        if (out.size() >= limits::kShapes) break;
+        for (const scene::PrimitiveRef& p : f.objects[size_t(inst.object)].primitives) {
+            if (!p) continue;
+            sayMotion(*p, inst.toWorld.moves());
+            add(p, inst.attributes ? inst.attributes : p->attributes, p->toWorld.first() * (inst.toWorld.first() * camera), int(i));
+        }
+    }
+    return out;
+}
+
+} // namespace alpenglow::geometry

@@ -1,0 +1,14 @@
+// From the description of a frame to shapes in camera space.
+#pragma once
+#include "geometry/shape.h"
+
+namespace alpenglow::geometry {
+
+/// Makes a shape of one primitive; null when it was reported as faulty or not yet drawn. attributes may be null (defaults).
+ShapeRef buildShape(const scene::PrimitiveRef&, const scene::AttributesRef& attributes, const Matrix& toCamera, int instance, Diagnostics&);
+
+/// All shapes of a frame: its primitives in order, then its instances expanded in order (their primitives' transforms
+/// composed; the instance's attributes). Moving transforms and primitives stand at their first key, said once.
+std::vector<ShapeRef> buildShapes(const scene::Frame&, Diagnostics&);
+
+} // namespace alpenglow::geometry

@@ -1,0 +1,255 @@
+#include "geometry/control_net.h"
+#include "base/limits.h"
+#include <algorithm>
+#include <cmath>
+
+namespace alpenglow::geometry {
+
+using scene::Class;
+
+NetDirection NetDirection::linear(int n, bool wrap) {
+    NetDirection d;
+    d.n_ = n;
+    d.wrap_ = wrap;
+    d.patches_ = wrap ? n : n - 1;
+    d.width_ = 2;
+    return d;
+}
+
+NetDirection NetDirection::cubic(int n, bool wrap, const scene::Basis& b) {
+    NetDirection d;
+    d.n_ = n;
+    d.wrap_ = wrap;
+    d.step_ = std::max(1, b.step);
+    d.width_ = 4;
+    d.patches_ = wrap ? n / d.step_ : (n - 4) / d.step_ + 1;
+    for (size_t i = 0; i < 4; ++i)
+        for (size_t j = 0; j < 4; ++j) d.m_[i][j] = b.m[i][j];
+    return d;
+}
+
+NetDirection NetDirection::nurbs(int n, int order, std::vector<double> knots, double lo, double hi) {
+    NetDirection d;
+    d.n_ = n;
+    d.order_ = order;
+    d.patches_ = n - order + 1;
+    d.knots_ = std::move(knots);
+    d.lo_ = lo;
+    d.hi_ = hi;
+    return d;
+}
+
+BasisSpan NetDirection::at(double x) const {
+    BasisSpan s;
+    x = std::clamp(x, 0.0, 1.0);
+    if (order_ > 0) {
+        double t = lo_ + x * (hi_ - lo_);
+        int k = order_ - 1, span = k;
+        while (span < n_ - 1 && t >= knots_[size_t(span) + 1]) ++span;
+        while (span > k && knots_[size_t(span)] == knots_[size_t(span) + 1]) --span; // the end of the last real interval
+        // Cox-de Boor, degree by degree; derivatives by the difference rule from one and two degrees lower.
+        auto K = [&](int i) { return knots_[size_t(i)]; };
+        auto basis = [&](int degree, double* b) { // b[0..degree]: functions span-degree .. span
+            b[0] = 1;
+            for (int p = 1; p <= degree; ++p) {
+                double saved = 0;
+                for (int r = 0; r < p; ++r) {
+                    double right = K(span + r + 1), left = K(span + 1 - p + r), den = right - left;
+                    double q = den > 0 ? b[r] / den : 0;
+                    b[r] = saved + (right - t) * q;
+                    saved = (t - left) * q;
+                }
+                b[p] = saved;
+            }
+        };
+        auto derive = [&](int degree, const double* lower, double* out) { // lower: degree - 1 functions or their derivatives
+            for (int r = 0; r <= degree; ++r) {
+                int i = span - degree + r;
+                double a = 0, c = 0;
+                if (r > 0 && K(i + degree) > K(i)) a = lower[r - 1] / (K(i + degree) - K(i));
+                if (r < degree && K(i + degree + 1) > K(i + 1)) c = lower[r] / (K(i + degree + 1) - K(i + 1));
+                out[r] = degree * (a - c);
+            }
+        };
+        double b[8], b1[8], b2[8], d1[8], e[8], dd[8];
+        basis(k, b);
+        std::fill(d1, d1 + 8, 0.0);
+        std::fill(dd, dd + 8, 0.0);
+        if (k >= 1) basis(k - 1, b1), derive(k, b1, d1);
+        if (k >= 2) basis(k - 2, b2), derive(k - 1, b2, e), derive(k, e, dd);
+        double scale = hi_ - lo_;
+        s.count = order_;
+        for (int r = 0; r <= k; ++r) {
+            s.index[r] = span - k + r;
+            s.w[r] = b[r];
+            s.d[r] = d1[r] * scale;
+            s.dd[r] = dd[r] * scale * scale;
+        }
+        return s;
+    }
+    int cell = std::clamp(int(x * patches_), 0, patches_ - 1);
+    double t = x * patches_ - cell, k = patches_;
+    s.count = width_;
+    for (int i = 0; i < width_; ++i) {
+        int at = cell * step_ + i;
+        s.index[i] = wrap_ ? at % n_ : at;
+        if (width_ == 2) {
+            s.w[i] = i ? t : 1 - t;
+            s.d[i] = i ? k : -k;
+            s.dd[i] = 0;
+        } else {
+            size_t c = size_t(i);
+            s.w[i] = ((m_[0][c] * t + m_[1][c]) * t + m_[2][c]) * t + m_[3][c];
+            s.d[i] = ((3 * m_[0][c] * t + 2 * m_[1][c]) * t + m_[2][c]) * k;
+            s.dd[i] = (6 * m_[0][c] * t + 2 * m_[1][c]) * k * k;
+        }
+    }
+    return s;
+}
+
+ControlNet::ControlNet(ShapeSource s, NetDirection u, NetDirection v, std::vector<std::array<double, 4>> points, Diagnostics& diag)
+    : Parametric(std::move(s)), u_(std::move(u)), v_(std::move(v)), points_(std::move(points)) {
+    for (auto& p : points_) {
+        if (p[3] != 1) rational_ = true;
+        for (size_t k = 0; k < 3; ++k) pointScale_ = std::max(pointScale_, std::fabs(p[k] / p[3]));
+    }
+    closedU_ = u_.wrap() || sameEdge(true);
+    closedV_ = v_.wrap() || sameEdge(false);
+    takePrimvars(diag);
+}
+
+// Whether the edges u = 0 and u = 1 (alongV) are one curve: many old models close a patch by repeating its points.
+bool ControlNet::sameEdge(bool alongV) const {
+    constexpr int kProbe = 9;
+    for (int i = 0; i < kProbe; ++i) {
+        double x = double(i) / (kProbe - 1);
+        Vec3 a(alongV ? cameraPosition(0, x) : cameraPosition(x, 0)), b(alongV ? cameraPosition(1, x) : cameraPosition(x, 1));
+        if (length(a - b) > 4 * roundingError(a)) return false;
+    }
+    return true;
+}
+
+Vec3d ControlNet::cameraPosition(double u, double v) const {
+    BasisSpan a = u_.at(u), b = v_.at(v);
+    double x = 0, y = 0, z = 0, w = 0;
+    for (int j = 0; j < b.count; ++j)
+        for (int i = 0; i < a.count; ++i) {
+            const auto& p = points_[size_t(b.index[j]) * size_t(u_.points()) + size_t(a.index[i])];
+            double k = a.w[i] * b.w[j];
+            x += k * p[0]; y += k * p[1]; z += k * p[2]; w += k * p[3];
+        }
+    return rational_ && w != 0 ? Vec3d(x / w, y / w, z / w) : Vec3d(x, y, z);
+}
+
+void ControlNet::differentiate(double u, double v, LocalPoint& r) const {
+    BasisSpan a = u_.at(u), b = v_.at(v);
+    double f[6][4] = {};
+    for (int j = 0; j < b.count; ++j)
+        for (int i = 0; i < a.count; ++i) {
+            const auto& p = points_[size_t(b.index[j]) * size_t(u_.points()) + size_t(a.index[i])];
+            double k[6] = {a.w[i] * b.w[j], a.d[i] * b.w[j], a.w[i] * b.d[j], a.dd[i] * b.w[j], a.d[i] * b.d[j], a.w[i] * b.dd[j]};
+            for (int q = 0; q < 6; ++q)
+                for (size_t c = 0; c < 4; ++c) f[q][c] += k[q] * p[c];
+        }
+    auto v3 = [&](int q) { return Vec3d(f[q][0], f[q][1], f[q][2]); };
+    if (!rational_ || f[0][3] == 0) {
+        r.P = v3(0); r.Pu = v3(1); r.Pv = v3(2); r.Puu = v3(3); r.Puv = v3(4); r.Pvv = v3(5);
+        return;
+    }
+    double w = f[0][3], wu = f[1][3], wv = f[2][3], wuu = f[3][3], wuv = f[4][3], wvv = f[5][3];
+    r.P = v3(0) / w;
+    r.Pu = (v3(1) - r.P * wu) / w;
+    r.Pv = (v3(2) - r.P * wv) / w;
+    r.Puu = (v3(3) - r.Pu * (2 * wu) - r.P * wuu) / w;
+    r.Puv = (v3(4) - r.Pu * wv - r.Pv * wu - r.P * wuv) / w;
+    r.Pvv = (v3(5) - r.Pv * (2 * wv) - r.P * wvv) / w;
+}
+
+LocalPoint ControlNet::cameraPoint(double u, double v) const {
+    LocalPoint r;
+    differentiate(u, v, r);
+    auto normalOf = [](const LocalPoint& p, Vec3d& n) {
+        Vec3d c = cross(p.Pu, p.Pv);
+        double l = length(c);
+        if (!(l > 1e-12 * (dot(p.Pu, p.Pu) + dot(p.Pv, p.Pv)))) return false;
+        n = c / l;
+        return true;
+    };
+    if (normalOf(r, r.n)) {
+        normalDerivatives(r);
+        return r;
+    }
+    // An edge collapsed to a point, or a cusp: the normal of a point a little inside.
+    for (double step : {1e-4, 1e-3, 1e-2}) {
+        LocalPoint q;
+        differentiate(u + (u < 0.5 ? step : -step), v + (v < 0.5 ? step : -step), q);
+        if (normalOf(q, r.n)) return r;
+    }
+    r.n = Vec3d(0, 0, -1);
+    return r;
+}
+
+size_t ControlNet::classCount(Class c) const {
+    switch (c) {
+    case Class::Constant: return 1;
+    case Class::Uniform: return size_t(faces());
+    case Class::Vertex: return points_.size();
+    default: return size_t(u_.varyings()) * size_t(v_.varyings());
+    }
+}
+
+int ControlNet::weights(Class c, const SurfacePoint& p, Weight w[16]) const {
+    if (c == Class::Constant || c == Class::Uniform) {
+        w[0] = {c == Class::Uniform ? size_t(p.face) : 0, 1, 0, 0};
+        return 1;
+    }
+    if (c != Class::Vertex) return bilinearWeights(p.b1, p.b2, u_.varyings(), v_.varyings(), u_.wrap(), v_.wrap(), w);
+    BasisSpan a = u_.at(p.b1), b = v_.at(p.b2);
+    int n = 0;
+    for (int j = 0; j < b.count; ++j)
+        for (int i = 0; i < a.count; ++i)
+            w[n++] = {size_t(b.index[j]) * size_t(u_.points()) + size_t(a.index[i]), a.w[i] * b.w[j], a.d[i] * b.w[j], a.w[i] * b.d[j]};
+    return n;
+}
+
+bool readControlPoints(const ShapeSource& s, int nu, int nv, bool wrapU, bool wrapV, Diagnostics& diag,
+                       std::vector<std::array<double, 4>>& out) {
+    const scene::Primitive& p = *s.primitive;
+    const Matrix& m = s.toCamera;
+    size_t n = size_t(nu) * size_t(nv);
+    auto fail = [&](Rie code, const std::string& why) {
+        diag.report(Severity::Error, code, p.place, p.kind + ": " + why + "; it is not drawn");
+        return false;
+    };
+    int width = 3;
+    const scene::Param* q = lastParam(p.params, "P");
+    if (!q) q = lastParam(p.params, "Pw"), width = 4;
+    if (!q) q = lastParam(p.params, "Pz"), width = 1;
+    if (!q) return fail(Rie::MissingData, "\"P\", \"Pw\" or \"Pz\" is missing");
+    if (q->name == "P" && q->type == scene::Type::HPoint) width = 4;
+    if (n > limits::kControlPoints) return fail(Rie::Limit, "too many control points");
+    if (q->numbers.size() < n * size_t(width))
+        return fail(Rie::MissingData, "\"" + q->name + "\" has " + std::to_string(q->numbers.size()) + " numbers, " +
+                                          std::to_string(n * size_t(width)) + " needed");
+    out.resize(n);
+    for (size_t k = 0; k < n; ++k) {
+        const float* f = &q->numbers[k * size_t(width)];
+        double h[4] = {0, 0, 0, 1};
+        if (width == 1) {
+            // A height field over the unit square.
+            int du = wrapU ? nu : nu - 1, dv = wrapV ? nv : nv - 1;
+            h[0] = double(k % size_t(nu)) / du;
+            h[1] = double(k / size_t(nu)) / dv;
+            h[2] = f[0];
+        } else {
+            for (int c = 0; c < width; ++c) h[c] = f[c];
+        }
+        for (double x : h)
+            if (!std::isfinite(x)) return fail(Rie::Range, "\"" + q->name + "\" holds a number that is not finite");
+        if (width == 4 && !(std::fabs(h[3]) > 1e-30)) return fail(Rie::Range, "\"Pw\" holds a weight of 0");
+        for (size_t c = 0; c < 4; ++c) out[k][c] = h[0] * m.m[0][c] + h[1] * m.m[1][c] + h[2] * m.m[2][c] + h[3] * m.m[3][c];
+    }
+    return true;
+}
+
+} // namespace alpenglow::geometry

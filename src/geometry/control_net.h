@@ -1,0 +1,70 @@
+// Patches over a rectangular net of control points: bilinear and bicubic, single and meshes, plain and rational.
+#pragma once
+#include "geometry/parametric.h"
+#include <array>
+
+namespace alpenglow::geometry {
+
+/// Weights of the control points that act at one parameter value along one direction, with derivatives by the parameter.
+struct BasisSpan {
+    int count = 0;
+    int index[8];             ///< control index along the direction, wrapped
+    double w[8], d[8], dd[8];
+};
+
+/// One direction of a net: how many control points, and which basis joins them.
+class NetDirection {
+public:
+    /// Piecewise linear.
+    static NetDirection linear(int n, bool wrap);
+    /// Cubic by a basis matrix (ri.md 8.3) and step.
+    static NetDirection cubic(int n, bool wrap, const scene::Basis&);
+    /// B-spline of any order up to 8 over the knots, [lo, hi] mapped to 0..1 (ri.md 8.6).
+    static NetDirection nurbs(int n, int order, std::vector<double> knots, double lo, double hi);
+
+    int points() const { return n_; }
+    /// Pieces that dicing does not cross; also the count of uniform values along the direction.
+    int patches() const { return patches_; }
+    bool wrap() const { return wrap_; }
+    /// Count of varying values: one a patch border.
+    int varyings() const { return wrap_ ? patches_ : patches_ + 1; }
+    BasisSpan at(double x) const;
+
+private:
+    int n_ = 0, patches_ = 0, step_ = 1, width_ = 2;
+    bool wrap_ = false;
+    std::array<std::array<double, 4>, 4> m_{}; ///< rows by power 3..0
+    std::vector<double> knots_;
+    double lo_ = 0, hi_ = 1;
+    int order_ = 0;
+};
+
+class ControlNet final : public Parametric {
+public:
+    /// points: camera space, four coordinates each (weight last), u fastest.
+    ControlNet(ShapeSource, NetDirection u, NetDirection v, std::vector<std::array<double, 4>> points, Diagnostics&);
+    int faces() const override { return u_.patches() * v_.patches(); }
+
+protected:
+    LocalPoint cameraPoint(double u, double v) const override;
+    Vec3d cameraPosition(double u, double v) const override;
+    int patchesU() const override { return u_.patches(); }
+    int patchesV() const override { return v_.patches(); }
+    bool closedU() const override { return closedU_; }
+    bool closedV() const override { return closedV_; }
+    bool needsDicing() const override { return true; }
+    size_t classCount(scene::Class) const override;
+    int weights(scene::Class, const SurfacePoint&, Weight w[16]) const override;
+
+private:
+    void differentiate(double u, double v, LocalPoint&) const;
+    bool sameEdge(bool alongV) const;
+    NetDirection u_, v_;
+    std::vector<std::array<double, 4>> points_;
+    bool rational_ = false, closedU_ = false, closedV_ = false;
+};
+
+/// Reads "P", "Pw" or "Pz" of nu by nv control points, to camera space; reports and returns false when it cannot.
+bool readControlPoints(const ShapeSource&, int nu, int nv, bool wrapU, bool wrapV, Diagnostics&, std::vector<std::array<double, 4>>& out);
+
+} // namespace alpenglow::geometry

@@ -1,0 +1,114 @@
+#include "geometry/dice.h"
+#include "base/limits.h"
+#include <algorithm>
+#include <cmath>
+#include <tbb/parallel_for.h>
+
+namespace alpenglow::geometry {
+
+double DiceCamera::pixels(const Vec3d& p, const Vec3d& d) const {
+    double l = length(d) * pixelsPerUnit;
+    if (perspective) l /= std::max(length(p), 1e-30);
+    return std::isfinite(l) ? l : 1e30;
+}
+
+DiceCamera DiceCamera::from(const scene::Options& o) {
+    DiceCamera c;
+    double aspect = o.frameAspect ? double(*o.frameAspect) : double(o.xres) * o.pixelAspect / std::max(1, o.yres);
+    double left, right, bottom, top;
+    if (o.screenWindow && o.screenWindow->size() == 4) {
+        left = (*o.screenWindow)[0]; right = (*o.screenWindow)[1]; bottom = (*o.screenWindow)[2]; top = (*o.screenWindow)[3];
+    } else {
+        right = aspect >= 1 ? aspect : 1;
+        top = aspect >= 1 ? 1 : 1 / aspect;
+        left = -right;
+        bottom = -top;
+    }
+    double x = std::fabs(o.xres / (right - left)), y = std::fabs(o.yres / (top - bottom));
+    c.pixelsPerUnit = std::max(std::isfinite(x) ? x : 1, std::isfinite(y) ? y : 1);
+    c.perspective = o.projection == "perspective";
+    if (c.perspective) c.pixelsPerUnit /= std::max(1e-6, std::tan(std::clamp(double(o.fov), 1e-3, 179.9) * kPi / 360));
+    return c;
+}
+
+double diceEdge(const scene::Attributes& a) {
+    double r = a.shadingRate;
+    return std::isfinite(r) ? std::sqrt(std::clamp(r, 0.01, 1e4)) : 1;
+}
+
+bool isDisplaced(const Shape& s, const DiceOptions& o) { return o.displace && s.attributes().displacement; }
+
+namespace {
+
+// Attribute "displacementbound": a length in camera space, or -1 when none was given. "object" and "shader" scale by the
+// largest stretch of the object's transform; "world", "camera" and "current" are taken as they are, the camera being rigid.
+double displacementBound(const Shape& s) {
+    const scene::Param* sphere = s.attributes().value("displacementbound:sphere");
+    if (!sphere || sphere->numbers.empty()) return -1;
+    const scene::Param* space = s.attributes().value("displacementbound:coordinatesystem");
+    std::string name = space && !space->strings.empty() ? space->strings[0] : "object";
+    double scale = 1;
+    if (name == "object" || name == "shader") {
+        scale = 0;
+        for (int i = 0; i < 3; ++i) {
+            Vec3d axis(i == 0, i == 1, i == 2);
+            scale = std::max(scale, length(transformVector(s.toCamera(), axis)));
+        }
+    }
+    return double(sphere->numbers[0]) * scale;
+}
+
+} // namespace
+
+void displaceMesh(const Shape& shape, const DiceOptions& opt, Diagnostics& diag, const std::function<SurfacePoint(uint32_t)>& pointOf,
+                  const std::function<Vec2(uint32_t)>& stepOf, TriMesh& mesh) {
+    constexpr uint32_t kRun = 4096; // keeps the full points of a run in the cache, and kernels in wide batches
+    uint32_t n = uint32_t(mesh.P.size());
+    double bound = displacementBound(shape), farthest = 0;
+    size_t notFinite = 0, tooFar = 0;
+    for (uint32_t begin = 0; begin < n; begin += kRun) {
+        uint32_t count = std::min(kRun, n - begin);
+        DiceGrid g;
+        for (uint32_t i = 0; i < count; ++i) {
+            g.points.push_back(pointOf(begin + i));
+            Vec2 step = stepOf(begin + i);
+            g.du.push_back(step.x);
+            g.dv.push_back(step.y);
+            g.P.push_back(g.points.back().P);
+        }
+        opt.displace(shape, g);
+        for (uint32_t i = 0; i < count && i < g.P.size(); ++i) {
+            Vec3 p = g.P[i];
+            double far = length(Vec3d(p) - Vec3d(g.points[i].P));
+            if (!std::isfinite(far)) { ++notFinite; continue; }
+            if (far > limits::kDisplacementBound) { ++tooFar; continue; }
+            farthest = std::max(farthest, far);
+            // An unmoved vertex keeps its bits, and with them the closed seams of the mesh.
+            if (!(p == g.points[i].P)) mesh.P[begin + i] = p;
+        }
+    }
+    if (notFinite)
+        diag.report(Severity::Error, Rie::Math, shape.place(),
+                    "displacement of this " + shape.kind() + " is not finite at " + std::to_string(notFinite) + " points; they stay where they were");
+    if (tooFar)
+        diag.report(Severity::Error, Rie::Limit, shape.place(),
+                    "displacement of this " + shape.kind() + " moves " + std::to_string(tooFar) + " points farther than the limit; they stay where they were");
+    if (bound >= 0 && farthest > bound * 1.001)
+        diag.report(Severity::Warning, Rie::Range, shape.place(),
+                    "displacement of this " + shape.kind() + " reaches " + std::to_string(farthest) + ", beyond its displacementbound of " +
+                        std::to_string(bound) + " (camera units); it is drawn whole");
+}
+
+void diceShapes(const std::vector<ShapeRef>& shapes, const DiceOptions& opt, Diagnostics& diag) {
+    // Messages are kept by shape and passed on in order, so that they do not depend on threads.
+    std::vector<std::vector<Diagnostic>> said(shapes.size());
+    tbb::parallel_for(size_t(0), shapes.size(), [&](size_t i) {
+        Diagnostics own;
+        shapes[i]->dice(opt, own);
+        said[i] = own.all();
+    });
+    for (auto& list : said)
+        for (auto& d : list) diag.report(std::move(d));
+}
+
+} // namespace alpenglow::geometry

@@ -1,0 +1,45 @@
+// Dicing by screen size (design decision 9): how fine, and displacement of what was diced.
+#pragma once
+#include "geometry/shape.h"
+#include <functional>
+
+namespace alpenglow::geometry {
+
+/// What dicing must know of the camera: pixels per unit of length.
+struct DiceCamera {
+    bool perspective = false;
+    double pixelsPerUnit = 1; ///< at distance 1 for a perspective camera, anywhere for an orthographic one
+    /// Length in pixels of a step d at p (camera space). By distance, not by depth: what is beside or behind the camera is
+    /// seen in mirrors and must not degenerate.
+    double pixels(const Vec3d& p, const Vec3d& d) const;
+    /// From the frame's options (ri.md 3.1, 6); unknown projections count as orthographic.
+    static DiceCamera from(const scene::Options&);
+};
+
+/// Points handed to the displacement hook: a run of vertices of one shape.
+struct DiceGrid {
+    std::vector<SurfacePoint> points; ///< the undisplaced surface
+    std::vector<float> du, dv;        ///< distance in u and v to the neighbouring vertices
+    std::vector<Vec3> P;              ///< in: points[i].P; out: displaced
+};
+
+struct DiceOptions {
+    DiceCamera camera;
+    /// Runs the displacement shader of a shape that has one (attributes().displacement). Must be thread safe: shapes are diced
+    /// at the same time, a shape's runs one after the other. Null: nothing is displaced.
+    std::function<void(const Shape&, DiceGrid&)> displace;
+};
+
+/// Edge of a micropolygon in pixels: sqrt(ShadingRate), within limits.
+double diceEdge(const scene::Attributes&);
+/// Whether dicing must displace this shape.
+bool isDisplaced(const Shape&, const DiceOptions&);
+/// Runs the hook over all vertices (params: (b1, b2) of each, prim of each by primOf) and writes the displaced positions to
+/// mesh.P. Non-finite results stay undisplaced, and what exceeds Attribute "displacementbound" is reported, once a shape.
+void displaceMesh(const Shape&, const DiceOptions&, Diagnostics&, const std::function<SurfacePoint(uint32_t)>& pointOf,
+                  const std::function<Vec2(uint32_t)>& stepOf, TriMesh& mesh);
+
+/// Dices every shape that needs it, in parallel.
+void diceShapes(const std::vector<ShapeRef>&, const DiceOptions&, Diagnostics&);
+
+} // namespace alpenglow::geometry

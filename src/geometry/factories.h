@@ -1,0 +1,22 @@
+// One function a request: makes the shape, or reports why there is none and returns null. build.cpp holds the table.
+#pragma once
+#include "geometry/shape.h"
+
+namespace alpenglow::geometry {
+
+ShapeRef makeSphere(ShapeSource, Diagnostics&);
+ShapeRef makeCone(ShapeSource, Diagnostics&);
+ShapeRef makeCylinder(ShapeSource, Diagnostics&);
+ShapeRef makeHyperboloid(ShapeSource, Diagnostics&);
+ShapeRef makeParaboloid(ShapeSource, Diagnostics&);
+ShapeRef makeDisk(ShapeSource, Diagnostics&);
+ShapeRef makeTorus(ShapeSource, Diagnostics&);
+ShapeRef makePolygon(ShapeSource, Diagnostics&);
+ShapeRef makeGeneralPolygon(ShapeSource, Diagnostics&);
+ShapeRef makePointsPolygons(ShapeSource, Diagnostics&);
+ShapeRef makePointsGeneralPolygons(ShapeSource, Diagnostics&);
+ShapeRef makePatch(ShapeSource, Diagnostics&);
+ShapeRef makePatchMesh(ShapeSource, Diagnostics&);
+ShapeRef makeNuPatch(ShapeSource, Diagnostics&);
+
+} // namespace alpenglow::geometry

@@ -1,0 +1,53 @@
+// What surfaces over one (u, v) square share: derivatives to camera space, sampling, area, dicing, corner variables.
+#pragma once
+#include "geometry/shape.h"
+
+namespace alpenglow::geometry {
+
+/// A surface point in object space (or camera space, for patches), in double.
+struct LocalPoint {
+    Vec3d P, Pu, Pv, Puu, Puv, Pvv;
+    Vec3d n, nu, nv;          ///< unit normal along Pu x Pv and its derivatives; defined where the product vanishes too
+};
+
+/// Parameter lines along which a surface is cut into quadrilaterals, both increasing from 0 to 1.
+struct DiceLines {
+    std::vector<float> u, v;
+    bool closedU = false, closedV = false; ///< the last line is the first again: its points are made equal to the bit
+};
+
+class Parametric : public Shape {
+public:
+    using Shape::Shape;
+    SurfacePoint evaluate(int face, double u, double v) const override { return evaluateLocal(0, u, v); }
+    double area() const override;
+    SurfacePoint sampleArea(double xi1, double xi2) const override { return evaluateLocal(0, xi1, xi2); }
+    double sampleDensity(const SurfacePoint&) const override;
+    void dice(const DiceOptions&, Diagnostics&) override;
+
+protected:
+    SurfacePoint evaluateLocal(uint32_t prim, double u, double v) const override;
+    /// The surface in camera space in double; what evaluateLocal rounds.
+    virtual LocalPoint cameraPoint(double u, double v) const = 0;
+    /// Position only.
+    virtual Vec3d cameraPosition(double u, double v) const { return cameraPoint(u, v).P; }
+    /// Patches along u and v: dicing lines never cross their borders.
+    virtual int patchesU() const { return 1; }
+    virtual int patchesV() const { return 1; }
+    virtual bool closedU() const { return false; }
+    virtual bool closedV() const { return false; }
+    /// Whether rays meet the mesh even when nothing displaces it.
+    virtual bool needsDicing() const = 0;
+    /// Bilinear weights in a grid of values, nu by nv over the whole square (periodic: nu values span nu cells).
+    static int bilinearWeights(double u, double v, int nu, int nv, bool wrapU, bool wrapV, Weight w[16]);
+
+    double pointScale_ = 0; ///< bound on |P| in double computations before cancellation, for the error bound
+
+private:
+    DiceLines diceLines(const DiceOptions&, bool displaced, Diagnostics&) const;
+};
+
+/// Derivatives of the unit normal along Pu x Pv from second partials; n must be set.
+void normalDerivatives(LocalPoint&);
+
+} // namespace alpenglow::geometry

@@ -1,0 +1,183 @@
+#include "geometry/quadric.h"
+#include "geometry/solve.h"
+#include <algorithm>
+#include <cmath>
+
+namespace alpenglow::geometry {
+
+using scene::Class;
+
+namespace {
+// Limits are widened by this part of the range: primitives that share an edge come with decimal numbers rounded to float, and a
+// ray must not slip between them.
+constexpr double kEdge = 1e-7;
+} // namespace
+
+double quadricNumber(const scene::Primitive& p, size_t i, bool& ok) {
+    if (i < p.numbers.size() && std::isfinite(p.numbers[i])) return p.numbers[i];
+    ok = false;
+    return 0;
+}
+
+void reportDegenerate(const scene::Primitive& p, Diagnostics& diag, const std::string& why) {
+    diag.report(Severity::Warning, Rie::Range, p.place, p.kind + " " + why + "; it is not drawn");
+}
+
+Quadric::Quadric(ShapeSource s, double degrees, Diagnostics& diag) : Parametric(std::move(s)) {
+    if (std::fabs(degrees) > 360) {
+        diag.report(Severity::Warning, Rie::Range, place(), kind() + " sweeps more than 360 degrees; 360 are drawn");
+        degrees = std::copysign(360.0, degrees);
+    }
+    thetaMax_ = degrees * kPi / 180;
+    fullTurn_ = std::fabs(degrees) >= 360 - 1e-4;
+    toObject_ = inverse(toCamera());
+}
+
+void Quadric::finish(Diagnostics& diag) {
+    constexpr int kSteps = 64;
+    zLo_ = INFINITY;
+    zHi_ = -INFINITY;
+    for (int i = 0; i <= kSteps; ++i) {
+        Profile p = profile(double(i) / kSteps);
+        radius_ = std::max(radius_, std::hypot(p.p.x, p.p.y));
+        zLo_ = std::min(zLo_, p.p.z);
+        zHi_ = std::max(zHi_, p.p.z);
+        if (p.p.y != 0) offAxis_ = true;
+    }
+    // Between samples a curve strays by at most step^2 / 8 times its second derivative; circles are the worst: 0.5 %.
+    double pad = 0.01 * (radius_ + zHi_ - zLo_);
+    radius_ += pad;
+    zLo_ -= pad;
+    zHi_ += pad;
+    const auto& m = toCamera().m;
+    for (int k = 0; k < 3; ++k)
+        pointScale_ = std::max(pointScale_, radius_ * (std::fabs(m[0][k]) + std::fabs(m[1][k])) +
+                                                std::max(std::fabs(zLo_), std::fabs(zHi_)) * std::fabs(m[2][k]) + std::fabs(m[3][k]));
+    takePrimvars(diag);
+}
+
+Bounds Quadric::bounds() const {
+    if (!exact()) return Shape::bounds();
+    Bounds b;
+    for (int i = 0; i < 8; ++i) {
+        Vec3d c = transformPoint(toCamera(), Vec3d(i & 1 ? radius_ : -radius_, i & 2 ? radius_ : -radius_, i & 4 ? zHi_ : zLo_));
+        b.add(Vec3(c));
+    }
+    return b;
+}
+
+Vec3d Quadric::cameraPosition(double u, double v) const {
+    Vec3d p = profile(v).p;
+    double c = std::cos(u * thetaMax_), s = std::sin(u * thetaMax_);
+    return transformPoint(toCamera(), Vec3d(p.x * c - p.y * s, p.x * s + p.y * c, p.z));
+}
+
+LocalPoint Quadric::cameraPoint(double u, double v) const {
+    Profile q = profile(v);
+    double th = u * thetaMax_, c = std::cos(th), s = std::sin(th), k = thetaMax_;
+    auto turn = [&](const Vec3d& p) { return Vec3d(p.x * c - p.y * s, p.x * s + p.y * c, p.z); };
+    auto quarter = [](const Vec3d& p) { return Vec3d(-p.y, p.x, 0); };
+    const Matrix& m = toCamera();
+    Vec3d P = turn(q.p), d = turn(q.d), dd = turn(q.dd);
+    LocalPoint r;
+    r.P = transformPoint(m, P);
+    r.Pu = transformVector(m, quarter(P) * k);
+    r.Pv = transformVector(m, d);
+    r.Puu = transformVector(m, Vec3d(-P.x, -P.y, 0) * (k * k));
+    r.Puv = transformVector(m, quarter(d) * k);
+    r.Pvv = transformVector(m, dd);
+    // Direction of Pu x Pv without the factor that vanishes on the axis, and its derivative by v.
+    double a = q.p.x, b = q.p.y, da = q.d.x, db = q.d.y, dz = q.d.z;
+    Vec3d w, wv;
+    if (!offAxis_ || (a == 0 && b == 0)) {
+        double sign = a < 0 ? -1 : 1;
+        w = Vec3d(dz, 0, -da) * sign;
+        wv = Vec3d(q.dd.z, 0, -q.dd.x) * sign;
+        if (offAxis_) w = Vec3d(da * dz, db * dz, -(da * da + db * db)), wv = Vec3d(0.0);
+    } else {
+        w = Vec3d(a * dz, b * dz, -(a * da + b * db));
+        wv = Vec3d(da * dz + a * q.dd.z, db * dz + b * q.dd.z, -(da * da + a * q.dd.x + db * db + b * q.dd.y));
+    }
+    if (k < 0) w = -w, wv = -wv;
+    Vec3d n0 = turn(w), n0v = turn(wv), n0u = quarter(n0) * k;
+    // Normals go by the inverse transpose; Pu x Pv in camera space is det times that.
+    double det = determinant3(m) < 0 ? -1 : 1;
+    auto normalOut = [&](const Vec3d& n) {
+        const auto& i = toObject_.m;
+        return Vec3d(i[0][0] * n.x + i[0][1] * n.y + i[0][2] * n.z, i[1][0] * n.x + i[1][1] * n.y + i[1][2] * n.z,
+                     i[2][0] * n.x + i[2][1] * n.y + i[2][2] * n.z) * det;
+    };
+    Vec3d nc = normalOut(n0), ncu = normalOut(n0u), ncv = normalOut(n0v);
+    double l = length(nc);
+    if (!(l > 0)) {
+        r.n = normalize(normalOut(Vec3d(0, 0, 1)));
+        return r;
+    }
+    r.n = nc / l;
+    r.nu = (ncu - r.n * dot(r.n, ncu)) / l;
+    r.nv = (ncv - r.n * dot(r.n, ncv)) / l;
+    return r;
+}
+
+int Quadric::roots(const Vec3d& o, const Vec3d& d, double t[4]) const {
+    Implicit f = implicit();
+    if (f.plane) {
+        if (d.z == 0) return 0;
+        t[0] = (f.height - o.z) / d.z;
+        return std::isfinite(t[0]) ? 1 : 0;
+    }
+    double a = d.x * d.x + d.y * d.y + f.zz * d.z * d.z;
+    double h = o.x * d.x + o.y * d.y + f.zz * o.z * d.z + 0.5 * f.z1 * d.z;
+    double c = o.x * o.x + o.y * o.y + f.zz * o.z * o.z + f.z1 * o.z + f.c;
+    return solveQuadratic(a, h, c, t);
+}
+
+bool Quadric::accept(const Vec3d& p, double v, ExactHit& hit) const {
+    if (!(v >= -kEdge && v <= 1 + kEdge)) return false;
+    hit.v = std::clamp(v, 0.0, 1.0);
+    Vec3d q = profile(hit.v).p;
+    double theta = 0;
+    if ((q.x != 0 || q.y != 0) && (p.x != 0 || p.y != 0))
+        theta = std::atan2(q.x * p.y - q.y * p.x, q.x * p.x + q.y * p.y); // from the profile to the point
+    double turn = thetaMax_ < 0 ? -2 * kPi : 2 * kPi;
+    double u = theta / thetaMax_;
+    if (u < -kEdge) u = (theta + turn) / thetaMax_;
+    if (!(u <= 1 + kEdge)) return false;
+    hit.u = std::clamp(u, 0.0, 1.0);
+    return true;
+}
+
+int Quadric::exactHits(const Vec3d& org, const Vec3d& dir, ExactHit out[4]) const {
+    Vec3d o = transformPoint(toObject_, org), d = transformVector(toObject_, dir);
+    double dd = dot(d, d);
+    if (!(dd > 0) || !std::isfinite(dd)) return 0;
+    // From the point nearest the middle of the surface: squares of a far origin would swallow the radius.
+    Vec3d mid(0, 0, 0.5 * (zLo_ + zHi_));
+    double shift = dot(mid - o, d) / dd;
+    Vec3d near = o + d * shift;
+    double t[4];
+    int n = roots(near, d, t), m = 0;
+    for (int i = 0; i < n; ++i) {
+        Vec3d p = near + d * t[i];
+        ExactHit h;
+        h.t = shift + t[i];
+        if (!std::isfinite(h.t)) continue;
+        bool ok = accept(p, vOf(p), h);
+        if (!ok)
+            if (auto v2 = secondV(p)) ok = accept(p, *v2, h);
+        if (ok && m < 4) out[m++] = h;
+    }
+    return m;
+}
+
+size_t Quadric::classCount(Class c) const { return c == Class::Constant || c == Class::Uniform ? 1 : 4; }
+
+int Quadric::weights(Class c, const SurfacePoint& p, Weight w[16]) const {
+    if (c == Class::Constant || c == Class::Uniform) {
+        w[0] = {0, 1, 0, 0};
+        return 1;
+    }
+    return bilinearWeights(p.b1, p.b2, 2, 2, false, false, w);
+}
+
+} // namespace alpenglow::geometry

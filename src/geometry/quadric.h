@@ -1,0 +1,58 @@
+// What the seven quadrics share. Each is a profile curve (a(v), b(v), z(v)) in object space, turned about z by theta = u thetamax
+// (ri.md 8.1): P = (a cos - b sin, a sin + b cos, z). Only the hyperboloid has b != 0.
+#pragma once
+#include "geometry/parametric.h"
+#include <optional>
+
+namespace alpenglow::geometry {
+
+/// The profile and its first two derivatives by v.
+struct Profile { Vec3d p, d, dd; };
+
+/// x^2 + y^2 + zz z^2 + z1 z + c = 0; or the plane z = height.
+struct Implicit {
+    bool plane = false;
+    double height = 0;
+    double zz = 0, z1 = 0, c = 0;
+};
+
+class Quadric : public Parametric {
+public:
+    Quadric(ShapeSource, double thetaMaxDegrees, Diagnostics&);
+    int exactHits(const Vec3d& org, const Vec3d& dir, ExactHit out[4]) const override;
+    Bounds bounds() const override;
+
+protected:
+    /// To be called once the derived object is whole: bounds of the error, primitive variables.
+    void finish(Diagnostics&);
+    virtual Profile profile(double v) const = 0;
+    virtual Implicit implicit() const = 0;
+    /// v of an object-space point that lies on the unswept surface; values outside 0..1 are clipped by the caller.
+    virtual double vOf(const Vec3d& p) const = 0;
+    /// Object-space roots of the line; the default solves implicit().
+    virtual int roots(const Vec3d& o, const Vec3d& d, double t[4]) const;
+    /// Where v is not unique (a disk's worth of circles met twice), the second candidate.
+    virtual std::optional<double> secondV(const Vec3d&) const { return {}; }
+
+    LocalPoint cameraPoint(double u, double v) const override;
+    Vec3d cameraPosition(double u, double v) const override;
+    bool needsDicing() const override { return false; }
+    bool closedU() const override { return fullTurn_; }
+    size_t classCount(scene::Class) const override;
+    int weights(scene::Class, const SurfacePoint&, Weight w[16]) const override;
+
+private:
+    bool accept(const Vec3d& p, double v, ExactHit& hit) const;
+    double thetaMax_ = 0;   ///< radians, -2 pi .. 2 pi
+    bool fullTurn_ = false;
+    bool offAxis_ = false;  ///< some b(v) != 0
+    double radius_ = 0, zLo_ = 0, zHi_ = 0; ///< cylinder around the whole profile
+    Matrix toObject_;
+};
+
+/// A number of the request, 0 when missing or not finite; ok is cleared then.
+double quadricNumber(const scene::Primitive&, size_t index, bool& ok);
+/// Reports that the primitive has no surface and is not drawn.
+void reportDegenerate(const scene::Primitive&, Diagnostics&, const std::string& why);
+
+} // namespace alpenglow::geometry

@@ -1,0 +1,169 @@
+#include "geometry/shape.h"
+#include <cmath>
+
+namespace alpenglow::geometry {
+
+using scene::Class;
+
+float orientationSign(const scene::Attributes& a, const Matrix& toCamera) {
+    if (a.absoluteHandedness) return a.rightHanded ? -1.f : 1.f;
+    bool flip = (determinant3(toCamera) < 0) != a.inside;
+    return flip ? -1.f : 1.f;
+}
+
+float roundingError(const Vec3& p) {
+    // 2^-23 times the 1-norm: twice what rounding each coordinate once can do, so that a computation in double that rounds at
+    // the end stays inside with room for the double's own error.
+    return 1.1920929e-7f * (std::fabs(p.x) + std::fabs(p.y) + std::fabs(p.z)) + 1e-37f;
+}
+
+Vec3 offsetOrigin(const SurfacePoint& p, const Vec3& dir, float extra) {
+    // The rounded origin itself is off by up to half a bound, hence twice the bound.
+    float d = 2 * (p.pError + extra);
+    Vec3 off = p.n * (dot(dir, p.n) >= 0 ? d : -d);
+    Vec3 o = p.P + off;
+    for (int i = 0; i < 3; ++i) { // round away from the surface
+        if (off[i] > 0) o[i] = std::nextafter(o[i], INFINITY);
+        if (off[i] < 0) o[i] = std::nextafter(o[i], -INFINITY);
+    }
+    return o;
+}
+
+Shape::Shape(ShapeSource s) : source_(std::move(s)) {
+    orientation_ = orientationSign(*source_.attributes, source_.toCamera);
+}
+
+Bounds Shape::bounds() const {
+    Bounds b;
+    for (uint32_t i = 0; i < mesh_.vertices; ++i) b.add(mesh_.P[i]);
+    return b;
+}
+
+int Shape::findPrimvar(std::string_view name) const {
+    for (size_t i = 0; i < primvars_.size(); ++i)
+        if (primvars_[i].name == name) return int(i);
+    return -1;
+}
+
+void Shape::takePrimvars(Diagnostics& diag) {
+    normal_.param = nullptr;
+    for (const scene::Param& p : source_.primitive->params) {
+        if (p.name == "P" || p.name == "Pw" || p.name == "Pz" || p.name == "uknot" || p.name == "vknot") continue;
+        bool isNormal = (p.name == "N" || p.name == "Np") && scene::componentCount(p.type) == 3 && p.arrayLength == 0;
+        PrimVar var;
+        if (isNormal) {
+            // Whatever type an old file declared (point, vector), these are normals.
+            scene::Param typed = p;
+            typed.type = scene::Type::Normal;
+            if (p.name == "Np" && normal_.param) continue;
+            if (!makePrimVar(typed, classCount(p.cls), source_.toCamera, kind(), diag, var)) continue;
+            var.param = &p;
+            normal_ = std::move(var);
+            continue;
+        }
+        if (!makePrimVar(p, classCount(p.cls), source_.toCamera, kind(), diag, var)) continue;
+        int old = findPrimvar(p.name);
+        if (old >= 0) primvars_[size_t(old)] = std::move(var); // given twice: the last one counts
+        else primvars_.push_back(std::move(var));
+    }
+    auto floatVar = [&](const char* name, int width) {
+        int i = findPrimvar(name);
+        return i >= 0 && primvars_[size_t(i)].type == scene::Type::Float && primvars_[size_t(i)].width() == width ? i : -1;
+    };
+    varS_ = floatVar("s", 1);
+    varT_ = floatVar("t", 1);
+    varSt_ = floatVar("st", 2);
+}
+
+void Shape::interpolate(int var, const SurfacePoint& at, float* out, float* du, float* dv) const {
+    Weight w[16];
+    const PrimVar& p = primvars_[size_t(var)];
+    int n = weights(p.cls, at, w);
+    interpolatePrimVar(p, w, n, out, du, dv);
+}
+
+const std::string& Shape::stringValue(int var, const SurfacePoint& at) const {
+    Weight w[16];
+    const PrimVar& p = primvars_[size_t(var)];
+    weights(p.cls, at, w);
+    return p.param->strings[w[0].index * size_t(p.elements())];
+}
+
+void Shape::finishPoint(SurfacePoint& p, bool parametric) const {
+    if (parametric) {
+        // Bilinear map of TextureCoordinates, corners (0,0) (1,0) (0,1) (1,1).
+        const float* c = source_.attributes->textureCoordinates;
+        auto map = [&](int k, float& f, float& fu, float& fv) {
+            float a = c[k], b = c[2 + k], d = c[4 + k], e = c[6 + k];
+            float lo = a + (b - a) * p.u, hi = d + (e - d) * p.u;
+            f = lo + (hi - lo) * p.v;
+            fu = (b - a) * (1 - p.v) + (e - d) * p.v;
+            fv = hi - lo;
+        };
+        map(0, p.s, p.dsdu, p.dsdv);
+        map(1, p.t, p.dtdu, p.dtdv);
+    } else {
+        p.s = p.u; p.t = p.v;
+        p.dsdu = 1; p.dsdv = 0; p.dtdu = 0; p.dtdv = 1;
+    }
+    if (varSt_ >= 0) {
+        float v[2], du[2], dv[2];
+        interpolate(varSt_, p, v, du, dv);
+        p.s = v[0]; p.dsdu = du[0]; p.dsdv = dv[0];
+        p.t = v[1]; p.dtdu = du[1]; p.dtdv = dv[1];
+    }
+    if (varS_ >= 0) interpolate(varS_, p, &p.s, &p.dsdu, &p.dsdv);
+    if (varT_ >= 0) interpolate(varT_, p, &p.t, &p.dtdu, &p.dtdv);
+    p.N = p.n;
+    if (normal_.param) {
+        Weight w[16];
+        float v[3], du[3], dv[3];
+        interpolatePrimVar(normal_, w, weights(normal_.cls, p, w), v, du, dv);
+        Vec3 q(v[0], v[1], v[2]);
+        float l = length(q);
+        if (l > 0 && std::isfinite(l)) {
+            Vec3 qu(du[0], du[1], du[2]), qv(dv[0], dv[1], dv[2]);
+            p.N = q / l;
+            p.dNdu = (qu - p.N * dot(p.N, qu)) / l;
+            p.dNdv = (qv - p.N * dot(p.N, qv)) / l;
+        }
+    }
+}
+
+Vec3d Shape::localNormal(uint32_t prim, double b1, double b2) const { return Vec3d(evaluateLocal(prim, b1, b2).n); }
+
+namespace {
+struct Facet { Vec3d P, n; };
+Facet facetAt(const TriMesh& m, uint32_t prim, double b1, double b2) {
+    Vec3d a(m.P[m.index[3 * prim]]), b(m.P[m.index[3 * prim + 1]]), c(m.P[m.index[3 * prim + 2]]);
+    return {a + (b - a) * b1 + (c - a) * b2, cross(b - a, c - a)};
+}
+} // namespace
+
+SurfacePoint Shape::evaluateHit(uint32_t prim, double b1, double b2) const {
+    if (meshParam_.empty()) return evaluateLocal(prim, b1, b2);
+    const uint32_t* i = &mesh_.index[3 * size_t(prim)];
+    Vec2 p0 = meshParam_[i[0]], p1 = meshParam_[i[1]], p2 = meshParam_[i[2]];
+    double b0 = 1 - b1 - b2;
+    SurfacePoint p = evaluateLocal(trianglesPerPrim_ ? prim / trianglesPerPrim_ : 0, b0 * p0.x + b1 * p1.x + b2 * p2.x,
+                                   b0 * p0.y + b1 * p1.y + b2 * p2.y);
+    Facet f = facetAt(mesh_, prim, b1, b2);
+    Vec3d fn = normalize(f.n) * double(orientation_);
+    if (displaced_) {
+        p.displaced = true;
+        p.displacedP = Vec3(f.P);
+        p.displacedN = Vec3(fn);
+        p.pError = roundingError(p.displacedP);
+    } else {
+        p.pError += float(1.01 * length(Vec3d(p.P) - f.P));
+    }
+    return p;
+}
+
+Vec3d Shape::hitNormal(uint32_t prim, double b1, double b2) const {
+    // Triangles wind as the polygon does, or as (u, v) does: either way orientation() turns their normal to Ng's side.
+    if (!exact()) return facetAt(mesh_, prim, b1, b2).n * double(orientation_);
+    return localNormal(prim, b1, b2);
+}
+
+} // namespace alpenglow::geometry

@@ -1,0 +1,160 @@
+// What every primitive is to the rest of the renderer: a surface in camera space that can be intersected, evaluated with
+// exact derivatives, sampled, and asked for its primitive variables.
+//
+// Space: camera ("current", design decision 8), left-handed, unless a comment says object. Angles are radians.
+#pragma once
+#include "base/diagnostics.h"
+#include "geometry/bounds.h"
+#include "geometry/primvars.h"
+#include "scene/scene.h"
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace alpenglow::geometry {
+
+inline constexpr uint32_t kNone = 0xffffffffu;
+
+/// A point of a surface with all that shading wants to know about it. Camera space.
+struct SurfacePoint {
+    Vec3 P;
+    Vec3 dPdu, dPdv;            ///< first partials by the surface's own u and v
+    Vec3 Puu, Puv, Pvv;         ///< second partials
+    Vec3 Ng;                    ///< orientation * (dPdu ^ dPdv), not normalised; n where that product vanishes
+    Vec3 n;                     ///< Ng normalised; defined at poles and collapsed edges too
+    Vec3 N;                     ///< shading normal, unit: the primitive variable "N" (or "Np") if given, else n
+    Vec3 dNdu, dNdv;            ///< derivatives of N
+    float u = 0, v = 0;         ///< 0..1 over the whole primitive; polygons: object x and y (ri.md 7.1)
+    float s = 0, t = 0, dsdu = 1, dsdv = 0, dtdu = 0, dtdv = 1;
+    float pError = 0;           ///< bound on the distance from P to the surface that rays meet: rounding plus facets
+    float orientation = 1;      ///< +1 or -1: the sign in Ng above
+    int face = 0;               ///< index of the uniform value: patch of a mesh, polygon of a polyhedron
+    bool displaced = false;     ///< the surface was displaced when it was diced; then all above is the undisplaced surface and:
+    Vec3 displacedP, displacedN; ///< the facet that was hit: point, and unit normal on the side of n
+    uint32_t prim = 0;          ///< with b1, b2: where interpolate() finds the point again. Triangle of the polygon; else 0
+    double b1 = 0, b2 = 0;      ///< barycentric weights of the triangle's 2nd and 3rd corner; parametric surfaces: u and v
+};
+
+/// Triangles in camera space. P holds one unused point past `vertices` (intersectors read 16 bytes at a time).
+struct TriMesh {
+    std::vector<Vec3> P;
+    std::vector<uint32_t> index; ///< three a triangle
+    uint32_t vertices = 0;
+    uint32_t triangles() const { return uint32_t(index.size() / 3); }
+    void finish() { vertices = uint32_t(P.size()); P.push_back(Vec3(0.f)); }
+};
+
+/// A point where a ray meets an exactly intersected shape.
+struct ExactHit { double t, u, v; };
+
+struct DiceOptions;
+struct DiceGrid;
+
+/// From where a shape came.
+struct ShapeSource {
+    scene::PrimitiveRef primitive;
+    scene::AttributesRef attributes; ///< never null; those of the instance for instanced primitives (RISpec 3.2)
+    Matrix toCamera;                 ///< object to camera
+    int instance = -1;               ///< index into Frame::instances
+};
+
+/// Sign of Ng relative to dPdu ^ dPdv (ri.md 4.1). "outside" follows the handedness of the transform, so that what a primitive
+/// defines as its outside stays outside; "lh" is +1 (camera space is left-handed) and "rh" is -1, whatever the transform.
+float orientationSign(const scene::Attributes&, const Matrix& toCamera);
+
+class Shape {
+public:
+    explicit Shape(ShapeSource);
+    virtual ~Shape() = default;
+    Shape(const Shape&) = delete;
+    Shape& operator=(const Shape&) = delete;
+
+    const std::string& kind() const { return source_.primitive->kind; }
+    const SourcePlace& place() const { return source_.primitive->place; }
+    const scene::Attributes& attributes() const { return *source_.attributes; }
+    const scene::AttributesRef& attributesRef() const { return source_.attributes; }
+    const ShapeSource& source() const { return source_; }
+    const Matrix& toCamera() const { return source_.toCamera; }
+    /// Orientation sign of parametric surfaces; polygons add the direction of their winding a face (SurfacePoint::orientation).
+    float orientation() const { return orientation_; }
+    /// Sides 1: only points whose n faces the ray's origin are visible.
+    bool oneSided() const { return source_.attributes->sides == 1; }
+
+    // ---- intersection -------------------------------------------------------------------------------------------------------
+    /// True: rays meet exactHits(). False: rays meet mesh(), hits are (triangle, b1, b2).
+    bool exact() const { return mesh_.vertices == 0; }
+    const TriMesh& mesh() const { return mesh_; }
+    /// All points of the line org + t dir on the surface, by increasing t, at most 4; any sign of t. Thread safe.
+    virtual int exactHits(const Vec3d& org, const Vec3d& dir, ExactHit out[4]) const { return 0; }
+    /// Encloses everything a ray can hit.
+    virtual Bounds bounds() const;
+
+    // ---- evaluation ---------------------------------------------------------------------------------------------------------
+    /// Number of faces, the count of uniform values.
+    virtual int faces() const { return 1; }
+    /// The surface at (u, v). Parametric surfaces take 0..1 over the whole primitive and ignore `face`; for polygons (u, v)
+    /// are object x and y (or the fallback frame), and a point outside the face goes to the plane of its nearest triangle.
+    virtual SurfacePoint evaluate(int face, double u, double v) const = 0;
+    /// The surface at a hit: (prim, b1, b2) as the intersector gave them; exact shapes: (0, u, v).
+    SurfacePoint evaluateHit(uint32_t prim, double b1, double b2) const;
+    /// Normal of the surface a ray meets there, with orientation; not normalised. Cheaper than evaluateHit; for Sides.
+    Vec3d hitNormal(uint32_t prim, double b1, double b2) const;
+
+    // ---- area, and sampling as a light (design decision 4) ------------------------------------------------------------------
+    virtual double area() const = 0;
+    /// A point for two numbers of [0,1): parametric surfaces uniform over (u, v), polygons uniform over area.
+    virtual SurfacePoint sampleArea(double xi1, double xi2) const = 0;
+    /// Density per unit area with which sampleArea gives this point: 1 / |dPdu ^ dPdv|, or 1 / area for polygons;
+    /// 0 where the surface is degenerate.
+    virtual double sampleDensity(const SurfacePoint&) const = 0;
+
+    // ---- primitive variables ------------------------------------------------------------------------------------------------
+    /// All variables but P, Pz, Pw and N; points, vectors and normals in camera space.
+    const std::vector<PrimVar>& primvars() const { return primvars_; }
+    /// Index of a variable by name, or -1.
+    int findPrimvar(std::string_view name) const;
+    /// Value and derivatives by u and v: PrimVar::outWidth() floats each; du and dv may be null.
+    void interpolate(int var, const SurfacePoint& at, float* out, float* du, float* dv) const;
+    /// Value of a string variable (not interpolated: constant and uniform by face, others the first corner's).
+    const std::string& stringValue(int var, const SurfacePoint& at) const;
+
+    // ---- dicing -------------------------------------------------------------------------------------------------------------
+    /// Makes the mesh that rays meet (and displaces it). Called once, before the shape is intersected. Not thread safe for one
+    /// shape; different shapes may be diced at the same time.
+    virtual void dice(const DiceOptions&, Diagnostics&) {}
+
+protected:
+    /// Checks and stores the variables of the request. Faulty ones are reported and left out.
+    void takePrimvars(Diagnostics&);
+    /// How many values a variable of a class must have.
+    virtual size_t classCount(scene::Class) const = 0;
+    /// Weights of the values of a class at a point, with derivatives by u and v. Returns how many, at most 16.
+    virtual int weights(scene::Class, const SurfacePoint& at, Weight w[16]) const = 0;
+    /// evaluate() by (prim, b1, b2) of the undiced surface.
+    virtual SurfacePoint evaluateLocal(uint32_t prim, double b1, double b2) const = 0;
+    /// hitNormal() of exact shapes.
+    virtual Vec3d localNormal(uint32_t prim, double b1, double b2) const;
+    /// Fills s, t and N from the variables (or defaults), and what depends on them; P, u, v, n, partials, dNdu, dNdv are set.
+    void finishPoint(SurfacePoint&, bool parametric) const;
+
+    ShapeSource source_;
+    float orientation_ = 1;
+    std::vector<PrimVar> primvars_;
+    int varN_ = -1, varS_ = -1, varT_ = -1, varSt_ = -1;
+    PrimVar normal_;                       ///< "N" or "Np", camera space
+    TriMesh mesh_;
+    std::vector<Vec2> meshParam_;          ///< diced: (b1, b2) of each vertex on its undiced surface; empty: mesh is the surface
+    uint32_t trianglesPerPrim_ = 0;        ///< diced polygons: triangles made from each triangle; 0: all of prim 0
+    bool displaced_ = false;
+};
+using ShapeRef = std::shared_ptr<Shape>;
+
+/// Bound on the rounding of a point's coordinates in float.
+float roundingError(const Vec3& p);
+
+/// Origin of a ray that leaves the surface at p along dir: off the surface by its own error bound, on dir's side.
+/// extra widens the bound (for example when the shader moved P).
+Vec3 offsetOrigin(const SurfacePoint& p, const Vec3& dir, float extra = 0);
+
+} // namespace alpenglow::geometry

@@ -1,0 +1,94 @@
+// Torus majorrad minorrad phimin phimax thetamax.
+#include "geometry/factories.h"
+#include "geometry/quadric.h"
+#include "geometry/solve.h"
+#include <algorithm>
+#include <cmath>
+
+namespace alpenglow::geometry {
+namespace {
+
+class Torus final : public Quadric {
+public:
+    Torus(ShapeSource s, double R, double r, double phi0, double phi1, double sweep, Diagnostics& d)
+        : Quadric(std::move(s), sweep, d), R_(R), r_(r), phi0_(phi0), phi1_(phi1) { finish(d); }
+
+private:
+    Profile profile(double v) const override {
+        double k = phi1_ - phi0_, phi = phi0_ + v * k, c = std::cos(phi), s = std::sin(phi);
+        return {{R_ + r_ * c, 0, r_ * s}, {-r_ * k * s, 0, r_ * k * c}, {-r_ * k * k * c, 0, -r_ * k * k * s}};
+    }
+    Implicit implicit() const override { return {}; }
+    bool closedV() const override { return std::fabs(phi1_ - phi0_) >= 2 * kPi - 1e-6; }
+
+    // Signed distance from the tube, well conditioned however thin it is.
+    double distance(const Vec3d& p) const {
+        double rho = std::hypot(p.x, p.y), near = std::hypot(rho - R_, p.z) - std::fabs(r_);
+        // Self-crossing tori have an inner sheet, where the circle is on the other side of the axis.
+        double far = std::hypot(rho + R_, p.z) - std::fabs(r_);
+        return std::fabs(far) < std::fabs(near) ? far : near;
+    }
+
+    int roots(const Vec3d& o, const Vec3d& d, double t[4]) const override {
+        // Scaled to size 1 and unit speed, and only where the line is inside the enclosing sphere.
+        double size = std::fabs(R_) + std::fabs(r_), speed = length(d);
+        Vec3d p = o / size, q = d / speed;
+        double R2 = R_ * R_ / (size * size), r2 = r_ * r_ / (size * size);
+        double s[2];
+        if (solveQuadratic(1, dot(p, q), dot(p, p) - 1.0001, s) != 2) return 0;
+        // (|p + s q|^2 + R^2 - r^2)^2 = 4 R^2 (x^2 + y^2)
+        double b = dot(p, q), k = dot(p, p) + R2 - r2;
+        double xy0 = p.x * p.x + p.y * p.y, xy1 = p.x * q.x + p.y * q.y, xy2 = q.x * q.x + q.y * q.y;
+        double c[5] = {k * k - 4 * R2 * xy0, 4 * b * k - 8 * R2 * xy1, 4 * b * b + 2 * k - 4 * R2 * xy2, 4 * b, 1};
+        double x[4];
+        int n = polynomialRoots(c, 4, s[0], s[1], x);
+        for (int i = 0; i < n; ++i) {
+            // The quartic squares the distance; a few secant-like steps on the distance itself win the digits back.
+            double at = x[i] * size / speed;
+            for (int step = 0; step < 3; ++step) {
+                Vec3d h = o + d * at;
+                double f = distance(h), e = 1e-6 * size / speed;
+                double slope = (distance(o + d * (at + e)) - distance(o + d * (at - e))) / (2 * e);
+                double next = at - f / slope;
+                if (!std::isfinite(next) || std::fabs(next - at) > 1e-6 * size / speed) break;
+                if (!(std::fabs(distance(o + d * next)) < std::fabs(f))) break;
+                at = next;
+            }
+            t[i] = at;
+        }
+        std::sort(t, t + n);
+        return n;
+    }
+    double vOf(const Vec3d& p) const override {
+        double rho = std::hypot(p.x, p.y);
+        double near = std::fabs(std::hypot(rho - R_, p.z) - std::fabs(r_)), far = std::fabs(std::hypot(-rho - R_, p.z) - std::fabs(r_));
+        if (far < near) rho = -rho;
+        double phi = std::atan2(r_ < 0 ? -p.z : p.z, r_ < 0 ? R_ - rho : rho - R_);
+        double k = phi1_ - phi0_, turn = 2 * kPi / k;
+        // phi is known up to whole turns: the one nearest inside the range.
+        double v = (phi - phi0_) / k;
+        v -= std::floor(v / std::fabs(turn)) * std::fabs(turn);
+        if (v > 1 && v - std::fabs(turn) > -1e-7) v -= std::fabs(turn);
+        return v;
+    }
+    double R_, r_, phi0_, phi1_;
+};
+
+} // namespace
+
+ShapeRef makeTorus(ShapeSource s, Diagnostics& diag) {
+    const scene::Primitive& p = *s.primitive;
+    bool ok = true;
+    double n[5];
+    for (size_t i = 0; i < 5; ++i) n[i] = quadricNumber(p, i, ok);
+    if (!ok) return reportDegenerate(p, diag, "needs five finite numbers"), nullptr;
+    if (n[1] == 0 || n[4] == 0 || n[2] == n[3]) return reportDegenerate(p, diag, "has no tube, no sweep or no phi range"), nullptr;
+    double phi0 = n[2] * kPi / 180, phi1 = n[3] * kPi / 180;
+    if (std::fabs(phi1 - phi0) > 2 * kPi * (1 + 1e-9)) {
+        diag.report(Severity::Warning, Rie::Range, p.place, "Torus has more than 360 degrees between phimin and phimax; 360 are drawn");
+        phi1 = phi0 + std::copysign(2 * kPi, phi1 - phi0);
+    }
+    return std::make_shared<Torus>(s, n[0], n[1], phi0, phi1, n[4], diag);
+}
+
+} // namespace alpenglow::geometry

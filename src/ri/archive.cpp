@@ -18,7 +18,9 @@ bool regular(const fs::path& p) {
 }
 
 bool sameButCase(const std::string& a, const std::string& b) {
-    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](unsigned char x, unsigned char y) {
+               return std::tolower(x) == std::tolower(y);
+           });
 }
 
 std::string along(const std::string& name, const std::vector<std::string>& folders) {
@@ -36,8 +38,8 @@ std::vector<std::string> splitSearchPath(const std::string& text) {
     std::vector<std::string> out;
     std::string item;
     for (size_t i = 0; i <= text.size(); ++i) {
-        bool drive = i < text.size() && text[i] == ':' && item.size() == 1 && std::isalpha(static_cast<unsigned char>(item[0])) && i + 1 < text.size() &&
-                     (text[i + 1] == '/' || text[i + 1] == '\\');
+        bool drive = i < text.size() && text[i] == ':' && item.size() == 1 && std::isalpha(static_cast<unsigned char>(item[0])) &&
+                     i + 1 < text.size() && (text[i + 1] == '/' || text[i + 1] == '\\');
         if (i < text.size() && (drive || (text[i] != ':' && text[i] != ';'))) {
             item += text[i];
             continue;
@@ -70,14 +72,17 @@ std::string findFile(const std::string& name, const std::vector<std::string>& fo
         std::error_code ec;
         for (fs::directory_iterator i(f, ec), e; !ec && i != e; i.increment(ec)) {
             std::string n = i->path().filename().string();
-            if (sameButCase(n, base) && regular(i->path()) && (best.empty() || i->path().string() < best)) best = i->path().string();
+            if (sameButCase(n, base) && regular(i->path()) && (best.empty() || i->path().string() < best))
+                best = i->path().string();
         }
         if (!best.empty()) return best;
     }
     return {};
 }
 
-void Interpreter::beginRecording(const Call& call) { recording_ = Recording{call.text(0), std::make_shared<std::vector<Call>>(), 0, call.place}; }
+void Interpreter::beginRecording(const Call& call) {
+    recording_ = Recording{call.text(0), std::make_shared<std::vector<Call>>(), 0, call.place};
+}
 
 /// True when the call was taken into an archive instead of being executed.
 bool Interpreter::record(const Call& call) {
@@ -106,7 +111,8 @@ void Interpreter::readArchive(const std::string& name, const SourcePlace& place)
         return;
     }
     if (++archiveReads_ > limits::kArchiveReads) {
-        reporter.once("ri:archivereads", Severity::Error, Rie::Limit, place, fmt::format("more than {} archives are read", limits::kArchiveReads));
+        reporter.once("ri:archivereads", Severity::Error, Rie::Limit, place,
+                      fmt::format("more than {} archives are read", limits::kArchiveReads));
         return;
     }
     std::shared_ptr<std::vector<Call>> calls;
@@ -133,7 +139,8 @@ void Interpreter::readArchive(const std::string& name, const SourcePlace& place)
             return;
         }
         if (!fallback.empty())
-            reporter.once("ri:found:" + name, Severity::Warning, Rie::NoFile, place, fmt::format("archive \"{}\" was found {}: {}", name, fallback, file));
+            reporter.once("ri:found:" + name, Severity::Warning, Rie::NoFile, place,
+                          fmt::format("archive \"{}\" was found {}: {}", name, fallback, file));
         source = fileSource(file, &why);
         if (!source) {
             reporter.error(Rie::NoFile, place, fmt::format("archive \"{}\" cannot be read: {}", file, why));

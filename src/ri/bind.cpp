@@ -57,8 +57,9 @@ scene::Param Interpreter::bindOne(const Call& call, const RawParam& raw, Use use
             // A shader may well declare a standard name otherwise ("background" as a file name): its own declaration decides.
             guessed = use == Use::Shader && !r.inlineForm;
             if (!guessed) {
-                reporter.error(Rie::Consistency, p.place, fmt::format("{}: \"{}\" is {}, not {}", request, p.name, wantsText ? "a string" : toString(p.type),
-                                                                      text ? "a string" : "numbers"));
+                reporter.error(Rie::Consistency, p.place,
+                               fmt::format("{}: \"{}\" is {}, not {}", request, p.name, wantsText ? "a string" : toString(p.type),
+                                           text ? "a string" : "numbers"));
                 return p;
             }
         }
@@ -105,7 +106,8 @@ scene::Param Interpreter::bindOne(const Call& call, const RawParam& raw, Use use
         p.arrayLength = int(have / per);
         return p;
     }
-    reporter.error(Rie::Consistency, p.place, fmt::format("{}: \"{}\" needs {} {}, not {}", request, p.name, want, text ? "strings" : "numbers", have));
+    reporter.error(Rie::Consistency, p.place,
+                   fmt::format("{}: \"{}\" needs {} {}, not {}", request, p.name, want, text ? "strings" : "numbers", have));
     *keep = false;
     return p;
 }

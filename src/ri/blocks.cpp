@@ -8,9 +8,10 @@
 namespace alpenglow::ri {
 namespace {
 
-constexpr const char* kBegins[] = {"FrameBegin",  "WorldBegin",  "AttributeBegin", "TransformBegin",
+constexpr const char* kBegins[] = {"FrameBegin", "WorldBegin",  "AttributeBegin", "TransformBegin",
                                    "SolidBegin", "ObjectBegin", "ResourceBegin",  "EditBegin"};
-constexpr const char* kEnds[] = {"FrameEnd", "WorldEnd", "AttributeEnd", "TransformEnd", "SolidEnd", "ObjectEnd", "ResourceEnd", "EditEnd"};
+constexpr const char* kEnds[] = {"FrameEnd", "WorldEnd",  "AttributeEnd", "TransformEnd",
+                                 "SolidEnd", "ObjectEnd", "ResourceEnd",  "EditEnd"};
 
 /// A block that an End of something smaller must not close.
 bool encloses(BlockKind k) { return k == BlockKind::Frame || k == BlockKind::World || k == BlockKind::Object; }
@@ -29,7 +30,8 @@ const Interpreter::Block* Interpreter::innermost(BlockKind kind) const {
 bool Interpreter::begin(BlockKind kind, const Call& call) {
     if (blocks_.size() >= size_t(limits::kStackDepth) && kind != BlockKind::World) { // worlds do not nest
         if (overflow_++ == 0)
-            reporter.error(Rie::Limit, call.place, fmt::format("blocks are nested deeper than {}: deeper ones save nothing", limits::kStackDepth));
+            reporter.error(Rie::Limit, call.place,
+                           fmt::format("blocks are nested deeper than {}: deeper ones save nothing", limits::kStackDepth));
         return false;
     }
     Block b;
@@ -74,8 +76,9 @@ void Interpreter::end(BlockKind kind, const Call& call) {
     overflow_ = 0;
     while (blocks_.size() > i + 1) {
         Block& b = blocks_.back();
-        reporter.error(Rie::Nesting, call.place,
-                       fmt::format("{} comes before the {} of line {} is closed", endName(kind), beginName(b.kind), b.place.line));
+        reporter.error(
+            Rie::Nesting, call.place,
+            fmt::format("{} comes before the {} of line {} is closed", endName(kind), beginName(b.kind), b.place.line));
         pop();
     }
     pop();
@@ -91,7 +94,8 @@ void Interpreter::unwind(size_t depth, const SourcePlace& where, bool keepWorld)
                           fmt::format("{} is left open by an archive", beginName(b.kind)));
             return;
         }
-        reporter.error(Rie::Nesting, where, fmt::format("{} ends before the {} of line {} is closed", where.file, beginName(b.kind), b.place.line));
+        reporter.error(Rie::Nesting, where,
+                       fmt::format("{} ends before the {} of line {} is closed", where.file, beginName(b.kind), b.place.line));
         pop();
     }
 }
@@ -101,10 +105,17 @@ void Interpreter::pop() {
     blocks_.pop_back();
     shared_ = true;
     switch (b.kind) {
-    case BlockKind::Transform: state.ctm = b.saved.ctm; return;
-    case BlockKind::Resource: resources_ = std::move(b.resources); return;
-    case BlockKind::Edit: return;
-    case BlockKind::World: worldEnd(b); break;
+    case BlockKind::Transform:
+        state.ctm = b.saved.ctm;
+        return;
+    case BlockKind::Resource:
+        resources_ = std::move(b.resources);
+        return;
+    case BlockKind::Edit:
+        return;
+    case BlockKind::World:
+        worldEnd(b);
+        break;
     case BlockKind::Object:
         if (b.object) objects_[b.object->handle] = b.object;
         break;
@@ -116,7 +127,8 @@ void Interpreter::pop() {
             systems_ = std::move(b.systems);
         }
         break;
-    default: break;
+    default:
+        break;
     }
     state = std::move(b.saved);
 }
@@ -218,7 +230,8 @@ void Interpreter::resource(const Call& call) {
         return;
     }
     if (operation != "restore") {
-        reporter.error(Rie::BadToken, call.place, fmt::format("Resource: operation \"{}\" is neither save nor restore", operation));
+        reporter.error(Rie::BadToken, call.place,
+                       fmt::format("Resource: operation \"{}\" is neither save nor restore", operation));
         return;
     }
     auto i = resources_.find(handle);
@@ -235,30 +248,46 @@ void Interpreter::resource(const Call& call) {
     };
     auto values = [&](std::initializer_list<const char*> classes) {
         auto in = [&](const std::string& key) {
-            return std::any_of(classes.begin(), classes.end(), [&](const char* c) { return key.starts_with(std::string(c) + ":"); });
+            return std::any_of(classes.begin(), classes.end(),
+                               [&](const char* c) { return key.starts_with(std::string(c) + ":"); });
         };
         std::erase_if(to.values, [&](const auto& v) { return in(v.first); });
         for (const auto& v : from.values)
             if (in(v.first)) to.values.insert(v);
     };
     if (part("shading")) {
-        to.color = from.color; to.opacity = from.opacity; to.surface = from.surface; to.atmosphere = from.atmosphere;
-        to.interior = from.interior; to.exterior = from.exterior; to.lights = from.lights; to.areaLight = from.areaLight;
-        to.shadingRate = from.shadingRate; to.smoothShading = from.smoothShading; to.coshaders = from.coshaders;
+        to.color = from.color;
+        to.opacity = from.opacity;
+        to.surface = from.surface;
+        to.atmosphere = from.atmosphere;
+        to.interior = from.interior;
+        to.exterior = from.exterior;
+        to.lights = from.lights;
+        to.areaLight = from.areaLight;
+        to.shadingRate = from.shadingRate;
+        to.smoothShading = from.smoothShading;
+        to.coshaders = from.coshaders;
         std::copy(std::begin(from.textureCoordinates), std::end(from.textureCoordinates), to.textureCoordinates);
         values({"shade", "trace", "light", "user", "irradiance", "photon", "subsurface", "shadow"});
     }
     if (part("geometrymodification")) {
-        to.displacement = from.displacement; to.trimCurve = from.trimCurve;
+        to.displacement = from.displacement;
+        to.trimCurve = from.trimCurve;
         values({"displacementbound", "trimcurve", "dice", "GeometricApproximation"});
     }
     if (part("geometrydefinition")) {
-        to.ubasis = from.ubasis; to.vbasis = from.vbasis; to.bound = from.bound; to.detail = from.detail;
+        to.ubasis = from.ubasis;
+        to.vbasis = from.vbasis;
+        to.bound = from.bound;
+        to.detail = from.detail;
         std::copy(std::begin(from.detailRange), std::end(from.detailRange), to.detailRange);
     }
     if (part("hiding")) {
-        to.sides = from.sides; to.matte = from.matte; to.inside = from.inside;
-        to.absoluteHandedness = from.absoluteHandedness; to.rightHanded = from.rightHanded;
+        to.sides = from.sides;
+        to.matte = from.matte;
+        to.inside = from.inside;
+        to.absoluteHandedness = from.absoluteHandedness;
+        to.rightHanded = from.rightHanded;
         values({"visibility", "sides", "cull", "hider", "grouping"});
     }
     if (part("transform")) state.ctm = i->second.ctm;

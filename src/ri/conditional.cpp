@@ -11,7 +11,8 @@ namespace {
 
 class Evaluator {
 public:
-    Evaluator(const std::string& t, const ConditionLookup& l, Reporter& r, const SourcePlace& p) : text_(t), lookup_(l), reporter_(r), place_(p) {}
+    Evaluator(const std::string& t, const ConditionLookup& l, Reporter& r, const SourcePlace& p)
+        : text_(t), lookup_(l), reporter_(r), place_(p) {}
 
     bool run() {
         ConditionValue v = binary(0);
@@ -27,7 +28,9 @@ private:
 
     void fail(const std::string& what) {
         if (!failed_)
-            reporter_.error(Rie::Syntax, place_, fmt::format("condition \"{}\": {} at character {}", text_.substr(0, 80), what, at_ + 1), "it counts as false");
+            reporter_.error(Rie::Syntax, place_,
+                            fmt::format("condition \"{}\": {} at character {}", text_.substr(0, 80), what, at_ + 1),
+                            "it counts as false");
         failed_ = true;
     }
     void skip() {
@@ -42,7 +45,8 @@ private:
 
     /// Precedence climbing: || && (== !=) (< <= > >=) (+ -) (* /).
     ConditionValue binary(int level) {
-        static const std::vector<std::vector<std::string_view>> kOps = {{"||"}, {"&&"}, {"==", "!="}, {"<=", ">=", "<", ">"}, {"+", "-"}, {"*", "/"}};
+        static const std::vector<std::vector<std::string_view>> kOps = {
+            {"||"}, {"&&"}, {"==", "!="}, {"<=", ">=", "<", ">"}, {"+", "-"}, {"*", "/"}};
         if (level == int(kOps.size())) return unary();
         ConditionValue a = binary(level + 1);
         while (!failed_) {
@@ -109,7 +113,9 @@ private:
     }
     std::string word() {
         size_t from = at_;
-        while (at_ < text_.size() && (std::isalnum(static_cast<unsigned char>(text_[at_])) || text_[at_] == '_' || text_[at_] == ':' || text_[at_] == '.')) ++at_;
+        while (at_ < text_.size() && (std::isalnum(static_cast<unsigned char>(text_[at_])) || text_[at_] == '_' ||
+                                      text_[at_] == ':' || text_[at_] == '.'))
+            ++at_;
         return text_.substr(from, at_ - from);
     }
     std::string variableName() {
@@ -127,7 +133,8 @@ private:
         if (failed_) return num(0);
         if (auto v = lookup_(name)) return *v;
         if (!quiet_)
-            reporter_.once("ri:condition:" + name, Severity::Error, Rie::BadToken, place_, fmt::format("condition: ${} is not set", name), "defined($" + name + ")");
+            reporter_.once("ri:condition:" + name, Severity::Error, Rie::BadToken, place_,
+                           fmt::format("condition: ${} is not set", name), "defined($" + name + ")");
         return num(0);
     }
     ConditionValue primary() {
@@ -173,9 +180,7 @@ private:
         }
         if (w == "concat" && take("(")) {
             ConditionValue v{true, 0, {}};
-            do {
-                v.text += asText(binary(0));
-            } while (!failed_ && v.text.size() < limits::kTokenBytes && take(","));
+            do { v.text += asText(binary(0)); } while (!failed_ && v.text.size() < limits::kTokenBytes && take(","));
             if (!take(")")) fail("')' expected");
             return v;
         }

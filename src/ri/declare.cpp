@@ -15,53 +15,158 @@ struct Known {
 
 // ri.md 2.3, and the variables and parameters that files use as if they were there.
 constexpr Known kStandard[] = {
-    {"P", "vertex point"}, {"Pz", "vertex float"}, {"Pw", "vertex hpoint"}, {"N", "varying normal"}, {"Np", "uniform normal"},
-    {"Cs", "varying color"}, {"Os", "varying color"}, {"s", "varying float"}, {"t", "varying float"}, {"st", "varying float[2]"},
-    {"u", "varying float"}, {"v", "varying float"}, {"width", "varying float"}, {"constantwidth", "constant float"},
-    {"Ka", "float"}, {"Kd", "float"}, {"Ks", "float"}, {"Kr", "float"}, {"Km", "float"}, {"roughness", "float"}, {"intensity", "float"},
-    {"coneangle", "float"}, {"conedeltaangle", "float"}, {"beamdistribution", "float"}, {"mindistance", "float"},
-    {"maxdistance", "float"}, {"distance", "float"}, {"fov", "float"}, {"amplitude", "float"}, {"texturename", "string"},
-    {"specularcolor", "color"}, {"lightcolor", "color"}, {"background", "color"}, {"bgcolor", "color"},
-    {"from", "point"}, {"to", "point"},
+    {"P", "vertex point"},
+    {"Pz", "vertex float"},
+    {"Pw", "vertex hpoint"},
+    {"N", "varying normal"},
+    {"Np", "uniform normal"},
+    {"Cs", "varying color"},
+    {"Os", "varying color"},
+    {"s", "varying float"},
+    {"t", "varying float"},
+    {"st", "varying float[2]"},
+    {"u", "varying float"},
+    {"v", "varying float"},
+    {"width", "varying float"},
+    {"constantwidth", "constant float"},
+    {"Ka", "float"},
+    {"Kd", "float"},
+    {"Ks", "float"},
+    {"Kr", "float"},
+    {"Km", "float"},
+    {"roughness", "float"},
+    {"intensity", "float"},
+    {"coneangle", "float"},
+    {"conedeltaangle", "float"},
+    {"beamdistribution", "float"},
+    {"mindistance", "float"},
+    {"maxdistance", "float"},
+    {"distance", "float"},
+    {"fov", "float"},
+    {"amplitude", "float"},
+    {"texturename", "string"},
+    {"specularcolor", "color"},
+    {"lightcolor", "color"},
+    {"background", "color"},
+    {"bgcolor", "color"},
+    {"from", "point"},
+    {"to", "point"},
     // Display, Hider and archive parameters
-    {"jitter", "int"}, {"depthfilter", "string"}, {"quantize", "float[4]"}, {"dither", "float"}, {"filter", "string"},
-    {"filterwidth", "float[2]"}, {"exposure", "float[2]"}, {"colorprofile", "string"}, {"compression", "string"},
-    {"subset", "string"}, {"operation", "string"}, {"emit", "int"},
+    {"jitter", "int"},
+    {"depthfilter", "string"},
+    {"quantize", "float[4]"},
+    {"dither", "float"},
+    {"filter", "string"},
+    {"filterwidth", "float[2]"},
+    {"exposure", "float[2]"},
+    {"colorprofile", "string"},
+    {"compression", "string"},
+    {"subset", "string"},
+    {"operation", "string"},
+    {"emit", "int"},
 };
 
 // ri.md 15: names of options and attributes, keyed "class:name". A name that is numbers here and strings there is absent:
 // its value decides.
 constexpr Known kImplementation[] = {
-    {"searchpath:shader", "string"}, {"searchpath:texture", "string"}, {"searchpath:archive", "string"},
-    {"searchpath:procedural", "string"}, {"searchpath:display", "string"}, {"searchpath:resource", "string"},
-    {"searchpath:rslplugin", "string"}, {"limits:bucketsize", "int[2]"}, {"limits:gridsize", "int"}, {"limits:eyesplits", "int"},
-    {"limits:texturememory", "int"}, {"limits:texturesample", "int"}, {"limits:othreshold", "color"}, {"limits:zthreshold", "color"},
-    {"limits:brickmemory", "int"}, {"limits:numthreads", "int"}, {"trace:maxdepth", "int"}, {"shadow:sample", "int"},
-    {"shadow:bias", "float"}, {"shadow:bias0", "float"}, {"shadow:bias1", "float"}, {"render:bucketorder", "string"},
-    {"render:nthreads", "int"}, {"shutter:offset", "float"}, {"shutter:shutteropening", "float[2]"}, {"statistics:endofframe", "int"},
-    {"statistics:filename", "string"}, {"statistics:progress", "int"}, {"hider:jitter", "int"}, {"hider:depthfilter", "string"},
-    {"ribparse:varsubst", "string"}, {"netcache:directory", "string"}, {"netcache:size", "int"}, {"photon:emit", "int"},
-    {"identifier:name", "string"}, {"identifier:shadinggroup", "string"}, {"grouping:membership", "string"},
-    {"grouping:tracesubset", "string"}, {"visibility:camera", "int"}, {"visibility:trace", "int"}, {"visibility:diffuse", "int"},
-    {"visibility:specular", "int"}, {"visibility:subset", "string"}, {"sides:doubleshaded", "int"}, {"displacementbound:sphere", "float"},
-    {"displacementbound:coordinatesystem", "string"}, {"trace:bias", "float"}, {"trace:displacements", "int"},
-    {"trace:samplemotion", "int"}, {"trace:maxdiffusedepth", "int"}, {"trace:maxspeculardepth", "int"},
-    {"shade:transmissionhitmode", "string"}, {"shade:diffusehitmode", "string"}, {"shade:specularhitmode", "string"},
-    {"shade:camerahitmode", "string"}, {"shade:strategy", "string"}, {"irradiance:shadingrate", "float"}, {"irradiance:nsamples", "int"},
-    {"irradiance:handle", "string"}, {"irradiance:filemode", "string"}, {"irradiance:maxerror", "float"},
-    {"irradiance:maxpixeldist", "float"}, {"photon:globalmap", "string"}, {"photon:causticmap", "string"},
-    {"photon:shadingmodel", "string"}, {"photon:estimator", "int"}, {"subsurface:groupname", "string"}, {"subsurface:scale", "float"},
-    {"subsurface:refractionindex", "float"}, {"subsurface:shadingrate", "float"}, {"subsurface:absorption", "color"},
-    {"subsurface:scattering", "color"}, {"subsurface:meanfreepath", "color"}, {"subsurface:reflectance", "color"},
-    {"subsurface:samples", "int"}, {"dice:rasterorient", "int"}, {"dice:hair", "int"}, {"dice:referencecamera", "string"},
-    {"dice:strategy", "string"}, {"dice:minlength", "float"}, {"dice:binary", "int"}, {"derivatives:smooth", "int"},
-    {"derivatives:centered", "int"}, {"cull:hidden", "int"}, {"cull:backfacing", "int"}, {"geometry:backfacing", "int"},
-    {"geometry:frontfacing", "int"}, {"geometry:geometricnormal", "int"}, {"hider:composite", "int"}, {"light:samples", "int"},
-    {"light:samplingstrategy", "string"}, {"light:emitphotons", "int"}, {"trimcurve:sense", "string"},
+    {"searchpath:shader", "string"},
+    {"searchpath:texture", "string"},
+    {"searchpath:archive", "string"},
+    {"searchpath:procedural", "string"},
+    {"searchpath:display", "string"},
+    {"searchpath:resource", "string"},
+    {"searchpath:rslplugin", "string"},
+    {"limits:bucketsize", "int[2]"},
+    {"limits:gridsize", "int"},
+    {"limits:eyesplits", "int"},
+    {"limits:texturememory", "int"},
+    {"limits:texturesample", "int"},
+    {"limits:othreshold", "color"},
+    {"limits:zthreshold", "color"},
+    {"limits:brickmemory", "int"},
+    {"limits:numthreads", "int"},
+    {"trace:maxdepth", "int"},
+    {"shadow:sample", "int"},
+    {"shadow:bias", "float"},
+    {"shadow:bias0", "float"},
+    {"shadow:bias1", "float"},
+    {"render:bucketorder", "string"},
+    {"render:nthreads", "int"},
+    {"shutter:offset", "float"},
+    {"shutter:shutteropening", "float[2]"},
+    {"statistics:endofframe", "int"},
+    {"statistics:filename", "string"},
+    {"statistics:progress", "int"},
+    {"hider:jitter", "int"},
+    {"hider:depthfilter", "string"},
+    {"ribparse:varsubst", "string"},
+    {"netcache:directory", "string"},
+    {"netcache:size", "int"},
+    {"photon:emit", "int"},
+    {"identifier:name", "string"},
+    {"identifier:shadinggroup", "string"},
+    {"grouping:membership", "string"},
+    {"grouping:tracesubset", "string"},
+    {"visibility:camera", "int"},
+    {"visibility:trace", "int"},
+    {"visibility:diffuse", "int"},
+    {"visibility:specular", "int"},
+    {"visibility:subset", "string"},
+    {"sides:doubleshaded", "int"},
+    {"displacementbound:sphere", "float"},
+    {"displacementbound:coordinatesystem", "string"},
+    {"trace:bias", "float"},
+    {"trace:displacements", "int"},
+    {"trace:samplemotion", "int"},
+    {"trace:maxdiffusedepth", "int"},
+    {"trace:maxspeculardepth", "int"},
+    {"shade:transmissionhitmode", "string"},
+    {"shade:diffusehitmode", "string"},
+    {"shade:specularhitmode", "string"},
+    {"shade:camerahitmode", "string"},
+    {"shade:strategy", "string"},
+    {"irradiance:shadingrate", "float"},
+    {"irradiance:nsamples", "int"},
+    {"irradiance:handle", "string"},
+    {"irradiance:filemode", "string"},
+    {"irradiance:maxerror", "float"},
+    {"irradiance:maxpixeldist", "float"},
+    {"photon:globalmap", "string"},
+    {"photon:causticmap", "string"},
+    {"photon:shadingmodel", "string"},
+    {"photon:estimator", "int"},
+    {"subsurface:groupname", "string"},
+    {"subsurface:scale", "float"},
+    {"subsurface:refractionindex", "float"},
+    {"subsurface:shadingrate", "float"},
+    {"subsurface:absorption", "color"},
+    {"subsurface:scattering", "color"},
+    {"subsurface:meanfreepath", "color"},
+    {"subsurface:reflectance", "color"},
+    {"subsurface:samples", "int"},
+    {"dice:rasterorient", "int"},
+    {"dice:hair", "int"},
+    {"dice:referencecamera", "string"},
+    {"dice:strategy", "string"},
+    {"dice:minlength", "float"},
+    {"dice:binary", "int"},
+    {"derivatives:smooth", "int"},
+    {"derivatives:centered", "int"},
+    {"cull:hidden", "int"},
+    {"cull:backfacing", "int"},
+    {"geometry:backfacing", "int"},
+    {"geometry:frontfacing", "int"},
+    {"geometry:geometricnormal", "int"},
+    {"hider:composite", "int"},
+    {"light:samples", "int"},
+    {"light:samplingstrategy", "string"},
+    {"light:emitphotons", "int"},
+    {"trimcurve:sense", "string"},
 };
 
 // Numbers in one file, strings in another: the value decides.
-constexpr const char* kByValue[] = {"visibility:transmission", "visibility:photon", "photon:estimator", "light:shadows", "shade:resolution"};
+constexpr const char* kByValue[] = {"visibility:transmission", "visibility:photon", "photon:estimator", "light:shadows",
+                                    "shade:resolution"};
 
 using Table = std::map<std::string, Declaration, std::less<>>;
 
@@ -184,27 +289,42 @@ Resolved Declarations::resolve(std::string_view token, std::string_view category
 
 const char* toString(scene::Class c) {
     switch (c) {
-    case Class::Constant: return "constant";
-    case Class::Uniform: return "uniform";
-    case Class::Varying: return "varying";
-    case Class::Vertex: return "vertex";
-    case Class::FaceVarying: return "facevarying";
-    case Class::FaceVertex: break;
+    case Class::Constant:
+        return "constant";
+    case Class::Uniform:
+        return "uniform";
+    case Class::Varying:
+        return "varying";
+    case Class::Vertex:
+        return "vertex";
+    case Class::FaceVarying:
+        return "facevarying";
+    case Class::FaceVertex:
+        break;
     }
     return "facevertex";
 }
 
 const char* toString(scene::Type t) {
     switch (t) {
-    case Type::Float: return "float";
-    case Type::Integer: return "integer";
-    case Type::String: return "string";
-    case Type::Color: return "color";
-    case Type::Point: return "point";
-    case Type::Vector: return "vector";
-    case Type::Normal: return "normal";
-    case Type::HPoint: return "hpoint";
-    case Type::Matrix: break;
+    case Type::Float:
+        return "float";
+    case Type::Integer:
+        return "integer";
+    case Type::String:
+        return "string";
+    case Type::Color:
+        return "color";
+    case Type::Point:
+        return "point";
+    case Type::Vector:
+        return "vector";
+    case Type::Normal:
+        return "normal";
+    case Type::HPoint:
+        return "hpoint";
+    case Type::Matrix:
+        break;
     }
     return "matrix";
 }

@@ -23,7 +23,7 @@ struct Resolved {
     std::optional<Declaration> declaration; ///< empty: nobody declared it
     bool malformed = false;                 ///< an inline declaration that does not parse
     bool inlineForm = false;
-    bool byValue = false;                   ///< known, but its type is whatever the value is
+    bool byValue = false; ///< known, but its type is whatever the value is
 };
 
 class Declarations {

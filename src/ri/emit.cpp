@@ -14,7 +14,8 @@ void Interpreter::replaceCtm(const scene::Transform& m, const Call& call) {
             return;
         }
         if (determinant3(k) == 0 && determinant(k) == 0)
-            reporter.once("ri:singular", Severity::Warning, Rie::Math, call.place, "the transformation is singular: what it holds is flattened");
+            reporter.once("ri:singular", Severity::Warning, Rie::Math, call.place,
+                          "the transformation is singular: what it holds is flattened");
     }
     state.ctm = m;
 }
@@ -133,7 +134,8 @@ void Interpreter::instance(const Call& call) {
         return;
     }
     if (!inWorld()) {
-        reporter.once("ri:noworld", Severity::Error, Rie::NotPrims, call.place, "ObjectInstance outside WorldBegin and WorldEnd is not drawn");
+        reporter.once("ri:noworld", Severity::Error, Rie::NotPrims, call.place,
+                      "ObjectInstance outside WorldBegin and WorldEnd is not drawn");
         return;
     }
     auto [slot, fresh] = objectIndex_.try_emplace(i->second.get(), int(frame_->objects.size()));

@@ -14,11 +14,12 @@ using scene::Primitive;
 using scene::Type;
 
 bool isMesh(const Primitive& p) {
-    return p.kind == "PointsPolygons" || p.kind == "PointsGeneralPolygons" || p.kind == "SubdivisionMesh" || p.kind == "HierarchicalSubdivisionMesh";
+    return p.kind == "PointsPolygons" || p.kind == "PointsGeneralPolygons" || p.kind == "SubdivisionMesh" ||
+           p.kind == "HierarchicalSubdivisionMesh";
 }
 bool needsPoints(const Primitive& p) {
-    return isMesh(p) || p.kind == "Polygon" || p.kind == "GeneralPolygon" || p.kind == "Patch" || p.kind == "PatchMesh" || p.kind == "NuPatch" ||
-           p.kind == "Points" || p.kind == "Curves";
+    return isMesh(p) || p.kind == "Polygon" || p.kind == "GeneralPolygon" || p.kind == "Patch" || p.kind == "PatchMesh" ||
+           p.kind == "NuPatch" || p.kind == "Points" || p.kind == "Curves";
 }
 bool isArgument(const Primitive& p, const Param& v) {
     if (p.kind == "NuPatch") return v.name == "uknot" || v.name == "vknot";
@@ -33,8 +34,9 @@ void dropDuplicates(Primitive& p, Reporter& reporter) {
     for (size_t i = 0; i < p.params.size(); ++i) {
         bool later = false;
         for (size_t k = i + 1; k < p.params.size() && !later; ++k) later = p.params[k].name == p.params[i].name;
-        if (later) reporter.once(fmt::format("ri:twice:{}", p.params[i].name), Severity::Warning, Rie::Consistency, p.params[i].place,
-                                 fmt::format("{}: \"{}\" is given twice: the last one counts", p.kind, p.params[i].name));
+        if (later)
+            reporter.once(fmt::format("ri:twice:{}", p.params[i].name), Severity::Warning, Rie::Consistency, p.params[i].place,
+                          fmt::format("{}: \"{}\" is given twice: the last one counts", p.kind, p.params[i].name));
         else kept.push_back(std::move(p.params[i]));
     }
     p.params = std::move(kept);
@@ -42,7 +44,11 @@ void dropDuplicates(Primitive& p, Reporter& reporter) {
 
 /// Leaves exactly one of P, Pw, Pz, as a vertex variable of its own type. False: there is none that could serve.
 Param* position(Primitive& p, Reporter& reporter) {
-    static constexpr struct { const char* name; Type type; int per; } kForms[] = {{"P", Type::Point, 3}, {"Pw", Type::HPoint, 4}, {"Pz", Type::Float, 1}};
+    static constexpr struct {
+        const char* name;
+        Type type;
+        int per;
+    } kForms[] = {{"P", Type::Point, 3}, {"Pw", Type::HPoint, 4}, {"Pz", Type::Float, 1}};
     bool patch = p.kind == "Patch" || p.kind == "PatchMesh";
     const char* use = nullptr;
     for (auto& f : kForms) {
@@ -61,7 +67,9 @@ Param* position(Primitive& p, Reporter& reporter) {
         if (i->type == Type::String) i->numbers.clear();
         i->type = f.type;
         if (i->numbers.size() % size_t(f.per)) {
-            reporter.error(Rie::Consistency, i->place, fmt::format("{}: \"{}\" has {} numbers, which is not a multiple of {}", p.kind, f.name, i->numbers.size(), f.per));
+            reporter.error(Rie::Consistency, i->place,
+                           fmt::format("{}: \"{}\" has {} numbers, which is not a multiple of {}", p.kind, f.name,
+                                       i->numbers.size(), f.per));
             return nullptr;
         }
     }
@@ -97,7 +105,8 @@ bool guessClass(Param& v, const scene::VariableCounts& c) {
 bool fitOne(Param& v, const Primitive& p, const scene::VariableCounts& c, int64_t givenPoints, Reporter& reporter) {
     if (!v.declared) {
         if (guessClass(v, c)) return true;
-        reporter.error(Rie::Consistency, v.place, fmt::format("{}: the {} values of the undeclared \"{}\" fit no class", p.kind, size(v), v.name));
+        reporter.error(Rie::Consistency, v.place,
+                       fmt::format("{}: the {} values of the undeclared \"{}\" fit no class", p.kind, size(v), v.name));
         return false;
     }
     int64_t per = int64_t(scene::componentCount(v.type)) * std::max(v.arrayLength, 1);
@@ -114,7 +123,8 @@ bool fitOne(Param& v, const Primitive& p, const scene::VariableCounts& c, int64_
         return true;
     }
     reporter.error(Rie::Consistency, v.place,
-                   fmt::format("{}: {} {} \"{}\" needs {} x {} values, not {}: it is ignored", p.kind, toString(v.cls), toString(v.type), v.name, want, per, have));
+                   fmt::format("{}: {} {} \"{}\" needs {} x {} values, not {}: it is ignored", p.kind, toString(v.cls),
+                               toString(v.type), v.name, want, per, have));
     return false;
 }
 
@@ -140,7 +150,8 @@ bool fitVariables(Primitive& p, Reporter& reporter) {
         size_t per = size_t(scene::componentCount(points->type));
         given = int64_t(points->numbers.size() / per);
         if (given < counts.vertex || (given > counts.vertex && !isMesh(p))) {
-            reporter.error(Rie::Consistency, points->place, fmt::format("{}: \"{}\" needs {} points, not {}", p.kind, points->name, counts.vertex, given));
+            reporter.error(Rie::Consistency, points->place,
+                           fmt::format("{}: \"{}\" needs {} points, not {}", p.kind, points->name, counts.vertex, given));
             return false;
         }
         points->numbers.resize(size_t(counts.vertex) * per);

@@ -6,7 +6,8 @@
 
 namespace alpenglow::ri {
 
-Interpreter::Interpreter(ReaderOptions o, scene::FrameConsumer& c, Diagnostics& d) : reporter(d), settings(std::move(o)), consumer(c) {
+Interpreter::Interpreter(ReaderOptions o, scene::FrameConsumer& c, Diagnostics& d)
+    : reporter(d), settings(std::move(o)), consumer(c) {
     state.attributes = std::make_shared<scene::Attributes>();
     state.scoped = std::make_shared<NamedSystems>();
 }
@@ -85,10 +86,14 @@ void Interpreter::checkScope(const Call& call) {
     Rie code = Rie::IllState;
     if (r.kind == Kind::Option) code = Rie::NotOptions;
     else if (r.kind == Kind::Primitive) code = Rie::NotPrims;
-    else if (r.kind == Kind::Attribute || r.kind == Kind::Shader || r.kind == Kind::Light || r.kind == Kind::Transform) code = Rie::NotAttribs;
+    else if (r.kind == Kind::Attribute || r.kind == Kind::Shader || r.kind == Kind::Light || r.kind == Kind::Transform)
+        code = Rie::NotAttribs;
     else if (r.kind == Kind::Structure) code = Rie::Nesting;
     if (r.kind == Kind::Primitive && !(s & (kWorld | kObject))) return; // emit() refuses it with an error
-    const char* where = s == kBase ? "outside frame and world" : s == kFrame ? "before WorldBegin" : s == kWorld ? "inside the world" : "inside an object";
+    const char* where = s == kBase    ? "outside frame and world"
+                        : s == kFrame ? "before WorldBegin"
+                        : s == kWorld ? "inside the world"
+                                      : "inside an object";
     reporter.once(fmt::format("ri:scope:{}:{}", r.name, s), Severity::Warning, code, call.place,
                   fmt::format("{} does not belong {}: it is done as if it were in its place", r.name, where));
 }

@@ -25,8 +25,8 @@ using NamedSystems = std::map<std::string, scene::Transform>;
 /// What AttributeBegin saves.
 struct GraphicsState {
     std::shared_ptr<scene::Attributes> attributes;
-    scene::Transform ctm;                        ///< current to world; before WorldBegin to camera
-    std::shared_ptr<const NamedSystems> scoped;  ///< ScopedCoordinateSystem
+    scene::Transform ctm;                       ///< current to world; before WorldBegin to camera
+    std::shared_ptr<const NamedSystems> scoped; ///< ScopedCoordinateSystem
 };
 
 /// A stored object: primitives in its own space.
@@ -49,7 +49,7 @@ public:
     Declarations declarations;
     scene::Options options;
     GraphicsState state;
-    std::vector<double> nRGB;                            ///< ColorSamples: n x 3; empty = colours are RGB
+    std::vector<double> nRGB; ///< ColorSamples: n x 3; empty = colours are RGB
 
     bool inWorld() const { return frame_ != nullptr; }
     /// The attributes to write to; a snapshot handed out before stays as it is.
@@ -96,12 +96,12 @@ private:
         BlockKind kind;
         SourcePlace place;
         GraphicsState saved;
-        std::unique_ptr<scene::Options> options;          ///< Frame, World
-        size_t lights = 0;                                ///< Frame: lights declared before
-        std::map<std::string, int> handles;               ///< Frame, World
-        NamedSystems systems;                             ///< Frame, World
-        std::map<std::string, GraphicsState> resources;   ///< Resource
-        ObjectRef object;                                 ///< Object
+        std::unique_ptr<scene::Options> options;        ///< Frame, World
+        size_t lights = 0;                              ///< Frame: lights declared before
+        std::map<std::string, int> handles;             ///< Frame, World
+        NamedSystems systems;                           ///< Frame, World
+        std::map<std::string, GraphicsState> resources; ///< Resource
+        ObjectRef object;                               ///< Object
     };
     struct Motion {
         std::vector<float> times;
@@ -110,9 +110,9 @@ private:
     };
     struct Condition {
         SourcePlace place;
-        bool outer;   ///< the surroundings are executed
-        bool taken;   ///< a branch has been executed
-        bool active;  ///< this branch is
+        bool outer;  ///< the surroundings are executed
+        bool taken;  ///< a branch has been executed
+        bool active; ///< this branch is
         bool elseSeen;
     };
     struct Recording {
@@ -144,31 +144,31 @@ private:
     const Block* innermost(BlockKind kind) const;
     std::vector<scene::Light>& lights() { return frame_ ? frame_->lights : lights_; }
 
-    bool shared_ = true;                                  ///< state.attributes is referenced by a snapshot
+    bool shared_ = true; ///< state.attributes is referenced by a snapshot
     bool abort_ = false;
-    int errorsBefore_ = 0;                                ///< when ErrorHandler "abort" was read
+    int errorsBefore_ = 0; ///< when ErrorHandler "abort" was read
     std::vector<Block> blocks_;
-    int overflow_ = 0;                                    ///< Begins beyond limits::kStackDepth, whose Ends are ignored
+    int overflow_ = 0; ///< Begins beyond limits::kStackDepth, whose Ends are ignored
     std::optional<Motion> motion_;
     std::vector<Condition> conditions_;
     std::optional<Recording> recording_;
     std::vector<std::shared_ptr<scene::Primitive>>* capture_ = nullptr; ///< primitives of a motion block go here
-    std::vector<scene::Light> lights_;                    ///< before WorldBegin; shader spaces to camera
-    std::map<std::string, int> handles_;                  ///< light handle -> index
-    NamedSystems systems_;                                ///< before WorldBegin to camera, inside to world
-    NamedSystems worldCameraSystems_;                     ///< those of before WorldBegin, to camera
+    std::vector<scene::Light> lights_;                                  ///< before WorldBegin; shader spaces to camera
+    std::map<std::string, int> handles_;                                ///< light handle -> index
+    NamedSystems systems_;                                              ///< before WorldBegin to camera, inside to world
+    NamedSystems worldCameraSystems_;                                   ///< those of before WorldBegin, to camera
     std::map<std::string, GraphicsState> resources_;
     std::map<std::string, ObjectRef> objects_;
-    std::map<const scene::Object*, int> objectIndex_;     ///< of this frame
+    std::map<const scene::Object*, int> objectIndex_; ///< of this frame
     std::shared_ptr<scene::Frame> frame_;
     scene::Transform worldToCamera_;
     std::map<std::string, std::shared_ptr<std::vector<Call>>> inlineArchives_;
     std::vector<std::string> openArchives_;
-    std::vector<size_t> barriers_;                        ///< block depth at each open archive's start
+    std::vector<size_t> barriers_; ///< block depth at each open archive's start
     int archiveReads_ = 0;
     size_t objectCopies_ = 0, replayedCalls_ = 0;
     std::set<std::string> archivesRead_;
-    bool replaying_ = false;                              ///< inside an archive that was read before
+    bool replaying_ = false; ///< inside an archive that was read before
 };
 
 /// Checks and completes a primitive's variables (the guarantees in scene/scene.h). False (reported): do not draw it.

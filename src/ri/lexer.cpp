@@ -13,7 +13,7 @@ bool startsNumber(unsigned char c) { return digit(c) || c == '-' || c == '+' || 
 /// Bytes that cannot directly follow a number.
 bool sticks(unsigned char c) { return letter(c) || startsNumber(c); }
 constexpr size_t kBuffer = 256u << 10; // comfortably above limits::kTokenBytes: a token always fits
-constexpr size_t kPlainNumber = 64;     // bytes that the fast way through numbers looks at
+constexpr size_t kPlainNumber = 64;    // bytes that the fast way through numbers looks at
 constexpr size_t kLineKept = 1024;     // bytes of the current line kept for messages
 
 } // namespace
@@ -87,15 +87,26 @@ void Lexer::comment() {
 bool Lexer::skipSpace() {
     while (at()) {
         switch (peek()) {
-        case ' ': case '\t': case '\f': case '\v': case 0377: ++pos_; break; // 0377 ends a RunProgram answer: nothing elsewhere
-        case '\n': newline(); break;
+        case ' ':
+        case '\t':
+        case '\f':
+        case '\v':
+        case 0377:
+            ++pos_;
+            break; // 0377 ends a RunProgram answer: nothing elsewhere
+        case '\n':
+            newline();
+            break;
         case '\r': // a line end of its own only when no \n follows
             if (pos_ + 1 >= end_) more();
             if (pos_ + 1 < end_ && buffer_[pos_ + 1] == '\n') ++pos_;
             else newline();
             break;
-        case '#': comment(); break;
-        default: return true;
+        case '#':
+            comment();
+            break;
+        default:
+            return true;
         }
     }
     return false;
@@ -144,7 +155,8 @@ bool Lexer::number(double& out) {
 void Lexer::plainNumbers(std::vector<double>& out) {
     const char* const begin = buffer_.data();
     const char* p = begin + pos_;
-    const char* const safe = begin + end_ - std::min(end_ - pos_, kPlainNumber); // a whole number and its end lie beyond every start
+    const char* const safe =
+        begin + end_ - std::min(end_ - pos_, kPlainNumber); // a whole number and its end lie beyond every start
     while (p < safe) {
         if (*p == ' ') {
             ++p;
@@ -160,7 +172,9 @@ void Lexer::plainNumbers(std::vector<double>& out) {
         if (!digit(static_cast<unsigned char>(*digits)) && *digits != '.') break;
         double v;
         auto r = fast_float::from_chars(p, p + kPlainNumber, v);
-        if (r.ec != std::errc() || (*r.ptr != ' ' && *r.ptr != '\n' && *r.ptr != ']') || !std::isfinite(v) || r.ptr >= p + kPlainNumber - 1) break;
+        if (r.ec != std::errc() || (*r.ptr != ' ' && *r.ptr != '\n' && *r.ptr != ']') || !std::isfinite(v) ||
+            r.ptr >= p + kPlainNumber - 1)
+            break;
         out.push_back(v);
         p = r.ptr;
     }
@@ -210,12 +224,25 @@ void Lexer::escape(std::string& out) {
     }
     ++pos_;
     switch (c) {
-    case 'n': out += '\n'; break;
-    case 'r': out += '\r'; break;
-    case 't': out += '\t'; break;
-    case 'b': out += '\b'; break;
-    case 'f': out += '\f'; break;
-    case '"': case '\\': out += char(c); break;
+    case 'n':
+        out += '\n';
+        break;
+    case 'r':
+        out += '\r';
+        break;
+    case 't':
+        out += '\t';
+        break;
+    case 'b':
+        out += '\b';
+        break;
+    case 'f':
+        out += '\f';
+        break;
+    case '"':
+    case '\\':
+        out += char(c);
+        break;
     default: // names of Windows files: the backslash was meant
         out += '\\';
         out += char(c);
@@ -234,7 +261,8 @@ void Lexer::quoted(std::string& out, int line, int column) {
         }
         if (out.size() >= limits::kStringBytes) {
             if (!tooLong)
-                reporter_.error(Rie::Limit, place(line, column), "a string is longer than " + std::to_string(limits::kStringBytes) + " bytes");
+                reporter_.error(Rie::Limit, place(line, column),
+                                "a string is longer than " + std::to_string(limits::kStringBytes) + " bytes");
             tooLong = true;
             out.resize(limits::kStringBytes - 1);
         }
@@ -265,7 +293,8 @@ void Lexer::badBytes() {
         ++n;
     }
     std::string shown = first > 32 && first < 127 ? std::string("'") + char(first) + "'" : "byte " + std::to_string(first);
-    reporter_.error(Rie::Syntax, where, shown + (n > 1 ? " and " + std::to_string(n - 1) + " more bytes are" : " is") + " not part of any RIB token");
+    reporter_.error(Rie::Syntax, where,
+                    shown + (n > 1 ? " and " + std::to_string(n - 1) + " more bytes are" : " is") + " not part of any RIB token");
 }
 
 void Lexer::next(Token& t) {

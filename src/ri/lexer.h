@@ -37,20 +37,20 @@ public:
 
 private:
     size_t column() const { return base_ + pos_ - lineStart_ + 1; }
-    bool more();                       ///< reads on; false at the end. Keeps bytes from pos_ on.
+    bool more(); ///< reads on; false at the end. Keeps bytes from pos_ on.
     bool at() { return pos_ < end_ || more(); }
     unsigned char peek() const { return static_cast<unsigned char>(buffer_[pos_]); }
-    bool skipSpace();                  ///< to the next token; false at the end
-    void newline();                    ///< the byte at pos_ is one: counts and passes it
+    bool skipSpace(); ///< to the next token; false at the end
+    void newline();   ///< the byte at pos_ is one: counts and passes it
     void comment();
     void plainNumbers(std::vector<double>& out);
-    bool number(double& out);          ///< false (reported) when malformed
+    bool number(double& out); ///< false (reported) when malformed
     void identifier(std::string& out);
     void quoted(std::string& out, int line, int column);
     void escape(std::string& out);
     void badBytes();
     // binary.cpp
-    bool binary(Token& out);           ///< decodes at pos_; false when it made no token
+    bool binary(Token& out); ///< decodes at pos_; false when it made no token
     bool byte(unsigned& out);
     bool bytes(size_t n, std::string& out);
     bool binaryString(std::string& out, const char* what);
@@ -62,8 +62,8 @@ private:
     Comments comments_;
     std::vector<char> buffer_;
     size_t pos_ = 0, end_ = 0;
-    size_t base_ = 0;                  ///< stream offset of buffer_[0]
-    size_t lineStart_ = 0;             ///< stream offset
+    size_t base_ = 0;      ///< stream offset of buffer_[0]
+    size_t lineStart_ = 0; ///< stream offset
     int line_ = 1;
     bool ended_ = false;
     std::array<std::string, 256> requestCodes_;

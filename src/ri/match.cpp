@@ -30,11 +30,11 @@ private:
     }
     bool missing(const ArgSpec& a) {
         std::string_view what = a.form == ArgSpec::Form::Number || a.form == ArgSpec::Form::Int ? "a number"
-                                : a.form == ArgSpec::Form::Handle                                ? "a handle"
-                                                                                                  : "a string";
-        std::string message = index_ < values_.size()
-                                  ? fmt::format("{}: {} is expected here for '{}'", call_.request->name, a.array ? "an array" : what, a.name)
-                                  : fmt::format("{}: argument '{}' is missing", call_.request->name, a.name);
+                                : a.form == ArgSpec::Form::Handle                               ? "a handle"
+                                                                                                : "a string";
+        std::string message = index_ < values_.size() ? fmt::format("{}: {} is expected here for '{}'", call_.request->name,
+                                                                    a.array ? "an array" : what, a.name)
+                                                      : fmt::format("{}: argument '{}' is missing", call_.request->name, a.name);
         reporter_.error(index_ < values_.size() ? Rie::Syntax : Rie::MissingData, where(), message,
                         fmt::format("{} {}", call_.request->name, call_.request->signature));
         return false;
@@ -49,8 +49,9 @@ private:
         Value* v = current();
         if (!v || used_ == 0) return;
         if (used_ < v->numbers.size())
-            reporter_.warning(Rie::Consistency, where(),
-                              fmt::format("{}: {} more numbers than it takes are ignored", call_.request->name, v->numbers.size() - used_));
+            reporter_.warning(
+                Rie::Consistency, where(),
+                fmt::format("{}: {} more numbers than it takes are ignored", call_.request->name, v->numbers.size() - used_));
         advance();
     }
     bool takeNumber(double& out) {
@@ -96,12 +97,15 @@ private:
         if (a.optional && !present(a)) return true;
         out.given = true;
         switch (a.form) {
-        case ArgSpec::Form::Number: case ArgSpec::Form::Int: return (a.array ? numbers(out, last) || missing(a) : count(a, out)) && whole(a, out);
+        case ArgSpec::Form::Number:
+        case ArgSpec::Form::Int:
+            return (a.array ? numbers(out, last) || missing(a) : count(a, out)) && whole(a, out);
         case ArgSpec::Form::String:
             if (a.array) return strings(out) || missing(a);
             out.strings.resize(1);
             return takeString(out.strings[0]) || missing(a);
-        case ArgSpec::Form::Handle: return handle(a, out);
+        case ArgSpec::Form::Handle:
+            return handle(a, out);
         case ArgSpec::Form::Basis: {
             endBeforeString();
             Value* v = current();
@@ -166,7 +170,8 @@ private:
         Value* v = current();
         if (v && v->kind == Value::Kind::Strings) {
             if (call_.request->parameters && !v->array && (values_.size() - index_) % 2 == 0) {
-                reporter_.warning(Rie::Syntax, where(), fmt::format("{} has no handle: it cannot be named later", call_.request->name));
+                reporter_.warning(Rie::Syntax, where(),
+                                  fmt::format("{} has no handle: it cannot be named later", call_.request->name));
                 return true;
             }
             return takeString(out.strings[0]) || missing(a);
@@ -174,7 +179,8 @@ private:
         double d;
         if (!takeNumber(d)) {
             if (!call_.request->parameters || index_ < values_.size()) return missing(a);
-            reporter_.warning(Rie::Syntax, call_.place, fmt::format("{} has no handle: it cannot be named later", call_.request->name));
+            reporter_.warning(Rie::Syntax, call_.place,
+                              fmt::format("{} has no handle: it cannot be named later", call_.request->name));
             return true;
         }
         if (!std::isfinite(d)) return missing(a);
@@ -192,7 +198,8 @@ private:
             }
             RawParam p{std::move(token.strings[0]), {}, token.line, token.column};
             if (index_ + 1 >= values_.size()) {
-                reporter_.error(Rie::MissingData, where(), fmt::format("{}: parameter \"{}\" has no value", call_.request->name, p.token));
+                reporter_.error(Rie::MissingData, where(),
+                                fmt::format("{}: parameter \"{}\" has no value", call_.request->name, p.token));
                 return;
             }
             p.value = std::move(values_[index_ + 1]);

@@ -21,7 +21,8 @@ void Interpreter::beginMotion(const Call& call) {
     }
     for (size_t i = 1; i < m.times.size(); ++i) {
         if (m.times[i] > m.times[i - 1]) continue;
-        reporter.error(Rie::BadMotion, call.place, fmt::format("the times of a motion block must increase: {} comes after {}", m.times[i], m.times[i - 1]),
+        reporter.error(Rie::BadMotion, call.place,
+                       fmt::format("the times of a motion block must increase: {} comes after {}", m.times[i], m.times[i - 1]),
                        "the samples from there on are not used");
         m.times.resize(i);
         break;
@@ -43,14 +44,17 @@ void Interpreter::endMotion(const Call& call) {
     const Request* r = m.calls[0].request;
     for (size_t i = 1; i < m.calls.size(); ++i) {
         if (m.calls[i].request == r) continue;
-        reporter.error(Rie::BadMotion, m.calls[i].place, fmt::format("a motion block holds one request: {} after {}", m.calls[i].request->name, r->name));
+        reporter.error(Rie::BadMotion, m.calls[i].place,
+                       fmt::format("a motion block holds one request: {} after {}", m.calls[i].request->name, r->name));
         m.calls.resize(i);
         break;
     }
     if (m.calls.size() < m.times.size())
-        reporter.error(Rie::BadMotion, m.place, fmt::format("the motion block has {} times but {} samples", m.times.size(), m.calls.size()));
+        reporter.error(Rie::BadMotion, m.place,
+                       fmt::format("the motion block has {} times but {} samples", m.times.size(), m.calls.size()));
     else if (m.calls.size() > m.times.size())
-        reporter.error(Rie::BadMotion, m.calls[m.times.size()].place, fmt::format("the motion block has more samples than its {} times", m.times.size()));
+        reporter.error(Rie::BadMotion, m.calls[m.times.size()].place,
+                       fmt::format("the motion block has more samples than its {} times", m.times.size()));
     size_t n = std::min(m.calls.size(), m.times.size());
     m.calls.resize(n);
     m.times.resize(n);
@@ -101,11 +105,12 @@ void Interpreter::movePrimitive(const Motion& m) {
     scene::Primitive& first = *keys[0];
     auto same = [&](const scene::Primitive& p) {
         bool fits = p.kind == first.kind && p.ints == first.ints && p.ints2 == first.ints2 && p.ints3 == first.ints3 &&
-                    p.strings == first.strings && p.numbers.size() == first.numbers.size() && p.params.size() == first.params.size();
+                    p.strings == first.strings && p.numbers.size() == first.numbers.size() &&
+                    p.params.size() == first.params.size();
         for (size_t i = 0; fits && i < p.params.size(); ++i) {
             const scene::Param &a = p.params[i], *b = scene::find(first.params, a.name);
-            fits = b && a.cls == b->cls && a.type == b->type && a.arrayLength == b->arrayLength && a.numbers.size() == b->numbers.size() &&
-                   a.strings.size() == b->strings.size();
+            fits = b && a.cls == b->cls && a.type == b->type && a.arrayLength == b->arrayLength &&
+                   a.numbers.size() == b->numbers.size() && a.strings.size() == b->strings.size();
         }
         return fits;
     };
@@ -113,7 +118,8 @@ void Interpreter::movePrimitive(const Motion& m) {
     std::vector<float> kept = {times[0]};
     for (size_t i = 1; i < keys.size(); ++i) {
         if (!same(*keys[i])) {
-            reporter.error(Rie::BadMotion, keys[i]->place, fmt::format("this sample of a moving {} does not match the first one", first.kind));
+            reporter.error(Rie::BadMotion, keys[i]->place,
+                           fmt::format("this sample of a moving {} does not match the first one", first.kind));
             continue;
         }
         rest.push_back(keys[i]);

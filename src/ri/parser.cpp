@@ -17,7 +17,8 @@ void Parser::array(Value& v) {
         }
         lexer_.next(token_);
         switch (token_.kind) {
-        case Token::Kind::Close: return;
+        case Token::Kind::Close:
+            return;
         case Token::Kind::Number:
             if (v.kind == Value::Kind::Strings) break;
             v.kind = Value::Kind::Numbers;
@@ -28,11 +29,12 @@ void Parser::array(Value& v) {
             v.kind = Value::Kind::Strings;
             v.strings.push_back(std::move(token_.text));
             continue;
-        default: break;
+        default:
+            break;
         }
         pending_ = true;
-        reporter_.warning(Rie::Syntax, open, "this array has no closing ']'", "it ends before line " + std::to_string(token_.line) + " column " +
-                                                                                  std::to_string(token_.column));
+        reporter_.warning(Rie::Syntax, open, "this array has no closing ']'",
+                          "it ends before line " + std::to_string(token_.line) + " column " + std::to_string(token_.column));
         return;
     }
 }
@@ -46,7 +48,10 @@ void Parser::collect(std::vector<Value>& out) {
         v.line = token_.line;
         v.column = token_.column;
         switch (token_.kind) {
-        case Token::Kind::End: case Token::Kind::Identifier: pending_ = true; return;
+        case Token::Kind::End:
+        case Token::Kind::Identifier:
+            pending_ = true;
+            return;
         case Token::Kind::Close:
             reporter_.warning(Rie::Syntax, lexer_.place(token_.line, token_.column), "']' without '['");
             continue;
@@ -69,7 +74,9 @@ void Parser::collect(std::vector<Value>& out) {
             v.kind = token_.floats.empty() ? Value::Kind::Empty : Value::Kind::Numbers;
             v.numbers = std::move(token_.floats);
             break;
-        case Token::Kind::Open: array(v); break;
+        case Token::Kind::Open:
+            array(v);
+            break;
         }
         out.push_back(std::move(v));
     }
@@ -98,7 +105,8 @@ bool Parser::next(Call& call) {
         if (!call.request) {
             std::string shown = token_.text.substr(0, 60);
             std::string near = nearestName(shown, requestNames());
-            reporter_.error(Rie::BadToken, place, "unknown request '" + shown + "'", near.empty() ? "" : "did you mean " + near + "?");
+            reporter_.error(Rie::BadToken, place, "unknown request '" + shown + "'",
+                            near.empty() ? "" : "did you mean " + near + "?");
             collect(values);
             continue;
         }

@@ -12,7 +12,8 @@ struct RibReader::Inside {
     }
 };
 
-RibReader::RibReader(ReaderOptions o, scene::FrameConsumer& c, Diagnostics& d) : in_(new Inside{Interpreter(std::move(o), c, d)}) {}
+RibReader::RibReader(ReaderOptions o, scene::FrameConsumer& c, Diagnostics& d)
+    : in_(new Inside{Interpreter(std::move(o), c, d)}) {}
 RibReader::~RibReader() = default;
 
 bool RibReader::readFile(const std::string& path) {

@@ -13,7 +13,7 @@ namespace alpenglow::ri {
 struct ReaderOptions {
     std::vector<std::string> searchPaths; ///< folders for archives, after those of Option "searchpath" "archive"
     bool allowExec = false;               ///< RunProgram, DynamicLoad, System were asked for by the user
-    std::vector<int> frames;              ///< only these FrameBegin numbers are rendered; empty = all. Worlds outside frames always are
+    std::vector<int> frames; ///< only these FrameBegin numbers are rendered; empty = all. Worlds outside frames always are
     /// Called for each frame on its own copy of the options, just before it is handed over: the command line has the last word.
     std::function<void(scene::Options&)> overrides;
     /// Comments of the stream, as ReadArchive's callback gets them: kind "comment" or "structure", text after # or ##.

@@ -18,7 +18,8 @@ void Reporter::report(Severity s, Rie code, const SourcePlace& place, std::strin
     sink_.report({s, code, place, std::move(message), std::move(hint), lineText ? lineText(place) : std::string()});
 }
 
-void Reporter::once(const std::string& key, Severity s, Rie code, const SourcePlace& place, std::string message, std::string hint) {
+void Reporter::once(const std::string& key, Severity s, Rie code, const SourcePlace& place, std::string message,
+                    std::string hint) {
     if (s >= Severity::Error) ++errors_;
     sink_.reportOnce(key, {s, code, place, std::move(message), std::move(hint), lineText ? lineText(place) : std::string()});
 }

@@ -9,7 +9,9 @@ class Reporter {
 public:
     explicit Reporter(Diagnostics& d) : sink_(d) {}
     void report(Severity, Rie, const SourcePlace&, std::string message, std::string hint = {});
-    void error(Rie c, const SourcePlace& p, std::string m, std::string hint = {}) { report(Severity::Error, c, p, std::move(m), std::move(hint)); }
+    void error(Rie c, const SourcePlace& p, std::string m, std::string hint = {}) {
+        report(Severity::Error, c, p, std::move(m), std::move(hint));
+    }
     void warning(Rie c, const SourcePlace& p, std::string m, std::string hint = {}) {
         report(Severity::Warning, c, p, std::move(m), std::move(hint));
     }

@@ -118,17 +118,21 @@ bool subdivision(const Primitive& p, VariableCounts* c, std::string* why) {
     if (!faces(p.ints, p.ints2, c, why)) return false;
     size_t tags = p.strings.size() - 1, per = p.kind == "SubdivisionMesh" ? 2 : 3;
     if (p.ints3.size() != per * tags)
-        return fail(why, std::to_string(tags) + " tags need " + std::to_string(per * tags) + " argument counts, not " + std::to_string(p.ints3.size()));
+        return fail(why, std::to_string(tags) + " tags need " + std::to_string(per * tags) + " argument counts, not " +
+                             std::to_string(p.ints3.size()));
     int64_t needed[3] = {0, 0, 0};
     for (size_t i = 0; i < p.ints3.size(); ++i) {
         if (p.ints3[i] < 0) return fail(why, "a tag has a negative argument count");
         needed[i % per] += p.ints3[i];
     }
     const Param *ints = find(p.params, "intargs"), *floats = find(p.params, "floatargs");
-    if (needed[0] != int64_t(ints ? ints->numbers.size() : 0)) return fail(why, "the tags' integer arguments do not match their counts");
-    if (needed[1] != int64_t(floats ? floats->numbers.size() : 0)) return fail(why, "the tags' float arguments do not match their counts");
+    if (needed[0] != int64_t(ints ? ints->numbers.size() : 0))
+        return fail(why, "the tags' integer arguments do not match their counts");
+    if (needed[1] != int64_t(floats ? floats->numbers.size() : 0))
+        return fail(why, "the tags' float arguments do not match their counts");
     const Param* strings = find(p.params, "stringargs");
-    if (needed[2] != int64_t(strings ? strings->strings.size() : 0)) return fail(why, "the tags' string arguments do not match their counts");
+    if (needed[2] != int64_t(strings ? strings->strings.size() : 0))
+        return fail(why, "the tags' string arguments do not match their counts");
     return true;
 }
 
@@ -136,11 +140,17 @@ bool subdivision(const Primitive& p, VariableCounts* c, std::string* why) {
 
 int64_t VariableCounts::of(Class cls) const {
     switch (cls) {
-    case Class::Constant: return 1;
-    case Class::Uniform: return uniform;
-    case Class::Varying: return varying;
-    case Class::Vertex: return vertex;
-    case Class::FaceVarying: case Class::FaceVertex: break;
+    case Class::Constant:
+        return 1;
+    case Class::Uniform:
+        return uniform;
+    case Class::Varying:
+        return varying;
+    case Class::Vertex:
+        return vertex;
+    case Class::FaceVarying:
+    case Class::FaceVertex:
+        break;
     }
     return faceVarying;
 }

@@ -11,8 +11,8 @@ struct VariableCounts {
     int64_t of(Class c) const;
 };
 
-/// Counts from the primitive's own arguments (for Polygon and Points from the length of P or Pw; mesh steps from its attributes' bases).
-/// False when the arguments contradict themselves; *why then says how, for people. Kinds without vertices of their own
+/// Counts from the primitive's own arguments (for Polygon and Points from the length of P or Pw; mesh steps from its attributes'
+/// bases). False when the arguments contradict themselves; *why then says how, for people. Kinds without vertices of their own
 /// (Procedural, Geometry, Volume) count 1 of everything.
 bool variableCounts(const Primitive& p, VariableCounts* counts, std::string* why);
 

@@ -12,7 +12,8 @@ namespace fs = std::filesystem;
 class Archives : public ::testing::Test {
 protected:
     void SetUp() override {
-        dir = fs::temp_directory_path() / ("alpenglow_ri_" + std::to_string(::getpid()) + "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+        dir = fs::temp_directory_path() / ("alpenglow_ri_" + std::to_string(::getpid()) + "_" +
+                                           ::testing::UnitTest::GetInstance()->current_test_info()->name());
         fs::create_directories(dir / "sub");
     }
     void TearDown() override { fs::remove_all(dir); }
@@ -35,14 +36,16 @@ TEST_F(Archives, AreFoundBesideTheFileAndAlongThePath) {
     EXPECT_EQ(c->frame().primitives.size(), 2u);
     EXPECT_EQ(c->primitive(0).place.file, (dir / "part.rib").string());
     EXPECT_EQ(c->primitive(0).place.line, 1);
-    auto d = readHere("Option \"searchpath\" \"archive\" \"/nowhere:" + (dir / "sub").string() + "\" WorldBegin ReadArchive \"deep.rib\" WorldEnd");
+    auto d = readHere("Option \"searchpath\" \"archive\" \"/nowhere:" + (dir / "sub").string() +
+                      "\" WorldBegin ReadArchive \"deep.rib\" WorldEnd");
     EXPECT_EQ(d->frame().primitives.size(), 1u) << d->messages();
 }
 
 TEST_F(Archives, NamesFromOtherMachines) {
     write("sub/Part.rib", "Sphere 1 -1 1 360");
     for (const char* name : {"sub\\\\Part.rib", "C:\\\\scenes\\\\x\\\\Part.rib", "/other/machine/Part.rib", "part.RIB"}) {
-        auto c = readHere("Option \"searchpath\" \"archive\" \"" + (dir / "sub").string() + "\" WorldBegin ReadArchive \"" + name + "\" WorldEnd");
+        auto c = readHere("Option \"searchpath\" \"archive\" \"" + (dir / "sub").string() + "\" WorldBegin ReadArchive \"" +
+                          name + "\" WorldEnd");
         EXPECT_EQ(c->frame().primitives.size(), 1u) << name << c->messages();
         EXPECT_EQ(c->only().severity, Severity::Warning) << name;
     }
@@ -66,7 +69,8 @@ TEST_F(Archives, CyclesAndDepth) {
 TEST_F(Archives, MustBeBalanced) {
     write("open.rib", "AttributeBegin Color 1 0 0");
     write("close.rib", "AttributeEnd");
-    auto c = readHere("WorldBegin ReadArchive \"open.rib\"\nSphere 1 -1 1 360 AttributeBegin ReadArchive \"close.rib\" AttributeEnd WorldEnd");
+    auto c = readHere(
+        "WorldBegin ReadArchive \"open.rib\"\nSphere 1 -1 1 360 AttributeBegin ReadArchive \"close.rib\" AttributeEnd WorldEnd");
     ASSERT_EQ(c->count(), 2u) << c->messages();
     EXPECT_EQ(c->first().code, Rie::Nesting);
     EXPECT_EQ(c->diagnostics.all()[1].code, Rie::Nesting);
@@ -92,7 +96,8 @@ TEST_F(Archives, Delayed) {
 }
 
 TEST(InlineArchives, AreRecordedNotExecuted) {
-    auto c = read("ArchiveBegin \"ball\" Sphere 1 -1 1 360 ArchiveBegin \"inner\" ArchiveEnd ArchiveEnd WorldBegin ReadArchive \"ball\" Translate 1 0 0 ReadArchive \"ball\" WorldEnd");
+    auto c = read("ArchiveBegin \"ball\" Sphere 1 -1 1 360 ArchiveBegin \"inner\" ArchiveEnd ArchiveEnd WorldBegin ReadArchive "
+                  "\"ball\" Translate 1 0 0 ReadArchive \"ball\" WorldEnd");
     EXPECT_EQ(c->count(), 0u) << c->messages();
     ASSERT_EQ(c->frame().primitives.size(), 2u);
     EXPECT_EQ(c->primitive(1).toWorld.first(), translateMatrix(1, 0, 0));

@@ -61,16 +61,17 @@ TEST(Binary, Strings) {
         EXPECT_EQ(c->count(), 0u) << c->messages();
         return c->frame().options.hider;
     };
-    EXPECT_EQ(name(bytes({0224}) + "path"), "path");                  // 0220 + length
-    EXPECT_EQ(name(bytes({0240, 4}) + "path"), "path");               // one length byte
-    EXPECT_EQ(name(bytes({0243, 0, 0, 0, 4}) + "path"), "path");      // four
-    EXPECT_EQ(name(bytes({0315, 7, 0224}) + "path" + bytes({0317, 7})), "path"); // define 7, use 7
+    EXPECT_EQ(name(bytes({0224}) + "path"), "path");                                 // 0220 + length
+    EXPECT_EQ(name(bytes({0240, 4}) + "path"), "path");                              // one length byte
+    EXPECT_EQ(name(bytes({0243, 0, 0, 0, 4}) + "path"), "path");                     // four
+    EXPECT_EQ(name(bytes({0315, 7, 0224}) + "path" + bytes({0317, 7})), "path");     // define 7, use 7
     EXPECT_EQ(name(bytes({0316, 1, 7}) + "\"path\"" + bytes({0320, 1, 7})), "path"); // two-byte code, ASCII operand
 }
 
 TEST(Binary, RequestCodesAndArrays) {
     // Define request 3 as Color, use it with an array of three floats: 1, .5, 0.
-    std::string s = bytes({0314, 3, 0225}) + "Color" + "WorldBegin " + bytes({0246, 3, 0310, 3, 0x3f, 0x80, 0, 0, 0x3f, 0, 0, 0, 0, 0, 0, 0}) + "Sphere 1 -1 1 360 WorldEnd";
+    std::string s = bytes({0314, 3, 0225}) + "Color" + "WorldBegin " +
+                    bytes({0246, 3, 0310, 3, 0x3f, 0x80, 0, 0, 0x3f, 0, 0, 0, 0, 0, 0, 0}) + "Sphere 1 -1 1 360 WorldEnd";
     auto c = read(s);
     EXPECT_EQ(c->count(), 0u) << c->messages();
     EXPECT_EQ(c->primitive().attributes->color, Color(1, .5f, 0));
@@ -79,9 +80,9 @@ TEST(Binary, RequestCodesAndArrays) {
 TEST(Binary, EndOfDataByteIsNothing) { EXPECT_EQ(world(bytes({0377}))->count(), 0u); }
 
 TEST(Binary, DamageIsReported) {
-    EXPECT_EQ(read(bytes({0246, 9}))->only().code, Rie::BadFile);   // not defined
+    EXPECT_EQ(read(bytes({0246, 9}))->only().code, Rie::BadFile); // not defined
     EXPECT_EQ(read("Hider " + bytes({0317, 9}))->first().code, Rie::BadFile);
-    EXPECT_EQ(read(bytes({0250}))->only().code, Rie::BadFile);      // reserved
+    EXPECT_EQ(read(bytes({0250}))->only().code, Rie::BadFile); // reserved
     EXPECT_EQ(read(bytes({0321}))->only().code, Rie::BadFile);
     EXPECT_EQ(read("Hider " + bytes({0243, 0xff, 0xff, 0xff, 0xff}) + "x")->first().code, Rie::Limit);
     EXPECT_EQ(read("Color " + bytes({0313, 0xff, 0xff, 0xff, 0xff, 0}))->first().code, Rie::BadFile); // a length that lies
@@ -98,7 +99,7 @@ TEST(Gzip, IsDetectedByItsMagic) {
     auto c = read(gzip(text));
     EXPECT_EQ(c->count(), 0u) << c->messages();
     EXPECT_EQ(c->frame().primitives.size(), 1u);
-    EXPECT_EQ(read(gzip(text) + gzip(text))->frames.size(), 2u); // concatenated members
+    EXPECT_EQ(read(gzip(text) + gzip(text))->frames.size(), 2u);       // concatenated members
     EXPECT_EQ(read(gzip(text) + std::string(100, '\0'))->count(), 0u); // padding
 }
 
@@ -118,11 +119,16 @@ TEST(Gzip, BombsAreRefused) {
 
 TEST(Hostile, EveryPrefixOfAScene) {
     const std::string scenes[] = {
-        "##RenderMan RIB-Structure 1.0\nversion 3.03\nOption \"searchpath\" \"shader\" [\"a:b\"]\nFrameBegin 1\nDisplay \"a.tif\" \"tiff\" \"rgba\"\nProjection \"perspective\" \"fov\" 30\n"
-        "MotionBegin [0 1] Translate 0 0 5 Translate 0 1 5 MotionEnd\nWorldBegin\nLightSource \"pointlight\" 1 \"from\" [0 1 0]\nIfBegin \"1 < 2 && defined(x)\"\nElse\nAttributeBegin\n"
-        "Surface \"plastic\" \"Kd\" .5\nObjectBegin 1 Sphere 1 -1 1 360 ObjectEnd\nObjectInstance 1\nSolidBegin \"union\" SolidEnd\nArchiveBegin \"a\" Disk 0 1 360 ArchiveEnd ReadArchive \"a\"\n"
-        "AttributeEnd\nIfEnd\nPointsPolygons [3 3] [0 1 2 0 2 1] \"P\" [0 0 0 1 0 0 1 1 0] \"Cs\" [1 0 0 0 1 0 0 0 1]\nWorldEnd\nFrameEnd\n",
-        bytes({0314, 3, 0225}) + "Color" + "WorldBegin " + bytes({0246, 3, 0310, 3, 0x3f, 0x80, 0, 0, 0x3f, 0, 0, 0, 0, 0, 0, 0}) + bytes({0315, 1, 0222}) + "Kd" +
+        "##RenderMan RIB-Structure 1.0\nversion 3.03\nOption \"searchpath\" \"shader\" [\"a:b\"]\nFrameBegin 1\nDisplay "
+        "\"a.tif\" \"tiff\" \"rgba\"\nProjection \"perspective\" \"fov\" 30\n"
+        "MotionBegin [0 1] Translate 0 0 5 Translate 0 1 5 MotionEnd\nWorldBegin\nLightSource \"pointlight\" 1 \"from\" [0 1 "
+        "0]\nIfBegin \"1 < 2 && defined(x)\"\nElse\nAttributeBegin\n"
+        "Surface \"plastic\" \"Kd\" .5\nObjectBegin 1 Sphere 1 -1 1 360 ObjectEnd\nObjectInstance 1\nSolidBegin \"union\" "
+        "SolidEnd\nArchiveBegin \"a\" Disk 0 1 360 ArchiveEnd ReadArchive \"a\"\n"
+        "AttributeEnd\nIfEnd\nPointsPolygons [3 3] [0 1 2 0 2 1] \"P\" [0 0 0 1 0 0 1 1 0] \"Cs\" [1 0 0 0 1 0 0 0 "
+        "1]\nWorldEnd\nFrameEnd\n",
+        bytes({0314, 3, 0225}) + "Color" + "WorldBegin " +
+            bytes({0246, 3, 0310, 3, 0x3f, 0x80, 0, 0, 0x3f, 0, 0, 0, 0, 0, 0, 0}) + bytes({0315, 1, 0222}) + "Kd" +
             " Surface \"matte\" " + bytes({0317, 1, 0244, 0x3f, 0, 0, 0, 0205, 1, 0x80}) + "Sphere 1 -1 1 360 WorldEnd",
         gzip("WorldBegin NuPatch 2 2 [0 0 1 1] 0 1 2 2 [0 0 1 1] 0 1 \"P\" [0 0 0 1 0 0 0 1 0 1 1 0] WorldEnd")};
     for (const std::string& s : scenes) {

@@ -17,7 +17,8 @@ struct Collected : scene::FrameConsumer {
     bool ok = false;
 
     void render(std::shared_ptr<const scene::Frame> f) override { frames.push_back(std::move(f)); }
-    void makeTexture(const std::string& kind, const std::vector<std::string>& files, const scene::ParamList& args, const SourcePlace&) override {
+    void makeTexture(const std::string& kind, const std::vector<std::string>& files, const scene::ParamList& args,
+                     const SourcePlace&) override {
         textures.push_back({kind, files, args});
     }
     /// All messages, one after the other.

@@ -49,7 +49,8 @@ TEST(Grammar, BracketsAreOptionalAroundCounts) {
         EXPECT_TRUE(c->ok) << c->messages();
         EXPECT_EQ(c->primitive().attributes->color, Color(1, .5f, 0));
     }
-    auto c = read("Format [320 200 1] ScreenWindow [-1 1 -1 1] CropWindow 0 1 0 .5 PixelSamples [3 4] WorldBegin Sphere [1 -1 1 360] WorldEnd");
+    auto c = read("Format [320 200 1] ScreenWindow [-1 1 -1 1] CropWindow 0 1 0 .5 PixelSamples [3 4] WorldBegin Sphere [1 -1 1 "
+                  "360] WorldEnd");
     EXPECT_TRUE(c->ok) << c->messages();
     EXPECT_EQ(c->frame().options.xres, 320);
     EXPECT_EQ(c->frame().options.pixelSamplesY, 4);
@@ -87,7 +88,8 @@ TEST(Grammar, UnknownRequestHasAHint) {
 }
 
 TEST(Grammar, MissingBracket) {
-    auto c = world("Polygon \"P\" [0 0 0 1 0 0 1 1 0 \"Cs\" [1 0 0 0 1 0 0 0 1]\nPolygon \"P\" [0 0 0 1 0 0 1 1 0\nSphere 1 -1 1 360");
+    auto c =
+        world("Polygon \"P\" [0 0 0 1 0 0 1 1 0 \"Cs\" [1 0 0 0 1 0 0 0 1]\nPolygon \"P\" [0 0 0 1 0 0 1 1 0\nSphere 1 -1 1 360");
     EXPECT_EQ(c->frame().primitives.size(), 3u) << c->messages();
     EXPECT_NE(scene::find(c->primitive(0).params, "Cs"), nullptr);
     ASSERT_EQ(c->count(), 2u) << c->messages();

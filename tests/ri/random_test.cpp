@@ -32,7 +32,8 @@ void checkPromises(const scene::Primitive& p, const std::string& text) {
         if (v.name == "P" || v.name == "Pw" || v.name == "Pz") ++positions;
         if (v.name == "uknot" || v.name == "vknot" || v.name.ends_with("args")) continue;
         size_t want = size_t(c.of(v.cls)) * size_t(std::max(v.arrayLength, 1)) * size_t(scene::componentCount(v.type));
-        ASSERT_EQ(v.type == scene::Type::String ? v.strings.size() : v.numbers.size(), want) << p.kind << " " << v.name << "\n" << text;
+        ASSERT_EQ(v.type == scene::Type::String ? v.strings.size() : v.numbers.size(), want) << p.kind << " " << v.name << "\n"
+                                                                                             << text;
         for (float f : v.numbers) ASSERT_TRUE(std::isfinite(f)) << text;
     }
     if (c.vertex > 4 || p.kind == "Polygon") ASSERT_LE(positions, 1) << text;
@@ -47,7 +48,12 @@ TEST(Random, RequestsKeepTheirPromises) {
     std::mt19937 random(20240607);
     auto below = [&](size_t n) { return size_t(random() % n); };
     const auto& table = requestTable();
-    const char* junk[] = {"[", "]", "\"", "-1", "0", "1e30", "2147483647", "1e-30", "\"P\"", "\"x\"", "foo", "\"varying color q\"", "[1 2 3]", "[]", "\"nonperiodic\"", "#"};
+    const char* junk[] = {"[",          "]",     "\"",
+                          "-1",         "0",     "1e30",
+                          "2147483647", "1e-30", "\"P\"",
+                          "\"x\"",      "foo",   "\"varying color q\"",
+                          "[1 2 3]",    "[]",    "\"nonperiodic\"",
+                          "#"};
     size_t primitives = 0;
     for (int round = 0; round < 4000; ++round) {
         std::string text = below(4) ? "WorldBegin\n" : "";
@@ -59,10 +65,17 @@ TEST(Random, RequestsKeepTheirPromises) {
             while (!w.empty() && below(5) == 0) {
                 size_t k = below(w.size());
                 switch (below(4)) {
-                case 0: w.erase(w.begin() + std::ptrdiff_t(k)); break;
-                case 1: w[k] = junk[below(std::size(junk))]; break;
-                case 2: w.insert(w.begin() + std::ptrdiff_t(k), junk[below(std::size(junk))]); break;
-                default: std::swap(w[k], w[below(w.size())]);
+                case 0:
+                    w.erase(w.begin() + std::ptrdiff_t(k));
+                    break;
+                case 1:
+                    w[k] = junk[below(std::size(junk))];
+                    break;
+                case 2:
+                    w.insert(w.begin() + std::ptrdiff_t(k), junk[below(std::size(junk))]);
+                    break;
+                default:
+                    std::swap(w[k], w[below(w.size())]);
                 }
             }
             text += std::string(r.name);

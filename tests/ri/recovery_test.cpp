@@ -46,8 +46,8 @@ TEST(Nesting, CrossedBlocksAreMended) {
 }
 
 TEST(Nesting, EndsWithoutBegin) {
-    for (const char* end : {"AttributeEnd", "TransformEnd", "WorldEnd", "FrameEnd", "SolidEnd", "ObjectEnd", "MotionEnd", "ResourceEnd", "ArchiveEnd", "IfEnd", "Else",
-                            "ElseIf \"1\"", "EditEnd"}) {
+    for (const char* end : {"AttributeEnd", "TransformEnd", "WorldEnd", "FrameEnd", "SolidEnd", "ObjectEnd", "MotionEnd",
+                            "ResourceEnd", "ArchiveEnd", "IfEnd", "Else", "ElseIf \"1\"", "EditEnd"}) {
         auto c = read(end);
         ASSERT_FALSE(c->diagnostics.all().empty()) << end;
         EXPECT_EQ(c->diagnostics.all().back().code, Rie::Nesting) << end;
@@ -78,7 +78,8 @@ TEST(Nesting, DepthIsBounded) {
 }
 
 TEST(Solids, AreDrawnAsTheirUnion) {
-    auto c = world("SolidBegin \"difference\" SolidBegin \"primitive\" Color 1 0 0 Sphere 1 -1 1 360 SolidEnd SolidBegin \"primitive\" Sphere 1 -1 1 360 SolidEnd SolidEnd");
+    auto c = world("SolidBegin \"difference\" SolidBegin \"primitive\" Color 1 0 0 Sphere 1 -1 1 360 SolidEnd SolidBegin "
+                   "\"primitive\" Sphere 1 -1 1 360 SolidEnd SolidEnd");
     EXPECT_EQ(c->only().code, Rie::Incapable);
     EXPECT_EQ(c->frame().primitives.size(), 2u);
     EXPECT_EQ(c->primitive(1).attributes->color, Color(1, 1, 1)); // a solid is an attribute block
@@ -86,7 +87,8 @@ TEST(Solids, AreDrawnAsTheirUnion) {
 }
 
 TEST(ForeignCode, IsNotRun) {
-    auto c = world("System \"ls\" Procedural \"RunProgram\" [\"p\" \"d\"] [-1 1 -1 1 -1 1] Procedural \"DynamicLoad\" [\"l\" \"d\"] [-1 1 -1 1 -1 1]");
+    auto c = world("System \"ls\" Procedural \"RunProgram\" [\"p\" \"d\"] [-1 1 -1 1 -1 1] Procedural \"DynamicLoad\" [\"l\" "
+                   "\"d\"] [-1 1 -1 1 -1 1]");
     ASSERT_EQ(c->count(), 3u) << c->messages();
     for (const Diagnostic& d : c->diagnostics.all()) {
         EXPECT_EQ(d.code, Rie::Incapable);
@@ -105,7 +107,8 @@ TEST(Handler, AbortStopsReading) {
 namespace {
 /// Whether `expression` is true, with user:x = 3 (option) and user:s = 'abc' (attribute).
 bool holds(const std::string& expression, size_t messages = 0) {
-    auto c = read("Option \"user\" \"float x\" 3 Attribute \"user\" \"string s\" \"abc\" WorldBegin IfBegin \"" + expression + "\" Sphere 1 -1 1 360 IfEnd WorldEnd");
+    auto c = read("Option \"user\" \"float x\" 3 Attribute \"user\" \"string s\" \"abc\" WorldBegin IfBegin \"" + expression +
+                  "\" Sphere 1 -1 1 360 IfEnd WorldEnd");
     EXPECT_EQ(c->count(), messages) << expression << "\n" << c->messages();
     return c->frame().primitives.size() == 1;
 }
@@ -139,7 +142,10 @@ TEST(Conditions, Expressions) {
 
 TEST(Conditions, Branches) {
     auto color = [](const std::string& a, const std::string& b) {
-        return world("IfBegin \"" + a + "\" Color 1 0 0 ElseIf \"" + b + "\" Color 0 1 0 Else Color 0 0 1 IfEnd Sphere 1 -1 1 360")->primitive().attributes->color;
+        return world("IfBegin \"" + a + "\" Color 1 0 0 ElseIf \"" + b +
+                     "\" Color 0 1 0 Else Color 0 0 1 IfEnd Sphere 1 -1 1 360")
+            ->primitive()
+            .attributes->color;
     };
     EXPECT_EQ(color("1", "1"), Color(1, 0, 0));
     EXPECT_EQ(color("0", "1"), Color(0, 1, 0));

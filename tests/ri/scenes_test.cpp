@@ -9,9 +9,12 @@ TEST(PublishedScenes, AreReadWithoutAMessage) {
     const std::string folder = std::string(ALPENGLOW_SOURCE_DIR) + "/../shared/scenes/";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "../shared/scenes is not here";
     // Counted in the files by their request names.
-    struct { const char* name; size_t primitives, lights; int xres; } scenes[] = {
-        {"bulb", 9, 2, 380}, {"cubits", 24, 0, 380}, {"showquads", 6, 1, 640}, {"spot", 2, 2, 640},
-        {"teapot", 10, 2, 640}, {"tetra", 256, 2, 380}, {"uteapot", 32, 4, 320}, {"val_poly", 530, 2, 205}};
+    struct {
+        const char* name;
+        size_t primitives, lights;
+        int xres;
+    } scenes[] = {{"bulb", 9, 2, 380},    {"cubits", 24, 0, 380}, {"showquads", 6, 1, 640}, {"spot", 2, 2, 640},
+                  {"teapot", 10, 2, 640}, {"tetra", 256, 2, 380}, {"uteapot", 32, 4, 320},  {"val_poly", 530, 2, 205}};
     for (auto& s : scenes) {
         Collected c;
         RibReader reader({}, c, c.diagnostics);

@@ -21,7 +21,8 @@ TEST(Transforms, EachAgainstItsClosedForm) {
     expectMatrix(ctm("Perspective 90"), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, -1, 0});
     // Skew of y toward x by 45 degrees: x' = x + y.
     expectMatrix(ctm("Skew 45 0 1 0 1 0 0"), {1, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
-    expectMatrix(ctm("Translate 9 9 9 Transform [1 0 0 0 0 1 0 0 0 0 1 0 4 5 6 1]"), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 4, 5, 6, 1});
+    expectMatrix(ctm("Translate 9 9 9 Transform [1 0 0 0 0 1 0 0 0 0 1 0 4 5 6 1]"),
+                 {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 4, 5, 6, 1});
     expectMatrix(ctm("Scale 2 2 2 Identity"), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
 }
 
@@ -47,7 +48,8 @@ TEST(Transforms, WorldEndRestoresTheCamera) {
 
 TEST(Transforms, ShaderSpaceOfCallsBeforeTheWorld) {
     // Camera: world moved by +5. A shader called before that move stands at the camera: world z = -5.
-    auto c = read("Surface \"matte\" LightSource \"pointlight\" 1 CoordinateSystem \"cam\" Translate 0 0 5 WorldBegin Sphere 1 -1 1 360 WorldEnd");
+    auto c = read("Surface \"matte\" LightSource \"pointlight\" 1 CoordinateSystem \"cam\" Translate 0 0 5 WorldBegin Sphere 1 "
+                  "-1 1 360 WorldEnd");
     EXPECT_TRUE(c->ok) << c->messages();
     EXPECT_EQ(transformPoint(c->primitive().attributes->surface->toWorld.first(), {0, 0, 0}), Vec3d(0, 0, -5));
     EXPECT_EQ(transformPoint(c->frame().lights.at(0).shader->toWorld.first(), {0, 0, 0}), Vec3d(0, 0, -5));
@@ -56,9 +58,11 @@ TEST(Transforms, ShaderSpaceOfCallsBeforeTheWorld) {
 }
 
 TEST(Transforms, CoordinateSystems) {
-    auto c = world("AttributeBegin Translate 1 2 3 CoordinateSystem \"here\" AttributeEnd CoordSysTransform \"here\" Sphere 1 -1 1 360\n"
-                   "AttributeBegin Scale 2 2 2 ScopedCoordinateSystem \"s\" Identity CoordSysTransform \"s\" Sphere 1 -1 1 360 AttributeEnd\n"
-                   "CoordSysTransform \"nowhere\"");
+    auto c = world(
+        "AttributeBegin Translate 1 2 3 CoordinateSystem \"here\" AttributeEnd CoordSysTransform \"here\" Sphere 1 -1 1 360\n"
+        "AttributeBegin Scale 2 2 2 ScopedCoordinateSystem \"s\" Identity CoordSysTransform \"s\" Sphere 1 -1 1 360 "
+        "AttributeEnd\n"
+        "CoordSysTransform \"nowhere\"");
     EXPECT_EQ(c->only().code, Rie::BadToken);
     EXPECT_EQ(c->primitive(0).toWorld.first(), translateMatrix(1, 2, 3));
     EXPECT_EQ(c->primitive(1).toWorld.first(), scaleMatrix(2, 2, 2) * translateMatrix(1, 2, 3));
@@ -74,8 +78,9 @@ TEST(Transforms, BadOnesAreRefused) {
 }
 
 TEST(Attributes, AreSavedAndRestored) {
-    auto c = world("Color 1 0 0 AttributeBegin Color 0 1 0 Translate 1 0 0 Sides 1 Sphere 1 -1 1 360 AttributeEnd Sphere 1 -1 1 360\n"
-                   "TransformBegin Translate 5 0 0 Color 0 0 1 TransformEnd Sphere 1 -1 1 360");
+    auto c =
+        world("Color 1 0 0 AttributeBegin Color 0 1 0 Translate 1 0 0 Sides 1 Sphere 1 -1 1 360 AttributeEnd Sphere 1 -1 1 360\n"
+              "TransformBegin Translate 5 0 0 Color 0 0 1 TransformEnd Sphere 1 -1 1 360");
     EXPECT_TRUE(c->ok);
     EXPECT_EQ(c->primitive(0).attributes->color, Color(0, 1, 0));
     EXPECT_EQ(c->primitive(0).attributes->sides, 1);
@@ -108,7 +113,8 @@ TEST(Attributes, BasisMatrices) {
     EXPECT_EQ(a.vbasis.step, 2);
     // Each row set interpolates a constant: the columns of the last row sum to 1, of the others to 0.
     for (const char* name : {"bezier", "b-spline", "catmull-rom"}) {
-        auto b = world(std::string("Basis \"") + name + "\" 1 \"" + name + "\" 1 Sphere 1 -1 1 360")->primitive().attributes->ubasis;
+        auto b =
+            world(std::string("Basis \"") + name + "\" 1 \"" + name + "\" 1 Sphere 1 -1 1 360")->primitive().attributes->ubasis;
         for (int r = 0; r < 4; ++r) EXPECT_NEAR(b.m[r][0] + b.m[r][1] + b.m[r][2] + b.m[r][3], r == 3, 1e-15) << name;
     }
     EXPECT_EQ(world("Basis \"bezier\" 0 \"bezier\" 3")->only().code, Rie::Range);
@@ -117,7 +123,8 @@ TEST(Attributes, BasisMatrices) {
 
 TEST(Attributes, ValuesByClassAndName) {
     auto c = world("Attribute \"identifier\" \"name\" [\"ball\"] Attribute \"user\" \"float x\" 3 \"string y\" \"z\"\n"
-                   "Attribute \"grouping\" \"membership\" \"a\" Attribute \"grouping\" \"membership\" \"+b\" Attribute \"grouping\" \"membership\" \"-a\"\n"
+                   "Attribute \"grouping\" \"membership\" \"a\" Attribute \"grouping\" \"membership\" \"+b\" Attribute "
+                   "\"grouping\" \"membership\" \"-a\"\n"
                    "GeometricApproximation \"motionfactor\" 2 Sphere 1 -1 1 360");
     EXPECT_EQ(c->count(), 0u) << c->messages();
     const auto& a = *c->primitive().attributes;
@@ -133,10 +140,12 @@ TEST(Attributes, ValuesByClassAndName) {
 }
 
 TEST(Attributes, Resources) {
-    auto c = world("Color 1 0 0 Translate 1 0 0 Resource \"r\" \"attributes\" \"string operation\" \"save\" Color 0 1 0 Sides 1 Identity\n"
-                   "Resource \"r\" \"attributes\" \"string operation\" \"restore\" \"string subset\" \"shading\" Sphere 1 -1 1 360\n"
-                   "Resource \"r\" \"attributes\" \"string operation\" \"restore\" Sphere 1 -1 1 360\n"
-                   "ResourceBegin Resource \"q\" \"attributes\" \"operation\" \"save\" ResourceEnd\nResource \"q\" \"attributes\" \"operation\" \"restore\"");
+    auto c = world(
+        "Color 1 0 0 Translate 1 0 0 Resource \"r\" \"attributes\" \"string operation\" \"save\" Color 0 1 0 Sides 1 Identity\n"
+        "Resource \"r\" \"attributes\" \"string operation\" \"restore\" \"string subset\" \"shading\" Sphere 1 -1 1 360\n"
+        "Resource \"r\" \"attributes\" \"string operation\" \"restore\" Sphere 1 -1 1 360\n"
+        "ResourceBegin Resource \"q\" \"attributes\" \"operation\" \"save\" ResourceEnd\nResource \"q\" \"attributes\" "
+        "\"operation\" \"restore\"");
     EXPECT_EQ(c->only().code, Rie::BadHandle);
     EXPECT_EQ(c->only().place.line, 6);
     EXPECT_EQ(c->primitive(0).attributes->color, Color(1, 0, 0));
@@ -147,7 +156,8 @@ TEST(Attributes, Resources) {
 }
 
 TEST(Lights, ListIsAnAttribute) {
-    auto c = world("LightSource \"ambientlight\" 1 AttributeBegin LightSource \"pointlight\" \"two\" Sphere 1 -1 1 360 AttributeEnd Sphere 1 -1 1 360\n"
+    auto c = world("LightSource \"ambientlight\" 1 AttributeBegin LightSource \"pointlight\" \"two\" Sphere 1 -1 1 360 "
+                   "AttributeEnd Sphere 1 -1 1 360\n"
                    "Illuminate \"two\" 1 Illuminate 1 0 Sphere 1 -1 1 360 Illuminate \"1\" 1 Sphere 1 -1 1 360");
     EXPECT_TRUE(c->ok) << c->messages();
     using L = std::vector<int>;
@@ -159,7 +169,8 @@ TEST(Lights, ListIsAnAttribute) {
 }
 
 TEST(Lights, HandleGivenTwiceIsTwoLights) {
-    auto c = world("LightSource \"distantlight\" 2 LightSource \"distantlight\" 2 Sphere 1 -1 1 360 Illuminate 2 0 Sphere 1 -1 1 360");
+    auto c =
+        world("LightSource \"distantlight\" 2 LightSource \"distantlight\" 2 Sphere 1 -1 1 360 Illuminate 2 0 Sphere 1 -1 1 360");
     EXPECT_EQ(c->primitive(0).attributes->lights, (std::vector<int>{0, 1}));
     EXPECT_EQ(c->primitive(1).attributes->lights, (std::vector<int>{0})); // the handle names the newer one
 }
@@ -172,7 +183,8 @@ TEST(Lights, AreaLightsOwnWhatFollows) {
 }
 
 TEST(Lights, DieWithTheWorld) {
-    auto c = read("LightSource \"a\" 1 WorldBegin LightSource \"b\" 2 WorldEnd WorldBegin Illuminate 1 0 Illuminate 2 1 WorldEnd");
+    auto c =
+        read("LightSource \"a\" 1 WorldBegin LightSource \"b\" 2 WorldEnd WorldBegin Illuminate 1 0 Illuminate 2 1 WorldEnd");
     ASSERT_EQ(c->frames.size(), 2u);
     EXPECT_EQ(c->frames[0]->lights.size(), 2u);
     EXPECT_EQ(c->frames[1]->lights.size(), 1u);
@@ -186,7 +198,8 @@ TEST(Lights, HandleLeftOut) {
 }
 
 TEST(Objects, AreStoredInTheirOwnSpace) {
-    auto c = world("Translate 9 0 0 Color 1 0 0 ObjectBegin \"o\" Translate 1 0 0 Sphere 1 -1 1 360 Color 0 0 1 Sphere 1 -1 1 360 ObjectEnd\n"
+    auto c = world("Translate 9 0 0 Color 1 0 0 ObjectBegin \"o\" Translate 1 0 0 Sphere 1 -1 1 360 Color 0 0 1 Sphere 1 -1 1 "
+                   "360 ObjectEnd\n"
                    "Color 0 1 0 ObjectInstance \"o\" Identity ObjectInstance \"o\" ObjectInstance 5");
     EXPECT_EQ(c->only().code, Rie::BadHandle);
     ASSERT_EQ(c->frame().objects.size(), 1u);
@@ -203,8 +216,9 @@ TEST(Objects, AreStoredInTheirOwnSpace) {
 }
 
 TEST(Objects, InsideObjectsAreCopied) {
-    auto c = read("ObjectBegin 1 Sphere 1 -1 1 360 ObjectEnd ObjectBegin 2 Translate 0 0 1 ObjectInstance 1 ObjectInstance 1 ObjectEnd\n"
-                  "WorldBegin ObjectInstance 2 WorldEnd WorldBegin ObjectInstance 2 ObjectInstance 1 WorldEnd");
+    auto c = read(
+        "ObjectBegin 1 Sphere 1 -1 1 360 ObjectEnd ObjectBegin 2 Translate 0 0 1 ObjectInstance 1 ObjectInstance 1 ObjectEnd\n"
+        "WorldBegin ObjectInstance 2 WorldEnd WorldBegin ObjectInstance 2 ObjectInstance 1 WorldEnd");
     EXPECT_TRUE(c->ok) << c->messages();
     ASSERT_EQ(c->frames.size(), 2u);
     EXPECT_EQ(c->frames[0]->objects.at(0).primitives.size(), 2u);
@@ -224,7 +238,8 @@ TEST(Motion, OfTransformations) {
 }
 
 TEST(Motion, KeysOfTwoBlocksAreMerged) {
-    auto c = world("MotionBegin [0 1] Translate 0 0 0 Translate 4 0 0 MotionEnd MotionBegin [0.5 1] Scale 1 1 1 Scale 3 3 3 MotionEnd Sphere 1 -1 1 360");
+    auto c = world("MotionBegin [0 1] Translate 0 0 0 Translate 4 0 0 MotionEnd MotionBegin [0.5 1] Scale 1 1 1 Scale 3 3 3 "
+                   "MotionEnd Sphere 1 -1 1 360");
     const auto& t = c->primitive().toWorld;
     EXPECT_EQ(t.times, (std::vector<float>{0, .5f, 1}));
     EXPECT_EQ(transformPoint(t.keys[1], {1, 0, 0}), Vec3d(1 + 2, 0, 0));
@@ -266,7 +281,8 @@ TEST(Motion, Violations) {
     EXPECT_EQ(code("MotionBegin [0 1] MotionEnd"), Rie::BadMotion);
     EXPECT_EQ(code("MotionBegin [0 1] Translate 0 0 0 Sides 1 Translate 0 0 1 MotionEnd"), Rie::BadMotion);
     EXPECT_EQ(code("MotionEnd"), Rie::Nesting);
-    EXPECT_EQ(code("MotionBegin [0 1] Polygon \"P\" [0 0 0 1 0 0 1 1 0] Polygon \"P\" [0 0 0 1 0 0 1 1 0 0 1 0] MotionEnd"), Rie::BadMotion);
+    EXPECT_EQ(code("MotionBegin [0 1] Polygon \"P\" [0 0 0 1 0 0 1 1 0] Polygon \"P\" [0 0 0 1 0 0 1 1 0 0 1 0] MotionEnd"),
+              Rie::BadMotion);
     auto c = world("MotionBegin [0 1] Sphere 1 -1 1 360 WorldEnd");
     EXPECT_EQ(c->frame().primitives.size(), 1u); // the sample that was there
     // One time is no motion, and no fault.
@@ -277,8 +293,9 @@ TEST(Motion, Violations) {
 }
 
 TEST(Frames, SaveOptionsAndAttributes) {
-    auto c = read("Format 100 100 1 Color 1 0 0 FrameBegin 3 Format 50 50 1 Color 0 1 0 WorldBegin Sphere 1 -1 1 360 WorldEnd FrameEnd\n"
-                  "FrameBegin 4 WorldBegin Sphere 1 -1 1 360 WorldEnd FrameEnd");
+    auto c = read(
+        "Format 100 100 1 Color 1 0 0 FrameBegin 3 Format 50 50 1 Color 0 1 0 WorldBegin Sphere 1 -1 1 360 WorldEnd FrameEnd\n"
+        "FrameBegin 4 WorldBegin Sphere 1 -1 1 360 WorldEnd FrameEnd");
     EXPECT_TRUE(c->ok) << c->messages();
     ASSERT_EQ(c->frames.size(), 2u);
     EXPECT_EQ(c->frames[0]->options.xres, 50);
@@ -291,7 +308,9 @@ TEST(Frames, SaveOptionsAndAttributes) {
 TEST(Frames, Filter) {
     ReaderOptions o;
     o.frames = {2};
-    auto c = read("FrameBegin 1 MakeTexture \"a\" \"b\" \"black\" \"black\" \"box\" 1 1 WorldBegin Sphere 1 -1 1 360 WorldEnd FrameEnd FrameBegin 2 WorldBegin WorldEnd FrameEnd", o);
+    auto c = read("FrameBegin 1 MakeTexture \"a\" \"b\" \"black\" \"black\" \"box\" 1 1 WorldBegin Sphere 1 -1 1 360 WorldEnd "
+                  "FrameEnd FrameBegin 2 WorldBegin WorldEnd FrameEnd",
+                  o);
     EXPECT_EQ(c->frame().options.frameNumber, 2);
     EXPECT_TRUE(c->textures.empty());
 }
@@ -309,17 +328,22 @@ TEST(Frames, StateStaysBetweenStreams) {
     Collected c;
     RibReader reader({}, c, c.diagnostics);
     EXPECT_TRUE(reader.readMemory("Format 77 88 1 Declare \"k\" \"color\"", "--rib"));
-    EXPECT_TRUE(reader.readMemory("WorldBegin Surface \"x\" \"k\" [1 2 3] Sphere 1 -1 1 360 WorldEnd", "scene.rib")) << c.messages();
+    EXPECT_TRUE(reader.readMemory("WorldBegin Surface \"x\" \"k\" [1 2 3] Sphere 1 -1 1 360 WorldEnd", "scene.rib"))
+        << c.messages();
     EXPECT_EQ(c.frame().options.xres, 77);
     EXPECT_EQ(c.primitive().attributes->surface->params.at(0).type, scene::Type::Color);
     EXPECT_EQ(c.primitive().place.file, "scene.rib");
 }
 
 TEST(Frames, OptionsAreAsGiven) {
-    auto c = read("Projection \"perspective\" \"fov\" 30 Clipping 1 100 DepthOfField 2 .5 3 Shutter .25 .75 PixelVariance .01 PixelFilter \"box\" 1 3\n"
-                  "Exposure 2 2.2 Imager \"background\" \"color bgcolor\" [1 0 0] Quantize \"rgba\" 1023 0 1023 .25 Quantize \"z\" 0 0 0 0\n"
-                  "Display \"a\" \"tiff\" \"rgb\" Display \"+b\" \"openexr\" \"z\" \"float[4] quantize\" [0 1 0 1] DisplayChannel \"varying color diff\"\n"
-                  "Hider \"raytrace\" \"int jitter\" 0 RelativeDetail 2 Option \"limits\" \"bucketsize\" [32 16] FrameAspectRatio 1.5 ScreenWindow -2 2 -1 1\n"
+    auto c = read("Projection \"perspective\" \"fov\" 30 Clipping 1 100 DepthOfField 2 .5 3 Shutter .25 .75 PixelVariance .01 "
+                  "PixelFilter \"box\" 1 3\n"
+                  "Exposure 2 2.2 Imager \"background\" \"color bgcolor\" [1 0 0] Quantize \"rgba\" 1023 0 1023 .25 Quantize "
+                  "\"z\" 0 0 0 0\n"
+                  "Display \"a\" \"tiff\" \"rgb\" Display \"+b\" \"openexr\" \"z\" \"float[4] quantize\" [0 1 0 1] "
+                  "DisplayChannel \"varying color diff\"\n"
+                  "Hider \"raytrace\" \"int jitter\" 0 RelativeDetail 2 Option \"limits\" \"bucketsize\" [32 16] "
+                  "FrameAspectRatio 1.5 ScreenWindow -2 2 -1 1\n"
                   "Option \"searchpath\" \"shader\" \"a:b\" Option \"searchpath\" \"shader\" \"c:&\" WorldBegin WorldEnd");
     EXPECT_EQ(c->count(), 0u) << c->messages();
     const scene::Options& o = c->frame().options;
@@ -349,8 +373,10 @@ TEST(Frames, OptionsAreAsGiven) {
 }
 
 TEST(Frames, BadOptionsAreReported) {
-    for (const char* bad : {"CropWindow 0 2 0 1", "CropWindow .5 .2 0 1", "PixelSamples 0 1", "Exposure 1 0", "Shutter 1 0", "Clipping 5 1", "PixelFilter \"box\" 0 1",
-                            "Projection \"perspective\" \"fov\" 180", "ScreenWindow 1 1 0 1", "ColorSamples [1 2] [1 2]", "FrameAspectRatio 0", "ClippingPlane 0 0 0 0 0 0"})
+    for (const char* bad :
+         {"CropWindow 0 2 0 1", "CropWindow .5 .2 0 1", "PixelSamples 0 1", "Exposure 1 0", "Shutter 1 0", "Clipping 5 1",
+          "PixelFilter \"box\" 0 1", "Projection \"perspective\" \"fov\" 180", "ScreenWindow 1 1 0 1", "ColorSamples [1 2] [1 2]",
+          "FrameAspectRatio 0", "ClippingPlane 0 0 0 0 0 0"})
         EXPECT_EQ(read(bad)->only().code, Rie::Range) << bad;
     EXPECT_EQ(read("PixelFilter \"gausian\" 2 2")->only().hint, "did you mean gaussian?");
     EXPECT_EQ(read("Format 70000 10 1")->only().code, Rie::Limit);
@@ -358,14 +384,16 @@ TEST(Frames, BadOptionsAreReported) {
 
 TEST(ColorSamples, BecomeRgb) {
     // Two samples: the first is (1,0,.5), the second (0,1,.5): colour a b -> (a, b, (a+b)/2).
-    auto c = read("ColorSamples [1 0 .5 0 1 .5] [1 0 .5 0 1 .5] WorldBegin Color .25 .75 Surface \"x\" \"color k\" [1 2] Sphere 1 -1 1 360 WorldEnd");
+    auto c = read("ColorSamples [1 0 .5 0 1 .5] [1 0 .5 0 1 .5] WorldBegin Color .25 .75 Surface \"x\" \"color k\" [1 2] Sphere "
+                  "1 -1 1 360 WorldEnd");
     EXPECT_EQ(c->count(), 0u) << c->messages();
     EXPECT_EQ(c->primitive().attributes->color, Color(.25f, .75f, .5f));
     EXPECT_EQ(c->primitive().attributes->surface->params.at(0).numbers, (std::vector<float>{1, 2, 1.5f}));
 }
 
 TEST(Textures, ReachTheConsumerInOrder) {
-    auto c = read("MakeTexture \"a.tif\" \"a.tx\" \"periodic\" \"clamp\" \"box\" 2 3\nMakeCubeFaceEnvironment \"a\" \"b\" \"c\" \"d\" \"e\" \"f\" \"g\" 95 \"box\" 1 1\nMakeShadow \"z\" \"s\"");
+    auto c = read("MakeTexture \"a.tif\" \"a.tx\" \"periodic\" \"clamp\" \"box\" 2 3\nMakeCubeFaceEnvironment \"a\" \"b\" \"c\" "
+                  "\"d\" \"e\" \"f\" \"g\" 95 \"box\" 1 1\nMakeShadow \"z\" \"s\"");
     EXPECT_TRUE(c->ok) << c->messages();
     ASSERT_EQ(c->textures.size(), 3u);
     EXPECT_EQ(c->textures[0].files, (std::vector<std::string>{"a.tif", "a.tx", "periodic", "clamp", "box"}));

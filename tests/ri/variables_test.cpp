@@ -17,7 +17,8 @@ TEST(Declarations, Parse) {
     EXPECT_EQ(parseDeclaration("int")->type, Type::Integer);
     EXPECT_EQ(parseDeclaration("float")->cls, Class::Uniform);
     EXPECT_EQ(parseDeclaration(" facevertex \t hpoint [ 2 ] ")->arrayLength, 2);
-    for (const char* bad : {"", "varying", "colour", "float[0]", "float[-1]", "float[", "float]", "float[2147483648]", "color varying", "float x y"})
+    for (const char* bad : {"", "varying", "colour", "float[0]", "float[-1]", "float[", "float]", "float[2147483648]",
+                            "color varying", "float x y"})
         EXPECT_FALSE(parseDeclaration(bad)) << bad;
     EXPECT_EQ(read("Declare \"x\" \"colour\"")->only().code, Rie::Syntax);
     EXPECT_EQ(world("Surface \"a\" \"uniform flaot x\" 1")->only().code, Rie::Syntax);
@@ -75,15 +76,20 @@ const Counts kCounts[] = {
     {"Patch \"bicubic\" \"Pz\" [0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0]", 1, 4, 16, 4},
     {"PatchMesh \"bilinear\" 3 \"nonperiodic\" 4 \"periodic\" \"Pz\" [0 0 0 0 0 0 0 0 0 0 0 0]", 2 * 4, 3 * 4, 12, 12},
     // Bezier, step 3: nu = 7 nonperiodic: 2 patches, 3 corners; nv = 6 periodic: 2 patches, 2 corners.
-    {"PatchMesh \"bicubic\" 7 \"nonperiodic\" 6 \"periodic\" \"Pz\" [0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0]", 4, 6, 42, 6},
+    {"PatchMesh \"bicubic\" 7 \"nonperiodic\" 6 \"periodic\" \"Pz\" [0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 "
+     "0 0 0 0 0 0 0 0 0 0 0 0]",
+     4, 6, 42, 6},
     // nu = 4, order 3: segments 2; nv = 3, order 2: segments 2; varying (2+1)(2+1).
-    {"NuPatch 4 3 [0 0 0 1 2 2 2] 0 2 3 2 [0 0 1 2 2] 0 2 \"P\" [0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0]", 4, 9, 12, 9},
+    {"NuPatch 4 3 [0 0 0 1 2 2 2] 0 2 3 2 [0 0 1 2 2] 0 2 \"P\" [0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 "
+     "0 0 0 0]",
+     4, 9, 12, 9},
     {"Sphere 1 -1 1 360", 1, 4, 4, 4},
     {"Torus 1 .2 0 360 360", 1, 4, 4, 4},
     {"Points \"P\" [0 0 0 1 1 1 2 2 2]", 1, 3, 3, 3},
     {"Curves \"linear\" [2 3] \"nonperiodic\" \"P\" [0 0 0 1 0 0 0 0 0 1 0 0 2 0 0]", 2, 5, 5, 5},
     // Cubic, step 3: 4 points 1 segment, 7 points 2 segments: (1+1) + (2+1).
-    {"Curves \"cubic\" [4 7] \"nonperiodic\" \"P\" [0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0]", 2, 5, 11, 5},
+    {"Curves \"cubic\" [4 7] \"nonperiodic\" \"P\" [0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0]", 2, 5, 11,
+     5},
     {"Curves \"cubic\" [6] \"periodic\" \"P\" [0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0]", 1, 2, 6, 2},
     {"Blobby 2 [1001 0 1001 16 0 2 0 1] [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1] [\"\"]", 1, 2, 2, 2},
 };
@@ -91,8 +97,11 @@ const Counts kCounts[] = {
 
 TEST(Counts, OfEveryPrimitive) {
     for (const Counts& k : kCounts) {
-        struct { const char* cls; int64_t n; } classes[] = {{"constant", 1}, {"uniform", k.uniform}, {"varying", k.varying}, {"vertex", k.vertex},
-                                                            {"facevarying", k.faceVarying}, {"facevertex", k.faceVarying}};
+        struct {
+            const char* cls;
+            int64_t n;
+        } classes[] = {{"constant", 1},      {"uniform", k.uniform},         {"varying", k.varying},
+                       {"vertex", k.vertex}, {"facevarying", k.faceVarying}, {"facevertex", k.faceVarying}};
         for (auto& cl : classes) {
             std::string head = std::string(k.request) + " \"" + cl.cls + " float[2] q\" ";
             auto good = world(head + repeat(cl.n, "1 2"));
@@ -111,18 +120,32 @@ TEST(Counts, OfEveryPrimitive) {
 }
 
 TEST(Counts, BadArgumentsDropThePrimitive) {
-    for (const char* bad : {
-             "Polygon \"P\" [0 0 0 1 0 0]", "Polygon \"P\" [0 0 0 1 0 0 1 1]", "GeneralPolygon [3] \"P\" [0 0 0 1 0 0]", "GeneralPolygon [] \"P\" []",
-             "GeneralPolygon [-3] \"P\" []", "PointsPolygons [3] [0 1] \"P\" [0 0 0]", "PointsPolygons [3] [0 1 2] \"P\" [0 0 0 1 0 0]",
-             "PointsPolygons [3] [0 1 -2] \"P\" [0 0 0 1 0 0]", "PointsPolygons [3] [0 1 2000000000] \"P\" [0 0 0 1 0 0]", "PointsPolygons [2] [0 1] \"P\" [0 0 0 1 0 0]",
-             "PointsPolygons [2147483647 2147483647] [0 1 2] \"P\" [0 0 0]", "PointsGeneralPolygons [2] [3] [0 1 2] \"P\" [0 0 0 1 0 0 1 1 0]",
-             "Patch \"bilinear\" \"P\" [0 0 0]", "Patch \"bicubic\" \"P\" [0 0 0 1 1 1]", "PatchMesh \"bilinear\" 1 \"periodic\" 2 \"periodic\" \"Pz\" [0 0]",
-             "PatchMesh \"bicubic\" 5 \"nonperiodic\" 4 \"nonperiodic\" \"Pz\" [0]", "PatchMesh \"bilinear\" 2147483647 \"nonperiodic\" 2147483647 \"nonperiodic\" \"Pz\" [0]",
-             "PatchMesh \"bilinear\" -5 \"nonperiodic\" -5 \"nonperiodic\" \"Pz\" [0]", "NuPatch 2 3 [0 0 0 1 1] 0 1 2 2 [0 0 1 1] 0 1 \"P\" [0 0 0]",
-             "NuPatch 2 2 [0 1 0 1] 0 1 2 2 [0 0 1 1] 0 1 \"P\" [0 0 0 1 0 0 0 1 0 1 1 0]", "NuPatch 2 2 [0 0 1] 0 1 2 2 [0 0 1 1] 0 1 \"P\" [0 0 0 1 0 0 0 1 0 1 1 0]",
-             "Curves \"cubic\" [3] \"nonperiodic\" \"P\" [0 0 0 1 0 0 2 0 0]", "Curves \"linear\" [1] \"nonperiodic\" \"P\" [0 0 0]",
-             "SubdivisionMesh \"catmull-clark\" [3] [0 1 2] [\"crease\"] [2] [0 1] [1] \"P\" [0 0 0 1 0 0 1 1 0]",
-             "SubdivisionMesh \"catmull-clark\" [3] [0 1 2] [\"crease\"] [3 1] [0 1] [1] \"P\" [0 0 0 1 0 0 1 1 0]"}) {
+    for (const char* bad :
+         {"Polygon \"P\" [0 0 0 1 0 0]",
+          "Polygon \"P\" [0 0 0 1 0 0 1 1]",
+          "GeneralPolygon [3] \"P\" [0 0 0 1 0 0]",
+          "GeneralPolygon [] \"P\" []",
+          "GeneralPolygon [-3] \"P\" []",
+          "PointsPolygons [3] [0 1] \"P\" [0 0 0]",
+          "PointsPolygons [3] [0 1 2] \"P\" [0 0 0 1 0 0]",
+          "PointsPolygons [3] [0 1 -2] \"P\" [0 0 0 1 0 0]",
+          "PointsPolygons [3] [0 1 2000000000] \"P\" [0 0 0 1 0 0]",
+          "PointsPolygons [2] [0 1] \"P\" [0 0 0 1 0 0]",
+          "PointsPolygons [2147483647 2147483647] [0 1 2] \"P\" [0 0 0]",
+          "PointsGeneralPolygons [2] [3] [0 1 2] \"P\" [0 0 0 1 0 0 1 1 0]",
+          "Patch \"bilinear\" \"P\" [0 0 0]",
+          "Patch \"bicubic\" \"P\" [0 0 0 1 1 1]",
+          "PatchMesh \"bilinear\" 1 \"periodic\" 2 \"periodic\" \"Pz\" [0 0]",
+          "PatchMesh \"bicubic\" 5 \"nonperiodic\" 4 \"nonperiodic\" \"Pz\" [0]",
+          "PatchMesh \"bilinear\" 2147483647 \"nonperiodic\" 2147483647 \"nonperiodic\" \"Pz\" [0]",
+          "PatchMesh \"bilinear\" -5 \"nonperiodic\" -5 \"nonperiodic\" \"Pz\" [0]",
+          "NuPatch 2 3 [0 0 0 1 1] 0 1 2 2 [0 0 1 1] 0 1 \"P\" [0 0 0]",
+          "NuPatch 2 2 [0 1 0 1] 0 1 2 2 [0 0 1 1] 0 1 \"P\" [0 0 0 1 0 0 0 1 0 1 1 0]",
+          "NuPatch 2 2 [0 0 1] 0 1 2 2 [0 0 1 1] 0 1 \"P\" [0 0 0 1 0 0 0 1 0 1 1 0]",
+          "Curves \"cubic\" [3] \"nonperiodic\" \"P\" [0 0 0 1 0 0 2 0 0]",
+          "Curves \"linear\" [1] \"nonperiodic\" \"P\" [0 0 0]",
+          "SubdivisionMesh \"catmull-clark\" [3] [0 1 2] [\"crease\"] [2] [0 1] [1] \"P\" [0 0 0 1 0 0 1 1 0]",
+          "SubdivisionMesh \"catmull-clark\" [3] [0 1 2] [\"crease\"] [3 1] [0 1] [1] \"P\" [0 0 0 1 0 0 1 1 0]"}) {
         auto c = world(bad);
         EXPECT_EQ(c->only().code, Rie::Consistency) << bad << c->messages();
         EXPECT_EQ(c->only().place.line, 2);
@@ -147,7 +170,8 @@ TEST(Counts, OneUniformValueHoldsForAll) {
 }
 
 TEST(Counts, UndeclaredVariablesAreFitted) {
-    auto c = world("Polygon \"P\" [0 0 0 1 0 0 1 1 0] \"temp\" [1 2 3] \"tint\" [1 0 0 0 1 0 0 0 1] \"odd\" [1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17]");
+    auto c = world("Polygon \"P\" [0 0 0 1 0 0 1 1 0] \"temp\" [1 2 3] \"tint\" [1 0 0 0 1 0 0 0 1] \"odd\" [1 2 3 4 5 6 7 8 9 "
+                   "10 11 12 13 14 15 16 17]");
     auto all = c->diagnostics.all();
     ASSERT_EQ(all.size(), 4u) << c->messages(); // three guesses, one that fits nothing
     EXPECT_EQ(all.back().code, Rie::Consistency);
@@ -171,7 +195,8 @@ TEST(Counts, PositionForms) {
 }
 
 TEST(Counts, SubdivisionTags) {
-    auto c = world("SubdivisionMesh \"catmull-clark\" [3] [0 1 2] [\"crease\" \"interpolateboundary\"] [2 1 0 0] [0 1] [3.5] \"P\" [0 0 0 1 0 0 1 1 0]");
+    auto c = world("SubdivisionMesh \"catmull-clark\" [3] [0 1 2] [\"crease\" \"interpolateboundary\"] [2 1 0 0] [0 1] [3.5] "
+                   "\"P\" [0 0 0 1 0 0 1 1 0]");
     EXPECT_EQ(c->count(), 0u) << c->messages();
     const auto& p = c->primitive();
     EXPECT_EQ(p.strings, (std::vector<std::string>{"catmull-clark", "crease", "interpolateboundary"}));
@@ -181,7 +206,8 @@ TEST(Counts, SubdivisionTags) {
 }
 
 TEST(Counts, TrimCurves) {
-    auto c = world("TrimCurve [1] [2] [0 0 1 2 2] [0] [2] [3] [0 1 0] [0 0 0] [1 1 1] Sphere 1 -1 1 360 TrimCurve [] [] [] [] [] [] [] [] [] Sphere 1 -1 1 360");
+    auto c = world("TrimCurve [1] [2] [0 0 1 2 2] [0] [2] [3] [0 1 0] [0 0 0] [1 1 1] Sphere 1 -1 1 360 TrimCurve [] [] [] [] [] "
+                   "[] [] [] [] Sphere 1 -1 1 360");
     EXPECT_EQ(c->count(), 0u) << c->messages();
     ASSERT_TRUE(c->primitive(0).attributes->trimCurve);
     EXPECT_EQ(scene::find(*c->primitive(0).attributes->trimCurve, "knot")->numbers.size(), 5u);

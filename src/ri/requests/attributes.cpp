@@ -22,7 +22,9 @@ bool colorOf(Interpreter& in, const Call& c, Color& out) {
         in.reporter.error(Rie::MissingData, c.place, fmt::format("{} needs {} numbers, not {}", c.request->name, n, v.size()));
         return false;
     }
-    if (v.size() > n) in.reporter.warning(Rie::Consistency, c.place, fmt::format("{}: numbers after the first {} are ignored", c.request->name, n));
+    if (v.size() > n)
+        in.reporter.warning(Rie::Consistency, c.place,
+                            fmt::format("{}: numbers after the first {} are ignored", c.request->name, n));
     std::vector<float> rgb = in.toRgb(std::vector<double>(v.begin(), v.begin() + std::ptrdiff_t(n)));
     out = {rgb[0], rgb[1], rgb[2]};
     return true;
@@ -38,7 +40,8 @@ void orientation(Interpreter& in, const Call& c) {
         a.absoluteHandedness = true;
         a.rightHanded = o == "rh";
     } else {
-        in.reporter.error(Rie::BadToken, c.place, fmt::format("Orientation: \"{}\" is not known", o), "outside, inside, lh or rh");
+        in.reporter.error(Rie::BadToken, c.place, fmt::format("Orientation: \"{}\" is not known", o),
+                          "outside, inside, lh or rh");
     }
 }
 
@@ -48,7 +51,11 @@ void reverse(Interpreter& in, const Call&) {
     else a.inside = !a.inside;
 }
 
-struct NamedBasis { const char* name; int step; double m[4][4]; };
+struct NamedBasis {
+    const char* name;
+    int step;
+    double m[4][4];
+};
 constexpr double S = 1.0 / 6;
 // ri.md 8.3
 constexpr NamedBasis kBases[] = {
@@ -74,7 +81,8 @@ bool oneBasis(Interpreter& in, const Call& c, size_t i, scene::Basis& out) {
         std::copy(&b.m[0][0], &b.m[0][0] + 16, &out.m[0][0]);
         return true;
     }
-    in.reporter.error(Rie::BadToken, c.place, fmt::format("Basis: \"{}\" is not known", c.text(i)), "bezier, b-spline, catmull-rom, hermite, power or 16 numbers");
+    in.reporter.error(Rie::BadToken, c.place, fmt::format("Basis: \"{}\" is not known", c.text(i)),
+                      "bezier, b-spline, catmull-rom, hermite, power or 16 numbers");
     return false;
 }
 
@@ -89,7 +97,8 @@ bool boundOf(Interpreter& in, const Call& c, std::vector<float>& out) {
     out = c.reals(0);
     if (out[0] <= out[1] && out[2] <= out[3] && out[4] <= out[5]) return true;
     // A hint only, and often wrong in old files: no reason for the render to count as failed.
-    in.reporter.warning(Rie::Range, c.place, fmt::format("{}: a bound is xmin xmax ymin ymax zmin zmax: ignored", c.request->name));
+    in.reporter.warning(Rie::Range, c.place,
+                        fmt::format("{}: a bound is xmin xmax ymin ymax zmin zmax: ignored", c.request->name));
     return false;
 }
 
@@ -102,7 +111,10 @@ void trimCurve(Interpreter& in, const Call& c) {
     }
     double curves = 0, points = 0, knots = 0;
     bool good = true;
-    for (int n : ncurves) { good = good && n >= 1; curves += n; }
+    for (int n : ncurves) {
+        good = good && n >= 1;
+        curves += n;
+    }
     auto order = c.ints(1), n = c.ints(5);
     good = good && order.size() == curves && n.size() == curves && c.numbers(3).size() == curves && c.numbers(4).size() == curves;
     for (size_t i = 0; good && i < n.size(); ++i) {
@@ -110,7 +122,8 @@ void trimCurve(Interpreter& in, const Call& c) {
         points += n[i];
         knots += double(n[i]) + order[i];
     }
-    good = good && c.numbers(2).size() == knots && c.numbers(6).size() == points && c.numbers(7).size() == points && c.numbers(8).size() == points;
+    good = good && c.numbers(2).size() == knots && c.numbers(6).size() == points && c.numbers(7).size() == points &&
+           c.numbers(8).size() == points;
     if (!good) {
         in.reporter.error(Rie::Consistency, c.place, "TrimCurve: the lengths of its arrays do not fit each other");
         return;
@@ -137,7 +150,10 @@ std::string membership(const std::string& before, const std::string& change) {
         std::string item;
         for (char ch : s + ",") {
             if (ch != ',' && ch != ' ') item += ch;
-            else if (!item.empty()) { v.push_back(item); item.clear(); }
+            else if (!item.empty()) {
+                v.push_back(item);
+                item.clear();
+            }
         }
         return v;
     };
@@ -165,7 +181,8 @@ void attribute(Interpreter& in, const Call& c) {
 }
 
 void approximation(Interpreter& in, const Call& c) {
-    static const std::vector<std::string> kTypes = {"motionfactor", "focusfactor", "flatness", "normaldeviation", "pointdeviation", "tessellation"};
+    static const std::vector<std::string> kTypes = {"motionfactor",    "focusfactor",    "flatness",
+                                                    "normaldeviation", "pointdeviation", "tessellation"};
     if (std::find(kTypes.begin(), kTypes.end(), c.text(0)) == kTypes.end()) {
         std::string near = nearestName(c.text(0), kTypes);
         in.reporter.error(Rie::BadToken, c.place, fmt::format("GeometricApproximation: \"{}\" is not known", c.text(0)),
@@ -186,11 +203,16 @@ std::vector<Request> attributeRequests() {
     const unsigned s = kAttributes;
     return {
         {"Color", "number[] color", k, s, true, "Surface colour, three numbers or as many as ColorSamples says.", "[1 .5 0]",
-         [](Interpreter& in, const Call& c) { if (Color v; colorOf(in, c, v)) in.attributes().color = v; }},
+         [](Interpreter& in, const Call& c) {
+             if (Color v; colorOf(in, c, v)) in.attributes().color = v;
+         }},
         {"Opacity", "number[] color", k, s, true, "Surface opacity by colour; 1 is opaque.", ".5 .5 .5",
-         [](Interpreter& in, const Call& c) { if (Color v; colorOf(in, c, v)) in.attributes().opacity = v; }},
-        {"TextureCoordinates", "number[8] st", k, s, false, "(s,t) at the corners (u,v) = (0,0) (1,0) (0,1) (1,1) of parametric surfaces.",
-         "0 0 1 0 0 1 1 1", [](Interpreter& in, const Call& c) {
+         [](Interpreter& in, const Call& c) {
+             if (Color v; colorOf(in, c, v)) in.attributes().opacity = v;
+         }},
+        {"TextureCoordinates", "number[8] st", k, s, false,
+         "(s,t) at the corners (u,v) = (0,0) (1,0) (0,1) (1,1) of parametric surfaces.", "0 0 1 0 0 1 1 1",
+         [](Interpreter& in, const Call& c) {
              auto v = c.reals(0);
              std::copy(v.begin(), v.end(), in.attributes().textureCoordinates);
          }},
@@ -199,34 +221,49 @@ std::vector<Request> attributeRequests() {
         {"ShadingInterpolation", "string type", k, s, false, "\"constant\" or \"smooth\" between shading samples.", "\"smooth\"",
          [](Interpreter& in, const Call& c) {
              if (c.text(0) == "smooth" || c.text(0) == "constant") in.attributes().smoothShading = c.text(0) == "smooth";
-             else in.reporter.error(Rie::BadToken, c.place, fmt::format("ShadingInterpolation: \"{}\" is not known", c.text(0)), "constant or smooth");
+             else
+                 in.reporter.error(Rie::BadToken, c.place, fmt::format("ShadingInterpolation: \"{}\" is not known", c.text(0)),
+                                   "constant or smooth");
          }},
         {"Matte", "int on", k, s, false, "The object hides what is behind it and is itself not seen.", "1",
          [](Interpreter& in, const Call& c) { in.attributes().matte = c.integer(0) != 0; }},
         {"Bound", "number[6] bound", k, s, true, "Object-space box around what follows; a hint.", "[-1 1 -1 1 -1 1]",
-         [](Interpreter& in, const Call& c) { if (std::vector<float> b; boundOf(in, c, b)) in.attributes().bound = b; }},
-        {"Detail", "number[6] bound", k, s, true, "Object-space box whose size in the image chooses the level of detail.", "-1 1 -1 1 -1 1",
-         [](Interpreter& in, const Call& c) { if (std::vector<float> b; boundOf(in, c, b)) in.attributes().detail = b; }},
-        {"DetailRange", "number[4] range", k, s, false, "minvisible lowertransition uppertransition maxvisible, in pixels.", "0 10 100 200",
+         [](Interpreter& in, const Call& c) {
+             if (std::vector<float> b; boundOf(in, c, b)) in.attributes().bound = b;
+         }},
+        {"Detail", "number[6] bound", k, s, true, "Object-space box whose size in the image chooses the level of detail.",
+         "-1 1 -1 1 -1 1",
+         [](Interpreter& in, const Call& c) {
+             if (std::vector<float> b; boundOf(in, c, b)) in.attributes().detail = b;
+         }},
+        {"DetailRange", "number[4] range", k, s, false, "minvisible lowertransition uppertransition maxvisible, in pixels.",
+         "0 10 100 200",
          [](Interpreter& in, const Call& c) {
              auto v = c.reals(0);
-             if (within(in, c, std::is_sorted(v.begin(), v.end()), "the four sizes must not decrease")) std::copy(v.begin(), v.end(), in.attributes().detailRange);
+             if (within(in, c, std::is_sorted(v.begin(), v.end()), "the four sizes must not decrease"))
+                 std::copy(v.begin(), v.end(), in.attributes().detailRange);
          }},
-        {"GeometricApproximation", "string type; number value", k, s, false, "How closely shapes are followed: \"motionfactor\", \"flatness\" and others.",
-         "\"motionfactor\" 1", approximation},
+        {"GeometricApproximation", "string type; number value", k, s, false,
+         "How closely shapes are followed: \"motionfactor\", \"flatness\" and others.", "\"motionfactor\" 1", approximation},
         {"GeometricRepresentation", "string type", k, s, false, "Of RISpec 3.0; has no effect.", "\"primitive\"",
-         [](Interpreter& in, const Call& c) { if (c.text(0) != "primitive") in.incapable(c, "GeometricRepresentation has no effect"); }},
-        {"Orientation", "string orientation", k, s, false, "Which side is outside: outside, inside, lh or rh.", "\"outside\"", orientation},
+         [](Interpreter& in, const Call& c) {
+             if (c.text(0) != "primitive") in.incapable(c, "GeometricRepresentation has no effect");
+         }},
+        {"Orientation", "string orientation", k, s, false, "Which side is outside: outside, inside, lh or rh.", "\"outside\"",
+         orientation},
         {"ReverseOrientation", "", k, s, false, "The other side is outside.", "", reverse},
         {"Sides", "int sides", k, s, false, "1: only the outside is seen; 2: both sides.", "2",
          [](Interpreter& in, const Call& c) {
              if (within(in, c, c.integer(0) == 1 || c.integer(0) == 2, "it is 1 or 2")) in.attributes().sides = c.integer(0);
          }},
-        {"Basis", "basis u; int ustep; basis v; int vstep", k, s, false, "Cubic bases and steps of patches and curves.", "\"bezier\" 3 \"b-spline\" 1", basis},
-        {"TrimCurve", "int[] ncurves; int[] order; number[] knot; number[] min; number[] max; int[] n; number[] u; number[] v; number[] w", k, s, false,
-         "Loops of rational curves in the (u,v) of the next NuPatch; inside them the patch is cut.",
+        {"Basis", "basis u; int ustep; basis v; int vstep", k, s, false, "Cubic bases and steps of patches and curves.",
+         "\"bezier\" 3 \"b-spline\" 1", basis},
+        {"TrimCurve",
+         "int[] ncurves; int[] order; number[] knot; number[] min; number[] max; int[] n; number[] u; number[] v; number[] w", k,
+         s, false, "Loops of rational curves in the (u,v) of the next NuPatch; inside them the patch is cut.",
          "[1] [2] [0 0 1 2 2] [0] [2] [3] [0 1 0] [0 0 0] [1 1 1]", trimCurve},
-        {"Attribute", "string class; ..", k, s, false, "Attributes of this renderer, by class and name.", "\"identifier\" \"name\" \"ball\"", attribute},
+        {"Attribute", "string class; ..", k, s, false, "Attributes of this renderer, by class and name.",
+         "\"identifier\" \"name\" \"ball\"", attribute},
     };
 }
 

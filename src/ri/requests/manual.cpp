@@ -28,11 +28,16 @@ std::string cell(std::string_view s) {
 } // namespace
 
 std::string requestManual() {
-    std::string out = "# RIB requests\n\n[n] is a fixed count, [] any number, ? may be left out, .. a parameter list. Brackets around fixed counts are optional.\n";
-    for (Kind k : {Kind::Structure, Kind::Option, Kind::Attribute, Kind::Shader, Kind::Light, Kind::Transform, Kind::Primitive, Kind::Archive, Kind::Texture, Kind::Other}) {
-        out += fmt::format("\n## {}\n\n| request | arguments | where | in motion blocks | |\n|---|---|---|---|---|\n", toString(k));
+    std::string out = "# RIB requests\n\n[n] is a fixed count, [] any number, ? may be left out, .. a parameter list. Brackets "
+                      "around fixed counts are optional.\n";
+    for (Kind k : {Kind::Structure, Kind::Option, Kind::Attribute, Kind::Shader, Kind::Light, Kind::Transform, Kind::Primitive,
+                   Kind::Archive, Kind::Texture, Kind::Other}) {
+        out +=
+            fmt::format("\n## {}\n\n| request | arguments | where | in motion blocks | |\n|---|---|---|---|---|\n", toString(k));
         for (const Request& r : requestTable())
-            if (r.kind == k) out += fmt::format("| {} | {} | {} | {} | {} |\n", r.name, cell(r.signature), scopes(r.scopes), r.motion ? "yes" : "", cell(r.doc));
+            if (r.kind == k)
+                out += fmt::format("| {} | {} | {} | {} | {} |\n", r.name, cell(r.signature), scopes(r.scopes),
+                                   r.motion ? "yes" : "", cell(r.doc));
     }
     return out;
 }

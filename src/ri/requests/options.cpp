@@ -21,7 +21,8 @@ void format(Interpreter& in, const Call& c) {
     const scene::Options standard;
     int x = c.integer(0), y = c.integer(1);
     if (x > limits::kImageSide || y > limits::kImageSide) {
-        in.reporter.error(Rie::Limit, c.place, fmt::format("Format: {} x {} is more than {} pixels a side", x, y, limits::kImageSide));
+        in.reporter.error(Rie::Limit, c.place,
+                          fmt::format("Format: {} x {} is more than {} pixels a side", x, y, limits::kImageSide));
         return;
     }
     // Zero and negative numbers mean the default (wild.md).
@@ -35,7 +36,8 @@ void projection(Interpreter& in, const Call& c) {
     scene::ParamList params = in.bind(c, Use::Other);
     const std::string& name = c.text(0);
     if (name != "perspective" && name != "orthographic" && name != "null" && !name.empty()) {
-        in.reporter.error(Rie::Incapable, c.place, fmt::format("projection \"{}\" is not known: the one before stays", name), "perspective or orthographic");
+        in.reporter.error(Rie::Incapable, c.place, fmt::format("projection \"{}\" is not known: the one before stays", name),
+                          "perspective or orthographic");
         return;
     }
     in.options.projection = name == "perspective" ? name : "orthographic";
@@ -66,7 +68,8 @@ void depthOfField(Interpreter& in, const Call& c) {
 }
 
 void screenWindow(Interpreter& in, const Call& c) {
-    if (within(in, c, c.number(0, 0) != c.number(0, 1) && c.number(0, 2) != c.number(0, 3), "the window is empty")) in.options.screenWindow = c.reals(0);
+    if (within(in, c, c.number(0, 0) != c.number(0, 1) && c.number(0, 2) != c.number(0, 3), "the window is empty"))
+        in.options.screenWindow = c.reals(0);
 }
 
 void cropWindow(Interpreter& in, const Call& c) {
@@ -78,14 +81,17 @@ void cropWindow(Interpreter& in, const Call& c) {
 }
 
 void pixelFilter(Interpreter& in, const Call& c) {
-    static const std::vector<std::string> kFilters = {"box", "triangle", "catmull-rom", "b-spline", "gaussian", "sinc", "bessel", "disk", "mitchell",
-                                                      "separable-catmull-rom", "blackman-harris", "lanczos"};
+    static const std::vector<std::string> kFilters = {
+        "box",  "triangle", "catmull-rom",           "b-spline",        "gaussian", "sinc", "bessel",
+        "disk", "mitchell", "separable-catmull-rom", "blackman-harris", "lanczos"};
     if (std::find(kFilters.begin(), kFilters.end(), c.text(0)) == kFilters.end()) {
         std::string near = nearestName(c.text(0), kFilters);
-        in.reporter.error(Rie::BadToken, c.place, fmt::format("PixelFilter: \"{}\" is not known", c.text(0)), near.empty() ? "" : "did you mean " + near + "?");
+        in.reporter.error(Rie::BadToken, c.place, fmt::format("PixelFilter: \"{}\" is not known", c.text(0)),
+                          near.empty() ? "" : "did you mean " + near + "?");
         return;
     }
-    if (within(in, c, c.number(1) > 0 && c.number(2) > 0, "the widths must be positive")) in.options.filter = {c.text(0), c.real(1), c.real(2)};
+    if (within(in, c, c.number(1) > 0 && c.number(2) > 0, "the widths must be positive"))
+        in.options.filter = {c.text(0), c.real(1), c.real(2)};
 }
 
 void quantize(Interpreter& in, const Call& c) {
@@ -110,7 +116,8 @@ void display(Interpreter& in, const Call& c) {
 void displayChannel(Interpreter& in, const Call& c) {
     Resolved r = in.declarations.resolve(c.text(0), "");
     if (r.malformed) {
-        in.reporter.error(Rie::Syntax, c.place, fmt::format("DisplayChannel: \"{}\" is not a declaration", c.text(0)), "class type name");
+        in.reporter.error(Rie::Syntax, c.place, fmt::format("DisplayChannel: \"{}\" is not a declaration", c.text(0)),
+                          "class type name");
         return;
     }
     scene::Param p;
@@ -134,7 +141,8 @@ void hider(Interpreter& in, const Call& c) {
 void colorSamples(Interpreter& in, const Call& c) {
     const std::vector<double>& n = c.numbers(0);
     const std::vector<double>& back = c.numbers(1);
-    if (!within(in, c, !n.empty() && n.size() % 3 == 0 && back.size() == n.size(), "both arrays need 3 numbers for each sample")) return;
+    if (!within(in, c, !n.empty() && n.size() % 3 == 0 && back.size() == n.size(), "both arrays need 3 numbers for each sample"))
+        return;
     in.options.colorSamples = int(n.size() / 3);
     const std::vector<double> identity = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     in.nRGB = n == identity ? std::vector<double>() : n;
@@ -146,7 +154,8 @@ void option(Interpreter& in, const Call& c) {
         std::string key = category + ":" + p.name;
         if (category == "searchpath" && !p.strings.empty()) { // "&" stands for the value so far
             std::string before, now;
-            if (auto i = in.options.values.find(key); i != in.options.values.end() && !i->second.strings.empty()) before = i->second.strings[0];
+            if (auto i = in.options.values.find(key); i != in.options.values.end() && !i->second.strings.empty())
+                before = i->second.strings[0];
             for (char ch : p.strings[0]) {
                 if (now.size() > limits::kTokenBytes) break;
                 if (ch == '&') now += before;
@@ -158,7 +167,8 @@ void option(Interpreter& in, const Call& c) {
             }
             p.strings[0] = now;
         }
-        if (key == "ribparse:varsubst" && !p.strings.empty() && !p.strings[0].empty()) in.incapable(c, "variables in RIB (varsubst) are not substituted");
+        if (key == "ribparse:varsubst" && !p.strings.empty() && !p.strings[0].empty())
+            in.incapable(c, "variables in RIB (varsubst) are not substituted");
         in.options.values[key] = std::move(p);
     }
 }
@@ -168,14 +178,20 @@ void option(Interpreter& in, const Call& c) {
 std::vector<Request> optionRequests() {
     const Kind k = Kind::Option;
     return {
-        {"Format", "int xres; int yres; number pixelaspect", k, kOptions, false, "Resolution in pixels and the width of a pixel over its height.",
-         "640 480 1", format},
+        {"Format", "int xres; int yres; number pixelaspect", k, kOptions, false,
+         "Resolution in pixels and the width of a pixel over its height.", "640 480 1", format},
         {"FrameAspectRatio", "number ratio", k, kOptions, false, "Width over height of the frame.", "1.333",
-         [](Interpreter& in, const Call& c) { if (within(in, c, c.number(0) > 0, "the ratio must be positive")) in.options.frameAspect = c.real(0); }},
-        {"ScreenWindow", "number[4] window", k, kOptions, false, "left right bottom top of the screen, in screen space.", "-1 1 -1 1", screenWindow},
-        {"CropWindow", "number[4] window", k, kOptions, false, "xmin xmax ymin ymax of the part that is rendered, 0 to 1.", "[0 .5 .25 1]", cropWindow},
-        {"Projection", "string name; ..", k, kOptions, true, "\"perspective\" (\"fov\", degrees) or \"orthographic\".", "\"perspective\" \"fov\" [30]", projection},
-        {"Clipping", "number near; number far", k, kOptions, false, "Distances along z between which things are seen.", "0.1 1000",
+         [](Interpreter& in, const Call& c) {
+             if (within(in, c, c.number(0) > 0, "the ratio must be positive")) in.options.frameAspect = c.real(0);
+         }},
+        {"ScreenWindow", "number[4] window", k, kOptions, false, "left right bottom top of the screen, in screen space.",
+         "-1 1 -1 1", screenWindow},
+        {"CropWindow", "number[4] window", k, kOptions, false, "xmin xmax ymin ymax of the part that is rendered, 0 to 1.",
+         "[0 .5 .25 1]", cropWindow},
+        {"Projection", "string name; ..", k, kOptions, true, "\"perspective\" (\"fov\", degrees) or \"orthographic\".",
+         "\"perspective\" \"fov\" [30]", projection},
+        {"Clipping", "number near; number far", k, kOptions, false, "Distances along z between which things are seen.",
+         "0.1 1000",
          [](Interpreter& in, const Call& c) {
              if (!within(in, c, c.number(0) < c.number(1), "near must be less than far")) return;
              in.options.clipNear = c.real(0);
@@ -183,7 +199,8 @@ std::vector<Request> optionRequests() {
          }},
         {"ClippingPlane", "number x; number y; number z; number nx; number ny; number nz", k, kOptions, false,
          "Removes the half space that the normal points into.", "0 0 5 0 0 1", clippingPlane},
-        {"DepthOfField", "number[3] lens?", k, kOptions, false, "fstop focallength focaldistance; none = a pinhole.", "2.8 .05 3", depthOfField},
+        {"DepthOfField", "number[3] lens?", k, kOptions, false, "fstop focallength focaldistance; none = a pinhole.", "2.8 .05 3",
+         depthOfField},
         {"Shutter", "number open; number close", k, kOptions, false, "Times between which the shutter is open.", "0 1",
          [](Interpreter& in, const Call& c) {
              if (!within(in, c, c.number(0) <= c.number(1), "it closes before it opens")) return;
@@ -191,7 +208,9 @@ std::vector<Request> optionRequests() {
              in.options.shutterClose = c.real(1);
          }},
         {"PixelVariance", "number variance", k, kOptions, false, "Variance of pixel values that is good enough.", ".01",
-         [](Interpreter& in, const Call& c) { if (within(in, c, c.number(0) >= 0, "it must not be negative")) in.options.pixelVariance = c.real(0); }},
+         [](Interpreter& in, const Call& c) {
+             if (within(in, c, c.number(0) >= 0, "it must not be negative")) in.options.pixelVariance = c.real(0);
+         }},
         {"PixelSamples", "number x; number y", k, kOptions, false, "Samples a pixel in x and y.", "4 4",
          [](Interpreter& in, const Call& c) {
              if (!within(in, c, c.number(0) > 0 && c.number(1) > 0, "there must be at least one sample")) return;
@@ -199,29 +218,36 @@ std::vector<Request> optionRequests() {
              in.options.pixelSamplesY = std::max(c.real(1), 1.f);
              in.options.pixelSamplesSet = true;
          }},
-        {"PixelFilter", "string name; number xwidth; number ywidth", k, kOptions, false, "Reconstruction filter and its full widths in pixels.",
-         "\"gaussian\" 2 2", pixelFilter},
+        {"PixelFilter", "string name; number xwidth; number ywidth", k, kOptions, false,
+         "Reconstruction filter and its full widths in pixels.", "\"gaussian\" 2 2", pixelFilter},
         {"Exposure", "number gain; number gamma", k, kOptions, false, "Output = (gain * value) ^ (1 / gamma).", "1 2.2",
          [](Interpreter& in, const Call& c) {
              if (!within(in, c, c.number(1) > 0, "gamma must be positive")) return;
              in.options.gain = c.real(0);
              in.options.gamma = c.real(1);
          }},
-        {"Imager", "string name; ..", k, kOptions, false, "Shader that works on the finished pixels.", "\"background\" \"bgcolor\" [0 0 .2]",
-         [](Interpreter& in, const Call& c) { in.options.imager = c.text(0).empty() || c.text(0) == "null" ? nullptr : in.shader(c); }},
+        {"Imager", "string name; ..", k, kOptions, false, "Shader that works on the finished pixels.",
+         "\"background\" \"bgcolor\" [0 0 .2]",
+         [](Interpreter& in, const Call& c) {
+             in.options.imager = c.text(0).empty() || c.text(0) == "null" ? nullptr : in.shader(c);
+         }},
         {"Quantize", "string type; number one; number min; number max; number dither", k, kOptions, false,
          "How \"rgba\" or \"z\" values become integers; one = 0: they stay floats.", "\"rgba\" 255 0 255 .5", quantize},
-        {"Display", "string name; string type; string mode; ..", k, kOptions, false, "Where the picture goes; a name with + adds another one.",
-         "\"a.tif\" \"tiff\" \"rgba\" \"quantize\" [0 255 0 255]", display},
+        {"Display", "string name; string type; string mode; ..", k, kOptions, false,
+         "Where the picture goes; a name with + adds another one.", "\"a.tif\" \"tiff\" \"rgba\" \"quantize\" [0 255 0 255]",
+         display},
         {"DisplayChannel", "string channel; ..", k, kOptions, false, "Declares an output for use in a Display's mode.",
          "\"varying color diffuse\" \"string filter\" \"box\"", displayChannel},
-        {"Hider", "string name; ..", k, kOptions, false, "How visibility is found: \"hidden\", \"raytrace\", \"path\" and others.",
-         "\"hidden\" \"jitter\" [1]", hider},
+        {"Hider", "string name; ..", k, kOptions, false,
+         "How visibility is found: \"hidden\", \"raytrace\", \"path\" and others.", "\"hidden\" \"jitter\" [1]", hider},
         {"ColorSamples", "number[] nRGB; number[] RGBn", k, kOptions, false, "Colours of n samples, and how they become RGB.",
          "[1 1 1] [.3 .3 .4]", colorSamples},
         {"RelativeDetail", "number factor", k, kOptions, false, "Scales the size that chooses levels of detail.", "1",
-         [](Interpreter& in, const Call& c) { if (within(in, c, c.number(0) >= 0, "it must not be negative")) in.options.relativeDetail = c.real(0); }},
-        {"Option", "string class; ..", k, kOptions, false, "Options of this renderer, by class and name.", "\"searchpath\" \"shader\" [\"shaders:@\"]", option},
+         [](Interpreter& in, const Call& c) {
+             if (within(in, c, c.number(0) >= 0, "it must not be negative")) in.options.relativeDetail = c.real(0);
+         }},
+        {"Option", "string class; ..", k, kOptions, false, "Options of this renderer, by class and name.",
+         "\"searchpath\" \"shader\" [\"shaders:@\"]", option},
         {"Camera", "string name; ..", k, kOptions, false, "Names a further camera; not used.", "\"side\"",
          [](Interpreter& in, const Call& c) { in.incapable(c, "named cameras are not used"); }},
     };

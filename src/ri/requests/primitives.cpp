@@ -26,13 +26,15 @@ void carry(scene::Primitive& p, const char* name, scene::Type type, const Call& 
 bool wrap(Interpreter& in, const Call& c, const std::string& given, std::string& out) {
     out = given == "nowrap" ? "nonperiodic" : given;
     if (out == "periodic" || out == "nonperiodic") return true;
-    in.reporter.error(Rie::BadToken, c.place, fmt::format("{}: wrap \"{}\" is not known", c.request->name, given), "periodic or nonperiodic");
+    in.reporter.error(Rie::BadToken, c.place, fmt::format("{}: wrap \"{}\" is not known", c.request->name, given),
+                      "periodic or nonperiodic");
     return false;
 }
 
 bool oneOf(Interpreter& in, const Call& c, const std::string& given, const char* a, const char* b) {
     if (given == a || given == b) return true;
-    in.reporter.error(Rie::BadToken, c.place, fmt::format("{}: type \"{}\" is not known", c.request->name, given), fmt::format("{} or {}", a, b));
+    in.reporter.error(Rie::BadToken, c.place, fmt::format("{}: type \"{}\" is not known", c.request->name, given),
+                      fmt::format("{} or {}", a, b));
     return false;
 }
 
@@ -139,10 +141,12 @@ void procedural(Interpreter& in, const Call& c) {
         return;
     }
     if (kind != "RunProgram" && kind != "DynamicLoad") {
-        in.reporter.error(Rie::BadToken, c.place, fmt::format("Procedural: \"{}\" is not known", kind), "DelayedReadArchive, RunProgram or DynamicLoad");
+        in.reporter.error(Rie::BadToken, c.place, fmt::format("Procedural: \"{}\" is not known", kind),
+                          "DelayedReadArchive, RunProgram or DynamicLoad");
         return;
     }
-    if (!in.settings.allowExec) in.incapable(c, fmt::format("Procedural \"{}\" runs foreign code: it needs --allow-exec and is left out", kind));
+    if (!in.settings.allowExec)
+        in.incapable(c, fmt::format("Procedural \"{}\" runs foreign code: it needs --allow-exec and is left out", kind));
     else in.incapable(c, fmt::format("Procedural \"{}\" is not run by this version and is left out", kind));
 }
 
@@ -152,33 +156,43 @@ std::vector<Request> primitiveRequests() {
     const Kind k = Kind::Primitive;
     const unsigned s = kWorld | kObject;
     const char* mesh = "\"catmull-clark\" [3 3] [0 1 2 0 2 3] [\"crease\"] [2 1] [0 1] [10] \"P\" [0 0 0 1 0 0 1 1 0 0 1 0]";
-    const char* hierarchical = "\"catmull-clark\" [3 3] [0 1 2 0 2 3] [\"hole\"] [1 0 0] [1] [] [] \"P\" [0 0 0 1 0 0 1 1 0 0 1 0]";
+    const char* hierarchical =
+        "\"catmull-clark\" [3 3] [0 1 2 0 2 3] [\"hole\"] [1 0 0] [1] [] [] \"P\" [0 0 0 1 0 0 1 1 0 0 1 0]";
     return {
         {"Polygon", "..", k, s, true, "A convex planar polygon.", "\"P\" [0 0 0 1 0 0 1 1 0]", polygon},
-        {"GeneralPolygon", "int[] nverts; ..", k, s, true, "A planar polygon; the loops after the first are holes.", "[3] \"P\" [0 0 0 1 0 0 1 1 0]", indexed},
-        {"PointsPolygons", "int[] nverts; int[] verts; ..", k, s, true, "Convex polygons that share points.", "[3] [0 1 2] \"P\" [0 0 0 1 0 0 1 1 0]", indexed},
-        {"PointsGeneralPolygons", "int[] nloops; int[] nverts; int[] verts; ..", k, s, true, "Polygons with holes that share points.",
-         "[1] [3] [0 1 2] \"P\" [0 0 0 1 0 0 1 1 0]", indexed},
-        {"Patch", "string type; ..", k, s, true, "A bilinear (4 points) or bicubic (16) patch.", "\"bilinear\" \"P\" [0 0 0 1 0 0 0 1 0 1 1 0]", patch},
+        {"GeneralPolygon", "int[] nverts; ..", k, s, true, "A planar polygon; the loops after the first are holes.",
+         "[3] \"P\" [0 0 0 1 0 0 1 1 0]", indexed},
+        {"PointsPolygons", "int[] nverts; int[] verts; ..", k, s, true, "Convex polygons that share points.",
+         "[3] [0 1 2] \"P\" [0 0 0 1 0 0 1 1 0]", indexed},
+        {"PointsGeneralPolygons", "int[] nloops; int[] nverts; int[] verts; ..", k, s, true,
+         "Polygons with holes that share points.", "[1] [3] [0 1 2] \"P\" [0 0 0 1 0 0 1 1 0]", indexed},
+        {"Patch", "string type; ..", k, s, true, "A bilinear (4 points) or bicubic (16) patch.",
+         "\"bilinear\" \"P\" [0 0 0 1 0 0 0 1 0 1 1 0]", patch},
         {"PatchMesh", "string type; int nu; string uwrap; int nv; string vwrap; ..", k, s, true, "A mesh of patches.",
          "\"bilinear\" 2 \"nonperiodic\" 2 \"nonperiodic\" \"Pz\" [0 0 0 1]", patchMesh},
-        {"NuPatch", "int nu; int uorder; number[] uknot; number umin; number umax; int nv; int vorder; number[] vknot; number vmin; number vmax; ..", k, s, true,
-         "A NURBS surface.", "2 2 [0 0 1 1] 0 1 2 2 [0 0 1 1] 0 1 \"P\" [0 0 0 1 0 0 0 1 0 1 1 0]", nuPatch},
-        {"SubdivisionMesh", "string scheme; int[] nverts; int[] verts; string[] tags?; int[] nargs?; int[] intargs?; number[] floatargs?; ..", k, s, true,
-         "A subdivision surface.", mesh, subdivision},
+        {"NuPatch",
+         "int nu; int uorder; number[] uknot; number umin; number umax; int nv; int vorder; number[] vknot; number vmin; number "
+         "vmax; ..",
+         k, s, true, "A NURBS surface.", "2 2 [0 0 1 1] 0 1 2 2 [0 0 1 1] 0 1 \"P\" [0 0 0 1 0 0 0 1 0 1 1 0]", nuPatch},
+        {"SubdivisionMesh",
+         "string scheme; int[] nverts; int[] verts; string[] tags?; int[] nargs?; int[] intargs?; number[] floatargs?; ..", k, s,
+         true, "A subdivision surface.", mesh, subdivision},
         {"HierarchicalSubdivisionMesh",
-         "string scheme; int[] nverts; int[] verts; string[] tags?; int[] nargs?; int[] intargs?; number[] floatargs?; string[] stringargs?; ..", k, s, true,
-         "A subdivision surface with edits.", hierarchical, subdivision},
+         "string scheme; int[] nverts; int[] verts; string[] tags?; int[] nargs?; int[] intargs?; number[] floatargs?; string[] "
+         "stringargs?; ..",
+         k, s, true, "A subdivision surface with edits.", hierarchical, subdivision},
         {"Points", "..", k, s, true, "Particles.", "\"P\" [0 0 0 1 0 0] \"constantwidth\" [.1]", polygon},
         {"Curves", "string type; int[] nvertices; string wrap; ..", k, s, true, "Thin ribbons.",
          "\"cubic\" [4] \"nonperiodic\" \"P\" [0 0 0 1 0 0 2 0 0 3 0 0] \"width\" [.1 .2]", curves},
         {"Blobby", "int nleaf; int[] code; number[] floats; string[] strings?; ..", k, s, true, "An implicit surface of blobs.",
          "1 [1001 0] [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1] [\"\"]", blobby},
         {"Geometry", "string name; ..", k, s, true, "A shape the renderer knows, such as \"teapot\".", "\"teapot\"", geometry},
-        {"Volume", "string type; number[6] bound; int[] dimensions; ..", k, s, true, "A region filled by a volume shader.", "\"box\" [-1 1 -1 1 -1 1] [0 0 0]", volume},
-        {"Procedural", "string kind; string[] arguments; number[6] bound; ..", k, s, false, "Content from an archive, a program or a library.",
-         "\"RunProgram\" [\"maker\" \"data\"] [-1 1 -1 1 -1 1]", procedural},
-        {"ObjectInstance", "handle object; ..", Kind::Other, s, false, "Draws a stored object.", "1", [](Interpreter& in, const Call& c) { in.instance(c); }},
+        {"Volume", "string type; number[6] bound; int[] dimensions; ..", k, s, true, "A region filled by a volume shader.",
+         "\"box\" [-1 1 -1 1 -1 1] [0 0 0]", volume},
+        {"Procedural", "string kind; string[] arguments; number[6] bound; ..", k, s, false,
+         "Content from an archive, a program or a library.", "\"RunProgram\" [\"maker\" \"data\"] [-1 1 -1 1 -1 1]", procedural},
+        {"ObjectInstance", "handle object; ..", Kind::Other, s, false, "Draws a stored object.", "1",
+         [](Interpreter& in, const Call& c) { in.instance(c); }},
     };
 }
 

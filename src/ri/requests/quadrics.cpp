@@ -22,8 +22,10 @@ std::vector<Request> quadricRequests() {
         {"Cylinder", "number[4] shape; ..", k, s, true, "radius zmin zmax thetamax.", "1 -1 1 360", quadric},
         {"Hyperboloid", "number[7] shape; ..", k, s, true, "point 1, point 2, thetamax.", "[1 0 0 1 1 1 360]", quadric},
         {"Paraboloid", "number[4] shape; ..", k, s, true, "rmax zmin zmax thetamax.", "1 0 2 360", quadric},
-        {"Disk", "number[3] shape; ..", k, s, true, "height radius thetamax.", "0 1 360 \"Cs\" [1 0 0 0 1 0 0 0 1 1 1 1]", quadric},
-        {"Torus", "number[5] shape; ..", k, s, true, "major radius, minor radius, phimin phimax thetamax.", "2 .5 0 360 360", quadric},
+        {"Disk", "number[3] shape; ..", k, s, true, "height radius thetamax.", "0 1 360 \"Cs\" [1 0 0 0 1 0 0 0 1 1 1 1]",
+         quadric},
+        {"Torus", "number[5] shape; ..", k, s, true, "major radius, minor radius, phimin phimax thetamax.", "2 .5 0 360 360",
+         quadric},
     };
 }
 

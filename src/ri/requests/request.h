@@ -21,9 +21,9 @@ enum Scope : unsigned { kBase = 1, kFrame = 2, kWorld = 4, kObject = 8, kAnywher
 struct ArgSpec {
     enum class Form { Number, Int, String, Handle, Basis };
     Form form = Form::Number;
-    bool array = false;   ///< any length
-    int count = 1;        ///< numbers, when not an array: bare or in brackets, mixed as one likes
-    int otherCount = 0;   ///< also accepted in one array (the 16-number Translate of old files)
+    bool array = false; ///< any length
+    int count = 1;      ///< numbers, when not an array: bare or in brackets, mixed as one likes
+    int otherCount = 0; ///< also accepted in one array (the 16-number Translate of old files)
     bool optional = false;
     std::string name;
 };
@@ -39,9 +39,9 @@ struct Request {
     std::string_view signature;
     Kind kind;
     unsigned scopes;
-    bool motion;              ///< legal in a motion block (ri.md 9.3)
+    bool motion; ///< legal in a motion block (ri.md 9.3)
     std::string_view doc;
-    std::string_view sample;  ///< arguments that are correct; the tests read every one
+    std::string_view sample; ///< arguments that are correct; the tests read every one
     Handler handler;
     MatrixOf matrix = nullptr;
 

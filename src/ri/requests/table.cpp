@@ -85,16 +85,26 @@ const std::vector<std::string>& requestNames() {
 
 const char* toString(Kind k) {
     switch (k) {
-    case Kind::Structure: return "structure";
-    case Kind::Option: return "option";
-    case Kind::Attribute: return "attribute";
-    case Kind::Shader: return "shader";
-    case Kind::Light: return "light";
-    case Kind::Transform: return "transform";
-    case Kind::Primitive: return "primitive";
-    case Kind::Archive: return "archive";
-    case Kind::Texture: return "texture";
-    case Kind::Other: break;
+    case Kind::Structure:
+        return "structure";
+    case Kind::Option:
+        return "option";
+    case Kind::Attribute:
+        return "attribute";
+    case Kind::Shader:
+        return "shader";
+    case Kind::Light:
+        return "light";
+    case Kind::Transform:
+        return "transform";
+    case Kind::Primitive:
+        return "primitive";
+    case Kind::Archive:
+        return "archive";
+    case Kind::Texture:
+        return "texture";
+    case Kind::Other:
+        break;
     }
     return "other";
 }

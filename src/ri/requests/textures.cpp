@@ -31,18 +31,26 @@ void make(Interpreter& in, const Call& c) {
 std::vector<Request> textureRequests() {
     const Kind k = Kind::Texture;
     const unsigned s = kBase;
-    const char* flat = "string picture; string texture; string swrap; string twrap; string filter; number swidth; number twidth; ..";
+    const char* flat =
+        "string picture; string texture; string swrap; string twrap; string filter; number swidth; number twidth; ..";
     return {
-        {"MakeTexture", flat, k, s, false, "Makes a texture of a picture.", "\"a.tif\" \"a.tx\" \"periodic\" \"clamp\" \"box\" 1 1", make},
-        {"MakeBump", flat, k, s, false, "The same, for bump maps.", "\"a.tif\" \"a.tx\" \"black\" \"black\" \"gaussian\" 2 2", make},
+        {"MakeTexture", flat, k, s, false, "Makes a texture of a picture.",
+         "\"a.tif\" \"a.tx\" \"periodic\" \"clamp\" \"box\" 1 1", make},
+        {"MakeBump", flat, k, s, false, "The same, for bump maps.", "\"a.tif\" \"a.tx\" \"black\" \"black\" \"gaussian\" 2 2",
+         make},
         {"MakeLatLongEnvironment", "string picture; string texture; string filter; number swidth; number twidth; ..", k, s, false,
          "Makes a latitude-longitude environment map.", "\"a.tif\" \"a.env\" \"box\" 1 1", make},
         {"MakeCubeFaceEnvironment",
-         "string px; string nx; string py; string ny; string pz; string nz; string texture; number fov; string filter; number swidth; number twidth; ..", k, s, false,
-         "Makes an environment map of six pictures.", "\"a\" \"b\" \"c\" \"d\" \"e\" \"f\" \"g.env\" 90 \"box\" 1 1", make},
-        {"MakeShadow", "string picture; string shadow; ..", k, s, false, "Makes a shadow map of a depth picture.", "\"a.z\" \"a.shd\"", make},
-        {"MakeBrickMap", "string[] clouds; string brickmap; ..", k, s, false, "Makes a brick map of point clouds.", "[\"a.ptc\"] \"a.bkm\"", make},
-        {"MakeOcclusion", "string[] pictures; string shadow; ..", k, s, false, "Makes an occlusion map of depth pictures.", "[\"a.z\" \"b.z\"] \"a.shd\"", make},
+         "string px; string nx; string py; string ny; string pz; string nz; string texture; number fov; string filter; number "
+         "swidth; number twidth; ..",
+         k, s, false, "Makes an environment map of six pictures.", "\"a\" \"b\" \"c\" \"d\" \"e\" \"f\" \"g.env\" 90 \"box\" 1 1",
+         make},
+        {"MakeShadow", "string picture; string shadow; ..", k, s, false, "Makes a shadow map of a depth picture.",
+         "\"a.z\" \"a.shd\"", make},
+        {"MakeBrickMap", "string[] clouds; string brickmap; ..", k, s, false, "Makes a brick map of point clouds.",
+         "[\"a.ptc\"] \"a.bkm\"", make},
+        {"MakeOcclusion", "string[] pictures; string shadow; ..", k, s, false, "Makes an occlusion map of depth pictures.",
+         "[\"a.z\" \"b.z\"] \"a.shd\"", make},
     };
 }
 

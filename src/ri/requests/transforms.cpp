@@ -29,7 +29,8 @@ std::optional<Matrix> perspective(Interpreter& in, const Call& c) {
 
 std::optional<Matrix> translate(Interpreter& in, const Call& c) {
     if (c.numbers(0).size() == 16) { // seen in old files
-        in.reporter.once("ri:translate16", Severity::Warning, Rie::Consistency, c.place, "Translate with a matrix is read as ConcatTransform");
+        in.reporter.once("ri:translate16", Severity::Warning, Rie::Consistency, c.place,
+                         "Translate with a matrix is read as ConcatTransform");
         return sixteen(c);
     }
     return translateMatrix(c.number(0, 0), c.number(0, 1), c.number(0, 2));
@@ -64,7 +65,9 @@ void replace(Interpreter& in, const Call& c) {
 
 void coordSysTransform(Interpreter& in, const Call& c) {
     if (auto m = in.namedSystem(c.text(0))) in.replaceCtm(*m, c);
-    else in.reporter.error(Rie::BadToken, c.place, fmt::format("CoordSysTransform: there is no coordinate system \"{}\"", c.text(0)));
+    else
+        in.reporter.error(Rie::BadToken, c.place,
+                          fmt::format("CoordSysTransform: there is no coordinate system \"{}\"", c.text(0)));
 }
 
 } // namespace
@@ -74,20 +77,25 @@ std::vector<Request> transformRequests() {
     const unsigned s = kAnywhere;
     return {
         {"Identity", "", k, s, true, "Back to world space; before WorldBegin to camera space.", "", replace, identity},
-        {"Transform", "number[16] matrix", k, s, true, "Replaces the current transformation.", "[1 0 0 0 0 1 0 0 0 0 1 0 1 2 3 1]", replace, given},
-        {"ConcatTransform", "number[16] matrix", k, s, true, "Applies a matrix before the current transformation.", "[2 0 0 0 0 2 0 0 0 0 2 0 0 0 0 1]", concat, given},
-        {"Perspective", "number fov", k, s, true, "Applies a perspective of this field of view, in degrees.", "45", concat, perspective},
+        {"Transform", "number[16] matrix", k, s, true, "Replaces the current transformation.",
+         "[1 0 0 0 0 1 0 0 0 0 1 0 1 2 3 1]", replace, given},
+        {"ConcatTransform", "number[16] matrix", k, s, true, "Applies a matrix before the current transformation.",
+         "[2 0 0 0 0 2 0 0 0 0 2 0 0 0 0 1]", concat, given},
+        {"Perspective", "number fov", k, s, true, "Applies a perspective of this field of view, in degrees.", "45", concat,
+         perspective},
         {"Translate", "number[3/16] offset", k, s, true, "Moves by x y z.", "1 2 3", concat, translate},
         {"Rotate", "number[4] rotation", k, s, true, "Turns by degrees about an axis: angle x y z.", "90 0 0 1", concat, rotate},
         {"Scale", "number[3] factors", k, s, true, "Scales by x y z.", "2 2 2", concat, scale},
-        {"Skew", "number[7] skew", k, s, true, "Shifts along d2 so that d1 turns by degrees toward d2: angle d1 d2.", "45 0 1 0 1 0 0", concat, skew},
+        {"Skew", "number[7] skew", k, s, true, "Shifts along d2 so that d1 turns by degrees toward d2: angle d1 d2.",
+         "45 0 1 0 1 0 0", concat, skew},
         {"Deformation", "string name; ..", k, s, false, "Transformation shader; has no effect.", "\"bend\"",
          [](Interpreter& in, const Call& c) { in.incapable(c, "transformation shaders (Deformation) have no effect"); }},
-        {"CoordinateSystem", "string name", k, s, false, "Names the current space, for shaders and CoordSysTransform.", "\"lamp\"",
-         [](Interpreter& in, const Call& c) { in.nameSystem(c.text(0), false); }},
+        {"CoordinateSystem", "string name", k, s, false, "Names the current space, for shaders and CoordSysTransform.",
+         "\"lamp\"", [](Interpreter& in, const Call& c) { in.nameSystem(c.text(0), false); }},
         {"ScopedCoordinateSystem", "string name", k, s, false, "The same up to the end of the attribute block.", "\"lamp\"",
          [](Interpreter& in, const Call& c) { in.nameSystem(c.text(0), true); }},
-        {"CoordSysTransform", "string name", k, s, false, "Makes a named space the current one.", "\"camera\"", coordSysTransform},
+        {"CoordSysTransform", "string name", k, s, false, "Makes a named space the current one.", "\"camera\"",
+         coordSysTransform},
     };
 }
 

@@ -7,6 +7,7 @@ namespace {
 
 constexpr int kPieces = 1024; // straight pieces per axis: the error of the density is below 2e-6 of its peak
 constexpr int kCells = 256;   // cells per axis of a filter that is no product
+constexpr double kBelowOne = 1 - 0x1p-53;
 
 // Four-point Gauss-Legendre on [0, 1].
 constexpr double kGaussX[4] = {0.06943184420297371, 0.33000947820757187, 0.66999052179242813, 0.93056815579702629};
@@ -47,8 +48,7 @@ void FilterSampler::Axis::build(const PixelFilter& f, double w) {
         node.push_back(b);
     }
     value.resize(node.size());
-    cdf.assign(node.size(), 0);
-    sign.assign(node.size(), 1);
+    mass.assign(node.size(), 0);
     for (size_t i = 0; i < node.size(); ++i)
         value[i] = std::fabs(f.axis(std::clamp(node[i], -half, half), w));
     for (size_t i = 0; i + 1 < node.size(); ++i) {
@@ -57,20 +57,27 @@ void FilterSampler::Axis::build(const PixelFilter& f, double w) {
             sum += kGaussW[k] * f.axis(node[i] + len * kGaussX[k], w);
         sum *= len;
         total += sum;
-        absolute += std::fabs(sum);
-        sign[i] = sum < 0 ? -1 : 1;
-        cdf[i + 1] = absolute;
+        absolute += mass[i] = std::fabs(sum);
+        Part& p = part[sum < 0];
+        p.mass += mass[i];
+        p.piece.push_back(int(i));
+        p.cdf.push_back(p.mass);
     }
-    for (double& c : cdf)
-        c /= absolute;
-    cdf.back() = 1;
+    for (double& m : mass)
+        m /= absolute;
+    for (Part& p : part) {
+        for (double& c : p.cdf)
+            c /= p.mass > 0 ? p.mass : 1;
+        p.mass /= absolute;
+    }
+    if (part[1].piece.empty())
+        part[0].mass = 1; // exactly
 }
 
-double FilterSampler::Axis::invert(double u, int* s) const {
-    int i = find(cdf, 0, cdf.size(), u);
-    double m = cdf[i + 1] - cdf[i];
-    *s = sign[i];
-    return node[i] + (node[i + 1] - node[i]) * invertLinear(value[i], value[i + 1], m > 0 ? (u - cdf[i]) / m : 0);
+double FilterSampler::Axis::invert(double u, const Part& p) const {
+    int k = find(p.cdf, 0, p.cdf.size(), u), i = p.piece[size_t(k)];
+    double m = p.cdf[k + 1] - p.cdf[k];
+    return node[i] + (node[i + 1] - node[i]) * invertLinear(value[i], value[i + 1], m > 0 ? (u - p.cdf[k]) / m : 0);
 }
 
 double FilterSampler::Axis::density(double t) const {
@@ -79,38 +86,45 @@ double FilterSampler::Axis::density(double t) const {
     int i = find(node, 0, node.size(), t);
     double len = node[i + 1] - node[i], k = (t - node[i]) / len, s = value[i] + value[i + 1];
     double shape = s > 0 ? 2 * (value[i] + (value[i + 1] - value[i]) * k) / s : 1;
-    return (cdf[i + 1] - cdf[i]) / len * shape;
+    return mass[i] / len * shape;
 }
 
-void FilterSampler::buildGrid() {
-    grid_.n = kCells;
-    grid_.mass.assign(size_t(kCells) * kCells, 0);
-    grid_.rowCdf.assign(kCells + 1, 0);
-    grid_.cellCdf.assign(size_t(kCells) * (kCells + 1), 0);
+void FilterSampler::buildGrids() {
     double cw = filter_.xw / kCells, ch = filter_.yw / kCells;
-    for (int r = 0; r < kCells; ++r) {
-        double* cdf = &grid_.cellCdf[size_t(r) * (kCells + 1)];
-        for (int c = 0; c < kCells; ++c) {
-            double sum = 0, abs = 0;
+    for (int g = 0; g < 2; ++g) {
+        Grid& grid = grid_[g];
+        grid.mass.assign(size_t(kCells) * kCells, 0);
+        grid.rowCdf.assign(kCells + 1, 0);
+        grid.cellCdf.assign(size_t(kCells) * (kCells + 1), 0);
+    }
+    for (int r = 0; r < kCells; ++r)
+        for (int c = 0; c < kCells; ++c)
             for (int j = 0; j < 4; ++j)
                 for (int i = 0; i < 4; ++i) {
                     double v = filter_(-filter_.xw / 2 + cw * (c + kGaussX[i]), -filter_.yw / 2 + ch * (r + kGaussX[j]));
-                    sum += kGaussW[i] * kGaussW[j] * v;
-                    abs += kGaussW[i] * kGaussW[j] * std::fabs(v);
+                    v *= kGaussW[i] * kGaussW[j] * cw * ch;
+                    total_ += v;
+                    absolute_ += std::fabs(v);
+                    grid_[v < 0].mass[size_t(r) * kCells + c] += std::fabs(v);
                 }
-            total_ += sum * cw * ch;
-            grid_.mass[size_t(r) * kCells + c] = abs * cw * ch;
-            cdf[c + 1] = cdf[c] + abs * cw * ch;
+    for (Grid& grid : grid_) {
+        for (int r = 0; r < kCells; ++r) {
+            double* cdf = &grid.cellCdf[size_t(r) * (kCells + 1)];
+            for (int c = 0; c < kCells; ++c) {
+                double& m = grid.mass[size_t(r) * kCells + c];
+                m /= absolute_;
+                cdf[c + 1] = cdf[c] + m;
+            }
+            grid.rowCdf[r + 1] = grid.rowCdf[r] + cdf[kCells];
+            for (int c = 0; c <= kCells; ++c)
+                cdf[c] = grid.rowCdf[r + 1] > grid.rowCdf[r] ? cdf[c] / (grid.rowCdf[r + 1] - grid.rowCdf[r]) : double(c) / kCells;
         }
-        grid_.rowCdf[r + 1] = grid_.rowCdf[r] + cdf[kCells];
-        for (int c = 0; c <= kCells; ++c)
-            cdf[c] = cdf[kCells] > 0 ? cdf[c] / cdf[kCells] : double(c) / kCells;
+        grid.share = grid.rowCdf.back();
+        for (double& c : grid.rowCdf)
+            c /= grid.share > 0 ? grid.share : 1;
     }
-    absolute_ = grid_.rowCdf.back();
-    for (double& m : grid_.mass)
-        m /= absolute_;
-    for (double& c : grid_.rowCdf)
-        c /= absolute_;
+    if (grid_[1].share == 0)
+        grid_[0].share = 1; // exactly
 }
 
 FilterSampler::FilterSampler(const PixelFilter& f) : filter_(f) {
@@ -122,7 +136,7 @@ FilterSampler::FilterSampler(const PixelFilter& f) : filter_(f) {
         total_ = x_.total * y_.total;
         absolute_ = x_.absolute * y_.absolute;
     } else {
-        buildGrid();
+        buildGrids();
     }
     if (!(total_ > 1e-6 * absolute_)) {
         degenerate_ = true;
@@ -141,23 +155,40 @@ FilterSample FilterSampler::sample(Vec2 u) const {
         x = filter_.xw * r * std::cos(a);
         y = filter_.yw * r * std::sin(a);
     } else if (filter_.separable()) {
-        int sx, sy;
-        x = x_.invert(u.x, &sx);
-        y = y_.invert(u.y, &sy);
-        weight = sx * sy * (absolute_ / total_);
+        // The four products of signed parts, those with a positive product first.
+        static constexpr int order[4][2] = {{0, 0}, {1, 1}, {0, 1}, {1, 0}};
+        double ux = u.x;
+        int k = 0;
+        for (; k < 3; ++k) {
+            double share = x_.part[order[k][0]].mass * y_.part[order[k][1]].mass;
+            if (ux < share)
+                break;
+            ux -= share;
+        }
+        // Rounding may leave the first number beyond the last stratum that has any mass: it belongs to that one's end.
+        while (k > 0 && x_.part[order[k][0]].mass * y_.part[order[k][1]].mass == 0)
+            --k;
+        const Part &px = x_.part[order[k][0]], &py = y_.part[order[k][1]];
+        x = x_.invert(std::clamp(ux / (px.mass * py.mass), 0.0, kBelowOne), px);
+        y = y_.invert(u.y, py);
+        weight = (k < 2 ? 1 : -1) * (absolute_ / total_);
         if (std::fabs(std::fabs(weight) - 1) < 1e-12)
             weight = 1; // rounding of the two sums; a filter without negative parts has weight 1 exactly
     } else {
-        int r = find(grid_.rowCdf, 0, grid_.rowCdf.size(), u.y);
-        double rm = grid_.rowCdf[r + 1] - grid_.rowCdf[r], v = rm > 0 ? (u.y - grid_.rowCdf[r]) / rm : 0.5;
-        size_t at = size_t(r) * (grid_.n + 1);
-        int c = find(grid_.cellCdf, at, grid_.n + 1, u.x);
-        double cm = grid_.cellCdf[at + c + 1] - grid_.cellCdf[at + c], h = cm > 0 ? (u.x - grid_.cellCdf[at + c]) / cm : 0.5;
-        x = filter_.xw * ((c + h) / grid_.n - 0.5);
-        y = filter_.yw * ((r + v) / grid_.n - 0.5);
-        // The density is constant on a cell and the filter is not: the quotient makes the estimate exact all the same.
-        double d = grid_.mass[size_t(r) * grid_.n + c] * grid_.n * grid_.n / (filter_.xw * filter_.yw);
-        weight = d > 0 ? filter_(x, y) / (d * total_) : 0;
+        int g = u.x < grid_[0].share || grid_[1].share == 0 ? 0 : 1;
+        const Grid& grid = grid_[g];
+        double ux = std::clamp((u.x - (g ? grid_[0].share : 0)) / grid.share, 0.0, kBelowOne);
+        int r = find(grid.rowCdf, 0, grid.rowCdf.size(), u.y);
+        double rm = grid.rowCdf[r + 1] - grid.rowCdf[r], v = rm > 0 ? (u.y - grid.rowCdf[r]) / rm : 0.5;
+        size_t at = size_t(r) * (kCells + 1);
+        int c = find(grid.cellCdf, at, kCells + 1, ux);
+        double cm = grid.cellCdf[at + c + 1] - grid.cellCdf[at + c], h = cm > 0 ? (ux - grid.cellCdf[at + c]) / cm : 0.5;
+        x = filter_.xw * ((c + h) / kCells - 0.5);
+        y = filter_.yw * ((r + v) / kCells - 0.5);
+        // The density is constant on a cell and the filter is not: the quotient makes the estimate exact all the same. In a
+        // cell that a zero of f crosses, the part of the other sign has weight 0 here and is drawn by the other grid.
+        double d = grid.mass[size_t(r) * kCells + c] * kCells * kCells / (filter_.xw * filter_.yw), f = filter_(x, y);
+        weight = d > 0 && (f < 0) == (g == 1) ? f / (d * total_) : 0;
     }
     return {float(x), float(y), float(weight)};
 }
@@ -169,8 +200,10 @@ double FilterSampler::density(double x, double y) const {
         return filter_(x, y) / total_;
     if (filter_.separable())
         return x_.density(x) * y_.density(y);
-    int n = grid_.n, c = std::clamp(int((x / filter_.xw + 0.5) * n), 0, n - 1), r = std::clamp(int((y / filter_.yw + 0.5) * n), 0, n - 1);
-    return grid_.mass[size_t(r) * n + c] * n * n / (filter_.xw * filter_.yw);
+    int c = std::clamp(int((x / filter_.xw + 0.5) * kCells), 0, kCells - 1);
+    int r = std::clamp(int((y / filter_.yw + 0.5) * kCells), 0, kCells - 1);
+    size_t i = size_t(r) * kCells + size_t(c);
+    return (grid_[0].mass[i] + grid_[1].mass[i]) * kCells * kCells / (filter_.xw * filter_.yw);
 }
 
 } // namespace alpenglow::render

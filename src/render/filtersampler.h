@@ -1,9 +1,9 @@
 // Sample positions drawn from a pixel filter (design decision 10): under `path` a sample belongs to one pixel only.
 //
 // The density is |f| / A, A = integral of |f|. A sample's weight is its sign times A / T, T = integral of f, so that
-// E[weight * g(offset)] = integral f g / T: the filtered value, negative lobes included. The numbers are mapped monotonically
-// on each axis, so the positive and the negative parts of f are fixed intervals of the unit square: with stratified numbers
-// their shares are fixed too, and the sign costs little noise.
+// E[weight * g(offset)] = integral f g / T: the filtered value, negative lobes included. The sign is decided by the first number
+// alone: [0, s) gives the positive part of f, [s, 1) the negative. So with stratified numbers the share of each sign is fixed to
+// within one sample a replica, and the sign costs little noise.
 #pragma once
 #include "base/vec.h"
 #include "render/pixelfilter.h"
@@ -30,25 +30,31 @@ public:
     const PixelFilter& filter() const { return filter_; }
 
 private:
+    /// The part of an axis where the filter has one sign: its pieces and their cumulated masses, 0 .. 1.
+    struct Part {
+        std::vector<int> piece;
+        std::vector<double> cdf{0};
+        double mass = 0;
+    };
     /// One axis of a separable filter: |f| as straight pieces between nodes, pieces cut at the zeros of f, masses by quadrature.
     struct Axis {
-        std::vector<double> node, value, cdf;
-        std::vector<signed char> sign;
+        std::vector<double> node, value, mass; ///< mass of the piece that begins at a node, of 1 in all
+        Part part[2];                          ///< positive, negative
         double total = 0, absolute = 0;
         void build(const PixelFilter&, double width);
-        double invert(double u, int* sign) const;
+        double invert(double u, const Part&) const;
         double density(double t) const;
     };
-    /// A filter that is no product: constant on cells; rows by their mass, cells within a row.
+    /// One sign of a filter that is no product: constant on cells; rows by their mass, cells within a row.
     struct Grid {
-        int n = 0;
         std::vector<double> rowCdf, cellCdf, mass;
+        double share = 0; ///< of the integral of |f|
     };
-    void buildGrid();
+    void buildGrids();
 
     PixelFilter filter_;
     Axis x_, y_;
-    Grid grid_;
+    Grid grid_[2]; ///< positive, negative
     double total_ = 0, absolute_ = 0;
     bool degenerate_ = false;
 };

@@ -1,0 +1,154 @@
+#include "render/noise.h"
+#include "../statistics/chisquare.h"
+#include <gtest/gtest.h>
+#include <random>
+
+using namespace alpenglow;
+using namespace alpenglow::render;
+
+namespace {
+
+Film makeFilm(int w, int h) {
+    FilmDescription d;
+    d.width = w;
+    d.height = h;
+    d.window = {0, 0, w, h};
+    return Film(d);
+}
+
+} // namespace
+
+TEST(Noise, FormulaByHand) {
+    // Samples 1, 2, 3, 6: mu 3, s^2 14/3, SE sqrt(14/12).
+    EXPECT_NEAR(relativeStandardError(12, 50, 4), std::sqrt(14.0 / 12) / 3.001, 1e-15);
+    EXPECT_EQ(relativeStandardError(5, 25, 1), 0);
+    EXPECT_EQ(relativeStandardError(0, 0, 0), 0);
+    EXPECT_EQ(relativeStandardError(3, 2.99999, 3), 0); // rounding below 0 counts as 0
+    EXPECT_EQ(efficiency(0.1, 4), 1 / (0.1 * 0.1 * 4));
+    EXPECT_EQ(efficiency(0, 4), 0);
+    EXPECT_EQ(efficiency(0.1, 0), 0);
+    EXPECT_EQ(raysPerMS(3'000'000, 2), 1500);
+    EXPECT_EQ(raysPerMS(5, 0), 0);
+}
+
+TEST(Noise, RankOfThePercentile) {
+    // 2000 figures 0..1999: k = floor(1998) = 1998.
+    std::vector<double> v;
+    for (int i = 1999; i >= 0; --i)
+        v.push_back(i);
+    double mean, rank;
+    summarise(v, &mean, &rank);
+    EXPECT_EQ(rank, 1998);
+    EXPECT_EQ(mean, 999.5);
+    v = {3, 1};
+    summarise(v, &mean, &rank);
+    EXPECT_EQ(rank, 3);
+    v.clear();
+    summarise(v, &mean, &rank);
+    EXPECT_EQ(mean, 0);
+    EXPECT_EQ(rank, 0);
+}
+
+TEST(Noise, FilmFiguresFollowTheFormula) {
+    Film f = makeFilm(2, 1);
+    const float a[4] = {1, 2, 3, 6}, b[4] = {2, 2, 2, 2};
+    EXPECT_EQ(noiseFigures(f).noiseRSE, 0);
+    for (uint32_t i = 0; i < 4; ++i) {
+        f.add(0, 0, i, {Color(a[i]), 1, {}});
+        f.add(1, 0, i, {Color(b[i]), 1, {}});
+        if (i == 0)
+            EXPECT_EQ(noiseFigures(f).noiseRSE, 0); // one sample says nothing
+    }
+    NoiseFigures n = noiseFigures(f);
+    double rse = std::sqrt(14.0 / 12) / 3.001;
+    EXPECT_NEAR(n.noiseRSE, rse / 2, 1e-10); // the constant pixel counts 0, exactly
+    EXPECT_NEAR(n.noiseRSE999, rse, 1e-10);
+}
+
+TEST(Noise, HalvesWhenSamplesAreQuadrupled) {
+    std::mt19937_64 g(11);
+    std::exponential_distribution<float> d(1);
+    Film a = makeFilm(40, 40), b = makeFilm(40, 40);
+    for (int y = 0; y < 40; ++y)
+        for (int x = 0; x < 40; ++x)
+            for (uint32_t i = 0; i < 1024; ++i) {
+                Color c(d(g));
+                if (i < 256)
+                    a.add(x, y, i, {c, 1, {}});
+                b.add(x, y, i, {c, 1, {}});
+            }
+    double ra = noiseFigures(a).noiseRSE, rb = noiseFigures(b).noiseRSE;
+    EXPECT_NEAR(rb / ra, 0.5, 0.01);
+    EXPECT_NEAR(rb, 1 / 32.0, 0.001); // exponential: sigma = mean, so 1/sqrt(1024)
+    // Four times the time, half the noise: the same efficiency.
+    EXPECT_NEAR(efficiency(rb, 4) / efficiency(ra, 1), 1, 0.05);
+}
+
+// The threshold table of the reference (640 x 360, 1000 samples). The model that gives its numbers: an ordinary sample is
+// normal with mean 1 and deviation 0.1; in a firefly pixel each sample is, with probability 0.002, 3000 instead. So a firefly
+// pixel holds k outliers, k ~ Poisson(2): its RSE is near 3 sqrt(k) / (1 + 3k): 0.75, 0.61, 0.52 ... for k = 1, 2, 3.
+// Moments of the ordinary samples are drawn exactly: mean ~ N, sum of squared deviations ~ sigma^2 chi^2(n - 1), independent.
+// The table is one random draw and so is ours: tolerances are 4.753 deviations of the difference plus the rounding shown.
+TEST(Noise, ThresholdTableOfTheReference) {
+    struct Row { double share, rse, rse999, tolerance999; };
+    const int pixels = 640 * 360, n = 1000;
+    // Rows 1 and 2: a quantile of ordinary pixels, density of s at that quantile known. Row 3: the median firefly, k = 2. Rows
+    // 4 and 5: inside k = 1, whose spread is that of the ordinary mean.
+    const Row rows[] = {{1e-4, 0.00320, 0.00338, 2e-5}, {1e-3, 0.00370, 0.00342, 9e-5}, {2e-3, 0.00421, 0.60547, 2e-3},
+                        {1e-2, 0.00848, 0.75006, 6e-4}, {5e-2, 0.02910, 0.75061, 6e-4}};
+    std::mt19937_64 g(5);
+    std::normal_distribution<double> normal(0, 1);
+    std::binomial_distribution<int> outliers(n, 0.002);
+    for (const Row& row : rows) {
+        std::vector<double> rse;
+        int fireflies = int(std::lround(row.share * pixels));
+        for (int p = 0; p < pixels; ++p) {
+            int k = p < fireflies ? outliers(g) : 0, m = n - k;
+            double sum = m + 0.1 * std::sqrt(double(m)) * normal(g);
+            double deviations = 0.01 * std::gamma_distribution<double>((m - 1) / 2.0, 2.0)(g);
+            rse.push_back(relativeStandardError(sum + 3000.0 * k, deviations + sum * sum / m + 9e6 * k, n));
+        }
+        double mean, rank;
+        summarise(rse, &mean, &rank);
+        double deviation = std::sqrt(double(fireflies)) * 0.22 / pixels; // 0.22: deviation of a firefly pixel's RSE
+        EXPECT_NEAR(mean, row.rse, 4.753 * std::sqrt(2.0) * deviation + 1e-5) << row.share;
+        EXPECT_NEAR(rank, row.rse999, row.tolerance999) << row.share;
+    }
+}
+
+TEST(Noise, ReplicaErrorByHand) {
+    // Eight replicas of two samples, means 1..8: m = 4.5, sum of squares 42, SE = sqrt(42 / 56).
+    std::vector<double> sums;
+    std::vector<uint32_t> counts(8, 2);
+    for (int i = 1; i <= 8; ++i)
+        sums.push_back(2.0 * i);
+    ReplicaError e = replicaError(sums, counts);
+    EXPECT_DOUBLE_EQ(e.mean, 4.5);
+    EXPECT_DOUBLE_EQ(e.se, std::sqrt(0.75));
+    EXPECT_EQ(e.replicas, 8);
+    EXPECT_NEAR(relativeReplicaError(e), std::sqrt(0.75) / 0.965030456 / 4.501, 1e-9); // c4(8) = 0.965030
+    // Unequal counts: n = 4, m = (1 + 3 * 3) / 4 = 2.5; SE^2 = 2/1 ((1/4)^2 1.5^2 + (3/4)^2 0.5^2)
+    counts = {1, 3, 0};
+    sums = {1, 9, 0};
+    e = replicaError(sums, counts);
+    EXPECT_EQ(e.replicas, 2);
+    EXPECT_DOUBLE_EQ(e.se, std::sqrt(2 * (2.25 / 16 + 9 * 0.25 / 16)));
+    counts = {5};
+    sums = {5};
+    e = replicaError(sums, counts);
+    EXPECT_EQ(relativeReplicaError(e), 0);
+    EXPECT_TRUE(std::isinf(confidenceInterval(e).halfWidth));
+}
+
+TEST(Noise, StudentQuantiles) {
+    // Tables of Student's distribution, two-sided.
+    EXPECT_NEAR(studentQuantile(0.95, 7), 2.364624, 1e-6);
+    EXPECT_NEAR(studentQuantile(0.95, 1), 12.706205, 1e-6);
+    EXPECT_NEAR(studentQuantile(0.95, 2), 4.302653, 1e-6);
+    EXPECT_NEAR(studentQuantile(0.95, 6), 2.446912, 1e-6);
+    EXPECT_NEAR(studentQuantile(0.99, 7), 3.499483, 1e-6);
+    EXPECT_NEAR(studentQuantile(0.5, 3), 0.764892, 1e-6);
+    ReplicaError e{2, 0.5, 8};
+    EXPECT_NEAR(confidenceInterval(e).halfWidth, 0.5 * 2.364624, 1e-6);
+    EXPECT_EQ(confidenceInterval(e).mean, 2);
+}

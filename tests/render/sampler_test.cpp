@@ -1,0 +1,207 @@
+// T8 of the test plan: the structure of the samples.
+#include "base/sampler.h"
+#include "../statistics/chisquare.h"
+#include <algorithm>
+#include <gtest/gtest.h>
+
+using namespace alpenglow;
+using namespace alpenglow::render;
+using namespace alpenglow::teststat;
+
+namespace {
+
+// Each of the 2^m intervals of every shape 2^-a x 2^-(m-a) holds exactly one of the points.
+void expectNet(const std::vector<Vec2>& points, int m) {
+    ASSERT_EQ(points.size(), size_t(1) << m);
+    for (int a = 0; a <= m; ++a) {
+        std::vector<int> hits(points.size(), 0);
+        for (Vec2 p : points)
+            hits[(size_t(p.x * float(1 << a)) << (m - a)) + size_t(p.y * float(1 << (m - a)))]++;
+        for (int h : hits)
+            ASSERT_EQ(h, 1) << "m " << m << " a " << a;
+    }
+}
+
+double correlation(const std::vector<double>& a, const std::vector<double>& b) {
+    double sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0, n = double(a.size());
+    for (size_t i = 0; i < a.size(); ++i) {
+        sa += a[i], sb += b[i], saa += a[i] * a[i], sbb += b[i] * b[i], sab += a[i] * b[i];
+    }
+    return (sab - sa * sb / n) / std::sqrt((saa - sa * sa / n) * (sbb - sb * sb / n));
+}
+
+} // namespace
+
+TEST(Sampler, SobolIsTheKnownSequence) {
+    // First points of the (0,2)-sequence: (0,0) (1/2,1/2) (1/4,3/4) (3/4,1/4) (1/8,5/8) (5/8,1/8) (3/8,3/8) (7/8,7/8).
+    const double x[8] = {0, .5, .25, .75, .125, .625, .375, .875}, y[8] = {0, .5, .75, .25, .625, .125, .375, .875};
+    for (uint32_t i = 0; i < 8; ++i) {
+        EXPECT_EQ(sobol0(i) * 0x1p-32, x[i]) << i;
+        EXPECT_EQ(sobol1(i) * 0x1p-32, y[i]) << i;
+    }
+}
+
+TEST(Sampler, EveryElementaryIntervalOnce) {
+    for (uint64_t seed : {0ull, 1ull, 77ull})
+        for (uint32_t replica : {0u, 3u, 7u})
+            for (uint32_t site : {0u, 5u}) {
+                Sampler s(seed, 12 + int(site), -3);
+                for (int m = 0; m <= 12; ++m) {
+                    std::vector<Vec2> p;
+                    for (uint32_t i = 0; i < 1u << m; ++i)
+                        p.push_back(s.get2(2, site, 1, i * kReplicas + replica));
+                    expectNet(p, m);
+                }
+            }
+}
+
+TEST(Sampler, EveryAlignedBlockIsANet) {
+    Sampler s(9, 100, 200);
+    for (uint32_t block = 0; block < 64; ++block) {
+        std::vector<Vec2> p;
+        for (uint32_t i = 0; i < 64; ++i)
+            p.push_back(s.get2(0, 1, 0, (block * 64 + i) * kReplicas + 2));
+        expectNet(p, 6);
+    }
+}
+
+TEST(Sampler, SingleNumbersAreStratified) {
+    Sampler s(4, 7, 8);
+    for (uint32_t replica = 0; replica < kReplicas; ++replica) {
+        std::vector<int> hits(1024, 0);
+        for (uint32_t i = 0; i < 1024; ++i)
+            hits[size_t(s.get1(3, 2, 1, i * kReplicas + replica) * 1024)]++;
+        EXPECT_EQ(std::count(hits.begin(), hits.end(), 1), 1024);
+    }
+}
+
+TEST(Sampler, BelowOne) {
+    EXPECT_LT(unitFloat(~0u), 1.0f);
+    EXPECT_EQ(unitFloat(0), 0.0f);
+}
+
+// A nested scramble: values that agree in their first k bits agree there after it, and differ in the next bit as before.
+TEST(Sampler, ScrambleIsNested) {
+    for (uint32_t t = 0; t < 20000; ++t) {
+        uint32_t a = uint32_t(mix64(t)), b = uint32_t(mix64(t + 1000000));
+        uint32_t k = t % 32;
+        b = k ? (a & ~(~0u >> k)) | (b & (~0u >> k)) : b;
+        uint32_t diff = a ^ b, flipped = nestedScramble(a, 5, 1) ^ nestedScramble(b, 5, 1);
+        if (diff)
+            EXPECT_EQ(__builtin_clz(diff), __builtin_clz(flipped)) << a << " " << b;
+        else
+            EXPECT_EQ(flipped, 0u);
+        uint32_t shuffled = nestedShuffle(a >> k, 5, 2);
+        EXPECT_EQ(a >> k ? __builtin_clz(a >> k) : 32, shuffled ? __builtin_clz(shuffled) : 32) << "the bit width must stay";
+    }
+}
+
+TEST(Sampler, OwenBitsUniform) {
+    const int n = 1'000'000;
+    // The flips along one path, and the flips of eight sibling nodes at one depth, are each eight fair independent coins.
+    std::vector<double> path(256, 0), siblings(256, 0), expected(256, n / 256.0);
+    for (int i = 0; i < n; ++i) {
+        uint64_t key = mix64(uint64_t(i));
+        path[(nestedScramble(0xa5000000u, key, 0) ^ 0xa5000000u) >> 24]++;
+        uint32_t bits = 0;
+        for (uint32_t k = 0; k < 8; ++k)
+            bits = bits << 1 | (((nestedScramble(k << 29, key, 1) ^ (k << 29)) >> 28) & 1);
+        siblings[bits]++;
+    }
+    EXPECT_GE(chiSquareP(path, expected), kAlpha);
+    EXPECT_GE(chiSquareP(siblings, expected), kAlpha);
+}
+
+TEST(Sampler, EachPointIsUniform) {
+    // One point of a scrambled sequence is uniform over the scrambles: 16 x 16 cells, sample 5 of one million pixels.
+    std::vector<double> hits(256, 0), expected(256, 1e6 / 256);
+    for (int i = 0; i < 1'000'000; ++i) {
+        Vec2 p = Sampler(3, i % 1000, i / 1000).get2(1, 4, 0, 5 * kReplicas);
+        hits[size_t(p.x * 16) * 16 + size_t(p.y * 16)]++;
+    }
+    EXPECT_GE(chiSquareP(hits, expected), kAlpha);
+}
+
+TEST(Sampler, TenMillionKeysNoCollision) {
+    std::vector<uint64_t> keys;
+    keys.reserve(10'000'000);
+    for (int y = 0; y < 250; ++y)
+        for (int x = -250; x < 250; ++x) {
+            Sampler s(1, x, y);
+            for (uint32_t r = 0; r < kReplicas; ++r)
+                for (uint32_t vertex = 0; vertex < 2; ++vertex)
+                    for (uint32_t site = 0; site < 5; ++site)
+                        keys.push_back(s.streamKey(r, vertex, site, 0));
+        }
+    ASSERT_EQ(keys.size(), 10'000'000u);
+    std::sort(keys.begin(), keys.end());
+    EXPECT_EQ(std::adjacent_find(keys.begin(), keys.end()), keys.end());
+    // Occurrences, vertices and sites of one pixel, and neighbouring seeds.
+    keys.clear();
+    for (uint64_t seed = 0; seed < 4; ++seed)
+        for (uint32_t vertex = 0; vertex < 50; ++vertex)
+            for (uint32_t site = 0; site < 100; ++site)
+                for (uint32_t o = 0; o < 100; ++o)
+                    keys.push_back(Sampler(seed, 0, 0).streamKey(0, vertex, site, o));
+    std::sort(keys.begin(), keys.end());
+    EXPECT_EQ(std::adjacent_find(keys.begin(), keys.end()), keys.end());
+}
+
+TEST(Sampler, SerialCorrelation) {
+    const int n = 1'000'000;
+    std::vector<double> here, nextPixel, nextVertex, nextSite, nextOccurrence, nextReplica, other, single, nextSeed;
+    for (int i = 0; i < n; ++i) {
+        int x = i % 1000, y = i / 1000;
+        uint32_t k = uint32_t(i % 8);
+        Sampler s(5, x, y);
+        Vec2 p = s.get2(1, 1, 1, k);
+        here.push_back(p.x);
+        other.push_back(p.y);
+        nextPixel.push_back(Sampler(5, x + 1, y).get2(1, 1, 1, k).x);
+        nextVertex.push_back(s.get2(2, 1, 1, k).x);
+        nextSite.push_back(s.get2(1, 2, 1, k).x);
+        nextOccurrence.push_back(s.get2(1, 1, 2, k).x);
+        nextReplica.push_back(s.get2(1, 1, 1, k ^ 1).x);
+        single.push_back(s.get1(1, 1, 1, k));
+        nextSeed.push_back(Sampler(6, x, y).get2(1, 1, 1, k).x);
+    }
+    double bound = 4.75 / std::sqrt(double(n));
+    for (auto* v : {&other, &nextPixel, &nextVertex, &nextSite, &nextOccurrence, &nextReplica, &single, &nextSeed})
+        EXPECT_LE(std::fabs(correlation(here, *v)), bound) << "series " << (v - &here);
+}
+
+// Pairs are shuffled against each other: without it the first bits of two pairs would be locked together in every pixel.
+TEST(Sampler, PairsArePadded) {
+    int full = 0;
+    std::vector<double> a, b;
+    for (int pixel = 0; pixel < 500; ++pixel) {
+        Sampler s(2, pixel, 0);
+        std::vector<int> cells(16, 0);
+        for (uint32_t i = 0; i < 256; ++i) {
+            Vec2 p = s.get2(0, 0, 0, i * kReplicas), q = s.get2(0, 1, 0, i * kReplicas);
+            cells[size_t(p.x * 4) * 4 + size_t(q.x * 4)]++;
+            a.push_back(p.x);
+            b.push_back(q.y);
+        }
+        full += std::count(cells.begin(), cells.end(), 0) == 0;
+    }
+    EXPECT_GE(full, 490); // 256 points in 16 cells, 16 expected each
+    EXPECT_LE(std::fabs(correlation(a, b)), 4.75 / std::sqrt(double(a.size())));
+}
+
+// Stratification pays: the mean of a smooth function over N points of a replica has an error well below that of N random points.
+TEST(Sampler, ErrorFallsFasterThanRandom) {
+    double square = 0;
+    const int pixels = 400, n = 256;
+    for (int p = 0; p < pixels; ++p) {
+        Sampler s(8, p, 1);
+        double sum = 0;
+        for (uint32_t i = 0; i < n; ++i) {
+            Vec2 u = s.get2(0, 0, 0, i * kReplicas);
+            sum += 4.0 * u.x * u.y;
+        }
+        square += (sum / n - 1) * (sum / n - 1);
+    }
+    double random = (16.0 / 9 - 1) / n; // variance of the mean of 256 random values of 4 x y
+    EXPECT_LT(square / pixels, random / 100);
+}

@@ -32,7 +32,22 @@ struct KernelCall {
     uint64_t (*lightFetch)(KernelCall*, int32_t site, int32_t light, int32_t first, uint64_t mask, int32_t lanes, float* lClOl);
     const volatile int32_t* stop; ///< loops leave early when *stop != 0
     const int32_t* pairCount; ///< not used by generated code; room for the caller's bookkeeping
+    /// Frames of suspending kernels: `bytes` of memory, 64-byte aligned, or null when there is none left (start then returns null).
+    /// The KernelCall itself, and everything it points to, must stay valid until the coroutine is destroyed.
+    void* (*alloc)(KernelCall*, uint64_t bytes);
+    void (*release)(KernelCall*, void* frame, uint64_t bytes);
 };
+
+/// Site numbers that `service` gets for the two operations on the strip's list of affine pairs.
+/// Mark: out = one row, the number of pairs emitted so far for this strip. Rescale: in = row of the mark, then three rows of factors.
+inline constexpr int32_t kSiteMark = -1, kSiteRescale = -2;
+
+/// Rows per component of a varying input: 1, 3 (v, du, dv) or 6 (v, du, dv, duu, duv, dvv). Inputs that are uniform by declaration,
+/// matrices, strings and arrays have no derivatives: always 1 (in build V too, where component c of element e is row e * components + c).
+inline int inputParts(const ir::Input& i) {
+    if (i.uniform || i.array != 0 || (i.kind != ir::Kind::Float && i.kind != ir::Kind::Triple)) return 1;
+    return i.order == 0 ? 1 : i.order == 1 ? 3 : 6;
+}
 
 /// Strings at run time are ids. Ids are assigned in order of first use, never travel between processes; "" is 0. Thread safe.
 int32_t internString(const std::string&);

@@ -1,0 +1,18 @@
+# rsl_jit: kernels, cache, loader. LLVM is in a module of its own that is loaded when a kernel is not in the cache.
+find_package(LLVM 19.1 REQUIRED CONFIG PATHS /usr/lib/llvm-19/cmake NO_DEFAULT_PATH)
+file(GLOB jit_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/rsl/jit/*.cpp ${CMAKE_SOURCE_DIR}/src/rsl/*.cpp)
+file(GLOB jit_llvm_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/rsl/jit/llvm/*.cpp)
+add_library(alpenglow_jit MODULE ${jit_llvm_sources})
+target_include_directories(alpenglow_jit SYSTEM PRIVATE ${LLVM_INCLUDE_DIRS})
+target_compile_options(alpenglow_jit PRIVATE -fvisibility=hidden)
+# names of kinds and instructions: the only code shared with the program
+target_sources(alpenglow_jit PRIVATE ${CMAKE_SOURCE_DIR}/src/rsl/ir/ir.cpp)
+target_link_libraries(alpenglow_jit PRIVATE LLVM)
+set_target_properties(alpenglow_jit PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+
+add_library(rsl_jit STATIC ${jit_sources})
+target_link_libraries(rsl_jit PUBLIC rsl_ir rsl_front shadeops base ${CMAKE_DL_LIBS})
+target_compile_definitions(rsl_jit PRIVATE ALPENGLOW_JIT_MODULE="${CMAKE_BINARY_DIR}/bin/libalpenglow_jit.so")
+add_dependencies(rsl_jit alpenglow_jit)
+room_tests(rsljit DEPS rsl_jit)
+room_tests(language DEPS rsl_jit)

@@ -1,0 +1,26 @@
+// The kernel cache on disk: files named by the key, whole or absent, the least recently used dropped.
+#pragma once
+#include "rsl/jit/kernelfile.h"
+
+namespace alpenglow::rsl::jit {
+
+/// $ALPENGLOW_CACHE, else $XDG_CACHE_HOME/alpenglow, else ~/.cache/alpenglow; "" (no cache) when none is set or ALPENGLOW_CACHE is "off".
+std::string defaultCacheDirectory();
+
+class KernelCache {
+public:
+    /// An empty directory name: no cache. The directory is made on the first store, for its owner only.
+    explicit KernelCache(std::string directory, size_t maxBytes);
+    std::optional<KernelFile> load(const std::string& key) const;
+    /// A full or read-only disk is no error: the next run compiles again.
+    void store(const std::string& key, const KernelFile&) const;
+    const std::string& directory() const { return directory_; }
+
+private:
+    void trim() const;
+    std::string path(const std::string& key) const;
+    std::string directory_;
+    size_t maxBytes_;
+};
+
+} // namespace alpenglow::rsl::jit

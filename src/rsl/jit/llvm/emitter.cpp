@@ -1,0 +1,375 @@
+#include "rsl/jit/llvm/emitter.h"
+#include "rsl/kernel.h"
+#include <algorithm>
+#include <cstddef>
+
+namespace alpenglow::rsl::jit {
+
+using ir::Inst;
+using ir::Kind;
+using ir::Op;
+using llvm::BasicBlock;
+using llvm::Value;
+
+namespace {
+
+int componentsOf(Kind k) {
+    switch (k) {
+    case Kind::Triple: return 3;
+    case Kind::Matrix: return 16;
+    case Kind::Float: case Kind::Bool: case Kind::String: return 1;
+    default: return 0;
+    }
+}
+
+Kind resultKind(const Inst* i, int index) { return i->results.empty() ? i->kind : i->results[size_t(index)]; }
+
+} // namespace
+
+Plan plan(const ModuleRequest& r, const Shapes& shapes) {
+    const Pressure p = measure(*r.kernel, shapes, r.outOfLine);
+    Plan plan;
+    // A dozen inlined noises is about 2,000 instructions: 0.1 s of compilation. Beyond that they are called.
+    plan.wrapCalls = p.outOfLineCalls > 12;
+    if (r.vectors > 0) plan.vectors = r.vectors;
+    else if (shapes.hasRequests() || p.effects || p.outOfLineCalls > 0 || p.instructions > 600) plan.vectors = 1;
+    else if (r.lanes == 16 && p.live <= 7 && !p.loops) plan.vectors = 4;
+    else if (p.live <= 14) plan.vectors = 2;
+    while (r.lanes * plan.vectors > 64) plan.vectors /= 2;
+    if (plan.vectors == 3) plan.vectors = 2; // the runtime exists for powers of two
+    return plan;
+}
+
+Emitter::Emitter(const ModuleRequest& request, const Shapes& shapes, int width, llvm::Module& m, llvm::Module& runtime)
+    : request_(request), kernel_(*request.kernel), shapes_(shapes), width_(width), module_(m), runtime_(runtime),
+      context_(m.getContext()), b_(context_), entry_(context_) {
+    f32_ = llvm::Type::getFloatTy(context_);
+    i1_ = llvm::Type::getInt1Ty(context_);
+    i32_ = llvm::Type::getInt32Ty(context_);
+    i64_ = llvm::Type::getInt64Ty(context_);
+    ptr_ = llvm::PointerType::get(context_, 0);
+    void_ = llvm::Type::getVoidTy(context_);
+    vf_ = llvm::FixedVectorType::get(f32_, unsigned(width));
+    vi_ = llvm::FixedVectorType::get(i32_, unsigned(width));
+    vm_ = llvm::FixedVectorType::get(i1_, unsigned(width));
+    wrapCalls_ = plan(request, shapes).wrapCalls;
+}
+
+void Emitter::fail(const std::string& what) { throw CodegenError(what); }
+
+BasicBlock* Emitter::block(const char* name) { return BasicBlock::Create(context_, name, function_); }
+
+Value* Emitter::any(Value* mask) { return b_.CreateOrReduce(mask); }
+
+// Loops ask whether the caller wants them to end, so that while (1) can be interrupted.
+Value* Emitter::stopped() {
+    auto* l = b_.CreateLoad(i32_, stop_, /*isVolatile=*/true, "stop");
+    return b_.CreateICmpNE(l, b_.getInt32(0));
+}
+
+const Val& Emitter::value(const Inst* i) {
+    auto it = values_.find(i);
+    if (it == values_.end() || it->second.empty() || it->second[0].empty()) fail(std::string("use of an undefined value: ") + ir::name(i->op));
+    return it->second[0];
+}
+
+void Emitter::define(const Inst* i, int index, Val v) {
+    auto& slot = values_[i];
+    if (int(slot.size()) <= index) slot.resize(size_t(index) + 1);
+    slot[size_t(index)] = std::move(v);
+}
+
+Val Emitter::zero(Kind kind, Shape s) {
+    llvm::Type* t = kind == Kind::Bool ? (s.varying ? (llvm::Type*)vm_ : i1_)
+                    : kind == Kind::String ? (s.varying ? (llvm::Type*)vi_ : i32_) : (s.varying ? (llvm::Type*)vf_ : f32_);
+    Val v(size_t(componentsOf(kind)));
+    for (Jet& j : v) {
+        j.v = llvm::Constant::getNullValue(t);
+        for (int p = 0; p < 5; p++)
+            if (s.parts & (1 << p)) j.d[size_t(p)] = llvm::Constant::getNullValue(t);
+    }
+    return v;
+}
+
+// Makes a value have exactly this shape: lanes where lanes are wanted, explicit zeros for parts that may differ elsewhere.
+Val Emitter::conform(Val v, Kind, Shape s) {
+    for (Jet& j : v) {
+        if (s.varying) j.v = lanes(j.v);
+        else if (j.v->getType()->isVectorTy()) fail("lanes where one number was expected");
+        for (int p = 0; p < 5; p++) {
+            Value*& d = j.d[size_t(p)];
+            if (!(s.parts & (1 << p))) d = nullptr;
+            else if (!d) d = llvm::Constant::getNullValue(j.v->getType());
+            else if (s.varying) d = lanes(d);
+        }
+    }
+    return v;
+}
+
+Val Emitter::phis(Kind kind, Shape s) {
+    Val v = zero(kind, s);
+    for (Jet& j : v) {
+        j.v = b_.CreatePHI(j.v->getType(), 2);
+        for (Value*& d : j.d)
+            if (d) d = b_.CreatePHI(d->getType(), 2);
+    }
+    return v;
+}
+
+void Emitter::addIncoming(Val& phi, const Val& v, BasicBlock* from) {
+    for (size_t c = 0; c < phi.size(); c++) {
+        llvm::cast<llvm::PHINode>(phi[c].v)->addIncoming(v[c].v, from);
+        for (size_t p = 0; p < 5; p++)
+            if (phi[c].d[p]) llvm::cast<llvm::PHINode>(phi[c].d[p])->addIncoming(v[c].d[p], from);
+    }
+}
+
+Val Emitter::selectLanes(Value* mask, const Val& a, const Val& b) {
+    Val r(a.size());
+    for (size_t c = 0; c < a.size(); c++) r[c] = select(mask, a[c], b[c]);
+    return r;
+}
+
+void Emitter::region(const ir::Region& r) {
+    for (const Inst* i : r.body) inst(i);
+}
+
+void Emitter::inst(const Inst* i) {
+    switch (i->op) {
+    case Op::Const: {
+        Val v;
+        if (i->kind == Kind::Bool) v.push_back({llvm::ConstantInt::getBool(context_, !i->numbers.empty() && i->numbers[0] != 0)});
+        else
+            for (int c = 0; c < componentsOf(i->kind); c++)
+                v.push_back({number(size_t(c) < i->numbers.size() ? i->numbers[size_t(c)] : 0.0f)});
+        return define(i, 0, std::move(v));
+    }
+    case Op::ConstString: return define(i, 0, {Jet{constantString(i->text)}});
+    case Op::Input: return input(i);
+    case Op::RegionParam: return;
+    case Op::Result: {
+        auto it = values_.find(i->args[0]);
+        if (it == values_.end() || size_t(i->index) >= it->second.size()) fail("result of an instruction that has none");
+        Val v = it->second[size_t(i->index)]; // a copy: define may move the table
+        return define(i, 0, std::move(v));
+    }
+    case Op::Runtime: return runtime(i);
+    case Op::Service: case Op::Request: case Op::Emit: return service(i);
+    case Op::Mark: case Op::Rescale: return mark(i);
+    case Op::ArrayNew: return arrayNew(i);
+    case Op::ArrayInput: return arrayInput(i);
+    case Op::ArrayLoad: return arrayLoad(i);
+    case Op::ArrayStore: return arrayStore(i);
+    case Op::If: return emitIf(i);
+    case Op::Loop: return emitLoop(i);
+    case Op::LightLoop: return emitLightLoop(i);
+    case Op::Output: return output(i);
+    default: return arithmetic(i);
+    }
+}
+
+void Emitter::emitIf(const Inst* i) {
+    Value* cond = value(i->args[0])[0].v;
+    const bool varying = cond->getType()->isVectorTy();
+    const ir::Region& thenRegion = i->regions[0];
+    static const ir::Region kEmpty;
+    const ir::Region& elseRegion = i->regions.size() > 1 ? i->regions[1] : kEmpty;
+    const size_t count = thenRegion.yields.size();
+    auto shapeOf = [&](size_t k) { return shapes_.of(i, int(k)); };
+    auto yields = [&](const ir::Region& r) {
+        std::vector<Val> v;
+        for (size_t k = 0; k < count; k++) v.push_back(conform(value(r.yields[k]), resultKind(i, int(k)), shapeOf(k)));
+        return v;
+    };
+    if (!varying) {
+        BasicBlock *t = block("then"), *e = block("else"), *join = block("endif");
+        b_.CreateCondBr(cond, t, e);
+        b_.SetInsertPoint(t);
+        region(thenRegion);
+        std::vector<Val> a = yields(thenRegion);
+        BasicBlock* tEnd = b_.GetInsertBlock();
+        b_.CreateBr(join);
+        b_.SetInsertPoint(e);
+        region(elseRegion);
+        std::vector<Val> c = count ? yields(elseRegion) : std::vector<Val>{};
+        BasicBlock* eEnd = b_.GetInsertBlock();
+        b_.CreateBr(join);
+        b_.SetInsertPoint(join);
+        for (size_t k = 0; k < count; k++) {
+            Val p = phis(resultKind(i, int(k)), shapeOf(k));
+            addIncoming(p, a[k], tEnd);
+            addIncoming(p, c[k], eEnd);
+            define(i, int(k), std::move(p));
+        }
+        return;
+    }
+    // Varying: each side runs when some lane takes it, under its mask. Values of lanes outside never matter, so the results need only
+    // the condition; the skipped side gives zeros, not poison, because masks are made of such values.
+    Value* outer = mask_;
+    const bool outerRoot = rootMask_;
+    rootMask_ = false;
+    auto side = [&](const ir::Region& r, Value* mask) {
+        std::vector<Val> result;
+        mask_ = mask;
+        if (r.body.empty()) return count ? yields(r) : result;
+        BasicBlock* from = b_.GetInsertBlock();
+        BasicBlock *body = block("side"), *join = block("joined");
+        b_.CreateCondBr(any(mask), body, join);
+        from = b_.GetInsertBlock();
+        b_.SetInsertPoint(body);
+        region(r);
+        std::vector<Val> v = count ? yields(r) : result;
+        BasicBlock* end = b_.GetInsertBlock();
+        b_.CreateBr(join);
+        b_.SetInsertPoint(join);
+        for (size_t k = 0; k < count; k++) {
+            // A value from before the branch needs no phi.
+            Val p = phis(resultKind(i, int(k)), shapeOf(k));
+            addIncoming(p, v[k], end);
+            addIncoming(p, zero(resultKind(i, int(k)), shapeOf(k)), from);
+            result.push_back(std::move(p));
+        }
+        return result;
+    };
+    std::vector<Val> a = side(thenRegion, b_.CreateAnd(outer, cond));
+    std::vector<Val> c = side(elseRegion, b_.CreateAnd(outer, b_.CreateNot(cond)));
+    mask_ = outer;
+    rootMask_ = outerRoot;
+    for (size_t k = 0; k < count; k++) define(i, int(k), selectLanes(cond, a[k], c[k]));
+}
+
+void Emitter::emitLoop(const Inst* i) {
+    const ir::Region &test = i->regions[0], &body = i->regions[1];
+    const size_t count = test.params.size();
+    const bool varying = shapes_.of(test.yields[0]).varying;
+    std::vector<Shape> shape(count);
+    std::vector<Kind> kind(count);
+    std::vector<Val> init(count), phi(count);
+    for (size_t k = 0; k < count; k++) {
+        kind[k] = test.params[k]->kind;
+        shape[k] = shapes_.of(test.params[k]);
+        init[k] = conform(value(i->args[k]), kind[k], shape[k]);
+    }
+    BasicBlock* before = b_.GetInsertBlock();
+    BasicBlock *head = block("loop"), *inside = block("body"), *exit = block("exit");
+    b_.CreateBr(head);
+    b_.SetInsertPoint(head);
+    Value* outer = mask_;
+    const bool outerRoot = rootMask_;
+    llvm::PHINode* live = varying ? b_.CreatePHI(vm_, 2, "live") : nullptr;
+    for (size_t k = 0; k < count; k++) {
+        phi[k] = phis(kind[k], shape[k]);
+        addIncoming(phi[k], init[k], before);
+        define(test.params[k], 0, phi[k]);
+        define(body.params[k], 0, phi[k]);
+    }
+    if (varying) {
+        live->addIncoming(outer, before);
+        mask_ = live;
+        rootMask_ = false;
+    }
+    region(test);
+    Value* go = value(test.yields[0])[0].v;
+    Value* running = nullptr;
+    if (varying) {
+        running = b_.CreateAnd(live, lanes(go), "running");
+        go = any(running);
+    }
+    b_.CreateCondBr(b_.CreateAnd(go, b_.CreateNot(stopped())), inside, exit);
+    b_.SetInsertPoint(inside);
+    if (varying) mask_ = running;
+    region(body);
+    std::vector<Val> next(count);
+    for (size_t k = 0; k < count; k++) {
+        next[k] = conform(value(body.yields[k]), kind[k], shape[k]);
+        // Lanes that left keep what they had.
+        if (varying && body.yields[k] != body.params[k]) next[k] = selectLanes(running, next[k], phi[k]);
+    }
+    BasicBlock* latch = b_.GetInsertBlock();
+    b_.CreateBr(head);
+    for (size_t k = 0; k < count; k++) addIncoming(phi[k], next[k], latch);
+    if (varying) live->addIncoming(running, latch);
+    b_.SetInsertPoint(exit);
+    mask_ = outer;
+    rootMask_ = outerRoot;
+    for (size_t k = 0; k < count; k++) define(i, int(k), phi[k]);
+}
+
+void Emitter::emitLightLoop(const Inst* i) {
+    const ir::Region& body = i->regions[0];
+    const size_t count = body.yields.size();
+    // P, axis, angle: seven rows; the lights of the strip.
+    std::vector<Value*> rows;
+    for (int k = 0; k < 3; k++) flatten(i->args[size_t(k)], rows);
+    Value* in = scratch(2, int(rows.size()));
+    storeRows(in, rows);
+    auto* i32 = i32_;
+    Value* begin = field(offsetof(KernelCall, lightBegin), ptr_, "lightBegin");
+    Value* fetch = field(offsetof(KernelCall, lightFetch), ptr_, "lightFetch");
+    Value* site = b_.getInt32(uint32_t(i->site));
+    Value* lanesValue = b_.getInt32(uint32_t(width_));
+    auto* beginType = llvm::FunctionType::get(i32, {ptr_, i32, i32, i64_, i32, ptr_}, false);
+    Value* lights = b_.CreateCall(beginType, begin, {call_, site, first_, maskBits(), lanesValue, in}, "lights");
+    std::vector<Shape> shape(count);
+    std::vector<Kind> kind(count);
+    std::vector<Val> init(count), phi(count);
+    for (size_t k = 0; k < count; k++) {
+        kind[k] = body.params[4 + k]->kind;
+        shape[k] = shapes_.of(body.params[4 + k]);
+        init[k] = conform(value(i->args[3 + k]), kind[k], shape[k]);
+    }
+    BasicBlock* before = b_.GetInsertBlock();
+    BasicBlock *head = block("lightloop"), *get = block("light"), *inside = block("lit"), *step = block("nextlight"), *exit = block("exit");
+    b_.CreateBr(head);
+    b_.SetInsertPoint(head);
+    auto* index = b_.CreatePHI(i32, 2, "light");
+    index->addIncoming(b_.getInt32(0), before);
+    for (size_t k = 0; k < count; k++) {
+        phi[k] = phis(kind[k], shape[k]);
+        addIncoming(phi[k], init[k], before);
+    }
+    b_.CreateCondBr(b_.CreateAnd(b_.CreateICmpSLT(index, lights), b_.CreateNot(stopped())), get, exit);
+    b_.SetInsertPoint(get);
+    Value* out = scratch(3, 9);
+    auto* fetchType = llvm::FunctionType::get(i64_, {ptr_, i32, i32, i32, i64_, i32, ptr_}, false);
+    Value* bits = b_.CreateCall(fetchType, fetch, {call_, site, index, first_, maskBits(), lanesValue, out});
+    Value* bitsW = width_ == 64 ? bits : b_.CreateTrunc(bits, b_.getIntNTy(unsigned(width_)));
+    Value* mask = b_.CreateAnd(mask_, b_.CreateBitCast(bitsW, vm_), "lit");
+    int at = 0;
+    for (size_t k = 0; k < 3; k++) define(body.params[k], 0, fromRows(Kind::Triple, out, at));
+    define(body.params[3], 0, {Jet{b_.CreateSIToFP(index, f32_)}});
+    for (size_t k = 0; k < count; k++) define(body.params[4 + k], 0, phi[k]);
+    b_.CreateCondBr(any(mask), inside, step);
+    BasicBlock* skipped = b_.GetInsertBlock();
+    Value* outer = mask_;
+    const bool outerRoot = rootMask_;
+    b_.SetInsertPoint(inside);
+    mask_ = mask;
+    rootMask_ = false;
+    region(body);
+    std::vector<Val> next(count);
+    for (size_t k = 0; k < count; k++) {
+        next[k] = conform(value(body.yields[k]), kind[k], shape[k]);
+        if (body.yields[k] != body.params[4 + k]) next[k] = selectLanes(mask, next[k], phi[k]);
+    }
+    BasicBlock* ran = b_.GetInsertBlock();
+    b_.CreateBr(step);
+    b_.SetInsertPoint(step);
+    std::vector<Val> joined(count);
+    for (size_t k = 0; k < count; k++) {
+        joined[k] = phis(kind[k], shape[k]);
+        addIncoming(joined[k], phi[k], skipped);
+        addIncoming(joined[k], next[k], ran);
+    }
+    Value* following = b_.CreateAdd(index, b_.getInt32(1));
+    BasicBlock* latch = b_.GetInsertBlock();
+    b_.CreateBr(head);
+    index->addIncoming(following, latch);
+    for (size_t k = 0; k < count; k++) addIncoming(phi[k], joined[k], latch);
+    b_.SetInsertPoint(exit);
+    mask_ = outer;
+    rootMask_ = outerRoot;
+    for (size_t k = 0; k < count; k++) define(i, int(k), phi[k]);
+}
+
+} // namespace alpenglow::rsl::jit

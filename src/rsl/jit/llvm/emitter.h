@@ -1,0 +1,143 @@
+// From our IR to LLVM IR, lanes explicit. One Emitter makes one kernel: either a loop over the strips of a batch, or a coroutine a strip.
+#pragma once
+#include "rsl/jit/llvm/shape.h"
+#include "rsl/jit/module.h"
+#include <array>
+#include <llvm/IR/IRBuilder.h>
+#include <llvm/IR/Module.h>
+#include <map>
+#include <stdexcept>
+
+namespace alpenglow::rsl::jit {
+
+struct CodegenError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// A component with its derivative parts du, dv, duu, duv, dvv. A null part is exactly zero and costs nothing.
+struct Jet {
+    llvm::Value* v = nullptr;
+    std::array<llvm::Value*, 5> d{};
+};
+using Val = std::vector<Jet>; ///< one Jet a component
+
+/// Storage of an array: rows of <W x float> (or of floats when uniform), element after element, component after component, part after part.
+struct ArrayStorage {
+    llvm::Value* base = nullptr;
+    int length = 0, components = 0;
+    ir::Kind element = ir::Kind::None;
+    Shape shape;
+    llvm::Value* stride = nullptr; ///< inputs: floats between rows (i64); null: rows are packed
+    bool readOnly = false;
+    int rows() const { return components * (1 + __builtin_popcount(shape.parts)); }
+};
+
+class Emitter {
+public:
+    Emitter(const ModuleRequest&, const Shapes&, int width, llvm::Module&, llvm::Module& runtime);
+    void emitLoopKernel();
+    void emitCoroutine();
+    const std::vector<std::string>& strings() const { return strings_; }
+
+private:
+    using B = llvm::IRBuilder<>;
+    // frame.cpp: the function around the body
+    void beginFunction(llvm::Function*);
+    void loadCall(llvm::Value* call);
+    llvm::Value* field(size_t offset, llvm::Type*, const char* name);
+    void finishScratch();
+    void setMask(llvm::Value* firstPoint);
+    // emitter.cpp: tree walk, control flow
+    void region(const ir::Region&);
+    void inst(const ir::Inst*);
+    void emitIf(const ir::Inst*);
+    void emitLoop(const ir::Inst*);
+    void emitLightLoop(const ir::Inst*);
+    llvm::Value* any(llvm::Value* mask);
+    llvm::Value* stopped();
+    llvm::BasicBlock* block(const char* name);
+    const Val& value(const ir::Inst*);
+    void define(const ir::Inst*, int index, Val);
+    Val zero(ir::Kind, Shape);
+    Val conform(Val, ir::Kind, Shape);
+    Val phis(ir::Kind, Shape);
+    void addIncoming(Val& phi, const Val& v, llvm::BasicBlock* from);
+    Val selectLanes(llvm::Value* mask, const Val& a, const Val& b);
+    // arithmetic.cpp
+    void arithmetic(const ir::Inst*);
+    Jet add(Jet, Jet), sub(Jet, Jet), mul(Jet, Jet), div(Jet, Jet, const ir::Inst* divisor), neg(Jet);
+    Jet select(llvm::Value* c, Jet a, Jet b);
+    Jet derive(Jet, bool v);
+    llvm::Value* fadd(llvm::Value*, llvm::Value*);
+    llvm::Value* fsub(llvm::Value*, llvm::Value*);
+    llvm::Value* fmul(llvm::Value*, llvm::Value*);
+    llvm::Value* lanes(llvm::Value*);                       ///< splats a scalar
+    void match(llvm::Value*&, llvm::Value*&);               ///< both scalars or both lanes
+    llvm::Value* number(float);
+    // memory.cpp
+    void input(const ir::Inst*);
+    void output(const ir::Inst*);
+    void arrayNew(const ir::Inst*);
+    void arrayInput(const ir::Inst*);
+    void arrayLoad(const ir::Inst*);
+    void arrayStore(const ir::Inst*);
+    llvm::Value* elementIndex(llvm::Value* index, int length);
+    llvm::Value* rowPointer(const ArrayStorage&, llvm::Value* element, int row);
+    llvm::Value* loadRow(const ArrayStorage&, llvm::Value* element, int row);
+    void storeRow(const ArrayStorage&, llvm::Value* element, int row, llvm::Value* v);
+    llvm::Value* inputBase(int index);
+    llvm::Value* constantString(const std::string&);
+    // calls.cpp
+    void runtime(const ir::Inst*);
+    llvm::Function* runtimeFunction(const std::string& symbol, int order);
+    llvm::Function* wrapper(const std::string& symbol, int order, int in, int out);
+    std::vector<llvm::Value*> callRuntime(llvm::Function*, const std::vector<llvm::Value*>& in, int out);
+    void service(const ir::Inst*);
+    void mark(const ir::Inst*);
+    void flatten(const ir::Inst* arg, std::vector<llvm::Value*>& rows);
+    void storeRows(llvm::Value* block, const std::vector<llvm::Value*>& rows);
+    llvm::Value* row(llvm::Value* block, int index);
+    void callService(int site, llvm::Value* in, llvm::Value* out);
+    llvm::Value* maskBits();
+    llvm::Value* scratch(int which, int rows);
+    Val fromRows(ir::Kind, llvm::Value* block, int& row);
+    llvm::Value* toFloatRow(llvm::Value*);
+    void suspend();
+
+    [[noreturn]] void fail(const std::string&);
+
+    const ModuleRequest& request_;
+    const ir::Kernel& kernel_;
+    const Shapes& shapes_;
+    const int width_;
+    llvm::Module& module_;
+    llvm::Module& runtime_;
+    llvm::LLVMContext& context_;
+    B b_, entry_;                    ///< the place of emission; the end of the entry block (uniform loads)
+    llvm::Type *f32_, *i1_, *i32_, *i64_, *ptr_, *void_;
+    llvm::VectorType *vf_, *vi_, *vm_;
+    llvm::Function* function_ = nullptr;
+    llvm::BasicBlock* entryBlock_ = nullptr;
+    llvm::Value *call_ = nullptr, *first_ = nullptr, *first64_ = nullptr, *mask_ = nullptr, *stop_ = nullptr, *stride_ = nullptr;
+    llvm::Value *in_ = nullptr, *out_ = nullptr, *stringIds_ = nullptr, *n_ = nullptr;
+    bool rootMask_ = true;           ///< the mask is that of the strip: lanes beyond n may be overwritten
+    // Scratch rows: arguments and results of runtime calls (promoted to registers), of services (escape).
+    struct Scratch { llvm::Instruction* place = nullptr; int rows = 0; };
+    std::array<Scratch, 4> scratch_;
+    std::unordered_map<const ir::Inst*, std::vector<Val>> values_;
+    std::unordered_map<const ir::Inst*, ArrayStorage> arrays_;
+    std::map<int, llvm::Value*> inputBases_;
+    std::map<int, Val> uniformInputs_;
+    std::map<std::string, llvm::Function*> wrappers_;
+    std::vector<std::string> strings_;
+    std::map<std::string, llvm::Value*> stringValues_;
+    bool wrapCalls_ = false;
+    // coroutine
+    llvm::BasicBlock *suspendBlock_ = nullptr, *cleanupBlock_ = nullptr;
+};
+
+/// Whether noise and its like are called through wrappers in this kernel, and how many vectors it works on at a time.
+struct Plan { int vectors = 1; bool wrapCalls = false; };
+Plan plan(const ModuleRequest&, const Shapes&);
+
+} // namespace alpenglow::rsl::jit

@@ -1,0 +1,65 @@
+// What every value of a kernel looks like in machine code: one number or lanes, and which derivative parts can differ from zero.
+#pragma once
+#include "rsl/ir/ir.h"
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace alpenglow::rsl::jit {
+
+/// Derivative parts as bits, in the order of jets: du, dv, duu, duv, dvv.
+enum Part : uint8_t { kDu = 1, kDv = 2, kDuu = 4, kDuv = 8, kDvv = 16 };
+inline constexpr uint8_t partsOfOrder(int order) { return order <= 0 ? 0 : order == 1 ? 3 : 31; }
+
+struct Shape {
+    bool varying = false;
+    uint8_t parts = 0; ///< a part that is not here is exactly zero
+    bool join(Shape o) {
+        const Shape before = *this;
+        varying |= o.varying;
+        parts |= o.parts;
+        return before.varying != varying || before.parts != parts;
+    }
+};
+
+/// Shapes of all values of a kernel: the least fixed point over its tree. Sound for any kernel that verify() accepts; does not rely
+/// on Inst::varying, only on Inst::order.
+class Shapes {
+public:
+    Shapes(const ir::Kernel&, bool mixed, const std::set<std::string>* zeroDerivative);
+    /// Of result `index` of an instruction or of a region parameter.
+    Shape of(const ir::Inst*, int index = 0) const;
+    /// Largest order wanted of result `index` by the instruction itself and its Result instructions.
+    int order(const ir::Inst*, int index = 0) const;
+    bool hasRequests() const { return requests_; }
+    /// Order that a Runtime instruction is called with, from its arguments' shapes and the wanted orders.
+    int callOrder(const ir::Inst*) const;
+
+private:
+    void collect(const ir::Region&);
+    bool region(const ir::Region&, bool varyingControl);
+    bool inst(const ir::Inst*, bool varyingControl);
+    bool loop(const ir::Inst*, bool varyingControl);
+    bool join(const ir::Inst*, int index, Shape);
+    std::vector<Shape>& slots(const ir::Inst*);
+
+    const ir::Kernel& kernel_;
+    bool mixed_;
+    const std::set<std::string>* zero_;
+    bool requests_ = false;
+    std::unordered_map<const ir::Inst*, std::vector<Shape>> shapes_;
+    std::unordered_map<const ir::Inst*, std::vector<uint8_t>> orders_;
+};
+
+/// Number of values that live at once where most do, counted in components and parts; for the choice of vectors in flight.
+struct Pressure {
+    int live = 0;
+    int instructions = 0;
+    int runtimeCalls = 0;
+    int outOfLineCalls = 0; ///< derivative orders count 3 and 6
+    bool effects = false, loops = false;
+};
+Pressure measure(const ir::Kernel&, const Shapes&, const std::set<std::string>* outOfLine);
+
+} // namespace alpenglow::rsl::jit

@@ -1,0 +1,27 @@
+// A relocatable ELF file, as our code generator makes them, brought into memory: enough of a linker for x86-64, none of LLVM.
+#pragma once
+#include <map>
+#include <memory>
+#include <string>
+
+namespace alpenglow::rsl::jit {
+
+/// Machine code in memory. Pages are never writable and executable at once.
+class LoadedObject {
+public:
+    /// Null with the reason in `error` when the file is damaged or needs what we do not provide (sections, relocations, symbols).
+    static std::unique_ptr<LoadedObject> load(const std::string& elf, std::string& error);
+    ~LoadedObject();
+    LoadedObject(const LoadedObject&) = delete;
+    LoadedObject& operator=(const LoadedObject&) = delete;
+    /// Address of a function that the object defines, or null.
+    void* find(const std::string& name) const;
+
+private:
+    LoadedObject() = default;
+    void* memory_ = nullptr;
+    size_t size_ = 0;
+    std::map<std::string, void*> symbols_;
+};
+
+} // namespace alpenglow::rsl::jit

@@ -1,0 +1,89 @@
+#include "rsl/jit/module.h"
+#include <cstdlib>
+#include <dlfcn.h>
+#include <filesystem>
+#include <mutex>
+
+namespace alpenglow::rsl::jit {
+
+const char* name(Isa i) {
+    switch (i) {
+    case Isa::Sse42: return "sse4.2";
+    case Isa::Sse42Fma: return "sse4.2+fma";
+    case Isa::Avx2: return "avx2";
+    case Isa::Avx512: return "avx512";
+    }
+    return "?";
+}
+
+Isa isaFor(int lanes) {
+    __builtin_cpu_init();
+    const bool fma = __builtin_cpu_supports("avx") && __builtin_cpu_supports("fma");
+    const bool avx2 = fma && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
+    const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd") &&
+                        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+    if (lanes >= 16 && avx512) return Isa::Avx512;
+    if (lanes >= 8 && avx2) return Isa::Avx2;
+    return fma ? Isa::Sse42Fma : Isa::Sse42;
+}
+
+namespace {
+
+struct Module {
+    ModuleCompileFn compile = nullptr;
+    std::string error;
+};
+
+std::mutex mutex;
+Module* loaded = nullptr; // never unloaded: LLVM's static data outlives every thread that used it
+
+Module* loadModule() {
+    auto* m = new Module;
+    std::vector<std::string> places;
+    if (const char* p = std::getenv("ALPENGLOW_JIT")) places.push_back(p);
+    std::error_code e;
+    if (auto exe = std::filesystem::read_symlink("/proc/self/exe", e); !e) {
+        places.push_back((exe.parent_path() / "libalpenglow_jit.so").string());
+        places.push_back((exe.parent_path().parent_path() / "lib" / "libalpenglow_jit.so").string());
+    }
+    places.push_back(ALPENGLOW_JIT_MODULE);
+    for (const auto& p : places) {
+        if (!std::filesystem::exists(p, e)) continue;
+        void* handle = dlopen(p.c_str(), RTLD_NOW | RTLD_LOCAL);
+        if (!handle) {
+            const char* why = dlerror();
+            m->error += std::string(why ? why : p) + "; ";
+            continue;
+        }
+        auto abi = reinterpret_cast<ModuleAbiFn>(dlsym(handle, "alpenglow_jit_abi"));
+        auto compile = reinterpret_cast<ModuleCompileFn>(dlsym(handle, "alpenglow_jit_compile"));
+        if (!abi || !compile || abi() != kModuleAbi) {
+            m->error += p + " is of another version; ";
+            continue;
+        }
+        m->compile = compile;
+        return m;
+    }
+    m->error = "the shader compiler's module libalpenglow_jit.so cannot be loaded: " + (m->error.empty() ? "it is not beside the program" : m->error);
+    return m;
+}
+
+} // namespace
+
+bool moduleLoaded() {
+    std::lock_guard lock(mutex);
+    return loaded && loaded->compile;
+}
+
+void compileWithModule(const ModuleRequest& request, ModuleResult& result) {
+    ModuleCompileFn compile = nullptr;
+    {
+        std::lock_guard lock(mutex);
+        if (!loaded) loaded = loadModule();
+        compile = loaded->compile;
+        if (!compile) result.error = loaded->error;
+    }
+    if (compile) compile(&request, &result);
+}
+
+} // namespace alpenglow::rsl::jit

@@ -1,0 +1,61 @@
+// The door to the LLVM module (libalpenglow_jit.so), which is loaded on the first kernel that no cache has. No LLVM types here.
+#pragma once
+#include "rsl/ir/ir.h"
+#include <cstddef>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace alpenglow::rsl::jit {
+
+/// Instruction sets that code is made for. The level is chosen from the lane count and the machine, without LLVM.
+enum class Isa : int { Sse42 = 0, Sse42Fma = 1, Avx2 = 2, Avx512 = 3 };
+const char* name(Isa);
+/// What this machine can run of what `lanes` asks for: 16 Avx512, 8 Avx2, 4 Sse42 (with FMA in 128-bit registers where there is FMA).
+Isa isaFor(int lanes);
+
+struct BitcodeView {
+    const unsigned char* data = nullptr;
+    size_t size = 0;
+};
+
+struct ModuleRequest {
+    const ir::Kernel* kernel = nullptr;
+    int lanes = 16;
+    int vectors = 0;       ///< 0: chosen
+    bool mixed = false;
+    int optimize = 2;
+    Isa isa = Isa::Avx512;
+    BitcodeView (*bitcode)(int lanes) = nullptr;           ///< the runtime at 4, 8, 16, 32, 64 lanes
+    const std::set<std::string>* zeroDerivative = nullptr; ///< runtime symbols whose derivatives are zero
+    const std::set<std::string>* outOfLine = nullptr;      ///< runtime symbols that are called, not inlined, when there are many calls
+    bool wantText = false;                                 ///< fill ModuleResult::text with the optimised LLVM IR
+};
+
+struct ModuleResult {
+    std::string object;               ///< ELF relocatable file; empty on failure
+    std::string error;
+    std::string text;
+    int strip = 0;                    ///< points per strip: lanes * vectors
+    bool suspending = false;
+    std::vector<std::string> strings; ///< string constants in the order of KernelCall::strings
+};
+
+/// Names of the functions in the object.
+inline constexpr const char* kEntryName = "alpenglow_entry";
+inline constexpr const char* kStartName = "alpenglow_start";
+inline constexpr const char* kResumeName = "alpenglow_resume";
+inline constexpr const char* kFinishedName = "alpenglow_finished";
+inline constexpr const char* kDestroyName = "alpenglow_destroy";
+
+/// What the module exports, by these names. Thread safe; never throws.
+inline constexpr int kModuleAbi = 1;
+using ModuleCompileFn = void (*)(const ModuleRequest*, ModuleResult*);
+using ModuleAbiFn = int (*)();
+
+/// Compiles through the module, loading it when needed. The error says where it was looked for.
+void compileWithModule(const ModuleRequest&, ModuleResult&);
+/// True once the module, and with it LLVM, is in the process.
+bool moduleLoaded();
+
+} // namespace alpenglow::rsl::jit

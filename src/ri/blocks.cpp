@@ -117,7 +117,7 @@ void Interpreter::pop() {
         worldEnd(b);
         break;
     case BlockKind::Object:
-        if (b.object) objects_[b.object->handle] = b.object;
+        if (b.object) objects_[b.object->object.handle] = b.object;
         break;
     case BlockKind::Frame:
         options = std::move(*b.options);
@@ -164,6 +164,7 @@ void Interpreter::worldBegin(const Call& call) {
     }
     worldToCamera_ = state.ctm;
     frame_ = std::make_shared<scene::Frame>();
+    ++worldSerial_;
     objectIndex_.clear();
     for (const scene::Light& l : lights_) {
         scene::Light moved = l;
@@ -204,14 +205,17 @@ void Interpreter::worldEnd(Block& b) {
 void Interpreter::objectBegin(const Call& call) {
     if (!begin(BlockKind::Object, call)) return;
     Block& b = blocks_.back();
-    b.object = std::make_shared<scene::Object>();
-    b.object->handle = call.text(0);
+    b.object = std::make_shared<StoredObject>();
+    b.object->object.handle = call.text(0);
+    b.object->serial = ++objectSerial_;
+    b.object->world = inWorld() ? worldSerial_ : 0;
+    b.object->lights = lights_.size();
     state.ctm = scene::Transform(); // an object has a space of its own
 }
 
 scene::Object* Interpreter::openObject() {
     const Block* b = innermost(BlockKind::Object);
-    return b ? b->object.get() : nullptr;
+    return b ? &b->object->object : nullptr;
 }
 
 void Interpreter::resource(const Call& call) {
@@ -292,6 +296,9 @@ void Interpreter::resource(const Call& call) {
     }
     if (part("transform")) state.ctm = i->second.ctm;
     if (all) to = from;
+    // Saved in a world that is over: its lights are gone.
+    std::erase_if(to.lights, [&](int l) { return size_t(l) >= lights().size(); });
+    if (to.areaLight >= int(lights().size())) to.areaLight = -1;
     if (!known) reporter.error(Rie::BadToken, call.place, fmt::format("Resource: unknown subset \"{}\"", subset));
 }
 

@@ -106,6 +106,37 @@ void Interpreter::store(std::shared_ptr<scene::Primitive> p) {
     if (frame_ && frameWanted()) frame_->primitives.push_back(std::move(p));
 }
 
+scene::AttributesRef Interpreter::withoutLights(const scene::AttributesRef& a, size_t stable) {
+    bool stale = a->areaLight >= int(stable) || (!a->lights.empty() && size_t(a->lights.back()) >= stable); // the list is sorted
+    if (!stale) return a;
+    auto copy = std::make_shared<scene::Attributes>(*a);
+    std::erase_if(copy->lights, [&](int l) { return size_t(l) >= stable; });
+    if (copy->areaLight >= int(stable)) copy->areaLight = -1;
+    return copy;
+}
+
+/// An object as this world sees it: lights of the world it was made in are gone in another one.
+scene::Object Interpreter::forThisWorld(const StoredObject& o) const {
+    if (o.world == worldSerial_) return o.object;
+    scene::Object out{o.object.handle, {}};
+    size_t stable = std::min(o.world == 0 ? frame_->lights.size() : o.lights, frame_->lights.size());
+    for (const scene::PrimitiveRef& p : o.object.primitives) {
+        scene::AttributesRef a = withoutLights(p->attributes, stable);
+        if (a == p->attributes) {
+            out.primitives.push_back(p);
+            continue;
+        }
+        auto copy = std::make_shared<scene::Primitive>(*p);
+        copy->attributes = std::move(a);
+        for (auto& k : copy->motionKeys) {
+            k = std::make_shared<scene::Primitive>(*k);
+            k->attributes = copy->attributes;
+        }
+        out.primitives.push_back(std::move(copy));
+    }
+    return out;
+}
+
 void Interpreter::instance(const Call& call) {
     auto i = objects_.find(call.text(0));
     if (i == objects_.end()) {
@@ -117,7 +148,7 @@ void Interpreter::instance(const Call& call) {
         return;
     }
     if (openObject()) { // objects are flat: an instance inside one is copied in
-        for (const scene::PrimitiveRef& p : i->second->primitives) {
+        for (const scene::PrimitiveRef& p : i->second->object.primitives) {
             if (++objectCopies_ > limits::kObjectCopies) { // a few lines can ask for any number
                 reporter.once("ri:objectcopies", Severity::Error, Rie::Limit, call.place,
                               fmt::format("instances inside objects copy more than {} primitives", limits::kObjectCopies));
@@ -138,8 +169,8 @@ void Interpreter::instance(const Call& call) {
                       "ObjectInstance outside WorldBegin and WorldEnd is not drawn");
         return;
     }
-    auto [slot, fresh] = objectIndex_.try_emplace(i->second.get(), int(frame_->objects.size()));
-    if (fresh) frame_->objects.push_back(*i->second);
+    auto [slot, fresh] = objectIndex_.try_emplace(i->second->serial, int(frame_->objects.size()));
+    if (fresh) frame_->objects.push_back(forThisWorld(*i->second));
     scene::Instance n;
     n.object = slot->second;
     n.toWorld = state.ctm;

@@ -29,8 +29,14 @@ struct GraphicsState {
     std::shared_ptr<const NamedSystems> scoped; ///< ScopedCoordinateSystem
 };
 
-/// A stored object: primitives in its own space.
-using ObjectRef = std::shared_ptr<scene::Object>;
+/// A stored object: primitives in its own space, and what tells whether its light indices still mean something.
+struct StoredObject {
+    scene::Object object;
+    size_t serial = 0; ///< of its ObjectBegin
+    size_t world = 0;  ///< the world it was made in, 0 = outside
+    size_t lights = 0; ///< lights there were before that world: their indices hold in later worlds too
+};
+using ObjectRef = std::shared_ptr<StoredObject>;
 
 class Interpreter {
 public:
@@ -134,6 +140,9 @@ private:
     void unwind(size_t depth, const SourcePlace& where, bool keepWorld);
     void closeOpenEnds(size_t conditions, const SourcePlace& where);
     void worldEnd(Block& block);
+    /// A copy without lights from `stable` on, for attributes that were made in another world.
+    static scene::AttributesRef withoutLights(const scene::AttributesRef& a, size_t stable);
+    scene::Object forThisWorld(const StoredObject& o) const;
     void rebase(scene::Attributes& a, const scene::Transform& cameraToWorld);
     bool evaluate(const Call& call);
     void moveTransform(const Motion& m);
@@ -159,7 +168,8 @@ private:
     NamedSystems worldCameraSystems_;                                   ///< those of before WorldBegin, to camera
     std::map<std::string, GraphicsState> resources_;
     std::map<std::string, ObjectRef> objects_;
-    std::map<const scene::Object*, int> objectIndex_; ///< of this frame
+    std::map<size_t, int> objectIndex_; ///< serial -> index in this frame
+    size_t objectSerial_ = 0, worldSerial_ = 0;
     std::shared_ptr<scene::Frame> frame_;
     scene::Transform worldToCamera_;
     std::map<std::string, std::shared_ptr<std::vector<Call>>> inlineArchives_;

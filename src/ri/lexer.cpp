@@ -14,7 +14,7 @@ bool startsNumber(unsigned char c) { return digit(c) || c == '-' || c == '+' || 
 bool sticks(unsigned char c) { return letter(c) || startsNumber(c); }
 constexpr size_t kBuffer = 256u << 10; // comfortably above limits::kTokenBytes: a token always fits
 constexpr size_t kPlainNumber = 64;    // bytes that the fast way through numbers looks at
-constexpr size_t kLineKept = 1024;     // bytes of the current line kept for messages
+constexpr size_t kLineKept = 16 << 10; // bytes of the current line kept for messages
 
 } // namespace
 
@@ -36,8 +36,8 @@ Lexer::~Lexer() = default;
 bool Lexer::more() {
     if (ended_) return false;
     size_t keep = pos_;
-    size_t lineOffset = lineStart_ >= base_ ? lineStart_ - base_ : 0;
-    if (lineStart_ >= base_ && lineOffset <= pos_ && pos_ - lineOffset <= kLineKept) keep = lineOffset;
+    for (size_t start : {lineStart_, markStart_})
+        if (start >= base_ && start - base_ < keep && base_ + pos_ - start <= kLineKept) keep = start - base_;
     if (keep > 0 && (end_ > buffer_.size() / 2 || pos_ == end_)) { // not for every few bytes of a pipe
         std::memmove(buffer_.data(), buffer_.data() + keep, end_ - keep);
         base_ += keep;
@@ -57,8 +57,9 @@ bool Lexer::more() {
 }
 
 std::string Lexer::lineText(const SourcePlace& p) const {
-    if (p.line != line_ || p.file != file_ || lineStart_ < base_) return {};
-    size_t from = lineStart_ - base_, to = from;
+    size_t start = p.line == line_ ? lineStart_ : markStart_;
+    if ((p.line != line_ && p.line != markLine_) || p.file != file_ || start < base_) return {};
+    size_t from = start - base_, to = from;
     while (to < end_ && to - from < 200 && buffer_[to] != '\n' && buffer_[to] != '\r') {
         if (static_cast<unsigned char>(buffer_[to]) >= 0x80 || buffer_[to] == 0) return {}; // binary: nothing to read for people
         ++to;
@@ -304,6 +305,7 @@ void Lexer::next(Token& t) {
         bool any = skipSpace();
         t.line = line_;
         t.column = int(column());
+        t.lineStart = lineStart_;
         if (!any) {
             t.kind = Token::Kind::End;
             return;

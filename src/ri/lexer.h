@@ -16,6 +16,7 @@ struct Token {
     std::string text;           ///< identifier or string
     std::vector<double> floats; ///< Kind::Floats
     int line = 0, column = 0;   ///< of its first byte, from 1
+    size_t lineStart = 0;       ///< stream offset of that line
 };
 
 class Lexer {
@@ -31,7 +32,12 @@ public:
     void numbers(std::vector<double>& out);
     SourcePlace place(int line, int column) const { return {file_, line, column}; }
     SourcePlace here() const { return {file_, line_, int(column())}; }
-    /// The text of `line` when it is the current one and still buffered, at most 200 bytes of it.
+    /// Keeps the line of this token at hand for lineText(): messages about a request come when the next one has been read.
+    void mark(const Token& t) {
+        markLine_ = t.line;
+        markStart_ = t.lineStart;
+    }
+    /// The text of `line` when it is the current or the marked one and still buffered, at most 200 bytes of it.
     std::string lineText(const SourcePlace&) const;
     const std::string& file() const { return file_; }
 
@@ -65,6 +71,8 @@ private:
     size_t base_ = 0;      ///< stream offset of buffer_[0]
     size_t lineStart_ = 0; ///< stream offset
     int line_ = 1;
+    int markLine_ = 0;
+    size_t markStart_ = 0;
     bool ended_ = false;
     std::array<std::string, 256> requestCodes_;
     std::unordered_map<unsigned, std::string> stringCodes_;

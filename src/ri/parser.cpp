@@ -93,6 +93,7 @@ bool Parser::next(Call& call) {
             return false;
         }
         SourcePlace place = lexer_.place(token_.line, token_.column);
+        lexer_.mark(token_);
         if (token_.kind != Token::Kind::Identifier) {
             reporter_.error(Rie::Syntax, place, "a request is expected here");
             pending_ = true;

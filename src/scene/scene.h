@@ -76,11 +76,16 @@ struct Attributes {
     Basis ubasis, vbasis;
     std::optional<std::vector<float>> bound, detail; ///< six numbers, object space
     float detailRange[4] = {0, 0, 1e38f, 1e38f};
-    /// Attribute "class" "name" value, keyed "class:name" (also "user:x"); GeometricApproximation as "GeometricApproximation:motionfactor".
+    /// Attribute "class" "name" value, keyed "class:name" (also "user:x");
+    /// GeometricApproximation as "GeometricApproximation:motionfactor".
     std::map<std::string, Param> values;
     std::map<std::string, ShaderRef> coshaders;
-    std::shared_ptr<const ParamList> trimCurve; ///< the nine arrays of TrimCurve as params named ncurves, order, knot, min, max, n, u, v, w
-    const Param* value(const std::string& key) const { auto i = values.find(key); return i == values.end() ? nullptr : &i->second; }
+    /// The nine arrays of TrimCurve as params named ncurves, order, knot, min, max, n, u, v, w.
+    std::shared_ptr<const ParamList> trimCurve;
+    const Param* value(const std::string& key) const {
+        auto i = values.find(key);
+        return i == values.end() ? nullptr : &i->second;
+    }
 };
 using AttributesRef = std::shared_ptr<const Attributes>;
 
@@ -91,8 +96,9 @@ using AttributesRef = std::shared_ptr<const Attributes>;
 ///   PointsGeneralPolygons: ints = nloops, ints2 = nverts, ints3 = verts.
 ///   Patch: strings[0] = type.  PatchMesh: strings = {type, uwrap, vwrap} with wraps "periodic"/"nonperiodic", ints = {nu, nv}.
 ///   NuPatch: ints = {nu, uorder, nv, vorder}, knots in params "uknot" "vknot", numbers = {umin, umax, vmin, vmax}.
-///   Curves: strings = {type, wrap}, ints = nvertices.  SubdivisionMesh: strings = {scheme, tags...}, ints = nverts, ints2 = verts,
-///   ints3 = nargs, params "intargs" "floatargs".  Procedural and others: strings, numbers as given.
+///   Curves: strings = {type, wrap}, ints = nvertices.
+///   SubdivisionMesh: strings = {scheme, tags...}, ints = nverts, ints2 = verts, ints3 = nargs, params
+///   "intargs" "floatargs".  Procedural and others: strings, numbers as given.
 ///   HierarchicalSubdivisionMesh: as SubdivisionMesh, nargs in threes, param "stringargs".  Points: none.
 ///   Blobby: ints = {nleaf}, ints2 = code, numbers = floats, strings = strings.  Geometry: strings[0] = name.
 ///   Volume: strings[0] = type, numbers = bound, ints = dimensions.
@@ -101,13 +107,13 @@ using AttributesRef = std::shared_ptr<const Attributes>;
 /// What ri/ guarantees, so that nobody need look again (scene/counts.h has the counts, ri.md 7.1):
 /// - The arguments agree with each other: sums of counts match index arrays, indices are not negative, knots do not decrease,
 ///   meshes fit the steps of their bases. Numbers are finite. PatchMesh and Patch types are "bilinear" or "bicubic".
-/// - Polygons, meshes, patches, curves and points have exactly one of "P", "Pw" (HPoint), "Pz" (Float; patches only), class Vertex,
-///   of exactly counts.vertex elements (unused points at the end of a mesh are cut off).
+/// - Polygons, meshes, patches, curves and points have exactly one of "P", "Pw" (HPoint), "Pz" (Float; patches only), class
+///   Vertex, of exactly counts.vertex elements (unused points at the end of a mesh are cut off).
 /// - Every other variable has exactly counts.of(cls) * max(arrayLength, 1) * componentCount(type) numbers, all finite (or that
 ///   many strings). Names are unique. A variable with declared == false has the class and arrayLength its length fits best.
 ///   The argument params named above ("uknot", "intargs" ...) have class Constant and any length.
-/// - Keys of a moving primitive have the same kind, arguments that are counts, and variables of the same names, classes and sizes.
-///   motionTimes (one per key, the first included) increase.
+/// - Keys of a moving primitive have the same kind, arguments that are counts, and variables of the same names, classes and
+///   sizes. motionTimes (one per key, the first included) increase.
 struct Primitive {
     std::string kind;
     std::vector<float> numbers;
@@ -128,7 +134,8 @@ using PrimitiveRef = std::shared_ptr<const Primitive>;
 struct Light {
     ShaderRef shader;                  ///< the light shader call
     std::string handle;
-    bool area = false;                 ///< AreaLightSource: geometry = primitives with attributes->areaLight == this light's index
+    /// AreaLightSource: its geometry is the primitives with attributes->areaLight == this light's index.
+    bool area = false;
     AttributesRef attributes;          ///< at the request (light samples, strategy, visibility)
 };
 
@@ -198,7 +205,8 @@ public:
     /// WorldEnd. The frame is complete; the call returns when it is rendered (or refused).
     virtual void render(std::shared_ptr<const Frame>) = 0;
     /// MakeTexture and its kin, in stream order. kind = request name.
-    virtual void makeTexture(const std::string& kind, const std::vector<std::string>& files, const ParamList& args, const SourcePlace&) = 0;
+    virtual void makeTexture(const std::string& kind, const std::vector<std::string>& files, const ParamList& args,
+                             const SourcePlace&) = 0;
 };
 
 } // namespace alpenglow::scene

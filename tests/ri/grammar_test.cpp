@@ -27,6 +27,12 @@ TEST(Grammar, BadNumbersAreReportedInPlace) {
         EXPECT_FALSE(world(std::string("Translate 0 0 ") + bad)->ok) << bad;
 }
 
+TEST(Grammar, MessagesAboutARequestShowItsLine) {
+    auto c = read("WorldBegin\n  Rotate 10\n  0 0 0\nSphere 1 -1 1 360\nWorldEnd");
+    EXPECT_EQ(c->only().place.line, 2);
+    EXPECT_EQ(c->only().sourceLine, "  Rotate 10");
+}
+
 TEST(Grammar, StringEscapes) {
     auto c = read("Display \"a\\\"b\\\\c\\n\\t\\101\\7z\\\nq\" \"file\" \"rgb\"\nWorldBegin WorldEnd");
     EXPECT_TRUE(c->ok) << c->messages();

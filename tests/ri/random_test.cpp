@@ -86,7 +86,11 @@ TEST(Random, RequestsKeepTheirPromises) {
         for (auto& f : c->frames) {
             for (auto& p : f->primitives) checkPromises(*p, text);
             for (auto& o : f->objects)
-                for (auto& p : o.primitives) checkPromises(*p, text);
+                for (auto& p : o.primitives) {
+                    checkPromises(*p, text);
+                    for (int l : p->attributes->lights) ASSERT_LT(size_t(l), f->lights.size()) << text;
+                    ASSERT_LT(p->attributes->areaLight, int(f->lights.size())) << text;
+                }
             for (auto& i : f->instances) ASSERT_LT(size_t(i.object), f->objects.size());
             for (auto& p : f->primitives) {
                 for (int l : p->attributes->lights) ASSERT_LT(size_t(l), f->lights.size()) << text;

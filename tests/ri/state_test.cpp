@@ -227,6 +227,26 @@ TEST(Objects, InsideObjectsAreCopied) {
     EXPECT_EQ(c->frames[1]->instances.at(1).object, 1);
 }
 
+TEST(Objects, OfAnotherWorldForgetItsLights) {
+    auto c = read("LightSource \"a\" 1 WorldBegin LightSource \"b\" 2 ObjectBegin 1 Color 1 0 0 Sphere 1 -1 1 360 ObjectEnd "
+                  "ObjectInstance 1\n"
+                  "Resource \"r\" \"attributes\" \"operation\" \"save\" WorldEnd WorldBegin ObjectInstance 1\n"
+                  "Resource \"r\" \"attributes\" \"operation\" \"restore\" Sphere 1 -1 1 360 WorldEnd");
+    EXPECT_TRUE(c->ok) << c->messages();
+    ASSERT_EQ(c->frames.size(), 2u);
+    EXPECT_EQ(c->frames[0]->objects.at(0).primitives.at(0)->attributes->lights, (std::vector<int>{0, 1}));
+    EXPECT_EQ(c->frames[1]->objects.at(0).primitives.at(0)->attributes->lights, (std::vector<int>{0}));
+    EXPECT_EQ(c->frames[1]->primitives.at(0)->attributes->lights, (std::vector<int>{0}));
+}
+
+TEST(Objects, HandleGivenTwiceIsTwoObjects) {
+    auto c =
+        world("ObjectBegin 1 Sphere 1 -1 1 360 ObjectEnd ObjectInstance 1 ObjectBegin 1 Disk 0 1 360 ObjectEnd ObjectInstance 1");
+    EXPECT_EQ(c->count(), 0u) << c->messages();
+    ASSERT_EQ(c->frame().objects.size(), 2u);
+    EXPECT_EQ(c->frame().objects[size_t(c->frame().instances.at(1).object)].primitives.at(0)->kind, "Disk");
+}
+
 TEST(Motion, OfTransformations) {
     auto c = world("Translate 0 1 0 MotionBegin [0 1] Translate 0 0 0 Translate 4 0 0 MotionEnd Sphere 1 -1 1 360");
     EXPECT_TRUE(c->ok) << c->messages();

@@ -108,8 +108,11 @@ bool clip(const std::vector<P2>& p, const std::vector<uint32_t>& ring, std::vect
                 if (inside(at(a), at(i), at(b), q)) { ear = false; break; }
             }
         }
-        bool flat = t == 0; // nothing to cut, the corner just goes
-        bool force = sinceEar > left;
+        // A flat corner goes without a triangle only when no ear is left, or where a loop turns back on itself: a neighbour
+        // shares it, and a triangle that passes over it would leave a crack.
+        bool doubled = same(at(a), at(i)) || same(at(i), at(b)) || same(at(a), at(b));
+        bool flat = t == 0 && (doubled || sinceEar > left);
+        bool force = sinceEar > 2 * left;
         if (ear || flat || force) {
             if (force && !flat && !ear) good = false;
             if (!budget) good = false;
@@ -173,7 +176,7 @@ TriangulationResult triangulate(std::span<const Vec3d> points, std::span<const i
         double sumTurns = 0;
         for (size_t i = 0; i < n && convex; ++i) {
             const P2 &a = p[ring[i]], &b = p[ring[(i + 1) % n]], &c = p[ring[(i + 2) % n]];
-            if (turn(a, b, c) < 0) convex = false;
+            if (turn(a, b, c) <= 0) convex = false; // flat corners too: a fan could pass over one
             sumTurns += std::atan2(turn(a, b, c), (b.x - a.x) * (c.x - b.x) + (b.y - a.y) * (c.y - b.y));
         }
         if (convex && std::fabs(sumTurns - 2 * kPi) < 0.1) { // once around: a pentagram is locally convex too

@@ -1,0 +1,307 @@
+#include "accel/accel.h"
+#include <algorithm>
+#include <cmath>
+#include <embree3/rtcore.h>
+#include <pmmintrin.h>
+#include <xmmintrin.h>
+
+namespace alpenglow::accel {
+
+using geometry::Shape;
+using geometry::ShapeRef;
+
+namespace {
+
+// Embree wants denormals flushed; ours elsewhere must not be, so the caller's state comes back.
+class FlushDenormals {
+public:
+    FlushDenormals() : old_(_mm_getcsr()) { _mm_setcsr(old_ | 0x8040); }
+    ~FlushDenormals() { _mm_setcsr(old_); }
+private:
+    unsigned old_;
+};
+
+struct Best { double t; uint32_t shape, prim; double b1, b2; };
+
+struct Query {
+    RTCIntersectContext rtc; // first: Embree hands back a pointer to it
+    const Ray* ray;
+    Best best;
+    bool any;                // occlusion
+};
+
+bool before(double t, uint32_t shape, uint32_t prim, const Best& b) {
+    if (t != b.t) return t < b.t;
+    if (shape != b.shape) return shape < b.shape;
+    return prim < b.prim;
+}
+
+// Triangles of shapes below this many share one Embree geometry; a geometry of its own costs about a kilobyte.
+constexpr uint32_t kShareBelow = 1024;
+// Candidates this much farther than the best (relative to t) are still looked at: Embree's own t is rounded differently.
+constexpr double kSlack = 4e-6;
+
+} // namespace
+
+struct Accel::Impl {
+    std::vector<ShapeRef> shapes;
+    std::vector<uint32_t> visibility;
+    RTCDevice device = nullptr;
+    RTCScene scene = nullptr;
+    geometry::Bounds bounds;
+
+    /// What an Embree geometry holds: whole shapes, one after the other.
+    struct Group {
+        Impl* owner = nullptr;
+        std::vector<uint32_t> shape, firstPrim; ///< by first primitive
+        std::vector<Vec3> P;                    ///< shared groups: all points
+        std::vector<uint32_t> index;
+        void find(uint32_t prim, uint32_t& s, uint32_t& local) const {
+            size_t k = shape.size() == 1 ? 0 : size_t(std::upper_bound(firstPrim.begin(), firstPrim.end(), prim) - firstPrim.begin()) - 1;
+            s = shape[k];
+            local = prim - firstPrim[k];
+        }
+    };
+    std::vector<std::unique_ptr<Group>> groups;
+
+    ~Impl() {
+        if (scene) rtcReleaseScene(scene);
+        if (device) rtcReleaseDevice(device);
+    }
+
+    bool visible(const Ray& r, uint32_t s) const { return (visibility[s] & r.mask) != 0; }
+    static bool excluded(const Ray& r, uint32_t s, uint32_t prim) {
+        return r.excludeShape == s && (r.excludePrim == kNone || r.excludePrim == prim);
+    }
+
+    /// Whether a candidate counts; then q.best is it. t is ours.
+    bool take(Query& q, uint32_t s, uint32_t prim, double t, double b1, double b2) const {
+        const Ray& r = *q.ray;
+        if (!(t > r.tnear && t < r.tfar)) return false;
+        if (!q.any && !before(t, s, prim, q.best)) return false;
+        const Shape& shape = *shapes[s];
+        if (shape.oneSided() && !r.bothSides && dot(shape.hitNormal(prim, b1, b2), Vec3d(r.dir)) >= 0) return false;
+        q.best = {t, s, prim, b1, b2};
+        return true;
+    }
+    /// Embree's far limit once q.best is taken.
+    static float far(const Query& q) { return float(std::min(double(q.ray->tfar), q.best.t * (1 + kSlack) + 1e-37)); }
+
+    static void triangleFilter(const RTCFilterFunctionNArguments* a) {
+        if (a->valid[0] != -1) return;
+        Query& q = *reinterpret_cast<Query*>(a->context);
+        const Group& g = *static_cast<const Group*>(a->geometryUserPtr);
+        auto& ray = *reinterpret_cast<RTCRay*>(a->ray);
+        uint32_t s, prim;
+        g.find(RTCHitN_primID(a->hit, a->N, 0), s, prim);
+        a->valid[0] = 0;
+        const Impl& me = *g.owner;
+        if (!me.visible(*q.ray, s) || excluded(*q.ray, s, prim)) return;
+        const geometry::TriMesh& m = me.shapes[s]->mesh();
+        const uint32_t* i = &m.index[3 * size_t(prim)];
+        double t, b1, b2, outside;
+        if (!meetTriangle(q.ray->org, q.ray->dir, m.P[i[0]], m.P[i[1]], m.P[i[2]], t, b1, b2, outside)) return;
+        if (!me.take(q, s, prim, t, b1, b2)) return;
+        a->valid[0] = -1;
+        if (!q.any) ray.tfar = far(q);
+    }
+
+    /// Tries all points of one exact shape; true when one was taken.
+    bool meetExact(Query& q, uint32_t s) const {
+        if (!visible(*q.ray, s) || excluded(*q.ray, s, 0)) return false;
+        geometry::ExactHit h[4];
+        int n = shapes[s]->exactHits(Vec3d(q.ray->org), Vec3d(q.ray->dir), h);
+        bool taken = false;
+        for (int i = 0; i < n; ++i) {
+            taken |= take(q, s, 0, h[i].t, h[i].u, h[i].v);
+            if (taken && q.any) break;
+        }
+        return taken;
+    }
+    static void exactBounds(const RTCBoundsFunctionArguments* a) {
+        const Group& g = *static_cast<const Group*>(a->geometryUserPtr);
+        geometry::Bounds b = g.owner->shapes[g.shape[a->primID]]->bounds();
+        a->bounds_o->lower_x = b.lo.x; a->bounds_o->lower_y = b.lo.y; a->bounds_o->lower_z = b.lo.z;
+        a->bounds_o->upper_x = b.hi.x; a->bounds_o->upper_y = b.hi.y; a->bounds_o->upper_z = b.hi.z;
+    }
+    static void exactIntersect(const RTCIntersectFunctionNArguments* a) {
+        if (a->valid[0] != -1) return;
+        Query& q = *reinterpret_cast<Query*>(a->context);
+        const Group& g = *static_cast<const Group*>(a->geometryUserPtr);
+        if (!g.owner->meetExact(q, g.shape[a->primID])) return;
+        auto& rh = *reinterpret_cast<RTCRayHit*>(a->rayhit);
+        rh.ray.tfar = far(q);
+        rh.hit.geomID = a->geomID;
+        rh.hit.primID = a->primID;
+    }
+    static void exactOccluded(const RTCOccludedFunctionNArguments* a) {
+        if (a->valid[0] != -1) return;
+        Query& q = *reinterpret_cast<Query*>(a->context);
+        const Group& g = *static_cast<const Group*>(a->geometryUserPtr);
+        if (g.owner->meetExact(q, g.shape[a->primID])) reinterpret_cast<RTCRay*>(a->ray)->tfar = -INFINITY;
+    }
+
+    void attachTriangles(std::unique_ptr<Group> g, const Vec3* P, size_t points, const uint32_t* index, size_t triangles) {
+        RTCGeometry geom = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        rtcSetSharedGeometryBuffer(geom, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, P, 0, sizeof(Vec3), points);
+        rtcSetSharedGeometryBuffer(geom, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, index, 0, 3 * sizeof(uint32_t), triangles);
+        rtcSetGeometryIntersectFilterFunction(geom, triangleFilter);
+        rtcSetGeometryOccludedFilterFunction(geom, triangleFilter);
+        attach(std::move(g), geom);
+    }
+    void attach(std::unique_ptr<Group> g, RTCGeometry geom) {
+        g->owner = this;
+        rtcSetGeometryUserData(geom, g.get());
+        rtcCommitGeometry(geom);
+        rtcAttachGeometry(scene, geom);
+        rtcReleaseGeometry(geom);
+        groups.push_back(std::move(g));
+    }
+    void build();
+};
+
+void Accel::Impl::build() {
+    auto exact = std::make_unique<Group>(), shared = std::make_unique<Group>();
+    auto flush = [&] {
+        if (shared->shape.empty()) return;
+        size_t points = shared->P.size();
+        shared->P.push_back(Vec3(0.f)); // Embree reads 16 bytes a point
+        Group& g = *shared;
+        attachTriangles(std::move(shared), g.P.data(), points, g.index.data(), g.index.size() / 3);
+        shared = std::make_unique<Group>();
+    };
+    for (uint32_t s = 0; s < shapes.size(); ++s) {
+        const Shape& shape = *shapes[s];
+        bounds.add(shape.bounds());
+        if (shape.exact()) {
+            exact->firstPrim.push_back(uint32_t(exact->shape.size()));
+            exact->shape.push_back(s);
+            continue;
+        }
+        const geometry::TriMesh& m = shape.mesh();
+        if (m.triangles() >= kShareBelow) {
+            auto own = std::make_unique<Group>();
+            own->shape = {s};
+            own->firstPrim = {0};
+            attachTriangles(std::move(own), m.P.data(), m.vertices, m.index.data(), m.triangles());
+            continue;
+        }
+        if (m.triangles() == 0) continue;
+        uint32_t base = uint32_t(shared->P.size());
+        shared->shape.push_back(s);
+        shared->firstPrim.push_back(uint32_t(shared->index.size() / 3));
+        shared->P.insert(shared->P.end(), m.P.begin(), m.P.begin() + m.vertices);
+        for (uint32_t i : m.index) shared->index.push_back(base + i);
+        if (shared->P.size() > (size_t(1) << 28)) flush();
+    }
+    flush();
+    if (!exact->shape.empty()) {
+        RTCGeometry geom = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+        rtcSetGeometryUserPrimitiveCount(geom, unsigned(exact->shape.size()));
+        exact->owner = this;
+        rtcSetGeometryUserData(geom, exact.get());
+        rtcSetGeometryBoundsFunction(geom, exactBounds, nullptr);
+        rtcSetGeometryIntersectFunction(geom, exactIntersect);
+        rtcSetGeometryOccludedFunction(geom, exactOccluded);
+        attach(std::move(exact), geom);
+    }
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
+    rtcCommitScene(scene);
+}
+
+Accel::Accel(std::vector<ShapeRef> shapes, std::vector<uint32_t> visibility, Diagnostics& diag) : impl_(std::make_unique<Impl>()) {
+    impl_->shapes = std::move(shapes);
+    impl_->visibility = std::move(visibility);
+    impl_->visibility.resize(impl_->shapes.size(), kAll);
+    FlushDenormals flush;
+    impl_->device = rtcNewDevice(nullptr);
+    if (!impl_->device) {
+        diag.report(Severity::Severe, Rie::System, {}, "Embree did not start (code " + std::to_string(int(rtcGetDeviceError(nullptr))) + ")");
+        return;
+    }
+    impl_->scene = rtcNewScene(impl_->device);
+    impl_->build();
+    RTCError e = rtcGetDeviceError(impl_->device);
+    if (e != RTC_ERROR_NONE) {
+        diag.report(Severity::Severe, e == RTC_ERROR_OUT_OF_MEMORY ? Rie::NoMem : Rie::Bug, {},
+                    "Embree could not build the scene (code " + std::to_string(int(e)) + "); nothing will be hit");
+        rtcReleaseScene(impl_->scene);
+        impl_->scene = nullptr;
+    }
+}
+
+Accel::~Accel() = default;
+
+const std::vector<ShapeRef>& Accel::shapes() const { return impl_->shapes; }
+geometry::Bounds Accel::bounds() const { return impl_->bounds; }
+
+namespace {
+
+bool fill(const Ray& r, RTCRay& o) {
+    float sum = r.org.x + r.org.y + r.org.z + r.dir.x + r.dir.y + r.dir.z;
+    // An infinite far end is usual; anything else infinite or NaN would wander through every box.
+    if (!std::isfinite(sum) || !(r.tnear < r.tfar) || (r.dir.x == 0 && r.dir.y == 0 && r.dir.z == 0)) return false;
+    o.org_x = r.org.x; o.org_y = r.org.y; o.org_z = r.org.z;
+    o.dir_x = r.dir.x; o.dir_y = r.dir.y; o.dir_z = r.dir.z;
+    o.tnear = std::max(0.f, r.tnear);
+    o.tfar = r.tfar;
+    o.time = 0;
+    o.mask = kAll;
+    o.id = 0;
+    o.flags = 0;
+    return true;
+}
+
+bool intersectOne(RTCScene scene, const Ray& r, Hit& hit) {
+    hit = Hit();
+    RTCRayHit rh;
+    if (!scene || !fill(r, rh.ray)) return false;
+    rh.hit.geomID = rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    Query q;
+    rtcInitIntersectContext(&q.rtc);
+    q.ray = &r;
+    q.best = {INFINITY, kNone, kNone, 0, 0};
+    q.any = false;
+    rtcIntersect1(scene, &q.rtc, &rh);
+    if (q.best.shape == kNone) return false;
+    hit = {float(q.best.t), q.best.shape, q.best.prim, q.best.b1, q.best.b2};
+    return true;
+}
+
+bool occludedOne(RTCScene scene, const Ray& r) {
+    RTCRay o;
+    if (!scene || !fill(r, o)) return false;
+    Query q;
+    rtcInitIntersectContext(&q.rtc);
+    q.ray = &r;
+    q.best = {INFINITY, kNone, kNone, 0, 0};
+    q.any = true;
+    rtcOccluded1(scene, &q.rtc, &o);
+    return o.tfar < 0;
+}
+
+} // namespace
+
+bool Accel::intersect(const Ray& r, Hit& hit) const {
+    FlushDenormals flush;
+    return intersectOne(impl_->scene, r, hit);
+}
+
+bool Accel::occluded(const Ray& r) const {
+    FlushDenormals flush;
+    return occludedOne(impl_->scene, r);
+}
+
+// One ray at a time on purpose: packets round differently at shared edges, and a result would depend on a ray's neighbours.
+void Accel::intersect(std::span<const Ray> rays, std::span<Hit> hits) const {
+    FlushDenormals flush;
+    for (size_t i = 0; i < rays.size(); ++i) intersectOne(impl_->scene, rays[i], hits[i]);
+}
+
+void Accel::occluded(std::span<const Ray> rays, std::span<uint8_t> out) const {
+    FlushDenormals flush;
+    for (size_t i = 0; i < rays.size(); ++i) out[i] = occludedOne(impl_->scene, rays[i]);
+}
+
+} // namespace alpenglow::accel

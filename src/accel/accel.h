@@ -1,0 +1,74 @@
+// Rays against shapes. The only door to Embree (design decision 9); nothing of it shows here.
+//
+// Results do not depend on threads, ray order or who else is asked: Embree only proposes candidates, each candidate's t and
+// parameters are computed anew in double from the shape, and equal distances go to the lower (shape, primitive).
+#pragma once
+#include "base/diagnostics.h"
+#include "geometry/shape.h"
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace alpenglow::accel {
+
+inline constexpr uint32_t kNone = geometry::kNone;
+
+/// Kinds of rays, for Ray::mask and the shapes' visibility.
+enum Visibility : uint32_t {
+    kCamera = 1, kDiffuse = 2, kSpecular = 4, kTransmission = 8, kPhoton = 16, kShadow = 32, kAll = 0xffffffffu
+};
+
+/// Camera space. dir need not be unit; t counts in its lengths.
+struct Ray {
+    Vec3 org, dir;
+    float tnear = 0;                 ///< hits have t > tnear ...
+    float tfar = 1e38f;              ///< ... and t < tfar
+    float time = 0;                  ///< shutter time; nothing moves yet
+    uint32_t mask = kAll;            ///< meets shapes whose visibility shares a bit
+    uint32_t excludeShape = kNone, excludePrim = kNone; ///< a surface to pass through: one primitive; prim kNone: the whole shape
+    bool bothSides = false;          ///< ignore Sides 1
+};
+
+/// What evaluateHit of the shape needs. shape == kNone: nothing was met.
+struct Hit {
+    float t = 0;
+    uint32_t shape = kNone;          ///< index into the vector the Accel was built from
+    uint32_t prim = 0;
+    double b1 = 0, b2 = 0;
+    bool valid() const { return shape != kNone; }
+};
+
+class Accel {
+public:
+    /// shapes must have been diced (geometry/dice.h); the Accel keeps them. visibility: a mask a shape, or empty for kAll.
+    /// Failures of memory are reported; the Accel is then empty.
+    Accel(std::vector<geometry::ShapeRef> shapes, std::vector<uint32_t> visibility, Diagnostics&);
+    ~Accel();
+    Accel(const Accel&) = delete;
+    Accel& operator=(const Accel&) = delete;
+
+    /// Nearest hit. False, and hit.shape == kNone, when there is none or the ray is not finite. Thread safe.
+    bool intersect(const Ray&, Hit& hit) const;
+    /// Whether anything is met. Thread safe.
+    bool occluded(const Ray&) const;
+    /// The same for arrays; rays and results have equal length.
+    void intersect(std::span<const Ray>, std::span<Hit>) const;
+    void occluded(std::span<const Ray>, std::span<uint8_t>) const;
+
+    const std::vector<geometry::ShapeRef>& shapes() const;
+    /// The point of a hit.
+    geometry::SurfacePoint point(const Hit& h) const { return shapes()[h.shape]->evaluateHit(h.prim, h.b1, h.b2); }
+    /// Encloses everything.
+    geometry::Bounds bounds() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Meeting a triangle in double: false when the line is parallel to it or the triangle has no area. b1, b2 are clamped to the
+/// triangle, for candidates that are known to be hits; `outside` says by how much they had to be.
+bool meetTriangle(const Vec3& org, const Vec3& dir, const Vec3& a, const Vec3& b, const Vec3& c, double& t, double& b1, double& b2,
+                  double& outside);
+
+} // namespace alpenglow::accel

@@ -116,7 +116,7 @@ def exp2_rest(f):
 
 
 def main():
-    h = math.pi / 2 * 1.0005
+    h = math.pi / 2 * 1.004
     fit("kSin", odd(math.sin), lambda s: s * math.sqrt(s) / math.sin(math.sqrt(s)), EPS, h * h, 3)
     q = math.pi / 4 * 1.0005
     fit("kTan", odd(math.tan), lambda s: s * math.sqrt(s) / math.tan(math.sqrt(s)), EPS, q * q, 5)

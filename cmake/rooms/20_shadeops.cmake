@@ -19,7 +19,7 @@ foreach(lanes 4 8 16 32 64)
   set(bc ${bitcode_dir}/runtime${lanes}.bc)
   add_custom_command(OUTPUT ${bc}
     COMMAND ${ALPENGLOW_CLANG} -x c++ -std=c++20 -O2 -c -emit-llvm -march=${march} -DALPENGLOW_BITCODE -DALPENGLOW_LANES=${lanes}
-      -ffp-contract=off -fno-math-errno -fno-trapping-math -fno-exceptions -fno-rtti -fno-vectorize -fno-slp-vectorize
+      -ffp-contract=off -fno-math-errno -fno-trapping-math -fno-exceptions -fno-rtti -fno-vectorize -fno-slp-vectorize -fno-builtin
       -fno-stack-protector -fno-asynchronous-unwind-tables -Wall -Wno-psabi -I${CMAKE_SOURCE_DIR}/src
       -MD -MF ${bc}.d -MT ${bc} ${bitcode_source} -o ${bc}
     DEPENDS ${bitcode_source} DEPFILE ${bc}.d COMMENT "Runtime bitcode, ${lanes} lanes" VERBATIM)

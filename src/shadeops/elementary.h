@@ -12,7 +12,7 @@ inline constexpr float kLn2 = 0x1.62e430p-1f, kLn2Lo = -0x1.05c610p-29f;
 inline constexpr float kLog2e = 0x1.715476p+0f, kLog2eLo = 0x1.4ae0c0p-26f;
 inline constexpr float kSmallest = 0x1p-126f; ///< below it numbers count as 0 in logarithms
 
-inline constexpr float kSin[] = {-0x1.55554cp-3f, 0x1.110edap-7f, -0x1.9f70eap-13f, 0x1.5dc84ap-19f};
+inline constexpr float kSin[] = {-0x1.55554cp-3f, 0x1.110ed6p-7f, -0x1.9f6fbap-13f, 0x1.5db2dep-19f};
 inline constexpr float kTan[] = {0x1.5554dep-2f, 0x1.112deap-3f, 0x1.b5851ep-5f, 0x1.9072a0p-6f, 0x1.96847ap-9f, 0x1.33e7c6p-7f};
 inline constexpr float kAsin[] = {0x1.5555c8p-3f, 0x1.3301fcp-4f, 0x1.747d06p-5f, 0x1.8c2d82p-6f, 0x1.596d66p-5f};
 inline constexpr float kAtan[] = {-0x1.5554dcp-2f, 0x1.9978ecp-3f,  -0x1.230a9cp-3f, 0x1.b4df74p-4f,
@@ -33,18 +33,18 @@ template <int N> AL_INLINE vf polynomial(const float (&c)[N], vf x) {
     return r;
 }
 
-/// sin(r) for |r| <= PI/2.
+/// sin(r) for |r| <= 1.577.
 AL_INLINE vf sinReduced(vf r) {
     const vf s = r * r;
     return mad(r * s, polynomial(kSin, s), r);
 }
 
-/// x - k PI in three fused steps, kept within +-PI/2 where x is too large to have a phase.
+/// x - k PI in three fused steps, kept bounded where x is too large to have a phase.
 AL_INLINE vf reducePi(vf x, vf k) {
     vf r = mad(k, vf(-kPi), x);
     r = mad(k, vf(-kPiLo), r);
     r = mad(k, vf(-kPiLoLo), r);
-    return maxLanes(minLanes(r, vf(0.5f * kPi)), vf(-0.5f * kPi));
+    return maxLanes(minLanes(r, vf(1.577f)), vf(-1.577f)); // PI/2 and what a rounded k may add
 }
 
 /// |x| <= 1e5: 1.5 ulp. Bounded by 1 everywhere.
@@ -141,8 +141,9 @@ AL_INLINE void log2Extended(vf x, vf& hi, vf& lo) {
     const vf a = f * kLog2e, aLo = mad(f, vf(kLog2eLo), mad(f, vf(kLog2e), -a));
     const vf c = vf(-0.5f * kLog2e), b = s * c, bLo = mad(s, vf(-0.5f * kLog2eLo), mad(sLo, c, mad(s, c, -b)));
     const vf h = a + b, l = ((a - h) + b) + mad(f * s, polynomial(kLog2, f), aLo + bLo);
-    hi = e + h;
-    lo = ((e - hi) + h) + l;
+    const vf g = h + l, gLo = (h - g) + l; // l holds up to 0.03: lo must end below the last place of hi
+    hi = e + g;
+    lo = ((e - hi) + g) + gLo;
 }
 
 /// 1 ulp, exact for powers of two; -infinity for x < 2^-126.
@@ -152,7 +153,7 @@ AL_INLINE vf log2Lanes(vf x) {
     return select(x < kSmallest, vf(-kInfinity), hi + lo);
 }
 
-/// 2 ulp while |y log2 x| < 16, growing to about 8 where the result overflows. x < 0: integer y as multiplication would, else 0.
+/// 1.5 ulp while |y log2 x| < 16, growing to about 12 where the result nears overflow. x < 0: integer y as multiplication would, else 0.
 /// |x| < 2^-126 counts as 0: 0 for y > 0, 1 for y = 0, infinity for y < 0.
 AL_INLINE vf powLanes(vf x, vf y) {
     const vf a = absLanes(x);

@@ -47,6 +47,8 @@ AL_INLINE vf rootLanes(vf x) { return __builtin_elementwise_sqrt(x); }
 /// x with its sign changed where the top bit of `bits` is set.
 AL_INLINE vf flipSign(vf x, vu bits) { return fromBits(bitsOf(x) ^ (bits & 0x80000000u)); }
 AL_INLINE vf copySign(vf x, vf sign) { return fromBits((bitsOf(x) & 0x7fffffffu) | (bitsOf(sign) & 0x80000000u)); }
+/// A comparison of integers as a mask for select.
+AL_INLINE vm maskOf(vi m) { return m; }
 /// Bits that make flipSign change the sign where the mask is set.
 AL_INLINE vu bitsForFlip(vm m) { return __builtin_bit_cast(vu, m); }
 /// Whole numbers |x| <= 2^30.

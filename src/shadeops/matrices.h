@@ -71,7 +71,7 @@ template <class T> AL_INLINE Matrix<T> opInverse(const Matrix<T>& a) {
     Matrix<T> r;
 #pragma clang loop unroll(full)
     for (int i = 0; i < 16; ++i)
-        r.m[i] = select(singular, T(vf(i % 5 == 0 ? 1.0f : 0.0f)), adjugate[i] * inverse);
+        r.m[i] = select(singular, T(vf(i % 5 == 0 ? 1.0f : 0.0f)), mad(adjugate[i], inverse, T(vf(0)))); // + 0: no negative zeros
     return r;
 }
 /// An index, truncated and clamped to 0..last.

@@ -4,11 +4,12 @@
 
 namespace alpenglow::rsl::AL_NAMESPACE {
 
-// The lattice: a coordinate times an odd constant, neighbours by addition, one xor of the coordinates and one multiplication per corner.
-// Channels multiply the corner's hash once more. The constants are odd numbers with no structure, chosen by the tests of noise_test.cpp.
+// The lattice: a coordinate times an odd constant plus an offset (without it a cell and its mirror image at the origin would share a hash),
+// neighbours by addition; a corner is the xor of its coordinates, folded and multiplied. Sequences of corners along axes and diagonals have
+// flat spectra (noise_test.cpp). Each channel multiplies by its own constant.
 inline constexpr unsigned kLattice[4] = {0x9e3779b1u, 0x85ebca77u, 0xc2b2ae3du, 0x27d4eb2fu};
-inline constexpr unsigned kCorner = 0x2c1b3c6du, kMix = 0x297a2d39u;
-inline constexpr unsigned kChannel[3] = {0x9c8f2d35u, 0x6a09e667u, 0xb5297a4du};
+inline constexpr unsigned kOffset[4] = {0x68e31da4u, 0xb5297a4du, 0x1b56c4e9u, 0x7f4a7c15u};
+inline constexpr unsigned kChannel[3] = {0x2c1b3c6du, 0x9c8f2d35u, 0x6a09e667u};
 inline constexpr float kFarAway = 0x1p30f;
 /// Largest |sum| of the interpolated gradients in 1 to 4 dimensions: suprema over the cell, rounded up.
 inline constexpr float kNoiseBound[5] = {0, 0.5f, 0.71527f, 1.03632f, 1.5400f};
@@ -29,14 +30,14 @@ template <class T, int N, int C> struct NoiseCell {
         if constexpr (N == 1) {
             return d[0] * signedSlope(h);
         } else if constexpr (N == 2) {
-            const auto swap = s < 0;
+            const vm swap = maskOf(s < 0);
             const T u = select(swap, d[0], d[1]), v = select(swap, d[1], d[0]);
             return mad(flipSign(v, h << 3), vf(0.41421356f), flipSign(u, h << 2));
         } else if constexpr (N == 3) {
-            const T u = select(s < -715827883, d[1], d[0]), v = select(s < 715827883, d[2], d[1]);
+            const T u = select(maskOf(s < -715827883), d[1], d[0]), v = select(maskOf(s < 715827883), d[2], d[1]);
             return flipSign(u, h << 12) + flipSign(v, h << 13);
         } else {
-            const T u = select(s < -1073741824, d[1], d[0]), v = select(s < 0, d[2], d[1]), w = select(s < 1073741824, d[3], d[2]);
+            const T u = select(maskOf(s < -1073741824), d[1], d[0]), v = select(maskOf(s < 0), d[2], d[1]), w = select(maskOf(s < 1073741824), d[3], d[2]);
             return flipSign(u, h << 12) + flipSign(v, h << 13) + flipSign(w, h << 14);
         }
     }
@@ -44,11 +45,10 @@ template <class T, int N, int C> struct NoiseCell {
     template <int D> AL_MEMBER Channels<T, C> sum(T* d, vu h) const {
         Channels<T, C> r;
         if constexpr (D < 0) {
-            h = h * kCorner;
             h = h ^ (h >> 15);
 #pragma clang loop unroll(full)
             for (int i = 0; i < C; ++i)
-                r.c[i] = gradient(h * (C == 1 ? kMix : kChannel[i]), d);
+                r.c[i] = gradient(h * kChannel[i], d);
         } else {
             d[D] = low[D];
             const Channels<T, C> a = sum<D - 1>(d, h ^ hash[D][0]);
@@ -89,10 +89,10 @@ template <int N, int C, bool Periodic, class T> AL_INLINE Channels<T, C> noiseSu
         cell.fade[i] = noiseFade(cell.low[i]);
         if constexpr (Periodic) {
             const vf q = roundPeriod(value(period[i])), a = minLanes(maxLanes(wrapWhole(n, q), vf(0)), q), b = a + 1;
-            cell.hash[i][0] = __builtin_bit_cast(vu, toInt(a)) * kLattice[i];
-            cell.hash[i][1] = __builtin_bit_cast(vu, toInt(select(b >= q, vf(0), b))) * kLattice[i];
+            cell.hash[i][0] = __builtin_bit_cast(vu, toInt(a)) * kLattice[i] + kOffset[i];
+            cell.hash[i][1] = __builtin_bit_cast(vu, toInt(select(b >= q, vf(0), b))) * kLattice[i] + kOffset[i];
         } else {
-            cell.hash[i][0] = __builtin_bit_cast(vu, toInt(n)) * kLattice[i];
+            cell.hash[i][0] = __builtin_bit_cast(vu, toInt(n)) * kLattice[i] + kOffset[i];
             cell.hash[i][1] = cell.hash[i][0] + kLattice[i];
         }
     }
@@ -106,10 +106,10 @@ template <int N, int C, bool Periodic, class T> AL_INLINE Channels<T, C> noiseSu
 
 /// Hash of the cell floor(p), mixed well enough to be shown as it is.
 template <int N, class T> AL_INLINE vu cellHash(const T* p) {
-    vu h = vu(0x51ed270bu);
+    vu h = vu(0u);
 #pragma clang loop unroll(full)
     for (int i = 0; i < N; ++i)
-        h = h ^ (__builtin_bit_cast(vu, toInt(floorLanes(clampFar(value(p[i]))))) * kLattice[i]);
+        h = h ^ (__builtin_bit_cast(vu, toInt(floorLanes(clampFar(value(p[i]))))) * kLattice[i] + kOffset[i]);
     h = (h ^ (h >> 16)) * 0x21f0aaadu;
     h = (h ^ (h >> 15)) * 0x735a2d97u;
     return h ^ (h >> 15);

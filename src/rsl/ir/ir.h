@@ -40,7 +40,7 @@ enum class Op : uint8_t {
     Request,     ///< site: rays or lights; see passes/affine.h
     Emit,        ///< affine form of a Request: args[0] = weight (Triple), then the request's arguments; site. No result.
     Mark,        ///< affine form: Float, the number of pairs emitted so far by these lanes' strip (for Rescale)
-    Rescale,     ///< affine form: args = mark, factor (Triple): pairs emitted since the mark are multiplied by factor
+    Rescale,     ///< affine form: args = mark, factor (Triple), end mark: pairs emitted between the two marks are multiplied by factor
     // derivatives: d/du, d/dv of a Float or Triple; the operand carries one order more than the result
     Du, Dv,
     // arrays are storage, not values
@@ -92,7 +92,8 @@ struct Input {
     Kind kind = Kind::Float;      ///< element kind when an array
     Type type;                    ///< language type, for callers that fill it
     int array = 0;
-    bool uniform = false;
+    bool uniform = false;         ///< laid out as one value for the batch (build S)
+    bool constant = false;        ///< does not change over the surface: no derivatives, in build V too
     uint8_t order = 0;            ///< derivatives the kernel reads (passes/derivatives.h)
 };
 struct OutputSlot { std::string name; Kind kind = Kind::Float; Type type; };
@@ -119,6 +120,9 @@ struct KernelFacts {
     std::string whyNot;          ///< the first place that is not affine, in words
     bool suspends = false;       ///< Requests are left: the kernel becomes a coroutine
     bool lightLoops = false;
+    std::vector<std::string> direct; ///< lobe calls ("specular, line 12") that stay direct under path, with the reason
+    bool ambientLight = false;   ///< light: no illuminate and no solar
+    std::vector<std::string> blocks; ///< light: "illuminate" or "solar" for each block, in order
     std::vector<std::string> writes; ///< predefined variables that the shader assigns
 };
 

@@ -1,0 +1,341 @@
+// Expressions: operators, conversions, spaces, arrays.
+#include "rsl/ir/builder.h"
+#include <algorithm>
+#include <cctype>
+
+namespace alpenglow::rsl::ir {
+
+Inst* Builder::condition(const Expr& e) { return expr(e, Kind::Bool); }
+
+Inst* Builder::dot(Inst* a, Inst* b) {
+    Inst* p = emit(Op::Mul, Kind::Triple, {a, b});
+    Inst* xy = emit(Op::Add, Kind::Float, {emit(Op::Extract, Kind::Float, {p}, 0), emit(Op::Extract, Kind::Float, {p}, 1)});
+    return emit(Op::Add, Kind::Float, {xy, emit(Op::Extract, Kind::Float, {p}, 2)});
+}
+
+Inst* Builder::cross(Inst* a, Inst* b) {
+    std::vector<Inst*> c;
+    for (int n = 0; n < 3; ++n) {
+        const int i = (n + 1) % 3, j = (n + 2) % 3;
+        const auto product = [&](int p, int q) {
+            return emit(Op::Mul, Kind::Float, {emit(Op::Extract, Kind::Float, {a}, p), emit(Op::Extract, Kind::Float, {b}, q)});
+        };
+        c.push_back(emit(Op::Sub, Kind::Float, {product(i, j), product(j, i)}));
+    }
+    return emit(Op::Triple, Kind::Triple, c);
+}
+
+Inst* Builder::multiply(Inst* a, Inst* b) {
+    std::vector<Inst*> m;
+    for (int r = 0; r < 4; ++r)
+        for (int c = 0; c < 4; ++c) {
+            Inst* sum = nullptr;
+            for (int n = 0; n < 4; ++n) {
+                Inst* p = emit(Op::Mul, Kind::Float, {emit(Op::Extract, Kind::Float, {a}, r * 4 + n), emit(Op::Extract, Kind::Float, {b}, n * 4 + c)});
+                sum = sum ? emit(Op::Add, Kind::Float, {sum, p}) : p;
+            }
+            m.push_back(sum);
+        }
+    return emit(Op::MatrixOf, Kind::Matrix, m);
+}
+
+Inst* Builder::binary(const Expr& e, Inst* a, Inst* b) {
+    if (e.op == ExprOp::And || e.op == ExprOp::Or)
+        return emit(e.op == ExprOp::And ? Op::And : Op::Or, Kind::Bool, {coerce(a, Kind::Bool), coerce(b, Kind::Bool)});
+    if (a->kind == Kind::Bool)
+        a = coerce(a, Kind::Float);
+    if (b->kind == Kind::Bool)
+        b = coerce(b, Kind::Float);
+    if (a->kind != b->kind) {
+        const Kind k = a->kind == Kind::Float ? b->kind : a->kind;
+        a = coerce(a, k);
+        b = coerce(b, k);
+    }
+    const Kind k = a->kind;
+    const auto compare = [&](Inst* x, Inst* y) {
+        switch (e.op) {
+        case ExprOp::Less: return emit(Op::Less, Kind::Bool, {x, y});
+        case ExprOp::Greater: return emit(Op::Less, Kind::Bool, {y, x});
+        case ExprOp::LessEqual: return emit(Op::LessEqual, Kind::Bool, {x, y});
+        case ExprOp::GreaterEqual: return emit(Op::LessEqual, Kind::Bool, {y, x});
+        case ExprOp::NotEqual: return emit(Op::NotEqual, Kind::Bool, {x, y});
+        default: return emit(Op::Equal, Kind::Bool, {x, y});
+        }
+    };
+    switch (e.op) {
+    case ExprOp::Add: return emit(Op::Add, k, {a, b});
+    case ExprOp::Sub: return emit(Op::Sub, k, {a, b});
+    case ExprOp::Mul: return k == Kind::Matrix ? multiply(a, b) : emit(Op::Mul, k, {a, b});
+    case ExprOp::Div: return k == Kind::Matrix ? multiply(a, runtime1("al_inverse", {b}, Kind::Matrix)) : emit(Op::Div, k, {a, b});
+    case ExprOp::Dot: return dot(coerce(a, Kind::Triple), coerce(b, Kind::Triple));
+    case ExprOp::Cross: return cross(coerce(a, Kind::Triple), coerce(b, Kind::Triple));
+    default: break;
+    }
+    if (k == Kind::Float || k == Kind::String)
+        return compare(a, b);
+    Inst* all = nullptr; // tuples and matrices: every component (any, for !=)
+    for (int c = 0; c < components(k); ++c) {
+        Inst* one = compare(emit(Op::Extract, Kind::Float, {a}, c), emit(Op::Extract, Kind::Float, {b}, c));
+        all = all ? emit(e.op == ExprOp::NotEqual ? Op::Or : Op::And, Kind::Bool, {all, one}) : one;
+    }
+    return all;
+}
+
+Inst* Builder::array(const Expr& e) {
+    if (e.kind == ExprKind::Variable && e.symbol) {
+        const int n = slot(e.symbol);
+        Inst*& v = env_[static_cast<size_t>(n)];
+        if (!v)
+            v = get(n);
+        return v;
+    }
+    if (e.kind == ExprKind::Cast && !e.args.empty() && e.args[0]->type.array)
+        return array(*e.args[0]);
+    const int length = e.type.array > 0 ? e.type.array : std::max<int>(1, static_cast<int>(e.args.size()));
+    Inst* a = newArray(e.type.base, length);
+    copyArray(a, e);
+    return a;
+}
+
+void Builder::copyArray(Inst* to, const Expr& from) {
+    const int n = arrayLength(to);
+    const auto store = [&](int i, Inst* v) { emit(Op::ArrayStore, Kind::None, {to, constant(static_cast<float>(i)), coerce(v, to->element)}); };
+    if (from.kind == ExprKind::ArrayList) {
+        std::vector<Inst*> values;
+        for (const ExprPtr& a : from.args)
+            values.push_back(expr(*a));
+        for (int i = 0; i < n && i < static_cast<int>(values.size()); ++i)
+            store(i, values[static_cast<size_t>(i)]);
+        for (int i = static_cast<int>(values.size()); i < n; ++i)
+            store(i, zero(to->element));
+        return;
+    }
+    if (!from.type.array) { // float a[42] = 0: the value for every element
+        Inst* v = expr(from);
+        for (int i = 0; i < n; ++i)
+            store(i, v);
+        return;
+    }
+    if (from.kind != ExprKind::Variable && from.kind != ExprKind::Cast)
+        return; // an array valued call: its results stay zero, reported where it is built
+    Inst* a = array(from);
+    if (a == to)
+        return;
+    const int m = std::min(n, arrayLength(a));
+    for (int i = 0; i < m; ++i)
+        store(i, emit(Op::ArrayLoad, a->element, {a, constant(static_cast<float>(i))}));
+}
+
+void Builder::assign(const Expr& l, Inst* value) {
+    if (l.kind == ExprKind::Cast && !l.args.empty())
+        return assign(*l.args[0], value);
+    if (l.kind == ExprKind::Variable && l.symbol) {
+        if (!l.symbol->type.array)
+            set(slot(l.symbol), coerce(value, l.symbol->type));
+        return;
+    }
+    if (l.kind != ExprKind::Index || l.args.size() < 2)
+        return;
+    const Expr& base = *l.args[0];
+    if (base.type.array) {
+        Inst* a = array(base);
+        Inst* at = expr(*l.args[1], Kind::Float);
+        if (isConst(at) && (at->numbers[0] < 0 || at->numbers[0] >= static_cast<float>(arrayLength(a))))
+            warn(l.place, "index " + std::to_string(static_cast<int>(at->numbers[0])) + " is outside the array of length " +
+                              std::to_string(arrayLength(a)) + "; the nearest element is taken");
+        if (a->op == Op::ArrayNew)
+            emit(Op::ArrayStore, Kind::None, {a, at, coerce(value, a->element)});
+        return;
+    }
+    // A component of a tuple.
+    Inst* old = expr(base, Kind::Triple);
+    Inst* at = expr(*l.args[1], Kind::Float);
+    value = coerce(value, Kind::Float);
+    std::vector<Inst*> c;
+    for (int n = 0; n < 3; ++n) {
+        Inst* is = n == 0 ? emit(Op::Less, Kind::Bool, {at, constant(1)})
+                   : n == 2 ? emit(Op::LessEqual, Kind::Bool, {constant(2), at})
+                            : emit(Op::And, Kind::Bool, {emit(Op::LessEqual, Kind::Bool, {constant(1), at}), emit(Op::Less, Kind::Bool, {at, constant(2)})});
+        c.push_back(emit(Op::Select, Kind::Float, {is, value, emit(Op::Extract, Kind::Float, {old}, n)}));
+    }
+    assign(base, emit(Op::Triple, Kind::Triple, c));
+}
+
+Inst* Builder::transformBy(Inst* m, Inst* v, Base base) {
+    switch (base) {
+    case Base::Vector: return runtime1("al_transformvector", {m, v}, Kind::Triple);
+    case Base::Normal: return runtime1("al_transformnormal", {m, v}, Kind::Triple);
+    case Base::Matrix: return multiply(v, m);
+    default: return runtime1("al_transformpoint", {m, v}, Kind::Triple);
+    }
+}
+
+Inst* Builder::toSpace(const std::string& from, const std::string& to, Inst* v, Base base, const Place&) {
+    if (from == to)
+        return v;
+    if (from != "current")
+        v = transformBy(space(from, "current"), v, base);
+    if (to != "current")
+        v = transformBy(space("current", to), v, base);
+    return v;
+}
+
+static std::string lower(std::string s) {
+    for (char& c : s)
+        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return s;
+}
+
+Inst* Builder::colourSpace(const std::string& from, const std::string& to, Inst* v) {
+    const std::string f = lower(from), t = lower(to);
+    const auto known = [](const std::string& s) { return s == "hsv" || s == "hsl" || s == "yiq" || s == "xyz"; };
+    if (f == t || (!known(f) && f != "rgb") || (!known(t) && t != "rgb"))
+        return v; // an unknown space leaves the colour as it is
+    if (f != "rgb")
+        v = runtime1("al_" + f + "_to_rgb", {v}, Kind::Triple);
+    return t == "rgb" ? v : runtime1("al_rgb_to_" + t, {v}, Kind::Triple);
+}
+
+/// Names that are not known at compile time: the renderer answers. Two Strings and the value.
+Inst* Builder::dynamicSpace(const char* op, Inst* from, Inst* to, Inst* value, Base base) {
+    Site s;
+    s.op = op;
+    s.strings = {from->op == Op::ConstString ? from->text : "", to->op == Op::ConstString ? to->text : ""};
+    std::vector<Inst*> args;
+    for (Inst* name : {from, to})
+        if (name->op != Op::ConstString) {
+            args.push_back(name);
+            s.argKinds.push_back(Kind::String);
+            s.argTypes.push_back({Base::String, 0});
+        }
+    args.push_back(value);
+    s.argKinds.push_back(value->kind);
+    s.argTypes.push_back({base, 0});
+    s.resultKinds = {value->kind};
+    s.resultNames = {""};
+    s.resultType = {base, 0};
+    s.pure = true;
+    s.shadeop = findShadeop(op);
+    return call(Op::Service, std::move(s), std::move(args))[0];
+}
+
+/// `value`, given in the space that the expression names, in current space (colours: rgb).
+Inst* Builder::inSpace(const Expr& spaceName, Inst* value, Base base) {
+    Inst* name = expr(spaceName);
+    if (base == Base::Color) {
+        if (name->op == Op::ConstString)
+            return colourSpace(name->text, "rgb", value);
+        return dynamicSpace("ctransform", name, leaves_.string("rgb"), value, base);
+    }
+    if (name->op == Op::ConstString)
+        return toSpace(name->text, "current", value, base, spaceName.place);
+    const char* op = base == Base::Vector ? "vtransform" : base == Base::Normal ? "ntransform" : base == Base::Matrix ? "mtransform" : "transform";
+    return dynamicSpace(op, name, leaves_.string("current"), value, base);
+}
+
+Inst* Builder::expr(const Expr& e) {
+    if (failed_)
+        return e.type.array ? newArray(e.type.base, 1) : zero(kindOf(e.type) == Kind::None ? Kind::Float : kindOf(e.type));
+    if (e.place.line)
+        place_ = e.place;
+    if (e.type.array && e.kind != ExprKind::Assign && e.kind != ExprKind::FunctionCall && e.kind != ExprKind::ShadeopCall)
+        return array(e);
+    switch (e.kind) {
+    case ExprKind::Number: return constant(static_cast<float>(e.number));
+    case ExprKind::String: return leaves_.string(e.text);
+    case ExprKind::Variable: return e.symbol ? get(slot(e.symbol)) : zero(kindOf(e.type));
+    case ExprKind::Index: {
+        const Expr& base = *e.args[0];
+        if (base.type.array) {
+            Inst* a = array(base);
+            Inst* at = expr(*e.args[1], Kind::Float);
+            if (isConst(at) && (at->numbers[0] < 0 || at->numbers[0] >= static_cast<float>(arrayLength(a))))
+                warn(e.place, "index " + std::to_string(static_cast<int>(at->numbers[0])) + " is outside the array of length " +
+                                  std::to_string(arrayLength(a)) + "; the nearest element is taken");
+            return emit(Op::ArrayLoad, a->element, {a, at});
+        }
+        Inst* v = expr(base, Kind::Triple);
+        Inst* at = expr(*e.args[1], Kind::Float);
+        if (isConst(at))
+            return emit(Op::Extract, Kind::Float, {v}, std::clamp(static_cast<int>(at->numbers[0]), 0, 2));
+        const auto c = [&](int n) { return emit(Op::Extract, Kind::Float, {v}, n); };
+        Inst* high = emit(Op::Select, Kind::Float, {emit(Op::Less, Kind::Bool, {at, constant(2)}), c(1), c(2)});
+        return emit(Op::Select, Kind::Float, {emit(Op::Less, Kind::Bool, {at, constant(1)}), c(0), high});
+    }
+    case ExprKind::Unary: {
+        if (e.op == ExprOp::Not)
+            return emit(Op::Not, Kind::Bool, {condition(*e.args[0])});
+        Inst* v = expr(*e.args[0]);
+        if (v->kind == Kind::Matrix) {
+            std::vector<Inst*> m;
+            for (int n = 0; n < 16; ++n)
+                m.push_back(emit(Op::Neg, Kind::Float, {emit(Op::Extract, Kind::Float, {v}, n)}));
+            return emit(Op::MatrixOf, Kind::Matrix, m);
+        }
+        if (v->kind == Kind::Bool)
+            v = coerce(v, Kind::Float);
+        return emit(Op::Neg, v->kind, {v});
+    }
+    case ExprKind::Binary: {
+        Inst* a = expr(*e.args[0]);
+        Inst* b = expr(*e.args[1]);
+        place_ = e.place;
+        return binary(e, a, b);
+    }
+    case ExprKind::Assign: {
+        const Expr& l = *e.args[0];
+        if (l.type.array) {
+            Inst* a = array(l);
+            if (a->op == Op::ArrayNew)
+                copyArray(a, *e.args[1]);
+            return a;
+        }
+        Inst* v;
+        uniformContext_ = l.symbol && l.symbol->storage == Storage::Uniform;
+        if (e.op == ExprOp::Assign || e.op == ExprOp::None) {
+            v = expr(*e.args[1]);
+        } else {
+            Inst* old = expr(l);
+            Inst* r = expr(*e.args[1]);
+            place_ = e.place;
+            v = binary(e, old, r);
+        }
+        uniformContext_ = false;
+        v = coerce(v, kindOf(l.type) == Kind::None ? v->kind : kindOf(l.type));
+        assign(l, v);
+        return v;
+    }
+    case ExprKind::Conditional: {
+        Inst* c = condition(*e.args[0]);
+        const Kind k = kindOf(e.type);
+        return branch(
+            c, [&] { return std::vector<Inst*>{expr(*e.args[1], k)}; }, [&] { return std::vector<Inst*>{expr(*e.args[2], k)}; })[0];
+    }
+    case ExprKind::Tuple: {
+        std::vector<Inst*> c;
+        for (const ExprPtr& a : e.args)
+            c.push_back(expr(*a, Kind::Float));
+        if (c.size() != 3)
+            return c.empty() ? zero(Kind::Triple) : coerce(c[0], Kind::Triple);
+        Inst* v = emit(Op::Triple, Kind::Triple, c);
+        return e.space ? inSpace(*e.space, v, e.type.base) : v;
+    }
+    case ExprKind::MatrixTuple: {
+        std::vector<Inst*> c;
+        for (const ExprPtr& a : e.args)
+            c.push_back(expr(*a, Kind::Float));
+        Inst* v = c.size() == 16 ? emit(Op::MatrixOf, Kind::Matrix, c) : coerce(c.empty() ? constant(0) : c[0], Kind::Matrix);
+        return e.space ? inSpace(*e.space, v, Base::Matrix) : v;
+    }
+    case ExprKind::ArrayList: return array(e);
+    case ExprKind::Cast: {
+        Inst* v = coerce(expr(*e.args[0]), e.type);
+        return e.space ? inSpace(*e.space, v, e.type.base) : v;
+    }
+    case ExprKind::ShadeopCall: return shadeopCall(e);
+    case ExprKind::FunctionCall: return e.shadeop ? shadeopCall(e) : functionCall(e);
+    }
+    return constant(0);
+}
+
+} // namespace alpenglow::rsl::ir

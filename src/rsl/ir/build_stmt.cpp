@@ -1,0 +1,356 @@
+// Statements: assignments become values, jumps become guards.
+#include "rsl/ir/builder.h"
+
+namespace alpenglow::rsl::ir {
+
+std::vector<Inst*> Builder::branch(Inst* condition, const std::function<std::vector<Inst*>()>& yes, const std::function<std::vector<Inst*>()>& no) {
+    if (isConst(condition))
+        return condition->numbers[0] != 0 ? yes() : no();
+    Inst* inst = k_.make(Op::If, Kind::None, {condition});
+    inst->place = place_;
+    inst->regions.resize(2);
+    const size_t mark = log_.size();
+    std::map<int, Inst*> changed[2];
+    std::vector<Inst*> extra[2];
+    for (int side = 0; side < 2; ++side) {
+        Region* saved = region_;
+        region_ = &inst->regions[static_cast<size_t>(side)];
+        extra[side] = side == 0 ? yes() : no();
+        region_ = saved;
+        for (size_t n = mark; n < log_.size(); ++n)
+            changed[side][log_[n].first] = env_[static_cast<size_t>(log_[n].first)];
+        while (log_.size() > mark) {
+            env_[static_cast<size_t>(log_.back().first)] = log_.back().second;
+            log_.pop_back();
+        }
+    }
+    region_->body.push_back(inst);
+    const auto yield = [&](Inst* a, Inst* b) {
+        if (a == b)
+            return a;
+        inst->regions[0].yields.push_back(a);
+        inst->regions[1].yields.push_back(b);
+        inst->results.push_back(a->kind);
+        return emit(Op::Result, a->kind, {inst}, static_cast<int>(inst->results.size()) - 1);
+    };
+    std::set<int> slots;
+    for (const auto& side : changed)
+        for (const auto& [n, v] : side)
+            slots.insert(n);
+    for (int n : slots) {
+        Inst* before = env_[static_cast<size_t>(n)];
+        const auto value = [&](int side) {
+            const auto it = changed[side].find(n);
+            return it == changed[side].end() ? before : it->second;
+        };
+        // Without a value before, the variable lives inside the branch only; array names never change what they stand for.
+        if (before && before->kind != Kind::Array && value(0)->kind == value(1)->kind)
+            set(n, yield(value(0), value(1)));
+    }
+    std::vector<Inst*> out;
+    for (size_t n = 0; n < extra[0].size(); ++n)
+        out.push_back(yield(extra[0][n], extra[1][n]));
+    return out;
+}
+
+Inst* Builder::alive() {
+    const Frame& f = frames_.back();
+    Inst* dead = nullptr;
+    if (!f.loops.empty())
+        dead = emit(Op::Or, Kind::Bool, {get(f.loops.back().broken), get(f.loops.back().continued)});
+    else if (f.returned >= 0)
+        dead = get(f.returned);
+    return dead ? emit(Op::Not, Kind::Bool, {dead}) : boolean(true);
+}
+
+void Builder::statements(const std::vector<StmtPtr>& list, size_t from) {
+    for (size_t n = from; n < list.size() && !failed_; ++n) {
+        Inst* live = alive();
+        if (isConst(live)) {
+            if (live->numbers[0] == 0)
+                return;
+            statement(*list[n]);
+            continue;
+        }
+        branch(
+            live,
+            [&] {
+                // Inside, the flags are known to be off: no further guards until one is set again.
+                Frame& f = frames_.back();
+                if (!f.loops.empty()) {
+                    set(f.loops.back().broken, boolean(false));
+                    set(f.loops.back().continued, boolean(false));
+                } else {
+                    set(f.returned, boolean(false));
+                }
+                statements(list, n);
+                return std::vector<Inst*>{};
+            },
+            [] { return std::vector<Inst*>{}; });
+        return;
+    }
+}
+
+void Builder::declare(const Stmt& s) {
+    for (const Stmt::Declarator& d : s.declarators) {
+        const int n = slot(d.symbol);
+        if (d.symbol->type.array) {
+            int length = d.symbol->type.array;
+            if (length < 0)
+                length = d.init && d.init->kind == ExprKind::ArrayList ? static_cast<int>(d.init->args.size()) : d.init ? d.init->type.array : 0;
+            Inst* a = newArray(d.symbol->type.base, std::max(length, 1));
+            if (d.init)
+                copyArray(a, *d.init);
+            set(n, a);
+        } else {
+            uniformContext_ = d.symbol->storage == Storage::Uniform;
+            set(n, d.init ? expr(*d.init, kindOf(d.symbol->type)) : zero(kindOf(d.symbol->type)));
+            uniformContext_ = false;
+        }
+    }
+}
+
+void Builder::statement(const Stmt& s) {
+    if (failed_)
+        return;
+    if (s.place.line)
+        place_ = s.place;
+    Frame& f = frames_.back();
+    switch (s.kind) {
+    case StmtKind::Block: statements(s.body, 0); return;
+    case StmtKind::Declare: declare(s); return;
+    case StmtKind::Expression:
+        if (s.value)
+            expr(*s.value);
+        return;
+    case StmtKind::If: {
+        Inst* c = condition(*s.condition);
+        branch(
+            c, [&] { statements(s.body, 0); return std::vector<Inst*>{}; },
+            [&] {
+                if (s.elseBody)
+                    statement(*s.elseBody);
+                return std::vector<Inst*>{};
+            });
+        return;
+    }
+    case StmtKind::While: loop(s.condition.get(), nullptr, s.body.empty() ? nullptr : s.body[0].get(), s.place); return;
+    case StmtKind::For:
+        if (s.init)
+            expr(*s.init);
+        loop(s.condition.get(), s.step.get(), s.body.empty() ? nullptr : s.body[0].get(), s.place);
+        return;
+    case StmtKind::Break:
+    case StmtKind::Continue: {
+        const size_t depth = f.loops.size();
+        const size_t levels = std::min<size_t>(static_cast<size_t>(std::max(s.levels, 1)), depth);
+        for (size_t n = 0; n < levels; ++n) {
+            const LoopFrame& l = f.loops[depth - 1 - n];
+            set(s.kind == StmtKind::Continue && n + 1 == levels ? l.continued : l.broken, boolean(true));
+        }
+        return;
+    }
+    case StmtKind::Return:
+        if (s.value && f.result >= 0)
+            set(f.result, expr(*s.value, kindOf(f.type)));
+        if (f.returned >= 0)
+            set(f.returned, boolean(true));
+        for (const LoopFrame& l : f.loops)
+            set(l.broken, boolean(true));
+        return;
+    case StmtKind::Illuminance: illuminance(s); return;
+    case StmtKind::Illuminate:
+    case StmtKind::Solar: lightBlock(s); return;
+    case StmtKind::Gather:
+        warn(s.place, "gather is not yet available: no sample hits anything, the else statement runs once");
+        if (s.elseBody)
+            statement(*s.elseBody);
+        return;
+    }
+}
+
+namespace {
+
+/// Whether the statement may jump: any break, continue or return below it, functions excluded.
+bool mayJump(const Stmt& s) {
+    if (s.kind == StmtKind::Break || s.kind == StmtKind::Continue || s.kind == StmtKind::Return)
+        return true;
+    for (const StmtPtr& b : s.body)
+        if (b && mayJump(*b))
+            return true;
+    return s.elseBody && mayJump(*s.elseBody);
+}
+
+} // namespace
+
+void Builder::loop(const Expr* cond, const Expr* step, const Stmt* body, const Place& place) {
+    std::set<int> assigned;
+    std::set<const Function*> seen;
+    if (body)
+        scanAssigned(*body, assigned, seen);
+    if (step)
+        scanAssigned(*step, assigned, seen);
+    bool simple = true;
+    if (cond) {
+        simple = !hasEffects(*cond);
+        scanAssigned(*cond, assigned, seen);
+    }
+    Frame& f = frames_.back();
+    const bool jumps = body && mayJump(*body);
+    if (jumps) { // flags of loops around, too: break 2, return
+        for (const LoopFrame& l : f.loops) {
+            assigned.insert(l.broken);
+            assigned.insert(l.continued);
+        }
+        if (f.returned >= 0)
+            assigned.insert(f.returned);
+        if (f.result >= 0)
+            assigned.insert(f.result);
+    }
+    const LoopFrame flags{newSlot(boolean(false)), newSlot(boolean(false))};
+    const int go = simple ? -1 : newSlot(condition(*cond));
+    if (jumps)
+        assigned.insert(flags.broken);
+    if (go >= 0)
+        assigned.insert(go);
+
+    std::vector<int> carried;
+    Inst* inst = k_.make(Op::Loop, Kind::None);
+    inst->place = place;
+    inst->regions.resize(2);
+    for (int n : assigned) {
+        const Symbol* s = symbols_[static_cast<size_t>(n)];
+        if (s && s->origin == Symbol::Origin::Global)
+            get(n);
+        Inst* v = env_[static_cast<size_t>(n)];
+        if (!v || v->kind == Kind::Array)
+            continue;
+        carried.push_back(n);
+        inst->args.push_back(v);
+        inst->results.push_back(v->kind);
+    }
+    const size_t mark = log_.size();
+    const auto enter = [&](Region& r) {
+        region_ = &r;
+        for (size_t c = 0; c < carried.size(); ++c) {
+            Inst* p = k_.make(Op::RegionParam, inst->results[c]);
+            p->index = static_cast<int>(c);
+            r.params.push_back(p);
+            set(carried[c], p);
+        }
+    };
+    const auto leave = [&](Region* back) {
+        region_ = back;
+        while (log_.size() > mark) {
+            env_[static_cast<size_t>(log_.back().first)] = log_.back().second;
+            log_.pop_back();
+        }
+    };
+    Region* saved = region_;
+    enter(inst->regions[0]);
+    Inst* test = go >= 0 ? get(go) : cond ? condition(*cond) : boolean(true);
+    test = emit(Op::And, Kind::Bool, {emit(Op::Not, Kind::Bool, {get(flags.broken)}), test});
+    inst->regions[0].yields.push_back(test);
+    leave(saved);
+
+    enter(inst->regions[1]);
+    frames_.back().loops.push_back(flags);
+    set(flags.continued, boolean(false));
+    if (body)
+        statement(*body);
+    frames_.back().loops.pop_back();
+    const auto next = [&] {
+        if (step)
+            expr(*step);
+        if (go >= 0)
+            set(go, condition(*cond));
+        return std::vector<Inst*>{};
+    };
+    if (step || go >= 0)
+        branch(emit(Op::Not, Kind::Bool, {get(flags.broken)}), next, [] { return std::vector<Inst*>{}; });
+    for (int n : carried)
+        inst->regions[1].yields.push_back(get(n));
+    leave(saved);
+    region_->body.push_back(inst);
+    for (size_t c = 0; c < carried.size(); ++c)
+        set(carried[c], emit(Op::Result, inst->results[c], {inst}, static_cast<int>(c)));
+}
+
+void Builder::scanAssigned(const Expr& e, std::set<int>& out, std::set<const Function*>& seen) {
+    const auto lvalue = [&](const Expr* l) {
+        while (l && l->kind == ExprKind::Index && !l->args.empty())
+            l = l->args[0].get();
+        if (l && l->kind == ExprKind::Cast && !l->args.empty())
+            l = l->args[0].get();
+        if (l && l->kind == ExprKind::Variable && l->symbol)
+            out.insert(slot(l->symbol));
+    };
+    if (e.kind == ExprKind::Assign)
+        lvalue(e.args[0].get());
+    if (e.kind == ExprKind::ShadeopCall && e.signature)
+        for (size_t n = 0; n < e.args.size() && n < e.signature->parameters.size(); ++n)
+            if (e.signature->parameters[n].output)
+                lvalue(e.args[n].get());
+    for (const NamedArg& p : e.pairs)
+        if (p.output && p.value)
+            lvalue(p.value.get());
+    if (e.function) {
+        for (size_t n = 0; n < e.args.size() && n < e.function->parameters.size(); ++n)
+            if (e.function->parameters[n]->output)
+                lvalue(e.args[n].get());
+        if (seen.insert(e.function).second && e.function->body)
+            scanAssigned(*e.function->body, out, seen);
+    }
+    for (const ExprPtr& a : e.args)
+        if (a)
+            scanAssigned(*a, out, seen);
+    for (const NamedArg& p : e.pairs)
+        if (p.value)
+            scanAssigned(*p.value, out, seen);
+    for (const ExprPtr* p : {&e.space, &e.channel})
+        if (*p)
+            scanAssigned(**p, out, seen);
+}
+
+void Builder::scanAssigned(const Stmt& s, std::set<int>& out, std::set<const Function*>& seen) {
+    for (const StmtPtr& b : s.body)
+        if (b)
+            scanAssigned(*b, out, seen);
+    if (s.elseBody)
+        scanAssigned(*s.elseBody, out, seen);
+    for (const ExprPtr* p : {&s.condition, &s.init, &s.step, &s.value, &s.category})
+        if (*p)
+            scanAssigned(**p, out, seen);
+    for (const ExprPtr& e : s.exprs)
+        if (e)
+            scanAssigned(*e, out, seen);
+    for (const Stmt::Declarator& d : s.declarators)
+        if (d.init)
+            scanAssigned(*d.init, out, seen);
+    for (const NamedArg& p : s.pairs)
+        if (p.value) {
+            scanAssigned(*p.value, out, seen);
+            if (p.output && p.value->kind == ExprKind::Variable && p.value->symbol)
+                out.insert(slot(p.value->symbol));
+        }
+    for (const LightBlock& b : lightBlocks_)
+        if (b.stmt == &s)
+            out.insert({b.L, b.Cl, b.Ol, b.lit});
+}
+
+bool Builder::hasEffects(const Expr& e) {
+    if (e.kind == ExprKind::Assign || e.kind == ExprKind::FunctionCall || e.function)
+        return true;
+    if (e.kind == ExprKind::ShadeopCall && (!e.shadeop || e.shadeop->lowering != Lowering::Runtime))
+        return true;
+    if (e.kind == ExprKind::ShadeopCall && e.signature)
+        for (const Parameter& p : e.signature->parameters)
+            if (p.output)
+                return true;
+    for (const ExprPtr& a : e.args)
+        if (a && hasEffects(*a))
+            return true;
+    return false;
+}
+
+} // namespace alpenglow::rsl::ir

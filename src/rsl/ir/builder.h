@@ -1,0 +1,134 @@
+// The builder's insides, shared by build*.cpp. Not for others.
+#pragma once
+#include "rsl/ir/build.h"
+#include "rsl/ir/edit.h"
+#include <deque>
+#include <functional>
+#include <map>
+#include <set>
+#include <unordered_map>
+
+namespace alpenglow::rsl::ir {
+
+/// A lobe call to be inlined even under path: its place.
+using DirectSet = std::set<std::tuple<int, int, int>>;
+
+class Builder {
+public:
+    Builder(Kernel& k, const Program& p, const Shader& s, const KernelOptions& o, Diagnostics& d, const DirectSet& direct)
+        : k_(k), program_(p), shader_(s), options_(o), diagnostics_(d), direct_(direct), leaves_(k) {}
+    bool buildShader();
+    bool buildDefaults();
+
+private:
+    // build.cpp: instructions
+    Inst* emit(Op, Kind, std::vector<Inst*> args, int index = 0);
+    Inst* constant(float f) { return leaves_.constant(Kind::Float, f); }
+    Inst* boolean(bool b) { return leaves_.constant(Kind::Bool, b ? 1.0f : 0.0f); }
+    Inst* zero(Kind);
+    Inst* input(const std::string& name, Type type, bool uniform);
+    Inst* space(const std::string& from, const std::string& to);
+    /// A Runtime call; several results when `results` has more than one.
+    std::vector<Inst*> runtime(const std::string& symbol, std::vector<Inst*> args, std::vector<Kind> results);
+    Inst* runtime1(const std::string& symbol, std::vector<Inst*> args, Kind k) { return runtime(symbol, std::move(args), {k})[0]; }
+    std::vector<Inst*> call(Op, Site, std::vector<Inst*> args);
+    Inst* coerce(Inst*, Kind);
+    Inst* coerce(Inst*, Type);
+    void error(const Place&, const std::string&);
+    void warn(const Place&, const std::string&);
+
+    // build.cpp: variables
+    int slot(const Symbol*);
+    int newSlot(Inst* value);
+    Inst* get(int slot);
+    void set(int slot, Inst* value);
+    Inst* initialGlobal(const std::string& name, Type);
+    Inst* parameterValue(const ShaderParameter&);
+    Inst* constantParameter(const Symbol&, const std::string& text);
+
+    // build_stmt.cpp
+    using Code = std::function<void()>;
+    /// If with everything assigned in a branch yielded; extra values of the branches, too.
+    std::vector<Inst*> branch(Inst* condition, const std::function<std::vector<Inst*>()>& yes, const std::function<std::vector<Inst*>()>& no);
+    void statements(const std::vector<StmtPtr>&, size_t from);
+    void statement(const Stmt&);
+    void declare(const Stmt&);
+    void loop(const Expr* condition, const Expr* step, const Stmt* body, const Place&);
+    void illuminance(const Stmt&);
+    void lightBlock(const Stmt&);
+    void findBlocks(const Stmt&);
+    int addBlock(const Stmt&);
+    Inst* alive();
+    void scanAssigned(const Stmt&, std::set<int>& out, std::set<const Function*>& seen);
+    void scanAssigned(const Expr&, std::set<int>& out, std::set<const Function*>& seen);
+    bool hasEffects(const Expr&);
+    /// Loop or LightLoop around `body`: `fixed` region parameters come before the carried ones.
+    struct LoopFrame { int broken = -1, continued = -1; };
+    struct Frame { int returned = -1; int result = -1; Type type; std::vector<LoopFrame> loops; const Function* function = nullptr; };
+
+    // build_expr.cpp
+    Inst* expr(const Expr&);
+    Inst* expr(const Expr& e, Kind k) { return coerce(expr(e), k); }
+    Inst* condition(const Expr&);
+    Inst* array(const Expr&);
+    void assign(const Expr& lvalue, Inst* value);
+    void copyArray(Inst* to, const Expr& from);
+    Inst* binary(const Expr&, Inst* a, Inst* b);
+    Inst* dot(Inst*, Inst*);
+    Inst* cross(Inst*, Inst*);
+    Inst* multiply(Inst* a, Inst* b);
+    Inst* toSpace(const std::string& from, const std::string& to, Inst*, Base, const Place&);
+    Inst* colourSpace(const std::string& from, const std::string& to, Inst*);
+    Inst* dynamicSpace(const char* op, Inst* from, Inst* to, Inst* value, Base);
+    Inst* transformBy(Inst* matrix, Inst* value, Base);
+    Inst* inSpace(const Expr& space, Inst* value, Base);
+    int arrayLength(const Inst* array) const;
+    Inst* newArray(Base, int length);
+
+    // build_call.cpp
+    Inst* functionCall(const Expr&);
+    Inst* inlineFunction(const Function&, const std::vector<const Expr*>& args);
+    Inst* shadeopCall(const Expr&);
+    Inst* runtimeCall(const Expr&);
+    Inst* special(const Expr&);
+    Inst* service(const Expr&, Op);
+    Inst* spline(const Expr&);
+    Inst* transformCall(const Expr&);
+    Inst* filterstep(const Expr&);
+    Inst* unavailable(const Expr&);
+    Inst* random(const Expr&);
+    bool hasGlobal(const char* name) const;
+    Inst* global(const char* name, Base);
+    void addArgument(Site&, std::vector<Inst*>& args, Inst* value, Type);
+    Inst* foldString(const std::string& op, const std::vector<Inst*>& args);
+    bool isLobe(const Expr&) const;
+
+    Kernel& k_;
+    const Program& program_;
+    const Shader& shader_;
+    const KernelOptions& options_;
+    Diagnostics& diagnostics_;
+    const DirectSet& direct_;
+    Leaves leaves_;
+    Region* region_ = nullptr;
+    Place place_;
+    std::unordered_map<const Symbol*, int> slots_;
+    std::map<std::string, int> globals_;
+    std::vector<const Symbol*> symbols_; ///< by slot; null for the builder's own
+    std::vector<Inst*> env_;
+    std::vector<std::pair<int, Inst*>> log_;
+    std::deque<Frame> frames_; ///< references stay valid while functions are entered
+    std::unordered_map<std::string, Inst*> inputs_;
+    std::set<std::string> writes_;
+    /// Slots of what a block of a light gives.
+    struct LightBlock { const Stmt* stmt; bool solar; int L, Cl, Ol, lit; };
+    std::vector<LightBlock> lightBlocks_;
+    int lightDepth_ = 0;
+    bool uniformContext_ = false; ///< the value goes to a uniform variable: one random() for all
+    bool failed_ = false;
+};
+
+Kind kindOf(Type);
+SourcePlace sourcePlace(const std::vector<std::string>& files, const Place&);
+
+} // namespace alpenglow::rsl::ir

@@ -1,0 +1,89 @@
+// What every pass needs: walks over the tree of regions, results of instructions, effects, copies.
+#pragma once
+#include "rsl/ir/ir.h"
+#include <functional>
+#include <unordered_map>
+#include <vector>
+
+namespace alpenglow::rsl::ir {
+
+/// Kinds of the results of an instruction, one or several; empty for none.
+std::vector<Kind> resultKinds(const Inst&);
+
+/// While passes work, If, Loop, LightLoop, Runtime, Service and Request always give their results through Result instructions
+/// ("long form"): a pass then treats one result like several. Outside the passes a single result is the instruction itself.
+void toLongForm(Kernel&);
+void toShortForm(Kernel&);
+
+/// Visits every instruction in order, regions after their instruction.
+void forEach(Region&, const std::function<void(Inst*)>&);
+void forEach(const Region&, const std::function<void(const Inst*)>&);
+size_t instructionCount(const Region&);
+
+/// True for instructions whose execution cannot be seen except through their results. Looks into regions.
+bool isPure(const Kernel&, const Inst&);
+/// Pure, without regions, and independent of array storage: may be moved anywhere its arguments are known.
+bool isMovable(const Kernel&, const Inst&);
+
+/// True when `inst` is Const and every component equals `value`, signs of zero included.
+bool isConst(const Inst* inst, float value);
+inline bool isConst(const Inst* inst) { return inst->op == Op::Const; }
+
+/// Number of uses of each instruction, by id (arguments and yields).
+std::vector<uint32_t> countUses(const Kernel&);
+
+/// Replacements by id, with path compression; null entries stand for themselves.
+class Replacements {
+public:
+    Inst* operator()(Inst* inst) {
+        while (inst->id < map_.size() && map_[inst->id])
+            inst = map_[inst->id];
+        return inst;
+    }
+    void set(const Inst* from, Inst* to) {
+        if (from->id >= map_.size())
+            map_.resize(from->id + 1024);
+        map_[from->id] = to;
+    }
+    /// True when the instruction is replaced.
+    bool replaced(const Inst* inst) const { return inst->id < map_.size() && map_[inst->id] != nullptr; }
+    void apply(Inst* inst) {
+        for (Inst*& a : inst->args)
+            a = (*this)(a);
+    }
+    /// Every argument and yield of the region and below.
+    void apply(Region&);
+
+private:
+    std::vector<Inst*> map_;
+};
+
+using CopyMap = std::unordered_map<const Inst*, Inst*>;
+/// A copy of one instruction with its regions; operands are looked up in `map`, absent ones stay. The copies are added to `map`.
+Inst* copyInst(Kernel&, const Inst*, CopyMap& map);
+/// Copies the body of a region into `out`; parameters must be in `map` already.
+void copyBody(Kernel&, const Region&, CopyMap& map, std::vector<Inst*>& out);
+inline Inst* mapped(const CopyMap& map, Inst* inst) {
+    const auto it = map.find(inst);
+    return it == map.end() ? inst : it->second;
+}
+
+/// Constants and inputs collected by a pass; they go to the front of the kernel, where they dominate everything.
+class Leaves {
+public:
+    explicit Leaves(Kernel& k) : kernel_(k) {}
+    ~Leaves() { flush(); }
+    Inst* constant(Kind, float value);                 ///< every component `value`
+    Inst* constant(Kind, const std::vector<float>&);
+    Inst* string(const std::string&);
+    void add(Inst* leaf) { front_.push_back(leaf); }
+    /// Puts what was made before the body of the kernel.
+    void flush();
+
+private:
+    Kernel& kernel_;
+    std::vector<Inst*> front_;
+    std::unordered_map<std::string, Inst*> known_;
+};
+
+} // namespace alpenglow::rsl::ir

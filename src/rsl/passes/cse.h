@@ -1,0 +1,10 @@
+// Common subexpressions: equal pure instructions are computed once, where the first dominates the second.
+#pragma once
+#include "rsl/ir/ir.h"
+
+namespace alpenglow::rsl::ir {
+
+/// Long form. Returns the number of instructions removed.
+int mergeCommon(Kernel&);
+
+} // namespace alpenglow::rsl::ir

@@ -1,0 +1,12 @@
+// Dead code: instructions without effect whose results nobody uses, results and carried variables nobody needs.
+#pragma once
+#include "rsl/ir/ir.h"
+
+namespace alpenglow::rsl::ir {
+
+/// Long form. Returns the number of changes.
+int removeDeadCode(Kernel&);
+/// Drops the inputs that no instruction reads and renumbers the others.
+void removeUnusedInputs(Kernel&);
+
+} // namespace alpenglow::rsl::ir

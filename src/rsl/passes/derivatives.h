@@ -1,0 +1,12 @@
+// Which values must carry d/du, d/dv, and how often: backwards from Du and Dv (design decision 7).
+#pragma once
+#include "base/diagnostics.h"
+#include "rsl/ir/ir.h"
+
+namespace alpenglow::rsl::ir {
+
+/// Sets Inst::order and Input::order. Results of rays, lights and textures count as constant, warned once each; so does a derivative
+/// of third order. Either form.
+void orderDerivatives(Kernel&, Diagnostics&);
+
+} // namespace alpenglow::rsl::ir

@@ -34,6 +34,7 @@ struct Symbol {
     bool output = false;      ///< shader: AOV; function: by reference
     bool writable = true;     ///< globals: by shader kind (rsl.md section 8)
     bool isConstant = false;
+    bool isExtern = false;    ///< only between parser and checker, which puts the outer variable in its place
     Place place;
 };
 
@@ -49,7 +50,7 @@ enum class ExprKind : uint8_t {
     Tuple,       ///< (a,b,c) of type Color/Point/Vector/Normal; args = three floats; `space` = optional space name expression
     MatrixTuple, ///< 16 floats; `space` optional
     ArrayList,   ///< {a, b, ...} of an array type
-    Cast,        ///< to `type`, from args[0]; `space` when written `point "shader" p` (value given in that space) or color "hsv" c
+    Cast,        ///< to `type`, from args[0] (Bool to Float too); `space` when written `point "shader" p` (value given in that space) or color "hsv" c
     ShadeopCall, ///< shadeop, signature; args = positional; pairs; `channel` for texture(name[channel]); outputs are lvalues
     FunctionCall ///< function; args
 };
@@ -63,6 +64,7 @@ struct Expr {
     Type type;
     bool varying = true;              ///< by declaration and operands; the IR infers more
     Place place;
+    int height = 1;                   ///< of this tree; never above limits::kTreeHeight, so recursion over it is safe
     double number = 0;
     std::string text;                 ///< String; callee name before binding
     Symbol* symbol = nullptr;
@@ -98,6 +100,7 @@ struct Stmt {
     std::vector<ExprPtr> exprs;       ///< light statements
     ExprPtr category;
     std::vector<NamedArg> pairs;
+    Function* definition = nullptr;   ///< Declare: the place of a nested function's definition (no declarators)
 };
 
 struct Function {
@@ -128,6 +131,8 @@ struct Shader {
 struct Program {
     std::vector<std::string> files;                 ///< Place::file indexes this
     std::vector<std::unique_ptr<Shader>> shaders;
+    /// Every function that a shader calls, once for each shader that calls it (its predefined variables and externs are then that
+    /// shader's symbols); functions of the main file that nothing calls, once.
     std::vector<std::unique_ptr<Function>> functions;
     std::string preprocessed;                       ///< text after includes and macros: part of the cache key
     std::vector<std::string> dependencies;          ///< every file read

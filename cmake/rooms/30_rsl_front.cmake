@@ -1,0 +1,2 @@
+room(rsl/front DEPS shadeops base)
+room_tests(rslfront DEPS rsl_front)

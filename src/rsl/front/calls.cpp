@@ -1,0 +1,314 @@
+// Calls: which functions and shadeops fit, which fits best, and what the call then means.
+#include "rsl/front/checker.h"
+#include <algorithm>
+#include <utility>
+
+namespace alpenglow::rsl::front {
+
+namespace {
+
+template <class View> std::vector<View> views(const Signature& s) {
+    std::vector<View> v;
+    for (const auto& p : s.parameters) v.push_back({p.type, p.output});
+    return v;
+}
+template <class View> std::vector<View> views(const Function& f) {
+    std::vector<View> v;
+    for (const Symbol* p : f.parameters) v.push_back({p->type, p->output});
+    return v;
+}
+
+std::string signatureText(const Function& f) {
+    std::string s = toString(f.result) + " " + f.name + "(";
+    for (const Symbol* p : f.parameters) s += (p == f.parameters[0] ? "" : ", ") + std::string(p->output ? "output " : "") + toString(p->type);
+    return s + ")";
+}
+
+bool returnsShader(const Signature& s) { return s.text.rfind("shader", 0) == 0; }
+
+} // namespace
+
+/// What it costs to give this argument to a parameter of that type; kNever if it cannot be.
+int Checker::argumentCost(Expr& argument, Type wanted, bool output, bool ignoreOutputs) {
+    const Info& info = infos_.at(&argument);
+    if (info.any) return 0;
+    if (output && !isVariable(argument) && !ignoreOutputs) return kNever;
+    if (wanted.base == Base::Void) return info.listLength >= 0 ? kNever : 0; // any value
+    if (wanted.array != 0) {
+        if (info.listLength >= 0 && !output) {
+            if (wanted.array > 0 && info.listLength > wanted.array) return kNever;
+            int cost = 0;
+            for (auto& a : argument.args) cost = std::min(kNever, cost + costTo(infos_.at(a.get()), wanted.base));
+            return cost;
+        }
+        const bool fits = info.array.base == wanted.base && info.array.array != 0 &&
+                          (wanted.array < 0 || info.array.array < 0 || wanted.array == info.array.array);
+        return fits ? (wanted.array < 0 ? 1 : 0) : kNever;
+    }
+    if (info.array.array || info.listLength >= 0) return kNever;
+    if (output) {
+        const Base have = cheapest(info);
+        if (have == wanted.base) return 0;
+        return have != Base::Void && implicitCost(have, wanted.base) == 1 ? 1 : kNever; // among point, vector, normal
+    }
+    return costTo(info, wanted.base);
+}
+
+bool Checker::match(const std::vector<ParameterView>& parameters, bool repeats, bool pairs, Expr& call, Choice& choice, bool ignoreOutputs) {
+    const size_t n = call.args.size();
+    if (n < parameters.size()) return false;
+    choice.cost = 0;
+    size_t i = 0;
+    for (; i < parameters.size(); ++i) {
+        const int c = argumentCost(*call.args[i], parameters[i].type, parameters[i].output, ignoreOutputs);
+        if (c >= kNever) return false;
+        choice.cost += c;
+    }
+    if (repeats && !parameters.empty())
+        for (; i < n; ++i) {
+            // A string where a number would repeat begins the pairs.
+            if (pairs && call.args[i]->kind == ExprKind::String && parameters.back().type.base != Base::String) break;
+            const int c = argumentCost(*call.args[i], parameters.back().type, parameters.back().output, ignoreOutputs);
+            if (c >= kNever) return false;
+            choice.cost += c;
+        }
+    choice.positional = i;
+    if (i == n) return true;
+    if (!pairs || (n - i) % 2) return false;
+    for (; i < n; i += 2)
+        if (call.args[i]->kind != ExprKind::String) return false;
+    return true;
+}
+
+void Checker::surveyCall(Expr& e, Info& info) {
+    bool broken = false;
+    for (auto& a : e.args) broken |= survey(*a).any;
+    std::vector<std::string> candidates;
+    bool known = false, outputsOnly = false;
+    const auto offer = [&](Choice choice, const std::vector<ParameterView>& parameters, bool repeats, bool pairs, const std::string& text) {
+        known = true;
+        candidates.push_back(text);
+        if (match(parameters, repeats, pairs, e, choice, false)) {
+            info.choices.push_back(choice);
+        } else {
+            outputsOnly |= match(parameters, repeats, pairs, e, choice, true);
+        }
+    };
+    for (size_t i = scopes_.size(); i-- > 0 && info.choices.empty();) {
+        const auto [from, to] = scopes_[i].functions.equal_range(e.text);
+        for (auto f = from; f != to; ++f) {
+            Choice c;
+            c.function = f->second;
+            c.nested = true;
+            c.result = f->second->result;
+            offer(c, views<ParameterView>(*f->second), false, false, signatureText(*f->second));
+        }
+    }
+    if (info.choices.empty())
+        for (const auto& f : unit_->functions) {
+            if (f->name != e.text) continue;
+            Choice c;
+            c.function = f.get();
+            c.unit = unit_;
+            c.result = f->result;
+            // A shadeop written in RSL may call the shadeop of its own name with other arguments, not itself.
+            if (unit_ != &main_ && checking_.count(f.get())) continue;
+            offer(c, views<ParameterView>(*f), false, false, signatureText(*f));
+        }
+    const Shadeop* op = info.choices.empty() ? findShadeop(e.text) : nullptr;
+    if (op)
+        for (const Signature& s : op->signatures) {
+            Choice c;
+            c.shadeop = op;
+            c.signature = &s;
+            c.result = s.result;
+            offer(c, views<ParameterView>(s), s.repeats, s.pairs, s.text);
+        }
+    if (info.choices.empty()) {
+        info.any = true;
+        if (broken) return; // what went wrong inside was reported
+        if (known) return noMatch(e, candidates, outputsOnly);
+        if (unit_->incomplete) return;
+        std::vector<std::string> names;
+        for (const auto& f : unit_->functions) names.push_back(f->name);
+        for (const auto& s : scopes_)
+            for (const auto& [name, f] : s.functions) names.push_back(name);
+        std::sort(names.begin(), names.end());
+        for (const Shadeop& s : shadeops())
+            if (s.name.rfind("__", 0) != 0) names.push_back(s.name);
+        const std::string near = nearestName(e.text, names);
+        sources_.error(e.place, "there is no function '" + e.text + "'", near.empty() ? "" : "did you mean '" + near + "'?");
+        return;
+    }
+    for (const Choice& c : info.choices) {
+        if (c.result.array != 0) { info.array = c.result; continue; }
+        if (c.signature && returnsShader(*c.signature)) {
+            if (reportedUnavailable_.insert(c.shadeop).second) sources_.error(e.place, "shader handles, and with them '" + e.text + "', are not yet available");
+            info.any = true;
+            return;
+        }
+        int& cost = info.cost[int(c.result.base)];
+        cost = std::min(cost, c.cost);
+    }
+    // Of a call that can give one value or several, the single value is meant unless an array is wanted.
+    if (info.array.array) {
+        bool single = false;
+        for (int c : info.cost) single |= c < kNever;
+        if (single) info.array = {};
+    }
+}
+
+void Checker::noMatch(Expr& e, const std::vector<std::string>& candidates, bool outputsOnly) {
+    std::string given;
+    for (auto& a : e.args) given += (given.empty() ? "" : ", ") + describe(*a);
+    std::string hint = "it can be called as";
+    for (size_t i = 0; i < candidates.size() && i < 6; ++i) hint += (i ? "; " : " ") + candidates[i];
+    if (candidates.size() > 6) hint += "; and " + std::to_string(candidates.size() - 6) + " more";
+    if (outputsOnly) sources_.error(e.place, "an output argument of '" + e.text + "' must be a variable of the same type", hint);
+    else if (e.args.empty()) sources_.error(e.place, "'" + e.text + "' cannot be called without arguments", hint);
+    else sources_.error(e.place, "'" + e.text + "' cannot be called with (" + given + ")", hint);
+}
+
+void Checker::settleCall(ExprPtr& pointer, Type result) {
+    Expr& e = *pointer;
+    const Info& info = infos_.at(&e);
+    const Choice* best = nullptr;
+    for (const Choice& c : info.choices) {
+        const bool fits = result.array != 0 ? c.result.base == result.base && c.result.array != 0 : c.result == result;
+        if (fits && (!best || c.cost < best->cost)) best = &c;
+    }
+    if (!best) return; // an array where only single values are; reported by the caller's conversion
+    const Choice choice = *best;
+    std::vector<ParameterView> parameters =
+        choice.signature ? views<ParameterView>(*choice.signature) : views<ParameterView>(*choice.function);
+    for (size_t i = 0; i < choice.positional; ++i) {
+        const ParameterView p = parameters[std::min(i, parameters.size() - 1)];
+        ExprPtr& a = e.args[i];
+        if (infos_.at(a.get()).any) { settleCheapest(a); continue; }
+        if (p.output) {
+            settleVariable(a);
+            written(*a);
+        } else if (infos_.at(a.get()).channel && choice.shadeop && i == 0) {
+            // texture(name[channel]); (name)[channel] too.
+            e.channel = std::move(a->args[1]);
+            ExprPtr name = std::move(a->args[0]);
+            settle(e.channel, {Base::Float, 0});
+            settle(name, {Base::String, 0});
+            a = std::move(name);
+        } else {
+            settle(a, p.type);
+        }
+    }
+    settlePairs(e, choice.positional, choice.shadeop);
+    // A shadeop with a result that is an array of open length gets the length that is wanted.
+    e.type = choice.result.array < 0 && result.array > 0 ? result : choice.result;
+    finish(e);
+    for (const auto& p : e.pairs) e.varying |= p.value->varying;
+    if (choice.shadeop) return bindShadeop(e, choice);
+    e.kind = ExprKind::FunctionCall;
+    if (choice.nested) {
+        e.function = choice.function;
+        if (checking_.count(choice.function)) sources_.error(e.place, "function '" + e.text + "' calls itself; recursion is not allowed");
+    } else {
+        e.function = instance(*choice.function, *choice.unit, {}, e.place);
+    }
+    if (e.function && varyingFunctions_.count(e.function)) {
+        e.varying = true;
+        if (function_) varyingFunctions_.insert(function_);
+    }
+}
+
+void Checker::bindShadeop(Expr& e, const Choice& choice) {
+    const Shadeop& op = *choice.shadeop;
+    e.shadeop = &op;
+    e.signature = choice.signature;
+    if (kind_ && !(op.contexts & contextOf(*kind_))) {
+        std::string where;
+        for (int k = 0; k < 6; ++k)
+            if (op.contexts & contextOf(ShaderKind(k))) where += (where.empty() ? "" : ", ") + std::string(toString(ShaderKind(k)));
+        sources_.error(e.place, "'" + op.name + "' cannot be used in a " + toString(*kind_) + " shader", "it can in: " + where);
+    }
+    const bool pureMath = op.lowering == Lowering::Runtime || op.lowering == Lowering::Special || op.name == "format" || op.name == "concat";
+    if (!pureMath) {
+        e.varying = true;
+        if (function_) varyingFunctions_.insert(function_);
+    }
+    if (op.lowering == Lowering::Unavailable && reportedUnavailable_.insert(&op).second)
+        sources_.warning(e.place, "'" + op.name + "' is not yet available; " + (e.type.base == Base::Void ? "the call does nothing" : "its value is 0"));
+    if (op.lowering != Lowering::Rsl) return;
+    std::pair<std::string, std::string> rename;
+    for (const NamedArg& p : e.pairs) {
+        // The one shadeop in RSL with a choice of kernels.
+        if (op.name == "filterstep" && p.name == "filter" && p.value->kind == ExprKind::String) {
+            std::string filter = p.value->text;
+            filter.erase(std::remove(filter.begin(), filter.end(), '-'), filter.end());
+            if (findShadeop("__filterstep_" + filter)) rename = {"__filterstep_catmullrom", "__filterstep_" + filter};
+            else sources_.warning(p.place, "there is no filter \"" + p.value->text + "\"; catmull-rom is used");
+        } else {
+            sources_.warning(p.place, "\"" + p.name + "\" of '" + op.name + "' is not yet available and ignored");
+        }
+    }
+    const Unit& unit = rslUnit(op);
+    for (const auto& f : unit.functions) {
+        bool same = f->name == op.name && f->result == choice.signature->result && f->parameters.size() == choice.signature->parameters.size();
+        for (size_t i = 0; same && i < f->parameters.size(); ++i) same = f->parameters[i]->type == choice.signature->parameters[i].type;
+        if (!same) continue;
+        e.kind = ExprKind::FunctionCall;
+        // Its globals are visible whatever the shader calls its own variables; nothing of the shader is.
+        auto parameters = std::exchange(shaderParameters_, {});
+        e.function = instance(*f, unit, rename, e.place);
+        shaderParameters_ = std::move(parameters);
+        return;
+    }
+    sources_.error(e.place, "the text of '" + op.name + "' has no function for " + choice.signature->text);
+}
+
+/// "name", value, ... behind the positional arguments.
+void Checker::settlePairs(Expr& e, size_t positional, const Shadeop* op) {
+    for (size_t i = positional; i + 1 < e.args.size(); i += 2) {
+        NamedArg pair;
+        pair.place = e.args[i]->place;
+        pair.name = e.args[i]->text;
+        // "uniform float blur" declares in place; the name is the last word.
+        if (const size_t space = pair.name.find_last_of(" \t"); space != std::string::npos) pair.name.erase(0, space + 1);
+        ExprPtr value = std::move(e.args[i + 1]);
+        const Info& info = infos_.at(value.get());
+        const OptionalParameter* optional = nullptr;
+        std::vector<std::string> names;
+        for (const auto& o : op->optional) {
+            names.push_back(o.name);
+            if (o.name == pair.name) optional = &o;
+        }
+        if (info.any) {
+            settleCheapest(value);
+        } else if (!optional) {
+            // Names with a prefix are messages ("light:x"), those of bake3d and texture3d are channels.
+            const bool channels = op->name == "bake3d" || op->name == "texture3d";
+            const std::string near = nearestName(pair.name, names);
+            if (pair.name.find(':') == std::string::npos && !channels && op->lowering != Lowering::Unavailable)
+                sources_.warning(pair.place, "'" + op->name + "' has no parameter \"" + pair.name + "\"; it is ignored",
+                                 near.empty() ? "" : "did you mean \"" + near + "\"?");
+            settleCheapest(value);
+        } else if (optional->output) {
+            pair.output = true;
+            const int cost = argumentCost(*value, optional->type, true, false);
+            const bool array = info.array.array && info.array.base == optional->type.base;
+            if (cost >= kNever && !array) {
+                sources_.error(value->place, "\"" + pair.name + "\" gives a " + toString(optional->type) + ": it needs a variable of that type");
+            } else {
+                settleVariable(value);
+                written(*value);
+            }
+        } else if (optional->type.array != 0 && !info.array.array && info.listLength < 0) {
+            settle(value, costTo(info, optional->type.base) < kNever && cheapest(info) != Base::Float ? optional->type.element()
+                                                                                                   : Type{cheapest(info), 0});
+        } else {
+            settle(value, optional->type);
+        }
+        pair.value = std::move(value);
+        e.pairs.push_back(std::move(pair));
+    }
+    if (positional < e.args.size()) e.args.resize(positional);
+}
+
+} // namespace alpenglow::rsl::front

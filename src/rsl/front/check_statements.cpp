@@ -1,0 +1,266 @@
+#include "rsl/front/checker.h"
+#include "rsl/front/clone.h"
+#include <utility>
+
+namespace alpenglow::rsl::front {
+
+/// One whole expression, of any type.
+void Checker::whole(ExprPtr& e) {
+    infos_.clear();
+    survey(*e);
+    settleCheapest(e);
+    infos_.clear();
+}
+
+void Checker::valueOf(ExprPtr& e, Type t) {
+    infos_.clear();
+    survey(*e);
+    settle(e, t);
+    infos_.clear();
+}
+
+void Checker::condition(ExprPtr& e) {
+    infos_.clear();
+    survey(*e);
+    settleCondition(e);
+    infos_.clear();
+}
+
+void Checker::assignedToUniform(const Symbol& s, const Expr& value) {
+    if (s.storage != Storage::Uniform || !value.varying || s.type.base == Base::String) return;
+    sources_.warning(value.place, "a varying value is given to the uniform variable '" + s.name + "'; each shaded point keeps its own");
+}
+
+/// `T x = value`, where x may be an array whose length comes from the value.
+void Checker::initialise(Symbol& s, ExprPtr& value) {
+    if (s.type.base == Base::Void) { value.reset(); return; }
+    infos_.clear();
+    const Info& info = survey(*value);
+    if (s.type.array == -1 && info.listLength >= 0) s.type.array = std::max(1, info.listLength);
+    if (s.type.array == -1 && info.array.array > 0) s.type.array = info.array.array;
+    const bool scalar = s.type.array > 0 && info.listLength < 0 && info.array.array == 0 && !info.any;
+    if (scalar) {
+        // float a[42] = 0: every element.
+        settle(value, s.type.element());
+        auto list = std::make_unique<Expr>();
+        list->kind = ExprKind::ArrayList;
+        list->place = value->place;
+        list->type = s.type;
+        list->height = value->height + 1;
+        list->varying = value->varying;
+        const bool simple = value->kind == ExprKind::Number || value->kind == ExprKind::String ||
+                            (value->kind == ExprKind::Cast && value->args[0]->kind == ExprKind::Number);
+        if (!simple) sources_.warning(value->place, "one value for a whole array: it is computed again for each element");
+        for (int i = 1; i < s.type.array; ++i) list->args.push_back(clone(*value));
+        list->args.push_back(std::move(value));
+        value = std::move(list);
+    } else {
+        settle(value, s.type);
+    }
+    infos_.clear();
+    assignedToUniform(s, *value);
+}
+
+void Checker::checkDeclare(Stmt& s) {
+    if (s.definition) {
+        scopes_.back().functions.emplace(s.definition->name, s.definition);
+        checking_.insert(s.definition);
+        checkBody(*s.definition);
+        checking_.erase(s.definition);
+        return;
+    }
+    std::vector<Stmt::Declarator> kept;
+    for (auto& d : s.declarators) {
+        if (d.symbol->isExtern) { bindExtern(*d.symbol); continue; }
+        if (d.init) initialise(*d.symbol, d.init);
+        else if (d.symbol->type.array == -1 && d.symbol->type.base != Base::Void) {
+            sources_.error(d.symbol->place, "arrays that change their length are not yet available", "give a length, or a value {...}");
+            d.symbol->type = {};
+        }
+        declareLocal(*d.symbol);
+        if (d.symbol->type.base != Base::Void) kept.push_back(std::move(d));
+    }
+    s.declarators = std::move(kept);
+}
+
+void Checker::checkLoopBody(Stmt& s) {
+    ++loops_;
+    check(s.body[0]);
+    --loops_;
+}
+
+void Checker::check(StmtPtr& s) {
+    if (!s) {
+        s = std::make_unique<Stmt>();
+        s->kind = StmtKind::Block;
+        return;
+    }
+    switch (s->kind) {
+    case StmtKind::Block:
+        scopes_.emplace_back();
+        for (auto& b : s->body) check(b);
+        scopes_.pop_back();
+        break;
+    case StmtKind::Declare: checkDeclare(*s); break;
+    case StmtKind::Expression:
+        whole(s->value);
+        if (s->value->kind != ExprKind::Assign && s->value->kind != ExprKind::ShadeopCall && s->value->kind != ExprKind::FunctionCall &&
+            s->value->kind != ExprKind::Cast && !(s->value->kind == ExprKind::Variable && !s->value->symbol) &&
+            s->value->type.base != Base::Void)
+            sources_.warning(s->place, "this expression has no effect");
+        break;
+    case StmtKind::If:
+        condition(s->condition);
+        check(s->body[0]);
+        if (s->elseBody) check(s->elseBody);
+        break;
+    case StmtKind::While:
+        condition(s->condition);
+        checkLoopBody(*s);
+        break;
+    case StmtKind::For:
+        if (s->init) whole(s->init);
+        if (s->condition) condition(s->condition);
+        if (s->step) whole(s->step);
+        checkLoopBody(*s);
+        break;
+    case StmtKind::Break:
+    case StmtKind::Continue: {
+        const char* word = s->kind == StmtKind::Break ? "break" : "continue";
+        if (loops_ == 0) sources_.error(s->place, std::string("'") + word + "' outside a loop");
+        else if (s->levels > loops_)
+            sources_.error(s->place, std::string("'") + word + " " + std::to_string(s->levels) + "' inside " + std::to_string(loops_) +
+                                         (loops_ == 1 ? " loop" : " loops"));
+        break;
+    }
+    case StmtKind::Return:
+        if (!function_) {
+            if (s->value) {
+                whole(s->value);
+                sources_.error(s->place, "a shader returns no value");
+            }
+        } else if (function_->result.base == Base::Void) {
+            if (s->value) {
+                whole(s->value);
+                sources_.error(s->value->place, "function '" + function_->name + "' is void and returns no value");
+            }
+        } else if (!s->value) {
+            sources_.error(s->place, "function '" + function_->name + "' must return a " + toString(function_->result));
+        } else {
+            valueOf(s->value, function_->result);
+        }
+        break;
+    case StmtKind::Illuminance:
+    case StmtKind::Illuminate:
+    case StmtKind::Solar:
+    case StmtKind::Gather: checkLight(*s); break;
+    }
+}
+
+void Checker::checkLight(Stmt& s) {
+    static const std::map<StmtKind, std::pair<const char*, uint32_t>> kRules = {
+        {StmtKind::Illuminance, {"illuminance", kSurface | kVolume}},
+        {StmtKind::Illuminate, {"illuminate", kLight}},
+        {StmtKind::Solar, {"solar", kLight}},
+        {StmtKind::Gather, {"gather", kSurface | kVolume | kLight}}};
+    const auto [word, contexts] = kRules.at(s.kind);
+    const std::string name = word;
+    if (kind_ && !(contexts & contextOf(*kind_)))
+        sources_.error(s.place, "'" + name + "' cannot be used in a " + toString(*kind_) + " shader");
+    std::vector<ExprPtr> given = std::move(s.exprs);
+    s.exprs.clear();
+    size_t next = 0;
+    infos_.clear();
+    for (auto& e : given) survey(*e);
+    const auto isString = [&](size_t i) { return i < given.size() && infos_.at(given[i].get()).cost[int(Base::String)] < kNever; };
+    const auto want = [&](std::initializer_list<Base> types) {
+        for (Base b : types) {
+            if (next < given.size()) {
+                settle(given[next], {b, 0});
+                s.exprs.push_back(std::move(given[next++]));
+            }
+        }
+    };
+    if ((s.kind == StmtKind::Illuminance || s.kind == StmtKind::Gather) && isString(0)) {
+        settle(given[0], {Base::String, 0});
+        s.category = std::move(given[next++]);
+    } else if (s.kind == StmtKind::Gather) {
+        sources_.error(s.place, "gather begins with a category, a string");
+    }
+    size_t positions = 0;
+    while (next + positions < given.size() && !isString(next + positions)) ++positions;
+    const auto wrong = [&](const char* forms) { sources_.error(s.place, "wrong arguments of '" + name + "'", forms); };
+    switch (s.kind) {
+    case StmtKind::Illuminance:
+        if (positions != 1 && positions != 3) wrong("illuminance([category,] P [, axis, angle] [, pairs])");
+        want(positions == 1 ? std::initializer_list<Base>{Base::Point} : std::initializer_list<Base>{Base::Point, Base::Vector, Base::Float});
+        break;
+    case StmtKind::Illuminate:
+        if (positions != 1 && positions != 3) wrong("illuminate(from [, axis, angle])");
+        want(positions == 1 ? std::initializer_list<Base>{Base::Point} : std::initializer_list<Base>{Base::Point, Base::Vector, Base::Float});
+        break;
+    case StmtKind::Solar:
+        if (positions != 0 && positions != 2) wrong("solar() or solar(axis, angle)");
+        if (positions) want({Base::Vector, Base::Float});
+        break;
+    default:
+        if (positions != 4) wrong("gather(category, P, dir, angle, samples [, pairs]) statement [else statement]");
+        want({Base::Point, Base::Vector, Base::Float, Base::Float});
+        break;
+    }
+    next = positions + (s.category ? 1 : 0);
+    // Pairs: the value behind "light:x" or "surface:x" is a variable to be filled; "send:..." goes the other way.
+    while (next < given.size()) {
+        ExprPtr token = std::move(given[next++]);
+        if (!token) continue;
+        if (token->kind != ExprKind::String || next == given.size()) {
+            if (!infos_.at(token.get()).any) sources_.error(token->place, "expected a pair: \"name\", value");
+            break;
+        }
+        NamedArg pair;
+        pair.name = token->text;
+        pair.place = token->place;
+        pair.value = std::move(given[next++]);
+        if (!pair.value) break;
+        pair.output = pair.name.find(':') != std::string::npos && pair.name.rfind("send:", 0) != 0;
+        if (pair.output && !isVariable(*pair.value) && !infos_.at(pair.value.get()).any)
+            sources_.error(pair.value->place, "the value of \"" + pair.name + "\" must be a variable");
+        if (pair.output && isVariable(*pair.value)) {
+            settleVariable(pair.value);
+            written(*pair.value);
+        } else {
+            settleCheapest(pair.value);
+        }
+        s.pairs.push_back(std::move(pair));
+    }
+    infos_.clear();
+    if (s.kind == StmtKind::Gather)
+        sources_.warning(s.place, "'gather' is not yet available; its statement is not run");
+    if (s.kind == StmtKind::Illuminance && inIlluminance_) sources_.error(s.place, "'illuminance' inside 'illuminance' is not allowed");
+    const bool outer = std::exchange(inIlluminance_, inIlluminance_ || s.kind == StmtKind::Illuminance);
+    scopes_.emplace_back();
+    if (s.kind == StmtKind::Illuminance || s.kind == StmtKind::Gather) checkLoopBody(s);
+    else {
+        // The block of a light is no loop: leaving one from inside it has no meaning.
+        const int loops = std::exchange(loops_, 0);
+        check(s.body[0]);
+        loops_ = loops;
+    }
+    scopes_.pop_back();
+    inIlluminance_ = outer;
+    if (s.elseBody) check(s.elseBody);
+}
+
+bool Checker::endsInReturn(const Stmt& s) {
+    switch (s.kind) {
+    case StmtKind::Return: return true;
+    case StmtKind::Block:
+        for (const auto& b : s.body)
+            if (b && endsInReturn(*b)) return true;
+        return false;
+    case StmtKind::If: return s.elseBody && s.body[0] && endsInReturn(*s.body[0]) && endsInReturn(*s.elseBody);
+    default: return false;
+    }
+}
+
+} // namespace alpenglow::rsl::front

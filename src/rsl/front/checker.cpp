@@ -1,0 +1,224 @@
+#include "rsl/front/checker.h"
+#include "base/limits.h"
+#include "rsl/front/clone.h"
+#include <algorithm>
+#include <utility>
+
+namespace alpenglow::rsl::front {
+
+void Checker::run() {
+    for (auto& s : main_.shaders) checkShader(*s);
+    // Callers usually stand behind what they call: from the end, so that a helper of an uncalled function is not checked twice.
+    for (size_t i = main_.functions.size(); i-- > 0;) {
+        Function& f = *main_.functions[i];
+        // A header's functions that nobody calls cannot do harm; those of the main file are checked on their own.
+        if (used_.count(&f) || (f.place.file != 0 && sources_.name(f.place.file) != sources_.name(0))) continue;
+        checkStandalone(f);
+    }
+    program_.shaders = std::move(main_.shaders);
+}
+
+void Checker::checkShader(Shader& s) {
+    shader_ = &s;
+    kind_ = s.kind;
+    globalOwner_ = &s.symbols;
+    globals_.clear();
+    shaderParameters_.clear();
+    instances_.clear();
+    unit_ = &main_;
+    function_ = nullptr;
+    scopes_.assign(1, {});
+    for (auto& p : s.parameters) {
+        Symbol& symbol = *p.symbol;
+        if (symbol.storage == Storage::Unspecified) symbol.storage = Storage::Uniform;
+        if (p.defaultValue) initialise(symbol, p.defaultValue); // earlier parameters are visible
+        if (!shaderParameters_.emplace(symbol.name, &symbol).second)
+            sources_.error(symbol.place, "there are two parameters called '" + symbol.name + "'");
+        scopes_[0].names[symbol.name] = &symbol;
+    }
+    check(s.body);
+    shader_ = nullptr;
+    scopes_.clear();
+}
+
+void Checker::checkStandalone(Function& f) {
+    shader_ = nullptr;
+    kind_.reset();
+    std::vector<std::unique_ptr<Symbol>> owned;
+    globalOwner_ = &owned;
+    globals_.clear();
+    shaderParameters_.clear();
+    instances_.clear();
+    scopes_.clear();
+    Function* checked = instance(f, main_, {}, f.place);
+    for (auto& s : owned) checked->symbols.push_back(std::move(s));
+    globalOwner_ = nullptr;
+}
+
+/// The copy of a function that belongs to the current shader, made and checked when first called. Null inside itself: recursion.
+Function* Checker::instance(Function& f, const Unit& unit, const std::pair<std::string, std::string>& rename, Place call) {
+    used_.insert(&f);
+    const auto key = std::make_pair(static_cast<const Function*>(&f), rename.second);
+    if (const auto found = instances_.find(key); found != instances_.end()) return found->second;
+    if (checking_.count(&f) || instanceDepth_ > limits::kExpressionDepth / 4) {
+        sources_.error(call, checking_.count(&f) ? "function '" + f.name + "' calls itself; recursion is not allowed"
+                                                 : "calls of functions are nested too deeply");
+        return nullptr;
+    }
+    checking_.insert(&f);
+    ++instanceDepth_;
+    auto copy = clone(f, rename);
+    Function* raw = copy.get();
+    auto scopes = std::move(scopes_);
+    auto infos = std::move(infos_);
+    scopes_.clear();
+    infos_.clear();
+    const Unit* outerUnit = std::exchange(unit_, &unit);
+    checkBody(*raw);
+    unit_ = outerUnit;
+    scopes_ = std::move(scopes);
+    infos_ = std::move(infos);
+    --instanceDepth_;
+    checking_.erase(&f);
+    instances_[key] = raw;
+    program_.functions.push_back(std::move(copy));
+    return raw;
+}
+
+/// Parameters and body, inside the scopes that are open now.
+void Checker::checkBody(Function& f) {
+    Function* outer = std::exchange(function_, &f);
+    const int loops = std::exchange(loops_, 0);
+    const bool illuminance = std::exchange(inIlluminance_, false);
+    scopes_.emplace_back();
+    for (Symbol* p : f.parameters) {
+        if (p->storage == Storage::Unspecified) p->storage = p->type.base == Base::String ? Storage::Uniform : Storage::Varying;
+        if (!scopes_.back().names.emplace(p->name, p).second)
+            sources_.error(p->place, "there are two parameters called '" + p->name + "'");
+    }
+    check(f.body);
+    scopes_.pop_back();
+    if (f.result.base != Base::Void && !endsInReturn(*f.body))
+        sources_.warning(f.place, "function '" + f.name + "' can end without returning a value; it is zero then");
+    if (varyingFunctions_.count(&f) && outer) varyingFunctions_.insert(outer);
+    function_ = outer;
+    loops_ = loops;
+    inIlluminance_ = illuminance;
+}
+
+const Unit& Checker::rslUnit(const Shadeop& op) {
+    auto& unit = rslUnits_[&op];
+    if (!unit) {
+        const int file = sources_.add("<" + op.name + ">", op.rsl);
+        unit = std::make_unique<Unit>(Parser(preprocess(sources_, file, {}), sources_).parse());
+    }
+    return *unit;
+}
+
+Symbol* Checker::lookup(const std::string& name) {
+    for (size_t i = scopes_.size(); i-- > 0;)
+        if (const auto s = scopes_[i].names.find(name); s != scopes_[i].names.end()) return s->second;
+    return global(name);
+}
+
+/// A predefined variable of the shader, as a symbol of it.
+Symbol* Checker::global(const std::string& name) {
+    if (const auto g = globals_.find(name); g != globals_.end()) return g->second;
+    const auto find = [&](ShaderKind kind) -> Symbol* {
+        for (const GlobalVariable& g : globalVariables(kind)) {
+            if (name != g.name) continue;
+            auto s = std::make_unique<Symbol>();
+            s->name = name;
+            s->type = g.type;
+            s->storage = g.uniform ? Storage::Uniform : Storage::Varying;
+            s->origin = Symbol::Origin::Global;
+            s->writable = g.writable || !kind_;
+            globalOwner_->push_back(std::move(s));
+            return globals_[name] = globalOwner_->back().get();
+        }
+        return nullptr;
+    };
+    if (kind_) return find(*kind_);
+    for (int k = 0; k < 6; ++k)
+        if (Symbol* s = find(ShaderKind(k))) return s;
+    return nullptr;
+}
+
+/// `extern T x;`: x is the variable of that name further out.
+void Checker::bindExtern(Symbol& declared) {
+    Symbol* outer = lookup(declared.name);
+    if (!outer)
+        if (const auto p = shaderParameters_.find(declared.name); p != shaderParameters_.end()) outer = p->second;
+    if (!outer && !kind_) {
+        // In a function that nobody calls it may be a parameter of a shader to come.
+        auto s = std::make_unique<Symbol>(declared);
+        s->isExtern = false;
+        s->origin = Symbol::Origin::ShaderParameter;
+        s->output = true;
+        if (s->storage == Storage::Unspecified) s->storage = Storage::Uniform;
+        globalOwner_->push_back(std::move(s));
+        outer = globalOwner_->back().get();
+    }
+    if (!outer) {
+        std::string near = nearestName(declared.name, visibleNames());
+        sources_.error(declared.place, "there is no '" + declared.name + "' outside for this extern declaration" +
+                                           (kind_ ? " in a " + std::string(toString(*kind_)) + " shader" : ""),
+                       near.empty() ? "" : "did you mean '" + near + "'?");
+        declared.type = {Base::Void, 0}; // poison
+        outer = &declared;
+    } else if (outer->type.base != Base::Void) {
+        Type a = outer->type, b = declared.type;
+        // Old shaders type everything point.
+        const bool same = (a.base == b.base || (a.isPointLike() && b.isPointLike())) && (a.array == b.array || b.array == -1);
+        if (!same) {
+            sources_.error(declared.place, "'" + declared.name + "' is " + toString(a) + " outside, not " + toString(b));
+        }
+    }
+    scopes_.back().names[declared.name] = outer;
+}
+
+void Checker::declareLocal(Symbol& s) {
+    if (s.storage == Storage::Unspecified) s.storage = s.type.base == Base::String ? Storage::Uniform : Storage::Varying;
+    auto [at, fresh] = scopes_.back().names.emplace(s.name, &s);
+    if (fresh) return;
+    if (at->second->type != s.type && at->second->type.base != Base::Void && s.type.base != Base::Void)
+        sources_.error(s.place, "'" + s.name + "' was declared in this block already, as " + toString(at->second->type));
+    else
+        sources_.warning(s.place, "'" + s.name + "' was declared in this block already; this is a new variable");
+    at->second = &s;
+}
+
+std::vector<std::string> Checker::visibleNames() {
+    std::vector<std::string> names = {"PI"};
+    for (const auto& s : scopes_)
+        for (const auto& [name, symbol] : s.names) names.push_back(name);
+    for (const auto& [name, symbol] : shaderParameters_) names.push_back(name);
+    for (const GlobalVariable& g : globalVariables(kind_.value_or(ShaderKind::Surface))) names.push_back(g.name);
+    std::sort(names.begin(), names.end()); // nothing may depend on the order in a hash table
+    return names;
+}
+
+void Checker::unknownVariable(Expr& e) {
+    if (!unit_->incomplete) {
+        std::string hint;
+        if (shaderParameters_.count(e.text)) {
+            hint = "it is a parameter of the shader: declare 'extern " + toString(shaderParameters_.at(e.text)->type) + " " + e.text + ";'";
+        } else if (const std::string near = nearestName(e.text, visibleNames()); !near.empty()) {
+            hint = "did you mean '" + near + "'?";
+        }
+        std::string where;
+        if (kind_)
+            for (int k = 0; k < 6 && where.empty(); ++k)
+                for (const auto& g : globalVariables(ShaderKind(k)))
+                    if (e.text == g.name) where = std::string(" in a ") + toString(*kind_) + " shader";
+        sources_.error(e.place, "'" + e.text + "' is not declared" + where, hint);
+    }
+    // From now on the name is known as wrong, and silent.
+    auto s = std::make_unique<Symbol>();
+    s->name = e.text;
+    s->place = e.place;
+    globalOwner_->push_back(std::move(s));
+    if (!scopes_.empty()) scopes_[0].names[e.text] = globalOwner_->back().get();
+}
+
+} // namespace alpenglow::rsl::front

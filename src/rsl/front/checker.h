@@ -1,0 +1,125 @@
+// Unit to Program: names, types, overloads, conversions. Expressions are read twice: `survey` finds, bottom up, every type an expression
+// can have and what each would cost; `settle` picks, top down, the cheapest reading and makes its conversions explicit.
+#pragma once
+#include "rsl/front/conversions.h"
+#include "rsl/front/parser.h"
+#include <array>
+#include <map>
+#include <unordered_map>
+
+namespace alpenglow::rsl::front {
+
+class Checker {
+public:
+    Checker(SourceSet& s, Unit& u, Program& p) : sources_(s), main_(u), program_(p) {}
+    void run();
+
+private:
+    /// One way to read a call.
+    struct Choice {
+        const Shadeop* shadeop = nullptr;
+        const Signature* signature = nullptr;
+        Function* function = nullptr; ///< as parsed, or a nested one, which is bound as it is
+        bool nested = false;
+        const Unit* unit = nullptr;
+        Type result;
+        int cost = 0;
+        size_t positional = 0;        ///< arguments before the token/value pairs
+    };
+    struct Info {
+        std::array<int, kBases> cost;
+        Type array;          ///< the expression is an array of this type
+        int listLength = -1; ///< it is written {a, b}: an array of whatever its elements become
+        bool any = false;    ///< erroneous, and reported: fits everywhere
+        bool channel = false;///< name[channel] of a string that is no array
+        std::vector<Choice> choices;
+        Info() { cost.fill(kNever); }
+    };
+    struct ParameterView { Type type; bool output; };
+    struct Scope {
+        std::unordered_map<std::string, Symbol*> names;
+        std::unordered_multimap<std::string, Function*> functions;
+    };
+
+    // program and functions (checker.cpp)
+    void checkShader(Shader&);
+    void checkStandalone(Function&);
+    Function* instance(Function& definition, const Unit& unit, const std::pair<std::string, std::string>& rename, Place call);
+    void checkBody(Function&);
+    const Unit& rslUnit(const Shadeop&);
+    Symbol* lookup(const std::string&);
+    Symbol* global(const std::string&);
+    void bindExtern(Symbol&);
+    void declareLocal(Symbol&);
+    void unknownVariable(Expr&);
+    std::vector<std::string> visibleNames();
+
+    // statements (check_statements.cpp)
+    void check(StmtPtr&);
+    void checkDeclare(Stmt&);
+    void checkLight(Stmt&);
+    void checkLoopBody(Stmt&);
+    void condition(ExprPtr&);
+    void valueOf(ExprPtr&, Type);
+    void whole(ExprPtr&);
+    void initialise(Symbol&, ExprPtr&);
+    void assignedToUniform(const Symbol&, const Expr&);
+    static bool endsInReturn(const Stmt&);
+
+    // survey (survey.cpp, calls.cpp)
+    Info& survey(Expr&);
+    void surveyVariable(Expr&, Info&);
+    void surveyIndex(Expr&, Info&);
+    void surveyBinary(Expr&, Info&);
+    void surveyAssign(Expr&, Info&);
+    void surveyConditional(Expr&, Info&);
+    void surveyCast(Expr&, Info&);
+    void surveyCall(Expr&, Info&);
+    bool match(const std::vector<ParameterView>&, bool repeats, bool pairs, Expr& call, Choice&, bool ignoreOutputs);
+    int argumentCost(Expr& argument, Type wanted, bool output, bool ignoreOutputs);
+    void noMatch(Expr& call, const std::vector<std::string>& candidates, bool outputsOnly);
+    std::string describe(Expr&);
+    static Base cheapest(const Info&);
+    static int costTo(const Info&, Base to);
+    bool isVariable(const Expr&) const;
+    void poison(Expr&, Info&);
+
+    // settle (settle.cpp, calls.cpp)
+    void settle(ExprPtr&, Type);             ///< to this type, with conversions
+    void settleCheapest(ExprPtr&);
+    void settleAs(ExprPtr&, Base);           ///< exactly this type, which must have a finite cost
+    void settleCondition(ExprPtr&);
+    void settleArray(ExprPtr&, Type);
+    void settleVariable(ExprPtr&);           ///< an output argument: no conversion
+    void settleBinary(ExprPtr&, Base);
+    void settleAssign(ExprPtr&);
+    void settleCall(ExprPtr&, Type result);
+    void settlePairs(Expr&, size_t positional, const Shadeop*);
+    void bindShadeop(Expr&, const Choice&);
+    void convert(ExprPtr&, Type);
+    void written(const Expr& variable);
+    void finish(Expr&);
+
+    SourceSet& sources_;
+    Unit& main_;
+    Program& program_;
+    // the shader being checked
+    Shader* shader_ = nullptr;
+    std::optional<ShaderKind> kind_;   ///< none in a function that no shader calls
+    std::vector<std::unique_ptr<Symbol>>* globalOwner_ = nullptr;
+    std::unordered_map<std::string, Symbol*> globals_, shaderParameters_;
+    std::map<std::pair<const Function*, std::string>, Function*> instances_;
+    std::unordered_set<const Function*> checking_, used_, varyingFunctions_;
+    std::unordered_map<const Shadeop*, std::unique_ptr<Unit>> rslUnits_;
+    std::set<const Shadeop*> reportedUnavailable_;
+    // the function being checked
+    const Unit* unit_ = nullptr;
+    Function* function_ = nullptr;
+    std::vector<Scope> scopes_;
+    int loops_ = 0;
+    int instanceDepth_ = 0;
+    bool inIlluminance_ = false;
+    std::unordered_map<const Expr*, Info> infos_;
+};
+
+} // namespace alpenglow::rsl::front

@@ -1,0 +1,80 @@
+#include "rsl/front/clone.h"
+#include <unordered_map>
+
+namespace alpenglow::rsl::front {
+
+namespace {
+
+struct Cloner {
+    std::pair<std::string, std::string> rename;
+    std::unordered_map<const Symbol*, Symbol*> symbols;
+    std::unordered_map<const Function*, Function*> functions;
+
+    ExprPtr copy(const ExprPtr& e) { return e ? copy(*e) : nullptr; }
+    ExprPtr copy(const Expr& e) {
+        auto c = std::make_unique<Expr>();
+        c->kind = e.kind;
+        c->op = e.op;
+        c->type = e.type;
+        c->varying = e.varying;
+        c->place = e.place;
+        c->height = e.height;
+        c->number = e.number;
+        c->text = !rename.first.empty() && e.text == rename.first ? rename.second : e.text;
+        c->symbol = e.symbol;
+        for (const auto& a : e.args) c->args.push_back(copy(a));
+        c->space = copy(e.space);
+        c->channel = copy(e.channel);
+        for (const auto& p : e.pairs) c->pairs.push_back({p.name, copy(p.value), p.output, p.place});
+        c->shadeop = e.shadeop;
+        c->signature = e.signature;
+        c->function = e.function;
+        return c;
+    }
+    StmtPtr copy(const StmtPtr& s) {
+        if (!s) return nullptr;
+        auto c = std::make_unique<Stmt>();
+        c->kind = s->kind;
+        c->place = s->place;
+        for (const auto& b : s->body) c->body.push_back(copy(b));
+        c->elseBody = copy(s->elseBody);
+        c->condition = copy(s->condition);
+        c->init = copy(s->init);
+        c->step = copy(s->step);
+        c->value = copy(s->value);
+        c->levels = s->levels;
+        for (const auto& d : s->declarators) c->declarators.push_back({symbols.at(d.symbol), copy(d.init)});
+        for (const auto& e : s->exprs) c->exprs.push_back(copy(e));
+        if (s->definition) c->definition = functions.at(s->definition);
+        return c;
+    }
+    std::unique_ptr<Function> copy(const Function& f) {
+        auto c = std::make_unique<Function>();
+        c->name = f.name;
+        c->result = f.result;
+        c->place = f.place;
+        for (const auto& s : f.symbols) {
+            c->symbols.push_back(std::make_unique<Symbol>(*s));
+            symbols[s.get()] = c->symbols.back().get();
+        }
+        for (Symbol* p : f.parameters) c->parameters.push_back(symbols.at(p));
+        for (const auto& n : f.nested) {
+            c->nested.push_back(copy(*n));
+            functions[n.get()] = c->nested.back().get();
+        }
+        c->body = copy(f.body);
+        return c;
+    }
+};
+
+} // namespace
+
+std::unique_ptr<Function> clone(const Function& f, const std::pair<std::string, std::string>& rename) {
+    Cloner c;
+    c.rename = rename;
+    return c.copy(f);
+}
+
+ExprPtr clone(const Expr& e) { return Cloner{}.copy(e); }
+
+} // namespace alpenglow::rsl::front

@@ -1,0 +1,12 @@
+// Deep copies of unchecked functions: each shader gets its own, in which the predefined variables are its own symbols.
+#pragma once
+#include "rsl/front/ast.h"
+
+namespace alpenglow::rsl::front {
+
+/// `rename`: calls of the first name become calls of the second; both may be empty.
+std::unique_ptr<Function> clone(const Function&, const std::pair<std::string, std::string>& rename);
+/// Checked expressions too: what they are bound to stays the same.
+ExprPtr clone(const Expr&);
+
+} // namespace alpenglow::rsl::front

@@ -1,0 +1,54 @@
+// The way of one file: read, preprocess, parse, check, report.
+#include "rsl/front/checker.h"
+
+namespace alpenglow::rsl {
+
+using namespace front;
+
+namespace {
+
+std::unique_ptr<Program> compile(const std::string& text, const std::string& name, bool isFile, const FrontOptions& options, Diagnostics& diagnostics) {
+    SourceSet sources;
+    auto program = std::make_unique<Program>();
+    const int main = sources.add(name, text);
+    if (isFile) program->dependencies.push_back(name);
+    Preprocessed p = preprocess(sources, main, options);
+    program->preprocessed = p.text();
+    program->dependencies.insert(program->dependencies.end(), p.dependencies.begin(), p.dependencies.end());
+    Unit unit = Parser(p, sources).parse();
+    if (unit.shaders.empty() && unit.functions.empty() && sources.errors() == 0)
+        sources.error({main, 1, 1}, "there is no shader in this file");
+    // Annotations belong to the shader they stand in or before; those at the end to the last one.
+    const auto before = [](const Place& a, const Place& b) { return std::tie(a.line, a.column) < std::tie(b.line, b.column); };
+    for (const Annotation& a : p.annotations) {
+        Shader* owner = nullptr;
+        const Place at = p.tokens[std::min(a.token, p.tokens.size() - 1)].place;
+        for (auto& s : unit.shaders)
+            if (!owner || (!before(at, s->place) && a.token + 1 < p.tokens.size())) owner = s.get();
+        if (a.token + 1 >= p.tokens.size() && !unit.shaders.empty()) owner = unit.shaders.back().get();
+        if (owner) owner->annotations.emplace_back(a.key, a.value);
+    }
+    Checker(sources, unit, *program).run();
+    const bool failed = sources.errors() > 0;
+    sources.flush(diagnostics);
+    program->files = sources.names();
+    if (failed) return nullptr;
+    return program;
+}
+
+} // namespace
+
+std::unique_ptr<Program> compileFile(const std::string& path, const FrontOptions& options, Diagnostics& diagnostics) {
+    auto text = readSource(path);
+    if (!text) {
+        diagnostics.report(Severity::Error, Rie::NoFile, {path, 0, 0}, "cannot read this shader");
+        return nullptr;
+    }
+    return compile(*text, path, true, options, diagnostics);
+}
+
+std::unique_ptr<Program> compileText(const std::string& text, const std::string& name, const FrontOptions& options, Diagnostics& diagnostics) {
+    return compile(text, name, false, options, diagnostics);
+}
+
+} // namespace alpenglow::rsl

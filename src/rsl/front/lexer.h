@@ -1,0 +1,60 @@
+// Characters to tokens, before macros. Comments and joined lines vanish here; every token knows where it stood.
+#pragma once
+#include "rsl/front/source.h"
+
+namespace alpenglow::rsl::front {
+
+enum class Tok : uint8_t {
+    End, Identifier,
+    Number,  ///< as written, possibly with letters behind it that make it wrong
+    String,  ///< with its quotes and escapes
+    Punct,
+    Invalid  ///< a character that starts nothing, or a string without end; an error only if it reaches the parser
+};
+
+struct Token {
+    Tok kind = Tok::End;
+    bool lineStart = false; ///< first on its line
+    bool space = false;     ///< white space before it
+    bool noExpand = false;  ///< a macro's name inside its own expansion
+    Place place;
+    std::string_view text;
+    bool is(std::string_view s) const { return text == s && (kind == Tok::Punct || kind == Tok::Identifier); }
+};
+
+class Lexer {
+public:
+    Lexer(SourceSet&, int file);
+    /// Over another text, which must stay alive; places name `file`.
+    Lexer(SourceSet&, int file, std::string_view text);
+    Token next();
+    const Token& peek();
+    int file() const { return file_; }
+    /// Later places count `line` for the line after the current one, under file index `file` (#line).
+    void relocate(int file, int delta) {
+        placeFile_ = file;
+        if (peeked_) ahead_.place = {file, ahead_.place.line - delta_ + delta, ahead_.place.column};
+        delta_ = delta;
+    }
+    int line() const { return line_; }
+
+private:
+    Token scan();
+    bool joined(size_t& i) const;
+    int at(size_t i) const { return i < text_.size() ? static_cast<unsigned char>(text_[i]) : -1; }
+    void skipBlank(Token&);
+    SourceSet& sources_;
+    std::string_view text_;
+    int file_, placeFile_;
+    int delta_ = 0;
+    size_t pos_ = 0, lineBegin_ = 0;
+    int line_ = 1;
+    bool lineStart_ = true;
+    bool peeked_ = false;
+    Token ahead_;
+};
+
+/// The characters a string token stands for: quotes removed, \n \t \r \\ \" and octal escapes replaced.
+std::string stringValue(std::string_view token);
+
+} // namespace alpenglow::rsl::front

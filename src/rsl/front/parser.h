@@ -1,0 +1,106 @@
+// Tokens to an unchecked syntax tree. Names are still text (Expr::text), conversions and overloads are the checker's business.
+#pragma once
+#include "rsl/front/preprocessor.h"
+#include <functional>
+#include <unordered_set>
+
+namespace alpenglow::rsl::front {
+
+/// What one text declares, unchecked.
+struct Unit {
+    std::vector<std::unique_ptr<Shader>> shaders;
+    std::vector<std::unique_ptr<Function>> functions;
+    bool incomplete = false; ///< something was skipped: unknown names may be its fault
+};
+
+class Parser {
+public:
+    Parser(const Preprocessed& p, SourceSet& s) : tokens_(p.tokens), sources_(s) { unit_.incomplete = p.incomplete; }
+    /// Never fails: errors are in the set, and what could be read is in the unit.
+    Unit parse();
+
+private:
+    struct SyntaxError {};
+    struct Owner { std::vector<std::unique_ptr<Symbol>>* symbols = nullptr; std::vector<std::unique_ptr<Function>>* nested = nullptr; };
+    struct Specifiers { bool output = false, isExtern = false, any = false; Storage storage = Storage::Unspecified; Place place; };
+
+    // tokens
+    const Token& peek(size_t k = 0) const { return tokens_[std::min(at_ + k, tokens_.size() - 1)]; }
+    const Token& take();
+    bool at(std::string_view s) const { return peek().is(s); }
+    bool accept(std::string_view s);
+    void expect(std::string_view s, const char* where);
+    void expectSemicolon(const char* after);
+    [[noreturn]] void fail(Place, std::string message, std::string hint = {});
+    [[noreturn]] void failHere(const std::string& expected);
+    Place endOfLast() const;
+    void skipBalanced();
+    void recover();
+    bool atTypeName(size_t k = 0) const;
+    Base takeBase();
+    std::string shown() const;
+
+    // declarations (parser.cpp)
+    void topLevel();
+    void shader(ShaderKind);
+    std::unique_ptr<Function> function(const Specifiers&, Type, bool typed);
+    void parameters(Owner, std::vector<ShaderParameter>* shader, std::vector<Symbol*>* function);
+    Specifiers specifiers();
+    bool notYet(Place, const char* what);
+    Type dimensions(Type);
+    int constantLength(const Expr&, Place);
+    Symbol* declare(Owner, const Token& name, Type, const Specifiers&);
+    bool functionFollows() const;
+
+    // statements (parser_statements.cpp)
+    StmtPtr block();
+    void statements(Stmt& block);
+    StmtPtr statement();
+    StmtPtr statementOnce();
+    StmtPtr declaration();
+    StmtPtr forLoop();
+    StmtPtr doLoop();
+    StmtPtr lightStatement(StmtKind);
+    StmtPtr unsupportedDeclaration();
+    StmtPtr make(StmtKind, Place);
+    StmtPtr expressionStatement(ExprPtr);
+
+    // expressions (parser_expressions.cpp)
+    ExprPtr expression();
+    ExprPtr assignment();
+    ExprPtr conditional();
+    ExprPtr binary(int level);
+    ExprPtr unary();
+    ExprPtr castExpression();
+    ExprPtr postfix();
+    ExprPtr primary();
+    ExprPtr parenthesis();
+    ExprPtr arrayList();
+    void arguments(std::vector<ExprPtr>&);
+    ExprPtr node(ExprKind, Place, ExprOp = ExprOp::None);
+    /// Hangs a child in and keeps the height below the limit.
+    void adopt(Expr& parent, ExprPtr child);
+    void grow(Expr& parent, const Expr& child);
+
+    struct Depth {
+        explicit Depth(Parser&);
+        ~Depth() { --parser.depth_; }
+        Parser& parser;
+    };
+
+    const std::vector<Token>& tokens_;
+    SourceSet& sources_;
+    Unit unit_;
+    size_t at_ = 0;
+    int depth_ = 0;
+    bool tooDeep_ = false;
+    Owner owner_;                 ///< of the function or shader being read
+    bool returnsValue_ = false;   ///< a `return expression` was seen in it
+    std::unordered_set<std::string> structs_; ///< names of types that are not yet available
+    size_t lastError_ = size_t(-1);
+};
+
+std::optional<Base> baseNamed(std::string_view);
+std::optional<ShaderKind> shaderKindNamed(std::string_view);
+
+} // namespace alpenglow::rsl::front

@@ -1,0 +1,241 @@
+// Expressions, by the precedence table of rsl.md section 3.
+#include "base/limits.h"
+#include "rsl/front/parser.h"
+#include <charconv>
+#include <cmath>
+
+namespace alpenglow::rsl::front {
+
+ExprPtr Parser::node(ExprKind kind, Place place, ExprOp op) {
+    auto e = std::make_unique<Expr>();
+    e->kind = kind;
+    e->place = place;
+    e->op = op;
+    return e;
+}
+
+void Parser::grow(Expr& parent, const Expr& child) {
+    parent.height = std::max(parent.height, child.height + 1);
+    if (parent.height > limits::kTreeHeight) fail(parent.place, "this expression is longer than " + std::to_string(limits::kTreeHeight) + " operations in a row");
+}
+
+void Parser::adopt(Expr& parent, ExprPtr child) {
+    grow(parent, *child);
+    parent.args.push_back(std::move(child));
+}
+
+ExprPtr Parser::expression() { return assignment(); }
+
+ExprPtr Parser::assignment() {
+    Depth depth(*this);
+    auto left = conditional();
+    static constexpr struct { std::string_view text; ExprOp op; } kOps[] = {
+        {"=", ExprOp::Assign}, {"+=", ExprOp::Add}, {"-=", ExprOp::Sub}, {"*=", ExprOp::Mul}, {"/=", ExprOp::Div}};
+    for (const auto& o : kOps)
+        if (at(o.text)) {
+            auto e = node(ExprKind::Assign, take().place, o.op);
+            adopt(*e, std::move(left));
+            adopt(*e, at("{") ? arrayList() : assignment());
+            return e;
+        }
+    return left;
+}
+
+ExprPtr Parser::conditional() {
+    auto c = binary(3);
+    if (!at("?")) return c;
+    auto e = node(ExprKind::Conditional, take().place);
+    adopt(*e, std::move(c));
+    adopt(*e, assignment());
+    expect(":", "between the two values of '?'");
+    adopt(*e, assignment());
+    return e;
+}
+
+namespace {
+struct BinaryOp { std::string_view text; int level; ExprOp op; };
+constexpr BinaryOp kBinary[] = {
+    {"||", 3, ExprOp::Or}, {"&&", 4, ExprOp::And},
+    {"==", 5, ExprOp::Equal}, {"!=", 5, ExprOp::NotEqual}, {"<", 5, ExprOp::Less}, {">", 5, ExprOp::Greater},
+    {"<=", 5, ExprOp::LessEqual}, {">=", 5, ExprOp::GreaterEqual},
+    {"+", 6, ExprOp::Add}, {"-", 6, ExprOp::Sub},
+    {"^", 7, ExprOp::Cross}, // looser than * and /, unlike anywhere else
+    {"*", 8, ExprOp::Mul}, {"/", 8, ExprOp::Div},
+    {".", 9, ExprOp::Dot}};
+} // namespace
+
+ExprPtr Parser::binary(int level) {
+    auto left = unary();
+    // Precedence climbing, with the recursion of the right operands bounded by the number of levels.
+    for (;;) {
+        const BinaryOp* found = nullptr;
+        if (peek().kind == Tok::Punct)
+            for (const auto& b : kBinary)
+                if (b.text == peek().text) found = &b;
+        if (!found || found->level < level) return left;
+        auto e = node(ExprKind::Binary, take().place, found->op);
+        adopt(*e, std::move(left));
+        adopt(*e, binary(found->level + 1));
+        left = std::move(e);
+    }
+}
+
+ExprPtr Parser::unary() {
+    if (at("-") || at("!") || at("+")) {
+        Depth depth(*this);
+        const Token& t = take();
+        if (t.text == "+") return unary();
+        auto operand = unary();
+        if (t.text == "-" && operand->kind == ExprKind::Number && !std::signbit(operand->number)) {
+            operand->number = -operand->number;
+            operand->place = t.place;
+            return operand;
+        }
+        auto e = node(ExprKind::Unary, t.place, t.text == "-" ? ExprOp::Negate : ExprOp::Not);
+        adopt(*e, std::move(operand));
+        return e;
+    }
+    if (atTypeName()) return castExpression();
+    return postfix();
+}
+
+/// type ["space"] operand: a constructor, a conversion, or the choice of a return type.
+ExprPtr Parser::castExpression() {
+    Depth depth(*this);
+    auto e = node(ExprKind::Cast, peek().place);
+    e->type.base = takeBase();
+    if (e->type.base == Base::Void) fail(e->place, "'void' is not the type of a value");
+    if (at("[") && peek(1).is("]")) { take(); take(); e->type.array = -1; }
+    if (peek().kind == Tok::String && e->type.base != Base::String) {
+        size_t k = 0;
+        while (peek(k).kind == Tok::String) ++k;
+        const Token& n = peek(k);
+        const bool operand = n.is("(") || n.kind == Tok::Number || n.kind == Tok::Identifier || n.is("-");
+        if (operand) {
+            e->space = primary();
+            grow(*e, *e->space);
+        }
+    }
+    adopt(*e, unary());
+    return e;
+}
+
+ExprPtr Parser::postfix() {
+    auto e = primary();
+    for (;;) {
+        if (at("[")) {
+            auto index = node(ExprKind::Index, take().place);
+            adopt(*index, std::move(e));
+            adopt(*index, expression());
+            expect("]", "after an index");
+            e = std::move(index);
+        } else if (at("->")) {
+            notYet(peek().place, "shader handles and their methods (->)");
+            take();
+            if (peek().kind == Tok::Identifier) take();
+            if (at("(")) skipBalanced();
+            auto poison = node(ExprKind::Variable, e->place); // an empty name: the checker stays silent about it
+            e = std::move(poison);
+        } else if (peek().kind == Tok::Punct && (at("=") || at("(")) && e->kind == ExprKind::Number) {
+            failHere("expected an operator");
+        } else return e;
+    }
+}
+
+ExprPtr Parser::primary() {
+    const Token& t = peek();
+    if (t.kind == Tok::Number) {
+        auto e = node(ExprKind::Number, t.place);
+        const char* end = t.text.data() + t.text.size();
+        const auto r = std::from_chars(t.text.data(), end, e->number);
+        const bool suffix = r.ptr + 1 == end && (*r.ptr == 'f' || *r.ptr == 'F');
+        if (r.ec == std::errc::result_out_of_range) {
+            // Too large or too small for a double: the exponent's sign says which.
+            e->number = t.text.find("e-") != t.text.npos || t.text.find("E-") != t.text.npos ? 0 : 3e38;
+        } else if (r.ec != std::errc() || (r.ptr != end && !suffix)) {
+            fail(t.place, "'" + std::string(t.text.substr(0, 40)) + "' is not a number");
+        }
+        if (suffix) sources_.warning(t.place, "numbers take no suffix; '" + std::string(t.text) + "' is read without it");
+        take();
+        return e;
+    }
+    if (t.kind == Tok::String) {
+        auto e = node(ExprKind::String, t.place);
+        while (peek().kind == Tok::String) e->text += stringValue(take().text);
+        return e;
+    }
+    if (t.is("(")) return parenthesis();
+    if (t.is("{")) return arrayList();
+    if (t.kind == Tok::Identifier) {
+        static const std::unordered_set<std::string_view> kReserved = {"if", "else", "while", "for", "break", "continue", "return",
+                                                                       "uniform", "varying", "output", "extern"};
+        if (kReserved.count(t.text)) failHere("expected an expression");
+        take();
+        if (!at("(")) {
+            auto e = node(ExprKind::Variable, t.place);
+            e->text = std::string(t.text);
+            return e;
+        }
+        take();
+        auto e = node(ExprKind::ShadeopCall, t.place);
+        e->text = std::string(t.text);
+        arguments(e->args);
+        for (const auto& a : e->args) grow(*e, *a);
+        return e;
+    }
+    failHere("expected an expression");
+}
+
+/// Behind '(': expressions up to and with ')'.
+void Parser::arguments(std::vector<ExprPtr>& out) {
+    Depth depth(*this);
+    while (!accept(")")) {
+        out.push_back(at("{") ? arrayList() : assignment());
+        if (accept(",")) continue;
+        if (accept(")")) return;
+        if (accept(";")) { // some write calls as they write parameter lists
+            sources_.warning(tokens_[at_ - 1].place, "arguments are separated by ',', not ';'");
+            continue;
+        }
+        failHere("expected ',' or ')' after an argument");
+    }
+}
+
+ExprPtr Parser::parenthesis() {
+    Depth depth(*this);
+    const Place place = take().place;
+    if (atTypeName() && peek(1).is(")")) {
+        const std::string type(peek().text);
+        sources_.error(place, "a conversion is written without parentheses around the type", "write " + type + "(...) or " + type + " x");
+        ExprPtr e = node(ExprKind::Cast, place);
+        e->type.base = takeBase();
+        take();
+        adopt(*e, unary());
+        return e;
+    }
+    auto e = expression();
+    if (accept(")")) return e;
+    if (!at(",")) failHere("expected ')'");
+    auto tuple = node(ExprKind::Tuple, place);
+    adopt(*tuple, std::move(e));
+    while (accept(",")) adopt(*tuple, expression());
+    expect(")", "after the components");
+    if (tuple->args.size() == 16) tuple->kind = ExprKind::MatrixTuple;
+    else if (tuple->args.size() != 3)
+        sources_.error(place, std::to_string(tuple->args.size()) + " values in parentheses: a tuple has 3 components, a matrix 16");
+    return tuple;
+}
+
+ExprPtr Parser::arrayList() {
+    Depth depth(*this);
+    auto e = node(ExprKind::ArrayList, take().place);
+    while (!at("}")) {
+        adopt(*e, assignment());
+        if (e->args.size() > size_t(limits::kShaderArray)) fail(e->place, "an array has at most " + std::to_string(limits::kShaderArray) + " elements");
+        if (!accept(",")) break;
+    }
+    expect("}", "after the elements of an array");
+    return e;
+}
+
+} // namespace alpenglow::rsl::front

@@ -1,0 +1,281 @@
+#include "rsl/front/parser.h"
+
+namespace alpenglow::rsl::front {
+
+StmtPtr Parser::make(StmtKind kind, Place place) {
+    auto s = std::make_unique<Stmt>();
+    s->kind = kind;
+    s->place = place;
+    return s;
+}
+
+StmtPtr Parser::expressionStatement(ExprPtr e) {
+    auto s = make(StmtKind::Expression, e->place);
+    s->value = std::move(e);
+    return s;
+}
+
+StmtPtr Parser::block() {
+    auto b = make(StmtKind::Block, peek().place);
+    expect("{", "");
+    statements(*b);
+    if (!accept("}")) {
+        if (lastError_ != at_) sources_.error(peek().place, "expected '}' before the end of the file",
+                                              "the block began at line " + std::to_string(b->place.line));
+        lastError_ = at_;
+        unit_.incomplete = true;
+    }
+    return b;
+}
+
+void Parser::statements(Stmt& block) {
+    while (!at("}") && peek().kind != Tok::End && !sources_.tooMany()) {
+        const size_t before = at_;
+        try {
+            if (auto s = statement()) block.body.push_back(std::move(s));
+        } catch (const SyntaxError&) {
+            unit_.incomplete = true;
+            recover();
+        }
+        if (at_ == before && !at("}")) take();
+    }
+}
+
+StmtPtr Parser::statement() {
+    Depth depth(*this);
+    return statementOnce();
+}
+
+StmtPtr Parser::statementOnce() {
+    const Token& t = peek();
+    if (t.kind == Tok::Punct) {
+        if (t.text == "{") return block();
+        if (t.text == ";") { auto s = make(StmtKind::Block, t.place); take(); return s; }
+    }
+    if (t.kind != Tok::Identifier) { auto s = expressionStatement(expression()); expectSemicolon("an expression"); return s; }
+    const std::string_view w = t.text;
+    const bool call = peek(1).is("(");
+    if (w == "if" && call) {
+        auto s = make(StmtKind::If, take().place);
+        take();
+        s->condition = expression();
+        expect(")", "after the condition");
+        s->body.push_back(statement());
+        if (accept("else")) s->elseBody = statement();
+        return s;
+    }
+    if (w == "else") fail(t.place, "'else' without 'if'");
+    if (w == "while" && call) {
+        auto s = make(StmtKind::While, take().place);
+        take();
+        s->condition = expression();
+        expect(")", "after the condition");
+        s->body.push_back(statement());
+        return s;
+    }
+    if (w == "for" && call) return forLoop();
+    if (w == "do" && (peek(1).is("{") || (peek(1).kind == Tok::Identifier && !peek(1).lineStart))) return doLoop();
+    if (w == "break" || w == "continue") {
+        auto s = make(w == "break" ? StmtKind::Break : StmtKind::Continue, take().place);
+        if (peek().kind == Tok::Number) {
+            const auto n = primary();
+            if (n->number >= 1 && n->number <= 1000 && n->number == int(n->number)) s->levels = int(n->number);
+            else sources_.error(n->place, "the number of loops to leave must be a whole number from 1");
+        }
+        expectSemicolon(w == "break" ? "break" : "continue");
+        return s;
+    }
+    if (w == "return") {
+        auto s = make(StmtKind::Return, take().place);
+        if (!at(";") && !at("}")) { s->value = expression(); returnsValue_ = true; }
+        expectSemicolon("return");
+        return s;
+    }
+    if (call) {
+        if (w == "illuminance") return lightStatement(StmtKind::Illuminance);
+        if (w == "illuminate") return lightStatement(StmtKind::Illuminate);
+        if (w == "solar") return lightStatement(StmtKind::Solar);
+        if (w == "gather") return lightStatement(StmtKind::Gather);
+    }
+    if (w == "uniform" || w == "varying" || w == "extern" || w == "output") return declaration();
+    if ((w == "constant" || w == "const" || w == "public") && (atTypeName(1) || peek(1).is("uniform") || peek(1).is("varying")))
+        return declaration();
+    if (atTypeName()) {
+        const Token& n = peek(1);
+        if (n.is("[") || w == "void") return declaration();
+        if (n.kind == Tok::Identifier && !atTypeName(1)) {
+            if (!peek(2).is("(")) return declaration();
+            ++at_;
+            const bool definition = functionFollows();
+            --at_;
+            if (definition) return declaration();
+        }
+    }
+    const bool nameFollows = peek(1).kind == Tok::Identifier || (peek(1).is("[") && peek(2).is("]"));
+    if ((w == "shader" || structs_.count(std::string(w))) && nameFollows) return unsupportedDeclaration();
+    if (w == "struct" && peek(1).kind == Tok::Identifier && peek(2).is("{")) {
+        notYet(t.place, "structures (struct)");
+        take();
+        structs_.insert(std::string(take().text));
+        skipBalanced();
+        accept(";");
+        return nullptr;
+    }
+    // "vectr x = ..." reads as two names in a row: most likely a type with a slip.
+    if (peek(1).kind == Tok::Identifier && !peek(1).lineStart && (peek(2).is("=") || peek(2).is(";") || peek(2).is(",") || peek(2).is("["))) {
+        const std::string near = nearestName(w, {"float", "color", "point", "vector", "normal", "matrix", "string", "uniform", "varying"});
+        fail(t.place, "'" + std::string(w) + "' is not a type", near.empty() ? (w == "int" || w == "bool" ? "use float" : "") : "did you mean '" + near + "'?");
+    }
+    auto s = expressionStatement(expression());
+    expectSemicolon("an expression");
+    return s;
+}
+
+/// Variables that can only be poisoned: of shader handles and structures.
+StmtPtr Parser::unsupportedDeclaration() {
+    auto s = make(StmtKind::Declare, peek().place);
+    notYet(peek().place, at("shader") ? "shader handles" : "structures (struct)");
+    take();
+    if (at("[")) skipBalanced();
+    while (peek().kind == Tok::Identifier) {
+        s->declarators.push_back({declare(owner_, take(), {Base::Void, 0}, {}), nullptr});
+        while (!at(",") && !at(";") && !at("}") && peek().kind != Tok::End) {
+            if (at("(") || at("[") || at("{")) skipBalanced();
+            else take();
+        }
+        accept(",");
+    }
+    accept(";");
+    return s;
+}
+
+StmtPtr Parser::declaration() {
+    auto s = make(StmtKind::Declare, peek().place);
+    const Specifiers spec = specifiers();
+    if (at("shader") || structs_.count(std::string(peek().text))) return unsupportedDeclaration();
+    if (!atTypeName()) failHere("expected a type");
+    Type type{takeBase(), 0};
+    type = dimensions(type);
+    if (functionFollows() || (type.base == Base::Void && peek(1).is("("))) {
+        auto f = function(spec, type, true);
+        if (!f) return nullptr;
+        s->definition = f.get();
+        owner_.nested->push_back(std::move(f));
+        return s;
+    }
+    if (type.base == Base::Void) fail(s->place, "a variable cannot be void");
+    do {
+        if (peek().kind != Tok::Identifier || atTypeName()) failHere("expected the name of a variable");
+        const Token& name = take();
+        const Type own = dimensions(type);
+        Symbol* symbol = declare(owner_, name, own, spec);
+        s->declarators.push_back({symbol, nullptr});
+        if (accept("=")) {
+            if (spec.isExtern) sources_.error(name.place, "an extern variable has its value already and takes no other here");
+            try {
+                s->declarators.back().init = at("{") ? arrayList() : assignment();
+            } catch (const SyntaxError&) {
+                // The name is declared all the same: its uses are no errors.
+                if (tooDeep_) throw;
+                unit_.incomplete = true;
+                recover();
+                return s;
+            }
+        }
+    } while (accept(","));
+    expectSemicolon("a declaration");
+    return s;
+}
+
+StmtPtr Parser::forLoop() {
+    const Place place = take().place;
+    take();
+    auto outer = make(StmtKind::Block, place);
+    auto loop = make(StmtKind::For, place);
+    if (atTypeName() || at("uniform") || at("varying")) {
+        outer->body.push_back(declaration()); // takes the ';'
+    } else {
+        while (!at(";")) {
+            auto e = expression();
+            if (accept(",")) outer->body.push_back(expressionStatement(std::move(e)));
+            else { loop->init = std::move(e); break; }
+        }
+        expect(";", "after the start of 'for'");
+    }
+    if (!at(";")) loop->condition = expression();
+    expect(";", "after the condition of 'for'");
+    std::vector<ExprPtr> steps;
+    while (!at(")")) {
+        steps.push_back(expression());
+        if (!accept(",")) break;
+    }
+    expect(")", "after the step of 'for'");
+    auto body = statement();
+    if (!steps.empty()) {
+        loop->step = std::move(steps.back());
+        steps.pop_back();
+    }
+    if (!steps.empty()) {
+        // Steps before the last go to the end of the body; `continue` would jump over them.
+        std::function<bool(const Stmt&)> jumps = [&](const Stmt& x) {
+            if (x.kind == StmtKind::Continue) return true;
+            for (const auto& b : x.body)
+                if (b && jumps(*b)) return true;
+            return x.elseBody && jumps(*x.elseBody);
+        };
+        if (body && jumps(*body)) sources_.error(steps[0]->place, "several steps in 'for' cannot be combined with 'continue'");
+        auto b = make(StmtKind::Block, place);
+        if (body) b->body.push_back(std::move(body));
+        for (auto& e : steps) b->body.push_back(expressionStatement(std::move(e)));
+        body = std::move(b);
+    }
+    if (!body) body = make(StmtKind::Block, place);
+    loop->body.push_back(std::move(body));
+    if (outer->body.empty()) return loop;
+    outer->body.push_back(std::move(loop));
+    return outer;
+}
+
+/// do s while (c);  is  first = 1; while (first ? 1 : c) { first = 0; s }
+StmtPtr Parser::doLoop() {
+    const Place place = peek().place;
+    const Token& word = take();
+    auto outer = make(StmtKind::Block, place);
+    Symbol* first = declare(owner_, word, {Base::Float, 0}, {}); // "do": no variable of the shader can have that name
+    const auto number = [&](double v) { auto e = node(ExprKind::Number, place); e->number = v; return e; };
+    const auto variable = [&] { auto e = node(ExprKind::Variable, place); e->text = first->name; return e; };
+    auto d = make(StmtKind::Declare, place);
+    d->declarators.push_back({first, number(1)});
+    outer->body.push_back(std::move(d));
+    auto loop = make(StmtKind::While, place);
+    auto body = make(StmtKind::Block, place);
+    auto clear = node(ExprKind::Assign, place, ExprOp::Assign);
+    adopt(*clear, variable());
+    adopt(*clear, number(0));
+    body->body.push_back(expressionStatement(std::move(clear)));
+    if (auto s = statement()) body->body.push_back(std::move(s));
+    loop->body.push_back(std::move(body));
+    expect("while", "after the body of 'do'");
+    expect("(", "after 'while'");
+    auto choose = node(ExprKind::Conditional, place);
+    adopt(*choose, variable());
+    adopt(*choose, number(1));
+    adopt(*choose, expression());
+    loop->condition = std::move(choose);
+    expect(")", "after the condition");
+    expectSemicolon("'do'");
+    outer->body.push_back(std::move(loop));
+    return outer;
+}
+
+StmtPtr Parser::lightStatement(StmtKind kind) {
+    auto s = make(kind, take().place);
+    expect("(", "");
+    arguments(s->exprs); // the checker tells category, positions and pairs apart
+    s->body.push_back(statement());
+    if (!s->body[0]) s->body[0] = make(StmtKind::Block, s->place);
+    if (kind == StmtKind::Gather && accept("else")) s->elseBody = statement();
+    return s;
+}
+
+} // namespace alpenglow::rsl::front

@@ -1,0 +1,333 @@
+// Top down: the cheapest reading becomes the tree, its conversions explicit nodes.
+#include "rsl/front/checker.h"
+#include <algorithm>
+#include <utility>
+
+namespace alpenglow::rsl::front {
+
+namespace {
+constexpr Base kAll[] = {Base::Float, Base::Color, Base::Point, Base::Vector, Base::Normal, Base::Matrix, Base::String, Base::Bool};
+} // namespace
+
+/// Type and children are known: `varying` follows from the children.
+void Checker::finish(Expr& e) {
+    e.varying = false;
+    for (const auto& a : e.args) e.varying |= a->varying;
+    if (e.space) e.varying |= e.space->varying;
+}
+
+void Checker::convert(ExprPtr& e, Type to) {
+    if (e->type == to) return;
+    auto c = std::make_unique<Expr>();
+    c->kind = ExprKind::Cast;
+    c->type = to;
+    c->place = e->place;
+    c->height = e->height + 1;
+    c->varying = e->varying;
+    c->args.push_back(std::move(e));
+    e = std::move(c);
+}
+
+void Checker::settle(ExprPtr& e, Type want) {
+    const Info& info = infos_.at(e.get());
+    if (info.any || want.base == Base::Void) {
+        settleCheapest(e);
+        if (want.base != Base::Void) e->type = want;
+        return;
+    }
+    if (want.array != 0) return settleArray(e, want);
+    if (info.array.array || info.listLength >= 0) {
+        sources_.error(e->place, "expected a " + toString(want) + ", not " + describe(*e));
+        e->type = want;
+        return;
+    }
+    Base best = Base::Void;
+    int cost = kNever;
+    for (Base b : kAll) {
+        const int c = info.cost[int(b)] + implicitCost(b, want.base);
+        if (c < cost) { cost = c; best = b; }
+    }
+    if (best == Base::Void) {
+        std::string hint;
+        if (want.base == Base::Float && Type{cheapest(info), 0}.isTuple()) hint = "a component is read by x[0], xcomp(x) or comp(x, 0)";
+        sources_.error(e->place, "expected a " + toString(want) + ", not " + describe(*e), hint);
+        e->type = want;
+        return;
+    }
+    settleAs(e, best);
+    convert(e, want);
+}
+
+void Checker::settleCheapest(ExprPtr& e) {
+    const Info& info = infos_.at(e.get());
+    if (info.any) {
+        // Children may hold what is worth a look (nothing is reported twice); types no longer matter.
+        return;
+    }
+    if (info.array.array) return settleArray(e, info.array);
+    if (info.listLength >= 0) {
+        sources_.error(e->place, "a list of elements {...} is of use only as the value of an array");
+        return;
+    }
+    const Base b = cheapest(info);
+    if (b == Base::Void && e->kind == ExprKind::ShadeopCall) return settleCall(e, {Base::Void, 0});
+    settleAs(e, b);
+}
+
+void Checker::settleCondition(ExprPtr& e) {
+    const Info& info = infos_.at(e.get());
+    if (info.any) { e->type = {Base::Bool, 0}; return; }
+    Base best = Base::Void;
+    int cost = kNever;
+    for (Base b : kAll) {
+        const int c = info.cost[int(b)] + conditionCost(b);
+        if (c < cost) { cost = c; best = b; }
+    }
+    if (best == Base::Void) {
+        sources_.error(e->place, describe(*e) + " cannot be a condition");
+        e->type = {Base::Bool, 0};
+        return;
+    }
+    settleAs(e, best);
+    if (best == Base::Bool) return;
+    // A number is true when it is not zero.
+    auto zero = std::make_unique<Expr>();
+    zero->kind = ExprKind::Number;
+    zero->type = {Base::Float, 0};
+    zero->place = e->place;
+    zero->varying = false;
+    convert(zero, e->type);
+    auto test = std::make_unique<Expr>();
+    test->kind = ExprKind::Binary;
+    test->op = ExprOp::NotEqual;
+    test->type = {Base::Bool, 0};
+    test->place = e->place;
+    test->height = e->height + 1;
+    test->args.push_back(std::move(e));
+    test->args.push_back(std::move(zero));
+    finish(*test);
+    e = std::move(test);
+}
+
+void Checker::settleArray(ExprPtr& e, Type want) {
+    const Info& info = infos_.at(e.get());
+    if (info.any) { e->type = want; return; }
+    if (e->kind == ExprKind::ArrayList) {
+        const int length = want.array > 0 ? want.array : std::max(1, info.listLength);
+        if (int(e->args.size()) > length) {
+            sources_.error(e->args[size_t(length)]->place, std::to_string(e->args.size()) + " elements for an array of " + std::to_string(length));
+            e->args.resize(size_t(length));
+        }
+        for (auto& a : e->args) settle(a, want.element());
+        while (int(e->args.size()) < length) { // missing elements are zero
+            auto z = std::make_unique<Expr>();
+            z->kind = want.base == Base::String ? ExprKind::String : ExprKind::Number;
+            z->type = {want.base == Base::String ? Base::String : Base::Float, 0};
+            z->place = e->place;
+            z->varying = false;
+            convert(z, want.element());
+            e->args.push_back(std::move(z));
+        }
+        for (const auto& a : e->args) e->height = std::max(e->height, a->height + 1);
+        e->type = {want.base, length};
+        finish(*e);
+        return;
+    }
+    const Type have = info.array;
+    if (have.base != want.base || have.array == 0 || (want.array > 0 && have.array > 0 && have.array != want.array)) {
+        sources_.error(e->place, "expected " + toString(want) + ", not " + describe(*e));
+        e->type = want;
+        return;
+    }
+    if (e->kind == ExprKind::Variable) {
+        e->type = have;
+        e->varying = e->symbol->storage != Storage::Uniform;
+    } else if (e->kind == ExprKind::ShadeopCall) {
+        settleCall(e, want.array > 0 ? want : have);
+    } else if (e->kind == ExprKind::Assign) {
+        settleAssign(e);
+    } else if (e->kind == ExprKind::Cast) {
+        ExprPtr inner = std::move(e->args[0]);
+        settleArray(inner, want);
+        e = std::move(inner);
+    }
+}
+
+/// An output argument keeps its own type.
+void Checker::settleVariable(ExprPtr& e) {
+    const Info& info = infos_.at(e.get());
+    if (info.any) return;
+    if (info.array.array) return settleArray(e, info.array);
+    settleAs(e, cheapest(info));
+}
+
+void Checker::settleAs(ExprPtr& e, Base t) {
+    const Info& info = infos_.at(e.get());
+    if (info.any) { e->type = {t, 0}; return; }
+    switch (e->kind) {
+    case ExprKind::Number:
+    case ExprKind::String:
+        e->type = {t, 0};
+        e->varying = false;
+        return;
+    case ExprKind::Variable:
+        e->type = {t, 0};
+        e->varying = e->symbol->storage != Storage::Uniform;
+        if (e->varying && e->symbol->origin == Symbol::Origin::Global && function_) varyingFunctions_.insert(function_);
+        return;
+    case ExprKind::Index:
+        if (info.channel) sources_.error(e->place, "a string has no elements; name[channel] has its place in texture() and its kin");
+        settleCheapest(e->args[0]);
+        settle(e->args[1], {Base::Float, 0});
+        e->type = {t, 0};
+        break;
+    case ExprKind::Unary:
+        if (e->op == ExprOp::Not) settleCondition(e->args[0]);
+        else settle(e->args[0], {t, 0});
+        e->type = {t, 0};
+        break;
+    case ExprKind::Binary: settleBinary(e, t); return;
+    case ExprKind::Assign: settleAssign(e); return;
+    case ExprKind::Conditional:
+        settleCondition(e->args[0]);
+        // Truth values are no values: 0 and 1 where they meet as results.
+        if (t == Base::Bool) t = Base::Float;
+        settle(e->args[1], {t, 0});
+        settle(e->args[2], {t, 0});
+        e->type = {t, 0};
+        break;
+    case ExprKind::Tuple:
+    case ExprKind::MatrixTuple:
+        for (auto& a : e->args) settle(a, {Base::Float, 0});
+        e->type = {t, 0};
+        break;
+    case ExprKind::Cast: {
+        if (e->space) settle(e->space, {Base::String, 0});
+        const Info& a = infos_.at(e->args[0].get());
+        Base best = t;
+        int cost = kNever;
+        for (Base b : kAll) {
+            const int c = a.cost[int(b)] + castCost(b, t);
+            if (c < cost) { cost = c; best = b; }
+        }
+        settleAs(e->args[0], best);
+        Expr& inner = *e->args[0];
+        if (e->space && (inner.kind == ExprKind::Tuple || inner.kind == ExprKind::MatrixTuple) && !inner.space) inner.space = std::move(e->space);
+        if (!e->space && inner.type == Type{t, 0}) {
+            // Nothing to convert: the word chose the reading.
+            ExprPtr value = std::move(e->args[0]);
+            finish(*value);
+            if (value->kind == ExprKind::ShadeopCall || value->kind == ExprKind::FunctionCall || value->kind == ExprKind::Variable)
+                value->varying = value->varying || inner.varying;
+            e = std::move(value);
+            return;
+        }
+        e->type = {t, 0};
+        break;
+    }
+    case ExprKind::ShadeopCall: settleCall(e, {t, 0}); return;
+    case ExprKind::ArrayList:
+    case ExprKind::FunctionCall: return;
+    }
+    finish(*e);
+}
+
+void Checker::settleBinary(ExprPtr& e, Base t) {
+    const Info& l = infos_.at(e->args[0].get());
+    const Info& r = infos_.at(e->args[1].get());
+    int cost = kNever;
+    Base left = Base::Void, right = Base::Void;
+    Operation best{};
+    for (Base a : kAll)
+        for (Base b : kAll) {
+            if (l.cost[int(a)] >= kNever || r.cost[int(b)] >= kNever) continue;
+            const auto o = operation(e->op, a, b);
+            if (!o || o->result != t) continue;
+            const int c = l.cost[int(a)] + r.cost[int(b)] + o->cost;
+            if (c < cost) { cost = c; left = a; right = b; best = *o; }
+        }
+    if (best.operand == Base::Bool) {
+        settleCondition(e->args[0]);
+        settleCondition(e->args[1]);
+    } else {
+        settleAs(e->args[0], left);
+        convert(e->args[0], {best.operand, 0});
+        settleAs(e->args[1], right);
+        convert(e->args[1], {best.operand, 0});
+    }
+    e->type = {best.result, 0};
+    finish(*e);
+    if (best.result == Base::String) {
+        // name + "": old shaders join strings so.
+        if (e->args[1]->kind == ExprKind::String && e->args[0]->kind == ExprKind::String) {
+            e->args[0]->text += e->args[1]->text;
+            e = std::move(e->args[0]);
+        } else if (e->args[1]->kind == ExprKind::String && e->args[1]->text.empty()) e = std::move(e->args[0]);
+        else if (e->args[0]->kind == ExprKind::String && e->args[0]->text.empty()) e = std::move(e->args[1]);
+        else if (const Shadeop* concat = findShadeop("concat"); concat && !concat->signatures.empty()) {
+            e->kind = ExprKind::ShadeopCall;
+            e->op = ExprOp::None;
+            e->shadeop = concat;
+            e->signature = &concat->signatures[0];
+            e->text = "concat";
+        }
+    }
+}
+
+void Checker::settleAssign(ExprPtr& e) {
+    settleVariable(e->args[0]);
+    const Type target = e->args[0]->type;
+    if (e->op == ExprOp::Assign || target.array != 0) {
+        settle(e->args[1], target);
+    } else {
+        const Info& r = infos_.at(e->args[1].get());
+        int cost = kNever;
+        Base best = Base::Void, operand = target.base;
+        for (Base b : kAll) {
+            if (r.cost[int(b)] >= kNever) continue;
+            const auto o = operation(e->op, target.base, b);
+            if (!o || implicitCost(o->result, target.base) >= kNever) continue;
+            const int c = r.cost[int(b)] + o->cost + implicitCost(o->result, target.base);
+            if (c < cost) { cost = c; best = b; operand = o->operand; }
+        }
+        settleAs(e->args[1], best);
+        convert(e->args[1], {operand == Base::Matrix || target.base == Base::Color || target.base == Base::Float ? operand : target.base, 0});
+    }
+    e->type = target;
+    finish(*e);
+    written(*e->args[0]);
+    const Expr* root = e->args[0].get();
+    while (root->kind == ExprKind::Index) root = root->args[0].get();
+    if (root->symbol) {
+        assignedToUniform(*root->symbol, *e->args[1]);
+        if (root == e->args[0].get()) e->varying = e->args[1]->varying;
+    }
+}
+
+/// Something is stored in this variable: is that allowed?
+void Checker::written(const Expr& variable) {
+    const Expr* root = &variable;
+    while (root->kind == ExprKind::Index) root = root->args[0].get();
+    const Symbol* s = root->symbol;
+    if (!s) return;
+    const std::string name = "'" + s->name + "'";
+    switch (s->origin) {
+    case Symbol::Origin::Local: break;
+    case Symbol::Origin::Global:
+        if (s->writable) break;
+        if (s->storage == Storage::Uniform)
+            sources_.error(variable.place, name + " cannot be written");
+        else
+            sources_.warning(variable.place, name + std::string(" is read-only") + (kind_ ? " in a " + std::string(toString(*kind_)) + " shader" : "") +
+                                                 "; the shader changes a copy of its own");
+        break;
+    case Symbol::Origin::ShaderParameter:
+        if (!s->output) sources_.warning(variable.place, "parameter " + name + " is not output; the shader changes a copy of its own");
+        break;
+    case Symbol::Origin::FunctionParameter:
+        if (!s->output) sources_.warning(variable.place, "parameter " + name + " is not output; the function changes a copy of its own");
+        break;
+    }
+}
+
+} // namespace alpenglow::rsl::front

@@ -1,0 +1,84 @@
+#include "rsl/front/source.h"
+#include "base/limits.h"
+#include <algorithm>
+#include <tuple>
+
+namespace alpenglow::rsl::front {
+
+int SourceSet::add(std::string name, std::string text) {
+    kept_.push_back(std::move(text));
+    entries_.push_back({std::move(name), &kept_.back(), -1, 0});
+    return int(entries_.size()) - 1;
+}
+
+int SourceSet::addView(int of, std::string name, int delta) {
+    const int real = entries_[of].view >= 0 ? entries_[of].view : of;
+    for (size_t i = 0; i < entries_.size(); ++i)
+        if (entries_[i].view == real && entries_[i].delta == delta && entries_[i].name == name) return int(i);
+    entries_.push_back({std::move(name), nullptr, real, delta});
+    return int(entries_.size()) - 1;
+}
+
+std::vector<std::string> SourceSet::names() const {
+    std::vector<std::string> all;
+    for (const auto& e : entries_) all.push_back(e.name);
+    return all;
+}
+
+std::string_view SourceSet::keep(std::string s) {
+    kept_.push_back(std::move(s));
+    return kept_.back();
+}
+
+bool SourceSet::tooMany() const { return errors_ >= limits::kFrontErrors; }
+
+void SourceSet::note(Severity severity, Place place, std::string message, std::string hint) {
+    if (muted) return;
+    if (severity >= Severity::Error && tooMany()) return;
+    // A function is checked once for each shader that calls it: its faults are told once.
+    if (!seen_.insert({{place.file, place.line, place.column, int(severity)}, message}).second) return;
+    if (severity >= Severity::Error) ++errors_;
+    messages_.push_back({place, severity, std::move(message), std::move(hint)});
+    if (tooMany() && severity >= Severity::Error)
+        messages_.push_back({{place.file, place.line, place.column + 1}, Severity::Error, "too many errors; giving up on this file", {}});
+}
+
+void SourceSet::error(Place p, std::string m, std::string h) { note(Severity::Error, p, std::move(m), std::move(h)); }
+void SourceSet::warning(Place p, std::string m, std::string h) { note(Severity::Warning, p, std::move(m), std::move(h)); }
+
+std::string SourceSet::line(Place p) const {
+    if (p.file < 0 || p.file >= int(entries_.size()) || p.line < 1) return {};
+    const std::string& t = text(p.file);
+    int line = p.line - entries_[p.file].delta;
+    size_t at = 0;
+    for (; line > 1; --line) {
+        at = t.find('\n', at);
+        if (at == std::string::npos) return {};
+        ++at;
+    }
+    std::string s = t.substr(at, std::min(t.find('\n', at), at + 400) - at);
+    while (!s.empty() && (s.back() == '\r' || s.back() == '\n')) s.pop_back();
+    return s;
+}
+
+void SourceSet::flush(Diagnostics& d) {
+    for (size_t i = 0; i < messages_.size(); ++i) messages_[i].order = i;
+    std::sort(messages_.begin(), messages_.end(), [](const Message& a, const Message& b) {
+        return std::tie(a.place.file, a.place.line, a.place.column, a.order) < std::tie(b.place.file, b.place.line, b.place.column, b.order);
+    });
+    for (auto& m : messages_) {
+        Diagnostic out;
+        out.severity = m.severity;
+        out.code = Rie::Syntax;
+        if (m.place.file >= 0 && m.place.file < int(entries_.size())) out.place.file = entries_[m.place.file].name;
+        out.place.line = m.place.line;
+        out.place.column = m.place.column;
+        out.sourceLine = line(m.place);
+        out.message = std::move(m.text);
+        out.hint = std::move(m.hint);
+        d.report(std::move(out));
+    }
+    messages_.clear();
+}
+
+} // namespace alpenglow::rsl::front

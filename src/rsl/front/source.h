@@ -1,0 +1,46 @@
+// The texts of one compilation and the messages about them. Places of a program index this set.
+#pragma once
+#include "rsl/front/ast.h"
+#include <deque>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace alpenglow::rsl::front {
+
+class SourceSet {
+public:
+    /// Adds a text; `line` and `column` of its places count from 1. The text's address stays valid.
+    int add(std::string name, std::string text);
+    /// A view of file `of` whose lines are counted `delta` higher, under another name (#line).
+    int addView(int of, std::string name, int delta);
+    const std::string& text(int file) const { return entries_[file].view >= 0 ? text(entries_[file].view) : *entries_[file].text; }
+    const std::string& name(int file) const { return entries_[file].name; }
+    std::vector<std::string> names() const;
+    /// Keeps a string alive as long as the set.
+    std::string_view keep(std::string);
+
+    void error(Place, std::string message, std::string hint = {});
+    void warning(Place, std::string message, std::string hint = {});
+    int errors() const { return errors_; }
+    /// True once so many errors were found that going on is of no use.
+    bool tooMany() const;
+    /// While muted nothing is noted, and nothing counted.
+    bool muted = false;
+    /// Hands all messages over, sorted by place.
+    void flush(Diagnostics&);
+
+private:
+    struct Entry { std::string name; const std::string* text = nullptr; int view = -1; int delta = 0; };
+    struct Message { Place place; Severity severity; std::string text, hint; size_t order = 0; };
+    void note(Severity, Place, std::string message, std::string hint);
+    std::string line(Place) const;
+    std::vector<Entry> entries_;
+    std::deque<std::string> kept_;
+    std::vector<Message> messages_;
+    std::set<std::pair<std::vector<int>, std::string>> seen_;
+    int errors_ = 0;
+};
+
+} // namespace alpenglow::rsl::front

@@ -1,0 +1,295 @@
+// Bottom up: which types can this expression have, and what would each cost?
+#include "rsl/front/checker.h"
+#include <algorithm>
+#include <utility>
+
+namespace alpenglow::rsl::front {
+
+namespace {
+constexpr Base kAll[] = {Base::Float, Base::Color, Base::Point, Base::Vector, Base::Normal, Base::Matrix, Base::String, Base::Bool};
+constexpr Base kTuples[] = {Base::Color, Base::Point, Base::Vector, Base::Normal};
+int sum(int a, int b) { return std::min(a + b, kNever); }
+} // namespace
+
+Base Checker::cheapest(const Info& info) {
+    Base best = Base::Void;
+    int cost = info.cost[0];
+    for (Base b : kAll)
+        if (info.cost[int(b)] < cost) { cost = info.cost[int(b)]; best = b; }
+    return best;
+}
+
+int Checker::costTo(const Info& info, Base to) {
+    if (info.any) return 0;
+    int best = kNever;
+    for (Base b : kAll) best = std::min(best, sum(info.cost[int(b)], implicitCost(b, to)));
+    return best;
+}
+
+bool Checker::isVariable(const Expr& e) const {
+    if (e.kind == ExprKind::Variable) return true;
+    return e.kind == ExprKind::Index && !e.args.empty() && isVariable(*e.args[0]);
+}
+
+void Checker::poison(Expr&, Info& info) { info.any = true; }
+
+/// The types of an expression, in words.
+std::string Checker::describe(Expr& e) {
+    const Info& info = infos_.at(&e);
+    if (info.any) return "an error";
+    if (info.array.array) return toString(info.array);
+    if (info.listLength >= 0) return "an array of " + std::to_string(info.listLength);
+    if (e.kind == ExprKind::Tuple) return "a triple";
+    const Base b = cheapest(info);
+    return b == Base::Bool ? "a truth value" : b == Base::Void ? "nothing" : toString(Type{b, 0});
+}
+
+Checker::Info& Checker::survey(Expr& e) {
+    Info& info = infos_[&e]; // references into the map stay valid
+    info = Info();
+    switch (e.kind) {
+    case ExprKind::Number: info.cost[int(Base::Float)] = 0; break;
+    case ExprKind::String: info.cost[int(Base::String)] = 0; break;
+    case ExprKind::Variable: surveyVariable(e, info); break;
+    case ExprKind::Index: surveyIndex(e, info); break;
+    case ExprKind::Unary: {
+        const Info& a = survey(*e.args[0]);
+        if (a.any) { info.any = true; break; }
+        if (e.op == ExprOp::Not) {
+            int c = kNever;
+            for (Base b : kAll) c = std::min(c, sum(a.cost[int(b)], conditionCost(b)));
+            info.cost[int(Base::Bool)] = c;
+        } else {
+            info.cost[int(Base::Float)] = std::min(a.cost[int(Base::Float)], sum(a.cost[int(Base::Bool)], 4));
+            for (Base b : kTuples) info.cost[int(b)] = a.cost[int(b)];
+        }
+        if (cheapest(info) == Base::Void) {
+            sources_.error(e.place, std::string("'") + spelling(e.op) + "' cannot be applied to " + describe(*e.args[0]));
+            poison(e, info);
+        }
+        break;
+    }
+    case ExprKind::Binary: surveyBinary(e, info); break;
+    case ExprKind::Assign: surveyAssign(e, info); break;
+    case ExprKind::Conditional: surveyConditional(e, info); break;
+    case ExprKind::Tuple:
+    case ExprKind::MatrixTuple: {
+        int cost = 0;
+        if (e.kind == ExprKind::Tuple && e.args.size() != 3) info.any = true; // the parser said so
+        for (auto& a : e.args) {
+            const Info& i = survey(*a);
+            const int c = costTo(i, Base::Float);
+            if (c >= kNever) {
+                sources_.error(a->place, "a component must be a float, not " + describe(*a));
+                poison(e, info);
+            }
+            cost = sum(cost, c);
+        }
+        if (info.any) break;
+        if (e.kind == ExprKind::MatrixTuple) info.cost[int(Base::Matrix)] = cost;
+        else for (Base b : kTuples) info.cost[int(b)] = cost;
+        break;
+    }
+    case ExprKind::ArrayList:
+        info.listLength = int(e.args.size());
+        for (auto& a : e.args) survey(*a);
+        break;
+    case ExprKind::Cast: surveyCast(e, info); break;
+    case ExprKind::ShadeopCall: surveyCall(e, info); break;
+    case ExprKind::FunctionCall: info.any = true; break;
+    }
+    return info;
+}
+
+void Checker::surveyVariable(Expr& e, Info& info) {
+    if (e.text.empty()) { info.any = true; return; }
+    Symbol* s = e.symbol ? e.symbol : lookup(e.text);
+    if (!s && e.text == "PI") {
+        e.kind = ExprKind::Number;
+        e.number = 3.14159265358979323846;
+        info.cost[int(Base::Float)] = 0;
+        return;
+    }
+    if (!s) {
+        unknownVariable(e);
+        info.any = true;
+        return;
+    }
+    e.symbol = s;
+    if (s->type.base == Base::Void) info.any = true;
+    else if (s->type.array != 0) info.array = s->type;
+    else info.cost[int(s->type.base)] = 0;
+}
+
+void Checker::surveyIndex(Expr& e, Info& info) {
+    const Info& base = survey(*e.args[0]);
+    const Info& index = survey(*e.args[1]);
+    if (base.any) { info.any = true; return; }
+    if (costTo(index, Base::Float) >= kNever) {
+        sources_.error(e.args[1]->place, "an index must be a float, not " + describe(*e.args[1]));
+        info.any = true;
+        return;
+    }
+    if (base.array.array) {
+        info.cost[int(base.array.base)] = 0;
+        const Expr& i = *e.args[1];
+        if (i.kind == ExprKind::Number && base.array.array > 0 && (i.number <= -1 || i.number >= base.array.array))
+            sources_.error(i.place, "index " + std::to_string(int(std::clamp(i.number, -1e6, 1e6))) + " is outside an array of " + std::to_string(base.array.array));
+        return;
+    }
+    int tuple = kNever;
+    for (Base b : kTuples) tuple = std::min(tuple, base.cost[int(b)]);
+    if (tuple < kNever) {
+        info.cost[int(Base::Float)] = tuple;
+        const Expr& i = *e.args[1];
+        if (i.kind == ExprKind::Number && (i.number <= -1 || i.number >= 3))
+            sources_.error(i.place, "a tuple has components 0, 1 and 2");
+        return;
+    }
+    if (base.cost[int(Base::String)] < kNever) {
+        info.cost[int(Base::String)] = base.cost[int(Base::String)];
+        info.channel = true;
+        return;
+    }
+    sources_.error(e.place, describe(*e.args[0]) + " has no elements", cheapest(base) == Base::Matrix ? "comp(m, row, column) reads a matrix" : "");
+    info.any = true;
+}
+
+void Checker::surveyBinary(Expr& e, Info& info) {
+    const Info& l = survey(*e.args[0]);
+    const Info& r = survey(*e.args[1]);
+    if (l.any || r.any) { info.any = true; return; }
+    for (Base a : kAll) {
+        if (l.cost[int(a)] >= kNever) continue;
+        for (Base b : kAll) {
+            if (r.cost[int(b)] >= kNever) continue;
+            if (const auto o = operation(e.op, a, b)) {
+                int& c = info.cost[int(o->result)];
+                c = std::min(c, l.cost[int(a)] + r.cost[int(b)] + o->cost);
+            }
+        }
+    }
+    if (cheapest(info) != Base::Void) return;
+    std::string hint;
+    const Base a = cheapest(l), b = cheapest(r);
+    if (e.op == ExprOp::Mul && (a == Base::Matrix || b == Base::Matrix)) hint = "transform(m, p) multiplies a point by a matrix";
+    else if ((a == Base::Color) != (b == Base::Color) && (Type{a, 0}.isTuple() && Type{b, 0}.isTuple())) hint = "a written conversion, as in color x, makes them alike";
+    else if (e.op == ExprOp::Cross && (a == Base::Float || b == Base::Float)) hint = "'^' is the cross product; pow(x, y) is the power";
+    sources_.error(e.place, std::string("'") + spelling(e.op) + "' cannot combine " + describe(*e.args[0]) + " and " + describe(*e.args[1]), hint);
+    poison(e, info);
+}
+
+void Checker::surveyAssign(Expr& e, Info& info) {
+    const Info& l = survey(*e.args[0]);
+    const Info& r = survey(*e.args[1]);
+    if (!isVariable(*e.args[0])) {
+        if (!l.any) sources_.error(e.place, "what stands left of the assignment is not a variable");
+        info.any = true;
+        return;
+    }
+    if (l.any || r.any) { info.any = true; return; }
+    if (l.array.array) {
+        const bool fits = r.listLength >= 0 ? l.array.array < 0 || r.listLength <= l.array.array
+                                            : r.array.base == l.array.base && r.array.array != 0 &&
+                                                  (r.array.array == l.array.array || r.array.array < 0 || l.array.array < 0);
+        if (!fits || e.op != ExprOp::Assign) {
+            sources_.error(e.place, "cannot assign " + describe(*e.args[1]) + " to " + describe(*e.args[0]));
+            info.any = true;
+        } else info.array = l.array;
+        return;
+    }
+    const Base target = cheapest(l);
+    int cost = kNever;
+    if (e.op == ExprOp::Assign) {
+        cost = costTo(r, target);
+    } else {
+        for (Base b : kAll) {
+            const auto o = r.cost[int(b)] < kNever ? operation(e.op, target, b) : std::nullopt;
+            if (o && implicitCost(o->result, target) < kNever) cost = std::min(cost, r.cost[int(b)] + o->cost + implicitCost(o->result, target));
+        }
+    }
+    if (cost >= kNever || l.channel) {
+        const bool toFloat = target == Base::Float && Type{cheapest(r), 0}.isTuple();
+        sources_.error(e.place, e.op == ExprOp::Assign ? "cannot assign " + describe(*e.args[1]) + " to " + describe(*e.args[0])
+                                                       : std::string("'") + spelling(e.op) + "=' cannot combine " + describe(*e.args[0]) +
+                                                             " and " + describe(*e.args[1]),
+                       toFloat ? "a component is read by x[0], xcomp(x) or comp(x, 0)" : "");
+        info.any = true;
+        return;
+    }
+    info.cost[int(target)] = cost;
+}
+
+void Checker::surveyConditional(Expr& e, Info& info) {
+    const Info& c = survey(*e.args[0]);
+    const Info& a = survey(*e.args[1]);
+    const Info& b = survey(*e.args[2]);
+    int cost = kNever;
+    for (Base t : kAll) cost = std::min(cost, sum(c.cost[int(t)], conditionCost(t)));
+    if (!c.any && cost >= kNever) {
+        sources_.error(e.args[0]->place, describe(*e.args[0]) + " cannot be a condition");
+        info.any = true;
+    }
+    if (c.any || a.any || b.any) info.any = true;
+    if (info.any) return;
+    for (Base t : kAll)
+        if (a.cost[int(t)] < kNever || b.cost[int(t)] < kNever) info.cost[int(t)] = sum(cost, sum(costTo(a, t), costTo(b, t)));
+    if (cheapest(info) == Base::Void) {
+        sources_.error(e.place, "the two values of '?' do not fit together: " + describe(*e.args[1]) + " and " + describe(*e.args[2]));
+        info.any = true;
+    }
+}
+
+void Checker::surveyCast(Expr& e, Info& info) {
+    Expr& operand = *e.args[0];
+    // point space (x, y, z) with the space in a variable reads like a call.
+    if (!e.space && operand.kind == ExprKind::ShadeopCall && (operand.args.size() == 3 || operand.args.size() == 16)) {
+        const Symbol* s = nullptr;
+        for (size_t i = scopes_.size(); i-- > 0 && !s;)
+            if (const auto f = scopes_[i].names.find(operand.text); f != scopes_[i].names.end()) s = f->second;
+        if (s && s->type == Type{Base::String, 0} && !findShadeop(operand.text)) {
+            e.space = std::make_unique<Expr>();
+            e.space->kind = ExprKind::Variable;
+            e.space->text = operand.text;
+            e.space->place = operand.place;
+            operand.kind = operand.args.size() == 3 ? ExprKind::Tuple : ExprKind::MatrixTuple;
+        }
+    }
+    if (e.space) {
+        const Info& s = survey(*e.space);
+        if (costTo(s, Base::String) >= kNever) {
+            sources_.error(e.space->place, "the name of a space is a string");
+            info.any = true;
+        }
+        if (!Type{e.type.base, 0}.isTuple() && e.type.base != Base::Matrix) {
+            sources_.error(e.space->place, "a " + toString(e.type) + " is in no space");
+            info.any = true;
+        }
+    }
+    const Info& a = survey(operand);
+    if (a.any) {
+        // The type is as written, whatever went wrong inside.
+        if (e.type.array == 0) info.cost[int(e.type.base)] = 0;
+        info.any = true;
+        return;
+    }
+    if (e.type.array != 0 || a.array.array != 0) {
+        bool fits = a.array.base == e.type.base && a.array.array != 0 && e.type.array != 0;
+        if (fits) info.array = a.array;
+        else info.any = true;
+        if (!fits) sources_.error(e.place, "cannot convert " + describe(operand) + " to " + toString(e.type));
+        return;
+    }
+    int cost = kNever;
+    for (Base b : kAll) cost = std::min(cost, sum(a.cost[int(b)], castCost(b, e.type.base)));
+    if (cost >= kNever) {
+        const bool toFloat = e.type.base == Base::Float && Type{cheapest(a), 0}.isTuple();
+        sources_.error(e.place, "cannot convert " + describe(operand) + " to " + toString(e.type),
+                       toFloat ? "a component is read by x[0], xcomp(x) or comp(x, 0)" : "");
+        info.any = true;
+        return;
+    }
+    info.cost[int(e.type.base)] = cost;
+}
+
+} // namespace alpenglow::rsl::front

@@ -19,6 +19,7 @@ ShapeRef makePolygonMesh(ShapeSource s, PolygonInput in, Diagnostics& diag) {
     };
     if (!P) return fail(Rie::MissingData, "\"P\" is missing");
     size_t points = P->numbers.size() / 3;
+    if (points == 0) return fail(Rie::MissingData, "\"P\" is empty");
     if (points > 0xfffffff0u || in.vertex.size() > 0xfffffff0u) return fail(Rie::Limit, "too many points");
     for (float f : P->numbers)
         if (!std::isfinite(f)) return fail(Rie::Range, "\"P\" holds a number that is not finite");

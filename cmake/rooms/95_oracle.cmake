@@ -1,0 +1,4 @@
+room_tests(oracle DEPS base)
+if(TARGET test_oracle)
+  target_include_directories(test_oracle PRIVATE ${CMAKE_SOURCE_DIR}/tests)
+endif()

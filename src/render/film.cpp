@@ -141,7 +141,8 @@ bool Film::merge(const Film& o, Diagnostics& diag, const SourcePlace& place) {
     if (a.channels != b.channels)
         return bad(Rie::Consistency, "the parts have different channels");
     if (a.seed != b.seed)
-        return bad(Rie::Consistency, "the parts have different seeds (" + std::to_string(a.seed) + " and " + std::to_string(b.seed) + ")");
+        return bad(Rie::Consistency,
+                   "the parts have different seeds (" + std::to_string(a.seed) + " and " + std::to_string(b.seed) + ")");
     if (a.scene != b.scene)
         return bad(Rie::Consistency, "the parts come from different scenes or options");
     auto next = ranges_;

@@ -116,8 +116,9 @@ void FilterSampler::buildGrids() {
                 cdf[c + 1] = cdf[c] + m;
             }
             grid.rowCdf[r + 1] = grid.rowCdf[r] + cdf[kCells];
+            double row = grid.rowCdf[r + 1] - grid.rowCdf[r];
             for (int c = 0; c <= kCells; ++c)
-                cdf[c] = grid.rowCdf[r + 1] > grid.rowCdf[r] ? cdf[c] / (grid.rowCdf[r + 1] - grid.rowCdf[r]) : double(c) / kCells;
+                cdf[c] = row > 0 ? cdf[c] / row : double(c) / kCells;
         }
         grid.share = grid.rowCdf.back();
         for (double& c : grid.rowCdf)

@@ -7,7 +7,8 @@ namespace alpenglow::render {
 /// Added to the mean so that black pixels have a finite relative error.
 inline constexpr double kNoiseEps = 1e-3;
 
-/// From the sums of a pixel: mu = S1/n, s^2 = (S2 - S1^2/n)/(n-1) not below 0, SE = sqrt(s^2/n), RSE = SE / (mu + 1e-3). 0 for n < 2.
+/// From the sums of a pixel: mu = S1/n, s^2 = (S2 - S1^2/n)/(n-1) not below 0, SE = sqrt(s^2/n), RSE = SE / (mu + 1e-3).
+/// 0 for n < 2.
 /// A mean below 0 (only negative filter lobes make one) counts as 0.
 double relativeStandardError(double s1, double s2, uint64_t n);
 /// The same with the variance already known exactly.

@@ -40,7 +40,8 @@ std::optional<DepthFilter> depthFilterByName(std::string_view n) {
     return {};
 }
 
-SampleBuffer::SampleBuffer(Window w, double maxXw, double maxYw, int nx, int ny, std::vector<Channel> aovs, uint64_t seed, Jitter j)
+SampleBuffer::SampleBuffer(Window w, double maxXw, double maxYw, int nx, int ny, std::vector<Channel> aovs, uint64_t seed,
+                           Jitter j)
     : window_(w), nx_(nx), ny_(ny), aovs_(std::move(aovs)), seed_(seed), jitter_(j), stride_(kAovs + aovs_.size()) {
     int bx = border(maxXw), by = border(maxYw);
     sampled_ = {w.x0 - bx, w.y0 - by, w.x1 + bx, w.y1 + by};

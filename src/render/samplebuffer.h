@@ -67,7 +67,8 @@ public:
 
 private:
     size_t base(int x, int y, int k) const {
-        return ((size_t(y - sampled_.y0) * size_t(sampled_.width()) + size_t(x - sampled_.x0)) * size_t(nx_ * ny_) + size_t(k)) * stride_;
+        size_t pixel = size_t(y - sampled_.y0) * size_t(sampled_.width()) + size_t(x - sampled_.x0);
+        return (pixel * size_t(nx_ * ny_) + size_t(k)) * stride_;
     }
     void pixel(const PixelFilter&, DepthFilter, int x, int y, float* out) const;
 

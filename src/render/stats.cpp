@@ -53,7 +53,9 @@ std::string toJson(const RenderStats& s) {
         rays[t] = 0;
     for (const auto& [type, n] : s.rays)
         rays[type] = n;
-    j["shading"] = {{"points", s.shading.points}, {"batches", s.shading.batches}, {"laneOccupancy", finite(s.shading.laneOccupancy)},
+    j["shading"] = {{"points", s.shading.points},
+                    {"batches", s.shading.batches},
+                    {"laneOccupancy", finite(s.shading.laneOccupancy)},
                     {"affineKernels", s.shading.affineKernels}, {"suspendingKernels", s.shading.suspendingKernels},
                     {"kernels", s.shading.kernels}, {"cacheHits", s.shading.cacheHits}};
     j["depth"] = {{"maximum", s.depth.maximum}, {"average", finite(s.depth.average)}};
@@ -73,14 +75,17 @@ std::string toTable(const RenderStats& s) {
     for (const auto& [type, n] : s.rays)
         if (n)
             types += fmt::format("{}{} {}", types.empty() ? "" : ", ", type, grouped(n));
-    row("rays", fmt::format("{}, {:.0f} per ms{}", grouped(s.totalRays), raysPerMS(s.totalRays, s.renderSec), types.empty() ? "" : " (" + types + ")"));
+    row("rays", fmt::format("{}, {:.0f} per ms{}", grouped(s.totalRays), raysPerMS(s.totalRays, s.renderSec),
+                            types.empty() ? "" : " (" + types + ")"));
     if (s.depth.maximum)
         row("depth", fmt::format("{} at most, {:.2f} on average", s.depth.maximum, s.depth.average));
     if (s.shading.points)
-        row("shading", fmt::format("{} points in {} batches, {:.1f} % of lanes busy; {} kernels ({} affine, {} suspending), {} from the cache",
-                                   grouped(s.shading.points), grouped(s.shading.batches), 100 * s.shading.laneOccupancy, s.shading.kernels,
-                                   s.shading.affineKernels, s.shading.suspendingKernels, s.shading.cacheHits));
-    row("noise", fmt::format("noiseRSE {:.5f}, noiseRSE999 {:.5f}, noiseQMC {:.5f}", s.noise.noiseRSE, s.noise.noiseRSE999, s.noise.noiseQMC));
+        row("shading", fmt::format("{} points in {} batches, {:.1f} % of lanes busy; {} kernels ({} affine, {} suspending), "
+                                   "{} from the cache",
+                                   grouped(s.shading.points), grouped(s.shading.batches), 100 * s.shading.laneOccupancy,
+                                   s.shading.kernels, s.shading.affineKernels, s.shading.suspendingKernels, s.shading.cacheHits));
+    row("noise", fmt::format("noiseRSE {:.5f}, noiseRSE999 {:.5f}, noiseQMC {:.5f}", s.noise.noiseRSE, s.noise.noiseRSE999,
+                             s.noise.noiseQMC));
     row("efficiency", fmt::format("{:.1f}", efficiency(s.noise.noiseRSE, s.renderSec)));
     row("memory", bytesText(s.peakMemoryBytes) + " at most");
     if (s.nonFinite)

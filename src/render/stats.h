@@ -19,7 +19,7 @@ struct RenderStats {
     double parseSec = 0, compileSec = 0, buildSec = 0;
     uint64_t nonFinite = 0;         ///< samples dropped
     uint64_t saturated = 0;         ///< values clamped by the exact sums
-    std::map<std::string, uint64_t> rays; ///< by type: camera, diffuse, specular, transmission, shadow, ...; missing ones of these are written as 0
+    std::map<std::string, uint64_t> rays; ///< by type; camera, diffuse, specular, transmission, shadow are written even when 0
     struct Shading {
         uint64_t points = 0, batches = 0;
         double laneOccupancy = 0; ///< active lanes / lanes, 0..1

@@ -3,7 +3,7 @@
 #include "base/diagnostics.h"
 #include "base/vec.h"
 #include "render/fixed.h"
-#include "render/sampler.h"
+#include "base/sampler.h"
 #include <map>
 #include <optional>
 #include <span>

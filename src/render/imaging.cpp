@@ -1,5 +1,5 @@
 #include "render/imaging.h"
-#include "render/hash.h"
+#include "base/hash.h"
 #include <algorithm>
 #include <cmath>
 

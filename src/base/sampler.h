@@ -11,7 +11,7 @@
 // eight replica means tells the true error of the mean, which the spread of dependent samples does not (testing.md rule 7).
 #pragma once
 #include "base/vec.h"
-#include "render/hash.h"
+#include "base/hash.h"
 
 namespace alpenglow::render {
 

@@ -1,4 +1,4 @@
-#include "render/sampler.h"
+#include "base/sampler.h"
 #include <array>
 #include <bit>
 

@@ -1,0 +1,518 @@
+// Following a slice of rays: intersect, group by shader, shade, hand on.
+#include "transport/engine.h"
+#include "transport/sampling.h"
+#include <algorithm>
+
+namespace alpenglow::transport {
+
+void Counters::operator+=(const Counters& o) {
+    camera += o.camera; diffuse += o.diffuse; specular += o.specular; transmission += o.transmission; shadow += o.shadow;
+    points += o.points; batches += o.batches; lanesUsed += o.lanesUsed; lanesRun += o.lanesRun;
+    nonFinite += o.nonFinite; overLimit += o.overLimit; depthCap += o.depthCap;
+    depthSum += o.depthSum; paths += o.paths;
+    depthMax = std::max(depthMax, o.depthMax);
+}
+
+namespace {
+
+uint32_t visibilityBit(RayType t) {
+    switch (t) {
+    case RayType::Camera: return accel::kCamera;
+    case RayType::Diffuse: return accel::kDiffuse;
+    case RayType::Specular: return accel::kSpecular;
+    default: return accel::kTransmission;
+    }
+}
+
+bool isRequest(SiteKind k) { return k >= SiteKind::Ambient && k <= SiteKind::LightVisibility; }
+
+// The callbacks of generated code: C functions that find their engine through KernelCall::user.
+BatchContext& contextOf(rsl::KernelCall* c) { return *static_cast<BatchContext*>(c->user); }
+
+void onService(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
+    BatchContext& c = contextOf(call);
+    if (site == rsl::kSiteMark) {
+        for (int i = 0; i < lanes; ++i) out[i] = float(c.emits.size());
+        return;
+    }
+    if (site == rsl::kSiteRescale) { // rows: mark, factor (3), end mark
+        uint32_t begin = 0, end = uint32_t(c.emits.size());
+        for (int i = 0; i < lanes; ++i)
+            if (mask >> i & 1) { begin = uint32_t(in[i]); end = uint32_t(in[size_t(4) * lanes + i]); break; }
+        for (uint32_t e = begin; e < end && e < c.emits.size(); ++e) {
+            EmitRecord& r = c.emits[e];
+            for (int k = 0; k < 3; ++k)
+                for (int i = 0; i < lanes; ++i)
+                    if (mask >> i & 1) c.arena[r.offset + size_t(k) * lanes + i] *= in[size_t(1 + k) * lanes + i];
+        }
+        return;
+    }
+    const SiteInfo& s = c.bound->sites[site];
+    if (isRequest(s.kind)) {
+        size_t rows = 0;
+        for (rsl::ir::Kind k : s.site->argKinds) rows += size_t(rsl::ir::components(k));
+        if (c.bound->kernel->facts().suspends) {
+            c.requestSite = site;
+            c.requestFirst = first;
+            c.requestLanes = lanes;
+            c.requestMask = mask;
+            c.requestIn.assign(in, in + rows * lanes);
+            c.requestOut = out;
+            return;
+        }
+        EmitRecord e{site, first, lanes, mask, c.arena.size()};
+        c.arena.insert(c.arena.end(), in, in + (rows + 3) * lanes);
+        if (s.kind == SiteKind::LightVisibility) // the row of the light's index is replaced by the distance, which only the loop knows
+            for (int i = 0; i < lanes && i < int(c.lightDistance.size()); ++i)
+                c.arena[e.offset + size_t(3 + s.rows[0]) * lanes + i] = c.lightDistance[i];
+        c.emits.push_back(e);
+        return;
+    }
+    c.engine->service(c, site, first, mask, lanes, in, out);
+}
+int32_t onLightBegin(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* rows) {
+    BatchContext& c = contextOf(call);
+    return c.engine->lightBegin(c, site, first, mask, lanes, rows);
+}
+uint64_t onLightFetch(rsl::KernelCall* call, int32_t site, int32_t light, int32_t first, uint64_t mask, int32_t lanes, float* out) {
+    BatchContext& c = contextOf(call);
+    return c.engine->lightFetch(c, light, first, mask, lanes, out);
+}
+void* onAlloc(rsl::KernelCall*, uint64_t bytes) { return ::operator new(bytes, std::align_val_t(64), std::nothrow); }
+void onRelease(rsl::KernelCall*, void* p, uint64_t) { ::operator delete(p, std::align_val_t(64)); }
+
+constexpr int32_t kGo = 0;
+
+} // namespace
+
+void Engine::bindCall(rsl::KernelCall& call, BatchContext& c) {
+    call.user = &c;
+    call.service = onService;
+    call.lightBegin = onLightBegin;
+    call.lightFetch = onLightFetch;
+    call.alloc = onAlloc;
+    call.release = onRelease;
+    call.stop = stop ? stop : &kGo;
+}
+
+/// A strip of a suspending kernel while it waits.
+class KernelStrip final : public Sched::Strip {
+public:
+    KernelStrip(std::shared_ptr<BatchContext> c, void* handle, int first, int depth) : c_(std::move(c)), handle_(handle), first_(first), depth_(depth) {}
+    ~KernelStrip() override { if (handle_) c_->bound->kernel->destroy(handle_); }
+    int depth() const override { return depth_; }
+    size_t frameBytes() const override { return 4096 + size_t(c_->bound->kernel->lanes()) * 256; }
+
+    bool resume(Sched& s, std::span<const shading::TargetValue> results) override {
+        const SiteInfo& site = c_->bound->sites[site_];
+        for (size_t k = 0; k < results.size(); ++k) {
+            int lane = laneOf_[k];
+            auto put = [&](const char* name, int rows, const Color& v) {
+                auto i = site.resultRows.find(name);
+                if (i == site.resultRows.end()) return;
+                for (int r = 0; r < rows; ++r) out_[size_t(i->second + r) * lanes_ + lane] = v[r];
+            };
+            if (site.site->resultType.base == rsl::Base::Float) put("", 1, Color(results[k].distance));
+            else put("", 3, results[k].radiance);
+            put("dist", 1, Color(results[k].distance));
+            put("transmission", 3, results[k].transmission);
+        }
+        c_->bound->kernel->resume(handle_);
+        return advance(s, s.takeResuming());
+    }
+
+    /// After start or resume: ends, or waits for the request that was noted in the context.
+    bool advance(Sched& s, std::unique_ptr<Sched::Strip> self) {
+        Engine& e = *c_->engine;
+        const auto& kernel = *c_->bound->kernel;
+        if (kernel.finished(handle_)) {
+            e.finishStrip(*c_, first_, kernel.lanes(), s);
+            for (int i = first_; i < std::min(first_ + kernel.lanes(), int(c_->points.size())); ++i) s.release(c_->targets[i]);
+            return true;
+        }
+        site_ = c_->requestSite;
+        lanes_ = c_->requestLanes;
+        out_ = c_->requestOut;
+        laneOf_.clear();
+        for (int lane = 0; lane < lanes_; ++lane)
+            if ((c_->requestMask >> lane & 1) && first_ + lane < int(c_->points.size())) laneOf_.push_back(lane);
+        std::vector<TargetId> ids(laneOf_.size());
+        auto context = c_; // the strip may be resumed and gone when its last target is released
+        auto lanesOf = laneOf_;
+        int site = site_, lanes = lanes_, first = first_;
+        std::vector<float> in = c_->requestIn;
+        uint32_t occurrence = occurrence_++;
+        s.wait(std::move(self), int(laneOf_.size()), [&](int i, TargetId id) {
+            ids[i] = id;
+            s.hold(id);
+        });
+        const SiteInfo& info = context->bound->sites[site];
+        for (size_t k = 0; k < lanesOf.size(); ++k) {
+            if (info.kind == SiteKind::LightVisibility) {
+                e.lightVisibility(*context, info, first + lanesOf[k], in.data(), lanes, lanesOf[k], Color(1), ids[k],
+                                  context->lightDistance[lanesOf[k]]);
+                continue;
+            }
+            e.request(*context, info, first + lanesOf[k], in.data(), lanes, lanesOf[k], Color(1), ids[k], true, occurrence);
+        }
+        e.gather(*context, s);
+        e.flushShadows(s);
+        for (TargetId id : ids) s.release(id);
+        return false;
+    }
+
+private:
+    std::shared_ptr<BatchContext> c_;
+    void* handle_;
+    int first_, depth_;
+    int site_ = 0, lanes_ = 0;
+    uint32_t occurrence_ = 0;
+    float* out_ = nullptr;
+    std::vector<int> laneOf_;
+};
+
+void Engine::lightVisibility(BatchContext& c, const SiteInfo& s, int point, const float* in, int lanes, int lane, Color weight, TargetId target,
+                             float distance) {
+    auto f = [&](int row) { return in[size_t(row) * lanes + lane]; };
+    Vec3 l(f(s.rows[1]), f(s.rows[1] + 1), f(s.rows[1] + 2));
+    float length_ = length(l);
+    if (!(length_ > 0)) return;
+    const ShadePoint& p = c.points[point];
+    Vec3 w = l / length_;
+    Vec3 o = geometry::offsetOrigin(p.surface, w, length(p.P - p.surface.P));
+    shadows.push_back({o, w, distance < 1e30f ? distance * (1 - 1e-4f) : 1e38f, weight, target, p.time});
+}
+
+void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched) {
+    shading::Batch& b = *c.batch;
+    int ci = b.output("Ci"), oi = b.output("Oi");
+    const auto& wanted = world_->settings_.outputs;
+    for (int i = first; i < std::min(first + lanes, int(c.points.size())); ++i) {
+        const PathRay& ray = c.rays[i];
+        const SurfaceBinding& binding = world_->bindings_[c.bindings[i]];
+        Color color = ci >= 0 ? b.color(ci, i) : Color(0), opacity = oi >= 0 ? b.color(oi, i) : Color(1);
+        if (binding.matte && ray.type == RayType::Camera) {
+            sched.setDistance(c.targets[i], 0);
+            color = Color(0);
+        }
+        if (ray.first) {
+            sched.setDistance(c.targets[i], length(c.points[i].I));
+            sched.setTransmission(c.targets[i], Color(1) - opacity);
+        }
+        Color shown = color;
+        if (binding.atmosphere) { // without pairs: the volume shader sees the very colour; pairs were scaled in shadeGroup
+            ShadePoint p = c.points[i];
+            p.Ci = color;
+            p.Oi = opacity;
+            auto a = applyAtmosphere(binding, p);
+            shown = a.first;
+            opacity = a.second;
+        }
+        sched.add(c.targets[i], ray.weight * shown);
+        if (ray.cameraSample >= 0) {
+            SampleResult& r = *results[ray.cameraSample];
+            if (!binding.matte) r.opacity += ray.weight * opacity;
+            float z = dot(c.points[i].P, Vec3(0, 0, 1));
+            if (r.z >= 1e38f) r.z = z;
+            else if (r.zSecond >= 1e38f) r.zSecond = z;
+            size_t at = 0;
+            for (size_t k = 0; k < wanted.size(); ++k) {
+                int o = b.output(wanted[k]), width = world_->outputWidths_[k];
+                if (o >= 0)
+                    for (int w = 0; w < std::min(width, rsl::ir::components(b.kernel().outputs()[o].kind)); ++w)
+                        r.aovs[at + w] += (width == 3 ? ray.weight[w] : luminance(ray.weight)) * b.value(o, w, i);
+                at += size_t(width);
+            }
+        }
+        passThrough(ray, c.targets[i], c.points[i], Color(1) - opacity, sched);
+    }
+}
+
+std::pair<Color, Color> Engine::applyAtmosphere(const SurfaceBinding& binding, const ShadePoint& p) {
+    BatchContext c;
+    c.engine = this;
+    c.bound = &binding.atmosphereS;
+    c.binding = &binding;
+    c.points = {p};
+    shading::InstanceView view{&binding.atmosphere->parameters, &binding.atmosphere->toCurrent};
+    c.batch = std::make_shared<shading::Batch>(binding.atmosphereS.kernel, c.points, std::span(&view, 1), false, *world_);
+    bindCall(c.batch->call(), c);
+    if (binding.atmosphereS.kernel->facts().suspends) return {p.Ci, p.Oi};
+    binding.atmosphereS.kernel->run(&c.batch->call());
+    int ci = c.batch->output("Ci"), oi = c.batch->output("Oi");
+    return {ci >= 0 ? c.batch->color(ci, 0) : p.Ci, oi >= 0 ? c.batch->color(oi, 0) : p.Oi};
+}
+
+void Engine::passThrough(const PathRay& ray, TargetId target, const ShadePoint& p, const Color& transparency, Sched& sched) {
+    Color t(std::clamp(transparency.x, 0.f, 1.f), std::clamp(transparency.y, 0.f, 1.f), std::clamp(transparency.z, 0.f, 1.f));
+    float most = maxComponent(t);
+    if (!(most > 0)) return;
+    PathRay r = ray;
+    r.weight = ray.weight * t;
+    if (ray.bounces > 0 && most < 1) { // behind the first bounce a gamble keeps the number of rays linear in depth
+        if (random(ray).one(ray.vertex, kRoulette, 1000000) >= most) return;
+        r.weight = r.weight / most;
+    }
+    float travelled = length(p.I);
+    r.origin = geometry::offsetOrigin(p.surface, ray.dir);
+    r.maxDistance = ray.maxDistance - travelled;
+    r.width = ray.width + ray.spread * travelled;
+    r.shape = geometry::kNone;
+    r.first = false;
+    r.vertex = childVertex(ray.vertex, 0xfffff, 0);
+    ++r.bounces;
+    if (r.bounces > limits::kPathDepth / 32 || !(r.maxDistance > 0)) { ++counters.depthCap; return; }
+    Sched::Task task;
+    task.depth = r.bounces;
+    task.target = target;
+    task.payload = r;
+    sched.spawn(std::move(task));
+}
+
+void Engine::miss(const Sched::Task& t, Sched& sched) {
+    if (world_->settings_.hider != Hider::Path) return;
+    const PathRay& r = t.payload;
+    for (const BoundLight& l : world_->lights_) {
+        bool sky = l.kind == LightKind::Environment, ambient = l.kind == LightKind::Ambient && r.type == RayType::Diffuse;
+        if (!sky && !ambient) continue;
+        ShadePoint q;
+        q.Ps = r.origin;
+        q.P = r.origin + r.dir;
+        q.N = -r.dir;
+        LightValue v;
+        evaluateLight(l, {&q, 1}, {&v, 1});
+        sched.add(t.target, r.weight * v.Cl);
+    }
+}
+
+void Engine::emission(const Sched::Task& t, const ShadePoint& p, const SurfaceBinding& b, Sched& sched) {
+    const PathRay& r = t.payload;
+    const Settings& set = world_->settings_;
+    if (b.areaLight < 0 || !r.wantsLight || !(set.hider == Hider::Path || r.lobePdf >= 0)) return;
+    const BoundLight& light = world_->lights_[b.areaLight];
+    Color le = emitted(light, p, r.origin);
+    if (!(maxComponent(le) > 0)) return;
+    float weight = 1;
+    if (r.lobePdf >= 0 && light.emitter) {
+        float pdf = light.emitter->pdf(p.shape, p.surface, r.origin);
+        weight = set.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
+    }
+    sched.add(t.target, r.weight * le * weight);
+}
+
+void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
+    size_t n = slice.size();
+    std::vector<accel::Ray> rays(n);
+    std::vector<accel::Hit> hits(n);
+    for (size_t i = 0; i < n; ++i) {
+        const PathRay& r = slice[i].payload;
+        rays[i].org = r.origin;
+        rays[i].dir = r.dir;
+        rays[i].tfar = r.maxDistance;
+        rays[i].time = r.time;
+        rays[i].mask = visibilityBit(r.type);
+        rays[i].excludeShape = r.shape;
+        rays[i].excludePrim = r.prim;
+        switch (r.type) {
+        case RayType::Camera: ++counters.camera; break;
+        case RayType::Diffuse: ++counters.diffuse; break;
+        case RayType::Specular: ++counters.specular; break;
+        default: ++counters.transmission;
+        }
+    }
+    world_->accel_->intersect(rays, hits);
+
+    // Points by program; inside a group in the order of the slice.
+    std::map<std::pair<int, int>, std::vector<int>> groups; // (program, first light-list binding) -> tasks
+    std::vector<ShadePoint> points(n);
+    for (size_t i = 0; i < n; ++i) {
+        if (!hits[i].valid()) { miss(slice[i], sched); continue; }
+        const PathRay& r = slice[i].payload;
+        const SurfaceBinding& b = world_->bindings_[world_->bindingOf_[hits[i].shape]];
+        ShadePoint& p = points[i];
+        p.shape = world_->shapes_[hits[i].shape].get();
+        p.surface = world_->accel_->point(hits[i]);
+        p.P = p.surface.P;
+        p.N = p.surface.N;
+        p.I = p.P - r.origin;
+        p.E = r.type == RayType::Camera ? Vec3(0, 0, 0) : r.origin;
+        if (r.type == RayType::Camera && r.bounces > 0) p.I = p.P - p.E; // seen through something: the eye has not moved
+        p.time = r.time;
+        p.task = int(i);
+        setFootprint(p, r, length(p.P - r.origin), r.type == RayType::Camera ? b.shadingRate : 1);
+        emission(slice[i], p, b, sched);
+        groups[{b.program, b.lightList}].push_back(int(i));
+    }
+    for (auto& [key, tasks] : groups) {
+        auto c = std::make_shared<BatchContext>();
+        c->engine = this;
+        c->rays.reserve(tasks.size());
+        bool same = true;
+        for (int i : tasks) {
+            int binding = world_->bindingOf_[hits[i].shape];
+            same &= c->bindings.empty() || binding == c->bindings[0];
+            c->points.push_back(points[i]);
+            c->rays.push_back(slice[i].payload);
+            c->targets.push_back(slice[i].target);
+            c->bindings.push_back(binding);
+        }
+        for (size_t k = 0; k < tasks.size(); ++k) c->points[k].ray = &c->rays[k];
+        c->binding = &world_->bindings_[c->bindings[0]];
+        c->bound = same && !c->binding->usesObjectSpace ? &c->binding->surfaceS : &c->binding->surfaceV;
+        shadeGroup(std::move(c), sched);
+    }
+}
+
+void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
+    std::vector<shading::InstanceView> views;
+    auto viewsOf = [&](InstanceRef SurfaceBinding::*which) {
+        views.clear();
+        for (int b : c->bindings) {
+            const InstanceRef& i = world_->bindings_[b].*which;
+            views.push_back({&i->parameters, &i->toCurrent});
+        }
+    };
+    // Displacement again at the hit, for P, N (design decision 9). All points of a group with displacement share its binding.
+    if (c->binding->displacement) {
+        auto d = std::make_shared<BatchContext>(*c);
+        for (size_t k = 0; k < d->points.size(); ++k) d->points[k].ray = &d->rays[k];
+        d->bound = &c->binding->displacementS;
+        viewsOf(&SurfaceBinding::displacement);
+        d->batch = std::make_shared<shading::Batch>(d->bound->kernel, d->points, views, d->bound->mixed, *world_);
+        bindCall(d->batch->call(), *d);
+        if (!d->bound->kernel->facts().suspends) {
+            d->bound->kernel->run(&d->batch->call());
+            int po = d->batch->output("P"), no = d->batch->output("N");
+            for (size_t k = 0; k < c->points.size(); ++k) {
+                ShadePoint& p = c->points[k];
+                if (po >= 0) { p.P = d->batch->color(po, int(k)); p.I = p.P - c->rays[k].origin; }
+                if (no >= 0) p.N = d->batch->color(no, int(k));
+                if (p.surface.displaced) { // rays left and met the facet; shading offsets start there
+                    p.surface.P = p.surface.displacedP;
+                    p.surface.n = p.surface.displacedN;
+                    p.P = p.surface.displacedP;
+                }
+            }
+        }
+    }
+    viewsOf(&SurfaceBinding::surface);
+    const auto& kernel = *c->bound->kernel;
+    c->batch = std::make_shared<shading::Batch>(c->bound->kernel, c->points, views, c->bound->mixed, *world_);
+    bindCall(c->batch->call(), *c);
+    int n = int(c->points.size());
+    counters.points += uint64_t(n);
+    ++counters.batches;
+    counters.lanesUsed += uint64_t(n);
+    counters.lanesRun += uint64_t((n + kernel.lanes() - 1) / kernel.lanes() * kernel.lanes());
+
+    if (kernel.facts().suspends) {
+        for (int first = 0; first < n; first += kernel.lanes()) {
+            for (int i = first; i < std::min(first + kernel.lanes(), n); ++i) sched.hold(c->targets[i]);
+            void* h = kernel.start(&c->batch->call(), first);
+            if (!h) {
+                ++counters.overLimit;
+                for (int i = first; i < std::min(first + kernel.lanes(), n); ++i) sched.release(c->targets[i]);
+                continue;
+            }
+            auto strip = std::make_unique<KernelStrip>(c, h, first, int(c->rays[first].bounces));
+            KernelStrip* s = strip.get();
+            s->advance(sched, std::move(strip));
+        }
+        return;
+    }
+    kernel.run(&c->batch->call());
+
+    // Affine pairs by point, in order of emission. Atmosphere scales them: a volume shader is affine in Ci, so two runs give its slope.
+    std::vector<Color> slope(n, Color(1));
+    if (!c->emits.empty())
+        for (int i = 0; i < n; ++i) {
+            const SurfaceBinding& b = world_->bindings_[c->bindings[i]];
+            if (!b.atmosphere) continue;
+            ShadePoint p = c->points[i];
+            p.Oi = Color(1);
+            p.Ci = Color(0);
+            Color a = applyAtmosphere(b, p).first;
+            p.Ci = Color(1);
+            slope[i] = applyAtmosphere(b, p).first - a;
+        }
+    std::map<std::pair<int, int>, uint32_t> occurrence;
+    for (const EmitRecord& e : c->emits) {
+        const SiteInfo& s = c->bound->sites[e.site];
+        const float* rows = c->arena.data() + e.offset;
+        for (int lane = 0; lane < e.lanes; ++lane) {
+            int point = e.first + lane;
+            if (!(e.mask >> lane & 1) || point >= n) continue;
+            Color weight = Color(rows[lane], rows[e.lanes + lane], rows[2 * e.lanes + lane]) * slope[point];
+            if (!(std::isfinite(weight.x) && std::isfinite(weight.y) && std::isfinite(weight.z))) { ++counters.nonFinite; continue; }
+            if (weight == Color(0)) continue;
+            if (world_->bindings_[c->bindings[point]].matte && c->rays[point].type == RayType::Camera) continue;
+            const float* args = rows + size_t(3) * e.lanes;
+            if (s.kind == SiteKind::LightVisibility) {
+                lightVisibility(*c, s, point, args, e.lanes, lane, weight * c->rays[point].weight, c->targets[point],
+                                args[size_t(s.rows[0]) * e.lanes + lane]);
+                continue;
+            }
+            if (s.kind == SiteKind::Transmission) weight *= c->rays[point].weight;
+            request(*c, s, point, args, e.lanes, lane, weight, c->targets[point], false, occurrence[{e.site, point}]++);
+        }
+    }
+    gather(*c, sched);
+    flushShadows(sched);
+    finishStrip(*c, 0, n, sched);
+}
+
+bool Engine::trace(std::span<const CameraRay> rays, std::span<SampleResult> out, const volatile int32_t* stopFlag) {
+    stop = stopFlag;
+    Sched sched(*this, stopFlag);
+    size_t aovs = 0;
+    for (int w : world_->outputWidths_) aovs += size_t(w);
+    results.resize(rays.size());
+    std::vector<TargetId> roots(rays.size());
+    for (size_t i = 0; i < rays.size(); ++i) {
+        const CameraRay& c = rays[i];
+        out[i] = SampleResult{};
+        out[i].aovs.assign(aovs, 0.f);
+        results[i] = &out[i];
+        Sched::Task t;
+        PathRay& r = t.payload;
+        r.origin = c.origin;
+        r.dir = c.direction;
+        r.px = c.px;
+        r.py = c.py;
+        r.sample = c.sample;
+        r.time = c.time;
+        r.width = c.width;
+        r.spread = c.spread;
+        r.cameraSample = int(i);
+        t.target = roots[i] = sched.newRoot();
+        sched.spawn(std::move(t));
+    }
+    counters.paths += rays.size();
+    bool done = sched.run();
+    float clampAt = world_->settings_.sampleClamp;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        Color c = sched.value(roots[i]).radiance;
+        float m = maxComponent(c);
+        if (clampAt > 0 && m > clampAt) c *= clampAt / m; // pathtracer.md 6
+        out[i].color = c;
+        Color& o = out[i].opacity;
+        o = {std::min(o.x, 1.f), std::min(o.y, 1.f), std::min(o.z, 1.f)};
+    }
+    counters.nonFinite += sched.nonFinite();
+    counters.overLimit += sched.overLimit();
+    lobes.clear();
+    shadows.clear();
+    return done;
+}
+
+struct Integrator::Impl {
+    Engine engine;
+    Impl(std::shared_ptr<const WorldImpl> w, Diagnostics& d) : engine(std::move(w), d) {}
+};
+Integrator::Integrator(std::shared_ptr<const World> w, Diagnostics& d)
+    : impl_(std::make_unique<Impl>(std::static_pointer_cast<const WorldImpl>(std::move(w)), d)) {}
+Integrator::~Integrator() = default;
+bool Integrator::trace(std::span<const CameraRay> r, std::span<SampleResult> out, const volatile int32_t* stop) { return impl_->engine.trace(r, out, stop); }
+const Counters& Integrator::counters() const { return impl_->engine.counters; }
+
+} // namespace alpenglow::transport

@@ -1,0 +1,110 @@
+// The inside of Integrator, for transport/ only: following a slice of rays, shading what they hit, and what becomes of requests.
+#pragma once
+#include "transport/random.h"
+#include "shading/scheduler.h"
+#include "transport/world.h"
+
+namespace alpenglow::transport {
+
+using shading::PathRay;
+using shading::Sched;
+using shading::ShadePoint;
+using shading::TargetId;
+
+/// One affine pair group of a strip, as the kernel emitted it: rows of `lanes` floats, the first three the weight.
+struct EmitRecord { int site = 0, first = 0, lanes = 0; uint64_t mask = 0; size_t offset = 0; };
+
+/// A visibility question: adds contribution * transmittance to the target.
+struct ShadowRay { Vec3 origin, dir; float distance; Color contribution; TargetId target; float time; };
+
+/// A lobe at a point that light shall be gathered over.
+struct LobeVertex {
+    int point = 0;
+    const LobeKind* kind = nullptr;
+    LobeParams params;
+    Color weight;          ///< of the request alone, before the ray's throughput
+    TargetId target = shading::kNoTarget;
+    RayType type = RayType::Diffuse;
+    bool lights = true;    ///< estimate lights here
+    bool deltaLights = true; ///< point, spot and distant ones too (lighting shadeops, not trace())
+    bool lobeOfShader = true; ///< a lighting shadeop: counts for the energy rule and may be chosen among
+    uint32_t site = 0, occurrence = 0;
+    float maxDistance = 1e38f;
+    int samples = 1;
+    bool ownsTarget = false; ///< a suspended request: the target also gets distance and transmission
+    float chosen = 1;      ///< probability that the indirect ray of this lobe is followed
+};
+
+struct LightValue { Vec3 L; Color Cl{0}; bool lit = false; float nonDiffuse = 0, nonSpecular = 0; };
+
+class Engine;
+
+/// State of one batch while its kernel runs; KernelCall::user.
+struct BatchContext {
+    Engine* engine = nullptr;
+    std::shared_ptr<shading::Batch> batch;
+    const BoundKernel* bound = nullptr;
+    const SurfaceBinding* binding = nullptr;   ///< of the first point; the light list is the same for all
+    std::vector<ShadePoint> points;
+    std::vector<PathRay> rays;                 ///< of the points: ShadePoint::ray points here
+    std::vector<TargetId> targets;
+    std::vector<int> bindings;                 ///< by point
+    std::vector<EmitRecord> emits;
+    std::vector<float> arena;
+    // light loop of the strip that runs now
+    std::vector<std::pair<int, int>> loopLights; ///< (light, sample)
+    std::vector<float> loopRows;
+    int currentLight = -1;
+    float lightVisibilityDistance = 0;
+    std::vector<float> lightDistance;          ///< by lane: to the light sample; 1e38 for distant lights
+    // suspended request of the strip that runs now
+    int requestSite = -1, requestFirst = 0, requestLanes = 0;
+    uint64_t requestMask = 0;
+    std::vector<float> requestIn;
+    float* requestOut = nullptr;
+};
+
+class Engine final : public Sched::RayService {
+public:
+    Engine(std::shared_ptr<const WorldImpl> w, Diagnostics& d) : world_(std::move(w)), diagnostics_(d) {}
+    bool trace(std::span<const CameraRay>, std::span<SampleResult>, const volatile int32_t* stop);
+    void follow(std::span<const Sched::Task> slice, Sched&) override;
+    Counters counters;
+
+    // lights.cpp
+    /// Light arriving at queries from one light; for area lights `samples[i]` is the point on the emitter.
+    void evaluateLight(const BoundLight&, std::span<const ShadePoint> queries, std::span<LightValue> out);
+    Color emitted(const BoundLight&, const ShadePoint& hit, const Vec3& from);
+    Color transmittance(const Vec3& origin, const Vec3& dir, float distance, float time);
+    int32_t lightBegin(BatchContext&, int site, int first, uint64_t mask, int lanes, const float* rows);
+    uint64_t lightFetch(BatchContext&, int light, int first, uint64_t mask, int lanes, float* out);
+    // services.cpp
+    void service(BatchContext&, int site, int first, uint64_t mask, int lanes, const float* in, float* out);
+    // requests.cpp
+    void request(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId, bool owns,
+                 uint32_t occurrence);
+    void lightVisibility(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId, float distance);
+    std::pair<Color, Color> applyAtmosphere(const SurfaceBinding&, const ShadePoint&);
+    void gather(BatchContext&, Sched&);
+    void flushShadows(Sched&);
+    void finishStrip(BatchContext&, int first, int lanes, Sched&);
+    const WorldImpl& world() const { return *world_; }
+    Diagnostics& diagnostics() { return diagnostics_; }
+    void shadeGroup(std::shared_ptr<BatchContext>, Sched&);
+    void bindCall(rsl::KernelCall&, BatchContext&);
+    Random random(const PathRay& r) const { return Random(world_->settings_.seed, r.px, r.py, r.sample); }
+    std::vector<SampleResult*> results;
+    std::vector<LobeVertex> lobes;
+    std::vector<ShadowRay> shadows;
+    const volatile int32_t* stop = nullptr;
+
+private:
+    friend class KernelStrip;
+    void miss(const Sched::Task&, Sched&);
+    void emission(const Sched::Task&, const ShadePoint&, const SurfaceBinding&, Sched&);
+    void passThrough(const PathRay&, TargetId, const ShadePoint&, const Color& transparency, Sched&);
+    std::shared_ptr<const WorldImpl> world_;
+    Diagnostics& diagnostics_;
+};
+
+} // namespace alpenglow::transport

@@ -1,0 +1,28 @@
+// The random numbers of one sample, by path vertex, call site and occurrence (design decision 10).
+#pragma once
+#include "base/sampler.h"
+
+namespace alpenglow::transport {
+
+/// Dimensions that are not call sites of a shader. Sites of shaders are below 2^20.
+enum RandomUse : uint32_t { kChooseLobe = 1u << 20, kRoulette, kChooseLight, kChooseEmitter, kLightPoint = 1u << 21 };
+
+class Random {
+public:
+    Random(uint64_t seed, int px, int py, uint32_t sample) : sampler_(seed, px, py), sample_(sample) {}
+    Vec2 pair(uint32_t vertex, uint32_t use, uint32_t occurrence) const { return sampler_.get2(vertex, use, occurrence, sample_); }
+    float one(uint32_t vertex, uint32_t use, uint32_t occurrence) const { return sampler_.get1(vertex, use, occurrence, sample_); }
+
+private:
+    render::Sampler sampler_;
+    uint32_t sample_;
+};
+
+/// The vertex key of what lies behind a call: a hash of the way there.
+inline uint32_t childVertex(uint32_t vertex, uint32_t site, uint32_t occurrence) {
+    uint64_t h = render::mix64((uint64_t(vertex) << 32 | site) ^ render::mix64(occurrence + 0x9e3779b97f4a7c15ull));
+    uint32_t v = uint32_t(h >> 32);
+    return v ? v : 1;
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,269 @@
+// What becomes of the requests of a batch: lobes are gathered over lights, then rays are sent (design decisions 2 and 3).
+#include "transport/engine.h"
+#include "transport/sampling.h"
+
+namespace alpenglow::transport {
+
+namespace {
+Vec3 unit(Vec3 v, Vec3 fallback) {
+    float l = length(v);
+    return l > 0 && std::isfinite(l) ? v / l : fallback;
+}
+constexpr float kSpecularExponentScale = 8; // specular(): (N.H)^(8 / roughness); the same constant as its RSL body
+} // namespace
+
+void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float* in, int lanes, int lane, Color weight, TargetId target, bool owns,
+                     uint32_t occurrence) {
+    const ShadePoint& p = c.points[point];
+    auto f = [&](int row) { return in[size_t(row) * lanes + lane]; };
+    auto v = [&](int arg) { return Vec3(f(s.rows[arg]), f(s.rows[arg] + 1), f(s.rows[arg] + 2)); };
+    auto named = [&](const char* name, float fallback) {
+        auto i = s.named.find(name);
+        return i == s.named.end() ? fallback : f(i->second);
+    };
+    auto namedVector = [&](const char* name, Vec3 fallback) {
+        auto i = s.named.find(name);
+        return i == s.named.end() ? fallback : Vec3(f(i->second), f(i->second + 1), f(i->second + 2));
+    };
+    LobeVertex l;
+    l.point = point;
+    l.weight = weight;
+    l.target = target;
+    l.ownsTarget = owns;
+    l.site = uint32_t(s.site - c.bound->kernel->sites().data());
+    l.occurrence = occurrence;
+    l.params.wo = unit(-p.I, p.surface.n);
+    switch (s.kind) {
+    case SiteKind::Ambient: return; // under path ambient light is what escaping diffuse rays see
+    case SiteKind::Diffuse:
+        l.kind = findLobe("diffuse");
+        l.params.axis = unit(v(0), p.surface.n);
+        l.type = RayType::Diffuse;
+        break;
+    case SiteKind::Specular:
+    case SiteKind::Phong:
+        l.kind = findLobe(s.kind == SiteKind::Phong ? "phong" : "specular");
+        l.params.axis = unit(v(0), p.surface.n);
+        l.params.wo = unit(v(1), l.params.wo);
+        l.params.a = f(s.rows[2]);
+        if (s.kind == SiteKind::Specular)
+            l.params.a = (s.site->op == "specularstd" ? 1 : kSpecularExponentScale) / std::max(l.params.a, 1e-6f);
+        l.type = RayType::Specular;
+        break;
+    case SiteKind::Trace:
+        l.kind = s.lobe;
+        l.params.axis = unit(v(1), p.surface.n);
+        l.params.wo = unit(namedVector("wo", l.params.wo), l.params.wo);
+        l.params.a = s.lobe && s.lobe->name == "slphong" ? named("exponent", 1000) : named("samplecone", 0);
+        if (s.named.count("horizon")) {
+            l.params.horizon = unit(namedVector("horizon", p.surface.n), p.surface.n);
+            l.params.hasHorizon = true;
+        }
+        l.type = s.type;
+        l.lights = s.named.count("samplearealights") ? named("samplearealights", 0) != 0 : s.sampleAreaLights;
+        l.deltaLights = false;
+        l.lobeOfShader = false;
+        l.maxDistance = named("maxdist", 1e38f);
+        l.samples = std::clamp(int(named("samples", 1)), 1, 4096);
+        break;
+    case SiteKind::Transmission: {
+        Vec3 a = v(0), d = v(1) - a;
+        float distance = length(d);
+        if (!(distance > 0)) { shadows.push_back({a, Vec3(0, 0, 1), 0, weight, target, p.time}); return; }
+        d = d / distance;
+        float offset = geometry::roundingError(a) + p.surface.pError * 2;
+        shadows.push_back({a + d * offset, d, std::max(0.f, distance - 2 * offset), weight, target, p.time});
+        return;
+    }
+    default: return;
+    }
+    lobes.push_back(l);
+}
+
+// Gathers light over the lobes collected for this batch, then sends rays.
+void Engine::gather(BatchContext& c, Sched& sched) {
+    const Settings& set = world_->settings_;
+    bool path = set.hider == Hider::Path;
+    if (lobes.empty()) return;
+    auto sourcePoint = [&](const ShadePoint& p, const Vec3& w) { return geometry::offsetOrigin(p.surface, w, length(p.P - p.surface.P)); };
+
+    // Lobes by point, in order of emission.
+    std::vector<std::vector<int>> byPoint(c.points.size());
+    for (size_t i = 0; i < lobes.size(); ++i) byPoint[lobes[i].point].push_back(int(i));
+
+    // Which lobe's ray will be followed (path): in proportion to luminance of weight times albedo; the energy rule for shader lobes.
+    std::vector<float> indirectScale(c.points.size(), 1.f);
+    for (size_t pi = 0; pi < c.points.size(); ++pi) {
+        auto& list = byPoint[pi];
+        Color sum(0);
+        double total = 0;
+        for (int i : list) {
+            LobeVertex& l = lobes[i];
+            float albedo = l.kind->albedo(l.params);
+            if (l.lobeOfShader) sum += Color(std::fabs(l.weight.x), std::fabs(l.weight.y), std::fabs(l.weight.z)) * albedo;
+            l.chosen = std::max(luminance(Color(std::fabs(l.weight.x), std::fabs(l.weight.y), std::fabs(l.weight.z))) * albedo, 0.f);
+            if (l.type == RayType::Diffuse && !set.indirect) l.chosen = 0;
+            if (!l.ownsTarget) total += l.chosen;
+        }
+        if (!set.unbiased && maxComponent(sum) > 1) indirectScale[pi] = 1 / maxComponent(sum);
+        for (int i : list) {
+            LobeVertex& l = lobes[i];
+            if (l.ownsTarget || !path) l.chosen = l.type == RayType::Diffuse && !set.indirect ? 0 : 1;
+            else l.chosen = total > 0 ? float(l.chosen / total) : 0;
+        }
+    }
+
+    // Light samples: every light for every point with lobes that want it, in batches a light.
+    if (set.direct && !set.bsdfOnly) {
+        for (size_t li = 0; li < world_->lights_.size(); ++li) {
+            const BoundLight& light = world_->lights_[li];
+            if (light.kind == LightKind::Ambient || light.kind == LightKind::Environment) continue;
+            bool area = light.kind == LightKind::Area;
+            if (area && (!light.emitter || light.emitter->empty())) continue;
+            std::vector<ShadePoint> q;
+            std::vector<int> pointOf;
+            std::vector<Emitter::Sample> samples;
+            for (size_t pi = 0; pi < c.points.size(); ++pi) {
+                bool wanted = false;
+                for (int i : byPoint[pi]) wanted |= lobes[i].lights && (area || lobes[i].deltaLights) && !lobes[i].kind->isDelta(lobes[i].params);
+                if (!wanted) continue;
+                const auto& on = world_->bindings_[c.bindings[pi]].lights;
+                if (std::find(on.begin(), on.end(), int(li)) == on.end()) continue;
+                ShadePoint p = c.points[pi];
+                p.Ps = p.P;
+                p.Ns = p.N;
+                p.viewI = p.I;
+                if (area) {
+                    Random rng = random(*p.ray);
+                    auto s = light.emitter->sample(p.Ps, rng.pair(p.ray->vertex, kLightPoint + uint32_t(li), 0),
+                                                   rng.one(p.ray->vertex, kChooseEmitter, uint32_t(li)));
+                    if (!s) continue;
+                    p.shape = s->shape;
+                    p.surface = s->point;
+                    p.P = s->point.P;
+                    p.N = s->point.n;
+                    samples.push_back(*s);
+                } else {
+                    p.shape = nullptr;
+                    p.P = Vec3(transformPoint(light.instance->toCurrent, {0, 0, 0}));
+                    samples.emplace_back();
+                }
+                q.push_back(p);
+                pointOf.push_back(int(pi));
+            }
+            std::vector<LightValue> value(q.size());
+            evaluateLight(light, q, value);
+            for (size_t k = 0; k < q.size(); ++k) {
+                const LightValue& v = value[k];
+                if (!v.lit || !(maxComponent(v.Cl) > 0)) continue;
+                const ShadePoint& p = c.points[pointOf[k]];
+                Vec3 w = area ? samples[k].direction : unit(-v.L, Vec3(0, 0, 1));
+                float distance = area ? samples[k].distance : light.kind == LightKind::Distant ? 1e38f : length(v.L);
+                for (int i : byPoint[pointOf[k]]) {
+                    LobeVertex& l = lobes[i];
+                    if (!l.lights || (!area && !l.deltaLights)) continue;
+                    float fcos = l.kind->fcos(l.params, w);
+                    if (!(fcos > 0)) continue;
+                    float kept = l.type == RayType::Diffuse ? 1 - v.nonDiffuse : 1 - v.nonSpecular;
+                    if (!l.lobeOfShader) kept = 1;
+                    Color contribution = l.weight * c.rays[l.point].weight * v.Cl;
+                    if (l.ownsTarget) contribution = l.weight * v.Cl;
+                    if (area) {
+                        float other = set.lightOnly || !(l.chosen > 0) ? 0 : l.kind->pdf(l.params, w) * l.chosen;
+                        contribution *= kept * fcos / samples[k].pdf * misWeight(samples[k].pdf, other);
+                    } else {
+                        contribution *= kept * float(kPi) * fcos; // Cl is irradiance / pi
+                    }
+                    Vec3 o = sourcePoint(p, w);
+                    // The light's own surface must not block: stop short of it by both error bounds.
+                    float stop = distance;
+                    if (area) {
+                        Vec3 end = geometry::offsetOrigin(samples[k].point, -w);
+                        stop = length(end - o);
+                        shadows.push_back({o, unit(end - o, w), stop * (1 - 1e-6f), contribution, l.target, p.time});
+                    } else {
+                        shadows.push_back({o, w, stop < 1e30f ? stop * (1 - 1e-5f) : stop, contribution, l.target, p.time});
+                    }
+                }
+            }
+        }
+    }
+
+    // Rays. Under path one of the vertex's lobes is followed; elsewhere all.
+    for (size_t pi = 0; pi < c.points.size(); ++pi) {
+        auto& list = byPoint[pi];
+        if (list.empty()) continue;
+        const ShadePoint& p = c.points[pi];
+        const PathRay& from = c.rays[pi];
+        Random rng = random(from);
+        float pick = path ? rng.one(from.vertex, kChooseLobe, 0) : 0, sum = 0;
+        bool taken = false;
+        for (int i : list) {
+            LobeVertex& l = lobes[i];
+            if (!(l.chosen > 0)) continue;
+            float scale = 1;
+            int count = l.samples;
+            if (path && !l.ownsTarget) {
+                sum += l.chosen;
+                if (taken || (pick >= sum && !(i == list.back()))) continue;
+                taken = true;
+                scale = 1 / l.chosen;
+                count = 1;
+            }
+            if (l.lobeOfShader) scale *= indirectScale[pi];
+            for (int k = 0; k < count; ++k) {
+                uint32_t occurrence = l.occurrence * 4096 + uint32_t(k);
+                Vec3 w;
+                if (!l.kind->sample(l.params, rng.pair(from.vertex, l.site, occurrence), w)) continue;
+                bool delta = l.kind->isDelta(l.params);
+                float pdf = delta ? 0 : l.kind->pdf(l.params, w);
+                float f = delta ? l.kind->albedo(l.params) : pdf > 0 ? l.kind->fcos(l.params, w) / pdf : 0;
+                Color through = l.weight * (f * scale / count);
+                PathRay r = from;
+                r.weight = l.ownsTarget ? through : from.weight * through;
+                r.bounces = int16_t(from.bounces + 1);
+                if (l.type == RayType::Diffuse) ++r.diffuseBounces;
+                else ++r.specularBounces;
+                const SurfaceBinding& b = world_->bindings_[c.bindings[pi]];
+                if (!(maxComponent(r.weight) > 0) && !(std::min({r.weight.x, r.weight.y, r.weight.z}) < 0) && !l.ownsTarget) continue;
+                bool deep = r.bounces > world_->maxDepth_ || (b.maxDiffuse >= 0 && r.diffuseBounces > b.maxDiffuse) ||
+                            (b.maxSpecular >= 0 && r.specularBounces > b.maxSpecular);
+                if (deep) { ++counters.depthCap; continue; }
+                if (path && set.roulette) {
+                    float q = 1;
+                    if (set.localRoulette) {
+                        q = rouletteLocal(from.bounces + 1, l.weight, rng.one(from.vertex, kRoulette, occurrence));
+                    } else if (from.bounces + 1 > 3) {
+                        float m = std::min(1.f, maxComponent(Color(std::fabs(r.weight.x), std::fabs(r.weight.y), std::fabs(r.weight.z))));
+                        q = m <= 0 ? 0 : m >= 1 ? 1 : rng.one(from.vertex, kRoulette, occurrence) < m ? m : 0;
+                    }
+                    if (q <= 0) continue;
+                    r.weight = r.weight / q;
+                }
+                r.origin = sourcePoint(p, w);
+                r.dir = w;
+                r.maxDistance = l.maxDistance;
+                r.type = l.type;
+                r.vertex = childVertex(from.vertex, l.site, occurrence);
+                bool sampled = l.lights && !delta && set.direct && !set.bsdfOnly && path;
+                bool sampledElsewhere = l.lights && !delta && set.direct && !set.bsdfOnly && !path && l.ownsTarget;
+                r.lobePdf = sampled || sampledElsewhere ? pdf * l.chosen : l.lights && !delta && !path && set.direct && !set.bsdfOnly ? pdf : -1;
+                r.wantsLight = true;
+                r.width = from.width + from.spread * length(p.I);
+                r.spread = std::max(from.spread, l.kind->spread(l.params) * 0.5f);
+                r.shape = geometry::kNone;
+                r.cameraSample = -1;
+                r.first = l.ownsTarget && k == 0;
+                Sched::Task t;
+                t.depth = int(r.bounces);
+                t.target = l.target;
+                t.payload = r;
+                sched.spawn(std::move(t));
+                counters.depthMax = std::max(counters.depthMax, int(r.bounces));
+            }
+        }
+    }
+    lobes.clear();
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,273 @@
+// What the renderer answers at once: textures, messages, the state of rays and attributes.
+#include "rsl/services_basic.h"
+#include "transport/engine.h"
+#include <bit>
+
+namespace alpenglow::transport {
+
+namespace {
+
+SiteKind kindOf(const std::string& op) {
+    static const std::map<std::string, SiteKind> kinds = {
+        {"ambient", SiteKind::Ambient}, {"diffuse", SiteKind::Diffuse}, {"specular", SiteKind::Specular}, {"specularstd", SiteKind::Specular},
+        {"phong", SiteKind::Phong}, {"trace", SiteKind::Trace}, {"transmission", SiteKind::Transmission},
+        {"lightvisibility", SiteKind::LightVisibility}, {"illuminance", SiteKind::Illuminance}, {"texture", SiteKind::Texture},
+        {"environment", SiteKind::Environment}, {"surface", SiteKind::Message}, {"displacement", SiteKind::Message},
+        {"atmosphere", SiteKind::Message}, {"lightsource", SiteKind::LightSource}, {"attribute", SiteKind::Attribute},
+        {"option", SiteKind::Option}, {"rendererinfo", SiteKind::RendererInfo}, {"rayinfo", SiteKind::RayInfo},
+        {"raylevel", SiteKind::RayLevel}, {"isindirectray", SiteKind::RayLevel}, {"isshadowray", SiteKind::RayLevel},
+        {"textureinfo", SiteKind::TextureInfo}};
+    auto i = kinds.find(op);
+    return i == kinds.end() ? SiteKind::Other : i->second;
+}
+
+} // namespace
+
+BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed, WorldImpl* world) {
+    BoundKernel b;
+    b.mixed = mixed;
+    if (!k) return b;
+    for (const auto& s : k->sites()) {
+        SiteInfo i;
+        i.kind = kindOf(s.op);
+        i.site = &s;
+        int row = 0;
+        std::vector<int> starts;
+        for (auto kind : s.argKinds) {
+            starts.push_back(row);
+            row += rsl::ir::components(kind);
+        }
+        size_t numericPairs = 0;
+        for (const auto& text : s.pairStrings) numericPairs += text.empty();
+        size_t positional = starts.size() - std::min(starts.size(), numericPairs), next = positional;
+        i.rows.assign(starts.begin(), starts.begin() + long(positional));
+        for (size_t p = 0; p < s.names.size(); ++p) {
+            if (!s.pairStrings[p].empty()) i.text[s.names[p]] = s.pairStrings[p];
+            else if (next < starts.size()) i.named[s.names[p]] = starts[next++];
+        }
+        int out = 0;
+        for (size_t r = 0; r < s.resultKinds.size(); ++r) {
+            std::string name = r < s.resultNames.size() ? s.resultNames[r] : "";
+            i.resultRows[name] = out;
+            out += rsl::ir::components(s.resultKinds[r]);
+        }
+        i.resultRowCount = out;
+        if (i.kind == SiteKind::Trace) {
+            auto text = [&](const char* name, const char* fallback) { auto f = i.text.find(name); return f == i.text.end() ? std::string(fallback) : f->second; };
+            std::string distribution = text("distribution", text("bsdf", "uniform").c_str());
+            i.lobe = findLobe(distribution);
+            if (!i.lobe) {
+                i.lobe = findLobe("uniform");
+                world->diagnostics_->reportOnce("distribution:" + distribution,
+                    {Severity::Warning, Rie::Unimplement, {k->files().empty() ? "" : k->files()[s.place.file], s.place.line, s.place.column},
+                     "trace(): distribution \"" + distribution + "\" is not yet available; one ray along R is traced", {}, {}});
+            }
+            std::string type = text("type", "specular");
+            i.type = type == "diffuse" ? RayType::Diffuse : type == "transmission" ? RayType::Transmission : RayType::Specular;
+        }
+        b.sites.push_back(std::move(i));
+    }
+    b.kernel = std::move(k);
+    return b;
+}
+
+void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int lanes, const float* in, float* out) {
+    const SiteInfo& s = c.bound->sites[site];
+    const rsl::ir::Site& d = *s.site;
+    auto each = [&](auto&& body) {
+        for (int lane = 0; lane < lanes; ++lane)
+            if ((mask >> lane & 1) && first + lane < int(c.points.size())) body(lane, c.points[first + lane]);
+    };
+    auto at = [&](int row, int lane) { return in[size_t(row) * lanes + lane]; };
+    auto put = [&](int row, int lane, float v) { out[size_t(row) * lanes + lane] = v; };
+    for (int r = 0; r < s.resultRowCount; ++r)
+        for (int lane = 0; lane < lanes; ++lane)
+            if (mask >> lane & 1) put(r, lane, 0);
+    SourcePlace place{d.place.file < int(c.bound->kernel->files().size()) ? c.bound->kernel->files()[d.place.file] : "", d.place.line, d.place.column};
+
+    // Writes a value to the first output after the success flag, when type and size fit.
+    int valueRow = 1, valueRows = s.resultRowCount - 1;
+    bool wantsString = d.resultKinds.size() > 1 && d.resultKinds[1] == rsl::ir::Kind::String;
+    auto answer = [&](int lane, const std::vector<float>* numbers, const std::string* text) {
+        if (wantsString) {
+            if (!text) return;
+            put(valueRow, lane, std::bit_cast<float>(rsl::internString(*text)));
+        } else {
+            if (!numbers || int(numbers->size()) < valueRows) return;
+            for (int r = 0; r < valueRows; ++r) put(valueRow + r, lane, (*numbers)[r]);
+        }
+        put(0, lane, 1);
+    };
+    auto answerFrom = [&](int lane, const shading::ParameterBlock& p, const std::string& name) {
+        auto n = p.numbers.find(name);
+        auto t = p.strings.find(name);
+        answer(lane, n == p.numbers.end() ? nullptr : &n->second, t == p.strings.end() ? nullptr : &t->second);
+    };
+    auto answerParam = [&](int lane, const scene::Param* p) {
+        if (p) answer(lane, &p->numbers, p->strings.empty() ? nullptr : &p->strings[0]);
+    };
+    std::string name = d.strings.empty() ? "" : d.strings[0];
+
+    switch (s.kind) {
+    case SiteKind::Texture:
+    case SiteKind::Environment: {
+        texture::LookupOptions o;
+        auto number = [&](const char* key, int lane, float fallback) { auto i = s.named.find(key); return i == s.named.end() ? fallback : at(i->second, lane); };
+        if (auto f = s.text.find("filter"); f != s.text.end())
+            if (auto known = texture::filterByName(f->second)) o.filter = *known;
+        texture::Handle h = nullptr;
+        int offset = 0;
+        bool dynamic = name.empty() && !d.argKinds.empty() && d.argKinds[0] == rsl::ir::Kind::String;
+        if (!dynamic && !name.empty()) h = world_->textures_->open(name, world_->settings_.texturePaths, place);
+        int count = std::min(s.resultRowCount, 16);
+        each([&](int lane, const ShadePoint&) {
+            if (dynamic) {
+                const std::string& n = rsl::internedString(std::bit_cast<int32_t>(at(0, lane)));
+                h = n.empty() ? nullptr : world_->textures_->open(n, world_->settings_.texturePaths, place);
+                offset = 1;
+            }
+            float width = number("width", lane, 1), blur = number("blur", lane, 0);
+            o.swidth = number("swidth", lane, width);
+            o.twidth = number("twidth", lane, width);
+            o.sblur = number("sblur", lane, blur);
+            o.tblur = number("tblur", lane, blur);
+            o.fill = number("fill", lane, 0);
+            int channel = int(number("channel", lane, 0));
+            float v[16] = {};
+            auto row = [&](int k) { return at(s.rows[size_t(offset + k)], lane); };
+            if (s.kind == SiteKind::Texture) {
+                if (int(s.rows.size()) - offset >= 8) {
+                    float ss[4], tt[4];
+                    for (int k = 0; k < 4; ++k) { ss[k] = row(2 * k); tt[k] = row(2 * k + 1); }
+                    texture::lookupQuad(h, channel, count, ss, tt, o, v);
+                } else if (int(s.rows.size()) - offset >= 6) {
+                    texture::lookup2D(h, channel, count, row(0), row(1), row(2), row(3), row(4), row(5), o, v);
+                }
+            } else {
+                auto vec = [&](int k) { int r = s.rows[size_t(offset + k)]; return Vec3(at(r, lane), at(r + 1, lane), at(r + 2, lane)); };
+                if (int(s.rows.size()) - offset >= 4) {
+                    Vec3 q[4] = {vec(0), vec(1), vec(2), vec(3)};
+                    texture::environmentLatLongQuad(h, world_->textures_->latLong(), channel, count, q, o, v);
+                } else {
+                    texture::environmentLatLong(h, world_->textures_->latLong(), channel, count, vec(0), vec(1), vec(2), o, v);
+                }
+            }
+            for (int k = 0; k < count; ++k) put(k, lane, v[k]);
+        });
+        return;
+    }
+    case SiteKind::LightSource:
+        if (c.currentLight >= 0) {
+            const BoundLight& l = world_->lights_[c.currentLight];
+            each([&](int lane, const ShadePoint&) { answerFrom(lane, l.instance->parameters, name); });
+        }
+        return;
+    case SiteKind::Message:
+        each([&](int lane, const ShadePoint&) {
+            if (c.bindings.empty()) return;
+            const SurfaceBinding& b = world_->bindings_[c.bindings[first + lane]];
+            const InstanceRef& i = d.op == "surface" ? b.surface : d.op == "displacement" ? b.displacement : b.atmosphere;
+            if (i) answerFrom(lane, i->parameters, name);
+        });
+        return;
+    case SiteKind::Attribute:
+        each([&](int lane, const ShadePoint& p) {
+            if (!p.shape) return;
+            const scene::Attributes& a = p.shape->attributes();
+            std::string key = name;
+            std::vector<float> v;
+            std::string text;
+            if (key == "Ri:ShadingRate" || key == "ShadingRate") v = {a.shadingRate};
+            else if (key == "Ri:Sides" || key == "Sides") v = {float(a.sides)};
+            else if (key == "Ri:Matte" || key == "Matte") v = {float(a.matte)};
+            else if (key == "Ri:Color") v = {a.color.x, a.color.y, a.color.z};
+            else if (key == "Ri:Opacity") v = {a.opacity.x, a.opacity.y, a.opacity.z};
+            else if (key == "Ri:Orientation") text = a.inside ? "inside" : "outside";
+            else if (key == "Ri:TextureCoordinates") v.assign(a.textureCoordinates, a.textureCoordinates + 8);
+            else if (key == "Ri:DetailRange") v.assign(a.detailRange, a.detailRange + 4);
+            else if (key == "geometry:backfacing") v = {dot(p.surface.n, p.I) > 0 ? 1.f : 0.f};
+            else if (key == "geometry:frontfacing") v = {dot(p.surface.n, p.I) > 0 ? 0.f : 1.f};
+            else if (key == "geometry:geometricnormal") v = {p.surface.n.x, p.surface.n.y, p.surface.n.z};
+            else { answerParam(lane, a.value(key)); return; }
+            answer(lane, v.empty() ? nullptr : &v, v.empty() ? &text : nullptr);
+        });
+        return;
+    case SiteKind::Option:
+        each([&](int lane, const ShadePoint&) {
+            const scene::Options& o = world_->frame_->options;
+            std::vector<float> v;
+            if (name == "Ri:Frame" || name == "Frame") v = {float(o.frameNumber)};
+            else if (name == "Ri:Format" || name == "Format") v = {float(o.xres), float(o.yres), o.pixelAspect};
+            else if (name == "Ri:PixelSamples") v = {o.pixelSamplesX, o.pixelSamplesY};
+            else if (name == "Ri:Shutter" || name == "Shutter") v = {o.shutterOpen, o.shutterClose};
+            else if (name == "Ri:Clipping" || name == "Clipping") v = {o.clipNear, o.clipFar};
+            else if (name == "Ri:CropWindow" || name == "CropWindow") v.assign(o.crop, o.crop + 4);
+            else if (name == "trace:maxdepth") v = {float(world_->maxDepth_)};
+            else {
+                auto i = o.values.find(name);
+                answerParam(lane, i == o.values.end() ? nullptr : &i->second);
+                return;
+            }
+            answer(lane, &v, nullptr);
+        });
+        return;
+    case SiteKind::RendererInfo:
+        each([&](int lane, const ShadePoint&) {
+            std::vector<float> version = {0, 1, 0, 0};
+            std::string text = name == "renderer" ? "Alpenglow" : "0.1";
+            if (name == "version") answer(lane, &version, nullptr);
+            else if (name == "renderer" || name == "versionstring") answer(lane, nullptr, &text);
+        });
+        return;
+    case SiteKind::RayInfo:
+        each([&](int lane, const ShadePoint& p) {
+            const PathRay* r = c.rays.empty() ? p.ray : &c.rays[first + lane];
+            std::vector<float> v;
+            std::string text;
+            if (name == "type") text = r ? toString(r->type) : "light";
+            else if (name == "label") text = "";
+            else if (name == "depth") v = {r ? float(r->bounces) : 0};
+            else if (name == "speculardepth") v = {r ? float(r->specularBounces) : 0};
+            else if (name == "diffusedepth") v = {r ? float(r->diffuseBounces) : 0};
+            else if (name == "origin" && r) v = {r->origin.x, r->origin.y, r->origin.z};
+            else if (name == "direction" && r) v = {r->dir.x, r->dir.y, r->dir.z};
+            else if (name == "length") v = {length(p.I)};
+            else return;
+            answer(lane, v.empty() ? nullptr : &v, v.empty() ? &text : nullptr);
+        });
+        return;
+    case SiteKind::RayLevel:
+        each([&](int lane, const ShadePoint&) {
+            int depth = c.rays.empty() ? 0 : c.rays[first + lane].bounces;
+            put(0, lane, d.op == "raylevel" ? float(depth) : d.op == "isindirectray" ? float(depth > 0) : 0.f);
+        });
+        return;
+    case SiteKind::TextureInfo:
+        each([&](int lane, const ShadePoint&) {
+            std::string field = d.strings.size() > 1 ? d.strings[1] : "";
+            auto info = world_->textures_->info(name.empty() ? nullptr : world_->textures_->open(name, world_->settings_.texturePaths, place));
+            if (field == "exists") { put(0, lane, info ? 1 : 0); return; }
+            if (!info) return;
+            std::vector<float> v;
+            if (field == "resolution") v = {float(info->width), float(info->height)};
+            else if (field == "channels") v = {float(info->channels)};
+            else if (field == "bitsperchannel") v = {float(info->bits)};
+            else if (field == "type") { answer(lane, nullptr, &info->type); return; }
+            else return;
+            answer(lane, &v, nullptr);
+        });
+        return;
+    default: break;
+    }
+    if (d.op == "random") { // keyed by point and call site: nothing depends on who shares the batch
+        each([&](int lane, const ShadePoint& p) {
+            const PathRay* r = c.rays.empty() ? p.ray : &c.rays[first + lane];
+            Random rng = r ? random(*r) : Random(world_->settings_.seed, 0, 0, 0);
+            for (int k = 0; k < s.resultRowCount; ++k) put(k, lane, rng.one(r ? r->vertex : 0, uint32_t(site), uint32_t(64 + k)));
+        });
+        return;
+    }
+    rsl::basicService(d, mask, lanes, in, out, diagnostics_);
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,118 @@
+// The inside of World, for transport/ only: what hits, shaders and lights are bound to.
+#pragma once
+#include "accel/accel.h"
+#include "rsl/compiler.h"
+#include "shading/batch.h"
+#include "texture/texture.h"
+#include "transport/arealight.h"
+#include "transport/integrator.h"
+#include "transport/lobe.h"
+#include <mutex>
+
+namespace alpenglow::transport {
+
+using shading::RayType;
+
+/// What a call site of a kernel means to the engine, worked out once per kernel.
+enum class SiteKind : uint8_t {
+    Unknown, Ambient, Diffuse, Specular, Phong, Trace, Transmission, LightVisibility, ///< requests
+    Illuminance, Texture, Environment, Printf, Message, LightSource, Attribute, Option, RendererInfo, RayInfo, RayLevel, TextureInfo, Text, Other
+};
+struct SiteInfo {
+    SiteKind kind = SiteKind::Unknown;
+    const rsl::ir::Site* site = nullptr;
+    std::vector<int> rows;                     ///< first row of each argument in `in` (after the weight for Emit)
+    std::map<std::string, int> named;          ///< row of an optional pair's value
+    std::map<std::string, std::string> text;   ///< constant string pairs
+    std::map<std::string, int> resultRows;     ///< "" and output names -> first row of `out`
+    int resultRowCount = 0;
+    const LobeKind* lobe = nullptr;            ///< Trace: the distribution
+    bool sampleAreaLights = false;
+    RayType type = RayType::Specular;
+};
+
+/// A kernel and the meaning of its sites.
+struct BoundKernel {
+    std::shared_ptr<const rsl::CompiledKernel> kernel;
+    std::vector<SiteInfo> sites;
+    bool mixed = false;
+    explicit operator bool() const { return kernel != nullptr; }
+};
+BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel>, bool mixed, class WorldImpl*);
+
+/// A shader call of the scene: its program, and the values of its parameters in current space.
+struct ShaderInstance {
+    std::string name;
+    std::shared_ptr<const rsl::CompiledShader> program;
+    shading::ParameterBlock parameters;
+    Matrix toCurrent;
+    SourcePlace place;
+};
+using InstanceRef = std::shared_ptr<const ShaderInstance>;
+
+enum class LightKind : uint8_t { Ambient, Point, Distant, Environment, Area };
+
+struct BoundLight {
+    LightKind kind = LightKind::Ambient;
+    InstanceRef instance;
+    BoundKernel kernel;
+    std::shared_ptr<Emitter> emitter;          ///< Area
+    int outL = -1, outCl = -1, outLit = -1;
+    int nonDiffuse = -1, nonSpecular = -1;     ///< outputs, or -1
+    std::string handle;
+    int samples = 1;
+    const scene::Light* source = nullptr;
+};
+
+/// Shapes with the same surface, atmosphere and light list are shaded together.
+struct SurfaceBinding {
+    InstanceRef surface, atmosphere, displacement;
+    BoundKernel surfaceS, surfaceV, atmosphereS, displacementS;
+    std::vector<int> lights;                   ///< indices into lights
+    int program = 0;                           ///< equal: the same kernel, so that points may share a V batch
+    int lightList = 0;                         ///< equal: the same list of lights
+    bool usesObjectSpace = false;              ///< the kernel reads "object" or "shader" matrices that differ inside the binding
+    int areaLight = -1;                        ///< the light whose geometry this is
+    bool explicitSurface = true;
+    Color opacity{1};
+    bool matte = false;
+    float shadingRate = 1;
+    int maxDiffuse = -1, maxSpecular = -1;
+    float bias = -1;                           ///< Attribute "trace" "bias"; < 0: the hit's own error bound
+    scene::AttributesRef attributes;
+};
+
+class WorldImpl final : public World, public shading::SpaceResolver {
+public:
+    const scene::Frame& frame() const override { return *frame_; }
+    const Settings& settings() const override { return settings_; }
+    Facts facts() const override { return facts_; }
+    std::vector<int> outputWidths() const override { return outputWidths_; }
+    bool runImager(int, const float*, const float*, float*, float*, float*, float*, Diagnostics&) const override;
+    bool matrix(const std::string& from, const std::string& to, Matrix& out) const override;
+
+    InstanceRef instance(const scene::ShaderCall&, rsl::ShaderKind, Diagnostics&);
+    InstanceRef builtin(const std::string& name, rsl::ShaderKind, Diagnostics&);
+    BoundKernel kernel(const ShaderInstance&, const std::vector<std::string>& outputs, const std::vector<std::string>& varying, bool mixed,
+                       bool path, Diagnostics&);
+
+    std::shared_ptr<const scene::Frame> frame_;
+    Settings settings_;
+    Facts facts_;
+    std::vector<geometry::ShapeRef> shapes_;
+    std::vector<int> bindingOf_;               ///< by shape
+    std::vector<SurfaceBinding> bindings_;
+    std::vector<BoundLight> lights_;
+    std::unique_ptr<accel::Accel> accel_;
+    Matrix worldToCamera_, cameraToWorld_;
+    Matrix cameraToScreen_, screenToNdc_, ndcToRaster_;
+    std::vector<int> outputWidths_;
+    std::unique_ptr<texture::TextureSystem> textures_;
+    std::shared_ptr<rsl::ShaderCompiler> compiler_;
+    Diagnostics* diagnostics_ = nullptr;
+    mutable std::mutex imagerMutex_;
+    int maxDepth_ = 32;
+    bool allOpaque_ = true;                    ///< no opacity below 1: shadow rays need no shading
+};
+
+} // namespace alpenglow::transport

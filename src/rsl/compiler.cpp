@@ -1,0 +1,348 @@
+#include "rsl/compiler.h"
+#include "base/file.h"
+#include "base/limits.h"
+#include "rsl/ir/build.h"
+#include "rsl/ir/print.h"
+#include "rsl/jit/cache.h"
+#include "rsl/jit/jit.h"
+#include "rsl/jit/sha256.h"
+#include "rsl/passes/optimize.h"
+#include <bit>
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <future>
+#include <map>
+#include <mutex>
+#include <sys/stat.h>
+
+namespace fs = std::filesystem;
+
+namespace alpenglow::rsl {
+namespace {
+
+using KernelPtr = std::shared_ptr<const CompiledKernel>;
+using ShaderPtr = std::shared_ptr<const CompiledShader>;
+
+// Everything that a descriptor says and that decides about code.
+const std::string& descriptorDigest() {
+    static const std::string digest = [] {
+        std::string all;
+        for (const Shadeop& op : shadeops()) {
+            all += op.name + '\1' + char('0' + int(op.lowering)) + char('0' + int(op.derivative)) + char('0' + op.pure) + char('0' + op.outOfLine) + op.rsl + '\1';
+            for (const Signature& s : op.signatures) all += s.text + '\2' + s.symbol + '\1';
+            for (const OptionalParameter& p : op.optional) all += toString(p.type) + p.name + p.defaultText + '\1';
+        }
+        return jit::sha256(all);
+    }();
+    return digest;
+}
+
+// This very program: the passes are part of it, so another build of it makes its own kernels.
+const std::string& programDigest() {
+    static const std::string digest = [] {
+        struct stat s{};
+        if (stat("/proc/self/exe", &s) != 0) return std::string("?");
+        return std::to_string(s.st_size) + "." + std::to_string(s.st_mtim.tv_sec) + "." + std::to_string(s.st_mtim.tv_nsec);
+    }();
+    return digest;
+}
+
+std::string readText(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+} // namespace
+
+struct ShaderCompiler::State {
+    Settings settings;
+    std::unique_ptr<jit::KernelCache> cache;
+    mutable std::mutex mutex;
+    std::map<std::string, std::shared_future<ShaderPtr>> shaders;
+    std::map<std::string, std::shared_future<KernelPtr>> kernels;
+    CompilerStatistics statistics;
+    std::vector<ShaderPtr> held;
+};
+
+ShaderCompiler::ShaderCompiler() : ShaderCompiler(Settings{}) {}
+
+ShaderCompiler::ShaderCompiler(Settings s) : state_(std::make_unique<State>()) {
+    if (s.cacheDirectory.empty() && s.useDefaultCache) s.cacheDirectory = jit::defaultCacheDirectory();
+    state_->cache = std::make_unique<jit::KernelCache>(s.cacheDirectory, limits::kKernelCacheBytes);
+    state_->settings = std::move(s);
+}
+
+ShaderCompiler::~ShaderCompiler() = default;
+
+ShaderPtr ShaderCompiler::finish(std::unique_ptr<Program> program, const std::string& path, const std::string& wanted, const std::string& text) {
+    if (!program || program->shaders.empty()) return nullptr;
+    auto c = std::make_shared<CompiledShader>();
+    c->path_ = path;
+    c->shader_ = program->shaders[0].get();
+    for (const auto& s : program->shaders)
+        if (s->name == wanted) c->shader_ = s.get();
+    // The texts themselves, so that the places in messages are right too.
+    std::string all = text + '\1' + program->preprocessed;
+    for (const auto& f : program->dependencies) all += '\1' + f + '\1' + readText(f);
+    for (const auto& f : program->files) all += '\2' + f;
+    c->digest_ = jit::sha256(all + '\3' + c->shader_->name);
+    for (const ShaderParameter& p : c->shader_->parameters) {
+        ParameterInfo i{p.symbol->name, p.symbol->type, p.symbol->storage, p.symbol->output, p.defaultValue != nullptr, p.symbol->place};
+        if (i.type.array < 0)
+            i.type.array = p.defaultValue && p.defaultValue->type.array > 0 ? p.defaultValue->type.array
+                           : p.defaultValue && p.defaultValue->kind == ExprKind::ArrayList ? std::max(1, int(p.defaultValue->args.size())) : 1;
+        c->parameters_.push_back(std::move(i));
+    }
+    c->program_ = std::move(program);
+    return c;
+}
+
+ShaderPtr ShaderCompiler::load(const std::string& name, const std::vector<std::string>& directories, Diagnostics& diagnostics) {
+    std::string key = name;
+    for (const auto& d : directories) key += '\n' + d;
+    std::promise<ShaderPtr> promise;
+    {
+        std::unique_lock lock(state_->mutex);
+        if (auto it = state_->shaders.find(key); it != state_->shaders.end()) {
+            auto f = it->second;
+            lock.unlock();
+            return f.get();
+        }
+        state_->shaders.emplace(key, promise.get_future().share());
+    }
+    ShaderPtr result;
+    const std::string stem = fs::path(name).filename().replace_extension().string();
+    auto at = [&](const std::string& n) { return findFile(n, directories); };
+    std::optional<FoundFile> found;
+    if (name.size() > 3 && name.ends_with(".sl")) found = at(name);
+    if (!found) found = at(name + ".sl");
+    for (const char* e : {".slo", ".sdl", ".sdr", ".slx", ".slc", ".sdw"})
+        if (!found && name.ends_with(e)) found = at(name.substr(0, name.size() - std::strlen(e)) + ".sl");
+    if (found) {
+        FrontOptions options;
+        options.includePaths.push_back(fs::path(found->path).parent_path().string());
+        for (const auto& d : directories) options.includePaths.push_back(d);
+        options.defines = state_->settings.defines;
+        result = finish(compileFile(found->path, options, diagnostics), found->path, stem, {});
+    } else {
+        std::string compiled;
+        for (const char* e : {".slo", ".sdl", ".sdr", ".slx", ".slc", ".sdw"}) {
+            if (name.ends_with(e)) compiled = name;
+            else if (auto f = at(name + e)) compiled = f->path;
+        }
+        if (!compiled.empty())
+            diagnostics.report(Severity::Error, Rie::NoShader, {compiled, 0, 0},
+                               "\"" + compiled + "\" is a compiled shader of another renderer; its source " + stem + ".sl was not found");
+        else
+            diagnostics.report(Severity::Error, Rie::NoShader, {}, "shader \"" + name + "\" was not found",
+                               directories.empty() ? "no shader search path is set" : "");
+    }
+    promise.set_value(result);
+    return result;
+}
+
+ShaderPtr ShaderCompiler::loadText(const std::string& text, const std::string& name, Diagnostics& diagnostics) {
+    FrontOptions options;
+    options.defines = state_->settings.defines;
+    return finish(compileText(text, name, options, diagnostics), name, {}, text);
+}
+
+std::unique_ptr<ir::Kernel> ShaderCompiler::analyse(const CompiledShader& s, const KernelOptions& o, Diagnostics& d) const {
+    auto k = buildKernel(s.program(), s.shader(), o, d);
+    if (k) ir::optimize(*k, o, d);
+    return k;
+}
+
+KernelPtr ShaderCompiler::kernel(const ShaderPtr& shader, const KernelOptions& options, Diagnostics& diagnostics) {
+    if (!shader) return nullptr;
+    const std::string key = jit::sha256(shader->digest_ + '\n' + jit::codeKey(options) + descriptorDigest() + programDigest());
+    std::promise<KernelPtr> promise;
+    {
+        std::unique_lock lock(state_->mutex);
+        if (auto it = state_->kernels.find(key); it != state_->kernels.end()) {
+            auto f = it->second;
+            state_->statistics.fromMemory++;
+            lock.unlock();
+            return f.get();
+        }
+        state_->kernels.emplace(key, promise.get_future().share());
+    }
+    const auto start = std::chrono::steady_clock::now();
+    KernelPtr result;
+    std::string error;
+    bool fromDisk = false;
+    try {
+        if (auto file = state_->cache->load(key)) {
+            result = jit::load(*file, true, error);
+            fromDisk = result != nullptr;
+            for (const auto& m : file->messages) diagnostics.report(m);
+        }
+        if (!result) {
+            Diagnostics local;
+            auto k = analyse(*shader, options, local);
+            jit::KernelFile file;
+            file.messages = local.all();
+            for (const auto& m : file.messages) diagnostics.report(m);
+            error.clear();
+            if (k && local.errors() == 0 && jit::generate(*k, options, file, error)) {
+                result = jit::load(file, false, error);
+                if (result) state_->cache->store(key, file);
+            }
+            if (!error.empty()) {
+                const Place& p = shader->shader().place;
+                const auto& files = shader->program().files;
+                diagnostics.report(Severity::Error, Rie::Bug,
+                                   {p.file >= 0 && size_t(p.file) < files.size() ? files[size_t(p.file)] : shader->path(), p.line, p.column},
+                                   "no code could be made for shader \"" + shader->name() + "\": " + error);
+            }
+        }
+    } catch (const std::exception& e) {
+        diagnostics.report(Severity::Error, Rie::Bug, {shader->path(), 0, 0}, "no code could be made for shader \"" + shader->name() + "\": " + e.what());
+        result = nullptr;
+    }
+    {
+        std::lock_guard lock(state_->mutex);
+        if (result) (fromDisk ? state_->statistics.fromDisk : state_->statistics.compiled)++;
+        state_->statistics.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    }
+    promise.set_value(result);
+    return result;
+}
+
+std::string ShaderCompiler::dump(const ShaderPtr& shader, const KernelOptions& options, Diagnostics& diagnostics, bool llvm) {
+    if (!shader) return {};
+    auto k = analyse(*shader, options, diagnostics);
+    if (!k) return {};
+    std::string text = ir::print(*k);
+    if (llvm) {
+        jit::KernelFile file;
+        std::string error, code;
+        if (jit::generate(*k, options, file, error, &code)) text += "\n" + code;
+        else diagnostics.report(Severity::Error, Rie::Bug, {shader->path(), 0, 0}, error);
+    }
+    return text;
+}
+
+CompilerStatistics ShaderCompiler::statistics() const {
+    std::lock_guard lock(state_->mutex);
+    return state_->statistics;
+}
+
+namespace {
+
+// Runs a kernel whose inputs are spaces and predefined variables for one point.
+void runOnce(const CompiledKernel& k, const SpaceFn& spaces, std::vector<std::vector<float>>& out) {
+    constexpr int kStride = 64;
+    struct Block {
+        float* p;
+        explicit Block(int rows) : p(static_cast<float*>(std::aligned_alloc(64, size_t(std::max(1, rows)) * kStride * 4))) { std::fill(p, p + std::max(1, rows) * kStride, 0.0f); }
+        Block(Block&& o) noexcept : p(o.p) { o.p = nullptr; }
+        ~Block() { std::free(p); }
+    };
+    std::vector<Block> blocks;
+    std::vector<const float*> in;
+    std::vector<float*> outs;
+    for (const auto& i : k.inputs()) {
+        const int rows = ir::components(i.kind) * inputParts(i) * std::max(1, i.array);
+        blocks.emplace_back(rows);
+        float* p = blocks.back().p;
+        if (i.kind == ir::Kind::Matrix) {
+            float m[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+            const size_t colon = i.name.find(':'), arrow = i.name.find('>');
+            if (spaces && colon != std::string::npos && arrow != std::string::npos)
+                spaces(i.name.substr(colon + 1, arrow - colon - 1), i.name.substr(arrow + 1), m);
+            for (int c = 0; c < 16; c++)
+                for (int n = 0; n < (i.uniform ? 1 : kStride); n++) p[i.uniform ? c : c * kStride + n] = m[c];
+        }
+        in.push_back(p);
+    }
+    for (const auto& o : k.outputs()) {
+        blocks.emplace_back(ir::components(o.kind));
+        outs.push_back(blocks.back().p);
+    }
+    KernelCall call{};
+    call.in = in.data();
+    call.out = outs.data();
+    call.n = 1;
+    call.stride = kStride;
+    call.strings = k.strings().data();
+    call.service = [](KernelCall*, int32_t, int32_t, uint64_t, int32_t, const float*, float*) {};
+    call.lightBegin = [](KernelCall*, int32_t, int32_t, uint64_t, int32_t, const float*) { return int32_t(0); };
+    k.run(&call);
+    for (size_t o = 0; o < outs.size(); o++) {
+        out.emplace_back();
+        for (int c = 0; c < ir::components(k.outputs()[o].kind); c++) out.back().push_back(outs[o][c * kStride]);
+    }
+}
+
+} // namespace
+
+std::vector<ParameterValue> ShaderCompiler::parameterDefaults(const ShaderPtr& shader, Diagnostics& diagnostics, const SpaceFn& spaces) {
+    std::vector<ParameterValue> values;
+    if (!shader) return values;
+    for (const auto& p : shader->parameters()) {
+        ParameterValue v{p.name, p.type, {}, {}};
+        const size_t n = size_t(std::max(1, p.type.array));
+        if (p.type.base == Base::String) v.strings.resize(n);
+        else v.numbers.resize(n * size_t(componentCount(p.type.base)));
+        values.push_back(std::move(v));
+    }
+    if (values.empty()) return values;
+    auto k = buildDefaults(shader->program(), shader->shader(), diagnostics);
+    if (!k) return values;
+    KernelOptions options;
+    options.lanes = 4;
+    options.vectors = 1;
+    ir::optimize(*k, options, diagnostics);
+    // Mostly everything is constant by now, and no code is needed.
+    std::vector<const ir::Inst*> results(k->outputs.size(), nullptr);
+    bool constant = true;
+    for (const ir::Inst* i : k->body.body)
+        if (i->op == ir::Op::Output && i->index >= 0 && size_t(i->index) < results.size()) results[size_t(i->index)] = i->args[0];
+    for (const ir::Inst* r : results) constant &= r && (r->op == ir::Op::Const || r->op == ir::Op::ConstString);
+    std::vector<std::vector<float>> numbers;
+    if (constant) {
+        for (const ir::Inst* r : results) {
+            if (r->op == ir::Op::ConstString) numbers.push_back({std::bit_cast<float>(internString(r->text))});
+            else numbers.push_back(r->numbers);
+        }
+    } else {
+        jit::KernelFile file;
+        std::string error;
+        options.optimize = 0;
+        KernelPtr code;
+        const std::string key = jit::sha256(shader->digest_ + "\ndefaults\n" + jit::codeKey(options) + descriptorDigest() + programDigest());
+        if (auto cached = state_->cache->load(key)) code = jit::load(*cached, true, error);
+        if (!code && jit::generate(*k, options, file, error)) {
+            code = jit::load(file, false, error);
+            if (code) state_->cache->store(key, file);
+        }
+        if (!code || code->facts().suspends) {
+            diagnostics.report(Severity::Error, Rie::Bug, {shader->path(), 0, 0}, "the parameters' defaults cannot be computed: " + error);
+            return values;
+        }
+        runOnce(*code, spaces, numbers);
+    }
+    for (size_t o = 0; o < numbers.size(); o++) {
+        std::string name = k->outputs[o].name.substr(std::strlen("param:"));
+        size_t element = 0;
+        if (auto bracket = name.find('['); bracket != std::string::npos) {
+            element = size_t(std::atoi(name.c_str() + bracket + 1));
+            name.resize(bracket);
+        }
+        for (auto& v : values) {
+            if (v.name != name) continue;
+            if (v.type.base == Base::String) {
+                if (element < v.strings.size()) v.strings[element] = internedString(std::bit_cast<int32_t>(numbers[o].empty() ? 0.0f : numbers[o][0]));
+            } else {
+                const size_t n = size_t(componentCount(v.type.base));
+                for (size_t c = 0; c < n && c < numbers[o].size() && element * n + c < v.numbers.size(); c++) v.numbers[element * n + c] = numbers[o][c];
+            }
+        }
+    }
+    return values;
+}
+
+} // namespace alpenglow::rsl

@@ -1,0 +1,99 @@
+// From shader files to kernels: finding, checking, building, compiling, caching. What the renderer and the command line use of rsl.
+#pragma once
+#include "base/diagnostics.h"
+#include "rsl/front/ast.h"
+#include "rsl/kernel.h"
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace alpenglow::rsl {
+
+/// A shader parameter as declared.
+struct ParameterInfo {
+    std::string name;
+    Type type;                    ///< arrays of open length: the length of their default
+    Storage storage = Storage::Uniform;
+    bool output = false;
+    bool hasDefault = false;
+    Place place;
+};
+
+/// A parameter with a value. Strings for string types, else numbers, element after element.
+struct ParameterValue {
+    std::string name;
+    Type type;
+    std::vector<float> numbers;
+    std::vector<std::string> strings;
+};
+
+/// A checked shader. Immutable, shared.
+class CompiledShader {
+public:
+    const std::string& path() const { return path_; } ///< the file; or the name given to loadText
+    const std::string& name() const { return shader_->name; }
+    ShaderKind kind() const { return shader_->kind; }
+    const std::vector<ParameterInfo>& parameters() const { return parameters_; }
+    const Program& program() const { return *program_; }
+    const Shader& shader() const { return *shader_; }
+
+private:
+    friend class ShaderCompiler;
+    std::string path_;
+    std::string digest_; ///< of everything that the source says
+    std::unique_ptr<Program> program_;
+    const Shader* shader_ = nullptr;
+    std::vector<ParameterInfo> parameters_;
+};
+
+/// Sixteen numbers, row by row, of the matrix that an input "space:FROM>TO" stands for. False: unknown (identity is taken).
+using SpaceFn = std::function<bool(const std::string& from, const std::string& to, float matrix[16])>;
+
+struct CompilerStatistics {
+    int compiled = 0;      ///< kernels for which code was generated
+    int fromDisk = 0;      ///< kernels from the disk cache
+    int fromMemory = 0;
+    double seconds = 0;    ///< of building, optimising and code generation, summed over threads
+};
+
+/// Thread safe. Kernels live as long as someone holds them or the compiler does.
+class ShaderCompiler {
+public:
+    struct Settings {
+        std::string cacheDirectory; ///< "": none
+        bool useDefaultCache = true; ///< take jit::defaultCacheDirectory() when cacheDirectory is empty
+        std::vector<std::pair<std::string, std::string>> defines;
+    };
+    ShaderCompiler();
+    explicit ShaderCompiler(Settings);
+    ~ShaderCompiler();
+
+    /// Finds NAME or NAME.sl in the directories, in order; includes are looked for beside the file, then in the directories. The shader
+    /// of that name in the file, else the first. Null after an error; an error is reported the first time a name is asked for. A compiled
+    /// shader of another renderer (.slo, .sdl, .sdr, .slx, .sdw) without its source is an error that names the missing source.
+    std::shared_ptr<const CompiledShader> load(const std::string& name, const std::vector<std::string>& directories, Diagnostics&);
+    /// The first shader of a text. Not kept.
+    std::shared_ptr<const CompiledShader> loadText(const std::string& text, const std::string& name, Diagnostics&);
+
+    /// Machine code; from memory, from disk, or compiled now. Requests for the same kernel at the same time compile once. Null after an
+    /// error (reported the first time).
+    std::shared_ptr<const CompiledKernel> kernel(const std::shared_ptr<const CompiledShader>&, const KernelOptions&, Diagnostics&);
+
+    /// The defaults of all parameters, in order. Those without one are zero, "" or for matrices zero. `spaces` resolves named spaces.
+    std::vector<ParameterValue> parameterDefaults(const std::shared_ptr<const CompiledShader>&, Diagnostics&, const SpaceFn& spaces = {});
+
+    /// Our IR after the passes, as text; with `llvm` also the optimised LLVM IR. Empty after an error.
+    std::string dump(const std::shared_ptr<const CompiledShader>&, const KernelOptions&, Diagnostics&, bool llvm = false);
+    /// What the passes find out about a shader under these options, without generating code.
+    std::unique_ptr<ir::Kernel> analyse(const CompiledShader&, const KernelOptions&, Diagnostics&) const;
+
+    CompilerStatistics statistics() const;
+
+private:
+    std::shared_ptr<const CompiledShader> finish(std::unique_ptr<Program>, const std::string& path, const std::string& wanted, const std::string& text);
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+} // namespace alpenglow::rsl

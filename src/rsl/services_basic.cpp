@@ -1,0 +1,266 @@
+#include "rsl/services_basic.h"
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <map>
+#include <mutex>
+#include <regex.h>
+
+namespace alpenglow::rsl {
+namespace {
+
+constexpr int kWidest = 1000; // of one conversion: width and precision; more is taken as this
+
+struct Conversion {
+    std::string flags;
+    int width = 0, precision = -1;
+    char letter = 0;
+};
+
+std::string number(double v, char letter, int precision, bool sign) {
+    char text[kWidest + 400];
+    const char* plus = sign ? "+" : "";
+    const std::string f = std::string("%") + plus + ".*" + letter;
+    std::snprintf(text, sizeof text, f.c_str(), precision, v);
+    return text;
+}
+
+// %g: with a precision it is %f; without one whatever is shorter, "full precision" being the seven digits that eval prints.
+std::string general(float v, int precision, bool sign) {
+    if (precision >= 0) return number(double(v), 'f', precision, sign);
+    char text[64];
+    std::snprintf(text, sizeof text, sign ? "%+.7g" : "%.7g", double(v));
+    return text;
+}
+
+std::string scalar(float v, char letter, int precision, bool sign) {
+    switch (letter) {
+    case 'd': return number(double(v), 'f', 0, sign);
+    case 'e': return number(double(v), 'e', precision < 0 ? 6 : precision, sign);
+    case 'g': return general(v, precision, sign);
+    default: return number(double(v), 'f', precision < 0 ? 6 : precision, sign);
+    }
+}
+
+std::string convert(const FormatValue& v, const Conversion& c) {
+    const bool sign = c.flags.find('+') != std::string::npos;
+    std::string s;
+    if (v.base == Base::String) {
+        s = c.precision >= 0 ? v.text.substr(0, size_t(c.precision)) : v.text;
+    } else if (v.base == Base::Matrix) {
+        s = "[";
+        for (int k = 0; k < 16; k++) {
+            if (k) s += k % 4 == 0 ? ", " : " ";
+            s += c.letter == 'm' ? general(v.numbers[k], c.precision, sign) : scalar(v.numbers[k], c.letter, c.precision, sign);
+        }
+        s += "]";
+    } else if (v.base == Base::Float) {
+        const char letter = std::strchr("fegd", c.letter) ? c.letter : 'g';
+        s = scalar(v.numbers[0], letter, c.precision, sign);
+    } else {
+        const char letter = std::strchr("fegd", c.letter) ? c.letter : 'f';
+        s = "[";
+        for (int k = 0; k < 3; k++) s += (k ? " " : "") + scalar(v.numbers[k], letter, c.precision, sign);
+        s += "]";
+    }
+    if (int(s.size()) >= c.width) return s;
+    const size_t pad = size_t(c.width) - s.size();
+    if (c.flags.find('-') != std::string::npos) return s + std::string(pad, ' ');
+    if (c.flags.find('0') != std::string::npos && v.base == Base::Float) {
+        const size_t at = !s.empty() && (s[0] == '-' || s[0] == '+') ? 1 : 0;
+        return s.substr(0, at) + std::string(pad, '0') + s.substr(at);
+    }
+    return std::string(pad, ' ') + s;
+}
+
+// Positional arguments of one lane. Constant strings are in the site; everything else comes in rows. The site lists all strings, ""
+// for those that come in rows; conversions of a pattern say where a constant string belongs.
+struct Arguments {
+    const ir::Site& site;
+    int32_t lanes;
+    const float* in;
+    int lane;
+    size_t nextKind = 0, nextString = 0;
+    int row = 0;
+    int dynamicLeft = 0;
+    Arguments(const ir::Site& s, int32_t lanes, const float* in, int lane) : site(s), lanes(lanes), in(in), lane(lane) {
+        dynamicLeft = int(std::count(s.argKinds.begin(), s.argKinds.end(), ir::Kind::String));
+    }
+    float at(int r) const { return in[size_t(r) * size_t(lanes) + size_t(lane)]; }
+    bool more(bool wantString) const { return wantString ? nextString < site.strings.size() : nextKind < site.argKinds.size(); }
+    std::string string() {
+        if (nextString >= site.strings.size()) return {};
+        const std::string& s = site.strings[nextString++];
+        if (!s.empty() || dynamicLeft == 0) return s;
+        while (nextKind < site.argKinds.size() && site.argKinds[nextKind] != ir::Kind::String) skip();
+        if (nextKind >= site.argKinds.size()) return {};
+        dynamicLeft--;
+        nextKind++;
+        return internedString(std::bit_cast<int32_t>(at(row++)));
+    }
+    void skip() { row += ir::components(site.argKinds[nextKind++]); }
+    FormatValue value() {
+        FormatValue v;
+        if (nextKind >= site.argKinds.size()) return v;
+        const ir::Kind k = site.argKinds[nextKind];
+        if (k == ir::Kind::String) {
+            v.base = Base::String;
+            v.text = string();
+            return v;
+        }
+        v.base = nextKind < site.argTypes.size() ? site.argTypes[nextKind].base : k == ir::Kind::Float ? Base::Float : Base::Color;
+        if (k == ir::Kind::Float || k == ir::Kind::Bool) v.base = Base::Float;
+        for (int c = 0; c < ir::components(k) && c < 16; c++) v.numbers[c] = at(row + c);
+        skip();
+        return v;
+    }
+};
+
+size_t parseConversion(const std::string& p, size_t at, Conversion& c) {
+    size_t i = at + 1;
+    while (i < p.size() && std::strchr("-+ 0#", p[i])) c.flags += p[i++];
+    auto digits = [&] {
+        int n = 0;
+        while (i < p.size() && p[i] >= '0' && p[i] <= '9') n = std::min(kWidest, n * 10 + (p[i++] - '0'));
+        return n;
+    };
+    c.width = digits();
+    if (i < p.size() && p[i] == '.') {
+        i++;
+        c.precision = digits();
+    }
+    c.letter = i < p.size() ? p[i] : 0;
+    return i + 1;
+}
+
+// `next` gives the value for a conversion, or null when there is none left.
+std::string formatWith(const std::string& p, const std::function<const FormatValue*(char letter)>& next) {
+    std::string out;
+    for (size_t i = 0; i < p.size();) {
+        if (p[i] != '%') {
+            out += p[i++];
+            continue;
+        }
+        Conversion c;
+        const size_t end = parseConversion(p, i, c);
+        if (c.letter == '%') {
+            out += '%';
+        } else if (c.letter && std::strchr("fegdpcmsh", c.letter)) {
+            const FormatValue* v = next(c.letter);
+            if (v) out += convert(*v, c);
+            else out += p.substr(i, end - i);
+        } else {
+            out += p.substr(i, end - i);
+        }
+        i = std::min(end, p.size());
+    }
+    return out;
+}
+
+std::string formatSite(const ir::Site& s, int32_t lanes, const float* in, int lane) {
+    Arguments a(s, lanes, in, lane);
+    const std::string pattern = a.string();
+    FormatValue v;
+    return formatWith(pattern, [&](char letter) -> const FormatValue* {
+        if (letter == 's' && a.more(true)) {
+            v = FormatValue{Base::String, {}, a.string()};
+            return &v;
+        }
+        if (a.more(false)) {
+            v = a.value();
+            return &v;
+        }
+        if (!a.more(true)) return nullptr;
+        v = FormatValue{Base::String, {}, a.string()};
+        return &v;
+    });
+}
+
+} // namespace
+
+std::string formatText(const std::string& pattern, const std::vector<FormatValue>& values) {
+    size_t at = 0;
+    return formatWith(pattern, [&](char) { return at < values.size() ? &values[at++] : nullptr; });
+}
+
+bool matchText(const std::string& pattern, const std::string& subject, std::string* error) {
+    regex_t r;
+    if (int e = regcomp(&r, pattern.c_str(), REG_EXTENDED | REG_NOSUB)) {
+        char text[200];
+        regerror(e, &r, text, sizeof text);
+        if (error) *error = text;
+        return false;
+    }
+    const bool found = regexec(&r, subject.c_str(), 0, nullptr, 0) == 0;
+    regfree(&r);
+    return found;
+}
+
+void hashText(const std::string& s, float out[3]) {
+    // 64-bit FNV-1a, then a finaliser for each number; 24 bits of each, so that the float is exact and below one.
+    uint64_t h = 0xcbf29ce484222325u;
+    for (unsigned char c : s) h = (h ^ c) * 0x100000001b3u;
+    for (uint64_t k = 0; k < 3; k++) {
+        uint64_t x = h + 0x9e3779b97f4a7c15u * (k + 1);
+        x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+        x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+        x ^= x >> 31;
+        out[k] = float(x >> 40) * 0x1p-24f;
+    }
+}
+
+bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* in, float* out, Diagnostics& diagnostics, const PrintFn& print) {
+    auto each = [&](auto&& f) {
+        for (int l = 0; l < lanes; l++)
+            if (mask >> l & 1) f(l);
+    };
+    auto put = [&](int row, int lane, float v) { out[size_t(row) * size_t(lanes) + size_t(lane)] = v; };
+    auto putString = [&](int lane, const std::string& t) { put(0, lane, std::bit_cast<float>(internString(t))); };
+    if (s.op == "format") {
+        each([&](int l) { putString(l, formatSite(s, lanes, in, l)); });
+    } else if (s.op == "printf") {
+        each([&](int l) {
+            const std::string t = formatSite(s, lanes, in, l);
+            if (print) print(l, t);
+            else std::fwrite(t.data(), 1, t.size(), stdout);
+        });
+    } else if (s.op == "concat") {
+        each([&](int l) {
+            Arguments a(s, lanes, in, l);
+            std::string t;
+            while (a.more(true)) t += a.string();
+            putString(l, t);
+        });
+    } else if (s.op == "match") {
+        each([&](int l) {
+            Arguments a(s, lanes, in, l);
+            const std::string pattern = a.string(), subject = a.string();
+            std::string error;
+            put(0, l, matchText(pattern, subject, &error) ? 1.0f : 0.0f);
+            if (!error.empty()) {
+                Diagnostic d;
+                d.severity = Severity::Error;
+                d.code = Rie::Syntax;
+                d.place.line = s.place.line;
+                d.place.column = s.place.column;
+                d.message = "match(): \"" + pattern + "\": " + error;
+                diagnostics.reportOnce("match:" + pattern, d);
+            }
+        });
+    } else if (s.op == "stringhash") {
+        each([&](int l) {
+            Arguments a(s, lanes, in, l);
+            float h[3];
+            hashText(a.string(), h);
+            const int n = s.resultKinds.empty() ? 1 : std::min(3, ir::components(s.resultKinds[0]));
+            for (int c = 0; c < n; c++) put(c, l, h[c]);
+        });
+    } else {
+        return false;
+    }
+    return true;
+}
+
+} // namespace alpenglow::rsl

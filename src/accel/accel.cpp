@@ -57,7 +57,9 @@ struct Accel::Impl {
         std::vector<Vec3> P;                    ///< shared groups: all points
         std::vector<uint32_t> index;
         void find(uint32_t prim, uint32_t& s, uint32_t& local) const {
-            size_t k = shape.size() == 1 ? 0 : size_t(std::upper_bound(firstPrim.begin(), firstPrim.end(), prim) - firstPrim.begin()) - 1;
+            size_t k = shape.size() == 1
+                           ? 0
+                           : size_t(std::upper_bound(firstPrim.begin(), firstPrim.end(), prim) - firstPrim.begin()) - 1;
             s = shape[k];
             local = prim - firstPrim[k];
         }
@@ -210,14 +212,16 @@ void Accel::Impl::build() {
     rtcCommitScene(scene);
 }
 
-Accel::Accel(std::vector<ShapeRef> shapes, std::vector<uint32_t> visibility, Diagnostics& diag) : impl_(std::make_unique<Impl>()) {
+Accel::Accel(std::vector<ShapeRef> shapes, std::vector<uint32_t> visibility, Diagnostics& diag)
+    : impl_(std::make_unique<Impl>()) {
     impl_->shapes = std::move(shapes);
     impl_->visibility = std::move(visibility);
     impl_->visibility.resize(impl_->shapes.size(), kAll);
     FlushDenormals flush;
     impl_->device = rtcNewDevice(nullptr);
     if (!impl_->device) {
-        diag.report(Severity::Severe, Rie::System, {}, "Embree did not start (code " + std::to_string(int(rtcGetDeviceError(nullptr))) + ")");
+        diag.report(Severity::Severe, Rie::System, {},
+                    "Embree did not start (code " + std::to_string(int(rtcGetDeviceError(nullptr))) + ")");
         return;
     }
     impl_->scene = rtcNewScene(impl_->device);

@@ -68,7 +68,7 @@ private:
 
 /// Meeting a triangle in double: false when the line is parallel to it or the triangle has no area. b1, b2 are clamped to the
 /// triangle, for candidates that are known to be hits; `outside` says by how much they had to be.
-bool meetTriangle(const Vec3& org, const Vec3& dir, const Vec3& a, const Vec3& b, const Vec3& c, double& t, double& b1, double& b2,
-                  double& outside);
+bool meetTriangle(const Vec3& org, const Vec3& dir, const Vec3& a, const Vec3& b, const Vec3& c, double& t, double& b1,
+                  double& b2, double& outside);
 
 } // namespace alpenglow::accel

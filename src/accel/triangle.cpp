@@ -4,8 +4,8 @@
 
 namespace alpenglow::accel {
 
-bool meetTriangle(const Vec3& org, const Vec3& dir, const Vec3& fa, const Vec3& fb, const Vec3& fc, double& t, double& b1, double& b2,
-                  double& outside) {
+bool meetTriangle(const Vec3& org, const Vec3& dir, const Vec3& fa, const Vec3& fb, const Vec3& fc, double& t, double& b1,
+                  double& b2, double& outside) {
     // Float coordinates subtract exactly or nearly so in double: the plane test keeps the side of an origin one float step away.
     Vec3d a = Vec3d(fa) - Vec3d(org), b = Vec3d(fb) - Vec3d(org), c = Vec3d(fc) - Vec3d(org), d(dir);
     Vec3d e1 = b - a, e2 = c - a, n = cross(e1, e2);

@@ -9,10 +9,20 @@ namespace {
 
 struct Entry { const char* kind; ShapeRef (*make)(ShapeSource, Diagnostics&); };
 constexpr Entry kTable[] = {
-    {"Sphere", makeSphere}, {"Cone", makeCone}, {"Cylinder", makeCylinder}, {"Hyperboloid", makeHyperboloid},
-    {"Paraboloid", makeParaboloid}, {"Disk", makeDisk}, {"Torus", makeTorus},
-    {"Polygon", makePolygon}, {"GeneralPolygon", makeGeneralPolygon}, {"PointsPolygons", makePointsPolygons},
-    {"PointsGeneralPolygons", makePointsGeneralPolygons}, {"Patch", makePatch}, {"PatchMesh", makePatchMesh}, {"NuPatch", makeNuPatch},
+    {"Sphere", makeSphere},
+    {"Cone", makeCone},
+    {"Cylinder", makeCylinder},
+    {"Hyperboloid", makeHyperboloid},
+    {"Paraboloid", makeParaboloid},
+    {"Disk", makeDisk},
+    {"Torus", makeTorus},
+    {"Polygon", makePolygon},
+    {"GeneralPolygon", makeGeneralPolygon},
+    {"PointsPolygons", makePointsPolygons},
+    {"PointsGeneralPolygons", makePointsGeneralPolygons},
+    {"Patch", makePatch},
+    {"PatchMesh", makePatchMesh},
+    {"NuPatch", makeNuPatch},
 };
 
 void once(Diagnostics& diag, const std::string& key, Rie code, const SourcePlace& place, const std::string& message) {
@@ -38,7 +48,8 @@ void fillBasis(scene::Basis& b) {
 
 } // namespace
 
-ShapeRef buildShape(const scene::PrimitiveRef& prim, const scene::AttributesRef& given, const Matrix& toCamera, int instance, Diagnostics& diag) {
+ShapeRef buildShape(const scene::PrimitiveRef& prim, const scene::AttributesRef& given, const Matrix& toCamera, int instance,
+                    Diagnostics& diag) {
     const Entry* entry = nullptr;
     for (const Entry& e : kTable)
         if (prim->kind == e.kind) entry = &e;
@@ -53,10 +64,13 @@ ShapeRef buildShape(const scene::PrimitiveRef& prim, const scene::AttributesRef&
     for (auto& row : toCamera.m)
         for (double x : row) finite = finite && std::isfinite(x);
     if (!finite || determinant3(toCamera) == 0) {
-        diag.report(Severity::Warning, Rie::Math, prim->place, prim->kind + " has a transformation without inverse; it is not drawn");
+        diag.report(Severity::Warning, Rie::Math, prim->place,
+                    prim->kind + " has a transformation without inverse; it is not drawn");
         return nullptr;
     }
-    if (!affine) once(diag, "projective", Rie::Incapable, prim->place, "a transformation of this " + prim->kind + " holds a perspective; derivatives and quadrics ignore it");
+    if (!affine)
+        once(diag, "projective", Rie::Incapable, prim->place,
+             "a transformation of this " + prim->kind + " holds a perspective; derivatives and quadrics ignore it");
     ShapeSource s;
     s.primitive = prim;
     s.toCamera = toCamera;
@@ -81,11 +95,13 @@ std::vector<ShapeRef> buildShapes(const scene::Frame& f, Diagnostics& diag) {
     const Matrix& camera = f.options.worldToCamera.first();
     auto sayMotion = [&](const scene::Primitive& p, bool moves) {
         if (moves || !p.motionKeys.empty() || p.toWorld.moves())
-            once(diag, "motion", Rie::Unimplement, p.place, "motion is not yet drawn: moving primitives stand where they are at their first key");
+            once(diag, "motion", Rie::Unimplement, p.place,
+                 "motion is not yet drawn: moving primitives stand where they are at their first key");
     };
     auto add = [&](const scene::PrimitiveRef& p, const scene::AttributesRef& a, const Matrix& m, int instance) {
         if (out.size() >= limits::kShapes) {
-            once(diag, "limit", Rie::Limit, p->place, "the frame has more than " + std::to_string(limits::kShapes) + " primitives; the rest is not drawn");
+            once(diag, "limit", Rie::Limit, p->place,
+                 "the frame has more than " + std::to_string(limits::kShapes) + " primitives; the rest is not drawn");
             return;
         }
         if (ShapeRef s = buildShape(p, a, m, instance, diag)) out.push_back(std::move(s));
@@ -105,7 +121,8 @@ std::vector<ShapeRef> buildShapes(const scene::Frame& f, Diagnostics& diag) {
         for (const scene::PrimitiveRef& p : f.objects[size_t(inst.object)].primitives) {
             if (!p) continue;
             sayMotion(*p, inst.toWorld.moves());
-            add(p, inst.attributes ? inst.attributes : p->attributes, p->toWorld.first() * (inst.toWorld.first() * camera), int(i));
+            add(p, inst.attributes ? inst.attributes : p->attributes, p->toWorld.first() * (inst.toWorld.first() * camera),
+                int(i));
         }
     }
     return out;

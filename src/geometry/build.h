@@ -5,7 +5,8 @@
 namespace alpenglow::geometry {
 
 /// Makes a shape of one primitive; null when it was reported as faulty or not yet drawn. attributes may be null (defaults).
-ShapeRef buildShape(const scene::PrimitiveRef&, const scene::AttributesRef& attributes, const Matrix& toCamera, int instance, Diagnostics&);
+ShapeRef buildShape(const scene::PrimitiveRef&, const scene::AttributesRef& attributes, const Matrix& toCamera, int instance,
+                    Diagnostics&);
 
 /// All shapes of a frame: its primitives in order, then its instances expanded in order (their primitives' transforms
 /// composed; the instance's attributes). Moving transforms and primitives stand at their first key, said once.

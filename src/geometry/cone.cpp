@@ -8,7 +8,10 @@ namespace {
 
 class Cone final : public Quadric {
 public:
-    Cone(ShapeSource s, double height, double r, double sweep, Diagnostics& d) : Quadric(std::move(s), sweep, d), h_(height), r_(r) { finish(d); }
+    Cone(ShapeSource s, double height, double r, double sweep, Diagnostics& d)
+        : Quadric(std::move(s), sweep, d), h_(height), r_(r) {
+        finish(d);
+    }
 
 private:
     Profile profile(double v) const override { return {{r_ * (1 - v), 0, v * h_}, {-r_, 0, h_}, {}}; }

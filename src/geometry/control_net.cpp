@@ -107,7 +107,8 @@ BasisSpan NetDirection::at(double x) const {
     return s;
 }
 
-ControlNet::ControlNet(ShapeSource s, NetDirection u, NetDirection v, std::vector<std::array<double, 4>> points, Diagnostics& diag)
+ControlNet::ControlNet(ShapeSource s, NetDirection u, NetDirection v, std::vector<std::array<double, 4>> points,
+                       Diagnostics& diag)
     : Parametric(std::move(s)), u_(std::move(u)), v_(std::move(v)), points_(std::move(points)) {
     for (auto& p : points_) {
         if (p[3] != 1) rational_ = true;
@@ -147,7 +148,8 @@ void ControlNet::differentiate(double u, double v, LocalPoint& r) const {
     for (int j = 0; j < b.count; ++j)
         for (int i = 0; i < a.count; ++i) {
             const auto& p = points_[size_t(b.index[j]) * size_t(u_.points()) + size_t(a.index[i])];
-            double k[6] = {a.w[i] * b.w[j], a.d[i] * b.w[j], a.w[i] * b.d[j], a.dd[i] * b.w[j], a.d[i] * b.d[j], a.w[i] * b.dd[j]};
+            double k[6] = {a.w[i] * b.w[j],  a.d[i] * b.w[j], a.w[i] * b.d[j],
+                           a.dd[i] * b.w[j], a.d[i] * b.d[j], a.w[i] * b.dd[j]};
             for (int q = 0; q < 6; ++q)
                 for (size_t c = 0; c < 4; ++c) f[q][c] += k[q] * p[c];
         }
@@ -208,7 +210,8 @@ int ControlNet::weights(Class c, const SurfacePoint& p, Weight w[16]) const {
     int n = 0;
     for (int j = 0; j < b.count; ++j)
         for (int i = 0; i < a.count; ++i)
-            w[n++] = {size_t(b.index[j]) * size_t(u_.points()) + size_t(a.index[i]), a.w[i] * b.w[j], a.d[i] * b.w[j], a.w[i] * b.d[j]};
+            w[n++] = {size_t(b.index[j]) * size_t(u_.points()) + size_t(a.index[i]), a.w[i] * b.w[j], a.d[i] * b.w[j],
+                      a.w[i] * b.d[j]};
     return n;
 }
 

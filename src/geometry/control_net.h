@@ -65,6 +65,7 @@ private:
 };
 
 /// Reads "P", "Pw" or "Pz" of nu by nv control points, to camera space; reports and returns false when it cannot.
-bool readControlPoints(const ShapeSource&, int nu, int nv, bool wrapU, bool wrapV, Diagnostics&, std::vector<std::array<double, 4>>& out);
+bool readControlPoints(const ShapeSource&, int nu, int nv, bool wrapU, bool wrapV, Diagnostics&,
+                       std::vector<std::array<double, 4>>& out);
 
 } // namespace alpenglow::geometry

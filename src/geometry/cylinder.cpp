@@ -22,7 +22,8 @@ private:
 ShapeRef makeCylinder(ShapeSource s, Diagnostics& diag) {
     const scene::Primitive& p = *s.primitive;
     bool ok = true;
-    double r = quadricNumber(p, 0, ok), zmin = quadricNumber(p, 1, ok), zmax = quadricNumber(p, 2, ok), sweep = quadricNumber(p, 3, ok);
+    double r = quadricNumber(p, 0, ok), zmin = quadricNumber(p, 1, ok), zmax = quadricNumber(p, 2, ok),
+           sweep = quadricNumber(p, 3, ok);
     if (!ok) return reportDegenerate(p, diag, "needs four finite numbers"), nullptr;
     if (r == 0 || sweep == 0 || zmin == zmax) return reportDegenerate(p, diag, "has no radius, no sweep or no height"), nullptr;
     return std::make_shared<Cylinder>(s, r, zmin, zmax, sweep, diag);

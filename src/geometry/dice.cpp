@@ -60,8 +60,9 @@ double displacementBound(const Shape& s) {
 
 } // namespace
 
-void displaceMesh(const Shape& shape, const DiceOptions& opt, Diagnostics& diag, const std::function<SurfacePoint(uint32_t)>& pointOf,
-                  const std::function<Vec2(uint32_t)>& stepOf, TriMesh& mesh) {
+void displaceMesh(const Shape& shape, const DiceOptions& opt, Diagnostics& diag,
+                  const std::function<SurfacePoint(uint32_t)>& pointOf, const std::function<Vec2(uint32_t)>& stepOf,
+                  TriMesh& mesh) {
     constexpr uint32_t kRun = 4096; // keeps the full points of a run in the cache, and kernels in wide batches
     uint32_t n = uint32_t(mesh.P.size());
     double bound = displacementBound(shape), farthest = 0;
@@ -89,14 +90,16 @@ void displaceMesh(const Shape& shape, const DiceOptions& opt, Diagnostics& diag,
     }
     if (notFinite)
         diag.report(Severity::Error, Rie::Math, shape.place(),
-                    "displacement of this " + shape.kind() + " is not finite at " + std::to_string(notFinite) + " points; they stay where they were");
+                    "displacement of this " + shape.kind() + " is not finite at " + std::to_string(notFinite) +
+                        " points; they stay where they were");
     if (tooFar)
         diag.report(Severity::Error, Rie::Limit, shape.place(),
-                    "displacement of this " + shape.kind() + " moves " + std::to_string(tooFar) + " points farther than the limit; they stay where they were");
+                    "displacement of this " + shape.kind() + " moves " + std::to_string(tooFar) +
+                        " points farther than the limit; they stay where they were");
     if (bound >= 0 && farthest > bound * 1.001)
         diag.report(Severity::Warning, Rie::Range, shape.place(),
-                    "displacement of this " + shape.kind() + " reaches " + std::to_string(farthest) + ", beyond its displacementbound of " +
-                        std::to_string(bound) + " (camera units); it is drawn whole");
+                    "displacement of this " + shape.kind() + " reaches " + std::to_string(farthest) +
+                        ", beyond its displacementbound of " + std::to_string(bound) + " (camera units); it is drawn whole");
 }
 
 void diceShapes(const std::vector<ShapeRef>& shapes, const DiceOptions& opt, Diagnostics& diag) {

@@ -16,7 +16,8 @@ ShapeRef makeGeneralPolygon(ShapeSource s, Diagnostics& diag) {
     }
     if (!ok || sum > points) {
         diag.report(Severity::Error, Rie::MissingData, p.place,
-                    "GeneralPolygon: the loops need " + std::to_string(sum) + " points, " + std::to_string(points) + " are given; it is not drawn");
+                    "GeneralPolygon: the loops need " + std::to_string(sum) + " points, " + std::to_string(points) +
+                        " are given; it is not drawn");
         return nullptr;
     }
     PolygonInput in;

@@ -33,7 +33,8 @@ private:
     }
     // A flat ring: v where the line is as far from the axis as p; up to two.
     int flatV(const Vec3d& p, double t[2]) const {
-        return solveQuadratic(d_.x * d_.x + d_.y * d_.y, p_.x * d_.x + p_.y * d_.y, p_.x * p_.x + p_.y * p_.y - p.x * p.x - p.y * p.y, t);
+        return solveQuadratic(d_.x * d_.x + d_.y * d_.y, p_.x * d_.x + p_.y * d_.y,
+                              p_.x * p_.x + p_.y * p_.y - p.x * p.x - p.y * p.y, t);
     }
     Vec3d p_, d_;
 };

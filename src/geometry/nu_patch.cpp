@@ -19,14 +19,16 @@ ShapeRef makeNuPatch(ShapeSource s, Diagnostics& diag) {
     for (size_t k = 0; k < 2; ++k) {
         n[k] = p.ints[2 * k];
         int order = p.ints[2 * k + 1];
-        if (order < 2 || n[k] < order) return fail(Rie::Range, "there must be at least as many points as the order, which is at least 2");
+        if (order < 2 || n[k] < order)
+            return fail(Rie::Range, "there must be at least as many points as the order, which is at least 2");
         if (order > kOrder) return fail(Rie::Unimplement, "orders above 4 are not yet drawn");
         const scene::Param* q = lastParam(p.params, k == 0 ? "uknot" : "vknot");
         size_t need = size_t(n[k]) + size_t(order);
         if (!q || q->numbers.size() < need) return fail(Rie::MissingData, std::to_string(need) + " knots are needed");
         std::vector<double> knots(q->numbers.begin(), q->numbers.begin() + ptrdiff_t(need));
         for (size_t i = 0; i < need; ++i)
-            if (!std::isfinite(knots[i]) || (i && knots[i] < knots[i - 1])) return fail(Rie::Range, "knots must be finite and must not decrease");
+            if (!std::isfinite(knots[i]) || (i && knots[i] < knots[i - 1]))
+                return fail(Rie::Range, "knots must be finite and must not decrease");
         double first = knots[size_t(order) - 1], last = knots[size_t(n[k])];
         double lo = std::max(double(p.numbers[2 * k]), first), hi = std::min(double(p.numbers[2 * k + 1]), last);
         if (!(lo < hi)) return fail(Rie::Range, "its parameter range is empty");

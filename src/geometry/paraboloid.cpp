@@ -29,11 +29,13 @@ private:
 ShapeRef makeParaboloid(ShapeSource s, Diagnostics& diag) {
     const scene::Primitive& p = *s.primitive;
     bool ok = true;
-    double r = quadricNumber(p, 0, ok), zmin = quadricNumber(p, 1, ok), zmax = quadricNumber(p, 2, ok), sweep = quadricNumber(p, 3, ok);
+    double r = quadricNumber(p, 0, ok), zmin = quadricNumber(p, 1, ok), zmax = quadricNumber(p, 2, ok),
+           sweep = quadricNumber(p, 3, ok);
     if (!ok) return reportDegenerate(p, diag, "needs four finite numbers"), nullptr;
     double zref = zmax;
     if (zref == 0) zref = zmin; // swapped limits of a bowl that stands on its apex
-    if (r == 0 || sweep == 0 || zref == 0 || zmin == zmax) return reportDegenerate(p, diag, "has no radius, no sweep or no height"), nullptr;
+    if (r == 0 || sweep == 0 || zref == 0 || zmin == zmax)
+        return reportDegenerate(p, diag, "has no radius, no sweep or no height"), nullptr;
     if (zmin / zref < 0) {
         diag.report(Severity::Warning, Rie::Range, p.place, "Paraboloid zmin lies beyond its apex; it is drawn from the apex");
         zmin = 0;

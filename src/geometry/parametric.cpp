@@ -61,7 +61,8 @@ double Parametric::area() const {
         for (int i = 0; i < cu; ++i)
             for (int b = 0; b < 8; ++b)
                 for (int a = 0; a < 8; ++a) {
-                    double u = (i + 0.5 + 0.5 * (a < 4 ? x[a] : -x[a - 4])) / cu, v = (j + 0.5 + 0.5 * (b < 4 ? x[b] : -x[b - 4])) / cv;
+                    double u = (i + 0.5 + 0.5 * (a < 4 ? x[a] : -x[a - 4])) / cu,
+                           v = (j + 0.5 + 0.5 * (b < 4 ? x[b] : -x[b - 4])) / cv;
                     LocalPoint p = cameraPoint(u, v);
                     sum += w[a & 3] * w[b & 3] * length(cross(p.Pu, p.Pv));
                 }
@@ -125,7 +126,8 @@ DiceLines Parametric::diceLines(const DiceOptions& opt, bool displaced, Diagnost
     while (total(need[0], scale) * total(need[1], scale) > double(limits::kDiceQuads) && scale > 1e-9) scale *= 0.7;
     if (scale < 1) {
         diag.report(Severity::Info, Rie::Limit, place(),
-                    kind() + " would need more than " + std::to_string(limits::kDiceQuads) + " micropolygons; it is diced more coarsely");
+                    kind() + " would need more than " + std::to_string(limits::kDiceQuads) +
+                        " micropolygons; it is diced more coarsely");
     }
     DiceLines lines;
     for (int k = 0; k < 2; ++k) {
@@ -174,11 +176,15 @@ void Parametric::dice(const DiceOptions& opt, Diagnostics& diag) {
         }
     meshParam_ = std::move(param);
     if (displaced_)
-        displaceMesh(*this, opt, diag, [&](uint32_t i) { return evaluateLocal(0, meshParam_[i].x, meshParam_[i].y); },
-                     [&](uint32_t i) {
-                         auto step = [](const std::vector<float>& l, uint32_t k) { return k + 1 < l.size() ? l[k + 1] - l[k] : l[k] - l[k - 1]; };
-                         return Vec2{step(lines.u, i % nu), step(lines.v, i / nu)};
-                     }, m);
+        displaceMesh(
+            *this, opt, diag, [&](uint32_t i) { return evaluateLocal(0, meshParam_[i].x, meshParam_[i].y); },
+            [&](uint32_t i) {
+                auto step = [](const std::vector<float>& l, uint32_t k) {
+                    return k + 1 < l.size() ? l[k + 1] - l[k] : l[k] - l[k - 1];
+                };
+                return Vec2{step(lines.u, i % nu), step(lines.v, i / nu)};
+            },
+            m);
     m.finish();
     mesh_ = std::move(m);
 }

@@ -8,7 +8,8 @@ ShapeRef makePatch(ShapeSource s, Diagnostics& diag) {
     const scene::Primitive& p = *s.primitive;
     std::string type = p.strings.empty() ? "" : p.strings[0];
     if (type != "bilinear" && type != "bicubic") {
-        diag.report(Severity::Error, Rie::BadToken, p.place, "Patch type \"" + type + "\" is neither \"bilinear\" nor \"bicubic\"; it is not drawn");
+        diag.report(Severity::Error, Rie::BadToken, p.place,
+                    "Patch type \"" + type + "\" is neither \"bilinear\" nor \"bicubic\"; it is not drawn");
         return nullptr;
     }
     bool cubic = type == "bicubic";

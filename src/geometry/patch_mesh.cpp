@@ -12,13 +12,15 @@ ShapeRef makePatchMesh(ShapeSource s, Diagnostics& diag) {
     };
     if (p.strings.size() < 3 || p.ints.size() < 2) return fail(Rie::MissingData, "type, counts and wraps are needed");
     bool cubic = p.strings[0] == "bicubic";
-    if (!cubic && p.strings[0] != "bilinear") return fail(Rie::BadToken, "type \"" + p.strings[0] + "\" is neither \"bilinear\" nor \"bicubic\"");
+    if (!cubic && p.strings[0] != "bilinear")
+        return fail(Rie::BadToken, "type \"" + p.strings[0] + "\" is neither \"bilinear\" nor \"bicubic\"");
     bool wrap[2];
     for (size_t k = 0; k < 2; ++k) {
         const std::string& w = p.strings[k + 1];
         wrap[k] = w == "periodic";
         if (!wrap[k] && w != "nonperiodic" && w != "nowrap")
-            diag.report(Severity::Warning, Rie::BadToken, p.place, "PatchMesh: wrap \"" + w + "\" is unknown; taken as \"nonperiodic\"");
+            diag.report(Severity::Warning, Rie::BadToken, p.place,
+                        "PatchMesh: wrap \"" + w + "\" is unknown; taken as \"nonperiodic\"");
     }
     const scene::Attributes& a = *s.attributes;
     NetDirection dir[2];
@@ -36,8 +38,8 @@ ShapeRef makePatchMesh(ShapeSource s, Diagnostics& diag) {
         if (n < (wrap[k] ? step : 4)) return fail(Rie::Range, std::string(name) + " is too small for the basis");
         if (wrap[k] ? n % step : (n - 4) % step)
             diag.report(Severity::Warning, Rie::Consistency, p.place,
-                        std::string("PatchMesh: ") + name + " = " + std::to_string(n) + " does not fit the basis step " + std::to_string(step) +
-                            "; the last control points are not used");
+                        std::string("PatchMesh: ") + name + " = " + std::to_string(n) + " does not fit the basis step " +
+                            std::to_string(step) + "; the last control points are not used");
         dir[k] = NetDirection::cubic(n, wrap[k], b);
     }
     std::vector<std::array<double, 4>> points;

@@ -18,7 +18,8 @@ ShapeRef makePointsGeneralPolygons(ShapeSource s, Diagnostics& diag) {
         else corners += size_t(p.ints2[i]);
     }
     if (!ok || corners > p.ints3.size()) {
-        diag.report(Severity::Error, Rie::Consistency, p.place, "PointsGeneralPolygons: nloops, nverts and verts do not fit each other; it is not drawn");
+        diag.report(Severity::Error, Rie::Consistency, p.place,
+                    "PointsGeneralPolygons: nloops, nverts and verts do not fit each other; it is not drawn");
         return nullptr;
     }
     PolygonInput in;

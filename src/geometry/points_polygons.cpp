@@ -14,7 +14,8 @@ ShapeRef makePointsPolygons(ShapeSource s, Diagnostics& diag) {
     }
     if (!ok || sum > p.ints2.size()) {
         diag.report(Severity::Error, Rie::Consistency, p.place,
-                    "PointsPolygons: nverts asks for " + std::to_string(sum) + " indices, " + std::to_string(p.ints2.size()) + " are given; it is not drawn");
+                    "PointsPolygons: nverts asks for " + std::to_string(sum) + " indices, " + std::to_string(p.ints2.size()) +
+                        " are given; it is not drawn");
         return nullptr;
     }
     PolygonInput in;

@@ -42,9 +42,11 @@ ShapeRef makePolygonMesh(ShapeSource s, PolygonInput in, Diagnostics& diag) {
     }
     if (bad)
         diag.report(Severity::Error, Rie::Range, P->place,
-                    p.kind + ": " + std::to_string(bad) + " faces use points beyond the " + std::to_string(points) + " given; they are not drawn");
+                    p.kind + ": " + std::to_string(bad) + " faces use points beyond the " + std::to_string(points) +
+                        " given; they are not drawn");
     if (thin)
-        diag.report(Severity::Warning, Rie::Range, p.place, p.kind + ": " + std::to_string(thin) + " faces have fewer than three corners; they are not drawn");
+        diag.report(Severity::Warning, Rie::Range, p.place,
+                    p.kind + ": " + std::to_string(thin) + " faces have fewer than three corners; they are not drawn");
     auto mesh = std::make_shared<PolygonMesh>(std::move(s), in, P->numbers, diag);
     if (mesh->empty()) {
         if (!bad && !thin) diag.report(Severity::Warning, Rie::Range, p.place, p.kind + " has no area; it is not drawn");
@@ -53,7 +55,8 @@ ShapeRef makePolygonMesh(ShapeSource s, PolygonInput in, Diagnostics& diag) {
     return mesh;
 }
 
-PolygonMesh::PolygonMesh(ShapeSource s, const PolygonInput& in, const std::vector<float>& P, Diagnostics& diag) : Shape(std::move(s)) {
+PolygonMesh::PolygonMesh(ShapeSource s, const PolygonInput& in, const std::vector<float>& P, Diagnostics& diag)
+    : Shape(std::move(s)) {
     objectP_ = P.data();
     faceCount_ = int(in.loopsPerFace.size());
     uint32_t points = uint32_t(P.size() / 3);
@@ -90,7 +93,8 @@ PolygonMesh::PolygonMesh(ShapeSource s, const PolygonInput& in, const std::vecto
     }
     if (forced)
         diag.report(Severity::Warning, Rie::Consistency, place(),
-                    kind() + ": the loops of " + std::to_string(forced) + " faces cross or lie outside each other; they are filled as well as possible");
+                    kind() + ": the loops of " + std::to_string(forced) +
+                        " faces cross or lie outside each other; they are filled as well as possible");
     TriMesh m;
     m.P = cameraP_;
     m.index.reserve(corner_.size());
@@ -244,7 +248,8 @@ void PolygonMesh::dice(const DiceOptions& opt, Diagnostics& diag) {
     uint32_t n = uint32_t(std::clamp(std::ceil(longest), 1.0, std::clamp(std::floor(cap), 1.0, double(limits::kDiceEdge))));
     if (longest > n)
         diag.report(Severity::Info, Rie::Limit, place(),
-                    kind() + " would need more than " + std::to_string(limits::kDiceQuads) + " micropolygons; it is diced more coarsely");
+                    kind() + " would need more than " + std::to_string(limits::kDiceQuads) +
+                        " micropolygons; it is diced more coarsely");
     uint32_t perTri = (n + 1) * (n + 2) / 2;
     auto row = [&](uint32_t j) { return j * (n + 1) - j * (j - 1) / 2; }; // first vertex of row j, rows shrink by one
     TriMesh m;
@@ -274,8 +279,11 @@ void PolygonMesh::dice(const DiceOptions& opt, Diagnostics& diag) {
                      // A barycentric step turned to u and v: the extent of one micro-triangle.
                      uint32_t t = i / perTri;
                      Frame f = frame(int(face_[t]));
-                     Vec3d a = objectPoint(vertexOf(t, 0)), e1 = objectPoint(vertexOf(t, 1)) - a, e2 = objectPoint(vertexOf(t, 2)) - a;
-                     auto extent = [&](const Vec3d& d) { return float(std::max({std::fabs(dot(e1, d)), std::fabs(dot(e2, d)), 1e-12})); };
+                     Vec3d a = objectPoint(vertexOf(t, 0)), e1 = objectPoint(vertexOf(t, 1)) - a,
+                           e2 = objectPoint(vertexOf(t, 2)) - a;
+                     auto extent = [&](const Vec3d& d) {
+                         return float(std::max({std::fabs(dot(e1, d)), std::fabs(dot(e2, d)), 1e-12}));
+                     };
                      return Vec2{extent(f.a) * step, extent(f.b) * step};
                  }, m);
     m.finish();

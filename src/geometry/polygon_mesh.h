@@ -40,7 +40,9 @@ private:
     struct Plane { Vec3d p[3]; Vec3d n; Vec3d Pu, Pv; };
     Frame frame(int face) const;
     Plane plane(uint32_t prim) const;
-    Vec3d objectPoint(uint32_t vertex) const { return {objectP_[3 * vertex], objectP_[3 * vertex + 1], objectP_[3 * vertex + 2]}; }
+    Vec3d objectPoint(uint32_t vertex) const {
+        return {objectP_[3 * vertex], objectP_[3 * vertex + 1], objectP_[3 * vertex + 2]};
+    }
     uint32_t vertexOf(uint32_t tri, int k) const { return cornerVertex_[corner_[3 * size_t(tri) + size_t(k)]]; }
     Vec3d cameraCorner(uint32_t tri, int k) const { return Vec3d(cameraP_[vertexOf(tri, k)]); }
 

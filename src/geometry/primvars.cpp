@@ -19,7 +19,9 @@ std::vector<float> toCameraValues(const scene::Param& p, const Matrix& m) {
             continue;
         }
         Vec3d v(s[0], s[1], s[2]);
-        Vec3d q = p.type == Type::Point ? transformPoint(m, v) : p.type == Type::Vector ? transformVector(m, v) : transformNormal(m, v);
+        Vec3d q = p.type == Type::Point    ? transformPoint(m, v)
+                  : p.type == Type::Vector ? transformVector(m, v)
+                                           : transformNormal(m, v);
         for (int k = 0; k < 3; ++k) r[i + k] = float(q[k]);
     }
     return r;
@@ -34,7 +36,8 @@ const scene::Param* lastParam(const scene::ParamList& list, std::string_view nam
     return found;
 }
 
-bool makePrimVar(const scene::Param& p, size_t count, const Matrix& toCamera, const std::string& kind, Diagnostics& diag, PrimVar& out) {
+bool makePrimVar(const scene::Param& p, size_t count, const Matrix& toCamera, const std::string& kind, Diagnostics& diag,
+                 PrimVar& out) {
     out.name = p.name;
     out.cls = p.cls;
     out.type = p.type;
@@ -51,10 +54,12 @@ bool makePrimVar(const scene::Param& p, size_t count, const Matrix& toCamera, co
     }
     if (have > need)
         diag.report(Severity::Warning, Rie::Consistency, p.place,
-                    kind + " \"" + p.name + "\": " + std::to_string(have) + " values given, only the first " + std::to_string(need) + " are used");
+                    kind + " \"" + p.name + "\": " + std::to_string(have) + " values given, only the first " +
+                        std::to_string(need) + " are used");
     if (p.type != Type::String &&
         !std::all_of(p.numbers.begin(), p.numbers.begin() + ptrdiff_t(need), [](float f) { return std::isfinite(f); })) {
-        diag.report(Severity::Error, Rie::Range, p.place, kind + " \"" + p.name + "\" holds a number that is not finite; the variable is ignored");
+        diag.report(Severity::Error, Rie::Range, p.place,
+                    kind + " \"" + p.name + "\" holds a number that is not finite; the variable is ignored");
         return false;
     }
     if (p.type == Type::Point || p.type == Type::Vector || p.type == Type::Normal || p.type == Type::HPoint)

@@ -51,8 +51,9 @@ void Quadric::finish(Diagnostics& diag) {
     zHi_ += pad;
     const auto& m = toCamera().m;
     for (int k = 0; k < 3; ++k)
-        pointScale_ = std::max(pointScale_, radius_ * (std::fabs(m[0][k]) + std::fabs(m[1][k])) +
-                                                std::max(std::fabs(zLo_), std::fabs(zHi_)) * std::fabs(m[2][k]) + std::fabs(m[3][k]));
+        pointScale_ =
+            std::max(pointScale_, radius_ * (std::fabs(m[0][k]) + std::fabs(m[1][k])) +
+                                      std::max(std::fabs(zLo_), std::fabs(zHi_)) * std::fabs(m[2][k]) + std::fabs(m[3][k]));
     takePrimvars(diag);
 }
 

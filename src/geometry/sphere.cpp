@@ -9,7 +9,8 @@ namespace {
 
 class Sphere final : public Quadric {
 public:
-    Sphere(ShapeSource s, double r, double zmin, double zmax, double sweep, Diagnostics& d) : Quadric(std::move(s), sweep, d), r_(r) {
+    Sphere(ShapeSource s, double r, double zmin, double zmax, double sweep, Diagnostics& d)
+        : Quadric(std::move(s), sweep, d), r_(r) {
         phi0_ = std::asin(std::clamp(zmin / r, -1.0, 1.0));
         phi1_ = std::asin(std::clamp(zmax / r, -1.0, 1.0));
         finish(d);
@@ -34,7 +35,8 @@ private:
 ShapeRef makeSphere(ShapeSource s, Diagnostics& diag) {
     const scene::Primitive& p = *s.primitive;
     bool ok = true;
-    double r = quadricNumber(p, 0, ok), zmin = quadricNumber(p, 1, ok), zmax = quadricNumber(p, 2, ok), sweep = quadricNumber(p, 3, ok);
+    double r = quadricNumber(p, 0, ok), zmin = quadricNumber(p, 1, ok), zmax = quadricNumber(p, 2, ok),
+           sweep = quadricNumber(p, 3, ok);
     if (!ok) return reportDegenerate(p, diag, "needs four finite numbers"), nullptr;
     if (r == 0 || sweep == 0) return reportDegenerate(p, diag, "has no radius or no sweep"), nullptr;
     auto shape = std::make_shared<Sphere>(s, r, zmin, zmax, sweep, diag);

@@ -61,7 +61,8 @@ private:
     }
     double vOf(const Vec3d& p) const override {
         double rho = std::hypot(p.x, p.y);
-        double near = std::fabs(std::hypot(rho - R_, p.z) - std::fabs(r_)), far = std::fabs(std::hypot(-rho - R_, p.z) - std::fabs(r_));
+        double near = std::fabs(std::hypot(rho - R_, p.z) - std::fabs(r_)),
+               far = std::fabs(std::hypot(-rho - R_, p.z) - std::fabs(r_));
         if (far < near) rho = -rho;
         double phi = std::atan2(r_ < 0 ? -p.z : p.z, r_ < 0 ? R_ - rho : rho - R_);
         double k = phi1_ - phi0_, turn = 2 * kPi / k;
@@ -82,10 +83,12 @@ ShapeRef makeTorus(ShapeSource s, Diagnostics& diag) {
     double n[5];
     for (size_t i = 0; i < 5; ++i) n[i] = quadricNumber(p, i, ok);
     if (!ok) return reportDegenerate(p, diag, "needs five finite numbers"), nullptr;
-    if (n[1] == 0 || n[4] == 0 || n[2] == n[3]) return reportDegenerate(p, diag, "has no tube, no sweep or no phi range"), nullptr;
+    if (n[1] == 0 || n[4] == 0 || n[2] == n[3])
+        return reportDegenerate(p, diag, "has no tube, no sweep or no phi range"), nullptr;
     double phi0 = n[2] * kPi / 180, phi1 = n[3] * kPi / 180;
     if (std::fabs(phi1 - phi0) > 2 * kPi * (1 + 1e-9)) {
-        diag.report(Severity::Warning, Rie::Range, p.place, "Torus has more than 360 degrees between phimin and phimax; 360 are drawn");
+        diag.report(Severity::Warning, Rie::Range, p.place,
+                    "Torus has more than 360 degrees between phimin and phimax; 360 are drawn");
         phi1 = phi0 + std::copysign(2 * kPi, phi1 - phi0);
     }
     return std::make_shared<Torus>(s, n[0], n[1], phi0, phi1, n[4], diag);

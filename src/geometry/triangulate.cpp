@@ -31,7 +31,9 @@ double area2(const std::vector<P2>& p, const std::vector<uint32_t>& ring) {
 }
 
 // Closed triangle, counter-clockwise.
-bool inside(const P2& a, const P2& b, const P2& c, const P2& p) { return turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0; }
+bool inside(const P2& a, const P2& b, const P2& c, const P2& p) {
+    return turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0;
+}
 
 bool same(const P2& a, const P2& b) { return a.x == b.x && a.y == b.y; }
 
@@ -125,7 +127,8 @@ bool clip(const std::vector<P2>& p, const std::vector<uint32_t>& ring, std::vect
                 if (isReflex[k] && corner(k) > 0) isReflex[k] = 0;
                 else if (!isReflex[k] && corner(k) <= 0) isReflex[k] = 1, reflex.push_back(k);
             if (reflex.size() > 2 * left + 16)
-                reflex.erase(std::remove_if(reflex.begin(), reflex.end(), [&](uint32_t r) { return gone[r] || !isReflex[r]; }), reflex.end());
+                reflex.erase(std::remove_if(reflex.begin(), reflex.end(), [&](uint32_t r) { return gone[r] || !isReflex[r]; }),
+                             reflex.end());
             sinceEar = 0;
             i = next[b]; // skipping one spreads the cuts: fewer slivers
         } else {
@@ -140,7 +143,8 @@ bool clip(const std::vector<P2>& p, const std::vector<uint32_t>& ring, std::vect
 
 } // namespace
 
-TriangulationResult triangulate(std::span<const Vec3d> points, std::span<const int> loops, std::vector<uint32_t>& out, Vec3d& normal) {
+TriangulationResult triangulate(std::span<const Vec3d> points, std::span<const int> loops, std::vector<uint32_t>& out,
+                                Vec3d& normal) {
     normal = Vec3d(0.0);
     if (loops.empty() || loops[0] < 3) return TriangulationResult::Nothing;
     normal = newell(points.subspan(0, size_t(loops[0])));

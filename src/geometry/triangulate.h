@@ -15,6 +15,7 @@ enum class TriangulationResult { Good, Forced, Nothing };
 /// three corners are skipped. normal: the outer loop's Newell normal (length twice its area).
 /// Forced: the loops cross themselves or were too costly (limits::kTriangulationTests), some triangles are guesses.
 /// Nothing: no area (then nothing is appended).
-TriangulationResult triangulate(std::span<const Vec3d> points, std::span<const int> loops, std::vector<uint32_t>& out, Vec3d& normal);
+TriangulationResult triangulate(std::span<const Vec3d> points, std::span<const int> loops, std::vector<uint32_t>& out,
+                                Vec3d& normal);
 
 } // namespace alpenglow::geometry

@@ -49,7 +49,8 @@ std::shared_ptr<scene::Primitive> closedMesh() {
 struct Scene {
     Diagnostics diag;
     std::unique_ptr<Accel> accel;
-    Scene(std::vector<std::shared_ptr<scene::Primitive>> prims, const Matrix& m, scene::Attributes a = {}, std::vector<uint32_t> mask = {}) {
+    Scene(std::vector<std::shared_ptr<scene::Primitive>> prims, const Matrix& m, scene::Attributes a = {},
+          std::vector<uint32_t> mask = {}) {
         std::vector<ShapeRef> shapes;
         for (auto& p : prims)
             if (auto s = build(p, m, diag, a)) shapes.push_back(s);
@@ -136,7 +137,8 @@ TEST(Hits, PointsLieOnTheRayAndOnTheSurface) {
 TEST(SelfHit, SpawnedRaysDoNotMeetTheirOwnPlane) {
     for (double scale : {1e-3, 1.0, 1e3, 1e6})
         for (double offset : {0.0, 1e6}) {
-            Matrix m = rotateMatrix(37, 1, 1, 0.2) * scaleMatrix(scale, scale, scale) * translateMatrix(offset, -offset * 0.5, offset + 3 * scale);
+            Matrix m = rotateMatrix(37, 1, 1, 0.2) * scaleMatrix(scale, scale, scale) *
+                       translateMatrix(offset, -offset * 0.5, offset + 3 * scale);
             Scene s({polygon({-1, -1, 0, -1, 1, 0, 1, 1, 0, 1, -1, 0})}, m);
             Rng rng(11);
             int again = 0;

@@ -12,8 +12,10 @@ using namespace alpenglow::geometry::test;
 TEST(Fuzz, RandomPrimitivesAreDrawnOrReported) {
     std::mt19937 rng(31);
     auto pick = [&](int n) { return int(rng() % unsigned(n)); };
-    const char* kinds[] = {"Sphere", "Cone", "Cylinder", "Hyperboloid", "Paraboloid", "Disk", "Torus", "Polygon", "GeneralPolygon",
-                           "PointsPolygons", "PointsGeneralPolygons", "Patch", "PatchMesh", "NuPatch", "Curves"};
+    const char* kinds[] = {
+        "Sphere",  "Cone",           "Cylinder",       "Hyperboloid",           "Paraboloid", "Disk",      "Torus",
+        "Polygon", "GeneralPolygon", "PointsPolygons", "PointsGeneralPolygons", "Patch",      "PatchMesh", "NuPatch",
+        "Curves"};
     const float special[] = {0, 1, -1, 0.5f, 360, -360, 720, 1e-20f, 1e20f, NAN, INFINITY, 3, 90, -90};
     auto number = [&] { return pick(3) ? float(pick(2000) - 1000) / 250 : special[pick(14)]; };
     int drawn = 0, reported = 0;

@@ -14,20 +14,27 @@ struct Case { std::string name; std::shared_ptr<scene::Primitive> prim; };
 
 std::vector<Case> parametricCases() {
     return {
-        {"sphere", quadric("Sphere", {2, -1.5f, 1.2f, 290})}, {"sphere negative sweep", quadric("Sphere", {2, -2, 2, -200})},
-        {"sphere swapped", quadric("Sphere", {1, 0.8f, -0.3f, 360})}, {"sphere negative radius", quadric("Sphere", {-1, -0.8f, 0.3f, 360})},
-        {"cone", quadric("Cone", {2, 0.7f, 360})}, {"cylinder", quadric("Cylinder", {0.6f, -1, 2, 250})},
+        {"sphere", quadric("Sphere", {2, -1.5f, 1.2f, 290})},
+        {"sphere negative sweep", quadric("Sphere", {2, -2, 2, -200})},
+        {"sphere swapped", quadric("Sphere", {1, 0.8f, -0.3f, 360})},
+        {"sphere negative radius", quadric("Sphere", {-1, -0.8f, 0.3f, 360})},
+        {"cone", quadric("Cone", {2, 0.7f, 360})},
+        {"cylinder", quadric("Cylinder", {0.6f, -1, 2, 250})},
         {"hyperboloid", quadric("Hyperboloid", {0.4f, -0.4f, -0.4f, 0.4f, 0.4f, 0.4f, 360})},
-        {"paraboloid", quadric("Paraboloid", {0.5f, 0.1f, 0.9f, 360})}, {"disk", quadric("Disk", {0.3f, 1.5f, 270})},
-        {"torus", quadric("Torus", {1, 0.3f, 0, 360, 360})}, {"torus part", quadric("Torus", {0.75f, 0.45f, 90, 180, 360})},
-        {"bilinear", patch("bilinear", {0, 0, 0, 1, 0, 0.3f, 0, 1, -0.2f, 1.2f, 1, 0.5f})}, {"bicubic", patch("bicubic", bentNet())},
+        {"paraboloid", quadric("Paraboloid", {0.5f, 0.1f, 0.9f, 360})},
+        {"disk", quadric("Disk", {0.3f, 1.5f, 270})},
+        {"torus", quadric("Torus", {1, 0.3f, 0, 360, 360})},
+        {"torus part", quadric("Torus", {0.75f, 0.45f, 90, 180, 360})},
+        {"bilinear", patch("bilinear", {0, 0, 0, 1, 0, 0.3f, 0, 1, -0.2f, 1.2f, 1, 0.5f})},
+        {"bicubic", patch("bicubic", bentNet())},
     };
 }
 
 Vec3d central(const Vec3& hi, const Vec3& lo, double h) { return (Vec3d(hi) - Vec3d(lo)) / (2 * h); }
 
 void near(const Vec3d& a, const Vec3d& b, double scale, const std::string& what) {
-    EXPECT_LT(length(a - b), 1e-3 * scale) << what << ": " << a.x << " " << a.y << " " << a.z << " against " << b.x << " " << b.y << " " << b.z;
+    EXPECT_LT(length(a - b), 1e-3 * scale) << what << ": " << a.x << " " << a.y << " " << a.z << " against " << b.x << " " << b.y
+                                           << " " << b.z;
 }
 
 } // namespace
@@ -62,7 +69,9 @@ TEST(Derivatives, PartialsAndNormalsOfParametricSurfaces) {
 
 TEST(Derivatives, QuadricPositionsAreThoseOfTheReference) {
     Diagnostics diag;
-    auto at = [&](std::shared_ptr<scene::Primitive> p, double u, double v) { return build(p, Matrix(), diag)->evaluate(0, u, v).P; };
+    auto at = [&](std::shared_ptr<scene::Primitive> p, double u, double v) {
+        return build(p, Matrix(), diag)->evaluate(0, u, v).P;
+    };
     auto expect = [](Vec3 p, double x, double y, double z) {
         EXPECT_NEAR(p.x, x, 1e-6); EXPECT_NEAR(p.y, y, 1e-6); EXPECT_NEAR(p.z, z, 1e-6);
     };

@@ -36,8 +36,8 @@ inline std::shared_ptr<scene::Primitive> patch(const std::string& type, std::vec
     p->params = {points(std::move(P))};
     return p;
 }
-inline std::shared_ptr<scene::Primitive> patchMesh(const std::string& type, int nu, const std::string& uw, int nv, const std::string& vw,
-                                                   std::vector<float> P) {
+inline std::shared_ptr<scene::Primitive> patchMesh(const std::string& type, int nu, const std::string& uw, int nv,
+                                                   const std::string& vw, std::vector<float> P) {
     auto p = patch(type, std::move(P));
     p->kind = "PatchMesh";
     p->strings = {type, uw, vw};

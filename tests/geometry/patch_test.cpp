@@ -41,9 +41,10 @@ TEST(Patch, EveryBasisReproducesStraightLines) {
     // Control points on a plane, evenly spaced: b-spline and Catmull-Rom run from the 2nd to the 3rd of four points.
     struct B { const char* name; std::vector<double> m; int step; double x0, x1; };
     double s = 1.0 / 6;
-    for (const B& b : {B{"bezier", {-1, 3, -3, 1, 3, -6, 3, 0, -3, 3, 0, 0, 1, 0, 0, 0}, 3, 0, 3},
-                       B{"b-spline", {-s, 3 * s, -3 * s, s, 3 * s, -6 * s, 3 * s, 0, -3 * s, 0, 3 * s, 0, s, 4 * s, s, 0}, 1, 1, 2},
-                       B{"catmull-rom", {-.5, 1.5, -1.5, .5, 1, -2.5, 2, -.5, -.5, 0, .5, 0, 0, 1, 0, 0}, 1, 1, 2}}) {
+    for (const B& b :
+         {B{"bezier", {-1, 3, -3, 1, 3, -6, 3, 0, -3, 3, 0, 0, 1, 0, 0, 0}, 3, 0, 3},
+          B{"b-spline", {-s, 3 * s, -3 * s, s, 3 * s, -6 * s, 3 * s, 0, -3 * s, 0, 3 * s, 0, s, 4 * s, s, 0}, 1, 1, 2},
+          B{"catmull-rom", {-.5, 1.5, -1.5, .5, 1, -2.5, 2, -.5, -.5, 0, .5, 0, 0, 1, 0, 0}, 1, 1, 2}}) {
         Diagnostics diag;
         scene::Attributes a;
         setBasis(a.ubasis, b.m, b.step);
@@ -104,7 +105,8 @@ TEST(NuPatch, RationalQuarterCircleIsRound) {
     float w = std::sqrt(0.5f);
     p->params = {param("uknot", scene::Class::Constant, scene::Type::Float, {0, 0, 0, 1, 1, 1}),
                  param("vknot", scene::Class::Constant, scene::Type::Float, {0, 0, 1, 1}),
-                 param("Pw", scene::Class::Vertex, scene::Type::HPoint, {1, 0, 0, 1, w, w, 0, w, 0, 1, 0, 1, 1, 0, 2, 1, w, w, 2 * w, w, 0, 1, 2, 1})};
+                 param("Pw", scene::Class::Vertex, scene::Type::HPoint,
+                       {1, 0, 0, 1, w, w, 0, w, 0, 1, 0, 1, 1, 0, 2, 1, w, w, 2 * w, w, 0, 1, 2, 1})};
     ShapeRef s = build(p, Matrix(), diag);
     ASSERT_TRUE(s);
     for (double u : {0.0, 0.2, 0.5, 0.9, 1.0}) {

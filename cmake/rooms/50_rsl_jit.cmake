@@ -16,3 +16,5 @@ target_compile_definitions(rsl_jit PRIVATE ALPENGLOW_JIT_MODULE="${CMAKE_BINARY_
 add_dependencies(rsl_jit alpenglow_jit)
 room_tests(rsljit DEPS rsl_jit)
 room_tests(language DEPS rsl_jit)
+add_executable(rsl_bench EXCLUDE_FROM_ALL ${CMAKE_SOURCE_DIR}/bench/rsl_bench.cpp)
+target_link_libraries(rsl_bench PRIVATE rsl_jit)

@@ -1,0 +1,174 @@
+#include "rsl/evaluate.h"
+#include <algorithm>
+#include <bit>
+#include <cstdio>
+#include <cstdlib>
+
+namespace alpenglow::rsl {
+namespace {
+
+// Name, components, value, d/du, d/dv. Second derivatives are zero: the point lies in a plane.
+struct Row { const char* name; int components; float v[3], du[3], dv[3]; };
+constexpr Row kRows[] = {
+    {"u", 1, {0.5f}, {1}, {0}},
+    {"v", 1, {0.5f}, {0}, {1}},
+    {"s", 1, {0.5f}, {1}, {0}},
+    {"t", 1, {0.5f}, {0}, {1}},
+    {"du", 1, {1}, {}, {}},
+    {"dv", 1, {1}, {}, {}},
+    {"time", 1, {0}, {}, {}},
+    {"dtime", 1, {0}, {}, {}},
+    {"ncomps", 1, {3}, {}, {}},
+    {"alpha", 1, {1}, {}, {}},
+    {"P", 3, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+    {"dPdu", 3, {1, 0, 0}, {}, {}},
+    {"dPdv", 3, {0, 1, 0}, {}, {}},
+    {"dPdtime", 3, {0, 0, 0}, {}, {}},
+    {"N", 3, {0, 0, 1}, {}, {}},
+    {"Ng", 3, {0, 0, 1}, {}, {}},
+    {"I", 3, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}},
+    {"E", 3, {0, 0, -1}, {}, {}},
+    {"Cs", 3, {1, 1, 1}, {}, {}},
+    {"Os", 3, {1, 1, 1}, {}, {}},
+    {"Ci", 3, {0, 0, 0}, {}, {}},
+    {"Oi", 3, {1, 1, 1}, {}, {}},
+};
+
+struct PointContext {
+    const CompiledKernel* kernel;
+    std::string* printed;
+    Diagnostics* diagnostics;
+};
+
+constexpr const char* kTypes[] = {"float", "color", "point", "vector", "normal", "matrix", "string"};
+constexpr Base kBases[] = {Base::Float, Base::Color, Base::Point, Base::Vector, Base::Normal, Base::Matrix, Base::String};
+
+} // namespace
+
+bool EvaluationPoint::value(const std::string& name, int component, int part, float& out) {
+    for (const Row& r : kRows) {
+        if (name != r.name || component >= 3) continue;
+        out = part == 0 ? r.v[component] : part == 1 ? r.du[component] : part == 2 ? r.dv[component] : 0.0f;
+        return true;
+    }
+    out = 0;
+    return false;
+}
+
+bool runAtPoint(const CompiledKernel& k, bool mixed, int n, int at, std::vector<std::vector<float>>& out, std::string* printed, Diagnostics& diagnostics) {
+    if (k.facts().suspends) return false;
+    const int stride = (n + 63) / 64 * 64;
+    std::vector<std::unique_ptr<float, decltype(&std::free)>> blocks;
+    auto make = [&](int rows) {
+        const size_t count = size_t(std::max(1, rows)) * size_t(stride);
+        blocks.emplace_back(static_cast<float*>(std::aligned_alloc(64, count * 4)), &std::free);
+        std::fill_n(blocks.back().get(), count, 0.0f);
+        return blocks.back().get();
+    };
+    std::vector<const float*> in;
+    for (const auto& i : k.inputs()) {
+        const int parts = inputParts(i), components = ir::components(i.kind), elements = std::max(1, i.array);
+        float* p = make(components * parts * elements);
+        const bool scalar = i.uniform && !mixed;
+        for (int e = 0; e < elements; e++)
+            for (int c = 0; c < components; c++)
+                for (int part = 0; part < parts; part++) {
+                    float v = 0;
+                    if (i.kind == ir::Kind::Matrix) v = c % 5 == 0 ? 1.0f : 0.0f; // every space is "current"
+                    else EvaluationPoint::value(i.name, c, part, v);
+                    const size_t row = size_t(e * components + c) * size_t(parts) + size_t(part);
+                    if (scalar) p[row] = v;
+                    else std::fill_n(p + row * size_t(stride), stride, v);
+                }
+        in.push_back(p);
+    }
+    std::vector<float*> outs;
+    for (const auto& o : k.outputs()) outs.push_back(make(ir::components(o.kind)));
+    PointContext context{&k, printed, &diagnostics};
+    KernelCall call{};
+    call.in = in.data();
+    call.out = outs.data();
+    call.n = n;
+    call.stride = stride;
+    call.strings = k.strings().data();
+    call.user = &context;
+    call.service = [](KernelCall* c, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
+        auto& x = *static_cast<PointContext*>(c->user);
+        if (site < 0) return;
+        const ir::Site& s = x.kernel->sites()[size_t(site)];
+        basicService(s, mask, lanes, in, out, *x.diagnostics, [&](int lane, const std::string& text) {
+            if (x.printed && first + lane == 0) *x.printed += text;
+        });
+        if (s.op == "gridmin" || s.op == "gridmax") { // a grid of one point without extent
+            for (int c = 0; c < ir::components(s.argKinds.empty() ? ir::Kind::Float : s.argKinds[0]); c++)
+                std::copy_n(in + c * lanes, lanes, out + c * lanes);
+        }
+    };
+    call.lightBegin = [](KernelCall*, int32_t, int32_t, uint64_t, int32_t, const float*) { return int32_t(0); };
+    call.lightFetch = [](KernelCall*, int32_t, int32_t, int32_t, uint64_t, int32_t, float*) { return uint64_t(0); };
+    k.run(&call);
+    for (size_t o = 0; o < outs.size(); o++) {
+        out.emplace_back();
+        for (int c = 0; c < ir::components(k.outputs()[o].kind); c++) out.back().push_back(outs[o][size_t(c) * size_t(stride) + size_t(at)]);
+    }
+    return true;
+}
+
+std::string formatNumbers(const std::vector<float>& numbers) {
+    std::string s;
+    for (float f : numbers) {
+        char text[40];
+        std::snprintf(text, sizeof text, "%.7g", double(f));
+        if (!s.empty()) s += ' ';
+        s += text;
+    }
+    return s;
+}
+
+Evaluation evaluate(ShaderCompiler& compiler, const std::string& setup, const std::string& expression, const KernelOptions& options, Diagnostics& diagnostics) {
+    Evaluation r;
+    std::shared_ptr<const CompiledShader> shader;
+    auto attempt = [&](const std::string& text) {
+        Diagnostics local;
+        auto s = compiler.loadText(text, "expression", local);
+        if (s) {
+            for (const auto& d : local.all())
+                diagnostics.report(d);
+            return s;
+        }
+        return s;
+    };
+    auto source = [&](const char* type) {
+        return std::string("surface eval(output varying ") + type + " result = " +
+               (std::string(type) == "string" ? "\"\"" : "0") + ";) {\n" + setup + "\n; result = (\n" + expression + "\n); }\n";
+    };
+    for (size_t k = 0; k < std::size(kTypes) && !shader; k++) {
+        shader = attempt(source(kTypes[k]));
+        r.type = {kBases[k], 0};
+    }
+    if (!shader) {
+        shader = attempt("surface eval() {\n" + setup + "\n;\n" + expression + "\n; }\n");
+        r.type = {};
+    }
+    if (!shader) {
+        // Said again, aloud, for float: an error in the expression itself is the same for every type.
+        compiler.loadText(source("float"), "expression", diagnostics);
+        return r;
+    }
+    KernelOptions o = options;
+    o.outputs = {r.type.base == Base::Void ? "Ci" : "result"};
+    auto kernel = compiler.kernel(shader, o, diagnostics);
+    if (!kernel) return r;
+    std::vector<std::vector<float>> out;
+    if (!runAtPoint(*kernel, o.mixed, 1, 0, out, &r.printed, diagnostics)) {
+        diagnostics.report(Severity::Error, Rie::IllState, {"expression", 0, 0}, "rays cannot be traced here: there is no scene");
+        return r;
+    }
+    r.ok = true;
+    if (r.type.base == Base::Void || out.empty()) return r;
+    r.numbers = out[0];
+    r.text = r.type.base == Base::String ? internedString(std::bit_cast<int32_t>(out[0][0])) : formatNumbers(r.numbers);
+    return r;
+}
+
+} // namespace alpenglow::rsl

@@ -120,6 +120,7 @@ struct KernelFacts {
     std::string whyNot;          ///< the first place that is not affine, in words
     bool suspends = false;       ///< Requests are left: the kernel becomes a coroutine
     bool lightLoops = false;
+    std::vector<std::pair<int, std::string>> stuck; ///< sites that no weight can be given to, with the reason (passes/affine.h)
     std::vector<std::string> direct; ///< lobe calls ("specular, line 12") that stay direct under path, with the reason
     bool ambientLight = false;   ///< light: no illuminate and no solar
     std::vector<std::string> blocks; ///< light: "illuminate" or "solar" for each block, in order

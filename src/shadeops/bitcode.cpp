@@ -4,15 +4,15 @@
 #include <cstdint>
 #include <string>
 
-#define AL_EMBED(name, file)                                                                                                                 \
-    asm(".section .rodata\n"                                                                                                                 \
-        ".balign 16\n"                                                                                                                       \
-        ".hidden " #name "\n.global " #name "\n" #name ":\n"                                                                                 \
-        ".incbin \"" ALPENGLOW_BITCODE_DIR "/" file "\"\n"                                                                                   \
-        ".hidden " #name "_end\n.global " #name "_end\n" #name "_end:\n"                                                                     \
-        ".byte 0\n"                                                                                                                          \
-        ".previous\n");                                                                                                                      \
-    extern "C" const unsigned char name[];                                                                                                   \
+#define AL_EMBED(name, file)                                                                                                     \
+    asm(".section .rodata\n"                                                                                                     \
+        ".balign 16\n"                                                                                                           \
+        ".hidden " #name "\n.global " #name "\n" #name ":\n"                                                                     \
+        ".incbin \"" ALPENGLOW_BITCODE_DIR "/" file "\"\n"                                                                       \
+        ".hidden " #name "_end\n.global " #name "_end\n" #name "_end:\n"                                                         \
+        ".byte 0\n"                                                                                                              \
+        ".previous\n");                                                                                                          \
+    extern "C" const unsigned char name[];                                                                                       \
     extern "C" const unsigned char name##_end[];
 
 AL_EMBED(alpenglow_bitcode_4, "runtime4.bc")

@@ -106,9 +106,9 @@ template <class R, class... A> AL_INLINE void call(R (*f)(A...), const vf* in, v
 }
 
 #ifdef ALPENGLOW_BITCODE
-#define AL_RUNTIME(symbol, function)                                                                                                         \
-    extern "C" __attribute__((always_inline)) void symbol##_0(const vf* in, vf* out) { call(&function<vf>, in, out); }                      \
-    extern "C" __attribute__((always_inline)) void symbol##_1(const vf* in, vf* out) { call(&function<Jet1>, in, out); }                    \
+#define AL_RUNTIME(symbol, function)                                                                                             \
+    extern "C" __attribute__((always_inline)) void symbol##_0(const vf* in, vf* out) { call(&function<vf>, in, out); }           \
+    extern "C" __attribute__((always_inline)) void symbol##_1(const vf* in, vf* out) { call(&function<Jet1>, in, out); }         \
     extern "C" __attribute__((always_inline)) void symbol##_2(const vf* in, vf* out) { call(&function<Jet2>, in, out); }
 #else
 
@@ -134,12 +134,12 @@ struct RuntimeEntry {
 
 template <int I> struct EntryAt;
 inline constexpr int kFirstEntry = __COUNTER__ + 1;
-#define AL_RUNTIME(name, function)                                                                                                           \
-    template <> struct EntryAt<__COUNTER__ - kFirstEntry> {                                                                                  \
-        static constexpr RuntimeEntry kEntry = {#name,                                                                                       \
-                                                {&wrapped<&function<vf>>, &wrapped<&function<Jet1>>, &wrapped<&function<Jet2>>},             \
-                                                inputsOf(&function<vf>),                                                                     \
-                                                outputsOf(&function<vf>)};                                                                   \
+#define AL_RUNTIME(name, function)                                                                                               \
+    template <> struct EntryAt<__COUNTER__ - kFirstEntry> {                                                                      \
+        static constexpr RuntimeEntry kEntry = {#name,                                                                           \
+                                                {&wrapped<&function<vf>>, &wrapped<&function<Jet1>>, &wrapped<&function<Jet2>>}, \
+                                                inputsOf(&function<vf>),                                                         \
+                                                outputsOf(&function<vf>)};                                                       \
     };
 template <size_t... I> constexpr auto collectEntries(std::index_sequence<I...>) {
     return std::array<RuntimeEntry, sizeof...(I)>{EntryAt<static_cast<int>(I)>::kEntry...};

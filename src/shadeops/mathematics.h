@@ -37,11 +37,11 @@ template <class T> AL_INLINE T opSmoothstep(const T& lo, const T& hi, const T& x
 }
 template <class T> AL_INLINE T opMix(const T& x, const T& y, const T& alpha) { return mad(y, alpha, x * (vf(1) - alpha)); }
 
-#define AL_COMPONENTS1(name, f)                                                                                                              \
+#define AL_COMPONENTS1(name, f)                                                                                                  \
     template <class T> AL_INLINE Triple<T> name(const Triple<T>& a, const Triple<T>& b) { return {f(a.x, b.x), f(a.y, b.y), f(a.z, b.z)}; }
-#define AL_COMPONENTS2(name, f)                                                                                                              \
-    template <class T> AL_INLINE Triple<T> name(const Triple<T>& a, const Triple<T>& b, const Triple<T>& c) {                               \
-        return {f(a.x, b.x, c.x), f(a.y, b.y, c.y), f(a.z, b.z, c.z)};                                                                       \
+#define AL_COMPONENTS2(name, f)                                                                                                  \
+    template <class T> AL_INLINE Triple<T> name(const Triple<T>& a, const Triple<T>& b, const Triple<T>& c) {                    \
+        return {f(a.x, b.x, c.x), f(a.y, b.y, c.y), f(a.z, b.z, c.z)};                                                           \
     }
 AL_COMPONENTS1(opMin3, opMin)
 AL_COMPONENTS1(opMax3, opMax)
@@ -60,20 +60,26 @@ template <class T> AL_INLINE Triple<T> opMixFloat(const Triple<T>& x, const Trip
 
 template <class T> AL_INLINE T boxIntegral(const T& d) { return d; }
 template <class T> AL_INLINE T triangleIntegral(const T& d) { return d - d * d * vf(0.5f); }
-/// Taylor series of the integral of exp(-2 d^2), terms (-2)^n d^(2n+1) / (n! (2n+1)), over its value at 1.
-template <class T> AL_INLINE T gaussianIntegral(const T& d) {
-    constexpr double kWhole = 0.59814400666130410; // integral of exp(-2 x^2) over [0, 1]
-    const T s = d * d;
-    double c[16];
-    double power = 1;
-    for (int n = 0; n < 16; ++n) {
-        c[n] = power / (2 * n + 1) / (2 * kWhole);
-        power *= -2.0 / (n + 1);
+/// Taylor series of the integral of exp(-2 d^2), terms (-2)^n d^(2n+1) / (n! (2n+1)), over twice its value at 1.
+struct GaussianSeries {
+    static constexpr int kTerms = 16;
+    float c[kTerms] = {};
+    constexpr GaussianSeries() {
+        constexpr double kWhole = 0.59814400666130410; // integral of exp(-2 x^2) over [0, 1]
+        double power = 1;
+        for (int n = 0; n < kTerms; ++n) {
+            c[n] = static_cast<float>(power / (2 * n + 1) / (2 * kWhole));
+            power *= -2.0 / (n + 1);
+        }
     }
-    T r = T(vf(static_cast<float>(c[15])));
+};
+inline constexpr GaussianSeries kGaussian;
+template <class T> AL_INLINE T gaussianIntegral(const T& d) {
+    const T s = d * d;
+    T r = T(vf(kGaussian.c[GaussianSeries::kTerms - 1]));
 #pragma clang loop unroll(full)
-    for (int n = 14; n >= 0; --n)
-        r = mad(r, s, T(vf(static_cast<float>(c[n]))));
+    for (int n = GaussianSeries::kTerms - 2; n >= 0; --n)
+        r = mad(r, s, T(vf(kGaussian.c[n])));
     return r * d;
 }
 template <class T> AL_INLINE T catmullromIntegral(const T& d) {

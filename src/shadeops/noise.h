@@ -119,36 +119,36 @@ template <class T> AL_INLINE Triple<T> unitTriple(vu h) {
     return {T(unitReal(h)), T(unitReal(h * kChannel[1])), T(unitReal(h * kChannel[2]))};
 }
 
-#define AL_NOISE_FORMS(N, PARAMETERS, PERIODS, POINT, PERIOD)                                                                               \
-    template <class T> AL_INLINE T opNoise##N##f PARAMETERS {                                                                               \
-        const T p[] = POINT;                                                                                                                 \
-        return noiseSum<N, 1, false, T>(p, nullptr).c[0];                                                                                    \
-    }                                                                                                                                        \
-    template <class T> AL_INLINE Triple<T> opNoise##N##t PARAMETERS {                                                                       \
-        const T p[] = POINT;                                                                                                                 \
-        return tripleOf(noiseSum<N, 3, false, T>(p, nullptr));                                                                               \
-    }                                                                                                                                        \
-    template <class T> AL_INLINE T opPnoise##N##f PERIODS {                                                                                 \
-        const T p[] = POINT, q[] = PERIOD;                                                                                                   \
-        return noiseSum<N, 1, true, T>(p, q).c[0];                                                                                           \
-    }                                                                                                                                        \
-    template <class T> AL_INLINE Triple<T> opPnoise##N##t PERIODS {                                                                         \
-        const T p[] = POINT, q[] = PERIOD;                                                                                                   \
-        return tripleOf(noiseSum<N, 3, true, T>(p, q));                                                                                      \
-    }                                                                                                                                        \
-    template <class T> AL_INLINE T opCellnoise##N##f PARAMETERS {                                                                           \
-        const T p[] = POINT;                                                                                                                 \
-        return T(unitReal(cellHash<N, T>(p)));                                                                                               \
-    }                                                                                                                                        \
-    template <class T> AL_INLINE Triple<T> opCellnoise##N##t PARAMETERS {                                                                   \
-        const T p[] = POINT;                                                                                                                 \
-        return unitTriple<T>(cellHash<N, T>(p));                                                                                             \
-    }                                                                                                                                        \
-    AL_RUNTIME(al_noise##N##_f, opNoise##N##f)                                                                                               \
-    AL_RUNTIME(al_noise##N##_t, opNoise##N##t)                                                                                               \
-    AL_RUNTIME(al_pnoise##N##_f, opPnoise##N##f)                                                                                             \
-    AL_RUNTIME(al_pnoise##N##_t, opPnoise##N##t)                                                                                             \
-    AL_RUNTIME(al_cellnoise##N##_f, opCellnoise##N##f)                                                                                       \
+#define AL_NOISE_FORMS(N, PARAMETERS, PERIODS, POINT, PERIOD)                                                                    \
+    template <class T> AL_INLINE T opNoise##N##f PARAMETERS {                                                                    \
+        const T p[] = POINT;                                                                                                     \
+        return noiseSum<N, 1, false, T>(p, nullptr).c[0];                                                                        \
+    }                                                                                                                            \
+    template <class T> AL_INLINE Triple<T> opNoise##N##t PARAMETERS {                                                            \
+        const T p[] = POINT;                                                                                                     \
+        return tripleOf(noiseSum<N, 3, false, T>(p, nullptr));                                                                   \
+    }                                                                                                                            \
+    template <class T> AL_INLINE T opPnoise##N##f PERIODS {                                                                      \
+        const T p[] = POINT, q[] = PERIOD;                                                                                       \
+        return noiseSum<N, 1, true, T>(p, q).c[0];                                                                               \
+    }                                                                                                                            \
+    template <class T> AL_INLINE Triple<T> opPnoise##N##t PERIODS {                                                              \
+        const T p[] = POINT, q[] = PERIOD;                                                                                       \
+        return tripleOf(noiseSum<N, 3, true, T>(p, q));                                                                          \
+    }                                                                                                                            \
+    template <class T> AL_INLINE T opCellnoise##N##f PARAMETERS {                                                                \
+        const T p[] = POINT;                                                                                                     \
+        return T(unitReal(cellHash<N, T>(p)));                                                                                   \
+    }                                                                                                                            \
+    template <class T> AL_INLINE Triple<T> opCellnoise##N##t PARAMETERS {                                                        \
+        const T p[] = POINT;                                                                                                     \
+        return unitTriple<T>(cellHash<N, T>(p));                                                                                 \
+    }                                                                                                                            \
+    AL_RUNTIME(al_noise##N##_f, opNoise##N##f)                                                                                   \
+    AL_RUNTIME(al_noise##N##_t, opNoise##N##t)                                                                                   \
+    AL_RUNTIME(al_pnoise##N##_f, opPnoise##N##f)                                                                                 \
+    AL_RUNTIME(al_pnoise##N##_t, opPnoise##N##t)                                                                                 \
+    AL_RUNTIME(al_cellnoise##N##_f, opCellnoise##N##f)                                                                           \
     AL_RUNTIME(al_cellnoise##N##_t, opCellnoise##N##t)
 #define AL_LIST(...) {__VA_ARGS__}
 AL_NOISE_FORMS(1, (const T& x), (const T& x, const T& px), AL_LIST(x), AL_LIST(px))

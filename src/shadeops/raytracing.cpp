@@ -108,6 +108,7 @@ std::vector<Shadeop> raytracingShadeops() {
                      std::vector<OptionalParameter>{{kS, "environmentmap", false, "\"\"", "light of directions that hit nothing"},
                                                     {kS, "environmentspace", false, "\"current\"", "space of the map"},
                                                     {kC, "environmenttint", false, "1", "multiplies the map"},
+                                                    {kF, "exponent", false, "1000", "\"slphong\": Phong exponent; 1000 and above is one direction"},
                                                     {kF, "samplearealights", false, "0", "1: area lights with strategy \"trace\" are seen"},
                                                     {kC, "transmission", true, "", "transmission along the rays"},
                                                     {kC, "environmentcontribution", true, "", "part of the environment map"},

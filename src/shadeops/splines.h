@@ -73,19 +73,19 @@ template <class Basis, class T> AL_INLINE T solve1(const T& target, const T& p, 
     return t;
 }
 
-#define AL_SPLINE(name, Basis)                                                                                                               \
-    template <class T> AL_INLINE T opSpline_##name(const T& t, const T& p, const T& q, const T& r, const T& s) {                            \
-        return spline1<Basis>(t, p, q, r, s);                                                                                                \
-    }                                                                                                                                        \
-    template <class T>                                                                                                                       \
-    AL_INLINE Triple<T> opSpline3_##name(const T& t, const Triple<T>& p, const Triple<T>& q, const Triple<T>& r, const Triple<T>& s) {       \
-        return spline3<Basis>(t, p, q, r, s);                                                                                                \
-    }                                                                                                                                        \
-    template <class T> AL_INLINE T opSolve_##name(const T& v, const T& p, const T& q, const T& r, const T& s) {                             \
-        return solve1<Basis>(v, p, q, r, s);                                                                                                 \
-    }                                                                                                                                        \
-    AL_RUNTIME(al_spline_##name##_f, opSpline_##name)                                                                                        \
-    AL_RUNTIME(al_spline_##name##_t, opSpline3_##name)                                                                                       \
+#define AL_SPLINE(name, Basis)                                                                                                   \
+    template <class T> AL_INLINE T opSpline_##name(const T& t, const T& p, const T& q, const T& r, const T& s) {                 \
+        return spline1<Basis>(t, p, q, r, s);                                                                                    \
+    }                                                                                                                            \
+    template <class T>                                                                                                           \
+    AL_INLINE Triple<T> opSpline3_##name(const T& t, const Triple<T>& p, const Triple<T>& q, const Triple<T>& r, const Triple<T>& s) { \
+        return spline3<Basis>(t, p, q, r, s);                                                                                    \
+    }                                                                                                                            \
+    template <class T> AL_INLINE T opSolve_##name(const T& v, const T& p, const T& q, const T& r, const T& s) {                  \
+        return solve1<Basis>(v, p, q, r, s);                                                                                     \
+    }                                                                                                                            \
+    AL_RUNTIME(al_spline_##name##_f, opSpline_##name)                                                                            \
+    AL_RUNTIME(al_spline_##name##_t, opSpline3_##name)                                                                           \
     AL_RUNTIME(al_splinesolve_##name, opSolve_##name)
 AL_SPLINE(catmullrom, CatmullRom)
 AL_SPLINE(bspline, BSpline)

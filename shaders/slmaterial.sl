@@ -2,7 +2,7 @@
    them that is not black decides, in that order. reference: pathtracer.md section 3.
      shininess, translucency: Phong exponents of the reflected and transmitted lobe; 1000 and above are perfect
      kn: index of refraction; fresnel "schlick" or "exact"
-   trace() is the estimator: it samples lights and lobe, weights both, plays roulette. */
+   Under Hider "path" diffuse() and trace() are the estimators: they sample lights and lobe, weight both, play roulette. */
 surface slmaterial(color diffusecolor = 1, specularcolor = 0, transmissive = 0, emissive = 0;
                    float shininess = 1000, translucency = 1000, kn = 1;
                    string texturename = "", fresnel = "schlick";) {
@@ -17,10 +17,10 @@ surface slmaterial(color diffusecolor = 1, specularcolor = 0, transmissive = 0, 
             if (texturename != "")
                 albedo *= color texture(texturename);
             normal Nf = faceforward(Nn, In);
-            Ci += albedo * trace(P, Nf, "distribution", "cosine", "samplecone", PI / 2, "samplearealights", 1, "type", "diffuse");
+            Ci += albedo * diffuse(Nf);
         } else if (specularcolor != zero) {
             vector R = reflect(In, Nn);
-            Ci += specularcolor * Cs * trace(P, R, "distribution", "phong", "exponent", shininess, "type", "specular");
+            Ci += specularcolor * Cs * trace(P, R, "distribution", "slphong", "horizon", Nn, "exponent", shininess, "type", "specular");
         } else if (transmissive != zero) {
             float into = In . Nn;
             normal Nf = faceforward(Nn, In);
@@ -39,8 +39,8 @@ surface slmaterial(color diffusecolor = 1, specularcolor = 0, transmissive = 0, 
                 Kr = r0 + (1 - r0) * pow(c, 5);
             }
             Kt = 1 - Kr;
-            Ci += transmissive * Cs * (Kr * trace(P, R, "distribution", "phong", "exponent", shininess, "type", "specular")
-                + Kt * trace(P, T, "distribution", "phong", "exponent", translucency, "type", "specular"));
+            Ci += transmissive * Cs * (Kr * trace(P, R, "distribution", "slphong", "horizon", Nn, "exponent", shininess, "type", "specular")
+                + Kt * trace(P, T, "distribution", "slphong", "horizon", Nn, "exponent", translucency, "type", "specular"));
         }
     }
 }

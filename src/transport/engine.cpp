@@ -24,7 +24,10 @@ uint32_t visibilityBit(RayType t) {
     }
 }
 
-bool isRequest(SiteKind k) { return k >= SiteKind::Ambient && k <= SiteKind::LightVisibility; }
+// trace() and transmission() always ask for rays; the lobe shadeops only where the engine estimates them.
+bool isRequest(SiteKind k, bool path) {
+    return k == SiteKind::Trace || k == SiteKind::Transmission || (path && k >= SiteKind::Ambient && k <= SiteKind::LightVisibility);
+}
 
 // The callbacks of generated code: C functions that find their engine through KernelCall::user.
 BatchContext& contextOf(rsl::KernelCall* c) { return *static_cast<BatchContext*>(c->user); }
@@ -48,7 +51,7 @@ void onService(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask
         return;
     }
     const SiteInfo& s = c.bound->sites[site];
-    if (isRequest(s.kind)) {
+    if (isRequest(s.kind, c.bound->path)) {
         size_t rows = 0;
         for (rsl::ir::Kind k : s.site->argKinds) rows += size_t(rsl::ir::components(k));
         if (c.bound->kernel->facts().suspends) {

@@ -23,8 +23,9 @@ SiteKind kindOf(const std::string& op) {
 
 } // namespace
 
-BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed, WorldImpl* world) {
+BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed, bool path, WorldImpl* world) {
     BoundKernel b;
+    b.path = path;
     b.mixed = mixed;
     if (!k) return b;
     for (const auto& s : k->sites()) {
@@ -154,6 +155,28 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
             }
             for (int k = 0; k < count; ++k) put(k, lane, v[k]);
         });
+        return;
+    }
+    case SiteKind::Ambient: { // not under path: the sum of the ambient lights that are on
+        if (!c.binding) return;
+        for (int li : c.binding->lights) {
+            const BoundLight& l = world_->lights_[li];
+            if (l.kind != LightKind::Ambient || !l.kernel) continue;
+            std::vector<ShadePoint> q;
+            std::vector<int> laneOf;
+            each([&](int lane, const ShadePoint& p) {
+                ShadePoint x = p;
+                x.Ps = p.P;
+                x.Ns = p.N;
+                x.shape = nullptr;
+                q.push_back(x);
+                laneOf.push_back(lane);
+            });
+            std::vector<LightValue> v(q.size());
+            evaluateLight(l, q, v);
+            for (size_t i = 0; i < q.size(); ++i)
+                for (int k = 0; k < 3; ++k) out[size_t(k) * lanes + laneOf[i]] += v[i].Cl[k];
+        }
         return;
     }
     case SiteKind::LightSource:

@@ -194,7 +194,7 @@ BoundKernel WorldImpl::kernel(const ShaderInstance& i, const std::vector<std::st
     ++facts_.kernels;
     facts_.cacheHits += k->fromCache();
     (k->facts().suspends ? facts_.suspending : facts_.affine)++;
-    return bindKernel(std::move(k), mixed, this);
+    return bindKernel(std::move(k), mixed, path, this);
 }
 
 std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> frame, const Settings& settings, Diagnostics& d) {

@@ -36,9 +36,10 @@ struct BoundKernel {
     std::shared_ptr<const rsl::CompiledKernel> kernel;
     std::vector<SiteInfo> sites;
     bool mixed = false;
+    bool path = false;                         ///< lobe shadeops are requests; else they are answered at once
     explicit operator bool() const { return kernel != nullptr; }
 };
-BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel>, bool mixed, class WorldImpl*);
+BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel>, bool mixed, bool path, class WorldImpl*);
 
 /// A shader call of the scene: its program, and the values of its parameters in current space.
 struct ShaderInstance {

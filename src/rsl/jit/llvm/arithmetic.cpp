@@ -73,16 +73,16 @@ Jet Emitter::mul(Jet x, Jet y) {
     return r;
 }
 
-// q = x / y, and 0 where y = 0; q' = (x' - q y') / y; q_ab = (x_ab - q_a y_b - q_b y_a - q y_ab) / y.
+// q = x / y, and 0 where y = 0; q' = (x' - q y') / y; q_ab = (x_ab - q_a y_b - q_b y_a - q y_ab) / y. The derivatives share one
+// reciprocal in every build, so that a divisor that is one number and one that comes in lanes give the same bits.
 Jet Emitter::div(Jet x, Jet y, const Inst* divisor) {
     bool safe = false;
     if (divisor->op == Op::Const) {
         safe = true;
         for (float f : divisor->numbers) safe &= f != 0;
     }
-    Value* isZero = nullptr;
-    auto over = [&](Value* a) -> Value* {
-        if (!a) return nullptr;
+    Value *isZero = nullptr, *reciprocal = nullptr;
+    auto quotient = [&](Value* a) -> Value* {
         Value* d = y.v;
         match(a, d);
         Value* q = b_.CreateFDiv(a, d);
@@ -90,7 +90,12 @@ Jet Emitter::div(Jet x, Jet y, const Inst* divisor) {
         if (!isZero) isZero = b_.CreateFCmpOEQ(y.v, llvm::Constant::getNullValue(y.v->getType()));
         return b_.CreateSelect(isZero, llvm::Constant::getNullValue(q->getType()), q);
     };
-    Jet r{over(x.v)};
+    auto over = [&](Value* a) -> Value* {
+        if (!a) return nullptr;
+        if (!reciprocal) reciprocal = quotient(number(1));
+        return fmul(a, reciprocal);
+    };
+    Jet r{quotient(x.v)};
     for (size_t p = 0; p < 2; p++) r.d[p] = over(fsub(x.d[p], fmul(r.v, y.d[p])));
     for (size_t p = 0; p < 3; p++) {
         const size_t a = kFirst[p], b = kSecond[p];

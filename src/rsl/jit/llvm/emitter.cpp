@@ -22,6 +22,8 @@ int componentsOf(Kind k) {
     }
 }
 
+constexpr int kSpeculate = 40;
+
 Kind resultKind(const Inst* i, int index) { return i->results.empty() ? i->kind : i->results[size_t(index)]; }
 
 } // namespace
@@ -29,10 +31,10 @@ Kind resultKind(const Inst* i, int index) { return i->results.empty() ? i->kind 
 Plan plan(const ModuleRequest& r, const Shapes& shapes) {
     const Pressure p = measure(*r.kernel, shapes, r.outOfLine);
     Plan plan;
-    // A dozen inlined noises is about 2,000 instructions: 0.1 s of compilation. Beyond that they are called.
-    plan.wrapCalls = p.outOfLineCalls > 12;
+    // Thirty inlined noises are about 6,000 instructions: 0.3 s of compilation. Beyond that they are called.
+    plan.wrapCalls = p.outOfLineCalls > 32;
     if (r.vectors > 0) plan.vectors = r.vectors;
-    else if (shapes.hasRequests() || p.effects || p.outOfLineCalls > 0 || p.instructions > 600) plan.vectors = 1;
+    else if (shapes.hasRequests() || p.effects || p.outOfLineCalls > 2 || p.instructions > 600) plan.vectors = 1;
     else if (r.lanes == 16 && p.live <= 7 && !p.loops) plan.vectors = 4;
     else if (p.live <= 14) plan.vectors = 2;
     while (r.lanes * plan.vectors > 64) plan.vectors /= 2;
@@ -168,6 +170,37 @@ void Emitter::inst(const Inst* i) {
     }
 }
 
+// Vector instructions, about, of a region that may run for lanes that do not want it; a large number when it may not.
+int Emitter::cost(const ir::Region& r) const {
+    constexpr int kNever = 1 << 20;
+    int sum = 0;
+    for (const Inst* i : r.body) {
+        switch (i->op) {
+        case Op::Const: case Op::ConstString: case Op::Input: case Op::Result: case Op::Splat: case Op::Triple: case Op::Extract: case Op::MatrixOf:
+        case Op::Du: case Op::Dv:
+            break;
+        case Op::Service: case Op::Request: case Op::Emit: case Op::Mark: case Op::Rescale: case Op::Loop: case Op::LightLoop: case Op::Output:
+        case Op::ArrayNew: case Op::ArrayStore: case Op::ArrayLoad: case Op::ArrayInput:
+            return kNever;
+        case Op::Runtime: {
+            // The runtime's functions are from one instruction to a few dozen; the large ones are marked.
+            if (request_.outOfLine && request_.outOfLine->count(i->text)) return kNever;
+            static const char* const kCheap[] = {"al_abs", "al_min_f", "al_max_f", "al_floor", "al_ceil", "al_sqrt", "al_step_f", "al_clamp_f", "al_mix_f"};
+            const bool cheap = std::any_of(std::begin(kCheap), std::end(kCheap), [&](const char* n) { return i->text == n; });
+            sum += (cheap ? 2 : 20) * (shapes_.callOrder(i) == 0 ? 1 : 3);
+            break;
+        }
+        case Op::If:
+            for (const auto& sub : i->regions) sum += cost(sub);
+            sum += int(i->regions[0].yields.size());
+            break;
+        default: sum += (i->kind == Kind::Triple ? 3 : 1) * (1 + __builtin_popcount(shapes_.of(i).parts));
+        }
+        if (sum >= kNever) return kNever;
+    }
+    return sum;
+}
+
 void Emitter::emitIf(const Inst* i) {
     Value* cond = value(i->args[0])[0].v;
     const bool varying = cond->getType()->isVectorTy();
@@ -211,7 +244,11 @@ void Emitter::emitIf(const Inst* i) {
     auto side = [&](const ir::Region& r, Value* mask) {
         std::vector<Val> result;
         mask_ = mask;
-        if (r.body.empty()) return count ? yields(r) : result;
+        // A test and a jump that the processor guesses wrong cost as much as forty instructions.
+        if (r.body.empty() || cost(r) <= kSpeculate) {
+            region(r);
+            return count ? yields(r) : result;
+        }
         BasicBlock* from = b_.GetInsertBlock();
         BasicBlock *body = block("side"), *join = block("joined");
         b_.CreateCondBr(any(mask), body, join);

@@ -51,6 +51,7 @@ private:
     void region(const ir::Region&);
     void inst(const ir::Inst*);
     void emitIf(const ir::Inst*);
+    int cost(const ir::Region&) const;
     void emitLoop(const ir::Inst*);
     void emitLightLoop(const ir::Inst*);
     llvm::Value* any(llvm::Value* mask);

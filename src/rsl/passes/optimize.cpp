@@ -62,6 +62,7 @@ void optimize(Kernel& k, const KernelOptions& options, Diagnostics& diagnostics)
         removeDeadCode(k);
         check(k, "dce");
     }
+    orderDerivatives(k, diagnostics); // warns of derivatives of rays while the rays are still there
     k.facts.suspends = false;
     if (options.suspend) {
         forEach(k.body, [&](Inst* i) { k.facts.suspends = k.facts.suspends || i->op == Op::Request; });

@@ -1,0 +1,116 @@
+#include "compile.h"
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+using namespace alpenglow;
+using namespace alpenglow::rsl;
+using namespace alpenglow::rsl::ir;
+
+namespace {
+
+std::string shipped(const std::string& name) {
+    std::ifstream f(std::string(ALPENGLOW_SOURCE_DIR) + "/shaders/" + name + ".sl");
+    std::stringstream s;
+    s << f.rdbuf();
+    return s.str();
+}
+
+void expectAffine(const Compiled& c, int emits) {
+    if (!c.kernel)
+        return;
+    EXPECT_TRUE(c.kernel->facts.affine) << c.kernel->facts.whyNot;
+    EXPECT_FALSE(c.kernel->facts.suspends);
+    EXPECT_EQ(c.count(Op::Request), 0) << c.text();
+    EXPECT_EQ(c.count(Op::Emit), emits) << c.text();
+}
+
+TEST(Affine, ShippedMaterialsUnderPath) {
+    const std::pair<const char*, int> expected[] = {{"matte", 2}, {"plastic", 3}, {"paintedplastic", 3}, {"metal", 2}, {"constant", 0}};
+    for (const auto& [name, emits] : expected) {
+        SCOPED_TRACE(name);
+        const Compiled c = compile(shipped(name), pathOptions());
+        expectAffine(c, emits);
+        if (c.kernel)
+            EXPECT_TRUE(c.kernel->facts.direct.empty());
+    }
+}
+
+TEST(Affine, SlprojectMaterial) { expectAffine(compile(shipped("slmaterial"), pathOptions()), 4); }
+
+TEST(Affine, SumInLoopScaledBefore) {
+    const Compiled c = compile("surface s(float n = 4) { color sum = 0; float i; for (i = 0; i < n; i += 1) sum += trace(P, N); Ci = Cs * sum; }");
+    expectAffine(c, 1);
+    EXPECT_EQ(c.count(Op::Rescale), 0) << c.text();
+}
+
+TEST(Affine, SumDividedByCountAfterLoop) {
+    const Compiled c = compile("surface s(float n = 4) { color sum = 0; float k = 0; float i;"
+                               " for (i = 0; i < n; i += 1) { sum += trace(P, N); k += i * s; } Ci = sum / k; }");
+    expectAffine(c, 1);
+    EXPECT_EQ(c.count(Op::Rescale), 1) << c.text();
+    EXPECT_EQ(c.count(Op::Mark), 2) << c.text();
+}
+
+TEST(Affine, BlendOverLayersRescalesEarlierTurns) {
+    const Compiled c = compile("surface s(float n = 4) { color x = 0; float i; for (i = 0; i < n; i += 1) x = mix(x, trace(P, N), 0.25 * s); Ci = x; }");
+    expectAffine(c, 1);
+    EXPECT_EQ(c.count(Op::Rescale), 1) << c.text();
+}
+
+TEST(Affine, FunctionsWithOutputsAndVaryingIf) {
+    expectAffine(compile("void both(vector d; output color a, b) { a = trace(P, d); b = 0.5 * trace(P, -d); }"
+                         "surface s() { color a, b; both(N, a, b); if (s > 0.5) Ci = a * Cs; else Ci = b + a; }"),
+                 2);
+    expectAffine(compile("surface s() { color r = 0; float k = 0; if (s > 0.5) { k = sin(t); r = trace(P, N); } Ci = mix(Cs, r, k); }"), 1);
+}
+
+TEST(Affine, ComponentsStayInPlace) {
+    expectAffine(compile("surface s() { color c = trace(P, N); Ci = color(c[0] * 0.5, c[1], c[2] * s); }"), 1);
+    const Compiled c = compile("surface s() { color c = trace(P, N); Ci = color(c[1], c[1], c[1]); }");
+    EXPECT_FALSE(c.kernel->facts.affine);
+}
+
+TEST(Affine, NotAffineSaysWhyAndSuspends) {
+    const std::pair<const char*, const char*> cases[] = {
+        {"surface s() { color c = trace(P, N);\n if (c[0] > 0.5) Ci = 1; }", "compared"},
+        {"surface s() { color c = trace(P, N); Ci = c * c; }", "multiplied"},
+        {"surface s() { color c = trace(P, N); Ci = Cs / c; }", "divided"},
+        {"surface s() { color c = trace(P, N); Ci = c; Oi = c; }", "Oi"},
+        {"surface s() { float d; color c = trace(P, N, d); Ci = c * d; }", "another result"},
+        {"surface s() { color c = trace(P, N); Ci = max(c, color(0.5)); }", "max"},
+        {"surface s(output varying color extra = 0) { extra = trace(P, N); Ci = extra; }", ""},
+    };
+    for (const auto& [source, why] : cases) {
+        SCOPED_TRACE(source);
+        KernelOptions o;
+        if (!*why)
+            o.outputs = {"Ci", "extra"};
+        const Compiled c = compile(source, o);
+        if (!c.kernel)
+            continue;
+        EXPECT_FALSE(c.kernel->facts.affine);
+        EXPECT_TRUE(c.kernel->facts.suspends);
+        EXPECT_NE(c.kernel->facts.whyNot.find(why), std::string::npos) << c.kernel->facts.whyNot;
+        EXPECT_EQ(c.count(Op::Emit), 0);
+        EXPECT_GE(c.count(Op::Request), 1);
+    }
+}
+
+TEST(Affine, LobeUsedNonlinearlyStaysDirect) {
+    const Compiled c = compile("surface s() { color d = diffuse(normalize(N)); Ci = (d[0] > 0.5) ? color(1) : color(0); Ci += specular(N, -I, 0.1); }", pathOptions());
+    ASSERT_NE(c.kernel, nullptr);
+    ASSERT_EQ(c.kernel->facts.direct.size(), 1u);
+    EXPECT_NE(c.kernel->facts.direct[0].find("diffuse, line 1"), std::string::npos) << c.kernel->facts.direct[0];
+    EXPECT_EQ(c.count(Op::LightLoop), 1);
+    EXPECT_EQ(c.sites(Op::Request, "specular"), 1) << c.text();
+}
+
+TEST(Affine, IlluminanceUnderPathEmitsShadows) {
+    const Compiled c = compile("surface s(float Kd = 0.5) { color sum = 0; illuminance(P, N, PI/2) { sum += Cl * (normalize(L) . N); } Ci = Cs * Kd * sum; }", pathOptions());
+    expectAffine(c, 1);
+    EXPECT_EQ(c.sites(Op::Emit, "lightvisibility"), 1);
+    EXPECT_EQ(c.count(Op::Rescale), 0) << c.text();
+}
+
+} // namespace

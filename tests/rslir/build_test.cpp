@@ -1,0 +1,141 @@
+#include "compile.h"
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+using namespace alpenglow;
+using namespace alpenglow::rsl;
+using namespace alpenglow::rsl::ir;
+
+namespace {
+
+TEST(Build, EveryShippedShader) {
+    for (const auto& file : std::filesystem::directory_iterator(std::string(ALPENGLOW_SOURCE_DIR) + "/shaders")) {
+        if (file.path().extension() != ".sl")
+            continue;
+        SCOPED_TRACE(file.path().string());
+        std::ifstream f(file.path());
+        std::stringstream s;
+        s << f.rdbuf();
+        for (const bool path : {false, true}) {
+            KernelOptions o;
+            o.path = path;
+            const Compiled c = compile(s.str(), o);
+            if (c.kernel)
+                EXPECT_FALSE(c.kernel->outputs.empty());
+        }
+        Diagnostics d;
+        const auto p = compileText(s.str(), "x.sl", {}, d);
+        ASSERT_NE(p, nullptr);
+        const auto defaults = buildDefaults(*p, *p->shaders.back(), d);
+        ASSERT_NE(defaults, nullptr);
+        EXPECT_EQ(verify(*defaults), "");
+        EXPECT_GE(defaults->outputs.size(), p->shaders.back()->parameters.size());
+    }
+}
+
+TEST(Build, ConstantLoopsAndArraysDisappear) {
+    const Compiled c = compile("surface s() { float a[4]; float i; for (i = 0; i < 4; i += 1) a[i] = i * s; float sum = 0;"
+                               " for (i = 0; i < 4; i += 1) sum += a[i]; Ci = sum; }");
+    EXPECT_EQ(c.count(Op::Loop), 0) << c.text();
+    EXPECT_EQ(c.count(Op::ArrayNew), 0) << c.text();
+    EXPECT_EQ(c.count(Op::ArrayStore), 0);
+}
+
+TEST(Build, ConstantsFold) {
+    const Compiled c = compile("surface s() { float x = sqrt(16) * 2 - 3; Ci = x; }");
+    EXPECT_EQ(c.count(Op::Runtime), 0) << c.text();
+    const Inst* out = nullptr;
+    forEach(static_cast<const Region&>(c.kernel->body), [&](const Inst* i) {
+        if (i->op == Op::Output && i->index == 0)
+            out = i->args[0];
+    });
+    ASSERT_NE(out, nullptr);
+    ASSERT_EQ(out->op, Op::Const);
+    EXPECT_EQ(out->numbers, (std::vector<float>{5, 5, 5}));
+}
+
+TEST(Build, StringParametersSpecialise) {
+    KernelOptions o;
+    o.stringParameters = {{"mode", "red"}};
+    const Compiled c = compile("surface s(string mode = \"green\") { if (mode == \"red\") Ci = color(1,0,0); else Ci = trace(P, N); }", o);
+    EXPECT_EQ(c.count(Op::If), 0);
+    EXPECT_EQ(c.count(Op::Emit) + c.count(Op::Request), 0) << c.text();
+}
+
+TEST(Build, SmallIfsBecomeSelects) {
+    const Compiled c = compile("surface s() { float x = 0; if (s > t) x = s * 2; else x = t; Ci = x; }");
+    EXPECT_EQ(c.count(Op::If), 0) << c.text();
+    EXPECT_EQ(c.count(Op::Select), 1) << c.text();
+}
+
+TEST(Build, SpacesBecomeMatrices) {
+    const Compiled c = compile("surface s() { point q = transform(\"shader\", P); Ci = color(q[0], q[1], q[2]); }");
+    ASSERT_EQ(c.kernel->inputs.size(), 3u) << c.text(); // P, Os (for Oi), the matrix
+    EXPECT_NE(c.text().find("space:current>shader"), std::string::npos);
+    const Compiled two = compile("displacement d() { P = transform(\"object\", \"world\", P); }");
+    EXPECT_NE(two.text().find("space:object>current"), std::string::npos);
+    EXPECT_NE(two.text().find("space:current>world"), std::string::npos);
+}
+
+TEST(Build, Lights) {
+    const Compiled spot = compile("light l(point from = point \"shader\" (0,0,0); vector axis = vector \"shader\" (0,0,1)) { illuminate(from, axis, PI/4) Cl = 1 / (L . L); }");
+    ASSERT_EQ(spot.kernel->outputs.size(), 4u);
+    EXPECT_EQ(spot.kernel->outputs[3].name, "lit");
+    EXPECT_EQ(spot.kernel->facts.blocks, std::vector<std::string>{"illuminate"});
+    const Compiled ambient = compile("light l() { Cl = 0.5; }");
+    EXPECT_TRUE(ambient.kernel->facts.ambientLight);
+    EXPECT_EQ(ambient.kernel->outputs.size(), 2u);
+    const Compiled two = compile("light l() { solar(vector(0,0,1), 0) Cl = 1; illuminate(P) Cl = 2; }");
+    EXPECT_EQ(two.kernel->outputs.size(), 8u);
+    EXPECT_EQ(two.kernel->outputs[4].name, "L#1");
+}
+
+TEST(Build, UniformIsFoundInVaryingVariables) {
+    const Compiled c = compile("surface s(float a = 2) { float x = a * 3; if (x > 1) x = sin(a); Ci = x * s; }");
+    bool sinUniform = false;
+    forEach(static_cast<const Region&>(c.kernel->body), [&](const Inst* i) { sinUniform = sinUniform || (i->text == "al_sin" && !i->varying); });
+    EXPECT_TRUE(sinUniform) << c.text();
+    KernelOptions mixed;
+    mixed.mixed = true;
+    const Compiled v = compile("surface s(float a = 2) { Ci = sin(a) * s; }", mixed);
+    forEach(static_cast<const Region&>(v.kernel->body), [&](const Inst* i) {
+        if (i->text == "al_sin")
+            EXPECT_TRUE(i->varying);
+    });
+}
+
+int orderOf(const Compiled& c, const std::string& input) {
+    for (const Input& i : c.kernel->inputs)
+        if (i.name == input)
+            return i.order;
+    return -1;
+}
+
+TEST(Build, DerivativeOrders) {
+    EXPECT_EQ(orderOf(compile("surface s() { Ci = Du(s * s); }"), "s"), 1);
+    EXPECT_EQ(orderOf(compile("surface s() { Ci = Du(s) + t; }"), "t"), 0);
+    const Compiled bump = compile("displacement d() { P += N * sin(s); N = calculatenormal(P); float x = Du(length(N)); P += x; }");
+    EXPECT_EQ(orderOf(bump, "s"), 2) << bump.text();
+    const Compiled loop = compile("surface s() { float x = 0; float i; for (i = 0; i < t; i += 1) x += s * i; Ci = Dv(x); }");
+    EXPECT_EQ(orderOf(loop, "s"), 1) << loop.text();
+    EXPECT_EQ(orderOf(loop, "t"), 0) << loop.text();
+    const Compiled third = compile("surface s() { Ci = Du(Du(Du(s))); }");
+    EXPECT_NE(third.messages.find("third order"), std::string::npos) << third.messages;
+    const Compiled ray = compile("surface s() { Ci = Du(trace(P, N)); }");
+    EXPECT_NE(ray.messages.find("trace()"), std::string::npos) << ray.messages;
+}
+
+TEST(Build, UnboundedInliningIsAnError) {
+    std::string s = "float f0(float x) { return sin(x) + x; }\n";
+    for (int n = 1; n < 24; ++n)
+        s += "float f" + std::to_string(n) + "(float x) { return f" + std::to_string(n - 1) + "(x) + f" + std::to_string(n - 1) + "(x + 1); }\n";
+    s += "surface s() { Ci = f23(s); }";
+    Diagnostics d;
+    const auto p = compileText(s, "x.sl", {}, d);
+    ASSERT_NE(p, nullptr);
+    EXPECT_EQ(buildKernel(*p, *p->shaders.back(), {}, d), nullptr);
+    EXPECT_EQ(d.errors(), 1);
+}
+
+} // namespace

@@ -227,6 +227,7 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
         for (int k = 0; k < 6; ++k)
             if (op.contexts & contextOf(ShaderKind(k))) where += (where.empty() ? "" : ", ") + std::string(toString(ShaderKind(k)));
         sources_.error(e.place, "'" + op.name + "' cannot be used in a " + toString(*kind_) + " shader", "it can in: " + where);
+        return; // its text would be wrong here line by line
     }
     const bool pureMath = op.lowering == Lowering::Runtime || op.lowering == Lowering::Special || op.name == "format" || op.name == "concat";
     if (!pureMath) {

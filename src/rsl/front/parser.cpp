@@ -139,7 +139,7 @@ Unit Parser::parse() {
 }
 
 bool Parser::notYet(Place p, const char* what) {
-    sources_.error(p, std::string(what) + " are not yet available");
+    if (told_.insert(what).second) sources_.error(p, std::string(what) + " are not yet available");
     unit_.incomplete = true;
     return true;
 }

@@ -97,6 +97,7 @@ private:
     Owner owner_;                 ///< of the function or shader being read
     bool returnsValue_ = false;   ///< a `return expression` was seen in it
     std::unordered_set<std::string> structs_; ///< names of types that are not yet available
+    std::unordered_set<std::string> told_;    ///< what was reported as not yet available
     size_t lastError_ = size_t(-1);
 };
 

@@ -130,14 +130,12 @@ ExprPtr Parser::postfix() {
             expect("]", "after an index");
             e = std::move(index);
         } else if (at("->")) {
-            notYet(peek().place, "shader handles and their methods (->)");
+            notYet(peek().place, "shader handles");
             take();
             if (peek().kind == Tok::Identifier) take();
             if (at("(")) skipBalanced();
             auto poison = node(ExprKind::Variable, e->place); // an empty name: the checker stays silent about it
             e = std::move(poison);
-        } else if (peek().kind == Tok::Punct && (at("=") || at("(")) && e->kind == ExprKind::Number) {
-            failHere("expected an operator");
         } else return e;
     }
 }
@@ -193,8 +191,8 @@ void Parser::arguments(std::vector<ExprPtr>& out) {
         out.push_back(at("{") ? arrayList() : assignment());
         if (accept(",")) continue;
         if (accept(")")) return;
-        if (accept(";")) { // some write calls as they write parameter lists
-            sources_.warning(tokens_[at_ - 1].place, "arguments are separated by ',', not ';'");
+        if (at(";") && !peek(1).lineStart && !peek(1).is("}")) { // some write calls as they write parameter lists
+            sources_.warning(take().place, "arguments are separated by ',', not ';'");
             continue;
         }
         failHere("expected ',' or ')' after an argument");

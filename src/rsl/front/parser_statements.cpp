@@ -55,9 +55,9 @@ StmtPtr Parser::statementOnce() {
     if (t.kind != Tok::Identifier) { auto s = expressionStatement(expression()); expectSemicolon("an expression"); return s; }
     const std::string_view w = t.text;
     const bool call = peek(1).is("(");
-    if (w == "if" && call) {
+    if (w == "if") {
         auto s = make(StmtKind::If, take().place);
-        take();
+        expect("(", "after 'if'");
         s->condition = expression();
         expect(")", "after the condition");
         s->body.push_back(statement());
@@ -65,15 +65,15 @@ StmtPtr Parser::statementOnce() {
         return s;
     }
     if (w == "else") fail(t.place, "'else' without 'if'");
-    if (w == "while" && call) {
+    if (w == "while") {
         auto s = make(StmtKind::While, take().place);
-        take();
+        expect("(", "after 'while'");
         s->condition = expression();
         expect(")", "after the condition");
         s->body.push_back(statement());
         return s;
     }
-    if (w == "for" && call) return forLoop();
+    if (w == "for") return forLoop();
     if (w == "do" && (peek(1).is("{") || (peek(1).kind == Tok::Identifier && !peek(1).lineStart))) return doLoop();
     if (w == "break" || w == "continue") {
         auto s = make(w == "break" ? StmtKind::Break : StmtKind::Continue, take().place);
@@ -189,7 +189,7 @@ StmtPtr Parser::declaration() {
 
 StmtPtr Parser::forLoop() {
     const Place place = take().place;
-    take();
+    expect("(", "after 'for'");
     auto outer = make(StmtKind::Block, place);
     auto loop = make(StmtKind::For, place);
     if (atTypeName() || at("uniform") || at("varying")) {

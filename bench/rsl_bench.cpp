@@ -1,5 +1,5 @@
 // Nanoseconds of CPU time a point for shader files, one thread: rsl_bench [--lanes N] [--vectors N] [--ir] shader.sl...
-// A batch of 4,096 points of the unit square is shaded again and again; the best of several runs counts.
+// A batch of 65,536 points of the unit square is shaded again and again; the best of several runs counts.
 #include "rsl/compiler.h"
 #include "rsl/evaluate.h"
 #include <algorithm>
@@ -20,7 +20,7 @@ double cpuSeconds() {
     return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 
-constexpr int kSide = 64, kPoints = kSide * kSide;
+constexpr int kSide = 256, kPoints = kSide * kSide;
 
 float* rows(int n) {
     auto* p = static_cast<float*>(std::aligned_alloc(64, size_t(std::max(1, n)) * kPoints * 4));

@@ -132,6 +132,33 @@ Val Emitter::selectLanes(Value* mask, const Val& a, const Val& b) {
     return r;
 }
 
+// running ? next : old, where next is often itself "old for the lanes of an inner condition": the masks are joined, one select is left.
+Val Emitter::keepLanes(Value* running, const Val& next, const Val& old) {
+    auto one = [&](Value* n, Value* o) -> Value* {
+        if (!n) return nullptr;
+        Value* mask = running;
+        while (auto* s = llvm::dyn_cast<llvm::SelectInst>(n)) {
+            if (!s->getCondition()->getType()->isVectorTy()) break;
+            if (s->getTrueValue() == o) {
+                mask = b_.CreateAnd(mask, b_.CreateNot(s->getCondition()));
+                n = s->getFalseValue();
+            } else if (s->getFalseValue() == o) {
+                mask = b_.CreateAnd(mask, s->getCondition());
+                n = s->getTrueValue();
+            } else {
+                break;
+            }
+        }
+        return n == o ? o : b_.CreateSelect(mask, n, o);
+    };
+    Val r(next.size());
+    for (size_t c = 0; c < next.size(); c++) {
+        r[c].v = one(next[c].v, old[c].v);
+        for (size_t p = 0; p < 5; p++) r[c].d[p] = one(next[c].d[p], old[c].d[p]);
+    }
+    return r;
+}
+
 void Emitter::region(const ir::Region& r) {
     for (const Inst* i : r.body) inst(i);
 }
@@ -319,8 +346,8 @@ void Emitter::emitLoop(const Inst* i) {
     std::vector<Val> next(count);
     for (size_t k = 0; k < count; k++) {
         next[k] = conform(value(body.yields[k]), kind[k], shape[k]);
-        // Lanes that left keep what they had.
-        if (varying && body.yields[k] != body.params[k]) next[k] = selectLanes(running, next[k], phi[k]);
+        // Lanes that left keep what they had, where anyone will ask for it.
+        if (varying && body.yields[k] != body.params[k] && shapes_.used(i, int(k))) next[k] = keepLanes(running, next[k], phi[k]);
     }
     BasicBlock* latch = b_.GetInsertBlock();
     b_.CreateBr(head);

@@ -63,6 +63,7 @@ private:
     Val conform(Val, ir::Kind, Shape);
     Val phis(ir::Kind, Shape);
     void addIncoming(Val& phi, const Val& v, llvm::BasicBlock* from);
+    Val keepLanes(llvm::Value* running, const Val& next, const Val& old);
     Val selectLanes(llvm::Value* mask, const Val& a, const Val& b);
     // arithmetic.cpp
     void arithmetic(const ir::Inst*);

@@ -57,6 +57,7 @@ int Shapes::order(const Inst* i, int index) const {
 void Shapes::collect(const ir::Region& r) {
     for (const Inst* i : r.body) {
         if (i->op == Op::Result && !i->args.empty()) {
+            used_.insert({i->args[0], i->index});
             auto& o = orders_[i->args[0]];
             o.resize(std::max<size_t>(o.size(), size_t(std::max(i->index + 1, resultCount(i->args[0])))));
             if (i->index >= 0) o[i->index] = std::max(o[i->index], i->order);

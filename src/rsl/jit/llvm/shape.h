@@ -32,6 +32,8 @@ public:
     Shape of(const ir::Inst*, int index = 0) const;
     /// Largest order wanted of result `index` by the instruction itself and its Result instructions.
     int order(const ir::Inst*, int index = 0) const;
+    /// Whether result `index` of an instruction with several results has a Result instruction (dead ones are removed by the passes).
+    bool used(const ir::Inst* i, int index) const { return i->results.empty() || used_.count({i, index}) != 0; }
     bool hasRequests() const { return requests_; }
     /// Order that a Runtime instruction is called with, from its arguments' shapes and the wanted orders.
     int callOrder(const ir::Inst*) const;
@@ -48,6 +50,7 @@ private:
     bool mixed_;
     const std::set<std::string>* zero_;
     bool requests_ = false;
+    std::set<std::pair<const ir::Inst*, int>> used_;
     std::unordered_map<const ir::Inst*, std::vector<Shape>> shapes_;
     std::unordered_map<const ir::Inst*, std::vector<uint8_t>> orders_;
 };

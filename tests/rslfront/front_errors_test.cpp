@@ -92,7 +92,8 @@ const Case kWarnings[] = {
     {"P += N;", "2:1: warning: 'P' is read-only in a surface shader"},
     {"f + 1;", "2:3: warning: this expression has no effect"},
     {"f = 1.0f;", "2:5: warning: numbers take no suffix"},
-    {"c = texture(\"a\", \"blurr\", 1);", "2:18: warning: 'texture' has no parameter \"blurr\"; it is ignored (did you mean \"blur\"?)"},
+    {"c = texture(\"a\", \"blurr\", 1);",
+     "2:18: warning: 'texture' has no parameter \"blurr\"; it is ignored (did you mean \"blur\"?)"},
     {"f = match(\"a\", \"b\");", "2:5: warning: 'match' is not yet available; its value is 0"},
     {"gather(\"illuminance\", P, N, 1, 4, \"surface:Ci\", c) f = 1;", "2:1: warning: 'gather' is not yet available"},
     {"f = pow(f; 2);", "2:10: warning: arguments are separated by ',', not ';'"},
@@ -111,20 +112,24 @@ const Case kFiles[] = {
     {"light l() { Cl = diffuse(N); }", "1:18: error: 'diffuse' cannot be used in a light shader"},
     {"light l() { Ci = 1; }", "1:13: error: 'Ci' is not declared in a light shader"},
     {"displacement d() { illuminance(P) ; }", "1:20: error: 'illuminance' cannot be used in a displacement shader"},
-    {"float f(float x) { return f(x - 1); }\nsurface s() { Ci = f(1); }", "1:27: error: function 'f' calls itself; recursion is not allowed"},
-    {"float g(float x) { return h(x); }\nfloat h(float x) { return g(x); }\nsurface s() { Ci = g(1); }", "2:27: error: function 'g' calls itself"},
+    {"float f(float x) { return f(x - 1); }\nsurface s() { Ci = f(1); }",
+     "1:27: error: function 'f' calls itself; recursion is not allowed"},
+    {"float g(float x) { return h(x); }\nfloat h(float x) { return g(x); }\nsurface s() { Ci = g(1); }",
+     "2:27: error: function 'g' calls itself"},
     {"surface s() { float f(float x) { return f(x); } Ci = f(1); }", "1:41: error: function 'f' calls itself"},
     {"float f(float x) { return; } surface s() {}", "1:20: error: function 'f' must return a float"},
     {"void f(float x) { return x; } surface s() {}", "1:26: error: function 'f' is void and returns no value"},
     {"float f(float x) { x + 1; } surface s() {}", "1:7: warning: function 'f' can end without returning a value"},
     {"float f(float x) { return Kd; } surface s(float Kd = 1) { Ci = f(1); }",
      "1:27: error: 'Kd' is not declared (it is a parameter of the shader: declare 'extern float Kd;')"},
-    {"void f(float x) { x = 1; } surface s() { f(1); }", "1:19: warning: parameter 'x' is not output; the function changes a copy"},
+    {"void f(float x) { x = 1; } surface s() { f(1); }",
+     "1:19: warning: parameter 'x' is not output; the function changes a copy"},
     {"surface s(float a = 1) { a = 2; }", "1:26: warning: parameter 'a' is not output; the shader changes a copy"},
     {"surface s(float a;) { }", "1:17: warning: parameter 'a' has no default value; it is zero unless set"},
     {"surface s(float a = 1 color b = 1) { }", "1:22: warning: expected ';' before the next parameter"},
     {"struct X { float a; }\nsurface s() { X x; x = 1; }", "1:1: error: structures (struct) are not yet available"},
-    {"class c(float a = 1;) { public void surface(output color Ci, Oi) { Ci = a; } }", "1:1: error: shader objects (class) are not yet available"},
+    {"class c(float a = 1;) { public void surface(output color Ci, Oi) { Ci = a; } }",
+     "1:1: error: shader objects (class) are not yet available"},
     {"#include \"nowhere.h\"\nsurface s() { Ci = helper(name); }", "1:10: error: cannot find the included file 'nowhere.h'"},
     {"#if 1\nsurface s() {}", "1:1: error: this #if has no #endif"},
     {"#endif\nsurface s() {}", "1:1: error: #endif without #if"},
@@ -135,11 +140,13 @@ const Case kFiles[] = {
     {"#line 100 \"orig.sl\"\nsurface s() { Ci = x; }", "100:20: error: 'x' is not declared"},
     {"#define BAD nothing\nsurface s() { Ci = 2 *\n   BAD; }", "3:4: error: 'nothing' is not declared"},
     {"surface s() { Ci = 1\n  Oi = 1; }", "1:21: error: expected ';' after an expression"},
-    {"surface s() { Ci = undefined1; }\nfloat f() { return undefined2; }", "1:20: error: 'undefined1' is not declared\n2:20: error: 'undefined2' is not declared"},
+    {"surface s() { Ci = undefined1; }\nfloat f() { return undefined2; }",
+     "1:20: error: 'undefined1' is not declared\n2:20: error: 'undefined2' is not declared"},
 };
 
 TEST(FrontErrors, Bodies) {
-    for (const Case& c : kBodies) EXPECT_EQ(compileBody(c.body).text().substr(0, std::string(c.message).size()), c.message) << c.body;
+    for (const Case& c : kBodies)
+        EXPECT_EQ(compileBody(c.body).text().substr(0, std::string(c.message).size()), c.message) << c.body;
 }
 
 TEST(FrontErrors, Warnings) {
@@ -152,7 +159,8 @@ TEST(FrontErrors, Warnings) {
 }
 
 TEST(FrontErrors, Files) {
-    for (const Case& c : kFiles) EXPECT_EQ(compileSnippet(c.body).text().substr(0, std::string(c.message).size()), c.message) << c.body;
+    for (const Case& c : kFiles)
+        EXPECT_EQ(compileSnippet(c.body).text().substr(0, std::string(c.message).size()), c.message) << c.body;
 }
 
 TEST(FrontErrors, OneFaultOneMessage) {
@@ -205,11 +213,12 @@ std::string repeat(const std::string& s, int n) {
 
 TEST(FrontHostile, DepthIsBounded) {
     const int n = 100'000;
-    for (const std::string& body : {"f = " + repeat("(", n) + "1" + repeat(")", n) + ";", "f = " + repeat("-", n) + "1;", "f = " + repeat("!", n) + "1;",
-                                    repeat("{", n), repeat("if (f) ", n) + ";", repeat("while (f) ", n) + ";", "f = " + repeat("sqrt(", n) + ";",
-                                    "f = " + repeat("1 + ", n) + "1;", "f = " + repeat("f ? 1 : ", n) + "1;", "f = " + repeat("f = ", n) + "1;",
-                                    "f = " + repeat("float ", n) + "1;", "f = a" + repeat("[a", n) + ";", "f = " + repeat("{", n) + ";",
-                                    repeat("float f(float x) { ", n), "if (f) ; " + repeat("else if (f) ; ", n), repeat("do ", n) + ";"}) {
+    for (const std::string& body :
+         {"f = " + repeat("(", n) + "1" + repeat(")", n) + ";", "f = " + repeat("-", n) + "1;", "f = " + repeat("!", n) + "1;",
+          repeat("{", n), repeat("if (f) ", n) + ";", repeat("while (f) ", n) + ";", "f = " + repeat("sqrt(", n) + ";",
+          "f = " + repeat("1 + ", n) + "1;", "f = " + repeat("f ? 1 : ", n) + "1;", "f = " + repeat("f = ", n) + "1;",
+          "f = " + repeat("float ", n) + "1;", "f = a" + repeat("[a", n) + ";", "f = " + repeat("{", n) + ";",
+          repeat("float f(float x) { ", n), "if (f) ; " + repeat("else if (f) ; ", n), repeat("do ", n) + ";"}) {
         const auto r = compileBody(body);
         EXPECT_FALSE(r.program) << body.substr(0, 40);
         EXPECT_GE(r.errors(), 1);
@@ -218,25 +227,32 @@ TEST(FrontHostile, DepthIsBounded) {
 
 TEST(FrontHostile, LongSumsBelowTheLimitAreFine) {
     EXPECT_TRUE(compileBody("f = " + repeat("1 + ", limits::kTreeHeight / 2) + "1;").program);
-    EXPECT_TRUE(compileBody("f = " + repeat("(", limits::kExpressionDepth / 4) + "1" + repeat(")", limits::kExpressionDepth / 4) + ";").program);
+    EXPECT_TRUE(
+        compileBody("f = " + repeat("(", limits::kExpressionDepth / 4) + "1" + repeat(")", limits::kExpressionDepth / 4) + ";")
+            .program);
 }
 
 TEST(FrontHostile, MacrosAreBounded) {
     std::string text = "#define A0 1 + 1\n";
-    for (int i = 1; i < 40; ++i) text += "#define A" + std::to_string(i) + " A" + std::to_string(i - 1) + " + A" + std::to_string(i - 1) + "\n";
+    for (int i = 1; i < 40; ++i)
+        text += "#define A" + std::to_string(i) + " A" + std::to_string(i - 1) + " + A" + std::to_string(i - 1) + "\n";
     EXPECT_FALSE(compileSnippet(text + "surface s() { Ci = A39; }").program);
-    EXPECT_FALSE(compileSnippet("#define F(x) x\nsurface s() { Ci = " + repeat("F(", 10'000) + "1" + repeat(")", 10'000) + "; }").program);
-    EXPECT_TRUE(compileSnippet("#define X X + 1\n#define Y Z\n#define Z Y\nsurface s() { float X1 = 1, Y = 2, X = 3; }").messages.size() < 9);
+    EXPECT_FALSE(
+        compileSnippet("#define F(x) x\nsurface s() { Ci = " + repeat("F(", 10'000) + "1" + repeat(")", 10'000) + "; }").program);
+    EXPECT_TRUE(
+        compileSnippet("#define X X + 1\n#define Y Z\n#define Z Y\nsurface s() { float X1 = 1, Y = 2, X = 3; }").messages.size() <
+        9);
 }
 
 TEST(FrontHostile, ArraysAreBounded) { EXPECT_FALSE(compileBody("float b[1000000000] = 0;").program); }
 
-const char* kSample = "#define SQ(x) ((x)*(x))\n/* c */ float f(float x; output color c) { extern point P; c = noise(P); return SQ(x); }\n"
-                      "surface s(float Kd = .5, a[3] = {1,2,3}; string map = \"a\\\"b\"; color hsv = color \"hsv\" (1,0,1);) {\n"
-                      "  normal Nf = faceforward(normalize(N), I); color c = 0; float i;\n"
-                      "  for (i = 0; i < 3; i += 1) { if (a[i] > 2 && !(i == 1)) break; else c += f(a[i], c) * (N ^ I) . I; }\n"
-                      "  illuminance(\"x\", P, Nf, PI/2, \"light:y\", i) { c += Cl * normalize(L) . Nf; }\n"
-                      "  Ci = map != \"\" ? Kd * color texture(map[0], s, t, \"blur\", .1) : diffuse(Nf); Oi = Os;\n}\n";
+const char* kSample =
+    "#define SQ(x) ((x)*(x))\n/* c */ float f(float x; output color c) { extern point P; c = noise(P); return SQ(x); }\n"
+    "surface s(float Kd = .5, a[3] = {1,2,3}; string map = \"a\\\"b\"; color hsv = color \"hsv\" (1,0,1);) {\n"
+    "  normal Nf = faceforward(normalize(N), I); color c = 0; float i;\n"
+    "  for (i = 0; i < 3; i += 1) { if (a[i] > 2 && !(i == 1)) break; else c += f(a[i], c) * (N ^ I) . I; }\n"
+    "  illuminance(\"x\", P, Nf, PI/2, \"light:y\", i) { c += Cl * normalize(L) . Nf; }\n"
+    "  Ci = map != \"\" ? Kd * color texture(map[0], s, t, \"blur\", .1) : diffuse(Nf); Oi = Os;\n}\n";
 
 TEST(FrontHostile, EveryPrefix) {
     const std::string text = kSample;
@@ -248,10 +264,15 @@ TEST(FrontHostile, EveryPrefix) {
 }
 
 TEST(FrontHostile, TokenSoup) {
-    const std::vector<std::string> words = {"surface", "s", "(", ")", "{", "}", "[", "]", ";", ",", "float", "color", "point", "string", "f", "P", "Ci", "1", "2.5",
-                                            "\"x\"", "=", "+=", "+", "-", "*", "/", "^", ".", "<", "==", "&&", "!", "?", ":", "if", "else", "while", "for", "break",
-                                            "return", "illuminance", "extern", "output", "uniform", "noise", "texture", "->", "#define M(a) a\n", "\n#if 1\n",
-                                            "\n#endif\n", "M(", "matrix", "void", "light", "gather", "struct", "do", "\n"};
+    const std::vector<std::string> words = {
+        "surface",     "s",          "(",      ")",       "{",     "}",       "[",      "]",
+        ";",           ",",          "float",  "color",   "point", "string",  "f",      "P",
+        "Ci",          "1",          "2.5",    "\"x\"",   "=",     "+=",      "+",      "-",
+        "*",           "/",          "^",      ".",       "<",     "==",      "&&",     "!",
+        "?",           ":",          "if",     "else",    "while", "for",     "break",  "return",
+        "illuminance", "extern",     "output", "uniform", "noise", "texture", "->",     "#define M(a) a\n",
+        "\n#if 1\n",   "\n#endif\n", "M(",     "matrix",  "void",  "light",   "gather", "struct",
+        "do",          "\n"};
     std::mt19937 random(7);
     for (int i = 0; i < 3000; ++i) {
         std::string text = i % 2 ? "surface s() {\n" : "";

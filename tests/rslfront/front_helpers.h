@@ -15,7 +15,8 @@ struct Compiled {
         std::string s;
         for (const auto& m : messages)
             s += std::to_string(m.place.line) + ":" + std::to_string(m.place.column) + ": " +
-                 (m.severity == Severity::Error ? "error: " : "warning: ") + m.message + (m.hint.empty() ? "" : " (" + m.hint + ")") + "\n";
+                 (m.severity == Severity::Error ? "error: " : "warning: ") + m.message +
+                 (m.hint.empty() ? "" : " (" + m.hint + ")") + "\n";
         return s;
     }
     int errors() const {
@@ -34,8 +35,8 @@ inline Compiled compileSnippet(const std::string& text, const FrontOptions& opti
 }
 
 /// Variables that bodies may use; the body begins on line 2.
-inline const char* kPrelude =
-    "surface t() { float f, g, h; color c, d; point p, q; vector v1, w; normal n; matrix m, mm; string str; float a[4]; color ca[3]; \n";
+inline const char* kPrelude = "surface t() { float f, g, h; color c, d; point p, q; vector v1, w; normal n; matrix m, mm; string "
+                              "str; float a[4]; color ca[3]; \n";
 inline constexpr size_t kPreludeStatements = 9;
 
 inline Compiled compileBody(const std::string& body) { return compileSnippet(kPrelude + body + "\n}"); }

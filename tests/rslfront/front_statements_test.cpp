@@ -10,7 +10,8 @@ const Case kStatements[] = {
     {"while (f < 3) f += 1;", "(while (less:bool f 3) (+= f 1))"},
     {"for (f = 0; f < 3; f += 1) g = f;", "(for (= f 0) (less:bool f 3) (+= f 1) (= g f))"},
     {"for (;;) break;", "(for - - - (break 1))"},
-    {"for (float i = 0; i < 3; i += 1) g = i;", "(block (declare (varying float i = 0)) (for - (less:bool i 3) (+= i 1) (= g i)))"},
+    {"for (float i = 0; i < 3; i += 1) g = i;",
+     "(block (declare (varying float i = 0)) (for - (less:bool i 3) (+= i 1) (= g i)))"},
     {"for (f = 0, g = 1; f < 3; f += 1, g += 2) h = f;",
      "(block (= f 0) (for (= g 1) (less:bool f 3) (+= g 2) (block (= h f) (+= f 1))))"},
     {"while (1) while (1) break 2;", "(while (notequal:bool 1 0) (while (notequal:bool 1 0) (break 2)))"},
@@ -54,9 +55,9 @@ TEST(FrontStatements, Trees) {
 }
 
 TEST(FrontStatements, DoRunsOnceBeforeTheTest) {
-    EXPECT_EQ(printBody("do f += 1; while (f < 3);"),
-              "(block (declare (varying float do = 1)) (while (notequal:bool (?:float (notequal:bool do 0) 1 (cast:float (less:bool f 3))) 0) "
-              "(block (= do 0) (+= f 1))))");
+    EXPECT_EQ(printBody("do f += 1; while (f < 3);"), "(block (declare (varying float do = 1)) (while (notequal:bool (?:float "
+                                                      "(notequal:bool do 0) 1 (cast:float (less:bool f 3))) 0) "
+                                                      "(block (= do 0) (+= f 1))))");
 }
 
 std::string shaderOf(const std::string& text) {
@@ -67,22 +68,27 @@ std::string shaderOf(const std::string& text) {
 TEST(FrontShaders, Parameters) {
     EXPECT_EQ(shaderOf("surface s(float a = 1, b = 2; varying color c = 0;) {}"),
               "surface s(uniform float a = 1; uniform float b = 2; varying color c = (cast:color 0)) (block)");
-    EXPECT_EQ(shaderOf("surface s(float a = 1, color c = 1) {}"), "surface s(uniform float a = 1; uniform color c = (cast:color 1)) (block)");
+    EXPECT_EQ(shaderOf("surface s(float a = 1, color c = 1) {}"),
+              "surface s(uniform float a = 1; uniform color c = (cast:color 1)) (block)");
     EXPECT_EQ(shaderOf("surface s(output varying color o = 0;) { o = 1; }"),
               "surface s(output varying color o = (cast:color 0)) (block (= o (cast:color 1)))");
-    EXPECT_EQ(shaderOf("surface s(float a = 1, b = a * 2) {}"), "surface s(uniform float a = 1; uniform float b = (mul:float a 2)) (block)");
-    EXPECT_EQ(shaderOf("surface s(uniform float x[] = {1, 2};) {}"), "surface s(uniform float[2] x = (list:float[2] 1 2)) (block)");
+    EXPECT_EQ(shaderOf("surface s(float a = 1, b = a * 2) {}"),
+              "surface s(uniform float a = 1; uniform float b = (mul:float a 2)) (block)");
+    EXPECT_EQ(shaderOf("surface s(uniform float x[] = {1, 2};) {}"),
+              "surface s(uniform float[2] x = (list:float[2] 1 2)) (block)");
     EXPECT_EQ(shaderOf("surface s(color c[];) {}"), "surface s(uniform color[] c) (block)");
     EXPECT_EQ(shaderOf("surface s(color d[3] = {0,0};) {}"),
               "surface s(uniform color[3] d = (list:color[3] (cast:color 0) (cast:color 0) (cast:color 0))) (block)");
-    EXPECT_EQ(shaderOf("surface s(point p = point \"shader\" (0,0,0)) {}"), "surface s(uniform point p = (point \"shader\" 0 0 0)) (block)");
+    EXPECT_EQ(shaderOf("surface s(point p = point \"shader\" (0,0,0)) {}"),
+              "surface s(uniform point p = (point \"shader\" 0 0 0)) (block)");
     EXPECT_EQ(shaderOf("surface s {}"), "surface s() (block)");
 }
 
 TEST(FrontShaders, KindsAndLights) {
     EXPECT_EQ(shaderOf("light l(point from = 0) { illuminate(from) { Cl = 1; } }"),
               "light l(uniform point from = (cast:point 0)) (block (illuminate from (block (= Cl (cast:color 1)))))");
-    EXPECT_EQ(shaderOf("light l() { solar(vector (0,0,1), 0) Cl = 1; }"), "light l() (block (solar (vector 0 0 1) 0 (= Cl (cast:color 1))))");
+    EXPECT_EQ(shaderOf("light l() { solar(vector (0,0,1), 0) Cl = 1; }"),
+              "light l() (block (solar (vector 0 0 1) 0 (= Cl (cast:color 1))))");
     EXPECT_EQ(shaderOf("light l() { solar() Cl = 1; }"), "light l() (block (solar (= Cl (cast:color 1))))");
     EXPECT_EQ(shaderOf("light l() { illuminate(P, N, 1) Cl = length(L); }"),
               "light l() (block (illuminate P (cast:vector N) 1 (= Cl (cast:color (length:float L)))))");
@@ -109,14 +115,16 @@ TEST(FrontShaders, GlobalsByKind) {
 TEST(FrontFunctions, OverloadsByArgumentAndResult) {
     const char* text = "float f(float x) { return x; }\ncolor f(float x) { return x; }\nfloat f(color x) { return x[0]; }\n"
                        "surface s() { float a = f(1); color b = f(1); float c = f(Cs); color d = color f(u); }";
-    EXPECT_EQ(shaderOf(text), "surface s() (block (declare (varying float a = (call f:float 1))) (declare (varying color b = (call f:color 1))) "
-                              "(declare (varying float c = (call f:float Cs))) (declare (varying color d = (call f:color u))))");
+    EXPECT_EQ(shaderOf(text),
+              "surface s() (block (declare (varying float a = (call f:float 1))) (declare (varying color b = (call f:color 1))) "
+              "(declare (varying float c = (call f:float Cs))) (declare (varying color d = (call f:color u))))");
 }
 
 TEST(FrontFunctions, Forms) {
     EXPECT_EQ(shaderOf("void g(output float a; float b, c) { a = b + c; } surface s() { float x; g(x, 1, 2); }"),
               "surface s() (block (declare (varying float x)) (call g:void x 1 2))");
-    EXPECT_EQ(shaderOf("half(float x) { return x / 2; } surface s() { Ci = half(u); }"), "surface s() (block (= Ci (cast:color (call half:float u))))");
+    EXPECT_EQ(shaderOf("half(float x) { return x / 2; } surface s() { Ci = half(u); }"),
+              "surface s() (block (= Ci (cast:color (call half:float u))))");
     EXPECT_EQ(shaderOf("float sum(float x[]) { return x[0] + x[1]; } surface s() { float y[2] = {1, 2}; Ci = sum(y); }"),
               "surface s() (block (declare (varying float[2] y = (list:float[2] 1 2))) (= Ci (cast:color (call sum:float y))))");
     EXPECT_EQ(shaderOf("surface s() { float k = 2; float twice(float x) { return k * x; } Ci = twice(u); }"),
@@ -140,7 +148,8 @@ TEST(FrontFunctions, GlobalsAreTheShadersOwn) {
 }
 
 TEST(FrontFunctions, EachShaderHasItsOwnCopy) {
-    const auto c = compileSnippet("color f() { return Cl; }\nsurface a() { illuminance(P) Ci += f(); }\nlight b() { illuminate(P) Cl = f(); }");
+    const auto c = compileSnippet(
+        "color f() { return Cl; }\nsurface a() { illuminance(P) Ci += f(); }\nlight b() { illuminate(P) Cl = f(); }");
     ASSERT_TRUE(c.program) << c.text();
     EXPECT_EQ(c.program->functions.size(), 2u);
 }
@@ -173,8 +182,10 @@ TEST(FrontFunctions, EveryRslShadeopCompiles) {
                 declarations += toString(t.element()) + " " + name + (t.array ? "[" + std::to_string(t.array) + "]" : "") + "; ";
                 arguments += (i ? ", " : "") + name;
             }
-            const std::string cast = s.result.base == Base::Void || s.result.array ? "" : toString(s.result) + " y = " + toString(s.result) + " ";
-            const auto c = compileSnippet(std::string(toString(kind)) + " t() { " + declarations + cast + op.name + "(" + arguments + "); }");
+            const std::string cast =
+                s.result.base == Base::Void || s.result.array ? "" : toString(s.result) + " y = " + toString(s.result) + " ";
+            const auto c = compileSnippet(std::string(toString(kind)) + " t() { " + declarations + cast + op.name + "(" +
+                                          arguments + "); }");
             EXPECT_TRUE(c.program) << s.text << "\n" << c.text();
         }
     }

@@ -20,7 +20,8 @@ template <class View> std::vector<View> views(const Function& f) {
 
 std::string signatureText(const Function& f) {
     std::string s = toString(f.result) + " " + f.name + "(";
-    for (const Symbol* p : f.parameters) s += (p == f.parameters[0] ? "" : ", ") + std::string(p->output ? "output " : "") + toString(p->type);
+    for (const Symbol* p : f.parameters)
+        s += (p == f.parameters[0] ? "" : ", ") + std::string(p->output ? "output " : "") + toString(p->type);
     return s + ")";
 }
 
@@ -54,7 +55,8 @@ int Checker::argumentCost(Expr& argument, Type wanted, bool output, bool ignoreO
     return costTo(info, wanted.base);
 }
 
-bool Checker::match(const std::vector<ParameterView>& parameters, bool repeats, bool pairs, Expr& call, Choice& choice, bool ignoreOutputs) {
+bool Checker::match(const std::vector<ParameterView>& parameters, bool repeats, bool pairs, Expr& call, Choice& choice,
+                    bool ignoreOutputs) {
     const size_t n = call.args.size();
     if (n < parameters.size()) return false;
     choice.cost = 0;
@@ -85,7 +87,8 @@ void Checker::surveyCall(Expr& e, Info& info) {
     for (auto& a : e.args) broken |= survey(*a).any;
     std::vector<std::string> candidates;
     bool known = false, outputsOnly = false;
-    const auto offer = [&](Choice choice, const std::vector<ParameterView>& parameters, bool repeats, bool pairs, const std::string& text) {
+    const auto offer = [&](Choice choice, const std::vector<ParameterView>& parameters, bool repeats, bool pairs,
+                           const std::string& text) {
         known = true;
         candidates.push_back(text);
         if (match(parameters, repeats, pairs, e, choice, false)) {
@@ -143,7 +146,8 @@ void Checker::surveyCall(Expr& e, Info& info) {
     for (const Choice& c : info.choices) {
         if (c.result.array != 0) { info.array = c.result; continue; }
         if (c.signature && returnsShader(*c.signature)) {
-            if (reportedUnavailable_.insert(c.shadeop).second) sources_.error(e.place, "shader handles, and with them '" + e.text + "', are not yet available");
+            if (reportedUnavailable_.insert(c.shadeop).second)
+                sources_.error(e.place, "shader handles, and with them '" + e.text + "', are not yet available");
             info.any = true;
             return;
         }
@@ -208,7 +212,8 @@ void Checker::settleCall(ExprPtr& pointer, Type result) {
     e.kind = ExprKind::FunctionCall;
     if (choice.nested) {
         e.function = choice.function;
-        if (checking_.count(choice.function)) sources_.error(e.place, "function '" + e.text + "' calls itself; recursion is not allowed");
+        if (checking_.count(choice.function))
+            sources_.error(e.place, "function '" + e.text + "' calls itself; recursion is not allowed");
     } else {
         e.function = instance(*choice.function, *choice.unit, {}, e.place);
     }
@@ -225,17 +230,20 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
     if (kind_ && !(op.contexts & contextOf(*kind_))) {
         std::string where;
         for (int k = 0; k < 6; ++k)
-            if (op.contexts & contextOf(ShaderKind(k))) where += (where.empty() ? "" : ", ") + std::string(toString(ShaderKind(k)));
+            if (op.contexts & contextOf(ShaderKind(k)))
+                where += (where.empty() ? "" : ", ") + std::string(toString(ShaderKind(k)));
         sources_.error(e.place, "'" + op.name + "' cannot be used in a " + toString(*kind_) + " shader", "it can in: " + where);
         return; // its text would be wrong here line by line
     }
-    const bool pureMath = op.lowering == Lowering::Runtime || op.lowering == Lowering::Special || op.name == "format" || op.name == "concat";
+    const bool pureMath =
+        op.lowering == Lowering::Runtime || op.lowering == Lowering::Special || op.name == "format" || op.name == "concat";
     if (!pureMath) {
         e.varying = true;
         if (function_) varyingFunctions_.insert(function_);
     }
     if (op.lowering == Lowering::Unavailable && reportedUnavailable_.insert(&op).second)
-        sources_.warning(e.place, "'" + op.name + "' is not yet available; " + (e.type.base == Base::Void ? "the call does nothing" : "its value is 0"));
+        sources_.warning(e.place, "'" + op.name + "' is not yet available; " +
+                                      (e.type.base == Base::Void ? "the call does nothing" : "its value is 0"));
     if (op.lowering != Lowering::Rsl) return;
     std::pair<std::string, std::string> rename;
     for (const NamedArg& p : e.pairs) {
@@ -251,8 +259,10 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
     }
     const Unit& unit = rslUnit(op);
     for (const auto& f : unit.functions) {
-        bool same = f->name == op.name && f->result == choice.signature->result && f->parameters.size() == choice.signature->parameters.size();
-        for (size_t i = 0; same && i < f->parameters.size(); ++i) same = f->parameters[i]->type == choice.signature->parameters[i].type;
+        bool same = f->name == op.name && f->result == choice.signature->result &&
+                    f->parameters.size() == choice.signature->parameters.size();
+        for (size_t i = 0; same && i < f->parameters.size(); ++i)
+            same = f->parameters[i]->type == choice.signature->parameters[i].type;
         if (!same) continue;
         e.kind = ExprKind::FunctionCall;
         // Its globals are visible whatever the shader calls its own variables; nothing of the shader is.
@@ -295,7 +305,8 @@ void Checker::settlePairs(Expr& e, size_t positional, const Shadeop* op) {
             const int cost = argumentCost(*value, optional->type, true, false);
             const bool array = info.array.array && info.array.base == optional->type.base;
             if (cost >= kNever && !array) {
-                sources_.error(value->place, "\"" + pair.name + "\" gives a " + toString(optional->type) + ": it needs a variable of that type");
+                sources_.error(value->place, "\"" + pair.name + "\" gives a " + toString(optional->type) +
+                                                 ": it needs a variable of that type");
             } else {
                 settleVariable(value);
                 written(*value);

@@ -28,7 +28,8 @@ void Checker::condition(ExprPtr& e) {
 
 void Checker::assignedToUniform(const Symbol& s, const Expr& value) {
     if (s.storage != Storage::Uniform || !value.varying || s.type.base == Base::String) return;
-    sources_.warning(value.place, "a varying value is given to the uniform variable '" + s.name + "'; each shaded point keeps its own");
+    sources_.warning(value.place,
+                     "a varying value is given to the uniform variable '" + s.name + "'; each shaded point keeps its own");
 }
 
 /// `T x = value`, where x may be an array whose length comes from the value.
@@ -74,7 +75,8 @@ void Checker::checkDeclare(Stmt& s) {
         if (d.symbol->isExtern) { bindExtern(*d.symbol); continue; }
         if (d.init) initialise(*d.symbol, d.init);
         else if (d.symbol->type.array == -1 && d.symbol->type.base != Base::Void) {
-            sources_.error(d.symbol->place, "arrays that change their length are not yet available", "give a length, or a value {...}");
+            sources_.error(d.symbol->place, "arrays that change their length are not yet available",
+                           "give a length, or a value {...}");
             d.symbol->type = {};
         }
         declareLocal(*d.symbol);
@@ -104,9 +106,9 @@ void Checker::check(StmtPtr& s) {
     case StmtKind::Declare: checkDeclare(*s); break;
     case StmtKind::Expression:
         whole(s->value);
-        if (s->value->kind != ExprKind::Assign && s->value->kind != ExprKind::ShadeopCall && s->value->kind != ExprKind::FunctionCall &&
-            s->value->kind != ExprKind::Cast && !(s->value->kind == ExprKind::Variable && !s->value->symbol) &&
-            s->value->type.base != Base::Void)
+        if (s->value->kind != ExprKind::Assign && s->value->kind != ExprKind::ShadeopCall &&
+            s->value->kind != ExprKind::FunctionCall && s->value->kind != ExprKind::Cast &&
+            !(s->value->kind == ExprKind::Variable && !s->value->symbol) && s->value->type.base != Base::Void)
             sources_.warning(s->place, "this expression has no effect");
         break;
     case StmtKind::If:
@@ -129,8 +131,8 @@ void Checker::check(StmtPtr& s) {
         const char* word = s->kind == StmtKind::Break ? "break" : "continue";
         if (loops_ == 0) sources_.error(s->place, std::string("'") + word + "' outside a loop");
         else if (s->levels > loops_)
-            sources_.error(s->place, std::string("'") + word + " " + std::to_string(s->levels) + "' inside " + std::to_string(loops_) +
-                                         (loops_ == 1 ? " loop" : " loops"));
+            sources_.error(s->place, std::string("'") + word + " " + std::to_string(s->levels) + "' inside " +
+                                         std::to_string(loops_) + (loops_ == 1 ? " loop" : " loops"));
         break;
     }
     case StmtKind::Return:
@@ -172,7 +174,9 @@ void Checker::checkLight(Stmt& s) {
     size_t next = 0;
     infos_.clear();
     for (auto& e : given) survey(*e);
-    const auto isString = [&](size_t i) { return i < given.size() && infos_.at(given[i].get()).cost[int(Base::String)] < kNever; };
+    const auto isString = [&](size_t i) {
+        return i < given.size() && infos_.at(given[i].get()).cost[int(Base::String)] < kNever;
+    };
     const auto want = [&](std::initializer_list<Base> types) {
         for (Base b : types) {
             if (next < given.size()) {
@@ -193,11 +197,13 @@ void Checker::checkLight(Stmt& s) {
     switch (s.kind) {
     case StmtKind::Illuminance:
         if (positions != 1 && positions != 3) wrong("illuminance([category,] P [, axis, angle] [, pairs])");
-        want(positions == 1 ? std::initializer_list<Base>{Base::Point} : std::initializer_list<Base>{Base::Point, Base::Vector, Base::Float});
+        want(positions == 1 ? std::initializer_list<Base>{Base::Point}
+                            : std::initializer_list<Base>{Base::Point, Base::Vector, Base::Float});
         break;
     case StmtKind::Illuminate:
         if (positions != 1 && positions != 3) wrong("illuminate(from [, axis, angle])");
-        want(positions == 1 ? std::initializer_list<Base>{Base::Point} : std::initializer_list<Base>{Base::Point, Base::Vector, Base::Float});
+        want(positions == 1 ? std::initializer_list<Base>{Base::Point}
+                            : std::initializer_list<Base>{Base::Point, Base::Vector, Base::Float});
         break;
     case StmtKind::Solar:
         if (positions != 0 && positions != 2) wrong("solar() or solar(axis, angle)");
@@ -236,7 +242,8 @@ void Checker::checkLight(Stmt& s) {
     infos_.clear();
     if (s.kind == StmtKind::Gather)
         sources_.warning(s.place, "'gather' is not yet available; its statement is not run");
-    if (s.kind == StmtKind::Illuminance && inIlluminance_) sources_.error(s.place, "'illuminance' inside 'illuminance' is not allowed");
+    if (s.kind == StmtKind::Illuminance && inIlluminance_)
+        sources_.error(s.place, "'illuminance' inside 'illuminance' is not allowed");
     const bool outer = std::exchange(inIlluminance_, inIlluminance_ || s.kind == StmtKind::Illuminance);
     scopes_.emplace_back();
     if (s.kind == StmtKind::Illuminance || s.kind == StmtKind::Gather) checkLoopBody(s);

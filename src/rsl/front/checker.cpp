@@ -202,7 +202,8 @@ void Checker::unknownVariable(Expr& e) {
     if (!unit_->incomplete) {
         std::string hint;
         if (shaderParameters_.count(e.text)) {
-            hint = "it is a parameter of the shader: declare 'extern " + toString(shaderParameters_.at(e.text)->type) + " " + e.text + ";'";
+            hint = "it is a parameter of the shader: declare 'extern " + toString(shaderParameters_.at(e.text)->type) + " " +
+                   e.text + ";'";
         } else if (const std::string near = nearestName(e.text, visibleNames()); !near.empty()) {
             hint = "did you mean '" + near + "'?";
         }

@@ -1,5 +1,6 @@
-// Unit to Program: names, types, overloads, conversions. Expressions are read twice: `survey` finds, bottom up, every type an expression
-// can have and what each would cost; `settle` picks, top down, the cheapest reading and makes its conversions explicit.
+// Unit to Program: names, types, overloads, conversions. Expressions are read twice: `survey` finds, bottom up, every type an
+// expression can have and what each would cost; `settle` picks, top down, the cheapest reading and makes its conversions
+// explicit.
 #pragma once
 #include "rsl/front/conversions.h"
 #include "rsl/front/parser.h"

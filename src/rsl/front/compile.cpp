@@ -7,7 +7,8 @@ using namespace front;
 
 namespace {
 
-std::unique_ptr<Program> compile(const std::string& text, const std::string& name, bool isFile, const FrontOptions& options, Diagnostics& diagnostics) {
+std::unique_ptr<Program> compile(const std::string& text, const std::string& name, bool isFile, const FrontOptions& options,
+                                 Diagnostics& diagnostics) {
     SourceSet sources;
     auto program = std::make_unique<Program>();
     const int main = sources.add(name, text);
@@ -47,7 +48,8 @@ std::unique_ptr<Program> compileFile(const std::string& path, const FrontOptions
     return compile(*text, path, true, options, diagnostics);
 }
 
-std::unique_ptr<Program> compileText(const std::string& text, const std::string& name, const FrontOptions& options, Diagnostics& diagnostics) {
+std::unique_ptr<Program> compileText(const std::string& text, const std::string& name, const FrontOptions& options,
+                                     Diagnostics& diagnostics) {
     return compile(text, name, false, options, diagnostics);
 }
 

@@ -73,7 +73,8 @@ std::optional<Operation> operation(ExprOp op, Base l, Base r) {
 }
 
 const char* spelling(ExprOp op) {
-    static constexpr const char* kText[] = {"", "+", "-", "*", "/", ".", "^", "<", "<=", ">", ">=", "==", "!=", "&&", "||", "-", "!", "="};
+    static constexpr const char* kText[] = {
+        "", "+", "-", "*", "/", ".", "^", "<", "<=", ">", ">=", "==", "!=", "&&", "||", "-", "!", "="};
     return kText[int(op)];
 }
 

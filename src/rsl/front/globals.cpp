@@ -21,9 +21,12 @@ constexpr GlobalVariable kCamera[] = {{"E", kP, U, R, "position of the eye"},
                                       {"time", kF, U, R, "shutter time"},
                                       {"dtime", kF, U, R, "time covered by the sample"}};
 
-constexpr GlobalVariable kPatch[] = {{"dPdu", kV, V, R, "derivative of P by u"}, {"dPdv", kV, V, R, "derivative of P by v"},
-                                     {"Ng", kN, V, R, "geometric normal"},       {"u", kF, V, R, "surface parameter"},
-                                     {"v", kF, V, R, "surface parameter"},       {"du", kF, V, R, "change of u to the next sample"},
+constexpr GlobalVariable kPatch[] = {{"dPdu", kV, V, R, "derivative of P by u"},
+                                     {"dPdv", kV, V, R, "derivative of P by v"},
+                                     {"Ng", kN, V, R, "geometric normal"},
+                                     {"u", kF, V, R, "surface parameter"},
+                                     {"v", kF, V, R, "surface parameter"},
+                                     {"du", kF, V, R, "change of u to the next sample"},
                                      {"dv", kF, V, R, "change of v to the next sample"},
                                      {"dPdtime", kV, V, R, "motion of P"}};
 

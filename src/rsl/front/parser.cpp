@@ -60,7 +60,8 @@ void Parser::fail(Place p, std::string message, std::string hint) {
 
 void Parser::failHere(const std::string& expected) {
     if (peek().kind == Tok::Invalid)
-        fail(peek().place, peek().text[0] == '"' ? "this string does not end on its line" : "the character " + shown() + " means nothing here");
+        fail(peek().place,
+             peek().text[0] == '"' ? "this string does not end on its line" : "the character " + shown() + " means nothing here");
     fail(peek().place, expected + " before " + shown());
 }
 
@@ -148,7 +149,10 @@ void Parser::topLevel() {
     if (accept(";")) return;
     const Token& first = peek();
     if (first.kind == Tok::Identifier && peek(1).kind == Tok::Identifier) {
-        if (auto kind = shaderKindNamed(first.text); kind && (peek(2).is("(") || peek(2).is("{"))) { take(); return shader(*kind); }
+        if (auto kind = shaderKindNamed(first.text); kind && (peek(2).is("(") || peek(2).is("{"))) {
+            take();
+            return shader(*kind);
+        }
         if (first.text == "struct" || first.text == "class") {
             notYet(first.place, first.text == "struct" ? "structures (struct)" : "shader objects (class)");
             structs_.insert(std::string(peek(1).text));
@@ -188,7 +192,8 @@ void Parser::topLevel() {
     if (peek().kind != Tok::Identifier || !peek(1).is("(")) {
         std::vector<std::string> kinds = {"surface", "displacement", "light", "volume", "imager", "transformation"};
         const std::string near = nearestName(first.text, kinds);
-        fail(peek().place, "expected a shader or a function before " + shown(), near.empty() || typed ? "" : "did you mean '" + near + "'?");
+        fail(peek().place, "expected a shader or a function before " + shown(),
+             near.empty() || typed ? "" : "did you mean '" + near + "'?");
     }
     if (auto f = function(s, type, typed)) unit_.functions.push_back(std::move(f));
 }
@@ -242,7 +247,8 @@ Parser::Specifiers Parser::specifiers() {
         else if (accept("uniform")) s.storage = Storage::Uniform;
         else if (accept("varying")) s.storage = Storage::Varying;
         // Words of later versions: only where a type or another specifier follows are they more than a name.
-        else if ((at("constant") || at("const") || at("public")) && (atTypeName(1) || peek(1).is("uniform") || peek(1).is("varying") || peek(1).is("output"))) {
+        else if ((at("constant") || at("const") || at("public")) &&
+                 (atTypeName(1) || peek(1).is("uniform") || peek(1).is("varying") || peek(1).is("output"))) {
             if (at("constant")) s.storage = Storage::Uniform;
             take();
         } else return s;

@@ -21,8 +21,15 @@ public:
 
 private:
     struct SyntaxError {};
-    struct Owner { std::vector<std::unique_ptr<Symbol>>* symbols = nullptr; std::vector<std::unique_ptr<Function>>* nested = nullptr; };
-    struct Specifiers { bool output = false, isExtern = false, any = false; Storage storage = Storage::Unspecified; Place place; };
+    struct Owner {
+        std::vector<std::unique_ptr<Symbol>>* symbols = nullptr;
+        std::vector<std::unique_ptr<Function>>* nested = nullptr;
+    };
+    struct Specifiers {
+        bool output = false, isExtern = false, any = false;
+        Storage storage = Storage::Unspecified;
+        Place place;
+    };
 
     // tokens
     const Token& peek(size_t k = 0) const { return tokens_[std::min(at_ + k, tokens_.size() - 1)]; }

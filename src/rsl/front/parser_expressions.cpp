@@ -16,7 +16,8 @@ ExprPtr Parser::node(ExprKind kind, Place place, ExprOp op) {
 
 void Parser::grow(Expr& parent, const Expr& child) {
     parent.height = std::max(parent.height, child.height + 1);
-    if (parent.height > limits::kTreeHeight) fail(parent.place, "this expression is longer than " + std::to_string(limits::kTreeHeight) + " operations in a row");
+    if (parent.height > limits::kTreeHeight)
+        fail(parent.place, "this expression is longer than " + std::to_string(limits::kTreeHeight) + " operations in a row");
 }
 
 void Parser::adopt(Expr& parent, ExprPtr child) {
@@ -165,8 +166,8 @@ ExprPtr Parser::primary() {
     if (t.is("(")) return parenthesis();
     if (t.is("{")) return arrayList();
     if (t.kind == Tok::Identifier) {
-        static const std::unordered_set<std::string_view> kReserved = {"if", "else", "while", "for", "break", "continue", "return",
-                                                                       "uniform", "varying", "output", "extern"};
+        static const std::unordered_set<std::string_view> kReserved = {
+            "if", "else", "while", "for", "break", "continue", "return", "uniform", "varying", "output", "extern"};
         if (kReserved.count(t.text)) failHere("expected an expression");
         take();
         if (!at("(")) {
@@ -204,7 +205,8 @@ ExprPtr Parser::parenthesis() {
     const Place place = take().place;
     if (atTypeName() && peek(1).is(")")) {
         const std::string type(peek().text);
-        sources_.error(place, "a conversion is written without parentheses around the type", "write " + type + "(...) or " + type + " x");
+        sources_.error(place, "a conversion is written without parentheses around the type",
+                       "write " + type + "(...) or " + type + " x");
         ExprPtr e = node(ExprKind::Cast, place);
         e->type.base = takeBase();
         take();
@@ -220,7 +222,8 @@ ExprPtr Parser::parenthesis() {
     expect(")", "after the components");
     if (tuple->args.size() == 16) tuple->kind = ExprKind::MatrixTuple;
     else if (tuple->args.size() != 3)
-        sources_.error(place, std::to_string(tuple->args.size()) + " values in parentheses: a tuple has 3 components, a matrix 16");
+        sources_.error(place,
+                       std::to_string(tuple->args.size()) + " values in parentheses: a tuple has 3 components, a matrix 16");
     return tuple;
 }
 
@@ -229,7 +232,8 @@ ExprPtr Parser::arrayList() {
     auto e = node(ExprKind::ArrayList, take().place);
     while (!at("}")) {
         adopt(*e, assignment());
-        if (e->args.size() > size_t(limits::kShaderArray)) fail(e->place, "an array has at most " + std::to_string(limits::kShaderArray) + " elements");
+        if (e->args.size() > size_t(limits::kShaderArray))
+            fail(e->place, "an array has at most " + std::to_string(limits::kShaderArray) + " elements");
         if (!accept(",")) break;
     }
     expect("}", "after the elements of an array");

@@ -122,9 +122,12 @@ StmtPtr Parser::statementOnce() {
         return nullptr;
     }
     // "vectr x = ..." reads as two names in a row: most likely a type with a slip.
-    if (peek(1).kind == Tok::Identifier && !peek(1).lineStart && (peek(2).is("=") || peek(2).is(";") || peek(2).is(",") || peek(2).is("["))) {
-        const std::string near = nearestName(w, {"float", "color", "point", "vector", "normal", "matrix", "string", "uniform", "varying"});
-        fail(t.place, "'" + std::string(w) + "' is not a type", near.empty() ? (w == "int" || w == "bool" ? "use float" : "") : "did you mean '" + near + "'?");
+    if (peek(1).kind == Tok::Identifier && !peek(1).lineStart &&
+        (peek(2).is("=") || peek(2).is(";") || peek(2).is(",") || peek(2).is("["))) {
+        const std::string near =
+            nearestName(w, {"float", "color", "point", "vector", "normal", "matrix", "string", "uniform", "varying"});
+        fail(t.place, "'" + std::string(w) + "' is not a type",
+             near.empty() ? (w == "int" || w == "bool" ? "use float" : "") : "did you mean '" + near + "'?");
     }
     auto s = expressionStatement(expression());
     expectSemicolon("an expression");

@@ -1,5 +1,5 @@
-// The C preprocessor over tokens: #include, macros, conditionals. Our own because it must be thread safe, bounded, and keep the place of
-// every token; no text is written and read again in between.
+// The C preprocessor over tokens: #include, macros, conditionals. Our own because it must be thread safe, bounded, and keep the
+// place of every token; no text is written and read again in between.
 #pragma once
 #include "rsl/front/lexer.h"
 

@@ -22,8 +22,9 @@ std::string quoted(const std::string& s) {
 }
 
 const char* word(ExprOp op) {
-    static constexpr const char* kWords[] = {"",        "add",          "sub",   "mul",      "div", "dot", "cross",  "less", "lessequal",
-                                             "greater", "greaterequal", "equal", "notequal", "and", "or",  "negate", "not",  "assign"};
+    static constexpr const char* kWords[] = {"",         "add",  "sub",       "mul",     "div",          "dot",
+                                             "cross",    "less", "lessequal", "greater", "greaterequal", "equal",
+                                             "notequal", "and",  "or",        "negate",  "not",          "assign"};
     return kWords[int(op)];
 }
 
@@ -94,7 +95,10 @@ std::string print(const Stmt& s) {
     case StmtKind::Illuminate:
     case StmtKind::Solar:
     case StmtKind::Gather:
-        t = s.kind == StmtKind::Illuminance ? "(illuminance" : s.kind == StmtKind::Illuminate ? "(illuminate" : s.kind == StmtKind::Solar ? "(solar" : "(gather";
+        t = s.kind == StmtKind::Illuminance  ? "(illuminance"
+            : s.kind == StmtKind::Illuminate ? "(illuminate"
+            : s.kind == StmtKind::Solar      ? "(solar"
+                                             : "(gather";
         if (s.category) t += " [" + print(*s.category) + "]";
         for (const auto& e : s.exprs) part(e);
         for (const auto& p : s.pairs) t += " " + quoted(p.name) + (p.output ? "=>" : "=") + print(*p.value);

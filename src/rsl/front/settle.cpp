@@ -6,7 +6,8 @@
 namespace alpenglow::rsl::front {
 
 namespace {
-constexpr Base kAll[] = {Base::Float, Base::Color, Base::Point, Base::Vector, Base::Normal, Base::Matrix, Base::String, Base::Bool};
+constexpr Base kAll[] = {Base::Float,  Base::Color,  Base::Point,  Base::Vector,
+                         Base::Normal, Base::Matrix, Base::String, Base::Bool};
 } // namespace
 
 /// Type and children are known: `varying` follows from the children.
@@ -49,7 +50,8 @@ void Checker::settle(ExprPtr& e, Type want) {
     }
     if (best == Base::Void) {
         std::string hint;
-        if (want.base == Base::Float && Type{cheapest(info), 0}.isTuple()) hint = "a component is read by x[0], xcomp(x) or comp(x, 0)";
+        if (want.base == Base::Float && Type{cheapest(info), 0}.isTuple())
+            hint = "a component is read by x[0], xcomp(x) or comp(x, 0)";
         sources_.error(e->place, "expected a " + toString(want) + ", not " + describe(*e), hint);
         e->type = want;
         return;
@@ -115,7 +117,8 @@ void Checker::settleArray(ExprPtr& e, Type want) {
     if (e->kind == ExprKind::ArrayList) {
         const int length = want.array > 0 ? want.array : std::max(1, info.listLength);
         if (int(e->args.size()) > length) {
-            sources_.error(e->args[size_t(length)]->place, std::to_string(e->args.size()) + " elements for an array of " + std::to_string(length));
+            sources_.error(e->args[size_t(length)]->place,
+                           std::to_string(e->args.size()) + " elements for an array of " + std::to_string(length));
             e->args.resize(size_t(length));
         }
         for (auto& a : e->args) settle(a, want.element());
@@ -176,7 +179,8 @@ void Checker::settleAs(ExprPtr& e, Base t) {
         if (e->varying && e->symbol->origin == Symbol::Origin::Global && function_) varyingFunctions_.insert(function_);
         return;
     case ExprKind::Index:
-        if (info.channel) sources_.error(e->place, "a string has no elements; name[channel] has its place in texture() and its kin");
+        if (info.channel)
+            sources_.error(e->place, "a string has no elements; name[channel] has its place in texture() and its kin");
         settleCheapest(e->args[0]);
         settle(e->args[1], {Base::Float, 0});
         e->type = {t, 0};
@@ -212,12 +216,14 @@ void Checker::settleAs(ExprPtr& e, Base t) {
         }
         settleAs(e->args[0], best);
         Expr& inner = *e->args[0];
-        if (e->space && (inner.kind == ExprKind::Tuple || inner.kind == ExprKind::MatrixTuple) && !inner.space) inner.space = std::move(e->space);
+        if (e->space && (inner.kind == ExprKind::Tuple || inner.kind == ExprKind::MatrixTuple) && !inner.space)
+            inner.space = std::move(e->space);
         if (!e->space && inner.type == Type{t, 0}) {
             // Nothing to convert: the word chose the reading.
             ExprPtr value = std::move(e->args[0]);
             finish(*value);
-            if (value->kind == ExprKind::ShadeopCall || value->kind == ExprKind::FunctionCall || value->kind == ExprKind::Variable)
+            if (value->kind == ExprKind::ShadeopCall || value->kind == ExprKind::FunctionCall ||
+                value->kind == ExprKind::Variable)
                 value->varying = value->varying || inner.varying;
             e = std::move(value);
             return;
@@ -291,7 +297,8 @@ void Checker::settleAssign(ExprPtr& e) {
             if (c < cost) { cost = c; best = b; operand = o->operand; }
         }
         settleAs(e->args[1], best);
-        convert(e->args[1], {operand == Base::Matrix || target.base == Base::Color || target.base == Base::Float ? operand : target.base, 0});
+        convert(e->args[1],
+                {operand == Base::Matrix || target.base == Base::Color || target.base == Base::Float ? operand : target.base, 0});
     }
     e->type = target;
     finish(*e);
@@ -318,14 +325,17 @@ void Checker::written(const Expr& variable) {
         if (s->storage == Storage::Uniform)
             sources_.error(variable.place, name + " cannot be written");
         else
-            sources_.warning(variable.place, name + std::string(" is read-only") + (kind_ ? " in a " + std::string(toString(*kind_)) + " shader" : "") +
+            sources_.warning(variable.place, name + std::string(" is read-only") +
+                                                 (kind_ ? " in a " + std::string(toString(*kind_)) + " shader" : "") +
                                                  "; the shader changes a copy of its own");
         break;
     case Symbol::Origin::ShaderParameter:
-        if (!s->output) sources_.warning(variable.place, "parameter " + name + " is not output; the shader changes a copy of its own");
+        if (!s->output)
+            sources_.warning(variable.place, "parameter " + name + " is not output; the shader changes a copy of its own");
         break;
     case Symbol::Origin::FunctionParameter:
-        if (!s->output) sources_.warning(variable.place, "parameter " + name + " is not output; the function changes a copy of its own");
+        if (!s->output)
+            sources_.warning(variable.place, "parameter " + name + " is not output; the function changes a copy of its own");
         break;
     }
 }

@@ -40,7 +40,8 @@ void SourceSet::note(Severity severity, Place place, std::string message, std::s
     if (severity >= Severity::Error) ++errors_;
     messages_.push_back({place, severity, std::move(message), std::move(hint)});
     if (tooMany() && severity >= Severity::Error)
-        messages_.push_back({{place.file, place.line, place.column + 1}, Severity::Error, "too many errors; giving up on this file", {}});
+        messages_.push_back(
+            {{place.file, place.line, place.column + 1}, Severity::Error, "too many errors; giving up on this file", {}});
 }
 
 void SourceSet::error(Place p, std::string m, std::string h) { note(Severity::Error, p, std::move(m), std::move(h)); }
@@ -64,7 +65,8 @@ std::string SourceSet::line(Place p) const {
 void SourceSet::flush(Diagnostics& d) {
     for (size_t i = 0; i < messages_.size(); ++i) messages_[i].order = i;
     std::sort(messages_.begin(), messages_.end(), [](const Message& a, const Message& b) {
-        return std::tie(a.place.file, a.place.line, a.place.column, a.order) < std::tie(b.place.file, b.place.line, b.place.column, b.order);
+        return std::tie(a.place.file, a.place.line, a.place.column, a.order) <
+               std::tie(b.place.file, b.place.line, b.place.column, b.order);
     });
     for (auto& m : messages_) {
         Diagnostic out;

@@ -15,7 +15,9 @@ public:
     int add(std::string name, std::string text);
     /// A view of file `of` whose lines are counted `delta` higher, under another name (#line).
     int addView(int of, std::string name, int delta);
-    const std::string& text(int file) const { return entries_[file].view >= 0 ? text(entries_[file].view) : *entries_[file].text; }
+    const std::string& text(int file) const {
+        return entries_[file].view >= 0 ? text(entries_[file].view) : *entries_[file].text;
+    }
     const std::string& name(int file) const { return entries_[file].name; }
     std::vector<std::string> names() const;
     /// Keeps a string alive as long as the set.

@@ -6,7 +6,8 @@
 namespace alpenglow::rsl::front {
 
 namespace {
-constexpr Base kAll[] = {Base::Float, Base::Color, Base::Point, Base::Vector, Base::Normal, Base::Matrix, Base::String, Base::Bool};
+constexpr Base kAll[] = {Base::Float,  Base::Color,  Base::Point,  Base::Vector,
+                         Base::Normal, Base::Matrix, Base::String, Base::Bool};
 constexpr Base kTuples[] = {Base::Color, Base::Point, Base::Vector, Base::Normal};
 int sum(int a, int b) { return std::min(a + b, kNever); }
 } // namespace
@@ -134,7 +135,8 @@ void Checker::surveyIndex(Expr& e, Info& info) {
         info.cost[int(base.array.base)] = 0;
         const Expr& i = *e.args[1];
         if (i.kind == ExprKind::Number && base.array.array > 0 && (i.number <= -1 || i.number >= base.array.array))
-            sources_.error(i.place, "index " + std::to_string(int(std::clamp(i.number, -1e6, 1e6))) + " is outside an array of " + std::to_string(base.array.array));
+            sources_.error(i.place, "index " + std::to_string(int(std::clamp(i.number, -1e6, 1e6))) + " is outside an array of " +
+                                        std::to_string(base.array.array));
         return;
     }
     int tuple = kNever;
@@ -151,7 +153,8 @@ void Checker::surveyIndex(Expr& e, Info& info) {
         info.channel = true;
         return;
     }
-    sources_.error(e.place, describe(*e.args[0]) + " has no elements", cheapest(base) == Base::Matrix ? "comp(m, row, column) reads a matrix" : "");
+    sources_.error(e.place, describe(*e.args[0]) + " has no elements",
+                   cheapest(base) == Base::Matrix ? "comp(m, row, column) reads a matrix" : "");
     info.any = true;
 }
 
@@ -173,9 +176,13 @@ void Checker::surveyBinary(Expr& e, Info& info) {
     std::string hint;
     const Base a = cheapest(l), b = cheapest(r);
     if (e.op == ExprOp::Mul && (a == Base::Matrix || b == Base::Matrix)) hint = "transform(m, p) multiplies a point by a matrix";
-    else if ((a == Base::Color) != (b == Base::Color) && (Type{a, 0}.isTuple() && Type{b, 0}.isTuple())) hint = "a written conversion, as in color x, makes them alike";
-    else if (e.op == ExprOp::Cross && (a == Base::Float || b == Base::Float)) hint = "'^' is the cross product; pow(x, y) is the power";
-    sources_.error(e.place, std::string("'") + spelling(e.op) + "' cannot combine " + describe(*e.args[0]) + " and " + describe(*e.args[1]), hint);
+    else if ((a == Base::Color) != (b == Base::Color) && (Type{a, 0}.isTuple() && Type{b, 0}.isTuple()))
+        hint = "a written conversion, as in color x, makes them alike";
+    else if (e.op == ExprOp::Cross && (a == Base::Float || b == Base::Float))
+        hint = "'^' is the cross product; pow(x, y) is the power";
+    sources_.error(
+        e.place, std::string("'") + spelling(e.op) + "' cannot combine " + describe(*e.args[0]) + " and " + describe(*e.args[1]),
+        hint);
     poison(e, info);
 }
 
@@ -205,14 +212,16 @@ void Checker::surveyAssign(Expr& e, Info& info) {
     } else {
         for (Base b : kAll) {
             const auto o = r.cost[int(b)] < kNever ? operation(e.op, target, b) : std::nullopt;
-            if (o && implicitCost(o->result, target) < kNever) cost = std::min(cost, r.cost[int(b)] + o->cost + implicitCost(o->result, target));
+            if (o && implicitCost(o->result, target) < kNever)
+                cost = std::min(cost, r.cost[int(b)] + o->cost + implicitCost(o->result, target));
         }
     }
     if (cost >= kNever || l.channel) {
         const bool toFloat = target == Base::Float && Type{cheapest(r), 0}.isTuple();
-        sources_.error(e.place, e.op == ExprOp::Assign ? "cannot assign " + describe(*e.args[1]) + " to " + describe(*e.args[0])
-                                                       : std::string("'") + spelling(e.op) + "=' cannot combine " + describe(*e.args[0]) +
-                                                             " and " + describe(*e.args[1]),
+        sources_.error(e.place,
+                       e.op == ExprOp::Assign ? "cannot assign " + describe(*e.args[1]) + " to " + describe(*e.args[0])
+                                              : std::string("'") + spelling(e.op) + "=' cannot combine " + describe(*e.args[0]) +
+                                                    " and " + describe(*e.args[1]),
                        toFloat ? "a component is read by x[0], xcomp(x) or comp(x, 0)" : "");
         info.any = true;
         return;
@@ -235,7 +244,8 @@ void Checker::surveyConditional(Expr& e, Info& info) {
     for (Base t : kAll)
         if (a.cost[int(t)] < kNever || b.cost[int(t)] < kNever) info.cost[int(t)] = sum(cost, sum(costTo(a, t), costTo(b, t)));
     if (cheapest(info) == Base::Void) {
-        sources_.error(e.place, "the two values of '?' do not fit together: " + describe(*e.args[1]) + " and " + describe(*e.args[2]));
+        sources_.error(e.place,
+                       "the two values of '?' do not fit together: " + describe(*e.args[1]) + " and " + describe(*e.args[2]));
         info.any = true;
     }
 }

@@ -1,5 +1,5 @@
 find_package(ZLIB REQUIRED)
 find_package(nlohmann_json REQUIRED)
-room(render DEPS base ZLIB::ZLIB nlohmann_json::nlohmann_json)
+room(render DEPS transport display texture base ZLIB::ZLIB nlohmann_json::nlohmann_json)
 room_tests(render DEPS render)
 room_tests(statistics DEPS render transport)

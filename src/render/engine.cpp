@@ -1,0 +1,30 @@
+#include "render/engine.h"
+
+namespace alpenglow::render {
+namespace {
+
+class IntegratorTracer final : public Tracer {
+public:
+    IntegratorTracer(std::shared_ptr<const transport::World> w, Diagnostics& d) : integrator_(std::move(w), d) {}
+    bool trace(std::span<const transport::CameraRay> rays, std::span<transport::SampleResult> results,
+               const volatile int32_t* stop) override {
+        return integrator_.trace(rays, results, stop);
+    }
+    const transport::Counters& counters() const override { return integrator_.counters(); }
+
+private:
+    transport::Integrator integrator_;
+};
+
+} // namespace
+
+Engine transportEngine() {
+    return {[](std::shared_ptr<const scene::Frame> f, const transport::Settings& s, Diagnostics& d) {
+                return transport::World::build(std::move(f), s, d);
+            },
+            [](std::shared_ptr<const transport::World> w, Diagnostics& d) -> std::unique_ptr<Tracer> {
+                return std::make_unique<IntegratorTracer>(std::move(w), d);
+            }};
+}
+
+} // namespace alpenglow::render

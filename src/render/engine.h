@@ -1,0 +1,27 @@
+// The door from render/ to transport/: a pair of functions, so that tests can put a scene of closed forms behind it.
+#pragma once
+#include "transport/integrator.h"
+#include <functional>
+#include <memory>
+#include <span>
+
+namespace alpenglow::render {
+
+/// What one thread asks about rays. See transport::Integrator.
+class Tracer {
+public:
+    virtual ~Tracer() = default;
+    virtual bool trace(std::span<const transport::CameraRay>, std::span<transport::SampleResult>, const volatile int32_t* stop) = 0;
+    virtual const transport::Counters& counters() const = 0;
+};
+
+struct Engine {
+    std::function<std::shared_ptr<const transport::World>(std::shared_ptr<const scene::Frame>, const transport::Settings&, Diagnostics&)>
+        build;
+    std::function<std::unique_ptr<Tracer>(std::shared_ptr<const transport::World>, Diagnostics&)> tracer;
+};
+
+/// The renderer's own: World::build and Integrator.
+Engine transportEngine();
+
+} // namespace alpenglow::render

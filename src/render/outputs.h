@@ -1,0 +1,101 @@
+// What pictures a frame makes: its Display requests, or what the command line put in their place; how samples are kept for them;
+// and the last steps of a pixel: exposure, imager, quantiser, driver.
+#pragma once
+#include "base/file.h"
+#include "display/quantize.h"
+#include "render/film.h"
+#include "render/samplebuffer.h"
+#include "render/settings.h"
+#include "scene/scene.h"
+#include <functional>
+
+namespace alpenglow::render {
+
+/// One variable of a display.
+struct OutputVariable {
+    enum class Source { Ci, Alpha, Z, Oi, Engine };
+    Source source = Source::Ci;
+    std::string name;
+    int engine = -1;  ///< Source::Engine: index into OutputPlan::engineOutputs
+    bool typed = true; ///< false: nothing declared its type, so the engine's width decides the channels
+    bool color = false;
+    std::vector<std::string> channels;
+};
+
+/// One picture.
+struct OutputSpec {
+    std::string name, type;
+    std::vector<OutputVariable> variables;
+    scene::ParamList params;
+    SourcePlace place;
+    float gain = 1, gamma = 1;
+    bool ownExposure = false; ///< the display's own "exposure": then it holds for all colours, else for Ci alone
+    PixelFilter filter;       ///< hidden and raytrace
+    DepthFilter depth = DepthFilter::Min;
+    display::Quantization rgba, z;
+    bool quantizeAsked = false;
+    bool userFile = false;    ///< named by -o: written where it says
+    bool has(OutputVariable::Source) const;
+    std::vector<std::string> channels() const;
+};
+
+/// What the whole frame decides about single pictures; kept in part files so that `merge -o` makes what `render -o` would.
+struct OutputBasis {
+    float gain = 1, gamma = 1;
+    bool gammaGiven = false; ///< by Exposure or --gamma: PNGs of path then have no gamma of their own
+    bool path = false;
+    scene::Quantize rgba{255, 0, 255, 0.5f, false}, z{0, 0, 0, 0, false};
+    PixelFilter filter;
+    DepthFilter depth = DepthFilter::Min;
+};
+
+struct OutputPlan {
+    OutputBasis basis;
+    std::vector<OutputSpec> pictures;
+    std::vector<std::string> engineOutputs; ///< transport::Settings::outputs
+    std::vector<int> engineWidths;          ///< floats of each; set by resolve()
+    int engineFloats() const;
+    bool needs(OutputVariable::Source) const;
+    bool needsDepth(DepthFilter) const;
+    /// Takes the widths the engine found and names the channels of what nobody had declared.
+    void resolve(std::vector<int> widths, Diagnostics&);
+};
+
+/// The pictures of a frame. `file` is -o's name ("" = the scene's displays; ri.pic when it has none).
+OutputPlan planOutputs(const scene::Options&, const RenderSettings&, bool path, const std::string& file, Diagnostics&);
+/// The picture of -o: rgba, or rgb for PNG.
+OutputSpec singleOutput(const std::string& file, const OutputBasis&, Diagnostics&);
+
+/// Channels of a film that holds what the plan needs beside colour and alpha.
+std::vector<Channel> filmChannels(const OutputPlan&);
+/// The values of filmChannels() of one sample, appended.
+void filmValues(const OutputPlan&, const Color& opacity, float z, float zSecond, std::span<const float> aovs, std::vector<float>* out);
+/// The finished pixels of a film, channels as SampleBuffer::reconstruct has them, depth by this filter.
+Image filmImage(const Film&, const OutputPlan&, DepthFilter);
+
+/// What a picture says about itself beside its pixels.
+struct PictureFacts {
+    int width = 0, height = 0; ///< of the whole picture
+    Window window;
+    float pixelAspect = 1;
+    Matrix worldToCamera, worldToNDC;
+    std::map<std::string, std::string> metadata;
+    bool imager = false; ///< the frame has an imager shader
+};
+
+/// Runs an imager over `count` pixels in place; see transport::World::runImager. Null: none.
+using Imager = std::function<void(int count, const float* x, const float* y, float* r, float* g, float* b, float* a)>;
+
+/// Writes all pictures of the plan. pixels(spec) gives what was reconstructed for it. False when any could not be written (an error
+/// was reported); the others are written all the same.
+bool writeOutputs(const OutputPlan&, const PictureFacts&, const std::function<const Image&(const OutputSpec&)>& pixels, const Imager&,
+                  bool allowWrite, Diagnostics&);
+
+/// The plan and facts as JSON text for a part file, and back. Nothing: the text is not ours (an error was reported).
+std::string planToText(const OutputPlan&, const PictureFacts&);
+std::optional<std::pair<OutputPlan, PictureFacts>> planFromText(const std::string&, const std::string& file, Diagnostics&);
+
+/// name.ext becomes name.<number>.ext, number with four digits at least; a run of '#' is replaced instead where there is one.
+std::string numberedName(const std::string& name, int number);
+
+} // namespace alpenglow::render

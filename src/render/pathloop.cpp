@@ -1,0 +1,160 @@
+// `path`: whole passes of samples over all pixels, into a film of exact sums.
+#include "render/imaging.h"
+#include "render/noise.h"
+#include "render/rendering.h"
+#include "base/limits.h"
+#include "base/sampler.h"
+#include <algorithm>
+#include <cmath>
+
+namespace alpenglow::render {
+namespace {
+
+constexpr size_t kRaysPerCall = 2048; // of one trace(): enough to fill the lanes of rare shaders too
+
+} // namespace
+
+transport::CameraRay pathRay(const Camera& camera, const FilterSampler& filter, uint64_t seed, int x, int y, uint32_t sample, float* weight) {
+    Sampler numbers(seed, x, y);
+    FilterSample f = filter.sample(numbers.get2(0, kUseFilter, 0, sample));
+    *weight = f.weight;
+    Vec2 lens{0.5f, 0.5f};
+    if (camera.hasLens()) lens = numbers.get2(0, kUseLens, 0, sample);
+    float time = camera.shutterClose() > camera.shutterOpen() ? numbers.get1(0, kUseTime, 0, sample) : 0;
+    transport::CameraRay r = camera.ray(x + 0.5 + f.dx, y + 0.5 + f.dy, lens, time);
+    r.px = x;
+    r.py = y;
+    r.sample = sample;
+    return r;
+}
+
+bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const std::function<void(Film&)>& afterPass) {
+    const RenderSettings& settings = job.settings;
+    FilterSampler filter(job.plan.basis.filter);
+    if (filter.degenerate())
+        job.diagnostics.report(Severity::Error, Rie::Range, {}, "PixelFilter: its integral is not positive; a box of its widths is used");
+    const std::vector<Channel>& channels = film.description().channels;
+    const std::vector<Window> tiles = tilesOf(film.window());
+    const size_t stride = 4 + channels.size(); // colour, alpha, the rest
+    // Passes: of 8 samples, one per replica, while they fit the memory that holds them back.
+    size_t perSample = film.window().pixels() * stride * sizeof(float);
+    uint32_t most = uint32_t(std::clamp(kPassBytes / std::max(perSample, size_t(1)), size_t(1), size_t(kReplicas)));
+    std::vector<std::vector<float>> held(tiles.size());
+    uint32_t next = wanted.begin;
+    while (next < wanted.end) { // behind what a checkpoint brought
+        auto in = std::find_if(film.ranges().begin(), film.ranges().end(), [&](SampleRange r) { return r.begin <= next && next < r.end; });
+        if (in == film.ranges().end()) break;
+        next = in->end;
+    }
+    double noise = -1, secondsPerSample = 0;
+    uint32_t nextNoise = 16;
+    uint64_t total = settings.noise > 0 || settings.seconds > 0 ? 0 : wanted.end - wanted.begin;
+    auto tell = [&](double inPass, bool last) {
+        ProgressState s;
+        double done = double(film.samplesPerPixel()) + inPass;
+        s.samplesDone = done;
+        s.samplesTotal = total;
+        s.noise = noise;
+        double t = job.elapsed();
+        s.raysPerMS = raysPerMS(job.rayTotal, t);
+        s.fraction = total ? done / double(total) : -1;
+        if (settings.seconds > 0) s.fraction = std::max(s.fraction, std::min(1.0, t / settings.seconds));
+        if (settings.noise > 0 && noise > 0) s.fraction = std::max(s.fraction, std::min(1.0, std::pow(settings.noise / noise, 2)));
+        if (last) job.progress.finish(s, job.what);
+        else job.progress.update(s, job.what);
+    };
+    bool any = film.samplesPerPixel() > 0;
+    while (next < wanted.end && !job.pollStop()) {
+        uint32_t count = std::min(most, wanted.end - next);
+        if (next % kReplicas != 0) count = std::min(count, kReplicas - next % kReplicas); // so that noise is judged on whole nets
+        if (settings.seconds > 0 && any) {
+            double left = settings.seconds - job.elapsed();
+            if (left <= 0) break;
+            if (secondsPerSample > 0) {
+                if (left < 0.5 * secondsPerSample) break;
+                count = std::clamp(uint32_t(left / secondsPerSample), 1u, count);
+            }
+        }
+        double begun = clockSeconds();
+        bool whole = job.team.run(
+            tiles.size(), &job.halt,
+            [&](int worker, size_t i) {
+                const Window& t = tiles[i];
+                std::vector<float>& out = held[i];
+                out.clear();
+                out.reserve(t.pixels() * count * stride);
+                std::vector<transport::CameraRay> rays;
+                std::vector<transport::SampleResult> results;
+                std::vector<float> weights;
+                auto flush = [&] {
+                    results.assign(rays.size(), {});
+                    if (!job.trace(worker, rays, results)) return false;
+                    for (size_t k = 0; k < rays.size(); ++k) {
+                        const transport::SampleResult& r = results[k];
+                        float w = weights[k];
+                        Color c = clampSample(r.color, settings.sampleClamp) * w;
+                        out.insert(out.end(), {c.x, c.y, c.z, (r.opacity.x + r.opacity.y + r.opacity.z) / 3 * w});
+                        size_t at = out.size();
+                        filmValues(job.plan, r.opacity, r.z, r.zSecond, r.aovs, &out);
+                        for (size_t j = 0; j < channels.size(); ++j)
+                            if (channels[j].rule == ChannelRule::Average) out[at + j] *= w;
+                    }
+                    rays.clear();
+                    weights.clear();
+                    return true;
+                };
+                for (int y = t.y0; y < t.y1; ++y)
+                    for (int x = t.x0; x < t.x1; ++x)
+                        for (uint32_t s = next; s < next + count; ++s) {
+                            float w;
+                            rays.push_back(pathRay(job.camera, filter, seed, x, y, s, &w));
+                            weights.push_back(w);
+                            if (rays.size() == kRaysPerCall && !flush()) return;
+                        }
+                if (!rays.empty()) flush();
+            },
+            [&](size_t done) {
+                job.pollStop();
+                if (settings.seconds > 0 && any && job.elapsed() > settings.seconds) job.halt = 1;
+                tell(double(count) * double(done) / double(tiles.size()), false);
+            });
+        if (!whole) break;
+        volatile int32_t go = 0;
+        job.team.run(
+            tiles.size(), &go,
+            [&](int, size_t i) {
+                const Window& t = tiles[i];
+                const float* p = held[i].data();
+                for (int y = t.y0; y < t.y1; ++y)
+                    for (int x = t.x0; x < t.x1; ++x)
+                        for (uint32_t s = next; s < next + count; ++s, p += stride) {
+                            FilmSample f;
+                            f.radiance = {p[0], p[1], p[2]};
+                            f.alpha = p[3];
+                            f.aovs = {p + 4, channels.size()};
+                            film.add(x, y, s, f);
+                        }
+            },
+            [](size_t) {});
+        if (!film.addRange({next, next + count})) {
+            job.diagnostics.report(Severity::Error, Rie::Limit, {}, "more than " + std::to_string(limits::kSamplesPerPixel) +
+                                   " samples a pixel");
+            break;
+        }
+        secondsPerSample = (clockSeconds() - begun) / count;
+        next += count;
+        any = true;
+        if (film.samplesPerPixel() >= nextNoise && film.samplesPerPixel() % kReplicas == 0) {
+            noise = noiseFigures(film).noiseQMC;
+            nextNoise = film.samplesPerPixel() + std::max(kReplicas, film.samplesPerPixel() / 8 / kReplicas * kReplicas);
+        }
+        if (afterPass) afterPass(film);
+        if (settings.noise > 0 && noise >= 0 && noise <= settings.noise) break;
+    }
+    if (any) tell(0, true);
+    else job.progress.clear();
+    job.halt = 0;
+    return any;
+}
+
+} // namespace alpenglow::render

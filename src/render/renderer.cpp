@@ -1,0 +1,397 @@
+#include "render/renderer.h"
+#include "base/limits.h"
+#include "render/digest.h"
+#include "render/filmpicture.h"
+#include "render/imaging.h"
+#include "render/partfile.h"
+#include "render/rendering.h"
+#include "texture/maketexture.h"
+#include <cmath>
+#include <new>
+#include <tbb/global_control.h>
+#include <thread>
+
+namespace alpenglow::render {
+namespace {
+
+using transport::Hider;
+
+std::string text(double v) {
+    char t[40];
+    std::snprintf(t, sizeof t, "%.9g", v);
+    return t;
+}
+
+std::string folderOf(const std::string& path) {
+    size_t slash = path.find_last_of('/');
+    return slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
+}
+
+Hider hiderOf(const scene::Options& o, Diagnostics& diags) {
+    if (o.hider == "path") return Hider::Path;
+    if (o.hider == "raytrace") return Hider::Raytrace;
+    if (o.hider != "hidden" && !o.hider.empty())
+        diags.report(Severity::Error, Rie::Incapable, {}, "Hider \"" + o.hider + "\" is not known; \"hidden\" is used",
+                     nearestName(o.hider, {"hidden", "raytrace", "path"}));
+    return Hider::Hidden;
+}
+
+uint32_t pathSamples(const scene::Options& o, const RenderSettings& s) {
+    if (s.spp > 0) return std::min(s.spp, limits::kSamplesPerPixel);
+    if (s.noise > 0 || s.seconds > 0) return limits::kSamplesPerPixel;
+    if (!o.pixelSamplesSet) return 64;
+    double n = std::round(double(std::max(1.f, o.pixelSamplesX)) * double(std::max(1.f, o.pixelSamplesY)));
+    return uint32_t(std::clamp(n, 1.0, double(limits::kSamplesPerPixel)));
+}
+
+} // namespace
+
+Renderer::Renderer(RenderSettings s, Engine e, Diagnostics& d, Progress& p, Print print)
+    : settings_(std::move(s)), engine_(std::move(e)), diagnostics_(d), progress_(p), print_(std::move(print)), parseMark_(clockSeconds()) {
+    if (settings_.threads <= 0) settings_.threads = std::max(1, int(std::thread::hardware_concurrency()));
+}
+
+Renderer::~Renderer() = default;
+
+void Renderer::setScene(const std::string& path) {
+    settings_.scenePath = path == "-" ? "." : folderOf(path);
+    parseMark_ = clockSeconds();
+}
+
+void Renderer::override(scene::Options& o) const {
+    const RenderSettings& s = settings_;
+    if (s.width > 0 && s.height > 0) {
+        o.xres = s.width;
+        o.yres = s.height;
+        o.formatSet = true;
+        o.frameAspect.reset();
+    }
+    if (s.resolutionFactor != 1 && s.resolutionFactor > 0) {
+        o.xres = std::max(1, int(o.xres * s.resolutionFactor));
+        o.yres = std::max(1, int(o.yres * s.resolutionFactor));
+    }
+    if (s.crop) std::copy(s.crop->begin(), s.crop->end(), o.crop);
+    if (!s.hider.empty()) o.hider = s.hider;
+    if (s.localRoulette) o.filter = {"box", 1, 1}; // the preset: the seed has no other filter
+}
+
+std::vector<std::string> Renderer::searchPaths(const scene::Options& o, const char* kind, const std::vector<std::string>& own,
+                                               bool shaders) const {
+    std::vector<std::string> after = own;
+    if (!settings_.scenePath.empty()) after.push_back(settings_.scenePath);
+    after.push_back(".");
+    if (shaders && !settings_.shippedShaders.empty()) after.push_back(settings_.shippedShaders);
+    std::vector<std::string> all;
+    if (auto i = o.values.find(std::string("searchpath:") + kind); i != o.values.end() && !i->second.strings.empty())
+        for (const std::string& p : splitSearchPath(i->second.strings[0], after)) {
+            all.push_back(p);
+            // Old scenes name folders from where they lie, whatever the folder the renderer is started in.
+            if (!p.empty() && p[0] != '/' && !settings_.scenePath.empty() && settings_.scenePath != ".")
+                all.push_back(settings_.scenePath + "/" + p);
+        }
+    all.insert(all.end(), after.begin(), after.end());
+    return all;
+}
+
+std::string Renderer::fileFor(const scene::Options& o, uint32_t spp) {
+    if (!settings_.output.empty()) {
+        bool numbered = saved_++ > 0 || settings_.output.find('#') != std::string::npos;
+        return numbered ? numberedName(settings_.output, o.frameNumber > 0 ? o.frameNumber : saved_) : settings_.output;
+    }
+    if (settings_.savePattern.empty()) return "";
+    std::string name = settings_.savePattern;
+    auto put = [&](const std::string& key, const std::string& value) {
+        if (size_t at = name.find(key); at != std::string::npos) name.replace(at, key.size(), value);
+    };
+    put("<spp>", std::to_string(spp));
+    put("<no>", std::to_string(saved_++));
+    return name;
+}
+
+void Renderer::render(std::shared_ptr<const scene::Frame> frame) {
+    double now = clockSeconds();
+    stats_.parseSec += now - parseMark_;
+    try {
+        renderFrame(std::move(frame));
+    } catch (const std::bad_alloc&) {
+        outcome_.outOfMemory = true;
+        ++outcome_.refused;
+        diagnostics_.report(Severity::Severe, Rie::NoMem, {}, "out of memory; this frame is given up");
+    }
+    parseMark_ = clockSeconds();
+}
+
+void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
+    if (settings_.stop && *settings_.stop) {
+        outcome_.interrupted = true;
+        return;
+    }
+    const scene::Options& o = frame->options;
+    tbb::global_control threads(tbb::global_control::max_allowed_parallelism, size_t(settings_.threads));
+
+    Hider hider = hiderOf(o, diagnostics_);
+    const bool path = hider == Hider::Path;
+    Camera camera(o, diagnostics_);
+    uint32_t spp = path ? pathSamples(o, settings_) : 0;
+    int nx = 1, ny = 1;
+    if (!path) {
+        gridOf(o, settings_, &nx, &ny);
+        spp = uint32_t(nx) * uint32_t(ny);
+        auto only = [&](bool asked, const char* option) {
+            if (asked) diagnostics_.report(Severity::Warning, Rie::Incapable, {}, std::string(option) + " needs the hider \"path\"; it is ignored");
+        };
+        only(settings_.samples.has_value(), "--samples");
+        only(settings_.noise > 0, "--noise");
+        only(settings_.seconds > 0, "--time");
+        only(!settings_.checkpoint.empty(), "--checkpoint");
+    }
+    SampleRange wanted = path && settings_.samples ? *settings_.samples : SampleRange{0, spp};
+    std::string file = settings_.pixel ? "" : fileFor(o, wanted.end - wanted.begin);
+    OutputPlan plan = planOutputs(o, settings_, path, file, diagnostics_);
+    if (plan.pictures.empty()) {
+        ++outcome_.refused;
+        diagnostics_.report(Severity::Error, Rie::MissingData, {}, "no Display of this frame can be made; it is not rendered");
+        return;
+    }
+
+    transport::Settings t;
+    t.hider = hider;
+    t.seed = settings_.seed;
+    t.lanes = settings_.lanes;
+    t.maxDepth = settings_.maxDepth;
+    t.sampleClamp = settings_.sampleClamp;
+    t.direct = settings_.direct;
+    t.indirect = settings_.indirect;
+    t.unbiased = settings_.unbiased;
+    t.localRoulette = settings_.localRoulette;
+    t.shaderPaths = searchPaths(o, "shader", settings_.shaderPaths, true);
+    t.texturePaths = searchPaths(o, "texture", settings_.texturePaths, false);
+    t.outputs = plan.engineOutputs;
+    auto world = engine_.build(frame, t, diagnostics_);
+    if (!world) {
+        ++outcome_.refused;
+        return;
+    }
+    plan.resolve(world->outputWidths(), diagnostics_);
+    transport::World::Facts facts = world->facts();
+    stats_.buildSec += facts.buildSec;
+    stats_.compileSec += facts.compileSec;
+
+    double cpu = processCpuSeconds();
+    Job job(settings_, camera, plan, engine_, world, settings_.threads, progress_, diagnostics_);
+    job.what = plan.pictures.front().name;
+    if (o.frameNumber > 0) job.what += " (frame " + std::to_string(o.frameNumber) + ")";
+    Imager imager;
+    if (o.imager)
+        imager = [&](int n, const float* x, const float* y, float* r, float* g, float* b, float* a) {
+            world->runImager(n, x, y, r, g, b, a, diagnostics_);
+        };
+    PictureFacts picture;
+    picture.width = camera.width();
+    picture.height = camera.height();
+    picture.window = camera.window();
+    picture.pixelAspect = camera.pixelAspect();
+    picture.worldToCamera = camera.worldToCamera();
+    picture.worldToNDC = camera.worldToNDC();
+    picture.imager = o.imager != nullptr;
+    picture.metadata["Software"] = "Alpenglow";
+    picture.metadata["hider"] = path ? "path" : hider == Hider::Raytrace ? "raytrace" : "hidden";
+
+    stats_.width = camera.window().width();
+    stats_.height = camera.window().height();
+    uint64_t nonFinite = 0;
+    if (settings_.pixel) {
+        printPixel(job, o, wanted.end - wanted.begin, path);
+        ++outcome_.rendered;
+    } else if (path) {
+        FilmDescription d;
+        d.width = camera.width();
+        d.height = camera.height();
+        d.window = camera.window();
+        d.seed = settings_.seed;
+        d.channels = filmChannels(plan);
+        if (settings_.samples || !settings_.checkpoint.empty()) {
+            char how[160];
+            std::snprintf(how, sizeof how, "path depth %d clamp %.9g direct %d indirect %d unbiased %d local %d", t.maxDepth,
+                          double(t.sampleClamp), t.direct, t.indirect, t.unbiased, t.localRoulette);
+            d.scene = sceneDigest(*frame, how);
+        }
+        if (!Film::check(d, diagnostics_)) {
+            ++outcome_.refused;
+            outcome_.outOfMemory = true;
+            return;
+        }
+        std::unique_ptr<Film> film;
+        const OutputPolicy anywhere{".", true};
+        if (settings_.resume) {
+            film = loadPart(settings_.checkpoint, diagnostics_);
+            if (film && !(film->description() == d)) {
+                diagnostics_.report(Severity::Error, Rie::Consistency, {settings_.checkpoint},
+                                    "the checkpoint belongs to another picture, scene or seed; it is not used");
+                film.reset();
+            }
+        }
+        if (!film) film = std::make_unique<Film>(d);
+        film->metadata[kPicturesKey] = planToText(plan, picture);
+        double saved = clockSeconds();
+        auto checkpoint = [&](Film& f) {
+            if (settings_.checkpoint.empty() || clockSeconds() - saved < settings_.checkpointSeconds) return;
+            outcome_.outputFailed |= !savePart(f, settings_.checkpoint, anywhere, diagnostics_);
+            saved = clockSeconds();
+        };
+        bool any = renderPath(job, *film, wanted, settings_.seed, checkpoint);
+        double renderSec = job.elapsed();
+        stats_.renderSec += renderSec;
+        outcome_.interrupted |= job.interrupted;
+        if (!any) {
+            ++outcome_.refused;
+            if (job.interrupted)
+                diagnostics_.report(Severity::Warning, Rie::NoError, {}, "interrupted before the first pass was whole; nothing is written");
+        } else {
+            ++outcome_.rendered;
+            if (auto first = film->firstDropped())
+                diagnostics_.report(Severity::Warning, Rie::Math, {}, std::to_string(film->nonFinite()) +
+                                    " samples were not finite and are left out; the first is made by --pixel " + std::to_string(first->x) +
+                                    "," + std::to_string(first->y) + "," + std::to_string(first->sample) + " --seed " +
+                                    std::to_string(settings_.seed));
+            if (film->saturated())
+                diagnostics_.report(Severity::Warning, Rie::Range, {}, std::to_string(film->saturated()) + " values beyond 2^60 were cut there");
+            outcome_.outputFailed |= !writeFilm(*film, plan, picture, imager, settings_.allowWrite, diagnostics_);
+            if (settings_.samples) {
+                const OutputSpec& first = plan.pictures.front();
+                outcome_.outputFailed |= !savePart(*film, sidecarName(first.name), {".", settings_.allowWrite || first.userFile}, diagnostics_);
+            }
+            if (!settings_.checkpoint.empty()) outcome_.outputFailed |= !savePart(*film, settings_.checkpoint, anywhere, diagnostics_);
+        }
+        stats_.spp = film->samplesPerPixel();
+        stats_.noise = noiseFigures(*film);
+        stats_.saturated += film->saturated();
+        nonFinite = film->nonFinite();
+    } else {
+        std::vector<Image> images = renderImages(job, nx, ny, jitterOf(o, diagnostics_), settings_.seed, &nonFinite);
+        stats_.renderSec += job.elapsed();
+        stats_.spp = spp;
+        outcome_.interrupted |= job.interrupted;
+        ++outcome_.rendered;
+        if (job.interrupted)
+            diagnostics_.report(Severity::Warning, Rie::NoError, {}, "interrupted: what was not reached stays black in the picture");
+        if (nonFinite)
+            diagnostics_.report(Severity::Warning, Rie::Math, {}, std::to_string(nonFinite) + " samples were not finite and are left out");
+        picture.metadata["spp"] = std::to_string(spp);
+        picture.metadata["seed"] = std::to_string(settings_.seed);
+        auto pixels = [&](const OutputSpec& s) -> const Image& { return images[size_t(&s - plan.pictures.data())]; };
+        outcome_.outputFailed |= !writeOutputs(plan, picture, pixels, imager, settings_.allowWrite, diagnostics_);
+    }
+    stats_.cpuSec += processCpuSeconds() - cpu;
+
+    transport::Counters c = job.counters();
+    stats_.totalRays += totalRays(c);
+    stats_.rays["camera"] += c.camera;
+    stats_.rays["diffuse"] += c.diffuse;
+    stats_.rays["specular"] += c.specular;
+    stats_.rays["transmission"] += c.transmission;
+    stats_.rays["shadow"] += c.shadow;
+    stats_.shading.points += c.points;
+    stats_.shading.batches += c.batches;
+    lanesUsed_ += double(c.lanesUsed);
+    lanesRun_ += double(c.lanesRun);
+    depthSum_ += double(c.depthSum);
+    paths_ += double(c.paths);
+    stats_.depth.maximum = std::max(stats_.depth.maximum, c.depthMax);
+    stats_.nonFinite += std::max(nonFinite, c.nonFinite);
+    facts = world->facts(); // kernels may be compiled while rendering
+    stats_.shading.kernels = facts.kernels;
+    stats_.shading.affineKernels = facts.affine;
+    stats_.shading.suspendingKernels = facts.suspending;
+    stats_.shading.cacheHits = facts.cacheHits;
+    if (c.overLimit)
+        diagnostics_.report(Severity::Error, Rie::Limit, {}, std::to_string(c.overLimit) + " ray calls were beyond the memory for waiting shaders and brought nothing");
+    if (c.depthCap && path)
+        diagnostics_.report(Severity::Info, Rie::NoError, {}, std::to_string(c.depthCap) + " paths were cut at the greatest depth, which is a bias (--max-depth)");
+}
+
+void Renderer::printPixel(Job& job, const scene::Options& o, uint32_t spp, bool path) {
+    auto [x, y] = *settings_.pixel;
+    const Window& w = job.camera.window();
+    if (!w.contains(x, y)) {
+        diagnostics_.report(Severity::Error, Rie::Range, {}, "--pixel " + std::to_string(x) + "," + std::to_string(y) + " lies outside " +
+                            std::to_string(w.x0) + ".." + std::to_string(w.x1 - 1) + ", " + std::to_string(w.y0) + ".." + std::to_string(w.y1 - 1));
+        return;
+    }
+    uint32_t begin = settings_.samples ? settings_.samples->begin : 0, end = begin + std::min(spp, 1u << 20);
+    if (settings_.pixelSample) {
+        begin = *settings_.pixelSample;
+        end = begin + 1;
+    }
+    FilterSampler filter(job.plan.basis.filter);
+    int nx, ny;
+    gridOf(o, settings_, &nx, &ny);
+    Jitter jitter = jitterOf(o, diagnostics_);
+    if (!path && end > uint32_t(nx * ny)) {
+        diagnostics_.report(Severity::Error, Rie::Range, {}, "--pixel: a pixel has " + std::to_string(nx * ny) + " samples");
+        return;
+    }
+    double sum[4] = {0, 0, 0, 0};
+    for (uint32_t s = begin; s < end && !job.pollStop(); ++s) {
+        float weight = 1;
+        transport::CameraRay ray;
+        if (path) ray = pathRay(job.camera, filter, settings_.seed, x, y, s, &weight);
+        else {
+            Vec2 p = stratifiedOffset(settings_.seed, x, y, int(s), nx, ny, jitter);
+            ray = imageRay(job.camera, {float(x) + p.x, float(y) + p.y}, settings_.seed, x, y, s);
+        }
+        transport::SampleResult r;
+        if (!job.trace(0, {&ray, 1}, {&r, 1})) break;
+        Color c = clampSample(r.color, settings_.sampleClamp);
+        for (int k = 0; k < 3; ++k) sum[k] += double(c[k] * weight);
+        sum[3] += double((r.opacity.x + r.opacity.y + r.opacity.z) / 3 * weight);
+    }
+    outcome_.interrupted |= job.interrupted;
+    double n = end - begin;
+    if (print_ && !job.interrupted) print_(text(sum[0] / n) + " " + text(sum[1] / n) + " " + text(sum[2] / n) + " " + text(sum[3] / n));
+    stats_.renderSec += job.elapsed();
+    stats_.spp = end - begin;
+}
+
+void Renderer::makeTexture(const std::string& kind, const std::vector<std::string>& files, const scene::ParamList& args,
+                           const SourcePlace& place) {
+    double now = clockSeconds();
+    stats_.parseSec += now - parseMark_;
+    texture::MakeOptions m;
+    m.policy.allowWrite = settings_.allowWrite;
+    m.place = place;
+    m.searchPath = {""};
+    if (!settings_.scenePath.empty()) m.searchPath.push_back(settings_.scenePath);
+    m.searchPath.insert(m.searchPath.end(), settings_.texturePaths.begin(), settings_.texturePaths.end());
+    std::vector<float> numbers;
+    for (const scene::Param& p : args)
+        if (p.strings.empty()) numbers.insert(numbers.end(), p.numbers.begin(), p.numbers.end());
+    int before = diagnostics_.errors();
+    if (!texture::runMakeRequest(kind, files, numbers, m, diagnostics_) && diagnostics_.errors() == before)
+        diagnostics_.report(Severity::Error, Rie::BadFile, place, kind + " failed");
+    parseMark_ = clockSeconds();
+}
+
+RenderStats Renderer::stats() const {
+    RenderStats s = stats_;
+    s.threads = settings_.threads;
+    s.peakMemoryBytes = peakMemoryBytes();
+    s.shading.laneOccupancy = lanesRun_ > 0 ? lanesUsed_ / lanesRun_ : 0;
+    s.depth.average = paths_ > 0 ? depthSum_ / paths_ : 0;
+    s.errors = diagnostics_.errors();
+    s.warnings = diagnostics_.warnings();
+    return s;
+}
+
+bool Renderer::writeStats() {
+    if (settings_.statsFile.empty()) return true;
+    auto out = OutputFile::open(settings_.statsFile, {".", true}, diagnostics_);
+    if (!out) return !(outcome_.outputFailed = true);
+    std::string json = toJson(stats());
+    out->write(json.data(), json.size());
+    if (out->commit(diagnostics_)) return true;
+    outcome_.outputFailed = true;
+    return false;
+}
+
+} // namespace alpenglow::render

@@ -1,0 +1,60 @@
+// The renderer: takes frames as RIB streams finish them, renders them, writes their pictures.
+#pragma once
+#include "render/engine.h"
+#include "render/progress.h"
+#include "render/settings.h"
+#include "render/stats.h"
+#include "scene/scene.h"
+#include <functional>
+
+namespace alpenglow::render {
+
+class Renderer final : public scene::FrameConsumer {
+public:
+    /// Where `--pixel` prints; one line a call, without its end.
+    using Print = std::function<void(const std::string&)>;
+    /// Diagnostics and progress must outlive the renderer. `print` may be empty.
+    Renderer(RenderSettings, Engine, Diagnostics&, Progress&, Print print = {});
+    ~Renderer() override;
+
+    /// For ri::ReaderOptions::overrides: what the command line says about a frame's options.
+    void override(scene::Options&) const;
+    /// The scene file that is read next; its folder is looked into for shaders and textures.
+    void setScene(const std::string& path);
+
+    void render(std::shared_ptr<const scene::Frame>) override;
+    void makeTexture(const std::string& kind, const std::vector<std::string>& files, const scene::ParamList& args,
+                     const SourcePlace&) override;
+
+    struct Outcome {
+        int rendered = 0;          ///< frames of which something could be rendered
+        int refused = 0;           ///< frames of which nothing could be
+        bool outputFailed = false; ///< a file could not be written
+        bool outOfMemory = false;
+        bool interrupted = false;
+    };
+    const Outcome& outcome() const { return outcome_; }
+    /// Figures of all frames so far: times, rays and counts are sums; size, samples and noise are the last frame's.
+    RenderStats stats() const;
+    /// Writes --stats; false when it could not.
+    bool writeStats();
+
+private:
+    void renderFrame(std::shared_ptr<const scene::Frame>);
+    std::string fileFor(const scene::Options&, uint32_t spp);
+    std::vector<std::string> searchPaths(const scene::Options&, const char* kind, const std::vector<std::string>& own, bool shaders) const;
+    void printPixel(struct Job&, const scene::Options&, uint32_t spp, bool path);
+
+    RenderSettings settings_;
+    Engine engine_;
+    Diagnostics& diagnostics_;
+    Progress& progress_;
+    Print print_;
+    Outcome outcome_;
+    RenderStats stats_;
+    double depthSum_ = 0, paths_ = 0, lanesUsed_ = 0, lanesRun_ = 0;
+    double parseMark_ = 0; ///< since when the reader is at work
+    int saved_ = 0;        ///< pictures made for -o or the save pattern
+};
+
+} // namespace alpenglow::render

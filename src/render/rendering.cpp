@@ -1,0 +1,68 @@
+#include "render/rendering.h"
+#include <chrono>
+
+namespace alpenglow::render {
+
+Job::Job(const RenderSettings& s, const Camera& c, const OutputPlan& p, Engine& e, std::shared_ptr<const transport::World> w, int threads,
+         Progress& progress_, Diagnostics& d)
+    : settings(s), camera(c), plan(p), engine(e), world(std::move(w)), team(threads), progress(progress_), diagnostics(d),
+      startSeconds(clockSeconds()), rays(size_t(team.threads()), 0) {
+    for (int i = 0; i < team.threads(); ++i) tracers.push_back(engine.tracer(world, diagnostics));
+}
+
+bool Job::trace(int worker, std::span<const transport::CameraRay> in, std::span<transport::SampleResult> out) {
+    Tracer& t = *tracers[size_t(worker)];
+    bool whole = t.trace(in, out, &halt) && !halt;
+    uint64_t now = totalRays(t.counters());
+    rayTotal += now - rays[size_t(worker)];
+    rays[size_t(worker)] = now;
+    return whole;
+}
+
+bool Job::pollStop() {
+    if (settings.stop && *settings.stop) {
+        interrupted = true;
+        halt = 1;
+    }
+    return interrupted;
+}
+
+transport::Counters Job::counters() const {
+    transport::Counters all;
+    for (const auto& t : tracers) {
+        const transport::Counters& c = t->counters();
+        all.camera += c.camera;
+        all.diffuse += c.diffuse;
+        all.specular += c.specular;
+        all.transmission += c.transmission;
+        all.shadow += c.shadow;
+        all.points += c.points;
+        all.batches += c.batches;
+        all.lanesUsed += c.lanesUsed;
+        all.lanesRun += c.lanesRun;
+        all.nonFinite += c.nonFinite;
+        all.overLimit += c.overLimit;
+        all.depthCap += c.depthCap;
+        all.depthSum += c.depthSum;
+        all.paths += c.paths;
+        all.depthMax = std::max(all.depthMax, c.depthMax);
+    }
+    return all;
+}
+
+double Job::elapsed() const { return clockSeconds() - startSeconds; }
+
+double clockSeconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+uint64_t totalRays(const transport::Counters& c) { return c.camera + c.diffuse + c.specular + c.transmission + c.shadow; }
+
+std::vector<Window> tilesOf(const Window& w, int side) {
+    std::vector<Window> tiles;
+    for (int y = w.y0; y < w.y1; y += side)
+        for (int x = w.x0; x < w.x1; x += side) tiles.push_back({x, y, std::min(x + side, w.x1), std::min(y + side, w.y1)});
+    return tiles;
+}
+
+} // namespace alpenglow::render

@@ -1,0 +1,70 @@
+// The two loops that turn camera rays into pixels, and what they share. Inside render/.
+#pragma once
+#include "render/camera.h"
+#include "render/engine.h"
+#include "render/filtersampler.h"
+#include "render/outputs.h"
+#include "render/progress.h"
+#include "render/settings.h"
+#include "render/team.h"
+#include <atomic>
+#include <functional>
+
+namespace alpenglow::render {
+
+/// Dimensions of a camera sample, above all call sites and uses of transport/ (transport/random.h).
+enum CameraUse : uint32_t { kUseFilter = 1u << 24, kUseLens, kUseTime };
+
+/// Pixels a side of the squares that threads take.
+inline constexpr int kTile = 16;
+/// Bytes of samples that are held back until their pass is whole, and of image samples that wait for their filter.
+inline constexpr size_t kPassBytes = size_t(256) << 20;
+
+/// One frame while it is rendered.
+struct Job {
+    const RenderSettings& settings;
+    const Camera& camera;
+    const OutputPlan& plan;
+    Engine& engine;
+    std::shared_ptr<const transport::World> world;
+    Team team;
+    Progress& progress;
+    Diagnostics& diagnostics;
+    std::string what;                        ///< the picture's name, for the progress line
+    double startSeconds = 0;                 ///< clock() when rendering began
+    volatile int32_t halt = 0;               ///< what tracers poll
+    bool interrupted = false;                ///< the user's stop was seen
+    std::vector<std::unique_ptr<Tracer>> tracers; ///< by worker
+    std::vector<uint64_t> rays;              ///< by worker, as last told
+    std::atomic<uint64_t> rayTotal{0};
+
+    Job(const RenderSettings&, const Camera&, const OutputPlan&, Engine&, std::shared_ptr<const transport::World>, int threads, Progress&,
+        Diagnostics&);
+    /// Traces on a worker and counts its rays. False: halted, the results are void.
+    bool trace(int worker, std::span<const transport::CameraRay>, std::span<transport::SampleResult>);
+    /// Hands the user's stop on to the tracers; true when the user wants to end.
+    bool pollStop();
+    transport::Counters counters() const;
+    double elapsed() const;
+};
+
+/// Seconds of a clock that never goes backwards.
+double clockSeconds();
+uint64_t totalRays(const transport::Counters&);
+/// The tiles of a window, in reading order.
+std::vector<Window> tilesOf(const Window&, int side = kTile);
+
+/// The camera ray of a sample of `path`: its place is drawn from the filter. *weight multiplies what comes along it.
+transport::CameraRay pathRay(const Camera&, const FilterSampler&, uint64_t seed, int x, int y, uint32_t sample, float* weight);
+/// Adds samples to the film in whole passes until the range is done, the noise or time asked for is reached, or the user stops.
+/// spp: samples `first` .. `first + spp` of every pixel; fewer may be added. Returns false when not one whole pass could be added.
+bool renderPath(Job&, Film&, SampleRange wanted, uint64_t seed, const std::function<void(Film&)>& afterPass);
+
+/// The samples nx x ny of a pixel under hidden and raytrace.
+void gridOf(const scene::Options&, const RenderSettings&, int* nx, int* ny);
+Jitter jitterOf(const scene::Options&, Diagnostics&);
+transport::CameraRay imageRay(const Camera&, Vec2 position, uint64_t seed, int x, int y, uint32_t sample);
+/// A reconstructed picture for each picture of the plan, in its order. When the user stops, pixels not reached stay black.
+std::vector<Image> renderImages(Job&, int nx, int ny, Jitter, uint64_t seed, uint64_t* nonFinite);
+
+} // namespace alpenglow::render

@@ -9,7 +9,7 @@ Vec3 unit(Vec3 v, Vec3 fallback) {
     float l = length(v);
     return l > 0 && std::isfinite(l) ? v / l : fallback;
 }
-constexpr float kSpecularExponentScale = 8; // specular(): (N.H)^(8 / roughness); the same constant as its RSL body
+constexpr float kSpecularExponentScale = 1; // specular(): (N.H)^(1 / roughness); the same constant as its RSL body
 } // namespace
 
 void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float* in, int lanes, int lane, Color weight, TargetId target, bool owns,

@@ -39,7 +39,8 @@ struct KernelCall {
 };
 
 /// Site numbers that `service` gets for the two operations on the strip's list of affine pairs.
-/// Mark: out = one row, the number of pairs emitted so far for this strip. Rescale: in = row of the mark, then three rows of factors.
+/// Mark: out = one row, the number of pairs emitted so far for this strip. Rescale: in = row of the mark, three rows of factors, row of
+/// the end mark: pairs between the two marks are multiplied, lane by lane (pairs of other lanes stay as they are).
 inline constexpr int32_t kSiteMark = -1, kSiteRescale = -2;
 
 /// Rows per component of a varying input: 1, 3 (v, du, dv) or 6 (v, du, dv, duu, duv, dvv). Inputs that are uniform by declaration,

@@ -17,8 +17,7 @@ std::string shipped(const std::string& name) {
 }
 
 void expectAffine(const Compiled& c, int emits) {
-    if (!c.kernel)
-        return;
+    if (!c.kernel) return;
     EXPECT_TRUE(c.kernel->facts.affine) << c.kernel->facts.whyNot;
     EXPECT_FALSE(c.kernel->facts.suspends);
     EXPECT_EQ(c.count(Op::Request), 0) << c.text();
@@ -26,20 +25,21 @@ void expectAffine(const Compiled& c, int emits) {
 }
 
 TEST(Affine, ShippedMaterialsUnderPath) {
-    const std::pair<const char*, int> expected[] = {{"matte", 2}, {"plastic", 3}, {"paintedplastic", 3}, {"metal", 2}, {"constant", 0}};
+    const std::pair<const char*, int> expected[] = {
+        {"matte", 2}, {"plastic", 3}, {"paintedplastic", 3}, {"metal", 2}, {"constant", 0}};
     for (const auto& [name, emits] : expected) {
         SCOPED_TRACE(name);
         const Compiled c = compile(shipped(name), pathOptions());
         expectAffine(c, emits);
-        if (c.kernel)
-            EXPECT_TRUE(c.kernel->facts.direct.empty());
+        if (c.kernel) EXPECT_TRUE(c.kernel->facts.direct.empty());
     }
 }
 
 TEST(Affine, SlprojectMaterial) { expectAffine(compile(shipped("slmaterial"), pathOptions()), 4); }
 
 TEST(Affine, SumInLoopScaledBefore) {
-    const Compiled c = compile("surface s(float n = 4) { color sum = 0; float i; for (i = 0; i < n; i += 1) sum += trace(P, N); Ci = Cs * sum; }");
+    const Compiled c = compile(
+        "surface s(float n = 4) { color sum = 0; float i; for (i = 0; i < n; i += 1) sum += trace(P, N); Ci = Cs * sum; }");
     expectAffine(c, 1);
     EXPECT_EQ(c.count(Op::Rescale), 0) << c.text();
 }
@@ -53,7 +53,8 @@ TEST(Affine, SumDividedByCountAfterLoop) {
 }
 
 TEST(Affine, BlendOverLayersRescalesEarlierTurns) {
-    const Compiled c = compile("surface s(float n = 4) { color x = 0; float i; for (i = 0; i < n; i += 1) x = mix(x, trace(P, N), 0.25 * s); Ci = x; }");
+    const Compiled c = compile(
+        "surface s(float n = 4) { color x = 0; float i; for (i = 0; i < n; i += 1) x = mix(x, trace(P, N), 0.25 * s); Ci = x; }");
     expectAffine(c, 1);
     EXPECT_EQ(c.count(Op::Rescale), 1) << c.text();
 }
@@ -62,7 +63,9 @@ TEST(Affine, FunctionsWithOutputsAndVaryingIf) {
     expectAffine(compile("void both(vector d; output color a, b) { a = trace(P, d); b = 0.5 * trace(P, -d); }"
                          "surface s() { color a, b; both(N, a, b); if (s > 0.5) Ci = a * Cs; else Ci = b + a; }"),
                  2);
-    expectAffine(compile("surface s() { color r = 0; float k = 0; if (s > 0.5) { k = sin(t); r = trace(P, N); } Ci = mix(Cs, r, k); }"), 1);
+    expectAffine(
+        compile("surface s() { color r = 0; float k = 0; if (s > 0.5) { k = sin(t); r = trace(P, N); } Ci = mix(Cs, r, k); }"),
+        1);
 }
 
 TEST(Affine, ComponentsStayInPlace) {
@@ -84,11 +87,9 @@ TEST(Affine, NotAffineSaysWhyAndSuspends) {
     for (const auto& [source, why] : cases) {
         SCOPED_TRACE(source);
         KernelOptions o;
-        if (!*why)
-            o.outputs = {"Ci", "extra"};
+        if (!*why) o.outputs = {"Ci", "extra"};
         const Compiled c = compile(source, o);
-        if (!c.kernel)
-            continue;
+        if (!c.kernel) continue;
         EXPECT_FALSE(c.kernel->facts.affine);
         EXPECT_TRUE(c.kernel->facts.suspends);
         EXPECT_NE(c.kernel->facts.whyNot.find(why), std::string::npos) << c.kernel->facts.whyNot;
@@ -98,7 +99,9 @@ TEST(Affine, NotAffineSaysWhyAndSuspends) {
 }
 
 TEST(Affine, LobeUsedNonlinearlyStaysDirect) {
-    const Compiled c = compile("surface s() { color d = diffuse(normalize(N)); Ci = (d[0] > 0.5) ? color(1) : color(0); Ci += specular(N, -I, 0.1); }", pathOptions());
+    const Compiled c = compile(
+        "surface s() { color d = diffuse(normalize(N)); Ci = (d[0] > 0.5) ? color(1) : color(0); Ci += specular(N, -I, 0.1); }",
+        pathOptions());
     ASSERT_NE(c.kernel, nullptr);
     ASSERT_EQ(c.kernel->facts.direct.size(), 1u);
     EXPECT_NE(c.kernel->facts.direct[0].find("diffuse, line 1"), std::string::npos) << c.kernel->facts.direct[0];
@@ -107,7 +110,9 @@ TEST(Affine, LobeUsedNonlinearlyStaysDirect) {
 }
 
 TEST(Affine, IlluminanceUnderPathEmitsShadows) {
-    const Compiled c = compile("surface s(float Kd = 0.5) { color sum = 0; illuminance(P, N, PI/2) { sum += Cl * (normalize(L) . N); } Ci = Cs * Kd * sum; }", pathOptions());
+    const Compiled c = compile("surface s(float Kd = 0.5) { color sum = 0; illuminance(P, N, PI/2) { sum += Cl * (normalize(L) . "
+                               "N); } Ci = Cs * Kd * sum; }",
+                               pathOptions());
     expectAffine(c, 1);
     EXPECT_EQ(c.sites(Op::Emit, "lightvisibility"), 1);
     EXPECT_EQ(c.count(Op::Rescale), 0) << c.text();

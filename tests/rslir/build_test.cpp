@@ -11,8 +11,7 @@ namespace {
 
 TEST(Build, EveryShippedShader) {
     for (const auto& file : std::filesystem::directory_iterator(std::string(ALPENGLOW_SOURCE_DIR) + "/shaders")) {
-        if (file.path().extension() != ".sl")
-            continue;
+        if (file.path().extension() != ".sl") continue;
         SCOPED_TRACE(file.path().string());
         std::ifstream f(file.path());
         std::stringstream s;
@@ -21,8 +20,7 @@ TEST(Build, EveryShippedShader) {
             KernelOptions o;
             o.path = path;
             const Compiled c = compile(s.str(), o);
-            if (c.kernel)
-                EXPECT_FALSE(c.kernel->outputs.empty());
+            if (c.kernel) EXPECT_FALSE(c.kernel->outputs.empty());
         }
         Diagnostics d;
         const auto p = compileText(s.str(), "x.sl", {}, d);
@@ -47,8 +45,7 @@ TEST(Build, ConstantsFold) {
     EXPECT_EQ(c.count(Op::Runtime), 0) << c.text();
     const Inst* out = nullptr;
     forEach(static_cast<const Region&>(c.kernel->body), [&](const Inst* i) {
-        if (i->op == Op::Output && i->index == 0)
-            out = i->args[0];
+        if (i->op == Op::Output && i->index == 0) out = i->args[0];
     });
     ASSERT_NE(out, nullptr);
     ASSERT_EQ(out->op, Op::Const);
@@ -58,7 +55,8 @@ TEST(Build, ConstantsFold) {
 TEST(Build, StringParametersSpecialise) {
     KernelOptions o;
     o.stringParameters = {{"mode", "red"}};
-    const Compiled c = compile("surface s(string mode = \"green\") { if (mode == \"red\") Ci = color(1,0,0); else Ci = trace(P, N); }", o);
+    const Compiled c =
+        compile("surface s(string mode = \"green\") { if (mode == \"red\") Ci = color(1,0,0); else Ci = trace(P, N); }", o);
     EXPECT_EQ(c.count(Op::If), 0);
     EXPECT_EQ(c.count(Op::Emit) + c.count(Op::Request), 0) << c.text();
 }
@@ -79,7 +77,8 @@ TEST(Build, SpacesBecomeMatrices) {
 }
 
 TEST(Build, Lights) {
-    const Compiled spot = compile("light l(point from = point \"shader\" (0,0,0); vector axis = vector \"shader\" (0,0,1)) { illuminate(from, axis, PI/4) Cl = 1 / (L . L); }");
+    const Compiled spot = compile("light l(point from = point \"shader\" (0,0,0); vector axis = vector \"shader\" (0,0,1)) { "
+                                  "illuminate(from, axis, PI/4) Cl = 1 / (L . L); }");
     ASSERT_EQ(spot.kernel->outputs.size(), 4u);
     EXPECT_EQ(spot.kernel->outputs[3].name, "lit");
     EXPECT_EQ(spot.kernel->facts.blocks, std::vector<std::string>{"illuminate"});
@@ -94,28 +93,28 @@ TEST(Build, Lights) {
 TEST(Build, UniformIsFoundInVaryingVariables) {
     const Compiled c = compile("surface s(float a = 2) { float x = a * 3; if (x > 1) x = sin(a); Ci = x * s; }");
     bool sinUniform = false;
-    forEach(static_cast<const Region&>(c.kernel->body), [&](const Inst* i) { sinUniform = sinUniform || (i->text == "al_sin" && !i->varying); });
+    forEach(static_cast<const Region&>(c.kernel->body),
+            [&](const Inst* i) { sinUniform = sinUniform || (i->text == "al_sin" && !i->varying); });
     EXPECT_TRUE(sinUniform) << c.text();
     KernelOptions mixed;
     mixed.mixed = true;
     const Compiled v = compile("surface s(float a = 2) { Ci = sin(a) * s; }", mixed);
     forEach(static_cast<const Region&>(v.kernel->body), [&](const Inst* i) {
-        if (i->text == "al_sin")
-            EXPECT_TRUE(i->varying);
+        if (i->text == "al_sin") EXPECT_TRUE(i->varying);
     });
 }
 
 int orderOf(const Compiled& c, const std::string& input) {
     for (const Input& i : c.kernel->inputs)
-        if (i.name == input)
-            return i.order;
+        if (i.name == input) return i.order;
     return -1;
 }
 
 TEST(Build, DerivativeOrders) {
     EXPECT_EQ(orderOf(compile("surface s() { Ci = Du(s * s); }"), "s"), 1);
     EXPECT_EQ(orderOf(compile("surface s() { Ci = Du(s) + t; }"), "t"), 0);
-    const Compiled bump = compile("displacement d() { P += N * sin(s); N = calculatenormal(P); float x = Du(length(N)); P += x; }");
+    const Compiled bump =
+        compile("displacement d() { P += N * sin(s); N = calculatenormal(P); float x = Du(length(N)); P += x; }");
     EXPECT_EQ(orderOf(bump, "s"), 2) << bump.text();
     const Compiled loop = compile("surface s() { float x = 0; float i; for (i = 0; i < t; i += 1) x += s * i; Ci = Dv(x); }");
     EXPECT_EQ(orderOf(loop, "s"), 1) << loop.text();
@@ -129,7 +128,8 @@ TEST(Build, DerivativeOrders) {
 TEST(Build, UnboundedInliningIsAnError) {
     std::string s = "float f0(float x) { return sin(x) + x; }\n";
     for (int n = 1; n < 24; ++n)
-        s += "float f" + std::to_string(n) + "(float x) { return f" + std::to_string(n - 1) + "(x) + f" + std::to_string(n - 1) + "(x + 1); }\n";
+        s += "float f" + std::to_string(n) + "(float x) { return f" + std::to_string(n - 1) + "(x) + f" + std::to_string(n - 1) +
+             "(x + 1); }\n";
     s += "surface s() { Ci = f23(s); }";
     Diagnostics d;
     const auto p = compileText(s, "x.sl", {}, d);

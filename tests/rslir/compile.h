@@ -45,8 +45,7 @@ inline Compiled compile(const std::string& source, KernelOptions options = {}, b
             }
         }
     }
-    for (const Diagnostic& m : d.all())
-        c.messages += toString(m);
+    for (const Diagnostic& m : d.all()) c.messages += toString(m);
     EXPECT_NE(c.kernel, nullptr) << c.messages;
     return c;
 }

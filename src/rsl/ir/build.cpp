@@ -11,15 +11,20 @@
 namespace alpenglow::rsl::ir {
 
 Kind kindOf(Type t) {
-    if (t.array != 0)
-        return Kind::Array;
+    if (t.array != 0) return Kind::Array;
     switch (t.base) {
-    case Base::Void: return Kind::None;
-    case Base::Bool: return Kind::Bool;
-    case Base::Float: return Kind::Float;
-    case Base::Matrix: return Kind::Matrix;
-    case Base::String: return Kind::String;
-    default: return Kind::Triple;
+    case Base::Void:
+        return Kind::None;
+    case Base::Bool:
+        return Kind::Bool;
+    case Base::Float:
+        return Kind::Float;
+    case Base::Matrix:
+        return Kind::Matrix;
+    case Base::String:
+        return Kind::String;
+    default:
+        return Kind::Triple;
     }
 }
 
@@ -43,14 +48,13 @@ Inst* Builder::emit(Op op, Kind kind, std::vector<Inst*> args, int index) {
     if (k_.pool.size() > limits::kInlinedInstructions && !failed_) {
         failed_ = true;
         diagnostics_.report(Severity::Error, Rie::Limit, sourcePlace(program_.files, place_),
-                            "the shader is too large once its functions are inlined: more than " + std::to_string(limits::kInlinedInstructions) +
-                                " operations");
+                            "the shader is too large once its functions are inlined: more than " +
+                                std::to_string(limits::kInlinedInstructions) + " operations");
     }
     Inst* i = k_.make(op, kind, std::move(args));
     i->index = index;
     i->place = place_;
-    if (Inst* simple = simplify(k_, leaves_, i))
-        return simple;
+    if (Inst* simple = simplify(k_, leaves_, i)) return simple;
     region_->body.push_back(i);
     return i;
 }
@@ -76,7 +80,9 @@ Inst* Builder::input(const std::string& name, Type type, bool uniform) {
     return i;
 }
 
-Inst* Builder::space(const std::string& from, const std::string& to) { return input("space:" + from + ">" + to, {Base::Matrix, 0}, true); }
+Inst* Builder::space(const std::string& from, const std::string& to) {
+    return input("space:" + from + ">" + to, {Base::Matrix, 0}, true);
+}
 
 std::vector<Inst*> Builder::runtime(const std::string& symbol, std::vector<Inst*> args, std::vector<Kind> results) {
     Inst* i = k_.make(Op::Runtime, Kind::None, std::move(args));
@@ -84,12 +90,10 @@ std::vector<Inst*> Builder::runtime(const std::string& symbol, std::vector<Inst*
     i->results = results;
     i->place = place_;
     if (results.size() == 1)
-        if (Inst* simple = simplify(k_, leaves_, i))
-            return {simple};
+        if (Inst* simple = simplify(k_, leaves_, i)) return {simple};
     region_->body.push_back(i);
     std::vector<Inst*> out;
-    for (size_t r = 0; r < results.size(); ++r)
-        out.push_back(emit(Op::Result, results[r], {i}, static_cast<int>(r)));
+    for (size_t r = 0; r < results.size(); ++r) out.push_back(emit(Op::Result, results[r], {i}, static_cast<int>(r)));
     return out;
 }
 
@@ -102,30 +106,25 @@ std::vector<Inst*> Builder::call(Op op, Site site, std::vector<Inst*> args) {
     k_.sites.push_back(std::move(site));
     region_->body.push_back(i);
     std::vector<Inst*> out;
-    for (size_t r = 0; r < i->results.size(); ++r)
-        out.push_back(emit(Op::Result, i->results[r], {i}, static_cast<int>(r)));
+    for (size_t r = 0; r < i->results.size(); ++r) out.push_back(emit(Op::Result, i->results[r], {i}, static_cast<int>(r)));
     return out;
 }
 
 Inst* Builder::coerce(Inst* v, Kind k) {
-    if (v->kind == k)
-        return v;
-    if (v->kind == Kind::Bool)
-        return coerce(emit(Op::ToFloat, Kind::Float, {v}), k);
-    if (v->kind == Kind::Float && k == Kind::Triple)
-        return emit(Op::Splat, Kind::Triple, {v});
+    if (v->kind == k) return v;
+    if (v->kind == Kind::Bool) return coerce(emit(Op::ToFloat, Kind::Float, {v}), k);
+    if (v->kind == Kind::Float && k == Kind::Triple) return emit(Op::Splat, Kind::Triple, {v});
     if (v->kind == Kind::Float && k == Kind::Matrix) {
         std::vector<Inst*> m;
-        for (int n = 0; n < 16; ++n)
-            m.push_back(n % 5 == 0 ? v : constant(0));
+        for (int n = 0; n < 16; ++n) m.push_back(n % 5 == 0 ? v : constant(0));
         return emit(Op::MatrixOf, Kind::Matrix, m);
     }
-    if (v->kind == Kind::Float && k == Kind::Bool)
-        return emit(Op::NotEqual, Kind::Bool, {v, constant(0)});
+    if (v->kind == Kind::Float && k == Kind::Bool) return emit(Op::NotEqual, Kind::Bool, {v, constant(0)});
     if (v->kind == Kind::Triple && k == Kind::Bool) {
         Inst* any = boolean(false);
         for (int c = 0; c < 3; ++c)
-            any = emit(Op::Or, Kind::Bool, {any, emit(Op::NotEqual, Kind::Bool, {emit(Op::Extract, Kind::Float, {v}, c), constant(0)})});
+            any = emit(Op::Or, Kind::Bool,
+                       {any, emit(Op::NotEqual, Kind::Bool, {emit(Op::Extract, Kind::Float, {v}, c), constant(0)})});
         return any;
     }
     return zero(k); // after a reported error, or a void value
@@ -141,47 +140,38 @@ int Builder::newSlot(Inst* value) {
 
 int Builder::slot(const Symbol* s) {
     const auto it = slots_.find(s);
-    if (it != slots_.end())
-        return it->second;
+    if (it != slots_.end()) return it->second;
     if (s->origin == Symbol::Origin::Global) {
         const auto g = globals_.find(s->name);
-        if (g != globals_.end())
-            return slots_[s] = g->second;
+        if (g != globals_.end()) return slots_[s] = g->second;
     }
     const int n = newSlot(nullptr);
     symbols_.back() = s;
     slots_[s] = n;
-    if (s->origin == Symbol::Origin::Global)
-        globals_[s->name] = n;
+    if (s->origin == Symbol::Origin::Global) globals_[s->name] = n;
     return n;
 }
 
 Inst* Builder::initialGlobal(const std::string& name, Type type) {
     const ShaderKind kind = shader_.kind;
-    if (kind == ShaderKind::Surface && name == "Ci")
-        return zero(Kind::Triple);
-    if (kind == ShaderKind::Surface && name == "Oi")
-        return input("Os", {Base::Color, 0}, false);
+    if (kind == ShaderKind::Surface && name == "Ci") return zero(Kind::Triple);
+    if (kind == ShaderKind::Surface && name == "Oi") return input("Os", {Base::Color, 0}, false);
     if (kind == ShaderKind::Light && (name == "Cl" || name == "Ol"))
         return leaves_.constant(Kind::Triple, name == "Cl" ? 0.0f : 1.0f);
     bool uniform = false;
     for (const GlobalVariable& g : globalVariables(kind))
-        if (name == g.name)
-            uniform = g.uniform;
+        if (name == g.name) uniform = g.uniform;
     return input(name, type, uniform);
 }
 
 Inst* Builder::get(int n) {
     Inst*& v = env_[static_cast<size_t>(n)];
-    if (v)
-        return v;
+    if (v) return v;
     const Symbol* s = symbols_[static_cast<size_t>(n)];
-    if (!s)
-        return constant(0);
+    if (!s) return constant(0);
     if (s->origin == Symbol::Origin::Global)
         return v = initialGlobal(s->name, s->type); // a leaf: known everywhere, so not an assignment
-    if (s->type.array)
-        return newArray(s->type.base, std::max(s->type.array, 1));
+    if (s->type.array) return newArray(s->type.base, std::max(s->type.array, 1));
     return zero(kindOf(s->type));
 }
 
@@ -210,19 +200,16 @@ int Builder::arrayLength(const Inst* a) const {
 
 /// Value text of KernelOptions::stringParameters for a numeric parameter: one number, or three.
 Inst* Builder::constantParameter(const Symbol& s, const std::string& text) {
-    if (s.type.base == Base::String)
-        return leaves_.string(text);
+    if (s.type.base == Base::String) return leaves_.string(text);
     std::vector<float> numbers;
     const char* p = text.c_str();
     for (char* end = nullptr;; p = end) {
         const float f = std::strtof(p, &end);
-        if (end == p)
-            break;
+        if (end == p) break;
         numbers.push_back(f);
     }
     const Kind k = kindOf(s.type);
-    if (k == Kind::Array || k == Kind::Matrix || numbers.empty())
-        return nullptr;
+    if (k == Kind::Array || k == Kind::Matrix || numbers.empty()) return nullptr;
     numbers.resize(static_cast<size_t>(components(k)), numbers[0]);
     return leaves_.constant(k, numbers);
 }
@@ -231,13 +218,13 @@ Inst* Builder::parameterValue(const ShaderParameter& p) {
     const Symbol& s = *p.symbol;
     for (const auto& [name, value] : options_.stringParameters)
         if (name == s.name)
-            if (Inst* c = constantParameter(s, value))
-                return c;
+            if (Inst* c = constantParameter(s, value)) return c;
     Type type = s.type;
     if (type.array < 0)
         type.array = p.defaultValue && p.defaultValue->type.array > 0 ? p.defaultValue->type.array
-                     : p.defaultValue && p.defaultValue->kind == ExprKind::ArrayList ? std::max<int>(1, static_cast<int>(p.defaultValue->args.size()))
-                                                                                    : 1;
+                     : p.defaultValue && p.defaultValue->kind == ExprKind::ArrayList
+                         ? std::max<int>(1, static_cast<int>(p.defaultValue->args.size()))
+                         : 1;
     if (type == Type{Base::String, 0} && (!p.defaultValue || p.defaultValue->kind == ExprKind::String))
         return leaves_.string(p.defaultValue ? p.defaultValue->text : "");
     const auto& v = options_.varyingParameters;
@@ -254,10 +241,11 @@ bool Builder::buildDefaults() {
         if (p.symbol->type.array) {
             int n = p.symbol->type.array;
             if (n < 0)
-                n = p.defaultValue && p.defaultValue->kind == ExprKind::ArrayList ? std::max<int>(1, static_cast<int>(p.defaultValue->args.size())) : 1;
+                n = p.defaultValue && p.defaultValue->kind == ExprKind::ArrayList
+                        ? std::max<int>(1, static_cast<int>(p.defaultValue->args.size()))
+                        : 1;
             Inst* a = newArray(p.symbol->type.base, n);
-            if (p.defaultValue)
-                copyArray(a, *p.defaultValue);
+            if (p.defaultValue) copyArray(a, *p.defaultValue);
             set(slot(p.symbol), a);
         } else {
             set(slot(p.symbol), p.defaultValue ? expr(*p.defaultValue, kindOf(p.symbol->type)) : zero(kindOf(p.symbol->type)));
@@ -268,7 +256,8 @@ bool Builder::buildDefaults() {
         const int n = v->kind == Kind::Array ? arrayLength(v) : 1;
         for (int e = 0; e < n; ++e) {
             Inst* value = v->kind == Kind::Array ? emit(Op::ArrayLoad, v->element, {v, constant(static_cast<float>(e))}) : v;
-            k_.outputs.push_back({"param:" + s->name + (v->kind == Kind::Array ? "[" + std::to_string(e) + "]" : ""), value->kind, s->type.element()});
+            k_.outputs.push_back({"param:" + s->name + (v->kind == Kind::Array ? "[" + std::to_string(e) + "]" : ""), value->kind,
+                                  s->type.element()});
             emit(Op::Output, Kind::None, {value}, static_cast<int>(k_.outputs.size()) - 1);
         }
     }
@@ -282,8 +271,7 @@ bool Builder::buildShader() {
     frames_.back().returned = newSlot(boolean(false));
     std::set<int> assigned;
     std::set<const Function*> seen;
-    if (shader_.body)
-        scanAssigned(*shader_.body, assigned, seen);
+    if (shader_.body) scanAssigned(*shader_.body, assigned, seen);
     for (const ShaderParameter& p : shader_.parameters) {
         place_ = p.symbol->place;
         const int n = slot(p.symbol);
@@ -299,15 +287,12 @@ bool Builder::buildShader() {
         env_[static_cast<size_t>(n)] = v;
     }
     lightBlocks_.clear();
-    if (shader_.kind == ShaderKind::Light && shader_.body)
-        findBlocks(*shader_.body);
-    if (shader_.body)
-        statement(*shader_.body);
+    if (shader_.kind == ShaderKind::Light && shader_.body) findBlocks(*shader_.body);
+    if (shader_.body) statement(*shader_.body);
     place_ = shader_.place;
 
     const auto output = [&](const std::string& name, Inst* value, Type type) {
-        if (value->kind == Kind::Array)
-            return;
+        if (value->kind == Kind::Array) return;
         k_.outputs.push_back({name, value->kind, type});
         emit(Op::Output, Kind::None, {value}, static_cast<int>(k_.outputs.size()) - 1);
     };
@@ -316,22 +301,27 @@ bool Builder::buildShader() {
     const bool light = shader_.kind == ShaderKind::Light;
     if (light) {
         k_.facts.ambientLight = lightBlocks_.empty();
-        for (const LightBlock& b : lightBlocks_)
-            k_.facts.blocks.push_back(b.solar ? "solar" : "illuminate");
+        for (const LightBlock& b : lightBlocks_) k_.facts.blocks.push_back(b.solar ? "solar" : "illuminate");
     }
     if (wanted.empty()) {
         switch (shader_.kind) {
-        case ShaderKind::Displacement: wanted = {"P", "N"}; break;
-        case ShaderKind::Transformation: wanted = {"P"}; break;
-        case ShaderKind::Imager: wanted = {"Ci", "Oi", "alpha"}; break;
+        case ShaderKind::Displacement:
+            wanted = {"P", "N"};
+            break;
+        case ShaderKind::Transformation:
+            wanted = {"P"};
+            break;
+        case ShaderKind::Imager:
+            wanted = {"Ci", "Oi", "alpha"};
+            break;
         case ShaderKind::Light:
-            if (lightBlocks_.empty())
-                wanted = {"Cl", "Ol"};
+            if (lightBlocks_.empty()) wanted = {"Cl", "Ol"};
             for (size_t b = 0; b < lightBlocks_.size(); ++b)
                 for (const char* n : {"L", "Cl", "Ol", "lit"})
                     wanted.push_back(n + (b ? "#" + std::to_string(b) : std::string()));
             break;
-        default: wanted = {"Ci", "Oi"};
+        default:
+            wanted = {"Ci", "Oi"};
         }
     }
     for (const std::string& name : wanted) {
@@ -345,8 +335,7 @@ bool Builder::buildShader() {
                 if (name == "Ol" + tail) output(name, get(l.Ol), color), found = true;
                 if (name == "lit" + tail) output(name, get(l.lit), real), found = true;
             }
-            if (found)
-                continue;
+            if (found) continue;
         }
         bool found = false;
         for (const ShaderParameter& p : shader_.parameters)
@@ -355,8 +344,7 @@ bool Builder::buildShader() {
                 found = true;
                 break;
             }
-        if (found)
-            continue;
+        if (found) continue;
         for (const GlobalVariable& g : globalVariables(shader_.kind))
             if (name == g.name) {
                 const auto it = globals_.find(name);
@@ -383,15 +371,15 @@ static std::unique_ptr<Kernel> newKernel(const Program& p, const Shader& s) {
     return k;
 }
 
-static std::unique_ptr<Kernel> buildOnce(const Program& p, const Shader& s, const KernelOptions& o, Diagnostics& d, const DirectSet& direct) {
+static std::unique_ptr<Kernel> buildOnce(const Program& p, const Shader& s, const KernelOptions& o, Diagnostics& d,
+                                         const DirectSet& direct) {
     auto k = newKernel(p, s);
     bool good = false;
     {
         Builder b(*k, p, s, o, d, direct);
         good = b.buildShader();
     }
-    if (!good)
-        return nullptr;
+    if (!good) return nullptr;
     toShortForm(*k);
     return k;
 }
@@ -399,9 +387,9 @@ static std::unique_ptr<Kernel> buildOnce(const Program& p, const Shader& s, cons
 std::unique_ptr<Kernel> buildKernel(const Program& p, const Shader& s, const KernelOptions& o, Diagnostics& d) {
     DirectSet direct;
     auto k = buildOnce(p, s, o, d, direct);
-    if (!k || !o.path)
-        return k;
-    // Lobe calls whose result is not used affinely are inlined instead; one of them may have hidden another, so again until none is left.
+    if (!k || !o.path) return k;
+    // Lobe calls whose result is not used affinely are inlined instead; one of them may have hidden another, so again until none
+    // is left.
     std::vector<std::string> notes;
     for (int round = 0; round < 16; ++round) {
         const auto lobe = [](const Inst* i, const Kernel& kernel) {
@@ -410,8 +398,7 @@ std::unique_ptr<Kernel> buildKernel(const Program& p, const Shader& s, const Ker
         };
         bool any = false;
         forEach(k->body, [&](Inst* i) { any = any || (i->site >= 0 && lobe(i, *k)); });
-        if (!any)
-            break;
+        if (!any) break;
         Diagnostics silent;
         auto trial = buildOnce(p, s, o, silent, direct);
         KernelOptions probe = o;
@@ -420,13 +407,11 @@ std::unique_ptr<Kernel> buildKernel(const Program& p, const Shader& s, const Ker
         const size_t before = direct.size();
         for (const auto& [site, why] : nonAffineSites(*trial)) {
             const Site& at = trial->sites[static_cast<size_t>(site)];
-            if (at.op == "trace" || at.op == "transmission" || at.op == "lightvisibility" || at.op == "ambient")
-                continue;
+            if (at.op == "trace" || at.op == "transmission" || at.op == "lightvisibility" || at.op == "ambient") continue;
             if (direct.emplace(at.place.file, at.place.line, at.place.column).second)
                 notes.push_back(at.op + ", line " + std::to_string(at.place.line) + ": " + why);
         }
-        if (direct.size() == before)
-            break;
+        if (direct.size() == before) break;
         Diagnostics quiet;
         k = buildOnce(p, s, o, quiet, direct);
     }
@@ -444,8 +429,7 @@ std::unique_ptr<Kernel> buildDefaults(const Program& p, const Shader& s, Diagnos
         Builder b(*k, p, s, o, d, none);
         good = b.buildDefaults();
     }
-    if (!good)
-        return nullptr;
+    if (!good) return nullptr;
     toShortForm(*k);
     return k;
 }

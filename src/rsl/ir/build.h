@@ -7,13 +7,14 @@
 namespace alpenglow::rsl {
 
 /// The kernel of one shader under `options`: user functions and RSL shadeops inlined, string parameters constant, outputs chosen.
-/// Lobe calls (diffuse, specular, ...) under options.path are Requests where the result is used affinely, else RSL light loops (noted
-/// in facts.direct). Reports what cannot be compiled (limits::kInlinedInstructions, third-order derivatives, ...) with its place.
-/// Null after an error. Run optimize() (passes/optimize.h) on the result before generating code.
+/// Lobe calls (diffuse, specular, ...) under options.path are Requests where the result is used affinely, else RSL light loops
+/// (noted in facts.direct). Reports what cannot be compiled (limits::kInlinedInstructions, third-order derivatives, ...) with its
+/// place. Null after an error. Run optimize() (passes/optimize.h) on the result before generating code.
 ///
 /// Predefined variables at the start: surface Ci = 0, Oi = Os; light Cl = 0, Ol = 1; all others come from inputs of their name.
-/// Results of blocks of a light: outputs "L", "Cl", "Ol", "lit" (1 inside the cone), with "#b" appended for block b > 0; an ambient
-/// light has "Cl" and "Ol" only. Output shader parameters appear under their own name, any parameter as "param:NAME" on request.
+/// Results of blocks of a light: outputs "L", "Cl", "Ol", "lit" (1 inside the cone), with "#b" appended for block b > 0; an
+/// ambient light has "Cl" and "Ol" only. Output shader parameters appear under their own name, any parameter as "param:NAME" on
+/// request.
 std::unique_ptr<ir::Kernel> buildKernel(const Program&, const Shader&, const KernelOptions&, Diagnostics&);
 
 /// A kernel whose outputs "param:NAME" (arrays: "param:NAME[i]") are the parameters' defaults, in declaration order.

@@ -31,7 +31,8 @@ Inst* Builder::multiply(Inst* a, Inst* b) {
         for (int c = 0; c < 4; ++c) {
             Inst* sum = nullptr;
             for (int n = 0; n < 4; ++n) {
-                Inst* p = emit(Op::Mul, Kind::Float, {emit(Op::Extract, Kind::Float, {a}, r * 4 + n), emit(Op::Extract, Kind::Float, {b}, n * 4 + c)});
+                Inst* p = emit(Op::Mul, Kind::Float,
+                               {emit(Op::Extract, Kind::Float, {a}, r * 4 + n), emit(Op::Extract, Kind::Float, {b}, n * 4 + c)});
                 sum = sum ? emit(Op::Add, Kind::Float, {sum, p}) : p;
             }
             m.push_back(sum);
@@ -42,10 +43,8 @@ Inst* Builder::multiply(Inst* a, Inst* b) {
 Inst* Builder::binary(const Expr& e, Inst* a, Inst* b) {
     if (e.op == ExprOp::And || e.op == ExprOp::Or)
         return emit(e.op == ExprOp::And ? Op::And : Op::Or, Kind::Bool, {coerce(a, Kind::Bool), coerce(b, Kind::Bool)});
-    if (a->kind == Kind::Bool)
-        a = coerce(a, Kind::Float);
-    if (b->kind == Kind::Bool)
-        b = coerce(b, Kind::Float);
+    if (a->kind == Kind::Bool) a = coerce(a, Kind::Float);
+    if (b->kind == Kind::Bool) b = coerce(b, Kind::Float);
     if (a->kind != b->kind) {
         const Kind k = a->kind == Kind::Float ? b->kind : a->kind;
         a = coerce(a, k);
@@ -54,25 +53,37 @@ Inst* Builder::binary(const Expr& e, Inst* a, Inst* b) {
     const Kind k = a->kind;
     const auto compare = [&](Inst* x, Inst* y) {
         switch (e.op) {
-        case ExprOp::Less: return emit(Op::Less, Kind::Bool, {x, y});
-        case ExprOp::Greater: return emit(Op::Less, Kind::Bool, {y, x});
-        case ExprOp::LessEqual: return emit(Op::LessEqual, Kind::Bool, {x, y});
-        case ExprOp::GreaterEqual: return emit(Op::LessEqual, Kind::Bool, {y, x});
-        case ExprOp::NotEqual: return emit(Op::NotEqual, Kind::Bool, {x, y});
-        default: return emit(Op::Equal, Kind::Bool, {x, y});
+        case ExprOp::Less:
+            return emit(Op::Less, Kind::Bool, {x, y});
+        case ExprOp::Greater:
+            return emit(Op::Less, Kind::Bool, {y, x});
+        case ExprOp::LessEqual:
+            return emit(Op::LessEqual, Kind::Bool, {x, y});
+        case ExprOp::GreaterEqual:
+            return emit(Op::LessEqual, Kind::Bool, {y, x});
+        case ExprOp::NotEqual:
+            return emit(Op::NotEqual, Kind::Bool, {x, y});
+        default:
+            return emit(Op::Equal, Kind::Bool, {x, y});
         }
     };
     switch (e.op) {
-    case ExprOp::Add: return emit(Op::Add, k, {a, b});
-    case ExprOp::Sub: return emit(Op::Sub, k, {a, b});
-    case ExprOp::Mul: return k == Kind::Matrix ? multiply(a, b) : emit(Op::Mul, k, {a, b});
-    case ExprOp::Div: return k == Kind::Matrix ? multiply(a, runtime1("al_inverse", {b}, Kind::Matrix)) : emit(Op::Div, k, {a, b});
-    case ExprOp::Dot: return dot(coerce(a, Kind::Triple), coerce(b, Kind::Triple));
-    case ExprOp::Cross: return cross(coerce(a, Kind::Triple), coerce(b, Kind::Triple));
-    default: break;
+    case ExprOp::Add:
+        return emit(Op::Add, k, {a, b});
+    case ExprOp::Sub:
+        return emit(Op::Sub, k, {a, b});
+    case ExprOp::Mul:
+        return k == Kind::Matrix ? multiply(a, b) : emit(Op::Mul, k, {a, b});
+    case ExprOp::Div:
+        return k == Kind::Matrix ? multiply(a, runtime1("al_inverse", {b}, Kind::Matrix)) : emit(Op::Div, k, {a, b});
+    case ExprOp::Dot:
+        return dot(coerce(a, Kind::Triple), coerce(b, Kind::Triple));
+    case ExprOp::Cross:
+        return cross(coerce(a, Kind::Triple), coerce(b, Kind::Triple));
+    default:
+        break;
     }
-    if (k == Kind::Float || k == Kind::String)
-        return compare(a, b);
+    if (k == Kind::Float || k == Kind::String) return compare(a, b);
     Inst* all = nullptr; // tuples and matrices: every component (any, for !=)
     for (int c = 0; c < components(k); ++c) {
         Inst* one = compare(emit(Op::Extract, Kind::Float, {a}, c), emit(Op::Extract, Kind::Float, {b}, c));
@@ -85,12 +96,10 @@ Inst* Builder::array(const Expr& e) {
     if (e.kind == ExprKind::Variable && e.symbol) {
         const int n = slot(e.symbol);
         Inst*& v = env_[static_cast<size_t>(n)];
-        if (!v)
-            v = get(n);
+        if (!v) v = get(n);
         return v;
     }
-    if (e.kind == ExprKind::Cast && !e.args.empty() && e.args[0]->type.array)
-        return array(*e.args[0]);
+    if (e.kind == ExprKind::Cast && !e.args.empty() && e.args[0]->type.array) return array(*e.args[0]);
     const int length = e.type.array > 0 ? e.type.array : std::max<int>(1, static_cast<int>(e.args.size()));
     Inst* a = newArray(e.type.base, length);
     copyArray(a, e);
@@ -99,43 +108,36 @@ Inst* Builder::array(const Expr& e) {
 
 void Builder::copyArray(Inst* to, const Expr& from) {
     const int n = arrayLength(to);
-    const auto store = [&](int i, Inst* v) { emit(Op::ArrayStore, Kind::None, {to, constant(static_cast<float>(i)), coerce(v, to->element)}); };
+    const auto store = [&](int i, Inst* v) {
+        emit(Op::ArrayStore, Kind::None, {to, constant(static_cast<float>(i)), coerce(v, to->element)});
+    };
     if (from.kind == ExprKind::ArrayList) {
         std::vector<Inst*> values;
-        for (const ExprPtr& a : from.args)
-            values.push_back(expr(*a));
-        for (int i = 0; i < n && i < static_cast<int>(values.size()); ++i)
-            store(i, values[static_cast<size_t>(i)]);
-        for (int i = static_cast<int>(values.size()); i < n; ++i)
-            store(i, zero(to->element));
+        for (const ExprPtr& a : from.args) values.push_back(expr(*a));
+        for (int i = 0; i < n && i < static_cast<int>(values.size()); ++i) store(i, values[static_cast<size_t>(i)]);
+        for (int i = static_cast<int>(values.size()); i < n; ++i) store(i, zero(to->element));
         return;
     }
     if (!from.type.array) { // float a[42] = 0: the value for every element
         Inst* v = expr(from);
-        for (int i = 0; i < n; ++i)
-            store(i, v);
+        for (int i = 0; i < n; ++i) store(i, v);
         return;
     }
     if (from.kind != ExprKind::Variable && from.kind != ExprKind::Cast)
         return; // an array valued call: its results stay zero, reported where it is built
     Inst* a = array(from);
-    if (a == to)
-        return;
+    if (a == to) return;
     const int m = std::min(n, arrayLength(a));
-    for (int i = 0; i < m; ++i)
-        store(i, emit(Op::ArrayLoad, a->element, {a, constant(static_cast<float>(i))}));
+    for (int i = 0; i < m; ++i) store(i, emit(Op::ArrayLoad, a->element, {a, constant(static_cast<float>(i))}));
 }
 
 void Builder::assign(const Expr& l, Inst* value) {
-    if (l.kind == ExprKind::Cast && !l.args.empty())
-        return assign(*l.args[0], value);
+    if (l.kind == ExprKind::Cast && !l.args.empty()) return assign(*l.args[0], value);
     if (l.kind == ExprKind::Variable && l.symbol) {
-        if (!l.symbol->type.array)
-            set(slot(l.symbol), coerce(value, l.symbol->type));
+        if (!l.symbol->type.array) set(slot(l.symbol), coerce(value, l.symbol->type));
         return;
     }
-    if (l.kind != ExprKind::Index || l.args.size() < 2)
-        return;
+    if (l.kind != ExprKind::Index || l.args.size() < 2) return;
     const Expr& base = *l.args[0];
     if (base.type.array) {
         Inst* a = array(base);
@@ -143,8 +145,7 @@ void Builder::assign(const Expr& l, Inst* value) {
         if (isConst(at) && (at->numbers[0] < 0 || at->numbers[0] >= static_cast<float>(arrayLength(a))))
             warn(l.place, "index " + std::to_string(static_cast<int>(at->numbers[0])) + " is outside the array of length " +
                               std::to_string(arrayLength(a)) + "; the nearest element is taken");
-        if (a->op == Op::ArrayNew)
-            emit(Op::ArrayStore, Kind::None, {a, at, coerce(value, a->element)});
+        if (a->op == Op::ArrayNew) emit(Op::ArrayStore, Kind::None, {a, at, coerce(value, a->element)});
         return;
     }
     // A component of a tuple.
@@ -153,9 +154,11 @@ void Builder::assign(const Expr& l, Inst* value) {
     value = coerce(value, Kind::Float);
     std::vector<Inst*> c;
     for (int n = 0; n < 3; ++n) {
-        Inst* is = n == 0 ? emit(Op::Less, Kind::Bool, {at, constant(1)})
-                   : n == 2 ? emit(Op::LessEqual, Kind::Bool, {constant(2), at})
-                            : emit(Op::And, Kind::Bool, {emit(Op::LessEqual, Kind::Bool, {constant(1), at}), emit(Op::Less, Kind::Bool, {at, constant(2)})});
+        Inst* is =
+            n == 0   ? emit(Op::Less, Kind::Bool, {at, constant(1)})
+            : n == 2 ? emit(Op::LessEqual, Kind::Bool, {constant(2), at})
+                     : emit(Op::And, Kind::Bool,
+                            {emit(Op::LessEqual, Kind::Bool, {constant(1), at}), emit(Op::Less, Kind::Bool, {at, constant(2)})});
         c.push_back(emit(Op::Select, Kind::Float, {is, value, emit(Op::Extract, Kind::Float, {old}, n)}));
     }
     assign(base, emit(Op::Triple, Kind::Triple, c));
@@ -163,36 +166,34 @@ void Builder::assign(const Expr& l, Inst* value) {
 
 Inst* Builder::transformBy(Inst* m, Inst* v, Base base) {
     switch (base) {
-    case Base::Vector: return runtime1("al_transformvector", {m, v}, Kind::Triple);
-    case Base::Normal: return runtime1("al_transformnormal", {m, v}, Kind::Triple);
-    case Base::Matrix: return multiply(v, m);
-    default: return runtime1("al_transformpoint", {m, v}, Kind::Triple);
+    case Base::Vector:
+        return runtime1("al_transformvector", {m, v}, Kind::Triple);
+    case Base::Normal:
+        return runtime1("al_transformnormal", {m, v}, Kind::Triple);
+    case Base::Matrix:
+        return multiply(v, m);
+    default:
+        return runtime1("al_transformpoint", {m, v}, Kind::Triple);
     }
 }
 
 Inst* Builder::toSpace(const std::string& from, const std::string& to, Inst* v, Base base, const Place&) {
-    if (from == to)
-        return v;
-    if (from != "current")
-        v = transformBy(space(from, "current"), v, base);
-    if (to != "current")
-        v = transformBy(space("current", to), v, base);
+    if (from == to) return v;
+    if (from != "current") v = transformBy(space(from, "current"), v, base);
+    if (to != "current") v = transformBy(space("current", to), v, base);
     return v;
 }
 
 static std::string lower(std::string s) {
-    for (char& c : s)
-        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    for (char& c : s) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     return s;
 }
 
 Inst* Builder::colourSpace(const std::string& from, const std::string& to, Inst* v) {
     const std::string f = lower(from), t = lower(to);
     const auto known = [](const std::string& s) { return s == "hsv" || s == "hsl" || s == "yiq" || s == "xyz"; };
-    if (f == t || (!known(f) && f != "rgb") || (!known(t) && t != "rgb"))
-        return v; // an unknown space leaves the colour as it is
-    if (f != "rgb")
-        v = runtime1("al_" + f + "_to_rgb", {v}, Kind::Triple);
+    if (f == t || (!known(f) && f != "rgb") || (!known(t) && t != "rgb")) return v; // an unknown space leaves the colour as it is
+    if (f != "rgb") v = runtime1("al_" + f + "_to_rgb", {v}, Kind::Triple);
     return t == "rgb" ? v : runtime1("al_rgb_to_" + t, {v}, Kind::Triple);
 }
 
@@ -223,27 +224,30 @@ Inst* Builder::dynamicSpace(const char* op, Inst* from, Inst* to, Inst* value, B
 Inst* Builder::inSpace(const Expr& spaceName, Inst* value, Base base) {
     Inst* name = expr(spaceName);
     if (base == Base::Color) {
-        if (name->op == Op::ConstString)
-            return colourSpace(name->text, "rgb", value);
+        if (name->op == Op::ConstString) return colourSpace(name->text, "rgb", value);
         return dynamicSpace("ctransform", name, leaves_.string("rgb"), value, base);
     }
-    if (name->op == Op::ConstString)
-        return toSpace(name->text, "current", value, base, spaceName.place);
-    const char* op = base == Base::Vector ? "vtransform" : base == Base::Normal ? "ntransform" : base == Base::Matrix ? "mtransform" : "transform";
+    if (name->op == Op::ConstString) return toSpace(name->text, "current", value, base, spaceName.place);
+    const char* op = base == Base::Vector   ? "vtransform"
+                     : base == Base::Normal ? "ntransform"
+                     : base == Base::Matrix ? "mtransform"
+                                            : "transform";
     return dynamicSpace(op, name, leaves_.string("current"), value, base);
 }
 
 Inst* Builder::expr(const Expr& e) {
     if (failed_)
         return e.type.array ? newArray(e.type.base, 1) : zero(kindOf(e.type) == Kind::None ? Kind::Float : kindOf(e.type));
-    if (e.place.line)
-        place_ = e.place;
+    if (e.place.line) place_ = e.place;
     if (e.type.array && e.kind != ExprKind::Assign && e.kind != ExprKind::FunctionCall && e.kind != ExprKind::ShadeopCall)
         return array(e);
     switch (e.kind) {
-    case ExprKind::Number: return constant(static_cast<float>(e.number));
-    case ExprKind::String: return leaves_.string(e.text);
-    case ExprKind::Variable: return e.symbol ? get(slot(e.symbol)) : zero(kindOf(e.type));
+    case ExprKind::Number:
+        return constant(static_cast<float>(e.number));
+    case ExprKind::String:
+        return leaves_.string(e.text);
+    case ExprKind::Variable:
+        return e.symbol ? get(slot(e.symbol)) : zero(kindOf(e.type));
     case ExprKind::Index: {
         const Expr& base = *e.args[0];
         if (base.type.array) {
@@ -256,24 +260,20 @@ Inst* Builder::expr(const Expr& e) {
         }
         Inst* v = expr(base, Kind::Triple);
         Inst* at = expr(*e.args[1], Kind::Float);
-        if (isConst(at))
-            return emit(Op::Extract, Kind::Float, {v}, std::clamp(static_cast<int>(at->numbers[0]), 0, 2));
+        if (isConst(at)) return emit(Op::Extract, Kind::Float, {v}, std::clamp(static_cast<int>(at->numbers[0]), 0, 2));
         const auto c = [&](int n) { return emit(Op::Extract, Kind::Float, {v}, n); };
         Inst* high = emit(Op::Select, Kind::Float, {emit(Op::Less, Kind::Bool, {at, constant(2)}), c(1), c(2)});
         return emit(Op::Select, Kind::Float, {emit(Op::Less, Kind::Bool, {at, constant(1)}), c(0), high});
     }
     case ExprKind::Unary: {
-        if (e.op == ExprOp::Not)
-            return emit(Op::Not, Kind::Bool, {condition(*e.args[0])});
+        if (e.op == ExprOp::Not) return emit(Op::Not, Kind::Bool, {condition(*e.args[0])});
         Inst* v = expr(*e.args[0]);
         if (v->kind == Kind::Matrix) {
             std::vector<Inst*> m;
-            for (int n = 0; n < 16; ++n)
-                m.push_back(emit(Op::Neg, Kind::Float, {emit(Op::Extract, Kind::Float, {v}, n)}));
+            for (int n = 0; n < 16; ++n) m.push_back(emit(Op::Neg, Kind::Float, {emit(Op::Extract, Kind::Float, {v}, n)}));
             return emit(Op::MatrixOf, Kind::Matrix, m);
         }
-        if (v->kind == Kind::Bool)
-            v = coerce(v, Kind::Float);
+        if (v->kind == Kind::Bool) v = coerce(v, Kind::Float);
         return emit(Op::Neg, v->kind, {v});
     }
     case ExprKind::Binary: {
@@ -286,8 +286,7 @@ Inst* Builder::expr(const Expr& e) {
         const Expr& l = *e.args[0];
         if (l.type.array) {
             Inst* a = array(l);
-            if (a->op == Op::ArrayNew)
-                copyArray(a, *e.args[1]);
+            if (a->op == Op::ArrayNew) copyArray(a, *e.args[1]);
             return a;
         }
         Inst* v;
@@ -309,31 +308,32 @@ Inst* Builder::expr(const Expr& e) {
         Inst* c = condition(*e.args[0]);
         const Kind k = kindOf(e.type);
         return branch(
-            c, [&] { return std::vector<Inst*>{expr(*e.args[1], k)}; }, [&] { return std::vector<Inst*>{expr(*e.args[2], k)}; })[0];
+            c, [&] { return std::vector<Inst*>{expr(*e.args[1], k)}; },
+            [&] { return std::vector<Inst*>{expr(*e.args[2], k)}; })[0];
     }
     case ExprKind::Tuple: {
         std::vector<Inst*> c;
-        for (const ExprPtr& a : e.args)
-            c.push_back(expr(*a, Kind::Float));
-        if (c.size() != 3)
-            return c.empty() ? zero(Kind::Triple) : coerce(c[0], Kind::Triple);
+        for (const ExprPtr& a : e.args) c.push_back(expr(*a, Kind::Float));
+        if (c.size() != 3) return c.empty() ? zero(Kind::Triple) : coerce(c[0], Kind::Triple);
         Inst* v = emit(Op::Triple, Kind::Triple, c);
         return e.space ? inSpace(*e.space, v, e.type.base) : v;
     }
     case ExprKind::MatrixTuple: {
         std::vector<Inst*> c;
-        for (const ExprPtr& a : e.args)
-            c.push_back(expr(*a, Kind::Float));
+        for (const ExprPtr& a : e.args) c.push_back(expr(*a, Kind::Float));
         Inst* v = c.size() == 16 ? emit(Op::MatrixOf, Kind::Matrix, c) : coerce(c.empty() ? constant(0) : c[0], Kind::Matrix);
         return e.space ? inSpace(*e.space, v, Base::Matrix) : v;
     }
-    case ExprKind::ArrayList: return array(e);
+    case ExprKind::ArrayList:
+        return array(e);
     case ExprKind::Cast: {
         Inst* v = coerce(expr(*e.args[0]), e.type);
         return e.space ? inSpace(*e.space, v, e.type.base) : v;
     }
-    case ExprKind::ShadeopCall: return shadeopCall(e);
-    case ExprKind::FunctionCall: return e.shadeop ? shadeopCall(e) : functionCall(e);
+    case ExprKind::ShadeopCall:
+        return shadeopCall(e);
+    case ExprKind::FunctionCall:
+        return e.shadeop ? shadeopCall(e) : functionCall(e);
     }
     return constant(0);
 }

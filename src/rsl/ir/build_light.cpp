@@ -45,20 +45,16 @@ void Builder::illuminance(const Stmt& s) {
     std::set<int> assigned;
     std::set<const Function*> seen;
     for (const StmtPtr& b : s.body)
-        if (b)
-            scanAssigned(*b, assigned, seen);
+        if (b) scanAssigned(*b, assigned, seen);
     for (const NamedArg* p : lightParameters)
-        if (p->value && p->value->kind == ExprKind::Variable && p->value->symbol)
-            assigned.insert(slot(p->value->symbol));
+        if (p->value && p->value->kind == ExprKind::Variable && p->value->symbol) assigned.insert(slot(p->value->symbol));
     Frame& f = frames_.back();
     for (const LoopFrame& l : f.loops) {
         assigned.insert(l.broken);
         assigned.insert(l.continued);
     }
-    if (f.returned >= 0)
-        assigned.insert(f.returned);
-    if (f.result >= 0)
-        assigned.insert(f.result);
+    if (f.returned >= 0) assigned.insert(f.returned);
+    if (f.result >= 0) assigned.insert(f.result);
     const LoopFrame flags{newSlot(boolean(false)), newSlot(boolean(false))};
     assigned.insert(flags.broken);
 
@@ -72,18 +68,15 @@ void Builder::illuminance(const Stmt& s) {
         } else {
             lightSlots[n] = globals_[names[n]] = newSlot(zero(Kind::Triple));
         }
-        if (!env_[static_cast<size_t>(lightSlots[n])])
-            env_[static_cast<size_t>(lightSlots[n])] = zero(Kind::Triple);
+        if (!env_[static_cast<size_t>(lightSlots[n])]) env_[static_cast<size_t>(lightSlots[n])] = zero(Kind::Triple);
         assigned.erase(lightSlots[n]);
     }
     std::vector<int> carried;
     for (int n : assigned) {
         const Symbol* sym = symbols_[static_cast<size_t>(n)];
-        if (sym && sym->origin == Symbol::Origin::Global)
-            get(n);
+        if (sym && sym->origin == Symbol::Origin::Global) get(n);
         Inst* v = env_[static_cast<size_t>(n)];
-        if (!v || v->kind == Kind::Array)
-            continue;
+        if (!v || v->kind == Kind::Array) continue;
         carried.push_back(n);
         inst->args.push_back(v);
         inst->results.push_back(v->kind);
@@ -102,8 +95,7 @@ void Builder::illuminance(const Stmt& s) {
     Inst* Cl = param(Kind::Triple);
     Inst* Ol = param(Kind::Triple);
     Inst* light = param(Kind::Float);
-    for (size_t c = 0; c < carried.size(); ++c)
-        set(carried[c], param(inst->results[c]));
+    for (size_t c = 0; c < carried.size(); ++c) set(carried[c], param(inst->results[c]));
     const std::set<std::string> writes = writes_;
     frames_.back().loops.push_back(flags);
     ++lightDepth_;
@@ -134,8 +126,7 @@ void Builder::illuminance(const Stmt& s) {
                 get.resultNames = {"", "value"};
                 get.resultType = {Base::Float, 0};
                 get.shadeop = findShadeop("lightsource");
-                if (p->value->type.array)
-                    continue;
+                if (p->value->type.array) continue;
                 const std::vector<Inst*> v = call(Op::Service, std::move(get), {});
                 Inst* found = emit(Op::NotEqual, Kind::Bool, {v[0], constant(0)});
                 assign(*p->value, emit(Op::Select, v[1]->kind, {found, v[1], coerce(expr(*p->value), v[1]->kind)}));
@@ -146,8 +137,7 @@ void Builder::illuminance(const Stmt& s) {
         [] { return std::vector<Inst*>{}; });
     --lightDepth_;
     frames_.back().loops.pop_back();
-    for (int n : carried)
-        r.yields.push_back(get(n));
+    for (int n : carried) r.yields.push_back(get(n));
     region_ = saved;
     while (log_.size() > mark) {
         env_[static_cast<size_t>(log_.back().first)] = log_.back().second;
@@ -161,8 +151,7 @@ void Builder::illuminance(const Stmt& s) {
     k_.sites.push_back(std::move(site));
     region_->body.push_back(inst);
     place_ = s.place;
-    for (size_t c = 0; c < carried.size(); ++c)
-        set(carried[c], emit(Op::Result, inst->results[c], {inst}, static_cast<int>(c)));
+    for (size_t c = 0; c < carried.size(); ++c) set(carried[c], emit(Op::Result, inst->results[c], {inst}, static_cast<int>(c)));
 }
 
 int Builder::addBlock(const Stmt& s) {
@@ -177,33 +166,30 @@ int Builder::addBlock(const Stmt& s) {
 
 /// Blocks of the shader's body, in order of the text, so that loops and conditions around them carry their slots.
 void Builder::findBlocks(const Stmt& s) {
-    if (s.kind == StmtKind::Illuminate || s.kind == StmtKind::Solar)
-        addBlock(s);
+    if (s.kind == StmtKind::Illuminate || s.kind == StmtKind::Solar) addBlock(s);
     for (const StmtPtr& b : s.body)
-        if (b)
-            findBlocks(*b);
-    if (s.elseBody)
-        findBlocks(*s.elseBody);
+        if (b) findBlocks(*b);
+    if (s.elseBody) findBlocks(*s.elseBody);
 }
 
 void Builder::lightBlock(const Stmt& s) {
     int index = -1;
     for (size_t n = 0; n < lightBlocks_.size(); ++n)
-        if (lightBlocks_[n].stmt == &s)
-            index = static_cast<int>(n);
-    if (index < 0)
-        index = addBlock(s); // inside a function
+        if (lightBlocks_[n].stmt == &s) index = static_cast<int>(n);
+    if (index < 0) index = addBlock(s); // inside a function
     const LightBlock b = lightBlocks_[static_cast<size_t>(index)];
     Inst *L, *lit = boolean(true);
     if (s.kind == StmtKind::Solar) {
         L = s.exprs.empty() ? input("L", {Base::Vector, 0}, false) : expr(*s.exprs[0], Kind::Triple);
     } else {
-        L = emit(Op::Sub, Kind::Triple, {global("Ps", Base::Point), s.exprs.empty() ? global("P", Base::Point) : expr(*s.exprs[0], Kind::Triple)});
+        L = emit(Op::Sub, Kind::Triple,
+                 {global("Ps", Base::Point), s.exprs.empty() ? global("P", Base::Point) : expr(*s.exprs[0], Kind::Triple)});
         if (s.exprs.size() > 2) {
             Inst* axis = expr(*s.exprs[1], Kind::Triple);
             Inst* angle = expr(*s.exprs[2], Kind::Float);
             place_ = s.place;
-            Inst* lengths = emit(Op::Mul, Kind::Float, {runtime1("al_length", {L}, Kind::Float), runtime1("al_length", {axis}, Kind::Float)});
+            Inst* lengths =
+                emit(Op::Mul, Kind::Float, {runtime1("al_length", {L}, Kind::Float), runtime1("al_length", {axis}, Kind::Float)});
             Inst* limit = emit(Op::Mul, Kind::Float, {runtime1("al_cos", {angle}, Kind::Float), lengths});
             lit = emit(Op::LessEqual, Kind::Bool, {limit, dot(L, axis)});
         }
@@ -217,8 +203,7 @@ void Builder::lightBlock(const Stmt& s) {
             env_[static_cast<size_t>(slots[n])] = leaves_.constant(Kind::Triple, n == 2 ? 1.0f : 0.0f);
     }
     Inst* before[3];
-    for (int n = 0; n < 3; ++n)
-        before[n] = get(slots[n]);
+    for (int n = 0; n < 3; ++n) before[n] = get(slots[n]);
     const int litSlot = newSlot(constant(0));
     branch(
         lit,
@@ -235,8 +220,7 @@ void Builder::lightBlock(const Stmt& s) {
         [] { return std::vector<Inst*>{}; });
     set(b.L, L);
     set(b.lit, get(litSlot));
-    for (int n = 0; n < 3; ++n)
-        set(slots[n], before[n]);
+    for (int n = 0; n < 3; ++n) set(slots[n], before[n]);
 }
 
 } // namespace alpenglow::rsl::ir

@@ -3,9 +3,9 @@
 
 namespace alpenglow::rsl::ir {
 
-std::vector<Inst*> Builder::branch(Inst* condition, const std::function<std::vector<Inst*>()>& yes, const std::function<std::vector<Inst*>()>& no) {
-    if (isConst(condition))
-        return condition->numbers[0] != 0 ? yes() : no();
+std::vector<Inst*> Builder::branch(Inst* condition, const std::function<std::vector<Inst*>()>& yes,
+                                   const std::function<std::vector<Inst*>()>& no) {
+    if (isConst(condition)) return condition->numbers[0] != 0 ? yes() : no();
     Inst* inst = k_.make(Op::If, Kind::None, {condition});
     inst->place = place_;
     inst->regions.resize(2);
@@ -17,8 +17,7 @@ std::vector<Inst*> Builder::branch(Inst* condition, const std::function<std::vec
         region_ = &inst->regions[static_cast<size_t>(side)];
         extra[side] = side == 0 ? yes() : no();
         region_ = saved;
-        for (size_t n = mark; n < log_.size(); ++n)
-            changed[side][log_[n].first] = env_[static_cast<size_t>(log_[n].first)];
+        for (size_t n = mark; n < log_.size(); ++n) changed[side][log_[n].first] = env_[static_cast<size_t>(log_[n].first)];
         while (log_.size() > mark) {
             env_[static_cast<size_t>(log_.back().first)] = log_.back().second;
             log_.pop_back();
@@ -26,8 +25,7 @@ std::vector<Inst*> Builder::branch(Inst* condition, const std::function<std::vec
     }
     region_->body.push_back(inst);
     const auto yield = [&](Inst* a, Inst* b) {
-        if (a == b)
-            return a;
+        if (a == b) return a;
         inst->regions[0].yields.push_back(a);
         inst->regions[1].yields.push_back(b);
         inst->results.push_back(a->kind);
@@ -35,8 +33,7 @@ std::vector<Inst*> Builder::branch(Inst* condition, const std::function<std::vec
     };
     std::set<int> slots;
     for (const auto& side : changed)
-        for (const auto& [n, v] : side)
-            slots.insert(n);
+        for (const auto& [n, v] : side) slots.insert(n);
     for (int n : slots) {
         Inst* before = env_[static_cast<size_t>(n)];
         const auto value = [&](int side) {
@@ -44,22 +41,18 @@ std::vector<Inst*> Builder::branch(Inst* condition, const std::function<std::vec
             return it == changed[side].end() ? before : it->second;
         };
         // Without a value before, the variable lives inside the branch only; array names never change what they stand for.
-        if (before && before->kind != Kind::Array && value(0)->kind == value(1)->kind)
-            set(n, yield(value(0), value(1)));
+        if (before && before->kind != Kind::Array && value(0)->kind == value(1)->kind) set(n, yield(value(0), value(1)));
     }
     std::vector<Inst*> out;
-    for (size_t n = 0; n < extra[0].size(); ++n)
-        out.push_back(yield(extra[0][n], extra[1][n]));
+    for (size_t n = 0; n < extra[0].size(); ++n) out.push_back(yield(extra[0][n], extra[1][n]));
     return out;
 }
 
 Inst* Builder::alive() {
     const Frame& f = frames_.back();
     Inst* dead = nullptr;
-    if (!f.loops.empty())
-        dead = emit(Op::Or, Kind::Bool, {get(f.loops.back().broken), get(f.loops.back().continued)});
-    else if (f.returned >= 0)
-        dead = get(f.returned);
+    if (!f.loops.empty()) dead = emit(Op::Or, Kind::Bool, {get(f.loops.back().broken), get(f.loops.back().continued)});
+    else if (f.returned >= 0) dead = get(f.returned);
     return dead ? emit(Op::Not, Kind::Bool, {dead}) : boolean(true);
 }
 
@@ -67,8 +60,7 @@ void Builder::statements(const std::vector<StmtPtr>& list, size_t from) {
     for (size_t n = from; n < list.size() && !failed_; ++n) {
         Inst* live = alive();
         if (isConst(live)) {
-            if (live->numbers[0] == 0)
-                return;
+            if (live->numbers[0] == 0) return;
             statement(*list[n]);
             continue;
         }
@@ -97,10 +89,11 @@ void Builder::declare(const Stmt& s) {
         if (d.symbol->type.array) {
             int length = d.symbol->type.array;
             if (length < 0)
-                length = d.init && d.init->kind == ExprKind::ArrayList ? static_cast<int>(d.init->args.size()) : d.init ? d.init->type.array : 0;
+                length = d.init && d.init->kind == ExprKind::ArrayList ? static_cast<int>(d.init->args.size())
+                         : d.init                                      ? d.init->type.array
+                                                                       : 0;
             Inst* a = newArray(d.symbol->type.base, std::max(length, 1));
-            if (d.init)
-                copyArray(a, *d.init);
+            if (d.init) copyArray(a, *d.init);
             set(n, a);
         } else {
             uniformContext_ = d.symbol->storage == Storage::Uniform;
@@ -111,33 +104,38 @@ void Builder::declare(const Stmt& s) {
 }
 
 void Builder::statement(const Stmt& s) {
-    if (failed_)
-        return;
-    if (s.place.line)
-        place_ = s.place;
+    if (failed_) return;
+    if (s.place.line) place_ = s.place;
     Frame& f = frames_.back();
     switch (s.kind) {
-    case StmtKind::Block: statements(s.body, 0); return;
-    case StmtKind::Declare: declare(s); return;
+    case StmtKind::Block:
+        statements(s.body, 0);
+        return;
+    case StmtKind::Declare:
+        declare(s);
+        return;
     case StmtKind::Expression:
-        if (s.value)
-            expr(*s.value);
+        if (s.value) expr(*s.value);
         return;
     case StmtKind::If: {
         Inst* c = condition(*s.condition);
         branch(
-            c, [&] { statements(s.body, 0); return std::vector<Inst*>{}; },
+            c,
             [&] {
-                if (s.elseBody)
-                    statement(*s.elseBody);
+                statements(s.body, 0);
+                return std::vector<Inst*>{};
+            },
+            [&] {
+                if (s.elseBody) statement(*s.elseBody);
                 return std::vector<Inst*>{};
             });
         return;
     }
-    case StmtKind::While: loop(s.condition.get(), nullptr, s.body.empty() ? nullptr : s.body[0].get(), s.place); return;
+    case StmtKind::While:
+        loop(s.condition.get(), nullptr, s.body.empty() ? nullptr : s.body[0].get(), s.place);
+        return;
     case StmtKind::For:
-        if (s.init)
-            expr(*s.init);
+        if (s.init) expr(*s.init);
         loop(s.condition.get(), s.step.get(), s.body.empty() ? nullptr : s.body[0].get(), s.place);
         return;
     case StmtKind::Break:
@@ -151,20 +149,20 @@ void Builder::statement(const Stmt& s) {
         return;
     }
     case StmtKind::Return:
-        if (s.value && f.result >= 0)
-            set(f.result, expr(*s.value, kindOf(f.type)));
-        if (f.returned >= 0)
-            set(f.returned, boolean(true));
-        for (const LoopFrame& l : f.loops)
-            set(l.broken, boolean(true));
+        if (s.value && f.result >= 0) set(f.result, expr(*s.value, kindOf(f.type)));
+        if (f.returned >= 0) set(f.returned, boolean(true));
+        for (const LoopFrame& l : f.loops) set(l.broken, boolean(true));
         return;
-    case StmtKind::Illuminance: illuminance(s); return;
+    case StmtKind::Illuminance:
+        illuminance(s);
+        return;
     case StmtKind::Illuminate:
-    case StmtKind::Solar: lightBlock(s); return;
+    case StmtKind::Solar:
+        lightBlock(s);
+        return;
     case StmtKind::Gather:
         warn(s.place, "gather is not yet available: no sample hits anything, the else statement runs once");
-        if (s.elseBody)
-            statement(*s.elseBody);
+        if (s.elseBody) statement(*s.elseBody);
         return;
     }
 }
@@ -173,11 +171,9 @@ namespace {
 
 /// Whether the statement may jump: any break, continue or return below it, functions excluded.
 bool mayJump(const Stmt& s) {
-    if (s.kind == StmtKind::Break || s.kind == StmtKind::Continue || s.kind == StmtKind::Return)
-        return true;
+    if (s.kind == StmtKind::Break || s.kind == StmtKind::Continue || s.kind == StmtKind::Return) return true;
     for (const StmtPtr& b : s.body)
-        if (b && mayJump(*b))
-            return true;
+        if (b && mayJump(*b)) return true;
     return s.elseBody && mayJump(*s.elseBody);
 }
 
@@ -186,10 +182,8 @@ bool mayJump(const Stmt& s) {
 void Builder::loop(const Expr* cond, const Expr* step, const Stmt* body, const Place& place) {
     std::set<int> assigned;
     std::set<const Function*> seen;
-    if (body)
-        scanAssigned(*body, assigned, seen);
-    if (step)
-        scanAssigned(*step, assigned, seen);
+    if (body) scanAssigned(*body, assigned, seen);
+    if (step) scanAssigned(*step, assigned, seen);
     bool simple = true;
     if (cond) {
         simple = !hasEffects(*cond);
@@ -202,17 +196,13 @@ void Builder::loop(const Expr* cond, const Expr* step, const Stmt* body, const P
             assigned.insert(l.broken);
             assigned.insert(l.continued);
         }
-        if (f.returned >= 0)
-            assigned.insert(f.returned);
-        if (f.result >= 0)
-            assigned.insert(f.result);
+        if (f.returned >= 0) assigned.insert(f.returned);
+        if (f.result >= 0) assigned.insert(f.result);
     }
     const LoopFrame flags{newSlot(boolean(false)), newSlot(boolean(false))};
     const int go = simple ? -1 : newSlot(condition(*cond));
-    if (jumps)
-        assigned.insert(flags.broken);
-    if (go >= 0)
-        assigned.insert(go);
+    if (jumps) assigned.insert(flags.broken);
+    if (go >= 0) assigned.insert(go);
 
     std::vector<int> carried;
     Inst* inst = k_.make(Op::Loop, Kind::None);
@@ -220,11 +210,9 @@ void Builder::loop(const Expr* cond, const Expr* step, const Stmt* body, const P
     inst->regions.resize(2);
     for (int n : assigned) {
         const Symbol* s = symbols_[static_cast<size_t>(n)];
-        if (s && s->origin == Symbol::Origin::Global)
-            get(n);
+        if (s && s->origin == Symbol::Origin::Global) get(n);
         Inst* v = env_[static_cast<size_t>(n)];
-        if (!v || v->kind == Kind::Array)
-            continue;
+        if (!v || v->kind == Kind::Array) continue;
         carried.push_back(n);
         inst->args.push_back(v);
         inst->results.push_back(v->kind);
@@ -256,100 +244,72 @@ void Builder::loop(const Expr* cond, const Expr* step, const Stmt* body, const P
     enter(inst->regions[1]);
     frames_.back().loops.push_back(flags);
     set(flags.continued, boolean(false));
-    if (body)
-        statement(*body);
+    if (body) statement(*body);
     frames_.back().loops.pop_back();
     const auto next = [&] {
-        if (step)
-            expr(*step);
-        if (go >= 0)
-            set(go, condition(*cond));
+        if (step) expr(*step);
+        if (go >= 0) set(go, condition(*cond));
         return std::vector<Inst*>{};
     };
-    if (step || go >= 0)
-        branch(emit(Op::Not, Kind::Bool, {get(flags.broken)}), next, [] { return std::vector<Inst*>{}; });
-    for (int n : carried)
-        inst->regions[1].yields.push_back(get(n));
+    if (step || go >= 0) branch(emit(Op::Not, Kind::Bool, {get(flags.broken)}), next, [] { return std::vector<Inst*>{}; });
+    for (int n : carried) inst->regions[1].yields.push_back(get(n));
     leave(saved);
     region_->body.push_back(inst);
-    for (size_t c = 0; c < carried.size(); ++c)
-        set(carried[c], emit(Op::Result, inst->results[c], {inst}, static_cast<int>(c)));
+    for (size_t c = 0; c < carried.size(); ++c) set(carried[c], emit(Op::Result, inst->results[c], {inst}, static_cast<int>(c)));
 }
 
 void Builder::scanAssigned(const Expr& e, std::set<int>& out, std::set<const Function*>& seen) {
     const auto lvalue = [&](const Expr* l) {
-        while (l && l->kind == ExprKind::Index && !l->args.empty())
-            l = l->args[0].get();
-        if (l && l->kind == ExprKind::Cast && !l->args.empty())
-            l = l->args[0].get();
-        if (l && l->kind == ExprKind::Variable && l->symbol)
-            out.insert(slot(l->symbol));
+        while (l && l->kind == ExprKind::Index && !l->args.empty()) l = l->args[0].get();
+        if (l && l->kind == ExprKind::Cast && !l->args.empty()) l = l->args[0].get();
+        if (l && l->kind == ExprKind::Variable && l->symbol) out.insert(slot(l->symbol));
     };
-    if (e.kind == ExprKind::Assign)
-        lvalue(e.args[0].get());
+    if (e.kind == ExprKind::Assign) lvalue(e.args[0].get());
     if (e.kind == ExprKind::ShadeopCall && e.signature)
         for (size_t n = 0; n < e.args.size() && n < e.signature->parameters.size(); ++n)
-            if (e.signature->parameters[n].output)
-                lvalue(e.args[n].get());
+            if (e.signature->parameters[n].output) lvalue(e.args[n].get());
     for (const NamedArg& p : e.pairs)
-        if (p.output && p.value)
-            lvalue(p.value.get());
+        if (p.output && p.value) lvalue(p.value.get());
     if (e.function) {
         for (size_t n = 0; n < e.args.size() && n < e.function->parameters.size(); ++n)
-            if (e.function->parameters[n]->output)
-                lvalue(e.args[n].get());
-        if (seen.insert(e.function).second && e.function->body)
-            scanAssigned(*e.function->body, out, seen);
+            if (e.function->parameters[n]->output) lvalue(e.args[n].get());
+        if (seen.insert(e.function).second && e.function->body) scanAssigned(*e.function->body, out, seen);
     }
     for (const ExprPtr& a : e.args)
-        if (a)
-            scanAssigned(*a, out, seen);
+        if (a) scanAssigned(*a, out, seen);
     for (const NamedArg& p : e.pairs)
-        if (p.value)
-            scanAssigned(*p.value, out, seen);
+        if (p.value) scanAssigned(*p.value, out, seen);
     for (const ExprPtr* p : {&e.space, &e.channel})
-        if (*p)
-            scanAssigned(**p, out, seen);
+        if (*p) scanAssigned(**p, out, seen);
 }
 
 void Builder::scanAssigned(const Stmt& s, std::set<int>& out, std::set<const Function*>& seen) {
     for (const StmtPtr& b : s.body)
-        if (b)
-            scanAssigned(*b, out, seen);
-    if (s.elseBody)
-        scanAssigned(*s.elseBody, out, seen);
+        if (b) scanAssigned(*b, out, seen);
+    if (s.elseBody) scanAssigned(*s.elseBody, out, seen);
     for (const ExprPtr* p : {&s.condition, &s.init, &s.step, &s.value, &s.category})
-        if (*p)
-            scanAssigned(**p, out, seen);
+        if (*p) scanAssigned(**p, out, seen);
     for (const ExprPtr& e : s.exprs)
-        if (e)
-            scanAssigned(*e, out, seen);
+        if (e) scanAssigned(*e, out, seen);
     for (const Stmt::Declarator& d : s.declarators)
-        if (d.init)
-            scanAssigned(*d.init, out, seen);
+        if (d.init) scanAssigned(*d.init, out, seen);
     for (const NamedArg& p : s.pairs)
         if (p.value) {
             scanAssigned(*p.value, out, seen);
-            if (p.output && p.value->kind == ExprKind::Variable && p.value->symbol)
-                out.insert(slot(p.value->symbol));
+            if (p.output && p.value->kind == ExprKind::Variable && p.value->symbol) out.insert(slot(p.value->symbol));
         }
     for (const LightBlock& b : lightBlocks_)
-        if (b.stmt == &s)
-            out.insert({b.L, b.Cl, b.Ol, b.lit});
+        if (b.stmt == &s) out.insert({b.L, b.Cl, b.Ol, b.lit});
 }
 
 bool Builder::hasEffects(const Expr& e) {
-    if (e.kind == ExprKind::Assign || e.kind == ExprKind::FunctionCall || e.function)
-        return true;
-    if (e.kind == ExprKind::ShadeopCall && (!e.shadeop || e.shadeop->lowering != Lowering::Runtime))
-        return true;
+    if (e.kind == ExprKind::Assign || e.kind == ExprKind::FunctionCall || e.function) return true;
+    if (e.kind == ExprKind::ShadeopCall && (!e.shadeop || e.shadeop->lowering != Lowering::Runtime)) return true;
     if (e.kind == ExprKind::ShadeopCall && e.signature)
         for (const Parameter& p : e.signature->parameters)
-            if (p.output)
-                return true;
+            if (p.output) return true;
     for (const ExprPtr& a : e.args)
-        if (a && hasEffects(*a))
-            return true;
+        if (a && hasEffects(*a)) return true;
     return false;
 }
 

@@ -30,7 +30,9 @@ private:
     Inst* space(const std::string& from, const std::string& to);
     /// A Runtime call; several results when `results` has more than one.
     std::vector<Inst*> runtime(const std::string& symbol, std::vector<Inst*> args, std::vector<Kind> results);
-    Inst* runtime1(const std::string& symbol, std::vector<Inst*> args, Kind k) { return runtime(symbol, std::move(args), {k})[0]; }
+    Inst* runtime1(const std::string& symbol, std::vector<Inst*> args, Kind k) {
+        return runtime(symbol, std::move(args), {k})[0];
+    }
     std::vector<Inst*> call(Op, Site, std::vector<Inst*> args);
     Inst* coerce(Inst*, Kind);
     Inst* coerce(Inst*, Type);
@@ -49,7 +51,8 @@ private:
     // build_stmt.cpp
     using Code = std::function<void()>;
     /// If with everything assigned in a branch yielded; extra values of the branches, too.
-    std::vector<Inst*> branch(Inst* condition, const std::function<std::vector<Inst*>()>& yes, const std::function<std::vector<Inst*>()>& no);
+    std::vector<Inst*> branch(Inst* condition, const std::function<std::vector<Inst*>()>& yes,
+                              const std::function<std::vector<Inst*>()>& no);
     void statements(const std::vector<StmtPtr>&, size_t from);
     void statement(const Stmt&);
     void declare(const Stmt&);
@@ -63,8 +66,16 @@ private:
     void scanAssigned(const Expr&, std::set<int>& out, std::set<const Function*>& seen);
     bool hasEffects(const Expr&);
     /// Loop or LightLoop around `body`: `fixed` region parameters come before the carried ones.
-    struct LoopFrame { int broken = -1, continued = -1; };
-    struct Frame { int returned = -1; int result = -1; Type type; std::vector<LoopFrame> loops; const Function* function = nullptr; };
+    struct LoopFrame {
+        int broken = -1, continued = -1;
+    };
+    struct Frame {
+        int returned = -1;
+        int result = -1;
+        Type type;
+        std::vector<LoopFrame> loops;
+        const Function* function = nullptr;
+    };
 
     // build_expr.cpp
     Inst* expr(const Expr&);
@@ -121,7 +132,11 @@ private:
     std::unordered_map<std::string, Inst*> inputs_;
     std::set<std::string> writes_;
     /// Slots of what a block of a light gives.
-    struct LightBlock { const Stmt* stmt; bool solar; int L, Cl, Ol, lit; };
+    struct LightBlock {
+        const Stmt* stmt;
+        bool solar;
+        int L, Cl, Ol, lit;
+    };
     std::vector<LightBlock> lightBlocks_;
     int lightDepth_ = 0;
     bool uniformContext_ = false; ///< the value goes to a uniform variable: one random() for all

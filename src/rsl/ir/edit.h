@@ -36,20 +36,17 @@ std::vector<uint32_t> countUses(const Kernel&);
 class Replacements {
 public:
     Inst* operator()(Inst* inst) {
-        while (inst->id < map_.size() && map_[inst->id])
-            inst = map_[inst->id];
+        while (inst->id < map_.size() && map_[inst->id]) inst = map_[inst->id];
         return inst;
     }
     void set(const Inst* from, Inst* to) {
-        if (from->id >= map_.size())
-            map_.resize(from->id + 1024);
+        if (from->id >= map_.size()) map_.resize(from->id + 1024);
         map_[from->id] = to;
     }
     /// True when the instruction is replaced.
     bool replaced(const Inst* inst) const { return inst->id < map_.size() && map_[inst->id] != nullptr; }
     void apply(Inst* inst) {
-        for (Inst*& a : inst->args)
-            a = (*this)(a);
+        for (Inst*& a : inst->args) a = (*this)(a);
     }
     /// Every argument and yield of the region and below.
     void apply(Region&);
@@ -73,7 +70,7 @@ class Leaves {
 public:
     explicit Leaves(Kernel& k) : kernel_(k) {}
     ~Leaves() { flush(); }
-    Inst* constant(Kind, float value);                 ///< every component `value`
+    Inst* constant(Kind, float value); ///< every component `value`
     Inst* constant(Kind, const std::vector<float>&);
     Inst* string(const std::string&);
     void add(Inst* leaf) { front_.push_back(leaf); }

@@ -22,8 +22,7 @@ struct Printer {
 
     std::string list(const std::vector<Inst*>& v) {
         std::string s;
-        for (const Inst* i : v)
-            s += (s.empty() ? "" : ", ") + ref(i);
+        for (const Inst* i : v) s += (s.empty() ? "" : ", ") + ref(i);
         return s;
     }
 
@@ -36,51 +35,58 @@ struct Printer {
     void region(const Region& r, int depth, const char* label) {
         if (*label || !r.params.empty()) {
             std::string params;
-            for (const Inst* p : r.params)
-                params += (params.empty() ? "" : ", ") + ref(p) + " " + text(p->kind) + flags(p);
+            for (const Inst* p : r.params) params += (params.empty() ? "" : ", ") + ref(p) + " " + text(p->kind) + flags(p);
             line(depth, fmt::format("{}({}) {{", label, params));
             ++depth;
         }
-        for (const Inst* i : r.body)
-            inst(i, depth);
-        if (!r.yields.empty())
-            line(depth, "yield " + list(r.yields));
-        if (*label || !r.params.empty())
-            line(depth - 1, "}");
+        for (const Inst* i : r.body) inst(i, depth);
+        if (!r.yields.empty()) line(depth, "yield " + list(r.yields));
+        if (*label || !r.params.empty()) line(depth - 1, "}");
     }
 
     void inst(const Inst* i, int depth) {
         std::string s;
-        if (i->kind != Kind::None)
-            s = fmt::format("{} {}{} = ", ref(i), text(i->kind), flags(i));
+        if (i->kind != Kind::None) s = fmt::format("{} {}{} = ", ref(i), text(i->kind), flags(i));
         else if (!i->results.empty()) {
             s = ref(i) + " (";
-            for (size_t r = 0; r < i->results.size(); ++r)
-                s += std::string(r ? ", " : "") + text(i->results[r]);
+            for (size_t r = 0; r < i->results.size(); ++r) s += std::string(r ? ", " : "") + text(i->results[r]);
             s += ") = ";
         }
         s += name(i->op);
         switch (i->op) {
         case Op::Const:
-            for (float f : i->numbers)
-                s += fmt::format(" {}", f);
+            for (float f : i->numbers) s += fmt::format(" {}", f);
             break;
-        case Op::ConstString: s += fmt::format(" \"{}\"", i->text); break;
+        case Op::ConstString:
+            s += fmt::format(" \"{}\"", i->text);
+            break;
         case Op::Input:
-        case Op::ArrayInput: s += " " + k.inputs[static_cast<size_t>(i->index)].name; break;
-        case Op::Output: s += " " + k.outputs[static_cast<size_t>(i->index)].name; break;
-        case Op::Runtime: s += " " + i->text; break;
+        case Op::ArrayInput:
+            s += " " + k.inputs[static_cast<size_t>(i->index)].name;
+            break;
+        case Op::Output:
+            s += " " + k.outputs[static_cast<size_t>(i->index)].name;
+            break;
+        case Op::Runtime:
+            s += " " + i->text;
+            break;
         case Op::Service:
         case Op::Request:
         case Op::Emit:
-        case Op::LightLoop: s += fmt::format(" {}#{}", k.sites[static_cast<size_t>(i->site)].op, i->site); break;
+        case Op::LightLoop:
+            s += fmt::format(" {}#{}", k.sites[static_cast<size_t>(i->site)].op, i->site);
+            break;
         case Op::Result:
-        case Op::Extract: s += fmt::format("[{}]", i->index); break;
-        case Op::ArrayNew: s += fmt::format("[{}] of {}", i->index, text(i->element)); break;
-        default: break;
+        case Op::Extract:
+            s += fmt::format("[{}]", i->index);
+            break;
+        case Op::ArrayNew:
+            s += fmt::format("[{}] of {}", i->index, text(i->element));
+            break;
+        default:
+            break;
         }
-        if (!i->args.empty())
-            s += " " + list(i->args);
+        if (!i->args.empty()) s += " " + list(i->args);
         line(depth, s);
         static const char* const labels[][2] = {{"then", "else"}, {"while", "do"}, {"do", ""}};
         for (size_t r = 0; r < i->regions.size(); ++r)
@@ -94,8 +100,8 @@ std::string print(const Kernel& k) {
     Printer p{k, {}, {}};
     p.out = fmt::format("kernel {} {}\n", toString(k.kind), k.name);
     for (const Input& i : k.inputs)
-        p.out += fmt::format("input {} {}{}{}{}\n", i.name, text(i.kind), i.array ? fmt::format("[{}]", i.array) : "", i.uniform ? " uniform" : "",
-                             i.order ? fmt::format(" order {}", i.order) : "");
+        p.out += fmt::format("input {} {}{}{}{}\n", i.name, text(i.kind), i.array ? fmt::format("[{}]", i.array) : "",
+                             i.uniform ? " uniform" : "", i.order ? fmt::format(" order {}", i.order) : "");
     p.region(k.body, 0, "");
     return p.out;
 }

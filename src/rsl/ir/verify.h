@@ -5,9 +5,9 @@
 
 namespace alpenglow::rsl::ir {
 
-/// Empty when the kernel is well formed, else the first rule broken, in words: every operand is defined before its use in the same
-/// region or one around it; operand kinds fit the operation; regions have the parameters and yields their owner needs; indices of
-/// inputs, outputs, sites and results exist.
+/// Empty when the kernel is well formed, else the first rule broken, in words: every operand is defined before its use in the
+/// same region or one around it; operand kinds fit the operation; regions have the parameters and yields their owner needs;
+/// indices of inputs, outputs, sites and results exist.
 std::string verify(const Kernel&);
 
 } // namespace alpenglow::rsl::ir

@@ -1,5 +1,5 @@
-// The affine proof (design decision 2): Ci = a + sum of w_i x_i in the results x_i of rays and lights. Where it holds the kernel does
-// not wait: it returns a and emits the pairs (w_i, request).
+// The affine proof (design decision 2): Ci = a + sum of w_i x_i in the results x_i of rays and lights. Where it holds the kernel
+// does not wait: it returns a and emits the pairs (w_i, request).
 #pragma once
 #include "rsl/ir/ir.h"
 #include <string>
@@ -11,8 +11,8 @@ namespace alpenglow::rsl::ir {
 /// Requests whose results are not used affinely in Ci alone, with the reason, in order of their sites. Long or short form.
 std::vector<std::pair<int, std::string>> nonAffineSites(const Kernel&);
 
-/// Replaces every Request by an Emit (Mark and Rescale where the weight is only known after a loop) when all of them are affine; else
-/// leaves the kernel as it is. Sets facts.affine, whyNot and suspends. Long form.
+/// Replaces every Request by an Emit (Mark and Rescale where the weight is only known after a loop) when all of them are affine;
+/// else leaves the kernel as it is. Sets facts.affine, whyNot and suspends. Long form.
 void makeAffine(Kernel&);
 
 } // namespace alpenglow::rsl::ir

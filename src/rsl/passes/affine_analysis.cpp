@@ -3,7 +3,9 @@
 
 namespace alpenglow::rsl::ir {
 
-bool isMix(const Inst* i) { return i->op == Op::Runtime && (i->text == "al_mix_f" || i->text == "al_mix_t" || i->text == "al_mixf_t"); }
+bool isMix(const Inst* i) {
+    return i->op == Op::Runtime && (i->text == "al_mix_f" || i->text == "al_mix_t" || i->text == "al_mixf_t");
+}
 
 namespace {
 
@@ -19,8 +21,7 @@ struct Analysis {
     std::string where(const Inst* i) const { return i->place.line ? " (line " + std::to_string(i->place.line) + ")" : ""; }
 
     void bad(uint64_t mask, const Inst* at, const std::string& why) {
-        if (!mask)
-            return;
+        if (!mask) return;
         for (size_t s = 0; s < k.sites.size(); ++s)
             if ((mask >> (s % 64)) & 1 && requested[s] && d.bad.emplace(static_cast<int>(s), why + where(at)).second)
                 changed = true;
@@ -37,14 +38,12 @@ struct Analysis {
     uint64_t dep(const Inst* i) const { return d.sites[i->id]; }
     uint64_t all(const Inst* i) const {
         uint64_t m = 0;
-        for (const Inst* a : i->args)
-            m |= dep(a);
+        for (const Inst* a : i->args) m |= dep(a);
         return m;
     }
     uint8_t channels(const Inst* i) const {
         uint8_t c = 0;
-        for (const Inst* a : i->args)
-            c |= channel[a->id];
+        for (const Inst* a : i->args) c |= channel[a->id];
         return c;
     }
 
@@ -55,35 +54,31 @@ struct Analysis {
         switch (i->op) {
         case Op::If:
             bad(dep(i->args[0]), i, "a condition depends on it");
-            for (const Region& r : i->regions)
-                region(r);
+            for (const Region& r : i->regions) region(r);
             break;
         case Op::Loop:
         case Op::LightLoop: {
             const bool light = i->op == Op::LightLoop;
             const size_t fa = light ? 3 : 0, fp = light ? 4 : 0;
-            for (size_t a = 0; a < fa; ++a)
-                bad(dep(i->args[a]), i, "an illuminance loop depends on it");
+            for (size_t a = 0; a < fa; ++a) bad(dep(i->args[a]), i, "an illuminance loop depends on it");
             for (const Region& r : i->regions)
                 for (size_t p = fp; p < r.params.size(); ++p) {
                     copy(r.params[p], i->args[fa + p - fp]);
                     copy(r.params[p], i->regions.back().yields[p - fp]);
                 }
-            for (const Region& r : i->regions)
-                region(r);
-            if (!light)
-                bad(dep(i->regions[0].yields[0]), i, "the condition of a loop depends on it");
+            for (const Region& r : i->regions) region(r);
+            if (!light) bad(dep(i->regions[0].yields[0]), i, "the condition of a loop depends on it");
             break;
         }
-        default: break;
+        default:
+            break;
         }
     }
 
     void result(const Inst* i, const Inst* o, size_t n) {
         switch (o->op) {
         case Op::If:
-            for (const Region& r : o->regions)
-                raise(i, dep(r.yields[n]), channel[r.yields[n]->id]);
+            for (const Region& r : o->regions) raise(i, dep(r.yields[n]), channel[r.yields[n]->id]);
             break;
         case Op::Loop:
         case Op::LightLoop: {
@@ -99,10 +94,10 @@ struct Analysis {
             break;
         }
         case Op::Runtime:
-            if (isMix(o))
-                mix(i, o);
+            if (isMix(o)) mix(i, o);
             break;
-        default: break;
+        default:
+            break;
         }
     }
 
@@ -112,37 +107,37 @@ struct Analysis {
     }
 
     void region(const Region& r) {
-        for (const Inst* i : r.body)
-            inst(i);
+        for (const Inst* i : r.body) inst(i);
     }
 
     void inst(const Inst* i) {
         const uint64_t m = all(i);
         switch (i->op) {
-        case Op::Result: result(i, i->args[0], static_cast<size_t>(i->index)); return;
+        case Op::Result:
+            result(i, i->args[0], static_cast<size_t>(i->index));
+            return;
         case Op::If:
         case Op::Loop:
         case Op::LightLoop:
             construct(i);
-            if (i->kind != Kind::None)
-                result(i, i, 0);
+            if (i->kind != Kind::None) result(i, i, 0);
             return;
         case Op::Request:
             bad(m, i, "the arguments of " + k.sites[static_cast<size_t>(i->site)].op + "() depend on it");
-            if (i->kind != Kind::None)
-                result(i, i, 0);
+            if (i->kind != Kind::None) result(i, i, 0);
             return;
-        default: break;
+        default:
+            break;
         }
-        if (!m)
-            return;
+        if (!m) return;
         switch (i->op) {
         case Op::Add:
         case Op::Sub:
-        case Op::Neg: raise(i, m, channels(i)); return;
+        case Op::Neg:
+            raise(i, m, channels(i));
+            return;
         case Op::Mul:
-            if (dep(i->args[0]) && dep(i->args[1]))
-                bad(m, i, "it is multiplied by another such result");
+            if (dep(i->args[0]) && dep(i->args[1])) bad(m, i, "it is multiplied by another such result");
             raise(i, m, channels(i));
             return;
         case Op::Div:
@@ -150,42 +145,51 @@ struct Analysis {
             raise(i, m, channels(i));
             return;
         case Op::Splat:
-            if (channel[i->args[0]->id] & 7)
-                bad(m, i, "one of its components is used for all");
+            if (channel[i->args[0]->id] & 7) bad(m, i, "one of its components is used for all");
             raise(i, m, 0);
             return;
         case Op::Triple:
             for (size_t c = 0; c < 3; ++c)
-                if (channel[i->args[c]->id] & ~(kGrey | (1u << c)))
-                    bad(dep(i->args[c]), i, "its components are mixed");
+                if (channel[i->args[c]->id] & ~(kGrey | (1u << c))) bad(dep(i->args[c]), i, "its components are mixed");
             raise(i, m, 0);
             return;
-        case Op::Extract: raise(i, m, static_cast<uint8_t>(1u << i->index)); return;
+        case Op::Extract:
+            raise(i, m, static_cast<uint8_t>(1u << i->index));
+            return;
         case Op::Select:
             bad(dep(i->args[0]), i, "a condition depends on it");
             raise(i, m, channels(i));
             return;
         case Op::Runtime:
             if (isMix(i)) {
-                if (i->kind != Kind::None)
-                    mix(i, i);
+                if (i->kind != Kind::None) mix(i, i);
                 return;
             }
             bad(m, i, "the result of " + i->text.substr(i->text.rfind("al_", 0) == 0 ? 3 : 0) + "() is not affine in it");
             return;
         case Op::Du:
-        case Op::Dv: return; // such results count as constant
+        case Op::Dv:
+            return; // such results count as constant
         case Op::Output:
-            if (k.outputs[static_cast<size_t>(i->index)].name != "Ci" || (k.kind != ShaderKind::Surface && k.kind != ShaderKind::Volume))
+            if (k.outputs[static_cast<size_t>(i->index)].name != "Ci" ||
+                (k.kind != ShaderKind::Surface && k.kind != ShaderKind::Volume))
                 bad(m, i, "the output " + k.outputs[static_cast<size_t>(i->index)].name + " depends on it");
             return;
-        case Op::ArrayStore: bad(m, i, "it is stored in an array"); return;
-        case Op::Service: bad(m, i, k.sites[static_cast<size_t>(i->site)].op + "() takes it as an argument"); return;
+        case Op::ArrayStore:
+            bad(m, i, "it is stored in an array");
+            return;
+        case Op::Service:
+            bad(m, i, k.sites[static_cast<size_t>(i->site)].op + "() takes it as an argument");
+            return;
         case Op::Less:
         case Op::LessEqual:
         case Op::Equal:
-        case Op::NotEqual: bad(m, i, "it is compared"); return;
-        default: bad(m, i, "it is used in a way that is not affine"); return;
+        case Op::NotEqual:
+            bad(m, i, "it is compared");
+            return;
+        default:
+            bad(m, i, "it is used in a way that is not affine");
+            return;
         }
     }
 };
@@ -196,8 +200,7 @@ Dependence analyseDependence(const Kernel& k) {
     Analysis a{k, {}, std::vector<uint8_t>(k.pool.size()), false, std::vector<char>(k.sites.size())};
     a.d.sites.assign(k.pool.size(), 0);
     forEach(k.body, [&](const Inst* i) {
-        if (i->op == Op::Request)
-            a.requested[static_cast<size_t>(i->site)] = 1;
+        if (i->op == Op::Request) a.requested[static_cast<size_t>(i->site)] = 1;
     });
     do {
         a.changed = false;

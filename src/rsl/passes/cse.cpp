@@ -20,18 +20,14 @@ struct Merger {
             const Site& site = k.sites[static_cast<size_t>(i->site)];
             s += site.op + '\0';
             for (const auto* list : {&site.strings, &site.names, &site.pairStrings, &site.resultNames}) {
-                for (const std::string& t : *list)
-                    s += t + '\0';
+                for (const std::string& t : *list) s += t + '\0';
                 s += '\1';
             }
         }
         put(i->args.size());
-        for (const Inst* a : i->args)
-            put(a->id);
-        for (float f : i->numbers)
-            put(f);
-        for (Kind r : i->results)
-            put(r);
+        for (const Inst* a : i->args) put(a->id);
+        for (float f : i->numbers) put(f);
+        for (Kind r : i->results) put(r);
         return s + i->text;
     }
 
@@ -41,8 +37,7 @@ struct Merger {
         body.reserve(r.body.size());
         for (Inst* i : r.body) {
             rep.apply(i);
-            for (Region& sub : i->regions)
-                region(sub);
+            for (Region& sub : i->regions) region(sub);
             if (i->op == Op::Result || isMovable(k, *i)) {
                 std::string s = key(i);
                 const auto [it, fresh] = known.try_emplace(s, i);
@@ -55,11 +50,9 @@ struct Merger {
             }
             body.push_back(i);
         }
-        for (Inst*& y : r.yields)
-            y = rep(y);
+        for (Inst*& y : r.yields) y = rep(y);
         r.body = std::move(body);
-        for (const std::string& s : mine)
-            known.erase(s);
+        for (const std::string& s : mine) known.erase(s);
     }
 };
 

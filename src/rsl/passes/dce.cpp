@@ -10,11 +10,12 @@ struct Marker {
     Kernel& k;
     std::vector<char> live;
     std::vector<Inst*> work;
-    std::vector<Inst*> owner;  ///< by id of a region parameter: its Loop or LightLoop
-    std::vector<Inst*> parent; ///< by id: the instruction whose region holds it
+    std::vector<Inst*> owner;               ///< by id of a region parameter: its Loop or LightLoop
+    std::vector<Inst*> parent;              ///< by id: the instruction whose region holds it
     std::vector<std::vector<Inst*>> stores; ///< by id of an array
 
-    explicit Marker(Kernel& kernel) : k(kernel), live(k.pool.size()), owner(k.pool.size()), parent(k.pool.size()), stores(k.pool.size()) {}
+    explicit Marker(Kernel& kernel)
+        : k(kernel), live(k.pool.size()), owner(k.pool.size()), parent(k.pool.size()), stores(k.pool.size()) {}
 
     void index(Region& r, Inst* around) {
         for (Inst* p : r.params) {
@@ -23,16 +24,13 @@ struct Marker {
         }
         for (Inst* i : r.body) {
             parent[i->id] = around;
-            if (i->op == Op::ArrayStore)
-                stores[i->args[0]->id].push_back(i);
-            for (Region& sub : i->regions)
-                index(sub, i);
+            if (i->op == Op::ArrayStore) stores[i->args[0]->id].push_back(i);
+            for (Region& sub : i->regions) index(sub, i);
         }
     }
 
     void mark(Inst* i) {
-        if (live[i->id])
-            return;
+        if (live[i->id]) return;
         live[i->id] = 1;
         work.push_back(i);
     }
@@ -48,8 +46,7 @@ struct Marker {
             mark(o->regions[1].yields[n]);
         } else if (o->op == Op::Loop || o->op == Op::LightLoop) {
             mark(o->args[fixedArgs(o) + n]);
-            for (Region& r : o->regions)
-                mark(r.params[fixedParams(o) + n]);
+            for (Region& r : o->regions) mark(r.params[fixedParams(o) + n]);
             mark(o->regions.back().yields[n]);
         }
     }
@@ -57,53 +54,54 @@ struct Marker {
     void run() {
         const auto roots = [&](auto&& self, Region& r) -> void {
             for (Inst* i : r.body) {
-                if (i->op == Op::Output || i->op == Op::Emit || i->op == Op::Rescale || i->op == Op::Service || i->op == Op::Request) {
-                    if (!isPure(k, *i) && !(i->op == Op::Request) && !removableService(i))
-                        mark(i);
+                if (i->op == Op::Output || i->op == Op::Emit || i->op == Op::Rescale || i->op == Op::Service ||
+                    i->op == Op::Request) {
+                    if (!isPure(k, *i) && !(i->op == Op::Request) && !removableService(i)) mark(i);
                 }
-                for (Region& sub : i->regions)
-                    self(self, sub);
+                for (Region& sub : i->regions) self(self, sub);
             }
         };
         roots(roots, k.body);
         while (!work.empty()) {
             Inst* i = work.back();
             work.pop_back();
-            if (parent[i->id])
-                mark(parent[i->id]);
+            if (parent[i->id]) mark(parent[i->id]);
             switch (i->op) {
-            case Op::Result: markResult(i->args[0], static_cast<size_t>(i->index)); break;
+            case Op::Result:
+                markResult(i->args[0], static_cast<size_t>(i->index));
+                break;
             case Op::RegionParam: {
                 Inst* o = owner[i->id];
                 for (Region& r : o->regions)
                     for (size_t p = fixedParams(o); p < r.params.size(); ++p)
-                        if (r.params[p] == i)
-                            markResult(o, p - fixedParams(o));
+                        if (r.params[p] == i) markResult(o, p - fixedParams(o));
                 mark(o);
                 break;
             }
-            case Op::If: mark(i->args[0]); break;
-            case Op::Loop: mark(i->regions[0].yields[0]); break;
+            case Op::If:
+                mark(i->args[0]);
+                break;
+            case Op::Loop:
+                mark(i->regions[0].yields[0]);
+                break;
             case Op::LightLoop:
-                for (size_t a = 0; a < 3; ++a)
-                    mark(i->args[a]);
+                for (size_t a = 0; a < 3; ++a) mark(i->args[a]);
                 break;
             default:
-                for (Inst* a : i->args)
-                    mark(a);
+                for (Inst* a : i->args) mark(a);
                 if (i->op == Op::ArrayNew)
-                    for (Inst* s : stores[i->id])
-                        mark(s);
+                    for (Inst* s : stores[i->id]) mark(s);
             }
         }
     }
 
-    /// Queries have no effect of their own: only printing, baking and random numbers are seen from outside; the last not when unused.
+    /// Queries have no effect of their own: only printing, baking and random numbers are seen from outside; the last not when
+    /// unused.
     bool removableService(const Inst* i) const {
-        if (i->op != Op::Service)
-            return false;
+        if (i->op != Op::Service) return false;
         const Site& s = k.sites[static_cast<size_t>(i->site)];
-        return s.op == "random" || (!s.resultKinds.empty() && s.shadeop && s.shadeop->section == "Messages" && s.op != "outputchannel");
+        return s.op == "random" ||
+               (!s.resultKinds.empty() && s.shadeop && s.shadeop->section == "Messages" && s.op != "outputchannel");
     }
 };
 
@@ -121,12 +119,9 @@ struct Sweeper {
                 ++changes;
                 continue;
             }
-            if (i->op == Op::If || i->op == Op::Loop || i->op == Op::LightLoop)
-                construct(i);
-            if (i->op == Op::Result)
-                i->index = at(i->args[0], i->index);
-            for (Region& sub : i->regions)
-                region(sub);
+            if (i->op == Op::If || i->op == Op::Loop || i->op == Op::LightLoop) construct(i);
+            if (i->op == Op::Result) i->index = at(i->args[0], i->index);
+            for (Region& sub : i->regions) region(sub);
             body.push_back(i);
         }
         r.body = std::move(body);
@@ -145,25 +140,21 @@ struct Sweeper {
         for (size_t r = 0; r < n; ++r) {
             keep[r] = used.count({i, static_cast<int>(r)}) != 0;
             if (i->op != Op::If)
-                for (Region& sub : i->regions)
-                    keep[r] = keep[r] || m.live[sub.params[Marker::fixedParams(i) + r]->id];
+                for (Region& sub : i->regions) keep[r] = keep[r] || m.live[sub.params[Marker::fixedParams(i) + r]->id];
         }
         std::vector<int> map(n);
         int next = 0;
         const auto filter = [&](std::vector<Inst*>& v, size_t from) {
             std::vector<Inst*> out(v.begin(), v.begin() + static_cast<long>(from));
             for (size_t r = 0; r < n; ++r)
-                if (keep[r])
-                    out.push_back(v[from + r]);
+                if (keep[r]) out.push_back(v[from + r]);
             v = std::move(out);
         };
         std::vector<Kind> kinds;
         for (size_t r = 0; r < n; ++r) {
             map[r] = keep[r] ? next++ : -1;
-            if (keep[r])
-                kinds.push_back(i->results[r]);
-            else
-                ++changes;
+            if (keep[r]) kinds.push_back(i->results[r]);
+            else ++changes;
         }
         if (i->op == Op::If) {
             filter(i->regions[0].yields, 0);
@@ -172,8 +163,7 @@ struct Sweeper {
             filter(i->args, Marker::fixedArgs(i));
             for (Region& sub : i->regions) {
                 filter(sub.params, Marker::fixedParams(i));
-                for (size_t p = 0; p < sub.params.size(); ++p)
-                    sub.params[p]->index = static_cast<int>(p);
+                for (size_t p = 0; p < sub.params.size(); ++p) sub.params[p]->index = static_cast<int>(p);
             }
             filter(i->regions.back().yields, 0);
         }
@@ -182,7 +172,9 @@ struct Sweeper {
     }
 
     struct Hash {
-        size_t operator()(const std::pair<const Inst*, int>& p) const { return std::hash<const void*>()(p.first) * 31 + static_cast<size_t>(p.second); }
+        size_t operator()(const std::pair<const Inst*, int>& p) const {
+            return std::hash<const void*>()(p.first) * 31 + static_cast<size_t>(p.second);
+        }
     };
     std::unordered_map<std::pair<const Inst*, int>, char, Hash> used;
 };
@@ -200,8 +192,9 @@ int removeInvariant(Kernel& k) {
                 for (size_t n = 0; n < i->results.size(); ++n) {
                     Inst* y = body.yields[n];
                     const Inst* first = i->args[fa + n];
-                    const bool sameConst = y->op == Op::Const && first->op == Op::Const && y->numbers.size() == first->numbers.size() &&
-                                           std::memcmp(y->numbers.data(), first->numbers.data(), y->numbers.size() * sizeof(float)) == 0;
+                    const bool sameConst =
+                        y->op == Op::Const && first->op == Op::Const && y->numbers.size() == first->numbers.size() &&
+                        std::memcmp(y->numbers.data(), first->numbers.data(), y->numbers.size() * sizeof(float)) == 0;
                     if (y == body.params[fp + n] || y == i->args[fa + n] || sameConst)
                         for (Region& sub : i->regions)
                             if (!rep.replaced(sub.params[fp + n])) {
@@ -218,11 +211,9 @@ int removeInvariant(Kernel& k) {
                     ++changes;
                 }
             }
-            for (Region& sub : i->regions)
-                self(self, sub);
+            for (Region& sub : i->regions) self(self, sub);
         }
-        for (Inst*& y : r.yields)
-            y = rep(y);
+        for (Inst*& y : r.yields) y = rep(y);
     };
     walk(walk, k.body);
     rep.apply(k.body);
@@ -238,8 +229,7 @@ int removeDeadCode(Kernel& k) {
     m.run();
     Sweeper s{k, m, 0, {}, {}, {}};
     forEach(k.body, [&](Inst* i) {
-        if (i->op == Op::Result && m.live[i->id])
-            s.used[{i->args[0], i->index}] = 1;
+        if (i->op == Op::Result && m.live[i->id]) s.used[{i->args[0], i->index}] = 1;
     });
     s.region(k.body);
     return changes + s.changes;
@@ -249,8 +239,7 @@ void removeUnusedInputs(Kernel& k) {
     std::vector<int> map(k.inputs.size(), -1);
     std::vector<Input> kept;
     forEach(k.body, [&](Inst* i) {
-        if (i->op == Op::Input || i->op == Op::ArrayInput)
-            map[static_cast<size_t>(i->index)] = 0;
+        if (i->op == Op::Input || i->op == Op::ArrayInput) map[static_cast<size_t>(i->index)] = 0;
     });
     for (size_t n = 0; n < map.size(); ++n)
         if (map[n] == 0) {
@@ -259,8 +248,7 @@ void removeUnusedInputs(Kernel& k) {
         }
     k.inputs = std::move(kept);
     forEach(k.body, [&](Inst* i) {
-        if (i->op == Op::Input || i->op == Op::ArrayInput)
-            i->index = map[static_cast<size_t>(i->index)];
+        if (i->op == Op::Input || i->op == Op::ArrayInput) i->index = map[static_cast<size_t>(i->index)];
     });
 }
 

@@ -5,8 +5,8 @@
 
 namespace alpenglow::rsl::ir {
 
-/// Sets Inst::order and Input::order. Results of rays, lights and textures count as constant, warned once each; so does a derivative
-/// of third order. Either form.
+/// Sets Inst::order and Input::order. Results of rays, lights and textures count as constant, warned once each; so does a
+/// derivative of third order. Either form.
 void orderDerivatives(Kernel&, Diagnostics&);
 
 } // namespace alpenglow::rsl::ir

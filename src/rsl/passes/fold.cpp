@@ -12,30 +12,36 @@ float divide(float a, float b) { return b == 0 ? 0 : a / b; }
 
 float arithmetic(Op op, float a, float b) {
     switch (op) {
-    case Op::Add: return a + b;
-    case Op::Sub: return a - b;
-    case Op::Mul: return a * b;
-    default: return divide(a, b);
+    case Op::Add:
+        return a + b;
+    case Op::Sub:
+        return a - b;
+    case Op::Mul:
+        return a * b;
+    default:
+        return divide(a, b);
     }
 }
 
 bool compare(Op op, float a, float b) {
     switch (op) {
-    case Op::Less: return a < b;
-    case Op::LessEqual: return a <= b;
-    case Op::Equal: return a == b;
-    default: return a != b;
+    case Op::Less:
+        return a < b;
+    case Op::LessEqual:
+        return a <= b;
+    case Op::Equal:
+        return a == b;
+    default:
+        return a != b;
     }
 }
 
 /// Runtime calls with constant arguments and one numeric result.
 Inst* foldRuntime(Leaves& leaves, const Inst* i) {
     const Kind kind = i->results.empty() ? i->kind : i->results[0];
-    if (i->results.size() > 1 || kind == Kind::String || kind == Kind::None)
-        return nullptr;
+    if (i->results.size() > 1 || kind == Kind::String || kind == Kind::None) return nullptr;
     std::vector<float> in;
-    for (const Inst* a : i->args)
-        in.insert(in.end(), a->numbers.begin(), a->numbers.end());
+    for (const Inst* a : i->args) in.insert(in.end(), a->numbers.begin(), a->numbers.end());
     std::vector<float> out(static_cast<size_t>(components(kind)));
     if (!evaluateRuntime(i->text, in.data(), static_cast<int>(in.size()), out.data(), static_cast<int>(out.size())))
         return nullptr;
@@ -51,34 +57,42 @@ Inst* foldConstants(Leaves& leaves, const Inst* i) {
     case Op::Sub:
     case Op::Mul:
     case Op::Div:
-        for (size_t c = 0; c < n; ++c)
-            r[c] = arithmetic(i->op, number(0, c), number(1, c));
+        for (size_t c = 0; c < n; ++c) r[c] = arithmetic(i->op, number(0, c), number(1, c));
         return leaves.constant(i->kind, r);
     case Op::Neg:
-        for (size_t c = 0; c < n; ++c)
-            r[c] = -number(0, c);
+        for (size_t c = 0; c < n; ++c) r[c] = -number(0, c);
         return leaves.constant(i->kind, r);
-    case Op::Splat: return leaves.constant(Kind::Triple, number(0, 0));
-    case Op::Triple: return leaves.constant(Kind::Triple, {number(0, 0), number(1, 0), number(2, 0)});
+    case Op::Splat:
+        return leaves.constant(Kind::Triple, number(0, 0));
+    case Op::Triple:
+        return leaves.constant(Kind::Triple, {number(0, 0), number(1, 0), number(2, 0)});
     case Op::MatrixOf: {
         std::vector<float> m;
-        for (size_t a = 0; a < 16; ++a)
-            m.push_back(number(a, 0));
+        for (size_t a = 0; a < 16; ++a) m.push_back(number(a, 0));
         return leaves.constant(Kind::Matrix, m);
     }
-    case Op::Extract: return leaves.constant(Kind::Float, number(0, static_cast<size_t>(i->index)));
+    case Op::Extract:
+        return leaves.constant(Kind::Float, number(0, static_cast<size_t>(i->index)));
     case Op::Less:
     case Op::LessEqual:
     case Op::Equal:
-    case Op::NotEqual: return leaves.constant(Kind::Bool, compare(i->op, number(0, 0), number(1, 0)) ? 1.0f : 0.0f);
-    case Op::And: return leaves.constant(Kind::Bool, number(0, 0) != 0 && number(1, 0) != 0 ? 1.0f : 0.0f);
-    case Op::Or: return leaves.constant(Kind::Bool, number(0, 0) != 0 || number(1, 0) != 0 ? 1.0f : 0.0f);
-    case Op::Not: return leaves.constant(Kind::Bool, number(0, 0) != 0 ? 0.0f : 1.0f);
-    case Op::ToFloat: return leaves.constant(Kind::Float, number(0, 0) != 0 ? 1.0f : 0.0f);
+    case Op::NotEqual:
+        return leaves.constant(Kind::Bool, compare(i->op, number(0, 0), number(1, 0)) ? 1.0f : 0.0f);
+    case Op::And:
+        return leaves.constant(Kind::Bool, number(0, 0) != 0 && number(1, 0) != 0 ? 1.0f : 0.0f);
+    case Op::Or:
+        return leaves.constant(Kind::Bool, number(0, 0) != 0 || number(1, 0) != 0 ? 1.0f : 0.0f);
+    case Op::Not:
+        return leaves.constant(Kind::Bool, number(0, 0) != 0 ? 0.0f : 1.0f);
+    case Op::ToFloat:
+        return leaves.constant(Kind::Float, number(0, 0) != 0 ? 1.0f : 0.0f);
     case Op::Du:
-    case Op::Dv: return leaves.constant(i->kind, 0.0f);
-    case Op::Runtime: return foldRuntime(leaves, i);
-    default: return nullptr;
+    case Op::Dv:
+        return leaves.constant(i->kind, 0.0f);
+    case Op::Runtime:
+        return foldRuntime(leaves, i);
+    default:
+        return nullptr;
     }
 }
 
@@ -87,35 +101,33 @@ Inst* foldConstants(Leaves& leaves, const Inst* i) {
 Inst* simplify(Kernel&, Leaves& leaves, Inst* i) {
     const auto a = [&](size_t n) { return i->args[n]; };
     bool allConst = !i->args.empty();
-    for (const Inst* x : i->args)
-        allConst = allConst && x->op == Op::Const;
+    for (const Inst* x : i->args) allConst = allConst && x->op == Op::Const;
     if (allConst && i->regions.empty())
-        if (Inst* c = foldConstants(leaves, i))
-            return c;
+        if (Inst* c = foldConstants(leaves, i)) return c;
     switch (i->op) {
     case Op::Add: // x + -0 is x for every x; x + 0 is not, for x = -0
-        if (isConst(a(1), -0.0f))
-            return a(0);
+        if (isConst(a(1), -0.0f)) return a(0);
         return isConst(a(0), -0.0f) ? a(1) : nullptr;
-    case Op::Sub: return isConst(a(1), 0.0f) ? a(0) : nullptr;
+    case Op::Sub:
+        return isConst(a(1), 0.0f) ? a(0) : nullptr;
     case Op::Mul:
-        if (isConst(a(1), 1.0f))
-            return a(0);
+        if (isConst(a(1), 1.0f)) return a(0);
         return isConst(a(0), 1.0f) ? a(1) : nullptr;
-    case Op::Div: return isConst(a(1), 1.0f) ? a(0) : nullptr;
-    case Op::Neg: return a(0)->op == Op::Neg ? a(0)->args[0] : nullptr;
+    case Op::Div:
+        return isConst(a(1), 1.0f) ? a(0) : nullptr;
+    case Op::Neg:
+        return a(0)->op == Op::Neg ? a(0)->args[0] : nullptr;
     case Op::Extract:
-        if (a(0)->op == Op::Splat)
-            return a(0)->args[0];
-        if (a(0)->op == Op::Triple || a(0)->op == Op::MatrixOf)
-            return a(0)->args[static_cast<size_t>(i->index)];
+        if (a(0)->op == Op::Splat) return a(0)->args[0];
+        if (a(0)->op == Op::Triple || a(0)->op == Op::MatrixOf) return a(0)->args[static_cast<size_t>(i->index)];
         return nullptr;
     case Op::Triple:
         if (a(0) == a(1) && a(1) == a(2)) {
             return nullptr; // would be Splat: no cheaper
         }
-        if (a(0)->op == Op::Extract && a(1)->op == Op::Extract && a(2)->op == Op::Extract && a(0)->index == 0 && a(1)->index == 1 &&
-            a(2)->index == 2 && a(0)->args[0] == a(1)->args[0] && a(1)->args[0] == a(2)->args[0] && a(0)->args[0]->kind == Kind::Triple)
+        if (a(0)->op == Op::Extract && a(1)->op == Op::Extract && a(2)->op == Op::Extract && a(0)->index == 0 &&
+            a(1)->index == 1 && a(2)->index == 2 && a(0)->args[0] == a(1)->args[0] && a(1)->args[0] == a(2)->args[0] &&
+            a(0)->args[0]->kind == Kind::Triple)
             return a(0)->args[0];
         return nullptr;
     case Op::Equal:
@@ -125,28 +137,25 @@ Inst* simplify(Kernel&, Leaves& leaves, Inst* i) {
         return nullptr;
     case Op::And:
         for (size_t n = 0; n < 2; ++n)
-            if (isConst(a(n)))
-                return a(n)->numbers[0] != 0 ? a(1 - n) : a(n);
+            if (isConst(a(n))) return a(n)->numbers[0] != 0 ? a(1 - n) : a(n);
         return a(0) == a(1) ? a(0) : nullptr;
     case Op::Or:
         for (size_t n = 0; n < 2; ++n)
-            if (isConst(a(n)))
-                return a(n)->numbers[0] != 0 ? a(n) : a(1 - n);
+            if (isConst(a(n))) return a(n)->numbers[0] != 0 ? a(n) : a(1 - n);
         return a(0) == a(1) ? a(0) : nullptr;
-    case Op::Not: return a(0)->op == Op::Not ? a(0)->args[0] : nullptr;
+    case Op::Not:
+        return a(0)->op == Op::Not ? a(0)->args[0] : nullptr;
     case Op::Select:
-        if (isConst(a(0)))
-            return a(0)->numbers[0] != 0 ? a(1) : a(2);
-        if (a(1) == a(2))
-            return a(1);
+        if (isConst(a(0))) return a(0)->numbers[0] != 0 ? a(1) : a(2);
+        if (a(1) == a(2)) return a(1);
         if (a(1)->op == Op::Const && a(2)->op == Op::Const && a(1)->numbers.size() == a(2)->numbers.size()) {
             for (size_t c = 0; c < a(1)->numbers.size(); ++c)
-                if (!sameBits(a(1)->numbers[c], a(2)->numbers[c]))
-                    return nullptr;
+                if (!sameBits(a(1)->numbers[c], a(2)->numbers[c])) return nullptr;
             return a(1);
         }
         return nullptr;
-    default: return nullptr;
+    default:
+        return nullptr;
     }
 }
 
@@ -161,10 +170,8 @@ struct Folder {
     void region(Region& r) {
         std::vector<Inst*> body;
         body.reserve(r.body.size());
-        for (Inst* i : r.body)
-            inst(i, body);
-        for (Inst*& y : r.yields)
-            y = rep(y);
+        for (Inst* i : r.body) inst(i, body);
+        for (Inst*& y : r.yields) y = rep(y);
         r.body = std::move(body);
     }
 
@@ -190,15 +197,12 @@ struct Folder {
             Region& taken = i->regions[i->args[0]->numbers[0] != 0 ? 0 : 1];
             const std::vector<Inst*> inner = std::move(taken.body);
             taken.body.clear();
-            for (Inst* sub : inner)
-                inst(sub, body);
-            for (Inst*& y : taken.yields)
-                y = rep(y);
+            for (Inst* sub : inner) inst(sub, body);
+            for (Inst*& y : taken.yields) y = rep(y);
             ++changes;
             return;
         }
-        for (Region& sub : i->regions)
-            region(sub);
+        for (Region& sub : i->regions) region(sub);
         if (i->op != Op::Runtime) {
             if (Inst* to = simplify(k, leaves, i)) {
                 rep.set(i, to);

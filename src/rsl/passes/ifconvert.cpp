@@ -8,18 +8,25 @@ namespace {
 int cost(const Kernel& k, const Region& r) {
     int c = 0;
     for (const Inst* i : r.body) {
-        if (!isMovable(k, *i) || i->op == Op::Service)
-            return 1 << 20;
+        if (!isMovable(k, *i) || i->op == Op::Service) return 1 << 20;
         switch (i->op) {
         case Op::Const:
         case Op::ConstString:
         case Op::Result:
         case Op::Extract:
         case Op::Triple:
-        case Op::Splat: break;
-        case Op::Div: c += 4; break;
-        case Op::Runtime: c += i->text == "al_abs" || i->text == "al_min_f" || i->text == "al_max_f" || i->text == "al_sqrt" ? 4 : kIfConvertCost + 1; break;
-        default: c += i->kind == Kind::Triple ? 2 : 1;
+        case Op::Splat:
+            break;
+        case Op::Div:
+            c += 4;
+            break;
+        case Op::Runtime:
+            c += i->text == "al_abs" || i->text == "al_min_f" || i->text == "al_max_f" || i->text == "al_sqrt"
+                     ? 4
+                     : kIfConvertCost + 1;
+            break;
+        default:
+            c += i->kind == Kind::Triple ? 2 : 1;
         }
     }
     return c;
@@ -35,12 +42,12 @@ struct Converter {
         body.reserve(r.body.size());
         for (Inst* i : r.body) {
             rep.apply(i);
-            for (Region& sub : i->regions)
-                region(sub);
+            for (Region& sub : i->regions) region(sub);
             if (i->op == Op::Result && converted.count(i->args[0])) {
                 Inst* o = i->args[0];
                 const size_t n = static_cast<size_t>(i->index);
-                Inst* s = k.make(Op::Select, i->kind, {rep(o->args[0]), rep(o->regions[0].yields[n]), rep(o->regions[1].yields[n])});
+                Inst* s =
+                    k.make(Op::Select, i->kind, {rep(o->args[0]), rep(o->regions[0].yields[n]), rep(o->regions[1].yields[n])});
                 s->place = o->place;
                 rep.set(i, s);
                 body.push_back(s);
@@ -48,16 +55,14 @@ struct Converter {
             }
             if (i->op == Op::If && cost(k, i->regions[0]) + cost(k, i->regions[1]) <= kIfConvertCost) {
                 for (Region& sub : i->regions)
-                    for (Inst* x : sub.body)
-                        body.push_back(x);
+                    for (Inst* x : sub.body) body.push_back(x);
                 converted.insert({i, 1});
                 ++changes;
                 continue;
             }
             body.push_back(i);
         }
-        for (Inst*& y : r.yields)
-            y = rep(y);
+        for (Inst*& y : r.yields) y = rep(y);
         r.body = std::move(body);
     }
     std::unordered_map<const Inst*, char> converted;

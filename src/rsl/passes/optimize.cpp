@@ -34,8 +34,7 @@ void clean(Kernel& k) {
         check(k, "cse");
         changes += removeDeadCode(k);
         check(k, "dce");
-        if (changes == 0)
-            break;
+        if (changes == 0) break;
     }
 }
 
@@ -51,8 +50,7 @@ void optimize(Kernel& k, const KernelOptions& options, Diagnostics& diagnostics)
             check(k, "unroll");
             changes += promoteArrays(k);
             check(k, "promote");
-            if (changes == 0)
-                break;
+            if (changes == 0) break;
             clean(k);
         }
         convertIfs(k);
@@ -70,8 +68,7 @@ void optimize(Kernel& k, const KernelOptions& options, Diagnostics& diagnostics)
     } else {
         makeAffine(k);
         check(k, "affine");
-        if (options.optimize > 0)
-            clean(k);
+        if (options.optimize > 0) clean(k);
     }
     removeUnusedInputs(k);
     toShortForm(k);

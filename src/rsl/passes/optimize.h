@@ -6,8 +6,8 @@
 
 namespace alpenglow::rsl::ir {
 
-/// Runs every pass; in builds with assertions the kernel is verified after each. At options.optimize == 0 only what changes meaning
-/// or interface: affine form, derivative orders, uniformity, unused inputs.
+/// Runs every pass; in builds with assertions the kernel is verified after each. At options.optimize == 0 only what changes
+/// meaning or interface: affine form, derivative orders, uniformity, unused inputs.
 void optimize(Kernel&, const KernelOptions&, Diagnostics&);
 
 } // namespace alpenglow::rsl::ir

@@ -26,15 +26,13 @@ struct Promoter {
     void find() {
         promotable.assign(k.pool.size(), 0);
         forEach(k.body, [&](Inst* i) {
-            if (i->op == Op::ArrayNew && i->index <= 4096)
-                promotable[i->id] = 1;
+            if (i->op == Op::ArrayNew && i->index <= 4096) promotable[i->id] = 1;
         });
         forEach(k.body, [&](Inst* i) {
             for (size_t a = 0; a < i->args.size(); ++a)
                 if (i->args[a]->op == Op::ArrayNew) {
                     const bool access = (i->op == Op::ArrayLoad || i->op == Op::ArrayStore) && a == 0 && isConst(i->args[1]);
-                    if (!access)
-                        promotable[i->args[a]->id] = 0;
+                    if (!access) promotable[i->args[a]->id] = 0;
                 }
         });
     }
@@ -69,12 +67,11 @@ struct Promoter {
                 ++changes;
                 continue;
             }
-            if ((i->op == Op::ArrayStore || i->op == Op::ArrayLoad) && i->args[0]->op == Op::ArrayNew && promotable[i->args[0]->id]) {
+            if ((i->op == Op::ArrayStore || i->op == Op::ArrayLoad) && i->args[0]->op == Op::ArrayNew &&
+                promotable[i->args[0]->id]) {
                 const Key key{i->args[0]->id, element(i)};
-                if (i->op == Op::ArrayStore)
-                    env[key] = i->args[2];
-                else
-                    rep.set(i, env[key]);
+                if (i->op == Op::ArrayStore) env[key] = i->args[2];
+                else rep.set(i, env[key]);
                 continue;
             }
             if (i->regions.empty()) {
@@ -82,15 +79,12 @@ struct Promoter {
                 continue;
             }
             std::set<Key> keys;
-            for (const Region& sub : i->regions)
-                stored(sub, keys);
+            for (const Region& sub : i->regions) stored(sub, keys);
             const std::map<Key, Inst*> before = env;
             const size_t first = i->results.size();
             if (i->op != Op::If)
-                for (const Key& key : keys)
-                    i->args.push_back(env[key]);
-            for (const Key& key : keys)
-                i->results.push_back(env[key]->kind);
+                for (const Key& key : keys) i->args.push_back(env[key]);
+            for (const Key& key : keys) i->results.push_back(env[key]->kind);
             for (size_t s = 0; s < i->regions.size(); ++s) {
                 Region& sub = i->regions[s];
                 env = before;
@@ -103,15 +97,13 @@ struct Promoter {
                     }
                 region(sub);
                 if (i->op == Op::If || s + 1 == i->regions.size())
-                    for (const Key& key : keys)
-                        sub.yields.push_back(rep(env[key]));
+                    for (const Key& key : keys) sub.yields.push_back(rep(env[key]));
             }
             env = before;
             body.push_back(i);
             results(i, keys, first, body);
         }
-        for (Inst*& y : r.yields)
-            y = rep(y);
+        for (Inst*& y : r.yields) y = rep(y);
         r.body = std::move(body);
     }
 };
@@ -121,8 +113,7 @@ struct Promoter {
 int promoteArrays(Kernel& k) {
     Promoter p{k};
     p.find();
-    if (std::find(p.promotable.begin(), p.promotable.end(), 1) == p.promotable.end())
-        return 0;
+    if (std::find(p.promotable.begin(), p.promotable.end(), 1) == p.promotable.end()) return 0;
     p.region(k.body);
     return p.changes;
 }

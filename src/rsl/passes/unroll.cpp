@@ -29,38 +29,30 @@ struct Unroller {
     }
 
     bool unroll(Inst* loop, std::vector<Inst*>& body, std::vector<Inst*>& results) {
-        if (loop->args.empty())
-            return false;
+        if (loop->args.empty()) return false;
         std::vector<Inst*> values = loop->args, out;
         for (int trip = 0;; ++trip) {
             CopyMap test;
-            for (size_t p = 0; p < values.size(); ++p)
-                test[loop->regions[0].params[p]] = values[p];
+            for (size_t p = 0; p < values.size(); ++p) test[loop->regions[0].params[p]] = values[p];
             const size_t before = out.size();
             copy(loop->regions[0], test, out);
             const Inst* go = mapped(test, loop->regions[0].yields[0]);
-            if (!isConst(go))
-                return false;
+            if (!isConst(go)) return false;
             if (go->numbers[0] == 0) {
                 out.resize(before);
                 break;
             }
-            if (trip >= kUnrollTrips)
-                return false;
+            if (trip >= kUnrollTrips) return false;
             CopyMap map;
-            for (size_t p = 0; p < values.size(); ++p)
-                map[loop->regions[1].params[p]] = values[p];
+            for (size_t p = 0; p < values.size(); ++p) map[loop->regions[1].params[p]] = values[p];
             copy(loop->regions[1], map, out);
             size_t size = 0;
             for (const Inst* i : out) {
                 ++size;
-                for (const Region& r : i->regions)
-                    size += instructionCount(r);
+                for (const Region& r : i->regions) size += instructionCount(r);
             }
-            if (size > static_cast<size_t>(kUnrollInstructions))
-                return false;
-            for (size_t p = 0; p < values.size(); ++p)
-                values[p] = mapped(map, loop->regions[1].yields[p]);
+            if (size > static_cast<size_t>(kUnrollInstructions)) return false;
+            for (size_t p = 0; p < values.size(); ++p) values[p] = mapped(map, loop->regions[1].yields[p]);
         }
         body.insert(body.end(), out.begin(), out.end());
         results = values;
@@ -80,8 +72,7 @@ struct Unroller {
                     continue;
                 }
             }
-            for (Region& sub : i->regions)
-                region(sub);
+            for (Region& sub : i->regions) region(sub);
             std::vector<Inst*> results;
             if (i->op == Op::Loop && unroll(i, body, results)) {
                 gone[i] = results;
@@ -90,8 +81,7 @@ struct Unroller {
             }
             body.push_back(i);
         }
-        for (Inst*& y : r.yields)
-            y = rep(y);
+        for (Inst*& y : r.yields) y = rep(y);
         r.body = std::move(body);
     }
 };

@@ -1,4 +1,5 @@
-// Loops whose trip count follows from constants become straight code, so that octave loops and short kernels cost no control flow.
+// Loops whose trip count follows from constants become straight code, so that octave loops and short kernels cost no control
+// flow.
 #pragma once
 #include "rsl/ir/ir.h"
 

@@ -30,7 +30,8 @@ const std::string& descriptorDigest() {
     static const std::string digest = [] {
         std::string all;
         for (const Shadeop& op : shadeops()) {
-            all += op.name + '\1' + char('0' + int(op.lowering)) + char('0' + int(op.derivative)) + char('0' + op.pure) + char('0' + op.outOfLine) + op.rsl + '\1';
+            all += op.name + '\1' + char('0' + int(op.lowering)) + char('0' + int(op.derivative)) + char('0' + op.pure) +
+                   char('0' + op.outOfLine) + op.rsl + '\1';
             for (const Signature& s : op.signatures) all += s.text + '\2' + s.symbol + '\1';
             for (const OptionalParameter& p : op.optional) all += toString(p.type) + p.name + p.defaultText + '\1';
         }
@@ -76,7 +77,8 @@ ShaderCompiler::ShaderCompiler(Settings s) : state_(std::make_unique<State>()) {
 
 ShaderCompiler::~ShaderCompiler() = default;
 
-ShaderPtr ShaderCompiler::finish(std::unique_ptr<Program> program, const std::string& path, const std::string& wanted, const std::string& text) {
+ShaderPtr ShaderCompiler::finish(std::unique_ptr<Program> program, const std::string& path, const std::string& wanted,
+                                 const std::string& text) {
     if (!program || program->shaders.empty()) return nullptr;
     auto c = std::make_shared<CompiledShader>();
     c->path_ = path;
@@ -89,10 +91,13 @@ ShaderPtr ShaderCompiler::finish(std::unique_ptr<Program> program, const std::st
     for (const auto& f : program->files) all += '\2' + f;
     c->digest_ = jit::sha256(all + '\3' + c->shader_->name);
     for (const ShaderParameter& p : c->shader_->parameters) {
-        ParameterInfo i{p.symbol->name, p.symbol->type, p.symbol->storage, p.symbol->output, p.defaultValue != nullptr, p.symbol->place};
+        ParameterInfo i{p.symbol->name, p.symbol->type, p.symbol->storage, p.symbol->output, p.defaultValue != nullptr,
+                        p.symbol->place};
         if (i.type.array < 0)
             i.type.array = p.defaultValue && p.defaultValue->type.array > 0 ? p.defaultValue->type.array
-                           : p.defaultValue && p.defaultValue->kind == ExprKind::ArrayList ? std::max(1, int(p.defaultValue->args.size())) : 1;
+                           : p.defaultValue && p.defaultValue->kind == ExprKind::ArrayList
+                               ? std::max(1, int(p.defaultValue->args.size()))
+                               : 1;
         c->parameters_.push_back(std::move(i));
     }
     c->program_ = std::move(program);
@@ -134,7 +139,8 @@ ShaderPtr ShaderCompiler::load(const std::string& name, const std::vector<std::s
         }
         if (!compiled.empty())
             diagnostics.report(Severity::Error, Rie::NoShader, {compiled, 0, 0},
-                               "\"" + compiled + "\" is a compiled shader of another renderer; its source " + stem + ".sl was not found");
+                               "\"" + compiled + "\" is a compiled shader of another renderer; its source " + stem +
+                                   ".sl was not found");
         else
             diagnostics.report(Severity::Error, Rie::NoShader, {}, "shader \"" + name + "\" was not found",
                                directories.empty() ? "no shader search path is set" : "");
@@ -193,13 +199,15 @@ KernelPtr ShaderCompiler::kernel(const ShaderPtr& shader, const KernelOptions& o
             if (!error.empty()) {
                 const Place& p = shader->shader().place;
                 const auto& files = shader->program().files;
-                diagnostics.report(Severity::Error, Rie::Bug,
-                                   {p.file >= 0 && size_t(p.file) < files.size() ? files[size_t(p.file)] : shader->path(), p.line, p.column},
-                                   "no code could be made for shader \"" + shader->name() + "\": " + error);
+                diagnostics.report(
+                    Severity::Error, Rie::Bug,
+                    {p.file >= 0 && size_t(p.file) < files.size() ? files[size_t(p.file)] : shader->path(), p.line, p.column},
+                    "no code could be made for shader \"" + shader->name() + "\": " + error);
             }
         }
     } catch (const std::exception& e) {
-        diagnostics.report(Severity::Error, Rie::Bug, {shader->path(), 0, 0}, "no code could be made for shader \"" + shader->name() + "\": " + e.what());
+        diagnostics.report(Severity::Error, Rie::Bug, {shader->path(), 0, 0},
+                           "no code could be made for shader \"" + shader->name() + "\": " + e.what());
         result = nullptr;
     }
     {
@@ -237,7 +245,9 @@ void runOnce(const CompiledKernel& k, const SpaceFn& spaces, std::vector<std::ve
     constexpr int kStride = 64;
     struct Block {
         float* p;
-        explicit Block(int rows) : p(static_cast<float*>(std::aligned_alloc(64, size_t(std::max(1, rows)) * kStride * 4))) { std::fill(p, p + std::max(1, rows) * kStride, 0.0f); }
+        explicit Block(int rows) : p(static_cast<float*>(std::aligned_alloc(64, size_t(std::max(1, rows)) * kStride * 4))) {
+            std::fill(p, p + std::max(1, rows) * kStride, 0.0f);
+        }
         Block(Block&& o) noexcept : p(o.p) { o.p = nullptr; }
         ~Block() { std::free(p); }
     };
@@ -279,7 +289,8 @@ void runOnce(const CompiledKernel& k, const SpaceFn& spaces, std::vector<std::ve
 
 } // namespace
 
-std::vector<ParameterValue> ShaderCompiler::parameterDefaults(const ShaderPtr& shader, Diagnostics& diagnostics, const SpaceFn& spaces) {
+std::vector<ParameterValue> ShaderCompiler::parameterDefaults(const ShaderPtr& shader, Diagnostics& diagnostics,
+                                                              const SpaceFn& spaces) {
     std::vector<ParameterValue> values;
     if (!shader) return values;
     for (const auto& p : shader->parameters()) {
@@ -313,14 +324,16 @@ std::vector<ParameterValue> ShaderCompiler::parameterDefaults(const ShaderPtr& s
         std::string error;
         options.optimize = 0;
         KernelPtr code;
-        const std::string key = jit::sha256(shader->digest_ + "\ndefaults\n" + jit::codeKey(options) + descriptorDigest() + programDigest());
+        const std::string key =
+            jit::sha256(shader->digest_ + "\ndefaults\n" + jit::codeKey(options) + descriptorDigest() + programDigest());
         if (auto cached = state_->cache->load(key)) code = jit::load(*cached, true, error);
         if (!code && jit::generate(*k, options, file, error)) {
             code = jit::load(file, false, error);
             if (code) state_->cache->store(key, file);
         }
         if (!code || code->facts().suspends) {
-            diagnostics.report(Severity::Error, Rie::Bug, {shader->path(), 0, 0}, "the parameters' defaults cannot be computed: " + error);
+            diagnostics.report(Severity::Error, Rie::Bug, {shader->path(), 0, 0},
+                               "the parameters' defaults cannot be computed: " + error);
             return values;
         }
         runOnce(*code, spaces, numbers);
@@ -335,10 +348,12 @@ std::vector<ParameterValue> ShaderCompiler::parameterDefaults(const ShaderPtr& s
         for (auto& v : values) {
             if (v.name != name) continue;
             if (v.type.base == Base::String) {
-                if (element < v.strings.size()) v.strings[element] = internedString(std::bit_cast<int32_t>(numbers[o].empty() ? 0.0f : numbers[o][0]));
+                if (element < v.strings.size())
+                    v.strings[element] = internedString(std::bit_cast<int32_t>(numbers[o].empty() ? 0.0f : numbers[o][0]));
             } else {
                 const size_t n = size_t(componentCount(v.type.base));
-                for (size_t c = 0; c < n && c < numbers[o].size() && element * n + c < v.numbers.size(); c++) v.numbers[element * n + c] = numbers[o][c];
+                for (size_t c = 0; c < n && c < numbers[o].size() && element * n + c < v.numbers.size(); c++)
+                    v.numbers[element * n + c] = numbers[o][c];
             }
         }
     }

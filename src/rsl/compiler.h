@@ -1,4 +1,5 @@
-// From shader files to kernels: finding, checking, building, compiling, caching. What the renderer and the command line use of rsl.
+// From shader files to kernels: finding, checking, building, compiling, caching. What the renderer and the command line use of
+// rsl.
 #pragma once
 #include "base/diagnostics.h"
 #include "rsl/front/ast.h"
@@ -13,7 +14,7 @@ namespace alpenglow::rsl {
 /// A shader parameter as declared.
 struct ParameterInfo {
     std::string name;
-    Type type;                    ///< arrays of open length: the length of their default
+    Type type; ///< arrays of open length: the length of their default
     Storage storage = Storage::Uniform;
     bool output = false;
     bool hasDefault = false;
@@ -51,17 +52,17 @@ private:
 using SpaceFn = std::function<bool(const std::string& from, const std::string& to, float matrix[16])>;
 
 struct CompilerStatistics {
-    int compiled = 0;      ///< kernels for which code was generated
-    int fromDisk = 0;      ///< kernels from the disk cache
+    int compiled = 0; ///< kernels for which code was generated
+    int fromDisk = 0; ///< kernels from the disk cache
     int fromMemory = 0;
-    double seconds = 0;    ///< of building, optimising and code generation, summed over threads
+    double seconds = 0; ///< of building, optimising and code generation, summed over threads
 };
 
 /// Thread safe. Kernels live as long as someone holds them or the compiler does.
 class ShaderCompiler {
 public:
     struct Settings {
-        std::string cacheDirectory; ///< "": none
+        std::string cacheDirectory;  ///< "": none
         bool useDefaultCache = true; ///< take jit::defaultCacheDirectory() when cacheDirectory is empty
         std::vector<std::pair<std::string, std::string>> defines;
     };
@@ -69,19 +70,24 @@ public:
     explicit ShaderCompiler(Settings);
     ~ShaderCompiler();
 
-    /// Finds NAME or NAME.sl in the directories, in order; includes are looked for beside the file, then in the directories. The shader
-    /// of that name in the file, else the first. Null after an error; an error is reported the first time a name is asked for. A compiled
-    /// shader of another renderer (.slo, .sdl, .sdr, .slx, .sdw) without its source is an error that names the missing source.
-    std::shared_ptr<const CompiledShader> load(const std::string& name, const std::vector<std::string>& directories, Diagnostics&);
+    /// Finds NAME or NAME.sl in the directories, in order; includes are looked for beside the file, then in the directories. The
+    /// shader of that name in the file, else the first. Null after an error; an error is reported the first time a name is asked
+    /// for. A compiled shader of another renderer (.slo, .sdl, .sdr, .slx, .sdw) without its source is an error that names the
+    /// missing source.
+    std::shared_ptr<const CompiledShader> load(const std::string& name, const std::vector<std::string>& directories,
+                                               Diagnostics&);
     /// The first shader of a text. Not kept.
     std::shared_ptr<const CompiledShader> loadText(const std::string& text, const std::string& name, Diagnostics&);
 
-    /// Machine code; from memory, from disk, or compiled now. Requests for the same kernel at the same time compile once. Null after an
-    /// error (reported the first time).
-    std::shared_ptr<const CompiledKernel> kernel(const std::shared_ptr<const CompiledShader>&, const KernelOptions&, Diagnostics&);
+    /// Machine code; from memory, from disk, or compiled now. Requests for the same kernel at the same time compile once. Null
+    /// after an error (reported the first time).
+    std::shared_ptr<const CompiledKernel> kernel(const std::shared_ptr<const CompiledShader>&, const KernelOptions&,
+                                                 Diagnostics&);
 
-    /// The defaults of all parameters, in order. Those without one are zero, "" or for matrices zero. `spaces` resolves named spaces.
-    std::vector<ParameterValue> parameterDefaults(const std::shared_ptr<const CompiledShader>&, Diagnostics&, const SpaceFn& spaces = {});
+    /// The defaults of all parameters, in order. Those without one are zero, "" or for matrices zero. `spaces` resolves named
+    /// spaces.
+    std::vector<ParameterValue> parameterDefaults(const std::shared_ptr<const CompiledShader>&, Diagnostics&,
+                                                  const SpaceFn& spaces = {});
 
     /// Our IR after the passes, as text; with `llvm` also the optimised LLVM IR. Empty after an error.
     std::string dump(const std::shared_ptr<const CompiledShader>&, const KernelOptions&, Diagnostics&, bool llvm = false);
@@ -91,7 +97,8 @@ public:
     CompilerStatistics statistics() const;
 
 private:
-    std::shared_ptr<const CompiledShader> finish(std::unique_ptr<Program>, const std::string& path, const std::string& wanted, const std::string& text);
+    std::shared_ptr<const CompiledShader> finish(std::unique_ptr<Program>, const std::string& path, const std::string& wanted,
+                                                 const std::string& text);
     struct State;
     std::unique_ptr<State> state_;
 };

@@ -8,7 +8,11 @@ namespace alpenglow::rsl {
 namespace {
 
 // Name, components, value, d/du, d/dv. Second derivatives are zero: the point lies in a plane.
-struct Row { const char* name; int components; float v[3], du[3], dv[3]; };
+struct Row {
+    const char* name;
+    int components;
+    float v[3], du[3], dv[3];
+};
 constexpr Row kRows[] = {
     {"u", 1, {0.5f}, {1}, {0}},
     {"v", 1, {0.5f}, {0}, {1}},
@@ -55,7 +59,8 @@ bool EvaluationPoint::value(const std::string& name, int component, int part, fl
     return false;
 }
 
-bool runAtPoint(const CompiledKernel& k, bool mixed, int n, int at, std::vector<std::vector<float>>& out, std::string* printed, Diagnostics& diagnostics) {
+bool runAtPoint(const CompiledKernel& k, bool mixed, int n, int at, std::vector<std::vector<float>>& out, std::string* printed,
+                Diagnostics& diagnostics) {
     if (k.facts().suspends) return false;
     const int stride = (n + 63) / 64 * 64;
     std::vector<std::unique_ptr<float, decltype(&std::free)>> blocks;
@@ -109,7 +114,8 @@ bool runAtPoint(const CompiledKernel& k, bool mixed, int n, int at, std::vector<
     k.run(&call);
     for (size_t o = 0; o < outs.size(); o++) {
         out.emplace_back();
-        for (int c = 0; c < ir::components(k.outputs()[o].kind); c++) out.back().push_back(outs[o][size_t(c) * size_t(stride) + size_t(at)]);
+        for (int c = 0; c < ir::components(k.outputs()[o].kind); c++)
+            out.back().push_back(outs[o][size_t(c) * size_t(stride) + size_t(at)]);
     }
     return true;
 }
@@ -125,22 +131,23 @@ std::string formatNumbers(const std::vector<float>& numbers) {
     return s;
 }
 
-Evaluation evaluate(ShaderCompiler& compiler, const std::string& setup, const std::string& expression, const KernelOptions& options, Diagnostics& diagnostics) {
+Evaluation evaluate(ShaderCompiler& compiler, const std::string& setup, const std::string& expression,
+                    const KernelOptions& options, Diagnostics& diagnostics) {
     Evaluation r;
     std::shared_ptr<const CompiledShader> shader;
     auto attempt = [&](const std::string& text) {
         Diagnostics local;
         auto s = compiler.loadText(text, "expression", local);
         if (s) {
-            for (const auto& d : local.all())
-                diagnostics.report(d);
+            for (const auto& d : local.all()) diagnostics.report(d);
             return s;
         }
         return s;
     };
     auto source = [&](const char* type) {
-        return std::string("surface eval(output varying ") + type + " result = " +
-               (std::string(type) == "string" ? "\"\"" : "0") + ";) {\n" + setup + "\n; result = (\n" + expression + "\n); }\n";
+        return std::string("surface eval(output varying ") + type +
+               " result = " + (std::string(type) == "string" ? "\"\"" : "0") + ";) {\n" + setup + "\n; result = (\n" +
+               expression + "\n); }\n";
     };
     for (size_t k = 0; k < std::size(kTypes) && !shader; k++) {
         shader = attempt(source(kTypes[k]));

@@ -9,28 +9,31 @@ namespace alpenglow::rsl {
 ///   u = v = s = t = 0.5, du = dv = 1, dtime = 0, time = 0, ncomps = 3, alpha = 1
 ///   P = (0,0,0), dPdu = (1,0,0), dPdv = (0,1,0), N = Ng = (0,0,1), dPdtime = 0, I = (0,0,1), E = (0,0,-1) = P - I
 ///   Cs = Os = Oi = 1, Ci = 0
-/// and their derivatives are consistent: dP/du = dPdu, dP/dv = dPdv, du/du = ds/du = dv/dv = dt/dv = 1; I moves with P (E is fixed);
-/// everything else is constant. Every named coordinate system is "current".
+/// and their derivatives are consistent: dP/du = dPdu, dP/dv = dPdv, du/du = ds/du = dv/dv = dt/dv = 1; I moves with P (E is
+/// fixed); everything else is constant. Every named coordinate system is "current".
 struct EvaluationPoint {
-    /// Part `part` (0 value, then du, dv, duu, duv, dvv) of component `component` of input `name`; false when the name is not known.
+    /// Part `part` (0 value, then du, dv, duu, duv, dvv) of component `component` of input `name`; false when the name is not
+    /// known.
     static bool value(const std::string& name, int component, int part, float& out);
 };
 
 struct Evaluation {
     bool ok = false;
-    Type type;                 ///< of the expression; Void when it was a statement
+    Type type; ///< of the expression; Void when it was a statement
     std::vector<float> numbers;
-    std::string text;          ///< formatted: numbers as %.7g separated by spaces, a string as it is
-    std::string printed;       ///< by printf()
+    std::string text;    ///< formatted: numbers as %.7g separated by spaces, a string as it is
+    std::string printed; ///< by printf()
 };
 
-/// Evaluates `expression` after the statements of `setup` in a surface shader at the point above. The type is the first of float, color,
-/// point, vector, normal, matrix, string that the expression can be assigned to. Places in messages refer to the file name "expression".
+/// Evaluates `expression` after the statements of `setup` in a surface shader at the point above. The type is the first of float,
+/// color, point, vector, normal, matrix, string that the expression can be assigned to. Places in messages refer to the file name
+/// "expression".
 Evaluation evaluate(ShaderCompiler&, const std::string& setup, const std::string& expression, const KernelOptions&, Diagnostics&);
 
 /// The batch behind evaluate(): runs a kernel on n copies of the point. out[output][component] of point `at`.
 /// False when the kernel suspends. printf() of the first point is appended to `printed` when not null.
-bool runAtPoint(const CompiledKernel&, bool mixed, int n, int at, std::vector<std::vector<float>>& out, std::string* printed, Diagnostics&);
+bool runAtPoint(const CompiledKernel&, bool mixed, int n, int at, std::vector<std::vector<float>>& out, std::string* printed,
+                Diagnostics&);
 
 /// "%.7g" of each, separated by spaces.
 std::string formatNumbers(const std::vector<float>&);

@@ -37,10 +37,14 @@ std::string general(float v, int precision, bool sign) {
 
 std::string scalar(float v, char letter, int precision, bool sign) {
     switch (letter) {
-    case 'd': return number(double(v), 'f', 0, sign);
-    case 'e': return number(double(v), 'e', precision < 0 ? 6 : precision, sign);
-    case 'g': return general(v, precision, sign);
-    default: return number(double(v), 'f', precision < 0 ? 6 : precision, sign);
+    case 'd':
+        return number(double(v), 'f', 0, sign);
+    case 'e':
+        return number(double(v), 'e', precision < 0 ? 6 : precision, sign);
+    case 'g':
+        return general(v, precision, sign);
+    default:
+        return number(double(v), 'f', precision < 0 ? 6 : precision, sign);
     }
 }
 
@@ -75,8 +79,8 @@ std::string convert(const FormatValue& v, const Conversion& c) {
     return std::string(pad, ' ') + s;
 }
 
-// Positional arguments of one lane. Constant strings are in the site; everything else comes in rows. The site lists all strings, ""
-// for those that come in rows; conversions of a pattern say where a constant string belongs.
+// Positional arguments of one lane. Constant strings are in the site; everything else comes in rows. The site lists all strings,
+// "" for those that come in rows; conversions of a pattern say where a constant string belongs.
 struct Arguments {
     const ir::Site& site;
     int32_t lanes;
@@ -110,7 +114,9 @@ struct Arguments {
             v.text = string();
             return v;
         }
-        v.base = nextKind < site.argTypes.size() ? site.argTypes[nextKind].base : k == ir::Kind::Float ? Base::Float : Base::Color;
+        v.base = nextKind < site.argTypes.size() ? site.argTypes[nextKind].base
+                 : k == ir::Kind::Float          ? Base::Float
+                                                 : Base::Color;
         if (k == ir::Kind::Float || k == ir::Kind::Bool) v.base = Base::Float;
         for (int c = 0; c < ir::components(k) && c < 16; c++) v.numbers[c] = at(row + c);
         skip();
@@ -211,7 +217,8 @@ void hashText(const std::string& s, float out[3]) {
     }
 }
 
-bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* in, float* out, Diagnostics& diagnostics, const PrintFn& print) {
+bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* in, float* out, Diagnostics& diagnostics,
+                  const PrintFn& print) {
     auto each = [&](auto&& f) {
         for (int l = 0; l < lanes; l++)
             if (mask >> l & 1) f(l);

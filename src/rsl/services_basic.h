@@ -1,4 +1,5 @@
-// Services that need no renderer: strings and standard output (rsl.md 11.2). `alpenglow eval` and the renderer both answer with these.
+// Services that need no renderer: strings and standard output (rsl.md 11.2). `alpenglow eval` and the renderer both answer with
+// these.
 #pragma once
 #include "base/diagnostics.h"
 #include "rsl/kernel.h"
@@ -13,11 +14,12 @@ struct FormatValue {
     std::string text;
 };
 
-/// format(): %f %e %g %d %p %c %m %s %h with flags, width and precision; %% is a percent sign. A conversion without a value is copied
-/// as it stands; a value of another type than the conversion expects is printed by its own type.
+/// format(): %f %e %g %d %p %c %m %s %h with flags, width and precision; %% is a percent sign. A conversion without a value is
+/// copied as it stands; a value of another type than the conversion expects is printed by its own type.
 std::string formatText(const std::string& pattern, const std::vector<FormatValue>& values);
 
-/// match(): whether the POSIX extended regular expression occurs in the subject. False, with the reason in `error`, for a bad expression.
+/// match(): whether the POSIX extended regular expression occurs in the subject. False, with the reason in `error`, for a bad
+/// expression.
 bool matchText(const std::string& pattern, const std::string& subject, std::string* error = nullptr);
 
 /// stringhash(): three numbers in [0,1), the first of which is the float form. The same in every run.
@@ -26,8 +28,9 @@ void hashText(const std::string&, float out[3]);
 /// Takes one printf() of one lane.
 using PrintFn = std::function<void(int lane, const std::string&)>;
 
-/// Answers format, printf, concat, match and stringhash for the lanes of `mask`; arguments as of ServiceFn. False for other sites.
-/// Without `print` the text goes to standard output.
-bool basicService(const ir::Site&, uint64_t mask, int32_t lanes, const float* in, float* out, Diagnostics&, const PrintFn& print = {});
+/// Answers format, printf, concat, match and stringhash for the lanes of `mask`; arguments as of ServiceFn. False for other
+/// sites. Without `print` the text goes to standard output.
+bool basicService(const ir::Site&, uint64_t mask, int32_t lanes, const float* in, float* out, Diagnostics&,
+                  const PrintFn& print = {});
 
 } // namespace alpenglow::rsl

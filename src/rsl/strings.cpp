@@ -8,7 +8,8 @@
 namespace alpenglow::rsl {
 namespace {
 
-// The one table of the process. Append-only: an id, once given, means the same text for good, so that references may be handed out.
+// The one table of the process. Append-only: an id, once given, means the same text for good, so that references may be handed
+// out.
 struct StringTable {
     std::shared_mutex mutex;
     std::deque<std::string> texts{std::string()};

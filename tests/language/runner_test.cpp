@@ -7,8 +7,8 @@
 //   or a whole shader with
 //   // error LINE:COLUMN: TEXT      each such error must be reported, and no other; LINE counts in the file itself
 //   // warning LINE:COLUMN: TEXT
-// All expectations of a file go into one shader with one output each, which runs at 4, 8 and 16 lanes, with uniform inputs as numbers (S)
-// and in lanes (V), at O0 and O2: the bits must be the same everywhere.
+// All expectations of a file go into one shader with one output each, which runs at 4, 8 and 16 lanes, with uniform inputs as
+// numbers (S) and in lanes (V), at O0 and O2: the bits must be the same everywhere.
 #include "rsl/evaluate.h"
 #include <algorithm>
 #include <bit>
@@ -25,8 +25,17 @@ namespace fs = std::filesystem;
 namespace alpenglow::rsl {
 namespace {
 
-struct Expectation { int line; std::string setup, expression, value, type; double tolerance = -1; bool prints = false; };
-struct Problem { int line, column; std::string text; bool warning; };
+struct Expectation {
+    int line;
+    std::string setup, expression, value, type;
+    double tolerance = -1;
+    bool prints = false;
+};
+struct Problem {
+    int line, column;
+    std::string text;
+    bool warning;
+};
 
 std::string trim(const std::string& s) {
     const size_t a = s.find_first_not_of(" \t\r"), b = s.find_last_not_of(" \t\r");
@@ -104,7 +113,8 @@ std::string describe(const KernelOptions& o) {
 bool sameBits(const std::vector<float>& a, const std::vector<float>& b) {
     if (a.size() != b.size()) return false;
     for (size_t i = 0; i < a.size(); i++)
-        if (std::bit_cast<uint32_t>(a[i]) != std::bit_cast<uint32_t>(b[i]) && !(std::isnan(a[i]) && std::isnan(b[i]))) return false;
+        if (std::bit_cast<uint32_t>(a[i]) != std::bit_cast<uint32_t>(b[i]) && !(std::isnan(a[i]) && std::isnan(b[i])))
+            return false;
     return true;
 }
 
@@ -113,7 +123,9 @@ std::string typeOf(const Expectation& e, ShaderCompiler& compiler) {
     for (const char* type : {"float", "color", "point", "vector", "normal", "matrix", "string"}) {
         Diagnostics quiet;
         const std::string zero = std::string(type) == "string" ? "\"\"" : "0";
-        if (compiler.loadText(std::string("surface probe(output varying ") + type + " r = " + zero + ";) { " + e.setup + "\n r = (" + e.expression + "); }\n", "probe", quiet))
+        if (compiler.loadText(std::string("surface probe(output varying ") + type + " r = " + zero + ";) { " + e.setup +
+                                  "\n r = (" + e.expression + "); }\n",
+                              "probe", quiet))
             return type;
     }
     return "";
@@ -160,16 +172,18 @@ TEST_P(Language, Snippets) {
             bool expected = false;
             for (size_t k = 0; k < f.problems.size(); k++) {
                 const Problem& p = f.problems[k];
-                if (used[k] || p.warning != (m.severity == Severity::Warning) || p.line != m.place.line || (p.column && p.column != m.place.column)) continue;
+                if (used[k] || p.warning != (m.severity == Severity::Warning) || p.line != m.place.line ||
+                    (p.column && p.column != m.place.column))
+                    continue;
                 if ((m.message + " " + m.hint).find(p.text) == std::string::npos) continue;
                 used[k] = expected = true;
                 break;
             }
-            if (!expected && m.severity != Severity::Info) {
-                ADD_FAILURE() << "not expected: " << toString(m);
-            }
+            if (!expected && m.severity != Severity::Info) { ADD_FAILURE() << "not expected: " << toString(m); }
         }
-        for (size_t k = 0; k < used.size(); k++) EXPECT_TRUE(used[k]) << "not reported: " << f.problems[k].line << ":" << f.problems[k].column << ": " << f.problems[k].text;
+        for (size_t k = 0; k < used.size(); k++)
+            EXPECT_TRUE(used[k]) << "not reported: " << f.problems[k].line << ":" << f.problems[k].column << ": "
+                                 << f.problems[k].text;
     }
     // One function a case keeps their variables apart; globals are visible inside as in a shader's body.
     std::string parameters, body;
@@ -184,7 +198,8 @@ TEST_P(Language, Snippets) {
         const std::string type = typeOf(e, compiler);
         if (type.empty()) {
             Diagnostics d([](const Diagnostic& m) { ADD_FAILURE() << toString(m); });
-            compiler.loadText("surface probe(output varying float r = 0;) { " + e.setup + "\n r = (" + e.expression + "); }\n", "probe", d);
+            compiler.loadText("surface probe(output varying float r = 0;) { " + e.setup + "\n r = (" + e.expression + "); }\n",
+                              "probe", d);
             continue;
         }
         const std::string name = "r" + std::to_string(cases.size());
@@ -194,9 +209,7 @@ TEST_P(Language, Snippets) {
         cases.push_back(&e);
     }
     Diagnostics d([](const Diagnostic& m) {
-        if (m.severity >= Severity::Error) {
-            ADD_FAILURE() << toString(m);
-        }
+        if (m.severity >= Severity::Error) { ADD_FAILURE() << toString(m); }
     });
     if (!cases.empty()) {
         auto shader = compiler.loadText("surface cases(" + parameters + ") {\n" + body + "}\n", path.filename().string(), d);
@@ -217,7 +230,8 @@ TEST_P(Language, Snippets) {
                 if (reference.size() < cases.size()) compare(*cases[k], types[k], out[k]);
                 else
                     EXPECT_TRUE(sameBits(out[k], reference[k]))
-                        << cases[k]->expression << ": " << formatNumbers(out[k]) << " but " << formatNumbers(reference[k]) << " at 16 lanes, S, O2";
+                        << cases[k]->expression << ": " << formatNumbers(out[k]) << " but " << formatNumbers(reference[k])
+                        << " at 16 lanes, S, O2";
             }
             if (reference.empty()) reference = out;
         }

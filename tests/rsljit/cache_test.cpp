@@ -34,7 +34,8 @@ struct Directory {
 TEST(Sha256, Standard) {
     EXPECT_EQ(jit::sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
     EXPECT_EQ(jit::sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-    EXPECT_EQ(jit::sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"), "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+    EXPECT_EQ(jit::sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
+              "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
 }
 
 jit::KernelFile simpleKernel() {
@@ -124,7 +125,8 @@ TEST(Cache, StoresLoadsTrims) {
     EXPECT_FALSE(cache.load("key0"));
 }
 
-constexpr const char* kShader = "surface s(float Kd = 0.5; color c = color(1, 2, 3); string name = \"n\"; float a[3] = {1, 2, 3}; point p = point \"shader\" (1, 2, 3);)"
+constexpr const char* kShader = "surface s(float Kd = 0.5; color c = color(1, 2, 3); string name = \"n\"; float a[3] = {1, 2, "
+                                "3}; point p = point \"shader\" (1, 2, 3);)"
                                 "{ Ci = Kd * c * u * a[1] + xcomp(p); Oi = 1; }";
 
 TEST(Compiler, DiskThenMemory) {
@@ -219,12 +221,11 @@ TEST(Compiler, PatternsAreStraightCode) {
         ASSERT_TRUE(shader);
         const std::string all = compiler.dump(shader, KernelOptions{}, diagnostics, true);
         const std::string llvm = all.substr(all.find("; ModuleID"));
-        for (const char* bad : {"alloca", "masked.gather", "masked.scatter", "memset", "memcpy"}) EXPECT_EQ(llvm.find(bad), std::string::npos) << bad;
+        for (const char* bad : {"alloca", "masked.gather", "masked.scatter", "memset", "memcpy"})
+            EXPECT_EQ(llvm.find(bad), std::string::npos) << bad;
         std::istringstream lines(llvm);
         for (std::string line; std::getline(lines, line);)
-            if (line.find(" call ") != std::string::npos) {
-                EXPECT_NE(line.find("@llvm."), std::string::npos) << line;
-            }
+            if (line.find(" call ") != std::string::npos) { EXPECT_NE(line.find("@llvm."), std::string::npos) << line; }
     }
 }
 

@@ -104,7 +104,8 @@ TEST(Codegen, Jets) {
             const double fab = -4 * a * a * a / (d * d) + 2 * a * a * a * a * b / (d * d * d);
             const double fbb = 2 * a * a * a * a * a / (d * d * d);
             const double expected[5] = {fa, fb, faa, fab, fbb};
-            for (int k = 0; k < 5; k++) EXPECT_NEAR(run(k, 0, n), expected[k], 2e-6 * (1 + std::abs(expected[k]))) << k << " at " << n;
+            for (int k = 0; k < 5; k++)
+                EXPECT_NEAR(run(k, 0, n), expected[k], 2e-6 * (1 + std::abs(expected[k]))) << k << " at " << n;
         }
     }
 }
@@ -246,7 +247,8 @@ TEST(Codegen, ArrayInputs) {
         auto kernel = compile(m, o);
         ASSERT_TRUE(kernel);
         Batch run;
-        run(*kernel, o, [](int i, int n, int row) { return i == 0 ? float(n % 18) : float(row) + (i == 2 ? 100.0f * float(n) : 0); });
+        run(*kernel, o,
+            [](int i, int n, int row) { return i == 0 ? float(n % 18) : float(row) + (i == 2 ? 100.0f * float(n) : 0); });
         for (int n = 0; n < kPoints; n++)
             for (int c = 0; c < 3; c++) {
                 EXPECT_EQ(run(0, c, n), float(n % 18 * 3 + c));
@@ -279,7 +281,8 @@ TEST(Codegen, ServicesSeeTheMask) {
         Batch run;
         int lanesServed = 0;
         run.call.user = &lanesServed;
-        run.call.service = [](KernelCall* c, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
+        run.call.service = [](KernelCall* c, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in,
+                              float* out) {
             EXPECT_EQ(site, 0);
             for (int l = 0; l < lanes; l++) {
                 if (!(mask >> l & 1)) continue;
@@ -315,7 +318,8 @@ TEST(Codegen, LightLoop) {
     Inst *index = m.param(body, Kind::Float), *sum = m.param(body, Kind::Float);
     m.regions.push_back(&body);
     Inst* r = m.put(Op::Extract, Kind::Float, {cl}, 0);
-    body.yields = {m.put(Op::Add, Kind::Float, {sum, m.put(Op::Mul, Kind::Float, {r, m.put(Op::Add, Kind::Float, {index, one})})})};
+    body.yields = {
+        m.put(Op::Add, Kind::Float, {sum, m.put(Op::Mul, Kind::Float, {r, m.put(Op::Add, Kind::Float, {index, one})})})};
     m.regions.pop_back();
     m.k.body.body.push_back(loop);
     m.output("sum", m.put(Op::Result, Kind::Float, {loop}, 0));
@@ -458,9 +462,7 @@ TEST(Codegen, RuntimeIsInlined) {
         auto kernel = compile(m, o, &text);
         ASSERT_TRUE(kernel);
         EXPECT_EQ(text.find("call void @" + symbol), std::string::npos);
-        if (o.optimize == 2) {
-            EXPECT_EQ(text.find("alloca"), std::string::npos);
-        }
+        if (o.optimize == 2) { EXPECT_EQ(text.find("alloca"), std::string::npos); }
         Batch run;
         run(*kernel, o, [](int i, int n, int) { return i == 0 ? 0.1f * float(n) : 0.7f; });
         if (reference.empty()) reference.assign(run.out[0], run.out[0] + kPoints);

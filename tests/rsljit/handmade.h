@@ -114,7 +114,8 @@ inline std::vector<KernelOptions> configurations() {
 }
 
 inline std::string describe(const KernelOptions& o) {
-    return std::to_string(o.lanes) + "x" + std::to_string(o.vectors) + (o.mixed ? " V" : " S") + " O" + std::to_string(o.optimize);
+    return std::to_string(o.lanes) + "x" + std::to_string(o.vectors) + (o.mixed ? " V" : " S") + " O" +
+           std::to_string(o.optimize);
 }
 
 } // namespace alpenglow::rsl::test

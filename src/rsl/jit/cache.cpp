@@ -32,7 +32,8 @@ std::optional<KernelFile> KernelCache::load(const std::string& key) const {
     struct stat dir{}, file{};
     if (stat(directory_.c_str(), &dir) != 0 || dir.st_uid != geteuid() || (dir.st_mode & 022)) return {};
     const std::string name = path(key);
-    if (stat(name.c_str(), &file) != 0 || !S_ISREG(file.st_mode) || file.st_uid != geteuid() || size_t(file.st_size) > maxBytes_) return {};
+    if (stat(name.c_str(), &file) != 0 || !S_ISREG(file.st_mode) || file.st_uid != geteuid() || size_t(file.st_size) > maxBytes_)
+        return {};
     std::ifstream in(name, std::ios::binary);
     std::string bytes(size_t(file.st_size), 0);
     if (!in.read(bytes.data(), std::streamsize(bytes.size()))) return {};
@@ -69,7 +70,11 @@ void KernelCache::store(const std::string& key, const KernelFile& k) const {
 }
 
 void KernelCache::trim() const {
-    struct Entry { fs::path path; fs::file_time_type time; uintmax_t size; };
+    struct Entry {
+        fs::path path;
+        fs::file_time_type time;
+        uintmax_t size;
+    };
     std::vector<Entry> entries;
     uintmax_t total = 0;
     std::error_code e;

@@ -4,7 +4,8 @@
 
 namespace alpenglow::rsl::jit {
 
-/// $ALPENGLOW_CACHE, else $XDG_CACHE_HOME/alpenglow, else ~/.cache/alpenglow; "" (no cache) when none is set or ALPENGLOW_CACHE is "off".
+/// $ALPENGLOW_CACHE, else $XDG_CACHE_HOME/alpenglow, else ~/.cache/alpenglow; "" (no cache) when none is set or ALPENGLOW_CACHE
+/// is "off".
 std::string defaultCacheDirectory();
 
 class KernelCache {

@@ -9,7 +9,9 @@ namespace {
 // Raised whenever the generated code changes for the same IR, or the IR for the same source.
 constexpr const char* kVersion = "alpenglow-jit-3";
 
-struct SymbolSets { std::set<std::string> zeroDerivative, outOfLine; };
+struct SymbolSets {
+    std::set<std::string> zeroDerivative, outOfLine;
+};
 
 const SymbolSets& symbolSets() {
     static const SymbolSets sets = [] {
@@ -57,7 +59,8 @@ BitcodeView bitcode(int lanes) {
 
 } // namespace
 
-bool generate(const ir::Kernel& kernel, const KernelOptions& options, KernelFile& out, std::string& error, std::string* llvmText) {
+bool generate(const ir::Kernel& kernel, const KernelOptions& options, KernelFile& out, std::string& error,
+              std::string* llvmText) {
     ModuleRequest request;
     request.kernel = &kernel;
     request.lanes = options.lanes <= 4 ? 4 : options.lanes <= 8 ? 8 : 16;

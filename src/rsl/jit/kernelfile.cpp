@@ -13,7 +13,9 @@ struct Writer {
     std::string bytes;
     static constexpr bool kReads = false;
     bool ok = true;
-    template <class T> requires std::is_arithmetic_v<T> || std::is_enum_v<T> void operator()(T& v) {
+    template <class T>
+        requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+    void operator()(T& v) {
         bytes.append(reinterpret_cast<const char*>(&v), sizeof v);
     }
     void operator()(std::string& s) {
@@ -29,7 +31,9 @@ struct Loader {
     size_t at;
     bool ok = true;
     static constexpr bool kReads = true;
-    template <class T> requires std::is_arithmetic_v<T> || std::is_enum_v<T> void operator()(T& v) {
+    template <class T>
+        requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+    void operator()(T& v) {
         if (bytes.size() - at < sizeof v) {
             ok = false;
             return;
@@ -50,29 +54,77 @@ struct Loader {
     template <class T> void operator()(std::vector<T>& v);
 };
 
-template <class A> void item(A& a, Type& t) { a(t.base); a(t.array); }
-template <class A> void item(A& a, Place& p) { a(p.file); a(p.line); a(p.column); }
+template <class A> void item(A& a, Type& t) {
+    a(t.base);
+    a(t.array);
+}
+template <class A> void item(A& a, Place& p) {
+    a(p.file);
+    a(p.line);
+    a(p.column);
+}
 template <class A> void item(A& a, std::string& s) { a(s); }
 template <class A> void item(A& a, ir::Kind& k) { a(k); }
 template <class A> void item(A& a, ir::Input& i) {
-    a(i.name); a(i.kind); item(a, i.type); a(i.array); a(i.uniform); a(i.order);
+    a(i.name);
+    a(i.kind);
+    item(a, i.type);
+    a(i.array);
+    a(i.uniform);
+    a(i.order);
 }
-template <class A> void item(A& a, ir::OutputSlot& o) { a(o.name); a(o.kind); item(a, o.type); }
+template <class A> void item(A& a, ir::OutputSlot& o) {
+    a(o.name);
+    a(o.kind);
+    item(a, o.type);
+}
 template <class A> void item(A& a, ir::Site& s) {
-    a(s.op); a(s.strings); a(s.names); a(s.pairStrings); a(s.argKinds); a(s.argTypes); a(s.resultKinds); a(s.resultNames);
-    item(a, s.resultType); a(s.pure); item(a, s.place);
+    a(s.op);
+    a(s.strings);
+    a(s.names);
+    a(s.pairStrings);
+    a(s.argKinds);
+    a(s.argTypes);
+    a(s.resultKinds);
+    a(s.resultNames);
+    item(a, s.resultType);
+    a(s.pure);
+    item(a, s.place);
     std::string name = s.shadeop ? s.shadeop->name : std::string();
     a(name);
     if (A::kReads) s.shadeop = name.empty() ? nullptr : findShadeop(name);
 }
 template <class A> void item(A& a, ir::KernelFacts& f) {
-    a(f.affine); a(f.whyNot); a(f.suspends); a(f.lightLoops); a(f.direct); a(f.ambientLight); a(f.blocks); a(f.writes);
+    a(f.affine);
+    a(f.whyNot);
+    a(f.suspends);
+    a(f.lightLoops);
+    a(f.direct);
+    a(f.ambientLight);
+    a(f.blocks);
+    a(f.writes);
 }
 template <class A> void item(A& a, Diagnostic& d) {
-    a(d.severity); a(d.code); a(d.place.file); a(d.place.line); a(d.place.column); a(d.message); a(d.hint); a(d.sourceLine);
+    a(d.severity);
+    a(d.code);
+    a(d.place.file);
+    a(d.place.line);
+    a(d.place.column);
+    a(d.message);
+    a(d.hint);
+    a(d.sourceLine);
 }
 template <class A> void item(A& a, KernelFile& k) {
-    a(k.inputs); a(k.outputs); a(k.sites); a(k.files); item(a, k.facts); a(k.strings); a(k.strip); a(k.suspending); a(k.messages); a(k.object);
+    a(k.inputs);
+    a(k.outputs);
+    a(k.sites);
+    a(k.files);
+    item(a, k.facts);
+    a(k.strings);
+    a(k.strip);
+    a(k.suspending);
+    a(k.messages);
+    a(k.object);
 }
 
 template <class T> void Writer::operator()(std::vector<T>& v) {

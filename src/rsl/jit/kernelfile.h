@@ -1,4 +1,5 @@
-// A compiled kernel as bytes: what CompiledKernel knows, the messages of its compilation, and the object file. The form of the disk cache.
+// A compiled kernel as bytes: what CompiledKernel knows, the messages of its compilation, and the object file. The form of the
+// disk cache.
 #pragma once
 #include "base/diagnostics.h"
 #include "rsl/kernel.h"

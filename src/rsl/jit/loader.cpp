@@ -1,6 +1,6 @@
 #include "rsl/jit/loader.h"
-#include <cmath>
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <elf.h>
 #include <sys/mman.h>
@@ -63,7 +63,8 @@ std::unique_ptr<LoadedObject> LoadedObject::load(const std::string& elf, std::st
     Reader r{elf, {}};
     if (elf.size() < sizeof(Elf64_Ehdr) || std::memcmp(elf.data(), ELFMAG, SELFMAG) != 0) return fail("not an ELF file");
     const auto header = r.get<Elf64_Ehdr>(0);
-    if (header.e_type != ET_REL || header.e_machine != EM_X86_64 || header.e_ident[EI_CLASS] != ELFCLASS64) return fail("not relocatable x86-64 code");
+    if (header.e_type != ET_REL || header.e_machine != EM_X86_64 || header.e_ident[EI_CLASS] != ELFCLASS64)
+        return fail("not relocatable x86-64 code");
     if (header.e_shentsize != sizeof(Elf64_Shdr) || !r.range(header.e_shoff, uint64_t(header.e_shnum) * sizeof(Elf64_Shdr)))
         return fail("damaged section table");
     for (size_t i = 0; i < header.e_shnum; i++) {
@@ -71,7 +72,8 @@ std::unique_ptr<LoadedObject> LoadedObject::load(const std::string& elf, std::st
         const auto& s = r.sections.back();
         if (s.sh_type != SHT_NOBITS && !r.range(s.sh_offset, s.sh_size)) return fail("damaged section");
     }
-    // Layout: executable sections and stubs, then read-only ones, then writable ones with the offset table; each group on its own pages.
+    // Layout: executable sections and stubs, then read-only ones, then writable ones with the offset table; each group on its own
+    // pages.
     const size_t page = size_t(sysconf(_SC_PAGESIZE));
     auto groupOf = [](const Elf64_Shdr& s) { return s.sh_flags & SHF_EXECINSTR ? 0 : s.sh_flags & SHF_WRITE ? 2 : 1; };
     std::vector<size_t> place(r.sections.size(), SIZE_MAX);
@@ -170,31 +172,42 @@ std::unique_ptr<LoadedObject> LoadedObject::load(const std::string& elf, std::st
             const size_t index = ELF64_R_SYM(e.r_info);
             const size_t width = type == R_X86_64_64 || type == R_X86_64_PC64 ? 8 : 4;
             if (type == R_X86_64_NONE) continue;
-            if (index >= address.size() || e.r_offset > target.sh_size || target.sh_size - e.r_offset < width) return fail("damaged relocation");
+            if (index >= address.size() || e.r_offset > target.sh_size || target.sh_size - e.r_offset < width)
+                return fail("damaged relocation");
             uint64_t to = address[index];
-            if (!to) return fail("it needs " + (symbolName[index].empty() ? std::string("a dropped section") : symbolName[index]));
+            if (!to)
+                return fail("it needs " + (symbolName[index].empty() ? std::string("a dropped section") : symbolName[index]));
             unsigned char* where = base + place[s.sh_info] + e.r_offset;
             const auto here = reinterpret_cast<uint64_t>(where);
             int64_t value = 0;
             bool fits = true;
             switch (type) {
-            case R_X86_64_64: value = int64_t(to) + e.r_addend; break;
-            case R_X86_64_PC64: value = int64_t(to) + e.r_addend - int64_t(here); break;
-            case R_X86_64_PLT32: case R_X86_64_PC32:
+            case R_X86_64_64:
+                value = int64_t(to) + e.r_addend;
+                break;
+            case R_X86_64_PC64:
+                value = int64_t(to) + e.r_addend - int64_t(here);
+                break;
+            case R_X86_64_PLT32:
+            case R_X86_64_PC32:
                 if (isExternal[index]) to = stub(to);
                 value = int64_t(to) + e.r_addend - int64_t(here);
                 fits = to != 0 && value == int32_t(value);
                 break;
-            case R_X86_64_GOTPCREL: case R_X86_64_GOTPCRELX: case R_X86_64_REX_GOTPCRELX:
+            case R_X86_64_GOTPCREL:
+            case R_X86_64_GOTPCRELX:
+            case R_X86_64_REX_GOTPCRELX:
                 to = slot(to);
                 value = int64_t(to) + e.r_addend - int64_t(here);
                 fits = to != 0 && value == int32_t(value);
                 break;
-            case R_X86_64_32: case R_X86_64_32S:
+            case R_X86_64_32:
+            case R_X86_64_32S:
                 value = int64_t(to) + e.r_addend;
                 fits = type == R_X86_64_32S ? value == int32_t(value) : value == int64_t(uint32_t(value));
                 break;
-            default: return fail("relocation of type " + std::to_string(type));
+            default:
+                return fail("relocation of type " + std::to_string(type));
             }
             if (!fits) return fail("a relocation does not reach");
             std::memcpy(where, &value, width);

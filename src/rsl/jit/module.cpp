@@ -8,10 +8,14 @@ namespace alpenglow::rsl::jit {
 
 const char* name(Isa i) {
     switch (i) {
-    case Isa::Sse42: return "sse4.2";
-    case Isa::Sse42Fma: return "sse4.2+fma";
-    case Isa::Avx2: return "avx2";
-    case Isa::Avx512: return "avx512";
+    case Isa::Sse42:
+        return "sse4.2";
+    case Isa::Sse42Fma:
+        return "sse4.2+fma";
+    case Isa::Avx2:
+        return "avx2";
+    case Isa::Avx512:
+        return "avx512";
     }
     return "?";
 }
@@ -20,8 +24,9 @@ Isa isaFor(int lanes) {
     __builtin_cpu_init();
     const bool fma = __builtin_cpu_supports("avx") && __builtin_cpu_supports("fma");
     const bool avx2 = fma && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
-    const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd") &&
-                        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+    const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+                        __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+                        __builtin_cpu_supports("avx512vl");
     if (lanes >= 16 && avx512) return Isa::Avx512;
     if (lanes >= 8 && avx2) return Isa::Avx2;
     return fma ? Isa::Sse42Fma : Isa::Sse42;
@@ -64,7 +69,8 @@ Module* loadModule() {
         m->compile = compile;
         return m;
     }
-    m->error = "the shader compiler's module libalpenglow_jit.so cannot be loaded: " + (m->error.empty() ? "it is not beside the program" : m->error);
+    m->error = "the shader compiler's module libalpenglow_jit.so cannot be loaded: " +
+               (m->error.empty() ? "it is not beside the program" : m->error);
     return m;
 }
 

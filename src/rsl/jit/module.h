@@ -11,7 +11,8 @@ namespace alpenglow::rsl::jit {
 /// Instruction sets that code is made for. The level is chosen from the lane count and the machine, without LLVM.
 enum class Isa : int { Sse42 = 0, Sse42Fma = 1, Avx2 = 2, Avx512 = 3 };
 const char* name(Isa);
-/// What this machine can run of what `lanes` asks for: 16 Avx512, 8 Avx2, 4 Sse42 (with FMA in 128-bit registers where there is FMA).
+/// What this machine can run of what `lanes` asks for: 16 Avx512, 8 Avx2, 4 Sse42 (with FMA in 128-bit registers where there is
+/// FMA).
 Isa isaFor(int lanes);
 
 struct BitcodeView {
@@ -22,21 +23,21 @@ struct BitcodeView {
 struct ModuleRequest {
     const ir::Kernel* kernel = nullptr;
     int lanes = 16;
-    int vectors = 0;       ///< 0: chosen
+    int vectors = 0; ///< 0: chosen
     bool mixed = false;
     int optimize = 2;
     Isa isa = Isa::Avx512;
     BitcodeView (*bitcode)(int lanes) = nullptr;           ///< the runtime at 4, 8, 16, 32, 64 lanes
     const std::set<std::string>* zeroDerivative = nullptr; ///< runtime symbols whose derivatives are zero
-    const std::set<std::string>* outOfLine = nullptr;      ///< runtime symbols that are called, not inlined, when there are many calls
-    bool wantText = false;                                 ///< fill ModuleResult::text with the optimised LLVM IR
+    const std::set<std::string>* outOfLine = nullptr; ///< runtime symbols that are called, not inlined, when there are many calls
+    bool wantText = false;                            ///< fill ModuleResult::text with the optimised LLVM IR
 };
 
 struct ModuleResult {
-    std::string object;               ///< ELF relocatable file; empty on failure
+    std::string object; ///< ELF relocatable file; empty on failure
     std::string error;
     std::string text;
-    int strip = 0;                    ///< points per strip: lanes * vectors
+    int strip = 0; ///< points per strip: lanes * vectors
     bool suspending = false;
     std::vector<std::string> strings; ///< string constants in the order of KernelCall::strings
 };

@@ -46,7 +46,8 @@ uint32_t rotate(uint32_t x, int n) { return x >> n | x << (32 - n); }
 void compress(std::array<uint32_t, 8>& state, const unsigned char* block, const Words& k) {
     Words w;
     for (size_t i = 0; i < 16; i++)
-        w[i] = uint32_t(block[4 * i]) << 24 | uint32_t(block[4 * i + 1]) << 16 | uint32_t(block[4 * i + 2]) << 8 | block[4 * i + 3];
+        w[i] =
+            uint32_t(block[4 * i]) << 24 | uint32_t(block[4 * i + 1]) << 16 | uint32_t(block[4 * i + 2]) << 8 | block[4 * i + 3];
     for (size_t i = 16; i < 64; i++) {
         const uint32_t a = w[i - 15], b = w[i - 2];
         w[i] = w[i - 16] + w[i - 7] + (rotate(a, 7) ^ rotate(a, 18) ^ a >> 3) + (rotate(b, 17) ^ rotate(b, 19) ^ b >> 10);
@@ -67,7 +68,8 @@ std::string sha256(std::string_view bytes) {
     static const Constants constants;
     auto state = constants.h;
     size_t at = 0;
-    for (; at + 64 <= bytes.size(); at += 64) compress(state, reinterpret_cast<const unsigned char*>(bytes.data()) + at, constants.k);
+    for (; at + 64 <= bytes.size(); at += 64)
+        compress(state, reinterpret_cast<const unsigned char*>(bytes.data()) + at, constants.k);
     unsigned char tail[128] = {};
     const size_t left = bytes.size() - at, padded = left < 56 ? 64 : 128;
     std::memcpy(tail, bytes.data() + at, left);

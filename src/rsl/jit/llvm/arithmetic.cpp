@@ -150,32 +150,54 @@ void Emitter::arithmetic(const Inst* i) {
     };
     using P = llvm::CmpInst;
     switch (i->op) {
-    case Op::Add: each([&](Jet a, Jet b) { return add(a, b); }); break;
-    case Op::Sub: each([&](Jet a, Jet b) { return sub(a, b); }); break;
-    case Op::Mul: each([&](Jet a, Jet b) { return mul(a, b); }); break;
-    case Op::Div: each([&](Jet a, Jet b) { return div(a, b, i->args[1]); }); break;
+    case Op::Add:
+        each([&](Jet a, Jet b) { return add(a, b); });
+        break;
+    case Op::Sub:
+        each([&](Jet a, Jet b) { return sub(a, b); });
+        break;
+    case Op::Mul:
+        each([&](Jet a, Jet b) { return mul(a, b); });
+        break;
+    case Op::Div:
+        each([&](Jet a, Jet b) { return div(a, b, i->args[1]); });
+        break;
     case Op::Neg:
         for (const Jet& j : arg(0)) r.push_back(neg(j));
         break;
-    case Op::Splat: r.assign(3, arg(0)[0]); break;
-    case Op::Triple: case Op::MatrixOf:
+    case Op::Splat:
+        r.assign(3, arg(0)[0]);
+        break;
+    case Op::Triple:
+    case Op::MatrixOf:
         for (size_t k = 0; k < i->args.size(); k++) r.push_back(arg(k)[0]);
         break;
     case Op::Extract:
         if (i->index < 0 || size_t(i->index) >= arg(0).size()) fail("component out of range");
         r.push_back(arg(0)[size_t(i->index)]);
         break;
-    case Op::Less: compare(P::FCMP_OLT, P::ICMP_SLT); break;
-    case Op::LessEqual: compare(P::FCMP_OLE, P::ICMP_SLE); break;
-    case Op::Equal: compare(P::FCMP_OEQ, P::ICMP_EQ); break;
-    case Op::NotEqual: compare(P::FCMP_UNE, P::ICMP_NE); break;
-    case Op::And: case Op::Or: {
+    case Op::Less:
+        compare(P::FCMP_OLT, P::ICMP_SLT);
+        break;
+    case Op::LessEqual:
+        compare(P::FCMP_OLE, P::ICMP_SLE);
+        break;
+    case Op::Equal:
+        compare(P::FCMP_OEQ, P::ICMP_EQ);
+        break;
+    case Op::NotEqual:
+        compare(P::FCMP_UNE, P::ICMP_NE);
+        break;
+    case Op::And:
+    case Op::Or: {
         Value *a = arg(0)[0].v, *b = arg(1)[0].v;
         match(a, b);
         r.push_back({i->op == Op::And ? b_.CreateAnd(a, b) : b_.CreateOr(a, b)});
         break;
     }
-    case Op::Not: r.push_back({b_.CreateNot(arg(0)[0].v)}); break;
+    case Op::Not:
+        r.push_back({b_.CreateNot(arg(0)[0].v)});
+        break;
     case Op::Select: {
         const Val c = arg(0), a = arg(1), b = arg(2);
         for (size_t k = 0; k < a.size(); k++) r.push_back(select(c[0].v, a[k], b[k]));
@@ -197,7 +219,8 @@ void Emitter::arithmetic(const Inst* i) {
     case Op::Dv:
         for (const Jet& j : arg(0)) r.push_back(derive(j, true));
         break;
-    default: fail(std::string("no code for ") + ir::name(i->op));
+    default:
+        fail(std::string("no code for ") + ir::name(i->op));
     }
     // Only what is wanted is carried on.
     const uint8_t wanted = partsOfOrder(shapes_.order(i));

@@ -1,4 +1,5 @@
-// Calls: runtime functions in bitcode (inlined, or behind a wrapper with its arguments in registers) and services of the renderer.
+// Calls: runtime functions in bitcode (inlined, or behind a wrapper with its arguments in registers) and services of the
+// renderer.
 #include "rsl/jit/llvm/emitter.h"
 #include "rsl/kernel.h"
 #include <algorithm>
@@ -26,7 +27,9 @@ Value* Emitter::scratch(int which, int rows) {
     return s.place;
 }
 
-Value* Emitter::row(Value* block, int index) { return index == 0 ? block : b_.CreateConstInBoundsGEP1_32(vf_, block, unsigned(index)); }
+Value* Emitter::row(Value* block, int index) {
+    return index == 0 ? block : b_.CreateConstInBoundsGEP1_32(vf_, block, unsigned(index));
+}
 
 Function* Emitter::runtimeFunction(const std::string& symbol, int order) {
     const std::string name = symbol + "_" + std::to_string(order);
@@ -78,7 +81,8 @@ Function* Emitter::wrapper(const std::string& symbol, int order, int in, int out
 
 Value* Emitter::toFloatRow(Value* v) {
     if (v->getType()->getScalarType() == i1_) {
-        v = b_.CreateSelect(v, v->getType()->isVectorTy() ? lanes(number(1)) : number(1), v->getType()->isVectorTy() ? lanes(number(0)) : number(0));
+        v = b_.CreateSelect(v, v->getType()->isVectorTy() ? lanes(number(1)) : number(1),
+                            v->getType()->isVectorTy() ? lanes(number(0)) : number(0));
     } else if (v->getType()->getScalarType() == i32_) {
         v = b_.CreateBitCast(v, v->getType()->isVectorTy() ? (llvm::Type*)vf_ : f32_);
     }
@@ -136,9 +140,7 @@ void Emitter::runtime(const Inst* i) {
     }
 }
 
-Value* Emitter::maskBits() {
-    return b_.CreateZExt(b_.CreateBitCast(mask_, b_.getIntNTy(unsigned(width_))), i64_);
-}
+Value* Emitter::maskBits() { return b_.CreateZExt(b_.CreateBitCast(mask_, b_.getIntNTy(unsigned(width_))), i64_); }
 
 void Emitter::flatten(const Inst* arg, std::vector<Value*>& rows) {
     if (auto it = arrays_.find(arg); it != arrays_.end()) {
@@ -152,7 +154,8 @@ void Emitter::flatten(const Inst* arg, std::vector<Value*>& rows) {
 }
 
 void Emitter::storeRows(Value* block, const std::vector<Value*>& rows) {
-    for (size_t k = 0; k < rows.size(); k++) b_.CreateAlignedStore(rows[k], row(block, int(k)), llvm::Align(uint64_t(std::min(64, width_ * 4))));
+    for (size_t k = 0; k < rows.size(); k++)
+        b_.CreateAlignedStore(rows[k], row(block, int(k)), llvm::Align(uint64_t(std::min(64, width_ * 4))));
 }
 
 Val Emitter::fromRows(Kind kind, Value* block, int& at) {
@@ -170,7 +173,9 @@ void Emitter::callService(int site, Value* in, Value* out) {
     auto* null = llvm::ConstantPointerNull::get(llvm::cast<llvm::PointerType>(ptr_));
     Value* f = field(offsetof(KernelCall, service), ptr_, "service");
     auto* type = FunctionType::get(void_, {ptr_, i32_, i32_, i64_, i32_, ptr_, ptr_}, false);
-    b_.CreateCall(type, f, {call_, b_.getInt32(uint32_t(site)), first_, maskBits(), b_.getInt32(uint32_t(width_)), in ? in : null, out ? out : null});
+    b_.CreateCall(type, f,
+                  {call_, b_.getInt32(uint32_t(site)), first_, maskBits(), b_.getInt32(uint32_t(width_)), in ? in : null,
+                   out ? out : null});
 }
 
 void Emitter::service(const Inst* i) {
@@ -185,7 +190,8 @@ void Emitter::service(const Inst* i) {
     for (Kind k : kinds) count += componentsOf(k);
     Value* out = count ? scratch(3, count) : nullptr;
     // Whatever a service leaves unanswered is zero.
-    for (int k = 0; k < count; k++) b_.CreateAlignedStore(llvm::Constant::getNullValue(vf_), row(out, k), llvm::Align(uint64_t(std::min(64, width_ * 4))));
+    for (int k = 0; k < count; k++)
+        b_.CreateAlignedStore(llvm::Constant::getNullValue(vf_), row(out, k), llvm::Align(uint64_t(std::min(64, width_ * 4))));
     callService(i->site, in, out);
     if (i->op == Op::Request) suspend();
     int at = 0;

@@ -29,22 +29,29 @@
 namespace alpenglow::rsl::jit {
 namespace {
 
-struct Target { const char *cpu, *tune, *features, *preferred; };
+struct Target {
+    const char *cpu, *tune, *features, *preferred;
+};
 
 // 128-bit registers with FMA: AVX encodings, no 256-bit integer code.
 Target targetOf(Isa isa) {
     switch (isa) {
-    case Isa::Sse42: return {"x86-64-v2", "generic", "", "128"};
-    case Isa::Sse42Fma: return {"x86-64-v2", "haswell", "+avx,+fma", "128"};
-    case Isa::Avx2: return {"x86-64-v3", "haswell", "", "256"};
-    case Isa::Avx512: return {"x86-64-v4", "skylake-avx512", "", "512"};
+    case Isa::Sse42:
+        return {"x86-64-v2", "generic", "", "128"};
+    case Isa::Sse42Fma:
+        return {"x86-64-v2", "haswell", "+avx,+fma", "128"};
+    case Isa::Avx2:
+        return {"x86-64-v3", "haswell", "", "256"};
+    case Isa::Avx512:
+        return {"x86-64-v4", "skylake-avx512", "", "512"};
     }
     return {"x86-64-v2", "generic", "", "128"};
 }
 
 void setAttributes(llvm::Module& m, const Target& t, int width) {
     for (llvm::Function& f : m) {
-        for (const char* a : {"target-cpu", "target-features", "tune-cpu", "min-legal-vector-width", "prefer-vector-width", "stack-protector-buffer-size"})
+        for (const char* a : {"target-cpu", "target-features", "tune-cpu", "min-legal-vector-width", "prefer-vector-width",
+                              "stack-protector-buffer-size"})
             f.removeFnAttr(a);
         f.removeFnAttr(llvm::Attribute::UWTable);
         if (f.isIntrinsic()) continue;
@@ -121,9 +128,9 @@ void compile(const ModuleRequest& request, ModuleResult& result) {
     if (!target) throw CodegenError(error);
     llvm::TargetOptions options;
     options.AllowFPOpFusion = llvm::FPOpFusion::Strict;
-    std::unique_ptr<llvm::TargetMachine> tm(target->createTargetMachine(
-        triple, t.cpu, t.features, options, llvm::Reloc::PIC_, llvm::CodeModel::Small,
-        request.optimize > 0 ? llvm::CodeGenOptLevel::Default : llvm::CodeGenOptLevel::None));
+    std::unique_ptr<llvm::TargetMachine> tm(
+        target->createTargetMachine(triple, t.cpu, t.features, options, llvm::Reloc::PIC_, llvm::CodeModel::Small,
+                                    request.optimize > 0 ? llvm::CodeGenOptLevel::Default : llvm::CodeGenOptLevel::None));
     if (!tm) throw CodegenError("no machine for " + triple);
 
     const Shapes shapes(*request.kernel, request.mixed, request.zeroDerivative);
@@ -135,7 +142,8 @@ void compile(const ModuleRequest& request, ModuleResult& result) {
     std::unique_ptr<llvm::Module> runtime;
     const BitcodeView code = request.bitcode ? request.bitcode(width) : BitcodeView{};
     if (code.data) {
-        auto m = llvm::getLazyBitcodeModule(llvm::MemoryBufferRef({reinterpret_cast<const char*>(code.data), code.size}, "runtime"), context);
+        auto m = llvm::getLazyBitcodeModule(
+            llvm::MemoryBufferRef({reinterpret_cast<const char*>(code.data), code.size}, "runtime"), context);
         if (!m) throw CodegenError("the runtime's bitcode cannot be read: " + llvm::toString(m.takeError()));
         runtime = std::move(*m);
         runtime->setTargetTriple(triple);
@@ -149,7 +157,8 @@ void compile(const ModuleRequest& request, ModuleResult& result) {
     else emitter.emitLoopKernel();
     result.strings = emitter.strings();
     result.strip = width;
-    if (llvm::Linker::linkModules(*module, std::move(runtime), llvm::Linker::LinkOnlyNeeded)) throw CodegenError("the runtime does not link");
+    if (llvm::Linker::linkModules(*module, std::move(runtime), llvm::Linker::LinkOnlyNeeded))
+        throw CodegenError("the runtime does not link");
     for (llvm::Function& f : *module)
         if (!f.isDeclaration() && !f.getName().starts_with("alpenglow_")) f.setLinkage(llvm::GlobalValue::InternalLinkage);
     setAttributes(*module, t, width);
@@ -164,7 +173,8 @@ void compile(const ModuleRequest& request, ModuleResult& result) {
     llvm::SmallVector<char, 0> bytes;
     llvm::raw_svector_ostream out(bytes);
     llvm::legacy::PassManager emit;
-    if (tm->addPassesToEmitFile(emit, out, nullptr, llvm::CodeGenFileType::ObjectFile)) throw CodegenError("no object file can be emitted");
+    if (tm->addPassesToEmitFile(emit, out, nullptr, llvm::CodeGenFileType::ObjectFile))
+        throw CodegenError("no object file can be emitted");
     emit.run(*module);
     result.object.assign(bytes.begin(), bytes.end());
 }
@@ -175,7 +185,7 @@ void compile(const ModuleRequest& request, ModuleResult& result) {
 extern "C" __attribute__((visibility("default"))) int alpenglow_jit_abi() { return alpenglow::rsl::jit::kModuleAbi; }
 
 extern "C" __attribute__((visibility("default"))) void alpenglow_jit_compile(const alpenglow::rsl::jit::ModuleRequest* request,
-                                                                           alpenglow::rsl::jit::ModuleResult* result) {
+                                                                             alpenglow::rsl::jit::ModuleResult* result) {
     try {
         alpenglow::rsl::jit::compile(*request, *result);
     } catch (const std::exception& e) {

@@ -15,10 +15,16 @@ namespace {
 
 int componentsOf(Kind k) {
     switch (k) {
-    case Kind::Triple: return 3;
-    case Kind::Matrix: return 16;
-    case Kind::Float: case Kind::Bool: case Kind::String: return 1;
-    default: return 0;
+    case Kind::Triple:
+        return 3;
+    case Kind::Matrix:
+        return 16;
+    case Kind::Float:
+    case Kind::Bool:
+    case Kind::String:
+        return 1;
+    default:
+        return 0;
     }
 }
 
@@ -71,7 +77,8 @@ Value* Emitter::stopped() {
 
 const Val& Emitter::value(const Inst* i) {
     auto it = values_.find(i);
-    if (it == values_.end() || it->second.empty() || it->second[0].empty()) fail(std::string("use of an undefined value: ") + ir::name(i->op));
+    if (it == values_.end() || it->second.empty() || it->second[0].empty())
+        fail(std::string("use of an undefined value: ") + ir::name(i->op));
     return it->second[0];
 }
 
@@ -82,8 +89,9 @@ void Emitter::define(const Inst* i, int index, Val v) {
 }
 
 Val Emitter::zero(Kind kind, Shape s) {
-    llvm::Type* t = kind == Kind::Bool ? (s.varying ? (llvm::Type*)vm_ : i1_)
-                    : kind == Kind::String ? (s.varying ? (llvm::Type*)vi_ : i32_) : (s.varying ? (llvm::Type*)vf_ : f32_);
+    llvm::Type* t = kind == Kind::Bool     ? (s.varying ? (llvm::Type*)vm_ : i1_)
+                    : kind == Kind::String ? (s.varying ? (llvm::Type*)vi_ : i32_)
+                                           : (s.varying ? (llvm::Type*)vf_ : f32_);
     Val v(size_t(componentsOf(kind)));
     for (Jet& j : v) {
         j.v = llvm::Constant::getNullValue(t);
@@ -132,7 +140,8 @@ Val Emitter::selectLanes(Value* mask, const Val& a, const Val& b) {
     return r;
 }
 
-// running ? next : old, where next is often itself "old for the lanes of an inner condition": the masks are joined, one select is left.
+// running ? next : old, where next is often itself "old for the lanes of an inner condition": the masks are joined, one select is
+// left.
 Val Emitter::keepLanes(Value* running, const Val& next, const Val& old) {
     auto one = [&](Value* n, Value* o) -> Value* {
         if (!n) return nullptr;
@@ -173,27 +182,45 @@ void Emitter::inst(const Inst* i) {
                 v.push_back({number(size_t(c) < i->numbers.size() ? i->numbers[size_t(c)] : 0.0f)});
         return define(i, 0, std::move(v));
     }
-    case Op::ConstString: return define(i, 0, {Jet{constantString(i->text)}});
-    case Op::Input: return input(i);
-    case Op::RegionParam: return;
+    case Op::ConstString:
+        return define(i, 0, {Jet{constantString(i->text)}});
+    case Op::Input:
+        return input(i);
+    case Op::RegionParam:
+        return;
     case Op::Result: {
         auto it = values_.find(i->args[0]);
         if (it == values_.end() || size_t(i->index) >= it->second.size()) fail("result of an instruction that has none");
         Val v = it->second[size_t(i->index)]; // a copy: define may move the table
         return define(i, 0, std::move(v));
     }
-    case Op::Runtime: return runtime(i);
-    case Op::Service: case Op::Request: case Op::Emit: return service(i);
-    case Op::Mark: case Op::Rescale: return mark(i);
-    case Op::ArrayNew: return arrayNew(i);
-    case Op::ArrayInput: return arrayInput(i);
-    case Op::ArrayLoad: return arrayLoad(i);
-    case Op::ArrayStore: return arrayStore(i);
-    case Op::If: return emitIf(i);
-    case Op::Loop: return emitLoop(i);
-    case Op::LightLoop: return emitLightLoop(i);
-    case Op::Output: return output(i);
-    default: return arithmetic(i);
+    case Op::Runtime:
+        return runtime(i);
+    case Op::Service:
+    case Op::Request:
+    case Op::Emit:
+        return service(i);
+    case Op::Mark:
+    case Op::Rescale:
+        return mark(i);
+    case Op::ArrayNew:
+        return arrayNew(i);
+    case Op::ArrayInput:
+        return arrayInput(i);
+    case Op::ArrayLoad:
+        return arrayLoad(i);
+    case Op::ArrayStore:
+        return arrayStore(i);
+    case Op::If:
+        return emitIf(i);
+    case Op::Loop:
+        return emitLoop(i);
+    case Op::LightLoop:
+        return emitLightLoop(i);
+    case Op::Output:
+        return output(i);
+    default:
+        return arithmetic(i);
     }
 }
 
@@ -203,16 +230,35 @@ int Emitter::cost(const ir::Region& r) const {
     int sum = 0;
     for (const Inst* i : r.body) {
         switch (i->op) {
-        case Op::Const: case Op::ConstString: case Op::Input: case Op::Result: case Op::Splat: case Op::Triple: case Op::Extract: case Op::MatrixOf:
-        case Op::Du: case Op::Dv:
+        case Op::Const:
+        case Op::ConstString:
+        case Op::Input:
+        case Op::Result:
+        case Op::Splat:
+        case Op::Triple:
+        case Op::Extract:
+        case Op::MatrixOf:
+        case Op::Du:
+        case Op::Dv:
             break;
-        case Op::Service: case Op::Request: case Op::Emit: case Op::Mark: case Op::Rescale: case Op::Loop: case Op::LightLoop: case Op::Output:
-        case Op::ArrayNew: case Op::ArrayStore: case Op::ArrayLoad: case Op::ArrayInput:
+        case Op::Service:
+        case Op::Request:
+        case Op::Emit:
+        case Op::Mark:
+        case Op::Rescale:
+        case Op::Loop:
+        case Op::LightLoop:
+        case Op::Output:
+        case Op::ArrayNew:
+        case Op::ArrayStore:
+        case Op::ArrayLoad:
+        case Op::ArrayInput:
             return kNever;
         case Op::Runtime: {
             // The runtime's functions are from one instruction to a few dozen; the large ones are marked.
             if (request_.outOfLine && request_.outOfLine->count(i->text)) return kNever;
-            static const char* const kCheap[] = {"al_abs", "al_min_f", "al_max_f", "al_floor", "al_ceil", "al_sqrt", "al_step_f", "al_clamp_f", "al_mix_f"};
+            static const char* const kCheap[] = {"al_abs",  "al_min_f",  "al_max_f",   "al_floor", "al_ceil",
+                                                 "al_sqrt", "al_step_f", "al_clamp_f", "al_mix_f"};
             const bool cheap = std::any_of(std::begin(kCheap), std::end(kCheap), [&](const char* n) { return i->text == n; });
             sum += (cheap ? 2 : 20) * (shapes_.callOrder(i) == 0 ? 1 : 3);
             break;
@@ -221,7 +267,8 @@ int Emitter::cost(const ir::Region& r) const {
             for (const auto& sub : i->regions) sum += cost(sub);
             sum += int(i->regions[0].yields.size());
             break;
-        default: sum += (i->kind == Kind::Triple ? 3 : 1) * (1 + __builtin_popcount(shapes_.of(i).parts));
+        default:
+            sum += (i->kind == Kind::Triple ? 3 : 1) * (1 + __builtin_popcount(shapes_.of(i).parts));
         }
         if (sum >= kNever) return kNever;
     }
@@ -263,8 +310,8 @@ void Emitter::emitIf(const Inst* i) {
         }
         return;
     }
-    // Varying: each side runs when some lane takes it, under its mask. Values of lanes outside never matter, so the results need only
-    // the condition; the skipped side gives zeros, not poison, because masks are made of such values.
+    // Varying: each side runs when some lane takes it, under its mask. Values of lanes outside never matter, so the results need
+    // only the condition; the skipped side gives zeros, not poison, because masks are made of such values.
     Value* outer = mask_;
     const bool outerRoot = rootMask_;
     rootMask_ = false;
@@ -383,7 +430,8 @@ void Emitter::emitLightLoop(const Inst* i) {
         init[k] = conform(value(i->args[3 + k]), kind[k], shape[k]);
     }
     BasicBlock* before = b_.GetInsertBlock();
-    BasicBlock *head = block("lightloop"), *get = block("light"), *inside = block("lit"), *step = block("nextlight"), *exit = block("exit");
+    BasicBlock *head = block("lightloop"), *get = block("light"), *inside = block("lit"), *step = block("nextlight"),
+               *exit = block("exit");
     b_.CreateBr(head);
     b_.SetInsertPoint(head);
     auto* index = b_.CreatePHI(i32, 2, "light");

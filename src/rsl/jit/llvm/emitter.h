@@ -1,4 +1,5 @@
-// From our IR to LLVM IR, lanes explicit. One Emitter makes one kernel: either a loop over the strips of a batch, or a coroutine a strip.
+// From our IR to LLVM IR, lanes explicit. One Emitter makes one kernel: either a loop over the strips of a batch, or a coroutine
+// a strip.
 #pragma once
 #include "rsl/jit/llvm/shape.h"
 #include "rsl/jit/module.h"
@@ -21,7 +22,8 @@ struct Jet {
 };
 using Val = std::vector<Jet>; ///< one Jet a component
 
-/// Storage of an array: rows of <W x float> (or of floats when uniform), element after element, component after component, part after part.
+/// Storage of an array: rows of <W x float> (or of floats when uniform), element after element, component after component, part
+/// after part.
 struct ArrayStorage {
     llvm::Value* base = nullptr;
     int length = 0, components = 0;
@@ -73,8 +75,8 @@ private:
     llvm::Value* fadd(llvm::Value*, llvm::Value*);
     llvm::Value* fsub(llvm::Value*, llvm::Value*);
     llvm::Value* fmul(llvm::Value*, llvm::Value*);
-    llvm::Value* lanes(llvm::Value*);                       ///< splats a scalar
-    void match(llvm::Value*&, llvm::Value*&);               ///< both scalars or both lanes
+    llvm::Value* lanes(llvm::Value*);         ///< splats a scalar
+    void match(llvm::Value*&, llvm::Value*&); ///< both scalars or both lanes
     llvm::Value* number(float);
     // memory.cpp
     void input(const ir::Inst*);
@@ -115,16 +117,19 @@ private:
     llvm::Module& module_;
     llvm::Module& runtime_;
     llvm::LLVMContext& context_;
-    B b_, entry_;                    ///< the place of emission; the end of the entry block (uniform loads)
+    B b_, entry_; ///< the place of emission; the end of the entry block (uniform loads)
     llvm::Type *f32_, *i1_, *i32_, *i64_, *ptr_, *void_;
     llvm::VectorType *vf_, *vi_, *vm_;
     llvm::Function* function_ = nullptr;
     llvm::BasicBlock* entryBlock_ = nullptr;
     llvm::Value *call_ = nullptr, *first_ = nullptr, *first64_ = nullptr, *mask_ = nullptr, *stop_ = nullptr, *stride_ = nullptr;
     llvm::Value *in_ = nullptr, *out_ = nullptr, *stringIds_ = nullptr, *n_ = nullptr;
-    bool rootMask_ = true;           ///< the mask is that of the strip: lanes beyond n may be overwritten
+    bool rootMask_ = true; ///< the mask is that of the strip: lanes beyond n may be overwritten
     // Scratch rows: arguments and results of runtime calls (promoted to registers), of services (escape).
-    struct Scratch { llvm::Instruction* place = nullptr; int rows = 0; };
+    struct Scratch {
+        llvm::Instruction* place = nullptr;
+        int rows = 0;
+    };
     std::array<Scratch, 4> scratch_;
     std::unordered_map<const ir::Inst*, std::vector<Val>> values_;
     std::unordered_map<const ir::Inst*, ArrayStorage> arrays_;
@@ -139,7 +144,10 @@ private:
 };
 
 /// Whether noise and its like are called through wrappers in this kernel, and how many vectors it works on at a time.
-struct Plan { int vectors = 1; bool wrapCalls = false; };
+struct Plan {
+    int vectors = 1;
+    bool wrapCalls = false;
+};
 Plan plan(const ModuleRequest&, const Shapes&);
 
 } // namespace alpenglow::rsl::jit

@@ -9,8 +9,8 @@ namespace alpenglow::rsl::jit {
 using llvm::BasicBlock;
 using llvm::Function;
 using llvm::FunctionType;
-using llvm::Intrinsic::ID;
 using llvm::Value;
+using llvm::Intrinsic::ID;
 
 Value* Emitter::field(size_t offset, llvm::Type* type, const char* name) {
     return b_.CreateLoad(type, b_.CreateConstInBoundsGEP1_64(llvm::Type::getInt8Ty(context_), call_, offset), name);

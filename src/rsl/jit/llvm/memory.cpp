@@ -50,7 +50,8 @@ void Emitter::input(const Inst* i) {
         Val& v = uniformInputs_[i->index];
         if (v.empty()) {
             llvm::Type* t = string ? i32_ : f32_;
-            for (int c = 0; c < count; c++) v.push_back({entry_.CreateLoad(t, entry_.CreateConstInBoundsGEP1_32(t, base, unsigned(c)), in.name)});
+            for (int c = 0; c < count; c++)
+                v.push_back({entry_.CreateLoad(t, entry_.CreateConstInBoundsGEP1_32(t, base, unsigned(c)), in.name)});
         }
         return define(i, 0, v);
     }
@@ -96,7 +97,8 @@ void Emitter::arrayNew(const Inst* i) {
         a.element = i->element;
         a.components = componentsOf(i->element);
         a.shape = shapes_.of(i);
-        llvm::Type* t = a.element == Kind::String ? (a.shape.varying ? (llvm::Type*)vi_ : i32_) : (a.shape.varying ? (llvm::Type*)vf_ : f32_);
+        llvm::Type* t =
+            a.element == Kind::String ? (a.shape.varying ? (llvm::Type*)vi_ : i32_) : (a.shape.varying ? (llvm::Type*)vf_ : f32_);
         B top(&function_->getEntryBlock(), function_->getEntryBlock().begin());
         auto* storage = top.CreateAlloca(llvm::ArrayType::get(t, uint64_t(a.length) * uint64_t(a.rows())), nullptr, "array");
         storage->setAlignment(llvm::Align(64));
@@ -133,7 +135,8 @@ Value* Emitter::elementIndex(Value* index, int length) {
 }
 
 Value* Emitter::rowPointer(const ArrayStorage& a, Value* element, int row) {
-    Value* index = b_.CreateAdd(b_.CreateMul(b_.CreateZExt(element, i64_), b_.getInt64(uint64_t(a.rows()))), b_.getInt64(uint64_t(row)));
+    Value* index =
+        b_.CreateAdd(b_.CreateMul(b_.CreateZExt(element, i64_), b_.getInt64(uint64_t(a.rows()))), b_.getInt64(uint64_t(row)));
     if (a.stride) return b_.CreateGEP(f32_, a.base, b_.CreateAdd(b_.CreateMul(index, a.stride), first64_));
     return b_.CreateGEP(a.shape.varying ? (llvm::Type*)vf_ : f32_, a.base, index);
 }
@@ -143,7 +146,8 @@ Value* Emitter::loadRow(const ArrayStorage& a, Value* element, int row) {
     llvm::Type* scalar = string ? i32_ : f32_;
     llvm::Type* wide = string ? (llvm::Type*)vi_ : vf_;
     if (!element->getType()->isVectorTy())
-        return b_.CreateAlignedLoad(a.shape.varying ? wide : scalar, rowPointer(a, element, row), llvm::Align(a.shape.varying ? uint64_t(std::min(64, width_ * 4)) : 4));
+        return b_.CreateAlignedLoad(a.shape.varying ? wide : scalar, rowPointer(a, element, row),
+                                    llvm::Align(a.shape.varying ? uint64_t(std::min(64, width_ * 4)) : 4));
     if (a.length <= kSelectChain) {
         Value* r = lanes(loadRow(a, b_.getInt32(0), row));
         for (int e = 1; e < a.length; e++) {
@@ -153,11 +157,15 @@ Value* Emitter::loadRow(const ArrayStorage& a, Value* element, int row) {
         return r;
     }
     auto* wide64 = llvm::FixedVectorType::get(i64_, unsigned(width_));
-    Value* index = b_.CreateAdd(b_.CreateMul(b_.CreateZExt(element, wide64), lanes(b_.getInt64(uint64_t(a.rows())))), lanes(b_.getInt64(uint64_t(row))));
+    Value* index = b_.CreateAdd(b_.CreateMul(b_.CreateZExt(element, wide64), lanes(b_.getInt64(uint64_t(a.rows())))),
+                                lanes(b_.getInt64(uint64_t(row))));
     std::vector<llvm::Constant*> lane;
     for (int k = 0; k < width_; k++) lane.push_back(llvm::ConstantInt::get(i64_, uint64_t(k)));
-    if (a.stride) index = b_.CreateAdd(b_.CreateMul(index, lanes(a.stride)), b_.CreateAdd(lanes(first64_), llvm::ConstantVector::get(lane)));
-    else if (a.shape.varying) index = b_.CreateAdd(b_.CreateMul(index, lanes(b_.getInt64(uint64_t(width_)))), llvm::ConstantVector::get(lane));
+    if (a.stride)
+        index =
+            b_.CreateAdd(b_.CreateMul(index, lanes(a.stride)), b_.CreateAdd(lanes(first64_), llvm::ConstantVector::get(lane)));
+    else if (a.shape.varying)
+        index = b_.CreateAdd(b_.CreateMul(index, lanes(b_.getInt64(uint64_t(width_)))), llvm::ConstantVector::get(lane));
     return b_.CreateMaskedGather(wide, b_.CreateGEP(f32_, a.base, index), llvm::Align(4), llvm::Constant::getAllOnesValue(vm_));
 }
 
@@ -186,9 +194,11 @@ void Emitter::storeRow(const ArrayStorage& a, Value* element, int row, Value* v)
     auto* wide64 = llvm::FixedVectorType::get(i64_, unsigned(width_));
     std::vector<llvm::Constant*> lane;
     for (int k = 0; k < width_; k++) lane.push_back(llvm::ConstantInt::get(i64_, uint64_t(k)));
-    Value* index = b_.CreateAdd(b_.CreateMul(b_.CreateZExt(element, wide64), lanes(b_.getInt64(uint64_t(a.rows())))), lanes(b_.getInt64(uint64_t(row))));
+    Value* index = b_.CreateAdd(b_.CreateMul(b_.CreateZExt(element, wide64), lanes(b_.getInt64(uint64_t(a.rows())))),
+                                lanes(b_.getInt64(uint64_t(row))));
     index = b_.CreateAdd(b_.CreateMul(index, lanes(b_.getInt64(uint64_t(width_)))), llvm::ConstantVector::get(lane));
-    b_.CreateMaskedScatter(v, b_.CreateGEP(f32_, a.base, index), llvm::Align(4), rootMask_ ? llvm::Constant::getAllOnesValue(vm_) : mask_);
+    b_.CreateMaskedScatter(v, b_.CreateGEP(f32_, a.base, index), llvm::Align(4),
+                           rootMask_ ? llvm::Constant::getAllOnesValue(vm_) : mask_);
 }
 
 void Emitter::arrayLoad(const Inst* i) {

@@ -121,19 +121,35 @@ bool Shapes::inst(const Inst* i, bool varyingControl) {
     auto arg = [&](int k) { return of(i->args[k]); };
     for (const Inst* a : i->args) s.join(of(a));
     switch (i->op) {
-    case Op::Const: case Op::ConstString: case Op::RegionParam: return false;
-    case Op::Input: case Op::ArrayInput: {
+    case Op::Const:
+    case Op::ConstString:
+    case Op::RegionParam:
+        return false;
+    case Op::Input:
+    case Op::ArrayInput: {
         const ir::Input& in = kernel_.inputs[i->index];
         const bool jets = !in.uniform && i->op == Op::Input && (in.kind == Kind::Float || in.kind == Kind::Triple);
         return join(i, 0, {!in.uniform || mixed_, jets ? partsOfOrder(in.order) : uint8_t(0)});
     }
-    case Op::Result: return join(i, 0, of(i->args[0], i->index));
-    case Op::Mul: s.parts = productParts(arg(0).parts, arg(1).parts); return join(i, 0, s);
+    case Op::Result:
+        return join(i, 0, of(i->args[0], i->index));
+    case Op::Mul:
+        s.parts = productParts(arg(0).parts, arg(1).parts);
+        return join(i, 0, s);
     case Op::Div:
         s.parts = productParts(productParts(arg(0).parts, arg(1).parts), arg(1).parts);
         return join(i, 0, s);
-    case Op::Select: s.parts = arg(1).parts | arg(2).parts; return join(i, 0, s);
-    case Op::Less: case Op::LessEqual: case Op::Equal: case Op::NotEqual: case Op::And: case Op::Or: case Op::Not: case Op::ToFloat:
+    case Op::Select:
+        s.parts = arg(1).parts | arg(2).parts;
+        return join(i, 0, s);
+    case Op::Less:
+    case Op::LessEqual:
+    case Op::Equal:
+    case Op::NotEqual:
+    case Op::And:
+    case Op::Or:
+    case Op::Not:
+    case Op::ToFloat:
         s.parts = 0;
         return join(i, 0, s);
     case Op::Runtime: {
@@ -142,7 +158,9 @@ bool Shapes::inst(const Inst* i, bool varyingControl) {
         for (int k = 0; k < resultCount(i); k++) changed |= join(i, k, s);
         return changed;
     }
-    case Op::Service: case Op::Request: case Op::Mark: {
+    case Op::Service:
+    case Op::Request:
+    case Op::Mark: {
         bool changed = false;
         for (int k = 0; k < resultCount(i); k++) changed |= join(i, k, {true, 0});
         return changed;
@@ -157,8 +175,11 @@ bool Shapes::inst(const Inst* i, bool varyingControl) {
         s.parts = uint8_t(((p & kDuv) ? kDu : 0) | ((p & kDvv) ? kDv : 0));
         return join(i, 0, s);
     }
-    case Op::ArrayNew: return false;
-    case Op::ArrayLoad: s.parts = arg(0).parts; return join(i, 0, s);
+    case Op::ArrayNew:
+        return false;
+    case Op::ArrayLoad:
+        s.parts = arg(0).parts;
+        return join(i, 0, s);
     case Op::ArrayStore: {
         Shape v = arg(2);
         v.varying |= arg(1).varying | varyingControl;
@@ -177,8 +198,13 @@ bool Shapes::inst(const Inst* i, bool varyingControl) {
         }
         return changed;
     }
-    case Op::Loop: case Op::LightLoop: return loop(i, varyingControl);
-    case Op::Emit: case Op::Rescale: case Op::Output: return false;
+    case Op::Loop:
+    case Op::LightLoop:
+        return loop(i, varyingControl);
+    case Op::Emit:
+    case Op::Rescale:
+    case Op::Output:
+        return false;
     default: // Add, Sub, Neg, Splat, Triple, Extract, MatrixOf: linear
         return join(i, 0, s);
     }
@@ -191,10 +217,11 @@ Pressure measure(const ir::Kernel& k, const Shapes& shapes, const std::set<std::
     int time = 0;
     // A use inside a loop of a value born outside keeps it alive to the loop's end.
     std::function<void(const ir::Region&)> walk = [&](const ir::Region& r) {
-        auto use = [&](const Inst* a) {
-            lastUse[a] = std::max(lastUse[a], time);
-        };
-        for (const Inst* x : r.params) { born[x] = time; all.push_back(x); }
+        auto use = [&](const Inst* a) { lastUse[a] = std::max(lastUse[a], time); };
+        for (const Inst* x : r.params) {
+            born[x] = time;
+            all.push_back(x);
+        }
         for (const Inst* i : r.body) {
             time++;
             for (const Inst* a : i->args) use(a);
@@ -208,7 +235,8 @@ Pressure measure(const ir::Kernel& k, const Shapes& shapes, const std::set<std::
                 const int order = shapes.callOrder(i);
                 if (outOfLine && outOfLine->count(i->text)) p.outOfLineCalls += order == 0 ? 1 : order == 1 ? 3 : 6;
             }
-            if (i->op == Op::Service || i->op == Op::Emit || i->op == Op::LightLoop || i->op == Op::Request || i->op == Op::ArrayNew)
+            if (i->op == Op::Service || i->op == Op::Emit || i->op == Op::LightLoop || i->op == Op::Request ||
+                i->op == Op::ArrayNew)
                 p.effects = true;
             if (i->op == Op::Loop || i->op == Op::LightLoop) {
                 p.loops = true;

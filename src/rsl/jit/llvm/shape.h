@@ -23,8 +23,8 @@ struct Shape {
     }
 };
 
-/// Shapes of all values of a kernel: the least fixed point over its tree. Sound for any kernel that verify() accepts; does not rely
-/// on Inst::varying, only on Inst::order.
+/// Shapes of all values of a kernel: the least fixed point over its tree. Sound for any kernel that verify() accepts; does not
+/// rely on Inst::varying, only on Inst::order.
 class Shapes {
 public:
     Shapes(const ir::Kernel&, bool mixed, const std::set<std::string>* zeroDerivative);
@@ -32,7 +32,8 @@ public:
     Shape of(const ir::Inst*, int index = 0) const;
     /// Largest order wanted of result `index` by the instruction itself and its Result instructions.
     int order(const ir::Inst*, int index = 0) const;
-    /// Whether result `index` of an instruction with several results has a Result instruction (dead ones are removed by the passes).
+    /// Whether result `index` of an instruction with several results has a Result instruction (dead ones are removed by the
+    /// passes).
     bool used(const ir::Inst* i, int index) const { return i->results.empty() || used_.count({i, index}) != 0; }
     bool hasRequests() const { return requests_; }
     /// Order that a Runtime instruction is called with, from its arguments' shapes and the wanted orders.

@@ -367,7 +367,8 @@ void Renderer::makeTexture(const std::string& kind, const std::vector<std::strin
     for (const scene::Param& p : args)
         if (p.strings.empty()) numbers.insert(numbers.end(), p.numbers.begin(), p.numbers.end());
     int before = diagnostics_.errors();
-    if (!texture::runMakeRequest(kind, files, numbers, m, diagnostics_) && diagnostics_.errors() == before)
+    if (texture::runMakeRequest(kind, files, numbers, m, diagnostics_)) ++outcome_.textures;
+    else if (diagnostics_.errors() == before)
         diagnostics_.report(Severity::Error, Rie::BadFile, place, kind + " failed");
     parseMark_ = clockSeconds();
 }

@@ -29,6 +29,7 @@ public:
     struct Outcome {
         int rendered = 0;          ///< frames of which something could be rendered
         int refused = 0;           ///< frames of which nothing could be
+        int textures = 0;          ///< Make requests that were obeyed
         bool outputFailed = false; ///< a file could not be written
         bool outOfMemory = false;
         bool interrupted = false;

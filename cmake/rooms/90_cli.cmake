@@ -1,0 +1,11 @@
+# The program: build/<preset>/bin/alpenglow. Its tests run it as a user does.
+file(GLOB cli_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/cli/*.cpp)
+find_package(CLI11 REQUIRED)
+add_executable(alpenglow ${cli_sources})
+target_link_libraries(alpenglow PRIVATE render ri transport shading texture display rsl_jit shadeops base CLI11::CLI11 nlohmann_json::nlohmann_json)
+target_compile_definitions(alpenglow PRIVATE ALPENGLOW_VERSION="0.1")
+room_tests(cli DEPS render display transport)
+if(TARGET test_cli)
+  target_compile_definitions(test_cli PRIVATE ALPENGLOW_PROGRAM="$<TARGET_FILE:alpenglow>")
+  add_dependencies(test_cli alpenglow)
+endif()

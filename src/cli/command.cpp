@@ -1,0 +1,117 @@
+#include "cli/command.h"
+#include "base/file.h"
+#include <atomic>
+#include <climits>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace alpenglow::cli {
+
+Diagnostics::Handler printer(Severity least) {
+    bool terminal = isatty(STDERR_FILENO) != 0;
+    return [least, terminal](const Diagnostic& d) {
+        if (d.severity < least) return;
+        std::string text = toString(d);
+        if (terminal) text.insert(0, "\r\033[K");
+        std::fputs(text.c_str(), stderr);
+    };
+}
+
+namespace {
+
+// A signal handler can reach nothing but a global.
+volatile int32_t interrupted = 0;
+
+extern "C" void onInterrupt(int) {
+    if (interrupted) _exit(kInterrupted);
+    interrupted = 1;
+}
+
+bool isFolder(const std::string& p) {
+    struct stat s;
+    return stat(p.c_str(), &s) == 0 && S_ISDIR(s.st_mode);
+}
+
+} // namespace
+
+const volatile int32_t* watchInterrupts() {
+    struct sigaction a;
+    std::memset(&a, 0, sizeof a);
+    a.sa_handler = onInterrupt;
+    a.sa_flags = SA_RESTART;
+    sigaction(SIGINT, &a, nullptr);
+    sigaction(SIGTERM, &a, nullptr);
+    return &interrupted;
+}
+
+std::string shippedShaders() {
+    char path[PATH_MAX];
+    ssize_t n = readlink("/proc/self/exe", path, sizeof path - 1);
+    if (n <= 0) return "";
+    std::string p(path, size_t(n));
+    p.erase(p.find_last_of('/'));
+    for (const char* up : {"/../share/alpenglow/shaders", "/../../../shaders", "/../shaders", "/shaders"})
+        if (isFolder(p + up)) return p + up;
+    return "";
+}
+
+std::vector<std::string> environmentShaders() {
+    const char* e = std::getenv("ALPENGLOW_SHADERS");
+    return e && *e ? splitSearchPath(e) : std::vector<std::string>{};
+}
+
+std::vector<std::string> folders(const std::vector<std::string>& lists) {
+    std::vector<std::string> all;
+    for (const std::string& l : lists)
+        for (std::string& f : splitSearchPath(l)) all.push_back(std::move(f));
+    return all;
+}
+
+std::optional<std::array<int, 2>> parseSize(const std::string& s) {
+    int w = 0, h = 0, end = 0;
+    if (std::sscanf(s.c_str(), "%6dx%6d%n", &w, &h, &end) != 2 || size_t(end) != s.size() || w <= 0 || h <= 0) return std::nullopt;
+    return std::array<int, 2>{w, h};
+}
+
+std::optional<std::vector<double>> parseNumbers(const std::string& s, size_t count) {
+    std::vector<double> v;
+    const char* p = s.c_str();
+    while (true) {
+        char* end;
+        double d = std::strtod(p, &end);
+        if (end == p || !std::isfinite(d)) return std::nullopt;
+        v.push_back(d);
+        p = end;
+        if (*p == 0) break;
+        if (*p++ != ',') return std::nullopt;
+    }
+    if (count && v.size() != count) return std::nullopt;
+    return v;
+}
+
+std::optional<std::vector<int>> parseFrames(const std::string& s) {
+    std::vector<int> frames;
+    const char* p = s.c_str();
+    while (true) {
+        char* end;
+        long a = std::strtol(p, &end, 10), b = a;
+        if (end == p) return std::nullopt;
+        p = end;
+        if (*p == '-') {
+            b = std::strtol(p + 1, &end, 10);
+            if (end == p + 1) return std::nullopt;
+            p = end;
+        }
+        if (a < INT_MIN || b > INT_MAX || b < a || b - a > 100000 || frames.size() > 100000) return std::nullopt;
+        for (long f = a; f <= b; ++f) frames.push_back(int(f));
+        if (*p == 0) return frames;
+        if (*p++ != ',') return std::nullopt;
+    }
+}
+
+} // namespace alpenglow::cli

@@ -1,0 +1,51 @@
+// What the subcommands share: exit statuses, messages on standard error, ways to read arguments. One file a subcommand; each adds
+// itself to the program by its add function.
+#pragma once
+#include "base/diagnostics.h"
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace alpenglow::cli {
+
+/// Exit statuses, fixed.
+enum Status : int { kDone = 0, kDoneWithErrors = 1, kWrongUse = 2, kNothingRendered = 3, kLimit = 4, kOutputFailed = 5, kInterrupted = 130 };
+
+/// Each describes its options to the parser and, when its subcommand is called, does the work and sets *status.
+void addRender(CLI::App&, int* status);
+void addEval(CLI::App&, int* status);
+void addShade(CLI::App&, int* status);
+void addCompile(CLI::App&, int* status);
+void addInfo(CLI::App&, int* status);
+void addProbe(CLI::App&, int* status);
+void addMaketx(CLI::App&, int* status);
+void addDiff(CLI::App&, int* status);
+void addMerge(CLI::App&, int* status);
+
+/// Prints diagnostics of at least this severity to standard error, taking a progress bar off the line first.
+Diagnostics::Handler printer(Severity least = Severity::Warning);
+
+/// Flags of the process that a signal sets: 0, then 1 after the first Ctrl-C. A second ends the process at once with status 130.
+const volatile int32_t* watchInterrupts();
+
+/// Folder of the shaders that ship; "" when none is found beside the program.
+std::string shippedShaders();
+/// Folders of ALPENGLOW_SHADERS.
+std::vector<std::string> environmentShaders();
+/// --searchpath: ':' separated.
+std::vector<std::string> folders(const std::vector<std::string>& lists);
+
+/// "640x480".
+std::optional<std::array<int, 2>> parseSize(const std::string&);
+/// Numbers separated by commas; nothing unless there are exactly `count` (0 = any number) and all are finite.
+std::optional<std::vector<double>> parseNumbers(const std::string&, size_t count = 0);
+/// "1,4-6" gives 1 4 5 6; nothing when it is not such a list, or longer than 100000.
+std::optional<std::vector<int>> parseFrames(const std::string&);
+
+} // namespace alpenglow::cli

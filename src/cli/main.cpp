@@ -1,0 +1,63 @@
+// The program: finds the subcommand, reads its arguments. `alpenglow scene.rib` is `alpenglow render scene.rib`.
+#include "cli/command.h"
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+
+using namespace alpenglow;
+using namespace alpenglow::cli;
+
+namespace {
+
+/// Old tools' spellings, made what the parser takes: maketx's -envlatl, numbers like -.5.
+std::vector<std::string> normalise(int argc, char** argv, const CLI::App& app) {
+    std::vector<std::string> args(argv + 1, argv + argc);
+    bool known = false;
+    if (!args.empty()) {
+        for (const CLI::App* s : app.get_subcommands([](const CLI::App*) { return true; })) known |= s->get_name() == args[0];
+        if (!known && args[0] != "-h" && args[0] != "--help" && args[0] != "--version" && args[0] != "--help-all")
+            args.insert(args.begin(), "render");
+    }
+    for (size_t i = 1; i < args.size(); ++i) {
+        std::string& a = args[i];
+        if (a.size() > 2 && a[0] == '-' && a[1] == '.' && std::isdigit(static_cast<unsigned char>(a[2]))) a.insert(1, "0");
+        if (args[0] == "maketx" && a.size() > 2 && a[0] == '-' && std::isalpha(static_cast<unsigned char>(a[1]))) a.insert(0, "-");
+    }
+    return args;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    int status = kDone;
+    CLI::App app("Alpenglow renders RenderMan scenes: RIB in, shaders in RSL as machine code, path-traced pictures out.", "alpenglow");
+    app.set_version_flag("--version", "alpenglow " ALPENGLOW_VERSION);
+    app.require_subcommand(1);
+    app.get_formatter()->column_width(34);
+    app.footer("alpenglow scene.rib is the same as alpenglow render scene.rib. alpenglow COMMAND --help tells more.\n\n"
+               "Exit status: 0 done; 1 done, but requests failed; 2 wrong use; 3 nothing could be rendered; 4 a limit or memory;\n"
+               "5 an output could not be written; 130 interrupted, what was done is saved.");
+    addRender(app, &status);
+    addEval(app, &status);
+    addShade(app, &status);
+    addCompile(app, &status);
+    addInfo(app, &status);
+    addProbe(app, &status);
+    addMaketx(app, &status);
+    addDiff(app, &status);
+    addMerge(app, &status);
+    std::vector<std::string> args = normalise(argc, argv, app);
+    std::reverse(args.begin(), args.end()); // as the parser takes vectors
+    try {
+        app.parse(args);
+    } catch (const CLI::ParseError& e) {
+        return app.exit(e, std::cout, std::cerr) == 0 ? kDone : kWrongUse;
+    } catch (const std::bad_alloc&) {
+        std::fputs("alpenglow: out of memory\n", stderr);
+        return kLimit;
+    } catch (const std::exception& e) {
+        std::fprintf(stderr, "alpenglow: %s\n", e.what());
+        return kNothingRendered;
+    }
+    return status;
+}

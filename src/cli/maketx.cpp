@@ -1,0 +1,61 @@
+// alpenglow maketx: pictures to tiled MIP-mapped maps.
+#include "cli/command.h"
+#include "texture/maketexture.h"
+#include <CLI/CLI.hpp>
+#include <memory>
+
+namespace alpenglow::cli {
+
+void addMaketx(CLI::App& app, int* status) {
+    struct Arguments {
+        std::vector<std::string> files;
+        texture::MakeOptions options;
+        std::string mode, smode, tmode;
+        float fov = 90;
+        std::vector<float> width;
+        bool latlong = false, cube = false, shadow = false;
+    };
+    auto a = std::make_shared<Arguments>();
+    CLI::App* c = app.add_subcommand("maketx", "Make textures, environment and shadow maps of pictures");
+    c->add_option("files", a->files, "Picture and map; with --envcube six pictures (px nx py ny pz nz) and the map")->required();
+    auto* kinds = c->add_option_group("Kind", "What is made; a texture when none is given");
+    kinds->add_flag("--envlatl", a->latlong, "A latitude-longitude environment map");
+    kinds->add_flag("--envcube", a->cube, "A cube environment map");
+    kinds->add_flag("--shadow", a->shadow, "A shadow map of a depth picture");
+    kinds->require_option(0, 1);
+    auto wraps = CLI::IsMember({"black", "clamp", "periodic"});
+    c->add_option("--mode", a->mode, "Wrap mode: black, clamp or periodic")->check(wraps)->type_name("MODE");
+    c->add_option("--smode", a->smode, "Wrap mode in s alone")->check(wraps)->type_name("MODE");
+    c->add_option("--tmode", a->tmode, "Wrap mode in t alone")->check(wraps)->type_name("MODE");
+    c->add_option("--filter", a->options.filter, "Filter of the reduction, for example box, gaussian, sinc")->type_name("NAME");
+    c->add_option("--width", a->width, "Factors on the filter's width in s and t")->expected(1, 2)->check(CLI::PositiveNumber)->type_name("S [T]")->allow_extra_args(false);
+    c->add_option("--fov", a->fov, "Field of view of the six pictures, degrees")->check(CLI::Range(1.0, 179.0))->type_name("DEGREES");
+    c->footer("The options of old tools are taken as well: -envlatl, -envcube, -shadow, -mode, -smode, -tmode, -filter.");
+    c->callback([a, status] {
+        Diagnostics diags(printer());
+        texture::MakeOptions& o = a->options;
+        size_t wanted = a->cube ? 7 : 2;
+        if (a->files.size() != wanted)
+            throw CLI::ValidationError("files", a->cube ? "--envcube takes six pictures and the map" : "takes a picture and the map");
+        std::string s = !a->smode.empty() ? a->smode : a->mode, t = !a->tmode.empty() ? a->tmode : a->mode;
+        if (!s.empty()) o.swrap = s;
+        if (!t.empty()) o.twrap = t;
+        if (!a->width.empty()) {
+            o.swidth = a->width.front();
+            o.twidth = a->width.back();
+        }
+        o.policy.allowWrite = true;
+        std::vector<std::string> in(a->files.begin(), a->files.end() - 1);
+        const std::string& out = a->files.back();
+        bool ok = a->cube      ? texture::makeCubeFaceEnvironment(in, out, a->fov, o, diags)
+                  : a->latlong ? texture::makeLatLongEnvironment(in[0], out, o, diags)
+                  : a->shadow  ? texture::makeShadow(in[0], out, o, diags)
+                               : texture::makeTexture(in[0], out, o, diags);
+        *status = ok ? (diags.errors() ? kDoneWithErrors : kDone) : kOutputFailed;
+        if (ok) return;
+        for (const Diagnostic& d : diags.all())
+            if (d.code == Rie::NoFile || d.code == Rie::BadFile) *status = kNothingRendered;
+    });
+}
+
+} // namespace alpenglow::cli

@@ -1,0 +1,31 @@
+// alpenglow merge: one picture of parts that were rendered with --samples.
+#include "cli/command.h"
+#include "render/filmpicture.h"
+#include <CLI/CLI.hpp>
+#include <memory>
+
+namespace alpenglow::cli {
+
+void addMerge(CLI::App& app, int* status) {
+    struct Arguments {
+        std::vector<std::string> parts;
+        std::string output;
+        bool allowWrite = false;
+    };
+    auto a = std::make_shared<Arguments>();
+    CLI::App* c = app.add_subcommand("merge", "Add parts rendered with --samples; the same bits as one render");
+    c->add_option("parts", a->parts, "Pictures with their .part files beside them, or .part files, in any order")->required();
+    c->add_option("-o", a->output, "The picture; without it, those that the scene's displays name")->type_name("FILE");
+    c->add_flag("--allow-write", a->allowWrite, "Let display names lead outside the current folder");
+    c->footer("Parts fit when scene, options, seed and crop window are the same and no sample is in two of them.");
+    c->callback([a, status] {
+        Diagnostics diags(printer());
+        switch (render::mergePictures(a->parts, a->output, a->allowWrite, diags)) {
+        case render::MergeResult::Done: *status = diags.errors() ? kDoneWithErrors : kDone; break;
+        case render::MergeResult::NoInput: *status = kNothingRendered; break;
+        case render::MergeResult::NoOutput: *status = kOutputFailed; break;
+        }
+    });
+}
+
+} // namespace alpenglow::cli

@@ -1,0 +1,203 @@
+// alpenglow probe: the light at one point of a scene, as the radiance that a white diffuse point there would send back.
+//
+// A quad of a ten-thousandth of the scene's size is put there, seen by camera rays only, so that it neither lights nor shadows
+// anything; a camera ray meets it straight on, over and over. So all light counts as it does in pictures: lights sampled, the rest followed.
+#include "cli/command.h"
+#include "render/engine.h"
+#include "ri/reader.h"
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <thread>
+
+namespace alpenglow::cli {
+namespace {
+
+/// Keeps the last frame of the streams.
+struct Keeper final : scene::FrameConsumer {
+    std::shared_ptr<const scene::Frame> frame;
+    void render(std::shared_ptr<const scene::Frame> f) override { frame = std::move(f); }
+    void makeTexture(const std::string&, const std::vector<std::string>&, const scene::ParamList&, const SourcePlace&) override {}
+};
+
+/// The largest distance of a point of the scene from `centre`, roughly: from the points and radii as given.
+double extentFrom(const scene::Frame& f, const Vec3d& centre) {
+    double r = 0;
+    for (const auto& p : f.primitives) {
+        const Matrix& m = p->toWorld.first();
+        auto meet = [&](Vec3d q) {
+            double d = length(transformPoint(m, q) - centre);
+            if (std::isfinite(d)) r = std::max(r, d);
+        };
+        if (const scene::Param* q = scene::find(p->params, "P"))
+            for (size_t i = 0; i + 2 < q->numbers.size(); i += 3) meet({q->numbers[i], q->numbers[i + 1], q->numbers[i + 2]});
+        else if (!p->numbers.empty())
+            for (int k = 0; k < 3; ++k) meet(Vec3d(k == 0, k == 1, k == 2) * double(p->numbers[0]));
+    }
+    return r > 0 ? r : 1;
+}
+
+struct Arguments {
+    std::string scene, point, normal;
+    uint32_t spp = 4096;
+    uint64_t seed = 0;
+    int threads = 0, maxDepth = -1, lanes = 16;
+    bool unbiased = false;
+    std::vector<std::string> searchPaths;
+};
+
+int probe(const Arguments& a) {
+    auto p = parseNumbers(a.point, 3), n = parseNumbers(a.normal, 3);
+    if (!p) throw CLI::ValidationError("point", "takes X,Y,Z in world space");
+    if (!n) throw CLI::ValidationError("normal", "takes NX,NY,NZ in world space");
+    Vec3d P((*p)[0], (*p)[1], (*p)[2]), N((*n)[0], (*n)[1], (*n)[2]);
+    if (!(length(N) > 0)) throw CLI::ValidationError("normal", "must not be zero");
+    N = normalize(N);
+    Diagnostics diags(printer());
+    Keeper keeper;
+    ri::ReaderOptions options;
+    options.searchPaths = folders(a.searchPaths);
+    ri::RibReader(options, keeper, diags).readFile(a.scene);
+    if (!keeper.frame) {
+        diags.report(Severity::Error, Rie::MissingData, {a.scene}, "there is no world in it");
+        return kNothingRendered;
+    }
+    auto frame = std::make_shared<scene::Frame>(*keeper.frame);
+    frame->options.hider = "path";
+    frame->options.imager = nullptr;
+
+    double size = 1e-4 * extentFrom(*frame, P), above = 0.25 * size;
+    Vec3d helper = std::fabs(N.x) < 0.5 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
+    Vec3d u = normalize(cross(helper, N)), v = cross(N, u), C = P + N * above;
+    auto attributes = std::make_shared<scene::Attributes>();
+    std::set<int> lights;
+    for (const auto& q : frame->primitives) lights.insert(q->attributes->lights.begin(), q->attributes->lights.end());
+    for (const auto& i : frame->instances)
+        if (i.attributes) lights.insert(i.attributes->lights.begin(), i.attributes->lights.end());
+    attributes->lights.assign(lights.begin(), lights.end());
+    auto shader = std::make_shared<scene::ShaderCall>();
+    shader->name = "matte";
+    scene::Param kd, ka;
+    kd.name = "Kd";
+    kd.numbers = {1};
+    ka.name = "Ka";
+    ka.numbers = {0};
+    shader->params = {ka, kd};
+    attributes->surface = shader;
+    auto visible = [&](const char* ray, int value) {
+        scene::Param q;
+        q.name = ray;
+        q.type = scene::Type::Integer;
+        q.numbers = {float(value)};
+        attributes->values[std::string("visibility:") + ray] = q;
+    };
+    visible("camera", 1);
+    for (const char* ray : {"diffuse", "specular", "transmission", "trace", "photon"}) visible(ray, 0);
+    auto quad = std::make_shared<scene::Primitive>();
+    quad->kind = "Polygon";
+    quad->attributes = attributes;
+    scene::Param points;
+    points.name = "P";
+    points.cls = scene::Class::Vertex;
+    points.type = scene::Type::Point;
+    for (auto [s, t] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
+        Vec3d q = C + (u * double(s) + v * double(t)) * size;
+        for (double x : {q.x, q.y, q.z}) points.numbers.push_back(float(x));
+    }
+    quad->params = {points};
+    frame->primitives.push_back(quad);
+
+    transport::Settings t;
+    t.hider = transport::Hider::Path;
+    t.seed = a.seed;
+    t.lanes = a.lanes;
+    t.maxDepth = a.maxDepth;
+    t.unbiased = a.unbiased;
+    t.shaderPaths = folders(a.searchPaths);
+    for (std::string& e : environmentShaders()) t.shaderPaths.push_back(std::move(e));
+    size_t slash = a.scene.find_last_of('/');
+    std::string folder = slash == std::string::npos ? "." : a.scene.substr(0, slash + 1);
+    t.texturePaths = folders(a.searchPaths);
+    t.shaderPaths.push_back(folder);
+    t.texturePaths.push_back(folder);
+    t.texturePaths.push_back(".");
+    if (std::string s = shippedShaders(); !s.empty()) t.shaderPaths.push_back(s);
+    render::Engine engine = render::transportEngine();
+    auto world = engine.build(frame, t, diags);
+    if (!world) return kNothingRendered;
+
+    // Samples in up to 64 blocks, each a stratified sequence of its own: their means are independent, so their spread is the error.
+    uint32_t blocks = std::min(64u, std::max(2u, a.spp)), each = std::max(1u, (a.spp + blocks - 1) / blocks);
+    const Matrix& toCamera = frame->options.worldToCamera.first();
+    transport::CameraRay ray;
+    ray.origin = Vec3(transformPoint(toCamera, C + N * size));
+    ray.direction = Vec3(normalize(transformVector(toCamera, -N)));
+    ray.width = float(size);
+    ray.time = frame->options.shutterOpen;
+    const volatile int32_t* stop = watchInterrupts();
+    std::vector<Color> means(blocks);
+    std::atomic<uint32_t> next{0}, missed{0};
+    int threads = a.threads > 0 ? a.threads : std::max(1, int(std::thread::hardware_concurrency()));
+    std::vector<std::thread> team;
+    for (int w = 0; w < std::min(threads, int(blocks)); ++w)
+        team.emplace_back([&] {
+            auto tracer = engine.tracer(world, diags);
+            for (uint32_t b; (b = next++) < blocks && !*stop;) {
+                double sum[3] = {0, 0, 0};
+                for (uint32_t begin = 0; begin < each; begin += 1024) {
+                    std::vector<transport::CameraRay> rays;
+                    for (uint32_t s = begin; s < std::min(each, begin + 1024); ++s) {
+                        rays.push_back(ray);
+                        rays.back().px = int(b);
+                        rays.back().sample = s;
+                    }
+                    std::vector<transport::SampleResult> results(rays.size());
+                    if (!tracer->trace(rays, results, stop)) return;
+                    for (const auto& r : results) {
+                        for (int k = 0; k < 3; ++k) sum[k] += double(r.color[k]);
+                        if (r.z >= 1e38f) ++missed;
+                    }
+                }
+                for (int k = 0; k < 3; ++k) means[b][k] = float(sum[k] / each);
+            }
+        });
+    for (std::thread& th : team) th.join();
+    if (*stop) return kInterrupted;
+    if (missed) {
+        diags.report(Severity::Error, Rie::Math, {}, "the point could not be seen: it is lost in the rounding of the scene's coordinates");
+        return kNothingRendered;
+    }
+    double mean[3] = {0, 0, 0}, error[3] = {0, 0, 0};
+    for (int k = 0; k < 3; ++k) {
+        for (const Color& c : means) mean[k] += double(c[k]) / blocks;
+        for (const Color& c : means) error[k] += (double(c[k]) - mean[k]) * (double(c[k]) - mean[k]);
+        error[k] = std::sqrt(error[k] / (double(blocks) * (blocks - 1)));
+    }
+    std::printf("%.7g %.7g %.7g  %.3g %.3g %.3g\n", mean[0], mean[1], mean[2], error[0], error[1], error[2]);
+    return diags.errors() ? kDoneWithErrors : kDone;
+}
+
+} // namespace
+
+void addProbe(CLI::App& app, int* status) {
+    auto a = std::make_shared<Arguments>();
+    CLI::App* c = app.add_subcommand("probe", "Print the radiance leaving a white diffuse point of a scene, and its standard error");
+    c->add_option("scene", a->scene, "RIB file; - is standard input")->required();
+    c->add_option("point", a->point, "X,Y,Z in world space")->required();
+    c->add_option("normal", a->normal, "NX,NY,NZ: the side that is lit")->required();
+    c->add_option("--spp", a->spp, "Samples")->check(CLI::Range(2u, 1u << 26))->type_name("N")->capture_default_str();
+    c->add_option("--seed", a->seed, "Seed of all random numbers")->type_name("N");
+    c->add_option("--threads", a->threads, "Threads; all cores when not given")->check(CLI::Range(1, 1024))->type_name("N");
+    c->add_option("--lanes", a->lanes, "Points a shader works on at once")->check(CLI::IsMember({4, 8, 16}))->type_name("N");
+    c->add_option("--max-depth", a->maxDepth, "Greatest number of bounces")->check(CLI::Range(0, 10000))->type_name("N");
+    c->add_flag("--unbiased", a->unbiased, "Do not tame shaders that reflect more than they receive");
+    c->add_option("--searchpath", a->searchPaths, "Folders for shaders, textures and archives, separated by :")->type_name("DIRS")->allow_extra_args(false);
+    c->footer("Prints R G B and the standard errors of the three. Path tracing, whatever the scene's hider.\n\n"
+              "Example: alpenglow probe examples/muttenzer_box.rib 0,-1.25,0 0,1,0 --spp 65536");
+    c->callback([a, status] { *status = probe(*a); });
+}
+
+} // namespace alpenglow::cli

@@ -1,0 +1,210 @@
+// alpenglow render: scenes to pictures.
+#include "base/limits.h"
+#include "cli/command.h"
+#include "render/renderer.h"
+#include "ri/reader.h"
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <memory>
+#include <sys/stat.h>
+#include <thread>
+
+namespace alpenglow::cli {
+namespace {
+
+struct Arguments {
+    render::RenderSettings settings;
+    std::vector<std::string> scenes, searchPaths, displays, rib;
+    std::string format, crop, samples, frames, pixel, preset, progress = "auto";
+    float gamma = 0;
+    bool noDirect = false, noIndirect = false, watch = false, quiet = false, verbose = false;
+    std::vector<int> frameList;
+};
+
+void checkLate(Arguments& a, const CLI::App& app) {
+    render::RenderSettings& s = a.settings;
+    auto wrong = [](const std::string& option, const std::string& what) { throw CLI::ValidationError(option, what); };
+    if (!a.format.empty()) {
+        auto v = parseSize(a.format);
+        if (!v) wrong("--format", "takes WIDTHxHEIGHT, for example 640x480");
+        s.width = (*v)[0];
+        s.height = (*v)[1];
+        if (s.width > limits::kImageSide || s.height > limits::kImageSide) wrong("--format", "a side is too long");
+    }
+    if (!a.crop.empty()) {
+        auto v = parseNumbers(a.crop, 4);
+        if (!v || !((*v)[0] <= (*v)[1] && (*v)[2] <= (*v)[3])) wrong("--crop", "takes X0,X1,Y0,Y1, each in 0..1, lower before upper");
+        s.crop = {float((*v)[0]), float((*v)[1]), float((*v)[2]), float((*v)[3])};
+    }
+    if (!a.samples.empty()) {
+        unsigned long b = 0, e = 0;
+        int end = 0;
+        if (std::sscanf(a.samples.c_str(), "%9lu:%9lu%n", &b, &e, &end) != 2 || size_t(end) != a.samples.size() || e <= b ||
+            e > limits::kSamplesPerPixel)
+            wrong("--samples", "takes A:B with A < B: samples A to B-1 of every pixel");
+        s.samples = render::SampleRange{uint32_t(b), uint32_t(e)};
+    }
+    if (!a.frames.empty()) {
+        auto v = parseFrames(a.frames);
+        if (!v) wrong("--frames", "takes a list like 1,4-6");
+        a.frameList = *v;
+    }
+    if (!a.pixel.empty()) {
+        auto v = parseNumbers(a.pixel);
+        if (!v || v->size() < 2 || v->size() > 3) wrong("--pixel", "takes X,Y or X,Y,SAMPLE");
+        for (double d : *v)
+            if (d != std::floor(d) || std::fabs(d) > 1e9 || (v->size() == 3 && v->back() < 0)) wrong("--pixel", "takes whole numbers");
+        s.pixel = {int((*v)[0]), int((*v)[1])};
+        if (v->size() == 3) s.pixelSample = uint32_t((*v)[2]);
+    }
+    for (const std::string& d : a.displays) {
+        size_t colon = d.find(':');
+        if (colon == std::string::npos || colon == 0 || colon + 1 == d.size()) wrong("--display", "takes TYPE:NAME, for example png:view.png");
+        s.displays.emplace_back(d.substr(0, colon), d.substr(colon + 1));
+    }
+    if (app.count("--gamma")) s.gamma = a.gamma;
+    s.direct = !a.noDirect;
+    s.indirect = !a.noIndirect;
+    if (s.resume && s.checkpoint.empty()) wrong("--resume", "needs --checkpoint FILE");
+    if (a.preset == "slproject") {
+        if (s.hider.empty()) s.hider = "path";
+        if (!s.gamma) s.gamma = 2.2f;
+        if (!app.count("--sample-clamp")) s.sampleClamp = 3;
+        s.localRoulette = true;
+        if (s.output.empty() && s.displays.empty()) s.savePattern = "Pathtraced_<spp>_<no>.png";
+    }
+    s.progress = *render::progressModeByName(a.progress);
+    if (a.quiet && !app.count("--progress")) s.progress = render::ProgressMode::None;
+    s.quiet = a.quiet;
+    s.texturePaths = s.shaderPaths = folders(a.searchPaths);
+    for (std::string& e : environmentShaders()) s.shaderPaths.push_back(std::move(e));
+    s.shippedShaders = shippedShaders();
+}
+
+int renderOnce(const Arguments& a, const volatile int32_t* stop) {
+    Diagnostics diags(printer(a.quiet ? Severity::Error : a.verbose ? Severity::Info : Severity::Warning));
+    render::RenderSettings settings = a.settings;
+    settings.stop = stop;
+    render::Progress progress(settings.pixel ? render::ProgressMode::None : settings.progress);
+    render::Renderer renderer(settings, render::transportEngine(), diags, progress,
+                              [](const std::string& line) { std::printf("%s\n", line.c_str()); });
+    ri::ReaderOptions options;
+    options.searchPaths = folders(a.searchPaths);
+    options.allowExec = settings.allowExec;
+    options.frames = a.frameList;
+    options.overrides = [&](scene::Options& o) { renderer.override(o); };
+    bool memory = false;
+    try {
+        ri::RibReader reader(options, renderer, diags);
+        for (const std::string& r : a.rib) reader.readMemory(r, "--rib");
+        for (const std::string& s : a.scenes) {
+            if (*stop) break;
+            renderer.setScene(s);
+            reader.readFile(s);
+        }
+    } catch (const std::bad_alloc&) {
+        memory = true;
+        diags.report(Severity::Severe, Rie::NoMem, {}, "out of memory");
+    }
+    const auto& outcome = renderer.outcome();
+    bool interrupted = outcome.interrupted || *stop;
+    if (outcome.rendered == 0 && outcome.refused == 0 && outcome.textures == 0 && !interrupted)
+        diags.report(Severity::Error, Rie::MissingData, {}, "no world was rendered: there is none between WorldBegin and WorldEnd in what was read");
+    renderer.writeStats();
+    if (!a.quiet && outcome.rendered > 0 && !settings.pixel) std::fputs(toTable(renderer.stats()).c_str(), stderr);
+    if (interrupted) return kInterrupted;
+    if (outcome.outputFailed) return kOutputFailed;
+    memory |= outcome.outOfMemory;
+    for (const Diagnostic& d : diags.all()) memory |= d.severity == Severity::Severe && (d.code == Rie::NoMem || d.code == Rie::Limit);
+    if (memory) return kLimit;
+    if (outcome.rendered == 0 && (outcome.refused > 0 || outcome.textures == 0)) return kNothingRendered;
+    return diags.errors() ? kDoneWithErrors : kDone;
+}
+
+/// When the scenes were last changed: any difference is a change.
+std::vector<int64_t> timesOf(const std::vector<std::string>& files) {
+    std::vector<int64_t> t;
+    for (const std::string& f : files) {
+        struct stat s;
+        bool there = stat(f.c_str(), &s) == 0;
+        t.push_back(there ? int64_t(s.st_mtim.tv_sec) * 1000000000 + s.st_mtim.tv_nsec : 0);
+        t.push_back(there ? int64_t(s.st_size) : -1);
+    }
+    return t;
+}
+
+int renderAll(const Arguments& a) {
+    const volatile int32_t* stop = watchInterrupts();
+    if (!a.watch) return renderOnce(a, stop);
+    while (true) {
+        auto before = timesOf(a.scenes);
+        int status = renderOnce(a, stop);
+        if (*stop) return status;
+        std::fputs("alpenglow: waiting for the scene to change; Ctrl-C ends\n", stderr);
+        while (timesOf(a.scenes) == before) {
+            if (*stop) return status;
+            std::this_thread::sleep_for(std::chrono::milliseconds(200));
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(100)); // let the editor finish
+    }
+}
+
+} // namespace
+
+void addRender(CLI::App& app, int* status) {
+    auto a = std::make_shared<Arguments>();
+    render::RenderSettings& s = a->settings;
+    CLI::App* c = app.add_subcommand("render", "Render scenes (RIB files; - reads standard input)");
+    c->add_option("scenes", a->scenes, "RIB files, ASCII, binary or gzipped; - is standard input")->required();
+
+    c->add_option("-o", s.output, "Write one picture FILE instead of the scene's displays; the extension chooses the format (.exr .png "
+                                  ".tif). # in the name becomes the frame number")->type_name("FILE")->group("Pictures");
+    c->add_option("--display", a->displays, "Add a display, for example png:view.png")->type_name("TYPE:NAME")->allow_extra_args(false)->group("Pictures");
+    c->add_option("--format", a->format, "Size of the picture in pixels")->type_name("WxH")->group("Pictures");
+    c->add_option("--resolution-factor", s.resolutionFactor, "Scale both sides of the picture")->check(CLI::Range(1e-4, 1e4))->type_name("F")->group("Pictures");
+    c->add_option("--crop", a->crop, "Render only this part, in fractions of the picture from its upper left")->type_name("X0,X1,Y0,Y1")->group("Pictures");
+    c->add_option("--gamma", a->gamma, "Display gamma instead of Exposure's")->check(CLI::Range(0.01, 100.0))->type_name("G")->group("Pictures");
+    c->add_option("--frames", a->frames, "Only these frames, for example 1,4-6")->type_name("LIST")->group("Pictures");
+
+    c->add_option("--hider", s.hider, "hidden, raytrace or path, instead of the scene's Hider")
+        ->check(CLI::IsMember({"hidden", "raytrace", "path"}))->type_name("NAME")->group("Quality");
+    c->add_option("--spp", s.spp, "Samples per pixel instead of PixelSamples (path without either: 64)")->check(CLI::Range(1u, limits::kSamplesPerPixel))->type_name("N")->group("Quality");
+    c->add_option("--noise", s.noise, "path: go on until the mean relative error of the pixels is RSE, for example 0.01")->check(CLI::PositiveNumber)->type_name("RSE")->group("Quality");
+    c->add_option("--time", s.seconds, "path: go on for about so long")->check(CLI::PositiveNumber)->type_name("SECONDS")->group("Quality");
+    c->add_option("--samples", a->samples, "path: only samples A to B-1 of every pixel; a part file is written beside the picture, for merge")->type_name("A:B")->group("Quality");
+    c->add_option("--seed", s.seed, "Seed of all random numbers; same seed, same bits")->type_name("N")->group("Quality");
+    c->add_option("--max-depth", s.maxDepth, "Greatest number of bounces")->check(CLI::Range(0, limits::kPathDepth))->type_name("N")->group("Quality");
+    c->add_option("--sample-clamp", s.sampleClamp, "Scale samples brighter than X down to it: less noise, but a bias")->check(CLI::NonNegativeNumber)->type_name("X")->group("Quality");
+    c->add_flag("--no-direct", a->noDirect, "Leave direct light out")->group("Quality");
+    c->add_flag("--no-indirect", a->noIndirect, "Leave diffuse interreflection out")->group("Quality");
+    c->add_flag("--unbiased", s.unbiased, "Do not tame shaders that reflect more than they receive")->group("Quality");
+    c->add_option("--preset", a->preset, "slproject: path, gamma 2.2, sample clamp 3, local roulette, box filter, Pathtraced_<spp>_<no>.png")
+        ->check(CLI::IsMember({"slproject"}))->type_name("NAME")->group("Quality");
+
+    c->add_option("--threads", s.threads, "Threads; all cores when not given. The picture does not depend on it")->check(CLI::Range(1, 1024))->type_name("N")->group("Machine");
+    c->add_option("--lanes", s.lanes, "Points a shader works on at once; the picture does not depend on it")->check(CLI::IsMember({4, 8, 16}))->type_name("N")->group("Machine");
+    c->add_option("--checkpoint", s.checkpoint, "path: keep the samples so far in FILE, every half minute and at the end")->type_name("FILE")->group("Machine");
+    c->add_flag("--resume", s.resume, "Begin with the samples in the checkpoint")->group("Machine");
+    c->add_option("--stats", s.statsFile, "Write figures of the render as JSON")->type_name("FILE.json")->group("Machine");
+    c->add_option("--pixel", a->pixel, "Print red, green, blue and coverage of one pixel, or of one of its samples, and write no picture")->type_name("X,Y[,SAMPLE]")->group("Machine");
+    c->add_flag("--watch", a->watch, "Render again whenever the scene file changes")->group("Machine");
+
+    c->add_option("--searchpath", a->searchPaths, "Folders for shaders, textures and archives, separated by :")->type_name("DIRS")->allow_extra_args(false)->group("Input");
+    c->add_option("--rib", a->rib, "Requests that are read before the scene")->type_name("'REQUESTS'")->allow_extra_args(false)->group("Input");
+    c->add_flag("--allow-exec", s.allowExec, "Let the scene run programs and load plug-ins")->group("Input");
+    c->add_flag("--allow-write", s.allowWrite, "Let the scene write outside the current folder")->group("Input");
+
+    c->add_option("--progress", a->progress, "auto, bar, plain or none")->check(CLI::IsMember({"auto", "bar", "plain", "none"}))->type_name("MODE")->group("Messages");
+    c->add_flag("-q,--quiet", a->quiet, "Errors only: no progress, no warnings, no table at the end")->group("Messages");
+    c->add_flag("-v,--verbose", a->verbose, "Notes too")->group("Messages");
+    c->footer("Examples:\n  alpenglow scene.rib                          as the scene says\n"
+              "  alpenglow render --hider path --noise 0.02 -o out.exr scene.rib\n"
+              "  alpenglow render --samples 0:32 -o a.exr scene.rib    and 32:64 to b.exr elsewhere; then merge a.exr b.exr -o whole.exr\n"
+              "Ctrl-C keeps the passes that are whole and writes the picture; a second Ctrl-C ends at once.");
+    c->callback([a, c, status] {
+        checkLate(*a, *c);
+        *status = renderAll(*a);
+    });
+}
+
+} // namespace alpenglow::cli

@@ -1,22 +1,23 @@
 // Reads every snippet file (*.rsl) below tests/language and proves what it says. A file holds
-//   // setup: STATEMENTS            before every following expression of the file (several lines add up)
+//   // setup: STATEMENTS            before every following expression of the file (several lines add up), until
+//   // reset
 //   // expect: EXPR => VALUE        the value as %.7g numbers separated by spaces (or one number for all components), or the text
 //   // expect: EXPR => VALUE ~ 1e-6 within an absolute tolerance
 //   // expect string: EXPR => TEXT  for strings; also "expect color:", "expect point:" ... to choose the type of the result
-//   // prints: EXPR => TEXT         the statement prints exactly TEXT (\n for a line end)
-//   or a whole shader with
-//   // error LINE:COLUMN: TEXT      each such error must be reported, and no other; LINE counts in the file itself
+//   // prints: STATEMENT => TEXT    the statement prints exactly TEXT (\n for a line end)
+// and whole shaders, each begun by
+//   // program: NAME                (not needed for the first) whose text follows, and about it
+//   // gives: OUTPUT => VALUE       the shader's output at the point, parameters at their defaults
+//   // error LINE:COLUMN: TEXT      each such error must be reported, and no other; LINE counts in the snippet file
 //   // warning LINE:COLUMN: TEXT
-// All expectations of a file go into one shader with one output each, which runs at 4, 8 and 16 lanes, with uniform inputs as
-// numbers (S) and in lanes (V), at O0 and O2: the bits must be the same everywhere.
-#include "rsl/evaluate.h"
+// All expressions of a file go into one shader with one output each, which runs at 4, 8 and 16 lanes, with uniform inputs as numbers (S)
+// and in lanes (V), at O0 and O2: the bits must be the same everywhere. Because the passes compute with constants, a second shader has every
+// number of every expression behind a function whose value only the machine knows, and must give the same values.
+#include "points.h"
+#include "snippets.h"
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <gtest/gtest.h>
 #include <sstream>
 
@@ -25,106 +26,14 @@ namespace fs = std::filesystem;
 namespace alpenglow::rsl {
 namespace {
 
-struct Expectation {
-    int line;
-    std::string setup, expression, value, type;
-    double tolerance = -1;
-    bool prints = false;
-};
-struct Problem {
-    int line, column;
-    std::string text;
-    bool warning;
-};
-
-std::string trim(const std::string& s) {
-    const size_t a = s.find_first_not_of(" \t\r"), b = s.find_last_not_of(" \t\r");
-    return a == std::string::npos ? "" : s.substr(a, b - a + 1);
-}
-
-struct Snippets {
-    std::vector<Expectation> expectations;
-    std::vector<Problem> problems;
-    std::string source;
-    std::vector<std::string> broken; ///< lines that look like directives but are none
-};
-
-Snippets parse(const fs::path& path) {
-    Snippets f;
-    std::ifstream in(path);
-    std::string line, setup;
-    for (int n = 1; std::getline(in, line); n++) {
-        f.source += line + "\n";
-        const std::string t = trim(line);
-        if (t.rfind("// setup:", 0) == 0) {
-            setup += t.substr(9) + "\n";
-        } else if (t == "// reset") {
-            setup.clear();
-        } else if (t.rfind("// expect", 0) == 0 || t.rfind("// prints:", 0) == 0) {
-            const size_t colon = t.find(':'), arrow = t.rfind("=>");
-            Expectation e;
-            e.line = n;
-            e.setup = setup;
-            e.prints = t.rfind("// prints:", 0) == 0;
-            if (colon == std::string::npos || arrow == std::string::npos || arrow < colon) {
-                f.broken.push_back(std::to_string(n) + ": " + t);
-                continue;
-            }
-            if (!e.prints) e.type = trim(t.substr(9, colon - 9));
-            e.expression = trim(t.substr(colon + 1, arrow - colon - 1));
-            e.value = trim(t.substr(arrow + 2));
-            if (size_t tilde = e.value.find(" ~ "); tilde != std::string::npos && e.type != "string" && !e.prints) {
-                e.tolerance = std::atof(e.value.c_str() + tilde + 3);
-                e.value = trim(e.value.substr(0, tilde));
-            }
-            f.expectations.push_back(e);
-        } else if (t.rfind("// error ", 0) == 0 || t.rfind("// warning ", 0) == 0) {
-            Problem p{0, 0, {}, t[3] == 'w'};
-            const char* s = t.c_str() + (p.warning ? 11 : 9);
-            char* end = nullptr;
-            p.line = int(std::strtol(s, &end, 10));
-            if (*end == ':') p.column = int(std::strtol(end + 1, &end, 10));
-            if (*end == ':') p.text = trim(end + 1);
-            if (p.line <= 0 || p.text.empty()) f.broken.push_back(std::to_string(n) + ": " + t);
-            f.problems.push_back(p);
-        }
-    }
-    return f;
-}
-
-std::vector<KernelOptions> configurations() {
-    std::vector<KernelOptions> all;
-    for (int lanes : {16, 8, 4})
-        for (bool mixed : {false, true})
-            for (int optimize : {2, 0}) {
-                KernelOptions o;
-                o.lanes = lanes;
-                o.mixed = mixed;
-                o.optimize = optimize;
-                all.push_back(o);
-            }
-    return all;
-}
-
-std::string describe(const KernelOptions& o) {
-    return std::to_string(o.lanes) + " lanes, " + (o.mixed ? "V" : "S") + ", O" + std::to_string(o.optimize);
-}
-
-bool sameBits(const std::vector<float>& a, const std::vector<float>& b) {
-    if (a.size() != b.size()) return false;
-    for (size_t i = 0; i < a.size(); i++)
-        if (std::bit_cast<uint32_t>(a[i]) != std::bit_cast<uint32_t>(b[i]) && !(std::isnan(a[i]) && std::isnan(b[i])))
-            return false;
-    return true;
-}
+const char* const kVeil = "float veil(float x) { return (u < 2) ? x : x + 1; }\n";
 
 std::string typeOf(const Expectation& e, ShaderCompiler& compiler) {
     if (!e.type.empty()) return e.type;
     for (const char* type : {"float", "color", "point", "vector", "normal", "matrix", "string"}) {
         Diagnostics quiet;
         const std::string zero = std::string(type) == "string" ? "\"\"" : "0";
-        if (compiler.loadText(std::string("surface probe(output varying ") + type + " r = " + zero + ";) { " + e.setup +
-                                  "\n r = (" + e.expression + "); }\n",
+        if (compiler.loadText(std::string("surface probe(output varying ") + type + " r = " + zero + ";) { " + e.setup + "\n r = (" + e.expression + "); }\n",
                               "probe", quiet))
             return type;
     }
@@ -154,99 +63,132 @@ void compare(const Expectation& e, const std::string& type, const std::vector<fl
     }
 }
 
+std::unique_ptr<ShaderCompiler> makeCompiler() {
+    ShaderCompiler::Settings settings;
+    settings.useDefaultCache = false;
+    return std::make_unique<ShaderCompiler>(settings);
+}
+
+/// A shader in every configuration: outputs[k] has the value that cases[k] says, with the same bits everywhere.
+void runEverywhere(ShaderCompiler& compiler, const std::shared_ptr<const CompiledShader>& shader, const std::vector<std::string>& outputs,
+                   const std::vector<const Expectation*>& cases, const std::vector<std::string>& types, const std::string& file, Diagnostics& d) {
+    const auto defaults = compiler.parameterDefaults(shader, d);
+    std::vector<std::vector<float>> reference;
+    for (KernelOptions o : configurations()) {
+        SCOPED_TRACE(describe(o));
+        o.outputs = outputs;
+        const auto kernel = compiler.kernel(shader, o, d);
+        ASSERT_TRUE(kernel);
+        const int n = kernel->lanes() + 3;
+        std::vector<std::vector<float>> out;
+        ASSERT_TRUE(runPoints(*kernel, o.mixed, n, evaluationPoint(), defaults, out, d));
+        ASSERT_EQ(out.size(), cases.size());
+        for (size_t k = 0; k < cases.size(); k++) {
+            SCOPED_TRACE(file + ":" + std::to_string(cases[k]->line));
+            std::vector<float> last;
+            for (size_t c = 0; c < out[k].size(); c += size_t(n)) last.push_back(out[k][c + size_t(n) - 1]);
+            for (size_t p = 0; p < out[k].size(); p++)
+                ASSERT_TRUE(sameBits(out[k][p], last[p / size_t(n)])) << cases[k]->expression << ": points that are alike differ";
+            if (reference.size() < cases.size()) {
+                const ir::Kind kind = kernel->outputs()[k].kind;
+                compare(*cases[k], types.empty() ? (kind == ir::Kind::String ? "string" : "") : types[k], last);
+            } else {
+                bool same = last.size() == reference[k].size();
+                for (size_t c = 0; same && c < last.size(); c++) same = sameBits(last[c], reference[k][c]);
+                EXPECT_TRUE(same) << cases[k]->expression << ": " << formatNumbers(last) << " but " << formatNumbers(reference[k]) << " at 16 lanes, S, O2";
+            }
+            out[k] = last;
+        }
+        if (reference.empty()) reference = out;
+    }
+}
+
+/// Exactly the expected errors and warnings.
+void checkProblems(const WholeProgram& program, const std::vector<Diagnostic>& messages) {
+    std::vector<bool> used(program.problems.size(), false);
+    for (const Diagnostic& m : messages) {
+        if (m.severity == Severity::Info) continue;
+        bool expected = false;
+        for (size_t k = 0; k < used.size() && !expected; k++) {
+            const Problem& p = program.problems[k];
+            if (used[k] || p.warning != (m.severity == Severity::Warning) || p.line != m.place.line || (p.column && p.column != m.place.column)) continue;
+            if ((m.message + " " + m.hint).find(p.text) == std::string::npos) continue;
+            used[k] = expected = true;
+        }
+        EXPECT_TRUE(expected) << "not expected: " << toString(m);
+    }
+    for (size_t k = 0; k < used.size(); k++) {
+        const Problem& p = program.problems[k];
+        EXPECT_TRUE(used[k]) << "not reported: " << p.line << ":" << p.column << ": " << p.text;
+    }
+}
+
 class Language : public testing::TestWithParam<std::string> {};
 
 TEST_P(Language, Snippets) {
     const fs::path path = fs::path(ALPENGLOW_SOURCE_DIR) / "tests/language" / GetParam();
-    const Snippets f = parse(path);
+    const std::string file = path.filename().string();
+    const Snippets f = parseSnippets(path);
     for (const auto& b : f.broken) ADD_FAILURE() << path << ":" << b;
-    ASSERT_FALSE(f.expectations.empty() && f.problems.empty()) << "nothing is expected in " << path;
-    ShaderCompiler::Settings settings;
-    settings.useDefaultCache = false;
-    ShaderCompiler compiler(settings);
-    if (!f.problems.empty()) {
+    ASSERT_FALSE(f.expectations.empty() && f.programs.empty()) << "nothing is expected in " << path;
+    const auto compiler = makeCompiler();
+    for (const WholeProgram& program : f.programs) {
+        SCOPED_TRACE(file + ":" + std::to_string(program.line) + " " + program.name);
         Diagnostics d;
-        compiler.loadText(f.source, "snippet", d);
-        std::vector<bool> used(f.problems.size(), false);
-        for (const auto& m : d.all()) {
-            bool expected = false;
-            for (size_t k = 0; k < f.problems.size(); k++) {
-                const Problem& p = f.problems[k];
-                if (used[k] || p.warning != (m.severity == Severity::Warning) || p.line != m.place.line ||
-                    (p.column && p.column != m.place.column))
-                    continue;
-                if ((m.message + " " + m.hint).find(p.text) == std::string::npos) continue;
-                used[k] = expected = true;
-                break;
+        const auto shader = compiler->loadText(program.source, "snippet", d);
+        const bool fails = std::any_of(program.problems.begin(), program.problems.end(), [](const Problem& p) { return !p.warning; });
+        EXPECT_EQ(shader == nullptr, fails);
+        EXPECT_FALSE(program.gives.empty() && program.problems.empty()) << "nothing is said about this program";
+        if (shader && !program.gives.empty()) {
+            std::vector<std::string> outputs;
+            std::vector<const Expectation*> cases;
+            for (const Expectation& e : program.gives) {
+                outputs.push_back(e.expression);
+                cases.push_back(&e);
             }
-            if (!expected && m.severity != Severity::Info) { ADD_FAILURE() << "not expected: " << toString(m); }
+            runEverywhere(*compiler, shader, outputs, cases, {}, file, d);
         }
-        for (size_t k = 0; k < used.size(); k++)
-            EXPECT_TRUE(used[k]) << "not reported: " << f.problems[k].line << ":" << f.problems[k].column << ": "
-                                 << f.problems[k].text;
+        checkProblems(program, d.all());
     }
-    // One function a case keeps their variables apart; globals are visible inside as in a shader's body.
-    std::string parameters, body;
-    std::vector<std::string> types;
-    std::vector<const Expectation*> cases, prints;
+    // One block a case keeps their variables apart.
+    std::string parameters, plain, behind;
+    std::vector<std::string> types, names;
+    std::vector<const Expectation*> cases;
+    Diagnostics d([](const Diagnostic& m) {
+        if (m.severity >= Severity::Error) ADD_FAILURE() << toString(m);
+    });
     for (const auto& e : f.expectations) {
-        SCOPED_TRACE(path.filename().string() + ":" + std::to_string(e.line));
+        SCOPED_TRACE(file + ":" + std::to_string(e.line));
         if (e.prints) {
-            prints.push_back(&e);
+            std::string expected;
+            for (size_t i = 0; i < e.value.size(); i++)
+                if (e.value.compare(i, 2, "\\n") == 0) expected += '\n', i++;
+                else expected += e.value[i];
+            for (const KernelOptions& o : configurations()) {
+                const Evaluation r = evaluate(*compiler, e.setup, e.expression, o, d);
+                EXPECT_TRUE(r.ok);
+                EXPECT_EQ(r.printed, expected) << describe(o);
+            }
             continue;
         }
-        const std::string type = typeOf(e, compiler);
-        if (type.empty()) {
-            Diagnostics d([](const Diagnostic& m) { ADD_FAILURE() << toString(m); });
-            compiler.loadText("surface probe(output varying float r = 0;) { " + e.setup + "\n r = (" + e.expression + "); }\n",
-                              "probe", d);
+        const std::string type = typeOf(e, *compiler), zero = type == "string" ? "\"\"" : "0";
+        if (type.empty() || !compiler->loadText("surface probe(output varying " + type + " r = " + zero + ";) { " + e.setup + "\n r = (" + e.expression + "); }\n", "probe", d)) {
+            ADD_FAILURE() << "does not compile: " << e.expression;
             continue;
         }
-        const std::string name = "r" + std::to_string(cases.size());
-        parameters += "output varying " + type + " " + name + " = " + (type == "string" ? "\"\"" : "0") + ";\n";
-        body += "{ " + e.setup + "\n" + name + " = (" + e.expression + "); }\n";
+        names.push_back("r" + std::to_string(cases.size()));
+        parameters += "output varying " + type + " " + names.back() + " = " + zero + ";\n";
+        plain += "{ " + e.setup + "\n" + names.back() + " = (" + e.expression + "); }\n";
+        behind += "{ " + e.setup + "\n" + names.back() + " = (" + veiled(e.expression) + "); }\n";
         types.push_back(type);
         cases.push_back(&e);
     }
-    Diagnostics d([](const Diagnostic& m) {
-        if (m.severity >= Severity::Error) { ADD_FAILURE() << toString(m); }
-    });
-    if (!cases.empty()) {
-        auto shader = compiler.loadText("surface cases(" + parameters + ") {\n" + body + "}\n", path.filename().string(), d);
+    if (cases.empty()) return;
+    for (const bool veil : {false, true}) {
+        SCOPED_TRACE(veil ? "numbers unknown to the compiler" : "numbers as written");
+        const auto shader = compiler->loadText("surface cases(" + parameters + ") {\n" + (veil ? kVeil + behind : plain) + "}\n", file, d);
         ASSERT_TRUE(shader);
-        std::vector<std::vector<float>> reference;
-        for (KernelOptions o : configurations()) {
-            SCOPED_TRACE(describe(o));
-            for (size_t k = 0; k < cases.size(); k++) o.outputs.push_back("r" + std::to_string(k));
-            auto kernel = compiler.kernel(shader, o, d);
-            ASSERT_TRUE(kernel);
-            std::vector<std::vector<float>> out;
-            std::string printed;
-            const int n = kernel->lanes() + 3;
-            ASSERT_TRUE(runAtPoint(*kernel, o.mixed, n, n - 1, out, &printed, d));
-            ASSERT_EQ(out.size(), cases.size());
-            for (size_t k = 0; k < cases.size(); k++) {
-                SCOPED_TRACE(path.filename().string() + ":" + std::to_string(cases[k]->line));
-                if (reference.size() < cases.size()) compare(*cases[k], types[k], out[k]);
-                else
-                    EXPECT_TRUE(sameBits(out[k], reference[k]))
-                        << cases[k]->expression << ": " << formatNumbers(out[k]) << " but " << formatNumbers(reference[k])
-                        << " at 16 lanes, S, O2";
-            }
-            if (reference.empty()) reference = out;
-        }
-    }
-    for (const Expectation* e : prints) {
-        SCOPED_TRACE(path.filename().string() + ":" + std::to_string(e->line));
-        std::string expected;
-        for (size_t i = 0; i < e->value.size(); i++)
-            if (e->value.compare(i, 2, "\\n") == 0) expected += '\n', i++;
-            else expected += e->value[i];
-        for (const KernelOptions& o : configurations()) {
-            const Evaluation r = evaluate(compiler, e->setup, e->expression, o, d);
-            EXPECT_TRUE(r.ok);
-            EXPECT_EQ(r.printed, expected) << describe(o);
-        }
+        runEverywhere(*compiler, shader, names, cases, types, file, d);
     }
 }
 

@@ -1,0 +1,107 @@
+// Runs kernels on points of the test's choosing.
+#pragma once
+#include "rsl/evaluate.h"
+#include <bit>
+#include <cstdlib>
+#include <functional>
+#include <memory>
+
+namespace alpenglow::rsl {
+
+/// Value of component `component`, jet part `part`, of input `name` at point `point`.
+using PointValue = std::function<float(const std::string& name, int component, int part, int point)>;
+
+/// The point of rsl/evaluate.h.
+inline PointValue evaluationPoint() {
+    return [](const std::string& name, int component, int part, int) {
+        float v = 0;
+        EvaluationPoint::value(name, component, part, v);
+        return v;
+    };
+}
+
+/// out[output][component * n + point]. Uniform inputs of build S take the value of point 0. Spaces are identities; parameters come from
+/// `defaults`. False when the kernel suspends. Services other than those of strings leave zeros.
+inline bool runPoints(const CompiledKernel& k, bool mixed, int n, const PointValue& value, const std::vector<ParameterValue>& defaults,
+                      std::vector<std::vector<float>>& out, Diagnostics& diagnostics) {
+    if (k.facts().suspends) return false;
+    const size_t stride = size_t(n + 63) / 64 * 64;
+    std::vector<std::unique_ptr<float, decltype(&std::free)>> blocks;
+    const auto make = [&](size_t rows) {
+        const size_t count = std::max<size_t>(1, rows) * stride;
+        blocks.emplace_back(static_cast<float*>(std::aligned_alloc(64, count * sizeof(float))), &std::free);
+        std::fill_n(blocks.back().get(), count, 0.0f);
+        return blocks.back().get();
+    };
+    std::vector<const float*> in;
+    for (const ir::Input& i : k.inputs()) {
+        const size_t parts = size_t(inputParts(i)), components = size_t(ir::components(i.kind)), elements = size_t(std::max(1, i.array));
+        const ParameterValue* given = nullptr;
+        for (const ParameterValue& d : defaults)
+            if (i.name == "param:" + d.name) given = &d;
+        float* rows = make(components * parts * elements);
+        for (size_t e = 0; e < elements * components; e++)
+            for (size_t part = 0; part < parts; part++)
+                for (size_t p = 0; p < stride; p++) {
+                    float v = 0;
+                    if (given && part == 0) {
+                        if (i.kind == ir::Kind::String) v = std::bit_cast<float>(e < given->strings.size() ? internString(given->strings[e]) : 0);
+                        else v = e < given->numbers.size() ? given->numbers[e] : 0;
+                    } else if (!given && i.kind == ir::Kind::Matrix) {
+                        v = e % 5 == 0 ? 1.0f : 0.0f;
+                    } else if (!given) {
+                        v = value(i.name, int(e), int(part), i.uniform && !mixed ? 0 : int(std::min<size_t>(p, size_t(n) - 1)));
+                    }
+                    if (i.uniform && !mixed) rows[e] = v;
+                    else rows[(e * parts + part) * stride + p] = v;
+                }
+        in.push_back(rows);
+    }
+    std::vector<float*> results;
+    for (const auto& o : k.outputs()) results.push_back(make(size_t(ir::components(o.kind))));
+    struct Context { const CompiledKernel* kernel; Diagnostics* diagnostics; } context{&k, &diagnostics};
+    KernelCall call{};
+    call.in = in.data();
+    call.out = results.data();
+    call.n = n;
+    call.stride = int32_t(stride);
+    call.strings = k.strings().data();
+    call.user = &context;
+    call.service = [](KernelCall* c, int32_t site, int32_t, uint64_t mask, int32_t lanes, const float* a, float* r) {
+        const auto& x = *static_cast<Context*>(c->user);
+        if (site >= 0) basicService(x.kernel->sites()[size_t(site)], mask, lanes, a, r, *x.diagnostics, [](int, const std::string&) {});
+    };
+    call.lightBegin = [](KernelCall*, int32_t, int32_t, uint64_t, int32_t, const float*) { return int32_t(0); };
+    call.lightFetch = [](KernelCall*, int32_t, int32_t, int32_t, uint64_t, int32_t, float*) { return uint64_t(0); };
+    k.run(&call);
+    out.clear();
+    for (size_t o = 0; o < results.size(); o++) {
+        out.emplace_back();
+        for (int c = 0; c < ir::components(k.outputs()[o].kind); c++)
+            out.back().insert(out.back().end(), results[o] + size_t(c) * stride, results[o] + size_t(c) * stride + n);
+    }
+    return true;
+}
+
+/// 4, 8 and 16 lanes; uniform inputs as numbers and in lanes; optimised and not. The first is what the others are compared with.
+inline std::vector<KernelOptions> configurations() {
+    std::vector<KernelOptions> all;
+    for (int lanes : {16, 8, 4})
+        for (bool mixed : {false, true})
+            for (int optimize : {2, 0}) {
+                KernelOptions o;
+                o.lanes = lanes;
+                o.mixed = mixed;
+                o.optimize = optimize;
+                all.push_back(o);
+            }
+    return all;
+}
+
+inline std::string describe(const KernelOptions& o) {
+    return std::to_string(o.lanes) + " lanes, " + (o.mixed ? "V" : "S") + ", O" + std::to_string(o.optimize);
+}
+
+inline bool sameBits(float a, float b) { return std::bit_cast<uint32_t>(a) == std::bit_cast<uint32_t>(b) || (a != a && b != b); }
+
+} // namespace alpenglow::rsl

@@ -231,7 +231,11 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 if (deep) { ++counters.depthCap; continue; }
                 if (path && set.roulette) {
                     float q = 1;
-                    if (set.localRoulette) {
+                    if (l.ownsTarget) {
+                        // A waiting kernel's use of the result is unknown, and it may ask again: behind the third bounce half of its rays
+                        // end, so that the tree of rays stays finite.
+                        if (from.bounces >= 3) q = rng.one(from.vertex, kRoulette, occurrence) < 0.5f ? 0.5f : 0;
+                    } else if (set.localRoulette) {
                         q = rouletteLocal(from.bounces + 1, l.weight, rng.one(from.vertex, kRoulette, occurrence));
                     } else if (from.bounces + 1 > 3) {
                         float m = std::min(1.f, maxComponent(Color(std::fabs(r.weight.x), std::fabs(r.weight.y), std::fabs(r.weight.z))));

@@ -162,7 +162,7 @@ int shade(const Arguments& a) {
             const auto& i = kernel->inputs()[k];
             float* rows = in[k].data.get();
             int parts = rsl::inputParts(i), n = rsl::ir::components(i.kind);
-            auto value = std::find_if(values.begin(), values.end(), [&](const rsl::ParameterValue& v) { return v.name == i.name; });
+            auto value = std::find_if(values.begin(), values.end(), [&](const rsl::ParameterValue& v) { return "param:" + v.name == i.name; });
             for (int e = 0; e < std::max(1, i.array); ++e)
                 for (int c = 0; c < n; ++c)
                     for (int part = 0; part < parts; ++part) {

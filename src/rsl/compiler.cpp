@@ -77,6 +77,13 @@ ShaderCompiler::ShaderCompiler(Settings s) : state_(std::make_unique<State>()) {
 
 ShaderCompiler::~ShaderCompiler() = default;
 
+namespace {
+/// A file of functions alone is well formed, but it is no shader.
+void sayWithoutShader(const Program* program, const std::string& path, Diagnostics& diagnostics) {
+    if (program && program->shaders.empty()) diagnostics.report(Severity::Error, Rie::Syntax, {path, 1, 1}, "there is no shader in this file");
+}
+} // namespace
+
 ShaderPtr ShaderCompiler::finish(std::unique_ptr<Program> program, const std::string& path, const std::string& wanted,
                                  const std::string& text) {
     if (!program || program->shaders.empty()) return nullptr;
@@ -130,7 +137,9 @@ ShaderPtr ShaderCompiler::load(const std::string& name, const std::vector<std::s
         options.includePaths.push_back(fs::path(found->path).parent_path().string());
         for (const auto& d : directories) options.includePaths.push_back(d);
         options.defines = state_->settings.defines;
-        result = finish(compileFile(found->path, options, diagnostics), found->path, stem, {});
+        auto program = compileFile(found->path, options, diagnostics);
+        sayWithoutShader(program.get(), found->path, diagnostics);
+        result = finish(std::move(program), found->path, stem, {});
     } else {
         std::string compiled;
         for (const char* e : {".slo", ".sdl", ".sdr", ".slx", ".slc", ".sdw"}) {
@@ -152,7 +161,9 @@ ShaderPtr ShaderCompiler::load(const std::string& name, const std::vector<std::s
 ShaderPtr ShaderCompiler::loadText(const std::string& text, const std::string& name, Diagnostics& diagnostics) {
     FrontOptions options;
     options.defines = state_->settings.defines;
-    return finish(compileText(text, name, options, diagnostics), name, {}, text);
+    auto program = compileText(text, name, options, diagnostics);
+    sayWithoutShader(program.get(), name, diagnostics);
+    return finish(std::move(program), name, {}, text);
 }
 
 std::unique_ptr<ir::Kernel> ShaderCompiler::analyse(const CompiledShader& s, const KernelOptions& o, Diagnostics& d) const {

@@ -206,7 +206,9 @@ private:
         if (arguments.size() != m.parameters.size()) {
             sources_.error(call.place, "macro '" + std::string(m.name) + "' takes " + std::to_string(m.parameters.size()) +
                                            " arguments, not " + std::to_string(arguments.size()));
-            arguments.resize(m.parameters.size());
+            // One mistake, one message: with the last argument in place of those missing the expansion is most likely well formed.
+            const std::vector<Token> filler = arguments.empty() ? std::vector<Token>{} : arguments.back();
+            arguments.resize(m.parameters.size(), filler);
         }
         return true;
     }

@@ -264,6 +264,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 t.payload = r;
                 sched.spawn(std::move(t));
                 counters.depthMax = std::max(counters.depthMax, int(r.bounces));
+                ++counters.depthSum; // over camera rays: the mean number of bounces
             }
         }
     }

@@ -22,6 +22,17 @@ std::string shippedShaders() {
     return ALPENGLOW_SHADER_DIR;
 }
 
+// "did you mean ..." among the shader sources on the search path; or empty.
+std::string nearShader(const std::string& name, const std::vector<std::string>& directories) {
+    std::vector<std::string> names;
+    std::error_code e;
+    for (const auto& directory : directories)
+        for (const auto& f : std::filesystem::directory_iterator(directory.empty() ? "." : directory, e))
+            if (f.path().extension() == ".sl" && names.size() < 10000) names.push_back(f.path().stem().string());
+    std::string near = nearestName(name, names);
+    return near.empty() ? "" : "did you mean \"" + near + "\"?";
+}
+
 // Screen window: ri.md 3.1; frame aspect from FrameAspectRatio or the format.
 void screenWindow(const scene::Options& o, double w[4]) {
     if (o.screenWindow && o.screenWindow->size() == 4) {
@@ -108,7 +119,15 @@ bool WorldImpl::matrix(const std::string& from, const std::string& to, Matrix& o
 
 InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind kind, Diagnostics& d) {
     double begin = seconds();
-    auto program = compiler_->load(call.name, settings_.shaderPaths, d);
+    Diagnostics said; // the compiler knows no scene: messages without a place get the call's
+    auto program = compiler_->load(call.name, settings_.shaderPaths, said);
+    for (Diagnostic m : said.all()) {
+        if (m.place.file.empty()) {
+            m.place = call.place;
+            if (m.hint.empty()) m.hint = nearShader(call.name, settings_.shaderPaths);
+        }
+        d.report(std::move(m));
+    }
     facts_.compileSec += seconds() - begin;
     if (!program) return nullptr;
     if (program->kind() != kind) {

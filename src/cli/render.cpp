@@ -108,7 +108,7 @@ int renderOnce(const Arguments& a, const volatile int32_t* stop) {
     }
     const auto& outcome = renderer.outcome();
     bool interrupted = outcome.interrupted || *stop;
-    if (outcome.rendered == 0 && outcome.refused == 0 && outcome.textures == 0 && !interrupted)
+    if (outcome.rendered == 0 && outcome.refused == 0 && outcome.textures == 0 && !interrupted && !diags.errors())
         diags.report(Severity::Error, Rie::MissingData, {}, "no world was rendered: there is none between WorldBegin and WorldEnd in what was read");
     renderer.writeStats();
     if (!a.quiet && outcome.rendered > 0 && !settings.pixel) std::fputs(toTable(renderer.stats()).c_str(), stderr);
@@ -201,6 +201,8 @@ void addRender(CLI::App& app, int* status) {
               "  alpenglow render --hider path --noise 0.02 -o out.exr scene.rib\n"
               "  alpenglow render --samples 0:32 -o a.exr scene.rib    and 32:64 to b.exr elsewhere; then merge a.exr b.exr -o whole.exr\n"
               "Ctrl-C keeps the passes that are whole and writes the picture; a second Ctrl-C ends at once.");
+    for (CLI::Option* o : c->get_options())
+        if (o->get_items_expected_max() == 1) o->take_last(); // a script's option gives way to the user's behind it
     c->callback([a, c, status] {
         checkLate(*a, *c);
         *status = renderAll(*a);

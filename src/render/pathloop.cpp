@@ -36,7 +36,8 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
     const std::vector<Channel>& channels = film.description().channels;
     const std::vector<Window> tiles = tilesOf(film.window());
     const size_t stride = 4 + channels.size(); // colour, alpha, the rest
-    // Passes: of 8 samples, one per replica, while they fit the memory that holds them back.
+    // Passes: of 8 samples, one per replica, while they fit the memory that holds them back. The first eight come in passes of
+    // 1, 1, 2 and 4, so that there is soon something to keep.
     size_t perSample = film.window().pixels() * stride * sizeof(float);
     uint32_t most = uint32_t(std::clamp(kPassBytes / std::max(perSample, size_t(1)), size_t(1), size_t(kReplicas)));
     std::vector<std::vector<float>> held(tiles.size());
@@ -67,6 +68,7 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
     while (next < wanted.end && !job.pollStop()) {
         uint32_t count = std::min(most, wanted.end - next);
         if (next % kReplicas != 0) count = std::min(count, kReplicas - next % kReplicas); // so that noise is judged on whole nets
+        if (film.samplesPerPixel() < kReplicas) count = std::min(count, std::max(1u, film.samplesPerPixel()));
         if (settings.seconds > 0 && any) {
             double left = settings.seconds - job.elapsed();
             if (left <= 0) break;

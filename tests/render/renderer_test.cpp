@@ -1,0 +1,366 @@
+// The renderer over a scene of closed forms in the engine's place: an emitter whose colour is the place on the image plane.
+#include "render/renderer.h"
+#include "display/imageio.h"
+#include "render/filmpicture.h"
+#include "render/team.h"
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+
+using namespace alpenglow;
+using namespace alpenglow::render;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct FakeWorld final : transport::World {
+    std::shared_ptr<const scene::Frame> frame_;
+    transport::Settings settings_;
+    const scene::Frame& frame() const override { return *frame_; }
+    const transport::Settings& settings() const override { return settings_; }
+    Facts facts() const override { return {}; }
+    std::vector<int> outputWidths() const override {
+        std::vector<int> w;
+        for (const std::string& o : settings_.outputs) w.push_back(o == "depthish" ? 1 : 3);
+        return w;
+    }
+    bool runImager(int n, const float* x, const float*, float* r, float*, float*, float* a, Diagnostics&) const override {
+        for (int i = 0; i < n; ++i) {
+            r[i] = x[i]; // raster x, so that the test sees where it was run
+            a[i] = 1;
+        }
+        return true;
+    }
+};
+
+/// Red: x of the image plane, green: y, blue: 7 on the left half, else 0. Depth 5, covered by a half.
+struct FakeTracer final : Tracer {
+    transport::Counters counts;
+    std::vector<std::string> outputs;
+    bool trace(std::span<const transport::CameraRay> rays, std::span<transport::SampleResult> out, const volatile int32_t* stop) override {
+        for (size_t i = 0; i < rays.size(); ++i) {
+            Vec3 p = rays[i].direction * (1 / rays[i].direction.z);
+            out[i].color = {p.x, p.y, p.x < 0 ? 7.f : 0.f};
+            out[i].opacity = Color(0.5f);
+            out[i].z = 5;
+            for (const std::string& o : outputs) {
+                if (o == "depthish") out[i].aovs.push_back(5);
+                else out[i].aovs.insert(out[i].aovs.end(), {p.x * 2, 0, 1});
+            }
+            ++counts.camera;
+        }
+        return !*stop;
+    }
+    const transport::Counters& counters() const override { return counts; }
+};
+
+Engine fakeEngine() {
+    return {[](std::shared_ptr<const scene::Frame> f, const transport::Settings& s, Diagnostics&) {
+                auto w = std::make_shared<FakeWorld>();
+                w->frame_ = std::move(f);
+                w->settings_ = s;
+                return w;
+            },
+            [](std::shared_ptr<const transport::World> w, Diagnostics&) -> std::unique_ptr<Tracer> {
+                auto t = std::make_unique<FakeTracer>();
+                t->outputs = w->settings().outputs;
+                return t;
+            }};
+}
+
+struct Folder {
+    fs::path path;
+    Folder() {
+        std::string name = (fs::temp_directory_path() / "alpenglow-renderer-XXXXXX").string();
+        path = mkdtemp(name.data());
+    }
+    ~Folder() { fs::remove_all(path); }
+    std::string operator/(const std::string& f) const { return (path / f).string(); }
+};
+
+std::shared_ptr<scene::Frame> frameOf(const char* hider, int w = 24, int h = 16) {
+    auto f = std::make_shared<scene::Frame>();
+    f->options.xres = w;
+    f->options.yres = h;
+    f->options.projection = "perspective";
+    f->options.fov = 90;
+    f->options.hider = hider;
+    f->options.filter = {"box", 1, 1};
+    return f;
+}
+
+struct Session {
+    Diagnostics diags;
+    Progress progress{ProgressMode::None};
+    Renderer renderer;
+    explicit Session(RenderSettings s, Renderer::Print print = {}) : renderer(std::move(s), fakeEngine(), diags, progress, std::move(print)) {}
+    void frame(std::shared_ptr<scene::Frame> f) {
+        renderer.override(f->options);
+        renderer.render(f);
+    }
+};
+
+std::string bytesOf(const std::string& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+display::Image read(const std::string& file) {
+    Diagnostics d;
+    auto i = display::readImage(file, d);
+    EXPECT_TRUE(i) << file;
+    return i ? *i : display::Image();
+}
+
+/// Place on the image plane of the middle of a pixel: 24 x 16, fov 90, so y spans -1..1 and x spans -1.5..1.5.
+float planeX(int x) { return -1.5f + 3 * (float(x) + 0.5f) / 24; }
+float planeY(int y) { return 1 - 2 * (float(y) + 0.5f) / 16; }
+
+} // namespace
+
+TEST(Renderer, HiddenReconstructsALinearFunctionExactly) {
+    Folder dir;
+    RenderSettings s;
+    s.output = dir / "a.exr";
+    Session run(s);
+    auto f = frameOf("hidden");
+    scene::Param jitter;
+    jitter.name = "jitter";
+    jitter.numbers = {0}; // a grid: its mean over the box is the value in the middle
+    f->options.hiderParams = {jitter};
+    run.frame(f);
+    EXPECT_EQ(run.diags.errors(), 0);
+    EXPECT_EQ(run.renderer.outcome().rendered, 1);
+    display::Image i = read(s.output);
+    ASSERT_EQ(i.width, 24);
+    ASSERT_EQ(i.channels, (std::vector<std::string>{"r", "g", "b", "a"}));
+    for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 24; ++x) {
+            EXPECT_NEAR(i.pixel(x, y)[0], planeX(x), 1e-6);
+            EXPECT_NEAR(i.pixel(x, y)[1], planeY(y), 1e-6);
+            EXPECT_EQ(i.pixel(x, y)[2], x < 12 ? 7 : 0);
+            EXPECT_EQ(i.pixel(x, y)[3], 0.5f);
+        }
+}
+
+TEST(Renderer, PathHasTheSameMeansAndKnowsItsSamples) {
+    Folder dir;
+    RenderSettings s;
+    s.output = dir / "a.exr";
+    s.spp = 64;
+    s.statsFile = dir / "s.json";
+    Session run(s);
+    run.frame(frameOf("path"));
+    EXPECT_TRUE(run.renderer.writeStats());
+    display::Image i = read(s.output);
+    ASSERT_EQ(i.width, 24);
+    for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 24; ++x) {
+            // 8 replicas of 8 stratified points: each axis has at most 1/8 of a pixel (0.125) of error a replica, in the mean far less.
+            EXPECT_NEAR(i.pixel(x, y)[0], planeX(x), 0.01);
+            EXPECT_NEAR(i.pixel(x, y)[1], planeY(y), 0.01);
+            EXPECT_EQ(i.pixel(x, y)[2], x < 12 ? 7 : 0);
+        }
+    EXPECT_EQ(i.metadata["spp"], "64");
+    EXPECT_EQ(run.renderer.stats().spp, 64u);
+    EXPECT_EQ(run.renderer.stats().totalRays, 24u * 16 * 64);
+    EXPECT_NE(bytesOf(dir / "s.json").find("\"noiseRSE999\""), std::string::npos);
+}
+
+TEST(Renderer, DefaultsOfSamples) {
+    for (auto [hider, set, expected] : {std::tuple{"path", false, 64u}, {"path", true, 6u}, {"hidden", false, 4u}, {"raytrace", true, 6u}}) {
+        Folder dir;
+        RenderSettings s;
+        s.output = dir / "a.exr";
+        Session run(s);
+        auto f = frameOf(hider, 4, 4);
+        if (set) {
+            f->options.pixelSamplesX = 3;
+            f->options.pixelSamplesY = 2;
+            f->options.pixelSamplesSet = true;
+        }
+        run.frame(f);
+        EXPECT_EQ(run.renderer.stats().spp, expected) << hider;
+    }
+}
+
+TEST(Renderer, ThreadsDoNotShow) {
+    for (const char* hider : {"path", "hidden"}) {
+        Folder dir;
+        std::string first;
+        for (int threads : {1, 2, 3}) {
+            RenderSettings s;
+            s.output = dir / "a.exr";
+            s.threads = threads;
+            Session run(s);
+            auto f = frameOf(hider, 50, 37);
+            f->options.filter = {"catmull-rom", 4, 4};
+            run.frame(f);
+            std::string b = bytesOf(s.output);
+            ASSERT_FALSE(b.empty());
+            if (threads == 1) first = b;
+            else EXPECT_TRUE(b == first) << hider << " " << threads;
+        }
+    }
+}
+
+TEST(Renderer, MergedPartsAreTheWhole) {
+    Folder dir;
+    auto render = [&](const std::string& out, std::optional<SampleRange> r) {
+        RenderSettings s;
+        s.output = out;
+        s.spp = 11;
+        s.samples = r;
+        Session run(s);
+        auto f = frameOf("path");
+        f->options.filter = {"mitchell", 4, 4};
+        run.frame(f);
+        EXPECT_EQ(run.diags.errors(), 0);
+    };
+    render(dir / "whole.exr", {});
+    render(dir / "a.exr", SampleRange{0, 3});
+    render(dir / "b.exr", SampleRange{3, 4});
+    render(dir / "c.exr", SampleRange{4, 11});
+    Diagnostics d;
+    EXPECT_EQ(mergePictures({dir / "c.exr", dir / "a.exr", dir / "b.exr.part"}, dir / "m.exr", false, d), MergeResult::Done);
+    EXPECT_EQ(d.errors(), 0);
+    EXPECT_TRUE(bytesOf(dir / "m.exr") == bytesOf(dir / "whole.exr"));
+    EXPECT_EQ(mergePictures({dir / "a.exr", dir / "a.exr"}, dir / "n.exr", false, d), MergeResult::NoInput); // the same samples twice
+    EXPECT_FALSE(fs::exists(dir / "n.exr"));
+    EXPECT_EQ(mergePictures({dir / "none.exr"}, dir / "n.exr", false, d), MergeResult::NoInput);
+}
+
+TEST(Renderer, PartsOfDifferentScenesDoNotMerge) {
+    Folder dir;
+    for (int k = 0; k < 2; ++k) {
+        RenderSettings s;
+        s.output = dir / (k ? "b.exr" : "a.exr");
+        s.samples = SampleRange{uint32_t(k), uint32_t(k) + 1};
+        Session run(s);
+        auto f = frameOf("path");
+        if (k) f->options.fov = 80;
+        run.frame(f);
+    }
+    Diagnostics d;
+    EXPECT_EQ(mergePictures({dir / "a.exr", dir / "b.exr"}, dir / "m.exr", false, d), MergeResult::NoInput);
+    EXPECT_GT(d.errors(), 0);
+}
+
+TEST(Renderer, ResumeGivesTheBitsOfOneRender) {
+    Folder dir;
+    auto render = [&](const std::string& out, uint32_t spp, bool resume) {
+        RenderSettings s;
+        s.output = out;
+        s.spp = spp;
+        if (resume) s.checkpoint = dir / "c.part";
+        s.resume = resume && fs::exists(s.checkpoint);
+        Session run(s);
+        run.frame(frameOf("path"));
+        EXPECT_EQ(run.diags.errors(), 0);
+    };
+    render(dir / "whole.exr", 20, false);
+    render(dir / "x.exr", 5, true);
+    render(dir / "y.exr", 20, true);
+    EXPECT_TRUE(bytesOf(dir / "y.exr") == bytesOf(dir / "whole.exr"));
+}
+
+TEST(Renderer, AovsDepthAndExposure) {
+    for (const char* hider : {"path", "hidden"}) {
+        Folder dir;
+        RenderSettings s;
+        s.allowWrite = true;
+        Session run(s);
+        auto f = frameOf(hider);
+        f->options.gain = 2;
+        f->options.gamma = 2;
+        f->options.displays = {{dir / "a.exr", "openexr", "rgbaz", {}, {}}, {"+" + (dir / "b.exr"), "openexr", "varying color tint,depthish,Oi", {}, {}}};
+        scene::Param depthish;
+        depthish.name = "depthish";
+        f->options.displayChannels["depthish"] = depthish;
+        run.frame(f);
+        EXPECT_EQ(run.diags.errors(), 0);
+        display::Image a = read(dir / "a.exr"), b = read(dir / "b.exr");
+        ASSERT_GE(a.channel("z"), 0);
+        EXPECT_EQ(a.pixel(3, 3)[a.channel("z")], 5);
+        EXPECT_EQ(a.pixel(3, 3)[a.channel("a")], 0.5f);                       // no exposure
+        EXPECT_NEAR(a.pixel(3, 3)[a.channel("b")], std::sqrt(14.f), 1e-5);    // (2 * 7)^(1/2)
+        ASSERT_GE(b.channel("tint.r"), 0) << hider;
+        EXPECT_NEAR(b.pixel(20, 3)[b.channel("tint.r")], 2 * planeX(20), 0.06); // AOVs keep their units
+        EXPECT_NEAR(b.pixel(20, 3)[b.channel("tint.b")], 1, 1e-6);
+        EXPECT_NEAR(b.pixel(20, 3)[b.channel("depthish")], 5, 1e-5);
+    }
+}
+
+TEST(Renderer, ImagerRunsAfterExposureOnTheRaster) {
+    Folder dir;
+    RenderSettings s;
+    s.output = dir / "a.exr";
+    s.crop = {0.5f, 1, 0, 1};
+    Session run(s);
+    auto f = frameOf("hidden");
+    auto imager = std::make_shared<scene::ShaderCall>();
+    imager->name = "fake";
+    f->options.imager = imager;
+    run.frame(f);
+    display::Image i = read(s.output);
+    ASSERT_EQ(i.width, 12);
+    EXPECT_EQ(i.pixel(0, 0)[0], 12.5f); // pixel 12 of the whole picture
+    EXPECT_EQ(i.pixel(0, 0)[3], 1);
+}
+
+TEST(Renderer, PixelPrintsASample) {
+    RenderSettings s;
+    s.pixel = {{0, 0}};
+    s.spp = 32;
+    std::vector<std::string> lines;
+    Session run(s, [&](const std::string& l) { lines.push_back(l); });
+    run.frame(frameOf("path"));
+    ASSERT_EQ(lines.size(), 1u);
+    float r, g, b, a;
+    ASSERT_EQ(std::sscanf(lines[0].c_str(), "%f %f %f %f", &r, &g, &b, &a), 4);
+    EXPECT_NEAR(r, planeX(0), 0.02);
+    EXPECT_EQ(b, 7);
+    EXPECT_EQ(a, 0.5f);
+    EXPECT_FALSE(fs::exists("ri.pic"));
+}
+
+TEST(Renderer, StopBeforeAPassWritesNothing) {
+    Folder dir;
+    int32_t stop = 1;
+    RenderSettings s;
+    s.output = dir / "a.exr";
+    s.stop = &stop;
+    Session run(s);
+    run.frame(frameOf("path"));
+    EXPECT_TRUE(run.renderer.outcome().interrupted);
+    EXPECT_EQ(run.renderer.outcome().rendered, 0);
+    EXPECT_FALSE(fs::exists(s.output));
+}
+
+TEST(Renderer, NamesOfSeveralFrames) {
+    EXPECT_EQ(numberedName("a.exr", 7), "a.0007.exr");
+    EXPECT_EQ(numberedName("a.##.exr", 7), "a.07.exr");
+    EXPECT_EQ(numberedName("dir.x/a", 12345), "dir.x/a.12345");
+    Folder dir;
+    RenderSettings s;
+    s.output = dir / "a.exr";
+    Session run(s);
+    for (int k : {1, 2}) {
+        auto f = frameOf("hidden", 4, 4);
+        f->options.frameNumber = k;
+        run.frame(f);
+    }
+    EXPECT_TRUE(fs::exists(dir / "a.exr"));
+    EXPECT_TRUE(fs::exists(dir / "a.0002.exr"));
+}
+
+TEST(Team, EveryTaskOnceAndExceptionsArrive) {
+    Team team(3);
+    std::vector<std::atomic<int>> done(1000);
+    volatile int32_t halt = 0;
+    EXPECT_TRUE(team.run(done.size(), &halt, [&](int w, size_t i) { done[i] += w < 3 ? 1 : 100; }, [](size_t) {}));
+    for (auto& d : done) EXPECT_EQ(d, 1);
+    EXPECT_THROW(team.run(10, &halt, [&](int, size_t i) { if (i == 5) throw std::bad_alloc(); }, [](size_t) {}), std::bad_alloc);
+    EXPECT_EQ(halt, 1);
+}

@@ -106,7 +106,8 @@ public:
             if (stop_ && *stop_) { abandon(); return false; }
             int rayDepth = queued_ > 0 ? deepestQueue() : -1;
             if (!ready_.empty() && ready_.rbegin()->first >= rayDepth) {
-                resumeOne();
+                // All that are ready at this depth go on together, so that what they ask for next is one stream again.
+                for (size_t n = ready_.rbegin()->second.size(); n > 0; --n) resumeOne();
                 continue;
             }
             auto& q = queues_[rayDepth];
@@ -195,7 +196,7 @@ private:
         return -1;
     }
     void resumeOne() {
-        auto last = std::prev(ready_.end());
+        auto last = std::prev(ready_.end()); // strips that become ready meanwhile join behind, at most at this depth
         int slot = last->second.front();
         last->second.pop_front();
         if (last->second.empty()) ready_.erase(last);

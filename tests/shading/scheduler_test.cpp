@@ -9,7 +9,7 @@ using namespace alpenglow::shading;
 
 namespace {
 
-struct Payload { float value = 0; int fan = 0; int levels = 0; bool suspends = false; };
+struct Payload { float value = 0; int fan = 0; int levels = 0; bool suspends = false; enum { Ray, Light, Shadow } kind = Ray; };
 using S = Scheduler<Payload>;
 
 // A strip of `lanes` rays that hit a shader which sends `fan` rays one level down, one after the other (a suspension each), and
@@ -99,6 +99,111 @@ public:
         flush();
     }
 };
+
+// A light loop: the surface's strip waits for a light batch, whose own kernel waits for a shadow ray a lane. Lane i of the light is
+// blocked when i is odd; the surface adds its own value.
+class LightStrip : public S::Strip {
+public:
+    explicit LightStrip(std::vector<S::Task> t) : tasks_(std::move(t)) {}
+    int depth() const override { return tasks_[0].depth; }
+    size_t frameBytes() const override { return 500; }
+    static void start(S& s, std::vector<S::Task> tasks) {
+        auto strip = std::make_unique<LightStrip>(std::move(tasks));
+        auto* p = strip.get();
+        for (auto& t : p->tasks_) s.hold(t.target);
+        std::vector<S::Task> rays = p->tasks_;
+        s.wait(std::move(strip), int(rays.size()), [&](int i, TargetId id) {
+            rays[i].target = id;
+            rays[i].depth++;
+            rays[i].payload.kind = Payload::Shadow;
+            s.spawn(rays[i]);
+        });
+    }
+    bool resume(S& s, std::span<const TargetValue> shadow) override {
+        for (size_t i = 0; i < tasks_.size(); ++i) {
+            s.add(tasks_[i].target, Color(tasks_[i].payload.value) * shadow[i].radiance);
+            s.release(tasks_[i].target);
+        }
+        return true;
+    }
+
+private:
+    std::vector<S::Task> tasks_;
+};
+
+class LitSurface : public S::Strip {
+public:
+    explicit LitSurface(std::vector<S::Task> t) : tasks_(std::move(t)) {}
+    int depth() const override { return tasks_[0].depth; }
+    size_t frameBytes() const override { return 500; }
+    static void start(S& s, std::vector<S::Task> tasks) {
+        auto strip = std::make_unique<LitSurface>(std::move(tasks));
+        auto* p = strip.get();
+        for (auto& t : p->tasks_) s.hold(t.target);
+        p->next(s, std::move(strip));
+    }
+    bool resume(S& s, std::span<const TargetValue> light) override {
+        for (size_t i = 0; i < tasks_.size(); ++i) s.add(tasks_[i].target, light[i].radiance);
+        if (light_ < 3) { // the next light of the loop, in lockstep for all lanes
+            next(s, s.takeResuming());
+            return false;
+        }
+        for (auto& t : tasks_) {
+            s.add(t.target, Color(t.payload.value));
+            s.release(t.target);
+        }
+        return true;
+    }
+
+private:
+    void next(S& s, std::unique_ptr<S::Strip> self) {
+        ++light_;
+        std::vector<S::Task> lights = tasks_;
+        float intensity = float(light_) * 0.25f;
+        s.wait(std::move(self), int(lights.size()), [&](int i, TargetId id) {
+            lights[i].target = id;
+            lights[i].depth++;
+            lights[i].payload.kind = Payload::Light;
+            lights[i].payload.value = intensity;
+            lights[i].payload.levels = i;
+            s.spawn(lights[i]);
+        });
+    }
+    std::vector<S::Task> tasks_;
+    int light_ = 0;
+};
+
+class LightService : public S::RayService {
+public:
+    std::vector<size_t> lightBatches;
+    void follow(std::span<const S::Task> slice, S& s) override {
+        std::vector<S::Task> surfaces, lights;
+        for (const auto& t : slice) {
+            if (t.payload.kind == Payload::Ray) surfaces.push_back(t);
+            else if (t.payload.kind == Payload::Light) lights.push_back(t);
+            else if (t.payload.levels % 2 == 0) s.add(t.target, Color(1));
+        }
+        if (!lights.empty()) { lightBatches.push_back(lights.size()); LightStrip::start(s, lights); }
+        for (size_t i = 0; i < surfaces.size(); i += 16)
+            LitSurface::start(s, {surfaces.begin() + long(i), surfaces.begin() + long(std::min(i + 16, surfaces.size()))});
+    }
+};
+
+TEST(Scheduler, LightBatchesInsideASurfaceBatch) {
+    LightService service;
+    S s(service);
+    std::vector<TargetId> roots;
+    for (int i = 0; i < 40; ++i) {
+        roots.push_back(s.newRoot());
+        s.spawn({0, roots.back(), {2, 0, 0, true, Payload::Ray}});
+    }
+    EXPECT_TRUE(s.run());
+    for (int i = 0; i < 40; ++i) // lights of .25, .5, .75 reach the even lanes of each strip of 16
+        EXPECT_EQ(s.value(roots[i]).radiance.x, 2 + ((i % 16) % 2 == 0 ? 1.5f : 0.f)) << i;
+    // Strips that wait for the same light are lit as one batch.
+    EXPECT_EQ(service.lightBatches.size(), 3u);
+    EXPECT_EQ(service.lightBatches[0], 40u);
+}
 
 // The value of one root without masks: v + fan * value(v/2, levels-1).
 float expected(float v, int fan, int levels) {

@@ -200,7 +200,9 @@ void Builder::loop(const Expr* cond, const Expr* step, const Stmt* body, const P
         if (f.result >= 0) assigned.insert(f.result);
     }
     const LoopFrame flags{newSlot(boolean(false)), newSlot(boolean(false))};
-    const int go = simple ? -1 : newSlot(condition(*cond));
+    // Without a value of its own it lives in the branch around this loop only: what is first set here is no change to merge there.
+    const int go = simple ? -1 : newSlot(nullptr);
+    if (go >= 0) set(go, condition(*cond));
     if (jumps) assigned.insert(flags.broken);
     if (go >= 0) assigned.insert(go);
 

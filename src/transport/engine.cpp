@@ -11,6 +11,7 @@ void Counters::operator+=(const Counters& o) {
     nonFinite += o.nonFinite; overLimit += o.overLimit; depthCap += o.depthCap;
     depthSum += o.depthSum; paths += o.paths;
     depthMax = std::max(depthMax, o.depthMax);
+    peakFrameBytes = std::max(peakFrameBytes, o.peakFrameBytes);
 }
 
 namespace {
@@ -144,7 +145,11 @@ public:
         auto lanesOf = laneOf_;
         int site = site_, lanes = lanes_, first = first_;
         std::vector<float> in = c_->requestIn;
-        uint32_t occurrence = occurrence_++;
+        // Counted by site and lane: what other lanes of the strip ask for must not change this one's random numbers.
+        size_t sites = c_->bound->sites.size();
+        if (occurrences_.empty()) occurrences_.resize(sites * 64);
+        std::vector<uint32_t> occurrence;
+        for (int lane : laneOf_) occurrence.push_back(occurrences_[size_t(site_) * 64 + size_t(lane)]++);
         s.wait(std::move(self), int(laneOf_.size()), [&](int i, TargetId id) {
             ids[i] = id;
             s.hold(id);
@@ -156,7 +161,7 @@ public:
                                   context->lightDistance[lanesOf[k]]);
                 continue;
             }
-            e.request(*context, info, first + lanesOf[k], in.data(), lanes, lanesOf[k], Color(1), ids[k], true, occurrence);
+            e.request(*context, info, first + lanesOf[k], in.data(), lanes, lanesOf[k], Color(1), ids[k], true, occurrence[k]);
         }
         e.gather(*context, s);
         e.flushShadows(s);
@@ -169,7 +174,7 @@ private:
     void* handle_;
     int first_, depth_;
     int site_ = 0, lanes_ = 0;
-    uint32_t occurrence_ = 0;
+    std::vector<uint32_t> occurrences_;
     float* out_ = nullptr;
     std::vector<int> laneOf_;
 };
@@ -188,8 +193,10 @@ void Engine::lightVisibility(BatchContext& c, const SiteInfo& s, int point, cons
 
 void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched) {
     shading::Batch& b = *c.batch;
-    int ci = b.output("Ci"), oi = b.output("Oi");
+    int ci = b.plan().Ci, oi = b.plan().Oi;
     const auto& wanted = world_->settings_.outputs;
+    std::vector<int> wantedAt;
+    for (const std::string& name : wanted) wantedAt.push_back(b.output(name));
     for (int i = first; i < std::min(first + lanes, int(c.points.size())); ++i) {
         const PathRay& ray = c.rays[i];
         const SurfaceBinding& binding = world_->bindings_[c.bindings[i]];
@@ -220,7 +227,7 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched) {
             else if (r.zSecond >= 1e38f) r.zSecond = z;
             size_t at = 0;
             for (size_t k = 0; k < wanted.size(); ++k) {
-                int o = b.output(wanted[k]), width = world_->outputWidths_[k];
+                int o = wantedAt[k], width = world_->outputWidths_[k];
                 if (o >= 0)
                     for (int w = 0; w < std::min(width, rsl::ir::components(b.kernel().outputs()[o].kind)); ++w)
                         r.aovs[at + w] += (width == 3 ? ray.weight[w] : luminance(ray.weight)) * b.value(o, w, i);
@@ -238,11 +245,11 @@ std::pair<Color, Color> Engine::applyAtmosphere(const SurfaceBinding& binding, c
     c.binding = &binding;
     c.points = {p};
     shading::InstanceView view{&binding.atmosphere->parameters, &binding.atmosphere->toCurrent};
-    c.batch = std::make_shared<shading::Batch>(binding.atmosphereS.kernel, c.points, std::span(&view, 1), false, *world_);
+    c.batch = std::make_shared<shading::Batch>(binding.atmosphereS.kernel, *binding.atmosphereS.plan, c.points, std::span(&view, 1), *world_);
     bindCall(c.batch->call(), c);
     if (binding.atmosphereS.kernel->facts().suspends) return {p.Ci, p.Oi};
     binding.atmosphereS.kernel->run(&c.batch->call());
-    int ci = c.batch->output("Ci"), oi = c.batch->output("Oi");
+    int ci = c.batch->plan().Ci, oi = c.batch->plan().Oi;
     return {ci >= 0 ? c.batch->color(ci, 0) : p.Ci, oi >= 0 ? c.batch->color(oi, 0) : p.Oi};
 }
 
@@ -252,8 +259,8 @@ void Engine::passThrough(const PathRay& ray, TargetId target, const ShadePoint& 
     if (!(most > 0)) return;
     PathRay r = ray;
     r.weight = ray.weight * t;
-    if (ray.bounces > 0 && most < 1) { // behind the first bounce a gamble keeps the number of rays linear in depth
-        if (random(ray).one(ray.vertex, kRoulette, 1000000) >= most) return;
+    if (world_->settings_.hider == Hider::Path && ray.bounces > 0 && most < 1) { // a gamble keeps the number of rays linear in depth
+        if (random(ray).one(ray.vertex, kPassThrough, 0) >= most) return;
         r.weight = r.weight / most;
     }
     float travelled = length(p.I);
@@ -263,10 +270,10 @@ void Engine::passThrough(const PathRay& ray, TargetId target, const ShadePoint& 
     r.shape = geometry::kNone;
     r.first = false;
     r.vertex = childVertex(ray.vertex, 0xfffff, 0);
-    ++r.bounces;
-    if (r.bounces > limits::kPathDepth / 32 || !(r.maxDistance > 0)) { ++counters.depthCap; return; }
+    ++r.layers;
+    if (r.layers > limits::kPathDepth / 32 || !(r.maxDistance > 0)) { ++counters.depthCap; return; }
     Sched::Task task;
-    task.depth = r.bounces;
+    task.depth = r.bounces + r.layers;
     task.target = target;
     task.payload = r;
     sched.spawn(std::move(task));
@@ -277,30 +284,49 @@ void Engine::miss(const Sched::Task& t, Sched& sched) {
     const PathRay& r = t.payload;
     for (const BoundLight& l : world_->lights_) {
         bool sky = l.kind == LightKind::Environment, ambient = l.kind == LightKind::Ambient && r.type == RayType::Diffuse;
-        if (!sky && !ambient) continue;
-        ShadePoint q;
-        q.Ps = r.origin;
-        q.P = r.origin + r.dir;
-        q.N = -r.dir;
+        if ((!sky && !ambient) || !l.kernel) continue; // a light whose shader was not found gives nothing
+        std::vector<ShadePoint> q(1);
+        q[0].Ps = r.origin;
+        q[0].P = r.origin + r.dir;
+        q[0].N = -r.dir;
         LightValue v;
-        evaluateLight(l, {&q, 1}, {&v, 1});
+        evaluateLight(l, q, {&v, 1});
         sched.add(t.target, r.weight * v.Cl);
     }
 }
 
-void Engine::emission(const Sched::Task& t, const ShadePoint& p, const SurfaceBinding& b, Sched& sched) {
-    const PathRay& r = t.payload;
+void Engine::emission(std::span<const std::pair<int, int>> met, std::span<const Sched::Task> tasks, std::span<const ShadePoint> points, Sched& sched) {
     const Settings& set = world_->settings_;
-    if (b.areaLight < 0 || !r.wantsLight || !(set.hider == Hider::Path || r.lobePdf >= 0)) return;
-    const BoundLight& light = world_->lights_[b.areaLight];
-    Color le = emitted(light, p, r.origin);
-    if (!(maxComponent(le) > 0)) return;
-    float weight = 1;
-    if (r.lobePdf >= 0 && light.emitter) {
-        float pdf = light.emitter->pdf(p.shape, p.surface, r.origin);
-        weight = set.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
+    std::vector<ShadePoint> q;
+    std::vector<LightValue> value;
+    for (size_t first = 0, end; first < met.size(); first = end) {
+        end = first;
+        q.clear();
+        for (; end < met.size() && met[end].first == met[first].first; ++end) {
+            q.push_back(points[size_t(met[end].second)]);
+            ShadePoint& p = q.back();
+            p.P = p.surface.displaced ? p.surface.displacedP : p.surface.P;
+            p.N = p.surface.n;
+            p.Ps = tasks[size_t(met[end].second)].payload.lobePdf >= 0 ? tasks[size_t(met[end].second)].payload.lobeOrigin
+                                                                       : tasks[size_t(met[end].second)].payload.origin;
+        }
+        const BoundLight& light = world_->lights_[size_t(met[first].first)];
+        value.assign(q.size(), {});
+        evaluateLight(light, q, value);
+        for (size_t i = first; i < end; ++i) {
+            const LightValue& v = value[i - first];
+            if (!v.lit || !(maxComponent(v.Cl) > 0)) continue;
+            const Sched::Task& t = tasks[size_t(met[i].second)];
+            const ShadePoint& p = points[size_t(met[i].second)];
+            const PathRay& r = t.payload;
+            float weight = 1;
+            if (r.lobePdf >= 0 && light.emitter) {
+                float pdf = light.emitter->pdf(p.shape, p.surface, r.lobeOrigin);
+                weight = set.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
+            }
+            sched.add(t.target, r.weight * v.Cl * weight);
+        }
     }
-    sched.add(t.target, r.weight * le * weight);
 }
 
 void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
@@ -325,13 +351,15 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
     }
     world_->accel_->intersect(rays, hits);
 
-    // Points by program; inside a group in the order of the slice.
-    std::map<std::pair<int, int>, std::vector<int>> groups; // (program, first light-list binding) -> tasks
+    // Points by program and light list; inside a group in the order of the slice.
+    std::vector<std::vector<int>> groups(size_t(world_->groups_)); // -> tasks
     std::vector<ShadePoint> points(n);
+    std::vector<std::pair<int, int>> met; // (light, task)
     for (size_t i = 0; i < n; ++i) {
         if (!hits[i].valid()) { miss(slice[i], sched); continue; }
         const PathRay& r = slice[i].payload;
-        const SurfaceBinding& b = world_->bindings_[world_->bindingOf_[hits[i].shape]];
+        int binding = world_->bindingOf_[hits[i].shape];
+        const SurfaceBinding& b = world_->bindings_[size_t(binding)];
         ShadePoint& p = points[i];
         p.shape = world_->shapes_[hits[i].shape].get();
         p.surface = world_->accel_->point(hits[i]);
@@ -339,28 +367,40 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
         p.N = p.surface.N;
         p.I = p.P - r.origin;
         p.E = r.type == RayType::Camera ? Vec3(0, 0, 0) : r.origin;
-        if (r.type == RayType::Camera && r.bounces > 0) p.I = p.P - p.E; // seen through something: the eye has not moved
+        if (r.type == RayType::Camera && r.layers > 0) p.I = p.P - p.E; // seen through something: the eye has not moved
         p.time = r.time;
         p.task = int(i);
         setFootprint(p, r, length(p.P - r.origin), r.type == RayType::Camera ? b.shadingRate : 1);
-        emission(slice[i], p, b, sched);
-        groups[{b.program, b.lightList}].push_back(int(i));
+        groups[size_t(b.group)].push_back(int(i));
+        if (b.areaLight < 0 || !r.wantsLight || (b.matte && r.type == RayType::Camera)) continue;
+        if (world_->settings_.hider != Hider::Path && r.lobePdf < 0) continue;
+        if (r.lobeBinding >= 0) { // a lobe that samples lights: those that are off for its surface do not light it by chance either
+            const auto& on = world_->bindings_[size_t(r.lobeBinding)].lights;
+            if (std::find(on.begin(), on.end(), b.areaLight) == on.end()) continue;
+        }
+        met.push_back({b.areaLight, int(i)});
     }
-    for (auto& [key, tasks] : groups) {
+    std::stable_sort(met.begin(), met.end(), [](auto& a, auto& b) { return a.first < b.first; });
+    emission(met, slice, points, sched);
+    for (const std::vector<int>& tasks : groups) {
+        if (tasks.empty()) continue;
         auto c = std::make_shared<BatchContext>();
         c->engine = this;
         c->rays.reserve(tasks.size());
+        c->points.reserve(tasks.size());
+        c->targets.reserve(tasks.size());
+        c->bindings.reserve(tasks.size());
         bool same = true;
         for (int i : tasks) {
-            int binding = world_->bindingOf_[hits[i].shape];
+            int binding = world_->bindingOf_[hits[size_t(i)].shape];
             same &= c->bindings.empty() || binding == c->bindings[0];
-            c->points.push_back(points[i]);
-            c->rays.push_back(slice[i].payload);
-            c->targets.push_back(slice[i].target);
+            c->points.push_back(points[size_t(i)]);
+            c->rays.push_back(slice[size_t(i)].payload);
+            c->targets.push_back(slice[size_t(i)].target);
             c->bindings.push_back(binding);
         }
         for (size_t k = 0; k < tasks.size(); ++k) c->points[k].ray = &c->rays[k];
-        c->binding = &world_->bindings_[c->bindings[0]];
+        c->binding = &world_->bindings_[size_t(c->bindings[0])];
         c->bound = same && !c->binding->usesObjectSpace ? &c->binding->surfaceS : &c->binding->surfaceV;
         shadeGroup(std::move(c), sched);
     }
@@ -381,15 +421,26 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
         for (size_t k = 0; k < d->points.size(); ++k) d->points[k].ray = &d->rays[k];
         d->bound = &c->binding->displacementS;
         viewsOf(&SurfaceBinding::displacement);
-        d->batch = std::make_shared<shading::Batch>(d->bound->kernel, d->points, views, d->bound->mixed, *world_);
+        d->batch = std::make_shared<shading::Batch>(d->bound->kernel, *d->bound->plan, d->points, views, *world_);
         bindCall(d->batch->call(), *d);
         if (!d->bound->kernel->facts().suspends) {
             d->bound->kernel->run(&d->batch->call());
             int po = d->batch->output("P"), no = d->batch->output("N");
+            int dpu = d->batch->output("Du:P"), dpv = d->batch->output("Dv:P"), dnu = d->batch->output("Du:N"), dnv = d->batch->output("Dv:N");
             for (size_t k = 0; k < c->points.size(); ++k) {
                 ShadePoint& p = c->points[k];
                 if (po >= 0) { p.P = d->batch->color(po, int(k)); p.I = p.P - c->rays[k].origin; }
                 if (no >= 0) p.N = d->batch->color(no, int(k));
+                // The surface shader's derivatives are those of the displaced surface. Its second partials stay those of the plain one.
+                if (po >= 0 && dpu >= 0 && dpv >= 0) {
+                    p.surface.dPdu = d->batch->color(dpu, int(k));
+                    p.surface.dPdv = d->batch->color(dpv, int(k));
+                    p.surface.Ng = cross(p.surface.dPdu, p.surface.dPdv) * p.surface.orientation;
+                }
+                if (no >= 0 && dnu >= 0 && dnv >= 0) {
+                    p.surface.dNdu = d->batch->color(dnu, int(k));
+                    p.surface.dNdv = d->batch->color(dnv, int(k));
+                }
                 if (p.surface.displaced) { // rays left and met the facet; shading offsets start there
                     p.surface.P = p.surface.displacedP;
                     p.surface.n = p.surface.displacedN;
@@ -400,7 +451,7 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
     }
     viewsOf(&SurfaceBinding::surface);
     const auto& kernel = *c->bound->kernel;
-    c->batch = std::make_shared<shading::Batch>(c->bound->kernel, c->points, views, c->bound->mixed, *world_);
+    c->batch = std::make_shared<shading::Batch>(c->bound->kernel, *c->bound->plan, c->points, views, *world_);
     bindCall(c->batch->call(), *c);
     int n = int(c->points.size());
     counters.points += uint64_t(n);
@@ -417,7 +468,7 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
                 for (int i = first; i < std::min(first + kernel.lanes(), n); ++i) sched.release(c->targets[i]);
                 continue;
             }
-            auto strip = std::make_unique<KernelStrip>(c, h, first, int(c->rays[first].bounces));
+            auto strip = std::make_unique<KernelStrip>(c, h, first, c->rays[first].bounces + c->rays[first].layers);
             KernelStrip* s = strip.get();
             s->advance(sched, std::move(strip));
         }
@@ -438,7 +489,7 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
             p.Ci = Color(1);
             slope[i] = applyAtmosphere(b, p).first - a;
         }
-    std::map<std::pair<int, int>, uint32_t> occurrence;
+    std::vector<uint32_t> occurrence(c->emits.empty() ? 0 : c->bound->sites.size() * size_t(n));
     for (const EmitRecord& e : c->emits) {
         const SiteInfo& s = c->bound->sites[e.site];
         const float* rows = c->arena.data() + e.offset;
@@ -456,7 +507,7 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
                 continue;
             }
             if (s.kind == SiteKind::Transmission) weight *= c->rays[point].weight;
-            request(*c, s, point, args, e.lanes, lane, weight, c->targets[point], false, occurrence[{e.site, point}]++);
+            request(*c, s, point, args, e.lanes, lane, weight, c->targets[point], false, occurrence[size_t(e.site) * size_t(n) + size_t(point)]++);
         }
     }
     gather(*c, sched);
@@ -503,6 +554,7 @@ bool Engine::trace(std::span<const CameraRay> rays, std::span<SampleResult> out,
     }
     counters.nonFinite += sched.nonFinite();
     counters.overLimit += sched.overLimit();
+    counters.peakFrameBytes = std::max(counters.peakFrameBytes, sched.peakFrameBytes());
     lobes.clear();
     shadows.clear();
     return done;

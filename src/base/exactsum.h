@@ -16,8 +16,8 @@ public:
         // Split into whole and fraction, both exact; the fraction has at most 53 bits, so 62 of them hold it down to 2^-62.
         double high = std::trunc(d);
         double low = d - high;
-        sum_ += (__int128(int64_t(high)) << 64) + __int128(std::nearbyint(low * 0x1p62)) * 4 +
-                __int128(std::nearbyint((low * 0x1p62 - std::nearbyint(low * 0x1p62)) * 4));
+        sum_ += (__int128(int64_t(high)) << 64) + __int128(int64_t(std::nearbyint(low * 0x1p62))) * 4 +
+                int64_t(std::nearbyint((low * 0x1p62 - std::nearbyint(low * 0x1p62)) * 4));
     }
     void merge(const ExactSum& o) { sum_ += o.sum_; saturated_ |= o.saturated_; }
     double toDouble() const {

@@ -1,113 +1,165 @@
 #include "shading/batch.h"
+#include <algorithm>
+#include <cstddef>
 #include <cstring>
 
 namespace alpenglow::shading {
 
 namespace {
 
-using rsl::ir::Kind;
+constexpr int16_t kZero = -1, kOne = -2, kThree = -3;
+constexpr float kConstants[3] = {0, 1, 3};
 
-// Value and tangents of a float or triple predefined variable at a point: parts {v, du, dv, duu, duv, dvv}.
-struct Jet { Vec3 part[6]; };
-
-using Reader = void (*)(const ShadePoint&, Jet&);
-
-// One line per predefined variable (rsl.md section 8). Floats use x. Second derivatives that the geometry does not know are zero.
-struct Variable { const char* name; Reader read; };
-constexpr Vec3 kZero{};
+// One line per predefined variable (rsl.md section 8): where its parts {v, du, dv, duu, duv, dvv} lie in a ShadePoint. Second
+// derivatives that the geometry does not know are zero.
+struct Variable { const char* name; int16_t part[6]; };
+#define AT(member) int16_t(offsetof(ShadePoint, member))
 const Variable kVariables[] = {
-    {"P", [](const ShadePoint& p, Jet& j) { auto& s = p.surface; j = {{p.P, s.dPdu, s.dPdv, s.Puu, s.Puv, s.Pvv}}; }},
-    {"dPdu", [](const ShadePoint& p, Jet& j) { auto& s = p.surface; j = {{s.dPdu, s.Puu, s.Puv, kZero, kZero, kZero}}; }},
-    {"dPdv", [](const ShadePoint& p, Jet& j) { auto& s = p.surface; j = {{s.dPdv, s.Puv, s.Pvv, kZero, kZero, kZero}}; }},
-    {"N", [](const ShadePoint& p, Jet& j) { auto& s = p.surface; j = {{p.N, s.dNdu, s.dNdv, kZero, kZero, kZero}}; }},
-    {"Ng", [](const ShadePoint& p, Jet& j) { auto& s = p.surface; j = {{s.Ng, s.dNdu, s.dNdv, kZero, kZero, kZero}}; }},
-    {"u", [](const ShadePoint& p, Jet& j) { j = {{Vec3(p.surface.u), Vec3(1), kZero, kZero, kZero, kZero}}; }},
-    {"v", [](const ShadePoint& p, Jet& j) { j = {{Vec3(p.surface.v), kZero, Vec3(1), kZero, kZero, kZero}}; }},
-    {"du", [](const ShadePoint& p, Jet& j) { j = {{Vec3(p.du), kZero, kZero, kZero, kZero, kZero}}; }},
-    {"dv", [](const ShadePoint& p, Jet& j) { j = {{Vec3(p.dv), kZero, kZero, kZero, kZero, kZero}}; }},
-    {"s", [](const ShadePoint& p, Jet& j) { auto& s = p.surface; j = {{Vec3(s.s), Vec3(s.dsdu), Vec3(s.dsdv), kZero, kZero, kZero}}; }},
-    {"t", [](const ShadePoint& p, Jet& j) { auto& s = p.surface; j = {{Vec3(s.t), Vec3(s.dtdu), Vec3(s.dtdv), kZero, kZero, kZero}}; }},
-    {"I", [](const ShadePoint& p, Jet& j) { auto& s = p.surface; j = {{p.I, s.dPdu, s.dPdv, s.Puu, s.Puv, s.Pvv}}; }},
-    {"E", [](const ShadePoint& p, Jet& j) { j = {{p.E, kZero, kZero, kZero, kZero, kZero}}; }},
-    {"Ci", [](const ShadePoint& p, Jet& j) { j = {{p.Ci, kZero, kZero, kZero, kZero, kZero}}; }},
-    {"Oi", [](const ShadePoint& p, Jet& j) { j = {{p.Oi, kZero, kZero, kZero, kZero, kZero}}; }},
-    {"alpha", [](const ShadePoint& p, Jet& j) { j = {{Vec3(p.alpha), kZero, kZero, kZero, kZero, kZero}}; }},
-    {"Ps", [](const ShadePoint& p, Jet& j) { j = {{p.Ps, kZero, kZero, kZero, kZero, kZero}}; }},
-    {"Ns", [](const ShadePoint& p, Jet& j) { j = {{p.Ns, kZero, kZero, kZero, kZero, kZero}}; }},
-    {"ncomps", [](const ShadePoint&, Jet& j) { j = {{Vec3(3), kZero, kZero, kZero, kZero, kZero}}; }},
-    {"time", [](const ShadePoint& p, Jet& j) { j = {{Vec3(p.time), kZero, kZero, kZero, kZero, kZero}}; }},
+    {"P", {AT(P), AT(surface.dPdu), AT(surface.dPdv), AT(surface.Puu), AT(surface.Puv), AT(surface.Pvv)}},
+    {"dPdu", {AT(surface.dPdu), AT(surface.Puu), AT(surface.Puv), kZero, kZero, kZero}},
+    {"dPdv", {AT(surface.dPdv), AT(surface.Puv), AT(surface.Pvv), kZero, kZero, kZero}},
+    {"N", {AT(N), AT(surface.dNdu), AT(surface.dNdv), kZero, kZero, kZero}},
+    {"Ng", {AT(surface.Ng), AT(surface.dNdu), AT(surface.dNdv), kZero, kZero, kZero}},
+    {"u", {AT(surface.u), kOne, kZero, kZero, kZero, kZero}},
+    {"v", {AT(surface.v), kZero, kOne, kZero, kZero, kZero}},
+    {"du", {AT(du), kZero, kZero, kZero, kZero, kZero}},
+    {"dv", {AT(dv), kZero, kZero, kZero, kZero, kZero}},
+    {"s", {AT(surface.s), AT(surface.dsdu), AT(surface.dsdv), kZero, kZero, kZero}},
+    {"t", {AT(surface.t), AT(surface.dtdu), AT(surface.dtdv), kZero, kZero, kZero}},
+    {"I", {AT(I), AT(surface.dPdu), AT(surface.dPdv), AT(surface.Puu), AT(surface.Puv), AT(surface.Pvv)}},
+    {"E", {AT(E), kZero, kZero, kZero, kZero, kZero}},
+    {"Ci", {AT(Ci), kZero, kZero, kZero, kZero, kZero}},
+    {"Oi", {AT(Oi), kZero, kZero, kZero, kZero, kZero}},
+    {"alpha", {AT(alpha), kZero, kZero, kZero, kZero, kZero}},
+    {"Ps", {AT(Ps), kZero, kZero, kZero, kZero, kZero}},
+    {"Ns", {AT(Ns), kZero, kZero, kZero, kZero, kZero}},
+    {"ncomps", {kThree, kZero, kZero, kZero, kZero, kZero}},
+    {"time", {AT(time), kZero, kZero, kZero, kZero, kZero}},
 };
-
-void readColour(const ShadePoint& p, const char* primvar, const Color& attribute, Jet& j) {
-    j = {{attribute, kZero, kZero, kZero, kZero, kZero}};
-    int v = p.shape ? p.shape->findPrimvar(primvar) : -1;
-    if (v < 0) return;
-    float value[16] = {}, du[16] = {}, dv[16] = {};
-    p.shape->interpolate(v, p.surface, value, du, dv);
-    j.part[0] = {value[0], value[1], value[2]};
-    j.part[1] = {du[0], du[1], du[2]};
-    j.part[2] = {dv[0], dv[1], dv[2]};
-}
-
-int parts(int order) { return order == 0 ? 1 : order == 1 ? 3 : 6; }
+#undef AT
 
 } // namespace
 
-Batch::Batch(std::shared_ptr<const rsl::CompiledKernel> k, std::span<const ShadePoint> points, std::span<const InstanceView> views, bool mixed,
-             const SpaceResolver& spaces)
-    : kernel_(std::move(k)) {
+BatchPlan::BatchPlan(const rsl::CompiledKernel& kernel, bool mixed) {
+    for (const rsl::ir::Input& input : kernel.inputs()) {
+        Source s;
+        s.components = rsl::ir::components(input.kind);
+        s.elements = std::max(1, input.array);
+        s.parts = rsl::inputParts(input);
+        s.scalar = input.uniform && !mixed;
+        s.varying = !input.uniform;
+        s.firstRow = rows_;
+        s.rows = size_t(s.components) * s.elements * s.parts;
+        rows_ += s.rows;
+        if (input.name.rfind("space:", 0) == 0) {
+            size_t arrow = input.name.find('>');
+            s.from = From::Space;
+            s.space = input.name.substr(6, arrow - 6);
+            s.toSpace = input.name.substr(arrow + 1);
+        } else if (input.name.rfind("param:", 0) == 0) {
+            s.from = From::Parameter;
+            s.name = input.name.substr(6);
+        } else if (input.name == "Cs" || input.name == "Os") {
+            s.from = input.name == "Cs" ? From::Cs : From::Os;
+        } else {
+            for (const Variable& v : kVariables)
+                if (input.name == v.name) {
+                    s.from = From::Variable;
+                    std::copy(v.part, v.part + 6, s.offset);
+                }
+        }
+        inputs_.push_back(std::move(s));
+    }
+    for (const rsl::ir::OutputSlot& o : kernel.outputs()) {
+        outputRow_.push_back(rows_);
+        outputs_.push_back(o.name);
+        rows_ += size_t(rsl::ir::components(o.kind));
+    }
+    Ci = output("Ci");
+    Oi = output("Oi");
+    P = output("P");
+    N = output("N");
+}
+
+int BatchPlan::output(std::string_view name) const {
+    for (size_t i = 0; i < outputs_.size(); ++i)
+        if (outputs_[i] == name) return int(i);
+    return -1;
+}
+
+Batch::Batch(std::shared_ptr<const rsl::CompiledKernel> k, const BatchPlan& plan, std::span<const ShadePoint> points,
+             std::span<const InstanceView> views, const SpaceResolver& spaces)
+    : kernel_(std::move(k)), plan_(plan) {
     call_.n = int32_t(points.size());
     call_.stride = int32_t((points.size() + 63) / 64 * 64);
     call_.strings = kernel_->strings().data();
-    auto rows = [&](size_t count) {
-        // Vectors' own alignment is 16; the row block starts at the first 64-byte boundary.
-        storage_.emplace_back(count * call_.stride + 16, 0.f);
-        auto address = reinterpret_cast<uintptr_t>(storage_.back().data());
-        return reinterpret_cast<float*>((address + 63) & ~uintptr_t(63));
-    };
-    storage_.reserve(kernel_->inputs().size() + kernel_->outputs().size());
-    for (const auto& i : kernel_->inputs())
-        in_.push_back(rows(size_t(rsl::ir::components(i.kind)) * std::max(1, i.array) * parts(i.order)));
-    for (const auto& o : kernel_->outputs()) out_.push_back(rows(size_t(rsl::ir::components(o.kind))));
+    size_t stride = size_t(call_.stride), total = std::max<size_t>(1, plan.rows_) * std::max<size_t>(stride, 64);
+    storage_.reset(static_cast<float*>(::operator new[](total * sizeof(float), std::align_val_t(64))));
+    in_.reserve(plan.inputs_.size());
+    out_.reserve(plan.outputRow_.size());
+    for (const BatchPlan::Source& s : plan.inputs_) {
+        float* row = storage_.get() + s.firstRow * stride;
+        in_.push_back(row);
+        if (!points.empty()) fill(s, row, points, views, spaces);
+    }
+    for (size_t row : plan.outputRow_) out_.push_back(storage_.get() + row * stride);
+    if (!plan.outputRow_.empty()) // what lanes leave unwritten must not be garbage
+        std::fill(storage_.get() + plan.outputRow_[0] * stride, storage_.get() + plan.rows_ * stride, 0.f);
     call_.in = in_.data();
     call_.out = out_.data();
-    for (size_t i = 0; i < in_.size(); ++i) fill(int(i), kernel_->inputs()[i], points, views, mixed, spaces);
 }
 
-int Batch::output(std::string_view name) const {
-    const auto& o = kernel_->outputs();
-    for (size_t i = 0; i < o.size(); ++i)
-        if (o[i].name == name) return int(i);
-    return -1;
-}
-
-int Batch::input(std::string_view name) const {
-    const auto& o = kernel_->inputs();
-    for (size_t i = 0; i < o.size(); ++i)
-        if (o[i].name == name) return int(i);
-    return -1;
-}
-
-void Batch::fill(int index, const rsl::ir::Input& input, std::span<const ShadePoint> points, std::span<const InstanceView> views, bool mixed,
+void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePoint> points, std::span<const InstanceView> views,
                  const SpaceResolver& spaces) {
-    float* row = in_[index];
-    int n = int(points.size()), stride = call_.stride, np = parts(input.order), comps = rsl::ir::components(input.kind);
-    if (n == 0) return;
-    bool scalar = input.uniform && !mixed;
+    using From = BatchPlan::From;
+    int n = int(points.size()), np = s.parts, comps = s.components;
+    size_t stride = size_t(call_.stride);
     auto at = [&](int component, int part, int point) -> float& {
-        return scalar ? row[component] : row[(size_t(component) * np + part) * stride + point];
+        return s.scalar ? row[component] : row[(size_t(component) * np + part) * stride + point];
     };
-    int count = scalar ? 1 : n;
+    int count = s.scalar ? 1 : n;
     auto pad = [&] { // lanes past n repeat the last point, so that no garbage is computed on
-        if (scalar) return;
-        size_t total = size_t(comps) * std::max(1, input.array) * np;
-        for (size_t r = 0; r < total; ++r)
-            for (int i = n; i < stride; ++i) row[r * stride + i] = row[r * stride + n - 1];
+        if (s.scalar) return;
+        for (size_t r = 0; r < s.rows; ++r) std::fill(row + r * stride + n, row + (r + 1) * stride, row[r * stride + n - 1]);
     };
-
-    if (input.name.rfind("space:", 0) == 0) {
-        size_t arrow = input.name.find('>');
-        std::string from = input.name.substr(6, arrow - 6), to = input.name.substr(arrow + 1);
+    switch (s.from) {
+    case From::Variable: {
+        int parts = s.scalar ? 1 : np;
+        for (int c = 0; c < comps; ++c)
+            for (int p = 0; p < parts; ++p) {
+                float* to = s.scalar ? row + c : row + (size_t(c) * np + p) * stride;
+                if (s.offset[p] < 0) {
+                    std::fill_n(to, count, kConstants[-1 - s.offset[p]]);
+                    continue;
+                }
+                const char* from = reinterpret_cast<const char*>(points.data()) + s.offset[p] + size_t(c) * sizeof(float);
+                for (int i = 0; i < count; ++i) std::memcpy(to + i, from + size_t(i) * sizeof(ShadePoint), sizeof(float));
+            }
+        return pad();
+    }
+    case From::Cs:
+    case From::Os: {
+        const char* name = s.from == From::Cs ? "Cs" : "Os";
+        for (int i = 0; i < count; ++i) {
+            float value[16] = {1, 1, 1}, du[16] = {}, dv[16] = {};
+            if (const geometry::Shape* shape = points[i].shape) {
+                const Color& c = s.from == From::Cs ? shape->attributes().color : shape->attributes().opacity;
+                for (int k = 0; k < 3; ++k) value[k] = c[k];
+                int v = shape->primvars().empty() ? -1 : shape->findPrimvar(name);
+                if (v >= 0) shape->interpolate(v, points[i].surface, value, du, dv);
+            }
+            for (int c = 0; c < comps; ++c) {
+                at(c, 0, i) = value[c];
+                if (np > 1 && !s.scalar) {
+                    at(c, 1, i) = du[c];
+                    at(c, 2, i) = dv[c];
+                    for (int p = 3; p < np; ++p) at(c, p, i) = 0;
+                }
+            }
+        }
+        return pad();
+    }
+    case From::Space:
         for (int i = 0; i < count; ++i) {
             Matrix m;
             auto own = [&](const std::string& space, Matrix& toCurrent) {
@@ -115,49 +167,43 @@ void Batch::fill(int index, const rsl::ir::Input& input, std::span<const ShadePo
                 if (space == "shader" && views[i].shaderToCurrent) { toCurrent = *views[i].shaderToCurrent; return true; }
                 return false;
             };
-            if (!(to == "current" && own(from, m))) {
-                if (from == "current" && own(to, m)) m = inverse(m);
-                else spaces.matrix(from, to, m);
+            if (!(s.toSpace == "current" && own(s.space, m))) {
+                if (s.space == "current" && own(s.toSpace, m)) m = inverse(m);
+                else spaces.matrix(s.space, s.toSpace, m);
             }
             for (int c = 0; c < 16; ++c) at(c, 0, i) = float(m.m[c / 4][c % 4]);
         }
         return pad();
-    }
-    if (input.name.rfind("param:", 0) == 0) {
-        std::string name = input.name.substr(6);
-        int elements = std::max(1, input.array);
+    case From::Parameter: {
+        std::fill_n(row, s.scalar ? size_t(comps) * s.elements : s.rows * stride, 0.f);
+        const ParameterBlock* block = nullptr; // neighbours mostly share theirs: looked up when it changes
+        const std::vector<float>* numbers = nullptr;
         for (int i = 0; i < count; ++i) {
-            if (!input.uniform && points[i].shape) {
-                int v = points[i].shape->findPrimvar(name);
+            if (s.varying && points[i].shape && !points[i].shape->primvars().empty()) {
+                int v = points[i].shape->findPrimvar(s.name);
                 if (v >= 0) {
                     float value[16] = {}, du[16] = {}, dv[16] = {};
                     if (points[i].shape->primvars()[v].outWidth() <= 16) points[i].shape->interpolate(v, points[i].surface, value, du, dv);
-                    for (int c = 0; c < std::min(comps * elements, 16); ++c) {
+                    for (int c = 0; c < std::min(comps * s.elements, 16); ++c) {
                         at(c, 0, i) = value[c];
                         if (np > 1) { at(c, 1, i) = du[c]; at(c, 2, i) = dv[c]; }
                     }
                     continue;
                 }
             }
-            auto found = views[i].parameters ? views[i].parameters->numbers.find(name) : decltype(views[i].parameters->numbers.end()){};
-            if (!views[i].parameters || found == views[i].parameters->numbers.end()) continue;
-            for (int c = 0; c < comps * elements && c < int(found->second.size()); ++c) at(c, 0, i) = found->second[c];
+            if (views[i].parameters != block) {
+                block = views[i].parameters;
+                numbers = nullptr;
+                if (block)
+                    if (auto found = block->numbers.find(s.name); found != block->numbers.end()) numbers = &found->second;
+            }
+            if (!numbers) continue;
+            for (int c = 0; c < comps * s.elements && c < int(numbers->size()); ++c) at(c, 0, i) = (*numbers)[c];
         }
         return pad();
     }
-    const Variable* variable = nullptr;
-    for (const auto& v : kVariables)
-        if (input.name == v.name) variable = &v;
-    bool cs = input.name == "Cs", os = input.name == "Os";
-    for (int i = 0; i < count; ++i) {
-        Jet j{};
-        if (variable) variable->read(points[i], j);
-        else if ((cs || os) && points[i].shape) readColour(points[i], cs ? "Cs" : "Os", cs ? points[i].shape->attributes().color : points[i].shape->attributes().opacity, j);
-        else if (cs || os) j.part[0] = Vec3(1);
-        for (int c = 0; c < comps; ++c)
-            for (int p = 0; p < (scalar ? 1 : np); ++p) at(c, p, i) = j.part[p][c];
+    case From::Nothing: std::fill_n(row, s.rows * stride, 0.f); return;
     }
-    pad();
 }
 
 } // namespace alpenglow::shading

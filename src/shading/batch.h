@@ -28,30 +28,56 @@ struct InstanceView {
     const Matrix* shaderToCurrent = nullptr;
 };
 
+/// Where the inputs of a kernel come from and where its rows lie: worked out once per kernel.
+class BatchPlan {
+public:
+    explicit BatchPlan(const rsl::CompiledKernel&, bool mixed);
+    /// Index of an output, -1 when the kernel has none of that name.
+    int output(std::string_view name) const;
+    int Ci = -1, Oi = -1, P = -1, N = -1;
+
+private:
+    friend class Batch;
+    enum class From : uint8_t { Variable, Cs, Os, Parameter, Space, Nothing };
+    struct Source {
+        From from = From::Nothing;
+        bool scalar = false;
+        bool varying = false;                  ///< a parameter that primitive variables may override
+        int components = 1, parts = 1, elements = 1;
+        size_t rows = 0, firstRow = 0;         ///< rows of `stride` floats
+        int16_t offset[6] = {-1, -1, -1, -1, -1, -1}; ///< Variable: bytes into ShadePoint of each part; -1: zero, -2: one, -3: three
+        std::string name, space, toSpace;
+    };
+    std::vector<Source> inputs_;
+    std::vector<size_t> outputRow_;
+    std::vector<std::string> outputs_;
+    size_t rows_ = 0;
+};
+
 /// Aligned rows for the inputs and outputs of one kernel call. Lives as long as the call, across suspensions.
 class Batch {
 public:
     /// views[i] belongs to points[i]; with `mixed` false they are all the same.
-    Batch(std::shared_ptr<const rsl::CompiledKernel>, std::span<const ShadePoint> points, std::span<const InstanceView> views, bool mixed,
+    Batch(std::shared_ptr<const rsl::CompiledKernel>, const BatchPlan&, std::span<const ShadePoint> points, std::span<const InstanceView> views,
           const SpaceResolver&);
     Batch(const Batch&) = delete;
 
     rsl::KernelCall& call() { return call_; }
     const rsl::CompiledKernel& kernel() const { return *kernel_; }
     int size() const { return call_.n; }
-    /// Index of an output, -1 when the kernel has none of that name.
-    int output(std::string_view name) const;
+    const BatchPlan& plan() const { return plan_; }
+    int output(std::string_view name) const { return plan_.output(name); }
     float value(int output, int component, int point) const { return out_[output][size_t(component) * call_.stride + point]; }
     Color color(int output, int point) const { return {value(output, 0, point), value(output, 1, point), value(output, 2, point)}; }
-    /// Rewrites one float or tuple input (for light loops that move from light to light).
-    void setInput(int input, int component, int point, float v) { in_[input][size_t(component) * call_.stride + point] = v; }
-    int input(std::string_view name) const;
 
 private:
-    void fill(int index, const rsl::ir::Input&, std::span<const ShadePoint>, std::span<const InstanceView>, bool mixed, const SpaceResolver&);
+    void fill(const BatchPlan::Source&, float* row, std::span<const ShadePoint>, std::span<const InstanceView>, const SpaceResolver&);
+    struct Free { void operator()(float* p) const { ::operator delete[](p, std::align_val_t(64)); } };
     std::shared_ptr<const rsl::CompiledKernel> kernel_;
-    std::vector<std::vector<float>> storage_;
-    std::vector<float*> in_, out_;
+    const BatchPlan& plan_;
+    std::unique_ptr<float[], Free> storage_;
+    std::vector<const float*> in_;
+    std::vector<float*> out_;
     rsl::KernelCall call_{};
 };
 

@@ -19,10 +19,13 @@ struct PathRay {
     uint32_t sample = 0, vertex = 0;  ///< vertex: hash of the path of call sites that led here; 0 = camera
     RayType type = RayType::Camera;
     int16_t bounces = 0, diffuseBounces = 0, specularBounces = 0;
+    int16_t layers = 0;               ///< transparent surfaces passed so far, since the camera; no bounces
     float time = 0;
     /// Density per steradian with which this direction was drawn, times the probability of drawing it at all; < 0: light sampling
     /// cannot have produced this direction, so emission counts in full (pathtracer.md 3).
     float lobePdf = -1;
+    Vec3 lobeOrigin;                  ///< the point whose lobe drew dir: lobePdf and the lights' densities are seen from there
+    int lobeBinding = -1;             ///< binding of that point, whose list says which lights may light it; -1: every emitter counts
     bool wantsLight = true;           ///< false: emission of area lights is not counted (they are not sampled by this trace())
     float width = 0, spread = 0;      ///< footprint: half width at the origin, and its growth with distance
     uint32_t shape = geometry::kNone; ///< surface it leaves, for the exclusion of its own primitive

@@ -126,6 +126,7 @@ public:
             }
             for (const Task& t : slice) complete(t.target);
         }
+        if (stop_ && *stop_) { abandon(); return false; } // what kernels left early is void
         return true;
     }
 

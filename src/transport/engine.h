@@ -32,6 +32,7 @@ struct LobeVertex {
     float maxDistance = 1e38f;
     int samples = 1;
     bool ownsTarget = false; ///< a suspended request: the target also gets distance and transmission
+    bool followed = true;  ///< its ray may be sent
     float chosen = 1;      ///< probability that the indirect ray of this lobe is followed
 };
 
@@ -73,8 +74,7 @@ public:
 
     // lights.cpp
     /// Light arriving at queries from one light; for area lights `samples[i]` is the point on the emitter.
-    void evaluateLight(const BoundLight&, std::span<const ShadePoint> queries, std::span<LightValue> out);
-    Color emitted(const BoundLight&, const ShadePoint& hit, const Vec3& from);
+    void evaluateLight(const BoundLight&, std::vector<ShadePoint>& queries, std::span<LightValue> out);
     Color transmittance(const Vec3& origin, const Vec3& dir, float distance, float time);
     int32_t lightBegin(BatchContext&, int site, int first, uint64_t mask, int lanes, const float* rows);
     uint64_t lightFetch(BatchContext&, int light, int first, uint64_t mask, int lanes, float* out);
@@ -101,7 +101,8 @@ public:
 private:
     friend class KernelStrip;
     void miss(const Sched::Task&, Sched&);
-    void emission(const Sched::Task&, const ShadePoint&, const SurfaceBinding&, Sched&);
+    /// Light that emitters send along the rays that met them: (light, task) pairs, `points` by task.
+    void emission(std::span<const std::pair<int, int>> met, std::span<const Sched::Task>, std::span<const ShadePoint> points, Sched&);
     void passThrough(const PathRay&, TargetId, const ShadePoint&, const Color& transparency, Sched&);
     std::shared_ptr<const WorldImpl> world_;
     Diagnostics& diagnostics_;

@@ -27,6 +27,7 @@ struct Settings {
     bool localRoulette = false;     ///< the seed's rule (--preset slproject) instead of throughput
     bool roulette = true;
     bool suspend = false;           ///< force suspending kernels where affine ones exist (tests)
+    bool mixedOnly = false;         ///< build V everywhere (tests: it has the same bits as S)
     bool bsdfOnly = false;          ///< no light sampling, emission counts in full (tests, T6)
     bool lightOnly = false;         ///< light sampling only: emission met by lobe sampling does not count (tests, T6)
     std::vector<std::string> shaderPaths, texturePaths;
@@ -41,6 +42,7 @@ struct Counters {
     uint64_t nonFinite = 0, overLimit = 0, depthCap = 0;
     uint64_t depthSum = 0, paths = 0;
     int depthMax = 0;
+    size_t peakFrameBytes = 0; ///< suspended kernel frames at one time, the largest of all threads
     void operator+=(const Counters&);
 };
 

@@ -4,14 +4,14 @@
 
 namespace alpenglow::transport {
 
-void Engine::evaluateLight(const BoundLight& light, std::span<const ShadePoint> queries, std::span<LightValue> out) {
+void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& queries, std::span<LightValue> out) {
     if (queries.empty()) return;
     auto c = std::make_shared<BatchContext>();
     c->engine = this;
     c->bound = &light.kernel;
-    c->points.assign(queries.begin(), queries.end());
-    std::vector<shading::InstanceView> views(queries.size(), {&light.instance->parameters, &light.instance->toCurrent});
-    c->batch = std::make_shared<shading::Batch>(light.kernel.kernel, c->points, views, false, *world_);
+    c->points.swap(queries); // lent; given back below
+    std::vector<shading::InstanceView> views(c->points.size(), {&light.instance->parameters, &light.instance->toCurrent});
+    c->batch = std::make_shared<shading::Batch>(light.kernel.kernel, *light.kernel.plan, c->points, views, *world_);
     bindCall(c->batch->call(), *c);
     const auto& k = *light.kernel.kernel;
     if (k.facts().suspends) {
@@ -39,6 +39,7 @@ void Engine::evaluateLight(const BoundLight& light, std::span<const ShadePoint> 
         k.run(&c->batch->call());
     }
     const auto& b = *c->batch;
+    queries.swap(c->points);
     for (size_t i = 0; i < queries.size(); ++i) {
         LightValue& v = out[i];
         if (light.outL >= 0) v.L = b.color(light.outL, int(i));
@@ -59,16 +60,6 @@ void Engine::evaluateLight(const BoundLight& light, std::span<const ShadePoint> 
             out[e.first + lane].Cl += Color(at(0), at(1), at(2)) * (l > 0 ? transmittance(a, d / l, l, 0) : Color(1));
         }
     }
-}
-
-Color Engine::emitted(const BoundLight& light, const ShadePoint& hit, const Vec3& from) {
-    ShadePoint q = hit;
-    q.P = hit.surface.displaced ? hit.surface.displacedP : hit.surface.P;
-    q.N = hit.surface.n;
-    q.Ps = from;
-    LightValue v;
-    evaluateLight(light, {&q, 1}, {&v, 1});
-    return v.lit ? v.Cl : Color(0);
 }
 
 Color Engine::transmittance(const Vec3& origin, const Vec3& dir, float distance, float time) {
@@ -138,8 +129,8 @@ uint64_t Engine::lightFetch(BatchContext& c, int index, int first, uint64_t mask
             if (!light.emitter) continue;
             const PathRay& r = *p.ray;
             Random rng = random(r);
-            Vec2 u = rng.pair(r.vertex, kLightPoint + uint32_t(li), uint32_t(k));
-            auto s = light.emitter->sample(lit, u, rng.one(r.vertex, kChooseEmitter, uint32_t(li) * 64 + k));
+            uint32_t use = kLightPoint + uint32_t(li), turn = uint32_t(k) + 1; // 0 is gather()'s
+            auto s = light.emitter->sample(lit, rng.pair(r.vertex, use, turn), rng.one(r.vertex, use, turn));
             if (!s) continue;
             p.shape = s->shape;
             p.surface = s->point;

@@ -17,15 +17,10 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     const ShadePoint& p = c.points[point];
     auto f = [&](int row) { return in[size_t(row) * lanes + lane]; };
     auto v = [&](int arg) { return Vec3(f(s.rows[arg]), f(s.rows[arg] + 1), f(s.rows[arg] + 2)); };
-    auto named = [&](const char* name, float fallback) {
-        auto i = s.named.find(name);
-        return i == s.named.end() ? fallback : f(i->second);
-    };
-    auto namedVector = [&](const char* name, Vec3 fallback) {
-        auto i = s.named.find(name);
-        return i == s.named.end() ? fallback : Vec3(f(i->second), f(i->second + 1), f(i->second + 2));
-    };
+    auto number = [&](int row, float fallback) { return row < 0 ? fallback : f(row); };
+    auto vector = [&](int row, Vec3 fallback) { return row < 0 ? fallback : Vec3(f(row), f(row + 1), f(row + 2)); };
     LobeVertex l;
+    l.kind = s.lobe;
     l.point = point;
     l.weight = weight;
     l.target = target;
@@ -36,35 +31,32 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     switch (s.kind) {
     case SiteKind::Ambient: return; // under path ambient light is what escaping diffuse rays see
     case SiteKind::Diffuse:
-        l.kind = findLobe("diffuse");
         l.params.axis = unit(v(0), p.surface.n);
         l.type = RayType::Diffuse;
         break;
     case SiteKind::Specular:
     case SiteKind::Phong:
-        l.kind = findLobe(s.kind == SiteKind::Phong ? "phong" : "specular");
         l.params.axis = unit(v(0), p.surface.n);
         l.params.wo = unit(v(1), l.params.wo);
         l.params.a = f(s.rows[2]);
         if (s.kind == SiteKind::Specular)
-            l.params.a = (s.site->op == "specularstd" ? 1 : kSpecularExponentScale) / std::max(l.params.a, 1e-6f);
+            l.params.a = (s.standard ? 1 : kSpecularExponentScale) / std::max(l.params.a, 1e-6f);
         l.type = RayType::Specular;
         break;
     case SiteKind::Trace:
-        l.kind = s.lobe;
         l.params.axis = unit(v(1), p.surface.n);
-        l.params.wo = unit(namedVector("wo", l.params.wo), l.params.wo);
-        l.params.a = s.lobe && s.lobe->name == "slphong" ? named("exponent", 1000) : named("samplecone", 0);
-        if (s.named.count("horizon")) {
-            l.params.horizon = unit(namedVector("horizon", p.surface.n), p.surface.n);
+        l.params.wo = unit(vector(s.rowWo, l.params.wo), l.params.wo);
+        l.params.a = s.lobe->name == "slphong" ? number(s.rowExponent, 1000) : number(s.rowCone, 0);
+        if (s.rowHorizon >= 0) {
+            l.params.horizon = unit(vector(s.rowHorizon, p.surface.n), p.surface.n);
             l.params.hasHorizon = true;
         }
         l.type = s.type;
-        l.lights = s.named.count("samplearealights") ? named("samplearealights", 0) != 0 : s.sampleAreaLights;
+        l.lights = number(s.rowLights, 0) != 0;
         l.deltaLights = false;
         l.lobeOfShader = false;
-        l.maxDistance = named("maxdist", 1e38f);
-        l.samples = std::clamp(int(named("samples", 1)), 1, 4096);
+        l.maxDistance = number(s.rowMaxDistance, 1e38f);
+        l.samples = std::clamp(int(number(s.rowSamples, 1)), 1, 4096);
         break;
     case SiteKind::Transmission: {
         Vec3 a = v(0), d = v(1) - a;
@@ -87,14 +79,29 @@ void Engine::gather(BatchContext& c, Sched& sched) {
     if (lobes.empty()) return;
     auto sourcePoint = [&](const ShadePoint& p, const Vec3& w) { return geometry::offsetOrigin(p.surface, w, length(p.P - p.surface.P)); };
 
-    // Lobes by point, in order of emission.
-    std::vector<std::vector<int>> byPoint(c.points.size());
-    for (size_t i = 0; i < lobes.size(); ++i) byPoint[lobes[i].point].push_back(int(i));
+    // Lobes by point, in order of emission: of point pi those at order[begin[pi]] to order[begin[pi + 1]].
+    std::vector<int> begin(c.points.size() + 1), order(lobes.size());
+    for (const LobeVertex& l : lobes) ++begin[size_t(l.point) + 1];
+    for (size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
+    {
+        std::vector<int> next(begin.begin(), begin.end() - 1);
+        for (size_t i = 0; i < lobes.size(); ++i) order[size_t(next[size_t(lobes[i].point)]++)] = int(i);
+    }
+    auto lobesOf = [&](size_t pi) { return std::span<const int>(order).subspan(size_t(begin[pi]), size_t(begin[pi + 1] - begin[pi])); };
+
+    // A lobe whose ray would go too deep is not followed; light samples then count in full.
+    auto tooDeep = [&](const LobeVertex& l) {
+        const PathRay& from = c.rays[size_t(l.point)];
+        const SurfaceBinding& b = world_->bindings_[size_t(c.bindings[size_t(l.point)])];
+        bool diffuse = l.type == RayType::Diffuse;
+        return from.bounces + 1 > world_->maxDepth_ || (b.maxDiffuse >= 0 && from.diffuseBounces + diffuse > b.maxDiffuse) ||
+               (b.maxSpecular >= 0 && from.specularBounces + !diffuse > b.maxSpecular);
+    };
 
     // Which lobe's ray will be followed (path): in proportion to luminance of weight times albedo; the energy rule for shader lobes.
     std::vector<float> indirectScale(c.points.size(), 1.f);
     for (size_t pi = 0; pi < c.points.size(); ++pi) {
-        auto& list = byPoint[pi];
+        auto list = lobesOf(pi);
         Color sum(0);
         double total = 0;
         for (int i : list) {
@@ -102,42 +109,53 @@ void Engine::gather(BatchContext& c, Sched& sched) {
             float albedo = l.kind->albedo(l.params);
             if (l.lobeOfShader) sum += Color(std::fabs(l.weight.x), std::fabs(l.weight.y), std::fabs(l.weight.z)) * albedo;
             l.chosen = std::max(luminance(Color(std::fabs(l.weight.x), std::fabs(l.weight.y), std::fabs(l.weight.z))) * albedo, 0.f);
-            if (l.type == RayType::Diffuse && !set.indirect) l.chosen = 0;
+            bool deep = tooDeep(l);
+            counters.depthCap += deep;
+            if ((l.type == RayType::Diffuse && !set.indirect) || deep) l.chosen = 0;
+            l.followed = l.chosen > 0 || (l.ownsTarget && !deep && !(l.type == RayType::Diffuse && !set.indirect));
             if (!l.ownsTarget) total += l.chosen;
         }
         if (!set.unbiased && maxComponent(sum) > 1) indirectScale[pi] = 1 / maxComponent(sum);
         for (int i : list) {
             LobeVertex& l = lobes[i];
-            if (l.ownsTarget || !path) l.chosen = l.type == RayType::Diffuse && !set.indirect ? 0 : 1;
+            if (l.ownsTarget || !path) l.chosen = l.followed ? 1 : 0;
             else l.chosen = total > 0 ? float(l.chosen / total) : 0;
         }
     }
 
     // Light samples: every light for every point with lobes that want it, in batches a light.
     if (set.direct && !set.bsdfOnly) {
+        std::vector<ShadePoint> q; // the batch shares one list of lights
+        std::vector<int> pointOf;
+        std::vector<Emitter::Sample> samples;
+        std::vector<LightValue> value;
+        const std::vector<int>& on = world_->bindings_[size_t(c.bindings[0])].lights;
         for (size_t li = 0; li < world_->lights_.size(); ++li) {
             const BoundLight& light = world_->lights_[li];
+            if (std::find(on.begin(), on.end(), int(li)) == on.end()) continue;
             if (light.kind == LightKind::Ambient || light.kind == LightKind::Environment) continue;
             bool area = light.kind == LightKind::Area;
             if (area && (!light.emitter || light.emitter->empty())) continue;
-            std::vector<ShadePoint> q;
-            std::vector<int> pointOf;
-            std::vector<Emitter::Sample> samples;
+            q.clear();
+            pointOf.clear();
+            samples.clear();
             for (size_t pi = 0; pi < c.points.size(); ++pi) {
                 bool wanted = false;
-                for (int i : byPoint[pi]) wanted |= lobes[i].lights && (area || lobes[i].deltaLights) && !lobes[i].kind->isDelta(lobes[i].params);
+                for (int i : lobesOf(pi)) wanted |= lobes[i].lights && (area || lobes[i].deltaLights) && !lobes[i].kind->isDelta(lobes[i].params);
                 if (!wanted) continue;
-                const auto& on = world_->bindings_[c.bindings[pi]].lights;
-                if (std::find(on.begin(), on.end(), int(li)) == on.end()) continue;
-                ShadePoint p = c.points[pi];
+                q.push_back(c.points[pi]);
+                ShadePoint& p = q.back();
                 p.Ps = p.P;
                 p.Ns = p.N;
                 p.viewI = p.I;
                 if (area) {
-                    Random rng = random(*p.ray);
-                    auto s = light.emitter->sample(p.Ps, rng.pair(p.ray->vertex, kLightPoint + uint32_t(li), 0),
-                                                   rng.one(p.ray->vertex, kChooseEmitter, uint32_t(li)));
-                    if (!s) continue;
+                    // Affine lobes of a vertex share its light sample; each suspended request has its own.
+                    const PathRay& ray = c.rays[pi];
+                    const LobeVertex& l0 = lobes[size_t(lobesOf(pi)[0])];
+                    uint32_t vertex = l0.ownsTarget ? childVertex(ray.vertex, l0.site, l0.occurrence * 4096 + 4095) : ray.vertex;
+                    Random rng = random(ray);
+                    auto s = light.emitter->sample(p.Ps, rng.pair(vertex, kLightPoint + uint32_t(li), 0), rng.one(vertex, kLightPoint + uint32_t(li), 0));
+                    if (!s) { q.pop_back(); continue; }
                     p.shape = s->shape;
                     p.surface = s->point;
                     p.P = s->point.P;
@@ -148,10 +166,9 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     p.P = Vec3(transformPoint(light.instance->toCurrent, {0, 0, 0}));
                     samples.emplace_back();
                 }
-                q.push_back(p);
                 pointOf.push_back(int(pi));
             }
-            std::vector<LightValue> value(q.size());
+            value.assign(q.size(), {});
             evaluateLight(light, q, value);
             for (size_t k = 0; k < q.size(); ++k) {
                 const LightValue& v = value[k];
@@ -159,7 +176,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 const ShadePoint& p = c.points[pointOf[k]];
                 Vec3 w = area ? samples[k].direction : unit(-v.L, Vec3(0, 0, 1));
                 float distance = area ? samples[k].distance : light.kind == LightKind::Distant ? 1e38f : length(v.L);
-                for (int i : byPoint[pointOf[k]]) {
+                for (int i : lobesOf(size_t(pointOf[k]))) {
                     LobeVertex& l = lobes[i];
                     if (!l.lights || (!area && !l.deltaLights)) continue;
                     float fcos = l.kind->fcos(l.params, w);
@@ -191,7 +208,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
 
     // Rays. Under path one of the vertex's lobes is followed; elsewhere all.
     for (size_t pi = 0; pi < c.points.size(); ++pi) {
-        auto& list = byPoint[pi];
+        auto list = lobesOf(pi);
         if (list.empty()) continue;
         const ShadePoint& p = c.points[pi];
         const PathRay& from = c.rays[pi];
@@ -224,22 +241,19 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 r.bounces = int16_t(from.bounces + 1);
                 if (l.type == RayType::Diffuse) ++r.diffuseBounces;
                 else ++r.specularBounces;
-                const SurfaceBinding& b = world_->bindings_[c.bindings[pi]];
                 if (!(maxComponent(r.weight) > 0) && !(std::min({r.weight.x, r.weight.y, r.weight.z}) < 0) && !l.ownsTarget) continue;
-                bool deep = r.bounces > world_->maxDepth_ || (b.maxDiffuse >= 0 && r.diffuseBounces > b.maxDiffuse) ||
-                            (b.maxSpecular >= 0 && r.specularBounces > b.maxSpecular);
-                if (deep) { ++counters.depthCap; continue; }
+                r.vertex = childVertex(from.vertex, l.site, occurrence);
                 if (path && set.roulette) {
-                    float q = 1;
+                    float q = 1, dice = rng.one(r.vertex, kRoulette, 0);
                     if (l.ownsTarget) {
                         // A waiting kernel's use of the result is unknown, and it may ask again: behind the third bounce half of its rays
                         // end, so that the tree of rays stays finite.
-                        if (from.bounces >= 3) q = rng.one(from.vertex, kRoulette, occurrence) < 0.5f ? 0.5f : 0;
+                        if (from.bounces >= 3) q = dice < 0.5f ? 0.5f : 0;
                     } else if (set.localRoulette) {
-                        q = rouletteLocal(from.bounces + 1, l.weight, rng.one(from.vertex, kRoulette, occurrence));
+                        q = rouletteLocal(from.bounces + 1, l.weight, dice);
                     } else if (from.bounces + 1 > 3) {
                         float m = std::min(1.f, maxComponent(Color(std::fabs(r.weight.x), std::fabs(r.weight.y), std::fabs(r.weight.z))));
-                        q = m <= 0 ? 0 : m >= 1 ? 1 : rng.one(from.vertex, kRoulette, occurrence) < m ? m : 0;
+                        q = m <= 0 ? 0 : m >= 1 ? 1 : dice < m ? m : 0;
                     }
                     if (q <= 0) continue;
                     r.weight = r.weight / q;
@@ -248,18 +262,19 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 r.dir = w;
                 r.maxDistance = l.maxDistance;
                 r.type = l.type;
-                r.vertex = childVertex(from.vertex, l.site, occurrence);
                 bool sampled = l.lights && !delta && set.direct && !set.bsdfOnly && path;
                 bool sampledElsewhere = l.lights && !delta && set.direct && !set.bsdfOnly && !path && l.ownsTarget;
                 r.lobePdf = sampled || sampledElsewhere ? pdf * l.chosen : l.lights && !delta && !path && set.direct && !set.bsdfOnly ? pdf : -1;
                 r.wantsLight = true;
+                r.lobeOrigin = p.P;
+                r.lobeBinding = l.lights && !delta ? c.bindings[pi] : -1;
                 r.width = from.width + from.spread * length(p.I);
                 r.spread = std::max(from.spread, l.kind->spread(l.params) * 0.5f);
                 r.shape = geometry::kNone;
                 r.cameraSample = -1;
                 r.first = l.ownsTarget && k == 0;
                 Sched::Task t;
-                t.depth = int(r.bounces);
+                t.depth = r.bounces + r.layers;
                 t.target = l.target;
                 t.payload = r;
                 sched.spawn(std::move(t));

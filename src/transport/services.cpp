@@ -53,6 +53,18 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
             out += rsl::ir::components(s.resultKinds[r]);
         }
         i.resultRowCount = out;
+        if (i.kind == SiteKind::Diffuse) i.lobe = findLobe("diffuse");
+        if (i.kind == SiteKind::Specular) i.lobe = findLobe("specular");
+        if (i.kind == SiteKind::Phong) i.lobe = findLobe("phong");
+        i.standard = s.op == "specularstd";
+        auto rowOf = [&](const char* name) { auto f = i.named.find(name); return f == i.named.end() ? -1 : f->second; };
+        i.rowWo = rowOf("wo");
+        i.rowExponent = rowOf("exponent");
+        i.rowCone = rowOf("samplecone");
+        i.rowHorizon = rowOf("horizon");
+        i.rowLights = rowOf("samplearealights");
+        i.rowMaxDistance = rowOf("maxdist");
+        i.rowSamples = rowOf("samples");
         if (i.kind == SiteKind::Trace) {
             auto text = [&](const char* name, const char* fallback) { auto f = i.text.find(name); return f == i.text.end() ? std::string(fallback) : f->second; };
             std::string distribution = text("distribution", text("bsdf", "uniform").c_str());
@@ -68,6 +80,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         }
         b.sites.push_back(std::move(i));
     }
+    b.plan = std::make_shared<shading::BatchPlan>(*k, mixed);
     b.kernel = std::move(k);
     return b;
 }

@@ -328,6 +328,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     std::map<std::string, int> bindingByKey;
     std::map<const void*, int> programs;
     std::map<std::vector<int>, int> lightLists;
+    std::map<std::pair<int, int>, int> groups;
     std::vector<uint32_t> visibility;
     for (const auto& shape : w->shapes_) {
         const scene::Attributes& a = shape->attributes();
@@ -375,13 +376,15 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
                 outputs.clear();
             }
             b.surfaceV = w->kernel(*surface, outputs, varying, true, path, d);
+            if (settings.mixedOnly) b.surfaceS = b.surfaceV;
             if (!b.surfaceS || !b.surfaceV) return nullptr;
             if (b.atmosphere) {
                 b.atmosphereS = w->kernel(*b.atmosphere, {}, {}, false, false, d);
                 if (!b.atmosphereS) b.atmosphere = nullptr;
             }
             if (b.displacement) {
-                b.displacementS = w->kernel(*b.displacement, {}, {}, false, false, d);
+                // The derivatives are for the surface shader: bumps on top of the displacement.
+                b.displacementS = w->kernel(*b.displacement, {"P", "N", "Du:P", "Dv:P", "Du:N", "Dv:N"}, {}, false, false, d);
                 if (!b.displacementS) b.displacement = nullptr;
             }
             for (const auto& in : b.surfaceS.kernel->inputs()) b.usesObjectSpace |= in.name.find("object") != std::string::npos && in.name.rfind("space:", 0) == 0;
@@ -396,6 +399,9 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
             b.attributes = shape->attributesRef();
             // Displaced shapes and different kernels never share a batch.
             b.program = programs.try_emplace(b.displacement ? static_cast<const void*>(b.displacement.get()) : b.surfaceV.kernel.get(), int(programs.size())).first->second;
+            auto [group, firstOfGroup] = groups.try_emplace({b.program, b.lightList}, w->groups_);
+            w->groups_ += firstOfGroup;
+            b.group = group->second;
             w->bindings_.push_back(std::move(b));
         }
         w->bindingOf_.push_back(it->second);
@@ -428,7 +434,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
             c.points.push_back(p);
         }
         std::vector<shading::InstanceView> views(c.points.size(), {&b.displacement->parameters, &b.displacement->toCurrent});
-        c.batch = std::make_shared<shading::Batch>(b.displacementS.kernel, c.points, views, false, *raw);
+        c.batch = std::make_shared<shading::Batch>(b.displacementS.kernel, *b.displacementS.plan, c.points, views, *raw);
         engine.bindCall(c.batch->call(), c);
         b.displacementS.kernel->run(&c.batch->call());
         int out = c.batch->output("P");
@@ -467,7 +473,7 @@ bool WorldImpl::runImager(int count, const float* x, const float* y, float* r, f
             s.alpha = alpha[at];
         }
         std::vector<shading::InstanceView> views(size_t(n), {&i->parameters, &i->toCurrent});
-        c.batch = std::make_shared<shading::Batch>(k.kernel, c.points, views, false, *this);
+        c.batch = std::make_shared<shading::Batch>(k.kernel, *k.plan, c.points, views, *this);
         engine.bindCall(c.batch->call(), c);
         k.kernel->run(&c.batch->call());
         int ci = c.batch->output("Ci"), ai = c.batch->output("alpha");

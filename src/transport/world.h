@@ -26,14 +26,16 @@ struct SiteInfo {
     std::map<std::string, std::string> text;   ///< constant string pairs
     std::map<std::string, int> resultRows;     ///< "" and output names -> first row of `out`
     int resultRowCount = 0;
-    const LobeKind* lobe = nullptr;            ///< Trace: the distribution
-    bool sampleAreaLights = false;
+    const LobeKind* lobe = nullptr;            ///< Trace: the distribution; the lobe of a lighting shadeop
+    bool standard = false;                     ///< specularstd, not specular
+    int rowWo = -1, rowExponent = -1, rowCone = -1, rowHorizon = -1, rowLights = -1, rowMaxDistance = -1, rowSamples = -1; ///< of `named`
     RayType type = RayType::Specular;
 };
 
 /// A kernel and the meaning of its sites.
 struct BoundKernel {
     std::shared_ptr<const rsl::CompiledKernel> kernel;
+    std::shared_ptr<const shading::BatchPlan> plan;
     std::vector<SiteInfo> sites;
     bool mixed = false;
     bool path = false;                         ///< lobe shadeops are requests; else they are answered at once
@@ -70,6 +72,7 @@ struct SurfaceBinding {
     InstanceRef surface, atmosphere, displacement;
     BoundKernel surfaceS, surfaceV, atmosphereS, displacementS;
     std::vector<int> lights;                   ///< indices into lights
+    int group = 0;                             ///< equal: same program and light list, so that points are shaded in one batch
     int program = 0;                           ///< equal: the same kernel, so that points may share a V batch
     int lightList = 0;                         ///< equal: the same list of lights
     bool usesObjectSpace = false;              ///< the kernel reads "object" or "shader" matrices that differ inside the binding
@@ -103,6 +106,7 @@ public:
     std::vector<geometry::ShapeRef> shapes_;
     std::vector<int> bindingOf_;               ///< by shape
     std::vector<SurfaceBinding> bindings_;
+    int groups_ = 0;                           ///< number of different SurfaceBinding::group
     std::vector<BoundLight> lights_;
     std::unique_ptr<accel::Accel> accel_;
     Matrix worldToCamera_, cameraToWorld_;

@@ -350,6 +350,11 @@ bool Builder::buildShader() {
                 const auto it = globals_.find(name);
                 output(name, it == globals_.end() ? initialGlobal(name, g.type) : get(it->second), g.type);
                 break;
+            } else if (name == "Du:" + std::string(g.name) || name == "Dv:" + std::string(g.name)) { // d/du and d/dv of it at the end
+                const auto it = globals_.find(g.name);
+                Inst* value = it == globals_.end() ? initialGlobal(g.name, g.type) : get(it->second);
+                output(name, emit(name[1] == 'u' ? Op::Du : Op::Dv, value->kind, {value}), g.type);
+                break;
             }
     }
     k_.facts.writes.assign(writes_.begin(), writes_.end());

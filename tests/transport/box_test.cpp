@@ -1,0 +1,103 @@
+// T6 on the Muttenzer box: estimators, forms and widths agree with each other and with the oracle; the listed places of the reference.
+#include "transport/box.h"
+
+using namespace alpenglow;
+using namespace alpenglow::transport;
+using namespace alpenglow::transport::testing;
+
+namespace {
+
+const int kPerTile = samples(3000);
+
+class BoxAgreement : public ::testing::TestWithParam<bool> {
+protected:
+    std::string rib_ = boxRib(GetParam());
+    Tiles base() { return boxTiles(rib_, {}, kPerTile, 1); }
+};
+
+TEST_P(BoxAgreement, Oracle) { expectSame(base(), oracleTiles(GetParam(), kPerTile, 77), "oracle"); }
+TEST_P(BoxAgreement, LightSamplesOnly) {
+    Settings s;
+    s.lightOnly = true;
+    expectSame(base(), boxTiles(rib_, s, kPerTile, 2), "light only");
+}
+TEST_P(BoxAgreement, LobeRaysOnly) {
+    Settings s;
+    s.bsdfOnly = true;
+    expectSame(base(), boxTiles(rib_, s, 2 * kPerTile, 3), "lobe rays only");
+}
+TEST_P(BoxAgreement, NoRoulette) {
+    Settings s;
+    s.roulette = false;
+    expectSame(base(), boxTiles(rib_, s, kPerTile / 3, 4), "no roulette");
+}
+TEST_P(BoxAgreement, LocalRoulette) {
+    Settings s;
+    s.localRoulette = true;
+    expectSame(base(), boxTiles(rib_, s, kPerTile, 5), "local roulette");
+}
+TEST_P(BoxAgreement, Suspending) {
+    Settings s;
+    s.suspend = true;
+    Counters c;
+    expectSame(base(), boxTiles(rib_, s, kPerTile / 2, 6, &c), "suspending");
+    EXPECT_EQ(c.overLimit, 0u);
+    EXPECT_EQ(c.nonFinite, 0u);
+}
+INSTANTIATE_TEST_SUITE_P(Box, BoxAgreement, ::testing::Bool(), [](const auto& i) { return i.param ? "spheres" : "empty"; });
+
+// Reference muttenzer_box.md. Figures are rounded to four digits and have a standard error below 0.0002.
+struct Place { const char* name; double p[3]; double direct[3], empty[3], full[3]; };
+const Place kPlaces[] = {
+    {"floor", {0, -1.25, .25}, {.1769, .1769, .1769}, {.2415, .2164, .2416}, {.2535, .2308, .2586}},
+    {"far wall", {0, 0, -1.55}, {.1055, .1055, .1055}, {.1846, .1592, .1847}, {.1862, .1628, .1904}},
+    {"red wall", {-1.48, 0, 0}, {.1434, .0478, .0478}, {.2209, .0689, .0787}, {.2258, .0694, .0792}},
+    {"ceiling", {1, 1.19, .25}, {0, 0, 0}, {.0805, .0640, .1079}, {.0881, .0725, .1180}},
+};
+void expectFigure(const Moments& m, const double want[3], const std::string& what) {
+    for (int k = 0; k < 3; ++k) {
+        double z = (std::fabs(m.mean(k) - want[k]) - 5e-5) / std::sqrt(m.se(k) * m.se(k) + 2e-4 * 2e-4);
+        EXPECT_LE(z, kZ) << what << " channel " << k << ": " << m.mean(k) << " +- " << m.se(k) << ", reference " << want[k];
+    }
+}
+
+TEST(BoxReference, ListedPlaces) {
+    if (!std::filesystem::exists(ALPENGLOW_SOURCE_DIR "/../shared/reference/muttenzer_box.md"))
+        GTEST_SKIP() << "the reference sheet is not here";
+    for (int kind = 0; kind < 3; ++kind) {
+        Settings s;
+        s.hider = Hider::Path;
+        s.indirect = kind > 0;
+        Scene scene(boxRib(kind == 2), s);
+        for (const Place& p : kPlaces) {
+            Moments m = scene.estimate(rayTo({0, 0, 0}, boxCamera(p.p[0], p.p[1], p.p[2])), samples(kind ? 40000 : 10000));
+            expectFigure(m, kind == 0 ? p.direct : kind == 1 ? p.empty : p.full, std::string(p.name) + (kind == 0 ? ", direct" : kind == 1 ? ", empty" : ", spheres"));
+        }
+    }
+}
+// The caustic's place without spheres: the floor seen from just above it.
+TEST(BoxReference, PlaceOfTheCausticWithoutSpheres) {
+    if (!std::filesystem::exists(ALPENGLOW_SOURCE_DIR "/../shared/reference/muttenzer_box.md"))
+        GTEST_SKIP() << "the reference sheet is not here";
+    const double direct[3] = {.1501, .1501, .1501}, all[3] = {.2093, .1912, .2286};
+    for (bool indirect : {false, true}) {
+        Settings s;
+        s.hider = Hider::Path;
+        s.indirect = indirect;
+        Scene scene(boxRib(false), s);
+        expectFigure(scene.estimate(rayTo(boxCamera(.7, -1, .3), boxCamera(.73, -1.25, .1)), samples(indirect ? 40000 : 10000)), indirect ? all : direct, "caustic's place");
+    }
+}
+TEST(BoxReference, FrameMeans) {
+    if (!std::filesystem::exists(ALPENGLOW_SOURCE_DIR "/../shared/reference/muttenzer_box.md"))
+        GTEST_SKIP() << "the reference sheet is not here";
+    const double want[3][3] = {{.0989, .0926, .0989}, {.1504, .1235, .1505}, {.1523, .1250, .1535}};
+    for (int kind = 0; kind < 3; ++kind) {
+        Settings s;
+        s.indirect = kind > 0;
+        Tiles t = boxTiles(boxRib(kind == 2), s, samples(2500), 40 + uint32_t(kind));
+        expectFigure(t.all(), want[kind], "frame " + std::to_string(kind));
+    }
+}
+
+} // namespace

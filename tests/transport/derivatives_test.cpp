@@ -1,0 +1,131 @@
+// Normals of displaced surfaces, and bumps on top of them, against the analytic surface; footprints against closed forms.
+#include "transport/harness.h"
+
+using namespace alpenglow;
+using namespace alpenglow::transport;
+using namespace alpenglow::transport::testing;
+
+namespace {
+
+const double kAmplitude = .05, kFu = 12.566370614, kFv = 9.42477796;
+double height(double u, double v) { return kAmplitude * std::sin(kFu * u) * std::cos(kFv * v); }
+double bump(double u, double v) { return .02 * std::sin(31 * u + 1) * std::sin(17 * v); }
+
+// The unit sphere of RISpec in its own space.
+Vec3d sphere(double u, double v) {
+    double phi = -kPi / 2 + v * kPi, theta = 2 * kPi * u;
+    return {std::cos(phi) * std::cos(theta), std::cos(phi) * std::sin(theta), std::sin(phi)};
+}
+// A bilinear patch that is none: z is a product.
+Vec3d saddle(double u, double v) { return {2 * u - 1, 2 * v - 1, 3 + .4 * (2 * u - 1) * (2 * v - 1)}; }
+
+// Central differences in double, fourth order.
+template <class F> Vec3d partialU(F f, double u, double v) {
+    const double h = 1e-4;
+    return (f(u - 2 * h, v) - f(u - h, v) * 8.0 + f(u + h, v) * 8.0 - f(u + 2 * h, v)) * (1 / (12 * h));
+}
+template <class F> Vec3d partialV(F f, double u, double v) {
+    const double h = 1e-4;
+    return (f(u, v - 2 * h) - f(u, v - h) * 8.0 + f(u, v + h) * 8.0 - f(u, v + 2 * h)) * (1 / (12 * h));
+}
+template <class F> Vec3d unitNormal(F f, double u, double v) { return normalize(cross(partialU(f, u, v), partialV(f, u, v))); }
+
+void writeShaders() {
+    writeShader("waves", R"(displacement waves() {
+    P += 0.05 * sin(12.566370614 * u) * cos(9.42477796 * v) * normalize(N);
+    N = calculatenormal(P);
+}
+)");
+    writeShader("shownormal", "surface shownormal(output varying normal shown = 0; output varying point uv = 0;) { shown = normalize(N); uv = point(u, v, 0); Ci = 1; Oi = 1; }\n");
+    writeShader("showbump", R"(surface showbump(output varying normal shown = 0; output varying point uv = 0;) {
+    shown = normalize(calculatenormal(P + .02 * sin(31 * u + 1) * sin(17 * v) * normalize(N)));
+    uv = point(u, v, 0);
+    Ci = 1;
+    Oi = 1;
+}
+)");
+    writeShader("showstep", "surface showstep() { Ci = color(du, dv, filterstep(0, u) * 0); Oi = 1; }\n");
+}
+
+template <class F> void expectNormals(const std::string& rib, F surface, Vec3 eye, Vec3 towards, const char* what, double tolerance = 1e-3) {
+    Settings s;
+    s.outputs = {"shown", "uv"};
+    Scene scene(rib, s);
+    ASSERT_TRUE(scene.world);
+    std::vector<CameraRay> rays;
+    for (int i = 0; i < 400; ++i) {
+        CameraRay r = rayTo(eye, towards + Vec3(.9f * (float(i % 20) / 10 - .95f), .9f * (float(i / 20) / 10 - .95f), 0));
+        r.spread = 1e-4f;
+        rays.push_back(r);
+    }
+    auto out = scene.trace(rays);
+    int hits = 0;
+    double worst = 0;
+    for (const SampleResult& r : out) {
+        if (r.opacity.x < 1) continue;
+        double u = r.aovs[3], v = r.aovs[4];
+        if (u < .02 || u > .98 || v < .02 || v > .98) continue;
+        Vec3d n = unitNormal(surface, u, v), got(r.aovs[0], r.aovs[1], r.aovs[2]);
+        worst = std::max(worst, std::min(length(n - got), length(n + got)));
+        ++hits;
+    }
+    EXPECT_GT(hits, 150) << what;
+    EXPECT_LT(worst, tolerance) << what;
+}
+
+std::string sphereRib(const char* displacement, const char* surface) {
+    return std::string("Format 200 200 1\nProjection \"perspective\" \"fov\" 40\nWorldBegin\nSides 2\nAttribute \"displacementbound\" \"sphere\" .1\n") + displacement +
+           "Surface \"" + surface + "\"\nTranslate 0 0 4\nSphere 1 -1 1 360\nWorldEnd\n";
+}
+std::string patchRib(const char* displacement, const char* surface) {
+    return std::string("Format 200 200 1\nProjection \"perspective\" \"fov\" 40\nWorldBegin\nSides 2\nAttribute \"displacementbound\" \"sphere\" .1\n") + displacement +
+           "Surface \"" + surface + "\"\nPatch \"bilinear\" \"P\" [-1 -1 3.4  1 -1 2.6  -1 1 2.6  1 1 3.4]\nWorldEnd\n";
+}
+auto displacedSphere = [](double u, double v) { Vec3d p = sphere(u, v); return p * (1 + height(u, v)); };
+auto displacedSaddle = [](double u, double v) { return saddle(u, v) + unitNormal(saddle, u, v) * height(u, v); };
+const char* kWaves = "Displacement \"waves\"\n";
+
+TEST(Derivatives, PlainNormals) {
+    writeShaders();
+    expectNormals(sphereRib("", "shownormal"), sphere, {0, 0, 0}, {0, 0, 4}, "sphere", 1e-5);
+    expectNormals(patchRib("", "shownormal"), saddle, {0, 0, 0}, {0, 0, 3}, "patch", 1e-5);
+}
+TEST(Derivatives, DisplacedNormals) {
+    writeShaders();
+    expectNormals(sphereRib(kWaves, "shownormal"), displacedSphere, {0, 0, 0}, {0, 0, 4}, "sphere");
+    expectNormals(patchRib(kWaves, "shownormal"), displacedSaddle, {0, 0, 0}, {0, 0, 3}, "patch");
+}
+TEST(Derivatives, BumpOnThePlainSurface) {
+    writeShaders();
+    expectNormals(sphereRib("", "showbump"), [](double u, double v) { return sphere(u, v) * (1 + bump(u, v)); }, {0, 0, 0}, {0, 0, 4}, "sphere", 1e-4);
+    expectNormals(patchRib("", "showbump"), [](double u, double v) { return saddle(u, v) + unitNormal(saddle, u, v) * bump(u, v); }, {0, 0, 0}, {0, 0, 3}, "patch", 1e-4);
+}
+TEST(Derivatives, BumpOverDisplacement) {
+    writeShaders();
+    // unitNormal points to dPdu ^ dPdv; the shader's N to the outside: on the sphere of RISpec both agree up to the camera's handedness.
+    for (double sign : {1.0, -1.0}) {
+        auto patch = [sign](double u, double v) { return displacedSaddle(u, v) + unitNormal(displacedSaddle, u, v) * (sign * bump(u, v)); };
+        if (sign > 0) expectNormals(patchRib(kWaves, "showbump"), patch, {0, 0, 0}, {0, 0, 3}, "patch");
+        auto ball = [sign](double u, double v) { return displacedSphere(u, v) + unitNormal(displacedSphere, u, v) * (sign * bump(u, v)); };
+        if (sign > 0) expectNormals(sphereRib(kWaves, "showbump"), ball, {0, 0, 0}, {0, 0, 4}, "sphere");
+    }
+}
+// A footprint is twice the half width; on a plane seen straight on it is that over |dPdu|.
+TEST(Derivatives, Footprints) {
+    writeShaders();
+    for (double distance : {2.0, 5.0})
+        for (double tilt : {0.0, 60.0}) {
+            std::string z = std::to_string(distance);
+            Scene scene("WorldBegin\nSides 2\nShadingRate 1\nSurface \"showstep\"\nTranslate 0 0 " + z + "\nRotate " + std::to_string(tilt) +
+                        " 1 0 0\nPatch \"bilinear\" \"P\" [-4 -2 0  4 -2 0  -4 2 0  4 2 0]\nWorldEnd\n");
+            CameraRay r = rayTo({0, 0, 0}, {0, 0, 1});
+            r.width = .001f;
+            r.spread = .002f;
+            Color c = scene.one(r);
+            double w = 2 * (.001 + .002 * distance);
+            EXPECT_NEAR(c.x, w / 8, 1e-3 * w / 8) << distance;
+            EXPECT_NEAR(c.y, w / 4 / std::cos(tilt * kPi / 180), 1e-3 * w / 4) << tilt;
+        }
+}
+
+} // namespace

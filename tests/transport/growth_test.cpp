@@ -1,0 +1,112 @@
+// Growth of work with depth, memory of suspended frames, interruption.
+#include "base/limits.h"
+#include "transport/harness.h"
+#include <chrono>
+#include <thread>
+
+using namespace alpenglow;
+using namespace alpenglow::transport;
+using namespace alpenglow::transport::testing;
+
+namespace {
+
+const char* kPlasticBox = "WorldBegin\nSides 2\nLightSource \"pointlight\" 1 \"intensity\" 1 \"from\" [0 .5 0]\nSurface \"plastic\" \"Kd\" .5 \"Ks\" .5\n"
+                          "Polygon \"P\" [-1 -1 -1  1 -1 -1  1 -1 2  -1 -1 2]\nPolygon \"P\" [-1 1 -1  -1 1 2  1 1 2  1 1 -1]\n"
+                          "Polygon \"P\" [-1 -1 -1  -1 1 -1  1 1 -1  1 -1 -1]\nPolygon \"P\" [-1 -1 2  1 -1 2  1 1 2  -1 1 2]\n"
+                          "Polygon \"P\" [-1 -1 -1  -1 -1 2  -1 1 2  -1 1 -1]\nPolygon \"P\" [1 -1 -1  1 1 -1  1 1 2  1 -1 2]\nWorldEnd\n";
+const CameraRay kEye = rayTo({.1f, -.2f, .3f}, {.5f, .3f, 1});
+
+// One lobe a vertex is followed: at most one ray a bounce.
+TEST(Growth, RaysAreLinearInDepth) {
+    double last = 0;
+    for (int depth : {2, 4, 8, 16, 32, 64}) {
+        Settings s;
+        s.hider = Hider::Path;
+        s.roulette = false;
+        s.maxDepth = depth;
+        Scene scene(kPlasticBox, s);
+        Counters c;
+        Moments m = scene.estimate(kEye, 500, &c);
+        double rays = double(c.diffuse + c.specular) / double(c.paths);
+        EXPECT_LE(rays, depth);
+        EXPECT_LE(double(c.shadow) / double(c.paths), 2 * (depth + 1));
+        EXPECT_TRUE(std::isfinite(m.mean())) << depth;
+        EXPECT_EQ(c.nonFinite, 0u);
+        // A vertex reflects at most what it receives: the sum over bounces is below the direct light's largest value / (1 - 1/2 - 1/2) only
+        // because highlights lose light; it must stop growing.
+        if (depth == 64) EXPECT_NEAR(m.mean(), last, .5 * last);
+        last = m.mean();
+        EXPECT_GT(m.mean(), 0);
+    }
+}
+TEST(Growth, SuspendedFramesStayBounded) {
+    writeShader("branchy", R"(surface branchy() {
+    normal Nf = faceforward(normalize(N), I);
+    color a = trace(P, vector(Nf), "distribution", "cosine", "samplecone", PI / 2);
+    color b = 0;
+    if (comp(a, 0) >= 0)
+        b = trace(P, reflect(normalize(I), Nf), "distribution", "cosine", "samplecone", .3);
+    Oi = 1;
+    Ci = .1 + .4 * a * b;
+}
+)");
+    std::string rib = kPlasticBox;
+    rib.replace(rib.find("\"plastic\" \"Kd\" .5 \"Ks\" .5"), 26, "\"branchy\"");
+    Settings s;
+    s.hider = Hider::Path;
+    s.roulette = false;
+    s.maxDepth = 7;
+    Scene scene(rib, s);
+    EXPECT_GT(scene.world->facts().suspending, 0);
+    Counters c;
+    Moments m = scene.estimate(kEye, 300, &c);
+    EXPECT_GT(c.peakFrameBytes, 0u);
+    EXPECT_LE(c.peakFrameBytes, limits::kFrameBytesPerThread);
+    EXPECT_EQ(c.overLimit, 0u);
+    // Constant in all directions: x = .1 + .4 x^2 iterated from 0 at the deepest bounce.
+    double x = .1; // depth 7: traces find nothing
+    for (int i = 0; i < 7; ++i) x = .1 + .4 * x * x;
+    EXPECT_NEAR(m.mean(), x, 1e-5);
+}
+TEST(Stop, EndlessLoopsEndPromptly) {
+    writeShader("forever", "surface forever() { float x = 0; while (1) { x += 1; } Ci = x; Oi = 1; }\n");
+    Scene scene("WorldBegin\nSurface \"forever\"\nSides 2\nSphere 1 -1 1 360\nWorldEnd\n");
+    ASSERT_TRUE(scene.world);
+    std::vector<CameraRay> rays(2000, rayTo({0, 0, -3}, {0, 0, 0}));
+    std::vector<SampleResult> out(rays.size());
+    volatile int32_t stop = 0;
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point asked;
+    std::thread killer([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(150));
+        asked = Clock::now();
+        stop = 1;
+    });
+    Integrator i(scene.world, scene.diagnostics);
+    bool done = i.trace(rays, out, &stop);
+    auto ended = Clock::now();
+    killer.join();
+    EXPECT_FALSE(done);
+    EXPECT_LT(std::chrono::duration<double>(ended - asked).count(), .2);
+}
+TEST(Stop, ManyRaysEndPromptly) {
+    Scene scene(kPlasticBox, [] { Settings s; s.hider = Hider::Path; s.roulette = false; s.maxDepth = 5000; return s; }());
+    std::vector<CameraRay> rays(60000, kEye);
+    std::vector<SampleResult> out(rays.size());
+    volatile int32_t stop = 0;
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point asked;
+    std::thread killer([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(150));
+        asked = Clock::now();
+        stop = 1;
+    });
+    Integrator i(scene.world, scene.diagnostics);
+    bool done = i.trace(rays, out, &stop);
+    auto ended = Clock::now();
+    killer.join();
+    EXPECT_FALSE(done);
+    EXPECT_LT(std::chrono::duration<double>(ended - asked).count(), .2);
+}
+
+} // namespace

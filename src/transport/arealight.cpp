@@ -31,11 +31,13 @@ double capOneMinusCos(double radius, double distance) {
 }
 } // namespace
 
-Emitter::Emitter(std::vector<const geometry::Shape*> shapes) {
-    for (const auto* s : shapes) {
+Emitter::Emitter(std::vector<const geometry::Shape*> shapes, std::vector<uint32_t> visibility) {
+    for (size_t i = 0; i < shapes.size(); ++i) {
+        const geometry::Shape* s = shapes[i];
         double a = s->area();
         if (!(a > 0) || !std::isfinite(a)) continue;
         Entry e{s, a, 0};
+        if (i < visibility.size()) e.visibility = visibility[i];
         e.sphere = wholeSphere(*s, e.centre, e.radius);
         entries_.push_back(e);
         area_ += a;
@@ -61,6 +63,7 @@ std::optional<Emitter::Sample> Emitter::sample(const Vec3& from, Vec2 u, float c
     const Entry& e = entries_[i];
     Sample out;
     out.shape = e.shape;
+    out.visibility = e.visibility;
     if (e.sphere) {
         Vec3 axis = e.centre - from;
         double dc = length(Vec3d(axis));

@@ -9,7 +9,8 @@ namespace alpenglow::transport {
 /// are sampled by the solid angle they fill; everything else over its area.
 class Emitter {
 public:
-    explicit Emitter(std::vector<const geometry::Shape*> shapes);
+    /// visibility: kinds of rays (accel::Visibility) that can meet each shape; empty: all.
+    explicit Emitter(std::vector<const geometry::Shape*> shapes, std::vector<uint32_t> visibility = {});
     bool empty() const { return entries_.empty(); }
     double area() const { return area_; }
 
@@ -19,6 +20,7 @@ public:
         float pdf = 0; ///< per steradian as seen from the lit point; > 0
         Vec3 direction; ///< unit, from the lit point to the light
         float distance = 0;
+        uint32_t visibility = ~0u; ///< kinds of rays that could have met this shape by chance
     };
     /// A point of the light for the lit point at `from`. Nothing when the draw faces edge-on or coincides with `from`.
     std::optional<Sample> sample(const Vec3& from, Vec2 u, float choose) const;
@@ -32,6 +34,7 @@ private:
         bool sphere = false;
         Vec3 centre;
         float radius = 0;
+        uint32_t visibility = ~0u;
     };
     float areaPdf(const Entry&, const geometry::SurfacePoint&, const Vec3& from) const;
     std::vector<Entry> entries_;

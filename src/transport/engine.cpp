@@ -16,15 +16,6 @@ void Counters::operator+=(const Counters& o) {
 
 namespace {
 
-uint32_t visibilityBit(RayType t) {
-    switch (t) {
-    case RayType::Camera: return accel::kCamera;
-    case RayType::Diffuse: return accel::kDiffuse;
-    case RayType::Specular: return accel::kSpecular;
-    default: return accel::kTransmission;
-    }
-}
-
 // trace() and transmission() always ask for rays; the lobe shadeops only where the engine estimates them.
 bool isRequest(SiteKind k, bool path) {
     return k == SiteKind::Trace || k == SiteKind::Transmission || (path && k >= SiteKind::Ambient && k <= SiteKind::LightVisibility);

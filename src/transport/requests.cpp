@@ -186,7 +186,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     Color contribution = l.weight * c.rays[l.point].weight * v.Cl;
                     if (l.ownsTarget) contribution = l.weight * v.Cl;
                     if (area) {
-                        float other = set.lightOnly || !(l.chosen > 0) ? 0 : l.kind->pdf(l.params, w) * l.chosen;
+                        float other = set.lightOnly || !(l.chosen > 0) || !(samples[k].visibility & visibilityBit(l.type)) ? 0 : l.kind->pdf(l.params, w) * l.chosen;
                         contribution *= kept * fcos / samples[k].pdf * misWeight(samples[k].pdf, other);
                     } else {
                         contribution *= kept * float(kPi) * fcos; // Cl is irradiance / pi

@@ -301,7 +301,9 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
             else if (sky || l.instance->name == "envlight") l.kind = LightKind::Environment;
             else l.kind = solar ? LightKind::Distant : LightKind::Point;
             if (l.kind == LightKind::Area) {
-                l.emitter = std::make_shared<Emitter>(emitters[int(li)]);
+                std::vector<uint32_t> seen;
+                for (const geometry::Shape* s : emitters[int(li)]) seen.push_back(visibilityOf(s->attributes(), path));
+                l.emitter = std::make_shared<Emitter>(emitters[int(li)], std::move(seen));
                 l.samples = source.attributes ? std::clamp(int(attributeNumber(*source.attributes, "light:samples", 1)), 1, 1024) : 1;
             }
         } else {

@@ -13,6 +13,16 @@ namespace alpenglow::transport {
 
 using shading::RayType;
 
+/// The kind of a ray as visibility masks know it.
+inline uint32_t visibilityBit(RayType t) {
+    switch (t) {
+    case RayType::Camera: return accel::kCamera;
+    case RayType::Diffuse: return accel::kDiffuse;
+    case RayType::Specular: return accel::kSpecular;
+    default: return accel::kTransmission;
+    }
+}
+
 /// What a call site of a kernel means to the engine, worked out once per kernel.
 enum class SiteKind : uint8_t {
     Unknown, Ambient, Diffuse, Specular, Phong, Trace, Transmission, LightVisibility, ///< requests

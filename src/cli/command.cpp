@@ -74,7 +74,8 @@ std::vector<std::string> folders(const std::vector<std::string>& lists) {
 
 std::optional<std::array<int, 2>> parseSize(const std::string& s) {
     int w = 0, h = 0, end = 0;
-    if (std::sscanf(s.c_str(), "%6dx%6d%n", &w, &h, &end) != 2 || size_t(end) != s.size() || w <= 0 || h <= 0) return std::nullopt;
+    if (std::sscanf(s.c_str(), "%6dx%6d%n", &w, &h, &end) != 2 || size_t(end) != s.size() || w <= 0 || h <= 0)
+        return std::nullopt;
     return std::array<int, 2>{w, h};
 }
 

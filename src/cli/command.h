@@ -15,7 +15,15 @@ class App;
 namespace alpenglow::cli {
 
 /// Exit statuses, fixed.
-enum Status : int { kDone = 0, kDoneWithErrors = 1, kWrongUse = 2, kNothingRendered = 3, kLimit = 4, kOutputFailed = 5, kInterrupted = 130 };
+enum Status : int {
+    kDone = 0,
+    kDoneWithErrors = 1,
+    kWrongUse = 2,
+    kNothingRendered = 3,
+    kLimit = 4,
+    kOutputFailed = 5,
+    kInterrupted = 130
+};
 
 /// Each describes its options to the parser and, when its subcommand is called, does the work and sets *status.
 void addRender(CLI::App&, int* status);

@@ -15,7 +15,9 @@ void addCompile(CLI::App& app, int* status) {
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("compile", "Check and compile shaders");
     c->add_option("shaders", a->files, "RSL files")->required();
-    c->add_option("-I,--searchpath", a->searchPaths, "Folders for #include, separated by :")->type_name("DIRS")->allow_extra_args(false);
+    c->add_option("-I,--searchpath", a->searchPaths, "Folders for #include, separated by :")
+        ->type_name("DIRS")
+        ->allow_extra_args(false);
     c->add_option("-D", a->defines, "Define a macro")->type_name("NAME[=TEXT]")->allow_extra_args(false);
     c->add_option("--lanes", a->lanes, "Width of the machine code")->check(CLI::IsMember({4, 8, 16}))->type_name("N");
     c->add_flag("--path", a->path, "As under Hider \"path\": diffuse, specular and phong are requests to the light transport");

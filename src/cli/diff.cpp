@@ -1,6 +1,6 @@
 // alpenglow diff: how far two pictures are apart.
-#include "cli/command.h"
 #include "display/diff.h"
+#include "cli/command.h"
 #include "display/imageio.h"
 #include <CLI/CLI.hpp>
 #include <memory>
@@ -17,8 +17,11 @@ void addDiff(CLI::App& app, int* status) {
     c->add_option("a", a->a, "Picture: EXR, TIFF, PNG, JPEG, Radiance or zfile")->required();
     c->add_option("b", a->b, "Picture of the same size")->required();
     c->add_option("-o", a->output, "Write the absolute difference as a picture")->type_name("FILE");
-    c->add_option("--tolerance", a->tolerance, "Largest error that is still equal; 0 when not given")->check(CLI::NonNegativeNumber)->type_name("X");
-    c->footer("Exit status 0 when the largest error is within the tolerance, 1 when it is not, 3 when the pictures cannot be compared,\n"
+    c->add_option("--tolerance", a->tolerance, "Largest error that is still equal; 0 when not given")
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("X");
+    c->footer("Exit status 0 when the largest error is within the tolerance, 1 when it is not, 3 when the pictures cannot be "
+              "compared,\n"
               "5 when the difference cannot be written.");
     c->callback([a, status] {
         Diagnostics diags(printer());

@@ -16,9 +16,10 @@ void addEval(CLI::App& app, int* status) {
     c->add_option("expression", a->expression, "An expression, or statements that print")->required();
     c->add_option("--setup", a->setup, "Statements that run first, for example 'float x = 2;'")->type_name("'STATEMENTS'");
     c->add_option("--lanes", a->lanes, "Width of the machine code")->check(CLI::IsMember({4, 8, 16}))->type_name("N");
-    c->footer("The point: u=v=s=t=0.5, P=(0,0,0), N=(0,0,1), I=(0,0,1), Cs=Os=1, du=dv=1. Numbers are printed as %.7g, separated by\n"
-              "spaces, a string as it is.\n\nExamples:\n  alpenglow eval 'noise(P + 1.5)'\n"
-              "  alpenglow eval --setup 'color c = (1, .5, 0);' 'ctransform(\"hsv\", c)'");
+    c->footer(
+        "The point: u=v=s=t=0.5, P=(0,0,0), N=(0,0,1), I=(0,0,1), Cs=Os=1, du=dv=1. Numbers are printed as %.7g, separated by\n"
+        "spaces, a string as it is.\n\nExamples:\n  alpenglow eval 'noise(P + 1.5)'\n"
+        "  alpenglow eval --setup 'color c = (1, .5, 0);' 'ctransform(\"hsv\", c)'");
     c->callback([a, status] {
         Diagnostics diags(printer());
         rsl::ShaderCompiler compiler;

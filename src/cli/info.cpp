@@ -16,22 +16,32 @@ using Json = nlohmann::ordered_json;
 
 const char* loweringText(rsl::Lowering l) {
     switch (l) {
-    case rsl::Lowering::Runtime: return "machine code inside the kernel";
-    case rsl::Lowering::Rsl: return "written in RSL, inlined";
-    case rsl::Lowering::Special: return "built into the compiler";
-    case rsl::Lowering::Service: return "answered by the renderer at once";
-    case rsl::Lowering::Request: return "answered by rays or lights";
-    case rsl::Lowering::Unavailable: return "not yet available: it type-checks, a call is reported once";
+    case rsl::Lowering::Runtime:
+        return "machine code inside the kernel";
+    case rsl::Lowering::Rsl:
+        return "written in RSL, inlined";
+    case rsl::Lowering::Special:
+        return "built into the compiler";
+    case rsl::Lowering::Service:
+        return "answered by the renderer at once";
+    case rsl::Lowering::Request:
+        return "answered by rays or lights";
+    case rsl::Lowering::Unavailable:
+        return "not yet available: it type-checks, a call is reported once";
     }
     return "";
 }
 
 const char* derivativeText(rsl::DerivativeRule d) {
     switch (d) {
-    case rsl::DerivativeRule::Jet: return "exact";
-    case rsl::DerivativeRule::Zero: return "zero (constant almost everywhere)";
-    case rsl::DerivativeRule::ZeroWarn: return "taken as zero, with a warning";
-    case rsl::DerivativeRule::Inherent: return "exact";
+    case rsl::DerivativeRule::Jet:
+        return "exact";
+    case rsl::DerivativeRule::Zero:
+        return "zero (constant almost everywhere)";
+    case rsl::DerivativeRule::ZeroWarn:
+        return "taken as zero, with a warning";
+    case rsl::DerivativeRule::Inherent:
+        return "exact";
     }
     return "";
 }
@@ -50,7 +60,11 @@ Json shadeopJson(const rsl::Shadeop& s) {
     if (!s.biasReason.empty()) j["biasReason"] = s.biasReason;
     j["optional"] = Json::array();
     for (const auto& o : s.optional)
-        j["optional"].push_back({{"name", o.name}, {"type", rsl::toString(o.type)}, {"output", o.output}, {"default", o.defaultText}, {"doc", o.doc}});
+        j["optional"].push_back({{"name", o.name},
+                                 {"type", rsl::toString(o.type)},
+                                 {"output", o.output},
+                                 {"default", o.defaultText},
+                                 {"doc", o.doc}});
     j["examples"] = Json::array();
     for (const auto& e : s.examples) j["examples"].push_back({{"expression", e.expression}, {"value", e.value}});
     if (!s.source.empty()) j["source"] = s.source;
@@ -70,7 +84,8 @@ void printShadeop(const rsl::Shadeop& s) {
     if (!s.examples.empty()) std::printf("\nExamples\n");
     for (const auto& e : s.examples) std::printf("    %s  gives  %s\n", e.expression.c_str(), e.value.c_str());
     std::printf("\nEvaluation: %s. Derivatives: %s.", loweringText(s.lowering), derivativeText(s.derivative));
-    if (s.bias != rsl::Bias::Unbiased) std::printf(" %s: %s.", s.bias == rsl::Bias::Consistent ? "Consistent" : "Biased", s.biasReason.c_str());
+    if (s.bias != rsl::Bias::Unbiased)
+        std::printf(" %s: %s.", s.bias == rsl::Bias::Consistent ? "Consistent" : "Biased", s.biasReason.c_str());
     std::printf("\n");
     if (!s.source.empty()) std::printf("Source: %s\n", s.source.c_str());
 }
@@ -84,7 +99,8 @@ int shadeops(const std::string& name, bool json) {
             return kDone;
         }
         for (const auto& s : rsl::shadeops())
-            std::printf("%-18s %-24s %s\n", s.name.c_str(), s.section.c_str(), s.lowering == rsl::Lowering::Unavailable ? "(not yet available)" : "");
+            std::printf("%-18s %-24s %s\n", s.name.c_str(), s.section.c_str(),
+                        s.lowering == rsl::Lowering::Unavailable ? "(not yet available)" : "");
         return kDone;
     }
     const rsl::Shadeop* s = rsl::findShadeop(name);
@@ -92,7 +108,8 @@ int shadeops(const std::string& name, bool json) {
         std::vector<std::string> names;
         for (const auto& o : rsl::shadeops()) names.push_back(o.name);
         std::string near = nearestName(name, names);
-        std::fprintf(stderr, "alpenglow: there is no shadeop \"%s\"%s%s\n", name.c_str(), near.empty() ? "" : "; did you mean ", near.c_str());
+        std::fprintf(stderr, "alpenglow: there is no shadeop \"%s\"%s%s\n", name.c_str(), near.empty() ? "" : "; did you mean ",
+                     near.c_str());
         return kDoneWithErrors;
     }
     if (json) std::printf("%s\n", shadeopJson(*s).dump(2).c_str());
@@ -128,9 +145,13 @@ void addInfo(CLI::App& app, int* status) {
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("info", "Tell what a shader is, or how a shadeop works");
     c->add_option("shader", a->file, "RSL file, or the name of a shader on the search path");
-    CLI::Option* ops = c->add_option("--shadeops", a->shadeop, "List the shadeops, or print the manual of one")->expected(0, 1)->type_name("[NAME]");
+    CLI::Option* ops = c->add_option("--shadeops", a->shadeop, "List the shadeops, or print the manual of one")
+                           ->expected(0, 1)
+                           ->type_name("[NAME]");
     c->add_flag("--json", a->json, "As JSON");
-    c->add_option("--searchpath", a->searchPaths, "Folders for shaders and #include, separated by :")->type_name("DIRS")->allow_extra_args(false);
+    c->add_option("--searchpath", a->searchPaths, "Folders for shaders and #include, separated by :")
+        ->type_name("DIRS")
+        ->allow_extra_args(false);
     c->callback([a, ops, status] {
         if (ops->count()) {
             *status = shadeops(a->shadeop, a->json);
@@ -157,7 +178,8 @@ void addInfo(CLI::App& app, int* status) {
         j["parameters"] = Json::array();
         for (size_t i = 0; i < shader->parameters().size(); ++i) {
             const rsl::ParameterInfo& p = shader->parameters()[i];
-            Json q = {{"name", p.name}, {"type", rsl::toString(p.type)}, {"storage", storageText(p.storage)}, {"output", p.output}};
+            Json q = {
+                {"name", p.name}, {"type", rsl::toString(p.type)}, {"storage", storageText(p.storage)}, {"output", p.output}};
             if (p.hasDefault && i < defaults.size()) {
                 if (defaults[i].type.base == rsl::Base::String) q["default"] = defaults[i].strings;
                 else q["default"] = defaults[i].numbers;
@@ -181,7 +203,8 @@ void addInfo(CLI::App& app, int* status) {
         for (size_t i = 0; i < shader->parameters().size(); ++i) {
             const rsl::ParameterInfo& p = shader->parameters()[i];
             std::string value = p.hasDefault && i < defaults.size() ? " = " + valueText(defaults[i]) : "";
-            std::printf("    %s%s %s %s%s\n", p.output ? "output " : "", storageText(p.storage), rsl::toString(p.type).c_str(), p.name.c_str(), value.c_str());
+            std::printf("    %s%s %s %s%s\n", p.output ? "output " : "", storageText(p.storage), rsl::toString(p.type).c_str(),
+                        p.name.c_str(), value.c_str());
         }
         if (!kernel) return;
         std::string writes;

@@ -21,7 +21,8 @@ std::vector<std::string> normalise(int argc, char** argv, const CLI::App& app) {
     for (size_t i = 1; i < args.size(); ++i) {
         std::string& a = args[i];
         if (a.size() > 2 && a[0] == '-' && a[1] == '.' && std::isdigit(static_cast<unsigned char>(a[2]))) a.insert(1, "0");
-        if (args[0] == "maketx" && a.size() > 2 && a[0] == '-' && std::isalpha(static_cast<unsigned char>(a[1]))) a.insert(0, "-");
+        if (args[0] == "maketx" && a.size() > 2 && a[0] == '-' && std::isalpha(static_cast<unsigned char>(a[1])))
+            a.insert(0, "-");
     }
     return args;
 }
@@ -30,13 +31,15 @@ std::vector<std::string> normalise(int argc, char** argv, const CLI::App& app) {
 
 int main(int argc, char** argv) {
     int status = kDone;
-    CLI::App app("Alpenglow renders RenderMan scenes: RIB in, shaders in RSL as machine code, path-traced pictures out.", "alpenglow");
+    CLI::App app("Alpenglow renders RenderMan scenes: RIB in, shaders in RSL as machine code, path-traced pictures out.",
+                 "alpenglow");
     app.set_version_flag("--version", "alpenglow " ALPENGLOW_VERSION);
     app.require_subcommand(1);
     app.get_formatter()->column_width(34);
-    app.footer("alpenglow scene.rib is the same as alpenglow render scene.rib. alpenglow COMMAND --help tells more.\n\n"
-               "Exit status: 0 done; 1 done, but requests failed; 2 wrong use; 3 nothing could be rendered; 4 a limit or memory;\n"
-               "5 an output could not be written; 130 interrupted, what was done is saved.");
+    app.footer(
+        "alpenglow scene.rib is the same as alpenglow render scene.rib. alpenglow COMMAND --help tells more.\n\n"
+        "Exit status: 0 done; 1 done, but requests failed; 2 wrong use; 3 nothing could be rendered; 4 a limit or memory;\n"
+        "5 an output could not be written; 130 interrupted, what was done is saved.");
     addRender(app, &status);
     addEval(app, &status);
     addShade(app, &status);

@@ -28,15 +28,22 @@ void addMaketx(CLI::App& app, int* status) {
     c->add_option("--smode", a->smode, "Wrap mode in s alone")->check(wraps)->type_name("MODE");
     c->add_option("--tmode", a->tmode, "Wrap mode in t alone")->check(wraps)->type_name("MODE");
     c->add_option("--filter", a->options.filter, "Filter of the reduction, for example box, gaussian, sinc")->type_name("NAME");
-    c->add_option("--width", a->width, "Factors on the filter's width in s and t")->expected(1, 2)->check(CLI::PositiveNumber)->type_name("S [T]")->allow_extra_args(false);
-    c->add_option("--fov", a->fov, "Field of view of the six pictures, degrees")->check(CLI::Range(1.0, 179.0))->type_name("DEGREES");
+    c->add_option("--width", a->width, "Factors on the filter's width in s and t")
+        ->expected(1, 2)
+        ->check(CLI::PositiveNumber)
+        ->type_name("S [T]")
+        ->allow_extra_args(false);
+    c->add_option("--fov", a->fov, "Field of view of the six pictures, degrees")
+        ->check(CLI::Range(1.0, 179.0))
+        ->type_name("DEGREES");
     c->footer("The options of old tools are taken as well: -envlatl, -envcube, -shadow, -mode, -smode, -tmode, -filter.");
     c->callback([a, status] {
         Diagnostics diags(printer());
         texture::MakeOptions& o = a->options;
         size_t wanted = a->cube ? 7 : 2;
         if (a->files.size() != wanted)
-            throw CLI::ValidationError("files", a->cube ? "--envcube takes six pictures and the map" : "takes a picture and the map");
+            throw CLI::ValidationError("files",
+                                       a->cube ? "--envcube takes six pictures and the map" : "takes a picture and the map");
         std::string s = !a->smode.empty() ? a->smode : a->mode, t = !a->tmode.empty() ? a->tmode : a->mode;
         if (!s.empty()) o.swrap = s;
         if (!t.empty()) o.twrap = t;

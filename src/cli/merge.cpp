@@ -21,9 +21,15 @@ void addMerge(CLI::App& app, int* status) {
     c->callback([a, status] {
         Diagnostics diags(printer());
         switch (render::mergePictures(a->parts, a->output, a->allowWrite, diags)) {
-        case render::MergeResult::Done: *status = diags.errors() ? kDoneWithErrors : kDone; break;
-        case render::MergeResult::NoInput: *status = kNothingRendered; break;
-        case render::MergeResult::NoOutput: *status = kOutputFailed; break;
+        case render::MergeResult::Done:
+            *status = diags.errors() ? kDoneWithErrors : kDone;
+            break;
+        case render::MergeResult::NoInput:
+            *status = kNothingRendered;
+            break;
+        case render::MergeResult::NoOutput:
+            *status = kOutputFailed;
+            break;
         }
     });
 }

@@ -1,9 +1,12 @@
 // alpenglow probe: the light at one point of a scene, as the radiance that a white diffuse point there would send back.
 //
-// A quad of a ten-thousandth of the scene's size is put there, seen by camera rays only, so that it neither lights nor shadows
-// anything; a camera ray meets it straight on, over and over. So all light counts as it does in pictures: lights sampled, the rest followed.
+// A quad is put there, a hair above the surface and seen by camera rays only, so that it neither lights nor shadows anything;
+// camera rays meet it straight on, over and over. So all light counts as it does in pictures: lights sampled, the rest followed.
+// The rays meet a narrow ring around the point, not the point: where something touches the surface just there (a ball on the
+// floor), whatever is a hair above the point lies inside of it.
+#include "base/sampler.h"
 #include "cli/command.h"
-#include "render/engine.h"
+#include "render/rendering.h"
 #include "ri/reader.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -45,6 +48,7 @@ struct Arguments {
     uint32_t spp = 4096;
     uint64_t seed = 0;
     int threads = 0, maxDepth = -1, lanes = 16;
+    double radius = 0; ///< 0: a 400th of the scene
     bool unbiased = false;
     std::vector<std::string> searchPaths;
 };
@@ -69,7 +73,10 @@ int probe(const Arguments& a) {
     frame->options.hider = "path";
     frame->options.imager = nullptr;
 
-    double size = 1e-4 * extentFrom(*frame, P), above = 0.25 * size;
+    const Matrix& toCamera = frame->options.worldToCamera.first();
+    double extent = extentFrom(*frame, P), radius = a.radius > 0 ? a.radius : extent / 400, size = 1.01 * radius;
+    // A few times the rounding of the largest coordinate, so that the surface itself stays below.
+    double above = 0x1p-20 * std::max({extent, length(P), length(transformPoint(toCamera, P))});
     Vec3d helper = std::fabs(N.x) < 0.5 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
     Vec3d u = normalize(cross(helper, N)), v = cross(N, u), C = P + N * above;
     auto attributes = std::make_shared<scene::Attributes>();
@@ -129,13 +136,12 @@ int probe(const Arguments& a) {
     auto world = engine.build(frame, t, diags);
     if (!world) return kNothingRendered;
 
-    // Samples in up to 64 blocks, each a stratified sequence of its own: their means are independent, so their spread is the error.
+    // Samples in up to 64 blocks, each a stratified sequence of its own: their means are independent, so their spread is the
+    // error.
     uint32_t blocks = std::min(64u, std::max(2u, a.spp)), each = std::max(1u, (a.spp + blocks - 1) / blocks);
-    const Matrix& toCamera = frame->options.worldToCamera.first();
     transport::CameraRay ray;
-    ray.origin = Vec3(transformPoint(toCamera, C + N * size));
     ray.direction = Vec3(normalize(transformVector(toCamera, -N)));
-    ray.width = float(size);
+    ray.width = float(radius);
     ray.time = frame->options.shutterOpen;
     const volatile int32_t* stop = watchInterrupts();
     std::vector<Color> means(blocks);
@@ -150,7 +156,11 @@ int probe(const Arguments& a) {
                 for (uint32_t begin = 0; begin < each; begin += 1024) {
                     std::vector<transport::CameraRay> rays;
                     for (uint32_t s = begin; s < std::min(each, begin + 1024); ++s) {
+                        Vec2 e = render::Sampler(a.seed, int(b), 0).get2(0, render::kUseFilter, 0, s);
+                        double r = radius * std::sqrt(0.25 + 0.75 * e.x), phi = 2 * kPi * e.y;
+                        Vec3d from = C + N * above + u * (r * std::cos(phi)) + v * (r * std::sin(phi));
                         rays.push_back(ray);
+                        rays.back().origin = Vec3(transformPoint(toCamera, from));
                         rays.back().px = int(b);
                         rays.back().sample = s;
                     }
@@ -167,7 +177,8 @@ int probe(const Arguments& a) {
     for (std::thread& th : team) th.join();
     if (*stop) return kInterrupted;
     if (missed) {
-        diags.report(Severity::Error, Rie::Math, {}, "the point could not be seen: it is lost in the rounding of the scene's coordinates");
+        diags.report(Severity::Error, Rie::Math, {},
+                     "the point could not be seen: it is lost in the rounding of the scene's coordinates");
         return kNothingRendered;
     }
     double mean[3] = {0, 0, 0}, error[3] = {0, 0, 0};
@@ -184,7 +195,8 @@ int probe(const Arguments& a) {
 
 void addProbe(CLI::App& app, int* status) {
     auto a = std::make_shared<Arguments>();
-    CLI::App* c = app.add_subcommand("probe", "Print the radiance leaving a white diffuse point of a scene, and its standard error");
+    CLI::App* c =
+        app.add_subcommand("probe", "Print the radiance leaving a white diffuse point of a scene, and its standard error");
     c->add_option("scene", a->scene, "RIB file; - is standard input")->required();
     c->add_option("point", a->point, "X,Y,Z in world space")->required();
     c->add_option("normal", a->normal, "NX,NY,NZ: the side that is lit")->required();
@@ -193,8 +205,14 @@ void addProbe(CLI::App& app, int* status) {
     c->add_option("--threads", a->threads, "Threads; all cores when not given")->check(CLI::Range(1, 1024))->type_name("N");
     c->add_option("--lanes", a->lanes, "Points a shader works on at once")->check(CLI::IsMember({4, 8, 16}))->type_name("N");
     c->add_option("--max-depth", a->maxDepth, "Greatest number of bounces")->check(CLI::Range(0, 10000))->type_name("N");
+    c->add_option("--radius", a->radius,
+                  "Outer radius of the ring around the point that is looked at; a 400th of the scene when not given")
+        ->check(CLI::PositiveNumber)
+        ->type_name("R");
     c->add_flag("--unbiased", a->unbiased, "Do not tame shaders that reflect more than they receive");
-    c->add_option("--searchpath", a->searchPaths, "Folders for shaders, textures and archives, separated by :")->type_name("DIRS")->allow_extra_args(false);
+    c->add_option("--searchpath", a->searchPaths, "Folders for shaders, textures and archives, separated by :")
+        ->type_name("DIRS")
+        ->allow_extra_args(false);
     c->footer("Prints R G B and the standard errors of the three. Path tracing, whatever the scene's hider.\n\n"
               "Example: alpenglow probe examples/muttenzer_box.rib 0,-1.25,0 0,1,0 --spp 65536");
     c->callback([a, status] { *status = probe(*a); });

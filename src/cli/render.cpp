@@ -33,7 +33,8 @@ void checkLate(Arguments& a, const CLI::App& app) {
     }
     if (!a.crop.empty()) {
         auto v = parseNumbers(a.crop, 4);
-        if (!v || !((*v)[0] <= (*v)[1] && (*v)[2] <= (*v)[3])) wrong("--crop", "takes X0,X1,Y0,Y1, each in 0..1, lower before upper");
+        if (!v || !((*v)[0] <= (*v)[1] && (*v)[2] <= (*v)[3]))
+            wrong("--crop", "takes X0,X1,Y0,Y1, each in 0..1, lower before upper");
         s.crop = {float((*v)[0]), float((*v)[1]), float((*v)[2]), float((*v)[3])};
     }
     if (!a.samples.empty()) {
@@ -53,13 +54,15 @@ void checkLate(Arguments& a, const CLI::App& app) {
         auto v = parseNumbers(a.pixel);
         if (!v || v->size() < 2 || v->size() > 3) wrong("--pixel", "takes X,Y or X,Y,SAMPLE");
         for (double d : *v)
-            if (d != std::floor(d) || std::fabs(d) > 1e9 || (v->size() == 3 && v->back() < 0)) wrong("--pixel", "takes whole numbers");
+            if (d != std::floor(d) || std::fabs(d) > 1e9 || (v->size() == 3 && v->back() < 0))
+                wrong("--pixel", "takes whole numbers");
         s.pixel = {int((*v)[0]), int((*v)[1])};
         if (v->size() == 3) s.pixelSample = uint32_t((*v)[2]);
     }
     for (const std::string& d : a.displays) {
         size_t colon = d.find(':');
-        if (colon == std::string::npos || colon == 0 || colon + 1 == d.size()) wrong("--display", "takes TYPE:NAME, for example png:view.png");
+        if (colon == std::string::npos || colon == 0 || colon + 1 == d.size())
+            wrong("--display", "takes TYPE:NAME, for example png:view.png");
         s.displays.emplace_back(d.substr(0, colon), d.substr(colon + 1));
     }
     if (app.count("--gamma")) s.gamma = a.gamma;
@@ -109,13 +112,15 @@ int renderOnce(const Arguments& a, const volatile int32_t* stop) {
     const auto& outcome = renderer.outcome();
     bool interrupted = outcome.interrupted || *stop;
     if (outcome.rendered == 0 && outcome.refused == 0 && outcome.textures == 0 && !interrupted && !diags.errors())
-        diags.report(Severity::Error, Rie::MissingData, {}, "no world was rendered: there is none between WorldBegin and WorldEnd in what was read");
+        diags.report(Severity::Error, Rie::MissingData, {},
+                     "no world was rendered: there is none between WorldBegin and WorldEnd in what was read");
     renderer.writeStats();
     if (!a.quiet && outcome.rendered > 0 && !settings.pixel) std::fputs(toTable(renderer.stats()).c_str(), stderr);
     if (interrupted) return kInterrupted;
     if (outcome.outputFailed) return kOutputFailed;
     memory |= outcome.outOfMemory;
-    for (const Diagnostic& d : diags.all()) memory |= d.severity == Severity::Severe && (d.code == Rie::NoMem || d.code == Rie::Limit);
+    for (const Diagnostic& d : diags.all())
+        memory |= d.severity == Severity::Severe && (d.code == Rie::NoMem || d.code == Rie::Limit);
     if (memory) return kLimit;
     if (outcome.rendered == 0 && (outcome.refused > 0 || outcome.textures == 0)) return kNothingRendered;
     return diags.errors() ? kDoneWithErrors : kDone;
@@ -157,49 +162,107 @@ void addRender(CLI::App& app, int* status) {
     CLI::App* c = app.add_subcommand("render", "Render scenes (RIB files; - reads standard input)");
     c->add_option("scenes", a->scenes, "RIB files, ASCII, binary or gzipped; - is standard input")->required();
 
-    c->add_option("-o", s.output, "Write one picture FILE instead of the scene's displays; the extension chooses the format (.exr .png "
-                                  ".tif). # in the name becomes the frame number")->type_name("FILE")->group("Pictures");
-    c->add_option("--display", a->displays, "Add a display, for example png:view.png")->type_name("TYPE:NAME")->allow_extra_args(false)->group("Pictures");
+    c->add_option("-o", s.output,
+                  "Write one picture FILE instead of the scene's displays; the extension chooses the format (.exr .png "
+                  ".tif). # in the name becomes the frame number")
+        ->type_name("FILE")
+        ->group("Pictures");
+    c->add_option("--display", a->displays, "Add a display, for example png:view.png")
+        ->type_name("TYPE:NAME")
+        ->allow_extra_args(false)
+        ->group("Pictures");
     c->add_option("--format", a->format, "Size of the picture in pixels")->type_name("WxH")->group("Pictures");
-    c->add_option("--resolution-factor", s.resolutionFactor, "Scale both sides of the picture")->check(CLI::Range(1e-4, 1e4))->type_name("F")->group("Pictures");
-    c->add_option("--crop", a->crop, "Render only this part, in fractions of the picture from its upper left")->type_name("X0,X1,Y0,Y1")->group("Pictures");
-    c->add_option("--gamma", a->gamma, "Display gamma instead of Exposure's")->check(CLI::Range(0.01, 100.0))->type_name("G")->group("Pictures");
+    c->add_option("--resolution-factor", s.resolutionFactor, "Scale both sides of the picture")
+        ->check(CLI::Range(1e-4, 1e4))
+        ->type_name("F")
+        ->group("Pictures");
+    c->add_option("--crop", a->crop, "Render only this part, in fractions of the picture from its upper left")
+        ->type_name("X0,X1,Y0,Y1")
+        ->group("Pictures");
+    c->add_option("--gamma", a->gamma, "Display gamma instead of Exposure's")
+        ->check(CLI::Range(0.01, 100.0))
+        ->type_name("G")
+        ->group("Pictures");
     c->add_option("--frames", a->frames, "Only these frames, for example 1,4-6")->type_name("LIST")->group("Pictures");
 
     c->add_option("--hider", s.hider, "hidden, raytrace or path, instead of the scene's Hider")
-        ->check(CLI::IsMember({"hidden", "raytrace", "path"}))->type_name("NAME")->group("Quality");
-    c->add_option("--spp", s.spp, "Samples per pixel instead of PixelSamples (path without either: 64)")->check(CLI::Range(1u, limits::kSamplesPerPixel))->type_name("N")->group("Quality");
-    c->add_option("--noise", s.noise, "path: go on until the mean relative error of the pixels is RSE, for example 0.01")->check(CLI::PositiveNumber)->type_name("RSE")->group("Quality");
-    c->add_option("--time", s.seconds, "path: go on for about so long")->check(CLI::PositiveNumber)->type_name("SECONDS")->group("Quality");
-    c->add_option("--samples", a->samples, "path: only samples A to B-1 of every pixel; a part file is written beside the picture, for merge")->type_name("A:B")->group("Quality");
+        ->check(CLI::IsMember({"hidden", "raytrace", "path"}))
+        ->type_name("NAME")
+        ->group("Quality");
+    c->add_option("--spp", s.spp, "Samples per pixel instead of PixelSamples (path without either: 64)")
+        ->check(CLI::Range(1u, limits::kSamplesPerPixel))
+        ->type_name("N")
+        ->group("Quality");
+    c->add_option("--noise", s.noise, "path: go on until the mean relative error of the pixels is RSE, for example 0.01")
+        ->check(CLI::PositiveNumber)
+        ->type_name("RSE")
+        ->group("Quality");
+    c->add_option("--time", s.seconds, "path: go on for about so long")
+        ->check(CLI::PositiveNumber)
+        ->type_name("SECONDS")
+        ->group("Quality");
+    c->add_option("--samples", a->samples,
+                  "path: only samples A to B-1 of every pixel; a part file is written beside the picture, for merge")
+        ->type_name("A:B")
+        ->group("Quality");
     c->add_option("--seed", s.seed, "Seed of all random numbers; same seed, same bits")->type_name("N")->group("Quality");
-    c->add_option("--max-depth", s.maxDepth, "Greatest number of bounces")->check(CLI::Range(0, limits::kPathDepth))->type_name("N")->group("Quality");
-    c->add_option("--sample-clamp", s.sampleClamp, "Scale samples brighter than X down to it: less noise, but a bias")->check(CLI::NonNegativeNumber)->type_name("X")->group("Quality");
+    c->add_option("--max-depth", s.maxDepth, "Greatest number of bounces")
+        ->check(CLI::Range(0, limits::kPathDepth))
+        ->type_name("N")
+        ->group("Quality");
+    c->add_option("--sample-clamp", s.sampleClamp, "Scale samples brighter than X down to it: less noise, but a bias")
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("X")
+        ->group("Quality");
     c->add_flag("--no-direct", a->noDirect, "Leave direct light out")->group("Quality");
     c->add_flag("--no-indirect", a->noIndirect, "Leave diffuse interreflection out")->group("Quality");
     c->add_flag("--unbiased", s.unbiased, "Do not tame shaders that reflect more than they receive")->group("Quality");
-    c->add_option("--preset", a->preset, "slproject: path, gamma 2.2, sample clamp 3, local roulette, box filter, Pathtraced_<spp>_<no>.png")
-        ->check(CLI::IsMember({"slproject"}))->type_name("NAME")->group("Quality");
+    c->add_option("--preset", a->preset,
+                  "slproject: path, gamma 2.2, sample clamp 3, local roulette, box filter, Pathtraced_<spp>_<no>.png")
+        ->check(CLI::IsMember({"slproject"}))
+        ->type_name("NAME")
+        ->group("Quality");
 
-    c->add_option("--threads", s.threads, "Threads; all cores when not given. The picture does not depend on it")->check(CLI::Range(1, 1024))->type_name("N")->group("Machine");
-    c->add_option("--lanes", s.lanes, "Points a shader works on at once; the picture does not depend on it")->check(CLI::IsMember({4, 8, 16}))->type_name("N")->group("Machine");
-    c->add_option("--checkpoint", s.checkpoint, "path: keep the samples so far in FILE, every half minute and at the end")->type_name("FILE")->group("Machine");
+    c->add_option("--threads", s.threads, "Threads; all cores when not given. The picture does not depend on it")
+        ->check(CLI::Range(1, 1024))
+        ->type_name("N")
+        ->group("Machine");
+    c->add_option("--lanes", s.lanes, "Points a shader works on at once; the picture does not depend on it")
+        ->check(CLI::IsMember({4, 8, 16}))
+        ->type_name("N")
+        ->group("Machine");
+    c->add_option("--checkpoint", s.checkpoint, "path: keep the samples so far in FILE, every half minute and at the end")
+        ->type_name("FILE")
+        ->group("Machine");
     c->add_flag("--resume", s.resume, "Begin with the samples in the checkpoint")->group("Machine");
     c->add_option("--stats", s.statsFile, "Write figures of the render as JSON")->type_name("FILE.json")->group("Machine");
-    c->add_option("--pixel", a->pixel, "Print red, green, blue and coverage of one pixel, or of one of its samples, and write no picture")->type_name("X,Y[,SAMPLE]")->group("Machine");
+    c->add_option("--pixel", a->pixel,
+                  "Print red, green, blue and coverage of one pixel, or of one of its samples, and write no picture")
+        ->type_name("X,Y[,SAMPLE]")
+        ->group("Machine");
     c->add_flag("--watch", a->watch, "Render again whenever the scene file changes")->group("Machine");
 
-    c->add_option("--searchpath", a->searchPaths, "Folders for shaders, textures and archives, separated by :")->type_name("DIRS")->allow_extra_args(false)->group("Input");
-    c->add_option("--rib", a->rib, "Requests that are read before the scene")->type_name("'REQUESTS'")->allow_extra_args(false)->group("Input");
+    c->add_option("--searchpath", a->searchPaths, "Folders for shaders, textures and archives, separated by :")
+        ->type_name("DIRS")
+        ->allow_extra_args(false)
+        ->group("Input");
+    c->add_option("--rib", a->rib, "Requests that are read before the scene")
+        ->type_name("'REQUESTS'")
+        ->allow_extra_args(false)
+        ->group("Input");
     c->add_flag("--allow-exec", s.allowExec, "Let the scene run programs and load plug-ins")->group("Input");
     c->add_flag("--allow-write", s.allowWrite, "Let the scene write outside the current folder")->group("Input");
 
-    c->add_option("--progress", a->progress, "auto, bar, plain or none")->check(CLI::IsMember({"auto", "bar", "plain", "none"}))->type_name("MODE")->group("Messages");
+    c->add_option("--progress", a->progress, "auto, bar, plain or none")
+        ->check(CLI::IsMember({"auto", "bar", "plain", "none"}))
+        ->type_name("MODE")
+        ->group("Messages");
     c->add_flag("-q,--quiet", a->quiet, "Errors only: no progress, no warnings, no table at the end")->group("Messages");
     c->add_flag("-v,--verbose", a->verbose, "Notes too")->group("Messages");
     c->footer("Examples:\n  alpenglow scene.rib                          as the scene says\n"
               "  alpenglow render --hider path --noise 0.02 -o out.exr scene.rib\n"
-              "  alpenglow render --samples 0:32 -o a.exr scene.rib    and 32:64 to b.exr elsewhere; then merge a.exr b.exr -o whole.exr\n"
+              "  alpenglow render --samples 0:32 -o a.exr scene.rib    and 32:64 to b.exr elsewhere; then merge a.exr b.exr -o "
+              "whole.exr\n"
               "Ctrl-C keeps the passes that are whole and writes the picture; a second Ctrl-C ends at once.");
     for (CLI::Option* o : c->get_options())
         if (o->get_items_expected_max() == 1) o->take_last(); // a script's option gives way to the user's behind it

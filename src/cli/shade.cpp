@@ -24,15 +24,32 @@ struct Arguments {
 
 /// Value, d/du and d/dv of a predefined variable at a point of the patch; see the footer of the help. False: not known.
 bool predefined(const std::string& name, float u, float v, float du, float dv, int c, int part, float* out) {
-    struct Row { const char* name; float value[3], du[3], dv[3]; };
-    const Row rows[] = {
-        {"u", {u}, {1}, {0}}, {"v", {v}, {0}, {1}}, {"s", {u}, {1}, {0}}, {"t", {v}, {0}, {1}},
-        {"du", {du}, {}, {}}, {"dv", {dv}, {}, {}}, {"time", {0}, {}, {}}, {"dtime", {0}, {}, {}},
-        {"ncomps", {3}, {}, {}}, {"alpha", {1}, {}, {}},
-        {"P", {u, v, 0}, {1, 0, 0}, {0, 1, 0}}, {"dPdu", {1, 0, 0}, {}, {}}, {"dPdv", {0, 1, 0}, {}, {}}, {"dPdtime", {}, {}, {}},
-        {"N", {0, 0, 1}, {}, {}}, {"Ng", {0, 0, 1}, {}, {}},
-        {"I", {u - 0.5f, v - 0.5f, -1}, {1, 0, 0}, {0, 1, 0}}, {"E", {0.5f, 0.5f, 1}, {}, {}},
-        {"Cs", {1, 1, 1}, {}, {}}, {"Os", {1, 1, 1}, {}, {}}, {"Ci", {}, {}, {}}, {"Oi", {1, 1, 1}, {}, {}}};
+    struct Row {
+        const char* name;
+        float value[3], du[3], dv[3];
+    };
+    const Row rows[] = {{"u", {u}, {1}, {0}},
+                        {"v", {v}, {0}, {1}},
+                        {"s", {u}, {1}, {0}},
+                        {"t", {v}, {0}, {1}},
+                        {"du", {du}, {}, {}},
+                        {"dv", {dv}, {}, {}},
+                        {"time", {0}, {}, {}},
+                        {"dtime", {0}, {}, {}},
+                        {"ncomps", {3}, {}, {}},
+                        {"alpha", {1}, {}, {}},
+                        {"P", {u, v, 0}, {1, 0, 0}, {0, 1, 0}},
+                        {"dPdu", {1, 0, 0}, {}, {}},
+                        {"dPdv", {0, 1, 0}, {}, {}},
+                        {"dPdtime", {}, {}, {}},
+                        {"N", {0, 0, 1}, {}, {}},
+                        {"Ng", {0, 0, 1}, {}, {}},
+                        {"I", {u - 0.5f, v - 0.5f, -1}, {1, 0, 0}, {0, 1, 0}},
+                        {"E", {0.5f, 0.5f, 1}, {}, {}},
+                        {"Cs", {1, 1, 1}, {}, {}},
+                        {"Os", {1, 1, 1}, {}, {}},
+                        {"Ci", {}, {}, {}},
+                        {"Oi", {1, 1, 1}, {}, {}}};
     for (const Row& r : rows)
         if (name == r.name) {
             *out = c > 2 ? 0 : part == 0 ? r.value[c] : part == 1 ? r.du[c] : part == 2 ? r.dv[c] : 0;
@@ -84,13 +101,15 @@ int shade(const Arguments& a) {
     options.outputs = a.outputs;
     for (const std::string& p : a.params) {
         size_t eq = p.find('=');
-        if (eq == std::string::npos || eq == 0) throw CLI::ValidationError("--param", "takes NAME=VALUE, for example Kd=0.5 or c=1,0,0");
+        if (eq == std::string::npos || eq == 0)
+            throw CLI::ValidationError("--param", "takes NAME=VALUE, for example Kd=0.5 or c=1,0,0");
         std::string name = p.substr(0, eq), text = p.substr(eq + 1);
         auto i = std::find_if(values.begin(), values.end(), [&](const rsl::ParameterValue& v) { return v.name == name; });
         if (i == values.end()) {
             std::vector<std::string> names;
             for (const auto& v : values) names.push_back(v.name);
-            diags.report(Severity::Error, Rie::BadToken, {a.shader}, "it has no parameter \"" + name + "\"", nearestName(name, names));
+            diags.report(Severity::Error, Rie::BadToken, {a.shader}, "it has no parameter \"" + name + "\"",
+                         nearestName(name, names));
             return kWrongUse;
         }
         if (i->type.base == rsl::Base::String) {
@@ -101,13 +120,15 @@ int shade(const Arguments& a) {
         size_t want = i->numbers.size();
         if (numbers && numbers->size() == 1 && want == 3) numbers->assign(3, numbers->front());
         if (!numbers || numbers->size() != want) {
-            diags.report(Severity::Error, Rie::BadToken, {a.shader}, "parameter \"" + name + "\" takes " + std::to_string(want) + " numbers");
+            diags.report(Severity::Error, Rie::BadToken, {a.shader},
+                         "parameter \"" + name + "\" takes " + std::to_string(want) + " numbers");
             return kWrongUse;
         }
         i->numbers.assign(numbers->begin(), numbers->end());
     }
     for (const auto& v : values)
-        if (v.type.base == rsl::Base::String && v.type.array == 0 && !v.strings.empty()) options.stringParameters.emplace_back(v.name, v.strings[0]);
+        if (v.type.base == rsl::Base::String && v.type.array == 0 && !v.strings.empty())
+            options.stringParameters.emplace_back(v.name, v.strings[0]);
     auto kernel = compiler.kernel(shader, options, diags);
     if (!kernel) return kNothingRendered;
     if (kernel->facts().suspends) {
@@ -122,7 +143,9 @@ int shade(const Arguments& a) {
         int n = rsl::ir::components(o.kind);
         if (o.kind == rsl::ir::Kind::String) continue;
         for (int c = 0; c < n; ++c)
-            channels.push_back(o.name == "Ci" ? std::string(1, "rgb"[c]) : n == 1 ? o.name : o.name + "." + (n == 3 ? std::string(1, "rgb"[c]) : std::to_string(c)));
+            channels.push_back(o.name == "Ci" ? std::string(1, "rgb"[c])
+                               : n == 1       ? o.name
+                                              : o.name + "." + (n == 3 ? std::string(1, "rgb"[c]) : std::to_string(c)));
     }
     display::Image image = display::makeImage(w, h, channels);
     const int batch = 4096, stride = batch;
@@ -146,12 +169,14 @@ int shade(const Arguments& a) {
     call.strings = kernel->strings().data();
     call.user = &context;
     call.stop = stop;
-    call.service = [](rsl::KernelCall* c, int32_t site, int32_t, uint64_t mask, int32_t lanes, const float* rowsIn, float* rowsOut) {
+    call.service = [](rsl::KernelCall* c, int32_t site, int32_t, uint64_t mask, int32_t lanes, const float* rowsIn,
+                      float* rowsOut) {
         auto& x = *static_cast<Context*>(c->user);
         if (site < 0) return;
-        rsl::basicService(x.kernel->sites()[size_t(site)], mask, lanes, rowsIn, rowsOut, *x.diagnostics, [&](int, const std::string& text) {
-            if (x.print) std::fputs(text.c_str(), stdout);
-        });
+        rsl::basicService(x.kernel->sites()[size_t(site)], mask, lanes, rowsIn, rowsOut, *x.diagnostics,
+                          [&](int, const std::string& text) {
+                              if (x.print) std::fputs(text.c_str(), stdout);
+                          });
     };
     call.lightBegin = [](rsl::KernelCall*, int32_t, int32_t, uint64_t, int32_t, const float*) { return int32_t(0); };
     call.lightFetch = [](rsl::KernelCall*, int32_t, int32_t, int32_t, uint64_t, int32_t, float*) { return uint64_t(0); };
@@ -162,14 +187,16 @@ int shade(const Arguments& a) {
             const auto& i = kernel->inputs()[k];
             float* rows = in[k].data.get();
             int parts = rsl::inputParts(i), n = rsl::ir::components(i.kind);
-            auto value = std::find_if(values.begin(), values.end(), [&](const rsl::ParameterValue& v) { return "param:" + v.name == i.name; });
+            auto value = std::find_if(values.begin(), values.end(),
+                                      [&](const rsl::ParameterValue& v) { return "param:" + v.name == i.name; });
             for (int e = 0; e < std::max(1, i.array); ++e)
                 for (int c = 0; c < n; ++c)
                     for (int part = 0; part < parts; ++part) {
                         size_t row = size_t(e * n + c) * size_t(parts) + size_t(part), number = size_t(e * n + c);
                         float constant = 0;
                         bool varies = false;
-                        if (value != values.end()) constant = part == 0 && number < value->numbers.size() ? value->numbers[number] : 0;
+                        if (value != values.end())
+                            constant = part == 0 && number < value->numbers.size() ? value->numbers[number] : 0;
                         else if (i.kind == rsl::ir::Kind::Matrix) constant = c % 5 == 0 ? 1.f : 0.f; // every space is "current"
                         else varies = true;
                         if (i.uniform) {
@@ -188,7 +215,8 @@ int shade(const Arguments& a) {
     const size_t samples = size_t(side) * size_t(side), total = size_t(w) * size_t(h) * samples;
     auto place = [&](size_t i) {
         size_t pixel = i / samples, s = i % samples;
-        double x = double(pixel % size_t(w)) + (double(s % size_t(side)) + 0.5) / side, y = double(pixel / size_t(w)) + (double(s / size_t(side)) + 0.5) / side;
+        double x = double(pixel % size_t(w)) + (double(s % size_t(side)) + 0.5) / side,
+               y = double(pixel / size_t(w)) + (double(s / size_t(side)) + 0.5) / side;
         return Vec2{float(x / w), float(y / h)};
     };
     for (size_t first = 0; first < total && !*stop; first += size_t(batch)) {
@@ -219,8 +247,8 @@ int shade(const Arguments& a) {
             best = std::min(best, t);
             all += t;
         }
-        std::printf("%.4g ns a point (best of %d batches of %d points), mean %.4g ns, %d points a strip\n", best * 1e9 / batch, a.iterations,
-                    batch, all * 1e9 / batch / a.iterations, kernel->lanes());
+        std::printf("%.4g ns a point (best of %d batches of %d points), mean %.4g ns, %d points a strip\n", best * 1e9 / batch,
+                    a.iterations, batch, all * 1e9 / batch / a.iterations, kernel->lanes());
     }
     display::WriteOptions o;
     o.format = display::formatOfExtension(a.output).value_or(display::Format::Exr);
@@ -242,17 +270,31 @@ void addShade(CLI::App& app, int* status) {
     CLI::App* c = app.add_subcommand("shade", "Run a shader over a unit patch");
     c->add_option("shader", a->shader, "RSL file, or the name of a shader on the search path")->required();
     c->add_option("-o", a->output, "The picture: Ci, Oi, or what --output names")->type_name("FILE")->capture_default_str();
-    c->add_option("--param", a->params, "Set a parameter: Kd=0.5, color=1,0,0, name=text")->type_name("NAME=VALUE")->allow_extra_args(false);
+    c->add_option("--param", a->params, "Set a parameter: Kd=0.5, color=1,0,0, name=text")
+        ->type_name("NAME=VALUE")
+        ->allow_extra_args(false);
     c->add_option("--output", a->outputs, "Variables to write instead of Ci and Oi")->type_name("NAME")->allow_extra_args(false);
     c->add_option("--format", a->format, "Size of the picture")->type_name("WxH")->capture_default_str();
-    c->add_option("--spp", a->spp, "Points a pixel, rounded to a square, averaged")->check(CLI::Range(1, 4096))->type_name("N")->capture_default_str();
+    c->add_option("--spp", a->spp, "Points a pixel, rounded to a square, averaged")
+        ->check(CLI::Range(1, 4096))
+        ->type_name("N")
+        ->capture_default_str();
     c->add_option("--gamma", a->gamma, "Display gamma of the picture")->check(CLI::Range(0.01, 100.0))->type_name("G");
-    c->add_option("--iterations", a->iterations, "Time this many runs over 4096 points and print ns a point (one thread, processor time)")->check(CLI::Range(1, 100000000))->type_name("N");
+    c->add_option("--iterations", a->iterations,
+                  "Time this many runs over 4096 points and print ns a point (one thread, processor time)")
+        ->check(CLI::Range(1, 100000000))
+        ->type_name("N");
     c->add_option("--lanes", a->lanes, "Width of the machine code")->check(CLI::IsMember({4, 8, 16}))->type_name("N");
-    c->add_option("--vectors", a->vectors, "Vectors in flight; 0 lets the compiler choose")->check(CLI::Range(0, 4))->type_name("K");
-    c->add_option("--searchpath", a->searchPaths, "Folders for shaders and #include, separated by :")->type_name("DIRS")->allow_extra_args(false);
-    c->footer("The patch: P = (u, v, 0), u to the right and v downward over the picture, s = u, t = v, N = (0,0,1), seen from the eye at\n"
-              "(0.5, 0.5, 1), so I = P - E; du and dv are a pixel. Cs = Os = 1. There are no lights and nothing else to be seen.");
+    c->add_option("--vectors", a->vectors, "Vectors in flight; 0 lets the compiler choose")
+        ->check(CLI::Range(0, 4))
+        ->type_name("K");
+    c->add_option("--searchpath", a->searchPaths, "Folders for shaders and #include, separated by :")
+        ->type_name("DIRS")
+        ->allow_extra_args(false);
+    c->footer(
+        "The patch: P = (u, v, 0), u to the right and v downward over the picture, s = u, t = v, N = (0,0,1), seen from the eye "
+        "at\n"
+        "(0.5, 0.5, 1), so I = P - E; du and dv are a pixel. Cs = Os = 1. There are no lights and nothing else to be seen.");
     c->callback([a, status] { *status = shade(*a); });
 }
 

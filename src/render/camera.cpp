@@ -52,15 +52,17 @@ void imageSize(const scene::Options& o, int* width, int* height) {
 Camera::Camera(const scene::Options& o, Diagnostics& diags) {
     auto bad = [&](const std::string& what) { diags.report(Severity::Error, Rie::Range, {}, what); };
     if (o.xres > limits::kImageSide || o.yres > limits::kImageSide)
-        diags.report(Severity::Error, Rie::Limit, {}, "Format: a side of more than " + std::to_string(limits::kImageSide) + " pixels");
+        diags.report(Severity::Error, Rie::Limit, {},
+                     "Format: a side of more than " + std::to_string(limits::kImageSide) + " pixels");
     scene::Options size = o;
     size.xres = std::min(o.xres, limits::kImageSide);
     size.yres = std::min(o.yres, limits::kImageSide);
     imageSize(size, &width_, &height_);
     pixelAspect_ = pixelAspectOf(o);
 
-    double aspect = o.frameAspect && *o.frameAspect > 0 && std::isfinite(*o.frameAspect) ? double(*o.frameAspect)
-                                                                                        : double(width_) * pixelAspect_ / height_;
+    double aspect = o.frameAspect && *o.frameAspect > 0 && std::isfinite(*o.frameAspect)
+                        ? double(*o.frameAspect)
+                        : double(width_) * pixelAspect_ / height_;
     right_ = aspect >= 1 ? aspect : 1;
     top_ = aspect >= 1 ? 1 : 1 / aspect;
     left_ = -right_;
@@ -91,7 +93,8 @@ Camera::Camera(const scene::Options& o, Diagnostics& diags) {
 
     perspective_ = o.projection == "perspective";
     if (!perspective_ && o.projection != "orthographic" && !o.projection.empty())
-        diags.report(Severity::Error, Rie::Incapable, {}, "Projection \"" + o.projection + "\" is not known; orthographic is used",
+        diags.report(Severity::Error, Rie::Incapable, {},
+                     "Projection \"" + o.projection + "\" is not known; orthographic is used",
                      nearestName(o.projection, {"perspective", "orthographic"}));
     fov_ = o.fov;
     if (perspective_ && !(fov_ > 0 && fov_ < 180)) {
@@ -114,7 +117,8 @@ Camera::Camera(const scene::Options& o, Diagnostics& diags) {
         } else bad("DepthOfField: focal length and distance must be positive; everything is in focus");
     }
     double offset = 0;
-    if (auto i = o.values.find("shutter:offset"); i != o.values.end() && !i->second.numbers.empty()) offset = i->second.numbers[0];
+    if (auto i = o.values.find("shutter:offset"); i != o.values.end() && !i->second.numbers.empty())
+        offset = i->second.numbers[0];
     open_ = o.shutterOpen + offset;
     close_ = o.shutterClose + offset;
     if (close_ < open_) {

@@ -16,7 +16,7 @@ public:
     /// other than "perspective" and "orthographic" are reported and treated as orthographic.
     Camera(const scene::Options&, Diagnostics&);
 
-    int width() const { return width_; }   ///< of the whole picture, pixels
+    int width() const { return width_; } ///< of the whole picture, pixels
     int height() const { return height_; }
     float pixelAspect() const { return pixelAspect_; }
     /// The pixels of CropWindow.

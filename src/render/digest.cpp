@@ -12,7 +12,9 @@ public:
     uint64_t value() const { return mix64(h_); }
 
     void bits(uint64_t v) { h_ = mix64(h_ ^ v) + 0x9e3779b97f4a7c15ull; }
-    template <class T> requires(std::is_arithmetic_v<T>) void add(T v) {
+    template <class T>
+        requires(std::is_arithmetic_v<T>)
+    void add(T v) {
         uint64_t b = 0;
         std::memcpy(&b, &v, sizeof v);
         bits(b);

@@ -11,12 +11,14 @@ namespace alpenglow::render {
 class Tracer {
 public:
     virtual ~Tracer() = default;
-    virtual bool trace(std::span<const transport::CameraRay>, std::span<transport::SampleResult>, const volatile int32_t* stop) = 0;
+    virtual bool trace(std::span<const transport::CameraRay>, std::span<transport::SampleResult>,
+                       const volatile int32_t* stop) = 0;
     virtual const transport::Counters& counters() const = 0;
 };
 
 struct Engine {
-    std::function<std::shared_ptr<const transport::World>(std::shared_ptr<const scene::Frame>, const transport::Settings&, Diagnostics&)>
+    std::function<std::shared_ptr<const transport::World>(std::shared_ptr<const scene::Frame>, const transport::Settings&,
+                                                          Diagnostics&)>
         build;
     std::function<std::unique_ptr<Tracer>(std::shared_ptr<const transport::World>, Diagnostics&)> tracer;
 };

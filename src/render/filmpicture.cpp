@@ -15,7 +15,8 @@ std::string number(double v) {
 
 std::string sidecarName(const std::string& picture) { return picture + ".part"; }
 
-bool writeFilm(const Film& film, const OutputPlan& plan, PictureFacts facts, const Imager& imager, bool allowWrite, Diagnostics& diags) {
+bool writeFilm(const Film& film, const OutputPlan& plan, PictureFacts facts, const Imager& imager, bool allowWrite,
+               Diagnostics& diags) {
     facts.width = film.description().width;
     facts.height = film.description().height;
     facts.window = film.window();
@@ -59,7 +60,8 @@ MergeResult mergePictures(const std::vector<std::string>& parts, const std::stri
         plan->first.resolve(plan->first.engineWidths, diags);
     }
     if (plan->second.imager)
-        diags.report(Severity::Error, Rie::Incapable, {files.front()}, "the scene has an imager shader, which merging does not run");
+        diags.report(Severity::Error, Rie::Incapable, {files.front()},
+                     "the scene has an imager shader, which merging does not run");
     bool written = writeFilm(*film, plan->first, plan->second, {}, allowWrite, diags);
     // What is not the beginning of a sequence may be merged further.
     const auto& r = film->ranges();

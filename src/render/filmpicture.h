@@ -9,14 +9,15 @@ inline constexpr const char* kPicturesKey = "alpenglow:pictures";
 /// The part file that lies beside a picture.
 std::string sidecarName(const std::string& picture);
 
-/// Writes all pictures of a film. Sample count, ranges, seed and noise are added to their metadata. False when one could not be written.
+/// Writes all pictures of a film. Sample count, ranges, seed and noise are added to their metadata. False when one could not be
+/// written.
 bool writeFilm(const Film&, const OutputPlan&, PictureFacts, const Imager&, bool allowWrite, Diagnostics&);
 
 /// How merging ended.
 enum class MergeResult { Done, NoInput, NoOutput };
 /// Adds the films of part files (pictures stand for their sidecars) and writes what one render of all their samples would have
-/// written: `output` (by the rules of -o), or the pictures the parts name when it is empty. An imager cannot be run again without its
-/// scene; that is reported.
+/// written: `output` (by the rules of -o), or the pictures the parts name when it is empty. An imager cannot be run again without
+/// its scene; that is reported.
 MergeResult mergePictures(const std::vector<std::string>& parts, const std::string& output, bool allowWrite, Diagnostics&);
 
 } // namespace alpenglow::render

@@ -1,9 +1,9 @@
 // `hidden` and `raytrace`: PixelSamples image samples a pixel, reconstructed by each display's own filter, in bands of rows.
+#include "base/limits.h"
+#include "base/sampler.h"
 #include "render/imaging.h"
 #include "render/noise.h"
 #include "render/rendering.h"
-#include "base/limits.h"
-#include "base/sampler.h"
 #include <algorithm>
 #include <cmath>
 

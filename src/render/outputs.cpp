@@ -18,8 +18,8 @@ const scene::Param* numbers(const scene::ParamList& list, std::string_view name,
     const scene::Param* p = scene::find(list, name);
     if (!p) return nullptr;
     if (p->numbers.size() == count) return p;
-    diags.report(Severity::Error, Rie::BadToken, p->place, "display parameter \"" + std::string(name) + "\" takes " +
-                 std::to_string(count) + " numbers; it is left out");
+    diags.report(Severity::Error, Rie::BadToken, p->place,
+                 "display parameter \"" + std::string(name) + "\" takes " + std::to_string(count) + " numbers; it is left out");
     return nullptr;
 }
 
@@ -34,7 +34,8 @@ DepthFilter depthFilterOf(const scene::Options& o, Diagnostics& diags) {
     return DepthFilter::Min;
 }
 
-OutputSpec specOf(const scene::Display& d, const scene::Options& o, const OutputBasis& basis, OutputPlan& plan, Diagnostics& diags) {
+OutputSpec specOf(const scene::Display& d, const scene::Options& o, const OutputBasis& basis, OutputPlan& plan,
+                  Diagnostics& diags) {
     OutputSpec s;
     s.name = d.name;
     s.type = d.type;
@@ -49,7 +50,8 @@ OutputSpec specOf(const scene::Display& d, const scene::Options& o, const Output
         s.gamma = e->numbers[1];
         s.ownExposure = true;
         if (!(s.gamma > 0)) {
-            diags.report(Severity::Error, Rie::Range, e->place, "display parameter \"exposure\": gamma must be positive; 1 is used");
+            diags.report(Severity::Error, Rie::Range, e->place,
+                         "display parameter \"exposure\": gamma must be positive; 1 is used");
             s.gamma = 1;
         }
     }
@@ -64,8 +66,9 @@ OutputSpec specOf(const scene::Display& d, const scene::Options& o, const Output
                                         d.place, diags);
         if (!basis.path) s.filter = f;
         else if (f.kind != basis.filter.kind || f.xw != basis.filter.xw || f.yw != basis.filter.yw)
-            diags.report(Severity::Warning, Rie::Incapable, d.place, "display \"" + d.name +
-                         "\": under \"path\" all displays have the filter of PixelFilter, from which the samples are drawn");
+            diags.report(Severity::Warning, Rie::Incapable, d.place,
+                         "display \"" + d.name +
+                             "\": under \"path\" all displays have the filter of PixelFilter, from which the samples are drawn");
     }
     bool askedRgba = false, askedZ = false;
     s.rgba = display::quantizationOf(basis.rgba, d.params, diags, &askedRgba);
@@ -136,8 +139,9 @@ void OutputPlan::resolve(std::vector<int> widths, Diagnostics& diags) {
             if (v.source != Source::Engine || int(v.channels.size()) == engineWidths[size_t(v.engine)]) continue;
             int w = engineWidths[size_t(v.engine)];
             if (v.typed)
-                diags.report(Severity::Warning, Rie::Consistency, p.place, "display \"" + p.name + "\": \"" + v.name + "\" has " +
-                             std::to_string(w) + " numbers in the shaders, not " + std::to_string(v.channels.size()));
+                diags.report(Severity::Warning, Rie::Consistency, p.place,
+                             "display \"" + p.name + "\": \"" + v.name + "\" has " + std::to_string(w) +
+                                 " numbers in the shaders, not " + std::to_string(v.channels.size()));
             v.channels.clear();
             if (w == 1) v.channels = {v.name};
             else if (w == 3) v.channels = {v.name + ".r", v.name + ".g", v.name + ".b"};
@@ -166,7 +170,8 @@ OutputSpec singleOutput(const std::string& file, const OutputBasis& basis, Diagn
     return s;
 }
 
-OutputPlan planOutputs(const scene::Options& o, const RenderSettings& settings, bool path, const std::string& file, Diagnostics& diags) {
+OutputPlan planOutputs(const scene::Options& o, const RenderSettings& settings, bool path, const std::string& file,
+                       Diagnostics& diags) {
     OutputPlan plan;
     OutputBasis& b = plan.basis;
     b.path = path;
@@ -242,7 +247,10 @@ Image filmImage(const Film& film, const OutputPlan& plan, DepthFilter depth) {
         return -1;
     };
     int oi = find("Oi.r"), hits = find("z.hits");
-    int z = find(depth == DepthFilter::Min ? "z" : depth == DepthFilter::Max ? "z.max" : depth == DepthFilter::Average ? "z.sum" : "z.mid");
+    int z = find(depth == DepthFilter::Min       ? "z"
+                 : depth == DepthFilter::Max     ? "z.max"
+                 : depth == DepthFilter::Average ? "z.sum"
+                                                 : "z.mid");
     std::vector<int> aovs;
     for (size_t i = 0; i < channels.size(); ++i)
         if (channels[i].name.rfind("aov.", 0) == 0) {
@@ -324,8 +332,12 @@ bool writeOutputs(const OutputPlan& plan, const PictureFacts& facts, const std::
                     case Source::Ci:
                         for (size_t k = 0; k < n; ++k) *q++ = k == 0 ? r[x] : k == 1 ? g[x] : b[x];
                         break;
-                    case Source::Alpha: *q++ = a[x]; break;
-                    case Source::Z: *q++ = std::isfinite(p[7]) ? p[7] : kFarAway; break;
+                    case Source::Alpha:
+                        *q++ = a[x];
+                        break;
+                    case Source::Z:
+                        *q++ = std::isfinite(p[7]) ? p[7] : kFarAway;
+                        break;
                     case Source::Oi:
                         for (size_t k = 0; k < n; ++k) *q++ = p[4 + std::min(k, size_t(2))];
                         break;

@@ -16,7 +16,7 @@ struct OutputVariable {
     enum class Source { Ci, Alpha, Z, Oi, Engine };
     Source source = Source::Ci;
     std::string name;
-    int engine = -1;  ///< Source::Engine: index into OutputPlan::engineOutputs
+    int engine = -1;   ///< Source::Engine: index into OutputPlan::engineOutputs
     bool typed = true; ///< false: nothing declared its type, so the engine's width decides the channels
     bool color = false;
     std::vector<std::string> channels;
@@ -34,7 +34,7 @@ struct OutputSpec {
     DepthFilter depth = DepthFilter::Min;
     display::Quantization rgba, z;
     bool quantizeAsked = false;
-    bool userFile = false;    ///< named by -o: written where it says
+    bool userFile = false; ///< named by -o: written where it says
     bool has(OutputVariable::Source) const;
     std::vector<std::string> channels() const;
 };
@@ -69,7 +69,8 @@ OutputSpec singleOutput(const std::string& file, const OutputBasis&, Diagnostics
 /// Channels of a film that holds what the plan needs beside colour and alpha.
 std::vector<Channel> filmChannels(const OutputPlan&);
 /// The values of filmChannels() of one sample, appended.
-void filmValues(const OutputPlan&, const Color& opacity, float z, float zSecond, std::span<const float> aovs, std::vector<float>* out);
+void filmValues(const OutputPlan&, const Color& opacity, float z, float zSecond, std::span<const float> aovs,
+                std::vector<float>* out);
 /// The finished pixels of a film, channels as SampleBuffer::reconstruct has them, depth by this filter.
 Image filmImage(const Film&, const OutputPlan&, DepthFilter);
 
@@ -86,10 +87,10 @@ struct PictureFacts {
 /// Runs an imager over `count` pixels in place; see transport::World::runImager. Null: none.
 using Imager = std::function<void(int count, const float* x, const float* y, float* r, float* g, float* b, float* a)>;
 
-/// Writes all pictures of the plan. pixels(spec) gives what was reconstructed for it. False when any could not be written (an error
-/// was reported); the others are written all the same.
-bool writeOutputs(const OutputPlan&, const PictureFacts&, const std::function<const Image&(const OutputSpec&)>& pixels, const Imager&,
-                  bool allowWrite, Diagnostics&);
+/// Writes all pictures of the plan. pixels(spec) gives what was reconstructed for it. False when any could not be written (an
+/// error was reported); the others are written all the same.
+bool writeOutputs(const OutputPlan&, const PictureFacts&, const std::function<const Image&(const OutputSpec&)>& pixels,
+                  const Imager&, bool allowWrite, Diagnostics&);
 
 /// The plan and facts as JSON text for a part file, and back. Nothing: the text is not ours (an error was reported).
 std::string planToText(const OutputPlan&, const PictureFacts&);

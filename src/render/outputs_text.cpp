@@ -47,31 +47,54 @@ SourcePlace place(const Json& j) { return {j.at(0).get<std::string>(), j.at(1).g
 std::string planToText(const OutputPlan& plan, const PictureFacts& facts) {
     const OutputBasis& b = plan.basis;
     Json j;
-    j["basis"] = {{"gain", b.gain}, {"gamma", b.gamma}, {"gammaGiven", b.gammaGiven}, {"path", b.path}, {"rgba", quantize(b.rgba)},
-                  {"z", quantize(b.z)}, {"filter", filter(b.filter)}, {"depth", int(b.depth)}};
+    j["basis"] = {{"gain", b.gain},           {"gamma", b.gamma},   {"gammaGiven", b.gammaGiven}, {"path", b.path},
+                  {"rgba", quantize(b.rgba)}, {"z", quantize(b.z)}, {"filter", filter(b.filter)}, {"depth", int(b.depth)}};
     j["outputs"] = plan.engineOutputs;
     j["widths"] = plan.engineWidths;
     j["pictures"] = Json::array();
     for (const OutputSpec& s : plan.pictures) {
-        Json p = {{"name", s.name}, {"type", s.type}, {"place", place(s.place)}, {"gain", s.gain}, {"gamma", s.gamma},
-                  {"ownExposure", s.ownExposure}, {"filter", filter(s.filter)}, {"depth", int(s.depth)}, {"rgba", quantization(s.rgba)},
-                  {"z", quantization(s.z)}, {"quantizeAsked", s.quantizeAsked}, {"userFile", s.userFile}};
+        Json p = {{"name", s.name},
+                  {"type", s.type},
+                  {"place", place(s.place)},
+                  {"gain", s.gain},
+                  {"gamma", s.gamma},
+                  {"ownExposure", s.ownExposure},
+                  {"filter", filter(s.filter)},
+                  {"depth", int(s.depth)},
+                  {"rgba", quantization(s.rgba)},
+                  {"z", quantization(s.z)},
+                  {"quantizeAsked", s.quantizeAsked},
+                  {"userFile", s.userFile}};
         p["variables"] = Json::array();
         for (const OutputVariable& v : s.variables)
-            p["variables"].push_back({{"source", int(v.source)}, {"name", v.name}, {"engine", v.engine}, {"typed", v.typed},
-                                      {"color", v.color}, {"channels", v.channels}});
+            p["variables"].push_back({{"source", int(v.source)},
+                                      {"name", v.name},
+                                      {"engine", v.engine},
+                                      {"typed", v.typed},
+                                      {"color", v.color},
+                                      {"channels", v.channels}});
         p["params"] = Json::array();
         for (const scene::Param& a : s.params)
-            p["params"].push_back({{"name", a.name}, {"class", int(a.cls)}, {"type", int(a.type)}, {"array", a.arrayLength},
-                                   {"declared", a.declared}, {"numbers", a.numbers}, {"strings", a.strings}, {"place", place(a.place)}});
+            p["params"].push_back({{"name", a.name},
+                                   {"class", int(a.cls)},
+                                   {"type", int(a.type)},
+                                   {"array", a.arrayLength},
+                                   {"declared", a.declared},
+                                   {"numbers", a.numbers},
+                                   {"strings", a.strings},
+                                   {"place", place(a.place)}});
         j["pictures"].push_back(std::move(p));
     }
-    j["facts"] = {{"pixelAspect", facts.pixelAspect}, {"worldToCamera", matrix(facts.worldToCamera)},
-                  {"worldToNDC", matrix(facts.worldToNDC)}, {"metadata", facts.metadata}, {"imager", facts.imager}};
+    j["facts"] = {{"pixelAspect", facts.pixelAspect},
+                  {"worldToCamera", matrix(facts.worldToCamera)},
+                  {"worldToNDC", matrix(facts.worldToNDC)},
+                  {"metadata", facts.metadata},
+                  {"imager", facts.imager}};
     return j.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-std::optional<std::pair<OutputPlan, PictureFacts>> planFromText(const std::string& text, const std::string& file, Diagnostics& diags) {
+std::optional<std::pair<OutputPlan, PictureFacts>> planFromText(const std::string& text, const std::string& file,
+                                                                Diagnostics& diags) {
     try {
         Json j = Json::parse(text);
         std::pair<OutputPlan, PictureFacts> result;
@@ -140,7 +163,8 @@ std::optional<std::pair<OutputPlan, PictureFacts>> planFromText(const std::strin
         facts.imager = f.at("imager").get<bool>();
         return result;
     } catch (const std::exception& e) {
-        diags.report(Severity::Error, Rie::BadFile, {file}, std::string("part file: what it says about its pictures is damaged: ") + e.what());
+        diags.report(Severity::Error, Rie::BadFile, {file},
+                     std::string("part file: what it says about its pictures is damaged: ") + e.what());
         return std::nullopt;
     }
 }

@@ -1,9 +1,9 @@
 // `path`: whole passes of samples over all pixels, into a film of exact sums.
+#include "base/limits.h"
+#include "base/sampler.h"
 #include "render/imaging.h"
 #include "render/noise.h"
 #include "render/rendering.h"
-#include "base/limits.h"
-#include "base/sampler.h"
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +14,8 @@ constexpr size_t kRaysPerCall = 2048; // of one trace(): enough to fill the lane
 
 } // namespace
 
-transport::CameraRay pathRay(const Camera& camera, const FilterSampler& filter, uint64_t seed, int x, int y, uint32_t sample, float* weight) {
+transport::CameraRay pathRay(const Camera& camera, const FilterSampler& filter, uint64_t seed, int x, int y, uint32_t sample,
+                             float* weight) {
     Sampler numbers(seed, x, y);
     FilterSample f = filter.sample(numbers.get2(0, kUseFilter, 0, sample));
     *weight = f.weight;
@@ -32,7 +33,8 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
     const RenderSettings& settings = job.settings;
     FilterSampler filter(job.plan.basis.filter);
     if (filter.degenerate())
-        job.diagnostics.report(Severity::Error, Rie::Range, {}, "PixelFilter: its integral is not positive; a box of its widths is used");
+        job.diagnostics.report(Severity::Error, Rie::Range, {},
+                               "PixelFilter: its integral is not positive; a box of its widths is used");
     const std::vector<Channel>& channels = film.description().channels;
     const std::vector<Window> tiles = tilesOf(film.window());
     const size_t stride = 4 + channels.size(); // colour, alpha, the rest
@@ -43,7 +45,8 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
     std::vector<std::vector<float>> held(tiles.size());
     uint32_t next = wanted.begin;
     while (next < wanted.end) { // behind what a checkpoint brought
-        auto in = std::find_if(film.ranges().begin(), film.ranges().end(), [&](SampleRange r) { return r.begin <= next && next < r.end; });
+        auto in = std::find_if(film.ranges().begin(), film.ranges().end(),
+                               [&](SampleRange r) { return r.begin <= next && next < r.end; });
         if (in == film.ranges().end()) break;
         next = in->end;
     }
@@ -60,7 +63,8 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
         s.raysPerMS = raysPerMS(job.rayTotal, t);
         s.fraction = total ? done / double(total) : -1;
         if (settings.seconds > 0) s.fraction = std::max(s.fraction, std::min(1.0, t / settings.seconds));
-        if (settings.noise > 0 && noise > 0) s.fraction = std::max(s.fraction, std::min(1.0, std::pow(settings.noise / noise, 2)));
+        if (settings.noise > 0 && noise > 0)
+            s.fraction = std::max(s.fraction, std::min(1.0, std::pow(settings.noise / noise, 2)));
         if (last) job.progress.finish(s, job.what);
         else job.progress.update(s, job.what);
     };
@@ -139,8 +143,8 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
             },
             [](size_t) {});
         if (!film.addRange({next, next + count})) {
-            job.diagnostics.report(Severity::Error, Rie::Limit, {}, "more than " + std::to_string(limits::kSamplesPerPixel) +
-                                   " samples a pixel");
+            job.diagnostics.report(Severity::Error, Rie::Limit, {},
+                                   "more than " + std::to_string(limits::kSamplesPerPixel) + " samples a pixel");
             break;
         }
         secondsPerSample = (clockSeconds() - begun) / count;

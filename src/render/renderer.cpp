@@ -47,7 +47,8 @@ uint32_t pathSamples(const scene::Options& o, const RenderSettings& s) {
 } // namespace
 
 Renderer::Renderer(RenderSettings s, Engine e, Diagnostics& d, Progress& p, Print print)
-    : settings_(std::move(s)), engine_(std::move(e)), diagnostics_(d), progress_(p), print_(std::move(print)), parseMark_(clockSeconds()) {
+    : settings_(std::move(s)), engine_(std::move(e)), diagnostics_(d), progress_(p), print_(std::move(print)),
+      parseMark_(clockSeconds()) {
     if (settings_.threads <= 0) settings_.threads = std::max(1, int(std::thread::hardware_concurrency()));
 }
 
@@ -138,7 +139,9 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
         gridOf(o, settings_, &nx, &ny);
         spp = uint32_t(nx) * uint32_t(ny);
         auto only = [&](bool asked, const char* option) {
-            if (asked) diagnostics_.report(Severity::Warning, Rie::Incapable, {}, std::string(option) + " needs the hider \"path\"; it is ignored");
+            if (asked)
+                diagnostics_.report(Severity::Warning, Rie::Incapable, {},
+                                    std::string(option) + " needs the hider \"path\"; it is ignored");
         };
         only(settings_.samples.has_value(), "--samples");
         only(settings_.noise > 0, "--noise");
@@ -246,22 +249,27 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
         if (!any) {
             ++outcome_.refused;
             if (job.interrupted)
-                diagnostics_.report(Severity::Warning, Rie::NoError, {}, "interrupted before the first pass was whole; nothing is written");
+                diagnostics_.report(Severity::Warning, Rie::NoError, {},
+                                    "interrupted before the first pass was whole; nothing is written");
         } else {
             ++outcome_.rendered;
             if (auto first = film->firstDropped())
-                diagnostics_.report(Severity::Warning, Rie::Math, {}, std::to_string(film->nonFinite()) +
-                                    " samples were not finite and are left out; the first is made by --pixel " + std::to_string(first->x) +
-                                    "," + std::to_string(first->y) + "," + std::to_string(first->sample) + " --seed " +
-                                    std::to_string(settings_.seed));
+                diagnostics_.report(Severity::Warning, Rie::Math, {},
+                                    std::to_string(film->nonFinite()) +
+                                        " samples were not finite and are left out; the first is made by --pixel " +
+                                        std::to_string(first->x) + "," + std::to_string(first->y) + "," +
+                                        std::to_string(first->sample) + " --seed " + std::to_string(settings_.seed));
             if (film->saturated())
-                diagnostics_.report(Severity::Warning, Rie::Range, {}, std::to_string(film->saturated()) + " values beyond 2^60 were cut there");
+                diagnostics_.report(Severity::Warning, Rie::Range, {},
+                                    std::to_string(film->saturated()) + " values beyond 2^60 were cut there");
             outcome_.outputFailed |= !writeFilm(*film, plan, picture, imager, settings_.allowWrite, diagnostics_);
             if (settings_.samples) {
                 const OutputSpec& first = plan.pictures.front();
-                outcome_.outputFailed |= !savePart(*film, sidecarName(first.name), {".", settings_.allowWrite || first.userFile}, diagnostics_);
+                outcome_.outputFailed |=
+                    !savePart(*film, sidecarName(first.name), {".", settings_.allowWrite || first.userFile}, diagnostics_);
             }
-            if (!settings_.checkpoint.empty()) outcome_.outputFailed |= !savePart(*film, settings_.checkpoint, anywhere, diagnostics_);
+            if (!settings_.checkpoint.empty())
+                outcome_.outputFailed |= !savePart(*film, settings_.checkpoint, anywhere, diagnostics_);
         }
         stats_.spp = film->samplesPerPixel();
         stats_.noise = noiseFigures(*film);
@@ -274,9 +282,11 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
         outcome_.interrupted |= job.interrupted;
         ++outcome_.rendered;
         if (job.interrupted)
-            diagnostics_.report(Severity::Warning, Rie::NoError, {}, "interrupted: what was not reached stays black in the picture");
+            diagnostics_.report(Severity::Warning, Rie::NoError, {},
+                                "interrupted: what was not reached stays black in the picture");
         if (nonFinite)
-            diagnostics_.report(Severity::Warning, Rie::Math, {}, std::to_string(nonFinite) + " samples were not finite and are left out");
+            diagnostics_.report(Severity::Warning, Rie::Math, {},
+                                std::to_string(nonFinite) + " samples were not finite and are left out");
         picture.metadata["spp"] = std::to_string(spp);
         picture.metadata["seed"] = std::to_string(settings_.seed);
         auto pixels = [&](const OutputSpec& s) -> const Image& { return images[size_t(&s - plan.pictures.data())]; };
@@ -305,17 +315,21 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
     stats_.shading.suspendingKernels = facts.suspending;
     stats_.shading.cacheHits = facts.cacheHits;
     if (c.overLimit)
-        diagnostics_.report(Severity::Error, Rie::Limit, {}, std::to_string(c.overLimit) + " ray calls were beyond the memory for waiting shaders and brought nothing");
+        diagnostics_.report(Severity::Error, Rie::Limit, {},
+                            std::to_string(c.overLimit) +
+                                " ray calls were beyond the memory for waiting shaders and brought nothing");
     if (c.depthCap && path)
-        diagnostics_.report(Severity::Info, Rie::NoError, {}, std::to_string(c.depthCap) + " paths were cut at the greatest depth, which is a bias (--max-depth)");
+        diagnostics_.report(Severity::Info, Rie::NoError, {},
+                            std::to_string(c.depthCap) + " paths were cut at the greatest depth, which is a bias (--max-depth)");
 }
 
 void Renderer::printPixel(Job& job, const scene::Options& o, uint32_t spp, bool path) {
     auto [x, y] = *settings_.pixel;
     const Window& w = job.camera.window();
     if (!w.contains(x, y)) {
-        diagnostics_.report(Severity::Error, Rie::Range, {}, "--pixel " + std::to_string(x) + "," + std::to_string(y) + " lies outside " +
-                            std::to_string(w.x0) + ".." + std::to_string(w.x1 - 1) + ", " + std::to_string(w.y0) + ".." + std::to_string(w.y1 - 1));
+        diagnostics_.report(Severity::Error, Rie::Range, {},
+                            "--pixel " + std::to_string(x) + "," + std::to_string(y) + " lies outside " + std::to_string(w.x0) +
+                                ".." + std::to_string(w.x1 - 1) + ", " + std::to_string(w.y0) + ".." + std::to_string(w.y1 - 1));
         return;
     }
     uint32_t begin = settings_.samples ? settings_.samples->begin : 0, end = begin + std::min(spp, 1u << 20);
@@ -348,7 +362,8 @@ void Renderer::printPixel(Job& job, const scene::Options& o, uint32_t spp, bool 
     }
     outcome_.interrupted |= job.interrupted;
     double n = end - begin;
-    if (print_ && !job.interrupted) print_(text(sum[0] / n) + " " + text(sum[1] / n) + " " + text(sum[2] / n) + " " + text(sum[3] / n));
+    if (print_ && !job.interrupted)
+        print_(text(sum[0] / n) + " " + text(sum[1] / n) + " " + text(sum[2] / n) + " " + text(sum[3] / n));
     stats_.renderSec += job.elapsed();
     stats_.spp = end - begin;
 }
@@ -368,8 +383,7 @@ void Renderer::makeTexture(const std::string& kind, const std::vector<std::strin
         if (p.strings.empty()) numbers.insert(numbers.end(), p.numbers.begin(), p.numbers.end());
     int before = diagnostics_.errors();
     if (texture::runMakeRequest(kind, files, numbers, m, diagnostics_)) ++outcome_.textures;
-    else if (diagnostics_.errors() == before)
-        diagnostics_.report(Severity::Error, Rie::BadFile, place, kind + " failed");
+    else if (diagnostics_.errors() == before) diagnostics_.report(Severity::Error, Rie::BadFile, place, kind + " failed");
     parseMark_ = clockSeconds();
 }
 

@@ -43,7 +43,8 @@ public:
 private:
     void renderFrame(std::shared_ptr<const scene::Frame>);
     std::string fileFor(const scene::Options&, uint32_t spp);
-    std::vector<std::string> searchPaths(const scene::Options&, const char* kind, const std::vector<std::string>& own, bool shaders) const;
+    std::vector<std::string> searchPaths(const scene::Options&, const char* kind, const std::vector<std::string>& own,
+                                         bool shaders) const;
     void printPixel(struct Job&, const scene::Options&, uint32_t spp, bool path);
 
     RenderSettings settings_;

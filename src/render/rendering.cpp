@@ -3,8 +3,8 @@
 
 namespace alpenglow::render {
 
-Job::Job(const RenderSettings& s, const Camera& c, const OutputPlan& p, Engine& e, std::shared_ptr<const transport::World> w, int threads,
-         Progress& progress_, Diagnostics& d)
+Job::Job(const RenderSettings& s, const Camera& c, const OutputPlan& p, Engine& e, std::shared_ptr<const transport::World> w,
+         int threads, Progress& progress_, Diagnostics& d)
     : settings(s), camera(c), plan(p), engine(e), world(std::move(w)), team(threads), progress(progress_), diagnostics(d),
       startSeconds(clockSeconds()), rays(size_t(team.threads()), 0) {
     for (int i = 0; i < team.threads(); ++i) tracers.push_back(engine.tracer(world, diagnostics));
@@ -52,9 +52,7 @@ transport::Counters Job::counters() const {
 
 double Job::elapsed() const { return clockSeconds() - startSeconds; }
 
-double clockSeconds() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double clockSeconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 uint64_t totalRays(const transport::Counters& c) { return c.camera + c.diffuse + c.specular + c.transmission + c.shadow; }
 

@@ -30,16 +30,16 @@ struct Job {
     Team team;
     Progress& progress;
     Diagnostics& diagnostics;
-    std::string what;                        ///< the picture's name, for the progress line
-    double startSeconds = 0;                 ///< clock() when rendering began
-    volatile int32_t halt = 0;               ///< what tracers poll
-    bool interrupted = false;                ///< the user's stop was seen
+    std::string what;                             ///< the picture's name, for the progress line
+    double startSeconds = 0;                      ///< clock() when rendering began
+    volatile int32_t halt = 0;                    ///< what tracers poll
+    bool interrupted = false;                     ///< the user's stop was seen
     std::vector<std::unique_ptr<Tracer>> tracers; ///< by worker
-    std::vector<uint64_t> rays;              ///< by worker, as last told
+    std::vector<uint64_t> rays;                   ///< by worker, as last told
     std::atomic<uint64_t> rayTotal{0};
 
-    Job(const RenderSettings&, const Camera&, const OutputPlan&, Engine&, std::shared_ptr<const transport::World>, int threads, Progress&,
-        Diagnostics&);
+    Job(const RenderSettings&, const Camera&, const OutputPlan&, Engine&, std::shared_ptr<const transport::World>, int threads,
+        Progress&, Diagnostics&);
     /// Traces on a worker and counts its rays. False: halted, the results are void.
     bool trace(int worker, std::span<const transport::CameraRay>, std::span<transport::SampleResult>);
     /// Hands the user's stop on to the tracers; true when the user wants to end.
@@ -57,7 +57,8 @@ std::vector<Window> tilesOf(const Window&, int side = kTile);
 /// The camera ray of a sample of `path`: its place is drawn from the filter. *weight multiplies what comes along it.
 transport::CameraRay pathRay(const Camera&, const FilterSampler&, uint64_t seed, int x, int y, uint32_t sample, float* weight);
 /// Adds samples to the film in whole passes until the range is done, the noise or time asked for is reached, or the user stops.
-/// spp: samples `first` .. `first + spp` of every pixel; fewer may be added. Returns false when not one whole pass could be added.
+/// spp: samples `first` .. `first + spp` of every pixel; fewer may be added. Returns false when not one whole pass could be
+/// added.
 bool renderPath(Job&, Film&, SampleRange wanted, uint64_t seed, const std::function<void(Film&)>& afterPass);
 
 /// The samples nx x ny of a pixel under hidden and raytrace.

@@ -10,9 +10,9 @@
 namespace alpenglow::render {
 
 struct RenderSettings {
-    std::string output;                       ///< -o: one picture instead of the scene's displays; "" = the displays
+    std::string output; ///< -o: one picture instead of the scene's displays; "" = the displays
     std::vector<std::pair<std::string, std::string>> displays; ///< --display TYPE:NAME, added to the scene's own
-    int width = 0, height = 0;                ///< --format; 0 = the scene's
+    int width = 0, height = 0;                                 ///< --format; 0 = the scene's
     double resolutionFactor = 1;
     std::optional<std::array<float, 4>> crop; ///< x0 x1 y0 y1 in 0..1
     std::string hider;                        ///< --hider
@@ -21,26 +21,26 @@ struct RenderSettings {
     double seconds = 0;                       ///< stop after this time (path); 0 = off
     std::optional<SampleRange> samples;       ///< only these samples of every pixel (path); writes a part file beside the picture
     uint64_t seed = 0;
-    int threads = 0;                          ///< 0 = all cores
+    int threads = 0; ///< 0 = all cores
     int lanes = 16;
     int maxDepth = -1;
-    float sampleClamp = 0;                    ///< 0 = off
+    float sampleClamp = 0; ///< 0 = off
     bool direct = true, indirect = true, unbiased = false, localRoulette = false;
-    std::optional<float> gamma;               ///< --gamma
-    std::string savePattern;                  ///< a name with <spp> and <no> in it, for when -o names none; "" = the displays
-    std::string statsFile;                    ///< JSON; "" = none
-    std::string checkpoint;                   ///< part file, written after passes; "" = none
-    bool resume = false;                      ///< begin with what the checkpoint holds
-    double checkpointSeconds = 30;            ///< least time between two writes
-    std::optional<std::array<int, 2>> pixel;  ///< --pixel: print radiances of this pixel instead of writing pictures
-    std::optional<uint32_t> pixelSample;      ///< only this sample of it
+    std::optional<float> gamma;              ///< --gamma
+    std::string savePattern;                 ///< a name with <spp> and <no> in it, for when -o names none; "" = the displays
+    std::string statsFile;                   ///< JSON; "" = none
+    std::string checkpoint;                  ///< part file, written after passes; "" = none
+    bool resume = false;                     ///< begin with what the checkpoint holds
+    double checkpointSeconds = 30;           ///< least time between two writes
+    std::optional<std::array<int, 2>> pixel; ///< --pixel: print radiances of this pixel instead of writing pictures
+    std::optional<uint32_t> pixelSample;     ///< only this sample of it
     std::vector<std::string> shaderPaths, texturePaths; ///< after the scene's own search paths
-    std::string scenePath;                    ///< where the scene lies: the last place but one to look in; "" = nowhere
-    std::string shippedShaders;               ///< the last place to look for shaders in
+    std::string scenePath;                              ///< where the scene lies: the last place but one to look in; "" = nowhere
+    std::string shippedShaders;                         ///< the last place to look for shaders in
     bool allowExec = false, allowWrite = false;
     ProgressMode progress = ProgressMode::Auto;
     bool quiet = false;
-    const volatile int32_t* stop = nullptr;   ///< non-zero: end soon and keep what is whole
+    const volatile int32_t* stop = nullptr; ///< non-zero: end soon and keep what is whole
 };
 
 } // namespace alpenglow::render

@@ -12,7 +12,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Result { int status = -1; std::string out; };
+struct Result {
+    int status = -1;
+    std::string out;
+};
 
 class Program : public testing::Test {
 protected:
@@ -97,8 +100,8 @@ TEST_F(Program, HelpVersionAndWrongUse) {
     EXPECT_EQ(run("").status, 2);
     EXPECT_EQ(run("render").status, 2);
     EXPECT_EQ(run("render --no-such-option a.rib").status, 2);
-    for (const char* bad : {"--format 64", "--format 0x4", "--crop 1,0,0,1", "--samples 4:2", "--pixel a,b", "--frames 3-1", "--spp 0",
-                            "--lanes 5", "--hider zebra", "--display foo", "--resume", "--progress loud"}) {
+    for (const char* bad : {"--format 64", "--format 0x4", "--crop 1,0,0,1", "--samples 4:2", "--pixel a,b", "--frames 3-1",
+                            "--spp 0", "--lanes 5", "--hider zebra", "--display foo", "--resume", "--progress loud"}) {
         write("s.rib", kSphere);
         EXPECT_EQ(run(std::string("render ") + bad + " s.rib").status, 2) << bad;
     }
@@ -162,11 +165,12 @@ TEST_F(Program, StatsHaveTheFixedKeys) {
     write("r.rib", kRoom);
     ASSERT_EQ(run("render -q --spp 16 -o a.exr --stats s.json r.rib").status, 0) << read("err");
     auto j = nlohmann::json::parse(read("s.json"));
-    for (const char* key : {"width", "height", "spp", "renderSec", "cpuSec", "raysPerMS", "noiseRSE", "noiseRSE999", "efficiency", "noiseQMC",
-                            "threads", "peakMemoryBytes", "parseSec", "compileSec", "buildSec", "nonFinite", "rays", "shading", "depth",
-                            "errors", "warnings"})
+    for (const char* key : {"width",       "height",     "spp",      "renderSec", "cpuSec",          "raysPerMS", "noiseRSE",
+                            "noiseRSE999", "efficiency", "noiseQMC", "threads",   "peakMemoryBytes", "parseSec",  "compileSec",
+                            "buildSec",    "nonFinite",  "rays",     "shading",   "depth",           "errors",    "warnings"})
         EXPECT_TRUE(j.contains(key)) << key;
-    for (const char* key : {"camera", "diffuse", "specular", "transmission", "shadow"}) EXPECT_TRUE(j["rays"].contains(key)) << key;
+    for (const char* key : {"camera", "diffuse", "specular", "transmission", "shadow"})
+        EXPECT_TRUE(j["rays"].contains(key)) << key;
     for (const char* key : {"points", "batches", "laneOccupancy", "affineKernels", "suspendingKernels", "kernels", "cacheHits"})
         EXPECT_TRUE(j["shading"].contains(key)) << key;
     EXPECT_EQ(j["width"], 32);
@@ -188,7 +192,8 @@ TEST_F(Program, SameBitsForThreadsLanesAndParts) {
     const char* ranges[] = {"0:1", "1:3", "3:4", "4:8", "8:11", "11:13", "13:15"};
     for (int k = 0; k < 7; ++k)
         ASSERT_EQ(run("render -q --samples " + std::string(ranges[k]) + " -o p" + std::to_string(k) + ".exr r.rib").status, 0);
-    for (const char* order : {"p0.exr p1.exr p2.exr p3.exr p4.exr p5.exr p6.exr", "p6.exr p2.exr p4.exr p0.exr p5.exr p3.exr p1.exr"}) {
+    for (const char* order :
+         {"p0.exr p1.exr p2.exr p3.exr p4.exr p5.exr p6.exr", "p6.exr p2.exr p4.exr p0.exr p5.exr p3.exr p1.exr"}) {
         EXPECT_EQ(run(std::string("merge ") + order + " -o m.exr").status, 0) << read("err");
         EXPECT_TRUE(read("m.exr") == whole) << order;
     }
@@ -229,14 +234,17 @@ TEST_F(Program, InterruptKeepsWhatIsWhole) {
     std::string scene = kSphere;
     scene.replace(scene.find("\"matte\""), 7, "\"w\"");
     write("w.rib", scene);
-    r = run("render -q -o w.exr w.rib & p=$!; sleep 2; kill -INT $p; a=$(date +%s%N); wait $p; s=$?; b=$(date +%s%N); echo $(( (b - a) / 1000000 )); exit $s");
+    r = run("render -q -o w.exr w.rib & p=$!; sleep 2; kill -INT $p; a=$(date +%s%N); wait $p; s=$?; b=$(date +%s%N); echo $(( "
+            "(b - a) / 1000000 )); exit $s");
     EXPECT_EQ(r.status, 130);
     EXPECT_LT(std::atoi(r.out.c_str()), 2000) << "milliseconds; generous, because tests share the machine";
 }
 
 TEST_F(Program, FramesPixelAndPreset) {
     std::string scene;
-    for (int k = 1; k <= 3; ++k) scene += "FrameBegin " + std::to_string(k) + "\nDisplay \"f" + std::to_string(k) + ".png\" \"png\" \"rgb\"\n" + kSphere + "FrameEnd\n";
+    for (int k = 1; k <= 3; ++k)
+        scene += "FrameBegin " + std::to_string(k) + "\nDisplay \"f" + std::to_string(k) + ".png\" \"png\" \"rgb\"\n" + kSphere +
+                 "FrameEnd\n";
     write("f.rib", scene);
     EXPECT_EQ(run("render -q --frames 2-3 f.rib").status, 0) << read("err");
     EXPECT_FALSE(has("f1.png"));

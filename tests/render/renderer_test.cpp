@@ -1,7 +1,7 @@
 // The renderer over a scene of closed forms in the engine's place: an emitter whose colour is the place on the image plane.
-#include "render/renderer.h"
 #include "display/imageio.h"
 #include "render/filmpicture.h"
+#include "render/renderer.h"
 #include "render/team.h"
 #include <cmath>
 #include <filesystem>
@@ -38,7 +38,8 @@ struct FakeWorld final : transport::World {
 struct FakeTracer final : Tracer {
     transport::Counters counts;
     std::vector<std::string> outputs;
-    bool trace(std::span<const transport::CameraRay> rays, std::span<transport::SampleResult> out, const volatile int32_t* stop) override {
+    bool trace(std::span<const transport::CameraRay> rays, std::span<transport::SampleResult> out,
+               const volatile int32_t* stop) override {
         for (size_t i = 0; i < rays.size(); ++i) {
             Vec3 p = rays[i].direction * (1 / rays[i].direction.z);
             out[i].color = {p.x, p.y, p.x < 0 ? 7.f : 0.f};
@@ -94,7 +95,8 @@ struct Session {
     Diagnostics diags;
     Progress progress{ProgressMode::None};
     Renderer renderer;
-    explicit Session(RenderSettings s, Renderer::Print print = {}) : renderer(std::move(s), fakeEngine(), diags, progress, std::move(print)) {}
+    explicit Session(RenderSettings s, Renderer::Print print = {})
+        : renderer(std::move(s), fakeEngine(), diags, progress, std::move(print)) {}
     void frame(std::shared_ptr<scene::Frame> f) {
         renderer.override(f->options);
         renderer.render(f);
@@ -157,7 +159,8 @@ TEST(Renderer, PathHasTheSameMeansAndKnowsItsSamples) {
     ASSERT_EQ(i.width, 24);
     for (int y = 0; y < 16; ++y)
         for (int x = 0; x < 24; ++x) {
-            // 8 replicas of 8 stratified points: each axis has at most 1/8 of a pixel (0.125) of error a replica, in the mean far less.
+            // 8 replicas of 8 stratified points: each axis has at most 1/8 of a pixel (0.125) of error a replica, in the mean far
+            // less.
             EXPECT_NEAR(i.pixel(x, y)[0], planeX(x), 0.01);
             EXPECT_NEAR(i.pixel(x, y)[1], planeY(y), 0.01);
             EXPECT_EQ(i.pixel(x, y)[2], x < 12 ? 7 : 0);
@@ -169,7 +172,8 @@ TEST(Renderer, PathHasTheSameMeansAndKnowsItsSamples) {
 }
 
 TEST(Renderer, DefaultsOfSamples) {
-    for (auto [hider, set, expected] : {std::tuple{"path", false, 64u}, {"path", true, 6u}, {"hidden", false, 4u}, {"raytrace", true, 6u}}) {
+    for (auto [hider, set, expected] :
+         {std::tuple{"path", false, 64u}, {"path", true, 6u}, {"hidden", false, 4u}, {"raytrace", true, 6u}}) {
         Folder dir;
         RenderSettings s;
         s.output = dir / "a.exr";
@@ -226,7 +230,8 @@ TEST(Renderer, MergedPartsAreTheWhole) {
     EXPECT_EQ(mergePictures({dir / "c.exr", dir / "a.exr", dir / "b.exr.part"}, dir / "m.exr", false, d), MergeResult::Done);
     EXPECT_EQ(d.errors(), 0);
     EXPECT_TRUE(bytesOf(dir / "m.exr") == bytesOf(dir / "whole.exr"));
-    EXPECT_EQ(mergePictures({dir / "a.exr", dir / "a.exr"}, dir / "n.exr", false, d), MergeResult::NoInput); // the same samples twice
+    EXPECT_EQ(mergePictures({dir / "a.exr", dir / "a.exr"}, dir / "n.exr", false, d),
+              MergeResult::NoInput); // the same samples twice
     EXPECT_FALSE(fs::exists(dir / "n.exr"));
     EXPECT_EQ(mergePictures({dir / "none.exr"}, dir / "n.exr", false, d), MergeResult::NoInput);
 }
@@ -274,7 +279,8 @@ TEST(Renderer, AovsDepthAndExposure) {
         auto f = frameOf(hider);
         f->options.gain = 2;
         f->options.gamma = 2;
-        f->options.displays = {{dir / "a.exr", "openexr", "rgbaz", {}, {}}, {"+" + (dir / "b.exr"), "openexr", "varying color tint,depthish,Oi", {}, {}}};
+        f->options.displays = {{dir / "a.exr", "openexr", "rgbaz", {}, {}},
+                               {"+" + (dir / "b.exr"), "openexr", "varying color tint,depthish,Oi", {}, {}}};
         scene::Param depthish;
         depthish.name = "depthish";
         f->options.displayChannels["depthish"] = depthish;
@@ -283,8 +289,8 @@ TEST(Renderer, AovsDepthAndExposure) {
         display::Image a = read(dir / "a.exr"), b = read(dir / "b.exr");
         ASSERT_GE(a.channel("z"), 0);
         EXPECT_EQ(a.pixel(3, 3)[a.channel("z")], 5);
-        EXPECT_EQ(a.pixel(3, 3)[a.channel("a")], 0.5f);                       // no exposure
-        EXPECT_NEAR(a.pixel(3, 3)[a.channel("b")], std::sqrt(14.f), 1e-5);    // (2 * 7)^(1/2)
+        EXPECT_EQ(a.pixel(3, 3)[a.channel("a")], 0.5f);                    // no exposure
+        EXPECT_NEAR(a.pixel(3, 3)[a.channel("b")], std::sqrt(14.f), 1e-5); // (2 * 7)^(1/2)
         ASSERT_GE(b.channel("tint.r"), 0) << hider;
         EXPECT_NEAR(b.pixel(20, 3)[b.channel("tint.r")], 2 * planeX(20), 0.06); // AOVs keep their units
         EXPECT_NEAR(b.pixel(20, 3)[b.channel("tint.b")], 1, 1e-6);
@@ -361,6 +367,12 @@ TEST(Team, EveryTaskOnceAndExceptionsArrive) {
     volatile int32_t halt = 0;
     EXPECT_TRUE(team.run(done.size(), &halt, [&](int w, size_t i) { done[i] += w < 3 ? 1 : 100; }, [](size_t) {}));
     for (auto& d : done) EXPECT_EQ(d, 1);
-    EXPECT_THROW(team.run(10, &halt, [&](int, size_t i) { if (i == 5) throw std::bad_alloc(); }, [](size_t) {}), std::bad_alloc);
+    EXPECT_THROW(team.run(
+                     10, &halt,
+                     [&](int, size_t i) {
+                         if (i == 5) throw std::bad_alloc();
+                     },
+                     [](size_t) {}),
+                 std::bad_alloc);
     EXPECT_EQ(halt, 1);
 }

@@ -245,6 +245,10 @@ namespace {
 bool fill(const Ray& r, RTCRay& o) {
     float sum = r.org.x + r.org.y + r.org.z + r.dir.x + r.dir.y + r.dir.z;
     // An infinite far end is usual; anything else infinite or NaN would wander through every box.
+    // Embree takes coordinates below 1.8e18 (and asserts it).
+    constexpr float kFar = 1e18f;
+    for (float c : {r.org.x, r.org.y, r.org.z, r.dir.x, r.dir.y, r.dir.z})
+        if (!(std::fabs(c) < kFar)) return false;
     if (!std::isfinite(sum) || !(r.tnear < r.tfar) || (r.dir.x == 0 && r.dir.y == 0 && r.dir.z == 0)) return false;
     o.org_x = r.org.x; o.org_y = r.org.y; o.org_z = r.org.z;
     o.dir_x = r.dir.x; o.dir_y = r.dir.y; o.dir_z = r.dir.z;

@@ -29,7 +29,7 @@ protected:
 
     /// Runs the program in the folder; standard error goes to the file "err".
     Result run(const std::string& arguments, const std::string& input = "") const {
-        std::string command = "cd '" + dir.string() + "' && ";
+        std::string command = "cd '" + dir.string() + "' || exit 99; ";
         if (!input.empty()) {
             write("input", input);
             command += "cat input | ";

@@ -140,12 +140,17 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
     case From::Cs:
     case From::Os: {
         const char* name = s.from == From::Cs ? "Cs" : "Os";
+        const geometry::Shape* last = nullptr; // neighbours are mostly of one shape: its variables are searched once
+        int v = -1;
         for (int i = 0; i < count; ++i) {
             float value[16] = {1, 1, 1}, du[16] = {}, dv[16] = {};
             if (const geometry::Shape* shape = points[i].shape) {
                 const Color& c = s.from == From::Cs ? shape->attributes().color : shape->attributes().opacity;
                 for (int k = 0; k < 3; ++k) value[k] = c[k];
-                int v = shape->primvars().empty() ? -1 : shape->findPrimvar(name);
+                if (shape != last) {
+                    v = shape->findPrimvar(name);
+                    last = shape;
+                }
                 if (v >= 0) shape->interpolate(v, points[i].surface, value, du, dv);
             }
             for (int c = 0; c < comps; ++c) {
@@ -178,9 +183,14 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
         std::fill_n(row, s.scalar ? size_t(comps) * s.elements : s.rows * stride, 0.f);
         const ParameterBlock* block = nullptr; // neighbours mostly share theirs: looked up when it changes
         const std::vector<float>* numbers = nullptr;
+        const geometry::Shape* last = nullptr;
+        int v = -1;
         for (int i = 0; i < count; ++i) {
-            if (s.varying && points[i].shape && !points[i].shape->primvars().empty()) {
-                int v = points[i].shape->findPrimvar(s.name);
+            if (s.varying && points[i].shape) {
+                if (points[i].shape != last) {
+                    last = points[i].shape;
+                    v = last->findPrimvar(s.name);
+                }
                 if (v >= 0) {
                     float value[16] = {}, du[16] = {}, dv[16] = {};
                     if (points[i].shape->primvars()[v].outWidth() <= 16) points[i].shape->interpolate(v, points[i].surface, value, du, dv);

@@ -56,12 +56,11 @@ float Emitter::areaPdf(const Entry& e, const geometry::SurfacePoint& p, const Ve
     return float(e.share * e.shape->sampleDensity(p) * d2 / cosine);
 }
 
-std::optional<Emitter::Sample> Emitter::sample(const Vec3& from, Vec2 u, float choose) const {
-    if (entries_.empty()) return {};
+bool Emitter::sample(const Vec3& from, Vec2 u, float choose, Sample& out) const {
+    if (entries_.empty()) return false;
     size_t i = 0;
     while (i + 1 < entries_.size() && choose >= entries_[i].cumulative) ++i;
     const Entry& e = entries_[i];
-    Sample out;
     out.shape = e.shape;
     out.visibility = e.visibility;
     if (e.sphere) {
@@ -76,22 +75,21 @@ std::optional<Emitter::Sample> Emitter::sample(const Vec3& from, Vec2 u, float c
             // The line grazes the rim in rounding: then this draw is lost, with a probability of the order of float epsilon.
             int k = 0;
             while (k < n && !(hits[k].t > 0)) ++k;
-            if (k == n) return {};
+            if (k == n) return false;
             out.point = e.shape->evaluateHit(0, hits[k].u, hits[k].v);
             out.pdf = float(e.share / (2 * kPi * cap));
             out.direction = w;
             out.distance = float(hits[k].t);
-            return out;
+            return true;
         }
     }
     out.point = e.shape->sampleArea(u.x, u.y);
     Vec3 d = out.point.P - from;
     out.distance = length(d);
-    if (!(out.distance > 0)) return {};
+    if (!(out.distance > 0)) return false;
     out.direction = d / out.distance;
     out.pdf = areaPdf(e, out.point, from);
-    if (!(out.pdf > 0) || !std::isfinite(out.pdf)) return {};
-    return out;
+    return out.pdf > 0 && std::isfinite(out.pdf);
 }
 
 float Emitter::pdf(const geometry::Shape* shape, const geometry::SurfacePoint& hit, const Vec3& from) const {

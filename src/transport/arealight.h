@@ -1,7 +1,6 @@
 // Where on an emitter a light sample lies, and with which density a given hit would have been chosen (design decision 4).
 #pragma once
 #include "geometry/shape.h"
-#include <optional>
 
 namespace alpenglow::transport {
 
@@ -22,8 +21,8 @@ public:
         float distance = 0;
         uint32_t visibility = ~0u; ///< kinds of rays that could have met this shape by chance
     };
-    /// A point of the light for the lit point at `from`. Nothing when the draw faces edge-on or coincides with `from`.
-    std::optional<Sample> sample(const Vec3& from, Vec2 u, float choose) const;
+    /// A point of the light for the lit point at `from`. False when the draw faces edge-on or coincides with `from`.
+    bool sample(const Vec3& from, Vec2 u, float choose, Sample& out) const;
     /// Density per steradian with which sample() gives this hit as seen from `from`; 0 for shapes of other lights.
     float pdf(const geometry::Shape* shape, const geometry::SurfacePoint& hit, const Vec3& from) const;
 

@@ -77,6 +77,8 @@ void* onAlloc(rsl::KernelCall*, uint64_t bytes) { return ::operator new(bytes, s
 void onRelease(rsl::KernelCall*, void* p, uint64_t) { ::operator delete(p, std::align_val_t(64)); }
 
 constexpr int32_t kGo = 0;
+// Rays followed at once: enough to fill batches, few enough that their points stay in the cache of a core.
+constexpr int kCacheSlice = limits::kSliceRays / 4;
 
 } // namespace
 
@@ -286,36 +288,34 @@ void Engine::miss(const Sched::Task& t, Sched& sched) {
     }
 }
 
-void Engine::emission(std::span<const std::pair<int, int>> met, std::span<const Sched::Task> tasks, std::span<const ShadePoint> points, Sched& sched) {
+void Engine::emission(std::span<const Met> met, Sched& sched) {
     const Settings& set = world_->settings_;
     std::vector<ShadePoint> q;
     std::vector<LightValue> value;
     for (size_t first = 0, end; first < met.size(); first = end) {
-        end = first;
         q.clear();
-        for (; end < met.size() && met[end].first == met[first].first; ++end) {
-            q.push_back(points[size_t(met[end].second)]);
+        for (end = first; end < met.size() && met[end].light == met[first].light; ++end) {
+            const PathRay& r = *met[end].point->ray;
+            q.push_back(*met[end].point);
             ShadePoint& p = q.back();
             p.P = p.surface.displaced ? p.surface.displacedP : p.surface.P;
             p.N = p.surface.n;
-            p.Ps = tasks[size_t(met[end].second)].payload.lobePdf >= 0 ? tasks[size_t(met[end].second)].payload.lobeOrigin
-                                                                       : tasks[size_t(met[end].second)].payload.origin;
+            p.Ps = r.lobePdf >= 0 ? r.lobeOrigin : r.origin;
         }
-        const BoundLight& light = world_->lights_[size_t(met[first].first)];
+        const BoundLight& light = world_->lights_[size_t(met[first].light)];
         value.assign(q.size(), {});
         evaluateLight(light, q, value);
         for (size_t i = first; i < end; ++i) {
             const LightValue& v = value[i - first];
             if (!v.lit || !(maxComponent(v.Cl) > 0)) continue;
-            const Sched::Task& t = tasks[size_t(met[i].second)];
-            const ShadePoint& p = points[size_t(met[i].second)];
-            const PathRay& r = t.payload;
+            const ShadePoint& p = *met[i].point;
+            const PathRay& r = *p.ray;
             float weight = 1;
             if (r.lobePdf >= 0 && light.emitter) {
                 float pdf = light.emitter->pdf(p.shape, p.surface, r.lobeOrigin);
                 weight = set.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
             }
-            sched.add(t.target, r.weight * v.Cl * weight);
+            sched.add(met[i].target, r.weight * v.Cl * weight);
         }
     }
 }
@@ -343,15 +343,31 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
     world_->accel_->intersect(rays, hits);
 
     // Points by program and light list; inside a group in the order of the slice.
-    std::vector<std::vector<int>> groups(size_t(world_->groups_)); // -> tasks
-    std::vector<ShadePoint> points(n);
-    std::vector<std::pair<int, int>> met; // (light, task)
+    std::vector<std::shared_ptr<BatchContext>> groups(static_cast<size_t>(world_->groups_));
+    std::vector<int> sizes(groups.size());
+    for (size_t i = 0; i < n; ++i)
+        if (hits[i].valid()) ++sizes[size_t(world_->bindings_[size_t(world_->bindingOf_[hits[i].shape])].group)];
+    for (size_t g = 0; g < groups.size(); ++g) {
+        if (!sizes[g]) continue;
+        auto& c = groups[g] = std::make_shared<BatchContext>();
+        c->engine = this;
+        c->points.reserve(size_t(sizes[g])); // pointers into points and rays stay good
+        c->rays.reserve(size_t(sizes[g]));
+        c->targets.reserve(size_t(sizes[g]));
+        c->bindings.reserve(size_t(sizes[g]));
+    }
+    std::vector<Met> met;
     for (size_t i = 0; i < n; ++i) {
         if (!hits[i].valid()) { miss(slice[i], sched); continue; }
         const PathRay& r = slice[i].payload;
         int binding = world_->bindingOf_[hits[i].shape];
         const SurfaceBinding& b = world_->bindings_[size_t(binding)];
-        ShadePoint& p = points[i];
+        BatchContext& c = *groups[size_t(b.group)];
+        c.rays.push_back(r);
+        c.targets.push_back(slice[i].target);
+        c.bindings.push_back(binding);
+        ShadePoint& p = c.points.emplace_back();
+        p.ray = &c.rays.back();
         p.shape = world_->shapes_[hits[i].shape].get();
         p.surface = world_->accel_->point(hits[i]);
         p.P = p.surface.P;
@@ -362,35 +378,19 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
         p.time = r.time;
         p.task = int(i);
         setFootprint(p, r, length(p.P - r.origin), r.type == RayType::Camera ? b.shadingRate : 1);
-        groups[size_t(b.group)].push_back(int(i));
         if (b.areaLight < 0 || !r.wantsLight || (b.matte && r.type == RayType::Camera)) continue;
         if (world_->settings_.hider != Hider::Path && r.lobePdf < 0) continue;
         if (r.lobeBinding >= 0) { // a lobe that samples lights: those that are off for its surface do not light it by chance either
             const auto& on = world_->bindings_[size_t(r.lobeBinding)].lights;
             if (std::find(on.begin(), on.end(), b.areaLight) == on.end()) continue;
         }
-        met.push_back({b.areaLight, int(i)});
+        met.push_back({b.areaLight, slice[i].target, &p});
     }
-    std::stable_sort(met.begin(), met.end(), [](auto& a, auto& b) { return a.first < b.first; });
-    emission(met, slice, points, sched);
-    for (const std::vector<int>& tasks : groups) {
-        if (tasks.empty()) continue;
-        auto c = std::make_shared<BatchContext>();
-        c->engine = this;
-        c->rays.reserve(tasks.size());
-        c->points.reserve(tasks.size());
-        c->targets.reserve(tasks.size());
-        c->bindings.reserve(tasks.size());
-        bool same = true;
-        for (int i : tasks) {
-            int binding = world_->bindingOf_[hits[size_t(i)].shape];
-            same &= c->bindings.empty() || binding == c->bindings[0];
-            c->points.push_back(points[size_t(i)]);
-            c->rays.push_back(slice[size_t(i)].payload);
-            c->targets.push_back(slice[size_t(i)].target);
-            c->bindings.push_back(binding);
-        }
-        for (size_t k = 0; k < tasks.size(); ++k) c->points[k].ray = &c->rays[k];
+    std::stable_sort(met.begin(), met.end(), [](const Met& a, const Met& b) { return a.light < b.light; });
+    emission(met, sched);
+    for (auto& c : groups) {
+        if (!c) continue;
+        bool same = std::all_of(c->bindings.begin(), c->bindings.end(), [&](int b) { return b == c->bindings[0]; });
         c->binding = &world_->bindings_[size_t(c->bindings[0])];
         c->bound = same && !c->binding->usesObjectSpace ? &c->binding->surfaceS : &c->binding->surfaceV;
         shadeGroup(std::move(c), sched);
@@ -508,7 +508,7 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
 
 bool Engine::trace(std::span<const CameraRay> rays, std::span<SampleResult> out, const volatile int32_t* stopFlag) {
     stop = stopFlag;
-    Sched sched(*this, stopFlag);
+    Sched sched(*this, stopFlag, limits::kFrameBytesPerThread, kCacheSlice);
     size_t aovs = 0;
     for (int w : world_->outputWidths_) aovs += size_t(w);
     results.resize(rays.size());

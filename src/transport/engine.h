@@ -101,8 +101,9 @@ public:
 private:
     friend class KernelStrip;
     void miss(const Sched::Task&, Sched&);
-    /// Light that emitters send along the rays that met them: (light, task) pairs, `points` by task.
-    void emission(std::span<const std::pair<int, int>> met, std::span<const Sched::Task>, std::span<const ShadePoint> points, Sched&);
+    struct Met { int light; TargetId target; const ShadePoint* point; };
+    /// Light that emitters send along the rays that met them; sorted by light.
+    void emission(std::span<const Met>, Sched&);
     void passThrough(const PathRay&, TargetId, const ShadePoint&, const Color& transparency, Sched&);
     std::shared_ptr<const WorldImpl> world_;
     Diagnostics& diagnostics_;

@@ -130,13 +130,13 @@ uint64_t Engine::lightFetch(BatchContext& c, int index, int first, uint64_t mask
             const PathRay& r = *p.ray;
             Random rng = random(r);
             uint32_t use = kLightPoint + uint32_t(li), turn = uint32_t(k) + 1; // 0 is gather()'s
-            auto s = light.emitter->sample(lit, rng.pair(r.vertex, use, turn), rng.one(r.vertex, use, turn));
-            if (!s) continue;
-            p.shape = s->shape;
-            p.surface = s->point;
-            p.P = s->point.P;
-            p.N = s->point.n;
-            f = 1 / (float(kPi) * s->pdf * light.samples); // cosLight A / (pi d^2 n), design decision 4
+            Emitter::Sample s;
+            if (!light.emitter->sample(lit, rng.pair(r.vertex, use, turn), rng.one(r.vertex, use, turn), s)) continue;
+            p.shape = s.shape;
+            p.surface = s.point;
+            p.P = s.point.P;
+            p.N = s.point.n;
+            f = 1 / (float(kPi) * s.pdf * light.samples); // cosLight A / (pi d^2 n), design decision 4
         } else {
             p.shape = nullptr;
             p.P = Vec3(transformPoint(light.instance->toCurrent, {0, 0, 0}));

@@ -139,30 +139,42 @@ void Engine::gather(BatchContext& c, Sched& sched) {
             q.clear();
             pointOf.clear();
             samples.clear();
+            q.reserve(c.points.size());
+            samples.reserve(c.points.size());
             for (size_t pi = 0; pi < c.points.size(); ++pi) {
                 bool wanted = false;
                 for (int i : lobesOf(pi)) wanted |= lobes[i].lights && (area || lobes[i].deltaLights) && !lobes[i].kind->isDelta(lobes[i].params);
                 if (!wanted) continue;
-                q.push_back(c.points[pi]);
-                ShadePoint& p = q.back();
-                p.Ps = p.P;
-                p.Ns = p.N;
-                p.viewI = p.I;
+                const ShadePoint& lit = c.points[pi];
+                ShadePoint& p = q.emplace_back();
+                p.Ps = lit.P;
+                p.Ns = lit.N;
+                p.viewI = p.I = lit.I;
+                p.E = lit.E;
+                p.du = lit.du;
+                p.dv = lit.dv;
+                p.time = lit.time;
+                p.ray = lit.ray;
+                p.task = lit.task;
                 if (area) {
                     // Affine lobes of a vertex share its light sample; each suspended request has its own.
                     const PathRay& ray = c.rays[pi];
                     const LobeVertex& l0 = lobes[size_t(lobesOf(pi)[0])];
                     uint32_t vertex = l0.ownsTarget ? childVertex(ray.vertex, l0.site, l0.occurrence * 4096 + 4095) : ray.vertex;
                     Random rng = random(ray);
-                    auto s = light.emitter->sample(p.Ps, rng.pair(vertex, kLightPoint + uint32_t(li), 0), rng.one(vertex, kLightPoint + uint32_t(li), 0));
-                    if (!s) { q.pop_back(); continue; }
-                    p.shape = s->shape;
-                    p.surface = s->point;
-                    p.P = s->point.P;
-                    p.N = s->point.n;
-                    samples.push_back(*s);
+                    uint32_t use = kLightPoint + uint32_t(li);
+                    Emitter::Sample& s = samples.emplace_back();
+                    if (!light.emitter->sample(p.Ps, rng.pair(vertex, use, 0), rng.one(vertex, use, 0), s)) {
+                        q.pop_back();
+                        samples.pop_back();
+                        continue;
+                    }
+                    p.shape = s.shape;
+                    p.surface = s.point;
+                    p.P = s.point.P;
+                    p.N = s.point.n;
                 } else {
-                    p.shape = nullptr;
+                    p.surface = lit.surface;
                     p.P = Vec3(transformPoint(light.instance->toCurrent, {0, 0, 0}));
                     samples.emplace_back();
                 }

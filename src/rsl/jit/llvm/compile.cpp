@@ -1,5 +1,6 @@
 // The LLVM side of the door: module set-up, passes, machine code. Everything else of LLVM's size is here and nowhere else.
 #include "rsl/jit/llvm/emitter.h"
+#include "rsl/jit/llvm/masks.h"
 #include <llvm/Bitcode/BitcodeReader.h>
 #include <llvm/IR/LegacyPassManager.h>
 #include <llvm/IR/Verifier.h>
@@ -166,6 +167,7 @@ void compile(const ModuleRequest& request, ModuleResult& result) {
     llvm::raw_string_ostream verifyOut(verifyText);
     if (llvm::verifyModule(*module, &verifyOut)) throw CodegenError("the generated code is not valid: " + verifyText);
     optimise(*module, tm.get(), request.optimize, result.suspending);
+    if (request.optimize > 0 && request.isa != Isa::Avx512) widenMasks(*module);
     if (request.wantText) {
         llvm::raw_string_ostream out(result.text);
         module->print(out, nullptr);

@@ -160,7 +160,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     // Affine lobes of a vertex share its light sample; each suspended request has its own.
                     const PathRay& ray = c.rays[pi];
                     const LobeVertex& l0 = lobes[size_t(lobesOf(pi)[0])];
-                    uint32_t vertex = l0.ownsTarget ? childVertex(ray.vertex, l0.site, l0.occurrence * 4096 + 4095) : ray.vertex;
+                    uint32_t vertex = l0.ownsTarget ? childVertex(ray.vertex, kLightPoint + l0.site, l0.occurrence) : ray.vertex;
                     Random rng = random(ray);
                     uint32_t use = kLightPoint + uint32_t(li);
                     Emitter::Sample& s = samples.emplace_back();

@@ -29,7 +29,7 @@ struct Tiles {
 
 /// `n` samples a tile at random places of it. Streams do not repeat between different seeds.
 inline std::vector<CameraRay> boxRays(int n, uint32_t seed) {
-    std::mt19937_64 rng(seed);
+    std::mt19937_64 rng(seed + seedBase());
     std::uniform_real_distribution<double> u01(0, 1);
     std::vector<CameraRay> rays;
     double t = std::tan(13.5 * kPi / 180);
@@ -61,7 +61,7 @@ inline Tiles boxTiles(const std::string& rib, Settings s, int n, uint32_t seed, 
 inline Tiles oracleTiles(bool spheres, int n, uint32_t seed) {
     oracle::Box box;
     box.spheres = spheres;
-    std::mt19937_64 rng(seed);
+    std::mt19937_64 rng(seed + seedBase());
     Tiles t;
     for (int i = 0; i < Tiles::kX * Tiles::kY; ++i)
         for (int k = 0; k < n; ++k) {

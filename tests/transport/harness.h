@@ -5,7 +5,9 @@
 #include "statistics/chisquare.h"
 #include "transport/integrator.h"
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -19,6 +21,17 @@ inline constexpr double kZ = teststat::kZ;
 inline bool nightly() { return std::getenv("ALPENGLOW_NIGHTLY") != nullptr; }
 /// Samples here, and sixteen times as many nightly.
 inline int samples(int fast) { return nightly() ? 16 * fast : fast; }
+
+/// Added to every seed: 0 on every change, fresh nightly (printed, so that a failure can be repeated with ALPENGLOW_SEED).
+inline uint32_t seedBase() {
+    static const uint32_t base = [] {
+        const char* given = std::getenv("ALPENGLOW_SEED");
+        uint32_t s = given ? uint32_t(std::strtoul(given, nullptr, 10)) : nightly() ? uint32_t(std::time(nullptr)) * 1000u : 0u;
+        if (s) std::printf("ALPENGLOW_SEED=%u\n", s);
+        return s;
+    }();
+    return base;
+}
 
 /// A folder for shaders that a test writes itself.
 inline const std::string& shaderFolder() {
@@ -63,6 +76,7 @@ struct Scene final : scene::FrameConsumer {
         ri::RibReader reader({}, *this, diagnostics);
         reader.readMemory(rib, "test.rib");
         settings.shaderPaths.push_back(shaderFolder());
+        settings.seed += seedBase();
         if (frame) world = World::build(frame, settings, diagnostics);
         EXPECT_NE(world, nullptr) << messages();
         EXPECT_EQ(diagnostics.errors(), 0) << messages() << rib;

@@ -2,6 +2,7 @@
 #pragma once
 #include "rsl/evaluate.h"
 #include <bit>
+#include <cmath>
 #include <cstdlib>
 #include <functional>
 #include <memory>
@@ -19,6 +20,9 @@ inline PointValue evaluationPoint() {
         return v;
     };
 }
+
+/// The two lights that illuminance finds wherever it looks: L, Cl, Ol. One straight above the evaluation point, one aside.
+inline constexpr float kTestLights[2][9] = {{0, 0, 2, 1, 0.5f, 0.25f, 1, 1, 1}, {3, 0, 4, 0.5f, 0.5f, 0.5f, 1, 1, 1}};
 
 /// out[output][component * n + point]. Uniform inputs of build S take the value of point 0. Spaces are identities; parameters come from
 /// `defaults`. False when the kernel suspends. Services other than those of strings leave zeros.
@@ -59,7 +63,7 @@ inline bool runPoints(const CompiledKernel& k, bool mixed, int n, const PointVal
     }
     std::vector<float*> results;
     for (const auto& o : k.outputs()) results.push_back(make(size_t(ir::components(o.kind))));
-    struct Context { const CompiledKernel* kernel; Diagnostics* diagnostics; } context{&k, &diagnostics};
+    struct Context { const CompiledKernel* kernel; Diagnostics* diagnostics; std::vector<float> cone; } context{&k, &diagnostics, {}};
     KernelCall call{};
     call.in = in.data();
     call.out = results.data();
@@ -71,8 +75,24 @@ inline bool runPoints(const CompiledKernel& k, bool mixed, int n, const PointVal
         const auto& x = *static_cast<Context*>(c->user);
         if (site >= 0) basicService(x.kernel->sites()[size_t(site)], mask, lanes, a, r, *x.diagnostics, [](int, const std::string&) {});
     };
-    call.lightBegin = [](KernelCall*, int32_t, int32_t, uint64_t, int32_t, const float*) { return int32_t(0); };
-    call.lightFetch = [](KernelCall*, int32_t, int32_t, int32_t, uint64_t, int32_t, float*) { return uint64_t(0); };
+    call.lightBegin = [](KernelCall* c, int32_t, int32_t, uint64_t, int32_t lanes, const float* rows) { // P, axis, angle
+        static_cast<Context*>(c->user)->cone.assign(rows, rows + 7 * lanes);
+        return int32_t(2);
+    };
+    call.lightFetch = [](KernelCall* c, int32_t, int32_t light, int32_t, uint64_t mask, int32_t lanes, float* out) {
+        const std::vector<float>& cone = static_cast<Context*>(c->user)->cone;
+        uint64_t lit = 0;
+        for (int l = 0; l < lanes; l++) {
+            for (int r = 0; r < 9; r++) out[r * lanes + l] = kTestLights[light][r];
+            const auto axis = [&](int r) { return double(cone[size_t((3 + r) * lanes + l)]); };
+            const double x = axis(0), y = axis(1), z = axis(2);
+            const float* L = kTestLights[light];
+            const double size = std::sqrt((x * x + y * y + z * z) * double(L[0] * L[0] + L[1] * L[1] + L[2] * L[2]));
+            const double cosine = size > 0 ? (x * double(L[0]) + y * double(L[1]) + z * double(L[2])) / size : 1;
+            if (cosine > std::cos(double(cone[size_t(6 * lanes + l)]))) lit |= uint64_t(1) << l;
+        }
+        return lit & mask;
+    };
     k.run(&call);
     out.clear();
     for (size_t o = 0; o < results.size(); o++) {

@@ -19,7 +19,7 @@ public:
     explicit Generator(unsigned seed) : rng_(seed) {}
 
     std::string shader() {
-        std::string s = "surface random(output varying float o = 0; output varying point q = 0;)\n{\n";
+        std::string s = "surface random(float k = 1.5; color t = color(0.5, 0.25, 1); output varying float o = 0; output varying point q = 0;)\n{\n";
         for (int n = pick(3); n > 0; n--) s += function();
         s += "float x = 0.1, y = u, z = -v; color c = 0.5, d = color(u, v, 0.25); point p = P, w = point(1, u, -1); float a[4] = {1, 2, -3, 0.5};\n";
         for (int n = 3 + pick(5); n > 0; n--) s += statement() + "\n";
@@ -52,6 +52,7 @@ private:
 
     std::string number(int d) {
         static const char* const leaves[] = {"x", "y", "z", "u", "v", "0.5", "2", "-1.25", "0", "3", "0.1"};
+        if (!inFunction_ && pick(12) == 0) return pick(2) ? "k" : "comp(t, 1)"; // the same for all points: another code in build S
         static const char* const unary[] = {"abs", "floor", "ceil", "round", "sign", "sqrt", "sin", "cos", "atan", "exp", "log", "inversesqrt", "float noise", "float cellnoise", "-"};
         if (d > 3 || pick(4) == 0) return any(leaves);
         const auto e = [&] { return number(d + 1); };
@@ -77,7 +78,7 @@ private:
     }
 
     std::string colour(int d) {
-        if (d > 3 || pick(4) == 0) return any({"c", "d", "Cs", "color(1, 0.5, 0.25)"});
+        if (d > 3 || pick(4) == 0) return any({"c", "d", "Cs", "t", "color(1, 0.5, 0.25)"});
         const auto e = [&] { return colour(d + 1); };
         switch (pick(8)) {
         case 0: return "(" + e() + " + " + e() + ")";
@@ -146,6 +147,7 @@ private:
             const std::string bound = pick(2) ? std::to_string(1 + pick(4)) : "clamp(" + number(2) + ", 0, 4)";
             loops_++;
             if (loops_ > 2) s = block();
+            else if (pick(4) == 0) s = "{ float " + i + " = " + number(2) + "; while (" + i + " > 0 && " + i + " < 6) { " + i + " += 1; " + statement() + " } }";
             else s = "{ float " + i + "; for (" + i + " = 0; " + i + " < 8 && " + i + " < " + bound + "; " + i + " += 1) " + block() + " }";
             loops_--;
         }
@@ -161,6 +163,8 @@ float value(const std::string& name, int component, int point) {
     float v = 0;
     EvaluationPoint::value(name, component, 0, v);
     const float a = float((point * 17 + 5) % kPoints) / kPoints, b = float((point * 23 + 1) % kPoints) / kPoints;
+    if (name == "param:k") return 1.5f;
+    if (name == "param:t") return component == 0 ? 0.5f : component == 1 ? 0.25f : 1.0f;
     if (name == "u" || (name == "P" && component == 0)) return a;
     if (name == "v" || (name == "P" && component == 1)) return b;
     return v;
@@ -202,7 +206,7 @@ TEST(RandomPrograms, MachineCodeAndEvaluatorAgree) {
             ASSERT_TRUE(kernel);
             std::vector<std::vector<float>> got;
             const auto at = [](const std::string& name, int component, int part, int point) { return part == 0 ? value(name, component, point) : 0.0f; };
-            ASSERT_TRUE(runPoints(*kernel, o.mixed, kPoints, at, {}, got, d));
+            ASSERT_TRUE(runPoints(*kernel, o.mixed, kPoints, at, compiler.parameterDefaults(shader, d), got, d));
             for (size_t k = 0; k < got.size(); k++)
                 for (size_t x = 0; x < got[k].size(); x++) {
                     const float want = expected[x % kPoints].at(kernel->outputs()[k].name).at(x / kPoints);

@@ -108,6 +108,12 @@ PolygonMesh::PolygonMesh(ShapeSource s, const PolygonInput& in, const std::vecto
     m.finish();
     mesh_ = std::move(m);
     takePrimvars(diag);
+    constexpr size_t kRemember = 256; // triangles; a plane takes 240 bytes
+    if (face_.size() <= kRemember) {
+        std::vector<Plane> planes;
+        for (uint32_t t = 0; t < face_.size(); ++t) planes.push_back(makePlane(t));
+        planes_ = std::move(planes);
+    }
 }
 
 PolygonMesh::Frame PolygonMesh::frame(int face) const {
@@ -120,11 +126,12 @@ PolygonMesh::Frame PolygonMesh::frame(int face) const {
     return {a, b};
 }
 
-PolygonMesh::Plane PolygonMesh::plane(uint32_t tri) const {
+PolygonMesh::Plane PolygonMesh::makePlane(uint32_t tri) const {
     Plane r;
     for (int k = 0; k < 3; ++k) r.p[k] = objectPoint(vertexOf(tri, k));
     Vec3d c = cross(r.p[1] - r.p[0], r.p[2] - r.p[0]), fn(faceNormal_[face_[tri]]);
-    Frame f = frame(int(face_[tri]));
+    r.f = frame(int(face_[tri]));
+    const Frame& f = r.f;
     double l = length(c);
     // A sliver's normal is noise, and a bent face may hold a triangle that stands edge-on in its frame: the face's then.
     double longest = std::max({length(r.p[1] - r.p[0]), length(r.p[2] - r.p[1]), length(r.p[0] - r.p[2])});
@@ -146,7 +153,7 @@ SurfacePoint PolygonMesh::evaluateLocal(uint32_t tri, double b1, double b2) cons
     p.b2 = b2;
     Vec3d a = cameraCorner(tri, 0), b = cameraCorner(tri, 1), c = cameraCorner(tri, 2);
     Vec3d P = a + (b - a) * b1 + (c - a) * b2, O = q.p[0] + (q.p[1] - q.p[0]) * b1 + (q.p[2] - q.p[0]) * b2;
-    Frame f = frame(p.face);
+    const Frame& f = q.f;
     p.P = Vec3(P);
     p.u = float(dot(O, f.a));
     p.v = float(dot(O, f.b));

@@ -37,9 +37,10 @@ protected:
 
 private:
     struct Frame { Vec3d a, b; };  ///< u = P.a, v = P.b (object space)
-    struct Plane { Vec3d p[3]; Vec3d n; Vec3d Pu, Pv; };
+    struct Plane { Vec3d p[3]; Vec3d n; Vec3d Pu, Pv; Frame f; };
     Frame frame(int face) const;
-    Plane plane(uint32_t prim) const;
+    Plane makePlane(uint32_t prim) const;
+    Plane plane(uint32_t prim) const { return planes_.empty() ? makePlane(prim) : planes_[prim]; }
     Vec3d objectPoint(uint32_t vertex) const {
         return {objectP_[3 * vertex], objectP_[3 * vertex + 1], objectP_[3 * vertex + 2]};
     }
@@ -54,6 +55,7 @@ private:
     std::vector<uint32_t> face_;              ///< per triangle
     std::vector<Vec3> faceNormal_;            ///< per face, object space, unit, by winding
     std::vector<Vec3> cameraP_;               ///< per vertex
+    std::vector<Plane> planes_;               ///< per triangle of small meshes, which are hit often; else empty
     std::vector<double> cumulativeArea_;      ///< per triangle, camera space
 };
 

@@ -181,8 +181,9 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
         return pad();
     case From::Parameter: {
         std::fill_n(row, s.scalar ? size_t(comps) * s.elements : s.rows * stride, 0.f);
-        const ParameterBlock* block = nullptr; // neighbours mostly share theirs: looked up when it changes
-        const std::vector<float>* numbers = nullptr;
+        // A batch holds few instances: the last ones are remembered, so that names are searched once each.
+        struct Known { const ParameterBlock* block = nullptr; const std::vector<float>* numbers = nullptr; } known[8];
+        size_t replace = 0;
         const geometry::Shape* last = nullptr;
         int v = -1;
         for (int i = 0; i < count; ++i) {
@@ -201,12 +202,17 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
                     continue;
                 }
             }
-            if (views[i].parameters != block) {
-                block = views[i].parameters;
-                numbers = nullptr;
-                if (block)
-                    if (auto found = block->numbers.find(s.name); found != block->numbers.end()) numbers = &found->second;
+            const ParameterBlock* block = views[i].parameters;
+            if (!block) continue;
+            const Known* k = known;
+            while (k < known + 8 && k->block != block) ++k;
+            if (k == known + 8) {
+                Known& fresh = known[replace++ % 8];
+                auto found = block->numbers.find(s.name);
+                fresh = {block, found != block->numbers.end() ? &found->second : nullptr};
+                k = &fresh;
             }
+            const std::vector<float>* numbers = k->numbers;
             if (!numbers) continue;
             for (int c = 0; c < comps * s.elements && c < int(numbers->size()); ++c) at(c, 0, i) = (*numbers)[c];
         }

@@ -11,18 +11,20 @@
 namespace alpenglow::rsl {
 namespace {
 
-constexpr int kPrograms = 300, kPoints = 37;
+constexpr int kPrograms = 200, kDerived = 40, kPoints = 37;
 
 /// Well-typed statements over floats, colours, points and an array. Loops have at most eight turns; jumps leave one or two of them.
 class Generator {
 public:
     explicit Generator(unsigned seed) : rng_(seed) {}
 
-    std::string shader() {
+    /// With derivatives of the variables, first and second, in the outputs when `derived`.
+    std::string shader(bool derived = false) {
         std::string s = "surface random(float k = 1.5; color t = color(0.5, 0.25, 1); output varying float o = 0; output varying point q = 0;)\n{\n";
         for (int n = pick(3); n > 0; n--) s += function();
         s += "float x = 0.1, y = u, z = -v; color c = 0.5, d = color(u, v, 0.25); point p = P, w = point(1, u, -1); float a[4] = {1, 2, -3, 0.5};\n";
         for (int n = 3 + pick(5); n > 0; n--) s += statement() + "\n";
+        if (derived) s += "x = Du(x) + Dv(y); y = Du(Dv(z)) + Dv(Dv(z)); z = area(p); w = point(calculatenormal(w)); d = Du(d);\n";
         return s + "Ci = c + d; Oi = color(x, y, z); o = a[0] + a[1] * a[2] - a[3]; q = p + w;\n}\n";
     }
 
@@ -217,6 +219,48 @@ TEST(RandomPrograms, MachineCodeAndEvaluatorAgree) {
         }
     }
     EXPECT_EQ(compared, kPrograms * 2 * kPoints * 10); // Ci, Oi and q have three components, o one
+}
+
+// The evaluator knows no derivatives; here the configurations are compared with each other. Their values have closed forms in
+// derivatives.rsl.
+TEST(RandomPrograms, DerivativesHaveTheSameBitsEverywhere) {
+    ShaderCompiler::Settings settings;
+    settings.useDefaultCache = false;
+    ShaderCompiler compiler(settings);
+    const std::vector<KernelOptions> all = configurations();
+    int compared = 0;
+    for (unsigned seed = 1; seed <= unsigned(kDerived); seed++) {
+        const std::string source = Generator(seed * 7919).shader(true);
+        SCOPED_TRACE("seed " + std::to_string(seed) + "\n" + source);
+        Diagnostics d([](const Diagnostic& m) {
+            if (m.severity >= Severity::Error) ADD_FAILURE() << toString(m);
+        });
+        const auto shader = compiler.loadText(source, "random", d);
+        ASSERT_TRUE(shader);
+        std::vector<std::vector<float>> first;
+        for (unsigned turn = 0; turn < 4; turn++) {
+            KernelOptions o = all[(seed + turn * 5) % all.size()];
+            SCOPED_TRACE(describe(o));
+            o.outputs = {"Ci", "Oi", "o", "q"};
+            const auto kernel = compiler.kernel(shader, o, d);
+            ASSERT_TRUE(kernel);
+            std::vector<std::vector<float>> got;
+            const auto at = [](const std::string& name, int component, int part, int point) {
+                float v = 0;
+                EvaluationPoint::value(name, component, part, v);
+                return part == 0 ? value(name, component, point) : v;
+            };
+            ASSERT_TRUE(runPoints(*kernel, o.mixed, kPoints, at, compiler.parameterDefaults(shader, d), got, d));
+            if (first.empty()) first = got;
+            for (size_t k = 0; k < got.size(); k++)
+                for (size_t x = 0; x < got[k].size(); x++) {
+                    ASSERT_TRUE(sameBits(got[k][x], first[k][x]) || (got[k][x] == 0 && first[k][x] == 0))
+                        << kernel->outputs()[k].name << "[" << x / kPoints << "] at point " << x % kPoints << ": " << got[k][x] << ", not " << first[k][x];
+                    compared++;
+                }
+        }
+    }
+    EXPECT_EQ(compared, kDerived * 4 * kPoints * 10);
 }
 
 } // namespace

@@ -114,8 +114,13 @@ public:
             // Near the frame limit only as many rays are taken as one strip can hold, so that depth, not breadth, uses what is left.
             size_t most = frameBytes_ > frameLimit_ / 2 ? kStripRays : size_t(sliceRays_);
             size_t n = std::min(q.size(), most);
-            slice.assign(std::make_move_iterator(q.begin()), std::make_move_iterator(q.begin() + n));
-            q.erase(q.begin(), q.begin() + n);
+            if (n == q.size()) {
+                slice.clear();
+                slice.swap(q);
+            } else { // from the end: order does not matter, moving the rest would cost
+                slice.assign(std::make_move_iterator(q.end() - ptrdiff_t(n)), std::make_move_iterator(q.end()));
+                q.resize(q.size() - n);
+            }
             queued_ -= n;
             if (frameBytes_ > frameLimit_) {
                 overLimit_ += n; // these rays bring nothing: a bias, counted and reported by the caller
@@ -235,11 +240,11 @@ private:
     const volatile int32_t* stop_;
     size_t frameLimit_;
     int sliceRays_;
-    std::deque<Target> targets_;
+    std::vector<Target> targets_;
     std::vector<TargetId> freeTargets_;
     std::deque<Waiting> strips_;
     std::vector<int> freeStrips_;
-    std::map<int, std::deque<Task>> queues_;
+    std::map<int, std::vector<Task>> queues_;
     size_t queued_ = 0;
     std::map<int, std::deque<int>> ready_;
     std::unique_ptr<Strip> resuming_;

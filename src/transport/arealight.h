@@ -12,6 +12,8 @@ public:
     explicit Emitter(std::vector<const geometry::Shape*> shapes, std::vector<uint32_t> visibility = {});
     bool empty() const { return entries_.empty(); }
     double area() const { return area_; }
+    /// Whether sample() needs its number `choose`.
+    bool chooses() const { return entries_.size() > 1; }
 
     struct Sample {
         const geometry::Shape* shape = nullptr;

@@ -131,7 +131,7 @@ uint64_t Engine::lightFetch(BatchContext& c, int index, int first, uint64_t mask
             Random rng = random(r);
             uint32_t use = kLightPoint + uint32_t(li), turn = uint32_t(k) + 1; // 0 is gather()'s
             Emitter::Sample s;
-            if (!light.emitter->sample(lit, rng.pair(r.vertex, use, turn), rng.one(r.vertex, use, turn), s)) continue;
+            if (!light.emitter->sample(lit, rng.pair(r.vertex, use, turn), light.emitter->chooses() ? rng.one(r.vertex, use, turn) : 0, s)) continue;
             p.shape = s.shape;
             p.surface = s.point;
             p.P = s.point.P;

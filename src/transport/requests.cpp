@@ -164,7 +164,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     Random rng = random(ray);
                     uint32_t use = kLightPoint + uint32_t(li);
                     Emitter::Sample& s = samples.emplace_back();
-                    if (!light.emitter->sample(p.Ps, rng.pair(vertex, use, 0), rng.one(vertex, use, 0), s)) {
+                    if (!light.emitter->sample(p.Ps, rng.pair(vertex, use, 0), light.emitter->chooses() ? rng.one(vertex, use, 0) : 0, s)) {
                         q.pop_back();
                         samples.pop_back();
                         continue;
@@ -225,7 +225,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
         const ShadePoint& p = c.points[pi];
         const PathRay& from = c.rays[pi];
         Random rng = random(from);
-        float pick = path ? rng.one(from.vertex, kChooseLobe, 0) : 0, sum = 0;
+        float pick = path && list.size() > 1 ? rng.one(from.vertex, kChooseLobe, 0) : 0, sum = 0;
         bool taken = false;
         for (int i : list) {
             LobeVertex& l = lobes[i];
@@ -256,16 +256,17 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 if (!(maxComponent(r.weight) > 0) && !(std::min({r.weight.x, r.weight.y, r.weight.z}) < 0) && !l.ownsTarget) continue;
                 r.vertex = childVertex(from.vertex, l.site, occurrence);
                 if (path && set.roulette) {
-                    float q = 1, dice = rng.one(r.vertex, kRoulette, 0);
+                    float q = 1;
+                    auto dice = [&] { return rng.one(r.vertex, kRoulette, 0); };
                     if (l.ownsTarget) {
                         // A waiting kernel's use of the result is unknown, and it may ask again: behind the third bounce half of its rays
                         // end, so that the tree of rays stays finite.
-                        if (from.bounces >= 3) q = dice < 0.5f ? 0.5f : 0;
+                        if (from.bounces >= 3) q = dice() < 0.5f ? 0.5f : 0;
                     } else if (set.localRoulette) {
-                        q = rouletteLocal(from.bounces + 1, l.weight, dice);
+                        q = rouletteLocal(from.bounces + 1, l.weight, from.bounces + 1 > 3 ? dice() : 0);
                     } else if (from.bounces + 1 > 3) {
                         float m = std::min(1.f, maxComponent(Color(std::fabs(r.weight.x), std::fabs(r.weight.y), std::fabs(r.weight.z))));
-                        q = m <= 0 ? 0 : m >= 1 ? 1 : dice < m ? m : 0;
+                        q = m <= 0 ? 0 : m >= 1 ? 1 : dice() < m ? m : 0;
                     }
                     if (q <= 0) continue;
                     r.weight = r.weight / q;

@@ -1,6 +1,7 @@
 // Nanoseconds of CPU time a point for shader files, one thread: rsl_bench [--lanes N] [--vectors N] [--ir] shader.sl...
-// The 65,536 points of a grid over the unit square are shaded again and again, in batches of 4,096 (what a scheduler hands to a kernel, and
-// what the caches hold); the best of several runs counts. The mean of the first output's first component shows that work was done.
+// The 65,536 points of a grid over the unit square are shaded again and again, in batches of 4,096 (what a scheduler hands to a
+// kernel, and what the caches hold); the best of several runs counts. The mean of the first output's first component shows that
+// work was done.
 #include "rsl/compiler.h"
 #include "rsl/evaluate.h"
 #include <algorithm>

@@ -80,7 +80,8 @@ ShaderCompiler::~ShaderCompiler() = default;
 namespace {
 /// A file of functions alone is well formed, but it is no shader.
 void sayWithoutShader(const Program* program, const std::string& path, Diagnostics& diagnostics) {
-    if (program && program->shaders.empty()) diagnostics.report(Severity::Error, Rie::Syntax, {path, 1, 1}, "there is no shader in this file");
+    if (program && program->shaders.empty())
+        diagnostics.report(Severity::Error, Rie::Syntax, {path, 1, 1}, "there is no shader in this file");
 }
 } // namespace
 

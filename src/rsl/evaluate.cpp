@@ -107,7 +107,8 @@ bool runAtPoint(const CompiledKernel& k, bool mixed, int n, int at, std::vector<
         if (s.op == "random") { // one number for each call in the text
             float h[3];
             hashText("random " + std::to_string(site), h);
-            for (int c = 0; c < std::min(3, s.resultKinds.empty() ? 1 : ir::components(s.resultKinds[0])); c++) std::fill_n(out + c * lanes, lanes, h[c]);
+            for (int c = 0; c < std::min(3, s.resultKinds.empty() ? 1 : ir::components(s.resultKinds[0])); c++)
+                std::fill_n(out + c * lanes, lanes, h[c]);
         }
         if (s.op == "gridmin" || s.op == "gridmax") { // a grid of one point without extent
             for (int c = 0; c < ir::components(s.argKinds.empty() ? ir::Kind::Float : s.argKinds[0]); c++)

@@ -1,5 +1,5 @@
-// Points that differ: masks that some lanes leave early, against plain C++ doing the same for one point; and a mixed batch, which must give
-// each point the bits that it has alone.
+// Points that differ: masks that some lanes leave early, against plain C++ doing the same for one point; and a mixed batch, which
+// must give each point the bits that it has alone.
 #include "points.h"
 #include <cmath>
 #include <gtest/gtest.h>
@@ -38,16 +38,34 @@ struct Masked {
 
 const Masked kMasked[] = {
     {"while with a varying bound", "float i = 0; while (i < u * 20) { i += 1; r += i; }",
-     [](float u, float) { float r = 0, i = 0; while (i < u * 20) { i += 1; r += i; } return r; }},
+     [](float u, float) {
+         float r = 0, i = 0;
+         while (i < u * 20) {
+             i += 1;
+             r += i;
+         }
+         return r;
+     }},
     {"break by point", "float i; for (i = 0; i < 12; i += 1) { if (i > v * 10) break; r += 1; }",
-     [](float, float v) { float r = 0; for (float i = 0; i < 12; i += 1) { if (i > v * 10) break; r += 1; } return r; }},
+     [](float, float v) {
+         float r = 0;
+         for (float i = 0; i < 12; i += 1) {
+             if (i > v * 10) break;
+             r += 1;
+         }
+         return r;
+     }},
     {"continue by point", "float i; for (i = 0; i < 12; i += 1) { if (mod(i, 1 + floor(u * 4)) == 0) continue; r += i; }",
      [](float u, float) {
          float r = 0, m = 1 + std::floor(u * 4);
-         for (float i = 0; i < 12; i += 1) { if (i - m * std::floor(i / m) == 0) continue; r += i; }
+         for (float i = 0; i < 12; i += 1) {
+             if (i - m * std::floor(i / m) == 0) continue;
+             r += i;
+         }
          return r;
      }},
-    {"break 2 by point", "float i, j; for (i = 0; i < 6; i += 1) for (j = 0; j < 6; j += 1) { if (i * 6 + j > u * 40) break 2; r += 1 + i; }",
+    {"break 2 by point",
+     "float i, j; for (i = 0; i < 6; i += 1) for (j = 0; j < 6; j += 1) { if (i * 6 + j > u * 40) break 2; r += 1 + i; }",
      [](float u, float) {
          float r = 0;
          for (float i = 0; i < 6; i += 1)
@@ -57,7 +75,9 @@ const Masked kMasked[] = {
              }
          return r;
      }},
-    {"continue 2 by point", "float i, j; for (i = 0; i < 6; i += 1) { for (j = 0; j < 6; j += 1) { if (i + j > v * 10) continue 2; r += 1; } r += 100; }",
+    {"continue 2 by point",
+     "float i, j; for (i = 0; i < 6; i += 1) { for (j = 0; j < 6; j += 1) { if (i + j > v * 10) continue 2; r += 1; } r += 100; "
+     "}",
      [](float, float v) {
          float r = 0;
          for (float i = 0; i < 6; i += 1) {
@@ -71,24 +91,31 @@ const Masked kMasked[] = {
          return r;
      }},
     {"break and continue together",
-     "float i; for (i = 0; i < 30; i += 1) { if (i > 25 * u) break; if (mod(i, 3) == 0) continue; if (i > 20 * v) { r += 1000; break; } r += i; }",
+     "float i; for (i = 0; i < 30; i += 1) { if (i > 25 * u) break; if (mod(i, 3) == 0) continue; if (i > 20 * v) { r += 1000; "
+     "break; } r += i; }",
      [](float u, float v) {
          float r = 0;
          for (int i = 0; i < 30; i++) {
              if (float(i) > 25 * u) break;
              if (i % 3 == 0) continue;
-             if (float(i) > 20 * v) { r += 1000; break; }
+             if (float(i) > 20 * v) {
+                 r += 1000;
+                 break;
+             }
              r += float(i);
          }
          return r;
      }},
-    {"return by point", "float f(float x) { if (x < 0.25) return 1; if (x < 0.5) { if (v > 0.5) return 2; return 3; } return 4; } r = f(u) * 10 + f(v);",
+    {"return by point",
+     "float f(float x) { if (x < 0.25) return 1; if (x < 0.5) { if (v > 0.5) return 2; return 3; } return 4; } r = f(u) * 10 + "
+     "f(v);",
      [](float u, float v) {
          const auto f = [v](float x) { return x < 0.25f ? 1.0f : x < 0.5f ? (v > 0.5f ? 2.0f : 3.0f) : 4.0f; };
          return f(u) * 10 + f(v);
      }},
     {"return out of loops",
-     "float f(float x, y) { float i, j; for (i = 0; i < 5; i += 1) for (j = 0; j < 5; j += 1) { if (i > 5 * x) return i * 10 + j; if (j > 5 * y) break; } return -1; } r = f(u, v);",
+     "float f(float x, y) { float i, j; for (i = 0; i < 5; i += 1) for (j = 0; j < 5; j += 1) { if (i > 5 * x) return i * 10 + "
+     "j; if (j > 5 * y) break; } return -1; } r = f(u, v);",
      [](float u, float v) {
          for (int i = 0; i < 5; i++)
              for (int j = 0; j < 5; j++) {
@@ -98,12 +125,15 @@ const Masked kMasked[] = {
          return -1.0f;
      }},
     {"return from a void function",
-     "void f(float x; output float y) { y = 1; if (x > 0.5) return; y = 2; if (x > 0.25) return; y = 3; } float a, b; f(u, a); f(v, b); r = a * 10 + b;",
+     "void f(float x; output float y) { y = 1; if (x > 0.5) return; y = 2; if (x > 0.25) return; y = 3; } float a, b; f(u, a); "
+     "f(v, b); r = a * 10 + b;",
      [](float u, float v) {
          const auto f = [](float x) { return x > 0.5f ? 1.0f : x > 0.25f ? 2.0f : 3.0f; };
          return f(u) * 10 + f(v);
      }},
-    {"array written at a varying place", "float a[8]; float i; for (i = 0; i < 8; i += 1) a[i] = i; a[floor(u * 8)] = 100; a[floor(v * 8)] += 50; for (i = 0; i < 8; i += 1) r += a[i] * (1 + i);",
+    {"array written at a varying place",
+     "float a[8]; float i; for (i = 0; i < 8; i += 1) a[i] = i; a[floor(u * 8)] = 100; a[floor(v * 8)] += 50; for (i = 0; i < 8; "
+     "i += 1) r += a[i] * (1 + i);",
      [](float u, float v) {
          float a[8], r = 0;
          for (int i = 0; i < 8; i++) a[i] = float(i);
@@ -112,24 +142,38 @@ const Masked kMasked[] = {
          for (int i = 0; i < 8; i++) r += a[i] * float(1 + i);
          return r;
      }},
-    {"array written under a mask", "float a[4] = {1, 2, 3, 4}; if (u > 0.5) a[1] = 10; else if (v > 0.5) a[floor(u * 4)] = 20; r = a[0] + 100 * a[1] + 10000 * a[2];",
+    {"array written under a mask",
+     "float a[4] = {1, 2, 3, 4}; if (u > 0.5) a[1] = 10; else if (v > 0.5) a[floor(u * 4)] = 20; r = a[0] + 100 * a[1] + 10000 * "
+     "a[2];",
      [](float u, float v) {
          float a[4] = {1, 2, 3, 4};
          if (u > 0.5f) a[1] = 10;
          else if (v > 0.5f) a[int(std::floor(u * 4))] = 20;
          return a[0] + 100 * a[1] + 10000 * a[2];
      }},
-    {"output argument under a mask", "void bump(output float x) { x += 1; } float a = 0; if (u > 0.5) bump(a); if (v > 0.5) { bump(a); bump(a); } r = a;",
+    {"output argument under a mask",
+     "void bump(output float x) { x += 1; } float a = 0; if (u > 0.5) bump(a); if (v > 0.5) { bump(a); bump(a); } r = a;",
      [](float u, float v) { return (u > 0.5f ? 1.0f : 0.0f) + (v > 0.5f ? 2.0f : 0.0f); }},
     {"do loop", "float i = 0; do { i += 1; r += i; } while (i < u * 10);",
-     [](float u, float) { float r = 0, i = 0; do { i += 1; r += i; } while (i < u * 10); return r; }},
-    {"nested conditions", "if (u < 0.3) { if (v < 0.3) r = 1; else if (v < 0.6) r = 2; else r = 3; } else if (u < 0.7 && v > 0.5) r = 4; else r = (u > v) ? 5 : 6;",
+     [](float u, float) {
+         float r = 0, i = 0;
+         do {
+             i += 1;
+             r += i;
+         } while (i < u * 10);
+         return r;
+     }},
+    {"nested conditions",
+     "if (u < 0.3) { if (v < 0.3) r = 1; else if (v < 0.6) r = 2; else r = 3; } else if (u < 0.7 && v > 0.5) r = 4; else r = (u "
+     "> v) ? 5 : 6;",
      [](float u, float v) {
          if (u < 0.3f) return v < 0.3f ? 1.0f : v < 0.6f ? 2.0f : 3.0f;
          if (u < 0.7f && v > 0.5f) return 4.0f;
          return u > v ? 5.0f : 6.0f;
      }},
-    {"Mandelbrot", "float x = 0, y = 0; while (r < 40 && x * x + y * y < 4) { float t = x * x - y * y + (u * 3 - 2); y = 2 * x * y + (v * 2 - 1); x = t; r += 1; }",
+    {"Mandelbrot",
+     "float x = 0, y = 0; while (r < 40 && x * x + y * y < 4) { float t = x * x - y * y + (u * 3 - 2); y = 2 * x * y + (v * 2 - "
+     "1); x = t; r += 1; }",
      [](float u, float v) {
          float x = 0, y = 0, r = 0;
          while (r < 40 && x * x + y * y < 4) {
@@ -143,11 +187,18 @@ const Masked kMasked[] = {
     {"Collatz", "float n = floor(u * 60) + 1; while (n != 1) { if (mod(n, 2) == 0) n /= 2; else n = 3 * n + 1; r += 1; }",
      [](float u, float) {
          int n = int(std::floor(u * 60)) + 1, r = 0;
-         while (n != 1) { n = n % 2 == 0 ? n / 2 : 3 * n + 1; r++; }
+         while (n != 1) {
+             n = n % 2 == 0 ? n / 2 : 3 * n + 1;
+             r++;
+         }
          return float(r);
      }},
-    {"string by point", "string w = \"x\"; if (u > 0.5) w = \"y\"; else if (v > 0.5) w = concat(w, \"y\"); r = (w == \"y\") ? 1 : (w == \"xy\") ? 2 : 3;",
-     [](float u, float v) { return u > 0.5f ? 1.0f : v > 0.5f ? 2.0f : 3.0f; }},
+    {"string by point",
+     "string w = \"x\"; if (u > 0.5) w = \"y\"; else if (v > 0.5) w = concat(w, \"y\"); r = (w == \"y\") ? 1 : (w == \"xy\") ? 2 "
+     ": 3;",
+     [](float u, float v) { return u > 0.5f   ? 1.0f
+                                   : v > 0.5f ? 2.0f
+                                              : 3.0f; }},
 };
 
 TEST(Masks, EveryPointGoesItsOwnWay) {
@@ -172,7 +223,8 @@ TEST(Masks, EveryPointGoesItsOwnWay) {
         for (size_t k = 0; k < names.size(); k++) {
             SCOPED_TRACE(kMasked[k].name);
             for (int p = 0; p < kPoints; p++)
-                ASSERT_EQ(out[k][size_t(p)], kMasked[k].expected(coordinate(0, p), coordinate(1, p))) << "u = " << coordinate(0, p) << ", v = " << coordinate(1, p);
+                ASSERT_EQ(out[k][size_t(p)], kMasked[k].expected(coordinate(0, p), coordinate(1, p)))
+                    << "u = " << coordinate(0, p) << ", v = " << coordinate(1, p);
         }
     }
 }
@@ -181,9 +233,15 @@ TEST(Masks, EveryPointGoesItsOwnWay) {
 const char* const kMixture = R"(
 surface mixture(output varying float a = 0; output varying color b = 0; output varying normal c = 0; output varying float e = 0;)
 {
-    float fbm(point p; float octaves) { float sum = 0, f = 1, i; for (i = 0; i < octaves; i += 1) { sum += noise(p * f) / f; f *= 2.03; } return sum; }
+    float fbm(point p; float octaves)
+    {
+        float sum = 0, f = 1, i;
+        for (i = 0; i < octaves; i += 1) { sum += noise(p * f) / f; f *= 2.03; }
+        return sum;
+    }
     a = fbm(P * 7, 2 + 6 * u);
-    if (a > 0.9) b = color noise(P * 3) * sin(20 * v); else { float i; for (i = 0; i < 9 * v; i += 1) b += cellnoise(point(i, u * 5, v * 5)); }
+    if (a > 0.9) b = color noise(P * 3) * sin(20 * v);
+    else { float i; for (i = 0; i < 9 * v; i += 1) b += cellnoise(point(i, u * 5, v * 5)); }
     c = normalize(calculatenormal(P + noise(P * 4) * normalize(N)));
     e = filterstep(0.5, mod(u * 9, 1)) + Du(Du(pow(u + 0.1, 2.5))) + spline(u, 0, 1, v, 2, 4);
 }
@@ -210,7 +268,8 @@ TEST(Batches, MixedGivesTheBitsOfSingle) {
             ASSERT_TRUE(runPoints(*kernel, o.mixed, 1, scattered(p), {}, alone, d));
             for (size_t k = 0; k < all.size(); k++)
                 for (size_t c = 0; c < alone[k].size(); c++)
-                    ASSERT_TRUE(sameBits(alone[k][c], all[k][c * kPoints + size_t(p)])) << "output " << k << " component " << c << " of point " << p;
+                    ASSERT_TRUE(sameBits(alone[k][c], all[k][c * kPoints + size_t(p)]))
+                        << "output " << k << " component " << c << " of point " << p;
         }
     }
 }
@@ -226,7 +285,8 @@ TEST(Evaluation, RandomIsInTheUnitIntervalAndAnotherAtEveryCall) {
     }
     EXPECT_NE(one.numbers[0], one.numbers[1]);
     EXPECT_NE(one.numbers[0], one.numbers[2]);
-    EXPECT_EQ(evaluate(*compiler, "color a = random(); float b = random();", "vector(a[0], a[1], b)", {}, d).numbers, one.numbers);
+    EXPECT_EQ(evaluate(*compiler, "color a = random(); float b = random();", "vector(a[0], a[1], b)", {}, d).numbers,
+              one.numbers);
 }
 
 } // namespace

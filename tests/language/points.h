@@ -24,10 +24,11 @@ inline PointValue evaluationPoint() {
 /// The two lights that illuminance finds wherever it looks: L, Cl, Ol. One straight above the evaluation point, one aside.
 inline constexpr float kTestLights[2][9] = {{0, 0, 2, 1, 0.5f, 0.25f, 1, 1, 1}, {3, 0, 4, 0.5f, 0.5f, 0.5f, 1, 1, 1}};
 
-/// out[output][component * n + point]. Uniform inputs of build S take the value of point 0. Spaces are identities; parameters come from
-/// `defaults`. False when the kernel suspends. Services other than those of strings leave zeros.
-inline bool runPoints(const CompiledKernel& k, bool mixed, int n, const PointValue& value, const std::vector<ParameterValue>& defaults,
-                      std::vector<std::vector<float>>& out, Diagnostics& diagnostics) {
+/// out[output][component * n + point]. Uniform inputs of build S take the value of point 0. Spaces are identities; parameters
+/// come from `defaults`. False when the kernel suspends. Services other than those of strings leave zeros.
+inline bool runPoints(const CompiledKernel& k, bool mixed, int n, const PointValue& value,
+                      const std::vector<ParameterValue>& defaults, std::vector<std::vector<float>>& out,
+                      Diagnostics& diagnostics) {
     if (k.facts().suspends) return false;
     const size_t stride = size_t(n + 63) / 64 * 64;
     std::vector<std::unique_ptr<float, decltype(&std::free)>> blocks;
@@ -39,7 +40,8 @@ inline bool runPoints(const CompiledKernel& k, bool mixed, int n, const PointVal
     };
     std::vector<const float*> in;
     for (const ir::Input& i : k.inputs()) {
-        const size_t parts = size_t(inputParts(i)), components = size_t(ir::components(i.kind)), elements = size_t(std::max(1, i.array));
+        const size_t parts = size_t(inputParts(i)), components = size_t(ir::components(i.kind)),
+                     elements = size_t(std::max(1, i.array));
         const ParameterValue* given = nullptr;
         for (const ParameterValue& d : defaults)
             if (i.name == "param:" + d.name) given = &d;
@@ -49,7 +51,8 @@ inline bool runPoints(const CompiledKernel& k, bool mixed, int n, const PointVal
                 for (size_t p = 0; p < stride; p++) {
                     float v = 0;
                     if (given && part == 0) {
-                        if (i.kind == ir::Kind::String) v = std::bit_cast<float>(e < given->strings.size() ? internString(given->strings[e]) : 0);
+                        if (i.kind == ir::Kind::String)
+                            v = std::bit_cast<float>(e < given->strings.size() ? internString(given->strings[e]) : 0);
                         else v = e < given->numbers.size() ? given->numbers[e] : 0;
                     } else if (!given && i.kind == ir::Kind::Matrix) {
                         v = e % 5 == 0 ? 1.0f : 0.0f;
@@ -63,7 +66,11 @@ inline bool runPoints(const CompiledKernel& k, bool mixed, int n, const PointVal
     }
     std::vector<float*> results;
     for (const auto& o : k.outputs()) results.push_back(make(size_t(ir::components(o.kind))));
-    struct Context { const CompiledKernel* kernel; Diagnostics* diagnostics; std::vector<float> cone; } context{&k, &diagnostics, {}};
+    struct Context {
+        const CompiledKernel* kernel;
+        Diagnostics* diagnostics;
+        std::vector<float> cone;
+    } context{&k, &diagnostics, {}};
     KernelCall call{};
     call.in = in.data();
     call.out = results.data();
@@ -73,7 +80,8 @@ inline bool runPoints(const CompiledKernel& k, bool mixed, int n, const PointVal
     call.user = &context;
     call.service = [](KernelCall* c, int32_t site, int32_t, uint64_t mask, int32_t lanes, const float* a, float* r) {
         const auto& x = *static_cast<Context*>(c->user);
-        if (site >= 0) basicService(x.kernel->sites()[size_t(site)], mask, lanes, a, r, *x.diagnostics, [](int, const std::string&) {});
+        if (site >= 0)
+            basicService(x.kernel->sites()[size_t(site)], mask, lanes, a, r, *x.diagnostics, [](int, const std::string&) {});
     };
     call.lightBegin = [](KernelCall* c, int32_t, int32_t, uint64_t, int32_t lanes, const float* rows) { // P, axis, angle
         static_cast<Context*>(c->user)->cone.assign(rows, rows + 7 * lanes);

@@ -1,6 +1,6 @@
-// Random programs, the same for ever (fixed seeds): machine code against the tree-walking evaluator of tests/rslir, which runs the IR as it was
-// before any pass, one point at a time. The bits must agree at every point. Each program is compiled in two of the twelve configurations;
-// all twelve take their turns.
+// Random programs, the same for ever (fixed seeds): machine code against the tree-walking evaluator of tests/rslir, which runs
+// the IR as it was before any pass, one point at a time. The bits must agree at every point. Each program is compiled in two of
+// the twelve configurations; all twelve take their turns.
 #include "../rslir/evaluator.h"
 #include "points.h"
 #include "rsl/ir/build.h"
@@ -13,18 +13,22 @@ namespace {
 
 constexpr int kPrograms = 200, kDerived = 40, kPoints = 37;
 
-/// Well-typed statements over floats, colours, points and an array. Loops have at most eight turns; jumps leave one or two of them.
+/// Well-typed statements over floats, colours, points and an array. Loops have at most eight turns; jumps leave one or two of
+/// them.
 class Generator {
 public:
     explicit Generator(unsigned seed) : rng_(seed) {}
 
     /// With derivatives of the variables, first and second, in the outputs when `derived`.
     std::string shader(bool derived = false) {
-        std::string s = "surface random(float k = 1.5; color t = color(0.5, 0.25, 1); output varying float o = 0; output varying point q = 0;)\n{\n";
+        std::string s = "surface random(float k = 1.5; color t = color(0.5, 0.25, 1); output varying float o = 0; output varying "
+                        "point q = 0;)\n{\n";
         for (int n = pick(3); n > 0; n--) s += function();
-        s += "float x = 0.1, y = u, z = -v; color c = 0.5, d = color(u, v, 0.25); point p = P, w = point(1, u, -1); float a[4] = {1, 2, -3, 0.5};\n";
+        s += "float x = 0.1, y = u, z = -v; color c = 0.5, d = color(u, v, 0.25); point p = P, w = point(1, u, -1); float a[4] = "
+             "{1, 2, -3, 0.5};\n";
         for (int n = 3 + pick(5); n > 0; n--) s += statement() + "\n";
-        if (derived) s += "x = Du(x) + Dv(y); y = Du(Dv(z)) + Dv(Dv(z)); z = area(p); w = point(calculatenormal(w)); d = Du(d);\n";
+        if (derived)
+            s += "x = Du(x) + Dv(y); y = Du(Dv(z)) + Dv(Dv(z)); z = area(p); w = point(calculatenormal(w)); d = Du(d);\n";
         return s + "Ci = c + d; Oi = color(x, y, z); o = a[0] + a[1] * a[2] - a[3]; q = p + w;\n}\n";
     }
 
@@ -41,12 +45,15 @@ private:
         inFunction_ = true;
         std::string s;
         if (pick(2)) {
-            s = "float f" + std::to_string(functions_++) + "(float x, y; point p) { float z = 0.5; if (" + condition(1) + ") return " + number(1) + "; ";
-            if (pick(2)) s += "float i; for (i = 0; i < 4; i += 1) { z += " + number(1) + "; if (" + condition(1) + ") return z; } ";
+            s = "float f" + std::to_string(functions_++) + "(float x, y; point p) { float z = 0.5; if (" + condition(1) +
+                ") return " + number(1) + "; ";
+            if (pick(2))
+                s += "float i; for (i = 0; i < 4; i += 1) { z += " + number(1) + "; if (" + condition(1) + ") return z; } ";
             s += "return " + number(0) + "; }\n";
         } else {
-            s = "void g" + std::to_string(procedures_++) + "(float x; output float y; output float z) { point p = point(x, y, z); y = " + number(1) + "; if (" + condition(1) +
-                ") return; z = " + number(1) + "; }\n";
+            s = "void g" + std::to_string(procedures_++) +
+                "(float x; output float y; output float z) { point p = point(x, y, z); y = " + number(1) + "; if (" +
+                condition(1) + ") return; z = " + number(1) + "; }\n";
         }
         inFunction_ = false;
         return s;
@@ -54,28 +61,47 @@ private:
 
     std::string number(int d) {
         static const char* const leaves[] = {"x", "y", "z", "u", "v", "0.5", "2", "-1.25", "0", "3", "0.1"};
-        if (!inFunction_ && pick(12) == 0) return pick(2) ? "k" : "comp(t, 1)"; // the same for all points: another code in build S
-        static const char* const unary[] = {"abs", "floor", "ceil", "round", "sign", "sqrt", "sin", "cos", "atan", "exp", "log", "inversesqrt", "float noise", "float cellnoise", "-"};
+        if (!inFunction_ && pick(12) == 0)
+            return pick(2) ? "k" : "comp(t, 1)"; // the same for all points: another code in build S
+        static const char* const unary[] = {"abs", "floor", "ceil", "round", "sign",        "sqrt",        "sin",
+                                            "cos", "atan",  "exp",  "log",   "inversesqrt", "float noise", "float cellnoise",
+                                            "-"};
         if (d > 3 || pick(4) == 0) return any(leaves);
         const auto e = [&] { return number(d + 1); };
         switch (pick(inFunction_ ? 14 : 17)) {
-        case 0: return "(" + e() + " + " + e() + ")";
-        case 1: return "(" + e() + " - " + e() + ")";
+        case 0:
+            return "(" + e() + " + " + e() + ")";
+        case 1:
+            return "(" + e() + " - " + e() + ")";
         case 2:
-        case 3: return "(" + e() + " * " + e() + ")";
-        case 4: return "(" + e() + " / " + e() + ")";
-        case 5: return "((" + condition(d + 1) + ") ? " + e() + " : " + e() + ")";
-        case 6: return std::string(any({"min", "max", "mod", "step", "pow", "atan"})) + "(" + e() + ", " + e() + ")";
-        case 7: return std::string(any({"clamp", "mix", "smoothstep"})) + "(" + e() + ", " + e() + ", " + e() + ")";
+        case 3:
+            return "(" + e() + " * " + e() + ")";
+        case 4:
+            return "(" + e() + " / " + e() + ")";
+        case 5:
+            return "((" + condition(d + 1) + ") ? " + e() + " : " + e() + ")";
+        case 6:
+            return std::string(any({"min", "max", "mod", "step", "pow", "atan"})) + "(" + e() + ", " + e() + ")";
+        case 7:
+            return std::string(any({"clamp", "mix", "smoothstep"})) + "(" + e() + ", " + e() + ", " + e() + ")";
         case 8:
-        case 9: return std::string(any(unary)) + "(" + e() + ")";
-        case 10: return std::string(any({"xcomp", "ycomp", "zcomp"})) + "(" + tuple(d + 1) + ")";
-        case 11: return "length(vector(" + tuple(d + 1) + "))";
-        case 12: return "(" + tuple(d + 1) + " . " + tuple(d + 1) + ")";
-        case 13: return "float noise(" + tuple(d + 1) + ")";
-        case 14: return pick(2) ? "a[" + std::to_string(pick(4)) + "]" : "a[clamp(" + e() + ", 0, 3)]";
-        case 15: return functions_ ? "f" + std::to_string(pick(functions_)) + "(" + e() + ", " + e() + ", " + tuple(d + 1) + ")" : "spline(" + e() + ", 0, " + e() + ", 1, 2)";
-        default: return "comp(" + colour(d + 1) + ", " + std::to_string(pick(3)) + ")";
+        case 9:
+            return std::string(any(unary)) + "(" + e() + ")";
+        case 10:
+            return std::string(any({"xcomp", "ycomp", "zcomp"})) + "(" + tuple(d + 1) + ")";
+        case 11:
+            return "length(vector(" + tuple(d + 1) + "))";
+        case 12:
+            return "(" + tuple(d + 1) + " . " + tuple(d + 1) + ")";
+        case 13:
+            return "float noise(" + tuple(d + 1) + ")";
+        case 14:
+            return pick(2) ? "a[" + std::to_string(pick(4)) + "]" : "a[clamp(" + e() + ", 0, 3)]";
+        case 15:
+            return functions_ ? "f" + std::to_string(pick(functions_)) + "(" + e() + ", " + e() + ", " + tuple(d + 1) + ")"
+                              : "spline(" + e() + ", 0, " + e() + ", 1, 2)";
+        default:
+            return "comp(" + colour(d + 1) + ", " + std::to_string(pick(3)) + ")";
         }
     }
 
@@ -83,14 +109,22 @@ private:
         if (d > 3 || pick(4) == 0) return any({"c", "d", "Cs", "t", "color(1, 0.5, 0.25)"});
         const auto e = [&] { return colour(d + 1); };
         switch (pick(8)) {
-        case 0: return "(" + e() + " + " + e() + ")";
-        case 1: return "(" + e() + " * " + e() + ")";
-        case 2: return "(" + e() + " - " + number(d + 1) + ")";
-        case 3: return "mix(" + e() + ", " + e() + ", " + number(d + 1) + ")";
-        case 4: return "color(" + number(d + 1) + ", " + number(d + 1) + ", " + number(d + 1) + ")";
-        case 5: return "((" + condition(d + 1) + ") ? " + e() + " : " + e() + ")";
-        case 6: return std::string(any({"max", "min"})) + "(" + e() + ", " + e() + ")";
-        default: return "ctransform(\"" + std::string(any({"hsv", "hsl", "yiq", "xyz"})) + "\", " + e() + ")";
+        case 0:
+            return "(" + e() + " + " + e() + ")";
+        case 1:
+            return "(" + e() + " * " + e() + ")";
+        case 2:
+            return "(" + e() + " - " + number(d + 1) + ")";
+        case 3:
+            return "mix(" + e() + ", " + e() + ", " + number(d + 1) + ")";
+        case 4:
+            return "color(" + number(d + 1) + ", " + number(d + 1) + ", " + number(d + 1) + ")";
+        case 5:
+            return "((" + condition(d + 1) + ") ? " + e() + " : " + e() + ")";
+        case 6:
+            return std::string(any({"max", "min"})) + "(" + e() + ", " + e() + ")";
+        default:
+            return "ctransform(\"" + std::string(any({"hsv", "hsl", "yiq", "xyz"})) + "\", " + e() + ")";
         }
     }
 
@@ -98,23 +132,34 @@ private:
         if (d > 3 || pick(3) == 0) return inFunction_ ? any({"p", "point(0.5, 1, 2)"}) : any({"p", "w", "P", "point(0.5, 1, 2)"});
         const auto e = [&] { return tuple(d + 1); };
         switch (pick(6)) {
-        case 0: return "(" + e() + " + " + e() + ")";
-        case 1: return "(" + e() + " * " + number(d + 1) + ")";
-        case 2: return "point(" + number(d + 1) + ", " + number(d + 1) + ", " + number(d + 1) + ")";
-        case 3: return "point(normalize(vector(" + e() + ")))";
-        case 4: return "point(vector(" + e() + ") ^ vector(" + e() + "))";
-        default: return "rotate(" + e() + ", " + number(d + 1) + ", point(0, 0, 0), point(0, 1, 1))";
+        case 0:
+            return "(" + e() + " + " + e() + ")";
+        case 1:
+            return "(" + e() + " * " + number(d + 1) + ")";
+        case 2:
+            return "point(" + number(d + 1) + ", " + number(d + 1) + ", " + number(d + 1) + ")";
+        case 3:
+            return "point(normalize(vector(" + e() + ")))";
+        case 4:
+            return "point(vector(" + e() + ") ^ vector(" + e() + "))";
+        default:
+            return "rotate(" + e() + ", " + number(d + 1) + ", point(0, 0, 0), point(0, 1, 1))";
         }
     }
 
     std::string condition(int d) {
         switch (d > 3 ? 0 : pick(6)) {
         case 0:
-        case 1: return number(d + 1) + " < " + number(d + 1);
-        case 2: return number(d + 1) + " >= " + number(d + 1);
-        case 3: return number(d + 1) + " == " + number(d + 1);
-        case 4: return "(" + condition(d + 1) + ") && (" + condition(d + 1) + ")";
-        default: return "!(" + condition(d + 1) + ") || (" + condition(d + 1) + ")";
+        case 1:
+            return number(d + 1) + " < " + number(d + 1);
+        case 2:
+            return number(d + 1) + " >= " + number(d + 1);
+        case 3:
+            return number(d + 1) + " == " + number(d + 1);
+        case 4:
+            return "(" + condition(d + 1) + ") && (" + condition(d + 1) + ")";
+        default:
+            return "!(" + condition(d + 1) + ") || (" + condition(d + 1) + ")";
         }
     }
 
@@ -129,10 +174,19 @@ private:
         std::string s;
         switch (pick(depth_ > 3 ? 6 : 10)) {
         case 0:
-        case 1: s = std::string(any({"x", "y", "z"})) + any({" = ", " += ", " *= ", " -= "}) + number(0) + ";"; break;
-        case 2: s = std::string(any({"c", "d"})) + any({" = ", " += ", " *= "}) + colour(1) + ";"; break;
-        case 3: s = std::string(any({"p", "w"})) + any({" = ", " += "}) + tuple(1) + ";"; break;
-        case 4: s = (pick(2) ? "a[" + std::to_string(pick(4)) + "]" : "a[clamp(" + number(2) + ", 0, 3)]") + any({" = ", " += "}) + number(1) + ";"; break;
+        case 1:
+            s = std::string(any({"x", "y", "z"})) + any({" = ", " += ", " *= ", " -= "}) + number(0) + ";";
+            break;
+        case 2:
+            s = std::string(any({"c", "d"})) + any({" = ", " += ", " *= "}) + colour(1) + ";";
+            break;
+        case 3:
+            s = std::string(any({"p", "w"})) + any({" = ", " += "}) + tuple(1) + ";";
+            break;
+        case 4:
+            s = (pick(2) ? "a[" + std::to_string(pick(4)) + "]" : "a[clamp(" + number(2) + ", 0, 3)]") + any({" = ", " += "}) +
+                number(1) + ";";
+            break;
         case 5:
             if (loops_ > 0) {
                 s = "if (" + condition(1) + ") " + any({"break", "continue"}) + (loops_ > 1 && pick(2) ? " 2;" : ";");
@@ -143,14 +197,20 @@ private:
             }
             break;
         case 6:
-        case 7: s = "if (" + condition(0) + ") " + block() + (pick(2) ? " else " + block() : ""); break;
+        case 7:
+            s = "if (" + condition(0) + ") " + block() + (pick(2) ? " else " + block() : "");
+            break;
         default: {
             const std::string i = "i" + std::to_string(names_++);
             const std::string bound = pick(2) ? std::to_string(1 + pick(4)) : "clamp(" + number(2) + ", 0, 4)";
             loops_++;
             if (loops_ > 2) s = block();
-            else if (pick(4) == 0) s = "{ float " + i + " = " + number(2) + "; while (" + i + " > 0 && " + i + " < 6) { " + i + " += 1; " + statement() + " } }";
-            else s = "{ float " + i + "; for (" + i + " = 0; " + i + " < 8 && " + i + " < " + bound + "; " + i + " += 1) " + block() + " }";
+            else if (pick(4) == 0)
+                s = "{ float " + i + " = " + number(2) + "; while (" + i + " > 0 && " + i + " < 6) { " + i + " += 1; " +
+                    statement() + " } }";
+            else
+                s = "{ float " + i + "; for (" + i + " = 0; " + i + " < 8 && " + i + " < " + bound + "; " + i + " += 1) " +
+                    block() + " }";
             loops_--;
         }
         }
@@ -207,13 +267,16 @@ TEST(RandomPrograms, MachineCodeAndEvaluatorAgree) {
             const auto kernel = compiler.kernel(shader, o, d);
             ASSERT_TRUE(kernel);
             std::vector<std::vector<float>> got;
-            const auto at = [](const std::string& name, int component, int part, int point) { return part == 0 ? value(name, component, point) : 0.0f; };
+            const auto at = [](const std::string& name, int component, int part, int point) {
+                return part == 0 ? value(name, component, point) : 0.0f;
+            };
             ASSERT_TRUE(runPoints(*kernel, o.mixed, kPoints, at, compiler.parameterDefaults(shader, d), got, d));
             for (size_t k = 0; k < got.size(); k++)
                 for (size_t x = 0; x < got[k].size(); x++) {
                     const float want = expected[x % kPoints].at(kernel->outputs()[k].name).at(x / kPoints);
                     ASSERT_TRUE(sameBits(got[k][x], want) || (got[k][x] == 0 && want == 0))
-                        << kernel->outputs()[k].name << "[" << x / kPoints << "] at point " << x % kPoints << ": " << got[k][x] << ", not " << want;
+                        << kernel->outputs()[k].name << "[" << x / kPoints << "] at point " << x % kPoints << ": " << got[k][x]
+                        << ", not " << want;
                     compared++;
                 }
         }
@@ -255,7 +318,8 @@ TEST(RandomPrograms, DerivativesHaveTheSameBitsEverywhere) {
             for (size_t k = 0; k < got.size(); k++)
                 for (size_t x = 0; x < got[k].size(); x++) {
                     ASSERT_TRUE(sameBits(got[k][x], first[k][x]) || (got[k][x] == 0 && first[k][x] == 0))
-                        << kernel->outputs()[k].name << "[" << x / kPoints << "] at point " << x % kPoints << ": " << got[k][x] << ", not " << first[k][x];
+                        << kernel->outputs()[k].name << "[" << x / kPoints << "] at point " << x % kPoints << ": " << got[k][x]
+                        << ", not " << first[k][x];
                     compared++;
                 }
         }

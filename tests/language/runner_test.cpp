@@ -10,9 +10,10 @@
 //   // gives: OUTPUT => VALUE       the shader's output at the point, parameters at their defaults
 //   // error LINE:COLUMN: TEXT      each such error must be reported, and no other; LINE counts in the snippet file
 //   // warning LINE:COLUMN: TEXT
-// All expressions of a file go into one shader with one output each, which runs at 4, 8 and 16 lanes, with uniform inputs as numbers (S)
-// and in lanes (V), at O0 and O2: the bits must be the same everywhere. Because the passes compute with constants, a second shader has every
-// number of every expression behind a function whose value only the machine knows, and must give the same values.
+// All expressions of a file go into one shader with one output each, which runs at 4, 8 and 16 lanes, with uniform inputs as
+// numbers (S) and in lanes (V), at O0 and O2: the bits must be the same everywhere. Because the passes compute with constants, a
+// second shader has every number of every expression behind a function whose value only the machine knows, and must give the same
+// values.
 #include "points.h"
 #include "snippets.h"
 #include <algorithm>
@@ -33,7 +34,8 @@ std::string typeOf(const Expectation& e, ShaderCompiler& compiler) {
     for (const char* type : {"float", "color", "point", "vector", "normal", "matrix", "string"}) {
         Diagnostics quiet;
         const std::string zero = std::string(type) == "string" ? "\"\"" : "0";
-        if (compiler.loadText(std::string("surface probe(output varying ") + type + " r = " + zero + ";) { " + e.setup + "\n r = (" + e.expression + "); }\n",
+        if (compiler.loadText(std::string("surface probe(output varying ") + type + " r = " + zero + ";) { " + e.setup +
+                                  "\n r = (" + e.expression + "); }\n",
                               "probe", quiet))
             return type;
     }
@@ -70,8 +72,9 @@ std::unique_ptr<ShaderCompiler> makeCompiler() {
 }
 
 /// A shader in every configuration: outputs[k] has the value that cases[k] says, with the same bits everywhere.
-void runEverywhere(ShaderCompiler& compiler, const std::shared_ptr<const CompiledShader>& shader, const std::vector<std::string>& outputs,
-                   const std::vector<const Expectation*>& cases, const std::vector<std::string>& types, const std::string& file, Diagnostics& d) {
+void runEverywhere(ShaderCompiler& compiler, const std::shared_ptr<const CompiledShader>& shader,
+                   const std::vector<std::string>& outputs, const std::vector<const Expectation*>& cases,
+                   const std::vector<std::string>& types, const std::string& file, Diagnostics& d) {
     const auto defaults = compiler.parameterDefaults(shader, d);
     std::vector<std::vector<float>> reference;
     for (KernelOptions o : configurations()) {
@@ -95,7 +98,8 @@ void runEverywhere(ShaderCompiler& compiler, const std::shared_ptr<const Compile
             } else {
                 bool same = last.size() == reference[k].size();
                 for (size_t c = 0; same && c < last.size(); c++) same = sameBits(last[c], reference[k][c]);
-                EXPECT_TRUE(same) << cases[k]->expression << ": " << formatNumbers(last) << " but " << formatNumbers(reference[k]) << " at 16 lanes, S, O2";
+                EXPECT_TRUE(same) << cases[k]->expression << ": " << formatNumbers(last) << " but " << formatNumbers(reference[k])
+                                  << " at 16 lanes, S, O2";
             }
             out[k] = last;
         }
@@ -111,7 +115,9 @@ void checkProblems(const WholeProgram& program, const std::vector<Diagnostic>& m
         bool expected = false;
         for (size_t k = 0; k < used.size() && !expected; k++) {
             const Problem& p = program.problems[k];
-            if (used[k] || p.warning != (m.severity == Severity::Warning) || p.line != m.place.line || (p.column && p.column != m.place.column)) continue;
+            if (used[k] || p.warning != (m.severity == Severity::Warning) || p.line != m.place.line ||
+                (p.column && p.column != m.place.column))
+                continue;
             if ((m.message + " " + m.hint).find(p.text) == std::string::npos) continue;
             used[k] = expected = true;
         }
@@ -136,7 +142,8 @@ TEST_P(Language, Snippets) {
         SCOPED_TRACE(file + ":" + std::to_string(program.line) + " " + program.name);
         Diagnostics d;
         const auto shader = compiler->loadText(program.source, "snippet", d);
-        const bool fails = std::any_of(program.problems.begin(), program.problems.end(), [](const Problem& p) { return !p.warning; });
+        const bool fails =
+            std::any_of(program.problems.begin(), program.problems.end(), [](const Problem& p) { return !p.warning; });
         EXPECT_EQ(shader == nullptr, fails);
         EXPECT_FALSE(program.gives.empty() && program.problems.empty()) << "nothing is said about this program";
         if (shader && !program.gives.empty()) {
@@ -172,7 +179,9 @@ TEST_P(Language, Snippets) {
             continue;
         }
         const std::string type = typeOf(e, *compiler), zero = type == "string" ? "\"\"" : "0";
-        if (type.empty() || !compiler->loadText("surface probe(output varying " + type + " r = " + zero + ";) { " + e.setup + "\n r = (" + e.expression + "); }\n", "probe", d)) {
+        if (type.empty() || !compiler->loadText("surface probe(output varying " + type + " r = " + zero + ";) { " + e.setup +
+                                                    "\n r = (" + e.expression + "); }\n",
+                                                "probe", d)) {
             ADD_FAILURE() << "does not compile: " << e.expression;
             continue;
         }
@@ -186,7 +195,8 @@ TEST_P(Language, Snippets) {
     if (cases.empty()) return;
     for (const bool veil : {false, true}) {
         SCOPED_TRACE(veil ? "numbers unknown to the compiler" : "numbers as written");
-        const auto shader = compiler->loadText("surface cases(" + parameters + ") {\n" + (veil ? kVeil + behind : plain) + "}\n", file, d);
+        const auto shader =
+            compiler->loadText("surface cases(" + parameters + ") {\n" + (veil ? kVeil + behind : plain) + "}\n", file, d);
         ASSERT_TRUE(shader);
         runEverywhere(*compiler, shader, names, cases, types, file, d);
     }

@@ -11,7 +11,8 @@ namespace {
 bool isMask(const llvm::Value& v) { return v.getType()->isVectorTy() && v.getType()->getScalarType()->isIntegerTy(1); }
 
 llvm::Type* lanesOf(const llvm::Value& mask) {
-    return llvm::VectorType::get(llvm::Type::getInt32Ty(mask.getContext()), llvm::cast<llvm::VectorType>(mask.getType())->getElementCount());
+    return llvm::VectorType::get(llvm::Type::getInt32Ty(mask.getContext()),
+                                 llvm::cast<llvm::VectorType>(mask.getType())->getElementCount());
 }
 
 llvm::Value* maskOf(llvm::Value* lanes, llvm::BasicBlock* block) {
@@ -39,7 +40,8 @@ void widenMasks(llvm::Module& m) {
                     }
             }
     std::map<llvm::Value*, llvm::Value*> wide;
-    for (llvm::PHINode* p : phis) wide[p] = llvm::PHINode::Create(lanesOf(*p), p->getNumIncomingValues(), "lanes", p->getIterator());
+    for (llvm::PHINode* p : phis)
+        wide[p] = llvm::PHINode::Create(lanesOf(*p), p->getNumIncomingValues(), "lanes", p->getIterator());
     for (llvm::Instruction* i : leaving) {
         llvm::IRBuilder<> b(i->getParent(), std::next(i->getIterator()));
         wide[i] = b.CreateSExt(i, lanesOf(*i), "lanes");
@@ -49,7 +51,8 @@ void widenMasks(llvm::Module& m) {
             llvm::Value* v = p->getIncomingValue(k);
             const auto known = wide.find(v);
             llvm::IRBuilder<> b(p->getIncomingBlock(k)->getTerminator());
-            llvm::cast<llvm::PHINode>(wide[p])->addIncoming(known != wide.end() ? known->second : b.CreateSExt(v, lanesOf(*p)), p->getIncomingBlock(k));
+            llvm::cast<llvm::PHINode>(wide[p])->addIncoming(known != wide.end() ? known->second : b.CreateSExt(v, lanesOf(*p)),
+                                                            p->getIncomingBlock(k));
         }
     for (auto& [narrow, lanes] : wide) {
         std::map<llvm::BasicBlock*, llvm::Value*> there; // the mask again, once for each block that asks for it

@@ -3,6 +3,7 @@
 #include "transport/random.h"
 #include "shading/scheduler.h"
 #include "transport/world.h"
+#include <set>
 
 namespace alpenglow::transport {
 
@@ -107,6 +108,7 @@ private:
     void passThrough(const PathRay&, TargetId, const ShadePoint&, const Color& transparency, Sched&);
     std::shared_ptr<const WorldImpl> world_;
     Diagnostics& diagnostics_;
+    std::set<const void*> tamed_;              ///< shaders that were named because they reflect more than they receive
 };
 
 } // namespace alpenglow::transport

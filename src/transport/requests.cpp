@@ -115,7 +115,15 @@ void Engine::gather(BatchContext& c, Sched& sched) {
             l.followed = l.chosen > 0 || (l.ownsTarget && !deep && !(l.type == RayType::Diffuse && !set.indirect));
             if (!l.ownsTarget) total += l.chosen;
         }
-        if (!set.unbiased && maxComponent(sum) > 1) indirectScale[pi] = 1 / maxComponent(sum);
+        if (!set.unbiased && maxComponent(sum) > 1) {
+            indirectScale[pi] = 1 / maxComponent(sum);
+            const ShaderInstance* shader = world_->bindings_[c.bindings[pi]].surface.get();
+            if (maxComponent(sum) > 1.001f && tamed_.insert(shader).second) // above rounding; said once a shader
+                diagnostics_.reportOnce("energy:" + shader->name,
+                                        {Severity::Warning, Rie::NoError, shader->place,
+                                         "shader \"" + shader->name + "\" reflects more light than it receives; its indirect light is scaled down to what it receives",
+                                         "--unbiased leaves it as it is", {}});
+        }
         for (int i : list) {
             LobeVertex& l = lobes[i];
             if (l.ownsTarget || !path) l.chosen = l.followed ? 1 : 0;

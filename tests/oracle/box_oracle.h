@@ -19,12 +19,19 @@ inline V unit(V a) { return a * (1 / std::sqrt(dot(a, a))); }
 struct Box {
     bool spheres = true;
     bool indirect = true; ///< false: direct light only
+    int freeBounces = 4;  ///< roulette decides behind hits past this one (the camera's hit is 0)
+#ifdef ORACLE_COUNTS_RAYS
+    mutable uint64_t rays = 0; ///< calls of meet()
+#endif
     enum Material { Diffuse, Mirror, Glass, Light };
     struct Hit { double t = 1e30; V p, n; Material m = Diffuse; V albedo; };
 
     static constexpr double kLe = 7;
 
     bool meet(V o, V d, Hit& h) const {
+#ifdef ORACLE_COUNTS_RAYS
+        ++rays;
+#endif
         h.t = 1e30;
         auto plane = [&](int axis, double at, double sign, V albedo) {
             double oa = axis == 0 ? o.x : axis == 1 ? o.y : o.z, da = axis == 0 ? d.x : axis == 1 ? d.y : d.z;
@@ -129,7 +136,7 @@ struct Box {
                 }
                 countLight = true;
             }
-            if (depth > 4) {
+            if (depth > freeBounces) {
                 double q = std::min(1.0, std::max(w.x, std::max(w.y, w.z)));
                 if (u01(rng) >= q) return sum;
                 w = w * (1 / q);

@@ -1,0 +1,10 @@
+// Third part of the affine proof: what is left of Ci without the results.
+#pragma once
+#include "rsl/passes/affine_analysis.h"
+
+namespace alpenglow::rsl::ir {
+
+/// The constant part a of Ci: results become zero, and what is only zero because of that disappears. Long form.
+void dropResults(Kernel& k, const Dependence& d);
+
+} // namespace alpenglow::rsl::ir

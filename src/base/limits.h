@@ -37,6 +37,8 @@ inline constexpr size_t kMacroTokens = 2'000'000;              ///< tokens of on
 inline constexpr int kShaderArray = 16384;                     ///< elements of an RSL array
 inline constexpr int kFrontErrors = 100;                       ///< errors reported for one RSL file
 inline constexpr size_t kInlinedInstructions = 400'000;        ///< IR of one kernel after inlining
+inline constexpr int kOutlineInstructions = 400;               ///< RSL functions that are larger once inlined are called instead
+inline constexpr size_t kAffineInlining = 100'000;             ///< IR of a kernel up to which calls are inlined for the affine proof
 inline constexpr size_t kKernelCacheBytes = size_t(512) << 20; ///< compiled kernels on disk; the least recently used go first
 
 inline constexpr size_t kDiceQuads = 4'000'000;                ///< micro-quads dicing makes of one primitive (geometry/)

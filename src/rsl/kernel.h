@@ -1,5 +1,6 @@
 // The one door between generated code and the renderer. Plain C layout: generated code knows these offsets.
 #pragma once
+#include "base/limits.h"
 #include "rsl/ir/ir.h"
 #include <cstdint>
 #include <functional>
@@ -61,6 +62,9 @@ struct KernelOptions {
     bool mixed = false;        ///< build V: uniform inputs come in lanes
     int optimize = 2;          ///< 0 or 2
     bool suspend = false;      ///< force the suspending form even where the affine one is possible (tests)
+    /// User functions of more operations than this, called more than once, become functions of the machine code; smaller ones are
+    /// inlined. 0: all that can be (tests). Never changes a bit of the result.
+    int outline = limits::kOutlineInstructions;
     bool path = false;         ///< lobe shadeops (diffuse, specular, ...) are requests to the light transport engine
     std::vector<std::string> outputs;  ///< requested; empty: what the shader kind gives (Ci Oi, P N, L Cl Ol, ...)
     /// Values of string parameters, and of numeric ones known to be 0 or 1 for good: specialised into the code.

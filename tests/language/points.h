@@ -111,7 +111,7 @@ inline bool runPoints(const CompiledKernel& k, bool mixed, int n, const PointVal
     return true;
 }
 
-/// 4, 8 and 16 lanes; uniform inputs as numbers and in lanes; optimised and not. The first is what the others are compared with.
+/// 4, 8 and 16 lanes; uniform inputs as numbers and in lanes; optimised and not; functions inlined and called. The first is what the others are compared with.
 inline std::vector<KernelOptions> configurations() {
     std::vector<KernelOptions> all;
     for (int lanes : {16, 8, 4})
@@ -122,12 +122,17 @@ inline std::vector<KernelOptions> configurations() {
                 o.mixed = mixed;
                 o.optimize = optimize;
                 all.push_back(o);
+                if ((lanes == 16) == (optimize == 2)) { // every function that can be is called, none inlined
+                    o.outline = 0;
+                    all.push_back(o);
+                }
             }
     return all;
 }
 
 inline std::string describe(const KernelOptions& o) {
-    return std::to_string(o.lanes) + " lanes, " + (o.mixed ? "V" : "S") + ", O" + std::to_string(o.optimize);
+    return std::to_string(o.lanes) + " lanes, " + (o.mixed ? "V" : "S") + ", O" + std::to_string(o.optimize) +
+           (o.outline == 0 ? ", functions called" : "");
 }
 
 inline bool sameBits(float a, float b) { return std::bit_cast<uint32_t>(a) == std::bit_cast<uint32_t>(b) || (a != a && b != b); }

@@ -262,6 +262,7 @@ bool Builder::buildDefaults() {
         }
     }
     return !failed_;
+    k_.body.body.insert(k_.body.body.begin(), functions_.begin(), functions_.end());
 }
 
 bool Builder::buildShader() {
@@ -273,6 +274,7 @@ bool Builder::buildShader() {
     std::set<const Function*> seen;
     if (shader_.body) scanAssigned(*shader_.body, assigned, seen);
     for (const ShaderParameter& p : shader_.parameters) {
+    assignedAnywhere_ = assigned;
         place_ = p.symbol->place;
         const int n = slot(p.symbol);
         Inst* v = parameterValue(p);
@@ -374,6 +376,7 @@ static std::unique_ptr<Kernel> newKernel(const Program& p, const Shader& s) {
     k->kind = s.kind;
     k->files = p.files;
     return k;
+    k_.body.body.insert(k_.body.body.begin(), functions_.begin(), functions_.end());
 }
 
 static std::unique_ptr<Kernel> buildOnce(const Program& p, const Shader& s, const KernelOptions& o, Diagnostics& d,

@@ -47,6 +47,13 @@ Inst* Builder::inlineFunction(const Function& f, const std::vector<const Expr*>&
         values[i] = a;
     }
     if (failed_) return zero(Kind::Float);
+    std::vector<Inst*> outputs;
+    if (Inst* result = nullptr; n == f.parameters.size() && outlined(f, values, result, outputs)) {
+        for (size_t i = 0, o = 0; i < n; ++i)
+            if (f.parameters[i]->output) assign(*args[i], outputs[o++]);
+        return result;
+    }
+    if (failed_) return zero(Kind::Float);
     for (size_t i = 0; i < n; ++i) set(slot(f.parameters[i]), values[i]);
     Frame frame;
     frame.function = &f;

@@ -99,6 +99,33 @@ private:
     // build_call.cpp
     Inst* functionCall(const Expr&);
     Inst* inlineFunction(const Function&, const std::vector<const Expr*>& args);
+    // build_outline.cpp: functions that stay functions
+    /// A user function as a Function instruction, for one set of constant strings.
+    struct Outlined {
+        Inst* function = nullptr;  ///< null: it must be inlined
+        std::vector<int> inputs;   ///< slots whose values are passed behind the arguments
+        std::vector<int> assigned; ///< slots that get results behind those of the output parameters
+    };
+    /// What is to be known about a function from its text, with everything it calls.
+    struct Survey {
+        bool possible = true;   ///< it calls neither services nor rays nor lights
+        double size = 0;        ///< nodes of the tree once everything is inlined
+        std::set<int> free;     ///< slots of variables from outside
+        std::set<int> assigned; ///< those of them that it sets
+    };
+    struct Scan {
+        Survey survey;
+        std::set<const Symbol*> used, own;
+    };
+    const Survey& survey(const Function&);
+    const Scan& scan(const Function&);
+    void scan(const Stmt&, Scan&);
+    void scan(const Expr&, Scan&);
+    void include(const Function&, Scan&);
+    bool outlined(const Function&, const std::vector<Inst*>& values, Inst*& result, std::vector<Inst*>& outputs);
+    bool makeFunction(const Function&, const std::vector<Inst*>& values, const Survey&, Outlined&);
+    bool selfContained(const Region&) const;
+
     Inst* shadeopCall(const Expr&);
     Inst* runtimeCall(const Expr&);
     Inst* special(const Expr&);
@@ -138,6 +165,11 @@ private:
         int L, Cl, Ol, lit;
     };
     std::vector<LightBlock> lightBlocks_;
+    std::map<const Function*, Scan> scans_;
+    std::map<const Function*, Survey> surveys_;
+    std::map<std::pair<const Function*, std::string>, Outlined> outlined_;
+    std::vector<Inst*> functions_; ///< Function instructions, those that are called first
+    std::set<int> assignedAnywhere_;
     int lightDepth_ = 0;
     bool uniformContext_ = false; ///< the value goes to a uniform variable: one random() for all
     bool failed_ = false;

@@ -10,7 +10,7 @@ namespace alpenglow::rsl::ir {
 /// Kinds of the results of an instruction, one or several; empty for none.
 std::vector<Kind> resultKinds(const Inst&);
 
-/// While passes work, If, Loop, LightLoop, Runtime, Service and Request always give their results through Result instructions
+/// While passes work, If, Loop, LightLoop, Runtime, Call, Service and Request always give their results through Result instructions
 /// ("long form"): a pass then treats one result like several. Outside the passes a single result is the instruction itself.
 void toLongForm(Kernel&);
 void toShortForm(Kernel&);
@@ -28,6 +28,11 @@ bool isMovable(const Kernel&, const Inst&);
 /// True when `inst` is Const and every component equals `value`, signs of zero included.
 bool isConst(const Inst* inst, float value);
 inline bool isConst(const Inst* inst) { return inst->op == Op::Const; }
+
+/// Constants and inputs: they stand at the front of the kernel and are known everywhere, in functions too.
+inline bool isLeaf(const Inst* i) {
+    return i->op == Op::Const || i->op == Op::ConstString || i->op == Op::Input || i->op == Op::ArrayInput;
+}
 
 /// Number of uses of each instruction, by id (arguments and yields).
 std::vector<uint32_t> countUses(const Kernel&);

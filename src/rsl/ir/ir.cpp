@@ -14,7 +14,7 @@ int components(Kind k) {
 const char* name(Op op) {
     static const char* const names[] = {
         "const", "string", "input", "param", "result", "add", "sub", "mul", "div", "neg", "splat", "triple", "extract", "matrix",
-        "less", "lessequal", "equal", "notequal", "and", "or", "not", "select", "tofloat", "runtime", "service", "request", "emit",
+        "less", "lessequal", "equal", "notequal", "and", "or", "not", "select", "tofloat", "runtime", "function", "call", "service", "request", "emit",
         "mark", "rescale", "du", "dv", "arraynew", "arrayinput", "arrayload", "arraystore", "if", "loop", "lightloop", "output"};
     static_assert(std::size(names) == static_cast<size_t>(Op::Output) + 1);
     return names[static_cast<size_t>(op)];

@@ -20,7 +20,7 @@ enum class Op : uint8_t {
     ConstString, ///< text
     Input,       ///< index: Kernel::inputs
     RegionParam, ///< index: position in Region::params
-    Result,      ///< args[0] = If, Loop, LightLoop, Runtime, Service or Request instruction with several results; index
+    Result,      ///< args[0] = If, Loop, LightLoop, Runtime, Call, Service or Request instruction with several results; index
     // arithmetic: Float, Triple (component-wise), both operands of one kind
     Add, Sub, Mul,
     Div,         ///< x / 0 = 0 (the language forbids a trap; written down in docs/language.md)
@@ -36,6 +36,9 @@ enum class Op : uint8_t {
     ToFloat,     ///< Bool to 0 or 1
     // calls
     Runtime,     ///< symbol = Signature::symbol of a pure shadeop; args flattened by type; results by `Result`, or itself when single
+    Function,    ///< a user function that is not inlined: regions[0]: params, yields = results. text: its name. At the front of the
+                 ///< kernel, behind the leaves and the functions it calls; its body uses nothing from outside but leaves and functions
+    Call,        ///< args[0] = Function, then its arguments; results as it yields
     Service,     ///< site: Kernel::sites; args; effect unless the site says pure
     Request,     ///< site: rays or lights; see passes/affine.h
     Emit,        ///< affine form of a Request: args[0] = weight (Triple), then the request's arguments; site. No result.

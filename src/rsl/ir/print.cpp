@@ -68,6 +68,7 @@ struct Printer {
             s += " " + k.outputs[static_cast<size_t>(i->index)].name;
             break;
         case Op::Runtime:
+        case Op::Function:
             s += " " + i->text;
             break;
         case Op::Service:
@@ -88,9 +89,9 @@ struct Printer {
         }
         if (!i->args.empty()) s += " " + list(i->args);
         line(depth, s);
-        static const char* const labels[][2] = {{"then", "else"}, {"while", "do"}, {"do", ""}};
+        static const char* const labels[][2] = {{"then", "else"}, {"while", "do"}, {"do", ""}, {"body", ""}};
         for (size_t r = 0; r < i->regions.size(); ++r)
-            region(i->regions[r], depth + 1, labels[i->op == Op::If ? 0 : i->op == Op::Loop ? 1 : 2][r]);
+            region(i->regions[r], depth + 1, labels[i->op == Op::If ? 0 : i->op == Op::Loop ? 1 : i->op == Op::Function ? 3 : 2][r]);
     }
 };
 

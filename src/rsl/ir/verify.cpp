@@ -1,6 +1,7 @@
 #include "rsl/ir/verify.h"
 #include "rsl/ir/edit.h"
 #include <fmt/format.h>
+#include <functional>
 
 namespace alpenglow::rsl::ir {
 namespace {
@@ -36,6 +37,30 @@ struct Verifier {
             if (r.params[p]->kind != want[p] || r.params[p]->op != Op::RegionParam)
                 return fail(i, fmt::format("region parameter {} is wrong", p));
         return true;
+    }
+
+    /// The body of a function uses leaves and other functions from outside, nothing else.
+    bool closed(const Inst* f) {
+        std::vector<char> own(k.pool.size());
+        const std::function<void(const Region&)> define = [&](const Region& r) {
+            for (const Inst* p : r.params) own[p->id] = 1;
+            for (const Inst* i : r.body) {
+                own[i->id] = 1;
+                for (const Region& sub : i->regions) define(sub);
+            }
+        };
+        define(f->regions[0]);
+        bool good = true;
+        const auto check = [&](const Inst* x) { good = good && (own[x->id] || isLeaf(x) || x->op == Op::Function); };
+        const std::function<void(const Region&)> walk = [&](const Region& r) {
+            for (const Inst* i : r.body) {
+                for (const Inst* x : i->args) check(x);
+                for (const Region& sub : i->regions) walk(sub);
+            }
+            for (const Inst* y : r.yields) check(y);
+        };
+        walk(f->regions[0]);
+        return good || fail(f, "its body uses values from outside");
     }
 
     bool shape(const Inst* i) {
@@ -134,6 +159,17 @@ struct Verifier {
                            yields(i, i->regions[0], r, "body")
                        ? true
                        : fail(i, "wrong shape");
+        }
+        case Op::Function:
+            return i->regions.size() == 1 && i->args.empty() && i->kind == Kind::None ? closed(i) : fail(i, "wrong shape");
+        case Op::Call: {
+            if (i->args.empty() || a(0)->op != Op::Function) return fail(i, "calls no function");
+            const Region& r = a(0)->regions[0];
+            std::vector<Kind> want;
+            for (const Inst* p : r.params) want.push_back(p->kind);
+            return i->args.size() == want.size() + 1 && kinds(i, want, 1) && yields(a(0), r, resultKinds(*i), "the function")
+                       ? true
+                       : fail(i, "operands do not match the function");
         }
         case Op::Output:
             return i->args.size() == 1 && static_cast<size_t>(i->index) < k.outputs.size() &&

@@ -181,6 +181,9 @@ struct Analysis {
         case Op::Service:
             bad(m, i, k.sites[static_cast<size_t>(i->site)].op + "() takes it as an argument");
             return;
+        case Op::Call:
+            bad(m, i, "it is passed to " + i->args[0]->text + "(), which is too large to look into");
+            return;
         case Op::Less:
         case Op::LessEqual:
         case Op::Equal:

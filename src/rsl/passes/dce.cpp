@@ -72,6 +72,10 @@ struct Marker {
                 break;
             case Op::RegionParam: {
                 Inst* o = owner[i->id];
+                if (o->op == Op::Function) {
+                    mark(o);
+                    break;
+                }
                 for (Region& r : o->regions)
                     for (size_t p = fixedParams(o); p < r.params.size(); ++p)
                         if (r.params[p] == i) markResult(o, p - fixedParams(o));
@@ -80,6 +84,9 @@ struct Marker {
             }
             case Op::If:
                 mark(i->args[0]);
+                break;
+            case Op::Function:
+                for (Inst* y : i->regions[0].yields) mark(y);
                 break;
             case Op::Loop:
                 mark(i->regions[0].yields[0]);

@@ -17,6 +17,8 @@ int cost(const Kernel& k, const Region& r) {
         case Op::Triple:
         case Op::Splat:
             break;
+        case Op::Call:
+            return 1 << 20;
         case Op::Div:
             c += 4;
             break;
@@ -37,6 +39,34 @@ struct Converter {
     Replacements rep;
     int changes = 0;
 
+    Inst* add(std::vector<Inst*>& body, Inst* i, Place place) {
+        i->place = std::move(place);
+        body.push_back(i);
+        return i;
+    }
+
+    /// c ? a : b. Of two calls of one function that differ in one argument, the argument is chosen, and one call is left.
+    Inst* choose(Inst* c, Inst* a, Inst* b, Kind kind, const Place& place, std::vector<Inst*>& body) {
+        if (a->op == Op::Result && b->op == Op::Result && a != b && a->index == b->index) {
+            const Inst *f = a->args[0], *g = b->args[0];
+            if (f->op == Op::Runtime && g->op == Op::Runtime && f->text == g->text && f->args.size() == g->args.size()) {
+                size_t differ = 0, where = 0;
+                for (size_t n = 0; n < f->args.size(); ++n)
+                    if (f->args[n] != g->args[n]) ++differ, where = n;
+                if (differ == 1 && f->args[where]->kind == g->args[where]->kind) {
+                    Inst* chosen = add(body, k.make(Op::Select, f->args[where]->kind, {c, f->args[where], g->args[where]}), place);
+                    CopyMap none;
+                    Inst* call = add(body, copyInst(k, f, none), f->place);
+                    call->args[where] = chosen;
+                    Inst* result = add(body, k.make(Op::Result, kind, {call}), place);
+                    result->index = a->index;
+                    return result;
+                }
+            }
+        }
+        return add(body, k.make(Op::Select, kind, {c, a, b}), place);
+    }
+
     void region(Region& r) {
         std::vector<Inst*> body;
         body.reserve(r.body.size());
@@ -46,11 +76,8 @@ struct Converter {
             if (i->op == Op::Result && converted.count(i->args[0])) {
                 Inst* o = i->args[0];
                 const size_t n = static_cast<size_t>(i->index);
-                Inst* s =
-                    k.make(Op::Select, i->kind, {rep(o->args[0]), rep(o->regions[0].yields[n]), rep(o->regions[1].yields[n])});
-                s->place = o->place;
+                Inst* s = choose(rep(o->args[0]), rep(o->regions[0].yields[n]), rep(o->regions[1].yields[n]), i->kind, o->place, body);
                 rep.set(i, s);
-                body.push_back(s);
                 continue;
             }
             if (i->op == Op::If && cost(k, i->regions[0]) + cost(k, i->regions[1]) <= kIfConvertCost) {

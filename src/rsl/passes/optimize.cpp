@@ -8,6 +8,7 @@
 #include "rsl/passes/fold.h"
 #include "rsl/passes/ifconvert.h"
 #include "rsl/passes/promote.h"
+#include "rsl/passes/outline.h"
 #include "rsl/passes/uniform.h"
 #include "rsl/passes/unroll.h"
 #include <cstdio>
@@ -48,6 +49,8 @@ void optimize(Kernel& k, const KernelOptions& options, Diagnostics& diagnostics)
         for (int round = 0; round < 3; ++round) {
             int changes = unrollLoops(k);
             check(k, "unroll");
+    inlineCalls(k, options.outline);
+    check(k, "inline");
             changes += promoteArrays(k);
             check(k, "promote");
             if (changes == 0) break;
@@ -78,3 +81,5 @@ void optimize(Kernel& k, const KernelOptions& options, Diagnostics& diagnostics)
 }
 
 } // namespace alpenglow::rsl::ir
+    specialiseFunctions(k);
+    check(k, "specialise");

@@ -47,6 +47,7 @@ struct Marker {
                 raise(i, o->args[0]->varying || o->regions[0].yields[n]->varying || o->regions[1].yields[n]->varying);
             else if (o->op == Op::Loop || o->op == Op::LightLoop)
                 raise(i, o->regions.back().params[n + (o->op == Op::LightLoop ? 4 : 0)]->varying);
+            else if (o->op == Op::Call) raise(i, o->varying || o->args[0]->regions[0].yields[n]->varying);
             else raise(i, o->varying);
             return;
         }
@@ -74,6 +75,16 @@ struct Marker {
             }
             for (Region& sub : i->regions) region(sub, control || exit);
             if (i->kind != Kind::None) raise(i, body.params[fp]->varying);
+            return;
+        }
+        case Op::Function:
+            region(i->regions[0], false);
+            return;
+        case Op::Call: { // one body for all calls
+            Region& body = i->args[0]->regions[0];
+            for (size_t p = 0; p < body.params.size(); ++p) raise(body.params[p], i->args[p + 1]->varying);
+            raise(i, any);
+            if (i->kind != Kind::None) raise(i, body.yields[0]->varying);
             return;
         }
         default:

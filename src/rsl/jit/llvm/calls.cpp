@@ -53,7 +53,7 @@ std::vector<Value*> Emitter::callRuntime(Function* f, const std::vector<Value*>&
 
 Function* Emitter::wrapper(const std::string& symbol, int order, int in, int out) {
     const std::string name = symbol + "_" + std::to_string(order) + "_wide";
-    Function*& f = wrappers_[name];
+    Function*& f = shared_->wrappers[name];
     if (f) return f;
     Function* target = runtimeFunction(symbol, order);
     std::vector<llvm::Type*> args(size_t(in), vf_), results(size_t(out), vf_);

@@ -71,6 +71,7 @@ Value* Emitter::any(Value* mask) { return b_.CreateOrReduce(mask); }
 
 // Loops ask whether the caller wants them to end, so that while (1) can be interrupted.
 Value* Emitter::stopped() {
+    shared_ = std::make_shared<Shared>();
     auto* l = b_.CreateLoad(i32_, stop_, /*isVolatile=*/true, "stop");
     return b_.CreateICmpNE(l, b_.getInt32(0));
 }
@@ -245,6 +246,10 @@ int Emitter::cost(const ir::Region& r) const {
         case Op::Request:
         case Op::Emit:
         case Op::Mark:
+    case Op::Function:
+        return; // made when it is called
+    case Op::Call:
+        return call(i);
         case Op::Rescale:
         case Op::Loop:
         case Op::LightLoop:
@@ -302,6 +307,7 @@ void Emitter::emitIf(const Inst* i) {
         BasicBlock* eEnd = b_.GetInsertBlock();
         b_.CreateBr(join);
         b_.SetInsertPoint(join);
+        case Op::Call:
         for (size_t k = 0; k < count; k++) {
             Val p = phis(resultKind(i, int(k)), shapeOf(k));
             addIncoming(p, a[k], tEnd);

@@ -4,6 +4,7 @@
 #include "rsl/jit/llvm/shape.h"
 #include "rsl/jit/module.h"
 #include <array>
+#include <functional>
 #include <llvm/IR/IRBuilder.h>
 #include <llvm/IR/Module.h>
 #include <map>
@@ -39,9 +40,34 @@ public:
     Emitter(const ModuleRequest&, const Shapes&, int width, llvm::Module&, llvm::Module& runtime);
     void emitLoopKernel();
     void emitCoroutine();
-    const std::vector<std::string>& strings() const { return strings_; }
+    const std::vector<std::string>& strings() const { return shared_->strings; }
 
 private:
+    /// One component as it passes a call: lanes or one number, and which parts there are.
+    struct Slot {
+        bool varying;
+        uint8_t parts;
+    };
+    /// A Function as machine code for one set of argument slots; results component after component.
+    struct Made {
+        llvm::Function* function = nullptr;
+        std::vector<std::vector<Slot>> results;
+    };
+    struct Shared {
+        std::vector<std::string> strings;
+        std::map<std::string, llvm::Function*> wrappers;
+        std::map<std::string, Made> made;
+    };
+    /// The emitter of a function that `caller` calls.
+    Emitter(const Emitter& caller, const Shapes&);
+    // functions.cpp
+    void call(const ir::Inst*);
+    Made function(const ir::Inst*, const std::vector<std::vector<Slot>>& arguments);
+    Slot slot(const Jet&) const;
+    llvm::Type* slotType(ir::Kind, bool varying);
+    void passTypes(ir::Kind, const Slot&, std::vector<llvm::Type*>&);
+    void pass(const Jet&, const Slot&, std::vector<llvm::Value*>&);
+    Jet receive(ir::Kind, const Slot&, const std::function<llvm::Value*()>& next);
     using B = llvm::IRBuilder<>;
     // frame.cpp: the function around the body
     void beginFunction(llvm::Function*);
@@ -135,8 +161,7 @@ private:
     std::unordered_map<const ir::Inst*, ArrayStorage> arrays_;
     std::map<int, llvm::Value*> inputBases_;
     std::map<int, Val> uniformInputs_;
-    std::map<std::string, llvm::Function*> wrappers_;
-    std::vector<std::string> strings_;
+    std::shared_ptr<Shared> shared_;
     std::map<std::string, llvm::Value*> stringValues_;
     bool wrapCalls_ = false;
     // coroutine

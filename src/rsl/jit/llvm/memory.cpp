@@ -34,8 +34,8 @@ Value* Emitter::constantString(const std::string& s) {
     if (s.empty()) return b_.getInt32(0);
     Value*& v = stringValues_[s];
     if (!v) {
-        const unsigned index = unsigned(strings_.size());
-        strings_.push_back(s);
+        const unsigned index = unsigned(shared_->strings.size());
+        shared_->strings.push_back(s);
         v = entry_.CreateLoad(i32_, entry_.CreateConstInBoundsGEP1_32(i32_, stringIds_, index), "string");
     }
     return v;
@@ -56,7 +56,8 @@ void Emitter::input(const Inst* i) {
         return define(i, 0, v);
     }
     const int parts = inputParts(in);
-    const uint8_t wanted = partsOfOrder(shapes_.order(i));
+    const uint8_t wanted = partsOfOrder(shapes_.order(i)) & shapes_.of(i).parts;
+    const bool parameter = in.name == "u" || in.name == "v"; // the derivative that is not zero is one
     Val v;
     llvm::Type* t = string ? vi_ : vf_;
     for (int c = 0; c < count; c++) {
@@ -66,7 +67,7 @@ void Emitter::input(const Inst* i) {
         };
         Jet j{load(0)};
         for (int p = 0; p + 1 < parts; p++)
-            if (wanted & (1 << p)) j.d[size_t(p)] = load(p + 1);
+            if (wanted & (1 << p)) j.d[size_t(p)] = parameter ? number(1) : load(p + 1);
         v.push_back(j);
     }
     define(i, 0, std::move(v));

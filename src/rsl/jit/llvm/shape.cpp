@@ -25,7 +25,27 @@ uint8_t productParts(uint8_t x, uint8_t y) {
 
 } // namespace
 
-Shapes::Shapes(const ir::Kernel& k, bool mixed, const std::set<std::string>* zero) : kernel_(k), mixed_(mixed), zero_(zero) {
+Shapes::Shapes(const ir::Kernel& k, bool mixed, const std::set<std::string>* zero, std::shared_ptr<Cache> cache)
+    : kernel_(k), mixed_(mixed), zero_(zero), cache_(std::move(cache)) {}
+
+const Shapes& Shapes::function(const Inst* f, const std::vector<Shape>& arguments) const {
+    std::vector<uint16_t> key;
+    for (Shape s : arguments) key.push_back(uint16_t(s.parts | (s.varying ? 256 : 0)));
+    if (const auto it = cache_->find({f, key}); it != cache_->end()) return *it->second;
+    std::unique_ptr<Shapes> s(new Shapes(kernel_, mixed_, zero_, cache_));
+    const ir::Region& body = f->regions[0];
+    for (const Inst* i : kernel_.body.body) {
+        if (i->op != Op::Const && i->op != Op::ConstString && i->op != Op::Input && i->op != Op::ArrayInput) break;
+        s->inst(i, false);
+    }
+    s->collect(body);
+    for (size_t p = 0; p < arguments.size(); p++) s->join(body.params[p], 0, arguments[p]);
+    while (s->region(body, false)) {}
+    return *(cache_->emplace(std::make_pair(f, key), std::move(s)).first->second);
+}
+
+Shapes::Shapes(const ir::Kernel& k, bool mixed, const std::set<std::string>* zero)
+    : kernel_(k), mixed_(mixed), zero_(zero), cache_(std::make_shared<Cache>()) {
     collect(k.body);
     while (region(k.body, false)) {}
 }
@@ -63,6 +83,7 @@ void Shapes::collect(const ir::Region& r) {
             if (i->index >= 0) o[i->index] = std::max(o[i->index], i->order);
         }
         if (i->op == Op::Request) requests_ = true;
+        if (i->op == Op::Function) continue; // for each call's arguments: function()
         for (const auto& sub : i->regions) collect(sub);
     }
 }
@@ -163,6 +184,20 @@ bool Shapes::inst(const Inst* i, bool varyingControl) {
     case Op::Mark: {
         bool changed = false;
         for (int k = 0; k < resultCount(i); k++) changed |= join(i, k, {true, 0});
+    case Op::Function:
+        return false;
+    case Op::Call: {
+        std::vector<Shape> arguments;
+        for (size_t a = 1; a < i->args.size(); a++) {
+            Shape x = of(i->args[a]);
+            x.parts &= partsOfOrder(i->args[0]->regions[0].params[a - 1]->order);
+            arguments.push_back(x);
+        }
+        const Shapes& body = function(i->args[0], arguments);
+        bool changed = false;
+        for (int k = 0; k < resultCount(i); k++) changed |= join(i, k, body.of(i->args[0]->regions[0].yields[size_t(k)]));
+        return changed;
+    }
         return changed;
     }
     case Op::Du: {

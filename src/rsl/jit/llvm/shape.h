@@ -1,6 +1,8 @@
 // What every value of a kernel looks like in machine code: one number or lanes, and which derivative parts can differ from zero.
 #pragma once
 #include "rsl/ir/ir.h"
+#include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <unordered_map>
@@ -28,6 +30,8 @@ struct Shape {
 class Shapes {
 public:
     Shapes(const ir::Kernel&, bool mixed, const std::set<std::string>* zeroDerivative);
+    /// Of the body of a Function whose arguments have these shapes.
+    const Shapes& function(const ir::Inst*, const std::vector<Shape>& arguments) const;
     /// Of result `index` of an instruction or of a region parameter.
     Shape of(const ir::Inst*, int index = 0) const;
     /// Largest order wanted of result `index` by the instruction itself and its Result instructions.
@@ -52,6 +56,7 @@ private:
     const std::set<std::string>* zero_;
     bool requests_ = false;
     std::set<std::pair<const ir::Inst*, int>> used_;
+    std::shared_ptr<Cache> cache_;
     std::unordered_map<const ir::Inst*, std::vector<Shape>> shapes_;
     std::unordered_map<const ir::Inst*, std::vector<uint8_t>> orders_;
 };

@@ -2,6 +2,7 @@
 #include "rsl/ir/edit.h"
 #include "rsl/ir/verify.h"
 #include "rsl/passes/affine.h"
+#include "rsl/passes/assume.h"
 #include "rsl/passes/cse.h"
 #include "rsl/passes/dce.h"
 #include "rsl/passes/derivatives.h"
@@ -31,6 +32,8 @@ void clean(Kernel& k) {
     for (int round = 0; round < 4; ++round) {
         int changes = fold(k);
         check(k, "fold");
+        changes += assumeConditions(k);
+        check(k, "assume");
         changes += mergeCommon(k);
         check(k, "cse");
         changes += removeDeadCode(k);

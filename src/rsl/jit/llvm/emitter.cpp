@@ -30,6 +30,15 @@ int componentsOf(Kind k) {
 
 constexpr int kSpeculate = 40;
 
+// Carried values whose truth ends a loop with this condition.
+void leavingFlags(const ir::Region& test, const Inst* condition, std::vector<size_t>& flags) {
+    if (condition->op == Op::And)
+        for (const Inst* a : condition->args) leavingFlags(test, a, flags);
+    if (condition->op == Op::Not)
+        for (size_t k = 0; k < test.params.size(); k++)
+            if (test.params[k] == condition->args[0]) flags.push_back(k);
+}
+
 Kind resultKind(const Inst* i, int index) { return i->results.empty() ? i->kind : i->results[size_t(index)]; }
 
 } // namespace
@@ -40,8 +49,9 @@ Plan plan(const ModuleRequest& r, const Shapes& shapes) {
     // Thirty inlined noises are about 6,000 instructions: 0.3 s of compilation. Beyond that they are called.
     plan.wrapCalls = p.outOfLineCalls > 32;
     if (r.vectors > 0) plan.vectors = r.vectors;
-    else if (shapes.hasRequests() || p.effects || p.outOfLineCalls > 2 || p.instructions > 600) plan.vectors = 1;
-    else if (r.lanes == 16 && p.live <= 7 && !p.loops) plan.vectors = 4;
+    else if (shapes.hasRequests() || p.effects || plan.wrapCalls || p.wideCalls > 2 || p.instructions > 600) plan.vectors = 1;
+    else if (r.lanes >= 8 && p.live <= 7 && p.outOfLineCalls == 0 && !p.loops) plan.vectors = 4;
+    else if (p.outOfLineCalls > 0) plan.vectors = 2; // long chains of integer operations: a second one hides half of each
     else if (p.live <= 14) plan.vectors = 2;
     while (r.lanes * plan.vectors > 64) plan.vectors /= 2;
     if (plan.vectors == 3) plan.vectors = 2; // the runtime exists for powers of two
@@ -61,6 +71,7 @@ Emitter::Emitter(const ModuleRequest& request, const Shapes& shapes, int width, 
     vi_ = llvm::FixedVectorType::get(i32_, unsigned(width));
     vm_ = llvm::FixedVectorType::get(i1_, unsigned(width));
     wrapCalls_ = plan(request, shapes).wrapCalls;
+    shared_ = std::make_shared<Shared>();
 }
 
 void Emitter::fail(const std::string& what) { throw CodegenError(what); }
@@ -71,7 +82,6 @@ Value* Emitter::any(Value* mask) { return b_.CreateOrReduce(mask); }
 
 // Loops ask whether the caller wants them to end, so that while (1) can be interrupted.
 Value* Emitter::stopped() {
-    shared_ = std::make_shared<Shared>();
     auto* l = b_.CreateLoad(i32_, stop_, /*isVolatile=*/true, "stop");
     return b_.CreateICmpNE(l, b_.getInt32(0));
 }
@@ -169,6 +179,45 @@ Val Emitter::keepLanes(Value* running, const Val& next, const Val& old) {
     return r;
 }
 
+// next without the selects that keep `old` in lanes where `leaving` is set. What such a lane holds is not looked at again.
+Val Emitter::dropDead(Val next, const Val& old, Value* leaving) {
+    auto isTrue = [](Value* v) {
+        auto* c = llvm::dyn_cast<llvm::Constant>(v);
+        return c && c->isAllOnesValue();
+    };
+    auto isNot = [&](Value* a, Value* b) {
+        auto* x = llvm::dyn_cast<llvm::BinaryOperator>(a);
+        return x && x->getOpcode() == llvm::Instruction::Xor && ((x->getOperand(0) == b && isTrue(x->getOperand(1))) ||
+                                                                 (x->getOperand(1) == b && isTrue(x->getOperand(0))));
+    };
+    auto one = [&](Value* n, Value* o) -> Value* {
+        Value* flag = leaving;
+        while (auto* s = llvm::dyn_cast_or_null<llvm::SelectInst>(n)) {
+            Value* c = s->getCondition();
+            if (!c->getType()->isVectorTy()) break;
+            auto* g = llvm::dyn_cast<llvm::SelectInst>(flag);
+            if (g && g->getCondition() != c) g = nullptr;
+            if (s->getFalseValue() == o && (isNot(c, flag) || isNot(flag, c) || (g && isTrue(g->getFalseValue())))) {
+                n = s->getTrueValue();
+                if (!g) break;
+                flag = g->getTrueValue();
+            } else if (s->getTrueValue() == o && (c == flag || (g && isTrue(g->getTrueValue())))) {
+                n = s->getFalseValue();
+                if (!g) break;
+                flag = g->getFalseValue();
+            } else {
+                break;
+            }
+        }
+        return n;
+    };
+    for (size_t c = 0; c < next.size(); c++) {
+        next[c].v = one(next[c].v, old[c].v);
+        for (size_t p = 0; p < 5; p++) next[c].d[p] = one(next[c].d[p], old[c].d[p]);
+    }
+    return next;
+}
+
 void Emitter::region(const ir::Region& r) {
     for (const Inst* i : r.body) inst(i);
 }
@@ -197,6 +246,10 @@ void Emitter::inst(const Inst* i) {
     }
     case Op::Runtime:
         return runtime(i);
+    case Op::Function:
+        return; // made when it is called
+    case Op::Call:
+        return call(i);
     case Op::Service:
     case Op::Request:
     case Op::Emit:
@@ -246,10 +299,6 @@ int Emitter::cost(const ir::Region& r) const {
         case Op::Request:
         case Op::Emit:
         case Op::Mark:
-    case Op::Function:
-        return; // made when it is called
-    case Op::Call:
-        return call(i);
         case Op::Rescale:
         case Op::Loop:
         case Op::LightLoop:
@@ -258,6 +307,7 @@ int Emitter::cost(const ir::Region& r) const {
         case Op::ArrayStore:
         case Op::ArrayLoad:
         case Op::ArrayInput:
+        case Op::Call:
             return kNever;
         case Op::Runtime: {
             // The runtime's functions are from one instruction to a few dozen; the large ones are marked.
@@ -307,7 +357,6 @@ void Emitter::emitIf(const Inst* i) {
         BasicBlock* eEnd = b_.GetInsertBlock();
         b_.CreateBr(join);
         b_.SetInsertPoint(join);
-        case Op::Call:
         for (size_t k = 0; k < count; k++) {
             Val p = phis(resultKind(i, int(k)), shapeOf(k));
             addIncoming(p, a[k], tEnd);
@@ -392,14 +441,25 @@ void Emitter::emitLoop(const Inst* i) {
         running = b_.CreateAnd(live, lanes(go), "running");
         go = any(running);
     }
-    b_.CreateCondBr(b_.CreateAnd(go, b_.CreateNot(stopped())), inside, exit);
+    // Two jumps: each is one test of memory or of masks, their conjunction would be made of bytes.
+    BasicBlock* ask = block("goon");
+    b_.CreateCondBr(go, ask, exit);
+    b_.SetInsertPoint(ask);
+    b_.CreateCondBr(stopped(), exit, inside);
     b_.SetInsertPoint(inside);
     if (varying) mask_ = running;
     region(body);
     std::vector<Val> next(count);
     for (size_t k = 0; k < count; k++) {
         next[k] = conform(value(body.yields[k]), kind[k], shape[k]);
-        // Lanes that left keep what they had, where anyone will ask for it.
+    }
+    std::vector<size_t> flags; // set in lanes that leave: `while (!flag && ...)`
+    if (varying) leavingFlags(test, test.yields[0], flags);
+    for (size_t k = 0; k < count; k++) {
+        // Lanes that left keep what they had, where anyone will ask for it, and whatever comes where nobody will.
+        if (varying && !shapes_.used(i, int(k)))
+            for (size_t f : flags)
+                if (f != k) next[k] = dropDead(next[k], phi[k], next[f][0].v);
         if (varying && body.yields[k] != body.params[k] && shapes_.used(i, int(k))) next[k] = keepLanes(running, next[k], phi[k]);
     }
     BasicBlock* latch = b_.GetInsertBlock();

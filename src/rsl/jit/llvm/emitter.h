@@ -92,6 +92,7 @@ private:
     Val phis(ir::Kind, Shape);
     void addIncoming(Val& phi, const Val& v, llvm::BasicBlock* from);
     Val keepLanes(llvm::Value* running, const Val& next, const Val& old);
+    Val dropDead(Val next, const Val& old, llvm::Value* leaving);
     Val selectLanes(llvm::Value* mask, const Val& a, const Val& b);
     // arithmetic.cpp
     void arithmetic(const ir::Inst*);

@@ -150,7 +150,12 @@ bool Shapes::inst(const Inst* i, bool varyingControl) {
     case Op::ArrayInput: {
         const ir::Input& in = kernel_.inputs[i->index];
         const bool jets = !in.uniform && i->op == Op::Input && (in.kind == Kind::Float || in.kind == Kind::Triple);
-        return join(i, 0, {!in.uniform || mixed_, jets ? partsOfOrder(in.order) : uint8_t(0)});
+        // u and v are what derivatives are taken by: (1, 0) and (0, 1), the second ones zero. Their footprints are given numbers.
+        uint8_t parts = jets ? partsOfOrder(in.order) : uint8_t(0);
+        if (in.name == "u") parts &= kDu;
+        else if (in.name == "v") parts &= kDv;
+        else if (in.name == "du" || in.name == "dv") parts = 0;
+        return join(i, 0, {!in.uniform || mixed_, parts});
     }
     case Op::Result:
         return join(i, 0, of(i->args[0], i->index));
@@ -179,11 +184,6 @@ bool Shapes::inst(const Inst* i, bool varyingControl) {
         for (int k = 0; k < resultCount(i); k++) changed |= join(i, k, s);
         return changed;
     }
-    case Op::Service:
-    case Op::Request:
-    case Op::Mark: {
-        bool changed = false;
-        for (int k = 0; k < resultCount(i); k++) changed |= join(i, k, {true, 0});
     case Op::Function:
         return false;
     case Op::Call: {
@@ -198,6 +198,11 @@ bool Shapes::inst(const Inst* i, bool varyingControl) {
         for (int k = 0; k < resultCount(i); k++) changed |= join(i, k, body.of(i->args[0]->regions[0].yields[size_t(k)]));
         return changed;
     }
+    case Op::Service:
+    case Op::Request:
+    case Op::Mark: {
+        bool changed = false;
+        for (int k = 0; k < resultCount(i); k++) changed |= join(i, k, {true, 0});
         return changed;
     }
     case Op::Du: {
@@ -268,7 +273,10 @@ Pressure measure(const ir::Kernel& k, const Shapes& shapes, const std::set<std::
             if (i->op == Op::Runtime) {
                 p.runtimeCalls++;
                 const int order = shapes.callOrder(i);
-                if (outOfLine && outOfLine->count(i->text)) p.outOfLineCalls += order == 0 ? 1 : order == 1 ? 3 : 6;
+                if (outOfLine && outOfLine->count(i->text)) {
+                    p.outOfLineCalls += order == 0 ? 1 : order == 1 ? 3 : 6;
+                    p.wideCalls += order > 0;
+                }
             }
             if (i->op == Op::Service || i->op == Op::Emit || i->op == Op::LightLoop || i->op == Op::Request ||
                 i->op == Op::ArrayNew)

@@ -44,6 +44,8 @@ public:
     int callOrder(const ir::Inst*) const;
 
 private:
+    using Cache = std::map<std::pair<const ir::Inst*, std::vector<uint16_t>>, std::unique_ptr<Shapes>>;
+    Shapes(const ir::Kernel&, bool mixed, const std::set<std::string>* zeroDerivative, std::shared_ptr<Cache>);
     void collect(const ir::Region&);
     bool region(const ir::Region&, bool varyingControl);
     bool inst(const ir::Inst*, bool varyingControl);
@@ -54,9 +56,9 @@ private:
     const ir::Kernel& kernel_;
     bool mixed_;
     const std::set<std::string>* zero_;
+    std::shared_ptr<Cache> cache_;
     bool requests_ = false;
     std::set<std::pair<const ir::Inst*, int>> used_;
-    std::shared_ptr<Cache> cache_;
     std::unordered_map<const ir::Inst*, std::vector<Shape>> shapes_;
     std::unordered_map<const ir::Inst*, std::vector<uint8_t>> orders_;
 };
@@ -67,6 +69,7 @@ struct Pressure {
     int instructions = 0;
     int runtimeCalls = 0;
     int outOfLineCalls = 0; ///< derivative orders count 3 and 6
+    int wideCalls = 0;      ///< of those, calls that carry derivatives: few registers are left
     bool effects = false, loops = false;
 };
 Pressure measure(const ir::Kernel&, const Shapes&, const std::set<std::string>* outOfLine);

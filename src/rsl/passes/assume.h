@@ -1,0 +1,11 @@
+// What a branch and a loop's test say about the booleans they were asked of.
+#pragma once
+#include "rsl/ir/ir.h"
+
+namespace alpenglow::rsl::ir {
+
+/// Inside the sides of an If its condition is a constant; inside the body of a Loop so are the carried flags that the test looks at
+/// (`while (!left && ...)`, as `break` and `return` leave it). Returns the number of uses replaced.
+int assumeConditions(Kernel&);
+
+} // namespace alpenglow::rsl::ir

@@ -2,12 +2,9 @@
 // The unit of statistics is a random stream of its own for every sample (testing rule 7): each sample gets a pixel of its own.
 #pragma once
 #include "ri/reader.h"
-#include "statistics/chisquare.h"
+#include "statistics/agreement.h"
 #include "transport/integrator.h"
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -18,20 +15,7 @@ namespace alpenglow::transport::testing {
 
 inline constexpr double kZ = teststat::kZ;
 
-inline bool nightly() { return std::getenv("ALPENGLOW_NIGHTLY") != nullptr; }
-/// Samples here, and sixteen times as many nightly.
-inline int samples(int fast) { return nightly() ? 16 * fast : fast; }
-
-/// Added to every seed: 0 on every change, fresh nightly (printed, so that a failure can be repeated with ALPENGLOW_SEED).
-inline uint32_t seedBase() {
-    static const uint32_t base = [] {
-        const char* given = std::getenv("ALPENGLOW_SEED");
-        uint32_t s = given ? uint32_t(std::strtoul(given, nullptr, 10)) : nightly() ? uint32_t(std::time(nullptr)) * 1000u : 0u;
-        if (s) std::printf("ALPENGLOW_SEED=%u\n", s);
-        return s;
-    }();
-    return base;
-}
+using teststat::nightly, teststat::samples, teststat::seedBase;
 
 /// A folder for shaders that a test writes itself.
 inline const std::string& shaderFolder() {

@@ -1,37 +1,69 @@
-// A sum of floats that does not depend on the order of its terms: fixed point, 128 bits.
+// Sums that do not depend on the order of their terms: fixed point, 128 bits, so that any order, split, merge or resume gives the
+// same bits (design decision 10). The scheduler adds radiance in units of 2^-64, the film samples in units of 2^-40.
 #pragma once
 #include <cmath>
 #include <cstdint>
 
 namespace alpenglow {
 
-/// Unit 2^-64, range +-2^62. Each term is rounded to the unit once, by itself, so any order, split or merge gives the same bits.
-/// Terms beyond +-2^60 are clamped there and make saturated() true. Non-finite terms must be kept out by the caller.
+using Int128 = __int128;
+using UInt128 = unsigned __int128;
+
+/// One term reaches +-2^60.
+inline constexpr double kFixedMost = 0x1p60;
+
+/// v in units of 2^-Bits (Bits <= 64), rounded to the nearest, ties to even. v must be finite; beyond +-2^60 it is clamped and
+/// *saturated set.
+template <int Bits> Int128 toFixed(double v, bool* saturated) {
+    static_assert(Bits > 0 && Bits <= 64);
+    if (!(v <= kFixedMost && v >= -kFixedMost)) {
+        *saturated = true;
+        v = v > 0 ? kFixedMost : -kFixedMost;
+    }
+    // Every step but the rounding is exact: the power of two, and the cut into a multiple of 2^62 and a rest, both 64-bit
+    // integers.
+    constexpr double kUnits = double(uint64_t(1) << (Bits / 2)) * double(uint64_t(1) << (Bits - Bits / 2));
+    double units = std::nearbyint(v * kUnits);
+    int64_t high = int64_t(units * 0x1p-62);
+    int64_t low = int64_t(units - double(high) * 0x1p62);
+    return Int128(high) * (int64_t(1) << 62) + low;
+}
+
+/// The double nearest to a sum of values in units of 2^-Bits.
+template <int Bits> double fromFixed(Int128 v) {
+    static_assert(Bits > 0 && Bits <= 64);
+    constexpr double kUnits = double(uint64_t(1) << (Bits / 2)) * double(uint64_t(1) << (Bits - Bits / 2));
+    return double(v) / kUnits;
+}
+
+/// A sum in units of 2^-64. Terms beyond +-2^60 are clamped there and make saturated() true; the sum itself has 192 bits, so that
+/// no number of them overflows. Non-finite terms must be kept out by the caller.
 class ExactSum {
 public:
-    void add(float f) { add(double(f)); }
     void add(double d) {
-        constexpr double kMost = 0x1p60;
-        if (!(d < kMost && d > -kMost)) { d = d > 0 ? kMost : -kMost; saturated_ = true; }
-        // Split into whole and fraction, both exact; the fraction has at most 53 bits, so 62 of them hold it down to 2^-62.
-        double high = std::trunc(d);
-        double low = d - high;
-        sum_ += (__int128(int64_t(high)) << 64) + __int128(int64_t(std::nearbyint(low * 0x1p62))) * 4 +
-                int64_t(std::nearbyint((low * 0x1p62 - std::nearbyint(low * 0x1p62)) * 4));
+        Int128 term = toFixed<64>(d, &saturated_);
+        addWide(UInt128(term), term < 0 ? -1 : 0);
     }
-    void merge(const ExactSum& o) { sum_ += o.sum_; saturated_ |= o.saturated_; }
+    void merge(const ExactSum& o) {
+        addWide(o.low_, o.top_);
+        saturated_ |= o.saturated_;
+    }
     double toDouble() const {
-        __int128 s = sum_;
-        bool negative = s < 0;
-        unsigned __int128 u = negative ? -static_cast<unsigned __int128>(s) : static_cast<unsigned __int128>(s);
-        double v = double(uint64_t(u >> 64)) + double(uint64_t(u)) * 0x1p-64;
-        return negative ? -v : v;
+        Int128 low = Int128(low_);
+        if (top_ == (low < 0 ? -1 : 0)) return fromFixed<64>(low);
+        return (double(top_) * 0x1p128 + double(low_)) * 0x1p-64;
     }
     float toFloat() const { return float(toDouble()); }
     bool saturated() const { return saturated_; }
 
 private:
-    __int128 sum_ = 0;
+    void addWide(UInt128 low, int64_t top) {
+        low_ += low;
+        top_ += top + (low_ < low ? 1 : 0);
+    }
+
+    UInt128 low_ = 0;
+    int64_t top_ = 0; ///< with low_ one number of 192 bits, two's complement
     bool saturated_ = false;
 };
 

@@ -1,28 +1,15 @@
-// Fixed-point sums of the film: integers, so that any order, split, merge or resume gives the same bits (design decision 10).
+// Fixed-point sums of the film (base/exactsum.h) and the 256 bits their squares need.
 #pragma once
-#include <cmath>
+#include "base/exactsum.h"
 #include <cstdint>
 
 namespace alpenglow::render {
 
-using Int128 = __int128;
-using UInt128 = unsigned __int128;
-
-/// Unit 2^-40. One value reaches +-2^60; 2^27 of them (limits::kSamplesPerPixel) fit the 128 bits.
+/// Unit 2^-40: 2^27 values (limits::kSamplesPerPixel) of up to 2^60 fit the 128 bits.
 inline constexpr int kFixedBits = 40;
-inline constexpr double kFixedMost = 0x1p60;
 
-/// v in units of 2^-40, rounded to the nearest (ties to even). v must be finite; beyond +-2^60 it is clamped and *saturated set.
-inline Int128 toFixed(double v, bool* saturated) {
-    if (!(v <= kFixedMost && v >= -kFixedMost)) {
-        *saturated = true;
-        v = v > 0 ? kFixedMost : -kFixedMost;
-    }
-    return Int128(std::nearbyint(v * 0x1p40));
-}
-
-/// The double nearest to a sum of fixed-point values.
-inline double fromFixed(Int128 v) { return double(v) * 0x1p-40; }
+inline Int128 toFixed(double v, bool* saturated) { return alpenglow::toFixed<kFixedBits>(v, saturated); }
+inline double fromFixed(Int128 v) { return alpenglow::fromFixed<kFixedBits>(v); }
 
 /// 256 bits, unsigned, for sums of squares (unit 2^-80) and their differences. Least significant limb first.
 struct UInt256 {

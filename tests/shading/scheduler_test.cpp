@@ -304,6 +304,17 @@ TEST(Scheduler, Cancellation) {
     EXPECT_EQ(slices, 5);
 }
 
+TEST(Scheduler, SlicesAreBounded) {
+    FakeService service;
+    S s(service);
+    auto root = s.newRoot();
+    const int rays = 3 * limits::kSliceRays + 1;
+    for (int i = 0; i < rays; ++i) s.spawn({0, root, {1, 0, 0, false}});
+    EXPECT_TRUE(s.run());
+    EXPECT_EQ(s.largestSlice(), size_t(limits::kSliceRays));
+    EXPECT_EQ(s.value(root).radiance, Color(float(rays)));
+}
+
 TEST(Scheduler, NonFiniteIsCountedAndDropped) {
     FakeService service;
     S s(service);
@@ -328,6 +339,32 @@ TEST(ExactSum, OrderDoesNotMatter) {
     ExactSum d;
     for (int i = 0; i < 1000; ++i) d.add(0.1f);
     EXPECT_EQ(d.toDouble(), 1000.0 * double(0.1f));
+}
+
+TEST(ExactSum, RoundsEachTermToTheUnit) {
+    ExactSum s;
+    s.add(0x1p-65); // half a unit: to even, which is 0
+    EXPECT_EQ(s.toDouble(), 0.0);
+    s.add(0x1.8p-64); // a unit and a half: 2
+    s.add(-0x1p-64);
+    EXPECT_EQ(s.toDouble(), 0x1p-64);
+    s.add(0x1p59);
+    s.add(-0x1p59);
+    EXPECT_EQ(s.toDouble(), 0x1p-64);
+    EXPECT_FALSE(s.saturated());
+}
+
+TEST(ExactSum, HugeTermsAreClampedAndNeverOverflow) {
+    ExactSum a, b;
+    for (int i = 0; i < 1000; ++i) {
+        a.add(3e38f);
+        b.add(-3e38f);
+    }
+    EXPECT_TRUE(a.saturated());
+    EXPECT_EQ(a.toDouble(), 1000 * 0x1p60);
+    EXPECT_EQ(b.toDouble(), -1000 * 0x1p60);
+    a.merge(b);
+    EXPECT_EQ(a.toDouble(), 0.0);
 }
 
 } // namespace

@@ -38,6 +38,7 @@ inline constexpr int kShaderArray = 16384;                     ///< elements of 
 inline constexpr int kFrontErrors = 100;                       ///< errors reported for one RSL file
 inline constexpr size_t kInlinedInstructions = 400'000;        ///< IR of one kernel after inlining
 inline constexpr int kOutlineInstructions = 400;               ///< RSL functions that are larger once inlined are called instead
+inline constexpr size_t kPrintBytes = size_t(256) << 20;        ///< of shaders' printf() held back until they can be sorted
 inline constexpr size_t kAffineInlining = 100'000;             ///< IR of a kernel up to which calls are inlined for the affine proof
 inline constexpr size_t kKernelCacheBytes = size_t(512) << 20; ///< compiled kernels on disk; the least recently used go first
 

@@ -4,6 +4,7 @@
 #include "display/imageio.h"
 #include "render/imaging.h"
 #include "rsl/compiler.h"
+#include "rsl/printlog.h"
 #include "rsl/services_basic.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -74,6 +75,8 @@ struct Context {
     const rsl::CompiledKernel* kernel;
     Diagnostics* diagnostics;
     bool print;
+    size_t begun = 0; ///< index of the batch's first point
+    rsl::PrintLog prints{};
 };
 
 double cpuSeconds() {
@@ -169,13 +172,16 @@ int shade(const Arguments& a) {
     call.strings = kernel->strings().data();
     call.user = &context;
     call.stop = stop;
-    call.service = [](rsl::KernelCall* c, int32_t site, int32_t, uint64_t mask, int32_t lanes, const float* rowsIn,
+    call.service = [](rsl::KernelCall* c, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* rowsIn,
                       float* rowsOut) {
         auto& x = *static_cast<Context*>(c->user);
         if (site < 0) return;
         rsl::basicService(x.kernel->sites()[size_t(site)], mask, lanes, rowsIn, rowsOut, *x.diagnostics,
-                          [&](int, const std::string& text) {
-                              if (x.print) std::fputs(text.c_str(), stdout);
+                          [&](int lane, const std::string& text) {
+                              if (!x.print) return;
+                              rsl::PrintKey key;
+                              key.sample = int64_t(x.begun) + first + lane;
+                              x.prints.add(key, text);
                           });
     };
     call.lightBegin = [](rsl::KernelCall*, int32_t, int32_t, uint64_t, int32_t, const float*) { return int32_t(0); };
@@ -223,7 +229,9 @@ int shade(const Arguments& a) {
         std::vector<Vec2> at;
         for (size_t i = first; i < std::min(total, first + size_t(batch)); ++i) at.push_back(place(i));
         fill(at);
+        context.begun = first;
         kernel->run(&call);
+        context.prints.flush();
         for (size_t p = 0; p < at.size(); ++p) {
             float* pixel = image.data.data() + (first + p) / samples * channels.size();
             for (size_t o = 0; o < out.size(); ++o) {

@@ -151,6 +151,7 @@ std::vector<Image> renderImages(Job& job, int nx, int ny, Jitter jitter, uint64_
                 [](size_t) {});
         }
     }
+    if (job.world) job.world->flushPrints(true);
     tell(job.interrupted ? reached : 1, true);
     job.halt = 0;
     return images;

@@ -127,6 +127,7 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
         if (!whole) break;
         volatile int32_t go = 0;
         job.team.run(
+        if (job.world) job.world->flushPrints(whole);
             tiles.size(), &go,
             [&](int, size_t i) {
                 const Window& t = tiles[i];

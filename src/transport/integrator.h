@@ -58,6 +58,8 @@ public:
     virtual Facts facts() const = 0;
     /// Floats per AOV in Settings::outputs (1, 3 or 16).
     virtual std::vector<int> outputWidths() const = 0;
+    /// Writes what shaders have printed since the last call, in the order of the samples; or forgets it. Between passes.
+    virtual void flushPrints(bool keep) const = 0;
     /// Runs the frame's imager over finished pixels, in place. rgb: linear colour, alpha: coverage, P: raster position. True when there is one.
     virtual bool runImager(int count, const float* rasterX, const float* rasterY, float* r, float* g, float* b, float* alpha, Diagnostics&) const = 0;
 };

@@ -303,7 +303,22 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
         });
         return;
     }
-    rsl::basicService(d, mask, lanes, in, out, diagnostics_);
+    rsl::basicService(d, mask, lanes, in, out, diagnostics_, [&](int lane, const std::string& text) {
+        if (first + lane >= int(c.points.size())) return;
+        const ShadePoint& p = c.points[size_t(first + lane)];
+        const PathRay* r = c.rays.empty() ? p.ray : &c.rays[size_t(first + lane)];
+        rsl::PrintKey key;
+        if (r) {
+            key.sample = r->sample;
+            key.x = r->px;
+            key.y = r->py;
+            key.bounces = r->bounces;
+            key.vertex = r->vertex;
+        }
+        if (!c.bound->kernel->files().empty()) key.program = c.bound->kernel->files().front();
+        key.place = {p.P.x, p.P.y, p.P.z};
+        world_->prints_.add(key, text);
+    });
 }
 
 } // namespace alpenglow::transport

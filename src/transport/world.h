@@ -2,6 +2,7 @@
 #pragma once
 #include "accel/accel.h"
 #include "rsl/compiler.h"
+#include "rsl/printlog.h"
 #include "shading/batch.h"
 #include "texture/texture.h"
 #include "transport/arealight.h"
@@ -117,6 +118,7 @@ public:
     std::vector<int> bindingOf_;               ///< by shape
     std::vector<SurfaceBinding> bindings_;
     int groups_ = 0;                           ///< number of different SurfaceBinding::group
+    void flushPrints(bool keep) const override { keep ? prints_.flush() : prints_.discard(); }
     std::vector<BoundLight> lights_;
     std::unique_ptr<accel::Accel> accel_;
     Matrix worldToCamera_, cameraToWorld_;
@@ -131,3 +133,5 @@ public:
 };
 
 } // namespace alpenglow::transport
+    mutable rsl::PrintLog prints_;
+    bool footprints_ = false;                  ///< some kernel reads du or dv

@@ -1,0 +1,45 @@
+#include "rsl/printlog.h"
+#include "base/limits.h"
+#include <algorithm>
+#include <bit>
+#include <tuple>
+
+namespace alpenglow::rsl {
+namespace {
+
+// By the bits, so that every float has its place in the order.
+auto order(const PrintKey& k) {
+    return std::tuple(k.sample, k.y, k.x, k.bounces, k.vertex, std::string_view(k.program), std::bit_cast<uint32_t>(k.place[0]),
+                      std::bit_cast<uint32_t>(k.place[1]), std::bit_cast<uint32_t>(k.place[2]));
+}
+
+} // namespace
+
+void PrintLog::add(const PrintKey& key, const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    bytes_ += sizeof(Message) + text.size() + key.program.size();
+    if (bytes_ > limits::kPrintBytes) write();
+    messages_.push_back({key, text});
+}
+
+void PrintLog::flush() {
+    const std::lock_guard lock(mutex_);
+    write();
+    std::fflush(to_);
+}
+
+void PrintLog::discard() {
+    const std::lock_guard lock(mutex_);
+    messages_.clear();
+    bytes_ = 0;
+}
+
+void PrintLog::write() {
+    std::stable_sort(messages_.begin(), messages_.end(),
+                     [](const Message& a, const Message& b) { return order(a.key) < order(b.key); });
+    for (const Message& m : messages_) std::fwrite(m.text.data(), 1, m.text.size(), to_);
+    messages_.clear();
+    bytes_ = 0;
+}
+
+} // namespace alpenglow::rsl

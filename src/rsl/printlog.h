@@ -1,0 +1,49 @@
+// What shaders print, in an order that no thread and no batch decides.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace alpenglow::rsl {
+
+/// Where a message belongs: samples first, within a sample the pixels row by row, within a pixel the path from the camera on.
+struct PrintKey {
+    int64_t sample = -1; ///< -1: before all samples (dicing)
+    int32_t y = 0, x = 0;
+    int32_t bounces = 0;
+    uint32_t vertex = 0;          ///< hash of the way to the point
+    std::string program;          ///< file of the shader
+    std::array<float, 3> place{}; ///< the point: shaders of lights run for several of one vertex
+};
+
+/// Collects messages until flush(). Thread safe. Messages with equal keys come from one run of a shader and stay in their order.
+class PrintLog {
+public:
+    explicit PrintLog(std::FILE* to = stdout) : to_(to) {}
+    ~PrintLog() { flush(); }
+    PrintLog(const PrintLog&) = delete;
+    PrintLog& operator=(const PrintLog&) = delete;
+    /// Keeps a copy. Beyond limits::kPrintBytes everything collected is written first: the order then holds within each part.
+    void add(const PrintKey&, const std::string& text);
+    /// Writes what was collected, sorted.
+    void flush();
+    /// Forgets it: the samples were void.
+    void discard();
+
+private:
+    struct Message {
+        PrintKey key;
+        std::string text;
+    };
+    void write();
+    std::mutex mutex_;
+    std::vector<Message> messages_;
+    size_t bytes_ = 0;
+    std::FILE* to_;
+};
+
+} // namespace alpenglow::rsl

@@ -1,0 +1,73 @@
+// Messages come out by their keys, whatever order they came in.
+#include "rsl/printlog.h"
+#include <gtest/gtest.h>
+#include <thread>
+#include <vector>
+
+namespace alpenglow::rsl {
+namespace {
+
+std::string textOf(std::FILE* f) {
+    std::string s;
+    std::rewind(f);
+    for (int c; (c = std::fgetc(f)) != EOF;) s += char(c);
+    return s;
+}
+
+TEST(PrintLog, SamplesThenRowsThenBounces) {
+    std::FILE* f = std::tmpfile();
+    ASSERT_NE(f, nullptr);
+    {
+        PrintLog log(f);
+        const auto key = [](int64_t s, int y, int x, int b) {
+            PrintKey k;
+            k.sample = s;
+            k.y = y;
+            k.x = x;
+            k.bounces = b;
+            return k;
+        };
+        log.add(key(1, 0, 0, 0), "5");
+        log.add(key(0, 1, 0, 0), "3");
+        log.add(key(0, 0, 1, 1), "2");
+        log.add(key(0, 0, 1, 0), "1a");
+        log.add(key(0, 0, 1, 0), "1b");
+        log.add(key(0, 1, 0, 0), "4");
+        log.add(key(-1, 9, 9, 9), "0");
+        log.flush();
+        log.add(key(0, 0, 0, 0), "void");
+        log.discard();
+        log.add(key(0, 0, 0, 0), "last");
+    }
+    EXPECT_EQ(textOf(f), "01a1b2345last");
+    std::fclose(f);
+}
+
+TEST(PrintLog, ThreadsDoNotShow) {
+    std::string texts[2];
+    for (int threads : {1, 4}) {
+        std::FILE* f = std::tmpfile();
+        ASSERT_NE(f, nullptr);
+        {
+            PrintLog log(f);
+            std::vector<std::thread> team;
+            for (int t = 0; t < threads; ++t)
+                team.emplace_back([&, t] {
+                    for (int s = 999 - t; s >= 0; s -= threads) {
+                        PrintKey k;
+                        k.sample = s;
+                        log.add(k, std::to_string(s) + "\n");
+                        log.add(k, "again\n");
+                    }
+                });
+            for (auto& t : team) t.join();
+        }
+        texts[threads > 1] = textOf(f);
+        std::fclose(f);
+    }
+    EXPECT_EQ(texts[0], texts[1]);
+    EXPECT_EQ(texts[0].substr(0, 16), "0\nagain\n1\nagain\n");
+}
+
+} // namespace
+} // namespace alpenglow::rsl

@@ -1,0 +1,114 @@
+// ASCII floats through the RIB reader against fast_float over the same bytes: rib_bench [MEGABYTES]. CPU time, one thread, the two
+// take turns, the best of all turns counts. The reader tokenises, checks, binds and builds the scene; fast_float only converts.
+// Exit 1 when the reader is slower than the limit.
+#include "ri/reader.h"
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <fast_float/fast_float.h>
+#include <random>
+
+using namespace alpenglow;
+
+namespace {
+
+constexpr double kLimit = 0.5;
+
+double cpuSeconds() {
+    timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
+/// PointsPolygons of a 64 x 64 grid each with P, N and st, as exporters write them.
+std::string rib(size_t bytes, const char* format) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> number(-10, 10);
+    std::string text = "WorldBegin\n";
+    constexpr int kSide = 64;
+    char buffer[64];
+    const auto floats = [&](const char* name, int count) {
+        text += std::string(" \"") + name + "\" [";
+        for (int i = 0; i < count; i++) {
+            text += i % 12 ? " " : "\n";
+            text.append(buffer, size_t(std::snprintf(buffer, sizeof buffer, format, double(number(random)))));
+        }
+        text += "]";
+    };
+    while (text.size() < bytes) {
+        text += "PointsPolygons [";
+        for (int i = 0; i < (kSide - 1) * (kSide - 1); i++) text += "4 ";
+        text += "] [";
+        for (int y = 0; y + 1 < kSide; y++)
+            for (int x = 0; x + 1 < kSide; x++) {
+                const int a = y * kSide + x;
+                text.append(buffer, size_t(std::snprintf(buffer, sizeof buffer, "%d %d %d %d ", a, a + 1, a + kSide + 1, a + kSide)));
+            }
+        text += "]";
+        floats("P", 3 * kSide * kSide);
+        floats("N", 3 * kSide * kSide);
+        floats("st", 2 * kSide * kSide);
+        text += "\n";
+    }
+    return text + "WorldEnd\n";
+}
+
+struct Null : scene::FrameConsumer {
+    size_t primitives = 0;
+    void render(std::shared_ptr<const scene::Frame> f) override { primitives += f->primitives.size(); }
+    void makeTexture(const std::string&, const std::vector<std::string>&, const scene::ParamList&, const SourcePlace&) override {}
+};
+
+/// Every number of the text, blanks and everything else passed over.
+double convertAll(const std::string& text, size_t& count) {
+    double sum = 0;
+    const char *p = text.data(), *end = p + text.size();
+    count = 0;
+    while (p < end) {
+        double v;
+        const auto r = fast_float::from_chars(p, end, v);
+        if (r.ec == std::errc()) {
+            sum += v;
+            ++count;
+            p = r.ptr;
+        } else {
+            ++p;
+        }
+        while (p < end && (*p == ' ' || *p == '\n')) ++p;
+    }
+    return sum;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    const size_t megabytes = argc > 1 ? size_t(std::max(1, std::atoi(argv[1]))) : 20;
+    bool good = true;
+    for (const char* format : {"%.6g", "%.9g", "%.3f"}) {
+        const std::string text = rib(megabytes << 20, format);
+        double reader = 1e9, plain = 1e9, sum = 0;
+        size_t count = 0, primitives = 0;
+        for (int turn = 0; turn < 7; turn++) {
+            double t = cpuSeconds();
+            sum += convertAll(text, count);
+            plain = std::min(plain, cpuSeconds() - t);
+            Null sink;
+            Diagnostics diagnostics([](const Diagnostic& d) { std::fputs(toString(d).c_str(), stderr); });
+            t = cpuSeconds();
+            ri::RibReader r({}, sink, diagnostics);
+            const bool read = r.readMemory(text, "memory");
+            reader = std::min(reader, cpuSeconds() - t);
+            primitives = sink.primitives;
+            if (!read || primitives == 0) {
+                std::fprintf(stderr, "rib_bench: the text was not read\n");
+                return 1;
+            }
+        }
+        const double mb = double(text.size()) / 1e6, ratio = plain / reader;
+        good = good && ratio >= kLimit;
+        std::printf("%-5s %5.1f MB, %zu numbers, %zu primitives: fast_float %4.0f MB/s, reader %4.0f MB/s, reader / fast_float %.2f >= %g %s%s\n",
+                    format, mb, count, primitives, mb / plain, mb / reader, ratio, kLimit, ratio >= kLimit ? "PASS" : "MISS", sum == 0.5 ? " " : "");
+    }
+    return good ? 0 : 1;
+}

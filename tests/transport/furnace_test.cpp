@@ -47,7 +47,8 @@ TEST(Furnace, RouletteAddsUpToTheSeries) {
             s.hider = Hider::Path;
             s.maxDepth = 2000;
             Scene scene(furnace(geometry, a), s);
-            expectMean(scene.estimate(kInside, samples(20000)), 1 / (1 - a), .01, std::string(geometry) + num(a));
+            // Bias found with 99 % power: 7 % here; nightly, at 2e6 samples, below 0.5 %.
+            expectMean(scene.estimate(kInside, samples(20000, 2'000'000)), 1 / (1 - a), nightly() ? .0007 : .01, std::string(geometry) + num(a));
         }
 }
 // The walls as area lights: light samples, weights and lobe rays together.
@@ -62,20 +63,28 @@ TEST(Furnace, WallsAsLights) {
             if (s.lightOnly && a > .5) continue; // corners make light sampling alone very noisy
             writeShader("glow", "light glow() { illuminate(P, -N, PI / 2) Cl = 1; }\n");
             Scene walls("WorldBegin\nSides 2\nAreaLightSource \"glow\" 3\nSurface \"matte\" \"Kd\" " + num(a) + "\n" + kSphere + "WorldEnd\n", s);
-            expectMean(walls.estimate(kInside, samples(20000)), 1 / (1 - a), .01, "walls, mode " + std::to_string(mode) + num(a));
+            expectMean(walls.estimate(kInside, samples(20000, 2'000'000)), 1 / (1 - a), nightly() ? .001 : .01, "walls, mode " + std::to_string(mode) + num(a));
         }
 }
-// T5 b: direct light Kd, and of every bounce Kd again: Kd / (1 - Kd) = 1.
+// T5 b: direct light Kd, and of every bounce Kd again: Kd / (1 - Kd) = 1. Every form and width of the kernels, every roulette, eyes at several
+// places. Without roulette each sample is the sum itself; with it the bias found is 4 % here, below 1 % nightly.
 TEST(Furnace, PointLightInASphere) {
-    for (const char* light : {"LightSource \"pointlight\" 1 \"intensity\" 1\n", "LightSource \"slpoint\" 1 \"intensity\" [3.14159265] \"kc\" 0 \"kq\" 1\n"})
-        for (bool roulette : {true, false}) {
-            Settings s;
-            s.hider = Hider::Path;
-            s.roulette = roulette;
-            s.maxDepth = roulette ? 1000 : 40;
-            Scene scene(std::string("WorldBegin\nSides 2\n") + light + "Surface \"matte\" \"Kd\" .5\nSphere 1 -1 1 360\nWorldEnd\n", s);
-            expectMean(scene.estimate(kInside, roulette ? samples(20000) : 200), 1, .006, light);
-        }
+    const CameraRay eyes[] = {kInside, rayTo({0, .4f, -.7f}, {.1f, -1, 0}), rayTo({-.3f, .1f, .2f}, {-1, .2f, -.4f})};
+    const char* lights[] = {"LightSource \"pointlight\" 1 \"intensity\" 1\n", "LightSource \"slpoint\" 1 \"intensity\" [3.14159265] \"kc\" 0 \"kq\" 1\n"};
+    for (int k = 0; k < 12; ++k) {
+        Settings s;
+        s.hider = Hider::Path;
+        s.suspend = k % 2;
+        s.mixedOnly = k % 3 == 1;
+        s.lanes = k % 3 == 2 ? 4 : k < 6 ? 16 : 8;
+        s.roulette = k % 3 != 0;
+        s.localRoulette = k % 3 == 2;
+        s.maxDepth = s.roulette ? 1000 : 40;
+        s.seed = uint64_t(k);
+        Scene scene(std::string("WorldBegin\nSides 2\n") + lights[k % 2] + "Surface \"matte\" \"Kd\" .5\nSphere 1 -1 1 360\nWorldEnd\n", s);
+        // Half of a waiting kernel's rays end from the third bounce on, whatever they carry: noisier.
+        expectMean(scene.estimate(eyes[k % 3], s.roulette ? samples(20000) : 200), 1, s.suspend ? .01 : .006, "case " + std::to_string(k));
+    }
 }
 // Layers of half opacity in front of an emitter: over, and what is behind, in both hiders.
 TEST(Furnace, TransparentLayers) {

@@ -1,5 +1,6 @@
 // Growth of work with depth, memory of suspended frames, interruption.
 #include "base/limits.h"
+#include "render/camera.h"
 #include "transport/harness.h"
 #include <chrono>
 #include <thread>
@@ -39,6 +40,85 @@ TEST(Growth, RaysAreLinearInDepth) {
         EXPECT_GT(m.mean(), 0);
     }
 }
+// Roulette on, as it is used: a path ends by itself, so rays a sample stop growing where the depth no longer matters.
+TEST(Growth, RouletteEndsPaths) {
+    double rays[2];
+    for (int k = 0; k < 2; ++k) {
+        Settings s;
+        s.hider = Hider::Path;
+        s.maxDepth = k ? 512 : 128;
+        Counters c;
+        Moments m = Scene(kPlasticBox, s).estimate(kEye, 2000, &c);
+        EXPECT_TRUE(std::isfinite(m.mean()));
+        EXPECT_EQ(c.nonFinite, 0u);
+        rays[k] = double(c.diffuse + c.specular + c.shadow) / double(c.paths);
+    }
+    EXPECT_NEAR(rays[1] / rays[0], 1, .2);
+}
+// The published scenes under "path", in affine and in suspending form: bounce rays a sample at most the depth, shadow rays at most lights
+// times lobes (three in the standard shaders) a vertex, energy finite and settled, frames of waiting shaders below their limit.
+class OldScene : public ::testing::TestWithParam<const char*> {
+protected:
+    size_t lights_ = 0;
+    /// One sample of each of 64 x 64 places of the frame.
+    Moments see(const std::string& file, const std::string& folder, Settings s, Counters& c) {
+        s.texturePaths = {folder};
+        Moments m;
+        Scene scene(readText(file), s);
+        if (!scene.world) return m;
+        lights_ = scene.frame->lights.size();
+        render::Camera camera(scene.frame->options, scene.diagnostics);
+        std::vector<CameraRay> rays;
+        for (int y = 0; y < 64; ++y)
+            for (int x = 0; x < 64; ++x) {
+                rays.push_back(camera.ray((x + .5) / 64 * camera.width(), (y + .5) / 64 * camera.height(), {.5f, .5f}, 0));
+                rays.back().px = x;
+                rays.back().py = y;
+            }
+        for (const SampleResult& r : scene.trace(rays, &c)) {
+            EXPECT_TRUE(std::isfinite(r.color.x) && std::isfinite(r.color.y) && std::isfinite(r.color.z));
+            m.add(r.color);
+        }
+        EXPECT_GT(c.paths, 0u);
+        EXPECT_GT(m.mean(), 0);
+        EXPECT_EQ(c.nonFinite, 0u);
+        EXPECT_EQ(c.overLimit, 0u);
+        EXPECT_LE(c.peakFrameBytes, limits::kFrameBytesPerThread);
+        return m;
+    }
+};
+TEST_P(OldScene, GrowsLinearly) {
+    const std::string folder = ALPENGLOW_SOURCE_DIR "/../shared/scenes/", file = folder + GetParam() + ".rib";
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << "the published scenes are not here";
+    double last = 0, spread = 0;
+    for (int depth : {1, 2, 4, 8, 16, 32}) {
+        Settings s;
+        s.hider = Hider::Path;
+        s.maxDepth = depth;
+        s.roulette = false;
+        Counters c;
+        Moments m = see(file, folder, s, c);
+        double paths = double(c.paths);
+        EXPECT_LE(double(c.diffuse + c.specular), depth * paths) << depth;
+        EXPECT_LE(double(c.shadow), 3 * std::max(1.0, double(lights_)) * (depth + 1) * paths) << depth;
+        if (depth == 32) EXPECT_NEAR(m.mean(), last, .05 * last + kZ * spread);
+        last = m.mean();
+        spread = std::sqrt(2.0) * m.se();
+    }
+    // Waiting kernels follow every request: two or three a vertex of the first three bounces, and half of what those would send behind them.
+    Settings s;
+    s.hider = Hider::Path;
+    s.suspend = true;
+    Counters c;
+    Moments m = see(file, folder, s, c);
+    EXPECT_LE(double(c.diffuse + c.specular), 27 * 32 * double(c.paths));
+    EXPECT_NEAR(m.mean(), last, .1 * last + kZ * std::sqrt(m.se() * m.se() + spread * spread));
+    std::printf("%s: largest frames of waiting shaders %zu bytes a thread, %.1f rays a sample\n", GetParam(), c.peakFrameBytes,
+                double(c.diffuse + c.specular + c.shadow) / double(c.paths));
+}
+INSTANTIATE_TEST_SUITE_P(Published, OldScene, ::testing::Values("bulb", "cubits", "showquads", "spot", "teapot", "tetra", "uteapot", "val_poly"),
+                         [](const auto& i) { return std::string(i.param); });
+
 TEST(Growth, SuspendedFramesStayBounded) {
     writeShader("branchy", R"(surface branchy() {
     normal Nf = faceforward(normalize(N), I);

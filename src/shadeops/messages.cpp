@@ -39,30 +39,30 @@ std::vector<Shadeop> messageShadeops() {
     message("lightsource", Lowering::Service, kSurface | kVolume, "Parameter of the light of the current turn; only inside illuminance.");
     message("incident", Lowering::Unavailable, kSurface, "Parameter of the volume shader on the side of the incident ray.");
     message("opposite", Lowering::Unavailable, kSurface, "Parameter of the volume shader on the other side of the surface.");
-    message("attribute", Lowering::Unavailable, kAnyContext,
+    message("attribute", Lowering::Service, kAnyContext,
             "Attribute of the primitive (\"class:name\", \"Ri:...\", \"user:...\"); with \"light:\" in front, inside illuminance, of the light.");
-    message("option", Lowering::Unavailable, kAnyContext, "Option of the frame.");
-    message("rendererinfo", Lowering::Unavailable, kAnyContext, "\"renderer\" string, \"version\" float[4], \"versionstring\" string.");
+    message("option", Lowering::Service, kAnyContext, "Option of the frame.");
+    message("rendererinfo", Lowering::Service, kAnyContext, "\"renderer\" string, \"version\" float[4], \"versionstring\" string.");
     message("rayinfo", Lowering::Service, kNoImager,
             "About the ray that hit the point: \"type\" string (camera, specular, diffuse, transmission, light, subsurface), \"depth\", \"speculardepth\", "
             "\"diffusedepth\" float, \"label\" string, \"origin\" point, \"direction\" vector, \"length\" float.");
-    Shadeop& textureinfo = add("textureinfo", query("textureinfo", "string texture, string field"), Lowering::Unavailable, kAnyContext,
+    Shadeop& textureinfo = add("textureinfo", query("textureinfo", "string texture, string field"), Lowering::Service, kAnyContext,
                                "About a texture: \"resolution\" float[2], \"type\" string, \"channels\" float, \"viewingmatrix\" and \"projectionmatrix\" matrix; "
                                "\"exists\" with a literal 0 as value: 1 if the file is there and valid.");
     textureinfo.signatures = textureinfo.signatures + sigs({{"float textureinfo(string texture, string field; float none)"}});
     const auto rayFunction = [&](const char* name, const char* doc) {
-        add(name, sigs({{(std::string("float ") + name + "()").c_str()}}), Lowering::Unavailable, kSurface | kVolume, doc);
+        add(name, sigs({{(std::string("float ") + name + "()").c_str()}}), Lowering::Service, kSurface | kVolume, doc);
     };
     rayFunction("raylevel", "Depth of the ray. Deprecated: rayinfo(\"depth\").");
     rayFunction("isindirectray", "1 for indirect rays. Deprecated: rayinfo(\"type\").");
     rayFunction("isshadowray", "1 for shadow rays. Deprecated: rayinfo(\"type\").");
-    add("isoutput", each(kAllTypes, "float isoutput($ variable)"), Lowering::Unavailable, kAnyContext,
+    add("isoutput", each(kAllTypes, "float isoutput($ variable)") + each(kAllTypes, "float isoutput($ variable[])"), Lowering::Special, kAnyContext,
         "1 if the variable, or the one of that name (\"outputs[1]\" too), is an output that a display asks for.");
     add("outputchannel", each("float color point vector normal matrix", "void outputchannel(uniform string name; $ value)"), Lowering::Unavailable,
         kAnyContext, "Creates or assigns an output of the main shader; \"light:\" or \"local:\" keep it where it is.");
-    add("gridmin", sigs({{"float gridmin(float value)"}, {"void gridmin(float value)"}}), Lowering::Unavailable, kNoImager,
+    add("gridmin", sigs({{"float gridmin(float value)"}, {"void gridmin(float value)"}}), Lowering::Special, kNoImager,
         "Smallest value over the grid. A hit is a grid of one point: the value minus half its footprint.");
-    add("gridmax", sigs({{"float gridmax(float value)"}, {"void gridmax(float value)"}}), Lowering::Unavailable, kNoImager,
+    add("gridmax", sigs({{"float gridmax(float value)"}, {"void gridmax(float value)"}}), Lowering::Special, kNoImager,
         "Largest value over the grid: the value plus half its footprint.");
     add("getshader", sigs({{"shader getshader(string handle)"}}), Lowering::Unavailable, kNoImager, "Co-shader by its handle; null if absent.");
     add("getshaders", sigs({{"shader[] getshaders(pairs)"}}), Lowering::Unavailable, kAnyContext, "All co-shaders, or those of a category.").optional = {
@@ -74,7 +74,7 @@ std::vector<Shadeop> messageShadeops() {
         Lowering::Unavailable, kAnyContext, "Member variable of a co-shader; null handle: the primitive's variables. 1 if found.");
     add("islightcategory", sigs({{"float islightcategory(string category)"}}), Lowering::Unavailable, kSurface | kVolume,
         "1 if the current light belongs to the category.").source = "seen in 3Delight shaders";
-    add("shadername", sigs({{"string shadername()"}, {"string shadername(string type)"}}), Lowering::Unavailable, kAnyContext, "Name of the shader attached.")
+    add("shadername", sigs({{"string shadername()"}, {"string shadername(string type)"}}), Lowering::Service, kAnyContext, "Name of the shader attached.")
         .source = "(k)";
     return list;
 }

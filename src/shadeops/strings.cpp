@@ -28,9 +28,9 @@ std::vector<Shadeop> stringShadeops() {
         .pure = false;
     add("concat", sigs({{"string concat(string a, string b, ...)"}}), Lowering::Service, "Joins strings.").examples = {
         {"concat(\"a\", \"b\", \"c\")", "abc"}};
-    add("match", sigs({{"float match(string pattern, string subject)"}}), Lowering::Unavailable,
+    add("match", sigs({{"float match(string pattern, string subject)"}}), Lowering::Service,
         "1 if the POSIX regular expression occurs anywhere in subject, else 0.");
-    add("stringhash", sigs({{"float stringhash(string text)"}, {"color stringhash(string text)"}}), Lowering::Unavailable,
+    add("stringhash", sigs({{"float stringhash(string text)"}, {"color stringhash(string text)"}}), Lowering::Service,
         "A hash of the text in [0,1), as float or color, for pictures of identifiers.");
     return list;
 }

@@ -122,6 +122,8 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
     };
     std::string name = d.strings.empty() ? "" : d.strings[0];
 
+    if (name.empty() && mask && !d.argKinds.empty() && d.argKinds[0] == rsl::ir::Kind::String) // known only now; the same for all
+        name = rsl::internedString(std::bit_cast<int32_t>(at(0, std::countr_zero(mask))));
     switch (s.kind) {
     case SiteKind::Texture:
     case SiteKind::Environment: {
@@ -297,6 +299,19 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
     }
     if (d.op == "random") { // keyed by point and call site: nothing depends on who shares the batch
         each([&](int lane, const ShadePoint& p) {
+    if (d.op == "shadername") {
+        const std::string kind = d.strings.empty() ? "" : name;
+        each([&](int lane, const ShadePoint&) {
+            std::string text;
+            if (!c.bindings.empty()) {
+                const SurfaceBinding& b = world_->bindings_[c.bindings[first + lane]];
+                const InstanceRef& i = kind == "surface" ? b.surface : kind == "displacement" ? b.displacement : b.atmosphere;
+                if (i && (kind == "surface" || kind == "displacement" || kind == "atmosphere")) text = i->name;
+            }
+            put(0, lane, std::bit_cast<float>(rsl::internString(text)));
+        });
+        return;
+    }
             const PathRay* r = c.rays.empty() ? p.ray : &c.rays[first + lane];
             Random rng = r ? random(*r) : Random(world_->settings_.seed, 0, 0, 0);
             for (int k = 0; k < s.resultRowCount; ++k) put(k, lane, rng.one(r ? r->vertex : 0, uint32_t(site), uint32_t(64 + k)));

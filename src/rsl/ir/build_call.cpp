@@ -80,6 +80,7 @@ Inst* Builder::shadeopCall(const Expr& e) {
     if (options_.path && op.name == "ambient") return service(e, Op::Request);
     if (op.name == "filterstep" && !e.pairs.empty()) return filterstep(e);
     if (e.function) return functionCall(e);
+    if (op.name == "shadername" && e.args.empty()) return leaves_.string(shader_.name);
     switch (op.lowering) {
     case Lowering::Runtime:
         return runtimeCall(e);
@@ -368,8 +369,39 @@ Inst* Builder::special(const Expr& e) {
     }
     if (n == "spline") return spline(e);
     if (n == "random") return random(e);
+    if (n == "isoutput") return isOutput(e);
+    if (n == "gridmin" || n == "gridmax") return gridBound(e, n == "gridmin" ? -0.5f : 0.5f);
     if (n == "arraylength") return constant(static_cast<float>(arrayLength(array(*e.args[0]))));
     return unavailable(e);
+}
+
+/// Whether a display asks for an output: of a variable, or by its name; of an array also by element.
+Inst* Builder::isOutput(const Expr& e) {
+    const Expr& a = *e.args[0];
+    std::string name;
+    if (a.kind == ExprKind::Variable && a.symbol && a.symbol->origin == Symbol::Origin::ShaderParameter && a.symbol->output)
+        name = a.symbol->name;
+    else if (Inst* v = a.type == Type{Base::String, 0} ? expr(a) : nullptr; v && v->op == Op::ConstString)
+        name = v->text.substr(0, v->text.find('['));
+    const auto& wanted = options_.outputs;
+    const bool declared = std::any_of(shader_.parameters.begin(), shader_.parameters.end(),
+                                      [&](const ShaderParameter& p) { return p.symbol->output && p.symbol->name == name; });
+    const bool known = declared || hasGlobal(name.c_str());
+    return constant(known && std::find(wanted.begin(), wanted.end(), name) != wanted.end() ? 1.0f : 0.0f);
+}
+
+/// A hit is a grid of one point (design decision 6): the value, and half of what it changes over the footprint below or above it.
+/// As a statement it is the variable that becomes that.
+Inst* Builder::gridBound(const Expr& e, float half) {
+    Inst* v = expr(*e.args[0], Kind::Float);
+    place_ = e.place;
+    const auto change = [&](Op d, const char* step) {
+        return runtime1("al_abs", {emit(Op::Mul, Kind::Float, {emit(d, Kind::Float, {v}), global(step, Base::Float)})}, Kind::Float);
+    };
+    Inst* size = emit(Op::Add, Kind::Float, {change(Op::Du, "du"), change(Op::Dv, "dv")});
+    Inst* bound = emit(Op::Add, Kind::Float, {v, emit(Op::Mul, Kind::Float, {constant(half), size})});
+    if (e.signature && e.signature->result.base == Base::Void && e.args[0]->kind == ExprKind::Variable) assign(*e.args[0], bound);
+    return bound;
 }
 
 Inst* Builder::filterstep(const Expr& e) {

@@ -133,6 +133,8 @@ private:
     Inst* spline(const Expr&);
     Inst* transformCall(const Expr&);
     Inst* filterstep(const Expr&);
+    Inst* isOutput(const Expr&);
+    Inst* gridBound(const Expr&, float half);
     Inst* unavailable(const Expr&);
     Inst* random(const Expr&);
     bool hasGlobal(const char* name) const;

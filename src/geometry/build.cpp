@@ -90,7 +90,7 @@ ShapeRef buildShape(const scene::PrimitiveRef& prim, const scene::AttributesRef&
     return entry->make(std::move(s), diag);
 }
 
-std::vector<ShapeRef> buildShapes(const scene::Frame& f, Diagnostics& diag) {
+std::vector<ShapeRef> buildShapes(const scene::Frame& f, Diagnostics& diag, size_t most) {
     std::vector<ShapeRef> out;
     const Matrix& camera = f.options.worldToCamera.first();
     auto sayMotion = [&](const scene::Primitive& p, bool moves) {
@@ -98,12 +98,14 @@ std::vector<ShapeRef> buildShapes(const scene::Frame& f, Diagnostics& diag) {
             once(diag, "motion", Rie::Unimplement, p.place,
                  "motion is not yet drawn: moving primitives stand where they are at their first key");
     };
+    auto full = [&](const SourcePlace& place) {
+        if (out.size() < most) return false;
+        once(diag, "limit", Rie::Limit, place,
+             "the frame has more than " + std::to_string(most) + " primitives; the rest is not drawn");
+        return true;
+    };
     auto add = [&](const scene::PrimitiveRef& p, const scene::AttributesRef& a, const Matrix& m, int instance) {
-        if (out.size() >= limits::kShapes) {
-            once(diag, "limit", Rie::Limit, p->place,
-                 "the frame has more than " + std::to_string(limits::kShapes) + " primitives; the rest is not drawn");
-            return;
-        }
+        if (full(p->place)) return;
         if (ShapeRef s = buildShape(p, a, m, instance, diag)) out.push_back(std::move(s));
     };
     for (const scene::PrimitiveRef& p : f.primitives) {
@@ -117,7 +119,7 @@ std::vector<ShapeRef> buildShapes(const scene::Frame& f, Diagnostics& diag) {
             diag.report(Severity::Error, Rie::BadHandle, inst.place, "ObjectInstance of an object that does not exist");
             continue;
         }
-        if (out.size() >= limits::kShapes) break;
+        if (full(inst.place)) break;
         for (const scene::PrimitiveRef& p : f.objects[size_t(inst.object)].primitives) {
             if (!p) continue;
             sayMotion(*p, inst.toWorld.moves());

@@ -1,5 +1,6 @@
 // From the description of a frame to shapes in camera space.
 #pragma once
+#include "base/limits.h"
 #include "geometry/shape.h"
 
 namespace alpenglow::geometry {
@@ -9,7 +10,8 @@ ShapeRef buildShape(const scene::PrimitiveRef&, const scene::AttributesRef& attr
                     Diagnostics&);
 
 /// All shapes of a frame: its primitives in order, then its instances expanded in order (their primitives' transforms
-/// composed; the instance's attributes). Moving transforms and primitives stand at their first key, said once.
-std::vector<ShapeRef> buildShapes(const scene::Frame&, Diagnostics&);
+/// composed; the instance's attributes). Moving transforms and primitives stand at their first key, said once. What is beyond
+/// `most` is reported and left out.
+std::vector<ShapeRef> buildShapes(const scene::Frame&, Diagnostics&, size_t most = limits::kShapes);
 
 } // namespace alpenglow::geometry

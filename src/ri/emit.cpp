@@ -47,7 +47,7 @@ void Interpreter::light(const Call& call, bool area) {
         attributes().areaLight = -1;
         return;
     }
-    if (lights().size() >= limits::kLights) {
+    if (lights().size() >= settings.mostLights) {
         reporter.once("ri:lights", Severity::Error, Rie::Limit, call.place, "there are too many lights");
         return;
     }

@@ -83,7 +83,7 @@ private:
 
 class Gzip : public ByteSource {
 public:
-    explicit Gzip(std::unique_ptr<ByteSource> raw) : raw_(std::move(raw)), in_(64 << 10) {
+    Gzip(std::unique_ptr<ByteSource> raw, size_t most) : raw_(std::move(raw)), most_(most), in_(64 << 10) {
         ok_ = inflateInit2(&z_, 15 + 16) == Z_OK;
         if (!ok_) failure_ = "zlib could not be started";
     }
@@ -110,7 +110,7 @@ public:
         size_t n = want - z_.avail_out;
         total_ += n;
         constexpr size_t kFree = 1 << 20; // small files compress well and hurt nobody
-        if (total_ > limits::kGzipBytes || (total_ > kFree && total_ / limits::kGzipRatio > consumed_)) {
+        if (total_ > most_ || (total_ > kFree && total_ / limits::kGzipRatio > consumed_)) {
             limitHit_ = true;
             return end("the gzip data inflates beyond the limit");
         }
@@ -141,6 +141,7 @@ private:
     }
 
     std::unique_ptr<ByteSource> raw_;
+    size_t most_; ///< inflated bytes
     std::vector<char> in_;
     z_stream z_{};
     bool ok_ = false, between_ = false;
@@ -168,7 +169,7 @@ std::unique_ptr<ByteSource> fileSource(const std::string& path, std::string* why
 
 std::unique_ptr<ByteSource> standardInput() { return std::make_unique<File>(STDIN_FILENO, false); }
 
-std::unique_ptr<ByteSource> inflating(std::unique_ptr<ByteSource> raw) {
+std::unique_ptr<ByteSource> inflating(std::unique_ptr<ByteSource> raw, size_t most) {
     std::string head;
     while (head.size() < 2) {
         char c;
@@ -178,7 +179,7 @@ std::unique_ptr<ByteSource> inflating(std::unique_ptr<ByteSource> raw) {
     }
     bool gzip = head == "\x1f\x8b";
     auto whole = std::make_unique<Prefixed>(std::move(head), std::move(raw));
-    if (gzip) return std::make_unique<Gzip>(std::move(whole));
+    if (gzip) return std::make_unique<Gzip>(std::move(whole), most);
     return whole;
 }
 

@@ -1,5 +1,6 @@
 // Where a RIB stream's bytes come from: memory, a file, an istream, each possibly gzip-compressed.
 #pragma once
+#include "base/limits.h"
 #include <cstddef>
 #include <istream>
 #include <memory>
@@ -33,7 +34,7 @@ std::unique_ptr<ByteSource> fileSource(const std::string& path, std::string* why
 /// Descriptor 0, unbuffered.
 std::unique_ptr<ByteSource> standardInput();
 /// Inflates when the stream starts with 1f 8b (concatenated members too), else passes it through.
-/// Limits: limits::kGzipRatio, limits::kGzipBytes.
-std::unique_ptr<ByteSource> inflating(std::unique_ptr<ByteSource> raw);
+/// Limits: limits::kGzipRatio, and `most` inflated bytes.
+std::unique_ptr<ByteSource> inflating(std::unique_ptr<ByteSource> raw, size_t most = limits::kGzipBytes);
 
 } // namespace alpenglow::ri

@@ -244,7 +244,8 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     w->screenToNdc_ = translateMatrix(-sw[0], -sw[3], 0) * scaleMatrix(1 / (sw[1] - sw[0]), -1 / (sw[3] - sw[2]), 1);
     w->ndcToRaster_ = scaleMatrix(o.xres, o.yres, 1);
     w->maxDepth_ = path ? 32 : 4;
-    if (auto i = o.values.find("trace:maxdepth"); i != o.values.end() && !i->second.numbers.empty()) w->maxDepth_ = int(i->second.numbers[0]);
+    if (auto i = o.values.find("trace:maxdepth"); i != o.values.end() && !i->second.numbers.empty())
+        w->maxDepth_ = int(std::clamp(double(i->second.numbers[0]), -1.0, double(limits::kPathDepth))); // what no int holds, too
     if (settings.maxDepth >= 0) w->maxDepth_ = settings.maxDepth;
     w->maxDepth_ = std::min(w->maxDepth_, limits::kPathDepth);
     w->textures_ = std::make_unique<texture::TextureSystem>(d);

@@ -2,6 +2,7 @@
 // the IR as it was before any pass, one point at a time. The bits must agree at every point. Each program is compiled in two of
 // the twelve configurations; all twelve take their turns.
 #include "../rslir/evaluator.h"
+#include "../sanitized.h"
 #include "points.h"
 #include "rsl/ir/build.h"
 #include "rsl/ir/verify.h"
@@ -11,7 +12,7 @@
 namespace alpenglow::rsl {
 namespace {
 
-constexpr int kPrograms = 200, kDerived = 40, kPoints = 37;
+constexpr int kPrograms = kSanitized ? 50 : 200, kDerived = kSanitized ? 20 : 40, kPoints = 37;
 
 /// Well-typed statements over floats, colours, points and an array. Loops have at most eight turns; jumps leave one or two of
 /// them.

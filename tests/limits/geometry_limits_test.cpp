@@ -1,0 +1,121 @@
+// What one primitive and one frame may cost.
+#include "base/limits.h"
+#include "geometry/make.h"
+#include "geometry/triangulate.h"
+#include <cmath>
+#include <gtest/gtest.h>
+
+using namespace alpenglow;
+using namespace alpenglow::geometry;
+using namespace alpenglow::geometry::test;
+
+namespace {
+
+/// Diced with a displacement shader that moves every point by (0, 0, by).
+ShapeRef displaced(const std::shared_ptr<scene::Primitive>& p, double pixelsPerUnit, float by, Diagnostics& d) {
+    scene::Attributes a;
+    a.displacement = std::make_shared<scene::ShaderCall>();
+    ShapeRef s = build(p, Matrix(), d, a);
+    EXPECT_TRUE(s);
+    if (!s) return s;
+    DiceOptions o;
+    o.camera.pixelsPerUnit = pixelsPerUnit;
+    o.displace = [by](const Shape&, DiceGrid& g) {
+        for (Vec3& x : g.P) x.z += by;
+    };
+    diceShapes({s}, o, d);
+    return s;
+}
+
+std::vector<float> square(float w, float h) { return {0, 0, 0, w, 0, 0, 0, h, 0, w, h, 0}; }
+
+int limitsSaid(const Diagnostics& d) {
+    int n = 0;
+    for (const Diagnostic& m : d.all()) n += m.code == Rie::Limit;
+    return n;
+}
+
+} // namespace
+
+TEST(GeometryLimits, StepsAlongOneEdge) {
+    // A strip a million pixels long and one pixel wide: kDiceEdge steps, no more.
+    Diagnostics d;
+    ShapeRef s = displaced(patch("bilinear", square(1e6f, 1)), 1, 0, d);
+    ASSERT_TRUE(s);
+    EXPECT_EQ(s->mesh().triangles(), 2u * unsigned(limits::kDiceEdge));
+}
+
+TEST(GeometryLimits, MicropolygonsOfOnePrimitive) {
+    // 2100 pixels squared are 4.4 million micropolygons.
+    static_assert(limits::kDiceQuads < 2100u * 2100u);
+    Diagnostics d;
+    ShapeRef s = displaced(patch("bilinear", square(2100, 2100)), 1, 0, d);
+    ASSERT_TRUE(s);
+    EXPECT_LE(s->mesh().triangles(), 2 * limits::kDiceQuads);
+    EXPECT_GE(s->mesh().triangles(), limits::kDiceQuads / 2);
+    EXPECT_EQ(limitsSaid(d), 1);
+}
+
+TEST(GeometryLimits, DisplacementTooFar) {
+    Diagnostics d;
+    ShapeRef s = displaced(patch("bilinear", square(1, 1)), 4, limits::kDisplacementBound * 1.5f, d);
+    ASSERT_TRUE(s);
+    EXPECT_EQ(limitsSaid(d), 1);
+    EXPECT_EQ(s->bounds().hi.z, 0); // stays where it was
+    Diagnostics fine;
+    ShapeRef moved = displaced(patch("bilinear", square(1, 1)), 4, limits::kDisplacementBound * 0.5f, fine);
+    ASSERT_TRUE(moved);
+    EXPECT_EQ(limitsSaid(fine), 0);
+    EXPECT_EQ(moved->bounds().hi.z, limits::kDisplacementBound * 0.5f);
+}
+
+TEST(GeometryLimits, ControlPoints) {
+    const int side = int(std::sqrt(double(limits::kControlPoints)));
+    for (auto [nu, nv] : {std::pair{side + 1, side + 1}, {2, 2'000'000'000}, {2'000'000'000, 2'000'000'000}}) {
+        Diagnostics d;
+        EXPECT_FALSE(build(patchMesh("bilinear", nu, "nonperiodic", nv, "nonperiodic", square(1, 1)), Matrix(), d));
+        EXPECT_GE(d.errors(), 1) << nu;
+    }
+    Diagnostics d;
+    build(patchMesh("bilinear", side + 1, "nonperiodic", side + 1, "nonperiodic", square(1, 1)), Matrix(), d);
+    EXPECT_EQ(limitsSaid(d), 1);
+}
+
+TEST(GeometryLimits, Shapes) {
+    static_assert(limits::kShapes >= 1'000'000); // the same code with a smaller number
+    scene::Frame f;
+    auto p = quadric("Sphere", {1, -1, 1, 360});
+    p->attributes = std::make_shared<scene::Attributes>();
+    f.objects.push_back({"o", {p, p, p}});
+    for (int i = 0; i < 40; ++i) f.instances.push_back({0, {}, std::make_shared<scene::Attributes>(), {}});
+    for (size_t most : {size_t(99), size_t(100)}) { // at the end of an instance, and within one
+        Diagnostics d;
+        EXPECT_EQ(buildShapes(f, d, most).size(), most);
+        EXPECT_EQ(limitsSaid(d), 1);
+    }
+    Diagnostics enough;
+    EXPECT_EQ(buildShapes(f, enough, 120).size(), 120u);
+    EXPECT_EQ(limitsSaid(enough), 0);
+}
+
+TEST(GeometryLimits, ConcavePolygonsEndInTime) {
+    // A comb: to cut a tooth off, its triangle is tested against all corners between the teeth that are left, so the tests are
+    // about the square of the teeth; after kTriangulationTests the rest is guessed.
+    const int teeth = 21'000;
+    static_assert(size_t(teeth) * teeth > limits::kTriangulationTests);
+    std::vector<Vec3d> p;
+    for (int i = 0; i < teeth; ++i) {
+        p.push_back({double(i), 0.0, 0.0});
+        p.push_back({i + 0.5, 1.0 + 1e-6 * double(i) * (teeth - i), 0.0}); // the valleys form an arch
+    }
+    p.push_back({double(teeth), 0.0, 0.0});
+    p.push_back({double(teeth), 1e6, 0.0});
+    p.push_back({-1.0, 1e6, 0.0});
+    const int loop = int(p.size());
+    std::vector<uint32_t> out;
+    Vec3d normal;
+    EXPECT_EQ(triangulate(p, std::span(&loop, 1), out, normal), TriangulationResult::Forced);
+    EXPECT_EQ(out.size() % 3, 0u);
+    EXPECT_LE(out.size(), 3 * (p.size() - 2));
+    for (uint32_t i : out) ASSERT_LT(i, p.size());
+}

@@ -57,7 +57,7 @@ void Diagnostics::setHandler(Handler h) { std::lock_guard lock(mutex_); handler_
 
 std::string nearestName(std::string_view word, const std::vector<std::string>& candidates) {
     std::string best;
-    size_t bestCost = word.size() / 3 + 1 + 1; // strictly less wins: about one slip in three letters
+    size_t bestCost = (word.size() + 1) / 3 + 1; // strictly less wins: one slip in three letters, none in one
     for (const auto& c : candidates) {
         if (c.size() > word.size() + bestCost || word.size() > c.size() + bestCost) continue;
         std::vector<size_t> row(c.size() + 1);

@@ -131,7 +131,7 @@ void Checker::surveyCall(Expr& e, Info& info) {
         info.any = true;
         if (broken) return; // what went wrong inside was reported
         if (known) return noMatch(e, candidates, outputsOnly);
-        if (unit_->incomplete) return;
+        if (unit_->hides(e.text)) return;
         std::vector<std::string> names;
         for (const auto& f : unit_->functions) names.push_back(f->name);
         for (const auto& s : scopes_)

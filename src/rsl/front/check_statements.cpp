@@ -35,6 +35,7 @@ void Checker::assignedToUniform(const Symbol& s, const Expr& value) {
 /// `T x = value`, where x may be an array whose length comes from the value.
 void Checker::initialise(Symbol& s, ExprPtr& value) {
     if (s.type.base == Base::Void) { value.reset(); return; }
+    const int errors = sources_.errors();
     infos_.clear();
     const Info& info = survey(*value);
     if (s.type.array == -1 && info.listLength >= 0) s.type.array = std::max(1, info.listLength);
@@ -59,7 +60,7 @@ void Checker::initialise(Symbol& s, ExprPtr& value) {
         settle(value, s.type);
     }
     infos_.clear();
-    assignedToUniform(s, *value);
+    if (sources_.errors() == errors) assignedToUniform(s, *value);
 }
 
 void Checker::checkDeclare(Stmt& s) {

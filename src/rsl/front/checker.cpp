@@ -199,7 +199,7 @@ std::vector<std::string> Checker::visibleNames() {
 }
 
 void Checker::unknownVariable(Expr& e) {
-    if (!unit_->incomplete) {
+    if (!unit_->hides(e.text)) {
         std::string hint;
         if (shaderParameters_.count(e.text)) {
             hint = "it is a parameter of the shader: declare 'extern " + toString(shaderParameters_.at(e.text)->type) + " " +

@@ -100,6 +100,11 @@ void Parser::recover() {
     }
 }
 
+void Parser::skippedFrom(size_t begin) {
+    for (size_t n = begin; n < at_ && n < tokens_.size(); ++n)
+        if (tokens_[n].kind == Tok::Identifier) unit_.skipped.emplace(tokens_[n].text);
+}
+
 Parser::Depth::Depth(Parser& p) : parser(p) {
     if (++p.depth_ <= limits::kExpressionDepth) return;
     --p.depth_;
@@ -124,7 +129,6 @@ Unit Parser::parse() {
         try {
             topLevel();
         } catch (const SyntaxError&) {
-            unit_.incomplete = true;
             // On to something that can begin a definition: behind a closing brace, or at a word at the start of a line.
             while (peek().kind != Tok::End) {
                 if (at("{")) { skipBalanced(); break; }
@@ -133,6 +137,7 @@ Unit Parser::parse() {
                     break;
                 take();
             }
+            skippedFrom(before);
         }
         if (at_ == before) take();
     }
@@ -353,11 +358,12 @@ void Parser::parameters(Owner owner, std::vector<ShaderParameter>* shader, std::
             else failHere("expected ';', ',' or ')' after a parameter");
         } catch (const SyntaxError&) {
             if (tooDeep_) throw;
-            unit_.incomplete = true;
+            const size_t begin = at_ > 2 ? at_ - 2 : 0; // the parameter's own name, too
             for (; peek().kind != Tok::End && !at(";") && !at(")") && !at("{");) {
                 if (at("(") || at("[")) skipBalanced();
                 else take();
             }
+            skippedFrom(begin);
         }
     }
 }

@@ -10,7 +10,10 @@ namespace alpenglow::rsl::front {
 struct Unit {
     std::vector<std::unique_ptr<Shader>> shaders;
     std::vector<std::unique_ptr<Function>> functions;
-    bool incomplete = false; ///< something was skipped: unknown names may be its fault
+    bool incomplete = false; ///< text is missing that nobody has seen: unknown names may be its fault
+    std::unordered_set<std::string> skipped; ///< names in text that was skipped behind an error: it may have declared them
+    /// Whether the name may be declared in text that was not read.
+    bool hides(const std::string& n) const { return incomplete || skipped.count(n); }
 };
 
 class Parser {
@@ -43,6 +46,7 @@ private:
     Place endOfLast() const;
     void skipBalanced();
     void recover();
+    void skippedFrom(size_t begin); ///< the tokens from there to here were not understood
     bool atTypeName(size_t k = 0) const;
     Base takeBase();
     std::string shown() const;

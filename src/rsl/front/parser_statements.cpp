@@ -34,8 +34,8 @@ void Parser::statements(Stmt& block) {
         try {
             if (auto s = statement()) block.body.push_back(std::move(s));
         } catch (const SyntaxError&) {
-            unit_.incomplete = true;
             recover();
+            skippedFrom(before);
         }
         if (at_ == before && !at("}")) take();
     }
@@ -180,8 +180,9 @@ StmtPtr Parser::declaration() {
             } catch (const SyntaxError&) {
                 // The name is declared all the same: its uses are no errors.
                 if (tooDeep_) throw;
-                unit_.incomplete = true;
+                const size_t begin = at_;
                 recover();
+                skippedFrom(begin);
                 return s;
             }
         }

@@ -1,6 +1,7 @@
 // The patterns of the shaders named, through `alpenglow shade --iterations`, against the same mathematics written by hand: scalar
-// C++ with the vectorisers off, and vector types. CPU time, one thread; the contestants take turns, and the best of all turns counts.
-//   pattern_bench [--program PATH] [--lanes 16|8] [--turns N] [--cpu avx512|avx2] shader.sl...
+// C++ with the vectorisers off, and vector types. CPU time, one thread; the contestants take turns. A figure is the best of its turn;
+// a ratio is the median over the turns, because the clock rate of a busy machine changes from one to the next.
+//   pattern_bench [--program PATH] [--lanes 16|8] [--turns N] shader.sl...
 // Prints, for every shader, ns a point and two ratios, and compares the pictures. Exit 1 when a ratio misses its limit.
 #include "display/imageio.h"
 #include "patterns.h"
@@ -13,6 +14,7 @@
 #include <filesystem>
 #include <memory>
 #include <unistd.h>
+#include <vector>
 
 using namespace alpenglow;
 using namespace alpenglow::bench;
@@ -75,6 +77,11 @@ double measureProgram(const std::string& program, const std::string& shader, int
     return pclose(pipe) == 0 ? ns : -1;
 }
 
+double median(std::vector<double> x) {
+    std::nth_element(x.begin(), x.begin() + long(x.size() / 2), x.end());
+    return x[x.size() / 2];
+}
+
 struct Difference {
     double mean = -1, largest = -1;
 };
@@ -104,7 +111,7 @@ int main(int argc, char** argv) {
     const bool hasAvx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
                            __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512cd");
     bool avx512 = hasAvx512;
-    int turns = 5, lanes = 0;
+    int turns = 7, lanes = 0;
     std::vector<std::string> shaders;
     for (int i = 1; i < argc; i++) {
         if (!std::strcmp(argv[i], "--program") && i + 1 < argc) program = argv[++i];
@@ -126,7 +133,7 @@ int main(int argc, char** argv) {
     Batch batch;
     const std::string picture =
         (std::filesystem::temp_directory_path() / ("alpenglow_pattern_" + std::to_string(getpid()) + ".exr")).string();
-    std::printf("%d lanes; ns a point of CPU time, the best of %d turns; by hand: the best of %d, %d%s lanes in flight\n", lanes, turns,
+    std::printf("%d lanes; ns a point of CPU time, medians of %d turns; by hand: the best of %d, %d%s lanes in flight\n", lanes, turns,
                 vector[0].first, vector[1].first, avx512 ? " and 64" : "");
     std::printf("%-15s %8s %8s %8s %4s  %-20s %-20s %s\n", "pattern", "shade", "scalar", "vector", "at", "scalar / shade", "vector / shade",
                 "|difference| mean, largest");
@@ -135,7 +142,7 @@ int main(int argc, char** argv) {
         const std::string name = std::filesystem::path(file).stem().string();
         const Pattern byHand = find(scalar, name);
         if (!byHand) continue;
-        double ours = 1e9, plain = 1e9, best = 1e9;
+        std::vector<double> ours, plain, best, scalarRatio, vectorRatio;
         int width = 0;
         for (int t = 0; t < turns; t++) {
             const double ns = measureProgram(program, file, lanes, picture);
@@ -143,15 +150,18 @@ int main(int argc, char** argv) {
                 std::fprintf(stderr, "pattern_bench: '%s shade %s' gave no figure\n", program.c_str(), file.c_str());
                 return 1;
             }
-            ours = std::min(ours, ns);
-            plain = std::min(plain, measure(byHand, batch.points));
+            ours.push_back(ns);
+            plain.push_back(measure(byHand, batch.points));
+            best.push_back(1e9);
             for (auto [w, list] : vector)
-                if (const double x = measure(find(list, name), batch.points); x < best) best = x, width = w;
+                if (const double x = measure(find(list, name), batch.points); x < best.back()) best.back() = x, width = w;
+            scalarRatio.push_back(plain.back() / ns);
+            vectorRatio.push_back(best.back() / ns);
         }
         const Difference d = compare(picture, batch.points);
-        const double s = plain / ours, v = best / ours;
+        const double s = median(scalarRatio), v = median(vectorRatio);
         good = good && s >= kScalarLimit && v >= kVectorLimit;
-        std::printf("%-15s %8.2f %8.2f %8.2f %4d  %6.2f >= %-3g %-6s  %6.2f >= %-3g %-6s  %.1e %.1e\n", name.c_str(), ours, plain, best, width, s,
+        std::printf("%-15s %8.2f %8.2f %8.2f %4d  %6.2f >= %-3g %-6s  %6.2f >= %-3g %-6s  %.1e %.1e\n", name.c_str(), median(ours), median(plain), median(best), width, s,
                     kScalarLimit, s >= kScalarLimit ? "PASS" : "MISS", v, kVectorLimit, v >= kVectorLimit ? "PASS" : "MISS", d.mean, d.largest);
         std::fflush(stdout);
     }

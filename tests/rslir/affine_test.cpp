@@ -52,6 +52,21 @@ TEST(Affine, SumDividedByCountAfterLoop) {
     EXPECT_EQ(c.count(Op::Mark), 2) << c.text();
 }
 
+TEST(Affine, SeveralSumsDividedByCountAfterLoop) {
+    const char* const twoSums = "surface s(float n = 4) { color a = 0, b = 0; float k = 0; float i;"
+                                " for (i = 0; i < n; i += 1) { a += trace(P, N); b += trace(P, -N) * i; k += i * s; }"
+                                " Ci = a / k + b * (1 - 1 / k); }";
+    const Compiled c = compile(twoSums);
+    expectAffine(c, 2);
+    EXPECT_EQ(c.count(Op::Loop), 2) << c.text();
+    EXPECT_EQ(c.count(Op::Rescale), 2) << c.text();
+    const Compiled coupled =
+        compile("surface s(float n = 4) { color a = 0, b = 0; float k = 0; float i;"
+                " for (i = 0; i < n; i += 1) { a += trace(P, N); b += a * i; k += i * s; } Ci = a / k + b * (1 - 1 / k); }");
+    EXPECT_TRUE(coupled.kernel->facts.suspends);
+    EXPECT_NE(coupled.kernel->facts.whyNot.find("sums up more than one"), std::string::npos) << coupled.kernel->facts.whyNot;
+}
+
 TEST(Affine, BlendOverLayersRescalesEarlierTurns) {
     const Compiled c = compile(
         "surface s(float n = 4) { color x = 0; float i; for (i = 0; i < n; i += 1) x = mix(x, trace(P, N), 0.25 * s); Ci = x; }");

@@ -3,6 +3,7 @@
 #include "rsl/passes/affine_analysis.h"
 #include "rsl/passes/affine_constant.h"
 #include "rsl/passes/affine_weights.h"
+#include "rsl/passes/split_sums.h"
 
 namespace alpenglow::rsl::ir {
 
@@ -12,7 +13,16 @@ std::vector<std::pair<int, std::string>> nonAffineSites(const Kernel& k) {
     return {all.begin(), all.end()};
 }
 
-void makeAffine(Kernel& k) {
+namespace {
+
+Region copyOf(Kernel& k, const Region& r) {
+    CopyMap map;
+    Region copy;
+    copyBody(k, r, map, copy.body);
+    return copy;
+}
+
+bool prove(Kernel& k, bool split) {
     k.facts.affine = true;
     k.facts.suspends = false;
     k.facts.whyNot.clear();
@@ -23,24 +33,27 @@ void makeAffine(Kernel& k) {
         any = any || i->op == Op::Request;
         if (i->op == Op::Output && k.outputs[static_cast<size_t>(i->index)].name == "Ci") ci = i;
     });
-    if (!any) return;
+    if (!any) return true;
     const auto refuse = [&](int site, const std::string& why) {
         const Site& s = k.sites[static_cast<size_t>(site)];
         k.facts.affine = false;
         k.facts.suspends = true;
         k.facts.whyNot = s.op + "()" + (s.place.line ? ", line " + std::to_string(s.place.line) : "") + ": " + why;
+        return false;
     };
     Dependence d = analyseDependence(k);
     if (!d.bad.empty()) return refuse(d.bad.begin()->first, d.bad.begin()->second);
     // Work on a copy, so that a failure leaves the kernel as it was.
     Region original = k.body;
-    CopyMap map;
-    Region copy;
-    copyBody(k, original, map, copy.body);
-    k.body = copy;
+    k.body = copyOf(k, original);
+    if (split && splitSums(k) == 0) {
+        k.body = std::move(original);
+        return false;
+    }
+    ci = nullptr;
     d = analyseDependence(k);
     forEach(k.body, [&](Inst* i) {
-        if (i->op == Op::Output && ci && i->index == ci->index) ci = i;
+        if (i->op == Op::Output && k.outputs[static_cast<size_t>(i->index)].name == "Ci") ci = i;
     });
     bool good = false;
     std::string why;
@@ -66,6 +79,15 @@ void makeAffine(Kernel& k) {
             for (Region& sub : i->regions) self(self, sub);
     };
     sweep(sweep, k.body);
+    return true;
+}
+
+} // namespace
+
+void makeAffine(Kernel& k) {
+    if (prove(k, false)) return;
+    const KernelFacts facts = k.facts;
+    if (facts.stuck.empty() || !prove(k, true)) k.facts = facts;
 }
 
 } // namespace alpenglow::rsl::ir

@@ -261,8 +261,8 @@ bool Builder::buildDefaults() {
             emit(Op::Output, Kind::None, {value}, static_cast<int>(k_.outputs.size()) - 1);
         }
     }
-    return !failed_;
     k_.body.body.insert(k_.body.body.begin(), functions_.begin(), functions_.end());
+    return !failed_;
 }
 
 bool Builder::buildShader() {
@@ -273,8 +273,8 @@ bool Builder::buildShader() {
     std::set<int> assigned;
     std::set<const Function*> seen;
     if (shader_.body) scanAssigned(*shader_.body, assigned, seen);
-    for (const ShaderParameter& p : shader_.parameters) {
     assignedAnywhere_ = assigned;
+    for (const ShaderParameter& p : shader_.parameters) {
         place_ = p.symbol->place;
         const int n = slot(p.symbol);
         Inst* v = parameterValue(p);
@@ -359,6 +359,7 @@ bool Builder::buildShader() {
                 break;
             }
     }
+    k_.body.body.insert(k_.body.body.begin(), functions_.begin(), functions_.end());
     k_.facts.writes.assign(writes_.begin(), writes_.end());
     forEach(k_.body, [&](Inst* i) { k_.facts.lightLoops = k_.facts.lightLoops || i->op == Op::LightLoop; });
     return !failed_;
@@ -376,7 +377,6 @@ static std::unique_ptr<Kernel> newKernel(const Program& p, const Shader& s) {
     k->kind = s.kind;
     k->files = p.files;
     return k;
-    k_.body.body.insert(k_.body.body.begin(), functions_.begin(), functions_.end());
 }
 
 static std::unique_ptr<Kernel> buildOnce(const Program& p, const Shader& s, const KernelOptions& o, Diagnostics& d,

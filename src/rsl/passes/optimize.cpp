@@ -8,8 +8,8 @@
 #include "rsl/passes/derivatives.h"
 #include "rsl/passes/fold.h"
 #include "rsl/passes/ifconvert.h"
-#include "rsl/passes/promote.h"
 #include "rsl/passes/outline.h"
+#include "rsl/passes/promote.h"
 #include "rsl/passes/uniform.h"
 #include "rsl/passes/unroll.h"
 #include <cstdio>
@@ -47,13 +47,13 @@ void clean(Kernel& k) {
 void optimize(Kernel& k, const KernelOptions& options, Diagnostics& diagnostics) {
     toLongForm(k);
     check(k, "build");
+    inlineCalls(k, options.outline);
+    check(k, "inline");
     if (options.optimize > 0) {
         clean(k);
         for (int round = 0; round < 3; ++round) {
             int changes = unrollLoops(k);
             check(k, "unroll");
-    inlineCalls(k, options.outline);
-    check(k, "inline");
             changes += promoteArrays(k);
             check(k, "promote");
             if (changes == 0) break;
@@ -79,10 +79,10 @@ void optimize(Kernel& k, const KernelOptions& options, Diagnostics& diagnostics)
     removeUnusedInputs(k);
     toShortForm(k);
     markUniform(k, options.mixed);
+    specialiseFunctions(k);
+    check(k, "specialise");
     orderDerivatives(k, diagnostics);
     check(k, "derivatives");
 }
 
 } // namespace alpenglow::rsl::ir
-    specialiseFunctions(k);
-    check(k, "specialise");

@@ -68,3 +68,13 @@ TEST(Agreement, Power) {
     EXPECT_GE(spread, 96);
     EXPECT_GE(tooSmall, 90);
 }
+// Rule 3 of the test plan: the p-values of many nights, kept by ALPENGLOW_PVALUES, are uniform. Finds broken statistics and small common bias.
+TEST(Agreement, KeptPValuesAreUniform) {
+    const char* file = std::getenv("ALPENGLOW_PVALUES");
+    if (!nightly() || !file) GTEST_SKIP() << "nightly, with ALPENGLOW_PVALUES";
+    std::vector<double> p;
+    std::ifstream in(file);
+    for (std::string line; std::getline(in, line);) p.push_back(std::strtod(line.c_str(), nullptr));
+    if (p.size() < 500) GTEST_SKIP() << p.size() << " p-values kept; 500 are needed";
+    EXPECT_GT(ksUniformP(p), 1e-3) << p.size() << " p-values";
+}

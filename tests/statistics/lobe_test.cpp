@@ -149,17 +149,18 @@ TEST(LobeT2, SampledDirectionsHaveFiniteDensityAndValue) {
         std::mt19937_64 rng(5 + seedBase());
         std::uniform_real_distribution<float> u01(0, 0x1.fffffep-1f);
         const int n = samples(2000, 100000);
-        int drawn = 0, lost = 0;
+        int lost = 0;
         for (int i = 0; i < n; ++i) {
             Vec3 w;
             if (!k.sample(c.p, {u01(rng), u01(rng)}, w)) continue;
             ASSERT_NEAR(length(w), 1, 1e-5);
             float pdf = k.pdf(c.p, w), f = k.fcos(c.p, w);
             ASSERT_TRUE(std::isfinite(pdf) && std::isfinite(f) && f >= 0 && pdf >= 0) << c.kind;
-            ++drawn;
             lost += !(pdf > 0);
         }
-        EXPECT_LE(lost, 1 + 1e-3 * drawn) << c.kind << " a " << c.p.a;
+        // With the viewer below the lobe's horizon a highlight may be drawn nearly opposite to it, where its half vector is all rounding.
+        EXPECT_LE(lost, 1 + (dot(c.p.axis, c.p.wo) < 0.1f ? 1e-3 : 1e-4) * n) << c.kind << " a " << c.p.a << " viewer " << c.p.wo.z;
+
     }
 }
 
@@ -178,11 +179,11 @@ TEST(LobeT2, SupportOfTheDensityCoversTheValue) {
 }
 
 // T4: the mean of value over density is the lobe's integral, here by midpoints over (cos, phi) about the lobe's own axis. Smooth lobes only
-// (no horizon, viewer well above); delta found with 99 % power: 7.1 r / sqrt(N), r < 3: 7 % here, below 1 % nightly.
+// (no horizon, viewer well above the surface and the lobe's own plane); delta found with 99 % power: 7.1 r / sqrt(N), r < 3: 7 % here, below 1 % nightly.
 TEST(LobeT4, MeanOfTheWeightsIsTheIntegral) {
     for (const Case& c : cases()) {
         const LobeKind& k = *findLobe(c.kind);
-        if (c.p.hasHorizon || c.p.wo.z < 0.2f || std::string_view(c.kind) == "uniform" || std::string_view(c.kind) == "cosine") continue; // edges: below
+        if (c.p.hasHorizon || c.p.wo.z < 0.2f || dot(c.p.axis, c.p.wo) < 0.2f || std::string_view(c.kind) == "uniform" || std::string_view(c.kind) == "cosine") continue; // edges: below
         std::mt19937_64 rng(8 + seedBase());
         std::uniform_real_distribution<float> u01(0, 0x1.fffffep-1f);
         const int n = samples(20000, 500000), m = 512;

@@ -97,7 +97,7 @@ inline void expectSame(const Technique& a, const Technique& b, int n, double dec
             }
             teststat::Agreement r = teststat::compareTiles(ma, mb);
             if (!stage && k == 0) std::printf("%s: %s\n", what.c_str(), r.text().c_str());
-            if (!stage) teststat::keepP(what, r.imageP);
+            if (!stage && k == 0) teststat::keepP(what, r.imageP);
             ASSERT_GT(r.used, 20) << what;
             if (!r.ok(3)) {
                 again |= nightly() && !stage;

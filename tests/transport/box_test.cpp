@@ -16,31 +16,32 @@ protected:
     Technique with(Settings s, double share = 1) {
         return [this, s, share](int n, uint32_t seed) { return boxTiles(rib_, s, int(n * share), seed); };
     }
+    uint32_t seed(uint32_t k) { return k + (GetParam() ? 100 : 0); } // scenes with and without spheres share no stream
     std::string name(const char* what) { return std::string(what) + (GetParam() ? ", spheres" : ", empty"); }
 };
 
 TEST_P(BoxAgreement, Oracle) {
-    expectSame(with({}), [this](int n, uint32_t seed) { return oracleTiles(GetParam(), n, seed); }, kPerTile, .12, name("oracle"), 1);
+    expectSame(with({}), [this](int n, uint32_t seed) { return oracleTiles(GetParam(), n, seed); }, kPerTile, .12, name("oracle"), seed(1));
 }
 TEST_P(BoxAgreement, LightSamplesOnly) {
     Settings s;
     s.lightOnly = true;
-    expectSame(with({}), with(s), kPerTile, .12, name("light only"), 2);
+    expectSame(with({}), with(s), kPerTile, .12, name("light only"), seed(2));
 }
 TEST_P(BoxAgreement, LobeRaysOnly) {
     Settings s;
     s.bsdfOnly = true;
-    expectSame(with({}), with(s, 2), kPerTile, .14, name("lobe rays only"), 3);
+    expectSame(with({}), with(s, 2), kPerTile, .14, name("lobe rays only"), seed(3));
 }
 TEST_P(BoxAgreement, NoRoulette) {
     Settings s;
     s.roulette = false;
-    expectSame(with({}), with(s, 1. / 3), kPerTile, .17, name("no roulette"), 4);
+    expectSame(with({}), with(s, 1. / 3), kPerTile, .17, name("no roulette"), seed(4));
 }
 TEST_P(BoxAgreement, LocalRoulette) {
     Settings s;
     s.localRoulette = true;
-    expectSame(with({}), with(s), kPerTile, .12, name("local roulette"), 5);
+    expectSame(with({}), with(s), kPerTile, .12, name("local roulette"), seed(5));
 }
 // Affine against suspending form of the same shaders. With glass every request of a waiting shader is followed: few samples there.
 TEST_P(BoxAgreement, Suspending) {
@@ -48,7 +49,7 @@ TEST_P(BoxAgreement, Suspending) {
     s.suspend = true;
     Counters c;
     expectSame(with({}), [&](int n, uint32_t seed) { return boxTiles(rib_, s, n / (nightly() && GetParam() ? 8 : 2), seed, &c); }, kPerTile,
-               nightly() ? .24 : .15, name("suspending"), 6);
+               nightly() ? .24 : .15, name("suspending"), seed(6));
     EXPECT_EQ(c.overLimit, 0u);
     EXPECT_EQ(c.nonFinite, 0u);
 }
@@ -78,7 +79,7 @@ TEST_P(BoxAgreement, ScrambledSequences) {
         }
         return t;
     };
-    expectSame(with({}), sequences, kPerTile, .1, name("sequences"), 7);
+    expectSame(with({}), sequences, kPerTile, .1, name("sequences"), seed(7));
 }
 INSTANTIATE_TEST_SUITE_P(Box, BoxAgreement, ::testing::Bool(), [](const auto& i) { return i.param ? "spheres" : "empty"; });
 
@@ -94,7 +95,6 @@ void expectFigure(const Moments& m, const double want[3], const std::string& wha
     for (int k = 0; k < 3; ++k) {
         double z = (std::fabs(m.mean(k) - want[k]) - 5e-5) / std::sqrt(m.se(k) * m.se(k) + 2e-4 * 2e-4);
         EXPECT_LE(z, kZ) << what << " channel " << k << ": " << m.mean(k) << " +- " << m.se(k) << ", reference " << want[k];
-        teststat::keepP(what, std::erfc(std::max(0.0, z) / std::sqrt(2.0)));
         // Precise enough to say something: 7.1 standard errors (found in 99 of 100 runs) are below 22 % of the figure (the
         // ceiling under caustics; most are below 6 %), nightly a quarter of that.
         EXPECT_LE(7.1 * m.se(k), (nightly() ? .055 : .22) * want[k] + 1e-9) << what << " channel " << k;

@@ -151,10 +151,11 @@ TEST_P(EmitterT1, SolidAngleOfEveryCell) {
     const int n = samples(30'000, 1'000'000);
     auto lit = places(m);
     ASSERT_GE(lit.size(), 2u) << c.name;
+    uint64_t turn = 0;
     for (auto [where, from] : lit) {
         Grid grid = gridFor(m, from);
         std::string what = std::string(c.name) + ", " + where;
-        std::mt19937_64 rng(uint64_t(GetParam()) * 10 + seedBase());
+        std::mt19937_64 rng(uint64_t(GetParam()) * 100 + turn++ + seedBase());
         std::uniform_real_distribution<float> u01(0, 0x1.fffffep-1f);
         std::vector<Cell> drawn(Grid::kCos * Grid::kPhi), counted(drawn.size());
         int failed = 0, unlike = 0;
@@ -211,7 +212,10 @@ TEST_P(EmitterT1, SolidAngleOfEveryCell) {
             else restA = {restA.s + a.s, restA.q + a.q, restA.hits + a.hits}, restB = {restB.s + b.s, restB.q + b.q, restB.hits + b.hits};
         }
         if (restA.hits >= 50 && restB.hits >= 50) compare(restA, restB);
-        else EXPECT_LE(restA.hits, 200) << what;
+        else { // a handful of rays, or none: Poisson
+            double e = restA.s / whole;
+            EXPECT_LE(std::fabs(restB.hits - e), 10 + 5 * std::sqrt(e)) << what;
+        }
         ASSERT_GE(used, 5) << what;
         double p = teststat::gammaQ(used / 2.0, sum / 2);
         EXPECT_GT(p, kAlpha) << what << ": chi^2 " << sum << " over " << used << " cells";

@@ -48,7 +48,8 @@ render::RenderStats renderBox(int width, int height, uint32_t spp, uint64_t seed
 // noiseRSE halves from 64 to 256 samples within 5 %. Power: the mean over 1,200 pixels of figures that are each good to about
 // 1/sqrt(2 * 64) * 3 (heavy tails) has a standard error below 1 %, so a law that is off by 5 % more is found.
 TEST(NoiseLaws, HalvesFrom64To256) {
-    double a = renderBox(40, 30, 64, 1).noise.noiseRSE, b = renderBox(40, 30, 256, 2).noise.noiseRSE;
+    const int w = samples(40, 120), h = w * 3 / 4;
+    double a = renderBox(w, h, 64, 1).noise.noiseRSE, b = renderBox(w, h, 256, 2).noise.noiseRSE;
     std::printf("noiseRSE %.5f at 64 samples, %.5f at 256: ratio %.4f\n", a, b, b / a);
     EXPECT_GT(a, 0);
     EXPECT_NEAR(b / a, .5, .025);

@@ -167,7 +167,7 @@ void compile(const ModuleRequest& request, ModuleResult& result) {
     llvm::raw_string_ostream verifyOut(verifyText);
     if (llvm::verifyModule(*module, &verifyOut)) throw CodegenError("the generated code is not valid: " + verifyText);
     optimise(*module, tm.get(), request.optimize, result.suspending);
-    if (request.optimize > 0 && request.isa != Isa::Avx512) widenMasks(*module);
+    if (request.optimize > 0 && request.isa != Isa::Avx512) widenMasks(*module, request.isa == Isa::Avx2 ? 8 : 4);
     if (request.wantText) {
         llvm::raw_string_ostream out(result.text);
         module->print(out, nullptr);

@@ -6,6 +6,7 @@
 #include "transport/sampling.h"
 #include <gtest/gtest.h>
 #include <random>
+#include <utility>
 
 using namespace alpenglow;
 using namespace alpenglow::transport;
@@ -111,15 +112,25 @@ TEST_P(LobeT1, SamplersFollowTheirDensities) {
             if (phi < 0) phi += 2 * kPi;
             observed[size_t(ic * kPhi + std::clamp(int(phi / (2 * kPi) * kPhi), 0, kPhi - 1))]++;
         }
+        // A highlight's density has a pole at -wo, 1 / (4 wo . h): where that lies above the lobe's plane no quadrature is good there, and its cell
+        // counts with the failed draws, whose expectation is what the other cells leave.
+        auto cellOf = [&](Vec3 w) {
+            double z = dot(w, grid.n), phi = std::atan2(dot(w, grid.u), dot(w, grid.t));
+            return size_t(std::clamp(int((z - low) / step), 0, kCos - 1) * kPhi + std::clamp(int((phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi) * kPhi), 0, kPhi - 1));
+        };
+        const bool pole = std::string_view(c.kind) == "specular" && dot(c.p.axis, c.p.wo) < 0.1f;
+        const size_t poleCell = cellOf(-c.p.wo);
         double total = 0;
         for (int i = 0; i < kCos; ++i)
             for (int j = 0; j < kPhi; ++j) {
                 double c0 = low + step * i, c1 = low + step * (i + 1), p0 = 2 * kPi * j / kPhi, p1 = 2 * kPi * (j + 1) / kPhi;
                 double v = cellIntegral(k, c.p, grid, c0, c1, p0, p1, gauss3(k, c.p, grid, c0, c1, p0, p1), nightly() ? kFine : kCoarse, 0);
+                if (pole && size_t(i * kPhi + j) == poleCell) continue;
                 expected[size_t(i * kPhi + j)] = v * kN;
                 total += v;
             }
         expected.back() = std::max(0.0, 1 - total) * kN;
+        if (pole) observed.back() += std::exchange(observed[poleCell], 0);
         double chi = 0, pooledE = 0, pooledO = 0;
         int dof = -1;
         auto term = [&](double o, double e) {

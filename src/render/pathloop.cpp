@@ -124,10 +124,10 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
                 if (settings.seconds > 0 && any && job.elapsed() > settings.seconds) job.halt = 1;
                 tell(double(count) * double(done) / double(tiles.size()), false);
             });
+        if (job.world) job.world->flushPrints(whole);
         if (!whole) break;
         volatile int32_t go = 0;
         job.team.run(
-        if (job.world) job.world->flushPrints(whole);
             tiles.size(), &go,
             [&](int, size_t i) {
                 const Window& t = tiles[i];

@@ -121,9 +121,9 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
         if (p) answer(lane, &p->numbers, p->strings.empty() ? nullptr : &p->strings[0]);
     };
     std::string name = d.strings.empty() ? "" : d.strings[0];
-
     if (name.empty() && mask && !d.argKinds.empty() && d.argKinds[0] == rsl::ir::Kind::String) // known only now; the same for all
         name = rsl::internedString(std::bit_cast<int32_t>(at(0, std::countr_zero(mask))));
+
     switch (s.kind) {
     case SiteKind::Texture:
     case SiteKind::Environment: {
@@ -297,8 +297,6 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
         return;
     default: break;
     }
-    if (d.op == "random") { // keyed by point and call site: nothing depends on who shares the batch
-        each([&](int lane, const ShadePoint& p) {
     if (d.op == "shadername") {
         const std::string kind = d.strings.empty() ? "" : name;
         each([&](int lane, const ShadePoint&) {
@@ -312,6 +310,8 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
         });
         return;
     }
+    if (d.op == "random") { // keyed by point and call site: nothing depends on who shares the batch
+        each([&](int lane, const ShadePoint& p) {
             const PathRay* r = c.rays.empty() ? p.ray : &c.rays[first + lane];
             Random rng = r ? random(*r) : Random(world_->settings_.seed, 0, 0, 0);
             for (int k = 0; k < s.resultRowCount; ++k) put(k, lane, rng.one(r ? r->vertex : 0, uint32_t(site), uint32_t(64 + k)));

@@ -103,6 +103,7 @@ public:
     const Settings& settings() const override { return settings_; }
     Facts facts() const override { return facts_; }
     std::vector<int> outputWidths() const override { return outputWidths_; }
+    void flushPrints(bool keep) const override { keep ? prints_.flush() : prints_.discard(); }
     bool runImager(int, const float*, const float*, float*, float*, float*, float*, Diagnostics&) const override;
     bool matrix(const std::string& from, const std::string& to, Matrix& out) const override;
 
@@ -118,7 +119,6 @@ public:
     std::vector<int> bindingOf_;               ///< by shape
     std::vector<SurfaceBinding> bindings_;
     int groups_ = 0;                           ///< number of different SurfaceBinding::group
-    void flushPrints(bool keep) const override { keep ? prints_.flush() : prints_.discard(); }
     std::vector<BoundLight> lights_;
     std::unique_ptr<accel::Accel> accel_;
     Matrix worldToCamera_, cameraToWorld_;
@@ -127,11 +127,10 @@ public:
     std::unique_ptr<texture::TextureSystem> textures_;
     std::shared_ptr<rsl::ShaderCompiler> compiler_;
     Diagnostics* diagnostics_ = nullptr;
+    mutable rsl::PrintLog prints_;
     mutable std::mutex imagerMutex_;
     int maxDepth_ = 32;
     bool allOpaque_ = true;                    ///< no opacity below 1: shadow rays need no shading
 };
 
 } // namespace alpenglow::transport
-    mutable rsl::PrintLog prints_;
-    bool footprints_ = false;                  ///< some kernel reads du or dv

@@ -51,7 +51,10 @@ echo "== RIB: ASCII floats, reader against fast_float"
 echo
 if [ -x "$build/bin/box_bench" ]; then
     echo "== The Muttenzer box against the oracle"
-    "$build/bin/box_bench" || misses=$((misses + 1))
+    timeout 600 "$build/bin/box_bench" | tee "$work/box" || misses=$((misses + 1))
+    ratio=$(sed -n 's/^ *ours . oracle.*: \([0-9.]*\) on the same sequences.*/\1/p' "$work/box")
+    if awk -v r="${ratio:-0}" 'BEGIN { exit !(r >= 0.6) }'; then mark=PASS; else mark=MISS; misses=$((misses + 1)); fi
+    echo "  samples per second, ours / oracle on the same sequences: ${ratio:-none} >= 0.6 $mark"
     echo
 fi
 echo "== Start and compilation (best of five)"

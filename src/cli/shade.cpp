@@ -182,7 +182,8 @@ int shade(const Arguments& a) {
                               rsl::PrintKey key;
                               key.sample = int64_t(x.begun) + first + lane;
                               x.prints.add(key, text);
-                          });
+                          },
+                          &x.kernel->files());
     };
     call.lightBegin = [](rsl::KernelCall*, int32_t, int32_t, uint64_t, int32_t, const float*) { return int32_t(0); };
     call.lightFetch = [](rsl::KernelCall*, int32_t, int32_t, int32_t, uint64_t, int32_t, float*) { return uint64_t(0); };

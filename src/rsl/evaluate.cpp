@@ -103,7 +103,7 @@ bool runAtPoint(const CompiledKernel& k, bool mixed, int n, int at, std::vector<
         const ir::Site& s = x.kernel->sites()[size_t(site)];
         basicService(s, mask, lanes, in, out, *x.diagnostics, [&](int lane, const std::string& text) {
             if (x.printed && first + lane == 0) *x.printed += text;
-        });
+        }, &x.kernel->files());
         if (s.op == "random") { // one number for each call in the text
             float h[3];
             hashText("random " + std::to_string(site), h);

@@ -218,14 +218,24 @@ void hashText(const std::string& s, float out[3]) {
 }
 
 bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* in, float* out, Diagnostics& diagnostics,
-                  const PrintFn& print) {
+                  const PrintFn& print, const std::vector<std::string>* files) {
+    const std::string file = files && s.place.file >= 0 && size_t(s.place.file) < files->size() ? (*files)[size_t(s.place.file)] : "";
     auto each = [&](auto&& f) {
         for (int l = 0; l < lanes; l++)
             if (mask >> l & 1) f(l);
     };
     auto put = [&](int row, int lane, float v) { out[size_t(row) * size_t(lanes) + size_t(lane)] = v; };
     auto putString = [&](int lane, const std::string& t) { put(0, lane, std::bit_cast<float>(internString(t))); };
-    if (s.op == "format") {
+    if (s.op == "arraylimit") {
+        Diagnostic d;
+        d.severity = Severity::Error;
+        d.code = Rie::Limit;
+        d.place = {file, s.place.line, s.place.column};
+        d.message = "an array cannot grow beyond " + std::to_string(mask ? int(in[std::countr_zero(mask)]) : 0) +
+                    " elements; what follows is left out";
+        d.hint = "resize() or reserve() it with the number it needs";
+        diagnostics.reportOnce("arraylimit:" + file + std::to_string(s.place.line), d);
+    } else if (s.op == "format") {
         each([&](int l) { putString(l, formatSite(s, lanes, in, l)); });
     } else if (s.op == "printf") {
         each([&](int l) {
@@ -250,8 +260,7 @@ bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* 
                 Diagnostic d;
                 d.severity = Severity::Error;
                 d.code = Rie::Syntax;
-                d.place.line = s.place.line;
-                d.place.column = s.place.column;
+                d.place = {file, s.place.line, s.place.column};
                 d.message = "match(): \"" + pattern + "\": " + error;
                 diagnostics.reportOnce("match:" + pattern, d);
             }

@@ -94,11 +94,11 @@ std::vector<Shadeop> arrayShadeops() {
         list.push_back(std::move(op));
     };
     add("arraylength", each(kAllTypes, "float arraylength($ a[])"), Lowering::Special, "Number of elements.");
-    add("resize", each(kAllTypes, "void resize(output $ a[]; uniform float length)"), Lowering::Unavailable, "Sets the length; new elements are undefined.");
-    add("reserve", each(kAllTypes, "void reserve(output $ a[]; uniform float length)"), Lowering::Unavailable, "Sets the capacity.");
-    add("push", each(kAllTypes, "void push(output $ a[]; $ value)"), Lowering::Unavailable, "Appends a value.");
-    add("pop", each(kAllTypes, "$ pop(output $ a[])"), Lowering::Unavailable, "Removes and returns the last element.");
-    add("capacity", each(kAllTypes, "float capacity($ a[])"), Lowering::Unavailable, "Elements that fit without new memory.");
+    add("resize", each(kAllTypes, "void resize(output $ a[]; uniform float length)"), Lowering::Special, "Sets the length; new elements are undefined.");
+    add("reserve", each(kAllTypes, "void reserve(output $ a[]; uniform float length)"), Lowering::Special, "Sets the capacity.");
+    add("push", each(kAllTypes, "void push(output $ a[]; $ value)"), Lowering::Special, "Appends a value.");
+    add("pop", each(kAllTypes, "$ pop(output $ a[])"), Lowering::Special, "Removes and returns the last element.");
+    add("capacity", each(kAllTypes, "float capacity($ a[])"), Lowering::Special, "Elements that fit without new memory.");
     return list;
 }
 

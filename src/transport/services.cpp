@@ -333,7 +333,7 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
         if (!c.bound->kernel->files().empty()) key.program = c.bound->kernel->files().front();
         key.place = {p.P.x, p.P.y, p.P.z};
         world_->prints_.add(key, text);
-    });
+    }, &c.bound->kernel->files());
 }
 
 } // namespace alpenglow::transport

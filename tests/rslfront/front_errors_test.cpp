@@ -49,7 +49,7 @@ const Case kBodies[] = {
     {"float b[f];", "2:9: error: the length of an array must be a constant number"},
     {"float b[0];", "2:8: error: the length of an array must be between 1 and"},
     {"float b[2][2];", "2:11: error: an array of arrays is not allowed"},
-    {"float b[];", "2:7: error: arrays that change their length are not yet available"},
+    {"float b[3]; push(b, 1);", "2:18: error: the length of 'b' is fixed"},
     {"f = float c;", "2:5: error: cannot convert color to float"},
     {"f = (float) g;", "2:5: error: a conversion is written without parentheses around the type (write float(...)"},
     {"f = float \"x\" g;", "2:11: error: a float is in no space"},

@@ -24,7 +24,7 @@ const Case kStatements[] = {
     {"float b[3] = {1, 2};", "(declare (varying float[3] b = (list:float[3] 1 2 0)))"},
     {"float b[2] = 0;", "(declare (varying float[2] b = (list:float[2] 0 0)))"},
     {"color b[2] = {0, c};", "(declare (varying color[2] b = (list:color[2] (cast:color 0) c)))"},
-    {"uniform float b[] = {1, 2, 3};", "(declare (uniform float[3] b = (list:float[3] 1 2 3)))"},
+    {"uniform float b[] = {1, 2, 3};", "(declare (uniform float[] b = (list:float[3] 1 2 3)))"},
     {"float b[2*3];", "(declare (varying float[6] b))"},
     {"a[1] = 2;", "(= (index a 1) 2)"},
     {"ca[1][2] = f;", "(= (index (index ca 1) 2) f)"},

@@ -34,6 +34,7 @@ struct Symbol {
     bool output = false;      ///< shader: AOV; function: by reference
     bool writable = true;     ///< globals: by shader kind (rsl.md section 8)
     bool isConstant = false;
+    bool resizable = false;   ///< `float x[]`, local or a parameter of a function: its length may change
     bool isExtern = false;    ///< only between parser and checker, which puts the outer variable in its place
     Place place;
 };

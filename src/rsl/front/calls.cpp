@@ -227,6 +227,14 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
     const Shadeop& op = *choice.shadeop;
     e.shadeop = &op;
     e.signature = choice.signature;
+    if (op.name == "resize" || op.name == "reserve" || op.name == "push" || op.name == "pop") {
+        const Symbol* s = e.args.empty() ? nullptr : e.args[0]->symbol;
+        const bool open = s && (s->resizable || (s->origin == Symbol::Origin::FunctionParameter && s->type.array == -1));
+        if (s && !open && s->type.base != Base::Void)
+            sources_.error(e.args[0]->place, "the length of '" + s->name + "' is fixed",
+                           s->origin == Symbol::Origin::Local ? "declare it as " + toString(s->type.element()) + " " + s->name + "[]"
+                                                              : "only local arrays and parameters of functions can change theirs");
+    }
     if (kind_ && !(op.contexts & contextOf(*kind_))) {
         std::string where;
         for (int k = 0; k < 6; ++k)

@@ -74,11 +74,11 @@ void Checker::checkDeclare(Stmt& s) {
     std::vector<Stmt::Declarator> kept;
     for (auto& d : s.declarators) {
         if (d.symbol->isExtern) { bindExtern(*d.symbol); continue; }
+        const bool open = d.symbol->type.array == -1 && d.symbol->type.base != Base::Void;
         if (d.init) initialise(*d.symbol, d.init);
-        else if (d.symbol->type.array == -1 && d.symbol->type.base != Base::Void) {
-            sources_.error(d.symbol->place, "arrays that change their length are not yet available",
-                           "give a length, or a value {...}");
-            d.symbol->type = {};
+        if (open) {
+            d.symbol->resizable = true;
+            d.symbol->type.array = -1;
         }
         declareLocal(*d.symbol);
         if (d.symbol->type.base != Base::Void) kept.push_back(std::move(d));

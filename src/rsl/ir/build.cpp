@@ -195,6 +195,8 @@ Inst* Builder::newArray(Base base, int length) {
 }
 
 int Builder::arrayLength(const Inst* a) const {
+    if (const Lengths* l = lengths(a))
+        if (const Inst* n = env_[static_cast<size_t>(l->length)]; n && isConst(n)) return static_cast<int>(n->numbers[0]);
     return a->op == Op::ArrayInput ? k_.inputs[static_cast<size_t>(a->index)].array : a->index;
 }
 

@@ -40,8 +40,11 @@ Inst* Builder::inlineFunction(const Function& f, const std::vector<const Expr*>&
         }
         Inst* a = array(*args[i]);
         if (!p.output && assigned.count(slot(&p))) { // by value
-            Inst* copy = newArray(p.type.base, arrayLength(a));
-            copyArray(copy, *args[i]);
+            largestResize();
+            const bool grows = lengths(a) || (p.type.array < 0 && grown_.count(&p));
+            Inst* copy = grows ? newResizable(p.type.base, 0) : newArray(p.type.base, arrayLength(a));
+            if (grows) copyResizable(copy, *args[i]);
+            else copyArray(copy, *args[i]);
             a = copy;
         }
         values[i] = a;
@@ -371,7 +374,8 @@ Inst* Builder::special(const Expr& e) {
     if (n == "random") return random(e);
     if (n == "isoutput") return isOutput(e);
     if (n == "gridmin" || n == "gridmax") return gridBound(e, n == "gridmin" ? -0.5f : 0.5f);
-    if (n == "arraylength") return constant(static_cast<float>(arrayLength(array(*e.args[0]))));
+    if (n == "arraylength") return lengthOf(array(*e.args[0]));
+    if (n == "resize" || n == "reserve" || n == "push" || n == "pop" || n == "capacity") return resizing(e);
     return unavailable(e);
 }
 

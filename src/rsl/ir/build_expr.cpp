@@ -142,10 +142,10 @@ void Builder::assign(const Expr& l, Inst* value) {
     if (base.type.array) {
         Inst* a = array(base);
         Inst* at = expr(*l.args[1], Kind::Float);
-        if (isConst(at) && (at->numbers[0] < 0 || at->numbers[0] >= static_cast<float>(arrayLength(a))))
+        if (isConst(at) && lengthKnown(a) && (at->numbers[0] < 0 || at->numbers[0] >= static_cast<float>(arrayLength(a))))
             warn(l.place, "index " + std::to_string(static_cast<int>(at->numbers[0])) + " is outside the array of length " +
                               std::to_string(arrayLength(a)) + "; the nearest element is taken");
-        if (a->op == Op::ArrayNew) emit(Op::ArrayStore, Kind::None, {a, at, coerce(value, a->element)});
+        if (a->op == Op::ArrayNew) emit(Op::ArrayStore, Kind::None, {a, elementOf(a, at), coerce(value, a->element)});
         return;
     }
     // A component of a tuple.
@@ -253,10 +253,10 @@ Inst* Builder::expr(const Expr& e) {
         if (base.type.array) {
             Inst* a = array(base);
             Inst* at = expr(*e.args[1], Kind::Float);
-            if (isConst(at) && (at->numbers[0] < 0 || at->numbers[0] >= static_cast<float>(arrayLength(a))))
+            if (isConst(at) && lengthKnown(a) && (at->numbers[0] < 0 || at->numbers[0] >= static_cast<float>(arrayLength(a))))
                 warn(e.place, "index " + std::to_string(static_cast<int>(at->numbers[0])) + " is outside the array of length " +
                                   std::to_string(arrayLength(a)) + "; the nearest element is taken");
-            return emit(Op::ArrayLoad, a->element, {a, at});
+            return emit(Op::ArrayLoad, a->element, {a, elementOf(a, at)});
         }
         Inst* v = expr(base, Kind::Triple);
         Inst* at = expr(*e.args[1], Kind::Float);
@@ -286,7 +286,8 @@ Inst* Builder::expr(const Expr& e) {
         const Expr& l = *e.args[0];
         if (l.type.array) {
             Inst* a = array(l);
-            if (a->op == Op::ArrayNew) copyArray(a, *e.args[1]);
+            if (lengths(a)) copyResizable(a, *e.args[1]);
+            else if (a->op == Op::ArrayNew) copyArray(a, *e.args[1]);
             return a;
         }
         Inst* v;

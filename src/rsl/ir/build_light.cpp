@@ -58,6 +58,7 @@ void Builder::illuminance(const Stmt& s) {
     const LoopFrame flags{newSlot(boolean(false)), newSlot(boolean(false))};
     assigned.insert(flags.broken);
 
+    addLengths(assigned);
     // L, Cl, Ol exist inside the block only.
     int lightSlots[3];
     const char* const names[] = {"L", "Cl", "Ol"};

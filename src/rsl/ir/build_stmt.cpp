@@ -92,8 +92,14 @@ void Builder::declare(const Stmt& s) {
                 length = d.init && d.init->kind == ExprKind::ArrayList ? static_cast<int>(d.init->args.size())
                          : d.init                                      ? d.init->type.array
                                                                        : 0;
-            Inst* a = newArray(d.symbol->type.base, std::max(length, 1));
-            if (d.init) copyArray(a, *d.init);
+            Inst* a;
+            if (grows(d)) {
+                a = newResizable(d.symbol->type.base, 0);
+                if (d.init) copyResizable(a, *d.init);
+            } else {
+                a = newArray(d.symbol->type.base, std::max(length, 1));
+                if (d.init) copyArray(a, *d.init);
+            }
             set(n, a);
         } else {
             uniformContext_ = d.symbol->storage == Storage::Uniform;
@@ -191,6 +197,7 @@ void Builder::loop(const Expr* cond, const Expr* step, const Stmt* body, const P
     }
     Frame& f = frames_.back();
     const bool jumps = body && mayJump(*body);
+    addLengths(assigned);
     if (jumps) { // flags of loops around, too: break 2, return
         for (const LoopFrame& l : f.loops) {
             assigned.insert(l.broken);

@@ -96,6 +96,25 @@ private:
     int arrayLength(const Inst* array) const;
     Inst* newArray(Base, int length);
 
+    // build_arrays.cpp: arrays that change their length
+    struct Lengths {
+        int length, reserved; ///< slots
+    };
+    int largestResize();
+    bool grows(const Stmt::Declarator&);
+    bool lengthKnown(const Inst* a) const {
+        const Lengths* l = lengths(a);
+        return !l || (env_[static_cast<size_t>(l->length)] && isConst(env_[static_cast<size_t>(l->length)]));
+    }
+    Inst* newResizable(Base, int length);
+    const Lengths* lengths(const Inst* array) const;
+    Inst* lengthOf(const Inst* array);
+    Inst* elementOf(const Inst* array, Inst* index);
+    Inst* limitLength(const Inst* array, Inst* wanted);
+    void copyResizable(Inst* to, const Expr& from);
+    Inst* resizing(const Expr&);
+    void addLengths(std::set<int>& slots) const;
+
     // build_call.cpp
     Inst* functionCall(const Expr&);
     Inst* inlineFunction(const Function&, const std::vector<const Expr*>& args);
@@ -172,6 +191,9 @@ private:
     std::map<std::pair<const Function*, std::string>, Outlined> outlined_;
     std::vector<Inst*> functions_; ///< Function instructions, those that are called first
     std::set<int> assignedAnywhere_;
+    std::unordered_map<const Inst*, Lengths> lengths_;
+    int largestResize_ = -1;
+    std::set<const Symbol*> grown_;
     int lightDepth_ = 0;
     bool uniformContext_ = false; ///< the value goes to a uniform variable: one random() for all
     bool failed_ = false;

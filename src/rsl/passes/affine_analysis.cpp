@@ -175,14 +175,14 @@ struct Analysis {
                 (k.kind != ShaderKind::Surface && k.kind != ShaderKind::Volume))
                 bad(m, i, "the output " + k.outputs[static_cast<size_t>(i->index)].name + " depends on it");
             return;
+        case Op::Call:
+            bad(m, i, "it is passed to " + i->args[0]->text + "(), which is too large to look into");
+            return;
         case Op::ArrayStore:
             bad(m, i, "it is stored in an array");
             return;
         case Op::Service:
             bad(m, i, k.sites[static_cast<size_t>(i->site)].op + "() takes it as an argument");
-            return;
-        case Op::Call:
-            bad(m, i, "it is passed to " + i->args[0]->text + "(), which is too large to look into");
             return;
         case Op::Less:
         case Op::LessEqual:

@@ -1,0 +1,194 @@
+// Arrays that change their length. The storage has a length of its own, the most that the array can reach; how much of it counts, and
+// how much was reserved, are values like those of variables: each point has its own.
+#include "base/limits.h"
+#include "rsl/ir/builder.h"
+#include <algorithm>
+
+namespace alpenglow::rsl::ir {
+
+/// The largest constant length that resize() or reserve() gives to any array of the program. Notes which variables may change
+/// their length on the way.
+int Builder::largestResize() {
+    if (largestResize_ >= 0) return largestResize_;
+    largestResize_ = 0;
+    const auto visitExpr = [&](auto&& self, const Expr& e) -> void {
+        const auto grows = [&](const Expr& a) {
+            if (a.kind == ExprKind::Variable && a.symbol) grown_.insert(a.symbol);
+        };
+        if (e.kind == ExprKind::Assign) grows(*e.args[0]);
+        for (size_t n = 0; n < e.args.size(); ++n) {
+            const bool output = e.signature ? n < e.signature->parameters.size() && e.signature->parameters[n].output
+                                            : e.function && n < e.function->parameters.size() && e.function->parameters[n]->output;
+            if (output && e.args[n]) grows(*e.args[n]);
+        }
+        const bool sizes = e.shadeop && (e.shadeop->name == "resize" || e.shadeop->name == "reserve") && e.args.size() == 2;
+        if (sizes && e.args[1]->kind == ExprKind::Number)
+            largestResize_ = std::max(largestResize_, static_cast<int>(std::clamp(e.args[1]->number, 0.0, 1e6)));
+        for (const ExprPtr& a : e.args)
+            if (a) self(self, *a);
+        for (const NamedArg& p : e.pairs)
+            if (p.value) self(self, *p.value);
+    };
+    const auto visit = [&](auto&& self, const Stmt& s) -> void {
+        for (const StmtPtr& b : s.body)
+            if (b) self(self, *b);
+        if (s.elseBody) self(self, *s.elseBody);
+        for (const ExprPtr* p : {&s.condition, &s.init, &s.step, &s.value})
+            if (*p) visitExpr(visitExpr, **p);
+        for (const Stmt::Declarator& d : s.declarators)
+            if (d.init) visitExpr(visitExpr, *d.init);
+    };
+    const auto functions = [&](auto&& self, const std::vector<std::unique_ptr<Function>>& list) -> void {
+        for (const auto& f : list) {
+            if (f->body) visit(visit, *f->body);
+            self(self, f->nested);
+        }
+    };
+    if (shader_.body) visit(visit, *shader_.body);
+    functions(functions, shader_.nested);
+    functions(functions, program_.functions);
+    return largestResize_;
+}
+
+/// Whether the variable is an array that does change its length; what looks like one but never does is an ordinary array.
+bool Builder::grows(const Stmt::Declarator& d) {
+    largestResize();
+    const bool measured = d.init && (d.init->kind == ExprKind::ArrayList || d.init->type.array > 0);
+    return d.symbol->resizable && (grown_.count(d.symbol) || !measured);
+}
+
+/// Storage for an array that begins with `length` elements.
+Inst* Builder::newResizable(Base base, int length) {
+    const int room = std::clamp(std::max(length, largestResize()), limits::kResizableArray, limits::kShaderArray);
+    Inst* a = newArray(base, room);
+    Inst* n = constant(static_cast<float>(length));
+    lengths_[a] = {newSlot(n), newSlot(n)};
+    return a;
+}
+
+const Builder::Lengths* Builder::lengths(const Inst* a) const {
+    const auto it = lengths_.find(a);
+    return it == lengths_.end() ? nullptr : &it->second;
+}
+
+/// The number of elements, as a value.
+Inst* Builder::lengthOf(const Inst* a) {
+    if (const Lengths* l = lengths(a)) return get(l->length);
+    return constant(static_cast<float>(arrayLength(a)));
+}
+
+/// An index that stays below the length that counts.
+Inst* Builder::elementOf(const Inst* a, Inst* index) {
+    const Lengths* l = lengths(a);
+    if (!l || (isConst(get(l->length)) && isConst(index))) return index;
+    Inst* last = emit(Op::Sub, Kind::Float, {get(l->length), constant(1)});
+    return runtime1("al_min_f", {index, last}, Kind::Float);
+}
+
+/// Reports, when the shader runs, that an array wants more than its storage holds; gives what it gets.
+Inst* Builder::limitLength(const Inst* a, Inst* wanted) {
+    Inst* room = constant(static_cast<float>(a->index));
+    branch(
+        emit(Op::Less, Kind::Bool, {room, wanted}),
+        [&] {
+            Site s;
+            s.op = "arraylimit";
+            std::vector<Inst*> args;
+            addArgument(s, args, room, {Base::Float, 0});
+            call(Op::Service, std::move(s), std::move(args));
+            return std::vector<Inst*>{};
+        },
+        [] { return std::vector<Inst*>{}; });
+    return runtime1("al_min_f", {wanted, room}, Kind::Float);
+}
+
+/// Copies everything that counts.
+void Builder::copyResizable(Inst* to, const Expr& from) {
+    const Lengths l = *lengths(to);
+    const auto setLength = [&](Inst* n) {
+        set(l.length, n);
+        set(l.reserved, runtime1("al_max_f", {get(l.reserved), n}, Kind::Float));
+    };
+    if (from.kind == ExprKind::ArrayList) {
+        const int n = std::min(static_cast<int>(from.args.size()), to->index);
+        setLength(constant(static_cast<float>(n)));
+    } else if (from.kind == ExprKind::Variable || from.kind == ExprKind::Cast) {
+        Inst* a = array(from);
+        if (a == to) return;
+        Inst* n = lengthOf(a);
+        if (!isConst(n)) { // as far as either storage goes
+            for (int i = 0; i < std::min(to->index, a->index); ++i) {
+                Inst* at = constant(static_cast<float>(i));
+                emit(Op::ArrayStore, Kind::None, {to, at, emit(Op::ArrayLoad, a->element, {a, at})});
+            }
+            return setLength(limitLength(to, n));
+        }
+        setLength(limitLength(to, n));
+    }
+    copyArray(to, from);
+}
+
+Inst* Builder::resizing(const Expr& e) {
+    const std::string& name = e.shadeop->name;
+    Inst* a = array(*e.args[0]);
+    place_ = e.place;
+    const Lengths* known = lengths(a);
+    const Kind element = a->element;
+    if (name == "capacity") return known ? get(known->reserved) : constant(static_cast<float>(arrayLength(a)));
+    if (!known) {
+        warn(e.place, name + "(): the length of this array is fixed");
+        return name == "pop" ? zero(element) : constant(0);
+    }
+    const Lengths l = *known;
+    const auto reserve = [&](Inst* n) { set(l.reserved, runtime1("al_max_f", {get(l.reserved), n}, Kind::Float)); };
+    if (name == "push") {
+        Inst* v = coerce(expr(*e.args[1]), element);
+        place_ = e.place;
+        Inst* n = get(l.length);
+        Inst* longer = limitLength(a, emit(Op::Add, Kind::Float, {n, constant(1)}));
+        // At the limit the value is dropped: the element behind the last is the last itself then, and keeps what it has.
+        branch(
+            emit(Op::Less, Kind::Bool, {n, longer}),
+            [&] {
+                emit(Op::ArrayStore, Kind::None, {a, n, v});
+                return std::vector<Inst*>{};
+            },
+            [] { return std::vector<Inst*>{}; });
+        set(l.length, longer);
+        reserve(longer);
+        return constant(0);
+    }
+    if (name == "pop") {
+        Inst* shorter =
+            runtime1("al_max_f", {emit(Op::Sub, Kind::Float, {get(l.length), constant(1)}), constant(0)}, Kind::Float);
+        Inst* empty = emit(Op::LessEqual, Kind::Bool, {get(l.length), constant(0)});
+        Inst* v = emit(Op::ArrayLoad, element, {a, shorter});
+        v = emit(Op::Select, element, {empty, zero(element), v});
+        set(l.length, shorter);
+        return v;
+    }
+    Inst* wanted = expr(*e.args[1], Kind::Float);
+    place_ = e.place;
+    wanted = runtime1("al_max_f", {runtime1("al_floor", {wanted}, Kind::Float), constant(0)}, Kind::Float);
+    wanted = limitLength(a, wanted);
+    if (name == "reserve") {
+        reserve(wanted);
+        return constant(0);
+    }
+    set(l.length, wanted);
+    reserve(wanted);
+    Inst* none = emit(Op::LessEqual, Kind::Bool, {wanted, constant(0)}); // length 0 gives the memory back
+    set(l.reserved, emit(Op::Select, Kind::Float, {none, constant(0), get(l.reserved)}));
+    return constant(0);
+}
+
+/// With the arrays that are changed in a loop go their lengths.
+void Builder::addLengths(std::set<int>& slots) const {
+    std::set<int> more;
+    for (int n : slots)
+        if (const Inst* v = env_[static_cast<size_t>(n)])
+            if (const Lengths* l = lengths(v)) more.insert({l->length, l->reserved});
+    slots.insert(more.begin(), more.end());
+}
+
+} // namespace alpenglow::rsl::ir

@@ -1,7 +1,7 @@
 // T1 for the pixel filter: drawn offsets against the filter itself, quadrature done here.
-#include "render/filtersampler.h"
 #include "../statistics/chisquare.h"
 #include "../statistics/nightly.h"
+#include "render/filtersampler.h"
 #include <gtest/gtest.h>
 #include <random>
 
@@ -14,12 +14,13 @@ namespace {
 std::vector<PixelFilter> filters() {
     std::vector<PixelFilter> all;
     for (int k = 0; k < kFilterKinds; ++k)
-        for (auto [x, y] : {std::pair{1.0, 1.0}, {4.0, 3.0}, {6.0, 6.0}})
-            all.push_back({FilterKind(k), x, y});
+        for (auto [x, y] : {std::pair{1.0, 1.0}, {4.0, 3.0}, {6.0, 6.0}}) all.push_back({FilterKind(k), x, y});
     return all;
 }
 
-std::string name(const PixelFilter& f) { return std::string(filterName(f.kind)) + " " + std::to_string(f.xw) + " " + std::to_string(f.yw); }
+std::string name(const PixelFilter& f) {
+    return std::string(filterName(f.kind)) + " " + std::to_string(f.xw) + " " + std::to_string(f.yw);
+}
 
 constexpr int kGrid = 16, kFine = 32; // cells, and midpoints per cell and axis
 
@@ -36,8 +37,7 @@ template <class G> std::vector<double> cells(const PixelFilter& f, G g) {
 }
 double sum(const std::vector<double>& v) {
     double s = 0;
-    for (double x : v)
-        s += x;
+    for (double x : v) s += x;
     return s;
 }
 
@@ -66,8 +66,7 @@ TEST(FilterSampler, DensityIsTheFilter) {
             for (double y = -f.yw / 2; y <= f.yw / 2; y += f.yw / 89) {
                 double d = s.density(x, y), v = std::fabs(f(x, y));
                 worst = std::max(worst, std::fabs(d - v / s.absIntegral()) / peak);
-                if (v > 1e-12)
-                    EXPECT_GT(d, 0) << name(f) << " at " << x << " " << y;
+                if (v > 1e-12) EXPECT_GT(d, 0) << name(f) << " at " << x << " " << y;
             }
         EXPECT_LT(worst, f.separable() || f.kind == FilterKind::Disk ? 1e-5 : 0.06) << name(f);
     }
@@ -79,8 +78,7 @@ TEST(FilterSampler, ChiSquare) {
         FilterSampler s(f);
         std::vector<double> expected = cells(f, [&](double, double, double v) { return std::fabs(v) * n; });
         double absolute = sum(expected) / n;
-        for (double& e : expected)
-            e /= absolute;
+        for (double& e : expected) e /= absolute;
         std::vector<double> hits(kGrid * kGrid, 0);
         std::mt19937_64 g(7 + seedBase());
         std::uniform_real_distribution<float> u(0, 1);
@@ -88,7 +86,8 @@ TEST(FilterSampler, ChiSquare) {
             FilterSample p = s.sample({std::min(u(g), 0x1.fffffep-1f), std::min(u(g), 0x1.fffffep-1f)});
             ASSERT_LE(std::fabs(p.dx), f.xw / 2 + 1e-6);
             ASSERT_LE(std::fabs(p.dy), f.yw / 2 + 1e-6);
-            int cx = std::clamp(int((p.dx / f.xw + 0.5) * kGrid), 0, kGrid - 1), cy = std::clamp(int((p.dy / f.yw + 0.5) * kGrid), 0, kGrid - 1);
+            int cx = std::clamp(int((p.dx / f.xw + 0.5) * kGrid), 0, kGrid - 1),
+                cy = std::clamp(int((p.dy / f.yw + 0.5) * kGrid), 0, kGrid - 1);
             hits[size_t(cy * kGrid + cx)]++;
         }
         EXPECT_GE(chiSquareP(hits, expected), kAlpha) << name(f);
@@ -134,8 +133,7 @@ TEST(FilterSampler, WeightIsOneWithoutNegativeParts) {
     FilterSampler s({FilterKind::SeparableCatmullRom, 4, 4});
     double size = s.absIntegral() / s.integral();
     EXPECT_GT(size, 1.1);
-    for (float u = 0.01f; u < 1; u += 0.01f)
-        EXPECT_NEAR(std::fabs(s.sample({u, 0.4f}).weight), size, 1e-6);
+    for (float u = 0.01f; u < 1; u += 0.01f) EXPECT_NEAR(std::fabs(s.sample({u, 0.4f}).weight), size, 1e-6);
     // The sign depends on the first number alone, and the share of negative weights is (1 - T/A) / 2.
     float border = float(0.5 + 0.5 * s.integral() / s.absIntegral());
     for (float u = 0.005f; u < 1; u += 0.01f) {
@@ -150,8 +148,7 @@ TEST(FilterSampler, EdgeResponse) {
         FilterSampler s({k, w, w});
         const int n = 20000;
         int below = 0;
-        for (int i = 0; i < n; ++i)
-            below += s.sample({float((i + 0.5) / n), 0.5f}).dx < t;
+        for (int i = 0; i < n; ++i) below += s.sample({float((i + 0.5) / n), 0.5f}).dx < t;
         return double(below) / n;
     };
     for (double t : {-0.7, -0.25, 0.0, 0.1, 0.6}) {

@@ -1,5 +1,5 @@
-// Do two ways of making one picture agree? Four statistics on the tiles of the picture (test plan T6): the image's mean finds a small
-// bias everywhere, the sum of z^2 many small local ones, the largest |z| one local one, and Kolmogorov-Smirnov a wrong
+// Do two ways of making one picture agree? Four statistics on the tiles of the picture (test plan T6): the image's mean finds a
+// small bias everywhere, the sum of z^2 many small local ones, the largest |z| one local one, and Kolmogorov-Smirnov a wrong
 // distribution of the tiles' p-values, which is also what broken standard errors look like.
 #pragma once
 #include "statistics/chisquare.h"
@@ -11,7 +11,7 @@
 
 namespace alpenglow::teststat {
 
-inline constexpr double kAlphaKs = 1e-4; ///< of Kolmogorov-Smirnov (T6)
+inline constexpr double kAlphaKs = 1e-4;  ///< of Kolmogorov-Smirnov (T6)
 inline constexpr double kPower99 = 2.326; ///< one-sided normal: beyond the threshold by this much, 99 of 100 are rejected
 
 /// P(|normal| >= |z|).
@@ -41,27 +41,32 @@ inline double ksUniformP(std::vector<double> v) {
     return kolmogorovQ(d * (std::sqrt(n) + 0.12 + 0.11 / std::sqrt(n)));
 }
 
-/// What is known of one tile (or of one randomisation): mean, its standard error, effective number of samples (sum x)^2 / sum x^2.
-struct TileMean { double mean = 0, se = 0, effective = 0; };
+/// What is known of one tile (or of one randomisation): mean, its standard error, effective number of samples (sum x)^2 / sum
+/// x^2.
+struct TileMean {
+    double mean = 0, se = 0, effective = 0;
+};
 
 struct Agreement {
     double a = 0, b = 0, se = 0; ///< the images' means and the standard error of their difference
     double imageP = 1, sumP = 1, largestP = 1, ksP = 1;
-    int used = 0;                ///< tiles with noise; the others must be equal
-    double worstExact = 0;       ///< largest difference of tiles without noise
-    double effective = 1e300;    ///< the least over both images, all tiles together
-    double finds = 0;            ///< the least relative bias of the whole image that is rejected in 99 of 100 runs
-    double findsLocal = 0;       ///< the same for a bias in one tile, median tile
+    int used = 0;             ///< tiles with noise; the others must be equal
+    double worstExact = 0;    ///< largest difference of tiles without noise
+    double effective = 1e300; ///< the least over both images, all tiles together
+    double finds = 0;         ///< the least relative bias of the whole image that is rejected in 99 of 100 runs
+    double findsLocal = 0;    ///< the same for a bias in one tile, median tile
     bool ok(int tests = 1) const {
         auto above = [&](double p, double alpha) { return sidakP(p, tests) > alpha; };
-        return above(imageP, kAlpha) && above(sumP, kAlpha) && above(largestP, kAlpha) && above(ksP, kAlphaKs) && worstExact <= 1e-6;
+        return above(imageP, kAlpha) && above(sumP, kAlpha) && above(largestP, kAlpha) && above(ksP, kAlphaKs) &&
+               worstExact <= 1e-6;
     }
     std::string text() const {
         char t[320];
-        std::snprintf(t, sizeof t,
-                      "means %.6f and %.6f, se of the difference %.6f (p %.3g), sum z^2 p %.3g, largest z p %.3g, KS p %.3g, %d tiles; "
-                      "finds %.2f %% of the image, %.1f %% of a tile",
-                      a, b, se, imageP, sumP, largestP, ksP, used, 100 * finds, 100 * findsLocal);
+        std::snprintf(
+            t, sizeof t,
+            "means %.6f and %.6f, se of the difference %.6f (p %.3g), sum z^2 p %.3g, largest z p %.3g, KS p %.3g, %d tiles; "
+            "finds %.2f %% of the image, %.1f %% of a tile",
+            a, b, se, imageP, sumP, largestP, ksP, used, 100 * finds, 100 * findsLocal);
         return t;
     }
 };

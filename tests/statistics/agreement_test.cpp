@@ -7,7 +7,8 @@ using namespace alpenglow::teststat;
 
 namespace {
 
-// 64 tiles of mean 1; every tile's mean has the given standard error on both sides. `bias` is added to the tiles of b it is asked for.
+// 64 tiles of mean 1; every tile's mean has the given standard error on both sides. `bias` is added to the tiles of b it is asked
+// for.
 Agreement simulate(std::mt19937_64& g, double se, double bias, int biased, double claim = 1) {
     std::normal_distribution<double> n;
     std::vector<TileMean> a, b;
@@ -52,7 +53,8 @@ TEST(Agreement, NoFalseAlarms) {
     for (auto& v : {image, sum, largest}) EXPECT_GT(ksUniformP(v), 1e-3);
     EXPECT_GT(ksUniformP(ks), 1e-6);
 }
-// Power: a bias of the size that `finds` and `findsLocal` name is rejected at least 96 of 100 times (99 less 3 deviations of 100 draws).
+// Power: a bias of the size that `finds` and `findsLocal` name is rejected at least 96 of 100 times (99 less 3 deviations of 100
+// draws).
 TEST(Agreement, Power) {
     std::mt19937_64 g(4);
     int image = 0, local = 0, tooSmall = 0, spread = 0;
@@ -60,7 +62,7 @@ TEST(Agreement, Power) {
         Agreement a = simulate(g, 0.01, 0, 0);
         image += !simulate(g, 0.01, a.finds, 64).ok();
         local += !simulate(g, 0.01, a.findsLocal, 1).ok();
-        spread += !simulate(g, 0.01, 0.03, 32).ok(); // 2.1 deviations in half of the tiles: the sum of squares
+        spread += !simulate(g, 0.01, 0.03, 32).ok();    // 2.1 deviations in half of the tiles: the sum of squares
         tooSmall += !simulate(g, 0.01, 0, 0, 0.6).ok(); // standard errors that claim 0.6 of the truth
     }
     EXPECT_GE(image, 96);
@@ -68,7 +70,8 @@ TEST(Agreement, Power) {
     EXPECT_GE(spread, 96);
     EXPECT_GE(tooSmall, 90);
 }
-// Rule 3 of the test plan: the p-values of many nights, kept by ALPENGLOW_PVALUES, are uniform. Finds broken statistics and small common bias.
+// Rule 3 of the test plan: the p-values of many nights, kept by ALPENGLOW_PVALUES, are uniform. Finds broken statistics and small
+// common bias.
 TEST(Agreement, KeptPValuesAreUniform) {
     const char* file = std::getenv("ALPENGLOW_PVALUES");
     if (!nightly() || !file) GTEST_SKIP() << "nightly, with ALPENGLOW_PVALUES";

@@ -1,5 +1,5 @@
-// T1 for what a camera ray draws: the point on the lens, the time in the shutter, the place in the pixel. With the film's own numbers,
-// one sample of as many pixels. Power: alternating +-5 % over 200 cells is found at 1e5 draws.
+// T1 for what a camera ray draws: the point on the lens, the time in the shutter, the place in the pixel. With the film's own
+// numbers, one sample of as many pixels. Power: alternating +-5 % over 200 cells is found at 1e5 draws.
 #include "base/sampler.h"
 #include "render/camera.h"
 #include "statistics/agreement.h"

@@ -9,13 +9,11 @@ namespace alpenglow::teststat {
 
 /// Q(a, x), the upper regularised incomplete gamma function: series below a + 1, continued fraction (Lentz) above.
 inline double gammaQ(double a, double x) {
-    if (x <= 0)
-        return 1;
+    if (x <= 0) return 1;
     double front = std::exp(a * std::log(x) - x - std::lgamma(a));
     if (x < a + 1) {
         double term = 1 / a, sum = term;
-        for (int n = 1; n < 10000 && term > sum * 1e-17; ++n)
-            sum += term *= x / (a + n);
+        for (int n = 1; n < 10000 && term > sum * 1e-17; ++n) sum += term *= x / (a + n);
         return 1 - front * sum;
     }
     double b = x + 1 - a, c = 1e300, d = 1 / b, h = d;
@@ -25,8 +23,7 @@ inline double gammaQ(double a, double x) {
         d = 1 / (an * d + b);
         c = b + an / c;
         h *= d * c;
-        if (std::fabs(d * c - 1) < 1e-15)
-            break;
+        if (std::fabs(d * c - 1) < 1e-15) break;
     }
     return front * h;
 }
@@ -34,8 +31,7 @@ inline double gammaQ(double a, double x) {
 /// p-value of the chi-square test. Cells are pooled in ascending order of expectation until a pool expects at least 10.
 inline double chiSquareP(const std::vector<double>& observed, const std::vector<double>& expected) {
     std::vector<std::pair<double, double>> cells;
-    for (size_t i = 0; i < observed.size(); ++i)
-        cells.emplace_back(expected[i], observed[i]);
+    for (size_t i = 0; i < observed.size(); ++i) cells.emplace_back(expected[i], observed[i]);
     std::sort(cells.begin(), cells.end());
     double e = 0, o = 0, x = 0;
     int k = 0;

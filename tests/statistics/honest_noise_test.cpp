@@ -79,8 +79,7 @@ TEST(HonestNoise, UnbiasedAtOddSampleCounts) {
             for (int r = 0; r < renders; ++r) {
                 Sampler s(uint64_t(r) + 10'000, p, 3);
                 double mean = 0;
-                for (uint32_t i = 0; i < spp; ++i)
-                    mean += kPixels[p].f(s.get2(0, 0, 0, i), s.get2(1, 0, 0, i)) / spp;
+                for (uint32_t i = 0; i < spp; ++i) mean += kPixels[p].f(s.get2(0, 0, 0, i), s.get2(1, 0, 0, i)) / spp;
                 sum += mean;
                 square += mean * mean;
             }
@@ -117,13 +116,11 @@ TEST(HonestNoise, FilterSignsAreStrata) {
         for (int r = 0; r < renders; ++r) {
             Sampler s(1, r, 0);
             double sum = 0;
-            for (uint32_t i = 0; i < n; ++i)
-                sum += filter.sample(s.get2(0, 0, 0, i)).weight;
+            for (uint32_t i = 0; i < n; ++i) sum += filter.sample(s.get2(0, 0, 0, i)).weight;
             square += (sum / n - 1) * (sum / n - 1);
         }
         double bound = 2 * (2 * weight / n) * (2 * weight / n), slack = 1 + 4.753 * std::sqrt(2.0 / renders);
         EXPECT_LE(square / renders, bound * slack) << n;
-        if (n == 512)
-            EXPECT_LT(square / renders, (weight * weight - 1) / n / 3);
+        if (n == 512) EXPECT_LT(square / renders, (weight * weight - 1) / n / 3);
     }
 }

@@ -1,6 +1,6 @@
 // T1 (sampler against density, chi-square) and T2 (consistency, support) of ../shared testing rules, for every lobe.
-// False alarms: alpha = 2e-6 a test. Power (T1): on 200 cells and 1e5 draws an error of alternating +-5 % is found in 200 of 200 runs;
-// nightly on 5,202 cells and 1e6 draws +-6 % (noncentrality N delta^2 against 7.1 sqrt(2 k), sum of delta^2 e = N delta^2).
+// False alarms: alpha = 2e-6 a test. Power (T1): on 200 cells and 1e5 draws an error of alternating +-5 % is found in 200 of 200
+// runs; nightly on 5,202 cells and 1e6 draws +-6 % (noncentrality N delta^2 against 7.1 sqrt(2 k), sum of delta^2 e = N delta^2).
 #include "statistics/agreement.h"
 #include "transport/lobe.h"
 #include "transport/sampling.h"
@@ -15,7 +15,10 @@ namespace {
 
 using teststat::gammaQ, teststat::kAlpha, teststat::nightly, teststat::samples, teststat::seedBase;
 
-struct Case { const char* kind; LobeParams p; };
+struct Case {
+    const char* kind;
+    LobeParams p;
+};
 
 std::vector<Case> cases() {
     std::vector<Case> all;
@@ -44,9 +47,11 @@ std::vector<Case> cases() {
 
 // Integral of the density over a cell of (cos theta, phi): 3 x 3 Gauss points, cells split in four until the parts add up to the
 // whole. The grid's pole is the lobe's axis, so that a cone's edge is an edge of cells; a horizon's edge runs through them and is
-// closed in on down to `deepest` halvings. What is left there is a strip 2^-10 of a coarse cell wide, half of it in error at worst
-// and both ways alike: below 1e-4 of the cell, far under the noise of the counts.
-struct Depths { int shallowest, deepest; };
+// closed in on down to `deepest` halvings. What is left there is a strip 2^-10 of a coarse cell wide, half of it in error at
+// worst and both ways alike: below 1e-4 of the cell, far under the noise of the counts.
+struct Depths {
+    int shallowest, deepest;
+};
 constexpr Depths kCoarse = {3, 10}; ///< a narrow lobe inside a wide cell must not be missed
 constexpr Depths kFine = {1, 8};    ///< nightly cells are a fifth as wide
 // Whether the edge of the horizon may run through a cell: near the pole it can cut off a sliver between all quadrature points.
@@ -74,22 +79,28 @@ double gauss3(const LobeKind& k, const LobeParams& p, const Basis& grid, double 
     }
     return sum * (c1 - c0) * (p1 - p0) / 4;
 }
-double cellIntegral(const LobeKind& k, const LobeParams& p, const Basis& grid, double c0, double c1, double p0, double p1, double whole, Depths d, int depth) {
+double cellIntegral(const LobeKind& k, const LobeParams& p, const Basis& grid, double c0, double c1, double p0, double p1,
+                    double whole, Depths d, int depth) {
     double c = (c0 + c1) / 2, f = (p0 + p1) / 2;
-    double part[4] = {gauss3(k, p, grid, c0, c, p0, f), gauss3(k, p, grid, c, c1, p0, f), gauss3(k, p, grid, c0, c, f, p1), gauss3(k, p, grid, c, c1, f, p1)};
+    double part[4] = {gauss3(k, p, grid, c0, c, p0, f), gauss3(k, p, grid, c, c1, p0, f), gauss3(k, p, grid, c0, c, f, p1),
+                      gauss3(k, p, grid, c, c1, f, p1)};
     double sum = part[0] + part[1] + part[2] + part[3];
     // The tolerance is for the whole cell; at the edge errors of neighbours do not add up, so it need not shrink with the area.
-    if (depth >= d.deepest || (depth >= d.shallowest && std::fabs(sum - whole) < 1e-8 && !meetsHorizon(p, grid, c0, c1, p0, p1))) return sum;
-    return cellIntegral(k, p, grid, c0, c, p0, f, part[0], d, depth + 1) + cellIntegral(k, p, grid, c, c1, p0, f, part[1], d, depth + 1) +
-           cellIntegral(k, p, grid, c0, c, f, p1, part[2], d, depth + 1) + cellIntegral(k, p, grid, c, c1, f, p1, part[3], d, depth + 1);
+    if (depth >= d.deepest || (depth >= d.shallowest && std::fabs(sum - whole) < 1e-8 && !meetsHorizon(p, grid, c0, c1, p0, p1)))
+        return sum;
+    return cellIntegral(k, p, grid, c0, c, p0, f, part[0], d, depth + 1) +
+           cellIntegral(k, p, grid, c, c1, p0, f, part[1], d, depth + 1) +
+           cellIntegral(k, p, grid, c0, c, f, p1, part[2], d, depth + 1) +
+           cellIntegral(k, p, grid, c, c1, f, p1, part[3], d, depth + 1);
 }
 
-// No tolerance but the statistics' own: expectations are integrals to about 1e-7 of the whole, edges included. A quarter of the cases
-// each; here a fifth of them, nightly all.
+// No tolerance but the statistics' own: expectations are integrals to about 1e-7 of the whole, edges included. A quarter of the
+// cases each; here a fifth of them, nightly all.
 class LobeT1 : public ::testing::TestWithParam<int> {};
 TEST_P(LobeT1, SamplersFollowTheirDensities) {
     const int kCos = nightly() ? 51 : 10, kPhi = nightly() ? 102 : 20, kN = samples(100000, 1000000);
-    const size_t stride = nightly() ? 4 : 21; // 21: no divisor in common with the 20 cases of one viewer, so all kinds have their turn
+    const size_t stride =
+        nightly() ? 4 : 21; // 21: no divisor in common with the 20 cases of one viewer, so all kinds have their turn
     int tested = 0;
     auto all = cases();
     for (size_t ci = size_t(GetParam()) * (nightly() ? 1 : 5); ci < all.size(); ci += stride) {
@@ -105,18 +116,22 @@ TEST_P(LobeT1, SamplersFollowTheirDensities) {
         for (int i = 0; i < kN; ++i) {
             Vec3 w;
             Vec2 u{std::min(float(u01(rng)), 0x1.fffffep-1f), std::min(float(u01(rng)), 0x1.fffffep-1f)};
-            if (!k.sample(c.p, u, w)) { observed.back()++; continue; }
+            if (!k.sample(c.p, u, w)) {
+                observed.back()++;
+                continue;
+            }
             w = {dot(w, grid.t), dot(w, grid.u), dot(w, grid.n)};
             int ic = std::clamp(int((w.z - low) / step), 0, kCos - 1);
             double phi = std::atan2(w.y, w.x);
             if (phi < 0) phi += 2 * kPi;
             observed[size_t(ic * kPhi + std::clamp(int(phi / (2 * kPi) * kPhi), 0, kPhi - 1))]++;
         }
-        // A highlight's density has a pole at -wo, 1 / (4 wo . h): where that lies above the lobe's plane no quadrature is good there, and its cell
-        // counts with the failed draws, whose expectation is what the other cells leave.
+        // A highlight's density has a pole at -wo, 1 / (4 wo . h): where that lies above the lobe's plane no quadrature is good
+        // there, and its cell counts with the failed draws, whose expectation is what the other cells leave.
         auto cellOf = [&](Vec3 w) {
             double z = dot(w, grid.n), phi = std::atan2(dot(w, grid.u), dot(w, grid.t));
-            return size_t(std::clamp(int((z - low) / step), 0, kCos - 1) * kPhi + std::clamp(int((phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi) * kPhi), 0, kPhi - 1));
+            return size_t(std::clamp(int((z - low) / step), 0, kCos - 1) * kPhi +
+                          std::clamp(int((phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi) * kPhi), 0, kPhi - 1));
         };
         const bool pole = std::string_view(c.kind) == "specular" && dot(c.p.axis, c.p.wo) < 0.1f;
         const size_t poleCell = cellOf(-c.p.wo);
@@ -124,7 +139,8 @@ TEST_P(LobeT1, SamplersFollowTheirDensities) {
         for (int i = 0; i < kCos; ++i)
             for (int j = 0; j < kPhi; ++j) {
                 double c0 = low + step * i, c1 = low + step * (i + 1), p0 = 2 * kPi * j / kPhi, p1 = 2 * kPi * (j + 1) / kPhi;
-                double v = cellIntegral(k, c.p, grid, c0, c1, p0, p1, gauss3(k, c.p, grid, c0, c1, p0, p1), nightly() ? kFine : kCoarse, 0);
+                double v = cellIntegral(k, c.p, grid, c0, c1, p0, p1, gauss3(k, c.p, grid, c0, c1, p0, p1),
+                                        nightly() ? kFine : kCoarse, 0);
                 if (pole && size_t(i * kPhi + j) == poleCell) continue;
                 expected[size_t(i * kPhi + j)] = v * kN;
                 total += v;
@@ -138,8 +154,12 @@ TEST_P(LobeT1, SamplersFollowTheirDensities) {
             ++dof;
         };
         for (size_t i = 0; i < expected.size(); ++i) {
-            if (expected[i] >= 10) { term(observed[i], expected[i]); continue; }
-            pooledE += expected[i]; pooledO += observed[i];
+            if (expected[i] >= 10) {
+                term(observed[i], expected[i]);
+                continue;
+            }
+            pooledE += expected[i];
+            pooledO += observed[i];
         }
         if (pooledE >= 10) term(pooledO, pooledE);
         else EXPECT_LE(pooledO, 10 + pooledE + 6 * std::sqrt(pooledE + 1)) << c.kind << " case " << ci;
@@ -152,8 +172,8 @@ TEST_P(LobeT1, SamplersFollowTheirDensities) {
 }
 INSTANTIATE_TEST_SUITE_P(Quarters, LobeT1, ::testing::Range(0, 4));
 
-// A drawn direction is unit, has a finite value and density, and a density above 0 but for rounding on a lobe's edge: what is drawn
-// where pdf says 0 would be lost. Draws: 2,000 a case, nightly 1e5 (T2).
+// A drawn direction is unit, has a finite value and density, and a density above 0 but for rounding on a lobe's edge: what is
+// drawn where pdf says 0 would be lost. Draws: 2,000 a case, nightly 1e5 (T2).
 TEST(LobeT2, SampledDirectionsHaveFiniteDensityAndValue) {
     for (const Case& c : cases()) {
         const LobeKind& k = *findLobe(c.kind);
@@ -169,13 +189,15 @@ TEST(LobeT2, SampledDirectionsHaveFiniteDensityAndValue) {
             ASSERT_TRUE(std::isfinite(pdf) && std::isfinite(f) && f >= 0 && pdf >= 0) << c.kind;
             lost += !(pdf > 0);
         }
-        // With the viewer below the lobe's horizon a highlight may be drawn nearly opposite to it, where its half vector is all rounding.
-        EXPECT_LE(lost, 1 + (dot(c.p.axis, c.p.wo) < 0.1f ? 1e-3 : 1e-4) * n) << c.kind << " a " << c.p.a << " viewer " << c.p.wo.z;
-
+        // With the viewer below the lobe's horizon a highlight may be drawn nearly opposite to it, where its half vector is all
+        // rounding.
+        EXPECT_LE(lost, 1 + (dot(c.p.axis, c.p.wo) < 0.1f ? 1e-3 : 1e-4) * n)
+            << c.kind << " a " << c.p.a << " viewer " << c.p.wo.z;
     }
 }
 
-// Where a lobe has a value it has a density, without exception (T2): necessary for an unbiased estimate. 3,000 directions a case, nightly 1e5.
+// Where a lobe has a value it has a density, without exception (T2): necessary for an unbiased estimate. 3,000 directions a case,
+// nightly 1e5.
 TEST(LobeT2, SupportOfTheDensityCoversTheValue) {
     std::mt19937_64 rng(6 + seedBase());
     std::normal_distribution<float> g;
@@ -189,12 +211,15 @@ TEST(LobeT2, SupportOfTheDensityCoversTheValue) {
     }
 }
 
-// T4: the mean of value over density is the lobe's integral, here by midpoints over (cos, phi) about the lobe's own axis. Smooth lobes only
-// (no horizon, viewer well above the surface and the lobe's own plane); delta found with 99 % power: 7.1 r / sqrt(N), r < 3: 7 % here, below 1 % nightly.
+// T4: the mean of value over density is the lobe's integral, here by midpoints over (cos, phi) about the lobe's own axis. Smooth
+// lobes only (no horizon, viewer well above the surface and the lobe's own plane); delta found with 99 % power: 7.1 r / sqrt(N),
+// r < 3: 7 % here, below 1 % nightly.
 TEST(LobeT4, MeanOfTheWeightsIsTheIntegral) {
     for (const Case& c : cases()) {
         const LobeKind& k = *findLobe(c.kind);
-        if (c.p.hasHorizon || c.p.wo.z < 0.2f || dot(c.p.axis, c.p.wo) < 0.2f || std::string_view(c.kind) == "uniform" || std::string_view(c.kind) == "cosine") continue; // edges: below
+        if (c.p.hasHorizon || c.p.wo.z < 0.2f || dot(c.p.axis, c.p.wo) < 0.2f || std::string_view(c.kind) == "uniform" ||
+            std::string_view(c.kind) == "cosine")
+            continue; // edges: below
         std::mt19937_64 rng(8 + seedBase());
         std::uniform_real_distribution<float> u01(0, 0x1.fffffep-1f);
         const int n = samples(20000, 500000), m = 512;
@@ -210,11 +235,14 @@ TEST(LobeT4, MeanOfTheWeightsIsTheIntegral) {
         for (int i = 0; i < m; ++i)
             for (int j = 0; j < m / 2; ++j) {
                 // Midpoints in s, cos = 1 - 2 s^2: dense about the axis.
-                double s = (i + 0.5) / m, z = 1 - 2 * s * s, q = std::sqrt(std::max(0.0, 1 - z * z)), f = 2 * kPi * (j + 0.5) / (m / 2);
-                whole += 4 * s / m * 2 * kPi / (m / 2) * k.fcos(c.p, basis.toWorld({float(q * std::cos(f)), float(q * std::sin(f)), float(z)}));
+                double s = (i + 0.5) / m, z = 1 - 2 * s * s, q = std::sqrt(std::max(0.0, 1 - z * z)),
+                       f = 2 * kPi * (j + 0.5) / (m / 2);
+                whole += 4 * s / m * 2 * kPi / (m / 2) *
+                         k.fcos(c.p, basis.toWorld({float(q * std::cos(f)), float(q * std::sin(f)), float(z)}));
             }
         double mean = sum / n, se = std::sqrt(std::max(0.0, square / n - mean * mean) / n);
-        EXPECT_LE(std::fabs(mean - whole), teststat::kZ * se + 4e-3 * whole) << c.kind << " a " << c.p.a << ": " << mean << " +- " << se << ", " << whole;
+        EXPECT_LE(std::fabs(mean - whole), teststat::kZ * se + 4e-3 * whole)
+            << c.kind << " a " << c.p.a << ": " << mean << " +- " << se << ", " << whole;
     }
 }
 
@@ -231,7 +259,8 @@ TEST(LobeT4, NormalisationByQuadrature) {
                 double z = (i + 0.5) / n, s = std::sqrt(1 - z * z), f = 2 * kPi * (j + 0.5) / n;
                 sum += k.fcos(c.p, basis.toWorld({float(s * std::cos(f)), float(s * std::sin(f)), float(z)}));
             }
-        EXPECT_NEAR(sum * 2 * kPi / (double(n) * n), 1, 0.01) << c.kind << " cone " << c.p.a; // midpoints across the cone's edge: 1/n
+        EXPECT_NEAR(sum * 2 * kPi / (double(n) * n), 1, 0.01)
+            << c.kind << " cone " << c.p.a; // midpoints across the cone's edge: 1/n
     }
 }
 
@@ -268,7 +297,8 @@ TEST(Sampling, RouletteIsUnbiased) {
             if (q == 0) break;
             throughput *= 0.75 / q;
         }
-        sum += value; sq += value * value;
+        sum += value;
+        sq += value * value;
     }
     double mean = sum / n, se = std::sqrt((sq / n - mean * mean) / n);
     EXPECT_LT(std::fabs(mean - 4) / se, 4.753);

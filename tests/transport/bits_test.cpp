@@ -54,15 +54,21 @@ std::string crowd() {
 }
 )");
     std::string s = "WorldBegin\nSides 2\n"
-                    "LightSource \"pointlight\" 1 \"intensity\" 8 \"from\" [1 3 2]\nLightSource \"spotlight\" 2 \"intensity\" 9 \"from\" [-2 3 3] \"to\" [0 0 5]\n"
-                    "LightSource \"distantlight\" 3 \"intensity\" .3 \"from\" [1 1 -1] \"to\" [0 0 0]\nLightSource \"envlight\" 4 \"intensity\" .2\n"
+                    "LightSource \"pointlight\" 1 \"intensity\" 8 \"from\" [1 3 2]\nLightSource \"spotlight\" 2 \"intensity\" 9 "
+                    "\"from\" [-2 3 3] \"to\" [0 0 5]\n"
+                    "LightSource \"distantlight\" 3 \"intensity\" .3 \"from\" [1 1 -1] \"to\" [0 0 0]\nLightSource \"envlight\" "
+                    "4 \"intensity\" .2\n"
                     "AttributeBegin\nAreaLightSource \"arealight\" 5 \"float intensity\" 3\nSurface \"constant\"\nColor 0 0 0\n"
                     "Polygon \"P\" [-1 3 4  1 3 4  1 3 6  -1 3 6]\nAttributeEnd\nIlluminate 5 1\n";
-    const char* shaders[] = {"plastic", "busy", "waits", "matte", "slmaterial\" \"color diffusecolor\" [0 0 0] \"color transmissive\" [1 1 1] \"float kn\" 1.5 \"string fresnel\" \"exact"};
+    const char* shaders[] = {
+        "plastic", "busy", "waits", "matte",
+        "slmaterial\" \"color diffusecolor\" [0 0 0] \"color transmissive\" [1 1 1] \"float kn\" 1.5 \"string fresnel\" \"exact"};
     for (int i = 0; i < 15; ++i) {
-        s += "AttributeBegin\nSurface \"" + std::string(shaders[i % 5]) + "\"\nColor [" + std::to_string(.3 + .04 * i) + " .5 .6]\n";
+        s += "AttributeBegin\nSurface \"" + std::string(shaders[i % 5]) + "\"\nColor [" + std::to_string(.3 + .04 * i) +
+             " .5 .6]\n";
         if (i % 4 == 1) s += "Opacity .5 .6 .7\n";
-        s += "Translate " + std::to_string(-2 + i % 5) + " " + std::to_string(-1 + i / 5) + " " + std::to_string(4 + .3 * (i % 3)) + "\nSphere .45 -.45 .45 360\nAttributeEnd\n";
+        s += "Translate " + std::to_string(-2 + i % 5) + " " + std::to_string(-1 + i / 5) + " " +
+             std::to_string(4 + .3 * (i % 3)) + "\nSphere .45 -.45 .45 360\nAttributeEnd\n";
     }
     return s + "Surface \"busy\"\nPolygon \"P\" [-9 -2 0  -9 -2 20  9 -2 20  9 -2 0]\nWorldEnd\n";
 }
@@ -134,12 +140,14 @@ TEST_P(BitsTest, SplitsThreadsLanesBuilds) {
     for (auto& t : threads) t.join();
     EXPECT_EQ(differences(whole, bitsOf(threaded)), 0u) << "threads";
 
-    for (int lanes : {4, 8}) EXPECT_EQ(differences(whole, bitsOf(Scene(rib, settings(lanes)).trace(rays))), 0u) << "lanes " << lanes;
+    for (int lanes : {4, 8})
+        EXPECT_EQ(differences(whole, bitsOf(Scene(rib, settings(lanes)).trace(rays))), 0u) << "lanes " << lanes;
     Settings mixedOnly = settings();
     mixedOnly.mixedOnly = true;
     EXPECT_EQ(differences(whole, bitsOf(Scene(rib, mixedOnly).trace(rays))), 0u) << "build V";
 }
-INSTANTIATE_TEST_SUITE_P(Hiders, BitsTest, ::testing::Values(Hider::Hidden, Hider::Path), [](const auto& i) { return i.param == Hider::Path ? "path" : "hidden"; });
+INSTANTIATE_TEST_SUITE_P(Hiders, BitsTest, ::testing::Values(Hider::Hidden, Hider::Path),
+                         [](const auto& i) { return i.param == Hider::Path ? "path" : "hidden"; });
 
 TEST(Bits, BoxInEveryWidth) {
     auto rays = boxRays(20, 5);

@@ -72,7 +72,8 @@ inline Tiles oracleTiles(bool spheres, int n, uint32_t seed) {
     for (int i = 0; i < Tiles::kCount; ++i)
         for (int k = 0; k < n; ++k) {
             oracle::V o, d;
-            oracle::Box::camera(640 * (i % Tiles::kX + oracle::Box::u01(rng)) / Tiles::kX, 480 * (i / Tiles::kX + oracle::Box::u01(rng)) / Tiles::kY, o, d);
+            oracle::Box::camera(640 * (i % Tiles::kX + oracle::Box::u01(rng)) / Tiles::kX,
+                                480 * (i / Tiles::kX + oracle::Box::u01(rng)) / Tiles::kY, o, d);
             oracle::V v = box.radiance(o, d, rng);
             t.tile[size_t(i)].add(Color(float(v.x), float(v.y), float(v.z)));
         }
@@ -82,8 +83,9 @@ inline Tiles oracleTiles(bool spheres, int n, uint32_t seed) {
 /// A way of making the tiles: with `n` samples a tile and a seed of its own.
 using Technique = std::function<Tiles(int n, uint32_t seed)>;
 
-/// The four statistics of T6 on each channel. `declared`: the relative bias of the whole image that must be found in 99 of 100 runs; nightly a quarter of it.
-/// Nightly, with fresh seeds, a rejection is repeated once with new seeds and four times the samples and counts only when repeated.
+/// The four statistics of T6 on each channel. `declared`: the relative bias of the whole image that must be found in 99 of 100
+/// runs; nightly a quarter of it. Nightly, with fresh seeds, a rejection is repeated once with new seeds and four times the
+/// samples and counts only when repeated.
 inline void expectSame(const Technique& a, const Technique& b, int n, double declared, const std::string& what, uint32_t seed) {
     for (int stage = 0;; ++stage) {
         int count = n * (stage ? 4 : 1);

@@ -1,4 +1,5 @@
-// T6 on the Muttenzer box: estimators, forms and widths agree with each other and with the oracle; the listed places of the reference.
+// T6 on the Muttenzer box: estimators, forms and widths agree with each other and with the oracle; the listed places of the
+// reference.
 #include "transport/box.h"
 
 using namespace alpenglow;
@@ -21,7 +22,9 @@ protected:
 };
 
 TEST_P(BoxAgreement, Oracle) {
-    expectSame(with({}), [this](int n, uint32_t seed) { return oracleTiles(GetParam(), n, seed); }, kPerTile, .12, name("oracle"), seed(1));
+    expectSame(
+        with({}), [this](int n, uint32_t seed) { return oracleTiles(GetParam(), n, seed); }, kPerTile, .12, name("oracle"),
+        seed(1));
 }
 TEST_P(BoxAgreement, LightSamplesOnly) {
     Settings s;
@@ -43,18 +46,20 @@ TEST_P(BoxAgreement, LocalRoulette) {
     s.localRoulette = true;
     expectSame(with({}), with(s), kPerTile, .12, name("local roulette"), seed(5));
 }
-// Affine against suspending form of the same shaders. With glass every request of a waiting shader is followed: few samples there.
+// Affine against suspending form of the same shaders. With glass every request of a waiting shader is followed: few samples
+// there.
 TEST_P(BoxAgreement, Suspending) {
     Settings s;
     s.suspend = true;
     Counters c;
-    expectSame(with({}), [&](int n, uint32_t seed) { return boxTiles(rib_, s, n / (nightly() && GetParam() ? 8 : 2), seed, &c); }, kPerTile,
-               nightly() ? .24 : .15, name("suspending"), seed(6));
+    expectSame(
+        with({}), [&](int n, uint32_t seed) { return boxTiles(rib_, s, n / (nightly() && GetParam() ? 8 : 2), seed, &c); },
+        kPerTile, nightly() ? .24 : .15, name("suspending"), seed(6));
     EXPECT_EQ(c.overLimit, 0u);
     EXPECT_EQ(c.nonFinite, 0u);
 }
-// The film's scrambled sequences against independent numbers. The unit of statistics is a randomisation: 32 samples of one pixel are
-// dependent, so their mean counts as one value.
+// The film's scrambled sequences against independent numbers. The unit of statistics is a randomisation: 32 samples of one pixel
+// are dependent, so their mean counts as one value.
 TEST_P(BoxAgreement, ScrambledSequences) {
     if (GetParam() && !nightly()) GTEST_SKIP() << "too few randomisations for caustics; nightly";
     auto sequences = [this](int n, uint32_t seed) {
@@ -65,7 +70,8 @@ TEST_P(BoxAgreement, ScrambledSequences) {
         Scene scene(rib_, s);
         Tiles t;
         for (int i = 0; scene.world && i < Tiles::kCount; ++i) {
-            std::vector<CameraRay> rays = tileRays(i, 2 * n / int(kLength) * int(kLength), seed); // places are independent, all the rest is not
+            std::vector<CameraRay> rays =
+                tileRays(i, 2 * n / int(kLength) * int(kLength), seed); // places are independent, all the rest is not
             for (size_t r = 0; r < rays.size(); ++r) {
                 rays[r].py = int(r / kLength);
                 rays[r].sample = uint32_t(r % kLength);
@@ -84,7 +90,11 @@ TEST_P(BoxAgreement, ScrambledSequences) {
 INSTANTIATE_TEST_SUITE_P(Box, BoxAgreement, ::testing::Bool(), [](const auto& i) { return i.param ? "spheres" : "empty"; });
 
 // Reference muttenzer_box.md. Figures are rounded to four digits and have a standard error below 0.0002.
-struct Place { const char* name; double p[3]; double direct[3], empty[3], full[3]; };
+struct Place {
+    const char* name;
+    double p[3];
+    double direct[3], empty[3], full[3];
+};
 const Place kPlaces[] = {
     {"floor", {0, -1.25, .25}, {.1769, .1769, .1769}, {.2415, .2164, .2416}, {.2535, .2308, .2586}},
     {"far wall", {0, 0, -1.55}, {.1055, .1055, .1055}, {.1846, .1592, .1847}, {.1862, .1628, .1904}},
@@ -111,7 +121,13 @@ TEST(BoxReference, ListedPlaces) {
         Scene scene(boxRib(kind == 2), s);
         for (const Place& p : kPlaces) {
             Moments m = scene.estimate(rayTo({0, 0, 0}, boxCamera(p.p[0], p.p[1], p.p[2])), samples(kind ? 40000 : 10000));
-            expectFigure(m, kind == 0 ? p.direct : kind == 1 ? p.empty : p.full, std::string(p.name) + (kind == 0 ? ", direct" : kind == 1 ? ", empty" : ", spheres"));
+            expectFigure(m,
+                         kind == 0   ? p.direct
+                         : kind == 1 ? p.empty
+                                     : p.full,
+                         std::string(p.name) + (kind == 0   ? ", direct"
+                                                : kind == 1 ? ", empty"
+                                                            : ", spheres"));
         }
     }
 }
@@ -125,7 +141,8 @@ TEST(BoxReference, PlaceOfTheCausticWithoutSpheres) {
         s.hider = Hider::Path;
         s.indirect = indirect;
         Scene scene(boxRib(false), s);
-        expectFigure(scene.estimate(rayTo(boxCamera(.7, -1, .3), boxCamera(.73, -1.25, .1)), samples(indirect ? 40000 : 10000)), indirect ? all : direct, "caustic's place");
+        expectFigure(scene.estimate(rayTo(boxCamera(.7, -1, .3), boxCamera(.73, -1.25, .1)), samples(indirect ? 40000 : 10000)),
+                     indirect ? all : direct, "caustic's place");
     }
 }
 TEST(BoxReference, FrameMeans) {

@@ -36,7 +36,8 @@ void writeShaders() {
     N = calculatenormal(P);
 }
 )");
-    writeShader("shownormal", "surface shownormal(output varying normal shown = 0; output varying point uv = 0;) { shown = normalize(N); uv = point(u, v, 0); Ci = 1; Oi = 1; }\n");
+    writeShader("shownormal", "surface shownormal(output varying normal shown = 0; output varying point uv = 0;) { shown = "
+                              "normalize(N); uv = point(u, v, 0); Ci = 1; Oi = 1; }\n");
     writeShader("showbump", R"(surface showbump(output varying normal shown = 0; output varying point uv = 0;) {
     shown = normalize(calculatenormal(P + .02 * sin(31 * u + 1) * sin(17 * v) * normalize(N)));
     uv = point(u, v, 0);
@@ -47,7 +48,8 @@ void writeShaders() {
     writeShader("showstep", "surface showstep() { Ci = color(du, dv, filterstep(0, u) * 0); Oi = 1; }\n");
 }
 
-template <class F> void expectNormals(const std::string& rib, F surface, Vec3 eye, Vec3 towards, const char* what, double tolerance = 1e-3) {
+template <class F>
+void expectNormals(const std::string& rib, F surface, Vec3 eye, Vec3 towards, const char* what, double tolerance = 1e-3) {
     Settings s;
     s.outputs = {"shown", "uv"};
     Scene scene(rib, s);
@@ -74,14 +76,20 @@ template <class F> void expectNormals(const std::string& rib, F surface, Vec3 ey
 }
 
 std::string sphereRib(const char* displacement, const char* surface) {
-    return std::string("Format 200 200 1\nProjection \"perspective\" \"fov\" 40\nWorldBegin\nSides 2\nAttribute \"displacementbound\" \"sphere\" .1\n") + displacement +
-           "Surface \"" + surface + "\"\nTranslate 0 0 4\nSphere 1 -1 1 360\nWorldEnd\n";
+    return std::string("Format 200 200 1\nProjection \"perspective\" \"fov\" 40\nWorldBegin\nSides 2\nAttribute "
+                       "\"displacementbound\" \"sphere\" .1\n") +
+           displacement + "Surface \"" + surface + "\"\nTranslate 0 0 4\nSphere 1 -1 1 360\nWorldEnd\n";
 }
 std::string patchRib(const char* displacement, const char* surface) {
-    return std::string("Format 200 200 1\nProjection \"perspective\" \"fov\" 40\nWorldBegin\nSides 2\nAttribute \"displacementbound\" \"sphere\" .1\n") + displacement +
-           "Surface \"" + surface + "\"\nPatch \"bilinear\" \"P\" [-1 -1 3.4  1 -1 2.6  -1 1 2.6  1 1 3.4]\nWorldEnd\n";
+    return std::string("Format 200 200 1\nProjection \"perspective\" \"fov\" 40\nWorldBegin\nSides 2\nAttribute "
+                       "\"displacementbound\" \"sphere\" .1\n") +
+           displacement + "Surface \"" + surface +
+           "\"\nPatch \"bilinear\" \"P\" [-1 -1 3.4  1 -1 2.6  -1 1 2.6  1 1 3.4]\nWorldEnd\n";
 }
-auto displacedSphere = [](double u, double v) { Vec3d p = sphere(u, v); return p * (1 + height(u, v)); };
+auto displacedSphere = [](double u, double v) {
+    Vec3d p = sphere(u, v);
+    return p * (1 + height(u, v));
+};
 auto displacedSaddle = [](double u, double v) { return saddle(u, v) + unitNormal(saddle, u, v) * height(u, v); };
 const char* kWaves = "Displacement \"waves\"\n";
 
@@ -97,16 +105,25 @@ TEST(Derivatives, DisplacedNormals) {
 }
 TEST(Derivatives, BumpOnThePlainSurface) {
     writeShaders();
-    expectNormals(sphereRib("", "showbump"), [](double u, double v) { return sphere(u, v) * (1 + bump(u, v)); }, {0, 0, 0}, {0, 0, 4}, "sphere", 1e-4);
-    expectNormals(patchRib("", "showbump"), [](double u, double v) { return saddle(u, v) + unitNormal(saddle, u, v) * bump(u, v); }, {0, 0, 0}, {0, 0, 3}, "patch", 1e-4);
+    expectNormals(
+        sphereRib("", "showbump"), [](double u, double v) { return sphere(u, v) * (1 + bump(u, v)); }, {0, 0, 0}, {0, 0, 4},
+        "sphere", 1e-4);
+    expectNormals(
+        patchRib("", "showbump"), [](double u, double v) { return saddle(u, v) + unitNormal(saddle, u, v) * bump(u, v); },
+        {0, 0, 0}, {0, 0, 3}, "patch", 1e-4);
 }
 TEST(Derivatives, BumpOverDisplacement) {
     writeShaders();
-    // unitNormal points to dPdu ^ dPdv; the shader's N to the outside: on the sphere of RISpec both agree up to the camera's handedness.
+    // unitNormal points to dPdu ^ dPdv; the shader's N to the outside: on the sphere of RISpec both agree up to the camera's
+    // handedness.
     for (double sign : {1.0, -1.0}) {
-        auto patch = [sign](double u, double v) { return displacedSaddle(u, v) + unitNormal(displacedSaddle, u, v) * (sign * bump(u, v)); };
+        auto patch = [sign](double u, double v) {
+            return displacedSaddle(u, v) + unitNormal(displacedSaddle, u, v) * (sign * bump(u, v));
+        };
         if (sign > 0) expectNormals(patchRib(kWaves, "showbump"), patch, {0, 0, 0}, {0, 0, 3}, "patch");
-        auto ball = [sign](double u, double v) { return displacedSphere(u, v) + unitNormal(displacedSphere, u, v) * (sign * bump(u, v)); };
+        auto ball = [sign](double u, double v) {
+            return displacedSphere(u, v) + unitNormal(displacedSphere, u, v) * (sign * bump(u, v));
+        };
         if (sign > 0) expectNormals(sphereRib(kWaves, "showbump"), ball, {0, 0, 0}, {0, 0, 4}, "sphere");
     }
 }
@@ -116,8 +133,8 @@ TEST(Derivatives, Footprints) {
     for (double distance : {2.0, 5.0})
         for (double tilt : {0.0, 60.0}) {
             std::string z = std::to_string(distance);
-            Scene scene("WorldBegin\nSides 2\nShadingRate 1\nSurface \"showstep\"\nTranslate 0 0 " + z + "\nRotate " + std::to_string(tilt) +
-                        " 1 0 0\nPatch \"bilinear\" \"P\" [-4 -2 0  4 -2 0  -4 2 0  4 2 0]\nWorldEnd\n");
+            Scene scene("WorldBegin\nSides 2\nShadingRate 1\nSurface \"showstep\"\nTranslate 0 0 " + z + "\nRotate " +
+                        std::to_string(tilt) + " 1 0 0\nPatch \"bilinear\" \"P\" [-4 -2 0  4 -2 0  -4 2 0  4 2 0]\nWorldEnd\n");
             CameraRay r = rayTo({0, 0, 0}, {0, 0, 1});
             r.width = .001f;
             r.spread = .002f;

@@ -1,14 +1,15 @@
-// T1 and T2 for light samplers: every primitive as an area light, seen from outside, close by, from inside and edge-on. Spheres are sampled
-// by solid angle, polygons over area, all else over (u, v).
+// T1 and T2 for light samplers: every primitive as an area light, seen from outside, close by, from inside and edge-on. Spheres
+// are sampled by solid angle, polygons over area, all else over (u, v).
 //
-// The property that makes an estimate unbiased: the sum of 1/pdf over samples that fall into a cell of directions is the solid angle of the
-// surface in that cell, every layer counted. The other side is counted with rays. 1/pdf is bounded (cos A / d^2), pdf is not.
-// Power: 200 cells over the shape's cone, about 100 of them filled, n draws a side: a relative error of alternating sign of 22 %
-// is found at 30,000, of 4 % at 1e6 (noncentrality sum delta^2 n/2 per cell / r^2 against 7.1 sqrt(2 * 100), r^2 about 1).
-#include "transport/arealight.h"
+// The property that makes an estimate unbiased: the sum of 1/pdf over samples that fall into a cell of directions is the solid
+// angle of the surface in that cell, every layer counted. The other side is counted with rays. 1/pdf is bounded (cos A / d^2),
+// pdf is not. Power: 200 cells over the shape's cone, about 100 of them filled, n draws a side: a relative error of alternating
+// sign of 22 % is found at 30,000, of 4 % at 1e6 (noncentrality sum delta^2 n/2 per cell / r^2 against 7.1 sqrt(2 * 100), r^2
+// about 1).
 #include "accel/accel.h"
 #include "geometry/make.h"
 #include "statistics/agreement.h"
+#include "transport/arealight.h"
 #include "transport/sampling.h"
 #include <gtest/gtest.h>
 #include <random>
@@ -67,7 +68,9 @@ std::vector<Case> cases() {
         {"bilinear patch", {patch("bilinear", {-1, -1, 0, 1, -1, .4f, -1, 1, .3f, .8f, 1, -.2f})}, skew},
         {"bicubic patch", {patch("bicubic", bentNet())}, skew},
         {"bicubic mesh", {patchMesh("bicubic", 4, "nonperiodic", 4, "nonperiodic", bentNet())}, skew},
-        {"sphere, disk and polygon", {quadric("Sphere", {.5f, -.5f, .5f, 360}), quadric("Disk", {1.2f, .9f, 360}), polygon(concave)}, skew},
+        {"sphere, disk and polygon",
+         {quadric("Sphere", {.5f, -.5f, .5f, 360}), quadric("Disk", {1.2f, .9f, 360}), polygon(concave)},
+         skew},
     };
 }
 
@@ -121,12 +124,14 @@ std::vector<std::pair<const char*, Vec3>> places(const Made& m) {
     geometry::Bounds b = m.accel->bounds();
     Vec3 lo(b.lo), hi(b.hi), c = (lo + hi) * 0.5f, d = hi - lo;
     geometry::SurfacePoint p = m.shapes[0]->sampleArea(.3, .6);
-    std::vector<std::pair<const char*, Vec3>> all = {{"far", {0, 0, 0}}, {"near", p.P + p.n * (.15f * length(d))}, {"behind", p.P - p.n * (.4f * length(d))}};
+    std::vector<std::pair<const char*, Vec3>> all = {
+        {"far", {0, 0, 0}}, {"near", p.P + p.n * (.15f * length(d))}, {"behind", p.P - p.n * (.4f * length(d))}};
     for (float t : {.07f, -.07f, .15f, -.15f, .25f, -.25f}) all.push_back({"inside", c + d * t});
     std::erase_if(all, [&](const auto& place) {
         float nearest = 1e30f;
         for (const auto& s : m.shapes)
-            for (int i = 0; i < 4000; ++i) nearest = std::min(nearest, length(s->sampleArea((i % 64 + .5) / 64, (i / 64 + .5) / 63).P - place.second));
+            for (int i = 0; i < 4000; ++i)
+                nearest = std::min(nearest, length(s->sampleArea((i % 64 + .5) / 64, (i / 64 + .5) / 63).P - place.second));
         return nearest < .1f * length(d);
     });
     return all;
@@ -138,7 +143,8 @@ struct Grid {
     static constexpr int kCos = 10, kPhi = 20;
     size_t cell(const Vec3& w) const {
         double z = dot(w, basis.n), phi = std::atan2(dot(w, basis.u), dot(w, basis.t)) / (2 * kPi);
-        int i = std::clamp(int((z - cosLow) / span * kCos), 0, kCos - 1), j = std::clamp(int((phi < 0 ? phi + 1 : phi) * kPhi), 0, kPhi - 1);
+        int i = std::clamp(int((z - cosLow) / span * kCos), 0, kCos - 1),
+            j = std::clamp(int((phi < 0 ? phi + 1 : phi) * kPhi), 0, kPhi - 1);
         return size_t(i * kPhi + j);
     }
 };
@@ -150,7 +156,10 @@ Grid gridFor(const Made& m, const Vec3& from) {
     return {Basis(normalize(axis)), c, 1 - c};
 }
 
-struct Cell { double s = 0, q = 0; int hits = 0; };
+struct Cell {
+    double s = 0, q = 0;
+    int hits = 0;
+};
 
 class EmitterT1 : public ::testing::TestWithParam<int> {};
 
@@ -175,13 +184,17 @@ TEST_P(EmitterT1, SolidAngleOfEveryCell) {
             Emitter::Sample s;
             float a = u01(rng), b = u01(rng), choose = u01(rng);
             geometry::SurfacePoint point;
-            if (!draw(*m.emitter, from, {a, b}, choose, s, point)) { ++failed; continue; }
+            if (!draw(*m.emitter, from, {a, b}, choose, s, point)) {
+                ++failed;
+                continue;
+            }
             // T2: what is drawn agrees with itself and with the density of a hit there.
             ASSERT_TRUE(s.pdf > 0 && std::isfinite(s.pdf)) << what;
             ASSERT_NEAR(length(s.direction), 1, 1e-5) << what;
             ASSERT_LE(length(from + s.direction * s.distance - point.P), 1e-4f * (1 + s.distance)) << what;
             double pdf = m.emitter->pdf(s.shape, point, from);
-            // Nearly edge-on the cosine is lost in rounding, the same on both sides of the comparison but for the direction drawn.
+            // Nearly edge-on the cosine is lost in rounding, the same on both sides of the comparison but for the direction
+            // drawn.
             unlike += !(std::fabs(pdf - s.pdf) <= 1e-4 * s.pdf);
             Cell& cell = drawn[grid.cell(s.direction)];
             cell.s += 1 / double(s.pdf), cell.q += 1 / double(s.pdf) / s.pdf, ++cell.hits;
@@ -214,14 +227,17 @@ TEST_P(EmitterT1, SolidAngleOfEveryCell) {
             double z = (ma - mb) / std::sqrt(v);
             sum += z * z;
             ++used;
-            EXPECT_GT(teststat::sidakP(teststat::normalP(z), 200), kAlpha) << what << ": a cell has " << ma << ", rays say " << mb;
+            EXPECT_GT(teststat::sidakP(teststat::normalP(z), 200), kAlpha)
+                << what << ": a cell has " << ma << ", rays say " << mb;
         };
         for (size_t i = 0; i < drawn.size(); ++i) {
             const Cell &a = drawn[i], &b = counted[i];
             total[0] += a.s / n, total[1] += b.s / n;
             variance += (a.q / n + b.q / n) / n;
             if (a.hits >= 50 && b.hits >= 50) compare(a, b);
-            else restA = {restA.s + a.s, restA.q + a.q, restA.hits + a.hits}, restB = {restB.s + b.s, restB.q + b.q, restB.hits + b.hits};
+            else
+                restA = {restA.s + a.s, restA.q + a.q, restA.hits + a.hits},
+                restB = {restB.s + b.s, restB.q + b.q, restB.hits + b.hits};
         }
         if (restA.hits >= 50 && restB.hits >= 50) compare(restA, restB);
         else { // a handful of rays, or none: Poisson
@@ -232,7 +248,8 @@ TEST_P(EmitterT1, SolidAngleOfEveryCell) {
         double p = teststat::gammaQ(used / 2.0, sum / 2);
         EXPECT_GT(p, kAlpha) << what << ": chi^2 " << sum << " over " << used << " cells";
         teststat::keepP("emitter " + what, p);
-        EXPECT_LE(std::fabs(total[0] - total[1]), teststat::kZ * std::sqrt(variance)) << what << ": " << total[0] << " sr, rays " << total[1];
+        EXPECT_LE(std::fabs(total[0] - total[1]), teststat::kZ * std::sqrt(variance))
+            << what << ": " << total[0] << " sr, rays " << total[1];
     }
 }
 INSTANTIATE_TEST_SUITE_P(Primitives, EmitterT1, ::testing::Range(0, int(cases().size())));

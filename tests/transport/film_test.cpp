@@ -1,4 +1,5 @@
-// The engine and the film together: noise laws on the empty box, honest error figures, bias floor, and the same bits for every order.
+// The engine and the film together: noise laws on the empty box, honest error figures, bias floor, and the same bits for every
+// order.
 #include "render/film.h"
 #include "render/noise.h"
 #include "render/renderer.h"
@@ -54,8 +55,8 @@ TEST(NoiseLaws, HalvesFrom64To256) {
     EXPECT_GT(a, 0);
     EXPECT_NEAR(b / a, .5, .025);
 }
-// efficiency = 1 / (noiseRSE^2 t) does not depend on the number of samples, t in processor time. Short runs beside each other, repeated,
-// because other work on the machine slows both. Timed, so nightly only.
+// efficiency = 1 / (noiseRSE^2 t) does not depend on the number of samples, t in processor time. Short runs beside each other,
+// repeated, because other work on the machine slows both. Timed, so nightly only.
 TEST(NoiseLaws, EfficiencyIsConstant) {
     if (!nightly()) GTEST_SKIP() << "measures time: nightly";
     double square[2] = {}, seconds[2] = {};
@@ -67,12 +68,15 @@ TEST(NoiseLaws, EfficiencyIsConstant) {
             seconds[k] += s.cpuSec / 3;
         }
     double a = 1 / (square[0] * seconds[0]), b = 1 / (square[1] * seconds[1]);
-    std::printf("efficiency %.3f at 64 samples (%.2f s), %.3f at 256 (%.2f s): ratio %.4f\n", a, seconds[0], b, seconds[1], b / a);
+    std::printf("efficiency %.3f at 64 samples (%.2f s), %.3f at 256 (%.2f s): ratio %.4f\n", a, seconds[0], b, seconds[1],
+                b / a);
     EXPECT_NEAR(b / a, 1, .1);
 }
 
-// A sphere whose wall shines with radiance 1 and reflects a half: 2 everywhere. Light samples, lobe rays and roulette all take part.
-const char* kFurnace = "WorldBegin\nSides 2\nAreaLightSource \"glow\" 3\nSurface \"matte\" \"Kd\" .5\nSphere 1.3 -1.3 1.3 360\nWorldEnd\n";
+// A sphere whose wall shines with radiance 1 and reflects a half: 2 everywhere. Light samples, lobe rays and roulette all take
+// part.
+const char* kFurnace =
+    "WorldBegin\nSides 2\nAreaLightSource \"glow\" 3\nSurface \"matte\" \"Kd\" .5\nSphere 1.3 -1.3 1.3 360\nWorldEnd\n";
 const double kTruth = 2;
 Scene furnaceScene(uint32_t seed) {
     writeShader("glow", "light glow() { illuminate(P, -N, PI / 2) Cl = 1; }\n");
@@ -97,8 +101,8 @@ const char* kShiningBox =
     "Polygon \"P\" [-1 -1 -1  -1 1 -1  1 1 -1  1 -1 -1]\nPolygon \"P\" [-1 -1 2  1 -1 2  1 1 2  -1 1 2]\n"
     "Polygon \"P\" [-1 -1 -1  -1 -1 2  -1 1 2  -1 1 -1]\nPolygon \"P\" [1 -1 -1  1 1 -1  1 1 2  1 -1 2]\nWorldEnd\n";
 
-// T9 on the engine itself: 1,000 renders (100 here) of 4 x 4 pixels with 64 samples, each with numbers of its own. Share of 95 % intervals
-// that cover the truth, of 16,000: 95 % +- 0.8 % is 4.753 deviations of a fair share, +- 1.5 % is the demand.
+// T9 on the engine itself: 1,000 renders (100 here) of 4 x 4 pixels with 64 samples, each with numbers of its own. Share of 95 %
+// intervals that cover the truth, of 16,000: 95 % +- 0.8 % is 4.753 deviations of a fair share, +- 1.5 % is the demand.
 TEST(HonestFilm, IntervalsCoverTheTruth) {
     const int renders = samples(100, 1000);
     const uint32_t spp = 64;
@@ -144,7 +148,8 @@ TEST(HonestFilm, IntervalsCoverTheTruth) {
     EXPECT_NEAR(std::sqrt(reported / real), 1, std::max(.1, kZ / std::sqrt(2.0 * total)));
 }
 
-/// Mean squared error over `pixels` of the mean of n samples. scrambled: samples of one pixel; else every sample a stream of its own.
+/// Mean squared error over `pixels` of the mean of n samples. scrambled: samples of one pixel; else every sample a stream of its
+/// own.
 double meanSquare(Scene& scene, int pixels, uint32_t n, int block, bool scrambled) {
     std::vector<double> sum(size_t(pixels), 0.0);
     std::vector<CameraRay> rays;
@@ -172,9 +177,9 @@ double meanSquare(Scene& scene, int pixels, uint32_t n, int block, bool scramble
     return square;
 }
 
-// T11: MSE = a / N + b over 64 pixels; b, the floor that a bias leaves, is not above 0 by more than 4.75 standard errors. N = 2^6 .. 2^11
-// here and to 2^18 nightly. Power: at the largest N the MSE is a / N; a relative bias of 4.75 sqrt(a / N / 32) / 2 is found:
-// here 2 %, nightly 0.2 % of the radiance.
+// T11: MSE = a / N + b over 64 pixels; b, the floor that a bias leaves, is not above 0 by more than 4.75 standard errors. N = 2^6
+// .. 2^11 here and to 2^18 nightly. Power: at the largest N the MSE is a / N; a relative bias of 4.75 sqrt(a / N / 32) / 2 is
+// found: here 2 %, nightly 0.2 % of the radiance.
 TEST(BiasFloor, ErrorFallsWithoutEnd) {
     Scene scene = furnaceScene(12);
     const int pixels = 64, first = 6, last = nightly() ? 18 : 11;
@@ -196,7 +201,8 @@ TEST(BiasFloor, ErrorFallsWithoutEnd) {
         b = (w2 * y0 - w1 * y1) / det;
         seB = std::sqrt(w2 / det);
     }
-    std::printf("MSE = %.4g / N + %.3g +- %.2g: floor of %.3g %% at most\n", a, b, seB, 100 * std::sqrt(std::max(0.0, b + kZ * seB)) / kTruth);
+    std::printf("MSE = %.4g / N + %.3g +- %.2g: floor of %.3g %% at most\n", a, b, seB,
+                100 * std::sqrt(std::max(0.0, b + kZ * seB)) / kTruth);
     EXPECT_GT(a, 0);
     EXPECT_LE(b / seB, 4.75);
 }
@@ -230,13 +236,17 @@ protected:
         s.seed = 21;
         scene_ = std::make_unique<Scene>(boxRib(true), s);
     }
-    struct Tile { int x0, y0, x1, y1; };
+    struct Tile {
+        int x0, y0, x1, y1;
+    };
     /// order 0: scanline, 1: spiral from the middle, 2 and more: shuffled.
     std::vector<Tile> tiles(int size, int order) {
         std::vector<Tile> t;
         for (int y = 0; y < kH; y += size)
             for (int x = 0; x < kW; x += size) t.push_back({x, y, std::min(x + size, kW), std::min(y + size, kH)});
-        auto ring = [&](const Tile& a) { return std::max(std::abs(a.x0 + size / 2 - kW / 2), std::abs(a.y0 + size / 2 - kH / 2)); };
+        auto ring = [&](const Tile& a) {
+            return std::max(std::abs(a.x0 + size / 2 - kW / 2), std::abs(a.y0 + size / 2 - kH / 2));
+        };
         if (order == 1) std::stable_sort(t.begin(), t.end(), [&](const Tile& a, const Tile& b) { return ring(a) < ring(b); });
         if (order > 1) std::shuffle(t.begin(), t.end(), std::mt19937(uint32_t(order)));
         return t;
@@ -247,23 +257,28 @@ protected:
         std::vector<std::unique_ptr<Integrator>> integrators;
         for (int i = 0; i < threads; ++i) integrators.push_back(std::make_unique<Integrator>(scene_->world, scene_->diagnostics));
         volatile int32_t stop = 0;
-        render::Team(threads).run(list.size(), &stop, [&](int worker, size_t i) {
-            std::vector<CameraRay> rays;
-            const Tile& t = list[i];
-            for (uint32_t sample = range.begin; sample < range.end; ++sample)
-                for (int y = t.y0; y < t.y1; ++y)
-                    for (int x = t.x0; x < t.x1; ++x) {
-                        double k = std::tan(13.5 * kPi / 180);
-                        CameraRay r = rayTo({0, 0, 0}, Vec3(float((2 * (x + .5) / kW - 1) * k * 4 / 3), float((1 - 2 * (y + .5) / kH) * k), 1));
-                        r.px = x;
-                        r.py = y;
-                        r.sample = sample;
-                        rays.push_back(r);
-                    }
-            std::vector<SampleResult> out(rays.size());
-            integrators[size_t(worker)]->trace(rays, out, nullptr);
-            for (size_t j = 0; j < rays.size(); ++j) film.add(rays[j].px, rays[j].py, rays[j].sample, {out[j].color, out[j].opacity.x, {}});
-        }, [](size_t) {});
+        render::Team(threads).run(
+            list.size(), &stop,
+            [&](int worker, size_t i) {
+                std::vector<CameraRay> rays;
+                const Tile& t = list[i];
+                for (uint32_t sample = range.begin; sample < range.end; ++sample)
+                    for (int y = t.y0; y < t.y1; ++y)
+                        for (int x = t.x0; x < t.x1; ++x) {
+                            double k = std::tan(13.5 * kPi / 180);
+                            CameraRay r = rayTo({0, 0, 0}, Vec3(float((2 * (x + .5) / kW - 1) * k * 4 / 3),
+                                                                float((1 - 2 * (y + .5) / kH) * k), 1));
+                            r.px = x;
+                            r.py = y;
+                            r.sample = sample;
+                            rays.push_back(r);
+                        }
+                std::vector<SampleResult> out(rays.size());
+                integrators[size_t(worker)]->trace(rays, out, nullptr);
+                for (size_t j = 0; j < rays.size(); ++j)
+                    film.add(rays[j].px, rays[j].py, rays[j].sample, {out[j].color, out[j].opacity.x, {}});
+            },
+            [](size_t) {});
         film.addRange(range);
         return film;
     }
@@ -275,7 +290,8 @@ TEST_F(FilmBits, TilesAndThreads) {
         for (int order : {0, 1, 2, 3})
             for (int size : {5, 16, 32, 64}) {
                 if (threads != 1 + (order + size) % 3 && !nightly()) continue; // every pair of values has its turn
-                EXPECT_EQ(render({0, kSpp}, size, order, threads).digest(), want) << threads << " threads, order " << order << ", tiles of " << size;
+                EXPECT_EQ(render({0, kSpp}, size, order, threads).digest(), want)
+                    << threads << " threads, order " << order << ", tiles of " << size;
             }
 }
 TEST_F(FilmBits, SevenRangesInAnyOrder) {

@@ -18,7 +18,9 @@ const char* kBox = "Polygon \"P\" [-1 -1 -1  1 -1 -1  1 -1 2  -1 -1 2]\nPolygon 
 const char* kSphere = "Sphere 1.3 -1.3 1.3 360\n";
 const CameraRay kInside = rayTo({.1f, -.2f, .3f}, {.5f, .3f, 1});
 
-std::string furnace(const char* geometry, double a) { return "WorldBegin\nSides 2\nSurface \"furnace\" \"a\" " + num(a) + "\n" + geometry + "WorldEnd\n"; }
+std::string furnace(const char* geometry, double a) {
+    return "WorldBegin\nSides 2\nSurface \"furnace\" \"a\" " + num(a) + "\n" + geometry + "WorldEnd\n";
+}
 
 // By lobe rays alone and without roulette every sample is the partial sum itself: zero variance.
 TEST(Furnace, FixedDepthHasNoVariance) {
@@ -48,7 +50,8 @@ TEST(Furnace, RouletteAddsUpToTheSeries) {
             s.maxDepth = 2000;
             Scene scene(furnace(geometry, a), s);
             // Bias found with 99 % power: 7 % here; nightly, at 2e6 samples, below 0.5 %.
-            expectMean(scene.estimate(kInside, samples(20000, 2'000'000)), 1 / (1 - a), nightly() ? .0007 : .01, std::string(geometry) + num(a));
+            expectMean(scene.estimate(kInside, samples(20000, 2'000'000)), 1 / (1 - a), nightly() ? .0007 : .01,
+                       std::string(geometry) + num(a));
         }
 }
 // The walls as area lights: light samples, weights and lobe rays together.
@@ -62,15 +65,19 @@ TEST(Furnace, WallsAsLights) {
             s.lightOnly = mode == 2;
             if (s.lightOnly && a > .5) continue; // corners make light sampling alone very noisy
             writeShader("glow", "light glow() { illuminate(P, -N, PI / 2) Cl = 1; }\n");
-            Scene walls("WorldBegin\nSides 2\nAreaLightSource \"glow\" 3\nSurface \"matte\" \"Kd\" " + num(a) + "\n" + kSphere + "WorldEnd\n", s);
-            expectMean(walls.estimate(kInside, samples(20000, 2'000'000)), 1 / (1 - a), nightly() ? .001 : .01, "walls, mode " + std::to_string(mode) + num(a));
+            Scene walls("WorldBegin\nSides 2\nAreaLightSource \"glow\" 3\nSurface \"matte\" \"Kd\" " + num(a) + "\n" + kSphere +
+                            "WorldEnd\n",
+                        s);
+            expectMean(walls.estimate(kInside, samples(20000, 2'000'000)), 1 / (1 - a), nightly() ? .001 : .01,
+                       "walls, mode " + std::to_string(mode) + num(a));
         }
 }
-// T5 b: direct light Kd, and of every bounce Kd again: Kd / (1 - Kd) = 1. Every form and width of the kernels, every roulette, eyes at several
-// places. Without roulette each sample is the sum itself; with it the bias found is 4 % here, below 1 % nightly.
+// T5 b: direct light Kd, and of every bounce Kd again: Kd / (1 - Kd) = 1. Every form and width of the kernels, every roulette,
+// eyes at several places. Without roulette each sample is the sum itself; with it the bias found is 4 % here, below 1 % nightly.
 TEST(Furnace, PointLightInASphere) {
     const CameraRay eyes[] = {kInside, rayTo({0, .4f, -.7f}, {.1f, -1, 0}), rayTo({-.3f, .1f, .2f}, {-1, .2f, -.4f})};
-    const char* lights[] = {"LightSource \"pointlight\" 1 \"intensity\" 1\n", "LightSource \"slpoint\" 1 \"intensity\" [3.14159265] \"kc\" 0 \"kq\" 1\n"};
+    const char* lights[] = {"LightSource \"pointlight\" 1 \"intensity\" 1\n",
+                            "LightSource \"slpoint\" 1 \"intensity\" [3.14159265] \"kc\" 0 \"kq\" 1\n"};
     for (int k = 0; k < 12; ++k) {
         Settings s;
         s.hider = Hider::Path;
@@ -81,16 +88,22 @@ TEST(Furnace, PointLightInASphere) {
         s.localRoulette = k % 3 == 2;
         s.maxDepth = s.roulette ? 1000 : 40;
         s.seed = uint64_t(k);
-        Scene scene(std::string("WorldBegin\nSides 2\n") + lights[k % 2] + "Surface \"matte\" \"Kd\" .5\nSphere 1 -1 1 360\nWorldEnd\n", s);
+        Scene scene(std::string("WorldBegin\nSides 2\n") + lights[k % 2] +
+                        "Surface \"matte\" \"Kd\" .5\nSphere 1 -1 1 360\nWorldEnd\n",
+                    s);
         // Half of a waiting kernel's rays end from the third bounce on, whatever they carry: noisier.
-        expectMean(scene.estimate(eyes[k % 3], s.roulette ? samples(20000) : 200), 1, s.suspend ? .01 : .006, "case " + std::to_string(k));
+        expectMean(scene.estimate(eyes[k % 3], s.roulette ? samples(20000) : 200), 1, s.suspend ? .01 : .006,
+                   "case " + std::to_string(k));
     }
 }
 // Layers of half opacity in front of an emitter: over, and what is behind, in both hiders.
 TEST(Furnace, TransparentLayers) {
-    std::string rib = "WorldBegin\nSides 2\nSurface \"constant\"\nAttributeBegin\nColor 1 .5 .25\nPolygon \"P\" [-9 -9 5  9 -9 5  9 9 5  -9 9 5]\nAttributeEnd\n"
-                      "AttributeBegin\nColor 0 0 1\nOpacity .5 .5 .5\nPolygon \"P\" [-9 -9 4  9 -9 4  9 9 4  -9 9 4]\nAttributeEnd\n"
-                      "AttributeBegin\nColor 0 1 0\nOpacity .25 .5 .75\nPolygon \"P\" [-9 -9 3  9 -9 3  9 9 3  -9 9 3]\nAttributeEnd\nWorldEnd\n";
+    std::string rib =
+        "WorldBegin\nSides 2\nSurface \"constant\"\nAttributeBegin\nColor 1 .5 .25\nPolygon \"P\" [-9 -9 5  9 -9 5  9 9 5  -9 9 "
+        "5]\nAttributeEnd\n"
+        "AttributeBegin\nColor 0 0 1\nOpacity .5 .5 .5\nPolygon \"P\" [-9 -9 4  9 -9 4  9 9 4  -9 9 4]\nAttributeEnd\n"
+        "AttributeBegin\nColor 0 1 0\nOpacity .25 .5 .75\nPolygon \"P\" [-9 -9 3  9 -9 3  9 9 3  -9 9 "
+        "3]\nAttributeEnd\nWorldEnd\n";
     for (Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path}) {
         Settings s;
         s.hider = h;
@@ -108,12 +121,16 @@ TEST(Furnace, FogAndMatte) {
     for (Hider h : {Hider::Hidden, Hider::Path}) {
         Settings s;
         s.hider = h;
-        Scene fog("WorldBegin\nSides 2\nAtmosphere \"fog\" \"distance\" 2 \"background\" [.2 .4 .6]\nSurface \"constant\"\nPolygon \"P\" [-9 -9 3  9 -9 3  9 9 3  -9 9 3]\nWorldEnd\n", s);
+        Scene fog("WorldBegin\nSides 2\nAtmosphere \"fog\" \"distance\" 2 \"background\" [.2 .4 .6]\nSurface "
+                  "\"constant\"\nPolygon \"P\" [-9 -9 3  9 -9 3  9 9 3  -9 9 3]\nWorldEnd\n",
+                  s);
         Color c = fog.one(rayTo({0, 0, 0}, {0, 0, 1}));
         double k = std::exp(-1.5);
         EXPECT_NEAR(c.x, k + (1 - k) * .2, 1e-5);
         EXPECT_NEAR(c.z, k + (1 - k) * .6, 1e-5);
-        Scene matte("WorldBegin\nSides 2\nSurface \"constant\"\nPolygon \"P\" [-9 -9 5  9 -9 5  9 9 5  -9 9 5]\nMatte 1\nPolygon \"P\" [-9 -9 3  9 -9 3  9 9 3  -9 9 3]\nWorldEnd\n", s);
+        Scene matte("WorldBegin\nSides 2\nSurface \"constant\"\nPolygon \"P\" [-9 -9 5  9 -9 5  9 9 5  -9 9 5]\nMatte 1\nPolygon "
+                    "\"P\" [-9 -9 3  9 -9 3  9 9 3  -9 9 3]\nWorldEnd\n",
+                    s);
         SampleResult m = matte.trace(std::vector{rayTo({0, 0, 0}, {0, 0, 1})})[0];
         EXPECT_EQ(m.color, Color(0));
         EXPECT_EQ(m.opacity, Color(0));
@@ -124,8 +141,10 @@ TEST(Furnace, FogAndMatte) {
     s.hider = Hider::Path;
     s.maxDepth = 3;
     s.roulette = false;
-    Scene lit(std::string("WorldBegin\nSides 2\nLightSource \"pointlight\" 1 \"from\" [0 0 0]\nAtmosphere \"fog\" \"distance\" 2 \"background\" [0 0 0]\nSurface \"matte\"\n") +
-                  "Polygon \"P\" [-9 -9 3  9 -9 3  9 9 3  -9 9 3]\nWorldEnd\n", s);
+    Scene lit(std::string("WorldBegin\nSides 2\nLightSource \"pointlight\" 1 \"from\" [0 0 0]\nAtmosphere \"fog\" \"distance\" 2 "
+                          "\"background\" [0 0 0]\nSurface \"matte\"\n") +
+                  "Polygon \"P\" [-9 -9 3  9 -9 3  9 9 3  -9 9 3]\nWorldEnd\n",
+              s);
     EXPECT_NEAR(lit.one(rayTo({0, 0, 0}, {0, 0, 1})).x, std::exp(-1.5) / 9, 1e-6);
 }
 

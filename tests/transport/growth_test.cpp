@@ -11,10 +11,12 @@ using namespace alpenglow::transport::testing;
 
 namespace {
 
-const char* kPlasticBox = "WorldBegin\nSides 2\nLightSource \"pointlight\" 1 \"intensity\" 1 \"from\" [0 .5 0]\nSurface \"plastic\" \"Kd\" .5 \"Ks\" .5\n"
-                          "Polygon \"P\" [-1 -1 -1  1 -1 -1  1 -1 2  -1 -1 2]\nPolygon \"P\" [-1 1 -1  -1 1 2  1 1 2  1 1 -1]\n"
-                          "Polygon \"P\" [-1 -1 -1  -1 1 -1  1 1 -1  1 -1 -1]\nPolygon \"P\" [-1 -1 2  1 -1 2  1 1 2  -1 1 2]\n"
-                          "Polygon \"P\" [-1 -1 -1  -1 -1 2  -1 1 2  -1 1 -1]\nPolygon \"P\" [1 -1 -1  1 1 -1  1 1 2  1 -1 2]\nWorldEnd\n";
+const char* kPlasticBox =
+    "WorldBegin\nSides 2\nLightSource \"pointlight\" 1 \"intensity\" 1 \"from\" [0 .5 0]\nSurface \"plastic\" \"Kd\" .5 \"Ks\" "
+    ".5\n"
+    "Polygon \"P\" [-1 -1 -1  1 -1 -1  1 -1 2  -1 -1 2]\nPolygon \"P\" [-1 1 -1  -1 1 2  1 1 2  1 1 -1]\n"
+    "Polygon \"P\" [-1 -1 -1  -1 1 -1  1 1 -1  1 -1 -1]\nPolygon \"P\" [-1 -1 2  1 -1 2  1 1 2  -1 1 2]\n"
+    "Polygon \"P\" [-1 -1 -1  -1 -1 2  -1 1 2  -1 1 -1]\nPolygon \"P\" [1 -1 -1  1 1 -1  1 1 2  1 -1 2]\nWorldEnd\n";
 const CameraRay kEye = rayTo({.1f, -.2f, .3f}, {.5f, .3f, 1});
 
 // One lobe a vertex is followed: at most one ray a bounce.
@@ -33,8 +35,8 @@ TEST(Growth, RaysAreLinearInDepth) {
         EXPECT_LE(double(c.shadow) / double(c.paths), 2 * (depth + 1));
         EXPECT_TRUE(std::isfinite(m.mean())) << depth;
         EXPECT_EQ(c.nonFinite, 0u);
-        // A vertex reflects at most what it receives: the sum over bounces is below the direct light's largest value / (1 - 1/2 - 1/2) only
-        // because highlights lose light; it must stop growing.
+        // A vertex reflects at most what it receives: the sum over bounces is below the direct light's largest value / (1 - 1/2 -
+        // 1/2) only because highlights lose light; it must stop growing.
         if (depth == 64) EXPECT_NEAR(m.mean(), last, .5 * last);
         last = m.mean();
         EXPECT_GT(m.mean(), 0);
@@ -55,8 +57,9 @@ TEST(Growth, RouletteEndsPaths) {
     }
     EXPECT_NEAR(rays[1] / rays[0], 1, .2);
 }
-// The published scenes under "path", in affine and in suspending form: bounce rays a sample at most the depth, shadow rays at most lights
-// times lobes (three in the standard shaders) a vertex, energy finite and settled, frames of waiting shaders below their limit.
+// The published scenes under "path", in affine and in suspending form: bounce rays a sample at most the depth, shadow rays at
+// most lights times lobes (three in the standard shaders) a vertex, energy finite and settled, frames of waiting shaders below
+// their limit.
 class OldScene : public ::testing::TestWithParam<const char*> {
 protected:
     size_t lights_ = 0;
@@ -105,7 +108,8 @@ TEST_P(OldScene, GrowsLinearly) {
         last = m.mean();
         spread = std::sqrt(2.0) * m.se();
     }
-    // Waiting kernels follow every request: two or three a vertex of the first three bounces, and half of what those would send behind them.
+    // Waiting kernels follow every request: two or three a vertex of the first three bounces, and half of what those would send
+    // behind them.
     Settings s;
     s.hider = Hider::Path;
     s.suspend = true;
@@ -116,7 +120,8 @@ TEST_P(OldScene, GrowsLinearly) {
     std::printf("%s: largest frames of waiting shaders %zu bytes a thread, %.1f rays a sample\n", GetParam(), c.peakFrameBytes,
                 double(c.diffuse + c.specular + c.shadow) / double(c.paths));
 }
-INSTANTIATE_TEST_SUITE_P(Published, OldScene, ::testing::Values("bulb", "cubits", "showquads", "spot", "teapot", "tetra", "uteapot", "val_poly"),
+INSTANTIATE_TEST_SUITE_P(Published, OldScene,
+                         ::testing::Values("bulb", "cubits", "showquads", "spot", "teapot", "tetra", "uteapot", "val_poly"),
                          [](const auto& i) { return std::string(i.param); });
 
 TEST(Growth, SuspendedFramesStayBounded) {
@@ -170,7 +175,13 @@ TEST(Stop, EndlessLoopsEndPromptly) {
     EXPECT_LT(std::chrono::duration<double>(ended - asked).count(), .2);
 }
 TEST(Stop, ManyRaysEndPromptly) {
-    Scene scene(kPlasticBox, [] { Settings s; s.hider = Hider::Path; s.roulette = false; s.maxDepth = 5000; return s; }());
+    Scene scene(kPlasticBox, [] {
+        Settings s;
+        s.hider = Hider::Path;
+        s.roulette = false;
+        s.maxDepth = 5000;
+        return s;
+    }());
     std::vector<CameraRay> rays(60000, kEye);
     std::vector<SampleResult> out(rays.size());
     volatile int32_t stop = 0;

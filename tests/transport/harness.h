@@ -111,7 +111,8 @@ inline CameraRay rayTo(Vec3 eye, Vec3 at) {
 /// The mean agrees with an exact value, and is precise enough to say so: the standard error is below `precision` of the value.
 inline void expectMean(const Moments& m, double want, double precision, const std::string& what) {
     double rounding = 2e-6 * std::fabs(want);
-    EXPECT_LE(std::max(0.0, std::fabs(m.mean() - want) - rounding), kZ * m.se()) << what << ": " << m.mean() << " +- " << m.se() << ", exact " << want;
+    EXPECT_LE(std::max(0.0, std::fabs(m.mean() - want) - rounding), kZ * m.se())
+        << what << ": " << m.mean() << " +- " << m.se() << ", exact " << want;
     EXPECT_LE(m.se(), precision * std::fabs(want) + 1e-12) << what << ": not precise enough to decide";
 }
 

@@ -1,5 +1,5 @@
-// Design decision 4, row by row of docs/light.md: each light against its closed form, seen in each way a shader can look at light.
-// A large white floor y = 0, a point of it at the origin, camera space = world space.
+// Design decision 4, row by row of docs/light.md: each light against its closed form, seen in each way a shader can look at
+// light. A large white floor y = 0, a point of it at the origin, camera space = world space.
 #include "transport/harness.h"
 #include <set>
 
@@ -92,10 +92,10 @@ double lambert(const std::vector<Vec3d>& p) {
 struct Row {
     const char* name;
     std::string lights;
-    double want;        ///< diffuse(): irradiance / pi
+    double want; ///< diffuse(): irradiance / pi
     enum Kind { Delta, Area, Sky } kind = Delta;
-    Vec3d toLight;      ///< Delta: unit
-    double Cl = 0;      ///< Delta: at the origin
+    Vec3d toLight; ///< Delta: unit
+    double Cl = 0; ///< Delta: at the origin
 };
 void PrintTo(const Row& r, std::ostream* o) { *o << r.name; }
 
@@ -116,21 +116,29 @@ std::vector<Row> rows() {
         Vec3d w = toward / length(toward);
         r.push_back({name, std::move(lights), Cl * std::max(0.0, w.y), Row::Delta, w, Cl});
     };
-    auto area = [&](const char* name, std::string lights, double want) { r.push_back({name, std::move(lights), want, Row::Area, {}, 0}); };
+    auto area = [&](const char* name, std::string lights, double want) {
+        r.push_back({name, std::move(lights), want, Row::Area, {}, 0});
+    };
 
     delta("pointlight", "LightSource \"pointlight\" 1 \"intensity\" 3 \"from\" [.3 2 .4]\n", {.3, 2, .4}, 3 / (.09 + 4 + .16));
     const std::string spot = "LightSource \"spotlight\" 1 \"intensity\" 5 ";
-    delta("spotlight_axis", spot + "\"from\" [0 2 0] \"to\" [0 0 0] \"coneangle\" .5 \"conedeltaangle\" .05\n", {0, 1, 0}, 5 / 4.0);
+    delta("spotlight_axis", spot + "\"from\" [0 2 0] \"to\" [0 0 0] \"coneangle\" .5 \"conedeltaangle\" .05\n", {0, 1, 0},
+          5 / 4.0);
     const double c = 2 / std::sqrt(4.25), edge = (c - std::cos(.3)) / (std::cos(.2) - std::cos(.3));
-    delta("spotlight_inside", spot + "\"from\" [.5 2 0] \"to\" [.5 0 0] \"coneangle\" .6 \"conedeltaangle\" .1\n", {.5, 2, 0}, 5 * c * c / 4.25);
+    delta("spotlight_inside", spot + "\"from\" [.5 2 0] \"to\" [.5 0 0] \"coneangle\" .6 \"conedeltaangle\" .1\n", {.5, 2, 0},
+          5 * c * c / 4.25);
     delta("spotlight_edge", spot + "\"from\" [.5 2 0] \"to\" [.5 0 0] \"coneangle\" .3 \"conedeltaangle\" .1\n", {.5, 2, 0},
           5 * c * c / 4.25 * edge * edge * (3 - 2 * edge));
     delta("spotlight_outside", spot + "\"from\" [2 2 0] \"to\" [2 0 0] \"coneangle\" .6 \"conedeltaangle\" .1\n", {2, 2, 0}, 0);
     delta("distantlight", "LightSource \"distantlight\" 1 \"intensity\" 2 \"from\" [.6 .8 0] \"to\" [0 0 0]\n", {.6, .8, 0}, 2);
-    delta("distantlight_below", "LightSource \"distantlight\" 1 \"intensity\" 2 \"from\" [.6 -.8 0] \"to\" [0 0 0]\n", {.6, -.8, 0}, 2);
-    delta("slpoint", "LightSource \"slpoint\" 1 \"intensity\" 3 \"from\" [0 2 0] \"kc\" .5 \"kl\" .25 \"kq\" 1\n", {0, 2, 0}, 3 / kPi / (.5 + .5 + 4));
-    delta("slspot", "LightSource \"slspot\" 1 \"intensity\" 3 \"from\" [.5 2 0] \"to\" [.5 0 0] \"cutoff\" .6 \"exponent\" 4 \"kc\" 0 \"kq\" 1\n", {.5, 2, 0},
-          3 * c * c * c * c / kPi / 4.25);
+    delta("distantlight_below", "LightSource \"distantlight\" 1 \"intensity\" 2 \"from\" [.6 -.8 0] \"to\" [0 0 0]\n",
+          {.6, -.8, 0}, 2);
+    delta("slpoint", "LightSource \"slpoint\" 1 \"intensity\" 3 \"from\" [0 2 0] \"kc\" .5 \"kl\" .25 \"kq\" 1\n", {0, 2, 0},
+          3 / kPi / (.5 + .5 + 4));
+    delta("slspot",
+          "LightSource \"slspot\" 1 \"intensity\" 3 \"from\" [.5 2 0] \"to\" [.5 0 0] \"cutoff\" .6 \"exponent\" 4 \"kc\" 0 "
+          "\"kq\" 1\n",
+          {.5, 2, 0}, 3 * c * c * c * c / kPi / 4.25);
     delta("sldirect", "LightSource \"sldirect\" 1 \"intensity\" 2 \"from\" [.6 .8 0] \"to\" [0 0 0]\n", {.6, .8, 0}, 2 / kPi);
 
     const std::string square = "Polygon \"P\" [-.5 2 -.4  .5 2 -.4  .5 2 .6  -.5 2 .6]";
@@ -140,15 +148,20 @@ std::vector<Row> rows() {
     area("rectangle_behind", areaLight(4, "Polygon \"P\" [-.5 2 .6  .5 2 .6  .5 2 -.4  -.5 2 -.4]"), 0);
     area("rectangle_horizon", areaLight(4, "Polygon \"P\" [-1 -.7 1  -1 1.2 1  1 1.2 1  1 -.7 1]"),
          4 / kPi * lambert(aboveFloor({{-1, -.7, 1}, {-1, 1.2, 1}, {1, 1.2, 1}, {1, -.7, 1}})));
-    area("triangle", areaLight(4, "Polygon \"P\" [-1 3 .5  1 2 0  0 1 1]"), 4 / kPi * lambert({{0, 1, 1}, {1, 2, 0}, {-1, 3, .5}}));
-    area("polygon_hole", areaLight(4, "GeneralPolygon [4 4] \"P\" [-1 2 -1  1 2 -1  1 2 1  -1 2 1  -.5 2 -.4  .5 2 -.4  .5 2 .6  -.5 2 .6]"),
+    area("triangle", areaLight(4, "Polygon \"P\" [-1 3 .5  1 2 0  0 1 1]"),
+         4 / kPi * lambert({{0, 1, 1}, {1, 2, 0}, {-1, 3, .5}}));
+    area("polygon_hole",
+         areaLight(4, "GeneralPolygon [4 4] \"P\" [-1 2 -1  1 2 -1  1 2 1  -1 2 1  -.5 2 -.4  .5 2 -.4  .5 2 .6  -.5 2 .6]"),
          4 * (lambert({{-1, 2, -1}, {1, 2, -1}, {1, 2, 1}, {-1, 2, 1}}) / kPi - squareWant));
-    area("polygon_mesh", areaLight(4, "PointsPolygons [3 3] [0 1 2 0 2 3] \"P\" [-.5 2 -.4  .5 2 -.4  .5 2 .6  -.5 2 .6]"), 4 * squareWant);
+    area("polygon_mesh", areaLight(4, "PointsPolygons [3 3] [0 1 2 0 2 3] \"P\" [-.5 2 -.4  .5 2 -.4  .5 2 .6  -.5 2 .6]"),
+         4 * squareWant);
     area("patch", areaLight(4, "Patch \"bilinear\" \"P\" [-.5 2 -.4  .5 2 -.4  -.5 2 .6  .5 2 .6]"), 4 * squareWant);
     area("disk", areaLight(3, "Translate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360"), 3 * .49 / (.49 + 4));
     area("sphere", areaLight(6, "Translate 1 2 0\nSphere .5 -.5 .5 360"), 6 * (.25 / 5) * 2 / std::sqrt(5.0));
-    area("sphere_stretched", areaLight(6, "Translate 1 2 0\nScale 1 1 1.0001\nSphere .5 -.5 .5 360"), 6 * (.25 / 5) * 2 / std::sqrt(5.0));
-    area("two_shapes", areaLight(4, square + "\nTranslate 1.5 2 0\nSphere .5 -.5 .5 360"), 4 * squareWant + 4 * (.25 / 6.25) * 2 / 2.5);
+    area("sphere_stretched", areaLight(6, "Translate 1 2 0\nScale 1 1 1.0001\nSphere .5 -.5 .5 360"),
+         6 * (.25 / 5) * 2 / std::sqrt(5.0));
+    area("two_shapes", areaLight(4, square + "\nTranslate 1.5 2 0\nSphere .5 -.5 .5 360"),
+         4 * squareWant + 4 * (.25 / 6.25) * 2 / 2.5);
     r.push_back({"envlight", "LightSource \"envlight\" 1 \"intensity\" .8\n", .8, Row::Sky, {}, 0});
     r.push_back({"ambientlight", "LightSource \"ambientlight\" 1 \"intensity\" .8\n", .8, Row::Sky, {}, 0});
     return r;
@@ -157,8 +170,8 @@ std::vector<Row> rows() {
 // The eye stands between light and floor: nothing but the floor can be in its way.
 const CameraRay kEye = rayTo({.4f, .8f, -.7f}, {0, 0, 0});
 
-// Power: the bias found with 99 % power is 7.1 standard errors: here 5.7 % (`precision` .008), nightly a third of that; delta lights
-// are exact.
+// Power: the bias found with 99 % power is 7.1 standard errors: here 5.7 % (`precision` .008), nightly a third of that; delta
+// lights are exact.
 class LightTable : public ::testing::TestWithParam<Row> {
 protected:
     void SetUp() override { writeLooks(); }
@@ -167,14 +180,16 @@ protected:
         Settings s;
         s.hider = hider;
         Scene scene(floorScene(GetParam().lights, "\"" + shader + "\""), s);
-        return scene.world ? scene.estimate(kEye, GetParam().kind == Row::Delta ? 4 : samples(n * (stretched() ? 8 : 1))) : Moments();
+        return scene.world ? scene.estimate(kEye, GetParam().kind == Row::Delta ? 4 : samples(n * (stretched() ? 8 : 1)))
+                           : Moments();
     }
     void expect(const std::string& shader, Hider hider, double want, double precision = .008, int n = 20000) {
         std::string what = std::string(GetParam().name) + " by " + shader + (hider == Hider::Path ? ", path" : ", not path");
         Moments m = see(shader, hider, n);
         // The stretched sphere is 1e-4 off a sphere in one axis.
         double slack = (stretched() ? 2e-4 : 2e-5) * want;
-        EXPECT_LE(std::max(0.0, std::fabs(m.mean() - want) - slack), kZ * m.se() + 1e-9) << what << ": " << m.mean() << " +- " << m.se() << ", exact " << want;
+        EXPECT_LE(std::max(0.0, std::fabs(m.mean() - want) - slack), kZ * m.se() + 1e-9)
+            << what << ": " << m.mean() << " +- " << m.se() << ", exact " << want;
         EXPECT_LE(m.se(), (nightly() ? .3 : 1) * precision * want + 1e-9) << what;
     }
 };
@@ -194,13 +209,14 @@ TEST_P(LightTable, Trace) {
     expect("look_trace", Hider::Path, r.kind == Row::Delta ? 0 : r.want);
     if (r.kind == Row::Area) expect("look_trace", Hider::Raytrace, r.want);
 }
-// Loops that are a BRDF written out: Lambert by rays of its own (few of them meet a small light: bias found 30 %, nightly 7 %) ...
+// Loops that are a BRDF written out: Lambert by rays of its own (few of them meet a small light: bias found 30 %, nightly 7 %)
+// ...
 TEST_P(LightTable, LambertByRays) {
     const Row& r = GetParam();
     expect("look_rays", Hider::Path, r.kind == Row::Delta ? 0 : r.want, .042, 20000);
 }
-// ... and Blinn's highlight over the lights: for lights at a place or direction in closed form, Cl (N.H)^10; else the loop and the shadeop
-// estimate one integral in two ways.
+// ... and Blinn's highlight over the lights: for lights at a place or direction in closed form, Cl (N.H)^10; else the loop and
+// the shadeop estimate one integral in two ways.
 TEST_P(LightTable, BlinnByHand) {
     const Row& r = GetParam();
     if (r.kind == Row::Sky) return expect("look_shine", Hider::Path, 0);
@@ -214,13 +230,15 @@ TEST_P(LightTable, BlinnByHand) {
     }
     Moments loop = see("look_shine", Hider::Path), shadeop = see("look_shineop", Hider::Path);
     double se = std::sqrt(loop.se() * loop.se() + shadeop.se() * shadeop.se());
-    EXPECT_LE(std::fabs(loop.mean() - shadeop.mean()), kZ * se + 1e-9) << loop.mean() << ", shadeop " << shadeop.mean() << " +- " << se;
+    EXPECT_LE(std::fabs(loop.mean() - shadeop.mean()), kZ * se + 1e-9)
+        << loop.mean() << ", shadeop " << shadeop.mean() << " +- " << se;
     EXPECT_LE(se, (nightly() ? .01 : .04) * loop.mean() + 1e-9);
     if (r.want > 0) EXPECT_GT(loop.mean(), 0);
 }
 INSTANTIATE_TEST_SUITE_P(Rows, LightTable, ::testing::ValuesIn(rows()), [](const auto& i) { return std::string(i.param.name); });
 
-// Every row of the tables in docs/light.md names its test in its last column, every such test exists, and every light here has its row.
+// Every row of the tables in docs/light.md names its test in its last column, every such test exists, and every light here has
+// its row.
 TEST(Units, TheTableNamesItsTests) {
     std::set<std::string> tests, named, lights;
     const auto& all = *::testing::UnitTest::GetInstance();
@@ -263,9 +281,13 @@ TEST(Units, HighlightsAtTheMirrorDirection) {
         for (Hider h : {Hider::Hidden, Hider::Path}) {
             Settings s;
             s.hider = h;
-            Scene point(floorScene("LightSource \"pointlight\" 1 \"intensity\" 3 \"from\" [.6 .8 0]\n", std::string("\"") + shader + "\" \"vector view\" [-.6 .8 0]"), s);
+            Scene point(floorScene("LightSource \"pointlight\" 1 \"intensity\" 3 \"from\" [.6 .8 0]\n",
+                                   std::string("\"") + shader + "\" \"vector view\" [-.6 .8 0]"),
+                        s);
             EXPECT_NEAR(point.one(kEye).x, 3, 3e-4) << shader;
-            Scene distant(floorScene("LightSource \"distantlight\" 1 \"intensity\" 2 \"from\" [.6 .8 0] \"to\" [0 0 0]\n", std::string("\"") + shader + "\" \"vector view\" [-.6 .8 0]"), s);
+            Scene distant(floorScene("LightSource \"distantlight\" 1 \"intensity\" 2 \"from\" [.6 .8 0] \"to\" [0 0 0]\n",
+                                     std::string("\"") + shader + "\" \"vector view\" [-.6 .8 0]"),
+                          s);
             EXPECT_NEAR(distant.one(kEye).x, 2, 2e-4) << shader;
         }
 }
@@ -275,7 +297,8 @@ TEST(Units, HighlightsOfWideLights) {
     Settings s;
     s.hider = Hider::Path;
     const double e = 10;
-    std::string sky = "LightSource \"envlight\" 1 \"intensity\" .8\n", disk = areaLight(3, "Translate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360");
+    std::string sky = "LightSource \"envlight\" 1 \"intensity\" .8\n",
+                disk = areaLight(3, "Translate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360");
     double edge = 2 / std::sqrt(4.49), half = std::sqrt((1 + edge) / 2);
     Scene a(floorScene(sky, "\"look_phong\" \"size\" 10"), s);
     expectMean(a.estimate(kEye, samples(20000)), .8 * 2 / (e + 1), .006, "phong under a sky");
@@ -283,31 +306,36 @@ TEST(Units, HighlightsOfWideLights) {
     expectMean(b.estimate(kEye, samples(20000)), 3 * 2 * (1 - std::pow(edge, e + 1)) / (e + 1), .006, "phong under a disk");
     // Blinn seen straight on: N.H = cos(theta / 2), so 8 / (e + 2) (1 - cosHalf^(e + 2)).
     Scene c(floorScene(sky, "\"look_specular\" \"roughness\" .1"), s);
-    expectMean(c.estimate(kEye, samples(20000)), .8 * 8 / (e + 2) * (1 - std::pow(.5, (e + 2) / 2)), .006, "specularstd under a sky");
+    expectMean(c.estimate(kEye, samples(20000)), .8 * 8 / (e + 2) * (1 - std::pow(.5, (e + 2) / 2)), .006,
+               "specularstd under a sky");
     Scene d(floorScene(disk, "\"look_specular\" \"roughness\" .1"), s);
     expectMean(d.estimate(kEye, samples(20000)), 3 * 8 / (e + 2) * (1 - std::pow(half, e + 2)), .006, "specularstd under a disk");
 }
 
-// trace() over a cone of half angle a about the axis of a disk that is seen under b < a: "uniform" gives (1 - cos b) / (1 - cos a) of its
-// radiance, "cosine" sin^2 b / sin^2 a.
+// trace() over a cone of half angle a about the axis of a disk that is seen under b < a: "uniform" gives (1 - cos b) / (1 - cos
+// a) of its radiance, "cosine" sin^2 b / sin^2 a.
 TEST(Units, TraceOverACone) {
     const double edge = 2 / std::sqrt(4.49), a = 1.2;
     for (const char* kind : {"uniform", "cosine"})
         for (bool lights : {false, true}) {
-            writeShader("look_cone", std::string("surface look_cone() { Oi = 1; Ci = trace(P, vector(0, 1, 0), \"distribution\", \"") + kind +
-                                         "\", \"samplecone\", 1.2, \"samplearealights\", " + (lights ? "1" : "0") + ", \"type\", \"diffuse\"); }\n");
+            writeShader("look_cone",
+                        std::string("surface look_cone() { Oi = 1; Ci = trace(P, vector(0, 1, 0), \"distribution\", \"") + kind +
+                            "\", \"samplecone\", 1.2, \"samplearealights\", " + (lights ? "1" : "0") +
+                            ", \"type\", \"diffuse\"); }\n");
             Settings s;
             s.hider = Hider::Path;
             Scene scene(floorScene(areaLight(3, "Translate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360"), "\"look_cone\""), s);
             double want = 3 * (kind[0] == 'u' ? (1 - edge) / (1 - std::cos(a)) : (1 - edge * edge) / (std::sin(a) * std::sin(a)));
-            expectMean(scene.estimate(kEye, samples(20000)), want, lights ? .006 : .025, std::string(kind) + (lights ? ", light samples" : ", rays alone"));
+            expectMean(scene.estimate(kEye, samples(20000)), want, lights ? .006 : .025,
+                       std::string(kind) + (lights ? ", light samples" : ", rays alone"));
         }
 }
 
 // T5 c: a half-plane through the axis takes exactly half of a light that is symmetric about it.
 TEST(Irradiance, HalfPlaneTakesHalf) {
     writeLooks();
-    std::string blocker = "AttributeBegin\nSurface \"constant\"\nColor 0 0 0\nPolygon \"P\" [0 1 -50  50 1 -50  50 1 50  0 1 50]\nAttributeEnd\n";
+    std::string blocker =
+        "AttributeBegin\nSurface \"constant\"\nColor 0 0 0\nPolygon \"P\" [0 1 -50  50 1 -50  50 1 50  0 1 50]\nAttributeEnd\n";
     CameraRay eye = rayTo({-.4f, .5f, -.3f}, {0, 0, 0});
     const double square = lambert({{-.5, 2, -.5}, {.5, 2, -.5}, {.5, 2, .5}, {-.5, 2, .5}}) / kPi, sixth = kPi / 3;
     std::vector<Vec3d> corners;
@@ -325,7 +353,8 @@ TEST(Irradiance, HalfPlaneTakesHalf) {
     for (const auto& [geometry, share] : lights) {
         Settings s;
         s.hider = Hider::Path;
-        Scene open(floorScene(areaLight(5, geometry), "\"look_diffuse\""), s), blocked(floorScene(areaLight(5, geometry), "\"look_diffuse\"", blocker), s);
+        Scene open(floorScene(areaLight(5, geometry), "\"look_diffuse\""), s),
+            blocked(floorScene(areaLight(5, geometry), "\"look_diffuse\"", blocker), s);
         Moments m = blocked.estimate(eye, samples(40000));
         double whole = 5 * share;
         expectMean(open.estimate(eye, samples(20000)), whole, .006, geometry);
@@ -337,7 +366,8 @@ TEST(Irradiance, HalfPlaneTakesHalf) {
 TEST(Irradiance, ShadowsOfPointLights) {
     writeLooks();
     auto blocker = [](const char* opacity) {
-        return std::string("AttributeBegin\nSurface \"constant\"\nColor 0 0 0\nOpacity ") + opacity + "\nPolygon \"P\" [-5 1 -5  5 1 -5  5 1 5  -5 1 5]\nAttributeEnd\n";
+        return std::string("AttributeBegin\nSurface \"constant\"\nColor 0 0 0\nOpacity ") + opacity +
+               "\nPolygon \"P\" [-5 1 -5  5 1 -5  5 1 5  -5 1 5]\nAttributeEnd\n";
     };
     std::string light = "LightSource \"pointlight\" 1 \"intensity\" 4 \"from\" [0 2 0]\n";
     CameraRay eye = rayTo({.3f, .5f, -.3f}, {0, 0, 0});
@@ -359,7 +389,9 @@ TEST(Irradiance, IlluminateOff) {
     for (const char* shader : {"look_diffuse", "look_loop", "look_trace"}) {
         Settings s;
         s.hider = Hider::Path;
-        Scene scene(floorScene(areaLight(5, "Translate 0 2 0\nRotate 90 1 0 0\nDisk 0 1 360") + "Illuminate 7 0\n", std::string("\"") + shader + "\""), s);
+        Scene scene(floorScene(areaLight(5, "Translate 0 2 0\nRotate 90 1 0 0\nDisk 0 1 360") + "Illuminate 7 0\n",
+                               std::string("\"") + shader + "\""),
+                    s);
         Moments m = scene.estimate(kEye, 2000);
         EXPECT_EQ(m.mean(), 0) << shader;
     }

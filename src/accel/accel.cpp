@@ -1,7 +1,10 @@
 #include "accel/accel.h"
+#include "accel/direct.h"
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <embree3/rtcore.h>
+#include <optional>
 #include <pmmintrin.h>
 #include <xmmintrin.h>
 
@@ -40,6 +43,11 @@ bool before(double t, uint32_t shape, uint32_t prim, const Best& b) {
 constexpr uint32_t kShareBelow = 1024;
 // Candidates this much farther than the best (relative to t) are still looked at: Embree's own t is rounded differently.
 constexpr double kSlack = 4e-6;
+// Exact shapes of a scene that is looked through directly.
+constexpr size_t kDirectExact = 4;
+// Weights of a triangle may be this far outside of it: twice what double arithmetic makes of a ray through a shared edge, so that none
+// slips between two triangles.
+constexpr double kEdge = 1e-12;
 
 } // namespace
 
@@ -54,17 +62,24 @@ struct Accel::Impl {
     struct Group {
         Impl* owner = nullptr;
         std::vector<uint32_t> shape, firstPrim; ///< by first primitive
+        std::vector<uint32_t> slotOf;           ///< by primitive: index into both; empty: one shape
         std::vector<Vec3> P;                    ///< shared groups: all points
         std::vector<uint32_t> index;
         void find(uint32_t prim, uint32_t& s, uint32_t& local) const {
-            size_t k = shape.size() == 1
-                           ? 0
-                           : size_t(std::upper_bound(firstPrim.begin(), firstPrim.end(), prim) - firstPrim.begin()) - 1;
+            size_t k = slotOf.empty() ? 0 : slotOf[prim];
             s = shape[k];
             local = prim - firstPrim[k];
         }
     };
     std::vector<std::unique_ptr<Group>> groups;
+
+    /// Scenes of few primitives have no tree.
+    struct Ball { uint32_t shape; Vec3d centre; double radius2; }; ///< an exact shape and a sphere around it
+    bool direct = false;
+    DirectTriangles triangles;
+    std::vector<Ball> balls;
+    bool readyDirect();
+    void meetDirect(Query&) const;
 
     ~Impl() {
         if (scene) rtcReleaseScene(scene);
@@ -112,7 +127,9 @@ struct Accel::Impl {
     bool meetExact(Query& q, uint32_t s) const {
         if (!visible(*q.ray, s) || excluded(*q.ray, s, 0)) return false;
         geometry::ExactHit h[4];
-        int n = shapes[s]->exactHits(Vec3d(q.ray->org), Vec3d(q.ray->dir), h);
+        const Shape& shape = *shapes[s];
+        int n = shape.exactHits(Vec3d(q.ray->org), Vec3d(q.ray->dir), q.ray->tnear, std::min(double(q.ray->tfar), q.best.t),
+                                !shape.oneSided() || q.ray->bothSides, h);
         bool taken = false;
         for (int i = 0; i < n; ++i) {
             taken |= take(q, s, 0, h[i].t, h[i].u, h[i].v);
@@ -160,7 +177,59 @@ struct Accel::Impl {
         groups.push_back(std::move(g));
     }
     void build();
+    bool intersectOne(const Ray&, Hit&) const;
+    bool occludedOne(const Ray&) const;
 };
+
+bool Accel::Impl::readyDirect() {
+    size_t count = 0, exact = 0;
+    for (const ShapeRef& s : shapes) {
+        if (s->exact()) ++exact;
+        else count += s->mesh().triangles();
+        if (count > DirectTriangles::kMost || exact > kDirectExact) return false;
+    }
+    for (uint32_t s = 0; s < shapes.size(); ++s) {
+        const Shape& shape = *shapes[s];
+        bounds.add(shape.bounds());
+        if (shape.exact()) {
+            geometry::Bounds b = shape.bounds();
+            Vec3d lo(b.lo), hi(b.hi);
+            double radius = 0.5 * length(hi - lo) * (1 + 1e-9);
+            balls.push_back({s, (lo + hi) * 0.5, radius * radius});
+            continue;
+        }
+        const geometry::TriMesh& m = shape.mesh();
+        for (uint32_t p = 0; p < m.triangles(); ++p) {
+            const uint32_t* i = &m.index[3 * size_t(p)];
+            triangles.add({m.P[i[0]], m.P[i[1]], m.P[i[2]], s, p});
+        }
+    }
+    return direct = true;
+}
+
+/// The answer in q.best.
+void Accel::Impl::meetDirect(Query& q) const {
+    const Ray& r = *q.ray;
+    const Vec3d o(r.org), d(r.dir);
+    for (uint32_t left = triangles.candidates(r); left; left &= left - 1) {
+        size_t i = size_t(std::countr_zero(left));
+        // Behind the nearest so far, or the plane that the ray leaves: most candidates end here.
+        double margin, plane = triangles.planeT(i, o, d, margin);
+        if (plane + margin < double(r.tnear) || plane - margin > q.best.t) continue;
+        const DirectTriangles::Triangle& t = triangles[i];
+        if (!visible(r, t.shape) || excluded(r, t.shape, t.prim)) continue;
+        double at, b1, b2, outside;
+        if (!meetTriangle(r.org, r.dir, t.a, t.b, t.c, at, b1, b2, outside) || outside > kEdge) continue;
+        if (take(q, t.shape, t.prim, at, b1, b2) && q.any) return;
+    }
+    double dd = dot(d, d);
+    for (const Ball& b : balls) {
+        Vec3d to = b.centre - o;
+        double along = dot(to, d), gap = dot(to, to) - b.radius2;
+        if (gap > 0 && (along < 0 || along * along < gap * dd * (1 - 1e-9))) continue; // begins outside, and looks away or passes by
+        if (meetExact(q, b.shape) && q.any) return;
+    }
+}
 
 void Accel::Impl::build() {
     auto exact = std::make_unique<Group>(), shared = std::make_unique<Group>();
@@ -194,6 +263,7 @@ void Accel::Impl::build() {
         shared->firstPrim.push_back(uint32_t(shared->index.size() / 3));
         shared->P.insert(shared->P.end(), m.P.begin(), m.P.begin() + m.vertices);
         for (uint32_t i : m.index) shared->index.push_back(base + i);
+        shared->slotOf.resize(shared->index.size() / 3, uint32_t(shared->shape.size() - 1));
         if (shared->P.size() > (size_t(1) << 28)) flush();
     }
     flush();
@@ -217,6 +287,7 @@ Accel::Accel(std::vector<ShapeRef> shapes, std::vector<uint32_t> visibility, Dia
     impl_->shapes = std::move(shapes);
     impl_->visibility = std::move(visibility);
     impl_->visibility.resize(impl_->shapes.size(), kAll);
+    if (impl_->readyDirect()) return;
     FlushDenormals flush;
     impl_->device = rtcNewDevice(nullptr);
     if (!impl_->device) {
@@ -242,7 +313,7 @@ geometry::Bounds Accel::bounds() const { return impl_->bounds; }
 
 namespace {
 
-bool fill(const Ray& r, RTCRay& o) {
+bool usable(const Ray& r) {
     float sum = r.org.x + r.org.y + r.org.z + r.dir.x + r.dir.y + r.dir.z;
     // An infinite far end is usual; anything else infinite or NaN would wander through every box.
     // Embree takes coordinates below 1.8e18 (and asserts it).
@@ -250,6 +321,11 @@ bool fill(const Ray& r, RTCRay& o) {
     for (float c : {r.org.x, r.org.y, r.org.z, r.dir.x, r.dir.y, r.dir.z})
         if (!(std::fabs(c) < kFar)) return false;
     if (!std::isfinite(sum) || !(r.tnear < r.tfar) || (r.dir.x == 0 && r.dir.y == 0 && r.dir.z == 0)) return false;
+    return true;
+}
+
+bool fill(const Ray& r, RTCRay& o) {
+    if (!usable(r)) return false;
     o.org_x = r.org.x; o.org_y = r.org.y; o.org_z = r.org.z;
     o.dir_x = r.dir.x; o.dir_y = r.dir.y; o.dir_z = r.dir.z;
     o.tnear = std::max(0.f, r.tnear);
@@ -261,55 +337,70 @@ bool fill(const Ray& r, RTCRay& o) {
     return true;
 }
 
-bool intersectOne(RTCScene scene, const Ray& r, Hit& hit) {
+} // namespace
+
+// Direct scenes need none of Embree's floating-point state.
+bool Accel::Impl::intersectOne(const Ray& r, Hit& hit) const {
     hit = Hit();
-    RTCRayHit rh;
-    if (!scene || !fill(r, rh.ray)) return false;
-    rh.hit.geomID = rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     Query q;
-    rtcInitIntersectContext(&q.rtc);
     q.ray = &r;
     q.best = {INFINITY, kNone, kNone, 0, 0};
     q.any = false;
-    rtcIntersect1(scene, &q.rtc, &rh);
+    if (direct) {
+        if (!usable(r)) return false;
+        meetDirect(q);
+    } else {
+        RTCRayHit rh;
+        if (!scene || !fill(r, rh.ray)) return false;
+        rh.hit.geomID = rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        rtcInitIntersectContext(&q.rtc);
+        rtcIntersect1(scene, &q.rtc, &rh);
+    }
     if (q.best.shape == kNone) return false;
     hit = {float(q.best.t), q.best.shape, q.best.prim, q.best.b1, q.best.b2};
     return true;
 }
 
-bool occludedOne(RTCScene scene, const Ray& r) {
-    RTCRay o;
-    if (!scene || !fill(r, o)) return false;
+bool Accel::Impl::occludedOne(const Ray& r) const {
     Query q;
-    rtcInitIntersectContext(&q.rtc);
     q.ray = &r;
     q.best = {INFINITY, kNone, kNone, 0, 0};
     q.any = true;
+    if (direct) {
+        if (!usable(r)) return false;
+        meetDirect(q);
+        return q.best.shape != kNone;
+    }
+    RTCRay o;
+    if (!scene || !fill(r, o)) return false;
+    rtcInitIntersectContext(&q.rtc);
     rtcOccluded1(scene, &q.rtc, &o);
     return o.tfar < 0;
 }
 
-} // namespace
-
 bool Accel::intersect(const Ray& r, Hit& hit) const {
+    if (impl_->direct) return impl_->intersectOne(r, hit);
     FlushDenormals flush;
-    return intersectOne(impl_->scene, r, hit);
+    return impl_->intersectOne(r, hit);
 }
 
 bool Accel::occluded(const Ray& r) const {
+    if (impl_->direct) return impl_->occludedOne(r);
     FlushDenormals flush;
-    return occludedOne(impl_->scene, r);
+    return impl_->occludedOne(r);
 }
 
 // One ray at a time on purpose: packets round differently at shared edges, and a result would depend on a ray's neighbours.
 void Accel::intersect(std::span<const Ray> rays, std::span<Hit> hits) const {
-    FlushDenormals flush;
-    for (size_t i = 0; i < rays.size(); ++i) intersectOne(impl_->scene, rays[i], hits[i]);
+    std::optional<FlushDenormals> flush;
+    if (!impl_->direct) flush.emplace();
+    for (size_t i = 0; i < rays.size(); ++i) impl_->intersectOne(rays[i], hits[i]);
 }
 
 void Accel::occluded(std::span<const Ray> rays, std::span<uint8_t> out) const {
-    FlushDenormals flush;
-    for (size_t i = 0; i < rays.size(); ++i) out[i] = occludedOne(impl_->scene, rays[i]);
+    std::optional<FlushDenormals> flush;
+    if (!impl_->direct) flush.emplace();
+    for (size_t i = 0; i < rays.size(); ++i) out[i] = impl_->occludedOne(rays[i]);
 }
 
 } // namespace alpenglow::accel

@@ -58,6 +58,7 @@ public:
     const std::vector<geometry::ShapeRef>& shapes() const;
     /// The point of a hit.
     geometry::SurfacePoint point(const Hit& h) const { return shapes()[h.shape]->evaluateHit(h.prim, h.b1, h.b2); }
+    void point(const Hit& h, geometry::SurfacePoint& out) const { shapes()[h.shape]->evaluateHit(h.prim, h.b1, h.b2, out); }
     /// Encloses everything.
     geometry::Bounds bounds() const;
 

@@ -108,7 +108,8 @@ PolygonMesh::PolygonMesh(ShapeSource s, const PolygonInput& in, const std::vecto
     m.finish();
     mesh_ = std::move(m);
     takePrimvars(diag);
-    constexpr size_t kRemember = 256; // triangles; a plane takes 240 bytes
+    plain_ = varS_ < 0 && varT_ < 0 && varSt_ < 0 && !normal_.param;
+    constexpr size_t kRemember = 256; // triangles; a plane takes 600 bytes
     if (face_.size() <= kRemember) {
         std::vector<Plane> planes;
         for (uint32_t t = 0; t < face_.size(); ++t) planes.push_back(makePlane(t));
@@ -141,36 +142,49 @@ PolygonMesh::Plane PolygonMesh::makePlane(uint32_t tri) const {
     double d = dot(r.n, ab);
     r.Pu = cross(f.b, r.n) / d;
     r.Pv = cross(r.n, f.a) / d;
-    return r;
-}
-
-SurfacePoint PolygonMesh::evaluateLocal(uint32_t tri, double b1, double b2) const {
-    Plane q = plane(tri);
-    SurfacePoint p;
+    Vec3d a = cameraCorner(tri, 0), b3 = cameraCorner(tri, 1), c3 = cameraCorner(tri, 2);
+    r.a = a;
+    r.e1 = b3 - a;
+    r.e2 = c3 - a;
+    SurfacePoint& p = r.point;
     p.face = int(face_[tri]);
     p.prim = tri;
-    p.b1 = b1;
-    p.b2 = b2;
-    Vec3d a = cameraCorner(tri, 0), b = cameraCorner(tri, 1), c = cameraCorner(tri, 2);
-    Vec3d P = a + (b - a) * b1 + (c - a) * b2, O = q.p[0] + (q.p[1] - q.p[0]) * b1 + (q.p[2] - q.p[0]) * b2;
-    const Frame& f = q.f;
-    p.P = Vec3(P);
-    p.u = float(dot(O, f.a));
-    p.v = float(dot(O, f.b));
-    Vec3d Pu = transformVector(toCamera(), q.Pu), Pv = transformVector(toCamera(), q.Pv);
+    Vec3d Pu = transformVector(toCamera(), r.Pu), Pv = transformVector(toCamera(), r.Pv);
     p.dPdu = Vec3(Pu);
     p.dPdv = Vec3(Pv);
     // Ng = sign * dPdu ^ dPdv must lie where the winding points; the corners' cross product is the winding in camera space.
-    Vec3d g = cross(Pu, Pv), wind = cross(b - a, c - a);
+    Vec3d g = cross(Pu, Pv), wind = cross(r.e1, r.e2);
     double along = dot(g, wind);
-    if (along == 0) along = dot(transformNormal(toCamera(), Vec3d(faceNormal_[size_t(p.face)])), g) * determinant3(toCamera());
+    if (along == 0) along = dot(transformNormal(toCamera(), fn), g) * determinant3(toCamera());
     p.orientation = along < 0 ? -orientation_ : orientation_;
     p.Ng = Vec3(g * double(p.orientation));
     // Rays meet the rounded triangle: its own normal, unless it is too thin to have one.
-    double l = length(wind), longest = std::max({length(b - a), length(c - b), length(a - c)});
-    p.n = Vec3(l > 1e-6 * longest * longest ? wind / l * double(orientation_) : normalize(g) * double(p.orientation));
+    double lw = length(wind), longestSide = std::max({length(r.e1), length(c3 - b3), length(r.e2)});
+    p.n = Vec3(lw > 1e-6 * longestSide * longestSide ? wind / lw * double(orientation_) : normalize(g) * double(p.orientation));
+    p.N = p.n;
+    return r;
+}
+
+void PolygonMesh::evaluateLocal(uint32_t tri, double b1, double b2, SurfacePoint& p) const {
+    Plane room;
+    const Plane& q = plane(tri, room);
+    p = q.point;
+    p.b1 = b1;
+    p.b2 = b2;
+    Vec3d P = q.a + q.e1 * b1 + q.e2 * b2, O = q.p[0] + (q.p[1] - q.p[0]) * b1 + (q.p[2] - q.p[0]) * b2;
+    p.P = Vec3(P);
+    p.u = float(dot(O, q.f.a));
+    p.v = float(dot(O, q.f.b));
     p.pError = roundingError(p.P);
-    finishPoint(p, false);
+    if (plain_) { // what finishPoint does then; N is there
+        p.s = p.u;
+        p.t = p.v;
+    } else finishPoint(p, false);
+}
+
+SurfacePoint PolygonMesh::evaluateLocal(uint32_t tri, double b1, double b2) const {
+    SurfacePoint p;
+    evaluateLocal(tri, b1, b2, p);
     return p;
 }
 
@@ -196,14 +210,20 @@ SurfacePoint PolygonMesh::evaluate(int face, double u, double v) const {
     return evaluateLocal(tri, b1, b2);
 }
 
-SurfacePoint PolygonMesh::sampleArea(double xi1, double xi2) const {
+void PolygonMesh::sampleArea(double xi1, double xi2, SurfacePoint& out) const {
     double target = xi1 * area();
     size_t t = size_t(std::upper_bound(cumulativeArea_.begin(), cumulativeArea_.end(), target) - cumulativeArea_.begin());
     t = std::min(t, cumulativeArea_.size() - 1);
     // What is left of the first number is uniform again within the triangle.
     double lo = t ? cumulativeArea_[t - 1] : 0, size = cumulativeArea_[t] - lo;
     double x = size > 0 ? std::clamp((target - lo) / size, 0.0, 1.0) : 0.5, root = std::sqrt(x);
-    return evaluateLocal(uint32_t(t), root * (1 - xi2), root * xi2);
+    evaluateLocal(uint32_t(t), root * (1 - xi2), root * xi2, out);
+}
+
+SurfacePoint PolygonMesh::sampleArea(double xi1, double xi2) const {
+    SurfacePoint p;
+    sampleArea(xi1, xi2, p);
+    return p;
 }
 
 double PolygonMesh::sampleDensity(const SurfacePoint&) const { return area() > 0 ? 1 / area() : 0; }
@@ -223,7 +243,8 @@ int PolygonMesh::weights(Class c, const SurfacePoint& p, Weight w[16]) const {
         w[0] = {c == Class::Uniform ? size_t(p.face) : 0, 1, 0, 0};
         return 1;
     }
-    Plane q = plane(p.prim);
+    Plane room;
+    const Plane& q = plane(p.prim, room);
     // Barycentric weights are linear in the plane: their gradients along Pu and Pv.
     Vec3d e1 = q.p[1] - q.p[0], e2 = q.p[2] - q.p[0], n = cross(e1, e2);
     double l = dot(n, n);

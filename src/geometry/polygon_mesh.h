@@ -27,6 +27,7 @@ public:
     SurfacePoint evaluate(int face, double u, double v) const override;
     double area() const override { return cumulativeArea_.empty() ? 0 : cumulativeArea_.back(); }
     SurfacePoint sampleArea(double xi1, double xi2) const override;
+    void sampleArea(double xi1, double xi2, SurfacePoint& out) const override;
     double sampleDensity(const SurfacePoint&) const override;
     void dice(const DiceOptions&, Diagnostics&) override;
 
@@ -34,13 +35,15 @@ protected:
     size_t classCount(scene::Class) const override;
     int weights(scene::Class, const SurfacePoint&, Weight w[16]) const override;
     SurfacePoint evaluateLocal(uint32_t prim, double b1, double b2) const override;
+    void evaluateLocal(uint32_t prim, double b1, double b2, SurfacePoint& out) const override;
 
 private:
     struct Frame { Vec3d a, b; };  ///< u = P.a, v = P.b (object space)
-    struct Plane { Vec3d p[3]; Vec3d n; Vec3d Pu, Pv; Frame f; };
+    /// What does not depend on the place in a triangle: object and camera space.
+    struct Plane { Vec3d p[3]; Vec3d n; Vec3d Pu, Pv; Frame f; Vec3d a, e1, e2; SurfacePoint point; };
     Frame frame(int face) const;
     Plane makePlane(uint32_t prim) const;
-    Plane plane(uint32_t prim) const { return planes_.empty() ? makePlane(prim) : planes_[prim]; }
+    const Plane& plane(uint32_t prim, Plane& room) const { return planes_.empty() ? room = makePlane(prim) : planes_[prim]; }
     Vec3d objectPoint(uint32_t vertex) const {
         return {objectP_[3 * vertex], objectP_[3 * vertex + 1], objectP_[3 * vertex + 2]};
     }
@@ -55,6 +58,7 @@ private:
     std::vector<uint32_t> face_;              ///< per triangle
     std::vector<Vec3> faceNormal_;            ///< per face, object space, unit, by winding
     std::vector<Vec3> cameraP_;               ///< per vertex
+    bool plain_ = false;                      ///< no variable gives s, t or N
     std::vector<Plane> planes_;               ///< per triangle of small meshes, which are hit often; else empty
     std::vector<double> cumulativeArea_;      ///< per triangle, camera space
 };

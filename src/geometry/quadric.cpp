@@ -31,6 +31,8 @@ Quadric::Quadric(ShapeSource s, double degrees, Diagnostics& diag) : Parametric(
     thetaMax_ = degrees * kPi / 180;
     fullTurn_ = std::fabs(degrees) >= 360 - 1e-4;
     toObject_ = inverse(toCamera());
+    const auto& m = toObject_.m;
+    affine_ = m[0][3] == 0 && m[1][3] == 0 && m[2][3] == 0 && m[3][3] == 1;
 }
 
 void Quadric::finish(Diagnostics& diag) {
@@ -136,7 +138,8 @@ int Quadric::roots(const Vec3d& o, const Vec3d& d, double t[4]) const {
 bool Quadric::accept(const Vec3d& p, double v, ExactHit& hit) const {
     if (!(v >= -kEdge && v <= 1 + kEdge)) return false;
     hit.v = std::clamp(v, 0.0, 1.0);
-    Vec3d q = profile(hit.v).p;
+    int side = profileSide();
+    Vec3d q = side ? Vec3d(side, 0, 0) : profile(hit.v).p;
     double theta = 0;
     if ((q.x != 0 || q.y != 0) && (p.x != 0 || p.y != 0))
         theta = std::atan2(q.x * p.y - q.y * p.x, q.x * p.x + q.y * p.y); // from the profile to the point
@@ -148,8 +151,14 @@ bool Quadric::accept(const Vec3d& p, double v, ExactHit& hit) const {
     return true;
 }
 
-int Quadric::exactHits(const Vec3d& org, const Vec3d& dir, ExactHit out[4]) const {
-    Vec3d o = transformPoint(toObject_, org), d = transformVector(toObject_, dir);
+int Quadric::exactHits(const Vec3d& org, const Vec3d& dir, double lo, double hi, bool first, ExactHit out[4]) const {
+    // transformPoint and transformVector of base/, here so that they need no call.
+    auto turned = [&m = toObject_.m](const Vec3d& v) {
+        return Vec3d(v.x * m[0][0] + v.y * m[1][0] + v.z * m[2][0], v.x * m[0][1] + v.y * m[1][1] + v.z * m[2][1],
+                     v.x * m[0][2] + v.y * m[1][2] + v.z * m[2][2]);
+    };
+    Vec3d o = affine_ ? turned(org) + Vec3d(toObject_.m[3][0], toObject_.m[3][1], toObject_.m[3][2]) : transformPoint(toObject_, org);
+    Vec3d d = turned(dir);
     double dd = dot(d, d);
     if (!(dd > 0) || !std::isfinite(dd)) return 0;
     // From the point nearest the middle of the surface: squares of a far origin would swallow the radius.
@@ -162,11 +171,12 @@ int Quadric::exactHits(const Vec3d& org, const Vec3d& dir, ExactHit out[4]) cons
         Vec3d p = near + d * t[i];
         ExactHit h;
         h.t = shift + t[i];
-        if (!std::isfinite(h.t)) continue;
+        if (!std::isfinite(h.t) || !(h.t > lo && h.t <= hi)) continue;
         bool ok = accept(p, vOf(p), h);
         if (!ok)
             if (auto v2 = secondV(p)) ok = accept(p, *v2, h);
         if (ok && m < 4) out[m++] = h;
+        if (ok && first) break;
     }
     return m;
 }

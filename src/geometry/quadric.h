@@ -19,13 +19,16 @@ struct Implicit {
 class Quadric : public Parametric {
 public:
     Quadric(ShapeSource, double thetaMaxDegrees, Diagnostics&);
-    int exactHits(const Vec3d& org, const Vec3d& dir, ExactHit out[4]) const override;
+    using Shape::exactHits;
+    int exactHits(const Vec3d& org, const Vec3d& dir, double lo, double hi, bool first, ExactHit out[4]) const override;
     Bounds bounds() const override;
 
 protected:
     /// To be called once the derived object is whole: bounds of the error, primitive variables.
     void finish(Diagnostics&);
     virtual Profile profile(double v) const = 0;
+    /// +1, -1: all of the profile lies on that side of the x axis (y = 0); 0: profile() must be asked.
+    virtual int profileSide() const { return 0; }
     virtual Implicit implicit() const = 0;
     /// v of an object-space point that lies on the unswept surface; values outside 0..1 are clipped by the caller.
     virtual double vOf(const Vec3d& p) const = 0;
@@ -44,6 +47,7 @@ protected:
 private:
     bool accept(const Vec3d& p, double v, ExactHit& hit) const;
     double thetaMax_ = 0;   ///< radians, -2 pi .. 2 pi
+    bool affine_ = true; ///< toObject_ has no perspective
     bool fullTurn_ = false;
     bool offAxis_ = false;  ///< some b(v) != 0
     double radius_ = 0, zLo_ = 0, zHi_ = 0; ///< cylinder around the whole profile

@@ -7,6 +7,7 @@
 #include "geometry/bounds.h"
 #include "geometry/primvars.h"
 #include "scene/scene.h"
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -86,7 +87,9 @@ public:
     bool exact() const { return mesh_.vertices == 0; }
     const TriMesh& mesh() const { return mesh_; }
     /// All points of the line org + t dir on the surface, by increasing t, at most 4; any sign of t. Thread safe.
-    virtual int exactHits(const Vec3d& org, const Vec3d& dir, ExactHit out[4]) const { return 0; }
+    int exactHits(const Vec3d& org, const Vec3d& dir, ExactHit out[4]) const { return exactHits(org, dir, -INFINITY, INFINITY, false, out); }
+    /// Those with lo < t <= hi only, which is cheaper; `first`: the nearest of them is enough.
+    virtual int exactHits(const Vec3d& org, const Vec3d& dir, double lo, double hi, bool first, ExactHit out[4]) const { return 0; }
     /// Encloses everything a ray can hit.
     virtual Bounds bounds() const;
 
@@ -98,6 +101,11 @@ public:
     virtual SurfacePoint evaluate(int face, double u, double v) const = 0;
     /// The surface at a hit: (prim, b1, b2) as the intersector gave them; exact shapes: (0, u, v).
     SurfacePoint evaluateHit(uint32_t prim, double b1, double b2) const;
+    /// The same, written in place.
+    void evaluateHit(uint32_t prim, double b1, double b2, SurfacePoint& out) const {
+        if (meshParam_.empty()) evaluateLocal(prim, b1, b2, out);
+        else out = evaluateHit(prim, b1, b2);
+    }
     /// Normal of the surface a ray meets there, with orientation; not normalised. Cheaper than evaluateHit; for Sides.
     Vec3d hitNormal(uint32_t prim, double b1, double b2) const;
 
@@ -105,6 +113,8 @@ public:
     virtual double area() const = 0;
     /// A point for two numbers of [0,1): parametric surfaces uniform over (u, v), polygons uniform over area.
     virtual SurfacePoint sampleArea(double xi1, double xi2) const = 0;
+    /// The same, written in place.
+    virtual void sampleArea(double xi1, double xi2, SurfacePoint& out) const { out = sampleArea(xi1, xi2); }
     /// Density per unit area with which sampleArea gives this point: 1 / |dPdu ^ dPdv|, or 1 / area for polygons;
     /// 0 where the surface is degenerate.
     virtual double sampleDensity(const SurfacePoint&) const = 0;
@@ -133,6 +143,8 @@ protected:
     virtual int weights(scene::Class, const SurfacePoint& at, Weight w[16]) const = 0;
     /// evaluate() by (prim, b1, b2) of the undiced surface.
     virtual SurfacePoint evaluateLocal(uint32_t prim, double b1, double b2) const = 0;
+    /// The same, written in place.
+    virtual void evaluateLocal(uint32_t prim, double b1, double b2, SurfacePoint& out) const { out = evaluateLocal(prim, b1, b2); }
     /// hitNormal() of exact shapes.
     virtual Vec3d localNormal(uint32_t prim, double b1, double b2) const;
     /// Fills s, t and N from the variables (or defaults), and what depends on them; P, u, v, n, partials, dNdu, dNdv are set.

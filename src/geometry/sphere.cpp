@@ -22,6 +22,7 @@ private:
         double k = phi1_ - phi0_, phi = phi0_ + v * k, c = std::cos(phi), s = std::sin(phi);
         return {{r_ * c, 0, r_ * s}, {-r_ * k * s, 0, r_ * k * c}, {-r_ * k * k * c, 0, -r_ * k * k * s}};
     }
+    int profileSide() const override { return r_ > 0 ? 1 : -1; } // the cosine of an arcsine
     Implicit implicit() const override { return {false, 0, 1, 0, -r_ * r_}; }
     double vOf(const Vec3d& p) const override {
         double phi = std::atan2(r_ < 0 ? -p.z : p.z, std::hypot(p.x, p.y));

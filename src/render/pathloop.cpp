@@ -10,7 +10,8 @@
 namespace alpenglow::render {
 namespace {
 
-constexpr size_t kRaysPerCall = 2048; // of one trace(): enough to fill the lanes of rare shaders too
+constexpr size_t kRaysPerCall = 8192; // of one trace(): enough to fill the lanes of rare shaders too, and few ends of calls, when lanes run empty
+constexpr int kPathTile = 32;         // pixels a side: eight samples of each are one call
 
 } // namespace
 
@@ -36,7 +37,9 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
         job.diagnostics.report(Severity::Error, Rie::Range, {},
                                "PixelFilter: its integral is not positive; a box of its widths is used");
     const std::vector<Channel>& channels = film.description().channels;
-    const std::vector<Window> tiles = tilesOf(film.window());
+    // Large tiles where every thread still gets many.
+    const bool large = film.window().pixels() >= size_t(kPathTile) * kPathTile * 8 * size_t(job.team.threads());
+    const std::vector<Window> tiles = tilesOf(film.window(), large ? kPathTile : kTile);
     const size_t stride = 4 + channels.size(); // colour, alpha, the rest
     // Passes: of 8 samples, one per replica, while they fit the memory that holds them back. The first eight come in passes of
     // 1, 1, 2 and 4, so that there is soon something to keep.
@@ -93,7 +96,7 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
                 std::vector<transport::SampleResult> results;
                 std::vector<float> weights;
                 auto flush = [&] {
-                    results.assign(rays.size(), {});
+                    results.resize(rays.size());
                     if (!job.trace(worker, rays, results)) return false;
                     for (size_t k = 0; k < rays.size(); ++k) {
                         const transport::SampleResult& r = results[k];
@@ -101,7 +104,7 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
                         Color c = clampSample(r.color, settings.sampleClamp) * w;
                         out.insert(out.end(), {c.x, c.y, c.z, (r.opacity.x + r.opacity.y + r.opacity.z) / 3 * w});
                         size_t at = out.size();
-                        filmValues(job.plan, r.opacity, r.z, r.zSecond, r.aovs, &out);
+                        if (!channels.empty()) filmValues(job.plan, r.opacity, r.z, r.zSecond, r.aovs, &out);
                         for (size_t j = 0; j < channels.size(); ++j)
                             if (channels[j].rule == ChannelRule::Average) out[at + j] *= w;
                     }

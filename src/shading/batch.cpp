@@ -64,6 +64,7 @@ BatchPlan::BatchPlan(const rsl::CompiledKernel& kernel, bool mixed) {
         } else {
             for (const Variable& v : kVariables)
                 if (input.name == v.name) {
+                    footprint_ |= input.name == "du" || input.name == "dv";
                     s.from = From::Variable;
                     std::copy(v.part, v.part + 6, s.offset);
                 }
@@ -88,29 +89,90 @@ int BatchPlan::output(std::string_view name) const {
 }
 
 Batch::Batch(std::shared_ptr<const rsl::CompiledKernel> k, const BatchPlan& plan, std::span<const ShadePoint> points,
-             std::span<const InstanceView> views, const SpaceResolver& spaces)
-    : kernel_(std::move(k)), plan_(plan) {
+             std::span<const InstanceView> views, const SpaceResolver& spaces) {
+    // A batch holds few instances, mostly in turns: the last ones are looked through, so that names are searched about once each.
+    constexpr size_t kLast = 8;
+    std::vector<InstanceView> different;
+    std::vector<uint32_t> of;
+    of.reserve(views.size());
+    for (const InstanceView& v : views) {
+        size_t k = different.size(), end = k > kLast ? k - kLast : 0;
+        auto same = [&](const InstanceView& a) { return a.parameters == v.parameters && a.shaderToCurrent == v.shaderToCurrent; };
+        while (k > end && !same(different[k - 1])) --k;
+        if (k == end) {
+            different.push_back(v);
+            k = different.size();
+        }
+        of.push_back(uint32_t(k - 1));
+    }
+    assign(std::move(k), plan, points, different, of, spaces);
+}
+
+void Batch::assign(std::shared_ptr<const rsl::CompiledKernel> k, const BatchPlan& plan, std::span<const ShadePoint> points,
+                   std::span<const InstanceView> views, std::span<const uint32_t> viewOf, const SpaceResolver& spaces) {
+    kernel_ = std::move(k);
+    plan_ = &plan;
+    size_t lanes = size_t(std::max(1, kernel_->lanes()));
     call_.n = int32_t(points.size());
     call_.stride = int32_t((points.size() + 63) / 64 * 64);
     call_.strings = kernel_->strings().data();
     size_t stride = size_t(call_.stride), total = std::max<size_t>(1, plan.rows_) * std::max<size_t>(stride, 64);
-    storage_.reset(static_cast<float*>(::operator new[](total * sizeof(float), std::align_val_t(64))));
-    in_.reserve(plan.inputs_.size());
-    out_.reserve(plan.outputRow_.size());
-    for (const BatchPlan::Source& s : plan.inputs_) {
-        float* row = storage_.get() + s.firstRow * stride;
-        in_.push_back(row);
-        if (!points.empty()) fill(s, row, points, views, spaces);
+    padded_ = std::min(stride, (points.size() + lanes - 1) / lanes * lanes);
+    if (total > capacity_) {
+        storage_.reset();
+        storage_.reset(static_cast<float*>(::operator new[](total * sizeof(float), std::align_val_t(64))));
+        capacity_ = total;
     }
+    in_.clear();
+    out_.clear();
+    for (const BatchPlan::Source& s : plan.inputs_) in_.push_back(storage_.get() + s.firstRow * stride);
     for (size_t row : plan.outputRow_) out_.push_back(storage_.get() + row * stride);
+    if (!points.empty()) {
+        fillVariables(points);
+        for (const BatchPlan::Source& s : plan.inputs_) {
+            float* row = storage_.get() + s.firstRow * stride;
+            if (s.from != BatchPlan::From::Variable) fill(s, row, points, {views, viewOf}, spaces);
+            pad(s, row);
+        }
+    }
     if (!plan.outputRow_.empty()) // what lanes leave unwritten must not be garbage
-        std::fill(storage_.get() + plan.outputRow_[0] * stride, storage_.get() + plan.rows_ * stride, 0.f);
+        for (size_t row = plan.outputRow_[0]; row < plan.rows_; ++row) std::fill_n(storage_.get() + row * stride, padded_, 0.f);
     call_.in = in_.data();
     call_.out = out_.data();
 }
 
-void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePoint> points, std::span<const InstanceView> views,
-                 const SpaceResolver& spaces) {
+// Lanes past n repeat the last point, so that no garbage is computed on.
+void Batch::pad(const BatchPlan::Source& s, float* row) {
+    if (s.scalar) return;
+    size_t stride = size_t(call_.stride), n = size_t(call_.n);
+    if (padded_ > n)
+        for (size_t r = 0; r < s.rows; ++r) std::fill(row + r * stride + n, row + r * stride + padded_, row[r * stride + n - 1]);
+}
+
+void Batch::fillVariables(std::span<const ShadePoint> points) {
+    // Some points at a time for all variables: their structures then come from memory once.
+    constexpr size_t kTogether = 32;
+    size_t stride = size_t(call_.stride), n = points.size();
+    for (size_t first = 0; first < n; first += kTogether) {
+        size_t end = std::min(n, first + kTogether);
+        for (const BatchPlan::Source& s : plan_->inputs_) {
+            if (s.from != BatchPlan::From::Variable || (s.scalar && first > 0)) continue;
+            size_t to = s.scalar ? 1 : end, parts = s.scalar ? 1 : size_t(s.parts), next = s.scalar ? 1 : stride;
+            float* row = storage_.get() + s.firstRow * stride;
+            for (size_t c = 0; c < size_t(s.components); ++c)
+                for (size_t p = 0; p < parts; ++p, row += next) {
+                    if (s.offset[p] < 0) {
+                        std::fill(row + first, row + to, kConstants[-1 - s.offset[p]]);
+                        continue;
+                    }
+                    const char* from = reinterpret_cast<const char*>(points.data()) + s.offset[p] + c * sizeof(float);
+                    for (size_t i = first; i < to; ++i) std::memcpy(row + i, from + i * sizeof(ShadePoint), sizeof(float));
+                }
+        }
+    }
+}
+
+void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePoint> points, const Views& views, const SpaceResolver& spaces) {
     using From = BatchPlan::From;
     int n = int(points.size()), np = s.parts, comps = s.components;
     size_t stride = size_t(call_.stride);
@@ -118,31 +180,23 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
         return s.scalar ? row[component] : row[(size_t(component) * np + part) * stride + point];
     };
     int count = s.scalar ? 1 : n;
-    auto pad = [&] { // lanes past n repeat the last point, so that no garbage is computed on
-        if (s.scalar) return;
-        for (size_t r = 0; r < s.rows; ++r) std::fill(row + r * stride + n, row + (r + 1) * stride, row[r * stride + n - 1]);
-    };
     switch (s.from) {
-    case From::Variable: {
-        int parts = s.scalar ? 1 : np;
-        for (int c = 0; c < comps; ++c)
-            for (int p = 0; p < parts; ++p) {
-                float* to = s.scalar ? row + c : row + (size_t(c) * np + p) * stride;
-                if (s.offset[p] < 0) {
-                    std::fill_n(to, count, kConstants[-1 - s.offset[p]]);
-                    continue;
-                }
-                const char* from = reinterpret_cast<const char*>(points.data()) + s.offset[p] + size_t(c) * sizeof(float);
-                for (int i = 0; i < count; ++i) std::memcpy(to + i, from + size_t(i) * sizeof(ShadePoint), sizeof(float));
-            }
-        return pad();
-    }
+    case From::Variable: return; // fillVariables
     case From::Cs:
     case From::Os: {
         const char* name = s.from == From::Cs ? "Cs" : "Os";
         const geometry::Shape* last = nullptr; // neighbours are mostly of one shape: its variables are searched once
         int v = -1;
         for (int i = 0; i < count; ++i) {
+            if (points[i].shape && points[i].shape->primvars().empty()) { // the usual case
+                const Color& c = s.from == From::Cs ? points[i].shape->attributes().color : points[i].shape->attributes().opacity;
+                for (int k = 0; k < std::min(comps, 3); ++k) {
+                    at(k, 0, i) = c[k];
+                    if (!s.scalar)
+                        for (int p = 1; p < np; ++p) at(k, p, i) = 0;
+                }
+                continue;
+            }
             float value[16] = {1, 1, 1}, du[16] = {}, dv[16] = {};
             if (const geometry::Shape* shape = points[i].shape) {
                 const Color& c = s.from == From::Cs ? shape->attributes().color : shape->attributes().opacity;
@@ -162,10 +216,14 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
                 }
             }
         }
-        return pad();
+        return;
     }
     case From::Space:
         for (int i = 0; i < count; ++i) {
+            if (i > 0 && points[i].shape == points[i - 1].shape && views.index(i) == views.index(i - 1)) {
+                for (int c = 0; c < 16; ++c) at(c, 0, i) = at(c, 0, i - 1);
+                continue;
+            }
             Matrix m;
             auto own = [&](const std::string& space, Matrix& toCurrent) {
                 if (space == "object" && points[i].shape) { toCurrent = points[i].shape->toCamera(); return true; }
@@ -178,20 +236,34 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
             }
             for (int c = 0; c < 16; ++c) at(c, 0, i) = float(m.m[c / 4][c % 4]);
         }
-        return pad();
+        return;
     case From::Parameter: {
-        std::fill_n(row, s.scalar ? size_t(comps) * s.elements : s.rows * stride, 0.f);
-        // A batch holds few instances: the last ones are remembered, so that names are searched once each.
-        struct Known { const ParameterBlock* block = nullptr; const std::vector<float>* numbers = nullptr; } known[8];
-        size_t replace = 0;
+        if (s.scalar) std::fill_n(row, size_t(comps) * s.elements, 0.f);
+        else for (size_t r = 0; r < s.rows; ++r) std::fill_n(row + r * stride, n, 0.f);
+        numbers_.clear();
+        for (const InstanceView& v : views.views) {
+            auto found = v.parameters ? v.parameters->numbers.find(s.name) : std::map<std::string, std::vector<float>>::const_iterator{};
+            numbers_.push_back(v.parameters && found != v.parameters->numbers.end() ? &found->second : nullptr);
+        }
+        bool overridden = false; // by a primitive variable of some shape
         const geometry::Shape* last = nullptr;
-        int v = -1;
+        for (int i = 0; s.varying && !overridden && i < count; ++i)
+            if (points[i].shape && points[i].shape != last) {
+                last = points[i].shape;
+                overridden = !last->primvars().empty() && last->findPrimvar(s.name) >= 0;
+            }
+        if (!overridden) { // component by component: a value for each instance, then a row
+            for (int c = 0; c < comps * s.elements; ++c) {
+                valueOf_.clear();
+                for (const auto* numbers : numbers_) valueOf_.push_back(numbers && c < int(numbers->size()) ? (*numbers)[size_t(c)] : 0.f);
+                float* to = &at(c, 0, 0);
+                for (int i = 0; i < count; ++i) to[i] = valueOf_[views.index(i)];
+            }
+            return;
+        }
         for (int i = 0; i < count; ++i) {
-            if (s.varying && points[i].shape) {
-                if (points[i].shape != last) {
-                    last = points[i].shape;
-                    v = last->findPrimvar(s.name);
-                }
+            if (points[i].shape) {
+                int v = points[i].shape->findPrimvar(s.name);
                 if (v >= 0) {
                     float value[16] = {}, du[16] = {}, dv[16] = {};
                     if (points[i].shape->primvars()[v].outWidth() <= 16) points[i].shape->interpolate(v, points[i].surface, value, du, dv);
@@ -202,21 +274,11 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
                     continue;
                 }
             }
-            const ParameterBlock* block = views[i].parameters;
-            if (!block) continue;
-            const Known* k = known;
-            while (k < known + 8 && k->block != block) ++k;
-            if (k == known + 8) {
-                Known& fresh = known[replace++ % 8];
-                auto found = block->numbers.find(s.name);
-                fresh = {block, found != block->numbers.end() ? &found->second : nullptr};
-                k = &fresh;
-            }
-            const std::vector<float>* numbers = k->numbers;
+            const std::vector<float>* numbers = numbers_[views.index(i)];
             if (!numbers) continue;
-            for (int c = 0; c < comps * s.elements && c < int(numbers->size()); ++c) at(c, 0, i) = (*numbers)[c];
+            for (int c = 0, most = std::min(comps * s.elements, int(numbers->size())); c < most; ++c) at(c, 0, i) = (*numbers)[size_t(c)];
         }
-        return pad();
+        return;
     }
     case From::Nothing: std::fill_n(row, s.rows * stride, 0.f); return;
     }

@@ -35,6 +35,8 @@ public:
     /// Index of an output, -1 when the kernel has none of that name.
     int output(std::string_view name) const;
     int Ci = -1, Oi = -1, P = -1, N = -1;
+    /// Whether du or dv is read.
+    bool usesFootprint() const { return footprint_; }
 
 private:
     friend class Batch;
@@ -52,30 +54,49 @@ private:
     std::vector<size_t> outputRow_;
     std::vector<std::string> outputs_;
     size_t rows_ = 0;
+    bool footprint_ = false;
 };
 
 /// Aligned rows for the inputs and outputs of one kernel call. Lives as long as the call, across suspensions.
 class Batch {
 public:
+    Batch() = default;
     /// views[i] belongs to points[i]; with `mixed` false they are all the same.
     Batch(std::shared_ptr<const rsl::CompiledKernel>, const BatchPlan&, std::span<const ShadePoint> points, std::span<const InstanceView> views,
           const SpaceResolver&);
     Batch(const Batch&) = delete;
+    Batch& operator=(const Batch&) = delete;
+    /// A new call in the memory of the last one. views[viewOf[i]] belongs to points[i]; viewOf empty: views[0] to all. What the call's
+    /// user and functions are is left as it was.
+    void assign(std::shared_ptr<const rsl::CompiledKernel>, const BatchPlan&, std::span<const ShadePoint> points,
+                std::span<const InstanceView> views, std::span<const uint32_t> viewOf, const SpaceResolver&);
 
     rsl::KernelCall& call() { return call_; }
     const rsl::CompiledKernel& kernel() const { return *kernel_; }
     int size() const { return call_.n; }
-    const BatchPlan& plan() const { return plan_; }
-    int output(std::string_view name) const { return plan_.output(name); }
+    const BatchPlan& plan() const { return *plan_; }
+    int output(std::string_view name) const { return plan_->output(name); }
     float value(int output, int component, int point) const { return out_[output][size_t(component) * call_.stride + point]; }
     Color color(int output, int point) const { return {value(output, 0, point), value(output, 1, point), value(output, 2, point)}; }
 
 private:
-    void fill(const BatchPlan::Source&, float* row, std::span<const ShadePoint>, std::span<const InstanceView>, const SpaceResolver&);
+    struct Views {
+        std::span<const InstanceView> views;
+        std::span<const uint32_t> of;
+        size_t index(int point) const { return of.empty() ? 0 : of[size_t(point)]; }
+        const InstanceView& operator[](int point) const { return views[index(point)]; }
+    };
+    void fill(const BatchPlan::Source&, float* row, std::span<const ShadePoint>, const Views&, const SpaceResolver&);
+    void fillVariables(std::span<const ShadePoint>);
+    void pad(const BatchPlan::Source&, float* row);
     struct Free { void operator()(float* p) const { ::operator delete[](p, std::align_val_t(64)); } };
     std::shared_ptr<const rsl::CompiledKernel> kernel_;
-    const BatchPlan& plan_;
+    const BatchPlan* plan_ = nullptr;
     std::unique_ptr<float[], Free> storage_;
+    size_t capacity_ = 0; ///< floats
+    size_t padded_ = 0;   ///< points rounded up to whole strips of the kernel
+    std::vector<float> valueOf_;                     ///< by view: one component of it
+    std::vector<const std::vector<float>*> numbers_; ///< by view: the parameter that is filled in
     std::vector<const float*> in_;
     std::vector<float*> out_;
     rsl::KernelCall call_{};

@@ -3,6 +3,7 @@
 // A unit of work is a Task (a ray to follow) or a Strip (a suspended kernel). A task adds what it finds to its Target. A strip that
 // suspends makes one target a lane, spawns tasks for them, and waits; when the last of them is complete the strip is ready. Work is
 // taken deepest first, tasks in slices of at most limits::kSliceRays, so memory grows with depth and not with the size of the image.
+// While no strip waits a slice is filled up with less deep tasks, so that the long tails of paths share batches with fresh ones.
 // Sums are exact (base/exactsum.h), so no order of work, slice or batch changes a bit.
 //
 // One scheduler serves one thread. It knows no geometry and no shader: the RayService does; tests use a fake one.
@@ -54,7 +55,7 @@ public:
     class RayService {
     public:
         virtual ~RayService() = default;
-        /// Follows every task of the slice: adds to targets, spawns children, starts strips. All tasks have the same depth.
+        /// Follows every task of the slice: adds to targets, spawns children, starts strips. The deepest tasks come first.
         virtual void follow(std::span<const Task> slice, Scheduler&) = 0;
     };
 
@@ -65,16 +66,27 @@ public:
 
     /// A root target, read with value() after run().
     TargetId newRoot() { return newTarget(-1); }
-    void spawn(Task t) {
-        ++targets_[t.target].pending;
-        queues_[t.depth].push_back(std::move(t));
+    void spawn(Task t) { spawn(t.depth, t.target).payload = std::move(t.payload); }
+    /// The same for a payload that is written in place: good until the next task is spawned.
+    Task& spawn(int depth, TargetId target) {
+        ++targets_[target].pending;
+        if (depth != lastDepth_ || !lastQueue_) {
+            lastQueue_ = &queues_[depth];
+            lastDepth_ = depth;
+        }
         ++queued_;
+        Task& t = lastQueue_->emplace_back();
+        t.depth = depth;
+        t.target = target;
+        return t;
     }
     /// Adds light to a target. Order does not matter: the sum is exact. Non-finite values are counted and dropped.
     void add(TargetId id, const Color& c) {
         Target& t = targets_[id];
         if (!std::isfinite(c.x) || !std::isfinite(c.y) || !std::isfinite(c.z)) { ++nonFinite_; return; }
-        t.sum[0].add(c.x); t.sum[1].add(c.y); t.sum[2].add(c.z);
+        if (c.x != 0) t.sum[0].add(c.x);
+        if (c.y != 0) t.sum[1].add(c.y);
+        if (c.z != 0) t.sum[2].add(c.z);
     }
     void setTransmission(TargetId id, const Color& c) { targets_[id].value.transmission = c; }
     void setDistance(TargetId id, float d) { targets_[id].value.distance = d; }
@@ -110,17 +122,21 @@ public:
                 for (size_t n = ready_.rbegin()->second.size(); n > 0; --n) resumeOne();
                 continue;
             }
-            auto& q = queues_[rayDepth];
             // Near the frame limit only as many rays are taken as one strip can hold, so that depth, not breadth, uses what is left.
             size_t most = frameBytes_ > frameLimit_ / 2 ? kStripRays : size_t(sliceRays_);
-            size_t n = std::min(q.size(), most);
-            if (n == q.size()) {
-                slice.clear();
-                slice.swap(q);
-            } else { // from the end: order does not matter, moving the rest would cost
-                slice.assign(std::make_move_iterator(q.end() - ptrdiff_t(n)), std::make_move_iterator(q.end()));
-                q.resize(q.size() - n);
+            slice.clear();
+            for (auto from = queues_.rbegin(); from != queues_.rend() && slice.size() < most; ++from) {
+                auto& q = from->second;
+                if (q.empty()) continue;
+                if (!slice.empty() && frameBytes_ > 0) break;
+                size_t take = std::min(q.size(), most - slice.size());
+                if (slice.empty() && take == q.size()) slice.swap(q);
+                else { // from the end: order does not matter, moving the rest would cost
+                    slice.insert(slice.end(), std::make_move_iterator(q.end() - ptrdiff_t(take)), std::make_move_iterator(q.end()));
+                    q.resize(q.size() - take);
+                }
             }
+            size_t n = slice.size();
             queued_ -= n;
             if (frameBytes_ > frameLimit_) {
                 overLimit_ += n; // these rays bring nothing: a bias, counted and reported by the caller
@@ -141,8 +157,21 @@ public:
         v.radiance = {t.sum[0].toFloat(), t.sum[1].toFloat(), t.sum[2].toFloat()};
         return v;
     }
+    /// As new, in the memory that is there.
+    void restart(const volatile int32_t* stop) {
+        stop_ = stop;
+        targets_.clear();
+        freeTargets_.clear();
+        strips_.clear();
+        freeStrips_.clear();
+        ready_.clear();
+        resuming_.reset();
+        for (auto& [depth, queue] : queues_) queue.clear();
+        queued_ = frameBytes_ = peakFrameBytes_ = largestSlice_ = 0;
+        suspensions_ = overLimit_ = nonFinite_ = slices_ = 0;
+    }
     /// Forgets all targets; only when nothing is pending.
-    void reset() { targets_.clear(); freeTargets_.clear(); strips_.clear(); freeStrips_.clear(); queues_.clear(); queued_ = 0; ready_.clear(); frameBytes_ = 0; }
+    void reset() { targets_.clear(); freeTargets_.clear(); strips_.clear(); freeStrips_.clear(); queues_.clear(); lastQueue_ = nullptr; queued_ = 0; ready_.clear(); frameBytes_ = 0; }
 
     size_t peakFrameBytes() const { return peakFrameBytes_; }
     size_t largestSlice() const { return largestSlice_; }
@@ -222,6 +251,7 @@ private:
     }
     void abandon() {
         queues_.clear();
+        lastQueue_ = nullptr;
         queued_ = 0;
         ready_.clear();
         strips_.clear();
@@ -245,6 +275,8 @@ private:
     std::deque<Waiting> strips_;
     std::vector<int> freeStrips_;
     std::map<int, std::vector<Task>> queues_;
+    std::vector<Task>* lastQueue_ = nullptr; ///< queues_[lastDepth_]
+    int lastDepth_ = 0;
     size_t queued_ = 0;
     std::map<int, std::deque<int>> ready_;
     std::unique_ptr<Strip> resuming_;

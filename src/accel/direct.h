@@ -1,0 +1,42 @@
+// Tiny scenes without a tree: all triangles are looked at, four at a time, in float; those that may be met are then met in double.
+// Up to some two dozen triangles that is faster than walking a hierarchy.
+#pragma once
+#include "geometry/shape.h"
+#include <span>
+#include <vector>
+
+namespace alpenglow::accel {
+
+struct Ray;
+
+class DirectTriangles {
+public:
+    static constexpr size_t kMost = 24; ///< triangles; beyond them Embree is faster
+
+    struct Triangle { Vec3 a, b, c; uint32_t shape, prim; };
+    void add(const Triangle&);
+    size_t size() const { return triangles_.size(); }
+    const Triangle& operator[](size_t i) const { return triangles_[i]; }
+
+    /// Bit i: the ray may meet triangle i between its tnear and tfar. Never clear for a triangle that it meets: the bounds are widened
+    /// by more than float arithmetic can be off.
+    uint32_t candidates(const Ray&) const;
+    /// The t at which the ray meets the plane of triangle i, in double, and more than it can be off; infinite or not a number in the
+    /// plane itself.
+    double planeT(size_t i, const Vec3d& org, const Vec3d& dir, double& margin) const {
+        double inverse = 1 / dot(planes_[i].n, dir), t = (planes_[i].d - dot(planes_[i].n, org)) * inverse;
+        margin = 1e-13 * (std::fabs(inverse) * (double(extent_) + std::fabs(org.x) + std::fabs(org.y) + std::fabs(org.z)) + std::fabs(t));
+        return t;
+    }
+
+private:
+    /// Four triangles: plane n.p = d, and the two barycentric weights as linear functions of the point, with their slopes.
+    struct alignas(16) Four { float n[3][4], d[4], u[3][4], u0[4], v[3][4], v0[4], slope[4]; };
+    std::vector<Four> fours_;
+    struct Plane { Vec3d n; double d; };
+    std::vector<Triangle> triangles_;
+    std::vector<Plane> planes_;
+    float extent_ = 0; ///< largest 1-norm of a corner
+};
+
+} // namespace alpenglow::accel

@@ -211,10 +211,11 @@ bool Accel::Impl::readyDirect() {
 void Accel::Impl::meetDirect(Query& q) const {
     const Ray& r = *q.ray;
     const Vec3d o(r.org), d(r.dir);
+    const double error = triangles.planeError(o);
     for (uint32_t left = triangles.candidates(r); left; left &= left - 1) {
         size_t i = size_t(std::countr_zero(left));
         // Behind the nearest so far, or the plane that the ray leaves: most candidates end here.
-        double margin, plane = triangles.planeT(i, o, d, margin);
+        double margin, plane = triangles.planeT(i, o, d, error, margin);
         if (plane + margin < double(r.tnear) || plane - margin > q.best.t) continue;
         const DirectTriangles::Triangle& t = triangles[i];
         if (!visible(r, t.shape) || excluded(r, t.shape, t.prim)) continue;

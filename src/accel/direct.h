@@ -21,11 +21,13 @@ public:
     /// Bit i: the ray may meet triangle i between its tnear and tfar. Never clear for a triangle that it meets: the bounds are widened
     /// by more than float arithmetic can be off.
     uint32_t candidates(const Ray&) const;
+    /// What planeT() takes as `error` of a ray from org.
+    double planeError(const Vec3d& org) const { return 1e-13 * (double(extent_) + std::fabs(org.x) + std::fabs(org.y) + std::fabs(org.z)); }
     /// The t at which the ray meets the plane of triangle i, in double, and more than it can be off; infinite or not a number in the
     /// plane itself.
-    double planeT(size_t i, const Vec3d& org, const Vec3d& dir, double& margin) const {
+    double planeT(size_t i, const Vec3d& org, const Vec3d& dir, double error, double& margin) const {
         double inverse = 1 / dot(planes_[i].n, dir), t = (planes_[i].d - dot(planes_[i].n, org)) * inverse;
-        margin = 1e-13 * (std::fabs(inverse) * (double(extent_) + std::fabs(org.x) + std::fabs(org.y) + std::fabs(org.z)) + std::fabs(t));
+        margin = std::fabs(inverse) * error + 1e-13 * std::fabs(t);
         return t;
     }
 

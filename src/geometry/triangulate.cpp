@@ -82,7 +82,7 @@ bool bridge(const std::vector<P2>& p, std::vector<uint32_t>& ring, const std::ve
 }
 
 // Clips ears off a counter-clockwise ring. False: it had to guess.
-bool clip(const std::vector<P2>& p, const std::vector<uint32_t>& ring, std::vector<uint32_t>& out) {
+bool clip(const std::vector<P2>& p, const std::vector<uint32_t>& ring, std::vector<uint32_t>& out, size_t most) {
     size_t n = ring.size();
     std::vector<uint32_t> next(n), prev(n);
     for (size_t i = 0; i < n; ++i) next[i] = uint32_t((i + 1) % n), prev[i] = uint32_t((i + n - 1) % n);
@@ -97,7 +97,7 @@ bool clip(const std::vector<P2>& p, const std::vector<uint32_t>& ring, std::vect
     uint32_t i = 0;
     while (left > 3) {
         uint32_t a = prev[i], b = next[i];
-        bool budget = tests < limits::kTriangulationTests;
+        bool budget = tests < most;
         double t = corner(i);
         bool ear = t > 0;
         if (ear && budget) {
@@ -144,7 +144,7 @@ bool clip(const std::vector<P2>& p, const std::vector<uint32_t>& ring, std::vect
 } // namespace
 
 TriangulationResult triangulate(std::span<const Vec3d> points, std::span<const int> loops, std::vector<uint32_t>& out,
-                                Vec3d& normal) {
+                                Vec3d& normal, size_t most) {
     normal = Vec3d(0.0);
     if (loops.empty() || loops[0] < 3) return TriangulationResult::Nothing;
     normal = newell(points.subspan(0, size_t(loops[0])));
@@ -200,9 +200,9 @@ TriangulationResult triangulate(std::span<const Vec3d> points, std::span<const i
     size_t cost = 0;
     for (auto& [x, i] : order) {
         cost += ring.size() + inner[i].size();
-        if (cost > limits::kTriangulationTests || !bridge(p, ring, inner[i])) good = false; // outside the outer loop: left out
+        if (cost > most || !bridge(p, ring, inner[i])) good = false; // outside the outer loop: left out
     }
-    if (!clip(p, ring, out)) good = false;
+    if (!clip(p, ring, out, most)) good = false;
     // Guessed triangles may have come out backwards.
     for (size_t i = start; i + 2 < out.size(); i += 3)
         if (turn(p[out[i]], p[out[i + 1]], p[out[i + 2]]) < 0) std::swap(out[i + 1], out[i + 2]);

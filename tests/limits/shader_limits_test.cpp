@@ -1,4 +1,5 @@
 // What a shader may cost.
+#include "../sanitized.h"
 #include "base/limits.h"
 #include "rsl/compiler.h"
 #include "rsl/front/ast.h"
@@ -148,8 +149,8 @@ TEST(ShaderLimits, OutlinedFunctions) {
 }
 
 TEST(ShaderLimits, InliningForTheAffineProof) {
-    // f_n is 2^n additions of what a ray brings. The proof needs it inlined: below kAffineInlining it is, beyond the kernel stays
-    // small and waits for its ray.
+    // f_n is 2^n additions of what a ray brings. The proof needs it inlined: below kAffineInlining it is, beyond, calls stay and
+    // the kernel waits for its ray.
     auto sum = [](int n) {
         std::string text = "color f0(color c; float x) { return c * sin(x); }\n";
         for (int i = 1; i <= n; ++i) {
@@ -158,13 +159,16 @@ TEST(ShaderLimits, InliningForTheAffineProof) {
         }
         return kernelOf(text + "surface s() { Ci = f" + std::to_string(n) + "(trace(P, N), u); }\n");
     };
-    auto small = sum(6), large = sum(24);
-    ASSERT_TRUE(small && large);
+    auto small = sum(6);
+    ASSERT_TRUE(small);
     EXPECT_TRUE(small->facts.affine);
+    if (kSanitized) GTEST_SKIP() << "a kernel of a million operations takes minutes here";
+    auto large = sum(24);
+    ASSERT_TRUE(large);
     EXPECT_FALSE(large->facts.affine);
     EXPECT_FALSE(large->facts.whyNot.empty());
     EXPECT_GT(functionsIn(*large), 0);
-    EXPECT_LE(ir::instructionCount(large->body), 4 * limits::kAffineInlining); // the last round may double it, and more
+    EXPECT_LE(ir::instructionCount(large->body), 16 * limits::kAffineInlining); // rounds of inlining are not cut in the middle
 }
 
 TEST(ShaderLimits, PrintedText) {

@@ -194,6 +194,7 @@ Inst* Builder::newArray(Base base, int length) {
     return a;
 }
 
+/// The length where it is known; of an array that changes its length, where it is not, that of its storage.
 int Builder::arrayLength(const Inst* a) const {
     if (const Lengths* l = lengths(a))
         if (const Inst* n = env_[static_cast<size_t>(l->length)]; n && isConst(n)) return static_cast<int>(n->numbers[0]);

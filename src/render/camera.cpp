@@ -107,8 +107,6 @@ Camera::Camera(const scene::Options& o, Diagnostics& diags) {
     if (o.clipFar < o.clipNear) bad("Clipping: far lies in front of near");
     else if (o.clipFar < 1e30f)
         diags.report(Severity::Info, Rie::NoError, {}, "Clipping: rays see what lies behind the far plane too");
-    if (!o.clippingPlanes.empty())
-        diags.report(Severity::Warning, Rie::Unimplement, {}, "ClippingPlane is not yet obeyed: nothing is cut away");
 
     if (o.fstop > 0 && o.fstop < 1e30f) {
         if (o.focalLength > 0 && o.focalDistance > 0 && std::isfinite(o.focalLength) && std::isfinite(o.focalDistance)) {

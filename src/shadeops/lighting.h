@@ -2,12 +2,9 @@
 #pragma once
 #include "shadeops/call.h"
 #include "shadeops/geometry.h"
+#include "shadeops/specular.h"
 
 namespace alpenglow::rsl::AL_NAMESPACE {
-
-/// The exponent of specular() and specularbrdf() is this number over the roughness. Fitted on pictures of the nineties (docs/gallery.md):
-/// 1 / roughness, as RISpec prints it, leaves a tenth of the error of 8 / roughness.
-inline constexpr float kSpecularExponent = 1;
 
 template <class T> AL_INLINE Triple<T> opSpecularBrdf(const Triple<T>& l, const Triple<T>& n, const Triple<T>& v, const T& roughness) {
     const T cosine = larger(T(vf(0)), dot(n, normalize(normalize(l) + v)));

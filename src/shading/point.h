@@ -26,6 +26,7 @@ struct PathRay {
     float lobePdf = -1;
     Vec3 lobeOrigin;                  ///< the point whose lobe drew dir: lobePdf and the lights' densities are seen from there
     int lobeBinding = -1;             ///< binding of that point, whose list says which lights may light it; -1: every emitter counts
+    bool fromTrace = false;           ///< drawn by trace(), not by a lighting shadeop
     bool wantsLight = true;           ///< false: emission of area lights is not counted (they are not sampled by this trace())
     float width = 0, spread = 0;      ///< footprint: half width at the origin, and its growth with distance
     uint32_t shape = geometry::kNone; ///< surface it leaves, for the exclusion of its own primitive

@@ -49,6 +49,12 @@ Emitter::Emitter(std::vector<const geometry::Shape*> shapes, std::vector<uint32_
     }
 }
 
+geometry::Bounds Emitter::bounds() const {
+    geometry::Bounds b;
+    for (const Entry& e : entries_) b.add(e.shape->bounds());
+    return b;
+}
+
 float Emitter::areaPdf(const Entry& e, const geometry::SurfacePoint& p, const Vec3& from) const {
     Vec3 d = p.P - from;
     float d2 = dot(d, d), cosine = std::fabs(dot(d, p.n)) / std::sqrt(d2);

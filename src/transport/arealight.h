@@ -12,6 +12,12 @@ public:
     explicit Emitter(std::vector<const geometry::Shape*> shapes, std::vector<uint32_t> visibility = {});
     bool empty() const { return entries_.empty(); }
     double area() const { return area_; }
+    geometry::Bounds bounds() const;
+    /// The point of the first shape at (u, v) of its area; `shape` is set to it. Only when not empty.
+    geometry::SurfacePoint point(Vec2 u, const geometry::Shape*& shape) const {
+        shape = entries_[0].shape;
+        return shape->sampleArea(u.x, u.y);
+    }
     /// Whether sample() needs its number `choose`.
     bool chooses() const { return entries_.size() > 1; }
 

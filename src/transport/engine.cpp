@@ -181,7 +181,7 @@ void Engine::lightVisibility(BatchContext& c, const SiteInfo& s, int point, cons
     const ShadePoint& p = c.points[point];
     Vec3 w = l / length_;
     Vec3 o = geometry::offsetOrigin(p.surface, w, length(p.P - p.surface.P));
-    shadows.push_back({o, w, distance < 1e30f ? distance * (1 - 1e-4f) : 1e38f, weight, target, p.time});
+    shadows.push_back({o, w, distance < 1e30f ? distance * (1 - 1e-4f) : 1e38f, weight, target, p.time, p.ray});
 }
 
 void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched) {
@@ -190,6 +190,8 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched) {
     const auto& wanted = world_->settings_.outputs;
     std::vector<int> wantedAt;
     for (const std::string& name : wanted) wantedAt.push_back(b.output(name));
+    bool suspended = b.kernel().facts().suspends; // then nobody has asked for the atmosphere yet
+    if (suspended) hazeOfBatch(c, first, lanes, false);
     for (int i = first; i < std::min(first + lanes, int(c.points.size())); ++i) {
         const PathRay& ray = c.rays[i];
         const SurfaceBinding& binding = world_->bindings_[c.bindings[i]];
@@ -203,13 +205,9 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched) {
             sched.setTransmission(c.targets[i], Color(1) - opacity);
         }
         Color shown = color;
-        if (binding.atmosphere) { // without pairs: the volume shader sees the very colour; pairs were scaled in shadeGroup
-            ShadePoint p = c.points[i];
-            p.Ci = color;
-            p.Oi = opacity;
-            auto a = applyAtmosphere(binding, p);
-            shown = a.first;
-            opacity = a.second;
+        if (binding.atmosphere && !(binding.matte && ray.type == RayType::Camera)) { // pairs were scaled in shadeGroup
+            shown = c.haze[size_t(i)].shown;
+            opacity = c.haze[size_t(i)].opacity;
         }
         sched.add(c.targets[i], ray.weight * shown);
         if (ray.cameraSample >= 0) {
@@ -229,21 +227,6 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched) {
         }
         passThrough(ray, c.targets[i], c.points[i], Color(1) - opacity, sched);
     }
-}
-
-std::pair<Color, Color> Engine::applyAtmosphere(const SurfaceBinding& binding, const ShadePoint& p) {
-    BatchContext c;
-    c.engine = this;
-    c.bound = &binding.atmosphereS;
-    c.binding = &binding;
-    c.points = {p};
-    shading::InstanceView view{&binding.atmosphere->parameters, &binding.atmosphere->toCurrent};
-    c.batch = std::make_shared<shading::Batch>(binding.atmosphereS.kernel, *binding.atmosphereS.plan, c.points, std::span(&view, 1), *world_);
-    bindCall(c.batch->call(), c);
-    if (binding.atmosphereS.kernel->facts().suspends) return {p.Ci, p.Oi};
-    binding.atmosphereS.kernel->run(&c.batch->call());
-    int ci = c.batch->plan().Ci, oi = c.batch->plan().Oi;
-    return {ci >= 0 ? c.batch->color(ci, 0) : p.Ci, oi >= 0 ? c.batch->color(oi, 0) : p.Oi};
 }
 
 void Engine::passThrough(const PathRay& ray, TargetId target, const ShadePoint& p, const Color& transparency, Sched& sched) {
@@ -272,19 +255,30 @@ void Engine::passThrough(const PathRay& ray, TargetId target, const ShadePoint& 
     sched.spawn(std::move(task));
 }
 
-void Engine::miss(const Sched::Task& t, Sched& sched) {
-    if (world_->settings_.hider != Hider::Path) return;
-    const PathRay& r = t.payload;
+void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
+    if (world_->settings_.hider != Hider::Path || tasks.empty()) return;
+    std::vector<ShadePoint> q;
+    std::vector<const Sched::Task*> of;
+    std::vector<LightValue> value;
     for (const BoundLight& l : world_->lights_) {
-        bool sky = l.kind == LightKind::Environment, ambient = l.kind == LightKind::Ambient && r.type == RayType::Diffuse;
-        if ((!sky && !ambient) || !l.kernel) continue; // a light whose shader was not found gives nothing
-        std::vector<ShadePoint> q(1);
-        q[0].Ps = r.origin;
-        q[0].P = r.origin + r.dir;
-        q[0].N = -r.dir;
-        LightValue v;
-        evaluateLight(l, q, {&v, 1});
-        sched.add(t.target, r.weight * v.Cl);
+        if ((l.kind != LightKind::Environment && l.kind != LightKind::Ambient) || !l.kernel) continue; // a light whose shader was not found gives nothing
+        q.clear();
+        of.clear();
+        for (const Sched::Task* t : tasks) {
+            const PathRay& r = t->payload;
+            if (l.kind == LightKind::Ambient ? r.type != RayType::Diffuse : r.fromTrace && l.strategy == LightStrategy::Illuminance) continue;
+            ShadePoint& p = q.emplace_back();
+            p.Ps = r.origin;
+            p.P = r.origin + r.dir;
+            p.N = -r.dir;
+            p.time = r.time;
+            p.ray = &r;
+            of.push_back(t);
+        }
+        value.assign(q.size(), {});
+        evaluateLight(l, q, value);
+        for (size_t i = 0; i < of.size(); ++i)
+            if (value[i].lit) sched.add(of[i]->target, of[i]->payload.weight * value[i].Cl);
     }
 }
 
@@ -313,6 +307,7 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
             float weight = 1;
             if (r.lobePdf >= 0 && light.emitter) {
                 float pdf = light.emitter->pdf(p.shape, p.surface, r.lobeOrigin);
+                if (set.hider == Hider::Path && r.lobeBinding >= 0) pdf *= chanceOf(met[i].light, r.lobeBinding, r.lobeOrigin);
                 weight = set.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
             }
             sched.add(met[i].target, r.weight * v.Cl * weight);
@@ -329,6 +324,13 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
         rays[i].org = r.origin;
         rays[i].dir = r.dir;
         rays[i].tfar = r.maxDistance;
+        if (r.type == RayType::Camera)
+            for (const auto& [point, normal] : world_->clippingPlanes_) {
+                double height = dot(normal, Vec3d(r.origin) - point), climb = dot(normal, Vec3d(r.dir)), t = -height / climb;
+                if (climb > 0) rays[i].tfar = std::min(rays[i].tfar, float(std::max(t, 0.0)));
+                else if (climb < 0) rays[i].tnear = std::max(rays[i].tnear, float(std::min(t, 1e37)));
+                else if (height > 0) rays[i].tfar = 0; // along the plane, on its cut side
+            }
         rays[i].time = r.time;
         rays[i].mask = visibilityBit(r.type);
         rays[i].excludeShape = r.shape;
@@ -357,8 +359,9 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
         c->bindings.reserve(size_t(sizes[g]));
     }
     std::vector<Met> met;
+    std::vector<const Sched::Task*> missed;
     for (size_t i = 0; i < n; ++i) {
-        if (!hits[i].valid()) { miss(slice[i], sched); continue; }
+        if (!hits[i].valid()) { missed.push_back(&slice[i]); continue; }
         const PathRay& r = slice[i].payload;
         int binding = world_->bindingOf_[hits[i].shape];
         const SurfaceBinding& b = world_->bindings_[size_t(binding)];
@@ -384,8 +387,13 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
             const auto& on = world_->bindings_[size_t(r.lobeBinding)].lights;
             if (std::find(on.begin(), on.end(), b.areaLight) == on.end()) continue;
         }
+        const BoundLight& light = world_->lights_[size_t(b.areaLight)];
+        if (r.fromTrace && light.strategy == LightStrategy::Illuminance) continue;
         met.push_back({b.areaLight, slice[i].target, &p});
+        for (int part : light.parts)
+            if (world_->lights_[size_t(part)].kind == LightKind::Area) met.push_back({part, slice[i].target, &p});
     }
+    misses(missed, sched);
     std::stable_sort(met.begin(), met.end(), [](const Met& a, const Met& b) { return a.light < b.light; });
     emission(met, sched);
     for (auto& c : groups) {
@@ -467,19 +475,14 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
     }
     kernel.run(&c->batch->call());
 
-    // Affine pairs by point, in order of emission. Atmosphere scales them: a volume shader is affine in Ci, so two runs give its slope.
+    // Affine pairs by point, in order of emission. Atmosphere scales them.
+    bool hazy = std::any_of(c->bindings.begin(), c->bindings.end(), [&](int b) { return world_->bindings_[size_t(b)].atmosphere != nullptr; });
     std::vector<Color> slope(n, Color(1));
-    if (!c->emits.empty())
-        for (int i = 0; i < n; ++i) {
-            const SurfaceBinding& b = world_->bindings_[c->bindings[i]];
-            if (!b.atmosphere) continue;
-            ShadePoint p = c->points[i];
-            p.Oi = Color(1);
-            p.Ci = Color(0);
-            Color a = applyAtmosphere(b, p).first;
-            p.Ci = Color(1);
-            slope[i] = applyAtmosphere(b, p).first - a;
-        }
+    if (hazy) {
+        hazeOfBatch(*c, 0, n, !c->emits.empty());
+        for (int i = 0; i < n; ++i)
+            if (world_->bindings_[size_t(c->bindings[size_t(i)])].atmosphere) slope[size_t(i)] = c->haze[size_t(i)].slope;
+    }
     std::vector<uint32_t> occurrence(c->emits.empty() ? 0 : c->bound->sites.size() * size_t(n));
     for (const EmitRecord& e : c->emits) {
         const SiteInfo& s = c->bound->sites[e.site];

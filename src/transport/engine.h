@@ -16,7 +16,13 @@ using shading::TargetId;
 struct EmitRecord { int site = 0, first = 0, lanes = 0; uint64_t mask = 0; size_t offset = 0; };
 
 /// A visibility question: adds contribution * transmittance to the target.
-struct ShadowRay { Vec3 origin, dir; float distance; Color contribution; TargetId target; float time; };
+struct ShadowRay { Vec3 origin, dir; float distance; Color contribution; TargetId target; float time; const PathRay* ray = nullptr; };
+
+/// A surface that a shadow ray met, whose opacity its shader must tell.
+struct OpacityQuery { int binding; accel::Hit hit; const ShadowRay* ray; };
+
+/// What an atmosphere makes of the light that a ray met: Ci and Oi as seen, and the coefficient of the light met.
+struct Haze { Color shown, opacity, slope{1}; };
 
 /// A lobe at a point that light shall be gathered over.
 struct LobeVertex {
@@ -53,6 +59,7 @@ struct BatchContext {
     std::vector<int> bindings;                 ///< by point
     std::vector<EmitRecord> emits;
     std::vector<float> arena;
+    std::vector<Haze> haze;                    ///< by point; only where a binding has an atmosphere
     // light loop of the strip that runs now
     std::vector<std::pair<int, int>> loopLights; ///< (light, sample)
     std::vector<float> loopRows;
@@ -76,7 +83,25 @@ public:
     // lights.cpp
     /// Light arriving at queries from one light; for area lights `samples[i]` is the point on the emitter.
     void evaluateLight(const BoundLight&, std::vector<ShadePoint>& queries, std::span<LightValue> out);
-    Color transmittance(const Vec3& origin, const Vec3& dir, float distance, float time);
+    // shadowrays.cpp
+    /// What is left of light along each ray. `ray`: for the random numbers and footprint of shaders on the way; may be null.
+    void transmittances(std::span<const ShadowRay>, std::span<Color> out);
+    Color transmittance(const Vec3& origin, const Vec3& dir, float distance, float time, const PathRay* ray);
+    /// Oi at hits of one binding.
+    void opacities(std::span<const OpacityQuery>, std::span<Color> out);
+    // haze.cpp
+    /// Runs the binding's atmosphere over points with Ci, Oi, I, P set. The points' Ci is void afterwards.
+    void haze(const SurfaceBinding&, std::vector<ShadePoint>&, std::span<Haze> out, bool wantSlope);
+    /// Fills c.haze for points first to first + count - 1 of a shaded batch.
+    void hazeOfBatch(BatchContext&, int first, int count, bool wantSlope);
+    /// Takes from the light of emitters what their atmosphere takes between them and the lit points.
+    void hazeOfEmitters(const BoundLight&, std::span<const ShadePoint>, std::span<LightValue>);
+    // manylights.cpp
+    /// Lights to sample at a point: index in the list, and the probability that it is chosen.
+    void chooseLights(const std::vector<int>& lights, const Vec3& at, float random, std::vector<std::pair<int, float>>& chosen);
+    /// Probability that chooseLights takes this light for a point of the binding at `at`.
+    float chanceOf(int light, int binding, const Vec3& at);
+    // lights.cpp
     int32_t lightBegin(BatchContext&, int site, int first, uint64_t mask, int lanes, const float* rows);
     uint64_t lightFetch(BatchContext&, int light, int first, uint64_t mask, int lanes, float* out);
     // services.cpp
@@ -85,7 +110,6 @@ public:
     void request(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId, bool owns,
                  uint32_t occurrence);
     void lightVisibility(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId, float distance);
-    std::pair<Color, Color> applyAtmosphere(const SurfaceBinding&, const ShadePoint&);
     void gather(BatchContext&, Sched&);
     void flushShadows(Sched&);
     void finishStrip(BatchContext&, int first, int lanes, Sched&);
@@ -101,13 +125,15 @@ public:
 
 private:
     friend class KernelStrip;
-    void miss(const Sched::Task&, Sched&);
+    void misses(std::span<const Sched::Task* const>, Sched&);
     struct Met { int light; TargetId target; const ShadePoint* point; };
     /// Light that emitters send along the rays that met them; sorted by light.
     void emission(std::span<const Met>, Sched&);
     void passThrough(const PathRay&, TargetId, const ShadePoint&, const Color& transparency, Sched&);
     std::shared_ptr<const WorldImpl> world_;
     Diagnostics& diagnostics_;
+    std::vector<float> chances_;
+    std::vector<Color> transmitted_;
     std::set<const void*> tamed_;              ///< shaders that were named because they reflect more than they receive
 };
 

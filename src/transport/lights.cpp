@@ -21,13 +21,13 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
             while (h && !k.finished(h)) {
                 const SiteInfo& s = light.kernel.sites[c->requestSite];
                 for (int lane = 0; lane < c->requestLanes; ++lane) {
-                    if (!(c->requestMask >> lane & 1)) continue;
+                    if (!(c->requestMask >> lane & 1) || first + lane >= int(c->points.size())) continue;
                     Color t{0};
                     if (s.kind == SiteKind::Transmission) {
                         auto at = [&](int row) { return c->requestIn[size_t(row) * c->requestLanes + lane]; };
                         Vec3 a(at(s.rows[0]), at(s.rows[0] + 1), at(s.rows[0] + 2)), b(at(s.rows[1]), at(s.rows[1] + 1), at(s.rows[1] + 2));
                         float d = length(b - a);
-                        t = d > 0 ? transmittance(a, (b - a) / d, d, 0) : Color(1);
+                        t = d > 0 ? transmittance(a, (b - a) / d, d, c->points[size_t(first + lane)].time, c->points[size_t(first + lane)].ray) : Color(1);
                     }
                     for (int r = 0; r < s.resultRowCount; ++r) c->requestOut[size_t(r) * c->requestLanes + lane] = r < 3 ? t[r] : 0;
                 }
@@ -57,33 +57,13 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
             auto at = [&](int row) { return c->arena[e.offset + size_t(row) * e.lanes + lane]; };
             Vec3 a(at(3 + s.rows[0]), at(4 + s.rows[0]), at(5 + s.rows[0])), d = Vec3(at(3 + s.rows[1]), at(4 + s.rows[1]), at(5 + s.rows[1])) - a;
             float l = length(d);
-            out[e.first + lane].Cl += Color(at(0), at(1), at(2)) * (l > 0 ? transmittance(a, d / l, l, 0) : Color(1));
+            out[e.first + lane].Cl += Color(at(0), at(1), at(2)) *
+                                      (l > 0 ? transmittance(a, d / l, l, queries[size_t(e.first + lane)].time, queries[size_t(e.first + lane)].ray) : Color(1));
         }
     }
-}
-
-Color Engine::transmittance(const Vec3& origin, const Vec3& dir, float distance, float time) {
-    ++counters.shadow;
-    Color t(1);
-    accel::Ray r;
-    r.org = origin;
-    r.dir = dir;
-    r.tfar = distance;
-    r.time = time;
-    r.mask = accel::kTransmission;
-    r.bothSides = true;
-    if (world_->allOpaque_) return world_->accel_->occluded(r) ? Color(0) : t;
-    for (int layers = 0; layers < 256; ++layers) {
-        accel::Hit h;
-        if (!world_->accel_->intersect(r, h)) return t;
-        const SurfaceBinding& b = world_->bindings_[world_->bindingOf_[h.shape]];
-        t *= Color(1) - b.opacity;
-        if (!(maxComponent(t) > 0)) return Color(0);
-        r.excludeShape = h.shape;
-        r.excludePrim = h.prim;
-        r.tnear = h.t;
-    }
-    return Color(0);
+    if (light.intensityScale > 0) // the kernel divided by the squared distance: radiance does not
+        for (size_t i = 0; i < queries.size(); ++i) out[i].Cl *= dot(out[i].L, out[i].L) * light.intensityScale;
+    hazeOfEmitters(light, queries, out);
 }
 
 int32_t Engine::lightBegin(BatchContext& c, int site, int first, uint64_t mask, int lanes, const float* rows) {
@@ -103,7 +83,8 @@ int32_t Engine::lightBegin(BatchContext& c, int site, int first, uint64_t mask, 
     if (c.binding)
         for (int i : c.binding->lights) {
             const BoundLight& l = world_->lights_[i];
-            if (l.kind == LightKind::Ambient || l.kind == LightKind::Environment || !inCategory(l)) continue;
+            if (l.kind == LightKind::Ambient || l.strategy == LightStrategy::Trace || !inCategory(l)) continue;
+            if (l.kind == LightKind::Environment && world_->settings_.hider != Hider::Path) continue; // a sky is a light of path
             for (int k = 0; k < l.samples; ++k) c.loopLights.push_back({i, k});
         }
     return int32_t(c.loopLights.size());
@@ -137,6 +118,19 @@ uint64_t Engine::lightFetch(BatchContext& c, int index, int first, uint64_t mask
             p.P = s.point.P;
             p.N = s.point.n;
             f = 1 / (float(kPi) * s.pdf * light.samples); // cosLight A / (pi d^2 n), design decision 4
+        } else if (light.kind == LightKind::Environment) {
+            // The sky from directions evenly in the cone of the loop.
+            Vec3 axis(c.loopRows[3 * lanes + lane], c.loopRows[4 * lanes + lane], c.loopRows[5 * lanes + lane]);
+            float angle = c.loopRows[6 * lanes + lane], la = length(axis);
+            bool all = !(la > 0) || !(angle < float(kPi));
+            float cap = all ? 2 : 2 * std::pow(std::sin(0.5f * std::max(angle, 0.f)), 2.f); // 1 - cos of the half angle
+            if (!(cap > 0)) continue;
+            Random rng = random(*p.ray);
+            Vec3 w = Basis(all ? Vec3(0, 0, 1) : axis / la).toWorld(sampleCone(cap, rng.pair(p.ray->vertex, kLightPoint + uint32_t(li), uint32_t(k) + 1)));
+            p.shape = nullptr;
+            p.P = lit + w;
+            p.N = -w;
+            f = 2 * cap / float(light.samples); // 1 / (pi pdf n)
         } else {
             p.shape = nullptr;
             p.P = Vec3(transformPoint(light.instance->toCurrent, {0, 0, 0}));
@@ -151,24 +145,20 @@ uint64_t Engine::lightFetch(BatchContext& c, int index, int first, uint64_t mask
     for (size_t i = 0; i < q.size(); ++i) {
         int lane = laneOf[i];
         if (!v[i].lit) continue;
-        Vec3 toLight = -v[i].L;
+        bool sky = light.kind == LightKind::Environment;
+        Vec3 toLight = sky ? q[i].P - q[i].Ps : -v[i].L;
         float angle = c.loopRows[6 * lanes + lane];
-        if (angle < float(kPi)) {
+        if (angle < float(kPi) && !sky) {
             Vec3 axis(c.loopRows[3 * lanes + lane], c.loopRows[4 * lanes + lane], c.loopRows[5 * lanes + lane]);
             float la = length(axis), ll = length(toLight);
             if (la > 0 && ll > 0 && !(dot(axis, toLight) >= la * ll * std::cos(angle))) continue;
         }
         lit |= uint64_t(1) << lane;
-        c.lightDistance[lane] = light.kind == LightKind::Distant ? 1e38f : length(toLight);
+        c.lightDistance[lane] = sky || light.kind == LightKind::Distant ? 1e38f : length(toLight);
         float rows[9] = {toLight.x, toLight.y, toLight.z, v[i].Cl.x * factor[i], v[i].Cl.y * factor[i], v[i].Cl.z * factor[i], 1, 1, 1};
         for (int r = 0; r < 9; ++r) out[size_t(r) * lanes + lane] = rows[r];
     }
     return lit;
-}
-
-void Engine::flushShadows(Sched& s) {
-    for (const ShadowRay& r : shadows) s.add(r.target, r.contribution * transmittance(r.origin, r.dir, r.distance, r.time));
-    shadows.clear();
 }
 
 } // namespace alpenglow::transport

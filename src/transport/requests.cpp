@@ -1,5 +1,6 @@
 // What becomes of the requests of a batch: lobes are gathered over lights, then rays are sent (design decisions 2 and 3).
 #include "transport/engine.h"
+#include "shadeops/specular.h"
 #include "transport/sampling.h"
 
 namespace alpenglow::transport {
@@ -9,7 +10,6 @@ Vec3 unit(Vec3 v, Vec3 fallback) {
     float l = length(v);
     return l > 0 && std::isfinite(l) ? v / l : fallback;
 }
-constexpr float kSpecularExponentScale = 1; // specular(): (N.H)^(1 / roughness); the same constant as its RSL body
 } // namespace
 
 void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float* in, int lanes, int lane, Color weight, TargetId target, bool owns,
@@ -40,7 +40,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         l.params.wo = unit(v(1), l.params.wo);
         l.params.a = f(s.rows[2]);
         if (s.kind == SiteKind::Specular)
-            l.params.a = (s.standard ? 1 : kSpecularExponentScale) / std::max(l.params.a, 1e-6f);
+            l.params.a = (s.standard ? 1 : kSpecularExponent) / std::max(l.params.a, 1e-6f);
         l.type = RayType::Specular;
         break;
     case SiteKind::Trace:
@@ -61,10 +61,10 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     case SiteKind::Transmission: {
         Vec3 a = v(0), d = v(1) - a;
         float distance = length(d);
-        if (!(distance > 0)) { shadows.push_back({a, Vec3(0, 0, 1), 0, weight, target, p.time}); return; }
+        if (!(distance > 0)) { shadows.push_back({a, Vec3(0, 0, 1), 0, weight, target, p.time, p.ray}); return; }
         d = d / distance;
         float offset = geometry::roundingError(a) + p.surface.pError * 2;
-        shadows.push_back({a + d * offset, d, std::max(0.f, distance - 2 * offset), weight, target, p.time});
+        shadows.push_back({a + d * offset, d, std::max(0.f, distance - 2 * offset), weight, target, p.time, p.ray});
         return;
     }
     default: return;
@@ -131,27 +131,49 @@ void Engine::gather(BatchContext& c, Sched& sched) {
         }
     }
 
+    // Whether a lobe asks this light for samples. trace() knows emitters only, and not those that are illuminance's.
+    auto samples = [](const LobeVertex& l, const BoundLight& light) {
+        bool area = light.kind == LightKind::Area;
+        return l.lights && (area || l.deltaLights) && (l.lobeOfShader || light.strategy != LightStrategy::Illuminance);
+    };
+
     // Light samples: every light for every point with lobes that want it, in batches a light.
     if (set.direct && !set.bsdfOnly) {
         std::vector<ShadePoint> q; // the batch shares one list of lights
         std::vector<int> pointOf;
-        std::vector<Emitter::Sample> samples;
+        std::vector<Emitter::Sample> drawn;
         std::vector<LightValue> value;
-        const std::vector<int>& on = world_->bindings_[size_t(c.bindings[0])].lights;
-        for (size_t li = 0; li < world_->lights_.size(); ++li) {
-            const BoundLight& light = world_->lights_[li];
-            if (std::find(on.begin(), on.end(), int(li)) == on.end()) continue;
-            if (light.kind == LightKind::Ambient || light.kind == LightKind::Environment) continue;
-            bool area = light.kind == LightKind::Area;
-            if (area && (!light.emitter || light.emitter->empty())) continue;
-            q.clear();
-            pointOf.clear();
-            samples.clear();
-            q.reserve(c.points.size());
-            samples.reserve(c.points.size());
+        const std::vector<int>& on = world_->sampledLights_[size_t(world_->bindings_[size_t(c.bindings[0])].lightList)];
+        // With many lights some are chosen at each point: by light, the points and the probability of the choice.
+        bool many = path && on.size() > size_t(limits::kLightsSampled);
+        std::vector<std::vector<std::pair<int, float>>> chosenAt(many ? on.size() : 0);
+        if (many) {
+            std::vector<std::pair<int, float>> chosen;
             for (size_t pi = 0; pi < c.points.size(); ++pi) {
+                auto list = lobesOf(pi);
+                if (list.empty()) continue;
+                const LobeVertex& l0 = lobes[size_t(list[0])];
+                uint32_t vertex = l0.ownsTarget ? childVertex(c.rays[pi].vertex, kLightPoint + l0.site, l0.occurrence) : c.rays[pi].vertex;
+                chooseLights(on, c.points[pi].P, random(c.rays[pi]).one(vertex, kChooseLight, 0), chosen);
+                for (auto [i, chance] : chosen) chosenAt[size_t(i)].push_back({int(pi), chance});
+            }
+        }
+        std::vector<float> chance;
+        for (size_t at = 0; at < on.size(); ++at) {
+            size_t li = size_t(on[at]);
+            const BoundLight& light = world_->lights_[li];
+            bool area = light.kind == LightKind::Area;
+            q.clear();
+            chance.clear();
+            pointOf.clear();
+            drawn.clear();
+            q.reserve(c.points.size());
+            drawn.reserve(c.points.size());
+            size_t count = many ? chosenAt[at].size() : c.points.size();
+            for (size_t k = 0; k < count; ++k) {
+                size_t pi = many ? size_t(chosenAt[at][k].first) : k;
                 bool wanted = false;
-                for (int i : lobesOf(pi)) wanted |= lobes[i].lights && (area || lobes[i].deltaLights) && !lobes[i].kind->isDelta(lobes[i].params);
+                for (int i : lobesOf(pi)) wanted |= samples(lobes[i], light) && !lobes[i].kind->isDelta(lobes[i].params);
                 if (!wanted) continue;
                 const ShadePoint& lit = c.points[pi];
                 ShadePoint& p = q.emplace_back();
@@ -171,10 +193,10 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     uint32_t vertex = l0.ownsTarget ? childVertex(ray.vertex, kLightPoint + l0.site, l0.occurrence) : ray.vertex;
                     Random rng = random(ray);
                     uint32_t use = kLightPoint + uint32_t(li);
-                    Emitter::Sample& s = samples.emplace_back();
+                    Emitter::Sample& s = drawn.emplace_back();
                     if (!light.emitter->sample(p.Ps, rng.pair(vertex, use, 0), light.emitter->chooses() ? rng.one(vertex, use, 0) : 0, s)) {
                         q.pop_back();
-                        samples.pop_back();
+                        drawn.pop_back();
                         continue;
                     }
                     p.shape = s.shape;
@@ -184,9 +206,10 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 } else {
                     p.surface = lit.surface;
                     p.P = Vec3(transformPoint(light.instance->toCurrent, {0, 0, 0}));
-                    samples.emplace_back();
+                    drawn.emplace_back();
                 }
                 pointOf.push_back(int(pi));
+                chance.push_back(many ? chosenAt[at][k].second : 1.f);
             }
             value.assign(q.size(), {});
             evaluateLight(light, q, value);
@@ -194,11 +217,11 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 const LightValue& v = value[k];
                 if (!v.lit || !(maxComponent(v.Cl) > 0)) continue;
                 const ShadePoint& p = c.points[pointOf[k]];
-                Vec3 w = area ? samples[k].direction : unit(-v.L, Vec3(0, 0, 1));
-                float distance = area ? samples[k].distance : light.kind == LightKind::Distant ? 1e38f : length(v.L);
+                Vec3 w = area ? drawn[k].direction : unit(-v.L, Vec3(0, 0, 1));
+                float distance = area ? drawn[k].distance : light.kind == LightKind::Distant ? 1e38f : length(v.L);
                 for (int i : lobesOf(size_t(pointOf[k]))) {
                     LobeVertex& l = lobes[i];
-                    if (!l.lights || (!area && !l.deltaLights)) continue;
+                    if (!samples(l, light)) continue;
                     float fcos = l.kind->fcos(l.params, w);
                     if (!(fcos > 0)) continue;
                     float kept = l.type == RayType::Diffuse ? 1 - v.nonDiffuse : 1 - v.nonSpecular;
@@ -206,20 +229,21 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     Color contribution = l.weight * c.rays[l.point].weight * v.Cl;
                     if (l.ownsTarget) contribution = l.weight * v.Cl;
                     if (area) {
-                        float other = set.lightOnly || !(l.chosen > 0) || !(samples[k].visibility & visibilityBit(l.type)) ? 0 : l.kind->pdf(l.params, w) * l.chosen;
-                        contribution *= kept * fcos / samples[k].pdf * misWeight(samples[k].pdf, other);
+                        float other = set.lightOnly || !(l.chosen > 0) || !(drawn[k].visibility & visibilityBit(l.type)) ? 0 : l.kind->pdf(l.params, w) * l.chosen;
+                        float pdf = drawn[k].pdf * chance[k];
+                        contribution *= kept * fcos / pdf * misWeight(pdf, other);
                     } else {
-                        contribution *= kept * float(kPi) * fcos; // Cl is irradiance / pi
+                        contribution *= kept * float(kPi) * fcos / chance[k]; // Cl is irradiance / pi
                     }
                     Vec3 o = sourcePoint(p, w);
                     // The light's own surface must not block: stop short of it by both error bounds.
                     float stop = distance;
                     if (area) {
-                        Vec3 end = geometry::offsetOrigin(samples[k].point, -w);
+                        Vec3 end = geometry::offsetOrigin(drawn[k].point, -w);
                         stop = length(end - o);
-                        shadows.push_back({o, unit(end - o, w), stop * (1 - 1e-6f), contribution, l.target, p.time});
+                        shadows.push_back({o, unit(end - o, w), stop * (1 - 1e-6f), contribution, l.target, p.time, p.ray});
                     } else {
-                        shadows.push_back({o, w, stop < 1e30f ? stop * (1 - 1e-5f) : stop, contribution, l.target, p.time});
+                        shadows.push_back({o, w, stop < 1e30f ? stop * (1 - 1e-5f) : stop, contribution, l.target, p.time, p.ray});
                     }
                 }
             }
@@ -287,6 +311,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 bool sampledElsewhere = l.lights && !delta && set.direct && !set.bsdfOnly && !path && l.ownsTarget;
                 r.lobePdf = sampled || sampledElsewhere ? pdf * l.chosen : l.lights && !delta && !path && set.direct && !set.bsdfOnly ? pdf : -1;
                 r.wantsLight = true;
+                r.fromTrace = !l.lobeOfShader;
                 r.lobeOrigin = p.P;
                 r.lobeBinding = l.lights && !delta ? c.bindings[pi] : -1;
                 r.width = from.width + from.spread * length(p.I);

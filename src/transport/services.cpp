@@ -277,7 +277,8 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
     case SiteKind::RayLevel:
         each([&](int lane, const ShadePoint&) {
             int depth = c.rays.empty() ? 0 : c.rays[first + lane].bounces;
-            put(0, lane, d.op == "raylevel" ? float(depth) : d.op == "isindirectray" ? float(depth > 0) : 0.f);
+            bool shadow = c.binding && c.bound == &c.binding->opacityKernel;
+            put(0, lane, d.op == "raylevel" ? float(depth) : d.op == "isindirectray" ? float(depth > 0) : float(shadow));
         });
         return;
     case SiteKind::TextureInfo:

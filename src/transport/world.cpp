@@ -262,57 +262,8 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
 
     w->shapes_ = geometry::buildShapes(*frame, d);
 
-    // Lights.
-    std::map<int, std::vector<const geometry::Shape*>> emitters;
-    for (const auto& s : w->shapes_)
-        if (s->attributes().areaLight >= 0) emitters[s->attributes().areaLight].push_back(s.get());
-    for (size_t li = 0; li < frame->lights.size(); ++li) {
-        const scene::Light& source = frame->lights[li];
-        BoundLight l;
-        l.source = &source;
-        l.handle = source.handle;
-        l.instance = source.shader ? w->instance(*source.shader, rsl::ShaderKind::Light, d) : nullptr;
-        if (l.instance) {
-            std::vector<std::string> outputs;
-            for (const char* name : {"__nondiffuse", "__nonspecular"})
-                for (const auto& p : l.instance->program->parameters())
-                    if (p.name == name) outputs.push_back(std::string("param:") + name);
-            if (!outputs.empty()) {
-                outputs.insert(outputs.begin(), {"L", "Cl", "Ol", "lit"});
-            }
-            l.kernel = w->kernel(*l.instance, outputs, {}, false, false, d);
-        }
-        if (l.kernel) {
-            const auto& k = *l.kernel.kernel;
-            for (size_t i = 0; i < k.outputs().size(); ++i) {
-                const std::string& n = k.outputs()[i].name;
-                if (n == "L") l.outL = int(i);
-                else if (n == "Cl") l.outCl = int(i);
-                else if (n == "lit") l.outLit = int(i);
-                else if (n == "param:__nondiffuse") l.nonDiffuse = int(i);
-                else if (n == "param:__nonspecular") l.nonSpecular = int(i);
-            }
-            if (k.facts().blocks.size() > 1)
-                d.reportOnce("blocks:" + l.instance->name, {Severity::Warning, Rie::Unimplement, l.instance->place,
-                             "light \"" + l.instance->name + "\" has several illuminate or solar statements; the first one lights", {}, {}});
-            bool solar = !k.facts().blocks.empty() && k.facts().blocks[0].rfind("solar", 0) == 0;
-            bool sky = solar && k.facts().blocks[0] == "solar()";
-            if (source.area && emitters.count(int(li))) l.kind = LightKind::Area;
-            else if (k.facts().ambientLight || k.facts().blocks.empty()) l.kind = LightKind::Ambient;
-            else if (sky || l.instance->name == "envlight") l.kind = LightKind::Environment;
-            else l.kind = solar ? LightKind::Distant : LightKind::Point;
-            if (l.kind == LightKind::Area) {
-                std::vector<uint32_t> seen;
-                for (const geometry::Shape* s : emitters[int(li)]) seen.push_back(visibilityOf(s->attributes(), path));
-                l.emitter = std::make_shared<Emitter>(emitters[int(li)], std::move(seen));
-                l.samples = source.attributes ? std::clamp(int(attributeNumber(*source.attributes, "light:samples", 1)), 1, 1024) : 1;
-            }
-        } else {
-            l.kind = LightKind::Ambient;
-            l.samples = 0;
-        }
-        w->lights_.push_back(std::move(l));
-    }
+    w->clippingPlanes_ = o.clippingPlanes;
+    w->bindLights(d, [path](const geometry::Shape& s) { return visibilityOf(s.attributes(), path); });
 
     // Surfaces: what may be shaded together shares a binding.
     std::map<std::pair<const scene::ShaderCall*, int>, InstanceRef> instances;
@@ -333,6 +284,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     std::map<std::vector<int>, int> lightLists;
     std::map<std::pair<int, int>, int> groups;
     std::vector<uint32_t> visibility;
+    Engine engine(std::shared_ptr<const WorldImpl>(std::shared_ptr<const WorldImpl>{}, w.get()), d); // runs kernels while the world is made
     for (const auto& shape : w->shapes_) {
         const scene::Attributes& a = shape->attributes();
         visibility.push_back(visibilityOf(a, path));
@@ -358,6 +310,10 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
         add(attributeNumber(a, "trace:maxdiffusedepth", -1));
         add(attributeNumber(a, "trace:maxspeculardepth", -1));
         for (const auto& v : varying) key += v + ";";
+        bool ownOpacity = shape->findPrimvar("Os") >= 0;
+        key += ownOpacity ? "Os;" : "";
+        for (const char* name : {"shade:transmissionhitmode", "visibility:transmission"})
+            if (const scene::Param* p = a.value(name); p && !p->strings.empty()) key += p->strings[0] + ";";
         auto [it, fresh] = bindingByKey.try_emplace(key, int(w->bindings_.size()));
         if (fresh) {
             SurfaceBinding b;
@@ -382,8 +338,15 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
             if (settings.mixedOnly) b.surfaceS = b.surfaceV;
             if (!b.surfaceS || !b.surfaceV) return nullptr;
             if (b.atmosphere) {
-                b.atmosphereS = w->kernel(*b.atmosphere, {}, {}, false, false, d);
+                b.atmosphereS = w->kernel(*b.atmosphere, {"Ci", "Oi", "slope:Ci"}, {}, false, false, d);
                 if (!b.atmosphereS) b.atmosphere = nullptr;
+                else if (b.atmosphereS.kernel->facts().suspends) {
+                    d.reportOnce("atmosphere:" + b.atmosphere->name, {Severity::Warning, Rie::Unimplement, b.atmosphere->place,
+                                 "volume shader \"" + b.atmosphere->name + "\" waits for rays (" + b.atmosphereS.kernel->facts().whyNot + "); it is left out", {}, {}});
+                    b.atmosphere = nullptr;
+                } else if (b.atmosphereS.plan->output("slope:Ci") < 0)
+                    d.reportOnce("atmosphere:" + b.atmosphere->name, {Severity::Info, Rie::NoError, b.atmosphere->place,
+                                 "volume shader \"" + b.atmosphere->name + "\" is not affine in Ci as written; what light loses in it is measured between Ci = 0 and 1", {}, {}});
             }
             if (b.displacement) {
                 // The derivatives are for the surface shader: bumps on top of the displacement.
@@ -391,10 +354,19 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
                 if (!b.displacementS) b.displacement = nullptr;
             }
             for (const auto& in : b.surfaceS.kernel->inputs()) b.usesObjectSpace |= in.name.find("object") != std::string::npos && in.name.rfind("space:", 0) == 0;
-            b.lights = a.lights;
-            b.lightList = lightLists.try_emplace(a.lights, int(lightLists.size())).first->second;
+            b.lights = w->withParts(a.lights);
+            b.lightList = lightLists.try_emplace(b.lights, int(lightLists.size())).first->second;
+            if (size_t(b.lightList) == w->sampledLights_.size()) {
+                auto& sampled = w->sampledLights_.emplace_back();
+                for (int l : b.lights) {
+                    const BoundLight& light = w->lights_[size_t(l)];
+                    bool point = light.kind == LightKind::Point || light.kind == LightKind::Distant;
+                    if (light.kernel && (point || (light.kind == LightKind::Area && !light.emitter->empty()))) sampled.push_back(l);
+                }
+                std::sort(sampled.begin(), sampled.end());
+                sampled.erase(std::unique(sampled.begin(), sampled.end()), sampled.end());
+            }
             b.areaLight = a.areaLight;
-            b.opacity = a.opacity;
             b.matte = a.matte;
             b.shadingRate = a.shadingRate;
             b.maxDiffuse = int(attributeNumber(a, "trace:maxdiffusedepth", path ? -1 : 1));
@@ -405,10 +377,12 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
             auto [group, firstOfGroup] = groups.try_emplace({b.program, b.lightList}, w->groups_);
             w->groups_ += firstOfGroup;
             b.group = group->second;
+            w->bindOpacity(b, *shape, varying, engine, d);
+            w->allOpaque_ &= !b.opacityKernel && b.shadowOpacity == Color(1);
             w->bindings_.push_back(std::move(b));
         }
         w->bindingOf_.push_back(it->second);
-        w->allOpaque_ &= a.opacity == Color(1);
+        if (path && w->bindings_[size_t(it->second)].atmosphere && a.areaLight >= 0) w->hazyEmitters_[shape.get()] = it->second;
     }
 
     // Dicing, with displacement by the same kernels that shade.
@@ -445,9 +419,57 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     };
     geometry::diceShapes(w->shapes_, dice, d);
     w->accel_ = std::make_unique<accel::Accel>(w->shapes_, visibility, d);
+    w->measureLights(engine, d);
+    for (const auto& [shape, binding] : w->hazyEmitters_) {
+        w->lights_[size_t(shape->attributes().areaLight)].hazy = true;
+        for (int part : w->lights_[size_t(shape->attributes().areaLight)].parts) w->lights_[size_t(part)].hazy = true;
+    }
     w->facts_.shapes = w->shapes_.size();
     w->facts_.buildSec = seconds() - begin - w->facts_.compileSec;
     return w;
+}
+
+void WorldImpl::bindOpacity(SurfaceBinding& b, const geometry::Shape& shape, const std::vector<std::string>& varying, Engine& engine, Diagnostics& d) {
+    const scene::Attributes& a = shape.attributes();
+    std::string mode = "shader";
+    for (const char* name : {"shade:transmissionhitmode", "visibility:transmission"}) // PRMan's words, and the older ones
+        if (const scene::Param* p = a.value(name); p && !p->strings.empty()) mode = p->strings[0];
+    std::string what = b.surfaceS.kernel->facts().opacity;
+    bool varies = shape.findPrimvar("Os") >= 0;
+    b.shadowOpacity = mode == "opaque" ? Color(1) : a.opacity;
+    if (mode == "opaque" || mode == "primitive" || (mode == "Os" && !varies) || (what == "Os" && !varies)) return;
+    if (what == "1") {
+        b.shadowOpacity = Color(1);
+        return;
+    }
+    BoundKernel k = kernel(*b.surface, {"Oi"}, varying, false, false, d);
+    if (!k || k.plan->Oi < 0) return;
+    if (k.kernel->facts().suspends) {
+        d.reportOnce("opacity:" + b.surface->name, {Severity::Warning, Rie::NoError, b.surface->place,
+                     "the opacity of shader \"" + b.surface->name + "\" depends on traced rays; its shadow has the primitive's Opacity", {}, {}});
+        return;
+    }
+    bool constant = !varies && k.kernel->sites().empty();
+    for (const auto& in : k.kernel->inputs()) {
+        bool parameter = in.name.rfind("param:", 0) == 0 && std::find(varying.begin(), varying.end(), in.name.substr(6)) == varying.end();
+        constant &= parameter || in.name == "Os" || (in.name == "Cs" && shape.findPrimvar("Cs") < 0);
+    }
+    if (!constant) {
+        b.opacityKernel = std::move(k);
+        return;
+    }
+    std::vector<ShadePoint> point(1);
+    point[0].shape = &shape;
+    shading::InstanceView view{&b.surface->parameters, &b.surface->toCurrent};
+    BatchContext c;
+    c.engine = &engine;
+    c.bound = &k;
+    c.points.swap(point);
+    c.batch = std::make_shared<shading::Batch>(k.kernel, *k.plan, c.points, std::span(&view, 1), *this);
+    engine.bindCall(c.batch->call(), c);
+    k.kernel->run(&c.batch->call());
+    Color o = c.batch->color(k.plan->Oi, 0);
+    for (int i = 0; i < 3; ++i) b.shadowOpacity[i] = std::isfinite(o[i]) ? std::clamp(o[i], 0.f, 1.f) : 1;
 }
 
 bool WorldImpl::runImager(int count, const float* x, const float* y, float* r, float* g, float* b, float* alpha, Diagnostics& d) const {

@@ -8,7 +8,9 @@
 #include "transport/arealight.h"
 #include "transport/integrator.h"
 #include "transport/lobe.h"
+#include <functional>
 #include <mutex>
+#include <unordered_map>
 
 namespace alpenglow::transport {
 
@@ -66,6 +68,9 @@ using InstanceRef = std::shared_ptr<const ShaderInstance>;
 
 enum class LightKind : uint8_t { Ambient, Point, Distant, Environment, Area };
 
+/// Attribute "light" "samplingstrategy": who sees an area light or a sky, illuminance loops or trace(). The lighting shadeops see all.
+enum class LightStrategy : uint8_t { Both, Illuminance, Trace };
+
 struct BoundLight {
     LightKind kind = LightKind::Ambient;
     InstanceRef instance;
@@ -76,6 +81,14 @@ struct BoundLight {
     std::string handle;
     int samples = 1;
     const scene::Light* source = nullptr;
+    std::vector<int> parts;                    ///< lights of the further blocks of the same shader
+    LightStrategy strategy = LightStrategy::Both;
+    float intensityScale = 0;                  ///< > 0: Cl is an intensity over squared distance; radiance is Cl d^2 times this
+    bool hazy = false;                         ///< Area, path: some of its shapes lie in an atmosphere
+    // For the choice among many lights: brightness at distance 1 (Distant: anywhere; Area: radiance times area / pi).
+    float power = 0;
+    Vec3 centre;
+    float radius = 0;
 };
 
 /// Shapes with the same surface, atmosphere and light list are shaded together.
@@ -89,7 +102,9 @@ struct SurfaceBinding {
     bool usesObjectSpace = false;              ///< the kernel reads "object" or "shader" matrices that differ inside the binding
     int areaLight = -1;                        ///< the light whose geometry this is
     bool explicitSurface = true;
-    Color opacity{1};
+    /// What the surface takes from shadow rays, when that is the same everywhere; else opacityKernel, which gives Oi alone.
+    Color shadowOpacity{1};
+    BoundKernel opacityKernel;
     bool matte = false;
     float shadingRate = 1;
     int maxDiffuse = -1, maxSpecular = -1;
@@ -112,6 +127,17 @@ public:
     BoundKernel kernel(const ShaderInstance&, const std::vector<std::string>& outputs, const std::vector<std::string>& varying, bool mixed,
                        bool path, Diagnostics&);
 
+    /// Fills lights_; visibility: kinds of rays that can meet a shape.
+    void bindLights(Diagnostics&, const std::function<uint32_t(const geometry::Shape&)>& visibility);
+    /// The lights of a list and the further blocks of their shaders.
+    std::vector<int> withParts(const std::vector<int>& lights) const;
+    /// How bright the lights are; which area lights mean an intensity. After everything else is built.
+    void measureLights(class Engine&, Diagnostics&);
+    /// Sets shadowOpacity or opacityKernel.
+    void bindOpacity(SurfaceBinding&, const geometry::Shape&, const std::vector<std::string>& varying, Engine&, Diagnostics&);
+    /// Probability with which each of the lights (a list of sampledLights_) is sampled at a point.
+    void lightChances(const std::vector<int>& lights, const Vec3& at, std::vector<float>& chance) const;
+
     std::shared_ptr<const scene::Frame> frame_;
     Settings settings_;
     Facts facts_;
@@ -131,6 +157,9 @@ public:
     mutable std::mutex imagerMutex_;
     int maxDepth_ = 32;
     bool allOpaque_ = true;                    ///< no opacity below 1: shadow rays need no shading
+    std::vector<std::vector<int>> sampledLights_; ///< by SurfaceBinding::lightList: lights that get samples, in order
+    std::unordered_map<const geometry::Shape*, int> hazyEmitters_; ///< emitters in an atmosphere -> their binding
+    std::vector<std::pair<Vec3d, Vec3d>> clippingPlanes_; ///< camera space point, normal; camera rays see nothing on the normal's side
 };
 
 } // namespace alpenglow::transport

@@ -7,6 +7,7 @@
 #include "rsl/passes/optimize.h"
 #include <algorithm>
 #include <cstdlib>
+#include <functional>
 
 namespace alpenglow::rsl::ir {
 
@@ -291,6 +292,13 @@ bool Builder::buildShader() {
         }
         env_[static_cast<size_t>(n)] = v;
     }
+    // Zero on every way through conditions (a block puts Cl back to what it was, so both sides of an if may give zero).
+    const std::function<bool(const Inst*)> isZero = [&](const Inst* v) {
+        if (isConst(v)) return std::all_of(v->numbers.begin(), v->numbers.end(), [](float f) { return f == 0; });
+        if (v->op != Op::Result || v->args[0]->op != Op::If) return false;
+        const Inst* branch = v->args[0];
+        return std::all_of(branch->regions.begin(), branch->regions.end(), [&](const Region& r) { return isZero(r.yields[static_cast<size_t>(v->index)]); });
+    };
     lightBlocks_.clear();
     if (shader_.kind == ShaderKind::Light && shader_.body) findBlocks(*shader_.body);
     if (shader_.body) statement(*shader_.body);
@@ -306,7 +314,11 @@ bool Builder::buildShader() {
     const bool light = shader_.kind == ShaderKind::Light;
     if (light) {
         k_.facts.ambientLight = lightBlocks_.empty();
-        for (const LightBlock& b : lightBlocks_) k_.facts.blocks.push_back(b.solar ? "solar" : "illuminate");
+        for (const LightBlock& b : lightBlocks_)
+            k_.facts.blocks.push_back(!b.solar ? "illuminate" : b.stmt->exprs.empty() ? "solar()" : "solar");
+        // What is left of Cl when all blocks are done was set outside them: ambient light.
+        const auto cl = globals_.find("Cl");
+        if (!lightBlocks_.empty() && cl != globals_.end() && !isZero(get(cl->second))) k_.facts.blocks.push_back("outside");
     }
     if (wanted.empty()) {
         switch (shader_.kind) {
@@ -324,6 +336,7 @@ bool Builder::buildShader() {
             for (size_t b = 0; b < lightBlocks_.size(); ++b)
                 for (const char* n : {"L", "Cl", "Ol", "lit"})
                     wanted.push_back(n + (b ? "#" + std::to_string(b) : std::string()));
+            if (!k_.facts.blocks.empty() && k_.facts.blocks.back() == "outside") wanted.push_back("Cl#" + std::to_string(lightBlocks_.size()));
             break;
         default:
             wanted = {"Ci", "Oi"};
@@ -339,6 +352,10 @@ bool Builder::buildShader() {
                 if (name == "Cl" + tail) output(name, get(l.Cl), color), found = true;
                 if (name == "Ol" + tail) output(name, get(l.Ol), color), found = true;
                 if (name == "lit" + tail) output(name, get(l.lit), real), found = true;
+            }
+            if (name == "Cl#" + std::to_string(lightBlocks_.size()) && k_.facts.blocks.back() == "outside") {
+                output(name, get(globals_.at("Cl")), color);
+                continue;
             }
             if (found) continue;
         }

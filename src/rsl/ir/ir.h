@@ -126,7 +126,10 @@ struct KernelFacts {
     std::vector<std::pair<int, std::string>> stuck; ///< sites that no weight can be given to, with the reason (passes/affine.h)
     std::vector<std::string> direct; ///< lobe calls ("specular, line 12") that stay direct under path, with the reason
     bool ambientLight = false;   ///< light: no illuminate and no solar
-    std::vector<std::string> blocks; ///< light: "illuminate" or "solar" for each block, in order
+    /// Light: "illuminate", "solar" or "solar()" (all directions) for each block, in order; then "outside" when Cl is also set outside
+    /// them. Outputs of block k > 0 are L#k Cl#k Ol#k lit#k; of what is outside, Cl#(number of blocks).
+    std::vector<std::string> blocks;
+    std::string opacity;         ///< surface: what Oi is: "Os", "1", or "shader" when it must be run to know
     std::vector<std::string> writes; ///< predefined variables that the shader assigns
 };
 

@@ -102,6 +102,7 @@ template <class A> void item(A& a, ir::KernelFacts& f) {
     a(f.direct);
     a(f.ambientLight);
     a(f.blocks);
+    a(f.opacity);
     a(f.writes);
 }
 template <class A> void item(A& a, Diagnostic& d) {

@@ -17,11 +17,16 @@ struct Analysis {
     Dependence d;
     std::vector<uint8_t> channel; ///< Floats: bits of the components the value came from
     bool changed = false;
+    std::string symbol; ///< the input that is followed instead of Requests
 
     std::string where(const Inst* i) const { return i->place.line ? " (line " + std::to_string(i->place.line) + ")" : ""; }
 
     void bad(uint64_t mask, const Inst* at, const std::string& why) {
         if (!mask) return;
+        if (!symbol.empty()) {
+            d.bad.emplace(-1, why + where(at));
+            return;
+        }
         for (size_t s = 0; s < k.sites.size(); ++s)
             if ((mask >> (s % 64)) & 1 && requested[s] && d.bad.emplace(static_cast<int>(s), why + where(at)).second)
                 changed = true;
@@ -112,6 +117,7 @@ struct Analysis {
 
     void inst(const Inst* i) {
         const uint64_t m = all(i);
+        if (i->op == Op::Input && !symbol.empty() && k.inputs[static_cast<size_t>(i->index)].name == symbol) raise(i, 1, 0);
         switch (i->op) {
         case Op::Result:
             result(i, i->args[0], static_cast<size_t>(i->index));
@@ -200,11 +206,21 @@ struct Analysis {
 } // namespace
 
 Dependence analyseDependence(const Kernel& k) {
-    Analysis a{k, {}, std::vector<uint8_t>(k.pool.size()), false, std::vector<char>(k.sites.size())};
+    Analysis a{k, {}, std::vector<uint8_t>(k.pool.size()), false, {}, std::vector<char>(k.sites.size())};
     a.d.sites.assign(k.pool.size(), 0);
     forEach(k.body, [&](const Inst* i) {
         if (i->op == Op::Request) a.requested[static_cast<size_t>(i->site)] = 1;
     });
+    do {
+        a.changed = false;
+        a.region(k.body);
+    } while (a.changed);
+    return a.d;
+}
+
+Dependence analyseInput(const Kernel& k, const std::string& input) {
+    Analysis a{k, {}, std::vector<uint8_t>(k.pool.size()), false, input, std::vector<char>(k.sites.size())};
+    a.d.sites.assign(k.pool.size(), 0);
     do {
         a.changed = false;
         a.region(k.body);

@@ -17,6 +17,10 @@ struct Dependence {
 /// Either form.
 Dependence analyseDependence(const Kernel&);
 
+/// The same for one input instead of Requests: values that depend on it have bits set; `bad`, when not empty, says at key -1 why the
+/// kernel is not affine in it. Long form, for kernels without Requests.
+Dependence analyseInput(const Kernel&, const std::string& input);
+
 /// Runtime calls that are affine in their first two arguments: mix.
 bool isMix(const Inst*);
 

@@ -10,8 +10,10 @@
 #include "rsl/passes/ifconvert.h"
 #include "rsl/passes/outline.h"
 #include "rsl/passes/promote.h"
+#include "rsl/passes/slope.h"
 #include "rsl/passes/uniform.h"
 #include "rsl/passes/unroll.h"
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 
@@ -67,6 +69,11 @@ void optimize(Kernel& k, const KernelOptions& options, Diagnostics& diagnostics)
         check(k, "dce");
     }
     orderDerivatives(k, diagnostics); // warns of derivatives of rays while the rays are still there
+    if (k.kind == ShaderKind::Volume && std::find(options.outputs.begin(), options.outputs.end(), kSlopeOutput) != options.outputs.end()) {
+        addSlope(k);
+        check(k, "slope");
+        if (options.optimize > 0) clean(k);
+    }
     k.facts.suspends = false;
     if (options.suspend) {
         forEach(k.body, [&](Inst* i) { k.facts.suspends = k.facts.suspends || i->op == Op::Request; });
@@ -76,6 +83,13 @@ void optimize(Kernel& k, const KernelOptions& options, Diagnostics& diagnostics)
         check(k, "affine");
         if (options.optimize > 0) clean(k);
     }
+    if (k.kind == ShaderKind::Surface)
+        forEach(k.body, [&](const Inst* i) {
+            if (i->op != Op::Output || k.outputs[static_cast<size_t>(i->index)].name != "Oi") return;
+            const Inst* v = i->args[0];
+            const bool one = isConst(v) && std::all_of(v->numbers.begin(), v->numbers.end(), [](float f) { return f == 1; });
+            k.facts.opacity = one ? "1" : v->op == Op::Input && k.inputs[static_cast<size_t>(v->index)].name == "Os" ? "Os" : "shader";
+        });
     removeUnusedInputs(k);
     toShortForm(k);
     markUniform(k, options.mixed);

@@ -1,0 +1,140 @@
+// Shadow rays: what lies on the way takes the share that its shader's Oi says. Where Oi is Os or a constant that was known when the
+// world was built no shader runs; elsewhere the kernel that gives Oi alone runs for all rays that met it, wave by wave.
+#include "transport/engine.h"
+
+namespace alpenglow::transport {
+
+namespace {
+accel::Ray shadowRay(const ShadowRay& s) {
+    accel::Ray r;
+    r.org = s.origin;
+    r.dir = s.dir;
+    r.tfar = s.distance;
+    r.time = s.time;
+    r.mask = accel::kTransmission;
+    r.bothSides = true;
+    return r;
+}
+Color between0And1(const Color& c) { return {std::clamp(c.x, 0.f, 1.f), std::clamp(c.y, 0.f, 1.f), std::clamp(c.z, 0.f, 1.f)}; }
+} // namespace
+
+void Engine::opacities(std::span<const OpacityQuery> met, std::span<Color> out) {
+    BatchContext c;
+    c.engine = this;
+    const SurfaceBinding& b = world_->bindings_[size_t(met[0].binding)];
+    c.bound = &b.opacityKernel;
+    c.binding = &b;
+    c.rays.reserve(met.size());
+    c.points.reserve(met.size());
+    for (const OpacityQuery& m : met) {
+        PathRay& r = c.rays.emplace_back();
+        if (m.ray->ray) {
+            r = *m.ray->ray;
+            r.width += r.spread * length(m.ray->origin - r.origin);
+        }
+        r.type = RayType::Transmission;
+        r.origin = m.ray->origin;
+        r.dir = m.ray->dir;
+        r.cameraSample = -1;
+        c.bindings.push_back(m.binding);
+        ShadePoint& p = c.points.emplace_back();
+        p.ray = &r;
+        p.shape = world_->shapes_[m.hit.shape].get();
+        p.surface = world_->accel_->point(m.hit);
+        p.P = p.surface.displaced ? p.surface.displacedP : p.surface.P;
+        p.N = p.surface.N;
+        p.I = p.P - r.origin;
+        p.E = r.origin;
+        p.time = m.ray->time;
+        setFootprint(p, r, length(p.I), 1);
+    }
+    std::vector<shading::InstanceView> views(met.size(), {&b.surface->parameters, &b.surface->toCurrent});
+    c.batch = std::make_shared<shading::Batch>(b.opacityKernel.kernel, *b.opacityKernel.plan, c.points, views, *world_);
+    bindCall(c.batch->call(), c);
+    b.opacityKernel.kernel->run(&c.batch->call());
+    ++counters.batches;
+    counters.points += met.size();
+    for (size_t i = 0; i < met.size(); ++i) {
+        Color o = c.batch->color(c.batch->plan().Oi, int(i));
+        if (!(std::isfinite(o.x) && std::isfinite(o.y) && std::isfinite(o.z))) {
+            ++counters.nonFinite;
+            o = Color(1);
+        }
+        out[i] = between0And1(o);
+    }
+}
+
+void Engine::transmittances(std::span<const ShadowRay> rays, std::span<Color> out) {
+    counters.shadow += rays.size();
+    if (world_->allOpaque_) {
+        for (size_t i = 0; i < rays.size(); ++i) out[i] = world_->accel_->occluded(shadowRay(rays[i])) ? Color(0) : Color(1);
+        return;
+    }
+    struct Going { accel::Ray ray; size_t index; int layers; };
+    std::vector<Going> now, next;
+    std::vector<OpacityQuery> met;
+    std::vector<size_t> order, metOf; ///< metOf[i]: the ray in `next` that query i belongs to
+    for (size_t i = 0; i < rays.size(); ++i) {
+        out[i] = Color(1);
+        now.push_back({shadowRay(rays[i]), i, 0});
+    }
+    while (!now.empty()) {
+        next.clear();
+        met.clear();
+        for (Going& g : now) {
+            Color& t = out[g.index];
+            for (;; ++g.layers) {
+                accel::Hit h;
+                if (!world_->accel_->intersect(g.ray, h)) break;
+                if (g.layers >= limits::kShadowLayers) { t = Color(0); ++counters.depthCap; break; }
+                int binding = world_->bindingOf_[h.shape];
+                const SurfaceBinding& b = world_->bindings_[size_t(binding)];
+                g.ray.excludeShape = h.shape;
+                g.ray.excludePrim = h.prim;
+                g.ray.tnear = h.t;
+                if (b.opacityKernel) {
+                    ++g.layers;
+                    met.push_back({binding, h, &rays[g.index]});
+                    next.push_back(g);
+                    break;
+                }
+                t *= Color(1) - b.shadowOpacity;
+                if (!(maxComponent(t) > 0)) break;
+            }
+        }
+        if (next.empty()) break;
+        // One batch a surface. The order inside a batch does not matter: a kernel's lanes know nothing of each other.
+        order.resize(met.size());
+        for (size_t i = 0; i < order.size(); ++i) order[i] = i;
+        std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return met[a].binding < met[b].binding; });
+        std::vector<OpacityQuery> group;
+        std::vector<Color> opacity;
+        for (size_t first = 0, end; first < order.size(); first = end) {
+            group.clear();
+            for (end = first; end < order.size() && met[order[end]].binding == met[order[first]].binding; ++end) group.push_back(met[order[end]]);
+            opacity.resize(group.size());
+            opacities(group, opacity);
+            for (size_t k = first; k < end; ++k) out[next[order[k]].index] *= Color(1) - opacity[k - first];
+        }
+        std::erase_if(next, [&](const Going& g) { return !(maxComponent(out[g.index]) > 0); });
+        now.swap(next);
+        if (stop && *stop) break; // the result is void
+    }
+}
+
+Color Engine::transmittance(const Vec3& origin, const Vec3& dir, float distance, float time, const PathRay* ray) {
+    ShadowRay s{origin, dir, distance, Color(1), shading::kNoTarget, time, ray};
+    Color t;
+    transmittances({&s, 1}, {&t, 1});
+    return t;
+}
+
+void Engine::flushShadows(Sched& s) {
+    if (shadows.empty()) return;
+    transmitted_.resize(shadows.size());
+    transmittances(shadows, transmitted_);
+    for (size_t i = 0; i < shadows.size(); ++i) s.add(shadows[i].target, shadows[i].contribution * transmitted_[i]);
+    shadows.clear();
+}
+
+} // namespace alpenglow::transport

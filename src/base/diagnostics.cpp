@@ -14,16 +14,22 @@ std::string toString(const Diagnostic& d) {
         s += ": ";
     }
     s += d.severity == Severity::Info ? "note: " : d.severity == Severity::Warning ? "warning: " : "error: ";
-    s += d.message + "\n";
+    s += d.message;
+    if (!d.id.empty()) s += " [" + d.id + "]";
+    s += "\n";
     if (!d.sourceLine.empty()) {
         s += "  " + d.sourceLine + "\n";
         if (d.place.column > 0) {
             s += "  ";
             for (int i = 0; i + 1 < d.place.column; ++i)
                 s += i < int(d.sourceLine.size()) && d.sourceLine[i] == '\t' ? '\t' : ' ';
-            s += "^\n";
+            s += "^";
+            const int room = int(d.sourceLine.size()) - d.place.column; // behind the caret
+            for (int i = 1; i < d.length && i <= room; ++i) s += "~";
+            s += "\n";
         }
     }
+    for (const std::string& n : d.notes) s += "  note: " + n + "\n";
     if (!d.hint.empty()) s += "  hint: " + d.hint + "\n";
     return s;
 }
@@ -39,7 +45,7 @@ void Diagnostics::report(Diagnostic d) {
 }
 
 void Diagnostics::report(Severity s, Rie code, SourcePlace place, std::string message, std::string hint) {
-    report(Diagnostic{s, code, std::move(place), std::move(message), std::move(hint), {}});
+    report(Diagnostic{s, code, std::move(place), std::move(message), std::move(hint), {}, {}, 0, {}, {}});
 }
 
 void Diagnostics::reportOnce(const std::string& key, Diagnostic d) {

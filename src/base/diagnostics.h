@@ -27,6 +27,13 @@ struct SourcePlace {
     int line = 0, column = 0;
 };
 
+/// A change of the text that removes a fault: `length` bytes from the place on, on its line, become `text`.
+struct FixIt {
+    SourcePlace place;
+    int length = 0;
+    std::string text;
+};
+
 struct Diagnostic {
     Severity severity = Severity::Error;
     Rie code = Rie::NoError;
@@ -34,9 +41,14 @@ struct Diagnostic {
     std::string message;
     std::string hint;       ///< "did you mean ...", or empty
     std::string sourceLine; ///< the offending line, for the caret; or empty
+    std::string id{};       ///< stable name of this kind of message ("no-matching-call"), whatever its words; or empty
+    int length = 0;         ///< bytes of the line, from the column on, that the message is about; 0 = unknown
+    std::vector<std::string> notes{}; ///< candidates and why they were rejected, one a line
+    std::vector<FixIt> fixes{};
 };
 
-/// "file:line:column: error: message", then the line and a caret, then "  hint: ...". Ends with a newline.
+/// "file:line:column: error: message [id]", then the line, a caret and its range, then "  note: ..." and "  hint: ...", as far as
+/// they are there. Ends with a newline.
 std::string toString(const Diagnostic&);
 
 /// Collects diagnostics, counts them, and passes each to a handler. Thread safe.

@@ -36,6 +36,7 @@ inline constexpr int kMacroDepth = 128;                        ///< macro calls 
 inline constexpr size_t kMacroTokens = 2'000'000;              ///< tokens of one RSL program while macros are expanded
 inline constexpr int kShaderArray = 16384;                     ///< elements of an RSL array
 inline constexpr int kResizableArray = 64;                     ///< elements that an RSL array can grow to, unless the shader names more
+inline constexpr int kCandidateNotes = 12;                       ///< candidates of a failed call that are explained
 inline constexpr int kFrontErrors = 100;                       ///< errors reported for one RSL file
 inline constexpr size_t kInlinedInstructions = 400'000;        ///< IR of one kernel after inlining
 inline constexpr int kOutlineInstructions = 400;               ///< RSL functions that are larger once inlined are called instead

@@ -190,7 +190,7 @@ TEST(FrontErrors, UnknownNameIsToldOnce) { EXPECT_EQ(compileBody("f = x; g = x +
 TEST(FrontErrors, LineAndCaret) {
     const auto r = compileSnippet("surface s()\n{\n\tCi = Kqqq;\n}\n", {}, "folder/s.sl");
     ASSERT_EQ(r.messages.size(), 1u);
-    EXPECT_EQ(toString(r.messages[0]), "folder/s.sl:3:7: error: 'Kqqq' is not declared\n  \tCi = Kqqq;\n  \t     ^\n");
+    EXPECT_EQ(toString(r.messages[0]), "folder/s.sl:3:7: error: 'Kqqq' is not declared [undeclared]\n  \tCi = Kqqq;\n  \t     ^~~~\n");
 }
 
 TEST(FrontErrors, MissingFile) {

@@ -142,6 +142,7 @@ struct Program {
 struct FrontOptions {
     std::vector<std::string> includePaths;
     std::vector<std::pair<std::string, std::string>> defines;
+    bool lint = false; ///< warn about unused, uninitialised and the like, too (lint.h)
 };
 
 /// Preprocesses, parses and checks. Returns null when there were errors (all of them reported, none that follow from another).

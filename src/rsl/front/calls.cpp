@@ -1,4 +1,5 @@
 // Calls: which functions and shadeops fit, which fits best, and what the call then means.
+#include "base/limits.h"
 #include "rsl/front/checker.h"
 #include <algorithm>
 #include <utility>
@@ -85,7 +86,7 @@ bool Checker::match(const std::vector<ParameterView>& parameters, bool repeats, 
 void Checker::surveyCall(Expr& e, Info& info) {
     bool broken = false;
     for (auto& a : e.args) broken |= survey(*a).any;
-    std::vector<std::string> candidates;
+    std::vector<std::string> candidates, notes;
     bool known = false, outputsOnly = false;
     const auto offer = [&](Choice choice, const std::vector<ParameterView>& parameters, bool repeats, bool pairs,
                            const std::string& text) {
@@ -95,6 +96,8 @@ void Checker::surveyCall(Expr& e, Info& info) {
             info.choices.push_back(choice);
         } else {
             outputsOnly |= match(parameters, repeats, pairs, e, choice, true);
+            if (!broken && notes.size() < size_t(limits::kCandidateNotes))
+                notes.push_back("candidate " + text + ": " + whyNot(parameters, repeats, pairs, e));
         }
     };
     for (size_t i = scopes_.size(); i-- > 0 && info.choices.empty();) {
@@ -130,7 +133,7 @@ void Checker::surveyCall(Expr& e, Info& info) {
     if (info.choices.empty()) {
         info.any = true;
         if (broken) return; // what went wrong inside was reported
-        if (known) return noMatch(e, candidates, outputsOnly);
+        if (known) return noMatch(e, candidates, std::move(notes), outputsOnly);
         if (unit_->hides(e.text)) return;
         std::vector<std::string> names;
         for (const auto& f : unit_->functions) names.push_back(f->name);
@@ -162,15 +165,17 @@ void Checker::surveyCall(Expr& e, Info& info) {
     }
 }
 
-void Checker::noMatch(Expr& e, const std::vector<std::string>& candidates, bool outputsOnly) {
+void Checker::noMatch(Expr& e, const std::vector<std::string>& candidates, std::vector<std::string> notes,
+                      bool outputsOnly) {
     std::string given;
     for (auto& a : e.args) given += (given.empty() ? "" : ", ") + describe(*a);
     std::string hint = "it can be called as";
     for (size_t i = 0; i < candidates.size() && i < 6; ++i) hint += (i ? "; " : " ") + candidates[i];
     if (candidates.size() > 6) hint += "; and " + std::to_string(candidates.size() - 6) + " more";
-    if (outputsOnly) sources_.error(e.place, "an output argument of '" + e.text + "' must be a variable of the same type", hint);
-    else if (e.args.empty()) sources_.error(e.place, "'" + e.text + "' cannot be called without arguments", hint);
-    else sources_.error(e.place, "'" + e.text + "' cannot be called with (" + given + ")", hint);
+    const std::string what = outputsOnly ? "an output argument of '" + e.text + "' must be a variable of the same type"
+                             : e.args.empty() ? "'" + e.text + "' cannot be called without arguments"
+                                              : "'" + e.text + "' cannot be called with (" + given + ")";
+    sources_.error(e.place, what, hint, std::move(notes));
 }
 
 void Checker::settleCall(ExprPtr& pointer, Type result) {

@@ -78,7 +78,9 @@ private:
     void surveyCall(Expr&, Info&);
     bool match(const std::vector<ParameterView>&, bool repeats, bool pairs, Expr& call, Choice&, bool ignoreOutputs);
     int argumentCost(Expr& argument, Type wanted, bool output, bool ignoreOutputs);
-    void noMatch(Expr& call, const std::vector<std::string>& candidates, bool outputsOnly);
+    void noMatch(Expr& call, const std::vector<std::string>& candidates, std::vector<std::string> notes, bool outputsOnly);
+    /// Why these parameters do not fit the call, in words; "" when they do.
+    std::string whyNot(const std::vector<ParameterView>&, bool repeats, bool pairs, Expr& call);
     std::string describe(Expr&);
     static Base cheapest(const Info&);
     static int costTo(const Info&, Base to);

@@ -1,5 +1,7 @@
 // The way of one file: read, preprocess, parse, check, report.
 #include "rsl/front/checker.h"
+#include "rsl/front/inspect.h"
+#include "rsl/front/lint.h"
 
 namespace alpenglow::rsl {
 
@@ -8,7 +10,7 @@ using namespace front;
 namespace {
 
 std::unique_ptr<Program> compile(const std::string& text, const std::string& name, bool isFile, const FrontOptions& options,
-                                 Diagnostics& diagnostics) {
+                                 Diagnostics& diagnostics, bool keep = false) {
     SourceSet sources;
     auto program = std::make_unique<Program>();
     const int main = sources.add(name, text);
@@ -31,9 +33,10 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
     }
     Checker(sources, unit, *program).run();
     const bool failed = sources.errors() > 0;
+    if (options.lint) lint(*program, sources);
     sources.flush(diagnostics);
     program->files = sources.names();
-    if (failed) return nullptr;
+    if (failed && !keep) return nullptr;
     return program;
 }
 
@@ -51,6 +54,11 @@ std::unique_ptr<Program> compileFile(const std::string& path, const FrontOptions
 std::unique_ptr<Program> compileText(const std::string& text, const std::string& name, const FrontOptions& options,
                                      Diagnostics& diagnostics) {
     return compile(text, name, false, options, diagnostics);
+}
+
+std::unique_ptr<Program> inspectText(const std::string& text, const std::string& name, const FrontOptions& options,
+                                     Diagnostics& diagnostics) {
+    return compile(text, name, false, options, diagnostics, true);
 }
 
 } // namespace alpenglow::rsl

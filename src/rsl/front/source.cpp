@@ -1,5 +1,6 @@
 #include "rsl/front/source.h"
 #include "base/limits.h"
+#include "rsl/front/messages.h"
 #include <algorithm>
 #include <tuple>
 
@@ -32,19 +33,22 @@ std::string_view SourceSet::keep(std::string s) {
 
 bool SourceSet::tooMany() const { return errors_ >= limits::kFrontErrors; }
 
-void SourceSet::note(Severity severity, Place place, std::string message, std::string hint) {
+void SourceSet::note(Severity severity, Place place, std::string message, std::string hint,
+                     std::vector<std::string> notes) {
     if (muted) return;
     if (severity >= Severity::Error && tooMany()) return;
     // A function is checked once for each shader that calls it: its faults are told once.
     if (!seen_.insert({{place.file, place.line, place.column, int(severity)}, message}).second) return;
     if (severity >= Severity::Error) ++errors_;
-    messages_.push_back({place, severity, std::move(message), std::move(hint)});
+    messages_.push_back({place, severity, std::move(message), std::move(hint), std::move(notes)});
     if (tooMany() && severity >= Severity::Error)
         messages_.push_back(
-            {{place.file, place.line, place.column + 1}, Severity::Error, "too many errors; giving up on this file", {}});
+            {{place.file, place.line, place.column + 1}, Severity::Error, "too many errors; giving up on this file", {}, {}});
 }
 
-void SourceSet::error(Place p, std::string m, std::string h) { note(Severity::Error, p, std::move(m), std::move(h)); }
+void SourceSet::error(Place p, std::string m, std::string h, std::vector<std::string> notes) {
+    note(Severity::Error, p, std::move(m), std::move(h), std::move(notes));
+}
 void SourceSet::warning(Place p, std::string m, std::string h) { note(Severity::Warning, p, std::move(m), std::move(h)); }
 
 std::string SourceSet::line(Place p) const {
@@ -78,6 +82,8 @@ void SourceSet::flush(Diagnostics& d) {
         out.sourceLine = line(m.place);
         out.message = std::move(m.text);
         out.hint = std::move(m.hint);
+        out.notes = std::move(m.notes);
+        complete(out);
         d.report(std::move(out));
     }
     messages_.clear();

@@ -23,7 +23,7 @@ public:
     /// Keeps a string alive as long as the set.
     std::string_view keep(std::string);
 
-    void error(Place, std::string message, std::string hint = {});
+    void error(Place, std::string message, std::string hint = {}, std::vector<std::string> notes = {});
     void warning(Place, std::string message, std::string hint = {});
     int errors() const { return errors_; }
     /// True once so many errors were found that going on is of no use.
@@ -35,8 +35,8 @@ public:
 
 private:
     struct Entry { std::string name; const std::string* text = nullptr; int view = -1; int delta = 0; };
-    struct Message { Place place; Severity severity; std::string text, hint; size_t order = 0; };
-    void note(Severity, Place, std::string message, std::string hint);
+    struct Message { Place place; Severity severity; std::string text, hint; std::vector<std::string> notes; size_t order = 0; };
+    void note(Severity, Place, std::string message, std::string hint, std::vector<std::string> notes = {});
     std::string line(Place) const;
     std::vector<Entry> entries_;
     std::deque<std::string> kept_;

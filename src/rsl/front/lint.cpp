@@ -1,0 +1,260 @@
+#include "rsl/front/lint.h"
+#include "rsl/front/visit.h"
+#include <algorithm>
+#include <iterator>
+#include <set>
+
+namespace alpenglow::rsl::front {
+
+namespace {
+
+const Symbol* root(const Expr& e) {
+    const Expr* r = &e;
+    while (r->kind == ExprKind::Index && !r->args.empty() && r->args[0]) r = r->args[0].get();
+    return r->kind == ExprKind::Variable ? r->symbol : nullptr;
+}
+
+/// Is argument i of this call written by it?
+bool isOutput(const Expr& call, size_t i) {
+    if (call.kind == ExprKind::FunctionCall && call.function && !call.shadeop) {
+        const auto& p = call.function->parameters;
+        return i < p.size() && p[i] && p[i]->output;
+    }
+    if (!call.signature) return false;
+    const auto& p = call.signature->parameters;
+    return !p.empty() && p[std::min(i, p.size() - 1)].output;
+}
+
+/// Follows the statements in the order in which they run, and knows at each which variables have a value on every way there, and
+/// which on some way.
+class Flow {
+public:
+    Flow(SourceSet& s, const std::set<const Symbol*>& ignored) : sources_(s), ignored_(ignored) {}
+    void run(const Stmt* body) { statement(body); }
+
+private:
+    struct State {
+        std::set<const Symbol*> always, sometimes;
+        bool dead = false; ///< no way leads here
+    };
+
+    static State merged(const State& a, const State& b) {
+        if (a.dead) return b;
+        if (b.dead) return a;
+        State s;
+        std::set_intersection(a.always.begin(), a.always.end(), b.always.begin(), b.always.end(),
+                              std::inserter(s.always, s.always.end()));
+        std::set_union(a.sometimes.begin(), a.sometimes.end(), b.sometimes.begin(), b.sometimes.end(),
+                       std::inserter(s.sometimes, s.sometimes.end()));
+        return s;
+    }
+
+    void given(const Symbol* s) {
+        if (!tracked_.count(s)) return;
+        now_.always.insert(s);
+        now_.sometimes.insert(s);
+    }
+
+    void read(const Expr& e) {
+        const Symbol* s = e.symbol;
+        if (now_.dead || !s || !tracked_.count(s) || now_.always.count(s) || !told_.insert(s).second) return;
+        const bool maybe = now_.sometimes.count(s) || loops_ > 0;
+        sources_.warning(e.place, "'" + s->name + "' " + (maybe ? "may be" : "is") + " read before it has a value; it is zero then");
+    }
+
+    /// What stands left of an assignment, or is put out: its indices are read, itself it is written.
+    void target(const Expr& e, bool alsoRead) {
+        if (alsoRead) expression(e);
+        else
+            for (const Expr* x = &e; x->kind == ExprKind::Index && x->args.size() > 1; x = x->args[0].get()) expression(*x->args[1]);
+        given(root(e));
+    }
+
+    void expression(const Expr& e) {
+        switch (e.kind) {
+        case ExprKind::Variable: read(e); return;
+        case ExprKind::Assign:
+            if (e.args.size() > 1) {
+                expression(*e.args[1]);
+                target(*e.args[0], e.op != ExprOp::Assign);
+            }
+            return;
+        case ExprKind::Conditional:
+            if (e.args.size() == 3) {
+                expression(*e.args[0]);
+                const State before = now_;
+                expression(*e.args[1]);
+                const State first = now_;
+                now_ = before;
+                expression(*e.args[2]);
+                now_ = merged(first, now_);
+            }
+            return;
+        case ExprKind::ShadeopCall:
+        case ExprKind::FunctionCall: {
+            for (size_t i = 0; i < e.args.size(); ++i)
+                if (e.args[i] && !isOutput(e, i)) expression(*e.args[i]);
+            if (e.channel) expression(*e.channel);
+            for (const NamedArg& p : e.pairs)
+                if (p.value && !p.output) expression(*p.value);
+            for (size_t i = 0; i < e.args.size(); ++i)
+                if (e.args[i] && isOutput(e, i)) target(*e.args[i], false);
+            for (const NamedArg& p : e.pairs)
+                if (p.value && p.output) target(*p.value, false);
+            return;
+        }
+        default: eachPart(e, [&](const Expr& x) { expression(x); });
+        }
+    }
+
+    void loop(const Stmt& s) {
+        if (s.init) expression(*s.init);
+        if (s.condition) expression(*s.condition);
+        for (const auto& e : s.exprs)
+            if (e) expression(*e);
+        if (s.category) expression(*s.category);
+        const State before = now_;
+        for (const NamedArg& p : s.pairs) {
+            if (!p.value) continue;
+            if (p.output) target(*p.value, false);
+            else expression(*p.value);
+        }
+        ++loops_;
+        statement(s.body.empty() ? nullptr : s.body[0].get());
+        if (s.step && !now_.dead) expression(*s.step);
+        --loops_;
+        const bool endless = s.condition && s.condition->kind == ExprKind::Number && s.condition->number != 0;
+        now_.dead = false;
+        State after = merged(before, now_);
+        if (endless) after.always = now_.always; // left from inside only
+        now_ = after;
+    }
+
+    void uniformHazard(const Stmt& s) {
+        if (varyingConditions_ == 0 || !s.value || s.value->kind != ExprKind::Assign || s.value->args.empty()) return;
+        const Symbol* u = root(*s.value->args[0]);
+        if (!u || u->storage != Storage::Uniform || u->origin != Symbol::Origin::Local || u->type.base == Base::String) return;
+        sources_.warning(s.value->args[0]->place, "the uniform variable '" + u->name +
+                                                      "' is changed where only some points come, as the condition is varying; "
+                                                      "each shaded point keeps its own");
+    }
+
+    void statement(const Stmt* p) {
+        if (!p) return;
+        const Stmt& s = *p;
+        switch (s.kind) {
+        case StmtKind::Block:
+            for (const auto& b : s.body) statement(b.get());
+            return;
+        case StmtKind::Declare:
+            for (const auto& d : s.declarators) {
+                if (d.init) expression(*d.init);
+                // An array of open length is made by push and resize.
+                const bool open = d.symbol->resizable || d.symbol->type.array < 0;
+                if (!d.init && !open && d.symbol->type.base != Base::Void && !ignored_.count(d.symbol)) {
+                    tracked_.insert(d.symbol);
+                    now_.always.erase(d.symbol);
+                    if (loops_ == 0) now_.sometimes.erase(d.symbol);
+                }
+            }
+            return;
+        case StmtKind::Expression:
+            if (s.value) expression(*s.value);
+            uniformHazard(s);
+            return;
+        case StmtKind::If: {
+            if (s.condition) expression(*s.condition);
+            const bool varying = s.condition && s.condition->varying;
+            varyingConditions_ += varying;
+            const State before = now_;
+            statement(s.body.empty() ? nullptr : s.body[0].get());
+            const State yes = now_;
+            now_ = before;
+            statement(s.elseBody.get());
+            now_ = merged(yes, now_);
+            varyingConditions_ -= varying;
+            return;
+        }
+        case StmtKind::While:
+        case StmtKind::For: {
+            const bool varying = s.condition && s.condition->varying;
+            varyingConditions_ += varying;
+            loop(s);
+            varyingConditions_ -= varying;
+            return;
+        }
+        case StmtKind::Illuminance:
+        case StmtKind::Gather: loop(s); return;
+        case StmtKind::Break:
+        case StmtKind::Continue: now_.dead = true; return;
+        case StmtKind::Return:
+            if (s.value) expression(*s.value);
+            now_.dead = true;
+            return;
+        default: {
+            everyStmt(s, [](const Stmt&) {}, [&](const Expr& e) {
+                if (e.kind == ExprKind::Assign && !e.args.empty()) given(root(*e.args[0]));
+            });
+            return;
+        }
+        }
+    }
+
+    SourceSet& sources_;
+    const std::set<const Symbol*>& ignored_;
+    std::set<const Symbol*> tracked_, told_;
+    State now_;
+    int loops_ = 0, varyingConditions_ = 0;
+};
+
+} // namespace
+
+void lint(const Program& program, SourceSet& sources) {
+    // Who is mentioned where: a variable that a nested function reaches for has a life that no order of statements tells.
+    std::set<const Symbol*> used, reached;
+    const auto mention = [&](std::set<const Symbol*>& set) {
+        return [&set](const Expr& e) {
+            if (e.symbol) set.insert(e.symbol);
+        };
+    };
+    const auto skip = [](const Stmt&) {};
+    for (const auto& s : program.shaders) {
+        if (s->body) everyStmt(*s->body, skip, mention(used));
+        for (const auto& p : s->parameters)
+            if (p.defaultValue) everyExpr(*p.defaultValue, mention(used));
+        for (const auto& n : s->nested)
+            everyFunction(*n, [&](const Function& f) { if (f.body) everyStmt(*f.body, skip, mention(reached)); });
+    }
+    for (const auto& g : program.functions)
+        everyFunction(*g, [&](const Function& f) {
+            if (f.body) everyStmt(*f.body, skip, mention(&f == g.get() ? used : reached));
+        });
+    used.insert(reached.begin(), reached.end());
+
+    const std::string& main = sources.name(0);
+    const auto ours = [&](const Place& p) { return p.file >= 0 && p.line > 0 && sources.name(p.file) == main; };
+    const auto unused = [&](const Symbol& s, bool parameter) {
+        if (used.count(&s) || !ours(s.place) || s.type.base == Base::Void || s.isExtern || s.name.rfind("__", 0) == 0) return;
+        sources.warning(s.place, std::string(parameter ? "parameter" : "variable") + " '" + s.name + "' is not used");
+    };
+    const auto body = [&](const Stmt* b, Place where) {
+        if (!b || !ours(where)) return;
+        everyStmt(*b, [&](const Stmt& s) {
+            for (const auto& d : s.declarators)
+                if (d.symbol) unused(*d.symbol, false);
+        }, [](const Expr&) {});
+        Flow(sources, reached).run(b);
+    };
+    for (const auto& s : program.shaders) {
+        for (const auto& p : s->parameters)
+            if (!p.symbol->output) unused(*p.symbol, true);
+        body(s->body.get(), s->place);
+    }
+    everyFunction(program, [&](const Function& f) {
+        if (ours(f.place))
+            for (const Symbol* p : f.parameters) unused(*p, true);
+        body(f.body.get(), f.place);
+    });
+}
+
+} // namespace alpenglow::rsl::front

@@ -1,0 +1,252 @@
+#include "rsl/front/messages.h"
+#include <cctype>
+#include <string>
+
+namespace alpenglow::rsl {
+
+namespace {
+
+// The more exact pattern stands before the wider one.
+constexpr MessageKind kKinds[] = {
+    // characters and tokens
+    {"unfinished-comment", "this comment does not end"},
+    {"unfinished-string", "this string does not end on its line"},
+    {"stray-character", "the character * means nothing here"},
+    {"bad-number", "'*' is not a number"},
+    {"number-suffix", "numbers take no suffix*"},
+    // preprocessor
+    {"pp-unfinished-if", "this #if has no #endif"},
+    {"pp-too-many-tokens", "macros expand to more than * tokens"},
+    {"pp-macro-call", "the call of macro '*' has no closing ')'"},
+    {"pp-macro-arguments", "macro '*' takes *"},
+    {"pp-macro-depth", "macro calls are nested more than * deep"},
+    {"pp-paste", "'*', pasted by ##, is not one token"},
+    {"pp-needs-name", "#* needs a name"},
+    {"pp-stray-directive", "#* without #if is ignored"},
+    {"pp-after-else", "#* after #else"},
+    {"pp-error", "#error*"},
+    {"pp-warning", "#warning*"},
+    {"pp-unknown-directive", "unknown directive '#*' is ignored"},
+    {"pp-macro-parameter", "a macro parameter is a name, not *"},
+    {"pp-macro-parameters", "the parameters of this macro have no ')'"},
+    {"pp-macro-redefined", "macro '*' is defined again with another meaning"},
+    {"pp-include-syntax", "#include needs *"},
+    {"pp-include-depth", "includes are nested more than * deep"},
+    {"pp-include-elsewhere", "'*' was not found; '*' is used"},
+    {"pp-include-missing", "*'*' was not found*"},
+    {"pp-include-missing", "cannot find the file *"},
+    {"pp-line", "#line needs a number"},
+    {"pp-condition", "#if needs an expression"},
+    {"pp-condition", "* in the condition"},
+    {"pp-condition", "this condition is nested too deeply"},
+    // syntax
+    {"too-many-errors", "too many errors; giving up on this file"},
+    {"no-shader", "there is no shader in this file"},
+    {"too-deep", "nested more than * deep"},
+    {"too-deep", "calls of functions are nested too deeply"},
+    {"too-long", "this expression is longer than * operations in a row"},
+    {"expected-semicolon", "expected ';' after *"},
+    {"expected-semicolon", "expected ';' before the next parameter*"},
+    {"expected-brace", "expected '}' before the end of the file"},
+    {"expected-definition", "expected a shader or a function before *"},
+    {"expected-expression", "expected an expression before *"},
+    {"expected-pair", "expected a pair*"},
+    {"expected-type", "expected a type before *"},
+    {"expected-type", "expected the type of a parameter before *"},
+    {"expected-name", "expected the name of * before *"},
+    {"expected-token", "expected '*' before *"},
+    {"expected-token", "expected * before *"},
+    {"stray-else", "'else' without 'if'"},
+    {"semicolon-in-call", "arguments are separated by ',', not ';'"},
+    {"cast-parentheses", "a conversion is written without parentheses around the type"},
+    {"not-a-type", "'*' is not a type"},
+    {"void-value", "'void' is not the type of a value"},
+    {"void-variable", "a variable cannot be void"},
+    {"void-variable", "a parameter cannot be void"},
+    {"array-of-arrays", "an array of arrays is not allowed"},
+    {"array-length", "the length of an array must be *"},
+    {"array-length", "an array has at most * elements"},
+    {"function-default", "parameters of functions have no default values"},
+    {"no-default", "parameter '*' has no default value; it is zero unless set"},
+    {"extern-value", "an extern variable has its value already and takes no other here"},
+    {"loop-levels", "the number of loops to leave must be a whole number from 1"},
+    {"for-steps", "several steps in 'for' cannot be combined with 'continue'"},
+    {"not-available", "* not yet available*"},
+    // names
+    {"undeclared", "'*' is not declared*"},
+    {"no-such-function", "there is no function '*'"},
+    {"no-such-extern", "there is no '*' outside for this extern declaration*"},
+    {"extern-type", "'*' is * outside, not *"},
+    {"two-parameters", "there are two parameters called '*'"},
+    {"redeclared", "'*' was declared in this block already, as *"},
+    {"redeclared-new", "'*' was declared in this block already; this is a new variable"},
+    {"recursion", "function '*' calls itself; recursion is not allowed"},
+    {"wrong-shader-kind", "'*' cannot be used in a * shader"},
+    {"no-such-parameter", "'*' has no parameter \"*\"; it is ignored"},
+    {"no-such-filter", "there is no filter \"*\"; catmull-rom is used"},
+    // types
+    {"no-matching-call", "'*' cannot be called with (*)"},
+    {"no-matching-call", "'*' cannot be called without arguments"},
+    {"output-argument", "an output argument of '*' must be a variable of the same type"},
+    {"output-argument", "\"*\" gives a *: it needs a variable of that type"},
+    {"output-argument", "the value of \"*\" must be a variable"},
+    {"bad-operands", "'*=' cannot combine * and *"},
+    {"bad-operands", "'*' cannot combine * and *"},
+    {"bad-operands", "'*' cannot be applied to *"},
+    {"bad-assignment", "cannot assign * to *"},
+    {"bad-conversion", "cannot convert * to *"},
+    {"not-assignable", "what stands left of the assignment is not a variable"},
+    {"bad-condition", "* cannot be a condition"},
+    {"bad-alternatives", "the two values of '?' do not fit together: * and *"},
+    {"bad-component", "a component must be a float, not *"},
+    {"bad-index", "an index must be a float, not *"},
+    {"index-range", "index * is outside *"},
+    {"index-range", "a tuple has components 0, 1 and 2"},
+    {"no-elements", "a string has no elements*"},
+    {"no-elements", "* has no elements"},
+    {"space-name", "the name of a space is a string"},
+    {"no-space", "a * is in no space"},
+    {"list-place", "a list of elements {...} is of use only as the value of an array"},
+    {"too-many-elements", "* elements for an array of *"},
+    {"tuple-length", "* components*"},
+    {"type-mismatch", "expected *, not *"},
+    {"fixed-length", "the length of '*' is fixed"},
+    {"fixed-length", "*the length of this array is fixed"},
+    // statements
+    {"outside-loop", "'*' outside a loop"},
+    {"outside-loop", "'*' inside * loop*"},
+    {"return-value", "a shader returns no value"},
+    {"return-value", "function '*' is void and returns no value"},
+    {"return-missing", "function '*' must return a *"},
+    {"return-missing", "function '*' can end without returning a value; it is zero then"},
+    {"light-arguments", "gather begins with a category, a string"},
+    {"light-arguments", "wrong arguments of '*'"},
+    {"nested-illuminance", "'illuminance' inside 'illuminance' is not allowed"},
+    {"nested-illuminance", "illuminance inside illuminance"},
+    {"no-effect", "this expression has no effect"},
+    {"array-from-one", "one value for a whole array: it is computed again for each element"},
+    // what may be written
+    {"read-only", "'*' cannot be written"},
+    {"read-only-copy", "'*' is read-only*"},
+    {"not-output", "parameter '*' is not output; *"},
+    // uniform and varying
+    {"varying-to-uniform", "a varying value is given to the uniform variable '*'*"},
+    {"uniform-in-varying", "the uniform variable '*' is changed where only some points come*"},
+    // of `compile -W`
+    {"unused-parameter", "parameter '*' is not used"},
+    {"unused-variable", "variable '*' is not used"},
+    {"uninitialised", "'*' is read before it has a value*"},
+    {"maybe-uninitialised", "'*' may be read before it has a value*"},
+    {"not-affine", "under path * is used non-linearly*"},
+    // code generation
+    {"zero-derivative", "the derivative of * is taken as zero"},
+    {"zero-derivative", "a derivative of third order is taken as zero"},
+    {"spline-basis", "the basis of this spline is not known at compile time*"},
+    {"spline-points", "a spline needs at least four control points*"},
+    {"light-category", "the category of this illuminance is not known at compile time*"},
+    {"shader-too-large", "*more than * instructions*"},
+};
+
+/// Does the text look like the pattern? Linear in practice: only the last '*' is tried again.
+bool matches(std::string_view pattern, std::string_view text) {
+    size_t p = 0, t = 0, star = std::string_view::npos, from = 0;
+    while (t < text.size()) {
+        if (p < pattern.size() && pattern[p] == '*') {
+            star = p++;
+            from = t;
+        } else if (p < pattern.size() && pattern[p] == text[t]) {
+            ++p, ++t;
+        } else if (star != std::string_view::npos) {
+            p = star + 1;
+            t = ++from;
+        } else {
+            return false;
+        }
+    }
+    while (p < pattern.size() && pattern[p] == '*') ++p;
+    return p == pattern.size();
+}
+
+bool isWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
+
+/// Bytes of the token that begins at this byte of the line; at least 1.
+int tokenLength(const std::string& line, size_t at) {
+    if (at >= line.size()) return 1;
+    size_t end = at + 1;
+    if (isWord(line[at])) {
+        const bool number = std::isdigit(static_cast<unsigned char>(line[at])) != 0;
+        while (end < line.size() && (isWord(line[end]) || (number && line[end] == '.'))) ++end;
+    } else if (line[at] == '"') {
+        while (end < line.size() && line[end] != '"') end += line[end] == '\\' ? 2 : 1;
+        end = std::min(end + 1, line.size());
+    } else if (end < line.size() && line[end] == '=' && std::string_view("+-*/^.<>=!").find(line[at]) != std::string_view::npos) {
+        ++end;
+    } else if (end < line.size() && line[end] == line[at] && (line[at] == '&' || line[at] == '|')) {
+        ++end;
+    }
+    return int(end - at);
+}
+
+/// The name of a call and its arguments, as far as they stand on this line.
+int callLength(const std::string& line, size_t at) {
+    size_t end = at + size_t(tokenLength(line, at));
+    while (end < line.size() && line[end] == ' ') ++end;
+    if (end >= line.size() || line[end] != '(') return tokenLength(line, at);
+    int depth = 0;
+    for (bool quoted = false; end < line.size(); ++end) {
+        if (line[end] == '"' && line[end - 1] != '\\') quoted = !quoted;
+        if (quoted) continue;
+        if (line[end] == '(') ++depth;
+        if (line[end] == ')' && --depth == 0) return int(end + 1 - at);
+    }
+    while (end > at && std::isspace(static_cast<unsigned char>(line[end - 1]))) --end;
+    return int(end - at);
+}
+
+/// What stands between the quotes of "did you mean 'x'?", either kind of quotes; or nothing.
+std::string suggestion(const std::string& hint) {
+    constexpr std::string_view kHead = "did you mean ";
+    if (hint.compare(0, kHead.size(), kHead) != 0 || hint.size() < kHead.size() + 3) return {};
+    const char quote = hint[kHead.size()];
+    const size_t end = hint.rfind(quote);
+    if ((quote != '\'' && quote != '"') || end <= kHead.size() + 1) return {};
+    return hint.substr(kHead.size() + 1, end - kHead.size() - 1);
+}
+
+} // namespace
+
+std::span<const MessageKind> messageKinds() { return kKinds; }
+
+const char* messageId(std::string_view message) {
+    for (const MessageKind& k : kKinds)
+        if (matches(k.pattern, message)) return k.id;
+    return "rsl-error";
+}
+
+void complete(Diagnostic& d) {
+    if (d.id.empty()) d.id = messageId(d.message);
+    if (d.place.line <= 0 || d.place.column <= 0) return;
+    const size_t at = size_t(d.place.column) - 1;
+    const bool call = d.id == "no-matching-call" || d.id == "wrong-shader-kind" || d.id == "output-argument";
+    if (d.length == 0 && at < d.sourceLine.size()) d.length = call ? callLength(d.sourceLine, at) : tokenLength(d.sourceLine, at);
+    if (!d.fixes.empty() || d.sourceLine.empty()) return;
+    const int token = tokenLength(d.sourceLine, at);
+    const std::string written = at < d.sourceLine.size() ? d.sourceLine.substr(at, size_t(token)) : "";
+    if (d.id == "expected-semicolon") {
+        // Only where it belongs behind what stands before: a ';' "before" something is no obvious cure.
+        if (d.message.find(" before '") == std::string::npos) d.fixes.push_back({d.place, 0, ";"});
+    } else if (d.id == "semicolon-in-call" && written == ";") {
+        d.fixes.push_back({d.place, 1, ","});
+    } else if (d.id == "number-suffix") {
+        size_t digits = written.size();
+        while (digits > 0 && std::isalpha(static_cast<unsigned char>(written[digits - 1]))) --digits;
+        if (digits > 0 && digits < written.size()) d.fixes.push_back({d.place, token, written.substr(0, digits)});
+    } else if (const std::string s = suggestion(d.hint); !s.empty() && !written.empty()) {
+        // In a macro's expansion the place is that of the macro: there is nothing to replace then.
+        const bool quoted = written.front() == '"';
+        if (quoted ? written.size() > 2 : nearestName(written, {s}) == s)
+            d.fixes.push_back({d.place, token, quoted ? "\"" + s + "\"" : s});
+    }
+}
+
+} // namespace alpenglow::rsl

@@ -20,6 +20,7 @@ struct FakeWorld final : transport::World {
     const scene::Frame& frame() const override { return *frame_; }
     const transport::Settings& settings() const override { return settings_; }
     Facts facts() const override { return {}; }
+    void flushPrints(bool) const override {}
     std::vector<int> outputWidths() const override {
         std::vector<int> w;
         for (const std::string& o : settings_.outputs) w.push_back(o == "depthish" ? 1 : 3);

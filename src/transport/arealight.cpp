@@ -62,7 +62,7 @@ float Emitter::areaPdf(const Entry& e, const geometry::SurfacePoint& p, const Ve
     return float(e.share * e.shape->sampleDensity(p) * d2 / cosine);
 }
 
-bool Emitter::sample(const Vec3& from, Vec2 u, float choose, Sample& out) const {
+bool Emitter::sample(const Vec3& from, Vec2 u, float choose, Sample& out, geometry::SurfacePoint& point) const {
     if (entries_.empty()) return false;
     size_t i = 0;
     while (i + 1 < entries_.size() && choose >= entries_[i].cumulative) ++i;
@@ -82,19 +82,19 @@ bool Emitter::sample(const Vec3& from, Vec2 u, float choose, Sample& out) const 
             int k = 0;
             while (k < n && !(hits[k].t > 0)) ++k;
             if (k == n) return false;
-            out.point = e.shape->evaluateHit(0, hits[k].u, hits[k].v);
+            point = e.shape->evaluateHit(0, hits[k].u, hits[k].v);
             out.pdf = float(e.share / (2 * kPi * cap));
             out.direction = w;
             out.distance = float(hits[k].t);
             return true;
         }
     }
-    out.point = e.shape->sampleArea(u.x, u.y);
-    Vec3 d = out.point.P - from;
+    e.shape->sampleArea(u.x, u.y, point);
+    Vec3 d = point.P - from;
     out.distance = length(d);
     if (!(out.distance > 0)) return false;
     out.direction = d / out.distance;
-    out.pdf = areaPdf(e, out.point, from);
+    out.pdf = areaPdf(e, point, from);
     return out.pdf > 0 && std::isfinite(out.pdf);
 }
 

@@ -23,14 +23,13 @@ public:
 
     struct Sample {
         const geometry::Shape* shape = nullptr;
-        geometry::SurfacePoint point;
         float pdf = 0; ///< per steradian as seen from the lit point; > 0
         Vec3 direction; ///< unit, from the lit point to the light
         float distance = 0;
         uint32_t visibility = ~0u; ///< kinds of rays that could have met this shape by chance
     };
     /// A point of the light for the lit point at `from`. False when the draw faces edge-on or coincides with `from`.
-    bool sample(const Vec3& from, Vec2 u, float choose, Sample& out) const;
+    bool sample(const Vec3& from, Vec2 u, float choose, Sample& out, geometry::SurfacePoint& point) const;
     /// Density per steradian with which sample() gives this hit as seen from `from`; 0 for shapes of other lights.
     float pdf(const geometry::Shape* shape, const geometry::SurfacePoint& hit, const Vec3& from) const;
 

@@ -78,7 +78,7 @@ void onRelease(rsl::KernelCall*, void* p, uint64_t) { ::operator delete(p, std::
 
 constexpr int32_t kGo = 0;
 // Rays followed at once: enough to fill batches, few enough that their points stay in the cache of a core.
-constexpr int kCacheSlice = limits::kSliceRays / 4;
+constexpr int kCacheSlice = limits::kSliceRays / 8;
 
 } // namespace
 
@@ -317,8 +317,10 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
 
 void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
     size_t n = slice.size();
-    std::vector<accel::Ray> rays(n);
-    std::vector<accel::Hit> hits(n);
+    std::vector<accel::Ray>& rays = rays_;
+    std::vector<accel::Hit>& hits = hits_;
+    rays.assign(n, {});
+    hits.resize(n);
     for (size_t i = 0; i < n; ++i) {
         const PathRay& r = slice[i].payload;
         rays[i].org = r.origin;
@@ -351,9 +353,9 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
         if (hits[i].valid()) ++sizes[size_t(world_->bindings_[size_t(world_->bindingOf_[hits[i].shape])].group)];
     for (size_t g = 0; g < groups.size(); ++g) {
         if (!sizes[g]) continue;
-        auto& c = groups[g] = std::make_shared<BatchContext>();
+        auto& c = groups[g] = takeContext();
         c->engine = this;
-        c->points.reserve(size_t(sizes[g])); // pointers into points and rays stay good
+        c->points.resize(size_t(sizes[g])); // pointers into points and rays stay good
         c->rays.reserve(size_t(sizes[g]));
         c->targets.reserve(size_t(sizes[g]));
         c->bindings.reserve(size_t(sizes[g]));
@@ -369,10 +371,12 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
         c.rays.push_back(r);
         c.targets.push_back(slice[i].target);
         c.bindings.push_back(binding);
-        ShadePoint& p = c.points.emplace_back();
+        ShadePoint& p = c.points[c.rays.size() - 1]; // may hold another point's numbers: all of it is written
         p.ray = &c.rays.back();
+        p.Ci = p.Oi = p.Ps = p.Ns = p.viewI = Vec3();
+        p.alpha = 0;
         p.shape = world_->shapes_[hits[i].shape].get();
-        p.surface = world_->accel_->point(hits[i]);
+        world_->accel_->point(hits[i], p.surface);
         p.P = p.surface.P;
         p.N = p.surface.N;
         p.I = p.P - r.origin;
@@ -380,7 +384,7 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
         if (r.type == RayType::Camera && r.layers > 0) p.I = p.P - p.E; // seen through something: the eye has not moved
         p.time = r.time;
         p.task = int(i);
-        setFootprint(p, r, length(p.P - r.origin), r.type == RayType::Camera ? b.shadingRate : 1);
+        if (world_->footprints_) setFootprint(p, r, length(p.P - r.origin), r.type == RayType::Camera ? b.shadingRate : 1);
         if (b.areaLight < 0 || !r.wantsLight || (b.matte && r.type == RayType::Camera)) continue;
         if (world_->settings_.hider != Hider::Path && r.lobePdf < 0) continue;
         if (r.lobeBinding >= 0) { // a lobe that samples lights: those that are off for its surface do not light it by chance either
@@ -401,27 +405,62 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
         bool same = std::all_of(c->bindings.begin(), c->bindings.end(), [&](int b) { return b == c->bindings[0]; });
         c->binding = &world_->bindings_[size_t(c->bindings[0])];
         c->bound = same && !c->binding->usesObjectSpace ? &c->binding->surfaceS : &c->binding->surfaceV;
-        shadeGroup(std::move(c), sched);
+        shadeGroup(c, sched);
+        giveBack(std::move(c));
     }
 }
 
+std::shared_ptr<BatchContext> Engine::takeContext() {
+    if (pool_.empty()) return std::make_shared<BatchContext>();
+    auto c = std::move(pool_.back());
+    pool_.pop_back();
+    return c;
+}
+
+void Engine::giveBack(std::shared_ptr<BatchContext> c) {
+    if (c.use_count() != 1) return; // a strip waits in it
+    if (c->batch.use_count() != 1) c->batch.reset();
+    c->bound = nullptr;
+    c->binding = nullptr;
+    c->rays.clear(); // points stay: follow() writes them again
+    c->targets.clear();
+    c->bindings.clear();
+    c->emits.clear();
+    c->arena.clear();
+    c->haze.clear();
+    c->lightDistance.clear();
+    c->currentLight = c->requestSite = -1;
+    c->lightVisibilityDistance = 0;
+    pool_.push_back(std::move(c));
+}
+
 void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
-    std::vector<shading::InstanceView> views;
-    auto viewsOf = [&](InstanceRef SurfaceBinding::*which) {
-        views.clear();
-        for (int b : c->bindings) {
-            const InstanceRef& i = world_->bindings_[b].*which;
-            views.push_back({&i->parameters, &i->toCurrent});
+    // Fills the batch; its points' instances are few.
+    auto fill = [&](BatchContext& to, InstanceRef SurfaceBinding::*which) {
+        views_.clear();
+        viewOf_.clear();
+        slotOf_.resize(world_->bindings_.size(), -1);
+        for (int b : to.bindings) {
+            int& slot = slotOf_[size_t(b)];
+            if (slot < 0) {
+                const InstanceRef& i = world_->bindings_[size_t(b)].*which;
+                slot = int(views_.size());
+                views_.push_back({&i->parameters, &i->toCurrent});
+            }
+            viewOf_.push_back(uint32_t(slot));
         }
+        for (int b : to.bindings) slotOf_[size_t(b)] = -1;
+        if (!to.batch) to.batch = std::make_shared<shading::Batch>();
+        to.batch->assign(to.bound->kernel, *to.bound->plan, to.points, views_, viewOf_, *world_);
+        bindCall(to.batch->call(), to);
     };
     // Displacement again at the hit, for P, N (design decision 9). All points of a group with displacement share its binding.
     if (c->binding->displacement) {
         auto d = std::make_shared<BatchContext>(*c);
         for (size_t k = 0; k < d->points.size(); ++k) d->points[k].ray = &d->rays[k];
         d->bound = &c->binding->displacementS;
-        viewsOf(&SurfaceBinding::displacement);
-        d->batch = std::make_shared<shading::Batch>(d->bound->kernel, *d->bound->plan, d->points, views, *world_);
-        bindCall(d->batch->call(), *d);
+        d->batch.reset(); // c's own
+        fill(*d, &SurfaceBinding::displacement);
         if (!d->bound->kernel->facts().suspends) {
             d->bound->kernel->run(&d->batch->call());
             int po = d->batch->output("P"), no = d->batch->output("N");
@@ -448,10 +487,8 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
             }
         }
     }
-    viewsOf(&SurfaceBinding::surface);
     const auto& kernel = *c->bound->kernel;
-    c->batch = std::make_shared<shading::Batch>(c->bound->kernel, *c->bound->plan, c->points, views, *world_);
-    bindCall(c->batch->call(), *c);
+    fill(*c, &SurfaceBinding::surface);
     int n = int(c->points.size());
     counters.points += uint64_t(n);
     ++counters.batches;
@@ -483,7 +520,8 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
         for (int i = 0; i < n; ++i)
             if (world_->bindings_[size_t(c->bindings[size_t(i)])].atmosphere) slope[size_t(i)] = c->haze[size_t(i)].slope;
     }
-    std::vector<uint32_t> occurrence(c->emits.empty() ? 0 : c->bound->sites.size() * size_t(n));
+    std::vector<uint32_t>& occurrence = occurrence_;
+    occurrence.assign(c->emits.empty() ? 0 : c->bound->sites.size() * size_t(n), 0);
     for (const EmitRecord& e : c->emits) {
         const SiteInfo& s = c->bound->sites[e.site];
         const float* rows = c->arena.data() + e.offset;
@@ -511,7 +549,9 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
 
 bool Engine::trace(std::span<const CameraRay> rays, std::span<SampleResult> out, const volatile int32_t* stopFlag) {
     stop = stopFlag;
-    Sched sched(*this, stopFlag, limits::kFrameBytesPerThread, kCacheSlice);
+    if (!sched_) sched_ = std::make_unique<Sched>(*this, stopFlag, limits::kFrameBytesPerThread, kCacheSlice);
+    Sched& sched = *sched_;
+    sched.restart(stopFlag);
     size_t aovs = 0;
     for (int w : world_->outputWidths_) aovs += size_t(w);
     results.resize(rays.size());
@@ -521,8 +561,8 @@ bool Engine::trace(std::span<const CameraRay> rays, std::span<SampleResult> out,
         out[i] = SampleResult{};
         out[i].aovs.assign(aovs, 0.f);
         results[i] = &out[i];
-        Sched::Task t;
-        PathRay& r = t.payload;
+        roots[i] = sched.newRoot();
+        PathRay& r = sched.spawn(0, roots[i]).payload;
         r.origin = c.origin;
         r.dir = c.direction;
         r.px = c.px;
@@ -532,8 +572,6 @@ bool Engine::trace(std::span<const CameraRay> rays, std::span<SampleResult> out,
         r.width = c.width;
         r.spread = c.spread;
         r.cameraSample = int(i);
-        t.target = roots[i] = sched.newRoot();
-        sched.spawn(std::move(t));
     }
     counters.paths += rays.size();
     bool done = sched.run();

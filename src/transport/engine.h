@@ -125,6 +125,26 @@ public:
 
 private:
     friend class KernelStrip;
+    /// Contexts and their memory are used again: a slice makes several, of some hundred kilobytes.
+    std::shared_ptr<BatchContext> takeContext();
+    void giveBack(std::shared_ptr<BatchContext>); ///< kept when nobody else has it
+    std::vector<std::shared_ptr<BatchContext>> pool_;
+    /// Memory that gather() keeps between batches.
+    struct GatherRoom {
+        std::vector<int> begin, order, next, pointOf;
+        std::vector<float> indirectScale, chance;
+        std::vector<ShadePoint> q;
+        std::vector<Emitter::Sample> drawn;
+        std::vector<LightValue> value;
+    };
+    GatherRoom gatherRoom_;
+    std::vector<accel::Ray> rays_, shadowRays_;
+    std::vector<accel::Hit> hits_;
+    std::vector<uint8_t> blocked_;
+    std::vector<shading::InstanceView> views_;
+    std::vector<uint32_t> viewOf_, occurrence_;
+    std::vector<int> slotOf_;                  ///< by binding: its place in views_, else -1
+    std::unique_ptr<Sched> sched_;
     void misses(std::span<const Sched::Task* const>, Sched&);
     struct Met { int light; TargetId target; const ShadePoint* point; };
     /// Light that emitters send along the rays that met them; sorted by light.

@@ -6,12 +6,13 @@ namespace alpenglow::transport {
 
 void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& queries, std::span<LightValue> out) {
     if (queries.empty()) return;
-    auto c = std::make_shared<BatchContext>();
+    auto c = takeContext();
     c->engine = this;
     c->bound = &light.kernel;
     c->points.swap(queries); // lent; given back below
-    std::vector<shading::InstanceView> views(c->points.size(), {&light.instance->parameters, &light.instance->toCurrent});
-    c->batch = std::make_shared<shading::Batch>(light.kernel.kernel, *light.kernel.plan, c->points, views, *world_);
+    shading::InstanceView view{&light.instance->parameters, &light.instance->toCurrent};
+    if (!c->batch) c->batch = std::make_shared<shading::Batch>();
+    c->batch->assign(light.kernel.kernel, *light.kernel.plan, c->points, {&view, 1}, {}, *world_);
     bindCall(c->batch->call(), *c);
     const auto& k = *light.kernel.kernel;
     if (k.facts().suspends) {
@@ -64,6 +65,7 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
     if (light.intensityScale > 0) // the kernel divided by the squared distance: radiance does not
         for (size_t i = 0; i < queries.size(); ++i) out[i].Cl *= dot(out[i].L, out[i].L) * light.intensityScale;
     hazeOfEmitters(light, queries, out);
+    giveBack(std::move(c));
 }
 
 int32_t Engine::lightBegin(BatchContext& c, int site, int first, uint64_t mask, int lanes, const float* rows) {
@@ -112,11 +114,10 @@ uint64_t Engine::lightFetch(BatchContext& c, int index, int first, uint64_t mask
             Random rng = random(r);
             uint32_t use = kLightPoint + uint32_t(li), turn = uint32_t(k) + 1; // 0 is gather()'s
             Emitter::Sample s;
-            if (!light.emitter->sample(lit, rng.pair(r.vertex, use, turn), light.emitter->chooses() ? rng.one(r.vertex, use, turn) : 0, s)) continue;
+            if (!light.emitter->sample(lit, rng.pair(r.vertex, use, turn), light.emitter->chooses() ? rng.one(r.vertex, use, turn) : 0, s, p.surface)) continue;
             p.shape = s.shape;
-            p.surface = s.point;
-            p.P = s.point.P;
-            p.N = s.point.n;
+            p.P = p.surface.P;
+            p.N = p.surface.n;
             f = 1 / (float(kPi) * s.pdf * light.samples); // cosLight A / (pi d^2 n), design decision 4
         } else if (light.kind == LightKind::Environment) {
             // The sky from directions evenly in the cone of the loop.

@@ -80,11 +80,15 @@ void Engine::gather(BatchContext& c, Sched& sched) {
     auto sourcePoint = [&](const ShadePoint& p, const Vec3& w) { return geometry::offsetOrigin(p.surface, w, length(p.P - p.surface.P)); };
 
     // Lobes by point, in order of emission: of point pi those at order[begin[pi]] to order[begin[pi + 1]].
-    std::vector<int> begin(c.points.size() + 1), order(lobes.size());
+    GatherRoom room = std::move(gatherRoom_); // taken, so that a gather() inside this one has its own
+    std::vector<int>&begin = room.begin, &order = room.order;
+    begin.assign(c.points.size() + 1, 0);
+    order.resize(lobes.size());
     for (const LobeVertex& l : lobes) ++begin[size_t(l.point) + 1];
     for (size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
     {
-        std::vector<int> next(begin.begin(), begin.end() - 1);
+        std::vector<int>& next = room.next;
+        next.assign(begin.begin(), begin.end() - 1);
         for (size_t i = 0; i < lobes.size(); ++i) order[size_t(next[size_t(lobes[i].point)]++)] = int(i);
     }
     auto lobesOf = [&](size_t pi) { return std::span<const int>(order).subspan(size_t(begin[pi]), size_t(begin[pi + 1] - begin[pi])); };
@@ -99,7 +103,8 @@ void Engine::gather(BatchContext& c, Sched& sched) {
     };
 
     // Which lobe's ray will be followed (path): in proportion to luminance of weight times albedo; the energy rule for shader lobes.
-    std::vector<float> indirectScale(c.points.size(), 1.f);
+    std::vector<float>& indirectScale = room.indirectScale;
+    indirectScale.assign(c.points.size(), 1.f);
     for (size_t pi = 0; pi < c.points.size(); ++pi) {
         auto list = lobesOf(pi);
         Color sum(0);
@@ -127,7 +132,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
         for (int i : list) {
             LobeVertex& l = lobes[i];
             if (l.ownsTarget || !path) l.chosen = l.followed ? 1 : 0;
-            else l.chosen = total > 0 ? float(l.chosen / total) : 0;
+            else l.chosen = total > 0 ? (total == l.chosen ? 1 : float(l.chosen / total)) : 0;
         }
     }
 
@@ -139,10 +144,10 @@ void Engine::gather(BatchContext& c, Sched& sched) {
 
     // Light samples: every light for every point with lobes that want it, in batches a light.
     if (set.direct && !set.bsdfOnly) {
-        std::vector<ShadePoint> q; // the batch shares one list of lights
-        std::vector<int> pointOf;
-        std::vector<Emitter::Sample> drawn;
-        std::vector<LightValue> value;
+        std::vector<ShadePoint>& q = room.q; // the batch shares one list of lights
+        std::vector<int>& pointOf = room.pointOf;
+        std::vector<Emitter::Sample>& drawn = room.drawn;
+        std::vector<LightValue>& value = room.value;
         const std::vector<int>& on = world_->sampledLights_[size_t(world_->bindings_[size_t(c.bindings[0])].lightList)];
         // With many lights some are chosen at each point: by light, the points and the probability of the choice.
         bool many = path && on.size() > size_t(limits::kLightsSampled);
@@ -158,16 +163,15 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 for (auto [i, chance] : chosen) chosenAt[size_t(i)].push_back({int(pi), chance});
             }
         }
-        std::vector<float> chance;
+        std::vector<float>& chance = room.chance;
         for (size_t at = 0; at < on.size(); ++at) {
             size_t li = size_t(on[at]);
             const BoundLight& light = world_->lights_[li];
             bool area = light.kind == LightKind::Area;
-            q.clear();
+            size_t used = 0; // of q: its points are written again, not made anew
             chance.clear();
             pointOf.clear();
             drawn.clear();
-            q.reserve(c.points.size());
             drawn.reserve(c.points.size());
             size_t count = many ? chosenAt[at].size() : c.points.size();
             for (size_t k = 0; k < count; ++k) {
@@ -176,7 +180,8 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 for (int i : lobesOf(pi)) wanted |= samples(lobes[i], light) && !lobes[i].kind->isDelta(lobes[i].params);
                 if (!wanted) continue;
                 const ShadePoint& lit = c.points[pi];
-                ShadePoint& p = q.emplace_back();
+                if (used == q.size()) q.emplace_back();
+                ShadePoint& p = q[used];
                 p.Ps = lit.P;
                 p.Ns = lit.N;
                 p.viewI = p.I = lit.I;
@@ -194,26 +199,28 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     Random rng = random(ray);
                     uint32_t use = kLightPoint + uint32_t(li);
                     Emitter::Sample& s = drawn.emplace_back();
-                    if (!light.emitter->sample(p.Ps, rng.pair(vertex, use, 0), light.emitter->chooses() ? rng.one(vertex, use, 0) : 0, s)) {
-                        q.pop_back();
+                    if (!light.emitter->sample(p.Ps, rng.pair(vertex, use, 0), light.emitter->chooses() ? rng.one(vertex, use, 0) : 0, s, p.surface)) {
                         drawn.pop_back();
                         continue;
                     }
                     p.shape = s.shape;
-                    p.surface = s.point;
-                    p.P = s.point.P;
-                    p.N = s.point.n;
+                    p.P = p.surface.P;
+                    p.N = p.surface.n;
                 } else {
+                    p.shape = nullptr;
                     p.surface = lit.surface;
+                    p.N = Vec3();
                     p.P = Vec3(transformPoint(light.instance->toCurrent, {0, 0, 0}));
                     drawn.emplace_back();
                 }
+                ++used;
                 pointOf.push_back(int(pi));
                 chance.push_back(many ? chosenAt[at][k].second : 1.f);
             }
-            value.assign(q.size(), {});
+            q.resize(used);
+            value.assign(used, {});
             evaluateLight(light, q, value);
-            for (size_t k = 0; k < q.size(); ++k) {
+            for (size_t k = 0; k < used; ++k) {
                 const LightValue& v = value[k];
                 if (!v.lit || !(maxComponent(v.Cl) > 0)) continue;
                 const ShadePoint& p = c.points[pointOf[k]];
@@ -239,7 +246,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     // The light's own surface must not block: stop short of it by both error bounds.
                     float stop = distance;
                     if (area) {
-                        Vec3 end = geometry::offsetOrigin(drawn[k].point, -w);
+                        Vec3 end = geometry::offsetOrigin(q[k].surface, -w);
                         stop = length(end - o);
                         shadows.push_back({o, unit(end - o, w), stop * (1 - 1e-6f), contribution, l.target, p.time, p.ray});
                     } else {
@@ -319,17 +326,14 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 r.shape = geometry::kNone;
                 r.cameraSample = -1;
                 r.first = l.ownsTarget && k == 0;
-                Sched::Task t;
-                t.depth = r.bounces + r.layers;
-                t.target = l.target;
-                t.payload = r;
-                sched.spawn(std::move(t));
+                sched.spawn(r.bounces + r.layers, l.target).payload = r;
                 counters.depthMax = std::max(counters.depthMax, int(r.bounces));
                 ++counters.depthSum; // over camera rays: the mean number of bounces
             }
         }
     }
     lobes.clear();
+    gatherRoom_ = std::move(room);
 }
 
 } // namespace alpenglow::transport

@@ -81,6 +81,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         b.sites.push_back(std::move(i));
     }
     b.plan = std::make_shared<shading::BatchPlan>(*k, mixed);
+    world->footprints_ |= b.plan->usesFootprint();
     b.kernel = std::move(k);
     return b;
 }

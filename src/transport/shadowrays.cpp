@@ -67,7 +67,11 @@ void Engine::opacities(std::span<const OpacityQuery> met, std::span<Color> out) 
 void Engine::transmittances(std::span<const ShadowRay> rays, std::span<Color> out) {
     counters.shadow += rays.size();
     if (world_->allOpaque_) {
-        for (size_t i = 0; i < rays.size(); ++i) out[i] = world_->accel_->occluded(shadowRay(rays[i])) ? Color(0) : Color(1);
+        shadowRays_.clear();
+        for (const ShadowRay& r : rays) shadowRays_.push_back(shadowRay(r));
+        blocked_.resize(rays.size());
+        world_->accel_->occluded(shadowRays_, blocked_);
+        for (size_t i = 0; i < rays.size(); ++i) out[i] = blocked_[i] ? Color(0) : Color(1);
         return;
     }
     struct Going { accel::Ray ray; size_t index; int layers; };

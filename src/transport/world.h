@@ -156,6 +156,7 @@ public:
     mutable rsl::PrintLog prints_;
     mutable std::mutex imagerMutex_;
     int maxDepth_ = 32;
+    bool footprints_ = false;                  ///< some kernel reads du or dv
     bool allOpaque_ = true;                    ///< no opacity below 1: shadow rays need no shading
     std::vector<std::vector<int>> sampledLights_; ///< by SurfaceBinding::lightList: lights that get samples, in order
     std::unordered_map<const geometry::Shape*, int> hazyEmitters_; ///< emitters in an atmosphere -> their binding

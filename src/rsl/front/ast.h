@@ -53,7 +53,10 @@ enum class ExprKind : uint8_t {
     ArrayList,   ///< {a, b, ...} of an array type
     Cast,        ///< to `type`, from args[0] (Bool to Float too); `space` when written `point "shader" p` (value given in that space) or color "hsv" c
     ShadeopCall, ///< shadeop, signature; args = positional; pairs; `channel` for texture(name[channel]); outputs are lvalues
-    FunctionCall ///< function; args
+    FunctionCall,///< function; args
+    Sequence,    ///< args one after the other; its value is that of the last, which is no array
+    Member,      ///< args[0]->text: a member of a structure (gone before checking) or of another shader
+    Method       ///< args[0]->text(args[1], ...): a method of another shader
 };
 enum class ExprOp : uint8_t { None, Add, Sub, Mul, Div, Dot, Cross, Less, LessEqual, Greater, GreaterEqual, Equal, NotEqual, And, Or, Negate, Not, Assign };
 
@@ -141,6 +144,7 @@ struct Program {
 
 struct FrontOptions {
     std::vector<std::string> includePaths;
+    std::string dialect; ///< whose predefined macros there are: "prman", "3delight" (also when empty), "aqsis", "bmrt", ...
     std::vector<std::pair<std::string, std::string>> defines;
     bool lint = false; ///< warn about unused, uninitialised and the like, too (lint.h)
 };

@@ -198,13 +198,27 @@ std::vector<std::string> Checker::visibleNames() {
     return names;
 }
 
+/// What old shaders use without saying so: a parameter of the shader without `extern` (PRMan takes it), and what the specification
+/// gives to other kinds of shaders but has a meaning here too. Null when it is nothing of that.
+Symbol* Checker::tolerated(Expr& e) {
+    if (const auto p = shaderParameters_.find(e.text); p != shaderParameters_.end() && p->second->type.base != Base::Void) {
+        sources_.warning(e.place, "'" + e.text + "' is a parameter of the shader, used without being declared extern",
+                         "declare 'extern " + toString(p->second->type) + " " + e.text + ";'");
+        return p->second;
+    }
+    const bool onSurface = kind_ && (*kind_ == ShaderKind::Surface || *kind_ == ShaderKind::Displacement);
+    if (onSurface && (e.text == "Ns" || e.text == "Ps")) {
+        const std::string own = e.text.substr(0, 1);
+        sources_.warning(e.place, "'" + e.text + "' belongs to light shaders; '" + own + "' is used");
+        return global(own);
+    }
+    return nullptr;
+}
+
 void Checker::unknownVariable(Expr& e) {
     if (!unit_->hides(e.text)) {
         std::string hint;
-        if (shaderParameters_.count(e.text)) {
-            hint = "it is a parameter of the shader: declare 'extern " + toString(shaderParameters_.at(e.text)->type) + " " +
-                   e.text + ";'";
-        } else if (const std::string near = nearestName(e.text, visibleNames()); !near.empty()) {
+        if (const std::string near = nearestName(e.text, visibleNames()); !near.empty()) {
             hint = "did you mean '" + near + "'?";
         }
         std::string where;

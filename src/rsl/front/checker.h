@@ -52,6 +52,7 @@ private:
     Symbol* global(const std::string&);
     void bindExtern(Symbol&);
     void declareLocal(Symbol&);
+    Symbol* tolerated(Expr&);
     void unknownVariable(Expr&);
     std::vector<std::string> visibleNames();
 
@@ -76,6 +77,7 @@ private:
     void surveyConditional(Expr&, Info&);
     void surveyCast(Expr&, Info&);
     void surveyCall(Expr&, Info&);
+    void surveyMember(Expr&, Info&);
     bool match(const std::vector<ParameterView>&, bool repeats, bool pairs, Expr& call, Choice&, bool ignoreOutputs);
     int argumentCost(Expr& argument, Type wanted, bool output, bool ignoreOutputs);
     void noMatch(Expr& call, const std::vector<std::string>& candidates, std::vector<std::string> notes, bool outputsOnly);

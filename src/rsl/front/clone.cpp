@@ -21,7 +21,8 @@ struct Cloner {
         c->height = e.height;
         c->number = e.number;
         c->text = !rename.first.empty() && e.text == rename.first ? rename.second : e.text;
-        c->symbol = e.symbol;
+        const auto own = symbols.find(e.symbol);
+        c->symbol = own == symbols.end() ? e.symbol : own->second;
         for (const auto& a : e.args) c->args.push_back(copy(a));
         c->space = copy(e.space);
         c->channel = copy(e.channel);
@@ -68,6 +69,26 @@ struct Cloner {
 };
 
 } // namespace
+
+std::unique_ptr<Shader> clone(const Shader& s) {
+    Cloner c;
+    auto n = std::make_unique<Shader>();
+    n->kind = s.kind;
+    n->name = s.name;
+    n->place = s.place;
+    n->annotations = s.annotations;
+    for (const auto& x : s.symbols) {
+        n->symbols.push_back(std::make_unique<Symbol>(*x));
+        c.symbols[x.get()] = n->symbols.back().get();
+    }
+    for (const auto& p : s.parameters) n->parameters.push_back({c.symbols.at(p.symbol), c.copy(p.defaultValue)});
+    for (const auto& f : s.nested) {
+        n->nested.push_back(c.copy(*f));
+        c.functions[f.get()] = n->nested.back().get();
+    }
+    n->body = c.copy(s.body);
+    return n;
+}
 
 std::unique_ptr<Function> clone(const Function& f, const std::pair<std::string, std::string>& rename) {
     Cloner c;

@@ -6,6 +6,8 @@ namespace alpenglow::rsl::front {
 
 /// `rename`: calls of the first name become calls of the second; both may be empty.
 std::unique_ptr<Function> clone(const Function&, const std::pair<std::string, std::string>& rename);
+/// With its nested functions and all its symbols.
+std::unique_ptr<Shader> clone(const Shader&);
 /// Checked expressions too: what they are bound to stays the same.
 ExprPtr clone(const Expr&);
 

@@ -1,5 +1,6 @@
 // The way of one file: read, preprocess, parse, check, report.
 #include "rsl/front/checker.h"
+#include "rsl/front/classes.h"
 #include "rsl/front/inspect.h"
 #include "rsl/front/lint.h"
 
@@ -19,6 +20,8 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
     program->preprocessed = p.text();
     program->dependencies.insert(program->dependencies.end(), p.dependencies.begin(), p.dependencies.end());
     Unit unit = Parser(p, sources).parse();
+    lowerStructs(unit, sources);
+    expandClasses(unit, sources);
     if (unit.shaders.empty() && unit.functions.empty() && sources.errors() == 0)
         sources.error({main, 1, 1}, "there is no shader in this file");
     // Annotations belong to the shader they stand in or before; those at the end to the last one.
@@ -32,6 +35,13 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
         if (owner) owner->annotations.emplace_back(a.key, a.value);
     }
     Checker(sources, unit, *program).run();
+    // An include that is missing does no harm when nothing of it is missed.
+    for (const auto& m : p.missing) {
+        const std::string text = "cannot find the included file '" + m.name + "'";
+        if (unit.missed || sources.errors() > 0)
+            sources.error(m.place, text, "it is looked for beside the including file, then along the include path");
+        else sources.warning(m.place, text + "; nothing of it seems to be used");
+    }
     const bool failed = sources.errors() > 0;
     if (options.lint) lint(*program, sources);
     sources.flush(diagnostics);

@@ -1,5 +1,6 @@
 #include "rsl/front/parser.h"
 #include "base/limits.h"
+#include <utility>
 
 namespace alpenglow::rsl::front {
 
@@ -118,8 +119,39 @@ Parser::Depth::Depth(Parser& p) : parser(p) {
     throw SyntaxError{};
 }
 
-bool Parser::atTypeName(size_t k) const { return peek(k).kind == Tok::Identifier && baseNamed(peek(k).text).has_value(); }
-Base Parser::takeBase() { return *baseNamed(take().text); }
+bool Parser::atTypeName(size_t k) const {
+    const Token &t = peek(k), &n = peek(k + 1);
+    if (t.kind != Tok::Identifier) return false;
+    if (!baseNamed(t.text)) {
+        // Names of structures, and "shader", are types only where a name follows.
+        if (!t.is("shader") && !structs_.count(std::string(t.text))) return false;
+        return n.kind == Tok::Identifier || (n.is("[") && (peek(k + 2).is("]") || peek(k + 2).kind == Tok::Number));
+    }
+    if (typeWords_.empty() || !typeWords_.count(t.text)) return true;
+    // A variable of that name: it is the type only where a value or a name follows.
+    return n.kind == Tok::Identifier || n.kind == Tok::Number || n.kind == Tok::String || n.is("(");
+}
+
+bool Parser::atName() const {
+    if (peek().kind != Tok::Identifier) return false;
+    if (!baseNamed(peek().text)) return true;
+    if (!at("vector") && !at("normal") && !at("matrix")) return false;
+    const Token& n = peek(1);
+    return n.is("=") || n.is(";") || n.is(",") || n.is(")");
+}
+
+const Token& Parser::takeName() {
+    const Token& t = take();
+    if (baseNamed(t.text)) typeWords_.insert(t.text);
+    return t;
+}
+
+Base Parser::takeBase() {
+    const std::string name(take().text);
+    if (const auto base = baseNamed(name)) return *base;
+    if (const auto s = structs_.find(name); s != structs_.end()) return structBase(size_t(s->second));
+    return Base::String; // a handle of a shader is its name
+}
 
 // ---- declarations
 
@@ -152,23 +184,18 @@ bool Parser::notYet(Place p, const char* what) {
 
 void Parser::topLevel() {
     if (accept(";")) return;
+    if (at("}")) {
+        sources_.warning(take().place, "this '}' closes nothing and is ignored");
+        return;
+    }
     const Token& first = peek();
     if (first.kind == Tok::Identifier && peek(1).kind == Tok::Identifier) {
         if (auto kind = shaderKindNamed(first.text); kind && (peek(2).is("(") || peek(2).is("{"))) {
             take();
             return shader(*kind);
         }
-        if (first.text == "struct" || first.text == "class") {
-            notYet(first.place, first.text == "struct" ? "structures (struct)" : "shader objects (class)");
-            structs_.insert(std::string(peek(1).text));
-            while (!at("{") && !at(";") && peek().kind != Tok::End) {
-                if (at("(")) skipBalanced();
-                else take();
-            }
-            if (at("{")) skipBalanced();
-            accept(";");
-            return;
-        }
+        if (first.text == "struct" && (peek(2).is("{") || !structs_.count(std::string(peek(1).text)))) return structure();
+        if (first.text == "class" && (peek(2).is("(") || peek(2).is("{"))) return shaderObject();
         if (first.text == "plugin") {
             sources_.warning(first.place, "RSL plug-ins are not yet available");
             unit_.incomplete = true;
@@ -189,10 +216,6 @@ void Parser::topLevel() {
     if (typed) {
         type.base = takeBase();
         type = dimensions(type);
-    } else if (peek().kind == Tok::Identifier && (at("shader") || structs_.count(std::string(peek().text))) &&
-               peek(1).kind == Tok::Identifier) {
-        notYet(peek().place, at("shader") ? "shader handles" : "structures (struct)");
-        take();
     }
     if (peek().kind != Tok::Identifier || !peek(1).is("(")) {
         std::vector<std::string> kinds = {"surface", "displacement", "light", "volume", "imager", "transformation"};
@@ -200,7 +223,19 @@ void Parser::topLevel() {
         fail(peek().place, "expected a shader or a function before " + shown(),
              near.empty() || typed ? "" : "did you mean '" + near + "'?");
     }
-    if (auto f = function(s, type, typed)) unit_.functions.push_back(std::move(f));
+    auto f = function(s, type, typed);
+    if (!f) return;
+    // Defined again, as when a file is included twice, or when a shader has its own version of what a header gave: the last counts.
+    for (auto& old : unit_.functions) {
+        bool same = old->name == f->name && old->result == f->result && old->parameters.size() == f->parameters.size();
+        for (size_t i = 0; same && i < f->parameters.size(); ++i) same = old->parameters[i]->type == f->parameters[i]->type;
+        if (!same) continue;
+        if (old->place.file == f->place.file)
+            sources_.warning(f->place, "function '" + f->name + "' is defined again; the last definition counts");
+        old = std::move(f);
+        return;
+    }
+    unit_.functions.push_back(std::move(f));
 }
 
 void Parser::shader(ShaderKind kind) {
@@ -209,10 +244,13 @@ void Parser::shader(ShaderKind kind) {
     s->place = peek().place;
     s->name = std::string(take().text);
     owner_ = {&s->symbols, &s->nested};
+    typeWords_.clear();
     if (accept("(")) parameters(owner_, &s->parameters, nullptr);
+    if (at(";") && peek(1).is("{")) sources_.warning(take().place, "a ';' between a shader's parameters and its body is ignored");
     if (!at("{")) failHere("expected '{' of the body of shader '" + s->name + "'");
     s->body = block();
     owner_ = {};
+    typeWords_.clear();
     unit_.shaders.push_back(std::move(s));
 }
 
@@ -224,21 +262,29 @@ std::unique_ptr<Function> Parser::function(const Specifiers&, Type type, bool ty
     f->result = type;
     const Owner outer = owner_;
     const bool outerReturns = returnsValue_;
+    const auto outerWords = std::exchange(typeWords_, {});
     owner_ = {&f->symbols, &f->nested};
     returnsValue_ = false;
     try {
         expect("(", "after the name of a function");
         parameters(owner_, nullptr, &f->parameters);
-        if (accept(";")) { owner_ = outer; returnsValue_ = outerReturns; return nullptr; }
+        if (accept(";")) {
+            owner_ = outer;
+            typeWords_ = outerWords;
+            returnsValue_ = outerReturns;
+            return nullptr;
+        }
         if (!at("{")) failHere("expected '{' of the body of function '" + f->name + "'");
         f->body = block();
     } catch (const SyntaxError&) {
         owner_ = outer;
+        typeWords_ = outerWords;
         returnsValue_ = outerReturns;
         throw;
     }
     if (!typed && returnsValue_) f->result = {Base::Float, 0};
     owner_ = outer;
+    typeWords_ = outerWords;
     returnsValue_ = outerReturns;
     return f;
 }
@@ -294,6 +340,22 @@ int Parser::constantLength(const Expr& e, Place place) {
     return 1;
 }
 
+/// RSL 1 could name a space in a declaration: color "hsv" c = (0.1, 1, 1).
+ExprPtr Parser::declaredSpace(Base base) {
+    if (peek().kind != Tok::String || base == Base::String || base == Base::Float || base == Base::Void) return nullptr;
+    return primary();
+}
+
+ExprPtr Parser::inSpace(ExprPtr value, Base base, const Expr* space) {
+    if (!space || value->kind == ExprKind::ArrayList) return value;
+    auto e = node(ExprKind::Cast, value->place);
+    e->type.base = base;
+    e->space = node(ExprKind::String, space->place);
+    e->space->text = space->text;
+    adopt(*e, std::move(value));
+    return e;
+}
+
 Symbol* Parser::declare(Owner owner, const Token& name, Type type, const Specifiers& s) {
     auto symbol = std::make_unique<Symbol>();
     symbol->name = std::string(name.text);
@@ -309,47 +371,53 @@ Symbol* Parser::declare(Owner owner, const Token& name, Type type, const Specifi
 /// Behind the '(', up to and with the ')'. One of the two lists is filled.
 void Parser::parameters(Owner owner, std::vector<ShaderParameter>* shader, std::vector<Symbol*>* function) {
     Specifiers group;
-    std::optional<Base> base;
+    std::optional<Base> base, before; // of this group, of the group before the last ';'
+    ExprPtr space;
     while (!accept(")")) {
         if (peek().kind == Tok::End || at("{")) failHere("expected ')' after the parameters");
         try {
-            if (accept(";")) { base.reset(); continue; }
+            if (at(";")) {
+                take();
+                if (base) before = base;
+                base.reset();
+                continue;
+            }
             if (accept(",")) continue;
-            const bool newGroup = atTypeName() || at("output") || at("uniform") || at("varying") || at("extern") ||
+            const bool newGroup = (atTypeName() && !(base && atName())) || at("output") || at("uniform") || at("varying") || at("extern") ||
                                   ((at("constant") || at("const") || at("public")) && atTypeName(1));
-            bool handle = false;
             if (newGroup) {
                 group = specifiers();
                 if (atTypeName()) base = takeBase();
-                else if (at("shader") && peek(1).kind == Tok::Identifier) handle = true;
                 else failHere("expected a type");
-            } else if ((at("shader") || structs_.count(std::string(peek().text))) && peek(1).kind == Tok::Identifier) {
-                handle = true;
-                group = {};
             }
-            if (handle) {
-                notYet(peek().place, at("shader") ? "shader handles" : "structures (struct)");
-                take();
-                base = Base::Void;
+            if (newGroup) space = declaredSpace(base.value_or(Base::Void));
+            if (!base && before && *before != Base::Void && atName() && (peek(1).is("=") || peek(1).is(";") || peek(1).is(","))) {
+                base = before;
+                sources_.warning(peek().place, "parameter '" + std::string(peek().text) + "' has no type; it is taken for a " +
+                                                   toString(Type{*base, 0}) + " like the one before");
             }
             if (!base) failHere("expected the type of a parameter");
-            if (*base == Base::Void && !handle) {
+            if (*base == Base::Void) {
                 if (at(")")) continue; // (void), as in C
                 fail(peek().place, "a parameter cannot be void");
             }
             Type type = dimensions({*base, 0});
-            if (peek().kind != Tok::Identifier || atTypeName()) failHere("expected the name of a parameter");
-            const Token& name = take();
+            if (function && (at(",") || at(";") || at(")"))) { // of a prototype: the name may be missing
+                function->push_back(declare(owner, peek(), type, group));
+                continue;
+            }
+            if (!atName()) failHere("expected the name of a parameter");
+            const Token& name = takeName();
             type = dimensions(type);
             Symbol* symbol = declare(owner, name, type, group);
             symbol->origin = shader ? Symbol::Origin::ShaderParameter : Symbol::Origin::FunctionParameter;
             if (function) function->push_back(symbol);
             else shader->push_back({symbol, nullptr});
             if (accept("=")) {
-                ExprPtr value = at("{") ? arrayList() : assignment();
+                ExprPtr value = inSpace(at("{") ? arrayList() : assignment(), *base, space.get());
                 if (shader) shader->back().defaultValue = std::move(value);
-                else sources_.error(value->place, "parameters of functions have no default values");
-            } else if (shader && symbol->type.base != Base::Void && symbol->type.array >= 0) {
+                else sources_.warning(value->place, "parameters of functions have no default values; this one is ignored");
+            } else if (shader && !isStruct(type) && symbol->type.array >= 0) {
                 sources_.warning(symbol->place, "parameter '" + symbol->name + "' has no default value; it is zero unless set");
             }
             if (at(")") || at(";") || at(",")) continue;

@@ -1,19 +1,32 @@
 // Tokens to an unchecked syntax tree. Names are still text (Expr::text), conversions and overloads are the checker's business.
 #pragma once
 #include "rsl/front/preprocessor.h"
+#include "rsl/front/structs.h"
 #include <functional>
 #include <unordered_set>
 
 namespace alpenglow::rsl::front {
 
+/// A shader object as written: its body declares the members, then the methods.
+struct ClassDefinition {
+    std::unique_ptr<Shader> shader;
+    std::unordered_set<std::string> publics; ///< members and methods that other shaders see
+};
+
 /// What one text declares, unchecked.
 struct Unit {
     std::vector<std::unique_ptr<Shader>> shaders;
     std::vector<std::unique_ptr<Function>> functions;
+    std::vector<ClassDefinition> classes;
+    std::vector<StructType> structs;
     bool incomplete = false; ///< text is missing that nobody has seen: unknown names may be its fault
     std::unordered_set<std::string> skipped; ///< names in text that was skipped behind an error: it may have declared them
     /// Whether the name may be declared in text that was not read.
-    bool hides(const std::string& n) const { return incomplete || skipped.count(n); }
+    bool hides(const std::string& n) const {
+        missed = missed || incomplete;
+        return incomplete || skipped.count(n);
+    }
+    mutable bool missed = false; ///< a name was sought that may stand in text that is missing
 };
 
 class Parser {
@@ -48,17 +61,23 @@ private:
     void recover();
     void skippedFrom(size_t begin); ///< the tokens from there to here were not understood
     bool atTypeName(size_t k = 0) const;
+    bool atName() const;        ///< of a variable to be declared; old shaders call theirs vector, normal, matrix
+    const Token& takeName();
     Base takeBase();
     std::string shown() const;
 
     // declarations (parser.cpp)
     void topLevel();
     void shader(ShaderKind);
+    void structure();    // parser_objects.cpp
+    void shaderObject();
     std::unique_ptr<Function> function(const Specifiers&, Type, bool typed);
     void parameters(Owner, std::vector<ShaderParameter>* shader, std::vector<Symbol*>* function);
     Specifiers specifiers();
     bool notYet(Place, const char* what);
     Type dimensions(Type);
+    ExprPtr declaredSpace(Base);
+    ExprPtr inSpace(ExprPtr value, Base, const Expr* space);
     int constantLength(const Expr&, Place);
     Symbol* declare(Owner, const Token& name, Type, const Specifiers&);
     bool functionFollows() const;
@@ -72,9 +91,9 @@ private:
     StmtPtr forLoop();
     StmtPtr doLoop();
     StmtPtr lightStatement(StmtKind);
-    StmtPtr unsupportedDeclaration();
     StmtPtr make(StmtKind, Place);
     StmtPtr expressionStatement(ExprPtr);
+    StmtPtr effects();
 
     // expressions (parser_expressions.cpp)
     ExprPtr expression();
@@ -91,6 +110,10 @@ private:
     ExprPtr node(ExprKind, Place, ExprOp = ExprOp::None);
     /// Hangs a child in and keeps the height below the limit.
     void adopt(Expr& parent, ExprPtr child);
+    /// An expression for its effect: "i++" and "++i" are taken, with a warning, as "i += 1".
+    ExprPtr effect();
+    bool atStep(size_t k) const; ///< "++" or "--" without a blank between
+    ExprPtr step(ExprPtr variable, const Token& sign);
     void grow(Expr& parent, const Expr& child);
 
     struct Depth {
@@ -106,8 +129,9 @@ private:
     int depth_ = 0;
     bool tooDeep_ = false;
     Owner owner_;                 ///< of the function or shader being read
+    std::unordered_set<std::string_view> typeWords_; ///< variables of it called like the types that came later
     bool returnsValue_ = false;   ///< a `return expression` was seen in it
-    std::unordered_set<std::string> structs_; ///< names of types that are not yet available
+    std::unordered_map<std::string, int> structs_; ///< index in Unit::structs
     std::unordered_set<std::string> told_;    ///< what was reported as not yet available
     size_t lastError_ = size_t(-1);
 };

@@ -42,6 +42,34 @@ ExprPtr Parser::assignment() {
     return left;
 }
 
+bool Parser::atStep(size_t k) const {
+    return (peek(k).is("+") || peek(k).is("-")) && peek(k + 1).text == peek(k).text && !peek(k + 1).space && !peek(k + 1).lineStart;
+}
+
+/// variable += 1 or variable -= 1
+ExprPtr Parser::step(ExprPtr variable, const Token& sign) {
+    sources_.warning(sign.place, "'" + std::string(sign.text) + std::string(sign.text) + "' is not of this language; it is read as '" +
+                                     std::string(sign.text) + "= 1'");
+    auto e = node(ExprKind::Assign, sign.place, sign.text == "+" ? ExprOp::Add : ExprOp::Sub);
+    auto one = node(ExprKind::Number, sign.place);
+    one->number = 1;
+    adopt(*e, std::move(variable));
+    adopt(*e, std::move(one));
+    return e;
+}
+
+ExprPtr Parser::effect() {
+    if (atStep(0) && peek(2).kind == Tok::Identifier) {
+        const Token& sign = take();
+        take();
+        return step(postfix(), sign);
+    }
+    auto e = expression();
+    // The value of i++ is wanted by nobody here: i += 1 is all.
+    if (e->kind == ExprKind::Binary && e->text == "++") return std::move(e->args[0]);
+    return e;
+}
+
 ExprPtr Parser::conditional() {
     auto c = binary(3);
     if (!at("?")) return c;
@@ -61,7 +89,7 @@ constexpr BinaryOp kBinary[] = {
     {"<=", 5, ExprOp::LessEqual}, {">=", 5, ExprOp::GreaterEqual},
     {"+", 6, ExprOp::Add}, {"-", 6, ExprOp::Sub},
     {"^", 7, ExprOp::Cross}, // looser than * and /, unlike anywhere else
-    {"*", 8, ExprOp::Mul}, {"/", 8, ExprOp::Div},
+    {"*", 8, ExprOp::Mul}, {"/", 8, ExprOp::Div}, {"%", 8, ExprOp::None}, // % is mod()
     {".", 9, ExprOp::Dot}};
 } // namespace
 
@@ -74,7 +102,11 @@ ExprPtr Parser::binary(int level) {
             for (const auto& b : kBinary)
                 if (b.text == peek().text) found = &b;
         if (!found || found->level < level) return left;
-        auto e = node(ExprKind::Binary, take().place, found->op);
+        auto e = node(found->op == ExprOp::None ? ExprKind::ShadeopCall : ExprKind::Binary, take().place, found->op);
+        if (found->op == ExprOp::None) {
+            sources_.warning(e->place, "'%' is not of this language; it is read as mod(a, b)");
+            e->text = "mod";
+        }
         adopt(*e, std::move(left));
         adopt(*e, binary(found->level + 1));
         left = std::move(e);
@@ -131,12 +163,29 @@ ExprPtr Parser::postfix() {
             expect("]", "after an index");
             e = std::move(index);
         } else if (at("->")) {
-            notYet(peek().place, "shader handles");
+            const Place place = take().place;
+            if (peek().kind != Tok::Identifier) failHere("expected the name of a member behind '->'");
+            auto member = node(ExprKind::Member, place);
+            member->text = std::string(take().text);
+            adopt(*member, std::move(e));
+            if (accept("(")) {
+                member->kind = ExprKind::Method;
+                arguments(member->args);
+                for (const auto& a : member->args) grow(*member, *a);
+            }
+            e = std::move(member);
+        } else if (atStep(0) && (e->kind == ExprKind::Variable || e->kind == ExprKind::Index) &&
+                   (peek(2).is(")") || peek(2).is(";") || peek(2).is("]") || peek(2).is(",") || peek(2).is("}"))) {
+            const Token& sign = take();
             take();
-            if (peek().kind == Tok::Identifier) take();
-            if (at("(")) skipBalanced();
-            auto poison = node(ExprKind::Variable, e->place); // an empty name: the checker stays silent about it
-            e = std::move(poison);
+            // The value is the one before: (i += 1) - 1.
+            auto before = node(ExprKind::Binary, sign.place, sign.text == "+" ? ExprOp::Sub : ExprOp::Add);
+            before->text = "++";
+            auto one = node(ExprKind::Number, sign.place);
+            one->number = 1;
+            adopt(*before, step(std::move(e), sign));
+            adopt(*before, std::move(one));
+            return before;
         } else return e;
     }
 }
@@ -205,8 +254,8 @@ ExprPtr Parser::parenthesis() {
     const Place place = take().place;
     if (atTypeName() && peek(1).is(")")) {
         const std::string type(peek().text);
-        sources_.error(place, "a conversion is written without parentheses around the type",
-                       "write " + type + "(...) or " + type + " x");
+        sources_.warning(place, "a conversion is written without parentheses around the type",
+                         "write " + type + "(...) or " + type + " x");
         ExprPtr e = node(ExprKind::Cast, place);
         e->type.base = takeBase();
         take();

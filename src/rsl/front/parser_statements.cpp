@@ -52,7 +52,7 @@ StmtPtr Parser::statementOnce() {
         if (t.text == "{") return block();
         if (t.text == ";") { auto s = make(StmtKind::Block, t.place); take(); return s; }
     }
-    if (t.kind != Tok::Identifier) { auto s = expressionStatement(expression()); expectSemicolon("an expression"); return s; }
+    if (t.kind != Tok::Identifier) return effects();
     const std::string_view w = t.text;
     const bool call = peek(1).is("(");
     if (w == "if") {
@@ -103,7 +103,13 @@ StmtPtr Parser::statementOnce() {
     if (atTypeName()) {
         const Token& n = peek(1);
         if (n.is("[") || w == "void") return declaration();
-        if (n.kind == Tok::Identifier && !atTypeName(1)) {
+        const bool spaced = n.kind == Tok::String && peek(2).kind == Tok::Identifier && w != "string" &&
+                            (peek(3).is("=") || peek(3).is(";") || peek(3).is(","));
+        ++at_;
+        const bool name = atName();
+        --at_;
+        if (spaced) return declaration();
+        if (name) {
             if (!peek(2).is("(")) return declaration();
             ++at_;
             const bool definition = functionFollows();
@@ -111,14 +117,8 @@ StmtPtr Parser::statementOnce() {
             if (definition) return declaration();
         }
     }
-    const bool nameFollows = peek(1).kind == Tok::Identifier || (peek(1).is("[") && peek(2).is("]"));
-    if ((w == "shader" || structs_.count(std::string(w))) && nameFollows) return unsupportedDeclaration();
     if (w == "struct" && peek(1).kind == Tok::Identifier && peek(2).is("{")) {
-        notYet(t.place, "structures (struct)");
-        take();
-        structs_.insert(std::string(take().text));
-        skipBalanced();
-        accept(";");
+        structure();
         return nullptr;
     }
     // "vectr x = ..." reads as two names in a row: most likely a type with a slip.
@@ -129,35 +129,29 @@ StmtPtr Parser::statementOnce() {
         fail(t.place, "'" + std::string(w) + "' is not a type",
              near.empty() ? (w == "int" || w == "bool" ? "use float" : "") : "did you mean '" + near + "'?");
     }
-    auto s = expressionStatement(expression());
-    expectSemicolon("an expression");
-    return s;
+    return effects();
 }
 
-/// Variables that can only be poisoned: of shader handles and structures.
-StmtPtr Parser::unsupportedDeclaration() {
-    auto s = make(StmtKind::Declare, peek().place);
-    notYet(peek().place, at("shader") ? "shader handles" : "structures (struct)");
-    take();
-    if (at("[")) skipBalanced();
-    while (peek().kind == Tok::Identifier) {
-        s->declarators.push_back({declare(owner_, take(), {Base::Void, 0}, {}), nullptr});
-        while (!at(",") && !at(";") && !at("}") && peek().kind != Tok::End) {
-            if (at("(") || at("[") || at("{")) skipBalanced();
-            else take();
-        }
-        accept(",");
+/// One expression for its effect, or several with commas between.
+StmtPtr Parser::effects() {
+    auto s = expressionStatement(effect());
+    if (at(",")) {
+        sources_.warning(peek().place, "statements are separated by ';', not ','");
+        auto all = make(StmtKind::Block, s->place);
+        all->body.push_back(std::move(s));
+        while (accept(",")) all->body.push_back(expressionStatement(effect()));
+        s = std::move(all);
     }
-    accept(";");
+    expectSemicolon("an expression");
     return s;
 }
 
 StmtPtr Parser::declaration() {
     auto s = make(StmtKind::Declare, peek().place);
     const Specifiers spec = specifiers();
-    if (at("shader") || structs_.count(std::string(peek().text))) return unsupportedDeclaration();
     if (!atTypeName()) failHere("expected a type");
     Type type{takeBase(), 0};
+    const ExprPtr space = declaredSpace(type.base);
     type = dimensions(type);
     if (functionFollows() || (type.base == Base::Void && peek(1).is("("))) {
         auto f = function(spec, type, true);
@@ -168,15 +162,15 @@ StmtPtr Parser::declaration() {
     }
     if (type.base == Base::Void) fail(s->place, "a variable cannot be void");
     do {
-        if (peek().kind != Tok::Identifier || atTypeName()) failHere("expected the name of a variable");
-        const Token& name = take();
+        if (!atName()) failHere("expected the name of a variable");
+        const Token& name = takeName();
         const Type own = dimensions(type);
         Symbol* symbol = declare(owner_, name, own, spec);
         s->declarators.push_back({symbol, nullptr});
         if (accept("=")) {
             if (spec.isExtern) sources_.error(name.place, "an extern variable has its value already and takes no other here");
             try {
-                s->declarators.back().init = at("{") ? arrayList() : assignment();
+                s->declarators.back().init = inSpace(at("{") ? arrayList() : assignment(), type.base, space.get());
             } catch (const SyntaxError&) {
                 // The name is declared all the same: its uses are no errors.
                 if (tooDeep_) throw;
@@ -200,7 +194,7 @@ StmtPtr Parser::forLoop() {
         outer->body.push_back(declaration()); // takes the ';'
     } else {
         while (!at(";")) {
-            auto e = expression();
+            auto e = effect();
             if (accept(",")) outer->body.push_back(expressionStatement(std::move(e)));
             else { loop->init = std::move(e); break; }
         }
@@ -210,7 +204,7 @@ StmtPtr Parser::forLoop() {
     expect(";", "after the condition of 'for'");
     std::vector<ExprPtr> steps;
     while (!at(")")) {
-        steps.push_back(expression());
+        steps.push_back(effect());
         if (!accept(",")) break;
     }
     expect(")", "after the step of 'for'");

@@ -1,5 +1,6 @@
 #include "rsl/front/preprocessor.h"
 #include "base/limits.h"
+#include "rsl/front/headers.h"
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -66,7 +67,8 @@ public:
 
     Preprocessed run(int main) {
         pushFile(main);
-        std::string predefined = "#define ALPENGLOW 1\n#define DELIGHT 1\n";
+        std::string predefined = "#define ALPENGLOW 1\n";
+        for (std::string_view macro : dialectMacros(options_.dialect)) predefined += "#define " + std::string(macro) + "\n";
         for (auto [name, value] : options_.defines) {
             for (char& c : value)
                 if (c == '\n' || c == '\r') c = ' ';
@@ -352,7 +354,7 @@ private:
         } else if (name == "warning") {
             sources_.warning(hash, "#warning " + spelled(line, 1));
         } else if (name != "ident" && name != "sccs") {
-            sources_.error(line[0].place, "unknown directive '#" + std::string(name) + "'");
+            sources_.warning(line[0].place, "unknown directive '#" + std::string(name) + "' is ignored");
         }
     }
     void open(Place at, bool value) {
@@ -418,18 +420,33 @@ private:
         }
         std::vector<std::string> folders = {fs::path(sources_.name(frames_.back().lexer->file())).parent_path().string()};
         folders.insert(folders.end(), options_.includePaths.begin(), options_.includePaths.end());
-        for (std::string wanted : {name, withSlashes(name)})
-            for (const auto& folder : folders) {
-                const std::string path = (fs::path(folder) / wanted).string();
-                if (auto text = readSource(path)) {
-                    out_.dependencies.push_back(path);
-                    pushFile(sources_.add(path, std::move(*text)));
-                    return;
-                }
-            }
+        const std::string slashed = withSlashes(name);
+        for (const std::string& wanted : {name, slashed})
+            if (includeFrom(folders, wanted)) return;
+        const Place place = line[1].place.line ? line[1].place : hash;
+        // A path of another machine: the file's own name along the search path, then among the headers of our own.
+        const std::string base = slashed.substr(slashed.find_last_of('/') + 1);
+        if (base != slashed && includeFrom(folders, base)) {
+            sources_.warning(place, "'" + name + "' was not found; '" + out_.dependencies.back() + "' is used");
+            return;
+        }
+        if (const ShippedHeader* own = shippedHeader(base)) {
+            pushFile(sources_.add("<" + std::string(own->name) + ">", std::string(own->text)));
+            return;
+        }
         out_.incomplete = true;
-        sources_.error(line[1].place.line ? line[1].place : hash, "cannot find the included file '" + name + "'",
-                       "it is looked for beside the including file, then along the include path");
+        out_.missing.push_back({place, name});
+    }
+    bool includeFrom(const std::vector<std::string>& folders, const std::string& wanted) {
+        for (const auto& folder : folders) {
+            const std::string path = (fs::path(folder) / wanted).string();
+            if (auto text = readSource(path)) {
+                out_.dependencies.push_back(path);
+                pushFile(sources_.add(path, std::move(*text)));
+                return true;
+            }
+        }
+        return false;
     }
     static std::string withSlashes(std::string s) {
         for (char& c : s)

@@ -65,6 +65,9 @@ std::string print(const Expr& e) {
     case ExprKind::ArrayList: return list(e, "list" + type);
     case ExprKind::Cast: return list(e, "cast" + type);
     case ExprKind::ShadeopCall: return list(e, e.text + type);
+    case ExprKind::Sequence: return list(e, "then" + type);
+    case ExprKind::Member: return list(e, "->" + e.text + type);
+    case ExprKind::Method: return list(e, "->" + e.text + "()" + type);
     case ExprKind::FunctionCall: return list(e, (e.shadeop ? "rsl " : "call ") + e.text + type);
     }
     return "?";

@@ -190,6 +190,13 @@ void Checker::settleAs(ExprPtr& e, Base t) {
         else settle(e->args[0], {t, 0});
         e->type = {t, 0};
         break;
+    case ExprKind::Sequence:
+        for (size_t i = 0; i + 1 < e->args.size(); ++i) settleCheapest(e->args[i]);
+        settleAs(e->args.back(), t);
+        e->type = e->args.back()->type;
+        break;
+    case ExprKind::Member:
+    case ExprKind::Method: return; // always poisoned
     case ExprKind::Binary: settleBinary(e, t); return;
     case ExprKind::Assign: settleAssign(e); return;
     case ExprKind::Conditional:

@@ -98,8 +98,23 @@ Checker::Info& Checker::survey(Expr& e) {
     case ExprKind::Cast: surveyCast(e, info); break;
     case ExprKind::ShadeopCall: surveyCall(e, info); break;
     case ExprKind::FunctionCall: info.any = true; break;
+    case ExprKind::Sequence:
+        for (auto& a : e.args) survey(*a);
+        info = infos_.at(e.args.back().get());
+        info.choices.clear();
+        break;
+    case ExprKind::Member:
+    case ExprKind::Method: surveyMember(e, info); break;
     }
     return info;
+}
+
+/// Of another shader: member->name, method->name(...).
+void Checker::surveyMember(Expr& e, Info& info) {
+    for (auto& a : e.args) survey(*a);
+    info.any = true;
+    if (infos_.at(e.args[0].get()).any) return;
+    sources_.error(e.place, "members and methods of other shaders are not yet available");
 }
 
 void Checker::surveyVariable(Expr& e, Info& info) {
@@ -111,6 +126,7 @@ void Checker::surveyVariable(Expr& e, Info& info) {
         info.cost[int(Base::Float)] = 0;
         return;
     }
+    if (!s) s = tolerated(e);
     if (!s) {
         unknownVariable(e);
         info.any = true;

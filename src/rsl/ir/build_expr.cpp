@@ -239,6 +239,10 @@ Inst* Builder::expr(const Expr& e) {
     if (failed_)
         return e.type.array ? newArray(e.type.base, 1) : zero(kindOf(e.type) == Kind::None ? Kind::Float : kindOf(e.type));
     if (e.place.line) place_ = e.place;
+    if (e.kind == ExprKind::Sequence) {
+        for (size_t n = 0; n + 1 < e.args.size(); ++n) expr(*e.args[n]);
+        return expr(*e.args.back());
+    }
     if (e.type.array && e.kind != ExprKind::Assign && e.kind != ExprKind::FunctionCall && e.kind != ExprKind::ShadeopCall)
         return array(e);
     switch (e.kind) {
@@ -335,6 +339,10 @@ Inst* Builder::expr(const Expr& e) {
         return shadeopCall(e);
     case ExprKind::FunctionCall:
         return e.shadeop ? shadeopCall(e) : functionCall(e);
+    case ExprKind::Sequence:
+    case ExprKind::Member:
+    case ExprKind::Method:
+        break;
     }
     return constant(0);
 }

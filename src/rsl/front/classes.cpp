@@ -1,0 +1,293 @@
+#include "rsl/front/classes.h"
+#include "rsl/front/clone.h"
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <set>
+
+namespace alpenglow::rsl::front {
+
+namespace {
+
+/// A method that the renderer runs, in which kind of shader, and the variables it is given, in order.
+struct Entry {
+    ShaderKind kind;
+    const char* name;
+    std::vector<const char*> variables;
+};
+
+/// In the order in which they run.
+const std::vector<Entry>& entries() {
+    using K = ShaderKind;
+    static const std::vector<Entry> all = {
+        {K::Surface, "opacity", {"Oi"}},           {K::Surface, "prelighting", {"Ci", "Oi"}},
+        {K::Surface, "lighting", {"Ci", "Oi"}},    {K::Surface, "postlighting", {"Ci", "Oi"}},
+        {K::Surface, "surface", {"Ci", "Oi"}},     {K::Displacement, "displacement", {"P", "N"}},
+        {K::Light, "light", {"L", "Cl", "Ol"}},    {K::Volume, "volume", {"Ci", "Oi"}},
+        {K::Imager, "imager", {"Ci", "Oi", "alpha"}}};
+    return all;
+}
+
+ExprPtr node(ExprKind kind, Place place, ExprOp op = ExprOp::None) {
+    auto e = std::make_unique<Expr>();
+    e->kind = kind;
+    e->place = place;
+    e->op = op;
+    return e;
+}
+
+void adopt(Expr& parent, ExprPtr child) {
+    parent.height = std::max(parent.height, child->height + 1);
+    parent.args.push_back(std::move(child));
+}
+
+ExprPtr variable(const std::string& name, Place place) {
+    auto e = node(ExprKind::Variable, place);
+    e->text = name;
+    return e;
+}
+
+StmtPtr make(StmtKind kind, Place place) {
+    auto s = std::make_unique<Stmt>();
+    s->kind = kind;
+    s->place = place;
+    return s;
+}
+
+StmtPtr run(ExprPtr e) {
+    auto s = make(StmtKind::Expression, e->place);
+    s->value = std::move(e);
+    return s;
+}
+
+/// Calls `see` for every expression and statement of a text.
+struct Walk {
+    std::function<void(const Expr&)> expr = [](const Expr&) {};
+    std::function<void(const Stmt&)> stmt = [](const Stmt&) {};
+    void operator()(const ExprPtr& e) const {
+        if (!e) return;
+        expr(*e);
+        for (const auto& a : e->args) (*this)(a);
+        (*this)(e->space);
+        (*this)(e->channel);
+        for (const auto& p : e->pairs) (*this)(p.value);
+    }
+    void operator()(const StmtPtr& s) const {
+        if (!s) return;
+        stmt(*s);
+        for (const auto& b : s->body) (*this)(b);
+        (*this)(s->elseBody);
+        for (const ExprPtr* e : {&s->condition, &s->init, &s->step, &s->value, &s->category}) (*this)(*e);
+        for (const auto& d : s->declarators) (*this)(d.init);
+        for (const auto& e : s->exprs) (*this)(e);
+        for (const auto& p : s->pairs) (*this)(p.value);
+        if (s->definition) (*this)(s->definition->body);
+    }
+};
+
+class Expansion {
+public:
+    Expansion(const ClassDefinition& c, Unit& u, SourceSet& s) : class_(c), unit_(u), sources_(s) {
+        for (const auto& f : c.shader->nested) {
+            Walk w;
+            w.expr = [&](const Expr& e) {
+                if (e.kind == ExprKind::ShadeopCall) calls_[f->name].insert(e.text);
+            };
+            w(f->body);
+            names_.insert(f->name);
+        }
+    }
+
+    void run() {
+        for (const auto& f : class_.shader->nested)
+            if (f->result.base != Base::Void && isEntry(f->name))
+                sources_.error(f->place, "method '" + f->name + "' returns no value");
+        if (recursive()) return;
+        std::vector<ShaderKind> kinds;
+        for (const Entry& e : entries())
+            if (names_.count(e.name) && std::find(kinds.begin(), kinds.end(), e.kind) == kinds.end()) kinds.push_back(e.kind);
+        if (names_.count("surface"))
+            for (const char* part : {"prelighting", "lighting", "postlighting"})
+                if (names_.count(part) && !calls_["surface"].count(part))
+                    sources_.warning(method(part)->place, std::string("method '") + part + "' is not run where there is a method 'surface'");
+        if (kinds.empty()) kinds.push_back(ShaderKind::Surface); // a shader for other shaders
+        for (ShaderKind k : kinds) unit_.shaders.push_back(shader(k, k == kinds[0]));
+    }
+
+private:
+    const Function* method(const std::string& name) const {
+        for (const auto& f : class_.shader->nested)
+            if (f->name == name) return f.get();
+        return nullptr;
+    }
+
+    static bool isEntry(const std::string& name) {
+        return std::any_of(entries().begin(), entries().end(), [&](const Entry& e) { return name == e.name; });
+    }
+
+    /// Methods may stand in any order, so a circle among them is found here.
+    bool recursive() {
+        bool found = false;
+        std::map<std::string, int> state;
+        const std::function<void(const std::string&)> visit = [&](const std::string& name) {
+            if (!names_.count(name) || state[name] == 2) return;
+            if (state[name] == 1) {
+                if (!found) sources_.error(method(name)->place, "method '" + name + "' calls itself; recursion is not allowed");
+                found = true;
+                return;
+            }
+            state[name] = 1;
+            for (const auto& c : calls_[name]) visit(c);
+            state[name] = 2;
+            order_.push_back(name);
+        };
+        for (const auto& f : class_.shader->nested) visit(f->name);
+        return found;
+    }
+
+    std::set<std::string> reachable(ShaderKind kind) {
+        std::set<std::string> all;
+        const std::function<void(const std::string&)> visit = [&](const std::string& name) {
+            if (!names_.count(name) || !all.insert(name).second) return;
+            for (const auto& c : calls_[name]) visit(c);
+        };
+        visit("construct");
+        visit("begin");
+        for (const Entry& e : entries())
+            if (e.kind == kind) visit(e.name);
+        return all;
+    }
+
+    std::unique_ptr<Shader> shader(ShaderKind kind, bool first) {
+        auto s = clone(*class_.shader);
+        s->kind = kind;
+        auto wanted = reachable(kind);
+        // A method that no entry of any kind calls is checked with the first.
+        if (first) {
+            std::set<std::string> others = wanted;
+            for (int k = 0; k < 6; ++k) others.merge(reachable(ShaderKind(k)));
+            for (const auto& n : names_)
+                if (!others.count(n)) wanted.insert(n);
+        }
+        std::vector<StmtPtr> body, methods;
+        for (auto& b : s->body->body) {
+            if (!b->definition) body.push_back(std::move(b));
+            else if (wanted.count(b->definition->name)) methods.push_back(std::move(b));
+        }
+        // What is called stands before what calls it.
+        const auto rank = [&](const StmtPtr& m) {
+            return std::find(order_.begin(), order_.end(), m->definition->name) - order_.begin();
+        };
+        std::stable_sort(methods.begin(), methods.end(), [&](const StmtPtr& a, const StmtPtr& b) { return rank(a) < rank(b); });
+        for (auto& m : methods) body.push_back(std::move(m));
+        s->body->body = std::move(body);
+        for (const char* n : {"construct", "begin"})
+            if (names_.count(n)) s->body->body.push_back(call(n, {}));
+        const bool whole = names_.count("surface") > 0;
+        for (const Entry& e : entries()) {
+            if (e.kind != kind || !names_.count(e.name)) continue;
+            const std::string name = e.name;
+            if (kind == ShaderKind::Surface && whole && name != "surface" && name != "opacity") continue;
+            if (kind == ShaderKind::Light) light(*s);
+            else s->body->body.push_back(call(name, e.variables));
+        }
+        return s;
+    }
+
+    StmtPtr call(const std::string& name, const std::vector<const char*>& variables) {
+        const Function& f = *method(name);
+        if (f.parameters.size() > variables.size()) {
+            sources_.error(f.place, "method '" + name + "' has at most " + std::to_string(variables.size()) +
+                                        (variables.size() == 1 ? " parameter" : " parameters"));
+            return make(StmtKind::Block, f.place);
+        }
+        auto e = node(ExprKind::ShadeopCall, f.place);
+        e->text = name;
+        for (size_t i = 0; i < f.parameters.size(); ++i) adopt(*e, variable(variables[i], f.place));
+        return front::run(std::move(e));
+    }
+
+    /// A method light() either has illuminate() or solar() like a light shader, or sets L itself.
+    void light(Shader& s) {
+        bool blocks = false;
+        Walk w;
+        w.stmt = [&](const Stmt& x) { blocks |= x.kind == StmtKind::Illuminate || x.kind == StmtKind::Solar; };
+        for (const auto& n : reachable(ShaderKind::Light)) w(method(n)->body);
+        const Function& written = *method("light");
+        const Place place = written.place;
+        if (blocks) {
+            // Its parameters are the predefined variables that the blocks set.
+            for (auto& f : s.nested) {
+                if (f->name != "light") continue;
+                std::vector<Symbol*> others;
+                for (Symbol* p : f->parameters)
+                    if (p->name != "L" && p->name != "Cl" && p->name != "Ol") others.push_back(p);
+                if (!others.empty())
+                    sources_.error(others[0]->place, "the parameters of a method 'light' with illuminate() or solar() are L, Cl and Ol");
+                f->parameters.clear();
+            }
+            auto e = node(ExprKind::ShadeopCall, place);
+            e->text = "light";
+            s.body->body.push_back(front::run(std::move(e)));
+            return;
+        }
+        const std::string names[] = {"(light)->L", "(light)->Cl", "(light)->Ol"};
+        auto d = make(StmtKind::Declare, place);
+        for (int i = 0; i < 3; ++i) {
+            auto symbol = std::make_unique<Symbol>();
+            symbol->name = names[i];
+            symbol->type = {i ? Base::Color : Base::Vector, 0};
+            symbol->place = place;
+            auto zero = node(ExprKind::Number, place);
+            zero->number = i == 2;
+            d->declarators.push_back({symbol.get(), std::move(zero)});
+            s.symbols.push_back(std::move(symbol));
+        }
+        s.body->body.push_back(std::move(d));
+        s.body->body.push_back(call("light", {names[0].c_str(), names[1].c_str(), names[2].c_str()}));
+        const auto assign = [&](const char* to, const std::string& from) {
+            auto a = node(ExprKind::Assign, place, ExprOp::Assign);
+            adopt(*a, variable(to, place));
+            adopt(*a, variable(from, place));
+            return front::run(std::move(a));
+        };
+        auto block = make(StmtKind::Block, place);
+        block->body.push_back(assign("Cl", names[1]));
+        block->body.push_back(assign("Ol", names[2]));
+        bool directed = false; // a light that never sets L is ambient
+        const std::string L = written.parameters.empty() ? "L" : written.parameters[0]->name;
+        Walk sets;
+        sets.expr = [&](const Expr& e) {
+            if (e.kind == ExprKind::Assign && e.args[0]->text == L) directed = true;
+            if (e.kind == ExprKind::ShadeopCall)
+                for (const auto& a : e.args) directed |= a->text == L && names_.count(e.text);
+        };
+        sets(written.body);
+        if (!directed) {
+            s.body->body.push_back(std::move(block));
+            return;
+        }
+        auto illuminate = make(StmtKind::Illuminate, place);
+        auto from = node(ExprKind::Binary, place, ExprOp::Sub);
+        adopt(*from, variable("Ps", place));
+        adopt(*from, variable(names[0], place));
+        illuminate->exprs.push_back(std::move(from));
+        illuminate->body.push_back(std::move(block));
+        s.body->body.push_back(std::move(illuminate));
+    }
+
+    const ClassDefinition& class_;
+    Unit& unit_;
+    SourceSet& sources_;
+    std::map<std::string, std::set<std::string>> calls_;
+    std::set<std::string> names_;
+    std::vector<std::string> order_;
+};
+
+} // namespace
+
+void expandClasses(Unit& u, SourceSet& s) {
+    for (const auto& c : u.classes) Expansion(c, u, s).run();
+}
+
+} // namespace alpenglow::rsl::front

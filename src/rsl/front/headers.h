@@ -1,0 +1,21 @@
+// What a shader expects from its surroundings: the headers of well-known names, and the macros that a compiler predefines.
+#pragma once
+#include <span>
+#include <string_view>
+
+namespace alpenglow::rsl::front {
+
+/// A header of ours, under a name that published shaders include. Its text lies in shaders/include.
+struct ShippedHeader { std::string_view name, text; };
+
+/// All of them, by name.
+std::span<const ShippedHeader> shippedHeaders();
+/// The header of that name, in upper or lower case, or under one of its other names; null when there is none.
+const ShippedHeader* shippedHeader(std::string_view name);
+
+/// Names of the dialects, the default first.
+std::span<const std::string_view> dialects();
+/// "NAME VALUE" of each macro that the compiler of this dialect predefines. "" is 3Delight's; an unknown name has none.
+std::span<const std::string_view> dialectMacros(std::string_view dialect);
+
+} // namespace alpenglow::rsl::front

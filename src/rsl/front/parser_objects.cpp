@@ -1,0 +1,122 @@
+// Definitions of structures and of shader objects.
+#include "base/limits.h"
+#include "rsl/front/parser.h"
+
+namespace alpenglow::rsl::front {
+
+/// At "struct": struct Name { members };
+void Parser::structure() {
+    take();
+    if (peek().kind != Tok::Identifier) failHere("expected the name of a structure");
+    const Token& name = take();
+    if (!at("{")) failHere("expected '{' of structure '" + std::string(name.text) + "'");
+    take();
+    StructType type;
+    type.name = std::string(name.text);
+    type.place = name.place;
+    while (!accept("}")) {
+        if (peek().kind == Tok::End) failHere("expected '}' of structure '" + type.name + "'");
+        const size_t before = at_;
+        try {
+            if (accept(";") || accept(",")) continue;
+            const Specifiers s = specifiers();
+            if (!atTypeName()) failHere("expected the type of a member");
+            const Base base = takeBase();
+            if (base == Base::Void) fail(s.place, "a member cannot be void");
+            const Type group = dimensions({base, 0});
+            do {
+                if (peek().kind != Tok::Identifier) failHere("expected the name of a member");
+                StructMember m;
+                m.place = peek().place;
+                m.name = std::string(take().text);
+                m.type = dimensions(group);
+                m.storage = s.storage;
+                if (accept("=")) m.init = at("{") ? arrayList() : assignment();
+                for (const StructMember& other : type.members)
+                    if (other.name == m.name) sources_.error(m.place, "there are two members called '" + m.name + "'");
+                type.members.push_back(std::move(m));
+            } while (accept(","));
+            if (!at("}")) expectSemicolon("a member");
+        } catch (const SyntaxError&) {
+            if (tooDeep_) throw;
+            recover();
+            skippedFrom(before);
+            if (at_ == before && !at("}")) take();
+        }
+    }
+    accept(";");
+    if (type.members.empty()) sources_.error(type.place, "structure '" + type.name + "' has no members");
+    if (unit_.structs.size() >= size_t(limits::kStructs)) {
+        sources_.error(type.place, "a shader has at most " + std::to_string(limits::kStructs) + " structures");
+        unit_.incomplete = true;
+        return;
+    }
+    if (const auto old = structs_.find(type.name); old != structs_.end())
+        sources_.error(type.place, "structure '" + type.name + "' is defined already");
+    structs_[type.name] = int(unit_.structs.size());
+    unit_.structs.push_back(std::move(type));
+}
+
+/// At "class": class name(parameters) { members; methods }
+void Parser::shaderObject() {
+    take();
+    ClassDefinition c;
+    c.shader = std::make_unique<Shader>();
+    Shader& s = *c.shader;
+    s.place = peek().place;
+    s.name = std::string(take().text);
+    owner_ = {&s.symbols, &s.nested};
+    if (accept("(")) parameters(owner_, &s.parameters, nullptr);
+    if (!at("{")) failHere("expected '{' of class '" + s.name + "'");
+    s.body = make(StmtKind::Block, take().place);
+    std::vector<StmtPtr> methods;
+    while (!accept("}")) {
+        if (peek().kind == Tok::End) {
+            sources_.error(peek().place, "expected '}' before the end of the file",
+                           "the class began at line " + std::to_string(s.place.line));
+            unit_.incomplete = true;
+            break;
+        }
+        const size_t before = at_;
+        try {
+            if (accept(";")) continue;
+            if (at("struct") && peek(1).kind == Tok::Identifier && peek(2).is("{")) {
+                structure();
+                continue;
+            }
+            const bool isPublic = at("public");
+            StmtPtr member;
+            if (isPublic ? peek(2).is("(") && peek(1).kind == Tok::Identifier : peek().kind == Tok::Identifier && peek(1).is("(")) {
+                // A method without a type: void, or what it returns.
+                accept("public");
+                member = make(StmtKind::Declare, peek().place);
+                auto f = function({}, {}, false);
+                if (!f) continue;
+                member->definition = f.get();
+                s.nested.push_back(std::move(f));
+            } else {
+                const bool starts = atTypeName() || at("public") || at("uniform") || at("varying") || at("constant") ||
+                                    at("const") || at("output") || at("extern");
+                if (!starts) failHere("expected a member or a method of class '" + s.name + "'");
+                member = declaration();
+            }
+            if (!member) continue;
+            if (isPublic && member->definition) c.publics.insert(member->definition->name);
+            if (isPublic)
+                for (const auto& d : member->declarators) c.publics.insert(d.symbol->name);
+            (member->definition ? methods : s.body->body).push_back(std::move(member));
+        } catch (const SyntaxError&) {
+            if (tooDeep_) throw;
+            recover();
+            skippedFrom(before);
+            if (at_ == before && !at("}")) take();
+        }
+    }
+    accept(";");
+    // Methods see all members, wherever these stand.
+    for (auto& m : methods) s.body->body.push_back(std::move(m));
+    owner_ = {};
+    unit_.classes.push_back(std::move(c));
+}
+
+} // namespace alpenglow::rsl::front

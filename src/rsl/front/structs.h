@@ -1,0 +1,33 @@
+// Structures, and how they go: before anything is checked, every variable of a structure becomes one variable for each of its
+// members, named as the shader writes them ("ray->origin"). Behind this pass there are no structures.
+#pragma once
+#include "rsl/front/ast.h"
+
+namespace alpenglow::rsl::front {
+
+class SourceSet;
+struct Unit;
+
+struct StructMember {
+    std::string name;
+    Type type;
+    Storage storage = Storage::Unspecified;
+    ExprPtr init; ///< null: zero
+    Place place;
+};
+
+struct StructType {
+    std::string name;
+    std::vector<StructMember> members;
+    Place place;
+};
+
+/// Until they are gone, types of structures are bases above the built-in ones: their number in Unit::structs behind this one.
+inline constexpr int kFirstStruct = 64;
+inline bool isStruct(Type t) { return int(t.base) >= kFirstStruct; }
+inline Base structBase(size_t index) { return Base(kFirstStruct + int(index)); }
+
+/// Puts members for structures in all shaders, classes and functions of the unit. What has no meaning is reported and left out.
+void lowerStructs(Unit&, SourceSet&);
+
+} // namespace alpenglow::rsl::front

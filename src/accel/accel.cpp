@@ -78,6 +78,7 @@ struct Accel::Impl {
     bool direct = false;
     DirectTriangles triangles;
     std::vector<Ball> balls;
+    Ball ballAround(uint32_t shape) const;
     bool readyDirect();
     void meetDirect(Query&) const;
 
@@ -181,6 +182,28 @@ struct Accel::Impl {
     bool occludedOne(const Ray&) const;
 };
 
+Accel::Impl::Ball Accel::Impl::ballAround(uint32_t s) const {
+    const Shape& shape = *shapes[s];
+    geometry::Bounds b = shape.bounds();
+    Vec3d lo(b.lo), hi(b.hi), centre = (lo + hi) * 0.5;
+    double radius = 0.5 * length(hi - lo) * (1 + 1e-9);
+    // A sphere whose transform keeps it one is its own ball; bounds are a box around it.
+    const auto& numbers = shape.source().primitive->numbers;
+    const auto& m = shape.toCamera().m;
+    if (shape.kind() == "Sphere" && !numbers.empty()) {
+        Vec3d row[3];
+        for (int i = 0; i < 3; ++i) row[i] = {m[i][0], m[i][1], m[i][2]};
+        double l = dot(row[0], row[0]);
+        bool round = m[0][3] == 0 && m[1][3] == 0 && m[2][3] == 0 && m[3][3] == 1;
+        for (int i = 0; i < 3; ++i)
+            round = round && std::fabs(dot(row[i], row[i]) - l) <= 1e-6 * l && std::fabs(dot(row[i], row[(i + 1) % 3])) <= 1e-6 * l;
+        Vec3d own(m[3][0], m[3][1], m[3][2]);
+        double r = std::fabs(double(numbers[0])) * std::sqrt(l) * (1 + 1e-5) + 1e-12 * length(own);
+        if (round && r < radius) return {s, own, r * r};
+    }
+    return {s, centre, radius * radius};
+}
+
 bool Accel::Impl::readyDirect() {
     size_t count = 0, exact = 0;
     for (const ShapeRef& s : shapes) {
@@ -192,10 +215,7 @@ bool Accel::Impl::readyDirect() {
         const Shape& shape = *shapes[s];
         bounds.add(shape.bounds());
         if (shape.exact()) {
-            geometry::Bounds b = shape.bounds();
-            Vec3d lo(b.lo), hi(b.hi);
-            double radius = 0.5 * length(hi - lo) * (1 + 1e-9);
-            balls.push_back({s, (lo + hi) * 0.5, radius * radius});
+            balls.push_back(ballAround(s));
             continue;
         }
         const geometry::TriMesh& m = shape.mesh();
@@ -211,12 +231,15 @@ bool Accel::Impl::readyDirect() {
 void Accel::Impl::meetDirect(Query& q) const {
     const Ray& r = *q.ray;
     const Vec3d o(r.org), d(r.dir);
-    const double error = triangles.planeError(o);
-    for (uint32_t left = triangles.candidates(r); left; left &= left - 1) {
+    DirectTriangles::Near near;
+    for (uint32_t left = triangles.candidates(r, near); left; left &= left - 1) {
         size_t i = size_t(std::countr_zero(left));
-        // Behind the nearest so far, or the plane that the ray leaves: most candidates end here.
-        double margin, plane = triangles.planeT(i, o, d, error, margin);
-        if (plane + margin < double(r.tnear) || plane - margin > q.best.t) continue;
+        if (double(near[i]) > q.best.t) continue;
+        // The plane that the ray leaves, or that of the light a shadow ray goes to: most candidates end here.
+        if (q.any || !(near[i] > r.tnear)) {
+            double margin, plane = triangles.planeT(i, o, d, triangles.planeError(o), margin);
+            if (plane + margin < double(r.tnear) || plane - margin > std::min(double(r.tfar), q.best.t)) continue;
+        }
         const DirectTriangles::Triangle& t = triangles[i];
         if (!visible(r, t.shape) || excluded(r, t.shape, t.prim)) continue;
         double at, b1, b2, outside;

@@ -5,6 +5,8 @@
 #pragma once
 #include "base/diagnostics.h"
 #include "geometry/shape.h"
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <span>
 #include <vector>
@@ -69,7 +71,28 @@ private:
 
 /// Meeting a triangle in double: false when the line is parallel to it or the triangle has no area. b1, b2 are clamped to the
 /// triangle, for candidates that are known to be hits; `outside` says by how much they had to be.
-bool meetTriangle(const Vec3& org, const Vec3& dir, const Vec3& a, const Vec3& b, const Vec3& c, double& t, double& b1,
-                  double& b2, double& outside);
+inline bool meetTriangle(const Vec3& org, const Vec3& dir, const Vec3& fa, const Vec3& fb, const Vec3& fc, double& t, double& b1,
+                  double& b2, double& outside) {
+    // Float coordinates subtract exactly or nearly so in double: the plane test keeps the side of an origin one float step away.
+    Vec3d a = Vec3d(fa) - Vec3d(org), b = Vec3d(fb) - Vec3d(org), c = Vec3d(fc) - Vec3d(org), d(dir);
+    Vec3d e1 = b - a, e2 = c - a, n = cross(e1, e2);
+    double den = dot(n, d);
+    if (!(std::fabs(den) > 0)) return false;
+    t = dot(n, a) / den;
+    // Moeller-Trumbore weights, relative to corner a.
+    Vec3d q = cross(a, d);
+    b1 = dot(q, e2) / den;
+    b2 = -dot(q, e1) / den;
+    if (!std::isfinite(t) || !std::isfinite(b1) || !std::isfinite(b2)) return false;
+    outside = std::max({0.0, -b1, -b2, b1 + b2 - 1});
+    b1 = std::clamp(b1, 0.0, 1.0);
+    b2 = std::clamp(b2, 0.0, 1.0);
+    if (b1 + b2 > 1) {
+        double s = b1 + b2;
+        b1 /= s;
+        b2 /= s;
+    }
+    return true;
+}
 
 } // namespace alpenglow::accel

@@ -1,4 +1,4 @@
-// Tiny scenes without a tree: all triangles are looked at, four at a time, in float; those that may be met are then met in double.
+// Tiny scenes without a tree: all triangles are looked at, four or eight at a time, in float; those that may be met are then met in double.
 // Up to some two dozen triangles that is faster than walking a hierarchy.
 #pragma once
 #include "geometry/shape.h"
@@ -18,9 +18,11 @@ public:
     size_t size() const { return triangles_.size(); }
     const Triangle& operator[](size_t i) const { return triangles_[i]; }
 
+    /// Below where the ray meets triangle i, in its lengths of dir; for those in `candidates`.
+    using Near = float[(kMost + 7) / 8 * 8];
     /// Bit i: the ray may meet triangle i between its tnear and tfar. Never clear for a triangle that it meets: the bounds are widened
     /// by more than float arithmetic can be off.
-    uint32_t candidates(const Ray&) const;
+    uint32_t candidates(const Ray& r, Near& near) const { return find_(*this, r, near); }
     /// What planeT() takes as `error` of a ray from org.
     double planeError(const Vec3d& org) const { return 1e-13 * (double(extent_) + std::fabs(org.x) + std::fabs(org.y) + std::fabs(org.z)); }
     /// The t at which the ray meets the plane of triangle i, in double, and more than it can be off; infinite or not a number in the
@@ -32,9 +34,15 @@ public:
     }
 
 private:
-    /// Four triangles: plane n.p = d, and the two barycentric weights as linear functions of the point, with their slopes.
-    struct alignas(16) Four { float n[3][4], d[4], u[3][4], u0[4], v[3][4], v0[4], slope[4]; };
-    std::vector<Four> fours_;
+    /// Eight triangles: plane n.p = d, and the two barycentric weights as linear functions of the point, with their slopes.
+    struct alignas(32) Eight { float n[3][8], d[8], u[3][8], u0[8], v[3][8], v0[8], slope[8]; };
+    std::vector<Eight> eights_;
+    /// The same by four and by eight lanes, the latter where the processor has them. The bits of all that is computed agree.
+    using Find = uint32_t (*)(const DirectTriangles&, const Ray&, Near&);
+    static uint32_t findFour(const DirectTriangles&, const Ray&, Near&);
+    static uint32_t findEight(const DirectTriangles&, const Ray&, Near&);
+    Find find_ = choose();
+    static Find choose();
     struct Plane { Vec3d n; double d; };
     std::vector<Triangle> triangles_;
     std::vector<Plane> planes_;

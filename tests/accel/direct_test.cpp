@@ -37,7 +37,8 @@ TEST(DirectTriangles, NoneIsOverlooked) {
             float s = k % 3 ? uniform(rng, 0, 1) : 0, t = k % 5 ? uniform(rng, 0, 1 - s) : 0;
             r.dir = (to.a + (to.b - to.a) * s + (to.c - to.a) * t - r.org) * (k % 7 ? 1.f : 1e-3f);
             if (!(length(r.dir) > 0)) continue;
-            uint32_t found = triangles.candidates(r);
+            DirectTriangles::Near near;
+            uint32_t found = triangles.candidates(r, near);
             for (size_t i = 0; i < n; ++i) {
                 double at, b1, b2, outside;
                 bool hit = meetTriangle(r.org, r.dir, triangles[i].a, triangles[i].b, triangles[i].c, at, b1, b2, outside) && outside <= 0 &&
@@ -46,6 +47,7 @@ TEST(DirectTriangles, NoneIsOverlooked) {
                 met += hit;
                 candidates += found >> i & 1;
                 ASSERT_TRUE(!hit || (found >> i & 1)) << "scene " << scene << " ray " << k << " triangle " << i << " t " << at;
+                ASSERT_TRUE(!hit || !(near[i] > at)) << "scene " << scene << " ray " << k << " triangle " << i << " t " << at;
             }
         }
     }

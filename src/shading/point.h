@@ -19,6 +19,7 @@ struct PathRay {
     uint32_t sample = 0, vertex = 0;  ///< vertex: hash of the path of call sites that led here; 0 = camera
     RayType type = RayType::Camera;
     int16_t bounces = 0, diffuseBounces = 0, specularBounces = 0;
+    uint16_t asked = 1;      ///< the most rays that a waiting kernel on the way was known to ask for at one point
     int16_t layers = 0;               ///< transparent surfaces passed so far, since the camera; no bounces
     float time = 0;
     /// Density per steradian with which this direction was drawn, times the probability of drawing it at all; < 0: light sampling

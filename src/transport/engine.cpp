@@ -2,6 +2,7 @@
 #include "transport/engine.h"
 #include "transport/sampling.h"
 #include <algorithm>
+#include <array>
 
 namespace alpenglow::transport {
 
@@ -154,7 +155,12 @@ public:
                                   context->lightDistance[lanesOf[k]]);
                 continue;
             }
+            const size_t had = e.lobes.size();
             e.request(*context, info, first + lanesOf[k], in.data(), lanes, lanesOf[k], Color(1), ids[k], true, occurrence[k]);
+            if (e.lobes.size() == had) continue;
+            uint32_t& asked = asked_[size_t(lanesOf[k])];
+            e.lobes.back().before = asked;
+            asked += uint32_t(e.lobes.back().samples);
         }
         e.gather(*context, s);
         e.flushShadows(s);
@@ -168,6 +174,7 @@ private:
     int first_, depth_;
     int site_ = 0, lanes_ = 0;
     std::vector<uint32_t> occurrences_;
+    std::array<uint32_t, 64> asked_{}; ///< rays that a lane has asked for so far
     float* out_ = nullptr;
     std::vector<int> laneOf_;
 };

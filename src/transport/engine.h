@@ -36,6 +36,7 @@ struct LobeVertex {
     bool deltaLights = true; ///< point, spot and distant ones too (lighting shadeops, not trace())
     bool lobeOfShader = true; ///< a lighting shadeop: counts for the energy rule and may be chosen among
     uint32_t site = 0, occurrence = 0;
+    uint32_t before = 0;   ///< rays that the same waiting kernel has asked for at this point before
     float maxDistance = 1e38f;
     int samples = 1;
     bool ownsTarget = false; ///< a suspended request: the target also gets distance and transmission

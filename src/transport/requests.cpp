@@ -298,9 +298,9 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     float q = 1;
                     auto dice = [&] { return rng.one(r.vertex, kRoulette, 0); };
                     if (l.ownsTarget) {
-                        // A waiting kernel's use of the result is unknown, and it may ask again: behind the third bounce half of its rays
-                        // end, so that the tree of rays stays finite.
-                        if (from.bounces >= 3) q = dice() < 0.5f ? 0.5f : 0;
+                        r.asked = uint16_t(std::min<uint32_t>(std::max<uint32_t>(from.asked, l.before + uint32_t(k) + 1), 0xffff));
+                        q = rouletteWaiting(from.bounces, r.asked);
+                        if (q < 1 && dice() >= q) q = 0;
                     } else if (set.localRoulette) {
                         q = rouletteLocal(from.bounces + 1, l.weight, from.bounces + 1 > 3 ? dice() : 0);
                     } else if (from.bounces + 1 > 3) {

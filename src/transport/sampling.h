@@ -16,24 +16,39 @@ struct Basis {
     Vec3 toWorld(Vec3 v) const { return t * v.x + u * v.y + n * v.z; }
 };
 
+/// Cosine and sine of so many turns, 0 to 1. The series of both functions within an eighth of a turn, as exact as float is: a library's
+/// differ from one version to the next.
+inline Vec2 unitCircle(float turns) {
+    float quarters = float(int(4 * turns + 0.5f));
+    float x = (turns - 0.25f * quarters) * float(2 * kPi), q = x * x;
+    float s = x * (1 - q * (1 / 6.f - q * (1 / 120.f - q * (1 / 5040.f - q * (1 / 362880.f)))));
+    float c = 1 - q * (0.5f - q * (1 / 24.f - q * (1 / 720.f - q * (1 / 40320.f))));
+    int k = int(quarters);
+    float a = k & 1 ? s : c, b = k & 1 ? c : s; // turned by k quarters: (c, s), (-s, c), (-c, -s), (s, -c)
+    return {(k + 1) & 2 ? -a : a, k & 2 ? -b : b};
+}
+
 /// Cosine-weighted direction about +z; density cos / pi.
 inline Vec3 sampleCosine(Vec2 e) {
-    float r = std::sqrt(std::max(0.f, 1 - e.x)), phi = 2 * float(kPi) * e.y;
-    return {r * std::cos(phi), r * std::sin(phi), std::sqrt(e.x)};
+    float r = std::sqrt(std::max(0.f, 1 - e.x));
+    Vec2 d = unitCircle(e.y);
+    return {r * d.x, r * d.y, std::sqrt(e.x)};
 }
 
 /// Phong lobe of exponent n about +z; density (n+1)/(2 pi) cos^n.
 inline Vec3 samplePhong(float n, Vec2 e) {
-    float c = std::pow(e.x, 1 / (n + 1)), s = std::sqrt(std::max(0.f, 1 - c * c)), phi = 2 * float(kPi) * e.y;
-    return {s * std::cos(phi), s * std::sin(phi), c};
+    float c = std::pow(e.x, 1 / (n + 1)), s = std::sqrt(std::max(0.f, 1 - c * c));
+    Vec2 d = unitCircle(e.y);
+    return {s * d.x, s * d.y, c};
 }
 inline float phongPdf(float n, float cosine) { return cosine > 0 ? (n + 1) / (2 * float(kPi)) * std::pow(cosine, n) : 0; }
 
 /// Uniform direction in a cone about +z with the given cosine of its half angle; density 1 / (2 pi (1 - cosMax)).
 /// oneMinusCos is passed beside it because small cones lose it in the subtraction.
 inline Vec3 sampleCone(float oneMinusCos, Vec2 e) {
-    float h = e.x * oneMinusCos, c = 1 - h, s = std::sqrt(std::max(0.f, h * (2 - h))), phi = 2 * float(kPi) * e.y;
-    return {s * std::cos(phi), s * std::sin(phi), c};
+    float h = e.x * oneMinusCos, c = 1 - h, s = std::sqrt(std::max(0.f, h * (2 - h)));
+    Vec2 d = unitCircle(e.y);
+    return {s * d.x, s * d.y, c};
 }
 
 /// Power heuristic, beta 2: the weight of technique a against b (pathtracer.md 5.2). misWeight(a,b) + misWeight(b,a) = 1.
@@ -41,6 +56,17 @@ inline float misWeight(float a, float b) {
     if (!(a > 0)) return 0;
     float r = b / a;
     return 1 / (1 + r * r);
+}
+
+/// The chance that a ray goes on which a waiting kernel asks for: of its result's use nothing is known, and a kernel may ask any number
+/// of times. `bounces` of the point that asks; `many`: the most rays known to be asked for at one point, by this one so far or by those that
+/// the path has met. At the camera's hit every ray goes. Behind the third bounce the chances at a point sum up to at most 1 once the path
+/// has met a point that asks as often (to .6 above three rays, where that takes longer to learn), so that the tree of rays ends; all rays of
+/// a point have about the same chance, which keeps their variance finite where kernels lose light. Unbiased: what is known depends only on
+/// rays asked for before.
+inline float rouletteWaiting(int bounces, uint32_t many) {
+    float n = float(many);
+    return bounces < 1 ? 1 : bounces < 3 ? std::min(1.f, 3 / n) : many <= 3 ? std::min(.5f, 1 / n) : .6f / n;
 }
 
 /// The seed's local roulette (pathtracer.md 5.1): 1 up to depth 3, then the largest channel of the albedo. 0 = stop; the caller divides.

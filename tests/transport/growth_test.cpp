@@ -153,6 +153,34 @@ TEST(Growth, SuspendedFramesStayBounded) {
     for (int i = 0; i < 7; ++i) x = .1 + .4 * x * x;
     EXPECT_NEAR(m.mean(), x, 1e-5);
 }
+// A shader that waits for eight rays at every point, in a closed box where it sends on four fifths of what arrives: .2 + .8 L = L = 1
+// but for depth 32 (.8^33 = .0006). The sum over rays must be finite work, and right.
+TEST(Growth, ManyRaysOfAWaitingShaderStayFinite) {
+    writeShader("eight", R"(surface eight() {
+    normal Nf = faceforward(normalize(N), I);
+    color sum = 0;
+    float k;
+    for (k = 0; k < 8; k += 1) {
+        sum += .1 * trace(P, vector(Nf), "distribution", "cosine", "samplecone", PI / 2);
+        if (comp(sum, 0) < -1) sum = 0;
+    }
+    Oi = 1;
+    Ci = .2 + sum;
+}
+)");
+    std::string rib = kPlasticBox;
+    rib.replace(rib.find("\"plastic\" \"Kd\" .5 \"Ks\" .5"), 26, "\"eight\"");
+    Settings s;
+    s.hider = Hider::Path;
+    s.maxDepth = 32;
+    Scene scene(rib, s);
+    ASSERT_GT(scene.world->facts().suspending, 0);
+    Counters c;
+    Moments m = scene.estimate(kEye, 100, &c);
+    EXPECT_LT(double(c.diffuse) / double(c.paths), 3000);
+    EXPECT_NEAR(m.mean(), 1, 4.753 * m.se() + .0006);
+    EXPECT_LT(m.se(), .1);
+}
 TEST(Stop, EndlessLoopsEndPromptly) {
     writeShader("forever", "surface forever() { float x = 0; while (1) { x += 1; } Ci = x; Oi = 1; }\n");
     Scene scene("WorldBegin\nSurface \"forever\"\nSides 2\nSphere 1 -1 1 360\nWorldEnd\n");

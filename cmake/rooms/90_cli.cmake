@@ -9,3 +9,8 @@ if(TARGET test_cli)
   target_compile_definitions(test_cli PRIVATE ALPENGLOW_PROGRAM="$<TARGET_FILE:alpenglow>")
   add_dependencies(test_cli alpenglow)
 endif()
+
+# The manual of the shadeops; a test of this room fails when the page is not what this makes.
+add_custom_target(shadeops_manual
+  COMMAND alpenglow info --shadeops --markdown > ${CMAKE_SOURCE_DIR}/docs/shadeops.md
+  DEPENDS alpenglow COMMENT "docs/shadeops.md" VERBATIM)

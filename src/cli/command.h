@@ -35,6 +35,7 @@ void addProbe(CLI::App&, int* status);
 void addMaketx(CLI::App&, int* status);
 void addDiff(CLI::App&, int* status);
 void addMerge(CLI::App&, int* status);
+void addLsp(CLI::App&, int* status);
 
 /// Prints diagnostics of at least this severity to standard error, taking a progress bar off the line first.
 Diagnostics::Handler printer(Severity least = Severity::Warning);

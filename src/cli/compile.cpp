@@ -1,16 +1,79 @@
 // alpenglow compile: checks shaders, compiles them to machine code, shows what became of them.
 #include "cli/command.h"
 #include "rsl/compiler.h"
+#include "rsl/front/messages.h"
 #include <CLI/CLI.hpp>
+#include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 namespace alpenglow::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json placeJson(const SourcePlace& p, int length) {
+    return {{"file", p.file}, {"line", p.line}, {"column", p.column}, {"length", length}};
+}
+
+/// For editors: everything a diagnostic says, places counted from 1, columns and lengths in bytes.
+Json diagnosticJson(const Diagnostic& d) {
+    Json j = placeJson(d.place, d.length);
+    j["severity"] = d.severity == Severity::Info ? "note" : d.severity == Severity::Warning ? "warning" : "error";
+    j["id"] = d.id;
+    j["message"] = d.message;
+    if (!d.hint.empty()) j["hint"] = d.hint;
+    if (!d.notes.empty()) j["notes"] = d.notes;
+    for (const FixIt& f : d.fixes) {
+        Json fix = placeJson(f.place, f.length);
+        fix["text"] = f.text;
+        j["fixes"].push_back(std::move(fix));
+    }
+    return j;
+}
+
+std::string lineOf(const SourcePlace& p) {
+    std::ifstream in(p.file, std::ios::binary);
+    std::string line;
+    for (int n = 0; n < p.line && std::getline(in, line); ++n) {}
+    while (!line.empty() && (line.back() == '\r' || line.back() == '\n')) line.pop_back();
+    return in || !line.empty() ? line : "";
+}
+
+/// Where the light that a shader asks for goes through something else than sums and products with what is known beforehand.
+void warnNonlinear(const rsl::ShaderCompiler& compiler, const rsl::CompiledShader& shader, rsl::KernelOptions options,
+                   Diagnostics& diags) {
+    options.path = true;
+    Diagnostics quiet; // what there is to say was said when the kernel was made
+    const auto kernel = compiler.analyse(shader, options, quiet);
+    if (!kernel || kernel->facts.affine || kernel->facts.whyNot.empty()) return;
+    Diagnostic d;
+    d.severity = Severity::Warning;
+    d.code = Rie::Syntax;
+    d.place.file = shader.path();
+    const rsl::Place& p = kernel->facts.whyNotPlace;
+    const auto& files = shader.program().files;
+    if (p.line > 0 && p.file >= 0 && size_t(p.file) < files.size()) {
+        d.place = {files[size_t(p.file)], p.line, p.column};
+        d.sourceLine = lineOf(d.place);
+    }
+    const std::string& why = kernel->facts.whyNot;
+    const size_t end = why.find_first_of(",:");
+    d.message = "under path the result of " + why.substr(0, end) + " is used non-linearly: " +
+                (why.find(": ") == std::string::npos ? why : why.substr(why.find(": ") + 2));
+    d.id = "not-affine";
+    d.hint = "the shader waits for its rays then; only sums and products with what does not depend on light need no waiting";
+    rsl::complete(d);
+    diags.report(std::move(d));
+}
+
+} // namespace
 
 void addCompile(CLI::App& app, int* status) {
     struct Arguments {
         std::vector<std::string> files, searchPaths, defines;
         int lanes = 16;
-        bool ir = false, llvm = false, path = false, mixed = false, suspend = false, quiet = false;
+        bool ir = false, llvm = false, path = false, mixed = false, suspend = false, quiet = false, warn = false, json = false;
     };
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("compile", "Check and compile shaders");
@@ -25,15 +88,24 @@ void addCompile(CLI::App& app, int* status) {
     c->add_flag("--suspend", a->suspend, "The suspending form even where the affine one is possible");
     c->add_flag("--dump-ir", a->ir, "Print our intermediate code after all passes");
     c->add_flag("--dump-llvm", a->llvm, "Print LLVM's too");
+    c->add_flag("-W,--warnings", a->warn, "Warn also about unused, uninitialised and non-linear use under path");
+    c->add_flag("--json", a->json, "Diagnostics as JSON on standard output, for editors");
     c->add_flag("-q,--quiet", a->quiet, "Errors only");
     c->footer("Errors are shown with file:line:column, the line and a caret. Exit status 0 when all shaders compile, else 1.");
     c->callback([a, status] {
-        Diagnostics diags(printer(a->quiet ? Severity::Error : Severity::Warning));
+        Json report = Json::array();
+        const auto print = printer(a->quiet ? Severity::Error : Severity::Warning);
+        Diagnostics diags([&, print](Diagnostic d) {
+            rsl::complete(d);
+            if (!a->json) print(d);
+            else if (!a->quiet || d.severity >= Severity::Error) report.push_back(diagnosticJson(d));
+        });
         rsl::ShaderCompiler::Settings settings;
         for (const std::string& d : a->defines) {
             size_t eq = d.find('=');
             settings.defines.emplace_back(d.substr(0, eq), eq == std::string::npos ? "1" : d.substr(eq + 1));
         }
+        settings.lint = a->warn;
         rsl::ShaderCompiler compiler(settings);
         std::vector<std::string> paths{"."};
         for (std::string& f : folders(a->searchPaths)) paths.push_back(std::move(f));
@@ -45,19 +117,28 @@ void addCompile(CLI::App& app, int* status) {
         options.mixed = a->mixed;
         options.suspend = a->suspend;
         int failed = 0;
+        Json shaders = Json::array();
         for (const std::string& f : a->files) {
             auto shader = compiler.load(f, paths, diags);
             bool ok = shader != nullptr;
-            if (ok && (a->ir || a->llvm)) {
+            if (ok && !a->json && (a->ir || a->llvm)) {
                 std::string text = compiler.dump(shader, options, diags, a->llvm);
                 std::fputs(text.c_str(), stdout);
                 ok = !text.empty();
             }
             if (ok) ok = compiler.kernel(shader, options, diags) != nullptr;
+            if (ok && a->warn && shader->kind() == rsl::ShaderKind::Surface) warnNonlinear(compiler, *shader, options, diags);
+            Json entry = {{"file", f}, {"ok", ok}};
+            if (shader) entry["name"] = shader->name(), entry["type"] = toString(shader->kind());
+            shaders.push_back(std::move(entry));
             if (!ok) {
                 ++failed;
                 if (diags.errors() == 0) diags.report(Severity::Error, Rie::NoShader, {f}, "it cannot be compiled");
             }
+        }
+        if (a->json) {
+            const Json all = {{"shaders", std::move(shaders)}, {"diagnostics", std::move(report)}};
+            std::printf("%s\n", all.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
         }
         *status = failed ? kDoneWithErrors : kDone;
     });

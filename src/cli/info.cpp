@@ -1,5 +1,7 @@
 // alpenglow info: what a shader is, and the manual of the shadeops.
 #include "cli/command.h"
+#include "cli/lspdocument.h"
+#include "cli/manual.h"
 #include "rsl/compiler.h"
 #include "rsl/evaluate.h"
 #include "shadeops/descriptor.h"
@@ -14,87 +16,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* loweringText(rsl::Lowering l) {
-    switch (l) {
-    case rsl::Lowering::Runtime:
-        return "machine code inside the kernel";
-    case rsl::Lowering::Rsl:
-        return "written in RSL, inlined";
-    case rsl::Lowering::Special:
-        return "built into the compiler";
-    case rsl::Lowering::Service:
-        return "answered by the renderer at once";
-    case rsl::Lowering::Request:
-        return "answered by rays or lights";
-    case rsl::Lowering::Unavailable:
-        return "not yet available: it type-checks, a call is reported once";
-    }
-    return "";
-}
-
-const char* derivativeText(rsl::DerivativeRule d) {
-    switch (d) {
-    case rsl::DerivativeRule::Jet:
-        return "exact";
-    case rsl::DerivativeRule::Zero:
-        return "zero (constant almost everywhere)";
-    case rsl::DerivativeRule::ZeroWarn:
-        return "taken as zero, with a warning";
-    case rsl::DerivativeRule::Inherent:
-        return "exact";
-    }
-    return "";
-}
-
-Json shadeopJson(const rsl::Shadeop& s) {
-    Json j;
-    j["name"] = s.name;
-    j["section"] = s.section;
-    for (const auto& g : s.signatures) j["signatures"].push_back(g.text);
-    j["doc"] = s.doc;
-    j["evaluation"] = loweringText(s.lowering);
-    j["available"] = s.lowering != rsl::Lowering::Unavailable;
-    j["derivatives"] = derivativeText(s.derivative);
-    j["pure"] = s.pure;
-    j["bias"] = s.bias == rsl::Bias::Unbiased ? "unbiased" : s.bias == rsl::Bias::Consistent ? "consistent" : "biased";
-    if (!s.biasReason.empty()) j["biasReason"] = s.biasReason;
-    j["optional"] = Json::array();
-    for (const auto& o : s.optional)
-        j["optional"].push_back({{"name", o.name},
-                                 {"type", rsl::toString(o.type)},
-                                 {"output", o.output},
-                                 {"default", o.defaultText},
-                                 {"doc", o.doc}});
-    j["examples"] = Json::array();
-    for (const auto& e : s.examples) j["examples"].push_back({{"expression", e.expression}, {"value", e.value}});
-    if (!s.source.empty()) j["source"] = s.source;
-    return j;
-}
-
-void printShadeop(const rsl::Shadeop& s) {
-    std::printf("%s  (%s)\n\n", s.name.c_str(), s.section.c_str());
-    for (const auto& g : s.signatures) std::printf("    %s\n", g.text.c_str());
-    if (!s.doc.empty()) std::printf("\n%s\n", s.doc.c_str());
-    if (!s.optional.empty()) {
-        std::printf("\nOptional parameters\n");
-        for (const auto& o : s.optional)
-            std::printf("    %s%s \"%s\"%s%s  %s\n", o.output ? "output " : "", rsl::toString(o.type).c_str(), o.name.c_str(),
-                        o.defaultText.empty() ? "" : " = ", o.defaultText.c_str(), o.doc.c_str());
-    }
-    if (!s.examples.empty()) std::printf("\nExamples\n");
-    for (const auto& e : s.examples) std::printf("    %s  gives  %s\n", e.expression.c_str(), e.value.c_str());
-    std::printf("\nEvaluation: %s. Derivatives: %s.", loweringText(s.lowering), derivativeText(s.derivative));
-    if (s.bias != rsl::Bias::Unbiased)
-        std::printf(" %s: %s.", s.bias == rsl::Bias::Consistent ? "Consistent" : "Biased", s.biasReason.c_str());
-    std::printf("\n");
-    if (!s.source.empty()) std::printf("Source: %s\n", s.source.c_str());
-}
-
 int shadeops(const std::string& name, bool json) {
     if (name.empty()) {
         if (json) {
             Json all = Json::array();
-            for (const auto& s : rsl::shadeops()) all.push_back(shadeopJson(s));
+            for (const auto& s : rsl::shadeops()) all.push_back(manualJson(s));
             std::printf("%s\n", all.dump(2).c_str());
             return kDone;
         }
@@ -112,9 +38,16 @@ int shadeops(const std::string& name, bool json) {
                      near.c_str());
         return kDoneWithErrors;
     }
-    if (json) std::printf("%s\n", shadeopJson(*s).dump(2).c_str());
-    else printShadeop(*s);
+    if (json) std::printf("%s\n", manualJson(*s).dump(2).c_str());
+    else std::fputs(manualText(*s).c_str(), stdout);
     return kDone;
+}
+
+/// The name of the space in which a default value is written; "" for none.
+std::string spaceOf(const rsl::Expr* e) {
+    while (e && !e->space && e->kind == rsl::ExprKind::Cast && !e->args.empty()) e = e->args[0].get();
+    if (!e || !e->space || e->space->kind != rsl::ExprKind::String) return "";
+    return e->space->text;
 }
 
 const char* storageText(rsl::Storage s) { return s == rsl::Storage::Varying ? "varying" : "uniform"; }
@@ -140,7 +73,7 @@ void addInfo(CLI::App& app, int* status) {
     struct Arguments {
         std::string file, shadeop;
         std::vector<std::string> searchPaths;
-        bool json = false;
+        bool json = false, markdown = false;
     };
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("info", "Tell what a shader is, or how a shadeop works");
@@ -149,12 +82,16 @@ void addInfo(CLI::App& app, int* status) {
                            ->expected(0, 1)
                            ->type_name("[NAME]");
     c->add_flag("--json", a->json, "As JSON");
+    c->add_flag("--markdown", a->markdown, "With --shadeops: the whole manual as a Markdown page, docs/shadeops.md");
     c->add_option("--searchpath", a->searchPaths, "Folders for shaders and #include, separated by :")
         ->type_name("DIRS")
         ->allow_extra_args(false);
     c->callback([a, ops, status] {
         if (ops->count()) {
-            *status = shadeops(a->shadeop, a->json);
+            if (a->markdown && a->shadeop.empty()) {
+                std::fputs(manualPage().c_str(), stdout);
+                *status = kDone;
+            } else *status = shadeops(a->shadeop, a->json);
             return;
         }
         if (a->file.empty()) throw CLI::RequiredError("shader or --shadeops");
@@ -178,14 +115,23 @@ void addInfo(CLI::App& app, int* status) {
         j["parameters"] = Json::array();
         for (size_t i = 0; i < shader->parameters().size(); ++i) {
             const rsl::ParameterInfo& p = shader->parameters()[i];
-            Json q = {
-                {"name", p.name}, {"type", rsl::toString(p.type)}, {"storage", storageText(p.storage)}, {"output", p.output}};
+            Json q = {{"name", p.name},
+                      {"type", rsl::toString(p.type)},
+                      {"storage", storageText(p.storage)},
+                      {"output", p.output}};
+            if (p.type.array != 0) q["arraySize"] = p.type.array;
+            const auto& declared = shader->shader().parameters;
+            if (i < declared.size())
+                if (const std::string space = spaceOf(declared[i].defaultValue.get()); !space.empty()) q["space"] = space;
             if (p.hasDefault && i < defaults.size()) {
                 if (defaults[i].type.base == rsl::Base::String) q["default"] = defaults[i].strings;
                 else q["default"] = defaults[i].numbers;
             }
             j["parameters"].push_back(q);
         }
+        std::vector<std::string> methods;
+        for (const auto& f : shader->shader().nested) methods.push_back(signatureOf(*f));
+        j["methods"] = methods;
         for (const auto& [key, value] : shader->shader().annotations) j["annotations"][key] = value;
         if (kernel) {
             j["writes"] = kernel->facts.writes;
@@ -202,10 +148,17 @@ void addInfo(CLI::App& app, int* status) {
         std::printf("%s \"%s\"  (%s)\n", kindText(*shader).c_str(), shader->name().c_str(), shader->path().c_str());
         for (size_t i = 0; i < shader->parameters().size(); ++i) {
             const rsl::ParameterInfo& p = shader->parameters()[i];
-            std::string value = p.hasDefault && i < defaults.size() ? " = " + valueText(defaults[i]) : "";
+            std::string value = p.hasDefault && i < defaults.size() ? " = " : "";
+            if (!value.empty()) {
+                const std::string space = spaceOf(shader->shader().parameters[i].defaultValue.get());
+                if (!space.empty()) value += "\"" + space + "\" ";
+                value += valueText(defaults[i]);
+            }
             std::printf("    %s%s %s %s%s\n", p.output ? "output " : "", storageText(p.storage), rsl::toString(p.type).c_str(),
                         p.name.c_str(), value.c_str());
         }
+        for (const std::string& m : methods) std::printf("method: %s\n", m.c_str());
+        for (const auto& [key, v] : shader->shader().annotations) std::printf("annotation %s: %s\n", key.c_str(), v.c_str());
         if (!kernel) return;
         std::string writes;
         for (const std::string& w : kernel->facts.writes) writes += " " + w;

@@ -49,6 +49,7 @@ int main(int argc, char** argv) {
     addMaketx(app, &status);
     addDiff(app, &status);
     addMerge(app, &status);
+    addLsp(app, &status);
     std::vector<std::string> args = normalise(argc, argv, app);
     std::reverse(args.begin(), args.end()); // as the parser takes vectors
     try {

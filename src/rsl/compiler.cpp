@@ -138,6 +138,7 @@ ShaderPtr ShaderCompiler::load(const std::string& name, const std::vector<std::s
         options.includePaths.push_back(fs::path(found->path).parent_path().string());
         for (const auto& d : directories) options.includePaths.push_back(d);
         options.defines = state_->settings.defines;
+        options.lint = state_->settings.lint;
         auto program = compileFile(found->path, options, diagnostics);
         sayWithoutShader(program.get(), found->path, diagnostics);
         result = finish(std::move(program), found->path, stem, {});

@@ -121,6 +121,7 @@ struct Site {
 struct KernelFacts {
     bool affine = true;          ///< every Request was turned into Emit
     std::string whyNot;          ///< the first place that is not affine, in words
+    Place whyNotPlace;           ///< of the call whose result is meant; not kept in kernel files
     bool suspends = false;       ///< Requests are left: the kernel becomes a coroutine
     bool lightLoops = false;
     std::vector<std::pair<int, std::string>> stuck; ///< sites that no weight can be given to, with the reason (passes/affine.h)

@@ -38,6 +38,7 @@ bool prove(Kernel& k, bool split) {
         const Site& s = k.sites[static_cast<size_t>(site)];
         k.facts.affine = false;
         k.facts.suspends = true;
+        k.facts.whyNotPlace = s.place;
         k.facts.whyNot = s.op + "()" + (s.place.line ? ", line " + std::to_string(s.place.line) : "") + ": " + why;
         return false;
     };

@@ -1,0 +1,63 @@
+// The language server: messages of the Language Server Protocol in, messages out. It knows nothing of streams.
+#pragma once
+#include "cli/lspdocument.h"
+#include <map>
+#include <nlohmann/json.hpp>
+
+namespace alpenglow::cli {
+
+class LanguageServer {
+public:
+    using Json = nlohmann::json;
+    /// Folders for #include beside that of the shader, and macros.
+    explicit LanguageServer(rsl::FrontOptions options) : options_(std::move(options)) {}
+
+    /// Answers one message; what is to be sent, in order. Never throws: what cannot be understood gets an error or, when it asks
+    /// for no answer, nothing.
+    std::vector<Json> handle(const Json& message);
+    /// Diagnostics of the texts that changed since the last call: to be sent when no message waits.
+    std::vector<Json> publish();
+    /// After `exit`.
+    bool ended() const { return ended_; }
+    /// 0 when `shutdown` came before the end, else 1.
+    int status() const { return shutdown_ ? 0 : 1; }
+
+    /// An answer to something that is no message: JSON-RPC error codes, -32700 for text that is not JSON.
+    static Json error(const Json& id, int code, const std::string& text);
+
+private:
+    Json request(const std::string& method, const Json& params);
+    void notification(const std::string& method, const Json& params);
+
+    Json initialize(const Json& params);
+    Json completion(const Json& params);
+    Json hover(const Json& params);
+    Json definition(const Json& params);
+    Json symbols(const Json& params);
+    Json signatureHelp(const Json& params);
+    Json codeActions(const Json& params);
+    Json diagnosticsOf(const std::string& uri, Document&);
+
+    Document* document(const Json& params); ///< null when it is not open; analysed
+    size_t position(const Document&, const Json& position) const;
+    Json range(const Document&, size_t begin, size_t end) const;
+    Json place(const Document&, size_t at) const;
+    Json location(const Origin&, size_t length);
+    std::string textOf(const std::string& path);
+    rsl::FrontOptions optionsFor(const Document&) const;
+    /// Column of a line for the client, in its units.
+    size_t units(std::string_view line, size_t bytes) const;
+    size_t bytes(std::string_view line, size_t units) const;
+
+    rsl::FrontOptions options_;
+    std::map<std::string, Document> documents_; ///< by URI
+    std::vector<std::string> changed_;          ///< URIs
+    std::vector<Json> pending_;                 ///< to be sent before the next answer
+    bool utf8_ = false, initialized_ = false, shutdown_ = false, ended_ = false;
+};
+
+/// "file:///a%20b.sl" to "/a b.sl"; other schemes give "".
+std::string pathOf(const std::string& uri);
+std::string uriOf(const std::string& path);
+
+} // namespace alpenglow::cli

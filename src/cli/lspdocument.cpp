@@ -1,0 +1,313 @@
+#include "cli/lspdocument.h"
+#include "rsl/front/inspect.h"
+#include "rsl/front/visit.h"
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <set>
+#include <tuple>
+
+namespace alpenglow::cli {
+
+namespace {
+
+bool isWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
+
+/// Calls f(position, where) for every byte of the text, where saying what it belongs to, until f returns false.
+template <class F> void scan(const std::string& text, size_t end, F&& f) {
+    using Where = Document::Where;
+    Where where = Where::Code;
+    bool block = false;
+    for (size_t i = 0; i < end && i < text.size(); ++i) {
+        const char c = text[i], next = i + 1 < text.size() ? text[i + 1] : '\0';
+        if (where == Where::Code) {
+            if (c == '/' && (next == '/' || next == '*')) {
+                where = Where::Comment;
+                block = next == '*';
+                if (!f(i, where)) return;
+                if (++i < end && !f(i, where)) return;
+                continue;
+            }
+            if (!f(i, where)) return;
+            if (c == '"') where = Where::String;
+        } else if (where == Where::String) {
+            if (c == '"' || c == '\n') where = Where::Code;
+            if (!f(i, c == '"' ? Where::Code : where)) return;
+            if (c == '\\' && next != '\n' && i + 1 < end) {
+                ++i;
+                if (!f(i, where)) return;
+            }
+        } else {
+            if (!block && c == '\n') where = Where::Code;
+            if (!f(i, where)) return;
+            if (block && c == '*' && next == '/' && i + 1 < end) {
+                ++i;
+                if (!f(i, where)) return;
+                where = Where::Code;
+            }
+        }
+    }
+}
+
+} // namespace
+
+void Document::set(std::string text) {
+    text_ = std::move(text);
+    starts_.assign(1, 0);
+    for (size_t i = 0; i < text_.size(); ++i)
+        if (text_[i] == '\n') starts_.push_back(i + 1);
+    stale_ = true;
+}
+
+void Document::replace(size_t begin, size_t end, const std::string& by) {
+    begin = std::min(begin, text_.size());
+    end = std::clamp(end, begin, text_.size());
+    std::string t = std::move(text_);
+    t.replace(begin, end - begin, by);
+    set(std::move(t));
+}
+
+void Document::analyse(const rsl::FrontOptions& options) {
+    if (!stale_) return;
+    stale_ = false;
+    Diagnostics d;
+    rsl::FrontOptions o = options;
+    o.lint = true;
+    auto program = rsl::inspectText(text_, path_, o, d);
+    diagnostics_ = d.all();
+    // While a shader is being typed there are moments in which nothing can be read of it: the last reading serves then.
+    const bool empty = program->shaders.empty() && program->functions.empty();
+    if (!empty || !program_ || diagnostics_.empty()) program_ = std::move(program);
+}
+
+std::string_view Document::line(size_t n) const {
+    if (n >= starts_.size()) return {};
+    const size_t begin = starts_[n];
+    size_t end = n + 1 < starts_.size() ? starts_[n + 1] : text_.size();
+    while (end > begin && (text_[end - 1] == '\n' || text_[end - 1] == '\r')) --end;
+    return std::string_view(text_).substr(begin, end - begin);
+}
+
+size_t Document::offset(size_t n, size_t column) const {
+    if (n >= starts_.size()) return text_.size();
+    return starts_[n] + std::min(column, line(n).size());
+}
+
+size_t Document::lineOf(size_t position) const {
+    return size_t(std::upper_bound(starts_.begin(), starts_.end(), position) - starts_.begin()) - 1;
+}
+
+std::optional<std::pair<size_t, size_t>> Document::wordAt(size_t position) const {
+    size_t begin = std::min(position, text_.size()), end = begin;
+    while (begin > 0 && isWord(text_[begin - 1])) --begin;
+    while (end < text_.size() && isWord(text_[end])) ++end;
+    if (begin == end || std::isdigit(static_cast<unsigned char>(text_[begin]))) return std::nullopt;
+    return std::make_pair(begin, end);
+}
+
+Document::Where Document::where(size_t position) const {
+    // What the byte before belongs to, unless it ends it.
+    Where result = Where::Code;
+    bool open = false;
+    scan(text_, position, [&](size_t i, Where w) {
+        if (w == Where::Code && text_[i] == '"') open = !open;
+        if (w == Where::Code && text_[i] == '\n') open = false;
+        result = w;
+        return true;
+    });
+    if (result == Where::Code && open && position > 0 && text_[position - 1] == '"') return Where::String;
+    if (result == Where::Comment && position >= 2 && text_.compare(position - 2, 2, "*/") == 0) return Where::Code;
+    return result;
+}
+
+std::optional<CallAround> Document::callAround(size_t position) const {
+    struct Open { size_t at; size_t separators; char kind; };
+    std::vector<Open> open;
+    scan(text_, position, [&](size_t i, Where w) {
+        if (w != Where::Code) return true;
+        const char c = text_[i];
+        if (c == '(' || c == '{' || c == '[') open.push_back({i, 0, c});
+        else if ((c == ')' || c == '}' || c == ']') && !open.empty()) open.pop_back();
+        else if ((c == ',' || c == ';') && !open.empty()) ++open.back().separators;
+        return true;
+    });
+    for (size_t k = open.size(); k-- > 0;) {
+        if (open[k].kind == '{') return std::nullopt;
+        if (open[k].kind != '(') continue;
+        size_t end = open[k].at;
+        while (end > 0 && (text_[end - 1] == ' ' || text_[end - 1] == '\t')) --end;
+        size_t begin = end;
+        while (begin > 0 && isWord(text_[begin - 1])) --begin;
+        if (begin == end || std::isdigit(static_cast<unsigned char>(text_[begin]))) continue; // a parenthesis or a triple
+        return CallAround{text_.substr(begin, end - begin), begin, open[k].separators};
+    }
+    return std::nullopt;
+}
+
+size_t Document::endOfDefinition(size_t name) const {
+    int depth = 0;
+    size_t end = std::min(name, text_.size());
+    scan(text_, text_.size(), [&](size_t i, Where w) {
+        if (i < name || w != Where::Code) return true;
+        if (text_[i] == '{') ++depth;
+        if (text_[i] != '}') return true;
+        --depth;
+        end = i + 1;
+        return depth > 0;
+    });
+    return end;
+}
+
+std::string Document::commentAbove(const std::string& text, size_t line) {
+    std::vector<std::string> lines;
+    for (size_t at = 0; at <= text.size() && lines.size() < line;) {
+        const size_t end = std::min(text.find('\n', at), text.size());
+        lines.push_back(text.substr(at, end - at));
+        at = end + 1;
+    }
+    const auto trimmed = [](const std::string& s) {
+        const size_t a = s.find_first_not_of(" \t\r"), b = s.find_last_not_of(" \t\r");
+        return a == std::string::npos ? std::string() : s.substr(a, b - a + 1);
+    };
+    std::vector<std::string> found;
+    bool block = false;
+    for (size_t k = lines.size(); k-- > 0 && found.size() < 40;) {
+        std::string s = trimmed(lines[k]);
+        if (!block && s.rfind("//", 0) == 0) {
+            found.push_back(trimmed(s.substr(std::min(s.find_first_not_of('/'), s.size()))));
+            continue;
+        }
+        if (!block && (s.size() < 2 || s.compare(s.size() - 2, 2, "*/") != 0)) break;
+        if (!block) s.erase(s.size() - 2);
+        block = true;
+        const size_t begin = s.find("/*");
+        if (begin != std::string::npos) s.erase(0, begin + 2), block = false;
+        s = trimmed(s);
+        while (!s.empty() && s[0] == '*') s = trimmed(s.substr(1));
+        while (!s.empty() && s.back() == '*') s = trimmed(s.substr(0, s.size() - 1));
+        found.push_back(s);
+        if (!block) break;
+    }
+    std::string t;
+    for (size_t k = found.size(); k-- > 0;)
+        if (!found[k].empty() || !t.empty()) t += (t.empty() ? "" : "\n") + found[k];
+    return t;
+}
+
+Origin Document::origin(const rsl::Place& p) const {
+    if (!program_ || p.file < 0 || size_t(p.file) >= program_->files.size() || p.line < 1) return {};
+    const std::string& f = program_->files[size_t(p.file)];
+    if (f.empty() || f[0] == '<') return {};
+    return {f, p.line, std::max(1, p.column)};
+}
+
+bool Document::isHere(const rsl::Place& p) const { return origin(p).file == path_ && !path_.empty(); }
+
+Document::Use Document::useAt(size_t word) const {
+    Use use;
+    if (!program_) return use;
+    const auto end = wordAt(word);
+    if (!end) return use;
+    const std::string name = text_.substr(word, end->second - word);
+    const size_t n = lineOf(word);
+    const int line = int(n) + 1, column = int(word - startOf(n)) + 1;
+    const auto here = [&](const rsl::Place& p) { return p.line == line && p.column == column && isHere(p); };
+    const auto expression = [&](const rsl::Expr& e) {
+        if (!here(e.place)) return;
+        if (e.kind == rsl::ExprKind::Variable && e.symbol && e.symbol->name == name) use.symbol = e.symbol;
+        if ((e.kind == rsl::ExprKind::ShadeopCall || e.kind == rsl::ExprKind::FunctionCall) && e.text == name) {
+            if (e.function && !e.shadeop) use.function = e.function;
+            if (e.shadeop) use.shadeop = e.shadeop, use.signature = e.signature;
+        }
+    };
+    const auto statement = [&](const rsl::Stmt& s) {
+        for (const auto& d : s.declarators)
+            if (d.symbol && here(d.symbol->place) && d.symbol->name == name) use.symbol = d.symbol;
+    };
+    for (const auto& s : program_->shaders) {
+        if (here(s->place)) use.shader = s.get();
+        for (const auto& p : s->parameters) {
+            if (here(p.symbol->place)) use.symbol = p.symbol;
+            if (p.defaultValue) rsl::front::everyExpr(*p.defaultValue, expression);
+        }
+        if (s->body) rsl::front::everyStmt(*s->body, statement, expression);
+    }
+    rsl::front::everyFunction(*program_, [&](const rsl::Function& f) {
+        if (here(f.place)) use.function = &f;
+        for (const rsl::Symbol* p : f.parameters)
+            if (here(p->place)) use.symbol = p;
+        if (f.body && isHere(f.body->place)) rsl::front::everyStmt(*f.body, statement, expression);
+    });
+    return use;
+}
+
+Document::Around Document::around(size_t position) const {
+    Around a;
+    if (!program_) return a;
+    size_t best = 0;
+    bool any = false;
+    const auto consider = [&](const rsl::Place& p, const rsl::Shader* s, const rsl::Function* f) {
+        if (!isHere(p)) return;
+        const size_t at = offset(size_t(p.line) - 1, size_t(p.column) - 1);
+        if (at > position || (any && at < best) || endOfDefinition(at) < position) return;
+        any = true;
+        best = at;
+        if (s) a.shader = s, a.function = nullptr;
+        if (f) a.function = f;
+    };
+    for (const auto& s : program_->shaders) {
+        consider(s->place, s.get(), nullptr);
+        for (const auto& n : s->nested)
+            rsl::front::everyFunction(*n, [&](const rsl::Function& f) { consider(f.place, nullptr, &f); });
+    }
+    for (const auto& g : program_->functions)
+        rsl::front::everyFunction(*g, [&](const rsl::Function& f) {
+            if (isHere(f.place) && offset(size_t(f.place.line) - 1, size_t(f.place.column) - 1) > best) {
+                const rsl::Function* before = a.function;
+                consider(f.place, nullptr, &f);
+                if (a.function != before && g.get() == &f) a.shader = nullptr; // it stands outside of shaders
+            }
+        });
+    return a;
+}
+
+std::vector<const rsl::Function*> Document::functions() const {
+    std::vector<const rsl::Function*> list;
+    std::set<std::array<int, 3>> seen;
+    if (!program_) return list;
+    rsl::front::everyFunction(*program_, [&](const rsl::Function& f) {
+        if (origin(f.place).file.empty()) return;
+        // A function is there once for each shader that calls it.
+        if (seen.insert({f.place.file, f.place.line, f.place.column}).second) list.push_back(&f);
+    });
+    std::sort(list.begin(), list.end(), [](const rsl::Function* a, const rsl::Function* b) {
+        return std::tie(a->place.file, a->place.line, a->place.column) < std::tie(b->place.file, b->place.line, b->place.column);
+    });
+    return list;
+}
+
+std::vector<const rsl::Function*> Document::functions(const std::string& name) const {
+    auto list = functions();
+    std::erase_if(list, [&](const rsl::Function* f) { return f->name != name; });
+    return list;
+}
+
+std::string declarationOf(const rsl::Symbol& s) {
+    std::string t = s.output ? "output " : "";
+    if (s.storage != rsl::Storage::Unspecified) t += s.storage == rsl::Storage::Uniform ? "uniform " : "varying ";
+    t += rsl::toString(s.type.element()) + " " + s.name;
+    if (s.type.array > 0) t += "[" + std::to_string(s.type.array) + "]";
+    if (s.type.array < 0) t += "[]";
+    return t;
+}
+
+std::string signatureOf(const rsl::Function& f) {
+    std::string t = rsl::toString(f.result) + " " + f.name + "(";
+    for (size_t i = 0; i < f.parameters.size(); ++i) {
+        const rsl::Symbol& p = *f.parameters[i];
+        t += (i ? "; " : "") + std::string(p.output ? "output " : "") + rsl::toString(p.type) + " " + p.name;
+    }
+    return t + ")";
+}
+
+} // namespace alpenglow::cli

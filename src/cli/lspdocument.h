@@ -1,0 +1,98 @@
+// One text that is open in an editor: its lines, what the compiler makes of it, and what stands at a place. Positions are bytes
+// from the start of the text; the server converts from and to those of the protocol.
+#pragma once
+#include "base/diagnostics.h"
+#include "rsl/front/ast.h"
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace alpenglow::cli {
+
+/// Where something is declared. An empty file means nowhere that has a file.
+struct Origin {
+    std::string file;
+    int line = 0, column = 0; ///< from 1; columns in bytes
+};
+
+/// A call around a position: the name in front of its '(' and how many separators stand between.
+struct CallAround {
+    std::string name;
+    size_t at = 0;       ///< of the name
+    size_t argument = 0; ///< from 0
+};
+
+class Document {
+public:
+    Document(std::string path, std::string text) : path_(std::move(path)) { set(std::move(text)); }
+
+    const std::string& path() const { return path_; }
+    const std::string& text() const { return text_; }
+    void set(std::string text);
+    /// Replaces the bytes [begin, end).
+    void replace(size_t begin, size_t end, const std::string& by);
+    /// Compiles the text as far as it can be understood, if it changed since the last time.
+    void analyse(const rsl::FrontOptions&);
+    bool stale() const { return stale_; }
+    const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }
+    const rsl::Program* program() const { return program_.get(); }
+
+    size_t lines() const { return starts_.size(); }
+    /// The text of a line (from 0) without its end; "" beyond the last.
+    std::string_view line(size_t) const;
+    /// Position of a line's byte; clamped to the line and the text.
+    size_t offset(size_t line, size_t column) const;
+    size_t lineOf(size_t position) const;
+    size_t startOf(size_t line) const { return line < starts_.size() ? starts_[line] : text_.size(); }
+
+    /// The identifier that touches the position: [begin, end), nothing where there is none.
+    std::optional<std::pair<size_t, size_t>> wordAt(size_t position) const;
+    /// Inside a comment or a string?
+    enum class Where { Code, Comment, String };
+    Where where(size_t position) const;
+    std::optional<CallAround> callAround(size_t position) const;
+    /// End of the definition whose name stands here: behind the '}' that closes its body.
+    size_t endOfDefinition(size_t name) const;
+    /// The comment directly above the line (from 0), without its marks.
+    static std::string commentAbove(const std::string& text, size_t line);
+
+    /// What is used or declared by the word that begins at this position.
+    struct Use {
+        const rsl::Symbol* symbol = nullptr;
+        const rsl::Function* function = nullptr;
+        const rsl::Shader* shader = nullptr;
+        const rsl::Shadeop* shadeop = nullptr;
+        const rsl::Signature* signature = nullptr;
+    };
+    Use useAt(size_t word) const;
+    /// The shader or function of this text in which the position is; both null outside.
+    struct Around {
+        const rsl::Shader* shader = nullptr;
+        const rsl::Function* function = nullptr;
+    };
+    Around around(size_t position) const;
+    /// All functions, also nested ones, that the compiler knows by this name; each definition once.
+    std::vector<const rsl::Function*> functions(const std::string& name) const;
+    /// All functions of the program that stand in files, each definition once.
+    std::vector<const rsl::Function*> functions() const;
+
+    /// A place of the program; the file is empty for text that is in no file.
+    Origin origin(const rsl::Place&) const;
+    bool isHere(const rsl::Place&) const;
+
+private:
+    std::string path_, text_;
+    std::vector<size_t> starts_;
+    bool stale_ = true;
+    std::unique_ptr<rsl::Program> program_;
+    std::vector<Diagnostic> diagnostics_;
+};
+
+/// "float f(float a; output color b)", with the names.
+std::string signatureOf(const rsl::Function&);
+/// "output varying color x".
+std::string declarationOf(const rsl::Symbol&);
+
+} // namespace alpenglow::cli

@@ -1,0 +1,21 @@
+// The manual of the shadeops, from their descriptors: as plain text, as JSON, and as Markdown (docs/shadeops.md, the hovers of
+// the language server).
+#pragma once
+#include "shadeops/descriptor.h"
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace alpenglow::cli {
+
+/// "surface, volume"; "any shader" for all kinds.
+std::string contextText(uint32_t contexts);
+
+/// Everything the descriptor says, as `alpenglow info --shadeops NAME` prints it.
+std::string manualText(const rsl::Shadeop&);
+nlohmann::ordered_json manualJson(const rsl::Shadeop&);
+/// Without a heading. `first` (may be null) is the signature to be shown before the others.
+std::string manualMarkdown(const rsl::Shadeop&, const rsl::Signature* first = nullptr);
+/// The whole page docs/shadeops.md: by section, every shadeop that a shader may name.
+std::string manualPage();
+
+} // namespace alpenglow::cli

@@ -1,0 +1,153 @@
+// compile --json, compile -W, info: what the tools say about shaders; the manual of the shadeops is up to date.
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+namespace {
+
+class Tools : public testing::Test {
+protected:
+    fs::path dir;
+    int status = -1;
+    void SetUp() override {
+        std::string name = (fs::temp_directory_path() / "alpenglow-tools-XXXXXX").string();
+        ASSERT_NE(mkdtemp(name.data()), nullptr);
+        dir = name;
+    }
+    void TearDown() override { fs::remove_all(dir); }
+    void write(const std::string& name, const std::string& text) const { std::ofstream(dir / name, std::ios::binary) << text; }
+    std::string run(const std::string& arguments) {
+        const std::string command = "cd '" + dir.string() + "' && '" + ALPENGLOW_PROGRAM "' " + arguments + " 2>err";
+        std::string out;
+        FILE* p = popen(command.c_str(), "r");
+        if (!p) return out;
+        std::array<char, 4096> buffer;
+        while (size_t n = fread(buffer.data(), 1, buffer.size(), p)) out.append(buffer.data(), n);
+        const int s = pclose(p);
+        status = WIFEXITED(s) ? WEXITSTATUS(s) : 128 + WTERMSIG(s);
+        return out;
+    }
+    std::string errors() const {
+        std::ifstream in(dir / "err");
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+    static const Json* find(const Json& list, const std::string& id) {
+        for (const Json& d : list)
+            if (d["id"] == id) return &d;
+        return nullptr;
+    }
+};
+
+} // namespace
+
+TEST_F(Tools, CompileJson) {
+    write("a.sl", "surface a()\n{\n    Ci = mod(\"x\", 2);\n    Oi = nois(P);\n    Oi = 1\n}\n");
+    const Json j = Json::parse(run("compile --json a.sl"));
+    EXPECT_EQ(status, 1);
+    ASSERT_EQ(j["shaders"].size(), 1u);
+    EXPECT_EQ(j["shaders"][0]["ok"], false);
+    const Json& list = j["diagnostics"];
+    ASSERT_EQ(list.size(), 3u) << list;
+    const Json* call = find(list, "no-matching-call");
+    ASSERT_TRUE(call);
+    EXPECT_EQ((*call)["line"], 3);
+    EXPECT_EQ((*call)["column"], 10);
+    EXPECT_EQ((*call)["length"], 11); // mod("x", 2)
+    ASSERT_EQ((*call)["notes"].size(), 1u) << *call;
+    EXPECT_EQ((*call)["notes"][0], "candidate float mod(float x, float y): argument 1 is string, not float");
+    const Json* name = find(list, "no-such-function");
+    ASSERT_TRUE(name);
+    ASSERT_EQ((*name)["fixes"].size(), 1u);
+    EXPECT_EQ((*name)["fixes"][0]["text"], "noise");
+    EXPECT_EQ((*name)["fixes"][0]["length"], 4);
+    const Json* semicolon = find(list, "expected-semicolon");
+    ASSERT_TRUE(semicolon);
+    ASSERT_EQ((*semicolon)["fixes"].size(), 1u);
+    EXPECT_EQ((*semicolon)["fixes"][0]["text"], ";");
+    EXPECT_EQ((*semicolon)["fixes"][0]["column"], 11);
+}
+
+TEST_F(Tools, CompileJsonOfAGoodShader) {
+    write("a.sl", "light a() { solar() { Cl = 1; } }\n");
+    const Json j = Json::parse(run("compile --json a.sl"));
+    EXPECT_EQ(status, 0);
+    EXPECT_EQ(j["diagnostics"], Json::array());
+    EXPECT_EQ(j["shaders"][0]["type"], "light");
+}
+
+TEST_F(Tools, CaretRangeAndCandidates) {
+    write("a.sl", "surface a()\n{\n    Ci = mod(1);\n}\n");
+    run("compile a.sl");
+    EXPECT_EQ(status, 1);
+    const std::string e = errors();
+    EXPECT_NE(e.find("[no-matching-call]"), std::string::npos) << e;
+    EXPECT_NE(e.find("\n           ^~~~~~\n"), std::string::npos) << e;
+    EXPECT_NE(e.find("note: candidate float mod(float x, float y): it takes 2 arguments, not 1"), std::string::npos) << e;
+}
+
+TEST_F(Tools, WarningsOnlyWhenAsked) {
+    write("a.sl", "surface a(float unused = 1;)\n{\n    color c = trace(P, N);\n    Ci = c * c;\n}\n");
+    run("compile a.sl");
+    EXPECT_EQ(status, 0);
+    EXPECT_EQ(errors().find("unused"), std::string::npos) << errors();
+    const Json j = Json::parse(run("compile -W --json a.sl"));
+    EXPECT_EQ(status, 0);
+    EXPECT_TRUE(find(j["diagnostics"], "unused-parameter"));
+    const Json* squared = find(j["diagnostics"], "not-affine");
+    ASSERT_TRUE(squared) << j;
+    EXPECT_EQ((*squared)["line"], 3);
+}
+
+TEST_F(Tools, Info) {
+    write("a.sl", "#pragma annotation \"author\" \"nobody\"\n"
+                  "surface a(float Kd = 0.5; color tint = color \"hsv\" (0, 0, 1); point from = point \"world\" (1, 2, 3);\n"
+                  "    float knots[3] = {1, 2, 3}; output varying color layer = 0;)\n"
+                  "{\n    layer = Cs;\n    Ci = layer * Kd * tint * knots[1] + color(from);\n}\n");
+    const Json j = Json::parse(run("info --json a.sl"));
+    ASSERT_EQ(status, 0);
+    EXPECT_EQ(j["type"], "surface");
+    const Json& p = j["parameters"];
+    ASSERT_EQ(p.size(), 5u);
+    EXPECT_EQ(p[0]["name"], "Kd");
+    EXPECT_EQ(p[0]["default"], Json::array({0.5}));
+    EXPECT_EQ(p[0]["storage"], "uniform");
+    EXPECT_EQ(p[1]["space"], "hsv");
+    EXPECT_EQ(p[1]["default"], Json::array({1.0, 1.0, 1.0})); // no saturation, full value: white
+    EXPECT_EQ(p[2]["space"], "world");
+    EXPECT_EQ(p[3]["arraySize"], 3);
+    EXPECT_EQ(p[4]["output"], true);
+    EXPECT_EQ(p[4]["storage"], "varying");
+    EXPECT_EQ(j["annotations"]["author"], "nobody");
+    EXPECT_TRUE(j["methods"].is_array());
+    const std::string text = run("info a.sl");
+    EXPECT_NE(text.find("uniform color tint = \"hsv\" 1 1 1"), std::string::npos) << text;
+    EXPECT_NE(text.find("annotation author: nobody"), std::string::npos) << text;
+}
+
+TEST_F(Tools, ManualOfOneShadeop) {
+    const std::string text = run("info --shadeops smoothstep");
+    EXPECT_EQ(status, 0);
+    for (const char* part :
+         {"float smoothstep(float", "Examples", "  gives  ", "Derivatives: ", "Usable in: any shader", "unbiased"})
+        EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+    const Json j = Json::parse(run("info --shadeops diffuse --json"));
+    EXPECT_EQ(j["contexts"], Json::array({"surface", "volume"}));
+    run("info --shadeops smothstep");
+    EXPECT_EQ(status, 1);
+    EXPECT_NE(errors().find("smoothstep"), std::string::npos);
+}
+
+TEST_F(Tools, ManualIsUpToDate) {
+    std::ifstream in(ALPENGLOW_SOURCE_DIR "/docs/shadeops.md", std::ios::binary);
+    ASSERT_TRUE(in.good());
+    const std::string page{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_TRUE(page == run("info --shadeops --markdown")) << "make it again: cmake --build ... --target shadeops_manual";
+}

@@ -1,0 +1,173 @@
+// Ids, ranges, candidates and fix-its of the messages, and the warnings of `compile -W`.
+#include "base/limits.h"
+#include "front_helpers.h"
+#include "rsl/front/inspect.h"
+#include "rsl/front/messages.h"
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <set>
+
+using namespace alpenglow;
+using namespace alpenglow::rsl;
+
+namespace {
+
+/// The only message about this body, which stands on line 2.
+Diagnostic only(const std::string& body) {
+    const auto c = compileBody(body);
+    EXPECT_EQ(c.messages.size(), 1u) << body << "\n" << c.text();
+    return c.messages.empty() ? Diagnostic{} : c.messages[0];
+}
+
+/// Ids and lines of the messages about a program, "id:line", with the warnings for who writes shaders.
+std::vector<std::string> linted(const std::string& text) {
+    FrontOptions o;
+    o.lint = true;
+    std::vector<std::string> list;
+    for (const Diagnostic& d : compileSnippet(text, o).messages) list.push_back(d.id + ":" + std::to_string(d.place.line));
+    return list;
+}
+using Ids = std::vector<std::string>;
+
+} // namespace
+
+TEST(Messages, IdsAreWordsJoinedByHyphens) {
+    const std::regex form("[a-z][a-z0-9]*(-[a-z0-9]+)*");
+    for (const MessageKind& k : messageKinds()) EXPECT_TRUE(std::regex_match(k.id, form)) << k.id;
+}
+
+TEST(Messages, EveryKindIsFoundByItsOwnPattern) {
+    for (const MessageKind& k : messageKinds()) {
+        std::string text;
+        for (const char* c = k.pattern; *c; ++c) text += *c == '*' ? std::string("x") : std::string(1, *c);
+        EXPECT_STREQ(messageId(text), k.id) << text;
+    }
+    EXPECT_STREQ(messageId("words that no message has"), "rsl-error");
+}
+
+TEST(Messages, EveryExpectedErrorOfTheLanguageHasAnId) {
+    // The snippets quote the beginnings of messages; whole ones are in the compiler. Here the programs themselves are compiled.
+    const std::filesystem::path folder = std::filesystem::path(ALPENGLOW_SOURCE_DIR) / "tests/language";
+    std::set<std::string> ids;
+    int files = 0;
+    for (const auto& e : std::filesystem::directory_iterator(folder)) {
+        if (e.path().extension() != ".rsl") continue;
+        ++files;
+        std::ifstream in(e.path());
+        std::string line, text;
+        const auto check = [&] {
+            for (const Diagnostic& d : compileSnippet(text).messages) {
+                EXPECT_NE(d.id, "rsl-error") << "messages.cpp wants a pattern for this: " << e.path() << ": " << d.message;
+                ids.insert(d.id);
+            }
+            text.clear();
+        };
+        while (std::getline(in, line)) {
+            if (line.rfind("// program:", 0) == 0) check();
+            else if (line.rfind("// ", 0) != 0) text += line + "\n";
+        }
+        check();
+    }
+    EXPECT_GT(files, 5);
+    EXPECT_GT(ids.size(), 30u);
+}
+
+TEST(Messages, Ranges) {
+    EXPECT_EQ(only("f = nosuchname;").length, 10);
+    EXPECT_EQ(only("f = f ^ 2;").length, 1);
+    EXPECT_EQ(only("f = sqrt(c);").length, 7); // the whole call
+    EXPECT_EQ(only("f = \"text\";").length, 1);  // at the '='
+}
+
+TEST(Messages, CandidatesSayWhyNot) {
+    Diagnostic d = only("f = mod(c, 1);");
+    EXPECT_EQ(d.id, "no-matching-call");
+    EXPECT_EQ(d.notes, (Ids{"candidate float mod(float x, float y): argument 1 is color, not float"}));
+    d = only("f = mod(1);");
+    EXPECT_EQ(d.notes, (Ids{"candidate float mod(float x, float y): it takes 2 arguments, not 1"}));
+    d = only("f = mod(1, 2, 3);");
+    EXPECT_EQ(d.notes, (Ids{"candidate float mod(float x, float y): it takes 2 arguments, not 3"}));
+    d = only("fresnel(v1, n, 1, 0.5, f);");
+    EXPECT_EQ(d.id, "output-argument");
+    ASSERT_FALSE(d.notes.empty());
+    EXPECT_NE(d.notes[0].find("argument 4 is an output and must be a variable"), std::string::npos) << d.notes[0];
+    const auto c = compileSnippet("float half(float a) { return a / 2; }\nfloat half(point a) { return 1; }\n"
+                                  "surface s() { Ci = half(\"x\"); }\n");
+    ASSERT_EQ(c.messages.size(), 1u) << c.text();
+    EXPECT_EQ(c.messages[0].notes, (Ids{"candidate float half(float): argument 1 is string, not float",
+                                        "candidate float half(point): argument 1 is string, not point"}));
+}
+
+TEST(Messages, CandidatesAreBounded) {
+    std::string text;
+    for (int k = 1; k < 3 * limits::kCandidateNotes; ++k) {
+        text += "float f(";
+        for (int i = 0; i < k; ++i) text += std::string(i ? ", " : "") + "float a" + std::to_string(i);
+        text += ") { return 1; }\n";
+    }
+    const auto c = compileSnippet(text + "surface s() { Ci = f(\"x\"); }\n");
+    ASSERT_EQ(c.errors(), 1) << c.text();
+    for (const Diagnostic& d : c.messages)
+        if (d.severity == Severity::Error) EXPECT_EQ(d.notes.size(), size_t(limits::kCandidateNotes));
+}
+
+TEST(Messages, FixIts) {
+    Diagnostic d = only("f = nois(p);");
+    ASSERT_EQ(d.fixes.size(), 1u);
+    EXPECT_EQ(d.fixes[0].text, "noise");
+    EXPECT_EQ(d.fixes[0].place.column, 5);
+    EXPECT_EQ(d.fixes[0].length, 4);
+    d = only("f = 1.5f;");
+    ASSERT_EQ(d.fixes.size(), 1u);
+    EXPECT_EQ(d.fixes[0].text, "1.5");
+    d = only("f = max(1; 2);");
+    ASSERT_EQ(d.fixes.size(), 1u);
+    EXPECT_EQ(d.fixes[0].text, ",");
+    EXPECT_EQ(d.fixes[0].place.column, 10);
+    EXPECT_TRUE(only("f = f ^ 2;").fixes.empty());
+}
+
+TEST(Inspect, ProgramsWithErrorsComeBack) {
+    Diagnostics d;
+    const auto p = inspectText("float f(float a) { return a; }\n"
+                               "surface s(float k = 1;) { float g = f(k); Ci = g * nosuch; }", "s.sl", {}, d);
+    EXPECT_EQ(d.errors(), 1);
+    ASSERT_EQ(p->shaders.size(), 1u);
+    EXPECT_EQ(p->shaders[0]->parameters.size(), 1u);
+    EXPECT_EQ(p->functions.size(), 1u);
+    Diagnostics e;
+    EXPECT_TRUE(inspectText("((((", "s.sl", {}, e));
+    EXPECT_GT(e.errors(), 0);
+}
+
+TEST(Lint, Unused) {
+    EXPECT_EQ(linted("surface s(\nfloat a = 1;\nfloat b = 1;)\n{\nfloat c;\nfloat d = b;\nCi = d;\n}\n"),
+              (Ids{"unused-parameter:2", "unused-variable:5"}));
+    EXPECT_EQ(linted("float f(float a;\nfloat b) { return a; }\nsurface s() { Ci = f(1, 2); }\n"), (Ids{"unused-parameter:2"}));
+    // What is put out, what another default needs, and what a function reaches for are used.
+    EXPECT_EQ(linted("surface s(output float a = 0; float b = 1; float c = b;) { a = c; Ci = 1; }"), Ids());
+    EXPECT_EQ(linted("float f() { extern float k; return k; }\nsurface s(float k = 1;) { Ci = f(); }"), Ids());
+    EXPECT_EQ(linted("surface s(string __category = \"x\";) { Ci = 1; }"), Ids());
+}
+
+TEST(Lint, NothingUnlessAsked) { EXPECT_EQ(compileSnippet("surface s(float a = 1;) { float x; Ci = x; }").messages.size(), 0u); }
+
+TEST(Lint, Uninitialised) {
+    EXPECT_EQ(linted("surface s() {\nfloat x;\nCi = x;\n}"), (Ids{"uninitialised:3"}));
+    EXPECT_EQ(linted("surface s() {\nfloat x;\nif (u > 0.5) x = 1;\nCi = x;\n}"), (Ids{"maybe-uninitialised:4"}));
+    EXPECT_EQ(linted("surface s() {\nfloat x;\nif (u > 0.5) x = 1; else x = 2;\nCi = x;\n}"), Ids());
+    EXPECT_EQ(linted("surface s() {\nfloat x;\nx += 1;\nCi = x;\n}"), (Ids{"uninitialised:3"}));
+    EXPECT_EQ(linted("surface s() {\nfloat x, i;\nfor (i = 0; i < 3; i += 1) x = i;\nCi = x;\n}"),
+              (Ids{"maybe-uninitialised:4"}));
+    EXPECT_EQ(linted("surface s() {\ncolor c;\nilluminance(P) { c += Cl; }\nCi = c;\n}"), (Ids{"maybe-uninitialised:3"}));
+    EXPECT_EQ(linted("surface s() {\nfloat a, b;\nfresnel(I, N, 1.5, a, b);\nCi = a + b;\n}"), Ids());
+    EXPECT_EQ(linted("surface s() {\nfloat a[2];\na[0] = 1;\nCi = a[0];\n}"), Ids());
+    EXPECT_EQ(linted("float f(float t) {\nfloat x;\nif (t > 1) return 2;\nelse x = 1;\nreturn x;\n}\nsurface s() { Ci = f(u); }"),
+              Ids());
+}
+
+TEST(Lint, UniformUnderVaryingConditions) {
+    EXPECT_EQ(linted("surface s() {\nuniform float n = 0;\nif (u > 0.5)\nn = 1;\nCi = n;\n}"), (Ids{"uniform-in-varying:4"}));
+    EXPECT_EQ(linted("surface s(float k = 1;) {\nuniform float n = 0;\nif (k > 0.5)\nn = 1;\nCi = n;\n}"), Ids());
+}

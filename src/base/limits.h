@@ -34,6 +34,7 @@ inline constexpr int kTreeHeight = 1024;                       ///< of an RSL ex
 inline constexpr int kIncludeDepth = 64;                       ///< of RSL #include
 inline constexpr int kMacroDepth = 128;                        ///< macro calls inside arguments of macro calls
 inline constexpr size_t kMacroTokens = 2'000'000;              ///< tokens of one RSL program while macros are expanded
+inline constexpr int kCoShaderDepth = 16;                        ///< methods of co-shaders open at once
 inline constexpr int kStructs = 128;                            ///< structure types in an RSL file
 inline constexpr int kShaderArray = 16384;                     ///< elements of an RSL array
 inline constexpr int kResizableArray = 64;                     ///< elements that an RSL array can grow to, unless the shader names more

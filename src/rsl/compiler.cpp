@@ -57,6 +57,22 @@ std::string readText(const std::string& path) {
 
 } // namespace
 
+namespace {
+/// What the co-shaders are and what their parameters say: all of it is in the code.
+std::string coShaderKey(const KernelOptions& o) {
+    std::string k;
+    for (const CoShader& c : o.coShaders) {
+        k += '\1' + c.handle + '\2' + c.digest;
+        for (const auto& [name, value] : c.strings) k += '\3' + name + '\4' + value;
+        for (const auto& [name, value] : c.numbers) {
+            k += '\5' + name + '\6';
+            k.append(reinterpret_cast<const char*>(value.data()), value.size() * sizeof(float));
+        }
+    }
+    return k;
+}
+} // namespace
+
 struct ShaderCompiler::State {
     Settings settings;
     std::unique_ptr<jit::KernelCache> cache;
@@ -174,9 +190,32 @@ std::unique_ptr<ir::Kernel> ShaderCompiler::analyse(const CompiledShader& s, con
     return k;
 }
 
+ShaderPtr ShaderCompiler::variant(const ShaderPtr& s, ShaderKind kind) {
+    if (!s || s->kind() == kind) return s;
+    for (const auto& other : s->program().shaders) {
+        if (other->kind != kind || !other->object || other->name != s->name()) continue;
+        auto c = std::make_shared<CompiledShader>(*s);
+        c->shader_ = other.get();
+        c->digest_ = jit::sha256(s->digest_ + '\1' + toString(kind));
+        return c;
+    }
+    return nullptr;
+}
+
+CoShader ShaderCompiler::coShader(const ShaderPtr& s, const std::string& handle) {
+    CoShader c;
+    c.handle = handle;
+    c.program = &s->program();
+    c.shader = &s->shader();
+    c.owner = s;
+    c.digest = s->digest_;
+    return c;
+}
+
 KernelPtr ShaderCompiler::kernel(const ShaderPtr& shader, const KernelOptions& options, Diagnostics& diagnostics) {
     if (!shader) return nullptr;
-    const std::string key = jit::sha256(shader->digest_ + '\n' + jit::codeKey(options) + descriptorDigest() + programDigest());
+    const std::string key = jit::sha256(shader->digest_ + '\n' + jit::codeKey(options) + descriptorDigest() + programDigest() +
+                                    coShaderKey(options));
     std::promise<KernelPtr> promise;
     {
         std::unique_lock lock(state_->mutex);

@@ -43,7 +43,7 @@ private:
     friend class ShaderCompiler;
     std::string path_;
     std::string digest_; ///< of everything that the source says
-    std::unique_ptr<Program> program_;
+    std::shared_ptr<const Program> program_;
     const Shader* shader_ = nullptr;
     std::vector<ParameterInfo> parameters_;
 };
@@ -79,6 +79,11 @@ public:
                                                Diagnostics&);
     /// The first shader of a text. Not kept.
     std::shared_ptr<const CompiledShader> loadText(const std::string& text, const std::string& name, Diagnostics&);
+
+    /// A class can be shaders of several kinds: the same class as one of another kind. Null when it is none.
+    static std::shared_ptr<const CompiledShader> variant(const std::shared_ptr<const CompiledShader>&, ShaderKind);
+    /// For KernelOptions::coShaders; parameters are left to the caller.
+    static CoShader coShader(const std::shared_ptr<const CompiledShader>&, const std::string& handle);
 
     /// Machine code; from memory, from disk, or compiled now. Requests for the same kernel at the same time compile once. Null
     /// after an error (reported the first time).

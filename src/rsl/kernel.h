@@ -4,6 +4,7 @@
 #include "rsl/ir/ir.h"
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -56,6 +57,17 @@ int32_t internString(const std::string&);
 const std::string& internedString(int32_t id);
 
 /// What kind of machine code is wanted. All of it is part of the cache key.
+/// A shader that other shaders call (rsl.md 7.3), with the values of its parameters.
+struct CoShader {
+    std::string handle;
+    const Program* program = nullptr;
+    const Shader* shader = nullptr;
+    std::shared_ptr<const void> owner; ///< keeps both
+    std::string digest;                ///< of the shader's text
+    std::map<std::string, std::vector<float>> numbers;
+    std::map<std::string, std::string> strings;
+};
+
 struct KernelOptions {
     int lanes = 16;            ///< 4, 8 or 16: the width of the machine's vectors
     int vectors = 0;           ///< vectors in flight (K): the kernel works on lanes*K points at a time; 0 = chosen from the code
@@ -70,6 +82,7 @@ struct KernelOptions {
     /// Values of string parameters, and of numeric ones known to be 0 or 1 for good: specialised into the code.
     std::vector<std::pair<std::string, std::string>> stringParameters;
     std::vector<std::string> varyingParameters; ///< parameters overridden by varying primitive variables
+    std::vector<CoShader> coShaders; ///< in the order of their handles; only surface shaders have them
 };
 
 /// One compiled kernel. Immutable, shared between threads.

@@ -64,14 +64,14 @@ std::vector<Shadeop> messageShadeops() {
         "Smallest value over the grid. A hit is a grid of one point: the value minus half its footprint.");
     add("gridmax", sigs({{"float gridmax(float value)"}, {"void gridmax(float value)"}}), Lowering::Special, kNoImager,
         "Largest value over the grid: the value plus half its footprint.");
-    add("getshader", sigs({{"shader getshader(string handle)"}}), Lowering::Unavailable, kNoImager, "Co-shader by its handle; null if absent.");
-    add("getshaders", sigs({{"shader[] getshaders(pairs)"}}), Lowering::Unavailable, kAnyContext, "All co-shaders, or those of a category.").optional = {
+    add("getshader", sigs({{"shader getshader(string handle)"}}), Lowering::Special, kNoImager, "Co-shader by its handle; null if absent.");
+    add("getshaders", sigs({{"shader[] getshaders(pairs)"}}), Lowering::Special, kAnyContext, "All co-shaders, or those of a category.").optional = {
         {{Base::String, 0}, "category", false, "\"\"", "names of categories"}};
     add("getlight", sigs({{"shader getlight(string handle)"}}), Lowering::Unavailable, kSurface | kVolume, "Light by its handle.");
     add("getlights", sigs({{"shader[] getlights(pairs)"}}), Lowering::Unavailable, kSurface | kVolume, "The active lights, or those of a category.").optional = {
         {{Base::String, 0}, "category", false, "\"\"", "names of categories"}};
     add("getvar", sigs({{"float getvar(shader handle; string name)"}}) + each(kAllTypes, "float getvar(shader handle; string name; output $ value)"),
-        Lowering::Unavailable, kAnyContext, "Member variable of a co-shader; null handle: the primitive's variables. 1 if found.");
+        Lowering::Special, kAnyContext, "Member variable of a co-shader; null handle: the primitive's variables. 1 if found.");
     add("islightcategory", sigs({{"float islightcategory(string category)"}}), Lowering::Unavailable, kSurface | kVolume,
         "1 if the current light belongs to the category.").source = "seen in 3Delight shaders";
     add("shadername", sigs({{"string shadername()"}, {"string shadername(string type)"}}), Lowering::Service, kAnyContext, "Name of the shader attached.")

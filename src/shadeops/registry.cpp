@@ -33,7 +33,7 @@ std::vector<std::string> words(std::string_view text) {
 
 bool baseOf(const std::string& word, Base& base) {
     static constexpr struct { const char* name; Base base; } kNames[] = {
-        {"void", Base::Void},     {"any", Base::Void},      {"shader", Base::Void},   {"float", Base::Float},   {"color", Base::Color},
+        {"void", Base::Void},     {"any", Base::Void},      {"shader", Base::String},   {"float", Base::Float},   {"color", Base::Color},
         {"point", Base::Point},   {"vector", Base::Vector}, {"normal", Base::Normal}, {"matrix", Base::Matrix}, {"string", Base::String}};
     for (const auto& n : kNames)
         if (word == n.name) {

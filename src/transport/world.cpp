@@ -130,6 +130,7 @@ InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind k
     }
     facts_.compileSec += seconds() - begin;
     if (!program) return nullptr;
+    if (auto same = rsl::ShaderCompiler::variant(program, kind)) program = same; // a class can be several kinds of shader
     if (program->kind() != kind) {
         d.report(Severity::Error, Rie::NoShader, call.place,
                  "shader \"" + call.name + "\" is a " + rsl::toString(program->kind()) + " shader, not a " + rsl::toString(kind) + " shader");
@@ -205,6 +206,7 @@ BoundKernel WorldImpl::kernel(const ShaderInstance& i, const std::vector<std::st
     o.suspend = settings_.suspend && i.program->kind() == rsl::ShaderKind::Surface;
     o.outputs = outputs;
     for (const auto& [k, v] : i.parameters.strings) o.stringParameters.push_back({k, v});
+    o.coShaders = i.coShaders;
     o.varyingParameters = varying;
     double begin = seconds();
     auto k = compiler_->kernel(i.program, o, d);
@@ -273,6 +275,25 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
         if (fresh && !(r->name == "null" && kind != rsl::ShaderKind::Surface)) i->second = w->instance(*r, kind, d);
         return i->second;
     };
+    // A surface that uses co-shaders, with those that its shape has.
+    std::map<std::vector<const void*>, InstanceRef> withCoShaders;
+    auto bindCoShaders = [&](const InstanceRef& surface, const scene::Attributes& a) -> InstanceRef {
+        if (!surface || !surface->program->program().handles || a.coshaders.empty()) return surface;
+        std::vector<const void*> key{surface.get()};
+        for (const auto& [handle, call] : a.coshaders) key.push_back(call.get());
+        InstanceRef& bound = withCoShaders[key];
+        if (bound) return bound;
+        auto copy = std::make_shared<ShaderInstance>(*surface);
+        for (const auto& [handle, call] : a.coshaders) {
+            InstanceRef i = instanceOf(call, rsl::ShaderKind::Surface);
+            if (!i) continue;
+            rsl::CoShader c = rsl::ShaderCompiler::coShader(i->program, handle);
+            for (const auto& [name, v] : i->parameters.numbers) c.numbers[name] = v;
+            for (const auto& [name, v] : i->parameters.strings) c.strings[name] = v;
+            copy->coShaders.push_back(std::move(c));
+        }
+        return bound = copy;
+    };
     InstanceRef fallback = w->builtin(path ? "matte" : "defaultsurface", rsl::ShaderKind::Surface, d);
     if (!fallback) {
         d.report(Severity::Severe, Rie::NoShader, {}, "the shaders that ship with the program were not found",
@@ -288,7 +309,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     for (const auto& shape : w->shapes_) {
         const scene::Attributes& a = shape->attributes();
         visibility.push_back(visibilityOf(a, path));
-        InstanceRef surface = instanceOf(a.surface, rsl::ShaderKind::Surface);
+        InstanceRef surface = bindCoShaders(instanceOf(a.surface, rsl::ShaderKind::Surface), a);
         bool explicitSurface = surface != nullptr;
         if (!surface) surface = fallback;
         std::vector<std::string> varying;
@@ -320,6 +341,9 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
             b.surface = surface;
             b.explicitSurface = explicitSurface;
             b.displacement = instanceOf(a.displacement, rsl::ShaderKind::Displacement);
+            // A class with surface and displacement is both.
+            if (!a.displacement && explicitSurface && rsl::ShaderCompiler::variant(surface->program, rsl::ShaderKind::Displacement))
+                b.displacement = instanceOf(a.surface, rsl::ShaderKind::Displacement);
             b.atmosphere = instanceOf(a.atmosphere, rsl::ShaderKind::Volume);
             std::vector<std::string> outputs{"Ci", "Oi"};
             for (const auto& n : settings.outputs) {

@@ -61,6 +61,7 @@ struct ShaderInstance {
     std::string name;
     std::shared_ptr<const rsl::CompiledShader> program;
     shading::ParameterBlock parameters;
+    std::vector<rsl::CoShader> coShaders; ///< those that the shape of a surface shader has
     Matrix toCurrent;
     SourcePlace place;
 };

@@ -79,7 +79,7 @@ const Case kBodies[] = {
     {"f = @;", "2:5: error: the character '@' means nothing here"},
     {"str = \"abc;", "2:7: error: this string does not end on its line"},
     {"f = texture(\"a\", \"blur\", c);", "2:26: error: expected a float, not color"},
-    {"f->g(1);", "2:2: error: members and methods of other shaders are not yet available"},
+    {"f->g(1);", "2:2: error: '->' needs a structure or a shader, not float"},
     {"void v;", "2:1: error: a variable cannot be void"},
 };
 
@@ -126,7 +126,7 @@ const Case kFiles[] = {
     {"void f(float x) { return x; } surface s() {}", "1:26: error: function 'f' is void and returns no value"},
     {"float f(float x) { x + 1; } surface s() {}", "1:7: warning: function 'f' can end without returning a value"},
     {"float f(float x) { return Kd; } surface s(float Kd = 1) { Ci = f(1); }",
-     "1:27: error: 'Kd' is not declared (it is a parameter of the shader: declare 'extern float Kd;')"},
+     "1:27: warning: 'Kd' is a parameter of the shader, used without being declared extern (declare 'extern float Kd;')"},
     {"void f(float x) { x = 1; } surface s() { f(1); }",
      "1:19: warning: parameter 'x' is not output; the function changes a copy"},
     {"surface s(float a = 1) { a = 2; }", "1:26: warning: parameter 'a' is not output; the shader changes a copy"},

@@ -5,6 +5,7 @@
 #include "shadeops/descriptor.h"
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -121,6 +122,8 @@ struct ShaderParameter { Symbol* symbol; ExprPtr defaultValue; };
 
 struct Shader {
     ShaderKind kind{};
+    bool object = false;           ///< made from a class: the body begins with the members, then the methods
+    std::set<std::string> publics; ///< members and methods of a class that other shaders see
     std::string name;
     std::vector<ShaderParameter> parameters;
     StmtPtr body;
@@ -133,6 +136,7 @@ struct Shader {
 
 /// One source file with its includes: shaders (usually one) and functions.
 struct Program {
+    bool handles = false; ///< it uses members or methods of other shaders, or asks for them
     std::vector<std::string> files;                 ///< Place::file indexes this
     std::vector<std::unique_ptr<Shader>> shaders;
     /// Every function that a shader calls, once for each shader that calls it (its predefined variables and externs are then that

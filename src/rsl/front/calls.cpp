@@ -26,8 +26,6 @@ std::string signatureText(const Function& f) {
     return s + ")";
 }
 
-bool returnsShader(const Signature& s) { return s.text.rfind("shader", 0) == 0; }
-
 } // namespace
 
 /// What it costs to give this argument to a parameter of that type; kNever if it cannot be.
@@ -148,12 +146,6 @@ void Checker::surveyCall(Expr& e, Info& info) {
     }
     for (const Choice& c : info.choices) {
         if (c.result.array != 0) { info.array = c.result; continue; }
-        if (c.signature && returnsShader(*c.signature)) {
-            if (reportedUnavailable_.insert(c.shadeop).second)
-                sources_.error(e.place, "shader handles, and with them '" + e.text + "', are not yet available");
-            info.any = true;
-            return;
-        }
         int& cost = info.cost[int(c.result.base)];
         cost = std::min(cost, c.cost);
     }
@@ -232,6 +224,7 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
     const Shadeop& op = *choice.shadeop;
     e.shadeop = &op;
     e.signature = choice.signature;
+    program_.handles |= op.name == "getshader" || op.name == "getshaders" || op.name == "getvar";
     if (op.name == "resize" || op.name == "reserve" || op.name == "push" || op.name == "pop") {
         const Symbol* s = e.args.empty() ? nullptr : e.args[0]->symbol;
         const bool open = s && (s->resizable || (s->origin == Symbol::Origin::FunctionParameter && s->type.array == -1));

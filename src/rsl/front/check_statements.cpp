@@ -108,7 +108,7 @@ void Checker::check(StmtPtr& s) {
     case StmtKind::Expression:
         whole(s->value);
         if (s->value->kind != ExprKind::Assign && s->value->kind != ExprKind::ShadeopCall &&
-            s->value->kind != ExprKind::FunctionCall && s->value->kind != ExprKind::Cast &&
+            s->value->kind != ExprKind::FunctionCall && s->value->kind != ExprKind::Method && s->value->kind != ExprKind::Cast &&
             !(s->value->kind == ExprKind::Variable && !s->value->symbol) && s->value->type.base != Base::Void)
             sources_.warning(s->place, "this expression has no effect");
         break;

@@ -161,6 +161,8 @@ private:
     std::unique_ptr<Shader> shader(ShaderKind kind, bool first) {
         auto s = clone(*class_.shader);
         s->kind = kind;
+        s->object = true;
+        s->publics.insert(class_.publics.begin(), class_.publics.end());
         auto wanted = reachable(kind);
         // A method that no entry of any kind calls is checked with the first.
         if (first) {

@@ -196,7 +196,17 @@ void Checker::settleAs(ExprPtr& e, Base t) {
         e->type = e->args.back()->type;
         break;
     case ExprKind::Member:
-    case ExprKind::Method: return; // always poisoned
+    case ExprKind::Method:
+        settle(e->args[0], {Base::String, 0});
+        for (size_t i = 1; i < e->args.size(); ++i) {
+            if (isVariable(*e->args[i])) settleVariable(e->args[i]);
+            else settleCheapest(e->args[i]);
+        }
+        e->type = {t, 0};
+        e->varying = true;
+        if (function_) varyingFunctions_.insert(function_);
+        program_.handles = true;
+        return;
     case ExprKind::Binary: settleBinary(e, t); return;
     case ExprKind::Assign: settleAssign(e); return;
     case ExprKind::Conditional:

@@ -112,9 +112,15 @@ Checker::Info& Checker::survey(Expr& e) {
 /// Of another shader: member->name, method->name(...).
 void Checker::surveyMember(Expr& e, Info& info) {
     for (auto& a : e.args) survey(*a);
-    info.any = true;
-    if (infos_.at(e.args[0].get()).any) return;
-    sources_.error(e.place, "members and methods of other shaders are not yet available");
+    for (auto& a : e.args) info.any |= infos_.at(a.get()).any;
+    if (info.any) return;
+    if (costTo(infos_.at(e.args[0].get()), Base::String) >= kNever) {
+        sources_.error(e.place, "'->' needs a structure or a shader, not " + describe(*e.args[0]));
+        info.any = true;
+        return;
+    }
+    // What it gives is known when the shader is bound: here it is what is wanted.
+    for (Base b : kAll) info.cost[int(b)] = b == Base::Float ? 0 : b == Base::Bool ? kNever : 1;
 }
 
 void Checker::surveyVariable(Expr& e, Info& info) {
@@ -127,6 +133,12 @@ void Checker::surveyVariable(Expr& e, Info& info) {
         return;
     }
     if (!s) s = tolerated(e);
+    if (!s && e.text == "null") { // the handle of no shader
+        e.kind = ExprKind::String;
+        e.text.clear();
+        info.cost[int(Base::String)] = 0;
+        return;
+    }
     if (!s) {
         unknownVariable(e);
         info.any = true;

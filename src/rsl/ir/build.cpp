@@ -36,11 +36,11 @@ SourcePlace sourcePlace(const std::vector<std::string>& files, const Place& p) {
 
 void Builder::error(const Place& p, const std::string& text) {
     failed_ = true;
-    diagnostics_.report(Severity::Error, Rie::Syntax, sourcePlace(program_.files, p), text);
+    diagnostics_.report(Severity::Error, Rie::Syntax, sourcePlace(*files_, p), text);
 }
 
 void Builder::warn(const Place& p, const std::string& text) {
-    const SourcePlace at = sourcePlace(program_.files, p);
+    const SourcePlace at = sourcePlace(*files_, p);
     diagnostics_.reportOnce(at.file + std::to_string(at.line) + ":" + std::to_string(at.column) + text,
                             {Severity::Warning, Rie::Unimplement, at, text, {}, {}});
 }
@@ -274,6 +274,7 @@ bool Builder::buildShader() {
     place_ = shader_.place;
     frames_.push_back({});
     frames_.back().returned = newSlot(boolean(false));
+    beginCoShaders();
     std::set<int> assigned;
     std::set<const Function*> seen;
     if (shader_.body) scanAssigned(*shader_.body, assigned, seen);

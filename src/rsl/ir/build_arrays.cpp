@@ -47,6 +47,11 @@ int Builder::largestResize() {
     if (shader_.body) visit(visit, *shader_.body);
     functions(functions, shader_.nested);
     functions(functions, program_.functions);
+    for (const CoShader& c : options_.coShaders) {
+        if (c.shader->body) visit(visit, *c.shader->body);
+        functions(functions, c.shader->nested);
+        functions(functions, c.program->functions);
+    }
     return largestResize_;
 }
 
@@ -124,6 +129,8 @@ void Builder::copyResizable(Inst* to, const Expr& from) {
             return setLength(limitLength(to, n));
         }
         setLength(limitLength(to, n));
+    } else if (from.kind == ExprKind::ShadeopCall && from.shadeop && from.shadeop->name == "getshaders") {
+        setLength(limitLength(to, constant(static_cast<float>(handlesOf(from).size()))));
     }
     copyArray(to, from);
 }

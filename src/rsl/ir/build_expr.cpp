@@ -123,6 +123,11 @@ void Builder::copyArray(Inst* to, const Expr& from) {
         for (int i = 0; i < n; ++i) store(i, v);
         return;
     }
+    if (from.kind == ExprKind::ShadeopCall && from.shadeop && from.shadeop->name == "getshaders") {
+        const auto all = handlesOf(from);
+        for (int i = 0; i < n; ++i) store(i, i < static_cast<int>(all.size()) ? all[static_cast<size_t>(i)] : zero(to->element));
+        return;
+    }
     if (from.kind != ExprKind::Variable && from.kind != ExprKind::Cast)
         return; // an array valued call: its results stay zero, reported where it is built
     Inst* a = array(from);
@@ -339,9 +344,11 @@ Inst* Builder::expr(const Expr& e) {
         return shadeopCall(e);
     case ExprKind::FunctionCall:
         return e.shadeop ? shadeopCall(e) : functionCall(e);
-    case ExprKind::Sequence:
     case ExprKind::Member:
+        return memberAccess(e);
     case ExprKind::Method:
+        return methodCall(e);
+    case ExprKind::Sequence:
         break;
     }
     return constant(0);

@@ -20,6 +20,7 @@ void Builder::scan(const Expr& e, Scan& to) {
     to.survey.size += 1;
     if (e.symbol) to.used.insert(e.symbol);
     if (e.function) include(*e.function, to);
+    if (e.kind == ExprKind::Method || e.kind == ExprKind::Member) to.survey.possible = false;
     if (e.shadeop && !e.function) {
         const Lowering l = e.shadeop->lowering;
         to.survey.possible = to.survey.possible && (l == Lowering::Runtime || l == Lowering::Special) && e.shadeop->name != "random";
@@ -171,6 +172,7 @@ bool Builder::makeFunction(const Function& f, const std::vector<Inst*>& values, 
 
 /// The call as a Call; false when the function must, or had better, be inlined.
 bool Builder::outlined(const Function& f, const std::vector<Inst*>& values, Inst*& result, std::vector<Inst*>& outputs) {
+    if (handleDepth_ > 0) return false; // its variables are those of one co-shader among several
     const Survey& about = survey(f);
     if (!about.possible || about.size <= options_.outline || kindOf(f.result) == Kind::Array) return false;
     std::string key;

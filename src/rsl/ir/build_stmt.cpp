@@ -274,6 +274,10 @@ void Builder::scanAssigned(const Expr& e, std::set<int>& out, std::set<const Fun
         if (l && l->kind == ExprKind::Variable && l->symbol) out.insert(slot(l->symbol));
     };
     if (e.kind == ExprKind::Assign) lvalue(e.args[0].get());
+    if (e.kind == ExprKind::Method) {
+        for (size_t n = 1; n < e.args.size(); ++n) lvalue(e.args[n].get());
+        scanMethod(e, out);
+    }
     if (e.kind == ExprKind::ShadeopCall && e.signature)
         for (size_t n = 0; n < e.args.size() && n < e.signature->parameters.size(); ++n)
             if (e.signature->parameters[n].output) lvalue(e.args[n].get());
@@ -312,7 +316,7 @@ void Builder::scanAssigned(const Stmt& s, std::set<int>& out, std::set<const Fun
 }
 
 bool Builder::hasEffects(const Expr& e) {
-    if (e.kind == ExprKind::Assign || e.kind == ExprKind::FunctionCall || e.function) return true;
+    if (e.kind == ExprKind::Assign || e.kind == ExprKind::FunctionCall || e.kind == ExprKind::Method || e.function) return true;
     if (e.kind == ExprKind::ShadeopCall && (!e.shadeop || e.shadeop->lowering != Lowering::Runtime)) return true;
     if (e.kind == ExprKind::ShadeopCall && e.signature)
         for (const Parameter& p : e.signature->parameters)

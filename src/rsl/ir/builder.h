@@ -145,6 +145,25 @@ private:
     bool makeFunction(const Function&, const std::vector<Inst*>& values, const Survey&, Outlined&);
     bool selfContained(const Region&) const;
 
+    // build_handles.cpp: co-shaders
+    struct Instance {
+        const CoShader* binding;
+        const std::vector<std::string>* files;
+        std::unordered_map<const Symbol*, int> slots; ///< two instances of one shader have variables of their own
+    };
+    void exchangeInstance(size_t);
+    void beginCoShaders();
+    Inst* forHandle(const Expr& handle, Kind, const std::function<Inst*(size_t)>& code);
+    const Function* methodOf(size_t instance, const Expr& call) const;
+    const Symbol* memberOf(size_t instance, const std::string& name) const;
+    Inst* memberValue(size_t instance, const Symbol&);
+    Inst* methodCall(const Expr&);
+    Inst* memberAccess(const Expr&);
+    Inst* getVariable(const Expr&);
+    Inst* getShader(const Expr&);
+    std::vector<Inst*> handlesOf(const Expr&);
+    void scanMethod(const Expr&, std::set<int>& out);
+
     Inst* shadeopCall(const Expr&);
     Inst* runtimeCall(const Expr&);
     Inst* special(const Expr&);
@@ -194,6 +213,9 @@ private:
     std::unordered_map<const Inst*, Lengths> lengths_;
     int largestResize_ = -1;
     std::set<const Symbol*> grown_;
+    std::vector<Instance> instances_;
+    const std::vector<std::string>* files_ = &program_.files; ///< those that places refer to just now
+    int handleDepth_ = 0; ///< methods of co-shaders that are open
     int lightDepth_ = 0;
     bool uniformContext_ = false; ///< the value goes to a uniform variable: one random() for all
     bool failed_ = false;

@@ -1,0 +1,261 @@
+// Co-shaders: calls of their methods are inlined. A handle is the name under which the scene bound the shader; where it is not known
+// here, one branch a bound shader decides. Members of a co-shader are variables that begin where the shader begins.
+#include "base/limits.h"
+#include "rsl/ir/builder.h"
+#include <algorithm>
+
+namespace alpenglow::rsl::ir {
+
+void Builder::exchangeInstance(size_t i) {
+    std::swap(slots_, instances_[i].slots);
+    std::swap(files_, instances_[i].files);
+}
+
+/// Binds the parameters and runs what comes before the methods: members, construct() and begin().
+void Builder::beginCoShaders() {
+    if (!program_.handles) return;
+    for (const CoShader& c : options_.coShaders) instances_.push_back({&c, &c.program->files, {}});
+    for (size_t i = 0; i < instances_.size(); ++i) {
+        const CoShader& c = *instances_[i].binding;
+        exchangeInstance(i);
+        ++handleDepth_;
+        for (const ShaderParameter& p : c.shader->parameters) {
+            const Symbol& s = *p.symbol;
+            const auto& numbers = c.numbers.count(s.name) ? c.numbers.at(s.name) : std::vector<float>{};
+            Inst* v = nullptr;
+            if (s.type.base == Base::String && !s.type.array) {
+                v = leaves_.string(c.strings.count(s.name) ? c.strings.at(s.name) : "");
+            } else if (s.type.array) {
+                const size_t each = static_cast<size_t>(components(kindOf(s.type.element())));
+                const int n = std::max<int>(1, static_cast<int>(numbers.size() / each));
+                v = newArray(s.type.base, n);
+                for (size_t k = 0; k < numbers.size() / each; ++k) {
+                    const auto first = numbers.begin() + static_cast<std::ptrdiff_t>(k * each);
+                    Inst* x = leaves_.constant(v->element, std::vector<float>(first, first + static_cast<std::ptrdiff_t>(each)));
+                    emit(Op::ArrayStore, Kind::None, {v, constant(static_cast<float>(k)), x});
+                }
+            } else {
+                std::vector<float> all = numbers;
+                all.resize(static_cast<size_t>(components(kindOf(s.type))));
+                v = leaves_.constant(kindOf(s.type), all);
+            }
+            set(slot(&s), v);
+        }
+        if (c.shader->object && c.shader->body)
+            for (const StmtPtr& s : c.shader->body->body) {
+                const bool starts = s->kind == StmtKind::Expression &&
+                                    (s->value->text == "construct" || s->value->text == "begin");
+                if ((s->kind == StmtKind::Declare && !s->definition) || starts) statement(*s);
+            }
+        --handleDepth_;
+        exchangeInstance(i);
+    }
+}
+
+/// Runs `code` for the co-shader of the handle and gives its value; zero of null.
+Inst* Builder::forHandle(const Expr& handle, Kind kind, const std::function<Inst*(size_t)>& code) {
+    Inst* h = expr(handle, Kind::String);
+    place_ = handle.place;
+    if (handleDepth_ > limits::kCoShaderDepth) {
+        error(handle.place, "co-shaders call each other more than " + std::to_string(limits::kCoShaderDepth) + " deep");
+        return zero(kind);
+    }
+    if (h->op == Op::ConstString) {
+        for (size_t i = 0; i < instances_.size(); ++i)
+            if (instances_[i].binding->handle == h->text) return coerce(code(i), kind);
+        warn(handle.place, "this handle is null here: no co-shader is bound to it");
+        return zero(kind);
+    }
+    const std::function<std::vector<Inst*>(size_t)> from = [&](size_t i) -> std::vector<Inst*> {
+        if (i == instances_.size()) return {zero(kind)};
+        Inst* same = emit(Op::Equal, Kind::Bool, {h, leaves_.string(instances_[i].binding->handle)});
+        return branch(
+            same, [&] { return std::vector<Inst*>{coerce(code(i), kind)}; }, [&] { return from(i + 1); });
+    };
+    return from(0)[0];
+}
+
+const Function* Builder::methodOf(size_t i, const Expr& call) const {
+    for (const auto& f : instances_[i].binding->shader->nested)
+        if (f->name == call.text && f->parameters.size() + 1 == call.args.size()) return f.get();
+    return nullptr;
+}
+
+Inst* Builder::methodCall(const Expr& e) {
+    const Kind kind = kindOf(e.type) == Kind::None ? Kind::Float : kindOf(e.type);
+    return forHandle(*e.args[0], kind, [&](size_t i) -> Inst* {
+        const CoShader& c = *instances_[i].binding;
+        const Function* f = methodOf(i, e);
+        if (!f || !c.shader->publics.count(e.text)) {
+            error(e.place, "co-shader '" + c.handle + "' (" + c.shader->name + ") has no public method '" + e.text + "' with " +
+                               std::to_string(e.args.size() - 1) + " arguments");
+            return zero(kind);
+        }
+        std::vector<Inst*> values;
+        for (size_t n = 0; n < f->parameters.size() && !failed_; ++n) {
+            const Expr& given = *e.args[n + 1];
+            const Symbol& p = *f->parameters[n];
+            const bool variable = given.kind == ExprKind::Variable || given.kind == ExprKind::Index;
+            const bool fits = (given.type.array != 0) == (p.type.array != 0) &&
+                              (kindOf(given.type.element()) == kindOf(p.type.element()) ||
+                               (given.type == Type{Base::Float, 0} && !p.output && kindOf(p.type) != Kind::String));
+            if (!fits || (p.output && !variable)) {
+                error(given.place, "argument " + std::to_string(n + 1) + " of method '" + e.text + "' of co-shader '" + c.handle +
+                                       "' is " + (p.output ? "a variable of type " : "") + toString(p.type) + ", not " +
+                                       toString(given.type));
+                return zero(kind);
+            }
+            if (!p.type.array) {
+                values.push_back(coerce(expr(given), p.type));
+                continue;
+            }
+            Inst* a = array(given);
+            if (!p.output) { // by value
+                Inst* copy = newArray(p.type.base, arrayLength(a));
+                copyArray(copy, given);
+                a = copy;
+            }
+            values.push_back(a);
+        }
+        if (failed_) return zero(kind);
+        exchangeInstance(i);
+        ++handleDepth_;
+        for (size_t n = 0; n < values.size(); ++n) set(slot(f->parameters[n]), values[n]);
+        Frame frame;
+        frame.function = f;
+        frame.type = f->result;
+        frame.returned = newSlot(boolean(false));
+        if (f->result.base != Base::Void) frame.result = newSlot(zero(kindOf(f->result)));
+        frames_.push_back(frame);
+        if (f->body) statement(*f->body);
+        frames_.pop_back();
+        std::vector<Inst*> outputs;
+        for (const Symbol* p : f->parameters) outputs.push_back(get(slot(p)));
+        --handleDepth_;
+        exchangeInstance(i);
+        place_ = e.place;
+        for (size_t n = 0; n < outputs.size(); ++n)
+            if (f->parameters[n]->output && !f->parameters[n]->type.array) assign(*e.args[n + 1], outputs[n]);
+        Inst* result = frame.result >= 0 ? get(frame.result) : zero(kind);
+        if (result->kind != kind && !(result->kind == Kind::Float && kind != Kind::String)) {
+            error(e.place, "method '" + e.text + "' of co-shader '" + c.handle + "' gives " + toString(f->result) + ", not " +
+                               toString(e.type));
+            return zero(kind);
+        }
+        return result;
+    });
+}
+
+/// The member or parameter of that name; null when it is not to be seen.
+const Symbol* Builder::memberOf(size_t i, const std::string& name) const {
+    const Shader& s = *instances_[i].binding->shader;
+    for (const ShaderParameter& p : s.parameters)
+        if (p.symbol->name == name) return p.symbol;
+    if (!s.object || !s.publics.count(name)) return nullptr;
+    for (const StmtPtr& x : s.body->body)
+        for (const Stmt::Declarator& d : x->declarators)
+            if (d.symbol->name == name) return d.symbol;
+    return nullptr;
+}
+
+Inst* Builder::memberValue(size_t i, const Symbol& s) {
+    exchangeInstance(i);
+    Inst* v = get(slot(&s));
+    exchangeInstance(i);
+    return v;
+}
+
+Inst* Builder::memberAccess(const Expr& e) {
+    const Kind kind = kindOf(e.type);
+    return forHandle(*e.args[0], kind, [&](size_t i) -> Inst* {
+        const CoShader& c = *instances_[i].binding;
+        const Symbol* s = memberOf(i, e.text);
+        const bool fits = s && !s->type.array &&
+                          (kindOf(s->type) == kind || (kindOf(s->type) == Kind::Float && kind != Kind::String));
+        if (!fits) {
+            error(e.place, "co-shader '" + c.handle + "' (" + c.shader->name + ") " +
+                               (s ? "has '" + e.text + "' as " + toString(s->type) + ", not " + toString(e.type)
+                                  : "has no public member '" + e.text + "'"));
+            return zero(kind);
+        }
+        return memberValue(i, *s);
+    });
+}
+
+/// getvar(handle, name [, variable]): 1 when there is such a member.
+Inst* Builder::getVariable(const Expr& e) {
+    Inst* name = expr(*e.args[1]);
+    place_ = e.place;
+    if (name->op != Op::ConstString) {
+        warn(e.place, "getvar() needs a name that is known when the shader is compiled; it finds nothing");
+        return constant(0);
+    }
+    Inst* handle = expr(*e.args[0]);
+    if (handle->op == Op::ConstString && handle->text.empty()) {
+        warn(e.place, "getvar() of a null handle is not yet available; it finds nothing");
+        return constant(0);
+    }
+    return forHandle(*e.args[0], Kind::Float, [&](size_t i) -> Inst* {
+        const Symbol* s = memberOf(i, name->text);
+        if (!s || s->type.array) return constant(0);
+        if (e.args.size() > 2) {
+            if (kindOf(s->type) != kindOf(e.args[2]->type)) return constant(0);
+            assign(*e.args[2], memberValue(i, *s));
+        }
+        return constant(1);
+    });
+}
+
+Inst* Builder::getShader(const Expr& e) {
+    Inst* h = expr(*e.args[0], Kind::String);
+    if (h->op == Op::ConstString) {
+        for (const Instance& i : instances_)
+            if (i.binding->handle == h->text) return h;
+        return leaves_.string("");
+    }
+    Inst* found = leaves_.string("");
+    for (const Instance& i : instances_) {
+        Inst* name = leaves_.string(i.binding->handle);
+        found = emit(Op::Select, Kind::String, {emit(Op::Equal, Kind::Bool, {h, name}), name, found});
+    }
+    return found;
+}
+
+/// The handles that getshaders() gives, in the order of their names.
+std::vector<Inst*> Builder::handlesOf(const Expr& e) {
+    std::string wanted;
+    for (const NamedArg& p : e.pairs) {
+        if (p.name != "category") continue;
+        Inst* v = expr(*p.value);
+        if (v->op == Op::ConstString) wanted = v->text;
+        else warn(p.place, "the category of getshaders() must be known when the shader is compiled; all are taken");
+    }
+    const bool without = !wanted.empty() && wanted[0] == '-';
+    if (without) wanted.erase(0, 1);
+    std::vector<Inst*> all;
+    for (const Instance& i : instances_) {
+        const auto& strings = i.binding->strings;
+        const auto own = strings.find("__category");
+        const std::string list = "," + (own == strings.end() ? std::string() : own->second) + ",";
+        const bool in = list.find("," + wanted + ",") != std::string::npos;
+        if (wanted.empty() || in != without) all.push_back(leaves_.string(i.binding->handle));
+    }
+    return all;
+}
+
+/// What the methods that a call can mean assign.
+void Builder::scanMethod(const Expr& e, std::set<int>& out) {
+    if (handleDepth_ > limits::kCoShaderDepth) return;
+    for (size_t i = 0; i < instances_.size(); ++i) {
+        const Function* f = methodOf(i, e);
+        if (!f || !f->body) continue;
+        std::set<const Function*> seen{f};
+        exchangeInstance(i);
+        ++handleDepth_;
+        scanAssigned(*f->body, out, seen);
+        --handleDepth_;
+        exchangeInstance(i);
+    }
+}
+
+} // namespace alpenglow::rsl::ir

@@ -1,0 +1,126 @@
+// Shaders that call others through handles: methods, members, getshader, getshaders, getvar. Every number below is in the shaders.
+#include "points.h"
+#include "rsl/compiler.h"
+#include <gtest/gtest.h>
+
+namespace alpenglow::rsl {
+namespace {
+
+const char* const kLayer = R"(
+class layer(float gain = 1; string __category = "";)
+{
+    public float calls = 0;
+    float hidden = 3;
+    public void construct() { hidden = hidden * gain; }
+    public color tint(color c; float k) { calls += 1; return c * scaled(k); }
+    public void split(float x; output float whole; output float rest) { whole = floor(x); rest = x - whole; calls += 10; }
+    float scaled(float k) { return k * hidden; }
+})";
+
+/// The outputs of a surface with two layers bound: "a" (gain 2, category "paint,wet") and "b" (gain 10, category "dust").
+std::vector<float> shade(const std::string& body, const std::vector<std::string>& names, Diagnostics& d, int lanes = 16, bool mixed = false) {
+    ShaderCompiler::Settings settings;
+    settings.useDefaultCache = false;
+    ShaderCompiler compiler(settings);
+    const auto layer = compiler.loadText(kLayer, "layer.sl", d);
+    std::string parameters;
+    for (const auto& n : names) parameters += "output varying float " + n + " = 0;";
+    const auto surface = compiler.loadText("surface s(" + parameters + ") {" + body + "}", "surface.sl", d);
+    if (!layer || !surface) return {};
+    KernelOptions o;
+    o.lanes = lanes;
+    o.mixed = mixed;
+    o.outputs = names;
+    for (const auto& [handle, gain, category] : {std::tuple{"a", 2.0f, "paint,wet"}, std::tuple{"b", 10.0f, "dust"}}) {
+        CoShader c = ShaderCompiler::coShader(layer, handle);
+        c.numbers["gain"] = {gain};
+        c.strings["__category"] = category;
+        o.coShaders.push_back(c);
+    }
+    const auto kernel = compiler.kernel(surface, o, d);
+    if (!kernel) return {};
+    std::vector<std::vector<float>> out;
+    if (!runPoints(*kernel, mixed, 1, evaluationPoint(), compiler.parameterDefaults(surface, d), out, d)) return {};
+    std::vector<float> values;
+    for (const auto& v : out) values.push_back(v[0]);
+    return values;
+}
+
+using Values = std::vector<float>;
+
+TEST(CoShaders, MethodsAndMembers) {
+    for (const int lanes : {4, 8, 16})
+        for (const bool mixed : {false, true}) {
+            Diagnostics d;
+            // scaled(k) = k * 3 * gain: 6 for "a" with k = 1, 30 for "b"; each has its own count of calls.
+            EXPECT_EQ(shade(R"(shader h = getshader("a"), g = getshader("b");
+                               color c = h->tint(color(1, 2, 3), 1);
+                               color e = g->tint(1, 1);
+                               x = c[1];
+                               y = e[0];
+                               h->split(2.75, z, w);
+                               n = h->calls * 100 + g->calls + h->gain * 1000;)",
+                            {"x", "y", "z", "w", "n"}, d, lanes, mixed),
+                      (Values{12, 30, 2, 0.75f, 3101}));
+            EXPECT_EQ(d.errors(), 0);
+        }
+}
+
+TEST(CoShaders, NullAndUnknownHandles) {
+    Diagnostics d;
+    EXPECT_EQ(shade(R"(shader h = getshader("nobody"); shader g = null;
+                       x = (h == null) ? 1 : 2; y = (g != null) ? 1 : 2; z = (getshader("a") != null) ? 1 : 2;)",
+                    {"x", "y", "z"}, d),
+              (Values{1, 2, 1}));
+    EXPECT_EQ(d.errors(), 0);
+}
+
+TEST(CoShaders, ArraysOfHandlesInLoops) {
+    Diagnostics d;
+    // 2 + 10 of the gains; 6 + 30 of the methods; one call each.
+    EXPECT_EQ(shade(R"(shader all[] = getshaders(); float i; n = arraylength(all);
+                       for (i = 0; i < arraylength(all); i += 1) {
+                           x += all[i]->gain;
+                           color c = all[i]->tint(1, 1);
+                           y += c[0];
+                       }
+                       shader a = getshader("a");
+                       z = a->calls;)",
+                    {"n", "x", "y", "z"}, d),
+              (Values{2, 12, 36, 1}));
+    EXPECT_EQ(shade(R"(shader wet[] = getshaders("category", "wet"); shader dry[] = getshaders("category", "-wet");
+                       x = wet[0]->gain; y = dry[0]->gain; n = arraylength(wet) * 10 + arraylength(dry);)",
+                    {"x", "y", "n"}, d),
+              (Values{2, 10, 11}));
+    EXPECT_EQ(d.errors(), 0);
+}
+
+TEST(CoShaders, GetVariable) {
+    Diagnostics d;
+    EXPECT_EQ(shade(R"(shader h = getshader("b"); float g = 0; x = getvar(h, "gain", g); y = g;
+                       z = getvar(h, "nothing", g) + getvar(h, "hidden", g); n = g;)",
+                    {"x", "y", "z", "n"}, d),
+              (Values{1, 10, 0, 10}));
+    EXPECT_EQ(d.errors(), 0);
+}
+
+TEST(CoShaders, ErrorsHaveTheirPlaces) {
+    const auto message = [](const std::string& body) {
+        Diagnostics d;
+        shade(body, {"x"}, d);
+        std::string all;
+        for (const auto& m : d.all())
+            all += std::to_string(m.place.line) + ":" + std::to_string(m.place.column) + " " + m.message + "\n";
+        return all;
+    };
+    EXPECT_NE(message("\nshader h = getshader(\"a\"); x = h->none(1);").find("2:33 co-shader 'a' (layer) has no public method 'none'"),
+              std::string::npos);
+    EXPECT_NE(message("\nshader h = getshader(\"a\"); x = h->hidden;").find("2:33 co-shader 'a' (layer) has no public member 'hidden'"),
+              std::string::npos);
+    EXPECT_NE(message("\nshader h = null; x = h->gain;").find("2:22 this handle is null here"), std::string::npos);
+    EXPECT_NE(message("\nfloat f = 1; x = f->gain;").find("2:19 '->' needs a structure or a shader, not float"), std::string::npos);
+    EXPECT_NE(message("\nshader h = getshader(\"a\"); h->tint(P, \"s\");").find("argument 2 of method 'tint'"), std::string::npos);
+}
+
+} // namespace
+} // namespace alpenglow::rsl

@@ -273,8 +273,9 @@ Json LanguageServer::symbols(const Json& params) {
                     {"range", range(*d, begin, body ? std::max(end, d->endOfDefinition(at)) : end)},
                     {"selectionRange", range(*d, at, end)}};
     };
+    std::set<std::pair<int, int>> seen; // a class is there once for each kind of shader it can be
     for (const auto& s : d->program()->shaders) {
-        if (!d->isHere(s->place)) continue;
+        if (!d->isHere(s->place) || !seen.insert({s->place.line, s->place.column}).second) continue;
         Json j = symbol(s->name, kClass, toString(s->kind), s->place, true);
         Json children = Json::array();
         for (const auto& q : s->parameters)

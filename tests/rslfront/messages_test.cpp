@@ -151,6 +151,15 @@ TEST(Lint, Unused) {
     EXPECT_EQ(linted("surface s(string __category = \"x\";) { Ci = 1; }"), Ids());
 }
 
+TEST(Lint, AShaderUsesWhatAnyOfItsKindsUses) {
+    // In one file a function serves two shaders; only one of them reads k by it.
+    EXPECT_EQ(linted("float f(float a; float b) { return a * b; }\n"
+                     "surface s() { Ci = f(1, 2); }\ndisplacement d() { P += N * f(1, 2); }\n"), Ids());
+    EXPECT_EQ(linted("class c(float k = 1; float h = 1;)\n{\n"
+                     "    public void surface(output color Ci; output color Oi) { Ci = k; Oi = 1; }\n"
+                     "    public void displacement(output point P; output normal N) { P += h * N; }\n}\n"), Ids());
+}
+
 TEST(Lint, NothingUnlessAsked) { EXPECT_EQ(compileSnippet("surface s(float a = 1;) { float x; Ci = x; }").messages.size(), 0u); }
 
 TEST(Lint, Uninitialised) {

@@ -1,6 +1,7 @@
 #include "rsl/front/lint.h"
 #include "rsl/front/visit.h"
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <set>
 
@@ -230,11 +231,15 @@ void lint(const Program& program, SourceSet& sources) {
             if (f.body) everyStmt(*f.body, skip, mention(&f == g.get() ? used : reached));
         });
     used.insert(reached.begin(), reached.end());
+    // A function is there once for each shader that calls it, a class once for each kind of shader it can be: what one of them uses
+    // is used.
+    std::set<std::array<int, 3>> usedPlaces;
+    for (const Symbol* s : used) usedPlaces.insert({s->place.file, s->place.line, s->place.column});
 
     const std::string& main = sources.name(0);
     const auto ours = [&](const Place& p) { return p.file >= 0 && p.line > 0 && sources.name(p.file) == main; };
     const auto unused = [&](const Symbol& s, bool parameter) {
-        if (used.count(&s) || !ours(s.place) || s.type.base == Base::Void || s.isExtern || s.name.rfind("__", 0) == 0) return;
+        if (usedPlaces.count({s.place.file, s.place.line, s.place.column}) || !ours(s.place) || s.type.base == Base::Void || s.isExtern || s.name.rfind("__", 0) == 0) return;
         sources.warning(s.place, std::string(parameter ? "parameter" : "variable") + " '" + s.name + "' is not used");
     };
     const auto body = [&](const Stmt* b, Place where) {

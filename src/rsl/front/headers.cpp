@@ -69,4 +69,9 @@ std::span<const std::string_view> dialectMacros(std::string_view dialect) {
     return {};
 }
 
+std::string_view dialectPrelude(std::string_view dialect) {
+    const std::string d = lower(dialect);
+    return d == "bmrt" || d == "entropy" ? "#include \"rayserver.h\"\n" : "";
+}
+
 } // namespace alpenglow::rsl::front

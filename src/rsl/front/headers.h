@@ -17,5 +17,7 @@ const ShippedHeader* shippedHeader(std::string_view name);
 std::span<const std::string_view> dialects();
 /// "NAME VALUE" of each macro that the compiler of this dialect predefines. "" is 3Delight's; an unknown name has none.
 std::span<const std::string_view> dialectMacros(std::string_view dialect);
+/// Text that stands before every file of this dialect: an #include of what its compiler has built in and ours calls otherwise.
+std::string_view dialectPrelude(std::string_view dialect);
 
 } // namespace alpenglow::rsl::front

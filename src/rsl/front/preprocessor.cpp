@@ -69,6 +69,7 @@ public:
         pushFile(main);
         std::string predefined = "#define ALPENGLOW 1\n";
         for (std::string_view macro : dialectMacros(options_.dialect)) predefined += "#define " + std::string(macro) + "\n";
+        predefined += dialectPrelude(options_.dialect);
         for (auto [name, value] : options_.defines) {
             for (char& c : value)
                 if (c == '\n' || c == '\r') c = ' ';

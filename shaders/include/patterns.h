@@ -1,0 +1,93 @@
+/* Steps, pulses and trains of pulses, sharp or filtered over the width of a sample. */
+#ifndef PATTERNS_H
+#define PATTERNS_H
+
+#include "filterwidth.h"
+
+#ifndef blend
+#define blend(a, b, x) ((a) * (1 - (x)) + (b) * (x))
+#endif
+#ifndef union
+#define union(a, b) ((a) + (b) - (a) * (b))
+#endif
+#ifndef intersection
+#define intersection(a, b) ((a) * (b))
+#endif
+#ifndef difference
+#define difference(a, b) ((a) * (1 - (b)))
+#endif
+#ifndef complement
+#define complement(a) (1 - (a))
+#endif
+#ifndef boxstep
+#define boxstep(a, b, x) (clamp(((x) - (a)) / ((b) - (a)), 0, 1))
+#endif
+#ifndef sqr
+#define sqr(x) ((x) * (x))
+#endif
+
+/* 1 between the edges; with a fourth value smooth over fuzz */
+float pulse(float a, b, fuzz, x) { return smoothstep(a - fuzz, a, x) - smoothstep(b - fuzz, b, x); }
+float pulse(float a, b, x) { return step(a, x) - step(b, x); }
+float pulsetrain(float edge, period, x) { return pulse(0, edge, mod(x, period)); }
+float smoothpulse(float e0, e1, e2, e3, x) { return smoothstep(e0, e1, x) - smoothstep(e2, e3, x); }
+float smoothpulsetrain(float e0, e1, e2, e3, period, x) { return smoothpulse(e0, e1, e2, e3, mod(x, period)); }
+
+float filteredpulse(float edge0, edge1, x, dx)
+{
+    float x0 = x - dx / 2, x1 = x + dx / 2;
+    return max(0, (min(x1, edge1) - max(x0, edge0)) / dx);
+}
+/* 1 in the first `edge` of each period, averaged over dx around x */
+float filteredpulsetrain(float edge, period, x, dx)
+{
+    float w = dx / period, x0 = x / period - w / 2, x1 = x0 + w, high = edge / period;
+    float inside = (high * floor(x1) + min(high, x1 - floor(x1))) - (high * floor(x0) + min(high, x0 - floor(x0)));
+    return inside / w;
+}
+/* integral of smoothstep(e0, e1, .) up to x */
+float smoothstepintegral(float e0, e1, x)
+{
+    float width = e1 - e0, r = clamp((x - e0) / width, 0, 1);
+    return width * (r * r * r - 0.5 * r * r * r * r) + max(0, x - e1);
+}
+float filteredsmoothstep(float e0, e1, x, dx)
+{
+    return (smoothstepintegral(e0, e1, x + dx / 2) - smoothstepintegral(e0, e1, x - dx / 2)) / dx;
+}
+float filteredsmoothpulse(float e0, e1, e2, e3, x, dx)
+{
+    return filteredsmoothstep(e0, e1, x, dx) - filteredsmoothstep(e2, e3, x, dx);
+}
+/* average of |x| over dx */
+float filteredabs(float x, dx)
+{
+    float x0 = x - dx / 2, x1 = x + dx / 2;
+    return (x1 * abs(x1) - x0 * abs(x0)) / (2 * dx);
+}
+
+/* running bond: which brick, where in it, and is it brick or mortar? Sizes in the units of s and t. */
+float brick(float ss, tt, width, height, mortar, stagger; output float row, column, x, y)
+{
+    float w = width + mortar, h = height + mortar;
+    row = floor(tt / h);
+    float shifted = ss / w + stagger * mod(row, 2);
+    column = floor(shifted);
+    x = (shifted - column) * w;
+    y = tt - row * h;
+    return pulse(mortar / 2, w - mortar / 2, x) * pulse(mortar / 2, h - mortar / 2, y);
+}
+void basicbrick(float x, y, brickwidth, brickheight, mortarthickness, rowvary, jagged;
+                output float xbrick, ybrick, whichbrick, jitter, inbrick)
+{
+    float w = brickwidth + mortarthickness, h = brickheight + mortarthickness;
+    float jy = y + jagged * (2 * float noise(x, y) - 1);
+    ybrick = floor(jy / h);
+    float jx = x / w + 0.5 * mod(ybrick, 2) + rowvary * (float cellnoise(ybrick) - 0.5) + jagged * (2 * float noise(y, x) - 1) / w;
+    xbrick = floor(jx);
+    whichbrick = xbrick + 1000 * ybrick;
+    jitter = float cellnoise(xbrick, ybrick);
+    float sx = (jx - xbrick) * w, sy = jy - ybrick * h;
+    inbrick = pulse(0, brickwidth, sx) * pulse(0, brickheight, sy);
+}
+#endif

@@ -58,28 +58,37 @@ uint32_t sobol1(uint32_t i) {
     return r;
 }
 
-Sampler::Sampler(uint64_t seed, int x, int y)
-    : seed_(mix64(seed + 0x6a09e667f3bcc909ull)),
-      pixel_(uint64_t(uint32_t(x + (1 << 29)) & 0x3fffffffu) << 34 | uint64_t(uint32_t(y + (1 << 29)) & 0x3fffffffu) << 4) {}
+namespace {
+// For one seed the first step maps (pixel, replica) one to one (`sample` is what it gives); so do the next two for (vertex, site) and
+// occurrence.
+uint64_t keyOf(uint64_t sample, uint32_t vertex, uint32_t site, uint32_t occurrence) {
+    return mix64(mix64(sample ^ (uint64_t(site) << 32 | vertex)) + occurrence);
+}
+} // namespace
 
 uint64_t Sampler::streamKey(uint32_t replica, uint32_t vertex, uint32_t site, uint32_t occurrence) const {
-    // For one seed the first step maps (pixel, replica) one to one; so do the next two for (vertex, site) and occurrence.
-    uint64_t k = mix64(seed_ ^ (pixel_ | replica));
-    k = mix64(k ^ (uint64_t(site) << 32 | vertex));
-    return mix64(k + occurrence);
+    return keyOf(mix64(seed_ ^ (pixel_ | replica)), vertex, site, occurrence);
 }
 
-Vec2 Sampler::get2(uint32_t vertex, uint32_t site, uint32_t occurrence, uint32_t sampleIndex) const {
-    uint64_t key = streamKey(sampleIndex % kReplicas, vertex, site, occurrence);
-    uint32_t i = nestedShuffle(sampleIndex / kReplicas, key, kOrder);
+Vec2 SampleNumbers::get2(uint32_t vertex, uint32_t site, uint32_t occurrence) const {
+    uint64_t key = keyOf(key_, vertex, site, occurrence);
+    uint32_t i = nestedShuffle(index_, key, kOrder);
     return {unitFloat(nestedScramble(sobol0(i), key, kFirst)), unitFloat(nestedScramble(sobol1(i), key, kSecond))};
 }
 
-float Sampler::get1(uint32_t vertex, uint32_t site, uint32_t occurrence, uint32_t sampleIndex) const {
+float SampleNumbers::get1(uint32_t vertex, uint32_t site, uint32_t occurrence) const {
     // A flipped key: the order of get1's points must not be that of get2's.
-    uint64_t key = ~streamKey(sampleIndex % kReplicas, vertex, site, occurrence);
-    uint32_t i = nestedShuffle(sampleIndex / kReplicas, key, kOrder);
+    uint64_t key = ~keyOf(key_, vertex, site, occurrence);
+    uint32_t i = nestedShuffle(index_, key, kOrder);
     return unitFloat(nestedScramble(sobol0(i), key, kSingle));
+}
+
+Vec2 Sampler::get2(uint32_t vertex, uint32_t site, uint32_t occurrence, uint32_t sampleIndex) const {
+    return SampleNumbers(*this, sampleIndex).get2(vertex, site, occurrence);
+}
+
+float Sampler::get1(uint32_t vertex, uint32_t site, uint32_t occurrence, uint32_t sampleIndex) const {
+    return SampleNumbers(*this, sampleIndex).get1(vertex, site, occurrence);
 }
 
 } // namespace alpenglow::render

@@ -17,11 +17,21 @@ namespace alpenglow::render {
 
 inline constexpr uint32_t kReplicas = 8;
 
+/// A seed, mixed once for all pixels.
+struct SeedKey {
+    explicit SeedKey(uint64_t seed) : key(mix64(seed + 0x6a09e667f3bcc909ull)) {}
+    uint64_t key;
+};
+
+class SampleNumbers;
+
 /// The stratified numbers of one pixel. Stateless: a number depends on (seed, pixel, sample, vertex, site, occurrence) only.
 class Sampler {
 public:
     /// Raster coordinates may be negative (filter borders); |x|, |y| < 2^29. Distinct pixels have distinct keys.
-    Sampler(uint64_t seed, int x, int y);
+    Sampler(uint64_t seed, int x, int y) : Sampler(SeedKey(seed), x, y) {}
+    Sampler(SeedKey seed, int x, int y)
+        : seed_(seed.key), pixel_(uint64_t(uint32_t(x + (1 << 29)) & 0x3fffffffu) << 34 | uint64_t(uint32_t(y + (1 << 29)) & 0x3fffffffu) << 4) {}
 
     /// Two numbers in [0,1). vertex: path vertex, 0 = camera; site: call site; occurrence: how often that site has asked
     /// already at this vertex. sampleIndex counts the samples of the pixel from 0.
@@ -33,7 +43,21 @@ public:
     uint64_t streamKey(uint32_t replica, uint32_t vertex, uint32_t site, uint32_t occurrence) const;
 
 private:
+    friend class SampleNumbers;
     uint64_t seed_ = 0, pixel_ = 0;
+};
+
+/// The numbers of one sample of a pixel: what Sampler gives for that sampleIndex, with what they have in common worked out once.
+class SampleNumbers {
+public:
+    SampleNumbers(const Sampler& s, uint32_t sampleIndex)
+        : key_(mix64(s.seed_ ^ (s.pixel_ | sampleIndex % kReplicas))), index_(sampleIndex / kReplicas) {}
+    Vec2 get2(uint32_t vertex, uint32_t site, uint32_t occurrence) const;
+    float get1(uint32_t vertex, uint32_t site, uint32_t occurrence) const;
+
+private:
+    uint64_t key_;
+    uint32_t index_; ///< of the sample in its replica
 };
 
 /// Nested uniform scramble of v, most significant bit first: each node of the binary tree has its own random bit, drawn from

@@ -238,8 +238,6 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
         }
         return;
     case From::Parameter: {
-        if (s.scalar) std::fill_n(row, size_t(comps) * s.elements, 0.f);
-        else for (size_t r = 0; r < s.rows; ++r) std::fill_n(row + r * stride, n, 0.f);
         numbers_.clear();
         for (const InstanceView& v : views.views) {
             auto found = v.parameters ? v.parameters->numbers.find(s.name) : std::map<std::string, std::vector<float>>::const_iterator{};
@@ -257,10 +255,15 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
                 valueOf_.clear();
                 for (const auto* numbers : numbers_) valueOf_.push_back(numbers && c < int(numbers->size()) ? (*numbers)[size_t(c)] : 0.f);
                 float* to = &at(c, 0, 0);
-                for (int i = 0; i < count; ++i) to[i] = valueOf_[views.index(i)];
+                if (valueOf_.size() == 1) std::fill_n(to, count, valueOf_[0]);
+                else for (int i = 0; i < count; ++i) to[i] = valueOf_[views.index(i)];
+                if (!s.scalar)
+                    for (int p = 1; p < np; ++p) std::fill_n(&at(c, p, 0), n, 0.f);
             }
             return;
         }
+        if (s.scalar) std::fill_n(row, size_t(comps) * s.elements, 0.f);
+        else for (size_t r = 0; r < s.rows; ++r) std::fill_n(row + r * stride, n, 0.f);
         for (int i = 0; i < count; ++i) {
             if (points[i].shape) {
                 int v = points[i].shape->findPrimvar(s.name);

@@ -232,7 +232,7 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched) {
                 at += size_t(width);
             }
         }
-        passThrough(ray, c.targets[i], c.points[i], Color(1) - opacity, sched);
+        if (opacity.x < 1 || opacity.y < 1 || opacity.z < 1) passThrough(ray, c.targets[i], c.points[i], Color(1) - opacity, sched);
     }
 }
 
@@ -326,12 +326,13 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
     size_t n = slice.size();
     std::vector<accel::Ray>& rays = rays_;
     std::vector<accel::Hit>& hits = hits_;
-    rays.assign(n, {});
+    rays.resize(n); // each is written whole
     hits.resize(n);
     for (size_t i = 0; i < n; ++i) {
         const PathRay& r = slice[i].payload;
         rays[i].org = r.origin;
         rays[i].dir = r.dir;
+        rays[i].tnear = 0;
         rays[i].tfar = r.maxDistance;
         if (r.type == RayType::Camera)
             for (const auto& [point, normal] : world_->clippingPlanes_) {

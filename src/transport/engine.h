@@ -41,6 +41,8 @@ struct LobeVertex {
     int samples = 1;
     bool ownsTarget = false; ///< a suspended request: the target also gets distance and transmission
     bool followed = true;  ///< its ray may be sent
+    bool delta = false;    ///< kind->isDelta(params)
+    float albedo = 0;      ///< kind->albedo(params)
     float chosen = 1;      ///< probability that the indirect ray of this lobe is followed
 };
 
@@ -76,7 +78,7 @@ struct BatchContext {
 
 class Engine final : public Sched::RayService {
 public:
-    Engine(std::shared_ptr<const WorldImpl> w, Diagnostics& d) : world_(std::move(w)), diagnostics_(d) {}
+    Engine(std::shared_ptr<const WorldImpl> w, Diagnostics& d) : world_(std::move(w)), diagnostics_(d), seed_(world_->settings_.seed) {}
     bool trace(std::span<const CameraRay>, std::span<SampleResult>, const volatile int32_t* stop);
     void follow(std::span<const Sched::Task> slice, Sched&) override;
     Counters counters;
@@ -118,7 +120,7 @@ public:
     Diagnostics& diagnostics() { return diagnostics_; }
     void shadeGroup(std::shared_ptr<BatchContext>, Sched&);
     void bindCall(rsl::KernelCall&, BatchContext&);
-    Random random(const PathRay& r) const { return Random(world_->settings_.seed, r.px, r.py, r.sample); }
+    Random random(const PathRay& r) const { return Random(seed_, r.px, r.py, r.sample); }
     std::vector<SampleResult*> results;
     std::vector<LobeVertex> lobes;
     std::vector<ShadowRay> shadows;
@@ -153,6 +155,7 @@ private:
     void passThrough(const PathRay&, TargetId, const ShadePoint&, const Color& transparency, Sched&);
     std::shared_ptr<const WorldImpl> world_;
     Diagnostics& diagnostics_;
+    render::SeedKey seed_;
     std::vector<float> chances_;
     std::vector<Color> transmitted_;
     std::set<const void*> tamed_;              ///< shaders that were named because they reflect more than they receive

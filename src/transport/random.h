@@ -9,13 +9,12 @@ enum RandomUse : uint32_t { kChooseLobe = 1u << 20, kRoulette, kPassThrough, kCh
 
 class Random {
 public:
-    Random(uint64_t seed, int px, int py, uint32_t sample) : sampler_(seed, px, py), sample_(sample) {}
-    Vec2 pair(uint32_t vertex, uint32_t use, uint32_t occurrence) const { return sampler_.get2(vertex, use, occurrence, sample_); }
-    float one(uint32_t vertex, uint32_t use, uint32_t occurrence) const { return sampler_.get1(vertex, use, occurrence, sample_); }
+    Random(render::SeedKey seed, int px, int py, uint32_t sample) : numbers_(render::Sampler(seed, px, py), sample) {}
+    Vec2 pair(uint32_t vertex, uint32_t use, uint32_t occurrence) const { return numbers_.get2(vertex, use, occurrence); }
+    float one(uint32_t vertex, uint32_t use, uint32_t occurrence) const { return numbers_.get1(vertex, use, occurrence); }
 
 private:
-    render::Sampler sampler_;
-    uint32_t sample_;
+    render::SampleNumbers numbers_;
 };
 
 /// The vertex key of what lies behind a call: a hash of the way there.

@@ -77,7 +77,6 @@ void Engine::gather(BatchContext& c, Sched& sched) {
     const Settings& set = world_->settings_;
     bool path = set.hider == Hider::Path;
     if (lobes.empty()) return;
-    auto sourcePoint = [&](const ShadePoint& p, const Vec3& w) { return geometry::offsetOrigin(p.surface, w, length(p.P - p.surface.P)); };
 
     // Lobes by point, in order of emission: of point pi those at order[begin[pi]] to order[begin[pi + 1]].
     GatherRoom room = std::move(gatherRoom_); // taken, so that a gather() inside this one has its own
@@ -92,6 +91,11 @@ void Engine::gather(BatchContext& c, Sched& sched) {
         for (size_t i = 0; i < lobes.size(); ++i) order[size_t(next[size_t(lobes[i].point)]++)] = int(i);
     }
     auto lobesOf = [&](size_t pi) { return std::span<const int>(order).subspan(size_t(begin[pi]), size_t(begin[pi + 1] - begin[pi])); };
+
+    auto sourcePoint = [&](size_t pi, const Vec3& w) {
+        const ShadePoint& p = c.points[pi];
+        return geometry::offsetOrigin(p.surface, w, p.P == p.surface.P ? 0 : length(p.P - p.surface.P));
+    };
 
     // A lobe whose ray would go too deep is not followed; light samples then count in full.
     auto tooDeep = [&](const LobeVertex& l) {
@@ -111,7 +115,8 @@ void Engine::gather(BatchContext& c, Sched& sched) {
         double total = 0;
         for (int i : list) {
             LobeVertex& l = lobes[i];
-            float albedo = l.kind->albedo(l.params);
+            float albedo = l.albedo = l.kind->albedo(l.params);
+            l.delta = l.kind->isDelta(l.params);
             if (l.lobeOfShader) sum += Color(std::fabs(l.weight.x), std::fabs(l.weight.y), std::fabs(l.weight.z)) * albedo;
             l.chosen = std::max(luminance(Color(std::fabs(l.weight.x), std::fabs(l.weight.y), std::fabs(l.weight.z))) * albedo, 0.f);
             bool deep = tooDeep(l);
@@ -177,7 +182,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
             for (size_t k = 0; k < count; ++k) {
                 size_t pi = many ? size_t(chosenAt[at][k].first) : k;
                 bool wanted = false;
-                for (int i : lobesOf(pi)) wanted |= samples(lobes[i], light) && !lobes[i].kind->isDelta(lobes[i].params);
+                for (int i : lobesOf(pi)) wanted |= samples(lobes[i], light) && !lobes[i].delta;
                 if (!wanted) continue;
                 const ShadePoint& lit = c.points[pi];
                 if (used == q.size()) q.emplace_back();
@@ -228,7 +233,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 float distance = area ? drawn[k].distance : light.kind == LightKind::Distant ? 1e38f : length(v.L);
                 for (int i : lobesOf(size_t(pointOf[k]))) {
                     LobeVertex& l = lobes[i];
-                    if (!samples(l, light)) continue;
+                    if (l.delta || !samples(l, light)) continue;
                     float fcos = l.kind->fcos(l.params, w);
                     if (!(fcos > 0)) continue;
                     float kept = l.type == RayType::Diffuse ? 1 - v.nonDiffuse : 1 - v.nonSpecular;
@@ -236,13 +241,15 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     Color contribution = l.weight * c.rays[l.point].weight * v.Cl;
                     if (l.ownsTarget) contribution = l.weight * v.Cl;
                     if (area) {
-                        float other = set.lightOnly || !(l.chosen > 0) || !(drawn[k].visibility & visibilityBit(l.type)) ? 0 : l.kind->pdf(l.params, w) * l.chosen;
+                        float other = 0; // the density with which the lobe's own ray would have come here
+                        if (!set.lightOnly && l.chosen > 0 && (drawn[k].visibility & visibilityBit(l.type)))
+                            other = (l.kind->pdf == l.kind->fcos ? fcos : l.kind->pdf(l.params, w)) * l.chosen;
                         float pdf = drawn[k].pdf * chance[k];
                         contribution *= kept * fcos / pdf * misWeight(pdf, other);
                     } else {
                         contribution *= kept * float(kPi) * fcos / chance[k]; // Cl is irradiance / pi
                     }
-                    Vec3 o = sourcePoint(p, w);
+                    Vec3 o = sourcePoint(size_t(l.point), w);
                     // The light's own surface must not block: stop short of it by both error bounds.
                     float stop = distance;
                     if (area) {
@@ -283,34 +290,40 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 uint32_t occurrence = l.occurrence * 4096 + uint32_t(k);
                 Vec3 w;
                 if (!l.kind->sample(l.params, rng.pair(from.vertex, l.site, occurrence), w)) continue;
-                bool delta = l.kind->isDelta(l.params);
+                bool delta = l.delta;
                 float pdf = delta ? 0 : l.kind->pdf(l.params, w);
-                float f = delta ? l.kind->albedo(l.params) : pdf > 0 ? l.kind->fcos(l.params, w) / pdf : 0;
+                float f = delta ? l.albedo : pdf > 0 ? (l.kind->pdf == l.kind->fcos ? 1 : l.kind->fcos(l.params, w) / pdf) : 0;
                 Color through = l.weight * (f * scale / count);
-                PathRay r = from;
-                r.weight = l.ownsTarget ? through : from.weight * through;
-                r.bounces = int16_t(from.bounces + 1);
-                if (l.type == RayType::Diffuse) ++r.diffuseBounces;
-                else ++r.specularBounces;
-                if (!(maxComponent(r.weight) > 0) && !(std::min({r.weight.x, r.weight.y, r.weight.z}) < 0) && !l.ownsTarget) continue;
-                r.vertex = childVertex(from.vertex, l.site, occurrence);
+                Color weight = l.ownsTarget ? through : from.weight * through;
+                if (!(maxComponent(weight) > 0) && !(std::min({weight.x, weight.y, weight.z}) < 0) && !l.ownsTarget) continue;
+                const uint32_t vertex = childVertex(from.vertex, l.site, occurrence);
+                uint16_t asked = from.asked;
                 if (path && set.roulette) {
                     float q = 1;
-                    auto dice = [&] { return rng.one(r.vertex, kRoulette, 0); };
+                    auto dice = [&] { return rng.one(vertex, kRoulette, 0); };
                     if (l.ownsTarget) {
-                        r.asked = uint16_t(std::min<uint32_t>(std::max<uint32_t>(from.asked, l.before + uint32_t(k) + 1), 0xffff));
-                        q = rouletteWaiting(from.bounces, r.asked);
+                        asked = uint16_t(std::min<uint32_t>(std::max<uint32_t>(from.asked, l.before + uint32_t(k) + 1), 0xffff));
+                        q = rouletteWaiting(from.bounces, asked);
                         if (q < 1 && dice() >= q) q = 0;
                     } else if (set.localRoulette) {
                         q = rouletteLocal(from.bounces + 1, l.weight, from.bounces + 1 > 3 ? dice() : 0);
                     } else if (from.bounces + 1 > 3) {
-                        float m = std::min(1.f, maxComponent(Color(std::fabs(r.weight.x), std::fabs(r.weight.y), std::fabs(r.weight.z))));
+                        float m = std::min(1.f, maxComponent(Color(std::fabs(weight.x), std::fabs(weight.y), std::fabs(weight.z))));
                         q = m <= 0 ? 0 : m >= 1 ? 1 : dice() < m ? m : 0;
                     }
                     if (q <= 0) continue;
-                    r.weight = r.weight / q;
+                    weight = weight / q;
                 }
-                r.origin = sourcePoint(p, w);
+                const int bounces = from.bounces + 1;
+                PathRay& r = sched.spawn(bounces + from.layers, l.target).payload;
+                r = from;
+                r.weight = weight;
+                r.vertex = vertex;
+                r.asked = asked;
+                r.bounces = int16_t(bounces);
+                if (l.type == RayType::Diffuse) ++r.diffuseBounces;
+                else ++r.specularBounces;
+                r.origin = sourcePoint(pi, w);
                 r.dir = w;
                 r.maxDistance = l.maxDistance;
                 r.type = l.type;
@@ -326,8 +339,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 r.shape = geometry::kNone;
                 r.cameraSample = -1;
                 r.first = l.ownsTarget && k == 0;
-                sched.spawn(r.bounces + r.layers, l.target).payload = r;
-                counters.depthMax = std::max(counters.depthMax, int(r.bounces));
+                counters.depthMax = std::max(counters.depthMax, bounces);
                 ++counters.depthSum; // over camera rays: the mean number of bounces
             }
         }

@@ -112,6 +112,15 @@ TEST(Messages, CandidatesAreBounded) {
         if (d.severity == Severity::Error) EXPECT_EQ(d.notes.size(), size_t(limits::kCandidateNotes));
 }
 
+TEST(Messages, StructuresAreBounded) {
+    std::string text;
+    for (int k = 0; k <= limits::kStructs; ++k) text += "struct S" + std::to_string(k) + " { float a; }\n";
+    const auto c = compileSnippet(text + "surface s() { Ci = 1; }\n");
+    ASSERT_GE(c.errors(), 1);
+    EXPECT_EQ(c.messages[0].id, "struct-count");
+    EXPECT_EQ(c.messages[0].place.line, limits::kStructs + 1);
+}
+
 TEST(Messages, FixIts) {
     Diagnostic d = only("f = nois(p);");
     ASSERT_EQ(d.fixes.size(), 1u);

@@ -2,8 +2,8 @@
 #include "rsl/front/visit.h"
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <set>
+#include <unordered_map>
 
 namespace alpenglow::rsl::front {
 
@@ -26,6 +26,34 @@ bool isOutput(const Expr& call, size_t i) {
     return !p.empty() && p[std::min(i, p.size() - 1)].output;
 }
 
+/// A set of small numbers that is cheap to copy: a state is copied at every branch.
+class Bits {
+public:
+    bool has(size_t n) const { return n / 64 < words_.size() && (words_[n / 64] >> (n % 64) & 1); }
+    void insert(size_t n) {
+        if (n / 64 >= words_.size()) words_.resize(n / 64 + 1);
+        words_[n / 64] |= uint64_t(1) << (n % 64);
+    }
+    void erase(size_t n) {
+        if (n / 64 < words_.size()) words_[n / 64] &= ~(uint64_t(1) << (n % 64));
+    }
+    static Bits both(const Bits& a, const Bits& b) {
+        Bits r;
+        r.words_.resize(std::min(a.words_.size(), b.words_.size()));
+        for (size_t i = 0; i < r.words_.size(); ++i) r.words_[i] = a.words_[i] & b.words_[i];
+        return r;
+    }
+    static Bits either(const Bits& a, const Bits& b) {
+        const Bits& small = a.words_.size() < b.words_.size() ? a : b;
+        Bits r = &small == &a ? b : a;
+        for (size_t i = 0; i < small.words_.size(); ++i) r.words_[i] |= small.words_[i];
+        return r;
+    }
+
+private:
+    std::vector<uint64_t> words_;
+};
+
 /// Follows the statements in the order in which they run, and knows at each which variables have a value on every way there, and
 /// which on some way.
 class Flow {
@@ -35,7 +63,7 @@ public:
 
 private:
     struct State {
-        std::set<const Symbol*> always, sometimes;
+        Bits always, sometimes; ///< by number in tracked_
         bool dead = false; ///< no way leads here
     };
 
@@ -43,23 +71,23 @@ private:
         if (a.dead) return b;
         if (b.dead) return a;
         State s;
-        std::set_intersection(a.always.begin(), a.always.end(), b.always.begin(), b.always.end(),
-                              std::inserter(s.always, s.always.end()));
-        std::set_union(a.sometimes.begin(), a.sometimes.end(), b.sometimes.begin(), b.sometimes.end(),
-                       std::inserter(s.sometimes, s.sometimes.end()));
+        s.always = Bits::both(a.always, b.always);
+        s.sometimes = Bits::either(a.sometimes, b.sometimes);
         return s;
     }
 
     void given(const Symbol* s) {
-        if (!tracked_.count(s)) return;
-        now_.always.insert(s);
-        now_.sometimes.insert(s);
+        const auto at = tracked_.find(s);
+        if (at == tracked_.end()) return;
+        now_.always.insert(at->second);
+        now_.sometimes.insert(at->second);
     }
 
     void read(const Expr& e) {
         const Symbol* s = e.symbol;
-        if (now_.dead || !s || !tracked_.count(s) || now_.always.count(s) || !told_.insert(s).second) return;
-        const bool maybe = now_.sometimes.count(s) || loops_ > 0;
+        const auto at = tracked_.find(s);
+        if (now_.dead || at == tracked_.end() || now_.always.has(at->second) || !told_.insert(s).second) return;
+        const bool maybe = now_.sometimes.has(at->second) || loops_ > 0;
         sources_.warning(e.place, "'" + s->name + "' " + (maybe ? "may be" : "is") + " read before it has a value; it is zero then");
     }
 
@@ -153,9 +181,9 @@ private:
                 // An array of open length is made by push and resize.
                 const bool open = d.symbol->resizable || d.symbol->type.array < 0;
                 if (!d.init && !open && d.symbol->type.base != Base::Void && !ignored_.count(d.symbol)) {
-                    tracked_.insert(d.symbol);
-                    now_.always.erase(d.symbol);
-                    if (loops_ == 0) now_.sometimes.erase(d.symbol);
+                    const size_t n = tracked_.emplace(d.symbol, tracked_.size()).first->second;
+                    now_.always.erase(n);
+                    if (loops_ == 0) now_.sometimes.erase(n);
                 }
             }
             return;
@@ -203,7 +231,8 @@ private:
 
     SourceSet& sources_;
     const std::set<const Symbol*>& ignored_;
-    std::set<const Symbol*> tracked_, told_;
+    std::unordered_map<const Symbol*, size_t> tracked_;
+    std::set<const Symbol*> told_;
     State now_;
     int loops_ = 0, varyingConditions_ = 0;
 };

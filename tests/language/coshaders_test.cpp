@@ -1,4 +1,5 @@
 // Shaders that call others through handles: methods, members, getshader, getshaders, getvar. Every number below is in the shaders.
+#include "base/limits.h"
 #include "points.h"
 #include "rsl/compiler.h"
 #include <gtest/gtest.h>
@@ -120,6 +121,64 @@ TEST(CoShaders, ErrorsHaveTheirPlaces) {
     EXPECT_NE(message("\nshader h = null; x = h->gain;").find("2:22 this handle is null here"), std::string::npos);
     EXPECT_NE(message("\nfloat f = 1; x = f->gain;").find("2:19 '->' needs a structure or a shader, not float"), std::string::npos);
     EXPECT_NE(message("\nshader h = getshader(\"a\"); h->tint(P, \"s\");").find("argument 2 of method 'tint'"), std::string::npos);
+}
+
+/// What a chain of n co-shaders gives, each of which calls the next.
+std::string chain(int n, float& value) {
+    ShaderCompiler::Settings settings;
+    settings.useDefaultCache = false;
+    ShaderCompiler compiler(settings);
+    Diagnostics d;
+    const auto link = compiler.loadText(R"(class link(string next = "";) {
+        public float down(float x) { float y = x + 1; if (next != "") { shader h = getshader(next); y = h->down(y); } return y; } })",
+                                        "link.sl", d);
+    const auto top = compiler.loadText("surface top(output varying float r = 0;) { shader h = getshader(\"0\"); r = h->down(0); }",
+                                       "top.sl", d);
+    KernelOptions o;
+    o.outputs = {"r"};
+    for (int i = 0; i < n; i++) {
+        o.coShaders.push_back(ShaderCompiler::coShader(link, std::to_string(i)));
+        o.coShaders.back().strings["next"] = i + 1 < n ? std::to_string(i + 1) : "";
+    }
+    std::vector<std::vector<float>> out;
+    const auto kernel = compiler.kernel(top, o, d);
+    if (kernel && runPoints(*kernel, false, 1, evaluationPoint(), compiler.parameterDefaults(top, d), out, d)) value = out[0][0];
+    std::string all;
+    for (const auto& m : d.all())
+        if (m.severity >= Severity::Error) all += m.message;
+    return all;
+}
+
+TEST(CoShaders, DepthAndRecursion) {
+    float value = 0;
+    EXPECT_EQ(chain(limits::kCoShaderDepth, value), "");
+    EXPECT_EQ(value, float(limits::kCoShaderDepth));
+    EXPECT_NE(chain(limits::kCoShaderDepth + 3, value).find("co-shaders call each other more than"), std::string::npos);
+    ShaderCompiler::Settings settings;
+    settings.useDefaultCache = false;
+    ShaderCompiler compiler(settings);
+    Diagnostics d;
+    const auto loop = compiler.loadText("class loop() { public float f(string to) { shader h = getshader(to); return h->f(to); } }", "loop.sl", d);
+    const auto top = compiler.loadText("surface top(string to = \"0\"; output varying float r = 0;) { shader h = getshader(to);"
+                                       " string x = (u > 0.3) ? \"0\" : \"1\"; r = h->f(x); }",
+                                       "top.sl", d);
+    ASSERT_TRUE(loop && top);
+    KernelOptions o;
+    for (int i = 0; i < 30; i++) o.coShaders.push_back(ShaderCompiler::coShader(loop, std::to_string(i)));
+    EXPECT_EQ(compiler.kernel(top, o, d), nullptr);
+    EXPECT_GT(d.errors(), 0);
+}
+
+TEST(Structures, AtMostSoMany) {
+    std::string text;
+    for (int i = 0; i <= limits::kStructs; i++) text += "struct s" + std::to_string(i) + " { float x; }\n";
+    ShaderCompiler::Settings settings;
+    settings.useDefaultCache = false;
+    ShaderCompiler compiler(settings);
+    Diagnostics d;
+    EXPECT_EQ(compiler.loadText(text + "surface s() {}", "many.sl", d), nullptr);
+    ASSERT_EQ(d.errors(), 1);
+    EXPECT_EQ(d.all()[0].place.line, limits::kStructs + 1);
 }
 
 } // namespace

@@ -56,6 +56,7 @@ void Builder::beginCoShaders() {
 Inst* Builder::forHandle(const Expr& handle, Kind kind, const std::function<Inst*(size_t)>& code) {
     Inst* h = expr(handle, Kind::String);
     place_ = handle.place;
+    if (failed_) return zero(kind);
     if (handleDepth_ > limits::kCoShaderDepth) {
         error(handle.place, "co-shaders call each other more than " + std::to_string(limits::kCoShaderDepth) + " deep");
         return zero(kind);
@@ -91,6 +92,10 @@ Inst* Builder::methodCall(const Expr& e) {
                                std::to_string(e.args.size() - 1) + " arguments");
             return zero(kind);
         }
+        if (openMethods_.count({i, f})) {
+            error(e.place, "method '" + e.text + "' of co-shader '" + c.handle + "' calls itself; recursion is not allowed");
+            return zero(kind);
+        }
         std::vector<Inst*> values;
         for (size_t n = 0; n < f->parameters.size() && !failed_; ++n) {
             const Expr& given = *e.args[n + 1];
@@ -118,6 +123,7 @@ Inst* Builder::methodCall(const Expr& e) {
             values.push_back(a);
         }
         if (failed_) return zero(kind);
+        openMethods_.insert({i, f});
         exchangeInstance(i);
         ++handleDepth_;
         for (size_t n = 0; n < values.size(); ++n) set(slot(f->parameters[n]), values[n]);
@@ -133,6 +139,7 @@ Inst* Builder::methodCall(const Expr& e) {
         for (const Symbol* p : f->parameters) outputs.push_back(get(slot(p)));
         --handleDepth_;
         exchangeInstance(i);
+        openMethods_.erase({i, f});
         place_ = e.place;
         for (size_t n = 0; n < outputs.size(); ++n)
             if (f->parameters[n]->output && !f->parameters[n]->type.array) assign(*e.args[n + 1], outputs[n]);
@@ -245,17 +252,16 @@ std::vector<Inst*> Builder::handlesOf(const Expr& e) {
 
 /// What the methods that a call can mean assign.
 void Builder::scanMethod(const Expr& e, std::set<int>& out) {
-    if (handleDepth_ > limits::kCoShaderDepth) return;
+    const bool outermost = scannedMethods_.empty();
     for (size_t i = 0; i < instances_.size(); ++i) {
         const Function* f = methodOf(i, e);
-        if (!f || !f->body) continue;
+        if (!f || !f->body || !scannedMethods_.insert({i, f}).second) continue;
         std::set<const Function*> seen{f};
         exchangeInstance(i);
-        ++handleDepth_;
         scanAssigned(*f->body, out, seen);
-        --handleDepth_;
         exchangeInstance(i);
     }
+    if (outermost) scannedMethods_.clear();
 }
 
 } // namespace alpenglow::rsl::ir

@@ -216,6 +216,7 @@ private:
     std::vector<Instance> instances_;
     const std::vector<std::string>* files_ = &program_.files; ///< those that places refer to just now
     int handleDepth_ = 0; ///< methods of co-shaders that are open
+    std::set<std::pair<size_t, const Function*>> openMethods_, scannedMethods_;
     int lightDepth_ = 0;
     bool uniformContext_ = false; ///< the value goes to a uniform variable: one random() for all
     bool failed_ = false;

@@ -73,7 +73,8 @@ TEST(CoShaders, NullAndUnknownHandles) {
                        x = (h == null) ? 1 : 2; y = (g != null) ? 1 : 2; z = (getshader("a") != null) ? 1 : 2;)",
                     {"x", "y", "z"}, d),
               (Values{1, 2, 1}));
-    EXPECT_EQ(d.errors(), 0);
+    EXPECT_EQ(shade(R"(shader h = getshader("nobody"); x = 4; if (h != null) x = h->gain;)", {"x"}, d), (Values{4}));
+    EXPECT_TRUE(d.all().empty());
 }
 
 TEST(CoShaders, ArraysOfHandlesInLoops) {

@@ -139,7 +139,7 @@ const char* partOf(const std::string& s) {
         return "traversal";
     if (has("libc.so") || has("libm.so") || has("libgcc") || has("libstdc++")) return "C library (memory, sines)";
     if (has("8geometry")) return "points of hits and lights";
-    if (has("7Sampler") || has("nestedS") || has("6render6nested") || has("6sobol") || has("13FilterSampler") || has("6Camera") || has("7pathRay"))
+    if (has("7Sampler") || has("13SampleNumbers") || has("nestedS") || has("6render6nested") || has("6sobol") || has("13FilterSampler") || has("6Camera") || has("7pathRay"))
         return "sampling, camera";
     if (has("5lobes") || has("lobe") || has("Lobe") || has("4draw") || has("5value")) return "lobes";
     if (has("7shading5Batch") || has("12setFootprint")) return "filling batches";

@@ -17,6 +17,7 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace alpenglow::shading {
@@ -132,7 +133,8 @@ public:
                 size_t take = std::min(q.size(), most - slice.size());
                 if (slice.empty() && take == q.size()) slice.swap(q);
                 else { // from the end: order does not matter, moving the rest would cost
-                    slice.insert(slice.end(), std::make_move_iterator(q.end() - ptrdiff_t(take)), std::make_move_iterator(q.end()));
+                    if constexpr (std::is_trivially_copyable_v<Task>) slice.insert(slice.end(), q.end() - ptrdiff_t(take), q.end());
+                    else slice.insert(slice.end(), std::make_move_iterator(q.end() - ptrdiff_t(take)), std::make_move_iterator(q.end()));
                     q.resize(q.size() - take);
                 }
             }

@@ -27,7 +27,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     l.ownsTarget = owns;
     l.site = uint32_t(s.site - c.bound->kernel->sites().data());
     l.occurrence = occurrence;
-    l.params.wo = unit(-p.I, p.surface.n);
+    if (s.kind != SiteKind::Diffuse) l.params.wo = unit(-p.I, p.surface.n);
     switch (s.kind) {
     case SiteKind::Ambient: return; // under path ambient light is what escaping diffuse rays see
     case SiteKind::Diffuse:

@@ -72,6 +72,7 @@ void warnNonlinear(const rsl::ShaderCompiler& compiler, const rsl::CompiledShade
 void addCompile(CLI::App& app, int* status) {
     struct Arguments {
         std::vector<std::string> files, searchPaths, defines;
+        std::string dialect;
         int lanes = 16;
         bool ir = false, llvm = false, path = false, mixed = false, suspend = false, quiet = false, warn = false, json = false;
     };
@@ -82,6 +83,9 @@ void addCompile(CLI::App& app, int* status) {
         ->type_name("DIRS")
         ->allow_extra_args(false);
     c->add_option("-D", a->defines, "Define a macro")->type_name("NAME[=TEXT]")->allow_extra_args(false);
+    c->add_option("--dialect", a->dialect, "Predefine the macros of this renderer's compiler (3delight if none is named)")
+        ->check(CLI::IsMember({"prman", "3delight", "aqsis", "bmrt", "pixie", "entropy", "air"}, CLI::ignore_case))
+        ->type_name("NAME");
     c->add_option("--lanes", a->lanes, "Width of the machine code")->check(CLI::IsMember({4, 8, 16}))->type_name("N");
     c->add_flag("--path", a->path, "As under Hider \"path\": diffuse, specular and phong are requests to the light transport");
     c->add_flag("--mixed", a->mixed, "Build V: uniform values in lanes, for batches of several instances");
@@ -106,6 +110,7 @@ void addCompile(CLI::App& app, int* status) {
             settings.defines.emplace_back(d.substr(0, eq), eq == std::string::npos ? "1" : d.substr(eq + 1));
         }
         settings.lint = a->warn;
+        settings.dialect = a->dialect;
         rsl::ShaderCompiler compiler(settings);
         std::vector<std::string> paths{"."};
         for (std::string& f : folders(a->searchPaths)) paths.push_back(std::move(f));

@@ -154,6 +154,7 @@ ShaderPtr ShaderCompiler::load(const std::string& name, const std::vector<std::s
         options.includePaths.push_back(fs::path(found->path).parent_path().string());
         for (const auto& d : directories) options.includePaths.push_back(d);
         options.defines = state_->settings.defines;
+        options.dialect = state_->settings.dialect;
         options.lint = state_->settings.lint;
         auto program = compileFile(found->path, options, diagnostics);
         sayWithoutShader(program.get(), found->path, diagnostics);
@@ -179,6 +180,7 @@ ShaderPtr ShaderCompiler::load(const std::string& name, const std::vector<std::s
 ShaderPtr ShaderCompiler::loadText(const std::string& text, const std::string& name, Diagnostics& diagnostics) {
     FrontOptions options;
     options.defines = state_->settings.defines;
+    options.dialect = state_->settings.dialect;
     auto program = compileText(text, name, options, diagnostics);
     sayWithoutShader(program.get(), name, diagnostics);
     return finish(std::move(program), name, {}, text);

@@ -65,6 +65,7 @@ public:
         std::string cacheDirectory;  ///< "": none
         bool useDefaultCache = true; ///< take jit::defaultCacheDirectory() when cacheDirectory is empty
         std::vector<std::pair<std::string, std::string>> defines;
+        std::string dialect; ///< whose macros are predefined: FrontOptions::dialect
         bool lint = false; ///< the warnings for who writes shaders (front/lint.h)
     };
     ShaderCompiler();

@@ -18,5 +18,5 @@ surface arraystyle(string lname = "x", pass = "beauty"; float array[5] = {1,2,3}
     Ci += acc[0] * k;
     Ci = max(Ci, color(0)); Ci = min(Ci, 1);
     Ci *= 1.0 - -0.5;
-    if (u>.5 && v[1]==v[0]) { Ci = Cs; } 
+    if (u>.5 && v[1]==v[0]) { Ci = Cs; }
 }

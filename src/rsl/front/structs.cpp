@@ -83,7 +83,11 @@ private:
     };
     using List = std::vector<ExprPtr>;
 
-    const StructType& structOf(Type t) const { return unit_.structs[size_t(int(t.base) - kFirstStruct)]; }
+    /// Of anything else, after an error, a structure without members.
+    const StructType& structOf(Type t) const {
+        static const StructType none{};
+        return isStruct(t) ? unit_.structs[size_t(int(t.base) - kFirstStruct)] : none;
+    }
     std::string shown(Type t) const { return isStruct(t) ? "structure '" + structOf(t).name + "'" : toString(t); }
 
     /// A structure inside itself would have no end; members that are arrays of structures with arrays have no storage.
@@ -311,7 +315,7 @@ private:
             if (m < e.args.size()) {
                 valueOf(std::move(e.args[m]), s.members[m].type, pre, out);
             } else {
-                for (size_t i = 0; i < parts; ++i) out.push_back(std::move(rest[at + i]));
+                for (size_t i = 0; i < parts && at + i < rest.size(); ++i) out.push_back(std::move(rest[at + i]));
             }
             at += parts;
         }
@@ -321,6 +325,10 @@ private:
     void flatten(ExprPtr e, List& pre, List& out) {
         const Type type = typeOf(*e);
         const Place place = e->place;
+        if (!isStruct(type)) {
+            if (sources_.errors() == 0) sources_.error(place, "expected a structure");
+            return;
+        }
         switch (e->kind) {
         case ExprKind::Variable:
             for (const Leaf& l : leaves(type)) out.push_back(variable(e->text + l.path, place));
@@ -382,7 +390,7 @@ private:
                 List arrays;
                 flatten(std::move(e->args[0]), pre, arrays);
                 const auto all = leaves(type);
-                for (size_t i = 0; i < all.size(); ++i) {
+                for (size_t i = 0; i < all.size() && i < arrays.size(); ++i) {
                     auto call = node(ExprKind::ShadeopCall, place);
                     call->text = "pop";
                     adopt(*call, std::move(arrays[i]));
@@ -414,7 +422,7 @@ private:
         for (const StructMember& m : structOf(type).members) {
             const size_t parts = isStruct(m.type) ? leaves(m.type).size() : 1;
             if (m.name == e.text)
-                for (size_t i = 0; i < parts; ++i) out.push_back(std::move(base[at + i]));
+                for (size_t i = 0; i < parts; ++i) out.push_back(at + i < base.size() ? std::move(base[at + i]) : variable("", e.place));
             at += parts;
         }
     }
@@ -510,7 +518,7 @@ private:
             if (sizes && e->args.size() == 1 && isStruct(typeOf(*e->args[0]))) {
                 List parts;
                 flatten(std::move(e->args[0]), pre, parts);
-                e->args[0] = std::move(parts[0]);
+                e->args[0] = parts.empty() ? variable("", e->place) : std::move(parts[0]);
                 sequence(e, std::move(pre));
                 return;
             }
@@ -597,7 +605,7 @@ private:
             flatten(std::move(e.args[0]), pre, arrays);
             if (e.text == "push") valueOf(std::move(e.args[1]), {t.base, 0}, pre, values);
             else rewrite(e.args[1]);
-            for (size_t i = 0; i < arrays.size(); ++i) {
+            for (size_t i = 0; i < arrays.size() && (e.text != "push" || i < values.size()); ++i) {
                 auto one = node(ExprKind::ShadeopCall, e.place);
                 one->text = e.text;
                 adopt(*one, std::move(arrays[i]));

@@ -181,11 +181,8 @@ TEST(Growth, ManyRaysOfAWaitingShaderStayFinite) {
     EXPECT_NEAR(m.mean(), 1, 4.753 * m.se() + .0006);
     EXPECT_LT(m.se(), .1);
 }
-TEST(Stop, EndlessLoopsEndPromptly) {
-    writeShader("forever", "surface forever() { float x = 0; while (1) { x += 1; } Ci = x; Oi = 1; }\n");
-    Scene scene("WorldBegin\nSurface \"forever\"\nSides 2\nSphere 1 -1 1 360\nWorldEnd\n");
-    ASSERT_TRUE(scene.world);
-    std::vector<CameraRay> rays(2000, rayTo({0, 0, -3}, {0, 0, 0}));
+/// Traces rays that take far longer than 150 ms, asks to stop after those, and expects the end within the 0.2 s that the issue asks for.
+void expectPromptStop(Scene& scene, const std::vector<CameraRay>& rays) {
     std::vector<SampleResult> out(rays.size());
     volatile int32_t stop = 0;
     using Clock = std::chrono::steady_clock;
@@ -202,6 +199,14 @@ TEST(Stop, EndlessLoopsEndPromptly) {
     EXPECT_FALSE(done);
     EXPECT_LT(std::chrono::duration<double>(ended - asked).count(), .2);
 }
+
+TEST(Stop, EndlessLoopsEndPromptly) {
+    writeShader("forever", "surface forever() { float x = 0; while (1) { x += 1; } Ci = x; Oi = 1; }\n");
+    Scene scene("WorldBegin\nSurface \"forever\"\nSides 2\nSphere 1 -1 1 360\nWorldEnd\n");
+    ASSERT_TRUE(scene.world);
+    std::vector<CameraRay> rays(2000, rayTo({0, 0, -3}, {0, 0, 0}));
+    expectPromptStop(scene, rays);
+}
 TEST(Stop, ManyRaysEndPromptly) {
     Scene scene(kPlasticBox, [] {
         Settings s;
@@ -211,21 +216,7 @@ TEST(Stop, ManyRaysEndPromptly) {
         return s;
     }());
     std::vector<CameraRay> rays(60000, kEye);
-    std::vector<SampleResult> out(rays.size());
-    volatile int32_t stop = 0;
-    using Clock = std::chrono::steady_clock;
-    Clock::time_point asked;
-    std::thread killer([&] {
-        std::this_thread::sleep_for(std::chrono::milliseconds(150));
-        asked = Clock::now();
-        stop = 1;
-    });
-    Integrator i(scene.world, scene.diagnostics);
-    bool done = i.trace(rays, out, &stop);
-    auto ended = Clock::now();
-    killer.join();
-    EXPECT_FALSE(done);
-    EXPECT_LT(std::chrono::duration<double>(ended - asked).count(), .2);
+    expectPromptStop(scene, rays);
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "rsl/front/classes.h"
 #include "rsl/front/clone.h"
+#include "rsl/front/nodes.h"
 #include <algorithm>
 #include <functional>
 #include <map>
@@ -26,38 +27,6 @@ const std::vector<Entry>& entries() {
         {K::Light, "light", {"L", "Cl", "Ol"}},    {K::Volume, "volume", {"Ci", "Oi"}},
         {K::Imager, "imager", {"Ci", "Oi", "alpha"}}};
     return all;
-}
-
-ExprPtr node(ExprKind kind, Place place, ExprOp op = ExprOp::None) {
-    auto e = std::make_unique<Expr>();
-    e->kind = kind;
-    e->place = place;
-    e->op = op;
-    return e;
-}
-
-void adopt(Expr& parent, ExprPtr child) {
-    parent.height = std::max(parent.height, child->height + 1);
-    parent.args.push_back(std::move(child));
-}
-
-ExprPtr variable(const std::string& name, Place place) {
-    auto e = node(ExprKind::Variable, place);
-    e->text = name;
-    return e;
-}
-
-StmtPtr make(StmtKind kind, Place place) {
-    auto s = std::make_unique<Stmt>();
-    s->kind = kind;
-    s->place = place;
-    return s;
-}
-
-StmtPtr run(ExprPtr e) {
-    auto s = make(StmtKind::Expression, e->place);
-    s->value = std::move(e);
-    return s;
 }
 
 /// Calls `see` for every expression and statement of a text.

@@ -1,6 +1,7 @@
 #include "rsl/front/structs.h"
 #include "base/limits.h"
 #include "rsl/front/clone.h"
+#include "rsl/front/nodes.h"
 #include "rsl/front/parser.h"
 #include <algorithm>
 #include <map>
@@ -21,43 +22,11 @@ struct Leaf {
     const StructMember* member;
 };
 
-ExprPtr node(ExprKind kind, Place place, ExprOp op = ExprOp::None) {
-    auto e = std::make_unique<Expr>();
-    e->kind = kind;
-    e->place = place;
-    e->op = op;
-    return e;
-}
-
-void adopt(Expr& parent, ExprPtr child) {
-    parent.height = std::max(parent.height, child->height + 1);
-    parent.args.push_back(std::move(child));
-}
-
-ExprPtr variable(const std::string& name, Place place) {
-    auto e = node(ExprKind::Variable, place);
-    e->text = name;
-    return e;
-}
-
 ExprPtr assign(ExprPtr left, ExprPtr right, Place place) {
     auto e = node(ExprKind::Assign, place, ExprOp::Assign);
     adopt(*e, std::move(left));
     adopt(*e, std::move(right));
     return e;
-}
-
-StmtPtr make(StmtKind kind, Place place) {
-    auto s = std::make_unique<Stmt>();
-    s->kind = kind;
-    s->place = place;
-    return s;
-}
-
-StmtPtr run(ExprPtr e) {
-    auto s = make(StmtKind::Expression, e->place);
-    s->value = std::move(e);
-    return s;
 }
 
 class Lowering {

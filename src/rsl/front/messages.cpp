@@ -90,6 +90,7 @@ constexpr MessageKind kKinds[] = {
     {"struct-use", "this is an array of *"},
     {"struct-use", "an array in the result of a call must be stored in a variable first"},
     {"struct-value", "expected a value of *"},
+    {"struct-value", "expected a structure"},
     {"struct-value", "structure '*' has * members, not *"},
     {"no-such-member", "* has no member '*'"},
     {"two-members", "there are two members called '*'"},

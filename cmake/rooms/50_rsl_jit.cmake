@@ -16,5 +16,11 @@ target_compile_definitions(rsl_jit PRIVATE ALPENGLOW_JIT_MODULE="${CMAKE_BINARY_
 add_dependencies(rsl_jit alpenglow_jit)
 room_tests(rsljit DEPS rsl_jit)
 room_tests(language DEPS rsl_jit)
+if(TARGET test_language) # the second evaluator, and the programs that it is asked about
+  find_package(rapidcheck CONFIG REQUIRED)
+  target_sources(test_language PRIVATE ${CMAKE_SOURCE_DIR}/tests/language/walker.cpp
+                 ${CMAKE_SOURCE_DIR}/tests/language/walker_shadeops.cpp ${CMAKE_SOURCE_DIR}/tests/language/programs.cpp)
+  target_link_libraries(test_language PRIVATE rapidcheck)
+endif()
 add_executable(rsl_bench EXCLUDE_FROM_ALL ${CMAKE_SOURCE_DIR}/bench/rsl_bench.cpp)
 target_link_libraries(rsl_bench PRIVATE rsl_jit)

@@ -85,7 +85,9 @@ Inst* Builder::lengthOf(const Inst* a) {
 /// An index that stays below the length that counts.
 Inst* Builder::elementOf(const Inst* a, Inst* index) {
     const Lengths* l = lengths(a);
-    if (!l || (isConst(get(l->length)) && isConst(index))) return index;
+    if (!l) return index;
+    if (isConst(get(l->length)) && isConst(index)) // behind the length there may still be storage
+        return constant(std::min(index->numbers[0], std::max(0.0f, get(l->length)->numbers[0] - 1)));
     Inst* last = emit(Op::Sub, Kind::Float, {get(l->length), constant(1)});
     return runtime1("al_min_f", {index, last}, Kind::Float);
 }

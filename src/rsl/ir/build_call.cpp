@@ -238,7 +238,8 @@ Inst* Builder::service(const Expr& e, Op kind) {
         else if (v->kind == Kind::Bool) v = coerce(v, Kind::Float);
         all.push_back(v);
         if (v->kind == Kind::String) s.strings.push_back(v->op == Op::ConstString ? v->text : "");
-        if (v->op != Op::ConstString) addArgument(s, args, v, a.type);
+        // Where any strings come in rows, "" in the site stands for the next row: an empty one among them needs its own.
+        if (v->op != Op::ConstString || (v->text.empty() && op.section == "Strings")) addArgument(s, args, v, a.type);
     }
     if (Inst* c = foldString(op.name, all)) return c;
     place_ = e.place;

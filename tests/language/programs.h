@@ -1,0 +1,35 @@
+// Random well-typed programs, as RapidCheck sees them: a value with ever smaller versions of itself.
+#pragma once
+#include <rapidcheck.h>
+#include <string>
+#include <vector>
+
+namespace alpenglow::rsl {
+
+/// A piece of text with holes ('$') for parts; a list has its parts one after the other. '@' stands for the program's number in a
+/// batch. The sort says what may stand in its place:
+///   F float, I index, U uniform float, C color, P point, V vector, N normal, M matrix, S string, T short string, B condition, s statement,
+///   l list of statements, g list of functions, d piece that stays
+struct Term {
+    char sort = 'd';
+    std::string text;
+    std::vector<Term> parts;
+    bool list = false;
+    size_t size() const;
+    std::string write(int number) const;
+};
+
+/// parts[0]: functions; parts[1]: the statements of the shader's body. What a program leaves behind: outputs() by name and type.
+/// Loops have at most eight turns and are at most three deep; array indices may be anything.
+rc::Gen<Term> programs();
+
+/// Everything that is a little smaller: without one statement, with a part in place of the whole, with a constant in place of a part.
+std::vector<Term> smaller(const Term&);
+
+/// The outputs of program `number`: "output varying color q0_N = 0;" and so on.
+std::vector<std::pair<std::string, std::string>> outputs(int number); ///< name, type
+
+/// Many programs in one shader, each in its own block.
+std::string shaderOf(const std::vector<Term>& programs);
+
+} // namespace alpenglow::rsl

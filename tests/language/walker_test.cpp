@@ -1,0 +1,145 @@
+// Random programs: machine code against the walker, at every width, in both builds, optimised and not, functions inlined and called. A
+// difference is made as small as RapidCheck can make it before it is shown.
+#include "../sanitized.h"
+#include "points.h"
+#include "programs.h"
+#include "walker.h"
+#include <chrono>
+#include <gtest/gtest.h>
+
+namespace alpenglow::rsl {
+namespace {
+
+constexpr int kBatch = 10, kPoints = 21, kMostShrinks = 3000;
+constexpr int kParts = 4; ///< one test each, so that they run side by side
+
+/// Programs in all the parts together.
+int wanted() {
+    if (kSanitized) return 80;
+    return std::getenv("ALPENGLOW_NIGHTLY") ? 10000 : 520;
+}
+
+float input(const std::string& name, int component, int point) {
+    float v = 0;
+    EvaluationPoint::value(name, component, 0, v);
+    const float a = float((point * 17 + 5) % kPoints) / kPoints, b = float((point * 13 + 1) % kPoints) / kPoints;
+    if (name == "u" || (name == "P" && component == 0)) return a;
+    if (name == "v" || (name == "P" && component == 1)) return b;
+    return v;
+}
+
+bool alike(float a, float b) { return sameBits(a, b) || (a == 0 && b == 0); }
+
+using Results = std::vector<std::map<std::string, Walked>>; ///< by point
+
+struct Machine {
+    ShaderCompiler compiler{[] {
+        ShaderCompiler::Settings s;
+        s.useDefaultCache = false;
+        return s;
+    }()};
+
+    /// What is wrong with these programs under these options; "" when nothing is.
+    std::string compare(const std::vector<Term>& programs, const std::vector<KernelOptions>& all, bool& compiles) {
+        Diagnostics d;
+        const auto shader = compiler.loadText(shaderOf(programs), "random", d);
+        compiles = shader != nullptr;
+        if (!shader) return firstError(d);
+        Results expected;
+        for (int p = 0; p < kPoints; p++)
+            expected.push_back(walk(shader->shader(), [&](const std::string& name, int c) { return input(name, c, p); }));
+        const auto defaults = compiler.parameterDefaults(shader, d);
+        for (KernelOptions o : all) {
+            for (size_t n = 0; n < programs.size(); n++)
+                for (const auto& [name, type] : outputs(int(n))) o.outputs.push_back(name);
+            const auto kernel = compiler.kernel(shader, o, d);
+            if (!kernel) return describe(o) + ": no kernel: " + firstError(d);
+            std::vector<std::vector<float>> got;
+            const auto at = [](const std::string& name, int component, int part, int point) {
+                return part == 0 ? input(name, component, point) : 0.0f;
+            };
+            if (!runPoints(*kernel, o.mixed, kPoints, at, defaults, got, d)) return describe(o) + ": it suspends";
+            for (size_t k = 0; k < got.size(); k++)
+                for (size_t x = 0; x < got[k].size(); x++)
+                    if (const std::string s = difference(kernel->outputs()[k], got[k][x], x / kPoints, expected[x % kPoints]); !s.empty())
+                        return describe(o) + ", point " + std::to_string(x % kPoints) + ": " + s;
+        }
+        return {};
+    }
+
+    static std::string firstError(const Diagnostics& d) {
+        for (const Diagnostic& m : d.all())
+            if (m.severity >= Severity::Error) return toString(m);
+        return "without an error";
+    }
+
+    static std::string difference(const ir::OutputSlot& o, float got, size_t c, const std::map<std::string, Walked>& expected) {
+        const Walked& w = expected.at(o.name);
+        if (o.kind == ir::Kind::String) {
+            const std::string& text = internedString(std::bit_cast<int32_t>(got));
+            return text == w.s ? "" : o.name + " is \"" + text + "\", not \"" + w.s + "\"";
+        }
+        if (alike(got, w.n[c])) return {};
+        return o.name + "[" + std::to_string(c) + "] is " + formatNumbers({got}) + ", not " + formatNumbers({w.n[c]});
+    }
+
+    /// The smallest program that still differs, as text with what is wrong.
+    std::string smallest(rc::Shrinkable<Term> program, const std::vector<KernelOptions>& all) {
+        bool compiles = true;
+        std::string wrong = compare({program.value()}, all, compiles);
+        if (wrong.empty()) return "only in company of the others of its batch";
+        int left = kMostShrinks;
+        for (bool found = true; found && left > 0;) {
+            found = false;
+            for (auto s = program.shrinks(); !found && left-- > 0;) {
+                auto next = s.next();
+                if (!next) break;
+                const std::string w = compare({next->value()}, all, compiles);
+                if (!compiles || w.empty()) continue; // a part torn out of its loop is no program
+                program = *next;
+                wrong = w;
+                found = true;
+            }
+        }
+        return wrong + "\n" + shaderOf({program.value()});
+    }
+};
+
+class RandomTrees : public testing::TestWithParam<int> {};
+
+TEST_P(RandomTrees, MachineCodeAndWalkerAgree) {
+    Machine machine;
+    const std::vector<KernelOptions> configurations = rsl::configurations();
+    const rc::Gen<Term> generator = programs();
+    const int batches = wanted() / kBatch;
+    int compared = 0;
+    for (int batch = GetParam(); batch < batches; batch += kParts) {
+        std::vector<rc::Shrinkable<Term>> trees;
+        std::vector<Term> terms;
+        for (int n = 0; n < kBatch; n++) {
+            trees.push_back(generator(rc::Random(uint64_t(batch * kBatch + n + 1)), 100));
+            terms.push_back(trees.back().value());
+        }
+        std::vector<KernelOptions> some;
+        for (int turn = 0; turn < 2; turn++) some.push_back(configurations[size_t(batch + turn * 7) % configurations.size()]);
+        bool compiles = true;
+        const std::string wrong = machine.compare(terms, some, compiles);
+        compared += kBatch;
+        if (wrong.empty()) continue;
+        if (!compiles) {
+            ADD_FAILURE() << "batch " << batch << " does not compile: " << wrong;
+            continue;
+        }
+        for (size_t n = 0; n < trees.size(); n++)
+            if (!machine.compare({terms[n]}, some, compiles).empty())
+                ADD_FAILURE() << "program " << batch * kBatch + int(n) + 1 << ": " << machine.smallest(trees[n], some);
+        EXPECT_EQ(wrong, "") << "batch " << batch;
+        if (testing::Test::HasFailure()) break;
+    }
+    EXPECT_GE(compared, wanted() / kParts - kBatch);
+}
+
+INSTANTIATE_TEST_SUITE_P(Parts, RandomTrees, testing::Range(0, kParts));
+
+} // namespace
+} // namespace alpenglow::rsl

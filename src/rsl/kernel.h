@@ -82,6 +82,7 @@ struct KernelOptions {
     /// Values of string parameters, and of numeric ones known to be 0 or 1 for good: specialised into the code.
     std::vector<std::pair<std::string, std::string>> stringParameters;
     std::vector<std::string> varyingParameters; ///< parameters overridden by varying primitive variables
+    std::vector<std::string> messages; ///< output parameters that lights ask for by surface(), sorted
     std::vector<CoShader> coShaders; ///< in the order of their handles; only surface shaders have them
 };
 

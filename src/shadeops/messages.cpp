@@ -67,13 +67,15 @@ std::vector<Shadeop> messageShadeops() {
     add("getshader", sigs({{"shader getshader(string handle)"}}), Lowering::Special, kNoImager, "Co-shader by its handle; null if absent.");
     add("getshaders", sigs({{"shader[] getshaders(pairs)"}}), Lowering::Special, kAnyContext, "All co-shaders, or those of a category.").optional = {
         {{Base::String, 0}, "category", false, "\"\"", "names of categories"}};
-    add("getlight", sigs({{"shader getlight(string handle)"}}), Lowering::Unavailable, kSurface | kVolume, "Light by its handle.");
-    add("getlights", sigs({{"shader[] getlights(pairs)"}}), Lowering::Unavailable, kSurface | kVolume, "The active lights, or those of a category.").optional = {
-        {{Base::String, 0}, "category", false, "\"\"", "names of categories"}};
+    add("getlight", sigs({{"shader getlight(string handle)"}}), Lowering::Special, kSurface | kVolume,
+        "Light by its handle; null if it does not light the surface.");
+    add("getlights", sigs({{"shader[] getlights(pairs)"}}), Lowering::Special, kSurface | kVolume,
+        "The active lights, or those of a category; each handle->light(L, Cl [, Ol]) gives one sample of its light at P, L from the light to the surface.")
+        .optional = {{{Base::String, 0}, "category", false, "\"\"", "\"a\", \"-a\", \"a|b\", \"a&b\", \"a,b\", with parentheses"}};
     add("getvar", sigs({{"float getvar(shader handle; string name)"}}) + each(kAllTypes, "float getvar(shader handle; string name; output $ value)"),
         Lowering::Special, kAnyContext, "Member variable of a co-shader; null handle: the primitive's variables. 1 if found.");
-    add("islightcategory", sigs({{"float islightcategory(string category)"}}), Lowering::Unavailable, kSurface | kVolume,
-        "1 if the current light belongs to the category.").source = "seen in 3Delight shaders";
+    add("islightcategory", sigs({{"float islightcategory(string category)"}}), Lowering::Special, kSurface | kVolume,
+        "1 if the light of this turn of illuminance belongs to the category, as illuminance has them.").source = "seen in 3Delight shaders";
     add("shadername", sigs({{"string shadername()"}, {"string shadername(string type)"}}), Lowering::Service, kAnyContext, "Name of the shader attached.")
         .source = "(k)";
     return list;

@@ -29,6 +29,7 @@ float numberOf(const scene::AttributesRef& a, const char* key, float fallback) {
 } // namespace
 
 void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const geometry::Shape&)>& visibility) {
+    const bool path = settings_.hider == Hider::Path;
     std::map<int, std::vector<const geometry::Shape*>> emitters;
     for (const auto& s : shapes_)
         if (s->attributes().areaLight >= 0) emitters[s->attributes().areaLight].push_back(s.get());
@@ -47,6 +48,10 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
             for (const char* name : {"__nondiffuse", "__nonspecular"})
                 for (const auto& p : l.instance->program->parameters())
                     if (p.name == name) extra.push_back(std::string("param:") + name);
+            for (const auto& p : l.instance->program->parameters())
+                if (const std::string name = "param:" + p.name; p.output && p.type.base != rsl::Base::String && p.type.array == 0 &&
+                                                                std::find(extra.begin(), extra.end(), name) == extra.end())
+                    extra.push_back(name);
             if (!extra.empty()) {
                 outputs = {"L", "Cl", "Ol", "lit"};
                 outputs.insert(outputs.end(), extra.begin(), extra.end());
@@ -59,6 +64,11 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
             lights_[li] = std::move(l);
             continue;
         }
+        for (const SiteInfo& s : l.kernel.sites)
+            if (s.kind == SiteKind::Message) {
+                l.asksSurface = true;
+                if (s.site->op == "surface" && !s.site->strings.empty()) lightMessages_.push_back(s.site->strings[0]);
+            }
         std::vector<std::string> blocks = l.kernel.kernel->facts().blocks;
         if (blocks.empty()) blocks = {"outside"};
         bool area = source.area && emitters.count(int(li));
@@ -83,8 +93,13 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
                 if (n == "L" + tail) part.outL = int(i);
                 else if (n == "Cl" + tail) part.outCl = int(i);
                 else if (n == "lit" + tail) part.outLit = int(i);
+                else if (n == "Ol" + tail) part.outOl = int(i);
                 else if (n == "param:__nondiffuse") part.nonDiffuse = int(i);
                 else if (n == "param:__nonspecular") part.nonSpecular = int(i);
+                if (n.rfind("param:", 0) == 0) {
+                    part.values.push_back({n.substr(6), int(i), rsl::ir::components(outputs[i].kind)});
+                    part.valueWidth += part.values.back().components;
+                }
             }
             if (part.outCl < 0) continue;
             bool solar = blocks[k].rfind("solar", 0) == 0;
@@ -92,7 +107,8 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
             else if (blocks[k] == "solar()" || l.instance->name == "envlight") part.kind = LightKind::Environment;
             else if (solar) part.kind = LightKind::Distant;
             else part.kind = area ? LightKind::Area : LightKind::Point;
-            if (part.kind != LightKind::Area && part.kind != LightKind::Environment) part.samples = 1;
+            part.cone = blocks[k] == "solar cone";
+            if (part.kind != LightKind::Area && part.kind != LightKind::Environment && !(part.cone && path)) part.samples = 1;
             if (part.kind != LightKind::Area) part.emitter = nullptr;
             if (k == 0) {
                 lights_[li] = std::move(part);
@@ -102,6 +118,34 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
             }
         }
     }
+    std::sort(lightMessages_.begin(), lightMessages_.end());
+    lightMessages_.erase(std::unique(lightMessages_.begin(), lightMessages_.end()), lightMessages_.end());
+}
+
+void WorldImpl::bindSentStrings(Diagnostics& d) {
+    std::map<std::string, std::map<std::string, std::string>> sent;
+    for (const SurfaceBinding& b : bindings_)
+        for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV, &b.atmosphereS})
+            for (const SiteInfo& s : k->sites)
+                if (const std::string key = sentStrings(s); s.kind == SiteKind::LightSetup && !key.empty())
+                    for (const auto& [name, value] : s.text)
+                        if (name.rfind("send:light:", 0) == 0) sent[key][name.substr(11)] = value;
+    for (BoundLight& l : lights_)
+        for (const auto& [key, values] : sent) {
+            if (!l.kernel) continue;
+            ShaderInstance other = *l.instance;
+            bool differs = false;
+            for (const auto& [name, value] : values)
+                if (auto have = other.parameters.strings.find(name); have != other.parameters.strings.end() && have->second != value) {
+                    have->second = value;
+                    differs = true;
+                }
+            std::vector<std::string> outputs;
+            for (const auto& o : l.kernel.kernel->outputs()) outputs.push_back(o.name);
+            if (!differs) continue;
+            BoundKernel k = kernel(other, outputs, {}, false, false, d);
+            if (k && k.kernel->outputs().size() == outputs.size()) l.variants[key] = std::move(k);
+        }
 }
 
 std::vector<int> WorldImpl::withParts(const std::vector<int>& lights) const {

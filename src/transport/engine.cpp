@@ -285,7 +285,11 @@ void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
         value.assign(q.size(), {});
         evaluateLight(l, q, value);
         for (size_t i = 0; i < of.size(); ++i)
-            if (value[i].lit) sched.add(of[i]->target, of[i]->payload.weight * value[i].Cl);
+            if (value[i].lit) {
+                const PathRay& r = of[i]->payload;
+                const bool weighed = l.kind == LightKind::Environment && r.bounces > 0 && !r.fromTrace; // met by a lobe of a lighting shadeop
+                sched.add(of[i]->target, r.weight * value[i].Cl * (weighed ? value[i].kept(r.type) : 1.f));
+            }
     }
 }
 
@@ -317,6 +321,7 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
                 if (set.hider == Hider::Path && r.lobeBinding >= 0) pdf *= chanceOf(met[i].light, r.lobeBinding, r.lobeOrigin);
                 weight = set.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
             }
+            if (r.bounces > 0 && !r.fromTrace) weight *= v.kept(r.type);
             sched.add(met[i].target, r.weight * v.Cl * weight);
         }
     }
@@ -437,7 +442,9 @@ void Engine::giveBack(std::shared_ptr<BatchContext> c) {
     c->arena.clear();
     c->haze.clear();
     c->lightDistance.clear();
-    c->currentLight = c->requestSite = -1;
+    c->requestSite = -1;
+    for (LightLoop& loop : c->loops) loop.reset(-1);
+    c->lit = nullptr;
     c->lightVisibilityDistance = 0;
     pool_.push_back(std::move(c));
 }

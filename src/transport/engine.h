@@ -2,7 +2,8 @@
 #pragma once
 #include "transport/random.h"
 #include "shading/scheduler.h"
-#include "transport/world.h"
+#include "transport/lightloop.h"
+#include <deque>
 #include <set>
 
 namespace alpenglow::transport {
@@ -46,7 +47,17 @@ struct LobeVertex {
     float chosen = 1;      ///< probability that the indirect ray of this lobe is followed
 };
 
-struct LightValue { Vec3 L; Color Cl{0}; bool lit = false; float nonDiffuse = 0, nonSpecular = 0; };
+struct LightValue {
+    Vec3 L;
+    Color Cl{0}, Ol{1};
+    bool lit = false;
+    float nonDiffuse = 0, nonSpecular = 0; ///< weights of __nondiffuse and __nonspecular
+    /// What a lobe of a lighting shadeop keeps of this light (rsl.md 9).
+    float kept(RayType t) const { return std::max(0.f, 1 - (t == RayType::Diffuse ? nonDiffuse : nonSpecular)); }
+};
+
+/// The numbers that a solar() with an angle makes a direction of: how far from its axis (0: along it), and the turn about it.
+Color coneNumbers(Vec2 random);
 
 class Engine;
 
@@ -63,10 +74,8 @@ struct BatchContext {
     std::vector<EmitRecord> emits;
     std::vector<float> arena;
     std::vector<Haze> haze;                    ///< by point; only where a binding has an atmosphere
-    // light loop of the strip that runs now
-    std::vector<std::pair<int, int>> loopLights; ///< (light, sample)
-    std::vector<float> loopRows;
-    int currentLight = -1;
+    std::deque<LightLoop> loops;               ///< Engine::lightLoop()
+    const LitSurface* lit = nullptr;           ///< while a light's kernel runs: what it lights
     float lightVisibilityDistance = 0;
     std::vector<float> lightDistance;          ///< by lane: to the light sample; 1e38 for distant lights
     // suspended request of the strip that runs now
@@ -85,7 +94,7 @@ public:
 
     // lights.cpp
     /// Light arriving at queries from one light; for area lights `samples[i]` is the point on the emitter.
-    void evaluateLight(const BoundLight&, std::vector<ShadePoint>& queries, std::span<LightValue> out);
+    void evaluateLight(const BoundLight&, std::vector<ShadePoint>& queries, std::span<LightValue> out, const LightCall& = {});
     // shadowrays.cpp
     /// What is left of light along each ray. `ray`: for the random numbers and footprint of shaders on the way; may be null.
     void transmittances(std::span<const ShadowRay>, std::span<Color> out);
@@ -104,7 +113,12 @@ public:
     void chooseLights(const std::vector<int>& lights, const Vec3& at, float random, std::vector<std::pair<int, float>>& chosen);
     /// Probability that chooseLights takes this light for a point of the binding at `at`.
     float chanceOf(int light, int binding, const Vec3& at);
-    // lights.cpp
+    // lightloop.cpp
+    /// What lightBegin() is to know beyond its rows: a category, sent values, outputs of the surface.
+    void lightSetup(BatchContext&, int site, int first, uint64_t mask, int lanes, const float* in);
+    LightLoop& lightLoop(BatchContext&, int first, int lanes);
+    /// Shadeops about lights and their handles: getlight, getlights, islightcategory, and what is called through a handle.
+    void lightHandles(BatchContext&, int site, int first, uint64_t mask, int lanes, const float* in, float* out);
     int32_t lightBegin(BatchContext&, int site, int first, uint64_t mask, int lanes, const float* rows);
     uint64_t lightFetch(BatchContext&, int light, int first, uint64_t mask, int lanes, float* out);
     // services.cpp
@@ -128,6 +142,15 @@ public:
 
 private:
     friend class KernelStrip;
+    // lightloop.cpp
+    void checkCategory(BatchContext&, const rsl::ir::Site&, const std::string& expression);
+    LitSurface litSurface(BatchContext&, const LightLoop&, const std::vector<int>& points, int first, int lanes) const;
+    void evaluateForLoop(BatchContext&, const LightLoop&, int light, int first, int lanes, std::vector<ShadePoint>&, const std::vector<int>& laneOf,
+                         std::vector<LightValue>&, std::vector<float>& values);
+    /// Sample `turn` of `turns` of a light for the points of a mask, into `kept`; gives the points that it lights.
+    uint64_t sampleLight(BatchContext&, const LightLoop&, int light, int turn, int turns, int first, uint64_t mask, int lanes, LightLoop::Kept& kept);
+    uint64_t sentKey(const BatchContext&, const LightLoop&) const;
+    int lightOfHandle(const BatchContext&, const std::string& handle) const;
     /// Contexts and their memory are used again: a slice makes several, of some hundred kilobytes.
     std::shared_ptr<BatchContext> takeContext();
     void giveBack(std::shared_ptr<BatchContext>); ///< kept when nobody else has it

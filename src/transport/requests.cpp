@@ -216,6 +216,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     p.surface = lit.surface;
                     p.N = Vec3();
                     p.P = Vec3(transformPoint(light.instance->toCurrent, {0, 0, 0}));
+                    p.Ci = light.cone && path ? coneNumbers(random(c.rays[pi]).pair(c.rays[pi].vertex, kLightPoint + uint32_t(li), 0)) : Color(0);
                     drawn.emplace_back();
                 }
                 ++used;
@@ -224,7 +225,19 @@ void Engine::gather(BatchContext& c, Sched& sched) {
             }
             q.resize(used);
             value.assign(used, {});
-            evaluateLight(light, q, value);
+            LightCall call;
+            LitSurface lit;
+            if (light.asksSurface) { // the kernel of the surface is done: what its outputs are now is what lights see
+                lit.binding = [&](int k) { return &world_->bindings_[size_t(c.bindings[size_t(pointOf[size_t(k)])])]; };
+                lit.output = [&](int k, const std::string& name, std::vector<float>& now) {
+                    const int o = c.bound->kernel->facts().suspends ? -1 : c.batch->output("param:" + name);
+                    if (o < 0) return false;
+                    for (int r = 0; r < rsl::ir::components(c.batch->kernel().outputs()[size_t(o)].kind); ++r) now.push_back(c.batch->value(o, r, pointOf[size_t(k)]));
+                    return true;
+                };
+                call.lit = &lit;
+            }
+            evaluateLight(light, q, value, call);
             for (size_t k = 0; k < used; ++k) {
                 const LightValue& v = value[k];
                 if (!v.lit || !(maxComponent(v.Cl) > 0)) continue;
@@ -236,8 +249,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     if (l.delta || !samples(l, light)) continue;
                     float fcos = l.kind->fcos(l.params, w);
                     if (!(fcos > 0)) continue;
-                    float kept = l.type == RayType::Diffuse ? 1 - v.nonDiffuse : 1 - v.nonSpecular;
-                    if (!l.lobeOfShader) kept = 1;
+                    float kept = l.lobeOfShader ? v.kept(l.type) : 1;
                     Color contribution = l.weight * c.rays[l.point].weight * v.Cl;
                     if (l.ownsTarget) contribution = l.weight * v.Cl;
                     if (area) {

@@ -16,7 +16,9 @@ SiteKind kindOf(const std::string& op) {
         {"atmosphere", SiteKind::Message}, {"lightsource", SiteKind::LightSource}, {"attribute", SiteKind::Attribute},
         {"option", SiteKind::Option}, {"rendererinfo", SiteKind::RendererInfo}, {"rayinfo", SiteKind::RayInfo},
         {"raylevel", SiteKind::RayLevel}, {"isindirectray", SiteKind::RayLevel}, {"isshadowray", SiteKind::RayLevel},
-        {"textureinfo", SiteKind::TextureInfo}};
+        {"textureinfo", SiteKind::TextureInfo}, {"lightsetup", SiteKind::LightSetup}, {"getlight", SiteKind::LightHandles},
+        {"getlights", SiteKind::LightHandles}, {"islightcategory", SiteKind::LightHandles}, {"lightcall", SiteKind::LightHandles},
+        {"lightparameter", SiteKind::LightHandles}};
     auto i = kinds.find(op);
     return i == kinds.end() ? SiteKind::Other : i->second;
 }
@@ -196,15 +198,46 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
         return;
     }
     case SiteKind::LightSource:
-        if (c.currentLight >= 0) {
-            const BoundLight& l = world_->lights_[c.currentLight];
-            each([&](int lane, const ShadePoint&) { answerFrom(lane, l.instance->parameters, name); });
+        if (const LightLoop& loop = lightLoop(c, first, lanes); loop.light >= 0) {
+            const BoundLight& l = world_->lights_[size_t(loop.light)];
+            // What the light's shader has written; what was sent to it; what it was given.
+            int offset = 0;
+            const auto written = std::find_if(l.values.begin(), l.values.end(), [&](const auto& v) {
+                if (v.name == name) return true;
+                offset += v.components;
+                return false;
+            });
+            const SiteInfo* setup = loop.setup >= 0 ? &c.bound->sites[size_t(loop.setup)] : nullptr;
+            const auto given = l.instance->parameters.numbers.find(name);
+            each([&](int lane, const ShadePoint&) {
+                std::vector<float> v;
+                if (written != l.values.end()) {
+                    const auto from = loop.values.begin() + long(lane) * l.valueWidth + offset;
+                    v.assign(from, from + written->components);
+                } else if (setup && setup->named.count("send:light:" + name) && given != l.instance->parameters.numbers.end()) {
+                    const size_t row = size_t(setup->named.at("send:light:" + name));
+                    for (size_t r = 0; r < given->second.size() && (row + r + 1) * size_t(lanes) <= loop.given.size(); ++r)
+                        v.push_back(loop.given[(row + r) * size_t(lanes) + size_t(lane)]);
+                } else if (setup && setup->text.count("send:light:" + name) && l.instance->parameters.strings.count(name)) {
+                    return answer(lane, nullptr, &setup->text.at("send:light:" + name));
+                } else {
+                    return answerFrom(lane, l.instance->parameters, name);
+                }
+                answer(lane, &v, nullptr);
+            });
         }
         return;
+    case SiteKind::LightSetup: lightSetup(c, site, first, mask, lanes, in); return;
+    case SiteKind::LightHandles: lightHandles(c, site, first, mask, lanes, in, out); return;
     case SiteKind::Message:
         each([&](int lane, const ShadePoint&) {
-            if (c.bindings.empty()) return;
-            const SurfaceBinding& b = world_->bindings_[c.bindings[first + lane]];
+            if (c.lit && d.op == "surface") { // a light asks
+                std::vector<float> now;
+                if (c.lit->output(first + lane, name, now)) return answer(lane, &now, nullptr);
+            }
+            const SurfaceBinding* of = c.lit ? c.lit->binding(first + lane) : c.bindings.empty() ? nullptr : &world_->bindings_[c.bindings[first + lane]];
+            if (!of) return;
+            const SurfaceBinding& b = *of;
             const InstanceRef& i = d.op == "surface" ? b.surface : d.op == "displacement" ? b.displacement : b.atmosphere;
             if (i) answerFrom(lane, i->parameters, name);
         });

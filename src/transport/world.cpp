@@ -208,6 +208,7 @@ BoundKernel WorldImpl::kernel(const ShaderInstance& i, const std::vector<std::st
     for (const auto& [k, v] : i.parameters.strings) o.stringParameters.push_back({k, v});
     o.coShaders = i.coShaders;
     o.varyingParameters = varying;
+    if (i.program->kind() == rsl::ShaderKind::Surface || i.program->kind() == rsl::ShaderKind::Volume) o.messages = lightMessages_;
     double begin = seconds();
     auto k = compiler_->kernel(i.program, o, d);
     facts_.compileSec += seconds() - begin;
@@ -351,6 +352,11 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
                 for (const auto& p : surface->program->parameters()) known |= p.name == n && p.output;
                 if (known && n != "Ci" && n != "Oi") outputs.push_back(n);
             }
+            if (path) // lighting shadeops: lights run when the surface's kernel is done
+                for (const auto& p : surface->program->parameters())
+                    if (p.output && p.type.base != rsl::Base::String && p.type.array == 0 &&
+                        std::binary_search(w->lightMessages_.begin(), w->lightMessages_.end(), p.name))
+                        outputs.push_back("param:" + p.name);
             b.surfaceS = w->kernel(*surface, outputs, varying, false, path, d);
             if (!b.surfaceS) { // an error was reported: the default surface stands in
                 b.surface = surface = fallback;
@@ -443,6 +449,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     };
     geometry::diceShapes(w->shapes_, dice, d);
     w->accel_ = std::make_unique<accel::Accel>(w->shapes_, visibility, d);
+    w->bindSentStrings(d);
     w->measureLights(engine, d);
     for (const auto& [shape, binding] : w->hazyEmitters_) {
         w->lights_[size_t(shape->attributes().areaLight)].hazy = true;

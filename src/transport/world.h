@@ -29,7 +29,7 @@ inline uint32_t visibilityBit(RayType t) {
 /// What a call site of a kernel means to the engine, worked out once per kernel.
 enum class SiteKind : uint8_t {
     Unknown, Ambient, Diffuse, Specular, Phong, Trace, Transmission, LightVisibility, ///< requests
-    Illuminance, Texture, Environment, Printf, Message, LightSource, Attribute, Option, RendererInfo, RayInfo, RayLevel, TextureInfo, Text, Other
+    Illuminance, Texture, Environment, Printf, Message, LightSource, Attribute, Option, RendererInfo, RayInfo, RayLevel, TextureInfo, LightSetup, LightHandles, Text, Other
 };
 struct SiteInfo {
     SiteKind kind = SiteKind::Unknown;
@@ -77,7 +77,15 @@ struct BoundLight {
     InstanceRef instance;
     BoundKernel kernel;
     std::shared_ptr<Emitter> emitter;          ///< Area
-    int outL = -1, outCl = -1, outLit = -1;
+    int outL = -1, outCl = -1, outOl = -1, outLit = -1;
+    /// Output parameters, whose values the kernel gives: name, output, components; then what all of them take.
+    struct Value { std::string name; int output, components; };
+    std::vector<Value> values;
+    int valueWidth = 0;
+    bool asksSurface = false;                  ///< its kernel asks for parameters of the surface that it lights
+    bool cone = false;                         ///< Distant: solar() with an angle, which path samples
+    /// Kernels for strings that a surface sends: by sentStrings() of the loop.
+    std::map<std::string, BoundKernel> variants;
     int nonDiffuse = -1, nonSpecular = -1;     ///< outputs, or -1
     std::string handle;
     int samples = 1;
@@ -132,6 +140,8 @@ public:
     void bindLights(Diagnostics&, const std::function<uint32_t(const geometry::Shape&)>& visibility);
     /// The lights of a list and the further blocks of their shaders.
     std::vector<int> withParts(const std::vector<int>& lights) const;
+    /// Light kernels for the strings that the surfaces' loops send. After all surfaces are bound.
+    void bindSentStrings(Diagnostics&);
     /// How bright the lights are; which area lights mean an intensity. After everything else is built.
     void measureLights(class Engine&, Diagnostics&);
     /// Sets shadowOpacity or opacityKernel.
@@ -156,6 +166,7 @@ public:
     Diagnostics* diagnostics_ = nullptr;
     mutable rsl::PrintLog prints_;
     mutable std::mutex imagerMutex_;
+    std::vector<std::string> lightMessages_;   ///< parameters of surfaces that light shaders ask for, sorted
     int maxDepth_ = 32;
     bool footprints_ = false;                  ///< some kernel reads du or dv
     bool allOpaque_ = true;                    ///< no opacity below 1: shadow rays need no shading

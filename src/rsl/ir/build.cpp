@@ -292,6 +292,11 @@ bool Builder::buildShader() {
             v = copy;
         }
         env_[static_cast<size_t>(n)] = v;
+        const Symbol& parameter = *p.symbol;
+        const auto& asked = options_.messages;
+        if (parameter.output && !parameter.type.array && parameter.type.base != Base::String &&
+            std::find(asked.begin(), asked.end(), parameter.name) != asked.end())
+            messageSlots_[parameter.name] = {n, parameter.type};
     }
     // Zero on every way through conditions (a block puts Cl back to what it was, so both sides of an if may give zero).
     const std::function<bool(const Inst*)> isZero = [&](const Inst* v) {
@@ -316,7 +321,7 @@ bool Builder::buildShader() {
     if (light) {
         k_.facts.ambientLight = lightBlocks_.empty();
         for (const LightBlock& b : lightBlocks_)
-            k_.facts.blocks.push_back(!b.solar ? "illuminate" : b.stmt->exprs.empty() ? "solar()" : "solar");
+            k_.facts.blocks.push_back(!b.solar ? "illuminate" : b.stmt->exprs.empty() ? "solar()" : b.cone ? "solar cone" : "solar");
         // What is left of Cl when all blocks are done was set outside them: ambient light.
         const auto cl = globals_.find("Cl");
         if (!lightBlocks_.empty() && cl != globals_.end() && !isZero(get(cl->second))) k_.facts.blocks.push_back("outside");

@@ -133,6 +133,19 @@ void Builder::copyResizable(Inst* to, const Expr& from) {
         setLength(limitLength(to, n));
     } else if (from.kind == ExprKind::ShadeopCall && from.shadeop && from.shadeop->name == "getshaders") {
         setLength(limitLength(to, constant(static_cast<float>(handlesOf(from).size()))));
+    } else if (from.kind == ExprKind::ShadeopCall && from.shadeop && from.shadeop->name == "getlights") {
+        const std::vector<Inst*> all = lightHandles(from);
+        setLength(limitLength(to, all[0]));
+        for (int i = 0; i < to->index && i + 1 < static_cast<int>(all.size()); ++i)
+            emit(Op::ArrayStore, Kind::None, {to, constant(static_cast<float>(i)), all[static_cast<size_t>(i) + 1]});
+        return;
+    }
+    if (from.kind == ExprKind::ShadeopCall && from.shadeop && from.shadeop->name == "bsdf") {
+        const std::vector<Inst*> parts = bsdf(from);
+        setLength(limitLength(to, constant(static_cast<float>(parts.size()))));
+        for (size_t i = 0; i < parts.size(); ++i)
+            emit(Op::ArrayStore, Kind::None, {to, constant(static_cast<float>(i)), coerce(parts[i], to->element)});
+        return;
     }
     copyArray(to, from);
 }

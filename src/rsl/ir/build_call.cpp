@@ -375,7 +375,9 @@ Inst* Builder::special(const Expr& e) {
     if (n == "random") return random(e);
     if (n == "getshader") return getShader(e);
     if (n == "getvar") return getVariable(e);
-    if (n == "getshaders") return array(e);
+    if (n == "getshaders" || n == "getlights") return array(e);
+    if (n == "getlight") return getLight(e);
+    if (n == "islightcategory") return isLightCategory(e);
     if (n == "isoutput") return isOutput(e);
     if (n == "gridmin" || n == "gridmax") return gridBound(e, n == "gridmin" ? -0.5f : 0.5f);
     if (n == "arraylength") return lengthOf(array(*e.args[0]));

@@ -1,5 +1,6 @@
 // Co-shaders: calls of their methods are inlined. A handle is the name under which the scene bound the shader; where it is not known
 // here, one branch a bound shader decides. Members of a co-shader are variables that begin where the shader begins.
+#include "base/category.h"
 #include "base/limits.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
@@ -53,7 +54,7 @@ void Builder::beginCoShaders() {
 }
 
 /// Runs `code` for the co-shader of the handle and gives its value; zero of null.
-Inst* Builder::forHandle(const Expr& handle, Kind kind, const std::function<Inst*(size_t)>& code) {
+Inst* Builder::forHandle(const Expr& handle, Kind kind, const std::function<Inst*(size_t)>& code, const std::function<Inst*(Inst*)>& light) {
     Inst* h = expr(handle, Kind::String);
     place_ = handle.place;
     if (failed_) return zero(kind);
@@ -68,7 +69,7 @@ Inst* Builder::forHandle(const Expr& handle, Kind kind, const std::function<Inst
         return zero(kind);
     }
     const std::function<std::vector<Inst*>(size_t)> from = [&](size_t i) -> std::vector<Inst*> {
-        if (i == instances_.size()) return {zero(kind)};
+        if (i == instances_.size()) return {light ? coerce(light(h), kind) : zero(kind)}; // no co-shader: perhaps a light
         Inst* same = emit(Op::Equal, Kind::Bool, {h, leaves_.string(instances_[i].binding->handle)});
         return branch(
             same, [&] { return std::vector<Inst*>{coerce(code(i), kind)}; }, [&] { return from(i + 1); });
@@ -150,7 +151,7 @@ Inst* Builder::methodCall(const Expr& e) {
             return zero(kind);
         }
         return result;
-    });
+    }, [&](Inst* handle) { return lightMethod(e, handle); });
 }
 
 /// The member or parameter of that name; null when it is not to be seen.
@@ -186,7 +187,7 @@ Inst* Builder::memberAccess(const Expr& e) {
             return zero(kind);
         }
         return memberValue(i, *s);
-    });
+    }, [&](Inst* handle) { return lightMember(handle, e.text, kind, nullptr); });
 }
 
 /// getvar(handle, name [, variable]): 1 when there is such a member.
@@ -210,6 +211,9 @@ Inst* Builder::getVariable(const Expr& e) {
             assign(*e.args[2], memberValue(i, *s));
         }
         return constant(1);
+    }, [&](Inst* handle) -> Inst* {
+        if (e.args.size() > 2 && !e.args[2]->type.array) return lightMember(handle, name->text, kindOf(e.args[2]->type), e.args[2].get());
+        return constant(0);
     });
 }
 
@@ -237,15 +241,11 @@ std::vector<Inst*> Builder::handlesOf(const Expr& e) {
         if (v->op == Op::ConstString) wanted = v->text;
         else warn(p.place, "the category of getshaders() must be known when the shader is compiled; all are taken");
     }
-    const bool without = !wanted.empty() && wanted[0] == '-';
-    if (without) wanted.erase(0, 1);
     std::vector<Inst*> all;
     for (const Instance& i : instances_) {
         const auto& strings = i.binding->strings;
         const auto own = strings.find("__category");
-        const std::string list = "," + (own == strings.end() ? std::string() : own->second) + ",";
-        const bool in = list.find("," + wanted + ",") != std::string::npos;
-        if (wanted.empty() || in != without) all.push_back(leaves_.string(i.binding->handle));
+        if (inCategory(wanted, own == strings.end() ? std::string() : own->second)) all.push_back(leaves_.string(i.binding->handle));
     }
     return all;
 }

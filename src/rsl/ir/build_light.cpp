@@ -1,4 +1,5 @@
 // illuminance in surfaces and volumes; illuminate and solar in lights.
+#include "base/category.h"
 #include "rsl/ir/builder.h"
 #include <functional>
 
@@ -13,13 +14,25 @@ void Builder::illuminance(const Stmt& s) {
     Site site;
     site.op = "illuminance";
     site.place = s.place;
+    // What the renderer must know before the loop begins, beyond P, axis and angle: a call of its own.
+    Site setup;
+    setup.op = "lightsetup";
+    setup.place = s.place;
+    std::vector<Inst*> given;
+    const auto give = [&](const std::string& name, Inst* v, Type t) {
+        setup.names.push_back(name);
+        setup.pairStrings.push_back(v->op == Op::ConstString ? v->text : "");
+        if (v->op != Op::ConstString) addArgument(setup, given, v, t);
+    };
+    site.strings.push_back("");
     if (s.category) {
         Inst* c = expr(*s.category);
-        if (c->op != Op::ConstString)
-            warn(s.place, "the category of this illuminance is not known at compile time; all lights are taken");
-        site.strings.push_back(c->op == Op::ConstString ? c->text : "");
-    } else {
-        site.strings.push_back("");
+        if (c->op == Op::ConstString) site.strings[0] = c->text;
+        else give("category", c, {Base::String, 0});
+        if (const std::string wrong = categoryError(site.strings[0]); !wrong.empty()) {
+            warn(s.place, "the category \"" + site.strings[0] + "\" cannot be read: " + wrong + "; all lights are taken");
+            site.strings[0].clear();
+        }
     }
     std::vector<const NamedArg*> lightParameters;
     for (const NamedArg& p : s.pairs) {
@@ -27,14 +40,34 @@ void Builder::illuminance(const Stmt& s) {
             lightParameters.push_back(&p);
             continue;
         }
-        Inst* v = p.value ? expr(*p.value) : nullptr;
-        if (!v || v->op != Op::ConstString) {
-            warn(p.place, "the pair \"" + p.name + "\" of illuminance is not yet available and has no effect");
+        if (!p.value) continue;
+        if (p.name.rfind("send:light:", 0) == 0) {
+            if (p.value->type.array) {
+                warn(p.place, "\"" + p.name + "\" sends an array; only single values can be sent");
+                continue;
+            }
+            Inst* v = expr(*p.value);
+            if (v->kind == Kind::Bool) v = coerce(v, Kind::Float);
+            if (v->kind == Kind::String && v->op != Op::ConstString)
+                warn(p.place, "\"" + p.name + "\" sends a string that is not known when the shader is compiled; it is not sent");
+            else
+                give(p.name, v, p.value->type);
+            continue;
+        }
+        Inst* v = expr(*p.value);
+        const bool cache = p.name == "lightcache";
+        if (!cache || v->op != Op::ConstString || (v->text != "reuse" && v->text != "refresh")) {
+            warn(p.place, cache ? "\"lightcache\" is \"reuse\" or \"refresh\"" : "the pair \"" + p.name + "\" means nothing to illuminance");
             continue;
         }
         site.names.push_back(p.name);
         site.pairStrings.push_back(v->text);
     }
+    // Outputs of the shader that lights of the scene ask for, as they are now.
+    for (const auto& [name, parameter] : messageSlots_)
+        give("surface:" + name, get(parameter.first), parameter.second);
+    if (const auto n = globals_.find("N"); n != globals_.end() && writes_.count("N"))
+        give("N", get(n->second), {Base::Normal, 0});
     Inst* inst = k_.make(Op::LightLoop, Kind::None);
     inst->place = s.place;
     inst->regions.resize(1);
@@ -42,6 +75,10 @@ void Builder::illuminance(const Stmt& s) {
     inst->args.push_back(s.exprs.size() > 1 ? expr(*s.exprs[1], Kind::Triple) : zero(Kind::Triple));
     inst->args.push_back(s.exprs.size() > 2 ? expr(*s.exprs[2], Kind::Float) : constant(3.14159274f));
 
+    if (!setup.names.empty()) {
+        place_ = s.place;
+        call(Op::Service, std::move(setup), std::move(given));
+    }
     std::set<int> assigned;
     std::set<const Function*> seen;
     for (const StmtPtr& b : s.body)
@@ -127,7 +164,10 @@ void Builder::illuminance(const Stmt& s) {
                 get.resultNames = {"", "value"};
                 get.resultType = {Base::Float, 0};
                 get.shadeop = findShadeop("lightsource");
-                if (p->value->type.array) continue;
+                if (p->value->type.array) {
+                    warn(p->place, "\"" + p->name + "\" asks for an array; only single values can be asked for");
+                    continue;
+                }
                 const std::vector<Inst*> v = call(Op::Service, std::move(get), {});
                 Inst* found = emit(Op::NotEqual, Kind::Bool, {v[0], constant(0)});
                 assign(*p->value, emit(Op::Select, v[1]->kind, {found, v[1], coerce(expr(*p->value), v[1]->kind)}));
@@ -173,6 +213,28 @@ void Builder::findBlocks(const Stmt& s) {
     if (s.elseBody) findBlocks(*s.elseBody);
 }
 
+/// A direction of the cone about `axis`, as long as it. The renderer's numbers (transport: coneNumbers) are three: how far from the axis,
+/// evenly over the solid angle, and a unit vector that says which way; zero far is the axis itself.
+Inst* Builder::inCone(Inst* axis, Inst* angle) {
+    Inst* numbers = input("Ci", {Base::Color, 0}, false);
+    const auto part = [&](Inst* v, int n) { return emit(Op::Extract, Kind::Float, {v}, n); };
+    const auto times = [&](Inst* v, Inst* k) { return emit(Op::Mul, Kind::Triple, {v, coerce(k, Kind::Triple)}); };
+    const auto minus = [&](Inst* a, Inst* b) { return emit(Op::Sub, Kind::Float, {a, b}); };
+    const auto product = [&](Inst* a, Inst* b) { return emit(Op::Mul, Kind::Float, {a, b}); };
+    Inst* n = runtime1("al_normalize_t", {axis}, Kind::Triple);
+    Inst* steep = emit(Op::Less, Kind::Bool, {product(part(n, 0), part(n, 0)), constant(0.5f)});
+    Inst* beside = emit(Op::Select, Kind::Triple,
+                        {steep, leaves_.constant(Kind::Triple, std::vector<float>{1, 0, 0}), leaves_.constant(Kind::Triple, std::vector<float>{0, 1, 0})});
+    Inst* t = runtime1("al_normalize_t", {cross(n, beside)}, Kind::Triple);
+    Inst* u = cross(n, t);
+    Inst* half = runtime1("al_sin", {product(angle, constant(0.5f))}, Kind::Float);
+    Inst* height = product(part(numbers, 0), product(constant(2), product(half, half))); // 1 - cos
+    Inst* away = runtime1("al_sqrt", {product(height, minus(constant(2), height))}, Kind::Float);
+    Inst* sideways = emit(Op::Add, Kind::Triple, {times(t, part(numbers, 1)), times(u, part(numbers, 2))});
+    Inst* unit = emit(Op::Add, Kind::Triple, {times(n, minus(constant(1), height)), times(sideways, away)});
+    return times(unit, runtime1("al_length", {axis}, Kind::Float));
+}
+
 void Builder::lightBlock(const Stmt& s) {
     int index = -1;
     for (size_t n = 0; n < lightBlocks_.size(); ++n)
@@ -181,7 +243,15 @@ void Builder::lightBlock(const Stmt& s) {
     const LightBlock b = lightBlocks_[static_cast<size_t>(index)];
     Inst *L, *lit = boolean(true);
     if (s.kind == StmtKind::Solar) {
-        L = s.exprs.empty() ? input("L", {Base::Vector, 0}, false) : expr(*s.exprs[0], Kind::Triple);
+        // All directions: the renderer's, from where P stands.
+        L = s.exprs.empty() ? emit(Op::Sub, Kind::Triple, {global("Ps", Base::Point), global("P", Base::Point)})
+                            : expr(*s.exprs[0], Kind::Triple);
+        if (s.exprs.size() > 1)
+            if (Inst* angle = expr(*s.exprs[1], Kind::Float); !isConst(angle) || angle->numbers[0] != 0) {
+                place_ = s.place;
+                L = inCone(L, angle);
+                lightBlocks_[static_cast<size_t>(index)].cone = true;
+            }
     } else {
         L = emit(Op::Sub, Kind::Triple,
                  {global("Ps", Base::Point), s.exprs.empty() ? global("P", Base::Point) : expr(*s.exprs[0], Kind::Triple)});

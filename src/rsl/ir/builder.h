@@ -59,6 +59,7 @@ private:
     void loop(const Expr* condition, const Expr* step, const Stmt* body, const Place&);
     void illuminance(const Stmt&);
     void lightBlock(const Stmt&);
+    Inst* inCone(Inst* axis, Inst* angle);
     void findBlocks(const Stmt&);
     int addBlock(const Stmt&);
     Inst* alive();
@@ -153,7 +154,8 @@ private:
     };
     void exchangeInstance(size_t);
     void beginCoShaders();
-    Inst* forHandle(const Expr& handle, Kind, const std::function<Inst*(size_t)>& code);
+    Inst* forHandle(const Expr& handle, Kind, const std::function<Inst*(size_t)>& code,
+                    const std::function<Inst*(Inst* handle)>& light = nullptr);
     const Function* methodOf(size_t instance, const Expr& call) const;
     const Symbol* memberOf(size_t instance, const std::string& name) const;
     Inst* memberValue(size_t instance, const Symbol&);
@@ -163,6 +165,12 @@ private:
     Inst* getShader(const Expr&);
     std::vector<Inst*> handlesOf(const Expr&);
     void scanMethod(const Expr&, std::set<int>& out);
+    // build_lighthandles.cpp: lights by their handles
+    Inst* lightMethod(const Expr& call, Inst* handle);
+    Inst* lightMember(Inst* handle, const std::string& name, Kind, const Expr* to);
+    Inst* getLight(const Expr&);
+    std::vector<Inst*> lightHandles(const Expr&);
+    Inst* isLightCategory(const Expr&);
 
     Inst* shadeopCall(const Expr&);
     Inst* runtimeCall(const Expr&);
@@ -203,6 +211,7 @@ private:
         const Stmt* stmt;
         bool solar;
         int L, Cl, Ol, lit;
+        bool cone = false; ///< solar with an angle that may be above 0
     };
     std::vector<LightBlock> lightBlocks_;
     std::map<const Function*, Scan> scans_;
@@ -218,6 +227,8 @@ private:
     int handleDepth_ = 0; ///< methods of co-shaders that are open
     std::set<std::pair<size_t, const Function*>> openMethods_, scannedMethods_;
     int lightDepth_ = 0;
+    /// Output parameters that lights ask for: slot and type.
+    std::map<std::string, std::pair<int, Type>> messageSlots_;
     bool uniformContext_ = false; ///< the value goes to a uniform variable: one random() for all
     bool failed_ = false;
 };

@@ -1,0 +1,122 @@
+// Lights by their handles: getlight(), getlights(), handle->light(), handle->parameter, islightcategory(). Which lights there are is
+// known to the renderer only, so each is a question to it.
+#include "base/limits.h"
+#include "rsl/ir/builder.h"
+
+namespace alpenglow::rsl::ir {
+
+namespace {
+
+/// A question about lights; `text` is a constant, or empty where the value is an argument.
+Site question(const char* op, const Place& place) {
+    Site s;
+    s.op = op;
+    s.place = place;
+    return s;
+}
+
+} // namespace
+
+/// handle->light(L, Cl [, Ol]): L from the light to the surface, as the light's shader has it; under path with the shadow at P.
+Inst* Builder::lightMethod(const Expr& e, Inst* handle) {
+    if (e.text != "light" || e.args.size() < 3 || e.args.size() > 4) return zero(Kind::Float);
+    const Type vector{Base::Vector, 0}, real{Base::Float, 0};
+    Site s = question("lightcall", e.place);
+    std::vector<Inst*> args;
+    addArgument(s, args, handle, {Base::String, 0});
+    addArgument(s, args, global("P", Base::Point), {Base::Point, 0});
+    s.resultKinds = {Kind::Float, Kind::Triple, Kind::Triple, Kind::Triple};
+    s.resultNames = {"", "L", "Cl", "Ol"};
+    s.resultType = real;
+    place_ = e.place;
+    std::vector<Inst*> v = call(Op::Service, std::move(s), std::move(args));
+    Inst* found = emit(Op::NotEqual, Kind::Bool, {v[0], constant(0)});
+    if (options_.path) {
+        Site shadow = question("lightvisibility", e.place);
+        shadow.argKinds = {Kind::Float, Kind::Triple};
+        shadow.argTypes = {real, vector};
+        shadow.resultKinds = {Kind::Triple};
+        shadow.resultNames = {""};
+        shadow.resultType = {Base::Color, 0};
+        Inst* towards = emit(Op::Sub, Kind::Triple, {zero(Kind::Triple), v[1]});
+        v[2] = emit(Op::Mul, Kind::Triple, {v[2], call(Op::Request, std::move(shadow), {constant(0), towards})[0]});
+    }
+    for (size_t n = 1; n < e.args.size(); ++n) {
+        const Expr& to = *e.args[n];
+        const bool variable = to.kind == ExprKind::Variable || to.kind == ExprKind::Index;
+        if (!variable || to.type.array || kindOf(to.type) != Kind::Triple) {
+            error(to.place, "argument " + std::to_string(n) + " of light() is a variable of type " + (n == 1 ? "vector" : "color"));
+            return zero(Kind::Float);
+        }
+        assign(to, emit(Op::Select, Kind::Triple, {found, v[n], expr(to, Kind::Triple)}));
+    }
+    return zero(Kind::Float);
+}
+
+/// A parameter of a light. `to`: the variable that getvar() fills, which then gives whether there is one; else the value is given.
+Inst* Builder::lightMember(Inst* handle, const std::string& name, Kind kind, const Expr* to) {
+    Site s = question("lightparameter", place_);
+    std::vector<Inst*> args;
+    addArgument(s, args, handle, {Base::String, 0});
+    s.strings = {name};
+    s.resultKinds = {Kind::Float, kind};
+    s.resultNames = {"", "value"};
+    s.resultType = {Base::Float, 0};
+    const std::vector<Inst*> v = call(Op::Service, std::move(s), std::move(args));
+    if (!to) return v[1];
+    Inst* found = emit(Op::NotEqual, Kind::Bool, {v[0], constant(0)});
+    assign(*to, emit(Op::Select, kind, {found, v[1], coerce(expr(*to), kind)}));
+    return v[0];
+}
+
+Inst* Builder::getLight(const Expr& e) {
+    Inst* name = expr(*e.args[0], Kind::String);
+    Site s = question("getlight", e.place);
+    std::vector<Inst*> args;
+    if (name->op == Op::ConstString) s.strings = {name->text};
+    else addArgument(s, args, name, {Base::String, 0});
+    s.resultKinds = {Kind::String};
+    s.resultNames = {""};
+    s.resultType = {Base::String, 0};
+    place_ = e.place;
+    return call(Op::Service, std::move(s), std::move(args))[0];
+}
+
+/// What getlights() gives: how many, then the handles.
+std::vector<Inst*> Builder::lightHandles(const Expr& e) {
+    Site s = question("getlights", e.place);
+    std::vector<Inst*> args;
+    s.strings = {""};
+    for (const NamedArg& p : e.pairs) {
+        if (p.name != "category" || !p.value) continue;
+        Inst* v = expr(*p.value, Kind::String);
+        if (v->op == Op::ConstString) s.strings = {v->text};
+        else addArgument(s, args, v, {Base::String, 0});
+    }
+    s.resultKinds.assign(static_cast<size_t>(limits::kLightHandles) + 1, Kind::String);
+    s.resultNames.assign(static_cast<size_t>(limits::kLightHandles) + 1, "");
+    s.resultKinds[0] = Kind::Float;
+    s.resultType = {Base::String, 0};
+    place_ = e.place;
+    return call(Op::Service, std::move(s), std::move(args));
+}
+
+/// Whether the light of this turn of illuminance is of the category; 0 where there is no light.
+Inst* Builder::isLightCategory(const Expr& e) {
+    Inst* category = expr(*e.args[0], Kind::String);
+    place_ = e.place;
+    if (lightDepth_ == 0) {
+        warn(e.place, "islightcategory() asks about the light of an illuminance loop; there is none here, and it gives 0");
+        return constant(0);
+    }
+    Site s = question("islightcategory", e.place);
+    std::vector<Inst*> args;
+    if (category->op == Op::ConstString) s.strings = {category->text};
+    else addArgument(s, args, category, {Base::String, 0});
+    s.resultKinds = {Kind::Float};
+    s.resultNames = {""};
+    s.resultType = {Base::Float, 0};
+    return call(Op::Service, std::move(s), std::move(args))[0];
+}
+
+} // namespace alpenglow::rsl::ir

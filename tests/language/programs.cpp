@@ -304,7 +304,8 @@ private:
                                                           "setzcomp(r, $F);", "setcomp(m, $F, 2, $F);", "n[0] += $F;", "d[$I] *= $F;"}),
                         s, 1);
         case 8:
-            return fill('s', any(std::vector<std::string>{"if (arraylength(h) < 6) push(h, $F);", "x = pop(h);", "if ($B) z += pop(h);",
+            return fill('s', any(std::vector<std::string>{"if (arraylength(h) < 6) push(h, $F);", "if (arraylength(h) > 1) x = pop(h);",
+                                                          "if (arraylength(h) > 2 && ($B)) z += pop(h);",
                                                           "z = capacity(h) > 3 ? $F : 1;"}),
                         s, 1);
         case 9:

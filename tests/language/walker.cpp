@@ -169,6 +169,7 @@ private:
     }
 
     static size_t nearest(float index, size_t length) {
+        if (length == 0) unknown("elements of an empty array");
         if (!(index > 0)) return 0;
         return index >= float(length - 1) ? length - 1 : size_t(index);
     }

@@ -165,7 +165,7 @@ void Builder::assign(const Expr& l, Inst* value) {
     std::vector<Inst*> c;
     for (int n = 0; n < 3; ++n) {
         Inst* is =
-            n == 0   ? emit(Op::Less, Kind::Bool, {at, constant(1)})
+            n == 0   ? emit(Op::Not, Kind::Bool, {emit(Op::LessEqual, Kind::Bool, {constant(1), at})}) // NaN is component 0
             : n == 2 ? emit(Op::LessEqual, Kind::Bool, {constant(2), at})
                      : emit(Op::And, Kind::Bool,
                             {emit(Op::LessEqual, Kind::Bool, {constant(1), at}), emit(Op::Less, Kind::Bool, {at, constant(2)})});
@@ -276,8 +276,9 @@ Inst* Builder::expr(const Expr& e) {
         Inst* at = expr(*e.args[1], Kind::Float);
         if (isConst(at)) return emit(Op::Extract, Kind::Float, {v}, std::clamp(static_cast<int>(at->numbers[0]), 0, 2));
         const auto c = [&](int n) { return emit(Op::Extract, Kind::Float, {v}, n); };
-        Inst* high = emit(Op::Select, Kind::Float, {emit(Op::Less, Kind::Bool, {at, constant(2)}), c(1), c(2)});
-        return emit(Op::Select, Kind::Float, {emit(Op::Less, Kind::Bool, {at, constant(1)}), c(0), high});
+        // NaN is component 0, as where one is stored and in arrays
+        Inst* low = emit(Op::Select, Kind::Float, {emit(Op::LessEqual, Kind::Bool, {constant(1), at}), c(1), c(0)});
+        return emit(Op::Select, Kind::Float, {emit(Op::LessEqual, Kind::Bool, {constant(2), at}), c(2), low});
     }
     case ExprKind::Unary: {
         if (e.op == ExprOp::Not) return emit(Op::Not, Kind::Bool, {condition(*e.args[0])});

@@ -152,7 +152,7 @@ private:
             bits(v);
         }
         uint64_t v = 0;
-        std::memcpy(&v, p, n);
+        if (n > 0) std::memcpy(&v, p, n); // of nothing there may be no address
         bits(v);
     }
     uint64_t h_ = 0;

@@ -1,4 +1,5 @@
 #include "shadeops/types.h"
+#include <iterator>
 
 namespace alpenglow::rsl {
 
@@ -19,7 +20,8 @@ int componentCount(Base base) {
 
 std::string toString(Type type) {
     static constexpr const char* kNames[] = {"void", "bool", "float", "color", "point", "vector", "normal", "matrix", "string"};
-    std::string text = kNames[static_cast<int>(type.base)];
+    const size_t base = static_cast<size_t>(type.base); // beyond the table: structures, numbered by the front end while it reads
+    std::string text = base < std::size(kNames) ? kNames[base] : "structure";
     if (type.array > 0)
         text += "[" + std::to_string(type.array) + "]";
     else if (type.array < 0)

@@ -25,8 +25,8 @@ uint8_t productParts(uint8_t x, uint8_t y) {
 
 } // namespace
 
-Shapes::Shapes(const ir::Kernel& k, bool mixed, const std::set<std::string>* zero, std::shared_ptr<Cache> cache)
-    : kernel_(k), mixed_(mixed), zero_(zero), cache_(std::move(cache)) {}
+Shapes::Shapes(const ir::Kernel& k, bool mixed, const std::set<std::string>* zero, Cache* cacheOfAll)
+    : kernel_(k), mixed_(mixed), zero_(zero), cache_(cacheOfAll) {}
 
 const Shapes& Shapes::function(const Inst* f, const std::vector<Shape>& arguments) const {
     std::vector<uint16_t> key;
@@ -45,7 +45,7 @@ const Shapes& Shapes::function(const Inst* f, const std::vector<Shape>& argument
 }
 
 Shapes::Shapes(const ir::Kernel& k, bool mixed, const std::set<std::string>* zero)
-    : kernel_(k), mixed_(mixed), zero_(zero), cache_(std::make_shared<Cache>()) {
+    : kernel_(k), mixed_(mixed), zero_(zero), own_(std::make_unique<Cache>()), cache_(own_.get()) {
     collect(k.body);
     while (region(k.body, false)) {}
 }

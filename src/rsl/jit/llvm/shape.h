@@ -45,7 +45,7 @@ public:
 
 private:
     using Cache = std::map<std::pair<const ir::Inst*, std::vector<uint16_t>>, std::unique_ptr<Shapes>>;
-    Shapes(const ir::Kernel&, bool mixed, const std::set<std::string>* zeroDerivative, std::shared_ptr<Cache>);
+    Shapes(const ir::Kernel&, bool mixed, const std::set<std::string>* zeroDerivative, Cache* cacheOfAll);
     void collect(const ir::Region&);
     bool region(const ir::Region&, bool varyingControl);
     bool inst(const ir::Inst*, bool varyingControl);
@@ -56,7 +56,8 @@ private:
     const ir::Kernel& kernel_;
     bool mixed_;
     const std::set<std::string>* zero_;
-    std::shared_ptr<Cache> cache_;
+    std::unique_ptr<Cache> own_; ///< of the whole kernel's shapes; those of its functions use it too
+    Cache* cache_;
     bool requests_ = false;
     std::set<std::pair<const ir::Inst*, int>> used_;
     std::unordered_map<const ir::Inst*, std::vector<Shape>> shapes_;

@@ -37,6 +37,7 @@ std::vector<Shadeop> colourShadeops();
 std::vector<Shadeop> splineShadeops();
 std::vector<Shadeop> derivativeShadeops();
 std::vector<Shadeop> lightingShadeops();
+std::vector<Shadeop> bsdfShadeops();
 std::vector<Shadeop> messageShadeops();
 std::vector<Shadeop> stringShadeops();
 std::vector<Shadeop> arrayShadeops();

@@ -2,6 +2,7 @@
 #pragma once
 #include "shadeops/call.h"
 #include "shadeops/geometry.h"
+#include "shadeops/lighting_fresnel.h"
 #include "shadeops/specular.h"
 
 namespace alpenglow::rsl::AL_NAMESPACE {
@@ -13,12 +14,6 @@ template <class T> AL_INLINE Triple<T> opSpecularBrdf(const Triple<T>& l, const 
     return {r, r, r};
 }
 
-/// Reflectance at a dielectric; c = cosine of the incident angle, eta = index before / index behind.
-template <class T> AL_INLINE T dielectricReflectance(const T& c, const T& eta) {
-    const T k = vf(1) - eta * eta * (vf(1) - c * c), cosT = root(k);
-    const T s = divide(eta * c - cosT, eta * c + cosT), p = divide(eta * cosT - c, eta * cosT + c);
-    return select(value(k) <= 0, T(vf(1)), smaller((s * s + p * p) * vf(0.5f), T(vf(1))));
-}
 template <class T> AL_INLINE void opFresnel(const Triple<T>& i, const Triple<T>& n, const T& eta, T& kr, T& kt) {
     kr = dielectricReflectance(smaller(absolute(dot(i, n)), T(vf(1))), eta);
     kt = vf(1) - kr;
@@ -134,9 +129,16 @@ color phong(vector n, v; float size) {
     return sum;
 }
 )";
-    Shadeop& bsdf = add("bsdf", sigs({{"color bsdf(vector l; normal n; pairs)"}, {"color[] bsdf(vector l; normal n; pairs)"}}), Lowering::Unavailable,
-                        "One of the distributions of trace() for a single light direction l, times the cosine.");
+    Shadeop& bsdf = add("bsdf", sigs({{"color bsdf(vector l; normal n; pairs)"}, {"color[] bsdf(vector l; normal n; pairs)"}}), Lowering::Special,
+                        "One of the distributions of trace() for a single direction l toward the light: the reflection function times the cosine n . l, so "
+                        "that PI bsdf(\"oren-nayar\", roughness 0) is the weight of diffuse(). An array gets the parts of glass-ggx (reflected, refracted) or of hair "
+                        "(one a lobe). wo defaults to -I. samplecone (uniform, cosine) defaults to PI/2. What lies beyond the plane of \"horizon\" is 0. The "
+                        "hidden shadeops __bsdf_<name> document each distribution.");
+    bsdf.source = "seed; formulas rsl.md 12.4 (k)";
+    bsdf.derivative = DerivativeRule::Inherent;
     bsdf.optional = distributionParameters();
+    bsdf.optional.push_back({{Base::Float, 0}, "samplecone", false, "PI/2", "half angle of the cone of uniform and cosine, radians"});
+    bsdf.examples = {{"bsdf(vector(0,0,1), normal(0,0,1), \"distribution\", \"cosine\")", "0.3183099 0.3183099 0.3183099"}};
 
     Shadeop& fresnel = add("fresnel",
                            sigs({{"void fresnel(vector i, vector n; float eta; output float Kr, output float Kt)", "al_fresnel"},

@@ -146,9 +146,15 @@ std::vector<Shadeop> matrixShadeops() {
     add("setcomp", sigs({{"void setcomp(output matrix m; float row, float column, float value)", "al_setcompm"}}),
         "Sets an element of a matrix; indices are truncated and clamped to 0..3.", {});
     Shadeop& mtransform = add("mtransform", sigs({{"matrix mtransform(string tospace; matrix m)"},
-                                                  {"matrix mtransform(string fromspace, string tospace; matrix m)"}}),
-                              "A matrix expressed in another space.", {});
-    mtransform.lowering = Lowering::Unavailable;
+                                                  {"matrix mtransform(string fromspace, string tospace; matrix m)"},
+                                                  {"matrix mtransform(matrix tomatrix; matrix m)"},
+                                                  {"matrix mtransform(string fromspace; matrix tomatrix; matrix m)"}}),
+                              "The transformation m followed by the one from a space (default current) to another, or by a matrix: m M. So "
+                              "transform(mtransform(\"world\", m), p) is transform(\"world\", transform(m, p)), and matrix \"world\" (...) is mtransform(\"world\", "
+                              "\"current\", ...).",
+                              {{"mtransform(matrix(2), matrix(3))", "6 0 0 0 0 6 0 0 0 0 6 0 0 0 0 6"}});
+    mtransform.lowering = Lowering::Special;
+    mtransform.derivative = DerivativeRule::Inherent;
     mtransform.source = "RISpec";
     return list;
 }

@@ -59,7 +59,7 @@ void readArray(const std::vector<std::string>& list, size_t& i, Type& type) {
 std::vector<Shadeop> buildAll() {
     std::vector<Shadeop> all;
     for (auto section : {mathematicsShadeops, noiseShadeops, geometryShadeops, matrixShadeops, colourShadeops, splineShadeops,
-                         derivativeShadeops, lightingShadeops, messageShadeops, stringShadeops, arrayShadeops, textureShadeops,
+                         derivativeShadeops, lightingShadeops, bsdfShadeops, messageShadeops, stringShadeops, arrayShadeops, textureShadeops,
                          raytracingShadeops})
         for (Shadeop& op : section()) {
             // One name, one object: rotate() of points and rotate() of matrices stand in two sections.

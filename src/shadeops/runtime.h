@@ -1,5 +1,6 @@
 // All the code of the runtime, for one lane width.
 #pragma once
+#include "shadeops/bsdf/all.h"
 #include "shadeops/colours.h"
 #include "shadeops/geometry.h"
 #include "shadeops/lighting.h"

@@ -42,6 +42,30 @@ Domain domainOf(std::string_view symbol, int input, int inputs) {
     }
     if (symbol == "al_splinesegment")
         return input == 0 ? Domain{0, 1} : Domain{5, 5};
+    if (starts(symbol, "al_bsdf")) {
+        const bool hair = symbol == "al_bsdf_hair", glass = symbol == "al_bsdf_glassggx";
+        const bool cone = symbol == "al_bsdf_uniform" || symbol == "al_bsdf_cosine";
+        if (hair) { // across the fibre, away from where the bell is cut off; second lobe inside
+            static constexpr Domain kHair[] = {{1, 2}, {-1, 1}, {-0.5f, 0.5f}, {-0.2f, 0.2f}, {-0.2f, 0.2f}, {1, 2}, {1, 2}, {-1, 1}, {-0.5f, 0.5f}};
+            if (input < 9) return kHair[input];
+            if (input < 12) return {0.2f, 0.4f}; // eccentricity
+            if (input == 12) return {1.4f, 1.7f};
+            if (input < 16) return {0.1f, 1};
+            if (input == 16) return {2.5f, 2.5f};
+            return input == 17 ? Domain{-0.1f, 0.1f} : Domain{0.5f, 0.9f};
+        }
+        if (cone && input == 6) return {1.2f, 1.5f};
+        if (glass && input == 2) return {-2, -1}; // refraction
+        if (input < 9) return input % 3 == 2 ? Domain{1, 2} : glass ? Domain{-0.3f, 0.3f} : Domain{-0.7f, 0.7f};
+        if (symbol == "al_bsdf_ward" || symbol == "al_bsdf_ashikhminshirley" || glass) {
+            if (input == 9) return {1, 2}; // udir
+            if (input < 12) return {-0.5f, 0.5f};
+            if (input < 14) return {0.5f, 0.9f};
+        } else if (input == 9) {
+            return {0.5f, 0.9f};
+        }
+        return {1.3f, 1.6f};
+    }
     if (starts(symbol, "al_pnoise") && input >= inputs / 2)
         return {7, 7};
     return {};

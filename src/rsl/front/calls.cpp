@@ -157,6 +157,17 @@ void Checker::surveyCall(Expr& e, Info& info) {
     }
 }
 
+/// The other way about: an array is wanted.
+void Checker::preferArray(const Expr& e) {
+    Info& info = infos_.at(&e);
+    if (info.array.array || info.any) return;
+    for (const Choice& c : info.choices)
+        if (c.result.array) {
+            info.array = c.result;
+            info.cost.fill(kNever);
+        }
+}
+
 void Checker::noMatch(Expr& e, const std::vector<std::string>& candidates, std::vector<std::string> notes,
                       bool outputsOnly) {
     std::string given;

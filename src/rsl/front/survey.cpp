@@ -224,6 +224,7 @@ void Checker::surveyAssign(Expr& e, Info& info) {
     }
     if (l.any || r.any) { info.any = true; return; }
     if (l.array.array) {
+        preferArray(*e.args[1]);
         const bool fits = r.listLength >= 0 ? l.array.array < 0 || r.listLength <= l.array.array
                                             : r.array.base == l.array.base && r.array.array != 0 &&
                                                   (r.array.array == l.array.array || r.array.array < 0 || l.array.array < 0);

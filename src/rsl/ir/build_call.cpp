@@ -343,7 +343,7 @@ Inst* Builder::transformCall(const Expr& e) {
     std::vector<Inst*> a;
     for (const ExprPtr& x : e.args) a.push_back(expr(*x));
     place_ = e.place;
-    Inst* v = coerce(a.back(), Kind::Triple);
+    Inst* v = coerce(a.back(), base == Base::Matrix ? Kind::Matrix : Kind::Triple);
     Inst* from = a.size() == 3 ? a[0] : leaves_.string("current");
     Inst* to = a[a.size() - 2];
     const auto between = [&](Inst* f, Inst* t) {
@@ -379,6 +379,8 @@ Inst* Builder::special(const Expr& e) {
     if (n == "getlight") return getLight(e);
     if (n == "islightcategory") return isLightCategory(e);
     if (n == "isoutput") return isOutput(e);
+    if (n == "bsdf") return e.type.array ? array(e) : bsdf(e)[0];
+    if (n == "mtransform") return transformCall(e);
     if (n == "gridmin" || n == "gridmax") return gridBound(e, n == "gridmin" ? -0.5f : 0.5f);
     if (n == "arraylength") return lengthOf(array(*e.args[0]));
     if (n == "resize" || n == "reserve" || n == "push" || n == "pop" || n == "capacity") return resizing(e);

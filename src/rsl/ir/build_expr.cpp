@@ -128,13 +128,18 @@ void Builder::copyArray(Inst* to, const Expr& from) {
         for (int i = 0; i < n; ++i) store(i, i < static_cast<int>(all.size()) ? all[static_cast<size_t>(i)] : zero(to->element));
         return;
     }
+    if (from.kind == ExprKind::ShadeopCall && from.shadeop && from.shadeop->name == "bsdf") {
+        const std::vector<Inst*> parts = bsdf(from);
+        for (int i = 0; i < n; ++i) store(i, i < static_cast<int>(parts.size()) ? parts[static_cast<size_t>(i)] : zero(to->element));
+        return;
+    }
     if (from.kind == ExprKind::ShadeopCall && from.shadeop && from.shadeop->name == "getlights") {
         const std::vector<Inst*> all = lightHandles(from);
         for (int i = 0; i < n; ++i) store(i, i + 1 < static_cast<int>(all.size()) ? all[static_cast<size_t>(i) + 1] : zero(to->element));
         return;
     }
-    if (from.kind != ExprKind::Variable && from.kind != ExprKind::Cast)
-        return; // an array valued call: its results stay zero, reported where it is built
+    if (from.kind == ExprKind::ShadeopCall && from.shadeop) unavailable(from); // its results stay zero
+    if (from.kind != ExprKind::Variable && from.kind != ExprKind::Cast) return;
     Inst* a = array(from);
     if (a == to) return;
     const int m = std::min(n, arrayLength(a));

@@ -172,6 +172,11 @@ private:
     std::vector<Inst*> lightHandles(const Expr&);
     Inst* isLightCategory(const Expr&);
 
+    // build_bsdf.cpp
+    struct Distribution;
+    std::vector<Inst*> bsdf(const Expr&);
+    std::vector<Inst*> distribution(const std::string& name, const Distribution&);
+
     Inst* shadeopCall(const Expr&);
     Inst* runtimeCall(const Expr&);
     Inst* special(const Expr&);

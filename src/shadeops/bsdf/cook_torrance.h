@@ -1,0 +1,29 @@
+// bsdf(): "cook-torrance": facets with Beckmann's distribution of slopes (Cook and Torrance 1982).
+#pragma once
+#include "shadeops/bsdf/common.h"
+
+namespace alpenglow::rsl::AL_NAMESPACE {
+
+template <class T>
+AL_INLINE Triple<T> opBsdfCookTorrance(const Triple<T>& l, const Triple<T>& n, const Triple<T>& o, const T& roughness, const Triple<T>& eta,
+                                       const Triple<T>& k) {
+    const Facet<T> f = facetOf(l, n, o);
+    const T m = sane(roughness), m2 = m * m, c2 = f.nh * f.nh;
+    const T d = divide(exponential(-divide(f.sine2, c2 * m2)) * vf(1 / kPi), m2 * c2 * c2);
+    const T r = divide(d * grooves(f), f.no * vf(4));
+    return select3(f.seen, times(fresnelOrFull3(f.oh, eta, k), r), none3<T>());
+}
+AL_RUNTIME(al_bsdf_cooktorrance, opBsdfCookTorrance)
+
+} // namespace alpenglow::rsl::AL_NAMESPACE
+
+#ifdef ALPENGLOW_DESCRIBE
+namespace alpenglow::rsl {
+inline Shadeop bsdfCookTorrance() {
+    return bsdfOp("color __bsdf_cooktorrance(vector l, vector n, vector wo; float roughness; color eta, color k)", "al_bsdf_cooktorrance",
+                  "\"cook-torrance\": D G F / (4 n . wo), D = exp(-tan^2 th / m^2) / (PI m^2 cos^4 th) with m = roughness, G and F as for blinn.",
+                  "seed; formula (k)",
+                  {"__bsdf_cooktorrance(vector(0,0,1), vector(0,0,1), vector(0,0,1), 1, color(0,0,0), color(0,0,0))", "0.07957747 0.07957747 0.07957747"});
+}
+} // namespace alpenglow::rsl
+#endif

@@ -1,0 +1,164 @@
+// bsdf(): "hair": one lobe of the light that a fibre scatters, seen from far away: R, TT, TRT, TRRT (Marschner et al. 2003).
+//
+// Along the fibre: d'Eon et al. 2011, whose integral is exactly one. Around the fibre: the paths through its width, in pieces; within a
+// piece the angle at which light leaves grows evenly, spread by a logistic bell, so that the integral over all angles is exactly what the
+// pieces let through and no piece shows, however sharp the bell is.
+#pragma once
+#include "shadeops/bsdf/common.h"
+#include "shadeops/lighting_fresnel.h"
+
+namespace alpenglow::rsl::AL_NAMESPACE {
+
+/// Pieces of half the fibre's width, bounded at equal angles.
+inline constexpr int kHairPieces = 12;
+/// Sines of the angles of the bounds and the middles of the pieces, by their Taylor series.
+struct HairTable {
+    float angle[2 * kHairPieces + 1] = {}, sine[2 * kHairPieces + 1] = {}, cosine[2 * kHairPieces + 1] = {};
+    constexpr HairTable() {
+        for (int i = 0; i <= 2 * kHairPieces; ++i) {
+            const double x = 0.5 * 3.14159265358979323846 * i / (2 * kHairPieces);
+            double s = 0, c = 0, term = 1;
+            for (int n = 0; n < 24; ++n) {
+                const double sign = n / 2 % 2 ? -1 : 1;
+                (n % 2 ? s : c) += sign * term;
+                term *= x / (n + 1);
+            }
+            angle[i] = static_cast<float>(x), sine[i] = static_cast<float>(s), cosine[i] = static_cast<float>(i == 2 * kHairPieces ? 0 : c);
+        }
+    }
+};
+inline constexpr HairTable kHair;
+
+/// exp(-x) times the modified Bessel function I0(x), x >= 0 (Abramowitz and Stegun 9.8.1 and 9.8.2).
+template <class T> AL_INLINE T besselScaled(const T& x) {
+    const T a = divide(x, T(vf(3.75f))), t = a * a;
+    T p = mad(t, vf(0.0045813f), vf(0.0360768f));
+    p = mad(p, t, T(vf(0.2659732f)));
+    p = mad(p, t, T(vf(1.2067492f)));
+    p = mad(p, t, T(vf(3.0899424f)));
+    p = mad(p, t, T(vf(3.5156229f)));
+    p = mad(p, t, T(vf(1)));
+    const T y = divide(T(vf(3.75f)), larger(x, T(vf(3.75f))));
+    T q = mad(y, vf(0.00392377f), vf(-0.01647633f));
+    q = mad(q, y, T(vf(0.02635537f)));
+    q = mad(q, y, T(vf(-0.02057706f)));
+    q = mad(q, y, T(vf(0.00916281f)));
+    q = mad(q, y, T(vf(-0.00157565f)));
+    q = mad(q, y, T(vf(0.00225319f)));
+    q = mad(q, y, T(vf(0.01328592f)));
+    q = mad(q, y, T(vf(0.39894228f)));
+    return select(value(x) < 3.75f, p * exponential(-x), q * inverseRoot(larger(x, T(vf(3.75f)))));
+}
+
+/// The bell around the fibre, cut off at +-PI and repeated, as the function whose differences are its integrals.
+template <class T> struct HairBell {
+    T perWidth, low, scale; ///< 1 / width; logistic at -PI; 1 over what lies within +-PI
+    AL_MEMBER explicit HairBell(const T& width) : perWidth(divide(T(vf(1)), width)) {
+        low = logistic(perWidth * vf(-kPi));
+        scale = divide(T(vf(1)), vf(1) - low * vf(2));
+    }
+    static AL_MEMBER T logistic(const T& x) { return divide(T(vf(1)), exponential(-larger(x, T(vf(-30)))) + vf(1)); }
+    static AL_MEMBER T wrap(const T& x, vf& turns) {
+        turns = floorLanes((value(x) + vf(kPi)) * vf(0.5f / kPi));
+        return x - T(turns * vf(2 * kPi));
+    }
+    /// Integral of the bell from x to y, y not below x.
+    AL_MEMBER T between(const T& x, const T& y) const {
+        vf m, n;
+        const T a = wrap(x, m), b = wrap(y, n);
+        return (logistic(b * perWidth) - logistic(a * perWidth)) * scale + T(n - m);
+    }
+    AL_MEMBER T at(const T& x) const {
+        vf n;
+        const T e = exponential(-absolute(wrap(x, n)) * perWidth), s = e + vf(1);
+        return divide(e * perWidth * scale, s * s);
+    }
+};
+
+template <class T>
+AL_INLINE Triple<T> opBsdfHair(const Triple<T>& l0, const Triple<T>& tip0, const Triple<T>& o0, const Triple<T>& udir, const T& eta,
+                               const Triple<T>& absorption, const T& lobe, const T& tilt, const T& longitudinal, const T& azimuthal) {
+    const Triple<T> l = normalize(l0), tip = normalize(tip0), o = normalize(o0);
+    const vf p = minLanes(maxLanes(floorLanes(value(lobe)), vf(0)), vf(3));
+    const T one = T(vf(1)), sl = larger(smaller(dot(l, tip), one), -one), so = larger(smaller(dot(o, tip), one), -one);
+    const T cl = root(vf(1) - sl * sl), co = root(vf(1) - so * so);
+
+    // Along the fibre. The scales turn lobe p by (2 - 3 p) tilt: 2, -1, -4 times the tilt for R, TT, TRT.
+    const T turn = tilt * (vf(2) - vf(3) * p), st = sine(turn), ct = cosine(turn);
+    const T s2 = so * ct - co * st, c2 = absolute(mad(co, ct, so * st));
+    const T b = larger(smaller(longitudinal, one), T(vf(0.02f))), b2 = b * b, b4 = b2 * b2, b8 = b4 * b4, b20 = b8 * b8 * b4;
+    const T width = mad(b20, vf(3.7f), vf(0)) + b2 * vf(0.812f) + b * vf(0.726f), v = width * width; // Chiang et al. 2016
+    const T along = divide(exponential(divide(mad(c2, cl, -s2 * sl) - vf(1), v)) * besselScaled(divide(c2 * cl, v)),
+                           v * (vf(1) - exponential(divide(T(vf(-2)), v))));
+
+    // The part of the light that crosses the fibre: reciprocal, and never more than all.
+    const T crossing = divide(cl, larger(cl, co));
+
+    // Around it. Half the difference of the two inclinations sets how light bends inside (Bravais).
+    const T cosDifference = mad(cl, co, sl * so), cd2 = positive((cosDifference + vf(1)) * vf(0.5f)), cd = root(cd2);
+    const T sd2 = positive(vf(1) - cd2);
+    const Triple<T> lp = normalize(mad3(tip, -sl, l)), op = normalize(mad3(tip, -so, o));
+    const T phi = arcTangent2(dot(cross(op, lp), tip), dot(op, lp));
+    // An elliptic section acts as a round one whose index depends on the direction of the half vector (Marschner et al. 2003, 6).
+    const Pair<Triple<T>> axes = tangents(tip, udir);
+    const Triple<T> half = lp + op;
+    const T hu = dot(half, axes.a), hv = dot(half, axes.b), hh = mad(hu, hu, hv * hv);
+    const T cos2 = divide(mad(hu, hu, -hv * hv), hh);
+    const T ratio2 = vf(1) - smaller(dot(udir, udir), T(vf(0.9f)));
+    const T bend = eta - vf(1), n1 = bend * ratio2 * vf(2) - bend + vf(1), n2 = divide(bend * vf(2), ratio2) - bend + vf(1);
+    const T index = larger((n1 + n2 + cos2 * (n1 - n2)) * vf(0.5f), T(vf(1.01f)));
+    const T inner = divide(root(index * index - sd2), larger(cd, T(vf(1e-4f))));
+    const T cosInside = root(vf(1) - divide(sd2, index * index));
+    const T a = larger(smaller(azimuthal, one), T(vf(0.02f))), a2 = a * a, a4 = a2 * a2, a8 = a4 * a4, a22 = a8 * a8 * a4 * a2;
+    const HairBell<T> bell((a22 * vf(5.372f) + a2 * vf(1.194f) + a * vf(0.265f)) * vf(0.626657069f)); // sqrt(PI / 8)
+
+    const T way = divide(T(vf(-2)), cosInside), perIndex = divide(one, inner);
+    const auto leaving = [&](int i) __attribute__((always_inline)) { // angle between in and out for a path at table angle i
+        return arcSine(perIndex * vf(kHair.sine[i])) * (vf(2) * p) + T(vf(kPi) * p - vf(2 * kHair.angle[i]));
+    };
+    Triple<T> around = none3<T>();
+    T from = leaving(0);
+    for (int i = 0; i < kHairPieces; ++i) {
+        const T to = leaving(2 * i + 2), middle = leaving(2 * i + 1);
+        const T s = perIndex * vf(kHair.sine[2 * i + 1]);
+        const T fresnel = dielectricReflectance(smaller(cd * vf(kHair.cosine[2 * i + 1]), one), divide(one, index));
+        const T path = way * root(vf(1) - s * s);
+        // Light that is spread over no angle at all counts as the bell itself.
+        const T wide = to - from;
+        const vm still = absLanes(value(wide)) * value(bell.perWidth) < 0.05f;
+        const vm falling = value(wide) < 0;
+        const T first = select(falling, to, from), last = select(falling, from, to), span = absolute(wide);
+        const T plus = select(still, bell.at(phi - middle), divide(bell.between(phi - last, phi - first), span));
+        const T minus = select(still, bell.at(phi + middle), divide(bell.between(phi + first, phi + last), span));
+        const T share = (plus + minus) * vf(0.5f * (kHair.sine[2 * i + 2] - kHair.sine[2 * i]));
+        const T entered = vf(1) - fresnel;
+        const auto kept = [&](const T& sigma) __attribute__((always_inline)) {
+            const T through = exponential(path * positive(sigma)), again = fresnel * through;
+            const T more = select(p > 2.5f, again * again, select(p > 1.5f, again, one));
+            return share * select(p < 0.5f, fresnel, entered * entered * through * more);
+        };
+        around = around + Triple<T>{kept(absorption.x), kept(absorption.y), kept(absorption.z)};
+        from = to;
+    }
+    return times(around, along * crossing);
+}
+AL_RUNTIME(al_bsdf_hair, opBsdfHair)
+
+} // namespace alpenglow::rsl::AL_NAMESPACE
+
+#ifdef ALPENGLOW_DESCRIBE
+namespace alpenglow::rsl {
+inline Shadeop bsdfHair() {
+    Shadeop op = bsdfOp("color __bsdf_hair(vector l, vector tip, vector wo, vector udir; float eta; color absorption; float lobe, float tilt, float longitudinal, "
+                        "float azimuthal)",
+                        "al_bsdf_hair",
+                        "\"hair\": lobe 0 (R) to 3 (TRRT) of a fibre that points along tip, for its whole width. tilt turns lobe p by (2 - 3 p) tilt toward the tip; "
+                        "longitudinal and azimuthal, 0..1, set its spread along and around the fibre; absorption acts along paths inside, 2 being the diameter. udir is "
+                        "the long axis of an elliptic section, its length the eccentricity (below 1, 0 is round). Without tilt the lobes are reciprocal; together "
+                        "they keep at most all light.",
+                        "seed; Marschner et al. 2003, d'Eon et al. 2011, roughness as Chiang et al. 2016", {"", ""});
+    op.examples.clear();
+    return op;
+}
+} // namespace alpenglow::rsl
+#endif

@@ -27,14 +27,14 @@ color LocIllumOrenNayar(normal N; vector V; float roughness)
 color LocIllumGlossy(normal N; vector V; float roughness, sharpness)
 {
     color C = 0;
-    float w = sharpness / 2;
+    float w = 0.18 * (1 - sharpness); /* half the width of the edge */
     extern point P;
     illuminance (P, N, PI / 2) {
         uniform float nonspec = 0;
         lightsource("__nonspecular", nonspec);
         if (nonspec < 1) {
             vector H = normalize(normalize(L) + V);
-            C += (1 - nonspec) * Cl * smoothstep(w, 1 - w, pow(max(0, N . H), 1 / roughness));
+            C += (1 - nonspec) * Cl * smoothstep(0.72 - w, 0.72 + w, pow(max(0, N . H), 1 / roughness));
         }
     }
     return C;

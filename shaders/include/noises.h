@@ -6,13 +6,16 @@
 
 /* noise from -1 to 1 instead of from 0 to 1 */
 #ifndef snoise
-#define snoise(x) (2 * noise(x) - 1)
+#define snoise(x) (2 * (float noise(x)) - 1)
+#endif
+#ifndef snoise2
+#define snoise2(x, y) (2 * (float noise(x, y)) - 1)
 #endif
 #ifndef snoisexy
-#define snoisexy(x, y) (2 * noise(x, y) - 1)
+#define snoisexy(x, y) (2 * (float noise(x, y)) - 1)
 #endif
 #ifndef snoisept
-#define snoisept(p, t) (2 * noise(p, t) - 1)
+#define snoisept(p, t) (2 * (float noise(p, t)) - 1)
 #endif
 #ifndef vsnoise
 #define vsnoise(x) (2 * (vector noise(x)) - 1)
@@ -29,8 +32,12 @@
 #endif
 
 /* noise from -1 to 1 that vanishes where a sample is larger than its features */
-float filteredsnoise(point p; float width) { return fadeout(2 * float noise(p) - 1, 0, 1, width); }
-vector filteredvsnoise(point p; float width) { return fadeout(2 * vector noise(p) - 1, vector(0), 1, width); }
+#ifndef filteredsnoise
+#define filteredsnoise(p, width) (snoise(p) * (1 - smoothstep(0.2, 0.75, width)))
+#endif
+#ifndef filteredvsnoise
+#define filteredvsnoise(p, width) (vsnoise(p) * (1 - smoothstep(0.2, 0.75, width)))
+#endif
 
 /* fractional Brownian motion: octaves, each lacunarity times finer and gain times weaker */
 float fBm(point p; float filtwidth; uniform float maxoctaves, lacunarity, gain)
@@ -60,6 +67,14 @@ vector vfBm(point p; float filtwidth; uniform float maxoctaves, lacunarity, gain
     }
     return total;
 }
+/* the same under its older name */
+float filtered_fBm(point p; float filtwidth; uniform float maxoctaves, lacunarity, gain)
+{
+    return fBm(p, filtwidth, maxoctaves, lacunarity, gain);
+}
+#ifndef filtered_fBm_default
+#define filtered_fBm_default(p) filtered_fBm((p), filterwidthp(p), 4, 2, 0.5)
+#endif
 #ifndef fBm_default
 #define fBm_default(p) fBm((p), filterwidthp(p), 4, 2, 0.5)
 #endif
@@ -100,8 +115,12 @@ float turbulence(point p; float octaves)
 float fBm(point p; uniform float octaves, lacunarity, gain) { return fBm(p, filterwidthp(p), octaves, lacunarity, gain); }
 
 /* noise at a place that noise has moved */
-float VLNoise(point p; float scale) { return 2 * float noise(p + scale * (2 * vector noise(p) - 1)) - 1; }
-float filteredVLNoise(point p; float filtwidth, scale) { return filteredsnoise(p + filteredvsnoise(p, filtwidth) * scale, filtwidth); }
+#ifndef VLNoise
+#define VLNoise(p, scale) snoise((p) + (scale) * vsnoise(p))
+#endif
+#ifndef filteredVLNoise
+#define filteredVLNoise(p, filtwidth, scale) filteredsnoise((p) + filteredvsnoise(p, filtwidth) * (scale), filtwidth)
+#endif
 float VLfBm(point p; float filtwidth; uniform float maxoctaves, lacunarity, gain, scale)
 {
     uniform float octave, weight = 1;
@@ -115,6 +134,9 @@ float VLfBm(point p; float filtwidth; uniform float maxoctaves, lacunarity, gain
     }
     return total;
 }
+#ifndef VLfBm_default
+#define VLfBm_default(p) VLfBm((p), filterwidthp(p), 4, 2, 0.5, 1.0)
+#endif
 
 /* cellular patterns: distances to the nearest (and second nearest) of points scattered one a cell */
 void voronoi_f1f2_2d(float ss, tt, jitter; output float f1; output float spos1, tpos1; output float f2; output float spos2, tpos2)

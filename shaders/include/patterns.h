@@ -22,9 +22,7 @@
 #ifndef boxstep
 #define boxstep(a, b, x) (clamp(((x) - (a)) / ((b) - (a)), 0, 1))
 #endif
-#ifndef sqr
-#define sqr(x) ((x) * (x))
-#endif
+float sqr(float x) { return x * x; }
 
 /* 1 between the edges; with a fourth value smooth over fuzz */
 float pulse(float a, b, fuzz, x) { return smoothstep(a - fuzz, a, x) - smoothstep(b - fuzz, b, x); }
@@ -77,17 +75,41 @@ float brick(float ss, tt, width, height, mortar, stagger; output float row, colu
     y = tt - row * h;
     return pulse(mortar / 2, w - mortar / 2, x) * pulse(mortar / 2, h - mortar / 2, y);
 }
-void basicbrick(float x, y, brickwidth, brickheight, mortarthickness, rowvary, jagged;
-                output float xbrick, ybrick, whichbrick, jitter, inbrick)
+/* Tiles of a running bond: which column and row, and where in the tile, 0 to 1. rowstagger: shift of each row against the one before, and how
+   much it varies; jagged: noise on the edges. */
+void basictile(float x, y; uniform float tilewidth, tileheight; uniform float rowstagger, rowstaggervary; uniform float jaggedfreq, jaggedamp;
+               output float column, row; output float xtile, ytile)
 {
-    float w = brickwidth + mortarthickness, h = brickheight + mortarthickness;
-    float jy = y + jagged * (2 * float noise(x, y) - 1);
-    ybrick = floor(jy / h);
-    float jx = x / w + 0.5 * mod(ybrick, 2) + rowvary * (float cellnoise(ybrick) - 0.5) + jagged * (2 * float noise(y, x) - 1) / w;
-    xbrick = floor(jx);
-    whichbrick = xbrick + 1000 * ybrick;
-    jitter = float cellnoise(xbrick, ybrick);
-    float sx = (jx - xbrick) * w, sy = jy - ybrick * h;
-    inbrick = pulse(0, brickwidth, sx) * pulse(0, brickheight, sy);
+    point bent = 0;
+    if (jaggedamp != 0) bent = jaggedamp * point noise(x * jaggedfreq / tilewidth, y * jaggedfreq / tileheight);
+    float across = (x + xcomp(bent)) / tilewidth, up = (y + ycomp(bent)) / tileheight;
+    row = floor(up);
+    across += mod(rowstagger * row, 1) + rowstaggervary * (float noise(row + 0.5) - 0.5);
+    column = floor(across);
+    xtile = across - column;
+    ytile = up - row;
+}
+void basicbrick(float x, y; uniform float tilewidth, tileheight; uniform float rowstagger, rowstaggervary; uniform float jaggedfreq, jaggedamp;
+                output float column, row; output float xtile, ytile)
+{
+    basictile(x, y, tilewidth, tileheight, rowstagger, rowstaggervary, jaggedfreq, jaggedamp, column, row, xtile, ytile);
+}
+/* Square tiles one unit wide: which, where in it, and 1 on the tile, 0 in the groove; filtered over ds and dt. */
+float tilepattern(float ss, tt, ds, dt; float groovewidth, grooveheight; output float swhichtile, twhichtile; output float stile, ttile)
+{
+    swhichtile = floor(ss);
+    twhichtile = floor(tt);
+    stile = ss - swhichtile;
+    ttile = tt - twhichtile;
+    return filteredpulsetrain(groovewidth, 1, ss + groovewidth / 2, ds) * filteredpulsetrain(grooveheight, 1, tt + grooveheight / 2, dt);
+}
+/* A colour a little other than Cin, by an index: hue, saturation and luminance each vary by so much. */
+color varyEach(color Cin; float index, varyhue, varysat, varylum)
+{
+    color hsl = ctransform("rgb", "hsl", Cin);
+    float h = comp(hsl, 0) + varyhue * (float cellnoise(index + 3) - 0.5);
+    float k = comp(hsl, 1) * (1 - varysat * (float cellnoise(index - 14) - 0.5));
+    float l = comp(hsl, 2) * (1 - varylum * (float cellnoise(index + 37) - 0.5));
+    return ctransform("hsl", "rgb", color(mod(h, 1), clamp(k, 0, 1), clamp(l, 0, 1)));
 }
 #endif

@@ -25,6 +25,7 @@ constexpr OtherName kOtherNames[] = {
     {"shadow.h", "shadows.h"},         {"rayserver_rsl.h", "rayserver.h"}, {"ray_sphere.h", "raysphere.h"},
     {"proctex.h", "proctext.h"},       {"util.h", "rmannotes.h"},          {"utils.h", "rmannotes.h"},
     {"utility.h", "rmannotes.h"},      {"math.h", "mathutil.h"},           {"mathutils.h", "mathutil.h"},
+    {"dpproctext.h", "proctext.h"},    {"proctexh.h", "proctext.h"},      {"oaktexture.h", "oak.h"},
     {"bmrt.h", "rayserver.h"},         {"prman.h", "rayserver.h"},         {"stdrsl.h", "rmannotes.h"},
 };
 

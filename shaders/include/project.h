@@ -55,6 +55,21 @@ color ApplyColorTextureOver(color basecolor; string texturename, projection; poi
     color c = GetColorTextureAndAlpha(texturename, projection, P, whichspace, xform, blur, 3, alpha);
     return c + (1 - alpha) * basecolor;
 }
+float GetFloatTextureAndAlpha(string texturename, projection; point P; string whichspace; matrix xform; float blur; uniform float alphachannel;
+                              output float alpha)
+{
+    float ss, tt, ds, dt;
+    ProjectTo2D(projection, P, whichspace, xform, ss, tt, ds, dt);
+    float a = ds / 2, b = dt / 2;
+    alpha = float texture(texturename[alphachannel], ss - a, tt - b, ss + a, tt - b, ss - a, tt + b, ss + a, tt + b, "blur", blur, "fill", 1);
+    return float texture(texturename, ss - a, tt - b, ss + a, tt - b, ss - a, tt + b, ss + a, tt + b, "blur", blur);
+}
+float ApplyFloatTextureOver(float baseval; string texturename, projection; point P; string whichspace; matrix xform; float blur)
+{
+    float alpha = 1;
+    float x = GetFloatTextureAndAlpha(texturename, projection, P, whichspace, xform, blur, 3, alpha);
+    return x + (1 - alpha) * baseval;
+}
 matrix array_to_mx(float m[16])
 {
     return matrix(m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8], m[9], m[10], m[11], m[12], m[13], m[14], m[15]);

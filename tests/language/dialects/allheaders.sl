@@ -37,7 +37,8 @@ surface all(float Ka = 1, Kd = .5, Ks = .5, roughness = .1, Kr = .5, blur = 0, i
     rotate2d(ss, tt, radians(45), .5, .5, r, a);
     Ct = mix(Ct, color(1, 0, 0), pulse(.35, .65, .05, ss) * filteredpulsetrain(.1, .5, tt, filterwidth(tt)));
     Ct = blend(Ct, color(0, 1, 0), intersection(pulse(.2, .4, .02, ss), 1 - smoothpulse(0, .1, .2, .3, tt)));
-    Ct = ApplyColorTextureOver(Ct, texturename, projection, P, textureprojspace, texturexform, blur);
+    Ct = ApplyColorTextureOver(Ct, texturename, projection, P, textureprojspace, texturexform, blur) *
+         ApplyFloatTextureOver(1, texturename, projection, P, textureprojspace, texturexform, blur);
     normal Nf = faceforward(normalize(N), I);
     vector bump = 0.1 * udn(row, 0, 1) * vector Nf; Nf = normalize(Nf + normal bump);
     float t0, t11;

@@ -20,6 +20,7 @@ struct Conversion {
 };
 
 std::string number(double v, char letter, int precision, bool sign) {
+    if (v != v) return "nan"; // whatever its sign, which means nothing
     char text[kWidest + 400];
     const char* plus = sign ? "+" : "";
     const std::string f = std::string("%") + plus + ".*" + letter;
@@ -29,7 +30,7 @@ std::string number(double v, char letter, int precision, bool sign) {
 
 // %g: with a precision it is %f; without one whatever is shorter, "full precision" being the seven digits that eval prints.
 std::string general(float v, int precision, bool sign) {
-    if (precision >= 0) return number(double(v), 'f', precision, sign);
+    if (precision >= 0 || v != v) return number(double(v), 'f', precision, sign);
     char text[64];
     std::snprintf(text, sizeof text, sign ? "%+.7g" : "%.7g", double(v));
     return text;

@@ -1,6 +1,7 @@
 // Elementary functions over lanes: our own range reductions and polynomials (tools/fit_elementary.py derives the coefficients).
 // Errors in ulp are the largest seen against double precision over the ranges that tests/shadeops/elementary_test.cpp walks.
-// No argument traps; NaN gives NaN or a bounded number. Included by lanes.h.
+// No argument traps; NaN gives NaN or a bounded number, and counts as 0 in logarithms. Its sign and payload, which differ from one
+// instruction set to the next, never show in a result. Included by lanes.h.
 #pragma once
 
 namespace alpenglow::rsl::AL_NAMESPACE {
@@ -76,7 +77,7 @@ AL_INLINE vf asinReduced(vf r, vf s) { return mad(r * s, polynomial(kAsin, s), r
 
 /// 2 ulp; the argument is clamped to [-1,1].
 AL_INLINE vf asinLanes(vf x) {
-    const vf a = minLanes(absLanes(x), vf(1));
+    const vf a = minLanes(vf(1), absLanes(x)); // NaN stays NaN
     const vm big = a > 0.5f;
     const vf s = select(big, mad(a, vf(-0.5f), vf(0.5f)), a * a), r = select(big, rootLanes(s), a);
     const vf p = asinReduced(r, s);
@@ -85,7 +86,7 @@ AL_INLINE vf asinLanes(vf x) {
 
 /// 2 ulp; the argument is clamped to [-1,1].
 AL_INLINE vf acosLanes(vf x) {
-    const vf a = minLanes(absLanes(x), vf(1));
+    const vf a = minLanes(vf(1), absLanes(x)); // NaN stays NaN
     const vm big = a > 0.5f, negative = x < 0;
     const vf s = select(big, mad(a, vf(-0.5f), vf(0.5f)), a * a), r = select(big, rootLanes(s), a);
     const vf p = asinReduced(r, s);
@@ -95,7 +96,7 @@ AL_INLINE vf acosLanes(vf x) {
 
 /// 2 ulp. atan2(0, 0) = 0; the sign of a zero x does not count.
 AL_INLINE vf atan2Lanes(vf y, vf x) {
-    const vf ay = absLanes(y), ax = absLanes(x), large = maxLanes(ay, ax), small = minLanes(ay, ax);
+    const vf ay = absLanes(y), ax = absLanes(x), large = maxLanes(ax, ay), small = minLanes(ay, ax);
     const vf q = select(large == 0, vf(0), small / large), s = q * q;
     vf p = mad(q * s, polynomial(kAtan, s), q);
     p = select(ay > ax, 0.5f * kPi - (p - 0.5f * kPiLo), p);
@@ -130,7 +131,7 @@ AL_INLINE vf logLanes(vf x) {
     splitExponent(x, f, e);
     const vf s = f * f;
     const vf t = mad(vf(-0.5f), s, mad(f * s, polynomial(kLog, f), e * kLn2Lo));
-    return select(x < kSmallest, vf(-kInfinity), mad(e, vf(kLn2), f + t));
+    return select(x >= kSmallest, mad(e, vf(kLn2), f + t), vf(-kInfinity));
 }
 
 /// log2(x) as hi + lo with about 32 bits, for x >= 2^-126.
@@ -150,7 +151,7 @@ AL_INLINE void log2Extended(vf x, vf& hi, vf& lo) {
 AL_INLINE vf log2Lanes(vf x) {
     vf hi, lo;
     log2Extended(x, hi, lo);
-    return select(x < kSmallest, vf(-kInfinity), hi + lo);
+    return select(x >= kSmallest, hi + lo, vf(-kInfinity));
 }
 
 /// 1.5 ulp while |y log2 x| < 16, growing to about 12 where the result nears overflow. x < 0: integer y as multiplication would, else 0.

@@ -1,4 +1,5 @@
 #include "cli/command.h"
+#include <CLI/CLI.hpp>
 #include "base/file.h"
 #include <atomic>
 #include <climits>
@@ -63,6 +64,12 @@ std::string shippedShaders() {
 std::vector<std::string> environmentShaders() {
     const char* e = std::getenv("ALPENGLOW_SHADERS");
     return e && *e ? splitSearchPath(e) : std::vector<std::string>{};
+}
+
+void addDialect(CLI::App& app, std::string& name) {
+    app.add_option("--dialect", name, "Predefine the macros of this renderer's compiler (3delight if none is named)")
+        ->check(CLI::IsMember({"prman", "3delight", "aqsis", "bmrt", "pixie", "entropy", "air"}, CLI::ignore_case))
+        ->type_name("NAME");
 }
 
 std::vector<std::string> folders(const std::vector<std::string>& lists) {

@@ -50,6 +50,9 @@ std::vector<std::string> environmentShaders();
 /// --searchpath: ':' separated.
 std::vector<std::string> folders(const std::vector<std::string>& lists);
 
+/// The option --dialect: the name of the renderer whose compiler's macros are predefined goes to `name`, which outlives the parser.
+void addDialect(CLI::App&, std::string& name);
+
 /// "640x480".
 std::optional<std::array<int, 2>> parseSize(const std::string&);
 /// Numbers separated by commas; nothing unless there are exactly `count` (0 = any number) and all are finite.

@@ -2,6 +2,7 @@
 #include "cli/command.h"
 #include "rsl/compiler.h"
 #include "rsl/front/messages.h"
+#include "rsl/nonlinear.h"
 #include <CLI/CLI.hpp>
 #include <fstream>
 #include <memory>
@@ -40,31 +41,14 @@ std::string lineOf(const SourcePlace& p) {
     return in || !line.empty() ? line : "";
 }
 
-/// Where the light that a shader asks for goes through something else than sums and products with what is known beforehand.
-void warnNonlinear(const rsl::ShaderCompiler& compiler, const rsl::CompiledShader& shader, rsl::KernelOptions options,
-                   Diagnostics& diags) {
-    options.path = true;
-    Diagnostics quiet; // what there is to say was said when the kernel was made
-    const auto kernel = compiler.analyse(shader, options, quiet);
-    if (!kernel || kernel->facts.affine || kernel->facts.whyNot.empty()) return;
-    Diagnostic d;
-    d.severity = Severity::Warning;
-    d.code = Rie::Syntax;
-    d.place.file = shader.path();
-    const rsl::Place& p = kernel->facts.whyNotPlace;
-    const auto& files = shader.program().files;
-    if (p.line > 0 && p.file >= 0 && size_t(p.file) < files.size()) {
-        d.place = {files[size_t(p.file)], p.line, p.column};
-        d.sourceLine = lineOf(d.place);
-    }
-    const std::string& why = kernel->facts.whyNot;
-    const size_t end = why.find_first_of(",:");
-    d.message = "under path the result of " + why.substr(0, end) + " is used non-linearly: " +
-                (why.find(": ") == std::string::npos ? why : why.substr(why.find(": ") + 2));
-    d.id = "not-affine";
-    d.hint = "the shader waits for its rays then; only sums and products with what does not depend on light need no waiting";
-    rsl::complete(d);
-    diags.report(std::move(d));
+/// The warning of rsl/nonlinear.h with its line.
+void warnNonlinear(const rsl::CompiledShader& shader, const rsl::KernelOptions& options, Diagnostics& diags) {
+    auto d = rsl::nonlinearUse(shader.program(), shader.shader(), options);
+    if (!d) return;
+    if (d->place.file.empty()) d->place.file = shader.path();
+    d->sourceLine = lineOf(d->place);
+    rsl::complete(*d);
+    diags.report(std::move(*d));
 }
 
 } // namespace
@@ -83,9 +67,7 @@ void addCompile(CLI::App& app, int* status) {
         ->type_name("DIRS")
         ->allow_extra_args(false);
     c->add_option("-D", a->defines, "Define a macro")->type_name("NAME[=TEXT]")->allow_extra_args(false);
-    c->add_option("--dialect", a->dialect, "Predefine the macros of this renderer's compiler (3delight if none is named)")
-        ->check(CLI::IsMember({"prman", "3delight", "aqsis", "bmrt", "pixie", "entropy", "air"}, CLI::ignore_case))
-        ->type_name("NAME");
+    addDialect(*c, a->dialect);
     c->add_option("--lanes", a->lanes, "Width of the machine code")->check(CLI::IsMember({4, 8, 16}))->type_name("N");
     c->add_flag("--path", a->path, "As under Hider \"path\": diffuse, specular and phong are requests to the light transport");
     c->add_flag("--mixed", a->mixed, "Build V: uniform values in lanes, for batches of several instances");
@@ -111,11 +93,11 @@ void addCompile(CLI::App& app, int* status) {
         }
         settings.lint = a->warn;
         settings.dialect = a->dialect;
-        rsl::ShaderCompiler compiler(settings);
         std::vector<std::string> paths{"."};
         for (std::string& f : folders(a->searchPaths)) paths.push_back(std::move(f));
         for (std::string& f : environmentShaders()) paths.push_back(std::move(f));
         if (std::string s = shippedShaders(); !s.empty()) paths.push_back(s);
+        rsl::ShaderCompiler compiler(settings);
         rsl::KernelOptions options;
         options.lanes = a->lanes;
         options.path = a->path;
@@ -132,7 +114,7 @@ void addCompile(CLI::App& app, int* status) {
                 ok = !text.empty();
             }
             if (ok) ok = compiler.kernel(shader, options, diags) != nullptr;
-            if (ok && a->warn && shader->kind() == rsl::ShaderKind::Surface) warnNonlinear(compiler, *shader, options, diags);
+            if (ok && a->warn && shader->kind() == rsl::ShaderKind::Surface) warnNonlinear(*shader, options, diags);
             Json entry = {{"file", f}, {"ok", ok}};
             if (shader) entry["name"] = shader->name(), entry["type"] = toString(shader->kind());
             shaders.push_back(std::move(entry));

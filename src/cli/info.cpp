@@ -71,7 +71,7 @@ std::string valueText(const rsl::ParameterValue& v) {
 
 void addInfo(CLI::App& app, int* status) {
     struct Arguments {
-        std::string file, shadeop;
+        std::string file, shadeop, dialect;
         std::vector<std::string> searchPaths;
         bool json = false, markdown = false;
     };
@@ -86,6 +86,7 @@ void addInfo(CLI::App& app, int* status) {
     c->add_option("--searchpath", a->searchPaths, "Folders for shaders and #include, separated by :")
         ->type_name("DIRS")
         ->allow_extra_args(false);
+    addDialect(*c, a->dialect);
     c->callback([a, ops, status] {
         if (ops->count()) {
             if (a->markdown && a->shadeop.empty()) {
@@ -96,11 +97,13 @@ void addInfo(CLI::App& app, int* status) {
         }
         if (a->file.empty()) throw CLI::RequiredError("shader or --shadeops");
         Diagnostics diags(printer());
-        rsl::ShaderCompiler compiler;
+        rsl::ShaderCompiler::Settings settings;
+        settings.dialect = a->dialect;
         std::vector<std::string> paths{"."};
         for (std::string& f : folders(a->searchPaths)) paths.push_back(std::move(f));
         for (std::string& f : environmentShaders()) paths.push_back(std::move(f));
         if (std::string s = shippedShaders(); !s.empty()) paths.push_back(s);
+        rsl::ShaderCompiler compiler(settings);
         auto shader = compiler.load(a->file, paths, diags);
         *status = shader ? kDone : kDoneWithErrors;
         if (!shader) return;

@@ -138,6 +138,7 @@ int serve(LanguageServer& server) {
 void addLsp(CLI::App& app, int* status) {
     struct Arguments {
         std::vector<std::string> searchPaths, defines;
+        std::string dialect;
         bool stdio = true;
     };
     auto a = std::make_shared<Arguments>();
@@ -146,6 +147,7 @@ void addLsp(CLI::App& app, int* status) {
         ->type_name("DIRS")
         ->allow_extra_args(false);
     c->add_option("-D", a->defines, "Define a macro")->type_name("NAME[=TEXT]")->allow_extra_args(false);
+    addDialect(*c, a->dialect);
     c->add_flag("--stdio", a->stdio, "Standard input and output, as always; some editors insist on saying so");
     c->footer("docs/editors.md shows it in VS Code and Vim. Exit status 0 when the editor asked it to shut down, else 1.");
     c->callback([a, status] {
@@ -157,6 +159,7 @@ void addLsp(CLI::App& app, int* status) {
             size_t eq = d.find('=');
             options.defines.emplace_back(d.substr(0, eq), eq == std::string::npos ? "1" : d.substr(eq + 1));
         }
+        options.dialect = a->dialect;
         LanguageServer server(std::move(options));
         *status = serve(server);
     });

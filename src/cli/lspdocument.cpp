@@ -1,5 +1,7 @@
 #include "cli/lspdocument.h"
 #include "rsl/front/inspect.h"
+#include "rsl/front/messages.h"
+#include "rsl/nonlinear.h"
 #include "rsl/front/visit.h"
 #include <algorithm>
 #include <array>
@@ -10,6 +12,10 @@
 namespace alpenglow::cli {
 
 namespace {
+
+bool isMainFile(const rsl::Program& p, const rsl::Place& at) {
+    return at.file >= 0 && size_t(at.file) < p.files.size() && p.files[size_t(at.file)] == p.files[0];
+}
 
 bool isWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
@@ -74,6 +80,16 @@ void Document::analyse(const rsl::FrontOptions& options) {
     rsl::FrontOptions o = options;
     o.lint = true;
     auto program = rsl::inspectText(text_, path_, o, d);
+    // Of what compiles: where the path tracer would have to wait for light.
+    for (const auto& s : program->shaders) {
+        if (d.errors() > 0 || s->kind != rsl::ShaderKind::Surface || !isMainFile(*program, s->place)) continue;
+        if (auto warning = rsl::nonlinearUse(*program, *s, {})) {
+            const size_t n = size_t(std::max(warning->place.line, 1)) - 1;
+            warning->sourceLine = line(n);
+            rsl::complete(*warning);
+            d.report(std::move(*warning));
+        }
+    }
     diagnostics_ = d.all();
     // While a shader is being typed there are moments in which nothing can be read of it: the last reading serves then.
     const bool empty = program->shaders.empty() && program->functions.empty();

@@ -242,6 +242,7 @@ void addRender(CLI::App& app, int* status) {
         ->group("Machine");
     c->add_flag("--watch", a->watch, "Render again whenever the scene file changes")->group("Machine");
 
+    addDialect(*c, a->settings.dialect);
     c->add_option("--searchpath", a->searchPaths, "Folders for shaders, textures and archives, separated by :")
         ->type_name("DIRS")
         ->allow_extra_args(false)

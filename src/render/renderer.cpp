@@ -167,6 +167,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
     t.indirect = settings_.indirect;
     t.unbiased = settings_.unbiased;
     t.localRoulette = settings_.localRoulette;
+    t.dialect = settings_.dialect;
     t.shaderPaths = searchPaths(o, "shader", settings_.shaderPaths, true);
     t.texturePaths = searchPaths(o, "texture", settings_.texturePaths, false);
     t.outputs = plan.engineOutputs;

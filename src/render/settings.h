@@ -35,6 +35,7 @@ struct RenderSettings {
     std::optional<std::array<int, 2>> pixel; ///< --pixel: print radiances of this pixel instead of writing pictures
     std::optional<uint32_t> pixelSample;     ///< only this sample of it
     std::vector<std::string> shaderPaths, texturePaths; ///< after the scene's own search paths
+    std::string dialect;                                ///< FrontOptions::dialect of the shaders
     std::string scenePath;                              ///< where the scene lies: the last place but one to look in; "" = nowhere
     std::string shippedShaders;                         ///< the last place to look for shaders in
     bool allowExec = false, allowWrite = false;

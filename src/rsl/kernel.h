@@ -83,7 +83,7 @@ struct KernelOptions {
     std::vector<std::pair<std::string, std::string>> stringParameters;
     std::vector<std::string> varyingParameters; ///< parameters overridden by varying primitive variables
     std::vector<std::string> messages; ///< output parameters that lights ask for by surface(), sorted
-    std::vector<CoShader> coShaders; ///< in the order of their handles; only surface shaders have them
+    std::vector<CoShader> coShaders; ///< in the order of their handles
 };
 
 /// One compiled kernel. Immutable, shared between threads.

@@ -43,6 +43,7 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
         l.kind = LightKind::Ambient;
         l.samples = 0;
         l.instance = source.shader ? instance(*source.shader, rsl::ShaderKind::Light, d) : nullptr;
+        if (source.attributes) l.instance = withCoShaders(l.instance, *source.attributes, d);
         if (l.instance) {
             std::vector<std::string> extra, outputs;
             for (const char* name : {"__nondiffuse", "__nonspecular"})

@@ -117,7 +117,7 @@ bool WorldImpl::matrix(const std::string& from, const std::string& to, Matrix& o
     return known && knownTo;
 }
 
-InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind kind, Diagnostics& d) {
+InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind kind, Diagnostics& d, bool anyKind) {
     double begin = seconds();
     Diagnostics said; // the compiler knows no scene: messages without a place get the call's
     auto program = compiler_->load(call.name, settings_.shaderPaths, said);
@@ -131,7 +131,7 @@ InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind k
     facts_.compileSec += seconds() - begin;
     if (!program) return nullptr;
     if (auto same = rsl::ShaderCompiler::variant(program, kind)) program = same; // a class can be several kinds of shader
-    if (program->kind() != kind) {
+    if (program->kind() != kind && !anyKind) {
         d.report(Severity::Error, Rie::NoShader, call.place,
                  "shader \"" + call.name + "\" is a " + rsl::toString(program->kind()) + " shader, not a " + rsl::toString(kind) + " shader");
         return nullptr;
@@ -197,6 +197,25 @@ InstanceRef WorldImpl::builtin(const std::string& name, rsl::ShaderKind kind, Di
     return instance(call, kind, d);
 }
 
+InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const scene::Attributes& a, Diagnostics& d) {
+    if (!shader || !shader->program->program().handles || a.coshaders.empty()) return shader;
+    std::vector<const void*> key{shader.get()};
+    for (const auto& [handle, call] : a.coshaders) key.push_back(call.get());
+    InstanceRef& bound = withCoShaders_[key];
+    if (bound) return bound;
+    auto copy = std::make_shared<ShaderInstance>(*shader);
+    for (const auto& [handle, call] : a.coshaders) {
+        auto [i, fresh] = coShaders_.try_emplace(call.get());
+        if (fresh) i->second = instance(*call, rsl::ShaderKind::Surface, d, true);
+        if (!i->second) continue;
+        rsl::CoShader c = rsl::ShaderCompiler::coShader(i->second->program, handle);
+        for (const auto& [name, v] : i->second->parameters.numbers) c.numbers[name] = v;
+        for (const auto& [name, v] : i->second->parameters.strings) c.strings[name] = v;
+        copy->coShaders.push_back(std::move(c));
+    }
+    return bound = copy;
+}
+
 BoundKernel WorldImpl::kernel(const ShaderInstance& i, const std::vector<std::string>& outputs, const std::vector<std::string>& varying, bool mixed, bool path,
                               Diagnostics& d) {
     rsl::KernelOptions o;
@@ -254,6 +273,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     w->textures_ = std::make_unique<texture::TextureSystem>(d);
     rsl::ShaderCompiler::Settings cs;
     cs.cacheDirectory = settings.cacheDirectory;
+    cs.dialect = settings.dialect;
     w->compiler_ = std::make_shared<rsl::ShaderCompiler>(cs);
     if (const char* e = std::getenv("ALPENGLOW_SHADERS"))
         for (auto& path : splitSearchPath(e)) w->settings_.shaderPaths.push_back(path);
@@ -276,25 +296,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
         if (fresh && !(r->name == "null" && kind != rsl::ShaderKind::Surface)) i->second = w->instance(*r, kind, d);
         return i->second;
     };
-    // A surface that uses co-shaders, with those that its shape has.
-    std::map<std::vector<const void*>, InstanceRef> withCoShaders;
-    auto bindCoShaders = [&](const InstanceRef& surface, const scene::Attributes& a) -> InstanceRef {
-        if (!surface || !surface->program->program().handles || a.coshaders.empty()) return surface;
-        std::vector<const void*> key{surface.get()};
-        for (const auto& [handle, call] : a.coshaders) key.push_back(call.get());
-        InstanceRef& bound = withCoShaders[key];
-        if (bound) return bound;
-        auto copy = std::make_shared<ShaderInstance>(*surface);
-        for (const auto& [handle, call] : a.coshaders) {
-            InstanceRef i = instanceOf(call, rsl::ShaderKind::Surface);
-            if (!i) continue;
-            rsl::CoShader c = rsl::ShaderCompiler::coShader(i->program, handle);
-            for (const auto& [name, v] : i->parameters.numbers) c.numbers[name] = v;
-            for (const auto& [name, v] : i->parameters.strings) c.strings[name] = v;
-            copy->coShaders.push_back(std::move(c));
-        }
-        return bound = copy;
-    };
+    const auto bindCoShaders = [&](const InstanceRef& i, const scene::Attributes& a) { return w->withCoShaders(i, a, d); };
     InstanceRef fallback = w->builtin(path ? "matte" : "defaultsurface", rsl::ShaderKind::Surface, d);
     if (!fallback) {
         d.report(Severity::Severe, Rie::NoShader, {}, "the shaders that ship with the program were not found",
@@ -323,6 +325,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
         add(surface.get());
         add(a.displacement.get());
         add(a.atmosphere.get());
+        for (const auto& [handle, call] : a.coshaders) add(call.get());
         for (int l : a.lights) add(l);
         add(-1);
         add(a.areaLight);
@@ -341,11 +344,11 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
             SurfaceBinding b;
             b.surface = surface;
             b.explicitSurface = explicitSurface;
-            b.displacement = instanceOf(a.displacement, rsl::ShaderKind::Displacement);
+            b.displacement = bindCoShaders(instanceOf(a.displacement, rsl::ShaderKind::Displacement), a);
             // A class with surface and displacement is both.
             if (!a.displacement && explicitSurface && rsl::ShaderCompiler::variant(surface->program, rsl::ShaderKind::Displacement))
-                b.displacement = instanceOf(a.surface, rsl::ShaderKind::Displacement);
-            b.atmosphere = instanceOf(a.atmosphere, rsl::ShaderKind::Volume);
+                b.displacement = bindCoShaders(instanceOf(a.surface, rsl::ShaderKind::Displacement), a);
+            b.atmosphere = bindCoShaders(instanceOf(a.atmosphere, rsl::ShaderKind::Volume), a);
             std::vector<std::string> outputs{"Ci", "Oi"};
             for (const auto& n : settings.outputs) {
                 bool known = n == "P" || n == "N" || n == "Cs" || n == "Os" || n == "u" || n == "v" || n == "s" || n == "t" || n == "Ng" || n == "I" || n == "dPdu" || n == "dPdv";

@@ -61,7 +61,7 @@ struct ShaderInstance {
     std::string name;
     std::shared_ptr<const rsl::CompiledShader> program;
     shading::ParameterBlock parameters;
-    std::vector<rsl::CoShader> coShaders; ///< those that the shape of a surface shader has
+    std::vector<rsl::CoShader> coShaders; ///< those of the attributes under which the shader was named
     Matrix toCurrent;
     SourcePlace place;
 };
@@ -131,7 +131,9 @@ public:
     bool runImager(int, const float*, const float*, float*, float*, float*, float*, Diagnostics&) const override;
     bool matrix(const std::string& from, const std::string& to, Matrix& out) const override;
 
-    InstanceRef instance(const scene::ShaderCall&, rsl::ShaderKind, Diagnostics&);
+    InstanceRef instance(const scene::ShaderCall&, rsl::ShaderKind, Diagnostics&, bool anyKind = false);
+    /// A shader that uses co-shaders, with those that these attributes have; any other as it is.
+    InstanceRef withCoShaders(const InstanceRef&, const scene::Attributes&, Diagnostics&);
     InstanceRef builtin(const std::string& name, rsl::ShaderKind, Diagnostics&);
     BoundKernel kernel(const ShaderInstance&, const std::vector<std::string>& outputs, const std::vector<std::string>& varying, bool mixed,
                        bool path, Diagnostics&);
@@ -151,6 +153,8 @@ public:
 
     std::shared_ptr<const scene::Frame> frame_;
     Settings settings_;
+    std::map<const scene::ShaderCall*, InstanceRef> coShaders_;              ///< instances, one a request
+    std::map<std::vector<const void*>, InstanceRef> withCoShaders_;          ///< by shader, then the requests of its co-shaders
     Facts facts_;
     std::vector<geometry::ShapeRef> shapes_;
     std::vector<int> bindingOf_;               ///< by shape

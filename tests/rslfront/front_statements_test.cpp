@@ -13,7 +13,7 @@ const Case kStatements[] = {
     {"for (float i = 0; i < 3; i += 1) g = i;",
      "(block (declare (varying float i = 0)) (for - (less:bool i 3) (+= i 1) (= g i)))"},
     {"for (f = 0, g = 1; f < 3; f += 1, g += 2) h = f;",
-     "(block (= f 0) (for (= g 1) (less:bool f 3) (+= g 2) (block (= h f) (+= f 1))))"},
+     "(block (= f 0) (for (= g 1) (less:bool f 3) (then:float (+= f 1) (+= g 2)) (= h f)))"},
     {"while (1) while (1) break 2;", "(while (notequal:bool 1 0) (while (notequal:bool 1 0) (break 2)))"},
     {"while (f) { continue; }", "(while (notequal:bool f 0) (block (continue 1)))"},
     {"if (f > 1) g = 1; else g = 2;", "(if (greater:bool f 1) (= g 1) else (= g 2))"},

@@ -34,7 +34,8 @@ struct Symbol {
     Origin origin = Origin::Local;
     bool output = false;      ///< shader: AOV; function: by reference
     bool writable = true;     ///< globals: by shader kind (rsl.md section 8)
-    bool isConstant = false;
+    bool isConstant = false;  ///< `constant`: written where the shader begins, then never again
+    bool handle = false;      ///< of type `shader`: its value (of base String) is the name of a shader, no text
     bool resizable = false;   ///< `float x[]`, local or a parameter of a function: its length may change
     bool isExtern = false;    ///< only between parser and checker, which puts the outer variable in its place
     Place place;
@@ -69,6 +70,7 @@ struct Expr {
     Type type;
     bool varying = true;              ///< by declaration and operands; the IR infers more
     Place place;
+    bool handle = false;              ///< Cast to `shader`, and the literal null (a String): a handle, no text
     int height = 1;                   ///< of this tree; never above limits::kTreeHeight, so recursion over it is safe
     double number = 0;
     std::string text;                 ///< String; callee name before binding
@@ -111,6 +113,7 @@ struct Stmt {
 struct Function {
     std::string name;
     Type result;
+    bool handle = false; ///< the result is of type `shader`
     std::vector<Symbol*> parameters;
     StmtPtr body;
     std::vector<std::unique_ptr<Symbol>> symbols; ///< owns parameters and locals

@@ -8,30 +8,42 @@ namespace alpenglow::rsl::front {
 
 namespace {
 
-template <class View> std::vector<View> views(const Signature& s) {
-    std::vector<View> v;
-    for (const auto& p : s.parameters) v.push_back({p.type, p.output});
-    return v;
-}
-template <class View> std::vector<View> views(const Function& f) {
-    std::vector<View> v;
-    for (const Symbol* p : f.parameters) v.push_back({p->type, p->output});
-    return v;
-}
+std::string typeText(Type t, bool handle) { return handle ? "shader" + toString(t).substr(6) : toString(t); }
 
 std::string signatureText(const Function& f) {
-    std::string s = toString(f.result) + " " + f.name + "(";
+    std::string s = typeText(f.result, f.handle) + " " + f.name + "(";
     for (const Symbol* p : f.parameters)
-        s += (p == f.parameters[0] ? "" : ", ") + std::string(p->output ? "output " : "") + toString(p->type);
+        s += (p == f.parameters[0] ? "" : ", ") + std::string(p->output ? "output " : "") + typeText(p->type, p->handle);
     return s + ")";
 }
 
 } // namespace
 
+/// What the renderer's own functions take for handles stands in their texts; arrays and what is put out can be either.
+std::vector<Checker::ParameterView> Checker::views(const Signature& s, const Shadeop& op) {
+    std::vector<ParameterView> v;
+    for (const auto& p : s.parameters) {
+        const bool handle = p.name == "handle" && s.text.find("shader handle") != std::string::npos &&
+                            s.text.find("(string handle") == std::string::npos;
+        const bool either = p.output || p.type.base == Base::Void || p.type.array != 0 || op.section == "Arrays" || op.name == "isoutput";
+        v.push_back({p.type, p.output, either ? Handle::Either : handle ? Handle::Shader : Handle::Text});
+    }
+    return v;
+}
+
+std::vector<Checker::ParameterView> Checker::views(const Function& f) {
+    std::vector<ParameterView> v;
+    for (const Symbol* p : f.parameters) v.push_back({p->type, p->output, p->handle ? Handle::Shader : Handle::Text});
+    return v;
+}
+
 /// What it costs to give this argument to a parameter of that type; kNever if it cannot be.
-int Checker::argumentCost(Expr& argument, Type wanted, bool output, bool ignoreOutputs) {
+int Checker::argumentCost(Expr& argument, const ParameterView& parameter, bool ignoreOutputs) {
     const Info& info = infos_.at(&argument);
+    const Type wanted = parameter.type;
+    const bool output = parameter.output;
     if (info.any) return 0;
+    if (wanted.base == Base::String && !alike(info.handle, parameter.handle)) return kNever;
     if (output && !isVariable(argument) && !ignoreOutputs) return kNever;
     if (wanted.base == Base::Void) return info.listLength >= 0 ? kNever : 0; // any value
     if (wanted.array != 0) {
@@ -61,7 +73,7 @@ bool Checker::match(const std::vector<ParameterView>& parameters, bool repeats, 
     choice.cost = 0;
     size_t i = 0;
     for (; i < parameters.size(); ++i) {
-        const int c = argumentCost(*call.args[i], parameters[i].type, parameters[i].output, ignoreOutputs);
+        const int c = argumentCost(*call.args[i], parameters[i], ignoreOutputs);
         if (c >= kNever) return false;
         choice.cost += c;
     }
@@ -69,7 +81,7 @@ bool Checker::match(const std::vector<ParameterView>& parameters, bool repeats, 
         for (; i < n; ++i) {
             // A string where a number would repeat begins the pairs.
             if (pairs && call.args[i]->kind == ExprKind::String && parameters.back().type.base != Base::String) break;
-            const int c = argumentCost(*call.args[i], parameters.back().type, parameters.back().output, ignoreOutputs);
+            const int c = argumentCost(*call.args[i], parameters.back(), ignoreOutputs);
             if (c >= kNever) return false;
             choice.cost += c;
         }
@@ -84,6 +96,7 @@ bool Checker::match(const std::vector<ParameterView>& parameters, bool repeats, 
 void Checker::surveyCall(Expr& e, Info& info) {
     bool broken = false;
     for (auto& a : e.args) broken |= survey(*a).any;
+    if (e.text.empty()) { info.any = true; return; } // what is called was reported
     std::vector<std::string> candidates, notes;
     bool known = false, outputsOnly = false;
     const auto offer = [&](Choice choice, const std::vector<ParameterView>& parameters, bool repeats, bool pairs,
@@ -105,7 +118,7 @@ void Checker::surveyCall(Expr& e, Info& info) {
             c.function = f->second;
             c.nested = true;
             c.result = f->second->result;
-            offer(c, views<ParameterView>(*f->second), false, false, signatureText(*f->second));
+            offer(c, views(*f->second), false, false, signatureText(*f->second));
         }
     }
     if (info.choices.empty())
@@ -117,7 +130,7 @@ void Checker::surveyCall(Expr& e, Info& info) {
             c.result = f->result;
             // A shadeop written in RSL may call the shadeop of its own name with other arguments, not itself.
             if (unit_ != &main_ && checking_.count(f.get())) continue;
-            offer(c, views<ParameterView>(*f), false, false, signatureText(*f));
+            offer(c, views(*f), false, false, signatureText(*f));
         }
     const Shadeop* op = info.choices.empty() ? findShadeop(e.text) : nullptr;
     if (op)
@@ -126,11 +139,11 @@ void Checker::surveyCall(Expr& e, Info& info) {
             c.shadeop = op;
             c.signature = &s;
             c.result = s.result;
-            offer(c, views<ParameterView>(s), s.repeats, s.pairs, s.text);
+            offer(c, views(s, *op), s.repeats, s.pairs, s.text);
         }
     if (info.choices.empty()) {
         info.any = true;
-        if (broken) return; // what went wrong inside was reported
+        if (known && broken) return; // what went wrong inside was reported
         if (known) return noMatch(e, candidates, std::move(notes), outputsOnly);
         if (unit_->hides(e.text)) return;
         std::vector<std::string> names;
@@ -144,6 +157,12 @@ void Checker::surveyCall(Expr& e, Info& info) {
         sources_.error(e.place, "there is no function '" + e.text + "'", near.empty() ? "" : "did you mean '" + near + "'?");
         return;
     }
+    for (const Choice& c : info.choices)
+        if (c.result.base == Base::String) {
+            const bool fromArray = c.shadeop && c.shadeop->section == "Arrays" && !e.args.empty();
+            const bool handle = c.function ? c.function->handle : c.signature->text.compare(0, 6, "shader") == 0;
+            info.handle = fromArray ? infos_.at(e.args[0].get()).handle : handle ? Handle::Shader : Handle::Text;
+        }
     for (const Choice& c : info.choices) {
         if (c.result.array != 0) { info.array = c.result; continue; }
         int& cost = info.cost[int(c.result.base)];
@@ -192,7 +211,7 @@ void Checker::settleCall(ExprPtr& pointer, Type result) {
     if (!best) return; // an array where only single values are; reported by the caller's conversion
     const Choice choice = *best;
     std::vector<ParameterView> parameters =
-        choice.signature ? views<ParameterView>(*choice.signature) : views<ParameterView>(*choice.function);
+        choice.signature ? views(*choice.signature, *choice.shadeop) : views(*choice.function);
     for (size_t i = 0; i < choice.positional; ++i) {
         const ParameterView p = parameters[std::min(i, parameters.size() - 1)];
         ExprPtr& a = e.args[i];
@@ -208,7 +227,7 @@ void Checker::settleCall(ExprPtr& pointer, Type result) {
             settle(name, {Base::String, 0});
             a = std::move(name);
         } else {
-            settle(a, p.type);
+            settle(a, p.type, p.handle);
         }
     }
     settlePairs(e, choice.positional, choice.shadeop);
@@ -227,8 +246,17 @@ void Checker::settleCall(ExprPtr& pointer, Type result) {
     }
     if (e.function && varyingFunctions_.count(e.function)) {
         e.varying = true;
-        if (function_) varyingFunctions_.insert(function_);
+        readsPoint(e, "what '" + e.text + "' gives");
     }
+}
+
+/// What is the same for all points when the arguments are: whether a message was found, what a file or the frame says, a length, and
+/// a picture read where the arguments say. What an argument holds that is put out does not count.
+bool Checker::uniformResult(const Expr& e, const Choice& choice) const {
+    const Shadeop& op = *choice.shadeop;
+    if (op.name == "arraylength" || op.name == "capacity" || op.name == "textureinfo") return e.kind == ExprKind::ShadeopCall;
+    if (op.section == "Messages") return op.name != "gridmin" && op.name != "gridmax" && op.name != "rayinfo" && op.name != "getvar";
+    return (op.name == "texture" || op.name == "environment") && e.args.size() > 1;
 }
 
 void Checker::bindShadeop(Expr& e, const Choice& choice) {
@@ -244,6 +272,11 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
                            s->origin == Symbol::Origin::Local ? "declare it as " + toString(s->type.element()) + " " + s->name + "[]"
                                                               : "only local arrays and parameters of functions can change theirs");
     }
+    if (op.name == "push" && e.args.size() == 2 && e.args[0]->symbol && e.args[1]->type.base == Base::String) {
+        const Handle array = e.args[0]->symbol->handle ? Handle::Shader : Handle::Text;
+        if (const Info& value = infos_.at(e.args[1].get()); !alike(array, value.handle))
+            sources_.error(e.args[1]->place, "expected a " + named({Base::String, 0}, array) + ", not " + describe(*e.args[1]));
+    }
     if (kind_ && !(op.contexts & contextOf(*kind_))) {
         std::string where;
         for (int k = 0; k < 6; ++k)
@@ -252,11 +285,14 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
         sources_.error(e.place, "'" + op.name + "' cannot be used in a " + toString(*kind_) + " shader", "it can in: " + where);
         return; // its text would be wrong here line by line
     }
-    const bool pureMath =
-        op.lowering == Lowering::Runtime || op.lowering == Lowering::Special || op.name == "format" || op.name == "concat";
-    if (!pureMath) {
+    if (uniformResult(e, choice)) {
+        e.varying = false; // a length is that of all points
+        for (size_t i = 0; i < e.args.size() && op.section != "Arrays"; ++i)
+            if (!choice.signature->parameters[std::min(i, choice.signature->parameters.size() - 1)].output) e.varying |= e.args[i]->varying;
+    } else if (op.lowering != Lowering::Runtime && op.lowering != Lowering::Special && op.lowering != Lowering::Rsl &&
+               op.name != "format" && op.name != "concat") {
         e.varying = true;
-        if (function_) varyingFunctions_.insert(function_);
+        if (e.type.base != Base::Void) readsPoint(e, "what '" + op.name + "' gives");
     }
     if (op.lowering == Lowering::Unavailable && reportedUnavailable_.insert(&op).second)
         sources_.warning(e.place, "'" + op.name + "' is not yet available; " +
@@ -286,6 +322,10 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
         auto parameters = std::exchange(shaderParameters_, {});
         e.function = instance(*f, unit, rename, e.place);
         shaderParameters_ = std::move(parameters);
+        if (e.function && varyingFunctions_.count(e.function)) {
+            e.varying = true;
+            readsPoint(e, "what '" + op.name + "' gives");
+        }
         return;
     }
     sources_.error(e.place, "the text of '" + op.name + "' has no function for " + choice.signature->text);
@@ -319,7 +359,7 @@ void Checker::settlePairs(Expr& e, size_t positional, const Shadeop* op) {
             settleCheapest(value);
         } else if (optional->output) {
             pair.output = true;
-            const int cost = argumentCost(*value, optional->type, true, false);
+            const int cost = argumentCost(*value, {optional->type, true, Handle::Either}, false);
             const bool array = info.array.array && info.array.base == optional->type.base;
             if (cost >= kNever && !array) {
                 sources_.error(value->place, "\"" + pair.name + "\" gives a " + toString(optional->type) +

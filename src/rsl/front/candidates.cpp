@@ -18,10 +18,10 @@ std::string Checker::whyNot(const std::vector<ParameterView>& parameters, bool r
         if (extra && (!repeats || parameters.empty())) break;
         const ParameterView& p = extra ? parameters.back() : parameters[i];
         if (extra && pairs && call.args[i]->kind == ExprKind::String && p.type.base != Base::String) break;
-        if (argumentCost(*call.args[i], p.type, p.output, false) < kNever) continue;
+        if (argumentCost(*call.args[i], p, false) < kNever) continue;
         const std::string which = "argument " + std::to_string(i + 1);
         if (p.output && !isVariable(*call.args[i])) return which + " is an output and must be a variable";
-        return which + " is " + describe(*call.args[i]) + ", not " + toString(p.type) +
+        return which + " is " + describe(*call.args[i]) + ", not " + named(p.type, p.handle) +
                (p.output ? ", and what is put out is not converted" : "");
     }
     if (i == n) return "";

@@ -12,10 +12,10 @@ void Checker::whole(ExprPtr& e) {
     infos_.clear();
 }
 
-void Checker::valueOf(ExprPtr& e, Type t) {
+void Checker::valueOf(ExprPtr& e, Type t, bool handle) {
     infos_.clear();
     survey(*e);
-    settle(e, t);
+    settle(e, t, handle ? Handle::Shader : Handle::Text);
     infos_.clear();
 }
 
@@ -44,7 +44,7 @@ void Checker::initialise(Symbol& s, ExprPtr& value) {
     const bool scalar = s.type.array > 0 && info.listLength < 0 && info.array.array == 0 && !info.any;
     if (scalar) {
         // float a[42] = 0: every element.
-        settle(value, s.type.element());
+        settle(value, s.type.element(), s.handle ? Handle::Shader : Handle::Text);
         auto list = std::make_unique<Expr>();
         list->kind = ExprKind::ArrayList;
         list->place = value->place;
@@ -58,7 +58,7 @@ void Checker::initialise(Symbol& s, ExprPtr& value) {
         list->args.push_back(std::move(value));
         value = std::move(list);
     } else {
-        settle(value, s.type);
+        settle(value, s.type, s.handle ? Handle::Shader : Handle::Text);
     }
     infos_.clear();
     if (sources_.errors() == errors) assignedToUniform(s, *value);
@@ -151,7 +151,7 @@ void Checker::check(StmtPtr& s) {
         } else if (!s->value) {
             sources_.error(s->place, "function '" + function_->name + "' must return a " + toString(function_->result));
         } else {
-            valueOf(s->value, function_->result);
+            valueOf(s->value, function_->result, function_->handle);
         }
         break;
     case StmtKind::Illuminance:
@@ -169,8 +169,9 @@ void Checker::checkLight(Stmt& s) {
         {StmtKind::Gather, {"gather", kSurface | kVolume | kLight}}};
     const auto [word, contexts] = kRules.at(s.kind);
     const std::string name = word;
-    if (kind_ && !(contexts & contextOf(*kind_)))
-        sources_.error(s.place, "'" + name + "' cannot be used in a " + toString(*kind_) + " shader");
+    const bool foreign = kind_ && !(contexts & contextOf(*kind_));
+    if (foreign) sources_.error(s.place, "'" + name + "' cannot be used in a " + toString(*kind_) + " shader");
+    const int errors = sources_.errors();
     std::vector<ExprPtr> given = std::move(s.exprs);
     s.exprs.clear();
     size_t next = 0;
@@ -179,7 +180,9 @@ void Checker::checkLight(Stmt& s) {
     const auto isString = [&](size_t i) {
         return i < given.size() && infos_.at(given[i].get()).cost[int(Base::String)] < kNever;
     };
+    bool fits = true;
     const auto want = [&](std::initializer_list<Base> types) {
+        if (!fits) return;
         for (Base b : types) {
             if (next < given.size()) {
                 settle(given[next], {b, 0});
@@ -195,7 +198,12 @@ void Checker::checkLight(Stmt& s) {
     }
     size_t positions = 0;
     while (next + positions < given.size() && !isString(next + positions)) ++positions;
-    const auto wrong = [&](const char* forms) { sources_.error(s.place, "wrong arguments of '" + name + "'", forms); };
+    const bool pairs = s.kind == StmtKind::Illuminance || s.kind == StmtKind::Gather;
+    const auto wrong = [&](const char* forms) {
+        sources_.error(s.place, "wrong arguments of '" + name + "'", forms);
+        fits = false; // one message for all of them
+    };
+    const bool rest = !pairs && next + positions < given.size();
     switch (s.kind) {
     case StmtKind::Illuminance:
         if (positions != 1 && positions != 3) wrong("illuminance([category,] P [, axis, angle] [, pairs])");
@@ -203,12 +211,12 @@ void Checker::checkLight(Stmt& s) {
                             : std::initializer_list<Base>{Base::Point, Base::Vector, Base::Float});
         break;
     case StmtKind::Illuminate:
-        if (positions != 1 && positions != 3) wrong("illuminate(from [, axis, angle])");
+        if (rest || (positions != 1 && positions != 3)) wrong("illuminate(from [, axis, angle])");
         want(positions == 1 ? std::initializer_list<Base>{Base::Point}
                             : std::initializer_list<Base>{Base::Point, Base::Vector, Base::Float});
         break;
     case StmtKind::Solar:
-        if (positions != 0 && positions != 2) wrong("solar() or solar(axis, angle)");
+        if (rest || (positions != 0 && positions != 2)) wrong("solar() or solar(axis, angle)");
         if (positions) want({Base::Vector, Base::Float});
         break;
     default:
@@ -216,7 +224,7 @@ void Checker::checkLight(Stmt& s) {
         want({Base::Point, Base::Vector, Base::Float, Base::Float});
         break;
     }
-    next = positions + (s.category ? 1 : 0);
+    next = fits ? positions + (s.category ? 1 : 0) : given.size();
     // Pairs: the value behind "light:x" or "surface:x" is a variable to be filled; "send:..." goes the other way.
     while (next < given.size()) {
         ExprPtr token = std::move(given[next++]);
@@ -242,11 +250,12 @@ void Checker::checkLight(Stmt& s) {
         s.pairs.push_back(std::move(pair));
     }
     infos_.clear();
-    if (s.kind == StmtKind::Gather)
+    if (s.kind == StmtKind::Gather && sources_.errors() == errors)
         sources_.warning(s.place, "'gather' is not yet available; its statement is not run");
     if (s.kind == StmtKind::Illuminance && inIlluminance_)
         sources_.error(s.place, "'illuminance' inside 'illuminance' is not allowed");
     const bool outer = std::exchange(inIlluminance_, inIlluminance_ || s.kind == StmtKind::Illuminance);
+    const bool outerForeign = std::exchange(foreignLight_, foreignLight_ || foreign);
     scopes_.emplace_back();
     if (s.kind == StmtKind::Illuminance || s.kind == StmtKind::Gather) checkLoopBody(s);
     else {
@@ -256,6 +265,7 @@ void Checker::checkLight(Stmt& s) {
         loops_ = loops;
     }
     scopes_.pop_back();
+    foreignLight_ = outerForeign;
     inIlluminance_ = outer;
     if (s.elseBody) check(s.elseBody);
 }

@@ -93,6 +93,7 @@ void Checker::checkBody(Function& f) {
     scopes_.emplace_back();
     for (Symbol* p : f.parameters) {
         if (p->storage == Storage::Unspecified) p->storage = p->type.base == Base::String ? Storage::Uniform : Storage::Varying;
+        if (p->name == "," || p->name == ")" || p->name == ";") continue; // it has no name
         if (!scopes_.back().names.emplace(p->name, p).second)
             sources_.error(p->place, "there are two parameters called '" + p->name + "'");
     }
@@ -169,9 +170,10 @@ void Checker::bindExtern(Symbol& declared) {
     } else if (outer->type.base != Base::Void) {
         Type a = outer->type, b = declared.type;
         // Old shaders type everything point.
-        const bool same = (a.base == b.base || (a.isPointLike() && b.isPointLike())) && (a.array == b.array || b.array == -1);
+        const bool same = outer->handle == declared.handle && (a.base == b.base || (a.isPointLike() && b.isPointLike())) && (a.array == b.array || b.array == -1);
         if (!same) {
-            sources_.error(declared.place, "'" + declared.name + "' is " + toString(a) + " outside, not " + toString(b));
+            sources_.error(declared.place, "'" + declared.name + "' is " + named(a, outer->handle ? Handle::Shader : Handle::Text) + " outside, not " +
+                                               named(b, declared.handle ? Handle::Shader : Handle::Text));
         }
     }
     scopes_.back().names[declared.name] = outer;

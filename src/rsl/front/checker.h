@@ -27,16 +27,22 @@ private:
         int cost = 0;
         size_t positional = 0;        ///< arguments before the token/value pairs
     };
+    /// A string is a text or, of type `shader`, a handle; the two do not mix.
+    enum class Handle : uint8_t { Text, Shader, Either };
+    static bool alike(Handle a, Handle b) { return a == b || a == Handle::Either || b == Handle::Either; }
     struct Info {
         std::array<int, kBases> cost;
         Type array;          ///< the expression is an array of this type
         int listLength = -1; ///< it is written {a, b}: an array of whatever its elements become
         bool any = false;    ///< erroneous, and reported: fits everywhere
+        Handle handle = Handle::Text; ///< what the string is, if it is one
         bool channel = false;///< name[channel] of a string that is no array
         std::vector<Choice> choices;
         Info() { cost.fill(kNever); }
     };
-    struct ParameterView { Type type; bool output; };
+    struct ParameterView { Type type; bool output; Handle handle = Handle::Text; };
+    static std::vector<ParameterView> views(const Signature&, const Shadeop&);
+    static std::vector<ParameterView> views(const Function&);
     struct Scope {
         std::unordered_map<std::string, Symbol*> names;
         std::unordered_multimap<std::string, Function*> functions;
@@ -62,7 +68,7 @@ private:
     void checkLight(Stmt&);
     void checkLoopBody(Stmt&);
     void condition(ExprPtr&);
-    void valueOf(ExprPtr&, Type);
+    void valueOf(ExprPtr&, Type, bool handle = false);
     void whole(ExprPtr&);
     void initialise(Symbol&, ExprPtr&);
     void assignedToUniform(const Symbol&, const Expr&);
@@ -79,31 +85,36 @@ private:
     void surveyCall(Expr&, Info&);
     void surveyMember(Expr&, Info&);
     bool match(const std::vector<ParameterView>&, bool repeats, bool pairs, Expr& call, Choice&, bool ignoreOutputs);
-    int argumentCost(Expr& argument, Type wanted, bool output, bool ignoreOutputs);
+    int argumentCost(Expr& argument, const ParameterView& wanted, bool ignoreOutputs);
     void preferArray(const Expr& call);
     void noMatch(Expr& call, const std::vector<std::string>& candidates, std::vector<std::string> notes, bool outputsOnly);
     /// Why these parameters do not fit the call, in words; "" when they do.
     std::string whyNot(const std::vector<ParameterView>&, bool repeats, bool pairs, Expr& call);
     std::string describe(Expr&);
+    static std::string componentHint(Base tuple);
+    static std::string named(Type, Handle); ///< "shader" for a handle
     static Base cheapest(const Info&);
     static int costTo(const Info&, Base to);
     bool isVariable(const Expr&) const;
     void poison(Expr&, Info&);
 
     // settle (settle.cpp, calls.cpp)
-    void settle(ExprPtr&, Type);             ///< to this type, with conversions
+    void settle(ExprPtr&, Type, Handle = Handle::Text); ///< to this type, with conversions
     void settleCheapest(ExprPtr&);
     void settleAs(ExprPtr&, Base);           ///< exactly this type, which must have a finite cost
     void settleCondition(ExprPtr&);
-    void settleArray(ExprPtr&, Type);
+    void settleArray(ExprPtr&, Type, Handle = Handle::Either);
     void settleVariable(ExprPtr&);           ///< an output argument: no conversion
     void settleBinary(ExprPtr&, Base);
     void settleAssign(ExprPtr&);
     void settleCall(ExprPtr&, Type result);
     void settlePairs(Expr&, size_t positional, const Shadeop*);
     void bindShadeop(Expr&, const Choice&);
+    bool uniformResult(const Expr&, const Choice&) const;
     void convert(ExprPtr&, Type);
     void written(const Expr& variable);
+    void readsPoint(const Expr&, const std::string& what);
+    bool inConstruct() const;
     void finish(Expr&);
 
     SourceSet& sources_;
@@ -125,6 +136,7 @@ private:
     int loops_ = 0;
     int instanceDepth_ = 0;
     bool inIlluminance_ = false;
+    bool foreignLight_ = false; ///< in the block of a light that stands in another shader, which was reported
     std::unordered_map<const Expr*, Info> infos_;
 };
 

@@ -196,6 +196,10 @@ private:
                 if (!others.empty())
                     sources_.error(others[0]->place, "the parameters of a method 'light' with illuminate() or solar() are L, Cl and Ol");
                 f->parameters.clear();
+                if (others.empty()) continue;
+                auto locals = make(StmtKind::Declare, others[0]->place); // that the body uses them is no other fault
+                for (Symbol* p : others) locals->declarators.push_back({p, nullptr});
+                f->body->body.insert(f->body->body.begin(), std::move(locals));
             }
             auto e = node(ExprKind::ShadeopCall, place);
             e->text = "light";

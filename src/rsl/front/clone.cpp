@@ -17,6 +17,7 @@ struct Cloner {
         c->op = e.op;
         c->type = e.type;
         c->varying = e.varying;
+        c->handle = e.handle;
         c->place = e.place;
         c->height = e.height;
         c->number = e.number;
@@ -53,6 +54,7 @@ struct Cloner {
         auto c = std::make_unique<Function>();
         c->name = f.name;
         c->result = f.result;
+        c->handle = f.handle;
         c->place = f.place;
         for (const auto& s : f.symbols) {
             c->symbols.push_back(std::make_unique<Symbol>(*s));

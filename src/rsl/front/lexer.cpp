@@ -54,8 +54,10 @@ void Lexer::skipBlank(Token& t) {
             const Place begin{placeFile_, line_ + delta_, int(pos_ - lineBegin_) + 1};
             for (pos_ += 2; at(pos_) >= 0 && !(at(pos_) == '*' && at(pos_ + 1) == '/'); ++pos_)
                 if (at(pos_) == '\n') { ++line_; lineBegin_ = pos_ + 1; }
-            if (at(pos_) < 0) sources_.error(begin, "this comment does not end");
-            else pos_ += 2;
+            if (at(pos_) < 0) {
+                sources_.error(begin, "this comment does not end");
+                sources_.cut = true;
+            } else pos_ += 2;
             t.space = true;
         } else {
             return;

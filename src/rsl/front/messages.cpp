@@ -74,7 +74,6 @@ constexpr MessageKind kKinds[] = {
     {"no-default", "parameter '*' has no default value; it is zero unless set"},
     {"extern-value", "an extern variable has its value already and takes no other here"},
     {"loop-levels", "the number of loops to leave must be a whole number from 1"},
-    {"for-steps", "several steps in 'for' cannot be combined with 'continue'"},
     {"not-available", "* not yet available*"},
     // structures and shader objects
     {"struct-recursive", "a structure cannot contain itself"},
@@ -91,6 +90,7 @@ constexpr MessageKind kKinds[] = {
     {"struct-use", "an array in the result of a call must be stored in a variable first"},
     {"struct-value", "expected a value of *"},
     {"struct-value", "expected a structure"},
+    {"struct-value", "expected structure '*', not *"},
     {"struct-value", "structure '*' has * members, not *"},
     {"no-such-member", "* has no member '*'"},
     {"two-members", "there are two members called '*'"},
@@ -161,6 +161,8 @@ constexpr MessageKind kKinds[] = {
     {"read-only", "'*' cannot be written"},
     {"read-only-copy", "'*' is read-only*"},
     {"not-output", "parameter '*' is not output; *"},
+    {"constant-written", "'*' is constant and is given another value here"},
+    {"construct-varying", "* differs from point to point, and construct() runs once for the whole shader"},
     // uniform and varying
     {"varying-to-uniform", "a varying value is given to the uniform variable '*'*"},
     {"uniform-in-varying", "the uniform variable '*' is changed where only some points come*"},
@@ -175,7 +177,6 @@ constexpr MessageKind kKinds[] = {
     {"zero-derivative", "a derivative of third order is taken as zero"},
     {"spline-basis", "the basis of this spline is not known at compile time*"},
     {"spline-points", "a spline needs at least four control points*"},
-    {"light-category", "the category of this illuminance is not known at compile time*"},
     {"shader-too-large", "*more than * instructions*"},
 };
 

@@ -54,12 +54,16 @@ Place Parser::endOfLast() const {
 
 void Parser::fail(Place p, std::string message, std::string hint) {
     // One message for one place: what follows while we are still there is a consequence.
-    if (lastError_ != at_) sources_.error(p, std::move(message), std::move(hint));
+    if (lastError_ != at_ && !atCut()) sources_.error(p, std::move(message), std::move(hint));
     lastError_ = at_;
     throw SyntaxError{};
 }
 
 void Parser::failHere(const std::string& expected) {
+    if (peek().kind == Tok::Invalid && peek().text.empty()) { // reported where it was made
+        lastError_ = at_;
+        throw SyntaxError{};
+    }
     if (peek().kind == Tok::Invalid)
         fail(peek().place,
              peek().text[0] == '"' ? "this string does not end on its line" : "the character " + shown() + " means nothing here");
@@ -75,7 +79,7 @@ void Parser::expectSemicolon(const char* after) {
     const bool newLine = peek().lineStart || at("}") || peek().kind == Tok::End;
     if (!newLine || peek().kind == Tok::Invalid) failHere(std::string("expected ';' after ") + after);
     // It was forgotten at the end of a line: say so there and go on as if it stood there.
-    sources_.error(endOfLast(), std::string("expected ';' after ") + after);
+    if (!atCut()) sources_.error(endOfLast(), std::string("expected ';' after ") + after);
 }
 
 /// At an opening bracket: over everything up to the one that closes it.
@@ -148,6 +152,7 @@ const Token& Parser::takeName() {
 
 Base Parser::takeBase() {
     const std::string name(take().text);
+    handle_ = name == "shader" && !structs_.count(name);
     if (const auto base = baseNamed(name)) return *base;
     if (const auto s = structs_.find(name); s != structs_.end()) return structBase(size_t(s->second));
     return Base::String; // a handle of a shader is its name
@@ -213,6 +218,7 @@ void Parser::topLevel() {
     const Specifiers s = specifiers();
     const bool typed = atTypeName();
     Type type;
+    handle_ = false;
     if (typed) {
         type.base = takeBase();
         type = dimensions(type);
@@ -223,7 +229,7 @@ void Parser::topLevel() {
         fail(peek().place, "expected a shader or a function before " + shown(),
              near.empty() || typed ? "" : "did you mean '" + near + "'?");
     }
-    auto f = function(s, type, typed);
+    auto f = function(ofType(s), type, typed);
     if (!f) return;
     // Defined again, as when a file is included twice, or when a shader has its own version of what a header gave: the last counts.
     for (auto& old : unit_.functions) {
@@ -255,11 +261,12 @@ void Parser::shader(ShaderKind kind) {
 }
 
 /// At the name. The body is read; a prototype without one gives nothing.
-std::unique_ptr<Function> Parser::function(const Specifiers&, Type type, bool typed) {
+std::unique_ptr<Function> Parser::function(const Specifiers& s, Type type, bool typed) {
     auto f = std::make_unique<Function>();
     f->place = peek().place;
     f->name = std::string(take().text);
     f->result = type;
+    f->handle = s.handle;
     const Owner outer = owner_;
     const bool outerReturns = returnsValue_;
     const auto outerWords = std::exchange(typeWords_, {});
@@ -300,7 +307,10 @@ Parser::Specifiers Parser::specifiers() {
         // Words of later versions: only where a type or another specifier follows are they more than a name.
         else if ((at("constant") || at("const") || at("public")) &&
                  (atTypeName(1) || peek(1).is("uniform") || peek(1).is("varying") || peek(1).is("output"))) {
-            if (at("constant")) s.storage = Storage::Uniform;
+            if (at("constant")) {
+                s.storage = Storage::Uniform;
+                s.isConstant = true;
+            }
             take();
         } else return s;
     }
@@ -363,6 +373,8 @@ Symbol* Parser::declare(Owner owner, const Token& name, Type type, const Specifi
     symbol->storage = s.storage;
     symbol->output = s.output;
     symbol->isExtern = s.isExtern;
+    symbol->isConstant = s.isConstant;
+    symbol->handle = s.handle;
     symbol->place = name.place;
     owner.symbols->push_back(std::move(symbol));
     return owner.symbols->back().get();
@@ -387,8 +399,9 @@ void Parser::parameters(Owner owner, std::vector<ShaderParameter>* shader, std::
                                   ((at("constant") || at("const") || at("public")) && atTypeName(1));
             if (newGroup) {
                 group = specifiers();
-                if (atTypeName()) base = takeBase();
-                else failHere("expected a type");
+                if (!atTypeName()) failHere("expected a type");
+                base = takeBase();
+                group.handle = handle_;
             }
             if (newGroup) space = declaredSpace(base.value_or(Base::Void));
             if (!base && before && *before != Base::Void && atName() && (peek(1).is("=") || peek(1).is(";") || peek(1).is(","))) {
@@ -399,7 +412,7 @@ void Parser::parameters(Owner owner, std::vector<ShaderParameter>* shader, std::
             if (!base) failHere("expected the type of a parameter");
             if (*base == Base::Void) {
                 if (at(")")) continue; // (void), as in C
-                fail(peek().place, "a parameter cannot be void");
+                sources_.error(peek().place, "a parameter cannot be void"); // calls with a value for it are no errors
             }
             Type type = dimensions({*base, 0});
             if (function && (at(",") || at(";") || at(")"))) { // of a prototype: the name may be missing
@@ -417,7 +430,7 @@ void Parser::parameters(Owner owner, std::vector<ShaderParameter>* shader, std::
                 ExprPtr value = inSpace(at("{") ? arrayList() : assignment(), *base, space.get());
                 if (shader) shader->back().defaultValue = std::move(value);
                 else sources_.warning(value->place, "parameters of functions have no default values; this one is ignored");
-            } else if (shader && !isStruct(type) && symbol->type.array >= 0) {
+            } else if (shader && !isStruct(type) && type.base != Base::Void && symbol->type.array >= 0) {
                 sources_.warning(symbol->place, "parameter '" + symbol->name + "' has no default value; it is zero unless set");
             }
             if (at(")") || at(";") || at(",")) continue;
@@ -441,6 +454,7 @@ bool Parser::functionFollows() const {
     if (peek().kind != Tok::Identifier || !peek(1).is("(")) return false;
     if (peek(2).is(")")) return peek(3).is("{");
     if (peek(2).is("uniform") || peek(2).is("varying") || peek(2).is("output")) return true;
+    if (atTypeName(2) && (peek(3).is(")") || peek(3).is(",") || peek(3).is(";"))) return true; // a parameter without a name
     return atTypeName(2) && (peek(3).kind == Tok::Identifier || peek(3).is("[")) && !peek(4).is("(");
 }
 

@@ -42,7 +42,8 @@ private:
         std::vector<std::unique_ptr<Function>>* nested = nullptr;
     };
     struct Specifiers {
-        bool output = false, isExtern = false, any = false;
+        bool output = false, isExtern = false, isConstant = false, any = false;
+        bool handle = false; ///< the type is `shader`
         Storage storage = Storage::Unspecified;
         Place place;
     };
@@ -57,13 +58,15 @@ private:
     [[noreturn]] void fail(Place, std::string message, std::string hint = {});
     [[noreturn]] void failHere(const std::string& expected);
     Place endOfLast() const;
+    bool atCut() const { return sources_.cut && peek().kind == Tok::End; } ///< the rest is missing, as was reported
     void skipBalanced();
     void recover();
     void skippedFrom(size_t begin); ///< the tokens from there to here were not understood
     bool atTypeName(size_t k = 0) const;
     bool atName() const;        ///< of a variable to be declared; old shaders call theirs vector, normal, matrix
     const Token& takeName();
-    Base takeBase();
+    Base takeBase();                          ///< sets handle_
+    Specifiers ofType(Specifiers s) const { s.handle = handle_; return s; } ///< with what takeBase() found
     std::string shown() const;
 
     // declarations (parser.cpp)
@@ -130,6 +133,7 @@ private:
     bool tooDeep_ = false;
     Owner owner_;                 ///< of the function or shader being read
     std::unordered_set<std::string_view> typeWords_; ///< variables of it called like the types that came later
+    bool handle_ = false;         ///< the last type taken was `shader`
     bool returnsValue_ = false;   ///< a `return expression` was seen in it
     std::unordered_map<std::string, int> structs_; ///< index in Unit::structs
     std::unordered_set<std::string> told_;    ///< what was reported as not yet available

@@ -137,6 +137,7 @@ ExprPtr Parser::castExpression() {
     Depth depth(*this);
     auto e = node(ExprKind::Cast, peek().place);
     e->type.base = takeBase();
+    e->handle = handle_;
     if (e->type.base == Base::Void) fail(e->place, "'void' is not the type of a value");
     if (at("[") && peek(1).is("]")) { take(); take(); e->type.array = -1; }
     if (peek().kind == Tok::String && e->type.base != Base::String) {
@@ -175,7 +176,7 @@ ExprPtr Parser::postfix() {
             }
             e = std::move(member);
         } else if (atStep(0) && (e->kind == ExprKind::Variable || e->kind == ExprKind::Index) &&
-                   (peek(2).is(")") || peek(2).is(";") || peek(2).is("]") || peek(2).is(",") || peek(2).is("}"))) {
+                   (peek(2).kind == Tok::End || (peek(2).kind == Tok::Punct && !peek(2).is("(") && !peek(2).is("!") && !peek(2).is("{")))) {
             const Token& sign = take();
             take();
             // The value is the one before: (i += 1) - 1.
@@ -258,6 +259,7 @@ ExprPtr Parser::parenthesis() {
                          "write " + type + "(...) or " + type + " x");
         ExprPtr e = node(ExprKind::Cast, place);
         e->type.base = takeBase();
+        e->handle = handle_;
         take();
         adopt(*e, unary());
         return e;

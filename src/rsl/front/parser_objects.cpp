@@ -14,14 +14,18 @@ void Parser::structure() {
     StructType type;
     type.name = std::string(name.text);
     type.place = name.place;
+    const int errors = sources_.errors();
     while (!accept("}")) {
         if (peek().kind == Tok::End) failHere("expected '}' of structure '" + type.name + "'");
         const size_t before = at_;
         try {
             if (accept(";") || accept(",")) continue;
             const Specifiers s = specifiers();
+            if (at(type.name) && !structs_.count(type.name) && peek(1).kind == Tok::Identifier)
+                fail(peek().place, "a structure cannot contain itself");
             if (!atTypeName()) failHere("expected the type of a member");
             const Base base = takeBase();
+            const bool handle = handle_;
             if (base == Base::Void) fail(s.place, "a member cannot be void");
             const Type group = dimensions({base, 0});
             do {
@@ -30,6 +34,7 @@ void Parser::structure() {
                 m.place = peek().place;
                 m.name = std::string(take().text);
                 m.type = dimensions(group);
+                m.handle = handle;
                 m.storage = s.storage;
                 if (accept("=")) m.init = at("{") ? arrayList() : assignment();
                 for (const StructMember& other : type.members)
@@ -45,7 +50,7 @@ void Parser::structure() {
         }
     }
     accept(";");
-    if (type.members.empty()) sources_.error(type.place, "structure '" + type.name + "' has no members");
+    if (type.members.empty() && sources_.errors() == errors) sources_.error(type.place, "structure '" + type.name + "' has no members");
     if (unit_.structs.size() >= size_t(limits::kStructs)) {
         sources_.error(type.place, "a shader has at most " + std::to_string(limits::kStructs) + " structures");
         unit_.incomplete = true;

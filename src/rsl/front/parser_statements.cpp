@@ -20,7 +20,7 @@ StmtPtr Parser::block() {
     expect("{", "");
     statements(*b);
     if (!accept("}")) {
-        if (lastError_ != at_) sources_.error(peek().place, "expected '}' before the end of the file",
+        if (lastError_ != at_ && !atCut()) sources_.error(peek().place, "expected '}' before the end of the file",
                                               "the block began at line " + std::to_string(b->place.line));
         lastError_ = at_;
         unit_.incomplete = true;
@@ -102,7 +102,7 @@ StmtPtr Parser::statementOnce() {
         return declaration();
     if (atTypeName()) {
         const Token& n = peek(1);
-        if (n.is("[") || w == "void") return declaration();
+        if (n.is("[") || n.is("=") || n.is(";") || n.is(",") || w == "void") return declaration();
         const bool spaced = n.kind == Tok::String && peek(2).kind == Tok::Identifier && w != "string" &&
                             (peek(3).is("=") || peek(3).is(";") || peek(3).is(","));
         ++at_;
@@ -148,9 +148,10 @@ StmtPtr Parser::effects() {
 
 StmtPtr Parser::declaration() {
     auto s = make(StmtKind::Declare, peek().place);
-    const Specifiers spec = specifiers();
+    Specifiers spec = specifiers();
     if (!atTypeName()) failHere("expected a type");
     Type type{takeBase(), 0};
+    spec.handle = handle_;
     const ExprPtr space = declaredSpace(type.base);
     type = dimensions(type);
     if (functionFollows() || (type.base == Base::Void && peek(1).is("("))) {
@@ -187,7 +188,10 @@ StmtPtr Parser::declaration() {
 
 StmtPtr Parser::forLoop() {
     const Place place = take().place;
-    expect("(", "after 'for'");
+    if (!accept("(")) {
+        if (peek().kind == Tok::End || at("{")) failHere("expected '(' after 'for'");
+        sources_.error(peek().place, "expected '(' after 'for' before " + shown()); // and on as if it stood there
+    }
     auto outer = make(StmtKind::Block, place);
     auto loop = make(StmtKind::For, place);
     if (atTypeName() || at("uniform") || at("varying")) {
@@ -202,31 +206,19 @@ StmtPtr Parser::forLoop() {
     }
     if (!at(";")) loop->condition = expression();
     expect(";", "after the condition of 'for'");
-    std::vector<ExprPtr> steps;
     while (!at(")")) {
-        steps.push_back(effect());
+        auto step = effect();
+        if (loop->step) { // several, one after the other
+            auto all = node(ExprKind::Sequence, step->place);
+            adopt(*all, std::move(loop->step));
+            adopt(*all, std::move(step));
+            step = std::move(all);
+        }
+        loop->step = std::move(step);
         if (!accept(",")) break;
     }
     expect(")", "after the step of 'for'");
     auto body = statement();
-    if (!steps.empty()) {
-        loop->step = std::move(steps.back());
-        steps.pop_back();
-    }
-    if (!steps.empty()) {
-        // Steps before the last go to the end of the body; `continue` would jump over them.
-        std::function<bool(const Stmt&)> jumps = [&](const Stmt& x) {
-            if (x.kind == StmtKind::Continue) return true;
-            for (const auto& b : x.body)
-                if (b && jumps(*b)) return true;
-            return x.elseBody && jumps(*x.elseBody);
-        };
-        if (body && jumps(*body)) sources_.error(steps[0]->place, "several steps in 'for' cannot be combined with 'continue'");
-        auto b = make(StmtKind::Block, place);
-        if (body) b->body.push_back(std::move(body));
-        for (auto& e : steps) b->body.push_back(expressionStatement(std::move(e)));
-        body = std::move(b);
-    }
     if (!body) body = make(StmtKind::Block, place);
     loop->body.push_back(std::move(body));
     if (outer->body.empty()) return loop;

@@ -145,6 +145,7 @@ private:
         sources_.error(last_, "macros expand to more than " + std::to_string(limits::kMacroTokens) + " tokens");
         stopped_ = true;
         out_.incomplete = true;
+        sources_.cut = true;
     }
     bool nextIsOpen() {
         while (!frames_.empty()) {
@@ -195,6 +196,7 @@ private:
             Token t = read();
             if (t.kind == Tok::End) {
                 sources_.error(call.place, "the call of macro '" + std::string(m.name) + "' has no closing ')'");
+                sources_.cut = true;
                 return false;
             }
             if (t.is(")") && depth-- == 0) break;
@@ -220,6 +222,7 @@ private:
         if (depth_ >= limits::kMacroDepth) {
             sources_.error(last_, "macro calls are nested more than " + std::to_string(limits::kMacroDepth) + " deep");
             stopped_ = true;
+            sources_.cut = true;
             return {};
         }
         ++depth_;
@@ -293,6 +296,8 @@ private:
         Token joined = lexer.next();
         if (joined.kind == Tok::Invalid || lexer.peek().kind != Tok::End) {
             sources_.error(call.place, "'" + text.substr(0, 60) + "', pasted by ##, is not one token");
+            out.back().kind = Tok::Invalid; // the parser passes over it without a word
+            out.back().text = {};
             return;
         }
         joined.place = call.place;

@@ -29,16 +29,16 @@ void Checker::convert(ExprPtr& e, Type to) {
     e = std::move(c);
 }
 
-void Checker::settle(ExprPtr& e, Type want) {
+void Checker::settle(ExprPtr& e, Type want, Handle handle) {
     const Info& info = infos_.at(e.get());
     if (info.any || want.base == Base::Void) {
         settleCheapest(e);
         if (want.base != Base::Void) e->type = want;
         return;
     }
-    if (want.array != 0) return settleArray(e, want);
+    if (want.array != 0) return settleArray(e, want, handle);
     if (info.array.array || info.listLength >= 0) {
-        sources_.error(e->place, "expected a " + toString(want) + ", not " + describe(*e));
+        sources_.error(e->place, "expected a " + named(want, handle) + ", not " + describe(*e));
         e->type = want;
         return;
     }
@@ -48,11 +48,11 @@ void Checker::settle(ExprPtr& e, Type want) {
         const int c = info.cost[int(b)] + implicitCost(b, want.base);
         if (c < cost) { cost = c; best = b; }
     }
-    if (best == Base::Void) {
+    if (best == Base::Void || (want.base == Base::String && !alike(info.handle, handle))) {
         std::string hint;
         if (want.base == Base::Float && Type{cheapest(info), 0}.isTuple())
-            hint = "a component is read by x[0], xcomp(x) or comp(x, 0)";
-        sources_.error(e->place, "expected a " + toString(want) + ", not " + describe(*e), hint);
+            hint = componentHint(cheapest(info));
+        sources_.error(e->place, "expected a " + named(want, handle) + ", not " + describe(*e), hint);
         e->type = want;
         return;
     }
@@ -111,7 +111,7 @@ void Checker::settleCondition(ExprPtr& e) {
     e = std::move(test);
 }
 
-void Checker::settleArray(ExprPtr& e, Type want) {
+void Checker::settleArray(ExprPtr& e, Type want, Handle handle) {
     const Info& info = infos_.at(e.get());
     if (info.any) { e->type = want; return; }
     if (e->kind == ExprKind::ArrayList) {
@@ -121,7 +121,7 @@ void Checker::settleArray(ExprPtr& e, Type want) {
                            std::to_string(e->args.size()) + " elements for an array of " + std::to_string(length));
             e->args.resize(size_t(length));
         }
-        for (auto& a : e->args) settle(a, want.element());
+        for (auto& a : e->args) settle(a, want.element(), handle);
         while (int(e->args.size()) < length) { // missing elements are zero
             auto z = std::make_unique<Expr>();
             z->kind = want.base == Base::String ? ExprKind::String : ExprKind::Number;
@@ -137,8 +137,9 @@ void Checker::settleArray(ExprPtr& e, Type want) {
         return;
     }
     const Type have = info.array;
-    if (have.base != want.base || have.array == 0 || (want.array > 0 && have.array > 0 && have.array != want.array)) {
-        sources_.error(e->place, "expected " + toString(want) + ", not " + describe(*e));
+    const bool mixed = want.base == Base::String && !alike(info.handle, handle);
+    if (have.base != want.base || mixed || have.array == 0 || (want.array > 0 && have.array > 0 && have.array != want.array)) {
+        sources_.error(e->place, "expected " + named(want, handle) + ", not " + describe(*e));
         e->type = want;
         return;
     }
@@ -176,7 +177,7 @@ void Checker::settleAs(ExprPtr& e, Base t) {
     case ExprKind::Variable:
         e->type = {t, 0};
         e->varying = e->symbol->storage != Storage::Uniform;
-        if (e->varying && e->symbol->origin == Symbol::Origin::Global && function_) varyingFunctions_.insert(function_);
+        if (e->varying && e->symbol->origin == Symbol::Origin::Global) readsPoint(*e, "'" + e->symbol->name + "'");
         return;
     case ExprKind::Index:
         if (info.channel)
@@ -197,7 +198,7 @@ void Checker::settleAs(ExprPtr& e, Base t) {
         break;
     case ExprKind::Member:
     case ExprKind::Method:
-        settle(e->args[0], {Base::String, 0});
+        settle(e->args[0], {Base::String, 0}, Handle::Shader);
         for (size_t i = 1; i < e->args.size(); ++i) {
             if (isVariable(*e->args[i])) settleVariable(e->args[i]);
             else settleCheapest(e->args[i]);
@@ -213,8 +214,8 @@ void Checker::settleAs(ExprPtr& e, Base t) {
         settleCondition(e->args[0]);
         // Truth values are no values: 0 and 1 where they meet as results.
         if (t == Base::Bool) t = Base::Float;
-        settle(e->args[1], {t, 0});
-        settle(e->args[2], {t, 0});
+        settle(e->args[1], {t, 0}, Handle::Either);
+        settle(e->args[2], {t, 0}, Handle::Either);
         e->type = {t, 0};
         break;
     case ExprKind::Tuple:
@@ -301,7 +302,7 @@ void Checker::settleAssign(ExprPtr& e) {
     settleVariable(e->args[0]);
     const Type target = e->args[0]->type;
     if (e->op == ExprOp::Assign || target.array != 0) {
-        settle(e->args[1], target);
+        settle(e->args[1], target, Handle::Either); // survey compared them
     } else {
         const Info& r = infos_.at(e->args[1].get());
         int cost = kNever;
@@ -323,10 +324,20 @@ void Checker::settleAssign(ExprPtr& e) {
     const Expr* root = e->args[0].get();
     while (root->kind == ExprKind::Index) root = root->args[0].get();
     if (root->symbol) {
-        assignedToUniform(*root->symbol, *e->args[1]);
+        if (root->symbol->origin != Symbol::Origin::Global) assignedToUniform(*root->symbol, *e->args[1]);
         if (root == e->args[0].get()) e->varying = e->args[1]->varying;
     }
 }
+
+/// The function being checked needs a point that is shaded. construct() runs before there is any.
+void Checker::readsPoint(const Expr& e, const std::string& what) {
+    if (function_) varyingFunctions_.insert(function_);
+    if (inConstruct())
+        sources_.warning(e.place, what + " differs from point to point, and construct() runs once for the whole shader",
+                         "begin() runs for the points that are shaded");
+}
+
+bool Checker::inConstruct() const { return shader_ && shader_->object && function_ && function_->name == "construct"; }
 
 /// Something is stored in this variable: is that allowed?
 void Checker::written(const Expr& variable) {
@@ -335,10 +346,16 @@ void Checker::written(const Expr& variable) {
     const Symbol* s = root->symbol;
     if (!s) return;
     const std::string name = "'" + s->name + "'";
+    const bool constructs = inConstruct();
+    if (s->isConstant && s->origin == Symbol::Origin::Local && !constructs) {
+        sources_.warning(variable.place, name + " is constant and is given another value here",
+                         shader_ && shader_->object ? "the members of a class that are constant get theirs in construct()" : "");
+        return;
+    }
     switch (s->origin) {
     case Symbol::Origin::Local: break;
     case Symbol::Origin::Global:
-        if (s->writable) break;
+        if (s->writable || (foreignLight_ && (s->name == "Cl" || s->name == "Ol"))) break;
         if (s->storage == Storage::Uniform)
             sources_.error(variable.place, name + " cannot be written");
         else

@@ -30,6 +30,8 @@ public:
     bool tooMany() const;
     /// While muted nothing is noted, and nothing counted.
     bool muted = false;
+    /// The text ends before its time, which was reported: what is missing at its end is no other fault.
+    bool cut = false;
     /// Hands all messages over, sorted by place.
     void flush(Diagnostics&);
 

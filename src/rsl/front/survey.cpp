@@ -38,11 +38,21 @@ void Checker::poison(Expr&, Info& info) { info.any = true; }
 std::string Checker::describe(Expr& e) {
     const Info& info = infos_.at(&e);
     if (info.any) return "an error";
-    if (info.array.array) return toString(info.array);
+    if (info.array.array) return named(info.array, info.handle);
     if (info.listLength >= 0) return "an array of " + std::to_string(info.listLength);
     if (e.kind == ExprKind::Tuple) return "a triple";
     const Base b = cheapest(info);
-    return b == Base::Bool ? "a truth value" : b == Base::Void ? "nothing" : toString(Type{b, 0});
+    return b == Base::Bool ? "a truth value" : b == Base::Void ? "nothing" : named({b, 0}, info.handle);
+}
+
+std::string Checker::componentHint(Base b) {
+    return std::string("a component is read by x[0] or ") + (b == Base::Color ? "comp(x, 0)" : "xcomp(x)");
+}
+
+std::string Checker::named(Type t, Handle h) {
+    if (t.base != Base::String || h != Handle::Shader) return toString(t);
+    const std::string s = toString(t);
+    return "shader" + s.substr(std::string("string").size());
 }
 
 Checker::Info& Checker::survey(Expr& e) {
@@ -50,7 +60,10 @@ Checker::Info& Checker::survey(Expr& e) {
     info = Info();
     switch (e.kind) {
     case ExprKind::Number: info.cost[int(Base::Float)] = 0; break;
-    case ExprKind::String: info.cost[int(Base::String)] = 0; break;
+    case ExprKind::String:
+        info.cost[int(Base::String)] = 0;
+        info.handle = e.handle ? Handle::Shader : Handle::Text;
+        break;
     case ExprKind::Variable: surveyVariable(e, info); break;
     case ExprKind::Index: surveyIndex(e, info); break;
     case ExprKind::Unary: {
@@ -93,7 +106,9 @@ Checker::Info& Checker::survey(Expr& e) {
     }
     case ExprKind::ArrayList:
         info.listLength = int(e.args.size());
-        for (auto& a : e.args) survey(*a);
+        info.handle = Handle::Either;
+        for (auto& a : e.args)
+            if (const Info& i = survey(*a); i.cost[int(Base::String)] < kNever && info.handle == Handle::Either) info.handle = i.handle;
         break;
     case ExprKind::Cast: surveyCast(e, info); break;
     case ExprKind::ShadeopCall: surveyCall(e, info); break;
@@ -114,13 +129,15 @@ void Checker::surveyMember(Expr& e, Info& info) {
     for (auto& a : e.args) survey(*a);
     for (auto& a : e.args) info.any |= infos_.at(a.get()).any;
     if (info.any) return;
-    if (costTo(infos_.at(e.args[0].get()), Base::String) >= kNever) {
+    const Info& of = infos_.at(e.args[0].get());
+    if (of.array.array || costTo(of, Base::String) >= kNever || of.handle == Handle::Text) {
         sources_.error(e.place, "'->' needs a structure or a shader, not " + describe(*e.args[0]));
         info.any = true;
         return;
     }
     // What it gives is known when the shader is bound: here it is what is wanted.
     for (Base b : kAll) info.cost[int(b)] = b == Base::Float ? 0 : b == Base::Bool ? kNever : 1;
+    info.handle = Handle::Either;
 }
 
 void Checker::surveyVariable(Expr& e, Info& info) {
@@ -136,7 +153,9 @@ void Checker::surveyVariable(Expr& e, Info& info) {
     if (!s && e.text == "null") { // the handle of no shader
         e.kind = ExprKind::String;
         e.text.clear();
+        e.handle = true;
         info.cost[int(Base::String)] = 0;
+        info.handle = Handle::Shader;
         return;
     }
     if (!s) {
@@ -145,6 +164,7 @@ void Checker::surveyVariable(Expr& e, Info& info) {
         return;
     }
     e.symbol = s;
+    info.handle = s->handle ? Handle::Shader : Handle::Text;
     if (s->type.base == Base::Void) info.any = true;
     else if (s->type.array != 0) info.array = s->type;
     else info.cost[int(s->type.base)] = 0;
@@ -161,6 +181,7 @@ void Checker::surveyIndex(Expr& e, Info& info) {
     }
     if (base.array.array) {
         info.cost[int(base.array.base)] = 0;
+        info.handle = base.handle;
         const Expr& i = *e.args[1];
         if (i.kind == ExprKind::Number && base.array.array > 0 && (i.number <= -1 || i.number >= base.array.array))
             sources_.error(i.place, "index " + std::to_string(int(std::clamp(i.number, -1e6, 1e6))) + " is outside an array of " +
@@ -190,10 +211,15 @@ void Checker::surveyBinary(Expr& e, Info& info) {
     const Info& l = survey(*e.args[0]);
     const Info& r = survey(*e.args[1]);
     if (l.any || r.any) { info.any = true; return; }
+    const bool strings = l.cost[int(Base::String)] < kNever && r.cost[int(Base::String)] < kNever;
+    // A handle is compared with a handle, and never joined to a text.
+    const bool mixed = strings && (!alike(l.handle, r.handle) ||
+                                   (e.op == ExprOp::Add && (l.handle == Handle::Shader || r.handle == Handle::Shader)));
     for (Base a : kAll) {
         if (l.cost[int(a)] >= kNever) continue;
         for (Base b : kAll) {
             if (r.cost[int(b)] >= kNever) continue;
+            if (mixed && a == Base::String && b == Base::String) continue;
             if (const auto o = operation(e.op, a, b)) {
                 int& c = info.cost[int(o->result)];
                 c = std::min(c, l.cost[int(a)] + r.cost[int(b)] + o->cost);
@@ -228,7 +254,8 @@ void Checker::surveyAssign(Expr& e, Info& info) {
         const bool fits = r.listLength >= 0 ? l.array.array < 0 || r.listLength <= l.array.array
                                             : r.array.base == l.array.base && r.array.array != 0 &&
                                                   (r.array.array == l.array.array || r.array.array < 0 || l.array.array < 0);
-        if (!fits || e.op != ExprOp::Assign) {
+        info.handle = l.handle;
+        if (!fits || (l.array.base == Base::String && !alike(l.handle, r.handle)) || e.op != ExprOp::Assign) {
             sources_.error(e.place, "cannot assign " + describe(*e.args[1]) + " to " + describe(*e.args[0]));
             info.any = true;
         } else info.array = l.array;
@@ -245,13 +272,16 @@ void Checker::surveyAssign(Expr& e, Info& info) {
                 cost = std::min(cost, r.cost[int(b)] + o->cost + implicitCost(o->result, target));
         }
     }
-    if (cost >= kNever || l.channel) {
+    info.handle = l.handle;
+    const bool handles = l.handle == Handle::Shader || r.handle == Handle::Shader;
+    const bool mixed = target == Base::String && (!alike(l.handle, r.handle) || (e.op != ExprOp::Assign && handles));
+    if (cost >= kNever || l.channel || mixed) {
         const bool toFloat = target == Base::Float && Type{cheapest(r), 0}.isTuple();
         sources_.error(e.place,
                        e.op == ExprOp::Assign ? "cannot assign " + describe(*e.args[1]) + " to " + describe(*e.args[0])
                                               : std::string("'") + spelling(e.op) + "=' cannot combine " + describe(*e.args[0]) +
                                                     " and " + describe(*e.args[1]),
-                       toFloat ? "a component is read by x[0], xcomp(x) or comp(x, 0)" : "");
+                       toFloat ? componentHint(cheapest(r)) : "");
         info.any = true;
         return;
     }
@@ -272,7 +302,9 @@ void Checker::surveyConditional(Expr& e, Info& info) {
     if (info.any) return;
     for (Base t : kAll)
         if (a.cost[int(t)] < kNever || b.cost[int(t)] < kNever) info.cost[int(t)] = sum(cost, sum(costTo(a, t), costTo(b, t)));
-    if (cheapest(info) == Base::Void) {
+    const bool strings = a.cost[int(Base::String)] < kNever && b.cost[int(Base::String)] < kNever;
+    info.handle = a.handle == Handle::Either ? b.handle : a.handle;
+    if (cheapest(info) == Base::Void || (strings && !alike(a.handle, b.handle))) {
         sources_.error(e.place,
                        "the two values of '?' do not fit together: " + describe(*e.args[1]) + " and " + describe(*e.args[2]));
         info.any = true;
@@ -296,7 +328,7 @@ void Checker::surveyCast(Expr& e, Info& info) {
     }
     if (e.space) {
         const Info& s = survey(*e.space);
-        if (costTo(s, Base::String) >= kNever) {
+        if (!s.any && (costTo(s, Base::String) >= kNever || s.handle == Handle::Shader)) {
             sources_.error(e.space->place, "the name of a space is a string");
             info.any = true;
         }
@@ -321,10 +353,11 @@ void Checker::surveyCast(Expr& e, Info& info) {
     }
     int cost = kNever;
     for (Base b : kAll) cost = std::min(cost, sum(a.cost[int(b)], castCost(b, e.type.base)));
-    if (cost >= kNever) {
+    info.handle = e.handle ? Handle::Shader : Handle::Text;
+    if (cost >= kNever || (e.type.base == Base::String && !alike(a.handle, info.handle))) {
         const bool toFloat = e.type.base == Base::Float && Type{cheapest(a), 0}.isTuple();
-        sources_.error(e.place, "cannot convert " + describe(operand) + " to " + toString(e.type),
-                       toFloat ? "a component is read by x[0], xcomp(x) or comp(x, 0)" : "");
+        sources_.error(e.place, "cannot convert " + describe(operand) + " to " + named(e.type, info.handle),
+                       toFloat ? componentHint(cheapest(a)) : "");
         info.any = true;
         return;
     }

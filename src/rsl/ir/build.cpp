@@ -425,6 +425,7 @@ std::unique_ptr<Kernel> buildKernel(const Program& p, const Shader& s, const Ker
     // Lobe calls whose result is not used affinely are inlined instead; one of them may have hidden another, so again until none
     // is left.
     std::vector<std::string> notes;
+    Place first;
     for (int round = 0; round < 16; ++round) {
         const auto lobe = [](const Inst* i, const Kernel& kernel) {
             const std::string& op = kernel.sites[static_cast<size_t>(i->site)].op;
@@ -442,14 +443,17 @@ std::unique_ptr<Kernel> buildKernel(const Program& p, const Shader& s, const Ker
         for (const auto& [site, why] : nonAffineSites(*trial)) {
             const Site& at = trial->sites[static_cast<size_t>(site)];
             if (at.op == "trace" || at.op == "transmission" || at.op == "lightvisibility" || at.op == "ambient") continue;
-            if (direct.emplace(at.place.file, at.place.line, at.place.column).second)
+            if (direct.emplace(at.place.file, at.place.line, at.place.column).second) {
+                if (notes.empty()) first = at.place;
                 notes.push_back(at.op + ", line " + std::to_string(at.place.line) + ": " + why);
+            }
         }
         if (direct.size() == before) break;
         Diagnostics quiet;
         k = buildOnce(p, s, o, quiet, direct);
     }
     k->facts.direct = notes;
+    k->facts.directPlace = first;
     return k;
 }
 

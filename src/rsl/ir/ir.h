@@ -121,6 +121,7 @@ struct Site {
 struct KernelFacts {
     bool affine = true;          ///< every Request was turned into Emit
     std::string whyNot;          ///< the first place that is not affine, in words
+    Place directPlace;           ///< of the first call in `direct`; not kept in kernel files
     Place whyNotPlace;           ///< of the call whose result is meant; not kept in kernel files
     bool suspends = false;       ///< Requests are left: the kernel becomes a coroutine
     bool lightLoops = false;

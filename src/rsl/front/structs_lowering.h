@@ -1,0 +1,102 @@
+// The insides of the pass that takes structures away, shared by structs*.cpp. Not for others.
+#pragma once
+#include "rsl/front/nodes.h"
+#include "rsl/front/parser.h"
+#include <map>
+#include <unordered_map>
+
+namespace alpenglow::rsl::front {
+
+inline constexpr Type kNone{Base::Void, 0};
+
+/// One plain member of a structure, members of members included.
+struct Leaf {
+    std::string path; ///< "->origin"
+    Type type;
+    Storage storage;
+    const StructMember* member;
+};
+
+inline ExprPtr assign(ExprPtr left, ExprPtr right, Place place) {
+    auto e = node(ExprKind::Assign, place, ExprOp::Assign);
+    adopt(*e, std::move(left));
+    adopt(*e, std::move(right));
+    return e;
+}
+
+class Lowering {
+public:
+    Lowering(Unit& u, SourceSet& s) : unit_(u), sources_(s) {}
+    void run();
+
+private:
+    struct Result {
+        Type type;
+        std::vector<Type> parameters;
+    };
+    using List = std::vector<ExprPtr>;
+
+    // structs.cpp
+    /// Of anything else, after an error, a structure without members.
+    const StructType& structOf(Type t) const;
+    std::string shown(Type t) const;
+    /// A structure inside itself would have no end; members that are arrays of structures with arrays have no storage.
+    void checkType(size_t index);
+    bool hasArrays(Type t) const;
+    void note(const Function& f);
+    std::vector<Leaf> leaves(Type t) const;
+    const StructMember* member(Type t, const std::string& name) const;
+    int structNamed(const std::string& name) const;
+    /// The structure that an expression is, or void.
+    Type typeOf(const Expr& e) const;
+    Symbol* newSymbol(const std::string& name, Type type, Storage storage, Place place);
+    /// The variables of one variable of a structure; all that was said about it holds for each.
+    std::vector<Symbol*> split(const Symbol& s);
+    /// A variable nobody can name; it is declared before the statement.
+    std::string temporary(Type type, Place place, Storage storage = Storage::Varying);
+    void spill(List& values, Type type, List& pre, Place place);
+    ExprPtr zero(const Leaf& l, Place place);
+    /// Members that nobody gives a value.
+    void defaults(Type t, Place place, List& pre, List& out);
+    bool hasDefaults(Type t) const;
+
+    // structs_values.cpp
+    /// An expression for a variable of any type, in its parts.
+    void valueOf(ExprPtr e, Type want, List& pre, List& out);
+    /// Name(a, b, ...) or {a, b, ...}.
+    void construct(Type type, Expr& e, List& pre, List& out);
+    /// The parts of an expression that is a structure; what must happen before goes to `pre`.
+    void flatten(ExprPtr e, List& pre, List& out);
+    /// The parts of a member.
+    void pick(Expr& e, List& pre, List& out);
+    /// left = right, both structures.
+    void assignTo(Expr& e, List& pre);
+    static bool path(const Expr& e);
+    void checkArguments(Expr& call);
+    void arguments(Expr& call, List& pre);
+    /// What must happen first, and then the expression, as one expression.
+    void sequence(ExprPtr& e, List pre);
+    /// An expression that is no structure itself.
+    void rewrite(ExprPtr& e);
+
+    // structs_statements.cpp
+    static void flush(List& pre, std::vector<StmtPtr>& out);
+    void body(StmtPtr& s);
+    void declare(StmtPtr s, std::vector<StmtPtr>& out);
+    void expression(StmtPtr s, std::vector<StmtPtr>& out);
+    void statement(StmtPtr s, std::vector<StmtPtr>& target);
+    void function(Function& f);
+    void shader(Shader& s);
+
+    Unit& unit_;
+    SourceSet& sources_;
+    std::vector<std::unordered_map<std::string, Type>> scopes_; ///< void: a variable that is no structure
+    std::multimap<std::string, Result> functions_;
+    std::vector<std::unique_ptr<Symbol>>* owner_ = nullptr;
+    Type result_ = kNone;
+    std::vector<Symbol*> results_;
+    std::vector<StmtPtr>* before_ = nullptr;
+    int temporaries_ = 0;
+};
+
+} // namespace alpenglow::rsl::front

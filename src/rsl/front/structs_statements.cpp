@@ -1,0 +1,220 @@
+// Statements, functions and shaders with structures in them.
+#include "rsl/front/clone.h"
+#include "rsl/front/structs_lowering.h"
+#include <utility>
+
+namespace alpenglow::rsl::front {
+
+void Lowering::flush(List& pre, std::vector<StmtPtr>& out) {
+    for (auto& p : pre) out.push_back(front::run(std::move(p)));
+    pre.clear();
+}
+
+void Lowering::body(StmtPtr& s) {
+    if (!s) return;
+    std::vector<StmtPtr> all;
+    const Place place = s->place;
+    statement(std::move(s), all);
+    if (all.size() == 1) {
+        s = std::move(all[0]);
+        return;
+    }
+    s = make(StmtKind::Block, place);
+    s->body = std::move(all);
+}
+
+void Lowering::declare(StmtPtr s, std::vector<StmtPtr>& out) {
+    if (s->definition) {
+        function(*s->definition);
+        out.push_back(std::move(s));
+        return;
+    }
+    std::vector<Stmt::Declarator> given = std::move(s->declarators);
+    const auto fresh = [&] { return make(StmtKind::Declare, s->place); };
+    StmtPtr now = fresh();
+    for (auto& d : given) {
+        Symbol& symbol = *d.symbol;
+        if (!isStruct(symbol.type)) {
+            rewrite(d.init);
+            scopes_.back()[symbol.name] = kNone;
+            now->declarators.push_back(std::move(d));
+            continue;
+        }
+        if (!now->declarators.empty()) out.push_back(std::exchange(now, fresh()));
+        List pre, values;
+        const Type type = symbol.type;
+        if (d.init) {
+            valueOf(std::move(d.init), type, pre, values);
+        } else if (!type.array && hasDefaults(type) && !symbol.isExtern) {
+            defaults(type, symbol.place, pre, values);
+        }
+        for (auto& x : *before_) out.push_back(std::move(x)); // what is computed first, between the variables
+        before_->clear();
+        flush(pre, out);
+        const auto symbols = split(symbol);
+        for (size_t i = 0; i < symbols.size(); ++i)
+            now->declarators.push_back({symbols[i], i < values.size() ? std::move(values[i]) : nullptr});
+        if (!now->declarators.empty()) out.push_back(std::exchange(now, fresh()));
+        scopes_.back()[symbol.name] = symbols.empty() ? kNone : type;
+    }
+    if (!now->declarators.empty()) out.push_back(std::move(now));
+}
+
+void Lowering::expression(StmtPtr s, std::vector<StmtPtr>& out) {
+    List pre;
+    Expr& e = *s->value;
+    const bool call = e.kind == ExprKind::ShadeopCall;
+    if (call && (e.text == "push" || e.text == "resize" || e.text == "reserve") && e.args.size() == 2 &&
+        isStruct(typeOf(*e.args[0]))) {
+        const Type t = typeOf(*e.args[0]);
+        List arrays, values;
+        flatten(std::move(e.args[0]), pre, arrays);
+        if (e.text == "push") valueOf(std::move(e.args[1]), {t.base, 0}, pre, values);
+        else rewrite(e.args[1]);
+        for (size_t i = 0; i < arrays.size() && (e.text != "push" || i < values.size()); ++i) {
+            auto one = node(ExprKind::ShadeopCall, e.place);
+            one->text = e.text;
+            adopt(*one, std::move(arrays[i]));
+            adopt(*one, e.text == "push" ? std::move(values[i]) : clone(*e.args[1]));
+            pre.push_back(std::move(one));
+        }
+    } else if (e.kind == ExprKind::Assign && isStruct(typeOf(e))) {
+        assignTo(e, pre);
+    } else if (call && isStruct(typeOf(e)) && structNamed(e.text) < 0) {
+        List ignored;
+        flatten(std::move(s->value), pre, ignored);
+    } else {
+        rewrite(s->value);
+        out.push_back(std::move(s));
+        return;
+    }
+    flush(pre, out);
+}
+
+void Lowering::statement(StmtPtr s, std::vector<StmtPtr>& target) {
+    if (!s) return;
+    std::vector<StmtPtr> temporaries, out;
+    auto* outer = std::exchange(before_, &temporaries);
+    switch (s->kind) {
+    case StmtKind::Block: {
+        scopes_.emplace_back();
+        std::vector<StmtPtr> all;
+        for (auto& b : s->body) statement(std::move(b), all);
+        s->body = std::move(all);
+        scopes_.pop_back();
+        out.push_back(std::move(s));
+        break;
+    }
+    case StmtKind::Declare: declare(std::move(s), out); break;
+    case StmtKind::Expression: expression(std::move(s), out); break;
+    case StmtKind::Return: {
+        if (!isStruct(result_) || !s->value) {
+            rewrite(s->value);
+            out.push_back(std::move(s));
+            break;
+        }
+        List pre, values;
+        const Place place = s->value->place;
+        valueOf(std::move(s->value), result_, pre, values);
+        for (size_t i = 0; i < values.size() && i < results_.size(); ++i)
+            pre.push_back(assign(variable(results_[i]->name, place), std::move(values[i]), place));
+        flush(pre, out);
+        s->value.reset();
+        out.push_back(std::move(s));
+        break;
+    }
+    default:
+        for (ExprPtr* e : {&s->condition, &s->init, &s->step, &s->value, &s->category}) rewrite(*e);
+        for (auto& e : s->exprs) rewrite(e);
+        for (auto& p : s->pairs) rewrite(p.value);
+        for (auto& b : s->body) body(b);
+        body(s->elseBody);
+        out.push_back(std::move(s));
+    }
+    before_ = outer;
+    for (auto& t : temporaries) target.push_back(std::move(t));
+    for (auto& t : out) target.push_back(std::move(t));
+}
+
+void Lowering::function(Function& f) {
+    auto* owner = std::exchange(owner_, &f.symbols);
+    const Type result = std::exchange(result_, f.result);
+    auto results = std::exchange(results_, {});
+    scopes_.emplace_back();
+    std::vector<Symbol*> parameters;
+    for (Symbol* p : f.parameters) {
+        scopes_.back()[p->name] = p->type;
+        if (!isStruct(p->type)) {
+            scopes_.back()[p->name] = kNone;
+            parameters.push_back(p);
+            continue;
+        }
+        for (Symbol* part : split(*p)) parameters.push_back(part);
+    }
+    if (isStruct(f.result)) {
+        for (const Leaf& l : leaves(f.result)) {
+            Symbol* r = newSymbol("(result)" + l.path, l.type, l.storage, f.place);
+            r->handle = l.member->handle;
+            r->origin = Symbol::Origin::FunctionParameter;
+            r->output = true;
+            results_.push_back(r);
+            parameters.push_back(r);
+        }
+        f.result = kNone;
+    }
+    f.parameters = std::move(parameters);
+    body(f.body);
+    if (f.body && f.body->kind != StmtKind::Block) {
+        auto b = make(StmtKind::Block, f.place);
+        b->body.push_back(std::move(f.body));
+        f.body = std::move(b);
+    }
+    scopes_.pop_back();
+    owner_ = owner;
+    result_ = result;
+    results_ = std::move(results);
+}
+
+void Lowering::shader(Shader& s) {
+    auto* owner = std::exchange(owner_, &s.symbols);
+    scopes_.emplace_back();
+    std::vector<ShaderParameter> parameters;
+    std::vector<StmtPtr> temporaries;
+    before_ = &temporaries;
+    for (auto& p : s.parameters) {
+        Symbol& symbol = *p.symbol;
+        if (!isStruct(symbol.type)) {
+            const Place place = p.defaultValue ? p.defaultValue->place : symbol.place;
+            rewrite(p.defaultValue);
+            if (!temporaries.empty()) {
+                sources_.error(place, "a default value of a parameter uses a structure that a function gives");
+                p.defaultValue.reset();
+                temporaries.clear();
+            }
+            scopes_.back()[symbol.name] = kNone;
+            parameters.push_back(std::move(p));
+            continue;
+        }
+        List pre, values;
+        Place place = symbol.place;
+        if (p.defaultValue) place = p.defaultValue->place;
+        if (p.defaultValue) valueOf(std::move(p.defaultValue), symbol.type, pre, values);
+        else if (!symbol.type.array) defaults(symbol.type, place, pre, values);
+        if (!pre.empty() || !temporaries.empty()) {
+            sources_.error(place, "the default of a structure is written with its constructor");
+            values.clear();
+            temporaries.clear();
+        }
+        scopes_.back()[symbol.name] = symbol.type;
+        const auto parts = split(symbol);
+        for (size_t i = 0; i < parts.size(); ++i)
+            parameters.push_back({parts[i], i < values.size() ? std::move(values[i]) : nullptr});
+    }
+    s.parameters = std::move(parameters);
+    body(s.body);
+    before_ = nullptr;
+    scopes_.pop_back();
+    owner_ = owner;
+}
+
+} // namespace alpenglow::rsl::front

@@ -1,0 +1,313 @@
+// Expressions that are structures, in their parts; and expressions that have such parts in them.
+#include "rsl/front/clone.h"
+#include "rsl/front/structs_lowering.h"
+#include <algorithm>
+#include <utility>
+
+namespace alpenglow::rsl::front {
+
+/// An expression for a variable of any type, in its parts.
+void Lowering::valueOf(ExprPtr e, Type want, List& pre, List& out) {
+    if (!isStruct(want)) {
+        rewrite(e);
+        out.push_back(std::move(e));
+        return;
+    }
+    const size_t count = leaves(want).size();
+    const Place place = e->place;
+    if (want.array && e->kind == ExprKind::ArrayList) {
+        std::vector<ExprPtr> lists;
+        for (size_t i = 0; i < count; ++i) lists.push_back(node(ExprKind::ArrayList, place));
+        for (auto& a : e->args) {
+            List parts;
+            valueOf(std::move(a), {want.base, 0}, pre, parts);
+            for (size_t i = 0; i < count && i < parts.size(); ++i) adopt(*lists[i], std::move(parts[i]));
+        }
+        for (auto& l : lists) out.push_back(std::move(l));
+        return;
+    }
+    if (!want.array && e->kind == ExprKind::ArrayList) { // {a, b}: like the constructor
+        construct(want, *e, pre, out);
+        return;
+    }
+    const Type have = typeOf(*e);
+    const bool fits = have.base == want.base && (have.array != 0) == (want.array != 0) &&
+                      (have.array == want.array || have.array < 0 || want.array < 0);
+    if (!fits) {
+        if (isStruct(have)) sources_.error(place, "expected " + shown(want) + ", not " + shown(have));
+        else {
+            const int errors = sources_.errors();
+            rewrite(e);
+            if (sources_.errors() == errors) sources_.error(place, "expected a value of " + shown(want));
+        }
+        for (size_t i = 0; i < count; ++i) out.push_back(variable("", place));
+        return;
+    }
+    flatten(std::move(e), pre, out);
+}
+
+/// Name(a, b, ...) or {a, b, ...}.
+void Lowering::construct(Type type, Expr& e, List& pre, List& out) {
+    const StructType& s = structOf(type);
+    if (e.args.size() > s.members.size())
+        sources_.error(e.place, shown(type) + " has " + std::to_string(s.members.size()) + " members, not " +
+                                    std::to_string(e.args.size()));
+    List rest;
+    defaults(type, e.place, pre, rest);
+    size_t at = 0;
+    for (size_t m = 0; m < s.members.size(); ++m) {
+        const size_t parts = isStruct(s.members[m].type) ? leaves(s.members[m].type).size() : 1;
+        if (m < e.args.size()) {
+            valueOf(std::move(e.args[m]), s.members[m].type, pre, out);
+        } else {
+            for (size_t i = 0; i < parts && at + i < rest.size(); ++i) out.push_back(std::move(rest[at + i]));
+        }
+        at += parts;
+    }
+}
+
+/// The parts of an expression that is a structure; what must happen before goes to `pre`.
+void Lowering::flatten(ExprPtr e, List& pre, List& out) {
+    const Type type = typeOf(*e);
+    const Place place = e->place;
+    if (!isStruct(type)) {
+        if (sources_.errors() == 0) sources_.error(place, "expected a structure");
+        return;
+    }
+    switch (e->kind) {
+    case ExprKind::Variable:
+        for (const Leaf& l : leaves(type)) out.push_back(variable(e->text + l.path, place));
+        return;
+    case ExprKind::Index: {
+        List base;
+        flatten(std::move(e->args[0]), pre, base);
+        ExprPtr index = std::move(e->args[1]);
+        rewrite(index);
+        if (base.size() > 1 && index->kind != ExprKind::Number && index->kind != ExprKind::Variable) {
+            const std::string t = temporary({Base::Float, 0}, place); // computed once
+            pre.push_back(assign(variable(t, place), std::move(index), place));
+            index = variable(t, place);
+        }
+        for (auto& b : base) {
+            auto i = node(ExprKind::Index, place);
+            adopt(*i, std::move(b));
+            adopt(*i, clone(*index));
+            out.push_back(std::move(i));
+        }
+        return;
+    }
+    case ExprKind::Member: return pick(*e, pre, out);
+    case ExprKind::Cast: return flatten(std::move(e->args[0]), pre, out);
+    case ExprKind::Conditional: {
+        const std::string t = temporary({Base::Float, 0}, place);
+        auto choose = node(ExprKind::Conditional, place);
+        rewrite(e->args[0]);
+        adopt(*choose, std::move(e->args[0]));
+        for (double v : {1.0, 0.0}) {
+            auto n = node(ExprKind::Number, place);
+            n->number = v;
+            adopt(*choose, std::move(n));
+        }
+        pre.push_back(assign(variable(t, place), std::move(choose), place));
+        List yes, no;
+        valueOf(std::move(e->args[1]), type, pre, yes);
+        valueOf(std::move(e->args[2]), type, pre, no);
+        for (size_t i = 0; i < yes.size() && i < no.size(); ++i) {
+            auto c = node(ExprKind::Conditional, place);
+            adopt(*c, variable(t, place));
+            adopt(*c, std::move(yes[i]));
+            adopt(*c, std::move(no[i]));
+            out.push_back(std::move(c));
+        }
+        return;
+    }
+    case ExprKind::Assign: {
+        List left, again;
+        flatten(clone(*e->args[0]), pre, again);
+        assignTo(*e, pre);
+        for (auto& x : again) out.push_back(std::move(x));
+        return;
+    }
+    case ExprKind::ShadeopCall: {
+        if (structNamed(e->text) >= 0) return construct(type, *e, pre, out);
+        if (e->text == "pop") {
+            const std::string t = temporary(type, place);
+            List arrays;
+            flatten(std::move(e->args[0]), pre, arrays);
+            const auto all = leaves(type);
+            for (size_t i = 0; i < all.size() && i < arrays.size(); ++i) {
+                auto call = node(ExprKind::ShadeopCall, place);
+                call->text = "pop";
+                adopt(*call, std::move(arrays[i]));
+                pre.push_back(assign(variable(t + all[i].path, place), std::move(call), place));
+                out.push_back(variable(t + all[i].path, place));
+            }
+            return;
+        }
+        const std::string t = temporary(type, place);
+        arguments(*e, pre);
+        for (const Leaf& l : leaves(type)) {
+            adopt(*e, variable(t + l.path, place));
+            out.push_back(variable(t + l.path, place));
+        }
+        pre.push_back(std::move(e));
+        return;
+    }
+    default:
+        for (size_t i = 0; i < leaves(type).size(); ++i) out.push_back(variable("", place));
+    }
+}
+
+/// The parts of a member.
+void Lowering::pick(Expr& e, List& pre, List& out) {
+    const Type type = typeOf(*e.args[0]);
+    List base;
+    flatten(std::move(e.args[0]), pre, base);
+    size_t at = 0;
+    for (const StructMember& m : structOf(type).members) {
+        const size_t parts = isStruct(m.type) ? leaves(m.type).size() : 1;
+        if (m.name == e.text)
+            for (size_t i = 0; i < parts; ++i) out.push_back(at + i < base.size() ? std::move(base[at + i]) : variable("", e.place));
+        at += parts;
+    }
+}
+
+/// left = right, both structures.
+void Lowering::assignTo(Expr& e, List& pre) {
+    const Type type = typeOf(*e.args[0]);
+    const Place place = e.place;
+    if (e.op != ExprOp::Assign) {
+        sources_.error(place, "structures can only be assigned");
+        return;
+    }
+    const bool simple = path(*e.args[1]) || type.array || e.args[1]->kind == ExprKind::ArrayList;
+    const bool list = e.args[1]->kind == ExprKind::ArrayList;
+    List left, right;
+    flatten(std::move(e.args[0]), pre, left);
+    valueOf(std::move(e.args[1]), type, pre, right);
+    if ((!simple || (list && !type.array)) && right.size() > 1) spill(right, type, pre, place); // a = S(a->y, a->x)
+    for (size_t i = 0; i < left.size() && i < right.size(); ++i)
+        pre.push_back(assign(std::move(left[i]), std::move(right[i]), place));
+}
+
+bool Lowering::path(const Expr& e) {
+    if (e.kind == ExprKind::Variable) return true;
+    return (e.kind == ExprKind::Index || e.kind == ExprKind::Member) && path(*e.args[0]);
+}
+
+/// Structures of the same members are not the same: behind this pass nobody could tell. Reported once for the first that does not fit.
+void Lowering::checkArguments(Expr& call) {
+    const auto [from, to] = functions_.equal_range(call.text);
+    const Expr* wrong = nullptr;
+    Type wanted, have;
+    for (auto f = from; f != to; ++f) {
+        const auto& parameters = f->second.parameters;
+        if (parameters.size() != call.args.size()) continue;
+        size_t i = 0;
+        for (; i < parameters.size(); ++i) {
+            const Type t = typeOf(*call.args[i]);
+            const bool list = call.args[i]->kind == ExprKind::ArrayList;
+            if ((isStruct(t) || (isStruct(parameters[i]) && !list)) && t.base != parameters[i].base) break;
+        }
+        if (i == parameters.size()) return;
+        if (wrong) continue;
+        wrong = call.args[i].get();
+        wanted = parameters[i];
+        have = typeOf(*wrong);
+    }
+    if (!wrong) return;
+    if (isStruct(wanted) && isStruct(have)) sources_.error(wrong->place, "expected " + shown(wanted) + ", not " + shown(have));
+    else if (isStruct(wanted)) sources_.error(wrong->place, "expected a value of " + shown(wanted));
+    else sources_.error(wrong->place, shown(have) + " cannot be used here");
+    call.text.clear(); // nothing more is said about this call
+}
+
+void Lowering::arguments(Expr& call, List& pre) {
+    checkArguments(call);
+    std::vector<ExprPtr> given = std::move(call.args);
+    call.args.clear();
+    for (auto& a : given) {
+        if (!isStruct(typeOf(*a))) {
+            rewrite(a);
+            adopt(call, std::move(a));
+            continue;
+        }
+        List parts;
+        flatten(std::move(a), pre, parts);
+        for (auto& p : parts) adopt(call, std::move(p));
+    }
+}
+
+/// What must happen first, and then the expression, as one expression.
+void Lowering::sequence(ExprPtr& e, List pre) {
+    if (pre.empty()) return;
+    auto all = node(ExprKind::Sequence, e->place);
+    for (auto& p : pre) adopt(*all, std::move(p));
+    adopt(*all, std::move(e));
+    e = std::move(all);
+}
+
+/// An expression that is no structure itself.
+void Lowering::rewrite(ExprPtr& e) {
+    if (!e) return;
+    if (const Type t = typeOf(*e); isStruct(t)) {
+        sources_.error(e->place, shown(t) + " cannot be used here", "a member is read by '->'");
+        e = variable("", e->place);
+        return;
+    }
+    List pre;
+    if (e->kind == ExprKind::Binary && e->op == ExprOp::Dot && isStruct(typeOf(*e->args[0]))) {
+        sources_.error(e->place, "'.' is the dot product", "a member of a structure is read by '->'");
+        e = variable("", e->place);
+        return;
+    }
+    if (e->kind == ExprKind::Member) {
+        const Type t = typeOf(*e->args[0]);
+        if (isStruct(t)) {
+            const StructMember* m = t.array ? nullptr : member(t, e->text);
+            if (!m) {
+                std::vector<std::string> names;
+                for (const StructMember& x : structOf(t).members) names.push_back(x.name);
+                const std::string near = nearestName(e->text, names);
+                if (t.array) sources_.error(e->place, "this is an array of " + shown(t), "its elements have members: a[i]->" + e->text);
+                else
+                    sources_.error(e->place, shown(t) + " has no member '" + e->text + "'",
+                                   near.empty() ? "" : "did you mean '" + near + "'?");
+                e = variable("", e->place);
+                return;
+            }
+            const bool array = m->type.array != 0;
+            List out;
+            const Place place = e->place;
+            pick(*e, pre, out);
+            e = std::move(out[0]);
+            if (array && !pre.empty()) sources_.error(place, "an array in the result of a call must be stored in a variable first");
+            sequence(e, std::move(pre));
+            return;
+        }
+    }
+    if (e->kind == ExprKind::ShadeopCall) {
+        const bool sizes = e->text == "arraylength" || e->text == "capacity";
+        if (sizes && e->args.size() == 1 && isStruct(typeOf(*e->args[0]))) {
+            List parts;
+            flatten(std::move(e->args[0]), pre, parts);
+            e->args[0] = parts.empty() ? variable("", e->place) : std::move(parts[0]);
+            sequence(e, std::move(pre));
+            return;
+        }
+        arguments(*e, pre);
+    } else {
+        for (auto& a : e->args) {
+            if (e->kind == ExprKind::Method && isStruct(typeOf(*a))) continue;
+            rewrite(a);
+        }
+    }
+    rewrite(e->space);
+    rewrite(e->channel);
+    for (auto& p : e->pairs) rewrite(p.value);
+    for (const auto& a : e->args)
+        if (a) e->height = std::max(e->height, a->height + 1);
+    sequence(e, std::move(pre));
+}
+
+} // namespace alpenglow::rsl::front

@@ -58,7 +58,7 @@ void addCompile(CLI::App& app, int* status) {
         std::vector<std::string> files, searchPaths, defines;
         std::string dialect;
         int lanes = 16;
-        bool ir = false, llvm = false, path = false, mixed = false, suspend = false, quiet = false, warn = false, json = false;
+        bool ir = false, llvm = false, path = false, mixed = false, suspend = false, quiet = false, warn = false, json = false, allowExec = false;
     };
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("compile", "Check and compile shaders");
@@ -68,6 +68,7 @@ void addCompile(CLI::App& app, int* status) {
         ->allow_extra_args(false);
     c->add_option("-D", a->defines, "Define a macro")->type_name("NAME[=TEXT]")->allow_extra_args(false);
     addDialect(*c, a->dialect);
+    c->add_flag("--allow-exec", a->allowExec, "Let the shader load plug-ins");
     c->add_option("--lanes", a->lanes, "Width of the machine code")->check(CLI::IsMember({4, 8, 16}))->type_name("N");
     c->add_flag("--path", a->path, "As under Hider \"path\": diffuse, specular and phong are requests to the light transport");
     c->add_flag("--mixed", a->mixed, "Build V: uniform values in lanes, for batches of several instances");
@@ -97,6 +98,8 @@ void addCompile(CLI::App& app, int* status) {
         for (std::string& f : folders(a->searchPaths)) paths.push_back(std::move(f));
         for (std::string& f : environmentShaders()) paths.push_back(std::move(f));
         if (std::string s = shippedShaders(); !s.empty()) paths.push_back(s);
+        settings.allowExec = a->allowExec;
+        settings.pluginPaths = paths;
         rsl::ShaderCompiler compiler(settings);
         rsl::KernelOptions options;
         options.lanes = a->lanes;

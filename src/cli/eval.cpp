@@ -10,19 +10,25 @@ void addEval(CLI::App& app, int* status) {
     struct Arguments {
         std::string setup, expression;
         int lanes = 16;
+        bool allowExec = false;
     };
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("eval", "Run RSL at one point and print the value");
     c->add_option("expression", a->expression, "An expression, or statements that print")->required();
     c->add_option("--setup", a->setup, "Statements that run first, for example 'float x = 2;'")->type_name("'STATEMENTS'");
     c->add_option("--lanes", a->lanes, "Width of the machine code")->check(CLI::IsMember({4, 8, 16}))->type_name("N");
+    c->add_flag("--allow-exec", a->allowExec, "Let the shader load plug-ins");
     c->footer(
         "The point: u=v=s=t=0.5, P=(0,0,0), N=(0,0,1), I=(0,0,1), Cs=Os=1, du=dv=1. Numbers are printed as %.7g, separated by\n"
         "spaces, a string as it is.\n\nExamples:\n  alpenglow eval 'noise(P + 1.5)'\n"
         "  alpenglow eval --setup 'color c = (1, .5, 0);' 'ctransform(\"hsv\", c)'");
     c->callback([a, status] {
         Diagnostics diags(printer());
-        rsl::ShaderCompiler compiler;
+        rsl::ShaderCompiler::Settings settings;
+        settings.allowExec = a->allowExec;
+        settings.pluginPaths = {"."};
+        for (std::string& f : environmentShaders()) settings.pluginPaths.push_back(std::move(f));
+        rsl::ShaderCompiler compiler(settings);
         rsl::KernelOptions options;
         options.lanes = a->lanes;
         rsl::Evaluation e = rsl::evaluate(compiler, a->setup, a->expression, options, diags);

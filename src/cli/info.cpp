@@ -73,7 +73,7 @@ void addInfo(CLI::App& app, int* status) {
     struct Arguments {
         std::string file, shadeop, dialect;
         std::vector<std::string> searchPaths;
-        bool json = false, markdown = false;
+        bool json = false, markdown = false, allowExec = false;
     };
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("info", "Tell what a shader is, or how a shadeop works");
@@ -87,6 +87,7 @@ void addInfo(CLI::App& app, int* status) {
         ->type_name("DIRS")
         ->allow_extra_args(false);
     addDialect(*c, a->dialect);
+    c->add_flag("--allow-exec", a->allowExec, "Let the shader load plug-ins");
     c->callback([a, ops, status] {
         if (ops->count()) {
             if (a->markdown && a->shadeop.empty()) {
@@ -103,6 +104,8 @@ void addInfo(CLI::App& app, int* status) {
         for (std::string& f : folders(a->searchPaths)) paths.push_back(std::move(f));
         for (std::string& f : environmentShaders()) paths.push_back(std::move(f));
         if (std::string s = shippedShaders(); !s.empty()) paths.push_back(s);
+        settings.allowExec = a->allowExec;
+        settings.pluginPaths = paths;
         rsl::ShaderCompiler compiler(settings);
         auto shader = compiler.load(a->file, paths, diags);
         *status = shader ? kDone : kDoneWithErrors;

@@ -21,6 +21,7 @@ struct Arguments {
     std::vector<std::string> params, searchPaths, outputs;
     int spp = 1, iterations = 0, lanes = 16, vectors = 0;
     float gamma = 0;
+    bool allowExec = false;
 };
 
 /// Value, d/du and d/dv of a predefined variable at a point of the patch; see the footer of the help. False: not known.
@@ -94,7 +95,10 @@ int shade(const Arguments& a) {
     for (std::string& f : folders(a.searchPaths)) paths.push_back(std::move(f));
     for (std::string& f : environmentShaders()) paths.push_back(std::move(f));
     if (std::string s = shippedShaders(); !s.empty()) paths.push_back(s);
-    rsl::ShaderCompiler compiler;
+    rsl::ShaderCompiler::Settings settings;
+    settings.allowExec = a.allowExec;
+    settings.pluginPaths = paths;
+    rsl::ShaderCompiler compiler(settings);
     auto shader = compiler.load(a.shader, paths, diags);
     if (!shader) return kNothingRendered;
     auto values = compiler.parameterDefaults(shader, diags);
@@ -300,6 +304,7 @@ void addShade(CLI::App& app, int* status) {
     c->add_option("--searchpath", a->searchPaths, "Folders for shaders and #include, separated by :")
         ->type_name("DIRS")
         ->allow_extra_args(false);
+    c->add_flag("--allow-exec", a->allowExec, "Let the shader load plug-ins");
     c->footer(
         "The patch: P = (u, v, 0), u to the right and v downward over the picture, s = u, t = v, N = (0,0,1), seen from the eye "
         "at\n"

@@ -168,6 +168,8 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
     t.unbiased = settings_.unbiased;
     t.localRoulette = settings_.localRoulette;
     t.dialect = settings_.dialect;
+    t.allowExec = settings_.allowExec;
+    t.pluginPaths = searchPaths(o, "rslplugin", settings_.shaderPaths, true);
     t.shaderPaths = searchPaths(o, "shader", settings_.shaderPaths, true);
     t.texturePaths = searchPaths(o, "texture", settings_.texturePaths, false);
     t.outputs = plan.engineOutputs;

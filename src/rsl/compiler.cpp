@@ -7,6 +7,7 @@
 #include "rsl/jit/jit.h"
 #include "rsl/jit/sha256.h"
 #include "rsl/passes/optimize.h"
+#include "rsl/plugins.h"
 #include <bit>
 #include <chrono>
 #include <cstring>
@@ -81,6 +82,22 @@ struct ShaderCompiler::State {
     std::map<std::string, std::shared_future<KernelPtr>> kernels;
     CompilerStatistics statistics;
     std::vector<ShaderPtr> held;
+    PluginLibrary plugins;
+    std::function<void*(const std::string&)> outside = [this](const std::string& name) { return plugins.address(name); };
+
+    FrontOptions front() {
+        FrontOptions o;
+        o.defines = settings.defines;
+        o.dialect = settings.dialect;
+        o.lint = settings.lint;
+        if (settings.allowExec)
+            o.plugin = [this](const std::string& name, const std::string& beside, std::string& why, std::string& hint) {
+                std::vector<std::string> folders{beside};
+                folders.insert(folders.end(), settings.pluginPaths.begin(), settings.pluginPaths.end());
+                return plugins.load(name, folders, why, hint);
+            };
+        return o;
+    }
 };
 
 ShaderCompiler::ShaderCompiler() : ShaderCompiler(Settings{}) {}
@@ -113,6 +130,9 @@ ShaderPtr ShaderCompiler::finish(std::unique_ptr<Program> program, const std::st
     std::string all = text + '\1' + program->preprocessed;
     for (const auto& f : program->dependencies) all += '\1' + f + '\1' + readText(f);
     for (const auto& f : program->files) all += '\2' + f;
+    for (const auto& p : program->plugins) // which functions there are, and what they are called in the code
+        for (const Shadeop& f : p->functions)
+            for (const Signature& s : f.signatures) all += '\3' + s.symbol;
     c->digest_ = jit::sha256(all + '\3' + c->shader_->name);
     for (const ShaderParameter& p : c->shader_->parameters) {
         ParameterInfo i{p.symbol->name, p.symbol->type, p.symbol->storage, p.symbol->output, p.defaultValue != nullptr,
@@ -150,12 +170,9 @@ ShaderPtr ShaderCompiler::load(const std::string& name, const std::vector<std::s
     for (const char* e : {".slo", ".sdl", ".sdr", ".slx", ".slc", ".sdw"})
         if (!found && name.ends_with(e)) found = at(name.substr(0, name.size() - std::strlen(e)) + ".sl");
     if (found) {
-        FrontOptions options;
+        FrontOptions options = state_->front();
         options.includePaths.push_back(fs::path(found->path).parent_path().string());
         for (const auto& d : directories) options.includePaths.push_back(d);
-        options.defines = state_->settings.defines;
-        options.dialect = state_->settings.dialect;
-        options.lint = state_->settings.lint;
         auto program = compileFile(found->path, options, diagnostics);
         sayWithoutShader(program.get(), found->path, diagnostics);
         result = finish(std::move(program), found->path, stem, {});
@@ -178,9 +195,8 @@ ShaderPtr ShaderCompiler::load(const std::string& name, const std::vector<std::s
 }
 
 ShaderPtr ShaderCompiler::loadText(const std::string& text, const std::string& name, Diagnostics& diagnostics) {
-    FrontOptions options;
-    options.defines = state_->settings.defines;
-    options.dialect = state_->settings.dialect;
+    FrontOptions options = state_->front();
+    options.lint = false;
     auto program = compileText(text, name, options, diagnostics);
     sayWithoutShader(program.get(), name, diagnostics);
     return finish(std::move(program), name, {}, text);
@@ -235,7 +251,7 @@ KernelPtr ShaderCompiler::kernel(const ShaderPtr& shader, const KernelOptions& o
     bool fromDisk = false;
     try {
         if (auto file = state_->cache->load(key)) {
-            result = jit::load(*file, true, error);
+            result = jit::load(*file, true, error, state_->outside);
             fromDisk = result != nullptr;
             for (const auto& m : file->messages) diagnostics.report(m);
         }
@@ -247,7 +263,7 @@ KernelPtr ShaderCompiler::kernel(const ShaderPtr& shader, const KernelOptions& o
             for (const auto& m : file.messages) diagnostics.report(m);
             error.clear();
             if (k && local.errors() == 0 && jit::generate(*k, options, file, error)) {
-                result = jit::load(file, false, error);
+                result = jit::load(file, false, error, state_->outside);
                 if (result) state_->cache->store(key, file);
             }
             if (!error.empty()) {
@@ -380,9 +396,9 @@ std::vector<ParameterValue> ShaderCompiler::parameterDefaults(const ShaderPtr& s
         KernelPtr code;
         const std::string key =
             jit::sha256(shader->digest_ + "\ndefaults\n" + jit::codeKey(options) + descriptorDigest() + programDigest());
-        if (auto cached = state_->cache->load(key)) code = jit::load(*cached, true, error);
+        if (auto cached = state_->cache->load(key)) code = jit::load(*cached, true, error, state_->outside);
         if (!code && jit::generate(*k, options, file, error)) {
-            code = jit::load(file, false, error);
+            code = jit::load(file, false, error, state_->outside);
             if (code) state_->cache->store(key, file);
         }
         if (!code || code->facts().suspends) {

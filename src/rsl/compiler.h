@@ -67,6 +67,8 @@ public:
         std::vector<std::pair<std::string, std::string>> defines;
         std::string dialect; ///< whose macros are predefined: FrontOptions::dialect
         bool lint = false; ///< the warnings for who writes shaders (front/lint.h)
+        bool allowExec = false; ///< `plugin "name"` loads code (rsl/plugins.h); else it is an error that says so
+        std::vector<std::string> pluginPaths; ///< where plug-ins are looked for, after the folder of the shader
     };
     ShaderCompiler();
     explicit ShaderCompiler(Settings);

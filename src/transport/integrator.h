@@ -31,6 +31,8 @@ struct Settings {
     bool bsdfOnly = false;          ///< no light sampling, emission counts in full (tests, T6)
     bool lightOnly = false;         ///< light sampling only: emission met by lobe sampling does not count (tests, T6)
     std::vector<std::string> shaderPaths, texturePaths;
+    bool allowExec = false;         ///< shaders may load plug-ins
+    std::vector<std::string> pluginPaths; ///< where those are looked for
     std::string dialect;            ///< whose macros the shaders see: rsl::FrontOptions::dialect
     std::string cacheDirectory;     ///< "" = default
     std::vector<std::string> outputs; ///< AOVs: names of output shader parameters or predefined variables, in order

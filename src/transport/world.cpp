@@ -274,6 +274,8 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     rsl::ShaderCompiler::Settings cs;
     cs.cacheDirectory = settings.cacheDirectory;
     cs.dialect = settings.dialect;
+    cs.allowExec = settings.allowExec;
+    cs.pluginPaths = settings.pluginPaths;
     w->compiler_ = std::make_shared<rsl::ShaderCompiler>(cs);
     if (const char* e = std::getenv("ALPENGLOW_SHADERS"))
         for (auto& path : splitSearchPath(e)) w->settings_.shaderPaths.push_back(path);

@@ -2,6 +2,7 @@
 // checker without errors is fully typed: every conversion is an explicit Cast node, every call is bound.
 #pragma once
 #include "base/diagnostics.h"
+#include "rsl/front/plugin.h"
 #include "shadeops/descriptor.h"
 #include <memory>
 #include <optional>
@@ -147,12 +148,14 @@ struct Program {
     std::vector<std::unique_ptr<Function>> functions;
     std::string preprocessed;                       ///< text after includes and macros: part of the cache key
     std::vector<std::string> dependencies;          ///< every file read
+    std::vector<std::shared_ptr<const Plugin>> plugins; ///< in the order in which the text asks for them; calls refer to these
 };
 
 struct FrontOptions {
     std::vector<std::string> includePaths;
     std::string dialect; ///< whose predefined macros there are: "prman", "3delight" (also when empty), "aqsis", "bmrt", ...
     std::vector<std::pair<std::string, std::string>> defines;
+    PluginFinder plugin; ///< empty: code from outside is not run, and `plugin "name"` is an error that says so
     bool lint = false; ///< warn about unused, uninitialised and the like, too (lint.h)
 };
 

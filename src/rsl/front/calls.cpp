@@ -132,8 +132,8 @@ void Checker::surveyCall(Expr& e, Info& info) {
             if (unit_ != &main_ && checking_.count(f.get())) continue;
             offer(c, views(*f), false, false, signatureText(*f));
         }
-    const Shadeop* op = info.choices.empty() ? findShadeop(e.text) : nullptr;
-    if (op)
+    const auto offerAll = [&](const Shadeop* op) {
+        if (!op) return;
         for (const Signature& s : op->signatures) {
             Choice c;
             c.shadeop = op;
@@ -141,6 +141,12 @@ void Checker::surveyCall(Expr& e, Info& info) {
             c.result = s.result;
             offer(c, views(s, *op), s.repeats, s.pairs, s.text);
         }
+    };
+    if (info.choices.empty()) {
+        if (unit_ == &main_) // among functions that fit equally well the first counts: those of plug-ins
+            for (const auto& p : program_.plugins) offerAll(p->find(e.text));
+        offerAll(findShadeop(e.text));
+    }
     if (info.choices.empty()) {
         info.any = true;
         if (known && broken) return; // what went wrong inside was reported
@@ -255,6 +261,7 @@ void Checker::settleCall(ExprPtr& pointer, Type result) {
 bool Checker::uniformResult(const Expr& e, const Choice& choice) const {
     const Shadeop& op = *choice.shadeop;
     if (op.name == "arraylength" || op.name == "capacity" || op.name == "textureinfo") return e.kind == ExprKind::ShadeopCall;
+    if (op.section == kPluginSection) return true;
     if (op.section == "Messages") return op.name != "gridmin" && op.name != "gridmax" && op.name != "rayinfo" && op.name != "getvar";
     return (op.name == "texture" || op.name == "environment") && e.args.size() > 1;
 }

@@ -3,12 +3,36 @@
 #include "rsl/front/classes.h"
 #include "rsl/front/inspect.h"
 #include "rsl/front/lint.h"
+#include <algorithm>
 
 namespace alpenglow::rsl {
 
 using namespace front;
 
 namespace {
+
+/// What `plugin "name"` asks for. What is missing is said once; the calls of its functions then say nothing.
+void findPlugins(Unit& unit, const FrontOptions& options, const std::string& file, SourceSet& sources, Program& program) {
+    const size_t slash = file.find_last_of('/');
+    const std::string beside = slash == std::string::npos ? "." : file.substr(0, slash);
+    for (const PluginUse& use : unit.plugins) {
+        std::string why, hint;
+        std::shared_ptr<const Plugin> plugin;
+        if (options.plugin) {
+            plugin = options.plugin(use.name, beside, why, hint);
+        } else {
+            why = "plug-in \"" + use.name + "\" is not loaded: a plug-in is a program, and shaders may not run programs";
+            hint = "--allow-exec lets them";
+        }
+        if (plugin) {
+            if (std::find(program.plugins.begin(), program.plugins.end(), plugin) == program.plugins.end())
+                program.plugins.push_back(std::move(plugin));
+            continue;
+        }
+        sources.error(use.place, why, hint);
+        unit.incomplete = true;
+    }
+}
 
 std::unique_ptr<Program> compile(const std::string& text, const std::string& name, bool isFile, const FrontOptions& options,
                                  Diagnostics& diagnostics, bool keep = false) {
@@ -34,6 +58,7 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
         if (a.token + 1 >= p.tokens.size() && !unit.shaders.empty()) owner = unit.shaders.back().get();
         if (owner) owner->annotations.emplace_back(a.key, a.value);
     }
+    findPlugins(unit, options, name, sources, *program);
     Checker(sources, unit, *program).run();
     // An include that is missing does no harm when nothing of it is missed.
     for (const auto& m : p.missing) {

@@ -38,6 +38,12 @@ constexpr MessageKind kKinds[] = {
     {"pp-condition", "#if needs an expression"},
     {"pp-condition", "* in the condition"},
     {"pp-condition", "this condition is nested too deeply"},
+    // plug-ins
+    {"plugin-refused", "plug-in \"*\" is not loaded*"},
+    {"plugin-missing", "plug-in \"*\" was not found"},
+    {"plugin-unusable", "plug-in \"*\" is not usable*"},
+    {"plugin-unusable", "plug-in \"*\" cannot be loaded*"},
+    {"plugin-unusable", "\"*\" is * RSL plug-in*"},
     // syntax
     {"too-many-errors", "too many errors; giving up on this file"},
     {"no-shader", "there is no shader in this file"},

@@ -201,20 +201,8 @@ void Parser::topLevel() {
         }
         if (first.text == "struct" && (peek(2).is("{") || !structs_.count(std::string(peek(1).text)))) return structure();
         if (first.text == "class" && (peek(2).is("(") || peek(2).is("{"))) return shaderObject();
-        if (first.text == "plugin") {
-            sources_.warning(first.place, "RSL plug-ins are not yet available");
-            unit_.incomplete = true;
-            while (!accept(";") && peek().kind != Tok::End) take();
-            return;
-        }
     }
-    if (first.text == "plugin" && peek(1).kind == Tok::String) {
-        sources_.warning(first.place, "RSL plug-ins are not yet available");
-        unit_.incomplete = true;
-        take(), take();
-        accept(";");
-        return;
-    }
+    if (plugin()) return;
     const Specifiers s = specifiers();
     const bool typed = atTypeName();
     Type type;
@@ -242,6 +230,16 @@ void Parser::topLevel() {
         return;
     }
     unit_.functions.push_back(std::move(f));
+}
+
+bool Parser::plugin() {
+    if (!at("plugin") || peek(1).kind != Tok::String) return false;
+    const Place place = take().place;
+    std::string name;
+    while (peek().kind == Tok::String) name += stringValue(take().text);
+    if (!accept(";") && !peek().lineStart) expectSemicolon("the name of a plug-in");
+    unit_.plugins.push_back({std::move(name), place});
+    return true;
 }
 
 void Parser::shader(ShaderKind kind) {

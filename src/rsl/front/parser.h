@@ -13,8 +13,12 @@ struct ClassDefinition {
     std::unordered_set<std::string> publics; ///< members and methods that other shaders see
 };
 
+/// `plugin "name";`
+struct PluginUse { std::string name; Place place; };
+
 /// What one text declares, unchecked.
 struct Unit {
+    std::vector<PluginUse> plugins;
     std::vector<std::unique_ptr<Shader>> shaders;
     std::vector<std::unique_ptr<Function>> functions;
     std::vector<ClassDefinition> classes;
@@ -72,6 +76,7 @@ private:
     // declarations (parser.cpp)
     void topLevel();
     void shader(ShaderKind);
+    bool plugin(); ///< at `plugin "name"`, which may stand at file level and where statements stand
     void structure();    // parser_objects.cpp
     void shaderObject();
     std::unique_ptr<Function> function(const Specifiers&, Type, bool typed);

@@ -65,6 +65,7 @@ StmtPtr Parser::statementOnce() {
         return s;
     }
     if (w == "else") fail(t.place, "'else' without 'if'");
+    if (w == "plugin" && plugin()) return make(StmtKind::Block, t.place);
     if (w == "while") {
         auto s = make(StmtKind::While, take().place);
         expect("(", "after 'while'");

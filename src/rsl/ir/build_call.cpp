@@ -88,7 +88,7 @@ Inst* Builder::shadeopCall(const Expr& e) {
     case Lowering::Runtime:
         return runtimeCall(e);
     case Lowering::Service:
-        return service(e, Op::Service);
+        return op.section == kPluginSection ? pluginCall(e) : service(e, Op::Service);
     case Lowering::Request:
         return e.type.array ? unavailable(e) : service(e, Op::Request);
     case Lowering::Special:

@@ -178,6 +178,7 @@ private:
     std::vector<Inst*> distribution(const std::string& name, const Distribution&);
 
     Inst* shadeopCall(const Expr&);
+    Inst* pluginCall(const Expr&); // build_plugin.cpp
     Inst* runtimeCall(const Expr&);
     Inst* special(const Expr&);
     Inst* service(const Expr&, Op);

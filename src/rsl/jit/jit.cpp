@@ -92,8 +92,9 @@ bool generate(const ir::Kernel& kernel, const KernelOptions& options, KernelFile
     return true;
 }
 
-std::shared_ptr<const CompiledKernel> load(const KernelFile& k, bool fromCache, std::string& error) {
-    auto object = LoadedObject::load(k.object, error);
+std::shared_ptr<const CompiledKernel> load(const KernelFile& k, bool fromCache, std::string& error,
+                                           const std::function<void*(const std::string&)>& outside) {
+    auto object = LoadedObject::load(k.object, error, outside);
     if (!object) return nullptr;
     auto kernel = std::make_shared<Kernel>(k, std::move(object), fromCache);
     if (!kernel->complete(k.suspending)) {

@@ -55,7 +55,7 @@ void* LoadedObject::find(const std::string& name) const {
     return it == symbols_.end() ? nullptr : it->second;
 }
 
-std::unique_ptr<LoadedObject> LoadedObject::load(const std::string& elf, std::string& error) {
+std::unique_ptr<LoadedObject> LoadedObject::load(const std::string& elf, std::string& error, const Outside& outside) {
     auto fail = [&](std::string why) -> std::unique_ptr<LoadedObject> {
         error = "object file: " + why;
         return nullptr;
@@ -100,7 +100,7 @@ std::unique_ptr<LoadedObject> LoadedObject::load(const std::string& elf, std::st
         end = roundUp(end, 16);
         if (group == 0) {
             stubs = end;
-            end += std::min<size_t>(relocations, 64) * kStubBytes;
+            end += std::min<size_t>(relocations, 1024) * kStubBytes;
         }
         if (group == 2) {
             table = end;
@@ -129,17 +129,18 @@ std::unique_ptr<LoadedObject> LoadedObject::load(const std::string& elf, std::st
             const auto y = r.get<Elf64_Sym>(s.sh_offset + at);
             const std::string name = r.text(r.sections[s.sh_link], y.st_name);
             uint64_t value = 0;
-            bool outside = false;
+            bool foreign = false;
             if (y.st_shndx == SHN_UNDEF) {
                 value = reinterpret_cast<uint64_t>(external(name));
-                outside = true;
+                if (!value && outside) value = reinterpret_cast<uint64_t>(outside(name));
+                foreign = true;
             } else if (y.st_shndx < r.sections.size() && place[y.st_shndx] != SIZE_MAX) {
                 if (y.st_value > r.sections[y.st_shndx].sh_size) return fail("symbol " + name + " outside its section");
                 value = reinterpret_cast<uint64_t>(base) + place[y.st_shndx] + y.st_value;
                 if (!name.empty() && ELF64_ST_BIND(y.st_info) == STB_GLOBAL) o->symbols_[name] = reinterpret_cast<void*>(value);
             }
             address.push_back(value);
-            isExternal.push_back(outside);
+            isExternal.push_back(foreign);
             symbolName.push_back(name);
         }
         break;

@@ -192,7 +192,15 @@ void Emitter::service(const Inst* i) {
     // Whatever a service leaves unanswered is zero.
     for (int k = 0; k < count; k++)
         b_.CreateAlignedStore(llvm::Constant::getNullValue(vf_), row(out, k), llvm::Align(uint64_t(std::min(64, width_ * 4))));
-    callService(i->site, in, out);
+    const std::string& op = kernel_.sites[size_t(i->site)].op;
+    if (op.rfind(kPluginSymbol, 0) == 0) {
+        // A plug-in's function, by its name: the loader puts the address there.
+        auto* null = llvm::ConstantPointerNull::get(llvm::cast<llvm::PointerType>(ptr_));
+        auto f = module_.getOrInsertFunction(op, FunctionType::get(void_, {i32_, i64_, ptr_, ptr_}, false));
+        b_.CreateCall(f, {b_.getInt32(uint32_t(width_)), maskBits(), in ? in : null, out ? out : null});
+    } else {
+        callService(i->site, in, out);
+    }
     if (i->op == Op::Request) suspend();
     int at = 0;
     for (size_t k = 0; k < kinds.size(); k++) define(i, int(k), fromRows(kinds[k], out, at));

@@ -1,0 +1,32 @@
+// RSL plug-ins as the front end sees them: descriptors like those of shadeops, found by name.
+#pragma once
+#include "shadeops/descriptor.h"
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace alpenglow::rsl {
+
+/// Section of a plug-in's functions; Signature::symbol is then the name by which machine code knows the function.
+inline constexpr const char* kPluginSection = "Plug-ins";
+
+/// The names by which machine code knows the functions of plug-ins begin with this; then come the file and the signature, nothing that
+/// changes from run to run.
+inline constexpr const char* kPluginSymbol = "rslplugin:";
+
+struct Plugin {
+    std::string name, path;
+    std::vector<Shadeop> functions; ///< Lowering::Service, sorted by name, one for each name
+    const Shadeop* find(const std::string& function) const {
+        for (const Shadeop& f : functions)
+            if (f.name == function) return &f;
+        return nullptr;
+    }
+};
+
+/// The plug-in that `plugin "name"` in a file of folder `beside` means. Null: the reason, and what may help, in the strings.
+using PluginFinder =
+    std::function<std::shared_ptr<const Plugin>(const std::string& name, const std::string& beside, std::string& why, std::string& hint)>;
+
+} // namespace alpenglow::rsl

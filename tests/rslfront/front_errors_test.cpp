@@ -99,7 +99,7 @@ const Case kWarnings[] = {
     {"f = 1.0f;", "2:5: warning: numbers take no suffix"},
     {"c = texture(\"a\", \"blurr\", 1);",
      "2:18: warning: 'texture' has no parameter \"blurr\"; it is ignored (did you mean \"blur\"?)"},
-    {"f = incident(\"a\", f);", "2:5: warning: 'incident' is not yet available; its value is 0"},
+    {"c = photonmap(\"a\", p, n);", "2:5: warning: 'photonmap' is not yet available; its value is 0"},
     {"gather(\"illuminance\", P, N, 1, 4, \"surface:Ci\", c) f = 1;", "2:1: warning: 'gather' is not yet available"},
     {"f = pow(f; 2);", "2:10: warning: arguments are separated by ',', not ';'"},
 };

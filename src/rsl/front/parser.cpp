@@ -294,6 +294,14 @@ std::unique_ptr<Function> Parser::function(const Specifiers& s, Type type, bool 
     return f;
 }
 
+namespace {
+bool specifies(const Token& t) {
+    for (const char* w : {"uniform", "varying", "output", "extern", "constant", "const", "public"})
+        if (t.is(w)) return true;
+    return false;
+}
+} // namespace
+
 Parser::Specifiers Parser::specifiers() {
     Specifiers s;
     s.place = peek().place;
@@ -304,7 +312,7 @@ Parser::Specifiers Parser::specifiers() {
         else if (accept("varying")) s.storage = Storage::Varying;
         // Words of later versions: only where a type or another specifier follows are they more than a name.
         else if ((at("constant") || at("const") || at("public")) &&
-                 (atTypeName(1) || peek(1).is("uniform") || peek(1).is("varying") || peek(1).is("output"))) {
+                 (atTypeName(1) || specifies(peek(1)))) {
             if (at("constant")) {
                 s.storage = Storage::Uniform;
                 s.isConstant = true;
@@ -394,7 +402,7 @@ void Parser::parameters(Owner owner, std::vector<ShaderParameter>* shader, std::
             }
             if (accept(",")) continue;
             const bool newGroup = (atTypeName() && !(base && atName())) || at("output") || at("uniform") || at("varying") || at("extern") ||
-                                  ((at("constant") || at("const") || at("public")) && atTypeName(1));
+                                  ((at("constant") || at("const") || at("public")) && (atTypeName(1) || specifies(peek(1))));
             if (newGroup) {
                 group = specifiers();
                 if (!atTypeName()) failHere("expected a type");

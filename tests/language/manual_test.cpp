@@ -1,0 +1,93 @@
+// docs/language.md tells the truth: every program on the page is compiled and run. In a program, "// error: id" or "// warning: id"
+// at the end of a line names the messages that must stand on it (several one after the other, ids of one kind may share the word), and
+// "// gives NAME = NUMBERS" behind it what an output holds.
+#include "points.h"
+#include "rsl/compiler.h"
+#include "rsl/front/messages.h"
+#include <fstream>
+#include <gtest/gtest.h>
+#include <set>
+#include <sstream>
+
+namespace alpenglow::rsl {
+namespace {
+
+struct Page {
+    int line = 0;
+    std::string text;
+    std::multiset<std::string> expected;      ///< "3 warning no-effect"
+    std::vector<std::pair<std::string, std::string>> gives;
+};
+
+std::vector<Page> programs() {
+    std::vector<Page> all;
+    std::ifstream in(ALPENGLOW_SOURCE_DIR "/docs/language.md");
+    std::string line;
+    bool inside = false;
+    int row = 0;
+    for (int n = 1; std::getline(in, line); ++n) {
+        if (line.rfind("```", 0) == 0) {
+            inside = line == "```rsl";
+            if (inside) all.push_back({n, "", {}, {}}), row = 0;
+            continue;
+        }
+        if (!inside) continue;
+        Page& p = all.back();
+        p.text += line + "\n";
+        ++row;
+        if (line.rfind("// gives ", 0) == 0) {
+            const size_t equal = line.find(" = ");
+            p.gives.emplace_back(line.substr(9, equal - 9), line.substr(equal + 3));
+            continue;
+        }
+        const size_t error = line.find("// error: "), warning = line.find("// warning: ");
+        const size_t at = std::min(error, warning);
+        if (at == std::string::npos) continue;
+        std::istringstream words(line.substr(at + 3));
+        std::string kind;
+        for (std::string w; words >> w;) {
+            if (w == "error:" || w == "warning:") kind = w.substr(0, w.size() - 1);
+            else p.expected.insert(std::to_string(row) + " " + kind + " " + w);
+        }
+    }
+    return all;
+}
+
+TEST(Manual, EveryProgramDoesWhatThePageSays) {
+    const auto all = programs();
+    ASSERT_GE(all.size(), 12u);
+    ShaderCompiler::Settings settings;
+    settings.useDefaultCache = false;
+    ShaderCompiler compiler(settings);
+    for (const Page& p : all) {
+        SCOPED_TRACE("docs/language.md:" + std::to_string(p.line));
+        Diagnostics d;
+        const auto shader = compiler.loadText(p.text, "t.sl", d);
+        std::multiset<std::string> said;
+        for (Diagnostic m : d.all()) {
+            complete(m);
+            said.insert(std::to_string(m.place.line) + (m.severity == Severity::Warning ? " warning " : " error ") + m.id);
+        }
+        EXPECT_EQ(said, p.expected);
+        EXPECT_EQ(shader != nullptr, d.errors() == 0);
+        if (!shader || d.errors() > 0) continue;
+        KernelOptions o;
+        for (const auto& [name, value] : p.gives) o.outputs.push_back(name);
+        const auto kernel = compiler.kernel(shader, o, d);
+        ASSERT_TRUE(kernel);
+        if (p.gives.empty()) continue;
+        std::vector<std::vector<float>> out;
+        ASSERT_TRUE(runPoints(*kernel, false, 1, evaluationPoint(), compiler.parameterDefaults(shader, d), out, d));
+        for (size_t k = 0; k < p.gives.size(); ++k) {
+            std::istringstream numbers(p.gives[k].second);
+            for (size_t c = 0; c < out[k].size(); ++c) {
+                float wanted = -1;
+                EXPECT_TRUE(numbers >> wanted) << p.gives[k].first;
+                EXPECT_FLOAT_EQ(out[k][c], wanted) << p.gives[k].first;
+            }
+        }
+    }
+}
+
+} // namespace
+} // namespace alpenglow::rsl

@@ -138,6 +138,13 @@ void addInfo(CLI::App& app, int* status) {
         std::vector<std::string> methods;
         for (const auto& f : shader->shader().nested) methods.push_back(signatureOf(*f));
         j["methods"] = methods;
+        std::string offered; // by plug-ins
+        for (const auto& plugin : shader->program().plugins)
+            for (const rsl::Shadeop& f : plugin->functions)
+                for (const rsl::Signature& s : f.signatures) {
+                    j["plugins"][plugin->name].push_back({{"signature", s.text}, {"doc", f.doc}});
+                    offered += "plug-in \"" + plugin->name + "\": " + s.text + (f.doc.empty() ? "" : "  " + f.doc) + "\n";
+                }
         for (const auto& [key, value] : shader->shader().annotations) j["annotations"][key] = value;
         if (kernel) {
             j["writes"] = kernel->facts.writes;
@@ -164,6 +171,7 @@ void addInfo(CLI::App& app, int* status) {
                         p.name.c_str(), value.c_str());
         }
         for (const std::string& m : methods) std::printf("method: %s\n", m.c_str());
+        std::fputs(offered.c_str(), stdout);
         for (const auto& [key, v] : shader->shader().annotations) std::printf("annotation %s: %s\n", key.c_str(), v.c_str());
         if (!kernel) return;
         std::string writes;

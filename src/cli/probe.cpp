@@ -49,7 +49,7 @@ struct Arguments {
     uint64_t seed = 0;
     int threads = 0, maxDepth = -1, lanes = 16;
     double radius = 0; ///< 0: a 400th of the scene
-    bool unbiased = false;
+    bool unbiased = false, allowExec = false;
     std::vector<std::string> searchPaths;
 };
 
@@ -123,6 +123,7 @@ int probe(const Arguments& a) {
     t.lanes = a.lanes;
     t.maxDepth = a.maxDepth;
     t.unbiased = a.unbiased;
+    t.allowExec = a.allowExec;
     t.shaderPaths = folders(a.searchPaths);
     for (std::string& e : environmentShaders()) t.shaderPaths.push_back(std::move(e));
     size_t slash = a.scene.find_last_of('/');
@@ -132,6 +133,7 @@ int probe(const Arguments& a) {
     t.texturePaths.push_back(folder);
     t.texturePaths.push_back(".");
     if (std::string s = shippedShaders(); !s.empty()) t.shaderPaths.push_back(s);
+    t.pluginPaths = t.shaderPaths;
     render::Engine engine = render::transportEngine();
     auto world = engine.build(frame, t, diags);
     if (!world) return kNothingRendered;
@@ -209,6 +211,7 @@ void addProbe(CLI::App& app, int* status) {
                   "Outer radius of the ring around the point that is looked at; a 400th of the scene when not given")
         ->check(CLI::PositiveNumber)
         ->type_name("R");
+    c->add_flag("--allow-exec", a->allowExec, "Let shaders load plug-ins");
     c->add_flag("--unbiased", a->unbiased, "Do not tame shaders that reflect more than they receive");
     c->add_option("--searchpath", a->searchPaths, "Folders for shaders, textures and archives, separated by :")
         ->type_name("DIRS")

@@ -1,0 +1,67 @@
+// --allow-exec and the rslplugin search path, as a user meets them. The plug-in is that of examples/plugins.
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+class PluginTools : public testing::Test {
+protected:
+    fs::path dir;
+    const std::string folder = (fs::path(ALPENGLOW_PROGRAM).parent_path().parent_path() / "plugins").string();
+    int status = -1;
+    void SetUp() override {
+        std::string name = (fs::temp_directory_path() / "alpenglow-plugins-XXXXXX").string();
+        ASSERT_NE(mkdtemp(name.data()), nullptr);
+        dir = name;
+    }
+    void TearDown() override { fs::remove_all(dir); }
+    /// Standard output and errors together.
+    std::string run(const std::string& arguments) {
+        const std::string command = "cd '" + dir.string() + "' && '" + ALPENGLOW_PROGRAM "' " + arguments + " 2>&1";
+        std::string out;
+        FILE* p = popen(command.c_str(), "r");
+        if (!p) return out;
+        std::array<char, 4096> buffer;
+        while (size_t n = fread(buffer.data(), 1, buffer.size(), p)) out.append(buffer.data(), n);
+        const int s = pclose(p);
+        status = WIFEXITED(s) ? WEXITSTATUS(s) : 128 + WTERMSIG(s);
+        return out;
+    }
+};
+
+TEST_F(PluginTools, AShaderIsAskedForBeforeItRunsForeignCode) {
+    const std::string shader = ALPENGLOW_SOURCE_DIR "/examples/plugins/weave.sl";
+    EXPECT_NE(run("compile " + shader).find("[plugin-refused]"), std::string::npos);
+    EXPECT_EQ(status, 1);
+    EXPECT_NE(run("compile --allow-exec " + shader).find("[plugin-missing]"), std::string::npos);
+    EXPECT_EQ(status, 1);
+    EXPECT_EQ(run("compile --allow-exec --searchpath '" + folder + "' " + shader), "");
+    EXPECT_EQ(status, 0);
+    const std::string info = run("info --json --allow-exec --searchpath '" + folder + "' " + shader);
+    ASSERT_EQ(status, 0) << info;
+    const auto j = nlohmann::json::parse(info);
+    ASSERT_EQ(j["plugins"]["weave"].size(), 7u);
+    EXPECT_EQ(j["plugins"]["weave"][0]["signature"], "float polynomial(float x; float c[4])");
+}
+
+TEST_F(PluginTools, TheSearchPathOfAScene) {
+    std::ofstream(dir / "steps.sl") << "plugin \"weave\";\nsurface steps() { Ci = triangle(0.25); Oi = 1; }\n";
+    std::ofstream(dir / "a.rib") << "Option \"searchpath\" \"string rslplugin\" [\"" + folder + "\"]\n"
+                                 << "Hider \"hidden\"\nFormat 8 8 1\nPixelSamples 1 1\nDisplay \"a.tif\" \"file\" \"rgb\"\n"
+                                    "Projection \"orthographic\"\nWorldBegin\nSurface \"steps\"\n"
+                                    "Polygon \"P\" [-2 -2 1  2 -2 1  2 2 1  -2 2 1]\nWorldEnd\n";
+    EXPECT_NE(run("render -q a.rib --pixel 4,4").find("--allow-exec lets them"), std::string::npos);
+    const std::string pixel = run("render -q a.rib --allow-exec --pixel 4,4");
+    EXPECT_EQ(status, 0) << pixel;
+    EXPECT_NE(pixel.find("0.5"), std::string::npos) << pixel;
+}
+
+} // namespace

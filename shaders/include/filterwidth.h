@@ -5,9 +5,6 @@
 #ifndef MINFILTWIDTH
 #define MINFILTWIDTH 1.0e-6
 #endif
-#ifndef MINFILTERWIDTH
-#define MINFILTERWIDTH MINFILTWIDTH
-#endif
 
 /* of a float */
 float filterwidth(float x) { return max(abs(Du(x) * du) + abs(Dv(x) * dv), MINFILTWIDTH); }

@@ -27,7 +27,8 @@ float sqr(float x) { return x * x; }
 /* 1 between the edges; with a fourth value smooth over fuzz */
 float pulse(float a, b, fuzz, x) { return smoothstep(a - fuzz, a, x) - smoothstep(b - fuzz, b, x); }
 float pulse(float a, b, x) { return step(a, x) - step(b, x); }
-float pulsetrain(float edge, period, x) { return pulse(0, edge, mod(x, period)); }
+/* 0 in the first `edge` of each period, 1 in the rest */
+float pulsetrain(float edge, period, x) { return pulse(edge, period, mod(x, period)); }
 float smoothpulse(float e0, e1, e2, e3, x) { return smoothstep(e0, e1, x) - smoothstep(e2, e3, x); }
 float smoothpulsetrain(float e0, e1, e2, e3, period, x) { return smoothpulse(e0, e1, e2, e3, mod(x, period)); }
 
@@ -36,12 +37,12 @@ float filteredpulse(float edge0, edge1, x, dx)
     float x0 = x - dx / 2, x1 = x + dx / 2;
     return max(0, (min(x1, edge1) - max(x0, edge0)) / dx);
 }
-/* 1 in the first `edge` of each period, averaged over dx around x */
+/* the same, averaged over dx around x */
 float filteredpulsetrain(float edge, period, x, dx)
 {
-    float w = dx / period, x0 = x / period - w / 2, x1 = x0 + w, high = edge / period;
-    float inside = (high * floor(x1) + min(high, x1 - floor(x1))) - (high * floor(x0) + min(high, x0 - floor(x0)));
-    return inside / w;
+    float w = dx / period, x0 = x / period - w / 2, x1 = x0 + w, low = edge / period;
+    float ones = ((1 - low) * floor(x1) + max(0, x1 - floor(x1) - low)) - ((1 - low) * floor(x0) + max(0, x0 - floor(x0) - low));
+    return ones / w;
 }
 /* integral of smoothstep(e0, e1, .) up to x */
 float smoothstepintegral(float e0, e1, x)

@@ -53,7 +53,7 @@ constexpr GlobalVariable kDisplacementOwn[] = {
 constexpr GlobalVariable kLightOwn[] = {
     {"P", kP, V, R, "position on the light"},  {"N", kN, V, R, "normal of the area light"},
     {"s", kF, V, R, "texture coordinate"},     {"t", kF, V, R, "texture coordinate"},
-    {"L", kV, V, R, "from the light to the surface"}, {"Ps", kP, V, R, "point being lit"},
+    {"L", kV, V, W, "from the light to the surface; in illuminate and solar"}, {"Ps", kP, V, R, "point being lit"},
     {"Ns", kN, V, R, "shading normal of the lit surface"}, {"I", kV, V, R, "incident ray at the lit point"},
     {"Cl", kC, V, W, "result: colour of the light"}, {"Ol", kC, V, W, "result: opacity of the light"}};
 constexpr GlobalVariable kVolumeOwn[] = {

@@ -276,6 +276,7 @@ void Builder::lightBlock(const Stmt& s) {
     Inst* before[3];
     for (int n = 0; n < 3; ++n) before[n] = get(slots[n]);
     const int litSlot = newSlot(constant(0));
+    set(b.L, L);
     branch(
         lit,
         [&] {
@@ -286,10 +287,10 @@ void Builder::lightBlock(const Stmt& s) {
             set(litSlot, constant(1));
             set(b.Cl, get(slots[1]));
             set(b.Ol, get(slots[2]));
+            set(b.L, get(slots[0])); // the block may have turned it: parallel rays of a projector
             return std::vector<Inst*>{};
         },
         [] { return std::vector<Inst*>{}; });
-    set(b.L, L);
     set(b.lit, get(litSlot));
     for (int n = 0; n < 3; ++n) set(slots[n], before[n]);
 }

@@ -1,4 +1,4 @@
-/* paintedplastic: plastic whose base colour comes from a texture. RISpec standard shader. */
+/* paintedplastic: plastic whose base colour comes from a texture. RISpec standard shader. Ball: Color [.7 .1 .1] Surface "paintedplastic" */
 surface paintedplastic(float Ka = 1, Kd = 0.5, Ks = 0.5, roughness = 0.1; color specularcolor = 1; string texturename = "";) {
     normal Nf = faceforward(normalize(N), I);
     vector V = -normalize(I);

@@ -2,7 +2,7 @@
    them that is not black decides, in that order. reference: pathtracer.md section 3.
      shininess, translucency: Phong exponents of the reflected and transmitted lobe; 1000 and above are perfect
      kn: index of refraction; fresnel "schlick" or "exact"
-   Under Hider "path" diffuse() and trace() are the estimators: they sample lights and lobe, weight both, play roulette. */
+   Under Hider "path" diffuse() and trace() are the estimators: they sample lights and lobe, weight both, play roulette. Ball: Surface "slmaterial" "color diffusecolor" [.6 .25 .1] */
 surface slmaterial(color diffusecolor = 1, specularcolor = 0, transmissive = 0, emissive = 0;
                    float shininess = 1000, translucency = 1000, kn = 1;
                    string texturename = "", fresnel = "schlick";) {

@@ -1,4 +1,4 @@
-/* spotlight: a cone of light with a soft edge. RISpec standard shader. */
+/* spotlight: a cone of light with a soft edge. RISpec standard shader. Lamp: LightSource "spotlight" 1 "float intensity" 50 "float coneangle" .2 */
 light spotlight(float intensity = 1; color lightcolor = 1; point from = point "shader" (0, 0, 0); point to = point "shader" (0, 0, 1);
                 float coneangle = radians(30), conedeltaangle = radians(5), beamdistribution = 2;) {
     uniform vector axis = normalize(to - from);

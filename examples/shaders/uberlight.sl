@@ -9,7 +9,8 @@
      Blockers      up to three cards in the beam: superellipses in any plane, lit through by their own colour
      Shadow        "none", "raytrace"; its colour, its density, its bias, and how fast it fades with distance
      Contribution  to diffuse and specular reflection separately, a group name for the surface to pick by
-   Everything is measured in "shader" space: the light stands at the origin and looks along +z. */
+   Everything is measured in "shader" space: the light stands at the origin and looks along +z. 
+   Lamp: LightSource "uberlight" 1 "float intensity" 40 "float width" .16 "float height" .11 "float roundness" .3 "float goboamount" .7 "float goboscale" 30 "float edgewidth" .01 "float edgeheight" .01 */
 
 #define MINIMUM 1e-6
 #define BLOCKERS 3

@@ -13,7 +13,8 @@
      Rim         an outline of light for presentation
      Glow        a picture or noise that gives light of its own
      Outputs     every layer by itself, for compositing
-   What is zero costs nothing to speak of. Everything is affine in what lights and rays bring, so it is path-traced as it is. */
+   What is zero costs nothing to speak of. Everything is affine in what lights and rays bring, so it is path-traced as it is. 
+   Ball: Surface "ubersurface" "float paint" 1 "float paintchips" .6 "float bump" .02 "float Kd" .6 "float Ks" .15 "float Kscoat" .15 "float iridescence" .3 "float mottle" .5 */
 
 #define TINY 1e-5
 

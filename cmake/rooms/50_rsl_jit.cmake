@@ -19,7 +19,8 @@ room_tests(language DEPS rsl_jit)
 if(TARGET test_language) # the second evaluator, and the programs that it is asked about
   find_package(rapidcheck CONFIG REQUIRED)
   target_sources(test_language PRIVATE ${CMAKE_SOURCE_DIR}/tests/language/walker.cpp
-                 ${CMAKE_SOURCE_DIR}/tests/language/walker_shadeops.cpp ${CMAKE_SOURCE_DIR}/tests/language/programs.cpp)
+                 ${CMAKE_SOURCE_DIR}/tests/language/walker_shadeops.cpp ${CMAKE_SOURCE_DIR}/tests/language/programs.cpp
+                 ${CMAKE_SOURCE_DIR}/tests/language/programs_grammar.cpp)
   target_link_libraries(test_language PRIVATE rapidcheck)
 endif()
 add_executable(rsl_bench EXCLUDE_FROM_ALL ${CMAKE_SOURCE_DIR}/bench/rsl_bench.cpp)

@@ -1,5 +1,6 @@
 // Random well-typed programs, as RapidCheck sees them: a value with ever smaller versions of itself.
 #pragma once
+#include <map>
 #include <rapidcheck.h>
 #include <string>
 #include <vector>
@@ -18,6 +19,15 @@ struct Term {
     size_t size() const;
     std::string write(int number) const;
 };
+
+/// One way to write a value; holes are '$' and the letter of a sort, and "$F" is in brackets or a call, never a bare sum.
+struct Choice {
+    int weight;
+    const char* text;
+};
+/// Every way to write a value of a sort, and values that need nothing (programs_grammar.cpp).
+const std::map<char, std::vector<Choice>>& grammar();
+const std::map<char, std::vector<const char*>>& constants();
 
 /// parts[0]: functions; parts[1]: the statements of the shader's body. What a program leaves behind: outputs() by name and type.
 /// Loops have at most eight turns and are at most three deep; array indices may be anything.

@@ -204,7 +204,7 @@ void WorldImpl::measureLights(Engine& engine, Diagnostics& d) {
             if (seen > 0 && square == seen) {
                 l.intensityScale = float(kPi) / float(l.emitter->area());
                 mean *= l.intensityScale * step * step;
-                d.reportOnce("intensity:" + l.instance->name, {Severity::Warning, Rie::NoError, l.instance->place,
+                d.reportOnce("intensity:" + l.instance->name, {Severity::Info, Rie::NoError, l.instance->place,
                              "area light \"" + l.instance->name + "\" divides by the distance itself; its Cl is read as intensity, spread over its surface",
                              "the Cl of an area light is the radiance that leaves it: without the division it needs no guess", {}});
             }

@@ -58,7 +58,7 @@ std::string crowd() {
                     "\"from\" [-2 3 3] \"to\" [0 0 5]\n"
                     "LightSource \"distantlight\" 3 \"intensity\" .3 \"from\" [1 1 -1] \"to\" [0 0 0]\nLightSource \"envlight\" "
                     "4 \"intensity\" .2\n"
-                    "AttributeBegin\nAreaLightSource \"arealight\" 5 \"float intensity\" 3\nSurface \"constant\"\nColor 0 0 0\n"
+                    "AttributeBegin\nAreaLightSource \"slrect\" 5 \"float intensity\" 3\nSurface \"constant\"\nColor 0 0 0\n"
                     "Polygon \"P\" [-1 3 4  1 3 4  1 3 6  -1 3 6]\nAttributeEnd\nIlluminate 5 1\n";
     const char* shaders[] = {
         "plastic", "busy", "waits", "matte",

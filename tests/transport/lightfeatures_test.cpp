@@ -112,7 +112,7 @@ TEST(SamplingStrategy, Partitions) {
     for (const auto& c : cases) {
         std::string attribute = *c.strategy ? std::string("Attribute \"light\" \"samplingstrategy\" \"") + c.strategy + "\"\n" : "";
         for (bool sky : {false, true}) {
-            std::string light = sky ? attribute + "LightSource \"envlight\" 7 \"float intensity\" 5\n" : disk(attribute, "\"arealight\" 7 \"float intensity\" 5");
+            std::string light = sky ? attribute + "LightSource \"envlight\" 7 \"float intensity\" 5\n" : disk(attribute, "\"slrect\" 7 \"float intensity\" 5");
             double value = sky ? 5 : kDiskValue;
             std::string what = std::string(c.strategy) + (sky ? " sky" : " disk");
             for (const char* look : {"\"floorloop\"", "\"floortrace\"", "\"matte\" \"float Ka\" 0 \"float Kd\" 1"}) {
@@ -137,7 +137,7 @@ TEST(IntensityLight, IsDetectedAndSpread) {
         EXPECT_NE(s.messages().find("divides by the distance itself"), std::string::npos) << s.messages();
         EXPECT_EQ(s.messages().find("divides"), s.messages().rfind("divides")); // once
     }
-    Scene plain(scene(disk("", "\"arealight\" 7 \"float intensity\" 5"), "\"matte\""), under(Hider::Path));
+    Scene plain(scene(disk("", "\"slrect\" 7 \"float intensity\" 5"), "\"matte\""), under(Hider::Path));
     EXPECT_EQ(plain.messages().find("divides"), std::string::npos);
 }
 
@@ -150,7 +150,7 @@ TEST(ManyLights, SumStaysTheSame) {
         double d2 = x * x + y * y + z * z;
         if (i % 10 == 9) { // a sphere wholly above the horizon: L (R / d)^2 cos a
             double radius = .2;
-            lights += "AttributeBegin\nAreaLightSource \"arealight\" " + std::to_string(i + 1) + " \"float intensity\" " + std::to_string(power * 8) +
+            lights += "AttributeBegin\nAreaLightSource \"slrect\" " + std::to_string(i + 1) + " \"float intensity\" " + std::to_string(power * 8) +
                       "\nSurface \"constant\"\nColor 0 0 0\nOpacity 0 0 0\nTranslate " + std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) +
                       "\nSphere .2 -.2 .2 360\nAttributeEnd\nIlluminate " + std::to_string(i + 1) + " 1\n";
             want += power * 8 * radius * radius / d2 * y / std::sqrt(d2);

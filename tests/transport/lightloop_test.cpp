@@ -247,7 +247,7 @@ TEST(Illuminance, CoShadersLoopOverLights) {
 
 TEST(Illuminance, SamplesOfAnAreaLightAreTurns) {
     surfaceOf("turns", "    illuminance(P) Ci += 1;");
-    const std::string disk = "AttributeBegin\nAttribute \"light\" \"integer samples\" [6]\nAreaLightSource \"arealight\" 7\nSurface \"constant\"\nColor 0 0 0\n"
+    const std::string disk = "AttributeBegin\nAttribute \"light\" \"integer samples\" [6]\nAreaLightSource \"slrect\" 7\nSurface \"constant\"\nColor 0 0 0\n"
                              "Translate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\nAttributeEnd\nIlluminate 7 1\n";
     Scene s(scene(disk, "\"turns\""), under(Hider::Hidden));
     EXPECT_NEAR(s.one(kView).x, 6, 1e-5);

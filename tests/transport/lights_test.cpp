@@ -8,7 +8,7 @@ using namespace alpenglow::transport::testing;
 namespace {
 
 const char* kFloor = "Polygon \"P\" [-60 0 -60  -60 0 60  60 0 60  60 0 -60]\n";
-const char* kDisk = "AttributeBegin\nAreaLightSource \"arealight\" 7 \"float intensity\" 5\nSurface \"constant\"\nColor 0 0 "
+const char* kDisk = "AttributeBegin\nAreaLightSource \"slrect\" 7 \"float intensity\" 5\nSurface \"constant\"\nColor 0 0 "
                     "0\nTranslate 0 2 0\nRotate 90 1 0 0\n"
                     "Disk 0 .7 360\nAttributeEnd\nIlluminate 7 1\n";
 const double kDiskValue = 5 * .49 / 4.49;
@@ -33,7 +33,7 @@ TEST(Lights, ThroughAPane) {
 // Seen directly an emitter shows its radiance, from the front only, plus what its own surface shader adds.
 TEST(Lights, SeenAndExplicitEmission) {
     for (const char* surface : {"Color 0 0 0", "Color .25 .5 1"}) {
-        std::string rib = std::string("WorldBegin\nSides 2\nAttributeBegin\nAreaLightSource \"arealight\" 7 \"float intensity\" "
+        std::string rib = std::string("WorldBegin\nSides 2\nAttributeBegin\nAreaLightSource \"slrect\" 7 \"float intensity\" "
                                       "5\nSurface \"constant\"\n") +
                           surface + "\nTranslate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\nAttributeEnd\nWorldEnd\n";
         Settings s;

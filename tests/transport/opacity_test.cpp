@@ -130,7 +130,7 @@ TEST(ShadowOpacity, AllEstimatorsAgree) {
         set.hider = Hider::Path;
         set.bsdfOnly = mode == 1;
         set.lightOnly = mode == 2;
-        Scene s("WorldBegin\nSides 2\nAttributeBegin\nAreaLightSource \"arealight\" 7 \"float intensity\" 5\nSurface \"constant\"\nColor 0 0 0\nTranslate 0 2 0\nRotate 90 1 0 0\n"
+        Scene s("WorldBegin\nSides 2\nAttributeBegin\nAreaLightSource \"slrect\" 7 \"float intensity\" 5\nSurface \"constant\"\nColor 0 0 0\nTranslate 0 2 0\nRotate 90 1 0 0\n"
                 "Disk 0 .7 360\nAttributeEnd\nIlluminate 7 1\nAttributeBegin\nSurface \"noisypane\"\nPatch \"bilinear\" \"P\" [-4 1.2 -4  4 1.2 -4  -4 1.2 4  4 1.2 4]\nAttributeEnd\n"
                 "Surface \"matte\"\n" + std::string(kFloor) + "WorldEnd\n",
                 set);
@@ -155,7 +155,7 @@ TEST(Atmosphere, AttenuatesEmitters) {
         set.hider = Hider::Path;
         set.bsdfOnly = mode == 1;
         set.lightOnly = mode == 2;
-        Scene s(std::string("WorldBegin\nSides 2\nAttributeBegin\nAtmosphere \"fog\" \"float distance\" 3\nAreaLightSource \"arealight\" 7 \"float intensity\" 5\nSurface \"constant\"\nColor 0 0 0\n"
+        Scene s(std::string("WorldBegin\nSides 2\nAttributeBegin\nAtmosphere \"fog\" \"float distance\" 3\nAreaLightSource \"slrect\" 7 \"float intensity\" 5\nSurface \"constant\"\nColor 0 0 0\n"
                             "Translate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\nAttributeEnd\nIlluminate 7 1\nSurface \"") + (mode == 3 ? "floorloop2" : "matte") + "\"\n" + kFloor + "WorldEnd\n",
                 set);
         EXPECT_NEAR(s.one(rayTo({0, .5f, 0}, {0, 2, 0})).x, 5 * std::exp(-.5), 1e-4); // 1.5 away

@@ -110,6 +110,11 @@ bool runAtPoint(const CompiledKernel& k, bool mixed, int n, int at, std::vector<
             for (int c = 0; c < std::min(3, s.resultKinds.empty() ? 1 : ir::components(s.resultKinds[0])); c++)
                 std::fill_n(out + c * lanes, lanes, h[c]);
         }
+        if (s.op.ends_with("transform") && s.op != "ctransform") { // every space is "current": names come first, then the value
+            int row = 0;
+            for (const ir::Kind k : s.argKinds) row += k == ir::Kind::String;
+            std::copy_n(in + row * lanes, ir::components(s.resultKinds[0]) * lanes, out);
+        }
         if (s.op == "gridmin" || s.op == "gridmax") { // a grid of one point without extent
             for (int c = 0; c < ir::components(s.argKinds.empty() ? ir::Kind::Float : s.argKinds[0]); c++)
                 std::copy_n(in + c * lanes, lanes, out + c * lanes);

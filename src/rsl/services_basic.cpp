@@ -266,6 +266,23 @@ bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* 
                 diagnostics.reportOnce("match:" + pattern, d);
             }
         });
+    } else if (s.op == "ctransform") { // spaces that are known only now
+        each([&](int l) {
+            Arguments a(s, lanes, in, l);
+            const auto lower = [](std::string t) {
+                for (char& c : t) c = char(std::tolower(static_cast<unsigned char>(c)));
+                return t;
+            };
+            const std::string from = lower(a.string()), to = lower(a.string());
+            const auto known = [](const std::string& t) { return t == "rgb" || t == "hsv" || t == "hsl" || t == "yiq" || t == "xyz"; };
+            FormatValue v = a.value();
+            float c[3] = {v.numbers[0], v.numbers[1], v.numbers[2]}, r[3];
+            if (from != to && known(from) && known(to)) {
+                if (from != "rgb" && evaluateRuntime("al_" + from + "_to_rgb", c, 3, r, 3)) std::copy_n(r, 3, c);
+                if (to != "rgb" && evaluateRuntime("al_rgb_to_" + to, c, 3, r, 3)) std::copy_n(r, 3, c);
+            }
+            for (int k = 0; k < 3; k++) put(k, l, c[k]);
+        });
     } else if (s.op == "stringhash") {
         each([&](int l) {
             Arguments a(s, lanes, in, l);

@@ -43,5 +43,6 @@ std::vector<Shadeop> stringShadeops();
 std::vector<Shadeop> arrayShadeops();
 std::vector<Shadeop> textureShadeops();
 std::vector<Shadeop> raytracingShadeops();
+std::vector<Shadeop> bmrtShadeops();
 
 } // namespace alpenglow::rsl

@@ -37,8 +37,9 @@ std::vector<Shadeop> messageShadeops() {
     message("displacement", Lowering::Service, kNoImager, "Parameter of the displacement shader of the primitive being shaded.");
     message("atmosphere", Lowering::Service, kNoImager, "Parameter of the atmosphere shader of the primitive being shaded.");
     message("lightsource", Lowering::Service, kSurface | kVolume, "Parameter of the light of the current turn; only inside illuminance.");
-    message("incident", Lowering::Unavailable, kSurface, "Parameter of the volume shader on the side of the incident ray.");
-    message("opposite", Lowering::Unavailable, kSurface, "Parameter of the volume shader on the other side of the surface.");
+    message("incident", Lowering::Service, kSurface,
+            "Parameter of the volume shader on the side of the incident ray: Exterior, or Interior for a ray that meets the surface from inside.");
+    message("opposite", Lowering::Service, kSurface, "Parameter of the volume shader on the other side of the surface than the incident ray.");
     message("attribute", Lowering::Service, kAnyContext,
             "Attribute of the primitive (\"class:name\", \"Ri:...\", \"user:...\"); with \"light:\" in front, inside illuminance, of the light.");
     message("option", Lowering::Service, kAnyContext, "Option of the frame.");
@@ -58,8 +59,10 @@ std::vector<Shadeop> messageShadeops() {
     rayFunction("isshadowray", "1 for shadow rays. Deprecated: rayinfo(\"type\").");
     add("isoutput", each(kAllTypes, "float isoutput($ variable)") + each(kAllTypes, "float isoutput($ variable[])"), Lowering::Special, kAnyContext,
         "1 if the variable, or the one of that name (\"outputs[1]\" too), is an output that a display asks for.");
-    add("outputchannel", each("float color point vector normal matrix", "void outputchannel(uniform string name; $ value)"), Lowering::Unavailable,
-        kAnyContext, "Creates or assigns an output of the main shader; \"light:\" or \"local:\" keep it where it is.");
+    add("outputchannel", each("float color point vector normal matrix", "void outputchannel(uniform string name; $ value)"), Lowering::Special,
+        kAnyContext,
+        "Creates an output of the main shader, zero where no call gives it a value, or assigns one that exists. Nothing is done when the types do not "
+        "agree. In a co-shader or a light \"light:\" or \"local:\" before the name keep it there, out of sight of displays.");
     add("gridmin", sigs({{"float gridmin(float value)"}, {"void gridmin(float value)"}}), Lowering::Special, kNoImager,
         "Smallest value over the grid. A hit is a grid of one point: the value minus half its footprint.");
     add("gridmax", sigs({{"float gridmax(float value)"}, {"void gridmax(float value)"}}), Lowering::Special, kNoImager,

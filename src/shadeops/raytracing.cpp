@@ -111,6 +111,7 @@ std::vector<Shadeop> raytracingShadeops() {
                                                     {kF, "exponent", false, "1000", "\"slphong\": Phong exponent; 1000 and above is one direction"},
                                                     {kF, "samplearealights", false, "0", "1: area lights with strategy \"trace\" are seen"},
                                                     {kC, "transmission", true, "", "transmission along the rays"},
+                                                    {kV, "hitnormal", true, "", "ours: normal of the surface at the nearest hit, 0 for none"},
                                                     {kC, "environmentcontribution", true, "", "part of the environment map"},
                                                     {kC, "unshadowedenvironment", true, "", "the same without geometry"},
                                                     {kC, "arealightcontribution", true, "", "part of the area lights"},

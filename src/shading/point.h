@@ -32,6 +32,7 @@ struct PathRay {
     float width = 0, spread = 0;      ///< footprint: half width at the origin, and its growth with distance
     uint32_t shape = geometry::kNone; ///< surface it leaves, for the exclusion of its own primitive
     uint32_t prim = geometry::kNone;
+    int32_t label = 0;                ///< interned label of the trace() that sent it
     int cameraSample = -1;            ///< index of the sample whose opacity, depth and AOVs this ray's hit writes; -1: none
     bool first = true;                ///< first task of its target: writes distance and transmission
 };

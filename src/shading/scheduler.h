@@ -31,6 +31,7 @@ struct TargetValue {
     Color radiance{0};
     Color transmission{1};
     float distance = 1e38f; ///< to the nearest hit; > 1e30 on a miss (rsl.md 12.1)
+    Vec3 normal;            ///< shading normal of that hit
 };
 
 template <class Payload> class Scheduler {
@@ -90,7 +91,10 @@ public:
         if (c.z != 0) t.sum[2].add(c.z);
     }
     void setTransmission(TargetId id, const Color& c) { targets_[id].value.transmission = c; }
-    void setDistance(TargetId id, float d) { targets_[id].value.distance = d; }
+    void setDistance(TargetId id, float d, const Vec3& normal = {}) {
+        targets_[id].value.distance = d;
+        targets_[id].value.normal = normal;
+    }
 
     /// Called by a strip (or whoever starts it) when it suspends: makes `count` targets, calls make(i, target) so that the caller
     /// spawns the tasks of each, and keeps the strip until all are complete. A target for which nothing is spawned is complete at once.

@@ -114,6 +114,7 @@ public:
             else put("", 3, results[k].radiance);
             put("dist", 1, Color(results[k].distance));
             put("transmission", 3, results[k].transmission);
+            put("hitnormal", 3, results[k].normal);
         }
         c_->bound->kernel->resume(handle_);
         return advance(s, s.takeResuming());
@@ -208,7 +209,7 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched) {
             color = Color(0);
         }
         if (ray.first) {
-            sched.setDistance(c.targets[i], length(c.points[i].I));
+            sched.setDistance(c.targets[i], length(c.points[i].I), c.points[i].N);
             sched.setTransmission(c.targets[i], Color(1) - opacity);
         }
         Color shown = color;

@@ -339,6 +339,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 r.dir = w;
                 r.maxDistance = l.maxDistance;
                 r.type = l.type;
+                r.label = c.bound->sites[l.site].label;
                 bool sampled = l.lights && !delta && set.direct && !set.bsdfOnly && path;
                 bool sampledElsewhere = l.lights && !delta && set.direct && !set.bsdfOnly && !path && l.ownsTarget;
                 r.lobePdf = sampled || sampledElsewhere ? pdf * l.chosen : l.lights && !delta && !path && set.direct && !set.bsdfOnly ? pdf : -1;

@@ -1,6 +1,7 @@
 // What the renderer answers at once: textures, messages, the state of rays and attributes.
 #include "rsl/services_basic.h"
 #include "transport/engine.h"
+#include "transport/information.h"
 #include <bit>
 
 namespace alpenglow::transport {
@@ -13,7 +14,7 @@ SiteKind kindOf(const std::string& op) {
         {"phong", SiteKind::Phong}, {"trace", SiteKind::Trace}, {"transmission", SiteKind::Transmission},
         {"lightvisibility", SiteKind::LightVisibility}, {"illuminance", SiteKind::Illuminance}, {"texture", SiteKind::Texture},
         {"environment", SiteKind::Environment}, {"surface", SiteKind::Message}, {"displacement", SiteKind::Message},
-        {"atmosphere", SiteKind::Message}, {"lightsource", SiteKind::LightSource}, {"attribute", SiteKind::Attribute},
+        {"atmosphere", SiteKind::Message}, {"incident", SiteKind::Message}, {"opposite", SiteKind::Message}, {"lightsource", SiteKind::LightSource}, {"attribute", SiteKind::Attribute},
         {"option", SiteKind::Option}, {"rendererinfo", SiteKind::RendererInfo}, {"rayinfo", SiteKind::RayInfo},
         {"raylevel", SiteKind::RayLevel}, {"isindirectray", SiteKind::RayLevel}, {"isshadowray", SiteKind::RayLevel},
         {"textureinfo", SiteKind::TextureInfo}, {"lightsetup", SiteKind::LightSetup}, {"getlight", SiteKind::LightHandles},
@@ -78,6 +79,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
                      "trace(): distribution \"" + distribution + "\" is not yet available; one ray along R is traced", {}, {}});
             }
             std::string type = text("type", "specular");
+            if (auto f = i.text.find("label"); f != i.text.end()) i.label = rsl::internString(f->second);
             i.type = type == "diffuse" ? RayType::Diffuse : type == "transmission" ? RayType::Transmission : RayType::Specular;
         }
         b.sites.push_back(std::move(i));
@@ -120,9 +122,7 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
         auto t = p.strings.find(name);
         answer(lane, n == p.numbers.end() ? nullptr : &n->second, t == p.strings.end() ? nullptr : &t->second);
     };
-    auto answerParam = [&](int lane, const scene::Param* p) {
-        if (p) answer(lane, &p->numbers, p->strings.empty() ? nullptr : &p->strings[0]);
-    };
+    auto bindingAt = [&](int lane) { return c.bindings.empty() ? nullptr : &world_->bindings_[size_t(c.bindings[size_t(first + lane)])]; };
     std::string name = d.strings.empty() ? "" : d.strings[0];
     if (name.empty() && mask && !d.argKinds.empty() && d.argKinds[0] == rsl::ir::Kind::String) // known only now; the same for all
         name = rsl::internedString(std::bit_cast<int32_t>(at(0, std::countr_zero(mask))));
@@ -230,7 +230,7 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
     case SiteKind::LightSetup: lightSetup(c, site, first, mask, lanes, in); return;
     case SiteKind::LightHandles: lightHandles(c, site, first, mask, lanes, in, out); return;
     case SiteKind::Message:
-        each([&](int lane, const ShadePoint&) {
+        each([&](int lane, const ShadePoint& p) {
             if (c.lit && d.op == "surface") { // a light asks
                 std::vector<float> now;
                 if (c.lit->output(first + lane, name, now)) return answer(lane, &now, nullptr);
@@ -238,50 +238,28 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
             const SurfaceBinding* of = c.lit ? c.lit->binding(first + lane) : c.bindings.empty() ? nullptr : &world_->bindings_[c.bindings[first + lane]];
             if (!of) return;
             const SurfaceBinding& b = *of;
-            const InstanceRef& i = d.op == "surface" ? b.surface : d.op == "displacement" ? b.displacement : b.atmosphere;
+            // A ray that sees the back comes from inside.
+            const bool side = d.op == "incident" || d.op == "opposite", inside = side && (dot(p.surface.n, p.I) > 0) == (d.op == "incident");
+            const InstanceRef& i = side ? (inside ? b.interior : b.exterior) : d.op == "surface" ? b.surface : d.op == "displacement" ? b.displacement : b.atmosphere;
             if (i) answerFrom(lane, i->parameters, name);
         });
         return;
-    case SiteKind::Attribute:
+    case SiteKind::Attribute: {
+        static const std::string kLight = "light:";
+        const LightLoop* loop = c.lit ? nullptr : &lightLoop(c, first, lanes);
+        const scene::Light* light = loop && loop->light >= 0 ? world_->lights_[size_t(loop->light)].source : nullptr;
         each([&](int lane, const ShadePoint& p) {
-            if (!p.shape) return;
-            const scene::Attributes& a = p.shape->attributes();
-            std::string key = name;
-            std::vector<float> v;
-            std::string text;
-            if (key == "Ri:ShadingRate" || key == "ShadingRate") v = {a.shadingRate};
-            else if (key == "Ri:Sides" || key == "Sides") v = {float(a.sides)};
-            else if (key == "Ri:Matte" || key == "Matte") v = {float(a.matte)};
-            else if (key == "Ri:Color") v = {a.color.x, a.color.y, a.color.z};
-            else if (key == "Ri:Opacity") v = {a.opacity.x, a.opacity.y, a.opacity.z};
-            else if (key == "Ri:Orientation") text = a.inside ? "inside" : "outside";
-            else if (key == "Ri:TextureCoordinates") v.assign(a.textureCoordinates, a.textureCoordinates + 8);
-            else if (key == "Ri:DetailRange") v.assign(a.detailRange, a.detailRange + 4);
-            else if (key == "geometry:backfacing") v = {dot(p.surface.n, p.I) > 0 ? 1.f : 0.f};
-            else if (key == "geometry:frontfacing") v = {dot(p.surface.n, p.I) > 0 ? 0.f : 1.f};
-            else if (key == "geometry:geometricnormal") v = {p.surface.n.x, p.surface.n.y, p.surface.n.z};
-            else { answerParam(lane, a.value(key)); return; }
-            answer(lane, v.empty() ? nullptr : &v, v.empty() ? &text : nullptr);
+            std::optional<Information> i;
+            if (light && light->attributes && name.rfind(kLight, 0) == 0) i = attributeOf(*world_, *light->attributes, name.substr(kLight.size()), nullptr, nullptr);
+            if (light && light->attributes && name.rfind("attribute:light:", 0) == 0) i = attributeOf(*world_, *light->attributes, name, nullptr, nullptr);
+            if (!i && p.shape) i = attributeOf(*world_, p.shape->attributes(), name, &p, bindingAt(lane));
+            if (i) answer(lane, i->isText ? nullptr : &i->numbers, i->isText ? &i->text : nullptr);
         });
         return;
+    }
     case SiteKind::Option:
-        each([&](int lane, const ShadePoint&) {
-            const scene::Options& o = world_->frame_->options;
-            std::vector<float> v;
-            if (name == "Ri:Frame" || name == "Frame") v = {float(o.frameNumber)};
-            else if (name == "Ri:Format" || name == "Format") v = {float(o.xres), float(o.yres), o.pixelAspect};
-            else if (name == "Ri:PixelSamples") v = {o.pixelSamplesX, o.pixelSamplesY};
-            else if (name == "Ri:Shutter" || name == "Shutter") v = {o.shutterOpen, o.shutterClose};
-            else if (name == "Ri:Clipping" || name == "Clipping") v = {o.clipNear, o.clipFar};
-            else if (name == "Ri:CropWindow" || name == "CropWindow") v.assign(o.crop, o.crop + 4);
-            else if (name == "trace:maxdepth") v = {float(world_->maxDepth_)};
-            else {
-                auto i = o.values.find(name);
-                answerParam(lane, i == o.values.end() ? nullptr : &i->second);
-                return;
-            }
-            answer(lane, &v, nullptr);
-        });
+        if (const auto i = optionOf(*world_, name))
+            each([&](int lane, const ShadePoint&) { answer(lane, i->isText ? nullptr : &i->numbers, i->isText ? &i->text : nullptr); });
         return;
     case SiteKind::RendererInfo:
         each([&](int lane, const ShadePoint&) {
@@ -297,7 +275,7 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
             std::vector<float> v;
             std::string text;
             if (name == "type") text = r ? toString(r->type) : "light";
-            else if (name == "label") text = "";
+            else if (name == "label") text = r ? rsl::internedString(r->label) : "";
             else if (name == "depth") v = {r ? float(r->bounces) : 0};
             else if (name == "speculardepth") v = {r ? float(r->specularBounces) : 0};
             else if (name == "diffusedepth") v = {r ? float(r->diffuseBounces) : 0};
@@ -342,6 +320,31 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
                 if (i && (kind == "surface" || kind == "displacement" || kind == "atmosphere")) text = i->name;
             }
             put(0, lane, std::bit_cast<float>(rsl::internString(text)));
+        });
+        return;
+    }
+    if (d.op == "transform" || d.op == "vtransform" || d.op == "ntransform" || d.op == "mtransform") { // spaces that are known only now
+        each([&](int lane, const ShadePoint& p) {
+            std::string space[2];
+            int row = 0;
+            for (int k = 0; k < 2; ++k) {
+                space[k] = size_t(k) < d.strings.size() ? d.strings[size_t(k)] : "";
+                if (space[k].empty() && row < int(d.argKinds.size()) && d.argKinds[size_t(row)] == rsl::ir::Kind::String)
+                    space[k] = rsl::internedString(std::bit_cast<int32_t>(at(row++, lane)));
+            }
+            const Matrix m = spaceAt(*world_, space[0], space[1], p, bindingAt(lane));
+            float in[32], out[16];
+            const int n = d.op == "mtransform" ? 16 : 3;
+            const auto flatten = [&](float* to) { for (int k = 0; k < 16; ++k) to[k] = float(m.m[k / 4][k % 4]); };
+            for (int k = 0; k < n; ++k) in[n == 16 ? k : 16 + k] = at(row + k, lane);
+            flatten(n == 16 ? in + 16 : in);
+            const rsl::Base type = d.argTypes.empty() ? rsl::Base::Point : d.argTypes.back().base;
+            const char* symbol = n == 16                                                     ? "al_multiply"
+                                 : d.op == "vtransform" || type == rsl::Base::Vector         ? "al_transformvector"
+                                 : d.op == "ntransform" || type == rsl::Base::Normal         ? "al_transformnormal"
+                                                                                             : "al_transformpoint";
+            rsl::evaluateRuntime(symbol, in, n == 16 ? 32 : 19, out, n);
+            for (int k = 0; k < n; ++k) put(k, lane, out[k]);
         });
         return;
     }

@@ -351,10 +351,14 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
             if (!a.displacement && explicitSurface && rsl::ShaderCompiler::variant(surface->program, rsl::ShaderKind::Displacement))
                 b.displacement = bindCoShaders(instanceOf(a.surface, rsl::ShaderKind::Displacement), a);
             b.atmosphere = bindCoShaders(instanceOf(a.atmosphere, rsl::ShaderKind::Volume), a);
+            b.interior = instanceOf(a.interior, rsl::ShaderKind::Volume);
+            b.exterior = instanceOf(a.exterior, rsl::ShaderKind::Volume);
             std::vector<std::string> outputs{"Ci", "Oi"};
             for (const auto& n : settings.outputs) {
                 bool known = n == "P" || n == "N" || n == "Cs" || n == "Os" || n == "u" || n == "v" || n == "s" || n == "t" || n == "Ng" || n == "I" || n == "dPdu" || n == "dPdv";
                 for (const auto& p : surface->program->parameters()) known |= p.name == n && p.output;
+                known |= surface->program->program().channels.count(n) > 0;
+                for (const rsl::CoShader& co : surface->coShaders) known |= co.program->channels.count(n) > 0;
                 if (known && n != "Ci" && n != "Oi") outputs.push_back(n);
             }
             if (path) // lighting shadeops: lights run when the surface's kernel is done

@@ -43,6 +43,7 @@ struct SiteInfo {
     bool standard = false;                     ///< specularstd, not specular
     int rowWo = -1, rowExponent = -1, rowCone = -1, rowHorizon = -1, rowLights = -1, rowMaxDistance = -1, rowSamples = -1; ///< of `named`
     RayType type = RayType::Specular;
+    int32_t label = 0;                         ///< Trace: interned, for rayinfo()
 };
 
 /// A kernel and the meaning of its sites.
@@ -102,7 +103,7 @@ struct BoundLight {
 
 /// Shapes with the same surface, atmosphere and light list are shaded together.
 struct SurfaceBinding {
-    InstanceRef surface, atmosphere, displacement;
+    InstanceRef surface, atmosphere, displacement, interior, exterior; ///< the last two only for messages
     BoundKernel surfaceS, surfaceV, atmosphereS, displacementS;
     std::vector<int> lights;                   ///< indices into lights
     int group = 0;                             ///< equal: same program and light list, so that points are shaded in one batch

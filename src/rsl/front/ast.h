@@ -4,6 +4,7 @@
 #include "base/diagnostics.h"
 #include "rsl/front/plugin.h"
 #include "shadeops/descriptor.h"
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -140,7 +141,10 @@ struct Shader {
 
 /// One source file with its includes: shaders (usually one) and functions.
 struct Program {
+    std::map<std::string, Type> primitiveVariables; ///< what getvar() asks for, with the types of the variables it fills
     bool handles = false; ///< it uses members or methods of other shaders, or asks for them
+    /// Outputs that outputchannel() makes, and their types; without "light:" or "local:".
+    std::map<std::string, Type> channels;
     std::vector<std::string> files;                 ///< Place::file indexes this
     std::vector<std::unique_ptr<Shader>> shaders;
     /// Every function that a shader calls, once for each shader that calls it (its predefined variables and externs are then that

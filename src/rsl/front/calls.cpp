@@ -270,6 +270,13 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
     const Shadeop& op = *choice.shadeop;
     e.shadeop = &op;
     e.signature = choice.signature;
+    if (op.name == "outputchannel" && e.args[0]->kind == ExprKind::String) {
+        std::string name = e.args[0]->text;
+        if (name.rfind("light:", 0) == 0 || name.rfind("local:", 0) == 0) name.erase(0, 6);
+        program_.channels.emplace(name, e.args[1]->type);
+    }
+    if (op.name == "getvar" && e.args[1]->kind == ExprKind::String)
+        program_.primitiveVariables.emplace(e.args[1]->text, e.args.size() > 2 ? e.args[2]->type : Type{});
     program_.handles |= op.name == "getshader" || op.name == "getshaders" || op.name == "getvar";
     if (op.name == "resize" || op.name == "reserve" || op.name == "push" || op.name == "pop") {
         const Symbol* s = e.args.empty() ? nullptr : e.args[0]->symbol;
@@ -313,7 +320,7 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
             filter.erase(std::remove(filter.begin(), filter.end(), '-'), filter.end());
             if (findShadeop("__filterstep_" + filter)) rename = {"__filterstep_catmullrom", "__filterstep_" + filter};
             else sources_.warning(p.place, "there is no filter \"" + p.value->text + "\"; catmull-rom is used");
-        } else {
+        } else if (op.name != "filterstep" || (p.name != "filter" && p.name != "width")) {
             sources_.warning(p.place, "\"" + p.name + "\" of '" + op.name + "' is not yet available and ignored");
         }
     }

@@ -274,6 +274,7 @@ bool Builder::buildShader() {
     place_ = shader_.place;
     frames_.push_back({});
     frames_.back().returned = newSlot(boolean(false));
+    beginChannels();
     beginCoShaders();
     std::set<int> assigned;
     std::set<const Function*> seen;
@@ -373,6 +374,10 @@ bool Builder::buildShader() {
                 break;
             }
         if (found) continue;
+        if (const auto c = channels_.find(name); c != channels_.end() && !hasGlobal(name.c_str())) {
+            output(name, get(c->second.first), c->second.second);
+            continue;
+        }
         for (const GlobalVariable& g : globalVariables(shader_.kind))
             if (name == g.name) {
                 const auto it = globals_.find(name);

@@ -381,6 +381,7 @@ Inst* Builder::special(const Expr& e) {
     if (n == "isoutput") return isOutput(e);
     if (n == "bsdf") return e.type.array ? array(e) : bsdf(e)[0];
     if (n == "mtransform") return transformCall(e);
+    if (n == "outputchannel") return outputChannel(e);
     if (n == "gridmin" || n == "gridmax") return gridBound(e, n == "gridmin" ? -0.5f : 0.5f);
     if (n == "arraylength") return lengthOf(array(*e.args[0]));
     if (n == "resize" || n == "reserve" || n == "push" || n == "pop" || n == "capacity") return resizing(e);
@@ -398,7 +399,7 @@ Inst* Builder::isOutput(const Expr& e) {
     const auto& wanted = options_.outputs;
     const bool declared = std::any_of(shader_.parameters.begin(), shader_.parameters.end(),
                                       [&](const ShaderParameter& p) { return p.symbol->output && p.symbol->name == name; });
-    const bool known = declared || hasGlobal(name.c_str());
+    const bool known = declared || hasGlobal(name.c_str()) || channels_.count(name);
     return constant(known && std::find(wanted.begin(), wanted.end(), name) != wanted.end() ? 1.0f : 0.0f);
 }
 

@@ -281,6 +281,8 @@ void Builder::scanAssigned(const Expr& e, std::set<int>& out, std::set<const Fun
     if (e.kind == ExprKind::ShadeopCall && e.signature)
         for (size_t n = 0; n < e.args.size() && n < e.signature->parameters.size(); ++n)
             if (e.signature->parameters[n].output) lvalue(e.args[n].get());
+    if (e.kind == ExprKind::ShadeopCall && e.shadeop && e.shadeop->name == "outputchannel" && e.args[0]->kind == ExprKind::String)
+        if (const int n = channelSlot(e.args[0]->text, kindOf(e.args[1]->type)); n >= 0) out.insert(n);
     for (const NamedArg& p : e.pairs)
         if (p.output && p.value) lvalue(p.value.get());
     if (e.function) {

@@ -172,6 +172,11 @@ private:
     std::vector<Inst*> lightHandles(const Expr&);
     Inst* isLightCategory(const Expr&);
 
+    // build_channels.cpp
+    void beginChannels();
+    int channelSlot(const std::string& name, Kind);
+    Inst* outputChannel(const Expr&);
+
     // build_bsdf.cpp
     struct Distribution;
     std::vector<Inst*> bsdf(const Expr&);
@@ -232,6 +237,7 @@ private:
     const std::vector<std::string>* files_ = &program_.files; ///< those that places refer to just now
     int handleDepth_ = 0; ///< methods of co-shaders that are open
     std::set<std::pair<size_t, const Function*>> openMethods_, scannedMethods_;
+    std::map<std::string, std::pair<int, Type>> channels_; ///< by name: slot and type
     int lightDepth_ = 0;
     /// Output parameters that lights ask for: slot and type.
     std::map<std::string, std::pair<int, Type>> messageSlots_;

@@ -1,0 +1,58 @@
+// outputchannel(): outputs that no parameter declares. Each is a variable of the kernel, zero until a call gives it a value.
+#include "rsl/ir/builder.h"
+
+namespace alpenglow::rsl::ir {
+
+namespace {
+
+/// The name without "light:" or "local:"; `kept` tells of such a prefix.
+std::string bareName(const std::string& name, bool& kept) {
+    kept = name.rfind("light:", 0) == 0 || name.rfind("local:", 0) == 0;
+    return kept ? name.substr(6) : name;
+}
+
+} // namespace
+
+void Builder::beginChannels() {
+    const auto add = [&](const Program& p) {
+        for (const auto& [name, type] : p.channels)
+            if (!channels_.count(name)) channels_[name] = {newSlot(zero(kindOf(type))), type};
+    };
+    add(program_);
+    for (const CoShader& c : options_.coShaders) add(*c.program);
+}
+
+/// The slot that a call assigns: of a parameter of the main shader, or of a channel. -1: nothing is assigned.
+int Builder::channelSlot(const std::string& text, Kind kind) {
+    bool kept = false;
+    const std::string name = bareName(text, kept);
+    if (kept && (handleDepth_ > 0 || shader_.kind == ShaderKind::Light)) return -1; // it stays with the co-shader or the light
+    for (const ShaderParameter& p : shader_.parameters) {
+        if (p.symbol->name != name) continue;
+        return p.symbol->output && kindOf(p.symbol->type) == kind && !p.symbol->type.array ? slot(p.symbol) : -1;
+    }
+    const auto c = channels_.find(name);
+    return c != channels_.end() && kindOf(c->second.second) == kind && !hasGlobal(name.c_str()) ? c->second.first : -1;
+}
+
+Inst* Builder::outputChannel(const Expr& e) {
+    Inst* name = expr(*e.args[0]);
+    Inst* value = expr(*e.args[1]);
+    if (value->kind == Kind::Bool) value = coerce(value, Kind::Float);
+    place_ = e.place;
+    bool kept = false;
+    if (name->op != Op::ConstString) {
+        warn(e.place, "outputchannel() needs a name that is known when the shader is compiled; it does nothing");
+        return constant(0);
+    }
+    bareName(name->text, kept);
+    if (shader_.kind == ShaderKind::Light && !kept) {
+        warn(e.place, "outputchannel() of a light to the surface's outputs is not yet available; it does nothing");
+        return constant(0);
+    }
+    const int n = channelSlot(name->text, value->kind);
+    if (n >= 0) set(n, value);
+    return constant(0);
+}
+
+} // namespace alpenglow::rsl::ir

@@ -180,6 +180,8 @@ private:
         return variable(e.symbol);
     }
 
+    static bool variableGrows(const Expr& e) { return e.kind == ExprKind::Variable && e.symbol->type.array < 0; }
+
     std::vector<Walked> list(const Expr& e) {
         if (e.kind != ExprKind::ArrayList) return arrayOf(e).elements;
         std::vector<Walked> v;
@@ -210,8 +212,9 @@ private:
         if (l.type.array) {
             std::vector<Walked> v = list(*e.args[1]);
             Variable& a = arrayOf(l);
-            v.resize(a.elements.size(), zero(l.type.base));
+            if (!variableGrows(l)) v.resize(a.elements.size(), zero(l.type.base));
             a.elements = v;
+            a.reserved = std::max(a.reserved, v.size());
             return {};
         }
         Walked v;

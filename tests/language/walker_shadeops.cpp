@@ -29,6 +29,7 @@ Walked tuple(const V3& v) {
     return w;
 }
 
+int width(Base b) { return b == Base::String ? 1 : componentCount(b); }
 float over(float a, float b) { return b == 0 ? 0 : a / b; }
 float lesser(float a, float b) { return a < b ? a : b; }
 float greater(float a, float b) { return a > b ? a : b; }
@@ -95,6 +96,7 @@ float cubic(const std::string& basis, float t, float p, float q, float r, float 
 Walked spline(Arguments& a) {
     const bool named = a[0].base == Base::String;
     const std::string basis = named ? a[0].s : "catmull-rom";
+    if (basis.rfind("solve", 0) == 0) throw std::runtime_error("the walker does not invert splines");
     const float v = a[named ? 1 : 0].n[0];
     const Walked* p = &a[named ? 2 : 1];
     const int n = int(a.size()) - (named ? 2 : 1), step = basis == "bezier" ? 3 : basis == "hermite" ? 2 : 1;
@@ -106,24 +108,32 @@ Walked spline(Arguments& a) {
     return r;
 }
 
-/// "%d", "%g" without precision, "%.2f" and "%s".
+/// Floats and strings. %d is %.0f; %g is %f with a precision, and without one seven digits.
 Walked format(Arguments& a) {
     Walked r;
     r.base = Base::String;
     size_t next = 1;
     const std::string& p = a[0].s;
     for (size_t i = 0; i < p.size(); i++) {
-        if (p[i] != '%') {
+        if (p[i] != '%' || p[i + 1] == '%') {
+            i += p[i] == '%';
             r.s += p[i];
             continue;
         }
-        const size_t end = p.find_first_of("dgfs", i);
-        if (end == std::string::npos || next >= a.size()) throw std::runtime_error("the walker does not know this pattern: " + p);
+        const size_t end = p.find_first_of("efgds", i);
+        if (end == std::string::npos || next >= a.size() || width(a[next].base) > 1)
+            throw std::runtime_error("the walker does not know this pattern: " + p);
         const Walked& v = a[next++];
-        char text[100];
-        const char* conversion = p[end] == 'd' ? "%.0f" : p[end] == 'f' ? "%.2f" : "%.7g";
-        std::snprintf(text, sizeof text, conversion, double(v.n[0]));
-        r.s += p[end] == 's' ? v.s : text;
+        std::string conversion = p.substr(i, end - i);
+        const bool precise = conversion.find('.') != std::string::npos;
+        char text[1000];
+        if (p[end] == 's') {
+            std::snprintf(text, sizeof text, (conversion + "s").c_str(), v.s.c_str());
+        } else {
+            conversion += p[end] == 'd' ? ".0f" : p[end] == 'g' ? (precise ? "f" : ".7g") : std::string(1, p[end]);
+            std::snprintf(text, sizeof text, conversion.c_str(), std::fabs(double(v.n[0])) >= 0 ? double(v.n[0]) : NAN);
+        }
+        r.s += text;
         i = end;
     }
     return r;
@@ -178,7 +188,9 @@ Definition setComponent(size_t c) {
 Definition transformBy(Base rule) {
     return [rule](Arguments& a) {
         if (a.size() != 2 || a[0].base != Base::Matrix) throw std::runtime_error("the walker does not know named spaces");
-        Walked r = tuple(transformed(a[0], three(a[1]), rule != Base::Void ? rule : a[1].base));
+        const Base by = rule != Base::Void ? rule : a[1].base;
+        if (by == Base::Normal) return own("al_transformnormal", Base::Normal, a);
+        Walked r = tuple(transformed(a[0], three(a[1]), by));
         r.base = a[1].base;
         return r;
     };
@@ -246,7 +258,7 @@ const std::map<std::string, Definition>& definitions() {
          }},
         {"transform", transformBy(Base::Void)},
         {"vtransform", transformBy(Base::Vector)},
-        {"ntransform", [](Arguments& a) { return own("al_transformnormal", Base::Normal, a); }},
+        {"ntransform", transformBy(Base::Normal)},
         {"ctransform", colourSpace},
         {"spline", spline},
         {"format", format},

@@ -3,9 +3,11 @@
 #include "../sanitized.h"
 #include "points.h"
 #include "programs.h"
+#include "snippets.h"
 #include "walker.h"
 #include <chrono>
 #include <gtest/gtest.h>
+#include <sstream>
 
 namespace alpenglow::rsl {
 namespace {
@@ -137,6 +139,61 @@ TEST_P(RandomTrees, MachineCodeAndWalkerAgree) {
         if (testing::Test::HasFailure()) break;
     }
     EXPECT_GE(compared, wanted() / kParts - kBatch);
+}
+
+/// What an expectation of a snippet file gives: "" when it is right, "?" when the walker does not know something in it.
+std::string walkSnippet(ShaderCompiler& compiler, const Expectation& e) {
+    for (const char* type : {"float", "color", "point", "vector", "normal", "matrix", "string"}) {
+        if (!e.type.empty() && e.type != type) continue;
+        Diagnostics quiet;
+        const bool text = std::string(type) == "string";
+        const auto shader = compiler.loadText(std::string("surface s(output varying ") + type + " walked = " + (text ? "\"\"" : "0") + ";) { " +
+                                                  e.setup + "\n walked = (" + e.expression + "); }\n",
+                                              "snippet", quiet);
+        if (!shader) continue;
+        Walked w;
+        try {
+            w = walk(shader->shader(), [](const std::string& name, int component) {
+                    float v = 0;
+                    EvaluationPoint::value(name, component, 0, v);
+                    return v;
+                }).at("walked");
+        } catch (const std::runtime_error&) {
+            return "?";
+        }
+        if (text) return w.s == e.value ? "" : "\"" + w.s + "\"";
+        std::istringstream in(e.value);
+        std::vector<std::string> words;
+        for (std::string x; in >> x;) words.push_back(x);
+        const size_t n = size_t(componentCount(w.base));
+        if (words.size() == 1) words.resize(n, words[0]);
+        bool right = words.size() == n;
+        for (size_t c = 0; right && c < n; c++) {
+            std::string shown = formatNumbers({w.n[c]});
+            if (shown == "-0" && words[c] == "0") shown = "0";
+            right = e.tolerance >= 0 ? std::fabs(double(w.n[c]) - std::atof(words[c].c_str())) <= e.tolerance : shown == words[c];
+        }
+        return right ? "" : formatNumbers({w.n.begin(), w.n.begin() + long(n)});
+    }
+    return "?";
+}
+
+// The walker itself, against the values that the snippet files say.
+TEST(Walker, SnippetsHaveTheirValues) {
+    Machine machine;
+    int right = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(ALPENGLOW_SOURCE_DIR "/tests/language")) {
+        if (entry.path().extension() != ".rsl") continue;
+        for (const Expectation& e : parseSnippets(entry.path()).expectations) {
+            if (e.prints) continue;
+            const std::string got = walkSnippet(machine.compiler, e);
+            if (got == "?") continue;
+            EXPECT_EQ(got, "") << entry.path().filename() << ":" << e.line << " " << e.expression << " => " << e.value;
+            right += got.empty();
+        }
+    }
+    EXPECT_GE(right, 400);
+    RecordProperty("right", right);
 }
 
 INSTANTIATE_TEST_SUITE_P(Parts, RandomTrees, testing::Range(0, kParts));

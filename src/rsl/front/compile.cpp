@@ -3,6 +3,7 @@
 #include "rsl/front/classes.h"
 #include "rsl/front/inspect.h"
 #include "rsl/front/lint.h"
+#include "rsl/front/prelude.h"
 #include <algorithm>
 
 namespace alpenglow::rsl {
@@ -43,6 +44,7 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
     Preprocessed p = preprocess(sources, main, options);
     program->preprocessed = p.text();
     program->dependencies.insert(program->dependencies.end(), p.dependencies.begin(), p.dependencies.end());
+    addPrelude(sources, p);
     Unit unit = Parser(p, sources).parse();
     lowerStructs(unit, sources);
     expandClasses(unit, sources);

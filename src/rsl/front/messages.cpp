@@ -99,6 +99,7 @@ constexpr MessageKind kKinds[] = {
     {"struct-value", "expected structure '*', not *"},
     {"struct-value", "structure '*' has * members, not *"},
     {"no-such-member", "* has no member '*'"},
+    {"no-such-method", "structure '*' has no method '*'"},
     {"two-members", "there are two members called '*'"},
     {"member-dot", "'.' is the dot product"},
     {"member-of-nothing", "'->' needs a structure or a shader, not *"},

@@ -67,6 +67,7 @@ private:
     void recover();
     void skippedFrom(size_t begin); ///< the tokens from there to here were not understood
     bool atTypeName(size_t k = 0) const;
+    bool atStructWord() const { return at("struct") && structs_.count(std::string(peek(1).text)) && peek(2).kind == Tok::Identifier; }
     bool atName() const;        ///< of a variable to be declared; old shaders call theirs vector, normal, matrix
     const Token& takeName();
     Base takeBase();                          ///< sets handle_
@@ -79,6 +80,7 @@ private:
     bool plugin(); ///< at `plugin "name"`, which may stand at file level and where statements stand
     void structure();    // parser_objects.cpp
     void shaderObject();
+    void takeAccess();
     std::unique_ptr<Function> function(const Specifiers&, Type, bool typed);
     void parameters(Owner, std::vector<ShaderParameter>* shader, std::vector<Symbol*>* function);
     Specifiers specifiers();
@@ -138,6 +140,7 @@ private:
     bool tooDeep_ = false;
     Owner owner_;                 ///< of the function or shader being read
     std::unordered_set<std::string_view> typeWords_; ///< variables of it called like the types that came later
+    bool inObject_ = false;       ///< `this` is the shader object being read
     bool handle_ = false;         ///< the last type taken was `shader`
     bool returnsValue_ = false;   ///< a `return expression` was seen in it
     std::unordered_map<std::string, int> structs_; ///< index in Unit::structs

@@ -155,7 +155,16 @@ ExprPtr Parser::castExpression() {
 }
 
 ExprPtr Parser::postfix() {
-    auto e = primary();
+    ExprPtr e;
+    if (inObject_ && at("this")) {
+        if (peek(1).is("->") && peek(2).kind == Tok::Identifier) take(), take(); // a member or a method of its own
+        else {
+            e = node(ExprKind::String, take().place);
+            e->text = "(this)";
+            e->handle = true;
+        }
+    }
+    if (!e) e = primary();
     for (;;) {
         if (at("[")) {
             auto index = node(ExprKind::Index, take().place);

@@ -1,6 +1,7 @@
 // Definitions of structures and of shader objects.
 #include "base/limits.h"
 #include "rsl/front/parser.h"
+#include <utility>
 
 namespace alpenglow::rsl::front {
 
@@ -15,17 +16,35 @@ void Parser::structure() {
     type.name = std::string(name.text);
     type.place = name.place;
     const int errors = sources_.errors();
+    std::vector<size_t> methods; // read once all members are known
+    const auto skipMethod = [&](size_t begin) {
+        methods.push_back(begin);
+        take();
+        skipBalanced();
+        if (at("{")) skipBalanced();
+        else expectSemicolon("the parameters of a method");
+    };
     while (!accept("}")) {
         if (peek().kind == Tok::End) failHere("expected '}' of structure '" + type.name + "'");
         const size_t before = at_;
         try {
             if (accept(";") || accept(",")) continue;
+            takeAccess();
+            const size_t begin = at_;
             const Specifiers s = specifiers();
+            if (peek().kind == Tok::Identifier && peek(1).is("(")) { skipMethod(begin); continue; }
+            if (at(type.name) && peek(1).kind == Tok::Identifier && peek(2).is("(")) { take(); skipMethod(begin); continue; }
             if (at(type.name) && !structs_.count(type.name) && peek(1).kind == Tok::Identifier)
                 fail(peek().place, "a structure cannot contain itself");
             if (!atTypeName()) failHere("expected the type of a member");
             const Base base = takeBase();
             const bool handle = handle_;
+            if (peek().kind == Tok::Identifier && peek(1).is("(")) { skipMethod(begin); continue; }
+            if (at("[") && peek(1).is("]") && peek(2).kind == Tok::Identifier && peek(3).is("(")) {
+                take(), take();
+                skipMethod(begin);
+                continue;
+            }
             if (base == Base::Void) fail(s.place, "a member cannot be void");
             const Type group = dimensions({base, 0});
             do {
@@ -50,7 +69,7 @@ void Parser::structure() {
         }
     }
     accept(";");
-    if (type.members.empty() && sources_.errors() == errors) sources_.error(type.place, "structure '" + type.name + "' has no members");
+    if (type.members.empty() && methods.empty() && sources_.errors() == errors) sources_.error(type.place, "structure '" + type.name + "' has no members");
     if (unit_.structs.size() >= size_t(limits::kStructs)) {
         sources_.error(type.place, "a shader has at most " + std::to_string(limits::kStructs) + " structures");
         unit_.incomplete = true;
@@ -59,7 +78,32 @@ void Parser::structure() {
     if (const auto old = structs_.find(type.name); old != structs_.end())
         sources_.error(type.place, "structure '" + type.name + "' is defined already");
     structs_[type.name] = int(unit_.structs.size());
+    const size_t index = unit_.structs.size(), behind = at_;
     unit_.structs.push_back(std::move(type));
+    const bool inObject = std::exchange(inObject_, false);
+    for (const size_t begin : methods) {
+        at_ = begin;
+        try {
+            const Specifiers s = specifiers();
+            const bool typed = !(peek().kind == Tok::Identifier && peek(1).is("("));
+            Type result{};
+            handle_ = false;
+            if (typed) {
+                result.base = takeBase();
+                result = dimensions(result);
+            }
+            if (auto f = function(ofType(s), result, typed)) unit_.structs[index].methods.push_back(std::move(f));
+        } catch (const SyntaxError&) {
+            if (tooDeep_) throw;
+        }
+    }
+    inObject_ = inObject;
+    at_ = behind;
+}
+
+/// "public" and "private" of members: what is public is what others see, and the rest they do not; nothing else depends on it here.
+void Parser::takeAccess() {
+    if ((at("public") || at("private")) && peek(1).kind == Tok::Identifier) take();
 }
 
 /// At "class": class name(parameters) { members; methods }
@@ -75,6 +119,7 @@ void Parser::shaderObject() {
     if (!at("{")) failHere("expected '{' of class '" + s.name + "'");
     s.body = make(StmtKind::Block, take().place);
     std::vector<StmtPtr> methods;
+    inObject_ = true;
     while (!accept("}")) {
         if (peek().kind == Tok::End) {
             sources_.error(peek().place, "expected '}' before the end of the file",
@@ -89,6 +134,7 @@ void Parser::shaderObject() {
                 structure();
                 continue;
             }
+            if (at("private")) takeAccess();
             const bool isPublic = at("public");
             StmtPtr member;
             if (isPublic ? peek(2).is("(") && peek(1).kind == Tok::Identifier : peek().kind == Tok::Identifier && peek(1).is("(")) {
@@ -121,6 +167,7 @@ void Parser::shaderObject() {
     // Methods see all members, wherever these stand.
     for (auto& m : methods) s.body->body.push_back(std::move(m));
     owner_ = {};
+    inObject_ = false;
     unit_.classes.push_back(std::move(c));
 }
 

@@ -7,6 +7,7 @@ namespace alpenglow::rsl::front {
 
 void Lowering::run() {
     for (size_t i = 0; i < unit_.structs.size(); ++i) checkType(i);
+    methods();
     for (const auto& f : unit_.functions) note(*f);
     for (const auto& s : unit_.shaders)
         for (const auto& f : s->nested) note(*f);
@@ -109,6 +110,14 @@ Type Lowering::typeOf(const Expr& e) const {
             if (f->second.parameters.size() == e.args.size() && isStruct(f->second.type)) return f->second.type;
         if (e.text == "pop" && e.args.size() == 1)
             if (const Type t = typeOf(*e.args[0]); isStruct(t) && t.array) return {t.base, 0};
+        return kNone;
+    }
+    case ExprKind::Method: {
+        const Type t = typeOf(*e.args[0]);
+        if (!isStruct(t) || t.array) return kNone;
+        const auto [from, to] = functions_.equal_range(structOf(t).name + "->" + e.text);
+        for (auto f = from; f != to; ++f)
+            if (f->second.parameters.size() == e.args.size() && isStruct(f->second.type)) return f->second.type;
         return kNone;
     }
     case ExprKind::Conditional: return typeOf(*e.args[1]);

@@ -20,6 +20,7 @@ struct StructMember {
 struct StructType {
     std::string name;
     std::vector<StructMember> members;
+    std::vector<std::unique_ptr<Function>> methods;
     Place place;
 };
 

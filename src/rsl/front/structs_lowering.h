@@ -60,6 +60,13 @@ private:
     void defaults(Type t, Place place, List& pre, List& out);
     bool hasDefaults(Type t) const;
 
+    // structs_methods.cpp
+    /// Methods to functions of the unit, called "Structure->method".
+    void methods();
+    void methodCall(Expr&);
+    void regions(Expr& call);
+    void gatherRegion(Stmt&);
+
     // structs_values.cpp
     /// An expression for a variable of any type, in its parts.
     void valueOf(ExprPtr e, Type want, List& pre, List& out);

@@ -63,6 +63,7 @@ void Lowering::declare(StmtPtr s, std::vector<StmtPtr>& out) {
 void Lowering::expression(StmtPtr s, std::vector<StmtPtr>& out) {
     List pre;
     Expr& e = *s->value;
+    methodCall(e);
     const bool call = e.kind == ExprKind::ShadeopCall;
     if (call && (e.text == "push" || e.text == "resize" || e.text == "reserve") && e.args.size() == 2 &&
         isStruct(typeOf(*e.args[0]))) {
@@ -125,6 +126,7 @@ void Lowering::statement(StmtPtr s, std::vector<StmtPtr>& target) {
     }
     default:
         for (ExprPtr* e : {&s->condition, &s->init, &s->step, &s->value, &s->category}) rewrite(*e);
+        if (s->kind == StmtKind::Gather) gatherRegion(*s);
         for (auto& e : s->exprs) rewrite(e);
         for (auto& p : s->pairs) rewrite(p.value);
         for (auto& b : s->body) body(b);

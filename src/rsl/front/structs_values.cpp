@@ -74,6 +74,7 @@ void Lowering::flatten(ExprPtr e, List& pre, List& out) {
         if (sources_.errors() == 0) sources_.error(place, "expected a structure");
         return;
     }
+    methodCall(*e);
     switch (e->kind) {
     case ExprKind::Variable:
         for (const Leaf& l : leaves(type)) out.push_back(variable(e->text + l.path, place));
@@ -256,6 +257,8 @@ void Lowering::rewrite(ExprPtr& e) {
         return;
     }
     List pre;
+    methodCall(*e);
+    regions(*e);
     if (e->kind == ExprKind::Binary && e->op == ExprOp::Dot && isStruct(typeOf(*e->args[0]))) {
         sources_.error(e->place, "'.' is the dot product", "a member of a structure is read by '->'");
         e = variable("", e->place);

@@ -1,0 +1,80 @@
+#include "rsl/front/prelude.h"
+#include <iterator>
+
+namespace alpenglow::rsl::front {
+
+namespace {
+
+struct BuiltIn { const char* name; const char* text; };
+
+// filterregion: where a shader wants a map to be read, as four corners in s and t or as four directions or points; `blurred` is given
+// to the map as its "blur", and spread is the half angle of the cone of directions.
+// __radiancesample: a direction with what a light sends from there and what a surface makes of it.
+constexpr BuiltIn kBuiltIns[] = {{"filterregion", R"(
+struct filterregion {
+    varying float s1 = 0, t1 = 0, s2 = 0, t2 = 0, s3 = 0, t3 = 0, s4 = 0, t4 = 0;
+    varying vector v1 = 0, v2 = 0, v3 = 0, v4 = 0, centre = 0;
+    varying float blurred = 0, spread = 0;
+    public void calculate2d(varying float x, y) {
+        extern float du, dv;
+        float ax = 0.5 * Du(x) * du, ay = 0.5 * Du(y) * du, bx = 0.5 * Dv(x) * dv, by = 0.5 * Dv(y) * dv;
+        s1 = x - ax - bx; s2 = x + ax - bx; s3 = x - ax + bx; s4 = x + ax + bx;
+        t1 = y - ay - by; t2 = y + ay - by; t3 = y - ay + by; t4 = y + ay + by;
+        centre = vector(x, y, 0);
+        blurred = 0;
+    }
+    public void calculate3d(varying vector x) {
+        extern float du, dv;
+        vector a = 0.5 * Du(x) * du, b = 0.5 * Dv(x) * dv;
+        v1 = x - a - b; v2 = x + a - b; v3 = x - a + b; v4 = x + a + b;
+        centre = x;
+        spread = atan(max(length(a), length(b)), length(x));
+        blurred = 0;
+    }
+    public void calculate3d(varying vector x; varying vector other) { calculate3d(x); }
+    public void scale(float x, y) {
+        float ms = 0.25 * (s1 + s2 + s3 + s4), mt = 0.25 * (t1 + t2 + t3 + t4);
+        s1 = mix(ms, s1, x); s2 = mix(ms, s2, x); s3 = mix(ms, s3, x); s4 = mix(ms, s4, x);
+        t1 = mix(mt, t1, y); t2 = mix(mt, t2, y); t3 = mix(mt, t3, y); t4 = mix(mt, t4, y);
+        float k = max(x, y);
+        v1 = centre + k * (v1 - centre); v2 = centre + k * (v2 - centre);
+        v3 = centre + k * (v3 - centre); v4 = centre + k * (v4 - centre);
+        spread *= k;
+    }
+    public void scale(float k) { scale(k, k); }
+    public void blur(float b) { blurred += b; spread += b; }
+    public void blur(float x, y) { blur(max(x, y)); }
+}
+)"},
+                                 {"__radiancesample", R"(
+struct __radiancesample {
+    varying vector direction = 0;
+    varying float distance = 1e38;
+    varying color radiance = 0;
+    varying color materialResponse = 0;
+    varying float materialPdf = 0, lightPdf = 0;
+    public void setMaterialResponse(varying color response; varying float pdf) { materialResponse = response; materialPdf = pdf; }
+    public void setLightRadiance(varying color light; varying float pdf) { radiance = light; lightPdf = pdf; }
+}
+)"}};
+
+} // namespace
+
+void addPrelude(SourceSet& sources, Preprocessed& p) {
+    for (const BuiltIn& b : kBuiltIns) {
+        bool named = false, defined = false;
+        for (size_t i = 0; i < p.tokens.size(); ++i) {
+            if (p.tokens[i].kind != Tok::Identifier || p.tokens[i].text != b.name) continue;
+            named = true;
+            defined |= i > 0 && p.tokens[i - 1].is("struct");
+        }
+        if (!named || defined) continue;
+        Preprocessed own = preprocess(sources, sources.add(std::string("<") + b.name + ">", b.text), {});
+        own.tokens.pop_back(); // the end
+        const size_t count = own.tokens.size();
+        p.tokens.insert(p.tokens.begin(), std::make_move_iterator(own.tokens.begin()), std::make_move_iterator(own.tokens.end()));
+        for (Annotation& a : p.annotations) a.token += count;
+    }
+}
+
+} // namespace alpenglow::rsl::front

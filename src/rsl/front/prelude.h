@@ -1,0 +1,10 @@
+// Structures that the language has of itself. They are written in it, and read before a text that speaks of them.
+#pragma once
+#include "rsl/front/preprocessor.h"
+
+namespace alpenglow::rsl::front {
+
+/// Puts the definitions of the built-in structures that the text names before it (RSL 2: filterregion, __radiancesample).
+void addPrelude(SourceSet&, Preprocessed&);
+
+} // namespace alpenglow::rsl::front

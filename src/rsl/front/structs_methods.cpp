@@ -1,0 +1,216 @@
+// Methods of structures: each becomes a function whose first parameter, "this", is the structure. Bare names of members and methods
+// in its body mean those of this structure, unless a parameter or a local variable hides them.
+#include "rsl/front/clone.h"
+#include "rsl/front/structs_lowering.h"
+#include <set>
+#include <utility>
+
+namespace alpenglow::rsl::front {
+
+namespace {
+
+/// Writes "this->" before the names that mean it, and notes whether the structure may be changed.
+class Selfs {
+public:
+    Selfs(const StructType& type, const std::set<std::string>& changing, const std::set<std::string>& methods)
+        : type_(type), changing_(changing), methods_(methods) {}
+
+    bool changes = false;
+
+    void run(Function& f) {
+        hidden_.emplace_back();
+        for (const Symbol* p : f.parameters) hidden_.back().insert(p->name);
+        statement(f.body);
+        hidden_.pop_back();
+    }
+
+private:
+    bool isHidden(const std::string& name) const {
+        for (const auto& h : hidden_)
+            if (h.count(name)) return true;
+        return false;
+    }
+
+    bool isMember(const std::string& name) const {
+        for (const StructMember& m : type_.members)
+            if (m.name == name) return true;
+        return false;
+    }
+
+    static bool ofThis(const Expr& e) {
+        const Expr* r = &e;
+        while ((r->kind == ExprKind::Index || r->kind == ExprKind::Member) && !r->args.empty()) r = r->args[0].get();
+        return r->kind == ExprKind::Variable && r->text == "this";
+    }
+
+    /// May a call of this function change an argument?
+    bool putsOut(const std::string& name) const {
+        const Shadeop* op = findShadeop(name);
+        if (!op) return true; // the text's own, or a plug-in's
+        for (const Signature& s : op->signatures)
+            for (const Parameter& p : s.parameters)
+                if (p.output) return true;
+        return false;
+    }
+
+    void expression(ExprPtr& e) {
+        if (!e) return;
+        if (e->kind == ExprKind::Variable && e->text != "this" && isMember(e->text) && !isHidden(e->text)) {
+            auto m = node(ExprKind::Member, e->place);
+            m->text = e->text;
+            adopt(*m, variable("this", e->place));
+            e = std::move(m);
+            return;
+        }
+        if (e->kind == ExprKind::ShadeopCall && methods_.count(e->text) && !isHidden(e->text)) {
+            auto m = node(ExprKind::Method, e->place);
+            m->text = e->text;
+            adopt(*m, variable("this", e->place));
+            for (auto& a : e->args) adopt(*m, std::move(a));
+            e = std::move(m);
+        }
+        for (auto& a : e->args) expression(a);
+        for (ExprPtr* x : {&e->space, &e->channel}) expression(*x);
+        for (auto& p : e->pairs) expression(p.value);
+        for (const auto& a : e->args)
+            if (a) e->height = std::max(e->height, a->height + 1);
+        const bool call = e->kind == ExprKind::ShadeopCall;
+        if (e->kind == ExprKind::Assign) changes |= ofThis(*e->args[0]);
+        if (e->kind == ExprKind::Method && ofThis(*e->args[0]))
+            changes |= e->args[0]->kind != ExprKind::Variable || changing_.count(e->text);
+        if (call && putsOut(e->text))
+            for (const auto& a : e->args) changes |= ofThis(*a);
+        if (call && !e->args.empty() && e->args[0]->kind == ExprKind::String)
+            for (const auto& a : e->args) changes |= ofThis(*a) && a != e->args[0]; // behind a token that may be an output
+    }
+
+    void statement(StmtPtr& s) {
+        if (!s) return;
+        const bool block = s->kind == StmtKind::Block;
+        if (block) hidden_.emplace_back();
+        for (ExprPtr* e : {&s->condition, &s->init, &s->step, &s->value, &s->category}) expression(*e);
+        for (auto& e : s->exprs) expression(e);
+        for (auto& p : s->pairs) expression(p.value);
+        for (auto& d : s->declarators) {
+            expression(d.init);
+            hidden_.back().insert(d.symbol->name);
+        }
+        if (s->definition) {
+            hidden_.back().insert(s->definition->name);
+            run(*s->definition);
+        }
+        for (auto& b : s->body) statement(b);
+        statement(s->elseBody);
+        if (block) hidden_.pop_back();
+    }
+
+    const StructType& type_;
+    const std::set<std::string>& changing_;
+    const std::set<std::string>& methods_;
+    std::vector<std::set<std::string>> hidden_;
+};
+
+} // namespace
+
+void Lowering::methods() {
+    for (size_t i = 0; i < unit_.structs.size(); ++i) {
+        StructType& type = unit_.structs[i];
+        std::set<std::string> names, changing;
+        for (const auto& f : type.methods) names.insert(f->name);
+        // A method that calls one that changes the structure changes it, too.
+        for (size_t before = size_t(-1); before != changing.size();) {
+            before = changing.size();
+            for (auto& f : type.methods) {
+                Selfs selfs(type, changing, names);
+                selfs.run(*f);
+                if (selfs.changes) changing.insert(f->name);
+            }
+        }
+        for (auto& f : type.methods) {
+            auto self = std::make_unique<Symbol>();
+            self->name = "this";
+            self->type = {structBase(i), 0};
+            self->origin = Symbol::Origin::FunctionParameter;
+            self->output = changing.count(f->name) > 0;
+            self->place = f->place;
+            f->parameters.insert(f->parameters.begin(), self.get());
+            f->symbols.push_back(std::move(self));
+            f->name = type.name + "->" + f->name;
+            unit_.functions.push_back(std::move(f));
+        }
+        type.methods.clear();
+    }
+}
+
+/// x->f(a) for a structure x is f(x, a).
+void Lowering::methodCall(Expr& e) {
+    if (e.kind != ExprKind::Method) return;
+    const Type t = typeOf(*e.args[0]);
+    if (!isStruct(t)) return;
+    e.kind = ExprKind::ShadeopCall;
+    const std::string name = structOf(t).name + "->" + e.text;
+    if (t.array) {
+        sources_.error(e.place, "this is an array of " + shown(t), "its elements have methods: a[i]->" + e.text + "()");
+    } else if (functions_.count(name)) {
+        e.text = name;
+        return;
+    } else {
+        std::vector<std::string> names;
+        for (const auto& [n, f] : functions_)
+            if (n.rfind(structOf(t).name + "->", 0) == 0) names.push_back(n.substr(structOf(t).name.size() + 2));
+        const std::string near = nearestName(e.text, names);
+        sources_.error(e.place, shown(t) + " has no method '" + e.text + "'", near.empty() ? "" : "did you mean '" + near + "'?");
+    }
+    e.text.clear(); // nothing more is said about this call
+}
+
+/// Where a function of the renderer is asked about a region instead of a point, the parts of the region that it understands.
+void Lowering::regions(Expr& call) {
+    if (call.kind != ExprKind::ShadeopCall || structNamed("filterregion") < 0 || functions_.count(call.text)) return;
+    const Base region = structBase(size_t(structNamed("filterregion")));
+    std::vector<ExprPtr> given = std::move(call.args);
+    call.args.clear();
+    const auto part = [&](const Expr& of, const char* name) {
+        auto m = node(ExprKind::Member, of.place);
+        m->text = name;
+        adopt(*m, clone(of));
+        return m;
+    };
+    ExprPtr blur;
+    for (auto& a : given) {
+        if (const Type t = typeOf(*a); t.base != region || t.array || !isStruct(t)) {
+            adopt(call, std::move(a));
+            continue;
+        }
+        std::vector<const char*> parts = {"centre"};
+        if (call.text == "texture") parts = {"s1", "t1", "s2", "t2", "s3", "t3", "s4", "t4"};
+        if (call.text == "environment" || call.text == "shadow") parts = {"v1", "v2", "v3", "v4"};
+        for (const char* p : parts) adopt(call, part(*a, p));
+        if (parts.size() > 1 && !blur) blur = part(*a, "blurred");
+    }
+    if (!blur) return;
+    auto token = node(ExprKind::String, call.place);
+    token->text = "blur";
+    adopt(call, std::move(token));
+    adopt(call, std::move(blur));
+}
+
+/// gather(category, P, region, samples): a direction and the angle about it.
+void Lowering::gatherRegion(Stmt& s) {
+    const int index = structNamed("filterregion");
+    for (size_t i = 0; index >= 0 && i < s.exprs.size(); ++i) {
+        const Type t = typeOf(*s.exprs[i]);
+        if (t.base != structBase(size_t(index)) || t.array) continue;
+        auto angle = node(ExprKind::Member, s.exprs[i]->place);
+        angle->text = "spread";
+        adopt(*angle, clone(*s.exprs[i]));
+        auto centre = node(ExprKind::Member, s.exprs[i]->place);
+        centre->text = "centre";
+        adopt(*centre, std::move(s.exprs[i]));
+        s.exprs[i] = std::move(centre);
+        s.exprs.insert(s.exprs.begin() + long(i) + 1, std::move(angle));
+        return;
+    }
+}
+
+} // namespace alpenglow::rsl::front

@@ -1,5 +1,6 @@
 // illuminance in all its forms, and lights by their handles. A large floor y = 0 seen at the origin; a point light of intensity I at
 // height h straight above gives Cl = I / h^2 there, L = (0, h, 0). Under path the same, for nothing lies between.
+#include "base/limits.h"
 #include "transport/harness.h"
 
 using namespace alpenglow;
@@ -342,6 +343,54 @@ TEST(LightHandles, LoopsByHand) {
         expectEverywhere(scene(lights, "\"byhand\""), Color(c.want), c.body);
     }
 }
+// The limit of handles: the rest is left out, and said.
+TEST(LightHandles, NoMoreThanTheLimit) {
+    writeLights();
+    std::string lights;
+    for (int i = 0; i < limits::kLightHandles + 3; ++i) lights += flat(i + 1, 1);
+    surfaceOf("many", "    shader l[] = getlights(); Ci = arraylength(l);");
+    Scene s(scene(lights, "\"many\""), under(Hider::Hidden));
+    EXPECT_NEAR(s.one(kView).x, limits::kLightHandles, 1e-4);
+    EXPECT_NE(s.messages().find("getlights() gives no more than"), std::string::npos) << s.messages();
+}
+// More light samples than are kept for the next loop: those that are not kept are taken anew, and the sum is the same.
+TEST(Illuminance, MoreLightsThanAreKept) {
+    writeLights();
+    std::string lights;
+    const int count = int(limits::kLightCache) + 20;
+    for (int i = 0; i < count; ++i) lights += flat(i + 1, 1);
+    surfaceOf("twice", "    illuminance(P) Ci += Cl; illuminance(P) Ci += 2 * Cl;");
+    Scene s(scene(lights, "\"twice\""), under(Hider::Hidden));
+    EXPECT_NEAR(s.one(kView).x, 3 * count, 1e-2);
+}
+// Lights with several samples give as many turns, and the kept samples are those of the first loop: a difference of two loops is nothing.
+TEST(Illuminance, SamplesAreKeptOneByOne) {
+    surfaceOf("difference", "    color a = 0, b = 0; illuminance(P) { a += Cl * length(L); } illuminance(P) { b += Cl * length(L); } Ci = abs(comp(a - b, 0)); Ci += a;");
+    const std::string disk = "AttributeBegin\nAttribute \"light\" \"integer samples\" [5]\nAreaLightSource \"slrect\" 7\nSurface \"constant\"\nColor 0 0 0\n"
+                             "Translate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\nAttributeEnd\nIlluminate 7 1\n";
+    surfaceOf("samesum", "    illuminance(P) { Ci += Cl * length(L); }");
+    Scene one(scene(disk, "\"samesum\""), under(Hider::Hidden)), two(scene(disk, "\"difference\""), under(Hider::Hidden));
+    const float want = one.one(kView).x;
+    EXPECT_GT(want, 0);
+    EXPECT_EQ(two.one(kView).x, want);
+}
+// What does not fit is said where it stands.
+TEST(Illuminance, PairsThatMeanNothingAreSaid) {
+    writeLights();
+    const struct { const char* body; const char* said; } cases[] = {
+        {"illuminance(P, \"lightcache\", \"maybe\") Ci += Cl;", "\"reuse\" or \"refresh\""},
+        {"illuminance(P, \"shadow\", 1) Ci += Cl;", "means nothing to illuminance"},
+        {"float a[2] = {1, 2}; illuminance(P, \"send:light:c\", a) Ci += Cl;", "only single values can be sent"},
+        {"string s = format(\"%f\", xcomp(P)); illuminance(P, \"send:light:mode\", s) Ci += Cl;", "it is not sent"},
+        {"Ci = 1 + islightcategory(\"a\");", "there is none here"}};
+    for (const auto& c : cases) {
+        surfaceOf("unfit", std::string("    ") + c.body);
+        Scene s(scene(flat(1, 1), "\"unfit\""), under(Hider::Hidden));
+        EXPECT_NEAR(s.one(kView).x, 1, 1e-5) << c.body;
+        EXPECT_NE(s.messages().find(c.said), std::string::npos) << c.body << s.messages();
+    }
+}
+
 // Under path the light that a handle gives has its shadow.
 TEST(LightHandles, CastShadows) {
     writeLights();

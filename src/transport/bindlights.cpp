@@ -78,7 +78,9 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
             for (const geometry::Shape* s : emitters[int(li)]) seen.push_back(visibility(*s));
             l.emitter = std::make_shared<Emitter>(emitters[int(li)], std::move(seen));
         }
-        l.samples = std::clamp(int(numberOf(source.attributes, "light:samples", 1)), 1, 1024);
+        l.samples = std::clamp(int(numberOf(source.attributes, "light:samples", numberOf(source.attributes, "light:nsamples", 1))), 1, 1024);
+        if (const scene::Param* p = source.attributes ? source.attributes->value("light:shadows") : nullptr; p && !path)
+            l.shadows = !p->strings.empty() ? p->strings[0] == "on" : !p->numbers.empty() && p->numbers[0] != 0;
         if (const scene::Param* p = source.attributes ? source.attributes->value("light:samplingstrategy") : nullptr; p && !p->strings.empty()) {
             if (p->strings[0] == "trace") l.strategy = LightStrategy::Trace;
             else if (p->strings[0] == "illuminance") l.strategy = LightStrategy::Illuminance;

@@ -147,6 +147,8 @@ private:
     LitSurface litSurface(BatchContext&, const LightLoop&, const std::vector<int>& points, int first, int lanes) const;
     void evaluateForLoop(BatchContext&, const LightLoop&, int light, int first, int lanes, std::vector<ShadePoint>&, const std::vector<int>& laneOf,
                          std::vector<LightValue>&, std::vector<float>& values);
+    /// Takes from the values of one light what stands between it and the points that it lights.
+    void shadowLoop(const BatchContext&, const BoundLight&, int first, std::span<const ShadePoint>, std::span<const int> laneOf, std::span<LightValue>);
     /// Sample `turn` of `turns` of a light for the points of a mask, into `kept`; gives the points that it lights.
     uint64_t sampleLight(BatchContext&, const LightLoop&, int light, int turn, int turns, int first, uint64_t mask, int lanes, LightLoop::Kept& kept);
     uint64_t sentKey(const BatchContext&, const LightLoop&) const;

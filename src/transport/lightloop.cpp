@@ -198,6 +198,27 @@ void Engine::evaluateForLoop(BatchContext& c, const LightLoop& loop, int li, int
     }
 }
 
+void Engine::shadowLoop(const BatchContext& c, const BoundLight& light, int first, std::span<const ShadePoint> q, std::span<const int> laneOf,
+                        std::span<LightValue> v) {
+    std::vector<ShadowRay> rays;
+    std::vector<size_t> of;
+    for (size_t i = 0; i < q.size(); ++i) {
+        if (!v[i].lit || !(maxComponent(v[i].Cl) > 0)) continue;
+        const ShadePoint& lit = c.points[size_t(first + laneOf[i])];
+        const Vec3 to = -v[i].L;
+        const float far = length(to);
+        if (!(far > 0)) continue;
+        const Vec3 w = to / far;
+        const Vec3 o = geometry::offsetOrigin(lit.surface, w, length(q[i].Ps - lit.surface.P));
+        const float distance = light.kind == LightKind::Distant ? 1e38f : light.kind == LightKind::Area ? far * (1 - 1e-4f) : far * (1 - 1e-5f);
+        rays.push_back({o, w, distance, Color(1), shading::kNoTarget, lit.time, lit.ray});
+        of.push_back(i);
+    }
+    std::vector<Color> left(rays.size());
+    transmittances(rays, left);
+    for (size_t k = 0; k < of.size(); ++k) v[of[k]].Cl *= left[k];
+}
+
 uint64_t Engine::sampleLight(BatchContext& c, const LightLoop& loop, int li, int turn, int turns, int first, uint64_t mask, int lanes, LightLoop::Kept& kept) {
     const BoundLight& light = world_->lights_[size_t(li)];
     auto row = [&](int r, int lane) { return loop.rows[size_t(r) * size_t(lanes) + size_t(lane)]; };
@@ -253,6 +274,7 @@ uint64_t Engine::sampleLight(BatchContext& c, const LightLoop& loop, int li, int
     std::vector<LightValue> v;
     std::vector<float> values;
     evaluateForLoop(c, loop, li, first, lanes, q, laneOf, v, values);
+    if (light.shadows) shadowLoop(c, light, first, q, laneOf, v);
     for (size_t i = 0; i < q.size(); ++i) {
         const size_t lane = size_t(laneOf[i]);
         std::copy_n(values.begin() + long(i) * light.valueWidth, light.valueWidth, kept.values.begin() + long(lane) * light.valueWidth);

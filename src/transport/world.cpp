@@ -65,7 +65,8 @@ uint32_t visibilityOf(const scene::Attributes& a, bool path) {
     if (on("specular", traced)) bits |= accel::kSpecular;
     // Under path shadow rays are the renderer's own; elsewhere they are traced only when asked for, and old files that ask
     // (transmission(), trace()) without saying who may be seen mean everything.
-    if (on("transmission", true)) bits |= accel::kTransmission;
+    const scene::Param* casts = a.value("render:casts_shadows"); // BMRT's word
+    if (on("transmission", true) && !(casts && !casts->strings.empty() && casts->strings[0] == "none")) bits |= accel::kTransmission;
     return bits;
 }
 
@@ -472,7 +473,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
 void WorldImpl::bindOpacity(SurfaceBinding& b, const geometry::Shape& shape, const std::vector<std::string>& varying, Engine& engine, Diagnostics& d) {
     const scene::Attributes& a = shape.attributes();
     std::string mode = "shader";
-    for (const char* name : {"shade:transmissionhitmode", "visibility:transmission"}) // PRMan's words, and the older ones
+    for (const char* name : {"render:casts_shadows", "shade:transmissionhitmode", "visibility:transmission"}) // BMRT's, PRMan's, the older ones
         if (const scene::Param* p = a.value(name); p && !p->strings.empty()) mode = p->strings[0];
     std::string what = b.surfaceS.kernel->facts().opacity;
     bool varies = shape.findPrimvar("Os") >= 0;

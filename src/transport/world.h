@@ -85,6 +85,7 @@ struct BoundLight {
     int valueWidth = 0;
     bool asksSurface = false;                  ///< its kernel asks for parameters of the surface that it lights
     bool cone = false;                         ///< Distant: solar() with an angle, which path samples
+    bool shadows = false;                      ///< outside of path: its light is traced (Attribute "light" "shadows" "on")
     /// Kernels for strings that a surface sends: by sentStrings() of the loop.
     std::map<std::string, BoundKernel> variants;
     int nonDiffuse = -1, nonSpecular = -1;     ///< outputs, or -1

@@ -307,6 +307,7 @@ bool Builder::buildShader() {
         return std::all_of(branch->regions.begin(), branch->regions.end(), [&](const Region& r) { return isZero(r.yields[static_cast<size_t>(v->index)]); });
     };
     lightBlocks_.clear();
+    blockRan_ = newSlot(boolean(false));
     if (shader_.kind == ShaderKind::Light && shader_.body) findBlocks(*shader_.body);
     if (shader_.body) statement(*shader_.body);
     place_ = shader_.place;
@@ -323,9 +324,11 @@ bool Builder::buildShader() {
         k_.facts.ambientLight = lightBlocks_.empty();
         for (const LightBlock& b : lightBlocks_)
             k_.facts.blocks.push_back(!b.solar ? "illuminate" : b.stmt->exprs.empty() ? "solar()" : b.cone ? "solar cone" : "solar");
-        // What is left of Cl when all blocks are done was set outside them: ambient light.
+        // Where no block has run, Cl is ambient light.
         const auto cl = globals_.find("Cl");
-        if (!lightBlocks_.empty() && cl != globals_.end() && !isZero(get(cl->second))) k_.facts.blocks.push_back("outside");
+        const Inst* ran = get(blockRan_);
+        const bool always = isConst(ran) && ran->numbers[0] != 0;
+        if (!lightBlocks_.empty() && !always && cl != globals_.end() && !isZero(get(cl->second))) k_.facts.blocks.push_back("outside");
     }
     if (wanted.empty()) {
         switch (shader_.kind) {
@@ -356,12 +359,12 @@ bool Builder::buildShader() {
                 const std::string tail = b ? "#" + std::to_string(b) : std::string();
                 const LightBlock& l = lightBlocks_[b];
                 if (name == "L" + tail) output(name, get(l.L), vector), found = true;
-                if (name == "Cl" + tail) output(name, get(l.Cl), color), found = true;
-                if (name == "Ol" + tail) output(name, get(l.Ol), color), found = true;
+                if (name == "Cl" + tail) output(name, get(l.only ? globals_.at("Cl") : l.Cl), color), found = true;
+                if (name == "Ol" + tail) output(name, get(l.only ? globals_.at("Ol") : l.Ol), color), found = true;
                 if (name == "lit" + tail) output(name, get(l.lit), real), found = true;
             }
             if (name == "Cl#" + std::to_string(lightBlocks_.size()) && k_.facts.blocks.back() == "outside") {
-                output(name, get(globals_.at("Cl")), color);
+                output(name, emit(Op::Select, Kind::Triple, {get(blockRan_), zero(Kind::Triple), get(globals_.at("Cl"))}), color);
                 continue;
             }
             if (found) continue;

@@ -280,9 +280,7 @@ void Builder::lightBlock(const Stmt& s) {
     branch(
         lit,
         [&] {
-            set(slots[0], L);
-            set(slots[1], zero(Kind::Triple));
-            set(slots[2], leaves_.constant(Kind::Triple, 1.0f));
+            set(slots[0], L); // Cl and Ol are as the shader has left them: 0 and 1 at first
             statements(s.body, 0);
             set(litSlot, constant(1));
             set(b.Cl, get(slots[1]));
@@ -293,6 +291,12 @@ void Builder::lightBlock(const Stmt& s) {
         [] { return std::vector<Inst*>{}; });
     set(b.lit, get(litSlot));
     for (int n = 0; n < 3; ++n) set(slots[n], before[n]);
+    set(blockRan_, boolean(true));
+    if (lightBlocks_.size() == 1 && region_ == &k_.body && frames_.size() == 1) { // black outside of the cone (rsl.md 9)
+        lightBlocks_[0].only = true;
+        set(slots[1], get(b.Cl));
+        set(slots[2], get(b.Ol));
+    }
 }
 
 } // namespace alpenglow::rsl::ir

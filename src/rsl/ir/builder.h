@@ -223,8 +223,11 @@ private:
         bool solar;
         int L, Cl, Ol, lit;
         bool cone = false; ///< solar with an angle that may be above 0
+        /// The only block, and one that always runs: what the shader does to Cl and Ol behind it counts too.
+        bool only = false;
     };
     std::vector<LightBlock> lightBlocks_;
+    int blockRan_ = -1; ///< slot: whether a block has run; a light shader is ambient where none has
     std::map<const Function*, Scan> scans_;
     std::map<const Function*, Survey> surveys_;
     std::map<std::pair<const Function*, std::string>, Outlined> outlined_;

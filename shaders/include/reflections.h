@@ -24,8 +24,8 @@ color Environment(string envname, envspace; uniform float envrad; point P; vecto
 color ReflMap(string reflname; point P; float blur; output float alpha)
 {
     point p = transform("NDC", P);
-    alpha = float texture(reflname[3], xcomp(p), ycomp(p), "blur", blur, "fill", 1);
-    return color texture(reflname, xcomp(p), ycomp(p), "blur", blur);
+    alpha = float texture(reflname[3], xcomp(p), 1 - ycomp(p), "blur", blur, "fill", 1);
+    return color texture(reflname, xcomp(p), 1 - ycomp(p), "blur", blur);
 }
 /* What rays find in a cone of about `blur` around Rdir; alpha: how many of them met something. */
 color RayTrace(point P; vector Rdir; float Kr, blur, jitter; uniform float nsamples; output float alpha)

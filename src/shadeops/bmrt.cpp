@@ -43,7 +43,7 @@ float rayhittest(point from; vector dir; output point Ph; output vector Nh) {
         "float fulltrace(point pos; vector dir; output color hitcolor; output float hitdist; output point Phit; output vector Nhit; output point Pmiss; output "
         "vector Rmiss)",
         "Traces a ray from pos along dir. On a hit 1, with the colour, the distance, the point and the normal of the hit; else 0, with Pmiss = pos and Rmiss = dir, "
-        "the ray that saw nothing, and hitcolor the light from there. What does not apply stays as it is.",
+        "the ray that saw nothing, hitcolor the light from there and hitdist above 1e30. What does not apply stays as it is.",
         "BMRT", R"(
 float fulltrace(point pos; vector dir; output color hitcolor; output float hitdist; output point Phit; output vector Nhit; output point Pmiss; output vector Rmiss) {
     float dist = 1e38;
@@ -51,8 +51,8 @@ float fulltrace(point pos; vector dir; output color hitcolor; output float hitdi
     vector d = normalize(dir);
     float found = 0;
     hitcolor = trace(pos, d, dist, "hitnormal", n);
+    hitdist = dist; // published shaders tell a miss by it
     if (dist < 1e30) {
-        hitdist = dist;
         Phit = pos + dist * d;
         Nhit = n;
         found = 1;

@@ -40,22 +40,29 @@ bool isDisplaced(const Shape& s, const DiceOptions& o) { return o.displace && s.
 
 namespace {
 
-// Attribute "displacementbound": a length in camera space, or -1 when none was given. "object" and "shader" scale by the
-// largest stretch of the object's transform; "world", "camera" and "current" are taken as they are, the camera being rigid.
-double displacementBound(const Shape& s) {
-    const scene::Param* sphere = s.attributes().value("displacementbound:sphere");
-    if (!sphere || sphere->numbers.empty()) return -1;
-    const scene::Param* space = s.attributes().value("displacementbound:coordinatesystem");
-    std::string name = space && !space->strings.empty() ? space->strings[0] : "object";
-    double scale = 1;
-    if (name == "object" || name == "shader") {
-        scale = 0;
-        for (int i = 0; i < 3; ++i) {
-            Vec3d axis(i == 0, i == 1, i == 2);
-            scale = std::max(scale, length(transformVector(s.toCamera(), axis)));
-        }
+// Lengths in "object" and "shader" space scale by the largest stretch of the object's transform; "world", "camera" and "current" are
+// taken as they are, the camera being rigid.
+double stretch(const Shape& s, const std::string& space) {
+    if (space != "object" && space != "shader") return 1;
+    double scale = 0;
+    for (int i = 0; i < 3; ++i) {
+        Vec3d axis(i == 0, i == 1, i == 2);
+        scale = std::max(scale, length(transformVector(s.toCamera(), axis)));
     }
-    return double(sphere->numbers[0]) * scale;
+    return scale;
+}
+
+// Attribute "displacementbound" and what the shaders say: a length in camera space, or -1 when neither was given.
+double displacementBound(const Shape& s, const DiceOptions& opt) {
+    const scene::Param* sphere = s.attributes().value("displacementbound:sphere");
+    const scene::Param* space = s.attributes().value("displacementbound:coordinatesystem");
+    const DiceOptions::DeclaredBound declared = opt.declaredBound ? opt.declaredBound(s) : DiceOptions::DeclaredBound{};
+    const bool given = sphere && !sphere->numbers.empty();
+    if (!given && !(declared.radius > 0)) return -1;
+    double bound = 0;
+    if (given) bound += double(sphere->numbers[0]) * stretch(s, space && !space->strings.empty() ? space->strings[0] : "object");
+    if (declared.radius > 0) bound += declared.radius * stretch(s, declared.space.empty() ? "object" : declared.space);
+    return bound;
 }
 
 } // namespace
@@ -65,7 +72,7 @@ void displaceMesh(const Shape& shape, const DiceOptions& opt, Diagnostics& diag,
                   TriMesh& mesh) {
     constexpr uint32_t kRun = 4096; // keeps the full points of a run in the cache, and kernels in wide batches
     uint32_t n = uint32_t(mesh.P.size());
-    double bound = displacementBound(shape), farthest = 0;
+    double bound = displacementBound(shape, opt), farthest = 0;
     size_t notFinite = 0, tooFar = 0;
     for (uint32_t begin = 0; begin < n; begin += kRun) {
         uint32_t count = std::min(kRun, n - begin);

@@ -28,6 +28,12 @@ struct DiceOptions {
     /// Runs the displacement shader of a shape that has one (attributes().displacement). Must be thread safe: shapes are diced
     /// at the same time, a shape's runs one after the other. Null: nothing is displaced.
     std::function<void(const Shape&, DiceGrid&)> displace;
+    /// How far the shaders of a shape say that they move points (rsl.md section 9), and in which space; added to the attribute.
+    struct DeclaredBound {
+        double radius = 0; ///< 0: they say nothing
+        std::string space;
+    };
+    std::function<DeclaredBound(const Shape&)> declaredBound; ///< null: none says anything
 };
 
 /// Edge of a micropolygon in pixels: sqrt(ShadingRate), within limits.

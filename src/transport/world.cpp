@@ -154,7 +154,9 @@ InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind k
         return known;
     };
     for (auto& v : compiler_->parameterDefaults(program, d, spaces)) {
-        if (v.type.base == rsl::Base::String) i->parameters.strings[v.name] = v.strings.empty() ? "" : v.strings[0];
+        if (v.type.base == rsl::Base::String && v.type.array != 0) { // elements have names of their own: "maps[1]"
+            for (size_t e = 0; e < v.strings.size(); ++e) i->parameters.strings[v.name + "[" + std::to_string(e) + "]"] = v.strings[e];
+        } else if (v.type.base == rsl::Base::String) i->parameters.strings[v.name] = v.strings.empty() ? "" : v.strings[0];
         else i->parameters.numbers[v.name] = std::move(v.numbers);
     }
     for (const scene::Param& given : call.params) {
@@ -173,7 +175,9 @@ InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind k
             continue;
         }
         if (p->type.base == rsl::Base::String) {
-            if (!given.strings.empty()) i->parameters.strings[given.name] = given.strings[0];
+            const size_t most = p->type.array ? size_t(std::max(1, p->type.array)) : 1;
+            for (size_t e = 0; e < std::min(most, given.strings.size()); ++e)
+                i->parameters.strings[p->type.array ? given.name + "[" + std::to_string(e) + "]" : given.name] = given.strings[e];
             continue;
         }
         std::vector<float> v = given.numbers;
@@ -299,6 +303,12 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
         if (fresh && !(r->name == "null" && kind != rsl::ShaderKind::Surface)) i->second = w->instance(*r, kind, d);
         return i->second;
     };
+    // What a surface and its co-shaders ask about the primitive, with the type that the first of them wants.
+    const auto asked = [](const ShaderInstance& i) {
+        std::map<std::string, rsl::Type> all = i.program->program().primitiveVariables;
+        for (const rsl::CoShader& c : i.coShaders) all.insert(c.program->primitiveVariables.begin(), c.program->primitiveVariables.end());
+        return all;
+    };
     const auto bindCoShaders = [&](const InstanceRef& i, const scene::Attributes& a) { return w->withCoShaders(i, a, d); };
     InstanceRef fallback = w->builtin(path ? "matte" : "defaultsurface", rsl::ShaderKind::Surface, d);
     if (!fallback) {
@@ -322,6 +332,13 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
         for (const auto& v : shape->primvars())
             for (const auto& p : surface->program->parameters())
                 if (p.name == v.name && p.type.base != rsl::Base::String) varying.push_back(p.name);
+        for (const auto& [name, type] : asked(*surface)) { // getvar(null, name, ...)
+            const int v = shape->findPrimvar(name);
+            const int width = type.base == rsl::Base::Void ? 0 : rsl::componentCount(type.base) * std::max(1, type.array);
+            if (v >= 0 && (width == 0 || width == shape->primvars()[size_t(v)].outWidth()) &&
+                std::find(varying.begin(), varying.end(), name) == varying.end())
+                varying.push_back(name);
+        }
         std::sort(varying.begin(), varying.end());
         std::string key;
         auto add = [&](auto v) { key.append(reinterpret_cast<const char*>(&v), sizeof v); };
@@ -457,6 +474,20 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
         int out = c.batch->output("P");
         for (size_t i = 0; out >= 0 && i < grid.P.size(); ++i) grid.P[i] = c.batch->color(out, int(i));
     };
+    dice.declaredBound = [raw, &bindingOfShape](const geometry::Shape& shape) {
+        geometry::DiceOptions::DeclaredBound bound;
+        const SurfaceBinding& b = raw->bindings_[size_t(bindingOfShape.at(&shape))];
+        const InstanceRef both[] = {b.displacement, b.surface == b.displacement ? nullptr : b.surface};
+        for (const InstanceRef& i : both) {
+            if (!i || !b.displacement || (i == b.surface && !shape.attributes().displacement)) continue; // one class is both
+            const auto number = i->parameters.numbers.find("__displacementbound_sphere");
+            if (number == i->parameters.numbers.end() || number->second.empty()) continue;
+            bound.radius += std::max(0.0, double(number->second[0]));
+            const auto space = i->parameters.strings.find("__displacementbound_coordinatesystem");
+            if (bound.space.empty() && space != i->parameters.strings.end()) bound.space = space->second;
+        }
+        return bound;
+    };
     geometry::diceShapes(w->shapes_, dice, d);
     w->accel_ = std::make_unique<accel::Accel>(w->shapes_, visibility, d);
     w->bindSentStrings(d);
@@ -534,6 +565,8 @@ bool WorldImpl::runImager(int count, const float* x, const float* y, float* r, f
             ShadePoint& s = c.points[size_t(p)];
             int at = begin + p;
             s.P = {x[at], y[at], 0};
+            s.surface.u = s.surface.s = x[at] / float(std::max(1, frame_->options.xres)); // not in RISpec; imagers of Aqsis have them
+            s.surface.v = s.surface.t = y[at] / float(std::max(1, frame_->options.yres));
             s.Ci = {r[at], g[at], b[at]};
             s.Oi = Color(alpha[at]);
             s.alpha = alpha[at];

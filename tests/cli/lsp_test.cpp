@@ -40,7 +40,7 @@ struct Marked {
 class Server : public testing::Test {
 protected:
     fs::path dir;
-    std::string input;
+    std::string input, arguments;
     int ids = 0;
 
     void SetUp() override {
@@ -80,7 +80,7 @@ protected:
     int status = -1;
     std::vector<Json> run() {
         std::ofstream(dir / "in", std::ios::binary) << input;
-        const std::string command = "cd '" + dir.string() + "' && '" + ALPENGLOW_PROGRAM "' lsp < in 2>err";
+        const std::string command = "cd '" + dir.string() + "' && '" + ALPENGLOW_PROGRAM "' lsp " + arguments + " < in 2>err";
         std::string out;
         FILE* p = popen(command.c_str(), "r");
         if (!p) return {};
@@ -223,6 +223,32 @@ TEST_F(Server, UnusedAndUninitialised) {
     EXPECT_EQ(d[0]["tags"][0], 1);
     EXPECT_EQ(d[1]["code"], "uninitialised");
     EXPECT_EQ(d[1]["range"]["start"]["line"], 3);
+}
+
+TEST_F(Server, LightUsedNonLinearly) {
+    begin();
+    open("a.sl", "surface a()\n{\n    color c = trace(P, N);\n    Ci = c * c;\n}\n");
+    open("b.sl", "surface b()\n{\n    color c = trace(P, N);\n    Ci = c * Cs;\n}\n");
+    end();
+    const auto all = run();
+    const Json d = published(all, "a.sl");
+    ASSERT_EQ(d.size(), 1u);
+    EXPECT_EQ(d[0]["code"], "not-affine");
+    EXPECT_EQ(d[0]["range"]["start"]["line"], 2);
+    EXPECT_EQ(published(all, "b.sl").size(), 0u);
+}
+
+TEST_F(Server, Dialect) {
+    begin();
+    open("a.sl", "#ifndef PRMAN\n#error another\n#endif\nsurface a() { Ci = 1; }\n");
+    end();
+    EXPECT_EQ(published(run(), "a.sl").size(), 1u);
+    input.clear();
+    arguments = "--dialect prman";
+    begin();
+    open("a.sl", "#ifndef PRMAN\n#error another\n#endif\nsurface a() { Ci = 1; }\n");
+    end();
+    EXPECT_EQ(published(run(), "a.sl").size(), 0u);
 }
 
 TEST_F(Server, CompletionOfNames) {

@@ -106,6 +106,21 @@ TEST_F(Tools, WarningsOnlyWhenAsked) {
     EXPECT_EQ((*squared)["line"], 3);
 }
 
+TEST_F(Tools, DialectsOfEverySubcommand) {
+    write("a.sl", "#ifdef BMRT\nsurface a(float b = 1;) { Ci = b; Oi = 1; }\n#else\nsurface a(float d = 1;) { Ci = d; Oi = 1; }\n#endif\n");
+    EXPECT_NE(run("info --json a.sl").find("\"d\""), std::string::npos);
+    EXPECT_NE(run("info --json --dialect bmrt a.sl").find("\"b\""), std::string::npos);
+    EXPECT_EQ(status, 0);
+    write("a.rib", "Format 8 8 1\nProjection \"perspective\"\nWorldBegin\nSurface \"a\" \"float b\" [.5]\nTranslate 0 0 3\nSphere 1 -1 1 360\nWorldEnd\n");
+    run("render a.rib -o a.exr");
+    EXPECT_NE(errors().find("has no parameter \"b\""), std::string::npos) << errors();
+    run("render --dialect bmrt a.rib -o a.exr");
+    EXPECT_EQ(errors().find("has no parameter"), std::string::npos) << errors();
+    EXPECT_EQ(status, 0);
+    run("compile --dialect nobody a.sl");
+    EXPECT_EQ(status, 2);
+}
+
 TEST_F(Tools, Info) {
     write("a.sl", "#pragma annotation \"author\" \"nobody\"\n"
                   "surface a(float Kd = 0.5; color tint = color \"hsv\" (0, 0, 1); point from = point \"world\" (1, 2, 3);\n"

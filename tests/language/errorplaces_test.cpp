@@ -3,7 +3,8 @@
 //   == lines NAME      each line that follows is a program of its own: the body of a shader (errors/lines.err tells its variables)
 //   == file NAME       what follows is one program
 //   == lint NAME       one program, with the warnings of `compile -W`
-//   == kernel NAME     one program, also taken as far as code for it, with the warning about light used non-linearly
+//   == kernel NAME     one program, also taken as far as code for it, with the warning about light used non-linearly; the shader
+//                      below is bound to it under the handle "layer"
 // Below a line of a program stands what is expected there: a caret in the column that is meant, then "warning" if it is one, then the
 // id. "^ 7:3 id" names line and column of the program instead. "{{300*(}}" in a program stands for 300 opening parentheses.
 #include "base/limits.h"
@@ -26,6 +27,17 @@ namespace {
 
 const char* const kVariables = "surface t() { float f, g, h; color c, d; point p, q; vector v1, w; normal n; matrix m, mm; string str; float a[4]; "
                                "color ca[3]; shader sh; float open[]; string strs[2];\n";
+
+const char* const kLayer = R"(
+class layer(float gain = 1;)
+{
+    public float count = 0;
+    float hidden = 3;
+    public color tint(color c; float k) { return c * k * hidden; }
+    public void split(float x; output float whole) { whole = floor(x); }
+    public float again(float x) { shader h = getshader("layer"); return h->again(x); }
+    float mine(float x) { return x; }
+})";
 
 /// Line, column, warning, id.
 using Said = std::tuple<int, int, bool, std::string>;
@@ -106,6 +118,10 @@ std::vector<Said> messages(const Bad& b) {
         ShaderCompiler compiler(settings);
         const auto shader = compiler.loadText(b.text, "t.sl", d);
         KernelOptions o;
+        Diagnostics quiet;
+        const auto layer = compiler.loadText(kLayer, "layer.sl", quiet);
+        EXPECT_TRUE(layer);
+        if (shader && shader->program().handles && layer) o.coShaders.push_back(ShaderCompiler::coShader(layer, "layer"));
         if (shader) compiler.analyse(*shader, o, d);
         if (shader)
             if (auto warning = nonlinearUse(shader->program(), shader->shader(), o)) d.report(std::move(*warning));
@@ -171,7 +187,7 @@ TEST(ErrorPlaces, EveryKindOfMessageAndThreeHundredPrograms) {
     EXPECT_GE(wrong, 300);
     // These need files beside the shader, or other renderers' limits: each has a test of its own elsewhere.
     const std::set<std::string> elsewhere = {"pp-include-elsewhere", "pp-include-depth", "shader-too-large", "too-many-errors", "struct-count",
-                                             "plugin-refused", "plugin-missing", "plugin-unusable"};
+                                             "plugin-refused", "plugin-missing", "plugin-unusable", "coshader-depth", "no-code"};
     for (const MessageKind& k : messageKinds())
         if (!elsewhere.count(k.id)) EXPECT_TRUE(ids.count(k.id)) << "no program has the message " << k.id;
 }

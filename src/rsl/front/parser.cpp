@@ -310,6 +310,7 @@ Parser::Specifiers Parser::specifiers() {
         else if (accept("extern")) s.isExtern = true;
         else if (accept("uniform")) s.storage = Storage::Uniform;
         else if (accept("varying")) s.storage = Storage::Varying;
+        else if (atStructWord()) take(); // "struct Name x", as in C
         // Words of later versions: only where a type or another specifier follows are they more than a name.
         else if ((at("constant") || at("const") || at("public")) &&
                  (atTypeName(1) || specifies(peek(1)))) {
@@ -401,7 +402,7 @@ void Parser::parameters(Owner owner, std::vector<ShaderParameter>* shader, std::
                 continue;
             }
             if (accept(",")) continue;
-            const bool newGroup = (atTypeName() && !(base && atName())) || at("output") || at("uniform") || at("varying") || at("extern") ||
+            const bool newGroup = atStructWord() || (atTypeName() && !(base && atName())) || at("output") || at("uniform") || at("varying") || at("extern") ||
                                   ((at("constant") || at("const") || at("public")) && (atTypeName(1) || specifies(peek(1))));
             if (newGroup) {
                 group = specifiers();
@@ -436,7 +437,7 @@ void Parser::parameters(Owner owner, std::vector<ShaderParameter>* shader, std::
                 ExprPtr value = inSpace(at("{") ? arrayList() : assignment(), *base, space.get());
                 if (shader) shader->back().defaultValue = std::move(value);
                 else sources_.warning(value->place, "parameters of functions have no default values; this one is ignored");
-            } else if (shader && !isStruct(type) && type.base != Base::Void && symbol->type.array >= 0) {
+            } else if (shader && !symbol->output && !isStruct(type) && type.base != Base::Void && symbol->type.array >= 0) {
                 sources_.warning(symbol->place, "parameter '" + symbol->name + "' has no default value; it is zero unless set");
             }
             if (at(")") || at(";") || at(",")) continue;

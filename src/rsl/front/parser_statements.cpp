@@ -98,7 +98,7 @@ StmtPtr Parser::statementOnce() {
         if (w == "solar") return lightStatement(StmtKind::Solar);
         if (w == "gather") return lightStatement(StmtKind::Gather);
     }
-    if (w == "uniform" || w == "varying" || w == "extern" || w == "output") return declaration();
+    if (atStructWord() || w == "uniform" || w == "varying" || w == "extern" || w == "output") return declaration();
     if ((w == "constant" || w == "const" || w == "public") && (atTypeName(1) || peek(1).is("uniform") || peek(1).is("varying")))
         return declaration();
     if (atTypeName()) {

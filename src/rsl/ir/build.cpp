@@ -218,17 +218,38 @@ Inst* Builder::constantParameter(const Symbol& s, const std::string& text) {
     return leaves_.constant(k, numbers);
 }
 
+/// The array of texts whose elements are given as "name[0]", "name[1]", ...; null when the first is not.
+Inst* Builder::constantTexts(const std::string& name, int length, std::span<const std::pair<std::string, std::string>> given) {
+    const auto element = [&](int e) -> const std::string* {
+        const std::string wanted = name + "[" + std::to_string(e) + "]";
+        for (const auto& [n, text] : given)
+            if (n == wanted) return &text;
+        return nullptr;
+    };
+    if (!element(0)) return nullptr;
+    Inst* a = newArray(Base::String, length);
+    for (int e = 0; e < length; ++e) {
+        const std::string* text = element(e);
+        emit(Op::ArrayStore, Kind::None, {a, constant(static_cast<float>(e)), leaves_.string(text ? *text : "")});
+    }
+    return a;
+}
+
 Inst* Builder::parameterValue(const ShaderParameter& p) {
     const Symbol& s = *p.symbol;
-    for (const auto& [name, value] : options_.stringParameters)
-        if (name == s.name)
-            if (Inst* c = constantParameter(s, value)) return c;
     Type type = s.type;
     if (type.array < 0)
         type.array = p.defaultValue && p.defaultValue->type.array > 0 ? p.defaultValue->type.array
                      : p.defaultValue && p.defaultValue->kind == ExprKind::ArrayList
                          ? std::max<int>(1, static_cast<int>(p.defaultValue->args.size()))
                          : 1;
+    if (type.array > 0 && type.base == Base::String) {
+        if (Inst* a = constantTexts(s.name, type.array, options_.stringParameters)) return a;
+    } else {
+        for (const auto& [name, value] : options_.stringParameters)
+            if (name == s.name)
+                if (Inst* c = constantParameter(s, value)) return c;
+    }
     if (type == Type{Base::String, 0} && (!p.defaultValue || p.defaultValue->kind == ExprKind::String))
         return leaves_.string(p.defaultValue ? p.defaultValue->text : "");
     const auto& v = options_.varyingParameters;

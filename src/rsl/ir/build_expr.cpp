@@ -158,7 +158,7 @@ void Builder::assign(const Expr& l, Inst* value) {
         Inst* a = array(base);
         Inst* at = expr(*l.args[1], Kind::Float);
         if (isConst(at) && lengthKnown(a) && (at->numbers[0] < 0 || at->numbers[0] >= static_cast<float>(arrayLength(a))))
-            warn(l.place, "index " + std::to_string(static_cast<int>(at->numbers[0])) + " is outside the array of length " +
+            warn(l.args[1]->place, "index " + std::to_string(static_cast<int>(at->numbers[0])) + " is outside the array of length " +
                               std::to_string(arrayLength(a)) + "; the nearest element is taken");
         if (a->op == Op::ArrayNew) emit(Op::ArrayStore, Kind::None, {a, elementOf(a, at), coerce(value, a->element)});
         return;
@@ -273,7 +273,7 @@ Inst* Builder::expr(const Expr& e) {
             Inst* a = array(base);
             Inst* at = expr(*e.args[1], Kind::Float);
             if (isConst(at) && lengthKnown(a) && (at->numbers[0] < 0 || at->numbers[0] >= static_cast<float>(arrayLength(a))))
-                warn(e.place, "index " + std::to_string(static_cast<int>(at->numbers[0])) + " is outside the array of length " +
+                warn(e.args[1]->place, "index " + std::to_string(static_cast<int>(at->numbers[0])) + " is outside the array of length " +
                                   std::to_string(arrayLength(a)) + "; the nearest element is taken");
             return emit(Op::ArrayLoad, a->element, {a, elementOf(a, at)});
         }

@@ -26,6 +26,12 @@ void Builder::beginCoShaders() {
             Inst* v = nullptr;
             if (s.type.base == Base::String && !s.type.array) {
                 v = leaves_.string(c.strings.count(s.name) ? c.strings.at(s.name) : "");
+            } else if (s.type.base == Base::String) {
+                const std::vector<std::pair<std::string, std::string>> given(c.strings.begin(), c.strings.end());
+                int n = 0;
+                while (c.strings.count(s.name + "[" + std::to_string(n) + "]")) ++n;
+                v = constantTexts(s.name, n, given);
+                if (!v) v = newArray(Base::String, std::max(1, s.type.array));
             } else if (s.type.array) {
                 const size_t each = static_cast<size_t>(components(kindOf(s.type.element())));
                 const int n = std::max<int>(1, static_cast<int>(numbers.size() / each));
@@ -190,6 +196,27 @@ Inst* Builder::memberAccess(const Expr& e) {
     }, [&](Inst* handle) { return lightMember(handle, e.text, kind, nullptr); });
 }
 
+/// getvar(null, name [, variable]): of the primitive.
+Inst* Builder::primitiveVariable(const std::string& name, const Expr& e) {
+    const auto& there = options_.varyingParameters;
+    if (std::find(there.begin(), there.end(), name) == there.end()) return constant(0);
+    if (e.args.size() < 3) return constant(1);
+    const Type wanted = e.args[2]->type;
+    for (const ShaderParameter& p : shader_.parameters)
+        if (p.symbol->name == name && p.symbol->type != wanted) return constant(0);
+    if (wanted.array || wanted.base == Base::String) return constant(0);
+    // The scene knows one type for it: that of the first who asks, the shader before its co-shaders.
+    const auto asked = [&](const Program& p) {
+        const auto found = p.primitiveVariables.find(name);
+        return found == p.primitiveVariables.end() ? nullptr : &found->second;
+    };
+    const Type* first = asked(program_);
+    for (size_t i = 0; i < instances_.size() && !first; ++i) first = asked(*instances_[i].binding->program);
+    if (first && *first != wanted) return constant(0);
+    assign(*e.args[2], input("param:" + name, wanted, false));
+    return constant(1);
+}
+
 /// getvar(handle, name [, variable]): 1 when there is such a member.
 Inst* Builder::getVariable(const Expr& e) {
     Inst* name = expr(*e.args[1]);
@@ -199,10 +226,7 @@ Inst* Builder::getVariable(const Expr& e) {
         return constant(0);
     }
     Inst* handle = expr(*e.args[0]);
-    if (handle->op == Op::ConstString && handle->text.empty()) {
-        warn(e.place, "getvar() of a null handle is not yet available; it finds nothing");
-        return constant(0);
-    }
+    if (handle->op == Op::ConstString && handle->text.empty()) return primitiveVariable(name->text, e);
     return forHandle(*e.args[0], Kind::Float, [&](size_t i) -> Inst* {
         const Symbol* s = memberOf(i, name->text);
         if (!s || s->type.array) return constant(0);

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <span>
 #include <unordered_map>
 
 namespace alpenglow::rsl::ir {
@@ -47,6 +48,7 @@ private:
     Inst* initialGlobal(const std::string& name, Type);
     Inst* parameterValue(const ShaderParameter&);
     Inst* constantParameter(const Symbol&, const std::string& text);
+    Inst* constantTexts(const std::string& name, int length, std::span<const std::pair<std::string, std::string>> given);
 
     // build_stmt.cpp
     using Code = std::function<void()>;
@@ -162,6 +164,7 @@ private:
     Inst* methodCall(const Expr&);
     Inst* memberAccess(const Expr&);
     Inst* getVariable(const Expr&);
+    Inst* primitiveVariable(const std::string& name, const Expr& getvar);
     Inst* getShader(const Expr&);
     std::vector<Inst*> handlesOf(const Expr&);
     void scanMethod(const Expr&, std::set<int>& out);

@@ -279,7 +279,7 @@ Inst* Builder::expr(const Expr& e) {
         }
         Inst* v = expr(base, Kind::Triple);
         Inst* at = expr(*e.args[1], Kind::Float);
-        if (isConst(at)) return emit(Op::Extract, Kind::Float, {v}, std::clamp(static_cast<int>(at->numbers[0]), 0, 2));
+        if (isConst(at)) return emit(Op::Extract, Kind::Float, {v}, at->numbers[0] >= 2 ? 2 : at->numbers[0] >= 1 ? 1 : 0);
         const auto c = [&](int n) { return emit(Op::Extract, Kind::Float, {v}, n); };
         // NaN is component 0, as where one is stored and in arrays
         Inst* low = emit(Op::Select, Kind::Float, {emit(Op::LessEqual, Kind::Bool, {constant(1), at}), c(1), c(0)});

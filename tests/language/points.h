@@ -80,8 +80,14 @@ inline bool runPoints(const CompiledKernel& k, bool mixed, int n, const PointVal
     call.user = &context;
     call.service = [](KernelCall* c, int32_t site, int32_t, uint64_t mask, int32_t lanes, const float* a, float* r) {
         const auto& x = *static_cast<Context*>(c->user);
-        if (site >= 0)
-            basicService(x.kernel->sites()[size_t(site)], mask, lanes, a, r, *x.diagnostics, [](int, const std::string&) {});
+        if (site < 0) return;
+        const ir::Site& s = x.kernel->sites()[size_t(site)];
+        if (basicService(s, mask, lanes, a, r, *x.diagnostics, [](int, const std::string&) {})) return;
+        if (s.op.ends_with("transform")) { // every space is "current": names come first, then the value
+            int row = 0;
+            for (const ir::Kind k : s.argKinds) row += k == ir::Kind::String;
+            std::copy_n(a + row * lanes, ir::components(s.resultKinds[0]) * lanes, r);
+        }
     };
     call.lightBegin = [](KernelCall* c, int32_t, int32_t, uint64_t, int32_t lanes, const float* rows) { // P, axis, angle
         static_cast<Context*>(c->user)->cone.assign(rows, rows + 7 * lanes);

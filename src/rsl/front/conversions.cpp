@@ -49,6 +49,7 @@ std::optional<Operation> operation(ExprOp op, Base l, Base r) {
     if (l == Base::Void || r == Base::Void) return std::nullopt;
     if (l == Base::Matrix || r == Base::Matrix) {
         const bool fits = (l == Base::Matrix || l == Base::Float) && (r == Base::Matrix || r == Base::Float);
+        if (fits && (op == ExprOp::Equal || op == ExprOp::NotEqual)) return Operation{Base::Matrix, Base::Bool, cost + (l != r ? 4 : 0)};
         if (!fits || (op != ExprOp::Mul && op != ExprOp::Div)) return std::nullopt;
         return Operation{Base::Matrix, Base::Matrix, cost + (l != r ? 4 : 0)};
     }

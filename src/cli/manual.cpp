@@ -26,6 +26,7 @@ const char* derivativeText(rsl::DerivativeRule d) {
     case rsl::DerivativeRule::Jet: return "exact";
     case rsl::DerivativeRule::Zero: return "zero (constant almost everywhere)";
     case rsl::DerivativeRule::ZeroWarn: return "taken as zero, with a warning";
+    case rsl::DerivativeRule::Gradient: return "from the slope of the filtered map; second ones those of the coordinates alone";
     case rsl::DerivativeRule::Inherent: return "exact";
     }
     return "";

@@ -23,7 +23,7 @@ std::vector<Shadeop> derivativeShadeops() {
         const std::string n = name;
         Shadeop& op = add(name, {}, Lowering::Special, "", "");
         op.doc = "Exact derivative of the argument per unit of the surface parameter " + std::string(n == "Du" ? "u" : "v") +
-                 ". Results of rays, lights and textures count as constant.";
+                 ". Results of rays and lights count as constant; those of maps have the slope of the map (texture).";
         op.signatures = sigs({{("float " + n + "(float x)").c_str()},
                               {("color " + n + "(color x)").c_str()},
                               {("vector " + n + "(point x)").c_str()},

@@ -23,7 +23,8 @@ enum class Lowering : uint8_t {
 enum class DerivativeRule : uint8_t {
     Jet,      ///< the runtime template is instantiated on Jet1 and Jet2: exact
     Zero,     ///< mathematically zero almost everywhere (floor, cellnoise, step)
-    ZeroWarn, ///< results of rays, lights, textures: taken as zero, warned once
+    ZeroWarn, ///< results of rays and lights: taken as zero, warned once
+    Gradient, ///< textures: the renderer gives the slopes with the value; second derivatives are those of the coordinates
     Inherent  ///< the lowering makes the derivative itself (Rsl and Special)
 };
 

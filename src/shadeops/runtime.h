@@ -3,6 +3,7 @@
 #include "shadeops/bsdf/all.h"
 #include "shadeops/colours.h"
 #include "shadeops/geometry.h"
+#include "shadeops/gradients.h"
 #include "shadeops/lighting.h"
 #include "shadeops/mathematics.h"
 #include "shadeops/matrices.h"

@@ -45,11 +45,16 @@ std::vector<Shadeop> textureShadeops() {
             each("float color", "$ texture(string name; " + quad),
         Lowering::Service,
         "Filtered lookup at s, t (default: those of the sample), or over an explicit quadrilateral; the same point four times: no filter. Float: one "
-        "channel, color: three, from the channel in brackets. Linear colours.");
+        "channel, color: three, from the channel in brackets. Linear colours. Derivatives (calculatenormal(P + N * texture(...)), Du(texture(...))) go through: the "
+        "slopes of the map at the level that is looked up, differences over a texel of it, times the derivatives of s and t, or of the mean of four "
+        "corners. So bump maps tilt normals, smoothly across texels, and fade with distance.")
+        .derivative = DerivativeRule::Gradient;
     add("environment",
         each("float color", "$ environment(string name; vector v; pairs)") +
             each("float color", "$ environment(string name; vector v1, vector v2, vector v3, vector v4; pairs)"),
-        Lowering::Service, "Lookup of an environment map (latitude-longitude, or cube faces) in direction v. The name \"raytrace\" traces rays.");
+        Lowering::Service, "Lookup of an environment map (latitude-longitude, or cube faces) in direction v. The name \"raytrace\" traces rays. "
+        "Derivatives go through, as for texture().")
+        .derivative = DerivativeRule::Gradient;
     add("shadow",
         each("float color", "$ shadow(string name; point p; pairs)") +
             each("float color", "$ shadow(string name; point p1, point p2, point p3, point p4; pairs)"),

@@ -38,8 +38,31 @@ const Texture* faceMap(Handle h, int face) {
     return i == h->tiles.end() || i->second->levels.empty() ? nullptr : i->second.get();
 }
 
-void fillAll(int count, const LookupOptions& o, float* out) {
+void fillAll(int count, const LookupOptions& o, float* out, float* slopes) {
     for (int c = 0; c < count; ++c) out[c] = o.fill;
+    if (slopes) std::fill_n(slopes, 3 * count, 0.0f);
+}
+
+/// The lookup, with slopes by s and t turned into slopes by the direction.
+template <class Differentiate>
+void look(const Texture& tex, int first, int count, float s, float t, const Footprint& fp, const LookupOptions& o, Wrap swrap,
+          const Vec3& d, Differentiate differentiate, float* out, float* slopes) {
+    filteredLookup(tex, first, count, s, t, fp, o, swrap, Wrap::Clamp, out, slopes);
+    if (!slopes) return;
+    // Changes that differentiate() would limit lie beside a pole: small steps, and nothing where even they are limited.
+    const float step = length(d) / 1024;
+    Vec3 ds, dt;
+    for (int k = 0; k < 3; ++k) {
+        float a = 0, b = 0;
+        if (step > 0) differentiate(Vec3(k == 0, k == 1, k == 2) * step, a, b);
+        ds[k] = std::fabs(a) < 1 ? a / step : 0;
+        dt[k] = std::fabs(b) < 1 ? b / step : 0;
+        if (!std::isfinite(ds[k]) || !std::isfinite(dt[k])) ds[k] = dt[k] = 0;
+    }
+    for (int c = 0; c < count; ++c) { // the third run is free; the other two are read before they are written
+        const float bs = slopes[c], bt = slopes[count + c];
+        for (int k = 0; k < 3; ++k) slopes[k * count + c] = bs * ds[k] + bt * dt[k];
+    }
 }
 
 /// The footprint of four corners, as changes from their mean (lookupQuad has the reason).
@@ -83,27 +106,27 @@ void cubeDifferentiate(int face, const Vec3& d, const Vec3& change, float cot, f
 }
 
 void environment(Handle h, const LatLong& map, int first, int count, const Vec3& d, const Vec3& ddx, const Vec3& ddy,
-                 const LookupOptions& o, float* out) {
-    if (!h || h->kind != Kind::Cube) return environmentLatLong(h, map, first, count, d, ddx, ddy, o, out);
+                 const LookupOptions& o, float* out, float* slopes) {
+    if (!h || h->kind != Kind::Cube) return environmentLatLong(h, map, first, count, d, ddx, ddy, o, out, slopes);
     float s, t, dsdx, dtdx, dsdy, dtdy;
     int face = cubeFace(d, h->fovCotangent, s, t);
     const Texture* tex = faceMap(h, face);
-    if (!tex) return fillAll(count, o, out);
+    if (!tex) return fillAll(count, o, out, slopes);
     cubeDifferentiate(face, d, ddx, h->fovCotangent, dsdx, dtdx);
     cubeDifferentiate(face, d, ddy, h->fovCotangent, dsdy, dtdy);
-    filteredLookup(*tex, first, count, s, t, Footprint::sides(dsdx, dtdx, dsdy, dtdy), o, Wrap::Clamp, Wrap::Clamp, out);
+    const auto by = [&](const Vec3& c, float& a, float& b) { cubeDifferentiate(face, d, c, h->fovCotangent, a, b); };
+    look(*tex, first, count, s, t, Footprint::sides(dsdx, dtdx, dsdy, dtdy), o, Wrap::Clamp, d, by, out, slopes);
 }
 
-void environmentQuad(Handle h, const LatLong& map, int first, int count, const Vec3 d[4], const LookupOptions& o, float* out) {
-    if (!h || h->kind != Kind::Cube) return environmentLatLongQuad(h, map, first, count, d, o, out);
+void environmentQuad(Handle h, const LatLong& map, int first, int count, const Vec3 d[4], const LookupOptions& o, float* out, float* slopes) {
+    if (!h || h->kind != Kind::Cube) return environmentLatLongQuad(h, map, first, count, d, o, out, slopes);
     Vec3 mean = (d[0] + d[1] + d[2] + d[3]) * 0.25f;
     float s, t;
     int face = cubeFace(mean, h->fovCotangent, s, t);
     const Texture* tex = faceMap(h, face);
-    if (!tex) return fillAll(count, o, out);
-    Footprint fp = quadFootprint(
-        d, mean, [&](const Vec3& c, float& ds, float& dt) { cubeDifferentiate(face, mean, c, h->fovCotangent, ds, dt); });
-    filteredLookup(*tex, first, count, s, t, fp, o, Wrap::Clamp, Wrap::Clamp, out);
+    if (!tex) return fillAll(count, o, out, slopes);
+    const auto by = [&](const Vec3& c, float& ds, float& dt) { cubeDifferentiate(face, mean, c, h->fovCotangent, ds, dt); };
+    look(*tex, first, count, s, t, quadFootprint(d, mean, by), o, Wrap::Clamp, mean, by, out, slopes);
 }
 
 void LatLong::project(const Vec3& d, float& s, float& t) const {
@@ -140,23 +163,24 @@ Vec3 LatLong::direction(float s, float t) const {
 }
 
 void environmentLatLong(Handle h, const LatLong& map, int first, int count, const Vec3& direction, const Vec3& ddx,
-                        const Vec3& ddy, const LookupOptions& o, float* out) {
-    if (!h || h->levels.empty()) return fillAll(count, o, out);
+                        const Vec3& ddy, const LookupOptions& o, float* out, float* slopes) {
+    if (!h || h->levels.empty()) return fillAll(count, o, out, slopes);
     float s, t, dsdx, dtdx, dsdy, dtdy;
     map.project(direction, s, t);
     map.differentiate(direction, ddx, dsdx, dtdx);
     map.differentiate(direction, ddy, dsdy, dtdy);
-    filteredLookup(*h, first, count, s, t, Footprint::sides(dsdx, dtdx, dsdy, dtdy), o, Wrap::Periodic, Wrap::Clamp, out);
+    const auto by = [&](const Vec3& c, float& a, float& b) { map.differentiate(direction, c, a, b); };
+    look(*h, first, count, s, t, Footprint::sides(dsdx, dtdx, dsdy, dtdy), o, Wrap::Periodic, direction, by, out, slopes);
 }
 
 void environmentLatLongQuad(Handle h, const LatLong& map, int first, int count, const Vec3 d[4], const LookupOptions& o,
-                            float* out) {
-    if (!h || h->levels.empty()) return fillAll(count, o, out);
+                            float* out, float* slopes) {
+    if (!h || h->levels.empty()) return fillAll(count, o, out, slopes);
     Vec3 mean = (d[0] + d[1] + d[2] + d[3]) * 0.25f;
     float s, t;
     map.project(mean, s, t);
-    Footprint fp = quadFootprint(d, mean, [&](const Vec3& c, float& ds, float& dt) { map.differentiate(mean, c, ds, dt); });
-    filteredLookup(*h, first, count, s, t, fp, o, Wrap::Periodic, Wrap::Clamp, out);
+    const auto by = [&](const Vec3& c, float& ds, float& dt) { map.differentiate(mean, c, ds, dt); };
+    look(*h, first, count, s, t, quadFootprint(d, mean, by), o, Wrap::Periodic, mean, by, out, slopes);
 }
 
 } // namespace alpenglow::texture

@@ -19,11 +19,16 @@ struct Pair {
     float f;
 };
 
-Pair texelsAt(float coordinate, int n, Wrap wrap) {
+/// In texels, 0 at the centre of the first.
+float position(float coordinate, int n, Wrap wrap) {
     if (!std::isfinite(coordinate)) coordinate = 0;
     if (wrap == Wrap::Periodic) coordinate -= std::floor(coordinate);
     float x = coordinate * float(n) - 0.5f;
-    if (wrap != Wrap::Periodic) x = std::clamp(x, -2.0f, float(n) + 1.0f); // beyond there nothing changes
+    return wrap == Wrap::Periodic ? x : std::clamp(x, -2.0f, float(n) + 1.0f); // beyond there nothing changes
+}
+
+Pair texelsAt(float coordinate, int n, Wrap wrap) {
+    float x = position(coordinate, n, wrap);
     float fl = std::floor(x);
     int i0 = int(fl), i1 = i0 + 1;
     auto place = [&](int i) {
@@ -38,6 +43,23 @@ Pair texelsAt(float coordinate, int n, Wrap wrap) {
         return i < 0 || i >= n ? -1 : i;
     };
     return {place(i0), place(i1), x - fl};
+}
+
+/// The three texels that a central difference over one texel needs: the slope is that from the first to the second, blended by f
+/// into that from the second to the third.
+struct Neighbours {
+    int i[3];
+    float f;
+};
+
+Neighbours neighboursAt(float coordinate, int n, Wrap wrap) {
+    float x = position(coordinate, n, wrap) + 0.5f, fl = std::floor(x);
+    Neighbours r{{}, x - fl};
+    for (int k = 0; k < 3; ++k) {
+        int i = int(fl) - 1 + k;
+        r.i[k] = wrap == Wrap::Periodic ? (i % n + n) % n : wrap == Wrap::Clamp ? std::clamp(i, 0, n - 1) : i < 0 || i >= n ? -1 : i;
+    }
+    return r;
 }
 
 /// Kernel over [-1/2, 1/2] scaled to its full width.
@@ -163,6 +185,28 @@ void Level::addBilinear(float s, float t, Wrap swrap, Wrap twrap, int first, int
         for (int i = 0; i < 4; ++i)
             if (k[i] != 0) r += k[i] * v[i];
         sum[c] += weight * r;
+    }
+}
+
+void Level::addSlopes(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* ds, float* dt) const {
+    const auto texel = [&](int x, int y, int c) {
+        if (x < 0 || y < 0) return 0.0f;
+        const size_t at = (size_t(y) * size_t(width) + size_t(x)) * size_t(channels) + size_t(first + c);
+        return codes.empty() ? values[at] : codeValues[codes[at]];
+    };
+    const Pair px = texelsAt(s, width, swrap), py = texelsAt(t, height, twrap);
+    const Neighbours nx = neighboursAt(s, width, swrap), ny = neighboursAt(t, height, twrap);
+    for (int c = 0; c < count; ++c) {
+        const auto alongS = [&](int y) {
+            const float v[3] = {texel(nx.i[0], y, c), texel(nx.i[1], y, c), texel(nx.i[2], y, c)};
+            return (1 - nx.f) * (v[1] - v[0]) + nx.f * (v[2] - v[1]);
+        };
+        const auto alongT = [&](int x) {
+            const float v[3] = {texel(x, ny.i[0], c), texel(x, ny.i[1], c), texel(x, ny.i[2], c)};
+            return (1 - ny.f) * (v[1] - v[0]) + ny.f * (v[2] - v[1]);
+        };
+        ds[c] += weight * float(width) * ((1 - py.f) * alongS(py.i0) + py.f * alongS(py.i1));
+        dt[c] += weight * float(height) * ((1 - px.f) * alongT(px.i0) + px.f * alongT(px.i1));
     }
 }
 

@@ -24,6 +24,10 @@ struct Level {
     /// Adds weight times the bilinearly interpolated channels first, first+1, ... (count, all present) at (s, t) to `sum`. Texel
     /// centres are at ((i + 1/2) / width, (j + 1/2) / height); row 0 is t = 0, the top. s and t may be anything, also not finite.
     void addBilinear(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* sum) const;
+    /// Adds weight times the slopes of the same channels by s and by t (change over the whole map) to ds[0..count) and dt[0..count):
+    /// what addBilinear would give half a texel further, less what it would give half a texel before. So slopes go on from texel to
+    /// texel without a jump; they are exact on ramps, and exactly 0 where the map is flat.
+    void addSlopes(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* ds, float* dt) const;
 };
 
 /// Kernel of the reduction, in texels of the level that is made. Widths are full widths and multiply the filter's own:

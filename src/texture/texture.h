@@ -7,7 +7,8 @@
 // Filtering: the footprint is the parallelogram of the derivatives, as a matrix of squared widths; blur adds to it in quadrature
 // (convolution of boxes). Probes with trilinear interpolation lie along the major axis so that the variance of the whole kernel
 // is that of the filter over the footprint; the minor axis chooses the level. A kernel is never narrower than bilinear
-// interpolation. Not done: separate treatment of parallelogram and ellipse; sharpening (negative lobes) in lookups.
+// interpolation. Slopes of a lookup: of the same probes and levels, each the central difference over one texel of its level; so they
+// are smooth across texels, as coarse as the value, and those of a map that is seen from afar fade as its value does. Not done: separate treatment of parallelogram and ellipse; sharpening (negative lobes) in lookups.
 #pragma once
 #include "base/diagnostics.h"
 #include "base/matrix.h"
@@ -63,13 +64,18 @@ struct Footprint {
     static Footprint sides(float dsdx, float dtdx, float dsdy, float dtdy);
 };
 
-/// Channels first, first+1, ... (count of them) of the map at (s, t), filtered over the footprint, into out[0..count).
-void lookup(Handle, int first, int count, float s, float t, const Footprint&, const LookupOptions&, float* out);
+/// Channels first, first+1, ... (count of them) of the map at (s, t), filtered over the footprint, into out[0..count). When `slopes`
+/// is given: their derivatives by s into slopes[0..count), by t into slopes[count..2 count), per unit of s and t (a whole map), at
+/// a fixed footprint; 0 where there is no map or channel.
+void lookup(Handle, int first, int count, float s, float t, const Footprint&, const LookupOptions&, float* out,
+            float* slopes = nullptr);
 /// The same with the change of (s, t) from pixel to pixel (or sample to sample).
 void lookup2D(Handle, int first, int count, float s, float t, float dsdx, float dtdx, float dsdy, float dtdy,
-              const LookupOptions&, float* out);
-/// texture() with four corners, in any order. Four equal corners: no filtering beyond bilinear interpolation.
-void lookupQuad(Handle, int first, int count, const float s[4], const float t[4], const LookupOptions&, float* out);
+              const LookupOptions&, float* out, float* slopes = nullptr);
+/// texture() with four corners, in any order. Four equal corners: no filtering beyond bilinear interpolation. Slopes: when
+/// all corners move together.
+void lookupQuad(Handle, int first, int count, const float s[4], const float t[4], const LookupOptions&, float* out,
+                float* slopes = nullptr);
 /// n lanes; lanes with active[i] == 0 are left alone (active may be null). Options are one, or one per lane (perLane).
 /// out[c * n + i] is channel c of lane i.
 void lookup2DLanes(Handle, int first, int count, int n, const unsigned char* active, const float* s, const float* t,
@@ -89,11 +95,13 @@ struct LatLong {
     Vec3 direction(float s, float t) const;
 };
 
-/// environment(): the form that the map has, cube faces or (also for pictures that are neither) latitude-longitude.
+/// environment(): the form that the map has, cube faces or (also for pictures that are neither) latitude-longitude. When `slopes` is
+/// given: derivatives of the channels by x, y and z of the direction, in three runs of `count`.
 void environment(Handle, const LatLong&, int first, int count, const Vec3& direction, const Vec3& ddx, const Vec3& ddy,
-                 const LookupOptions&, float* out);
+                 const LookupOptions&, float* out, float* slopes = nullptr);
 /// environment() with four directions, in any order.
-void environmentQuad(Handle, const LatLong&, int first, int count, const Vec3 directions[4], const LookupOptions&, float* out);
+void environmentQuad(Handle, const LatLong&, int first, int count, const Vec3 directions[4], const LookupOptions&, float* out,
+                     float* slopes = nullptr);
 
 /// Where a direction meets a cube face (0..5: px nx py ny pz nz) of the given cotangent of half the field of view. Faces are seen
 /// from inside: pz has x to the right and y up, the side faces follow by turning about y, py has -z up, ny has +z up.
@@ -103,10 +111,10 @@ void cubeDifferentiate(int face, const Vec3& direction, const Vec3& d, float fov
 
 /// Lat-long maps: along a direction with its changes per pixel. Longitude wraps, latitude is clamped.
 void environmentLatLong(Handle, const LatLong&, int first, int count, const Vec3& direction, const Vec3& ddx, const Vec3& ddy,
-                        const LookupOptions&, float* out);
+                        const LookupOptions&, float* out, float* slopes = nullptr);
 /// The same with four directions.
 void environmentLatLongQuad(Handle, const LatLong&, int first, int count, const Vec3 directions[4], const LookupOptions&,
-                            float* out);
+                            float* out, float* slopes = nullptr);
 
 /// textureinfo() fields.
 struct TextureInfo {

@@ -1,4 +1,5 @@
 // Normals of displaced surfaces, and bumps on top of them, against the analytic surface; footprints against closed forms.
+#include "display/imageio.h"
 #include "transport/harness.h"
 
 using namespace alpenglow;
@@ -29,6 +30,57 @@ template <class F> Vec3d partialV(F f, double u, double v) {
     return (f(u, v - 2 * h) - f(u, v - h) * 8.0 + f(u, v + h) * 8.0 - f(u, v + 2 * h)) * (1 / (12 * h));
 }
 template <class F> Vec3d unitNormal(F f, double u, double v) { return normalize(cross(partialU(f, u, v), partialV(f, u, v))); }
+
+// A wave as a map of 256 texels; what slopes that are differences over a texel, interpolated, miss of it is below 0.0015 of the most.
+constexpr int kMap = 256;
+double relief(double s, double t) { return std::sin(6 * kPi * s) * std::cos(4 * kPi * t); }
+
+template <class F> std::string mapFile(const std::string& name, int width, int height, F value) {
+    display::Image m = display::makeImage(width, height, display::defaultChannels(3));
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (int c = 0; c < 3; ++c) m.pixel(x, y)[c] = float((1 + c) * value((x + .5) / width, (y + .5) / height));
+    m.metadata["wrapmodes"] = "periodic,periodic";
+    Diagnostics d;
+    display::WriteOptions o;
+    o.format = display::Format::Exr;
+    o.sample = display::Sample::Float;
+    o.policy = {shaderFolder(), false, -1};
+    EXPECT_TRUE(display::writeImage(name, m, o, d));
+    return "\"" + shaderFolder() + "/" + name + "\"";
+}
+
+void writeMapShaders() {
+    const std::string map = mapFile("relief.exr", kMap, kMap, relief);
+    const std::string sky = mapFile("height.exr", 256, 128, [](double, double t) { return std::cos(kPi * t); });
+    const std::string outputs = "(output varying normal shown = 0; output varying point uv = 0;)";
+    writeShader("mapwaves", "displacement mapwaves() { P += 0.02 * float texture(" + map + ") * normalize(N); N = calculatenormal(P); }\n");
+    writeShader("mapbump", "surface mapbump" + outputs + " { shown = normalize(calculatenormal(P + 0.02 * float texture(" + map +
+                               ", s, t) * normalize(N))); uv = point(u, v, 0); Ci = 1; Oi = 1; }\n");
+    writeShader("mapslopes", "surface mapslopes" + outputs + R"( {
+    uniform string map = )" + map + R"(;
+    float x = 2 * u + 0.3 * v, y = v * v, h = 0.5 / 256;
+    color c = texture(map, x, y, "width", 0);
+    float corners = texture(map, x, y, x, y, x, y, x, y);
+    float byS = (texture(map, x + h, y, "width", 0) - texture(map, x - h, y, "width", 0)) / (2 * h);
+    float byT = (texture(map, x, y + h, "width", 0) - texture(map, x, y - h, "width", 0)) / (2 * h);
+    shown = normal(comp(Du(c), 1) / 2 - 2 * byS, comp(Dv(c), 2) / 3 - (0.3 * byS + 2 * v * byT), Du(corners) - 2 * byS);
+    uv = point(comp(Du(c), 0), comp(Dv(c), 0), corners - comp(c, 0));
+    Ci = color(u, v, 0);
+    Oi = 1;
+}
+)");
+    writeShader("skyslopes", "surface skyslopes" + outputs + R"( {
+    vector d = vector(2 * u - 1, v - 0.3, 0.7);
+    float up = environment()" + sky + R"(, d);
+    shown = normal(Du(up), Dv(up), up);
+    float l = length(d);
+    uv = point(-0.7 * 2 * xcomp(d) / (l * l * l), -0.7 * ycomp(d) / (l * l * l), 0.7 / l);
+    Ci = 1;
+    Oi = 1;
+}
+)");
+}
 
 void writeShaders() {
     writeShader("waves", R"(displacement waves() {
@@ -143,6 +195,69 @@ TEST(Derivatives, Footprints) {
             EXPECT_NEAR(c.x, w / 8, 1e-3 * w / 8) << distance;
             EXPECT_NEAR(c.y, w / 4 / std::cos(tilt * kPi / 180), 1e-3 * w / 4) << tilt;
         }
+}
+
+// Heights that come from a map: bumps and displacements tilt the normals as those of the surface that the map describes.
+auto reliefSphere = [](double u, double v) { return sphere(u, v) * (1 + .02 * relief(u, v)); };
+auto reliefSaddle = [](double u, double v) { return saddle(u, v) + unitNormal(saddle, u, v) * (.02 * relief(u, v)); };
+
+TEST(TextureDerivatives, Bumps) {
+    writeMapShaders();
+    expectNormals(sphereRib("", "mapbump"), reliefSphere, {0, 0, 0}, {0, 0, 4}, "sphere");
+    expectNormals(patchRib("", "mapbump"), reliefSaddle, {0, 0, 0}, {0, 0, 3}, "patch");
+}
+TEST(TextureDerivatives, Displacements) {
+    writeShaders();
+    writeMapShaders();
+    const char* waves = "Displacement \"mapwaves\"\n";
+    expectNormals(sphereRib(waves, "shownormal"), reliefSphere, {0, 0, 0}, {0, 0, 4}, "sphere", 2e-3);
+    expectNormals(patchRib(waves, "shownormal"), reliefSaddle, {0, 0, 0}, {0, 0, 3}, "patch", 2e-3);
+}
+// By the chain rule, of one channel and of another, of four corners; against differences that the shader takes itself, and the wave's.
+TEST(TextureDerivatives, AgainstDifferences) {
+    writeMapShaders();
+    for (Hider hider : {Hider::Raytrace, Hider::Path}) {
+        Settings s;
+        s.hider = hider;
+        s.outputs = {"shown", "uv"};
+        Scene scene(patchRib("", "mapslopes"), s);
+        std::vector<CameraRay> rays;
+        for (int i = 0; i < 100; ++i) {
+            CameraRay r = rayTo({0, 0, 0}, {.15f * float(i % 10) - .7f, .15f * float(i / 10) - .7f, 3});
+            r.spread = 1e-5f;
+            rays.push_back(r);
+        }
+        int hits = 0;
+        for (const SampleResult& r : scene.trace(rays)) {
+            if (r.opacity.x < 1) continue;
+            ++hits;
+            for (int k = 0; k < 3; ++k) EXPECT_NEAR(r.aovs[size_t(k)], 0, 2e-2) << k; // of slopes up to 38; the differences round
+            EXPECT_NEAR(r.aovs[5], 0, 1e-4);
+            const double u = r.color.x, v = r.color.y, x = 2 * u + .3 * v, y = v * v;
+            const double byS = 6 * kPi * std::cos(6 * kPi * x) * std::cos(4 * kPi * y), byT = -4 * kPi * std::sin(6 * kPi * x) * std::sin(4 * kPi * y);
+            EXPECT_NEAR(r.aovs[3], 2 * byS, .0015 * 12 * kPi) << u << " " << v;
+            EXPECT_NEAR(r.aovs[4], .3 * byS + 2 * v * byT, .0015 * 14 * kPi) << u << " " << v;
+        }
+        EXPECT_GT(hits, 80);
+    }
+}
+TEST(TextureDerivatives, OfAnEnvironment) {
+    writeMapShaders();
+    Settings s;
+    s.outputs = {"shown", "uv"};
+    Scene scene(patchRib("", "skyslopes"), s);
+    std::vector<CameraRay> rays;
+    for (int i = 0; i < 100; ++i) {
+        rays.push_back(rayTo({0, 0, 0}, {.15f * float(i % 10) - .7f, .15f * float(i / 10) - .7f, 3}));
+        rays.back().spread = 1e-5f;
+    }
+    int hits = 0;
+    for (const SampleResult& r : scene.trace(rays)) {
+        if (r.opacity.x < 1) continue;
+        ++hits;
+        for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(r.aovs[k], r.aovs[3 + k], 3e-3) << k;
+    }
+    EXPECT_GT(hits, 80);
 }
 
 } // namespace

@@ -89,7 +89,8 @@ struct Orders {
 
     void opaque(const Inst* i) {
         const Site& s = k.sites[static_cast<size_t>(i->site)];
-        if (!s.shadeop || s.shadeop->derivative == DerivativeRule::ZeroWarn)
+        const DerivativeRule rule = s.shadeop ? s.shadeop->derivative : DerivativeRule::ZeroWarn;
+        if (rule == DerivativeRule::ZeroWarn || (rule == DerivativeRule::Gradient && i->op != Op::Service)) // see gradients.h
             warn(i, "the derivative of " + s.op + "() is taken as zero");
     }
 

@@ -5,7 +5,7 @@
 
 namespace alpenglow::rsl::ir {
 
-/// Sets Inst::order and Input::order. Results of rays, lights and textures count as constant, warned once each; so does a
+/// Sets Inst::order and Input::order. Results of rays and lights count as constant, warned once each; so does a
 /// derivative of third order. Either form.
 void orderDerivatives(Kernel&, Diagnostics&);
 

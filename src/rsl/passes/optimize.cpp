@@ -7,6 +7,7 @@
 #include "rsl/passes/dce.h"
 #include "rsl/passes/derivatives.h"
 #include "rsl/passes/fold.h"
+#include "rsl/passes/gradients.h"
 #include "rsl/passes/ifconvert.h"
 #include "rsl/passes/outline.h"
 #include "rsl/passes/promote.h"
@@ -69,6 +70,8 @@ void optimize(Kernel& k, const KernelOptions& options, Diagnostics& diagnostics)
         check(k, "dce");
     }
     orderDerivatives(k, diagnostics); // warns of derivatives of rays while the rays are still there
+    addGradients(k);
+    check(k, "gradients");
     if (k.kind == ShaderKind::Volume && std::find(options.outputs.begin(), options.outputs.end(), kSlopeOutput) != options.outputs.end()) {
         addSlope(k);
         check(k, "slope");

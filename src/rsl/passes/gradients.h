@@ -1,0 +1,15 @@
+// Derivatives through texture() and environment().
+#pragma once
+#include "rsl/ir/ir.h"
+
+namespace alpenglow::rsl::ir {
+
+/// Names of the results that a Service gives besides its value: the derivative of it by each of its coordinates begins with this.
+inline constexpr const char* kSlopeResult = "slope:";
+
+/// Where derivatives of a lookup (DerivativeRule::Gradient) are wanted, by Inst::order: asks the service for the slopes of the value by
+/// its coordinates, too (s and t, or x, y and z of the direction; of four corners: their mean), and puts the value together with the
+/// derivatives of the coordinates, al_chain2 or al_chain3. Other lookups stay as they are. Long form, after orderDerivatives().
+void addGradients(Kernel&);
+
+} // namespace alpenglow::rsl::ir

@@ -44,5 +44,6 @@ std::vector<Shadeop> arrayShadeops();
 std::vector<Shadeop> textureShadeops();
 std::vector<Shadeop> raytracingShadeops();
 std::vector<Shadeop> bmrtShadeops();
+std::vector<Shadeop> publishedShadeops();
 
 } // namespace alpenglow::rsl

@@ -17,7 +17,12 @@ std::vector<OptionalParameter> rayParameters() {
             {kF, "samplecone", false, "0", "half angle of the cone of directions, radians"},
             {kF, "samples", false, "1", "number of samples"},
             {kS, "type", false, "\"specular\"", "specular, diffuse or transmission: which visibility counts"},
-            {kC, "weight", false, "1", "importance of the ray (roulette)"}};
+            {kC, "weight", false, "1", "importance of the ray (roulette)"},
+            {kF, "minsamples", false, "samples", "accepted and ignored"},
+            {kF, "samplebase", false, "0", "accepted and ignored by single rays"},
+            {kS, "excludesubset", false, "\"\"", "groups of objects left out; accepted and ignored"},
+            {kS, "raylabel", false, "\"\"", "another name of label; accepted and ignored"},
+            {kF, "maxhitdist", false, "1e38", "accepted and ignored"}};
 }
 
 /// Table 6.11.
@@ -118,12 +123,14 @@ std::vector<Shadeop> raytracingShadeops() {
                                                     {kC, "unshadowedarealight", true, "", "the same without geometry"}};
     add("transmission", sigs({{"color transmission(point a, point b; pairs)"}}), Lowering::Request,
         "Visibility between a and b among objects visible to transmission: 1 free, 0 blocked, a colour through translucent surfaces.");
-    Shadeop& occlusion = add("occlusion", sigs({{"float occlusion(point p; vector r; pairs)"}, {"float occlusion(point p; vector r; float samples; pairs)"}}),
+    Shadeop& occlusion = add("occlusion", sigs({{"float occlusion(point p; vector r; pairs)"}, {"float occlusion(point p; vector r; float samples; pairs)"},
+                                  {"float occlusion(string map; point p; vector r; float samples; pairs)"}}),
                              Lowering::Unavailable, "Part of the hemisphere about r that is blocked.");
     occlusion.optional = occlusion.optional + hemisphereParameters();
     Shadeop& indirect = add("indirectdiffuse",
                             sigs({{"color indirectdiffuse(point p; vector r; pairs)"},
                                   {"color indirectdiffuse(point p; vector r; float samples; pairs)"},
+                                  {"color indirectdiffuse(string map; point p; vector r; float samples; pairs)"},
                                   {"color indirectdiffuse(string envmap; vector dir)"}}),
                             Lowering::Unavailable, "Diffuse light that arrives by way of other surfaces, or from an environment map.");
     indirect.optional = indirect.optional + hemisphereParameters();

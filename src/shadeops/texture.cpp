@@ -4,7 +4,7 @@
 namespace alpenglow::rsl {
 namespace {
 
-constexpr Type kF{Base::Float, 0}, kS{Base::String, 0};
+constexpr Type kF{Base::Float, 0}, kS{Base::String, 0}, kP{Base::Point, 0};
 
 std::vector<OptionalParameter> filterParameters() {
     return {{kS, "filter", false, "\"gaussian\"", "box, triangle, gaussian, catmull-rom"},
@@ -17,7 +17,28 @@ std::vector<OptionalParameter> filterParameters() {
             {kF, "fill", false, "0", "value of channels that the file does not have"},
             {kF, "lerp", false, "0", "1 interpolates between map levels"},
             {kF, "samples", false, "4", "number of samples (shadow)"},
-            {kF, "bias", false, "-1", "depth bias (shadow); negative: the option's"}};
+            {kF, "bias", false, "-1", "depth bias (shadow); negative: the option's"},
+            {kF, "ignoreabove", false, "1e38", "accepted and ignored"},
+            {kF, "minwidth", false, "0", "accepted and ignored"},
+            {kF, "expand", false, "0", "accepted and ignored"},
+            {kF, "maxdist", false, "1e38", "of rays (\"raytrace\"): accepted and ignored"},
+            {kF, "samplecone", false, "0", "of rays (\"raytrace\"): accepted and ignored"},
+            {kF, "minsamples", false, "samples", "of rays (\"raytrace\"): accepted and ignored"},
+            {kS, "label", false, "\"\"", "of rays (\"raytrace\"): accepted and ignored"},
+            {kS, "subset", false, "\"\"", "of rays (\"raytrace\"): accepted and ignored"},
+            {kS, "excludesubset", false, "\"\"", "of rays (\"raytrace\"): accepted and ignored"},
+            {kS, "hitmode", false, "\"default\"", "of rays (\"raytrace\"): accepted and ignored"},
+            {kS, "hitsides", false, "\"both\"", "of rays (\"raytrace\"): accepted and ignored"}};
+}
+
+/// A source of light that is no point: PRMan wrote four points behind "source"; the checker names each.
+std::vector<OptionalParameter> shadowParameters() {
+    std::vector<OptionalParameter> list = filterParameters();
+    for (const char* name : {"source", "source2", "source3", "source4"})
+        list.push_back({kP, name, false, "none", "shadow of an area light: its corners, four points behind \"source\"; accepted and ignored"});
+    for (const char* name : {"gapbias", "resbias", "bias0", "bias1", "noiserobust"})
+        list.push_back({kF, name, false, "0", "accepted and ignored"});
+    return list;
 }
 
 } // namespace
@@ -55,11 +76,12 @@ std::vector<Shadeop> textureShadeops() {
         Lowering::Service, "Lookup of an environment map (latitude-longitude, or cube faces) in direction v. The name \"raytrace\" traces rays. "
         "Derivatives go through, as for texture().")
         .derivative = DerivativeRule::Gradient;
-    add("shadow",
+    Shadeop& shadow = add("shadow",
         each("float color", "$ shadow(string name; point p; pairs)") +
             each("float color", "$ shadow(string name; point p1, point p2, point p3, point p4; pairs)"),
-        Lowering::Unavailable, "Occlusion in 0..1 from a shadow map, a deep shadow map, or rays (\"raytrace\").")
-        .contexts = kSurface | kVolume | kLight;
+        Lowering::Unavailable, "Occlusion in 0..1 from a shadow map, a deep shadow map, or rays (\"raytrace\").");
+    shadow.contexts = kSurface | kVolume | kLight;
+    shadow.optional = shadowParameters();
     add("ptexture",
         each("float color", "$ ptexture(string name; uniform float channel; float face; pairs)") +
             each("float color", "$ ptexture(string name; uniform float channel; float face, float s, float t; pairs)") +

@@ -94,7 +94,6 @@ const Case kWarnings[] = {
     {"uniform float k; k = f;", "2:22: warning: a varying value is given to the uniform variable 'k'"},
     {"I = normalize(I);", "2:1: warning: 'I' is read-only in a surface shader; the shader changes a copy of its own"},
     {"u = 1;", "2:1: warning: 'u' is read-only in a surface shader"},
-    {"P += N;", "2:1: warning: 'P' is read-only in a surface shader"},
     {"f + 1;", "2:3: warning: this expression has no effect"},
     {"f = 1.0f;", "2:5: warning: numbers take no suffix"},
     {"c = texture(\"a\", \"blurr\", 1);",

@@ -120,6 +120,7 @@ struct Function {
     StmtPtr body;
     std::vector<std::unique_ptr<Symbol>> symbols; ///< owns parameters and locals
     std::vector<std::unique_ptr<Function>> nested;
+    bool anywhere = false; ///< a method that only other shaders call: of which kind these are is not known
     Place place;
 };
 

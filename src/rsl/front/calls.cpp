@@ -93,7 +93,25 @@ bool Checker::match(const std::vector<ParameterView>& parameters, bool repeats, 
     return true;
 }
 
+/// shadow(map, P, "source", p1, p2, p3, p4): the four corners of an area light stand behind one token. Each gets a token of its own.
+static void nameSources(Expr& e) {
+    if (e.text != "shadow" && e.text != "environment") return;
+    const auto text = [&](size_t i) { return e.args[i]->kind == ExprKind::String; };
+    for (size_t i = 2; i + 4 < e.args.size(); ++i) {
+        if (!text(i) || e.args[i]->text != "source" || text(i + 1) || text(i + 2) || text(i + 3) || text(i + 4)) continue;
+        for (size_t n = 2; n <= 4; ++n) {
+            auto token = std::make_unique<Expr>();
+            token->kind = ExprKind::String;
+            token->place = e.args[i]->place;
+            token->text = "source" + std::to_string(n);
+            e.args.insert(e.args.begin() + long(i + 2 * n - 2), std::move(token));
+        }
+        return;
+    }
+}
+
 void Checker::surveyCall(Expr& e, Info& info) {
+    nameSources(e);
     bool broken = false;
     for (auto& a : e.args) broken |= survey(*a).any;
     if (e.text.empty()) { info.any = true; return; } // what is called was reported
@@ -291,7 +309,7 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
         if (const Info& value = infos_.at(e.args[1].get()); !alike(array, value.handle))
             sources_.error(e.args[1]->place, "expected a " + named({Base::String, 0}, array) + ", not " + describe(*e.args[1]));
     }
-    if (kind_ && !(op.contexts & contextOf(*kind_))) {
+    if (kind_ && !(op.contexts & contextOf(*kind_)) && !(function_ && function_->anywhere)) {
         std::string where;
         for (int k = 0; k < 6; ++k)
             if (op.contexts & contextOf(ShaderKind(k)))

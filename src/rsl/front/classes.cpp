@@ -139,6 +139,7 @@ private:
             for (int k = 0; k < 6; ++k) others.merge(reachable(ShaderKind(k)));
             for (const auto& n : names_)
                 if (!others.count(n)) wanted.insert(n);
+            for (const auto& f : s->nested) f->anywhere = !others.count(f->name);
         }
         std::vector<StmtPtr> body, methods;
         for (auto& b : s->body->body) {

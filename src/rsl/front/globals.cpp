@@ -62,6 +62,10 @@ constexpr GlobalVariable kVolumeOwn[] = {
     {"L", kV, V, R, "toward the light; in illuminance"}, {"Cl", kC, V, R, "light colour; in illuminance"},
     {"Ol", kC, V, R, "light opacity; in illuminance"}};
 constexpr GlobalVariable kImagerOwn[] = {{"P", kP, V, R, "pixel position in raster space"},
+                                         {"s", kF, V, R, "position across the picture, 0 to 1"},
+                                         {"t", kF, V, R, "position down the picture, 0 to 1"},
+                                         {"u", kF, V, R, "as s"},
+                                         {"v", kF, V, R, "as t"},
                                          {"Ci", kC, V, W, "colour of the pixel"},
                                          {"Oi", kC, V, W, "opacity of the pixel"},
                                          {"alpha", kF, V, W, "coverage"}};

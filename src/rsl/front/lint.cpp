@@ -58,7 +58,7 @@ private:
 /// which on some way.
 class Flow {
 public:
-    Flow(SourceSet& s, const std::set<const Symbol*>& ignored) : sources_(s), ignored_(ignored) {}
+    Flow(SourceSet& s, const std::set<const Symbol*>& ignored, bool surface) : sources_(s), ignored_(ignored), surface_(surface) {}
     void run(const Stmt* body) { statement(body); }
 
 private:
@@ -96,7 +96,10 @@ private:
         if (alsoRead) expression(e);
         else
             for (const Expr* x = &e; x->kind == ExprKind::Index && x->args.size() > 1; x = x->args[0].get()) expression(*x->args[1]);
-        given(root(e));
+        const Symbol* s = root(e);
+        if (surface_ && s && s->origin == Symbol::Origin::Global && s->name == "P")
+            sources_.warning(e.place, "'P' is read-only in a surface shader; the shader changes a copy of its own");
+        given(s);
     }
 
     void expression(const Expr& e) {
@@ -231,6 +234,7 @@ private:
 
     SourceSet& sources_;
     const std::set<const Symbol*>& ignored_;
+    const bool surface_;
     std::unordered_map<const Symbol*, size_t> tracked_;
     std::set<const Symbol*> told_;
     State now_;
@@ -268,20 +272,23 @@ void lint(const Program& program, SourceSet& sources) {
     const std::string& main = sources.name(0);
     const auto ours = [&](const Place& p) { return p.file >= 0 && p.line > 0 && sources.name(p.file) == main; };
     const auto unused = [&](const Symbol& s, bool parameter) {
-        if (usedPlaces.count({s.place.file, s.place.line, s.place.column}) || !ours(s.place) || s.type.base == Base::Void || s.isExtern || s.name.rfind("__", 0) == 0) return;
+        if (usedPlaces.count({s.place.file, s.place.line, s.place.column}) || !ours(s.place) || s.type.base == Base::Void || s.isExtern || s.name.rfind("__", 0) == 0 || s.name.rfind("this->", 0) == 0)
+            return;
         sources.warning(s.place, std::string(parameter ? "parameter" : "variable") + " '" + s.name + "' is not used");
     };
+    bool surface = false;
     const auto body = [&](const Stmt* b, Place where) {
         if (!b || !ours(where)) return;
         everyStmt(*b, [&](const Stmt& s) {
             for (const auto& d : s.declarators)
                 if (d.symbol) unused(*d.symbol, false);
         }, [](const Expr&) {});
-        Flow(sources, reached).run(b);
+        Flow(sources, reached, surface).run(b);
     };
     for (const auto& s : program.shaders) {
         for (const auto& p : s->parameters)
             if (!p.symbol->output) unused(*p.symbol, true);
+        surface = s->kind == ShaderKind::Surface;
         body(s->body.get(), s->place);
     }
     everyFunction(program, [&](const Function& f) {

@@ -166,7 +166,18 @@ void Lowering::methodCall(Expr& e) {
 
 /// Where a function of the renderer is asked about a region instead of a point, the parts of the region that it understands.
 void Lowering::regions(Expr& call) {
-    if (call.kind != ExprKind::ShadeopCall || structNamed("filterregion") < 0 || functions_.count(call.text)) return;
+    if (call.kind != ExprKind::ShadeopCall || functions_.count(call.text)) return;
+    // The samples of functions that only have a name: without them, and without the tokens before them, their calls can be checked.
+    const Shadeop* op = findShadeop(call.text);
+    const int sample = structNamed("__radiancesample");
+    if (sample >= 0 && op && op->lowering == rsl::Lowering::Unavailable)
+        for (size_t i = call.args.size(); i-- > 0;) {
+            const Type t = typeOf(*call.args[i]);
+            if (!isStruct(t) || t.base != structBase(size_t(sample))) continue;
+            const bool token = i > 1 && call.args[i - 1]->kind == ExprKind::String && !call.args[i - 1]->handle;
+            call.args.erase(call.args.begin() + long(i) - token, call.args.begin() + long(i) + 1);
+        }
+    if (structNamed("filterregion") < 0) return;
     const Base region = structBase(size_t(structNamed("filterregion")));
     std::vector<ExprPtr> given = std::move(call.args);
     call.args.clear();

@@ -1,0 +1,84 @@
+// Shadeops of PRMan 13 to 17 that published shaders call and that need nothing new of the renderer, or only a name.
+#include "shadeops/describe.h"
+
+namespace alpenglow::rsl {
+namespace {
+
+constexpr Type kF{Base::Float, 0}, kC{Base::Color, 0};
+
+/// `text` once for each type: '$' is its name.
+std::string forTypes(const std::string& types, const std::string& text) {
+    std::string all;
+    for (size_t at = 0; at < types.size();) {
+        const size_t end = std::min(types.find(' ', at), types.size());
+        for (const char c : text) c == '$' ? all += types.substr(at, end - at) : all += c;
+        at = end + 1;
+    }
+    return all;
+}
+
+} // namespace
+
+std::vector<Shadeop> publishedShadeops() {
+    std::vector<Shadeop> list;
+    const auto add = [&](const char* name, const char* section, std::vector<Signature> signatures, Lowering lowering, const char* doc) -> Shadeop& {
+        Shadeop op;
+        op.section = section;
+        op.source = "PRMan";
+        op.name = name;
+        op.signatures = std::move(signatures);
+        op.contexts = kSurface | kVolume | kLight;
+        op.lowering = lowering;
+        op.derivative = lowering == Lowering::Rsl ? DerivativeRule::Inherent : DerivativeRule::ZeroWarn;
+        op.pure = false;
+        op.doc = doc;
+        list.push_back(std::move(op));
+        return list.back();
+    };
+    Shadeop& normal = add("shadingnormal", "Geometry", sigs({{"normal shadingnormal(normal n)"}}), Lowering::Rsl,
+                          "n with length 1, turned toward the viewer where the surface has two sides (attribute \"Sides\").");
+    normal.contexts = kSurface | kDisplacement;
+    normal.rsl = R"(
+normal shadingnormal(normal n) {
+    extern vector I;
+    float sides = 2;
+    attribute("Sides", sides);
+    normal one = normalize(n);
+    return (sides == 1) ? one : faceforward(one, I);
+}
+)";
+    Shadeop& reverse = add("reverse", "Arrays", each("float color point vector normal matrix string", "void reverse(output $ a[])"), Lowering::Rsl,
+                           "Turns the order of the elements about.");
+    reverse.contexts = kAnyContext;
+    reverse.rsl = forTypes("float color point vector normal matrix string", R"(
+void reverse(output $ a[]) {
+    uniform float n = arraylength(a), i;
+    for (i = 0; i < n - 1 - i; i += 1) {
+        $ x = a[i];
+        a[i] = a[n - 1 - i];
+        a[n - 1 - i] = x;
+    }
+}
+)");
+    add("emit", "Ray tracing", sigs({{"void emit(color light; pairs)"}}), Lowering::Unavailable,
+        "Called by area lights of PRMan in their method prelighting(): the light they send without sampling. Lights here are sampled by light().");
+    add("areashadow", "Ray tracing", sigs({{"void areashadow(string map; vector region; pairs)"}, {"void areashadow(string map; pairs)"}}),
+        Lowering::Unavailable, "Called by area lights of PRMan in their method shadowSamples(): darkens samples of a light by what stands in the way.");
+    const std::vector<OptionalParameter> results = {{kC, "diffuseresult", true, "", "light times the diffuse material"},
+                                                    {kC, "specularresult", true, "", "light times the specular material"},
+                                                    {kC, "unshadoweddiffuseresult", true, "", "the same without shadows"},
+                                                    {kC, "unshadowedspecularresult", true, "", "the same without shadows"},
+                                                    {kF, "mis", false, "1", "how samples of lights and materials are joined"}};
+    for (const char* name : {"directlighting", "indirectspecular", "diffuselighting"}) {
+        const std::string n = name;
+        Shadeop& op = add(name, "Ray tracing",
+                          sigs({{("color " + n + "(shader handle; pairs)").c_str()}, {("color " + n + "(shader handle; shader lights[]; pairs)").c_str()}}),
+                          Lowering::Unavailable,
+                          "Called by class surfaces of PRMan: asks the lights, or rays, and the methods generateSamples() and evaluateSamples() of the material.");
+        op.contexts = kSurface;
+        op.optional = results;
+    }
+    return list;
+}
+
+} // namespace alpenglow::rsl

@@ -6,6 +6,7 @@ namespace alpenglow::limits {
 
 inline constexpr int kArchiveDepth = 64;
 inline constexpr int kArchiveReads = 1'000'000;                 ///< ReadArchive and the like executed by one reader
+inline constexpr int kUnknownNames = 256;                      ///< unknown requests of one file that are told apart, each reported once
 inline constexpr int kStackDepth = 4096;                       ///< attribute, transform, motion stacks
 inline constexpr size_t kStringBytes = 16u << 20;
 inline constexpr size_t kTokenBytes = 64u << 10;

@@ -1,4 +1,5 @@
 #include "ri/parser.h"
+#include "base/limits.h"
 #include "ri/requests/request.h"
 
 namespace alpenglow::ri {
@@ -106,8 +107,8 @@ bool Parser::next(Call& call) {
         if (!call.request) {
             std::string shown = token_.text.substr(0, 60);
             std::string near = nearestName(shown, requestNames());
-            reporter_.error(Rie::BadToken, place, "unknown request '" + shown + "'",
-                            near.empty() ? "" : "did you mean " + near + "?");
+            if (unknown_.size() >= size_t(limits::kUnknownNames) || unknown_.insert(shown).second) // each name once
+                reporter_.error(Rie::BadToken, place, "unknown request '" + shown + "'", near.empty() ? "" : "did you mean " + near + "?");
             collect(values);
             continue;
         }

@@ -2,6 +2,8 @@
 #pragma once
 #include "ri/call.h"
 #include "ri/lexer.h"
+#include <set>
+#include <string>
 
 namespace alpenglow::ri {
 
@@ -21,6 +23,7 @@ private:
     Reporter& reporter_;
     Token token_;
     bool pending_ = false; ///< token_ was read ahead
+    std::set<std::string> unknown_; ///< names that are no requests, reported
 };
 
 /// Fits values to the signature of call.request and fills arguments and params. False (reported) when they do not fit.

@@ -166,3 +166,37 @@ TEST(Hints, WrongBoundIsOnlyAWarning) {
 TEST(Hints, VisibilityTakesNumbersAndWords) {
     EXPECT_EQ(world("Attribute \"visibility\" \"transmission\" 1 Attribute \"visibility\" \"transmission\" \"Os\"")->count(), 0u);
 }
+
+TEST(Foreign, EachNameIsSaidOnce) {
+    auto c = world("Sphre 1\nSphre 2\nSphere 1 -1 1 360\nNotthis 1 2\nSphre 3\n");
+    EXPECT_EQ(c->count(), 2u) << c->messages();
+    EXPECT_EQ(c->frame().primitives.size(), 1u);
+    std::string many; // more different names than are told apart: the reporter's own bound holds
+    for (int i = 0; i < 2 * limits::kUnknownNames; ++i) many += "Q" + std::to_string(i) + "x 1\nQ0x 1\n";
+    EXPECT_LE(world(many)->count(), size_t(3 * limits::kUnknownNames) + 1);
+}
+
+TEST(Foreign, LaterNamesOfTheSameThings) {
+    auto c = world("VPAtmosphere \"fog\" VPInterior \"haze\" Sphere 1 -1 1 360");
+    EXPECT_EQ(c->count(), 0u) << c->messages();
+    EXPECT_EQ(c->primitive().attributes->atmosphere->name, "fog");
+    EXPECT_EQ(c->primitive().attributes->interior->name, "haze");
+}
+
+TEST(Foreign, ShadersWithoutALanguageAreOneSentence) {
+    auto c = world("Bxdf \"PxrSurface\" \"a\" \"color diffuseColor\" [1 0 0]\nPattern \"PxrTexture\" \"b\" \"string filename\" [\"x\"]\n"
+                   "Integrator \"PxrPathTracer\" \"c\"\nSphere 1 -1 1 360");
+    EXPECT_EQ(c->only().code, Rie::Incapable);
+    EXPECT_EQ(c->only().severity, Severity::Warning);
+    EXPECT_EQ(c->frame().primitives.size(), 1u);
+}
+
+TEST(Foreign, ArchiveOfAProcedure) {
+    auto c = read("ArchiveBegin \"part.rib\"\nColor 0 1 0\nSphere 1 -1 1 360\nArchiveEnd\n"
+                  "WorldBegin\nProcedural2 \"DelayedReadArchive2\" \"SimpleBound\" \"float[6] bound\" [-1 1 -1 1 -1 1] \"string filename\" [\"part.rib\"]\n"
+                  "Sphere 2 -2 2 360\nWorldEnd\n");
+    ASSERT_EQ(c->frame().primitives.size(), 2u) << c->messages();
+    EXPECT_EQ(c->frame().primitives[0]->attributes->color, Color(0, 1, 0));
+    EXPECT_NE(c->frame().primitives[1]->attributes->color, Color(0, 1, 0)); // its attributes stay its own
+    EXPECT_EQ(c->count(), 0u) << c->messages();
+}

@@ -66,5 +66,6 @@ std::vector<Request> quadricRequests();
 std::vector<Request> primitiveRequests();
 std::vector<Request> archiveRequests();
 std::vector<Request> textureRequests();
+std::vector<Request> foreignRequests();
 
 } // namespace alpenglow::ri

@@ -26,6 +26,8 @@ void make(Interpreter& in, const Call& c) {
     in.consumer.makeTexture(std::string(c.request->name), files, params, c.place);
 }
 
+void notMade(Interpreter& in, const Call& c) { in.incapable(c, std::string(c.request->name) + " is not done by this version"); }
+
 } // namespace
 
 std::vector<Request> textureRequests() {
@@ -48,9 +50,9 @@ std::vector<Request> textureRequests() {
         {"MakeShadow", "string picture; string shadow; ..", k, s, false, "Makes a shadow map of a depth picture.",
          "\"a.z\" \"a.shd\"", make},
         {"MakeBrickMap", "string[] clouds; string brickmap; ..", k, s, false, "Makes a brick map of point clouds.",
-         "[\"a.ptc\"] \"a.bkm\"", make},
+         "[\"a.ptc\"] \"a.bkm\"", notMade},
         {"MakeOcclusion", "string[] pictures; string shadow; ..", k, s, false, "Makes an occlusion map of depth pictures.",
-         "[\"a.z\" \"b.z\"] \"a.shd\"", make},
+         "[\"a.z\" \"b.z\"] \"a.shd\"", notMade},
     };
 }
 

@@ -1,0 +1,73 @@
+// Requests of later renderers (PRMan 13 on, RIS, Aqsis): recognised so that the rest of their files renders. What has a meaning here is
+// done; the others are said once each.
+#include "ri/interpreter.h"
+#include <fmt/format.h>
+
+namespace alpenglow::ri {
+namespace {
+
+void notDone(Interpreter& in, const Call& c) { in.incapable(c, fmt::format("{} is not done by this version", c.request->name)); }
+
+/// Shading of the later kind is no RSL: one sentence for all of its requests.
+void ris(Interpreter& in, const Call& c) {
+    in.incapable(c, "Bxdf, Pattern, Integrator and their like belong to renderers without shading language and are left out; Surface, "
+                    "Shader, LightSource and Hider say the same here");
+}
+
+/// A volume primitive shader: the volume shader of the primitive.
+template <scene::ShaderRef scene::Attributes::* Slot> void volumeShader(Interpreter& in, const Call& c) {
+    in.attributes().*Slot = c.text(0).empty() || c.text(0) == "null" ? nullptr : in.shader(c);
+}
+
+void layer(Interpreter& in, const Call& c) {
+    in.incapable(c, "layers of shaders that the scene connects are not done by this version; co-shaders (Shader) are");
+}
+
+/// "DelayedReadArchive2" reads its "filename"; the others run foreign code.
+void procedural2(Interpreter& in, const Call& c) {
+    if (c.text(0) != "DelayedReadArchive2") {
+        in.incapable(c, fmt::format("Procedural2 \"{}\" is not run by this version and is left out", c.text(0)));
+        return;
+    }
+    for (const scene::Param& p : in.bind(c, Use::Other))
+        if (p.name == "filename" && !p.strings.empty()) {
+            if (!in.begin(BlockKind::Attribute, c)) return;
+            in.readArchive(p.strings[0], c.place);
+            in.end(BlockKind::Attribute, c);
+            return;
+        }
+    in.reporter.error(Rie::MissingData, c.place, "Procedural2: the archive has no \"string filename\"");
+}
+
+} // namespace
+
+std::vector<Request> foreignRequests() {
+    using A = scene::Attributes;
+    const unsigned any = kAnywhere;
+    const Kind k = Kind::Other;
+    const char* named = "string name; handle handle; ..";
+    const char* risDoc = "A request of renderers without shading language: said once and left out.";
+    return {
+        {"VPAtmosphere", "string name; ..", Kind::Shader, any, true, "Atmosphere under its later name.", "\"fog\"", volumeShader<&A::atmosphere>},
+        {"VPInterior", "string name; ..", Kind::Shader, any, true, "Interior under its later name.", "\"fog\"", volumeShader<&A::interior>},
+        {"VPSurface", "string name; ..", Kind::Shader, any, true, "The shader at the bound of a volume: not done.", "\"fog\"", notDone},
+        {"ShaderLayer", "string type; string name; string layer; ..", Kind::Shader, any, false, "A layer of a shader network (Aqsis, 3Delight).",
+         "\"surface\" \"plastic\" \"base\" \"Kd\" .4", layer},
+        {"ConnectShaderLayers", "string type; string layer1; string variable1; string layer2; string variable2", Kind::Shader, any, false,
+         "Connects two layers of a shader network (Aqsis, 3Delight).", "\"surface\" \"a\" \"Ci\" \"b\" \"Cs\"", layer},
+        {"Procedural2", "string subdivide; string bound; ..", Kind::Primitive, kWorld | kObject, false,
+         "Content from an archive (\"DelayedReadArchive2\"), a program or a library, by named parameters.",
+         "\"RunProgram2\" \"SimpleBound\" \"float[6] bound\" [-1 1 -1 1 -1 1]", procedural2},
+        {"Bxdf", named, Kind::Shader, any, false, risDoc, "\"PxrSurface\" \"s\"", ris},
+        {"Pattern", named, Kind::Shader, any, false, risDoc, "\"PxrTexture\" \"t\"", ris},
+        {"Light", named, Kind::Light, any, false, risDoc, "\"PxrRectLight\" \"l\" \"float intensity\" 2", ris},
+        {"LightFilter", named, Kind::Light, any, false, risDoc, "\"PxrBarn\" \"f\"", ris},
+        {"EnableLightFilter", "string light; string filter; int on", Kind::Light, any, false, risDoc, "\"l\" \"f\" 1", ris},
+        {"Integrator", named, k, any, false, risDoc, "\"PxrPathTracer\" \"i\"", ris},
+        {"DisplayFilter", named, k, any, false, risDoc, "\"PxrGrade\" \"g\"", ris},
+        {"SampleFilter", named, k, any, false, risDoc, "\"PxrCryptomatte\" \"c\"", ris},
+        {"PixelSampleImager", "string name; ..", k, any, false, "An imager for samples: not done.", "\"bg\"", notDone},
+    };
+}
+
+} // namespace alpenglow::ri

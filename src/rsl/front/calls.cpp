@@ -160,11 +160,11 @@ void Checker::surveyCall(Expr& e, Info& info) {
             offer(c, views(s, *op), s.repeats, s.pairs, s.text);
         }
     };
-    if (info.choices.empty()) {
-        if (unit_ == &main_) // among functions that fit equally well the first counts: those of plug-ins
-            for (const auto& p : program_.plugins) offerAll(p->find(e.text));
-        offerAll(findShadeop(e.text));
-    }
+    // A function of the shader's own joins those of its name, and the one that fits best is called; among functions that fit equally well
+    // the first counts: the shader's, then those of plug-ins.
+    if (unit_ == &main_)
+        for (const auto& p : program_.plugins) offerAll(p->find(e.text));
+    if (unit_ == &main_ || info.choices.empty()) offerAll(findShadeop(e.text));
     if (info.choices.empty()) {
         info.any = true;
         if (known && broken) return; // what went wrong inside was reported

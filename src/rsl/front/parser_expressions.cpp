@@ -291,6 +291,10 @@ ExprPtr Parser::arrayList() {
     Depth depth(*this);
     auto e = node(ExprKind::ArrayList, take().place);
     while (!at("}")) {
+        if (!e->args.empty() && at("...")) { // {0, ...}: the last element again for the rest
+            e->text = take().text;
+            break;
+        }
         adopt(*e, assignment());
         if (e->args.size() > size_t(limits::kShaderArray))
             fail(e->place, "an array has at most " + std::to_string(limits::kShaderArray) + " elements");

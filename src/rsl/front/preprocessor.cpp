@@ -84,7 +84,26 @@ public:
                 return std::move(out_);
             }
             last_ = t.place;
-            out_.tokens.push_back(t);
+            if (!(t.kind == Tok::Identifier && t.is("_Pragma"))) {
+                out_.tokens.push_back(t);
+                continue;
+            }
+            // _Pragma("text"), mostly from a macro, is what #pragma text is.
+            Token parts[3];
+            int given = 0;
+            while (given < 3 && (given == 0 || parts[given - 1].kind != Tok::End)) parts[given++] = next();
+            if (given == 3 && parts[0].is("(") && parts[1].kind == Tok::String && parts[2].is(")")) {
+                std::vector<Token> line{t};
+                Lexer lexer(sources_, t.place.file, sources_.keep(stringValue(parts[1].text)));
+                while (lexer.peek().kind != Tok::End && line.size() < 4) line.push_back(lexer.next());
+                pragma(line);
+                continue;
+            }
+            sources_.warning(t.place, "_Pragma stands before a text in parentheses; it is ignored");
+            for (int i = 0; i < given; ++i) {
+                out_.tokens.push_back(parts[i]);
+                if (parts[i].kind == Tok::End) return std::move(out_);
+            }
         }
     }
 
@@ -350,9 +369,7 @@ private:
         } else if (name == "include") {
             include(line, hash);
         } else if (name == "pragma") {
-            // #pragma annotation "key" "value"; other pragmas mean nothing to us.
-            if (line.size() > 3 && line[1].is("annotation") && line[2].kind == Tok::String && line[3].kind == Tok::String)
-                out_.annotations.push_back({out_.tokens.size(), stringValue(line[2].text), stringValue(line[3].text)});
+            pragma(line);
         } else if (name == "line" || line[0].kind == Tok::Number) {
             lineDirective(line, hash);
         } else if (name == "error") {
@@ -362,6 +379,11 @@ private:
         } else if (name != "ident" && name != "sccs") {
             sources_.warning(line[0].place, "unknown directive '#" + std::string(name) + "' is ignored");
         }
+    }
+    /// #pragma annotation "key" "value"; other pragmas mean nothing to us.
+    void pragma(const std::vector<Token>& line) {
+        if (line.size() > 3 && line[1].is("annotation") && line[2].kind == Tok::String && line[3].kind == Tok::String)
+            out_.annotations.push_back({out_.tokens.size(), stringValue(line[2].text), stringValue(line[3].text)});
     }
     void open(Place at, bool value) {
         const bool outer = !skipping();

@@ -1,5 +1,6 @@
 // Top down: the cheapest reading becomes the tree, its conversions explicit nodes.
 #include "rsl/front/checker.h"
+#include "rsl/front/clone.h"
 #include <algorithm>
 #include <utility>
 
@@ -122,6 +123,7 @@ void Checker::settleArray(ExprPtr& e, Type want, Handle handle) {
             e->args.resize(size_t(length));
         }
         for (auto& a : e->args) settle(a, want.element(), handle);
+        while (e->text == "..." && !e->args.empty() && int(e->args.size()) < length) e->args.push_back(clone(*e->args.back()));
         while (int(e->args.size()) < length) { // missing elements are zero
             auto z = std::make_unique<Expr>();
             z->kind = want.base == Base::String ? ExprKind::String : ExprKind::Number;

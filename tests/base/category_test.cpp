@@ -1,5 +1,6 @@
 // Category expressions: each answer is the definition's in base/category.h, counted by hand.
 #include "base/category.h"
+#include "base/limits.h"
 #include <gtest/gtest.h>
 
 using namespace alpenglow;
@@ -27,4 +28,12 @@ TEST(Category, WhatCannotBeReadMeansAll) {
     }
     EXPECT_NE(categoryError(std::string(100000, '(')), "");
     EXPECT_NE(categoryError(std::string(100000, '-') + "a"), "");
+}
+
+TEST(Category, NestingHasALimit) {
+    auto nested = [](int deep) { return std::string(size_t(deep), '(') + "a" + std::string(size_t(deep), ')'); };
+    EXPECT_EQ(categoryError(nested(limits::kCategoryDepth / 2)), "");
+    EXPECT_TRUE(inCategory(nested(limits::kCategoryDepth / 2), "a"));
+    EXPECT_FALSE(inCategory(nested(limits::kCategoryDepth / 2), "b"));
+    EXPECT_NE(categoryError(nested(limits::kCategoryDepth + 1)).find("nested too deeply"), std::string::npos);
 }

@@ -94,13 +94,15 @@ std::vector<Shadeop> colourShadeops() {
     op.section = "Colours";
     op.source = "seed";
     op.name = "comp";
-    op.signatures = sigs({{"float comp(color c; float i)", "al_comp"}});
-    op.doc = "Component of a colour (or of a matrix); the index is truncated and clamped to 0..2.";
-    op.examples = {{"comp(color(1,2,3), 1)", "2"}};
+    op.signatures = sigs({{"float comp(color c; float i)", "al_comp"}, {"float comp(vector c; float i)", "al_comp"},
+                          {"float comp(point c; float i)", "al_comp"}, {"float comp(normal c; float i)", "al_comp"}});
+    op.doc = "Component of a colour, a tuple (or of a matrix); the index is truncated and clamped to 0..2.";
+    op.examples = {{"comp(color(1,2,3), 1)", "2"}, {"comp(vector(1,2,3), 2)", "3"}};
     list.push_back(op);
     op.name = "setcomp";
-    op.signatures = sigs({{"void setcomp(output color c; float i, float value)", "al_setcomp"}});
-    op.doc = "Sets a component of a colour (or of a matrix); the index is truncated and clamped to 0..2.";
+    op.signatures = sigs({{"void setcomp(output color c; float i, float value)", "al_setcomp"}, {"void setcomp(output vector c; float i, float value)", "al_setcomp"},
+                          {"void setcomp(output point c; float i, float value)", "al_setcomp"}, {"void setcomp(output normal c; float i, float value)", "al_setcomp"}});
+    op.doc = "Sets a component of a colour, a tuple (or of a matrix); the index is truncated and clamped to 0..2.";
     op.examples = {};
     list.push_back(op);
     op.name = "luminance";

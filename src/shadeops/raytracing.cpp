@@ -137,7 +137,7 @@ std::vector<Shadeop> raytracingShadeops() {
     Shadeop& subsurface = add("subsurface", sigs({{"color subsurface(point p; pairs)"}, {"color subsurface(point p; normal n; pairs)"}}),
                               Lowering::Unavailable, "Light that leaves at p after scattering below the surface.");
     subsurface.optional = subsurface.optional + subsurfaceParameters();
-    subsurface.contexts = kSurface;
+    subsurface.contexts = kSurface | kLight; // classes that are both
     Shadeop& photonmap = add("photonmap", sigs({{"color photonmap(string name; point p; vector n; pairs)"}, {"float photonmap(string name; point p; vector n; pairs)"}}),
                              Lowering::Unavailable, "Irradiance or radiance from a photon map.");
     photonmap.bias = Bias::Biased;

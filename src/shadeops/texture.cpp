@@ -99,7 +99,7 @@ std::vector<Shadeop> textureShadeops() {
     bake3d.pure = false;
     bake3d.bias = Bias::Unbiased;
     bake3d.biasReason.clear();
-    bake3d.contexts = kSurface | kDisplacement | kVolume;
+    bake3d.contexts = kAnyContext; // 3Delight bakes irradiance from lights
     bake3d.optional = {{kS, "coordsystem", false, "\"world\"", "space of the file"},
                        {kF, "radius", false, "from the footprint", "radius of the sample"},
                        {kF, "radiusscale", false, "1", "multiplies the radius"},

@@ -1,40 +1,19 @@
 // --allow-exec and the rslplugin search path, as a user meets them. The plug-in is that of examples/plugins.
-#include <array>
-#include <cstdio>
-#include <cstdlib>
+#include "command_folder.h"
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <sys/wait.h>
 
 namespace fs = std::filesystem;
 
 namespace {
 
-class PluginTools : public testing::Test {
+class PluginTools : public alpenglow::cli::testing::CommandFolder {
 protected:
-    fs::path dir;
     const std::string folder = (fs::path(ALPENGLOW_PROGRAM).parent_path().parent_path() / "plugins").string();
-    int status = -1;
-    void SetUp() override {
-        std::string name = (fs::temp_directory_path() / "alpenglow-plugins-XXXXXX").string();
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        dir = name;
-    }
-    void TearDown() override { fs::remove_all(dir); }
     /// Standard output and errors together.
-    std::string run(const std::string& arguments) {
-        const std::string command = "cd '" + dir.string() + "' && '" + ALPENGLOW_PROGRAM "' " + arguments + " 2>&1";
-        std::string out;
-        FILE* p = popen(command.c_str(), "r");
-        if (!p) return out;
-        std::array<char, 4096> buffer;
-        while (size_t n = fread(buffer.data(), 1, buffer.size(), p)) out.append(buffer.data(), n);
-        const int s = pclose(p);
-        status = WIFEXITED(s) ? WEXITSTATUS(s) : 128 + WTERMSIG(s);
-        return out;
-    }
+    std::string run(const std::string& arguments) { return CommandFolder::run(arguments, "2>&1"); }
 };
 
 TEST_F(PluginTools, AShaderIsAskedForBeforeItRunsForeignCode) {

@@ -1,40 +1,18 @@
 // compile --json, compile -W, info: what the tools say about shaders; the manual of the shadeops is up to date.
-#include <array>
-#include <cstdio>
-#include <cstdlib>
+#include "command_folder.h"
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <sys/wait.h>
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 namespace {
 
-class Tools : public testing::Test {
+class Tools : public alpenglow::cli::testing::CommandFolder {
 protected:
-    fs::path dir;
-    int status = -1;
-    void SetUp() override {
-        std::string name = (fs::temp_directory_path() / "alpenglow-tools-XXXXXX").string();
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        dir = name;
-    }
-    void TearDown() override { fs::remove_all(dir); }
-    void write(const std::string& name, const std::string& text) const { std::ofstream(dir / name, std::ios::binary) << text; }
-    std::string run(const std::string& arguments) {
-        const std::string command = "cd '" + dir.string() + "' && '" + ALPENGLOW_PROGRAM "' " + arguments + " 2>err";
-        std::string out;
-        FILE* p = popen(command.c_str(), "r");
-        if (!p) return out;
-        std::array<char, 4096> buffer;
-        while (size_t n = fread(buffer.data(), 1, buffer.size(), p)) out.append(buffer.data(), n);
-        const int s = pclose(p);
-        status = WIFEXITED(s) ? WEXITSTATUS(s) : 128 + WTERMSIG(s);
-        return out;
-    }
+    std::string run(const std::string& arguments) { return CommandFolder::run(arguments, "2>err"); }
     std::string errors() const {
         std::ifstream in(dir / "err");
         return {std::istreambuf_iterator<char>(in), {}};

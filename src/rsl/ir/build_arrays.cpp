@@ -89,7 +89,8 @@ Inst* Builder::elementOf(const Inst* a, Inst* index) {
     if (isConst(get(l->length)) && isConst(index)) // behind the length there may still be storage
         return constant(std::min(index->numbers[0], std::max(0.0f, get(l->length)->numbers[0] - 1)));
     Inst* last = emit(Op::Sub, Kind::Float, {get(l->length), constant(1)});
-    return runtime1("al_min_f", {index, last}, Kind::Float);
+    // In this order an index that is no number stays none, and element 0 is meant, as in arrays of fixed length.
+    return runtime1("al_min_f", {last, index}, Kind::Float);
 }
 
 /// Reports, when the shader runs, that an array wants more than its storage holds; gives what it gets.

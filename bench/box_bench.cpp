@@ -171,8 +171,9 @@ int main(int argc, char** argv) {
     const double samples = double(width) * height * spp;
     // The renderer plays roulette from the fourth hit on; the oracle as it is from the sixth. With 2 both send the same rays.
     bench::OracleRun same{width, height, uint32_t(spp), true, 2}, plain{width, height, uint32_t(spp), false, 4};
-    std::vector<double> ours, wall, sequences, twister, sums;
-    double mean = 0, oracleMean = 0;
+    std::vector<double> ours, wall, sequences, embree, twister, sums;
+    double mean = 0, oracleMean = 0, embreeMean = 0;
+    const bench::OracleRunner throughEmbree = bench::oracleThroughEmbree();
     Box::Result last = box.render(1);
     for (int i = 0; i < repeats; ++i) { // in turns, so that what else the machine does hits both alike
         last = box.render(uint32_t(spp));
@@ -182,6 +183,9 @@ int main(int argc, char** argv) {
         double t = cpuSeconds();
         oracleMean = bench::runOracle(same, sums);
         sequences.push_back(cpuSeconds() - t);
+        t = cpuSeconds();
+        embreeMean = throughEmbree(same, sums);
+        embree.push_back(cpuSeconds() - t);
         t = cpuSeconds();
         bench::runOracle(plain, sums);
         twister.push_back(cpuSeconds() - t);
@@ -201,10 +205,11 @@ int main(int argc, char** argv) {
     };
     line("ours", ours, ourRays);
     line("oracle, our sequences, our roulette", sequences, bench::oracleRays(same));
+    line("oracle through Embree, on our sequences", embree, bench::oracleRays(same));
     line("oracle, Mersenne twister, its own roulette", twister, bench::oracleRays(plain));
-    std::printf("  ours / oracle, samples a second: %.3f on the same sequences with the same roulette; %.3f to the oracle as it is\n",
-                ratios(sequences), ratios(twister));
-    std::printf("  means %.5f and %.5f; wall %.3f s, %.0f rays/ms; %.1f points a batch, %.0f %% of lanes busy\n", mean, oracleMean, median(wall),
+    std::printf("  ours / oracle, samples a second: %.3f on the same sequences with the same roulette; %.3f where the oracle meets through "
+                "Embree; %.3f to the oracle as it is\n", ratios(sequences), ratios(embree), ratios(twister));
+    std::printf("  means %.5f, %.5f and through Embree %.5f; wall %.3f s, %.0f rays/ms; %.1f points a batch, %.0f %% of lanes busy\n", mean, oracleMean, embreeMean, median(wall),
                 double(render::totalRays(c)) / median(wall) / 1e3, double(c.points) / double(c.batches), 100.0 * double(c.lanesUsed) / double(c.lanesRun));
 
     const accel::Accel& accel = *static_cast<const transport::WorldImpl&>(*box.world).accel_;

@@ -1,6 +1,7 @@
 // The oracle's side of box_bench. Each function is compiled on its own: with the count of rays and without.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace alpenglow::bench {
@@ -13,6 +14,9 @@ struct OracleRun {
 };
 /// Sums of the pixels, three floats each; returns the mean of all.
 double runOracle(const OracleRun&, std::vector<double>& sums);
+using OracleRunner = std::function<double(const OracleRun&, std::vector<double>& sums)>;
+/// runOracle() with rays that meet the box through Embree, whose scene is built here.
+OracleRunner oracleThroughEmbree();
 /// Rays per sample of the same run.
 double oracleRays(const OracleRun&);
 

@@ -1,4 +1,4 @@
-room_tests(oracle DEPS base)
+room_tests(oracle DEPS base embree3)
 if(TARGET test_oracle)
   target_include_directories(test_oracle PRIVATE ${CMAKE_SOURCE_DIR}/tests)
 endif()

@@ -1,5 +1,6 @@
 // The oracle: a plain path tracer of the Muttenzer box. Planes and spheres met in double, materials and light written out. It shares
 // nothing with the renderer but the arithmetic of C++. World space, right-handed, y up (reference muttenzer_box.md).
+// box_oracle_embree.h has a second way to meet the box, for box_bench.
 #pragma once
 #include <array>
 #include <cmath>
@@ -16,17 +17,16 @@ inline V operator*(V a, V b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 inline double dot(V a, V b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline V unit(V a) { return a * (1 / std::sqrt(dot(a, a))); }
 
-struct Box {
+enum Material { Diffuse, Mirror, Glass, Light };
+struct Hit { double t = 1e30; V p, n; Material m = Diffuse; V albedo; };
+
+/// The way to meet that knows the box: each plane and sphere asked in turn, in double. The tests' way.
+struct Analytic {
     bool spheres = true;
-    bool indirect = true; ///< false: direct light only
-    int freeBounces = 4;  ///< roulette decides behind hits past this one (the camera's hit is 0)
+    static constexpr double kOff = 1e-7; ///< rays start this far from what they leave
 #ifdef ORACLE_COUNTS_RAYS
     mutable uint64_t rays = 0; ///< calls of meet()
 #endif
-    enum Material { Diffuse, Mirror, Glass, Light };
-    struct Hit { double t = 1e30; V p, n; Material m = Diffuse; V albedo; };
-
-    static constexpr double kLe = 7;
 
     bool meet(V o, V d, Hit& h) const {
 #ifdef ORACLE_COUNTS_RAYS
@@ -72,6 +72,19 @@ struct Box {
         }
         return h.t < 1e30;
     }
+    /// Whether something stands within `distance`.
+    bool hides(V o, V d, double distance) const {
+        Hit h;
+        return meet(o, d, h) && h.t < distance - 1e-5;
+    }
+};
+
+/// The path tracer over any way to meet.
+template <class Meet> struct Tracer : Meet {
+    bool indirect = true; ///< false: direct light only
+    int freeBounces = 4;  ///< roulette decides behind hits past this one (the camera's hit is 0)
+    static constexpr double kLe = 7;
+    using Meet::meet, Meet::hides, Meet::kOff;
 
     template <class Rng> static double u01(Rng& r) { return std::uniform_real_distribution<double>(0, 1)(r); }
 
@@ -89,8 +102,7 @@ struct Box {
         d = d * (1 / l);
         double cs = dot(d, n), cl = d.y; // light faces -y
         if (cs <= 0 || cl <= 0) return {};
-        Hit h;
-        if (meet(p + n * 1e-7, d, h) && h.t < l - 1e-5) return {};
+        if (hides(p + n * kOff, d, l)) return {};
         return albedo * (kLe / M_PI * cs * cl / d2 * .65);
     }
 
@@ -111,11 +123,11 @@ struct Box {
                 if (!indirect) return sum;
                 w = w * h.albedo;
                 d = cosine(h.n, u01(rng), u01(rng));
-                o = h.p + h.n * 1e-7;
+                o = h.p + h.n * kOff;
                 countLight = false;
             } else if (h.m == Mirror) {
                 d = unit(d - h.n * (2 * dot(d, h.n)));
-                o = h.p + h.n * 1e-7;
+                o = h.p + h.n * kOff;
                 countLight = true;
             } else {
                 bool in = dot(d, h.n) > 0;
@@ -129,10 +141,10 @@ struct Box {
                 }
                 if (u01(rng) < F) {
                     d = unit(r);
-                    o = h.p + n * 1e-7;
+                    o = h.p + n * kOff;
                 } else {
                     d = unit(d * eta + n * (eta * c - std::sqrt(k)));
-                    o = h.p - n * 1e-7;
+                    o = h.p - n * kOff;
                 }
                 countLight = true;
             }
@@ -159,11 +171,13 @@ struct Box {
         V d = cosine(n, u01(rng), u01(rng));
         // Light met by this ray was counted by direct(); met through mirror or glass it is indirect and counts.
         Hit h;
-        V o = p + n * 1e-7;
+        V o = p + n * kOff;
         if (meet(o, d, h) && h.m == Light) return sum;
         return sum + albedo * radiance(o, d, rng);
     }
 };
+
+using Box = Tracer<Analytic>;
 
 struct Mean {
     double n = 0;

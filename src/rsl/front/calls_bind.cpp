@@ -1,0 +1,147 @@
+// What a call means once it is known which shadeop it is: the arguments become what its parameters are, tokens are looked up.
+#include "base/limits.h"
+#include "rsl/front/checker.h"
+#include <algorithm>
+#include <utility>
+
+namespace alpenglow::rsl::front {
+
+/// What is the same for all points when the arguments are: whether a message was found, what a file or the frame says, a length, and
+/// a picture read where the arguments say. What an argument holds that is put out does not count.
+bool Checker::uniformResult(const Expr& e, const Choice& choice) const {
+    const Shadeop& op = *choice.shadeop;
+    if (op.name == "arraylength" || op.name == "capacity" || op.name == "textureinfo") return e.kind == ExprKind::ShadeopCall;
+    if (op.section == kPluginSection) return true;
+    if (op.section == "Messages") return op.name != "gridmin" && op.name != "gridmax" && op.name != "rayinfo" && op.name != "getvar";
+    return (op.name == "texture" || op.name == "environment") && e.args.size() > 1;
+}
+
+void Checker::bindShadeop(Expr& e, const Choice& choice) {
+    const Shadeop& op = *choice.shadeop;
+    e.shadeop = &op;
+    e.signature = choice.signature;
+    if (op.name == "outputchannel" && e.args[0]->kind == ExprKind::String) {
+        std::string name = e.args[0]->text;
+        if (name.rfind("light:", 0) == 0 || name.rfind("local:", 0) == 0) name.erase(0, 6);
+        program_.channels.emplace(name, e.args[1]->type);
+    }
+    if (op.name == "getvar" && e.args[1]->kind == ExprKind::String)
+        program_.primitiveVariables.emplace(e.args[1]->text, e.args.size() > 2 ? e.args[2]->type : Type{});
+    program_.handles |= op.name == "getshader" || op.name == "getshaders" || op.name == "getvar";
+    if (op.name == "resize" || op.name == "reserve" || op.name == "push" || op.name == "pop") {
+        const Symbol* s = e.args.empty() ? nullptr : e.args[0]->symbol;
+        const bool open = s && (s->resizable || (s->origin == Symbol::Origin::FunctionParameter && s->type.array == -1));
+        if (s && !open && s->type.base != Base::Void)
+            sources_.error(e.args[0]->place, "the length of '" + s->name + "' is fixed",
+                           s->origin == Symbol::Origin::Local ? "declare it as " + toString(s->type.element()) + " " + s->name + "[]"
+                                                              : "only local arrays and parameters of functions can change theirs");
+    }
+    if (op.name == "push" && e.args.size() == 2 && e.args[0]->symbol && e.args[1]->type.base == Base::String) {
+        const Handle array = e.args[0]->symbol->handle ? Handle::Shader : Handle::Text;
+        if (const Info& value = infos_.at(e.args[1].get()); !alike(array, value.handle))
+            sources_.error(e.args[1]->place, "expected a " + named({Base::String, 0}, array) + ", not " + describe(*e.args[1]));
+    }
+    if (kind_ && !(op.contexts & contextOf(*kind_)) && !(function_ && function_->anywhere)) {
+        std::string where;
+        for (int k = 0; k < 6; ++k)
+            if (op.contexts & contextOf(ShaderKind(k)))
+                where += (where.empty() ? "" : ", ") + std::string(toString(ShaderKind(k)));
+        sources_.error(e.place, "'" + op.name + "' cannot be used in a " + toString(*kind_) + " shader", "it can in: " + where);
+        return; // its text would be wrong here line by line
+    }
+    if (uniformResult(e, choice)) {
+        e.varying = false; // a length is that of all points
+        for (size_t i = 0; i < e.args.size() && op.section != "Arrays"; ++i)
+            if (!choice.signature->parameters[std::min(i, choice.signature->parameters.size() - 1)].output) e.varying |= e.args[i]->varying;
+    } else if (op.lowering != Lowering::Runtime && op.lowering != Lowering::Special && op.lowering != Lowering::Rsl &&
+               op.name != "format" && op.name != "concat") {
+        e.varying = true;
+        if (e.type.base != Base::Void) readsPoint(e, "what '" + op.name + "' gives");
+    }
+    if (op.lowering == Lowering::Unavailable && reportedUnavailable_.insert(&op).second)
+        sources_.warning(e.place, "'" + op.name + "' is not yet available; " +
+                                      (e.type.base == Base::Void ? "the call does nothing" : "its value is 0"));
+    if (op.lowering != Lowering::Rsl) return;
+    std::pair<std::string, std::string> rename;
+    for (const NamedArg& p : e.pairs) {
+        // The one shadeop in RSL with a choice of kernels.
+        if (op.name == "filterstep" && p.name == "filter" && p.value->kind == ExprKind::String) {
+            std::string filter = p.value->text;
+            filter.erase(std::remove(filter.begin(), filter.end(), '-'), filter.end());
+            if (findShadeop("__filterstep_" + filter)) rename = {"__filterstep_catmullrom", "__filterstep_" + filter};
+            else sources_.warning(p.place, "there is no filter \"" + p.value->text + "\"; catmull-rom is used");
+        } else if (op.name != "filterstep" || (p.name != "filter" && p.name != "width")) {
+            sources_.warning(p.place, "\"" + p.name + "\" of '" + op.name + "' is not yet available and ignored");
+        }
+    }
+    const Unit& unit = rslUnit(op);
+    for (const auto& f : unit.functions) {
+        bool same = f->name == op.name && f->result == choice.signature->result &&
+                    f->parameters.size() == choice.signature->parameters.size();
+        for (size_t i = 0; same && i < f->parameters.size(); ++i)
+            same = f->parameters[i]->type == choice.signature->parameters[i].type;
+        if (!same) continue;
+        e.kind = ExprKind::FunctionCall;
+        // Its globals are visible whatever the shader calls its own variables; nothing of the shader is.
+        auto parameters = std::exchange(shaderParameters_, {});
+        e.function = instance(*f, unit, rename, e.place);
+        shaderParameters_ = std::move(parameters);
+        if (e.function && varyingFunctions_.count(e.function)) {
+            e.varying = true;
+            readsPoint(e, "what '" + op.name + "' gives");
+        }
+        return;
+    }
+    sources_.error(e.place, "the text of '" + op.name + "' has no function for " + choice.signature->text);
+}
+
+/// "name", value, ... behind the positional arguments.
+void Checker::settlePairs(Expr& e, size_t positional, const Shadeop* op) {
+    for (size_t i = positional; i + 1 < e.args.size(); i += 2) {
+        NamedArg pair;
+        pair.place = e.args[i]->place;
+        pair.name = e.args[i]->text;
+        // "uniform float blur" declares in place; the name is the last word.
+        if (const size_t space = pair.name.find_last_of(" \t"); space != std::string::npos) pair.name.erase(0, space + 1);
+        ExprPtr value = std::move(e.args[i + 1]);
+        const Info& info = infos_.at(value.get());
+        const OptionalParameter* optional = nullptr;
+        std::vector<std::string> names;
+        for (const auto& o : op->optional) {
+            names.push_back(o.name);
+            if (o.name == pair.name) optional = &o;
+        }
+        if (info.any) {
+            settleCheapest(value);
+        } else if (!optional) {
+            // Names with a prefix are messages ("light:x"), those of bake3d and texture3d are channels.
+            const bool channels = op->name == "bake3d" || op->name == "texture3d";
+            const std::string near = nearestName(pair.name, names);
+            if (pair.name.find(':') == std::string::npos && !channels && op->lowering != Lowering::Unavailable)
+                sources_.warning(pair.place, "'" + op->name + "' has no parameter \"" + pair.name + "\"; it is ignored",
+                                 near.empty() ? "" : "did you mean \"" + near + "\"?");
+            settleCheapest(value);
+        } else if (optional->output) {
+            pair.output = true;
+            const int cost = argumentCost(*value, {optional->type, true, Handle::Either}, false);
+            const bool array = info.array.array && info.array.base == optional->type.base;
+            if (cost >= kNever && !array) {
+                sources_.error(value->place, "\"" + pair.name + "\" gives a " + toString(optional->type) +
+                                                 ": it needs a variable of that type");
+            } else {
+                settleVariable(value);
+                written(*value);
+            }
+        } else if (optional->type.array != 0 && !info.array.array && info.listLength < 0) {
+            settle(value, costTo(info, optional->type.base) < kNever && cheapest(info) != Base::Float ? optional->type.element()
+                                                                                                   : Type{cheapest(info), 0});
+        } else {
+            settle(value, optional->type);
+        }
+        pair.value = std::move(value);
+        e.pairs.push_back(std::move(pair));
+    }
+    if (positional < e.args.size()) e.args.resize(positional);
+}
+
+} // namespace alpenglow::rsl::front

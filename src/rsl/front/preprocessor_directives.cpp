@@ -1,0 +1,188 @@
+// The lines that begin with #.
+#include "rsl/front/preprocessor_machine.h"
+#include <cstdlib>
+#include <filesystem>
+
+namespace alpenglow::rsl::front {
+
+namespace fs = std::filesystem;
+
+std::vector<Token> Preprocessor::restOfLine() {
+    std::vector<Token> line;
+    Lexer& lexer = *frames_.back().lexer;
+    while (!lexer.peek().lineStart) line.push_back(lexer.next());
+    return line;
+}
+
+std::string Preprocessor::spelled(const std::vector<Token>& line, size_t from) {
+    std::string s;
+    for (size_t i = from; i < line.size(); ++i) {
+        if (i > from && line[i].space) s += ' ';
+        s += line[i].text;
+    }
+    return s;
+}
+
+void Preprocessor::directive(Place hash) {
+    std::vector<Token> line = restOfLine();
+    if (line.empty()) return;
+    const std::string_view name = line[0].text;
+    if (name == "ifdef" || name == "ifndef") {
+        const bool known = line.size() > 1 && macros_.count(line[1].text);
+        if (line.size() < 2 && !skipping()) sources_.error(hash, "#" + std::string(name) + " needs a name");
+        open(hash, known == (name == "ifdef"));
+    } else if (name == "if") {
+        open(hash, skipping() ? false : condition(line, hash));
+    } else if (name == "elif" || name == "else" || name == "endif") {
+        if (ifs_.size() <= frames_.back().conditions) {
+            sources_.error(hash, "#" + std::string(name) + " without #if");
+            return;
+        }
+        If& f = ifs_.back();
+        if (name == "endif") { ifs_.pop_back(); return; }
+        if (f.sawElse) { sources_.error(hash, "#" + std::string(name) + " after #else"); return; }
+        const bool outer = ifs_.size() < 2 || ifs_[ifs_.size() - 2].taking;
+        f.sawElse = name == "else";
+        f.taking = outer && !f.taken && (name == "else" || condition(line, hash));
+        f.taken |= f.taking;
+    } else if (skipping()) {
+    } else if (name == "define") {
+        define(line, hash);
+    } else if (name == "undef") {
+        if (line.size() > 1) macros_.erase(line[1].text);
+    } else if (name == "include") {
+        include(line, hash);
+    } else if (name == "pragma") {
+        pragma(line);
+    } else if (name == "line" || line[0].kind == Tok::Number) {
+        lineDirective(line, hash);
+    } else if (name == "error") {
+        sources_.error(hash, "#error " + spelled(line, 1));
+    } else if (name == "warning") {
+        sources_.warning(hash, "#warning " + spelled(line, 1));
+    } else if (name != "ident" && name != "sccs") {
+        sources_.warning(line[0].place, "unknown directive '#" + std::string(name) + "' is ignored");
+    }
+}
+
+void Preprocessor::pragma(const std::vector<Token>& line) {
+    if (line.size() > 3 && line[1].is("annotation") && line[2].kind == Tok::String && line[3].kind == Tok::String)
+        out_.annotations.push_back({out_.tokens.size(), stringValue(line[2].text), stringValue(line[3].text)});
+}
+
+void Preprocessor::open(Place at, bool value) {
+    const bool outer = !skipping();
+    ifs_.push_back({outer && value, outer && value, false, at});
+}
+
+bool Preprocessor::condition(std::vector<Token> line, Place hash) {
+    std::vector<Token> list;
+    for (size_t i = 1; i < line.size(); ++i) {
+        Token t = line[i];
+        if (t.is("defined")) {
+            const bool paren = i + 1 < line.size() && line[i + 1].is("(");
+            const size_t at = i + (paren ? 2 : 1);
+            if (at < line.size()) {
+                t.text = macros_.count(line[at].text) ? "1" : "0";
+                t.kind = Tok::Number;
+                i = paren && at + 1 < line.size() && line[at + 1].is(")") ? at + 1 : at;
+            }
+        }
+        list.push_back(t);
+    }
+    return conditionValue(expanded(list), hash, sources_);
+}
+
+void Preprocessor::define(const std::vector<Token>& line, Place hash) {
+    if (line.size() < 2 || line[1].kind != Tok::Identifier) { sources_.error(hash, "#define needs a name"); return; }
+    auto m = std::make_shared<Macro>();
+    m->name = line[1].text;
+    size_t i = 2;
+    if (i < line.size() && line[i].is("(") && !line[i].space) {
+        m->function = true;
+        for (++i; i < line.size() && !line[i].is(")"); ++i) {
+            if (line[i].is(",")) continue;
+            if (line[i].is("...")) { m->variadic = true; m->parameters.push_back("__VA_ARGS__"); }
+            else if (line[i].kind == Tok::Identifier) m->parameters.push_back(line[i].text);
+            else sources_.error(line[i].place, "a macro parameter is a name, not '" + std::string(line[i].text) + "'");
+        }
+        if (i == line.size()) { sources_.error(hash, "the parameters of this macro have no ')'"); return; }
+        ++i;
+    }
+    m->body.assign(line.begin() + long(i), line.end());
+    const auto old = macros_.find(m->name);
+    if (old != macros_.end() && spelled(old->second->body, 0) != spelled(m->body, 0))
+        sources_.warning(line[1].place, "macro '" + std::string(m->name) + "' is defined again with another meaning");
+    macros_[m->name] = m;
+}
+
+void Preprocessor::include(std::vector<Token> line, Place hash) {
+    if (line.size() > 1 && line[1].kind == Tok::Identifier)
+        line = expanded({line.begin() + 1, line.end()}), line.insert(line.begin(), Token{});
+    std::string name;
+    if (line.size() > 1 && line[1].kind == Tok::String) {
+        name = std::string(line[1].text.substr(1, line[1].text.size() - 2)); // no escapes: paths of another system
+    } else if (line.size() > 2 && line[1].is("<")) {
+        name = spelled(line, 2);
+        name = name.substr(0, name.find('>'));
+    }
+    if (name.empty()) { sources_.error(hash, "#include needs \"file\" or <file>"); out_.incomplete = true; return; }
+    if (files_ > limits::kIncludeDepth) {
+        sources_.error(hash, "includes are nested more than " + std::to_string(limits::kIncludeDepth) + " deep");
+        out_.incomplete = true;
+        return;
+    }
+    std::vector<std::string> folders = {fs::path(sources_.name(frames_.back().lexer->file())).parent_path().string()};
+    folders.insert(folders.end(), options_.includePaths.begin(), options_.includePaths.end());
+    const std::string slashed = withSlashes(name);
+    for (const std::string& wanted : {name, slashed})
+        if (includeFrom(folders, wanted)) return;
+    const Place place = line[1].place.line ? line[1].place : hash;
+    // A path of another machine: the file's own name along the search path, then among the headers of our own.
+    const std::string base = slashed.substr(slashed.find_last_of('/') + 1);
+    if (base != slashed && includeFrom(folders, base)) {
+        sources_.warning(place, "'" + name + "' was not found; '" + out_.dependencies.back() + "' is used");
+        return;
+    }
+    if (const ShippedHeader* own = shippedHeader(base)) {
+        pushFile(sources_.add("<" + std::string(own->name) + ">", std::string(own->text)));
+        return;
+    }
+    out_.incomplete = true;
+    out_.missing.push_back({place, name});
+}
+
+bool Preprocessor::includeFrom(const std::vector<std::string>& folders, const std::string& wanted) {
+    for (const auto& folder : folders) {
+        const std::string path = (fs::path(folder) / wanted).string();
+        if (auto text = readSource(path)) {
+            out_.dependencies.push_back(path);
+            pushFile(sources_.add(path, std::move(*text)));
+            return true;
+        }
+    }
+    return false;
+}
+
+std::string Preprocessor::withSlashes(std::string s) {
+    for (char& c : s)
+        if (c == '\\') c = '/';
+    return s;
+}
+
+void Preprocessor::lineDirective(const std::vector<Token>& line, Place hash) {
+    const size_t i = line[0].kind == Tok::Number ? 0 : 1;
+    if (i >= line.size() || line[i].kind != Tok::Number || line[i].text.size() > 8) {
+        sources_.error(hash, "#line needs a number");
+        return;
+    }
+    Lexer& lexer = *frames_.back().lexer;
+    const int real = hash.line - delta_[lexer.file()];
+    const int delta = std::atoi(std::string(line[i].text).c_str()) - (real + 1);
+    const bool named = i + 1 < line.size() && line[i + 1].kind == Tok::String;
+    const std::string name = named ? stringValue(line[i + 1].text) : sources_.name(hash.file);
+    delta_[lexer.file()] = delta;
+    lexer.relocate(sources_.addView(lexer.file(), name, delta), delta);
+}
+
+} // namespace alpenglow::rsl::front

@@ -1,0 +1,191 @@
+// Calls that the renderer answers: what goes along with them, and what comes back.
+#include "rsl/ir/builder.h"
+#include <algorithm>
+#include <cstdio>
+
+namespace alpenglow::rsl::ir {
+
+void Builder::addArgument(Site& s, std::vector<Inst*>& args, Inst* v, Type t) {
+    args.push_back(v);
+    s.argKinds.push_back(v->kind);
+    s.argTypes.push_back(t);
+}
+
+/// concat and format of constants; null when something is not constant.
+Inst* Builder::foldString(const std::string& op, const std::vector<Inst*>& args) {
+    for (const Inst* a : args)
+        if (a->op != Op::ConstString && !(a->op == Op::Const && a->kind == Kind::Float)) return nullptr;
+    std::string out;
+    if (op == "concat") {
+        for (const Inst* a : args) out += a->text;
+        return leaves_.string(out);
+    }
+    if (op != "format" || args.empty() || args[0]->op != Op::ConstString) return nullptr;
+    const std::string& p = args[0]->text;
+    size_t next = 1;
+    for (size_t i = 0; i < p.size(); ++i) {
+        if (p[i] != '%') {
+            out += p[i];
+            continue;
+        }
+        if (i + 1 < p.size() && p[i + 1] == '%') {
+            out += '%';
+            ++i;
+            continue;
+        }
+        // Only the plain conversions; widths and precisions are the service's business.
+        if (i + 1 >= p.size() || next >= args.size()) return nullptr;
+        const Inst* a = args[next++];
+        const char c = p[++i];
+        if (c == 's' && a->op == Op::ConstString) out += a->text;
+        else if (c == 'd' && a->op == Op::Const) {
+            char text[64];
+            std::snprintf(text, sizeof text, "%.0f", static_cast<double>(a->numbers[0]));
+            out += text;
+        } else return nullptr;
+    }
+    return leaves_.string(out);
+}
+
+Inst* Builder::service(const Expr& e, Op kind) {
+    const Shadeop& op = *e.shadeop;
+    const Signature& sig = *e.signature;
+    Site s;
+    s.op = op.name;
+    s.shadeop = &op;
+    s.resultType = e.type;
+    s.pure = op.pure && kind == Op::Service;
+    std::vector<Inst*> args;
+    struct Out {
+        const Expr* lvalue;
+        int first;
+        int count;
+    };
+    std::vector<Out> outs;
+    if (kindOf(sig.result) != Kind::None && !sig.result.array) {
+        s.resultKinds.push_back(kindOf(sig.result));
+        s.resultNames.push_back("");
+    }
+    const auto output = [&](const Expr& l, const std::string& name) {
+        Out o{&l, static_cast<int>(s.resultKinds.size()), 1};
+        if (l.type.array) {
+            Inst* a = array(l);
+            o.count = arrayLength(a);
+            for (int n = 0; n < o.count; ++n) {
+                s.resultKinds.push_back(a->element);
+                s.resultNames.push_back(name + "[" + std::to_string(n) + "]");
+            }
+        } else {
+            s.resultKinds.push_back(kindOf(l.type));
+            s.resultNames.push_back(name);
+        }
+        outs.push_back(o);
+    };
+    std::vector<Inst*> all;
+    const size_t fixed = sig.parameters.size();
+    for (size_t i = 0; i < e.args.size(); ++i) {
+        const Parameter any{};
+        const Parameter& p = fixed == 0 ? any : sig.parameters[std::min(i, fixed - 1)];
+        const Expr& a = *e.args[i];
+        if (p.output && i < fixed) {
+            output(a, p.name);
+            continue;
+        }
+        if (a.type.array) {
+            Inst* from = array(a);
+            for (int n = 0; n < arrayLength(from); ++n)
+                addArgument(s, args, emit(Op::ArrayLoad, from->element, {from, constant(static_cast<float>(n))}),
+                            a.type.element());
+            continue;
+        }
+        Inst* v = expr(a);
+        if (p.type.base != Base::Void) v = coerce(v, p.type);
+        else if (v->kind == Kind::Bool) v = coerce(v, Kind::Float);
+        all.push_back(v);
+        if (v->kind == Kind::String) s.strings.push_back(v->op == Op::ConstString ? v->text : "");
+        // Where any strings come in rows, "" in the site stands for the next row: an empty one among them needs its own.
+        if (v->op != Op::ConstString || (v->text.empty() && op.section == "Strings")) addArgument(s, args, v, a.type);
+    }
+    if (Inst* c = foldString(op.name, all)) return c;
+    place_ = e.place;
+    const Type real{Base::Float, 0}, vector{Base::Vector, 0};
+    // Footprints: how far the coordinates go from one sample to the next, along u (x) and along v (y).
+    const auto footprint = [&](Inst* v, const char* size, Op d) {
+        Inst* step = coerce(global(size, Base::Float), v->kind);
+        return isConst(step, 0.0f) ? zero(v->kind) : emit(Op::Mul, v->kind, {emit(d, v->kind, {v}), step});
+    };
+    if (op.name == "texture" && all.size() <= 3) {
+        Inst* st[2];
+        if (all.size() == 3) {
+            st[0] = all[1];
+            st[1] = all[2];
+        } else {
+            st[0] = global("s", Base::Float);
+            st[1] = global("t", Base::Float);
+            addArgument(s, args, st[0], real);
+            addArgument(s, args, st[1], real);
+        }
+        for (int d = 0; d < 2; ++d)
+            for (Inst* c : st) addArgument(s, args, footprint(c, d == 0 ? "du" : "dv", d == 0 ? Op::Du : Op::Dv), real);
+    }
+    if (op.name == "environment" && all.size() == 2) {
+        addArgument(s, args, footprint(all[1], "du", Op::Du), vector);
+        addArgument(s, args, footprint(all[1], "dv", Op::Dv), vector);
+    }
+    if (kind == Op::Request && op.name == "ambient") addArgument(s, args, global("N", Base::Normal), {Base::Normal, 0});
+    if (e.channel) {
+        s.names.push_back("channel");
+        s.pairStrings.push_back("");
+        addArgument(s, args, expr(*e.channel, Kind::Float), real);
+    }
+    for (const NamedArg& p : e.pairs) {
+        if (!p.value) continue;
+        if (p.output) {
+            output(*p.value, p.name);
+            continue;
+        }
+        const OptionalParameter* known = nullptr;
+        for (const OptionalParameter& o : op.optional)
+            if (o.name == p.name) known = &o;
+        if (p.value->type.array) {
+            Inst* from = array(*p.value);
+            for (int n = 0; n < arrayLength(from); ++n) {
+                s.names.push_back(p.name + "[" + std::to_string(n) + "]");
+                s.pairStrings.push_back("");
+                addArgument(s, args, emit(Op::ArrayLoad, from->element, {from, constant(static_cast<float>(n))}),
+                            p.value->type.element());
+            }
+            continue;
+        }
+        Inst* v = expr(*p.value);
+        if (known && (known->type.base == Base::String) == (v->kind == Kind::String)) v = coerce(v, known->type.element());
+        else if (v->kind == Kind::Bool) v = coerce(v, Kind::Float);
+        if (v->op == Op::ConstString && v->text.empty()) continue; // every string's default means the same as its absence
+        s.names.push_back(p.name);
+        s.pairStrings.push_back(v->op == Op::ConstString ? v->text : "");
+        if (v->op != Op::ConstString) addArgument(s, args, v, known ? known->type.element() : p.value->type);
+    }
+    place_ = e.place;
+    const bool message = op.section == "Messages" && !s.resultKinds.empty() && s.resultNames[0].empty();
+    const std::vector<Inst*> r = call(kind, std::move(s), std::move(args));
+    Inst* found = message && !outs.empty() ? emit(Op::NotEqual, Kind::Bool, {r[0], constant(0)}) : nullptr;
+    for (const Out& o : outs) {
+        if (o.lvalue->type.array) {
+            Inst* a = array(*o.lvalue);
+            for (int n = 0; n < o.count && a->op == Op::ArrayNew; ++n) {
+                Inst* at = constant(static_cast<float>(n));
+                Inst* v = r[static_cast<size_t>(o.first + n)];
+                if (found) v = emit(Op::Select, v->kind, {found, v, emit(Op::ArrayLoad, a->element, {a, at})});
+                emit(Op::ArrayStore, Kind::None, {a, at, v});
+            }
+            continue;
+        }
+        Inst* v = r[static_cast<size_t>(o.first)];
+        if (found) // a message that does not arrive leaves the variable as it was
+            v = emit(Op::Select, v->kind, {found, v, coerce(expr(*o.lvalue), v->kind)});
+        assign(*o.lvalue, v);
+    }
+    return kindOf(sig.result) != Kind::None && !r.empty() && !sig.result.array ? r[0] : constant(0);
+}
+
+} // namespace alpenglow::rsl::ir

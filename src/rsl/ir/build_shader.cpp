@@ -1,0 +1,228 @@
+// The frame of a kernel: parameters in, outputs out.
+#include "rsl/ir/build.h"
+#include "rsl/ir/builder.h"
+#include <algorithm>
+#include <cstdlib>
+#include <functional>
+
+namespace alpenglow::rsl::ir {
+
+/// Value text of KernelOptions::stringParameters for a numeric parameter: one number, or three.
+Inst* Builder::constantParameter(const Symbol& s, const std::string& text) {
+    if (s.type.base == Base::String) return leaves_.string(text);
+    std::vector<float> numbers;
+    const char* p = text.c_str();
+    for (char* end = nullptr;; p = end) {
+        const float f = std::strtof(p, &end);
+        if (end == p) break;
+        numbers.push_back(f);
+    }
+    const Kind k = kindOf(s.type);
+    if (k == Kind::Array || k == Kind::Matrix || numbers.empty()) return nullptr;
+    numbers.resize(static_cast<size_t>(components(k)), numbers[0]);
+    return leaves_.constant(k, numbers);
+}
+
+/// The array of texts whose elements are given as "name[0]", "name[1]", ...; null when the first is not.
+Inst* Builder::constantTexts(const std::string& name, int length, std::span<const std::pair<std::string, std::string>> given) {
+    const auto element = [&](int e) -> const std::string* {
+        const std::string wanted = name + "[" + std::to_string(e) + "]";
+        for (const auto& [n, text] : given)
+            if (n == wanted) return &text;
+        return nullptr;
+    };
+    if (!element(0)) return nullptr;
+    Inst* a = newArray(Base::String, length);
+    for (int e = 0; e < length; ++e) {
+        const std::string* text = element(e);
+        emit(Op::ArrayStore, Kind::None, {a, constant(static_cast<float>(e)), leaves_.string(text ? *text : "")});
+    }
+    return a;
+}
+
+Inst* Builder::parameterValue(const ShaderParameter& p) {
+    const Symbol& s = *p.symbol;
+    Type type = s.type;
+    if (type.array < 0)
+        type.array = p.defaultValue && p.defaultValue->type.array > 0 ? p.defaultValue->type.array
+                     : p.defaultValue && p.defaultValue->kind == ExprKind::ArrayList
+                         ? std::max<int>(1, static_cast<int>(p.defaultValue->args.size()))
+                         : 1;
+    if (type.array > 0 && type.base == Base::String) {
+        if (Inst* a = constantTexts(s.name, type.array, options_.stringParameters)) return a;
+    } else {
+        for (const auto& [name, value] : options_.stringParameters)
+            if (name == s.name)
+                if (Inst* c = constantParameter(s, value)) return c;
+    }
+    if (type == Type{Base::String, 0} && (!p.defaultValue || p.defaultValue->kind == ExprKind::String))
+        return leaves_.string(p.defaultValue ? p.defaultValue->text : "");
+    const auto& v = options_.varyingParameters;
+    const bool varying = s.storage == Storage::Varying || std::find(v.begin(), v.end(), s.name) != v.end();
+    return input("param:" + s.name, type, !varying);
+}
+
+bool Builder::buildDefaults() {
+    region_ = &k_.body;
+    std::vector<std::pair<const Symbol*, Inst*>> values;
+    frames_.push_back({});
+    for (const ShaderParameter& p : shader_.parameters) {
+        place_ = p.symbol->place;
+        if (p.symbol->type.array) {
+            int n = p.symbol->type.array;
+            if (n < 0)
+                n = p.defaultValue && p.defaultValue->kind == ExprKind::ArrayList
+                        ? std::max<int>(1, static_cast<int>(p.defaultValue->args.size()))
+                        : 1;
+            Inst* a = newArray(p.symbol->type.base, n);
+            if (p.defaultValue) copyArray(a, *p.defaultValue);
+            set(slot(p.symbol), a);
+        } else {
+            set(slot(p.symbol), p.defaultValue ? expr(*p.defaultValue, kindOf(p.symbol->type)) : zero(kindOf(p.symbol->type)));
+        }
+        values.emplace_back(p.symbol, get(slot(p.symbol)));
+    }
+    for (const auto& [s, v] : values) {
+        const int n = v->kind == Kind::Array ? arrayLength(v) : 1;
+        for (int e = 0; e < n; ++e) {
+            Inst* value = v->kind == Kind::Array ? emit(Op::ArrayLoad, v->element, {v, constant(static_cast<float>(e))}) : v;
+            k_.outputs.push_back({"param:" + s->name + (v->kind == Kind::Array ? "[" + std::to_string(e) + "]" : ""), value->kind,
+                                  s->type.element()});
+            emit(Op::Output, Kind::None, {value}, static_cast<int>(k_.outputs.size()) - 1);
+        }
+    }
+    k_.body.body.insert(k_.body.body.begin(), functions_.begin(), functions_.end());
+    return !failed_;
+}
+
+bool Builder::buildShader() {
+    region_ = &k_.body;
+    place_ = shader_.place;
+    frames_.push_back({});
+    frames_.back().returned = newSlot(boolean(false));
+    beginChannels();
+    beginCoShaders();
+    std::set<int> assigned;
+    std::set<const Function*> seen;
+    if (shader_.body) scanAssigned(*shader_.body, assigned, seen);
+    assignedAnywhere_ = assigned;
+    for (const ShaderParameter& p : shader_.parameters) {
+        place_ = p.symbol->place;
+        const int n = slot(p.symbol);
+        Inst* v = parameterValue(p);
+        if (v->op == Op::ArrayInput && assigned.count(n)) { // inputs are read-only: a copy takes the stores
+            Inst* copy = newArray(p.symbol->type.base, arrayLength(v));
+            for (int e = 0; e < arrayLength(v); ++e) {
+                Inst* at = constant(static_cast<float>(e));
+                emit(Op::ArrayStore, Kind::None, {copy, at, emit(Op::ArrayLoad, v->element, {v, at})});
+            }
+            v = copy;
+        }
+        env_[static_cast<size_t>(n)] = v;
+        const Symbol& parameter = *p.symbol;
+        const auto& asked = options_.messages;
+        if (parameter.output && !parameter.type.array && parameter.type.base != Base::String &&
+            std::find(asked.begin(), asked.end(), parameter.name) != asked.end())
+            messageSlots_[parameter.name] = {n, parameter.type};
+    }
+    // Zero on every way through conditions (a block puts Cl back to what it was, so both sides of an if may give zero).
+    const std::function<bool(const Inst*)> isZero = [&](const Inst* v) {
+        if (isConst(v)) return std::all_of(v->numbers.begin(), v->numbers.end(), [](float f) { return f == 0; });
+        if (v->op != Op::Result || v->args[0]->op != Op::If) return false;
+        const Inst* branch = v->args[0];
+        return std::all_of(branch->regions.begin(), branch->regions.end(), [&](const Region& r) { return isZero(r.yields[static_cast<size_t>(v->index)]); });
+    };
+    lightBlocks_.clear();
+    blockRan_ = newSlot(boolean(false));
+    if (shader_.kind == ShaderKind::Light && shader_.body) findBlocks(*shader_.body);
+    if (shader_.body) statement(*shader_.body);
+    place_ = shader_.place;
+
+    const auto output = [&](const std::string& name, Inst* value, Type type) {
+        if (value->kind == Kind::Array) return;
+        k_.outputs.push_back({name, value->kind, type});
+        emit(Op::Output, Kind::None, {value}, static_cast<int>(k_.outputs.size()) - 1);
+    };
+    const Type color{Base::Color, 0}, vector{Base::Vector, 0}, real{Base::Float, 0};
+    std::vector<std::string> wanted = options_.outputs;
+    const bool light = shader_.kind == ShaderKind::Light;
+    if (light) {
+        k_.facts.ambientLight = lightBlocks_.empty();
+        for (const LightBlock& b : lightBlocks_)
+            k_.facts.blocks.push_back(!b.solar ? "illuminate" : b.stmt->exprs.empty() ? "solar()" : b.cone ? "solar cone" : "solar");
+        // Where no block has run, Cl is ambient light.
+        const auto cl = globals_.find("Cl");
+        const Inst* ran = get(blockRan_);
+        const bool always = isConst(ran) && ran->numbers[0] != 0;
+        if (!lightBlocks_.empty() && !always && cl != globals_.end() && !isZero(get(cl->second))) k_.facts.blocks.push_back("outside");
+    }
+    if (wanted.empty()) {
+        switch (shader_.kind) {
+        case ShaderKind::Displacement:
+            wanted = {"P", "N"};
+            break;
+        case ShaderKind::Transformation:
+            wanted = {"P"};
+            break;
+        case ShaderKind::Imager:
+            wanted = {"Ci", "Oi", "alpha"};
+            break;
+        case ShaderKind::Light:
+            if (lightBlocks_.empty()) wanted = {"Cl", "Ol"};
+            for (size_t b = 0; b < lightBlocks_.size(); ++b)
+                for (const char* n : {"L", "Cl", "Ol", "lit"})
+                    wanted.push_back(n + (b ? "#" + std::to_string(b) : std::string()));
+            if (!k_.facts.blocks.empty() && k_.facts.blocks.back() == "outside") wanted.push_back("Cl#" + std::to_string(lightBlocks_.size()));
+            break;
+        default:
+            wanted = {"Ci", "Oi"};
+        }
+    }
+    for (const std::string& name : wanted) {
+        if (light && !lightBlocks_.empty()) {
+            bool found = false;
+            for (size_t b = 0; b < lightBlocks_.size(); ++b) {
+                const std::string tail = b ? "#" + std::to_string(b) : std::string();
+                const LightBlock& l = lightBlocks_[b];
+                if (name == "L" + tail) output(name, get(l.L), vector), found = true;
+                if (name == "Cl" + tail) output(name, get(l.only ? globals_.at("Cl") : l.Cl), color), found = true;
+                if (name == "Ol" + tail) output(name, get(l.only ? globals_.at("Ol") : l.Ol), color), found = true;
+                if (name == "lit" + tail) output(name, get(l.lit), real), found = true;
+            }
+            if (name == "Cl#" + std::to_string(lightBlocks_.size()) && k_.facts.blocks.back() == "outside") {
+                output(name, emit(Op::Select, Kind::Triple, {get(blockRan_), zero(Kind::Triple), get(globals_.at("Cl"))}), color);
+                continue;
+            }
+            if (found) continue;
+        }
+        bool found = false;
+        for (const ShaderParameter& p : shader_.parameters)
+            if (name == "param:" + p.symbol->name || (p.symbol->output && name == p.symbol->name)) {
+                output(name, get(slot(p.symbol)), p.symbol->type);
+                found = true;
+                break;
+            }
+        if (found) continue;
+        if (const auto c = channels_.find(name); c != channels_.end() && !hasGlobal(name.c_str())) {
+            output(name, get(c->second.first), c->second.second);
+            continue;
+        }
+        for (const GlobalVariable& g : globalVariables(shader_.kind))
+            if (name == g.name) {
+                const auto it = globals_.find(name);
+                output(name, it == globals_.end() ? initialGlobal(name, g.type) : get(it->second), g.type);
+                break;
+            } else if (name == "Du:" + std::string(g.name) || name == "Dv:" + std::string(g.name)) { // d/du and d/dv of it at the end
+                const auto it = globals_.find(g.name);
+                Inst* value = it == globals_.end() ? initialGlobal(g.name, g.type) : get(it->second);
+                output(name, emit(name[1] == 'u' ? Op::Du : Op::Dv, value->kind, {value}), g.type);
+                break;
+            }
+    }
+    k_.body.body.insert(k_.body.body.begin(), functions_.begin(), functions_.end());
+    k_.facts.writes.assign(writes_.begin(), writes_.end());
+    forEach(k_.body, [&](Inst* i) { k_.facts.lightLoops = k_.facts.lightLoops || i->op == Op::LightLoop; });
+    return !failed_;
+}
+
+} // namespace alpenglow::rsl::ir

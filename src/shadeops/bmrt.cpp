@@ -63,20 +63,27 @@ float fulltrace(point pos; vector dir; output color hitcolor; output float hitdi
     return found;
 }
 )");
-    Shadeop& bump = add("bump", "point bump(string name; normal norm; vector dPds, vector dPdt)",
+    Shadeop& bump = add("bump", "point bump(string name; normal norm; vector dPds, vector dPdt; pairs)",
                         "Displacement of the normal by a bump map, for N = normalize(bump(...) + N): the height in the first channel of the texture "
-                        "is read at s, t and beside them, and its slopes along dPds and dPdt tilt the normal.",
+                        "is read at s, t (or at ss, tt) and beside them, and its slopes along dPds and dPdt tilt the normal.",
                         "RISpec 3.0 (bump maps); formula (k)", R"(
-point bump(string name; normal norm; vector dPds; vector dPdt) {
-    extern float s, t;
+point bump(string name; normal norm; vector dPds; vector dPdt; float ss; float tt; float blur; float width) {
     float d = 1 / 1024;
-    float hs = (float texture(name, s + d, t) - float texture(name, s - d, t)) / (2 * d);
-    float ht = (float texture(name, s, t + d) - float texture(name, s, t - d)) / (2 * d);
+    float h(float x; float y) { extern string name; extern float blur, width; return float texture(name, x, y, "blur", blur, "width", width); }
+    float hs = (h(ss + d, tt) - h(ss - d, tt)) / (2 * d);
+    float ht = (h(ss, tt + d) - h(ss, tt - d)) / (2 * d);
     vector n = normalize(vector norm);
     vector turn = hs * (n ^ dPdt) - ht * (n ^ dPds);
     return point(xcomp(turn), ycomp(turn), zcomp(turn));
 }
+point bump(string name; normal norm; vector dPds; vector dPdt; float blur; float width) {
+    extern float s, t;
+    return bump(name, norm, dPds, dPdt, s, t, blur, width);
+}
 )");
+    bump.signatures = bump.signatures + sigs({{"point bump(string name; normal norm; vector dPds, vector dPdt; float ss, float tt; pairs)"}});
+    bump.optional = {{{Base::Float, 0}, "blur", false, "0", "added to the filter size, fraction of the map"},
+                     {{Base::Float, 0}, "width", false, "1", "multiplies the filter size"}};
     bump.section = "Texture";
     bump.contexts = kAnyContext;
     bump.bias = Bias::Biased;

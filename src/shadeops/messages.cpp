@@ -77,6 +77,18 @@ std::vector<Shadeop> messageShadeops() {
         .optional = {{{Base::String, 0}, "category", false, "\"\"", "\"a\", \"-a\", \"a|b\", \"a&b\", \"a,b\", with parentheses"}};
     add("getvar", sigs({{"float getvar(shader handle; string name)"}}) + each(kAllTypes, "float getvar(shader handle; string name; output $ value)"),
         Lowering::Special, kAnyContext, "Member variable of a co-shader; null handle: the primitive's variables. 1 if found.");
+    add("hasmethod", sigs({{"float hasmethod(shader handle; string name)"}}), Lowering::Special, kAnyContext,
+        "1 if others may call a method of that name of the shader, which the handle stands for; 0 for null. A light has the method light().")
+        .source = "PRMan";
+    add("readprimvar", each(kAllTypes, "float readprimvar(string name; output $ value)"), Lowering::Special, kAnyContext,
+        "Variable of the primitive: getvar(null, name, value). 1 if found; else 0, and value is untouched.")
+        .source = "PRMan";
+    add("writeaov", each("float color point vector normal matrix", "void writeaov(string name; $ value)"), Lowering::Special, kAnyContext,
+        "outputchannel(name, value), for a name that may be made when the shader runs: where it is not written out it must be that of an output that there is.")
+        .source = "PRMan";
+    add("readaov", each("float color point vector normal matrix", "float readaov(string name; output $ value)"), Lowering::Special, kAnyContext,
+        "What an output of the shader has been given so far, by its name. 1 if there is one of that type; else 0, and value is untouched.")
+        .source = "PRMan";
     add("islightcategory", sigs({{"float islightcategory(string category)"}}), Lowering::Special, kSurface | kVolume,
         "1 if the light of this turn of illuminance belongs to the category, as illuminance has them.").source = "seen in 3Delight shaders";
     add("shadername", sigs({{"string shadername()"}, {"string shadername(string type)"}}), Lowering::Service, kAnyContext, "Name of the shader attached.")

@@ -60,6 +60,24 @@ void reverse(output $ a[]) {
     }
 }
 )");
+    Shadeop& wnoise = add("wnoise", "Noise",
+                          each("float color point vector normal", "$ wnoise(float x, float filterwidth; pairs)") +
+                              each("float color point vector normal", "$ wnoise(float x, float y, float filterwidth; pairs)") +
+                              each("float color point vector normal", "$ wnoise(point p; float filterwidth; pairs)") +
+                              each("float color point vector normal", "$ wnoise(point p; float w; float filterwidth; pairs)"),
+                          Lowering::Rsl,
+                          "Noise of one band of frequencies, in [-1, 1] with mean 0, that fades to 0 where the filter is too wide for it: 2 noise(p) - 1, times "
+                          "1 - smoothstep(0.2, 0.6, filterwidth). PRMan took wavelets, whose values are others.");
+    wnoise.contexts = kAnyContext;
+    wnoise.pure = true;
+    wnoise.bias = Bias::Biased;
+    wnoise.biasReason = "detail that is finer than the filter is left out instead of being averaged";
+    wnoise.examples = {{"wnoise(point(1,2,3), 0)", "0"}, {"wnoise(0.3, 1)", "0"}};
+    for (const auto& [parameters, arguments] : {std::pair<const char*, const char*>{"float x", "x"}, {"float x; float y", "x, y"},
+                                                {"point p", "p"}, {"point p; float w", "p, w"}})
+        wnoise.rsl += forTypes("float color point vector normal",
+                               "$ wnoise(" + std::string(parameters) + "; float filterwidth) { return (1 - smoothstep(0.2, 0.6, filterwidth)) * (2 * $ noise(" +
+                                   arguments + ") - $ (1)); }\n");
     add("emit", "Ray tracing", sigs({{"void emit(color light; pairs)"}}), Lowering::Unavailable,
         "Called by area lights of PRMan in their method prelighting(): the light they send without sampling. Lights here are sampled by light().");
     add("areashadow", "Ray tracing", sigs({{"void areashadow(string map; vector region; pairs)"}, {"void areashadow(string map; pairs)"}}),

@@ -2,6 +2,8 @@
 #include "base/limits.h"
 #include "rsl/front/checker.h"
 #include <algorithm>
+#include <set>
+#include <string_view>
 #include <utility>
 
 namespace alpenglow::rsl::front {
@@ -12,7 +14,8 @@ bool Checker::uniformResult(const Expr& e, const Choice& choice) const {
     const Shadeop& op = *choice.shadeop;
     if (op.name == "arraylength" || op.name == "capacity" || op.name == "textureinfo") return e.kind == ExprKind::ShadeopCall;
     if (op.section == kPluginSection) return true;
-    if (op.section == "Messages") return op.name != "gridmin" && op.name != "gridmax" && op.name != "rayinfo" && op.name != "getvar";
+    static const std::set<std::string_view> kOfThePoint = {"gridmin", "gridmax", "rayinfo", "getvar", "readprimvar", "readaov"};
+    if (op.section == "Messages") return !kOfThePoint.count(op.name);
     return (op.name == "texture" || op.name == "environment") && e.args.size() > 1;
 }
 
@@ -20,14 +23,17 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
     const Shadeop& op = *choice.shadeop;
     e.shadeop = &op;
     e.signature = choice.signature;
-    if (op.name == "outputchannel" && e.args[0]->kind == ExprKind::String) {
+    if ((op.name == "outputchannel" || op.name == "writeaov") && e.args[0]->kind == ExprKind::String) {
         std::string name = e.args[0]->text;
         if (name.rfind("light:", 0) == 0 || name.rfind("local:", 0) == 0) name.erase(0, 6);
         program_.channels.emplace(name, e.args[1]->type);
     }
     if (op.name == "getvar" && e.args[1]->kind == ExprKind::String)
         program_.primitiveVariables.emplace(e.args[1]->text, e.args.size() > 2 ? e.args[2]->type : Type{});
-    program_.handles |= op.name == "getshader" || op.name == "getshaders" || op.name == "getvar";
+    if (op.name == "readprimvar" && e.args[0]->kind == ExprKind::String)
+        program_.primitiveVariables.emplace(e.args[0]->text, e.args[1]->type);
+    static const std::set<std::string_view> kOfHandles = {"getshader", "getshaders", "getvar", "readprimvar", "hasmethod"};
+    program_.handles |= kOfHandles.count(op.name) > 0;
     if (op.name == "resize" || op.name == "reserve" || op.name == "push" || op.name == "pop") {
         const Symbol* s = e.args.empty() ? nullptr : e.args[0]->symbol;
         const bool open = s && (s->resizable || (s->origin == Symbol::Origin::FunctionParameter && s->type.array == -1));
@@ -70,17 +76,20 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
             filter.erase(std::remove(filter.begin(), filter.end(), '-'), filter.end());
             if (findShadeop("__filterstep_" + filter)) rename = {"__filterstep_catmullrom", "__filterstep_" + filter};
             else sources_.warning(p.place, "there is no filter \"" + p.value->text + "\"; catmull-rom is used");
+        } else if (op.name == "bump" && (p.name == "blur" || p.name == "width")) {
         } else if (op.name != "filterstep" || (p.name != "filter" && p.name != "width")) {
             sources_.warning(p.place, "\"" + p.name + "\" of '" + op.name + "' is not yet available and ignored");
         }
     }
     const Unit& unit = rslUnit(op);
+    const size_t behind = op.name == "bump" ? 2 : 0; // its text has two parameters more: "blur" and "width"
+    const size_t count = choice.signature->parameters.size();
     for (const auto& f : unit.functions) {
-        bool same = f->name == op.name && f->result == choice.signature->result &&
-                    f->parameters.size() == choice.signature->parameters.size();
-        for (size_t i = 0; same && i < f->parameters.size(); ++i)
+        bool same = f->name == op.name && f->result == choice.signature->result && f->parameters.size() == count + behind;
+        for (size_t i = 0; same && i < count; ++i)
             same = f->parameters[i]->type == choice.signature->parameters[i].type;
         if (!same) continue;
+        if (behind) bumpParameters(e);
         e.kind = ExprKind::FunctionCall;
         // Its globals are visible whatever the shader calls its own variables; nothing of the shader is.
         auto parameters = std::exchange(shaderParameters_, {});
@@ -93,6 +102,26 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
         return;
     }
     sources_.error(e.place, "the text of '" + op.name + "' has no function for " + choice.signature->text);
+}
+
+/// The tokens of bump() become its last two arguments.
+void Checker::bumpParameters(Expr& e) {
+    for (const auto& [name, value] : {std::pair<const char*, double>{"blur", 0}, {"width", 1}}) {
+        ExprPtr given;
+        for (NamedArg& p : e.pairs)
+            if (p.name == name) given = std::move(p.value);
+        if (!given) {
+            given = std::make_unique<Expr>();
+            given->kind = ExprKind::Number;
+            given->number = value;
+            given->type = {Base::Float, 0};
+            given->varying = false;
+            given->place = e.place;
+        }
+        e.height = std::max(e.height, given->height + 1);
+        e.args.push_back(std::move(given));
+    }
+    e.pairs.clear();
 }
 
 /// "name", value, ... behind the positional arguments.

@@ -78,6 +78,7 @@ private:
     void topLevel();
     void shader(ShaderKind);
     bool plugin(); ///< at `plugin "name"`, which may stand at file level and where statements stand
+    void extends(StructType&);
     void structure();    // parser_objects.cpp
     void shaderObject();
     void takeAccess();

@@ -229,6 +229,11 @@ ExprPtr Parser::primary() {
             "if", "else", "while", "for", "break", "continue", "return", "uniform", "varying", "output", "extern"};
         if (kReserved.count(t.text)) failHere("expected an expression");
         take();
+        std::string name(t.text);
+        if (structs_.count(name) && at(":") && peek(1).is(":") && peek(2).kind == Tok::Identifier && peek(3).is("(")) {
+            take(), take(); // Base::method(...): the method as the extended structure has it
+            name += "::" + std::string(take().text);
+        }
         if (!at("(")) {
             auto e = node(ExprKind::Variable, t.place);
             e->text = std::string(t.text);
@@ -236,7 +241,7 @@ ExprPtr Parser::primary() {
         }
         take();
         auto e = node(ExprKind::ShadeopCall, t.place);
-        e->text = std::string(t.text);
+        e->text = name;
         arguments(e->args);
         for (const auto& a : e->args) grow(*e, *a);
         return e;

@@ -1,18 +1,35 @@
 // Definitions of structures and of shader objects.
 #include "base/limits.h"
+#include "rsl/front/clone.h"
 #include "rsl/front/parser.h"
 #include <utility>
 
 namespace alpenglow::rsl::front {
 
-/// At "struct": struct Name { members };
+/// Behind the name of a structure: ": Other", the structure that it extends. Its members come first in the new one.
+void Parser::extends(StructType& type) {
+    if (!accept(":")) return;
+    if (at("public") || at("private")) take();
+    const auto base = peek().kind == Tok::Identifier ? structs_.find(std::string(peek().text)) : structs_.end();
+    if (base == structs_.end()) failHere("expected the name of a structure that is defined before this one");
+    take();
+    type.base = base->second;
+    for (const StructMember& m : unit_.structs[size_t(type.base)].members) {
+        type.members.push_back({m.name, m.type, m.handle, m.storage, m.init ? clone(*m.init) : nullptr, m.place});
+    }
+}
+
+/// At "struct": struct Name { members }; or struct Name : Other { members };
 void Parser::structure() {
+    const size_t begins = at_;
     take();
     if (peek().kind != Tok::Identifier) failHere("expected the name of a structure");
     const Token& name = take();
+    StructType type;
+    extends(type);
+    const size_t inherited = type.members.size();
     if (!at("{")) failHere("expected '{' of structure '" + std::string(name.text) + "'");
     take();
-    StructType type;
     type.name = std::string(name.text);
     type.place = name.place;
     const int errors = sources_.errors();
@@ -69,7 +86,13 @@ void Parser::structure() {
         }
     }
     accept(";");
-    if (type.members.empty() && methods.empty() && sources_.errors() == errors) sources_.error(type.place, "structure '" + type.name + "' has no members");
+    for (size_t i = begins; i < at_ && sources_.errors() == errors; ++i) {
+        type.text += tokens_[i].text;
+        type.text += ' ';
+    }
+    if (const auto old = structs_.find(type.name); old != structs_.end() && !type.text.empty()) // two files brought the same one
+        if (unit_.structs[size_t(old->second)].text == type.text) return;
+    if (type.members.size() == inherited && type.base < 0 && methods.empty() && sources_.errors() == errors) sources_.error(type.place, "structure '" + type.name + "' has no members");
     if (unit_.structs.size() >= size_t(limits::kStructs)) {
         sources_.error(type.place, "a shader has at most " + std::to_string(limits::kStructs) + " structures");
         unit_.incomplete = true;

@@ -85,6 +85,37 @@ int Lowering::structNamed(const std::string& name) const {
     return -1;
 }
 
+bool Lowering::derives(Type t, Base base) const {
+    if (!isStruct(t)) return false;
+    while (t.base != base) {
+        const int up = structOf(t).base;
+        if (up < 0) return false;
+        t.base = structBase(size_t(up));
+    }
+    return true;
+}
+
+/// The name of the function that a method of this structure, or of one that it extends, became; empty if there is none. A method
+/// with as many arguments is taken before one that is nearer. "Base::method" is sought from Base on.
+std::string Lowering::methodNamed(Type t, const std::string& method, size_t arguments) const {
+    std::string name = method, any;
+    if (const size_t colon = method.find("::"); colon != std::string::npos) {
+        const int from = structNamed(method.substr(0, colon));
+        if (from < 0 || !derives(t, structBase(size_t(from)))) return "";
+        t = {structBase(size_t(from)), 0};
+        name = method.substr(colon + 2);
+    }
+    for (;;) {
+        const std::string full = structOf(t).name + "->" + name;
+        const auto [begin, end] = functions_.equal_range(full);
+        for (auto f = begin; f != end; ++f)
+            if (f->second.parameters.size() == arguments + 1) return full;
+        if (begin != end && any.empty()) any = full;
+        if (structOf(t).base < 0) return any;
+        t = {structBase(size_t(structOf(t).base)), 0};
+    }
+}
+
 /// The structure that an expression is, or void.
 Type Lowering::typeOf(const Expr& e) const {
     switch (e.kind) {
@@ -115,7 +146,7 @@ Type Lowering::typeOf(const Expr& e) const {
     case ExprKind::Method: {
         const Type t = typeOf(*e.args[0]);
         if (!isStruct(t) || t.array) return kNone;
-        const auto [from, to] = functions_.equal_range(structOf(t).name + "->" + e.text);
+        const auto [from, to] = functions_.equal_range(methodNamed(t, e.text, e.args.size() - 1));
         for (auto f = from; f != to; ++f)
             if (f->second.parameters.size() == e.args.size() && isStruct(f->second.type)) return f->second.type;
         return kNone;

@@ -21,6 +21,8 @@ struct StructType {
     std::string name;
     std::vector<StructMember> members;
     std::vector<std::unique_ptr<Function>> methods;
+    int base = -1;    ///< the structure it extends, by its number in Unit::structs; its members come first
+    std::string text; ///< the definition as it stands in the source: the same once more is no other structure
     Place place;
 };
 

@@ -47,6 +47,10 @@ private:
     std::vector<Leaf> leaves(Type t) const;
     const StructMember* member(Type t, const std::string& name) const;
     int structNamed(const std::string& name) const;
+    /// Is it the structure of that base, or does it extend it?
+    bool derives(Type t, Base base) const;
+    /// The name of the function that a method of this structure, or of one that it extends, became; empty if there is none.
+    std::string methodNamed(Type t, const std::string& method, size_t arguments) const;
     /// The structure that an expression is, or void.
     Type typeOf(const Expr& e) const;
     Symbol* newSymbol(const std::string& name, Type type, Storage storage, Place place);
@@ -81,6 +85,7 @@ private:
     static bool path(const Expr& e);
     void checkArguments(Expr& call);
     void arguments(Expr& call, List& pre);
+    Base wanted(const std::string& function, size_t arguments, size_t i, Type have) const;
     /// What must happen first, and then the expression, as one expression.
     void sequence(ExprPtr& e, List pre);
     /// An expression that is no structure itself.

@@ -43,6 +43,12 @@ private:
         return r->kind == ExprKind::Variable && r->text == "this";
     }
 
+    /// Without "Base::".
+    static std::string bare(const std::string& method) {
+        const size_t colon = method.find("::");
+        return colon == method.npos ? method : method.substr(colon + 2);
+    }
+
     /// May a call of this function change an argument?
     bool putsOut(const std::string& name) const {
         const Shadeop* op = findShadeop(name);
@@ -62,7 +68,7 @@ private:
             e = std::move(m);
             return;
         }
-        if (e->kind == ExprKind::ShadeopCall && methods_.count(e->text) && !isHidden(e->text)) {
+        if (e->kind == ExprKind::ShadeopCall && (e->text.find("::") != e->text.npos || (methods_.count(e->text) && !isHidden(e->text)))) {
             auto m = node(ExprKind::Method, e->place);
             m->text = e->text;
             adopt(*m, variable("this", e->place));
@@ -77,7 +83,7 @@ private:
         const bool call = e->kind == ExprKind::ShadeopCall;
         if (e->kind == ExprKind::Assign) changes |= ofThis(*e->args[0]);
         if (e->kind == ExprKind::Method && ofThis(*e->args[0]))
-            changes |= e->args[0]->kind != ExprKind::Variable || changing_.count(e->text);
+            changes |= e->args[0]->kind != ExprKind::Variable || changing_.count(bare(e->text));
         if (call && putsOut(e->text))
             for (const auto& a : e->args) changes |= ofThis(*a);
         if (call && !e->args.empty() && e->args[0]->kind == ExprKind::String)
@@ -113,9 +119,14 @@ private:
 } // namespace
 
 void Lowering::methods() {
+    struct Known {
+        std::set<std::string> names, changing;
+    };
+    std::vector<Known> known(unit_.structs.size()); // what a structure has, those that extend it have, too
     for (size_t i = 0; i < unit_.structs.size(); ++i) {
         StructType& type = unit_.structs[i];
-        std::set<std::string> names, changing;
+        if (type.base >= 0 && size_t(type.base) < i) known[i] = known[size_t(type.base)];
+        std::set<std::string>&names = known[i].names, &changing = known[i].changing;
         for (const auto& f : type.methods) names.insert(f->name);
         // A method that calls one that changes the structure changes it, too.
         for (size_t before = size_t(-1); before != changing.size();) {
@@ -148,16 +159,19 @@ void Lowering::methodCall(Expr& e) {
     const Type t = typeOf(*e.args[0]);
     if (!isStruct(t)) return;
     e.kind = ExprKind::ShadeopCall;
-    const std::string name = structOf(t).name + "->" + e.text;
+    const std::string name = methodNamed(t, e.text, e.args.size() - 1);
     if (t.array) {
         sources_.error(e.place, "this is an array of " + shown(t), "its elements have methods: a[i]->" + e.text + "()");
-    } else if (functions_.count(name)) {
+    } else if (!name.empty()) {
         e.text = name;
         return;
     } else {
         std::vector<std::string> names;
-        for (const auto& [n, f] : functions_)
-            if (n.rfind(structOf(t).name + "->", 0) == 0) names.push_back(n.substr(structOf(t).name.size() + 2));
+        for (Type s = t;; s = {structBase(size_t(structOf(s).base)), 0}) {
+            for (const auto& [n, f] : functions_)
+                if (n.rfind(structOf(s).name + "->", 0) == 0) names.push_back(n.substr(structOf(s).name.size() + 2));
+            if (structOf(s).base < 0) break;
+        }
         const std::string near = nearestName(e.text, names);
         sources_.error(e.place, shown(t) + " has no method '" + e.text + "'", near.empty() ? "" : "did you mean '" + near + "'?");
     }

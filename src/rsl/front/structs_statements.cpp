@@ -47,6 +47,14 @@ void Lowering::declare(StmtPtr s, std::vector<StmtPtr>& out) {
             valueOf(std::move(d.init), type, pre, values);
         } else if (!type.array && hasDefaults(type) && !symbol.isExtern) {
             defaults(type, symbol.place, pre, values);
+        } else if (type.array > 0 && !hasArrays(type) && hasDefaults(type) && !symbol.isExtern) { // {default, ...} for each member
+            defaults({type.base, 0}, symbol.place, pre, values);
+            for (ExprPtr& v : values) {
+                auto all = node(ExprKind::ArrayList, symbol.place);
+                all->text = "...";
+                adopt(*all, std::move(v));
+                v = std::move(all);
+            }
         }
         for (auto& x : *before_) out.push_back(std::move(x)); // what is computed first, between the variables
         before_->clear();

@@ -31,7 +31,8 @@ void Lowering::valueOf(ExprPtr e, Type want, List& pre, List& out) {
         return;
     }
     const Type have = typeOf(*e);
-    const bool fits = have.base == want.base && (have.array != 0) == (want.array != 0) &&
+    const bool fits = derives(have, want.base) && // of one that extends it the part that it extends
+                       (have.array != 0) == (want.array != 0) &&
                       (have.array == want.array || have.array < 0 || want.array < 0);
     if (!fits) {
         if (isStruct(have)) sources_.error(place, "expected " + shown(want) + ", not " + shown(have));
@@ -43,7 +44,9 @@ void Lowering::valueOf(ExprPtr e, Type want, List& pre, List& out) {
         for (size_t i = 0; i < count; ++i) out.push_back(variable("", place));
         return;
     }
+    const size_t before = out.size();
     flatten(std::move(e), pre, out);
+    if (out.size() > before + count) out.resize(before + count);
 }
 
 /// Name(a, b, ...) or {a, b, ...}.
@@ -208,6 +211,7 @@ void Lowering::checkArguments(Expr& call) {
         for (; i < parameters.size(); ++i) {
             const Type t = typeOf(*call.args[i]);
             const bool list = call.args[i]->kind == ExprKind::ArrayList;
+            if (isStruct(parameters[i]) && derives(t, parameters[i].base)) continue;
             if ((isStruct(t) || (isStruct(parameters[i]) && !list)) && t.base != parameters[i].base) break;
         }
         if (i == parameters.size()) return;
@@ -227,16 +231,32 @@ void Lowering::arguments(Expr& call, List& pre) {
     checkArguments(call);
     std::vector<ExprPtr> given = std::move(call.args);
     call.args.clear();
-    for (auto& a : given) {
+    for (size_t i = 0; i < given.size(); ++i) {
+        ExprPtr& a = given[i];
         if (!isStruct(typeOf(*a))) {
             rewrite(a);
             adopt(call, std::move(a));
             continue;
         }
+        const Base want = wanted(call.text, given.size(), i, typeOf(*a));
         List parts;
         flatten(std::move(a), pre, parts);
+        if (const size_t count = leaves({want, 0}).size(); isStruct({want, 0}) && parts.size() > count) parts.resize(count);
         for (auto& p : parts) adopt(call, std::move(p));
     }
+}
+
+/// What argument `i` of type `have` is given as: itself, or a structure that it extends.
+Base Lowering::wanted(const std::string& function, size_t arguments, size_t i, Type have) const {
+    Base found = have.base;
+    const auto [from, to] = functions_.equal_range(function);
+    for (auto f = from; f != to; ++f) {
+        const auto& parameters = f->second.parameters;
+        if (parameters.size() != arguments || !derives(have, parameters[i].base)) continue;
+        if (parameters[i].base == have.base) return have.base;
+        found = parameters[i].base;
+    }
+    return found;
 }
 
 /// What must happen first, and then the expression, as one expression.

@@ -192,6 +192,10 @@ Inst* Builder::special(const Expr& e) {
     if (n == "random") return random(e);
     if (n == "getshader") return getShader(e);
     if (n == "getvar") return getVariable(e);
+    if (n == "readprimvar") return readPrimitiveVariable(e);
+    if (n == "hasmethod") return hasMethod(e);
+    if (n == "writeaov") return writeAov(e);
+    if (n == "readaov") return readAov(e);
     if (n == "getshaders" || n == "getlights") return array(e);
     if (n == "getlight") return getLight(e);
     if (n == "islightcategory") return isLightCategory(e);

@@ -1,4 +1,4 @@
-// outputchannel(): outputs that no parameter declares. Each is a variable of the kernel, zero until a call gives it a value.
+// outputchannel(), writeaov() and readaov(): outputs that no parameter declares. Each is a variable of the kernel, zero until a call gives it a value.
 #include "rsl/ir/builder.h"
 
 namespace alpenglow::rsl::ir {
@@ -53,6 +53,33 @@ Inst* Builder::outputChannel(const Expr& e) {
     const int n = channelSlot(name->text, value->kind);
     if (n >= 0) set(n, value);
     return constant(0);
+}
+
+/// writeaov(name, value): an output of that name and type is given the value; where there is none nobody asks for it.
+Inst* Builder::writeAov(const Expr& e) {
+    Inst* name = expr(*e.args[0]);
+    Inst* value = expr(*e.args[1]);
+    if (value->kind == Kind::Bool) value = coerce(value, Kind::Float);
+    place_ = e.place;
+    if (name->op != Op::ConstString) {
+        warn(e.place, "writeaov() needs a name that is known when the shader is compiled; it does nothing");
+        return constant(0);
+    }
+    if (const int n = channelSlot(name->text, value->kind); n >= 0) set(n, value);
+    return constant(0);
+}
+
+Inst* Builder::readAov(const Expr& e) {
+    Inst* name = expr(*e.args[0]);
+    place_ = e.place;
+    if (name->op != Op::ConstString) {
+        warn(e.place, "readaov() needs a name that is known when the shader is compiled; it finds nothing");
+        return constant(0);
+    }
+    const int n = channelSlot(name->text, kindOf(e.args[1]->type));
+    if (n < 0 || e.args[1]->type.array) return constant(0);
+    assign(*e.args[1], get(n));
+    return constant(1);
 }
 
 } // namespace alpenglow::rsl::ir

@@ -196,12 +196,12 @@ Inst* Builder::memberAccess(const Expr& e) {
     }, [&](Inst* handle) { return lightMember(handle, e.text, kind, nullptr); });
 }
 
-/// getvar(null, name [, variable]): of the primitive.
-Inst* Builder::primitiveVariable(const std::string& name, const Expr& e) {
+/// getvar(null, name [, variable]): of the primitive. `to` may be null.
+Inst* Builder::primitiveVariable(const std::string& name, const Expr* to) {
     const auto& there = options_.varyingParameters;
     if (std::find(there.begin(), there.end(), name) == there.end()) return constant(0);
-    if (e.args.size() < 3) return constant(1);
-    const Type wanted = e.args[2]->type;
+    if (!to) return constant(1);
+    const Type wanted = to->type;
     for (const ShaderParameter& p : shader_.parameters)
         if (p.symbol->name == name && p.symbol->type != wanted) return constant(0);
     if (wanted.array || wanted.base == Base::String) return constant(0);
@@ -213,8 +213,43 @@ Inst* Builder::primitiveVariable(const std::string& name, const Expr& e) {
     const Type* first = asked(program_);
     for (size_t i = 0; i < instances_.size() && !first; ++i) first = asked(*instances_[i].binding->program);
     if (first && *first != wanted) return constant(0);
-    assign(*e.args[2], input("param:" + name, wanted, false));
+    assign(*to, input("param:" + name, wanted, false));
     return constant(1);
+}
+
+Inst* Builder::readPrimitiveVariable(const Expr& e) {
+    Inst* name = expr(*e.args[0]);
+    place_ = e.place;
+    if (name->op == Op::ConstString) return primitiveVariable(name->text, e.args[1].get());
+    warn(e.place, "readprimvar() needs a name that is known when the shader is compiled; it finds nothing");
+    return constant(0);
+}
+
+/// Whether the shader of a handle has a public method of that name, with any parameters.
+Inst* Builder::hasMethod(const Expr& e) {
+    Inst* name = expr(*e.args[1]);
+    Inst* handle = expr(*e.args[0]);
+    place_ = e.place;
+    if (name->op != Op::ConstString) {
+        warn(e.place, "hasmethod() needs a name that is known when the shader is compiled; it gives 0");
+        return constant(0);
+    }
+    const auto has = [&](const Shader& s) {
+        return s.publics.count(name->text) > 0 &&
+               std::any_of(s.nested.begin(), s.nested.end(), [&](const auto& f) { return f->name == name->text; });
+    };
+    if (handle->op == Op::ConstString) {
+        if (handle->text == "(this)") return constant(has(shader_) ? 1.0f : 0.0f);
+        for (const Instance& i : instances_)
+            if (i.binding->handle == handle->text) return constant(has(*i.binding->shader) ? 1.0f : 0.0f);
+        return constant(0);
+    }
+    return forHandle(*e.args[0], Kind::Float, [&](size_t i) { return constant(has(*instances_[i].binding->shader) ? 1.0f : 0.0f); },
+                     [&](Inst* other) -> Inst* { // no co-shader: a light, or null
+                         if (name->text != "light") return constant(0);
+                         Inst* null = emit(Op::Equal, Kind::Bool, {other, leaves_.string("")});
+                         return emit(Op::Select, Kind::Float, {null, constant(0), constant(1)});
+                     });
 }
 
 /// getvar(handle, name [, variable]): 1 when there is such a member.
@@ -226,7 +261,7 @@ Inst* Builder::getVariable(const Expr& e) {
         return constant(0);
     }
     Inst* handle = expr(*e.args[0]);
-    if (handle->op == Op::ConstString && handle->text.empty()) return primitiveVariable(name->text, e);
+    if (handle->op == Op::ConstString && handle->text.empty()) return primitiveVariable(name->text, e.args.size() > 2 ? e.args[2].get() : nullptr);
     return forHandle(*e.args[0], Kind::Float, [&](size_t i) -> Inst* {
         const Symbol* s = memberOf(i, name->text);
         if (!s || s->type.array) return constant(0);

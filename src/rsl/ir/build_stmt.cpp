@@ -280,8 +280,16 @@ void Builder::scanAssigned(const Expr& e, std::set<int>& out, std::set<const Fun
     if (e.kind == ExprKind::ShadeopCall && e.signature)
         for (size_t n = 0; n < e.args.size() && n < e.signature->parameters.size(); ++n)
             if (e.signature->parameters[n].output) lvalue(e.args[n].get());
-    if (e.kind == ExprKind::ShadeopCall && e.shadeop && e.shadeop->name == "outputchannel" && e.args[0]->kind == ExprKind::String)
-        if (const int n = channelSlot(e.args[0]->text, kindOf(e.args[1]->type)); n >= 0) out.insert(n);
+    if (e.kind == ExprKind::ShadeopCall && e.shadeop && (e.shadeop->name == "outputchannel" || e.shadeop->name == "writeaov")) {
+        const bool literal = e.args[0]->kind == ExprKind::String;
+        if (literal) {
+            if (const int n = channelSlot(e.args[0]->text, kindOf(e.args[1]->type)); n >= 0) out.insert(n);
+        } else { // the name is known when the call is built: any of them
+            for (const auto& [name, channel] : channels_) out.insert(channel.first);
+            for (const ShaderParameter& p : shader_.parameters)
+                if (p.symbol->output && !p.symbol->type.array) out.insert(slot(p.symbol));
+        }
+    }
     for (const NamedArg& p : e.pairs)
         if (p.output && p.value) lvalue(p.value.get());
     if (e.function) {

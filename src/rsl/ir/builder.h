@@ -164,7 +164,9 @@ private:
     Inst* methodCall(const Expr&);
     Inst* memberAccess(const Expr&);
     Inst* getVariable(const Expr&);
-    Inst* primitiveVariable(const std::string& name, const Expr& getvar);
+    Inst* primitiveVariable(const std::string& name, const Expr* to);
+    Inst* readPrimitiveVariable(const Expr&);
+    Inst* hasMethod(const Expr&);
     Inst* getShader(const Expr&);
     std::vector<Inst*> handlesOf(const Expr&);
     void scanMethod(const Expr&, std::set<int>& out);
@@ -179,6 +181,8 @@ private:
     void beginChannels();
     int channelSlot(const std::string& name, Kind);
     Inst* outputChannel(const Expr&);
+    Inst* writeAov(const Expr&);
+    Inst* readAov(const Expr&);
 
     // build_bsdf.cpp
     struct Distribution;

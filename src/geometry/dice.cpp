@@ -36,7 +36,7 @@ double diceEdge(const scene::Attributes& a) {
     return std::isfinite(r) ? std::sqrt(std::clamp(r, 0.01, 1e4)) : 1;
 }
 
-bool isDisplaced(const Shape& s, const DiceOptions& o) { return o.displace && s.attributes().displacement; }
+bool isDisplaced(const Shape& s, const DiceOptions& o) { return o.displace && (o.displaces ? o.displaces(s) : s.attributes().displacement != nullptr); }
 
 namespace {
 

@@ -25,7 +25,9 @@ struct DiceGrid {
 
 struct DiceOptions {
     DiceCamera camera;
-    /// Runs the displacement shader of a shape that has one (attributes().displacement). Must be thread safe: shapes are diced
+    /// Whether displace is to run for a shape; null: for those with a displacement shader (attributes().displacement).
+    std::function<bool(const Shape&)> displaces;
+    /// Runs what displaces a shape. Must be thread safe: shapes are diced
     /// at the same time, a shape's runs one after the other. Null: nothing is displaced.
     std::function<void(const Shape&, DiceGrid&)> displace;
     /// How far the shaders of a shape say that they move points (rsl.md section 9), and in which space; added to the attribute.

@@ -505,6 +505,7 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
     }
     const auto& kernel = *c->bound->kernel;
     fill(*c, &SurfaceBinding::surface);
+    if (c->binding->moveS) moveToFacets(*c); // the kernel moves P itself: it begins with the surface as it was
     int n = int(c->points.size());
     counters.points += uint64_t(n);
     ++counters.batches;

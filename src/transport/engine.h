@@ -133,6 +133,8 @@ public:
     const WorldImpl& world() const { return *world_; }
     Diagnostics& diagnostics() { return diagnostics_; }
     void shadeGroup(std::shared_ptr<BatchContext>, Sched&);
+    /// Points of surfaces whose shaders move P, once the kernel has its inputs: rays met, and will leave, the facets. displacement.cpp
+    static void moveToFacets(BatchContext&);
     void bindCall(rsl::KernelCall&, BatchContext&);
     Random random(const PathRay& r) const { return Random(seed_, r.px, r.py, r.sample); }
     std::vector<SampleResult*> results;

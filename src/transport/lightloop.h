@@ -56,6 +56,9 @@ struct LightLoop {
     }
 };
 
+/// The words of a light's __category.
+std::string categoriesOf(const BoundLight&);
+
 /// The strings that a loop sends, as one key of BoundLight::variants: "name\1value\2" of each; "" for none.
 std::string sentStrings(const SiteInfo&);
 

@@ -41,7 +41,7 @@ void Engine::opacities(std::span<const OpacityQuery> met, std::span<Color> out) 
         p.ray = &r;
         p.shape = world_->shapes_[m.hit.shape].get();
         p.surface = world_->accel_->point(m.hit);
-        p.P = p.surface.displaced ? p.surface.displacedP : p.surface.P;
+        p.P = p.surface.displaced && !b.moveS ? p.surface.displacedP : p.surface.P; // a shader that moves P does it here, too
         p.N = p.surface.N;
         p.I = p.P - r.origin;
         p.E = r.origin;

@@ -105,7 +105,10 @@ struct BoundLight {
 /// Shapes with the same surface, atmosphere and light list are shaded together.
 struct SurfaceBinding {
     InstanceRef surface, atmosphere, displacement, interior, exterior; ///< the last two only for messages
-    BoundKernel surfaceS, surfaceV, atmosphereS, displacementS;
+    BoundKernel surfaceS;
+    BoundKernel surfaceV;                      ///< only where batches of the scene need it: several bindings, or different spaces
+    BoundKernel atmosphereS, displacementS;
+    BoundKernel moveS;                         ///< P as the surface shader leaves it, where that displaces the primitive (no displacement shader)
     std::vector<int> lights;                   ///< indices into lights
     int group = 0;                             ///< equal: same program and light list, so that points are shaded in one batch
     int program = 0;                           ///< equal: the same kernel, so that points may share a V batch
@@ -137,9 +140,19 @@ public:
     /// A shader that uses co-shaders, with those that these attributes have; any other as it is.
     InstanceRef withCoShaders(const InstanceRef&, const scene::Attributes&, Diagnostics&);
     InstanceRef builtin(const std::string& name, rsl::ShaderKind, Diagnostics&);
+    rsl::KernelOptions kernelOptions(const ShaderInstance&, const std::vector<std::string>& outputs, const std::vector<std::string>& varying, bool mixed,
+                                     bool path) const;
     BoundKernel kernel(const ShaderInstance&, const std::vector<std::string>& outputs, const std::vector<std::string>& varying, bool mixed,
                        bool path, Diagnostics&);
 
+    /// Matrices of the camera, from the frame's options.
+    void setCamera(const scene::Options&);
+    /// Of a surface shader (as it is bound) that assigns P: the kernel that gives P alone, run when shapes are diced. None where the shader leaves
+    /// P as it is, and where light or rays decide, which is reported.
+    BoundKernel movingKernel(const ShaderInstance&, const BoundKernel&, const std::vector<std::string>& varying, Diagnostics&);
+    /// Makes the meshes that rays meet.
+    void diceShapes(Diagnostics&);
+    void displaceGrid(const SurfaceBinding&, const geometry::Shape&, geometry::DiceGrid&, Diagnostics&) const;
     /// Fills lights_; visibility: kinds of rays that can meet a shape.
     void bindLights(Diagnostics&, const std::function<uint32_t(const geometry::Shape&)>& visibility);
     /// The lights of a list and the further blocks of their shaders.

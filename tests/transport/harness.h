@@ -17,14 +17,19 @@ inline constexpr double kZ = teststat::kZ;
 
 using teststat::nightly, teststat::samples, teststat::seedBase;
 
-/// A folder for shaders that a test writes itself.
+/// A folder for shaders that a test writes itself. Gone when the program ends.
 inline const std::string& shaderFolder() {
-    static const std::string folder = [] {
-        std::string f = ::testing::TempDir() + "alpenglow_transport_" + std::to_string(getpid());
-        std::filesystem::create_directories(f);
-        return f;
-    }();
-    return folder;
+    struct Folder {
+        std::string path = ::testing::TempDir() + "alpenglow_transport_" + std::to_string(getpid());
+        const pid_t owner = getpid(); ///< death tests and others that fork share it, and leave it alone
+        Folder() { std::filesystem::create_directories(path); }
+        ~Folder() {
+            std::error_code e;
+            if (getpid() == owner) std::filesystem::remove_all(path, e);
+        }
+    };
+    static const Folder folder;
+    return folder.path;
 }
 inline void writeShader(const std::string& name, const std::string& source) {
     std::ofstream(shaderFolder() + "/" + name + ".sl") << source;

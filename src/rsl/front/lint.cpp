@@ -98,7 +98,8 @@ private:
             for (const Expr* x = &e; x->kind == ExprKind::Index && x->args.size() > 1; x = x->args[0].get()) expression(*x->args[1]);
         const Symbol* s = root(e);
         if (surface_ && s && s->origin == Symbol::Origin::Global && s->name == "P")
-            sources_.warning(e.place, "'P' is read-only in a surface shader; the shader changes a copy of its own");
+            sources_.warning(e.place, "a surface shader that moves 'P' displaces its primitive, but not where light or rays decide how far",
+                             "a displacement shader is the place for it");
         given(s);
     }
 

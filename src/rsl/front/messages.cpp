@@ -176,6 +176,7 @@ constexpr MessageKind kKinds[] = {
     // what may be written
     {"read-only", "'*' cannot be written"},
     {"read-only-copy", "'*' is read-only*"},
+    {"moving-surface", "a surface shader that moves 'P' displaces*"},
     {"not-output", "parameter '*' is not output; *"},
     {"constant-written", "'*' is constant and is given another value here"},
     {"construct-varying", "* differs from point to point, and construct() runs once for the whole shader"},

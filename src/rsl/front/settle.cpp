@@ -358,7 +358,7 @@ void Checker::written(const Expr& variable) {
     case Symbol::Origin::Local: break;
     case Symbol::Origin::Global:
         if (s->writable || (foreignLight_ && (s->name == "Cl" || s->name == "Ol"))) break;
-        // Old surfaces move P for the rest of the shader, as PRMan let them; the warnings of lint say that the surface stays.
+        // Old surfaces move P, as PRMan let them: the renderer displaces the primitive (transport/displacement.cpp).
         if (kind_ == ShaderKind::Surface && s->name == "P") break;
         if (s->storage == Storage::Uniform)
             sources_.error(variable.place, name + " cannot be written");

@@ -1,0 +1,50 @@
+// The imager of a frame, run over finished pixels.
+#include "transport/engine.h"
+
+namespace alpenglow::transport {
+
+bool WorldImpl::runImager(int count, const float* x, const float* y, float* r, float* g, float* b, float* alpha, Diagnostics& d) const {
+    const scene::ShaderRef& imager = frame_->options.imager;
+    if (!imager) return false;
+    std::lock_guard lock(imagerMutex_);
+    auto* self = const_cast<WorldImpl*>(this); // compiles on first use, under the lock
+    InstanceRef i = self->instance(*imager, rsl::ShaderKind::Imager, d);
+    if (!i) return false;
+    BoundKernel k = self->kernel(*i, {}, {}, false, false, d);
+    if (!k || k.kernel->facts().suspends) return false;
+    Engine engine(std::shared_ptr<const WorldImpl>(std::shared_ptr<const WorldImpl>{}, this), d);
+    constexpr int kChunk = 4096;
+    for (int begin = 0; begin < count; begin += kChunk) {
+        int n = std::min(kChunk, count - begin);
+        BatchContext c;
+        c.engine = &engine;
+        c.bound = &k;
+        c.points.resize(size_t(n));
+        for (int p = 0; p < n; ++p) {
+            ShadePoint& s = c.points[size_t(p)];
+            int at = begin + p;
+            s.P = {x[at], y[at], 0};
+            s.surface.u = s.surface.s = x[at] / float(std::max(1, frame_->options.xres)); // not in RISpec; imagers of Aqsis have them
+            s.surface.v = s.surface.t = y[at] / float(std::max(1, frame_->options.yres));
+            s.Ci = {r[at], g[at], b[at]};
+            s.Oi = Color(alpha[at]);
+            s.alpha = alpha[at];
+        }
+        std::vector<shading::InstanceView> views(size_t(n), {&i->parameters, &i->toCurrent});
+        c.batch = std::make_shared<shading::Batch>(k.kernel, *k.plan, c.points, views, *this);
+        engine.bindCall(c.batch->call(), c);
+        k.kernel->run(&c.batch->call());
+        int ci = c.batch->output("Ci"), ai = c.batch->output("alpha");
+        for (int p = 0; p < n; ++p) {
+            int at = begin + p;
+            if (ci >= 0) {
+                Color v = c.batch->color(ci, p);
+                r[at] = v.x; g[at] = v.y; b[at] = v.z;
+            }
+            if (ai >= 0) alpha[at] = c.batch->value(ai, 0, p);
+        }
+    }
+    return true;
+}
+
+} // namespace alpenglow::transport

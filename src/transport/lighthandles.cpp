@@ -1,0 +1,123 @@
+// Lights that a shader calls by their handles: getlight, getlights, islightcategory, handle->light(), handle->parameter.
+#include "base/category.h"
+#include "transport/engine.h"
+#include "transport/lightloop.h"
+#include <bit>
+#include <charconv>
+
+namespace alpenglow::transport {
+
+namespace {
+constexpr char kHandle[] = "light#"; // before the number of a light, in the handles that getlights() gives
+} // namespace
+
+int Engine::lightOfHandle(const BatchContext& c, const std::string& handle) const {
+    if (handle.rfind(kHandle, 0) != 0 || !c.binding) return -1;
+    int n = -1;
+    const char* digits = handle.c_str() + sizeof kHandle - 1;
+    if (std::from_chars(digits, handle.c_str() + handle.size(), n).ec != std::errc()) return -1;
+    const auto& on = c.binding->lights;
+    return std::find(on.begin(), on.end(), n) == on.end() ? -1 : n;
+}
+
+void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, int lanes, const float* in, float* out) {
+    const SiteInfo& s = c.bound->sites[size_t(site)];
+    const rsl::ir::Site& d = *s.site;
+    const size_t width = size_t(lanes);
+    auto put = [&](size_t row, int lane, float v) { out[row * width + size_t(lane)] = v; };
+    auto text = [&](int lane) {
+        return d.argKinds.empty() || d.argKinds[0] != rsl::ir::Kind::String ? d.strings.empty() ? std::string() : d.strings[0]
+                                                                            : rsl::internedString(std::bit_cast<int32_t>(in[lane]));
+    };
+    LightLoop& loop = lightLoop(c, first, lanes);
+    auto each = [&](auto&& body) {
+        for (int lane = 0; lane < lanes; ++lane)
+            if ((mask >> lane & 1) && first + lane < int(c.points.size())) body(lane);
+    };
+    auto visible = [&](const BoundLight& l) { return l.kernel && (l.kind != LightKind::Environment || world_->settings_.hider == Hider::Path); };
+    if (d.op == "islightcategory") {
+        if (loop.light >= 0)
+            each([&](int lane) {
+                const std::string want = text(lane);
+                checkCategory(c, d, want);
+                put(0, lane, inCategory(want, categoriesOf(world_->lights_[size_t(loop.light)])) ? 1 : 0);
+            });
+        return;
+    }
+    if (d.op == "getlights") { // rows: how many, then the handles
+        each([&](int lane) {
+            const std::string want = text(lane);
+            checkCategory(c, d, want);
+            int n = 0;
+            if (c.binding)
+                for (int i : c.binding->lights) {
+                    const BoundLight& l = world_->lights_[size_t(i)];
+                    if (!visible(l) || !inCategory(want, categoriesOf(l))) continue;
+                    if (n == limits::kLightHandles) {
+                        diagnostics_.reportOnce("getlights", {Severity::Error, Rie::Limit, {}, "getlights() gives no more than " + std::to_string(limits::kLightHandles) +
+                                                              " lights; the others are left out", {}, {}});
+                        break;
+                    }
+                    put(size_t(++n), lane, std::bit_cast<float>(rsl::internString(kHandle + std::to_string(i))));
+                }
+            put(0, lane, float(n));
+        });
+        return;
+    }
+    if (d.op == "getlight") {
+        each([&](int lane) {
+            const std::string want = text(lane);
+            if (c.binding)
+                for (int i : c.binding->lights)
+                    if (visible(world_->lights_[size_t(i)]) && world_->lights_[size_t(i)].handle == want) {
+                        put(0, lane, std::bit_cast<float>(rsl::internString(kHandle + std::to_string(i))));
+                        break;
+                    }
+        });
+        return;
+    }
+    std::map<int, uint64_t> asked; // lights of the handles
+    each([&](int lane) {
+        if (int l = lightOfHandle(c, text(lane)); l >= 0) asked[l] |= uint64_t(1) << lane;
+    });
+    if (d.op == "lightparameter") { // rows: found, value
+        const std::string& name = d.strings.back();
+        for (auto [li, of] : asked) {
+            const shading::ParameterBlock& p = world_->lights_[size_t(li)].instance->parameters;
+            const auto n = p.numbers.find(name);
+            const auto t = p.strings.find(name);
+            const bool wantsText = d.resultKinds[1] == rsl::ir::Kind::String;
+            if (wantsText ? t == p.strings.end() : n == p.numbers.end() || (int(n->second.size()) < s.resultRowCount - 1 && n->second.size() != 1)) continue;
+            for (int lane = 0; lane < lanes; ++lane) {
+                if (!(of >> lane & 1)) continue;
+                put(0, lane, 1);
+                if (wantsText) put(1, lane, std::bit_cast<float>(rsl::internString(t->second)));
+                else for (int r = 0; r < s.resultRowCount - 1; ++r) put(size_t(r) + 1, lane, n->second[n->second.size() == 1 ? 0 : size_t(r)]); // a float also where a color is wanted
+            }
+        }
+        return;
+    }
+    // lightcall: handle, P; rows: found, L (light to surface), Cl, Ol, place for the distance.
+    c.lightDistance.assign(width, 1e38f);
+    LightLoop turn;
+    turn.rows.assign(7 * width, 0);
+    for (int lane = 0; lane < lanes; ++lane) {
+        for (size_t r = 0; r < 3; ++r) turn.rows[r * width + size_t(lane)] = in[(r + 1) * width + size_t(lane)];
+        turn.rows[6 * width + size_t(lane)] = float(kPi);
+    }
+    for (auto [li, of] : asked) {
+        LightLoop::Kept kept;
+        kept.out.assign(9 * width, 0);
+        kept.distance.assign(width, 1e38f);
+        kept.values.assign(width * size_t(world_->lights_[size_t(li)].valueWidth), 0);
+        uint64_t lit = sampleLight(c, turn, li, 0, 1, first, of, lanes, kept);
+        for (int lane = 0; lane < lanes; ++lane) {
+            if (!(of >> lane & 1)) continue;
+            put(0, lane, 1);
+            for (size_t r = 0; r < 9; ++r) put(r + 1, lane, !(lit >> lane & 1) ? r < 6 ? 0.f : 1.f : (r < 3 ? -1.f : 1.f) * kept.out[r * width + size_t(lane)]);
+            c.lightDistance[size_t(lane)] = kept.distance[size_t(lane)];
+        }
+    }
+}
+
+} // namespace alpenglow::transport

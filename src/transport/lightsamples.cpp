@@ -1,0 +1,190 @@
+// Samples of lights for the points of a loop: where they lie, the light's kernel with what the surface sends, what stands in between.
+#include "transport/engine.h"
+#include "transport/lightloop.h"
+#include "transport/sampling.h"
+#include <bit>
+
+namespace alpenglow::transport {
+
+LitSurface Engine::litSurface(BatchContext& c, const LightLoop& loop, const std::vector<int>& points, int first, int lanes) const {
+    LitSurface lit;
+    lit.binding = [this, &c, &points](int q) -> const SurfaceBinding* {
+        const size_t point = size_t(points[size_t(q)]);
+        return point < c.bindings.size() ? &world_->bindings_[size_t(c.bindings[point])] : c.binding;
+    };
+    lit.output = [&c, &loop, &points, first, lanes](int q, const std::string& name, std::vector<float>& v) {
+        if (loop.setup < 0) return false;
+        const SiteInfo& s = c.bound->sites[size_t(loop.setup)];
+        size_t argument = 0; // the arguments are in the order of the names without texts
+        for (size_t n = 0; n < s.site->names.size(); ++n) {
+            if (!s.site->pairStrings[n].empty()) continue;
+            if (s.site->names[n] == "surface:" + name) {
+                const int row = s.named.at(s.site->names[n]);
+                for (int r = 0; r < rsl::ir::components(s.site->argKinds[argument]); ++r)
+                    v.push_back(loop.given[size_t(row + r) * size_t(lanes) + size_t(points[size_t(q)] - first)]);
+                return true;
+            }
+            ++argument;
+        }
+        return false;
+    };
+    return lit;
+}
+
+void Engine::evaluateForLoop(BatchContext& c, const LightLoop& loop, int li, int first, int lanes, std::vector<ShadePoint>& q,
+                             const std::vector<int>& laneOf, std::vector<LightValue>& out, std::vector<float>& values) {
+    const BoundLight& light = world_->lights_[size_t(li)];
+    out.assign(q.size(), {});
+    values.assign(q.size() * size_t(light.valueWidth), 0);
+    std::vector<int> points;
+    for (int lane : laneOf) points.push_back(first + lane);
+    LightCall call;
+    LitSurface lit;
+    call.values = &values;
+    if (loop.setup < 0) {
+        if (light.asksSurface) lit = litSurface(c, loop, points, first, lanes), call.lit = &lit;
+        evaluateLight(light, q, out, call);
+        return;
+    }
+    // Sent values: one run for all points that send the same.
+    const SiteInfo& s = c.bound->sites[size_t(loop.setup)];
+    if (const std::string strings = sentStrings(s); !strings.empty())
+        if (auto v = light.variants.find(strings); v != light.variants.end()) call.kernel = &v->second;
+    std::vector<std::pair<std::string, std::pair<int, int>>> sent; // parameter: first row, components
+    size_t argument = 0;
+    for (size_t n = 0; n < s.site->names.size(); ++n) {
+        if (!s.site->pairStrings[n].empty()) continue;
+        const std::string& name = s.site->names[n];
+        const int size = rsl::ir::components(s.site->argKinds[argument++]);
+        if (name.rfind("send:light:", 0) != 0) continue;
+        auto have = light.instance->parameters.numbers.find(name.substr(11));
+        if (have != light.instance->parameters.numbers.end() && int(have->second.size()) == size) sent.push_back({name.substr(11), {s.named.at(name), size}});
+    }
+    auto normal = s.named.find("N");
+    auto given = [&](int row, int lane) { return loop.given[size_t(row) * size_t(lanes) + size_t(lane)]; };
+    if (normal != s.named.end())
+        for (size_t i = 0; i < q.size(); ++i)
+            q[i].Ns = Vec3(given(normal->second, laneOf[i]), given(normal->second + 1, laneOf[i]), given(normal->second + 2, laneOf[i]));
+    std::map<std::vector<uint32_t>, std::vector<int>> groups;
+    for (size_t i = 0; i < q.size(); ++i) {
+        std::vector<uint32_t> key;
+        for (const auto& [name, rows] : sent)
+            for (int r = 0; r < rows.second; ++r) key.push_back(std::bit_cast<uint32_t>(given(rows.first + r, laneOf[i])));
+        groups[std::move(key)].push_back(int(i));
+    }
+    for (const auto& [key, members] : groups) {
+        shading::ParameterBlock block;
+        if (!sent.empty()) {
+            block = light.instance->parameters;
+            size_t at = 0;
+            for (const auto& [name, rows] : sent)
+                for (int r = 0; r < rows.second; ++r) block.numbers[name][size_t(r)] = std::bit_cast<float>(key[at++]);
+            call.parameters = &block;
+        }
+        std::vector<ShadePoint> some;
+        std::vector<int> where;
+        for (int i : members) some.push_back(q[size_t(i)]), where.push_back(points[size_t(i)]);
+        std::vector<LightValue> result(some.size());
+        std::vector<float> resultValues(some.size() * size_t(light.valueWidth));
+        call.values = &resultValues;
+        if (light.asksSurface) lit = litSurface(c, loop, where, first, lanes), call.lit = &lit;
+        evaluateLight(light, some, result, call);
+        for (size_t k = 0; k < members.size(); ++k) {
+            out[size_t(members[k])] = result[k];
+            std::copy_n(resultValues.begin() + long(k) * light.valueWidth, light.valueWidth, values.begin() + long(members[k]) * light.valueWidth);
+        }
+    }
+}
+
+void Engine::shadowLoop(const BatchContext& c, const BoundLight& light, int first, std::span<const ShadePoint> q, std::span<const int> laneOf,
+                        std::span<LightValue> v) {
+    std::vector<ShadowRay> rays;
+    std::vector<size_t> of;
+    for (size_t i = 0; i < q.size(); ++i) {
+        if (!v[i].lit || !(maxComponent(v[i].Cl) > 0)) continue;
+        const ShadePoint& lit = c.points[size_t(first + laneOf[i])];
+        const Vec3 to = -v[i].L;
+        const float far = length(to);
+        if (!(far > 0)) continue;
+        const Vec3 w = to / far;
+        const Vec3 o = geometry::offsetOrigin(lit.surface, w, length(q[i].Ps - lit.surface.P));
+        const float distance = light.kind == LightKind::Distant ? 1e38f : light.kind == LightKind::Area ? far * (1 - 1e-4f) : far * (1 - 1e-5f);
+        rays.push_back({o, w, distance, Color(1), shading::kNoTarget, lit.time, lit.ray});
+        of.push_back(i);
+    }
+    std::vector<Color> left(rays.size());
+    transmittances(rays, left);
+    for (size_t k = 0; k < of.size(); ++k) v[of[k]].Cl *= left[k];
+}
+
+uint64_t Engine::sampleLight(BatchContext& c, const LightLoop& loop, int li, int turn, int turns, int first, uint64_t mask, int lanes, LightLoop::Kept& kept) {
+    const BoundLight& light = world_->lights_[size_t(li)];
+    auto row = [&](int r, int lane) { return loop.rows[size_t(r) * size_t(lanes) + size_t(lane)]; };
+    std::vector<ShadePoint> q;
+    std::vector<int> laneOf;
+    std::vector<float> factor;
+    uint64_t lit = 0;
+    for (int lane = 0; lane < lanes; ++lane) {
+        if (!(mask >> lane & 1) || first + lane >= int(c.points.size())) continue;
+        ShadePoint p = c.points[size_t(first + lane)];
+        const Vec3 at(row(0, lane), row(1, lane), row(2, lane));
+        p.Ps = at;
+        p.Ns = p.N;
+        p.viewI = p.I;
+        p.Ci = Color(0);
+        float f = 1;
+        const uint32_t use = kLightPoint + uint32_t(li), nth = uint32_t(turn) + 1; // 0 is gather()'s
+        if (light.kind == LightKind::Area) {
+            if (!light.emitter || !p.ray) continue;
+            Random rng = random(*p.ray);
+            Emitter::Sample s;
+            if (!light.emitter->sample(at, rng.pair(p.ray->vertex, use, nth), light.emitter->chooses() ? rng.one(p.ray->vertex, use, nth) : 0, s, p.surface)) continue;
+            p.shape = s.shape;
+            p.P = p.surface.P;
+            p.N = p.surface.n;
+            f = 1 / (float(kPi) * s.pdf * float(turns)); // cosLight A / (pi d^2 n), design decision 4
+        } else if (light.kind == LightKind::Environment) {
+            // The sky from directions evenly in the cone of the loop.
+            if (!p.ray) continue;
+            Vec3 axis(row(3, lane), row(4, lane), row(5, lane));
+            float angle = row(6, lane), la = length(axis);
+            bool all = !(la > 0) || !(angle < float(kPi));
+            float cap = all ? 2 : 2 * std::pow(std::sin(0.5f * std::max(angle, 0.f)), 2.f); // 1 - cos of the half angle
+            if (!(cap > 0)) continue;
+            Random rng = random(*p.ray);
+            Vec3 w = Basis(all ? Vec3(0, 0, 1) : axis / la).toWorld(sampleCone(cap, rng.pair(p.ray->vertex, use, nth)));
+            p.shape = nullptr;
+            p.P = at + w;
+            p.N = -w;
+            f = 2 * cap / float(turns); // 1 / (pi pdf n)
+        } else {
+            p.shape = nullptr;
+            p.P = Vec3(transformPoint(light.instance->toCurrent, {0, 0, 0}));
+            if (light.cone) {
+                if (p.ray && world_->settings_.hider == Hider::Path) p.Ci = coneNumbers(random(*p.ray).pair(p.ray->vertex, use, nth));
+                f = 1 / float(turns);
+            }
+        }
+        q.push_back(p);
+        laneOf.push_back(lane);
+        factor.push_back(f);
+    }
+    std::vector<LightValue> v;
+    std::vector<float> values;
+    evaluateForLoop(c, loop, li, first, lanes, q, laneOf, v, values);
+    if (light.shadows) shadowLoop(c, light, first, q, laneOf, v);
+    for (size_t i = 0; i < q.size(); ++i) {
+        const size_t lane = size_t(laneOf[i]);
+        std::copy_n(values.begin() + long(i) * light.valueWidth, light.valueWidth, kept.values.begin() + long(lane) * light.valueWidth);
+        if (!v[i].lit) continue;
+        const bool sky = light.kind == LightKind::Environment;
+        const Vec3 toLight = sky ? q[i].P - q[i].Ps : -v[i].L;
+        const float rows[9] = {toLight.x, toLight.y, toLight.z, v[i].Cl.x * factor[i], v[i].Cl.y * factor[i], v[i].Cl.z * factor[i], v[i].Ol.x, v[i].Ol.y, v[i].Ol.z};
+        for (size_t r = 0; r < 9; ++r) kept.out[r * size_t(lanes) + lane] = rows[r];
+        kept.distance[lane] = sky || light.kind == LightKind::Distant ? 1e38f : length(toLight);
+        lit |= uint64_t(1) << lane;
+    }
+    return lit;
+}
+
+} // namespace alpenglow::transport

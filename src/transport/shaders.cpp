@@ -1,0 +1,176 @@
+// Shader calls of the scene made into programs with values, and those into kernels.
+#include "transport/world.h"
+#include <chrono>
+#include <filesystem>
+
+namespace alpenglow::transport {
+
+namespace {
+
+double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+// "did you mean ..." among the shader sources on the search path; or empty.
+std::string nearShader(const std::string& name, const std::vector<std::string>& directories) {
+    std::vector<std::string> names;
+    std::error_code e;
+    for (const auto& directory : directories)
+        for (const auto& f : std::filesystem::directory_iterator(directory.empty() ? "." : directory, e))
+            if (f.path().extension() == ".sl" && names.size() < 10000) names.push_back(f.path().stem().string());
+    std::string near = nearestName(name, names);
+    return near.empty() ? "" : "did you mean \"" + near + "\"?";
+}
+
+void transformParameter(std::vector<float>& v, rsl::Base base, const Matrix& m) {
+    for (size_t i = 0; i + 2 < v.size() && base != rsl::Base::Matrix; i += 3) {
+        Vec3d p(v[i], v[i + 1], v[i + 2]);
+        switch (base) {
+        case rsl::Base::Point: p = transformPoint(m, p); break;
+        case rsl::Base::Vector: p = transformVector(m, p); break;
+        case rsl::Base::Normal: p = transformNormal(m, p); break;
+        default: return;
+        }
+        v[i] = float(p.x); v[i + 1] = float(p.y); v[i + 2] = float(p.z);
+    }
+    if (base == rsl::Base::Matrix) // given relative to shader space
+        for (size_t i = 0; i + 15 < v.size(); i += 16) {
+            Matrix a;
+            for (int k = 0; k < 16; ++k) a.m[k / 4][k % 4] = v[i + size_t(k)];
+            a = a * m;
+            for (int k = 0; k < 16; ++k) v[i + size_t(k)] = float(a.m[k / 4][k % 4]);
+        }
+}
+
+} // namespace
+
+InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind kind, Diagnostics& d, bool anyKind) {
+    double begin = seconds();
+    Diagnostics said; // the compiler knows no scene: messages without a place get the call's
+    auto program = compiler_->load(call.name, settings_.shaderPaths, said);
+    for (Diagnostic m : said.all()) {
+        if (m.place.file.empty()) {
+            m.place = call.place;
+            if (m.hint.empty()) m.hint = nearShader(call.name, settings_.shaderPaths);
+        }
+        d.report(std::move(m));
+    }
+    facts_.compileSec += seconds() - begin;
+    if (!program) return nullptr;
+    if (auto same = rsl::ShaderCompiler::variant(program, kind)) program = same; // a class can be several kinds of shader
+    if (program->kind() != kind && !anyKind) {
+        d.report(Severity::Error, Rie::NoShader, call.place,
+                 "shader \"" + call.name + "\" is a " + rsl::toString(program->kind()) + " shader, not a " + rsl::toString(kind) + " shader");
+        return nullptr;
+    }
+    auto i = std::make_shared<ShaderInstance>();
+    i->name = call.name;
+    i->program = program;
+    i->toCurrent = call.toWorld.first() * worldToCamera_;
+    i->place = call.place;
+
+    // Defaults: the shader's own expressions in the instance's spaces.
+    auto spaces = [&](const std::string& from, const std::string& to, float out[16]) {
+        Matrix m;
+        bool known = true;
+        if (from == "shader" && to == "current") m = i->toCurrent;
+        else if (from == "current" && to == "shader") m = inverse(i->toCurrent);
+        else known = matrix(from, to, m);
+        for (int k = 0; k < 16; ++k) out[k] = float(m.m[k / 4][k % 4]);
+        return known;
+    };
+    for (auto& v : compiler_->parameterDefaults(program, d, spaces)) {
+        if (v.type.base == rsl::Base::String && v.type.array != 0) { // elements have names of their own: "maps[1]"
+            for (size_t e = 0; e < v.strings.size(); ++e) i->parameters.strings[v.name + "[" + std::to_string(e) + "]"] = v.strings[e];
+        } else if (v.type.base == rsl::Base::String) i->parameters.strings[v.name] = v.strings.empty() ? "" : v.strings[0];
+        else i->parameters.numbers[v.name] = std::move(v.numbers);
+    }
+    for (const scene::Param& given : call.params) {
+        const rsl::ParameterInfo* p = nullptr;
+        std::vector<std::string> names;
+        for (const auto& q : program->parameters()) {
+            names.push_back(q.name);
+            if (q.name == given.name) p = &q;
+        }
+        if (!p) {
+            std::string near = nearestName(given.name, names);
+            d.reportOnce("parameter:" + call.name + ":" + given.name,
+                         {Severity::Warning, Rie::BadToken, given.place.file.empty() ? call.place : given.place,
+                          "shader \"" + call.name + "\" has no parameter \"" + given.name + "\"; it is ignored",
+                          near.empty() ? "" : "did you mean \"" + near + "\"?", {}});
+            continue;
+        }
+        if (p->type.base == rsl::Base::String) {
+            const size_t most = p->type.array ? size_t(std::max(1, p->type.array)) : 1;
+            for (size_t e = 0; e < std::min(most, given.strings.size()); ++e)
+                i->parameters.strings[p->type.array ? given.name + "[" + std::to_string(e) + "]" : given.name] = given.strings[e];
+            continue;
+        }
+        std::vector<float> v = given.numbers;
+        size_t want = size_t(rsl::componentCount(p->type.base)) * size_t(std::max(1, p->type.array));
+        if (v.size() == 1 && want == 3 && p->type.base == rsl::Base::Color) v.assign(3, v[0]);
+        if (v.size() < want) {
+            d.report(Severity::Warning, Rie::Consistency, given.place.file.empty() ? call.place : given.place,
+                     "parameter \"" + given.name + "\" of shader \"" + call.name + "\" needs " + std::to_string(want) + " numbers, got " + std::to_string(v.size()) +
+                         "; the default is used");
+            continue;
+        }
+        v.resize(want);
+        transformParameter(v, p->type.base, i->toCurrent);
+        i->parameters.numbers[given.name] = std::move(v);
+    }
+    return i;
+}
+
+InstanceRef WorldImpl::builtin(const std::string& name, rsl::ShaderKind kind, Diagnostics& d) {
+    scene::ShaderCall call;
+    call.name = name;
+    return instance(call, kind, d);
+}
+
+InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const scene::Attributes& a, Diagnostics& d) {
+    if (!shader || !shader->program->program().handles || a.coshaders.empty()) return shader;
+    std::vector<const void*> key{shader.get()};
+    for (const auto& [handle, call] : a.coshaders) key.push_back(call.get());
+    InstanceRef& bound = withCoShaders_[key];
+    if (bound) return bound;
+    auto copy = std::make_shared<ShaderInstance>(*shader);
+    for (const auto& [handle, call] : a.coshaders) {
+        auto [i, fresh] = coShaders_.try_emplace(call.get());
+        if (fresh) i->second = instance(*call, rsl::ShaderKind::Surface, d, true);
+        if (!i->second) continue;
+        rsl::CoShader c = rsl::ShaderCompiler::coShader(i->second->program, handle);
+        for (const auto& [name, v] : i->second->parameters.numbers) c.numbers[name] = v;
+        for (const auto& [name, v] : i->second->parameters.strings) c.strings[name] = v;
+        copy->coShaders.push_back(std::move(c));
+    }
+    return bound = copy;
+}
+
+rsl::KernelOptions WorldImpl::kernelOptions(const ShaderInstance& i, const std::vector<std::string>& outputs, const std::vector<std::string>& varying,
+                                            bool mixed, bool path) const {
+    rsl::KernelOptions o;
+    o.lanes = settings_.lanes;
+    o.mixed = mixed;
+    o.path = path;
+    o.suspend = settings_.suspend && i.program->kind() == rsl::ShaderKind::Surface;
+    o.outputs = outputs;
+    for (const auto& [k, v] : i.parameters.strings) o.stringParameters.push_back({k, v});
+    o.coShaders = i.coShaders;
+    o.varyingParameters = varying;
+    if (i.program->kind() == rsl::ShaderKind::Surface || i.program->kind() == rsl::ShaderKind::Volume) o.messages = lightMessages_;
+    return o;
+}
+
+BoundKernel WorldImpl::kernel(const ShaderInstance& i, const std::vector<std::string>& outputs, const std::vector<std::string>& varying, bool mixed, bool path,
+                              Diagnostics& d) {
+    const rsl::KernelOptions o = kernelOptions(i, outputs, varying, mixed, path);
+    double begin = seconds();
+    auto k = compiler_->kernel(i.program, o, d);
+    facts_.compileSec += seconds() - begin;
+    if (!k) return {};
+    ++facts_.kernels;
+    facts_.cacheHits += k->fromCache();
+    (k->facts().suspends ? facts_.suspending : facts_.affine)++;
+    return bindKernel(std::move(k), mixed, path, this);
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,69 @@
+// Coordinate systems: the camera's own, named ones, and the matrices between them.
+#include "transport/world.h"
+
+namespace alpenglow::transport {
+
+namespace {
+
+// Screen window: ri.md 3.1; frame aspect from FrameAspectRatio or the format.
+void screenWindow(const scene::Options& o, double w[4]) {
+    if (o.screenWindow && o.screenWindow->size() == 4) {
+        for (int i = 0; i < 4; ++i) w[i] = (*o.screenWindow)[size_t(i)];
+        return;
+    }
+    double pa = o.pixelAspect > 0 ? o.pixelAspect : 1, a = o.frameAspect ? *o.frameAspect : o.xres * pa / std::max(o.yres, 1);
+    if (!(a > 0)) a = 1;
+    double x = a >= 1 ? a : 1, y = a >= 1 ? 1 : 1 / a;
+    w[0] = -x; w[1] = x; w[2] = -y; w[3] = y;
+}
+
+} // namespace
+
+void WorldImpl::setCamera(const scene::Options& o) {
+    worldToCamera_ = o.worldToCamera.first();
+    cameraToWorld_ = inverse(worldToCamera_);
+    double sw[4];
+    screenWindow(o, sw);
+    double near = o.clipNear, far = std::min(double(o.clipFar), 1e30);
+    if (o.projection == "perspective") {
+        double k = 1 / std::tan(o.fov * kPi / 360);
+        Matrix m;
+        m.m[0][0] = m.m[1][1] = k;
+        m.m[2][2] = far / (far - near);
+        m.m[2][3] = 1;
+        m.m[3][2] = -far * near / (far - near);
+        m.m[3][3] = 0;
+        cameraToScreen_ = m;
+    } else {
+        cameraToScreen_ = translateMatrix(0, 0, -near) * scaleMatrix(1, 1, 1 / (far - near));
+    }
+    screenToNdc_ = translateMatrix(-sw[0], -sw[3], 0) * scaleMatrix(1 / (sw[1] - sw[0]), -1 / (sw[3] - sw[2]), 1);
+    ndcToRaster_ = scaleMatrix(o.xres, o.yres, 1);
+}
+bool WorldImpl::matrix(const std::string& from, const std::string& to, Matrix& out) const {
+    auto toCurrent = [&](const std::string& name, Matrix& m) {
+        if (name == "current" || name == "camera" || name == "eye") { m = Matrix{}; return true; }
+        if (name == "world") { m = worldToCamera_; return true; }
+        if (name == "screen") { m = inverse(cameraToScreen_); return true; }
+        if (name == "NDC") { m = inverse(screenToNdc_) * inverse(cameraToScreen_); return true; }
+        if (name == "raster") { m = inverse(ndcToRaster_) * inverse(screenToNdc_) * inverse(cameraToScreen_); return true; }
+        if (auto i = frame_->coordinateSystems.find(name); i != frame_->coordinateSystems.end()) { m = i->second.first() * worldToCamera_; return true; }
+        if (auto i = frame_->options.cameraSpaces.find(name); i != frame_->options.cameraSpaces.end()) { m = i->second.first(); return true; }
+        if (name == "object" || name == "shader") { m = worldToCamera_; return true; } // no object here (imagers, lights): world
+        return false;
+    };
+    Matrix a, b;
+    bool known = toCurrent(from, a);
+    bool knownTo = toCurrent(to, b);
+    if (!known || !knownTo) {
+        diagnostics_->reportOnce("space:" + (known ? to : from),
+                                 {Severity::Warning, Rie::BadHandle, {}, "unknown coordinate system \"" + (known ? to : from) + "\"; taken as \"current\"", {}, {}});
+    }
+    if (to == "screen") b = Matrix{}, out = a * cameraToScreen_;
+    else if (to == "NDC") out = a * cameraToScreen_ * screenToNdc_;
+    else if (to == "raster") out = a * cameraToScreen_ * screenToNdc_ * ndcToRaster_;
+    else out = a * inverse(b);
+    return known && knownTo;
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,247 @@
+#include "transport/surfaces.h"
+
+namespace alpenglow::transport {
+
+float attributeNumber(const scene::Attributes& a, const std::string& key, float fallback) {
+    const scene::Param* p = a.value(key);
+    return p && !p->numbers.empty() ? p->numbers[0] : fallback;
+}
+
+InstanceRef SurfaceBinder::instanceOf(const scene::ShaderRef& r, rsl::ShaderKind kind) {
+    if (!r) return nullptr;
+    auto [i, fresh] = instances_.try_emplace({r.get(), int(kind)});
+    if (fresh && !(r->name == "null" && kind != rsl::ShaderKind::Surface)) i->second = world_.instance(*r, kind, diagnostics_);
+    return i->second;
+}
+
+SurfaceBinder::Names SurfaceBinder::varyingOf(const geometry::Shape& shape, const ShaderInstance& shader) {
+    Names varying;
+    for (const auto& v : shape.primvars())
+        for (const auto& p : shader.program->parameters())
+            if (p.name == v.name && p.type.base != rsl::Base::String) varying.push_back(p.name);
+    // What a shader and its co-shaders ask about the primitive, with the type that the first of them wants.
+    std::map<std::string, rsl::Type> all = shader.program->program().primitiveVariables;
+    for (const rsl::CoShader& c : shader.coShaders) all.insert(c.program->primitiveVariables.begin(), c.program->primitiveVariables.end());
+    for (const auto& [name, type] : all) {
+        const int v = shape.findPrimvar(name);
+        const int width = type.base == rsl::Base::Void ? 0 : rsl::componentCount(type.base) * std::max(1, type.array);
+        if (v >= 0 && (width == 0 || width == shape.primvars()[size_t(v)].outWidth()) && std::find(varying.begin(), varying.end(), name) == varying.end())
+            varying.push_back(name);
+    }
+    std::sort(varying.begin(), varying.end());
+    return varying;
+}
+
+bool SurfaceBinder::bindAll() {
+    path_ = world_.settings_.hider == Hider::Path;
+    fallback_ = world_.builtin(path_ ? "matte" : "defaultsurface", rsl::ShaderKind::Surface, diagnostics_);
+    if (!fallback_) {
+        diagnostics_.report(Severity::Severe, Rie::NoShader, {}, "the shaders that ship with the program were not found",
+                            "set ALPENGLOW_SHADERS to the folder that holds matte.sl");
+        return false;
+    }
+    for (const auto& shape : world_.shapes_) {
+        const int b = bind(shape);
+        if (b < 0) return false;
+        world_.bindingOf_.push_back(b);
+        if (path_ && world_.bindings_[size_t(b)].atmosphere && shape->attributes().areaLight >= 0) world_.hazyEmitters_[shape.get()] = b;
+    }
+    return bindMixed();
+}
+
+int SurfaceBinder::bind(const geometry::ShapeRef& shape) {
+    const scene::Attributes& a = shape->attributes();
+    SurfaceBinding b;
+    b.surface = world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Surface), a, diagnostics_);
+    b.explicitSurface = b.surface != nullptr;
+    if (!b.surface) b.surface = fallback_;
+    b.displacement = world_.withCoShaders(instanceOf(a.displacement, rsl::ShaderKind::Displacement), a, diagnostics_);
+    // A class with surface and displacement is both.
+    if (!a.displacement && b.explicitSurface && rsl::ShaderCompiler::variant(b.surface->program, rsl::ShaderKind::Displacement))
+        b.displacement = world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Displacement), a, diagnostics_);
+    b.atmosphere = world_.withCoShaders(instanceOf(a.atmosphere, rsl::ShaderKind::Volume), a, diagnostics_);
+    const Names varying = varyingOf(*shape, *b.surface);
+    const Names displacementVarying = b.displacement ? varyingOf(*shape, *b.displacement) : Names{};
+    const Names atmosphereVarying = b.atmosphere ? varyingOf(*shape, *b.atmosphere) : Names{};
+    std::string key;
+    auto add = [&](auto v) { key.append(reinterpret_cast<const char*>(&v), sizeof v); };
+    add(b.surface.get());
+    add(a.displacement.get());
+    add(a.atmosphere.get());
+    for (const auto& [handle, call] : a.coshaders) add(call.get());
+    for (int l : a.lights) add(l);
+    add(-1);
+    add(a.areaLight);
+    add(a.opacity.x); add(a.opacity.y); add(a.opacity.z);
+    add(a.matte);
+    add(a.shadingRate);
+    add(attributeNumber(a, "trace:maxdiffusedepth", -1));
+    add(attributeNumber(a, "trace:maxspeculardepth", -1));
+    for (const Names* names : {&varying, &displacementVarying, &atmosphereVarying}) {
+        for (const auto& v : *names) key += v + ";";
+        key += "|";
+    }
+    key += shape->findPrimvar("Os") >= 0 ? "Os;" : "";
+    for (const char* name : {"shade:transmissionhitmode", "visibility:transmission"})
+        if (const scene::Param* p = a.value(name); p && !p->strings.empty()) key += p->strings[0] + ";";
+    auto [it, fresh] = bindingByKey_.try_emplace(key, int(world_.bindings_.size()));
+    if (!fresh) return it->second;
+
+    b.interior = instanceOf(a.interior, rsl::ShaderKind::Volume);
+    b.exterior = instanceOf(a.exterior, rsl::ShaderKind::Volume);
+    if (!bindSurface(b, varying)) return -1;
+    bindAtmosphere(b, atmosphereVarying);
+    bindDisplacement(b, displacementVarying);
+    bindLights(b, a);
+    b.areaLight = a.areaLight;
+    b.matte = a.matte;
+    b.shadingRate = a.shadingRate;
+    b.maxDiffuse = int(attributeNumber(a, "trace:maxdiffusedepth", path_ ? -1 : 1));
+    b.maxSpecular = int(attributeNumber(a, "trace:maxspeculardepth", path_ ? -1 : 2));
+    b.attributes = shape->attributesRef();
+    // Displaced shapes and different kernels never share a batch. Equal builds S mean equal builds V.
+    b.program = programs_.try_emplace({b.surfaceS.kernel.get(), b.displacement.get(), b.displacementS.kernel.get()}, int(programs_.size())).first->second;
+    auto [group, firstOfGroup] = groups_.try_emplace({b.program, b.lightList}, world_.groups_);
+    world_.groups_ += firstOfGroup;
+    b.group = group->second;
+    world_.bindOpacity(b, *shape, asked_.back().varying, engine_, diagnostics_);
+    world_.allOpaque_ &= !b.opacityKernel && b.shadowOpacity == Color(1);
+    world_.bindings_.push_back(std::move(b));
+    return it->second;
+}
+
+SurfaceBinder::Names SurfaceBinder::outputsOf(const ShaderInstance& surface) const {
+    static const char* const kVariables[] = {"P", "N", "Cs", "Os", "u", "v", "s", "t", "Ng", "I", "dPdu", "dPdv"};
+    Names outputs{"Ci", "Oi"};
+    for (const auto& n : world_.settings_.outputs) {
+        bool known = std::find(std::begin(kVariables), std::end(kVariables), n) != std::end(kVariables);
+        for (const auto& p : surface.program->parameters()) known |= p.name == n && p.output;
+        known |= surface.program->program().channels.count(n) > 0;
+        for (const rsl::CoShader& co : surface.coShaders) known |= co.program->channels.count(n) > 0;
+        if (known && n != "Ci" && n != "Oi") outputs.push_back(n);
+    }
+    if (path_) // lighting shadeops: lights run when the surface's kernel is done
+        for (const auto& p : surface.program->parameters())
+            if (p.output && p.type.base != rsl::Base::String && p.type.array == 0 &&
+                std::binary_search(world_.lightMessages_.begin(), world_.lightMessages_.end(), p.name))
+                outputs.push_back("param:" + p.name);
+    return outputs;
+}
+
+bool SurfaceBinder::bindSurface(SurfaceBinding& b, Names varying) {
+    Names outputs = outputsOf(*b.surface);
+    b.surfaceS = world_.kernel(*b.surface, outputs, varying, false, path_, diagnostics_);
+    if (!b.surfaceS) { // an error was reported: the default surface stands in
+        b.surface = fallback_;
+        varying.clear();
+        outputs.clear();
+        b.surfaceS = world_.kernel(*fallback_, outputs, varying, false, path_, diagnostics_);
+    }
+    if (!b.surfaceS) return false;
+    for (const auto& in : b.surfaceS.kernel->inputs()) b.usesObjectSpace |= in.name.find("object") != std::string::npos && in.name.rfind("space:", 0) == 0;
+    asked_.push_back({std::move(outputs), std::move(varying)});
+    return true;
+}
+
+bool SurfaceBinder::bindMixed() {
+    std::vector<int> sharing(size_t(world_.groups_), 0);
+    for (const SurfaceBinding& b : world_.bindings_) ++sharing[size_t(b.group)];
+    for (size_t i = 0; i < world_.bindings_.size(); ++i) {
+        SurfaceBinding& b = world_.bindings_[i];
+        const bool always = world_.settings_.mixedOnly;
+        if (!always && !b.usesObjectSpace && sharing[size_t(b.group)] == 1) continue;
+        b.surfaceV = world_.kernel(*b.surface, asked_[i].outputs, asked_[i].varying, true, path_, diagnostics_);
+        if (!b.surfaceV) return false;
+        if (always) b.surfaceS = b.surfaceV;
+    }
+    return true;
+}
+
+void SurfaceBinder::bindAtmosphere(SurfaceBinding& b, const Names& varying) {
+    if (!b.atmosphere) return;
+    b.atmosphereS = world_.kernel(*b.atmosphere, {"Ci", "Oi", "slope:Ci"}, varying, false, false, diagnostics_);
+    const std::string name = "\"" + b.atmosphere->name + "\"";
+    if (!b.atmosphereS) {
+        b.atmosphere = nullptr;
+    } else if (b.atmosphereS.kernel->facts().suspends) {
+        diagnostics_.reportOnce("atmosphere:" + b.atmosphere->name, {Severity::Warning, Rie::Unimplement, b.atmosphere->place,
+                                "volume shader " + name + " waits for rays (" + b.atmosphereS.kernel->facts().whyNot + "); it is left out", {}, {}});
+        b.atmosphere = nullptr;
+    } else if (b.atmosphereS.plan->output("slope:Ci") < 0) {
+        diagnostics_.reportOnce("atmosphere:" + b.atmosphere->name, {Severity::Info, Rie::NoError, b.atmosphere->place,
+                                "volume shader " + name + " is not affine in Ci as written; what light loses in it is measured between Ci = 0 and 1", {}, {}});
+    }
+}
+
+void SurfaceBinder::bindDisplacement(SurfaceBinding& b, const Names& varying) {
+    if (!b.displacement) {
+        b.moveS = world_.movingKernel(*b.surface, b.surfaceS, asked_.back().varying, diagnostics_);
+        return;
+    }
+    // The derivatives are for the surface shader: bumps on top of the displacement.
+    const Names outputs{"P", "N", "Du:P", "Dv:P", "Du:N", "Dv:N"};
+    b.displacementS = world_.kernel(*b.displacement, outputs, varying, false, false, diagnostics_);
+    bool object = false;
+    if (b.displacementS)
+        for (const auto& in : b.displacementS.kernel->inputs()) object |= in.name.find("object") != std::string::npos && in.name.rfind("space:", 0) == 0;
+    if (object) b.displacementS = world_.kernel(*b.displacement, outputs, varying, true, false, diagnostics_); // shapes of one batch have their own
+    if (!b.displacementS) b.displacement = nullptr;
+}
+
+void SurfaceBinder::bindLights(SurfaceBinding& b, const scene::Attributes& a) {
+    b.lights = world_.withParts(a.lights);
+    b.lightList = lightLists_.try_emplace(b.lights, int(lightLists_.size())).first->second;
+    if (size_t(b.lightList) != world_.sampledLights_.size()) return;
+    auto& sampled = world_.sampledLights_.emplace_back();
+    for (int l : b.lights) {
+        const BoundLight& light = world_.lights_[size_t(l)];
+        bool point = light.kind == LightKind::Point || light.kind == LightKind::Distant;
+        if (light.kernel && (point || (light.kind == LightKind::Area && !light.emitter->empty()))) sampled.push_back(l);
+    }
+    std::sort(sampled.begin(), sampled.end());
+    sampled.erase(std::unique(sampled.begin(), sampled.end()), sampled.end());
+}
+
+void WorldImpl::bindOpacity(SurfaceBinding& b, const geometry::Shape& shape, const std::vector<std::string>& varying, Engine& engine, Diagnostics& d) {
+    const scene::Attributes& a = shape.attributes();
+    std::string mode = "shader";
+    for (const char* name : {"render:casts_shadows", "shade:transmissionhitmode", "visibility:transmission"}) // BMRT's, PRMan's, the older ones
+        if (const scene::Param* p = a.value(name); p && !p->strings.empty()) mode = p->strings[0];
+    std::string what = b.surfaceS.kernel->facts().opacity;
+    bool varies = shape.findPrimvar("Os") >= 0;
+    b.shadowOpacity = mode == "opaque" ? Color(1) : a.opacity;
+    if (mode == "opaque" || mode == "primitive" || (mode == "Os" && !varies) || (what == "Os" && !varies)) return;
+    if (what == "1") {
+        b.shadowOpacity = Color(1);
+        return;
+    }
+    BoundKernel k = kernel(*b.surface, {"Oi"}, varying, false, false, d);
+    if (!k || k.plan->Oi < 0) return;
+    if (k.kernel->facts().suspends) {
+        d.reportOnce("opacity:" + b.surface->name, {Severity::Warning, Rie::NoError, b.surface->place,
+                     "the opacity of shader \"" + b.surface->name + "\" depends on traced rays; its shadow has the primitive's Opacity", {}, {}});
+        return;
+    }
+    bool constant = !varies && k.kernel->sites().empty();
+    for (const auto& in : k.kernel->inputs()) {
+        bool parameter = in.name.rfind("param:", 0) == 0 && std::find(varying.begin(), varying.end(), in.name.substr(6)) == varying.end();
+        constant &= parameter || in.name == "Os" || (in.name == "Cs" && shape.findPrimvar("Cs") < 0);
+    }
+    if (!constant) {
+        b.opacityKernel = std::move(k);
+        return;
+    }
+    std::vector<ShadePoint> point(1);
+    point[0].shape = &shape;
+    shading::InstanceView view{&b.surface->parameters, &b.surface->toCurrent};
+    BatchContext c;
+    c.engine = &engine;
+    c.bound = &k;
+    c.points.swap(point);
+    c.batch = std::make_shared<shading::Batch>(k.kernel, *k.plan, c.points, std::span(&view, 1), *this);
+    engine.bindCall(c.batch->call(), c);
+    k.kernel->run(&c.batch->call());
+    Color o = c.batch->color(k.plan->Oi, 0);
+    for (int i = 0; i < 3; ++i) b.shadowOpacity[i] = std::isfinite(o[i]) ? std::clamp(o[i], 0.f, 1.f) : 1;
+}
+} // namespace alpenglow::transport

@@ -1,0 +1,47 @@
+// Shapes bound to what shades them: shaders, kernels, lights. What may be shaded together shares a binding.
+#pragma once
+#include "transport/engine.h"
+
+namespace alpenglow::transport {
+
+/// The first number of an attribute, or `fallback` where it is not set.
+float attributeNumber(const scene::Attributes&, const std::string& key, float fallback);
+
+/// Fills bindings_, bindingOf_ and what belongs to them, for the shapes of a world whose lights are bound.
+class SurfaceBinder {
+public:
+    SurfaceBinder(WorldImpl& world, Engine& engine, Diagnostics& d) : world_(world), engine_(engine), diagnostics_(d) {}
+    /// False when nothing can be rendered; that was reported.
+    bool bindAll();
+
+private:
+    using Names = std::vector<std::string>;
+    InstanceRef instanceOf(const scene::ShaderRef&, rsl::ShaderKind);
+    /// The primitive variables that override parameters of a shader or that getvar(null, ...) finds; sorted.
+    static Names varyingOf(const geometry::Shape&, const ShaderInstance&);
+    int bind(const geometry::ShapeRef&);
+    Names outputsOf(const ShaderInstance&) const;
+    /// False when not even the default surface could be compiled.
+    bool bindSurface(SurfaceBinding&, Names varying);
+    void bindAtmosphere(SurfaceBinding&, const Names& varying);
+    void bindDisplacement(SurfaceBinding&, const Names& varying);
+    void bindLights(SurfaceBinding&, const scene::Attributes&);
+    /// Batches of several bindings, or of points that see different spaces, need kernels whose uniform inputs come in lanes.
+    bool bindMixed();
+
+    WorldImpl& world_;
+    Engine& engine_;
+    Diagnostics& diagnostics_;
+    bool path_ = false;
+    InstanceRef fallback_;
+    std::map<std::pair<const scene::ShaderCall*, int>, InstanceRef> instances_;
+    std::map<std::string, int> bindingByKey_;
+    std::map<std::vector<const void*>, int> programs_;
+    std::map<std::vector<int>, int> lightLists_;
+    std::map<std::pair<int, int>, int> groups_;
+    /// What the kernels of a binding were asked for, by binding.
+    struct Asked { Names outputs, varying; };
+    std::vector<Asked> asked_;
+};
+
+} // namespace alpenglow::transport

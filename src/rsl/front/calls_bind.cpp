@@ -14,7 +14,7 @@ bool Checker::uniformResult(const Expr& e, const Choice& choice) const {
     const Shadeop& op = *choice.shadeop;
     if (op.name == "arraylength" || op.name == "capacity" || op.name == "textureinfo") return e.kind == ExprKind::ShadeopCall;
     if (op.section == kPluginSection) return true;
-    static const std::set<std::string_view> kOfThePoint = {"gridmin", "gridmax", "rayinfo", "getvar", "readprimvar", "readaov"};
+    static const std::set<std::string_view> kOfThePoint = {"gridmin", "gridmax", "getvar", "readprimvar", "readaov"};
     if (op.section == "Messages") return !kOfThePoint.count(op.name);
     return (op.name == "texture" || op.name == "environment") && e.args.size() > 1;
 }
@@ -64,6 +64,7 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
         e.varying = true;
         if (e.type.base != Base::Void) readsPoint(e, "what '" + op.name + "' gives");
     }
+    if (op.name == "rayinfo") readsPoint(e, "what 'rayinfo' gives"); // the same for the points of one batch, but of a ray
     if (op.lowering == Lowering::Unavailable && reportedUnavailable_.insert(&op).second)
         sources_.warning(e.place, "'" + op.name + "' is not yet available; " +
                                       (e.type.base == Base::Void ? "the call does nothing" : "its value is 0"));

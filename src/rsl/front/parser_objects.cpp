@@ -92,7 +92,8 @@ void Parser::structure() {
     }
     if (const auto old = structs_.find(type.name); old != structs_.end() && !type.text.empty()) // two files brought the same one
         if (unit_.structs[size_t(old->second)].text == type.text) return;
-    if (type.members.size() == inherited && type.base < 0 && methods.empty() && sources_.errors() == errors) sources_.error(type.place, "structure '" + type.name + "' has no members");
+    const bool empty = type.members.size() == inherited && type.base < 0 && methods.empty();
+    if (empty && sources_.errors() == errors) sources_.error(type.place, "structure '" + type.name + "' has no members");
     if (unit_.structs.size() >= size_t(limits::kStructs)) {
         sources_.error(type.place, "a shader has at most " + std::to_string(limits::kStructs) + " structures");
         unit_.incomplete = true;

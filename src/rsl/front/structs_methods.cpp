@@ -68,7 +68,8 @@ private:
             e = std::move(m);
             return;
         }
-        if (e->kind == ExprKind::ShadeopCall && (e->text.find("::") != e->text.npos || (methods_.count(e->text) && !isHidden(e->text)))) {
+        const bool own = e->text.find("::") != e->text.npos || (methods_.count(e->text) && !isHidden(e->text));
+        if (e->kind == ExprKind::ShadeopCall && own) {
             auto m = node(ExprKind::Method, e->place);
             m->text = e->text;
             adopt(*m, variable("this", e->place));

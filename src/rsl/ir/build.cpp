@@ -34,11 +34,11 @@ SourcePlace sourcePlace(const std::vector<std::string>& files, const Place& p) {
 
 void Builder::error(const Place& p, const std::string& text) {
     failed_ = true;
-    diagnostics_.report(Severity::Error, Rie::Syntax, sourcePlace(*files_, p), text);
+    diagnostics_.report(Severity::Error, Rie::Syntax, sourcePlace(*files_, shownPlace(p)), text);
 }
 
 void Builder::warn(const Place& p, const std::string& text) {
-    const SourcePlace at = sourcePlace(*files_, p);
+    const SourcePlace at = sourcePlace(*files_, shownPlace(p));
     diagnostics_.reportOnce(at.file + std::to_string(at.line) + ":" + std::to_string(at.column) + text,
                             {Severity::Warning, Rie::Unimplement, at, text, {}, {}});
 }
@@ -46,13 +46,13 @@ void Builder::warn(const Place& p, const std::string& text) {
 Inst* Builder::emit(Op op, Kind kind, std::vector<Inst*> args, int index) {
     if (k_.pool.size() > limits::kInlinedInstructions && !failed_) {
         failed_ = true;
-        diagnostics_.report(Severity::Error, Rie::Limit, sourcePlace(program_.files, place_),
+        diagnostics_.report(Severity::Error, Rie::Limit, sourcePlace(program_.files, shownPlace(place_)),
                             "the shader is too large once its functions are inlined: more than " +
                                 std::to_string(limits::kInlinedInstructions) + " operations");
     }
     Inst* i = k_.make(op, kind, std::move(args));
     i->index = index;
-    i->place = place_;
+    i->place = shownPlace(place_);
     if (Inst* simple = simplify(k_, leaves_, i)) return simple;
     region_->body.push_back(i);
     return i;
@@ -87,7 +87,7 @@ std::vector<Inst*> Builder::runtime(const std::string& symbol, std::vector<Inst*
     Inst* i = k_.make(Op::Runtime, Kind::None, std::move(args));
     i->text = symbol;
     i->results = results;
-    i->place = place_;
+    i->place = shownPlace(place_);
     if (results.size() == 1)
         if (Inst* simple = simplify(k_, leaves_, i)) return {simple};
     region_->body.push_back(i);
@@ -100,7 +100,7 @@ std::vector<Inst*> Builder::call(Op op, Site site, std::vector<Inst*> args) {
     site.place = place_;
     Inst* i = k_.make(op, Kind::None, std::move(args));
     i->results = site.resultKinds;
-    i->place = place_;
+    i->place = shownPlace(place_);
     i->site = static_cast<int>(k_.sites.size());
     k_.sites.push_back(std::move(site));
     region_->body.push_back(i);
@@ -188,7 +188,7 @@ Inst* Builder::newArray(Base base, int length) {
     Inst* a = k_.make(Op::ArrayNew, Kind::Array);
     a->element = kindOf({base, 0});
     a->index = length;
-    a->place = place_;
+    a->place = shownPlace(place_);
     region_->body.push_back(a);
     return a;
 }

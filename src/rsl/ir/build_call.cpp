@@ -82,7 +82,13 @@ Inst* Builder::shadeopCall(const Expr& e) {
         return service(e, Op::Request);
     if (options_.path && op.name == "ambient") return service(e, Op::Request);
     if (op.name == "filterstep" && !e.pairs.empty()) return filterstep(e);
-    if (e.function) return functionCall(e);
+    if (e.function) { // what is said about its text is said where it is called
+        const std::optional<Place> before = ownText_;
+        if (!ownText_) ownText_ = e.place;
+        Inst* value = functionCall(e);
+        ownText_ = before;
+        return value;
+    }
     if (op.name == "shadername" && e.args.empty()) return leaves_.string(shader_.name);
     switch (op.lowering) {
     case Lowering::Runtime:

@@ -69,7 +69,7 @@ void Builder::illuminance(const Stmt& s) {
     if (const auto n = globals_.find("N"); n != globals_.end() && writes_.count("N"))
         give("N", get(n->second), {Base::Normal, 0});
     Inst* inst = k_.make(Op::LightLoop, Kind::None);
-    inst->place = s.place;
+    inst->place = shownPlace(s.place);
     inst->regions.resize(1);
     inst->args.push_back(s.exprs.empty() ? global("P", Base::Point) : expr(*s.exprs[0], Kind::Triple));
     inst->args.push_back(s.exprs.size() > 1 ? expr(*s.exprs[1], Kind::Triple) : zero(Kind::Triple));

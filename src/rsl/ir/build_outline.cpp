@@ -200,7 +200,7 @@ bool Builder::outlined(const Function& f, const std::vector<Inst*>& values, Inst
         if (v->op != Op::ConstString) args.push_back(v);
     for (int n : o.inputs) args.push_back(get(n));
     Inst* call = k_.make(Op::Call, Kind::None, std::move(args));
-    call->place = place_;
+    call->place = shownPlace(place_);
     for (const Inst* y : o.function->regions[0].yields) call->results.push_back(y->kind);
     region_->body.push_back(call);
     std::vector<Inst*> r;

@@ -7,7 +7,7 @@ std::vector<Inst*> Builder::branch(Inst* condition, const std::function<std::vec
                                    const std::function<std::vector<Inst*>()>& no) {
     if (isConst(condition)) return condition->numbers[0] != 0 ? yes() : no();
     Inst* inst = k_.make(Op::If, Kind::None, {condition});
-    inst->place = place_;
+    inst->place = shownPlace(place_);
     inst->regions.resize(2);
     const size_t mark = log_.size();
     std::map<int, Inst*> changed[2];

@@ -5,6 +5,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <unordered_map>
@@ -216,6 +217,8 @@ private:
     Leaves leaves_;
     Region* region_ = nullptr;
     Place place_;
+    std::optional<Place> ownText_; ///< inside a function of the renderer that is written in RSL: where the shader calls it
+    Place shownPlace(const Place& p) const { return ownText_ ? *ownText_ : p; }
     std::unordered_map<const Symbol*, int> slots_;
     std::map<std::string, int> globals_;
     std::vector<const Symbol*> symbols_; ///< by slot; null for the builder's own

@@ -144,7 +144,10 @@ void Preprocessor::include(std::vector<Token> line, Place hash) {
         sources_.warning(place, "'" + name + "' was not found; '" + out_.dependencies.back() + "' is used");
         return;
     }
-    if (const ShippedHeader* own = shippedHeader(base)) {
+    const bool standard = slashed.find("stdrsl/") != slashed.npos; // PRMan's own, whose names are those of others
+    const ShippedHeader* own = standard ? shippedHeader("stdrsl_" + base) : nullptr;
+    if (!own) own = shippedHeader(base);
+    if (own) {
         pushFile(sources_.add("<" + std::string(own->name) + ">", std::string(own->text)));
         return;
     }

@@ -88,6 +88,8 @@ private:
     Base wanted(const std::string& function, size_t arguments, size_t i, Type have) const;
     /// What must happen first, and then the expression, as one expression.
     void sequence(ExprPtr& e, List pre);
+    /// What must happen before a place can be named goes to `pre`.
+    static void hoist(ExprPtr& place, List& pre);
     /// An expression that is no structure itself.
     void rewrite(ExprPtr& e);
 

@@ -63,7 +63,7 @@ void Lowering::declare(StmtPtr s, std::vector<StmtPtr>& out) {
         for (size_t i = 0; i < symbols.size(); ++i)
             now->declarators.push_back({symbols[i], i < values.size() ? std::move(values[i]) : nullptr});
         if (!now->declarators.empty()) out.push_back(std::exchange(now, fresh()));
-        scopes_.back()[symbol.name] = symbols.empty() ? kNone : type;
+        scopes_.back()[symbol.name] = symbols.empty() && !leaves(type).empty() ? kNone : type; // some have methods only
     }
     if (!now->declarators.empty()) out.push_back(std::move(now));
 }
@@ -94,6 +94,10 @@ void Lowering::expression(StmtPtr s, std::vector<StmtPtr>& out) {
         flatten(std::move(s->value), pre, ignored);
     } else {
         rewrite(s->value);
+        if (s->value && s->value->kind == ExprKind::Sequence) { // one after the other
+            for (auto& part : s->value->args) out.push_back(front::run(std::move(part)));
+            return;
+        }
         out.push_back(std::move(s));
         return;
     }

@@ -235,6 +235,7 @@ void Lowering::arguments(Expr& call, List& pre) {
         ExprPtr& a = given[i];
         if (!isStruct(typeOf(*a))) {
             rewrite(a);
+            hoist(a, pre);
             adopt(call, std::move(a));
             continue;
         }
@@ -266,6 +267,15 @@ void Lowering::sequence(ExprPtr& e, List pre) {
     for (auto& p : pre) adopt(*all, std::move(p));
     adopt(*all, std::move(e));
     e = std::move(all);
+}
+
+/// What must happen before a place can be named (the index of an element), and then the place alone: it may be written.
+void Lowering::hoist(ExprPtr& place, List& pre) {
+    if (place->kind != ExprKind::Sequence || place->args.back()->kind != ExprKind::Index) return;
+    ExprPtr last = std::move(place->args.back());
+    place->args.pop_back();
+    for (auto& first : place->args) pre.push_back(std::move(first));
+    place = std::move(last);
 }
 
 /// An expression that is no structure itself.
@@ -324,6 +334,7 @@ void Lowering::rewrite(ExprPtr& e) {
             if (e->kind == ExprKind::Method && isStruct(typeOf(*a))) continue;
             rewrite(a);
         }
+        if (e->kind == ExprKind::Assign) hoist(e->args[0], pre);
     }
     rewrite(e->space);
     rewrite(e->channel);

@@ -1,0 +1,25 @@
+/* stdrsl/Math.h: constants. */
+#ifndef STDRSL_MATH_H
+#define STDRSL_MATH_H
+#ifndef M_PI
+#define M_PI 3.14159265358979323846
+#endif
+#ifndef M_TWOPI
+#define M_TWOPI 6.28318530717958647692
+#endif
+#ifndef M_PI_2
+#define M_PI_2 1.57079632679489661923
+#endif
+#ifndef M_PI_4
+#define M_PI_4 0.78539816339744830962
+#endif
+#ifndef M_INVPI
+#define M_INVPI 0.31830988618379067154
+#endif
+#ifndef M_INVTWOPI
+#define M_INVTWOPI 0.15915494309189533577
+#endif
+#ifndef M_SQRT2
+#define M_SQRT2 1.41421356237309504880
+#endif
+#endif

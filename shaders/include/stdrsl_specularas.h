@@ -1,0 +1,74 @@
+/* stdrsl/SpecularAS.h: the glossy lobe of Ashikhmin and Shirley (2000) about two axes. roughness 0.001 is sharp, 1 is wide. */
+#ifndef STDRSL_SPECULARAS_H
+#define STDRSL_SPECULARAS_H
+#include <stdrsl/RadianceSample.h>
+#include <stdrsl/Fresnel.h>
+struct stdrsl_SpecularAS
+{
+    public varying color m_specColor = 1;
+    public varying float m_roughValueU = 100; /* exponents */
+    public varying float m_roughValueV = 100;
+    public uniform float m_sampleCount = 0;
+
+    public void init(stdrsl_ShadingContext context; color c; float roughness, anisotropy, roughscale; uniform float fewest, most)
+    {
+        m_specColor = c;
+        float r = max(1e-4, roughness * roughscale);
+        float k = clamp(anisotropy, -0.99, 0.99);
+        m_roughValueU = clamp(1 / r * (1 + k), 0, 1e6);
+        m_roughValueV = clamp(1 / r * (1 - k), 0, 1e6);
+        m_sampleCount = 0;
+        if (most > 0) context->m_SampleMgr->computeMaterialSamples(fewest, most, m_sampleCount);
+    }
+    public void init(stdrsl_ShadingContext context; color c; float roughness, anisotropy, roughscale)
+    {
+        init(context, c, roughness, anisotropy, roughscale, 0, 0);
+    }
+    void stdrsl_answer(stdrsl_ShadingContext context; vector l; output color answer; output float pdf)
+    {
+        vector n = vector(context->m_Ns), v = context->m_Vn;
+        answer = 0;
+        pdf = 0;
+        float nl = n . l, nv = n . v;
+        if (nl > 0 && nv > 0) {
+            vector h = normalize(l + v);
+            float nh = n . h, lh = l . h;
+            float hu = h . context->m_Tangent, hv = h . context->m_Bitangent;
+            float away = 1 - nh * nh;
+            float e = (away > 0) ? (m_roughValueU * hu * hu + m_roughValueV * hv * hv) / away : 0;
+            float lobe = sqrt((m_roughValueU + 1) * (m_roughValueV + 1)) * pow(nh, e);
+            if (lh > 0) {
+                answer = m_specColor * (lobe * nl / (4 * M_TWOPI * lh * max(nl, nv)));
+                pdf = lobe / (4 * M_TWOPI * lh);
+            }
+        }
+    }
+    public void evalSpecularSamps(stdrsl_ShadingContext context; stdrsl_Fresnel f; output __radiancesample samples[])
+    {
+        uniform float i, n = arraylength(samples);
+        for (i = 0; i < n; i += 1) {
+            color answer;
+            float pdf;
+            stdrsl_answer(context, samples[i]->direction, answer, pdf);
+            samples[i]->setMaterialResponse(answer, pdf);
+        }
+    }
+    public void genSpecularSamps(stdrsl_ShadingContext context; stdrsl_Fresnel f; string type; output __radiancesample samples[])
+    {
+        uniform float i, first = arraylength(samples);
+        resize(samples, first + m_sampleCount);
+        for (i = 0; i < m_sampleCount; i += 1) {
+            float a = M_TWOPI * random();
+            float e = m_roughValueU * cos(a) * cos(a) + m_roughValueV * sin(a) * sin(a);
+            float up = pow(1 - random(), 1 / (e + 1)), out = sqrt(max(0, 1 - up * up));
+            vector h = out * cos(a) * context->m_Tangent + out * sin(a) * context->m_Bitangent + up * vector(context->m_Ns);
+            vector l = normalize(2 * (context->m_Vn . h) * h - context->m_Vn);
+            color answer;
+            float pdf;
+            stdrsl_answer(context, l, answer, pdf);
+            samples[first + i]->direction = l;
+            samples[first + i]->setMaterialResponse(answer, pdf);
+        }
+    }
+}
+#endif

@@ -59,7 +59,10 @@ ShapeRef buildShape(const scene::PrimitiveRef& prim, const scene::AttributesRef&
         once(diag, "kind:" + what, Rie::Unimplement, prim->place, what + " is not yet drawn");
         return nullptr;
     }
-    bool affine = toCamera.m[0][3] == 0 && toCamera.m[1][3] == 0 && toCamera.m[2][3] == 0 && toCamera.m[3][3] == 1;
+    // Exporters invert matrices in single precision: what is left of that in the last column is no perspective.
+    constexpr double noise = 1e-7;
+    bool affine = std::fabs(toCamera.m[0][3]) < noise && std::fabs(toCamera.m[1][3]) < noise &&
+                  std::fabs(toCamera.m[2][3]) < noise && std::fabs(toCamera.m[3][3] - 1) < noise;
     bool finite = true;
     for (auto& row : toCamera.m)
         for (double x : row) finite = finite && std::isfinite(x);

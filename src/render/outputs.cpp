@@ -198,6 +198,7 @@ OutputPlan planOutputs(const scene::Options& o, const RenderSettings& settings, 
         if (displays.empty()) displays.push_back({});
         for (scene::Display& d : displays) {
             if (!d.name.empty() && d.name[0] == '+') d.name.erase(0, 1);
+            d.name = withFrame(d.name, o.frameNumber);
             OutputSpec s = specOf(d, o, b, plan, diags);
             if (settings.gamma && s.ownExposure) s.gamma = *settings.gamma;
             if (!s.variables.empty()) plan.pictures.push_back(std::move(s));
@@ -353,6 +354,20 @@ bool writeOutputs(const OutputPlan& plan, const PictureFacts& facts, const std::
         all &= display::writeDisplay(setup, out, diags);
     }
     return all;
+}
+
+std::string withFrame(const std::string& name, int frame) {
+    for (size_t at = name.find('%'); at != std::string::npos; at = name.find('%', at + 1)) {
+        size_t end = at + 1;
+        int width = 0;
+        bool zeros = end < name.size() && name[end] == '0';
+        while (end < name.size() && name[end] >= '0' && name[end] <= '9' && end - at < 4) width = 10 * width + (name[end++] - '0');
+        if (end >= name.size() || name[end] != 'd' || width > 16) continue;
+        char digits[32];
+        std::snprintf(digits, sizeof digits, zeros ? "%0*d" : "%*d", width, frame);
+        return name.substr(0, at) + digits + name.substr(end + 1);
+    }
+    return name;
 }
 
 std::string numberedName(const std::string& name, int number) {

@@ -96,6 +96,8 @@ bool writeOutputs(const OutputPlan&, const PictureFacts&, const std::function<co
 std::string planToText(const OutputPlan&, const PictureFacts&);
 std::optional<std::pair<OutputPlan, PictureFacts>> planFromText(const std::string&, const std::string& file, Diagnostics&);
 
+/// A display's name with %d or %04d in it (any width up to 16): the number of the frame stands there. Others stay as they are.
+std::string withFrame(const std::string& name, int frame);
 /// name.ext becomes name.<number>.ext, number with four digits at least; a run of '#' is replaced instead where there is one.
 std::string numberedName(const std::string& name, int number);
 

@@ -125,7 +125,13 @@ void Interpreter::readArchive(const std::string& name, const SourcePlace& place)
     } else {
         std::vector<std::string> folders;
         if (auto o = options.values.find("searchpath:archive"); o != options.values.end() && !o->second.strings.empty())
-            folders = splitSearchPath(o->second.strings[0]);
+            for (const std::string& f : splitSearchPath(o->second.strings[0])) {
+                if (f == "@") continue; // the standard places are looked through below
+                folders.push_back(f);
+                // Old scenes name folders from where they lie, whatever the folder the renderer is started in.
+                if (fs::path(f).is_relative() && !sceneFolder_.empty() && sceneFolder_ != ".")
+                    folders.push_back((fs::path(sceneFolder_) / f).string());
+            }
         folders.insert(folders.end(), settings.searchPaths.begin(), settings.searchPaths.end());
         std::string beside = fs::path(place.file).parent_path().string();
         folders.push_back(beside.empty() ? "." : beside);

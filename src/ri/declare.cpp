@@ -218,7 +218,7 @@ std::optional<Type> typeNamed(std::string_view s) {
     if (s == "vector") return Type::Vector;
     if (s == "normal") return Type::Normal;
     if (s == "hpoint") return Type::HPoint;
-    if (s == "matrix") return Type::Matrix;
+    if (s == "matrix" || s == "mpoint") return Type::Matrix; // mpoint: a blob's matrix, also bare numbers
     return {};
 }
 

@@ -80,6 +80,17 @@ void Interpreter::illuminate(const Call& call) {
     if (call.integer(1) == 0 && is) on.erase(at);
 }
 
+namespace {
+/// Exporters write meshes and clouds without a face or point for what is empty or hidden in their frame.
+bool holdsNothing(const scene::Primitive& p) {
+    bool mesh = p.kind == "PointsPolygons" || p.kind == "PointsGeneralPolygons" || p.kind == "SubdivisionMesh" || p.kind == "Curves";
+    if (!(mesh || p.kind == "Points") || !p.ints.empty() || !p.ints2.empty() || p.params.empty()) return false;
+    return std::all_of(p.params.begin(), p.params.end(), [](const scene::Param& q) {
+        return (q.numbers.empty() && q.strings.empty()) || q.cls == scene::Class::Constant;
+    });
+}
+} // namespace
+
 void Interpreter::emit(scene::Primitive p, const Call& call) {
     if (!inWorld() && !openObject()) {
         reporter.once("ri:noworld", Severity::Error, Rie::NotPrims, call.place,
@@ -90,6 +101,10 @@ void Interpreter::emit(scene::Primitive p, const Call& call) {
     p.place = call.place;
     p.attributes = snapshot();
     p.toWorld = state.ctm;
+    if (holdsNothing(p)) {
+        reporter.once("ri:nothing:" + p.kind, Severity::Warning, Rie::Consistency, call.place, p.kind + " is empty: there is nothing to draw");
+        return;
+    }
     if (!fitVariables(p, reporter)) return;
     const Block* object = innermost(BlockKind::Object);
     p.attributesInside = object && object->saved.attributes != state.attributes;

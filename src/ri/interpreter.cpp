@@ -31,8 +31,19 @@ void Interpreter::run(Parser& parser) {
     reporter.lineText = std::move(outer);
 }
 
+void Interpreter::expand(const std::string& requests, const Call& call) {
+    Parser parser(memorySource(requests), call.place.file, reporter);
+    Call c;
+    while (parser.next(c)) {
+        c.place = call.place;
+        execute(c);
+    }
+}
+
 void Interpreter::readStream(std::unique_ptr<ByteSource> raw, const std::string& name) {
     SourcePlace end{name, 0, 0};
+    size_t slash = name.find_last_of('/');
+    sceneFolder_ = slash == std::string::npos ? "" : name.substr(0, slash);
     {
         auto outer = reporter.lineText;
         Parser parser(inflating(std::move(raw)), name, reporter, settings.comments);

@@ -86,8 +86,12 @@ public:
     void instance(const Call& call);
 
     void readArchive(const std::string& name, const SourcePlace& place);
+    /// Executes requests of our own as if they stood at the place of `call`.
+    void expand(const std::string& requests, const Call& call);
     void beginRecording(const Call& call);
     void resource(const Call& call);
+    /// True while the samples of a moving primitive are gathered.
+    bool gatheringMotion() const { return capture_ != nullptr; }
     /// True when MakeTexture and its kin of this frame are wanted.
     bool frameWanted() const;
     void setAbort(bool on) {
@@ -173,6 +177,7 @@ private:
     std::shared_ptr<scene::Frame> frame_;
     scene::Transform worldToCamera_;
     std::map<std::string, std::shared_ptr<std::vector<Call>>> inlineArchives_;
+    std::string sceneFolder_; ///< of the stream that is read, or ""
     std::vector<std::string> openArchives_;
     std::vector<size_t> barriers_; ///< block depth at each open archive's start
     int archiveReads_ = 0;

@@ -59,6 +59,24 @@ TEST(Hostile, SingularTransformsAndUnknownKinds) {
     EXPECT_EQ(diag.warnings(), 2); // once a kind
 }
 
+// Exporters invert camera matrices in single precision; what that leaves in the last column is not said to be a perspective.
+TEST(Hostile, NoiseOfSinglePrecisionIsNoPerspective) {
+    for (double w : {0., 3.4e-10, 9.9e-9, -2e-8}) {
+        Diagnostics diag;
+        Matrix m;
+        m.m[0][3] = w;
+        m.m[3][2] = 112;
+        EXPECT_TRUE(buildShape(quadric("Sphere", {1, -1, 1, 360}), nullptr, m, -1, diag));
+        EXPECT_EQ(diag.all().size(), 0u) << w;
+    }
+    Diagnostics diag;
+    Matrix m;
+    m.m[2][3] = .01;
+    buildShape(quadric("Sphere", {1, -1, 1, 360}), nullptr, m, -1, diag);
+    ASSERT_EQ(diag.all().size(), 1u);
+    EXPECT_NE(diag.all()[0].message.find("perspective"), std::string::npos);
+}
+
 TEST(Hostile, AbandonedInstanceIsReported) {
     scene::Frame f;
     f.instances.push_back({3, {}, nullptr, {}});

@@ -349,6 +349,11 @@ TEST(Renderer, NamesOfSeveralFrames) {
     EXPECT_EQ(numberedName("a.exr", 7), "a.0007.exr");
     EXPECT_EQ(numberedName("a.##.exr", 7), "a.07.exr");
     EXPECT_EQ(numberedName("dir.x/a", 12345), "dir.x/a.12345");
+    // Frames of one file in displays of their own.
+    EXPECT_EQ(withFrame("fr%04d.tif", 7), "fr0007.tif");
+    EXPECT_EQ(withFrame("fr%d.tif", 12), "fr12.tif");
+    EXPECT_EQ(withFrame("a%.b%3d", 5), "a%.b  5");
+    for (const char* same : {"plain.tif", "50%", "%s", "%f.exr", "%99d", "%-3d", "a%0"}) EXPECT_EQ(withFrame(same, 5), same);
     Folder dir;
     RenderSettings s;
     s.output = dir / "a.exr";

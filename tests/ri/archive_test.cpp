@@ -122,3 +122,35 @@ TEST(Files, ThatCannotBeRead) {
     EXPECT_FALSE(second.readFile("/"));
     EXPECT_EQ(d.only().code, Rie::NoFile);
 }
+
+// RIBMosaic and its like name folders from where the scene lies; the renderer may be started anywhere.
+TEST_F(Archives, FoldersOfTheSearchPathLieBesideTheScene) {
+    write("sub/deep.rib", "Sphere 2 -2 2 360 ReadArchive \"other.rib\"");
+    fs::create_directories(dir / "more");
+    write("more/other.rib", "Sphere 1 -1 1 360");
+    auto c = readHere("Option \"searchpath\" \"string archive\" [\"@:.:sub:more\"] WorldBegin ReadArchive \"deep.rib\" WorldEnd");
+    EXPECT_EQ(c->count(), 0u) << c->messages();
+    EXPECT_EQ(c->frame().primitives.size(), 2u);
+    auto d = readHere("Option \"searchpath\" \"archive\" [\"sub\" \"more\"] WorldBegin ReadArchive \"deep.rib\" WorldEnd");
+    EXPECT_EQ(d->count(), 0u) << d->messages();
+    EXPECT_EQ(d->frame().primitives.size(), 2u);
+}
+
+TEST_F(Archives, SearchPathsKnowTheEnvironment) {
+    write("sub/deep.rib", "Sphere 2 -2 2 360");
+    ::setenv("ALPENGLOW_TEST_MODELS", (dir / "sub").c_str(), 1);
+    for (const char* path : {"$ALPENGLOW_TEST_MODELS", "&:${ALPENGLOW_TEST_MODELS}/.", "$ALPENGLOW_TEST_ABSENT:$ALPENGLOW_TEST_MODELS"}) {
+        auto c = readHere("Option \"searchpath\" \"archive\" [\"" + std::string(path) + "\"] WorldBegin ReadArchive \"deep.rib\" WorldEnd");
+        EXPECT_EQ(c->count(), 0u) << path << c->messages();
+        EXPECT_EQ(c->frame().primitives.size(), 1u) << path;
+    }
+    ::unsetenv("ALPENGLOW_TEST_MODELS");
+    // What the environment lacks, and what is no name, stays as it is.
+    auto path = [](const std::string& p) {
+        auto c = read("Option \"searchpath\" \"texture\" [\"" + p + "\"] WorldBegin WorldEnd");
+        return c->frame().options.values.at("searchpath:texture").strings.at(0);
+    };
+    for (const char* p : {"$ALPENGLOW_TEST_ABSENT/x", "a$", "${", "${}", "a~b", "~other/x", "${ALPENGLOW_TEST_ABSENT}y"}) EXPECT_EQ(path(p), p);
+    ::setenv("HOME", "/home/somebody", 1);
+    EXPECT_EQ(path("~:~/tx;x~"), "/home/somebody:/home/somebody/tx;x~");
+}

@@ -3,7 +3,9 @@
 #include "ri/interpreter.h"
 #include "ri/motion.h"
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <fmt/format.h>
 
 namespace alpenglow::ri {
@@ -98,7 +100,9 @@ void quantize(Interpreter& in, const Call& c) {
     scene::Quantize q{c.real(1), c.real(2), c.real(3), c.real(4), true};
     if (c.text(0) == "rgba" || c.text(0) == "rgb" || c.text(0) == "a") in.options.quantizeRgba = q;
     else if (c.text(0) == "z") in.options.quantizeZ = q;
-    else in.reporter.error(Rie::BadToken, c.place, fmt::format("Quantize: \"{}\" is not known", c.text(0)), "rgba or z");
+    else // an output of its own: PRMan takes any name, and its display can say it too
+        in.reporter.report(Severity::Warning, Rie::BadToken, c.place, fmt::format("Quantize: \"{}\" is not known", c.text(0)),
+                           "rgba or z; a Display of its own takes \"quantize\"");
 }
 
 void display(Interpreter& in, const Call& c) {
@@ -148,6 +152,35 @@ void colorSamples(Interpreter& in, const Call& c) {
     in.nRGB = n == identity ? std::vector<double>() : n;
 }
 
+/// "~" at the start of a folder and $NAME or ${NAME} anywhere, as shells have them; what the environment lacks stays as it is.
+std::string withEnvironment(const std::string& path) {
+    std::string out;
+    auto letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+    auto put = [&](const std::string& name, const std::string& otherwise) {
+        const char* value = std::getenv(name.c_str());
+        out += value ? std::string(value).substr(0, limits::kTokenBytes) : otherwise;
+    };
+    for (size_t i = 0; i < path.size() && out.size() <= limits::kTokenBytes; ++i) {
+        bool first = i == 0 || path[i - 1] == ':' || path[i - 1] == ';';
+        bool last = i + 1 == path.size() || path[i + 1] == '/' || path[i + 1] == ':' || path[i + 1] == ';';
+        if (path[i] == '~' && first && last) {
+            put("HOME", "~");
+        } else if (path[i] == '$') {
+            bool braces = i + 1 < path.size() && path[i + 1] == '{';
+            size_t a = i + (braces ? 2 : 1), b = a;
+            while (b < path.size() && letter(path[b])) ++b;
+            bool whole = b > a && (!braces || (b < path.size() && path[b] == '}'));
+            size_t end = b + (braces && whole ? 1 : 0);
+            if (whole) put(path.substr(a, b - a), path.substr(i, end - i));
+            else out += path.substr(i, end - i);
+            i = end - 1;
+        } else {
+            out += path[i];
+        }
+    }
+    return out;
+}
+
 void option(Interpreter& in, const Call& c) {
     const std::string& category = c.text(0);
     for (scene::Param& p : in.bind(c, Use::Option, category)) {
@@ -156,7 +189,11 @@ void option(Interpreter& in, const Call& c) {
             std::string before, now;
             if (auto i = in.options.values.find(key); i != in.options.values.end() && !i->second.strings.empty())
                 before = i->second.strings[0];
-            for (char ch : p.strings[0]) {
+            // Some give a folder each: the same as one text with ':' between.
+            for (size_t k = 1; k < p.strings.size(); ++k) p.strings[0] += ":" + p.strings[k];
+            p.strings.resize(1);
+            p.arrayLength = 0;
+            for (char ch : withEnvironment(p.strings[0])) {
                 if (now.size() > limits::kTokenBytes) break;
                 if (ch == '&') now += before;
                 else now += ch;

@@ -1,5 +1,6 @@
 // Polygons, patches, meshes, points, curves and the rest (ri.md 7).
 #include "ri/interpreter.h"
+#include "ri/teapot.h"
 #include <fmt/format.h>
 
 namespace alpenglow::ri {
@@ -113,6 +114,10 @@ void blobby(Interpreter& in, const Call& c) {
 }
 
 void geometry(Interpreter& in, const Call& c) {
+    if (c.text(0) == "teapot" && !in.gatheringMotion()) {
+        in.expand(teapotRequests(), c);
+        return;
+    }
     scene::Primitive p = start(in, c);
     p.strings = {c.text(0)};
     in.emit(std::move(p), c);

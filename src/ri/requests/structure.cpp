@@ -40,7 +40,7 @@ void solidBegin(Interpreter& in, const Call& c) {
 
 void errorHandler(Interpreter& in, const Call& c) {
     const std::string& h = c.text(0);
-    if (h != "ignore" && h != "print" && h != "abort")
+    if (h != "ignore" && h != "print" && h != "printonce" && h != "abort")
         in.reporter.error(Rie::BadToken, c.place, fmt::format("ErrorHandler: \"{}\" is not known", h), "ignore, print or abort");
     in.setAbort(h == "abort"); // "ignore" does not hide messages: who runs the program decides that
 }

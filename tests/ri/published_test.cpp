@@ -1,0 +1,82 @@
+// What RIB files published by others ask for and other tests do not: empty meshes, names of other renderers, the teapot.
+#include "collect.h"
+
+using namespace alpenglow;
+using namespace alpenglow::ri;
+
+TEST(Published, EmptyMeshesAreNoErrors) {
+    // Houdini writes a mesh without faces for what its frame does not hold.
+    auto c = world("PointsPolygons [ ] [ ] \"P\" [ ]\nPointsPolygons [ ] [ ] \"P\" [ ]\nSphere 1 -1 1 360");
+    EXPECT_EQ(c->only().severity, Severity::Warning);
+    EXPECT_EQ(c->frame().primitives.size(), 1u);
+    EXPECT_EQ(world("Points \"P\" [ ] \"constant float constantwidth\" [1]")->only().severity, Severity::Warning);
+    EXPECT_EQ(world("Curves \"linear\" [ ] \"nonperiodic\" \"P\" [ ]")->only().severity, Severity::Warning);
+    // Points without faces are a mistake.
+    EXPECT_EQ(world("PointsPolygons [ ] [ ] \"P\" [0 0 0 1 0 0 1 1 0]")->only().severity, Severity::Error);
+}
+
+TEST(Published, NamesOfOtherRenderers) {
+    EXPECT_EQ(read("ErrorHandler \"printonce\"")->count(), 0u);
+    EXPECT_EQ(read("Declare \"blob\" \"vertex mpoint\"")->count(), 0u);
+    EXPECT_EQ(read("Quantize \"N\" 255 0 255 .5")->only().severity, Severity::Warning);
+}
+
+TEST(Published, TheTeapotIsFourMeshes) {
+    auto c = world("Basis \"b-spline\" 1 \"b-spline\" 1 Color [1 0 0] Translate 1 2 3 Geometry \"teapot\"\nSphere 1 -1 1 360");
+    EXPECT_EQ(c->count(), 0u) << c->messages();
+    ASSERT_EQ(c->frame().primitives.size(), 5u);
+    float low[3] = {1e9f, 1e9f, 1e9f}, high[3] = {-1e9f, -1e9f, -1e9f};
+    for (size_t i = 0; i < 4; ++i) {
+        const scene::Primitive& p = c->primitive(i);
+        EXPECT_EQ(p.kind, "PatchMesh");
+        EXPECT_EQ(p.place.line, 2) << "where it was asked for";
+        EXPECT_EQ(p.attributes->color, Color(1, 0, 0));
+        EXPECT_EQ(p.attributes->ubasis.step, 3);
+        expectMatrix(p.toWorld.first(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1});
+        const scene::Param* P = scene::find(p.params, "P");
+        ASSERT_TRUE(P);
+        for (size_t k = 0; k < P->numbers.size(); ++k) {
+            low[k % 3] = std::min(low[k % 3], P->numbers[k]);
+            high[k % 3] = std::max(high[k % 3], P->numbers[k]);
+        }
+    }
+    // Newell's measures: 6.525 from handle to spout, 4 wide, 3 high above its foot.
+    EXPECT_FLOAT_EQ(low[0], -3);
+    EXPECT_FLOAT_EQ(high[0], 3.525f);
+    EXPECT_FLOAT_EQ(low[1], -2);
+    EXPECT_FLOAT_EQ(high[1], 2);
+    EXPECT_FLOAT_EQ(low[2], 0);
+    EXPECT_FLOAT_EQ(high[2], 3);
+    EXPECT_EQ(c->primitive(4).attributes->ubasis.step, 1) << "the basis around it stays";
+    // In an object, and again in another world.
+    auto o = read("ObjectBegin 1 Geometry \"teapot\" ObjectEnd WorldBegin ObjectInstance 1 WorldEnd");
+    EXPECT_EQ(o->count(), 0u) << o->messages();
+    EXPECT_EQ(o->frame().objects.at(0).primitives.size(), 4u);
+}
+
+TEST(Published, TheTeapotsNormalsPointOutwards) {
+    auto c = world("Geometry \"teapot\"");
+    ASSERT_EQ(c->frame().primitives.size(), 4u);
+    // dP/du x dP/dv at inner corners of the nets, against the direction from the axis (of the turned, or of the tube).
+    auto normal = [&](size_t mesh, int columns, int column, int row) {
+        const std::vector<float>& f = scene::find(c->primitive(mesh).params, "P")->numbers;
+        auto at = [&](int i, int j) {
+            const float* q = &f[size_t(j * columns + i) * 3];
+            return Vec3d(q[0], q[1], q[2]);
+        };
+        return cross(at(column + 1, row) - at(column, row), at(column, row + 1) - at(column, row));
+    };
+    EXPECT_GT(normal(0, 13, 0, 3).x, 0) << "the belly, at +x";
+    EXPECT_GT(normal(0, 13, 3, 3).y, 0) << "the belly, at +y";
+    EXPECT_GT(normal(1, 13, 0, 1).z, 0) << "the lid";
+    EXPECT_GT(normal(2, 7, 0, 3).x, 0) << "the inner side of the handle";
+    EXPECT_LT(normal(2, 7, 3, 3).x, 0) << "the outer side of the handle";
+    EXPECT_GT(normal(3, 7, 0, 0).z, 0) << "the upper side of the spout";
+    EXPECT_LT(normal(3, 7, 3, 0).z, 0) << "the lower side of the spout";
+}
+
+TEST(Published, AMovingTeapotIsKeptAsItIs) {
+    auto c = world("MotionBegin [0 1] Geometry \"teapot\" Geometry \"teapot\" MotionEnd");
+    EXPECT_EQ(c->frame().primitives.size(), 1u) << c->messages();
+    EXPECT_EQ(c->primitive().kind, "Geometry");
+}

@@ -16,6 +16,10 @@ class layer(float gain = 1; string __category = "";)
     public color tint(color c; float k) { calls += 1; return c * scaled(k); }
     public void split(float x; output float whole; output float rest) { whole = floor(x); rest = x - whole; calls += 10; }
     float scaled(float k) { return k * hidden; }
+    public void options(output float r; float x; float by = gain * 10; string mode = "add"; float more[] = {1, 2})
+    {
+        r = (mode == "add" ? x + by : x * by) + 1000 * arraylength(more) + 10000 * more[0];
+    }
 })";
 
 /// The outputs of a surface with two layers bound: "a" (gain 2, category "paint,wet") and "b" (gain 10, category "dust").
@@ -65,6 +69,22 @@ TEST(CoShaders, MethodsAndMembers) {
                       (Values{12, 30, 2, 0.75f, 3101}));
             EXPECT_EQ(d.errors(), 0);
         }
+}
+
+TEST(CoShaders, OptionalArgumentsOfMethods) {
+    Diagnostics d;
+    // In order, by name in any order, or left out: the gain of "a" is 2.
+    EXPECT_EQ(shade(R"(shader h = getshader("a"); float r = 0, list[] = {3, 4, 5};
+                       h->options(r, 7); x = r;
+                       h->options(r, 7, 5); y = r;
+                       h->options(r, 7, "mode", "times", "by", 3); z = r;
+                       h->options(r, 7, 5, "more", list); w = r;
+                       h->options(r, 1, 2, "times", list); q = r;)",
+                    {"x", "y", "z", "w", "q"}, d),
+              (Values{12027, 12012, 12021, 33012, 33002}));
+    EXPECT_EQ(d.errors(), 0);
+    EXPECT_TRUE(shade(R"(shader h = getshader("a"); float r = 0; h->options(r, 7, "weight", 3); x = r;)", {"x"}, d).empty());
+    EXPECT_EQ(d.errors(), 1); // there is no parameter 'weight'
 }
 
 TEST(CoShaders, NullAndUnknownHandles) {

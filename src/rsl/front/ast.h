@@ -117,6 +117,7 @@ struct Function {
     Type result;
     bool handle = false; ///< the result is of type `shader`
     std::vector<Symbol*> parameters;
+    std::vector<ExprPtr> defaults; ///< of a method: what a parameter is that a call leaves out; empty, or null where there is none
     StmtPtr body;
     std::vector<std::unique_ptr<Symbol>> symbols; ///< owns parameters and locals
     std::vector<std::unique_ptr<Function>> nested;

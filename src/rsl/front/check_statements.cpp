@@ -41,6 +41,9 @@ void Checker::initialise(Symbol& s, ExprPtr& value) {
     if (s.type.array) preferArray(*value);
     if (s.type.array == -1 && info.listLength >= 0) s.type.array = std::max(1, info.listLength);
     if (s.type.array == -1 && info.array.array > 0) s.type.array = info.array.array;
+    if (s.type.array == -1 && info.listLength < 0 && info.array.array == 0 && !info.any &&
+        (value->kind == ExprKind::Number || value->kind == ExprKind::String))
+        s.type.array = 1; // float a[] = 0: an array of one
     const bool scalar = s.type.array > 0 && info.listLength < 0 && info.array.array == 0 && !info.any;
     if (scalar) {
         // float a[42] = 0: every element.

@@ -91,9 +91,15 @@ void Checker::checkBody(Function& f) {
     const int loops = std::exchange(loops_, 0);
     const bool illuminance = std::exchange(inIlluminance_, false);
     scopes_.emplace_back();
-    for (Symbol* p : f.parameters) {
+    for (Symbol*& p : f.parameters) {
         if (p->storage == Storage::Unspecified) p->storage = p->type.base == Base::String ? Storage::Uniform : Storage::Varying;
         if (p->name == "," || p->name == ")" || p->name == ";") continue; // it has no name
+        const size_t n = size_t(&p - f.parameters.data());
+        if (n < f.defaults.size() && f.defaults[n]) { // earlier parameters are visible
+            const int length = p->type.array;
+            initialise(*p, f.defaults[n]);
+            p->type.array = length;
+        }
         if (!scopes_.back().names.emplace(p->name, p).second)
             sources_.error(p->place, "there are two parameters called '" + p->name + "'");
     }

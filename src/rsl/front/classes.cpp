@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <utility>
 
 namespace alpenglow::rsl::front {
 
@@ -154,28 +155,51 @@ private:
         for (auto& m : methods) body.push_back(std::move(m));
         s->body->body = std::move(body);
         for (const char* n : {"construct", "begin"})
-            if (names_.count(n)) s->body->body.push_back(call(n, {}));
+            if (names_.count(n)) s->body->body.push_back(call(*s, n, {}));
         const bool whole = names_.count("surface") > 0;
         for (const Entry& e : entries()) {
             if (e.kind != kind || !names_.count(e.name)) continue;
             const std::string name = e.name;
             if (kind == ShaderKind::Surface && whole && name != "surface" && name != "opacity") continue;
             if (kind == ShaderKind::Light) light(*s);
-            else s->body->body.push_back(call(name, e.variables));
+            else s->body->body.push_back(call(*s, name, e.variables));
         }
         return s;
     }
 
-    StmtPtr call(const std::string& name, const std::vector<const char*>& variables) {
+    /// The renderer's own call of a method. Parameters that it does not know have their default values.
+    StmtPtr call(Shader& s, const std::string& name, const std::vector<const char*>& variables) {
         const Function& f = *method(name);
-        if (f.parameters.size() > variables.size()) {
-            sources_.error(f.place, "method '" + name + "' has at most " + std::to_string(variables.size()) +
-                                        (variables.size() == 1 ? " parameter" : " parameters"));
-            return make(StmtKind::Block, f.place);
-        }
+        const auto optional = [&](size_t i) { return i < f.defaults.size() && f.defaults[i]; };
+        // Lights that only other shaders ask have parameters of any kind: the third need not be Ol.
+        size_t known = std::min(f.parameters.size(), variables.size());
+        while (known > 0 && optional(known - 1)) --known;
+        if (name == "light" && known == 3 && f.parameters[2]->type != Type{Base::Color, 0}) known = 2;
         auto e = node(ExprKind::ShadeopCall, f.place);
         e->text = name;
-        for (size_t i = 0; i < f.parameters.size(); ++i) adopt(*e, variable(variables[i], f.place));
+        auto locals = make(StmtKind::Declare, f.place);
+        for (size_t i = 0; i < f.parameters.size(); ++i) {
+            if (i < known) {
+                adopt(*e, variable(variables[i], f.place));
+                continue;
+            }
+            const Symbol& p = *f.parameters[i];
+            if (!optional(i) && name != "light") {
+                sources_.error(f.place, "method '" + name + "' has at most " + std::to_string(variables.size()) +
+                                            (variables.size() == 1 ? " parameter" : " parameters"));
+                return make(StmtKind::Block, f.place);
+            }
+            if (!optional(i) && locals->declarators.empty())
+                sources_.warning(p.place, "parameter '" + p.name + "' has no default value; it is zero unless set");
+            auto symbol = std::make_unique<Symbol>(p);
+            symbol->name = "(" + name + ")->" + p.name;
+            symbol->origin = Symbol::Origin::Local;
+            symbol->output = false;
+            locals->declarators.push_back({symbol.get(), optional(i) ? clone(*f.defaults[i]) : nullptr});
+            adopt(*e, variable(symbol->name.c_str(), f.place));
+            s.symbols.push_back(std::move(symbol));
+        }
+        if (!locals->declarators.empty()) s.body->body.push_back(std::move(locals));
         return front::run(std::move(e));
     }
 
@@ -192,14 +216,21 @@ private:
             for (auto& f : s.nested) {
                 if (f->name != "light") continue;
                 std::vector<Symbol*> others;
-                for (Symbol* p : f->parameters)
-                    if (p->name != "L" && p->name != "Cl" && p->name != "Ol") others.push_back(p);
-                if (!others.empty())
-                    sources_.error(others[0]->place, "the parameters of a method 'light' with illuminate() or solar() are L, Cl and Ol");
+                std::vector<ExprPtr> values;
+                bool told = false;
+                for (size_t i = 0; i < f->parameters.size(); ++i) {
+                    Symbol* p = f->parameters[i];
+                    if (p->name == "L" || p->name == "Cl" || p->name == "Ol") continue;
+                    others.push_back(p);
+                    values.push_back(i < f->defaults.size() ? std::move(f->defaults[i]) : nullptr);
+                    if (!values.back() && !std::exchange(told, true))
+                        sources_.error(p->place, "the parameters of a method 'light' with illuminate() or solar() are L, Cl and Ol");
+                }
                 f->parameters.clear();
+                f->defaults.clear();
                 if (others.empty()) continue;
                 auto locals = make(StmtKind::Declare, others[0]->place); // that the body uses them is no other fault
-                for (Symbol* p : others) locals->declarators.push_back({p, nullptr});
+                for (size_t i = 0; i < others.size(); ++i) locals->declarators.push_back({others[i], std::move(values[i])});
                 f->body->body.insert(f->body->body.begin(), std::move(locals));
             }
             auto e = node(ExprKind::ShadeopCall, place);
@@ -220,7 +251,7 @@ private:
             s.symbols.push_back(std::move(symbol));
         }
         s.body->body.push_back(std::move(d));
-        s.body->body.push_back(call("light", {names[0].c_str(), names[1].c_str(), names[2].c_str()}));
+        s.body->body.push_back(call(s, "light", {names[0].c_str(), names[1].c_str(), names[2].c_str()}));
         const auto assign = [&](const char* to, const std::string& from) {
             auto a = node(ExprKind::Assign, place, ExprOp::Assign);
             adopt(*a, variable(to, place));

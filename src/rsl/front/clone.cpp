@@ -61,6 +61,7 @@ struct Cloner {
             symbols[s.get()] = c->symbols.back().get();
         }
         for (Symbol* p : f.parameters) c->parameters.push_back(symbols.at(p));
+        for (const ExprPtr& d : f.defaults) c->defaults.push_back(copy(d));
         for (const auto& n : f.nested) {
             c->nested.push_back(copy(*n));
             functions[n.get()] = c->nested.back().get();

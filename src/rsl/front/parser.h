@@ -83,13 +83,14 @@ private:
     void shaderObject();
     void takeAccess();
     std::unique_ptr<Function> function(const Specifiers&, Type, bool typed);
-    void parameters(Owner, std::vector<ShaderParameter>* shader, std::vector<Symbol*>* function);
+    void parameters(Owner, std::vector<ShaderParameter>* shader, std::vector<Symbol*>* function,
+                    std::vector<ExprPtr>* defaults = nullptr);
     Specifiers specifiers();
     bool notYet(Place, const char* what);
-    Type dimensions(Type);
+    Type dimensions(Type, ExprPtr* length = nullptr);
     ExprPtr declaredSpace(Base);
     ExprPtr inSpace(ExprPtr value, Base, const Expr* space);
-    int constantLength(const Expr&, Place);
+    int constantLength(const Expr&, Place, bool open);
     Symbol* declare(Owner, const Token& name, Type, const Specifiers&);
     bool functionFollows() const;
 
@@ -98,7 +99,7 @@ private:
     void statements(Stmt& block);
     StmtPtr statement();
     StmtPtr statementOnce();
-    StmtPtr declaration();
+    StmtPtr declaration(bool member = false);
     StmtPtr forLoop();
     StmtPtr doLoop();
     StmtPtr lightStatement(StmtKind);
@@ -139,6 +140,7 @@ private:
     size_t at_ = 0;
     int depth_ = 0;
     bool tooDeep_ = false;
+    std::vector<StmtPtr> after_;  ///< statements that a declaration adds behind itself
     Owner owner_;                 ///< of the function or shader being read
     std::unordered_set<std::string_view> typeWords_; ///< variables of it called like the types that came later
     bool inObject_ = false;       ///< `this` is the shader object being read

@@ -19,7 +19,7 @@ std::unique_ptr<Function> Parser::function(const Specifiers& s, Type type, bool 
     returnsValue_ = false;
     try {
         expect("(", "after the name of a function");
-        parameters(owner_, nullptr, &f->parameters);
+        parameters(owner_, nullptr, &f->parameters, &f->defaults);
         if (accept(";")) {
             owner_ = outer;
             typeWords_ = outerWords;
@@ -70,18 +70,22 @@ Parser::Specifiers Parser::specifiers() {
     }
 }
 
-/// "[3]" or "[]", if there.
-Type Parser::dimensions(Type type) {
+/// "[3]" or "[]", if there. With `length`, one that is known only when the shader runs goes there, and the array is open.
+Type Parser::dimensions(Type type, ExprPtr* length) {
     if (!at("[")) return type;
     const Place place = take().place;
     type.array = -1;
-    if (!at("]")) type.array = constantLength(*expression(), place);
+    if (!at("]")) {
+        auto e = expression();
+        type.array = constantLength(*e, place, length != nullptr);
+        if (type.array < 0) *length = std::move(e);
+    }
     expect("]", "after the length of an array");
     if (at("[")) fail(peek().place, "an array of arrays is not allowed");
     return type;
 }
 
-int Parser::constantLength(const Expr& e, Place place) {
+int Parser::constantLength(const Expr& e, Place place, bool open) {
     std::function<std::optional<double>(const Expr&)> value = [&](const Expr& x) -> std::optional<double> {
         if (x.kind == ExprKind::Number) return x.number;
         if (x.kind != ExprKind::Binary && !(x.kind == ExprKind::Unary && x.op == ExprOp::Negate)) return std::nullopt;
@@ -99,6 +103,7 @@ int Parser::constantLength(const Expr& e, Place place) {
     };
     const auto n = value(e);
     if (n && *n >= 1 && *n <= limits::kShaderArray) return int(*n);
+    if (!n && open) return -1;
     if (!n) sources_.error(e.place, "the length of an array must be a constant number");
     else sources_.error(place, "the length of an array must be between 1 and " + std::to_string(limits::kShaderArray));
     return 1;
@@ -135,7 +140,8 @@ Symbol* Parser::declare(Owner owner, const Token& name, Type type, const Specifi
 }
 
 /// Behind the '(', up to and with the ')'. One of the two lists is filled.
-void Parser::parameters(Owner owner, std::vector<ShaderParameter>* shader, std::vector<Symbol*>* function) {
+void Parser::parameters(Owner owner, std::vector<ShaderParameter>* shader, std::vector<Symbol*>* function,
+                        std::vector<ExprPtr>* defaults) {
     Specifiers group;
     std::optional<Base> base, before; // of this group, of the group before the last ';'
     ExprPtr space;
@@ -182,8 +188,12 @@ void Parser::parameters(Owner owner, std::vector<ShaderParameter>* shader, std::
             else shader->push_back({symbol, nullptr});
             if (accept("=")) {
                 ExprPtr value = inSpace(at("{") ? arrayList() : assignment(), *base, space.get());
-                if (shader) shader->back().defaultValue = std::move(value);
-                else sources_.warning(value->place, "parameters of functions have no default values; this one is ignored");
+                if (shader) {
+                    shader->back().defaultValue = std::move(value);
+                } else if (defaults && inObject_ && !isStruct(type)) {
+                    defaults->resize(function->size());
+                    defaults->back() = std::move(value);
+                } else sources_.warning(value->place, "parameters of functions have no default values; this one is ignored");
             } else if (shader && !symbol->output && !isStruct(type) && type.base != Base::Void && symbol->type.array >= 0) {
                 sources_.warning(symbol->place, "parameter '" + symbol->name + "' has no default value; it is zero unless set");
             }

@@ -173,7 +173,7 @@ void Parser::shaderObject() {
                 const bool starts = atTypeName() || at("public") || at("uniform") || at("varying") || at("constant") ||
                                     at("const") || at("output") || at("extern");
                 if (!starts) failHere("expected a member or a method of class '" + s.name + "'");
-                member = declaration();
+                member = declaration(true);
             }
             if (!member) continue;
             if (isPublic && member->definition) c.publics.insert(member->definition->name);

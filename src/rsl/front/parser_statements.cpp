@@ -1,3 +1,5 @@
+#include "rsl/front/clone.h"
+#include "rsl/front/nodes.h"
 #include "rsl/front/parser.h"
 
 namespace alpenglow::rsl::front {
@@ -33,6 +35,8 @@ void Parser::statements(Stmt& block) {
         const size_t before = at_;
         try {
             if (auto s = statement()) block.body.push_back(std::move(s));
+            for (auto& s : after_) block.body.push_back(std::move(s));
+            after_.clear();
         } catch (const SyntaxError&) {
             recover();
             skippedFrom(before);
@@ -147,14 +151,15 @@ StmtPtr Parser::effects() {
     return s;
 }
 
-StmtPtr Parser::declaration() {
+StmtPtr Parser::declaration(bool member) {
     auto s = make(StmtKind::Declare, peek().place);
     Specifiers spec = specifiers();
     if (!atTypeName()) failHere("expected a type");
     Type type{takeBase(), 0};
     spec.handle = handle_;
     const ExprPtr space = declaredSpace(type.base);
-    type = dimensions(type);
+    ExprPtr shared;
+    type = dimensions(type, member ? nullptr : &shared);
     if (functionFollows() || (type.base == Base::Void && peek(1).is("("))) {
         auto f = function(spec, type, true);
         if (!f) return nullptr;
@@ -166,9 +171,18 @@ StmtPtr Parser::declaration() {
     do {
         if (!atName()) failHere("expected the name of a variable");
         const Token& name = takeName();
-        const Type own = dimensions(type);
+        ExprPtr length;
+        const Type own = dimensions(type, member ? nullptr : &length);
+        if (!length && shared) length = clone(*shared);
         Symbol* symbol = declare(owner_, name, own, spec);
         s->declarators.push_back({symbol, nullptr});
+        if (length && !spec.isExtern) { // float x[n]: an open array that is given its length
+            auto e = node(ExprKind::ShadeopCall, length->place);
+            e->text = "resize";
+            adopt(*e, variable(symbol->name, length->place));
+            adopt(*e, std::move(length));
+            after_.push_back(front::run(std::move(e)));
+        }
         if (accept("=")) {
             if (spec.isExtern) sources_.error(name.place, "an extern variable has its value already and takes no other here");
             try {

@@ -156,8 +156,15 @@ void Lowering::function(Function& f) {
     auto results = std::exchange(results_, {});
     scopes_.emplace_back();
     std::vector<Symbol*> parameters;
-    for (Symbol* p : f.parameters) {
+    std::vector<ExprPtr> given = std::move(f.defaults);
+    f.defaults.clear();
+    for (size_t i = 0; i < f.parameters.size(); ++i) {
+        Symbol* p = f.parameters[i];
         scopes_.back()[p->name] = p->type;
+        if (i < given.size() && given[i]) {
+            f.defaults.resize(parameters.size() + 1);
+            f.defaults.back() = std::move(given[i]);
+        }
         if (!isStruct(p->type)) {
             scopes_.back()[p->name] = kNone;
             parameters.push_back(p);

@@ -6,11 +6,43 @@
 
 namespace alpenglow::rsl::ir {
 
-/// The largest constant length that resize() or reserve() gives to any array of the program. Notes which variables may change
+namespace {
+
+/// What a length is with the default values of the parameters that it names; -1 where that is not to be seen.
+double usualLength(const Expr& e, const std::vector<ShaderParameter>& parameters) {
+    const auto of = [&](size_t n) { return usualLength(*e.args[n], parameters); };
+    if (e.kind == ExprKind::Number) return e.number;
+    if (e.kind == ExprKind::Variable && e.symbol)
+        for (const ShaderParameter& p : parameters)
+            if (p.symbol->name == e.symbol->name && p.defaultValue && p.defaultValue->kind == ExprKind::Number) return p.defaultValue->number;
+    if (e.kind == ExprKind::Binary && e.args.size() == 2) {
+        const double a = of(0), b = of(1);
+        if (a < 0 || b < 0) return -1;
+        switch (e.op) {
+        case ExprOp::Add: return a + b;
+        case ExprOp::Sub: return std::max(a - b, 0.0);
+        case ExprOp::Mul: return a * b;
+        case ExprOp::Div: return b > 0 ? a / b : -1;
+        default: return -1;
+        }
+    }
+    return -1;
+}
+
+} // namespace
+
+/// The largest length that resize() or reserve() gives to any array of the program. Notes which variables may change
 /// their length on the way.
 int Builder::largestResize() {
     if (largestResize_ >= 0) return largestResize_;
     largestResize_ = 0;
+    const auto wanted = [&](const Expr& e) {
+        double n = usualLength(e, shader_.parameters);
+        for (const CoShader& c : options_.coShaders) n = std::max(n, usualLength(e, c.shader->parameters));
+        // What a scene gives may be larger than a default; a constant is what it is.
+        if (e.kind != ExprKind::Number) n = std::min(n, static_cast<double>(limits::kResizableArray) * 16);
+        largestResize_ = std::max(largestResize_, static_cast<int>(std::clamp(n, 0.0, 1e6)));
+    };
     const auto visitExpr = [&](auto&& self, const Expr& e) -> void {
         const auto grows = [&](const Expr& a) {
             if (a.kind == ExprKind::Variable && a.symbol) grown_.insert(a.symbol);
@@ -22,8 +54,7 @@ int Builder::largestResize() {
             if (output && e.args[n]) grows(*e.args[n]);
         }
         const bool sizes = e.shadeop && (e.shadeop->name == "resize" || e.shadeop->name == "reserve") && e.args.size() == 2;
-        if (sizes && e.args[1]->kind == ExprKind::Number)
-            largestResize_ = std::max(largestResize_, static_cast<int>(std::clamp(e.args[1]->number, 0.0, 1e6)));
+        if (sizes) wanted(*e.args[1]);
         for (const ExprPtr& a : e.args)
             if (a) self(self, *a);
         for (const NamedArg& p : e.pairs)

@@ -83,9 +83,33 @@ Inst* Builder::forHandle(const Expr& handle, Kind kind, const std::function<Inst
     return from(0)[0];
 }
 
+/// What a call gives for each parameter, null where it leaves the default: so many in order, at least those without a default, and
+/// then names and values, as h->light(L, Cl, "samples", 16). Whether the call fits.
+bool Builder::argumentsOf(const Function& f, const Expr& call, std::vector<const Expr*>& given) {
+    const size_t count = call.args.size() - 1, most = f.parameters.size();
+    const auto optional = [&](size_t n) { return n < f.defaults.size() && f.defaults[n]; };
+    size_t least = most;
+    while (least > 0 && optional(least - 1)) --least;
+    for (size_t inOrder = least; inOrder <= std::min(count, most); ++inOrder) {
+        given.assign(most, nullptr);
+        for (size_t n = 0; n < inOrder; ++n) given[n] = call.args[n + 1].get();
+        bool fits = (count - inOrder) % 2 == 0;
+        for (size_t n = inOrder; fits && n < count; n += 2) {
+            const Expr& name = *call.args[n + 1];
+            size_t to = inOrder;
+            while (to < most && !(name.kind == ExprKind::String && f.parameters[to]->name == name.text)) ++to;
+            fits = to < most;
+            if (fits) given[to] = call.args[n + 2].get();
+        }
+        if (fits) return true;
+    }
+    return false;
+}
+
 const Function* Builder::methodOf(size_t i, const Expr& call) const {
+    std::vector<const Expr*> given;
     for (const auto& f : instances_[i].binding->shader->nested)
-        if (f->name == call.text && f->parameters.size() + 1 == call.args.size()) return f.get();
+        if (f->name == call.text && argumentsOf(*f, call, given)) return f.get();
     return nullptr;
 }
 
@@ -103,9 +127,15 @@ Inst* Builder::methodCall(const Expr& e) {
             error(e.place, "method '" + e.text + "' of co-shader '" + c.handle + "' calls itself; recursion is not allowed");
             return zero(kind);
         }
+        std::vector<const Expr*> arguments;
+        argumentsOf(*f, e, arguments);
         std::vector<Inst*> values;
         for (size_t n = 0; n < f->parameters.size() && !failed_; ++n) {
-            const Expr& given = *e.args[n + 1];
+            if (!arguments[n]) {
+                values.push_back(nullptr);
+                continue;
+            }
+            const Expr& given = *arguments[n];
             const Symbol& p = *f->parameters[n];
             const bool variable = given.kind == ExprKind::Variable || given.kind == ExprKind::Index;
             const bool fits = (given.type.array != 0) == (p.type.array != 0) &&
@@ -133,7 +163,16 @@ Inst* Builder::methodCall(const Expr& e) {
         openMethods_.insert({i, f});
         exchangeInstance(i);
         ++handleDepth_;
-        for (size_t n = 0; n < values.size(); ++n) set(slot(f->parameters[n]), values[n]);
+        for (size_t n = 0; n < values.size(); ++n) {
+            const Symbol& p = *f->parameters[n];
+            if (!values[n] && p.type.array) {
+                values[n] = newResizable(p.type.base, 0);
+                copyResizable(values[n], *f->defaults[n]);
+            } else if (!values[n]) {
+                values[n] = coerce(expr(*f->defaults[n], kindOf(p.type)), p.type);
+            }
+            set(slot(&p), values[n]);
+        }
         Frame frame;
         frame.function = f;
         frame.type = f->result;
@@ -149,7 +188,8 @@ Inst* Builder::methodCall(const Expr& e) {
         openMethods_.erase({i, f});
         place_ = e.place;
         for (size_t n = 0; n < outputs.size(); ++n)
-            if (f->parameters[n]->output && !f->parameters[n]->type.array) assign(*e.args[n + 1], outputs[n]);
+            if (f->parameters[n]->output && !f->parameters[n]->type.array && arguments[n])
+                assign(*arguments[n], outputs[n]);
         Inst* result = frame.result >= 0 ? get(frame.result) : zero(kind);
         if (result->kind != kind && !(result->kind == Kind::Float && kind != Kind::String)) {
             error(e.place, "method '" + e.text + "' of co-shader '" + c.handle + "' gives " + toString(f->result) + ", not " +

@@ -18,8 +18,13 @@ Site question(const char* op, const Place& place) {
 } // namespace
 
 /// handle->light(L, Cl [, Ol]): L from the light to the surface, as the light's shader has it; under path with the shadow at P.
+/// What else a call gives is for shader objects whose methods light() take more; a light of the scene does not see it.
 Inst* Builder::lightMethod(const Expr& e, Inst* handle) {
-    if (e.text != "light" || e.args.size() < 3 || e.args.size() > 4) return zero(Kind::Float);
+    if (e.text != "light" || e.args.size() < 3) return zero(Kind::Float);
+    const auto colour = [&](const Expr& a) { return a.type == Type{Base::Color, 0} && a.kind == ExprKind::Variable; };
+    const size_t asked = e.args.size() == 4 || (e.args.size() > 4 && colour(*e.args[3])) ? 4 : 3;
+    if (e.args.size() > asked && instances_.empty())
+        warn(e.args[asked]->place, "a light gives L, Cl and Ol; the other arguments of light() keep what they hold");
     const Type vector{Base::Vector, 0}, real{Base::Float, 0};
     Site s = question("lightcall", e.place);
     std::vector<Inst*> args;
@@ -41,7 +46,7 @@ Inst* Builder::lightMethod(const Expr& e, Inst* handle) {
         Inst* towards = emit(Op::Sub, Kind::Triple, {zero(Kind::Triple), v[1]});
         v[2] = emit(Op::Mul, Kind::Triple, {v[2], call(Op::Request, std::move(shadow), {constant(0), towards})[0]});
     }
-    for (size_t n = 1; n < e.args.size(); ++n) {
+    for (size_t n = 1; n < asked; ++n) {
         const Expr& to = *e.args[n];
         const bool variable = to.kind == ExprKind::Variable || to.kind == ExprKind::Index;
         if (!variable || to.type.array || kindOf(to.type) != Kind::Triple) {

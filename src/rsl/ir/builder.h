@@ -159,6 +159,7 @@ private:
     void beginCoShaders();
     Inst* forHandle(const Expr& handle, Kind, const std::function<Inst*(size_t)>& code,
                     const std::function<Inst*(Inst* handle)>& light = nullptr);
+    static bool argumentsOf(const Function&, const Expr& call, std::vector<const Expr*>& given);
     const Function* methodOf(size_t instance, const Expr& call) const;
     const Symbol* memberOf(size_t instance, const std::string& name) const;
     Inst* memberValue(size_t instance, const Symbol&);

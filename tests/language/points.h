@@ -24,6 +24,14 @@ inline PointValue evaluationPoint() {
 /// The two lights that illuminance finds wherever it looks: L, Cl, Ol. One straight above the evaluation point, one aside.
 inline constexpr float kTestLights[2][9] = {{0, 0, 2, 1, 0.5f, 0.25f, 1, 1, 1}, {3, 0, 4, 0.5f, 0.5f, 0.5f, 1, 1, 1}};
 
+/// Whether a light of the test stands within the cone about `axis`; a cone without an axis holds all.
+inline bool litBy(const float* L, const float* axis, float angle) {
+    const double x = double(axis[0]), y = double(axis[1]), z = double(axis[2]);
+    const double size = std::sqrt((x * x + y * y + z * z) * double(L[0] * L[0] + L[1] * L[1] + L[2] * L[2]));
+    const double cosine = size > 0 ? (x * double(L[0]) + y * double(L[1]) + z * double(L[2])) / size : 1;
+    return cosine > std::cos(double(angle));
+}
+
 /// out[output][component * n + point]. Uniform inputs of build S take the value of point 0. Spaces are identities; parameters
 /// come from `defaults`. False when the kernel suspends. Services other than those of strings leave zeros.
 inline bool runPoints(const CompiledKernel& k, bool mixed, int n, const PointValue& value,
@@ -98,12 +106,9 @@ inline bool runPoints(const CompiledKernel& k, bool mixed, int n, const PointVal
         uint64_t lit = 0;
         for (int l = 0; l < lanes; l++) {
             for (int r = 0; r < 9; r++) out[r * lanes + l] = kTestLights[light][r];
-            const auto axis = [&](int r) { return double(cone[size_t((3 + r) * lanes + l)]); };
-            const double x = axis(0), y = axis(1), z = axis(2);
-            const float* L = kTestLights[light];
-            const double size = std::sqrt((x * x + y * y + z * z) * double(L[0] * L[0] + L[1] * L[1] + L[2] * L[2]));
-            const double cosine = size > 0 ? (x * double(L[0]) + y * double(L[1]) + z * double(L[2])) / size : 1;
-            if (cosine > std::cos(double(cone[size_t(6 * lanes + l)]))) lit |= uint64_t(1) << l;
+            const auto row = [&](int r) { return cone[size_t(r * lanes + l)]; };
+            const float axis[3] = {row(3), row(4), row(5)};
+            if (litBy(kTestLights[light], axis, row(6))) lit |= uint64_t(1) << l;
         }
         return lit & mask;
     };

@@ -27,21 +27,25 @@ std::string Term::write(int number) const {
 
 namespace {
 
+/// What every body and every function has of structures (shaderOf).
+const char* const kStructures = "Pack one, three[2]; Deep two; Pack four[]; ";
+
 /// The names that a piece of a program can read and write, by sort.
 struct Scope {
     std::map<char, std::vector<std::string>> read, write;
     char result = 0; ///< of the function around, 0 in the body, 'v' for void
     int loops = 0;   ///< around this place
     int turns = 1;   ///< that they make at most
+    bool lit = false; ///< in a loop over lights, where there is no other; functions have none, as they may be called there
 };
 
 class Writer {
 public:
-    explicit Writer(const rc::Random& r) : random_(r) {}
+    Writer(const rc::Random& r, bool large) : random_(r), large_(large) {}
 
     Term program() {
         Term functions{'g', "", {}, true}, body{'l', "", {}, true};
-        for (int n = pick(4); n > 0; n--) functions.parts.push_back(function());
+        for (int n = pick(large_ ? 4 : 3); n > 0; n--) functions.parts.push_back(function());
         Scope s;
         for (const auto& [sort, names] : kBody) {
             s.read[sort] = s.write[sort] = names;
@@ -58,8 +62,8 @@ public:
         s.read['U'] = {"k"};
         body.parts.push_back({'d', "uniform float ua = $;", {value('U', s, 2)}});
         s.read['U'].push_back("ua");
-        if (pick(2)) body.parts.push_back(nested());
-        for (int n = 3 + pick(6); n > 0; n--) body.parts.push_back(statement(s, 0));
+        if (pick(large_ ? 2 : 3) == 0) body.parts.push_back(nested());
+        for (int n = large_ ? 3 + pick(6) : 2 + pick(2); n > 0; n--) body.parts.push_back(statement(s, 0));
         return {'d', "", {functions, body}};
     }
 
@@ -72,6 +76,7 @@ private:
     inline static const std::map<char, std::vector<std::string>> kBody = {
         {'F', {"x", "y", "z"}}, {'C', {"c", "d"}}, {'P', {"p", "w"}}, {'V', {"r"}}, {'N', {"n"}}, {'M', {"m"}}, {'S', {"st"}}};
     rc::Random random_;
+    bool large_;
     std::vector<Callable> callables_;
     int names_ = 0;
 
@@ -163,6 +168,7 @@ private:
         if (array) parameter('F', "a", "[4]", pick(2));
         else locals += "float a[4] = {0.5, 1}; ";
         locals += "color b[3] = 0.25; float h[] = {1, 2}; ";
+        locals += kStructures;
         static const std::map<char, const char*> kStart = {{'F', "0.75"}, {'C', "0.5"}, {'P', "1"}, {'V', "2"}, {'N', "0.5"}, {'M', "2"}, {'S', "\"a\""}};
         for (const auto& [sort, names] : left)
             for (const std::string& n : names) locals += std::string(typeName(sort)) + " " + n + " = " + kStart.at(sort) + "; ";
@@ -172,7 +178,7 @@ private:
         s.turns = 4; // it may be called in loops
         Term body{'l', "", {}, true};
         for (int n = 1 + pick(3); n > 0; n--) body.parts.push_back(statement(s, 1));
-        Term t{'d', std::string(typeName(c.result)) + " " + c.name + "(" + parameters + ") {\n" + locals + "\n$", {body}};
+        Term t{'d', std::string(typeName(c.result)) + " " + c.name + "(" + parameters + ") {\n" + locals + "/*member*/\n$", {body}};
         if (c.result != 'v') {
             t.text += "return $;\n";
             t.parts.push_back(value(c.result, s, 1));
@@ -229,9 +235,24 @@ private:
         return t;
     }
 
+    /// A loop over the lights of the test, of which there are two.
+    Term lights(Scope& s, int depth) {
+        Scope inner = s;
+        inner.loops++;
+        inner.turns *= 2;
+        inner.lit = true;
+        for (const char* n : {"Cl", "Ol"}) inner.read['C'].push_back(n);
+        inner.read['V'].push_back("L");
+        if (pick(3) == 0) return {'s', "illuminance(P) $", {block(inner, depth)}};
+        Term t{'s', "illuminance(P, $, $) $", {value(pick(2) ? 'N' : 'V', s, 3)}};
+        t.parts.push_back(value('F', s, 3));
+        t.parts.push_back(block(inner, depth));
+        return t;
+    }
+
     Term statement(Scope& s, int depth) {
         static const std::vector<char> kSorts = {'F', 'F', 'F', 'F', 'C', 'C', 'P', 'P', 'V', 'N', 'M', 'S'};
-        const int kind = pick(depth > 2 ? 14 : 20);
+        const int kind = pick(depth > 2 ? 14 : 21);
         if (kind < 6) {
             const char sort = any(kSorts);
             std::string op = "=";
@@ -258,7 +279,12 @@ private:
             return fill('s', any(std::vector<std::string>{"{ float x = $F; y += x * $F; x += 1; z -= x; }",
                                                           "{ color c = $C; d = c * $F; }",
                                                           "{ float g[3] = {$F, $F, $F}; x = g[$I] + g[0]; }",
-                                                          "{ string g[2] = {$T, $T}; st = g[$I]; }"}),
+                                                          "{ string g[2] = {$T, $T}; st = g[$I]; }",
+                                                          "one->f = $F;", "one->c *= $C;", "three[$I]->f += $F;", "one = three[$I];",
+                                                          "three[$I] = one;", "one = two;", "two->twist(x, $F);", "two->g[$I] = $F;",
+                                                          "two->twist(y, z);", "{ Deep other = two; other->f = $F; x = other->add(y); }",
+                                                          "spread(two, $F);", "if (arraylength(four) < 4) push(four, one);",
+                                                          "if (arraylength(four) > 0) one = pop(four);"}),
                         s, 1);
         case 10:
         case 11:
@@ -285,6 +311,9 @@ private:
             }
             return t;
         }
+        case 17:
+            if (s.loops < 3 && s.turns <= 12 && !s.lit && s.result == 0) return lights(s, depth);
+            break;
         default:
             if (s.loops < 3 && s.turns <= 24) return loop(s, depth);
         }
@@ -341,8 +370,8 @@ std::vector<Term> smaller(const Term& t) {
 }
 
 rc::Gen<Term> programs() {
-    return rc::Gen<Term>([](const rc::Random& r, int) {
-        return rc::shrinkable::shrinkRecur(Writer(r).program(),
+    return rc::Gen<Term>([](const rc::Random& r, int size) {
+        return rc::shrinkable::shrinkRecur(Writer(r, size >= 100).program(),
                                            [](const Term& t) { return rc::seq::fromContainer(smaller(t)); });
     });
 }
@@ -355,25 +384,55 @@ std::vector<std::pair<std::string, std::string>> outputs(int number) {
     return list;
 }
 
-std::string shaderOf(const std::vector<Term>& all) {
-    std::string functions, body;
+/// Structures with methods, one that extends another, and functions that take them.
+const char* const kTypes = R"(
+struct Pack
+{
+    varying float f = 0.5;
+    varying color c = color(0.25, 1, 0);
+    float add(float x) { f += x * 0.5; return f * 2; }
+    color mixed(color x; float k) { return mix(c, x, k); }
+    void twist(output float y; float k) { if (k > f) return; y += f; f = y * k; c[1] = y; }
+};
+struct Deep : Pack
+{
+    varying float g[3] = {1, 2, 3};
+    float add(float x) { g[x] += 1; float i; for (i = 0; i < 3; i += 1) { if (g[i] > x) break; f -= 0.25; } return Pack::add(x) + g[1]; }
+    float plain(float x) { if (x > 1) return f; return this->add(x); }
+};
+float weighed(Pack p; float k) { return p->f * k + comp(p->c, 1); }
+void spread(output Pack p; float k) { p->f = k; p->c += k; }
+)";
+
+std::string shaderOf(const std::vector<Term>& all, bool object) {
+    std::string functions, body, members;
     std::string parameters = "float k = 1.5; color kc = color(0.25, 1, 0.5); point kp = point(1, -2, 0.5); string ks = \"bb\";\n"
                              "matrix km = matrix(1, 0, 0.5, 0, 0, 2, 0, 0, 0, 0, 1, 0, 3, 0, 0, 1);\n";
     for (int n = 0; n < int(all.size()); n++) {
-        functions += all[size_t(n)].parts[0].write(n);
+        std::string text = all[size_t(n)].parts[0].write(n);
+        const std::string mark = "/*member*/";
+        for (size_t at; (at = text.find(mark)) != std::string::npos;) // methods change a member
+            text.replace(at, mark.size(), object ? "mf_" + std::to_string(n) + " += x * 0.5; " : "");
+        functions += text;
         for (const auto& [name, type] : outputs(n))
             parameters += "output varying " + type + " " + name + " = " + (type == "string" ? "\"\"" : "0") + ";\n";
         body += "{ uniform float j0, j1, j2; float x = 0.1, y = u, z = -v, i0, i1, i2; color c = 0.5, d = color(u, v, 0.25); point p = P, w = point(1, u, -1);\n"
                 "vector r = vector(v, 1, u); normal n = normal(0, u, 1); matrix m = 1; string st = \"a\";\n"
                 "float a[4] = {1, 2, -3, 0.5}; color b[3] = {color(1), color(u, 0, 1)}; float h[] = {4, 5, 6};\n";
+        body += kStructures;
         body += all[size_t(n)].parts[1].write(n);
-        const char* values[] = {"color(x, y, z)",       "c", "d", "p", "w", "r", "n", "color(a[0], a[1], a[2] - a[3])",
+        const std::string member = "mf_" + std::to_string(n);
+        members += "varying float " + member + " = 0.5;\n";
+        const std::string first = object ? "color(x + " + member + ", y, z)" : "color(x, y, z)";
+        const char* values[] = {first.c_str(), "c", "d + one->c * two->f + three[1]->c", "p", "w", "r", "n", "color(a[0], a[1], a[2] - a[3])",
                                 "b[0] + b[1] * b[2]", "m", "st"};
         const auto names = outputs(n);
         for (size_t q = 0; q < names.size(); q++) body += names[q].first + " = " + values[q] + ";\n";
         body += "}\n";
     }
-    return functions + "surface random(" + parameters + ") {\n" + body + "}\n";
+    if (object)
+        return kTypes + ("class random(" + parameters) + ") {\n" + members + functions + "public void surface(output color Ci, Oi) {\n" + body + "}\n}\n";
+    return kTypes + functions + "surface random(" + parameters + ") {\n" + body + "}\n";
 }
 
 } // namespace alpenglow::rsl

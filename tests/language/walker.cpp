@@ -59,7 +59,7 @@ enum class Flow { On, Break, Continue, Return };
 
 class Walker {
 public:
-    Walker(const Shader& s, const WalkerInput& input) : shader_(s), input_(input) {}
+    Walker(const Shader& s, const WalkerInput& input, const WalkedLights& lights) : shader_(s), input_(input), lights_(lights) {}
 
     std::map<std::string, Walked> run() {
         for (const ShaderParameter& p : shader_.parameters) {
@@ -77,6 +77,8 @@ public:
 private:
     const Shader& shader_;
     const WalkerInput& input_;
+    const WalkedLights& lights_;
+    const float* light_ = nullptr; ///< of the turn of illuminance
     std::map<const Symbol*, std::shared_ptr<Variable>> variables_;
     Walked result_;
     int levels_ = 0; ///< loops that a jump still has to leave
@@ -89,7 +91,16 @@ private:
         return *(variables_[s] = v);
     }
 
+    /// L, Cl and Ol are those of the turn, whatever stood there before.
+    void beginTurn(const Symbol* s) {
+        const int row = s->name == "L" ? 0 : s->name == "Cl" ? 3 : s->name == "Ol" ? 6 : -1;
+        if (row < 0 || s->origin != Symbol::Origin::Global) return;
+        if (!light_) unknown("a light");
+        std::copy_n(light_ + row, 3, fresh(s).value.n.begin());
+    }
+
     Variable& variable(const Symbol* s) {
+        beginTurn(s);
         const auto it = variables_.find(s);
         if (it != variables_.end()) return *it->second;
         if (s->origin != Symbol::Origin::Global) unknown("a value of '" + s->name + "'");
@@ -186,6 +197,7 @@ private:
         if (e.kind != ExprKind::ArrayList) return arrayOf(e).elements;
         std::vector<Walked> v;
         for (const ExprPtr& a : e.args) v.push_back(converted(expr(*a), e.type.base));
+        if (e.text == "..." && !v.empty() && e.type.array > int(v.size())) v.resize(size_t(e.type.array), v.back());
         return v;
     }
 
@@ -342,6 +354,11 @@ private:
             return shadeop(e);
         case ExprKind::FunctionCall:
             return call(e);
+        case ExprKind::Sequence: {
+            Walked last;
+            for (const ExprPtr& a : e.args) last = expr(*a);
+            return last;
+        }
         default:
             unknown("this expression");
         }
@@ -385,6 +402,27 @@ private:
         return Flow::On;
     }
 
+    Flow illuminance(const Stmt& s) {
+        if (lights_.all.empty() || s.category || !s.pairs.empty()) unknown("these lights");
+        float axis[3] = {0, 0, 0}, angle = 4;
+        if (s.exprs.size() == 3) {
+            expr(*s.exprs[0]);
+            const Walked a = expr(*s.exprs[1]);
+            std::copy_n(a.n.begin(), 3, axis);
+            angle = expr(*s.exprs[2]).n[0];
+        }
+        const float* around = light_;
+        Flow f = Flow::On;
+        for (const auto& l : lights_.all) {
+            if (s.exprs.size() == 3 && !lights_.lit(l.data(), axis, angle)) continue;
+            light_ = l.data();
+            f = s.body.empty() ? Flow::On : statement(*s.body[0]);
+            if (!goesOn(f)) break;
+        }
+        light_ = around;
+        return f;
+    }
+
     Flow statement(const Stmt& s) {
         switch (s.kind) {
         case StmtKind::Block:
@@ -412,6 +450,8 @@ private:
         case StmtKind::Return:
             if (s.value) result_ = converted(expr(*s.value), result_.base);
             return Flow::Return;
+        case StmtKind::Illuminance:
+            return illuminance(s);
         default:
             unknown("this statement");
         }
@@ -439,6 +479,8 @@ private:
 
 } // namespace
 
-std::map<std::string, Walked> walk(const Shader& s, const WalkerInput& input) { return Walker(s, input).run(); }
+std::map<std::string, Walked> walk(const Shader& s, const WalkerInput& input, const WalkedLights& lights) {
+    return Walker(s, input, lights).run();
+}
 
 } // namespace alpenglow::rsl

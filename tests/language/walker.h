@@ -20,9 +20,15 @@ struct Walked {
 /// Component of a predefined variable at the point.
 using WalkerInput = std::function<float(const std::string& name, int component)>;
 
+/// The lights of illuminance: L, Cl and Ol one after the other, and whether a cone holds a light.
+struct WalkedLights {
+    std::vector<std::array<float, 9>> all;
+    std::function<bool(const float* L, const float* axis, float angle)> lit;
+};
+
 /// Runs a shader whose parameters have their defaults; the final values of its output parameters by name. Throws std::runtime_error
-/// at what it does not know (lights, rays, named spaces, derivatives) and after too many steps.
-std::map<std::string, Walked> walk(const Shader&, const WalkerInput&);
+/// at what it does not know (lights where none are given, rays, named spaces, derivatives) and after too many steps.
+std::map<std::string, Walked> walk(const Shader&, const WalkerInput&, const WalkedLights& = {});
 
 /// A pure shadeop by its definition over single floats (walker_shadeops.cpp); output arguments change in place. Elementary functions,
 /// noise, colour spaces and the inverse of a matrix come from the shadeop's own code at one point, which tests/shadeops holds against

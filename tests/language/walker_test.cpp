@@ -15,11 +15,10 @@ namespace {
 constexpr int kBatch = 10, kPoints = 21, kMostShrinks = 3000;
 constexpr int kParts = 4; ///< one test each, so that they run side by side
 
-/// Programs in all the parts together.
-int wanted() {
-    if (kSanitized) return 80;
-    return std::getenv("ALPENGLOW_NIGHTLY") ? 10000 : 520;
-}
+bool nightly() { return std::getenv("ALPENGLOW_NIGHTLY") != nullptr; }
+
+/// Programs in all the parts together. Nearly all the time goes into machine code for them, so those of every day are shorter.
+int wanted() { return kSanitized ? 80 : nightly() ? 10000 : 520; }
 
 float input(const std::string& name, int component, int point) {
     float v = 0;
@@ -34,6 +33,13 @@ bool alike(float a, float b) { return sameBits(a, b) || (a == 0 && b == 0); }
 
 using Results = std::vector<std::map<std::string, Walked>>; ///< by point
 
+WalkedLights testLights() {
+    WalkedLights l;
+    for (const float(&row)[9] : kTestLights) std::copy_n(row, 9, l.all.emplace_back().begin());
+    l.lit = litBy;
+    return l;
+}
+
 struct Machine {
     ShaderCompiler compiler{[] {
         ShaderCompiler::Settings s;
@@ -42,14 +48,14 @@ struct Machine {
     }()};
 
     /// What is wrong with these programs under these options; "" when nothing is.
-    std::string compare(const std::vector<Term>& programs, const std::vector<KernelOptions>& all, bool& compiles) {
+    std::string compare(const std::vector<Term>& programs, const std::vector<KernelOptions>& all, bool object, bool& compiles) {
         Diagnostics d;
-        const auto shader = compiler.loadText(shaderOf(programs), "random", d);
+        const auto shader = compiler.loadText(shaderOf(programs, object), "random", d);
         compiles = shader != nullptr;
         if (!shader) return firstError(d);
         Results expected;
         for (int p = 0; p < kPoints; p++)
-            expected.push_back(walk(shader->shader(), [&](const std::string& name, int c) { return input(name, c, p); }));
+            expected.push_back(walk(shader->shader(), [&](const std::string& name, int c) { return input(name, c, p); }, testLights()));
         const auto defaults = compiler.parameterDefaults(shader, d);
         for (KernelOptions o : all) {
             for (size_t n = 0; n < programs.size(); n++)
@@ -86,9 +92,9 @@ struct Machine {
     }
 
     /// The smallest program that still differs, as text with what is wrong.
-    std::string smallest(rc::Shrinkable<Term> program, const std::vector<KernelOptions>& all) {
+    std::string smallest(rc::Shrinkable<Term> program, const std::vector<KernelOptions>& all, bool object) {
         bool compiles = true;
-        std::string wrong = compare({program.value()}, all, compiles);
+        std::string wrong = compare({program.value()}, all, object, compiles);
         if (wrong.empty()) return "only in company of the others of its batch";
         int left = kMostShrinks;
         for (bool found = true; found && left > 0;) {
@@ -96,14 +102,14 @@ struct Machine {
             for (auto s = program.shrinks(); !found && left-- > 0;) {
                 auto next = s.next();
                 if (!next) break;
-                const std::string w = compare({next->value()}, all, compiles);
+                const std::string w = compare({next->value()}, all, object, compiles);
                 if (!compiles || w.empty()) continue; // a part torn out of its loop is no program
                 program = *next;
                 wrong = w;
                 found = true;
             }
         }
-        return wrong + "\n" + shaderOf({program.value()});
+        return wrong + "\n" + shaderOf({program.value()}, object);
     }
 };
 
@@ -112,6 +118,9 @@ class RandomTrees : public testing::TestWithParam<int> {};
 TEST_P(RandomTrees, MachineCodeAndWalkerAgree) {
     Machine machine;
     const std::vector<KernelOptions> configurations = rsl::configurations();
+    std::vector<KernelOptions> plain;
+    for (const KernelOptions& o : configurations)
+        if (o.optimize == 0) plain.push_back(o);
     const rc::Gen<Term> generator = programs();
     const int batches = wanted() / kBatch;
     int compared = 0;
@@ -119,13 +128,17 @@ TEST_P(RandomTrees, MachineCodeAndWalkerAgree) {
         std::vector<rc::Shrinkable<Term>> trees;
         std::vector<Term> terms;
         for (int n = 0; n < kBatch; n++) {
-            trees.push_back(generator(rc::Random(uint64_t(batch * kBatch + n + 1)), 100));
+            trees.push_back(generator(rc::Random(uint64_t(batch * kBatch + n + 1)), nightly() ? 100 : 50));
             terms.push_back(trees.back().value());
         }
-        std::vector<KernelOptions> some;
-        for (int turn = 0; turn < 2; turn++) some.push_back(configurations[size_t(batch + turn * 7) % configurations.size()]);
+        // Two configurations each; all take their turns. Code that is not optimised costs half: every day it is the second.
+        std::vector<KernelOptions> some = {configurations[size_t(batch) % configurations.size()]};
+        const std::vector<KernelOptions>& others = nightly() ? configurations : plain;
+        for (size_t k = size_t(batch) + 7; some.size() < 2; k++)
+            if (const KernelOptions& o = others[k % others.size()]; describe(o) != describe(some[0])) some.push_back(o);
+        const bool object = batch / kParts % 2 == 1; // a shader and a class in turns
         bool compiles = true;
-        const std::string wrong = machine.compare(terms, some, compiles);
+        const std::string wrong = machine.compare(terms, some, object, compiles);
         compared += kBatch;
         if (wrong.empty()) continue;
         if (!compiles) {
@@ -133,8 +146,8 @@ TEST_P(RandomTrees, MachineCodeAndWalkerAgree) {
             continue;
         }
         for (size_t n = 0; n < trees.size(); n++)
-            if (!machine.compare({terms[n]}, some, compiles).empty())
-                ADD_FAILURE() << "program " << batch * kBatch + int(n) + 1 << ": " << machine.smallest(trees[n], some);
+            if (!machine.compare({terms[n]}, some, object, compiles).empty())
+                ADD_FAILURE() << "program " << batch * kBatch + int(n) + 1 << ": " << machine.smallest(trees[n], some, object);
         EXPECT_EQ(wrong, "") << "batch " << batch;
         if (testing::Test::HasFailure()) break;
     }
@@ -157,7 +170,7 @@ std::string walkSnippet(ShaderCompiler& compiler, const Expectation& e) {
                     float v = 0;
                     EvaluationPoint::value(name, component, 0, v);
                     return v;
-                }).at("walked");
+                }, testLights()).at("walked");
         } catch (const std::runtime_error&) {
             return "?";
         }

@@ -190,6 +190,27 @@ TEST(CoShaders, DepthAndRecursion) {
     EXPECT_GT(d.errors(), 0);
 }
 
+TEST(CoShaders, TakeAndChangeStructures) {
+    ShaderCompiler::Settings settings;
+    settings.useDefaultCache = false;
+    ShaderCompiler compiler(settings);
+    Diagnostics d;
+    const std::string pair = "struct pair { float a = 2; color c = 0; }\n";
+    const auto layer = compiler.loadText(pair + "class layer() { public void fill(output pair p; float k) { p->c = p->a * k; p->a = 7; } }", "layer.sl", d);
+    const auto top = compiler.loadText(pair + "surface top(output varying float r = 0;) { pair p; shader h = getshader(\"layer\");"
+                                              " if (h != null) h->fill(p, 3); r = p->a * 10 + comp(p->c, 1); }",
+                                       "top.sl", d);
+    ASSERT_TRUE(layer && top);
+    KernelOptions o;
+    o.outputs = {"r"};
+    o.coShaders.push_back(ShaderCompiler::coShader(layer, "layer"));
+    std::vector<std::vector<float>> out;
+    const auto kernel = compiler.kernel(top, o, d);
+    ASSERT_TRUE(kernel && runPoints(*kernel, false, 1, evaluationPoint(), compiler.parameterDefaults(top, d), out, d));
+    EXPECT_EQ(out[0][0], 76);
+    EXPECT_EQ(d.errors(), 0);
+}
+
 TEST(Structures, AtMostSoMany) {
     std::string text;
     for (int i = 0; i <= limits::kStructs; i++) text += "struct s" + std::to_string(i) + " { float x; }\n";

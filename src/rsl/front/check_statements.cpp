@@ -28,6 +28,7 @@ void Checker::condition(ExprPtr& e) {
 
 void Checker::assignedToUniform(const Symbol& s, const Expr& value) {
     if (s.storage != Storage::Uniform || !value.varying || s.type.base == Base::String) return;
+    if (value.kind == ExprKind::Member || value.kind == ExprKind::Method) return; // what a handle gives is of the class that is wanted
     sources_.warning(value.place,
                      "a varying value is given to the uniform variable '" + s.name + "'; each shaded point keeps its own");
 }

@@ -17,7 +17,10 @@ struct filterregion {
     varying float blurred = 0, spread = 0;
     public void calculate2d(varying float x, y) {
         extern float du, dv;
-        float ax = 0.5 * Du(x) * du, ay = 0.5 * Du(y) * du, bx = 0.5 * Dv(x) * dv, by = 0.5 * Dv(y) * dv;
+        calculate2d(x, y, Du(x) * du, Du(y) * du, Dv(x) * dv, Dv(y) * dv);
+    }
+    public void calculate2d(varying float x, y, x1, y1, x2, y2) {
+        float ax = 0.5 * x1, ay = 0.5 * y1, bx = 0.5 * x2, by = 0.5 * y2;
         s1 = x - ax - bx; s2 = x + ax - bx; s3 = x - ax + bx; s4 = x + ax + bx;
         t1 = y - ay - by; t2 = y + ay - by; t3 = y - ay + by; t4 = y + ay + by;
         centre = vector(x, y, 0);
@@ -25,7 +28,10 @@ struct filterregion {
     }
     public void calculate3d(varying vector x) {
         extern float du, dv;
-        vector a = 0.5 * Du(x) * du, b = 0.5 * Dv(x) * dv;
+        calculate3d(x, Du(x) * du, Dv(x) * dv);
+    }
+    public void calculate3d(varying vector x, side1, side2) {
+        vector a = 0.5 * side1, b = 0.5 * side2;
         v1 = x - a - b; v2 = x + a - b; v3 = x - a + b; v4 = x + a + b;
         centre = x;
         spread = atan(max(length(a), length(b)), length(x));

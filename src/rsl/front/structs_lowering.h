@@ -85,6 +85,7 @@ private:
     static bool path(const Expr& e);
     void checkArguments(Expr& call);
     void arguments(Expr& call, List& pre);
+    void handleArguments(Expr& call, List& pre);
     Base wanted(const std::string& function, size_t arguments, size_t i, Type have) const;
     /// What must happen first, and then the expression, as one expression.
     void sequence(ExprPtr& e, List pre);

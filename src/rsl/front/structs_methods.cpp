@@ -12,8 +12,9 @@ namespace {
 /// Writes "this->" before the names that mean it, and notes whether the structure may be changed.
 class Selfs {
 public:
-    Selfs(const StructType& type, const std::set<std::string>& changing, const std::set<std::string>& methods)
-        : type_(type), changing_(changing), methods_(methods) {}
+    Selfs(const StructType& type, const std::set<std::string>& changing, const std::set<std::string>& methods,
+          const std::map<std::string, std::set<size_t>>& puttingOut)
+        : type_(type), changing_(changing), methods_(methods), puttingOut_(puttingOut) {}
 
     bool changes = false;
 
@@ -47,6 +48,12 @@ private:
     static std::string bare(const std::string& method) {
         const size_t colon = method.find("::");
         return colon == method.npos ? method : method.substr(colon + 2);
+    }
+
+    /// May a call of this method, of a structure or of another shader, change its argument `i`?
+    bool methodPutsOut(const std::string& name, size_t i) const {
+        const auto m = puttingOut_.find(name);
+        return m == puttingOut_.end() || m->second.count(i) > 0;
     }
 
     /// May a call of this function change an argument?
@@ -85,6 +92,8 @@ private:
         if (e->kind == ExprKind::Assign) changes |= ofThis(*e->args[0]);
         if (e->kind == ExprKind::Method && ofThis(*e->args[0]))
             changes |= e->args[0]->kind != ExprKind::Variable || changing_.count(bare(e->text));
+        if (e->kind == ExprKind::Method)
+            for (size_t i = 1; i < e->args.size(); ++i) changes |= ofThis(*e->args[i]) && methodPutsOut(bare(e->text), i - 1);
         if (call && putsOut(e->text))
             for (const auto& a : e->args) changes |= ofThis(*a);
         if (call && !e->args.empty() && e->args[0]->kind == ExprKind::String)
@@ -114,6 +123,7 @@ private:
     const StructType& type_;
     const std::set<std::string>& changing_;
     const std::set<std::string>& methods_;
+    const std::map<std::string, std::set<size_t>>& puttingOut_; ///< which parameters of the methods of all structures are output
     std::vector<std::set<std::string>> hidden_;
 };
 
@@ -124,6 +134,11 @@ void Lowering::methods() {
         std::set<std::string> names, changing;
     };
     std::vector<Known> known(unit_.structs.size()); // what a structure has, those that extend it have, too
+    std::map<std::string, std::set<size_t>> puttingOut;
+    for (const StructType& type : unit_.structs)
+        for (const auto& f : type.methods)
+            for (size_t i = 0; i < f->parameters.size(); ++i)
+                if (auto& out = puttingOut[f->name]; f->parameters[i]->output) out.insert(i);
     for (size_t i = 0; i < unit_.structs.size(); ++i) {
         StructType& type = unit_.structs[i];
         if (type.base >= 0 && size_t(type.base) < i) known[i] = known[size_t(type.base)];
@@ -133,7 +148,7 @@ void Lowering::methods() {
         for (size_t before = size_t(-1); before != changing.size();) {
             before = changing.size();
             for (auto& f : type.methods) {
-                Selfs selfs(type, changing, names);
+                Selfs selfs(type, changing, names, puttingOut);
                 selfs.run(*f);
                 if (selfs.changes) changing.insert(f->name);
             }
@@ -191,6 +206,7 @@ void Lowering::regions(Expr& call) {
             if (!isStruct(t) || t.base != structBase(size_t(sample))) continue;
             const bool token = i > 1 && call.args[i - 1]->kind == ExprKind::String && !call.args[i - 1]->handle;
             call.args.erase(call.args.begin() + long(i) - token, call.args.begin() + long(i) + 1);
+            i -= token;
         }
     if (structNamed("filterregion") < 0) return;
     const Base region = structBase(size_t(structNamed("filterregion")));
@@ -209,7 +225,7 @@ void Lowering::regions(Expr& call) {
             continue;
         }
         std::vector<const char*> parts = {"centre"};
-        if (call.text == "texture") parts = {"s1", "t1", "s2", "t2", "s3", "t3", "s4", "t4"};
+        if (call.text == "texture" || call.text == "ptexture") parts = {"s1", "t1", "s2", "t2", "s3", "t3", "s4", "t4"};
         if (call.text == "environment" || call.text == "shadow") parts = {"v1", "v2", "v3", "v4"};
         for (const char* p : parts) adopt(call, part(*a, p));
         if (parts.size() > 1 && !blur) blur = part(*a, "blurred");

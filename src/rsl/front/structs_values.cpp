@@ -247,6 +247,22 @@ void Lowering::arguments(Expr& call, List& pre) {
     }
 }
 
+/// The arguments of a method of another shader: a structure is given as its members, as the method takes it.
+void Lowering::handleArguments(Expr& call, List& pre) {
+    std::vector<ExprPtr> given = std::move(call.args);
+    call.args.clear();
+    for (ExprPtr& a : given) {
+        List parts;
+        if (!call.args.empty() && isStruct(typeOf(*a))) flatten(std::move(a), pre, parts);
+        else if (isStruct(typeOf(*a))) parts.push_back(std::move(a)); // reported already
+        else {
+            rewrite(a);
+            parts.push_back(std::move(a));
+        }
+        for (auto& p : parts) adopt(call, std::move(p));
+    }
+}
+
 /// What argument `i` of type `have` is given as: itself, or a structure that it extends.
 Base Lowering::wanted(const std::string& function, size_t arguments, size_t i, Type have) const {
     Base found = have.base;
@@ -329,11 +345,10 @@ void Lowering::rewrite(ExprPtr& e) {
             return;
         }
         arguments(*e, pre);
+    } else if (e->kind == ExprKind::Method) {
+        handleArguments(*e, pre);
     } else {
-        for (auto& a : e->args) {
-            if (e->kind == ExprKind::Method && isStruct(typeOf(*a))) continue;
-            rewrite(a);
-        }
+        for (auto& a : e->args) rewrite(a);
         if (e->kind == ExprKind::Assign) hoist(e->args[0], pre);
     }
     rewrite(e->space);

@@ -1,5 +1,6 @@
 // The Muttenzer box through RSL against the oracle, a plain path tracer of the same box without a shading language.
-// box_bench [--spp N] [--repeats N] [--threads N] [--size WxH] [--lanes N]
+// box_bench [--spp N] [--repeats N] [--threads N] [--size WxH] [--lanes N] [--ours 1]
+// --ours 1: nothing but our own time, the least and the median; to compare two builds in turns and to profile.
 #include "bench/box_embree.h"
 #include "bench/box_oracle_runs.h"
 #include "bench/profile.h"
@@ -151,16 +152,17 @@ const char* partOf(const std::string& s) {
 } // namespace
 
 int main(int argc, char** argv) {
-    int spp = 8, repeats = 5, threads = 1, width = 320, height = 240, lanes = 16;
+    int spp = 8, repeats = 5, threads = 1, width = 320, height = 240, lanes = 16, oursOnly = 0;
     for (int i = 1; i + 1 < argc; i += 2) {
         if (!std::strcmp(argv[i], "--spp")) spp = std::atoi(argv[i + 1]);
         else if (!std::strcmp(argv[i], "--repeats")) repeats = std::atoi(argv[i + 1]);
         else if (!std::strcmp(argv[i], "--threads")) threads = std::atoi(argv[i + 1]);
         else if (!std::strcmp(argv[i], "--lanes")) lanes = std::atoi(argv[i + 1]);
+        else if (!std::strcmp(argv[i], "--ours")) oursOnly = std::atoi(argv[i + 1]);
         else if (!std::strcmp(argv[i], "--size")) std::sscanf(argv[i + 1], "%dx%d", &width, &height);
     }
     if (spp < 1 || repeats < 1 || threads < 1 || width < 1 || height < 1) {
-        std::fprintf(stderr, "box_bench [--spp N] [--repeats N] [--threads N] [--size WxH] [--lanes N]\n");
+        std::fprintf(stderr, "box_bench [--spp N] [--repeats N] [--threads N] [--size WxH] [--lanes N] [--ours 1]\n");
         return 2;
     }
     Box box;
@@ -169,6 +171,12 @@ int main(int argc, char** argv) {
         return 3;
     }
     const double samples = double(width) * height * spp;
+    if (oursOnly) {
+        std::vector<double> t;
+        for (int i = 0; i < repeats; ++i) t.push_back(box.render(uint32_t(spp)).cpu);
+        std::printf("%.4f us a sample at the least, %.4f median\n", 1e6 * *std::min_element(t.begin(), t.end()) / samples, 1e6 * median(t) / samples);
+        return 0;
+    }
     // The renderer plays roulette from the fourth hit on; the oracle as it is from the sixth. With 2 both send the same rays.
     bench::OracleRun same{width, height, uint32_t(spp), true, 2}, plain{width, height, uint32_t(spp), false, 4};
     std::vector<double> ours, wall, sequences, embree, twister, sums;

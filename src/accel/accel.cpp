@@ -129,8 +129,8 @@ struct Accel::Impl {
         if (!visible(*q.ray, s) || excluded(*q.ray, s, 0)) return false;
         geometry::ExactHit h[4];
         const Shape& shape = *shapes[s];
-        int n = shape.exactHits(Vec3d(q.ray->org), Vec3d(q.ray->dir), q.ray->tnear, std::min(double(q.ray->tfar), q.best.t),
-                                !shape.oneSided() || q.ray->bothSides, h);
+        const auto wanted = shape.oneSided() && !q.ray->bothSides ? Shape::Wanted::All : q.any ? Shape::Wanted::Any : Shape::Wanted::Nearest;
+        int n = shape.exactHits(Vec3d(q.ray->org), Vec3d(q.ray->dir), q.ray->tnear, std::min(double(q.ray->tfar), q.best.t), wanted, h);
         bool taken = false;
         for (int i = 0; i < n; ++i) {
             taken |= take(q, s, 0, h[i].t, h[i].u, h[i].v);
@@ -231,7 +231,7 @@ bool Accel::Impl::readyDirect() {
 void Accel::Impl::meetDirect(Query& q) const {
     const Ray& r = *q.ray;
     const Vec3d o(r.org), d(r.dir);
-    DirectTriangles::Near near;
+    alignas(32) DirectTriangles::Near near;
     for (uint32_t left = triangles.candidates(r, near); left; left &= left - 1) {
         size_t i = size_t(std::countr_zero(left));
         if (double(near[i]) > q.best.t) continue;

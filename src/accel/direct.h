@@ -1,4 +1,4 @@
-// Tiny scenes without a tree: all triangles are looked at, four or eight at a time, in float; those that may be met are then met in double.
+// Tiny scenes without a tree: all triangles are looked at, several at a time, in float; those that may be met are then met in double.
 // Up to some two dozen triangles that is faster than walking a hierarchy.
 #pragma once
 #include "geometry/shape.h"
@@ -15,11 +15,12 @@ public:
 
     struct Triangle { Vec3 a, b, c; uint32_t shape, prim; };
     void add(const Triangle&);
-    size_t size() const { return triangles_.size(); }
+    size_t size() const { return size_; }
     const Triangle& operator[](size_t i) const { return triangles_[i]; }
 
     /// Below where the ray meets triangle i, in its lengths of dir; for those in `candidates`.
-    using Near = float[(kMost + 7) / 8 * 8];
+    static constexpr size_t kWidest = 8, kRoom = (kMost + kWidest - 1) / kWidest * kWidest;
+    using Near = float[kRoom];
     /// Bit i: the ray may meet triangle i between its tnear and tfar. Never clear for a triangle that it meets: the bounds are widened
     /// by more than float arithmetic can be off.
     uint32_t candidates(const Ray& r, Near& near) const { return find_(*this, r, near); }
@@ -34,17 +35,19 @@ public:
     }
 
 private:
-    /// Eight triangles: plane n.p = d, and the two barycentric weights as linear functions of the point, with their slopes.
-    struct alignas(32) Eight { float n[3][8], d[8], u[3][8], u0[8], v[3][8], v0[8], slope[8]; };
-    std::vector<Eight> eights_;
+    /// Plane n.p = d, and the two barycentric weights as linear functions of the point, with their slopes. By component, then triangle.
+    struct alignas(32) Rows { float n[3][kRoom], d[kRoom], u[3][kRoom], u0[kRoom], v[3][kRoom], v0[kRoom], slope[kRoom]; };
+    Rows rows_{};
     /// The same by four and by eight lanes, the latter where the processor has them. The bits of all that is computed agree.
     using Find = uint32_t (*)(const DirectTriangles&, const Ray&, Near&);
+    template <int Lanes> struct Search;
     static uint32_t findFour(const DirectTriangles&, const Ray&, Near&);
     static uint32_t findEight(const DirectTriangles&, const Ray&, Near&);
     Find find_ = choose();
     static Find choose();
     struct Plane { Vec3d n; double d; };
     std::vector<Triangle> triangles_;
+    size_t size_ = 0; ///< of triangles_
     std::vector<Plane> planes_;
     float extent_ = 0; ///< largest 1-norm of a corner
 };

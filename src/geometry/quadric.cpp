@@ -56,6 +56,7 @@ void Quadric::finish(Diagnostics& diag) {
         pointScale_ =
             std::max(pointScale_, radius_ * (std::fabs(m[0][k]) + std::fabs(m[1][k])) +
                                       std::max(std::fabs(zLo_), std::fabs(zHi_)) * std::fabs(m[2][k]) + std::fabs(m[3][k]));
+    whole_ = fullTurn_ && wholeProfile();
     takePrimvars(diag);
 }
 
@@ -151,7 +152,7 @@ bool Quadric::accept(const Vec3d& p, double v, ExactHit& hit) const {
     return true;
 }
 
-int Quadric::exactHits(const Vec3d& org, const Vec3d& dir, double lo, double hi, bool first, ExactHit out[4]) const {
+int Quadric::exactHits(const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted wanted, ExactHit out[4]) const {
     // transformPoint and transformVector of base/, here so that they need no call.
     auto turned = [&m = toObject_.m](const Vec3d& v) {
         return Vec3d(v.x * m[0][0] + v.y * m[1][0] + v.z * m[2][0], v.x * m[0][1] + v.y * m[1][1] + v.z * m[2][1],
@@ -172,11 +173,15 @@ int Quadric::exactHits(const Vec3d& org, const Vec3d& dir, double lo, double hi,
         ExactHit h;
         h.t = shift + t[i];
         if (!std::isfinite(h.t) || !(h.t > lo && h.t <= hi)) continue;
+        if (whole_ && wanted == Wanted::Any) {
+            out[0] = {h.t, 0, 0};
+            return 1;
+        }
         bool ok = accept(p, vOf(p), h);
         if (!ok)
             if (auto v2 = secondV(p)) ok = accept(p, *v2, h);
         if (ok && m < 4) out[m++] = h;
-        if (ok && first) break;
+        if (ok && wanted != Wanted::All) break;
     }
     return m;
 }

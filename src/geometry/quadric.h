@@ -20,7 +20,7 @@ class Quadric : public Parametric {
 public:
     Quadric(ShapeSource, double thetaMaxDegrees, Diagnostics&);
     using Shape::exactHits;
-    int exactHits(const Vec3d& org, const Vec3d& dir, double lo, double hi, bool first, ExactHit out[4]) const override;
+    int exactHits(const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted, ExactHit out[4]) const override;
     Bounds bounds() const override;
 
 protected:
@@ -30,6 +30,8 @@ protected:
     /// +1, -1: all of the profile lies on that side of the x axis (y = 0); 0: profile() must be asked.
     virtual int profileSide() const { return 0; }
     virtual Implicit implicit() const = 0;
+    /// All of implicit() belongs to the surface after a full turn.
+    virtual bool wholeProfile() const { return false; }
     /// v of an object-space point that lies on the unswept surface; values outside 0..1 are clipped by the caller.
     virtual double vOf(const Vec3d& p) const = 0;
     /// Object-space roots of the line; the default solves implicit().
@@ -49,6 +51,7 @@ private:
     double thetaMax_ = 0;   ///< radians, -2 pi .. 2 pi
     bool affine_ = true; ///< toObject_ has no perspective
     bool fullTurn_ = false;
+    bool whole_ = false;    ///< nothing of implicit() is cut away
     bool offAxis_ = false;  ///< some b(v) != 0
     double radius_ = 0, zLo_ = 0, zHi_ = 0; ///< cylinder around the whole profile
     Matrix toObject_;

@@ -87,9 +87,10 @@ public:
     bool exact() const { return mesh_.vertices == 0; }
     const TriMesh& mesh() const { return mesh_; }
     /// All points of the line org + t dir on the surface, by increasing t, at most 4; any sign of t. Thread safe.
-    int exactHits(const Vec3d& org, const Vec3d& dir, ExactHit out[4]) const { return exactHits(org, dir, -INFINITY, INFINITY, false, out); }
-    /// Those with lo < t <= hi only, which is cheaper; `first`: the nearest of them is enough.
-    virtual int exactHits(const Vec3d& org, const Vec3d& dir, double lo, double hi, bool first, ExactHit out[4]) const { return 0; }
+    int exactHits(const Vec3d& org, const Vec3d& dir, ExactHit out[4]) const { return exactHits(org, dir, -INFINITY, INFINITY, Wanted::All, out); }
+    enum class Wanted { All, Nearest, Any };
+    /// Those with lo < t <= hi only, which is cheaper. Nearest: one is enough; Any: whether there is one, u and v may stay unset.
+    virtual int exactHits(const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted, ExactHit out[4]) const { return 0; }
     /// Encloses everything a ray can hit.
     virtual Bounds bounds() const;
 

@@ -24,8 +24,9 @@ private:
     }
     int profileSide() const override { return r_ > 0 ? 1 : -1; } // the cosine of an arcsine
     Implicit implicit() const override { return {false, 0, 1, 0, -r_ * r_}; }
+    bool wholeProfile() const override { return std::min(phi0_, phi1_) <= -kPi / 2 && std::max(phi0_, phi1_) >= kPi / 2; }
     double vOf(const Vec3d& p) const override {
-        double phi = std::atan2(r_ < 0 ? -p.z : p.z, std::hypot(p.x, p.y));
+        double phi = std::atan2(r_ < 0 ? -p.z : p.z, std::sqrt(p.x * p.x + p.y * p.y));
         return (phi - phi0_) / (phi1_ - phi0_);
     }
     double r_, phi0_, phi1_;

@@ -1,6 +1,7 @@
 #include "geometry/build.h"
 #include "base/limits.h"
 #include "geometry/factories.h"
+#include "geometry/instance_attributes.h"
 #include <cmath>
 #include <cstring>
 
@@ -123,11 +124,15 @@ std::vector<ShapeRef> buildShapes(const scene::Frame& f, Diagnostics& diag, size
             continue;
         }
         if (full(inst.place)) break;
+        const scene::Primitive* last = nullptr; // of a row of primitives with the same attributes
+        scene::AttributesRef attributes;
         for (const scene::PrimitiveRef& p : f.objects[size_t(inst.object)].primitives) {
             if (!p) continue;
             sayMotion(*p, inst.toWorld.moves());
-            add(p, inst.attributes ? inst.attributes : p->attributes, p->toWorld.first() * (inst.toWorld.first() * camera),
-                int(i));
+            if (!last || last->attributes != p->attributes || last->attributesBefore != p->attributesBefore)
+                attributes = instanceAttributes(*p, inst);
+            last = p.get();
+            add(p, attributes, p->toWorld.first() * (inst.toWorld.first() * camera), int(i));
         }
     }
     return out;

@@ -108,6 +108,7 @@ void Interpreter::emit(scene::Primitive p, const Call& call) {
     if (!fitVariables(p, reporter)) return;
     const Block* object = innermost(BlockKind::Object);
     p.attributesInside = object && object->saved.attributes != state.attributes;
+    if (p.attributesInside) p.attributesBefore = object->saved.attributes;
     auto ref = std::make_shared<scene::Primitive>(std::move(p));
     if (capture_) capture_->push_back(std::move(ref));
     else store(std::move(ref));
@@ -173,7 +174,9 @@ void Interpreter::instance(const Call& call) {
             copy->toWorld = compose(p->toWorld, state.ctm);
             if (!p->attributesInside) {
                 copy->attributes = snapshot();
-                copy->attributesInside = innermost(BlockKind::Object)->saved.attributes != state.attributes;
+                const Block* object = innermost(BlockKind::Object);
+                copy->attributesInside = object->saved.attributes != state.attributes;
+                if (copy->attributesInside) copy->attributesBefore = object->saved.attributes;
             }
             store(std::move(copy));
         }

@@ -128,6 +128,7 @@ struct Primitive {
     /// Inside an Object only: attributes were set between ObjectBegin and here, so they hold in every instance.
     /// Otherwise an instance's own attributes count (ri.md 9.2). Never null either way.
     bool attributesInside = false;
+    AttributesRef attributesBefore;    ///< with attributesInside: those at ObjectBegin. What differs from them was set inside
 };
 using PrimitiveRef = std::shared_ptr<const Primitive>;
 

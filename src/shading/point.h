@@ -51,6 +51,7 @@ struct ShadePoint {
     float alpha = 0;
     Vec3 Ps, Ns;                      ///< lights: the point being lit and its normal
     Vec3 viewI;                       ///< lights: the incident vector at the lit point
+    float PsError = 0;                ///< lights: how far Ps may lie off the surface that it is lit on
     const PathRay* ray = nullptr;
     int task = -1;                    ///< index in the slice
 };

@@ -129,6 +129,7 @@ uint64_t Engine::sampleLight(BatchContext& c, const LightLoop& loop, int li, int
         ShadePoint p = c.points[size_t(first + lane)];
         const Vec3 at(row(0, lane), row(1, lane), row(2, lane));
         p.Ps = at;
+        p.PsError = p.surface.pError;
         p.Ns = p.N;
         p.viewI = p.I;
         p.Ci = Color(0);

@@ -188,6 +188,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 if (used == q.size()) q.emplace_back();
                 ShadePoint& p = q[used];
                 p.Ps = lit.P;
+                p.PsError = lit.surface.pError;
                 p.Ns = lit.N;
                 p.viewI = p.I = lit.I;
                 p.E = lit.E;

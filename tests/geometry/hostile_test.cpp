@@ -98,6 +98,47 @@ TEST(Instances, ComposeTransforms) {
     EXPECT_NEAR(length(s[0]->evaluate(0, 0, 0.5).P - Vec3(2, 2, 5)), 0, 1e-6);
 }
 
+// ri.md 9.2: an instance's attributes count, but what was set inside the object holds in every instance.
+TEST(Instances, AttributesSetInsideTheObjectHold) {
+    auto before = std::make_shared<scene::Attributes>();
+    before->color = Color(1, 0, 0);
+    auto inside = std::make_shared<scene::Attributes>(*before);
+    inside->opacity = Color(.5f, .5f, .5f);
+    inside->values["user:x"].numbers = {1};
+    auto call = std::make_shared<scene::ShaderCall>();
+    call->name = "wood";
+    call->toWorld = scene::Transform(translateMatrix(1, 0, 0));
+    inside->displacement = call;
+    auto of = std::make_shared<scene::Attributes>();
+    of->color = Color(0, 1, 0);
+    of->opacity = Color(.25f, .25f, .25f);
+    of->lights = {0, 3};
+    of->surface = std::make_shared<scene::ShaderCall>();
+    scene::Frame f;
+    auto plain = quadric("Sphere", {1, -1, 1, 360}), own = quadric("Sphere", {1, -1, 1, 360});
+    plain->attributes = before;
+    own->attributes = inside;
+    own->attributesInside = true;
+    own->attributesBefore = before;
+    f.objects.push_back({"o", {plain, own, own}});
+    f.instances.push_back({0, scene::Transform(translateMatrix(0, 2, 0)), of, {}});
+    Diagnostics diag;
+    auto s = buildShapes(f, diag);
+    ASSERT_EQ(s.size(), 3u);
+    EXPECT_EQ(&s[0]->attributes(), of.get()) << "nothing was set: the instance's";
+    for (int k : {1, 2}) {
+        const scene::Attributes& a = s[size_t(k)]->attributes();
+        EXPECT_EQ(a.color, Color(0, 1, 0)) << "not set inside: the instance's";
+        EXPECT_EQ(a.opacity, Color(.5f, .5f, .5f));
+        EXPECT_EQ(a.lights, (std::vector<int>{0, 3}));
+        EXPECT_EQ(a.surface, of->surface);
+        ASSERT_TRUE(a.displacement);
+        EXPECT_EQ(a.displacement->toWorld.first(), translateMatrix(1, 2, 0)) << "shader space goes with the instance";
+        EXPECT_EQ(a.values.at("user:x").numbers.at(0), 1);
+    }
+    EXPECT_EQ(&s[1]->attributes(), &s[2]->attributes()) << "shared";
+}
+
 TEST(Solve, QuarticRoots) {
     // (t - 1)(t - 2)(t + 3)(t - 4)
     double c[5] = {-24, 34, -7, -4, 1}, t[4];

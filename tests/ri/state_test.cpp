@@ -208,6 +208,8 @@ TEST(Objects, AreStoredInTheirOwnSpace) {
     EXPECT_EQ(o.primitives[0]->toWorld.first(), translateMatrix(1, 0, 0));
     EXPECT_FALSE(o.primitives[0]->attributesInside);
     EXPECT_TRUE(o.primitives[1]->attributesInside);
+    ASSERT_TRUE(o.primitives[1]->attributesBefore);
+    EXPECT_EQ(o.primitives[1]->attributesBefore->color, Color(1, 0, 0));
     EXPECT_TRUE(c->frame().primitives.empty());
     ASSERT_EQ(c->frame().instances.size(), 2u);
     EXPECT_EQ(c->frame().instances[0].toWorld.first(), translateMatrix(9, 0, 0));

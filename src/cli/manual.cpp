@@ -91,7 +91,11 @@ Json manualJson(const rsl::Shadeop& s) {
                                  {"default", o.defaultText},
                                  {"doc", o.doc}});
     j["examples"] = Json::array();
-    for (const auto& e : s.examples) j["examples"].push_back({{"expression", e.expression}, {"value", e.value}});
+    for (const auto& e : s.examples) {
+        j["examples"].push_back({{"expression", e.expression}, {"value", e.value}});
+        if (!e.setup.empty()) j["examples"].back()["setup"] = e.setup;
+        if (!e.when.empty()) j["examples"].back()["when"] = e.when;
+    }
     if (!s.source.empty()) j["source"] = s.source;
     return j;
 }
@@ -105,7 +109,8 @@ std::string manualText(const rsl::Shadeop& s) {
         for (const auto& o : s.optional) t += "    " + optionalText(o) + "  " + o.doc + "\n";
     }
     if (!s.examples.empty()) t += "\nExamples\n";
-    for (const auto& e : s.examples) t += "    " + e.expression + "  gives  " + e.value + "\n";
+    for (const auto& e : s.examples)
+        t += "    " + (e.setup.empty() ? "" : e.setup + "  ") + e.expression + "  gives  " + e.value + (e.when.empty() ? "" : "  when " + e.when) + "\n";
     t += "\nUsable in: " + contextText(s.contexts) + ".\n";
     t += "Evaluation: " + std::string(loweringText(s.lowering)) + ". Derivatives: " + derivativeText(s.derivative) + ".\n";
     t += "Expected value: " + biasText(s) + ".\n";
@@ -126,7 +131,9 @@ std::string manualMarkdown(const rsl::Shadeop& s, const rsl::Signature* first) {
                  cell(o.defaultText) + " | " + cell(o.doc) + " |\n";
     }
     if (!s.examples.empty()) t += "\nExamples:\n\n";
-    for (const auto& e : s.examples) t += "- `" + e.expression + "` gives `" + e.value + "`\n";
+    for (const auto& e : s.examples)
+        t += "- " + (e.setup.empty() ? "" : "`" + e.setup + "` Then ") + "`" + e.expression + "` gives `" + e.value + "`" +
+             (e.when.empty() ? "" : " when " + e.when) + "\n";
     t += "\nUsable in " + contextText(s.contexts) + "; " + loweringText(s.lowering) + "; derivatives " +
          derivativeText(s.derivative) + "; " + biasText(s) + ".";
     if (!s.source.empty()) t += " Source: " + s.source + ".";

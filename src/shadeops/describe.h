@@ -46,4 +46,7 @@ std::vector<Shadeop> raytracingShadeops();
 std::vector<Shadeop> bmrtShadeops();
 std::vector<Shadeop> publishedShadeops();
 
+/// Adds the examples of examples.cpp.
+void addExamples(std::vector<Shadeop>&);
+
 } // namespace alpenglow::rsl

@@ -56,8 +56,8 @@ struct Signature {
 
 struct OptionalParameter { Type type; std::string name; bool output = false; std::string defaultText, doc; };
 
-/// "radians(180)" gives "3.141593" under `alpenglow eval`.
-struct Example { std::string expression, value; };
+/// "radians(180)" gives "3.141593" under `alpenglow eval`, after the statements of `setup`; or, where `when` says so, in such a scene.
+struct Example { std::string expression, value, setup = {}, when = {}; };
 
 struct Shadeop {
     std::string name;

@@ -80,8 +80,19 @@ void reverse(output $ a[]) {
                                    arguments + ") - $ (1)); }\n");
     add("emit", "Ray tracing", sigs({{"void emit(color light; pairs)"}}), Lowering::Unavailable,
         "Called by area lights of PRMan in their method prelighting(): the light they send without sampling. Lights here are sampled by light().");
-    add("areashadow", "Ray tracing", sigs({{"void areashadow(string map; vector region; pairs)"}, {"void areashadow(string map; pairs)"}}),
-        Lowering::Unavailable, "Called by area lights of PRMan in their method shadowSamples(): darkens samples of a light by what stands in the way.");
+    Shadeop& areashadow =
+        add("areashadow", "Ray tracing",
+            sigs({{"void areashadow(string map; vector region; pairs)"}, {"void areashadow(string map; pairs)"}, {"color areashadow(point lit; float samples)"}}),
+            Lowering::Unavailable,
+            "In lights that ask BMRT's ray server (rayserver.h): how much of the light that L comes from reaches the point that is lit, traced; 1 is all. "
+            "The forms with a map are called by area lights of PRMan in their method shadowSamples() and are not available.");
+    areashadow.source = "BMRT, PRMan";
+    areashadow.rsl = R"(
+color areashadow(point lit; float samples) {
+    extern vector L;
+    return transmission(lit, lit - L, "samples", samples);
+}
+)";
     const std::vector<OptionalParameter> results = {{kC, "diffuseresult", true, "", "light times the diffuse material"},
                                                     {kC, "specularresult", true, "", "light times the specular material"},
                                                     {kC, "unshadoweddiffuseresult", true, "", "the same without shadows"},

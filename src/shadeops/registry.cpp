@@ -72,6 +72,7 @@ std::vector<Shadeop> buildAll() {
             same->examples.insert(same->examples.end(), op.examples.begin(), op.examples.end());
             same->doc += " " + op.doc;
         }
+    addExamples(all);
     std::sort(all.begin(), all.end(), [](const Shadeop& a, const Shadeop& b) { return a.name < b.name; });
     return all;
 }

@@ -111,7 +111,7 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
             else if (solar) part.kind = LightKind::Distant;
             else part.kind = area ? LightKind::Area : LightKind::Point;
             part.cone = blocks[k] == "solar cone";
-            if (part.kind != LightKind::Area && part.kind != LightKind::Environment && !(part.cone && path)) part.samples = 1;
+            if (part.kind != LightKind::Area && !((part.kind == LightKind::Environment || part.cone) && path)) part.samples = 1;
             if (part.kind != LightKind::Area) part.emitter = nullptr;
             if (k == 0) {
                 lights_[li] = std::move(part);

@@ -34,7 +34,7 @@ void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, i
         for (int lane = 0; lane < lanes; ++lane)
             if ((mask >> lane & 1) && first + lane < int(c.points.size())) body(lane);
     };
-    auto visible = [&](const BoundLight& l) { return l.kernel && (l.kind != LightKind::Environment || world_->settings_.hider == Hider::Path); };
+    auto visible = [&](const BoundLight& l) { return bool(l.kernel); };
     if (d.op == "islightcategory") {
         if (loop.light >= 0)
             each([&](int lane) {

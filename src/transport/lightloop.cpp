@@ -87,7 +87,6 @@ int32_t Engine::lightBegin(BatchContext& c, int site, int first, uint64_t mask, 
         for (int i : c.binding->lights) {
             const BoundLight& l = world_->lights_[size_t(i)];
             if (!l.kernel || l.kind == LightKind::Ambient || l.strategy == LightStrategy::Trace) continue;
-            if (l.kind == LightKind::Environment && world_->settings_.hider != Hider::Path) continue; // a sky is a light of path
             const std::string have = categoriesOf(l);
             if (std::none_of(wanted.begin(), wanted.end(), [&](const std::string& w) { return inCategory(w, have); })) continue;
             for (int k = 0; k < l.samples; ++k) loop.lights.push_back({i, k});

@@ -144,6 +144,14 @@ uint64_t Engine::sampleLight(BatchContext& c, const LightLoop& loop, int li, int
             p.P = p.surface.P;
             p.N = p.surface.n;
             f = 1 / (float(kPi) * s.pdf * float(turns)); // cosLight A / (pi d^2 n), design decision 4
+        } else if (light.kind == LightKind::Environment && world_->settings_.hider != Hider::Path) {
+            // One direction, that of the surface: what diffuse() makes of it is what an even sky gives.
+            Vec3 axis(row(3, lane), row(4, lane), row(5, lane));
+            if (!(length(axis) > 0)) axis = dot(p.N, p.I) > 0 ? -p.N : p.N;
+            const Vec3 w = length(axis) > 0 ? normalize(axis) : Vec3(0, 0, 1);
+            p.shape = nullptr;
+            p.P = at + w;
+            p.N = -w;
         } else if (light.kind == LightKind::Environment) {
             // The sky from directions evenly in the cone of the loop.
             if (!p.ray) continue;

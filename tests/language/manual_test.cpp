@@ -89,5 +89,39 @@ TEST(Manual, EveryProgramDoesWhatThePageSays) {
     }
 }
 
+// What `alpenglow info --shadeops NAME` shows: each has at least one example. Those that need nothing but the point of `alpenglow eval`
+// must give the value that stands there; those that need lights, maps or other surfaces must compile.
+TEST(Manual, EveryShadeopHasAnExampleThatIsTrue) {
+    ShaderCompiler::Settings settings;
+    settings.useDefaultCache = false;
+    ShaderCompiler compiler(settings);
+    int ran = 0;
+    for (const Shadeop& op : shadeops()) {
+        if (op.name.rfind("__", 0) == 0) continue; // not for shaders
+        EXPECT_FALSE(op.examples.empty()) << op.name;
+        for (const Example& e : op.examples) {
+            EXPECT_FALSE(e.value.empty()) << op.name;
+            Diagnostics d;
+            if (!e.when.empty()) {
+                bool compiled = false;
+                for (const char* kind : {"surface", "light"})
+                    for (const char* type : {"float", "color", "point", "string"})
+                        compiled |= bool(compiler.loadText(std::string(kind) + " probe(output varying " + type + " r = " + (type[0] == 's' ? "\"\"" : "0") +
+                                                               ";) {\n" + e.setup + "\nr = " + e.expression + ";\n}\n", "probe", d));
+                EXPECT_TRUE(compiled) << e.setup << " " << e.expression;
+                continue;
+            }
+            const Evaluation v = evaluate(compiler, e.setup, e.expression, {}, d);
+            EXPECT_TRUE(v.ok) << e.setup << " " << e.expression;
+            std::string said = v.type.base == Base::Void ? v.printed : v.text;
+            if (!said.empty() && said.back() == '\n') said.pop_back(); // print()
+            for (size_t at; (at = (" " + said + " ").find(" -0 ")) != std::string::npos;) said.erase(at, 1);
+            EXPECT_EQ(said, e.value) << e.setup << " " << e.expression;
+            ++ran;
+        }
+    }
+    EXPECT_GT(ran, 120);
+}
+
 } // namespace
 } // namespace alpenglow::rsl

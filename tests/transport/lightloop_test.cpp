@@ -320,6 +320,21 @@ TEST(Solar, TheSkyKnowsItsDirection) {
     }
 }
 
+// Without rays a sky is one light that faces the surface: diffuse() gets from it what an even sky gives, from either side.
+TEST(Solar, WithoutRaysTheSkyFacesTheSurface) {
+    writeShader("evensky", "light evensky() { solar() Cl = color(2, .5, .25); }\n");
+    surfaceOf("onelight", "    illuminance(P, faceforward(normalize(N), I), PI / 2) Ci += Cl * (normalize(L) . faceforward(normalize(N), I));");
+    surfaceOf("anylight", "    shader all[] = getlights(); illuminance(P) Ci += Cl * arraylength(all) * abs(normalize(L) . normalize(N));");
+    for (const char* look : {"\"matte\" \"float Ka\" 0 \"float Kd\" 1", "\"onelight\"", "\"anylight\""})
+        for (const char* attribute : {"", "Attribute \"light\" \"integer samples\" [4]\n"}) {
+            Scene s(scene(attribute + std::string("LightSource \"evensky\" 1\n"), look), under(Hider::Hidden));
+            const Color c = s.one(kView);
+            EXPECT_NEAR(c.x, 2, 1e-5) << look;
+            EXPECT_NEAR(c.y, .5, 1e-5) << look;
+            EXPECT_NEAR(c.z, .25, 1e-5) << look;
+        }
+}
+
 TEST(LightHandles, LoopsByHand) {
     writeLights();
     const std::string lights = flat(1, 1, 2, category("a")) + flat(2, 4, 3, category("b")) + flat(3, 16, 5, category("a,b"));

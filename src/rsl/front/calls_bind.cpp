@@ -65,10 +65,11 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
         if (e.type.base != Base::Void) readsPoint(e, "what '" + op.name + "' gives");
     }
     if (op.name == "rayinfo") readsPoint(e, "what 'rayinfo' gives"); // the same for the points of one batch, but of a ray
-    if (op.lowering == Lowering::Unavailable && reportedUnavailable_.insert(&op).second)
+    const bool written = op.lowering == Lowering::Unavailable && !op.rsl.empty() && !choice.signature->pairs; // this form has a text
+    if (op.lowering == Lowering::Unavailable && !written && reportedUnavailable_.insert(&op).second)
         sources_.warning(e.place, "'" + op.name + "' is not yet available; " +
                                       (e.type.base == Base::Void ? "the call does nothing" : "its value is 0"));
-    if (op.lowering != Lowering::Rsl) return;
+    if (op.lowering != Lowering::Rsl && !written) return;
     std::pair<std::string, std::string> rename;
     for (const NamedArg& p : e.pairs) {
         // The one shadeop in RSL with a choice of kernels.

@@ -48,7 +48,7 @@ struct Orders {
     }
 
     void demand(Inst* i, uint8_t n) {
-        if (n <= i->order || i->kind == Kind::Bool || i->kind == Kind::String || i->kind == Kind::Matrix) return;
+        if (n <= i->order || i->kind == Kind::Bool || i->kind == Kind::String) return;
         i->order = n;
         work.push_back(i);
     }
@@ -197,7 +197,7 @@ struct Orders {
             case Op::Input:
             case Op::ArrayInput: {
                 Input& in = k.inputs[static_cast<size_t>(i->index)];
-                if (!in.constant) in.order = std::max(in.order, n);
+                if (!in.constant && in.kind != Kind::Matrix) in.order = std::max(in.order, n); // callers give matrices without slopes
                 else i->order = 0; // and is never asked again for less
                 break;
             }

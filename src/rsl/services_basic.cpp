@@ -238,9 +238,9 @@ bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* 
         diagnostics.reportOnce("arraylimit:" + file + std::to_string(s.place.line), d);
     } else if (s.op == "format") {
         each([&](int l) { putString(l, formatSite(s, lanes, in, l)); });
-    } else if (s.op == "printf") {
+    } else if (s.op == "printf" || s.op == "print") {
         each([&](int l) {
-            const std::string t = formatSite(s, lanes, in, l);
+            const std::string t = formatSite(s, lanes, in, l) + (s.op == "print" ? "\n" : "");
             if (print) print(l, t);
             else std::fwrite(t.data(), 1, t.size(), stdout);
         });

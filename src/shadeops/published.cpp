@@ -107,6 +107,19 @@ color areashadow(point lit; float samples) {
         op.contexts = kSurface;
         op.optional = results;
     }
+    Shadeop& shaderinfo = add("shaderinfo", "Messages", each("float string", "float shaderinfo(string name; output $ answer)"), Lowering::Rsl,
+                              "What PRMan tells about the shader that runs (\"pipelinestage\", \"shadername\"). Nothing is known by these names: the result is 0, and "
+                              "answer stays as it was.");
+    shaderinfo.contexts = kAnyContext;
+    shaderinfo.rsl = "float shaderinfo(string name; output float answer) { return 0; }\nfloat shaderinfo(string name; output string answer) { return 0; }\n";
+    const char* const samples = "Called by class lights and materials of PRMan in generateSamples() and evaluateSamples(): directions to an environment, or "
+                                "of the lobe of Ashikhmin and Shirley, and what is known about them.";
+    add("generateSamplesEnv", "Ray tracing", sigs({{"void generateSamplesEnv(string map; point p; normal n; float count; pairs)"}}), Lowering::Unavailable, samples);
+    add("evaluateSamplesEnv", "Ray tracing", sigs({{"void evaluateSamplesEnv(string map; point p; normal n; pairs)"}}), Lowering::Unavailable, samples);
+    add("generateSamplesAS", "Ray tracing",
+        sigs({{"void generateSamplesAS(color response; float count, exponentU, exponentV; vector lobe, tangent, view; pairs)"}}), Lowering::Unavailable, samples);
+    add("evaluateSamplesAS", "Ray tracing",
+        sigs({{"void evaluateSamplesAS(color response; float exponentU, exponentV; vector lobe, tangent, view; pairs)"}}), Lowering::Unavailable, samples);
     return list;
 }
 

@@ -26,6 +26,9 @@ std::vector<Shadeop> stringShadeops() {
     add("printf", sigs({{"void printf(string pattern)"}, {"void printf(string pattern; any value, ...)"}}), Lowering::Service,
         ("Prints to standard output, once per sample, in the order of samples. " + conversions).c_str())
         .pure = false;
+    add("print", sigs({{"void print(string pattern)"}, {"void print(string pattern; any value, ...)"}}), Lowering::Service,
+        "Like printf(), and ends the line.")
+        .pure = false;
     add("concat", sigs({{"string concat(string a, string b, ...)"}}), Lowering::Service, "Joins strings.").examples = {
         {"concat(\"a\", \"b\", \"c\")", "abc"}};
     add("match", sigs({{"float match(string pattern, string subject)"}}), Lowering::Service,

@@ -156,6 +156,7 @@ void Checker::bindExtern(Symbol& declared) {
     Symbol* outer = lookup(declared.name);
     if (!outer)
         if (const auto p = shaderParameters_.find(declared.name); p != shaderParameters_.end()) outer = p->second;
+    if (!outer && (declared.name == "Ps" || declared.name == "Ns")) outer = global(declared.name.substr(0, 1)); // functions for all kinds
     if (!outer && !kind_) {
         // In a function that nobody calls it may be a parameter of a shader to come.
         auto s = std::make_unique<Symbol>(declared);
@@ -217,6 +218,8 @@ Symbol* Checker::tolerated(Expr& e) {
     const bool onSurface = kind_ && (*kind_ == ShaderKind::Surface || *kind_ == ShaderKind::Displacement);
     if (onSurface && (e.text == "Ns" || e.text == "Ps")) {
         const std::string own = e.text.substr(0, 1);
+        const auto isLight = [](const auto& f) { return f->name == "light"; }; // a class that is a light, too: its methods speak so
+        if (std::any_of(shader_->nested.begin(), shader_->nested.end(), isLight)) return global(own);
         sources_.warning(e.place, "'" + e.text + "' belongs to light shaders; '" + own + "' is used");
         return global(own);
     }

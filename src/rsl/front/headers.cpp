@@ -27,6 +27,7 @@ constexpr OtherName kOtherNames[] = {
     {"utility.h", "rmannotes.h"},      {"math.h", "mathutil.h"},           {"mathutils.h", "mathutil.h"},
     {"dpproctext.h", "proctext.h"},    {"proctexh.h", "proctext.h"},      {"oaktexture.h", "oak.h"},
     {"bmrt.h", "rayserver.h"},         {"prman.h", "rayserver.h"},         {"stdrsl.h", "rmannotes.h"},
+    {"pxslrayutil.h", "pxslutil.h"},   {"rfm_blinn.h", "pxslutil.h"},      {"normals.h", "pxslutil.h"},
 };
 
 constexpr std::array<std::string_view, 7> kDialects = {"3delight", "prman", "aqsis", "bmrt", "pixie", "entropy", "air"};

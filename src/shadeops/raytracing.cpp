@@ -9,20 +9,21 @@ constexpr Type kF{Base::Float, 0}, kS{Base::String, 0}, kC{Base::Color, 0}, kV{B
 /// Table 6.10.
 std::vector<OptionalParameter> rayParameters() {
     return {{kS, "label", false, "\"\"", "label of the rays, for rayinfo"},
-            {kS, "subset", false, "\"\"", "groups of objects considered; a leading \"-\" excludes"},
+            {kS, "subset", false, "\"\"", "groups of objects considered; not followed, which is said"},
             {kF, "bias", false, "-1", "offset of the ray's start; negative: attribute trace:bias"},
-            {kS, "hitmode", false, "\"default\"", "primitive, shader or default"},
-            {kS, "hitsides", false, "\"both\"", "front, back, both or reversed"},
+            {kS, "hitmode", false, "\"default\"", "primitive, shader or default; \"primitive\" is not followed, which is said"},
+            {kS, "hitsides", false, "\"both\"", "front, back, both or reversed; both sides are hit, which is said"},
             {kF, "maxdist", false, "1e38", "no intersections beyond this distance"},
             {kF, "samplecone", false, "0", "half angle of the cone of directions, radians"},
             {kF, "samples", false, "1", "number of samples"},
             {kS, "type", false, "\"specular\"", "specular, diffuse or transmission: which visibility counts"},
-            {kC, "weight", false, "1", "importance of the ray (roulette)"},
+            {kC, "weight", false, "1", "importance of the ray; accepted, the renderer has its own"},
             {kF, "minsamples", false, "samples", "accepted and ignored"},
             {kF, "samplebase", false, "0", "accepted and ignored by single rays"},
-            {kS, "excludesubset", false, "\"\"", "groups of objects left out; accepted and ignored"},
-            {kS, "raylabel", false, "\"\"", "another name of label; accepted and ignored"},
-            {kF, "maxhitdist", false, "1e38", "accepted and ignored"}};
+            {kS, "excludesubset", false, "\"\"", "groups of objects left out; not followed, which is said"},
+            {kS, "raytype", false, "\"specular\"", "another name of type; accepted and ignored"},
+            {kS, "raylabel", false, "\"\"", "another name of label"},
+            {kF, "maxhitdist", false, "1e38", "another name of maxdist"}};
 }
 
 /// Table 6.11.
@@ -107,7 +108,7 @@ std::vector<Shadeop> raytracingShadeops() {
                                {"color[] trace(point p; vector r; output float dist; pairs)"},
                                {"float trace(point p; vector r)"}}),
                          Lowering::Request,
-                         "Light arriving at p from direction r, or gathered over a distribution about r. dist: distance of the nearest hit, above 1e30 for none. "
+                         "Light arriving at p from direction r, or gathered over a distribution about r. An array gets the parts of glass-ggx (reflected, refracted) or of hair (one a lobe), each by rays of its own. dist: distance of the nearest hit, above 1e30 for none. "
                          "The float form is that distance, among objects visible to transmission. Current space.");
     trace.optional = trace.optional + distributionParameters() +
                      std::vector<OptionalParameter>{{kS, "environmentmap", false, "\"\"", "light of directions that hit nothing"},
@@ -117,7 +118,7 @@ std::vector<Shadeop> raytracingShadeops() {
                                                     {kF, "samplearealights", false, "0", "1: area lights with strategy \"trace\" are seen"},
                                                     {kC, "transmission", true, "", "transmission along the rays"},
                                                     {kV, "hitnormal", true, "", "ours: normal of the surface at the nearest hit, 0 for none"},
-                                                    {kC, "environmentcontribution", true, "", "part of the environment map"},
+                                                    {kC, "environmentcontribution", true, "", "part of the environment map; an array when the result is one, as the next three"},
                                                     {kC, "unshadowedenvironment", true, "", "the same without geometry"},
                                                     {kC, "arealightcontribution", true, "", "part of the area lights"},
                                                     {kC, "unshadowedarealight", true, "", "the same without geometry"}};

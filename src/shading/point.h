@@ -34,7 +34,9 @@ struct PathRay {
     uint32_t prim = geometry::kNone;
     int32_t label = 0;                ///< interned label of the trace() that sent it
     int cameraSample = -1;            ///< index of the sample whose opacity, depth and AOVs this ray's hit writes; -1: none
-    bool first = true;                ///< first task of its target: writes distance and transmission
+    bool first = true;                ///< one of those that its target asked for: writes distance and transmission
+    Color part{1};                    ///< of a ray that a target asked for, and of what goes on through surfaces: its share of all that were asked
+    Color environment{0};             ///< of trace() with a map: the light where nothing is
 };
 
 using Sched = Scheduler<PathRay>;
@@ -51,7 +53,7 @@ struct ShadePoint {
     float alpha = 0;
     Vec3 Ps, Ns;                      ///< lights: the point being lit and its normal
     Vec3 viewI;                       ///< lights: the incident vector at the lit point
-    float PsError = 0;                ///< lights: how far Ps may lie off the surface that it is lit on
+    const geometry::SurfacePoint* lit = nullptr; ///< lights: the surface at Ps; null when there is none or it is not known
     const PathRay* ray = nullptr;
     int task = -1;                    ///< index in the slice
 };

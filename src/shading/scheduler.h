@@ -96,6 +96,13 @@ public:
         targets_[id].value.normal = normal;
     }
 
+    /// The same, when this hit is nearer than what is known. Order does not matter.
+    void setNearer(TargetId id, float d, const Vec3& normal) {
+        TargetValue& v = targets_[id].value;
+        const auto key = [](const Vec3& n) { return std::array<float, 3>{n.x, n.y, n.z}; };
+        if (d < v.distance || (d == v.distance && key(normal) < key(v.normal))) setDistance(id, d, normal);
+    }
+
     /// Called by a strip (or whoever starts it) when it suspends: makes `count` targets, calls make(i, target) so that the caller
     /// spawns the tasks of each, and keeps the strip until all are complete. A target for which nothing is spawned is complete at once.
     template <class Make> void wait(std::unique_ptr<Strip> strip, int count, Make make) {

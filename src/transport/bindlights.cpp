@@ -30,6 +30,11 @@ float numberOf(const scene::AttributesRef& a, const char* key, float fallback) {
 
 void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const geometry::Shape&)>& visibility) {
     const bool path = settings_.hider == Hider::Path;
+    const auto aovOf = [&](const std::string& name) {
+        int at = 0;
+        for (size_t k = 0; k < settings_.outputs.size() && settings_.outputs[k] != name; ++k) at += outputWidths_[k];
+        return at;
+    };
     std::map<int, std::vector<const geometry::Shape*>> emitters;
     for (const auto& s : shapes_)
         if (s->attributes().areaLight >= 0) emitters[s->attributes().areaLight].push_back(s.get());
@@ -52,6 +57,10 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
             for (const auto& p : l.instance->program->parameters())
                 if (const std::string name = "param:" + p.name; p.output && p.type.base != rsl::Base::String && p.type.array == 0 &&
                                                                 std::find(extra.begin(), extra.end(), name) == extra.end())
+                    extra.push_back(name);
+            // What it gives to the outputs of the surface by outputchannel(), where a display asks for it.
+            for (const auto& [name, type] : l.instance->program->program().channels)
+                if (std::find(settings_.outputs.begin(), settings_.outputs.end(), name) != settings_.outputs.end() && type.base != rsl::Base::String && type.array == 0)
                     extra.push_back(name);
             if (!extra.empty()) {
                 outputs = {"L", "Cl", "Ol", "lit"};
@@ -102,6 +111,10 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
                 if (n.rfind("param:", 0) == 0) {
                     part.values.push_back({n.substr(6), int(i), rsl::ir::components(outputs[i].kind)});
                     part.valueWidth += part.values.back().components;
+                } else if (l.instance->program->program().channels.count(n)) {
+                    part.values.push_back({n, int(i), rsl::ir::components(outputs[i].kind), aovOf(n)});
+                    part.valueWidth += part.values.back().components;
+                    part.channels = lightChannels_ = true;
                 }
             }
             if (part.outCl < 0) continue;

@@ -115,7 +115,16 @@ public:
             put("dist", 1, Color(results[k].distance));
             put("transmission", 3, results[k].transmission);
             put("hitnormal", 3, results[k].normal);
+            if (const TraceSums* sums = ids_.empty() ? nullptr : c_->engine->sumsOf(ids_[k])) {
+                put("transmission", 3, Color(1) - sums->value(TraceSums::Blocked));
+                put("environmentcontribution", 3, sums->value(TraceSums::Environment));
+                put("unshadowedenvironment", 3, sums->value(TraceSums::UnshadowedEnvironment));
+                put("arealightcontribution", 3, sums->value(TraceSums::AreaLight));
+                put("unshadowedarealight", 3, sums->value(TraceSums::UnshadowedAreaLight));
+            }
         }
+        for (TargetId id : ids_) c_->engine->traceSums_.erase(id);
+        ids_.clear();
         c_->bound->kernel->resume(handle_);
         return advance(s, s.takeResuming());
     }
@@ -150,6 +159,10 @@ public:
             s.hold(id);
         });
         const SiteInfo& info = context->bound->sites[site];
+        if (info.trace && info.trace->sums) {
+            ids_ = ids;
+            for (TargetId id : ids) e.traceSums_[id] = {};
+        }
         for (size_t k = 0; k < lanesOf.size(); ++k) {
             if (info.kind == SiteKind::LightVisibility) {
                 e.lightVisibility(*context, info, first + lanesOf[k], in.data(), lanes, lanesOf[k], Color(1), ids[k],
@@ -178,6 +191,7 @@ private:
     std::array<uint32_t, 64> asked_{}; ///< rays that a lane has asked for so far
     float* out_ = nullptr;
     std::vector<int> laneOf_;
+    std::vector<TargetId> ids_;              ///< of the request that it waits for, when that asks for sums
 };
 
 void Engine::lightVisibility(BatchContext& c, const SiteInfo& s, int point, const float* in, int lanes, int lane, Color weight, TargetId target,
@@ -209,9 +223,10 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched) {
             color = Color(0);
         }
         if (ray.first) {
-            sched.setDistance(c.targets[i], length(c.points[i].I), c.points[i].N);
+            sched.setNearer(c.targets[i], length(c.points[i].I), c.points[i].N);
             sched.setTransmission(c.targets[i], Color(1) - opacity);
         }
+        if (TraceSums* sums = sumsOf(c.targets[i])) sums->add(TraceSums::Blocked, ray.part * opacity);
         Color shown = color;
         if (binding.atmosphere && !(binding.matte && ray.type == RayType::Camera)) { // pairs were scaled in shadeGroup
             shown = c.haze[size_t(i)].shown;
@@ -230,6 +245,9 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched) {
                 if (o >= 0)
                     for (int w = 0; w < std::min(width, rsl::ir::components(b.kernel().outputs()[o].kind)); ++w)
                         r.aovs[at + w] += (width == 3 ? ray.weight[w] : luminance(ray.weight)) * b.value(o, w, i);
+                else if (!c.lightChannels.empty())
+                    for (int w = 0; w < width; ++w)
+                        r.aovs[at + w] += (width == 3 ? ray.weight[w] : luminance(ray.weight)) * c.lightChannels[size_t(i) * (c.lightChannels.size() / c.points.size()) + at + size_t(w)];
                 at += size_t(width);
             }
         }
@@ -243,9 +261,11 @@ void Engine::passThrough(const PathRay& ray, TargetId target, const ShadePoint& 
     if (!(most > 0)) return;
     PathRay r = ray;
     r.weight = ray.weight * t;
+    r.part = ray.part * t;
     if (world_->settings_.hider == Hider::Path && ray.bounces > 0 && most < 1) { // a gamble keeps the number of rays linear in depth
         if (random(ray).one(ray.vertex, kPassThrough, 0) >= most) return;
         r.weight = r.weight / most;
+        r.part = r.part / most;
     }
     float travelled = length(p.I);
     r.origin = geometry::offsetOrigin(p.surface, ray.dir);
@@ -264,6 +284,11 @@ void Engine::passThrough(const PathRay& ray, TargetId target, const ShadePoint& 
 }
 
 void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
+    for (const Sched::Task* t : tasks) // the map of a trace()
+        if (const PathRay& r = t->payload; maxComponent(r.environment) > 0) {
+            sched.add(t->target, r.weight * r.environment);
+            if (TraceSums* sums = sumsOf(t->target)) sums->add(TraceSums::Environment, r.weight * r.environment);
+        }
     if (world_->settings_.hider != Hider::Path || tasks.empty()) return;
     std::vector<ShadePoint> q;
     std::vector<const Sched::Task*> of;
@@ -324,6 +349,7 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
             }
             if (r.bounces > 0 && !r.fromTrace) weight *= v.kept(r.type);
             sched.add(met[i].target, r.weight * v.Cl * weight);
+            if (TraceSums* sums = sumsOf(met[i].target); sums && maxComponent(r.part) > 0) sums->add(TraceSums::AreaLight, r.weight * v.Cl * weight);
         }
     }
 }
@@ -388,6 +414,7 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
         ShadePoint& p = c.points[c.rays.size() - 1]; // may hold another point's numbers: all of it is written
         p.ray = &c.rays.back();
         p.Ci = p.Oi = p.Ps = p.Ns = p.viewI = Vec3();
+        p.lit = nullptr;
         p.alpha = 0;
         p.shape = world_->shapes_[hits[i].shape].get();
         world_->accel_->point(hits[i], p.surface);
@@ -443,6 +470,7 @@ void Engine::giveBack(std::shared_ptr<BatchContext> c) {
     c->arena.clear();
     c->haze.clear();
     c->lightDistance.clear();
+    c->lightChannels.clear();
     c->requestSite = -1;
     for (LightLoop& loop : c->loops) loop.reset(-1);
     c->lit = nullptr;

@@ -1,5 +1,6 @@
 // The inside of Integrator, for transport/ only: following a slice of rays, shading what they hit, and what becomes of requests.
 #pragma once
+#include "base/exactsum.h"
 #include "transport/random.h"
 #include "shading/scheduler.h"
 #include "transport/lightloop.h"
@@ -17,7 +18,30 @@ using shading::TargetId;
 struct EmitRecord { int site = 0, first = 0, lanes = 0; uint64_t mask = 0; size_t offset = 0; };
 
 /// A visibility question: adds contribution * transmittance to the target.
-struct ShadowRay { Vec3 origin, dir; float distance; Color contribution; TargetId target; float time; const PathRay* ray = nullptr; };
+struct ShadowRay {
+    Vec3 origin, dir;
+    float distance;
+    Color contribution;
+    TargetId target;
+    float time;
+    const PathRay* ray = nullptr;
+    bool areaLight = false; ///< of a trace() that asks how much area lights give
+};
+
+/// The way from a to b for a shadow ray; where an end is `at`, a shaded point of the surface `s` (null: none), that surface does not block.
+struct Way { Vec3 origin, dir; float distance = 0; };
+Way wayBetween(const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint* s);
+
+/// What a trace() that asks for it is told beside its result. Sums are exact: order does not matter.
+struct TraceSums {
+    enum Part { Blocked, Environment, UnshadowedEnvironment, AreaLight, UnshadowedAreaLight, Count };
+    ExactSum sum[Count][3];
+    void add(Part p, const Color& c) {
+        for (int k = 0; k < 3; ++k)
+            if (std::isfinite(c[k]) && c[k] != 0) sum[p][k].add(c[k]);
+    }
+    Color value(Part p) const { return {sum[p][0].toFloat(), sum[p][1].toFloat(), sum[p][2].toFloat()}; }
+};
 
 /// A surface that a shadow ray met, whose opacity its shader must tell.
 struct OpacityQuery { int binding; accel::Hit hit; const ShadowRay* ray; };
@@ -43,6 +67,11 @@ struct LobeVertex {
     bool ownsTarget = false; ///< a suspended request: the target also gets distance and transmission
     bool followed = true;  ///< its ray may be sent
     bool delta = false;    ///< kind->isDelta(params)
+    bool elsewhere = false; ///< trace() from a point that is not that of the surface: `from`
+    Vec3 from;
+    float bias = -1;       ///< < 0: the hit's own error bound
+    Color tint{1};         ///< of the environment map
+    const TraceSite* trace = nullptr;
     float albedo = 0;      ///< kind->albedo(params)
     float chosen = 1;      ///< probability that the indirect ray of this lobe is followed
 };
@@ -76,6 +105,7 @@ struct BatchContext {
     std::vector<Haze> haze;                    ///< by point; only where a binding has an atmosphere
     std::deque<LightLoop> loops;               ///< Engine::lightLoop()
     const LitSurface* lit = nullptr;           ///< while a light's kernel runs: what it lights
+    std::vector<float> lightChannels;          ///< by point, all AOVs: what lights gave by outputchannel(); empty when none did
     float lightVisibilityDistance = 0;
     std::vector<float> lightDistance;          ///< by lane: to the light sample; 1e38 for distant lights
     // suspended request of the strip that runs now
@@ -117,6 +147,8 @@ public:
     /// What lightBegin() is to know beyond its rows: a category, sent values, outputs of the surface.
     void lightSetup(BatchContext&, int site, int first, uint64_t mask, int lanes, const float* in);
     LightLoop& lightLoop(BatchContext&, int first, int lanes);
+    /// Keeps what a light that ran for a point gives to the AOVs; `values`: BoundLight::values.
+    void keepChannels(BatchContext&, const BoundLight&, int point, const float* values);
     /// Shadeops about lights and their handles: getlight, getlights, islightcategory, and what is called through a handle.
     void lightHandles(BatchContext&, int site, int first, uint64_t mask, int lanes, const float* in, float* out);
     int32_t lightBegin(BatchContext&, int site, int first, uint64_t mask, int lanes, const float* rows);
@@ -128,6 +160,8 @@ public:
                  uint32_t occurrence);
     void lightVisibility(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId, float distance);
     void gather(BatchContext&, Sched&);
+    /// The environment map of a trace() in direction w (unit, current space).
+    Color mapTowards(const TraceSite&, const Vec3& w, float spread) const;
     void flushShadows(Sched&);
     void finishStrip(BatchContext&, int first, int lanes, Sched&);
     const WorldImpl& world() const { return *world_; }
@@ -137,6 +171,13 @@ public:
     static void moveToFacets(BatchContext&);
     void bindCall(rsl::KernelCall&, BatchContext&);
     Random random(const PathRay& r) const { return Random(seed_, r.px, r.py, r.sample); }
+    /// Sums of a target, where its trace() asks for them; else null.
+    TraceSums* sumsOf(TargetId t) {
+        if (traceSums_.empty()) return nullptr;
+        auto i = traceSums_.find(t);
+        return i == traceSums_.end() ? nullptr : &i->second;
+    }
+    std::unordered_map<TargetId, TraceSums> traceSums_;
     std::vector<SampleResult*> results;
     std::vector<LobeVertex> lobes;
     std::vector<ShadowRay> shadows;

@@ -59,6 +59,9 @@ struct LightLoop {
 /// The words of a light's __category.
 std::string categoriesOf(const BoundLight&);
 
+/// The length of a parameter of the light that is an array of numbers; 0 when there is none.
+int elementsOf(const BoundLight&, const std::string& parameter);
+
 /// The strings that a loop sends, as one key of BoundLight::variants: "name\1value\2" of each; "" for none.
 std::string sentStrings(const SiteInfo&);
 

@@ -9,17 +9,6 @@ Color coneNumbers(Vec2 random) {
     return {random.x, d.x, d.y};
 }
 
-namespace {
-/// The origin of a shadow ray that a light sends itself: where it begins at the lit point, off the surface there, to the light's side.
-Vec3 offSurface(const ShadePoint& p, const Vec3& from, const Vec3& dir) {
-    const float error = geometry::roundingError(from) + 2 * p.PsError;
-    if (!(length(from - p.Ps) <= 2 * error)) return from;
-    const float l = length(p.Ns);
-    const Vec3 n = l > 0 && std::isfinite(l) ? p.Ns / l : dir;
-    return from + (dot(n, dir) < 0 ? -n : n) * error + dir * error;
-}
-} // namespace
-
 void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& queries, std::span<LightValue> out, const LightCall& call) {
     if (queries.empty()) return;
     const BoundKernel& bound = call.kernel ? *call.kernel : light.kernel;
@@ -45,9 +34,9 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
                     if (s.kind == SiteKind::Transmission) {
                         auto at = [&](int row) { return c->requestIn[size_t(row) * c->requestLanes + lane]; };
                         Vec3 a(at(s.rows[0]), at(s.rows[0] + 1), at(s.rows[0] + 2)), b(at(s.rows[1]), at(s.rows[1] + 1), at(s.rows[1] + 2));
-                        float d = length(b - a);
                         const ShadePoint& p = c->points[size_t(first + lane)];
-                        t = d > 0 ? transmittance(offSurface(p, a, (b - a) / d), (b - a) / d, d, p.time, p.ray) : Color(1);
+                        const Way way = wayBetween(a, b, p.Ps, p.lit);
+                        t = way.distance > 0 ? transmittance(way.origin, way.dir, way.distance, p.time, p.ray) : Color(1);
                     }
                     for (int r = 0; r < s.resultRowCount; ++r) c->requestOut[size_t(r) * c->requestLanes + lane] = r < 3 ? t[r] : 0;
                 }
@@ -81,10 +70,10 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
         for (int lane = 0; lane < e.lanes; ++lane) {
             if (!(e.mask >> lane & 1) || e.first + lane >= int(queries.size())) continue;
             auto at = [&](int row) { return c->arena[e.offset + size_t(row) * e.lanes + lane]; };
-            Vec3 a(at(3 + s.rows[0]), at(4 + s.rows[0]), at(5 + s.rows[0])), d = Vec3(at(3 + s.rows[1]), at(4 + s.rows[1]), at(5 + s.rows[1])) - a;
-            float l = length(d);
+            const Vec3 a(at(3 + s.rows[0]), at(4 + s.rows[0]), at(5 + s.rows[0])), b(at(3 + s.rows[1]), at(4 + s.rows[1]), at(5 + s.rows[1]));
             const ShadePoint& p = queries[size_t(e.first + lane)];
-            out[e.first + lane].Cl += Color(at(0), at(1), at(2)) * (l > 0 ? transmittance(offSurface(p, a, d / l), d / l, l, p.time, p.ray) : Color(1));
+            const Way way = wayBetween(a, b, p.Ps, p.lit);
+            out[e.first + lane].Cl += Color(at(0), at(1), at(2)) * (way.distance > 0 ? transmittance(way.origin, way.dir, way.distance, p.time, p.ray) : Color(1));
         }
     }
     if (light.intensityScale > 0) // the kernel divided by the squared distance: radiance does not

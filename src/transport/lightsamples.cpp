@@ -3,6 +3,7 @@
 #include "transport/lightloop.h"
 #include "transport/sampling.h"
 #include <bit>
+#include <cstdlib>
 
 namespace alpenglow::transport {
 
@@ -46,19 +47,25 @@ void Engine::evaluateForLoop(BatchContext& c, const LightLoop& loop, int li, int
         evaluateLight(light, q, out, call);
         return;
     }
-    // Sent values: one run for all points that send the same.
+    // Sent values: one run for all points that send the same. Elements of an array go to an array of the same class.
     const SiteInfo& s = c.bound->sites[size_t(loop.setup)];
     if (const std::string strings = sentStrings(s); !strings.empty())
         if (auto v = light.variants.find(strings); v != light.variants.end()) call.kernel = &v->second;
-    std::vector<std::pair<std::string, std::pair<int, int>>> sent; // parameter: first row, components
+    struct Sent { std::string parameter; int row, size, at; }; ///< at: where its numbers begin, of an array's element
+    std::vector<Sent> sent;
     size_t argument = 0;
     for (size_t n = 0; n < s.site->names.size(); ++n) {
         if (!s.site->pairStrings[n].empty()) continue;
         const std::string& name = s.site->names[n];
         const int size = rsl::ir::components(s.site->argKinds[argument++]);
         if (name.rfind("send:light:", 0) != 0) continue;
-        auto have = light.instance->parameters.numbers.find(name.substr(11));
-        if (have != light.instance->parameters.numbers.end() && int(have->second.size()) == size) sent.push_back({name.substr(11), {s.named.at(name), size}});
+        const size_t bracket = name.find('[');
+        const std::string parameter = name.substr(11, bracket == std::string::npos ? bracket : bracket - 11);
+        const int element = bracket == std::string::npos ? 0 : std::atoi(name.c_str() + bracket + 1);
+        auto have = light.instance->parameters.numbers.find(parameter);
+        if (have == light.instance->parameters.numbers.end()) continue;
+        const int all = int(have->second.size());
+        if (bracket == std::string::npos ? all == size : (element + 1) * size <= all && elementsOf(light, parameter) * size == all) sent.push_back({parameter, s.named.at(name), size, element * size});
     }
     auto normal = s.named.find("N");
     auto given = [&](int row, int lane) { return loop.given[size_t(row) * size_t(lanes) + size_t(lane)]; };
@@ -68,8 +75,8 @@ void Engine::evaluateForLoop(BatchContext& c, const LightLoop& loop, int li, int
     std::map<std::vector<uint32_t>, std::vector<int>> groups;
     for (size_t i = 0; i < q.size(); ++i) {
         std::vector<uint32_t> key;
-        for (const auto& [name, rows] : sent)
-            for (int r = 0; r < rows.second; ++r) key.push_back(std::bit_cast<uint32_t>(given(rows.first + r, laneOf[i])));
+        for (const Sent& v : sent)
+            for (int r = 0; r < v.size; ++r) key.push_back(std::bit_cast<uint32_t>(given(v.row + r, laneOf[i])));
         groups[std::move(key)].push_back(int(i));
     }
     for (const auto& [key, members] : groups) {
@@ -77,8 +84,8 @@ void Engine::evaluateForLoop(BatchContext& c, const LightLoop& loop, int li, int
         if (!sent.empty()) {
             block = light.instance->parameters;
             size_t at = 0;
-            for (const auto& [name, rows] : sent)
-                for (int r = 0; r < rows.second; ++r) block.numbers[name][size_t(r)] = std::bit_cast<float>(key[at++]);
+            for (const Sent& v : sent)
+                for (int r = 0; r < v.size; ++r) block.numbers[v.parameter][size_t(v.at + r)] = std::bit_cast<float>(key[at++]);
             call.parameters = &block;
         }
         std::vector<ShadePoint> some;
@@ -117,6 +124,23 @@ void Engine::shadowLoop(const BatchContext& c, const BoundLight& light, int firs
     for (size_t k = 0; k < of.size(); ++k) v[of[k]].Cl *= left[k];
 }
 
+int elementsOf(const BoundLight& light, const std::string& parameter) {
+    for (const rsl::ParameterInfo& p : light.instance->program->parameters())
+        if (p.name == parameter) return p.type.base == rsl::Base::String ? 0 : std::max(p.type.array, 0);
+    return 0;
+}
+
+void Engine::keepChannels(BatchContext& c, const BoundLight& light, int point, const float* values) {
+    size_t width = 0;
+    for (int w : world_->outputWidths_) width += size_t(w);
+    c.lightChannels.resize(c.points.size() * width);
+    for (const BoundLight::Value& v : light.values) {
+        if (v.aov >= 0)
+            for (int r = 0; r < v.components && size_t(v.aov + r) < width; ++r) c.lightChannels[size_t(point) * width + size_t(v.aov + r)] = values[r];
+        values += v.components;
+    }
+}
+
 uint64_t Engine::sampleLight(BatchContext& c, const LightLoop& loop, int li, int turn, int turns, int first, uint64_t mask, int lanes, LightLoop::Kept& kept) {
     const BoundLight& light = world_->lights_[size_t(li)];
     auto row = [&](int r, int lane) { return loop.rows[size_t(r) * size_t(lanes) + size_t(lane)]; };
@@ -129,7 +153,7 @@ uint64_t Engine::sampleLight(BatchContext& c, const LightLoop& loop, int li, int
         ShadePoint p = c.points[size_t(first + lane)];
         const Vec3 at(row(0, lane), row(1, lane), row(2, lane));
         p.Ps = at;
-        p.PsError = p.surface.pError;
+        p.lit = at == c.points[size_t(first + lane)].P ? &c.points[size_t(first + lane)].surface : nullptr;
         p.Ns = p.N;
         p.viewI = p.I;
         p.Ci = Color(0);
@@ -185,6 +209,7 @@ uint64_t Engine::sampleLight(BatchContext& c, const LightLoop& loop, int li, int
     for (size_t i = 0; i < q.size(); ++i) {
         const size_t lane = size_t(laneOf[i]);
         std::copy_n(values.begin() + long(i) * light.valueWidth, light.valueWidth, kept.values.begin() + long(lane) * light.valueWidth);
+        if (light.channels) keepChannels(c, light, first + laneOf[i], kept.values.data() + long(lane) * light.valueWidth);
         if (!v[i].lit) continue;
         const bool sky = light.kind == LightKind::Environment;
         const Vec3 toLight = sky ? q[i].P - q[i].Ps : -v[i].L;

@@ -2,10 +2,12 @@
 
 namespace alpenglow::transport {
 
-extern const LobeKind kDiffuseLobe, kSpecularLobe, kPhongLobe, kUniformLobe, kCosineLobe, kPhongTraceLobe;
+extern const LobeKind kDiffuseLobe, kSpecularLobe, kPhongLobe, kUniformLobe, kCosineLobe, kPhongTraceLobe, kOrenNayarLobe, kBlinnLobe, kAshikhminShirleyLobe,
+    kCookTorranceLobe, kWardLobe, kGlassLobe, kHairLobe;
 
 std::span<const LobeKind* const> lobeKinds() {
-    static constexpr const LobeKind* kAll[] = {&kDiffuseLobe, &kSpecularLobe, &kPhongLobe, &kUniformLobe, &kCosineLobe, &kPhongTraceLobe};
+    static constexpr const LobeKind* kAll[] = {&kDiffuseLobe, &kSpecularLobe, &kPhongLobe, &kUniformLobe, &kCosineLobe, &kPhongTraceLobe, &kOrenNayarLobe,
+                                                 &kBlinnLobe,   &kAshikhminShirleyLobe, &kCookTorranceLobe, &kWardLobe, &kGlassLobe, &kHairLobe};
     return kAll;
 }
 

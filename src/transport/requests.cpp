@@ -1,6 +1,7 @@
 // What becomes of the requests of a batch: lobes are gathered over lights, then rays are sent (design decisions 2 and 3).
 #include "transport/engine.h"
 #include "shadeops/specular.h"
+#include "texture/lookup.h"
 #include "transport/sampling.h"
 
 namespace alpenglow::transport {
@@ -9,6 +10,21 @@ namespace {
 Vec3 unit(Vec3 v, Vec3 fallback) {
     float l = length(v);
     return l > 0 && std::isfinite(l) ? v / l : fallback;
+}
+/// Parameters of the distributions of bsdf(), as given or as they are when not (rsl.md 12.4).
+template <class Row> std::shared_ptr<const DistributionParams> distributionOf(const SiteInfo& s, const Row& f) {
+    const TraceSite& t = *s.trace;
+    auto m = std::make_shared<DistributionParams>();
+    auto triple = [&](int row) { return Color(f(row), f(row + 1), f(row + 2)); };
+    if (t.roughness >= 0) m->roughness = f(t.roughness);
+    m->roughnessv = t.roughnessv >= 0 ? f(t.roughnessv) : m->roughness;
+    if (t.udir >= 0) m->udir = triple(t.udir);
+    if (t.absorption >= 0) m->absorption = triple(t.absorption);
+    m->eta = Color(s.lobe->name == "glass-ggx" ? 1.5f : s.lobe->name == "hair" ? 1.55f : 0.f);
+    for (size_t k = 0; k < t.eta.size() && k < 2; ++k) (k ? m->k : m->eta) = t.eta[k].second == 1 ? Color(f(t.eta[k].first)) : triple(t.eta[k].first);
+    for (int row : t.lobes) m->lobes.push_back(f(row));
+    m->part = t.part;
+    return m;
 }
 } // namespace
 
@@ -47,29 +63,42 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         l.params.axis = unit(v(1), p.surface.n);
         l.params.wo = unit(vector(s.rowWo, l.params.wo), l.params.wo);
         l.params.a = s.lobe->name == "slphong" ? number(s.rowExponent, 1000) : number(s.rowCone, 0);
+        l.trace = s.trace.get();
+        if (s.lobe->distribution) l.params.more = distributionOf(s, f);
         if (s.rowHorizon >= 0) {
             l.params.horizon = unit(vector(s.rowHorizon, p.surface.n), p.surface.n);
             l.params.hasHorizon = true;
         }
         l.type = s.type;
         l.lights = number(s.rowLights, 0) != 0;
+        l.bias = number(s.trace->bias, -1);
+        if (s.trace->map) l.tint = vector(s.trace->tint, Color(1));
+        // From a point that is not the surface's no light is sampled: rays that meet an emitter count in full.
+        if (const Vec3 from = v(0), away = from - p.P; !p.surface.displaced && length(away) > geometry::roundingError(p.P) + 4 * p.surface.pError) {
+            l.elsewhere = true;
+            l.from = from;
+        }
         l.deltaLights = false;
         l.lobeOfShader = false;
-        l.maxDistance = number(s.rowMaxDistance, 1e38f);
+        l.maxDistance = std::min(number(s.rowMaxDistance, 1e38f), number(s.trace->maxHit, 1e38f));
         l.samples = std::clamp(int(number(s.rowSamples, 1)), 1, 4096);
         break;
     case SiteKind::Transmission: {
-        Vec3 a = v(0), d = v(1) - a;
-        float distance = length(d);
-        if (!(distance > 0)) { shadows.push_back({a, Vec3(0, 0, 1), 0, weight, target, p.time, p.ray}); return; }
-        d = d / distance;
-        float offset = geometry::roundingError(a) + p.surface.pError * 2;
-        shadows.push_back({a + d * offset, d, std::max(0.f, distance - 2 * offset), weight, target, p.time, p.ray});
+        const Way way = wayBetween(v(0), v(1), p.P, &p.surface);
+        shadows.push_back({way.origin, way.dir, way.distance, weight, target, p.time, p.ray});
         return;
     }
     default: return;
     }
     lobes.push_back(l);
+}
+
+Color Engine::mapTowards(const TraceSite& t, const Vec3& w, float spread) const {
+    const Vec3 at(transformVector(t.toMap, Vec3d(w)));
+    const Basis b(at / length(at));
+    float v[3] = {};
+    texture::environment(t.map, world_->textures_->latLong(), 0, 3, at, b.t * spread, b.u * spread, {}, v);
+    return {v[0], v[1], v[2]};
 }
 
 // Gathers light over the lobes collected for this batch, then sends rays.
@@ -144,7 +173,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
     // Whether a lobe asks this light for samples. trace() knows emitters only, and not those that are illuminance's.
     auto samples = [](const LobeVertex& l, const BoundLight& light) {
         bool area = light.kind == LightKind::Area;
-        return l.lights && (area || l.deltaLights) && (l.lobeOfShader || light.strategy != LightStrategy::Illuminance);
+        return l.lights && !l.elsewhere && (area || l.deltaLights) && (l.lobeOfShader || light.strategy != LightStrategy::Illuminance);
     };
 
     // Light samples: every light for every point with lobes that want it, in batches a light.
@@ -188,7 +217,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 if (used == q.size()) q.emplace_back();
                 ShadePoint& p = q[used];
                 p.Ps = lit.P;
-                p.PsError = lit.surface.pError;
+                p.lit = &lit.surface;
                 p.Ns = lit.N;
                 p.viewI = p.I = lit.I;
                 p.E = lit.E;
@@ -238,7 +267,10 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 };
                 call.lit = &lit;
             }
+            std::vector<float> values(light.channels ? used * size_t(light.valueWidth) : 0);
+            if (light.channels) call.values = &values;
             evaluateLight(light, q, value, call);
+            for (size_t k = 0; k < used && light.channels; ++k) keepChannels(c, light, pointOf[k], values.data() + long(k) * light.valueWidth);
             for (size_t k = 0; k < used; ++k) {
                 const LightValue& v = value[k];
                 if (!v.lit || !(maxComponent(v.Cl) > 0)) continue;
@@ -253,6 +285,10 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     float kept = l.lobeOfShader ? v.kept(l.type) : 1;
                     Color contribution = l.weight * c.rays[l.point].weight * v.Cl;
                     if (l.ownsTarget) contribution = l.weight * v.Cl;
+                    if (l.kind->colour) contribution *= l.kind->colour(l.params, w) / fcos;
+                    const bool sums = l.trace && l.trace->sums;
+                    if (sums)
+                        if (TraceSums* of = sumsOf(l.target)) of->add(TraceSums::UnshadowedAreaLight, contribution * (fcos / (drawn[k].pdf * chance[k])));
                     if (area) {
                         float other = 0; // the density with which the lobe's own ray would have come here
                         if (!set.lightOnly && l.chosen > 0 && (drawn[k].visibility & visibilityBit(l.type)))
@@ -268,7 +304,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     if (area) {
                         Vec3 end = geometry::offsetOrigin(q[k].surface, -w);
                         stop = length(end - o);
-                        shadows.push_back({o, unit(end - o, w), stop * (1 - 1e-6f), contribution, l.target, p.time, p.ray});
+                        shadows.push_back({o, unit(end - o, w), stop * (1 - 1e-6f), contribution, l.target, p.time, p.ray, sums});
                     } else {
                         shadows.push_back({o, w, stop < 1e30f ? stop * (1 - 1e-5f) : stop, contribution, l.target, p.time, p.ray});
                     }
@@ -305,8 +341,15 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 if (!l.kind->sample(l.params, rng.pair(from.vertex, l.site, occurrence), w)) continue;
                 bool delta = l.delta;
                 float pdf = delta ? 0 : l.kind->pdf(l.params, w);
-                float f = delta ? l.albedo : pdf > 0 ? (l.kind->pdf == l.kind->fcos ? 1 : l.kind->fcos(l.params, w) / pdf) : 0;
-                Color through = l.weight * (f * scale / count);
+                Color f(0);
+                if (delta) f = Color(l.albedo);
+                else if (pdf > 0) f = l.kind->pdf == l.kind->fcos ? Color(1) : lobeValue(*l.kind, l.params, w) / pdf;
+                Color through = l.weight * (f * scale / float(count));
+                Color environment(0);
+                if (l.trace && l.trace->map) {
+                    environment = l.tint * mapTowards(*l.trace, w, from.spread);
+                    if (TraceSums* of = l.trace->sums ? sumsOf(l.target) : nullptr) of->add(TraceSums::UnshadowedEnvironment, through * environment);
+                }
                 Color weight = l.ownsTarget ? through : from.weight * through;
                 if (!(maxComponent(weight) > 0) && !(std::min({weight.x, weight.y, weight.z}) < 0) && !l.ownsTarget) continue;
                 const uint32_t vertex = childVertex(from.vertex, l.site, occurrence);
@@ -336,23 +379,27 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 r.bounces = int16_t(bounces);
                 if (l.type == RayType::Diffuse) ++r.diffuseBounces;
                 else ++r.specularBounces;
-                r.origin = sourcePoint(pi, w);
+                r.origin = l.elsewhere ? l.from : sourcePoint(pi, w);
+                if (l.bias >= 0) r.origin = (l.elsewhere ? l.from : p.P) + w * l.bias;
+                else if (l.elsewhere) r.origin += w * geometry::roundingError(l.from);
                 r.dir = w;
                 r.maxDistance = l.maxDistance;
                 r.type = l.type;
                 r.label = c.bound->sites[l.site].label;
-                bool sampled = l.lights && !delta && set.direct && !set.bsdfOnly && path;
-                bool sampledElsewhere = l.lights && !delta && set.direct && !set.bsdfOnly && !path && l.ownsTarget;
-                r.lobePdf = sampled || sampledElsewhere ? pdf * l.chosen : l.lights && !delta && !path && set.direct && !set.bsdfOnly ? pdf : -1;
+                r.environment = environment;
+                r.part = l.ownsTarget ? Color(1.f / float(count)) : Color(0);
+                bool sampled = l.lights && !l.elsewhere && !delta && set.direct && !set.bsdfOnly && path;
+                bool sampledElsewhere = l.lights && !l.elsewhere && !delta && set.direct && !set.bsdfOnly && !path && l.ownsTarget;
+                r.lobePdf = sampled || sampledElsewhere ? pdf * l.chosen : l.lights && !l.elsewhere && !delta && !path && set.direct && !set.bsdfOnly ? pdf : -1;
                 r.wantsLight = true;
                 r.fromTrace = !l.lobeOfShader;
                 r.lobeOrigin = p.P;
-                r.lobeBinding = l.lights && !delta ? c.bindings[pi] : -1;
+                r.lobeBinding = l.lights && !l.elsewhere && !delta ? c.bindings[pi] : -1;
                 r.width = from.width + from.spread * length(p.I);
                 r.spread = std::max(from.spread, l.kind->spread(l.params) * 0.5f);
                 r.shape = geometry::kNone;
                 r.cameraSample = -1;
-                r.first = l.ownsTarget && k == 0;
+                r.first = l.ownsTarget;
                 counters.depthMax = std::max(counters.depthMax, bounces);
                 ++counters.depthSum; // over camera rays: the mean number of bounces
             }

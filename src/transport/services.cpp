@@ -24,6 +24,58 @@ SiteKind kindOf(const std::string& op) {
     return i == kinds.end() ? SiteKind::Other : i->second;
 }
 
+/// How many rows the argument has that begins at `row`.
+size_t rowsOf(const SiteInfo& i, int row) {
+    int at = 0;
+    for (auto kind : i.site->argKinds) {
+        if (at == row) return size_t(rsl::ir::components(kind));
+        at += rsl::ir::components(kind);
+    }
+    return 0;
+}
+
+/// The parameters of a trace() beyond the common ones. What is not followed is said once.
+std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKernel& k, WorldImpl& world) {
+    auto t = std::make_shared<TraceSite>();
+    const SourcePlace place{s.place.file < int(k.files().size()) ? k.files()[size_t(s.place.file)] : "", s.place.line, s.place.column};
+    auto row = [&](const char* name) { auto f = i.named.find(name); return f == i.named.end() ? -1 : f->second; };
+    auto text = [&](const char* name) { auto f = i.text.find(name); return f == i.text.end() ? std::string() : f->second; };
+    auto said = [&](const std::string& what, const std::string& message) {
+        world.diagnostics_->reportOnce("trace:" + what + place.file + std::to_string(place.line), {Severity::Warning, Rie::Unimplement, place, "trace(): " + message, {}, {}});
+    };
+    t->udir = row("udir");
+    t->roughness = row("roughness");
+    t->roughnessv = row("roughnessv");
+    t->absorption = row("absorption");
+    t->bias = row("bias");
+    t->tint = row("environmenttint");
+    t->maxHit = row("maxhitdist");
+    const std::string part = text("__part");
+    if (!part.empty()) t->part = part[0] - '0';
+    std::map<int, int> ends; // by row: where the value ends
+    int at = 0;
+    for (auto kind : s.argKinds) {
+        const int begin = at;
+        ends[begin] = at += rsl::ir::components(kind);
+    }
+    for (const char* name : {"eta", "eta[0]", "eta[1]"})
+        if (const int r = row(name); r >= 0) t->eta.push_back({r, std::min(3, ends[r] - r)});
+    for (int n = 0; row(("lobeparameters[" + std::to_string(n) + "]").c_str()) >= 0; ++n) t->lobes.push_back(row(("lobeparameters[" + std::to_string(n) + "]").c_str()));
+    for (const char* name : {"distribution", "bsdf", "type", "label", "environmentmap", "environmentspace"})
+        if (row(name) >= 0) said(name, "\"" + std::string(name) + "\" must be known when the shader is compiled; it is taken as not given");
+    for (const char* name : {"subset", "excludesubset"})
+        if (row(name) >= 0 || !text(name).empty()) said(name, "\"" + std::string(name) + "\" is not followed; all objects are considered");
+    if (const std::string mode = text("hitsides"); row("hitsides") >= 0 || (!mode.empty() && mode != "both")) said("hitsides", "\"hitsides\" is not followed; both sides are hit");
+    if (const std::string mode = text("hitmode"); mode == "primitive") said("hitmode", "\"hitmode\" \"primitive\" is not followed; the shader is run");
+    if (const std::string map = text("environmentmap"); !map.empty()) {
+        t->map = world.textures_->open(map, world.settings_.texturePaths, place);
+        if (const std::string space = text("environmentspace"); !space.empty()) world.matrix("current", space, t->toMap);
+    }
+    for (const char* name : {"transmission", "environmentcontribution", "unshadowedenvironment", "arealightcontribution", "unshadowedarealight"})
+        t->sums |= i.resultRows.count(name) > 0;
+    return t;
+}
+
 } // namespace
 
 BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed, bool path, WorldImpl* world) {
@@ -79,7 +131,8 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
                      "trace(): distribution \"" + distribution + "\" is not yet available; one ray along R is traced", {}, {}});
             }
             std::string type = text("type", "specular");
-            if (auto f = i.text.find("label"); f != i.text.end()) i.label = rsl::internString(f->second);
+            i.label = rsl::internString(text("label", text("raylabel", "").c_str()));
+            i.trace = traceSite(i, s, *k, *world);
             i.type = type == "diffuse" ? RayType::Diffuse : type == "transmission" ? RayType::Transmission : RayType::Specular;
         }
         b.sites.push_back(std::move(i));
@@ -188,6 +241,7 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
             each([&](int lane, const ShadePoint& p) {
                 ShadePoint x = p;
                 x.Ps = p.P;
+                x.lit = &p.surface;
                 x.Ns = p.N;
                 x.shape = nullptr;
                 q.push_back(x);
@@ -221,6 +275,17 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
                     const size_t row = size_t(setup->named.at("send:light:" + name));
                     for (size_t r = 0; r < given->second.size() && (row + r + 1) * size_t(lanes) <= loop.given.size(); ++r)
                         v.push_back(loop.given[(row + r) * size_t(lanes) + size_t(lane)]);
+                } else if (setup && setup->named.count("send:light:" + name + "[0]") && given != l.instance->parameters.numbers.end()) {
+                    v = given->second; // an array that was sent: what it does not reach stays
+                    size_t to = 0;
+                    const size_t elements = size_t(elementsOf(l, name));
+                    for (int n = 0; elements > 0; ++n) {
+                        const auto row = setup->named.find("send:light:" + name + "[" + std::to_string(n) + "]");
+                        if (row == setup->named.end()) break;
+                        const size_t size = rowsOf(*setup, row->second);
+                        if (size * elements != v.size()) break;
+                        for (size_t r = 0; r < size && to < v.size(); ++r) v[to++] = loop.given[(size_t(row->second) + r) * size_t(lanes) + size_t(lane)];
+                    }
                 } else if (setup && setup->text.count("send:light:" + name) && l.instance->parameters.strings.count(name)) {
                     return answer(lane, nullptr, &setup->text.at("send:light:" + name));
                 } else {

@@ -18,6 +18,21 @@ accel::Ray shadowRay(const ShadowRay& s) {
 Color between0And1(const Color& c) { return {std::clamp(c.x, 0.f, 1.f), std::clamp(c.y, 0.f, 1.f), std::clamp(c.z, 0.f, 1.f)}; }
 } // namespace
 
+Way wayBetween(const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint* s) {
+    const Vec3 all = b - a;
+    const float distance = length(all);
+    if (!(distance > 0)) return {a, Vec3(0, 0, 1), 0};
+    const Vec3 d = all / distance;
+    const auto end = [&](const Vec3& x, const Vec3& away) {
+        const float near = geometry::roundingError(x);
+        if (s && length(x - at) <= near + 4 * s->pError) return geometry::offsetOrigin(*s, away, length(at - s->P) + length(x - at));
+        return x + away * near;
+    };
+    const Vec3 from = end(a, d), to = end(b, -d), left = to - from;
+    const float l = length(left);
+    return dot(left, d) > 0 ? Way{from, left / l, l} : Way{from, d, 0};
+}
+
 void Engine::opacities(std::span<const OpacityQuery> met, std::span<Color> out) {
     BatchContext c;
     c.engine = this;
@@ -137,7 +152,11 @@ void Engine::flushShadows(Sched& s) {
     if (shadows.empty()) return;
     transmitted_.resize(shadows.size());
     transmittances(shadows, transmitted_);
-    for (size_t i = 0; i < shadows.size(); ++i) s.add(shadows[i].target, shadows[i].contribution * transmitted_[i]);
+    for (size_t i = 0; i < shadows.size(); ++i) {
+        s.add(shadows[i].target, shadows[i].contribution * transmitted_[i]);
+        if (shadows[i].areaLight)
+            if (TraceSums* sums = sumsOf(shadows[i].target)) sums->add(TraceSums::AreaLight, shadows[i].contribution * transmitted_[i]);
+    }
     shadows.clear();
 }
 

@@ -68,6 +68,8 @@ int SurfaceBinder::bind(const geometry::ShapeRef& shape) {
     add(b.surface.get());
     add(a.displacement.get());
     add(a.atmosphere.get());
+    add(a.interior.get());
+    add(a.exterior.get());
     for (const auto& [handle, call] : a.coshaders) add(call.get());
     for (int l : a.lights) add(l);
     add(-1);

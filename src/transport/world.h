@@ -26,6 +26,17 @@ inline uint32_t visibilityBit(RayType t) {
     }
 }
 
+/// Where the rarer parameters of a trace() lie.
+struct TraceSite {
+    int udir = -1, roughness = -1, roughnessv = -1, absorption = -1, bias = -1, tint = -1, maxHit = -1; ///< rows, or -1
+    std::vector<std::pair<int, int>> eta; ///< row, components
+    std::vector<int> lobes;               ///< rows of the elements of "lobeparameters"
+    int part = -1;                        ///< of the form that gives an array
+    texture::Handle map = nullptr;        ///< "environmentmap"
+    Matrix toMap;                         ///< current to "environmentspace"
+    bool sums = false;                    ///< it asks for transmission or for parts of the result
+};
+
 /// What a call site of a kernel means to the engine, worked out once per kernel.
 enum class SiteKind : uint8_t {
     Unknown, Ambient, Diffuse, Specular, Phong, Trace, Transmission, LightVisibility, ///< requests
@@ -42,6 +53,7 @@ struct SiteInfo {
     const LobeKind* lobe = nullptr;            ///< Trace: the distribution; the lobe of a lighting shadeop
     bool standard = false;                     ///< specularstd, not specular
     int rowWo = -1, rowExponent = -1, rowCone = -1, rowHorizon = -1, rowLights = -1, rowMaxDistance = -1, rowSamples = -1; ///< of `named`
+    std::shared_ptr<const struct TraceSite> trace; ///< Trace: what only some calls use
     RayType type = RayType::Specular;
     int32_t label = 0;                         ///< Trace: interned, for rayinfo()
 };
@@ -80,10 +92,11 @@ struct BoundLight {
     std::shared_ptr<Emitter> emitter;          ///< Area
     int outL = -1, outCl = -1, outOl = -1, outLit = -1;
     /// Output parameters, whose values the kernel gives: name, output, components; then what all of them take.
-    struct Value { std::string name; int output, components; };
+    struct Value { std::string name; int output, components, aov = -1; }; ///< aov: where an outputchannel() lies among the AOVs
     std::vector<Value> values;
     int valueWidth = 0;
     bool asksSurface = false;                  ///< its kernel asks for parameters of the surface that it lights
+    bool channels = false;                     ///< some of `values` are AOVs
     bool cone = false;                         ///< Distant: solar() with an angle, which path samples
     bool shadows = false;                      ///< outside of path: its light is traced (Attribute "light" "shadows" "on")
     /// Kernels for strings that a surface sends: by sentStrings() of the loop.
@@ -187,6 +200,7 @@ public:
     mutable std::mutex imagerMutex_;
     std::vector<std::string> lightMessages_;   ///< parameters of surfaces that light shaders ask for, sorted
     int maxDepth_ = 32;
+    bool lightChannels_ = false;               ///< lights give AOVs by outputchannel()
     bool footprints_ = false;                  ///< some kernel reads du or dv
     bool allOpaque_ = true;                    ///< no opacity below 1: shadow rays need no shading
     std::vector<std::vector<int>> sampledLights_; ///< by SurfaceBinding::lightList: lights that get samples, in order

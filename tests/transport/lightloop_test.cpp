@@ -395,7 +395,7 @@ TEST(Illuminance, PairsThatMeanNothingAreSaid) {
     const struct { const char* body; const char* said; } cases[] = {
         {"illuminance(P, \"lightcache\", \"maybe\") Ci += Cl;", "\"reuse\" or \"refresh\""},
         {"illuminance(P, \"shadow\", 1) Ci += Cl;", "means nothing to illuminance"},
-        {"float a[2] = {1, 2}; illuminance(P, \"send:light:c\", a) Ci += Cl;", "only single values can be sent"},
+        {"string a[2] = {\"x\", \"y\"}; illuminance(P, \"send:light:c\", a) Ci += Cl;", "it is not sent"},
         {"string s = format(\"%f\", xcomp(P)); illuminance(P, \"send:light:mode\", s) Ci += Cl;", "it is not sent"},
         {"Ci = 1 + islightcategory(\"a\");", "there is none here"}};
     for (const auto& c : cases) {

@@ -172,8 +172,8 @@ void Builder::copyResizable(Inst* to, const Expr& from) {
             emit(Op::ArrayStore, Kind::None, {to, constant(static_cast<float>(i)), all[static_cast<size_t>(i) + 1]});
         return;
     }
-    if (from.kind == ExprKind::ShadeopCall && from.shadeop && from.shadeop->name == "bsdf") {
-        const std::vector<Inst*> parts = bsdf(from);
+    if (from.kind == ExprKind::ShadeopCall && from.shadeop && (from.shadeop->name == "bsdf" || from.shadeop->name == "trace")) {
+        const std::vector<Inst*> parts = from.shadeop->name == "bsdf" ? bsdf(from) : traceParts(from);
         setLength(limitLength(to, constant(static_cast<float>(parts.size()))));
         for (size_t i = 0; i < parts.size(); ++i)
             emit(Op::ArrayStore, Kind::None, {to, constant(static_cast<float>(i)), coerce(parts[i], to->element)});

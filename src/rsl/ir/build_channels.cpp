@@ -40,14 +40,8 @@ Inst* Builder::outputChannel(const Expr& e) {
     Inst* value = expr(*e.args[1]);
     if (value->kind == Kind::Bool) value = coerce(value, Kind::Float);
     place_ = e.place;
-    bool kept = false;
     if (name->op != Op::ConstString) {
         warn(e.place, "outputchannel() needs a name that is known when the shader is compiled; it does nothing");
-        return constant(0);
-    }
-    bareName(name->text, kept);
-    if (shader_.kind == ShaderKind::Light && !kept) {
-        warn(e.place, "outputchannel() of a light to the surface's outputs is not yet available; it does nothing");
         return constant(0);
     }
     const int n = channelSlot(name->text, value->kind);

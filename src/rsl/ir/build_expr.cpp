@@ -133,6 +133,11 @@ void Builder::copyArray(Inst* to, const Expr& from) {
         for (int i = 0; i < n; ++i) store(i, i < static_cast<int>(parts.size()) ? parts[static_cast<size_t>(i)] : zero(to->element));
         return;
     }
+    if (from.kind == ExprKind::ShadeopCall && from.shadeop && from.shadeop->name == "trace") {
+        const std::vector<Inst*> parts = traceParts(from);
+        for (int i = 0; i < n; ++i) store(i, i < static_cast<int>(parts.size()) ? parts[static_cast<size_t>(i)] : zero(to->element));
+        return;
+    }
     if (from.kind == ExprKind::ShadeopCall && from.shadeop && from.shadeop->name == "getlights") {
         const std::vector<Inst*> all = lightHandles(from);
         for (int i = 0; i < n; ++i) store(i, i + 1 < static_cast<int>(all.size()) ? all[static_cast<size_t>(i) + 1] : zero(to->element));

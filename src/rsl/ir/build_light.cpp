@@ -43,7 +43,13 @@ void Builder::illuminance(const Stmt& s) {
         if (!p.value) continue;
         if (p.name.rfind("send:light:", 0) == 0) {
             if (p.value->type.array) {
-                warn(p.place, "\"" + p.name + "\" sends an array; only single values can be sent");
+                if (p.value->type.base == Base::String) {
+                    warn(p.place, "\"" + p.name + "\" sends an array of strings; it is not sent");
+                    continue;
+                }
+                Inst* a = array(*p.value);
+                for (int n = 0; n < arrayLength(a); ++n)
+                    give(p.name + "[" + std::to_string(n) + "]", emit(Op::ArrayLoad, a->element, {a, constant(static_cast<float>(n))}), p.value->type.element());
                 continue;
             }
             Inst* v = expr(*p.value);
@@ -160,17 +166,24 @@ void Builder::illuminance(const Stmt& s) {
                 Site get;
                 get.op = "lightsource";
                 get.strings = {p->name.substr(6)};
-                get.resultKinds = {Kind::Float, kindOf(p->value->type)};
-                get.resultNames = {"", "value"};
                 get.resultType = {Base::Float, 0};
                 get.shadeop = findShadeop("lightsource");
-                if (p->value->type.array) {
-                    warn(p->place, "\"" + p->name + "\" asks for an array; only single values can be asked for");
-                    continue;
+                Inst* whole = p->value->type.array ? array(*p->value) : nullptr;
+                const int count = whole ? arrayLength(whole) : 1;
+                get.resultKinds = {Kind::Float};
+                get.resultNames = {""};
+                for (int n = 0; n < count; ++n) {
+                    get.resultKinds.push_back(kindOf(p->value->type.element()));
+                    get.resultNames.push_back(whole ? "value[" + std::to_string(n) + "]" : "value");
                 }
                 const std::vector<Inst*> v = call(Op::Service, std::move(get), {});
                 Inst* found = emit(Op::NotEqual, Kind::Bool, {v[0], constant(0)});
-                assign(*p->value, emit(Op::Select, v[1]->kind, {found, v[1], coerce(expr(*p->value), v[1]->kind)}));
+                for (int n = 0; whole && whole->op == Op::ArrayNew && n < count; ++n) {
+                    Inst* at = constant(static_cast<float>(n));
+                    Inst* element = v[static_cast<size_t>(n) + 1];
+                    emit(Op::ArrayStore, Kind::None, {whole, at, emit(Op::Select, element->kind, {found, element, emit(Op::ArrayLoad, whole->element, {whole, at})})});
+                }
+                if (!whole) assign(*p->value, emit(Op::Select, v[1]->kind, {found, v[1], coerce(expr(*p->value), v[1]->kind)}));
             }
             statements(s.body, 0);
             return std::vector<Inst*>{};

@@ -47,28 +47,63 @@ Inst* Builder::foldString(const std::string& op, const std::vector<Inst*>& args)
     return leaves_.string(out);
 }
 
-Inst* Builder::service(const Expr& e, Op kind) {
+/// The form of trace() that gives an array: a request for each part of the distribution.
+std::vector<Inst*> Builder::traceParts(const Expr& e) {
+    std::string name = "uniform";
+    size_t lobes = 3;
+    for (const NamedArg& p : e.pairs) {
+        if (!p.value) continue;
+        if (p.name == "distribution" || p.name == "bsdf") {
+            const Inst* v = expr(*p.value, Kind::String);
+            name = v->op == Op::ConstString ? v->text : "";
+        } else if (p.name == "lobeparameters" && p.value->type.array) {
+            lobes = static_cast<size_t>(arrayLength(array(*p.value)) / 4);
+        }
+    }
+    const size_t count = name == "glass-ggx" ? 2 : name == "hair" ? std::clamp<size_t>(lobes, 1, 4) : 1;
+    if (count == 1 && name != "hair") {
+        warn(e.place, name.empty() ? "trace() with parts needs a distribution that is known when the shader is compiled; all is in the first"
+                                   : "trace(): \"" + name + "\" has no parts; all is in the first");
+        return {service(e, Op::Request)};
+    }
+    std::vector<Inst*> parts;
+    for (size_t i = 0; i < count; ++i) parts.push_back(service(e, Op::Request, static_cast<int>(i)));
+    return parts;
+}
+
+/// `part`: of a call that gives an array; -1: all in one.
+Inst* Builder::service(const Expr& e, Op kind, int part) {
     const Shadeop& op = *e.shadeop;
     const Signature& sig = *e.signature;
+    const bool parted = kind == Op::Request && sig.result.array;
     Site s;
     s.op = op.name;
     s.shadeop = &op;
-    s.resultType = e.type;
+    s.resultType = parted ? e.type.element() : e.type;
     s.pure = op.pure && kind == Op::Service;
     std::vector<Inst*> args;
     struct Out {
         const Expr* lvalue;
         int first;
         int count;
+        int at = 0; ///< the first element of an array
     };
     std::vector<Out> outs;
-    if (kindOf(sig.result) != Kind::None && !sig.result.array) {
-        s.resultKinds.push_back(kindOf(sig.result));
+    const Kind whole = parted ? kindOf(sig.result.element()) : sig.result.array ? Kind::None : kindOf(sig.result);
+    if (whole != Kind::None) {
+        s.resultKinds.push_back(whole);
         s.resultNames.push_back("");
     }
     const auto output = [&](const Expr& l, const std::string& name) {
         Out o{&l, static_cast<int>(s.resultKinds.size()), 1};
-        if (l.type.array) {
+        if (l.type.array && parted) { // the element of this part
+            o.at = std::max(part, 0);
+            if (o.at >= arrayLength(array(l))) return;
+            s.resultKinds.push_back(kindOf(l.type.element()));
+            s.resultNames.push_back(name);
+        } else if (part > 0) {
+            return; // what belongs to all parts comes with the first
+        } else if (l.type.array) {
             Inst* a = array(l);
             o.count = arrayLength(a);
             for (int n = 0; n < o.count; ++n) {
@@ -165,6 +200,10 @@ Inst* Builder::service(const Expr& e, Op kind) {
         s.pairStrings.push_back(v->op == Op::ConstString ? v->text : "");
         if (v->op != Op::ConstString) addArgument(s, args, v, known ? known->type.element() : p.value->type);
     }
+    if (part >= 0) {
+        s.names.push_back("__part");
+        s.pairStrings.push_back(std::to_string(part));
+    }
     place_ = e.place;
     const bool message = op.section == "Messages" && !s.resultKinds.empty() && s.resultNames[0].empty();
     const std::vector<Inst*> r = call(kind, std::move(s), std::move(args));
@@ -173,7 +212,7 @@ Inst* Builder::service(const Expr& e, Op kind) {
         if (o.lvalue->type.array) {
             Inst* a = array(*o.lvalue);
             for (int n = 0; n < o.count && a->op == Op::ArrayNew; ++n) {
-                Inst* at = constant(static_cast<float>(n));
+                Inst* at = constant(static_cast<float>(o.at + n));
                 Inst* v = r[static_cast<size_t>(o.first + n)];
                 if (found) v = emit(Op::Select, v->kind, {found, v, emit(Op::ArrayLoad, a->element, {a, at})});
                 emit(Op::ArrayStore, Kind::None, {a, at, v});
@@ -185,7 +224,7 @@ Inst* Builder::service(const Expr& e, Op kind) {
             v = emit(Op::Select, v->kind, {found, v, coerce(expr(*o.lvalue), v->kind)});
         assign(*o.lvalue, v);
     }
-    return kindOf(sig.result) != Kind::None && !r.empty() && !sig.result.array ? r[0] : constant(0);
+    return whole != Kind::None && !r.empty() ? r[0] : constant(0);
 }
 
 } // namespace alpenglow::rsl::ir

@@ -195,7 +195,8 @@ private:
     Inst* pluginCall(const Expr&); // build_plugin.cpp
     Inst* runtimeCall(const Expr&);
     Inst* special(const Expr&);
-    Inst* service(const Expr&, Op);
+    std::vector<Inst*> traceParts(const Expr&);
+    Inst* service(const Expr&, Op, int part = -1);
     Inst* spline(const Expr&);
     Inst* transformCall(const Expr&);
     Inst* filterstep(const Expr&);

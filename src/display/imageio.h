@@ -29,7 +29,7 @@ struct WriteOptions {
     /// lost silently, drivers decide before.
     Sample sample = Sample::Float;
     bool quantised = false; ///< integer formats: data are codes (0..255) already; else [0,1] is scaled, rounded and clamped
-    std::string compression = "zip"; ///< EXR: none rle zips zip piz; TIFF: none zip lzw
+    std::string compression = "zip"; ///< EXR: none rle zips zip piz; TIFF: none zip lzw packbits
     int tile = 0;                    ///< > 0: tiles of that side (EXR only); image.levels are then written as MIP-map levels
     OutputPolicy policy;
     SourcePlace place;

@@ -58,7 +58,10 @@ scene::AttributesRef instanceAttributes(const scene::Primitive& p, const scene::
     takeBasis(out->ubasis, in.ubasis, was.ubasis);
     takeBasis(out->vbasis, in.vbasis, was.vbasis);
     take(out->bound, in.bound, was.bound);
-    take(out->detail, in.detail, was.detail);
+    if (in.detail != was.detail || !(in.detailSpace == was.detailSpace)) {
+        out->detail = in.detail;
+        out->detailSpace = in.detailSpace * instance.toWorld.first();
+    }
     take(out->trimCurve, in.trimCurve, was.trimCurve);
     for (const auto& [key, value] : in.values)
         if (!same(&value, was.value(key))) out->values[key] = value;

@@ -77,6 +77,7 @@ public:
         add(a.vbasis);
         add(a.bound);
         add(a.detail);
+        add(a.detailSpace);
         for (float t : a.detailRange) add(t);
         add(a.values);
         add(a.coshaders);

@@ -3,6 +3,7 @@
 #include "render/digest.h"
 #include "render/filmpicture.h"
 #include "render/imaging.h"
+#include "render/levels.h"
 #include "render/partfile.h"
 #include "render/rendering.h"
 #include "texture/maketexture.h"
@@ -173,7 +174,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
     t.shaderPaths = searchPaths(o, "shader", settings_.shaderPaths, true);
     t.texturePaths = searchPaths(o, "texture", settings_.texturePaths, false);
     t.outputs = plan.engineOutputs;
-    auto world = engine_.build(frame, t, diagnostics_);
+    auto world = engine_.build(drawnLevels(frame, camera, diagnostics_), t, diagnostics_);
     if (!world) {
         ++outcome_.refused;
         return;

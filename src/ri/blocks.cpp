@@ -284,6 +284,7 @@ void Interpreter::resource(const Call& call) {
         to.vbasis = from.vbasis;
         to.bound = from.bound;
         to.detail = from.detail;
+        to.detailSpace = from.detailSpace;
         std::copy(std::begin(from.detailRange), std::end(from.detailRange), to.detailRange);
     }
     if (part("hiding")) {

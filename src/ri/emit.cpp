@@ -105,6 +105,7 @@ void Interpreter::emit(scene::Primitive p, const Call& call) {
         reporter.once("ri:nothing:" + p.kind, Severity::Warning, Rie::Consistency, call.place, p.kind + " is empty: there is nothing to draw");
         return;
     }
+    p.params.insert(p.params.end(), everywhere_.begin(), everywhere_.end());
     if (!fitVariables(p, reporter)) return;
     const Block* object = innermost(BlockKind::Object);
     p.attributesInside = object && object->saved.attributes != state.attributes;

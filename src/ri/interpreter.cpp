@@ -31,13 +31,15 @@ void Interpreter::run(Parser& parser) {
     reporter.lineText = std::move(outer);
 }
 
-void Interpreter::expand(const std::string& requests, const Call& call) {
+void Interpreter::expand(const std::string& requests, const Call& call, scene::ParamList everywhere) {
+    everywhere_.swap(everywhere);
     Parser parser(memorySource(requests), call.place.file, reporter);
     Call c;
     while (parser.next(c)) {
         c.place = call.place;
         execute(c);
     }
+    everywhere_.swap(everywhere);
 }
 
 void Interpreter::readStream(std::unique_ptr<ByteSource> raw, const std::string& name) {

@@ -86,8 +86,8 @@ public:
     void instance(const Call& call);
 
     void readArchive(const std::string& name, const SourcePlace& place);
-    /// Executes requests of our own as if they stood at the place of `call`.
-    void expand(const std::string& requests, const Call& call);
+    /// Executes requests of our own as if they stood at the place of `call`. Their primitives get the variables `everywhere`, too.
+    void expand(const std::string& requests, const Call& call, scene::ParamList everywhere = {});
     void beginRecording(const Call& call);
     void resource(const Call& call);
     /// True while the samples of a moving primitive are gathered.
@@ -165,6 +165,7 @@ private:
     std::optional<Motion> motion_;
     std::vector<Condition> conditions_;
     std::optional<Recording> recording_;
+    scene::ParamList everywhere_;                    ///< variables of every primitive that is emitted now
     std::vector<std::shared_ptr<scene::Primitive>>* capture_ = nullptr; ///< primitives of a motion block go here
     std::vector<scene::Light> lights_;                                  ///< before WorldBegin; shader spaces to camera
     std::map<std::string, int> handles_;                                ///< light handle -> index

@@ -76,6 +76,7 @@ struct Attributes {
     Basis ubasis, vbasis;
     std::optional<std::vector<float>> bound, detail; ///< six numbers, object space
     float detailRange[4] = {0, 0, 1e38f, 1e38f};
+    Matrix detailSpace;                ///< of `detail`: object space at the request, to world (in an Object: to its own space)
     /// Attribute "class" "name" value, keyed "class:name" (also "user:x");
     /// GeometricApproximation as "GeometricApproximation:motionfactor".
     std::map<std::string, Param> values;

@@ -21,15 +21,28 @@ std::string shippedShaders() {
     return ALPENGLOW_SHADER_DIR;
 }
 
-// Visibility bits. Unset: everything sees everything under path; elsewhere only camera and shadow rays of the file's own asking.
-uint32_t visibilityOf(const scene::Attributes& a, bool path) {
+// Whether the scene says who is visible to traced rays. BMRT's scenes never do, and their shaders trace.
+bool saysVisibility(const std::vector<geometry::ShapeRef>& shapes) {
+    const scene::Attributes* last = nullptr; // of a row of shapes with the same attributes
+    for (const geometry::ShapeRef& s : shapes) {
+        if (&s->attributes() == last) continue;
+        last = &s->attributes();
+        for (const char* name : {"visibility:trace", "visibility:diffuse", "visibility:specular"})
+            if (last->value(name)) return true;
+    }
+    return false;
+}
+
+// Visibility bits. Unset: everything sees everything under path and where no one is told apart (all); elsewhere only camera and
+// shadow rays of the file's own asking.
+uint32_t visibilityOf(const scene::Attributes& a, bool all) {
     auto on = [&](const char* name, bool fallback) {
         const scene::Param* p = a.value(std::string("visibility:") + name);
         if (!p) return fallback;
         if (!p->strings.empty()) return p->strings[0] != "transparent";
         return !p->numbers.empty() && p->numbers[0] != 0;
     };
-    bool traced = on("trace", path);
+    bool traced = on("trace", all);
     uint32_t bits = 0;
     if (on("camera", true)) bits |= accel::kCamera;
     if (on("diffuse", traced)) bits |= accel::kDiffuse;
@@ -74,12 +87,13 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
 
     w->shapes_ = geometry::buildShapes(*frame, d);
     w->clippingPlanes_ = o.clippingPlanes;
-    w->bindLights(d, [path](const geometry::Shape& s) { return visibilityOf(s.attributes(), path); });
+    const bool all = path || !saysVisibility(w->shapes_);
+    w->bindLights(d, [all](const geometry::Shape& s) { return visibilityOf(s.attributes(), all); });
     Engine engine(std::shared_ptr<const WorldImpl>(std::shared_ptr<const WorldImpl>{}, w.get()), d); // runs kernels while the world is made
     if (!SurfaceBinder(*w, engine, d).bindAll()) return nullptr;
     w->diceShapes(d); // with displacement, by the same kernels that shade
     std::vector<uint32_t> visibility;
-    for (const auto& shape : w->shapes_) visibility.push_back(visibilityOf(shape->attributes(), path));
+    for (const auto& shape : w->shapes_) visibility.push_back(visibilityOf(shape->attributes(), all));
     w->accel_ = std::make_unique<accel::Accel>(w->shapes_, visibility, d);
     w->bindSentStrings(d);
     w->measureLights(engine, d);

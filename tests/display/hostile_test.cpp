@@ -54,7 +54,7 @@ std::vector<std::vector<uint8_t>> allSeeds(const Scratch& s) {
     std::vector<std::vector<uint8_t>> seeds;
     Image m = smooth(24, 20, 3);
     for (Format f : {Format::Exr, Format::Tiff, Format::Png})
-        for (const char* c : {"none", "zip", "lzw", "rle", "piz"})
+        for (const char* c : {"none", "zip", "lzw", "packbits", "rle", "piz"})
             for (Sample sample : {Sample::UInt8, Sample::Float}) {
                 Diagnostics d;
                 WriteOptions o;

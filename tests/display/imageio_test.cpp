@@ -52,7 +52,7 @@ TEST(ImageIo, FloatFormatsAreExact) {
     m.pixel(6, 2)[3] = std::numeric_limits<float>::denorm_min();
     for (const char* c : {"none", "rle", "zips", "zip", "piz"})
         expectSame(roundTrip(s, m, as(Format::Exr, Sample::Float, false, c)), m);
-    for (const char* c : {"none", "zip", "lzw"}) {
+    for (const char* c : {"none", "zip", "lzw", "packbits"}) {
         Image r = roundTrip(s, m, as(Format::Tiff, Sample::Float, false, c));
         expectSame(r, m);
         EXPECT_TRUE(r.floating);
@@ -278,7 +278,7 @@ std::vector<Seed> seeds(const Scratch& s) {
     Image mip = m;
     for (auto [w, h] : {std::pair{4, 3}, {2, 1}, {1, 1}}) mip.levels.push_back(pattern(w, h, m.channels));
     add("exr mip", mip, tiled);
-    for (const char* c : {"none", "zip", "lzw"}) add(std::string("tiff ") + c, m, as(Format::Tiff, Sample::UInt8, false, c));
+    for (const char* c : {"none", "zip", "lzw", "packbits"}) add(std::string("tiff ") + c, m, as(Format::Tiff, Sample::UInt8, false, c));
     add("png", m, as(Format::Png, Sample::UInt8));
     return out;
 }

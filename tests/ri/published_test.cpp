@@ -75,6 +75,23 @@ TEST(Published, TheTeapotsNormalsPointOutwards) {
     EXPECT_LT(normal(3, 7, 3, 0).z, 0) << "the lower side of the spout";
 }
 
+TEST(Published, TheTeapotTakesVariables) {
+    auto c = world("Geometry \"teapot\" \"uniform color Cs\" [0 .5 1] \"constant string data\" [\"x\"]\nSphere 1 -1 1 360");
+    EXPECT_EQ(c->count(), 0u) << c->messages();
+    ASSERT_EQ(c->frame().primitives.size(), 5u);
+    for (size_t i = 0; i < 4; ++i) {
+        const scene::Param* Cs = scene::find(c->primitive(i).params, "Cs");
+        ASSERT_TRUE(Cs);
+        EXPECT_EQ(Cs->cls, scene::Class::Constant);
+        EXPECT_EQ(Cs->numbers, (std::vector<float>{0, .5f, 1}));
+        EXPECT_TRUE(scene::find(c->primitive(i).params, "data"));
+    }
+    EXPECT_FALSE(scene::find(c->primitive(4).params, "Cs"));
+    auto d = world("Geometry \"teapot\" \"varying color Cs\" [0 .5 1 1]");
+    EXPECT_EQ(d->only().code, Rie::Incapable) << "it has no corners";
+    EXPECT_EQ(d->frame().primitives.size(), 4u);
+}
+
 TEST(Published, AMovingTeapotIsKeptAsItIs) {
     auto c = world("MotionBegin [0 1] Geometry \"teapot\" Geometry \"teapot\" MotionEnd");
     EXPECT_EQ(c->frame().primitives.size(), 1u) << c->messages();

@@ -13,7 +13,7 @@ TEST(Scopes, OutOfScopeIsDoneAndWarnedAboutOnce) {
     auto d = read("AttributeBegin Color 1 0 0 WorldBegin Sphere 1 -1 1 360 WorldEnd AttributeEnd AttributeBegin AttributeEnd");
     EXPECT_EQ(d->only().code, Rie::Nesting);
     EXPECT_EQ(d->primitive().attributes->color, Color(1, 0, 0));
-    auto e = read("FrameBegin 1 MakeShadow \"a\" \"b\" FrameEnd");
+    auto e = read("FrameBegin 1 WorldBegin MakeShadow \"a\" \"b\" WorldEnd FrameEnd");
     EXPECT_EQ(e->only().code, Rie::IllState);
     EXPECT_EQ(e->textures.size(), 1u);
 }

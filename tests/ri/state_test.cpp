@@ -139,6 +139,13 @@ TEST(Attributes, ValuesByClassAndName) {
     EXPECT_EQ(world("Attribute \"trace\" \"bias\" [\"x\"]")->only().code, Rie::Consistency);
 }
 
+TEST(Attributes, DetailKeepsItsSpace) {
+    auto c = read("WorldBegin Translate 1 2 3 Detail [-1 1 -1 1 -1 1] Translate 5 0 0 DetailRange [0 1 2 3] Sphere 1 -1 1 360 WorldEnd");
+    EXPECT_EQ(c->count(), 0u) << c->messages();
+    EXPECT_EQ(c->primitive().attributes->detailSpace, translateMatrix(1, 2, 3));
+    EXPECT_EQ(c->primitive().attributes->detail, (std::vector<float>{-1, 1, -1, 1, -1, 1}));
+}
+
 TEST(Attributes, Resources) {
     auto c = world(
         "Color 1 0 0 Translate 1 0 0 Resource \"r\" \"attributes\" \"string operation\" \"save\" Color 0 1 0 Sides 1 Identity\n"
@@ -411,6 +418,13 @@ TEST(ColorSamples, BecomeRgb) {
     EXPECT_EQ(c->count(), 0u) << c->messages();
     EXPECT_EQ(c->primitive().attributes->color, Color(.25f, .75f, .5f));
     EXPECT_EQ(c->primitive().attributes->surface->params.at(0).numbers, (std::vector<float>{1, 2, 1.5f}));
+}
+
+TEST(Textures, AreMadeWithinFramesToo) {
+    // As published scenes of several passes do, after the world whose depth they use.
+    auto c = read("FrameBegin 1 WorldBegin WorldEnd MakeShadow \"a.z\" \"a.shd\" FrameEnd FrameBegin 2 MakeShadow \"b.z\" \"b.shd\" WorldBegin WorldEnd FrameEnd");
+    EXPECT_EQ(c->count(), 0u) << c->messages();
+    EXPECT_EQ(c->textures.size(), 2u);
 }
 
 TEST(Textures, ReachTheConsumerInOrder) {

@@ -59,7 +59,7 @@ WriteOptions PictureDriver::chooseSamples(Diagnostics& diags) {
             say(Severity::Info, "OpenEXR holds floating point; quantisation does not apply");
         return o;
     }
-    o.compression = stringParam(setup_, "compression", {"none", "lzw", "zip", "deflate"}, "zip", diags);
+    o.compression = stringParam(setup_, "compression", {"none", "lzw", "packbits", "zip", "deflate"}, "zip", diags);
     // Which quantisers are at work: z has its own, and a file has one kind of sample.
     bool hasZ = false, hasOther = false;
     for (const std::string& c : setup_.channels) (c == "z" ? hasZ : hasOther) = true;

@@ -13,7 +13,7 @@ class Tiff : public PictureDriver {
 const DriverDescriptor tiffDriver{
     {"tiff"},
     "TIFF. 8 bits when Quantize's codes end at 255 or below, 16 bits to 65535, floats when it is off (one = 0). Parameter: "
-    "\"string compression\" none, lzw, zip (default).",
+    "\"string compression\" none, lzw, packbits, zip (default).",
     []() -> std::unique_ptr<Driver> { return std::make_unique<Tiff>(); }};
 
 } // namespace alpenglow::display

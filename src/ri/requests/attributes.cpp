@@ -234,7 +234,10 @@ std::vector<Request> attributeRequests() {
         {"Detail", "number[6] bound", k, s, true, "Object-space box whose size in the image chooses the level of detail.",
          "-1 1 -1 1 -1 1",
          [](Interpreter& in, const Call& c) {
-             if (std::vector<float> b; boundOf(in, c, b)) in.attributes().detail = b;
+             if (std::vector<float> b; boundOf(in, c, b)) {
+                 in.attributes().detail = b;
+                 in.attributes().detailSpace = in.state.ctm.first();
+             }
          }},
         {"DetailRange", "number[4] range", k, s, false, "minvisible lowertransition uppertransition maxvisible, in pixels.",
          "0 10 100 200",

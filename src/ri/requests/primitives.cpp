@@ -115,7 +115,14 @@ void blobby(Interpreter& in, const Call& c) {
 
 void geometry(Interpreter& in, const Call& c) {
     if (c.text(0) == "teapot" && !in.gatheringMotion()) {
-        in.expand(teapotRequests(), c);
+        scene::ParamList everywhere;
+        for (scene::Param& p : in.bind(c, Use::Primitive)) {
+            const bool one = p.cls == scene::Class::Constant || p.cls == scene::Class::Uniform;
+            if (one) p.cls = scene::Class::Constant; // the teapot is one thing to who names it
+            if (one) everywhere.push_back(std::move(p));
+            else in.incapable(c, "Geometry \"teapot\" has no variables but constant and uniform ones");
+        }
+        in.expand(teapotRequests(), c, std::move(everywhere));
         return;
     }
     scene::Primitive p = start(in, c);

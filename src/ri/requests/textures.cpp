@@ -32,7 +32,7 @@ void notMade(Interpreter& in, const Call& c) { in.incapable(c, std::string(c.req
 
 std::vector<Request> textureRequests() {
     const Kind k = Kind::Texture;
-    const unsigned s = kBase;
+    const unsigned s = kBase | kFrame; // published files make shadow maps after the world of each frame
     const char* flat =
         "string picture; string texture; string swrap; string twrap; string filter; number swidth; number twidth; ..";
     return {

@@ -1,0 +1,118 @@
+#include "render/levels.h"
+#include "geometry/instance_attributes.h"
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace alpenglow::render {
+namespace {
+
+constexpr float kUnlimited = 1e38f; // RI_INFINITY and what is written for it
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+struct Point { double x, y; };
+double turn(Point a, Point b, Point c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
+
+/// Area of the convex hull (monotone chain).
+double hullArea(std::vector<Point> p) {
+    std::sort(p.begin(), p.end(), [](Point a, Point b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
+    std::vector<Point> hull;
+    for (int side = 0; side < 2; ++side) {
+        const size_t first = hull.size();
+        for (Point q : p) {
+            while (hull.size() >= first + 2 && turn(hull[hull.size() - 2], hull.back(), q) <= 0) hull.pop_back();
+            hull.push_back(q);
+        }
+        hull.pop_back(); // the other chain begins there
+        std::reverse(p.begin(), p.end());
+    }
+    double twice = 0;
+    for (size_t i = 0; i < hull.size(); ++i) {
+        const Point a = hull[i], b = hull[(i + 1) % hull.size()];
+        twice += a.x * b.y - a.y * b.x;
+    }
+    return std::fabs(twice) / 2;
+}
+
+bool ranged(const scene::Attributes& a) {
+    return a.detailRange[0] > 0 || a.detailRange[1] > 0 || a.detailRange[2] < kUnlimited || a.detailRange[3] < kUnlimited;
+}
+
+class Levels {
+public:
+    Levels(const scene::Frame& f, const Camera& camera) : frame_(f), camera_(camera) {}
+
+    bool drawn(const scene::AttributesRef& a, const SourcePlace& place) {
+        if (!a || !ranged(*a)) return true;
+        auto [known, fresh] = known_.try_emplace(a.get(), true);
+        if (fresh) {
+            kept_.push_back(a); // else another's may come to lie at its address
+            const double size = a->detail ? detailSize(*a->detail, a->detailSpace, camera_) * double(frame_.options.relativeDetail) : kInfinite;
+            const float* r = a->detailRange;
+            const bool unlimited = r[3] >= kUnlimited;
+            known->second = size >= (double(r[0]) + r[1]) / 2 && (unlimited || size < (double(r[2]) + r[3]) / 2);
+            if ((size > r[0] && size < r[1]) || (!unlimited && size > r[2] && size < r[3]))
+                if (!fading) fading = place;
+        }
+        return known->second;
+    }
+    std::optional<SourcePlace> fading; ///< of the first representation that is within a transition
+
+private:
+    const scene::Frame& frame_;
+    const Camera& camera_;
+    std::map<const scene::Attributes*, bool> known_;
+    std::vector<scene::AttributesRef> kept_;
+};
+
+} // namespace
+
+double detailSize(const std::vector<float>& bound, const Matrix& toWorld, const Camera& camera) {
+    const Matrix m = toWorld * camera.worldToNDC();
+    std::vector<Point> corners;
+    for (int k = 0; k < 8; ++k) {
+        const double p[4] = {bound[k & 1 ? 1 : 0], bound[k & 2 ? 3 : 2], bound[k & 4 ? 5 : 4], 1};
+        double q[4] = {};
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < 4; ++j) q[j] += p[i] * m.m[i][j];
+        if (!(q[3] > 0)) return kInfinite;
+        corners.push_back({q[0] / q[3] * camera.width(), q[1] / q[3] * camera.height()});
+    }
+    return hullArea(std::move(corners));
+}
+
+std::shared_ptr<const scene::Frame> drawnLevels(std::shared_ptr<const scene::Frame> frame, const Camera& camera, Diagnostics& diagnostics) {
+    Levels levels(*frame, camera);
+    std::shared_ptr<scene::Frame> out; // once something is left out
+    auto changed = [&]() -> scene::Frame& {
+        if (!out) out = std::make_shared<scene::Frame>(*frame);
+        return *out;
+    };
+    auto left = [&](const scene::PrimitiveRef& p) { return p && !levels.drawn(p->attributes, p->place); };
+    if (std::any_of(frame->primitives.begin(), frame->primitives.end(), left)) std::erase_if(changed().primitives, left);
+    std::vector<char> ranges; // of each object: whether one of its primitives has a range of its own
+    for (const scene::Object& o : frame->objects)
+        ranges.push_back(std::any_of(o.primitives.begin(), o.primitives.end(),
+                                     [](const scene::PrimitiveRef& p) { return p && p->attributes && ranged(*p->attributes); }));
+    for (size_t i = 0; i < frame->instances.size(); ++i) {
+        const scene::Instance& instance = frame->instances[i];
+        if (instance.object < 0 || size_t(instance.object) >= frame->objects.size()) continue; // reported where shapes are made
+        if (!ranges[size_t(instance.object)] && !(instance.attributes && ranged(*instance.attributes))) continue;
+        const scene::Object& object = frame->objects[size_t(instance.object)];
+        auto leftHere = [&](const scene::PrimitiveRef& p) {
+            return p && !levels.drawn(geometry::instanceAttributes(*p, instance), p->place);
+        };
+        std::vector<scene::PrimitiveRef> drawn = object.primitives;
+        if (std::erase_if(drawn, leftHere) == 0) continue;
+        scene::Frame& f = changed();
+        f.instances[i].object = int(f.objects.size());
+        f.objects.push_back({object.handle, std::move(drawn)});
+    }
+    if (levels.fading)
+        diagnostics.report(Severity::Info, Rie::Incapable, *levels.fading,
+                           "levels of detail do not fade: in a transition the one that is more than half there is drawn");
+    return out ? out : frame;
+}
+
+} // namespace alpenglow::render

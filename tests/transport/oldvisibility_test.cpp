@@ -1,0 +1,30 @@
+// Who is visible to traced rays under the older hiders: what the scene says; all where it says nothing, as in BMRT's time.
+#include "transport/harness.h"
+
+using namespace alpenglow;
+using namespace alpenglow::transport;
+using namespace alpenglow::transport::testing;
+
+TEST(OldVisibility, ScenesThatSayNothingMeanEverything) {
+    writeShader("upwards", "surface upwards() { Oi = 1; Ci = trace(P, vector(0, 1, 0)); }\n");
+    const std::string floor = "AttributeBegin Surface \"upwards\" Polygon \"P\" [-9 0 -9  -9 0 9  9 0 9  9 0 -9] AttributeEnd\n";
+    const std::string card = "Surface \"constant\" Color .5 .25 1 Polygon \"P\" [-9 2 -9  -9 2 9  9 2 9  9 2 -9]\n";
+    for (Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path}) {
+        Settings s;
+        s.hider = h;
+        s.shaderPaths.push_back(shaderFolder());
+        const bool path = h == Hider::Path;
+        const struct { std::string first, ofCard; bool seen; } cases[] = {
+            {"", "", true},
+            {"", "Attribute \"visibility\" \"int transmission\" 1\n", true}, // says nothing on reflections
+            {"", "Attribute \"visibility\" \"int trace\" 1\n", true},
+            {"", "Attribute \"visibility\" \"int specular\" 0\n", false},
+            {"AttributeBegin Attribute \"visibility\" \"int trace\" 1 Translate 0 -90 0 Sphere 1 -1 1 360 AttributeEnd\n", "", path}};
+        for (const auto& c : cases) {
+            Scene scene("WorldBegin\n" + c.first + floor + "AttributeBegin\n" + c.ofCard + card + "AttributeEnd\nWorldEnd\n", s);
+            const Color seen = scene.one(rayTo({.3f, 1, -.4f}, {0, 0, 0}));
+            EXPECT_NEAR(seen.x, c.seen ? .5 : 0, 1e-6) << int(h) << c.first << c.ofCard << scene.messages();
+            EXPECT_NEAR(seen.z, c.seen ? 1 : 0, 1e-6) << int(h) << c.first << c.ofCard;
+        }
+    }
+}

@@ -252,11 +252,12 @@ void Lexer::escape(std::string& out) {
 
 void Lexer::quoted(std::string& out, int line, int column) {
     out.clear();
+    const unsigned char quote = peek();
     ++pos_;
     bool tooLong = false;
     while (at()) {
         unsigned char c = peek();
-        if (c == '"') {
+        if (c == quote) {
             ++pos_;
             return;
         }
@@ -279,6 +280,17 @@ void Lexer::quoted(std::string& out, int line, int column) {
         }
     }
     reporter_.error(Rie::Syntax, place(line, column), "a string has no closing quote");
+}
+
+bool Lexer::apostrophes() {
+    for (size_t k = 1; k < limits::kTokenBytes; ++k) {
+        while (pos_ + k >= end_)
+            if (!more()) return false;
+        const char c = buffer_[pos_ + k];
+        if (c == '\'') return true;
+        if (c == '\n' || c == '\r') return false;
+    }
+    return false;
 }
 
 void Lexer::badBytes() {
@@ -321,6 +333,11 @@ void Lexer::next(Token& t) {
             continue;
         }
         if (c == '"') {
+            t.kind = Token::Kind::String;
+            return quoted(t.text, t.line, t.column);
+        }
+        if (c == '\'' && apostrophes()) { // some published files have them
+            reporter_.once("ri:apostrophes", Severity::Warning, Rie::Syntax, here(), "a string in apostrophes: RIB writes it in double quotes");
             t.kind = Token::Kind::String;
             return quoted(t.text, t.line, t.column);
         }

@@ -52,7 +52,9 @@ private:
     void plainNumbers(std::vector<double>& out);
     bool number(double& out); ///< false (reported) when malformed
     void identifier(std::string& out);
+    /// Reads on to the quote that the string began with.
     void quoted(std::string& out, int line, int column);
+    bool apostrophes(); ///< whether the apostrophe at pos_ has a second one in its line
     void escape(std::string& out);
     void badBytes();
     // binary.cpp

@@ -42,15 +42,18 @@ uint32_t visibilityOf(const scene::Attributes& a, bool all) {
         if (!p->strings.empty()) return p->strings[0] != "transparent";
         return !p->numbers.empty() && p->numbers[0] != 0;
     };
-    bool traced = on("trace", all);
+    // BMRT's word: 1 for camera rays, 2 for reflections, 4 for shadows. Visibilities of their own have the last word.
+    const scene::Param* old = a.value("render:visibility");
+    const int of = old && !old->numbers.empty() ? int(std::clamp(double(old->numbers[0]), 0., 7.)) : -1;
+    bool traced = on("trace", of < 0 ? all : (of & 2) != 0);
     uint32_t bits = 0;
-    if (on("camera", true)) bits |= accel::kCamera;
+    if (on("camera", of < 0 || (of & 1) != 0)) bits |= accel::kCamera;
     if (on("diffuse", traced)) bits |= accel::kDiffuse;
     if (on("specular", traced)) bits |= accel::kSpecular;
     // Under path shadow rays are the renderer's own; elsewhere they are traced only when asked for, and old files that ask
     // (transmission(), trace()) without saying who may be seen mean everything.
     const scene::Param* casts = a.value("render:casts_shadows"); // BMRT's word
-    if (on("transmission", true) && !(casts && !casts->strings.empty() && casts->strings[0] == "none")) bits |= accel::kTransmission;
+    if (on("transmission", of < 0 || (of & 4) != 0) && !(casts && !casts->strings.empty() && casts->strings[0] == "none")) bits |= accel::kTransmission;
     return bits;
 }
 

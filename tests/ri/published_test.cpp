@@ -21,6 +21,18 @@ TEST(Published, NamesOfOtherRenderers) {
     EXPECT_EQ(read("Quantize \"N\" 255 0 255 .5")->only().severity, Severity::Warning);
 }
 
+TEST(Published, StringsInApostrophes) {
+    auto c = read("Display \"a.tif\" 'framebuffer' 'rgba'\nDisplay 'b \"c\".tif' 'file' \"it's\"\nWorldBegin WorldEnd");
+    EXPECT_EQ(c->only().severity, Severity::Warning) << "once";
+    ASSERT_EQ(c->frame().options.displays.size(), 1u);
+    EXPECT_EQ(c->frame().options.displays[0].name, "b \"c\".tif");
+    EXPECT_EQ(c->frame().options.displays[0].mode, "it's");
+    // One apostrophe alone swallows nothing.
+    auto d = world("Sphere 1 -1 1 360 '\nSphere 2 -2 2 360\n'");
+    EXPECT_EQ(d->frame().primitives.size(), 2u);
+    EXPECT_GT(d->count(), 0u);
+}
+
 TEST(Published, TheTeapotIsFourMeshes) {
     auto c = world("Basis \"b-spline\" 1 \"b-spline\" 1 Color [1 0 0] Translate 1 2 3 Geometry \"teapot\"\nSphere 1 -1 1 360");
     EXPECT_EQ(c->count(), 0u) << c->messages();

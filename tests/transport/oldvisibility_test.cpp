@@ -28,3 +28,23 @@ TEST(OldVisibility, ScenesThatSayNothingMeanEverything) {
         }
     }
 }
+
+// 1 for the camera, 2 for reflections, 4 for shadows.
+TEST(OldVisibility, BmrtsFlags) {
+    writeShader("threeways", "surface threeways() { Oi = 1; color there = trace(P, vector(0, 1, 0));"
+                             " Ci = color(comp(there, 0), comp(transmission(P, P + vector(0, 9, 0)), 0), 0); }\n");
+    const std::string floor = "AttributeBegin Surface \"threeways\" Polygon \"P\" [-9 0 -9  -9 0 9  9 0 9  9 0 -9] AttributeEnd\n";
+    const std::string card = "Surface \"constant\" Color 1 1 1 Polygon \"P\" [-9 2 -9  -9 2 9  9 2 9  9 2 -9]\n";
+    Settings s;
+    s.hider = Hider::Hidden;
+    s.shaderPaths.push_back(shaderFolder());
+    for (int flags = 0; flags < 8; ++flags) {
+        Scene scene("WorldBegin\n" + floor + "AttributeBegin Attribute \"render\" \"integer visibility\" [" + std::to_string(flags) + "]\n" +
+                        card + "AttributeEnd\nWorldEnd\n",
+                    s);
+        const Color fromBelow = scene.one(rayTo({.3f, 1, -.4f}, {0, 0, 0})), fromAbove = scene.one(rayTo({.3f, 4, -.4f}, {0, 0, 0}));
+        EXPECT_NEAR(fromBelow.x, flags & 2 ? 1 : 0, 1e-6) << flags << scene.messages();
+        EXPECT_NEAR(fromBelow.y, flags & 4 ? 0 : 1, 1e-6) << flags;
+        EXPECT_NEAR(fromAbove.z, flags & 1 ? 1 : 0, 1e-6) << flags; // the card itself, or the floor through it
+    }
+}

@@ -170,6 +170,27 @@ OutputSpec singleOutput(const std::string& file, const OutputBasis& basis, Diagn
     return s;
 }
 
+namespace {
+/// Leaves one picture for each file. A window has none of its own: where another display writes the file of its name, that is kept.
+void oneForEachFile(std::vector<OutputSpec>& pictures, Diagnostics& diags) {
+    auto is = [](const OutputSpec& s, const char* driver) {
+        const display::DriverDescriptor* d = display::findDriver(s.type);
+        return d && d->names.front() == driver;
+    };
+    std::vector<OutputSpec> kept;
+    for (OutputSpec& s : pictures) {
+        auto same = std::find_if(kept.begin(), kept.end(), [&](const OutputSpec& k) { return k.name == s.name && !is(k, "null"); });
+        if (same == kept.end() || is(s, "null")) kept.push_back(std::move(s));
+        else if (is(s, "framebuffer")) continue;
+        else if (is(*same, "framebuffer")) *same = std::move(s);
+        else
+            diags.report(Severity::Warning, Rie::BadFile, s.place,
+                         "display \"" + s.name + "\": another display of this frame writes that file; this one is left out");
+    }
+    pictures = std::move(kept);
+}
+} // namespace
+
 OutputPlan planOutputs(const scene::Options& o, const RenderSettings& settings, bool path, const std::string& file,
                        Diagnostics& diags) {
     OutputPlan plan;
@@ -203,6 +224,7 @@ OutputPlan planOutputs(const scene::Options& o, const RenderSettings& settings, 
             if (settings.gamma && s.ownExposure) s.gamma = *settings.gamma;
             if (!s.variables.empty()) plan.pictures.push_back(std::move(s));
         }
+        oneForEachFile(plan.pictures, diags);
     }
     return plan;
 }

@@ -116,6 +116,12 @@ bool fitOne(Param& v, const Primitive& p, const scene::VariableCounts& c, int64_
         cut(v, size_t(want * per)); // as many as P had, some of them unused
         return true;
     }
+    if (want > 0 && have / per == want) { // a number too many at the end
+        reporter.report(Severity::Warning, Rie::Consistency, v.place,
+                        fmt::format("{}: \"{}\" needs {} x {} values, not {}: the rest is ignored", p.kind, v.name, want, per, have));
+        cut(v, size_t(want * per));
+        return true;
+    }
     if (have == per && v.cls == Class::Uniform) {
         reporter.once(fmt::format("ri:onevalue:{}:{}", p.kind, v.name), Severity::Warning, Rie::Consistency, v.place,
                       fmt::format("{}: \"{}\" is uniform but has one value: it holds for all {} pieces", p.kind, v.name, want));

@@ -93,8 +93,9 @@ bool Lexer::skipSpace() {
         case '\f':
         case '\v':
         case 0377:
+        case 032:
             ++pos_;
-            break; // 0377 ends a RunProgram answer: nothing elsewhere
+            break; // 0377 ends a RunProgram answer, 032 a file of DOS: nothing elsewhere
         case '\n':
             newline();
             break;

@@ -367,6 +367,27 @@ TEST(Renderer, NamesOfSeveralFrames) {
     EXPECT_TRUE(fs::exists(dir / "a.0002.exr"));
 }
 
+// Published scenes show in a window what they write: Display "a.tif" "file" "rgba", Display "+a.tif" "framebuffer" "rgb".
+TEST(Renderer, OneDisplayForEachFile) {
+    for (int order : {0, 1, 2}) {
+        Folder dir;
+        RenderSettings s;
+        s.allowWrite = true;
+        Session run(s);
+        auto f = frameOf("hidden", 4, 4);
+        const std::string a = dir / "a.tif";
+        const scene::Display file{a, "file", "rgba", {}, {}}, window{a, "framebuffer", "rgb", {}, {}}, more{a, "tiff", "z", {}, {}};
+        using Displays = std::vector<scene::Display>;
+        f->options.displays = order == 0   ? Displays{file, window}
+                              : order == 1 ? Displays{window, file}
+                                           : Displays{file, more, {dir / "b.tif", "tiff", "z", {}, {}}};
+        run.frame(f);
+        EXPECT_EQ(read(dir / "a.tif").channels.size(), 4u) << order;
+        EXPECT_EQ(run.diags.warnings(), order == 2) << order;
+        EXPECT_EQ(fs::exists(dir / "b.tif"), order == 2);
+    }
+}
+
 TEST(Team, EveryTaskOnceAndExceptionsArrive) {
     Team team(3);
     std::vector<std::atomic<int>> done(1000);

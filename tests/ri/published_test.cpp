@@ -33,6 +33,22 @@ TEST(Published, StringsInApostrophes) {
     EXPECT_GT(d->count(), 0u);
 }
 
+TEST(Published, ANumberTooManyAtTheEnd) {
+    auto c = world("Polygon \"P\" [0 0 0 1 0 0 1 1 0 0 1 0] \"st\" [0 0 1 0 1 1 0 1 0]");
+    EXPECT_EQ(c->only().severity, Severity::Warning);
+    const scene::Param* st = scene::find(c->primitive().params, "st");
+    ASSERT_TRUE(st);
+    EXPECT_EQ(st->numbers, (std::vector<float>{0, 0, 1, 0, 1, 1, 0, 1}));
+    // A whole element too many is another mistake.
+    EXPECT_EQ(world("Polygon \"P\" [0 0 0 1 0 0 1 1 0] \"st\" [0 0 1 0 1 1 0 1]")->only().severity, Severity::Error);
+}
+
+TEST(Published, FilesOfDosEndWithAByte) {
+    auto c = read("WorldBegin\r\nSphere 1 -1 1 360\r\nWorldEnd\r\n\x1a");
+    EXPECT_EQ(c->count(), 0u) << c->messages();
+    EXPECT_EQ(c->frame().primitives.size(), 1u);
+}
+
 TEST(Published, TheTeapotIsFourMeshes) {
     auto c = world("Basis \"b-spline\" 1 \"b-spline\" 1 Color [1 0 0] Translate 1 2 3 Geometry \"teapot\"\nSphere 1 -1 1 360");
     EXPECT_EQ(c->count(), 0u) << c->messages();

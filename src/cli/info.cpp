@@ -58,6 +58,22 @@ std::string kindText(const rsl::CompiledShader& s) {
     return k;
 }
 
+/// The type as the shader writes it: handles are of type shader, arrays of open length have none.
+std::string typeText(rsl::Type t, const rsl::Symbol* s) {
+    if (s && (s->type.array < 0 || s->open)) t.array = -1;
+    std::string text = rsl::toString(t);
+    if (s && s->handle && text.rfind("string", 0) == 0) text.replace(0, 6, "shader");
+    return text;
+}
+
+/// What other shaders may read of a class, with types.
+std::vector<std::string> membersOf(const rsl::Shader& s) {
+    std::vector<std::string> list;
+    for (const auto& v : s.symbols)
+        if (v->origin == rsl::Symbol::Origin::Local && s.publics.count(v->name)) list.push_back(typeText(v->type, v.get()) + " " + v->name);
+    return list;
+}
+
 std::string valueText(const rsl::ParameterValue& v) {
     if (v.type.base == rsl::Base::String) {
         std::string t;
@@ -114,6 +130,10 @@ void addInfo(CLI::App& app, int* status) {
         options.path = true;
         auto kernel = compiler.analyse(*shader, options, diags);
         auto defaults = compiler.parameterDefaults(shader, diags);
+        const auto& written = shader->shader().parameters;
+        for (size_t i = 0; i < std::min(defaults.size(), written.size()); ++i) // {} has no elements
+            if (const rsl::Expr* e = written[i].defaultValue.get(); e && e->kind == rsl::ExprKind::ArrayList && e->text == "{}")
+                defaults[i].strings.clear(), defaults[i].numbers.clear();
         Json j;
         j["name"] = shader->name();
         j["type"] = kindText(*shader);
@@ -122,10 +142,11 @@ void addInfo(CLI::App& app, int* status) {
         for (size_t i = 0; i < shader->parameters().size(); ++i) {
             const rsl::ParameterInfo& p = shader->parameters()[i];
             Json q = {{"name", p.name},
-                      {"type", rsl::toString(p.type)},
+                      {"type", typeText(p.type, i < shader->shader().parameters.size() ? shader->shader().parameters[i].symbol : nullptr)},
                       {"storage", storageText(p.storage)},
                       {"output", p.output}};
             if (p.type.array != 0) q["arraySize"] = p.type.array;
+            if (p.open) q["open"] = true;
             const auto& declared = shader->shader().parameters;
             if (i < declared.size())
                 if (const std::string space = spaceOf(declared[i].defaultValue.get()); !space.empty()) q["space"] = space;
@@ -138,6 +159,9 @@ void addInfo(CLI::App& app, int* status) {
         std::vector<std::string> methods;
         for (const auto& f : shader->shader().nested) methods.push_back(signatureOf(*f));
         j["methods"] = methods;
+        j["class"] = shader->shader().object;
+        const std::vector<std::string> members = membersOf(shader->shader());
+        j["members"] = members;
         std::string offered; // by plug-ins
         for (const auto& plugin : shader->program().plugins)
             for (const rsl::Shadeop& f : plugin->functions)
@@ -158,7 +182,7 @@ void addInfo(CLI::App& app, int* status) {
             std::printf("%s\n", j.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
             return;
         }
-        std::printf("%s \"%s\"  (%s)\n", kindText(*shader).c_str(), shader->name().c_str(), shader->path().c_str());
+        std::printf("%s \"%s\"  (%s%s)\n", kindText(*shader).c_str(), shader->name().c_str(), shader->shader().object ? "class, " : "", shader->path().c_str());
         for (size_t i = 0; i < shader->parameters().size(); ++i) {
             const rsl::ParameterInfo& p = shader->parameters()[i];
             std::string value = p.hasDefault && i < defaults.size() ? " = " : "";
@@ -167,9 +191,10 @@ void addInfo(CLI::App& app, int* status) {
                 if (!space.empty()) value += "\"" + space + "\" ";
                 value += valueText(defaults[i]);
             }
-            std::printf("    %s%s %s %s%s\n", p.output ? "output " : "", storageText(p.storage), rsl::toString(p.type).c_str(),
-                        p.name.c_str(), value.c_str());
+            std::printf("    %s%s %s %s%s\n", p.output ? "output " : "", storageText(p.storage),
+                        typeText(p.type, i < shader->shader().parameters.size() ? shader->shader().parameters[i].symbol : nullptr).c_str(), p.name.c_str(), value.c_str());
         }
+        for (const std::string& m : members) std::printf("member: %s\n", m.c_str());
         for (const std::string& m : methods) std::printf("method: %s\n", m.c_str());
         std::fputs(offered.c_str(), stdout);
         for (const auto& [key, v] : shader->shader().annotations) std::printf("annotation %s: %s\n", key.c_str(), v.c_str());

@@ -137,6 +137,7 @@ ShaderPtr ShaderCompiler::finish(std::unique_ptr<Program> program, const std::st
     for (const ShaderParameter& p : c->shader_->parameters) {
         ParameterInfo i{p.symbol->name, p.symbol->type, p.symbol->storage, p.symbol->output, p.defaultValue != nullptr,
                         p.symbol->place};
+        i.open = i.type.array < 0 || p.symbol->open;
         if (i.type.array < 0)
             i.type.array = p.defaultValue && p.defaultValue->type.array > 0 ? p.defaultValue->type.array
                            : p.defaultValue && p.defaultValue->kind == ExprKind::ArrayList

@@ -19,6 +19,7 @@ struct ParameterInfo {
     bool output = false;
     bool hasDefault = false;
     Place place;
+    bool open = false; ///< an array of open length, `float w[]`: it is as long as what it is given
 };
 
 /// A parameter with a value. Strings for string types, else numbers, element after element.

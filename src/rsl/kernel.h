@@ -79,7 +79,8 @@ struct KernelOptions {
     int outline = limits::kOutlineInstructions;
     bool path = false;         ///< lobe shadeops (diffuse, specular, ...) are requests to the light transport engine
     std::vector<std::string> outputs;  ///< requested; empty: what the shader kind gives (Ci Oi, P N, L Cl Ol, ...)
-    /// Values of string parameters, and of numeric ones known to be 0 or 1 for good: specialised into the code.
+    /// Values of string parameters, and of numeric ones known to be 0 or 1 for good: specialised into the code. Elements of arrays of strings
+    /// are "name[0]", "name[1]" ...; "name[]" is the length of an array that the shader leaves open.
     std::vector<std::pair<std::string, std::string>> stringParameters;
     std::vector<std::string> varyingParameters; ///< parameters overridden by varying primitive variables
     std::vector<std::string> messages; ///< output parameters that lights ask for by surface(), sorted

@@ -171,16 +171,14 @@ std::string formatSite(const ir::Site& s, int32_t lanes, const float* in, int la
     const std::string pattern = a.string();
     FormatValue v;
     return formatWith(pattern, [&](char letter) -> const FormatValue* {
-        if (letter == 's' && a.more(true)) {
-            v = FormatValue{Base::String, {}, a.string()};
-            return &v;
-        }
-        if (a.more(false)) {
+        const bool text = letter == 's' || letter == 'h';
+        if (!(text && a.more(true)) && a.more(false)) {
             v = a.value();
             return &v;
         }
         if (!a.more(true)) return nullptr;
         v = FormatValue{Base::String, {}, a.string()};
+        if (letter == 'h' && v.text.empty()) v.text = "<null>";
         return &v;
     });
 }

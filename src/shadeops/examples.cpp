@@ -91,6 +91,7 @@ constexpr Entry kEntries[] = {
     {"setxcomp", "point p = 0; setxcomp(p, 2);", "p", "2 0 0"},
     {"setycomp", "point p = 0; setycomp(p, 2);", "p", "0 2 0"},
     {"setzcomp", "point p = 0; setzcomp(p, 2);", "p", "0 0 2"},
+    {"shaderinfo", "string x = \"none\";", "shaderinfo(\"shadername\", x)", "0"},
     {"shadername", "", "shadername()", "eval"},
     {"shaderinfo", "string x = \"none\"; shaderinfo(\"pipelinestage\", x);", "x", "none"},
     {"shadingnormal", "", "zcomp(shadingnormal(2 * N))", "-1"},

@@ -1,4 +1,5 @@
 // Shader calls of the scene made into programs with values, and those into kernels.
+#include "base/limits.h"
 #include "transport/world.h"
 #include <chrono>
 #include <filesystem>
@@ -99,13 +100,19 @@ InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind k
             continue;
         }
         if (p->type.base == rsl::Base::String) {
-            const size_t most = p->type.array ? size_t(std::max(1, p->type.array)) : 1;
+            const size_t most = p->open ? std::min(given.strings.size(), size_t(limits::kShaderArray)) : size_t(std::max(1, p->type.array));
+            if (p->open) i->parameters.strings[given.name + "[]"] = std::to_string(most);
             for (size_t e = 0; e < std::min(most, given.strings.size()); ++e)
                 i->parameters.strings[p->type.array ? given.name + "[" + std::to_string(e) + "]" : given.name] = given.strings[e];
             continue;
         }
         std::vector<float> v = given.numbers;
-        size_t want = size_t(rsl::componentCount(p->type.base)) * size_t(std::max(1, p->type.array));
+        const size_t each = size_t(rsl::componentCount(p->type.base));
+        size_t want = each * size_t(std::max(1, p->type.array));
+        if (p->open && v.size() >= each) {
+            want = each * std::min(v.size() / each, size_t(limits::kShaderArray));
+            i->parameters.strings[given.name + "[]"] = std::to_string(want / each);
+        }
         if (v.size() == 1 && want == 3 && p->type.base == rsl::Base::Color) v.assign(3, v[0]);
         if (v.size() < want) {
             d.report(Severity::Warning, Rie::Consistency, given.place.file.empty() ? call.place : given.place,

@@ -125,6 +125,23 @@ TEST_F(Tools, Info) {
     EXPECT_NE(text.find("annotation author: nobody"), std::string::npos) << text;
 }
 
+TEST_F(Tools, InfoOfAClass) {
+    write("c.sl", "class c(float w[] = {}; shader layers[] = {}; shader base = null; string n = \"a\";) {\n    public float gain = 2;\n    float own = 1;\n"
+                  "    public void surface(output color Ci, Oi) { Ci = gain * own; }\n    public color ask(float x;) { return x; }\n}\n");
+    const Json j = Json::parse(run("info --json c.sl"));
+    EXPECT_EQ(j["class"], true);
+    EXPECT_EQ(j["members"], Json::array({"float gain"}));
+    EXPECT_EQ(j["parameters"][0]["type"], "float[]");
+    EXPECT_EQ(j["parameters"][0]["open"], true);
+    EXPECT_EQ(j["parameters"][0]["default"], Json::array());
+    EXPECT_EQ(j["parameters"][1]["type"], "shader[]");
+    EXPECT_EQ(j["parameters"][2]["type"], "shader");
+    EXPECT_EQ(j["parameters"][3]["type"], "string");
+    const std::string text = run("info c.sl");
+    for (const char* part : {"surface \"c\"  (class, ", "uniform shader base", "member: float gain\n", "method: color ask(float x)"})
+        EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+}
+
 TEST_F(Tools, ManualOfOneShadeop) {
     const std::string text = run("info --shadeops smoothstep");
     EXPECT_EQ(status, 0);

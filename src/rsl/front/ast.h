@@ -38,6 +38,7 @@ struct Symbol {
     bool writable = true;     ///< globals: by shader kind (rsl.md section 8)
     bool isConstant = false;  ///< `constant`: written where the shader begins, then never again
     bool handle = false;      ///< of type `shader`: its value (of base String) is the name of a shader, no text
+    bool open = false;        ///< parameter of a shader, `float x[]`: as long as what the scene gives; `type` has the length of the default
     bool resizable = false;   ///< `float x[]`, local or a parameter of a function: its length may change
     bool isExtern = false;    ///< only between parser and checker, which puts the outer variable in its place
     Place place;

@@ -36,6 +36,7 @@ void Checker::assignedToUniform(const Symbol& s, const Expr& value) {
 /// `T x = value`, where x may be an array whose length comes from the value.
 void Checker::initialise(Symbol& s, ExprPtr& value) {
     if (s.type.base == Base::Void) { value.reset(); return; }
+    if (s.origin == Symbol::Origin::ShaderParameter && s.type.array < 0) s.open = true;
     const int errors = sources_.errors();
     infos_.clear();
     const Info& info = survey(*value);

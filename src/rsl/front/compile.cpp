@@ -1,4 +1,5 @@
 // The way of one file: read, preprocess, parse, check, report.
+#include "rsl/front/borrowed.h"
 #include "rsl/front/checker.h"
 #include "rsl/front/classes.h"
 #include "rsl/front/inspect.h"
@@ -44,6 +45,7 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
     Preprocessed p = preprocess(sources, main, options);
     program->preprocessed = p.text();
     program->dependencies.insert(program->dependencies.end(), p.dependencies.begin(), p.dependencies.end());
+    readBorrowedWords(sources, p);
     addPrelude(sources, p);
     Unit unit = Parser(p, sources).parse();
     lowerStructs(unit, sources);

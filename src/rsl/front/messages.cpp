@@ -70,6 +70,7 @@ constexpr MessageKind kKinds[] = {
     {"semicolon-in-call", "arguments are separated by ',', not ';'"},
     {"cast-parentheses", "a conversion is written without parentheses around the type"},
     {"not-a-type", "'*' is not a type"},
+    {"borrowed-type", "there is no type '*'; *"},
     {"void-value", "'void' is not the type of a value"},
     {"void-variable", "a variable cannot be void"},
     {"void-variable", "a parameter cannot be void"},

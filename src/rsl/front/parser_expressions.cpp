@@ -306,6 +306,7 @@ ExprPtr Parser::arrayList() {
         if (!accept(",")) break;
     }
     expect("}", "after the elements of an array");
+    if (e->args.empty()) e->text = "{}"; // an open array begins with no elements; those of others are filled up with zeros
     return e;
 }
 

@@ -89,7 +89,7 @@ int Builder::largestResize() {
 /// Whether the variable is an array that does change its length; what looks like one but never does is an ordinary array.
 bool Builder::grows(const Stmt::Declarator& d) {
     largestResize();
-    const bool measured = d.init && (d.init->kind == ExprKind::ArrayList || d.init->type.array > 0);
+    const bool measured = d.init && d.init->text != "{}" && (d.init->kind == ExprKind::ArrayList || d.init->type.array > 0);
     return d.symbol->resizable && (grown_.count(d.symbol) || !measured);
 }
 
@@ -110,6 +110,7 @@ const Builder::Lengths* Builder::lengths(const Inst* a) const {
 /// The number of elements, as a value.
 Inst* Builder::lengthOf(const Inst* a) {
     if (const Lengths* l = lengths(a)) return get(l->length);
+    if (const auto it = given_.find(a); it != given_.end()) return constant(static_cast<float>(it->second));
     return constant(static_cast<float>(arrayLength(a)));
 }
 
@@ -149,7 +150,7 @@ void Builder::copyResizable(Inst* to, const Expr& from) {
         set(l.reserved, runtime1("al_max_f", {get(l.reserved), n}, Kind::Float));
     };
     if (from.kind == ExprKind::ArrayList) {
-        const int n = std::min(static_cast<int>(from.args.size()), to->index);
+        const int n = from.text == "{}" ? 0 : std::min(static_cast<int>(from.args.size()), to->index);
         setLength(constant(static_cast<float>(n)));
     } else if (from.kind == ExprKind::Variable || from.kind == ExprKind::Cast) {
         Inst* a = array(from);

@@ -32,6 +32,7 @@ void Builder::beginCoShaders() {
                 while (c.strings.count(s.name + "[" + std::to_string(n) + "]")) ++n;
                 v = constantTexts(s.name, n, given);
                 if (!v) v = newArray(Base::String, std::max(1, s.type.array));
+                if (s.type.array < 0 || s.open) given_[v] = parameterLength(p, given);
             } else if (s.type.array) {
                 const size_t each = static_cast<size_t>(components(kindOf(s.type.element())));
                 const int n = std::max<int>(1, static_cast<int>(numbers.size() / each));
@@ -41,6 +42,7 @@ void Builder::beginCoShaders() {
                     Inst* x = leaves_.constant(v->element, std::vector<float>(first, first + static_cast<std::ptrdiff_t>(each)));
                     emit(Op::ArrayStore, Kind::None, {v, constant(static_cast<float>(k)), x});
                 }
+                if (s.type.array < 0 || s.open) given_[v] = parameterLength(p, std::vector<std::pair<std::string, std::string>>(c.strings.begin(), c.strings.end()));
             } else {
                 std::vector<float> all = numbers;
                 all.resize(static_cast<size_t>(components(kindOf(s.type))));

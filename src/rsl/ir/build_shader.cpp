@@ -1,4 +1,5 @@
 // The frame of a kernel: parameters in, outputs out.
+#include "base/limits.h"
 #include "rsl/ir/build.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
@@ -40,14 +41,21 @@ Inst* Builder::constantTexts(const std::string& name, int length, std::span<cons
     return a;
 }
 
+/// The length of a parameter's array: declared, given by the instance (KernelOptions::stringParameters, "name[]"), or that of its default.
+int Builder::parameterLength(const ShaderParameter& p, std::span<const std::pair<std::string, std::string>> given) const {
+    if (p.symbol->type.array >= 0 && !p.symbol->open) return p.symbol->type.array;
+    for (const auto& [name, value] : given)
+        if (name == p.symbol->name + "[]") return std::clamp(std::atoi(value.c_str()), 0, limits::kShaderArray);
+    if (!p.defaultValue) return 0;
+    if (p.defaultValue->kind == ExprKind::ArrayList) return p.defaultValue->text == "{}" ? 0 : static_cast<int>(p.defaultValue->args.size());
+    return std::max(1, p.defaultValue->type.array);
+}
+
 Inst* Builder::parameterValue(const ShaderParameter& p) {
     const Symbol& s = *p.symbol;
     Type type = s.type;
-    if (type.array < 0)
-        type.array = p.defaultValue && p.defaultValue->type.array > 0 ? p.defaultValue->type.array
-                     : p.defaultValue && p.defaultValue->kind == ExprKind::ArrayList
-                         ? std::max<int>(1, static_cast<int>(p.defaultValue->args.size()))
-                         : 1;
+    const int length = parameterLength(p, options_.stringParameters);
+    if (type.array) type.array = std::max(1, length); // storage
     if (type.array > 0 && type.base == Base::String) {
         if (Inst* a = constantTexts(s.name, type.array, options_.stringParameters)) return a;
     } else {
@@ -110,12 +118,14 @@ bool Builder::buildShader() {
         place_ = p.symbol->place;
         const int n = slot(p.symbol);
         Inst* v = parameterValue(p);
+        if (p.symbol->type.array < 0 || p.symbol->open) given_[v] = parameterLength(p, options_.stringParameters);
         if (v->op == Op::ArrayInput && assigned.count(n)) { // inputs are read-only: a copy takes the stores
             Inst* copy = newArray(p.symbol->type.base, arrayLength(v));
             for (int e = 0; e < arrayLength(v); ++e) {
                 Inst* at = constant(static_cast<float>(e));
                 emit(Op::ArrayStore, Kind::None, {copy, at, emit(Op::ArrayLoad, v->element, {v, at})});
             }
+            if (given_.count(v)) given_[copy] = given_[v];
             v = copy;
         }
         env_[static_cast<size_t>(n)] = v;

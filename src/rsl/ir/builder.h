@@ -108,9 +108,12 @@ private:
     bool grows(const Stmt::Declarator&);
     bool lengthKnown(const Inst* a) const {
         const Lengths* l = lengths(a);
+        if (given_.count(a)) return false;
         return !l || (env_[static_cast<size_t>(l->length)] && isConst(env_[static_cast<size_t>(l->length)]));
     }
     Inst* newResizable(Base, int length);
+    int parameterLength(const ShaderParameter&, std::span<const std::pair<std::string, std::string>> given) const;
+    std::map<const Inst*, int> given_; ///< arrays of parameters of open length (`float w[] = {}`), which have the length that the instance gives
     const Lengths* lengths(const Inst* array) const;
     Inst* lengthOf(const Inst* array);
     Inst* elementOf(const Inst* array, Inst* index);

@@ -1,0 +1,11 @@
+// Words that shaders borrow from C, or from one of the compilers: bool, int, integer, true, false.
+#pragma once
+#include "rsl/front/preprocessor.h"
+
+namespace alpenglow::rsl::front {
+
+/// Where a type stands, bool, int and integer become float, with a warning for each word; true and false become 1 and 0 unless the text
+/// gives them another meaning. Numbers are not rounded.
+void readBorrowedWords(SourceSet&, Preprocessed&);
+
+} // namespace alpenglow::rsl::front

@@ -23,7 +23,8 @@ const std::vector<Entry>& entries() {
     using K = ShaderKind;
     static const std::vector<Entry> all = {
         {K::Surface, "opacity", {"Oi"}},           {K::Surface, "prelighting", {"Ci", "Oi"}},
-        {K::Surface, "lighting", {"Ci", "Oi"}},    {K::Surface, "postlighting", {"Ci", "Oi"}},
+        {K::Surface, "lighting", {"Ci", "Oi"}},    {K::Surface, "diffuselighting", {"Ci", "Oi"}},
+        {K::Surface, "specularlighting", {"Ci", "Oi"}}, {K::Surface, "postlighting", {"Ci", "Oi"}},
         {K::Surface, "surface", {"Ci", "Oi"}},     {K::Displacement, "displacement", {"P", "N"}},
         {K::Light, "light", {"L", "Cl", "Ol"}},    {K::Volume, "volume", {"Ci", "Oi"}},
         {K::Imager, "imager", {"Ci", "Oi", "alpha"}}};
@@ -70,12 +71,12 @@ public:
 
     void run() {
         for (const auto& f : class_.shader->nested)
-            if (f->result.base != Base::Void && isEntry(f->name))
+            if (f->result.base != Base::Void && isEntry(f->name) && !isHalf(f->name))
                 sources_.error(f->place, "method '" + f->name + "' returns no value");
         if (recursive()) return;
         std::vector<ShaderKind> kinds;
         for (const Entry& e : entries())
-            if (names_.count(e.name) && std::find(kinds.begin(), kinds.end(), e.kind) == kinds.end()) kinds.push_back(e.kind);
+            if (runs(e) && std::find(kinds.begin(), kinds.end(), e.kind) == kinds.end()) kinds.push_back(e.kind);
         if (names_.count("surface"))
             for (const char* part : {"prelighting", "lighting", "postlighting"})
                 if (names_.count(part) && !calls_["surface"].count(part))
@@ -89,6 +90,12 @@ private:
         for (const auto& f : class_.shader->nested)
             if (f->name == name) return f.get();
         return nullptr;
+    }
+
+    /// Halves of the lighting of PRMan, for caches of what does not change with the view: they run where there is no lighting().
+    static bool isHalf(const std::string& name) { return name == "diffuselighting" || name == "specularlighting"; }
+    bool runs(const Entry& e) const {
+        return names_.count(e.name) && !(isHalf(e.name) && (names_.count("lighting") || names_.count("surface")));
     }
 
     static bool isEntry(const std::string& name) {
@@ -124,7 +131,7 @@ private:
         visit("construct");
         visit("begin");
         for (const Entry& e : entries())
-            if (e.kind == kind) visit(e.name);
+            if (e.kind == kind && runs(e)) visit(e.name);
         return all;
     }
 
@@ -158,7 +165,7 @@ private:
             if (names_.count(n)) s->body->body.push_back(call(*s, n, {}));
         const bool whole = names_.count("surface") > 0;
         for (const Entry& e : entries()) {
-            if (e.kind != kind || !names_.count(e.name)) continue;
+            if (e.kind != kind || !runs(e)) continue;
             const std::string name = e.name;
             if (kind == ShaderKind::Surface && whole && name != "surface" && name != "opacity") continue;
             if (kind == ShaderKind::Light) light(*s);
@@ -184,12 +191,13 @@ private:
                 continue;
             }
             const Symbol& p = *f.parameters[i];
-            if (!optional(i) && name != "light") {
+            const bool irradiance = isHalf(name) && i == 2; // Ii, which the renderer does not want
+            if (!optional(i) && name != "light" && !irradiance) {
                 sources_.error(f.place, "method '" + name + "' has at most " + std::to_string(variables.size()) +
                                             (variables.size() == 1 ? " parameter" : " parameters"));
                 return make(StmtKind::Block, f.place);
             }
-            if (!optional(i) && locals->declarators.empty())
+            if (!optional(i) && !irradiance && locals->declarators.empty())
                 sources_.warning(p.place, "parameter '" + p.name + "' has no default value; it is zero unless set");
             auto symbol = std::make_unique<Symbol>(p);
             symbol->name = "(" + name + ")->" + p.name;

@@ -46,6 +46,7 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
     program->preprocessed = p.text();
     program->dependencies.insert(program->dependencies.end(), p.dependencies.begin(), p.dependencies.end());
     readBorrowedWords(sources, p);
+    addDirectLighting(sources, p);
     addPrelude(sources, p);
     Unit unit = Parser(p, sources).parse();
     lowerStructs(unit, sources);

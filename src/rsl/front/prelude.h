@@ -7,4 +7,8 @@ namespace alpenglow::rsl::front {
 /// Puts the definitions of the built-in structures that the text names before it (RSL 2: filterregion, __radiancesample).
 void addPrelude(SourceSet&, Preprocessed&);
 
+/// Gives classes that call directlighting() and have a method evaluateSamples(), or indirectspecular() and generateSamples(), methods
+/// that do it, which they call instead.
+void addDirectLighting(SourceSet&, Preprocessed&);
+
 } // namespace alpenglow::rsl::front

@@ -297,6 +297,7 @@ void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
         if ((l.kind != LightKind::Environment && l.kind != LightKind::Ambient) || !l.kernel) continue; // a light whose shader was not found gives nothing
         q.clear();
         of.clear();
+        litBy_.clear();
         for (const Sched::Task* t : tasks) {
             const PathRay& r = t->payload;
             if (l.kind == LightKind::Ambient ? r.type != RayType::Diffuse : r.fromTrace && l.strategy == LightStrategy::Illuminance) continue;
@@ -307,9 +308,12 @@ void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
             p.time = r.time;
             p.ray = &r;
             of.push_back(t);
+            litBy_.push_back(r.lit);
         }
         value.assign(q.size(), {});
-        evaluateLight(l, q, value);
+        LitSurface lit;
+        if (l.asksSurface) lit = litBy(litBy_);
+        evaluateLight(l, q, value, {.lit = l.asksSurface ? &lit : nullptr});
         for (size_t i = 0; i < of.size(); ++i)
             if (value[i].lit) {
                 const PathRay& r = of[i]->payload;
@@ -325,6 +329,7 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
     std::vector<LightValue> value;
     for (size_t first = 0, end; first < met.size(); first = end) {
         q.clear();
+        litBy_.clear();
         for (end = first; end < met.size() && met[end].light == met[first].light; ++end) {
             const PathRay& r = *met[end].point->ray;
             q.push_back(*met[end].point);
@@ -332,10 +337,13 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
             p.P = p.surface.displaced ? p.surface.displacedP : p.surface.P;
             p.N = p.surface.n;
             p.Ps = r.lobePdf >= 0 ? r.lobeOrigin : r.origin;
+            litBy_.push_back(r.lit);
         }
         const BoundLight& light = world_->lights_[size_t(met[first].light)];
         value.assign(q.size(), {});
-        evaluateLight(light, q, value);
+        LitSurface lit;
+        if (light.asksSurface) lit = litBy(litBy_);
+        evaluateLight(light, q, value, {.lit = light.asksSurface ? &lit : nullptr});
         for (size_t i = first; i < end; ++i) {
             const LightValue& v = value[i - first];
             if (!v.lit || !(maxComponent(v.Cl) > 0)) continue;
@@ -634,6 +642,8 @@ bool Engine::trace(std::span<const CameraRay> rays, std::span<SampleResult> out,
     counters.peakFrameBytes = std::max(counters.peakFrameBytes, sched.peakFrameBytes());
     lobes.clear();
     shadows.clear();
+    traceSums_.clear();
+    litValues_.clear();
     return done;
 }
 

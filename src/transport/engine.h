@@ -32,6 +32,13 @@ struct ShadowRay {
 struct Way { Vec3 origin, dir; float distance = 0; };
 Way wayBetween(const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint* s);
 
+/// What lights are told about a surface that they light: because it samples them or because one of its rays meets them.
+struct LitValues {
+    int binding = -1;
+    std::vector<std::pair<std::string, std::vector<float>>> outputs; ///< those that are not here are as the surface was given them
+    bool output(const std::string& name, std::vector<float>& v) const;
+};
+
 /// What a trace() that asks for it is told beside its result. Sums are exact: order does not matter.
 struct TraceSums {
     enum Part { Blocked, Environment, UnshadowedEnvironment, AreaLight, UnshadowedAreaLight, Count };
@@ -70,6 +77,7 @@ struct LobeVertex {
     bool elsewhere = false; ///< trace() from a point that is not that of the surface: `from`
     Vec3 from;
     float bias = -1;       ///< < 0: the hit's own error bound
+    int lit = -1;          ///< of Engine::litValues_
     Color tint{1};         ///< of the environment map
     const TraceSite* trace = nullptr;
     float albedo = 0;      ///< kind->albedo(params)
@@ -178,6 +186,8 @@ public:
         return i == traceSums_.end() ? nullptr : &i->second;
     }
     std::unordered_map<TargetId, TraceSums> traceSums_;
+    std::vector<int> litBy_;           ///< PathRay::lit of the queries of a light
+    std::vector<LitValues> litValues_; ///< of what runs now; only where lights ask for outputs of surfaces
     std::vector<SampleResult*> results;
     std::vector<LobeVertex> lobes;
     std::vector<ShadowRay> shadows;
@@ -187,6 +197,8 @@ private:
     friend class KernelStrip;
     // lightloop.cpp
     void checkCategory(BatchContext&, const rsl::ir::Site&, const std::string& expression);
+    /// For rays that met a light: `of`, by query, is PathRay::lit. It must outlive the result.
+    LitSurface litBy(std::span<const int> of) const;
     LitSurface litSurface(BatchContext&, const LightLoop&, const std::vector<int>& points, int first, int lanes) const;
     void evaluateForLoop(BatchContext&, const LightLoop&, int light, int first, int lanes, std::vector<ShadePoint>&, const std::vector<int>& laneOf,
                          std::vector<LightValue>&, std::vector<float>& values);

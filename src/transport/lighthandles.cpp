@@ -106,11 +106,36 @@ void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, i
         turn.rows[6 * width + size_t(lane)] = float(kPi);
     }
     for (auto [li, of] : asked) {
+        const BoundLight& light = world_->lights_[size_t(li)];
         LightLoop::Kept kept;
-        kept.out.assign(9 * width, 0);
-        kept.distance.assign(width, 1e38f);
-        kept.values.assign(width * size_t(world_->lights_[size_t(li)].valueWidth), 0);
-        uint64_t lit = sampleLight(c, turn, li, 0, 1, first, of, lanes, kept);
+        uint64_t lit = 0;
+        std::vector<float> sum(width), weight(width);
+        for (int k = 0; k < light.samples; ++k) {
+            LightLoop::Kept one;
+            one.out.assign(9 * width, 0);
+            one.distance.assign(width, 1e38f);
+            one.values.assign(width * size_t(light.valueWidth), 0);
+            const uint64_t now = sampleLight(c, turn, li, k, light.samples, first, of, lanes, one);
+            if (k == 0) kept = one;
+            lit |= now;
+            if (light.samples == 1) break;
+            // One of the samples, drawn in proportion to what it gives, stands for the sum of all.
+            for (int lane = 0; lane < lanes; ++lane) {
+                if (!(now >> lane & 1)) continue;
+                const size_t at = size_t(lane);
+                const float w = maxComponent(Color(one.out[3 * width + at], one.out[4 * width + at], one.out[5 * width + at]));
+                if (!(w > 0) || !std::isfinite(w)) continue;
+                const ShadePoint& p = c.points[size_t(first + lane)];
+                sum[at] += w;
+                const float u = p.ray ? random(*p.ray).one(childVertex(p.ray->vertex, kLightPoint + uint32_t(li), uint32_t(k)), kChooseLight, 0) : 0.5f;
+                if (u * sum[at] >= w) continue;
+                weight[at] = w;
+                for (size_t r = 0; r < 9; ++r) kept.out[r * width + at] = one.out[r * width + at];
+                kept.distance[at] = one.distance[at];
+            }
+        }
+        for (size_t at = 0; at < width; ++at)
+            for (size_t r = 3; r < 6 && weight[at] > 0; ++r) kept.out[r * width + at] *= sum[at] / weight[at];
         for (int lane = 0; lane < lanes; ++lane) {
             if (!(of >> lane & 1)) continue;
             put(0, lane, 1);

@@ -7,6 +7,24 @@
 
 namespace alpenglow::transport {
 
+bool LitValues::output(const std::string& name, std::vector<float>& v) const {
+    for (const auto& [known, numbers] : outputs)
+        if (known == name) {
+            v = numbers;
+            return true;
+        }
+    return false;
+}
+
+LitSurface Engine::litBy(std::span<const int> of) const {
+    LitSurface lit;
+    lit.binding = [this, of](int q) { return of[size_t(q)] < 0 ? nullptr : &world_->bindings_[size_t(litValues_[size_t(of[size_t(q)])].binding)]; };
+    lit.output = [this, of](int q, const std::string& name, std::vector<float>& v) {
+        return of[size_t(q)] >= 0 && litValues_[size_t(of[size_t(q)])].output(name, v);
+    };
+    return lit;
+}
+
 LitSurface Engine::litSurface(BatchContext& c, const LightLoop& loop, const std::vector<int>& points, int first, int lanes) const {
     LitSurface lit;
     lit.binding = [this, &c, &points](int q) -> const SurfaceBinding* {

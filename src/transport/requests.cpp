@@ -43,6 +43,15 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     l.ownsTarget = owns;
     l.site = uint32_t(s.site - c.bound->kernel->sites().data());
     l.occurrence = occurrence;
+    if (!world_->lightMessages_.empty()) {
+        l.lit = int(litValues_.size());
+        LitValues& told = litValues_.emplace_back();
+        told.binding = c.bindings[size_t(point)];
+        for (const SiteInfo::Output& o : s.outputs) {
+            auto& of = told.outputs.emplace_back(o.name, std::vector<float>());
+            for (int r = 0; r < o.size; ++r) of.second.push_back(f(o.row + r));
+        }
+    }
     if (s.kind != SiteKind::Diffuse) l.params.wo = unit(-p.I, p.surface.n);
     switch (s.kind) {
     case SiteKind::Ambient: return; // under path ambient light is what escaping diffuse rays see
@@ -120,6 +129,19 @@ void Engine::gather(BatchContext& c, Sched& sched) {
         for (size_t i = 0; i < lobes.size(); ++i) order[size_t(next[size_t(lobes[i].point)]++)] = int(i);
     }
     auto lobesOf = [&](size_t pi) { return std::span<const int>(order).subspan(size_t(begin[pi]), size_t(begin[pi + 1] - begin[pi])); };
+
+    // What lights are told: a vertex has one answer. Where its requests are summed up, its kernel is done: its outputs as they are now.
+    if (!world_->lightMessages_.empty())
+        for (size_t pi = 0; pi < c.points.size(); ++pi) {
+            auto list = lobesOf(pi);
+            if (list.empty()) continue;
+            const int first = lobes[size_t(list[0])].lit;
+            for (auto& [name, v] : litValues_[size_t(first)].outputs) {
+                const int o = c.bound->kernel->facts().suspends ? -1 : c.batch->output("param:" + name);
+                for (size_t r = 0; o >= 0 && r < v.size(); ++r) v[r] = c.batch->value(o, int(r), int(pi));
+            }
+            for (int i : list) lobes[size_t(i)].lit = first;
+        }
 
     auto sourcePoint = [&](size_t pi, const Vec3& w) {
         const ShadePoint& p = c.points[pi];
@@ -257,14 +279,10 @@ void Engine::gather(BatchContext& c, Sched& sched) {
             value.assign(used, {});
             LightCall call;
             LitSurface lit;
-            if (light.asksSurface) { // the kernel of the surface is done: what its outputs are now is what lights see
-                lit.binding = [&](int k) { return &world_->bindings_[size_t(c.bindings[size_t(pointOf[size_t(k)])])]; };
-                lit.output = [&](int k, const std::string& name, std::vector<float>& now) {
-                    const int o = c.bound->kernel->facts().suspends ? -1 : c.batch->output("param:" + name);
-                    if (o < 0) return false;
-                    for (int r = 0; r < rsl::ir::components(c.batch->kernel().outputs()[size_t(o)].kind); ++r) now.push_back(c.batch->value(o, r, pointOf[size_t(k)]));
-                    return true;
-                };
+            auto told = [&](int k) -> const LitValues& { return litValues_[size_t(lobes[size_t(lobesOf(size_t(pointOf[size_t(k)]))[0])].lit)]; };
+            if (light.asksSurface) {
+                lit.binding = [&](int k) { return &world_->bindings_[size_t(told(k).binding)]; };
+                lit.output = [&](int k, const std::string& name, std::vector<float>& now) { return told(k).output(name, now); };
                 call.lit = &lit;
             }
             std::vector<float> values(light.channels ? used * size_t(light.valueWidth) : 0);
@@ -387,6 +405,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 r.type = l.type;
                 r.label = c.bound->sites[l.site].label;
                 r.environment = environment;
+                r.lit = l.lit;
                 r.part = l.ownsTarget ? Color(1.f / float(count)) : Color(0);
                 bool sampled = l.lights && !l.elsewhere && !delta && set.direct && !set.bsdfOnly && path;
                 bool sampledElsewhere = l.lights && !l.elsewhere && !delta && set.direct && !set.bsdfOnly && !path && l.ownsTarget;

@@ -113,6 +113,9 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         if (i.kind == SiteKind::Phong) i.lobe = findLobe("phong");
         i.standard = s.op == "specularstd";
         auto rowOf = [&](const char* name) { auto f = i.named.find(name); return f == i.named.end() ? -1 : f->second; };
+        static const std::string kOutput = "surface:";
+        for (const auto& [name, at] : i.named)
+            if (name.rfind(kOutput, 0) == 0 && i.kind != SiteKind::LightSetup) i.outputs.push_back({name.substr(kOutput.size()), at, int(rowsOf(i, at))});
         i.rowWo = rowOf("wo");
         i.rowExponent = rowOf("exponent");
         i.rowCone = rowOf("samplecone");

@@ -54,6 +54,9 @@ struct SiteInfo {
     bool standard = false;                     ///< specularstd, not specular
     int rowWo = -1, rowExponent = -1, rowCone = -1, rowHorizon = -1, rowLights = -1, rowMaxDistance = -1, rowSamples = -1; ///< of `named`
     std::shared_ptr<const struct TraceSite> trace; ///< Trace: what only some calls use
+    /// Outputs of the surface that lights ask for: name, row, numbers.
+    struct Output { std::string name; int row, size; };
+    std::vector<Output> outputs;
     RayType type = RayType::Specular;
     int32_t label = 0;                         ///< Trace: interned, for rayinfo()
 };

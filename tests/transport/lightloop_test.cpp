@@ -219,7 +219,10 @@ TEST(Illuminance, OutputsOfTheSurfaceAreReadByLights) {
         {"illuminance(P) Ci += Cl;", {.5f, .5f, .5f}}, // 0 times tint, and what is given
         {"strength = 3; tint = color(1, 2, 0); illuminance(P) Ci += Cl;", {3.5f, 6.5f, .5f}},
         {"strength = 3; illuminance(P) Ci += Cl; strength = 5; illuminance(P) Ci += Cl;", {9, 9, 9}},
-        {"strength = 4; Ci = diffuse(normal \"world\" (0, 1, 0));", {4.5f, 4.5f, 4.5f}}};
+        {"strength = 4; Ci = diffuse(normal \"world\" (0, 1, 0));", {4.5f, 4.5f, 4.5f}},
+        // A shader that waits for a ray: as the outputs are when it asks for light.
+        {"strength = 3; tint = color(1, 2, 0); if (comp(trace(P, vector \"world\" (0, 1, 0)), 0) > 7) strength = 50; normal n = normal \"world\" (0, 1, 0);"
+         "Ci = diffuse(n); strength = 5; Ci += diffuse(n);", {9, 17, 1}}};
     for (const auto& c : cases) {
         surfaceOf("isread", std::string("    ") + c.body, "float given = .5; output varying float strength = 0; output varying color tint = 1;");
         std::string rib = scene("LightSource \"readssurface\" 1\n", "\"isread\"");
@@ -232,6 +235,51 @@ TEST(Illuminance, OutputsOfTheSurfaceAreReadByLights) {
     // A surface without such outputs leaves the light's own values.
     surfaceOf("isnotread", "    illuminance(P) Ci += Cl;");
     expectEverywhere(scene("LightSource \"readssurface\" 1\n", "\"isnotread\""), Color(1), "without outputs");
+}
+
+// A light with an area knows the surface too, however light and surface meet: by a sample, by the lobe's own ray, by trace().
+TEST(Illuminance, OutputsAreReadWhereRaysMeetLights) {
+    writeShader("readsarea", R"(light readsarea() {
+    float strength = 1;
+    surface("strength", strength);
+    illuminate(P, N, PI / 2) Cl = strength;
+}
+)");
+    const std::string disk = "AttributeBegin\nAreaLightSource \"readsarea\" 7\nSurface \"constant\"\nColor 0 0 0\n"
+                             "Translate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\nAttributeEnd\nIlluminate 7 1\n";
+    const char* kUp = "normal n = normal \"world\" (0, 1, 0); ";
+    const struct { const char *body, *what; } cases[] = {
+        {"strength = 4; Ci = diffuse(n);", "summed up"},
+        {"strength = 4; if (comp(trace(P, -n), 0) > 7) strength = 50; Ci = diffuse(n);", "waiting"},
+        {"strength = 4; Ci = trace(P, n, \"distribution\", \"cosine\", \"samplecone\", PI / 2, \"samplearealights\", 1);", "trace"}};
+    for (const auto& c : cases) {
+        surfaceOf("isreadbyarea", std::string("    ") + kUp + c.body, "output varying float strength = 0;");
+        for (int way = 0; way < 3; ++way) {
+            Settings set = under(Hider::Path);
+            set.bsdfOnly = way == 1;
+            set.lightOnly = way == 2;
+            Scene s(scene(disk, "\"isreadbyarea\""), set);
+            expectMean(s.estimate(kView, samples(6000)), 4 * .49 / 4.49, way == 1 ? .05 : .015, c.what + std::string(way == 0 ? "" : way == 1 ? ", rays" : ", samples"));
+        }
+    }
+}
+
+// handle->light() asks all samples of a light: what it gives is the light of the whole of it, with less noise.
+TEST(LightHandles, LightOfAllSamples) {
+    writeShader("halfdark", "light halfdark() { illuminate(P, N, PI / 2) Cl = xcomp(transform(\"world\", P)) > 0 ? 8 : 0; }\n");
+    surfaceOf("byhandle", R"(    shader all[] = getlights();
+    vector l = 0; color c = 0;
+    all[0]->light(l, c);
+    Ci = c * max(0, normalize(-l) . normal "world" (0, 1, 0));)");
+    auto with = [&](int n) {
+        const std::string disk = "AttributeBegin\nAttribute \"light\" \"integer samples\" [" + std::to_string(n) + "]\nAreaLightSource \"halfdark\" 7\nSurface \"constant\"\n"
+                                 "Color 0 0 0\nTranslate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\nAttributeEnd\nIlluminate 7 1\n";
+        return Scene(scene(disk, "\"byhandle\""), under(Hider::Hidden)).estimate(kView, samples(6000));
+    };
+    const auto one = with(1), nine = with(9);
+    expectMean(one, 4 * .49 / 4.49, .03, "one sample");
+    expectMean(nine, 4 * .49 / 4.49, .015, "nine samples");
+    EXPECT_LT(nine.se(), one.se() * .5); // a third, but for the order of sequences
 }
 
 TEST(Illuminance, CoShadersLoopOverLights) {

@@ -200,6 +200,15 @@ Inst* Builder::service(const Expr& e, Op kind, int part) {
         s.pairStrings.push_back(v->op == Op::ConstString ? v->text : "");
         if (v->op != Op::ConstString) addArgument(s, args, v, known ? known->type.element() : p.value->type);
     }
+    // Lights that the rays or the samples of this call meet ask for outputs as they are now.
+    static const std::set<std::string> kLit = {"diffuse", "specular", "specularstd", "phong", "trace"};
+    if (kind == Op::Request && kLit.count(op.name))
+        for (const auto& [name, parameter] : messageSlots_) {
+            Inst* v = get(parameter.first);
+            s.names.push_back("surface:" + name);
+            s.pairStrings.push_back("");
+            addArgument(s, args, v, parameter.second);
+        }
     if (part >= 0) {
         s.names.push_back("__part");
         s.pairStrings.push_back(std::to_string(part));

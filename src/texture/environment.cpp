@@ -38,30 +38,61 @@ const Texture* faceMap(Handle h, int face) {
     return i == h->tiles.end() || i->second->levels.empty() ? nullptr : i->second.get();
 }
 
-void fillAll(int count, const LookupOptions& o, float* out, float* slopes) {
+void fillAll(int count, const LookupOptions& o, float* out, float* slopes, float* curves) {
     for (int c = 0; c < count; ++c) out[c] = o.fill;
     if (slopes) std::fill_n(slopes, 3 * count, 0.0f);
+    if (curves) std::fill_n(curves, 6 * count, 0.0f);
 }
 
-/// The lookup, with slopes by s and t turned into slopes by the direction.
+/// How (s, t) change with the direction, by its components. differentiate(direction, change, ds, dt).
+struct Jacobian {
+    Vec3 s, t;
+    template <class Differentiate> Jacobian(const Vec3& d, Differentiate differentiate) {
+        // Changes that differentiate() would limit lie beside a pole: small steps, and nothing where even they are limited.
+        const float step = length(d) / 1024;
+        for (int k = 0; k < 3; ++k) {
+            float a = 0, b = 0;
+            if (step > 0) differentiate(d, Vec3(k == 0, k == 1, k == 2) * step, a, b);
+            s[k] = std::fabs(a) < 1 ? a / step : 0;
+            t[k] = std::fabs(b) < 1 ? b / step : 0;
+            if (!std::isfinite(s[k]) || !std::isfinite(t[k])) s[k] = t[k] = 0;
+        }
+    }
+};
+
+/// The lookup, with slopes and curves by s and t turned into those by the direction.
 template <class Differentiate>
 void look(const Texture& tex, int first, int count, float s, float t, const Footprint& fp, const LookupOptions& o, Wrap swrap,
-          const Vec3& d, Differentiate differentiate, float* out, float* slopes) {
-    filteredLookup(tex, first, count, s, t, fp, o, swrap, Wrap::Clamp, out, slopes);
+          const Vec3& d, Differentiate differentiate, float* out, float* slopes, float* curves) {
+    filteredLookup(tex, first, count, s, t, fp, o, swrap, Wrap::Clamp, out, slopes, curves);
     if (!slopes) return;
-    // Changes that differentiate() would limit lie beside a pole: small steps, and nothing where even they are limited.
-    const float step = length(d) / 1024;
-    Vec3 ds, dt;
-    for (int k = 0; k < 3; ++k) {
-        float a = 0, b = 0;
-        if (step > 0) differentiate(Vec3(k == 0, k == 1, k == 2) * step, a, b);
-        ds[k] = std::fabs(a) < 1 ? a / step : 0;
-        dt[k] = std::fabs(b) < 1 ? b / step : 0;
-        if (!std::isfinite(ds[k]) || !std::isfinite(dt[k])) ds[k] = dt[k] = 0;
+    const Jacobian by(d, differentiate);
+    if (curves) {
+        // The change of the Jacobian: differences over a small step of the direction.
+        const float step = length(d) / 256;
+        Vec3 s2[3], t2[3];
+        for (int k = 0; k < 3; ++k) {
+            const Vec3 e = Vec3(k == 0, k == 1, k == 2) * step;
+            const Jacobian after(d + e, differentiate), before(d - e, differentiate);
+            s2[k] = step > 0 ? (after.s - before.s) / (2 * step) : Vec3();
+            t2[k] = step > 0 ? (after.t - before.t) / (2 * step) : Vec3();
+        }
+        for (int c = 0; c < count; ++c) { // three runs are read before six are written
+            const float ss = curves[c], st = curves[count + c], tt = curves[2 * count + c], ds = slopes[c], dt = slopes[count + c];
+            float run[6];
+            int n = 0;
+            for (int k = 0; k < 3; ++k)
+                for (int l = k; l < 3; ++l) {
+                    const float v = ss * by.s[k] * by.s[l] + st * (by.s[k] * by.t[l] + by.t[k] * by.s[l]) + tt * by.t[k] * by.t[l] +
+                                    0.5f * (ds * (s2[k][l] + s2[l][k]) + dt * (t2[k][l] + t2[l][k]));
+                    run[n++] = std::isfinite(v) ? v : 0;
+                }
+            for (int r = 0; r < 6; ++r) curves[r * count + c] = run[r];
+        }
     }
     for (int c = 0; c < count; ++c) { // the third run is free; the other two are read before they are written
         const float bs = slopes[c], bt = slopes[count + c];
-        for (int k = 0; k < 3; ++k) slopes[k * count + c] = bs * ds[k] + bt * dt[k];
+        for (int k = 0; k < 3; ++k) slopes[k * count + c] = bs * by.s[k] + bt * by.t[k];
     }
 }
 
@@ -70,7 +101,7 @@ template <class Differentiate> Footprint quadFootprint(const Vec3 d[4], const Ve
     Footprint fp;
     for (int i = 0; i < 4; ++i) {
         float ds, dt;
-        differentiate(d[i] - mean, ds, dt);
+        differentiate(mean, d[i] - mean, ds, dt);
         fp.ss += ds * ds;
         fp.st += ds * dt;
         fp.tt += dt * dt;
@@ -106,27 +137,27 @@ void cubeDifferentiate(int face, const Vec3& d, const Vec3& change, float cot, f
 }
 
 void environment(Handle h, const LatLong& map, int first, int count, const Vec3& d, const Vec3& ddx, const Vec3& ddy,
-                 const LookupOptions& o, float* out, float* slopes) {
-    if (!h || h->kind != Kind::Cube) return environmentLatLong(h, map, first, count, d, ddx, ddy, o, out, slopes);
+                 const LookupOptions& o, float* out, float* slopes, float* curves) {
+    if (!h || h->kind != Kind::Cube) return environmentLatLong(h, map, first, count, d, ddx, ddy, o, out, slopes, curves);
     float s, t, dsdx, dtdx, dsdy, dtdy;
     int face = cubeFace(d, h->fovCotangent, s, t);
     const Texture* tex = faceMap(h, face);
-    if (!tex) return fillAll(count, o, out, slopes);
+    if (!tex) return fillAll(count, o, out, slopes, curves);
     cubeDifferentiate(face, d, ddx, h->fovCotangent, dsdx, dtdx);
     cubeDifferentiate(face, d, ddy, h->fovCotangent, dsdy, dtdy);
-    const auto by = [&](const Vec3& c, float& a, float& b) { cubeDifferentiate(face, d, c, h->fovCotangent, a, b); };
-    look(*tex, first, count, s, t, Footprint::sides(dsdx, dtdx, dsdy, dtdy), o, Wrap::Clamp, d, by, out, slopes);
+    const auto by = [&](const Vec3& at, const Vec3& c, float& a, float& b) { cubeDifferentiate(face, at, c, h->fovCotangent, a, b); };
+    look(*tex, first, count, s, t, Footprint::sides(dsdx, dtdx, dsdy, dtdy), o, Wrap::Clamp, d, by, out, slopes, curves);
 }
 
-void environmentQuad(Handle h, const LatLong& map, int first, int count, const Vec3 d[4], const LookupOptions& o, float* out, float* slopes) {
-    if (!h || h->kind != Kind::Cube) return environmentLatLongQuad(h, map, first, count, d, o, out, slopes);
+void environmentQuad(Handle h, const LatLong& map, int first, int count, const Vec3 d[4], const LookupOptions& o, float* out, float* slopes, float* curves) {
+    if (!h || h->kind != Kind::Cube) return environmentLatLongQuad(h, map, first, count, d, o, out, slopes, curves);
     Vec3 mean = (d[0] + d[1] + d[2] + d[3]) * 0.25f;
     float s, t;
     int face = cubeFace(mean, h->fovCotangent, s, t);
     const Texture* tex = faceMap(h, face);
-    if (!tex) return fillAll(count, o, out, slopes);
-    const auto by = [&](const Vec3& c, float& ds, float& dt) { cubeDifferentiate(face, mean, c, h->fovCotangent, ds, dt); };
-    look(*tex, first, count, s, t, quadFootprint(d, mean, by), o, Wrap::Clamp, mean, by, out, slopes);
+    if (!tex) return fillAll(count, o, out, slopes, curves);
+    const auto by = [&](const Vec3& at, const Vec3& c, float& ds, float& dt) { cubeDifferentiate(face, at, c, h->fovCotangent, ds, dt); };
+    look(*tex, first, count, s, t, quadFootprint(d, mean, by), o, Wrap::Clamp, mean, by, out, slopes, curves);
 }
 
 void LatLong::project(const Vec3& d, float& s, float& t) const {
@@ -163,24 +194,24 @@ Vec3 LatLong::direction(float s, float t) const {
 }
 
 void environmentLatLong(Handle h, const LatLong& map, int first, int count, const Vec3& direction, const Vec3& ddx,
-                        const Vec3& ddy, const LookupOptions& o, float* out, float* slopes) {
-    if (!h || h->levels.empty()) return fillAll(count, o, out, slopes);
+                        const Vec3& ddy, const LookupOptions& o, float* out, float* slopes, float* curves) {
+    if (!h || h->levels.empty()) return fillAll(count, o, out, slopes, curves);
     float s, t, dsdx, dtdx, dsdy, dtdy;
     map.project(direction, s, t);
     map.differentiate(direction, ddx, dsdx, dtdx);
     map.differentiate(direction, ddy, dsdy, dtdy);
-    const auto by = [&](const Vec3& c, float& a, float& b) { map.differentiate(direction, c, a, b); };
-    look(*h, first, count, s, t, Footprint::sides(dsdx, dtdx, dsdy, dtdy), o, Wrap::Periodic, direction, by, out, slopes);
+    const auto by = [&](const Vec3& at, const Vec3& c, float& a, float& b) { map.differentiate(at, c, a, b); };
+    look(*h, first, count, s, t, Footprint::sides(dsdx, dtdx, dsdy, dtdy), o, Wrap::Periodic, direction, by, out, slopes, curves);
 }
 
 void environmentLatLongQuad(Handle h, const LatLong& map, int first, int count, const Vec3 d[4], const LookupOptions& o,
-                            float* out, float* slopes) {
-    if (!h || h->levels.empty()) return fillAll(count, o, out, slopes);
+                            float* out, float* slopes, float* curves) {
+    if (!h || h->levels.empty()) return fillAll(count, o, out, slopes, curves);
     Vec3 mean = (d[0] + d[1] + d[2] + d[3]) * 0.25f;
     float s, t;
     map.project(mean, s, t);
-    const auto by = [&](const Vec3& c, float& ds, float& dt) { map.differentiate(mean, c, ds, dt); };
-    look(*h, first, count, s, t, quadFootprint(d, mean, by), o, Wrap::Periodic, mean, by, out, slopes);
+    const auto by = [&](const Vec3& at, const Vec3& c, float& ds, float& dt) { map.differentiate(at, c, ds, dt); };
+    look(*h, first, count, s, t, quadFootprint(d, mean, by), o, Wrap::Periodic, mean, by, out, slopes, curves);
 }
 
 } // namespace alpenglow::texture

@@ -43,10 +43,12 @@ Footprint Footprint::sides(float dsdx, float dtdx, float dsdy, float dtdy) {
 }
 
 void filteredLookup(const Texture& tex, int first, int count, float s, float t, const Footprint& fp, const LookupOptions& o,
-                    Wrap swrap, Wrap twrap, float* out, float* slopes) {
+                    Wrap swrap, Wrap twrap, float* out, float* slopes, float* curves) {
     for (int c = 0; c < count; ++c) out[c] = 0;
     float *ds = slopes, *dt = slopes ? slopes + count : nullptr;
+    float *dss = curves, *dst = curves ? curves + count : nullptr, *dtt = curves ? curves + 2 * count : nullptr;
     if (slopes) std::fill_n(slopes, 2 * count, 0.0f);
+    if (curves) std::fill_n(curves, 3 * count, 0.0f);
     int skip = first < -count ? count : first < 0 ? -first : 0; // a negative channel exists as little as one beyond the last
     int present = first < -count ? 0 : std::clamp(int(tex.channels.size()) - (first + skip), 0, count - skip);
     for (int c = 0; c < count; ++c)
@@ -57,6 +59,11 @@ void filteredLookup(const Texture& tex, int first, int count, float s, float t, 
     if (slopes) {
         ds += skip;
         dt += skip;
+    }
+    if (curves) {
+        dss += skip;
+        dst += skip;
+        dtt += skip;
     }
     count = present;
     float W = float(tex.width()), H = float(tex.height());
@@ -108,6 +115,10 @@ void filteredLookup(const Texture& tex, int first, int count, float s, float t, 
         float ps = s + probes.position[i] * dx, pt = t + probes.position[i] * dy;
         tex.levels[size_t(l)].addBilinear(ps, pt, swrap, twrap, first, count, probes.weight[i] * (1 - f), out);
         if (f > 0) tex.levels[size_t(l + 1)].addBilinear(ps, pt, swrap, twrap, first, count, probes.weight[i] * f, out);
+        if (curves) {
+            tex.levels[size_t(l)].addCurves(ps, pt, swrap, twrap, first, count, probes.weight[i] * (1 - f), dss, dst, dtt);
+            if (f > 0) tex.levels[size_t(l + 1)].addCurves(ps, pt, swrap, twrap, first, count, probes.weight[i] * f, dss, dst, dtt);
+        }
         if (!slopes) continue;
         tex.levels[size_t(l)].addSlopes(ps, pt, swrap, twrap, first, count, probes.weight[i] * (1 - f), ds, dt);
         if (f > 0) tex.levels[size_t(l + 1)].addSlopes(ps, pt, swrap, twrap, first, count, probes.weight[i] * f, ds, dt);
@@ -116,10 +127,12 @@ void filteredLookup(const Texture& tex, int first, int count, float s, float t, 
         ds[i] = finiteOr(ds[i], 0);
         dt[i] = finiteOr(dt[i], 0);
     }
+    for (int i = 0; curves && i < count; ++i)
+        for (float* d : {dss, dst, dtt}) d[i] = finiteOr(d[i], 0);
 }
 
-void lookup(Handle h, int first, int count, float s, float t, const Footprint& fp, const LookupOptions& o, float* out,
-            float* slopes) {
+void lookup(Handle h, int first, int count, float s, float t, const Footprint& fp, const LookupOptions& o, float* out, float* slopes,
+          float* curves) {
     const Texture* tex = h;
     if (tex && tex->kind != Kind::Cube && !tex->tiles.empty()) {
         // Tiles are numbered in rows of ten; outside them, and where none was found, there is nothing.
@@ -133,17 +146,19 @@ void lookup(Handle h, int first, int count, float s, float t, const Footprint& f
     if (!tex || tex->levels.empty()) {
         for (int c = 0; c < count; ++c) out[c] = o.fill;
         if (slopes) std::fill_n(slopes, 2 * count, 0.0f);
+        if (curves) std::fill_n(curves, 3 * count, 0.0f);
         return;
     }
-    filteredLookup(*tex, first, count, s, t, fp, o, tex->swrap, tex->twrap, out, slopes);
+    filteredLookup(*tex, first, count, s, t, fp, o, tex->swrap, tex->twrap, out, slopes, curves);
 }
 
 void lookup2D(Handle h, int first, int count, float s, float t, float dsdx, float dtdx, float dsdy, float dtdy,
-              const LookupOptions& o, float* out, float* slopes) {
-    lookup(h, first, count, s, t, Footprint::sides(dsdx, dtdx, dsdy, dtdy), o, out, slopes);
+              const LookupOptions& o, float* out, float* slopes, float* curves) {
+    lookup(h, first, count, s, t, Footprint::sides(dsdx, dtdx, dsdy, dtdy), o, out, slopes, curves);
 }
 
-void lookupQuad(Handle h, int first, int count, const float s[4], const float t[4], const LookupOptions& o, float* out, float* slopes) {
+void lookupQuad(Handle h, int first, int count, const float s[4], const float t[4], const LookupOptions& o, float* out, float* slopes,
+          float* curves) {
     float ms = (s[0] + s[1] + s[2] + s[3]) / 4, mt = (t[0] + t[1] + t[2] + t[3]) / 4;
     // Corners of a parallelogram lie at +-a/2 +-b/2: the sum of their outer products is that of a and b.
     Footprint fp;
@@ -153,7 +168,7 @@ void lookupQuad(Handle h, int first, int count, const float s[4], const float t[
         fp.st += x * y;
         fp.tt += y * y;
     }
-    lookup(h, first, count, ms, mt, fp, o, out, slopes);
+    lookup(h, first, count, ms, mt, fp, o, out, slopes, curves);
 }
 
 void lookup2DLanes(Handle h, int first, int count, int n, const unsigned char* active, const float* s, const float* t,

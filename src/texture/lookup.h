@@ -7,8 +7,9 @@ namespace alpenglow::texture {
 /// "textureformat" of a cube map: six square faces from top to bottom, px nx py ny pz nz; "fovcot" holds 1 / tan(fov / 2).
 extern const char* const cubeFormat;
 
-/// lookup() on one map that has levels, with wrap modes that may differ from the map's own. `slopes`: as for lookup(), or null.
+/// lookup() on one map that has levels, with wrap modes that may differ from the map's own. `slopes`, `curves`: as for
+/// lookup(), or null.
 void filteredLookup(const Texture&, int first, int count, float s, float t, const Footprint&, const LookupOptions&, Wrap swrap,
-                    Wrap twrap, float* out, float* slopes = nullptr);
+                    Wrap twrap, float* out, float* slopes = nullptr, float* curves = nullptr);
 
 } // namespace alpenglow::texture

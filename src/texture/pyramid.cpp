@@ -210,6 +210,20 @@ void Level::addSlopes(float s, float t, Wrap swrap, Wrap twrap, int first, int c
     }
 }
 
+void Level::addCurves(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* ss, float* st, float* tt) const {
+    const float w = float(width), h = float(height), x = 0.5f / w, y = 0.5f / h;
+    for (int c = 0; c < count; ++c) {
+        float alongS = 0, across = 0, alongT = 0, other = 0;
+        addSlopes(s + x, t, swrap, twrap, first + c, 1, 1, &alongS, &other);
+        addSlopes(s - x, t, swrap, twrap, first + c, 1, -1, &alongS, &other);
+        addSlopes(s, t + y, swrap, twrap, first + c, 1, 1, &across, &alongT);
+        addSlopes(s, t - y, swrap, twrap, first + c, 1, -1, &across, &alongT);
+        ss[c] += weight * w * alongS;
+        st[c] += weight * h * across;
+        tt[c] += weight * h * alongT;
+    }
+}
+
 display::Image reduced(const display::Image& m, const Reduction& how, Wrap swrap, Wrap twrap) {
     int w = std::max(1, m.width / 2), h = std::max(1, m.height / 2);
     size_t n = m.channels.size();

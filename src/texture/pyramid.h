@@ -28,6 +28,9 @@ struct Level {
     /// what addBilinear would give half a texel further, less what it would give half a texel before. So slopes go on from texel to
     /// texel without a jump; they are exact on ramps, and exactly 0 where the map is flat.
     void addSlopes(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* ds, float* dt) const;
+    /// Adds weight times the second derivatives by s twice, by s and t, by t twice: of addSlopes() in the same way, half a texel further
+    /// less half a texel before. Exact on parabolas.
+    void addCurves(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* ss, float* st, float* tt) const;
 };
 
 /// Kernel of the reduction, in texels of the level that is made. Widths are full widths and multiply the filter's own:

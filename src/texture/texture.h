@@ -66,16 +66,16 @@ struct Footprint {
 
 /// Channels first, first+1, ... (count of them) of the map at (s, t), filtered over the footprint, into out[0..count). When `slopes`
 /// is given: their derivatives by s into slopes[0..count), by t into slopes[count..2 count), per unit of s and t (a whole map), at
-/// a fixed footprint; 0 where there is no map or channel.
+/// a fixed footprint; 0 where there is no map or channel. `curves`, likewise: second derivatives by s twice, by s and t, by t twice.
 void lookup(Handle, int first, int count, float s, float t, const Footprint&, const LookupOptions&, float* out,
-            float* slopes = nullptr);
+            float* slopes = nullptr, float* curves = nullptr);
 /// The same with the change of (s, t) from pixel to pixel (or sample to sample).
 void lookup2D(Handle, int first, int count, float s, float t, float dsdx, float dtdx, float dsdy, float dtdy,
-              const LookupOptions&, float* out, float* slopes = nullptr);
+              const LookupOptions&, float* out, float* slopes = nullptr, float* curves = nullptr);
 /// texture() with four corners, in any order. Four equal corners: no filtering beyond bilinear interpolation. Slopes: when
 /// all corners move together.
 void lookupQuad(Handle, int first, int count, const float s[4], const float t[4], const LookupOptions&, float* out,
-                float* slopes = nullptr);
+                float* slopes = nullptr, float* curves = nullptr);
 /// n lanes; lanes with active[i] == 0 are left alone (active may be null). Options are one, or one per lane (perLane).
 /// out[c * n + i] is channel c of lane i.
 void lookup2DLanes(Handle, int first, int count, int n, const unsigned char* active, const float* s, const float* t,
@@ -96,12 +96,12 @@ struct LatLong {
 };
 
 /// environment(): the form that the map has, cube faces or (also for pictures that are neither) latitude-longitude. When `slopes` is
-/// given: derivatives of the channels by x, y and z of the direction, in three runs of `count`.
+/// given: derivatives of the channels by x, y and z of the direction, in three runs of `count`; `curves`: by xx, xy, xz, yy, yz, zz, six runs.
 void environment(Handle, const LatLong&, int first, int count, const Vec3& direction, const Vec3& ddx, const Vec3& ddy,
-                 const LookupOptions&, float* out, float* slopes = nullptr);
+                 const LookupOptions&, float* out, float* slopes = nullptr, float* curves = nullptr);
 /// environment() with four directions, in any order.
 void environmentQuad(Handle, const LatLong&, int first, int count, const Vec3 directions[4], const LookupOptions&, float* out,
-                     float* slopes = nullptr);
+                     float* slopes = nullptr, float* curves = nullptr);
 
 /// Where a direction meets a cube face (0..5: px nx py ny pz nz) of the given cotangent of half the field of view. Faces are seen
 /// from inside: pz has x to the right and y up, the side faces follow by turning about y, py has -z up, ny has +z up.
@@ -111,10 +111,10 @@ void cubeDifferentiate(int face, const Vec3& direction, const Vec3& d, float fov
 
 /// Lat-long maps: along a direction with its changes per pixel. Longitude wraps, latitude is clamped.
 void environmentLatLong(Handle, const LatLong&, int first, int count, const Vec3& direction, const Vec3& ddx, const Vec3& ddy,
-                        const LookupOptions&, float* out, float* slopes = nullptr);
+                        const LookupOptions&, float* out, float* slopes = nullptr, float* curves = nullptr);
 /// The same with four directions.
 void environmentLatLongQuad(Handle, const LatLong&, int first, int count, const Vec3 directions[4], const LookupOptions&,
-                            float* out, float* slopes = nullptr);
+                            float* out, float* slopes = nullptr, float* curves = nullptr);
 
 /// textureinfo() fields.
 struct TextureInfo {

@@ -195,7 +195,8 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
         bool dynamic = name.empty() && !d.argKinds.empty() && d.argKinds[0] == rsl::ir::Kind::String;
         if (!dynamic && !name.empty()) h = world_->textures_->open(name, world_->settings_.texturePaths, place);
         const int count = d.resultKinds.empty() ? 0 : std::min(rsl::ir::components(d.resultKinds[0]), 3);
-        const int slopeCount = std::min(s.resultRowCount - count, 9); // rsl/passes/gradients.h; most lookups want none
+        // rsl/passes/gradients.h; most lookups want none. First derivatives, then second ones.
+        const int slopeCount = std::min(s.resultRowCount - count, 27), firsts = count * (s.kind == SiteKind::Texture ? 2 : 3);
         each([&](int lane, const ShadePoint&) {
             if (dynamic) {
                 const std::string& n = rsl::internedString(std::bit_cast<int32_t>(at(0, lane)));
@@ -209,24 +210,24 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
             o.tblur = number("tblur", lane, blur);
             o.fill = number("fill", lane, 0);
             int channel = int(number("channel", lane, 0));
-            float v[3] = {}, slopes[9] = {};
-            float* g = slopeCount > 0 ? slopes : nullptr;
+            float v[3] = {}, slopes[27] = {};
+            float *g = slopeCount > 0 ? slopes : nullptr, *cu = slopeCount > firsts ? slopes + firsts : nullptr;
             auto row = [&](int k) { return at(s.rows[size_t(offset + k)], lane); };
             if (s.kind == SiteKind::Texture) {
                 if (int(s.rows.size()) - offset >= 8) {
                     float ss[4], tt[4];
                     for (int k = 0; k < 4; ++k) { ss[k] = row(2 * k); tt[k] = row(2 * k + 1); }
-                    texture::lookupQuad(h, channel, count, ss, tt, o, v, g);
+                    texture::lookupQuad(h, channel, count, ss, tt, o, v, g, cu);
                 } else if (int(s.rows.size()) - offset >= 6) {
-                    texture::lookup2D(h, channel, count, row(0), row(1), row(2), row(3), row(4), row(5), o, v, g);
+                    texture::lookup2D(h, channel, count, row(0), row(1), row(2), row(3), row(4), row(5), o, v, g, cu);
                 }
             } else {
                 auto vec = [&](int k) { int r = s.rows[size_t(offset + k)]; return Vec3(at(r, lane), at(r + 1, lane), at(r + 2, lane)); };
                 if (int(s.rows.size()) - offset >= 4) {
                     Vec3 q[4] = {vec(0), vec(1), vec(2), vec(3)};
-                    texture::environmentQuad(h, world_->textures_->latLong(), channel, count, q, o, v, g);
+                    texture::environmentQuad(h, world_->textures_->latLong(), channel, count, q, o, v, g, cu);
                 } else {
-                    texture::environment(h, world_->textures_->latLong(), channel, count, vec(0), vec(1), vec(2), o, v, g);
+                    texture::environment(h, world_->textures_->latLong(), channel, count, vec(0), vec(1), vec(2), o, v, g, cu);
                 }
             }
             for (int k = 0; k < count; ++k) put(k, lane, v[k]);

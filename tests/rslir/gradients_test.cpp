@@ -33,6 +33,9 @@ TEST(Gradients, OnlyWhereDerivativesAreWanted) {
         EXPECT_EQ(results(wanted, "texture"), 3u);
         EXPECT_EQ(results(wanted, "environment"), 4u);
         EXPECT_EQ(wanted.messages, "");
+        const auto second = compile("surface s() { Ci = Dv(Du(color texture(\"a\", u, v))) + Du(Du(float environment(\"c\", N))); }", o);
+        EXPECT_EQ(results(second, "texture"), 6u);
+        EXPECT_EQ(results(second, "environment"), 10u);
         const auto mixed = compile("surface s() { float a = texture(\"a\"); float b = texture(\"b\", s, t); "
                                    "Ci = a + Dv(texture(\"c\", v, v)); if (u > 0.5) Ci += Du(b); }", o);
         EXPECT_EQ(chains(mixed), 2);

@@ -87,6 +87,13 @@ TEST(Jets, Chain) {
     const float want[] = {7, 23, 46, 69, 92, 115};
     for (int k = 0; k < 6; ++k)
         EXPECT_EQ(out[k], want[k]) << k;
+    // With second derivatives 4, 5 and 6 of the map: a parabola over the coordinates.
+    float curved[48] = {7, 1, 1, 1, 1, 1, 2, 1, 1, 1, 1, 1, 3, 1, 1, 1, 1, 1, 4, 1, 1, 1, 1, 1, 5, 1, 1, 1, 1, 1, 6, 1, 1, 1, 1, 1};
+    std::copy_n(in + 18, 12, curved + 36);
+    ASSERT_TRUE(evaluateRuntimeJet("al_chain2c_f", 2, curved, 48, out, 6));
+    const float parabola[] = {7, 23, 46, 69 + 400 + 100 + 6, 92 + 800 + 200 + 12, 115 + 1600 + 400 + 24};
+    for (int k = 0; k < 6; ++k)
+        EXPECT_EQ(out[k], parabola[k]) << k;
     float t[60] = {}, r[9];
     for (int c = 0; c < 3; ++c) {
         t[3 * c] = float(c + 1);               // the value

@@ -111,3 +111,42 @@ TEST(Slopes, OfAnEnvironment) {
             EXPECT_NEAR(double(g[2]) * l, 1 - z * z / (l * l), 2e-3) << i;
         }
 }
+
+// Second derivatives are exact where they do not change: channels, both directions, a level below, too.
+TEST(Curves, OfAParabola) {
+    auto t = mapOf(32, 16, "clamp", [](double s, double t) { return 3 * s * s + 2 * s * t - 5 * t * t; });
+    for (float width : {0.0f, 0.02f, 0.08f})
+        for (float s = .3f; s < .7f; s += .0371f)
+            for (float tt = .4f; tt < .6f; tt += .0613f) {
+                float v[2], plain[2], g[4], c[6];
+                lookup2D(t.get(), 0, 2, s, tt, width, 0, 0, width, {}, v, g, c);
+                lookup2D(t.get(), 0, 2, s, tt, width, 0, 0, width, {}, plain);
+                EXPECT_EQ(v[0], plain[0]);
+                const float want[3] = {6, 2, -10};
+                for (int k = 0; k < 3; ++k) {
+                    EXPECT_NEAR(c[2 * k], want[k], 5e-3) << s << " " << tt << " " << width;
+                    EXPECT_NEAR(c[2 * k + 1], -2 * want[k], 1e-2);
+                }
+            }
+}
+
+// The height of a direction, z / |d|, as a map: its second derivatives in closed form. Without a map there are none.
+TEST(Curves, OfAnEnvironment) {
+    Image m = makeImage(512, 256, {"a"});
+    for (int y = 0; y < 256; ++y)
+        for (int x = 0; x < 512; ++x) m.pixel(x, y)[0] = float(std::cos(kPi * (y + .5) / 256));
+    auto t = makeTextureFrom(withWrap(m, "periodic"));
+    for (const Vec3& d : {Vec3(1, .2f, .3f), Vec3(-.4f, 1, -.7f), Vec3(.6f, -.9f, .5f), Vec3(-2, -1, 1.5f)}) {
+        float v, g[3], c[6];
+        environment(t.get(), {}, 0, 1, d, {}, {}, {}, &v, g, c);
+        const double r = length(d), r3 = r * r * r;
+        int n = 0;
+        for (int k = 0; k < 3; ++k)
+            for (int l = k; l < 3; ++l) {
+                const double want = -((k == 2) * d[l] + (l == 2) * d[k]) / r3 - d.z * (k == l) / r3 + 3 * double(d.z) * d[k] * d[l] / (r3 * r * r);
+                EXPECT_NEAR(c[n++], want, .01) << k << l << " " << d.x;
+            }
+        environment(nullptr, {}, 0, 1, d, {}, {}, {}, &v, g, c);
+        for (float x : c) EXPECT_EQ(x, 0);
+    }
+}

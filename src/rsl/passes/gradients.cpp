@@ -2,7 +2,7 @@
 #include "rsl/ir/edit.h"
 #include <algorithm>
 #include <map>
-#include <unordered_set>
+#include <unordered_map>
 
 namespace alpenglow::rsl::ir {
 namespace {
@@ -11,8 +11,8 @@ struct Gradients {
     Kernel& k;
     Leaves leaves{k};
     Replacements rep;
-    std::unordered_set<const Inst*> wanted; ///< services whose value carries derivatives
-    std::map<int, int> sites;               ///< with slopes, by the site without
+    std::unordered_map<const Inst*, int> wanted; ///< services whose value carries derivatives: of which order
+    std::map<std::pair<int, size_t>, int> sites; ///< with slopes, by the site without and how many
 
     /// The coordinates of a lookup: s and t, or the direction. Empty when they do not move. What must be computed goes to `body`.
     std::vector<Inst*> coordinates(const Inst* i, std::vector<Inst*>& body) {
@@ -39,7 +39,7 @@ struct Gradients {
     }
 
     int siteWithSlopes(int site, size_t count) {
-        const auto [it, fresh] = sites.try_emplace(site, static_cast<int>(k.sites.size()));
+        const auto [it, fresh] = sites.try_emplace({site, count}, static_cast<int>(k.sites.size()));
         if (fresh) {
             Site s = k.sites[static_cast<size_t>(site)];
             s.resultKinds.insert(s.resultKinds.end(), count, s.resultKinds[0]);
@@ -56,7 +56,8 @@ struct Gradients {
         body.push_back(i);
         if (at.empty()) return;
         const bool direction = at[0]->kind == Kind::Triple;
-        const size_t count = direction ? 3 : 2;
+        const bool second = wanted.at(i) > 1;
+        const size_t count = direction ? (second ? 9 : 3) : (second ? 5 : 2);
         const Kind kind = i->results[0];
         i->site = siteWithSlopes(i->site, count);
         i->results.insert(i->results.end(), count, kind);
@@ -71,7 +72,7 @@ struct Gradients {
         for (size_t n = 0; n <= count; ++n) args.push_back(result(i, static_cast<int>(n)));
         args.insert(args.end(), at.begin(), at.end());
         Inst* c = k.make(Op::Runtime, Kind::None, std::move(args));
-        c->text = std::string(direction ? "al_chain3_" : "al_chain2_") + (kind == Kind::Triple ? "t" : "f");
+        c->text = std::string(direction ? "al_chain3" : "al_chain2") + (second ? "c_" : "_") + (kind == Kind::Triple ? "t" : "f");
         c->results = {kind};
         c->place = i->place;
         body.push_back(c);
@@ -103,7 +104,7 @@ struct Gradients {
             if (i->op != Op::Result || i->order == 0 || i->args[0]->op != Op::Service) return;
             const Inst* o = i->args[0];
             const Site& s = k.sites[static_cast<size_t>(o->site)];
-            if (s.shadeop && s.shadeop->derivative == DerivativeRule::Gradient && o->results.size() == 1) wanted.insert(o);
+            if (s.shadeop && s.shadeop->derivative == DerivativeRule::Gradient && o->results.size() == 1) wanted[o] = std::max<int>(wanted[o], i->order);
         });
         if (wanted.empty()) return;
         region(k.body);

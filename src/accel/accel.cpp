@@ -338,14 +338,14 @@ geometry::Bounds Accel::bounds() const { return impl_->bounds; }
 namespace {
 
 bool usable(const Ray& r) {
-    float sum = r.org.x + r.org.y + r.org.z + r.dir.x + r.dir.y + r.dir.z;
     // An infinite far end is usual; anything else infinite or NaN would wander through every box.
     // Embree takes coordinates below 1.8e18 (and asserts it).
     constexpr float kFar = 1e18f;
-    for (float c : {r.org.x, r.org.y, r.org.z, r.dir.x, r.dir.y, r.dir.z})
-        if (!(std::fabs(c) < kFar)) return false;
-    if (!std::isfinite(sum) || !(r.tnear < r.tfar) || (r.dir.x == 0 && r.dir.y == 0 && r.dir.z == 0)) return false;
-    return true;
+    auto near = [](float c) { return std::fabs(c) < kFar; };
+    // Without branches: nearly all rays pass.
+    const bool sound = int(near(r.org.x)) & int(near(r.org.y)) & int(near(r.org.z)) & int(near(r.dir.x)) & int(near(r.dir.y)) & int(near(r.dir.z)) &
+                       int(r.tnear < r.tfar) & int((std::fabs(r.dir.x) + std::fabs(r.dir.y) + std::fabs(r.dir.z)) > 0);
+    return sound;
 }
 
 bool fill(const Ray& r, RTCRay& o) {

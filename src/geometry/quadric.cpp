@@ -11,6 +11,13 @@ namespace {
 // Limits are widened by this part of the range: primitives that share an edge come with decimal numbers rounded to float, and a
 // ray must not slip between them.
 constexpr double kEdge = 1e-7;
+
+// transformVector() and transformPoint() of base/, here so that they need no call.
+Vec3d turned(const Matrix& a, const Vec3d& v) {
+    const auto& m = a.m;
+    return {v.x * m[0][0] + v.y * m[1][0] + v.z * m[2][0], v.x * m[0][1] + v.y * m[1][1] + v.z * m[2][1],
+            v.x * m[0][2] + v.y * m[1][2] + v.z * m[2][2]};
+}
 } // namespace
 
 double quadricNumber(const scene::Primitive& p, size_t i, bool& ok) {
@@ -31,6 +38,7 @@ Quadric::Quadric(ShapeSource s, double degrees, Diagnostics& diag) : Parametric(
     thetaMax_ = degrees * kPi / 180;
     fullTurn_ = std::fabs(degrees) >= 360 - 1e-4;
     toObject_ = inverse(toCamera());
+    mirrored_ = determinant3(toCamera()) < 0;
     const auto& m = toObject_.m;
     affine_ = m[0][3] == 0 && m[1][3] == 0 && m[2][3] == 0 && m[3][3] == 1;
 }
@@ -85,11 +93,11 @@ LocalPoint Quadric::cameraPoint(double u, double v) const {
     Vec3d P = turn(q.p), d = turn(q.d), dd = turn(q.dd);
     LocalPoint r;
     r.P = transformPoint(m, P);
-    r.Pu = transformVector(m, quarter(P) * k);
-    r.Pv = transformVector(m, d);
-    r.Puu = transformVector(m, Vec3d(-P.x, -P.y, 0) * (k * k));
-    r.Puv = transformVector(m, quarter(d) * k);
-    r.Pvv = transformVector(m, dd);
+    r.Pu = turned(m, quarter(P) * k);
+    r.Pv = turned(m, d);
+    r.Puu = turned(m, Vec3d(-P.x, -P.y, 0) * (k * k));
+    r.Puv = turned(m, quarter(d) * k);
+    r.Pvv = turned(m, dd);
     // Direction of Pu x Pv without the factor that vanishes on the axis, and its derivative by v.
     double a = q.p.x, b = q.p.y, da = q.d.x, db = q.d.y, dz = q.d.z;
     Vec3d w, wv;
@@ -105,7 +113,7 @@ LocalPoint Quadric::cameraPoint(double u, double v) const {
     if (k < 0) w = -w, wv = -wv;
     Vec3d n0 = turn(w), n0v = turn(wv), n0u = quarter(n0) * k;
     // Normals go by the inverse transpose; Pu x Pv in camera space is det times that.
-    double det = determinant3(m) < 0 ? -1 : 1;
+    const double det = mirrored_ ? -1 : 1;
     auto normalOut = [&](const Vec3d& n) {
         const auto& i = toObject_.m;
         return Vec3d(i[0][0] * n.x + i[0][1] * n.y + i[0][2] * n.z, i[1][0] * n.x + i[1][1] * n.y + i[1][2] * n.z,
@@ -153,13 +161,8 @@ bool Quadric::accept(const Vec3d& p, double v, ExactHit& hit) const {
 }
 
 int Quadric::exactHits(const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted wanted, ExactHit out[4]) const {
-    // transformPoint and transformVector of base/, here so that they need no call.
-    auto turned = [&m = toObject_.m](const Vec3d& v) {
-        return Vec3d(v.x * m[0][0] + v.y * m[1][0] + v.z * m[2][0], v.x * m[0][1] + v.y * m[1][1] + v.z * m[2][1],
-                     v.x * m[0][2] + v.y * m[1][2] + v.z * m[2][2]);
-    };
-    Vec3d o = affine_ ? turned(org) + Vec3d(toObject_.m[3][0], toObject_.m[3][1], toObject_.m[3][2]) : transformPoint(toObject_, org);
-    Vec3d d = turned(dir);
+    Vec3d o = affine_ ? turned(toObject_, org) + Vec3d(toObject_.m[3][0], toObject_.m[3][1], toObject_.m[3][2]) : transformPoint(toObject_, org);
+    Vec3d d = turned(toObject_, dir);
     double dd = dot(d, d);
     if (!(dd > 0) || !std::isfinite(dd)) return 0;
     // From the point nearest the middle of the surface: squares of a far origin would swallow the radius.

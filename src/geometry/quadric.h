@@ -50,6 +50,7 @@ private:
     bool accept(const Vec3d& p, double v, ExactHit& hit) const;
     double thetaMax_ = 0;   ///< radians, -2 pi .. 2 pi
     bool affine_ = true; ///< toObject_ has no perspective
+    bool mirrored_ = false; ///< toCamera() swaps handedness
     bool fullTurn_ = false;
     bool whole_ = false;    ///< nothing of implicit() is cut away
     bool offAxis_ = false;  ///< some b(v) != 0

@@ -1,5 +1,4 @@
 #include "geometry/shape.h"
-#include <bit>
 #include <cmath>
 
 namespace alpenglow::geometry {
@@ -10,30 +9,6 @@ float orientationSign(const scene::Attributes& a, const Matrix& toCamera) {
     if (a.absoluteHandedness) return a.rightHanded ? -1.f : 1.f;
     bool flip = (determinant3(toCamera) < 0) != a.inside;
     return flip ? -1.f : 1.f;
-}
-
-float roundingError(const Vec3& p) {
-    // 2^-23 times the 1-norm: twice what rounding each coordinate once can do, so that a computation in double that rounds at
-    // the end stays inside with room for the double's own error.
-    return 1.1920929e-7f * (std::fabs(p.x) + std::fabs(p.y) + std::fabs(p.z)) + 1e-37f;
-}
-
-Vec3 offsetOrigin(const SurfacePoint& p, const Vec3& dir, float extra) {
-    // The rounded origin itself is off by up to half a bound, hence twice the bound.
-    float d = 2 * (p.pError + extra);
-    Vec3 off = p.n * (dot(dir, p.n) >= 0 ? d : -d);
-    Vec3 o = p.P + off;
-    // Round away from the surface: one float up or down, as std::nextafter, whose call costs more than the rest.
-    auto step = [](float& x, float by) {
-        if (!(by > 0 || by < 0) || !(std::fabs(x) < INFINITY)) return;
-        bool up = by > 0;
-        if (x == 0) x = up ? 0x1p-149f : -0x1p-149f;
-        else x = std::bit_cast<float>(std::bit_cast<int32_t>(x) + ((x > 0) == up ? 1 : -1));
-    };
-    step(o.x, off.x);
-    step(o.y, off.y);
-    step(o.z, off.z);
-    return o;
 }
 
 Shape::Shape(ShapeSource s) : source_(std::move(s)) {

@@ -7,6 +7,7 @@
 #include "geometry/bounds.h"
 #include "geometry/primvars.h"
 #include "scene/scene.h"
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -164,10 +165,29 @@ protected:
 using ShapeRef = std::shared_ptr<Shape>;
 
 /// Bound on the rounding of a point's coordinates in float.
-float roundingError(const Vec3& p);
+inline float roundingError(const Vec3& p) {
+    // 2^-23 times the 1-norm: twice what rounding each coordinate once can do, so that a computation in double that rounds at
+    // the end stays inside with room for the double's own error.
+    return 1.1920929e-7f * (std::fabs(p.x) + std::fabs(p.y) + std::fabs(p.z)) + 1e-37f;
+}
 
 /// Origin of a ray that leaves the surface at p along dir: off the surface by its own error bound, on dir's side.
 /// extra widens the bound (for example when the shader moved P).
-Vec3 offsetOrigin(const SurfacePoint& p, const Vec3& dir, float extra = 0);
+inline Vec3 offsetOrigin(const SurfacePoint& p, const Vec3& dir, float extra = 0) {
+    // The rounded origin itself is off by up to half a bound, hence twice the bound.
+    float d = 2 * (p.pError + extra);
+    Vec3 off = p.n * (dot(dir, p.n) >= 0 ? d : -d);
+    Vec3 o = p.P + off;
+    // Round away from the surface: one float up or down, as std::nextafter, whose call costs more than the rest. All signs are as likely as
+    // their opposites here, so there is no branch.
+    auto step = [](float x, float by) {
+        const int32_t bits = std::bit_cast<int32_t>(x), direction = std::bit_cast<int32_t>(by);
+        int32_t moved = bits + (((bits ^ direction) >> 31) | 1); // signs agree: one away from 0
+        moved = x == 0 ? (direction & INT32_MIN) | 1 : moved;
+        const bool goes = bool(int(by != 0) & int(by == by) & int(std::fabs(x) < INFINITY));
+        return std::bit_cast<float>(goes ? moved : bits);
+    };
+    return {step(o.x, off.x), step(o.y, off.y), step(o.z, off.z)};
+}
 
 } // namespace alpenglow::geometry

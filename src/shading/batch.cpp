@@ -129,6 +129,9 @@ void Batch::assign(std::shared_ptr<const rsl::CompiledKernel> k, const BatchPlan
     for (size_t row : plan.outputRow_) out_.push_back(storage_.get() + row * stride);
     if (!points.empty()) {
         fillVariables(points);
+        primvars_ = false;
+        for (const geometry::Shape* last = nullptr; const ShadePoint& p : points)
+            if (p.shape != last && (last = p.shape)) primvars_ |= !last->primvars().empty();
         for (const BatchPlan::Source& s : plan.inputs_) {
             float* row = storage_.get() + s.firstRow * stride;
             if (s.from != BatchPlan::From::Variable) fill(s, row, points, {views, viewOf}, spaces);
@@ -245,7 +248,7 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
         }
         bool overridden = false; // by a primitive variable of some shape
         const geometry::Shape* last = nullptr;
-        for (int i = 0; s.varying && !overridden && i < count; ++i)
+        for (int i = 0; s.varying && primvars_ && !overridden && i < count; ++i)
             if (points[i].shape && points[i].shape != last) {
                 last = points[i].shape;
                 overridden = !last->primvars().empty() && last->findPrimvar(s.name) >= 0;
@@ -255,7 +258,8 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
                 valueOf_.clear();
                 for (const auto* numbers : numbers_) valueOf_.push_back(numbers && c < int(numbers->size()) ? (*numbers)[size_t(c)] : 0.f);
                 float* to = &at(c, 0, 0);
-                if (valueOf_.size() == 1) std::fill_n(to, count, valueOf_[0]);
+                const bool same = std::all_of(valueOf_.begin(), valueOf_.end(), [&](float v) { return std::memcmp(&v, valueOf_.data(), sizeof v) == 0; });
+                if (same) std::fill_n(to, count, valueOf_[0]);
                 else for (int i = 0; i < count; ++i) to[i] = valueOf_[views.index(i)];
                 if (!s.scalar)
                     for (int p = 1; p < np; ++p) std::fill_n(&at(c, p, 0), n, 0.f);

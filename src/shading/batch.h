@@ -94,6 +94,7 @@ private:
     const BatchPlan* plan_ = nullptr;
     std::unique_ptr<float[], Free> storage_;
     size_t capacity_ = 0; ///< floats
+    bool primvars_ = false; ///< some shape of the points has primitive variables
     size_t padded_ = 0;   ///< points rounded up to whole strips of the kernel
     std::vector<float> valueOf_;                     ///< by view: one component of it
     std::vector<const std::vector<float>*> numbers_; ///< by view: the parameter that is filled in

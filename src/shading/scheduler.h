@@ -68,22 +68,17 @@ public:
 
     /// A root target, read with value() after run().
     TargetId newRoot() { return newTarget(-1); }
-    void spawn(Task t) { spawn(t.depth, t.target).payload = std::move(t.payload); }
-    /// The same for a payload that is written in place: good until the next task is spawned.
-    Task& spawn(int depth, TargetId target) {
+    void spawn(Task t) { spawn(t.depth, t.target, t.payload); }
+    /// The same for a payload that is made from another and changed in place: good until the next task is spawned.
+    Task& spawn(int depth, TargetId target, const Payload& from = {}) {
         ++targets_[target].pending;
-        if (depth != lastDepth_ || !lastQueue_) {
-            lastQueue_ = &queues_[depth];
-            lastDepth_ = depth;
-        }
+        if (size_t(depth) >= queues_.size()) queues_.resize(size_t(depth) + 1);
         ++queued_;
-        Task& t = lastQueue_->emplace_back();
-        t.depth = depth;
-        t.target = target;
-        return t;
+        return queues_[size_t(depth)].emplace_back(depth, target, from);
     }
     /// Adds light to a target. Order does not matter: the sum is exact. Non-finite values are counted and dropped.
     void add(TargetId id, const Color& c) {
+        if (c.x == 0 && c.y == 0 && c.z == 0) return;
         Target& t = targets_[id];
         if (!std::isfinite(c.x) || !std::isfinite(c.y) || !std::isfinite(c.z)) { ++nonFinite_; return; }
         if (c.x != 0) t.sum[0].add(c.x);
@@ -138,7 +133,7 @@ public:
             size_t most = frameBytes_ > frameLimit_ / 2 ? kStripRays : size_t(sliceRays_);
             slice.clear();
             for (auto from = queues_.rbegin(); from != queues_.rend() && slice.size() < most; ++from) {
-                auto& q = from->second;
+                auto& q = *from;
                 if (q.empty()) continue;
                 if (!slice.empty() && frameBytes_ > 0) break;
                 size_t take = std::min(q.size(), most - slice.size());
@@ -179,12 +174,12 @@ public:
         freeStrips_.clear();
         ready_.clear();
         resuming_.reset();
-        for (auto& [depth, queue] : queues_) queue.clear();
+        for (auto& queue : queues_) queue.clear();
         queued_ = frameBytes_ = peakFrameBytes_ = largestSlice_ = 0;
         suspensions_ = overLimit_ = nonFinite_ = slices_ = 0;
     }
     /// Forgets all targets; only when nothing is pending.
-    void reset() { targets_.clear(); freeTargets_.clear(); strips_.clear(); freeStrips_.clear(); queues_.clear(); lastQueue_ = nullptr; queued_ = 0; ready_.clear(); frameBytes_ = 0; }
+    void reset() { targets_.clear(); freeTargets_.clear(); strips_.clear(); freeStrips_.clear(); queues_.clear(); queued_ = 0; ready_.clear(); frameBytes_ = 0; }
 
     size_t peakFrameBytes() const { return peakFrameBytes_; }
     size_t largestSlice() const { return largestSlice_; }
@@ -239,8 +234,8 @@ private:
         if (--w.open == 0) ready_[w.strip->depth()].push_back(slot);
     }
     int deepestQueue() const {
-        for (auto i = queues_.rbegin(); i != queues_.rend(); ++i)
-            if (!i->second.empty()) return i->first;
+        for (size_t depth = queues_.size(); depth-- > 0;)
+            if (!queues_[depth].empty()) return int(depth);
         return -1;
     }
     void resumeOne() {
@@ -264,7 +259,6 @@ private:
     }
     void abandon() {
         queues_.clear();
-        lastQueue_ = nullptr;
         queued_ = 0;
         ready_.clear();
         strips_.clear();
@@ -287,9 +281,7 @@ private:
     std::vector<TargetId> freeTargets_;
     std::deque<Waiting> strips_;
     std::vector<int> freeStrips_;
-    std::map<int, std::vector<Task>> queues_;
-    std::vector<Task>* lastQueue_ = nullptr; ///< queues_[lastDepth_]
-    int lastDepth_ = 0;
+    std::vector<std::vector<Task>> queues_; ///< by depth
     size_t queued_ = 0;
     std::map<int, std::deque<int>> ready_;
     std::unique_ptr<Strip> resuming_;

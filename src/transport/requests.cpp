@@ -35,7 +35,14 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     auto v = [&](int arg) { return Vec3(f(s.rows[arg]), f(s.rows[arg] + 1), f(s.rows[arg] + 2)); };
     auto number = [&](int row, float fallback) { return row < 0 ? fallback : f(row); };
     auto vector = [&](int row, Vec3 fallback) { return row < 0 ? fallback : Vec3(f(row), f(row + 1), f(row + 2)); };
-    LobeVertex l;
+    if (s.kind == SiteKind::Transmission) {
+        const Way way = wayBetween(v(0), v(1), p.P, &p.surface);
+        shadows.push_back({way.origin, way.dir, way.distance, weight, target, p.time, p.ray});
+        return;
+    }
+    // Under path ambient light is what escaping diffuse rays see.
+    if (s.kind != SiteKind::Diffuse && s.kind != SiteKind::Specular && s.kind != SiteKind::Phong && s.kind != SiteKind::Trace) return;
+    LobeVertex& l = lobes.emplace_back();
     l.kind = s.lobe;
     l.point = point;
     l.weight = weight;
@@ -54,7 +61,6 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     }
     if (s.kind != SiteKind::Diffuse) l.params.wo = unit(-p.I, p.surface.n);
     switch (s.kind) {
-    case SiteKind::Ambient: return; // under path ambient light is what escaping diffuse rays see
     case SiteKind::Diffuse:
         l.params.axis = unit(v(0), p.surface.n);
         l.type = RayType::Diffuse;
@@ -92,14 +98,8 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         l.maxDistance = std::min(number(s.rowMaxDistance, 1e38f), number(s.trace->maxHit, 1e38f));
         l.samples = std::clamp(int(number(s.rowSamples, 1)), 1, 4096);
         break;
-    case SiteKind::Transmission: {
-        const Way way = wayBetween(v(0), v(1), p.P, &p.surface);
-        shadows.push_back({way.origin, way.dir, way.distance, weight, target, p.time, p.ray});
-        return;
+    default: break;
     }
-    default: return;
-    }
-    lobes.push_back(l);
 }
 
 Color Engine::mapTowards(const TraceSite& t, const Vec3& w, float spread) const {
@@ -389,8 +389,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     weight = weight / q;
                 }
                 const int bounces = from.bounces + 1;
-                PathRay& r = sched.spawn(bounces + from.layers, l.target).payload;
-                r = from;
+                PathRay& r = sched.spawn(bounces + from.layers, l.target, from).payload;
                 r.weight = weight;
                 r.vertex = vertex;
                 r.asked = asked;

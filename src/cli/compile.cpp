@@ -84,6 +84,7 @@ void addCompile(CLI::App& app, int* status) {
         const auto print = printer(a->quiet ? Severity::Error : Severity::Warning);
         Diagnostics diags([&, print](Diagnostic d) {
             rsl::complete(d);
+            if (d.id == "null-handle") return; // which co-shaders there are, only a scene knows
             if (!a->json) print(d);
             else if (!a->quiet || d.severity >= Severity::Error) report.push_back(diagnosticJson(d));
         });

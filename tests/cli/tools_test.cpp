@@ -84,6 +84,14 @@ TEST_F(Tools, WarningsOnlyWhenAsked) {
     EXPECT_EQ((*squared)["line"], 3);
 }
 
+// Which co-shaders stand behind a handle, only a scene knows.
+TEST_F(Tools, HandlesAreNotNullWithoutAScene) {
+    write("a.sl", "class a() { public void surface(output color Ci, Oi) { shader h = getshader(\"x\"); h->put(Ci); Oi = h->get(); } }\n");
+    const Json j = Json::parse(run("compile --json a.sl"));
+    EXPECT_EQ(j["shaders"][0]["ok"], true);
+    EXPECT_TRUE(j["diagnostics"].empty()) << j.dump();
+}
+
 TEST_F(Tools, DialectsOfEverySubcommand) {
     write("a.sl", "#ifdef BMRT\nsurface a(float b = 1;) { Ci = b; Oi = 1; }\n#else\nsurface a(float d = 1;) { Ci = d; Oi = 1; }\n#endif\n");
     EXPECT_NE(run("info --json a.sl").find("\"d\""), std::string::npos);

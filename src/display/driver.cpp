@@ -33,7 +33,7 @@ std::unique_ptr<Driver> makeDriver(const std::string& type, Diagnostics& diags, 
     d.severity = Severity::Warning;
     d.code = Rie::BadToken;
     d.place = place;
-    d.message = "unknown display type \"" + type + "\"";
+    d.message = "unknown display type \"" + type + "\"; a picture file is written under the given name";
     d.hint = nearestName(lower(type), names);
     if (!d.hint.empty()) d.hint = "did you mean \"" + d.hint + "\"?";
     diags.reportOnce("display-type:" + type, d);

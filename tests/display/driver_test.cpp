@@ -159,7 +159,7 @@ TEST(Drivers, WriteTheFormatAsked) {
                    Case{"file", "ri.pic", false, false, 8, 0}, Case{"file", "a.png", false, false, 8, 0},
                    Case{"png", "a.png", false, false, 8, 0}, Case{"framebuffer", "a.tif", false, false, 8, 1},
                    Case{"Targa", "a.tga", false, false, 8, 1}, Case{"bmp", "a.bmp", false, false, 8, 1},
-                   Case{"nonesuch", "a.exr", true, true, 32, 2}}) {
+                   Case{"nonesuch", "a.exr", true, true, 32, 1}}) {
         Scratch s;
         Diagnostics d;
         ASSERT_TRUE(writeDisplay(setupFor(s, c.type, c.name, m), m, d)) << messages(d);
@@ -254,6 +254,20 @@ TEST(Drivers, NullWritesNothingAndBadSizesAreRefused) {
     u.width = 0;
     EXPECT_FALSE(makeDriver("tiff", d)->open(u, d));
     EXPECT_EQ(d.errors(), 2);
+}
+
+TEST(Drivers, AnUnknownTypeIsSaidOnceAndWritesAPicture) {
+    Scratch s;
+    Image m = pattern(2, 2, {"r"});
+    Diagnostics d;
+    EXPECT_TRUE(writeDisplay(setupFor(s, "itsviewer", "x.tif", m), m, d));
+    EXPECT_EQ(s.files(), 1u);
+    EXPECT_EQ(d.all().size(), 1u) << messages(d);
+    EXPECT_NE(messages(d).find("unknown display type"), std::string::npos);
+    Diagnostics known; // a format that is known, but not written here
+    EXPECT_TRUE(writeDisplay(setupFor(s, "targa", "y.tga", m), m, known));
+    EXPECT_EQ(known.all().size(), 1u) << messages(known);
+    EXPECT_NE(messages(known).find("is not available"), std::string::npos);
 }
 
 TEST(Drivers, DitherFollowsTheFullPicture) {

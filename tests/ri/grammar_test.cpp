@@ -112,6 +112,7 @@ TEST(Grammar, IntegersMustBeWhole) {
 
 TEST(Grammar, VersionTooNew) {
     EXPECT_EQ(read("version 3.04")->count(), 0u);
+    EXPECT_EQ(read("version 3.2")->count(), 0u); // the number of the specification
     EXPECT_EQ(read("version 4.0")->only().code, Rie::Version);
 }
 

@@ -8,9 +8,10 @@ class Other : public PictureDriver {
     Format format(const DriverSetup& s, Diagnostics& diags) override {
         Format f = formatOfExtension(s.name).value_or(Format::Tiff);
         const char* name = f == Format::Exr ? "OpenEXR" : f == Format::Png ? "PNG" : "TIFF";
-        diags.report(Severity::Warning, Rie::Incapable, s.place,
-                     "display \"" + s.name + "\": type \"" + s.type + "\" is not available; a " + name +
-                         " is written under that name");
+        if (findDriver(s.type)) // of an unknown type it has been said already (makeDriver)
+            diags.report(Severity::Warning, Rie::Incapable, s.place,
+                             "display \"" + s.name + "\": type \"" + s.type + "\" is not available; a " + name +
+                                 " is written under that name");
         return f;
     }
 };

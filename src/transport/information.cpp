@@ -97,13 +97,19 @@ std::optional<Information> attributeOf(const WorldImpl& w, const scene::Attribut
 std::optional<Information> optionOf(const WorldImpl& w, const std::string& name) {
     const scene::Options& o = w.frame().options;
     std::vector<float> v;
+    const float aspect = o.frameAspect.value_or(o.xres > 0 && o.yres > 0 && o.pixelAspect != 0 ? float(o.xres) * std::fabs(o.pixelAspect) / float(o.yres) : 1.f);
     if (name == "Ri:Frame" || name == "Frame") v = {float(o.frameNumber)};
     else if (name == "Ri:Format" || name == "Format") v = {float(o.xres), float(o.yres), o.pixelAspect};
     else if (name == "Ri:PixelSamples" || name == "PixelSamples") v = {o.pixelSamplesX, o.pixelSamplesY};
     else if (name == "Ri:Shutter" || name == "Shutter") v = {o.shutterOpen, o.shutterClose};
     else if (name == "Ri:Clipping" || name == "Clipping") v = {o.clipNear, o.clipFar};
     else if (name == "Ri:CropWindow" || name == "CropWindow") v.assign(o.crop, o.crop + 4);
-    else if (name == "Ri:FrameAspectRatio" || name == "FrameAspectRatio") v = {o.yres > 0 ? float(o.xres) * std::fabs(o.pixelAspect) / float(o.yres) : 1.f};
+    else if (name == "Ri:FrameAspectRatio" || name == "FrameAspectRatio") v = {aspect};
+    else if ((name == "Ri:PixelVariance" || name == "PixelVariance") && o.pixelVariance >= 0) v = {o.pixelVariance};
+    else if (name == "Ri:ScreenWindow" || name == "ScreenWindow") v = o.screenWindow.value_or(aspect >= 1 ? std::vector<float>{-aspect, aspect, -1, 1} : std::vector<float>{-1, 1, -1 / aspect, 1 / aspect});
+    else if (name == "Ri:DepthOfField" || name == "DepthOfField") v = {o.fstop, o.focalLength, o.focalDistance};
+    else if (name == "Ri:Hider" || name == "Hider") return words(o.hider);
+    else if (name == "Ri:Display" || name == "Display") return words(o.displays.empty() ? "ri.pic" : o.displays[0].name);
     else if (name == "trace:maxdepth") v = {float(w.maxDepth_)};
     else if (const auto i = o.values.find(name); i != o.values.end()) return given(&i->second);
     else return std::nullopt;

@@ -158,5 +158,17 @@ TEST(Displacement, PrimitiveVariables) {
     EXPECT_NEAR(r[0].color.x, 2, 1e-5);
     EXPECT_NEAR(r[1].color.x, 2.875, 1e-5);
 }
+// So do volumes.
+TEST(Volumes, AskThePrimitive) {
+    writeShader("asksvolume", "volume asksvolume() { float far = .125; float f = getvar(null, \"far\", far); Ci = color(f, far, 0); Oi = 1; }\n");
+    auto with = [](const char* x, const char* more) {
+        return std::string("TransformBegin\nTranslate ") + x + " 0 0\nPatch \"bilinear\" \"P\" [-1 -1 3  1 -1 3  -1 1 3  1 1 3] " + more + "\nTransformEnd\n";
+    };
+    const CameraRay rays[] = {rayTo({0, 0, 0}, {-1.5f, 0, 3}), rayTo({0, 0, 0}, {1.5f, 0, 3})};
+    Scene s(world("Atmosphere \"asksvolume\"\nSurface \"constant\"\n" + with("-1.5", "\"uniform float far\" [1]") + with("1.5", "")), under(Hider::Hidden));
+    auto r = s.trace(rays);
+    EXPECT_EQ(r[0].color, Color(1, 1, 0));
+    EXPECT_EQ(r[1].color, Color(0, .125f, 0));
+}
 
 } // namespace

@@ -131,6 +131,7 @@ void addDirectLighting(SourceSet& sources, Preprocessed& p) {
         const size_t body = behind(t, i + 2);
         if (body >= t.size() || !t[body].is("{")) continue;
         const size_t end = behind(t, body);
+        if (end == t.size()) continue; // brackets that do not close, which the parser reports
         bool evaluates = false, generates = false, direct = false, indirect = false;
         const auto asks = [&](size_t k, std::string_view name) { return t[k].is(name) && t[k + 1].is("(") && t[k + 2].is("this"); };
         for (size_t k = body; k + 2 < end; ++k) {
@@ -157,6 +158,7 @@ void addDirectLighting(SourceSet& sources, Preprocessed& p) {
             const bool first = direct && asks(k, "directlighting");
             if (!first && !(indirect && asks(k, "indirectspecular"))) continue;
             const size_t last = behind(t, k + 1);
+            if (last >= end) continue;
             moved.push_back({done, long(out.size()) - long(done)});
             copy(done, k);
             const Tokens call = first ? replacement(t, k, last, method)

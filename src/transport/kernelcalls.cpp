@@ -1,0 +1,82 @@
+// What generated code calls back while a kernel runs: services and requests find their engine through KernelCall::user.
+#include "transport/engine.h"
+
+namespace alpenglow::transport {
+
+namespace {
+
+// trace() and transmission() always ask for rays; the lobe shadeops only where the engine estimates them.
+bool isRequest(SiteKind k, bool path) {
+    return k == SiteKind::Trace || k == SiteKind::Transmission || (path && k >= SiteKind::Ambient && k <= SiteKind::LightVisibility);
+}
+
+// The callbacks of generated code: C functions that find their engine through KernelCall::user.
+BatchContext& contextOf(rsl::KernelCall* c) { return *static_cast<BatchContext*>(c->user); }
+
+void onService(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
+    BatchContext& c = contextOf(call);
+    if (site == rsl::kSiteMark) {
+        for (int i = 0; i < lanes; ++i) out[i] = float(c.emits.size());
+        return;
+    }
+    if (site == rsl::kSiteRescale) { // rows: mark, factor (3), end mark
+        uint32_t begin = 0, end = uint32_t(c.emits.size());
+        for (int i = 0; i < lanes; ++i)
+            if (mask >> i & 1) { begin = uint32_t(in[i]); end = uint32_t(in[size_t(4) * lanes + i]); break; }
+        for (uint32_t e = begin; e < end && e < c.emits.size(); ++e) {
+            EmitRecord& r = c.emits[e];
+            for (int k = 0; k < 3; ++k)
+                for (int i = 0; i < lanes; ++i)
+                    if (mask >> i & 1) c.arena[r.offset + size_t(k) * lanes + i] *= in[size_t(1 + k) * lanes + i];
+        }
+        return;
+    }
+    const SiteInfo& s = c.bound->sites[site];
+    if (isRequest(s.kind, c.bound->path)) {
+        size_t rows = 0;
+        for (rsl::ir::Kind k : s.site->argKinds) rows += size_t(rsl::ir::components(k));
+        if (c.bound->kernel->facts().suspends) {
+            c.requestSite = site;
+            c.requestFirst = first;
+            c.requestLanes = lanes;
+            c.requestMask = mask;
+            c.requestIn.assign(in, in + rows * lanes);
+            c.requestOut = out;
+            return;
+        }
+        EmitRecord e{site, first, lanes, mask, c.arena.size()};
+        c.arena.insert(c.arena.end(), in, in + (rows + 3) * lanes);
+        if (s.kind == SiteKind::LightVisibility) // the row of the light's index is replaced by the distance, which only the loop knows
+            for (int i = 0; i < lanes && i < int(c.lightDistance.size()); ++i)
+                c.arena[e.offset + size_t(3 + s.rows[0]) * lanes + i] = c.lightDistance[i];
+        c.emits.push_back(e);
+        return;
+    }
+    c.engine->service(c, site, first, mask, lanes, in, out);
+}
+int32_t onLightBegin(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* rows) {
+    BatchContext& c = contextOf(call);
+    return c.engine->lightBegin(c, site, first, mask, lanes, rows);
+}
+uint64_t onLightFetch(rsl::KernelCall* call, int32_t site, int32_t light, int32_t first, uint64_t mask, int32_t lanes, float* out) {
+    BatchContext& c = contextOf(call);
+    return c.engine->lightFetch(c, light, first, mask, lanes, out);
+}
+void* onAlloc(rsl::KernelCall*, uint64_t bytes) { return ::operator new(bytes, std::align_val_t(64), std::nothrow); }
+void onRelease(rsl::KernelCall*, void* p, uint64_t) { ::operator delete(p, std::align_val_t(64)); }
+
+constexpr int32_t kGo = 0;
+
+} // namespace
+
+void Engine::bindCall(rsl::KernelCall& call, BatchContext& c) {
+    call.user = &c;
+    call.service = onService;
+    call.lightBegin = onLightBegin;
+    call.lightFetch = onLightFetch;
+    call.alloc = onAlloc;
+    call.release = onRelease;
+    call.stop = stop ? stop : &kGo;
+}
+
+} // namespace alpenglow::transport

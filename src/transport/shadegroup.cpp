@@ -1,0 +1,284 @@
+// Running a surface's kernel over a batch of points: to its end, or strip by strip where it waits for rays; then what it asked for.
+#include "transport/engine.h"
+#include <algorithm>
+#include <array>
+
+namespace alpenglow::transport {
+
+/// A strip of a suspending kernel while it waits.
+class KernelStrip final : public Sched::Strip {
+public:
+    KernelStrip(std::shared_ptr<BatchContext> c, void* handle, int first, int depth) : c_(std::move(c)), handle_(handle), first_(first), depth_(depth) {}
+    ~KernelStrip() override { if (handle_) c_->bound->kernel->destroy(handle_); }
+    int depth() const override { return depth_; }
+    size_t frameBytes() const override { return 4096 + size_t(c_->bound->kernel->lanes()) * 256; }
+
+    bool resume(Sched& s, std::span<const shading::TargetValue> results) override {
+        const SiteInfo& site = c_->bound->sites[site_];
+        for (size_t k = 0; k < results.size(); ++k) {
+            int lane = laneOf_[k];
+            auto put = [&](const char* name, int rows, const Color& v) {
+                auto i = site.resultRows.find(name);
+                if (i == site.resultRows.end()) return;
+                for (int r = 0; r < rows; ++r) out_[size_t(i->second + r) * lanes_ + lane] = v[r];
+            };
+            if (site.site->resultType.base == rsl::Base::Float) put("", 1, Color(results[k].distance));
+            else put("", 3, results[k].radiance);
+            put("dist", 1, Color(results[k].distance));
+            put("transmission", 3, results[k].transmission);
+            put("hitnormal", 3, results[k].normal);
+            if (const TraceSums* sums = ids_.empty() ? nullptr : c_->engine->sumsOf(ids_[k])) {
+                put("transmission", 3, Color(1) - sums->value(TraceSums::Blocked));
+                put("environmentcontribution", 3, sums->value(TraceSums::Environment));
+                put("unshadowedenvironment", 3, sums->value(TraceSums::UnshadowedEnvironment));
+                put("arealightcontribution", 3, sums->value(TraceSums::AreaLight));
+                put("unshadowedarealight", 3, sums->value(TraceSums::UnshadowedAreaLight));
+            }
+        }
+        for (TargetId id : ids_) c_->engine->traceSums_.erase(id);
+        ids_.clear();
+        c_->bound->kernel->resume(handle_);
+        return advance(s, s.takeResuming());
+    }
+
+    /// After start or resume: ends, or waits for the request that was noted in the context.
+    bool advance(Sched& s, std::unique_ptr<Sched::Strip> self) {
+        Engine& e = *c_->engine;
+        const auto& kernel = *c_->bound->kernel;
+        if (kernel.finished(handle_)) {
+            e.finishStrip(*c_, first_, kernel.lanes(), s);
+            for (int i = first_; i < std::min(first_ + kernel.lanes(), int(c_->points.size())); ++i) s.release(c_->targets[i]);
+            return true;
+        }
+        site_ = c_->requestSite;
+        lanes_ = c_->requestLanes;
+        out_ = c_->requestOut;
+        laneOf_.clear();
+        for (int lane = 0; lane < lanes_; ++lane)
+            if ((c_->requestMask >> lane & 1) && first_ + lane < int(c_->points.size())) laneOf_.push_back(lane);
+        std::vector<TargetId> ids(laneOf_.size());
+        auto context = c_; // the strip may be resumed and gone when its last target is released
+        auto lanesOf = laneOf_;
+        int site = site_, lanes = lanes_, first = first_;
+        std::vector<float> in = c_->requestIn;
+        // Counted by site and lane: what other lanes of the strip ask for must not change this one's random numbers.
+        size_t sites = c_->bound->sites.size();
+        if (occurrences_.empty()) occurrences_.resize(sites * 64);
+        std::vector<uint32_t> occurrence;
+        for (int lane : laneOf_) occurrence.push_back(occurrences_[size_t(site_) * 64 + size_t(lane)]++);
+        s.wait(std::move(self), int(laneOf_.size()), [&](int i, TargetId id) {
+            ids[i] = id;
+            s.hold(id);
+        });
+        const SiteInfo& info = context->bound->sites[site];
+        if (info.trace && info.trace->sums) {
+            ids_ = ids;
+            for (TargetId id : ids) e.traceSums_[id] = {};
+        }
+        for (size_t k = 0; k < lanesOf.size(); ++k) {
+            if (info.kind == SiteKind::LightVisibility) {
+                e.lightVisibility(*context, info, first + lanesOf[k], in.data(), lanes, lanesOf[k], Color(1), ids[k],
+                                  context->lightDistance[lanesOf[k]]);
+                continue;
+            }
+            const size_t had = e.lobes.size();
+            e.request(*context, info, first + lanesOf[k], in.data(), lanes, lanesOf[k], Color(1), ids[k], true, occurrence[k]);
+            if (e.lobes.size() == had) continue;
+            uint32_t& asked = asked_[size_t(lanesOf[k])];
+            e.lobes.back().before = asked;
+            asked += uint32_t(e.lobes.back().samples);
+        }
+        e.gather(*context, s);
+        e.flushShadows(s);
+        for (TargetId id : ids) s.release(id);
+        return false;
+    }
+
+private:
+    std::shared_ptr<BatchContext> c_;
+    void* handle_;
+    int first_, depth_;
+    int site_ = 0, lanes_ = 0;
+    std::vector<uint32_t> occurrences_;
+    std::array<uint32_t, 64> asked_{}; ///< rays that a lane has asked for so far
+    float* out_ = nullptr;
+    std::vector<int> laneOf_;
+    std::vector<TargetId> ids_;              ///< of the request that it waits for, when that asks for sums
+};
+
+void Engine::lightVisibility(BatchContext& c, const SiteInfo& s, int point, const float* in, int lanes, int lane, Color weight, TargetId target,
+                             float distance) {
+    auto f = [&](int row) { return in[size_t(row) * lanes + lane]; };
+    Vec3 l(f(s.rows[1]), f(s.rows[1] + 1), f(s.rows[1] + 2));
+    float length_ = length(l);
+    if (!(length_ > 0)) return;
+    const ShadePoint& p = c.points[point];
+    Vec3 w = l / length_;
+    Vec3 o = geometry::offsetOrigin(p.surface, w, length(p.P - p.surface.P));
+    shadows.push_back({o, w, distance < 1e30f ? distance * (1 - 1e-4f) : 1e38f, weight, target, p.time, p.ray});
+}
+
+void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched) {
+    shading::Batch& b = *c.batch;
+    int ci = b.plan().Ci, oi = b.plan().Oi;
+    const auto& wanted = world_->settings_.outputs;
+    std::vector<int> wantedAt;
+    for (const std::string& name : wanted) wantedAt.push_back(b.output(name));
+    bool suspended = b.kernel().facts().suspends; // then nobody has asked for the atmosphere yet
+    if (suspended) hazeOfBatch(c, first, lanes, false);
+    for (int i = first; i < std::min(first + lanes, int(c.points.size())); ++i) {
+        const PathRay& ray = c.rays[i];
+        const SurfaceBinding& binding = world_->bindings_[c.bindings[i]];
+        Color color = ci >= 0 ? b.color(ci, i) : Color(0), opacity = oi >= 0 ? b.color(oi, i) : Color(1);
+        if (binding.matte && ray.type == RayType::Camera) {
+            sched.setDistance(c.targets[i], 0);
+            color = Color(0);
+        }
+        if (ray.first) {
+            sched.setNearer(c.targets[i], length(c.points[i].I), c.points[i].N);
+            sched.setTransmission(c.targets[i], Color(1) - opacity);
+        }
+        if (TraceSums* sums = sumsOf(c.targets[i])) sums->add(TraceSums::Blocked, ray.part * opacity);
+        Color shown = color;
+        if (binding.atmosphere && !(binding.matte && ray.type == RayType::Camera)) { // pairs were scaled in shadeGroup
+            shown = c.haze[size_t(i)].shown;
+            opacity = c.haze[size_t(i)].opacity;
+        }
+        sched.add(c.targets[i], ray.weight * shown);
+        if (ray.cameraSample >= 0) {
+            SampleResult& r = *results[ray.cameraSample];
+            if (!binding.matte) r.opacity += ray.weight * opacity;
+            float z = dot(c.points[i].P, Vec3(0, 0, 1));
+            if (r.z >= 1e38f) r.z = z;
+            else if (r.zSecond >= 1e38f) r.zSecond = z;
+            size_t at = 0;
+            for (size_t k = 0; k < wanted.size(); ++k) {
+                int o = wantedAt[k], width = world_->outputWidths_[k];
+                if (o >= 0)
+                    for (int w = 0; w < std::min(width, rsl::ir::components(b.kernel().outputs()[o].kind)); ++w)
+                        r.aovs[at + w] += (width == 3 ? ray.weight[w] : luminance(ray.weight)) * b.value(o, w, i);
+                else if (!c.lightChannels.empty())
+                    for (int w = 0; w < width; ++w)
+                        r.aovs[at + w] += (width == 3 ? ray.weight[w] : luminance(ray.weight)) * c.lightChannels[size_t(i) * (c.lightChannels.size() / c.points.size()) + at + size_t(w)];
+                at += size_t(width);
+            }
+        }
+        if (opacity.x < 1 || opacity.y < 1 || opacity.z < 1) passThrough(ray, c.targets[i], c.points[i], Color(1) - opacity, sched);
+    }
+}
+
+void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
+    // Fills the batch; its points' instances are few.
+    auto fill = [&](BatchContext& to, InstanceRef SurfaceBinding::*which) {
+        views_.clear();
+        viewOf_.clear();
+        slotOf_.resize(world_->bindings_.size(), -1);
+        for (int b : to.bindings) {
+            int& slot = slotOf_[size_t(b)];
+            if (slot < 0) {
+                const InstanceRef& i = world_->bindings_[size_t(b)].*which;
+                slot = int(views_.size());
+                views_.push_back({&i->parameters, &i->toCurrent});
+            }
+            viewOf_.push_back(uint32_t(slot));
+        }
+        for (int b : to.bindings) slotOf_[size_t(b)] = -1;
+        if (!to.batch) to.batch = std::make_shared<shading::Batch>();
+        to.batch->assign(to.bound->kernel, *to.bound->plan, to.points, views_, viewOf_, *world_);
+        bindCall(to.batch->call(), to);
+    };
+    // Displacement again at the hit, for P, N (design decision 9). All points of a group with displacement share its binding.
+    if (c->binding->displacement) {
+        auto d = std::make_shared<BatchContext>(*c);
+        for (size_t k = 0; k < d->points.size(); ++k) d->points[k].ray = &d->rays[k];
+        d->bound = &c->binding->displacementS;
+        d->batch.reset(); // c's own
+        fill(*d, &SurfaceBinding::displacement);
+        if (!d->bound->kernel->facts().suspends) {
+            d->bound->kernel->run(&d->batch->call());
+            int po = d->batch->output("P"), no = d->batch->output("N");
+            int dpu = d->batch->output("Du:P"), dpv = d->batch->output("Dv:P"), dnu = d->batch->output("Du:N"), dnv = d->batch->output("Dv:N");
+            for (size_t k = 0; k < c->points.size(); ++k) {
+                ShadePoint& p = c->points[k];
+                if (po >= 0) { p.P = d->batch->color(po, int(k)); p.I = p.P - c->rays[k].origin; }
+                if (no >= 0) p.N = d->batch->color(no, int(k));
+                // The surface shader's derivatives are those of the displaced surface. Its second partials stay those of the plain one.
+                if (po >= 0 && dpu >= 0 && dpv >= 0) {
+                    p.surface.dPdu = d->batch->color(dpu, int(k));
+                    p.surface.dPdv = d->batch->color(dpv, int(k));
+                    p.surface.Ng = cross(p.surface.dPdu, p.surface.dPdv) * p.surface.orientation;
+                }
+                if (no >= 0 && dnu >= 0 && dnv >= 0) {
+                    p.surface.dNdu = d->batch->color(dnu, int(k));
+                    p.surface.dNdv = d->batch->color(dnv, int(k));
+                }
+                if (p.surface.displaced) { // rays left and met the facet; shading offsets start there
+                    p.surface.P = p.surface.displacedP;
+                    p.surface.n = p.surface.displacedN;
+                    p.P = p.surface.displacedP;
+                }
+            }
+        }
+    }
+    const auto& kernel = *c->bound->kernel;
+    fill(*c, &SurfaceBinding::surface);
+    if (c->binding->moveS) moveToFacets(*c); // the kernel moves P itself: it begins with the surface as it was
+    int n = int(c->points.size());
+    counters.points += uint64_t(n);
+    ++counters.batches;
+    counters.lanesUsed += uint64_t(n);
+    counters.lanesRun += uint64_t((n + kernel.lanes() - 1) / kernel.lanes() * kernel.lanes());
+
+    if (kernel.facts().suspends) {
+        for (int first = 0; first < n; first += kernel.lanes()) {
+            for (int i = first; i < std::min(first + kernel.lanes(), n); ++i) sched.hold(c->targets[i]);
+            void* h = kernel.start(&c->batch->call(), first);
+            if (!h) {
+                ++counters.overLimit;
+                for (int i = first; i < std::min(first + kernel.lanes(), n); ++i) sched.release(c->targets[i]);
+                continue;
+            }
+            auto strip = std::make_unique<KernelStrip>(c, h, first, c->rays[first].bounces + c->rays[first].layers);
+            KernelStrip* s = strip.get();
+            s->advance(sched, std::move(strip));
+        }
+        return;
+    }
+    kernel.run(&c->batch->call());
+
+    // Affine pairs by point, in order of emission. Atmosphere scales them.
+    bool hazy = std::any_of(c->bindings.begin(), c->bindings.end(), [&](int b) { return world_->bindings_[size_t(b)].atmosphere != nullptr; });
+    std::vector<Color> slope(n, Color(1));
+    if (hazy) {
+        hazeOfBatch(*c, 0, n, !c->emits.empty());
+        for (int i = 0; i < n; ++i)
+            if (world_->bindings_[size_t(c->bindings[size_t(i)])].atmosphere) slope[size_t(i)] = c->haze[size_t(i)].slope;
+    }
+    std::vector<uint32_t>& occurrence = occurrence_;
+    occurrence.assign(c->emits.empty() ? 0 : c->bound->sites.size() * size_t(n), 0);
+    for (const EmitRecord& e : c->emits) {
+        const SiteInfo& s = c->bound->sites[e.site];
+        const float* rows = c->arena.data() + e.offset;
+        for (int lane = 0; lane < e.lanes; ++lane) {
+            int point = e.first + lane;
+            if (!(e.mask >> lane & 1) || point >= n) continue;
+            Color weight = Color(rows[lane], rows[e.lanes + lane], rows[2 * e.lanes + lane]) * slope[point];
+            if (!(std::isfinite(weight.x) && std::isfinite(weight.y) && std::isfinite(weight.z))) { ++counters.nonFinite; continue; }
+            if (weight == Color(0)) continue;
+            if (world_->bindings_[c->bindings[point]].matte && c->rays[point].type == RayType::Camera) continue;
+            const float* args = rows + size_t(3) * e.lanes;
+            if (s.kind == SiteKind::LightVisibility) {
+                lightVisibility(*c, s, point, args, e.lanes, lane, weight * c->rays[point].weight, c->targets[point],
+                                args[size_t(s.rows[0]) * e.lanes + lane]);
+                continue;
+            }
+            if (s.kind == SiteKind::Transmission) weight *= c->rays[point].weight;
+            request(*c, s, point, args, e.lanes, lane, weight, c->targets[point], false, occurrence[size_t(e.site) * size_t(n) + size_t(point)]++);
+        }
+    }
+    gather(*c, sched);
+    flushShadows(sched);
+    finishStrip(*c, 0, n, sched);
+}
+
+} // namespace alpenglow::transport

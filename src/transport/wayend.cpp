@@ -1,0 +1,115 @@
+// Where a ray ends without a shader of its own: light of emitters and sky, and what goes on through surfaces.
+#include "transport/engine.h"
+#include "transport/sampling.h"
+#include <algorithm>
+
+namespace alpenglow::transport {
+
+void Engine::passThrough(const PathRay& ray, TargetId target, const ShadePoint& p, const Color& transparency, Sched& sched) {
+    Color t(std::clamp(transparency.x, 0.f, 1.f), std::clamp(transparency.y, 0.f, 1.f), std::clamp(transparency.z, 0.f, 1.f));
+    float most = maxComponent(t);
+    if (!(most > 0)) return;
+    PathRay r = ray;
+    r.weight = ray.weight * t;
+    r.part = ray.part * t;
+    if (world_->settings_.hider == Hider::Path && ray.bounces > 0 && most < 1) { // a gamble keeps the number of rays linear in depth
+        if (random(ray).one(ray.vertex, kPassThrough, 0) >= most) return;
+        r.weight = r.weight / most;
+        r.part = r.part / most;
+    }
+    float travelled = length(p.I);
+    r.origin = geometry::offsetOrigin(p.surface, ray.dir);
+    r.maxDistance = ray.maxDistance - travelled;
+    r.width = ray.width + ray.spread * travelled;
+    r.shape = geometry::kNone;
+    r.first = false;
+    r.vertex = childVertex(ray.vertex, 0xfffff, 0);
+    ++r.layers;
+    if (r.layers > limits::kPathDepth / 32 || !(r.maxDistance > 0)) { ++counters.depthCap; return; }
+    Sched::Task task;
+    task.depth = r.bounces + r.layers;
+    task.target = target;
+    task.payload = r;
+    sched.spawn(std::move(task));
+}
+
+void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
+    for (const Sched::Task* t : tasks) // the map of a trace()
+        if (const PathRay& r = t->payload; maxComponent(r.environment) > 0) {
+            sched.add(t->target, r.weight * r.environment);
+            if (TraceSums* sums = sumsOf(t->target)) sums->add(TraceSums::Environment, r.weight * r.environment);
+        }
+    if (world_->settings_.hider != Hider::Path || tasks.empty()) return;
+    std::vector<ShadePoint> q;
+    std::vector<const Sched::Task*> of;
+    std::vector<LightValue> value;
+    for (const BoundLight& l : world_->lights_) {
+        if ((l.kind != LightKind::Environment && l.kind != LightKind::Ambient) || !l.kernel) continue; // a light whose shader was not found gives nothing
+        q.clear();
+        of.clear();
+        litBy_.clear();
+        for (const Sched::Task* t : tasks) {
+            const PathRay& r = t->payload;
+            if (l.kind == LightKind::Ambient ? r.type != RayType::Diffuse : r.fromTrace && l.strategy == LightStrategy::Illuminance) continue;
+            ShadePoint& p = q.emplace_back();
+            p.Ps = r.origin;
+            p.P = r.origin + r.dir;
+            p.N = -r.dir;
+            p.time = r.time;
+            p.ray = &r;
+            of.push_back(t);
+            litBy_.push_back(r.lit);
+        }
+        value.assign(q.size(), {});
+        LitSurface lit;
+        if (l.asksSurface) lit = litBy(litBy_);
+        evaluateLight(l, q, value, {.lit = l.asksSurface ? &lit : nullptr});
+        for (size_t i = 0; i < of.size(); ++i)
+            if (value[i].lit) {
+                const PathRay& r = of[i]->payload;
+                const bool weighed = l.kind == LightKind::Environment && r.bounces > 0 && !r.fromTrace; // met by a lobe of a lighting shadeop
+                sched.add(of[i]->target, r.weight * value[i].Cl * (weighed ? value[i].kept(r.type) : 1.f));
+            }
+    }
+}
+
+void Engine::emission(std::span<const Met> met, Sched& sched) {
+    const Settings& set = world_->settings_;
+    std::vector<ShadePoint> q;
+    std::vector<LightValue> value;
+    for (size_t first = 0, end; first < met.size(); first = end) {
+        q.clear();
+        litBy_.clear();
+        for (end = first; end < met.size() && met[end].light == met[first].light; ++end) {
+            const PathRay& r = *met[end].point->ray;
+            q.push_back(*met[end].point);
+            ShadePoint& p = q.back();
+            p.P = p.surface.displaced ? p.surface.displacedP : p.surface.P;
+            p.N = p.surface.n;
+            p.Ps = r.lobePdf >= 0 ? r.lobeOrigin : r.origin;
+            litBy_.push_back(r.lit);
+        }
+        const BoundLight& light = world_->lights_[size_t(met[first].light)];
+        value.assign(q.size(), {});
+        LitSurface lit;
+        if (light.asksSurface) lit = litBy(litBy_);
+        evaluateLight(light, q, value, {.lit = light.asksSurface ? &lit : nullptr});
+        for (size_t i = first; i < end; ++i) {
+            const LightValue& v = value[i - first];
+            if (!v.lit || !(maxComponent(v.Cl) > 0)) continue;
+            const ShadePoint& p = *met[i].point;
+            const PathRay& r = *p.ray;
+            float weight = 1;
+            if (r.lobePdf >= 0 && light.emitter) {
+                float pdf = light.emitter->pdf(p.shape, p.surface, r.lobeOrigin);
+                if (set.hider == Hider::Path && r.lobeBinding >= 0) pdf *= chanceOf(met[i].light, r.lobeBinding, r.lobeOrigin);
+                weight = set.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
+            }
+            if (r.bounces > 0 && !r.fromTrace) weight *= v.kept(r.type);
+            sched.add(met[i].target, r.weight * v.Cl * weight);
+            if (TraceSums* sums = sumsOf(met[i].target); sums && maxComponent(r.part) > 0) sums->add(TraceSums::AreaLight, r.weight * v.Cl * weight);
+        }
+    }
+}
+
+} // namespace alpenglow::transport

@@ -1,4 +1,5 @@
 #include "rsl/services_basic.h"
+#include "base/limits.h"
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -225,6 +226,17 @@ bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* 
     };
     auto put = [&](int row, int lane, float v) { out[size_t(row) * size_t(lanes) + size_t(lane)] = v; };
     auto putString = [&](int lane, const std::string& t) { put(0, lane, std::bit_cast<float>(internString(t))); };
+    // A string that is joined with itself in a loop doubles each time.
+    auto cut = [&](std::string& t) {
+        if (t.size() <= limits::kTokenBytes) return;
+        t.resize(limits::kTokenBytes);
+        Diagnostic d;
+        d.severity = Severity::Error;
+        d.code = Rie::Limit;
+        d.place = {file, s.place.line, s.place.column};
+        d.message = s.op + "(): a string has no more than " + std::to_string(limits::kTokenBytes) + " characters; the rest is cut off";
+        diagnostics.reportOnce("stringlimit:" + file + std::to_string(s.place.line), d);
+    };
     if (s.op == "arraylimit") {
         Diagnostic d;
         d.severity = Severity::Error;
@@ -235,7 +247,11 @@ bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* 
         d.hint = "resize() or reserve() it with the number it needs";
         diagnostics.reportOnce("arraylimit:" + file + std::to_string(s.place.line), d);
     } else if (s.op == "format") {
-        each([&](int l) { putString(l, formatSite(s, lanes, in, l)); });
+        each([&](int l) {
+            std::string t = formatSite(s, lanes, in, l);
+            cut(t);
+            putString(l, t);
+        });
     } else if (s.op == "printf" || s.op == "print") {
         each([&](int l) {
             const std::string t = formatSite(s, lanes, in, l) + (s.op == "print" ? "\n" : "");
@@ -247,6 +263,7 @@ bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* 
             Arguments a(s, lanes, in, l);
             std::string t;
             while (a.more(true)) t += a.string();
+            cut(t);
             putString(l, t);
         });
     } else if (s.op == "match") {

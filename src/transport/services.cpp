@@ -382,6 +382,11 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
         return;
     default: break;
     }
+    if (d.op == "depth") {
+        const double lo = world_->clipNear_, range = double(world_->clipFar_) - lo;
+        each([&](int lane, const ShadePoint&) { put(0, lane, range > 0 ? float((double(at(2, lane)) - lo) / range) : 0); });
+        return;
+    }
     if (d.op == "shadername") {
         const std::string kind = d.strings.empty() ? "" : name;
         each([&](int lane, const ShadePoint&) {

@@ -90,6 +90,8 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
 
     w->shapes_ = geometry::buildShapes(*frame, d);
     w->clippingPlanes_ = o.clippingPlanes;
+    w->clipNear_ = o.clipNear;
+    w->clipFar_ = o.clipFar;
     const bool all = path || !saysVisibility(w->shapes_);
     w->bindLights(d, [all](const geometry::Shape& s) { return visibilityOf(s.attributes(), all); });
     Engine engine(std::shared_ptr<const WorldImpl>(std::shared_ptr<const WorldImpl>{}, w.get()), d); // runs kernels while the world is made

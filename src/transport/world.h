@@ -208,6 +208,7 @@ public:
     bool allOpaque_ = true;                    ///< no opacity below 1: shadow rays need no shading
     std::vector<std::vector<int>> sampledLights_; ///< by SurfaceBinding::lightList: lights that get samples, in order
     std::unordered_map<const geometry::Shape*, int> hazyEmitters_; ///< emitters in an atmosphere -> their binding
+    float clipNear_ = 0, clipFar_ = 1;         ///< of the request Clipping, for depth()
     std::vector<std::pair<Vec3d, Vec3d>> clippingPlanes_; ///< camera space point, normal; camera rays see nothing on the normal's side
 };
 

@@ -55,6 +55,21 @@ TEST(Information, AttributesAsTheyAreWhenUnset) {
     Scene given(world(std::string("Attribute \"user\" \"uniform float nobody\" 4\nSurface \"asks\" \"what\" \"user:nobody\"\n") + kFloor), under(Hider::Hidden));
     EXPECT_EQ(given.one(kView), Color(1, 4, 0));
 }
+// 0 at the near plane, 1 at the far one (seed 6.4.3), whatever the hider.
+TEST(Information, DepthBetweenThePlanesOfClipping) {
+    writeShader("deep", "surface deep() { Oi = 1; Ci = depth(P); }\n");
+    for (Hider h : {Hider::Hidden, Hider::Raytrace}) {
+        Scene s("Clipping 1 11\n" + world("Surface \"deep\"\nPolygon \"P\" [-9 -9 3  -9 9 3  9 9 3  9 -9 3]\n"), under(h));
+        EXPECT_NEAR(s.one(rayTo({0, 0, 1}, {.1f, 0, 3})).x, .2, 1e-6);
+    }
+}
+// Strings that are joined with themselves end at a length, with a word.
+TEST(Information, StringsDoNotDoubleForEver) {
+    writeShader("doubles", "surface doubles(string start = \"xy\";) { string a = start; float i; for (i = 0; i < 200; i += 1) a += a; Oi = 1; Ci = a == start ? 0 : 1; }\n");
+    Scene s(world(std::string("Surface \"doubles\"\n") + kFloor), under(Hider::Hidden));
+    EXPECT_EQ(s.one(kView), Color(1, 1, 1));
+    EXPECT_NE(s.messages().find("65536 characters"), std::string::npos);
+}
 // A ray's label reaches the shader that it meets; the camera's have none.
 TEST(Information, LabelsOfRays) {
     writeShader("labelled", "surface labelled() { string l = \"?\"; rayinfo(\"label\", l); Oi = 1; Ci = l == \"probe\" ? 1 : l == \"other\" ? .5 : l == \"\" ? .25 : 0; }\n");

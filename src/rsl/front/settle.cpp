@@ -303,7 +303,22 @@ void Checker::settleBinary(ExprPtr& e, Base t) {
 void Checker::settleAssign(ExprPtr& e) {
     settleVariable(e->args[0]);
     const Type target = e->args[0]->type;
-    if (e->op == ExprOp::Assign || target.array != 0) {
+    if (e->op == ExprOp::Add && target.base == Base::String && target.array == 0) { // a += "y": a = a + "y"
+        const Shadeop* concat = findShadeop("concat");
+        settleAs(e->args[1], Base::String);
+        auto joined = std::make_unique<Expr>();
+        joined->kind = ExprKind::ShadeopCall;
+        joined->place = e->place;
+        joined->type = target;
+        joined->shadeop = concat;
+        joined->signature = &concat->signatures[0];
+        joined->text = "concat";
+        joined->args.push_back(clone(*e->args[0]));
+        joined->args.push_back(std::move(e->args[1]));
+        finish(*joined);
+        e->args[1] = std::move(joined);
+        e->op = ExprOp::Assign;
+    } else if (e->op == ExprOp::Assign || target.array != 0) {
         settle(e->args[1], target, Handle::Either); // survey compared them
     } else {
         const Info& r = infos_.at(e->args[1].get());

@@ -26,7 +26,7 @@ Inst* Builder::functionCall(const Expr& e) {
     return coerce(inlineFunction(*e.function, args), kindOf(e.type) == Kind::None ? Kind::Float : kindOf(e.type));
 }
 
-Inst* Builder::inlineFunction(const Function& f, const std::vector<const Expr*>& args) {
+Inst* Builder::inlineFunction(const Function& f, const std::vector<const Expr*>& args, Inst** whole) {
     std::set<int> assigned;
     std::set<const Function*> seen;
     if (f.body) scanAssigned(*f.body, assigned, seen);
@@ -62,7 +62,13 @@ Inst* Builder::inlineFunction(const Function& f, const std::vector<const Expr*>&
     frame.function = &f;
     frame.type = f.result;
     frame.returned = newSlot(boolean(false));
-    if (f.result.base != Base::Void) frame.result = newSlot(zero(kindOf(f.result)));
+    if (f.result.array) {
+        largestResize();
+        frame.array = f.result.array < 0 ? newResizable(f.result.base, 0) : newArray(f.result.base, f.result.array);
+        if (whole) *whole = frame.array;
+    } else if (f.result.base != Base::Void) {
+        frame.result = newSlot(zero(kindOf(f.result)));
+    }
     frames_.push_back(frame);
     if (f.body) statement(*f.body);
     frames_.pop_back();

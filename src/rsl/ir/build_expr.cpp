@@ -100,6 +100,13 @@ Inst* Builder::array(const Expr& e) {
         return v;
     }
     if (e.kind == ExprKind::Cast && !e.args.empty() && e.args[0]->type.array) return array(*e.args[0]);
+    if (returnsArray(e)) {
+        std::vector<const Expr*> args;
+        for (const ExprPtr& a : e.args) args.push_back(a.get());
+        Inst* a = nullptr;
+        inlineFunction(*e.function, args, &a);
+        return a ? a : newArray(e.type.base, std::max(1, e.type.array));
+    }
     const int length = e.type.array > 0 ? e.type.array : std::max<int>(1, static_cast<int>(e.args.size()));
     Inst* a = newArray(e.type.base, length);
     copyArray(a, e);
@@ -144,7 +151,7 @@ void Builder::copyArray(Inst* to, const Expr& from) {
         return;
     }
     if (from.kind == ExprKind::ShadeopCall && from.shadeop) unavailable(from); // its results stay zero
-    if (from.kind != ExprKind::Variable && from.kind != ExprKind::Cast) return;
+    if (from.kind != ExprKind::Variable && from.kind != ExprKind::Cast && !returnsArray(from)) return;
     Inst* a = array(from);
     if (a == to) return;
     const int m = std::min(n, arrayLength(a));

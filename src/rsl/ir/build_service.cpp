@@ -1,5 +1,6 @@
 // Calls that the renderer answers: what goes along with them, and what comes back.
 #include "rsl/ir/builder.h"
+#include "base/limits.h"
 #include <algorithm>
 #include <cstdio>
 
@@ -18,6 +19,7 @@ Inst* Builder::foldString(const std::string& op, const std::vector<Inst*>& args)
     std::string out;
     if (op == "concat") {
         for (const Inst* a : args) out += a->text;
+        if (out.size() > limits::kTokenBytes) return nullptr; // cut off, with a word, when it runs
         return leaves_.string(out);
     }
     if (op != "format" || args.empty() || args[0]->op != Op::ConstString) return nullptr;

@@ -155,7 +155,9 @@ void Builder::statement(const Stmt& s) {
         return;
     }
     case StmtKind::Return:
-        if (s.value && f.result >= 0) set(f.result, expr(*s.value, kindOf(f.type)));
+        if (s.value && f.array && lengths(f.array)) copyResizable(f.array, *s.value);
+        else if (s.value && f.array) copyArray(f.array, *s.value);
+        else if (s.value && f.result >= 0) set(f.result, expr(*s.value, kindOf(f.type)));
         if (f.returned >= 0) set(f.returned, boolean(true));
         for (const LoopFrame& l : f.loops) set(l.broken, boolean(true));
         return;

@@ -12,6 +12,9 @@
 
 namespace alpenglow::rsl::ir {
 
+/// A call of a shader's own function whose result is an array.
+inline bool returnsArray(const Expr& e) { return e.kind == ExprKind::FunctionCall && e.function && e.function->result.array != 0; }
+
 /// A lobe call to be inlined even under path: its place.
 using DirectSet = std::set<std::tuple<int, int, int>>;
 
@@ -76,6 +79,7 @@ private:
     struct Frame {
         int returned = -1;
         int result = -1;
+        Inst* array = nullptr; ///< the result of a function that returns an array
         Type type;
         std::vector<LoopFrame> loops;
         const Function* function = nullptr;
@@ -124,7 +128,7 @@ private:
 
     // build_call.cpp
     Inst* functionCall(const Expr&);
-    Inst* inlineFunction(const Function&, const std::vector<const Expr*>& args);
+    Inst* inlineFunction(const Function&, const std::vector<const Expr*>& args, Inst** array = nullptr);
     // build_outline.cpp: functions that stay functions
     /// A user function as a Function instruction, for one set of constant strings.
     struct Outlined {

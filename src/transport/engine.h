@@ -112,6 +112,7 @@ struct BatchContext {
     std::vector<float> arena;
     std::vector<Haze> haze;                    ///< by point; only where a binding has an atmosphere
     std::deque<LightLoop> loops;               ///< Engine::lightLoop()
+    const BoundLight* light = nullptr;         ///< whose kernel runs
     const LitSurface* lit = nullptr;           ///< while a light's kernel runs: what it lights
     std::vector<float> lightChannels;          ///< by point, all AOVs: what lights gave by outputchannel(); empty when none did
     float lightVisibilityDistance = 0;

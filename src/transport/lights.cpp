@@ -16,6 +16,7 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
     c->engine = this;
     c->bound = &bound;
     c->lit = call.lit;
+    c->light = &light;
     c->points.swap(queries); // lent; given back below
     shading::InstanceView view{call.parameters ? call.parameters : &light.instance->parameters, &light.instance->toCurrent};
     if (!c->batch) c->batch = std::make_shared<shading::Batch>();

@@ -318,13 +318,14 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
         return;
     case SiteKind::Attribute: {
         static const std::string kLight = "light:";
-        const LightLoop* loop = c.lit ? nullptr : &lightLoop(c, first, lanes);
-        const scene::Light* light = loop && loop->light >= 0 ? world_->lights_[size_t(loop->light)].source : nullptr;
+        const LightLoop* loop = c.light ? nullptr : &lightLoop(c, first, lanes);
+        const scene::Light* light = c.light ? c.light->source : loop && loop->light >= 0 ? world_->lights_[size_t(loop->light)].source : nullptr;
         each([&](int lane, const ShadePoint& p) {
             std::optional<Information> i;
-            if (light && light->attributes && name.rfind(kLight, 0) == 0) i = attributeOf(*world_, *light->attributes, name.substr(kLight.size()), nullptr, nullptr);
-            if (light && light->attributes && name.rfind("attribute:light:", 0) == 0) i = attributeOf(*world_, *light->attributes, name, nullptr, nullptr);
-            if (!i && p.shape) i = attributeOf(*world_, p.shape->attributes(), name, &p, bindingAt(lane));
+            if (c.light && light && light->attributes) i = attributeOf(*world_, *light->attributes, name, nullptr, nullptr); // its own
+            if (!i && light && light->attributes && name.rfind(kLight, 0) == 0) i = attributeOf(*world_, *light->attributes, name.substr(kLight.size()), nullptr, nullptr);
+            if (!i && light && light->attributes && name.rfind("attribute:light:", 0) == 0) i = attributeOf(*world_, *light->attributes, name, nullptr, nullptr);
+            if (!i && !c.light && p.shape) i = attributeOf(*world_, p.shape->attributes(), name, &p, bindingAt(lane));
             if (i) answer(lane, i->isText ? nullptr : &i->numbers, i->isText ? &i->text : nullptr);
         });
         return;

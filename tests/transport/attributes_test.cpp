@@ -154,6 +154,24 @@ TEST(Attributes, OfTheLightInALoop) {
     EXPECT_EQ(s.one(kView), Color(4, 7, 1)) << s.messages();
 }
 
+// In a light's own shader, those that it was made with; the surface's are not its.
+TEST(Attributes, InLights) {
+    writeShader("asksitself", R"(light asksitself(point from = 0;) {
+    float n = 7, rate = 7, nobody = 7; string name = "?";
+    float a = attribute("user:n", n), b = attribute("identifier:name", name), c = attribute("Ri:ShadingRate", rate), d = attribute("user:ofsurface", nobody);
+    illuminate(from) Cl = color(a + b + c + d, n + 10 * rate + 100 * nobody, name == "key" ? 1 : 0) / (L . L);
+}
+)");
+    writeShader("sums", "surface sums() { Oi = 1; illuminance(P) Ci += Cl * (L . L); }\n");
+    Scene s(std::string("WorldBegin\nSides 2\nAttributeBegin\nAttribute \"identifier\" \"string name\" \"key\"\nAttribute \"user\" \"uniform float n\" 3\nShadingRate 2\n"
+                        "LightSource \"asksitself\" 1 \"from\" [0 2 0]\nAttributeEnd\nIlluminate 1 1\nAttribute \"user\" \"uniform float n\" 5\n"
+                        "Attribute \"user\" \"uniform float ofsurface\" 5\nSurface \"sums\"\n") + kFloor + "WorldEnd\n", under(Hider::Raytrace));
+    const Color got = s.one(kView);
+    EXPECT_NEAR(got.x, 3, 1e-5) << s.messages();
+    EXPECT_NEAR(got.y, 3 + 20 + 700, 1e-3);
+    EXPECT_NEAR(got.z, 1, 1e-5);
+}
+
 TEST(Options, ByName) {
     const std::string before = "FrameBegin 3\nFormat 64 32 1\nFrameAspectRatio 2\nPixelSamples 3 2\nPixelVariance .5\nShutter .25 .75\nClipping 1 100\nCropWindow 0 1 0 .5\n"
                                "ScreenWindow -3 2 -1 1\nDepthOfField 4 .5 10\nHider \"raytrace\"\nDisplay \"here.tif\" \"null\" \"rgba\"\nOption \"trace\" \"integer maxdepth\" 5\n"

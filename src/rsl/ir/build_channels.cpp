@@ -46,6 +46,8 @@ Inst* Builder::outputChannel(const Expr& e) {
     }
     const int n = channelSlot(name->text, value->kind);
     if (n >= 0) set(n, value);
+    else if (bool kept = false; e.args[0]->kind != ExprKind::String && !channels_.count(bareName(name->text, kept)))
+        warn(e.place, "outputchannel() needs a name that is known when the shader is compiled; it does nothing");
     return constant(0);
 }
 

@@ -62,7 +62,9 @@ public:
         for (const auto& f : c.shader->nested) {
             Walk w;
             w.expr = [&](const Expr& e) {
-                if (e.kind == ExprKind::ShadeopCall) calls_[f->name].insert(e.text);
+                // surface("Kd", k) asks the shader of that kind, also where a method has the name.
+                const bool asks = isEntry(e.text) && !e.args.empty() && e.args[0]->kind == ExprKind::String;
+                if (e.kind == ExprKind::ShadeopCall && !asks) calls_[f->name].insert(e.text);
             };
             w(f->body);
             names_.insert(f->name);

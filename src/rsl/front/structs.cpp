@@ -213,7 +213,9 @@ void Lowering::spill(List& values, Type type, List& pre, Place place) {
 }
 
 ExprPtr Lowering::zero(const Leaf& l, Place place) {
-    ExprPtr z = node(l.type.base == Base::String ? ExprKind::String : ExprKind::Number, place);
+    const bool handle = l.member && l.member->handle;
+    ExprPtr z = node(handle ? ExprKind::Variable : l.type.base == Base::String ? ExprKind::String : ExprKind::Number, place);
+    if (handle) z->text = "null";
     if (l.type.array == 0) return z;
     auto list = node(ExprKind::ArrayList, place);
     adopt(*list, std::move(z));

@@ -1,5 +1,5 @@
 // attribute(), option() and rayinfo() in rendered scenes, by every name that the reference has (rsl.md 11, Tables 6.20 and 6.21).
-#include "transport/harness.h"
+#include "transport/floorscene.h"
 
 using namespace alpenglow;
 using namespace alpenglow::transport;
@@ -7,13 +7,6 @@ using namespace alpenglow::transport::testing;
 
 namespace {
 
-Settings under(Hider h) {
-    Settings s;
-    s.hider = h;
-    return s;
-}
-const char* kFloor = "Polygon \"P\" [-60 0 -60  -60 0 60  60 0 60  60 0 -60]\n";
-const CameraRay kView = rayTo({.3f, .8f, -.4f}, {0, 0, 0});
 std::string quoted(const std::string& s) { return "\"" + s + "\""; }
 
 /// What `call` ("attribute" or "option") finds: 1 for found, then what the shader makes of the value v of that type.

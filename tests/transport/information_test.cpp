@@ -1,21 +1,12 @@
 // What shaders ask in rendered scenes: volumes on both sides, attributes that nobody has set, labels of rays, BMRT's shadeops, samples and
 // shadows of area lights.
-#include "transport/harness.h"
+#include "transport/floorscene.h"
 
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
 
 namespace {
-
-Settings under(Hider h) {
-    Settings s;
-    s.hider = h;
-    return s;
-}
-std::string world(const std::string& inside) { return "WorldBegin\nSides 2\n" + inside + "WorldEnd\n"; }
-const char* kFloor = "Polygon \"P\" [-60 0 -60  -60 0 60  60 0 60  60 0 -60]\n";
-const CameraRay kView = rayTo({.3f, .8f, -.4f}, {0, 0, 0});
 
 // From outside the incident side is the exterior, from inside the interior; a second sphere of the same surface has its own volumes.
 TEST(Information, IncidentAndOpposite) {

@@ -1,5 +1,5 @@
 // Shadows that a light's shader asks for with transmission(): none of the surface on itself, and the right ones of others.
-#include "transport/harness.h"
+#include "transport/floorscene.h"
 
 using namespace alpenglow;
 using namespace alpenglow::transport;
@@ -7,12 +7,6 @@ using namespace alpenglow::transport::testing;
 
 namespace {
 
-Settings under(Hider h) {
-    Settings s;
-    s.hider = h;
-    s.shaderPaths.push_back(std::string(ALPENGLOW_SOURCE_DIR) + "/shaders");
-    return s;
-}
 const std::string kBall = "Surface \"matte\" \"float Ka\" 0 \"float Kd\" 1\nAttributeBegin Translate 0 0 6 Sphere 1 -1 1 360 AttributeEnd\n";
 
 // The side of a ball that a light sees gets all of its light, as from the same light without shadows; the other side none.
@@ -30,8 +24,8 @@ TEST(LightShadows, ABallDoesNotShadowItself) {
             rays.push_back(r);
         }
     for (const auto& l : lights) {
-        Scene plain("WorldBegin\n" + std::string(l.plain) + "\n" + kBall + "WorldEnd\n", under(Hider::Hidden));
-        Scene shadowed("WorldBegin\n" + std::string(l.shadowed) + "\n" + kBall + "WorldEnd\n", under(Hider::Hidden));
+        Scene plain("WorldBegin\n" + std::string(l.plain) + "\n" + kBall + "WorldEnd\n", withShaders(Hider::Hidden));
+        Scene shadowed("WorldBegin\n" + std::string(l.shadowed) + "\n" + kBall + "WorldEnd\n", withShaders(Hider::Hidden));
         const auto want = plain.trace(rays), got = shadowed.trace(rays);
         int lit = 0;
         for (size_t i = 0; i < rays.size(); ++i) {
@@ -56,7 +50,7 @@ TEST(LightShadows, OthersShadow) {
         {"\"shadowdistant\" 1 \"from\" [0 1 0] \"to\" [0 0 0]", 1},
         {"\"shadowdistant\" 1 \"from\" [0 1 0] \"to\" [0 0 0] \"string shadowname\" \"map\"", .75f}};
     for (const auto& c : cases) {
-        Scene s("WorldBegin\nSides 2\nLightSource " + std::string(c.light) + "\n" + floor + pane + "WorldEnd\n", under(Hider::Hidden));
+        Scene s("WorldBegin\nSides 2\nLightSource " + std::string(c.light) + "\n" + floor + pane + "WorldEnd\n", withShaders(Hider::Hidden));
         EXPECT_NEAR(s.one(below).x, c.want, 1e-5) << c.light << s.messages();
     }
 }

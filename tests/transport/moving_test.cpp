@@ -1,5 +1,5 @@
 // Surface shaders that move P displace their primitives; what displacement shaders share and do not share.
-#include "transport/harness.h"
+#include "transport/floorscene.h"
 
 using namespace alpenglow;
 using namespace alpenglow::transport;
@@ -7,16 +7,10 @@ using namespace alpenglow::transport::testing;
 
 namespace {
 
-Settings under(Hider h) {
-    Settings s;
-    s.hider = h;
-    return s;
-}
 const char* kSquare = "Patch \"bilinear\" \"P\" [-1 -1 3  1 -1 3  -1 1 3  1 1 3]\n";
 std::string square(const std::string& shaders, const std::string& x = "0") {
     return "AttributeBegin\nTranslate " + x + " 0 0\n" + shaders + "\n" + kSquare + "AttributeEnd\n";
 }
-std::string world(const std::string& inside) { return "WorldBegin\nSides 2\n" + inside + "WorldEnd\n"; }
 
 // The square z = 3 comes half a unit nearer, once: the depth of the sample and the P that later statements see.
 TEST(SurfaceMovesP, OnceAndForRays) {

@@ -1,6 +1,6 @@
 // Class surfaces of PRMan that know themselves only by how they answer to directions: directlighting() asks the lights, indirectspecular()
 // sends the rays that the material wants.
-#include "transport/harness.h"
+#include "transport/floorscene.h"
 
 using namespace alpenglow;
 using namespace alpenglow::transport;
@@ -8,14 +8,6 @@ using namespace alpenglow::transport::testing;
 
 namespace {
 
-Settings under(Hider h) {
-    Settings s;
-    s.hider = h;
-    return s;
-}
-std::string world(const std::string& inside) { return "WorldBegin\nSides 2\n" + inside + "WorldEnd\n"; }
-const char* kFloor = "Polygon \"P\" [-60 0 -60  -60 0 60  60 0 60  60 0 -60]\n";
-const CameraRay kView = rayTo({.3f, .8f, -.4f}, {0, 0, 0});
 // From 60 degrees above the floor, and one of half the colour straight from above.
 const char* kTwoLights = "LightSource \"distantlight\" 1 \"intensity\" 2 \"from\" [0 1 1.7320508] \"to\" [0 0 0]\n"
                          "LightSource \"distantlight\" 2 \"lightcolor\" [.5 .5 .5] \"from\" [0 1 0] \"to\" [0 0 0]\n";

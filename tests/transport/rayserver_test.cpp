@@ -1,5 +1,5 @@
 // What shaders ask BMRT's ray server (rayserver.h): areashadow() in lights, rayhittest(), fulltrace() and visibility() in surfaces.
-#include "transport/harness.h"
+#include "transport/floorscene.h"
 
 using namespace alpenglow;
 using namespace alpenglow::transport;
@@ -7,12 +7,6 @@ using namespace alpenglow::transport::testing;
 
 namespace {
 
-Settings under(Hider h) {
-    Settings s;
-    s.hider = h;
-    s.shaderPaths.push_back(std::string(ALPENGLOW_SOURCE_DIR) + "/shaders");
-    return s;
-}
 const CameraRay kBelow = rayTo({.3f, .4f, -.4f}, {0, 0, 0});
 std::string floorOf(const std::string& surface) {
     return "Surface " + surface + "\nPolygon \"P\" [-60 0 -60  -60 0 60  60 0 60  60 0 -60]\n";
@@ -25,9 +19,9 @@ std::string pane(const std::string& opacity, const std::string& colour) {
 TEST(RayServer, AreaShadowsOfLights) {
     writeShader("asked", "#include \"rayserver.h\"\nlight asked(float intensity = 4;) { illuminate(point \"world\" (0, 2, 0)) Cl = intensity * areashadow(Ps, 4) / (L . L); }\n");
     const std::string begin = "WorldBegin\nSides 2\nLightSource \"asked\" 1\n" + floorOf("\"matte\" \"Ka\" 0 \"Kd\" 1");
-    EXPECT_NEAR(Scene(begin + "WorldEnd\n", under(Hider::Hidden)).one(kBelow).x, 1, 1e-5);
-    EXPECT_NEAR(Scene(begin + pane(".25 .25 .25", "1 1 1") + "WorldEnd\n", under(Hider::Hidden)).one(kBelow).x, .75, 1e-5);
-    EXPECT_NEAR(Scene(begin + pane("1 1 1", "1 1 1") + "WorldEnd\n", under(Hider::Hidden)).one(kBelow).x, 0, 1e-5);
+    EXPECT_NEAR(Scene(begin + "WorldEnd\n", withShaders(Hider::Hidden)).one(kBelow).x, 1, 1e-5);
+    EXPECT_NEAR(Scene(begin + pane(".25 .25 .25", "1 1 1") + "WorldEnd\n", withShaders(Hider::Hidden)).one(kBelow).x, .75, 1e-5);
+    EXPECT_NEAR(Scene(begin + pane("1 1 1", "1 1 1") + "WorldEnd\n", withShaders(Hider::Hidden)).one(kBelow).x, 0, 1e-5);
 }
 
 TEST(RayServer, WhatSurfacesAsk) {
@@ -37,7 +31,7 @@ TEST(RayServer, WhatSurfacesAsk) {
     writeShader("fullasks", "#include \"rayserver.h\"\nsurface fullasks() { color c = 0; float d = 0; point h = P, m = 0; vector n = 0, r = 0; vector up = vector \"world\" (0, 1, 0);\n"
                             "    float found = fulltrace(P, up, c, d, h, n, m, r); Oi = 1; Ci = color(found, comp(c, 0), (found == 1) ? d : ycomp(vtransform(\"world\", r))); }\n");
     const auto of = [](const char* surface, bool covered) {
-        return Scene("WorldBegin\nSides 2\n" + floorOf(std::string("\"") + surface + "\"") + (covered ? pane("1 1 1", ".5 .25 0") : "") + "WorldEnd\n", under(Hider::Raytrace)).one(kBelow);
+        return Scene("WorldBegin\nSides 2\n" + floorOf(std::string("\"") + surface + "\"") + (covered ? pane("1 1 1", ".5 .25 0") : "") + "WorldEnd\n", withShaders(Hider::Raytrace)).one(kBelow);
     };
     const Color hit = of("hittest", true), miss = of("hittest", false), full = of("fullasks", true), nothing = of("fullasks", false);
     EXPECT_NEAR(hit.x, 1, 1e-3);

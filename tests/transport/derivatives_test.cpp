@@ -50,6 +50,16 @@ template <class F> std::string mapFile(const std::string& name, int width, int h
     return "\"" + shaderFolder() + "/" + name + "\"";
 }
 
+/// A grid of ten by ten rays from the eye over the plane z = 3, of footprints that grow by `spread`.
+std::vector<CameraRay> hundredRays(float spread) {
+    std::vector<CameraRay> rays;
+    for (int i = 0; i < 100; ++i) {
+        rays.push_back(rayTo({0, 0, 0}, {.15f * float(i % 10) - .7f, .15f * float(i / 10) - .7f, 3}));
+        rays.back().spread = spread;
+    }
+    return rays;
+}
+
 void writeMapShaders() {
     const std::string map = mapFile("relief.exr", kMap, kMap, relief);
     const std::string sky = mapFile("height.exr", 256, 128, [](double, double t) { return std::cos(kPi * t); });
@@ -228,12 +238,7 @@ TEST(TextureDerivatives, AgainstDifferences) {
         s.hider = hider;
         s.outputs = {"shown", "uv"};
         Scene scene(patchRib("", "mapslopes"), s);
-        std::vector<CameraRay> rays;
-        for (int i = 0; i < 100; ++i) {
-            CameraRay r = rayTo({0, 0, 0}, {.15f * float(i % 10) - .7f, .15f * float(i / 10) - .7f, 3});
-            r.spread = 1e-5f;
-            rays.push_back(r);
-        }
+        const std::vector<CameraRay> rays = hundredRays(1e-5f);
         int hits = 0;
         for (const SampleResult& r : scene.trace(rays)) {
             if (r.opacity.x < 1) continue;
@@ -254,11 +259,7 @@ TEST(TextureDerivatives, OfSecondOrder) {
     Settings s;
     s.outputs = {"shown", "uv"};
     Scene scene(patchRib("", "mapcurves"), s);
-    std::vector<CameraRay> rays;
-    for (int i = 0; i < 100; ++i) {
-        rays.push_back(rayTo({0, 0, 0}, {.15f * float(i % 10) - .7f, .15f * float(i / 10) - .7f, 3}));
-        rays.back().spread = 1e-5f;
-    }
+    const std::vector<CameraRay> rays = hundredRays(1e-5f);
     int hits = 0;
     for (const SampleResult& r : scene.trace(rays)) {
         if (r.opacity.x < 1) continue;
@@ -278,11 +279,7 @@ TEST(TextureDerivatives, OfAnEnvironment) {
     Settings s;
     s.outputs = {"shown", "uv"};
     Scene scene(patchRib("", "skyslopes"), s);
-    std::vector<CameraRay> rays;
-    for (int i = 0; i < 100; ++i) {
-        rays.push_back(rayTo({0, 0, 0}, {.15f * float(i % 10) - .7f, .15f * float(i / 10) - .7f, 3}));
-        rays.back().spread = 1e-5f;
-    }
+    const std::vector<CameraRay> rays = hundredRays(1e-5f);
     int hits = 0;
     for (const SampleResult& r : scene.trace(rays)) {
         if (r.opacity.x < 1) continue;

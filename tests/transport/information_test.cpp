@@ -61,6 +61,12 @@ TEST(Information, StringsDoNotDoubleForEver) {
     EXPECT_EQ(s.one(kView), Color(1, 1, 1));
     EXPECT_NE(s.messages().find("65536 characters"), std::string::npos);
 }
+// surface() within the method of that name asks the shader, which is itself.
+TEST(Information, AMethodAsksItsOwnShader) {
+    writeShader("asksown", "class asksown(float Kd = .5;) { public void surface(output color Ci, Oi) { float k = 0; float found = surface(\"Kd\", k); Ci = color(found, k, 0); Oi = 1; } }\n");
+    Scene s(world(std::string("Surface \"asksown\" \"Kd\" .25\n") + kFloor), under(Hider::Hidden));
+    EXPECT_EQ(s.one(kView), Color(1, .25f, 0));
+}
 // A ray's label reaches the shader that it meets; the camera's have none.
 TEST(Information, LabelsOfRays) {
     writeShader("labelled", "surface labelled() { string l = \"?\"; rayinfo(\"label\", l); Oi = 1; Ci = l == \"probe\" ? 1 : l == \"other\" ? .5 : l == \"\" ? .25 : 0; }\n");

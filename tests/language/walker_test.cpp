@@ -6,7 +6,9 @@
 #include "snippets.h"
 #include "walker.h"
 #include <chrono>
+#include <cstdlib>
 #include <gtest/gtest.h>
+#include <set>
 #include <sstream>
 
 namespace alpenglow::rsl {
@@ -16,6 +18,12 @@ constexpr int kBatch = 10, kPoints = 21, kMostShrinks = 3000;
 constexpr int kParts = 4; ///< one test each, so that they run side by side
 
 bool nightly() { return std::getenv("ALPENGLOW_NIGHTLY") != nullptr; }
+
+/// Which random programs: those that are kept, unless another set is asked for. Printed with what goes wrong.
+uint64_t firstProgram() {
+    const char* given = std::getenv("ALPENGLOW_SEED");
+    return given ? std::strtoull(given, nullptr, 10) * 1000003 : 0;
+}
 
 /// Programs in all the parts together. Nearly all the time goes into machine code for them, so those of every day are shorter.
 int wanted() { return kSanitized ? 80 : nightly() ? 10000 : 520; }
@@ -113,30 +121,67 @@ struct Machine {
     }
 };
 
+/// What a batch is run in: two configurations, and as a shader or as a class.
+struct Turn {
+    std::vector<KernelOptions> configurations;
+    bool object = false;
+};
+
+/// All take their turns in first place, and at night every pair of them comes. Code that is not optimised costs half: every day it is
+/// the second.
+Turn turnOf(int batch, bool night) {
+    const std::vector<KernelOptions> all = configurations();
+    const size_t n = all.size(), b = size_t(batch);
+    Turn t;
+    t.object = batch / kParts % 2 == 1;
+    t.configurations.push_back(all[b % n]);
+    std::vector<KernelOptions> others;
+    for (size_t k = 1; k < n; k++)
+        if (night || all[(b + k) % n].optimize == 0) others.push_back(all[(b + k) % n]);
+    t.configurations.push_back(others[b / n % others.size()]);
+    return t;
+}
+
+// Every width, build and level has its turn every day; at night with shaders and with classes, and every two have the same program.
+TEST(RandomTurns, EveryConfigurationHasItsTurn) {
+    const size_t all = configurations().size();
+    for (const bool night : {false, true}) {
+        std::set<std::string> met, kinds, pairs;
+        for (int batch = 0; batch < (night ? 10000 : 520) / kBatch; batch++) {
+            const Turn t = turnOf(batch, night);
+            ASSERT_EQ(t.configurations.size(), 2u);
+            const std::string a = describe(t.configurations[0]), b = describe(t.configurations[1]);
+            EXPECT_NE(a, b);
+            met.insert(a);
+            kinds.insert(a + (t.object ? " class" : " shader"));
+            pairs.insert(a + " | " + b);
+        }
+        EXPECT_EQ(met.size(), all);
+        if (night) {
+            EXPECT_EQ(kinds.size(), 2 * all);
+            EXPECT_EQ(pairs.size(), all * (all - 1));
+        }
+    }
+}
+
 class RandomTrees : public testing::TestWithParam<int> {};
 
 TEST_P(RandomTrees, MachineCodeAndWalkerAgree) {
     Machine machine;
-    const std::vector<KernelOptions> configurations = rsl::configurations();
-    std::vector<KernelOptions> plain;
-    for (const KernelOptions& o : configurations)
-        if (o.optimize == 0) plain.push_back(o);
     const rc::Gen<Term> generator = programs();
+    const uint64_t first = firstProgram();
+    const char* const given = std::getenv("ALPENGLOW_SEED");
+    SCOPED_TRACE("ALPENGLOW_SEED=" + std::string(given ? given : "0"));
     const int batches = wanted() / kBatch;
     int compared = 0;
     for (int batch = GetParam(); batch < batches; batch += kParts) {
         std::vector<rc::Shrinkable<Term>> trees;
         std::vector<Term> terms;
         for (int n = 0; n < kBatch; n++) {
-            trees.push_back(generator(rc::Random(uint64_t(batch * kBatch + n + 1)), nightly() ? 100 : 50));
+            trees.push_back(generator(rc::Random(first + uint64_t(batch * kBatch + n + 1)), nightly() ? 100 : 50));
             terms.push_back(trees.back().value());
         }
-        // Two configurations each; all take their turns. Code that is not optimised costs half: every day it is the second.
-        std::vector<KernelOptions> some = {configurations[size_t(batch) % configurations.size()]};
-        const std::vector<KernelOptions>& others = nightly() ? configurations : plain;
-        for (size_t k = size_t(batch) + 7; some.size() < 2; k++)
-            if (const KernelOptions& o = others[k % others.size()]; describe(o) != describe(some[0])) some.push_back(o);
-        const bool object = batch / kParts % 2 == 1; // a shader and a class in turns
+        const auto [some, object] = turnOf(batch, nightly());
         bool compiles = true;
         const std::string wrong = machine.compare(terms, some, object, compiles);
         compared += kBatch;

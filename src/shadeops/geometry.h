@@ -10,9 +10,21 @@ template <class T> AL_INLINE T opZ(const Triple<T>& p) { return p.z; }
 template <class T> AL_INLINE void opSetX(Triple<T>& p, const T& v) { p.x = v; }
 template <class T> AL_INLINE void opSetY(Triple<T>& p, const T& v) { p.y = v; }
 template <class T> AL_INLINE void opSetZ(Triple<T>& p, const T& v) { p.z = v; }
-template <class T> AL_INLINE T opDistance(const Triple<T>& a, const Triple<T>& b) { return length(b - a); }
-template <class T> AL_INLINE T opLength(const Triple<T>& v) { return length(v); }
-template <class T> AL_INLINE Triple<T> opNormalize(const Triple<T>& v) { return normalize(v); }
+/// The square of a length leaves the range of floats long before the length does. Where it would, the power of two that brings the
+/// vector into the middle of the range; else 1, and nothing changes.
+template <class T> AL_INLINE vf midRange(const Triple<T>& v) {
+    const vf x = value(v.x), y = value(v.y), z = value(v.z), square = mad(x, x, mad(y, y, z * z));
+    return select(square < 0x1p-100f, vf(0x1p100f), select(square > 0x1p120f, vf(0x1p-70f), vf(1)));
+}
+template <class T> AL_INLINE T opLength(const Triple<T>& v) {
+    const vf k = midRange(v), back = select(k > 1, vf(0x1p-100f), select(k < 1, vf(0x1p70f), vf(1)));
+    return length(Triple<T>{v.x * k, v.y * k, v.z * k}) * back;
+}
+template <class T> AL_INLINE T opDistance(const Triple<T>& a, const Triple<T>& b) { return opLength(b - a); }
+template <class T> AL_INLINE Triple<T> opNormalize(const Triple<T>& v) {
+    const vf k = midRange(v);
+    return normalize(Triple<T>{v.x * k, v.y * k, v.z * k});
+}
 template <class T> AL_INLINE T opPtlined(const Triple<T>& a, const Triple<T>& b, const Triple<T>& q) {
     const Triple<T> d = b - a, e = q - a;
     const T t = divide(dot(d, e), dot(d, d));

@@ -6,7 +6,15 @@ namespace alpenglow::rsl::AL_NAMESPACE {
 
 template <class T> AL_INLINE T opRadians(const T& x) { return x * vf(kPi / 180); }
 template <class T> AL_INLINE T opDegrees(const T& x) { return x * vf(180 / kPi); }
-template <class T> AL_INLINE T opLogBase(const T& x, const T& base) { return divide(logarithm2(x), logarithm2(base)); }
+/// Negative numbers give -infinity whatever the base, as the seed says; 0 gives the limit, +infinity for bases below 1. Where there is no
+/// such logarithm, in base 1 and in bases that are not positive, it is 0, as a division by 0 is.
+template <class T> AL_INLINE T opLogBase(const T& x, const T& base) {
+    const vf a = value(x), b = value(base), infinite = vf(__builtin_inff());
+    const vm none = ~(b >= kSmallest) | (b == 1), zero = ~(a >= kSmallest);
+    const T inside = divide(logarithm2(select(zero, T(vf(1)), x)), logarithm2(select(none, T(vf(2)), base)));
+    const T limit = T(select((a < 0) | (b >= 1), -infinite, infinite));
+    return select(a < 0, limit, select(none, T(vf(0)), select(zero, limit, inside)));
+}
 template <class T> AL_INLINE T opSign(const T& x) { return T(select(value(x) < 0, vf(-1), vf(1))); }
 template <class T> AL_INLINE T opFloor(const T& x) { return T(floorLanes(value(x))); }
 template <class T> AL_INLINE T opCeil(const T& x) { return T(ceilLanes(value(x))); }
@@ -195,8 +203,9 @@ std::vector<Shadeop> mathematicsShadeops() {
     list.push_back(mathOp("exp", {{"float exp(float x)", "al_exp"}}, "e to the power x; infinity above 88.72, 0 below -87.3.", "(3D)",
                           {{"exp(1)", "2.718282"}, {"exp(0)", "1"}}));
     list.push_back(mathOp("log", {{"float log(float x)", "al_log"}, {"float log(float x, float base)", "al_logbase"}},
-                          "Natural logarithm, or logarithm in a base. For x <= 0 -infinity; numbers too small for a normal float count as 0.", "seed",
-                          {{"log(10)", "2.302585"}, {"log(8, 2)", "3"}}));
+                          "Natural logarithm, or logarithm in a base. For x < 0 -infinity in every base; for 0 too, but infinity in bases below 1. "
+                          "0 in base 1 and in bases that are not positive, which have no logarithm. Numbers too small for a normal float count as 0.",
+                          "seed", {{"log(10)", "2.302585"}, {"log(8, 2)", "3"}, {"log(8, 0.5)", "-3"}, {"log(-8, 0.5)", "-inf"}}));
     list.push_back(flatOp(mathOp("sign", {{"float sign(float x)", "al_sign"}}, "-1 for x < 0, 1 otherwise: 0 counts as positive.", "(3D)",
                                  {{"sign(-3)", "-1"}, {"sign(0)", "1"}})));
     list.push_back(mathOp("mod", {{"float mod(float x, float y)", "al_mod"}},

@@ -102,7 +102,7 @@ const Case kOverloads[] = {
     {"f = sqrt(noise(p));", "(= f (sqrt:float (noise:float p)))"},
     {"f = length(p - q);", "(= f (length:float (sub:vector p q)))"},
     {"f = length(n);", "(= f (length:float (cast:vector n)))"},
-    {"v1 = normalize(n);", "(= v1 (normalize:vector (cast:vector n)))"},
+    {"v1 = normalize(n);", "(= v1 (cast:vector (normalize:normal n)))"},
     {"c = mix(c, d, f);", "(= c (mix:color c d f))"},
     {"c = mix(c, d, 0.5);", "(= c (mix:color c d 0.5))"},
     {"f = mix(1, 2, f);", "(= f (mix:float 1 2 f))"},

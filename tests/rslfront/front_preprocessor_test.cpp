@@ -104,5 +104,27 @@ TEST(FrontPreprocessor, DependenciesAndText) {
     EXPECT_EQ(c.program->shaders[0]->annotations[0].second, "me");
 }
 
+/// Old Macs end lines with a carriage return alone, others put one before the line feed.
+TEST(FrontPreprocessor, LineEndsOfEverySystem) {
+    const std::string lines[] = {"#define X 1 // one", "surface s() {", "Ci = X;", "/* two", "lines */ Oi = y; }", ""};
+    for (const std::string end : {"\n", "\r\n", "\r", "\r\r\n"}) {
+        std::string text;
+        for (const std::string& l : lines) text += l + end;
+        const auto c = compileSnippet(text.c_str());
+        ASSERT_EQ(c.messages.size(), 1u) << end.size();
+        EXPECT_EQ(c.messages[0].place.line, 5);
+        EXPECT_EQ(c.messages[0].place.column, 15);
+        EXPECT_EQ(c.messages[0].sourceLine, "lines */ Oi = y; }");
+    }
+}
+
+TEST(FrontPreprocessor, AnnotationsWithoutQuotes) {
+    const auto c = compileSnippet("#pragma annotation Kd \"how \" \"bright\"\n#pragma annotation \"Ks\" slider 0 to 1\nsurface s() {}\n");
+    ASSERT_TRUE(c.program);
+    const std::vector<std::pair<std::string, std::string>> expected = {{"Kd", "how bright"}, {"Ks", "slider 0 to 1"}};
+    EXPECT_EQ(c.program->shaders[0]->annotations, expected);
+    EXPECT_EQ(c.messages.size(), 2u);
+}
+
 } // namespace
 } // namespace alpenglow::rsl

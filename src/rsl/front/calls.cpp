@@ -181,6 +181,7 @@ void Checker::surveyCall(Expr& e, Info& info) {
         sources_.error(e.place, "there is no function '" + e.text + "'", near.empty() ? "" : "did you mean '" + near + "'?");
         return;
     }
+    bestByArguments(info.choices);
     for (const Choice& c : info.choices)
         if (c.result.base == Base::String) {
             const bool fromArray = c.shadeop && c.shadeop->section == "Arrays" && !e.args.empty();
@@ -198,6 +199,18 @@ void Checker::surveyCall(Expr& e, Info& info) {
         for (int c : info.cost) single |= c < kNever;
         if (single) info.array = {};
     }
+}
+
+/// The types of the arguments decide first: what is wanted chooses only among functions that take them equally well. A function that
+/// fits worse stays where no better one gives anything that becomes what it gives.
+void Checker::bestByArguments(std::vector<Choice>& choices) {
+    const std::vector<Choice> all = choices;
+    std::erase_if(choices, [&](const Choice& c) {
+        return std::any_of(all.begin(), all.end(), [&](const Choice& better) {
+            if (better.cost >= c.cost || (better.result.array != 0) != (c.result.array != 0)) return false;
+            return better.result == c.result || (c.result.array == 0 && implicitCost(better.result.base, c.result.base) < kNever);
+        });
+    });
 }
 
 /// The other way about: an array is wanted.

@@ -1,20 +1,39 @@
-// #if expressions: integers, all operators of C that make sense on them.
+// #if expressions: integers with all operators of C that make sense on them, and numbers with a fraction, which C refuses there, with
+// those of arithmetic and comparison.
 #include "base/limits.h"
 #include "rsl/front/preprocessor.h"
 #include <charconv>
+#include <cmath>
 
 namespace alpenglow::rsl::front {
 
 namespace {
 
+/// A value of the preprocessor. One with a fraction makes real what it is combined with.
+struct Value {
+    long long whole = 0;
+    double real = 0;
+    bool isReal = false;
+    Value(long long v) : whole(v), real(double(v)) {}
+    static Value fraction(double d) {
+        Value v(0);
+        v.real = d;
+        v.isReal = true;
+        return v;
+    }
+    bool yes() const { return isReal ? real != 0 : whole != 0; }
+    /// Towards zero, as a cast of C; 0 where there is no such integer.
+    long long integer() const { return !isReal ? whole : std::abs(real) < 9e18 ? (long long)real : 0; }
+};
+
 class Condition {
 public:
     Condition(const std::vector<Token>& t, Place p, SourceSet& s) : tokens_(t), place_(p), sources_(s) {}
-    long long run() {
-        if (tokens_.empty()) { bad("#if needs an expression"); return 0; }
-        const long long v = ternary();
+    bool run() {
+        if (tokens_.empty()) { bad("#if needs an expression"); return false; }
+        const Value v = ternary();
         if (!failed_ && at_ < tokens_.size()) bad("unexpected '" + std::string(tokens_[at_].text) + "' in the condition");
-        return failed_ ? 0 : v;
+        return !failed_ && v.yes();
     }
 
 private:
@@ -27,19 +46,19 @@ private:
         failed_ = true;
         at_ = tokens_.size();
     }
-    long long ternary() {
-        const long long c = binary(0);
+    Value ternary() {
+        const Value c = binary(0);
         if (!accept("?")) return c;
-        const long long a = ternary();
+        const Value a = ternary();
         if (!accept(":")) bad("expected ':' in the condition");
-        const long long b = ternary();
-        return c ? a : b;
+        const Value b = ternary();
+        return c.yes() ? a : b;
     }
-    long long binary(int level) {
+    Value binary(int level) {
         static const std::vector<std::vector<std::string_view>> kLevels = {
             {"||"}, {"&&"}, {"|"}, {"^"}, {"&"}, {"==", "!="}, {"<=", ">=", "<", ">"}, {"<<", ">>"}, {"+", "-"}, {"*", "/", "%"}};
         if (level == int(kLevels.size())) return unary();
-        long long a = binary(level + 1);
+        Value a = binary(level + 1);
         for (;;) {
             std::string_view op;
             for (auto o : kLevels[level])
@@ -48,10 +67,24 @@ private:
             a = apply(op, a, binary(level + 1));
         }
     }
-    long long apply(std::string_view op, long long a, long long b) {
+    Value apply(std::string_view op, const Value& l, const Value& r) {
         using U = unsigned long long; // wraps instead of overflowing
-        if (op == "||") return a || b;
-        if (op == "&&") return a && b;
+        if (op == "||") return l.yes() || r.yes();
+        if (op == "&&") return l.yes() && r.yes();
+        if (l.isReal || r.isReal) {
+            const double a = l.real, b = r.real;
+            if (op == "==") return a == b;
+            if (op == "!=") return a != b;
+            if (op == "<=") return a <= b;
+            if (op == ">=") return a >= b;
+            if (op == "<") return a < b;
+            if (op == ">") return a > b;
+            if (op == "+") return Value::fraction(a + b);
+            if (op == "-") return Value::fraction(a - b);
+            if (op == "*") return Value::fraction(a * b);
+            if (op == "/" && b != 0) return Value::fraction(a / b);
+        }
+        const long long a = l.integer(), b = r.integer();
         if (op == "|") return a | b;
         if (op == "^") return a ^ b;
         if (op == "&") return a & b;
@@ -70,27 +103,47 @@ private:
         if (b == -1) return op == "/" ? (long long)(0 - U(a)) : 0;
         return op == "/" ? a / b : a % b;
     }
-    long long unary() {
+    Value unary() {
         if (++depth_ > limits::kExpressionDepth) { bad("this condition is nested too deeply"); return 0; }
-        long long v = 0;
-        if (accept("!")) v = !unary();
-        else if (accept("-")) v = (long long)(0ull - (unsigned long long)unary());
-        else if (accept("+")) v = unary();
-        else if (accept("~")) v = ~unary();
+        Value v = 0;
+        if (accept("!")) v = !unary().yes();
+        else if (accept("-")) {
+            v = unary();
+            v = v.isReal ? Value::fraction(-v.real) : Value((long long)(0ull - (unsigned long long)v.whole));
+        } else if (accept("+")) v = unary();
+        else if (accept("~")) v = ~unary().integer();
         else if (accept("(")) {
             v = ternary();
             if (!accept(")")) bad("expected ')' in the condition");
         } else if (at_ < tokens_.size() && tokens_[at_].kind == Tok::Number) {
-            double d = 0; // dialect versions are compared as 10.0 now and then
-            const auto t = tokens_[at_].text;
-            if (t.size() > 2 && (t[1] | 32) == 'x') std::from_chars(t.data() + 2, t.data() + t.size(), v, 16);
-            else { std::from_chars(t.data(), t.data() + t.size(), d); v = d < 9e18 ? (long long)d : 0; }
+            v = number(tokens_[at_]);
             ++at_;
         } else if (at_ < tokens_.size() && tokens_[at_].kind == Tok::Identifier) {
             ++at_; // an unknown name is 0
             if (accept("(")) bad("a macro that is not defined is called in the condition");
         } else bad("expected a value in the condition");
         --depth_;
+        return v;
+    }
+    /// Versions are compared as 10.0 now and then. A zero in front makes an integer octal, as in C; in a shader it does not.
+    Value number(const Token& token) {
+        const std::string_view t = token.text;
+        const char *begin = t.data(), *end = begin + t.size();
+        long long v = 0;
+        if (t.size() > 2 && t[0] == '0' && (t[1] | 32) == 'x') {
+            std::from_chars(begin + 2, end, v, 16);
+            return v;
+        }
+        const bool real = t.find_first_of(".eE") != t.npos;
+        double d = 0;
+        std::from_chars(begin, end, d);
+        if (real) return Value::fraction(d);
+        const size_t digits = std::min(t.find_first_not_of("0123456789"), t.size());
+        if (t[0] != '0' || digits < 2 || t.substr(0, digits).find_first_of("89") != t.npos) return d < 9e18 ? (long long)d : 0;
+        std::from_chars(begin, begin + digits, v, 8);
+        if (double(v) != d)
+            sources_.warning(token.place, "'" + std::string(t) + "' is octal in a condition of the preprocessor: " + std::to_string(v),
+                             "in the shader itself it is " + std::string(t.substr(std::min(t.find_first_not_of('0'), digits - 1))));
         return v;
     }
     const std::vector<Token>& tokens_;
@@ -103,6 +156,6 @@ private:
 
 } // namespace
 
-bool conditionValue(const std::vector<Token>& t, Place p, SourceSet& s) { return Condition(t, p, s).run() != 0; }
+bool conditionValue(const std::vector<Token>& t, Place p, SourceSet& s) { return Condition(t, p, s).run(); }
 
 } // namespace alpenglow::rsl::front

@@ -103,6 +103,19 @@ private:
         given(s);
     }
 
+    /// f(x, x) with two outputs: what the function does to the one it does to the other.
+    void sharedOutputs(const Expr& e) {
+        if (!e.function || e.shadeop) return;
+        std::set<const Symbol*> outputs;
+        for (size_t i = 0; i < e.args.size(); ++i) {
+            if (!e.args[i] || e.args[i]->kind != ExprKind::Variable || !isOutput(e, i)) continue;
+            if (outputs.insert(e.args[i]->symbol).second) continue;
+            sources_.warning(e.args[i]->place, "'" + e.args[i]->text + "' is given to two output parameters of '" + e.function->name +
+                                                   "'; they are one variable in this call");
+            return;
+        }
+    }
+
     void expression(const Expr& e) {
         switch (e.kind) {
         case ExprKind::Variable: read(e); return;
@@ -125,6 +138,7 @@ private:
             return;
         case ExprKind::ShadeopCall:
         case ExprKind::FunctionCall: {
+            sharedOutputs(e);
             for (size_t i = 0; i < e.args.size(); ++i)
                 if (e.args[i] && !isOutput(e, i)) expression(*e.args[i]);
             if (e.channel) expression(*e.channel);

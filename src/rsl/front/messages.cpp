@@ -35,6 +35,9 @@ constexpr MessageKind kKinds[] = {
     {"pp-include-elsewhere", "'*' was not found; '*' is used"},
     {"pp-include-missing", "cannot find the included file *"},
     {"pp-line", "#line needs a number"},
+    {"pp-octal", "'*' is octal in a condition *"},
+    {"pp-annotation", "#pragma annotation needs *"},
+    {"pp-annotation", "the key and the value of #pragma annotation *"},
     {"pp-condition", "#if needs an expression"},
     {"pp-condition", "* in the condition"},
     {"pp-condition", "this condition is nested too deeply"},
@@ -187,6 +190,7 @@ constexpr MessageKind kKinds[] = {
     // of `compile -W`
     {"unused-parameter", "parameter '*' is not used"},
     {"unused-variable", "variable '*' is not used"},
+    {"shared-output", "'*' is given to two output parameters of *"},
     {"uninitialised", "'*' is read before it has a value*"},
     {"maybe-uninitialised", "'*' may be read before it has a value*"},
     {"not-affine", "under path * is used non-linearly*"},

@@ -66,8 +66,21 @@ void Preprocessor::directive(Place hash) {
 }
 
 void Preprocessor::pragma(const std::vector<Token>& line) {
-    if (line.size() > 3 && line[1].is("annotation") && line[2].kind == Tok::String && line[3].kind == Tok::String)
-        out_.annotations.push_back({out_.tokens.size(), stringValue(line[2].text), stringValue(line[3].text)});
+    if (line.size() < 2 || !line[1].is("annotation")) return;
+    const auto isText = [&](size_t i) { return line[i].kind == Tok::String; };
+    if (line.size() < 4 || !(isText(2) || line[2].kind == Tok::Identifier)) {
+        sources_.warning(line[1].place, "#pragma annotation needs a key and a value: it is ignored", "#pragma annotation \"key\" \"value\"");
+        return;
+    }
+    bool texts = isText(2);
+    std::string value;
+    for (size_t i = 3; i < line.size(); ++i) {
+        texts &= isText(i);
+        if (isText(i)) value += stringValue(line[i].text); // texts beside each other are one
+    }
+    if (!texts && !isText(3)) value = spelled(line, 3);
+    if (!texts) sources_.warning(line[isText(2) ? 3 : 2].place, "the key and the value of #pragma annotation stand in quotes; they are taken as they are");
+    out_.annotations.push_back({out_.tokens.size(), isText(2) ? stringValue(line[2].text) : std::string(line[2].text), value});
 }
 
 void Preprocessor::open(Place at, bool value) {

@@ -303,7 +303,8 @@ void Checker::settleBinary(ExprPtr& e, Base t) {
 void Checker::settleAssign(ExprPtr& e) {
     settleVariable(e->args[0]);
     const Type target = e->args[0]->type;
-    if (e->op == ExprOp::Add && target.base == Base::String && target.array == 0) { // a += "y": a = a + "y"
+    if (e->op == ExprOp::Add && target.base == Base::String && target.array == 0) {
+        // a += "y": a = a + "y", which the builder of the IR knows by its text and names the place once.
         const Shadeop* concat = findShadeop("concat");
         settleAs(e->args[1], Base::String);
         auto joined = std::make_unique<Expr>();
@@ -318,6 +319,7 @@ void Checker::settleAssign(ExprPtr& e) {
         finish(*joined);
         e->args[1] = std::move(joined);
         e->op = ExprOp::Assign;
+        e->text = "+=";
     } else if (e->op == ExprOp::Assign || target.array != 0) {
         settle(e->args[1], target, Handle::Either); // survey compared them
     } else {

@@ -6,7 +6,19 @@
 
 namespace alpenglow::rsl::front {
 
+/// Lines of old Macs end in a carriage return alone. Those before a line feed are the ends of lines of other systems.
+static void lineEnds(std::string& text) {
+    size_t at = text.find('\r');
+    while (at != std::string::npos) {
+        const size_t behind = text.find_first_not_of('\r', at);
+        if (behind == std::string::npos || text[behind] != '\n')
+            std::fill(text.begin() + long(at), text.begin() + long(std::min(behind, text.size())), '\n');
+        at = behind == std::string::npos ? behind : text.find('\r', behind);
+    }
+}
+
 int SourceSet::add(std::string name, std::string text) {
+    lineEnds(text);
     kept_.push_back(std::move(text));
     entries_.push_back({std::move(name), &kept_.back(), -1, 0});
     return int(entries_.size()) - 1;

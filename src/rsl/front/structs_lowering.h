@@ -81,7 +81,7 @@ private:
     /// The parts of a member.
     void pick(Expr& e, List& pre, List& out);
     /// left = right, both structures.
-    void assignTo(Expr& e, List& pre);
+    void assignTo(Expr& e, List& pre, List* value = nullptr);
     static bool path(const Expr& e);
     void checkArguments(Expr& call);
     void arguments(Expr& call, List& pre);

@@ -80,6 +80,11 @@ void Lowering::expression(StmtPtr s, std::vector<StmtPtr>& out) {
         flatten(std::move(e.args[0]), pre, arrays);
         if (e.text == "push") valueOf(std::move(e.args[1]), {t.base, 0}, pre, values);
         else rewrite(e.args[1]);
+        if (e.text != "push" && arrays.size() > 1 && e.args[1]->kind != ExprKind::Number && e.args[1]->kind != ExprKind::Variable) {
+            const std::string length = temporary({Base::Float, 0}, e.place); // computed once
+            pre.push_back(assign(variable(length, e.place), std::move(e.args[1]), e.place));
+            e.args[1] = variable(length, e.place);
+        }
         for (size_t i = 0; i < arrays.size() && (e.text != "push" || i < values.size()); ++i) {
             auto one = node(ExprKind::ShadeopCall, e.place);
             one->text = e.text;

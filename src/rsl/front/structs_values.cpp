@@ -113,9 +113,28 @@ void Lowering::flatten(ExprPtr e, List& pre, List& out) {
             adopt(*choose, std::move(n));
         }
         pre.push_back(assign(variable(t, place), std::move(choose), place));
-        List yes, no;
-        valueOf(std::move(e->args[1]), type, pre, yes);
-        valueOf(std::move(e->args[2]), type, pre, no);
+        List yes, no, yesFirst, noFirst;
+        valueOf(std::move(e->args[1]), type, yesFirst, yes);
+        valueOf(std::move(e->args[2]), type, noFirst, no);
+        if (!yesFirst.empty() || !noFirst.empty()) {
+            // What a side does happens only where it is chosen: each stores its parts, and the number behind them is not used.
+            const std::string chosen = temporary(type, place);
+            const auto side = [&](List& first, List& parts) {
+                const auto all = leaves(type);
+                for (size_t i = 0; i < all.size() && i < parts.size(); ++i)
+                    first.push_back(assign(variable(chosen + all[i].path, place), std::move(parts[i]), place));
+                ExprPtr done = node(ExprKind::Number, place);
+                sequence(done, std::move(first));
+                return done;
+            };
+            auto c = node(ExprKind::Conditional, place);
+            adopt(*c, variable(t, place));
+            adopt(*c, side(yesFirst, yes));
+            adopt(*c, side(noFirst, no));
+            pre.push_back(assign(variable(t, place), std::move(c), place));
+            for (const Leaf& l : leaves(type)) out.push_back(variable(chosen + l.path, place));
+            return;
+        }
         for (size_t i = 0; i < yes.size() && i < no.size(); ++i) {
             auto c = node(ExprKind::Conditional, place);
             adopt(*c, variable(t, place));
@@ -125,13 +144,7 @@ void Lowering::flatten(ExprPtr e, List& pre, List& out) {
         }
         return;
     }
-    case ExprKind::Assign: {
-        List left, again;
-        flatten(clone(*e->args[0]), pre, again);
-        assignTo(*e, pre);
-        for (auto& x : again) out.push_back(std::move(x));
-        return;
-    }
+    case ExprKind::Assign: return assignTo(*e, pre, &out);
     case ExprKind::ShadeopCall: {
         if (structNamed(e->text) >= 0) return construct(type, *e, pre, out);
         if (e->text == "pop") {
@@ -176,8 +189,8 @@ void Lowering::pick(Expr& e, List& pre, List& out) {
     }
 }
 
-/// left = right, both structures.
-void Lowering::assignTo(Expr& e, List& pre) {
+/// left = right, both structures. `value`: what the assignment is, where that is wanted.
+void Lowering::assignTo(Expr& e, List& pre, List* value) {
     const Type type = typeOf(*e.args[0]);
     const Place place = e.place;
     if (e.op != ExprOp::Assign) {
@@ -190,6 +203,7 @@ void Lowering::assignTo(Expr& e, List& pre) {
     flatten(std::move(e.args[0]), pre, left);
     valueOf(std::move(e.args[1]), type, pre, right);
     if ((!simple || (list && !type.array)) && right.size() > 1) spill(right, type, pre, place); // a = S(a->y, a->x)
+    for (size_t i = 0; value && i < left.size(); ++i) value->push_back(clone(*left[i])); // indices are numbers and variables by now
     for (size_t i = 0; i < left.size() && i < right.size(); ++i)
         pre.push_back(assign(std::move(left[i]), std::move(right[i]), place));
 }
@@ -287,6 +301,7 @@ void Lowering::sequence(ExprPtr& e, List pre) {
 
 /// What must happen before a place can be named (the index of an element), and then the place alone: it may be written.
 void Lowering::hoist(ExprPtr& place, List& pre) {
+    if (place->kind == ExprKind::Index) return hoist(place->args[0], pre);
     if (place->kind != ExprKind::Sequence || place->args.back()->kind != ExprKind::Index) return;
     ExprPtr last = std::move(place->args.back());
     place->args.pop_back();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <deque>
+#include <utility>
 
 namespace alpenglow::rsl::ir {
 
@@ -26,14 +28,36 @@ Inst* Builder::functionCall(const Expr& e) {
     return coerce(inlineFunction(*e.function, args), kindOf(e.type) == Kind::None ? Kind::Float : kindOf(e.type));
 }
 
+/// Output parameters are the variables that they are given. Where that shows, because one variable is given to two of them or the
+/// function uses it by its own name too, they share its slot: the slots by parameter, -1 for those with one of their own. Empty where
+/// it does not show, and a copy that is handed back does as well.
+std::vector<int> Builder::sharedOutputs(const Function& f, const std::vector<const Expr*>& args) {
+    std::vector<int> slots(args.size(), -1);
+    std::set<int> given;
+    bool shows = false;
+    for (size_t i = 0; i < args.size() && i < f.parameters.size(); ++i) {
+        const Symbol& p = *f.parameters[i];
+        const Expr& a = *args[i];
+        if (!p.output || p.type.array || a.kind != ExprKind::Variable || !a.symbol || a.symbol->type.array) continue;
+        slots[i] = slot(a.symbol);
+        shows |= !given.insert(slots[i]).second;
+    }
+    if (given.empty()) return {};
+    for (const Symbol* x : scan(f).used)
+        if (!shows && !scan(f).own.count(x) && !x->type.array) shows = given.count(slot(x)) > 0;
+    return shows ? slots : std::vector<int>{};
+}
+
 Inst* Builder::inlineFunction(const Function& f, const std::vector<const Expr*>& args, Inst** whole) {
     std::set<int> assigned;
     std::set<const Function*> seen;
     if (f.body) scanAssigned(*f.body, assigned, seen);
     const size_t n = std::min(args.size(), f.parameters.size());
     std::vector<Inst*> values(n);
+    std::deque<Held> held;
     for (size_t i = 0; i < n && !failed_; ++i) {
         const Symbol& p = *f.parameters[i];
+        if (p.output) held.emplace_back(*this, *args[i]);
         if (!p.type.array) {
             values[i] = coerce(expr(*args[i]), p.type);
             continue;
@@ -51,13 +75,21 @@ Inst* Builder::inlineFunction(const Function& f, const std::vector<const Expr*>&
     }
     if (failed_) return zero(Kind::Float);
     std::vector<Inst*> outputs;
-    if (Inst* result = nullptr; n == f.parameters.size() && outlined(f, values, result, outputs)) {
+    const std::vector<int> shared = sharedOutputs(f, args);
+    const auto isShared = [&](size_t i) { return i < shared.size() && shared[i] >= 0; };
+    if (Inst* result = nullptr;
+        shared.empty() && sharing_ == 0 && n == f.parameters.size() && outlined(f, values, result, outputs)) {
         for (size_t i = 0, o = 0; i < n; ++i)
             if (f.parameters[i]->output) assign(*args[i], outputs[o++]);
         return result;
     }
     if (failed_) return zero(Kind::Float);
-    for (size_t i = 0; i < n; ++i) set(slot(f.parameters[i]), values[i]);
+    std::vector<int> own(n, -1); // the slots of parameters that share another for this call
+    for (size_t i = 0; i < n; ++i) {
+        if (isShared(i)) own[i] = std::exchange(slots_[f.parameters[i]], shared[i]);
+        else set(slot(f.parameters[i]), values[i]);
+    }
+    sharing_ += !shared.empty();
     Frame frame;
     frame.function = &f;
     frame.type = f.result;
@@ -72,8 +104,11 @@ Inst* Builder::inlineFunction(const Function& f, const std::vector<const Expr*>&
     frames_.push_back(frame);
     if (f.body) statement(*f.body);
     frames_.pop_back();
-    for (size_t i = 0; i < n; ++i)
-        if (f.parameters[i]->output && !f.parameters[i]->type.array) assign(*args[i], get(slot(f.parameters[i])));
+    sharing_ -= !shared.empty();
+    for (size_t i = 0; i < n; ++i) {
+        if (isShared(i)) slots_[f.parameters[i]] = own[i];
+        else if (f.parameters[i]->output && !f.parameters[i]->type.array) assign(*args[i], get(slot(f.parameters[i])));
+    }
     return frame.result >= 0 ? get(frame.result) : constant(0);
 }
 
@@ -122,6 +157,7 @@ Inst* Builder::runtimeCall(const Expr& e) {
     const Signature& s = *e.signature;
     std::vector<Inst*> args;
     std::vector<size_t> outputs;
+    std::deque<Held> held;
     for (size_t i = 0; i < e.args.size(); ++i) {
         const Parameter& p = s.parameters[std::min(i, s.parameters.size() - 1)];
         if (e.args[i]->type.array) {
@@ -130,8 +166,11 @@ Inst* Builder::runtimeCall(const Expr& e) {
                 args.push_back(emit(Op::ArrayLoad, a->element, {a, constant(static_cast<float>(n))}));
             continue;
         }
+        if (p.output) {
+            held.emplace_back(*this, *e.args[i]);
+            outputs.push_back(i);
+        }
         args.push_back(coerce(expr(*e.args[i]), p.type));
-        if (p.output) outputs.push_back(i);
     }
     place_ = e.place;
     if (s.symbol.empty()) {

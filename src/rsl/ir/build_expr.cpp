@@ -158,7 +158,29 @@ void Builder::copyArray(Inst* to, const Expr& from) {
     for (int i = 0; i < m; ++i) store(i, emit(Op::ArrayLoad, a->element, {a, constant(static_cast<float>(i))}));
 }
 
+void Builder::Held::hold(const Expr& place) {
+    if (place.kind == ExprKind::Cast && !place.args.empty()) return hold(*place.args[0]);
+    if (place.kind != ExprKind::Index || place.args.size() < 2) return;
+    hold(*place.args[0]);
+    const Expr& index = *place.args[1];
+    if (index.kind == ExprKind::Number || builder_.held_.count(&index)) return;
+    Inst* at = builder_.expr(index, Kind::Float);
+    builder_.held_[&index] = at;
+    indices_.push_back(&index);
+}
+
+void Builder::Held::again(const Expr& place, const Expr& copy) {
+    if (place.kind != copy.kind || place.kind != ExprKind::Index || place.args.size() < 2) return;
+    again(*place.args[0], *copy.args[0]);
+    const auto at = builder_.held_.find(place.args[1].get());
+    if (at == builder_.held_.end()) return;
+    Inst* const value = at->second;
+    builder_.held_[copy.args[1].get()] = value;
+    indices_.push_back(copy.args[1].get());
+}
+
 void Builder::assign(const Expr& l, Inst* value) {
+    const Held held(*this, l);
     if (l.kind == ExprKind::Cast && !l.args.empty()) return assign(*l.args[0], value);
     if (l.kind == ExprKind::Variable && l.symbol) {
         if (!l.symbol->type.array) set(slot(l.symbol), coerce(value, l.symbol->type));
@@ -265,6 +287,8 @@ Inst* Builder::inSpace(const Expr& spaceName, Inst* value, Base base) {
 Inst* Builder::expr(const Expr& e) {
     if (failed_)
         return e.type.array ? newArray(e.type.base, 1) : zero(kindOf(e.type) == Kind::None ? Kind::Float : kindOf(e.type));
+    if (!held_.empty())
+        if (const auto known = held_.find(&e); known != held_.end()) return known->second;
     if (e.place.line) place_ = e.place;
     if (e.kind == ExprKind::Sequence) {
         for (size_t n = 0; n + 1 < e.args.size(); ++n) expr(*e.args[n]);
@@ -324,9 +348,15 @@ Inst* Builder::expr(const Expr& e) {
         }
         Inst* v;
         uniformContext_ = l.symbol && l.symbol->storage == Storage::Uniform;
-        if (e.op == ExprOp::Assign || e.op == ExprOp::None) {
+        std::optional<Held> held;
+        if (e.text == "+=") { // of strings: the value is the call that joins them, with the place as it was
+            held.emplace(*this, l);
+            held->again(l, *e.args[1]->args[0]);
+            v = expr(*e.args[1]);
+        } else if (e.op == ExprOp::Assign || e.op == ExprOp::None) {
             v = expr(*e.args[1]);
         } else {
+            held.emplace(*this, l);
             Inst* old = expr(l);
             Inst* r = expr(*e.args[1]);
             place_ = e.place;

@@ -132,6 +132,7 @@ Inst* Builder::methodCall(const Expr& e) {
         std::vector<const Expr*> arguments;
         argumentsOf(*f, e, arguments);
         std::vector<Inst*> values;
+        std::deque<Held> held;
         for (size_t n = 0; n < f->parameters.size() && !failed_; ++n) {
             if (!arguments[n]) {
                 values.push_back(nullptr);
@@ -149,6 +150,7 @@ Inst* Builder::methodCall(const Expr& e) {
                                        toString(given.type));
                 return zero(kind);
             }
+            if (p.output) held.emplace_back(*this, given);
             if (!p.type.array) {
                 values.push_back(coerce(expr(given), p.type));
                 continue;

@@ -183,7 +183,9 @@ void Builder::illuminance(const Stmt& s) {
                     Inst* element = v[static_cast<size_t>(n) + 1];
                     emit(Op::ArrayStore, Kind::None, {whole, at, emit(Op::Select, element->kind, {found, element, emit(Op::ArrayLoad, whole->element, {whole, at})})});
                 }
-                if (!whole) assign(*p->value, emit(Op::Select, v[1]->kind, {found, v[1], coerce(expr(*p->value), v[1]->kind)}));
+                if (whole) continue;
+                const Held held(*this, *p->value);
+                assign(*p->value, emit(Op::Select, v[1]->kind, {found, v[1], coerce(expr(*p->value), v[1]->kind)}));
             }
             statements(s.body, 0);
             return std::vector<Inst*>{};

@@ -53,6 +53,7 @@ Inst* Builder::lightMethod(const Expr& e, Inst* handle) {
             error(to.place, "argument " + std::to_string(n) + " of light() is a variable of type " + (n == 1 ? "vector" : "color"));
             return zero(Kind::Float);
         }
+        const Held held(*this, to);
         assign(to, emit(Op::Select, Kind::Triple, {found, v[n], expr(to, Kind::Triple)}));
     }
     return zero(Kind::Float);

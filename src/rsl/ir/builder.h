@@ -91,6 +91,26 @@ private:
     Inst* condition(const Expr&);
     Inst* array(const Expr&);
     void assign(const Expr& lvalue, Inst* value);
+    /// While it lives the indices of a place have the values that they had when it was made: what they do they do once, and what is
+    /// read and then written is the same element, whatever happens in between. The place need not have any.
+    class Held {
+    public:
+        Held(Builder& b, const Expr& place) : builder_(b) { hold(place); }
+        Held(const Held&) = delete;
+        Held& operator=(const Held&) = delete;
+        ~Held() {
+            for (const Expr* e : indices_) builder_.held_.erase(e);
+        }
+        /// The same place, written down a second time.
+        void again(const Expr& place, const Expr& copy);
+
+    private:
+        void hold(const Expr& place);
+        Builder& builder_;
+        std::vector<const Expr*> indices_;
+    };
+    friend class Held;
+    std::unordered_map<const Expr*, Inst*> held_;
     void copyArray(Inst* to, const Expr& from);
     Inst* binary(const Expr&, Inst* a, Inst* b);
     Inst* dot(Inst*, Inst*);
@@ -128,6 +148,7 @@ private:
 
     // build_call.cpp
     Inst* functionCall(const Expr&);
+    std::vector<int> sharedOutputs(const Function&, const std::vector<const Expr*>& args);
     Inst* inlineFunction(const Function&, const std::vector<const Expr*>& args, Inst** array = nullptr);
     // build_outline.cpp: functions that stay functions
     /// A user function as a Function instruction, for one set of constant strings.
@@ -258,6 +279,7 @@ private:
     std::vector<Instance> instances_;
     const std::vector<std::string>* files_ = &program_.files; ///< those that places refer to just now
     int handleDepth_ = 0; ///< methods of co-shaders that are open
+    int sharing_ = 0;     ///< open functions whose output parameters are variables of the caller
     std::set<std::pair<size_t, const Function*>> openMethods_, scannedMethods_;
     std::map<std::string, std::pair<int, Type>> channels_; ///< by name: slot and type
     int lightDepth_ = 0;

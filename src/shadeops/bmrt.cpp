@@ -23,6 +23,7 @@ std::vector<Shadeop> bmrtShadeops() {
     add("visibility", "color visibility(point a, point b)", "Visibility between two points: transmission(a, b).", "BMRT", R"(
 color visibility(point a, b) { return transmission(a, b); }
 )");
+    list.back().examples = {{"visibility(P, P + N)", "1 1 1", "", kNothing}};
     add("rayhittest", "float rayhittest(point from; vector dir; output point Ph, output vector Nh)",
         "Distance from `from` along dir to the nearest surface that is visible to transmission rays, in units of length; above 1e30 for none. Ph becomes "
         "the point that was hit, Nh the normal there; both stay as they are when nothing was hit.",
@@ -39,6 +40,7 @@ float rayhittest(point from; vector dir; output point Ph; output vector Nh) {
     return dist;
 }
 )");
+    list.back().examples = {{"rayhittest(P, N, p, n)", "2", "point p = 0; vector n = 0;", "a surface stands 2 away along N"}};
     add("fulltrace",
         "float fulltrace(point pos; vector dir; output color hitcolor; output float hitdist; output point Phit; output vector Nhit; output point Pmiss; output "
         "vector Rmiss)",
@@ -63,6 +65,7 @@ float fulltrace(point pos; vector dir; output color hitcolor; output float hitdi
     return found;
 }
 )");
+    list.back().examples = {{"fulltrace(P, N, c, d, p, n, m, r)", "0", "color c = 0; float d = 0; point p = 0, m = 0; vector n = 0, r = 0;", kNothing}};
     Shadeop& bump = add("bump", "point bump(string name; normal norm; vector dPds, vector dPdt; pairs)",
                         "Displacement of the normal by a bump map, for N = normalize(bump(...) + N): the height in the first channel of the texture "
                         "is read at s, t (or at ss, tt) and beside them, and its slopes along dPds and dPdt tilt the normal.",
@@ -81,6 +84,7 @@ point bump(string name; normal norm; vector dPds; vector dPdt; float blur; float
     return bump(name, norm, dPds, dPdt, s, t, blur, width);
 }
 )");
+    list.back().examples = {{"bump(\"bumps.tex\", N, dPdu, dPdv)", "0 0 0", "", "the map is the same everywhere"}};
     bump.signatures = bump.signatures + sigs({{"point bump(string name; normal norm; vector dPds, vector dPdt; float ss, float tt; pairs)"}});
     bump.optional = {{{Base::Float, 0}, "blur", false, "0", "added to the filter size, fraction of the map"},
                      {{Base::Float, 0}, "width", false, "1", "multiplies the filter size"}};

@@ -103,7 +103,7 @@ std::vector<Shadeop> colourShadeops() {
     op.signatures = sigs({{"void setcomp(output color c; float i, float value)", "al_setcomp"}, {"void setcomp(output vector c; float i, float value)", "al_setcomp"},
                           {"void setcomp(output point c; float i, float value)", "al_setcomp"}, {"void setcomp(output normal c; float i, float value)", "al_setcomp"}});
     op.doc = "Sets a component of a colour, a tuple (or of a matrix); the index is truncated and clamped to 0..2.";
-    op.examples = {};
+    op.examples = {{"c", "0 2 0", "color c = 0; setcomp(c, 1, 2);"}};
     list.push_back(op);
     op.name = "luminance";
     op.signatures = sigs({{"float luminance(color c)", "al_luminance"}});

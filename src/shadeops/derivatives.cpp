@@ -29,6 +29,7 @@ std::vector<Shadeop> derivativeShadeops() {
                               {("vector " + n + "(point x)").c_str()},
                               {("vector " + n + "(vector x)").c_str()},
                               {("vector " + n + "(normal x)").c_str()}});
+        op.examples = {n == "Du" ? Example{"Du(u * u)", "1"} : Example{"Dv(u * v)", "0.5"}};
     }
     add("Deriv",
         sigs({{"float Deriv(float num; float den)"}, {"color Deriv(color num; float den)"}, {"vector Deriv(point num; float den)"},
@@ -40,6 +41,7 @@ vector Deriv(point num; float den) { return Du(num) / Du(den) + Dv(num) / Dv(den
 vector Deriv(vector num; float den) { return Du(num) / Du(den) + Dv(num) / Dv(den); }
 vector Deriv(normal num; float den) { return Du(num) / Du(den) + Dv(num) / Dv(den); }
 )").source = "seed; formula (k)";
+    list.back().examples = {{"Deriv(u * u, u)", "1"}};
     add("area", sigs({{"float area(point p)"}, {"float area(point p; string strategy)"}}), Lowering::Rsl,
         "Area of one micropolygon of the surface p: length(Du(p) ^ Dv(p)) du dv. A hit is a grid of one point, so both strategies, \"shading\" and "
         "\"dicing\", give this.",
@@ -47,6 +49,7 @@ vector Deriv(normal num; float den) { return Du(num) / Du(den) + Dv(num) / Dv(de
 float area(point p) { extern float du, dv; return length(Du(p) ^ Dv(p)) * abs(du * dv); }
 float area(point p; string strategy) { extern float du, dv; return length(Du(p) ^ Dv(p)) * abs(du * dv); }
 )");
+    list.back().examples = {{"area(2 * P)", "4"}};
     add("calculatenormal", sigs({{"normal calculatenormal(point p)"}}), Lowering::Rsl,
         "Normal of the surface p: Du(p) ^ Dv(p), not normalised, on the side that the orientation of the primitive says (that of Ng).", R"(
 normal calculatenormal(point p) {
@@ -56,6 +59,7 @@ normal calculatenormal(point p) {
     return ((dPdu ^ dPdv) . Ng) < 0 ? -n : n;
 }
 )").contexts = kSurface | kDisplacement;
+    list.back().examples = {{"calculatenormal(P)", "0 0 1"}};
 
     Shadeop& filterstep = add("filterstep",
                               sigs({{"float filterstep(float edge, float value; pairs)"}, {"float filterstep(float edge, float value1, float value2; pairs)"}}),

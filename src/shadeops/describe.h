@@ -46,7 +46,9 @@ std::vector<Shadeop> raytracingShadeops();
 std::vector<Shadeop> bmrtShadeops();
 std::vector<Shadeop> publishedShadeops();
 
-/// Adds the examples of examples.cpp.
-void addExamples(std::vector<Shadeop>&);
+/// What must be there besides the point of `alpenglow eval` (Example::when), where several shadeops need the same.
+inline constexpr const char* kOneLight = "one light with Cl = 1 stands straight over N";
+inline constexpr const char* kWhite = "all rays meet a surface with Ci = 1";
+inline constexpr const char* kNothing = "nothing stands there";
 
 } // namespace alpenglow::rsl

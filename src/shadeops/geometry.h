@@ -109,7 +109,8 @@ std::vector<Shadeop> geometryShadeops() {
         add((axis + "comp").c_str(), each(kTuples, "float " + axis + "comp($ p)", "al_" + axis + "comp"),
             ("The " + axis + " component of a tuple.").c_str(), {{axis + "comp(point(1,2,3))", std::to_string(i + 1)}});
         add(("set" + axis + "comp").c_str(), each(kTuples, "void set" + axis + "comp(output $ p; float value)", "al_set" + axis + "comp"),
-            ("Sets the " + axis + " component of a tuple.").c_str(), {});
+            ("Sets the " + axis + " component of a tuple.").c_str(),
+            {{"p", std::string(i == 0 ? "2" : "0") + (i == 1 ? " 2" : " 0") + (i == 2 ? " 2" : " 0"), "point p = 0; set" + axis + "comp(p, 2);"}});
     }
     add("distance", sigs({{"float distance(point a, point b)", "al_distance"}}), "Length of b - a.",
         {{"distance(point(1,2,3), point(1,5,7))", "5"}});
@@ -142,11 +143,13 @@ normal faceforward(normal n; vector i) { extern normal Ng; return (i . Ng) > 0 ?
         "total reflection.",
         {{"refract(vector(0,0,1), vector(0,0,-1), 0.5)", "0 0 1"}, {"refract(vector(0.6,0,0.8), vector(0,0,-1), 2)", "0 0 0"}});
     Shadeop& depth = add("depth", sigs({{"float depth(point p)"}}),
-                         "Camera depth of p, 0 at the near and 1 at the far clipping plane; p in current space.", {});
+                         "Camera depth of p, 0 at the near and 1 at the far clipping plane; p in current space.",
+                         {{"depth(P)", "0.5", "", "P stands in the middle between the planes of clipping"}});
     depth.lowering = Lowering::Service;
     depth.derivative = DerivativeRule::ZeroWarn;
 
-    Shadeop& transform = add("transform", {}, "", {});
+    Shadeop& transform = add("transform", {}, "",
+                             {{"transform(translate(matrix(1), point(1, 2, 3)), P)", "1 2 3"}});
     transform.lowering = Lowering::Special;
     transform.derivative = DerivativeRule::Inherent;
     for (const char* type : {"point", "vector", "normal"}) {
@@ -160,14 +163,16 @@ normal faceforward(normal n; vector i) { extern normal Ng; return (i . Ng) > 0 ?
     transform.doc = "From one named space (default current) to another, or by a matrix. Points with translation and homogeneous divide, vectors by "
                     "the upper 3x3, normals by its inverse transpose. Symbols al_transformpoint, al_transformvector, al_transformnormal (matrix, "
                     "tuple). Row vectors: p' = p M.";
-    Shadeop& vtransform = add("vtransform", {}, "transform() by the rule of vectors, whatever the type of the argument.", {});
+    Shadeop& vtransform = add("vtransform", {}, "transform() by the rule of vectors, whatever the type of the argument.",
+                              {{"vtransform(scale(matrix(1), point(2, 3, 4)), vector(1, 1, 1))", "2 3 4"}});
     vtransform.lowering = Lowering::Special;
     vtransform.derivative = DerivativeRule::Inherent;
     vtransform.signatures = sigs({{"vector vtransform(string tospace; vector v)"},
                                   {"vector vtransform(string fromspace, string tospace; vector v)"},
                                   {"vector vtransform(matrix m; vector v)"},
                                   {"vector vtransform(string fromspace; matrix m; vector v)"}});
-    Shadeop& ntransform = add("ntransform", {}, "transform() by the rule of normals, whatever the type of the argument.", {});
+    Shadeop& ntransform = add("ntransform", {}, "transform() by the rule of normals, whatever the type of the argument.",
+                              {{"ntransform(scale(matrix(1), point(2, 1, 1)), normal(1, 0, 0))", "0.5 0 0"}});
     ntransform.lowering = Lowering::Special;
     ntransform.derivative = DerivativeRule::Inherent;
     ntransform.signatures = sigs({{"normal ntransform(string tospace; normal n)"},

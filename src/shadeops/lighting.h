@@ -52,10 +52,12 @@ std::vector<Shadeop> lightingShadeops() {
     };
     add("ambient", sigs({{"color ambient()"}}), Lowering::Service,
         "Sum of Cl over the ambient lights: those without illuminate() and solar(). Under path, ambient light is what escaping diffuse rays see.");
+    list.back().examples = {{"ambient()", "0.2 0.2 0.2", "", "there is one light \"ambientlight\" of intensity 0.2"}};
 
     Shadeop& diffuse = add("diffuse", sigs({{"color diffuse(vector n)"}}), Lowering::Rsl,
                            "Sum over lights of Cl max(0, n . L) (1 - __nondiffuse), L unit; no 1/PI. n is unit. Under path the indirect light of the "
                            "same lobe is added by the light transport engine.");
+    list.back().examples = {{"diffuse(N)", "1 1 1", "", kOneLight}};
     diffuse.rsl = R"(
 color diffuse(vector n) {
     extern point P;
@@ -72,6 +74,7 @@ color diffuse(vector n) {
 )";
     Shadeop& specular = add("specular", sigs({{"color specular(vector n, vector v; float roughness)"}}), Lowering::Rsl,
                             "Sum over lights of Cl specularbrdf(L, n, v, roughness) (1 - __nonspecular). n and v are unit, v toward the eye.");
+    list.back().examples = {{"specular(N, N, 0.1)", "1 1 1", "", kOneLight}};
     specular.source = "seed; the model of 3Delight is not published, see specularbrdf";
     specular.rsl = R"(
 color specular(vector n, v; float roughness) {
@@ -95,6 +98,7 @@ color specular(vector n, v; float roughness) {
     brdf.examples = {{"specularbrdf(vector(0,0,1), vector(0,0,1), vector(0,0,1), 0.1)", "1 1 1"}};
     Shadeop& standard = add("specularstd", sigs({{"color specularstd(normal n; vector v; float roughness)"}}), Lowering::Rsl,
                             "The text-book model: sum over lights of Cl pow(max(0, n . h), 1 / roughness) (1 - __nonspecular), h = normalize(normalize(L) + v).");
+    list.back().examples = {{"specularstd(N, N, 0.1)", "1 1 1", "", kOneLight}};
     standard.rsl = R"(
 color specularstd(normal n; vector v; float roughness) {
     extern point P;
@@ -114,6 +118,7 @@ color specularstd(normal n; vector v; float roughness) {
 )";
     Shadeop& phong = add("phong", sigs({{"color phong(vector n, vector v; float size)"}}), Lowering::Rsl,
                          "Phong's highlight: sum over lights of Cl pow(max(0, r . L), size) (1 - __nonspecular), r = reflect(-v, n), L unit.");
+    list.back().examples = {{"phong(N, N, 10)", "1 1 1", "", kOneLight}};
     phong.rsl = R"(
 color phong(vector n, v; float size) {
     extern point P;
@@ -147,6 +152,7 @@ color phong(vector n, v; float size) {
                            Lowering::Runtime,
                            "Fresnel reflectance Kr of an unpolarised ray i (unit) at the unit normal n facing it, eta = index of the side of i / index "
                            "entered; Kt = 1 - Kr. R and T are the reflected and refracted directions; T is 0 and Kr 1 on total reflection.");
+    list.back().examples = {{"round(kr * 9)", "1", "float kr = 0, kt = 0; fresnel(vector(0, 0, 1), vector(0, 0, -1), 0.5, kr, kt);"}};
     fresnel.contexts = kAnyContext;
     fresnel.source = "seed; energy form of Kt (k)";
     return list;

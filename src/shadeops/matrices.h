@@ -144,7 +144,7 @@ std::vector<Shadeop> matrixShadeops() {
     add("comp", sigs({{"float comp(matrix m; float row, float column)", "al_compm"}}),
         "Element of a matrix; indices are truncated and clamped to 0..3.", {{"comp(matrix(2), 1, 1)", "2"}});
     add("setcomp", sigs({{"void setcomp(output matrix m; float row, float column, float value)", "al_setcompm"}}),
-        "Sets an element of a matrix; indices are truncated and clamped to 0..3.", {});
+        "Sets an element of a matrix; indices are truncated and clamped to 0..3.", {{"comp(m, 0, 3)", "2", "matrix m = 0; setcomp(m, 0, 3, 2);"}});
     Shadeop& mtransform = add("mtransform", sigs({{"matrix mtransform(string tospace; matrix m)"},
                                                   {"matrix mtransform(string fromspace, string tospace; matrix m)"},
                                                   {"matrix mtransform(matrix tomatrix; matrix m)"},

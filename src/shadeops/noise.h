@@ -237,6 +237,7 @@ std::vector<Shadeop> noiseShadeops() {
              "primitive, call site and seed, so that a value does not depend on how points are batched. al_random_f and al_random_t turn a "
              "hash into the value.";
     op.source = "seed";
+    op.examples = {{"x >= 0 && x < 1", "1", "float x = random();"}};
     list.push_back(op);
     return list;
 }

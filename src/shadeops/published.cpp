@@ -37,6 +37,7 @@ std::vector<Shadeop> publishedShadeops() {
     };
     Shadeop& normal = add("shadingnormal", "Geometry", sigs({{"normal shadingnormal(normal n)"}}), Lowering::Rsl,
                           "n with length 1, turned toward the viewer where the surface has two sides (attribute \"Sides\").");
+    list.back().examples = {{"zcomp(shadingnormal(2 * N))", "-1"}};
     normal.contexts = kSurface | kDisplacement;
     normal.rsl = R"(
 normal shadingnormal(normal n) {
@@ -49,6 +50,7 @@ normal shadingnormal(normal n) {
 )";
     Shadeop& reverse = add("reverse", "Arrays", each("float color point vector normal matrix string", "void reverse(output $ a[])"), Lowering::Rsl,
                            "Turns the order of the elements about.");
+    list.back().examples = {{"a[0]", "3", "float a[3] = {1, 2, 3}; reverse(a);"}};
     reverse.contexts = kAnyContext;
     reverse.rsl = forTypes("float color point vector normal matrix string", R"(
 void reverse(output $ a[]) {
@@ -80,12 +82,14 @@ void reverse(output $ a[]) {
                                    arguments + ") - $ (1)); }\n");
     add("emit", "Ray tracing", sigs({{"void emit(color light; pairs)"}}), Lowering::Unavailable,
         "Called by area lights of PRMan in their method prelighting(): the light they send without sampling. Lights here are sampled by light().");
+    list.back().examples = {{"x", "2 2 2", "color x = 2; emit(x);"}};
     Shadeop& areashadow =
         add("areashadow", "Ray tracing",
             sigs({{"void areashadow(string map; vector region; pairs)"}, {"void areashadow(string map; pairs)"}, {"color areashadow(point lit; float samples)"}}),
             Lowering::Unavailable,
             "In lights that ask BMRT's ray server (rayserver.h): how much of the light that L comes from reaches the point that is lit, traced; 1 is all. "
             "The forms with a map are called by area lights of PRMan in their method shadowSamples() and are not available.");
+        list.back().examples = {{"areashadow(Ps, 4)", "1 1 1", "", "a light asks and nothing stands between it and Ps"}};
     areashadow.source = "BMRT, PRMan";
     areashadow.rsl = R"(
 color areashadow(point lit; float samples) {
@@ -106,20 +110,27 @@ color areashadow(point lit; float samples) {
                           "Called by class surfaces of PRMan: asks the lights, or rays, and the methods generateSamples() and evaluateSamples() of the material.");
         op.contexts = kSurface;
         op.optional = results;
+        op.examples = {{n + "(getshader(\"none\")" + (n == "directlighting" ? ", getlights())" : ")"), "0 0 0"}};
     }
     Shadeop& shaderinfo = add("shaderinfo", "Messages", each("float string", "float shaderinfo(string name; output $ answer)"), Lowering::Rsl,
                               "What PRMan tells about the shader that runs (\"pipelinestage\", \"shadername\"). Nothing is known by these names: the result is 0, and "
                               "answer stays as it was.");
+    list.back().examples = {{"shaderinfo(\"shadername\", x)", "0", "string x = \"none\";"},
+                            {"x", "none", "string x = \"none\"; shaderinfo(\"pipelinestage\", x);"}};
     shaderinfo.contexts = kAnyContext;
     shaderinfo.rsl = "float shaderinfo(string name; output float answer) { return 0; }\nfloat shaderinfo(string name; output string answer) { return 0; }\n";
     const char* const samples = "Called by class lights and materials of PRMan in generateSamples() and evaluateSamples(): directions to an environment, or "
                                 "of the lobe of Ashikhmin and Shirley, and what is known about them.";
     add("generateSamplesEnv", "Ray tracing", sigs({{"void generateSamplesEnv(string map; point p; normal n; float count; pairs)"}}), Lowering::Unavailable, samples);
+    list.back().examples = {{"x", "0 0 1", "normal x = N; generateSamplesEnv(\"sky.env\", P, x, 4);"}};
     add("evaluateSamplesEnv", "Ray tracing", sigs({{"void evaluateSamplesEnv(string map; point p; normal n; pairs)"}}), Lowering::Unavailable, samples);
+    list.back().examples = {{"x", "0 0 1", "normal x = N; evaluateSamplesEnv(\"sky.env\", P, x);"}};
     add("generateSamplesAS", "Ray tracing",
         sigs({{"void generateSamplesAS(color response; float count, exponentU, exponentV; vector lobe, tangent, view; pairs)"}}), Lowering::Unavailable, samples);
+    list.back().examples = {{"x", "2 2 2", "color x = 2; generateSamplesAS(x, 4, 10, 10, N, dPdu, I);"}};
     add("evaluateSamplesAS", "Ray tracing",
         sigs({{"void evaluateSamplesAS(color response; float exponentU, exponentV; vector lobe, tangent, view; pairs)"}}), Lowering::Unavailable, samples);
+    list.back().examples = {{"x", "2 2 2", "color x = 2; evaluateSamplesAS(x, 10, 10, N, dPdu, I);"}};
     return list;
 }
 

@@ -110,6 +110,7 @@ std::vector<Shadeop> raytracingShadeops() {
                          Lowering::Request,
                          "Light arriving at p from direction r, or gathered over a distribution about r. An array gets the parts of glass-ggx (reflected, refracted) or of hair (one a lobe), each by rays of its own. dist: distance of the nearest hit, above 1e30 for none. "
                          "The float form is that distance, among objects visible to transmission. Current space.");
+    list.back().examples = {{"trace(P, N)", "1 1 1", "", kWhite}};
     trace.optional = trace.optional + distributionParameters() +
                      std::vector<OptionalParameter>{{kS, "environmentmap", false, "\"\"", "light of directions that hit nothing"},
                                                     {kS, "environmentspace", false, "\"current\"", "space of the map"},
@@ -124,9 +125,11 @@ std::vector<Shadeop> raytracingShadeops() {
                                                     {kC, "unshadowedarealight", true, "", "the same without geometry"}};
     add("transmission", sigs({{"color transmission(point a, point b; pairs)"}}), Lowering::Request,
         "Visibility between a and b among objects visible to transmission: 1 free, 0 blocked, a colour through translucent surfaces.");
+    list.back().examples = {{"transmission(P, P + N)", "1 1 1", "", kNothing}};
     Shadeop& occlusion = add("occlusion", sigs({{"float occlusion(point p; vector r; pairs)"}, {"float occlusion(point p; vector r; float samples; pairs)"},
                                   {"float occlusion(string map; point p; vector r; float samples; pairs)"}}),
                              Lowering::Unavailable, "Part of the hemisphere about r that is blocked.");
+    list.back().examples = {{"occlusion(P, N, 16)", "0"}};
     occlusion.optional = occlusion.optional + hemisphereParameters();
     Shadeop& indirect = add("indirectdiffuse",
                             sigs({{"color indirectdiffuse(point p; vector r; pairs)"},
@@ -134,13 +137,16 @@ std::vector<Shadeop> raytracingShadeops() {
                                   {"color indirectdiffuse(string map; point p; vector r; float samples; pairs)"},
                                   {"color indirectdiffuse(string envmap; vector dir)"}}),
                             Lowering::Unavailable, "Diffuse light that arrives by way of other surfaces, or from an environment map.");
+    list.back().examples = {{"indirectdiffuse(P, N, 16)", "0 0 0"}};
     indirect.optional = indirect.optional + hemisphereParameters();
     Shadeop& subsurface = add("subsurface", sigs({{"color subsurface(point p; pairs)"}, {"color subsurface(point p; normal n; pairs)"}}),
                               Lowering::Unavailable, "Light that leaves at p after scattering below the surface.");
+    list.back().examples = {{"subsurface(P)", "0 0 0"}};
     subsurface.optional = subsurface.optional + subsurfaceParameters();
     subsurface.contexts = kSurface | kLight; // classes that are both
     Shadeop& photonmap = add("photonmap", sigs({{"color photonmap(string name; point p; vector n; pairs)"}, {"float photonmap(string name; point p; vector n; pairs)"}}),
                              Lowering::Unavailable, "Irradiance or radiance from a photon map.");
+    list.back().examples = {{"photonmap(\"none.map\", P, N)", "0"}};
     photonmap.bias = Bias::Biased;
     photonmap.biasReason = "density estimate over a disc";
     photonmap.optional = {{kF, "estimator", false, "50", "number of photons"},
@@ -148,11 +154,13 @@ std::vector<Shadeop> raytracingShadeops() {
                           {kF, "mindepth", false, "0", "smallest number of bounces"}};
     Shadeop& caustic = add("caustic", sigs({{"color caustic(point p; vector n)"}, {"float caustic(point p; vector n)"}}), Lowering::Unavailable,
                            "photonmap() of the attributes photon:causticmap and photon:estimator.");
+    list.back().examples = {{"color caustic(P, N)", "0 0 0"}};
     caustic.bias = Bias::Biased;
     caustic.biasReason = "density estimate over a disc";
     caustic.optional.clear();
     add("gather", sigs({{"float gather(string category; point p; vector dir; float angle, float samples; pairs)"}}), Lowering::Unavailable,
         "A statement of the language: its body runs for every ray that hits, its else for every miss.");
+    list.back().examples = {{"c", "4 4 4", "color c = 0, one = 0; gather(\"illuminance\", P, N, 0.5, 4, \"surface:Ci\", one) c += one;", kWhite}};
     return list;
 }
 

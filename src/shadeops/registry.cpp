@@ -72,7 +72,6 @@ std::vector<Shadeop> buildAll() {
             same->examples.insert(same->examples.end(), op.examples.begin(), op.examples.end());
             same->doc += " " + op.doc;
         }
-    addExamples(all);
     std::sort(all.begin(), all.end(), [](const Shadeop& a, const Shadeop& b) { return a.name < b.name; });
     return all;
 }

@@ -26,15 +26,19 @@ std::vector<Shadeop> stringShadeops() {
     add("printf", sigs({{"void printf(string pattern)"}, {"void printf(string pattern; any value, ...)"}}), Lowering::Service,
         ("Prints to standard output, once per sample, in the order of samples. " + conversions).c_str())
         .pure = false;
+    list.back().examples = {{"printf(\"u is %g\", u)", "u is 0.5"}};
     add("print", sigs({{"void print(string pattern)"}, {"void print(string pattern; any value, ...)"}}), Lowering::Service,
         "Like printf(), and ends the line.")
         .pure = false;
+    list.back().examples = {{"print(\"u is %g\", u)", "u is 0.5"}};
     add("concat", sigs({{"string concat(string a, string b, ...)"}}), Lowering::Service, "Joins strings.").examples = {
         {"concat(\"a\", \"b\", \"c\")", "abc"}};
     add("match", sigs({{"float match(string pattern, string subject)"}}), Lowering::Service,
         "1 if the POSIX regular expression occurs anywhere in subject, else 0.");
+    list.back().examples = {{"match(\"a.c\", \"abc\")", "1"}};
     add("stringhash", sigs({{"float stringhash(string text)"}, {"color stringhash(string text)"}}), Lowering::Service,
         "A hash of the text in [0,1), as float or color, for pictures of identifiers.");
+    list.back().examples = {{"stringhash(\"a\") == stringhash(\"a\") && stringhash(\"a\") != stringhash(\"b\")", "1"}};
     return list;
 }
 

@@ -70,16 +70,19 @@ std::vector<Shadeop> textureShadeops() {
         "slopes of the map at the level that is looked up, differences over a texel of it, times the derivatives of s and t, or of the mean of four "
         "corners. So bump maps tilt normals, smoothly across texels, and fade with distance.")
         .derivative = DerivativeRule::Gradient;
+    list.back().examples = {{"color texture(\"wood.tex\", s, t)", "0.5 0.3 0.1", "", "the map has this colour everywhere"}};
     add("environment",
         each("float color", "$ environment(string name; vector v; pairs)") +
             each("float color", "$ environment(string name; vector v1, vector v2, vector v3, vector v4; pairs)"),
         Lowering::Service, "Lookup of an environment map (latitude-longitude, or cube faces) in direction v. The name \"raytrace\" traces rays. "
         "Derivatives go through, as for texture().")
         .derivative = DerivativeRule::Gradient;
+    list.back().examples = {{"color environment(\"sky.env\", N)", "0.5 0.7 1", "", "the map has this colour everywhere"}};
     Shadeop& shadow = add("shadow",
         each("float color", "$ shadow(string name; point p; pairs)") +
             each("float color", "$ shadow(string name; point p1, point p2, point p3, point p4; pairs)"),
         Lowering::Unavailable, "Occlusion in 0..1 from a shadow map, a deep shadow map, or rays (\"raytrace\").");
+    list.back().examples = {{"shadow(\"light.shd\", P)", "0"}};
     shadow.contexts = kSurface | kVolume | kLight;
     shadow.optional = shadowParameters();
     add("ptexture",
@@ -87,8 +90,10 @@ std::vector<Shadeop> textureShadeops() {
             each("float color", "$ ptexture(string name; uniform float channel; float face, float s, float t; pairs)") +
             each("float color", "$ ptexture(string name; uniform float channel; float face; " + quad),
         Lowering::Unavailable, "Lookup in a texture that has one image per face.");
+    list.back().examples = {{"ptexture(\"none.ptx\", 0, 0)", "0"}};
     Shadeop& bake = add("bake", each("float color point", "void bake(string file; float s, float t; $ value)"), Lowering::Unavailable,
                         "Writes (s, t, value) to a file; binary when the name ends with \"&binary\".");
+    list.back().examples = {{"x", "7", "float x = 7; bake(\"none.bake\", s, t, x);"}};
     bake.pure = false;
     bake.optional.clear();
     bake.bias = Bias::Unbiased;
@@ -96,6 +101,7 @@ std::vector<Shadeop> textureShadeops() {
     bake.contexts = kSurface | kDisplacement | kVolume;
     Shadeop& bake3d = add("bake3d", sigs({{"float bake3d(string file, string channels; point p; normal n; pairs)"}}), Lowering::Unavailable,
                           "Writes values, given as pairs, to a point cloud. 1 on success.");
+    list.back().examples = {{"bake3d(\"light.ptc\", \"\", P, N, \"light\", Cs)", "0"}};
     bake3d.pure = false;
     bake3d.bias = Bias::Unbiased;
     bake3d.biasReason.clear();
@@ -110,6 +116,7 @@ std::vector<Shadeop> textureShadeops() {
                      {kF, "filterradius", false, "from the footprint", "radius of the filter"},
                      {kF, "filterscale", false, "1", "multiplies the radius"},
                      {kF, "maxdepth", false, "deepest", "limit of the lookup's depth"}};
+    list.back().examples = {{"texture3d(\"none.ptc\", P, N, \"light\", x)", "0", "float x = 3;"}};
     return list;
 }
 

@@ -1,7 +1,43 @@
 #include "base/diagnostics.h"
+#include "base/limits.h"
 #include <algorithm>
 
 namespace alpenglow {
+
+namespace {
+
+bool continues(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; } ///< a later byte of a character in UTF-8
+
+/// The line, or of a long one what stands around the column, and below it the caret and its range.
+std::string excerpt(const Diagnostic& d) {
+    const std::string& line = d.sourceLine;
+    const size_t room = limits::kExcerptColumns, at = d.place.column > 0 ? std::min(size_t(d.place.column) - 1, line.size()) : 0;
+    size_t begin = 0, end = line.size();
+    if (line.size() > room) {
+        const size_t caret = std::min(at, line.size());
+        // A range that fits is shown whole, with some of what stands before it.
+        const size_t before = d.length > 0 && size_t(d.length) < room / 2 ? room / 2 : room / 4;
+        begin = caret > before ? caret - before : 0;
+        if (begin + room >= line.size()) begin = line.size() - room;
+        end = begin + room;
+        while (begin > 0 && continues(line[begin])) --begin;
+        while (end < line.size() && continues(line[end])) ++end;
+    }
+    const std::string head = begin > 0 ? "... " : "";
+    std::string s = "  " + head + line.substr(begin, end - begin) + (end < line.size() ? " ..." : "") + "\n";
+    if (d.place.column <= 0) return s;
+    s += "  " + std::string(head.size(), ' ');
+    for (size_t i = begin; i < at; ++i) {
+        if (i < line.size() && continues(line[i])) continue; // one place for one character
+        s += i < line.size() && line[i] == '\t' ? '\t' : ' ';
+    }
+    s += "^";
+    for (size_t i = at + 1; i < at + size_t(std::max(d.length, 0)) && i < end; ++i)
+        if (!continues(line[i])) s += "~";
+    return s + "\n";
+}
+
+} // namespace
 
 std::string toString(const Diagnostic& d) {
     std::string s;
@@ -17,18 +53,7 @@ std::string toString(const Diagnostic& d) {
     s += d.message;
     if (!d.id.empty()) s += " [" + d.id + "]";
     s += "\n";
-    if (!d.sourceLine.empty()) {
-        s += "  " + d.sourceLine + "\n";
-        if (d.place.column > 0) {
-            s += "  ";
-            for (int i = 0; i + 1 < d.place.column; ++i)
-                s += i < int(d.sourceLine.size()) && d.sourceLine[i] == '\t' ? '\t' : ' ';
-            s += "^";
-            const int room = int(d.sourceLine.size()) - d.place.column; // behind the caret
-            for (int i = 1; i < d.length && i <= room; ++i) s += "~";
-            s += "\n";
-        }
-    }
+    if (!d.sourceLine.empty()) s += excerpt(d);
     for (const std::string& n : d.notes) s += "  note: " + n + "\n";
     if (!d.hint.empty()) s += "  hint: " + d.hint + "\n";
     return s;

@@ -5,8 +5,11 @@
 #include "rsl/nonlinear.h"
 #include <CLI/CLI.hpp>
 #include <fstream>
+#include <iostream>
+#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 namespace alpenglow::cli {
 namespace {
@@ -33,22 +36,37 @@ Json diagnosticJson(const Diagnostic& d) {
     return j;
 }
 
-std::string lineOf(const SourcePlace& p) {
-    std::ifstream in(p.file, std::ios::binary);
+constexpr const char* kStandardInput = "<stdin>";
+
+/// The line of a place; `input` is what came by standard input.
+std::string lineOf(const SourcePlace& p, const std::string& input) {
+    std::ifstream file;
+    std::istringstream text;
+    const bool own = p.file == kStandardInput;
+    if (own) text.str(input);
+    else file.open(p.file, std::ios::binary);
+    std::istream& in = own ? static_cast<std::istream&>(text) : file;
     std::string line;
     for (int n = 0; n < p.line && std::getline(in, line); ++n) {}
     while (!line.empty() && (line.back() == '\r' || line.back() == '\n')) line.pop_back();
     return in || !line.empty() ? line : "";
 }
 
-/// The warning of rsl/nonlinear.h with its line.
+/// The warnings of rsl/nonlinear.h with their lines.
 void warnNonlinear(const rsl::CompiledShader& shader, const rsl::KernelOptions& options, Diagnostics& diags) {
-    auto d = rsl::nonlinearUse(shader.program(), shader.shader(), options);
-    if (!d) return;
-    if (d->place.file.empty()) d->place.file = shader.path();
-    d->sourceLine = lineOf(d->place);
-    rsl::complete(*d);
-    diags.report(std::move(*d));
+    for (Diagnostic& d : rsl::nonlinearUses(shader.program(), shader.shader(), options)) {
+        if (d.place.file.empty()) d.place.file = shader.path();
+        diags.report(std::move(d));
+    }
+}
+
+/// The shader and, of a class, what else its methods make it.
+std::vector<std::shared_ptr<const rsl::CompiledShader>> kindsOf(const std::shared_ptr<const rsl::CompiledShader>& shader) {
+    std::vector<std::shared_ptr<const rsl::CompiledShader>> all{shader};
+    for (const auto& s : shader->program().shaders)
+        if (shader->shader().object && s->kind != shader->kind())
+            if (auto v = rsl::ShaderCompiler::variant(shader, s->kind)) all.push_back(std::move(v));
+    return all;
 }
 
 } // namespace
@@ -62,7 +80,7 @@ void addCompile(CLI::App& app, int* status) {
     };
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("compile", "Check and compile shaders");
-    c->add_option("shaders", a->files, "RSL files")->required();
+    c->add_option("shaders", a->files, "RSL files; - is standard input")->required();
     c->add_option("-I,--searchpath", a->searchPaths, "Folders for #include, separated by :")
         ->type_name("DIRS")
         ->allow_extra_args(false);
@@ -82,7 +100,10 @@ void addCompile(CLI::App& app, int* status) {
     c->callback([a, status] {
         Json report = Json::array();
         const auto print = printer(a->quiet ? Severity::Error : Severity::Warning);
+        std::string current, input; // the shader that is looked at, and what came by standard input
         Diagnostics diags([&, print](Diagnostic d) {
+            if (d.place.file.empty() && a->json) d.place.file = current;
+            if (d.sourceLine.empty() && d.place.line > 0) d.sourceLine = lineOf(d.place, input);
             rsl::complete(d);
             if (d.id == "null-handle") return; // which co-shaders there are, only a scene knows
             if (!a->json) print(d);
@@ -110,21 +131,26 @@ void addCompile(CLI::App& app, int* status) {
         int failed = 0;
         Json shaders = Json::array();
         for (const std::string& f : a->files) {
-            auto shader = compiler.load(f, paths, diags);
+            current = f;
+            const int before = diags.errors();
+            if (f == "-") input.assign(std::istreambuf_iterator<char>(std::cin), {});
+            auto shader = f == "-" ? compiler.loadText(input, kStandardInput, diags) : compiler.load(f, paths, diags);
             bool ok = shader != nullptr;
-            if (ok && !a->json && (a->ir || a->llvm)) {
-                std::string text = compiler.dump(shader, options, diags, a->llvm);
-                std::fputs(text.c_str(), stdout);
-                ok = !text.empty();
+            for (const auto& s : ok ? kindsOf(shader) : decltype(kindsOf(shader)){}) {
+                if (!a->json && (a->ir || a->llvm)) {
+                    std::string text = compiler.dump(s, options, diags, a->llvm);
+                    std::fputs(text.c_str(), stdout);
+                    ok = ok && !text.empty();
+                }
+                ok = ok && compiler.kernel(s, options, diags) != nullptr;
+                if (ok && a->warn && s->kind() == rsl::ShaderKind::Surface) warnNonlinear(*s, options, diags);
             }
-            if (ok) ok = compiler.kernel(shader, options, diags) != nullptr;
-            if (ok && a->warn && shader->kind() == rsl::ShaderKind::Surface) warnNonlinear(*shader, options, diags);
             Json entry = {{"file", f}, {"ok", ok}};
             if (shader) entry["name"] = shader->name(), entry["type"] = toString(shader->kind());
             shaders.push_back(std::move(entry));
             if (!ok) {
                 ++failed;
-                if (diags.errors() == 0) diags.report(Severity::Error, Rie::NoShader, {f}, "it cannot be compiled");
+                if (diags.errors() == before) diags.report(Severity::Error, Rie::NoShader, {f}, "it cannot be compiled");
             }
         }
         if (a->json) {

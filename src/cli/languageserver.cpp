@@ -81,7 +81,12 @@ std::vector<Json> LanguageServer::handle(const Json& message) {
     std::vector<Json> out;
     const bool object = message.is_object();
     const bool hasId = object && message.contains("id") && (message["id"].is_number() || message["id"].is_string());
+    const bool oddId = object && message.contains("id") && !hasId && !message["id"].is_null();
     const Json id = hasId ? message["id"] : Json();
+    if (oddId) {
+        out.push_back(error(nullptr, kInvalidRequest, "the id of a request is a number or a text"));
+        return out;
+    }
     if (!object || !message.contains("method") || !message["method"].is_string()) {
         // Answers to requests of ours, of which there are none, have an id and a result.
         if (!object || !(message.contains("result") || message.contains("error")))
@@ -95,6 +100,8 @@ std::vector<Json> LanguageServer::handle(const Json& message) {
             if (initialized_ || method == "exit") notification(method, params);
         } else if (shutdown_) {
             out.push_back(error(id, kInvalidRequest, "the server was shut down"));
+        } else if (initialized_ && method == "initialize") {
+            out.push_back(error(id, kInvalidRequest, "initialize comes once"));
         } else if (!initialized_ && method != "initialize") {
             out.push_back(error(id, kNotInitialized, "initialize comes first"));
         } else {
@@ -146,8 +153,8 @@ Json LanguageServer::initialize(const Json& params) {
     }
     return {{"capabilities",
              {{"positionEncoding", utf8_ ? "utf-8" : "utf-16"},
-              {"textDocumentSync", {{"openClose", true}, {"change", 2}}},
-              {"completionProvider", {{"triggerCharacters", {"\""}}}},
+              {"textDocumentSync", {{"openClose", true}, {"change", 2}, {"save", true}}},
+              {"completionProvider", {{"triggerCharacters", {"\"", ">", "."}}}},
               {"hoverProvider", true},
               {"definitionProvider", true},
               {"documentSymbolProvider", true},
@@ -164,6 +171,14 @@ void LanguageServer::notification(const std::string& method, const Json& params)
     const auto changed = [&](const std::string& uri) {
         if (std::find(changed_.begin(), changed_.end(), uri) == changed_.end()) changed_.push_back(uri);
     };
+    // What includes a text that is open sees what the editor shows, not what the disk has.
+    const auto includers = [&](const std::string& path) {
+        for (auto& [uri, d] : documents_) {
+            if (d.path() == path || !d.includes(path)) continue;
+            d.touch();
+            changed(uri);
+        }
+    };
     if (method == "textDocument/didOpen") {
         const Json& d = member(params, "textDocument");
         const std::string uri = text(d, "uri"), path = pathOf(uri);
@@ -176,8 +191,9 @@ void LanguageServer::notification(const std::string& method, const Json& params)
             return;
         }
         documents_.erase(uri);
-        documents_.emplace(uri, Document(path.empty() ? uri : path, std::move(content)));
+        const auto at = documents_.emplace(uri, Document(path.empty() ? uri : path, std::move(content))).first;
         changed(uri);
+        includers(at->second.path());
     } else if (method == "textDocument/didChange") {
         const std::string uri = text(member(params, "textDocument"), "uri");
         const auto at = documents_.find(uri);
@@ -195,17 +211,40 @@ void LanguageServer::notification(const std::string& method, const Json& params)
             d.replace(std::min(a, b), std::max(a, b), content);
         }
         changed(uri);
+        includers(d.path());
     } else if (method == "textDocument/didSave") {
         // An include may be what was saved: the others are looked at again.
         for (auto& [uri, d] : documents_) {
-            d.set(d.text());
+            d.touch();
             changed(uri);
         }
     } else if (method == "textDocument/didClose") {
         const std::string uri = text(member(params, "textDocument"), "uri");
-        if (!documents_.erase(uri)) return;
+        const auto at = documents_.find(uri);
+        if (at == documents_.end()) return;
+        const std::string path = at->second.path();
+        documents_.erase(at);
         std::erase(changed_, uri);
+        includers(path);
         pending_.push_back(notice("textDocument/publishDiagnostics", {{"uri", uri}, {"diagnostics", Json::array()}}));
+    } else if (method == "workspace/didRenameFiles") {
+        // Editors close and open what they rename; one that does not still has its text under the new name.
+        const Json& files = member(params, "files");
+        if (!files.is_array()) throw BadParams{};
+        for (const Json& file : files) {
+            const std::string from = text(file, "oldUri"), to = text(file, "newUri");
+            const auto at = documents_.find(from);
+            if (at == documents_.end() || documents_.count(to)) continue;
+            const std::string path = pathOf(to), before = at->second.path();
+            Document moved(path.empty() ? to : path, at->second.text());
+            documents_.erase(at);
+            std::erase(changed_, from);
+            documents_.emplace(to, std::move(moved));
+            pending_.push_back(notice("textDocument/publishDiagnostics", {{"uri", from}, {"diagnostics", Json::array()}}));
+            changed(to);
+            includers(before);
+            includers(path);
+        }
     }
 }
 
@@ -296,12 +335,18 @@ Document* LanguageServer::document(const Json& params) {
 rsl::FrontOptions LanguageServer::optionsFor(const Document& d) const {
     rsl::FrontOptions o = options_;
     o.includePaths.insert(o.includePaths.begin(), fs::path(d.path()).parent_path().string());
+    o.openText = [this](const std::string& path) -> std::optional<std::string> {
+        const std::string wanted = normalPath(path);
+        for (const auto& [uri, open] : documents_)
+            if (normalPath(open.path()) == wanted) return open.text();
+        return std::nullopt;
+    };
     return o;
 }
 
 std::string LanguageServer::textOf(const std::string& path) {
     for (const auto& [uri, d] : documents_)
-        if (d.path() == path) return d.text();
+        if (normalPath(d.path()) == normalPath(path)) return d.text();
     return rsl::front::readSource(path).value_or("");
 }
 

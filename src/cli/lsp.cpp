@@ -2,96 +2,19 @@
 #include "base/limits.h"
 #include "cli/command.h"
 #include "cli/languageserver.h"
+#include "cli/lspstream.h"
+#include "rsl/plugins.h"
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cctype>
 #include <cerrno>
-#include <charconv>
 #include <csignal>
 #include <cstdio>
+#include <deque>
 #include <memory>
 #include <poll.h>
 #include <unistd.h>
 
 namespace alpenglow::cli {
 namespace {
-
-/// Cuts standard input into messages: headers, an empty line, as many bytes as Content-Length says.
-class Input {
-public:
-    enum class Kind { Message, Garbage, TooLong, End };
-
-    Kind next(std::string& body) {
-        size_t length = 0;
-        bool known = false;
-        for (;;) {
-            std::string line;
-            if (!readLine(line)) return Kind::End;
-            if (line.empty()) {
-                if (known) break;
-                continue; // empty lines between messages do no harm
-            }
-            constexpr std::string_view kName = "content-length:";
-            if (line.size() < kName.size()) continue;
-            std::string name = line.substr(0, kName.size());
-            for (char& c : name) c = char(std::tolower(static_cast<unsigned char>(c)));
-            if (name != kName) continue;
-            size_t a = line.find_first_not_of(' ', kName.size());
-            if (a == std::string::npos) a = line.size();
-            const auto [end, code] = std::from_chars(line.data() + a, line.data() + line.size(), length);
-            if (code != std::errc() || end != line.data() + line.size()) return Kind::Garbage;
-            known = true;
-        }
-        if (length > limits::kServerMessage) {
-            while (length > 0) {
-                if (at_ == buffer_.size() && !fill()) return Kind::End;
-                const size_t n = std::min(length, buffer_.size() - at_);
-                at_ += n;
-                length -= n;
-            }
-            return Kind::TooLong;
-        }
-        body.clear();
-        while (body.size() < length) {
-            if (at_ == buffer_.size() && !fill()) return Kind::End;
-            const size_t n = std::min(length - body.size(), buffer_.size() - at_);
-            body.append(buffer_, at_, n);
-            at_ += n;
-        }
-        return Kind::Message;
-    }
-
-    /// Would next() find bytes at once?
-    bool waiting() const {
-        if (at_ < buffer_.size()) return true;
-        pollfd p{STDIN_FILENO, POLLIN, 0};
-        return poll(&p, 1, 0) > 0 && (p.revents & POLLIN);
-    }
-
-private:
-    bool readLine(std::string& line) {
-        line.clear();
-        for (;;) {
-            if (at_ == buffer_.size() && !fill()) return false;
-            const char c = buffer_[at_++];
-            if (c == '\n') break;
-            if (line.size() < limits::kTokenBytes) line += c;
-        }
-        if (!line.empty() && line.back() == '\r') line.pop_back();
-        return true;
-    }
-    bool fill() {
-        buffer_.resize(1 << 16);
-        at_ = 0;
-        ssize_t n;
-        do n = read(STDIN_FILENO, buffer_.data(), buffer_.size());
-        while (n < 0 && errno == EINTR);
-        buffer_.resize(n > 0 ? size_t(n) : 0);
-        return n > 0;
-    }
-    std::string buffer_;
-    size_t at_ = 0;
-};
 
 bool send(const nlohmann::json& message) {
     const std::string s = message.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -100,34 +23,95 @@ bool send(const nlohmann::json& message) {
     return std::fflush(stdout) == 0;
 }
 
+/// Messages that came and were not answered yet, in their order.
+class Queue {
+public:
+    /// Takes in what is there; waits for bytes when nothing is. False at the end of the input.
+    bool fetch() {
+        for (;;) {
+            while (take()) {}
+            if (waiting_.empty() ? !read() : held_ + stream_.held() >= limits::kServerMessage || !readable() || !read()) break;
+        }
+        return !waiting_.empty();
+    }
+    nlohmann::json pop() {
+        nlohmann::json m = std::move(waiting_.front().message);
+        held_ -= waiting_.front().bytes;
+        waiting_.pop_front();
+        return m;
+    }
+    bool empty() const { return waiting_.empty(); }
+    /// Would fetch() find bytes at once?
+    static bool readable() {
+        pollfd p{STDIN_FILENO, POLLIN, 0};
+        return poll(&p, 1, 0) > 0 && (p.revents & POLLIN);
+    }
+
+private:
+    struct Waiting { nlohmann::json message; size_t bytes; };
+
+    bool take() {
+        std::string body;
+        switch (stream_.next(body)) {
+        case MessageStream::Kind::More: return false;
+        case MessageStream::Kind::BadLength: refuse(-32700, "Content-Length is not a number"); return true;
+        case MessageStream::Kind::NoLength: refuse(-32700, "a message without Content-Length"); return true;
+        case MessageStream::Kind::TooLong:
+            refuse(-32600, "a message of more than " + std::to_string(limits::kServerMessage) + " bytes");
+            return true;
+        case MessageStream::Kind::Message: break;
+        }
+        auto message = nlohmann::json::parse(body, nullptr, false);
+        if (message.is_discarded()) refuse(-32700, "this is not JSON");
+        else if (!cancels(message)) push(std::move(message), body.size());
+        return true;
+    }
+    /// A fault of the stream: its answer waits where the message would.
+    void refuse(int code, const std::string& why) {
+        push({{"refused", LanguageServer::error(nullptr, code, why)}}, 0);
+    }
+    void push(nlohmann::json m, size_t bytes) {
+        held_ += bytes;
+        waiting_.push_back({std::move(m), bytes});
+    }
+    /// "$/cancelRequest" of a request that waits: it is answered as cancelled.
+    bool cancels(const nlohmann::json& m) {
+        if (!m.is_object() || m.value("method", nlohmann::json()) != "$/cancelRequest") return false;
+        const auto p = m.find("params");
+        if (p == m.end() || !p->is_object() || !p->contains("id")) return true;
+        for (Waiting& w : waiting_)
+            if (w.message.is_object() && w.message.contains("method") && w.message.contains("id") && w.message["id"] == (*p)["id"])
+                w.message = {{"refused", LanguageServer::error((*p)["id"], -32800, "cancelled")}};
+        return true;
+    }
+    bool read() {
+        char bytes[1 << 16];
+        ssize_t n;
+        do n = ::read(STDIN_FILENO, bytes, sizeof bytes);
+        while (n < 0 && errno == EINTR);
+        if (n > 0) stream_.feed(bytes, size_t(n));
+        return n > 0;
+    }
+
+    MessageStream stream_;
+    std::deque<Waiting> waiting_;
+    size_t held_ = 0;
+};
+
 int serve(LanguageServer& server) {
     std::signal(SIGPIPE, SIG_IGN); // an editor that is gone shows as a failed write
-    Input input;
-    std::string body;
+    Queue queue;
     bool open = true;
     const auto sendAll = [&](const std::vector<nlohmann::json>& list) {
         for (const auto& m : list) open = open && send(m);
     };
     while (open && !server.ended()) {
-        switch (input.next(body)) {
-        case Input::Kind::End: return server.status();
-        case Input::Kind::Garbage:
-            open = send(LanguageServer::error(nullptr, -32700, "Content-Length is not a number"));
-            continue;
-        case Input::Kind::TooLong:
-            open = send(LanguageServer::error(nullptr, -32600, "a message of more than " +
-                                                                   std::to_string(limits::kServerMessage) + " bytes"));
-            continue;
-        case Input::Kind::Message: break;
-        }
-        const auto message = nlohmann::json::parse(body, nullptr, false);
-        if (message.is_discarded()) {
-            open = send(LanguageServer::error(nullptr, -32700, "this is not JSON"));
-            continue;
-        }
-        sendAll(server.handle(message));
+        if (!queue.fetch()) return server.status();
+        const nlohmann::json message = queue.pop();
+        if (message.is_object() && message.contains("refused")) open = send(message["refused"]);
+        else sendAll(server.handle(message));
         // While messages wait, what the text is now is not what the user sees last.
-        if (!input.waiting()) sendAll(server.publish());
+        if (queue.empty() && !Queue::readable()) sendAll(server.publish());
     }
     sendAll(server.publish());
     return open ? server.status() : int(kOutputFailed);
@@ -139,7 +123,7 @@ void addLsp(CLI::App& app, int* status) {
     struct Arguments {
         std::vector<std::string> searchPaths, defines;
         std::string dialect;
-        bool stdio = true;
+        bool stdio = true, allowExec = false;
     };
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("lsp", "Language server for editors, over standard input and output");
@@ -148,6 +132,7 @@ void addLsp(CLI::App& app, int* status) {
         ->allow_extra_args(false);
     c->add_option("-D", a->defines, "Define a macro")->type_name("NAME[=TEXT]")->allow_extra_args(false);
     addDialect(*c, a->dialect);
+    c->add_flag("--allow-exec", a->allowExec, "Let shaders load plug-ins");
     c->add_flag("--stdio", a->stdio, "Standard input and output, as always; some editors insist on saying so");
     c->footer("docs/editors.md shows it in VS Code and Vim. Exit status 0 when the editor asked it to shut down, else 1.");
     c->callback([a, status] {
@@ -160,6 +145,14 @@ void addLsp(CLI::App& app, int* status) {
             options.defines.emplace_back(d.substr(0, eq), eq == std::string::npos ? "1" : d.substr(eq + 1));
         }
         options.dialect = a->dialect;
+        const auto plugins = std::make_shared<rsl::PluginLibrary>();
+        if (a->allowExec)
+            options.plugin = [plugins, paths = options.includePaths](const std::string& name, const std::string& beside, std::string& why,
+                                                                     std::string& hint) {
+                std::vector<std::string> all{beside};
+                all.insert(all.end(), paths.begin(), paths.end());
+                return plugins->load(name, all, why, hint);
+            };
         LanguageServer server(std::move(options));
         *status = serve(server);
     });

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <filesystem>
 #include <set>
 #include <tuple>
 
@@ -83,17 +84,32 @@ void Document::analyse(const rsl::FrontOptions& options) {
     // Of what compiles: where the path tracer would have to wait for light.
     for (const auto& s : program->shaders) {
         if (d.errors() > 0 || s->kind != rsl::ShaderKind::Surface || !isMainFile(*program, s->place)) continue;
-        if (auto warning = rsl::nonlinearUse(*program, *s, {})) {
-            const size_t n = size_t(std::max(warning->place.line, 1)) - 1;
-            warning->sourceLine = line(n);
-            rsl::complete(*warning);
-            d.report(std::move(*warning));
+        for (Diagnostic& warning : rsl::nonlinearUses(*program, *s, {})) {
+            const size_t n = size_t(std::max(warning.place.line, 1)) - 1;
+            warning.sourceLine = warning.place.file == path_ ? std::string(line(n)) : "";
+            rsl::complete(warning);
+            d.report(std::move(warning));
         }
     }
     diagnostics_ = d.all();
     // While a shader is being typed there are moments in which nothing can be read of it: the last reading serves then.
     const bool empty = program->shaders.empty() && program->functions.empty();
     if (!empty || !program_ || diagnostics_.empty()) program_ = std::move(program);
+}
+
+std::string normalPath(const std::string& path) {
+    std::error_code failed; // without a working folder the path stays as it is
+    const std::filesystem::path whole = std::filesystem::absolute(path, failed);
+    return (failed ? std::filesystem::path(path) : whole).lexically_normal().string();
+}
+
+bool Document::includes(const std::string& path) const {
+    const std::string wanted = normalPath(path);
+    if (program_)
+        for (const std::string& f : program_->dependencies)
+            if (normalPath(f) == wanted) return true;
+    // It may have been missing until now.
+    return text_.find(std::filesystem::path(path).filename().string()) != std::string::npos;
 }
 
 std::string_view Document::line(size_t n) const {
@@ -308,20 +324,30 @@ std::vector<const rsl::Function*> Document::functions(const std::string& name) c
     return list;
 }
 
+namespace {
+
+/// The type as it is written: handles are of type shader.
+std::string typeOf(const rsl::Symbol& s) { return s.handle ? "shader" : rsl::toString(s.type.element()); }
+
+std::string brackets(const rsl::Symbol& s) {
+    if (s.type.array < 0 || s.open || s.resizable) return "[]";
+    return s.type.array > 0 ? "[" + std::to_string(s.type.array) + "]" : "";
+}
+
+} // namespace
+
 std::string declarationOf(const rsl::Symbol& s) {
     std::string t = s.output ? "output " : "";
-    if (s.storage != rsl::Storage::Unspecified) t += s.storage == rsl::Storage::Uniform ? "uniform " : "varying ";
-    t += rsl::toString(s.type.element()) + " " + s.name;
-    if (s.type.array > 0) t += "[" + std::to_string(s.type.array) + "]";
-    if (s.type.array < 0) t += "[]";
-    return t;
+    if (s.isConstant) t += "constant ";
+    else if (s.storage != rsl::Storage::Unspecified) t += s.storage == rsl::Storage::Uniform ? "uniform " : "varying ";
+    return t + typeOf(s) + " " + s.name + brackets(s);
 }
 
 std::string signatureOf(const rsl::Function& f) {
-    std::string t = rsl::toString(f.result) + " " + f.name + "(";
+    std::string t = (f.handle ? "shader" + rsl::toString(f.result).substr(rsl::toString(f.result.element()).size()) : rsl::toString(f.result)) + " " + f.name + "(";
     for (size_t i = 0; i < f.parameters.size(); ++i) {
         const rsl::Symbol& p = *f.parameters[i];
-        t += (i ? "; " : "") + std::string(p.output ? "output " : "") + rsl::toString(p.type) + " " + p.name;
+        t += (i ? "; " : "") + std::string(p.output ? "output " : "") + typeOf(p) + " " + p.name + brackets(p);
     }
     return t + ")";
 }

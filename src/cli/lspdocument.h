@@ -36,6 +36,10 @@ public:
     /// Compiles the text as far as it can be understood, if it changed since the last time.
     void analyse(const rsl::FrontOptions&);
     bool stale() const { return stale_; }
+    /// Something that it includes is another now.
+    void touch() { stale_ = true; }
+    /// Whether it includes this file, or names it.
+    bool includes(const std::string& path) const;
     const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }
     const rsl::Program* program() const { return program_.get(); }
 
@@ -67,6 +71,18 @@ public:
         const rsl::Signature* signature = nullptr;
     };
     Use useAt(size_t word) const;
+    /// As useAt(), by the name alone: where the text around it cannot be understood, or a statement with an error in it is gone.
+    Use named(size_t word) const;
+    /// What stands in front of "->" or "." before a name: "this", "ray", "ray->start"; nothing where there is neither.
+    struct Receiver { std::string name; bool arrow = false; };
+    std::optional<Receiver> receiver(size_t word) const;
+    /// One thing that a receiver has.
+    struct Member {
+        std::string name, detail, of; ///< `of`: the class or structure
+        rsl::Place place;
+        bool method = false;
+    };
+    std::vector<Member> members(const Receiver&, size_t position) const;
     /// The shader or function of this text in which the position is; both null outside.
     struct Around {
         const rsl::Shader* shader = nullptr;
@@ -90,6 +106,8 @@ private:
     std::vector<Diagnostic> diagnostics_;
 };
 
+/// Absolute, without "." and "..".
+std::string normalPath(const std::string&);
 /// "float f(float a; output color b)", with the names.
 std::string signatureOf(const rsl::Function&);
 /// "output varying color x".

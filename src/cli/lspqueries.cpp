@@ -16,7 +16,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-enum CompletionKind { kFunction = 3, kVariable = 6, kProperty = 10, kKeyword = 14, kConstant = 21 };
+enum CompletionKind { kMethod = 2, kFunction = 3, kField = 5, kVariable = 6, kProperty = 10, kKeyword = 14, kConstant = 21 };
 enum SymbolKind { kClass = 5, kProperty2 = 7, kFunctionSymbol = 12 };
 
 constexpr const char* kKeywords[] = {
@@ -52,6 +52,18 @@ std::string shaderText(const rsl::Shader& s) {
     std::string t = std::string(toString(s.kind)) + " " + s.name + "(";
     for (size_t i = 0; i < s.parameters.size(); ++i) t += (i ? ";\n    " : "\n    ") + declarationOf(*s.parameters[i].symbol);
     return t + ")";
+}
+
+/// What stands here: as the compiler read it, or by its name where it read nothing.
+Document::Use useOf(const Document& d, size_t word) {
+    const Document::Use u = d.useAt(word);
+    return u.symbol || u.function || u.shader || u.shadeop ? u : d.named(word);
+}
+
+std::optional<Document::Member> memberNamed(const Document& d, const Document::Receiver& r, size_t word, const std::string& name) {
+    for (auto& m : d.members(r, word))
+        if (m.name == name && d.origin(m.place).line > 0) return m;
+    return std::nullopt;
 }
 
 /// Parameters of "float f(point p, q; output color c)": the parts between the parentheses.
@@ -122,6 +134,13 @@ Json LanguageServer::completion(const Json& params) {
         if (!documentation.is_null()) item["documentation"] = std::move(documentation);
         items.push_back(std::move(item));
     };
+    if (const auto r = d->receiver(begin)) {
+        const auto members = d->members(*r, begin);
+        for (const auto& m : members) offer(m.name, m.method ? kMethod : kField, m.detail, "of " + m.of);
+        if (r->arrow || !members.empty()) return items; // else '.' is the dot product
+    } else if (begin > 0 && begin == at && d->text()[begin - 1] == '>') {
+        return items; // a comparison has just begun
+    }
     const Document::Around a = d->around(at);
     const auto variable = [&](const rsl::Symbol& s) {
         if (s.type.base == rsl::Base::Void || s.origin == rsl::Symbol::Origin::Global) return;
@@ -173,7 +192,8 @@ Json LanguageServer::hover(const Json& params) {
     const auto global = [&](const rsl::GlobalVariable& g) {
         text = fenced(globalText(g)) + "\n" + g.doc + (g.writable ? "" : " (read-only)") + "\n";
     };
-    const Document::Use use = d->useAt(word->first);
+    const Document::Use use = useOf(*d, word->first);
+    const auto receiver = string ? std::nullopt : d->receiver(word->first);
     const auto kind = [&]() -> std::optional<rsl::ShaderKind> {
         const auto a = d->around(word->first);
         if (a.shader) return a.shader->kind;
@@ -187,6 +207,8 @@ Json LanguageServer::hover(const Json& params) {
                 if (o.name == name)
                     text = fenced(std::string(o.output ? "output " : "") + rsl::toString(o.type) + " \"" + o.name + "\"" +
                                   (o.defaultText.empty() ? "" : " = " + o.defaultText)) + "\n" + o.doc + "\n";
+    } else if (const auto m = receiver ? memberNamed(*d, *receiver, word->first, name) : std::nullopt) {
+        text = fenced(m->detail) + "\n" + (m->method ? "method of " : "member of ") + m->of + "\n";
     } else if (use.symbol) {
         const rsl::GlobalVariable* g =
             use.symbol->origin == rsl::Symbol::Origin::Global ? globalNamed(name, kind()) : nullptr;
@@ -237,8 +259,10 @@ Json LanguageServer::definition(const Json& params) {
     const auto word = d->wordAt(at);
     if (!word || d->where(word->first + 1) != Document::Where::Code) return nullptr;
     const std::string name = d->text().substr(word->first, word->second - word->first);
-    const Document::Use use = d->useAt(word->first);
+    const Document::Use use = useOf(*d, word->first);
     Origin o;
+    if (const auto r = d->receiver(word->first))
+        if (const auto m = memberNamed(*d, *r, word->first, name)) return location(d->origin(m->place), m->method ? name.size() : 0);
     if (use.symbol) o = d->origin(use.symbol->place);
     else if (use.shader) o = d->origin(use.shader->place);
     else if (use.function) o = d->origin(use.function->place);

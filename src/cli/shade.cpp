@@ -17,7 +17,7 @@ namespace alpenglow::cli {
 namespace {
 
 struct Arguments {
-    std::string shader, output = "out.exr", format = "256x256";
+    std::string shader, output = "out.exr", format = "256x256", kind;
     std::vector<std::string> params, searchPaths, outputs;
     int spp = 1, iterations = 0, lanes = 16, vectors = 0;
     float gamma = 0;
@@ -101,6 +101,22 @@ int shade(const Arguments& a) {
     rsl::ShaderCompiler compiler(settings);
     auto shader = compiler.load(a.shader, paths, diags);
     if (!shader) return kNothingRendered;
+    if (!a.kind.empty()) {
+        // A class can be shaders of several kinds.
+        std::string kinds;
+        std::shared_ptr<const rsl::CompiledShader> wanted;
+        for (const auto& s : shader->program().shaders) {
+            if (s->name != shader->name()) continue;
+            const std::string kind = rsl::toString(s->kind);
+            kinds += (kinds.empty() ? "" : ", ") + kind;
+            if (kind == a.kind) wanted = rsl::ShaderCompiler::variant(shader, s->kind);
+        }
+        if (!wanted) {
+            diags.report(Severity::Error, Rie::BadToken, {a.shader}, "it is no " + a.kind + " shader", "it is: " + kinds);
+            return kWrongUse;
+        }
+        shader = wanted;
+    }
     auto values = compiler.parameterDefaults(shader, diags);
     rsl::KernelOptions options;
     options.lanes = a.lanes;
@@ -138,6 +154,17 @@ int shade(const Arguments& a) {
             options.stringParameters.emplace_back(v.name, v.strings[0]);
     auto kernel = compiler.kernel(shader, options, diags);
     if (!kernel) return kNothingRendered;
+    const bool png = display::formatOfExtension(a.output).value_or(display::Format::Exr) == display::Format::Png;
+    const auto colour = [&](const auto& o) { return o.name == "Ci"; };
+    if (kernel->outputs().empty() || (png && std::none_of(kernel->outputs().begin(), kernel->outputs().end(), colour))) {
+        std::string writes;
+        for (const auto& o : kernel->outputs()) writes += (writes.empty() ? "" : ", ") + o.name;
+        diags.report(Severity::Error, Rie::MissingData, {a.shader},
+                     "this " + std::string(rsl::toString(shader->kind())) + " shader " +
+                         (writes.empty() ? "writes nothing that could be shown" : "writes no Ci for a PNG picture, only " + writes),
+                     writes.empty() ? "--output names what is to be shown" : "an EXR picture takes any values");
+        return kNothingRendered;
+    }
     if (kernel->facts().suspends) {
         diags.report(Severity::Error, Rie::IllState, {a.shader}, "it waits for rays, and there is no scene here");
         return kNothingRendered;
@@ -283,6 +310,9 @@ void addShade(CLI::App& app, int* status) {
     CLI::App* c = app.add_subcommand("shade", "Run a shader over a unit patch");
     c->add_option("shader", a->shader, "RSL file, or the name of a shader on the search path")->required();
     c->add_option("-o", a->output, "The picture: Ci, Oi, or what --output names")->type_name("FILE")->capture_default_str();
+    c->add_option("--kind", a->kind, "Of a class that is shaders of several kinds: which; else the first of surface, displacement, light, volume, imager")
+        ->check(CLI::IsMember({"surface", "displacement", "light", "volume", "imager"}))
+        ->type_name("KIND");
     c->add_option("--param", a->params, "Set a parameter: Kd=0.5, color=1,0,0, name=text")
         ->type_name("NAME=VALUE")
         ->allow_extra_args(false);

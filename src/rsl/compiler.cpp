@@ -197,7 +197,7 @@ ShaderPtr ShaderCompiler::load(const std::string& name, const std::vector<std::s
 
 ShaderPtr ShaderCompiler::loadText(const std::string& text, const std::string& name, Diagnostics& diagnostics) {
     FrontOptions options = state_->front();
-    options.lint = false;
+    options.includePaths = state_->settings.pluginPaths; // beside a text there is nothing
     auto program = compileText(text, name, options, diagnostics);
     sayWithoutShader(program.get(), name, diagnostics);
     return finish(std::move(program), name, {}, text);

@@ -2,30 +2,62 @@
 #include "rsl/front/ast.h"
 #include "rsl/ir/build.h"
 #include "rsl/passes/optimize.h"
+#include <algorithm>
+#include <set>
+#include <tuple>
 
 namespace alpenglow::rsl {
 
-std::optional<Diagnostic> nonlinearUse(const Program& program, const Shader& shader, KernelOptions options) {
+namespace {
+
+/// What is asked of the light transport, as who writes shaders calls it.
+std::string spoken(const std::string& op) {
+    if (op == "lightvisibility") return "the light of an illuminance loop";
+    return "the result of " + op + "()";
+}
+
+/// "a (line 3)" without the line, when it is that of the message itself.
+std::string without(std::string why, int line) {
+    const std::string tail = " (line " + std::to_string(line) + ")";
+    if (why.ends_with(tail)) why.resize(why.size() - tail.size());
+    return why;
+}
+
+} // namespace
+
+std::vector<Diagnostic> nonlinearUses(const Program& program, const Shader& shader, KernelOptions options) {
     options.path = true;
     Diagnostics quiet; // what there is to say besides is said when the kernel is made
     const auto kernel = buildKernel(program, shader, options, quiet);
-    if (!kernel) return std::nullopt;
+    std::vector<Diagnostic> all;
+    if (!kernel) return all;
     ir::optimize(*kernel, options, quiet);
+    if (kernel->facts.affine) return all;
     // A lobe that had to be written out as a loop over the lights is named, not what is found inside the loop.
-    const bool lobe = !kernel->facts.direct.empty();
-    const std::string why = lobe ? kernel->facts.direct[0] : kernel->facts.whyNot;
-    if (why.empty() || kernel->facts.affine) return std::nullopt;
-    Diagnostic d;
-    d.severity = Severity::Warning;
-    d.code = Rie::Syntax;
-    const Place& p = lobe ? kernel->facts.directPlace : kernel->facts.whyNotPlace;
-    if (p.line > 0 && p.file >= 0 && size_t(p.file) < program.files.size()) d.place = {program.files[size_t(p.file)], p.line, p.column};
-    const size_t end = why.find_first_of(",:");
-    d.message = "under path the result of " + why.substr(0, end) + " is used non-linearly: " +
-                (why.find(": ") == std::string::npos ? why : why.substr(why.find(": ") + 2));
-    d.id = "not-affine";
-    d.hint = "the shader waits for its rays then; only sums and products with what does not depend on light need no waiting";
-    return d;
+    const size_t lobes = kernel->facts.direct.size();
+    std::set<std::tuple<int, int, int>> seen;
+    for (size_t number = 0; number < kernel->facts.nonLinear.size(); ++number) {
+        const auto& n = kernel->facts.nonLinear[number];
+        const Place& at = n.place;
+        // The text of a shadeop of ours, written out: of a lobe it is named already, of others the shader is.
+        const bool ours = at.line <= 0 || at.file < 0 || size_t(at.file) >= program.files.size() || program.files[size_t(at.file)][0] == '<';
+        if (ours && number >= lobes && lobes > 0) continue;
+        if (!seen.insert({n.place.file, n.place.line, n.place.column}).second) continue;
+        Diagnostic d;
+        d.severity = Severity::Warning;
+        d.code = Rie::Syntax;
+        const Place& p = ours ? shader.place : at;
+        if (p.line > 0 && p.file >= 0 && size_t(p.file) < program.files.size())
+            d.place = {program.files[size_t(p.file)], p.line, p.column};
+        d.message = "under path " + spoken(n.op) + " is used non-linearly: " + without(n.why, p.line);
+        d.id = "not-affine";
+        d.hint = "the shader waits for its rays then; only sums and products with what does not depend on light need no waiting";
+        all.push_back(std::move(d));
+    }
+    std::stable_sort(all.begin(), all.end(), [](const Diagnostic& a, const Diagnostic& b) {
+        return std::tie(a.place.file, a.place.line, a.place.column) < std::tie(b.place.file, b.place.line, b.place.column);
+    });
+    return all;
 }
 
 } // namespace alpenglow::rsl

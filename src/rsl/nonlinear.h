@@ -1,18 +1,18 @@
-// Where a surface shader cannot be split from the light it asks for: the warning "not-affine" of `compile -W` and of the language
+// Where a surface shader cannot be split from the light it asks for: the warnings "not-affine" of `compile -W` and of the language
 // server.
 #pragma once
 #include "base/diagnostics.h"
 #include "rsl/kernel.h"
-#include <optional>
+#include <vector>
 
 namespace alpenglow::rsl {
 
 struct Program;
 struct Shader;
 
-/// The first place at which, under Hider "path", light that this shader asks for goes through something else than sums and products
-/// with what is known beforehand: the shader then waits for its rays. Nothing when there is none. A warning without its line of text
-/// (Diagnostic::sourceLine); the file is empty when the place is not known.
-std::optional<Diagnostic> nonlinearUse(const Program&, const Shader&, KernelOptions);
+/// Every call whose result, under Hider "path", goes through something else than sums and products with what is known beforehand:
+/// light that this shader asks for, and then waits for. In the order of the text; empty when there is none. Warnings without their
+/// line of text (Diagnostic::sourceLine); the file is empty when the place is not known.
+std::vector<Diagnostic> nonlinearUses(const Program&, const Shader&, KernelOptions);
 
 } // namespace alpenglow::rsl

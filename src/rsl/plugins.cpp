@@ -124,7 +124,7 @@ std::shared_ptr<const Plugin> PluginLibrary::load(const std::string& name, const
     const auto entry = reinterpret_cast<AlpenglowRslEntryPoint>(dlsym(library, ALPENGLOW_RSL_PLUGIN_SYMBOL));
     const AlpenglowRslPlugin* plugin = entry ? entry(&kHost) : nullptr;
     if (!plugin || plugin->abi != ALPENGLOW_RSL_PLUGIN_ABI) {
-        why = "\"" + path + "\" is " +
+        why = "plug-in \"" + name + "\" is not usable: \"" + path + "\" is " +
               (!plugin ? "no RSL plug-in"
                        : "an RSL plug-in of version " + std::to_string(plugin->abi) + ", not " + std::to_string(ALPENGLOW_RSL_PLUGIN_ABI));
         hint = plugin ? "compile it with the rslplugin.h of this renderer" : "plug-ins of other renderers are of other kinds: see docs/plugins.md";

@@ -1,4 +1,5 @@
 #include "base/diagnostics.h"
+#include "base/limits.h"
 #include "base/matrix.h"
 #include <gtest/gtest.h>
 
@@ -57,6 +58,31 @@ TEST(Matrix, PerspectiveFormula) { // x' = x/(z t), z' = (z-1)/z
 TEST(Diagnostics, TextHasPlaceCaretAndHint) {
     Diagnostic d{Severity::Error, Rie::Syntax, {"a.sl", 3, 5}, "no such thing", "did you mean \"that\"?", "\tfoo bar"};
     EXPECT_EQ(toString(d), "a.sl:3:5: error: no such thing\n  \tfoo bar\n  \t   ^\n  hint: did you mean \"that\"?\n");
+}
+
+// A letter of several bytes takes one place, and of a long line only what stands around the column is shown.
+TEST(Diagnostics, ExcerptsOfTextAndLongLines) {
+    Diagnostic d;
+    d.place = {"a.sl", 1, 9};
+    d.message = "no";
+    d.sourceLine = "\xC3\xA9\xE2\x82\xAC \tKq;"; // two letters of two and three bytes
+    d.length = 2;
+    d.place.column = 8;
+    EXPECT_EQ(toString(d), "a.sl:1:8: error: no\n  \xC3\xA9\xE2\x82\xAC \tKq;\n     \t^~\n");
+    const std::string before(10'000, 'a'), behind(10'000, 'b');
+    d.sourceLine = before + "here" + behind;
+    d.place.column = int(before.size()) + 1;
+    d.length = 4;
+    const std::string text = toString(d);
+    const size_t first = text.find('\n') + 1, second = text.find('\n', first) + 1;
+    const std::string line = text.substr(first, second - first), caret = text.substr(second);
+    EXPECT_LE(line.size(), size_t(limits::kExcerptColumns) + 16);
+    EXPECT_EQ(line.substr(0, 6), "  ... ");
+    EXPECT_EQ(line.substr(line.size() - 5), " ...\n");
+    EXPECT_EQ(caret.find('^'), line.find("here"));
+    EXPECT_EQ(caret.substr(caret.find('^')), "^~~~\n");
+    d.place.column = 30'000; // beyond the line
+    EXPECT_NE(toString(d).find('^'), std::string::npos);
 }
 
 TEST(Diagnostics, CountsAndReportsOnce) {

@@ -129,7 +129,8 @@ TEST_F(Tools, Info) {
     EXPECT_EQ(j["annotations"]["author"], "nobody");
     EXPECT_TRUE(j["methods"].is_array());
     const std::string text = run("info a.sl");
-    EXPECT_NE(text.find("uniform color tint = \"hsv\" 1 1 1"), std::string::npos) << text;
+    EXPECT_NE(text.find("uniform color tint = color \"hsv\" (0, 0, 1)  (rgb 1 1 1)"), std::string::npos) << text;
+    EXPECT_NE(text.find("uniform point from = \"world\" 1 2 3"), std::string::npos) << text;
     EXPECT_NE(text.find("annotation author: nobody"), std::string::npos) << text;
 }
 
@@ -138,7 +139,11 @@ TEST_F(Tools, InfoOfAClass) {
                   "    public void surface(output color Ci, Oi) { Ci = gain * own; }\n    public color ask(float x;) { return x; }\n}\n");
     const Json j = Json::parse(run("info --json c.sl"));
     EXPECT_EQ(j["class"], true);
-    EXPECT_EQ(j["members"], Json::array({"float gain"}));
+    ASSERT_EQ(j["members"].size(), 2u);
+    EXPECT_EQ(j["members"][0]["name"], "gain");
+    EXPECT_EQ(j["members"][0]["type"], "float");
+    EXPECT_EQ(j["members"][0]["public"], true);
+    EXPECT_EQ(j["members"][1]["public"], false);
     EXPECT_EQ(j["parameters"][0]["type"], "float[]");
     EXPECT_EQ(j["parameters"][0]["open"], true);
     EXPECT_EQ(j["parameters"][0]["default"], Json::array());
@@ -146,8 +151,119 @@ TEST_F(Tools, InfoOfAClass) {
     EXPECT_EQ(j["parameters"][2]["type"], "shader");
     EXPECT_EQ(j["parameters"][3]["type"], "string");
     const std::string text = run("info c.sl");
-    for (const char* part : {"surface \"c\"  (class, ", "uniform shader base", "member: float gain\n", "method: color ask(float x)"})
+    for (const char* part : {"surface \"c\"  (class, ", "uniform shader base = null", "member: public varying float gain\n", "method: public color ask(float x)"})
         EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+}
+
+// What a default is, as it is written and as a number; what only a scene can say is not shown as a number.
+TEST_F(Tools, InfoOfDefaults) {
+    write("a.sl", "surface a(float k = 0.5 * 2; float twice = k * 2; color c = color \"hsv\" (0.5, 1, 1); point p = transform(\"world\", point(1, 2, 3));\n"
+                  "    color list[2] = {0, color \"hsv\" (0, 1, 1)}; vector v = normalize(vector(3, 0, 4)); string s = \"a\\\"b\";)\n"
+                  "{ Ci = k + twice + c + color p + list[1] + color v; if (s == \"\") Ci = 0; }\n");
+    const Json j = Json::parse(run("info --json a.sl"));
+    const Json& p = j["parameters"];
+    ASSERT_EQ(p.size(), 7u);
+    EXPECT_EQ(p[0]["default"], Json::array({1.0}));
+    EXPECT_EQ(p[0]["written"], "0.5 * 2");
+    EXPECT_EQ(p[1]["default"], Json::array({2.0}));
+    EXPECT_EQ(p[2]["default"], Json::array({0.0, 1.0, 1.0})); // hue one half: cyan
+    EXPECT_EQ(p[2]["defaultInSpace"], Json::array({0.5, 1.0, 1.0}));
+    EXPECT_EQ(p[2]["written"], "color \"hsv\" (0.5, 1, 1)");
+    EXPECT_EQ(p[3]["computed"], true);
+    EXPECT_FALSE(p[3].contains("default"));
+    EXPECT_EQ(p[4]["default"], Json::array({0.0, 0.0, 0.0, 1.0, 0.0, 0.0}));
+    EXPECT_FLOAT_EQ(p[5]["default"][0].get<float>(), 0.6f);
+    EXPECT_FLOAT_EQ(p[5]["default"][2].get<float>(), 0.8f);
+    EXPECT_EQ(p[6]["default"], Json::array({"a\"b"}));
+    const std::string text = run("info a.sl");
+    for (const char* part : {"float k = 1\n", "float twice = k * 2  (2)\n", "color c = color \"hsv\" (0.5, 1, 1)  (rgb 0 1 1)\n",
+                             "point p = transform(\"world\", point(1, 2, 3))  (computed)\n", "string s = \"a\\\"b\"\n"})
+        EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+}
+
+TEST_F(Tools, InfoOfAClassOfSeveralKinds) {
+    write("c.sl", "#pragma annotation \"author\" \"x\"\n#pragma annotation \"tag\" \"1\"\n#pragma annotation \"tag\" \"2\"\n"
+                  "struct Ray { point from; vector d[2]; float size() { return 1; } };\n"
+                  "class c(string __category = \"key,fill\"; float k = 1;) {\n    public constant float gain = 2;\n    uniform Ray own;\n"
+                  "    public void displacement(output point P; output normal N) { P += k * N * gain; }\n"
+                  "    public void opacity(output color Oi) { Oi = own->from[0]; }\n    float mine(shader who; output string list[];) { return 1; }\n}\n");
+    const Json j = Json::parse(run("info --json c.sl"));
+    EXPECT_EQ(j["types"], Json::array({"surface", "displacement"}));
+    ASSERT_EQ(j["kinds"].size(), 2u);
+    EXPECT_EQ(j["kinds"][0]["writes"], Json::array({"Oi"}));
+    const Json both = j["kinds"][1]["writes"];
+    EXPECT_NE(std::find(both.begin(), both.end(), Json("P")), both.end()) << both;
+    EXPECT_EQ(j["methods"], Json::array({"void displacement(output point P; output normal N)", "void opacity(output color Oi)",
+                                         "float mine(shader who; output string list[])"}));
+    EXPECT_EQ(j["publicMethods"], Json::array({"displacement", "opacity"}));
+    EXPECT_EQ(j["annotations"]["author"], "x");
+    EXPECT_EQ(j["annotations"]["tag"], Json::array({"1", "2"}));
+    EXPECT_EQ(j["categories"], Json::array({"key", "fill"}));
+    EXPECT_EQ(j["members"][0]["constant"], true);
+    EXPECT_EQ(j["structs"][0]["name"], "Ray");
+    EXPECT_EQ(j["structs"][0]["members"][1]["type"], "vector[2]");
+    EXPECT_EQ(j["structs"][0]["methods"], Json::array({"size"}));
+    const std::string text = run("info c.sl");
+    for (const char* part : {"surface, displacement \"c\"", "struct Ray { point from; vector[2] d; }", "displacement writes:", "categories: key fill",
+                             "(run by the renderer)", "member: public constant float gain"})
+        EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+}
+
+// A patch of a class shows the kind that is asked for, and what cannot be shown is named.
+TEST_F(Tools, ShadeOfAClass) {
+    write("c.sl", "class c(float k = 1;) {\n    public void displacement(output point P; output normal N) { P += k * N; }\n"
+                  "    public void opacity(output color Oi) { Oi = 0.5; }\n}\n");
+    run("shade c.sl -o a.exr --format 4x4");
+    EXPECT_EQ(status, 0) << errors();
+    run("shade c.sl --kind displacement -o b.exr --format 4x4");
+    EXPECT_EQ(status, 0) << errors();
+    run("shade c.sl --kind light -o c.exr --format 4x4");
+    EXPECT_EQ(status, 2);
+    EXPECT_NE(errors().find("it is: surface, displacement"), std::string::npos) << errors();
+    run("shade c.sl --kind displacement -o d.png --format 4x4");
+    EXPECT_EQ(status, 3);
+    EXPECT_NE(errors().find("writes no Ci for a PNG picture, only"), std::string::npos) << errors();
+}
+
+TEST_F(Tools, CompileJsonWhateverTheInput) {
+    Json j = Json::parse(run("compile --json nowhere.sl"));
+    EXPECT_EQ(status, 1);
+    ASSERT_EQ(j["diagnostics"].size(), 1u);
+    EXPECT_EQ(j["diagnostics"][0]["file"], "nowhere.sl");
+    EXPECT_EQ(j["diagnostics"][0]["severity"], "error");
+    EXPECT_EQ(j["shaders"][0]["ok"], false);
+    write("a.sl", "surface a() { Ci = Kq; }\n");
+    write("b.sl", "surface b() { Ci = 1; }\n");
+    j = Json::parse(run("compile --json a.sl b.sl nowhere.sl"));
+    EXPECT_EQ(status, 1);
+    ASSERT_EQ(j["shaders"].size(), 3u);
+    EXPECT_EQ(j["shaders"][0]["ok"], false);
+    EXPECT_EQ(j["shaders"][1]["ok"], true);
+    EXPECT_EQ(j["diagnostics"].size(), 2u);
+    j = Json::parse(run("compile --json - < a.sl"));
+    EXPECT_EQ(status, 1);
+    EXPECT_EQ(j["diagnostics"][0]["file"], "<stdin>");
+    EXPECT_EQ(j["diagnostics"][0]["column"], 20);
+    EXPECT_EQ(j["diagnostics"][0]["length"], 2);
+    j = Json::parse(run("compile --json - < b.sl"));
+    EXPECT_EQ(status, 0);
+    EXPECT_TRUE(j["diagnostics"].empty()) << j;
+    // Messages of the code behind the checker have their line, too.
+    write("s.sl", "surface s()\n{\n    Ci = spline(s, 1, 2);\n}\n");
+    run("compile s.sl");
+    EXPECT_NE(errors().find("    Ci = spline(s, 1, 2);\n           ^~~~~~\n"), std::string::npos) << errors();
+}
+
+TEST_F(Tools, AllLightUsedNonLinearlyIsNamed) {
+    write("a.sl", "surface a()\n{\n    color d = diffuse(N);\n    color t = trace(P, N);\n    Ci = pow(d[0], 2) + t * t;\n}\n");
+    const Json j = Json::parse(run("compile -W --json a.sl"));
+    std::vector<int> lines;
+    for (const Json& d : j["diagnostics"])
+        if (d["id"] == "not-affine") {
+            lines.push_back(d["line"].get<int>());
+            EXPECT_EQ(d["message"].get<std::string>().find("al_"), std::string::npos) << d;
+        }
+    EXPECT_EQ(lines, (std::vector<int>{3, 4}));
 }
 
 TEST_F(Tools, ManualOfOneShadeop) {

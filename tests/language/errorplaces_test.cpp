@@ -124,7 +124,7 @@ std::vector<Said> messages(const Bad& b) {
         if (shader && shader->program().handles && layer) o.coShaders.push_back(ShaderCompiler::coShader(layer, "layer"));
         if (shader) compiler.analyse(*shader, o, d);
         if (shader)
-            if (auto warning = nonlinearUse(shader->program(), shader->shader(), o)) d.report(std::move(*warning));
+            for (auto& warning : nonlinearUses(shader->program(), shader->shader(), o)) d.report(std::move(warning));
     } else {
         FrontOptions options;
         options.lint = b.mode == "lint";

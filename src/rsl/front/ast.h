@@ -4,6 +4,7 @@
 #include "base/diagnostics.h"
 #include "rsl/front/plugin.h"
 #include "shadeops/descriptor.h"
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -126,7 +127,20 @@ struct Function {
     Place place;
 };
 
-struct ShaderParameter { Symbol* symbol; ExprPtr defaultValue; };
+struct ShaderParameter {
+    Symbol* symbol = nullptr;
+    ExprPtr defaultValue;
+    std::string defaultText{}; ///< the default as the shader writes it, macros expanded; "" where there is none
+};
+
+/// A structure as the shader declares it, for who shows shaders; types in words.
+struct StructSummary {
+    struct Member { std::string type, name; };
+    std::string name;
+    std::vector<Member> members;
+    std::vector<std::string> methods; ///< names
+    Place place;
+};
 
 struct Shader {
     ShaderKind kind{};
@@ -153,6 +167,7 @@ struct Program {
     /// Every function that a shader calls, once for each shader that calls it (its predefined variables and externs are then that
     /// shader's symbols); functions of the main file that nothing calls, once.
     std::vector<std::unique_ptr<Function>> functions;
+    std::vector<StructSummary> structs;             ///< in the order of the text
     std::string preprocessed;                       ///< text after includes and macros: part of the cache key
     std::vector<std::string> dependencies;          ///< every file read
     std::vector<std::shared_ptr<const Plugin>> plugins; ///< in the order in which the text asks for them; calls refer to these
@@ -164,6 +179,8 @@ struct FrontOptions {
     std::vector<std::pair<std::string, std::string>> defines;
     PluginFinder plugin; ///< empty: code from outside is not run, and `plugin "name"` is an error that says so
     bool lint = false; ///< warn about unused, uninitialised and the like, too (lint.h)
+    /// The text of an included file that is newer than what the disk has (open in an editor); nothing: the disk's is right.
+    std::function<std::optional<std::string>(const std::string& path)> openText{};
 };
 
 /// Preprocesses, parses and checks. Returns null when there were errors (all of them reported, none that follow from another).

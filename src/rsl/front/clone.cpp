@@ -84,7 +84,7 @@ std::unique_ptr<Shader> clone(const Shader& s) {
         n->symbols.push_back(std::make_unique<Symbol>(*x));
         c.symbols[x.get()] = n->symbols.back().get();
     }
-    for (const auto& p : s.parameters) n->parameters.push_back({c.symbols.at(p.symbol), c.copy(p.defaultValue)});
+    for (const auto& p : s.parameters) n->parameters.push_back({c.symbols.at(p.symbol), c.copy(p.defaultValue), p.defaultText});
     for (const auto& f : s.nested) {
         n->nested.push_back(c.copy(*f));
         c.functions[f.get()] = n->nested.back().get();

@@ -36,6 +36,25 @@ void findPlugins(Unit& unit, const FrontOptions& options, const std::string& fil
     }
 }
 
+/// A structure in words, while its types are still known.
+StructSummary summary(const StructType& s, const Unit& unit) {
+    StructSummary r;
+    r.name = s.name;
+    r.place = s.place;
+    for (const StructMember& m : s.members) {
+        std::string type = m.handle ? "shader" : toString(m.type.element());
+        if (isStruct(m.type)) {
+            const size_t index = size_t(int(m.type.base) - kFirstStruct);
+            type = index < unit.structs.size() ? unit.structs[index].name : "struct";
+        }
+        if (m.storage != Storage::Unspecified) type.insert(0, m.storage == Storage::Uniform ? "uniform " : "varying ");
+        if (m.type.array) type += m.type.array > 0 ? "[" + std::to_string(m.type.array) + "]" : "[]";
+        r.members.push_back({std::move(type), m.name});
+    }
+    for (const auto& f : s.methods) r.methods.push_back(f->name);
+    return r;
+}
+
 std::unique_ptr<Program> compile(const std::string& text, const std::string& name, bool isFile, const FrontOptions& options,
                                  Diagnostics& diagnostics, bool keep = false) {
     SourceSet sources;
@@ -49,6 +68,7 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
     addDirectLighting(sources, p);
     addPrelude(sources, p);
     Unit unit = Parser(p, sources).parse();
+    for (const StructType& s : unit.structs) program->structs.push_back(summary(s, unit));
     lowerStructs(unit, sources);
     expandClasses(unit, sources);
     if (unit.shaders.empty() && unit.functions.empty() && sources.errors() == 0)
@@ -61,7 +81,11 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
         for (auto& s : unit.shaders)
             if (!owner || (!before(at, s->place) && a.token + 1 < p.tokens.size())) owner = s.get();
         if (a.token + 1 >= p.tokens.size() && !unit.shaders.empty()) owner = unit.shaders.back().get();
-        if (owner) owner->annotations.emplace_back(a.key, a.value);
+        if (!owner) continue;
+        const Place place = owner->place; // a class is there once for each kind of shader it can be
+        for (auto& s : unit.shaders)
+            if (s->place.file == place.file && s->place.line == place.line && s->place.column == place.column)
+                s->annotations.emplace_back(a.key, a.value);
     }
     findPlugins(unit, options, name, sources, *program);
     Checker(sources, unit, *program).run();
@@ -73,7 +97,7 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
         else sources.warning(m.place, text + "; nothing of it seems to be used");
     }
     const bool failed = sources.errors() > 0;
-    if (options.lint) lint(*program, sources);
+    if (options.lint) lint(*program, p.tokens, unit.skipped, sources);
     sources.flush(diagnostics);
     program->files = sources.names();
     if (failed && !keep) return nullptr;

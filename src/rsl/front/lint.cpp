@@ -1,4 +1,5 @@
 #include "rsl/front/lint.h"
+#include "rsl/front/lint_calls.h"
 #include "rsl/front/visit.h"
 #include <algorithm>
 #include <array>
@@ -86,7 +87,7 @@ private:
     void read(const Expr& e) {
         const Symbol* s = e.symbol;
         const auto at = tracked_.find(s);
-        if (now_.dead || at == tracked_.end() || now_.always.has(at->second) || !told_.insert(s).second) return;
+        if (!s || s->name.rfind('(', 0) == 0 || now_.dead || at == tracked_.end() || now_.always.has(at->second) || !told_.insert(s).second) return;
         const bool maybe = now_.sometimes.has(at->second) || loops_ > 0;
         sources_.warning(e.place, "'" + s->name + "' " + (maybe ? "may be" : "is") + " read before it has a value; it is zero then");
     }
@@ -97,6 +98,7 @@ private:
         else
             for (const Expr* x = &e; x->kind == ExprKind::Index && x->args.size() > 1; x = x->args[0].get()) expression(*x->args[1]);
         const Symbol* s = root(e);
+        uniformHazard(e, s);
         if (surface_ && s && s->origin == Symbol::Origin::Global && s->name == "P")
             sources_.warning(e.place, "a surface shader that moves 'P' displaces its primitive, but not where light or rays decide how far",
                              "a displacement shader is the place for it");
@@ -150,12 +152,21 @@ private:
                 if (p.value && p.output) target(*p.value, false);
             return;
         }
+        case ExprKind::Method: // another shader's: any variable that it is given may be one that it writes
+            for (size_t i = 0; i < e.args.size(); ++i) {
+                if (!e.args[i]) continue;
+                if (i == 0 || !root(*e.args[i])) expression(*e.args[i]);
+                else given(root(*e.args[i]));
+            }
+            return;
         default: eachPart(e, [&](const Expr& x) { expression(x); });
         }
     }
 
     void loop(const Stmt& s) {
         if (s.init) expression(*s.init);
+        const bool varying = s.condition && s.condition->varying;
+        varyingConditions_ += varying;
         if (s.condition) expression(*s.condition);
         for (const auto& e : s.exprs)
             if (e) expression(*e);
@@ -170,6 +181,7 @@ private:
         statement(s.body.empty() ? nullptr : s.body[0].get());
         if (s.step && !now_.dead) expression(*s.step);
         --loops_;
+        varyingConditions_ -= varying;
         const bool endless = s.condition && s.condition->kind == ExprKind::Number && s.condition->number != 0;
         now_.dead = false;
         State after = merged(before, now_);
@@ -177,13 +189,18 @@ private:
         now_ = after;
     }
 
-    void uniformHazard(const Stmt& s) {
-        if (varyingConditions_ == 0 || !s.value || s.value->kind != ExprKind::Assign || s.value->args.empty()) return;
-        const Symbol* u = root(*s.value->args[0]);
-        if (!u || u->storage != Storage::Uniform || u->origin != Symbol::Origin::Local || u->type.base == Base::String) return;
-        sources_.warning(s.value->args[0]->place, "the uniform variable '" + u->name +
-                                                      "' is changed where only some points come, as the condition is varying; "
-                                                      "each shaded point keeps its own");
+    /// How many varying conditions stand around the declaration: what lives in a block that only some points reach is theirs alone.
+    int declaredUnder(const Symbol* s) const {
+        const auto at = under_.find(s);
+        return at == under_.end() ? 0 : at->second;
+    }
+
+    void uniformHazard(const Expr& target, const Symbol* u) {
+        if (!u || varyingConditions_ <= declaredUnder(u) || u->storage != Storage::Uniform || u->origin != Symbol::Origin::Local || u->type.base == Base::String)
+            return;
+        sources_.warning(target.place, "the uniform variable '" + u->name +
+                                           "' is changed where only some points come, as the condition is varying; "
+                                           "each shaded point keeps its own");
     }
 
     void statement(const Stmt* p) {
@@ -196,6 +213,7 @@ private:
         case StmtKind::Declare:
             for (const auto& d : s.declarators) {
                 if (d.init) expression(*d.init);
+                under_[d.symbol] = varyingConditions_;
                 // An array of open length is made by push and resize.
                 const bool open = d.symbol->resizable || d.symbol->type.array < 0;
                 if (!d.init && !open && d.symbol->type.base != Base::Void && !ignored_.count(d.symbol)) {
@@ -207,7 +225,6 @@ private:
             return;
         case StmtKind::Expression:
             if (s.value) expression(*s.value);
-            uniformHazard(s);
             return;
         case StmtKind::If: {
             if (s.condition) expression(*s.condition);
@@ -223,15 +240,15 @@ private:
             return;
         }
         case StmtKind::While:
-        case StmtKind::For: {
-            const bool varying = s.condition && s.condition->varying;
-            varyingConditions_ += varying;
-            loop(s);
-            varyingConditions_ -= varying;
-            return;
-        }
+        case StmtKind::For:
         case StmtKind::Illuminance:
         case StmtKind::Gather: loop(s); return;
+        case StmtKind::Illuminate:
+        case StmtKind::Solar:
+            for (const auto& e : s.exprs)
+                if (e) expression(*e);
+            for (const auto& b : s.body) statement(b.get());
+            return;
         case StmtKind::Break:
         case StmtKind::Continue: now_.dead = true; return;
         case StmtKind::Return:
@@ -252,13 +269,14 @@ private:
     const bool surface_;
     std::unordered_map<const Symbol*, size_t> tracked_;
     std::set<const Symbol*> told_;
+    std::unordered_map<const Symbol*, int> under_;
     State now_;
     int loops_ = 0, varyingConditions_ = 0;
 };
 
 } // namespace
 
-void lint(const Program& program, SourceSet& sources) {
+void lint(const Program& program, const std::vector<Token>& tokens, const std::unordered_set<std::string>& skipped, SourceSet& sources) {
     // Who is mentioned where: a variable that a nested function reaches for has a life that no order of statements tells.
     std::set<const Symbol*> used, reached;
     const auto mention = [&](std::set<const Symbol*>& set) {
@@ -287,25 +305,40 @@ void lint(const Program& program, SourceSet& sources) {
     const std::string& main = sources.name(0);
     const auto ours = [&](const Place& p) { return p.file >= 0 && p.line > 0 && sources.name(p.file) == main; };
     const auto unused = [&](const Symbol& s, bool parameter) {
-        if (usedPlaces.count({s.place.file, s.place.line, s.place.column}) || !ours(s.place) || s.type.base == Base::Void || s.isExtern || s.name.rfind("__", 0) == 0 || s.name.rfind("this->", 0) == 0)
+        if (skipped.count(s.name) || usedPlaces.count({s.place.file, s.place.line, s.place.column}) || !ours(s.place) || s.type.base == Base::Void || s.isExtern || s.name.rfind("__", 0) == 0 || s.name.rfind("this->", 0) == 0)
             return;
         sources.warning(s.place, std::string(parameter ? "parameter" : "variable") + " '" + s.name + "' is not used");
     };
+    lintCommas(tokens, sources);
     bool surface = false;
     const auto body = [&](const Stmt* b, Place where) {
         if (!b || !ours(where)) return;
         everyStmt(*b, [&](const Stmt& s) {
             for (const auto& d : s.declarators)
                 if (d.symbol) unused(*d.symbol, false);
-        }, [](const Expr&) {});
+            if (s.condition) lintCondition(*s.condition, sources);
+            lintPairs(s, sources);
+        }, [&](const Expr& e) { lintCall(e, sources); });
         Flow(sources, reached, surface).run(b);
     };
     for (const auto& s : program.shaders) {
-        for (const auto& p : s->parameters)
+        for (const auto& p : s->parameters) {
             if (!p.symbol->output) unused(*p.symbol, true);
+            if (p.defaultValue && ours(s->place)) everyExpr(*p.defaultValue, [&](const Expr& e) { lintCall(e, sources); });
+        }
         surface = s->kind == ShaderKind::Surface;
         body(s->body.get(), s->place);
     }
+    // A method that is not public, of a name that the renderer does not know, and that no other calls.
+    const std::vector<std::string> entries = {"construct", "begin", "displacement", "opacity", "prelighting", "lighting", "diffuselighting",
+                                              "specularlighting", "postlighting", "surface", "volume", "light", "imager"};
+    for (const auto& s : program.shaders)
+        for (const auto& f : s->nested)
+            if (s->object && f->anywhere && !s->publics.count(f->name) && ours(f->place)) {
+                const std::string near = nearestName(f->name, entries);
+                sources.warning(f->place, "method '" + f->name + "' is called by nobody: it is not public, and the renderer does not know it",
+                                near.empty() ? "" : "did you mean '" + near + "'?");
+            }
     everyFunction(program, [&](const Function& f) {
         if (ours(f.place))
             for (const Symbol* p : f.parameters) unused(*p, true);

@@ -93,6 +93,7 @@ private:
     int constantLength(const Expr&, Place, bool open);
     Symbol* declare(Owner, const Token& name, Type, const Specifiers&);
     bool functionFollows() const;
+    std::string written(size_t begin) const;
 
     // statements (parser_statements.cpp)
     StmtPtr block();

@@ -187,9 +187,12 @@ void Parser::parameters(Owner owner, std::vector<ShaderParameter>* shader, std::
             if (function) function->push_back(symbol);
             else shader->push_back({symbol, nullptr});
             if (accept("=")) {
+                const size_t begin = at_;
                 ExprPtr value = inSpace(at("{") ? arrayList() : assignment(), *base, space.get());
                 if (shader) {
                     shader->back().defaultValue = std::move(value);
+                    if (space) shader->back().defaultText = "\"" + space->text + "\" ";
+                    shader->back().defaultText += written(begin);
                 } else if (defaults && inObject_ && !isStruct(type)) {
                     defaults->resize(function->size());
                     defaults->back() = std::move(value);
@@ -211,6 +214,17 @@ void Parser::parameters(Owner owner, std::vector<ShaderParameter>* shader, std::
             skippedFrom(begin);
         }
     }
+}
+
+/// The tokens from there to here as one line.
+std::string Parser::written(size_t begin) const {
+    std::string s;
+    for (size_t i = begin; i < at_ && i < tokens_.size(); ++i) {
+        const Token& t = tokens_[i];
+        if (i > begin && (t.space || t.lineStart)) s += ' ';
+        s += t.text;
+    }
+    return s;
 }
 
 /// At "name (": is it the definition of a function, not a call behind a cast?

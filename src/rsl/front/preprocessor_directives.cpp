@@ -171,7 +171,9 @@ void Preprocessor::include(std::vector<Token> line, Place hash) {
 bool Preprocessor::includeFrom(const std::vector<std::string>& folders, const std::string& wanted) {
     for (const auto& folder : folders) {
         const std::string path = (fs::path(folder) / wanted).string();
-        if (auto text = readSource(path)) {
+        std::optional<std::string> text = options_.openText ? options_.openText(path) : std::nullopt;
+        if (!text) text = readSource(path);
+        if (text) {
             out_.dependencies.push_back(path);
             pushFile(sources_.add(path, std::move(*text)));
             return true;

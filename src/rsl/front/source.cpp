@@ -73,7 +73,8 @@ std::string SourceSet::line(Place p) const {
         if (at == std::string::npos) return {};
         ++at;
     }
-    std::string s = t.substr(at, std::min(t.find('\n', at), at + 400) - at);
+    const size_t longest = at + std::max(size_t(std::max(p.column, 0)), limits::kExcerptLine);
+    std::string s = t.substr(at, std::min({t.find('\n', at), longest, t.size()}) - at);
     while (!s.empty() && (s.back() == '\r' || s.back() == '\n')) s.pop_back();
     return s;
 }

@@ -234,7 +234,7 @@ void Lowering::shader(Shader& s) {
         scopes_.back()[symbol.name] = symbol.type;
         const auto parts = split(symbol);
         for (size_t i = 0; i < parts.size(); ++i)
-            parameters.push_back({parts[i], i < values.size() ? std::move(values[i]) : nullptr});
+            parameters.push_back({parts[i], i < values.size() ? std::move(values[i]) : nullptr, {}});
     }
     s.parameters = std::move(parameters);
     body(s.body);

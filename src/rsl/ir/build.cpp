@@ -234,7 +234,7 @@ std::unique_ptr<Kernel> buildKernel(const Program& p, const Shader& s, const Ker
     // Lobe calls whose result is not used affinely are inlined instead; one of them may have hidden another, so again until none
     // is left.
     std::vector<std::string> notes;
-    Place first;
+    std::vector<KernelFacts::NonLinear> nonLinear;
     for (int round = 0; round < 16; ++round) {
         const auto lobe = [](const Inst* i, const Kernel& kernel) {
             const std::string& op = kernel.sites[static_cast<size_t>(i->site)].op;
@@ -253,7 +253,7 @@ std::unique_ptr<Kernel> buildKernel(const Program& p, const Shader& s, const Ker
             const Site& at = trial->sites[static_cast<size_t>(site)];
             if (at.op == "trace" || at.op == "transmission" || at.op == "lightvisibility" || at.op == "ambient") continue;
             if (direct.emplace(at.place.file, at.place.line, at.place.column).second) {
-                if (notes.empty()) first = at.place;
+                nonLinear.push_back({at.op, why, at.place});
                 notes.push_back(at.op + ", line " + std::to_string(at.place.line) + ": " + why);
             }
         }
@@ -262,7 +262,7 @@ std::unique_ptr<Kernel> buildKernel(const Program& p, const Shader& s, const Ker
         k = buildOnce(p, s, o, quiet, direct);
     }
     k->facts.direct = notes;
-    k->facts.directPlace = first;
+    k->facts.nonLinear = std::move(nonLinear);
     return k;
 }
 

@@ -121,8 +121,9 @@ struct Site {
 struct KernelFacts {
     bool affine = true;          ///< every Request was turned into Emit
     std::string whyNot;          ///< the first place that is not affine, in words
-    Place directPlace;           ///< of the first call in `direct`; not kept in kernel files
-    Place whyNotPlace;           ///< of the call whose result is meant; not kept in kernel files
+    /// Everything that keeps the kernel from being affine: the call whose result is meant, and why. Not kept in kernel files.
+    struct NonLinear { std::string op, why; Place place; };
+    std::vector<NonLinear> nonLinear;
     bool suspends = false;       ///< Requests are left: the kernel becomes a coroutine
     bool lightLoops = false;
     std::vector<std::pair<int, std::string>> stuck; ///< sites that no weight can be given to, with the reason (passes/affine.h)

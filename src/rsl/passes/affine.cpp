@@ -38,7 +38,10 @@ bool prove(Kernel& k, bool split) {
         const Site& s = k.sites[static_cast<size_t>(site)];
         k.facts.affine = false;
         k.facts.suspends = true;
-        k.facts.whyNotPlace = s.place;
+        for (const auto& [number, reason] : nonAffineSites(k)) {
+            const Site& other = k.sites[static_cast<size_t>(number)];
+            k.facts.nonLinear.push_back({other.op, reason, other.place});
+        }
         k.facts.whyNot = s.op + "()" + (s.place.line ? ", line " + std::to_string(s.place.line) : "") + ": " + why;
         return false;
     };
@@ -86,8 +89,10 @@ bool prove(Kernel& k, bool split) {
 } // namespace
 
 void makeAffine(Kernel& k) {
+    const std::vector<KernelFacts::NonLinear> lobes = k.facts.nonLinear; // that stay direct
     if (prove(k, false)) return;
     const KernelFacts facts = k.facts;
+    k.facts.nonLinear = lobes;
     if (facts.stuck.empty() || !prove(k, true)) k.facts = facts;
 }
 

@@ -9,6 +9,14 @@ bool isMix(const Inst* i) {
 
 namespace {
 
+/// What the language calls a function of the runtime: "pow" for "al_pow_tf".
+std::string spoken(const std::string& symbol) {
+    std::string name = symbol.substr(symbol.rfind("al_", 0) == 0 ? 3 : 0);
+    const std::string whole = name;
+    while (!name.empty() && !findShadeop(name)) name.resize(name.rfind('_') == std::string::npos ? 0 : name.rfind('_'));
+    return name.empty() ? whole : name;
+}
+
 /// What a Float made from a result may become: component c of a triple, or any (from a Float result).
 constexpr uint8_t kGrey = 8;
 
@@ -94,7 +102,8 @@ struct Analysis {
         case Op::Request: {
             const uint64_t bit = uint64_t(1) << (o->site % 64);
             raise(i, bit, i->kind == Kind::Float ? kGrey : 0);
-            if (n > 0 || (i->kind != Kind::Float && i->kind != Kind::Triple))
+            const bool distance = i->kind == Kind::Float && k.sites[static_cast<size_t>(o->site)].op == "trace"; // the form that gives no light
+            if (n > 0 || distance || (i->kind != Kind::Float && i->kind != Kind::Triple))
                 bad(bit, o, "another result than the light itself is used");
             break;
         }
@@ -171,7 +180,7 @@ struct Analysis {
                 if (i->kind != Kind::None) mix(i, i);
                 return;
             }
-            bad(m, i, "the result of " + i->text.substr(i->text.rfind("al_", 0) == 0 ? 3 : 0) + "() is not affine in it");
+            bad(m, i, "the result of " + spoken(i->text) + "() is not affine in it");
             return;
         case Op::Du:
         case Op::Dv:

@@ -1,0 +1,140 @@
+// What a name means by itself, and what stands behind "->" and ".": of shader objects, structures and handles.
+#include "cli/lspdocument.h"
+#include "rsl/front/visit.h"
+#include <algorithm>
+#include <cctype>
+#include <set>
+
+namespace alpenglow::cli {
+
+namespace {
+
+bool isWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
+bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+/// The variable of this name that was declared last before a place; of those behind it the first.
+const rsl::Symbol* nearest(const std::vector<std::unique_ptr<rsl::Symbol>>& symbols, const std::string& name, int line, int column) {
+    const rsl::Symbol* best = nullptr;
+    for (const auto& s : symbols) {
+        if (s->name != name || s->origin == rsl::Symbol::Origin::Global) continue;
+        const bool before = s->place.line < line || (s->place.line == line && s->place.column <= column);
+        if (!best || before) best = s.get();
+    }
+    return best;
+}
+
+} // namespace
+
+Document::Use Document::named(size_t word) const {
+    Use use;
+    const auto end = wordAt(word);
+    if (!program_ || !end) return use;
+    const std::string name = text_.substr(word, end->second - word);
+    const int line = int(lineOf(word)) + 1, column = int(word - startOf(lineOf(word))) + 1;
+    size_t next = end->second;
+    while (next < text_.size() && isBlank(text_[next])) ++next;
+    const bool call = next < text_.size() && text_[next] == '(';
+    if (!call) {
+        const Around a = around(word);
+        if (a.function) use.symbol = nearest(a.function->symbols, name, line, column);
+        if (!use.symbol && a.shader) use.symbol = nearest(a.shader->symbols, name, line, column);
+        // Outside of all that was understood: the only shader or function that has it.
+        if (!use.symbol && !a.shader && !a.function) {
+            for (const auto& s : program_->shaders)
+                if (isHere(s->place) && !use.symbol) use.symbol = nearest(s->symbols, name, line, column);
+            rsl::front::everyFunction(*program_, [&](const rsl::Function& f) {
+                if (isHere(f.place) && !use.symbol) use.symbol = nearest(f.symbols, name, line, column);
+            });
+        }
+        if (use.symbol) return use;
+    }
+    for (const auto& s : program_->shaders)
+        if (s->name == name && isHere(s->place)) use.shader = s.get();
+    return use;
+}
+
+std::optional<Document::Receiver> Document::receiver(size_t word) const {
+    Receiver r;
+    std::string chain;
+    size_t at = word;
+    for (bool first = true;; first = false) {
+        size_t end = at;
+        while (end > 0 && isBlank(text_[end - 1])) --end;
+        const bool arrow = end >= 2 && text_[end - 1] == '>' && text_[end - 2] == '-', dot = end >= 1 && text_[end - 1] == '.';
+        if (!arrow && !dot) break;
+        end -= arrow ? 2 : 1;
+        while (end > 0 && isBlank(text_[end - 1])) --end;
+        for (int depth = 0; end > 0 && (depth > 0 || text_[end - 1] == ']'); --end) { // ray[3]
+            depth += text_[end - 1] == ']';
+            depth -= text_[end - 1] == '[';
+            if (depth == 0) {
+                --end;
+                break;
+            }
+        }
+        size_t begin = end;
+        while (begin > 0 && isWord(text_[begin - 1])) --begin;
+        if (begin == end || std::isdigit(static_cast<unsigned char>(text_[begin]))) return std::nullopt;
+        if (first) r.arrow = arrow;
+        chain = text_.substr(begin, end - begin) + (chain.empty() ? "" : "->" + chain);
+        at = begin;
+    }
+    if (chain.empty()) return std::nullopt;
+    r.name = chain;
+    return r;
+}
+
+std::vector<Document::Member> Document::members(const Receiver& r, size_t position) const {
+    std::vector<Member> list;
+    if (!program_) return list;
+    std::set<std::string> seen;
+    const auto add = [&](Member m) {
+        if (!m.name.empty() && m.name[0] != '(' && seen.insert(m.name).second) list.push_back(std::move(m));
+    };
+    const auto ofClass = [&](const rsl::Shader& s, bool everything) {
+        for (const auto& f : s.nested)
+            if (everything || s.publics.count(f->name)) add({f->name, signatureOf(*f), s.name, f->place, true});
+        for (const auto& v : s.symbols) {
+            const bool parameter = v->origin == rsl::Symbol::Origin::ShaderParameter;
+            if (v->origin == rsl::Symbol::Origin::Global || v->name.find("->") != std::string::npos) continue;
+            if (parameter || s.publics.count(v->name)) add({v->name, declarationOf(*v), s.name, v->place, false});
+        }
+        if (!everything || !s.body) return;
+        for (const auto& b : s.body->body)
+            for (const auto& d : b->declarators)
+                if (d.symbol) add({d.symbol->name, declarationOf(*d.symbol), s.name, d.symbol->place, false});
+    };
+    const Around a = around(position);
+    if (r.name == "this") {
+        for (const auto& s : program_->shaders)
+            if (s->object && (a.shader ? s->name == a.shader->name : isHere(s->place))) ofClass(*s, true);
+        return list;
+    }
+    // Structures are one variable for each of their members.
+    const std::string head = r.name + "->";
+    bool handle = false;
+    const auto look = [&](const std::vector<std::unique_ptr<rsl::Symbol>>& symbols) {
+        for (const auto& s : symbols) {
+            handle |= s->handle && s->name == r.name;
+            if (s->name.compare(0, head.size(), head) != 0) continue;
+            const std::string rest = s->name.substr(head.size());
+            const size_t deeper = rest.find("->");
+            rsl::Symbol member = *s;
+            member.name = rest;
+            add({rest.substr(0, deeper), deeper == std::string::npos ? declarationOf(member) : "structure " + rest.substr(0, deeper), r.name, s->place, false});
+        }
+    };
+    if (a.function) look(a.function->symbols);
+    if (a.shader) look(a.shader->symbols);
+    if (!a.shader && !a.function) {
+        for (const auto& s : program_->shaders) look(s->symbols);
+        for (const auto& f : program_->functions) look(f->symbols);
+    }
+    // Which shader stands behind a handle, a scene decides: the classes of this text are offered.
+    if (handle && r.arrow)
+        for (const auto& s : program_->shaders)
+            if (s->object) ofClass(*s, false);
+    return list;
+}
+
+} // namespace alpenglow::cli

@@ -1,0 +1,36 @@
+// Cuts the bytes that a client of the language server sends into messages: headers, an empty line, as many bytes as Content-Length
+// says. What is no message is told once, and the next header is looked for.
+#pragma once
+#include <cstddef>
+#include <string>
+
+namespace alpenglow::cli {
+
+class MessageStream {
+public:
+    enum class Kind {
+        More,      ///< nothing whole is there yet
+        Message,
+        BadLength, ///< a Content-Length that is no number
+        NoLength,  ///< headers without one
+        TooLong    ///< longer than limits::kServerMessage: it is skipped
+    };
+    void feed(const char* bytes, size_t count) { buffer_.append(bytes, count); }
+    /// The next message or fault; `body` is set for a message.
+    Kind next(std::string& body);
+    /// Bytes that are held.
+    size_t held() const { return buffer_.size() - at_; }
+
+private:
+    Kind header(std::string line);
+    bool takeLine(std::string& line);
+
+    std::string buffer_;
+    size_t at_ = 0, length_ = 0;
+    bool known_ = false;    ///< the length, behind its header
+    bool body_ = false;     ///< behind the empty line
+    bool others_ = false;   ///< lines that are no length stood before it
+    bool skipping_ = false; ///< behind a fault, until the next length
+};
+
+} // namespace alpenglow::cli

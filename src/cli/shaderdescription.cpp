@@ -1,0 +1,356 @@
+#include "cli/shaderdescription.h"
+#include "cli/lspdocument.h"
+#include "rsl/evaluate.h"
+#include "rsl/ir/build.h"
+#include "rsl/passes/optimize.h"
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <set>
+#include <tuple>
+
+namespace alpenglow::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string lower(std::string s) {
+    std::transform(s.begin(), s.end(), s.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return s;
+}
+
+std::string storageText(rsl::Storage s) { return s == rsl::Storage::Varying ? "varying" : "uniform"; }
+
+/// The type as the shader writes it: handles are of type shader, arrays of open length have none.
+std::string typeText(rsl::Type t, const rsl::Symbol* s) {
+    if (s && (s->type.array < 0 || s->open || s->resizable)) t.array = -1;
+    std::string text = rsl::toString(t);
+    if (s && s->handle && text.rfind("string", 0) == 0) text.replace(0, 6, "shader");
+    return text;
+}
+
+/// Does the value depend on nothing but numbers and texts in the shader?
+bool known(const rsl::ir::Inst* i, int depth = 0) {
+    using rsl::ir::Op;
+    if (!i || depth > 64) return false;
+    switch (i->op) {
+    case Op::Const:
+    case Op::ConstString: return true;
+    case Op::Result:
+    case Op::Add: case Op::Sub: case Op::Mul: case Op::Div: case Op::Neg:
+    case Op::Splat: case Op::Triple: case Op::Extract: case Op::MatrixOf:
+    case Op::Less: case Op::LessEqual: case Op::Equal: case Op::NotEqual:
+    case Op::And: case Op::Or: case Op::Not: case Op::Select: case Op::ToFloat:
+    case Op::Runtime:
+        return std::all_of(i->args.begin(), i->args.end(), [&](const rsl::ir::Inst* a) { return known(a, depth + 1); });
+    default: return false;
+    }
+}
+
+/// Parameters whose default some scene must be asked for.
+std::set<std::string> computedDefaults(const rsl::CompiledShader& s) {
+    std::set<std::string> names;
+    Diagnostics quiet; // parameterDefaults() says what there is to say
+    const auto k = rsl::buildDefaults(s.program(), s.shader(), quiet);
+    if (!k) return names;
+    rsl::ir::optimize(*k, {}, quiet);
+    constexpr size_t kHead = 6; // "param:"
+    for (const rsl::ir::Inst* i : k->body.body) {
+        if (i->op != rsl::ir::Op::Output || i->index < 0 || size_t(i->index) >= k->outputs.size() || known(i->args[0])) continue;
+        const std::string& n = k->outputs[size_t(i->index)].name;
+        names.insert(n.substr(kHead, n.find('[') == n.npos ? n.npos : n.find('[') - kHead));
+    }
+    return names;
+}
+
+/// The value of an expression of numbers alone.
+std::optional<double> numberOf(const rsl::Expr& e) {
+    using rsl::ExprKind;
+    using rsl::ExprOp;
+    if (e.kind == ExprKind::Number) return e.number;
+    if (e.kind == ExprKind::Cast && !e.space && e.type.base == rsl::Base::Float && !e.args.empty()) return numberOf(*e.args[0]);
+    if (e.kind == ExprKind::Unary && e.op == ExprOp::Negate) {
+        const auto a = numberOf(*e.args[0]);
+        return a ? std::optional(-*a) : a;
+    }
+    if (e.kind != ExprKind::Binary || e.args.size() != 2) return std::nullopt;
+    const auto a = numberOf(*e.args[0]), b = numberOf(*e.args[1]);
+    if (!a || !b) return std::nullopt;
+    switch (e.op) {
+    case ExprOp::Add: return *a + *b;
+    case ExprOp::Sub: return *a - *b;
+    case ExprOp::Mul: return *a * *b;
+    case ExprOp::Div: return *b == 0 ? 0 : *a / *b;
+    default: return std::nullopt;
+    }
+}
+
+/// The numbers of a constructor or of one number for all components; empty when they are not all known.
+std::vector<float> numbersOf(const rsl::Expr& e, size_t count) {
+    using rsl::ExprKind;
+    std::vector<float> all;
+    if (e.kind == ExprKind::Tuple || e.kind == ExprKind::MatrixTuple) {
+        for (const auto& a : e.args) {
+            const auto n = numberOf(*a);
+            if (!n) return {};
+            all.push_back(float(*n));
+        }
+    } else if (e.kind == ExprKind::Cast && !e.args.empty()) {
+        return numbersOf(*e.args[0], count);
+    } else if (const auto n = numberOf(e)) {
+        if (count == 16)
+            for (int i = 0; i < 16; ++i) all.push_back(i % 5 == 0 ? float(*n) : 0);
+        else all.assign(count, float(*n));
+    }
+    return all.size() == count ? all : std::vector<float>{};
+}
+
+/// Whether the value is what a name or a call gives, so that the text says more than the value.
+bool asks(const rsl::Expr& e) {
+    if (e.kind == rsl::ExprKind::Variable && e.symbol && e.symbol->origin != rsl::Symbol::Origin::Global) return true;
+    return std::any_of(e.args.begin(), e.args.end(), [](const auto& a) { return a && asks(*a); });
+}
+
+DefaultDescription describeDefault(const rsl::ShaderParameter& p, const rsl::ParameterInfo& info, rsl::ParameterValue value, bool computed) {
+    DefaultDescription d;
+    d.there = info.hasDefault;
+    if (!d.there) return d;
+    d.written = p.defaultText;
+    d.value = std::move(value);
+    d.computed = computed;
+    const rsl::Expr* e = p.defaultValue.get();
+    d.null = p.symbol->handle && p.symbol->type.array == 0 && d.value.strings == std::vector<std::string>{""};
+    d.named = e && !d.written.empty() && asks(*e);
+    if (e && e->kind == rsl::ExprKind::ArrayList && e->text == "{}") d.value.strings.clear(), d.value.numbers.clear(); // {} has no elements
+    while (e && !e->space && e->kind == rsl::ExprKind::Cast && !e->args.empty()) e = e->args[0].get();
+    if (!e || !e->space || e->space->kind != rsl::ExprKind::String) return d;
+    d.space = e->space->text;
+    d.inSpace = numbersOf(*e, size_t(rsl::componentCount(e->type.base)));
+    // Points stay in the space in which they are written: what they are elsewhere, a scene knows.
+    if (computed && !d.inSpace.empty() && e->type.base != rsl::Base::Color && p.symbol->type.array == 0) {
+        d.computed = false;
+        d.value.numbers = d.inSpace;
+    }
+    return d;
+}
+
+KindDescription describeKind(rsl::ShaderCompiler& compiler, const rsl::CompiledShader& s, Diagnostics& diagnostics) {
+    KindDescription k;
+    k.kind = lower(rsl::toString(s.kind()));
+    rsl::KernelOptions options;
+    options.path = true;
+    const auto kernel = compiler.analyse(s, options, diagnostics);
+    if (!kernel) return k;
+    k.compiled = true;
+    k.writes = kernel->facts.writes;
+    k.direct = kernel->facts.direct;
+    k.affine = kernel->facts.affine;
+    k.suspends = kernel->facts.suspends;
+    k.lightLoops = kernel->facts.lightLoops;
+    k.ambient = s.kind() == rsl::ShaderKind::Light && kernel->facts.ambientLight;
+    k.whyNot = kernel->facts.whyNot;
+    return k;
+}
+
+bool isEntry(const std::string& name) {
+    static constexpr const char* kNames[] = {"construct", "begin", "displacement", "opacity", "prelighting", "lighting",
+                                             "diffuselighting", "specularlighting", "postlighting", "surface", "volume", "light",
+                                             "imager"};
+    return std::any_of(std::begin(kNames), std::end(kNames), [&](const char* n) { return name == n; });
+}
+
+std::string quoted(const std::string& s) {
+    std::string q = "\"";
+    for (const char c : s) {
+        if (c == '"' || c == '\\') q += '\\';
+        if (c == '\n') q += "\\n";
+        else if (c == '\t') q += "\\t";
+        else q += c;
+    }
+    return q + "\"";
+}
+
+std::string valueText(const rsl::ParameterValue& v) {
+    if (v.type.base != rsl::Base::String) return rsl::formatNumbers(v.numbers);
+    std::string t;
+    for (const std::string& s : v.strings) t += (t.empty() ? "" : " ") + quoted(s);
+    return t;
+}
+
+std::string defaultText(const ParameterDescription& p) {
+    const DefaultDescription& d = p.byDefault;
+    if (!d.there) return "";
+    if (d.computed) return " = " + (d.written.empty() ? "" : d.written + "  ") + "(computed)";
+    if (!d.space.empty() && d.value.type.base == rsl::Base::Color) // both, as they are different numbers
+        return " = " + (d.written.empty() ? quoted(d.space) + " " + rsl::formatNumbers(d.inSpace) : d.written) + "  (rgb " + valueText(d.value) + ")";
+    if (d.null) return " = null";
+    if (d.named) return " = " + d.written + "  (" + valueText(d.value) + ")";
+    if (!d.space.empty()) return " = " + quoted(d.space) + " " + valueText(d.value);
+    return " = " + (d.value.numbers.empty() && d.value.strings.empty() ? "{}" : valueText(d.value));
+}
+
+} // namespace
+
+ShaderDescription describe(rsl::ShaderCompiler& compiler, const std::shared_ptr<const rsl::CompiledShader>& shader, Diagnostics& diagnostics) {
+    ShaderDescription d;
+    const rsl::Shader& s = shader->shader();
+    d.name = shader->name();
+    d.file = shader->path();
+    d.object = s.object;
+    d.annotations = s.annotations;
+    d.plugins = shader->program().plugins;
+    d.structs = shader->program().structs;
+    auto values = compiler.parameterDefaults(shader, diagnostics);
+    const std::set<std::string> computed = computedDefaults(*shader);
+    for (size_t i = 0; i < std::min(shader->parameters().size(), s.parameters.size()); ++i) {
+        const rsl::ParameterInfo& info = shader->parameters()[i];
+        ParameterDescription p;
+        p.name = info.name;
+        p.type = typeText(info.type, s.parameters[i].symbol);
+        p.storage = storageText(info.storage);
+        p.output = info.output;
+        p.open = info.open;
+        p.array = info.type.array;
+        if (i < values.size())
+            p.byDefault = describeDefault(s.parameters[i], info, std::move(values[i]), computed.count(info.name) > 0);
+        if (p.name == "__category" && p.byDefault.there)
+            for (const std::string& list : p.byDefault.value.strings)
+                for (size_t at = 0; at < list.size();) {
+                    const size_t end = std::min(list.find_first_of(", ", at), list.size());
+                    if (end > at) d.categories.push_back(list.substr(at, end - at));
+                    at = end + 1;
+                }
+        d.parameters.push_back(std::move(p));
+    }
+    std::set<std::tuple<int, int, int>> methods;
+    std::set<std::string> members;
+    for (const auto& other : shader->program().shaders) {
+        if (other.get() != &s && !(s.object && other->object && other->name == s.name)) continue;
+        const auto variant = other.get() == &s ? shader : rsl::ShaderCompiler::variant(shader, other->kind);
+        if (variant) d.kinds.push_back(describeKind(compiler, *variant, diagnostics));
+        for (const auto& f : other->nested)
+            if (methods.insert({f->place.file, f->place.line, f->place.column}).second)
+                d.methods.push_back({signatureOf(*f), f->name, other->publics.count(f->name) > 0, s.object && isEntry(f->name)});
+        if (!s.object || !other->body) continue;
+        for (const auto& b : other->body->body)
+            for (const auto& v : b->declarators)
+                if (v.symbol && v.symbol->name[0] != '(' && v.symbol->type.base != rsl::Base::Void && members.insert(v.symbol->name).second)
+                    d.members.push_back({typeText(v.symbol->type, v.symbol), v.symbol->name, storageText(v.symbol->storage),
+                                         other->publics.count(v.symbol->name.substr(0, v.symbol->name.find("->"))) > 0, v.symbol->isConstant});
+    }
+    return d;
+}
+
+nlohmann::ordered_json descriptionJson(const ShaderDescription& d) {
+    Json j;
+    j["name"] = d.name;
+    j["type"] = d.kinds.empty() ? "" : d.kinds[0].kind;
+    j["types"] = Json::array();
+    for (const auto& k : d.kinds) j["types"].push_back(k.kind);
+    j["file"] = d.file;
+    j["parameters"] = Json::array();
+    for (const ParameterDescription& p : d.parameters) {
+        Json q = {{"name", p.name}, {"type", p.type}, {"storage", p.storage}, {"output", p.output}};
+        if (p.array != 0) q["arraySize"] = p.array;
+        if (p.open) q["open"] = true;
+        const DefaultDescription& v = p.byDefault;
+        if (!v.space.empty()) q["space"] = v.space;
+        if (v.there && !v.computed) {
+            if (v.null) q["default"] = nullptr;
+            else if (v.value.type.base == rsl::Base::String) q["default"] = v.value.strings;
+            else q["default"] = v.value.numbers;
+        }
+        if (v.there && v.computed) q["computed"] = true;
+        if (!v.inSpace.empty()) q["defaultInSpace"] = v.inSpace;
+        if (!v.written.empty()) q["written"] = v.written;
+        j["parameters"].push_back(std::move(q));
+    }
+    j["methods"] = Json::array();
+    j["publicMethods"] = Json::array();
+    for (const auto& m : d.methods) {
+        j["methods"].push_back(m.signature);
+        if (m.isPublic) j["publicMethods"].push_back(m.name);
+    }
+    j["class"] = d.object;
+    j["members"] = Json::array();
+    for (const auto& m : d.members)
+        j["members"].push_back({{"name", m.name}, {"type", m.type}, {"storage", m.storage}, {"public", m.isPublic}, {"constant", m.constant}});
+    if (!d.categories.empty()) j["categories"] = d.categories;
+    for (const auto& s : d.structs) {
+        Json members = Json::array();
+        for (const auto& m : s.members) members.push_back({{"name", m.name}, {"type", m.type}});
+        j["structs"].push_back({{"name", s.name}, {"members", std::move(members)}, {"methods", s.methods}});
+    }
+    for (const auto& plugin : d.plugins)
+        for (const rsl::Shadeop& f : plugin->functions)
+            for (const rsl::Signature& s : f.signatures) j["plugins"][plugin->name].push_back({{"signature", s.text}, {"doc", f.doc}});
+    std::map<std::string, size_t> times;
+    for (const auto& [key, value] : d.annotations) {
+        Json& a = j["annotations"][key];
+        const size_t n = ++times[key];
+        if (n == 1) a = value;
+        else if (n == 2) a = Json::array({a, value});
+        else a.push_back(value);
+    }
+    const auto facts = [](Json& to, const KindDescription& k) {
+        if (!k.compiled) return;
+        to["writes"] = k.writes;
+        to["affine"] = k.affine;
+        if (!k.affine) to["whyNot"] = k.whyNot;
+        to["suspends"] = k.suspends;
+        to["lightLoops"] = k.lightLoops;
+        to["direct"] = k.direct;
+        if (k.kind == "light") to["ambient"] = k.ambient;
+    };
+    if (!d.kinds.empty()) facts(j, d.kinds[0]);
+    if (d.kinds.size() > 1)
+        for (const auto& k : d.kinds) {
+            Json one = {{"type", k.kind}};
+            facts(one, k);
+            j["kinds"].push_back(std::move(one));
+        }
+    return j;
+}
+
+std::string descriptionText(const ShaderDescription& d) {
+    std::string t;
+    for (const auto& k : d.kinds) t += (t.empty() ? "" : ", ") + k.kind;
+    t += " \"" + d.name + "\"  (" + (d.object ? "class, " : "") + d.file + ")\n";
+    for (const ParameterDescription& p : d.parameters)
+        t += std::string("    ") + (p.output ? "output " : "") + p.storage + " " + p.type + " " + p.name + defaultText(p) + "\n";
+    for (const auto& s : d.structs) {
+        t += "struct " + s.name + " {";
+        for (const auto& m : s.members) t += " " + m.type + " " + m.name + ";";
+        t += " }\n";
+        for (const std::string& m : s.methods) t += "    method of " + s.name + ": " + m + "()\n";
+    }
+    for (const auto& m : d.members)
+        t += "member: " + std::string(m.isPublic ? "public " : "") + (m.constant ? "constant " : m.storage + " ") + m.type + " " + m.name + "\n";
+    for (const auto& m : d.methods)
+        t += "method: " + std::string(m.isPublic ? "public " : "") + m.signature + (m.entry ? "  (run by the renderer)" : "") + "\n";
+    if (!d.categories.empty()) {
+        t += "categories:";
+        for (const std::string& c : d.categories) t += " " + c;
+        t += "\n";
+    }
+    for (const auto& plugin : d.plugins)
+        for (const rsl::Shadeop& f : plugin->functions)
+            for (const rsl::Signature& s : f.signatures)
+                t += "plug-in \"" + plugin->name + "\": " + s.text + (f.doc.empty() ? "" : "  " + f.doc) + "\n";
+    for (const auto& [key, value] : d.annotations) t += "annotation " + key + ": " + value + "\n";
+    for (const auto& k : d.kinds) {
+        if (!k.compiled) continue;
+        const std::string head = d.kinds.size() > 1 ? k.kind + " " : "";
+        t += head + "writes:";
+        for (const std::string& w : k.writes) t += " " + w;
+        t += k.writes.empty() ? " nothing\n" : "\n";
+        t += head + (k.affine ? "affine: yes; it never waits for a ray\n" : "affine: no; " + k.whyNot + "\n");
+        if (k.suspends) t += head + "suspends: it waits for its rays as a coroutine\n";
+        if (k.ambient) t += head + "light: ambient, without illuminate() and solar()\n";
+        for (const std::string& direct : k.direct) t += head + "direct light only under path: " + direct + "\n";
+    }
+    return t;
+}
+
+} // namespace alpenglow::cli

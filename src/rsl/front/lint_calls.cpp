@@ -1,0 +1,228 @@
+#include "rsl/front/lint_calls.h"
+#include <algorithm>
+#include <cctype>
+#include <initializer_list>
+#include <string_view>
+
+namespace alpenglow::rsl::front {
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+/// Filters of texture(), environment() and the like; some are kinds of one another.
+const Names& filters() {
+    static const Names all = {"box", "triangle", "gaussian", "catmull-rom", "separable-catmull-rom", "mitchell", "lanczos", "sinc", "disk",
+                              "bessel", "b-spline", "blackman-harris", "radial-bspline", "point", "bspline", "catmullrom"};
+    return all;
+}
+
+/// Names of one argument of a shadeop: all that mean something, or only those that are well known, where scenes may have more.
+struct NamedArgument {
+    const char* shadeop;
+    size_t argument;
+    size_t least; ///< arguments in the call, for this one to be the name
+    bool all;
+    const char* what;
+    Names names;
+};
+
+const std::vector<NamedArgument>& namedArguments() {
+    static const Names spaces = {"current", "world", "camera", "object", "shader", "screen", "raster", "NDC", "eye"};
+    static const Names colours = {"rgb", "hsv", "hsl", "yiq", "xyz"};
+    static const std::vector<NamedArgument> all = {
+        {"rayinfo", 0, 2, true, "rayinfo", {"type", "label", "depth", "speculardepth", "diffusedepth", "origin", "direction", "length"}},
+        {"textureinfo", 1, 3, true, "textureinfo",
+         {"resolution", "type", "channels", "viewingmatrix", "projectionmatrix", "exists", "bitsperchannel", "min", "max"}},
+        {"rendererinfo", 0, 2, true, "rendererinfo", {"renderer", "version", "versionstring"}},
+        {"area", 1, 2, true, "area", {"shading", "dicing"}},
+        {"spline", 0, 3, true, "basis",
+         {"catmull-rom", "catmullrom", "bezier", "b-spline", "bspline", "hermite", "linear", "solvecatmull-rom", "solvecatmullrom",
+          "solvebezier", "solveb-spline", "solvebspline", "solvehermite", "solvelinear"}},
+        {"ctransform", 0, 2, true, "colour", colours},
+        {"ctransform", 1, 3, true, "colour", colours},
+        {"transform", 0, 2, false, "space", spaces},
+        {"transform", 1, 3, false, "space", spaces},
+        {"vtransform", 0, 2, false, "space", spaces},
+        {"vtransform", 1, 3, false, "space", spaces},
+        {"ntransform", 0, 2, false, "space", spaces},
+        {"ntransform", 1, 3, false, "space", spaces},
+        {"option", 0, 2, false, "option",
+         {"Ri:Frame", "Ri:Format", "Ri:PixelSamples", "Ri:Shutter", "Ri:Clipping", "Ri:CropWindow", "Ri:FrameAspectRatio", "Ri:PixelVariance",
+          "Ri:ScreenWindow", "Ri:DepthOfField", "Ri:Hider", "Ri:Display", "trace:maxdepth"}},
+        {"attribute", 0, 2, false, "attribute",
+         {"Ri:ShadingRate", "Ri:Sides", "Ri:Matte", "Ri:Color", "Ri:Opacity", "Ri:Orientation", "Ri:TextureCoordinates", "Ri:DetailRange",
+          "Ri:Transformation", "GeometricApproximation:motionfactor", "displacementbound:sphere", "displacementbound:coordinatesystem",
+          "geometry:backfacing", "geometry:frontfacing", "geometry:geometricnormal", "grouping:membership", "identifier:name", "trace:bias",
+          "trace:displacements", "trace:samplemotion", "trace:maxdiffusedepth", "trace:maxspeculardepth", "sides:doubleshaded",
+          "visibility:camera", "visibility:diffuse", "visibility:specular", "visibility:transmission", "visibility:photon", "photon:estimator",
+          "photon:shadingmodel", "photon:causticmap", "photon:globalmap", "dice:hair", "dice:rasterorient", "cull:backfacing", "cull:hidden",
+          "derivatives:smooth", "derivatives:centered", "subsurface:scale", "subsurface:refractionindex", "subsurface:shadingrate",
+          "subsurface:groupname", "light:samples", "light:emitphotons", "light:samplingstrategy", "irradiance:shadingrate",
+          "irradiance:nsamples", "hider:composite"}}};
+    return all;
+}
+
+std::string lower(std::string s) {
+    std::transform(s.begin(), s.end(), s.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return s;
+}
+
+bool contains(const Names& names, const std::string& name) { return std::find(names.begin(), names.end(), name) != names.end(); }
+
+std::string didYouMean(const std::string& near) { return near.empty() ? "" : "did you mean \"" + near + "\"?"; }
+
+/// The same, or all that there are.
+std::string oneOf(const std::string& near, const Names& names) {
+    if (!near.empty()) return didYouMean(near);
+    std::string all;
+    for (const std::string& n : names) all += (all.empty() ? "" : ", ") + n;
+    return "there are: " + all;
+}
+
+std::string counted(size_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); }
+
+/// A name of a list that is complete, or that is at least well known.
+void name(const std::string& given, Place place, const NamedArgument& a, SourceSet& sources) {
+    if (given.empty() || contains(a.names, given)) return;
+    const std::string near = nearestName(given, a.names);
+    if (!a.all && (near.empty() || near == given)) return;
+    const std::string what = a.what;
+    if (what == "basis") sources.warning(place, "there is no spline basis \"" + given + "\"; linear is used", oneOf(near, a.names));
+    else if (what == "colour") sources.warning(place, "there is no colour space \"" + given + "\"; the colour stays as it is", oneOf(near, a.names));
+    else if (what == "area") sources.warning(place, "area() has no strategy \"" + given + "\"", oneOf(near, a.names));
+    else if (what == "space") sources.warning(place, "no predefined space is called \"" + given + "\"; the scene must have it", didYouMean(near));
+    else sources.warning(place, what + "() knows nothing of the name \"" + given + "\"", oneOf(near, a.names));
+}
+
+/// `color "hvs" (...)` and `point "wrold" (...)`.
+void space(const Expr& e, SourceSet& sources) {
+    if (!e.space || e.space->kind != ExprKind::String) return;
+    const bool colour = e.type.base == Base::Color;
+    for (const NamedArgument& a : namedArguments())
+        if (std::string_view(a.what) == (colour ? "colour" : "space") && a.argument == 0) {
+            if (!colour || !contains(a.names, lower(e.space->text))) name(e.space->text, e.space->place, a, sources);
+            return;
+        }
+}
+
+/// One conversion of a pattern: its letter, 0 at the end of the text.
+std::vector<char> conversions(const std::string& pattern) {
+    std::vector<char> letters;
+    for (size_t i = 0; i < pattern.size(); ++i) {
+        if (pattern[i] != '%') continue;
+        for (++i; i < pattern.size() && std::string_view("-+ #0123456789.*").find(pattern[i]) != std::string_view::npos;) ++i;
+        const char c = i < pattern.size() ? pattern[i] : '\0';
+        if (c != '%') letters.push_back(c);
+    }
+    return letters;
+}
+
+const Expr& bare(const Expr& e) {
+    const Expr* x = &e;
+    while (x->kind == ExprKind::Cast && !x->space && !x->args.empty() && x->place.line == x->args[0]->place.line &&
+           x->place.column == x->args[0]->place.column)
+        x = x->args[0].get(); // put there by the checker
+    return *x;
+}
+
+void pattern(const Expr& e, SourceSet& sources) {
+    if (e.args.empty() || e.args[0]->kind != ExprKind::String) return;
+    const std::vector<char> letters = conversions(e.args[0]->text);
+    const size_t values = e.args.size() - 1;
+    size_t takes = 0;
+    for (const char c : letters) {
+        if (c && std::string_view("fegdpcmsh").find(c) != std::string_view::npos) {
+            const size_t n = ++takes;
+            if (n > values) continue;
+            const Expr& v = *e.args[n];
+            const Base b = v.type.base;
+            const bool triple = b == Base::Color || b == Base::Point || b == Base::Vector || b == Base::Normal;
+            const char* wants = c == 's' || c == 'h' ? (b == Base::String ? nullptr : c == 's' ? "strings" : "shaders")
+                                : c == 'm'           ? (b == Base::Matrix ? nullptr : "matrices")
+                                : c == 'p' || c == 'c'
+                                    ? (triple ? nullptr : c == 'p' ? "points, vectors and normals" : "colours")
+                                    : (b == Base::Float || b == Base::Bool || triple ? nullptr : "floats"); // a triple shows its parts
+            if (wants)
+                sources.warning(v.place, std::string("'%") + c + "' is for " + wants + ", and this is a " +
+                                             (v.handle || (v.symbol && v.symbol->handle) ? "shader" : toString(v.type)));
+        } else {
+            sources.warning(e.args[0]->place, c ? std::string("'%") + c + "' is no conversion; it is shown as it stands"
+                                                : "the pattern ends in a '%', which is shown as it stands",
+                            "%f %e %g %d for floats, %p %c for points and colours, %m for matrices, %s for strings; %% is a '%'");
+        }
+    }
+    if (takes > values)
+        sources.warning(e.args[0]->place, "the pattern takes " + counted(takes, "value") + ", and there " +
+                                              (values == 1 ? "is 1" : values == 0 ? "is none" : "are " + std::to_string(values)));
+    else if (takes < values)
+        sources.warning(e.args[takes + 1]->place, "the pattern takes " + (takes == 0 ? "no value" : "only " + counted(takes, "value")) +
+                                                      "; this one is not shown");
+}
+
+void filter(const Expr& e, SourceSet& sources) {
+    if (e.text == "filterstep") return; // the checker knows its own
+    for (const NamedArg& p : e.pairs)
+        if (p.name == "filter" && p.value && p.value->kind == ExprKind::String && !contains(filters(), p.value->text))
+            sources.warning(p.value->place, "there is no filter \"" + p.value->text + "\" of '" + e.text + "'",
+                            oneOf(nearestName(p.value->text, filters()), filters()));
+}
+
+} // namespace
+
+void lintCall(const Expr& e, SourceSet& sources) {
+    if (e.kind == ExprKind::Tuple || e.kind == ExprKind::MatrixTuple || e.kind == ExprKind::Cast) space(e, sources);
+    if (!e.shadeop || (e.kind != ExprKind::ShadeopCall && e.kind != ExprKind::FunctionCall)) return;
+    const std::string& op = e.shadeop->name;
+    if (op == "printf" || op == "print" || op == "format") pattern(e, sources);
+    filter(e, sources);
+    for (const NamedArgument& a : namedArguments()) {
+        if (op != a.shadeop || e.args.size() < a.least || a.argument >= e.args.size() || !e.args[a.argument]) continue;
+        const Expr& given = *e.args[a.argument];
+        if (given.kind != ExprKind::String) continue;
+        if (std::string_view(a.what) == "colour" && contains(a.names, lower(given.text))) continue;
+        name(given.text, given.place, a, sources);
+    }
+    // What is not built yet takes its parameters too; only names that miss one by a slip are told.
+    if (e.shadeop->lowering != Lowering::Unavailable) return;
+    Names known;
+    for (const auto& o : e.shadeop->optional) known.push_back(o.name);
+    for (const NamedArg& p : e.pairs) {
+        if (contains(known, p.name) || p.name.find(':') != std::string::npos) continue;
+        if (const std::string near = nearestName(p.name, known); !near.empty())
+            sources.warning(p.place, "'" + op + "' has no parameter \"" + p.name + "\"; it is ignored", didYouMean(near));
+    }
+}
+
+void lintCondition(const Expr& e, SourceSet& sources) {
+    const Expr& x = bare(e);
+    if (x.kind == ExprKind::Assign && x.op == ExprOp::Assign)
+        sources.warning(x.place, "this condition is an assignment: it is true unless the value is zero", "'==' compares");
+    if (x.kind == ExprKind::Unary || x.kind == ExprKind::Cast || (x.kind == ExprKind::Binary && (x.op == ExprOp::And || x.op == ExprOp::Or || x.op == ExprOp::NotEqual)))
+        for (const auto& a : x.args)
+            if (a) lintCondition(*a, sources);
+}
+
+void lintPairs(const Stmt& s, SourceSet& sources) {
+    if (s.kind != StmtKind::Gather) return;
+    static const Names names = {"bias", "maxdist", "samplebase", "samplecone", "distribution", "label", "subset", "hitmode", "uniformdist", "othreshold"};
+    static const Names sends = {"surface", "displacement", "volume", "ray", "primitive", "attribute", "light", "send", "effects"};
+    for (const NamedArg& p : s.pairs) {
+        const size_t colon = p.name.find(':');
+        const std::string head = p.name.substr(0, colon);
+        const Names& known = colon == std::string::npos ? names : sends;
+        if (contains(known, head)) continue;
+        const std::string near = nearestName(head, known);
+        if (!near.empty())
+            sources.warning(p.place, "'gather' has no parameter \"" + p.name + "\"; it is ignored",
+                            didYouMean(colon == std::string::npos ? near : near + p.name.substr(colon)));
+    }
+}
+
+void lintCommas(const std::vector<Token>& tokens, SourceSet& sources) {
+    for (size_t i = 0; i + 1 < tokens.size(); ++i)
+        if (tokens[i].is(",") && tokens[i + 1].is(")") && tokens[i].place.file >= 0 && sources.name(tokens[i].place.file) == sources.name(0))
+            sources.warning(tokens[i].place, "nothing stands behind this ',' before the ')'; it is ignored");
+}
+
+} // namespace alpenglow::rsl::front

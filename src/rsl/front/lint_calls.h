@@ -1,0 +1,22 @@
+// The part of the warnings for who writes shaders (lint.h) that is about what calls are given: patterns of printf(), names that mean
+// nothing, conditions that are assignments.
+#pragma once
+#include "rsl/front/lexer.h"
+#include "rsl/front/source.h"
+#include <vector>
+
+namespace alpenglow::rsl::front {
+
+/// Warns about one expression of a checked program, not about those below it.
+void lintCall(const Expr&, SourceSet&);
+
+/// Warns about a condition of `if`, `while`, `for` that is an assignment.
+void lintCondition(const Expr&, SourceSet&);
+
+/// Warns about the pairs of a gather statement.
+void lintPairs(const Stmt&, SourceSet&);
+
+/// Warns about commas with nothing behind them in the main file.
+void lintCommas(const std::vector<Token>&, SourceSet&);
+
+} // namespace alpenglow::rsl::front

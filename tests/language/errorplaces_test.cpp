@@ -8,17 +8,15 @@
 // Below a line of a program stands what is expected there: a caret in the column that is meant, then "warning" if it is one, then the
 // id. "^ 7:3 id" names line and column of the program instead. "{{300*(}}" in a program stands for 300 opening parentheses.
 #include "base/limits.h"
+#include "errorfiles.h"
 #include "rsl/compiler.h"
 #include "rsl/front/inspect.h"
 #include "rsl/front/messages.h"
 #include "rsl/nonlinear.h"
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <gtest/gtest.h>
 #include <map>
 #include <set>
-#include <tuple>
 
 namespace fs = std::filesystem;
 
@@ -38,76 +36,6 @@ class layer(float gain = 1;)
     public float again(float x) { shader h = getshader("layer"); return h->again(x); }
     float mine(float x) { return x; }
 })";
-
-/// Line, column, warning, id.
-using Said = std::tuple<int, int, bool, std::string>;
-
-struct Bad {
-    std::string mode, name, text;
-    int line = 0; ///< in the file of programs
-    std::vector<Said> expected;
-};
-
-std::string repeated(std::string s) {
-    for (size_t at; (at = s.find("{{")) != std::string::npos;) {
-        const size_t star = s.find('*', at), end = s.find("}}", at);
-        if (star == std::string::npos || end == std::string::npos || star > end) break;
-        std::string all;
-        for (int n = std::atoi(s.c_str() + at + 2); n > 0; --n) all += s.substr(star + 1, end - star - 1);
-        s.replace(at, end + 2 - at, all);
-    }
-    return s;
-}
-
-std::vector<Bad> read(const fs::path& path) {
-    std::vector<Bad> all;
-    std::ifstream in(path, std::ios::binary);
-    std::string line, mode, name;
-    int rows = 0;
-    for (int number = 1; std::getline(in, line); ++number) {
-        const size_t mark = line.find_first_not_of(' ');
-        if (line.rfind("== ", 0) == 0) {
-            const size_t space = line.find(' ', 3);
-            mode = line.substr(3, space - 3);
-            name = space == std::string::npos ? "" : line.substr(space + 1);
-            if (mode != "lines") all.push_back({mode, name, "", number, {}});
-            rows = 0;
-        } else if (mode.empty() || (mode == "lines" && (mark == std::string::npos || line[0] == '#'))) {
-            continue;
-        } else if (mark != std::string::npos && line[mark] == '^' && line.compare(mark, 2, "^ ") == 0) {
-            Said s{std::max(rows, 1), int(mark) + 1, false, line.substr(mark + 2)};
-            auto& [row, column, warning, id] = s;
-            if (std::isdigit(static_cast<unsigned char>(id[0]))) {
-                char* end = nullptr;
-                row = int(std::strtol(id.c_str(), &end, 10));
-                column = int(std::strtol(end + 1, &end, 10));
-                id = end + 1;
-            }
-            warning = id.rfind("warning ", 0) == 0;
-            if (warning) id.erase(0, 8);
-            if (!all.empty()) all.back().expected.push_back(s);
-        } else if (mode == "lines") {
-            all.push_back({mode, name, line, number, {}});
-            rows = 1;
-        } else {
-            all.back().text += repeated(line) + "\n";
-            ++rows;
-        }
-    }
-    for (Bad& b : all) {
-        std::sort(b.expected.begin(), b.expected.end());
-        while (b.mode != "lines" && b.text.size() > 1 && b.text.ends_with("\n")) b.text.pop_back(); // the blank lines behind it
-    }
-    return all;
-}
-
-std::vector<fs::path> files() {
-    std::vector<fs::path> all;
-    for (const auto& e : fs::directory_iterator(fs::path(ALPENGLOW_SOURCE_DIR) / "tests/language/errors"))
-        if (e.path().extension() == ".err") all.push_back(e.path());
-    std::sort(all.begin(), all.end());
-    return all;
-}
 
 std::vector<Said> messages(const Bad& b) {
     Diagnostics d;
@@ -151,7 +79,7 @@ class ErrorPlaces : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(ErrorPlaces, AreExact) {
     const fs::path path = fs::path(ALPENGLOW_SOURCE_DIR) / "tests/language/errors" / (GetParam() + ".err");
-    const auto programs = read(path);
+    const auto programs = readErrors(path);
     ASSERT_FALSE(programs.empty());
     for (const Bad& b : programs) {
         const auto said = messages(b);
@@ -162,7 +90,7 @@ TEST_P(ErrorPlaces, AreExact) {
 
 INSTANTIATE_TEST_SUITE_P(Files, ErrorPlaces, ::testing::ValuesIn([] {
                              std::vector<std::string> names;
-                             for (const auto& f : files()) names.push_back(f.stem().string());
+                             for (const auto& f : errorFiles()) names.push_back(f.stem().string());
                              return names;
                          }()),
                          [](const auto& i) { return i.param; });
@@ -179,8 +107,8 @@ TEST(ErrorPlaces, AfterManyTheFileIsLeft) {
 TEST(ErrorPlaces, EveryKindOfMessageAndThreeHundredPrograms) {
     std::set<std::string> ids;
     int wrong = 0;
-    for (const auto& f : files())
-        for (const Bad& b : read(f)) {
+    for (const auto& f : errorFiles())
+        for (const Bad& b : readErrors(f)) {
             wrong += !b.expected.empty();
             for (const Said& s : b.expected) ids.insert(std::get<3>(s));
         }

@@ -84,6 +84,13 @@ std::optional<Document::Receiver> Document::receiver(size_t word) const {
     return r;
 }
 
+const rsl::StructSummary* Document::structure(const std::string& name) const {
+    if (program_)
+        for (const auto& s : program_->structs)
+            if (s.name == name) return &s;
+    return nullptr;
+}
+
 std::vector<Document::Member> Document::members(const Receiver& r, size_t position) const {
     std::vector<Member> list;
     if (!program_) return list;
@@ -129,6 +136,20 @@ std::vector<Document::Member> Document::members(const Receiver& r, size_t positi
     if (!a.shader && !a.function) {
         for (const auto& s : program_->shaders) look(s->symbols);
         for (const auto& f : program_->functions) look(f->symbols);
+    }
+    // Of which structure they are: the one with just these members, whose methods follow.
+    for (const auto& s : program_->structs) {
+        const bool same = !list.empty() && s.members.size() == list.size() && std::equal(list.begin(), list.end(), s.members.begin(), [](const Member& m, const auto& of) {
+            return m.name == of.name;
+        });
+        if (!same) continue;
+        for (size_t i = 0; i < list.size(); ++i) {
+            list[i].of = s.name;
+            list[i].detail = s.members[i].type + " " + s.members[i].name;
+            list[i].place = s.place;
+        }
+        for (const std::string& m : s.methods) add({m, m + "()", s.name, s.place, true});
+        break;
     }
     // Which shader stands behind a handle, a scene decides: the classes of this text are offered.
     if (handle && r.arrow)

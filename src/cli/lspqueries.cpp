@@ -66,6 +66,13 @@ std::optional<Document::Member> memberNamed(const Document& d, const Document::R
     return std::nullopt;
 }
 
+std::string structText(const rsl::StructSummary& s) {
+    std::string t = "struct " + s.name + " {\n";
+    for (const auto& m : s.members) t += "    " + m.type + " " + m.name + ";\n";
+    for (const std::string& m : s.methods) t += "    " + m + "()\n";
+    return t + "}";
+}
+
 /// Parameters of "float f(point p, q; output color c)": the parts between the parentheses.
 std::vector<std::pair<size_t, size_t>> parameterRanges(const std::string& signature) {
     std::vector<std::pair<size_t, size_t>> list;
@@ -209,6 +216,11 @@ Json LanguageServer::hover(const Json& params) {
                                   (o.defaultText.empty() ? "" : " = " + o.defaultText)) + "\n" + o.doc + "\n";
     } else if (const auto m = receiver ? memberNamed(*d, *receiver, word->first, name) : std::nullopt) {
         text = fenced(m->detail) + "\n" + (m->method ? "method of " : "member of ") + m->of + "\n";
+    } else if (const auto* s = d->structure(name)) {
+        text = fenced(structText(*s));
+        const Origin o = d->origin(s->place);
+        const std::string comment = o.file.empty() ? "" : Document::commentAbove(textOf(o.file), size_t(o.line) - 1);
+        if (!comment.empty()) text += "\n" + comment + "\n";
     } else if (use.symbol) {
         const rsl::GlobalVariable* g =
             use.symbol->origin == rsl::Symbol::Origin::Global ? globalNamed(name, kind()) : nullptr;
@@ -263,7 +275,8 @@ Json LanguageServer::definition(const Json& params) {
     Origin o;
     if (const auto r = d->receiver(word->first))
         if (const auto m = memberNamed(*d, *r, word->first, name)) return location(d->origin(m->place), m->method ? name.size() : 0);
-    if (use.symbol) o = d->origin(use.symbol->place);
+    if (const auto* s = d->structure(name)) o = d->origin(s->place);
+    else if (use.symbol) o = d->origin(use.symbol->place);
     else if (use.shader) o = d->origin(use.shader->place);
     else if (use.function) o = d->origin(use.function->place);
     else if (use.shadeop) return nullptr;

@@ -2,7 +2,7 @@
      density    of the dust
      steps      along the ray
      billow     how uneven it is
-   Lamp: LightSource "windowlight" 1 "float width" 2.4 "float height" 2.4 "float bars" .35 "float soft" .02 "float intensity" 1.5
+   Lamp: LightSource "stencilsun" 1 "float width" 2.4 "float height" 2.4 "float bars" .35 "float soft" .02 "float intensity" 1.5
    Ball: Atmosphere "lightshafts" "float density" .15 "float billow" .3 */
 volume lightshafts(float density = .1, steps = 24, billow = .5, maxlength = 20; color dust = 1;)
 {

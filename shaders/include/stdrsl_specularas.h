@@ -1,8 +1,7 @@
 /* stdrsl/SpecularAS.h: the glossy lobe of Ashikhmin and Shirley (2000) about two axes. roughness 0.001 is sharp, 1 is wide. */
 #ifndef STDRSL_SPECULARAS_H
 #define STDRSL_SPECULARAS_H
-#include <stdrsl/RadianceSample.h>
-#include <stdrsl/Fresnel.h>
+#include <stdrsl_facetsamples.h>
 struct stdrsl_SpecularAS
 {
     public varying color m_specColor = 1;
@@ -43,16 +42,7 @@ struct stdrsl_SpecularAS
             }
         }
     }
-    public void evalSpecularSamps(stdrsl_ShadingContext context; stdrsl_Fresnel f; output __radiancesample samples[])
-    {
-        uniform float i, n = arraylength(samples);
-        for (i = 0; i < n; i += 1) {
-            color answer;
-            float pdf;
-            stdrsl_answer(context, samples[i]->direction, answer, pdf);
-            samples[i]->setMaterialResponse(answer, pdf);
-        }
-    }
+    STDRSL_FACET_SAMPLES
     public void genSpecularSamps(stdrsl_ShadingContext context; stdrsl_Fresnel f; string type; output __radiancesample samples[])
     {
         uniform float i, first = arraylength(samples);
@@ -60,14 +50,7 @@ struct stdrsl_SpecularAS
         for (i = 0; i < m_sampleCount; i += 1) {
             float a = M_TWOPI * random();
             float e = m_roughValueU * cos(a) * cos(a) + m_roughValueV * sin(a) * sin(a);
-            float up = pow(1 - random(), 1 / (e + 1)), out = sqrt(max(0, 1 - up * up));
-            vector h = out * cos(a) * context->m_Tangent + out * sin(a) * context->m_Bitangent + up * vector(context->m_Ns);
-            vector l = normalize(2 * (context->m_Vn . h) * h - context->m_Vn);
-            color answer;
-            float pdf;
-            stdrsl_answer(context, l, answer, pdf);
-            samples[first + i]->direction = l;
-            samples[first + i]->setMaterialResponse(answer, pdf);
+            stdrsl_mirror(context, pow(1 - random(), 1 / (e + 1)), a, first + i, samples);
         }
     }
 }

@@ -2,8 +2,7 @@
    distribution: "beckmann", or "phong" for a power of the cosine. roughness 0.01 is sharp, 1 is wide. */
 #ifndef STDRSL_SPECULARDBRDF_H
 #define STDRSL_SPECULARDBRDF_H
-#include <stdrsl/RadianceSample.h>
-#include <stdrsl/Fresnel.h>
+#include <stdrsl_facetsamples.h>
 struct stdrsl_SpecularDBRDF
 {
     public varying color m_specColor = 1;
@@ -38,16 +37,7 @@ struct stdrsl_SpecularDBRDF
             pdf = d * (n . h) / (4 * max(l . h, 1e-4));
         }
     }
-    public void evalSpecularSamps(stdrsl_ShadingContext context; stdrsl_Fresnel f; output __radiancesample samples[])
-    {
-        uniform float i, n = arraylength(samples);
-        for (i = 0; i < n; i += 1) {
-            color answer;
-            float pdf;
-            stdrsl_answer(context, samples[i]->direction, answer, pdf);
-            samples[i]->setMaterialResponse(answer, pdf);
-        }
-    }
+    STDRSL_FACET_SAMPLES
     public void genSpecularSamps(stdrsl_ShadingContext context; stdrsl_Fresnel f; string type; output __radiancesample samples[])
     {
         uniform float i, first = arraylength(samples);
@@ -55,14 +45,7 @@ struct stdrsl_SpecularDBRDF
         for (i = 0; i < m_sampleCount; i += 1) {
             float a = M_TWOPI * random(), x = 1 - random(), r = m_roughness * m_roughness;
             float up = (m_phong == 0) ? 1 / sqrt(1 - r * log(max(x, 1e-30))) : pow(x, r / 2);
-            float out = sqrt(max(0, 1 - up * up));
-            vector h = out * cos(a) * context->m_Tangent + out * sin(a) * context->m_Bitangent + up * vector(context->m_Ns);
-            vector l = normalize(2 * (context->m_Vn . h) * h - context->m_Vn);
-            color c;
-            float pdf;
-            stdrsl_answer(context, l, c, pdf);
-            samples[first + i]->direction = l;
-            samples[first + i]->setMaterialResponse(c, pdf);
+            stdrsl_mirror(context, up, a, first + i, samples);
         }
     }
 }

@@ -54,6 +54,7 @@ constexpr double kEdge = 1e-12;
 struct Accel::Impl {
     std::vector<ShapeRef> shapes;
     std::vector<uint32_t> visibility;
+    std::vector<Levels> levels; ///< empty: all are met
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
     geometry::Bounds bounds;
@@ -87,7 +88,7 @@ struct Accel::Impl {
         if (device) rtcReleaseDevice(device);
     }
 
-    bool visible(const Ray& r, uint32_t s) const { return (visibility[s] & r.mask) != 0; }
+    bool visible(const Ray& r, uint32_t s) const { return (visibility[s] & r.mask) != 0 && (!r.only || r.only[s]) && (levels.empty() || (r.level >= levels[s].from && r.level < levels[s].to)); }
     static bool excluded(const Ray& r, uint32_t s, uint32_t prim) {
         return r.excludeShape == s && (r.excludePrim == kNone || r.excludePrim == prim);
     }
@@ -98,7 +99,7 @@ struct Accel::Impl {
         if (!(t > r.tnear && t < r.tfar)) return false;
         if (!q.any && !before(t, s, prim, q.best)) return false;
         const Shape& shape = *shapes[s];
-        if (shape.oneSided() && !r.bothSides && dot(shape.hitNormal(prim, b1, b2), Vec3d(r.dir)) >= 0) return false;
+        if (shape.oneSided() && r.sides != Sides::Both && (dot(shape.hitNormal(prim, b1, b2), Vec3d(r.dir)) >= 0) != (r.sides == Sides::Back)) return false;
         q.best = {t, s, prim, b1, b2};
         return true;
     }
@@ -129,7 +130,7 @@ struct Accel::Impl {
         if (!visible(*q.ray, s) || excluded(*q.ray, s, 0)) return false;
         geometry::ExactHit h[4];
         const Shape& shape = *shapes[s];
-        const auto wanted = shape.oneSided() && !q.ray->bothSides ? Shape::Wanted::All : q.any ? Shape::Wanted::Any : Shape::Wanted::Nearest;
+        const auto wanted = shape.oneSided() && q.ray->sides != Sides::Both ? Shape::Wanted::All : q.any ? Shape::Wanted::Any : Shape::Wanted::Nearest;
         int n = shape.exactHits(Vec3d(q.ray->org), Vec3d(q.ray->dir), q.ray->tnear, std::min(double(q.ray->tfar), q.best.t), wanted, h);
         bool taken = false;
         for (int i = 0; i < n; ++i) {
@@ -331,6 +332,11 @@ Accel::Accel(std::vector<ShapeRef> shapes, std::vector<uint32_t> visibility, Dia
 }
 
 Accel::~Accel() = default;
+
+void Accel::setLevels(std::vector<Levels> levels) {
+    levels.resize(impl_->shapes.size());
+    impl_->levels = std::move(levels);
+}
 
 const std::vector<ShapeRef>& Accel::shapes() const { return impl_->shapes; }
 geometry::Bounds Accel::bounds() const { return impl_->bounds; }

@@ -20,6 +20,9 @@ enum Visibility : uint32_t {
     kCamera = 1, kDiffuse = 2, kSpecular = 4, kTransmission = 8, kPhoton = 16, kShadow = 32, kAll = 0xffffffffu
 };
 
+/// From where a ray meets surfaces with Sides 1; those with two sides it meets from both.
+enum class Sides : uint8_t { Front, Back, Both };
+
 /// Camera space. dir need not be unit; t counts in its lengths.
 struct Ray {
     Vec3 org, dir;
@@ -28,7 +31,9 @@ struct Ray {
     float time = 0;                  ///< shutter time; nothing moves yet
     uint32_t mask = kAll;            ///< meets shapes whose visibility shares a bit
     uint32_t excludeShape = kNone, excludePrim = kNone; ///< a surface to pass through: one primitive; prim kNone: the whole shape
-    bool bothSides = false;          ///< ignore Sides 1
+    Sides sides = Sides::Front;
+    const uint8_t* only = nullptr;   ///< by shape: 0 is passed through; null: all are considered
+    float level = 0.5f;              ///< meets shapes within whose levels it lies: setLevels()
 };
 
 /// What evaluateHit of the shape needs. shape == kNone: nothing was met.
@@ -48,6 +53,10 @@ public:
     ~Accel();
     Accel(const Accel&) = delete;
     Accel& operator=(const Accel&) = delete;
+
+    /// By shape the part of all rays that meet it: those whose level is at least `from` and below `to`. Before any ray is sent.
+    struct Levels { float from = 0, to = 1; };
+    void setLevels(std::vector<Levels>);
 
     /// Nearest hit. False, and hit.shape == kNone, when there is none or the ray is not finite. Thread safe.
     bool intersect(const Ray&, Hit& hit) const;

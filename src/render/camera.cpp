@@ -147,7 +147,7 @@ transport::CameraRay Camera::ray(double rx, double ry, Vec2 lens, float time01) 
         direction = (inFocus - origin) / focus_; // z stays 1
     }
     origin += direction * near_;
-    double l = length(direction), cosine = direction.z / l;
+    double l = length(direction), cosine = direction.z / l, start = near_ * l;
     direction /= l;
 
     transport::CameraRay r;
@@ -163,12 +163,14 @@ transport::CameraRay Camera::ray(double rx, double ry, Vec2 lens, float time01) 
         if (stretch > 0) {
             direction /= stretch;
             cosine /= stretch;
+            start *= stretch;
             r.width *= float(stretch);
         }
     }
     r.origin = Vec3(origin);
     r.direction = Vec3(direction);
     r.cosine = float(cosine);
+    r.start = float(start);
     return r;
 }
 

@@ -1,5 +1,6 @@
 #include "render/levels.h"
 #include "geometry/instance_attributes.h"
+#include "transport/integrator.h"
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -43,26 +44,36 @@ class Levels {
 public:
     Levels(const scene::Frame& f, const Camera& camera) : frame_(f), camera_(camera) {}
 
-    bool drawn(const scene::AttributesRef& a, const SourcePlace& place) {
-        if (!a || !ranged(*a)) return true;
-        auto [known, fresh] = known_.try_emplace(a.get(), true);
+    /// The attributes of what is drawn: null where nothing is, others where it fades.
+    const scene::AttributesRef& drawn(const scene::AttributesRef& a) {
+        if (!a || !ranged(*a)) return a;
+        auto [known, fresh] = known_.try_emplace(a.get());
         if (fresh) {
             kept_.push_back(a); // else another's may come to lie at its address
             const double size = a->detail ? detailSize(*a->detail, a->detailSpace, camera_) * double(frame_.options.relativeDetail) : kInfinite;
             const float* r = a->detailRange;
             const bool unlimited = r[3] >= kUnlimited;
-            known->second = size >= (double(r[0]) + r[1]) / 2 && (unlimited || size < (double(r[2]) + r[3]) / 2);
-            if ((size > r[0] && size < r[1]) || (!unlimited && size > r[2] && size < r[3]))
-                if (!fading) fading = place;
+            // Every sample has a number from 0 to 1 and sees what it lies within: in a transition one level ends where the other begins.
+            const auto within = [&](double from, double to) { return to > from ? std::clamp((size - from) / (to - from), 0., 1.) : size >= from ? 1. : 0.; };
+            const double begin = 1 - within(r[0], r[1]), end = unlimited ? 1 : 1 - within(r[2], r[3]);
+            if (begin <= 0 && end >= 1) {
+                known->second = a;
+            } else if (begin < end) {
+                auto fading = std::make_shared<scene::Attributes>(*a);
+                scene::Param part;
+                part.name = transport::kLevelAttribute;
+                part.numbers = {float(begin), float(end)};
+                fading->values[part.name] = std::move(part);
+                known->second = std::move(fading);
+            }
         }
         return known->second;
     }
-    std::optional<SourcePlace> fading; ///< of the first representation that is within a transition
 
 private:
     const scene::Frame& frame_;
     const Camera& camera_;
-    std::map<const scene::Attributes*, bool> known_;
+    std::map<const scene::Attributes*, scene::AttributesRef> known_;
     std::vector<scene::AttributesRef> kept_;
 };
 
@@ -82,15 +93,37 @@ double detailSize(const std::vector<float>& bound, const Matrix& toWorld, const 
     return hullArea(std::move(corners));
 }
 
-std::shared_ptr<const scene::Frame> drawnLevels(std::shared_ptr<const scene::Frame> frame, const Camera& camera, Diagnostics& diagnostics) {
+std::shared_ptr<const scene::Frame> drawnLevels(std::shared_ptr<const scene::Frame> frame, const Camera& camera) {
     Levels levels(*frame, camera);
     std::shared_ptr<scene::Frame> out; // once something is left out
     auto changed = [&]() -> scene::Frame& {
         if (!out) out = std::make_shared<scene::Frame>(*frame);
         return *out;
     };
-    auto left = [&](const scene::PrimitiveRef& p) { return p && !levels.drawn(p->attributes, p->place); };
-    if (std::any_of(frame->primitives.begin(), frame->primitives.end(), left)) std::erase_if(changed().primitives, left);
+    // Leaves out of a list what is not drawn, and marks what fades; `of` tells the attributes that count.
+    const auto draw = [&](std::vector<scene::PrimitiveRef>& list, auto&& of) {
+        bool differs = false;
+        for (scene::PrimitiveRef& p : list) {
+            if (!p) continue;
+            const scene::AttributesRef before = of(*p), after = levels.drawn(before);
+            if (after == before) continue;
+            differs = true;
+            std::shared_ptr<scene::Primitive> other;
+            if (after) {
+                other = std::make_shared<scene::Primitive>(*p);
+                auto marked = std::make_shared<scene::Attributes>(*p->attributes); // an instance lays its own over them
+                marked->values[transport::kLevelAttribute] = *after->value(transport::kLevelAttribute);
+                other->attributesBefore = p->attributesInside ? p->attributesBefore : p->attributes;
+                other->attributesInside = true;
+                other->attributes = std::move(marked);
+            }
+            p = std::move(other);
+        }
+        if (differs) std::erase(list, nullptr);
+        return differs;
+    };
+    std::vector<scene::PrimitiveRef> primitives = frame->primitives;
+    if (draw(primitives, [](const scene::Primitive& p) { return p.attributes; })) changed().primitives = std::move(primitives);
     std::vector<char> ranges; // of each object: whether one of its primitives has a range of its own
     for (const scene::Object& o : frame->objects)
         ranges.push_back(std::any_of(o.primitives.begin(), o.primitives.end(),
@@ -100,18 +133,12 @@ std::shared_ptr<const scene::Frame> drawnLevels(std::shared_ptr<const scene::Fra
         if (instance.object < 0 || size_t(instance.object) >= frame->objects.size()) continue; // reported where shapes are made
         if (!ranges[size_t(instance.object)] && !(instance.attributes && ranged(*instance.attributes))) continue;
         const scene::Object& object = frame->objects[size_t(instance.object)];
-        auto leftHere = [&](const scene::PrimitiveRef& p) {
-            return p && !levels.drawn(geometry::instanceAttributes(*p, instance), p->place);
-        };
         std::vector<scene::PrimitiveRef> drawn = object.primitives;
-        if (std::erase_if(drawn, leftHere) == 0) continue;
+        if (!draw(drawn, [&](const scene::Primitive& p) { return geometry::instanceAttributes(p, instance); })) continue;
         scene::Frame& f = changed();
         f.instances[i].object = int(f.objects.size());
         f.objects.push_back({object.handle, std::move(drawn)});
     }
-    if (levels.fading)
-        diagnostics.report(Severity::Info, Rie::Incapable, *levels.fading,
-                           "levels of detail do not fade: in a transition the one that is more than half there is drawn");
     return out ? out : frame;
 }
 

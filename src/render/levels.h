@@ -11,9 +11,8 @@ namespace alpenglow::render {
 double detailSize(const std::vector<float>& bound, const Matrix& toWorld, const Camera&);
 
 /// The frame without what is too small or too large for its DetailRange, also in the instances of objects; the same frame where nothing
-/// is left out. The size is that of the Detail box times RelativeDetail, infinite where no Detail was given. A representation is there
-/// from the middle of its lower transition to the middle of its upper one, so that of adjacent ones exactly one is drawn; that they do
-/// not fade is said once.
-std::shared_ptr<const scene::Frame> drawnLevels(std::shared_ptr<const scene::Frame>, const Camera&, Diagnostics&);
+/// is left out. The size is that of the Detail box times RelativeDetail, infinite where no Detail was given. What is in a transition is
+/// marked (transport::kLevelAttribute) with the part of the samples that see it: of adjacent ones each sample sees exactly one.
+std::shared_ptr<const scene::Frame> drawnLevels(std::shared_ptr<const scene::Frame>, const Camera&);
 
 } // namespace alpenglow::render

@@ -174,7 +174,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
     t.shaderPaths = searchPaths(o, "shader", settings_.shaderPaths, true);
     t.texturePaths = searchPaths(o, "texture", settings_.texturePaths, false);
     t.outputs = plan.engineOutputs;
-    auto world = engine_.build(drawnLevels(frame, camera, diagnostics_), t, diagnostics_);
+    auto world = engine_.build(drawnLevels(frame, camera), t, diagnostics_);
     if (!world) {
         ++outcome_.refused;
         return;

@@ -130,7 +130,11 @@ bool Lexer::number(double& out) {
             q = r.ptr;
         }
         const char* stop = q;
-        while (stop < e && sticks(static_cast<unsigned char>(*stop)) && size_t(stop - p) <= limits::kTokenBytes) ++stop;
+        // A sign behind a number begins the next one: ".4-.4".
+        const auto signedNumber = [&] {
+            return good && q + 1 < e && q > digits && (*q == '+' || *q == '-') && (digit(static_cast<unsigned char>(q[1])) || q[1] == '.');
+        };
+        while (!signedNumber() && stop < e && sticks(static_cast<unsigned char>(*stop)) && size_t(stop - p) <= limits::kTokenBytes) ++stop;
         if (stop == e && !ended_ && size_t(e - p) <= limits::kTokenBytes) {
             if (more()) continue; // the rest of the number may only just have arrived
         }

@@ -1,4 +1,4 @@
-// Geometry "teapot": the teapot that Martin Newell measured on his table in 1975, standing on z = 0 about the z axis, spout to +x,
+// What Geometry knows. "teapot": the teapot that Martin Newell measured on his table in 1975, standing on z = 0 about the z axis, spout to +x,
 // its largest radius 2 (F. Crow, "The Origins of the Teapot", IEEE CG&A 7(1), 1987). Body and lid are their measured profiles
 // turned round the axis; handle and spout are their measured sections.
 #include "ri/teapot.h"
@@ -59,7 +59,36 @@ std::string text() {
     return s + "AttributeEnd\n";
 }
 
+/// Six bilinear patches, each with dP/du x dP/dv to the outside.
+std::string cube() {
+    std::string s = "AttributeBegin\n";
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double side : {-.5, .5}) {
+            const int u = (axis + (side > 0 ? 1 : 2)) % 3, v = (axis + (side > 0 ? 2 : 1)) % 3;
+            s += "Patch \"bilinear\" \"P\" [";
+            for (int corner = 0; corner < 4; ++corner) {
+                double at[3];
+                at[axis] = side;
+                at[u] = corner & 1 ? .5 : -.5;
+                at[v] = corner & 2 ? .5 : -.5;
+                s += fmt::format("{} {} {} ", at[0], at[1], at[2]);
+            }
+            s += "]\n";
+        }
+    return s + "AttributeEnd\n";
+}
+
 } // namespace
+
+const std::string& cubeRequests() {
+    static const std::string requests = cube();
+    return requests;
+}
+
+const std::string& sphereRequests() {
+    static const std::string requests = "AttributeBegin\nSphere 1 -1 1 360\nAttributeEnd\n";
+    return requests;
+}
 
 const std::string& teapotRequests() {
     static const std::string requests = text();

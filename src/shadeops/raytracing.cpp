@@ -9,19 +9,19 @@ constexpr Type kF{Base::Float, 0}, kS{Base::String, 0}, kC{Base::Color, 0}, kV{B
 /// Table 6.10.
 std::vector<OptionalParameter> rayParameters() {
     return {{kS, "label", false, "\"\"", "label of the rays, for rayinfo"},
-            {kS, "subset", false, "\"\"", "groups of objects considered; not followed, which is said"},
-            {kF, "bias", false, "-1", "offset of the ray's start; negative: attribute trace:bias"},
-            {kS, "hitmode", false, "\"default\"", "primitive, shader or default; \"primitive\" is not followed, which is said"},
-            {kS, "hitsides", false, "\"both\"", "front, back, both or reversed; both sides are hit, which is said"},
+            {kS, "subset", false, "\"\"", "groups of objects considered (attribute grouping:membership), \"-g\" leaves one out; none: attribute grouping:tracesubset"},
+            {kF, "bias", false, "-1", "offset of the ray's start; negative: attribute trace:bias, and without that the error of the point"},
+            {kS, "hitmode", false, "\"default\"", "shader runs the shaders that are met, primitive takes Color and Opacity; default: attributes shade:specularhitmode, diffusehitmode, transmissionhitmode"},
+            {kS, "hitsides", false, "", "from where surfaces with Sides 1 are met: front, back, both, reversed (back); not given: front, for transmission both"},
             {kF, "maxdist", false, "1e38", "no intersections beyond this distance"},
             {kF, "samplecone", false, "0", "half angle of the cone of directions, radians"},
             {kF, "samples", false, "1", "number of samples"},
             {kS, "type", false, "\"specular\"", "specular, diffuse or transmission: which visibility counts"},
             {kC, "weight", false, "1", "importance of the ray; accepted, the renderer has its own"},
             {kF, "minsamples", false, "samples", "accepted and ignored"},
-            {kF, "samplebase", false, "0", "accepted and ignored by single rays"},
-            {kS, "excludesubset", false, "\"\"", "groups of objects left out; not followed, which is said"},
-            {kS, "raytype", false, "\"specular\"", "another name of type; accepted and ignored"},
+            {kF, "samplebase", false, "0", "part of the footprint over which trace() starts its rays"},
+            {kS, "excludesubset", false, "\"\"", "groups of objects left out"},
+            {kS, "raytype", false, "\"specular\"", "another name of type"},
             {kS, "raylabel", false, "\"\"", "another name of label"},
             {kF, "maxhitdist", false, "1e38", "another name of maxdist"}};
 }

@@ -21,14 +21,14 @@ std::vector<OptionalParameter> filterParameters() {
             {kF, "ignoreabove", false, "1e38", "accepted and ignored"},
             {kF, "minwidth", false, "0", "accepted and ignored"},
             {kF, "expand", false, "0", "accepted and ignored"},
-            {kF, "maxdist", false, "1e38", "of rays (\"raytrace\"): accepted and ignored"},
-            {kF, "samplecone", false, "0", "of rays (\"raytrace\"): accepted and ignored"},
+            {kF, "maxdist", false, "1e38", "of rays: no intersections beyond (\"raytrace\"), as for trace()"},
+            {kF, "samplecone", false, "0", "of rays: half angle of the cone, radians (\"raytrace\"), as for trace()"},
             {kF, "minsamples", false, "samples", "of rays (\"raytrace\"): accepted and ignored"},
-            {kS, "label", false, "\"\"", "of rays (\"raytrace\"): accepted and ignored"},
-            {kS, "subset", false, "\"\"", "of rays (\"raytrace\"): accepted and ignored"},
-            {kS, "excludesubset", false, "\"\"", "of rays (\"raytrace\"): accepted and ignored"},
-            {kS, "hitmode", false, "\"default\"", "of rays (\"raytrace\"): accepted and ignored"},
-            {kS, "hitsides", false, "\"both\"", "of rays (\"raytrace\"): accepted and ignored"}};
+            {kS, "label", false, "\"\"", "of rays (\"raytrace\"), as for trace()"},
+            {kS, "subset", false, "\"\"", "of rays: groups of objects (\"raytrace\"), as for trace()"},
+            {kS, "excludesubset", false, "\"\"", "of rays: groups left out (\"raytrace\"), as for trace()"},
+            {kS, "hitmode", false, "\"default\"", "of rays: primitive, shader or default (\"raytrace\"), as for trace()"},
+            {kS, "hitsides", false, "\"both\"", "of rays: front, back, both or reversed (\"raytrace\"), as for trace()"}};
 }
 
 /// A source of light that is no point: PRMan wrote four points behind "source"; the checker names each.
@@ -74,14 +74,16 @@ std::vector<Shadeop> textureShadeops() {
     add("environment",
         each("float color", "$ environment(string name; vector v; pairs)") +
             each("float color", "$ environment(string name; vector v1, vector v2, vector v3, vector v4; pairs)"),
-        Lowering::Service, "Lookup of an environment map (latitude-longitude, or cube faces) in direction v. The name \"raytrace\" traces rays. "
+        Lowering::Service, "Lookup of an environment map (latitude-longitude, or cube faces) in direction v. The name \"raytrace\" sends rays from P, as trace() does: \"samples\" of them, with its other "
+        "parameters; \"blur\" is the part of all directions over which they spread (half angle blur * PI), and four vectors span a cone. Filters are those of maps. "
         "Derivatives go through, as for texture().")
         .derivative = DerivativeRule::Gradient;
     list.back().examples = {{"color environment(\"sky.env\", N)", "0.5 0.7 1", "", "the map has this colour everywhere"}};
     Shadeop& shadow = add("shadow",
         each("float color", "$ shadow(string name; point p; pairs)") +
             each("float color", "$ shadow(string name; point p1, point p2, point p3, point p4; pairs)"),
-        Lowering::Unavailable, "Occlusion in 0..1 from a shadow map, a deep shadow map, or rays (\"raytrace\").");
+        Lowering::Unavailable, "Occlusion in 0..1 from a shadow map, a deep shadow map, or rays. \"raytrace\" sends those of transmission() from p to the light: where L comes from, in a "
+        "light's own shader or in illuminance(); far away in solar(). The float form is the mean of the channels. Maps are not yet available.");
     list.back().examples = {{"shadow(\"light.shd\", P)", "0"}};
     shadow.contexts = kSurface | kVolume | kLight;
     shadow.optional = shadowParameters();

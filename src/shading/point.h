@@ -1,5 +1,6 @@
 // What the renderer knows about a point that a shader is going to run at, and about the ray that found it. Camera space ("current").
 #pragma once
+#include "accel/accel.h"
 #include "geometry/shape.h"
 #include "scene/scene.h"
 #include "shading/scheduler.h"
@@ -8,6 +9,16 @@ namespace alpenglow::shading {
 
 enum class RayType : uint8_t { Camera, Diffuse, Specular, Transmission };
 const char* toString(RayType);
+
+/// What is taken of the surfaces that a ray meets: what their shaders say, or what the primitives say (Color and Opacity).
+enum class HitMode : uint8_t { Default, Primitive, Shader };
+
+/// Whom a ray may meet, as its call says ("subset", "hitsides", "hitmode").
+struct RaySet {
+    const uint8_t* only = nullptr;    ///< by shape: 0 is passed through; null: all. Of the world, which outlives the ray
+    accel::Sides sides = accel::Sides::Front;
+    HitMode mode = HitMode::Default;
+};
 
 /// A ray on its way, with all that its hit needs: who pays for what it finds, which random numbers it may use, how it was made.
 struct PathRay {
@@ -38,6 +49,14 @@ struct PathRay {
     Color part{1};                    ///< of a ray that a target asked for, and of what goes on through surfaces: its share of all that were asked
     int lit = -1;                     ///< what lights are told about the surface that sent it, where lights ask; -1: nothing
     Color environment{0};             ///< of trace() with a map: the light where nothing is
+    RaySet set;
+    float level = 0.5f;               ///< of its camera sample, for what fades between levels of detail
+    float start = 0;                  ///< camera: the way from the eye to the origin, before the near plane and through what was met
+    /// Where it began: the eye of a camera ray.
+    Vec3 begin() const {
+        const Vec3 e = origin - dir * start;
+        return length(e) <= 1e-6f * start ? Vec3(0, 0, 0) : e;
+    }
 };
 
 using Sched = Scheduler<PathRay>;

@@ -65,7 +65,7 @@ void WorldImpl::displaceGrid(const SurfaceBinding& b, const geometry::Shape& sha
         p.surface = grid.points[i];
         p.P = p.surface.P;
         p.N = p.surface.N;
-        p.I = p.P;
+        p.I = frame_->options.projection == "perspective" ? p.P : Vec3(0, 0, p.P.z); // as the camera sees it
         p.du = grid.du[i];
         p.dv = grid.dv[i];
         c.points.push_back(p);
@@ -84,7 +84,7 @@ void Engine::moveToFacets(BatchContext& c) {
         if (!p.surface.displaced) continue;
         p.P = p.surface.P = p.surface.displacedP;
         p.surface.n = p.surface.displacedN;
-        p.I = p.P - (c.rays[k].type == RayType::Camera && c.rays[k].layers > 0 ? p.E : c.rays[k].origin);
+        p.I = p.P - c.rays[k].begin();
     }
 }
 

@@ -41,6 +41,9 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
         rays[i].mask = visibilityBit(r.type);
         rays[i].excludeShape = r.shape;
         rays[i].excludePrim = r.prim;
+        rays[i].sides = r.set.sides;
+        rays[i].only = r.set.only;
+        rays[i].level = r.level;
         switch (r.type) {
         case RayType::Camera: ++counters.camera; break;
         case RayType::Diffuse: ++counters.diffuse; break;
@@ -51,10 +54,13 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
     world_->accel_->intersect(rays, hits);
 
     // Points by program and light list; inside a group in the order of the slice.
-    std::vector<std::shared_ptr<BatchContext>> groups(static_cast<size_t>(world_->groups_));
+    // Those of rays that take primitives as they are come behind the others.
+    const size_t shaded = size_t(world_->groups_);
+    std::vector<std::shared_ptr<BatchContext>> groups(shaded * (world_->primitiveHit_ ? 2 : 1));
     std::vector<int> sizes(groups.size());
+    const auto groupOf = [&](const SurfaceBinding& b, const PathRay& r) { return size_t(b.group) + (groups.size() > shaded && b.asPrimitive(r.set.mode, r.type) ? shaded : 0); };
     for (size_t i = 0; i < n; ++i)
-        if (hits[i].valid()) ++sizes[size_t(world_->bindings_[size_t(world_->bindingOf_[hits[i].shape])].group)];
+        if (hits[i].valid()) ++sizes[groupOf(world_->bindings_[size_t(world_->bindingOf_[hits[i].shape])], slice[i].payload)];
     for (size_t g = 0; g < groups.size(); ++g) {
         if (!sizes[g]) continue;
         auto& c = groups[g] = takeContext();
@@ -71,7 +77,7 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
         const PathRay& r = slice[i].payload;
         int binding = world_->bindingOf_[hits[i].shape];
         const SurfaceBinding& b = world_->bindings_[size_t(binding)];
-        BatchContext& c = *groups[size_t(b.group)];
+        BatchContext& c = *groups[groupOf(b, r)];
         c.rays.push_back(r);
         c.targets.push_back(slice[i].target);
         c.bindings.push_back(binding);
@@ -84,9 +90,8 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
         world_->accel_->point(hits[i], p.surface);
         p.P = p.surface.P;
         p.N = p.surface.N;
-        p.I = p.P - r.origin;
+        p.I = p.P - r.begin(); // RISpec: P - E, though rays start at the near plane, or behind what they passed through
         p.E = r.type == RayType::Camera ? Vec3(0, 0, 0) : r.origin;
-        if (r.type == RayType::Camera && r.layers > 0) p.I = p.P - p.E; // seen through something: the eye has not moved
         p.time = r.time;
         p.task = int(i);
         if (world_->footprints_) setFootprint(p, r, length(p.P - r.origin), r.type == RayType::Camera ? b.shadingRate : 1);
@@ -105,11 +110,12 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
     misses(missed, sched);
     std::stable_sort(met.begin(), met.end(), [](const Met& a, const Met& b) { return a.light < b.light; });
     emission(met, sched);
-    for (auto& c : groups) {
+    for (size_t g = 0; g < groups.size(); ++g) {
+        auto& c = groups[g];
         if (!c) continue;
         bool same = std::all_of(c->bindings.begin(), c->bindings.end(), [&](int b) { return b == c->bindings[0]; });
         c->binding = &world_->bindings_[size_t(c->bindings[0])];
-        c->bound = same && !c->binding->usesObjectSpace ? &c->binding->surfaceS : &c->binding->surfaceV;
+        c->bound = g >= shaded ? &world_->primitiveHit_ : same && !c->binding->usesObjectSpace ? &c->binding->surfaceS : &c->binding->surfaceV;
         shadeGroup(c, sched);
         giveBack(std::move(c));
     }
@@ -167,6 +173,8 @@ bool Engine::trace(std::span<const CameraRay> rays, std::span<SampleResult> out,
         r.time = c.time;
         r.width = c.width;
         r.spread = c.spread;
+        r.start = c.start;
+        if (world_->fades_) r.level = random(r).one(0, kLevel, 0);
         r.cameraSample = int(i);
     }
     counters.paths += rays.size();

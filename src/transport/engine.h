@@ -5,6 +5,7 @@
 #include "shading/scheduler.h"
 #include "transport/lightloop.h"
 #include <deque>
+#include <functional>
 #include <set>
 
 namespace alpenglow::transport {
@@ -26,6 +27,9 @@ struct ShadowRay {
     float time;
     const PathRay* ray = nullptr;
     bool areaLight = false; ///< of a trace() that asks how much area lights give
+    shading::RaySet set{nullptr, accel::Sides::Both, shading::HitMode::Default};
+    RayType type = RayType::Transmission; ///< whose visibility counts
+    int32_t label = 0;
 };
 
 /// The way from a to b for a shadow ray; where an end is `at`, a shaded point of the surface `s` (null: none), that surface does not block.
@@ -51,7 +55,7 @@ struct TraceSums {
 };
 
 /// A surface that a shadow ray met, whose opacity its shader must tell.
-struct OpacityQuery { int binding; accel::Hit hit; const ShadowRay* ray; };
+struct OpacityQuery { int binding; accel::Hit hit; const ShadowRay* ray; const BoundKernel* kernel; };
 
 /// What an atmosphere makes of the light that a ray met: Ci and Oi as seen, and the coefficient of the light met.
 struct Haze { Color shown, opacity, slope{1}; };
@@ -77,6 +81,9 @@ struct LobeVertex {
     bool elsewhere = false; ///< trace() from a point that is not that of the surface: `from`
     Vec3 from;
     float bias = -1;       ///< < 0: the hit's own error bound
+    float base = 0;        ///< "samplebase": rays start on this part of the footprint
+    shading::RaySet set;
+    int32_t label = 0;
     int lit = -1;          ///< of Engine::litValues_
     Color tint{1};         ///< of the environment map
     const TraceSite* trace = nullptr;
@@ -116,6 +123,7 @@ struct BatchContext {
     const LitSurface* lit = nullptr;           ///< while a light's kernel runs: what it lights
     std::vector<float> lightChannels;          ///< by point, all AOVs: what lights gave by outputchannel(); empty when none did
     float lightVisibilityDistance = 0;
+    bool forShadow = false;                    ///< the kernel tells its opacity to shadow rays
     std::vector<float> lightDistance;          ///< by lane: to the light sample; 1e38 for distant lights
     // suspended request of the strip that runs now
     int requestSite = -1, requestFirst = 0, requestLanes = 0;
@@ -134,10 +142,15 @@ public:
     // lights.cpp
     /// Light arriving at queries from one light; for area lights `samples[i]` is the point on the emitter.
     void evaluateLight(const BoundLight&, std::vector<ShadePoint>& queries, std::span<LightValue> out, const LightCall& = {});
+    /// What a transmission() or trace() of a light's kernel gives at a point that it lights, followed to the end at once.
+    shading::TargetValue rayOfLight(BatchContext&, const SiteInfo&, int point, const std::function<float(int)>& row, uint32_t occurrence);
     // shadowrays.cpp
     /// What is left of light along each ray. `ray`: for the random numbers and footprint of shaders on the way; may be null.
     void transmittances(std::span<const ShadowRay>, std::span<Color> out);
-    Color transmittance(const Vec3& origin, const Vec3& dir, float distance, float time, const PathRay* ray);
+    Color transmittance(const ShadowRay&);
+    /// The rays of a transmission() from a to b, for `out`: as many as it asks for, each with its share of `weight`.
+    void transmissionRays(const SiteInfo&, const ShadePoint&, const Vec3& at, const geometry::SurfacePoint*, const std::function<float(int)>& row, const Color& weight, TargetId,
+                          uint32_t site, uint32_t occurrence, std::vector<ShadowRay>& out);
     /// Oi at hits of one binding.
     void opacities(std::span<const OpacityQuery>, std::span<Color> out);
     // haze.cpp
@@ -229,6 +242,9 @@ private:
     std::vector<uint32_t> viewOf_, occurrence_;
     std::vector<int> slotOf_;                  ///< by binding: its place in views_, else -1
     std::unique_ptr<Sched> sched_;
+    /// The rays of a trace() in a light, by the engine that rayOfLight() keeps for it.
+    shading::TargetValue follow(BatchContext&, const SiteInfo&, int point, const std::function<float(int)>& row, uint32_t occurrence);
+    std::unique_ptr<Engine> inner_;
     void misses(std::span<const Sched::Task* const>, Sched&);
     struct Met { int light; TargetId target; const ShadePoint* point; };
     /// Light that emitters send along the rays that met them; sorted by light.

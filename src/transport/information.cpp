@@ -108,12 +108,31 @@ std::optional<Information> optionOf(const WorldImpl& w, const std::string& name)
     else if ((name == "Ri:PixelVariance" || name == "PixelVariance") && o.pixelVariance >= 0) v = {o.pixelVariance};
     else if (name == "Ri:ScreenWindow" || name == "ScreenWindow") v = o.screenWindow.value_or(aspect >= 1 ? std::vector<float>{-aspect, aspect, -1, 1} : std::vector<float>{-1, 1, -1 / aspect, 1 / aspect});
     else if (name == "Ri:DepthOfField" || name == "DepthOfField") v = {o.fstop, o.focalLength, o.focalDistance};
-    else if (name == "Ri:Hider" || name == "Hider") return words(o.hider);
+    else if (name == "Ri:Hider" || name == "Hider") return words(w.settings().hider == Hider::Path ? "path" : w.settings().hider == Hider::Raytrace ? "raytrace" : "hidden"); // the one that runs
     else if (name == "Ri:Display" || name == "Display") return words(o.displays.empty() ? "ri.pic" : o.displays[0].name);
     else if (name == "trace:maxdepth") v = {float(w.maxDepth_)};
     else if (const auto i = o.values.find(name); i != o.values.end()) return given(&i->second);
     else return std::nullopt;
     return Information{v, {}, false};
+}
+
+std::optional<Information> rendererInfoOf(const std::string& name) {
+    if (name == "renderer") return words("Alpenglow");
+    if (name == "versionstring") return words("0.1");
+    if (name == "version") return Information{{0, 1, 0, 0}, {}, false};
+    return std::nullopt;
+}
+
+std::optional<Information> rayInfoOf(const std::string& name, const shading::PathRay* r, const shading::ShadePoint& p) {
+    if (name == "type") return words(r ? shading::toString(r->type) : "light");
+    if (name == "label") return words(r ? rsl::internedString(r->label) : "");
+    if (name == "depth") return number(r ? float(r->bounces) : 0.f);
+    if (name == "speculardepth") return number(r ? float(r->specularBounces) : 0.f);
+    if (name == "diffusedepth") return number(r ? float(r->diffuseBounces) : 0.f);
+    if (name == "origin" && r) return Information{{r->begin().x, r->begin().y, r->begin().z}, {}, false};
+    if (name == "direction" && r) return Information{{r->dir.x, r->dir.y, r->dir.z}, {}, false};
+    if (name == "length") return number(length(p.I));
+    return std::nullopt;
 }
 
 Matrix spaceAt(const WorldImpl& w, const std::string& from, const std::string& to, const shading::ShadePoint& p, const SurfaceBinding* b) {

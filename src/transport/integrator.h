@@ -14,6 +14,10 @@
 
 namespace alpenglow::transport {
 
+/// Attribute of a primitive that fades between levels of detail: two numbers. Only samples see it whose own number, from 0 to 1, is at
+/// least the first and below the second.
+inline constexpr const char* kLevelAttribute = "detail:__level";
+
 enum class Hider { Hidden, Raytrace, Path };
 
 struct Settings {
@@ -35,7 +39,8 @@ struct Settings {
     std::vector<std::string> pluginPaths; ///< where those are looked for
     std::string dialect;            ///< whose macros the shaders see: rsl::FrontOptions::dialect
     std::string cacheDirectory;     ///< "" = default
-    std::vector<std::string> outputs; ///< AOVs: names of output shader parameters or predefined variables, in order
+    std::vector<std::string> outputs; ///< AOVs: names of output shader parameters ("list[1]": an element) or predefined variables, in order
+    std::vector<int> outputWidths; ///< floats of each where a display declares it; 0 or missing: the shaders decide
 };
 
 /// Counts of one integrator thread; added up by the renderer.
@@ -59,7 +64,7 @@ public:
     virtual const Settings& settings() const = 0;
     struct Facts { double buildSec = 0, compileSec = 0; int kernels = 0, affine = 0, suspending = 0, cacheHits = 0; size_t shapes = 0; };
     virtual Facts facts() const = 0;
-    /// Floats per AOV in Settings::outputs (1, 3 or 16).
+    /// Floats per AOV in Settings::outputs: what the shaders that give it have, arrays with all their elements.
     virtual std::vector<int> outputWidths() const = 0;
     /// Writes what shaders have printed since the last call, in the order of the samples; or forgets it. Between passes.
     virtual void flushPrints(bool keep) const = 0;
@@ -73,6 +78,7 @@ struct CameraRay {
     float width = 0, spread = 0; ///< half width of a pixel's footprint at the origin, and its growth per unit of distance
     float time = 0;
     float cosine = 1;            ///< direction.z: depth = distance * cosine
+    float start = 0;             ///< the way from the eye to the origin, where that is the near plane
     int px = 0, py = 0;          ///< pixel, and
     uint32_t sample = 0;         ///< sample number: the key of all random numbers
 };

@@ -9,6 +9,86 @@ Color coneNumbers(Vec2 random) {
     return {random.x, d.x, d.y};
 }
 
+shading::TargetValue Engine::rayOfLight(BatchContext& c, const SiteInfo& s, int point, const std::function<float(int)>& row, uint32_t occurrence) {
+    const ShadePoint& p = c.points[size_t(point)];
+    shading::TargetValue value;
+    const uint32_t site = uint32_t(s.site - c.bound->kernel->sites().data());
+    if (s.kind == SiteKind::Transmission) {
+        std::vector<ShadowRay> rays;
+        transmissionRays(s, p, p.Ps, p.lit, row, Color(1), shading::kNoTarget, site, occurrence, rays);
+        for (const ShadowRay& r : rays) value.radiance += r.contribution * (r.distance > 0 ? transmittance(r) : Color(1));
+        return value;
+    }
+    if (s.kind != SiteKind::Trace || !p.ray || !world_->accel_) return value; // lights that are measured see nothing
+    // An engine of its own follows the ray and all that comes of it, to the end: the lights that it meets may trace as well, one bounce deeper.
+    if (!inner_) {
+        inner_ = std::make_unique<Engine>(world_, diagnostics_);
+        inner_->sched_ = std::make_unique<Sched>(*inner_, stop, limits::kFrameBytesPerThread, Sched::kStripRays);
+    }
+    inner_->stop = stop;
+    value = inner_->follow(c, s, point, row, occurrence);
+    counters += inner_->counters;
+    inner_->counters = {};
+    return value;
+}
+
+shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int point, const std::function<float(int)>& row, uint32_t occurrence) {
+    const ShadePoint& p = c.points[size_t(point)];
+    const PathRay& from = *p.ray;
+    Sched& sched = *sched_;
+    sched.restart(stop);
+    traceSums_.clear();
+    lobes.clear();
+    const TargetId target = sched.newRoot();
+    // request() reads rows of lanes: this is one lane.
+    std::vector<float> in;
+    int rows = 0;
+    for (rsl::ir::Kind k : s.site->argKinds) rows += rsl::ir::components(k);
+    for (int r = 0; r < rows; ++r) in.push_back(row(r));
+    request(c, s, point, in.data(), 1, 0, Color(1), target, true, occurrence);
+    if (lobes.empty()) return {};
+    LobeVertex l = std::move(lobes.back());
+    lobes.clear();
+    if (from.bounces + 1 > world_->maxDepth_) return {};
+    const Vec3 start = l.elsewhere ? l.from : p.P;
+    const bool leaves = p.lit && length(start - p.Ps) <= geometry::roundingError(p.Ps) + 4 * p.lit->pError;
+    const bool delta = l.kind->isDelta(l.params);
+    if (delta) l.samples = 1;
+    for (int k = 0; k < l.samples; ++k) {
+        const uint32_t nth = occurrence * 4096 + uint32_t(k), vertex = childVertex(from.vertex, kLightPoint + l.site, nth);
+        Vec3 w;
+        if (!l.kind->sample(l.params, random(from).pair(vertex, l.site, nth), w)) continue;
+        const float pdf = delta ? 0 : l.kind->pdf(l.params, w);
+        const Color f = delta ? Color(l.kind->albedo(l.params)) : pdf > 0 ? lobeValue(*l.kind, l.params, w) / pdf : Color(0);
+        PathRay r = from;
+        r.weight = f / float(l.samples);
+        r.vertex = vertex;
+        r.bounces = int16_t(from.bounces + 1);
+        ++(l.type == RayType::Diffuse ? r.diffuseBounces : r.specularBounces);
+        r.origin = l.bias >= 0 ? start + w * l.bias : leaves ? geometry::offsetOrigin(*p.lit, w, 0) : start + w * geometry::roundingError(start);
+        r.start = 0;
+        r.dir = w;
+        r.maxDistance = l.maxDistance;
+        r.type = l.type;
+        r.label = l.label;
+        r.set = l.set;
+        r.environment = l.trace && l.trace->map ? l.tint * mapTowards(*l.trace, w, from.spread) : Color(0);
+        r.lit = -1;
+        r.part = Color(1.f / float(l.samples));
+        r.lobePdf = -1; // no light was sampled: all that shines counts
+        r.lobeBinding = -1;
+        r.fromTrace = r.wantsLight = r.first = true;
+        r.spread = std::max(from.spread, l.kind->spread(l.params) * 0.5f);
+        r.shape = geometry::kNone;
+        r.cameraSample = -1;
+        sched.spawn(r.bounces + r.layers, target, r);
+    }
+    sched.run();
+    litValues_.clear();
+    shadows.clear();
+    return sched.value(target);
+}
+
 void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& queries, std::span<LightValue> out, const LightCall& call) {
     if (queries.empty()) return;
     const BoundKernel& bound = call.kernel ? *call.kernel : light.kernel;
@@ -25,21 +105,25 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
     const auto& k = *bound.kernel;
     if (k.facts().suspends) {
         // A light that decides on traced light: its few requests are answered in place, strip by strip.
+        std::vector<uint32_t> asked(bound.sites.size() * size_t(c->batch->size()));
         for (int first = 0; first < c->batch->size(); first += k.lanes()) {
             void* h = k.start(&c->batch->call(), first);
             while (h && !k.finished(h)) {
                 const SiteInfo& s = bound.sites[c->requestSite];
                 for (int lane = 0; lane < c->requestLanes; ++lane) {
                     if (!(c->requestMask >> lane & 1) || first + lane >= int(c->points.size())) continue;
-                    Color t{0};
-                    if (s.kind == SiteKind::Transmission) {
-                        auto at = [&](int row) { return c->requestIn[size_t(row) * c->requestLanes + lane]; };
-                        Vec3 a(at(s.rows[0]), at(s.rows[0] + 1), at(s.rows[0] + 2)), b(at(s.rows[1]), at(s.rows[1] + 1), at(s.rows[1] + 2));
-                        const ShadePoint& p = c->points[size_t(first + lane)];
-                        const Way way = wayBetween(a, b, p.Ps, p.lit);
-                        t = way.distance > 0 ? transmittance(way.origin, way.dir, way.distance, p.time, p.ray) : Color(1);
-                    }
-                    for (int r = 0; r < s.resultRowCount; ++r) c->requestOut[size_t(r) * c->requestLanes + lane] = r < 3 ? t[r] : 0;
+                    const std::function<float(int)> row = [&](int r) { return c->requestIn[size_t(r) * c->requestLanes + lane]; };
+                    auto put = [&](const char* name, int rows, const Color& v) {
+                        if (auto to = s.resultRows.find(name); to != s.resultRows.end())
+                            for (int r = 0; r < rows; ++r) c->requestOut[size_t(to->second + r) * c->requestLanes + lane] = v[r];
+                    };
+                    for (int r = 0; r < s.resultRowCount; ++r) c->requestOut[size_t(r) * c->requestLanes + lane] = 0;
+                    const shading::TargetValue t = rayOfLight(*c, s, first + lane, row, asked[size_t(c->requestSite) * size_t(c->batch->size()) + size_t(first + lane)]++);
+                    const bool distance = s.kind == SiteKind::Trace && s.site->resultType.base == rsl::Base::Float;
+                    put("", distance ? 1 : 3, distance ? Color(t.distance) : t.radiance);
+                    put("dist", 1, Color(t.distance));
+                    put("transmission", 3, t.transmission);
+                    put("hitnormal", 3, t.normal);
                 }
                 k.resume(h);
             }
@@ -67,14 +151,14 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
     // Affine requests of the light itself: shadows that it asks for.
     for (const EmitRecord& e : c->emits) {
         const SiteInfo& s = bound.sites[e.site];
-        if (s.kind != SiteKind::Transmission) continue;
+        if (s.kind != SiteKind::Transmission && s.kind != SiteKind::Trace) continue;
         for (int lane = 0; lane < e.lanes; ++lane) {
             if (!(e.mask >> lane & 1) || e.first + lane >= int(queries.size())) continue;
             auto at = [&](int row) { return c->arena[e.offset + size_t(row) * e.lanes + lane]; };
-            const Vec3 a(at(3 + s.rows[0]), at(4 + s.rows[0]), at(5 + s.rows[0])), b(at(3 + s.rows[1]), at(4 + s.rows[1]), at(5 + s.rows[1]));
-            const ShadePoint& p = queries[size_t(e.first + lane)];
-            const Way way = wayBetween(a, b, p.Ps, p.lit);
-            out[e.first + lane].Cl += Color(at(0), at(1), at(2)) * (way.distance > 0 ? transmittance(way.origin, way.dir, way.distance, p.time, p.ray) : Color(1));
+            c->points.swap(queries); // the rays start from them
+            const Color light = rayOfLight(*c, s, e.first + lane, [&](int row) { return at(row + 3); }, uint32_t(&e - c->emits.data())).radiance;
+            c->points.swap(queries);
+            out[e.first + lane].Cl += Color(at(0), at(1), at(2)) * light;
         }
     }
     if (light.intensityScale > 0) // the kernel divided by the squared distance: radiance does not

@@ -2,6 +2,7 @@
 #include "transport/engine.h"
 #include "shadeops/specular.h"
 #include "texture/lookup.h"
+#include "transport/raysets.h"
 #include "transport/sampling.h"
 
 namespace alpenglow::transport {
@@ -36,8 +37,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     auto number = [&](int row, float fallback) { return row < 0 ? fallback : f(row); };
     auto vector = [&](int row, Vec3 fallback) { return row < 0 ? fallback : Vec3(f(row), f(row + 1), f(row + 2)); };
     if (s.kind == SiteKind::Transmission) {
-        const Way way = wayBetween(v(0), v(1), p.P, &p.surface);
-        shadows.push_back({way.origin, way.dir, way.distance, weight, target, p.time, p.ray});
+        transmissionRays(s, p, p.P, &p.surface, f, weight, target, uint32_t(s.site - c.bound->kernel->sites().data()), occurrence, shadows);
         return;
     }
     // Under path ambient light is what escaping diffuse rays see.
@@ -53,7 +53,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     if (!world_->lightMessages_.empty()) {
         l.lit = int(litValues_.size());
         LitValues& told = litValues_.emplace_back();
-        told.binding = c.bindings[size_t(point)];
+        told.binding = size_t(point) < c.bindings.size() ? c.bindings[size_t(point)] : -1; // a light's own ray: none
         for (const SiteInfo::Output& o : s.outputs) {
             auto& of = told.outputs.emplace_back(o.name, std::vector<float>());
             for (int r = 0; r < o.size; ++r) of.second.push_back(f(o.row + r));
@@ -84,9 +84,10 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
             l.params.horizon = unit(vector(s.rowHorizon, p.surface.n), p.surface.n);
             l.params.hasHorizon = true;
         }
-        l.type = s.type;
+        l.set = raySetOf(*world_, s, f, p.shape, l.type, l.label);
         l.lights = number(s.rowLights, 0) != 0;
-        l.bias = number(s.trace->bias, -1);
+        l.bias = number(s.rays->bias, -1);
+        l.base = number(s.rays->base, 0);
         if (s.trace->map) l.tint = vector(s.trace->tint, Color(1));
         // From a point that is not the surface's no light is sampled: rays that meet an emitter count in full.
         if (const Vec3 from = v(0), away = from - p.P; !p.surface.displaced && length(away) > geometry::roundingError(p.P) + 4 * p.surface.pError) {
@@ -95,8 +96,9 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         }
         l.deltaLights = false;
         l.lobeOfShader = false;
-        l.maxDistance = std::min(number(s.rowMaxDistance, 1e38f), number(s.trace->maxHit, 1e38f));
-        l.samples = std::clamp(int(number(s.rowSamples, 1)), 1, 4096);
+        l.maxDistance = std::min(number(s.rays->maxDistance, 1e38f), number(s.rays->maxHit, 1e38f));
+        if (l.maxDistance < 0) l.maxDistance = 1e38f; // PRMan: none
+        l.samples = std::clamp(int(std::clamp(number(s.rays->samples, 1), 1.f, 4096.f)), 1, 4096);
         break;
     default: break;
     }
@@ -145,6 +147,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
 
     auto sourcePoint = [&](size_t pi, const Vec3& w) {
         const ShadePoint& p = c.points[pi];
+        if (const float bias = world_->bindings_[size_t(c.bindings[pi])].bias; bias > 0) return p.P + w * bias;
         return geometry::offsetOrigin(p.surface, w, p.P == p.surface.P ? 0 : length(p.P - p.surface.P));
     };
 
@@ -402,7 +405,13 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 r.dir = w;
                 r.maxDistance = l.maxDistance;
                 r.type = l.type;
-                r.label = c.bound->sites[l.site].label;
+                r.label = l.label;
+                r.set = l.set;
+                r.start = 0;
+                if (l.base > 0) { // somewhere on the footprint
+                    const Vec2 at = rng.pair(vertex, kSampleBase, 0);
+                    r.origin += (p.surface.dPdu * (p.du * (at.x - .5f)) + p.surface.dPdv * (p.dv * (at.y - .5f))) * l.base;
+                }
                 r.environment = environment;
                 r.lit = l.lit;
                 r.part = l.ownsTarget ? Color(1.f / float(count)) : Color(0);
@@ -413,7 +422,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 r.fromTrace = !l.lobeOfShader;
                 r.lobeOrigin = p.P;
                 r.lobeBinding = l.lights && !l.elsewhere && !delta ? c.bindings[pi] : -1;
-                r.width = from.width + from.spread * length(p.I);
+                r.width = from.width + from.spread * length(p.P - from.origin);
                 r.spread = std::max(from.spread, l.kind->spread(l.params) * 0.5f);
                 r.shape = geometry::kNone;
                 r.cameraSample = -1;

@@ -2,6 +2,7 @@
 #include "rsl/services_basic.h"
 #include "transport/engine.h"
 #include "transport/information.h"
+#include "transport/raysets.h"
 #include <bit>
 
 namespace alpenglow::transport {
@@ -47,9 +48,7 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
     t->roughness = row("roughness");
     t->roughnessv = row("roughnessv");
     t->absorption = row("absorption");
-    t->bias = row("bias");
     t->tint = row("environmenttint");
-    t->maxHit = row("maxhitdist");
     const std::string part = text("__part");
     if (!part.empty()) t->part = part[0] - '0';
     std::map<int, int> ends; // by row: where the value ends
@@ -61,12 +60,8 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
     for (const char* name : {"eta", "eta[0]", "eta[1]"})
         if (const int r = row(name); r >= 0) t->eta.push_back({r, std::min(3, ends[r] - r)});
     for (int n = 0; row(("lobeparameters[" + std::to_string(n) + "]").c_str()) >= 0; ++n) t->lobes.push_back(row(("lobeparameters[" + std::to_string(n) + "]").c_str()));
-    for (const char* name : {"distribution", "bsdf", "type", "label", "environmentmap", "environmentspace"})
+    for (const char* name : {"distribution", "bsdf", "environmentmap", "environmentspace"})
         if (row(name) >= 0) said(name, "\"" + std::string(name) + "\" must be known when the shader is compiled; it is taken as not given");
-    for (const char* name : {"subset", "excludesubset"})
-        if (row(name) >= 0 || !text(name).empty()) said(name, "\"" + std::string(name) + "\" is not followed; all objects are considered");
-    if (const std::string mode = text("hitsides"); row("hitsides") >= 0 || (!mode.empty() && mode != "both")) said("hitsides", "\"hitsides\" is not followed; both sides are hit");
-    if (const std::string mode = text("hitmode"); mode == "primitive") said("hitmode", "\"hitmode\" \"primitive\" is not followed; the shader is run");
     if (const std::string map = text("environmentmap"); !map.empty()) {
         t->map = world.textures_->open(map, world.settings_.texturePaths, place);
         if (const std::string space = text("environmentspace"); !space.empty()) world.matrix("current", space, t->toMap);
@@ -121,8 +116,11 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         i.rowCone = rowOf("samplecone");
         i.rowHorizon = rowOf("horizon");
         i.rowLights = rowOf("samplearealights");
-        i.rowMaxDistance = rowOf("maxdist");
-        i.rowSamples = rowOf("samples");
+        if (i.kind == SiteKind::Trace || i.kind == SiteKind::Transmission) {
+            auto text = [&](const char* name) { auto f = i.text.find(name); return f == i.text.end() ? std::string() : f->second; };
+            i.label = rsl::internString(!text("label").empty() ? text("label") : text("raylabel"));
+            i.rays = raySite(i, *world, {s.place.file < int(k->files().size()) ? k->files()[size_t(s.place.file)] : "", s.place.line, s.place.column});
+        }
         if (i.kind == SiteKind::Trace) {
             auto text = [&](const char* name, const char* fallback) { auto f = i.text.find(name); return f == i.text.end() ? std::string(fallback) : f->second; };
             std::string distribution = text("distribution", text("bsdf", "uniform").c_str());
@@ -133,10 +131,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
                     {Severity::Warning, Rie::Unimplement, {k->files().empty() ? "" : k->files()[s.place.file], s.place.line, s.place.column},
                      "trace(): distribution \"" + distribution + "\" is not yet available; one ray along R is traced", {}, {}});
             }
-            std::string type = text("type", "specular");
-            i.label = rsl::internString(text("label", text("raylabel", "").c_str()));
             i.trace = traceSite(i, s, *k, *world);
-            i.type = type == "diffuse" ? RayType::Diffuse : type == "transmission" ? RayType::Transmission : RayType::Specular;
         }
         b.sites.push_back(std::move(i));
     }
@@ -352,7 +347,7 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
             else if (name == "depth") v = {r ? float(r->bounces) : 0};
             else if (name == "speculardepth") v = {r ? float(r->specularBounces) : 0};
             else if (name == "diffusedepth") v = {r ? float(r->diffuseBounces) : 0};
-            else if (name == "origin" && r) v = {r->origin.x, r->origin.y, r->origin.z};
+            else if (name == "origin" && r) v = {r->begin().x, r->begin().y, r->begin().z};
             else if (name == "direction" && r) v = {r->dir.x, r->dir.y, r->dir.z};
             else if (name == "length") v = {length(p.I)};
             else return;
@@ -362,7 +357,7 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
     case SiteKind::RayLevel:
         each([&](int lane, const ShadePoint&) {
             int depth = c.rays.empty() ? 0 : c.rays[first + lane].bounces;
-            bool shadow = c.binding && c.bound == &c.binding->opacityKernel;
+            const bool shadow = c.forShadow;
             put(0, lane, d.op == "raylevel" ? float(depth) : d.op == "isindirectray" ? float(depth > 0) : float(shadow));
         });
         return;

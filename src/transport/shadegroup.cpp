@@ -135,7 +135,7 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched) {
             color = Color(0);
         }
         if (ray.first) {
-            sched.setNearer(c.targets[i], length(c.points[i].I), c.points[i].N);
+            sched.setNearer(c.targets[i], length(c.points[i].P - ray.origin), c.points[i].N);
             sched.setTransmission(c.targets[i], Color(1) - opacity);
         }
         if (TraceSums* sums = sumsOf(c.targets[i])) sums->add(TraceSums::Blocked, ray.part * opacity);
@@ -200,7 +200,7 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
             int dpu = d->batch->output("Du:P"), dpv = d->batch->output("Dv:P"), dnu = d->batch->output("Du:N"), dnv = d->batch->output("Dv:N");
             for (size_t k = 0; k < c->points.size(); ++k) {
                 ShadePoint& p = c->points[k];
-                if (po >= 0) { p.P = d->batch->color(po, int(k)); p.I = p.P - c->rays[k].origin; }
+                if (po >= 0) { p.P = d->batch->color(po, int(k)); p.I = p.P - c->rays[k].begin(); }
                 if (no >= 0) p.N = d->batch->color(no, int(k));
                 // The surface shader's derivatives are those of the displaced surface. Its second partials stay those of the plain one.
                 if (po >= 0 && dpu >= 0 && dpv >= 0) {

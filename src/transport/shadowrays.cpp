@@ -1,6 +1,8 @@
 // Shadow rays: what lies on the way takes the share that its shader's Oi says. Where Oi is Os or a constant that was known when the
 // world was built no shader runs; elsewhere the kernel that gives Oi alone runs for all rays that met it, wave by wave.
 #include "transport/engine.h"
+#include "transport/raysets.h"
+#include "transport/sampling.h"
 
 namespace alpenglow::transport {
 
@@ -11,8 +13,10 @@ accel::Ray shadowRay(const ShadowRay& s) {
     r.dir = s.dir;
     r.tfar = s.distance;
     r.time = s.time;
-    r.mask = accel::kTransmission;
-    r.bothSides = true;
+    r.mask = visibilityBit(s.type);
+    r.sides = s.set.sides;
+    r.only = s.set.only;
+    if (s.ray) r.level = s.ray->level;
     return r;
 }
 Color between0And1(const Color& c) { return {std::clamp(c.x, 0.f, 1.f), std::clamp(c.y, 0.f, 1.f), std::clamp(c.z, 0.f, 1.f)}; }
@@ -37,8 +41,9 @@ void Engine::opacities(std::span<const OpacityQuery> met, std::span<Color> out) 
     BatchContext c;
     c.engine = this;
     const SurfaceBinding& b = world_->bindings_[size_t(met[0].binding)];
-    c.bound = &b.opacityKernel;
+    c.bound = met[0].kernel;
     c.binding = &b;
+    c.forShadow = true;
     c.rays.reserve(met.size());
     c.points.reserve(met.size());
     for (const OpacityQuery& m : met) {
@@ -47,7 +52,9 @@ void Engine::opacities(std::span<const OpacityQuery> met, std::span<Color> out) 
             r = *m.ray->ray;
             r.width += r.spread * length(m.ray->origin - r.origin);
         }
-        r.type = RayType::Transmission;
+        r.type = m.ray->type;
+        r.label = m.ray->label;
+        r.start = 0;
         r.origin = m.ray->origin;
         r.dir = m.ray->dir;
         r.cameraSample = -1;
@@ -64,9 +71,9 @@ void Engine::opacities(std::span<const OpacityQuery> met, std::span<Color> out) 
         setFootprint(p, r, length(p.I), 1);
     }
     std::vector<shading::InstanceView> views(met.size(), {&b.surface->parameters, &b.surface->toCurrent});
-    c.batch = std::make_shared<shading::Batch>(b.opacityKernel.kernel, *b.opacityKernel.plan, c.points, views, *world_);
+    c.batch = std::make_shared<shading::Batch>(c.bound->kernel, *c.bound->plan, c.points, views, *world_);
     bindCall(c.batch->call(), c);
-    b.opacityKernel.kernel->run(&c.batch->call());
+    c.bound->kernel->run(&c.batch->call());
     ++counters.batches;
     counters.points += met.size();
     for (size_t i = 0; i < met.size(); ++i) {
@@ -111,13 +118,14 @@ void Engine::transmittances(std::span<const ShadowRay> rays, std::span<Color> ou
                 g.ray.excludeShape = h.shape;
                 g.ray.excludePrim = h.prim;
                 g.ray.tnear = h.t;
-                if (b.opacityKernel) {
+                const Opacity& takes = b.opacityFor(rays[g.index].set.mode);
+                if (takes.kernel) {
                     ++g.layers;
-                    met.push_back({binding, h, &rays[g.index]});
+                    met.push_back({binding, h, &rays[g.index], &takes.kernel});
                     next.push_back(g);
                     break;
                 }
-                t *= Color(1) - b.shadowOpacity;
+                t *= Color(1) - takes.constant;
                 if (!(maxComponent(t) > 0)) break;
             }
         }
@@ -125,12 +133,13 @@ void Engine::transmittances(std::span<const ShadowRay> rays, std::span<Color> ou
         // One batch a surface. The order inside a batch does not matter: a kernel's lanes know nothing of each other.
         order.resize(met.size());
         for (size_t i = 0; i < order.size(); ++i) order[i] = i;
-        std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return met[a].binding < met[b].binding; });
+        const auto what = [&](size_t i) { return std::pair(met[i].binding, rays[next[i].index].set.mode); };
+        std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return what(a) < what(b); });
         std::vector<OpacityQuery> group;
         std::vector<Color> opacity;
         for (size_t first = 0, end; first < order.size(); first = end) {
             group.clear();
-            for (end = first; end < order.size() && met[order[end]].binding == met[order[first]].binding; ++end) group.push_back(met[order[end]]);
+            for (end = first; end < order.size() && what(order[end]) == what(order[first]); ++end) group.push_back(met[order[end]]);
             opacity.resize(group.size());
             opacities(group, opacity);
             for (size_t k = first; k < end; ++k) out[next[order[k]].index] *= Color(1) - opacity[k - first];
@@ -141,11 +150,39 @@ void Engine::transmittances(std::span<const ShadowRay> rays, std::span<Color> ou
     }
 }
 
-Color Engine::transmittance(const Vec3& origin, const Vec3& dir, float distance, float time, const PathRay* ray) {
-    ShadowRay s{origin, dir, distance, Color(1), shading::kNoTarget, time, ray};
+Color Engine::transmittance(const ShadowRay& s) {
     Color t;
     transmittances({&s, 1}, {&t, 1});
     return t;
+}
+
+void Engine::transmissionRays(const SiteInfo& s, const ShadePoint& p, const Vec3& at, const geometry::SurfacePoint* surface, const std::function<float(int)>& f,
+                              const Color& weight, TargetId target, uint32_t site, uint32_t occurrence, std::vector<ShadowRay>& out) {
+    const RaySite& r = *s.rays;
+    auto point = [&](size_t arg) { return Vec3(f(s.rows[arg]), f(s.rows[arg] + 1), f(s.rows[arg] + 2)); };
+    auto number = [&](int row, float fallback) { return row < 0 ? fallback : f(row); };
+    const Vec3 a = point(0), b = point(1);
+    ShadowRay ray{};
+    ray.target = target;
+    ray.time = p.time;
+    ray.ray = p.ray;
+    ray.set = raySetOf(*world_, s, f, p.shape, ray.type, ray.label);
+    const float bias = number(r.bias, -1), far = std::min(number(r.maxDistance, 1e38f), number(r.maxHit, 1e38f)), cone = number(r.cone, 0);
+    const int count = cone > 0 && p.ray ? int(std::clamp(number(r.samples, 1), 1.f, 4096.f)) : 1; // rays all alike need not be sent twice
+    ray.contribution = weight / float(count);
+    for (int k = 0; k < count; ++k) {
+        Vec3 end = b;
+        if (cone > 0 && p.ray && length(b - a) > 0) { // evenly in a cone about the way; as far as b
+            const float cap = 2 * std::pow(std::sin(0.5f * std::min(cone, float(kPi))), 2.f);
+            end = a + Basis((b - a) / length(b - a)).toWorld(sampleCone(cap, random(*p.ray).pair(p.ray->vertex, site, occurrence * 4096 + uint32_t(k)))) * length(b - a);
+        }
+        const Way way = wayBetween(a, end, at, surface);
+        ray.origin = bias >= 0 ? a + way.dir * bias : way.origin;
+        ray.dir = way.dir;
+        ray.distance = bias >= 0 ? std::max(0.f, way.distance - bias) : way.distance;
+        if (far >= 0) ray.distance = std::min(ray.distance, far);
+        out.push_back(ray);
+    }
 }
 
 void Engine::flushShadows(Sched& s) {

@@ -46,7 +46,22 @@ bool SurfaceBinder::bindAll() {
         world_.bindingOf_.push_back(b);
         if (path_ && world_.bindings_[size_t(b)].atmosphere && shape->attributes().areaLight >= 0) world_.hazyEmitters_[shape.get()] = b;
     }
-    return bindMixed();
+    return bindMixed() && bindHitModes();
+}
+
+bool SurfaceBinder::bindHitModes() {
+    if (!world_.hitModes_) return true;
+    const InstanceRef plain = world_.builtin("constant", rsl::ShaderKind::Surface, diagnostics_);
+    if (plain) world_.primitiveHit_ = world_.kernel(*plain, {"Ci", "Oi"}, {}, true, path_, diagnostics_);
+    if (!world_.primitiveHit_) return false;
+    for (size_t i = 0; i < world_.bindings_.size(); ++i) {
+        SurfaceBinding& b = world_.bindings_[i];
+        b.shaderOpacity = world_.opacityOf(b, *asked_[i].shape, "shader", asked_[i].varying, engine_, diagnostics_);
+        b.primitiveOpacity.constant = b.attributes->opacity;
+        if (asked_[i].shape->findPrimvar("Os") >= 0) b.primitiveOpacity.kernel = world_.kernel(*plain, {"Oi"}, {}, false, false, diagnostics_);
+        world_.allOpaque_ &= b.shaderOpacity.opaque() && b.primitiveOpacity.opaque();
+    }
+    return true;
 }
 
 int SurfaceBinder::bind(const geometry::ShapeRef& shape) {
@@ -79,13 +94,14 @@ int SurfaceBinder::bind(const geometry::ShapeRef& shape) {
     add(a.shadingRate);
     add(attributeNumber(a, "trace:maxdiffusedepth", -1));
     add(attributeNumber(a, "trace:maxspeculardepth", -1));
+    add(attributeNumber(a, "trace:bias", 0));
     for (const Names* names : {&varying, &displacementVarying, &atmosphereVarying}) {
         for (const auto& v : *names) key += v + ";";
         key += "|";
     }
     key += shape->findPrimvar("Os") >= 0 ? "Os;" : "";
-    for (const char* name : {"shade:transmissionhitmode", "visibility:transmission"})
-        if (const scene::Param* p = a.value(name); p && !p->strings.empty()) key += p->strings[0] + ";";
+    for (const char* name : {"shade:transmissionhitmode", "visibility:transmission", "shade:diffusehitmode", "shade:specularhitmode", "render:casts_shadows"})
+        if (const scene::Param* p = a.value(name); p && !p->strings.empty()) key += name + p->strings[0] + ";";
     auto [it, fresh] = bindingByKey_.try_emplace(key, int(world_.bindings_.size()));
     if (!fresh) return it->second;
 
@@ -100,14 +116,19 @@ int SurfaceBinder::bind(const geometry::ShapeRef& shape) {
     b.shadingRate = a.shadingRate;
     b.maxDiffuse = int(attributeNumber(a, "trace:maxdiffusedepth", path_ ? -1 : 1));
     b.maxSpecular = int(attributeNumber(a, "trace:maxspeculardepth", path_ ? -1 : 2));
+    b.bias = std::max(0.f, attributeNumber(a, "trace:bias", 0));
+    for (const auto& [name, bit] : {std::pair{"shade:diffusehitmode", uint32_t(accel::kDiffuse)}, {"shade:specularhitmode", uint32_t(accel::kSpecular)}})
+        if (const scene::Param* p = a.value(name); p && !p->strings.empty() && p->strings[0] == "primitive") b.primitiveFor |= bit;
+    world_.hitModes_ |= b.primitiveFor != 0;
     b.attributes = shape->attributesRef();
     // Displaced shapes and different kernels never share a batch. Equal builds S mean equal builds V.
     b.program = programs_.try_emplace({b.surfaceS.kernel.get(), b.displacement.get(), b.displacementS.kernel.get()}, int(programs_.size())).first->second;
     auto [group, firstOfGroup] = groups_.try_emplace({b.program, b.lightList}, world_.groups_);
     world_.groups_ += firstOfGroup;
     b.group = group->second;
-    world_.bindOpacity(b, *shape, asked_.back().varying, engine_, diagnostics_);
-    world_.allOpaque_ &= !b.opacityKernel && b.shadowOpacity == Color(1);
+    b.opacity = world_.opacityOf(b, *shape, "", asked_.back().varying, engine_, diagnostics_);
+    world_.allOpaque_ &= b.opacity.opaque();
+    asked_.back().shape = shape;
     world_.bindings_.push_back(std::move(b));
     return it->second;
 }
@@ -204,25 +225,27 @@ void SurfaceBinder::bindLights(SurfaceBinding& b, const scene::Attributes& a) {
     sampled.erase(std::unique(sampled.begin(), sampled.end()), sampled.end());
 }
 
-void WorldImpl::bindOpacity(SurfaceBinding& b, const geometry::Shape& shape, const std::vector<std::string>& varying, Engine& engine, Diagnostics& d) {
+Opacity WorldImpl::opacityOf(const SurfaceBinding& b, const geometry::Shape& shape, std::string mode, const std::vector<std::string>& varying, Engine& engine, Diagnostics& d) {
     const scene::Attributes& a = shape.attributes();
-    std::string mode = "shader";
+    const bool asked = !mode.empty();
+    if (!asked) mode = "shader";
     for (const char* name : {"render:casts_shadows", "shade:transmissionhitmode", "visibility:transmission"}) // BMRT's, PRMan's, the older ones
-        if (const scene::Param* p = a.value(name); p && !p->strings.empty()) mode = p->strings[0];
+        if (const scene::Param* p = a.value(name); p && !asked && !p->strings.empty()) mode = p->strings[0];
     std::string what = b.surfaceS.kernel->facts().opacity;
     bool varies = shape.findPrimvar("Os") >= 0;
-    b.shadowOpacity = mode == "opaque" ? Color(1) : a.opacity;
-    if (mode == "opaque" || mode == "primitive" || (mode == "Os" && !varies) || (what == "Os" && !varies)) return;
+    Opacity result;
+    result.constant = mode == "opaque" ? Color(1) : a.opacity;
+    if (mode == "opaque" || mode == "primitive" || (mode == "Os" && !varies) || (what == "Os" && !varies)) return result;
     if (what == "1") {
-        b.shadowOpacity = Color(1);
-        return;
+        result.constant = Color(1);
+        return result;
     }
     BoundKernel k = kernel(*b.surface, {"Oi"}, varying, false, false, d);
-    if (!k || k.plan->Oi < 0) return;
+    if (!k || k.plan->Oi < 0) return result;
     if (k.kernel->facts().suspends) {
         d.reportOnce("opacity:" + b.surface->name, {Severity::Warning, Rie::NoError, b.surface->place,
                      "the opacity of shader \"" + b.surface->name + "\" depends on traced rays; its shadow has the primitive's Opacity", {}, {}});
-        return;
+        return result;
     }
     bool constant = !varies && k.kernel->sites().empty();
     for (const auto& in : k.kernel->inputs()) {
@@ -230,8 +253,8 @@ void WorldImpl::bindOpacity(SurfaceBinding& b, const geometry::Shape& shape, con
         constant &= parameter || in.name == "Os" || (in.name == "Cs" && shape.findPrimvar("Cs") < 0);
     }
     if (!constant) {
-        b.opacityKernel = std::move(k);
-        return;
+        result.kernel = std::move(k);
+        return result;
     }
     std::vector<ShadePoint> point(1);
     point[0].shape = &shape;
@@ -244,6 +267,7 @@ void WorldImpl::bindOpacity(SurfaceBinding& b, const geometry::Shape& shape, con
     engine.bindCall(c.batch->call(), c);
     k.kernel->run(&c.batch->call());
     Color o = c.batch->color(k.plan->Oi, 0);
-    for (int i = 0; i < 3; ++i) b.shadowOpacity[i] = std::isfinite(o[i]) ? std::clamp(o[i], 0.f, 1.f) : 1;
+    for (int i = 0; i < 3; ++i) result.constant[i] = std::isfinite(o[i]) ? std::clamp(o[i], 0.f, 1.f) : 1;
+    return result;
 }
 } // namespace alpenglow::transport

@@ -28,6 +28,8 @@ private:
     void bindLights(SurfaceBinding&, const scene::Attributes&);
     /// Batches of several bindings, or of points that see different spaces, need kernels whose uniform inputs come in lanes.
     bool bindMixed();
+    /// What rays with a "hitmode" take. False when the shaders that ship were not found.
+    bool bindHitModes();
 
     WorldImpl& world_;
     Engine& engine_;
@@ -40,7 +42,10 @@ private:
     std::map<std::vector<int>, int> lightLists_;
     std::map<std::pair<int, int>, int> groups_;
     /// What the kernels of a binding were asked for, by binding.
-    struct Asked { Names outputs, varying; };
+    struct Asked {
+        Names outputs, varying;
+        geometry::ShapeRef shape; ///< the first
+    };
     std::vector<Asked> asked_;
 };
 

@@ -17,8 +17,9 @@ void Engine::passThrough(const PathRay& ray, TargetId target, const ShadePoint& 
         r.weight = r.weight / most;
         r.part = r.part / most;
     }
-    float travelled = length(p.I);
+    const float travelled = length(p.P - ray.origin);
     r.origin = geometry::offsetOrigin(p.surface, ray.dir);
+    if (ray.type == RayType::Camera) r.start = ray.start + dot(r.origin - ray.origin, ray.dir); // the eye has not moved
     r.maxDistance = ray.maxDistance - travelled;
     r.width = ray.width + ray.spread * travelled;
     r.shape = geometry::kNone;

@@ -100,6 +100,13 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     std::vector<uint32_t> visibility;
     for (const auto& shape : w->shapes_) visibility.push_back(visibilityOf(shape->attributes(), all));
     w->accel_ = std::make_unique<accel::Accel>(w->shapes_, visibility, d);
+    std::vector<accel::Accel::Levels> levels(w->shapes_.size());
+    for (size_t i = 0; i < levels.size(); ++i)
+        if (const scene::Param* p = w->shapes_[i]->attributes().value(kLevelAttribute); p && p->numbers.size() == 2) {
+            levels[i] = {p->numbers[0], p->numbers[1]};
+            w->fades_ = true;
+        }
+    if (w->fades_) w->accel_->setLevels(std::move(levels));
     w->bindSentStrings(d);
     w->measureLights(engine, d);
     for (const auto& [shape, binding] : w->hazyEmitters_) {

@@ -26,9 +26,29 @@ inline uint32_t visibilityBit(RayType t) {
     }
 }
 
+/// What a call that sends rays says of them (rsl.md, table 6.10). Rows of arguments, or -1.
+struct RaySite {
+    int bias = -1, maxDistance = -1, maxHit = -1, cone = -1, samples = -1, base = -1;
+    int subset = -1, exclude = -1, sides = -1, mode = -1, label = -1, type = -1; ///< strings that are known only when the shader runs
+    std::string subsetText, excludeText;
+    shading::RaySet set;                  ///< what is known beforehand
+    RayType rays = RayType::Specular;
+};
+
+/// The subsets of a world's shapes that rays were restricted to.
+class ShapeSubsets {
+public:
+    /// By shape, whether rays of this "subset" and "excludesubset" consider it; null: all. Good as long as the world. Thread safe.
+    const uint8_t* find(const class WorldImpl&, const std::string& wanted, const std::string& unwanted) const;
+
+private:
+    mutable std::mutex mutex_;
+    mutable std::map<std::string, std::vector<uint8_t>> kept_;
+};
+
 /// Where the rarer parameters of a trace() lie.
 struct TraceSite {
-    int udir = -1, roughness = -1, roughnessv = -1, absorption = -1, bias = -1, tint = -1, maxHit = -1; ///< rows, or -1
+    int udir = -1, roughness = -1, roughnessv = -1, absorption = -1, tint = -1; ///< rows, or -1
     std::vector<std::pair<int, int>> eta; ///< row, components
     std::vector<int> lobes;               ///< rows of the elements of "lobeparameters"
     int part = -1;                        ///< of the form that gives an array
@@ -52,13 +72,13 @@ struct SiteInfo {
     int resultRowCount = 0;
     const LobeKind* lobe = nullptr;            ///< Trace: the distribution; the lobe of a lighting shadeop
     bool standard = false;                     ///< specularstd, not specular
-    int rowWo = -1, rowExponent = -1, rowCone = -1, rowHorizon = -1, rowLights = -1, rowMaxDistance = -1, rowSamples = -1; ///< of `named`
+    int rowWo = -1, rowExponent = -1, rowCone = -1, rowHorizon = -1, rowLights = -1; ///< of `named`
     std::shared_ptr<const struct TraceSite> trace; ///< Trace: what only some calls use
+    std::shared_ptr<const RaySite> rays;       ///< Trace, Transmission
     /// Outputs of the surface that lights ask for: name, row, numbers.
     struct Output { std::string name; int row, size; };
     std::vector<Output> outputs;
-    RayType type = RayType::Specular;
-    int32_t label = 0;                         ///< Trace: interned, for rayinfo()
+    int32_t label = 0;                         ///< of its rays: interned, for rayinfo()
 };
 
 /// A kernel and the meaning of its sites.
@@ -118,6 +138,13 @@ struct BoundLight {
     float radius = 0;
 };
 
+/// What a surface takes from shadow rays: the same everywhere, or what a kernel says that gives Oi alone.
+struct Opacity {
+    Color constant{1};
+    BoundKernel kernel;
+    bool opaque() const { return !kernel && constant == Color(1); }
+};
+
 /// Shapes with the same surface, atmosphere and light list are shaded together.
 struct SurfaceBinding {
     InstanceRef surface, atmosphere, displacement, interior, exterior; ///< the last two only for messages
@@ -132,13 +159,19 @@ struct SurfaceBinding {
     bool usesObjectSpace = false;              ///< the kernel reads "object" or "shader" matrices that differ inside the binding
     int areaLight = -1;                        ///< the light whose geometry this is
     bool explicitSurface = true;
-    /// What the surface takes from shadow rays, when that is the same everywhere; else opacityKernel, which gives Oi alone.
-    Color shadowOpacity{1};
-    BoundKernel opacityKernel;
+    Opacity opacity;                           ///< as the attributes say
+    Opacity primitiveOpacity, shaderOpacity;   ///< for rays with a "hitmode"; only where there are some
+    const Opacity& opacityFor(shading::HitMode m) const {
+        return m == shading::HitMode::Default ? opacity : m == shading::HitMode::Primitive ? primitiveOpacity : shaderOpacity;
+    }
+    uint32_t primitiveFor = 0;                 ///< visibility bits of rays that take the primitive as it is (Attribute "shade")
+    bool asPrimitive(shading::HitMode m, RayType t) const {
+        return m == shading::HitMode::Primitive || (m == shading::HitMode::Default && (primitiveFor & visibilityBit(t)));
+    }
     bool matte = false;
     float shadingRate = 1;
     int maxDiffuse = -1, maxSpecular = -1;
-    float bias = -1;                           ///< Attribute "trace" "bias"; < 0: the hit's own error bound
+    float bias = 0;                            ///< Attribute "trace" "bias"; 0: the hit's own error bound
     scene::AttributesRef attributes;
 };
 
@@ -177,8 +210,8 @@ public:
     void bindSentStrings(Diagnostics&);
     /// How bright the lights are; which area lights mean an intensity. After everything else is built.
     void measureLights(class Engine&, Diagnostics&);
-    /// Sets shadowOpacity or opacityKernel.
-    void bindOpacity(SurfaceBinding&, const geometry::Shape&, const std::vector<std::string>& varying, Engine&, Diagnostics&);
+    /// What the shape takes from shadow rays. `mode`: "shader", "primitive", "opaque" or "Os"; "": what the attributes say.
+    Opacity opacityOf(const SurfaceBinding&, const geometry::Shape&, std::string mode, const std::vector<std::string>& varying, Engine&, Diagnostics&);
     /// Probability with which each of the lights (a list of sampledLights_) is sampled at a point.
     void lightChances(const std::vector<int>& lights, const Vec3& at, std::vector<float>& chance) const;
 
@@ -206,6 +239,10 @@ public:
     bool lightChannels_ = false;               ///< lights give AOVs by outputchannel()
     bool footprints_ = false;                  ///< some kernel reads du or dv
     bool allOpaque_ = true;                    ///< no opacity below 1: shadow rays need no shading
+    bool fades_ = false;                       ///< some shape is between levels of detail
+    bool hitModes_ = false;                    ///< some call has a "hitmode"
+    BoundKernel primitiveHit_;                 ///< shows primitives as they are; only where some ray may want that
+    ShapeSubsets subsets_;
     std::vector<std::vector<int>> sampledLights_; ///< by SurfaceBinding::lightList: lights that get samples, in order
     std::unordered_map<const geometry::Shape*, int> hazyEmitters_; ///< emitters in an atmosphere -> their binding
     float clipNear_ = 0, clipFar_ = 1;         ///< of the request Clipping, for depth()

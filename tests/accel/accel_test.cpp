@@ -276,7 +276,7 @@ TEST(Sides, OneSidedShapesAreInvisibleFromBehind) {
     r.org = Vec3(0, 0, 5); // from inside every normal faces away
     EXPECT_FALSE(s.accel->intersect(r, h));
     EXPECT_FALSE(s.accel->occluded(r));
-    r.bothSides = true;
+    r.sides = accel::Sides::Both;
     EXPECT_TRUE(s.accel->intersect(r, h));
     a.inside = true; // normals inward: seen from outside, only the far half is there
     Scene in({quadric("Sphere", {1, -1, 1, 360})}, translateMatrix(0, 0, 5), a);

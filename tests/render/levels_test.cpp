@@ -1,5 +1,7 @@
 // Levels of detail: sizes of boxes worked out by hand, and which representations of a frame are left.
 #include "render/levels.h"
+#include "geometry/instance_attributes.h"
+#include "transport/integrator.h"
 #include <gtest/gtest.h>
 
 using namespace alpenglow;
@@ -54,12 +56,10 @@ TEST(Levels, OneOfThreeIsDrawn) {
     f->primitives = {sphere(low), sphere(middle), sphere(high)};
     auto drawn = [&](float relative) {
         f->options.relativeDetail = relative;
-        auto out = drawnLevels(f, Camera(f->options, d), d);
+        auto out = drawnLevels(f, Camera(f->options, d));
         EXPECT_EQ(out->primitives.size(), 1u) << relative;
         return out->primitives.empty() ? nullptr : out->primitives[0]->attributes.get();
     };
-    EXPECT_EQ(drawn(1), middle.get()) << "2500 pixels, below the middle 3000 of the transition";
-    EXPECT_EQ(d.all().size(), 1u) << "they do not fade";
     EXPECT_EQ(drawn(1.3f), high.get());
     EXPECT_EQ(drawn(4), high.get());
     EXPECT_EQ(drawn(.5f), middle.get());
@@ -67,6 +67,44 @@ TEST(Levels, OneOfThreeIsDrawn) {
     EXPECT_EQ(drawn(0), low.get());
     low->detail.reset(), middle->detail.reset(), high->detail.reset();
     EXPECT_EQ(drawn(.01f), high.get()) << "without a box the detail is infinite";
+}
+
+TEST(Levels, TransitionsFade) {
+    Diagnostics d;
+    auto f = std::make_shared<scene::Frame>();
+    f->options = square("orthographic");
+    const auto low = range(0, 0, 100, 200), middle = range(100, 200, 2000, 4000), high = range(2000, 4000, 1e38f, 1e38f);
+    f->primitives = {sphere(low), sphere(middle), sphere(high)};
+    const auto parts = [&](float relative) { // of each that is left
+        f->options.relativeDetail = relative;
+        std::vector<std::vector<float>> p;
+        for (const auto& left : drawnLevels(f, Camera(f->options, d))->primitives) {
+            const scene::Param* level = left->attributes->value(transport::kLevelAttribute);
+            p.push_back(level ? level->numbers : std::vector<float>{});
+        }
+        return p;
+    };
+    using Parts = std::vector<std::vector<float>>;
+    // 2500 pixels lie a quarter of the way from 2000 to 4000: three quarters of the samples see the middle one, the others the high one.
+    EXPECT_EQ(parts(1), (Parts{{0, .75f}, {.75f, 1}}));
+    EXPECT_EQ(parts(.05f), (Parts{{0, .75f}, {.75f, 1}})); // 125 between 100 and 200
+    EXPECT_EQ(parts(.5f), (Parts{{}}));
+    EXPECT_TRUE(d.all().empty());
+    EXPECT_EQ(low->value(transport::kLevelAttribute), nullptr) << "the scene's own attributes stay";
+    // In an instance the mark lies over the attributes of the instance.
+    const auto none = std::make_shared<scene::Attributes>();
+    auto lit = std::make_shared<scene::Attributes>(*middle);
+    lit->color = Color(.5f);
+    f->primitives.clear();
+    f->objects.push_back({"tree", {sphere(none)}});
+    f->instances.push_back({0, scene::Transform(), lit, {}});
+    f->options.relativeDetail = 1;
+    const auto out = drawnLevels(f, Camera(f->options, d));
+    const scene::Instance& i = out->instances[0];
+    const auto a = geometry::instanceAttributes(*out->objects[size_t(i.object)].primitives.at(0), i);
+    ASSERT_NE(a->value(transport::kLevelAttribute), nullptr);
+    EXPECT_EQ(a->value(transport::kLevelAttribute)->numbers, (std::vector<float>{0, .75f}));
+    EXPECT_EQ(a->color, Color(.5f));
 }
 
 TEST(Levels, InstancesHaveTheirOwn) {
@@ -84,7 +122,7 @@ TEST(Levels, InstancesHaveTheirOwn) {
     f->objects.push_back({"tree", {low, high, sphere(none)}});
     f->instances.push_back({0, scene::Transform(), none, {}});
     f->instances.push_back({0, scene::Transform(scaleMatrix(.5, .5, .5)), none, {}}); // 625 pixels
-    auto out = drawnLevels(f, Camera(f->options, d), d);
+    auto out = drawnLevels(f, Camera(f->options, d));
     auto of = [&](size_t i) { return out->objects[size_t(out->instances[i].object)].primitives; };
     ASSERT_EQ(of(0).size(), 2u);
     EXPECT_EQ(of(0)[0], high);
@@ -99,5 +137,5 @@ TEST(Levels, FramesWithoutThemStayTheSame) {
     auto f = std::make_shared<scene::Frame>();
     f->options = square("orthographic");
     f->primitives = {sphere(std::make_shared<scene::Attributes>())};
-    EXPECT_EQ(drawnLevels(f, Camera(f->options, d), d), f);
+    EXPECT_EQ(drawnLevels(f, Camera(f->options, d)), f);
 }

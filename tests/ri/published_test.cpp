@@ -125,3 +125,43 @@ TEST(Published, AMovingTeapotIsKeptAsItIs) {
     EXPECT_EQ(c->frame().primitives.size(), 1u) << c->messages();
     EXPECT_EQ(c->primitive().kind, "Geometry");
 }
+
+TEST(Published, CubesAndSpheresByName) {
+    auto c = world("Translate 1 2 3 Geometry \"cube\" \"uniform color Cs\" [0 .5 1]\nGeometry \"sphere\"");
+    EXPECT_EQ(c->count(), 0u) << c->messages();
+    ASSERT_EQ(c->frame().primitives.size(), 7u);
+    double volume = 0; // by the divergence theorem: a third of the sum of P . N over the faces
+    for (size_t i = 0; i < 6; ++i) {
+        const scene::Primitive& p = c->primitive(i);
+        EXPECT_EQ(p.kind, "Patch");
+        expectMatrix(p.toWorld.first(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1});
+        EXPECT_TRUE(scene::find(p.params, "Cs"));
+        const std::vector<float>& f = scene::find(p.params, "P")->numbers;
+        ASSERT_EQ(f.size(), 12u);
+        const auto at = [&](size_t k) { return Vec3d(f[3 * k], f[3 * k + 1], f[3 * k + 2]); };
+        for (float x : f) EXPECT_EQ(std::abs(x), .5f);
+        volume += dot(at(0), cross(at(1) - at(0), at(2) - at(0))) / 3;
+    }
+    EXPECT_DOUBLE_EQ(volume, 1) << "normals to the outside";
+    EXPECT_EQ(c->primitive(6).kind, "Sphere");
+    EXPECT_EQ(c->primitive(6).numbers, (std::vector<float>{1, -1, 1, 360}));
+}
+
+TEST(Published, SignsBeginNumbersAndOneNumberIsAGrey) {
+    auto c = world("Translate .5-.25 1e1 Color .3 Opacity [.5] Sphere 1-1 1 360\nPolygon \"P\" [-1-1 0 1-1 0 1 1 0]");
+    ASSERT_EQ(c->frame().primitives.size(), 2u) << c->messages();
+    EXPECT_EQ(c->primitive().attributes->color, Color(.3f));
+    EXPECT_EQ(c->primitive().attributes->opacity, Color(.5f));
+    EXPECT_EQ(c->primitive().numbers, (std::vector<float>{1, -1, 1, 360}));
+    EXPECT_EQ(scene::find(c->primitive(1).params, "P")->numbers, (std::vector<float>{-1, -1, 0, 1, -1, 0, 1, 1, 0}));
+    auto glued = world("Translate .4-.4 1.5 Sphere 1 -1 1 360");
+    EXPECT_EQ(glued->count(), 0u) << glued->messages();
+    expectMatrix(glued->primitive().toWorld.first(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, .4f, -.4f, 1.5f, 1});
+    EXPECT_EQ(world("Color .3 Sphere 1 -1 1 360")->only().severity, Severity::Warning);
+    EXPECT_EQ(world("Color [.3 .4] Sphere 1 -1 1 360")->only().severity, Severity::Error);
+    EXPECT_EQ(world("Translate 1-x 2 3")->only().severity, Severity::Error);
+    // Whole numbers written with a point are integers.
+    auto whole = world("Sides 2.0 Attribute \"trace\" \"integer maxspeculardepth\" 3.0\nPointsPolygons [3.0] [0.0 1 2] \"P\" [0 0 0 1 0 0 1 1 0]");
+    EXPECT_EQ(whole->count(), 0u) << whole->messages();
+    EXPECT_EQ(whole->primitive().ints, (std::vector<int>{3}));
+}

@@ -244,11 +244,13 @@ TEST(TraceDistributions, WhereRaysBegin) {
     EXPECT_NEAR(of("\"float by\" .25"), 2.75, 1e-4);
 }
 // What is not followed is said.
-TEST(TraceDistributions, WhatIsNotFollowed) {
-    writeShader("subsets", "surface subsets() { Oi = 1; Ci = trace(P, vector(0, 1, 0), \"subset\", \"some\", \"hitsides\", \"front\", \"hitmode\", \"primitive\"); }\n");
-    const std::string m = Scene(scene("", "subsets"), under(Hider::Raytrace)).messages();
-    for (const char* what : {"\"subset\" is not followed", "\"hitsides\" is not followed", "\"hitmode\" \"primitive\" is not followed"})
+TEST(TraceDistributions, WordsThatAreNotKnown) {
+    writeShader("words", "surface words() { Oi = 1; Ci = trace(P, vector(0, 1, 0), \"type\", \"ghost\", \"hitsides\", \"top\", \"hitmode\", \"guess\"); }\n");
+    const std::string m = Scene(scene("", "words"), under(Hider::Raytrace)).messages();
+    for (const char* what : {"\"type\" \"ghost\" is not known", "\"hitsides\" \"top\" is not known", "\"hitmode\" \"guess\" is not known"})
         EXPECT_NE(m.find(what), std::string::npos) << m;
+    writeShader("allwords", "surface allwords() { Oi = 1; Ci = trace(P, vector(0, 1, 0), \"subset\", \"some\", \"hitsides\", \"front\", \"hitmode\", \"primitive\", \"label\", \"l\"); }\n");
+    EXPECT_EQ(Scene(scene("", "allwords"), under(Hider::Raytrace)).messages(), "");
 }
 
 } // namespace

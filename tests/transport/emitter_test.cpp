@@ -97,7 +97,7 @@ struct Made {
         accel::Ray r;
         r.org = from;
         r.dir = w;
-        r.bothSides = true;
+        r.sides = accel::Sides::Both;
         accel::Hit h;
         while (all.size() < 16 && accel->intersect(r, h)) {
             all.push_back(h);

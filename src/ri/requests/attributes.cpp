@@ -14,10 +14,14 @@ bool within(Interpreter& in, const Call& c, bool good, const char* what) {
     return good;
 }
 
-/// Three numbers, or as many as ColorSamples says.
+/// Three numbers, or as many as ColorSamples says. One number of three is a grey, with a warning.
 bool colorOf(Interpreter& in, const Call& c, Color& out) {
     size_t n = in.nRGB.empty() ? 3 : in.nRGB.size() / 3;
-    const auto& v = c.numbers(0);
+    std::vector<double> v(c.numbers(0).begin(), c.numbers(0).end());
+    if (v.size() == 1 && n == 3) {
+        in.reporter.warning(Rie::MissingData, c.place, fmt::format("{} with one number is taken as a grey", c.request->name));
+        v.resize(3, v[0]);
+    }
     if (v.size() < n) {
         in.reporter.error(Rie::MissingData, c.place, fmt::format("{} needs {} numbers, not {}", c.request->name, n, v.size()));
         return false;

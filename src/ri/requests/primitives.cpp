@@ -2,6 +2,7 @@
 #include "ri/interpreter.h"
 #include "ri/teapot.h"
 #include <fmt/format.h>
+#include <map>
 
 namespace alpenglow::ri {
 namespace {
@@ -114,15 +115,16 @@ void blobby(Interpreter& in, const Call& c) {
 }
 
 void geometry(Interpreter& in, const Call& c) {
-    if (c.text(0) == "teapot" && !in.gatheringMotion()) {
+    static const std::map<std::string, const std::string& (*)()> kShapes = {{"teapot", teapotRequests}, {"cube", cubeRequests}, {"sphere", sphereRequests}};
+    if (const auto shape = kShapes.find(c.text(0)); shape != kShapes.end() && !in.gatheringMotion()) {
         scene::ParamList everywhere;
         for (scene::Param& p : in.bind(c, Use::Primitive)) {
             const bool one = p.cls == scene::Class::Constant || p.cls == scene::Class::Uniform;
-            if (one) p.cls = scene::Class::Constant; // the teapot is one thing to who names it
+            if (one) p.cls = scene::Class::Constant; // the shape is one thing to who names it
             if (one) everywhere.push_back(std::move(p));
-            else in.incapable(c, "Geometry \"teapot\" has no variables but constant and uniform ones");
+            else in.incapable(c, "Geometry \"" + c.text(0) + "\" has no variables but constant and uniform ones");
         }
-        in.expand(teapotRequests(), c, std::move(everywhere));
+        in.expand(shape->second(), c, std::move(everywhere));
         return;
     }
     scene::Primitive p = start(in, c);
@@ -198,7 +200,7 @@ std::vector<Request> primitiveRequests() {
          "\"cubic\" [4] \"nonperiodic\" \"P\" [0 0 0 1 0 0 2 0 0 3 0 0] \"width\" [.1 .2]", curves},
         {"Blobby", "int nleaf; int[] code; number[] floats; string[] strings?; ..", k, s, true, "An implicit surface of blobs.",
          "1 [1001 0] [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1] [\"\"]", blobby},
-        {"Geometry", "string name; ..", k, s, true, "A shape the renderer knows, such as \"teapot\".", "\"teapot\"", geometry},
+        {"Geometry", "string name; ..", k, s, true, "A shape the renderer knows: \"teapot\", \"cube\", \"sphere\".", "\"teapot\"", geometry},
         {"Volume", "string type; number[6] bound; int[] dimensions; ..", k, s, true, "A region filled by a volume shader.",
          "\"box\" [-1 1 -1 1 -1 1] [0 0 0]", volume},
         {"Procedural", "string kind; string[] arguments; number[6] bound; ..", k, s, false,

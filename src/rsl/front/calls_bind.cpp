@@ -2,11 +2,20 @@
 #include "base/limits.h"
 #include "rsl/front/checker.h"
 #include <algorithm>
+#include <cstdlib>
 #include <set>
 #include <string_view>
 #include <utility>
 
 namespace alpenglow::rsl::front {
+
+namespace {
+/// How many optional parameters the text of a shadeop takes behind its own.
+size_t optionalInText(const Shadeop& op) {
+    static const std::set<std::string_view> kOps = {"bump", "visibility", "rayhittest", "fulltrace"};
+    return kOps.count(op.name) ? op.optional.size() : 0;
+}
+} // namespace
 
 /// What is the same for all points when the arguments are: whether a message was found, what a file or the frame says, a length, and
 /// a picture read where the arguments say. What an argument holds that is put out does not count.
@@ -66,7 +75,9 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
     }
     if (op.name == "rayinfo") readsPoint(e, "what 'rayinfo' gives"); // the same for the points of one batch, but of a ray
     const bool written = op.lowering == Lowering::Unavailable && !op.rsl.empty() && !choice.signature->pairs; // this form has a text
-    if (op.lowering == Lowering::Unavailable && !written && reportedUnavailable_.insert(&op).second)
+    // shadow("raytrace", ...) sends rays. A map by that name is known here only where it is written down.
+    const bool rays = op.name == "shadow" && !e.args.empty() && e.args[0]->kind == ExprKind::String && e.args[0]->text == "raytrace";
+    if (op.lowering == Lowering::Unavailable && !written && !rays && reportedUnavailable_.insert(&op).second)
         sources_.warning(e.place, "'" + op.name + "' is not yet available; " +
                                       (e.type.base == Base::Void ? "the call does nothing" : "its value is 0"));
     if (op.lowering != Lowering::Rsl && !written) return;
@@ -78,20 +89,20 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
             filter.erase(std::remove(filter.begin(), filter.end(), '-'), filter.end());
             if (findShadeop("__filterstep_" + filter)) rename = {"__filterstep_catmullrom", "__filterstep_" + filter};
             else sources_.warning(p.place, "there is no filter \"" + p.value->text + "\"; catmull-rom is used");
-        } else if (op.name == "bump" && (p.name == "blur" || p.name == "width")) {
+        } else if (optionalInText(op) > 0) {
         } else if (op.name != "filterstep" || (p.name != "filter" && p.name != "width")) {
             sources_.warning(p.place, "\"" + p.name + "\" of '" + op.name + "' is not yet available and ignored");
         }
     }
     const Unit& unit = rslUnit(op);
-    const size_t behind = op.name == "bump" ? 2 : 0; // its text has two parameters more: "blur" and "width"
+    const size_t behind = optionalInText(op);
     const size_t count = choice.signature->parameters.size();
     for (const auto& f : unit.functions) {
         bool same = f->name == op.name && f->result == choice.signature->result && f->parameters.size() == count + behind;
         for (size_t i = 0; same && i < count; ++i)
             same = f->parameters[i]->type == choice.signature->parameters[i].type;
         if (!same) continue;
-        if (behind) bumpParameters(e);
+        if (behind) optionalArguments(e, op);
         e.kind = ExprKind::FunctionCall;
         // Its globals are visible whatever the shader calls its own variables; nothing of the shader is.
         auto parameters = std::exchange(shaderParameters_, {});
@@ -106,17 +117,18 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
     sources_.error(e.place, "the text of '" + op.name + "' has no function for " + choice.signature->text);
 }
 
-/// The tokens of bump() become its last two arguments.
-void Checker::bumpParameters(Expr& e) {
-    for (const auto& [name, value] : {std::pair<const char*, double>{"blur", 0}, {"width", 1}}) {
+/// The tokens become the last arguments, in the order of the descriptor.
+void Checker::optionalArguments(Expr& e, const Shadeop& op) {
+    for (const OptionalParameter& o : op.optional) {
         ExprPtr given;
         for (NamedArg& p : e.pairs)
-            if (p.name == name) given = std::move(p.value);
+            if (p.name == o.name) given = std::move(p.value);
         if (!given) {
             given = std::make_unique<Expr>();
-            given->kind = ExprKind::Number;
-            given->number = value;
-            given->type = {Base::Float, 0};
+            const bool text = o.type.base == Base::String; // every string's default is none
+            given->kind = text ? ExprKind::String : ExprKind::Number;
+            if (!text) given->number = std::strtod(o.defaultText.c_str(), nullptr);
+            given->type = o.type;
             given->varying = false;
             given->place = e.place;
         }

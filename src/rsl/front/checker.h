@@ -109,7 +109,7 @@ private:
     void settleBinary(ExprPtr&, Base);
     void settleAssign(ExprPtr&);
     void settleCall(ExprPtr&, Type result);
-    void bumpParameters(Expr&);
+    void optionalArguments(Expr&, const Shadeop&);
     void settlePairs(Expr&, size_t positional, const Shadeop*);
     void bindShadeop(Expr&, const Choice&);
     bool uniformResult(const Expr&, const Choice&) const;

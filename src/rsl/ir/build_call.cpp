@@ -131,6 +131,7 @@ Inst* Builder::shadeopCall(const Expr& e) {
         return value;
     }
     if (op.name == "shadername" && e.args.empty()) return leaves_.string(shader_.name);
+    if (Inst* traced = tracedMap(e)) return traced;
     switch (op.lowering) {
     case Lowering::Runtime:
         return runtimeCall(e);

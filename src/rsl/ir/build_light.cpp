@@ -2,6 +2,7 @@
 #include "base/category.h"
 #include "rsl/ir/builder.h"
 #include <functional>
+#include <utility>
 
 namespace alpenglow::rsl::ir {
 
@@ -292,6 +293,8 @@ void Builder::lightBlock(const Stmt& s) {
     for (int n = 0; n < 3; ++n) before[n] = get(slots[n]);
     const int litSlot = newSlot(constant(0));
     set(b.L, L);
+    const bool outer = std::exchange(inSolar_, s.kind == StmtKind::Solar);
+    ++blockDepth_;
     branch(
         lit,
         [&] {
@@ -304,6 +307,8 @@ void Builder::lightBlock(const Stmt& s) {
             return std::vector<Inst*>{};
         },
         [] { return std::vector<Inst*>{}; });
+    --blockDepth_;
+    inSolar_ = outer;
     set(b.lit, get(litSlot));
     for (int n = 0; n < 3; ++n) set(slots[n], before[n]);
     set(blockRan_, boolean(true));

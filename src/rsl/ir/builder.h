@@ -231,6 +231,9 @@ private:
     Inst* isOutput(const Expr&);
     Inst* gridBound(const Expr&, float half);
     Inst* unavailable(const Expr&);
+    // build_rays.cpp
+    Inst* rays(const Expr&, const char* name, const std::vector<std::pair<Inst*, Type>>& positional, Inst* cone);
+    Inst* tracedMap(const Expr&);
     Inst* random(const Expr&);
     bool hasGlobal(const char* name) const;
     Inst* global(const char* name, Base);
@@ -283,6 +286,8 @@ private:
     std::set<std::pair<size_t, const Function*>> openMethods_, scannedMethods_;
     std::map<std::string, std::pair<int, Type>> channels_; ///< by name: slot and type
     int lightDepth_ = 0;
+    int blockDepth_ = 0;   ///< blocks of a light that are open
+    bool inSolar_ = false; ///< the innermost of them is solar
     /// Output parameters that lights ask for: slot and type.
     std::map<std::string, std::pair<int, Type>> messageSlots_;
     bool uniformContext_ = false; ///< the value goes to a uniform variable: one random() for all

@@ -1,10 +1,10 @@
-/* windowlight: sun through a window with panes, that is: a parallel light with a stencil.
+/* stencilsun: sun through a window with panes, that is: a parallel light with a stencil.
      panes    across and up
      bars     width of a bar, as a part of a pane
      width, height   of the window, in shader space, around the origin; light goes along +z
      soft     how soft the shadows of the bars are
-   Lamp: LightSource "windowlight" 1 "float width" 3 "float height" 3 "float intensity" 1.2 */
-light windowlight(
+   Lamp: LightSource "stencilsun" 1 "float width" 3 "float height" 3 "float intensity" 1.2 */
+light stencilsun(
     float intensity = 1, panesx = 3, panesy = 3, bars = .12, width = 2, height = 2, soft = .05;
     color lightcolor = color(1, .95, .85);
     string __category = "sun";)

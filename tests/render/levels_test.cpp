@@ -60,7 +60,7 @@ TEST(Levels, OneOfThreeIsDrawn) {
         EXPECT_EQ(out->primitives.size(), 1u) << relative;
         return out->primitives.empty() ? nullptr : out->primitives[0]->attributes.get();
     };
-    EXPECT_EQ(drawn(1.3f), high.get());
+    EXPECT_EQ(drawn(1.6f), high.get()) << "4000 pixels, where the transition ends";
     EXPECT_EQ(drawn(4), high.get());
     EXPECT_EQ(drawn(.5f), middle.get());
     EXPECT_EQ(drawn(.01f), low.get());

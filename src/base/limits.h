@@ -48,6 +48,7 @@ inline constexpr size_t kServerDocuments = 1000;                 ///< texts that
 inline constexpr int kExcerptColumns = 160;                     ///< of a line that a message shows; the rest is dots
 inline constexpr size_t kExcerptLine = 256u << 10;              ///< bytes of such a line that are looked at
 inline constexpr int kServerDiagnostics = 500;                   ///< messages about one text that it is told
+inline constexpr int kFolderEntries = 100'000;                  ///< of a folder in which a file is sought whatever its capitals
 inline constexpr int kFrontErrors = 100;                       ///< errors reported for one RSL file
 inline constexpr size_t kInlinedInstructions = 400'000;        ///< IR of one kernel after inlining
 inline constexpr int kOutlineInstructions = 400;               ///< RSL functions that are larger once inlined are called instead

@@ -89,7 +89,8 @@ private:
         const auto at = tracked_.find(s);
         if (!s || s->name.rfind('(', 0) == 0 || now_.dead || at == tracked_.end() || now_.always.has(at->second) || !told_.insert(s).second) return;
         const bool maybe = now_.sometimes.has(at->second) || loops_ > 0;
-        sources_.warning(e.place, "'" + s->name + "' " + (maybe ? "may be" : "is") + " read before it has a value; it is zero then");
+        sources_.warning(e.place, "'" + s->name + "' " + (maybe ? "may be" : "is") + " read before it has a value; it is " +
+                                      (s->type.base != Base::String ? "zero" : s->handle ? "null" : "empty") + " then");
     }
 
     /// What stands left of an assignment, or is put out: its indices are read, itself it is written.

@@ -1,5 +1,5 @@
 #include "rsl/front/messages.h"
-#include "rsl/front/ast.h"
+#include "rsl/front/messages_advice.h"
 #include <cctype>
 #include <string>
 
@@ -284,83 +284,6 @@ int callLength(const std::string& line, size_t at) {
     return int(end - at);
 }
 
-/// What stands between the quotes of "did you mean 'x'?", either kind of quotes; or nothing.
-std::string suggestion(const std::string& hint) {
-    constexpr std::string_view kHead = "did you mean ";
-    if (hint.compare(0, kHead.size(), kHead) != 0 || hint.size() < kHead.size() + 3) return {};
-    const char quote = hint[kHead.size()];
-    const size_t end = hint.rfind(quote);
-    if ((quote != '\'' && quote != '"') || end <= kHead.size() + 1) return {};
-    return hint.substr(kHead.size() + 1, end - kHead.size() - 1);
-}
-
-/// Words of other languages where a type stands, and what stands there in this one.
-struct Borrowed { const char* word; const char* instead; };
-constexpr Borrowed kTypes[] = {{"double", "float"},   {"half", "float"},    {"real", "float"},    {"vec2", "vector"},  {"vec3", "vector"},
-                               {"vec4", "vector"},    {"float2", "vector"}, {"float3", "vector"}, {"float4", "color"}, {"Vector", "vector"},
-                               {"Color", "color"},    {"mat4", "matrix"},   {"char", "string"},   {"rgb", "color"}};
-constexpr Borrowed kOperators[] = {{"and", "&&"}, {"or", "||"}};
-
-/// Where no hint came with a message and the line shows what was meant. A hint that helps nobody goes.
-void advise(Diagnostic& d, const std::string& written, size_t at) {
-    const std::string& line = d.sourceLine;
-    const auto is = [&](const char* id) { return d.id == id; };
-    const auto says = [&](const char* text) { return d.message.find(text) != std::string::npos; };
-    if (suggestion(d.hint) == written && !written.empty()) d.hint.clear();
-    if (is("not-a-type")) {
-        for (const Borrowed& b : kTypes)
-            if (written == b.word) d.hint = std::string("did you mean '") + b.instead + "'?";
-        if (written == "then") d.hint = "there is no 'then': if (condition) statement else statement";
-        return;
-    }
-    if (is("undeclared") && says("is not declared in a ")) {
-        // A variable of other kinds of shaders is no misspelling.
-        std::string where;
-        for (int k = 0; k < 6; ++k)
-            for (const GlobalVariable& g : globalVariables(ShaderKind(k)))
-                if (written == g.name) where += (where.empty() ? "" : ", ") + std::string(toString(ShaderKind(k)));
-        if (!where.empty()) d.hint = "it is a variable of these shaders: " + where;
-        return;
-    }
-    if (!d.hint.empty()) return;
-    if (is("undeclared") && at > 0 && line[at - 1] == '.' && written.size() == 1 && std::string("xyzrgb").find(written) != std::string::npos) {
-        const size_t part = std::string("xyzrgb").find(written) % 3;
-        d.hint = "'.' is the dot product; a component is v[" + std::to_string(part) + "] or comp(v, " + std::to_string(part) + ")";
-    } else if (is("stray-character") && written == "'") {
-        d.hint = "a string stands in double quotes";
-    } else if (is("expected-semicolon") && says(" before '")) {
-        for (const Borrowed& b : kOperators)
-            if (written == b.word) d.hint = std::string("did you mean '") + b.instead + "'?";
-        if (written == "{") d.hint = "a block belongs to a statement of the language: if, while, for, illuminance ...";
-        if (written == ")") d.hint = says("of 'for'") ? "the parts of 'for' are separated by ';'" : "this ')' closes nothing";
-    } else if (is("expected-definition") && !line.empty()) {
-        const size_t word = line.find_first_not_of(" \t");
-        for (const char* type : {"float ", "color ", "point ", "vector ", "normal ", "matrix ", "string ", "uniform ", "varying "})
-            if (word != std::string::npos && line.compare(word, std::string_view(type).size(), type) == 0 && at > word)
-                d.hint = "variables stand inside of shaders and functions; what all may read is a #define";
-    } else if (is("no-shader")) {
-        d.hint = "a shader begins with surface, displacement, light, volume, imager or class, and its name";
-    } else if (is("type-mismatch") && written == "{" && says("not an array of 3")) {
-        d.hint = "a triple is written (1, 2, 3)";
-    } else if (is("member-dot")) {
-        d.hint = "a member of a structure is read by '->'";
-    } else if ((is("bad-assignment") || is("type-mismatch")) && says("string") == false) {
-        const bool colour = says("color"), geometric = says("point") || says("vector") || says("normal");
-        if (colour && geometric && !says("[")) d.hint = "a written conversion, as in color x or point x, makes one of the other";
-    }
-}
-
-/// Fix-its that need more than the name in the hint.
-void addFix(Diagnostic& d, const std::string& written) {
-    if (d.id == "assignment-condition" && written == "=") d.fixes.push_back({d.place, 1, "=="});
-    if (d.id == "trailing-comma" && written == ",") d.fixes.push_back({d.place, 1, ""});
-    if (d.id == "member-dot" && written == ".") d.fixes.push_back({d.place, 1, "->"});
-    for (const Borrowed& b : kTypes)
-        if (d.id == "not-a-type" && written == b.word) d.fixes.push_back({d.place, int(written.size()), b.instead});
-    for (const Borrowed& b : kOperators)
-        if (d.id == "expected-semicolon" && written == b.word) d.fixes.push_back({d.place, int(written.size()), b.instead});
-}
-
 } // namespace
 
 std::span<const MessageKind> messageKinds() { return kKinds; }
@@ -381,7 +304,7 @@ void complete(Diagnostic& d) {
     const int token = tokenLength(d.sourceLine, at);
     const std::string written = at < d.sourceLine.size() ? d.sourceLine.substr(at, size_t(token)) : "";
     advise(d, written, at);
-    addFix(d, written);
+    addFix(d, written, at);
     if (!d.fixes.empty()) return;
     if (d.id == "expected-semicolon") {
         // Only where it belongs behind what stands before: a ';' "before" something is no obvious cure.

@@ -202,6 +202,10 @@ void Parser::topLevel() {
         if (first.text == "struct" && (peek(2).is("{") || !structs_.count(std::string(peek(1).text)))) return structure();
         if (first.text == "class" && (peek(2).is("(") || peek(2).is("{"))) return shaderObject();
     }
+    if (first.kind == Tok::Identifier && shaderKindNamed(first.text) && peek(1).kind == Tok::Identifier && peek(2).kind == Tok::Identifier) {
+        const std::string name(peek(1).text), next(peek(2).text);
+        fail(peek(2).place, "expected '(' after the name of shader '" + name + "' before '" + next + "'");
+    }
     if (plugin()) return;
     const Specifiers s = specifiers();
     const bool typed = atTypeName();

@@ -1,5 +1,7 @@
 // The lines that begin with #.
 #include "rsl/front/preprocessor_machine.h"
+#include "base/limits.h"
+#include <cctype>
 #include <cstdlib>
 #include <filesystem>
 
@@ -157,6 +159,12 @@ void Preprocessor::include(std::vector<Token> line, Place hash) {
         sources_.warning(place, "'" + name + "' was not found; '" + out_.dependencies.back() + "' is used");
         return;
     }
+    // A system that does not tell capitals from small letters found it.
+    if (!shippedHeader(base) && includeAnyCase(folders, slashed)) {
+        sources_.warning(place, "'" + name + "' was not found; '" + out_.dependencies.back() + "' is used",
+                         "did you mean \"" + slashed.substr(0, slashed.size() - base.size()) + fs::path(out_.dependencies.back()).filename().string() + "\"?");
+        return;
+    }
     const bool standard = slashed.find("stdrsl/") != slashed.npos; // PRMan's own, whose names are those of others
     const ShippedHeader* own = standard ? shippedHeader("stdrsl_" + base) : nullptr;
     if (!own) own = shippedHeader(base);
@@ -178,6 +186,28 @@ bool Preprocessor::includeFrom(const std::vector<std::string>& folders, const st
             pushFile(sources_.add(path, std::move(*text)));
             return true;
         }
+    }
+    return false;
+}
+
+/// As includeFrom(), whatever the case of the letters of the file's own name. Of several the first in alphabetical order.
+bool Preprocessor::includeAnyCase(const std::vector<std::string>& folders, const std::string& wanted) {
+    const auto lower = [](std::string s) {
+        for (char& c : s) c = char(std::tolower(static_cast<unsigned char>(c)));
+        return s;
+    };
+    const fs::path path(wanted);
+    const std::string name = lower(path.filename().string());
+    for (const auto& folder : folders) {
+        std::error_code failed;
+        std::string found;
+        int entries = 0;
+        const fs::path in = fs::path(folder.empty() ? "." : folder) / path.parent_path();
+        for (fs::directory_iterator it(in, failed), end; !failed && it != end && ++entries <= limits::kFolderEntries; it.increment(failed)) {
+            const std::string own = it->path().filename().string();
+            if (lower(own) == name && (found.empty() || own < found)) found = own;
+        }
+        if (!found.empty() && includeFrom({folder}, (path.parent_path() / found).string())) return true;
     }
     return false;
 }

@@ -309,6 +309,7 @@ private:
 
     void include(std::vector<Token> line, Place hash);
     bool includeFrom(const std::vector<std::string>& folders, const std::string& wanted);
+    bool includeAnyCase(const std::vector<std::string>& folders, const std::string& wanted);
     static std::string withSlashes(std::string s);
     void lineDirective(const std::vector<Token>& line, Place hash);
 

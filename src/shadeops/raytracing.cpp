@@ -160,7 +160,7 @@ std::vector<Shadeop> raytracingShadeops() {
     caustic.optional.clear();
     add("gather", sigs({{"float gather(string category; point p; vector dir; float angle, float samples; pairs)"}}), Lowering::Unavailable,
         "A statement of the language: its body runs for every ray that hits, its else for every miss.");
-    list.back().examples = {{"c", "4 4 4", "color c = 0, one = 0; gather(\"illuminance\", P, N, 0.5, 4, \"surface:Ci\", one) c += one;", kWhite}};
+    list.back().examples = {{"misses", "1", "float misses = 0; gather(\"illuminance\", P, N, 0.5, 4) { } else misses += 1;"}};
     return list;
 }
 

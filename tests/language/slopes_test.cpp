@@ -1,6 +1,6 @@
-// Du and Dv of every shadeop against central differences of its own values. The table of shadeops is walked: each signature of a shadeop
-// through which derivatives pass is called with smooth arguments, all varying and each alone; a shadeop that is neither called here nor
-// named below with a reason fails.
+// Du and Dv of every shadeop against central differences of its own values. The table of shadeops is walked: each signature of a
+// shadeop through which derivatives pass is called with smooth arguments, all varying and each alone; a shadeop that is neither
+// called here nor named below with a reason fails.
 #include "points.h"
 #include "slopes.h"
 #include <gtest/gtest.h>
@@ -11,11 +11,11 @@ namespace {
 
 /// In the middle of nothing: no lattice point of noise, no end of a spline, no edge of a hue.
 constexpr double kU = 0.4375, kV = 0.5625;
-/// A power of two, so that the places are exact. The error of the difference of fourth order is h^4 / 30 times the fifth derivative,
-/// below 1e-5 for what is called here; that of rounding is about 1e-7 / h = 6e-6 times the value.
+/// A power of two, so that the places are exact. The error of the difference of fourth order is h^4 / 30 times the fifth
+/// derivative, below 1e-5 for what is called here; that of rounding is about 1e-7 / h = 6e-6 times the value.
 constexpr double kStep = 1.0 / 64;
-/// What is left for both, times 1 + |f| + |slope|: functions of functions (noise through wnoise, areas, distributions with high powers)
-/// have fifth derivatives in the thousands. A slope that misses a term is wrong by a tenth and more.
+/// What is left for both, times 1 + |f| + |slope|: functions of functions (noise through wnoise, areas, distributions with high
+/// powers) have fifth derivatives in the thousands. A slope that misses a term is wrong by a tenth and more.
 constexpr double kTolerance = 1e-3;
 
 /// The centre, then two steps to each side along u, then along v.
@@ -51,7 +51,8 @@ const std::multimap<std::string, Special>& specials() {
         m.insert({"smoothstep", {{{"lo", ""}, {"hi", ""}}, ""}});
         m.insert({"asin", {{{"a", "(0.3 * U - 0.7 * V * V)"}}, ""}});
         m.insert({"log", {{{"base", "(2 + U)"}}, ""}});
-        for (const char* name : {"comp", "setcomp"}) m.insert({name, {{{"i", "1"}, {"row", "1"}, {"column", "2"}}, ""}}); // an index is cut to an integer
+        for (const char* name : {"comp", "setcomp"})
+            m.insert({name, {{{"i", "1"}, {"row", "1"}, {"column", "2"}}, ""}}); // an index is cut to an integer
         m.insert({"pnoise", {{{"period", ""}, {"xperiod", "3"}, {"yperiod", "4"}, {"wperiod", "5"}}, ""}}); // rounded to integers
         for (const char* basis : {"catmull-rom", "bspline", "bezier", "hermite", "linear"})
             m.insert({"spline", {{{"basis", "\"" + std::string(basis) + "\""}}, ""}});
@@ -62,12 +63,20 @@ const std::multimap<std::string, Special>& specials() {
         for (const char* name : {"transform", "vtransform", "ntransform", "mtransform"})
             m.insert({name, {{{"tospace", "\"world\""}, {"fromspace", "\"shader\""}}, ""}});
         m.insert({"area", {{{"strategy", "\"dicing\""}}, ""}});
-        for (const char* filter : {"box", "triangle", "gaussian", "catmull-rom"}) m.insert({"filterstep", {{{"value1", "(0.3 + 0.2 * U - 0.1 * V)"}, {"value2", "(1 + 0.3 * U * V)"}}, ", \"filter\", \"" + std::string(filter) + "\", \"width\", 1.5"}});
+        for (const char* filter : {"box", "triangle", "gaussian", "catmull-rom"})
+            m.insert({"filterstep",
+                      {{{"value1", "(0.3 + 0.2 * U - 0.1 * V)"}, {"value2", "(1 + 0.3 * U * V)"}},
+                       ", \"filter\", \"" + std::string(filter) + "\", \"width\", 1.5"}});
         const std::string wo = ", \"wo\", normalize(vector(0.3 * U, 0.2, 1))", r = ", \"roughness\", 0.3 + 0.2 * U";
-        for (const std::string d : {"uniform", "cosine"}) m.insert({"bsdf", {{}, ", \"distribution\", \"" + d + "\", \"samplecone\", 1.2"}});
-        for (const std::string d : {"oren-nayar", "blinn", "cook-torrance", "glass-ggx"}) m.insert({"bsdf", {{}, ", \"distribution\", \"" + d + "\"" + r + wo}});
+        for (const std::string d : {"uniform", "cosine"})
+            m.insert({"bsdf", {{}, ", \"distribution\", \"" + d + "\", \"samplecone\", 1.2"}});
+        for (const std::string d : {"oren-nayar", "blinn", "cook-torrance", "glass-ggx"})
+            m.insert({"bsdf", {{}, ", \"distribution\", \"" + d + "\"" + r + wo}});
         for (const std::string d : {"ashikhmin-shirley", "ward", "hair"})
-            m.insert({"bsdf", {{}, ", \"distribution\", \"" + d + "\"" + r + ", \"roughnessv\", 0.4 + 0.1 * V, \"udir\", vector(1, 0.2, 0)" + wo}});
+            m.insert({"bsdf",
+                      {{},
+                       ", \"distribution\", \"" + d + "\"" + r + ", \"roughnessv\", 0.4 + 0.1 * V, \"udir\", vector(1, 0.2, 0)" +
+                           wo}});
         return m;
     }();
     return all;
@@ -82,7 +91,8 @@ Arguments filled(const Shadeop& op, const Signature& s, Arguments a) {
     if (op.name == "clamp" || op.name == "smoothstep") {
         a["lo"] = value("(0.1 + 0.05 * U)", "(0.05 * V)", "(0.1 - 0.1 * U * V)"); // below and above what is between
         a["hi"] = value("(1.1 + 0.1 * U * V)", "(1.2 + 0.2 * V)", "(1.5 - 0.1 * U)");
-        if (op.name == "clamp") a["x"] = value("(0.5 + 0.2 * U * V)", "(2 + U)", "(V - 2)"); // a component in each of the three ranges
+        if (op.name == "clamp")
+            a["x"] = value("(0.5 + 0.2 * U * V)", "(2 + U)", "(V - 2)"); // a component in each of the three ranges
         if (op.name == "clamp" && base == Base::Float) a["x"] = "(0.5 + 0.2 * U * V)";
         if (op.name == "smoothstep") a["value"] = value("(0.4 + 0.2 * U)", "(0.3 + 0.3 * V)", "(0.6 + 0.2 * U * V)");
     }
@@ -117,7 +127,8 @@ std::vector<Measured> table() {
     std::vector<Measured> all;
     for (const Shadeop& op : shadeops()) {
         if (op.name.rfind("__", 0) == 0 || elsewhere().count(op.name)) continue;
-        const bool passes = op.derivative == DerivativeRule::Jet || op.derivative == DerivativeRule::Inherent || op.derivative == DerivativeRule::Gradient;
+        const bool passes = op.derivative == DerivativeRule::Jet || op.derivative == DerivativeRule::Inherent ||
+                            op.derivative == DerivativeRule::Gradient;
         if (!passes && !flat(op)) continue;
         if (op.lowering == Lowering::Unavailable || (flat(op) && (op.section == "Arrays" || op.section == "Strings"))) continue;
         for (const Signature& s : op.signatures) {
@@ -132,13 +143,23 @@ std::vector<Measured> table() {
                     if (seen.insert(x.statements).second) all.push_back({x, flat(op), &s});
         }
     }
-    const auto extra = [&](const char* what, const char* statements, Base type) { all.push_back({{what, statements, {type, 0}}, false}); };
+    const auto extra = [&](const char* what, const char* statements, Base type) {
+        all.push_back({{what, statements, {type, 0}}, false});
+    };
     const char* const rise[] = {"solvecatmull-rom", "solvebspline", "solvebezier", "solvelinear"};
     for (const char* basis : rise) // the value, and the points: rising, so that they can be solved
-        all.push_back({{std::string("spline ") + basis, std::string("f = spline(\"") + basis + "\", 1.3 + 0.3 * U - 0.2 * V * V, 0.1 * U, 1 - 0.2 * V, 2 + 0.1 * U * V, 3);", {Base::Float, 0}}, false});
-    extra("color[] bsdf", "color parts[2] = bsdf(vector(0.2, 0.1 * V, 0.9), normal(0.1 * U, 0, 1), \"distribution\", \"glass-ggx\", \"roughness\", 0.4 + 0.1 * U, "
-                          "\"wo\", normalize(vector(0.3, 0.2 * V, 1))); f = parts[0] + 2 * parts[1];", Base::Color);
-    extra("push and pop", "float a[] = {1}; push(a, U * U * V); push(a, U); float last = pop(a); f = pop(a) * last;", Base::Float);
+        all.push_back({{std::string("spline ") + basis,
+                        std::string("f = spline(\"") + basis +
+                            "\", 1.3 + 0.3 * U - 0.2 * V * V, 0.1 * U, 1 - 0.2 * V, 2 + 0.1 * U * V, 3);",
+                        {Base::Float, 0}},
+                       false});
+    extra("color[] bsdf",
+          "color parts[2] = bsdf(vector(0.2, 0.1 * V, 0.9), normal(0.1 * U, 0, 1), \"distribution\", \"glass-ggx\", "
+          "\"roughness\", 0.4 + 0.1 * U, "
+          "\"wo\", normalize(vector(0.3, 0.2 * V, 1))); f = parts[0] + 2 * parts[1];",
+          Base::Color);
+    extra("push and pop", "float a[] = {1}; push(a, U * U * V); push(a, U); float last = pop(a); f = pop(a) * last;",
+          Base::Float);
     extra("an element by a varying index", "float a[3] = {U * U, V * U, V}; f = a[floor(2 * U + 1)] * a[2];", Base::Float);
     return all;
 }
@@ -158,9 +179,12 @@ TEST(Slopes, OfEveryShadeopAreThoseOfItsValues) {
         o.optimize = 0; // the bits are those of every other level: runner_test.cpp
         for (size_t k = begin; k < end; ++k) {
             const Slope& s = all[k].slope;
-            const std::string type = toString(s.type), slope = s.type.isPointLike() ? "vector" : type, n = std::to_string(k - begin);
-            parameters += "output varying " + type + " f" + n + " = 0; output varying " + slope + " a" + n + " = 0; output varying " + slope + " b" + n + " = 0;\n";
-            body += "{ " + type + " f = 0; float U = u, V = v; " + s.statements + " f" + n + " = f; a" + n + " = Du(f); b" + n + " = Dv(f); }\n";
+            const std::string type = toString(s.type), slope = s.type.isPointLike() ? "vector" : type,
+                              n = std::to_string(k - begin);
+            parameters += "output varying " + type + " f" + n + " = 0; output varying " + slope + " a" + n +
+                          " = 0; output varying " + slope + " b" + n + " = 0;\n";
+            body += "{ " + type + " f = 0; float U = u, V = v; " + s.statements + " f" + n + " = f; a" + n + " = Du(f); b" + n +
+                    " = Dv(f); }\n";
             for (const char* q : {"f", "a", "b"}) o.outputs.push_back(q + n);
         }
         Diagnostics d([](const Diagnostic& m) {
@@ -181,7 +205,8 @@ TEST(Slopes, OfEveryShadeopAreThoseOfItsValues) {
             bool moves = false;
             for (size_t c = 0; c < f.size(); c += kPlaces) {
                 const auto at = [&](int p) { return double(f[c + size_t(p)]); };
-                const double value = at(0), byU = (8 * (at(3) - at(2)) - (at(4) - at(1))) / (12 * kStep), byV = (8 * (at(7) - at(6)) - (at(8) - at(5))) / (12 * kStep);
+                const double value = at(0), byU = (8 * (at(3) - at(2)) - (at(4) - at(1))) / (12 * kStep),
+                             byV = (8 * (at(7) - at(6)) - (at(8) - at(5))) / (12 * kStep);
                 const double gotU = double(out[3 * (k - begin) + 1][c]), gotV = double(out[3 * (k - begin) + 2][c]);
                 EXPECT_TRUE(std::isfinite(value)) << "component " << c / kPlaces;
                 if (all[k].zero) {
@@ -198,10 +223,13 @@ TEST(Slopes, OfEveryShadeopAreThoseOfItsValues) {
     }
     // Each signature must have been seen to move: what stays the same proves nothing.
     for (const Shadeop& op : shadeops()) {
-        const bool passes = op.derivative == DerivativeRule::Jet || op.derivative == DerivativeRule::Inherent || op.derivative == DerivativeRule::Gradient;
-        if (op.name.rfind("__", 0) == 0 || !passes || op.lowering == Lowering::Unavailable || elsewhere().count(op.name)) continue;
+        const bool passes = op.derivative == DerivativeRule::Jet || op.derivative == DerivativeRule::Inherent ||
+                            op.derivative == DerivativeRule::Gradient;
+        if (op.name.rfind("__", 0) == 0 || !passes || op.lowering == Lowering::Unavailable || elsewhere().count(op.name))
+            continue;
         for (const Signature& s : op.signatures)
-            if (s.result.array == 0 && s.text != "void reverse(output string a[])") EXPECT_TRUE(met.count(&s)) << "nothing moves in " << s.text; // parts in an array: extra, above
+            if (s.result.array == 0 && s.text != "void reverse(output string a[])")
+                EXPECT_TRUE(met.count(&s)) << "nothing moves in " << s.text; // parts in an array: extra, above
     }
     RecordProperty("slopes", int(all.size()));
     EXPECT_GT(all.size(), 500u);

@@ -107,6 +107,11 @@ Inst* Builder::array(const Expr& e) {
         inlineFunction(*e.function, args, &a);
         return a ? a : newArray(e.type.base, std::max(1, e.type.array));
     }
+    if (e.type.array < 0 && e.kind == ExprKind::ShadeopCall && e.shadeop) { // as long as what it gives: getlights()
+        Inst* a = newResizable(e.type.base, 0);
+        copyResizable(a, e);
+        return a;
+    }
     const int length = e.type.array > 0 ? e.type.array : std::max<int>(1, static_cast<int>(e.args.size()));
     Inst* a = newArray(e.type.base, length);
     copyArray(a, e);

@@ -83,6 +83,7 @@ private:
     Walked result_;
     int levels_ = 0; ///< loops that a jump still has to leave
     int steps_ = 0;
+    std::map<const Expr*, Walked> held_; ///< indices of places that are being read and written
 
     Variable& fresh(const Symbol* s) {
         auto v = std::make_shared<Variable>();
@@ -219,8 +220,27 @@ private:
         }
     }
 
+    /// While it lives the indices of a place, and of the same place written a second time, keep their values: they are computed once.
+    struct Held {
+        Walker& walker;
+        std::vector<const Expr*> indices{};
+        ~Held() {
+            for (const Expr* e : indices) walker.held_.erase(e);
+        }
+        void hold(const Expr& place, const Expr* copy = nullptr) {
+            if (place.kind != ExprKind::Index) return;
+            hold(*place.args[0], copy ? copy->args[0].get() : nullptr);
+            const Walked v = walker.expr(*place.args[1]);
+            for (const Expr* index : {place.args[1].get(), copy ? copy->args[1].get() : nullptr})
+                if (index && walker.held_.emplace(index, v).second) indices.push_back(index);
+        }
+    };
+
     Walked assignment(const Expr& e) {
         const Expr& l = *e.args[0];
+        Held held{*this};
+        if (e.text == "+=") held.hold(l, e.args[1]->args[0].get()); // of strings
+        else if (e.op != ExprOp::Assign && e.op != ExprOp::None) held.hold(l);
         if (l.type.array) {
             std::vector<Walked> v = list(*e.args[1]);
             Variable& a = arrayOf(l);
@@ -238,6 +258,7 @@ private:
             v = binary(e.op, converted(old, meet), converted(r, meet));
         }
         v = converted(v, l.type.base);
+        held.hold(l);
         store(l, v);
         return v;
     }
@@ -267,8 +288,10 @@ private:
         if (name == "arraylength" || name == "capacity" || name == "push" || name == "pop") return resizing(e, name);
         std::vector<Walked> arguments;
         std::vector<std::pair<const Expr*, size_t>> outputs;
+        Held held{*this};
         for (size_t i = 0; i < e.args.size(); i++) {
             const auto& p = e.signature->parameters[std::min(i, e.signature->parameters.size() - 1)];
+            if (p.output) held.hold(*e.args[i]);
             if (p.output) outputs.push_back({e.args[i].get(), arguments.size()});
             if (e.args[i]->type.array) {
                 const std::vector<Walked> all = list(*e.args[i]);
@@ -286,26 +309,39 @@ private:
     Walked call(const Expr& e) {
         const Function& f = *e.function;
         std::vector<std::shared_ptr<Variable>> given;
+        Held held{*this};
         for (size_t i = 0; i < f.parameters.size(); i++) {
             const Symbol* p = f.parameters[i];
             auto v = std::make_shared<Variable>();
+            if (p->output) held.hold(*e.args[i]);
+            if (p->output && !p->type.array) { // when all arguments are known; the caller's own variable, or one element of it
+                given.push_back(nullptr);
+                continue;
+            }
             if (!p->type.array) v->value = converted(expr(*e.args[i]), p->type.base);
             else if (e.args[i]->kind == ExprKind::ArrayList) v->elements = list(*e.args[i]);
             else if (p->output) arrayOf(*e.args[i]), v = variables_.at(e.args[i]->symbol); // the caller's own
             else *v = arrayOf(*e.args[i]);
             given.push_back(v);
         }
+        for (size_t i = 0; i < f.parameters.size(); i++) {
+            if (given[i]) continue;
+            const Expr& a = *e.args[i];
+            if (a.kind == ExprKind::Variable) variable(a.symbol), given[i] = variables_.at(a.symbol); // a point as a vector, too
+            else given[i] = std::make_shared<Variable>(), given[i]->value = converted(expr(a), f.parameters[i]->type.base);
+        }
         for (size_t i = 0; i < f.parameters.size(); i++) variables_[f.parameters[i]] = given[i];
         const Walked around = std::exchange(result_, zero(f.result.base));
         statement(*f.body);
         const Walked r = std::exchange(result_, around);
         for (size_t i = 0; i < f.parameters.size(); i++)
-            if (f.parameters[i]->output && !f.parameters[i]->type.array) store(*e.args[i], given[i]->value);
+            if (f.parameters[i]->output && !f.parameters[i]->type.array && e.args[i]->kind != ExprKind::Variable) store(*e.args[i], given[i]->value);
         return r;
     }
 
     Walked expr(const Expr& e) {
         if (++steps_ > kMostSteps) throw std::runtime_error("too many steps");
+        if (const auto known = held_.find(&e); known != held_.end()) return known->second;
         switch (e.kind) {
         case ExprKind::Number:
             return converted(number(float(e.number)), e.type.base);

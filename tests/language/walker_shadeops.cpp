@@ -37,7 +37,15 @@ float root(float x) { return std::sqrt(greater(x, 0)); }
 float dot(const V3& a, const V3& b) { return std::fma(a[0], b[0], std::fma(a[1], b[1], a[2] * b[2])); }
 V3 minus(const V3& a, const V3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 V3 times(const V3& a, float k) { return {a[0] * k, a[1] * k, a[2] * k}; }
-float length(const V3& a) { return root(dot(a, a)); }
+/// By a power of two to where squares are in range: 1, unless the length is far from it.
+float midRange(const V3& a) {
+    const float square = dot(a, a);
+    return square < 0x1p-100f ? 0x1p100f : square > 0x1p120f ? 0x1p-70f : 1;
+}
+float length(const V3& a) {
+    const V3 b = times(a, midRange(a));
+    return root(dot(b, b)) / midRange(a);
+}
 float clampedIndex(float i, float last) { return lesser(greater(std::trunc(i), 0), last); }
 
 float modulo(float x, float y) {
@@ -236,7 +244,7 @@ const std::map<std::string, Definition>& definitions() {
          }},
         {"length", [](Arguments& a) { return real(length(three(a[0]))); }},
         {"distance", [](Arguments& a) { return real(length(minus(three(a[1]), three(a[0])))); }},
-        {"normalize", [](Arguments& a) { return tuple(times(three(a[0]), over(1, length(three(a[0]))))); }},
+        {"normalize", [](Arguments& a) { const V3 v = times(three(a[0]), midRange(three(a[0]))); return tuple(times(v, over(1, root(dot(v, v))))); }},
         {"ptlined", [](Arguments& a) { return real(segmentDistance(three(a[0]), three(a[1]), three(a[2]))); }},
         {"reflect", [](Arguments& a) {
              const V3 i = three(a[0]), n = three(a[1]);

@@ -265,6 +265,9 @@ void Checker::settleCall(ExprPtr& pointer, Type result) {
             a = std::move(name);
         } else {
             settle(a, p.type, p.handle);
+            // printf("%s", h->name): what another shader gives, of whatever type it is.
+            const bool member = a->kind == ExprKind::Member || a->kind == ExprKind::Method;
+            if (member && p.type.base == Base::Void && choice.shadeop && choice.shadeop->section == "Strings") a->type = {Base::Void, 0};
         }
     }
     settlePairs(e, choice.positional, choice.shadeop);

@@ -38,7 +38,7 @@ constexpr MessageKind kKinds[] = {
     {"pp-line", "#line needs a number"},
     {"pp-octal", "'*' is octal in a condition *"},
     {"pp-annotation", "#pragma annotation needs *"},
-    {"pp-annotation", "the key and the value of #pragma annotation *"},
+    {"pp-annotation", "the value of #pragma annotation stands in *"},
     {"pp-condition", "#if needs an expression"},
     {"pp-condition", "* in the condition"},
     {"pp-condition", "this condition is nested too deeply"},
@@ -192,6 +192,7 @@ constexpr MessageKind kKinds[] = {
     // of `compile -W`
     {"unused-parameter", "parameter '*' is not used"},
     {"unused-variable", "variable '*' is not used"},
+    {"two-signs", "'*' before a variable is two signs *"},
     {"shared-output", "'*' is given to two output parameters of *"},
     {"uninitialised", "'*' is read before it has a value*"},
     {"maybe-uninitialised", "'*' may be read before it has a value*"},

@@ -116,6 +116,9 @@ ExprPtr Parser::binary(int level) {
 ExprPtr Parser::unary() {
     if (at("-") || at("!") || at("+")) {
         Depth depth(*this);
+        if (atStep(0) && peek(2).kind == Tok::Identifier)
+            sources_.warning(peek().place, "'" + std::string(2, peek().text[0]) + "' before a variable is two signs in an expression; nothing is changed",
+                             "the value before is " + std::string(peek(2).text) + std::string(2, peek().text[0]));
         const Token& t = take();
         if (t.text == "+") return unary();
         auto operand = unary();

@@ -74,14 +74,14 @@ void Preprocessor::pragma(const std::vector<Token>& line) {
         sources_.warning(line[1].place, "#pragma annotation needs a key and a value: it is ignored", "#pragma annotation \"key\" \"value\"");
         return;
     }
-    bool texts = isText(2);
+    bool texts = true; // a key without quotes is common
     std::string value;
     for (size_t i = 3; i < line.size(); ++i) {
         texts &= isText(i);
         if (isText(i)) value += stringValue(line[i].text); // texts beside each other are one
     }
     if (!texts && !isText(3)) value = spelled(line, 3);
-    if (!texts) sources_.warning(line[isText(2) ? 3 : 2].place, "the key and the value of #pragma annotation stand in quotes; they are taken as they are");
+    if (!texts) sources_.warning(line[3].place, "the value of #pragma annotation stands in quotes; the line is taken as it is");
     out_.annotations.push_back({out_.tokens.size(), isText(2) ? stringValue(line[2].text) : std::string(line[2].text), value});
 }
 

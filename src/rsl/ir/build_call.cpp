@@ -58,6 +58,7 @@ Inst* Builder::inlineFunction(const Function& f, const std::vector<const Expr*>&
     for (size_t i = 0; i < n && !failed_; ++i) {
         const Symbol& p = *f.parameters[i];
         if (p.output) held.emplace_back(*this, *args[i]);
+        if (p.output && !p.type.array) continue; // what it is when all arguments are known
         if (!p.type.array) {
             values[i] = coerce(expr(*args[i]), p.type);
             continue;
@@ -73,6 +74,8 @@ Inst* Builder::inlineFunction(const Function& f, const std::vector<const Expr*>&
         }
         values[i] = a;
     }
+    for (size_t i = 0; i < n && !failed_; ++i)
+        if (!values[i]) values[i] = coerce(expr(*args[i]), f.parameters[i]->type);
     if (failed_) return zero(Kind::Float);
     std::vector<Inst*> outputs;
     const std::vector<int> shared = sharedOutputs(f, args);

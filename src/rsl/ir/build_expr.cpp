@@ -305,7 +305,7 @@ Inst* Builder::expr(const Expr& e) {
     case ExprKind::Number:
         return constant(static_cast<float>(e.number));
     case ExprKind::String:
-        return leaves_.string(e.text);
+        return leaves_.string(e.handle && e.text == "(this)" ? thisHandle() : e.text);
     case ExprKind::Variable:
         return e.symbol ? get(slot(e.symbol)) : zero(kindOf(e.type));
     case ExprKind::Index: {

@@ -2,14 +2,52 @@
 // here, one branch a bound shader decides. Members of a co-shader are variables that begin where the shader begins.
 #include "base/category.h"
 #include "base/limits.h"
+#include "rsl/front/visit.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
 
 namespace alpenglow::rsl::ir {
 
-void Builder::exchangeInstance(size_t i) {
-    std::swap(slots_, instances_[i].slots);
-    std::swap(files_, instances_[i].files);
+namespace {
+
+/// Is `this` used as a value, and not only to name what belongs to it?
+bool handsItselfOver(const Shader& s) {
+    bool found = false;
+    const auto body = [&](const Stmt* b) {
+        if (b) front::everyStmt(*b, [](const Stmt&) {}, [&](const Expr& e) { found |= e.kind == ExprKind::String && e.handle && e.text == "(this)"; });
+    };
+    body(s.body.get());
+    for (const auto& n : s.nested) front::everyFunction(*n, [&](const Function& f) { body(f.body.get()); });
+    return found;
+}
+
+} // namespace
+
+/// What `this` is called: a co-shader by its handle, others by what they are (seed, format "%h").
+std::string Builder::thisHandle() const {
+    if (!current_.empty() && !isSelf(current_.back())) return instances_[current_.back()].binding->handle;
+    return "<" + std::string(toString(shader_.kind)) + ">";
+}
+
+void Builder::switchInstance(bool fromSelf, size_t from, bool toSelf, size_t to) {
+    if (fromSelf == toSelf && (fromSelf || from == to)) return;
+    std::swap(slots_, fromSelf ? ownSlots_ : instances_[from].slots);
+    std::swap(slots_, toSelf ? ownSlots_ : instances_[to].slots);
+    files_ = toSelf ? &program_.files : instances_[to].files;
+}
+
+/// From here to leaveInstance() variables are those of the co-shader, or of the shader itself again.
+void Builder::enterInstance(size_t i) {
+    const bool own = current_.empty() || isSelf(current_.back());
+    switchInstance(own, own ? 0 : current_.back(), isSelf(i), i);
+    current_.push_back(i);
+}
+
+void Builder::leaveInstance() {
+    const size_t i = current_.back();
+    current_.pop_back();
+    const bool own = current_.empty() || isSelf(current_.back());
+    switchInstance(isSelf(i), i, own, own ? 0 : current_.back());
 }
 
 /// Binds the parameters and runs what comes before the methods: members, construct() and begin().
@@ -18,7 +56,7 @@ void Builder::beginCoShaders() {
     for (const CoShader& c : options_.coShaders) instances_.push_back({&c, &c.program->files, {}});
     for (size_t i = 0; i < instances_.size(); ++i) {
         const CoShader& c = *instances_[i].binding;
-        exchangeInstance(i);
+        enterInstance(i);
         ++handleDepth_;
         for (const ShaderParameter& p : c.shader->parameters) {
             const Symbol& s = *p.symbol;
@@ -57,8 +95,14 @@ void Builder::beginCoShaders() {
                 if ((s->kind == StmtKind::Declare && !s->definition) || starts) statement(*s);
             }
         --handleDepth_;
-        exchangeInstance(i);
+        leaveInstance();
     }
+    if (!shader_.object || !handsItselfOver(shader_)) return;
+    // Others may be handed `this`: then the shader itself is one of those that a handle can mean, the last.
+    selfBinding_.handle = thisHandle();
+    selfBinding_.program = &program_;
+    selfBinding_.shader = &shader_;
+    instances_.push_back({&selfBinding_, &program_.files, {}});
 }
 
 /// Runs `code` for the co-shader of the handle and gives its value; zero of null.
@@ -72,15 +116,21 @@ Inst* Builder::forHandle(const Expr& handle, Kind kind, const std::function<Inst
     }
     if (h->op == Op::ConstString) {
         for (size_t i = 0; i < instances_.size(); ++i)
-            if (instances_[i].binding->handle == h->text) return coerce(code(i), kind);
+            if (instances_[i].binding->handle == h->text) {
+                certain_ = true;
+                return coerce(code(i), kind);
+            }
         warn(handle.place, "this handle is null here: no co-shader is bound to it");
         return zero(kind);
     }
     const std::function<std::vector<Inst*>(size_t)> from = [&](size_t i) -> std::vector<Inst*> {
         if (i == instances_.size()) return {light ? coerce(light(h), kind) : zero(kind)}; // no co-shader: perhaps a light
         Inst* same = emit(Op::Equal, Kind::Bool, {h, leaves_.string(instances_[i].binding->handle)});
-        return branch(
-            same, [&] { return std::vector<Inst*>{coerce(code(i), kind)}; }, [&] { return from(i + 1); });
+        const auto call = [&] {
+            certain_ = false;
+            return std::vector<Inst*>{coerce(code(i), kind)};
+        };
+        return branch(same, call, [&] { return from(i + 1); });
     };
     return from(0)[0];
 }
@@ -116,10 +166,12 @@ const Function* Builder::methodOf(size_t i, const Expr& call) const {
 }
 
 Inst* Builder::methodCall(const Expr& e) {
-    const Kind kind = kindOf(e.type) == Kind::None ? Kind::Float : kindOf(e.type);
+    const Type type = e.type.base == Base::Void ? typeOfMember(e) : e.type;
+    const Kind kind = kindOf(type) == Kind::None ? Kind::Float : kindOf(type);
     return forHandle(*e.args[0], kind, [&](size_t i) -> Inst* {
         const CoShader& c = *instances_[i].binding;
         const Function* f = methodOf(i, e);
+        if (!certain_ && isSelf(i) && (!f || !c.shader->publics.count(e.text))) return zero(kind); // one of the others is meant
         if (!f || !c.shader->publics.count(e.text)) {
             error(e.place, "co-shader '" + c.handle + "' (" + c.shader->name + ") has no public method '" + e.text + "' with " +
                                std::to_string(e.args.size() - 1) + " arguments");
@@ -152,7 +204,7 @@ Inst* Builder::methodCall(const Expr& e) {
             }
             if (p.output) held.emplace_back(*this, given);
             if (!p.type.array) {
-                values.push_back(coerce(expr(given), p.type));
+                values.push_back(p.output ? nullptr : coerce(expr(given), p.type));
                 continue;
             }
             Inst* a = array(given);
@@ -163,9 +215,11 @@ Inst* Builder::methodCall(const Expr& e) {
             }
             values.push_back(a);
         }
+        for (size_t n = 0; n < values.size() && !failed_; ++n) // outputs are what they are when all arguments are known
+            if (arguments[n] && !values[n]) values[n] = coerce(expr(*arguments[n]), f->parameters[n]->type);
         if (failed_) return zero(kind);
         openMethods_.insert({i, f});
-        exchangeInstance(i);
+        enterInstance(i);
         ++handleDepth_;
         for (size_t n = 0; n < values.size(); ++n) {
             const Symbol& p = *f->parameters[n];
@@ -188,7 +242,7 @@ Inst* Builder::methodCall(const Expr& e) {
         std::vector<Inst*> outputs;
         for (const Symbol* p : f->parameters) outputs.push_back(get(slot(p)));
         --handleDepth_;
-        exchangeInstance(i);
+        leaveInstance();
         openMethods_.erase({i, f});
         place_ = e.place;
         for (size_t n = 0; n < outputs.size(); ++n)
@@ -217,19 +271,36 @@ const Symbol* Builder::memberOf(size_t i, const std::string& name) const {
 }
 
 Inst* Builder::memberValue(size_t i, const Symbol& s) {
-    exchangeInstance(i);
+    enterInstance(i);
     Inst* v = get(slot(&s));
-    exchangeInstance(i);
+    leaveInstance();
     return v;
 }
 
+/// The type of what `handle->name` or `handle->name()` gives, for who takes any: that of the shader that the handle names, or of the first
+/// that has one; a number where that is not to be seen.
+Type Builder::typeOfMember(const Expr& e) {
+    Inst* h = e.args[0]->kind == ExprKind::Variable || e.args[0]->kind == ExprKind::String ? expr(*e.args[0]) : nullptr;
+    const bool known = h && h->op == Op::ConstString;
+    for (size_t i = 0; i < instances_.size(); ++i) {
+        if (known && instances_[i].binding->handle != h->text) continue;
+        if (e.kind == ExprKind::Method) {
+            if (const Function* f = methodOf(i, e)) return f->result.base == Base::Void ? Type{Base::Float, 0} : f->result;
+        } else if (const Symbol* s = memberOf(i, e.text)) {
+            return s->type;
+        }
+    }
+    return {Base::Float, 0};
+}
+
 Inst* Builder::memberAccess(const Expr& e) {
-    const Kind kind = kindOf(e.type);
+    const Kind kind = kindOf(e.type.base == Base::Void ? typeOfMember(e) : e.type);
     return forHandle(*e.args[0], kind, [&](size_t i) -> Inst* {
         const CoShader& c = *instances_[i].binding;
         const Symbol* s = memberOf(i, e.text);
         const bool fits = s && !s->type.array &&
                           (kindOf(s->type) == kind || (kindOf(s->type) == Kind::Float && kind != Kind::String));
+        if (!fits && !certain_ && isSelf(i)) return zero(kind);
         if (!fits) {
             error(e.place, "co-shader '" + c.handle + "' (" + c.shader->name + ") " +
                                (s ? "has '" + e.text + "' as " + toString(s->type) + ", not " + toString(e.type)
@@ -283,7 +354,7 @@ Inst* Builder::hasMethod(const Expr& e) {
                std::any_of(s.nested.begin(), s.nested.end(), [&](const auto& f) { return f->name == name->text; });
     };
     if (handle->op == Op::ConstString) {
-        if (handle->text == "(this)") return constant(has(shader_) ? 1.0f : 0.0f);
+        if (handle->text == selfBinding_.handle) return constant(has(shader_) ? 1.0f : 0.0f);
         for (const Instance& i : instances_)
             if (i.binding->handle == handle->text) return constant(has(*i.binding->shader) ? 1.0f : 0.0f);
         return constant(0);
@@ -346,6 +417,7 @@ std::vector<Inst*> Builder::handlesOf(const Expr& e) {
     }
     std::vector<Inst*> all;
     for (const Instance& i : instances_) {
+        if (i.binding == &selfBinding_) continue;
         const auto& strings = i.binding->strings;
         const auto own = strings.find("__category");
         if (inCategory(wanted, own == strings.end() ? std::string() : own->second)) all.push_back(leaves_.string(i.binding->handle));
@@ -360,9 +432,9 @@ void Builder::scanMethod(const Expr& e, std::set<int>& out) {
         const Function* f = methodOf(i, e);
         if (!f || !f->body || !scannedMethods_.insert({i, f}).second) continue;
         std::set<const Function*> seen{f};
-        exchangeInstance(i);
+        enterInstance(i);
         scanAssigned(*f->body, out, seen);
-        exchangeInstance(i);
+        leaveInstance();
     }
     if (outermost) scannedMethods_.clear();
 }

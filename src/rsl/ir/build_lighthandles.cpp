@@ -23,7 +23,7 @@ Inst* Builder::lightMethod(const Expr& e, Inst* handle) {
     if (e.text != "light" || e.args.size() < 3) return zero(Kind::Float);
     const auto colour = [&](const Expr& a) { return a.type == Type{Base::Color, 0} && a.kind == ExprKind::Variable; };
     const size_t asked = e.args.size() == 4 || (e.args.size() > 4 && colour(*e.args[3])) ? 4 : 3;
-    if (e.args.size() > asked && instances_.empty())
+    if (e.args.size() > asked && options_.coShaders.empty())
         warn(e.args[asked]->place, "a light gives L, Cl and Ol; the other arguments of light() keep what they hold");
     const Type vector{Base::Vector, 0}, real{Base::Float, 0};
     Site s = question("lightcall", e.place);

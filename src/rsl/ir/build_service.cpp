@@ -141,7 +141,8 @@ Inst* Builder::service(const Expr& e, Op kind, int part) {
         all.push_back(v);
         if (v->kind == Kind::String) s.strings.push_back(v->op == Op::ConstString ? v->text : "");
         // Where any strings come in rows, "" in the site stands for the next row: an empty one among them needs its own.
-        if (v->op != Op::ConstString || (v->text.empty() && op.section == "Strings")) addArgument(s, args, v, a.type);
+        const bool untyped = (a.kind == ExprKind::Member || a.kind == ExprKind::Method) && a.type.base == Base::Void;
+        if (v->op != Op::ConstString || (v->text.empty() && op.section == "Strings")) addArgument(s, args, v, untyped ? typeOfMember(a) : a.type);
     }
     if (Inst* c = foldString(op.name, all)) return c;
     place_ = e.place;

@@ -183,7 +183,16 @@ private:
         const std::vector<std::string>* files;
         std::unordered_map<const Symbol*, int> slots; ///< two instances of one shader have variables of their own
     };
-    void exchangeInstance(size_t);
+    Type typeOfMember(const Expr&);
+    bool certain_ = true;         ///< forHandle(): the handle is known
+    CoShader selfBinding_;        ///< of the shader itself, under the name that `this` has
+    std::vector<size_t> current_; ///< the instances whose methods are open; the shader itself where there is none
+    std::unordered_map<const Symbol*, int> ownSlots_; ///< the shader's, while those of a co-shader count
+    bool isSelf(size_t i) const { return instances_[i].binding == &selfBinding_; }
+    std::string thisHandle() const;
+    void switchInstance(bool fromSelf, size_t from, bool toSelf, size_t to);
+    void enterInstance(size_t);
+    void leaveInstance();
     void beginCoShaders();
     Inst* forHandle(const Expr& handle, Kind, const std::function<Inst*(size_t)>& code,
                     const std::function<Inst*(Inst* handle)>& light = nullptr);

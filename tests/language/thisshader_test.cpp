@@ -1,0 +1,100 @@
+// `this` as a value: handed to functions, to co-shaders, kept in variables and arrays; what others call back; what members of a type that
+// is not known until they are bound give to format().
+#include "points.h"
+#include "rsl/compiler.h"
+#include <bit>
+#include <gtest/gtest.h>
+
+namespace alpenglow::rsl {
+namespace {
+
+const char* const kLayer = R"(
+class layer(float gain = 5;)
+{
+    public float own = 9;
+    public string word = "hello";
+    public varying color tint = color(1, 2, 3);
+    float asked = 0;
+    public float ask(shader who) { asked += 1; return who->twice(gain) + back(this) * 100; }
+    public float back(shader other) { return other->own; }
+    public float among(shader who) { shader me = this; return me == this && who != me ? me->gain + asked : 0; }
+    public string name() { return format("%h", this); }
+})";
+
+/// Outputs of a class whose method surface() has this body, with one layer (gain 7) under the handle "coat".
+std::vector<float> shade(const std::string& body, const std::string& outputs, const std::vector<std::string>& names, Diagnostics& d, int lanes = 16) {
+    ShaderCompiler::Settings settings;
+    settings.useDefaultCache = false;
+    ShaderCompiler compiler(settings);
+    const auto layer = compiler.loadText(kLayer, "layer.sl", d);
+    const auto surface = compiler.loadText("class asker(float gain = 2; " + outputs + R"()
+{
+    public float count = 3;
+    public float twice(float x) { count += 1; return x * 2; }
+    float gainOf(shader who) { return who->gain; }
+    public void surface(output color Ci, Oi) { )" + body + "}\n}", "asker.sl", d);
+    if (!layer || !surface) return {};
+    KernelOptions o;
+    o.lanes = lanes;
+    o.outputs = names;
+    CoShader c = ShaderCompiler::coShader(layer, "coat");
+    c.numbers["gain"] = {7};
+    o.coShaders.push_back(c);
+    const auto kernel = compiler.kernel(surface, o, d);
+    if (!kernel) return {};
+    std::vector<std::vector<float>> out;
+    if (!runPoints(*kernel, false, 1, evaluationPoint(), compiler.parameterDefaults(surface, d), out, d)) return {};
+    std::vector<float> values;
+    for (const auto& v : out) values.push_back(v[0]);
+    return values;
+}
+
+using Values = std::vector<float>;
+
+TEST(ThisShader, IsAHandleLikeOthers) {
+    for (const int lanes : {4, 8, 16}) {
+        Diagnostics d;
+        // ask(): twice(7) of this shader, and 9 of the layer's own; twice() counts, and so it does when it is called by name.
+        EXPECT_EQ(shade(R"(shader me = this, coat = getshader("coat");
+                           shader all[2]; all[0] = this; all[1] = coat;
+                           float i, s = 0;
+                           for (i = 0; i < 2; i += 1) s += all[i]->gain;
+                           a = gainOf(this) * 10 + gainOf(me);
+                           b = s;
+                           c = coat->ask(this);
+                           e = me->twice(4) + count * 100;
+                           f = (this == me) + 10 * (coat == this) + 100 * coat->among(this);)",
+                        "output varying float a = 0, b = 0, c = 0, e = 0, f = 0;", {"a", "b", "c", "e", "f"}, d, lanes),
+                  (Values{22, 9, 914, 508, 801}));
+        EXPECT_EQ(d.errors(), 0);
+    }
+}
+
+TEST(ThisShader, GetvarAndHasmethod) {
+    Diagnostics d;
+    EXPECT_EQ(shade(R"(float v = 0; float found = getvar(this, "count", v); a = found * 10 + v; b = hasmethod(this, "twice") * 10 + hasmethod(this, "gainOf");)",
+                    "output varying float a = 0, b = 0;", {"a", "b"}, d),
+              (Values{13, 10}));
+    EXPECT_EQ(d.errors(), 0);
+}
+
+TEST(ThisShader, NamesOfHandlesAndUntypedMembers) {
+    Diagnostics d;
+    const auto v = shade(R"(shader coat = getshader("coat"); a = format("%h %h %h", this, coat, null);
+                            b = format("%s %g %c %s", coat->word, coat->own, coat->tint, coat->name());)",
+                         "output varying string a = \"\", b = \"\";", {"a", "b"}, d);
+    ASSERT_EQ(v.size(), 2u);
+    EXPECT_EQ(internedString(std::bit_cast<int32_t>(v[0])), "<surface> coat <null>");
+    EXPECT_EQ(internedString(std::bit_cast<int32_t>(v[1])), "hello 9 [1.000000 2.000000 3.000000] coat");
+    EXPECT_EQ(d.errors(), 0);
+}
+
+TEST(ThisShader, WhatItHasNotIsAnError) {
+    Diagnostics d;
+    EXPECT_EQ(shade("shader me = this; a = me->thrice(2);", "output varying float a = 0;", {"a"}, d), Values{});
+    ASSERT_EQ(d.errors(), 1);
+    EXPECT_NE(d.all().back().message.find("'thrice'"), std::string::npos);
+}
+
+} // namespace
+} // namespace alpenglow::rsl

@@ -105,7 +105,7 @@ const std::map<std::string, std::string>& elsewhere() {
     static const std::map<std::string, std::string> all = {
         {"texture", "needs a map: tests/transport/derivatives_test.cpp"},
         {"environment", "needs a map: tests/transport/derivatives_test.cpp"},
-        {"bump", "needs a map: tests/transport/examples_test.cpp; it is texture() at six places"},
+        {"bump", "RSL over texture(), which needs a map: tests/transport/derivatives_test.cpp"},
         {"visibility", "what rays bring counts as constant"},
         {"rayhittest", "what rays bring counts as constant"},
         {"fulltrace", "what rays bring counts as constant"},

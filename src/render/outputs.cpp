@@ -90,7 +90,12 @@ OutputSpec specOf(const scene::Display& d, const scene::Options& o, const Output
             auto& names = plan.engineOutputs;
             auto i = std::find(names.begin(), names.end(), v.name);
             out.engine = int(i - names.begin());
-            if (i == names.end()) names.push_back(v.name);
+            if (i == names.end()) {
+                names.push_back(v.name);
+                plan.engineWidths.push_back(0);
+            }
+            int& width = plan.engineWidths[size_t(out.engine)];
+            if (v.declared) width = std::max(width, int(v.channels.size()));
         }
         s.variables.push_back(std::move(out));
     }

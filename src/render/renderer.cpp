@@ -174,6 +174,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
     t.shaderPaths = searchPaths(o, "shader", settings_.shaderPaths, true);
     t.texturePaths = searchPaths(o, "texture", settings_.texturePaths, false);
     t.outputs = plan.engineOutputs;
+    t.outputWidths = plan.engineWidths;
     auto world = engine_.build(drawnLevels(frame, camera), t, diagnostics_);
     if (!world) {
         ++outcome_.refused;

@@ -74,7 +74,7 @@ std::vector<Shadeop> messageShadeops() {
     add("isoutput", each(kAllTypes, "float isoutput($ variable)") + each(kAllTypes, "float isoutput($ variable[])"), Lowering::Special, kAnyContext,
         "1 if the variable, or the one of that name (\"outputs[1]\" too), is an output that a display asks for.");
     list.back().examples = {{"isoutput(\"glow\")", "0"}};
-    add("outputchannel", each("float color point vector normal matrix", "void outputchannel(uniform string name; $ value)"), Lowering::Special,
+    add("outputchannel", each("float color point vector normal matrix", "void outputchannel(uniform string name; $ value)") + each("float color point vector normal matrix", "void outputchannel(uniform string name; $ value[])"), Lowering::Special,
         kAnyContext,
         "Creates an output of the main shader, zero where no call gives it a value, or assigns one that exists. Nothing is done when the types do not "
         "agree. In a co-shader or a light \"light:\" or \"local:\" before the name keep it there, out of sight of displays.");
@@ -85,7 +85,7 @@ std::vector<Shadeop> messageShadeops() {
     add("gridmax", sigs({{"float gridmax(float value)"}, {"void gridmax(float value)"}}), Lowering::Special, kNoImager,
         "Largest value over the grid: the value plus half its footprint.");
     list.back().examples = {{"gridmax(u)", "1"}};
-    add("getshader", sigs({{"shader getshader(string handle)"}}), Lowering::Special, kNoImager, "Co-shader by its handle; null if absent.");
+    add("getshader", sigs({{"shader getshader(string handle)"}}), Lowering::Special, kAnyContext, "Co-shader by its handle; null if absent.");
     list.back().examples = {{"(l == null) ? 1 : 0", "1", "shader l = getshader(\"none\");"}};
     add("getshaders", sigs({{"shader[] getshaders(pairs)"}}), Lowering::Special, kAnyContext, "All co-shaders, or those of a category.").optional = {
         {{Base::String, 0}, "category", false, "\"\"", "names of categories"}};
@@ -97,22 +97,23 @@ std::vector<Shadeop> messageShadeops() {
         "The active lights, or those of a category; each handle->light(L, Cl [, Ol]) gives one sample of its light at P, L from the light to the surface.")
         .optional = {{{Base::String, 0}, "category", false, "\"\"", "\"a\", \"-a\", \"a|b\", \"a&b\", \"a,b\", with parentheses"}};
     list.back().examples = {{"arraylength(getlights())", "2", "", "two lights are on"}};
-    add("getvar", sigs({{"float getvar(shader handle; string name)"}}) + each(kAllTypes, "float getvar(shader handle; string name; output $ value)"),
+    add("getvar", sigs({{"float getvar(shader handle; string name)"}}) + each(kAllTypes, "float getvar(shader handle; string name; output $ value)") +
+            each(kAllTypes, "float getvar(shader handle; string name; output $ value[])"),
         Lowering::Special, kAnyContext, "Member variable of a co-shader; null handle: the primitive's variables. 1 if found.");
     list.back().examples = {{"x", "3", "float x = 3; getvar(null, \"none\", x);"}};
     add("hasmethod", sigs({{"float hasmethod(shader handle; string name)"}}), Lowering::Special, kAnyContext,
         "1 if others may call a method of that name of the shader, which the handle stands for; 0 for null. A light has the method light().")
         .source = "PRMan";
     list.back().examples = {{"hasmethod(l, \"size\")", "0", "shader l = getshader(\"none\");"}};
-    add("readprimvar", each(kAllTypes, "float readprimvar(string name; output $ value)"), Lowering::Special, kAnyContext,
+    add("readprimvar", each(kAllTypes, "float readprimvar(string name; output $ value)") + each(kAllTypes, "float readprimvar(string name; output $ value[])"), Lowering::Special, kAnyContext,
         "Variable of the primitive: getvar(null, name, value). 1 if found; else 0, and value is untouched.")
         .source = "PRMan";
     list.back().examples = {{"x", "3", "float x = 3; readprimvar(\"none\", x);"}};
-    add("writeaov", each("float color point vector normal matrix", "void writeaov(string name; $ value)"), Lowering::Special, kAnyContext,
+    add("writeaov", each("float color point vector normal matrix", "void writeaov(string name; $ value)") + each("float color point vector normal matrix", "void writeaov(string name; $ value[])"), Lowering::Special, kAnyContext,
         "outputchannel(name, value), for a name that may be made when the shader runs: where it is not written out it must be that of an output that there is.")
         .source = "PRMan";
     list.back().examples = {{"x", "3", "float x = 0; writeaov(\"depths\", 3); readaov(\"depths\", x);"}};
-    add("readaov", each("float color point vector normal matrix", "float readaov(string name; output $ value)"), Lowering::Special, kAnyContext,
+    add("readaov", each("float color point vector normal matrix", "float readaov(string name; output $ value)") + each("float color point vector normal matrix", "float readaov(string name; output $ value[])"), Lowering::Special, kAnyContext,
         "What an output of the shader has been given so far, by its name. 1 if there is one of that type; else 0, and value is untouched.")
         .source = "PRMan";
     list.back().examples = {{"x", "2 2 2", "color x = 0; writeaov(\"glow\", color(2)); readaov(\"glow\", x);"}};

@@ -59,6 +59,9 @@ BatchPlan::BatchPlan(const rsl::CompiledKernel& kernel, bool mixed) {
         } else if (input.name.rfind("param:", 0) == 0) {
             s.from = From::Parameter;
             s.name = input.name.substr(6);
+        } else if (input.name.rfind("displacement:", 0) == 0) {
+            s.from = From::Told;
+            s.name = input.name.substr(13);
         } else if (input.name == "Cs" || input.name == "Os") {
             s.from = input.name == "Cs" ? From::Cs : From::Os;
         } else {
@@ -150,6 +153,24 @@ void Batch::pad(const BatchPlan::Source& s, float* row) {
     size_t stride = size_t(call_.stride), n = size_t(call_.n);
     if (padded_ > n)
         for (size_t r = 0; r < s.rows; ++r) std::fill(row + r * stride + n, row + r * stride + padded_, row[r * stride + n - 1]);
+}
+
+void Batch::tell(const Batch& displaced) {
+    const size_t stride = size_t(call_.stride);
+    for (const BatchPlan::Source& s : plan_->inputs_) {
+        if (s.from != BatchPlan::From::Told) continue;
+        float* row = storage_.get() + s.firstRow * stride;
+        const auto take = [&](const std::string& name, int element, int part) {
+            const int o = displaced.output(name);
+            for (int c = 0; o >= 0 && c < s.components; ++c)
+                std::memcpy(row + size_t((element * s.components + c) * s.parts + part) * stride, displaced.out_[size_t(o)] + size_t(c) * size_t(displaced.call_.stride),
+                            size_t(call_.n) * sizeof(float));
+        };
+        take("param:" + s.name, 0, 0);
+        for (int e = 0; e < s.elements; ++e) take("param:" + s.name + "[" + std::to_string(e) + "]", e, 0);
+        if (s.parts > 1) take("Du:param:" + s.name, 0, 1), take("Dv:param:" + s.name, 0, 2);
+        pad(s, row);
+    }
 }
 
 void Batch::fillVariables(std::span<const ShadePoint> points) {
@@ -287,6 +308,7 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
         }
         return;
     }
+    case From::Told: // tell()
     case From::Nothing: std::fill_n(row, s.rows * stride, 0.f); return;
     }
 }

@@ -40,7 +40,7 @@ public:
 
 private:
     friend class Batch;
-    enum class From : uint8_t { Variable, Cs, Os, Parameter, Space, Nothing };
+    enum class From : uint8_t { Variable, Cs, Os, Parameter, Space, Told, Nothing };
     struct Source {
         From from = From::Nothing;
         bool scalar = false;
@@ -70,6 +70,9 @@ public:
     /// user and functions are is left as it was.
     void assign(std::shared_ptr<const rsl::CompiledKernel>, const BatchPlan&, std::span<const ShadePoint> points,
                 std::span<const InstanceView> views, std::span<const uint32_t> viewOf, const SpaceResolver&);
+
+    /// Fills the inputs "displacement:NAME" from the outputs of the displacement shader's run at the same points, derivatives too.
+    void tell(const Batch& displaced);
 
     rsl::KernelCall& call() { return call_; }
     const rsl::CompiledKernel& kernel() const { return *kernel_; }

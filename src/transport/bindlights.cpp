@@ -30,10 +30,8 @@ float numberOf(const scene::AttributesRef& a, const char* key, float fallback) {
 
 void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const geometry::Shape&)>& visibility) {
     const bool path = settings_.hider == Hider::Path;
-    const auto aovOf = [&](const std::string& name) {
-        int at = 0;
-        for (size_t k = 0; k < settings_.outputs.size() && settings_.outputs[k] != name; ++k) at += outputWidths_[k];
-        return at;
+    const auto aovOf = [&](const std::string& name) { // measureOutputs() makes the place of its first number of it
+        return int(std::find(settings_.outputs.begin(), settings_.outputs.end(), name) - settings_.outputs.begin());
     };
     std::map<int, std::vector<const geometry::Shape*>> emitters;
     for (const auto& s : shapes_)
@@ -48,14 +46,14 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
         l.kind = LightKind::Ambient;
         l.samples = 0;
         l.instance = source.shader ? instance(*source.shader, rsl::ShaderKind::Light, d) : nullptr;
-        if (source.attributes) l.instance = withCoShaders(l.instance, *source.attributes, d);
+        if (source.attributes) l.instance = withCoShaders(l.instance, source.attributes->coshaders, d);
         if (l.instance) {
             std::vector<std::string> extra, outputs;
             for (const char* name : {"__nondiffuse", "__nonspecular"})
                 for (const auto& p : l.instance->program->parameters())
                     if (p.name == name) extra.push_back(std::string("param:") + name);
             for (const auto& p : l.instance->program->parameters())
-                if (const std::string name = "param:" + p.name; p.output && p.type.base != rsl::Base::String && p.type.array == 0 &&
+                if (const std::string name = "param:" + p.name; p.output && p.type.base != rsl::Base::String &&
                                                                 std::find(extra.begin(), extra.end(), name) == extra.end())
                     extra.push_back(name);
             // What it gives to the outputs of the surface by outputchannel(), where a display asks for it.

@@ -144,6 +144,7 @@ void Engine::giveBack(std::shared_ptr<BatchContext> c) {
     c->requestSite = -1;
     for (LightLoop& loop : c->loops) loop.reset(-1);
     c->lit = nullptr;
+    c->displaced.reset();
     c->light = nullptr;
     c->lightVisibilityDistance = 0;
     pool_.push_back(std::move(c));

@@ -105,6 +105,9 @@ Color coneNumbers(Vec2 random);
 
 class Engine;
 
+/// The outputs of a kernel that make up the AOV of a name: of an array all its elements. Empty: it has none.
+std::vector<int> outputsNamed(const shading::Batch&, const std::string& name);
+
 /// State of one batch while its kernel runs; KernelCall::user.
 struct BatchContext {
     Engine* engine = nullptr;
@@ -121,7 +124,10 @@ struct BatchContext {
     std::deque<LightLoop> loops;               ///< Engine::lightLoop()
     const BoundLight* light = nullptr;         ///< whose kernel runs
     const LitSurface* lit = nullptr;           ///< while a light's kernel runs: what it lights
-    std::vector<float> lightChannels;          ///< by point, all AOVs: what lights gave by outputchannel(); empty when none did
+    std::shared_ptr<BatchContext> displaced;   ///< the displacement shader's run at these points, where its outputs are asked for
+    const BatchContext* surface = nullptr;     ///< while an atmosphere's kernel runs: the surface's run that it dims
+    std::vector<int> surfacePoint;             ///< by point: its number in that run
+    std::vector<float> lightChannels;          ///< by point, all AOVs: what lights gave by outputchannel(), and atmospheres; empty when none did
     float lightVisibilityDistance = 0;
     bool forShadow = false;                    ///< the kernel tells its opacity to shadow rays
     std::vector<float> lightDistance;          ///< by lane: to the light sample; 1e38 for distant lights
@@ -155,7 +161,9 @@ public:
     void opacities(std::span<const OpacityQuery>, std::span<Color> out);
     // haze.cpp
     /// Runs the binding's atmosphere over points with Ci, Oi, I, P set. The points' Ci is void afterwards.
-    void haze(const SurfaceBinding&, std::vector<ShadePoint>&, std::span<Haze> out, bool wantSlope);
+    /// `surface`, `of`: the run of the surface shader, and the points' numbers there; may be missing.
+    void haze(const SurfaceBinding&, std::vector<ShadePoint>&, std::span<Haze> out, bool wantSlope, BatchContext* surface = nullptr, std::span<const int> of = {});
+    void keepOutputs(const shading::Batch& volume, BatchContext& surface, std::span<const int> of);
     /// Fills c.haze for points first to first + count - 1 of a shaded batch.
     void hazeOfBatch(BatchContext&, int first, int count, bool wantSlope);
     /// Takes from the light of emitters what their atmosphere takes between them and the lit points.
@@ -189,6 +197,8 @@ public:
     const WorldImpl& world() const { return *world_; }
     Diagnostics& diagnostics() { return diagnostics_; }
     void shadeGroup(std::shared_ptr<BatchContext>, Sched&);
+    /// Runs the displacement shader at the points of a batch (all of one binding); null where it waits for rays. displacement.cpp
+    std::shared_ptr<BatchContext> displace(const BatchContext&);
     /// Points of surfaces whose shaders move P, once the kernel has its inputs: rays met, and will leave, the facets. displacement.cpp
     static void moveToFacets(BatchContext&);
     void bindCall(rsl::KernelCall&, BatchContext&);

@@ -4,14 +4,17 @@
 
 namespace alpenglow::transport {
 
-void Engine::haze(const SurfaceBinding& binding, std::vector<ShadePoint>& points, std::span<Haze> out, bool wantSlope) {
+void Engine::haze(const SurfaceBinding& binding, std::vector<ShadePoint>& points, std::span<Haze> out, bool wantSlope, BatchContext* surface, std::span<const int> of) {
     const auto& kernel = binding.atmosphereS.kernel;
     int slopeAt = binding.atmosphereS.plan->output("slope:Ci");
+    bool first = true;
     auto run = [&](auto&& take) {
         BatchContext c;
         c.engine = this;
         c.bound = &binding.atmosphereS;
         c.binding = &binding;
+        c.surface = surface;
+        c.surfacePoint.assign(of.begin(), of.end());
         c.points.swap(points); // lent
         std::vector<shading::InstanceView> views(c.points.size(), {&binding.atmosphere->parameters, &binding.atmosphere->toCurrent});
         c.batch = std::make_shared<shading::Batch>(kernel, *binding.atmosphereS.plan, c.points, views, *world_);
@@ -21,6 +24,8 @@ void Engine::haze(const SurfaceBinding& binding, std::vector<ShadePoint>& points
         for (size_t i = 0; i < c.points.size(); ++i)
             take(i, ci >= 0 ? c.batch->color(ci, int(i)) : c.points[i].Ci, oi >= 0 ? c.batch->color(oi, int(i)) : c.points[i].Oi,
                  slopeAt >= 0 ? c.batch->color(slopeAt, int(i)) : Color(0));
+        if (surface && first) keepOutputs(*c.batch, *surface, of);
+        first = false;
         points.swap(c.points);
     };
     run([&](size_t i, const Color& ci, const Color& oi, const Color& slope) { out[i] = {ci, oi, slope}; });
@@ -30,6 +35,23 @@ void Engine::haze(const SurfaceBinding& binding, std::vector<ShadePoint>& points
     run([&](size_t i, const Color& ci, const Color&, const Color&) { out[i].slope = -ci; });
     for (ShadePoint& p : points) p.Ci = Color(1);
     run([&](size_t i, const Color& ci, const Color&, const Color&) { out[i].slope += ci; });
+}
+
+/// Outputs that displays ask for and that the surface does not have.
+void Engine::keepOutputs(const shading::Batch& volume, BatchContext& surface, std::span<const int> of) {
+    const auto& wanted = world_->settings_.outputs;
+    size_t all = 0, at = 0;
+    for (int w : world_->outputWidths_) all += size_t(w);
+    for (size_t k = 0; k < wanted.size(); at += size_t(world_->outputWidths_[k++])) {
+        if (!outputsNamed(*surface.batch, wanted[k]).empty()) continue;
+        size_t to = at;
+        const size_t end = at + size_t(world_->outputWidths_[k]);
+        for (int o : outputsNamed(volume, wanted[k])) {
+            if (surface.lightChannels.empty()) surface.lightChannels.assign(surface.points.size() * all, 0);
+            for (int r = 0; r < rsl::ir::components(volume.kernel().outputs()[size_t(o)].kind) && to < end; ++r, ++to)
+                for (size_t i = 0; i < of.size(); ++i) surface.lightChannels[size_t(of[i]) * all + to] = volume.value(o, r, int(i));
+        }
+    }
 }
 
 void Engine::hazeOfBatch(BatchContext& c, int first, int count, bool wantSlope) {
@@ -54,7 +76,7 @@ void Engine::hazeOfBatch(BatchContext& c, int first, int count, bool wantSlope) 
             of.push_back(k);
         }
         out.resize(points.size());
-        haze(b, points, out, wantSlope);
+        haze(b, points, out, wantSlope, &c, of);
         for (size_t k = 0; k < of.size(); ++k) c.haze[size_t(of[k])] = out[k];
     }
 }

@@ -18,6 +18,10 @@ std::optional<Information> attributeOf(const WorldImpl&, const scene::Attributes
                                        const SurfaceBinding* binding);
 /// An option of the frame (Table 6.21, "user:..." or "class:name").
 std::optional<Information> optionOf(const WorldImpl&, const std::string& name);
+/// What rendererinfo() knows by that name.
+std::optional<Information> rendererInfoOf(const std::string& name);
+/// What rayinfo() knows by that name of the ray that found the point. Null: there is none, as where shapes are diced or light leaves.
+std::optional<Information> rayInfoOf(const std::string& name, const shading::PathRay*, const shading::ShadePoint&);
 /// The matrix between two spaces that are known only now, at a point. "object" and "shader" are the point's own.
 Matrix spaceAt(const WorldImpl&, const std::string& from, const std::string& to, const shading::ShadePoint&, const SurfaceBinding*);
 

@@ -1,6 +1,6 @@
 // Lights that a shader calls by their handles: getlight, getlights, islightcategory, handle->light(), handle->parameter.
 #include "base/category.h"
-#include "transport/engine.h"
+#include "transport/answers.h"
 #include "transport/lightloop.h"
 #include <bit>
 #include <charconv>
@@ -81,19 +81,16 @@ void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, i
         if (int l = lightOfHandle(c, text(lane)); l >= 0) asked[l] |= uint64_t(1) << lane;
     });
     if (d.op == "lightparameter") { // rows: found, value
-        const std::string& name = d.strings.back();
+        const ServiceCall call(c, site, first, mask, lanes, in, out);
         for (auto [li, of] : asked) {
-            const shading::ParameterBlock& p = world_->lights_[size_t(li)].instance->parameters;
-            const auto n = p.numbers.find(name);
-            const auto t = p.strings.find(name);
-            const bool wantsText = d.resultKinds[1] == rsl::ir::Kind::String;
-            if (wantsText ? t == p.strings.end() : n == p.numbers.end() || (int(n->second.size()) < s.resultRowCount - 1 && n->second.size() != 1)) continue;
-            for (int lane = 0; lane < lanes; ++lane) {
-                if (!(of >> lane & 1)) continue;
-                put(0, lane, 1);
-                if (wantsText) put(1, lane, std::bit_cast<float>(rsl::internString(t->second)));
-                else for (int r = 0; r < s.resultRowCount - 1; ++r) put(size_t(r) + 1, lane, n->second[n->second.size() == 1 ? 0 : size_t(r)]); // a float also where a color is wanted
+            std::optional<Told> t = toldBy(*world_->lights_[size_t(li)].instance, d.strings.back());
+            if (!t) continue;
+            if (t->kind == rsl::ir::Kind::Float && !t->elements && d.resultKinds[1] == rsl::ir::Kind::Triple) { // a float also where a color is wanted
+                t->kind = rsl::ir::Kind::Triple;
+                t->numbers.assign(3, t->numbers.empty() ? 0.f : t->numbers[0]);
             }
+            for (int lane = 0; lane < lanes; ++lane)
+                if (of >> lane & 1) call.answer(lane, *t);
         }
         return;
     }

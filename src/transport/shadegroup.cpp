@@ -122,8 +122,8 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched) {
     shading::Batch& b = *c.batch;
     int ci = b.plan().Ci, oi = b.plan().Oi;
     const auto& wanted = world_->settings_.outputs;
-    std::vector<int> wantedAt;
-    for (const std::string& name : wanted) wantedAt.push_back(b.output(name));
+    std::vector<std::vector<int>> wantedAt; // by AOV: the kernel's outputs, for arrays one an element
+    for (const std::string& name : wanted) wantedAt.push_back(outputsNamed(b, name));
     bool suspended = b.kernel().facts().suspends; // then nobody has asked for the atmosphere yet
     if (suspended) hazeOfBatch(c, first, lanes, false);
     for (int i = first; i < std::min(first + lanes, int(c.points.size())); ++i) {
@@ -153,13 +153,16 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched) {
             else if (r.zSecond >= 1e38f) r.zSecond = z;
             size_t at = 0;
             for (size_t k = 0; k < wanted.size(); ++k) {
-                int o = wantedAt[k], width = world_->outputWidths_[k];
-                if (o >= 0)
-                    for (int w = 0; w < std::min(width, rsl::ir::components(b.kernel().outputs()[o].kind)); ++w)
-                        r.aovs[at + w] += (width == 3 ? ray.weight[w] : luminance(ray.weight)) * b.value(o, w, i);
-                else if (!c.lightChannels.empty())
+                const int width = world_->outputWidths_[k];
+                int to = 0;
+                for (int o : wantedAt[k]) {
+                    const int size = rsl::ir::components(b.kernel().outputs()[size_t(o)].kind);
+                    for (int w = 0; w < size && to < width; ++w, ++to) r.aovs[at + size_t(to)] += (size == 3 ? ray.weight[w] : luminance(ray.weight)) * b.value(o, w, i);
+                }
+                if (wantedAt[k].empty() && !c.lightChannels.empty()) // what lights and the atmosphere give
                     for (int w = 0; w < width; ++w)
-                        r.aovs[at + w] += (width == 3 ? ray.weight[w] : luminance(ray.weight)) * c.lightChannels[size_t(i) * (c.lightChannels.size() / c.points.size()) + at + size_t(w)];
+                        r.aovs[at + size_t(w)] += (width % 3 == 0 ? ray.weight[w % 3] : luminance(ray.weight)) *
+                                                  c.lightChannels[size_t(i) * (c.lightChannels.size() / c.points.size()) + at + size_t(w)];
                 at += size_t(width);
             }
         }
@@ -189,13 +192,7 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
     };
     // Displacement again at the hit, for P, N (design decision 9). All points of a group with displacement share its binding.
     if (c->binding->displacement) {
-        auto d = std::make_shared<BatchContext>(*c);
-        for (size_t k = 0; k < d->points.size(); ++k) d->points[k].ray = &d->rays[k];
-        d->bound = &c->binding->displacementS;
-        d->batch.reset(); // c's own
-        fill(*d, &SurfaceBinding::displacement);
-        if (!d->bound->kernel->facts().suspends) {
-            d->bound->kernel->run(&d->batch->call());
+        if (const auto d = displace(*c)) {
             int po = d->batch->output("P"), no = d->batch->output("N");
             int dpu = d->batch->output("Du:P"), dpv = d->batch->output("Dv:P"), dnu = d->batch->output("Du:N"), dnv = d->batch->output("Dv:N");
             for (size_t k = 0; k < c->points.size(); ++k) {
@@ -218,10 +215,12 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
                     p.P = p.surface.displacedP;
                 }
             }
+            if (c->binding->displacementTells) c->displaced = d;
         }
     }
     const auto& kernel = *c->bound->kernel;
     fill(*c, &SurfaceBinding::surface);
+    if (c->displaced) c->batch->tell(*c->displaced->batch);
     if (c->binding->moveS) moveToFacets(*c); // the kernel moves P itself: it begins with the surface as it was
     int n = int(c->points.size());
     counters.points += uint64_t(n);

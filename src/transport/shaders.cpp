@@ -133,14 +133,14 @@ InstanceRef WorldImpl::builtin(const std::string& name, rsl::ShaderKind kind, Di
     return instance(call, kind, d);
 }
 
-InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const scene::Attributes& a, Diagnostics& d) {
-    if (!shader || !shader->program->program().handles || a.coshaders.empty()) return shader;
+InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const std::map<std::string, scene::ShaderRef>& coshaders, Diagnostics& d) {
+    if (!shader || !shader->program->program().handles || coshaders.empty()) return shader;
     std::vector<const void*> key{shader.get()};
-    for (const auto& [handle, call] : a.coshaders) key.push_back(call.get());
+    for (const auto& [handle, call] : coshaders) key.push_back(call.get());
     InstanceRef& bound = withCoShaders_[key];
     if (bound) return bound;
     auto copy = std::make_shared<ShaderInstance>(*shader);
-    for (const auto& [handle, call] : a.coshaders) {
+    for (const auto& [handle, call] : coshaders) {
         auto [i, fresh] = coShaders_.try_emplace(call.get());
         if (fresh) i->second = instance(*call, rsl::ShaderKind::Surface, d, true);
         if (!i->second) continue;

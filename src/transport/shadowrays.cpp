@@ -72,6 +72,7 @@ void Engine::opacities(std::span<const OpacityQuery> met, std::span<Color> out) 
     }
     std::vector<shading::InstanceView> views(met.size(), {&b.surface->parameters, &b.surface->toCurrent});
     c.batch = std::make_shared<shading::Batch>(c.bound->kernel, *c.bound->plan, c.points, views, *world_);
+    if (b.displacementTells && (c.displaced = displace(c))) c.batch->tell(*c.displaced->batch);
     bindCall(c.batch->call(), c);
     c.bound->kernel->run(&c.batch->call());
     ++counters.batches;

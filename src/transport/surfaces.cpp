@@ -1,4 +1,6 @@
 #include "transport/surfaces.h"
+#include "transport/answers.h"
+#include <set>
 
 namespace alpenglow::transport {
 
@@ -67,14 +69,14 @@ bool SurfaceBinder::bindHitModes() {
 int SurfaceBinder::bind(const geometry::ShapeRef& shape) {
     const scene::Attributes& a = shape->attributes();
     SurfaceBinding b;
-    b.surface = world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Surface), a, diagnostics_);
+    b.surface = world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Surface), a.coshaders, diagnostics_);
     b.explicitSurface = b.surface != nullptr;
     if (!b.surface) b.surface = fallback_;
-    b.displacement = world_.withCoShaders(instanceOf(a.displacement, rsl::ShaderKind::Displacement), a, diagnostics_);
+    b.displacement = world_.withCoShaders(instanceOf(a.displacement, rsl::ShaderKind::Displacement), a.coshaders, diagnostics_);
     // A class with surface and displacement is both.
     if (!a.displacement && b.explicitSurface && rsl::ShaderCompiler::variant(b.surface->program, rsl::ShaderKind::Displacement))
-        b.displacement = world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Displacement), a, diagnostics_);
-    b.atmosphere = world_.withCoShaders(instanceOf(a.atmosphere, rsl::ShaderKind::Volume), a, diagnostics_);
+        b.displacement = world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Displacement), a.coshaders, diagnostics_);
+    b.atmosphere = world_.withCoShaders(instanceOf(a.atmosphere, rsl::ShaderKind::Volume), a.coshaders, diagnostics_);
     const Names varying = varyingOf(*shape, *b.surface);
     const Names displacementVarying = b.displacement ? varyingOf(*shape, *b.displacement) : Names{};
     const Names atmosphereVarying = b.atmosphere ? varyingOf(*shape, *b.atmosphere) : Names{};
@@ -107,9 +109,12 @@ int SurfaceBinder::bind(const geometry::ShapeRef& shape) {
 
     b.interior = instanceOf(a.interior, rsl::ShaderKind::Volume);
     b.exterior = instanceOf(a.exterior, rsl::ShaderKind::Volume);
-    if (!bindSurface(b, varying)) return -1;
+    // Who asks comes before who is asked: an atmosphere asks for outputs of the surface, both for those of the displacement.
+    bindDisplacement(b, displacementVarying, {});
     bindAtmosphere(b, atmosphereVarying);
-    bindDisplacement(b, displacementVarying);
+    if (!bindSurface(b, varying)) return -1;
+    hearDisplacement(b, varying, displacementVarying);
+    if (!b.displacement) b.moveS = world_.movingKernel(*b.surface, b.surfaceS, asked_.back().varying, diagnostics_);
     bindLights(b, a);
     b.areaLight = a.areaLight;
     b.matte = a.matte;
@@ -133,26 +138,61 @@ int SurfaceBinder::bind(const geometry::ShapeRef& shape) {
     return it->second;
 }
 
-SurfaceBinder::Names SurfaceBinder::outputsOf(const ShaderInstance& surface) const {
+SurfaceBinder::Names SurfaceBinder::outputsOf(const SurfaceBinding& b) const {
     static const char* const kVariables[] = {"P", "N", "Cs", "Os", "u", "v", "s", "t", "Ng", "I", "dPdu", "dPdv"};
     Names outputs{"Ci", "Oi"};
-    for (const auto& n : world_.settings_.outputs) {
-        bool known = std::find(std::begin(kVariables), std::end(kVariables), n) != std::end(kVariables);
-        for (const auto& p : surface.program->parameters()) known |= p.name == n && p.output;
-        known |= surface.program->program().channels.count(n) > 0;
-        for (const rsl::CoShader& co : surface.coShaders) known |= co.program->channels.count(n) > 0;
-        if (known && n != "Ci" && n != "Oi") outputs.push_back(n);
-    }
-    if (path_) // lighting shadeops: lights run when the surface's kernel is done
-        for (const auto& p : surface.program->parameters())
-            if (p.output && p.type.base != rsl::Base::String && p.type.array == 0 &&
-                std::binary_search(world_.lightMessages_.begin(), world_.lightMessages_.end(), p.name))
-                outputs.push_back("param:" + p.name);
+    for (const auto& n : world_.settings_.outputs)
+        if (n != "Ci" && n != "Oi" && (std::find(std::begin(kVariables), std::end(kVariables), n) != std::end(kVariables) || gives(*b.surface, n))) outputs.push_back(n);
+    std::set<std::string> asked;
+    if (path_) asked.insert(world_.lightMessages_.begin(), world_.lightMessages_.end()); // lighting shadeops: lights run when the surface's kernel is done
+    const bool all = b.atmosphere && questions(b.atmosphereS, "surface", asked);
+    for (const auto& p : b.surface->program->parameters())
+        if (p.output && (all || asked.count(p.name))) outputs.push_back("param:" + p.name);
     return outputs;
 }
 
+bool SurfaceBinder::questions(const BoundKernel& k, const char* op, std::set<std::string>& names) {
+    bool any = false;
+    for (const SiteInfo& s : k.sites) {
+        if (s.site->op != op) continue;
+        const std::string name = s.site->strings.empty() ? "" : s.site->strings[0];
+        if (name.empty()) any = true; // made when the shader runs
+        else names.insert(name);
+    }
+    return any;
+}
+
+void SurfaceBinder::hearDisplacement(SurfaceBinding& b, const Names& varying, const Names& displacementVarying) {
+    if (!b.displacement || b.displacementS.kernel->facts().suspends) return;
+    std::set<std::string> asked;
+    const bool all = questions(b.surfaceS, "displacement", asked) | (b.atmosphere && questions(b.atmosphereS, "displacement", asked));
+    Names outputs;
+    auto told = std::make_shared<ShaderInstance>(*b.surface);
+    for (const auto& p : b.displacement->program->parameters()) {
+        if (!p.output || (!all && !asked.count(p.name))) continue;
+        outputs.push_back("param:" + p.name);
+        if (p.type.array == 0 && p.type.base != rsl::Base::String && p.type.base != rsl::Base::Matrix)
+            outputs.insert(outputs.end(), {"Du:param:" + p.name, "Dv:param:" + p.name});
+        // Kind of an element, how many, and whether points differ: the surface's kernel takes it as an input, with its derivatives.
+        int length = p.type.array ? std::max(1, p.type.array) : 0;
+        const auto& given = b.displacement->parameters.strings;
+        if (const auto open = given.find(p.name + "[]"); p.open && open != given.end()) length = std::atoi(open->second.c_str());
+        told->parameters.strings["displacement:" + p.name] = std::to_string(int(Told::kindOf(p.type.base))) + " " + std::to_string(length) + " " +
+                                                             std::to_string(int(p.storage == rsl::Storage::Varying));
+    }
+    if (outputs.empty()) return;
+    bindDisplacement(b, displacementVarying, outputs);
+    b.displacementTells = b.displacement != nullptr;
+    if (!b.displacementTells) return;
+    InstanceRef& known = told_[{b.surface.get(), b.displacement.get()}];
+    if (!known) known = told;
+    b.surface = known;
+    asked_.pop_back();
+    bindSurface(b, varying);
+}
+
 bool SurfaceBinder::bindSurface(SurfaceBinding& b, Names varying) {
-    Names outputs = outputsOf(*b.surface);
+    Names outputs = outputsOf(b);
     b.surfaceS = world_.kernel(*b.surface, outputs, varying, false, path_, diagnostics_);
     if (!b.surfaceS) { // an error was reported: the default surface stands in
         b.surface = fallback_;
@@ -162,7 +202,7 @@ bool SurfaceBinder::bindSurface(SurfaceBinding& b, Names varying) {
     }
     if (!b.surfaceS) return false;
     for (const auto& in : b.surfaceS.kernel->inputs()) b.usesObjectSpace |= in.name.find("object") != std::string::npos && in.name.rfind("space:", 0) == 0;
-    asked_.push_back({std::move(outputs), std::move(varying)});
+    asked_.push_back({std::move(outputs), std::move(varying), {}});
     return true;
 }
 
@@ -182,7 +222,10 @@ bool SurfaceBinder::bindMixed() {
 
 void SurfaceBinder::bindAtmosphere(SurfaceBinding& b, const Names& varying) {
     if (!b.atmosphere) return;
-    b.atmosphereS = world_.kernel(*b.atmosphere, {"Ci", "Oi", "slope:Ci"}, varying, false, false, diagnostics_);
+    Names outputs{"Ci", "Oi", "slope:Ci"};
+    for (const auto& n : world_.settings_.outputs)
+        if (n != "Ci" && n != "Oi" && gives(*b.atmosphere, n)) outputs.push_back(n);
+    b.atmosphereS = world_.kernel(*b.atmosphere, outputs, varying, false, false, diagnostics_);
     const std::string name = "\"" + b.atmosphere->name + "\"";
     if (!b.atmosphereS) {
         b.atmosphere = nullptr;
@@ -196,13 +239,11 @@ void SurfaceBinder::bindAtmosphere(SurfaceBinding& b, const Names& varying) {
     }
 }
 
-void SurfaceBinder::bindDisplacement(SurfaceBinding& b, const Names& varying) {
-    if (!b.displacement) {
-        b.moveS = world_.movingKernel(*b.surface, b.surfaceS, asked_.back().varying, diagnostics_);
-        return;
-    }
+void SurfaceBinder::bindDisplacement(SurfaceBinding& b, const Names& varying, const Names& more) {
+    if (!b.displacement) return;
     // The derivatives are for the surface shader: bumps on top of the displacement.
-    const Names outputs{"P", "N", "Du:P", "Dv:P", "Du:N", "Dv:N"};
+    Names outputs{"P", "N", "Du:P", "Dv:P", "Du:N", "Dv:N"};
+    outputs.insert(outputs.end(), more.begin(), more.end());
     b.displacementS = world_.kernel(*b.displacement, outputs, varying, false, false, diagnostics_);
     bool object = false;
     if (b.displacementS)
@@ -270,4 +311,5 @@ Opacity WorldImpl::opacityOf(const SurfaceBinding& b, const geometry::Shape& sha
     for (int i = 0; i < 3; ++i) result.constant[i] = std::isfinite(o[i]) ? std::clamp(o[i], 0.f, 1.f) : 1;
     return result;
 }
+
 } // namespace alpenglow::transport

@@ -4,6 +4,8 @@
 
 namespace alpenglow::transport {
 
+/// Whether a shader or its co-shaders give an output of that name ("list[1]" is an element of "list").
+bool gives(const ShaderInstance&, const std::string& output);
 /// The first number of an attribute, or `fallback` where it is not set.
 float attributeNumber(const scene::Attributes&, const std::string& key, float fallback);
 
@@ -20,11 +22,16 @@ private:
     /// The primitive variables that override parameters of a shader or that getvar(null, ...) finds; sorted.
     static Names varyingOf(const geometry::Shape&, const ShaderInstance&);
     int bind(const geometry::ShapeRef&);
-    Names outputsOf(const ShaderInstance&) const;
+    Names outputsOf(const SurfaceBinding&) const;
+    /// Adds the names that a kernel asks for by `op` ("surface", "displacement"). True when some are made only when it runs.
+    static bool questions(const BoundKernel&, const char* op, std::set<std::string>& names);
+    /// Where the surface or the atmosphere asks for outputs of the displacement shader: kernels that give and take them.
+    void hearDisplacement(SurfaceBinding&, const Names& varying, const Names& displacementVarying);
     /// False when not even the default surface could be compiled.
     bool bindSurface(SurfaceBinding&, Names varying);
     void bindAtmosphere(SurfaceBinding&, const Names& varying);
-    void bindDisplacement(SurfaceBinding&, const Names& varying);
+    /// `more`: outputs besides P, N and their derivatives.
+    void bindDisplacement(SurfaceBinding&, const Names& varying, const Names& more);
     void bindLights(SurfaceBinding&, const scene::Attributes&);
     /// Batches of several bindings, or of points that see different spaces, need kernels whose uniform inputs come in lanes.
     bool bindMixed();
@@ -37,6 +44,7 @@ private:
     bool path_ = false;
     InstanceRef fallback_;
     std::map<std::pair<const scene::ShaderCall*, int>, InstanceRef> instances_;
+    std::map<std::pair<const void*, const void*>, InstanceRef> told_; ///< surfaces that know the outputs of a displacement; by both
     std::map<std::string, int> bindingByKey_;
     std::map<std::vector<const void*>, int> programs_;
     std::map<std::vector<int>, int> lightLists_;

@@ -83,11 +83,6 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     if (const char* e = std::getenv("ALPENGLOW_SHADERS"))
         for (auto& path : splitSearchPath(e)) w->settings_.shaderPaths.push_back(path);
     w->settings_.shaderPaths.push_back(shippedShaders());
-    for (const std::string& name : settings.outputs) {
-        bool scalar = name == "z" || name == "u" || name == "v" || name == "s" || name == "t" || name == "alpha" || name == "du" || name == "dv" || name == "time";
-        w->outputWidths_.push_back(scalar ? 1 : 3);
-    }
-
     w->shapes_ = geometry::buildShapes(*frame, d);
     w->clippingPlanes_ = o.clippingPlanes;
     w->clipNear_ = o.clipNear;
@@ -96,6 +91,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     w->bindLights(d, [all](const geometry::Shape& s) { return visibilityOf(s.attributes(), all); });
     Engine engine(std::shared_ptr<const WorldImpl>(std::shared_ptr<const WorldImpl>{}, w.get()), d); // runs kernels while the world is made
     if (!SurfaceBinder(*w, engine, d).bindAll()) return nullptr;
+    w->measureOutputs();
     w->diceShapes(d); // with displacement, by the same kernels that shade
     std::vector<uint32_t> visibility;
     for (const auto& shape : w->shapes_) visibility.push_back(visibilityOf(shape->attributes(), all));

@@ -60,7 +60,7 @@ struct TraceSite {
 /// What a call site of a kernel means to the engine, worked out once per kernel.
 enum class SiteKind : uint8_t {
     Unknown, Ambient, Diffuse, Specular, Phong, Trace, Transmission, LightVisibility, ///< requests
-    Illuminance, Texture, Environment, Printf, Message, LightSource, Attribute, Option, RendererInfo, RayInfo, RayLevel, TextureInfo, LightSetup, LightHandles, Text, Other
+    Illuminance, Texture, Environment, Printf, Message, LightSource, Attribute, Option, RendererInfo, RayInfo, RayLevel, TextureInfo, LightSetup, LightHandles, PrimitiveVariable, ShaderName, Text, Other
 };
 struct SiteInfo {
     SiteKind kind = SiteKind::Unknown;
@@ -80,6 +80,9 @@ struct SiteInfo {
     std::vector<Output> outputs;
     int32_t label = 0;                         ///< of its rays: interned, for rayinfo()
 };
+
+/// How many rows the argument of a call has that begins at `row`.
+size_t rowsOf(const SiteInfo&, int row);
 
 /// A kernel and the meaning of its sites.
 struct BoundKernel {
@@ -151,6 +154,7 @@ struct SurfaceBinding {
     BoundKernel surfaceS;
     BoundKernel surfaceV;                      ///< only where batches of the scene need it: several bindings, or different spaces
     BoundKernel atmosphereS, displacementS;
+    bool displacementTells = false;            ///< displacementS gives the outputs of its shader, for those who ask by displacement()
     BoundKernel moveS;                         ///< P as the surface shader leaves it, where that displaces the primitive (no displacement shader)
     std::vector<int> lights;                   ///< indices into lights
     int group = 0;                             ///< equal: same program and light list, so that points are shaded in one batch
@@ -187,7 +191,9 @@ public:
 
     InstanceRef instance(const scene::ShaderCall&, rsl::ShaderKind, Diagnostics&, bool anyKind = false);
     /// A shader that uses co-shaders, with those that these attributes have; any other as it is.
-    InstanceRef withCoShaders(const InstanceRef&, const scene::Attributes&, Diagnostics&);
+    InstanceRef withCoShaders(const InstanceRef&, const std::map<std::string, scene::ShaderRef>& coshaders, Diagnostics&);
+    /// Fills outputWidths_: how many numbers each AOV has in the shaders of the frame.
+    void measureOutputs();
     InstanceRef builtin(const std::string& name, rsl::ShaderKind, Diagnostics&);
     rsl::KernelOptions kernelOptions(const ShaderInstance&, const std::vector<std::string>& outputs, const std::vector<std::string>& varying, bool mixed,
                                      bool path) const;
@@ -234,7 +240,7 @@ public:
     Diagnostics* diagnostics_ = nullptr;
     mutable rsl::PrintLog prints_;
     mutable std::mutex imagerMutex_;
-    std::vector<std::string> lightMessages_;   ///< parameters of surfaces that light shaders ask for, sorted
+    std::vector<std::string> lightMessages_;   ///< parameters of surfaces that lights and atmospheres ask for, sorted
     int maxDepth_ = 32;
     bool lightChannels_ = false;               ///< lights give AOVs by outputchannel()
     bool footprints_ = false;                  ///< some kernel reads du or dv

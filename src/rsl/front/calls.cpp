@@ -47,6 +47,7 @@ int Checker::argumentCost(Expr& argument, const ParameterView& parameter, bool i
     if (output && !isVariable(argument) && !ignoreOutputs) return kNever;
     if (wanted.base == Base::Void) return info.listLength >= 0 ? kNever : 0; // any value
     if (wanted.array != 0) {
+        if (argument.kind == ExprKind::Member && !output) return 1;
         if (info.listLength >= 0 && !output) {
             if (wanted.array > 0 && info.listLength > wanted.array) return kNever;
             int cost = 0;
@@ -214,9 +215,13 @@ void Checker::bestByArguments(std::vector<Choice>& choices) {
 }
 
 /// The other way about: an array is wanted.
-void Checker::preferArray(const Expr& e) {
+void Checker::preferArray(const Expr& e, Type wanted) {
     Info& info = infos_.at(&e);
     if (info.array.array || info.any) return;
+    if (e.kind == ExprKind::Member) { // of another shader: how long it is is known when that is bound
+        info.array = {wanted.base, -1};
+        info.cost.fill(kNever);
+    }
     for (const Choice& c : info.choices)
         if (c.result.array) {
             info.array = c.result;

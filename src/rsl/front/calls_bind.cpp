@@ -36,6 +36,8 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
         std::string name = e.args[0]->text;
         if (name.rfind("light:", 0) == 0 || name.rfind("local:", 0) == 0) name.erase(0, 6);
         program_.channels.emplace(name, e.args[1]->type);
+    } else if (op.name == "outputchannel" || op.name == "writeaov") { // under any name that displays ask for
+        program_.channels.emplace("?" + toString(e.args[1]->type), e.args[1]->type);
     }
     if (op.name == "getvar" && e.args[1]->kind == ExprKind::String)
         program_.primitiveVariables.emplace(e.args[1]->text, e.args.size() > 2 ? e.args[2]->type : Type{});

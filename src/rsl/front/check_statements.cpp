@@ -40,7 +40,7 @@ void Checker::initialise(Symbol& s, ExprPtr& value) {
     const int errors = sources_.errors();
     infos_.clear();
     const Info& info = survey(*value);
-    if (s.type.array) preferArray(*value);
+    if (s.type.array) preferArray(*value, s.type);
     if (s.type.array == -1 && info.listLength >= 0) s.type.array = std::max(1, info.listLength);
     if (s.type.array == -1 && info.array.array > 0) s.type.array = info.array.array;
     if (s.type.array == -1 && info.listLength < 0 && info.array.array == 0 && !info.any &&

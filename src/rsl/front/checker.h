@@ -87,7 +87,7 @@ private:
     bool match(const std::vector<ParameterView>&, bool repeats, bool pairs, Expr& call, Choice&, bool ignoreOutputs);
     int argumentCost(Expr& argument, const ParameterView& wanted, bool ignoreOutputs);
     static void bestByArguments(std::vector<Choice>&);
-    void preferArray(const Expr& call);
+    void preferArray(const Expr&, Type wanted);
     void noMatch(Expr& call, const std::vector<std::string>& candidates, std::vector<std::string> notes, bool outputsOnly);
     /// Why these parameters do not fit the call, in words; "" when they do.
     std::string whyNot(const std::vector<ParameterView>&, bool repeats, bool pairs, Expr& call);

@@ -138,6 +138,11 @@ void Checker::settleArray(ExprPtr& e, Type want, Handle handle) {
         finish(*e);
         return;
     }
+    if (e->kind == ExprKind::Member) {
+        settleAs(e, want.base);
+        e->type = {want.base, -1};
+        return;
+    }
     const Type have = info.array;
     const bool mixed = want.base == Base::String && !alike(info.handle, handle);
     if (have.base != want.base || mixed || have.array == 0 || (want.array > 0 && have.array > 0 && have.array != want.array)) {
@@ -187,6 +192,10 @@ void Checker::settleAs(ExprPtr& e, Base t) {
         settleCheapest(e->args[0]);
         settle(e->args[1], {Base::Float, 0});
         e->type = {t, 0};
+        if (e->args[0]->kind == ExprKind::Member) {
+            e->varying = true;
+            return;
+        }
         break;
     case ExprKind::Unary:
         if (e->op == ExprOp::Not) settleCondition(e->args[0]);

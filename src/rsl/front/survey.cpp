@@ -174,9 +174,15 @@ void Checker::surveyIndex(Expr& e, Info& info) {
     const Info& base = survey(*e.args[0]);
     const Info& index = survey(*e.args[1]);
     if (base.any) { info.any = true; return; }
+    const bool ofHandle = e.args[0]->kind == ExprKind::Member; // an element of an array or a component: what is wanted
     if (costTo(index, Base::Float) >= kNever) {
         sources_.error(e.args[1]->place, "an index must be a float, not " + describe(*e.args[1]));
         info.any = true;
+        return;
+    }
+    if (ofHandle) {
+        info.cost = base.cost;
+        info.handle = Handle::Either;
         return;
     }
     if (base.array.array) {
@@ -250,7 +256,7 @@ void Checker::surveyAssign(Expr& e, Info& info) {
     }
     if (l.any || r.any) { info.any = true; return; }
     if (l.array.array) {
-        preferArray(*e.args[1]);
+        preferArray(*e.args[1], l.array);
         const bool fits = r.listLength >= 0 ? l.array.array < 0 || r.listLength <= l.array.array
                                             : r.array.base == l.array.base && r.array.array != 0 &&
                                                   (r.array.array == l.array.array || r.array.array < 0 || l.array.array < 0);

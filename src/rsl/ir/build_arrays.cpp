@@ -152,7 +152,7 @@ void Builder::copyResizable(Inst* to, const Expr& from) {
     if (from.kind == ExprKind::ArrayList) {
         const int n = from.text == "{}" ? 0 : std::min(static_cast<int>(from.args.size()), to->index);
         setLength(constant(static_cast<float>(n)));
-    } else if (from.kind == ExprKind::Variable || from.kind == ExprKind::Cast || returnsArray(from)) {
+    } else if (from.kind == ExprKind::Variable || from.kind == ExprKind::Cast || from.kind == ExprKind::Member || returnsArray(from)) {
         Inst* a = array(from);
         if (a == to) return;
         Inst* n = lengthOf(a);

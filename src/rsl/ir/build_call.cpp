@@ -259,24 +259,31 @@ Inst* Builder::special(const Expr& e) {
     if (n == "mtransform") return transformCall(e);
     if (n == "outputchannel") return outputChannel(e);
     if (n == "gridmin" || n == "gridmax") return gridBound(e, n == "gridmin" ? -0.5f : 0.5f);
-    if (n == "arraylength") return lengthOf(array(*e.args[0]));
+    if (n == "arraylength") return e.args[0]->kind == ExprKind::Member ? memberLength(*e.args[0]) : lengthOf(array(*e.args[0]));
     if (n == "resize" || n == "reserve" || n == "push" || n == "pop" || n == "capacity") return resizing(e);
     return unavailable(e);
 }
 
-/// Whether a display asks for an output: of a variable, or by its name; of an array also by element.
+/// Whether a display asks for an output: of a variable, or by its name; for an array also where it asks for one of the elements.
 Inst* Builder::isOutput(const Expr& e) {
     const Expr& a = *e.args[0];
+    const auto parameter = [](const Expr& x) {
+        return x.kind == ExprKind::Variable && x.symbol && x.symbol->origin == Symbol::Origin::ShaderParameter && x.symbol->output;
+    };
     std::string name;
-    if (a.kind == ExprKind::Variable && a.symbol && a.symbol->origin == Symbol::Origin::ShaderParameter && a.symbol->output)
-        name = a.symbol->name;
-    else if (Inst* v = a.type == Type{Base::String, 0} ? expr(a) : nullptr; v && v->op == Op::ConstString)
-        name = v->text.substr(0, v->text.find('['));
-    const auto& wanted = options_.outputs;
+    if (parameter(a)) name = a.symbol->name;
+    else if (a.kind == ExprKind::Index && parameter(*a.args[0]) && a.args[0]->type.array) { // an element: which, if that is known
+        Inst* at = expr(*a.args[1], Kind::Float);
+        name = a.args[0]->symbol->name + (isConst(at) ? "[" + std::to_string(static_cast<int>(at->numbers[0])) + "]" : "");
+    } else if (Inst* v = a.type == Type{Base::String, 0} ? expr(a) : nullptr; v && v->op == Op::ConstString) name = v->text;
+    const std::string base = name.substr(0, name.find('['));
     const bool declared = std::any_of(shader_.parameters.begin(), shader_.parameters.end(),
-                                      [&](const ShaderParameter& p) { return p.symbol->output && p.symbol->name == name; });
-    const bool known = declared || hasGlobal(name.c_str()) || channels_.count(name);
-    return constant(known && std::find(wanted.begin(), wanted.end(), name) != wanted.end() ? 1.0f : 0.0f);
+                                      [&](const ShaderParameter& p) { return p.symbol->output && p.symbol->name == base; });
+    const bool known = declared || hasGlobal(base.c_str()) || channels_.count(base);
+    const bool wanted = std::any_of(options_.outputs.begin(), options_.outputs.end(), [&](const std::string& o) {
+        return o == name || o == base || (name == base && o.rfind(base + "[", 0) == 0);
+    });
+    return constant(known && wanted ? 1.0f : 0.0f);
 }
 
 /// A hit is a grid of one point (design decision 6): the value, and half of what it changes over the footprint below or above it.

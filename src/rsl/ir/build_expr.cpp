@@ -100,6 +100,7 @@ Inst* Builder::array(const Expr& e) {
         return v;
     }
     if (e.kind == ExprKind::Cast && !e.args.empty() && e.args[0]->type.array) return array(*e.args[0]);
+    if (e.kind == ExprKind::Member) return memberArray(e);
     if (returnsArray(e)) {
         std::vector<const Expr*> args;
         for (const ExprPtr& a : e.args) args.push_back(a.get());
@@ -156,7 +157,7 @@ void Builder::copyArray(Inst* to, const Expr& from) {
         return;
     }
     if (from.kind == ExprKind::ShadeopCall && from.shadeop) unavailable(from); // its results stay zero
-    if (from.kind != ExprKind::Variable && from.kind != ExprKind::Cast && !returnsArray(from)) return;
+    if (from.kind != ExprKind::Variable && from.kind != ExprKind::Cast && from.kind != ExprKind::Member && !returnsArray(from)) return;
     Inst* a = array(from);
     if (a == to) return;
     const int m = std::min(n, arrayLength(a));
@@ -310,6 +311,7 @@ Inst* Builder::expr(const Expr& e) {
         return e.symbol ? get(slot(e.symbol)) : zero(kindOf(e.type));
     case ExprKind::Index: {
         const Expr& base = *e.args[0];
+        if (base.kind == ExprKind::Member) return memberElement(e);
         if (base.type.array) {
             Inst* a = array(base);
             Inst* at = expr(*e.args[1], Kind::Float);

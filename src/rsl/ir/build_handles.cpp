@@ -311,15 +311,30 @@ Inst* Builder::memberAccess(const Expr& e) {
     }, [&](Inst* handle) { return lightMember(handle, e.text, kind, nullptr); });
 }
 
+namespace {
+bool among(const std::string& name, std::initializer_list<const char*> names) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+} // namespace
+
 /// getvar(null, name [, variable]): of the primitive. `to` may be null.
 Inst* Builder::primitiveVariable(const std::string& name, const Expr* to) {
+    if (shader_.kind == ShaderKind::Light || shader_.kind == ShaderKind::Imager || (to && (to->type.array || to->type.base == Base::String)))
+        return askPrimitive(leaves_.string(name), to);
     const auto& there = options_.varyingParameters;
-    if (std::find(there.begin(), there.end(), name) == there.end()) return constant(0);
+    if (std::find(there.begin(), there.end(), name) == there.end()) {
+        // What every primitive has, as it comes to the shader, with its derivatives.
+        const bool triple = among(name, {"P", "N", "Cs", "Os"});
+        if (!triple && !among(name, {"s", "t"})) return askPrimitive(leaves_.string(name), to);
+        if (!to) return constant(1);
+        if (kindOf(to->type) != (triple ? Kind::Triple : Kind::Float)) return constant(0);
+        assign(*to, input(name, to->type, false));
+        return constant(1);
+    }
     if (!to) return constant(1);
     const Type wanted = to->type;
     for (const ShaderParameter& p : shader_.parameters)
         if (p.symbol->name == name && p.symbol->type != wanted) return constant(0);
-    if (wanted.array || wanted.base == Base::String) return constant(0);
     // The scene knows one type for it: that of the first who asks, the shader before its co-shaders.
     const auto asked = [&](const Program& p) {
         const auto found = p.primitiveVariables.find(name);
@@ -336,8 +351,7 @@ Inst* Builder::readPrimitiveVariable(const Expr& e) {
     Inst* name = expr(*e.args[0]);
     place_ = e.place;
     if (name->op == Op::ConstString) return primitiveVariable(name->text, e.args[1].get());
-    warn(e.place, "readprimvar() needs a name that is known when the shader is compiled; it finds nothing");
-    return constant(0);
+    return askPrimitive(name, e.args[1].get());
 }
 
 /// Whether the shader of a handle has a public method of that name, with any parameters.
@@ -367,27 +381,140 @@ Inst* Builder::hasMethod(const Expr& e) {
                      });
 }
 
+/// Copies an array of another shader. False, and nothing is done, where it is of another type or does not fill the variable.
+bool Builder::takeArray(const Expr& to, Inst* from) {
+    Inst* a = array(to);
+    if (a->op != Op::ArrayNew || from->kind != Kind::Array || from->element != a->element) return false;
+    if (const Lengths* l = lengths(a)) {
+        const Lengths slots = *l;
+        Inst* n = limitLength(a, lengthOf(from));
+        set(slots.length, n);
+        set(slots.reserved, runtime1("al_max_f", {get(slots.reserved), n}, Kind::Float));
+    } else if (arrayLength(from) < arrayLength(a)) {
+        return false;
+    }
+    const int storage = lengths(from) ? from->index : arrayLength(from);
+    for (int n = 0; n < std::min(lengths(a) ? a->index : arrayLength(a), storage); ++n) {
+        Inst* at = constant(static_cast<float>(n));
+        emit(Op::ArrayStore, Kind::None, {a, at, emit(Op::ArrayLoad, a->element, {from, at})});
+    }
+    return true;
+}
+
+/// handle->tab as a whole: a copy, empty of null.
+Inst* Builder::memberArray(const Expr& e) {
+    int room = 1;
+    for (size_t i = 0; i < instances_.size(); ++i)
+        if (const Symbol* s = memberOf(i, e.text); s && s->type.array)
+            if (Inst* v = memberValue(i, *s); v->kind == Kind::Array) room = std::max(room, lengths(v) ? v->index : arrayLength(v));
+    Inst* a = newResizable(e.type.base, room);
+    const Lengths l = *lengths(a);
+    set(l.length, constant(0));
+    set(l.reserved, constant(0));
+    forHandle(*e.args[0], Kind::Float, [&](size_t i) -> Inst* {
+        const Symbol* s = memberOf(i, e.text);
+        Inst* from = s && s->type.array ? memberValue(i, *s) : nullptr;
+        if (!from || from->kind != Kind::Array || from->element != a->element) {
+            const CoShader& c = *instances_[i].binding;
+            error(e.place, "co-shader '" + c.handle + "' (" + c.shader->name + ") " +
+                               (s ? "has '" + e.text + "' as " + toString(s->type) + ", not an array of " + toString(e.type.element()) : "has no public member '" + e.text + "'"));
+            return constant(0);
+        }
+        set(l.length, lengthOf(from));
+        set(l.reserved, lengthOf(from));
+        for (int n = 0; n < std::min(a->index, lengths(from) ? from->index : arrayLength(from)); ++n) {
+            Inst* at = constant(static_cast<float>(n));
+            emit(Op::ArrayStore, Kind::None, {a, at, emit(Op::ArrayLoad, a->element, {from, at})});
+        }
+        return constant(1);
+    }, [&](Inst* handle) -> Inst* { // a light
+        Site s;
+        s.op = "lightparameter";
+        s.place = place_;
+        s.strings = {e.text};
+        s.resultKinds = {Kind::Float, Kind::Float};
+        s.resultNames = {"", "length value"};
+        s.resultType = {Base::Float, 0};
+        for (int n = 0; n < a->index; ++n) {
+            s.resultKinds.push_back(a->element);
+            s.resultNames.push_back("value[" + std::to_string(n) + "]");
+        }
+        std::vector<Inst*> args;
+        addArgument(s, args, handle, {Base::String, 0});
+        const std::vector<Inst*> v = call(Op::Service, std::move(s), std::move(args));
+        Inst* n = limitLength(a, v[1]);
+        set(l.length, n);
+        set(l.reserved, n);
+        for (int k = 0; k < a->index; ++k) emit(Op::ArrayStore, Kind::None, {a, constant(static_cast<float>(k)), v[static_cast<size_t>(k) + 2]});
+        return v[0];
+    });
+    return a;
+}
+
+/// The length of handle->tab, of any type; 0 of null.
+Inst* Builder::memberLength(const Expr& e) {
+    return forHandle(*e.args[0], Kind::Float, [&](size_t i) -> Inst* {
+        const Symbol* s = memberOf(i, e.text);
+        if (s && s->type.array)
+            if (Inst* v = memberValue(i, *s); v->kind == Kind::Array) return lengthOf(v);
+        const CoShader& c = *instances_[i].binding;
+        error(e.place, "co-shader '" + c.handle + "' (" + c.shader->name + ") has no public array '" + e.text + "'");
+        return constant(0);
+    });
+}
+
+/// handle->tab[i]: an element of an array, or a component of a tuple.
+Inst* Builder::memberElement(const Expr& e) {
+    const Expr& member = *e.args[0];
+    const Kind kind = kindOf(e.type);
+    Inst* at = expr(*e.args[1], Kind::Float);
+    place_ = e.place;
+    return forHandle(*member.args[0], kind, [&](size_t i) -> Inst* {
+        const CoShader& c = *instances_[i].binding;
+        const Symbol* s = memberOf(i, member.text);
+        Inst* v = s ? memberValue(i, *s) : nullptr;
+        if (v && v->kind == Kind::Array && (v->element == kind || (v->element == Kind::Float && kind == Kind::Triple)))
+            return emit(Op::ArrayLoad, v->element, {v, elementOf(v, at)});
+        if (v && v->kind == Kind::Triple && kind != Kind::String && kind != Kind::Matrix) {
+            const auto part = [&](int n) { return emit(Op::Extract, Kind::Float, {v}, n); };
+            Inst* low = emit(Op::Select, Kind::Float, {emit(Op::LessEqual, Kind::Bool, {constant(1), at}), part(1), part(0)});
+            return emit(Op::Select, Kind::Float, {emit(Op::LessEqual, Kind::Bool, {constant(2), at}), part(2), low});
+        }
+        error(e.place, "co-shader '" + c.handle + "' (" + c.shader->name + ") " +
+                           (s ? "has '" + member.text + "' as " + toString(s->type) + ", which has no element of type " + toString(e.type)
+                              : "has no public member '" + member.text + "'"));
+        return zero(kind);
+    }, [&](Inst* handle) { return isConst(at) ? lightMember(handle, member.text + "[" + std::to_string(static_cast<int>(at->numbers[0])) + "]", kind, nullptr) : zero(kind); });
+}
+
 /// getvar(handle, name [, variable]): 1 when there is such a member.
 Inst* Builder::getVariable(const Expr& e) {
     Inst* name = expr(*e.args[1]);
     place_ = e.place;
+    Inst* handle = expr(*e.args[0]);
+    const Expr* to = e.args.size() > 2 ? e.args[2].get() : nullptr;
+    const bool null = handle->op == Op::ConstString && handle->text.empty();
+    if (null) return name->op == Op::ConstString ? primitiveVariable(name->text, to) : askPrimitive(name, to);
     if (name->op != Op::ConstString) {
         warn(e.place, "getvar() needs a name that is known when the shader is compiled; it finds nothing");
         return constant(0);
     }
-    Inst* handle = expr(*e.args[0]);
-    if (handle->op == Op::ConstString && handle->text.empty()) return primitiveVariable(name->text, e.args.size() > 2 ? e.args[2].get() : nullptr);
     return forHandle(*e.args[0], Kind::Float, [&](size_t i) -> Inst* {
         const Symbol* s = memberOf(i, name->text);
-        if (!s || s->type.array) return constant(0);
-        if (e.args.size() > 2) {
-            if (kindOf(s->type) != kindOf(e.args[2]->type)) return constant(0);
-            assign(*e.args[2], memberValue(i, *s));
+        if (!s) return constant(0);
+        if (!to) return constant(1);
+        if ((s->type.array != 0) != (to->type.array != 0) || kindOf(s->type.element()) != kindOf(to->type.element())) return constant(0);
+        const bool varying = s->origin == Symbol::Origin::ShaderParameter && s->storage == Storage::Varying;
+        if (varying && to->symbol && to->symbol->storage == Storage::Uniform) { // a varying parameter does not become a uniform variable, as in messages
+            warn(e.place, "getvar(): parameter '" + name->text + "' of '" + instances_[i].binding->shader->name +
+                              "' is varying and the variable is uniform: nothing is assigned, and the result is 0");
+            return constant(0);
         }
+        if (s->type.array) return constant(takeArray(*to, memberValue(i, *s)) ? 1.0f : 0.0f);
+        assign(*to, memberValue(i, *s));
         return constant(1);
-    }, [&](Inst* handle) -> Inst* {
-        if (e.args.size() > 2 && !e.args[2]->type.array) return lightMember(handle, name->text, kindOf(e.args[2]->type), e.args[2].get());
-        return constant(0);
+    }, [&](Inst* light) -> Inst* {
+        return lightMember(light, name->text, to ? kindOf(to->type.element()) : Kind::Float, to);
     });
 }
 

@@ -65,13 +65,15 @@ Inst* Builder::lightMember(Inst* handle, const std::string& name, Kind kind, con
     std::vector<Inst*> args;
     addArgument(s, args, handle, {Base::String, 0});
     s.strings = {name};
-    s.resultKinds = {Kind::Float, kind};
-    s.resultNames = {"", "value"};
+    s.resultKinds = {Kind::Float};
+    s.resultNames = {""};
     s.resultType = {Base::Float, 0};
+    Receiver r;
+    if (to) r = receiver(s, *to, "value");
+    else s.resultKinds.push_back(kind), s.resultNames.push_back("value");
     const std::vector<Inst*> v = call(Op::Service, std::move(s), std::move(args));
     if (!to) return v[1];
-    Inst* found = emit(Op::NotEqual, Kind::Bool, {v[0], constant(0)});
-    assign(*to, emit(Op::Select, kind, {found, v[1], coerce(expr(*to), kind)}));
+    receive(r, std::span(v).subspan(1), emit(Op::NotEqual, Kind::Bool, {v[0], constant(0)}));
     return v[0];
 }
 

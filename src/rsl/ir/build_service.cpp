@@ -3,6 +3,7 @@
 #include "base/limits.h"
 #include <algorithm>
 #include <cstdio>
+#include <set>
 
 namespace alpenglow::rsl::ir {
 
@@ -91,12 +92,18 @@ Inst* Builder::service(const Expr& e, Op kind, int part) {
         int at = 0; ///< the first element of an array
     };
     std::vector<Out> outs;
+    std::vector<std::pair<Receiver, int>> received; ///< of messages, with their first results
     const Kind whole = parted ? kindOf(sig.result.element()) : sig.result.array ? Kind::None : kindOf(sig.result);
     if (whole != Kind::None) {
         s.resultKinds.push_back(whole);
         s.resultNames.push_back("");
     }
     const auto output = [&](const Expr& l, const std::string& name) {
+        if (op.section == "Messages" && !parted) {
+            const int first = static_cast<int>(s.resultKinds.size());
+            received.push_back({receiver(s, l, name), first});
+            return;
+        }
         Out o{&l, static_cast<int>(s.resultKinds.size()), 1};
         if (l.type.array && parted) { // the element of this part
             o.at = std::max(part, 0);
@@ -145,6 +152,7 @@ Inst* Builder::service(const Expr& e, Op kind, int part) {
         if (v->op != Op::ConstString || (v->text.empty() && op.section == "Strings")) addArgument(s, args, v, untyped ? typeOfMember(a) : a.type);
     }
     if (Inst* c = foldString(op.name, all)) return c;
+    if (Inst* heard = nullptr; op.name == "displacement" && !all.empty() && all[0]->op == Op::ConstString && heardDisplacement(e, all[0]->text, heard)) return heard;
     place_ = e.place;
     const Type real{Base::Float, 0}, vector{Base::Vector, 0};
     // Footprints: how far the coordinates go from one sample to the next, along u (x) and along v (y).
@@ -216,24 +224,33 @@ Inst* Builder::service(const Expr& e, Op kind, int part) {
         s.names.push_back("__part");
         s.pairStrings.push_back(std::to_string(part));
     }
+    // A uniform variable takes no varying parameter of another shader (transport/services.cpp).
+    const auto isUniform = [](const Expr* l) {
+        while (l->kind == ExprKind::Index && !l->args.empty()) l = l->args[0].get();
+        return l->symbol && l->symbol->storage == Storage::Uniform;
+    };
+    static const std::set<std::string> kShaders = {"surface", "displacement", "atmosphere", "incident", "opposite", "lightsource"};
+    if (kShaders.count(op.name) && !received.empty() && isUniform(received[0].first.to)) {
+        s.names.push_back("__uniform");
+        s.pairStrings.push_back("1");
+    }
     place_ = e.place;
     const bool message = op.section == "Messages" && !s.resultKinds.empty() && s.resultNames[0].empty();
     const std::vector<Inst*> r = call(kind, std::move(s), std::move(args));
-    Inst* found = message && !outs.empty() ? emit(Op::NotEqual, Kind::Bool, {r[0], constant(0)}) : nullptr;
+    Inst* found = message && !received.empty() ? emit(Op::NotEqual, Kind::Bool, {r[0], constant(0)}) : nullptr;
+    for (const auto& [receiver, first] : received) receive(receiver, std::span(r).subspan(static_cast<size_t>(first), static_cast<size_t>(receiver.rows)), found);
     for (const Out& o : outs) {
         if (o.lvalue->type.array) {
             Inst* a = array(*o.lvalue);
             for (int n = 0; n < o.count && a->op == Op::ArrayNew; ++n) {
                 Inst* at = constant(static_cast<float>(o.at + n));
                 Inst* v = r[static_cast<size_t>(o.first + n)];
-                if (found) v = emit(Op::Select, v->kind, {found, v, emit(Op::ArrayLoad, a->element, {a, at})});
                 emit(Op::ArrayStore, Kind::None, {a, at, v});
             }
             continue;
         }
         Inst* v = r[static_cast<size_t>(o.first)];
-        if (found) // a message that does not arrive leaves the variable as it was
-            v = emit(Op::Select, v->kind, {found, v, coerce(expr(*o.lvalue), v->kind)});
+        const Held held(*this, *o.lvalue);
         assign(*o.lvalue, v);
     }
     return whole != Kind::None && !r.empty() ? r[0] : constant(0);

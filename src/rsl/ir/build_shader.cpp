@@ -149,7 +149,15 @@ bool Builder::buildShader() {
     place_ = shader_.place;
 
     const auto output = [&](const std::string& name, Inst* value, Type type) {
-        if (value->kind == Kind::Array) return;
+        if (value->kind == Kind::Array) {
+            const int n = lengths(value) ? value->index : given_.count(value) ? given_.at(value) : arrayLength(value);
+            for (int e = 0; e < n; ++e) {
+                Inst* v = emit(Op::ArrayLoad, value->element, {value, constant(static_cast<float>(e))});
+                k_.outputs.push_back({name + "[" + std::to_string(e) + "]", v->kind, type.element()});
+                emit(Op::Output, Kind::None, {v}, static_cast<int>(k_.outputs.size()) - 1);
+            }
+            return;
+        }
         k_.outputs.push_back({name, value->kind, type});
         emit(Op::Output, Kind::None, {value}, static_cast<int>(k_.outputs.size()) - 1);
     };
@@ -206,6 +214,21 @@ bool Builder::buildShader() {
             if (found) continue;
         }
         bool found = false;
+        // "list[1]", "param:list[1]": an element. "Du:param:x", "Dv:param:x": how a parameter changes with u and v.
+        if (name.back() == ']') {
+            const std::string whole = name.substr(0, name.find('[')), plain = whole.rfind("param:", 0) == 0 ? whole.substr(6) : whole;
+            Inst* list = nullptr;
+            for (const ShaderParameter& p : shader_.parameters)
+                if (p.symbol->name == plain && p.symbol->type.array && (p.symbol->output || plain != whole)) list = get(slot(p.symbol));
+            if (const auto* c = channelNamed(plain); !list && c && c->second.array) list = get(c->first);
+            const int at = std::atoi(name.c_str() + whole.size() + 1), length = !list ? 0 : lengths(list) ? list->index : arrayLength(list);
+            if (at >= 0 && at < length) output(name, emit(Op::ArrayLoad, list->element, {list, constant(static_cast<float>(at))}), {Base::Float, 0});
+            continue;
+        }
+        for (const ShaderParameter& p : shader_.parameters)
+            for (const Op d : {Op::Du, Op::Dv})
+                if (name == (d == Op::Du ? "Du:param:" : "Dv:param:") + p.symbol->name)
+                    if (Inst* v = get(slot(p.symbol)); v->kind == Kind::Float || v->kind == Kind::Triple) output(name, emit(d, v->kind, {v}), p.symbol->type), found = true;
         for (const ShaderParameter& p : shader_.parameters)
             if (name == "param:" + p.symbol->name || (p.symbol->output && name == p.symbol->name)) {
                 output(name, get(slot(p.symbol)), p.symbol->type);
@@ -213,8 +236,8 @@ bool Builder::buildShader() {
                 break;
             }
         if (found) continue;
-        if (const auto c = channels_.find(name); c != channels_.end() && !hasGlobal(name.c_str())) {
-            output(name, get(c->second.first), c->second.second);
+        if (const auto* c = channelNamed(name); c && !hasGlobal(name.c_str())) {
+            output(name, get(c->first), c->second);
             continue;
         }
         for (const GlobalVariable& g : globalVariables(shader_.kind))

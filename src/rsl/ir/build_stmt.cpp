@@ -285,7 +285,7 @@ void Builder::scanAssigned(const Expr& e, std::set<int>& out, std::set<const Fun
     if (e.kind == ExprKind::ShadeopCall && e.shadeop && (e.shadeop->name == "outputchannel" || e.shadeop->name == "writeaov")) {
         const bool literal = e.args[0]->kind == ExprKind::String;
         if (literal) {
-            if (const int n = channelSlot(e.args[0]->text, kindOf(e.args[1]->type)); n >= 0) out.insert(n);
+            if (const int n = channelSlot(e.args[0]->text, e.args[1]->type); n >= 0) out.insert(n);
         } else { // the name is known when the call is built: any of them
             for (const auto& [name, channel] : channels_) out.insert(channel.first);
             for (const ShaderParameter& p : shader_.parameters)

@@ -202,8 +202,22 @@ private:
     Inst* memberValue(size_t instance, const Symbol&);
     Inst* methodCall(const Expr&);
     Inst* memberAccess(const Expr&);
+    Inst* memberArray(const Expr&);
+    Inst* memberLength(const Expr&);
+    Inst* memberElement(const Expr&);
+    bool takeArray(const Expr& to, Inst* from);
     Inst* getVariable(const Expr&);
     Inst* primitiveVariable(const std::string& name, const Expr* to);
+    // build_messages.cpp
+    bool heardDisplacement(const Expr& call, const std::string& name, Inst*& found);
+    Inst* askPrimitive(Inst* name, const Expr* to);
+    /// Rows that a variable takes from a service, and what puts them there where the first row, 0 or 1, says so.
+    struct Receiver {
+        const Expr* to = nullptr;
+        int rows = 0; ///< results that it takes
+    };
+    Receiver receiver(Site&, const Expr& to, const std::string& name);
+    void receive(const Receiver&, std::span<Inst* const> values, Inst* found);
     Inst* readPrimitiveVariable(const Expr&);
     Inst* hasMethod(const Expr&);
     Inst* getShader(const Expr&);
@@ -218,7 +232,10 @@ private:
 
     // build_channels.cpp
     void beginChannels();
-    int channelSlot(const std::string& name, Kind);
+    int channelSlot(const std::string& name, Type);
+    std::vector<std::pair<std::string, int>> channelsFor(Type);
+    const std::pair<int, Type>* channelNamed(const std::string& name);
+    void giveChannel(int slot, const Expr& value, Inst* whole, Inst* condition);
     Inst* outputChannel(const Expr&);
     Inst* writeAov(const Expr&);
     Inst* readAov(const Expr&);

@@ -1,0 +1,196 @@
+// What shaders tell each other: parameters and outputs of the shaders of a primitive, of lights and volumes; attributes.
+#include "transport/answers.h"
+
+namespace alpenglow::transport {
+
+namespace {
+
+/// What the shader has put into one of its outputs, in a run that is over. `t`: of the parameter's type.
+bool writtenBy(const shading::Batch& run, int point, const std::string& parameter, Told& t) {
+    const std::string plain = "param:" + parameter;
+    const auto& outputs = run.kernel().outputs();
+    std::vector<float> numbers;
+    for (int e = 0; e < std::max(1, t.elements); ++e) {
+        const int o = run.output(t.elements ? plain + "[" + std::to_string(e) + "]" : plain);
+        if (o < 0) return false;
+        for (int k = 0; k < rsl::ir::components(outputs[size_t(o)].kind); ++k) numbers.push_back(run.value(o, k, point));
+    }
+    if (t.kind == rsl::ir::Kind::String) {
+        t.texts.clear();
+        for (float id : numbers) t.texts.push_back(rsl::internedString(std::bit_cast<int32_t>(id)));
+    } else {
+        t.numbers = std::move(numbers);
+    }
+    return true;
+}
+
+/// The value that the primitive has for a parameter of one of its shaders, which overrides the scene's.
+void overridden(const ShadePoint& p, const std::string& parameter, Told& t) {
+    const int v = p.shape ? p.shape->findPrimvar(parameter) : -1;
+    if (v < 0) return;
+    const std::optional<Told> of = primitiveVariable(*p.shape, p.surface, parameter);
+    if (of && of->kind == t.kind && of->elements == t.elements && of->kind != rsl::ir::Kind::String) t.numbers = of->numbers;
+}
+
+enum class Asks { Surface, Displacement, Atmosphere, Incident, Opposite, Nobody };
+
+Asks asked(const std::string& op) {
+    static const std::map<std::string, Asks> names = {{"surface", Asks::Surface}, {"displacement", Asks::Displacement}, {"atmosphere", Asks::Atmosphere},
+                                                      {"incident", Asks::Incident}, {"opposite", Asks::Opposite}};
+    const auto i = names.find(op);
+    return i == names.end() ? Asks::Nobody : i->second;
+}
+
+const InstanceRef& shaderOf(const SurfaceBinding& b, Asks who, const ShadePoint& p) {
+    static const InstanceRef none;
+    // A ray that sees the back comes from inside.
+    const bool back = dot(p.surface.n, p.I) > 0;
+    switch (who) {
+    case Asks::Surface: return b.surface;
+    case Asks::Displacement: return b.displacement;
+    case Asks::Atmosphere: return b.atmosphere;
+    case Asks::Incident: return back ? b.interior : b.exterior;
+    case Asks::Opposite: return back ? b.exterior : b.interior;
+    default: return none;
+    }
+}
+
+} // namespace
+
+void answerMessage(Engine& engine, const ServiceCall& q) {
+    const Asks who = asked(q.d.op);
+    const BatchContext& c = q.c;
+    q.each([&](int lane, const ShadePoint& p) {
+        const SurfaceBinding* b = q.binding(engine.world(), lane);
+        if (!b) return;
+        const InstanceRef& shader = shaderOf(*b, who, p);
+        const std::string name = q.name(lane);
+        std::optional<Told> t = shader ? toldBy(*shader, name) : std::nullopt;
+        if (!t) return;
+        const int point = q.first + lane;
+        if (c.lit) { // a light asks: its point is not that of the surface
+            if (std::vector<float> now; who == Asks::Surface && c.lit->output(point, name, now)) t->numbers = now;
+            return q.answer(lane, *t);
+        }
+        if (who == Asks::Surface || who == Asks::Displacement || who == Asks::Atmosphere) overridden(p, name, *t);
+        // An atmosphere comes when the surface has run; the displacement has run before both.
+        const BatchContext& run = c.surface ? *c.surface : c;
+        const int there = c.surface ? c.surfacePoint[size_t(point)] : point;
+        if (who == Asks::Surface && c.surface && run.batch) writtenBy(*run.batch, there, name, *t);
+        if (who == Asks::Displacement && run.displaced) writtenBy(*run.displaced->batch, there, name, *t);
+        q.answer(lane, *t);
+    });
+}
+
+void answerLightSource(Engine& engine, const ServiceCall& q) {
+    const LightLoop& loop = engine.lightLoop(q.c, q.first, q.lanes);
+    if (loop.light < 0) return;
+    const BoundLight& l = engine.world().lights_[size_t(loop.light)];
+    const SiteInfo* setup = loop.setup >= 0 ? &q.c.bound->sites[size_t(loop.setup)] : nullptr;
+    const auto sent = [&](const SiteInfo::Output& from, int lane, std::vector<float>& to, size_t& at) {
+        for (int r = 0; r < from.size && at < to.size(); ++r) to[at++] = loop.given[size_t(from.row + r) * size_t(q.lanes) + size_t(lane)];
+    };
+    q.each([&](int lane, const ShadePoint&) {
+        // What the light's shader has written; what was sent to it; what it was given.
+        const std::string name = q.name(lane), key = "send:light:" + name;
+        std::optional<Told> t = toldBy(*l.instance, name);
+        if (!t) return;
+        const size_t size = t->numbers.size() / size_t(std::max(1, t->elements));
+        bool written = false;
+        int offset = lane * l.valueWidth;
+        for (const BoundLight::Value& v : l.values) {
+            const bool element = t->elements > 0 && v.name.rfind(name + "[", 0) == 0;
+            if (v.name == name || element) {
+                const size_t at = element ? size * size_t(std::atoi(v.name.c_str() + name.size() + 1)) : 0;
+                for (int r = 0; r < v.components && at + size_t(r) < t->numbers.size(); ++r) t->numbers[at + size_t(r)] = loop.values[size_t(offset + r)];
+                written = true;
+            }
+            offset += v.components;
+        }
+        if (!written && setup && t->kind == rsl::ir::Kind::String) {
+            if (const auto text = setup->text.find(key); text != setup->text.end()) t->texts = {text->second};
+        } else if (!written && setup) {
+            size_t to = 0;
+            if (const auto row = setup->named.find(key); row != setup->named.end()) sent({name, row->second, int(rowsOf(*setup, row->second))}, lane, t->numbers, to);
+            for (int n = 0; t->elements > 0; ++n) { // an array that was sent: what it does not reach stays
+                const auto row = setup->named.find(key + "[" + std::to_string(n) + "]");
+                if (row == setup->named.end() || rowsOf(*setup, row->second) != size) break;
+                sent({name, row->second, int(size)}, lane, t->numbers, to);
+            }
+        }
+        q.answer(lane, *t);
+    });
+}
+
+namespace {
+
+constexpr char kLight[] = "light:", kOfLight[] = "attribute:light:";
+
+/// In the shader of a light all is about the light: "light:" in front says it once more.
+std::optional<Information> ofTheLightItself(const WorldImpl& w, const scene::Light& light, const std::string& name) {
+    if (!light.attributes) return std::nullopt;
+    std::optional<Information> i = attributeOf(w, *light.attributes, name, nullptr, nullptr);
+    if (!i && name.rfind(kLight, 0) == 0) i = attributeOf(w, *light.attributes, name.substr(sizeof kLight - 1), nullptr, nullptr);
+    return i;
+}
+
+/// In a loop over lights names with "light:" in front are about the light of the turn; others, and what it does not have, are not.
+std::optional<Information> ofTheLightOfTheTurn(const WorldImpl& w, const scene::Light& light, const std::string& name) {
+    if (!light.attributes) return std::nullopt;
+    if (name.rfind(kLight, 0) == 0) return attributeOf(w, *light.attributes, name.substr(sizeof kLight - 1), nullptr, nullptr);
+    if (name.rfind(kOfLight, 0) == 0) return attributeOf(w, *light.attributes, name, nullptr, nullptr);
+    return std::nullopt;
+}
+
+std::optional<Information> ofThePrimitive(const WorldImpl& w, const ShadePoint& p, const std::string& name, const SurfaceBinding* b) {
+    return p.shape ? attributeOf(w, p.shape->attributes(), name, &p, b) : std::nullopt;
+}
+
+} // namespace
+
+void answerAttribute(Engine& engine, const ServiceCall& q) {
+    const WorldImpl& w = engine.world();
+    const scene::Light* self = q.c.light ? q.c.light->source : nullptr;
+    const int turn = self ? -1 : engine.lightLoop(q.c, q.first, q.lanes).light;
+    const scene::Light* other = turn >= 0 ? w.lights_[size_t(turn)].source : nullptr;
+    q.each([&](int lane, const ShadePoint& p) {
+        const std::string name = q.name(lane);
+        std::optional<Information> i;
+        if (self) i = ofTheLightItself(w, *self, name);
+        else if (other) i = ofTheLightOfTheTurn(w, *other, name);
+        if (!i && !self) i = ofThePrimitive(w, p, name, q.binding(w, lane));
+        if (i) q.answer(lane, Told(*i));
+    });
+}
+
+void answerShaderName(Engine& engine, const ServiceCall& q) {
+    const WorldImpl& w = engine.world();
+    BatchContext& c = q.c;
+    const bool own = q.d.strings.empty() && q.d.argKinds.empty(); // of the shader that asks
+    q.each([&](int lane, const ShadePoint& p) {
+        const SurfaceBinding* b = c.light && own ? nullptr : q.binding(w, lane);
+        const std::string kind = own ? "" : q.name(lane);
+        InstanceRef of;
+        if (own && c.light) of = c.light->instance;
+        else if (kind == "lightsource") {
+            const int turn = c.light ? -1 : engine.lightLoop(c, q.first, q.lanes).light;
+            of = c.light ? c.light->instance : turn >= 0 ? w.lights_[size_t(turn)].instance : nullptr;
+        } else if (b && own) of = c.bound == &b->displacementS ? b->displacement : c.bound == &b->atmosphereS ? b->atmosphere : b->surface;
+        else if (b) of = shaderOf(*b, asked(kind), p);
+        std::string name = of ? of->name : "";
+        if (!of && !c.light && !c.binding && (own || kind == "imager") && w.frame().options.imager) name = w.frame().options.imager->name;
+        q.putText(0, lane, name);
+    });
+}
+
+void answerPrimitiveVariable(const ServiceCall& q) {
+    q.each([&](int lane, const ShadePoint& p) { // of a light: its own geometry
+        if (!p.shape) return;
+        const std::optional<Told> t = primitiveVariable(*p.shape, p.surface, q.name(lane));
+        if (!t) return;
+        if (q.d.resultKinds.size() < 2) q.put(0, lane, 1);
+        else q.answer(lane, *t);
+    });
+}
+
+} // namespace alpenglow::transport

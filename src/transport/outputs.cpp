@@ -1,0 +1,75 @@
+// Outputs of shaders as displays ask for them: which there are, and how many numbers each has.
+#include "transport/surfaces.h"
+
+namespace alpenglow::transport {
+
+namespace {
+
+/// Of "list[3]": "list".
+std::string withoutIndex(const std::string& name) { return name.substr(0, name.find('[')); }
+
+/// Channels that get their names when the shader runs have keys that begin so (front/calls_bind.cpp).
+constexpr char kAnyChannel = '?';
+
+/// Numbers of an output of the shader; 0 when it has none of that name.
+int widthIn(const ShaderInstance& shader, const std::string& name) {
+    const std::string base = withoutIndex(name);
+    const bool element = base != name;
+    for (const rsl::ParameterInfo& p : shader.program->parameters()) {
+        if (p.name != base || !p.output || p.type.base == rsl::Base::String) continue;
+        int length = std::max(1, p.type.array);
+        const auto given = shader.parameters.strings.find(p.name + "[]");
+        if (p.open && given != shader.parameters.strings.end()) length = std::max(1, std::atoi(given->second.c_str()));
+        return rsl::componentCount(p.type.base) * (element || !p.type.array ? 1 : length);
+    }
+    int most = 0;
+    const auto look = [&](const rsl::Program& program) {
+        for (const auto& [channel, type] : program.channels)
+            if (channel == base || channel[0] == kAnyChannel) most = std::max(most, rsl::componentCount(type.base) * (element ? 1 : std::max(1, type.array)));
+        if (const auto exact = program.channels.find(base); exact != program.channels.end())
+            most = rsl::componentCount(exact->second.base) * (element ? 1 : std::max(1, exact->second.array));
+    };
+    for (const rsl::CoShader& co : shader.coShaders) look(*co.program);
+    look(shader.program->program());
+    return most;
+}
+
+} // namespace
+
+bool gives(const ShaderInstance& shader, const std::string& output) { return widthIn(shader, output) > 0; }
+
+std::vector<int> outputsNamed(const shading::Batch& b, const std::string& name) {
+    if (const int whole = b.output(name); whole >= 0) return {whole};
+    std::vector<int> elements;
+    for (int o; (o = b.output(name + "[" + std::to_string(elements.size()) + "]")) >= 0;) elements.push_back(o);
+    return elements;
+}
+
+void WorldImpl::measureOutputs() {
+    static const std::set<std::string> kNumbers = {"z", "u", "v", "s", "t", "alpha", "du", "dv", "time"};
+    static const std::set<std::string> kTriples = {"P", "N", "Cs", "Os", "Ng", "I", "dPdu", "dPdv", "Ci", "Oi"};
+    outputWidths_.clear();
+    std::set<const ShaderInstance*> shaders;
+    for (const SurfaceBinding& b : bindings_)
+        for (const InstanceRef& i : {b.surface, b.atmosphere})
+            if (i) shaders.insert(i.get());
+    for (const BoundLight& l : lights_)
+        if (l.instance) shaders.insert(l.instance.get());
+    for (size_t k = 0; k < settings_.outputs.size(); ++k) {
+        const std::string& name = settings_.outputs[k];
+        int width = kNumbers.count(name) ? 1 : kTriples.count(name) ? 3 : 0;
+        if (width == 0)
+            for (const ShaderInstance* i : shaders) width = std::max(width, widthIn(*i, name));
+        if (width == 0 && k < settings_.outputWidths.size()) width = settings_.outputWidths[k]; // nobody gives it: zeros, as the display says
+        outputWidths_.push_back(width > 0 ? width : 3);
+    }
+    for (BoundLight& l : lights_)
+        for (BoundLight::Value& v : l.values) {
+            if (v.aov < 0) continue;
+            int first = 0;
+            for (int k = 0; k < v.aov; ++k) first += outputWidths_[size_t(k)];
+            v.aov = first;
+        }
+}
+
+} // namespace alpenglow::transport

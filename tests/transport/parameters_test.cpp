@@ -102,6 +102,35 @@ TEST(Parameters, OfBump) {
     near(s.one(kView), Color(0), 1e-4, "bump");
 }
 
+// The height sin(2 PI s) has the slope 2 PI cos(2 PI s), so the bump of a plane is -2 PI cos(2 PI s) along s; its slopes are (2
+// PI)^2 sin(2 PI s) times those of s. Compared as parts of (2 PI)^2: the map has 256 texels, and slopes are differences over one
+// of them, which are off by (2 PI / 256)^2 / 6 = 1e-4; between texels the filter makes steps of about 1 / 100 of them.
+TEST(Parameters, SlopesOfBump) {
+    writeShader("slopebump", R"(surface slopebump(string map = "";) {
+    float x = 0.3 * u + 0.2 * v + 0.1, y = 0.4 * v, k = 2 * PI;
+    point g = bump(map, normal(0, 0, 1), vector(1, 0, 0), vector(0, 1, 0), x, y);
+    Oi = 1;
+    Ci = color(Du(xcomp(g)) / (k * k) - 0.3 * sin(k * x), Dv(xcomp(g)) / (k * k) - 0.2 * sin(k * x), xcomp(g) / k + cos(k * x));
+}
+)");
+    display::Image m = display::makeImage(256, 256, display::defaultChannels(3));
+    for (int y = 0; y < 256; ++y)
+        for (int x = 0; x < 256; ++x)
+            for (int c = 0; c < 3; ++c) m.pixel(x, y)[c] = float(std::sin(2 * kPi * (x + .5) / 256));
+    m.metadata["wrapmodes"] = "periodic,periodic";
+    Diagnostics d;
+    display::WriteOptions o;
+    o.format = display::Format::Exr;
+    o.sample = display::Sample::Float;
+    o.policy = {shaderFolder(), false, -1};
+    EXPECT_TRUE(display::writeImage("parameters_wave.exr", m, o, d));
+    Scene s(world("Surface \"slopebump\" \"map\" \"" + shaderFolder() + "/parameters_wave.exr\"\n" + kFloor),
+            under(Hider::Hidden));
+    for (int i = 0; i < 16; ++i)
+        near(s.one(rayTo({0, 8, 0}, {float(i % 4 * 20 - 31), 0, float(i / 4 * 20 - 27)})), Color(0), .02,
+             "slopes " + std::to_string(i));
+}
+
 /// A room of brightness 1 around a floor.
 std::string room(const std::string& surface) {
     return world("AttributeBegin\nAttribute \"visibility\" \"trace\" 1 \"transmission\" 1\nSurface \"constant\"\nSphere 50 -50 "

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <set>
 #include <sstream>
+#include <stdexcept>
 
 namespace alpenglow::rsl {
 namespace {
@@ -62,8 +63,13 @@ struct Machine {
         compiles = shader != nullptr;
         if (!shader) return firstError(d);
         Results expected;
-        for (int p = 0; p < kPoints; p++)
-            expected.push_back(walk(shader->shader(), [&](const std::string& name, int c) { return input(name, c, p); }, testLights()));
+        try {
+            for (int p = 0; p < kPoints; p++)
+                expected.push_back(walk(shader->shader(), [&](const std::string& name, int c) { return input(name, c, p); }, testLights()));
+        } catch (const std::runtime_error& e) { // no program: what asks for a light was torn out of its loop
+            compiles = false;
+            return e.what();
+        }
         const auto defaults = compiler.parameterDefaults(shader, d);
         for (KernelOptions o : all) {
             for (size_t n = 0; n < programs.size(); n++)

@@ -15,11 +15,24 @@ auto order(const PrintKey& k) {
 
 } // namespace
 
+void PrintLog::keep(Message m) {
+    bytes_ += sizeof(Message) + m.text.size() + m.key.program.size();
+    if (bytes_ > limits::kPrintBytes) write();
+    messages_.push_back(std::move(m));
+}
+
 void PrintLog::add(const PrintKey& key, const std::string& text) {
     const std::lock_guard lock(mutex_);
-    bytes_ += sizeof(Message) + text.size() + key.program.size();
-    if (bytes_ > limits::kPrintBytes) write();
-    messages_.push_back({key, text});
+    keep({key, text});
+}
+
+void PrintLog::once(const std::string& where, const std::string& program, const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    if (saidBytes_ > limits::kPrintBytes || !said_.insert({where, text}).second) return;
+    saidBytes_ += where.size() + text.size();
+    PrintKey key;
+    key.program = program;
+    keep({key, text, true});
 }
 
 void PrintLog::flush() {
@@ -30,7 +43,7 @@ void PrintLog::flush() {
 
 void PrintLog::discard() {
     const std::lock_guard lock(mutex_);
-    messages_.clear();
+    std::erase_if(messages_, [](const Message& m) { return !m.lasting; });
     bytes_ = 0;
 }
 

@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <cstdio>
 #include <mutex>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace alpenglow::rsl {
@@ -29,6 +31,10 @@ public:
     PrintLog& operator=(const PrintLog&) = delete;
     /// Keeps a copy. Beyond limits::kPrintBytes everything collected is written first: the order then holds within each part.
     void add(const PrintKey&, const std::string& text);
+    /// The same for what construct() prints, which runs once for a shader by the book and here in every run of its code: a text of one
+    /// place (`where`, any name for it) is kept once, before all samples, and discard() does not forget it. Beyond limits::kPrintBytes of them
+    /// no more are kept.
+    void once(const std::string& where, const std::string& program, const std::string& text);
     /// Writes what was collected, sorted.
     void flush();
     /// Forgets it: the samples were void.
@@ -38,10 +44,14 @@ private:
     struct Message {
         PrintKey key;
         std::string text;
+        bool lasting = false;
     };
     void write();
+    void keep(Message);
     std::mutex mutex_;
     std::vector<Message> messages_;
+    std::set<std::pair<std::string, std::string>> said_; ///< by once()
+    size_t saidBytes_ = 0;
     size_t bytes_ = 0;
     std::FILE* to_;
 };

@@ -187,6 +187,8 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
             key.vertex = r->vertex;
         }
         if (!c.bound->kernel->files().empty()) key.program = c.bound->kernel->files().front();
+        if (s.text.count("__once")) // in construct()
+            return world_->prints_.once(std::to_string(d.place.file) + ":" + std::to_string(d.place.line) + ":" + std::to_string(d.place.column), key.program, text);
         key.place = {p.P.x, p.P.y, p.P.z};
         world_->prints_.add(key, text);
     }, &c.bound->kernel->files());

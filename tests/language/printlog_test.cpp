@@ -43,6 +43,27 @@ TEST(PrintLog, SamplesThenRowsThenBounces) {
     std::fclose(f);
 }
 
+TEST(PrintLog, WhatConstructPrintsComesOnceAndFirst) {
+    std::FILE* f = std::tmpfile();
+    ASSERT_NE(f, nullptr);
+    {
+        PrintLog log(f);
+        PrintKey k;
+        k.sample = 0;
+        log.add(k, "3");
+        log.once("a.sl:1", "a.sl", "1");
+        log.once("a.sl:2", "a.sl", "2");
+        log.once("a.sl:1", "a.sl", "1");
+        log.flush();
+        log.once("a.sl:1", "a.sl", "1");
+        log.once("a.sl:1", "a.sl", "4");
+        log.add(k, "void");
+        log.discard();
+    }
+    EXPECT_EQ(textOf(f), "1234");
+    std::fclose(f);
+}
+
 TEST(PrintLog, ThreadsDoNotShow) {
     std::string texts[2];
     for (int threads : {1, 4}) {

@@ -2,6 +2,7 @@
 // is not known until they are bound give to format().
 #include "points.h"
 #include "rsl/compiler.h"
+#include <algorithm>
 #include <bit>
 #include <gtest/gtest.h>
 
@@ -87,6 +88,26 @@ TEST(ThisShader, NamesOfHandlesAndUntypedMembers) {
     EXPECT_EQ(internedString(std::bit_cast<int32_t>(v[0])), "<surface> coat <null>");
     EXPECT_EQ(internedString(std::bit_cast<int32_t>(v[1])), "hello 9 [1.000000 2.000000 3.000000] coat");
     EXPECT_EQ(d.errors(), 0);
+}
+
+/// construct() runs once by the book: what it prints is marked, and printed once (rsl/printlog.h); what others print is not.
+TEST(ThisShader, PrintsOfConstructAreMarked) {
+    ShaderCompiler::Settings settings;
+    settings.useDefaultCache = false;
+    ShaderCompiler compiler(settings);
+    Diagnostics d;
+    const auto shader = compiler.loadText(R"(class talker() {
+        public void construct() { printf("constructed\n"); helper(); }
+        void helper() { printf("helped\n"); }
+        public void begin() { printf("begun %f\n", u); }
+        public void surface(output color Ci, Oi) { printf("shaded\n"); helper(); } })", "talker.sl", d);
+    ASSERT_TRUE(shader);
+    const auto kernel = compiler.kernel(shader, {}, d);
+    ASSERT_TRUE(kernel);
+    std::vector<int> marked;
+    for (const auto& s : kernel->sites())
+        if (s.op == "printf") marked.push_back(int(std::count(s.names.begin(), s.names.end(), "__once")));
+    EXPECT_EQ(marked, (std::vector<int>{1, 1, 0, 0, 0}));
 }
 
 TEST(ThisShader, WhatItHasNotIsAnError) {

@@ -105,7 +105,10 @@ Inst* Builder::inlineFunction(const Function& f, const std::vector<const Expr*>&
         frame.result = newSlot(zero(kindOf(f.result)));
     }
     frames_.push_back(frame);
+    const bool constructs = f.name == "construct" && (shader_.object || handleDepth_ > 0);
+    constructing_ += constructs;
     if (f.body) statement(*f.body);
+    constructing_ -= constructs;
     frames_.pop_back();
     sharing_ -= !shared.empty();
     for (size_t i = 0; i < n; ++i) {

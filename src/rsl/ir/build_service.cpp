@@ -220,6 +220,10 @@ Inst* Builder::service(const Expr& e, Op kind, int part) {
             s.pairStrings.push_back("");
             addArgument(s, args, v, parameter.second);
         }
+    if (constructing_ > 0 && (op.name == "printf" || op.name == "print")) { // once for the shader (printlog.h)
+        s.names.push_back("__once");
+        s.pairStrings.push_back("1");
+    }
     if (part >= 0) {
         s.names.push_back("__part");
         s.pairStrings.push_back(std::to_string(part));

@@ -308,6 +308,7 @@ private:
     std::vector<Instance> instances_;
     const std::vector<std::string>* files_ = &program_.files; ///< those that places refer to just now
     int handleDepth_ = 0; ///< methods of co-shaders that are open
+    int constructing_ = 0; ///< open construct()
     int sharing_ = 0;     ///< open functions whose output parameters are variables of the caller
     std::set<std::pair<size_t, const Function*>> openMethods_, scannedMethods_;
     std::map<std::string, std::pair<int, Type>> channels_; ///< by name: slot and type

@@ -89,7 +89,8 @@ Inst* Builder::inlineFunction(const Function& f, const std::vector<const Expr*>&
     if (failed_) return zero(Kind::Float);
     std::vector<int> own(n, -1); // the slots of parameters that share another for this call
     for (size_t i = 0; i < n; ++i) {
-        if (isShared(i)) own[i] = std::exchange(slots_[f.parameters[i]], shared[i]);
+        const int usual = slot(f.parameters[i]); // there is one from now on, to come back to
+        if (isShared(i)) own[i] = usual, slots_[f.parameters[i]] = shared[i];
         else set(slot(f.parameters[i]), values[i]);
     }
     sharing_ += !shared.empty();

@@ -216,6 +216,7 @@ Inst* Builder::transformCall(const Expr& e) {
     Base base = e.args.back()->type.base;
     if (name == "vtransform") base = Base::Vector;
     else if (name == "ntransform") base = Base::Normal;
+    else if (name == "ptransform") base = Base::Point;
     std::vector<Inst*> a;
     for (const ExprPtr& x : e.args) a.push_back(expr(*x));
     place_ = e.place;

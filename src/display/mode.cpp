@@ -39,6 +39,14 @@ bool isIdentifier(const std::string& s) {
     return !std::isdigit((unsigned char)s[0]) && s[0] != '-' && s[0] != '.';
 }
 
+/// "[12]", an element of an array.
+bool isElement(const std::string& s) {
+    return s.size() > 2 && s.size() < 7 && s[0] == '[' && s.back() == ']' && std::all_of(s.begin() + 1, s.end() - 1, [](unsigned char c) { return std::isdigit(c); });
+}
+
+/// Of "list[1]" what stands before the bracket.
+std::string withoutElement(const std::string& s) { return s.substr(0, s.find('[')); }
+
 void nameChannels(ModeVariable& v) {
     static constexpr const char* rgb[] = {".r", ".g", ".b"};
     static constexpr const char* xyz[] = {".x", ".y", ".z"};
@@ -85,8 +93,9 @@ bool parseDeclaration(const std::string& text, ModeVariable& v) {
         length = int(n);
         ++i;
     }
-    if (i + 1 != w.size() || !isIdentifier(w[i])) return false;
-    v.name = w[i];
+    const bool element = i + 2 == w.size() && length == 0 && isElement(w[i + 1]);
+    if (i + (element ? 2 : 1) != w.size() || !isIdentifier(w[i])) return false;
+    v.name = element ? w[i] + w[i + 1] : w[i];
     v.type = type->second;
     v.arrayLength = length;
     v.declared = true;
@@ -124,16 +133,19 @@ std::vector<ModeVariable> parseMode(const std::string& mode, Diagnostics& diags,
                 for (auto& s : standard) add(s);
                 continue;
             }
-            if (!isIdentifier(name)) {
+            const std::string base = withoutElement(name);
+            const bool element = base != name;
+            const bool type = std::any_of(std::begin(typeNames), std::end(typeNames), [&](auto& t) { return base == t.first; });
+            if (!isIdentifier(base) || (element && (type || !isElement(name.substr(base.size()))))) {
                 diags.report(Severity::Error, Rie::BadToken, place,
                              "display mode \"" + mode + "\": \"" + part + "\" is not understood",
                              "modes are rgb rgba rgbz rgbaz a z az, names of output variables, or \"varying color name\"");
                 break;
             }
             v.name = name;
-            if (auto c = displayChannels.find(name); c != displayChannels.end()) {
+            if (auto c = displayChannels.find(displayChannels.count(name) ? name : base); c != displayChannels.end()) {
                 v.type = c->second.type == Type::String ? Type::Color : c->second.type;
-                v.arrayLength = c->second.arrayLength;
+                v.arrayLength = element && c->first == base ? 0 : c->second.arrayLength;
                 v.declared = true;
             } else {
                 auto p = std::find_if(std::begin(predefined), std::end(predefined), [&](auto& q) { return name == q.first; });

@@ -1,6 +1,6 @@
 // Lights of a frame bound to their kernels. A shader with several illuminate or solar statements becomes several lights: the first
 // keeps the frame's index, the others are its parts, numbered behind all of the frame's.
-#include "transport/engine.h"
+#include "transport/surfaces.h"
 
 namespace alpenglow::transport {
 
@@ -30,8 +30,10 @@ float numberOf(const scene::AttributesRef& a, const char* key, float fallback) {
 
 void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const geometry::Shape&)>& visibility) {
     const bool path = settings_.hider == Hider::Path;
-    const auto aovOf = [&](const std::string& name) { // measureOutputs() makes the place of its first number of it
-        return int(std::find(settings_.outputs.begin(), settings_.outputs.end(), name) - settings_.outputs.begin());
+    const auto aovOf = [&](const std::string& name) { // by number; measureOutputs() makes the place of its first number of it
+        for (const std::string& n : {name, name.substr(0, name.find('['))})
+            if (const auto i = std::find(settings_.outputs.begin(), settings_.outputs.end(), n); i != settings_.outputs.end()) return int(i - settings_.outputs.begin());
+        return -1;
     };
     std::map<int, std::vector<const geometry::Shape*>> emitters;
     for (const auto& s : shapes_)
@@ -57,9 +59,8 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
                                                                 std::find(extra.begin(), extra.end(), name) == extra.end())
                     extra.push_back(name);
             // What it gives to the outputs of the surface by outputchannel(), where a display asks for it.
-            for (const auto& [name, type] : l.instance->program->program().channels)
-                if (std::find(settings_.outputs.begin(), settings_.outputs.end(), name) != settings_.outputs.end() && type.base != rsl::Base::String && type.array == 0)
-                    extra.push_back(name);
+            for (const std::string& name : settings_.outputs)
+                if (givesChannel(*l.instance, name)) extra.push_back(name);
             if (!extra.empty()) {
                 outputs = {"L", "Cl", "Ol", "lit"};
                 outputs.insert(outputs.end(), extra.begin(), extra.end());
@@ -73,7 +74,7 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
             continue;
         }
         for (const SiteInfo& s : l.kernel.sites)
-            if (s.kind == SiteKind::Message) {
+            if (s.kind == SiteKind::Message || s.kind == SiteKind::LightHandles) {
                 l.asksSurface = true;
                 if (s.site->op == "surface" && !s.site->strings.empty()) lightMessages_.push_back(s.site->strings[0]);
             }
@@ -109,8 +110,8 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
                 if (n.rfind("param:", 0) == 0) {
                     part.values.push_back({n.substr(6), int(i), rsl::ir::components(outputs[i].kind)});
                     part.valueWidth += part.values.back().components;
-                } else if (l.instance->program->program().channels.count(n)) {
-                    part.values.push_back({n, int(i), rsl::ir::components(outputs[i].kind), aovOf(n)});
+                } else if (const int aov = aovOf(n); aov >= 0 && givesChannel(*l.instance, n)) {
+                    part.values.push_back({n, int(i), rsl::ir::components(outputs[i].kind), aov});
                     part.valueWidth += part.values.back().components;
                     part.channels = lightChannels_ = true;
                 }

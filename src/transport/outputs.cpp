@@ -11,6 +11,22 @@ std::string withoutIndex(const std::string& name) { return name.substr(0, name.f
 /// Channels that get their names when the shader runs have keys that begin so (front/calls_bind.cpp).
 constexpr char kAnyChannel = '?';
 
+/// Of a channel that outputchannel() makes; 0 when no call does.
+int channelWidth(const ShaderInstance& shader, const std::string& name) {
+    const std::string base = withoutIndex(name);
+    const bool element = base != name;
+    int most = 0;
+    const auto look = [&](const rsl::Program& program) {
+        const auto width = [&](const rsl::Type& type) { return rsl::componentCount(type.base) * (element ? 1 : std::max(1, type.array)); };
+        for (const auto& [channel, type] : program.channels)
+            if (channel[0] == kAnyChannel) most = std::max(most, width(type));
+        if (const auto exact = program.channels.find(base); exact != program.channels.end()) most = width(exact->second);
+    };
+    for (const rsl::CoShader& co : shader.coShaders) look(*co.program);
+    look(shader.program->program());
+    return most;
+}
+
 /// Numbers of an output of the shader; 0 when it has none of that name.
 int widthIn(const ShaderInstance& shader, const std::string& name) {
     const std::string base = withoutIndex(name);
@@ -22,21 +38,14 @@ int widthIn(const ShaderInstance& shader, const std::string& name) {
         if (p.open && given != shader.parameters.strings.end()) length = std::max(1, std::atoi(given->second.c_str()));
         return rsl::componentCount(p.type.base) * (element || !p.type.array ? 1 : length);
     }
-    int most = 0;
-    const auto look = [&](const rsl::Program& program) {
-        for (const auto& [channel, type] : program.channels)
-            if (channel == base || channel[0] == kAnyChannel) most = std::max(most, rsl::componentCount(type.base) * (element ? 1 : std::max(1, type.array)));
-        if (const auto exact = program.channels.find(base); exact != program.channels.end())
-            most = rsl::componentCount(exact->second.base) * (element ? 1 : std::max(1, exact->second.array));
-    };
-    for (const rsl::CoShader& co : shader.coShaders) look(*co.program);
-    look(shader.program->program());
-    return most;
+    return channelWidth(shader, name);
 }
 
 } // namespace
 
 bool gives(const ShaderInstance& shader, const std::string& output) { return widthIn(shader, output) > 0; }
+
+bool givesChannel(const ShaderInstance& shader, const std::string& output) { return channelWidth(shader, output) > 0; }
 
 std::vector<int> outputsNamed(const shading::Batch& b, const std::string& name) {
     if (const int whole = b.output(name); whole >= 0) return {whole};
@@ -68,6 +77,8 @@ void WorldImpl::measureOutputs() {
             if (v.aov < 0) continue;
             int first = 0;
             for (int k = 0; k < v.aov; ++k) first += outputWidths_[size_t(k)];
+            const std::string& output = settings_.outputs[size_t(v.aov)];
+            if (v.name.size() > output.size()) first += v.components * std::atoi(v.name.c_str() + output.size() + 1); // "list[2]" of "list"
             v.aov = first;
         }
 }

@@ -6,6 +6,8 @@ namespace alpenglow::transport {
 
 /// Whether a shader or its co-shaders give an output of that name ("list[1]" is an element of "list").
 bool gives(const ShaderInstance&, const std::string& output);
+/// The same of outputchannel() alone.
+bool givesChannel(const ShaderInstance&, const std::string& output);
 /// The first number of an attribute, or `fallback` where it is not set.
 float attributeNumber(const scene::Attributes&, const std::string& key, float fallback);
 

@@ -60,6 +60,19 @@ TEST(Mode, OutputVariables) {
     EXPECT_EQ(namesOf("Ci,alpha"), (V{"r", "g", "b", "a"}));
 }
 
+TEST(Mode, ElementsOfArrays) {
+    EXPECT_EQ(namesOf("varying float list[1]"), V{"list[1]"});
+    EXPECT_EQ(namesOf("rgb,color tones[12]"), (V{"r", "g", "b", "tones[12].r", "tones[12].g", "tones[12].b"}));
+    EXPECT_EQ(namesOf("list[1],list[2]").size(), 6u); // colours, as long as nobody says more
+    scene::Param p;
+    p.name = "list";
+    p.type = scene::Type::Float;
+    p.arrayLength = 3;
+    EXPECT_EQ(namesOf("list[1]", 0, 0, {{"list", p}}), V{"list[1]"});
+    EXPECT_EQ(namesOf("rgb,list[x]", 0, 1), (V{"r", "g", "b"}));
+    EXPECT_EQ(namesOf("rgb,list[", 0, 1), (V{"r", "g", "b"}));
+}
+
 TEST(Mode, TypesComeFromDisplayChannel) {
     scene::Param p;
     p.name = "occ";

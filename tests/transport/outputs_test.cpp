@@ -50,6 +50,23 @@ TEST(Outputs, OfTheAtmosphere) {
     }
 }
 
+// Outputs of lights: arrays, and names that are made when the shader runs.
+TEST(Outputs, OfLights) {
+    writeShader("tellsmore", R"(light tellsmore() {
+    float list[2] = {3, 4};
+    string n = "made";
+    if (xcomp(Ps) > 1000) n = "other";
+    illuminate(point "world" (0, 2, 0)) { Cl = 1; outputchannel("list", list); outputchannel(n, length(L)); }
+}
+)");
+    for (Hider h : {Hider::Hidden, Hider::Path}) {
+        const Floats a = aovs("LightSource \"tellsmore\" 1\nSurface \"matte\"\n", h, {"made", "list"});
+        ASSERT_EQ(a.size(), 3u);
+        EXPECT_NEAR(a[0], 2, 1e-5);
+        EXPECT_EQ(Floats(a.begin() + 1, a.end()), (Floats{3, 4}));
+    }
+}
+
 // Arrays of co-shaders: by element, as a whole, their length, through getvar(); of two that a handle can mean.
 TEST(Outputs, ArraysOfCoShaders) {
     writeShader("table", "class table(float tab[3] = {1, 2, 3}; color tones[2] = {0, 0}; float open[] = {5, 6}; color tint = color(.25, .5, .75); string __category = \"t\";) {\n"

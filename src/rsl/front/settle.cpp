@@ -340,7 +340,8 @@ void Checker::settleAssign(ExprPtr& e) {
             const auto o = operation(e->op, target.base, b);
             if (!o || implicitCost(o->result, target.base) >= kNever) continue;
             const int c = r.cost[int(b)] + o->cost + implicitCost(o->result, target.base);
-            if (c < cost) { cost = c; best = b; operand = o->operand; }
+            // Of equals the type of the variable: trace(P, R) * k is the light in a color, as behind a "=".
+            if (c < cost || (c == cost && b == target.base)) { cost = c; best = b; operand = o->operand; }
         }
         settleAs(e->args[1], best);
         convert(e->args[1],

@@ -78,7 +78,8 @@ TEST(Levels, TransitionsFade) {
     const auto parts = [&](float relative) { // of each that is left
         f->options.relativeDetail = relative;
         std::vector<std::vector<float>> p;
-        for (const auto& left : drawnLevels(f, Camera(f->options, d))->primitives) {
+        const auto out = drawnLevels(f, Camera(f->options, d));
+        for (const auto& left : out->primitives) {
             const scene::Param* level = left->attributes->value(transport::kLevelAttribute);
             p.push_back(level ? level->numbers : std::vector<float>{});
         }

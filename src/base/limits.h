@@ -67,4 +67,7 @@ inline constexpr int kFilmChannels = 1024;                     ///< AOV channels
 inline constexpr size_t kPartFileBytes = size_t(64) << 30;     ///< of one part file or checkpoint on disk
 inline constexpr size_t kPartHeaderBytes = size_t(16) << 20;   ///< of its header: names, metadata, ranges
 
+inline constexpr int kShaderFilesLooked = 2000;                ///< .sl files searched for a shader that has no file of its own name
+inline constexpr size_t kShaderFileLooked = 1u << 20;          ///< bytes of one of them
+
 } // namespace alpenglow::limits

@@ -118,6 +118,7 @@ int shade(const Arguments& a) {
         shader = wanted;
     }
     auto values = compiler.parameterDefaults(shader, diags);
+    std::vector<rsl::ParameterValue> given;
     rsl::KernelOptions options;
     options.lanes = a.lanes;
     options.vectors = a.vectors;
@@ -137,6 +138,7 @@ int shade(const Arguments& a) {
         }
         if (i->type.base == rsl::Base::String) {
             i->strings = {text};
+            given.push_back(*i);
             continue;
         }
         auto numbers = parseNumbers(text);
@@ -148,7 +150,12 @@ int shade(const Arguments& a) {
             return kWrongUse;
         }
         i->numbers.assign(numbers->begin(), numbers->end());
+        given.push_back(*i);
     }
+    if (!given.empty()) values = compiler.parameterDefaults(shader, diags, {}, given); // defaults may read what is given
+    std::set<std::string> names;
+    for (const auto& v : given) names.insert(v.name);
+    options.computedParameters = shader->computedParameters(names, {});
     for (const auto& v : values)
         if (v.type.base == rsl::Base::String && v.type.array == 0 && !v.strings.empty())
             options.stringParameters.emplace_back(v.name, v.strings[0]);

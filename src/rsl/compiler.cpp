@@ -1,6 +1,7 @@
 #include "rsl/compiler.h"
 #include "base/file.h"
 #include "base/limits.h"
+#include "rsl/defaultreads.h"
 #include "rsl/ir/build.h"
 #include "rsl/ir/print.h"
 #include "rsl/jit/cache.h"
@@ -8,6 +9,8 @@
 #include "rsl/jit/sha256.h"
 #include "rsl/passes/optimize.h"
 #include "rsl/plugins.h"
+#include "rsl/shadersearch.h"
+#include <algorithm>
 #include <bit>
 #include <chrono>
 #include <cstring>
@@ -64,6 +67,7 @@ std::string coShaderKey(const KernelOptions& o) {
     std::string k;
     for (const CoShader& c : o.coShaders) {
         k += '\1' + c.handle + '\2' + c.digest;
+        for (const auto& name : c.computed) k += '\7' + name;
         for (const auto& [name, value] : c.strings) k += '\3' + name + '\4' + value;
         for (const auto& [name, value] : c.numbers) {
             k += '\5' + name + '\6';
@@ -143,6 +147,9 @@ ShaderPtr ShaderCompiler::finish(std::unique_ptr<Program> program, const std::st
                            : p.defaultValue && p.defaultValue->kind == ExprKind::ArrayList
                                ? std::max(1, int(p.defaultValue->args.size()))
                                : 1;
+        DefaultReads reads = readsOfDefault(p.defaultValue.get());
+        i.sampleDefault = i.storage == Storage::Varying && reads.sample;
+        i.defaultReads.assign(reads.parameters.begin(), reads.parameters.end());
         c->parameters_.push_back(std::move(i));
     }
     c->program_ = std::move(program);
@@ -170,6 +177,10 @@ ShaderPtr ShaderCompiler::load(const std::string& name, const std::vector<std::s
     if (!found) found = at(name + ".sl");
     for (const char* e : {".slo", ".sdl", ".sdr", ".slx", ".slc", ".sdw"})
         if (!found && name.ends_with(e)) found = at(name.substr(0, name.size() - std::strlen(e)) + ".sl");
+    const auto ofOther = [&](const char* e) { return name.ends_with(e) || at(name + e); };
+    constexpr const char* kCompiled[] = {".slo", ".sdl", ".sdr", ".slx", ".slc", ".sdw"};
+    if (!found && std::none_of(std::begin(kCompiled), std::end(kCompiled), ofOther))
+        if (auto shared = fileWithShader(stem, directories)) found = FoundFile{*shared};
     if (found) {
         FrontOptions options = state_->front();
         options.includePaths.push_back(fs::path(found->path).parent_path().string());
@@ -360,8 +371,20 @@ void runOnce(const CompiledKernel& k, const SpaceFn& spaces, std::vector<std::ve
 
 } // namespace
 
-std::vector<ParameterValue> ShaderCompiler::parameterDefaults(const ShaderPtr& shader, Diagnostics& diagnostics,
-                                                              const SpaceFn& spaces) {
+std::vector<std::string> CompiledShader::computedParameters(const std::set<std::string>& given, const std::vector<std::string>& varying) const {
+    std::set<std::string> differ(varying.begin(), varying.end()); // from sample to sample
+    std::vector<std::string> computed;
+    for (const ParameterInfo& p : parameters_) {
+        if (given.count(p.name) || differ.count(p.name)) continue;
+        if (!p.sampleDefault && std::none_of(p.defaultReads.begin(), p.defaultReads.end(), [&](const auto& r) { return differ.count(r) > 0; })) continue;
+        differ.insert(p.name);
+        computed.push_back(p.name);
+    }
+    return computed;
+}
+
+std::vector<ParameterValue> ShaderCompiler::parameterDefaults(const ShaderPtr& shader, Diagnostics& diagnostics, const SpaceFn& spaces,
+                                                              const std::vector<ParameterValue>& given) {
     std::vector<ParameterValue> values;
     if (!shader) return values;
     for (const auto& p : shader->parameters()) {
@@ -372,7 +395,15 @@ std::vector<ParameterValue> ShaderCompiler::parameterDefaults(const ShaderPtr& s
         values.push_back(std::move(v));
     }
     if (values.empty()) return values;
-    auto k = buildDefaults(shader->program(), shader->shader(), diagnostics);
+    // Given values become constants of the defaults that read them; the others are put in below.
+    std::vector<ParameterValue> read;
+    for (const ParameterValue& g : given)
+        for (const auto& p : shader->parameters())
+            if (std::find(p.defaultReads.begin(), p.defaultReads.end(), g.name) != p.defaultReads.end()) {
+                read.push_back(g);
+                break;
+            }
+    auto k = buildDefaults(shader->program(), shader->shader(), diagnostics, read);
     if (!k) return values;
     KernelOptions options;
     options.lanes = 4;
@@ -395,8 +426,13 @@ std::vector<ParameterValue> ShaderCompiler::parameterDefaults(const ShaderPtr& s
         std::string error;
         options.optimize = 0;
         KernelPtr code;
-        const std::string key =
-            jit::sha256(shader->digest_ + "\ndefaults\n" + jit::codeKey(options) + descriptorDigest() + programDigest());
+        std::string key = shader->digest_ + "\ndefaults\n" + jit::codeKey(options) + descriptorDigest() + programDigest();
+        for (const ParameterValue& v : read) {
+            key += '\1' + v.name + '\2';
+            key.append(reinterpret_cast<const char*>(v.numbers.data()), v.numbers.size() * sizeof(float));
+            for (const std::string& s : v.strings) key += '\3' + s;
+        }
+        key = jit::sha256(key);
         if (auto cached = state_->cache->load(key)) code = jit::load(*cached, true, error, state_->outside);
         if (!code && jit::generate(*k, options, file, error)) {
             code = jit::load(file, false, error, state_->outside);
@@ -428,6 +464,13 @@ std::vector<ParameterValue> ShaderCompiler::parameterDefaults(const ShaderPtr& s
             }
         }
     }
+    for (const ParameterValue& g : given)
+        for (ParameterValue& v : values)
+            if (v.name == g.name) {
+                v.numbers = g.numbers;
+                v.strings.resize(std::max(v.strings.size(), g.strings.size())); // elements that are not given keep their default
+                std::copy(g.strings.begin(), g.strings.end(), v.strings.begin());
+            }
     return values;
 }
 

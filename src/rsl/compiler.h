@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <set>
 #include <vector>
 
 namespace alpenglow::rsl {
@@ -20,14 +21,8 @@ struct ParameterInfo {
     bool hasDefault = false;
     Place place;
     bool open = false; ///< an array of open length, `float w[]`: it is as long as what it is given
-};
-
-/// A parameter with a value. Strings for string types, else numbers, element after element.
-struct ParameterValue {
-    std::string name;
-    Type type;
-    std::vector<float> numbers;
-    std::vector<std::string> strings;
+    bool sampleDefault = false; ///< varying, with a default that differs from sample to sample: computed where the shader begins
+    std::vector<std::string> defaultReads; ///< parameters before it that its default reads
 };
 
 /// A checked shader. Immutable, shared.
@@ -39,6 +34,9 @@ public:
     const std::vector<ParameterInfo>& parameters() const { return parameters_; }
     const Program& program() const { return *program_; }
     const Shader& shader() const { return *shader_; }
+    /// KernelOptions::computedParameters: those that are not `given` and whose default is not one value for all samples. `varying`:
+    /// overridden by primitive variables.
+    std::vector<std::string> computedParameters(const std::set<std::string>& given, const std::vector<std::string>& varying) const;
 
 private:
     friend class ShaderCompiler;
@@ -94,10 +92,10 @@ public:
     std::shared_ptr<const CompiledKernel> kernel(const std::shared_ptr<const CompiledShader>&, const KernelOptions&,
                                                  Diagnostics&);
 
-    /// The defaults of all parameters, in order. Those without one are zero, "" or for matrices zero. `spaces` resolves named
-    /// spaces.
-    std::vector<ParameterValue> parameterDefaults(const std::shared_ptr<const CompiledShader>&, Diagnostics&,
-                                                  const SpaceFn& spaces = {});
+    /// The values of all parameters, in order: what is `given` (as the shader sees it, in "current"), else the default, which may read
+    /// parameters before it. Those without either are zero, "" or for matrices zero. `spaces` resolves named spaces.
+    std::vector<ParameterValue> parameterDefaults(const std::shared_ptr<const CompiledShader>&, Diagnostics&, const SpaceFn& spaces = {},
+                                                  const std::vector<ParameterValue>& given = {});
 
     /// Our IR after the passes, as text; with `llvm` also the optimised LLVM IR. Empty after an error.
     std::string dump(const std::shared_ptr<const CompiledShader>&, const KernelOptions&, Diagnostics&, bool llvm = false);

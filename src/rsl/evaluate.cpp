@@ -42,6 +42,8 @@ struct PointContext {
     const CompiledKernel* kernel;
     std::string* printed;
     Diagnostics* diagnostics;
+    int points = 0;
+    std::vector<int> draws; ///< by site and point: random numbers drawn so far
 };
 
 constexpr const char* kTypes[] = {"float", "color", "point", "vector", "normal", "matrix", "string"};
@@ -89,7 +91,7 @@ bool runAtPoint(const CompiledKernel& k, bool mixed, int n, int at, std::vector<
     }
     std::vector<float*> outs;
     for (const auto& o : k.outputs()) outs.push_back(make(ir::components(o.kind)));
-    PointContext context{&k, printed, &diagnostics};
+    PointContext context{&k, printed, &diagnostics, n, {}};
     KernelCall call{};
     call.in = in.data();
     call.out = outs.data();
@@ -104,11 +106,15 @@ bool runAtPoint(const CompiledKernel& k, bool mixed, int n, int at, std::vector<
         basicService(s, mask, lanes, in, out, *x.diagnostics, [&](int lane, const std::string& text) {
             if (x.printed && first + lane == 0) *x.printed += text;
         }, &x.kernel->files());
-        if (s.op == "random") { // one number for each call in the text
-            float h[3];
-            hashText("random " + std::to_string(site), h);
-            for (int c = 0; c < std::min(3, s.resultKinds.empty() ? 1 : ir::components(s.resultKinds[0])); c++)
-                std::fill_n(out + c * lanes, lanes, h[c]);
+        if (s.op == "random") { // one number for each call in the text, and each turn of a loop
+            x.draws.resize(std::max(x.draws.size(), size_t(site + 1) * size_t(x.points)));
+            for (int lane = 0; lane < lanes; lane++) {
+                if (!(mask >> lane & 1) || first + lane >= x.points) continue;
+                const int turn = x.draws[size_t(site) * size_t(x.points) + size_t(first + lane)]++;
+                float h[3];
+                hashText("random " + std::to_string(site) + " " + std::to_string(turn), h);
+                for (int c = 0; c < std::min(3, s.resultKinds.empty() ? 1 : ir::components(s.resultKinds[0])); c++) out[c * lanes + lane] = h[c];
+            }
         }
         if (s.op.ends_with("transform") && s.op != "ctransform") { // every space is "current": names come first, then the value
             int row = 0;

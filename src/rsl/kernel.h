@@ -57,6 +57,14 @@ int32_t internString(const std::string&);
 const std::string& internedString(int32_t id);
 
 /// What kind of machine code is wanted. All of it is part of the cache key.
+/// A parameter with a value. Strings for string types, else numbers, element after element.
+struct ParameterValue {
+    std::string name;
+    Type type;
+    std::vector<float> numbers;
+    std::vector<std::string> strings;
+};
+
 /// A shader that other shaders call (rsl.md 7.3), with the values of its parameters.
 struct CoShader {
     std::string handle;
@@ -66,6 +74,7 @@ struct CoShader {
     std::string digest;                ///< of the shader's text
     std::map<std::string, std::vector<float>> numbers;
     std::map<std::string, std::string> strings;
+    std::vector<std::string> computed; ///< KernelOptions::computedParameters of this one
 };
 
 struct KernelOptions {
@@ -83,6 +92,8 @@ struct KernelOptions {
     /// are "name[0]", "name[1]" ...; "name[]" is the length of an array that the shader leaves open.
     std::vector<std::pair<std::string, std::string>> stringParameters;
     std::vector<std::string> varyingParameters; ///< parameters overridden by varying primitive variables
+    /// Parameters whose default the kernel computes for each sample (CompiledShader::computedParameters).
+    std::vector<std::string> computedParameters;
     std::vector<std::string> messages; ///< output parameters that lights ask for by surface(), sorted
     std::vector<CoShader> coShaders; ///< in the order of their handles
 };

@@ -141,6 +141,7 @@ void Engine::giveBack(std::shared_ptr<BatchContext> c) {
     c->haze.clear();
     c->lightDistance.clear();
     c->lightChannels.clear();
+    c->draws.clear();
     c->requestSite = -1;
     for (LightLoop& loop : c->loops) loop.reset(-1);
     c->lit = nullptr;

@@ -128,6 +128,7 @@ struct BatchContext {
     const BatchContext* surface = nullptr;     ///< while an atmosphere's kernel runs: the surface's run that it dims
     std::vector<int> surfacePoint;             ///< by point: its number in that run
     std::vector<float> lightChannels;          ///< by point, all AOVs: what lights gave by outputchannel(), and atmospheres; empty when none did
+    std::vector<uint32_t> draws;               ///< by site and point: how often random() was called there; empty until it is
     float lightVisibilityDistance = 0;
     bool forShadow = false;                    ///< the kernel tells its opacity to shadow rays
     std::vector<float> lightDistance;          ///< by lane: to the light sample; 1e38 for distant lights
@@ -185,6 +186,7 @@ public:
     uint64_t lightFetch(BatchContext&, int light, int first, uint64_t mask, int lanes, float* out);
     // services.cpp
     void service(BatchContext&, int site, int first, uint64_t mask, int lanes, const float* in, float* out);
+    void drawRandom(const class ServiceCall&); // draws.cpp
     // requests.cpp
     void request(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId, bool owns,
                  uint32_t occurrence);

@@ -165,12 +165,8 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
         });
         return;
     }
-    if (d.op == "random") { // keyed by point and call site: nothing depends on who shares the batch
-        each([&](int lane, const ShadePoint& p) {
-            const PathRay* r = c.rays.empty() ? p.ray : &c.rays[first + lane];
-            Random rng = r ? random(*r) : Random(seed_, 0, 0, 0);
-            for (int k = 0; k < s.resultRowCount; ++k) put(k, lane, rng.one(r ? r->vertex : 0, uint32_t(site), uint32_t(64 + k)));
-        });
+    if (d.op == "random") {
+        drawRandom(call);
         return;
     }
     rsl::basicService(d, mask, lanes, in, out, diagnostics_, [&](int lane, const std::string& text) {

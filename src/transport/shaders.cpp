@@ -43,6 +43,13 @@ void transformParameter(std::vector<float>& v, rsl::Base base, const Matrix& m) 
 
 } // namespace
 
+/// VTK and its kin give the standard imager "background" its colour as "color", which no shader of ours can name so: it is a word of
+/// the language.
+static scene::Param asDeclared(scene::Param given, const rsl::CompiledShader& shader) {
+    if (given.name == "color" && shader.kind() == rsl::ShaderKind::Imager && shader.name() == "background") given.name = "background";
+    return given;
+}
+
 InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind kind, Diagnostics& d, bool anyKind) {
     double begin = seconds();
     Diagnostics said; // the compiler knows no scene: messages without a place get the call's
@@ -68,23 +75,10 @@ InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind k
     i->toCurrent = call.toWorld.first() * worldToCamera_;
     i->place = call.place;
 
-    // Defaults: the shader's own expressions in the instance's spaces.
-    auto spaces = [&](const std::string& from, const std::string& to, float out[16]) {
-        Matrix m;
-        bool known = true;
-        if (from == "shader" && to == "current") m = i->toCurrent;
-        else if (from == "current" && to == "shader") m = inverse(i->toCurrent);
-        else known = matrix(from, to, m);
-        for (int k = 0; k < 16; ++k) out[k] = float(m.m[k / 4][k % 4]);
-        return known;
-    };
-    for (auto& v : compiler_->parameterDefaults(program, d, spaces)) {
-        if (v.type.base == rsl::Base::String && v.type.array != 0) { // elements have names of their own: "maps[1]"
-            for (size_t e = 0; e < v.strings.size(); ++e) i->parameters.strings[v.name + "[" + std::to_string(e) + "]"] = v.strings[e];
-        } else if (v.type.base == rsl::Base::String) i->parameters.strings[v.name] = v.strings.empty() ? "" : v.strings[0];
-        else i->parameters.numbers[v.name] = std::move(v.numbers);
-    }
-    for (const scene::Param& given : call.params) {
+    std::vector<rsl::ParameterValue> values;
+    for (const scene::Param& written : call.params) {
+        const scene::Param renamed = asDeclared(written, *program);
+        const scene::Param& given = renamed;
         const rsl::ParameterInfo* p = nullptr;
         std::vector<std::string> names;
         for (const auto& q : program->parameters()) {
@@ -100,10 +94,10 @@ InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind k
             continue;
         }
         if (p->type.base == rsl::Base::String) {
+            i->given.insert(given.name);
             const size_t most = p->open ? std::min(given.strings.size(), size_t(limits::kShaderArray)) : size_t(std::max(1, p->type.array));
             if (p->open) i->parameters.strings[given.name + "[]"] = std::to_string(most);
-            for (size_t e = 0; e < std::min(most, given.strings.size()); ++e)
-                i->parameters.strings[p->type.array ? given.name + "[" + std::to_string(e) + "]" : given.name] = given.strings[e];
+            values.push_back({given.name, p->type, {}, {given.strings.begin(), given.strings.begin() + std::ptrdiff_t(std::min(most, given.strings.size()))}});
             continue;
         }
         std::vector<float> v = given.numbers;
@@ -122,7 +116,25 @@ InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind k
         }
         v.resize(want);
         transformParameter(v, p->type.base, i->toCurrent);
-        i->parameters.numbers[given.name] = std::move(v);
+        i->given.insert(given.name);
+        values.push_back({given.name, p->type, std::move(v), {}});
+    }
+
+    // Defaults: the shader's own expressions in the instance's spaces, of what was given.
+    auto spaces = [&](const std::string& from, const std::string& to, float out[16]) {
+        Matrix m;
+        bool known = true;
+        if (from == "shader" && to == "current") m = i->toCurrent;
+        else if (from == "current" && to == "shader") m = inverse(i->toCurrent);
+        else known = matrix(from, to, m);
+        for (int k = 0; k < 16; ++k) out[k] = float(m.m[k / 4][k % 4]);
+        return known;
+    };
+    for (auto& v : compiler_->parameterDefaults(program, d, spaces, values)) {
+        if (v.type.base == rsl::Base::String && v.type.array != 0) { // elements have names of their own: "maps[1]"
+            for (size_t e = 0; e < v.strings.size(); ++e) i->parameters.strings[v.name + "[" + std::to_string(e) + "]"] = v.strings[e];
+        } else if (v.type.base == rsl::Base::String) i->parameters.strings[v.name] = v.strings.empty() ? "" : v.strings[0];
+        else i->parameters.numbers[v.name] = std::move(v.numbers);
     }
     return i;
 }
@@ -147,6 +159,7 @@ InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const std::map<s
         rsl::CoShader c = rsl::ShaderCompiler::coShader(i->second->program, handle);
         for (const auto& [name, v] : i->second->parameters.numbers) c.numbers[name] = v;
         for (const auto& [name, v] : i->second->parameters.strings) c.strings[name] = v;
+        c.computed = i->second->program->computedParameters(i->second->given, {});
         copy->coShaders.push_back(std::move(c));
     }
     return bound = copy;
@@ -163,6 +176,7 @@ rsl::KernelOptions WorldImpl::kernelOptions(const ShaderInstance& i, const std::
     for (const auto& [k, v] : i.parameters.strings) o.stringParameters.push_back({k, v});
     o.coShaders = i.coShaders;
     o.varyingParameters = varying;
+    o.computedParameters = i.program->computedParameters(i.given, varying);
     if (i.program->kind() == rsl::ShaderKind::Surface || i.program->kind() == rsl::ShaderKind::Volume) o.messages = lightMessages_;
     return o;
 }

@@ -84,6 +84,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
         for (auto& path : splitSearchPath(e)) w->settings_.shaderPaths.push_back(path);
     w->settings_.shaderPaths.push_back(shippedShaders());
     w->shapes_ = geometry::buildShapes(*frame, d);
+    for (const auto& shape : w->shapes_) w->numberOfShape_.emplace(shape.get(), uint32_t(w->numberOfShape_.size()));
     w->clippingPlanes_ = o.clippingPlanes;
     w->clipNear_ = o.clipNear;
     w->clipFar_ = o.clipFar;

@@ -100,6 +100,7 @@ struct ShaderInstance {
     std::string name;
     std::shared_ptr<const rsl::CompiledShader> program;
     shading::ParameterBlock parameters;
+    std::set<std::string> given; ///< parameters that have no default: the scene gave them
     std::vector<rsl::CoShader> coShaders; ///< those of the attributes under which the shader was named
     Matrix toCurrent;
     SourcePlace place;
@@ -227,6 +228,7 @@ public:
     std::map<std::vector<const void*>, InstanceRef> withCoShaders_;          ///< by shader, then the requests of its co-shaders
     Facts facts_;
     std::vector<geometry::ShapeRef> shapes_;
+    std::unordered_map<const geometry::Shape*, uint32_t> numberOfShape_; ///< index into shapes_
     std::vector<int> bindingOf_;               ///< by shape
     std::vector<SurfaceBinding> bindings_;
     int groups_ = 0;                           ///< number of different SurfaceBinding::group

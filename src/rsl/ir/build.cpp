@@ -266,7 +266,7 @@ std::unique_ptr<Kernel> buildKernel(const Program& p, const Shader& s, const Ker
     return k;
 }
 
-std::unique_ptr<Kernel> buildDefaults(const Program& p, const Shader& s, Diagnostics& d) {
+std::unique_ptr<Kernel> buildDefaults(const Program& p, const Shader& s, Diagnostics& d, const std::vector<ParameterValue>& given) {
     auto k = newKernel(p, s);
     k->name += ":defaults";
     bool good = false;
@@ -274,7 +274,7 @@ std::unique_ptr<Kernel> buildDefaults(const Program& p, const Shader& s, Diagnos
         const KernelOptions o;
         const DirectSet none;
         Builder b(*k, p, s, o, d, none);
-        good = b.buildDefaults();
+        good = b.buildDefaults(given);
     }
     if (!good) return nullptr;
     toShortForm(*k);

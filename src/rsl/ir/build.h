@@ -18,6 +18,7 @@ namespace alpenglow::rsl {
 std::unique_ptr<ir::Kernel> buildKernel(const Program&, const Shader&, const KernelOptions&, Diagnostics&);
 
 /// A kernel whose outputs "param:NAME" (arrays: "param:NAME[i]") are the parameters' defaults, in declaration order.
-std::unique_ptr<ir::Kernel> buildDefaults(const Program&, const Shader&, Diagnostics&);
+/// `given`: values of parameters that stand for their defaults.
+std::unique_ptr<ir::Kernel> buildDefaults(const Program&, const Shader&, Diagnostics&, const std::vector<ParameterValue>& given = {});
 
 } // namespace alpenglow::rsl

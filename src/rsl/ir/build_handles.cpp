@@ -62,7 +62,9 @@ void Builder::beginCoShaders() {
             const Symbol& s = *p.symbol;
             const auto& numbers = c.numbers.count(s.name) ? c.numbers.at(s.name) : std::vector<float>{};
             Inst* v = nullptr;
-            if (s.type.base == Base::String && !s.type.array) {
+            if (std::find(c.computed.begin(), c.computed.end(), s.name) != c.computed.end()) {
+                v = defaultValue(p, std::max(1, s.type.array));
+            } else if (s.type.base == Base::String && !s.type.array) {
                 v = leaves_.string(c.strings.count(s.name) ? c.strings.at(s.name) : "");
             } else if (s.type.base == Base::String) {
                 const std::vector<std::pair<std::string, std::string>> given(c.strings.begin(), c.strings.end());

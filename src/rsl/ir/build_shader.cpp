@@ -65,29 +65,53 @@ Inst* Builder::parameterValue(const ShaderParameter& p) {
     }
     if (type == Type{Base::String, 0} && (!p.defaultValue || p.defaultValue->kind == ExprKind::String))
         return leaves_.string(p.defaultValue ? p.defaultValue->text : "");
+    const auto& computed = options_.computedParameters;
+    if (std::find(computed.begin(), computed.end(), s.name) != computed.end()) return defaultValue(p, length);
     const auto& v = options_.varyingParameters;
     const bool varying = s.storage == Storage::Varying || std::find(v.begin(), v.end(), s.name) != v.end();
     return input("param:" + s.name, type, !varying);
 }
 
-bool Builder::buildDefaults() {
+/// A value that is known from outside as a constant.
+Inst* Builder::givenValue(const Symbol& s, const ParameterValue& v) {
+    const Kind kind = kindOf(s.type.element());
+    const size_t each = kind == Kind::String ? 1 : static_cast<size_t>(components(kind));
+    const size_t count = kind == Kind::String ? v.strings.size() : v.numbers.size() / each;
+    const auto element = [&](size_t e) -> Inst* {
+        if (e >= count) return zero(kind);
+        if (kind == Kind::String) return leaves_.string(v.strings[e]);
+        const auto first = v.numbers.begin() + static_cast<std::ptrdiff_t>(e * each);
+        return leaves_.constant(kind, std::vector<float>(first, first + static_cast<std::ptrdiff_t>(each)));
+    };
+    if (!s.type.array) return element(0);
+    Inst* a = newArray(s.type.base, std::max<int>(1, s.type.array > 0 && !s.open ? s.type.array : static_cast<int>(count)));
+    for (int e = 0; e < arrayLength(a); ++e)
+        emit(Op::ArrayStore, Kind::None, {a, constant(static_cast<float>(e)), element(static_cast<size_t>(e))});
+    return a;
+}
+
+/// What a parameter is that nothing was given for. `length`: of an array.
+Inst* Builder::defaultValue(const ShaderParameter& p, int length) {
+    const Symbol& s = *p.symbol;
+    if (s.type.array) {
+        Inst* a = newArray(s.type.base, std::max(1, length));
+        if (p.defaultValue) copyArray(a, *p.defaultValue);
+        return a;
+    }
+    return p.defaultValue ? expr(*p.defaultValue, kindOf(s.type)) : zero(kindOf(s.type));
+}
+
+bool Builder::buildDefaults(const std::vector<ParameterValue>& given) {
     region_ = &k_.body;
     std::vector<std::pair<const Symbol*, Inst*>> values;
     frames_.push_back({});
     for (const ShaderParameter& p : shader_.parameters) {
         place_ = p.symbol->place;
-        if (p.symbol->type.array) {
-            int n = p.symbol->type.array;
-            if (n < 0)
-                n = p.defaultValue && p.defaultValue->kind == ExprKind::ArrayList
-                        ? std::max<int>(1, static_cast<int>(p.defaultValue->args.size()))
-                        : 1;
-            Inst* a = newArray(p.symbol->type.base, n);
-            if (p.defaultValue) copyArray(a, *p.defaultValue);
-            set(slot(p.symbol), a);
-        } else {
-            set(slot(p.symbol), p.defaultValue ? expr(*p.defaultValue, kindOf(p.symbol->type)) : zero(kindOf(p.symbol->type)));
-        }
+        const auto known = std::find_if(given.begin(), given.end(), [&](const ParameterValue& v) { return v.name == p.symbol->name; });
+        int n = p.symbol->type.array;
+        if (n < 0)
+            n = p.defaultValue && p.defaultValue->kind == ExprKind::ArrayList ? std::max<int>(1, static_cast<int>(p.defaultValue->args.size())) : 1;
+        set(slot(p.symbol), known != given.end() ? givenValue(*p.symbol, *known) : defaultValue(p, n));
         values.emplace_back(p.symbol, get(slot(p.symbol)));
     }
     for (const auto& [s, v] : values) {

@@ -23,7 +23,9 @@ public:
     Builder(Kernel& k, const Program& p, const Shader& s, const KernelOptions& o, Diagnostics& d, const DirectSet& direct)
         : k_(k), program_(p), shader_(s), options_(o), diagnostics_(d), direct_(direct), leaves_(k) {}
     bool buildShader();
-    bool buildDefaults();
+    bool buildDefaults(const std::vector<ParameterValue>& given);
+    Inst* givenValue(const Symbol&, const ParameterValue&);
+    Inst* defaultValue(const ShaderParameter&, int length);
 
 private:
     // build.cpp: instructions
@@ -251,7 +253,16 @@ private:
     Inst* special(const Expr&);
     std::vector<Inst*> traceParts(const Expr&);
     Inst* service(const Expr&, Op, int part = -1);
+    struct SplineCall {
+        Inst* value = nullptr;
+        Kind kind{};
+        Base base{};
+        std::vector<Inst*> points; ///< where they are given one by one, or looked at so
+        Inst *storage = nullptr, *length = nullptr;
+        int most = 0; ///< control points that there can be
+    };
     Inst* spline(const Expr&);
+    Inst* splineOf(SplineCall, const std::string& basis, bool solve);
     Inst* transformCall(const Expr&);
     Inst* filterstep(const Expr&);
     Inst* isOutput(const Expr&);

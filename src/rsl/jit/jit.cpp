@@ -118,6 +118,8 @@ std::string codeKey(const KernelOptions& o) {
     auto varying = o.varyingParameters;
     std::sort(varying.begin(), varying.end());
     for (const auto& s : varying) text(s);
+    k += "\ncomputed ";
+    for (const auto& s : o.computedParameters) text(s);
     k += "\nmessages ";
     for (const auto& s : o.messages) text(s);
     return k + "\n";

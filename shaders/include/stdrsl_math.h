@@ -19,6 +19,9 @@
 #ifndef M_INVTWOPI
 #define M_INVTWOPI 0.15915494309189533577
 #endif
+#ifndef M_MAXDIST
+#define M_MAXDIST 1.0e10 /* farther than anything: the distance of samples that meet nothing */
+#endif
 #ifndef M_SQRT2
 #define M_SQRT2 1.41421356237309504880
 #endif

@@ -32,6 +32,7 @@ struct stdrsl_ShadingContext
     public uniform float m_SpecularDepth = 0;
     public uniform float m_Sides = 2;
     public varying float m_Inside = 0;
+    public varying float m_EnteringRegion = 1; /* 1 where I goes into what the surface bounds, 0 where it comes out */
     public stdrsl_SampleMgrPathTrace m_SampleMgr;
 
     public void construct() { m_SampleMgr->construct(); }
@@ -41,6 +42,7 @@ struct stdrsl_ShadingContext
         m_Nf = (m_Nn . m_In > 0) ? -m_Nn : m_Nn;
         m_Ns = (m_Sides == 2) ? m_Nf : m_Nn;
         m_Inside = (m_Nn . m_In > 0) ? 1 : 0;
+        m_EnteringRegion = 1 - m_Inside;
         m_Bitangent = normalize(m_Nn ^ m_Tangent);
     }
     public void init()

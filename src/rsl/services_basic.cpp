@@ -290,6 +290,10 @@ bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* 
             };
             const std::string from = lower(a.string()), to = lower(a.string());
             const auto known = [](const std::string& t) { return t == "rgb" || t == "hsv" || t == "hsl" || t == "yiq" || t == "xyz"; };
+            for (const std::string& t : {from, to})
+                if (!t.empty() && !known(t))
+                    diagnostics.reportOnce("ctransform:" + t, {Severity::Warning, Rie::NoError, {file, s.place.line, s.place.column},
+                                                               "there is no colour space \"" + t + "\"; the colour stays as it is", "there are: rgb, hsv, hsl, yiq, xyz", {}});
             FormatValue v = a.value();
             float c[3] = {v.numbers[0], v.numbers[1], v.numbers[2]}, r[3];
             if (from != to && known(from) && known(to)) {

@@ -90,11 +90,12 @@ std::vector<Shadeop> messageShadeops() {
     add("getshaders", sigs({{"shader[] getshaders(pairs)"}}), Lowering::Special, kAnyContext, "All co-shaders, or those of a category.").optional = {
         {{Base::String, 0}, "category", false, "\"\"", "names of categories"}};
     list.back().examples = {{"arraylength(l)", "0", "shader l[] = getshaders(\"category\", \"layer\");"}};
-    add("getlight", sigs({{"shader getlight(string handle)"}}), Lowering::Special, kSurface | kVolume,
-        "Light by its handle; null if it does not light the surface.");
+    add("getlight", sigs({{"shader getlight(string handle)"}}), Lowering::Special, kSurface | kVolume | kLight,
+        "Light by its handle; null if it does not light the surface (of a light shader: the one that it lights).");
     list.back().examples = {{"(l == null) ? 1 : 0", "1", "shader l = getlight(\"none\");"}};
-    add("getlights", sigs({{"shader[] getlights(pairs)"}}), Lowering::Special, kSurface | kVolume,
-        "The active lights, or those of a category; each handle->light(L, Cl [, Ol]) gives one sample of its light at P, L from the light to the surface.")
+    add("getlights", sigs({{"shader[] getlights(pairs)"}}), Lowering::Special, kSurface | kVolume | kLight,
+        "The active lights, or those of a category; each handle->light(L, Cl [, Ol]) gives one sample of its light at P, L from the light to the surface. "
+        "In a light shader they are those of the surface that it lights; their parameters are there, their methods light() give nothing.")
         .optional = {{{Base::String, 0}, "category", false, "\"\"", "\"a\", \"-a\", \"a|b\", \"a&b\", \"a,b\", with parentheses"}};
     list.back().examples = {{"arraylength(getlights())", "2", "", "two lights are on"}};
     add("getvar", sigs({{"float getvar(shader handle; string name)"}}) + each(kAllTypes, "float getvar(shader handle; string name; output $ value)") +

@@ -127,8 +127,10 @@ std::vector<Shadeop> raytracingShadeops() {
         "Visibility between a and b among objects visible to transmission: 1 free, 0 blocked, a colour through translucent surfaces.");
     list.back().examples = {{"transmission(P, P + N)", "1 1 1", "", kNothing}};
     Shadeop& occlusion = add("occlusion", sigs({{"float occlusion(point p; vector r; pairs)"}, {"float occlusion(point p; vector r; float samples; pairs)"},
-                                  {"float occlusion(string map; point p; vector r; float samples; pairs)"}}),
-                             Lowering::Unavailable, "Part of the hemisphere about r that is blocked.");
+                                  {"float occlusion(string map; point p; vector r; float samples; pairs)"},
+                                  {"color occlusion(point p; vector r; float angle; output vector bent; pairs)"}}),
+                             Lowering::Unavailable,
+                             "Part of the hemisphere about r that is blocked. The form with a half angle and a variable for the mean free direction is AIR's.");
     list.back().examples = {{"occlusion(P, N, 16)", "0"}};
     occlusion.optional = occlusion.optional + hemisphereParameters();
     Shadeop& indirect = add("indirectdiffuse",
@@ -139,8 +141,12 @@ std::vector<Shadeop> raytracingShadeops() {
                             Lowering::Unavailable, "Diffuse light that arrives by way of other surfaces, or from an environment map.");
     list.back().examples = {{"indirectdiffuse(P, N, 16)", "0 0 0"}};
     indirect.optional = indirect.optional + hemisphereParameters();
-    Shadeop& subsurface = add("subsurface", sigs({{"color subsurface(point p; pairs)"}, {"color subsurface(point p; normal n; pairs)"}}),
-                              Lowering::Unavailable, "Light that leaves at p after scattering below the surface.");
+    Shadeop& subsurface = add("subsurface", sigs({{"color subsurface(point p; pairs)"},
+                                                  {"color subsurface(point p; normal n; pairs)"},
+                                                  {"color subsurface(string type; point p; normal n; pairs)"}}),
+                              Lowering::Unavailable,
+                              "Light that leaves at p after scattering below the surface. The form that begins with the type (\"raytrace\", \"raytraced\", "
+                              "\"pointcloud\") is that of PRMan 16.");
     list.back().examples = {{"subsurface(P)", "0 0 0"}};
     subsurface.optional = subsurface.optional + subsurfaceParameters();
     subsurface.contexts = kSurface | kLight; // classes that are both

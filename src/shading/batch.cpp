@@ -8,6 +8,7 @@ namespace alpenglow::shading {
 namespace {
 
 constexpr int16_t kZero = -1, kOne = -2, kThree = -3;
+constexpr int16_t kLitNormal = -4; // Ng of ShadePoint::lit, Ns where it is not known
 constexpr float kConstants[3] = {0, 1, 3};
 
 // One line per predefined variable (rsl.md section 8): where its parts {v, du, dv, duu, duv, dvv} lie in a ShadePoint. Second
@@ -33,6 +34,7 @@ const Variable kVariables[] = {
     {"alpha", {AT(alpha), kZero, kZero, kZero, kZero, kZero}},
     {"Ps", {AT(Ps), kZero, kZero, kZero, kZero, kZero}},
     {"Ns", {AT(Ns), kZero, kZero, kZero, kZero, kZero}},
+    {"Ngs", {kLitNormal, kZero, kZero, kZero, kZero, kZero}},
     {"ncomps", {kThree, kZero, kZero, kZero, kZero, kZero}},
     {"time", {AT(time), kZero, kZero, kZero, kZero, kZero}},
 };
@@ -185,6 +187,10 @@ void Batch::fillVariables(std::span<const ShadePoint> points) {
             float* row = storage_.get() + s.firstRow * stride;
             for (size_t c = 0; c < size_t(s.components); ++c)
                 for (size_t p = 0; p < parts; ++p, row += next) {
+                    if (s.offset[p] == kLitNormal) {
+                        for (size_t i = first; i < to; ++i) row[i] = points[i].lit ? points[i].lit->Ng[int(c)] : points[i].Ns[int(c)];
+                        continue;
+                    }
                     if (s.offset[p] < 0) {
                         std::fill(row + first, row + to, kConstants[-1 - s.offset[p]]);
                         continue;

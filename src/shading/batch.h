@@ -47,7 +47,7 @@ private:
         bool varying = false;                  ///< a parameter that primitive variables may override
         int components = 1, parts = 1, elements = 1;
         size_t rows = 0, firstRow = 0;         ///< rows of `stride` floats
-        int16_t offset[6] = {-1, -1, -1, -1, -1, -1}; ///< Variable: bytes into ShadePoint of each part; -1: zero, -2: one, -3: three
+        int16_t offset[6] = {-1, -1, -1, -1, -1, -1}; ///< Variable: bytes into ShadePoint of each part; -1: zero, -2: one, -3: three, -4: Ngs
         std::string name, space, toSpace;
     };
     std::vector<Source> inputs_;

@@ -16,7 +16,7 @@ SiteKind kindOf(const std::string& op) {
         {"option", SiteKind::Option}, {"rendererinfo", SiteKind::RendererInfo}, {"rayinfo", SiteKind::RayInfo},
         {"raylevel", SiteKind::RayLevel}, {"isindirectray", SiteKind::RayLevel}, {"isshadowray", SiteKind::RayLevel},
         {"textureinfo", SiteKind::TextureInfo}, {"lightsetup", SiteKind::LightSetup}, {"getlight", SiteKind::LightHandles}, {"getvar", SiteKind::PrimitiveVariable}, {"shadername", SiteKind::ShaderName},
-        {"getlights", SiteKind::LightHandles}, {"islightcategory", SiteKind::LightHandles}, {"lightcall", SiteKind::LightHandles},
+        {"getlights", SiteKind::LightHandles}, {"islightcategory", SiteKind::LightHandles}, {"currentlight", SiteKind::LightHandles}, {"lightcall", SiteKind::LightHandles},
         {"lightparameter", SiteKind::LightHandles}};
     auto i = kinds.find(op);
     return i == kinds.end() ? SiteKind::Other : i->second;
@@ -55,6 +55,7 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
     }
     for (const char* name : {"transmission", "environmentcontribution", "unshadowedenvironment", "arealightcontribution", "unshadowedarealight"})
         t->sums |= i.resultRows.count(name) > 0;
+    t->onlyLights = !i.resultRows.empty() && i.resultRows.count("arealightcontribution") + i.resultRows.count("unshadowedarealight") == i.resultRows.size();
     return t;
 }
 

@@ -11,14 +11,17 @@ namespace {
 constexpr char kHandle[] = "light#"; // before the number of a light, in the handles that getlights() gives
 } // namespace
 
-int Engine::lightOfHandle(const BatchContext& c, const std::string& handle) const {
-    if (handle.rfind(kHandle, 0) != 0 || !c.binding) return -1;
+/// -1: no light of this surface. Null: of no surface.
+static int numberOfLight(const SurfaceBinding* surface, const std::string& handle) {
+    if (handle.rfind(kHandle, 0) != 0 || !surface) return -1;
     int n = -1;
     const char* digits = handle.c_str() + sizeof kHandle - 1;
     if (std::from_chars(digits, handle.c_str() + handle.size(), n).ec != std::errc()) return -1;
-    const auto& on = c.binding->lights;
+    const auto& on = surface->lights;
     return std::find(on.begin(), on.end(), n) == on.end() ? -1 : n;
 }
+
+int Engine::lightOfHandle(const BatchContext& c, const std::string& handle) const { return numberOfLight(c.binding, handle); }
 
 void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, int lanes, const float* in, float* out) {
     const SiteInfo& s = c.bound->sites[size_t(site)];
@@ -35,6 +38,8 @@ void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, i
             if ((mask >> lane & 1) && first + lane < int(c.points.size())) body(lane);
     };
     auto visible = [&](const BoundLight& l) { return bool(l.kernel); };
+    // In a light's own shader the lights are those of the surface that it lights.
+    auto bindingOf = [&](int lane) { return !c.light ? c.binding : c.lit ? c.lit->binding(first + lane) : nullptr; };
     if (d.op == "islightcategory") {
         if (loop.light >= 0)
             each([&](int lane) {
@@ -49,8 +54,8 @@ void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, i
             const std::string want = text(lane);
             checkCategory(c, d, want);
             int n = 0;
-            if (c.binding)
-                for (int i : c.binding->lights) {
+            if (const SurfaceBinding* surface = bindingOf(lane))
+                for (int i : surface->lights) {
                     const BoundLight& l = world_->lights_[size_t(i)];
                     if (!visible(l) || !inCategory(want, categoriesOf(l))) continue;
                     if (n == limits::kLightHandles) {
@@ -67,8 +72,8 @@ void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, i
     if (d.op == "getlight") {
         each([&](int lane) {
             const std::string want = text(lane);
-            if (c.binding)
-                for (int i : c.binding->lights)
+            if (const SurfaceBinding* surface = bindingOf(lane))
+                for (int i : surface->lights)
                     if (visible(world_->lights_[size_t(i)]) && world_->lights_[size_t(i)].handle == want) {
                         put(0, lane, std::bit_cast<float>(rsl::internString(kHandle + std::to_string(i))));
                         break;
@@ -78,7 +83,7 @@ void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, i
     }
     std::map<int, uint64_t> asked; // lights of the handles
     each([&](int lane) {
-        if (int l = lightOfHandle(c, text(lane)); l >= 0) asked[l] |= uint64_t(1) << lane;
+        if (int l = numberOfLight(bindingOf(lane), text(lane)); l >= 0) asked[l] |= uint64_t(1) << lane;
     });
     if (d.op == "lightparameter") { // rows: found, value
         const ServiceCall call(c, site, first, mask, lanes, in, out);
@@ -94,6 +99,7 @@ void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, i
         }
         return;
     }
+    if (c.light) return; // one light does not run another: they could run each other without end (the builder says so)
     // lightcall: handle, P; rows: found, L (light to surface), Cl, Ol, place for the distance.
     c.lightDistance.assign(width, 1e38f);
     LightLoop turn;

@@ -334,6 +334,20 @@ void Engine::gather(BatchContext& c, Sched& sched) {
         }
     }
 
+    // A ray that is to bring nothing but the light of emitters, and goes past the balls about all of them, brings none.
+    auto meetsEmitter = [&](const LobeVertex& l, const Vec3& from, const Vec3& w, float bias) {
+        if (!l.lights) return false;
+        const float error = 1e-3f * (1 + length(from)) + std::fabs(bias);
+        for (const BoundLight& light : world_->lights_) {
+            if (light.kind != LightKind::Area || !light.emitter || light.emitter->empty()) continue;
+            const Vec3 to = light.centre - from;
+            const float along = std::max(dot(to, w), 0.f), reach = light.radius * 1.001f + error;
+            const Vec3 beside = to - w * along;
+            if (!(dot(beside, beside) > reach * reach)) return true;
+        }
+        return false;
+    };
+
     // Rays. Under path one of the vertex's lobes is followed; elsewhere all.
     for (size_t pi = 0; pi < c.points.size(); ++pi) {
         auto list = lobesOf(pi);
@@ -360,6 +374,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 uint32_t occurrence = l.occurrence * 4096 + uint32_t(k);
                 Vec3 w;
                 if (!l.kind->sample(l.params, rng.pair(from.vertex, l.site, occurrence), w)) continue;
+                if (l.trace && l.trace->onlyLights && !(l.base > 0) && !meetsEmitter(l, l.elsewhere ? l.from : p.P, w, l.bias)) continue;
                 bool delta = l.delta;
                 float pdf = delta ? 0 : l.kind->pdf(l.params, w);
                 Color f(0);

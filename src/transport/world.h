@@ -55,6 +55,7 @@ struct TraceSite {
     texture::Handle map = nullptr;        ///< "environmentmap"
     Matrix toMap;                         ///< current to "environmentspace"
     bool sums = false;                    ///< it asks for transmission or for parts of the result
+    bool onlyLights = false;              ///< for nothing but what area lights send
 };
 
 /// What a call site of a kernel means to the engine, worked out once per kernel.

@@ -60,7 +60,7 @@ const std::multimap<std::string, Special>& specials() {
             m.insert({"ctransform", {{{"tospace", "\"" + std::string(space) + "\""}, {"fromspace", "\"rgb\""}}, ""}});
             m.insert({"ctransform", {{{"tospace", "\"rgb\""}, {"fromspace", "\"" + std::string(space) + "\""}}, ""}});
         }
-        for (const char* name : {"transform", "vtransform", "ntransform", "mtransform"})
+        for (const char* name : {"transform", "ptransform", "vtransform", "ntransform", "mtransform"})
             m.insert({name, {{{"tospace", "\"world\""}, {"fromspace", "\"shader\""}}, ""}});
         m.insert({"area", {{{"strategy", "\"dicing\""}}, ""}});
         for (const char* filter : {"box", "triangle", "gaussian", "catmull-rom"})

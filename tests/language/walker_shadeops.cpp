@@ -265,6 +265,7 @@ const std::map<std::string, Definition>& definitions() {
              return r;
          }},
         {"transform", transformBy(Base::Void)},
+        {"ptransform", transformBy(Base::Point)},
         {"vtransform", transformBy(Base::Vector)},
         {"ntransform", transformBy(Base::Normal)},
         {"ctransform", colourSpace},

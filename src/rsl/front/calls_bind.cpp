@@ -12,7 +12,7 @@ namespace alpenglow::rsl::front {
 namespace {
 /// How many optional parameters the text of a shadeop takes behind its own.
 size_t optionalInText(const Shadeop& op) {
-    static const std::set<std::string_view> kOps = {"bump", "visibility", "rayhittest", "fulltrace"};
+    static const std::set<std::string_view> kOps = {"bump", "visibility", "rayhittest", "fulltrace", "wnoise"};
     return kOps.count(op.name) ? op.optional.size() : 0;
 }
 } // namespace
@@ -23,7 +23,7 @@ bool Checker::uniformResult(const Expr& e, const Choice& choice) const {
     const Shadeop& op = *choice.shadeop;
     if (op.name == "arraylength" || op.name == "capacity" || op.name == "textureinfo") return e.kind == ExprKind::ShadeopCall;
     if (op.section == kPluginSection) return true;
-    static const std::set<std::string_view> kOfThePoint = {"gridmin", "gridmax", "getvar", "readprimvar", "readaov"};
+    static const std::set<std::string_view> kOfThePoint = {"gridmin", "gridmax", "getvar", "readprimvar", "readaov", "evalparam"};
     if (op.section == "Messages") return !kOfThePoint.count(op.name);
     return (op.name == "texture" || op.name == "environment") && e.args.size() > 1;
 }

@@ -156,7 +156,8 @@ void Checker::bindExtern(Symbol& declared) {
     Symbol* outer = lookup(declared.name);
     if (!outer)
         if (const auto p = shaderParameters_.find(declared.name); p != shaderParameters_.end()) outer = p->second;
-    if (!outer && (declared.name == "Ps" || declared.name == "Ns")) outer = global(declared.name.substr(0, 1)); // functions for all kinds
+    if (!outer && (declared.name == "Ps" || declared.name == "Ns" || declared.name == "Ngs"))
+        outer = global(declared.name == "Ngs" ? "Ng" : declared.name.substr(0, 1)); // functions for all kinds
     if (!outer && !kind_) {
         // In a function that nobody calls it may be a parameter of a shader to come.
         auto s = std::make_unique<Symbol>(declared);

@@ -2,6 +2,7 @@
 #include "rsl/front/borrowed.h"
 #include "rsl/front/checker.h"
 #include "rsl/front/classes.h"
+#include "rsl/front/colournames.h"
 #include "rsl/front/inspect.h"
 #include "rsl/front/lint.h"
 #include "rsl/front/prelude.h"
@@ -97,6 +98,7 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
         else sources.warning(m.place, text + "; nothing of it seems to be used");
     }
     const bool failed = sources.errors() > 0;
+    checkColourNames(*program, sources);
     if (options.lint) lint(*program, p.tokens, unit.skipped, sources);
     sources.flush(diagnostics);
     program->files = sources.names();

@@ -29,6 +29,8 @@ constexpr const char* kDirect = R"(
             d += PI * Cl * one[0]->materialResponse;
             one[0]->materialResponse = 0;
             one[0]->materialPdf = 0;
+            one[0]->summedResponse = 0;
+            one[0]->summedPdf = 0;
             evaluateSamples("specular", one);
             s += PI * Cl * one[0]->materialResponse;
         }

@@ -54,7 +54,7 @@ constexpr GlobalVariable kLightOwn[] = {
     {"P", kP, V, R, "position on the light"},  {"N", kN, V, R, "normal of the area light"},
     {"s", kF, V, R, "texture coordinate"},     {"t", kF, V, R, "texture coordinate"},
     {"L", kV, V, W, "from the light to the surface; in illuminate and solar"}, {"Ps", kP, V, R, "point being lit"},
-    {"Ns", kN, V, R, "shading normal of the lit surface"}, {"I", kV, V, R, "incident ray at the lit point"},
+    {"Ns", kN, V, R, "shading normal of the lit surface"}, {"Ngs", kN, V, R, "geometric normal of the lit surface; of 3Delight for Maya"}, {"I", kV, V, R, "incident ray at the lit point"},
     {"Cl", kC, V, W, "result: colour of the light"}, {"Ol", kC, V, W, "result: opacity of the light"}};
 constexpr GlobalVariable kVolumeOwn[] = {
     {"P", kP, V, R, "end of the ray segment"}, {"I", kV, V, R, "the segment; it starts at P - I"},

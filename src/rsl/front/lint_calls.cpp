@@ -1,6 +1,5 @@
 #include "rsl/front/lint_calls.h"
 #include <algorithm>
-#include <cctype>
 #include <initializer_list>
 #include <string_view>
 
@@ -29,7 +28,6 @@ struct NamedArgument {
 
 const std::vector<NamedArgument>& namedArguments() {
     static const Names spaces = {"current", "world", "camera", "object", "shader", "screen", "raster", "NDC", "eye"};
-    static const Names colours = {"rgb", "hsv", "hsl", "yiq", "xyz"};
     static const std::vector<NamedArgument> all = {
         {"rayinfo", 0, 2, true, "rayinfo", {"type", "label", "depth", "speculardepth", "diffusedepth", "origin", "direction", "length"}},
         {"textureinfo", 1, 3, true, "textureinfo",
@@ -39,8 +37,6 @@ const std::vector<NamedArgument>& namedArguments() {
         {"spline", 0, 3, true, "basis",
          {"catmull-rom", "catmullrom", "bezier", "b-spline", "bspline", "hermite", "linear", "solvecatmull-rom", "solvecatmullrom",
           "solvebezier", "solveb-spline", "solvebspline", "solvehermite", "solvelinear"}},
-        {"ctransform", 0, 2, true, "colour", colours},
-        {"ctransform", 1, 3, true, "colour", colours},
         {"transform", 0, 2, false, "space", spaces},
         {"transform", 1, 3, false, "space", spaces},
         {"vtransform", 0, 2, false, "space", spaces},
@@ -61,11 +57,6 @@ const std::vector<NamedArgument>& namedArguments() {
           "subsurface:groupname", "light:samples", "light:emitphotons", "light:samplingstrategy", "irradiance:shadingrate",
           "irradiance:nsamples", "hider:composite"}}};
     return all;
-}
-
-std::string lower(std::string s) {
-    std::transform(s.begin(), s.end(), s.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    return s;
 }
 
 bool contains(const Names& names, const std::string& name) { return std::find(names.begin(), names.end(), name) != names.end(); }
@@ -89,21 +80,16 @@ void name(const std::string& given, Place place, const NamedArgument& a, SourceS
     if (!a.all && (near.empty() || near == given)) return;
     const std::string what = a.what;
     if (what == "basis") sources.warning(place, "there is no spline basis \"" + given + "\"; linear is used", oneOf(near, a.names));
-    else if (what == "colour") sources.warning(place, "there is no colour space \"" + given + "\"; the colour stays as it is", oneOf(near, a.names));
     else if (what == "area") sources.warning(place, "area() has no strategy \"" + given + "\"", oneOf(near, a.names));
     else if (what == "space") sources.warning(place, "no predefined space is called \"" + given + "\"; the scene must have it", didYouMean(near));
     else sources.warning(place, what + "() knows nothing of the name \"" + given + "\"", oneOf(near, a.names));
 }
 
-/// `color "hvs" (...)` and `point "wrold" (...)`.
+/// `point "wrold" (...)`; the spaces of colours are the checker's.
 void space(const Expr& e, SourceSet& sources) {
-    if (!e.space || e.space->kind != ExprKind::String) return;
-    const bool colour = e.type.base == Base::Color;
+    if (!e.space || e.space->kind != ExprKind::String || e.type.base == Base::Color) return;
     for (const NamedArgument& a : namedArguments())
-        if (std::string_view(a.what) == (colour ? "colour" : "space") && a.argument == 0) {
-            if (!colour || !contains(a.names, lower(e.space->text))) name(e.space->text, e.space->place, a, sources);
-            return;
-        }
+        if (std::string_view(a.what) == "space" && a.argument == 0) return name(e.space->text, e.space->place, a, sources);
 }
 
 /// One conversion of a pattern: its letter, 0 at the end of the text.
@@ -180,7 +166,6 @@ void lintCall(const Expr& e, SourceSet& sources) {
         if (op != a.shadeop || e.args.size() < a.least || a.argument >= e.args.size() || !e.args[a.argument]) continue;
         const Expr& given = *e.args[a.argument];
         if (given.kind != ExprKind::String) continue;
-        if (std::string_view(a.what) == "colour" && contains(a.names, lower(given.text))) continue;
         name(given.text, given.place, a, sources);
     }
     // What is not built yet takes its parameters too; only names that miss one by a slip are told.

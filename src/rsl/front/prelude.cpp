@@ -10,7 +10,31 @@ struct BuiltIn { const char* name; const char* text; };
 // filterregion: where a shader wants a map to be read, as four corners in s and t or as four directions or points; `blurred` is given
 // to the map as its "blur", and spread is the half angle of the cone of directions.
 // __radiancesample: a direction with what a light sends from there and what a surface makes of it.
-constexpr BuiltIn kBuiltIns[] = {{"filterregion", R"(
+// normalizeMaterialResponse: of samples of several lobes, so many of each, one mean is taken over all; each lobe counts in full then.
+// accumulateMaterialResponse: the lobes of evaluateSamples() one after the other, each with a call of it, add up.
+// What names another stands before it.
+constexpr BuiltIn kBuiltIns[] = {{"normalizeMaterialResponse", R"(
+void normalizeMaterialResponse(output __radiancesample samples[]; uniform float counts[]) {
+    uniform float lobes = arraylength(counts), n = arraylength(samples), first = 0, lobe, i;
+    for (lobe = 0; lobe < lobes; lobe += 1) {
+        uniform float last = min(n, first + counts[lobe]);
+        for (i = first; i < last; i += 1) samples[i]->materialResponse *= n / counts[lobe];
+        first = last;
+    }
+}
+)"},
+                                 {"accumulateMaterialResponse", R"(
+void accumulateMaterialResponse(output __radiancesample samples[]) {
+    uniform float i, n = arraylength(samples);
+    for (i = 0; i < n; i += 1) {
+        samples[i]->summedResponse += samples[i]->materialResponse;
+        samples[i]->summedPdf += samples[i]->materialPdf;
+        samples[i]->materialResponse = samples[i]->summedResponse;
+        samples[i]->materialPdf = samples[i]->summedPdf;
+    }
+}
+)"},
+                                 {"filterregion", R"(
 struct filterregion {
     varying float s1 = 0, t1 = 0, s2 = 0, t2 = 0, s3 = 0, t3 = 0, s4 = 0, t4 = 0;
     varying vector v1 = 0, v2 = 0, v3 = 0, v4 = 0, centre = 0;
@@ -59,7 +83,14 @@ struct __radiancesample {
     varying color radiance = 0;
     varying color materialResponse = 0;
     varying float materialPdf = 0, lightPdf = 0;
+    varying color summedResponse = 0;
+    varying float summedPdf = 0;
     public void setMaterialResponse(varying color response; varying float pdf) { materialResponse = response; materialPdf = pdf; }
+    public void setMaterialSample(varying color response; varying float pdf; varying vector dir; varying float dist) {
+        setMaterialResponse(response, pdf);
+        direction = dir;
+        distance = dist;
+    }
     public void setLightRadiance(varying color light; varying float pdf) { radiance = light; lightPdf = pdf; }
 }
 )"}};
@@ -72,7 +103,7 @@ void addPrelude(SourceSet& sources, Preprocessed& p) {
         for (size_t i = 0; i < p.tokens.size(); ++i) {
             if (p.tokens[i].kind != Tok::Identifier || p.tokens[i].text != b.name) continue;
             named = true;
-            defined |= i > 0 && p.tokens[i - 1].is("struct");
+            defined |= i > 0 && (p.tokens[i - 1].is("struct") || p.tokens[i - 1].is("void"));
         }
         if (!named || defined) continue;
         Preprocessed own = preprocess(sources, sources.add(std::string("<") + b.name + ">", b.text), {});

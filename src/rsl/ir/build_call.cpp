@@ -225,7 +225,7 @@ Inst* Builder::transformCall(const Expr& e) {
     Inst* to = a[a.size() - 2];
     const auto between = [&](Inst* f, Inst* t) {
         if (f->op == Op::ConstString && t->op == Op::ConstString) return toSpace(f->text, t->text, v, base, e.place);
-        return dynamicSpace(name.c_str(), f, t, v, base);
+        return dynamicSpace(name == "ptransform" ? "transform" : name.c_str(), f, t, v, base);
     };
     if (to->kind == Kind::Matrix) {
         v = between(from, leaves_.string("current"));
@@ -240,7 +240,7 @@ Inst* Builder::special(const Expr& e) {
         Inst* v = expr(*e.args[0]);
         return emit(n == "Du" ? Op::Du : Op::Dv, v->kind, {v});
     }
-    if (n == "transform" || n == "vtransform" || n == "ntransform") return transformCall(e);
+    if (n == "transform" || n == "ptransform" || n == "vtransform" || n == "ntransform") return transformCall(e);
     if (n == "ctransform") {
         Inst* from = e.args.size() == 3 ? expr(*e.args[0]) : leaves_.string("rgb");
         Inst* to = expr(*e.args[e.args.size() - 2]);
@@ -253,6 +253,7 @@ Inst* Builder::special(const Expr& e) {
     if (n == "getshader") return getShader(e);
     if (n == "getvar") return getVariable(e);
     if (n == "readprimvar") return readPrimitiveVariable(e);
+    if (n == "evalparam") return evalParameter(e);
     if (n == "hasmethod") return hasMethod(e);
     if (n == "writeaov") return writeAov(e);
     if (n == "readaov") return readAov(e);

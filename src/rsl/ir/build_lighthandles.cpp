@@ -21,6 +21,10 @@ Site question(const char* op, const Place& place) {
 /// What else a call gives is for shader objects whose methods light() take more; a light of the scene does not see it.
 Inst* Builder::lightMethod(const Expr& e, Inst* handle) {
     if (e.text != "light" || e.args.size() < 3) return zero(Kind::Float);
+    if (shader_.kind == ShaderKind::Light) {
+        warn(e.place, "light() of another light is not yet available in a light shader; its variables keep what they hold");
+        return zero(Kind::Float);
+    }
     const auto colour = [&](const Expr& a) { return a.type == Type{Base::Color, 0} && a.kind == ExprKind::Variable; };
     const size_t asked = e.args.size() == 4 || (e.args.size() > 4 && colour(*e.args[3])) ? 4 : 3;
     if (e.args.size() > asked && options_.coShaders.empty())

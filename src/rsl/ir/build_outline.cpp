@@ -20,7 +20,7 @@ void Builder::scan(const Expr& e, Scan& to) {
     to.survey.size += 1;
     if (e.symbol) to.used.insert(e.symbol);
     if (e.function) include(*e.function, to);
-    if (e.shadeop && (e.shadeop->name == "outputchannel" || e.shadeop->name == "writeaov" || e.shadeop->name == "readaov")) to.survey.possible = false;
+    if (e.shadeop && (e.shadeop->name == "outputchannel" || e.shadeop->name == "writeaov" || e.shadeop->name == "readaov" || e.shadeop->name == "evalparam")) to.survey.possible = false;
     if (e.kind == ExprKind::Method || e.kind == ExprKind::Member) to.survey.possible = false;
     if (e.shadeop && !e.function) {
         const Lowering l = e.shadeop->lowering;

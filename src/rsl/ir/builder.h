@@ -221,6 +221,7 @@ private:
     Receiver receiver(Site&, const Expr& to, const std::string& name);
     void receive(const Receiver&, std::span<Inst* const> values, Inst* found);
     Inst* readPrimitiveVariable(const Expr&);
+    Inst* evalParameter(const Expr&); // build_parameters.cpp
     Inst* hasMethod(const Expr&);
     Inst* getShader(const Expr&);
     std::vector<Inst*> handlesOf(const Expr&);

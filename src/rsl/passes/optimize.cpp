@@ -14,6 +14,7 @@
 #include "rsl/passes/slope.h"
 #include "rsl/passes/uniform.h"
 #include "rsl/passes/unroll.h"
+#include "rsl/passes/unused_results.h"
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -93,6 +94,10 @@ void optimize(Kernel& k, const KernelOptions& options, Diagnostics& diagnostics)
             const bool one = isConst(v) && std::all_of(v->numbers.begin(), v->numbers.end(), [](float f) { return f == 1; });
             k.facts.opacity = one ? "1" : v->op == Op::Input && k.inputs[static_cast<size_t>(v->index)].name == "Os" ? "Os" : "shader";
         });
+    if (options.optimize > 0) {
+        removeUnusedResults(k);
+        check(k, "unused results");
+    }
     removeUnusedInputs(k);
     toShortForm(k);
     markUniform(k, options.mixed);

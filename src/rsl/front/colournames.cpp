@@ -1,0 +1,60 @@
+#include "rsl/front/colournames.h"
+#include "rsl/front/visit.h"
+#include <algorithm>
+#include <cctype>
+#include <set>
+
+namespace alpenglow::rsl::front {
+
+namespace {
+
+const std::vector<std::string>& spaces() {
+    static const std::vector<std::string> all = {"rgb", "hsv", "hsl", "yiq", "xyz"};
+    return all;
+}
+
+class Names {
+public:
+    explicit Names(SourceSet& sources) : sources_(sources) {}
+
+    void call(const Expr& e) {
+        if (e.space && e.type.base == Base::Color) name(*e.space);
+        if (!e.shadeop || e.shadeop->name != "ctransform") return;
+        for (size_t i = 0; i + 1 < e.args.size(); ++i)
+            if (e.args[i]) name(*e.args[i]);
+    }
+
+private:
+    void name(const Expr& e) {
+        if (e.kind != ExprKind::String || e.text.empty()) return;
+        std::string lower = e.text;
+        std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+        if (std::find(spaces().begin(), spaces().end(), lower) != spaces().end() || !said_.insert(e.text).second) return;
+        const std::string near = nearestName(lower, spaces());
+        std::string hint = near.empty() ? "there are:" : "did you mean \"" + near + "\"?";
+        for (const std::string& s : spaces())
+            if (near.empty()) hint += (hint.back() == ':' ? " " : ", ") + s;
+        sources_.warning(e.place, "there is no colour space \"" + e.text + "\"; the colour stays as it is", hint);
+    }
+
+    SourceSet& sources_;
+    std::set<std::string> said_;
+};
+
+} // namespace
+
+void checkColourNames(const Program& program, SourceSet& sources) {
+    Names names(sources);
+    const auto expression = [&](const Expr& e) { names.call(e); };
+    const auto body = [&](const Stmt* s) {
+        if (s) everyStmt(*s, [](const Stmt&) {}, expression);
+    };
+    for (const auto& s : program.shaders) {
+        for (const auto& p : s->parameters)
+            if (p.defaultValue) everyExpr(*p.defaultValue, expression);
+        body(s->body.get());
+    }
+    everyFunction(program, [&](const Function& f) { body(f.body.get()); });
+}
+
+} // namespace alpenglow::rsl::front

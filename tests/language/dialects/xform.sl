@@ -1,4 +1,4 @@
-/* warns: not-output */
+/* warns: not-output unknown-name */
 surface xforms(string a = "world"; matrix mm = (1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1); matrix m2 = matrix "shader" 1; matrix m3 = 2; matrix m4=matrix "world" (1,0,0,0, 0,1,0,0, 0,0,1,0, 1,2,3,1);
    point centre = point "object" (0, 0, 0); vector up = vector "camera" (0, 1, 0); normal nn = normal "world" 1; point p0 = 0; color hue = color "hls" (.5,.5,.5), xyz = color "xyz" (.3,.3,.3);)
 {

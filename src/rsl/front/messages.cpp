@@ -212,7 +212,6 @@ constexpr MessageKind kKinds[] = {
     // code generation
     {"zero-derivative", "the derivative of * is taken as zero"},
     {"zero-derivative", "a derivative of third order is taken as zero"},
-    {"spline-basis", "the basis of this spline is not known at compile time*"},
     {"spline-points", "a spline needs at least four control points*"},
     {"not-constant", "* that is known when the shader is compiled; *"},
     {"not-constant", "* must be known when the shader is compiled; *"},

@@ -148,7 +148,8 @@ ShaderPtr ShaderCompiler::finish(std::unique_ptr<Program> program, const std::st
                                ? std::max(1, int(p.defaultValue->args.size()))
                                : 1;
         DefaultReads reads = readsOfDefault(p.defaultValue.get());
-        i.sampleDefault = i.storage == Storage::Varying && reads.sample;
+        const bool onSurface = c->shader_->kind == ShaderKind::Surface || c->shader_->kind == ShaderKind::Displacement;
+        i.sampleDefault = (i.storage == Storage::Varying && reads.sample) || (onSurface && reads.object);
         i.defaultReads.assign(reads.parameters.begin(), reads.parameters.end());
         c->parameters_.push_back(std::move(i));
     }

@@ -14,6 +14,10 @@ public:
         if (e->symbol && e->symbol->origin == Symbol::Origin::Global) found.sample = true;
         if (e->symbol && e->symbol->origin == Symbol::Origin::ShaderParameter) found.parameters.insert(e->symbol->name);
         if (e->shadeop) found.sample |= ofSample(*e->shadeop);
+        const auto object = [](const Expr& x) { return x.kind == ExprKind::String && x.text == "object"; };
+        found.object |= e->space && object(*e->space);
+        if (e->shadeop && e->shadeop->name.ends_with("transform"))
+            for (const ExprPtr& a : e->args) found.object |= object(*a);
         for (const ExprPtr& a : e->args) read(a.get());
         for (const NamedArg& p : e->pairs) read(p.value.get());
         read(e->space.get());

@@ -9,6 +9,7 @@ namespace alpenglow::rsl {
 
 struct DefaultReads {
     bool sample = false;              ///< it differs from sample to sample: it reads a global variable, or draws a random number
+    bool object = false;              ///< it names the space "object", which is another for each primitive
     std::set<std::string> parameters; ///< parameters of the shader that it reads
 };
 

@@ -1,4 +1,5 @@
 #include "rsl/services_basic.h"
+#include "base/category.h"
 #include "base/limits.h"
 #include <algorithm>
 #include <bit>
@@ -34,7 +35,15 @@ std::string general(float v, int precision, bool sign) {
     if (precision >= 0 || v != v) return number(double(v), 'f', precision, sign);
     char text[64];
     std::snprintf(text, sizeof text, sign ? "%+.7g" : "%.7g", double(v));
-    return text;
+    const std::string plain = text;
+    if (!std::isfinite(v) || plain.find('e') != std::string::npos) return plain;
+    std::string power = number(double(v), 'e', 6, sign); // 1.000000e+05: without what says nothing it may be shorter
+    const size_t e = power.find('e');
+    size_t end = e;
+    while (end > 0 && power[end - 1] == '0') --end;
+    if (end > 0 && power[end - 1] == '.') --end;
+    power.erase(end, e - end);
+    return power.size() < plain.size() ? power : plain;
 }
 
 std::string scalar(float v, char letter, int precision, bool sign) {
@@ -237,7 +246,16 @@ bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* 
         d.message = s.op + "(): a string has no more than " + std::to_string(limits::kTokenBytes) + " characters; the rest is cut off";
         diagnostics.reportOnce("stringlimit:" + file + std::to_string(s.place.line), d);
     };
-    if (s.op == "arraylimit") {
+    if (s.op == "incategory") { // getshaders() with a category that is known now
+        each([&](int l) {
+            Arguments a(s, lanes, in, l);
+            const std::string wanted = a.string();
+            put(0, l, inCategory(wanted, s.strings[1]) ? 1 : 0);
+        });
+    } else if (s.op == "complaint") { // what the builder could only say about a way through the shader
+        if (mask) diagnostics.reportOnce("complaint:" + file + std::to_string(s.place.line) + ":" + std::to_string(s.place.column) + s.strings[0],
+                                         {Severity::Error, Rie::Consistency, {file, s.place.line, s.place.column}, s.strings[0], {}, {}});
+    } else if (s.op == "arraylimit") {
         Diagnostic d;
         d.severity = Severity::Error;
         d.code = Rie::Limit;

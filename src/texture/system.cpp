@@ -220,6 +220,24 @@ Handle TextureSystem::open(const std::string& name, const std::vector<std::strin
     return entry->texture.get();
 }
 
+bool TextureSystem::present(const std::string& name, const std::vector<std::string>& searchPath) {
+    std::string key = name;
+    for (const std::string& d : searchPath) key += '\n' + d;
+    std::lock_guard lock(mutex_);
+    const auto [known, fresh] = present_.try_emplace(key, false);
+    if (!fresh) return known->second;
+    bool there = findFile(name, searchPath).has_value();
+    if (size_t at = name.find("UDIM"); !there && at != std::string::npos) {
+        size_t length = 4;
+        if (at > 0 && name[at - 1] == '<' && at + 4 < name.size() && name[at + 4] == '>') --at, length = 6;
+        for (int number = 1001; number <= 1100 && !there; ++number) {
+            std::string tile = name;
+            there = findFile(tile.replace(at, length, std::to_string(number)), searchPath).has_value();
+        }
+    }
+    return known->second = there;
+}
+
 std::optional<TextureInfo> TextureSystem::info(Handle h) const {
     if (!h) return {};
     const Texture& t = h->tiles.empty() ? *h : *h->tiles.begin()->second;

@@ -140,6 +140,8 @@ public:
     /// which is said). "UDIM" in the name opens tiles 1001 to 1100 that exist. A missing or damaged file is reported once; the
     /// handle is null. Threads that ask for the same file wait for one load.
     Handle open(const std::string& name, const std::vector<std::string>& searchPath = {""}, const SourcePlace& = {});
+    /// Whether open() finds a file of that name, or a tile. Says nothing.
+    bool present(const std::string& name, const std::vector<std::string>& searchPath = {""});
     std::optional<TextureInfo> info(Handle) const;
     const LatLong& latLong() const { return settings_.latLong; }
     const TextureSettings& settings() const { return settings_; }
@@ -157,6 +159,7 @@ private:
                                              const SourcePlace&);
     Diagnostics& diags_;
     TextureSettings settings_;
+    std::map<std::string, bool> present_; ///< by name and search path
     mutable std::mutex mutex_;
     std::map<std::string, std::shared_ptr<Entry>> byRequest_, byPath_;
 };

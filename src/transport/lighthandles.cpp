@@ -49,6 +49,10 @@ void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, i
             });
         return;
     }
+    if (d.op == "currentlight") {
+        if (loop.light >= 0) each([&](int lane) { put(0, lane, std::bit_cast<float>(rsl::internString(kHandle + std::to_string(loop.light)))); });
+        return;
+    }
     if (d.op == "getlights") { // rows: how many, then the handles
         each([&](int lane) {
             const std::string want = text(lane);
@@ -88,14 +92,22 @@ void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, i
     if (d.op == "lightparameter") { // rows: found, value
         const ServiceCall call(c, site, first, mask, lanes, in, out);
         for (auto [li, of] : asked) {
-            std::optional<Told> t = toldBy(*world_->lights_[size_t(li)].instance, d.strings.back());
-            if (!t) continue;
-            if (t->kind == rsl::ir::Kind::Float && !t->elements && d.resultKinds[1] == rsl::ir::Kind::Triple) { // a float also where a color is wanted
-                t->kind = rsl::ir::Kind::Triple;
-                t->numbers.assign(3, t->numbers.empty() ? 0.f : t->numbers[0]);
+            const auto tell = [&](const std::string& name, uint64_t points) {
+                std::optional<Told> t = toldBy(*world_->lights_[size_t(li)].instance, name);
+                if (!t) return;
+                if (t->kind == rsl::ir::Kind::Float && !t->elements && d.resultKinds.size() > 1 && d.resultKinds[1] == rsl::ir::Kind::Triple) { // a float also where a color is wanted
+                    t->kind = rsl::ir::Kind::Triple;
+                    t->numbers.assign(3, t->numbers.empty() ? 0.f : t->numbers[0]);
+                }
+                for (int lane = 0; lane < lanes; ++lane)
+                    if (points >> lane & 1) call.answer(lane, *t);
+            };
+            if (!d.strings.empty()) {
+                tell(d.strings.back(), of);
+                continue;
             }
-            for (int lane = 0; lane < lanes; ++lane)
-                if (of >> lane & 1) call.answer(lane, *t);
+            for (int lane = 0; lane < lanes; ++lane) // the name stands behind the handle
+                if (of >> lane & 1) tell(rsl::internedString(std::bit_cast<int32_t>(in[width + size_t(lane)])), uint64_t(1) << lane);
         }
         return;
     }

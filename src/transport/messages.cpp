@@ -84,7 +84,7 @@ void answerMessage(Engine& engine, const ServiceCall& q) {
 
 void answerLightSource(Engine& engine, const ServiceCall& q) {
     const LightLoop& loop = engine.lightLoop(q.c, q.first, q.lanes);
-    if (loop.light < 0) return;
+    if (loop.light < 0 || q.s.text.count("__outside")) return;
     const BoundLight& l = engine.world().lights_[size_t(loop.light)];
     const SiteInfo* setup = loop.setup >= 0 ? &q.c.bound->sites[size_t(loop.setup)] : nullptr;
     const auto sent = [&](const SiteInfo::Output& from, int lane, std::vector<float>& to, size_t& at) {
@@ -151,7 +151,7 @@ std::optional<Information> ofThePrimitive(const WorldImpl& w, const ShadePoint& 
 void answerAttribute(Engine& engine, const ServiceCall& q) {
     const WorldImpl& w = engine.world();
     const scene::Light* self = q.c.light ? q.c.light->source : nullptr;
-    const int turn = self ? -1 : engine.lightLoop(q.c, q.first, q.lanes).light;
+    const int turn = self || q.s.text.count("__outside") ? -1 : engine.lightLoop(q.c, q.first, q.lanes).light;
     const scene::Light* other = turn >= 0 ? w.lights_[size_t(turn)].source : nullptr;
     q.each([&](int lane, const ShadePoint& p) {
         const std::string name = q.name(lane);
@@ -173,7 +173,7 @@ void answerShaderName(Engine& engine, const ServiceCall& q) {
         InstanceRef of;
         if (own && c.light) of = c.light->instance;
         else if (kind == "lightsource") {
-            const int turn = c.light ? -1 : engine.lightLoop(c, q.first, q.lanes).light;
+            const int turn = c.light || q.s.text.count("__outside") ? -1 : engine.lightLoop(c, q.first, q.lanes).light;
             of = c.light ? c.light->instance : turn >= 0 ? w.lights_[size_t(turn)].instance : nullptr;
         } else if (b && own) of = c.bound == &b->displacementS ? b->displacement : c.bound == &b->atmosphereS ? b->atmosphere : b->surface;
         else if (b) of = shaderOf(*b, asked(kind), p);

@@ -34,6 +34,8 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
                 h = n.empty() ? nullptr : world_->textures_->open(n, world_->settings_.texturePaths, place);
                 offset = 1;
             }
+            if (auto f = s.named.find("filter"); f != s.named.end())
+                if (auto known = texture::filterByName(rsl::internedString(std::bit_cast<int32_t>(at(f->second, lane))))) o.filter = *known;
             float width = number("width", lane, 1), blur = number("blur", lane, 0);
             o.swidth = number("swidth", lane, width);
             o.twidth = number("twidth", lane, width);
@@ -120,8 +122,16 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
         return;
     case SiteKind::TextureInfo:
         each([&](int lane, const ShadePoint&) {
-            std::string field = d.strings.size() > 1 ? d.strings[1] : "";
-            auto info = world_->textures_->info(name.empty() ? nullptr : world_->textures_->open(name, world_->settings_.texturePaths, place));
+            std::string asked[2]; // the map and the field; each point may have its own
+            int row = 0;
+            for (size_t k = 0; k < 2; ++k) {
+                if (k < d.strings.size()) asked[k] = d.strings[k];
+                if (asked[k].empty() && row < int(d.argKinds.size()) && d.argKinds[size_t(row)] == rsl::ir::Kind::String) asked[k] = rsl::internedString(std::bit_cast<int32_t>(at(row++, lane)));
+            }
+            const std::string& field = asked[1];
+            // That there is no such file is an answer, and no error.
+            const bool there = !asked[0].empty() && world_->textures_->present(asked[0], world_->settings_.texturePaths);
+            auto info = world_->textures_->info(there ? world_->textures_->open(asked[0], world_->settings_.texturePaths, place) : nullptr);
             if (field == "exists") { put(0, lane, info ? 1 : 0); return; }
             if (!info) return;
             Information i;

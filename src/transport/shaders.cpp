@@ -1,8 +1,11 @@
 // Shader calls of the scene made into programs with values, and those into kernels.
 #include "base/limits.h"
+#include "rsl/front/visit.h"
 #include "transport/world.h"
 #include <chrono>
 #include <filesystem>
+#include <optional>
+#include <set>
 
 namespace alpenglow::transport {
 
@@ -42,6 +45,36 @@ void transformParameter(std::vector<float>& v, rsl::Base base, const Matrix& m) 
 }
 
 } // namespace
+
+/// Says of spaces that neither the renderer nor the scene knows where the shader names them. `which`: names of inputs, "space:A>B".
+static void sayUnknownSpaces(const WorldImpl& world, const ShaderInstance& i, const std::vector<std::string>& which, Diagnostics& d) {
+    std::set<std::string> unknown;
+    for (const std::string& input : which) {
+        const size_t colon = input.find(':'), arrow = input.find('>');
+        if (colon == std::string::npos || arrow == std::string::npos) continue;
+        for (const std::string& name : {input.substr(colon + 1, arrow - colon - 1), input.substr(arrow + 1)})
+            if (!world.knowsSpace(name)) unknown.insert(name);
+    }
+    for (const std::string& name : unknown) {
+        const rsl::Program& program = i.program->program();
+        std::optional<rsl::Place> at;
+        const auto look = [&](const rsl::Expr& e) {
+            if (e.kind == rsl::ExprKind::String && e.text == name && !at) at = e.place;
+        };
+        const auto body = [&](const rsl::StmtPtr& b) {
+            if (b) rsl::front::everyStmt(*b, [](const rsl::Stmt&) {}, look);
+        };
+        for (const auto& s : program.shaders) {
+            for (const auto& p : s->parameters)
+                if (p.defaultValue) rsl::front::everyExpr(*p.defaultValue, look);
+            body(s->body);
+        }
+        rsl::front::everyFunction(program, [&](const rsl::Function& f) { body(f.body); });
+        SourcePlace place = i.place;
+        if (at && at->file >= 0 && size_t(at->file) < program.files.size()) place = {program.files[size_t(at->file)], at->line, at->column};
+        d.reportOnce("space:" + name, {Severity::Warning, Rie::BadHandle, place, "unknown coordinate system \"" + name + "\"; taken as \"current\"", {}, {}});
+    }
+}
 
 /// VTK and its kin give the standard imager "background" its colour as "color", which no shader of ours can name so: it is a word of
 /// the language.
@@ -122,10 +155,13 @@ InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind k
 
     // Defaults: the shader's own expressions in the instance's spaces, of what was given.
     auto spaces = [&](const std::string& from, const std::string& to, float out[16]) {
+        sayUnknownSpaces(*this, *i, {"space:" + from + ">" + to}, d);
         Matrix m;
         bool known = true;
-        if (from == "shader" && to == "current") m = i->toCurrent;
-        else if (from == "current" && to == "shader") m = inverse(i->toCurrent);
+        if (from == to) m = Matrix{};
+        // "object" of the shader call itself; a surface's default that names it is computed again for each primitive.
+        else if ((from == "shader" || from == "object") && to == "current") m = i->toCurrent;
+        else if (from == "current" && (to == "shader" || to == "object")) m = inverse(i->toCurrent);
         else known = matrix(from, to, m);
         for (int k = 0; k < 16; ++k) out[k] = float(m.m[k / 4][k % 4]);
         return known;
@@ -188,6 +224,10 @@ BoundKernel WorldImpl::kernel(const ShaderInstance& i, const std::vector<std::st
     auto k = compiler_->kernel(i.program, o, d);
     facts_.compileSec += seconds() - begin;
     if (!k) return {};
+    std::vector<std::string> spaces;
+    for (const auto& in : k->inputs())
+        if (in.name.rfind("space:", 0) == 0) spaces.push_back(in.name);
+    if (!spaces.empty()) sayUnknownSpaces(*this, i, spaces, d);
     ++facts_.kernels;
     facts_.cacheHits += k->fromCache();
     (k->facts().suspends ? facts_.suspending : facts_.affine)++;

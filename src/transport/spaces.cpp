@@ -1,5 +1,6 @@
 // Coordinate systems: the camera's own, named ones, and the matrices between them.
 #include "transport/world.h"
+#include <set>
 
 namespace alpenglow::transport {
 
@@ -40,6 +41,11 @@ void WorldImpl::setCamera(const scene::Options& o) {
     screenToNdc_ = translateMatrix(-sw[0], -sw[3], 0) * scaleMatrix(1 / (sw[1] - sw[0]), -1 / (sw[3] - sw[2]), 1);
     ndcToRaster_ = scaleMatrix(o.xres, o.yres, 1);
 }
+bool WorldImpl::knowsSpace(const std::string& name) const {
+    static const std::set<std::string> kOwn = {"current", "camera", "eye", "world", "screen", "NDC", "raster", "object", "shader"};
+    return kOwn.count(name) || frame_->coordinateSystems.count(name) || frame_->options.cameraSpaces.count(name);
+}
+
 bool WorldImpl::matrix(const std::string& from, const std::string& to, Matrix& out) const {
     auto toCurrent = [&](const std::string& name, Matrix& m) {
         if (name == "current" || name == "camera" || name == "eye") { m = Matrix{}; return true; }

@@ -20,7 +20,7 @@ SurfaceBinder::Names SurfaceBinder::varyingOf(const geometry::Shape& shape, cons
     Names varying;
     for (const auto& v : shape.primvars())
         for (const auto& p : shader.program->parameters())
-            if (p.name == v.name && p.type.base != rsl::Base::String) varying.push_back(p.name);
+            if (p.name == v.name && (p.type.base == rsl::Base::String ? v.type == scene::Type::String && !p.type.array && !p.open : true)) varying.push_back(p.name);
     // What a shader and its co-shaders ask about the primitive, with the type that the first of them wants.
     std::map<std::string, rsl::Type> all = shader.program->program().primitiveVariables;
     for (const rsl::CoShader& c : shader.coShaders) all.insert(c.program->primitiveVariables.begin(), c.program->primitiveVariables.end());
@@ -272,7 +272,18 @@ Opacity WorldImpl::opacityOf(const SurfaceBinding& b, const geometry::Shape& sha
     if (!asked) mode = "shader";
     for (const char* name : {"render:casts_shadows", "shade:transmissionhitmode", "visibility:transmission"}) // BMRT's, PRMan's, the older ones
         if (const scene::Param* p = a.value(name); p && !asked && !p->strings.empty()) mode = p->strings[0];
+    InstanceRef surface = b.surface;
     std::string what = b.surfaceS.kernel->facts().opacity;
+    BoundKernel k;
+    const rsl::Shader& text = surface->program->shader();
+    if (text.object && std::any_of(text.nested.begin(), text.nested.end(), [](const auto& f) { return f->name == "opacity"; })) {
+        // What the method opacity() gives stops rays, whatever the methods behind it make of Oi.
+        auto alone = std::make_shared<ShaderInstance>(*surface);
+        alone->parameters.strings["opacity()"] = "1";
+        surface = alone;
+        k = kernel(*surface, {"Oi"}, varying, false, false, d);
+        if (k) what = k.kernel->facts().opacity;
+    }
     bool varies = shape.findPrimvar("Os") >= 0;
     Opacity result;
     result.constant = mode == "opaque" ? Color(1) : a.opacity;
@@ -281,7 +292,7 @@ Opacity WorldImpl::opacityOf(const SurfaceBinding& b, const geometry::Shape& sha
         result.constant = Color(1);
         return result;
     }
-    BoundKernel k = kernel(*b.surface, {"Oi"}, varying, false, false, d);
+    if (!k) k = kernel(*surface, {"Oi"}, varying, false, false, d);
     if (!k || k.plan->Oi < 0) return result;
     if (k.kernel->facts().suspends) {
         d.reportOnce("opacity:" + b.surface->name, {Severity::Warning, Rie::NoError, b.surface->place,

@@ -190,6 +190,8 @@ public:
     void flushPrints(bool keep) const override { keep ? prints_.flush() : prints_.discard(); }
     bool runImager(int, const float*, const float*, float*, float*, float*, float*, Diagnostics&) const override;
     bool matrix(const std::string& from, const std::string& to, Matrix& out) const override;
+    /// Whether a space of this name is predefined or the scene has one.
+    bool knowsSpace(const std::string& name) const;
 
     InstanceRef instance(const scene::ShaderCall&, rsl::ShaderKind, Diagnostics&, bool anyKind = false);
     /// A shader that uses co-shaders, with those that these attributes have; any other as it is.

@@ -389,6 +389,7 @@ private:
         case ExprKind::ShadeopCall:
             return shadeop(e);
         case ExprKind::FunctionCall:
+            if (e.shadeop && e.shadeop->name == "filterstep" && !e.pairs.empty()) unknown("filters that are known only now");
             return call(e);
         case ExprKind::Sequence: {
             Walked last;

@@ -3,6 +3,7 @@
 #include "walker.h"
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <cstdio>
 #include <regex>
 #include <stdexcept>
@@ -107,6 +108,7 @@ Walked spline(Arguments& a) {
     if (basis.rfind("solve", 0) == 0) throw std::runtime_error("the walker does not invert splines");
     const float v = a[named ? 1 : 0].n[0];
     const Walked* p = &a[named ? 2 : 1];
+    if (int(a.size()) - (named ? 2 : 1) < 4) return Walked(); // no segment
     const int n = int(a.size()) - (named ? 2 : 1), step = basis == "bezier" ? 3 : basis == "hermite" ? 2 : 1;
     const int segments = (n - 4) / step + 1;
     const float inside = greater(0, lesser(v, 1)) * float(segments), s = lesser(std::floor(inside), float(segments - 1));
@@ -140,6 +142,17 @@ Walked format(Arguments& a) {
         } else {
             conversion += p[end] == 'd' ? ".0f" : p[end] == 'g' ? (precise ? "f" : ".7g") : std::string(1, p[end]);
             std::snprintf(text, sizeof text, conversion.c_str(), std::fabs(double(v.n[0])) >= 0 ? double(v.n[0]) : NAN);
+            // 100000 is longer than 1e+05.
+            if (p[end] == 'g' && !precise && v.n[0] != 0 && std::isfinite(v.n[0]) && !std::strchr(text, 'e')) {
+                const int power = int(std::floor(std::log10(std::fabs(double(v.n[0]))) + 1e-6));
+                const double digit = double(v.n[0]) / std::pow(10.0, power);
+                char mantissa[40], both[80], plain[80];
+                std::snprintf(mantissa, sizeof mantissa, conversion.find('+') != std::string::npos ? "%+.7g" : "%.7g", digit);
+                std::snprintf(both, sizeof both, "%se%c%02d", mantissa, power < 0 ? '-' : '+', std::abs(power));
+                std::snprintf(plain, sizeof plain, conversion.find('+') != std::string::npos ? "%+.7g" : "%.7g", double(v.n[0]));
+                const std::string wide = conversion.substr(0, conversion.size() - 3) + "s";
+                if (std::strlen(both) < std::strlen(plain)) std::snprintf(text, sizeof text, wide.c_str(), both);
+            }
         }
         r.s += text;
         i = end;

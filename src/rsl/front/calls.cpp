@@ -89,8 +89,14 @@ bool Checker::match(const std::vector<ParameterView>& parameters, bool repeats, 
     choice.positional = i;
     if (i == n) return true;
     if (!pairs || (n - i) % 2) return false;
-    for (; i < n; i += 2)
-        if (call.args[i]->kind != ExprKind::String) return false;
+    for (; i < n; i += 2) { // a name may be in a variable, too: see settlePairs()
+        const Expr& name = *call.args[i];
+        if (name.kind == ExprKind::String) continue;
+        const Info& text = infos_.at(&name);
+        const bool variable = choice.shadeop && (name.kind == ExprKind::Variable || name.kind == ExprKind::Index) && text.cost[int(Base::String)] == 0 && text.handle != Handle::Shader;
+        if (!variable) return false;
+        choice.cost += 1000;
+    }
     return true;
 }
 

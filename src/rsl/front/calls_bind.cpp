@@ -75,7 +75,7 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
         e.varying = true;
         if (e.type.base != Base::Void) readsPoint(e, "what '" + op.name + "' gives");
     }
-    if (op.name == "rayinfo") readsPoint(e, "what 'rayinfo' gives"); // the same for the points of one batch, but of a ray
+    if (op.name == "rayinfo") readsPoint(e, "what 'rayinfo' gives", false); // the same for the points of one batch, but of a ray
     const bool written = op.lowering == Lowering::Unavailable && !op.rsl.empty() && !choice.signature->pairs; // this form has a text
     // shadow("raytrace", ...) sends rays. A map by that name is known here only where it is written down.
     const bool rays = op.name == "shadow" && !e.args.empty() && e.args[0]->kind == ExprKind::String && e.args[0]->text == "raytrace";
@@ -92,7 +92,7 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
             if (findShadeop("__filterstep_" + filter)) rename = {"__filterstep_catmullrom", "__filterstep_" + filter};
             else sources_.warning(p.place, "there is no filter \"" + p.value->text + "\"; catmull-rom is used");
         } else if (optionalInText(op) > 0) {
-        } else if (op.name != "filterstep" || (p.name != "filter" && p.name != "width")) {
+        } else if (op.name != "filterstep" && std::any_of(op.optional.begin(), op.optional.end(), [&](const OptionalParameter& o) { return o.name == p.name; })) {
             sources_.warning(p.place, "\"" + p.name + "\" of '" + op.name + "' is not yet available and ignored");
         }
     }
@@ -143,6 +143,13 @@ void Checker::optionalArguments(Expr& e, const Shadeop& op) {
 /// "name", value, ... behind the positional arguments.
 void Checker::settlePairs(Expr& e, size_t positional, const Shadeop* op) {
     for (size_t i = positional; i + 1 < e.args.size(); i += 2) {
+        if (e.args[i]->kind != ExprKind::String) { // a name that only the run knows
+            if (op->lowering != Lowering::Unavailable)
+                sources_.warning(e.args[i]->place, "the name of a parameter of '" + op->name + "' must be known when the shader is compiled; this one is ignored");
+            settle(e.args[i], {Base::String, 0});
+            settleCheapest(e.args[i + 1]);
+            continue;
+        }
         NamedArg pair;
         pair.place = e.args[i]->place;
         pair.name = e.args[i]->text;

@@ -29,6 +29,10 @@ void Checker::condition(ExprPtr& e) {
 void Checker::assignedToUniform(const Symbol& s, const Expr& value) {
     if (s.storage != Storage::Uniform || !value.varying || s.type.base == Base::String) return;
     if (value.kind == ExprKind::Member || value.kind == ExprKind::Method) return; // what a handle gives is of the class that is wanted
+    // What is the same for the points of a batch is uniform enough, also behind functions.
+    const Expr* from = &value;
+    while (from->kind == ExprKind::Cast && !from->args.empty()) from = from->args[0].get();
+    if (from->shadeop && (from->shadeop->name == "gridmin" || from->shadeop->name == "gridmax")) return;
     sources_.warning(value.place,
                      "a varying value is given to the uniform variable '" + s.name + "'; each shaded point keeps its own");
 }

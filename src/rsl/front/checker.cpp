@@ -50,9 +50,14 @@ void Checker::checkStandalone(Function& f) {
     shaderParameters_.clear();
     instances_.clear();
     scopes_.clear();
+    const size_t before = program_.functions.size();
+    const int excused = sources_.excused;
+    sources_.unused = !main_.shaders.empty();
     Function* checked = instance(f, main_, {}, f.place);
+    sources_.unused = false;
     for (auto& s : owned) checked->symbols.push_back(std::move(s));
     globalOwner_ = nullptr;
+    if (sources_.excused > excused) program_.functions.resize(before); // what is wrong is not handed on
 }
 
 /// The copy of a function that belongs to the current shader, made and checked when first called. Null inside itself: recursion.
@@ -156,6 +161,10 @@ void Checker::bindExtern(Symbol& declared) {
     Symbol* outer = lookup(declared.name);
     if (!outer)
         if (const auto p = shaderParameters_.find(declared.name); p != shaderParameters_.end()) outer = p->second;
+    if (!outer && shader_ && shader_->object && shader_->body) // a member of the class: functions outside of it see it so
+        for (const StmtPtr& s : shader_->body->body)
+            for (const Stmt::Declarator& d : s->declarators)
+                if (d.symbol->name == declared.name && !d.symbol->isExtern) outer = d.symbol;
     if (!outer && (declared.name == "Ps" || declared.name == "Ns" || declared.name == "Ngs"))
         outer = global(declared.name == "Ngs" ? "Ng" : declared.name.substr(0, 1)); // functions for all kinds
     if (!outer && !kind_) {

@@ -115,7 +115,7 @@ private:
     bool uniformResult(const Expr&, const Choice&) const;
     void convert(ExprPtr&, Type);
     void written(const Expr& variable);
-    void readsPoint(const Expr&, const std::string& what);
+    void readsPoint(const Expr&, const std::string& what, bool differs = true);
     bool inConstruct() const;
     void finish(Expr&);
 

@@ -65,6 +65,7 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
     Preprocessed p = preprocess(sources, main, options);
     program->preprocessed = p.text();
     program->dependencies.insert(program->dependencies.end(), p.dependencies.begin(), p.dependencies.end());
+    hashComments(sources, p);
     readBorrowedWords(sources, p);
     addDirectLighting(sources, p);
     addPrelude(sources, p);

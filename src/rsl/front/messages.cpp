@@ -14,6 +14,7 @@ constexpr MessageKind kKinds[] = {
     {"unfinished-string", "this string does not end on its line"},
     {"stray-character", "the character * means nothing here"},
     {"bad-number", "'*' is not a number"},
+    {"hash-comment", "'#' in the middle of a line begins no directive*"},
     {"number-suffix", "numbers take no suffix*"},
     // preprocessor
     {"pp-unfinished-if", "this #if has no #endif"},
@@ -116,6 +117,7 @@ constexpr MessageKind kKinds[] = {
     // co-shaders: found when a kernel is made
     {"coshader-depth", "co-shaders call each other more than * deep"},
     {"null-handle", "this handle is null here*"},
+    {"null-handle", "'*' is null here*"},
     {"no-such-method", "co-shader '*' (*) has no public method '*' with * argument*"},
     {"no-such-member", "co-shader '*' (*) has no public member '*'"},
     {"member-type", "co-shader '*' (*) has '*' as *, not *"},
@@ -223,7 +225,7 @@ constexpr MessageKind kKinds[] = {
     {"light-pair", "\"*\" sends an array of strings; *"},
     {"light-pair", "\"lightcache\" is \"reuse\" or \"refresh\""},
     {"light-pair", "the pair \"*\" means nothing to illuminance"},
-    {"outside-illuminance", "islightcategory() asks about the light of an illuminance loop*"},
+    {"outside-illuminance", "*() asks about the light of an illuminance loop*"},
     {"no-code", "*() has no code"},
     {"shader-too-large", "*more than * instructions*"},
 };

@@ -153,6 +153,11 @@ ExprPtr Parser::castExpression() {
             grow(*e, *e->space);
         }
     }
+    if (peek().kind == Tok::Identifier && e->type.base != Base::String && e->type.base != Base::Float && !atTypeName() &&
+        (peek(1).kind == Tok::Number || peek(1).kind == Tok::Identifier)) { // matrix space 1, with the space in a variable
+        e->space = primary();
+        grow(*e, *e->space);
+    }
     adopt(*e, unary());
     return e;
 }

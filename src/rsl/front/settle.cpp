@@ -359,8 +359,9 @@ void Checker::settleAssign(ExprPtr& e) {
 }
 
 /// The function being checked needs a point that is shaded. construct() runs before there is any.
-void Checker::readsPoint(const Expr& e, const std::string& what) {
-    if (function_) varyingFunctions_.insert(function_);
+/// `differs`: from point to point of one batch too.
+void Checker::readsPoint(const Expr& e, const std::string& what, bool differs) {
+    if (function_ && differs) varyingFunctions_.insert(function_);
     if (inConstruct())
         sources_.warning(e.place, what + " differs from point to point, and construct() runs once for the whole shader",
                          "begin() runs for the points that are shaded");

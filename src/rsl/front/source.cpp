@@ -48,6 +48,11 @@ bool SourceSet::tooMany() const { return errors_ >= limits::kFrontErrors; }
 void SourceSet::note(Severity severity, Place place, std::string message, std::string hint,
                      std::vector<std::string> notes) {
     if (muted) return;
+    if (unused && severity >= Severity::Error) {
+        severity = Severity::Warning;
+        ++excused;
+        hint += std::string(hint.empty() ? "" : "; ") + "no shader calls this function, so it does no harm";
+    }
     if (severity >= Severity::Error && tooMany()) return;
     // A function is checked once for each shader that calls it: its faults are told once.
     if (!seen_.insert({{place.file, place.line, place.column, int(severity)}, message}).second) return;

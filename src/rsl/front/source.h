@@ -30,6 +30,9 @@ public:
     bool tooMany() const;
     /// While muted nothing is noted, and nothing counted.
     bool muted = false;
+    /// What is checked has no part in any shader: its errors are warnings.
+    bool unused = false;
+    int excused = 0; ///< errors that became warnings so
     /// The text ends before its time, which was reported: what is missing at its end is no other fault.
     bool cut = false;
     /// Hands all messages over, sorted by place.

@@ -158,6 +158,15 @@ void Checker::surveyVariable(Expr& e, Info& info) {
         info.handle = Handle::Shader;
         return;
     }
+    if (!s && (e.text == "surface" || e.text == "caller" || e.text == "light")) { // handles that RSL 2 has names for
+        e.kind = ExprKind::String;
+        e.text = "(" + e.text + ")";
+        e.handle = true;
+        program_.handles = true;
+        info.cost[int(Base::String)] = 0;
+        info.handle = Handle::Shader;
+        return;
+    }
     if (!s) {
         unknownVariable(e);
         info.any = true;
@@ -189,7 +198,8 @@ void Checker::surveyIndex(Expr& e, Info& info) {
         info.cost[int(base.array.base)] = 0;
         info.handle = base.handle;
         const Expr& i = *e.args[1];
-        if (i.kind == ExprKind::Number && base.array.array > 0 && (i.number <= -1 || i.number >= base.array.array))
+        const Symbol* array = e.args[0]->symbol; // one of open length may be longer than its default
+        if (i.kind == ExprKind::Number && base.array.array > 0 && !(array && array->open && i.number > -1) && (i.number <= -1 || i.number >= base.array.array))
             sources_.error(i.place, "index " + std::to_string(int(std::clamp(i.number, -1e6, 1e6))) + " is outside an array of " +
                                         std::to_string(base.array.array));
         return;

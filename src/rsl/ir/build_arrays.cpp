@@ -165,7 +165,11 @@ void Builder::copyResizable(Inst* to, const Expr& from) {
         }
         setLength(limitLength(to, n));
     } else if (from.kind == ExprKind::ShadeopCall && from.shadeop && from.shadeop->name == "getshaders") {
-        setLength(limitLength(to, constant(static_cast<float>(handlesOf(from).size()))));
+        std::vector<Inst*> when;
+        const size_t all = handlesOf(from, &when).size();
+        if (when.empty()) setLength(limitLength(to, constant(static_cast<float>(all))));
+        else setLength(storeHandles(to, from));
+        if (!when.empty()) return;
     } else if (from.kind == ExprKind::ShadeopCall && from.shadeop && from.shadeop->name == "getlights") {
         const std::vector<Inst*> all = lightHandles(from);
         setLength(limitLength(to, all[0]));

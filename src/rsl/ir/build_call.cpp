@@ -281,7 +281,20 @@ Inst* Builder::isOutput(const Expr& e) {
     else if (a.kind == ExprKind::Index && parameter(*a.args[0]) && a.args[0]->type.array) { // an element: which, if that is known
         Inst* at = expr(*a.args[1], Kind::Float);
         name = a.args[0]->symbol->name + (isConst(at) ? "[" + std::to_string(static_cast<int>(at->numbers[0])) + "]" : "");
-    } else if (Inst* v = a.type == Type{Base::String, 0} ? expr(a) : nullptr; v && v->op == Op::ConstString) name = v->text;
+    }
+    Inst* const text = name.empty() && a.type == Type{Base::String, 0} ? expr(a) : nullptr;
+    if (text && text->op != Op::ConstString) { // one of those that are asked for
+        std::set<std::string> all;
+        for (const std::string& o : options_.outputs) all.insert({o, o.substr(0, o.find('['))});
+        Inst* found = constant(0);
+        for (const std::string& o : all)
+            if (isWanted(o)) found = emit(Op::Select, Kind::Float, {emit(Op::Equal, Kind::Bool, {text, leaves_.string(o)}), constant(1), found});
+        return found;
+    }
+    return constant(isWanted(text ? text->text : name) ? 1.0f : 0.0f);
+}
+
+bool Builder::isWanted(const std::string& name) const {
     const std::string base = name.substr(0, name.find('['));
     const bool declared = std::any_of(shader_.parameters.begin(), shader_.parameters.end(),
                                       [&](const ShaderParameter& p) { return p.symbol->output && p.symbol->name == base; });
@@ -289,7 +302,7 @@ Inst* Builder::isOutput(const Expr& e) {
     const bool wanted = std::any_of(options_.outputs.begin(), options_.outputs.end(), [&](const std::string& o) {
         return o == name || o == base || (name == base && o.rfind(base + "[", 0) == 0);
     });
-    return constant(known && wanted ? 1.0f : 0.0f);
+    return known && wanted;
 }
 
 /// A hit is a grid of one point (design decision 6): the value, and half of what it changes over the footprint below or above it.
@@ -310,6 +323,7 @@ Inst* Builder::filterstep(const Expr& e) {
     std::vector<Inst*> a;
     for (const ExprPtr& x : e.args) a.push_back(expr(*x, Kind::Float));
     std::string filter = "catmullrom";
+    Inst* asked = nullptr; // a filter that is known only when the shader runs
     Inst* width = constant(1);
     for (const NamedArg& p : e.pairs) {
         Inst* v = expr(*p.value);
@@ -317,6 +331,7 @@ Inst* Builder::filterstep(const Expr& e) {
         else if (p.name == "filter" && v->op == Op::ConstString &&
                  (v->text == "box" || v->text == "triangle" || v->text == "gaussian"))
             filter = v->text;
+        else if (p.name == "filter" && v->kind == Kind::String && v->op != Op::ConstString) asked = v;
     }
     place_ = e.place;
     const auto mul = [&](Inst* x, Inst* y) { return emit(Op::Mul, Kind::Float, {x, y}); };
@@ -332,8 +347,13 @@ Inst* Builder::filterstep(const Expr& e) {
         w = emit(Op::Sub, Kind::Float, {a[2], a[1]});
     }
     Inst* half = mul(mul(constant(0.5f), w), width);
-    return runtime1("al_filterstep_" + filter,
-                    {a[0], emit(Op::Sub, Kind::Float, {middle, half}), emit(Op::Add, Kind::Float, {middle, half})}, Kind::Float);
+    Inst *from = emit(Op::Sub, Kind::Float, {middle, half}), *to = emit(Op::Add, Kind::Float, {middle, half});
+    Inst* step = runtime1("al_filterstep_" + filter, {a[0], from, to}, Kind::Float);
+    for (const char* other : {"box", "triangle", "gaussian"})
+        if (asked)
+            step = emit(Op::Select, Kind::Float, {emit(Op::Equal, Kind::Bool, {asked, leaves_.string(other)}),
+                                                  runtime1(std::string("al_filterstep_") + other, {a[0], from, to}, Kind::Float), step});
+    return step;
 }
 
 } // namespace alpenglow::rsl::ir

@@ -137,8 +137,8 @@ void Builder::copyArray(Inst* to, const Expr& from) {
         return;
     }
     if (from.kind == ExprKind::ShadeopCall && from.shadeop && from.shadeop->name == "getshaders") {
-        const auto all = handlesOf(from);
-        for (int i = 0; i < n; ++i) store(i, i < static_cast<int>(all.size()) ? all[static_cast<size_t>(i)] : zero(to->element));
+        for (int i = 0; i < n; ++i) store(i, zero(to->element));
+        storeHandles(to, from);
         return;
     }
     if (from.kind == ExprKind::ShadeopCall && from.shadeop && from.shadeop->name == "bsdf") {
@@ -306,7 +306,7 @@ Inst* Builder::expr(const Expr& e) {
     case ExprKind::Number:
         return constant(static_cast<float>(e.number));
     case ExprKind::String:
-        return leaves_.string(e.handle && e.text == "(this)" ? thisHandle() : e.text);
+        return e.handle && e.text.starts_with("(") ? handleText(e) : leaves_.string(e.text);
     case ExprKind::Variable:
         return e.symbol ? get(slot(e.symbol)) : zero(kindOf(e.type));
     case ExprKind::Index: {
@@ -318,7 +318,14 @@ Inst* Builder::expr(const Expr& e) {
             if (isConst(at) && lengthKnown(a) && (at->numbers[0] < 0 || at->numbers[0] >= static_cast<float>(arrayLength(a))))
                 warn(e.args[1]->place, "index " + std::to_string(static_cast<int>(at->numbers[0])) + " is outside the array of length " +
                                   std::to_string(arrayLength(a)) + "; the nearest element is taken");
-            return emit(Op::ArrayLoad, a->element, {a, elementOf(a, at)});
+            const auto open = given_.find(a); // as long as the scene wants it: behind that there is nothing
+            const bool behind = open != given_.end() && isConst(at) && at->numbers[0] >= static_cast<float>(open->second);
+            if (behind) return zero(a->element);
+            if (const auto t = texts_.find(a); t != texts_.end() && isConst(at) && at->numbers[0] >= 0 && at->numbers[0] < static_cast<float>(t->second.size()))
+                return leaves_.string(t->second[static_cast<size_t>(at->numbers[0])]);
+            Inst* v = emit(Op::ArrayLoad, a->element, {a, elementOf(a, at)});
+            if (open == given_.end() || isConst(at)) return v;
+            return emit(Op::Select, a->element, {emit(Op::LessEqual, Kind::Bool, {constant(static_cast<float>(open->second)), at}), zero(a->element), v});
         }
         Inst* v = expr(base, Kind::Triple);
         Inst* at = expr(*e.args[1], Kind::Float);

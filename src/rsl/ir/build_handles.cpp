@@ -10,23 +10,145 @@ namespace alpenglow::rsl::ir {
 
 namespace {
 
-/// Is `this` used as a value, and not only to name what belongs to it?
-bool handsItselfOver(const Shader& s) {
+/// Is `this`, `surface` or `caller` used as a value, and not only to name what belongs to it?
+bool handsItselfOver(const Shader& s, const Program& p) {
     bool found = false;
     const auto body = [&](const Stmt* b) {
-        if (b) front::everyStmt(*b, [](const Stmt&) {}, [&](const Expr& e) { found |= e.kind == ExprKind::String && e.handle && e.text == "(this)"; });
+        if (b) front::everyStmt(*b, [](const Stmt&) {}, [&](const Expr& e) {
+            found |= e.kind == ExprKind::String && e.handle && (e.text == "(this)" || e.text == "(surface)" || e.text == "(caller)");
+        });
     };
     body(s.body.get());
     for (const auto& n : s.nested) front::everyFunction(*n, [&](const Function& f) { body(f.body.get()); });
+    for (const auto& n : p.functions) front::everyFunction(*n, [&](const Function& f) { body(f.body.get()); });
     return found;
 }
 
 } // namespace
 
+/// Does anything of these programs write to the variable, or to an element of it?
+bool Builder::everWritten(const Symbol& s) {
+    if (!written_) {
+        written_.emplace();
+        const auto add = [&](const Expr* e) {
+            while (e->kind == ExprKind::Index && !e->args.empty()) e = e->args[0].get();
+            if (e->symbol) written_->insert(e->symbol);
+        };
+        const auto expression = [&](const Expr& e) {
+            if (e.kind == ExprKind::Assign) add(e.args[0].get());
+            const bool other = e.kind == ExprKind::Method; // its parameters are not known yet
+            for (size_t n = 0; n < e.args.size(); ++n) {
+                const bool output = e.signature ? n < e.signature->parameters.size() && e.signature->parameters[n].output
+                                                : e.function && n < e.function->parameters.size() && e.function->parameters[n]->output;
+                if ((output || other) && e.args[n]) add(e.args[n].get());
+            }
+            for (const NamedArg& p : e.pairs)
+                if (p.output && p.value) add(p.value.get());
+        };
+        const auto body = [&](const StmtPtr& b) {
+            if (b)
+                front::everyStmt(*b, [&](const Stmt& x) {
+                    for (const NamedArg& p : x.pairs)
+                        if (p.value) add(p.value.get());
+                }, expression);
+        };
+        const auto program = [&](const Program& p) {
+            for (const auto& x : p.shaders) body(x->body);
+            front::everyFunction(p, [&](const Function& f) { body(f.body); });
+        };
+        program(program_);
+        for (const CoShader& c : options_.coShaders) program(*c.program);
+    }
+    return written_->count(&s) > 0;
+}
+
+/// Elements of parameters that only read are known, also where the index is not.
+void Builder::noteTexts(const Inst* array, const Symbol& s, int length, std::span<const std::pair<std::string, std::string>> given) {
+    if (array->op != Op::ArrayNew || array->element != Kind::String || everWritten(s)) return;
+    std::vector<std::string> all(static_cast<size_t>(std::max(0, length)));
+    for (int n = 0; n < length; ++n)
+        for (const auto& [name, text] : given)
+            if (name == s.name + "[" + std::to_string(n) + "]") all[static_cast<size_t>(n)] = text;
+    texts_[array] = std::move(all);
+}
+
+/// Whether all that the string can be is known, and what that is.
+bool Builder::possibleTexts(const Inst* v, std::set<std::string>& out, int depth) const {
+    if (depth > 16) return false;
+    if (v->op == Op::ConstString) {
+        out.insert(v->text);
+        return true;
+    }
+    if (v->op == Op::Select && v->args.size() == 3) return possibleTexts(v->args[1], out, depth + 1) && possibleTexts(v->args[2], out, depth + 1);
+    if (v->op == Op::Result && v->args[0]->op == Op::If)
+        return std::all_of(v->args[0]->regions.begin(), v->args[0]->regions.end(),
+                           [&](const Region& r) { return possibleTexts(r.yields[static_cast<size_t>(v->index)], out, depth + 1); });
+    const auto known = v->op == Op::ArrayLoad ? texts_.find(v->args[0]) : texts_.end();
+    if (known == texts_.end()) return false;
+    out.insert(known->second.begin(), known->second.end());
+    return true;
+}
+
+/// An error that shows when the shader runs, where it comes to this.
+void Builder::complain(const Place& place, const std::string& text) {
+    Site s;
+    s.op = "complaint";
+    s.strings = {text};
+    place_ = place;
+    call(Op::Service, std::move(s), {});
+}
+
 /// What `this` is called: a co-shader by its handle, others by what they are (seed, format "%h").
 std::string Builder::thisHandle() const {
     if (!current_.empty() && !isSelf(current_.back())) return instances_[current_.back()].binding->handle;
     return "<" + std::string(toString(shader_.kind)) + ">";
+}
+
+/// `this`, and the handles that have names of their own: `surface`, the shader of the surface that is shaded or lit; `caller`, the
+/// shader that called the method; `light`, the light of the turn of illuminance.
+Inst* Builder::handleText(const Expr& e) {
+    const std::string self = "<" + std::string(toString(shader_.kind)) + ">", surface = "<" + std::string(toString(ShaderKind::Surface)) + ">";
+    const bool lightShader = shader_.kind == ShaderKind::Light;
+    if (e.text == "(this)" || (e.text == "(light)" && lightShader)) return leaves_.string(thisHandle());
+    if (e.text == "(surface)" && shader_.kind != ShaderKind::Imager) return leaves_.string(surface);
+    if (e.text == "(caller)" && (!current_.empty() || lightShader)) {
+        const size_t n = current_.size();
+        if (n == 0) return leaves_.string(surface); // a light is asked by the surface
+        return leaves_.string(n > 1 && !isSelf(current_[n - 2]) ? instances_[current_[n - 2]].binding->handle : self);
+    }
+    if (e.text == "(light)" && lightDepth_ > 0) {
+        Site s;
+        s.op = "currentlight";
+        s.resultKinds = {Kind::String};
+        s.resultNames = {""};
+        s.resultType = {Base::String, 0};
+        place_ = e.place;
+        return call(Op::Service, std::move(s), {})[0];
+    }
+    warn(e.place, "'" + e.text.substr(1, e.text.size() - 2) + "' is null here: there is no such shader");
+    return leaves_.string("");
+}
+
+/// A parameter of the surface that a light, a displacement or an atmosphere asks for by the handle `surface`; null where the handle is
+/// another. `to`: the variable that getvar() fills, which then gives whether there is one; else the value is given.
+Inst* Builder::ofSurface(const Expr& handle, const std::string& name, Kind kind, const Expr* to) {
+    if (shader_.kind == ShaderKind::Surface || shader_.kind == ShaderKind::Imager) return nullptr;
+    Inst* h = expr(handle, Kind::String);
+    if (h->op != Op::ConstString || h->text != "<surface>") return nullptr;
+    Site s;
+    s.op = "surface";
+    s.shadeop = findShadeop("surface");
+    s.strings = {name};
+    s.resultKinds = {Kind::Float};
+    s.resultNames = {""};
+    s.resultType = {Base::Float, 0};
+    Receiver r;
+    if (to) r = receiver(s, *to, "value");
+    else s.resultKinds.push_back(kind), s.resultNames.push_back("value");
+    const std::vector<Inst*> v = call(Op::Service, std::move(s), {});
+    if (!to) return v[1];
+    receive(r, std::span(v).subspan(1), emit(Op::NotEqual, Kind::Bool, {v[0], constant(0)}));
+    return v[0];
 }
 
 void Builder::switchInstance(bool fromSelf, size_t from, bool toSelf, size_t to) {
@@ -73,6 +195,7 @@ void Builder::beginCoShaders() {
                 v = constantTexts(s.name, n, given);
                 if (!v) v = newArray(Base::String, std::max(1, s.type.array));
                 if (s.type.array < 0 || s.open) given_[v] = parameterLength(p, given);
+                noteTexts(v, s, n, given);
             } else if (s.type.array) {
                 const size_t each = static_cast<size_t>(components(kindOf(s.type.element())));
                 const int n = std::max<int>(1, static_cast<int>(numbers.size() / each));
@@ -99,7 +222,9 @@ void Builder::beginCoShaders() {
         --handleDepth_;
         leaveInstance();
     }
-    if (!shader_.object || !handsItselfOver(shader_)) return;
+    bool handed = handsItselfOver(shader_, program_);
+    for (const CoShader& c : options_.coShaders) handed |= handsItselfOver(*c.shader, *c.program);
+    if (!handed) return;
     // Others may be handed `this`: then the shader itself is one of those that a handle can mean, the last.
     selfBinding_.handle = thisHandle();
     selfBinding_.program = &program_;
@@ -125,14 +250,20 @@ Inst* Builder::forHandle(const Expr& handle, Kind kind, const std::function<Inst
         warn(handle.place, "this handle is null here: no co-shader is bound to it");
         return zero(kind);
     }
-    const std::function<std::vector<Inst*>(size_t)> from = [&](size_t i) -> std::vector<Inst*> {
-        if (i == instances_.size()) return {light ? coerce(light(h), kind) : zero(kind)}; // no co-shader: perhaps a light
+    std::set<std::string> possible;
+    const bool some = possibleTexts(h, possible);
+    std::vector<size_t> candidates;
+    for (size_t i = 0; i < instances_.size(); ++i)
+        if (!some || possible.count(instances_[i].binding->handle)) candidates.push_back(i);
+    const std::function<std::vector<Inst*>(size_t)> from = [&](size_t n) -> std::vector<Inst*> {
+        if (n == candidates.size()) return {light ? coerce(light(h), kind) : zero(kind)}; // no co-shader: perhaps a light
+        const size_t i = candidates[n];
         Inst* same = emit(Op::Equal, Kind::Bool, {h, leaves_.string(instances_[i].binding->handle)});
         const auto call = [&] {
             certain_ = false;
             return std::vector<Inst*>{coerce(code(i), kind)};
         };
-        return branch(same, call, [&] { return from(i + 1); });
+        return branch(same, call, [&] { return from(n + 1); });
     };
     return from(0)[0];
 }
@@ -174,9 +305,23 @@ Inst* Builder::methodCall(const Expr& e) {
         const CoShader& c = *instances_[i].binding;
         const Function* f = methodOf(i, e);
         if (!certain_ && isSelf(i) && (!f || !c.shader->publics.count(e.text))) return zero(kind); // one of the others is meant
+        const auto has = [&](size_t other) { return methodOf(other, e) && instances_[other].binding->shader->publics.count(e.text); };
+        if (!certain_ && !has(i)) { // as long as another can be meant
+            bool another = false;
+            for (size_t n = 0; n < instances_.size(); ++n) another |= n != i && has(n);
+            if (another) {
+                complain(e.place, "co-shader '" + c.handle + "' (" + c.shader->name + ") has no public method '" + e.text + "' with " +
+                                      std::to_string(e.args.size() - 1) + " arguments; the call does nothing");
+                return zero(kind);
+            }
+        }
         if (!f || !c.shader->publics.count(e.text)) {
             error(e.place, "co-shader '" + c.handle + "' (" + c.shader->name + ") has no public method '" + e.text + "' with " +
                                std::to_string(e.args.size() - 1) + " arguments");
+            return zero(kind);
+        }
+        if (openMethods_.count({i, f}) && !certain_) { // it may be another each time: whether it is a circle shows when the shader runs
+            complain(e.place, "method '" + e.text + "' of co-shader '" + c.handle + "' calls itself; the inner call does nothing");
             return zero(kind);
         }
         if (openMethods_.count({i, f})) {
@@ -272,6 +417,18 @@ const Symbol* Builder::memberOf(size_t i, const std::string& name) const {
     return nullptr;
 }
 
+/// All that memberOf() knows.
+std::vector<const Symbol*> Builder::membersOf(size_t i) const {
+    const Shader& s = *instances_[i].binding->shader;
+    std::vector<const Symbol*> all;
+    for (const ShaderParameter& p : s.parameters) all.push_back(p.symbol);
+    if (s.object)
+        for (const StmtPtr& x : s.body->body)
+            for (const Stmt::Declarator& d : x->declarators)
+                if (s.publics.count(d.symbol->name)) all.push_back(d.symbol);
+    return all;
+}
+
 Inst* Builder::memberValue(size_t i, const Symbol& s) {
     enterInstance(i);
     Inst* v = get(slot(&s));
@@ -297,6 +454,7 @@ Type Builder::typeOfMember(const Expr& e) {
 
 Inst* Builder::memberAccess(const Expr& e) {
     const Kind kind = kindOf(e.type.base == Base::Void ? typeOfMember(e) : e.type);
+    if (Inst* v = ofSurface(*e.args[0], e.text, kind, nullptr)) return v;
     return forHandle(*e.args[0], kind, [&](size_t i) -> Inst* {
         const CoShader& c = *instances_[i].binding;
         const Symbol* s = memberOf(i, e.text);
@@ -310,7 +468,7 @@ Inst* Builder::memberAccess(const Expr& e) {
             return zero(kind);
         }
         return memberValue(i, *s);
-    }, [&](Inst* handle) { return lightMember(handle, e.text, kind, nullptr); });
+    }, [&](Inst* handle) { return lightMember(handle, leaves_.string(e.text), kind, nullptr); });
 }
 
 namespace {
@@ -486,7 +644,7 @@ Inst* Builder::memberElement(const Expr& e) {
                            (s ? "has '" + member.text + "' as " + toString(s->type) + ", which has no element of type " + toString(e.type)
                               : "has no public member '" + member.text + "'"));
         return zero(kind);
-    }, [&](Inst* handle) { return isConst(at) ? lightMember(handle, member.text + "[" + std::to_string(static_cast<int>(at->numbers[0])) + "]", kind, nullptr) : zero(kind); });
+    }, [&](Inst* handle) { return isConst(at) ? lightMember(handle, leaves_.string(member.text + "[" + std::to_string(static_cast<int>(at->numbers[0])) + "]"), kind, nullptr) : zero(kind); });
 }
 
 /// getvar(handle, name [, variable]): 1 when there is such a member.
@@ -497,12 +655,9 @@ Inst* Builder::getVariable(const Expr& e) {
     const Expr* to = e.args.size() > 2 ? e.args[2].get() : nullptr;
     const bool null = handle->op == Op::ConstString && handle->text.empty();
     if (null) return name->op == Op::ConstString ? primitiveVariable(name->text, to) : askPrimitive(name, to);
-    if (name->op != Op::ConstString) {
-        warn(e.place, "getvar() needs a name that is known when the shader is compiled; it finds nothing");
-        return constant(0);
-    }
-    return forHandle(*e.args[0], Kind::Float, [&](size_t i) -> Inst* {
-        const Symbol* s = memberOf(i, name->text);
+    if (name->op == Op::ConstString)
+        if (Inst* v = ofSurface(*e.args[0], name->text, Kind::Float, to)) return v;
+    const auto take = [&](size_t i, const Symbol* s) -> Inst* {
         if (!s) return constant(0);
         if (!to) return constant(1);
         if ((s->type.array != 0) != (to->type.array != 0) || kindOf(s->type.element()) != kindOf(to->type.element())) return constant(0);
@@ -515,9 +670,18 @@ Inst* Builder::getVariable(const Expr& e) {
         if (s->type.array) return constant(takeArray(*to, memberValue(i, *s)) ? 1.0f : 0.0f);
         assign(*to, memberValue(i, *s));
         return constant(1);
-    }, [&](Inst* light) -> Inst* {
-        return lightMember(light, name->text, to ? kindOf(to->type.element()) : Kind::Float, to);
-    });
+    };
+    return forHandle(*e.args[0], Kind::Float, [&](size_t i) -> Inst* {
+        if (name->op == Op::ConstString) return take(i, memberOf(i, name->text));
+        Inst* found = constant(0); // a name that is made when the shader runs is compared with all
+        for (const Symbol* s : membersOf(i)) {
+            if (to && ((s->type.array != 0) != (to->type.array != 0) || kindOf(s->type.element()) != kindOf(to->type.element()))) continue;
+            found = branch(
+                emit(Op::Equal, Kind::Bool, {name, leaves_.string(s->name)}), [&] { return std::vector<Inst*>{take(i, s)}; },
+                [&] { return std::vector<Inst*>{found}; })[0];
+        }
+        return found;
+    }, [&](Inst* light) -> Inst* { return lightMember(light, name, to ? kindOf(to->type.element()) : Kind::Float, to); });
 }
 
 Inst* Builder::getShader(const Expr& e) {
@@ -535,23 +699,59 @@ Inst* Builder::getShader(const Expr& e) {
     return found;
 }
 
-/// The handles that getshaders() gives, in the order of their names.
-std::vector<Inst*> Builder::handlesOf(const Expr& e) {
+/// The handles that getshaders() gives, in the order of their names. `when`: where the category is known only when the shader runs,
+/// whether each is among them; else empty.
+std::vector<Inst*> Builder::handlesOf(const Expr& e, std::vector<Inst*>* when) {
     std::string wanted;
+    Inst* asked = nullptr;
     for (const NamedArg& p : e.pairs) {
         if (p.name != "category") continue;
         Inst* v = expr(*p.value);
         if (v->op == Op::ConstString) wanted = v->text;
-        else warn(p.place, "the category of getshaders() must be known when the shader is compiled; all are taken");
+        else asked = v;
     }
     std::vector<Inst*> all;
     for (const Instance& i : instances_) {
         if (i.binding == &selfBinding_) continue;
         const auto& strings = i.binding->strings;
         const auto own = strings.find("__category");
-        if (inCategory(wanted, own == strings.end() ? std::string() : own->second)) all.push_back(leaves_.string(i.binding->handle));
+        const std::string category = own == strings.end() ? std::string() : own->second;
+        if (!inCategory(wanted, category)) continue;
+        all.push_back(leaves_.string(i.binding->handle));
+        if (!asked || !when) continue;
+        Site s;
+        s.op = "incategory";
+        s.strings = {"", category};
+        s.resultKinds = {Kind::Float};
+        s.resultNames = {""};
+        s.resultType = {Base::Float, 0};
+        place_ = e.place;
+        std::vector<Inst*> args;
+        addArgument(s, args, asked, {Base::String, 0});
+        when->push_back(emit(Op::NotEqual, Kind::Bool, {call(Op::Service, std::move(s), std::move(args))[0], constant(0)}));
     }
     return all;
+}
+
+/// Stores in the array the handles that getshaders() gives, and returns how many that are.
+Inst* Builder::storeHandles(Inst* to, const Expr& e) {
+    std::vector<Inst*> when;
+    const std::vector<Inst*> all = handlesOf(e, &when);
+    const size_t room = static_cast<size_t>(lengths(to) ? to->index : arrayLength(to));
+    if (when.empty()) {
+        for (size_t n = 0; n < std::min(all.size(), room); ++n) emit(Op::ArrayStore, Kind::None, {to, constant(static_cast<float>(n)), all[n]});
+        return constant(static_cast<float>(std::min(all.size(), room)));
+    }
+    Inst* next = constant(0);
+    for (size_t n = 0; n < std::min(all.size(), room); ++n)
+        next = branch(
+            when[n],
+            [&] {
+                emit(Op::ArrayStore, Kind::None, {to, next, all[n]});
+                return std::vector<Inst*>{emit(Op::Add, Kind::Float, {next, constant(1)})};
+            },
+            [&] { return std::vector<Inst*>{next}; })[0];
+    return next;
 }
 
 /// What the methods that a call can mean assign.

@@ -64,11 +64,12 @@ Inst* Builder::lightMethod(const Expr& e, Inst* handle) {
 }
 
 /// A parameter of a light. `to`: the variable that getvar() fills, which then gives whether there is one; else the value is given.
-Inst* Builder::lightMember(Inst* handle, const std::string& name, Kind kind, const Expr* to) {
+Inst* Builder::lightMember(Inst* handle, Inst* name, Kind kind, const Expr* to) {
     Site s = question("lightparameter", place_);
     std::vector<Inst*> args;
     addArgument(s, args, handle, {Base::String, 0});
-    s.strings = {name};
+    if (name->op == Op::ConstString) s.strings = {name->text};
+    else addArgument(s, args, name, {Base::String, 0});
     s.resultKinds = {Kind::Float};
     s.resultNames = {""};
     s.resultType = {Base::Float, 0};

@@ -238,6 +238,13 @@ Inst* Builder::service(const Expr& e, Op kind, int part) {
         s.names.push_back("__uniform");
         s.pairStrings.push_back("1");
     }
+    static const std::set<std::string> kOfTheTurn = {"lightsource", "attribute", "shadername"};
+    if (lightDepth_ == 0 && kOfTheTurn.count(op.name)) { // there is no light to ask about
+        if (op.name == "lightsource" && shader_.kind != ShaderKind::Light)
+            warn(e.place, "lightsource() asks about the light of an illuminance loop; there is none here, and it gives 0");
+        s.names.push_back("__outside");
+        s.pairStrings.push_back("1");
+    }
     place_ = e.place;
     const bool message = op.section == "Messages" && !s.resultKinds.empty() && s.resultNames[0].empty();
     const std::vector<Inst*> r = call(kind, std::move(s), std::move(args));

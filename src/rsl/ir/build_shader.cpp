@@ -56,8 +56,22 @@ Inst* Builder::parameterValue(const ShaderParameter& p) {
     Type type = s.type;
     const int length = parameterLength(p, options_.stringParameters);
     if (type.array) type.array = std::max(1, length); // storage
+    if (const auto& over = options_.varyingParameters; type == Type{Base::String, 0} && std::find(over.begin(), over.end(), s.name) != over.end()) {
+        // The primitive has a variable of this name, which counts more.
+        Site site;
+        site.op = "getvar";
+        site.shadeop = findShadeop("getvar");
+        site.resultType = {Base::Float, 0};
+        site.resultKinds = {Kind::Float, Kind::String};
+        site.resultNames = {"", "value"};
+        site.strings = {s.name};
+        return call(Op::Service, std::move(site), {})[1];
+    }
     if (type.array > 0 && type.base == Base::String) {
-        if (Inst* a = constantTexts(s.name, type.array, options_.stringParameters)) return a;
+        if (Inst* a = constantTexts(s.name, type.array, options_.stringParameters)) {
+            noteTexts(a, s, length, options_.stringParameters);
+            return a;
+        }
     } else {
         for (const auto& [name, value] : options_.stringParameters)
             if (name == s.name)
@@ -169,7 +183,16 @@ bool Builder::buildShader() {
     lightBlocks_.clear();
     blockRan_ = newSlot(boolean(false));
     if (shader_.kind == ShaderKind::Light && shader_.body) findBlocks(*shader_.body);
-    if (shader_.body) statement(*shader_.body);
+    // What stops shadows is what opacity() gives, before the other methods change it.
+    const bool opacityOnly = shader_.object && std::any_of(options_.stringParameters.begin(), options_.stringParameters.end(), [](const auto& p) { return p.first == "opacity()"; });
+    if (shader_.body && opacityOnly) {
+        for (const StmtPtr& s : shader_.body->body) {
+            statement(*s);
+            if (s->kind == StmtKind::Expression && s->value && s->value->text == "opacity") break;
+        }
+    } else if (shader_.body) {
+        statement(*shader_.body);
+    }
     place_ = shader_.place;
 
     const auto output = [&](const std::string& name, Inst* value, Type type) {

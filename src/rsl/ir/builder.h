@@ -187,6 +187,14 @@ private:
     };
     Type typeOfMember(const Expr&);
     bool certain_ = true;         ///< forHandle(): the handle is known
+    std::map<const Inst*, std::vector<std::string>> texts_; ///< arrays of texts that nothing writes to: their elements
+    std::optional<std::set<const Symbol*>> written_;
+    bool everWritten(const Symbol&);
+    void noteTexts(const Inst* array, const Symbol&, int length, std::span<const std::pair<std::string, std::string>> given);
+    bool possibleTexts(const Inst*, std::set<std::string>& out, int depth = 0) const;
+    void complain(const Place&, const std::string&);
+    Inst* handleText(const Expr&);
+    Inst* ofSurface(const Expr& handle, const std::string& name, Kind, const Expr* to);
     CoShader selfBinding_;        ///< of the shader itself, under the name that `this` has
     std::vector<size_t> current_; ///< the instances whose methods are open; the shader itself where there is none
     std::unordered_map<const Symbol*, int> ownSlots_; ///< the shader's, while those of a co-shader count
@@ -224,11 +232,13 @@ private:
     Inst* evalParameter(const Expr&); // build_parameters.cpp
     Inst* hasMethod(const Expr&);
     Inst* getShader(const Expr&);
-    std::vector<Inst*> handlesOf(const Expr&);
+    std::vector<Inst*> handlesOf(const Expr&, std::vector<Inst*>* when = nullptr);
+    Inst* storeHandles(Inst* to, const Expr&);
+    std::vector<const Symbol*> membersOf(size_t instance) const;
     void scanMethod(const Expr&, std::set<int>& out);
     // build_lighthandles.cpp: lights by their handles
     Inst* lightMethod(const Expr& call, Inst* handle);
-    Inst* lightMember(Inst* handle, const std::string& name, Kind, const Expr* to);
+    Inst* lightMember(Inst* handle, Inst* name, Kind, const Expr* to);
     Inst* getLight(const Expr&);
     std::vector<Inst*> lightHandles(const Expr&);
     Inst* isLightCategory(const Expr&);
@@ -267,6 +277,7 @@ private:
     Inst* transformCall(const Expr&);
     Inst* filterstep(const Expr&);
     Inst* isOutput(const Expr&);
+    bool isWanted(const std::string& output) const;
     Inst* gridBound(const Expr&, float half);
     Inst* unavailable(const Expr&);
     // build_rays.cpp

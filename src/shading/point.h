@@ -20,6 +20,17 @@ struct RaySet {
     HitMode mode = HitMode::Default;
 };
 
+/// The volumes that a ray is inside of, the innermost last: numbers of the media of the world, -1 for one where nothing is.
+struct Media {
+    static constexpr int kMost = 4;   ///< deeper ones push the outermost out
+    int16_t in[kMost] = {};
+    int8_t count = 0;
+    int top() const { return count ? in[count - 1] : -1; }
+    void push(int medium);
+    /// Leaves the innermost volume of that medium; none where the ray is in no such volume.
+    void leave(int medium);
+};
+
 /// A ray on its way, with all that its hit needs: who pays for what it finds, which random numbers it may use, how it was made.
 struct PathRay {
     Vec3 origin, dir;                 ///< dir: unit
@@ -51,12 +62,16 @@ struct PathRay {
     Color environment{0};             ///< of trace() with a map: the light where nothing is
     RaySet set;
     float level = 0.5f;               ///< of its camera sample, for what fades between levels of detail
+    Media media;                      ///< where it is
+    bool parted = false;              ///< camera: passed a volume on its way, so that volumes have what lies before `origin`
     float start = 0;                  ///< camera: the way from the eye to the origin, before the near plane and through what was met
     /// Where it began: the eye of a camera ray.
     Vec3 begin() const {
         const Vec3 e = origin - dir * start;
         return length(e) <= 1e-6f * start ? Vec3(0, 0, 0) : e;
     }
+    /// Where the way begins that a volume shader is to run over.
+    Vec3 volumeBegin() const { return parted ? origin : begin(); }
 };
 
 using Sched = Scheduler<PathRay>;

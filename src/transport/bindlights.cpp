@@ -140,7 +140,7 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
 void WorldImpl::bindSentStrings(Diagnostics& d) {
     std::map<std::string, std::map<std::string, std::string>> sent;
     for (const SurfaceBinding& b : bindings_)
-        for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV, &b.atmosphereS})
+        for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV, &b.atmosphere.kernel})
             for (const SiteInfo& s : k->sites)
                 if (const std::string key = sentStrings(s); s.kind == SiteKind::LightSetup && !key.empty())
                     for (const auto& [name, value] : s.text)

@@ -147,6 +147,7 @@ void Engine::giveBack(std::shared_ptr<BatchContext> c) {
     c->lit = nullptr;
     c->displaced.reset();
     c->light = nullptr;
+    c->volume = nullptr;
     c->lightVisibilityDistance = 0;
     pool_.push_back(std::move(c));
 }
@@ -176,6 +177,7 @@ bool Engine::trace(std::span<const CameraRay> rays, std::span<SampleResult> out,
         r.width = c.width;
         r.spread = c.spread;
         r.start = c.start;
+        r.media = world_->eye_;
         if (world_->fades_) r.level = random(r).one(0, kLevel, 0);
         r.cameraSample = int(i);
     }

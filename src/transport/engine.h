@@ -30,6 +30,7 @@ struct ShadowRay {
     shading::RaySet set{nullptr, accel::Sides::Both, shading::HitMode::Default};
     RayType type = RayType::Transmission; ///< whose visibility counts
     int32_t label = 0;
+    shading::Media media{}; ///< where it begins
 };
 
 /// The way from a to b for a shadow ray; where an end is `at`, a shaded point of the surface `s` (null: none), that surface does not block.
@@ -58,7 +59,7 @@ struct TraceSums {
 struct OpacityQuery { int binding; accel::Hit hit; const ShadowRay* ray; const BoundKernel* kernel; };
 
 /// What an atmosphere makes of the light that a ray met: Ci and Oi as seen, and the coefficient of the light met.
-struct Haze { Color shown, opacity, slope{1}; };
+struct Haze { Color shown, opacity, slope{1}; bool on = false; }; ///< on: a volume shader has run
 
 /// A lobe at a point that light shall be gathered over.
 struct LobeVertex {
@@ -120,11 +121,12 @@ struct BatchContext {
     std::vector<int> bindings;                 ///< by point
     std::vector<EmitRecord> emits;
     std::vector<float> arena;
-    std::vector<Haze> haze;                    ///< by point; only where a binding has an atmosphere
+    std::vector<Haze> haze;                    ///< by point; only where a volume lies before some point
     std::deque<LightLoop> loops;               ///< Engine::lightLoop()
     const BoundLight* light = nullptr;         ///< whose kernel runs
     const LitSurface* lit = nullptr;           ///< while a light's kernel runs: what it lights
     std::shared_ptr<BatchContext> displaced;   ///< the displacement shader's run at these points, where its outputs are asked for
+    const Medium* volume = nullptr;            ///< while a volume's kernel runs
     const BatchContext* surface = nullptr;     ///< while an atmosphere's kernel runs: the surface's run that it dims
     std::vector<int> surfacePoint;             ///< by point: its number in that run
     std::vector<float> lightChannels;          ///< by point, all AOVs: what lights gave by outputchannel(), and atmospheres; empty when none did
@@ -161,14 +163,24 @@ public:
     /// Oi at hits of one binding.
     void opacities(std::span<const OpacityQuery>, std::span<Color> out);
     // haze.cpp
-    /// Runs the binding's atmosphere over points with Ci, Oi, I, P set. The points' Ci is void afterwards.
+    /// Runs a volume shader over points with Ci, Oi, I, P set. The points' Ci is void afterwards. The binding is that of what was met.
     /// `surface`, `of`: the run of the surface shader, and the points' numbers there; may be missing.
-    void haze(const SurfaceBinding&, std::vector<ShadePoint>&, std::span<Haze> out, bool wantSlope, BatchContext* surface = nullptr, std::span<const int> of = {});
+    void haze(const Medium&, const SurfaceBinding&, std::vector<ShadePoint>&, std::span<Haze> out, bool wantSlope, BatchContext* surface = nullptr, std::span<const int> of = {});
     void keepOutputs(const shading::Batch& volume, BatchContext& surface, std::span<const int> of);
     /// Fills c.haze for points first to first + count - 1 of a shaded batch.
     void hazeOfBatch(BatchContext&, int first, int count, bool wantSlope);
     /// Takes from the light of emitters what their atmosphere takes between them and the lit points.
-    void hazeOfEmitters(const BoundLight&, std::span<const ShadePoint>, std::span<LightValue>);
+    /// inMedium: LightCall::inMedium.
+    void hazeOfEmitters(const BoundLight&, std::span<const ShadePoint>, std::span<LightValue>, const std::vector<char>* inMedium);
+    // media.cpp
+    /// Where a ray from a point of a batch in direction w begins.
+    shading::Media mediaTowards(const BatchContext&, int point, const Vec3& w) const;
+    /// Where shadow rays between a and b begin, one of which may be the point `at` of a surface. Those that end there are turned about.
+    void shadowsInMedia(std::span<ShadowRay>, const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint*, const SurfaceBinding*) const;
+    /// A part of a shadow ray inside a medium.
+    struct MediumPart { int medium; size_t ray; Vec3 from, to; };
+    /// Takes from `out`, by ray, what the media leave of light.
+    void dim(std::span<const MediumPart>, std::span<const ShadowRay>, std::span<Color> out);
     // manylights.cpp
     /// Lights to sample at a point: index in the list, and the probability that it is chosen.
     void chooseLights(const std::vector<int>& lights, const Vec3& at, float random, std::vector<std::pair<int, float>>& chosen);
@@ -261,7 +273,7 @@ private:
     struct Met { int light; TargetId target; const ShadePoint* point; };
     /// Light that emitters send along the rays that met them; sorted by light.
     void emission(std::span<const Met>, Sched&);
-    void passThrough(const PathRay&, TargetId, const ShadePoint&, const Color& transparency, Sched&);
+    void passThrough(const SurfaceBinding&, const PathRay&, TargetId, const ShadePoint&, const Color& transparency, Sched&);
     std::shared_ptr<const WorldImpl> world_;
     Diagnostics& diagnostics_;
     render::SeedKey seed_;

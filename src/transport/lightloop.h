@@ -18,6 +18,7 @@ struct LightCall {
     const shading::ParameterBlock* parameters = nullptr; ///< instead of the instance's: with values that a surface has sent
     const BoundKernel* kernel = nullptr;                 ///< for the strings that it has sent
     const LitSurface* lit = nullptr;
+    const std::vector<char>* inMedium = nullptr;         ///< by query: a medium lies before the emitter, and not its atmosphere
     std::vector<float>* values = nullptr;                ///< gets BoundLight::values: valueWidth numbers a query
 };
 

@@ -16,6 +16,8 @@ shading::TargetValue Engine::rayOfLight(BatchContext& c, const SiteInfo& s, int 
     if (s.kind == SiteKind::Transmission) {
         std::vector<ShadowRay> rays;
         transmissionRays(s, p, p.Ps, p.lit, row, Color(1), shading::kNoTarget, site, occurrence, rays);
+        const auto point3 = [&](size_t arg) { return Vec3(row(s.rows[arg]), row(s.rows[arg] + 1), row(s.rows[arg] + 2)); };
+        shadowsInMedia(rays, point3(0), point3(1), p.Ps, p.lit, c.lit ? c.lit->binding(point) : nullptr);
         for (const ShadowRay& r : rays) value.radiance += r.contribution * (r.distance > 0 ? transmittance(r) : Color(1));
         return value;
     }
@@ -67,6 +69,8 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
         ++(l.type == RayType::Diffuse ? r.diffuseBounces : r.specularBounces);
         r.origin = l.bias >= 0 ? start + w * l.bias : leaves ? geometry::offsetOrigin(*p.lit, w, 0) : start + w * geometry::roundingError(start);
         r.start = 0;
+        r.parted = false;
+        if (!leaves || (dot(from.dir, p.lit->n) < 0) != (dot(w, p.lit->n) > 0)) r.media = {}; // nobody knows
         r.dir = w;
         r.maxDistance = l.maxDistance;
         r.type = l.type;
@@ -163,7 +167,7 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
     }
     if (light.intensityScale > 0) // the kernel divided by the squared distance: radiance does not
         for (size_t i = 0; i < queries.size(); ++i) out[i].Cl *= dot(out[i].L, out[i].L) * light.intensityScale;
-    hazeOfEmitters(light, queries, out);
+    hazeOfEmitters(light, queries, out, call.inMedium);
     giveBack(std::move(c));
 }
 

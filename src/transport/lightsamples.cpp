@@ -135,6 +135,7 @@ void Engine::shadowLoop(const BatchContext& c, const BoundLight& light, int firs
         const Vec3 o = geometry::offsetOrigin(lit.surface, w, length(q[i].Ps - lit.surface.P));
         const float distance = light.kind == LightKind::Distant ? 1e38f : light.kind == LightKind::Area ? far * (1 - 1e-4f) : far * (1 - 1e-5f);
         rays.push_back({o, w, distance, Color(1), shading::kNoTarget, lit.time, lit.ray});
+        rays.back().media = mediaTowards(c, first + laneOf[i], w);
         of.push_back(i);
     }
     std::vector<Color> left(rays.size());

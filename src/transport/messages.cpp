@@ -48,7 +48,7 @@ const InstanceRef& shaderOf(const SurfaceBinding& b, Asks who, const ShadePoint&
     switch (who) {
     case Asks::Surface: return b.surface;
     case Asks::Displacement: return b.displacement;
-    case Asks::Atmosphere: return b.atmosphere;
+    case Asks::Atmosphere: return b.atmosphere.shader;
     case Asks::Incident: return back ? b.interior : b.exterior;
     case Asks::Opposite: return back ? b.exterior : b.interior;
     default: return none;
@@ -175,7 +175,7 @@ void answerShaderName(Engine& engine, const ServiceCall& q) {
         else if (kind == "lightsource") {
             const int turn = c.light || q.s.text.count("__outside") ? -1 : engine.lightLoop(c, q.first, q.lanes).light;
             of = c.light ? c.light->instance : turn >= 0 ? w.lights_[size_t(turn)].instance : nullptr;
-        } else if (b && own) of = c.bound == &b->displacementS ? b->displacement : c.bound == &b->atmosphereS ? b->atmosphere : b->surface;
+        } else if (b && own) of = c.bound == &b->displacementS ? b->displacement : c.volume ? c.volume->shader : b->surface;
         else if (b) of = shaderOf(*b, asked(kind), p);
         std::string name = of ? of->name : "";
         if (!of && !c.light && !c.binding && (own || kind == "imager") && w.frame().options.imager) name = w.frame().options.imager->name;

@@ -60,7 +60,7 @@ void WorldImpl::measureOutputs() {
     outputWidths_.clear();
     std::set<const ShaderInstance*> shaders;
     for (const SurfaceBinding& b : bindings_)
-        for (const InstanceRef& i : {b.surface, b.atmosphere})
+        for (const InstanceRef& i : {b.surface, b.atmosphere.shader, b.interior, b.exterior})
             if (i) shaders.insert(i.get());
     for (const BoundLight& l : lights_)
         if (l.instance) shaders.insert(l.instance.get());

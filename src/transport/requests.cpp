@@ -37,7 +37,9 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     auto number = [&](int row, float fallback) { return row < 0 ? fallback : f(row); };
     auto vector = [&](int row, Vec3 fallback) { return row < 0 ? fallback : Vec3(f(row), f(row + 1), f(row + 2)); };
     if (s.kind == SiteKind::Transmission) {
+        const size_t had = shadows.size();
         transmissionRays(s, p, p.P, &p.surface, f, weight, target, uint32_t(s.site - c.bound->kernel->sites().data()), occurrence, shadows);
+        shadowsInMedia(std::span(shadows).subspan(had), v(0), v(1), p.P, &p.surface, c.bindings.empty() ? nullptr : &world_->bindings_[size_t(c.bindings[size_t(point)])]);
         return;
     }
     // Under path ambient light is what escaping diffuse rays see.
@@ -288,6 +290,11 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 lit.output = [&](int k, const std::string& name, std::vector<float>& now) { return told(k).output(name, now); };
                 call.lit = &lit;
             }
+            std::vector<char> inMedium;
+            if (!world_->media_.empty() && area) {
+                for (size_t k = 0; k < used; ++k) inMedium.push_back(mediaTowards(c, pointOf[k], drawn[k].direction).top() >= 0);
+                call.inMedium = &inMedium;
+            }
             std::vector<float> values(light.channels ? used * size_t(light.valueWidth) : 0);
             if (light.channels) call.values = &values;
             evaluateLight(light, q, value, call);
@@ -329,6 +336,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     } else {
                         shadows.push_back({o, w, stop < 1e30f ? stop * (1 - 1e-5f) : stop, contribution, l.target, p.time, p.ray});
                     }
+                    shadows.back().media = mediaTowards(c, l.point, w);
                 }
             }
         }
@@ -423,6 +431,8 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 r.label = l.label;
                 r.set = l.set;
                 r.start = 0;
+                r.media = mediaTowards(c, int(pi), w);
+                r.parted = false;
                 if (l.base > 0) { // somewhere on the footprint
                     const Vec2 at = rng.pair(vertex, kSampleBase, 0);
                     r.origin += (p.surface.dPdu * (p.du * (at.x - .5f)) + p.surface.dPdv * (p.dv * (at.y - .5f))) * l.base;

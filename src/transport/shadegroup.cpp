@@ -116,6 +116,7 @@ void Engine::lightVisibility(BatchContext& c, const SiteInfo& s, int point, cons
     Vec3 w = l / length_;
     Vec3 o = geometry::offsetOrigin(p.surface, w, length(p.P - p.surface.P));
     shadows.push_back({o, w, distance < 1e30f ? distance * (1 - 1e-4f) : 1e38f, weight, target, p.time, p.ray});
+    shadows.back().media = mediaTowards(c, point, w);
 }
 
 void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched) {
@@ -125,7 +126,8 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched) {
     std::vector<std::vector<int>> wantedAt; // by AOV: the kernel's outputs, for arrays one an element
     for (const std::string& name : wanted) wantedAt.push_back(outputsNamed(b, name));
     bool suspended = b.kernel().facts().suspends; // then nobody has asked for the atmosphere yet
-    if (suspended) hazeOfBatch(c, first, lanes, false);
+    const bool media = !world_->media_.empty();
+    if (suspended) hazeOfBatch(c, first, lanes, media);
     for (int i = first; i < std::min(first + lanes, int(c.points.size())); ++i) {
         const PathRay& ray = c.rays[i];
         const SurfaceBinding& binding = world_->bindings_[c.bindings[i]];
@@ -139,11 +141,15 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched) {
             sched.setTransmission(c.targets[i], Color(1) - opacity);
         }
         if (TraceSums* sums = sumsOf(c.targets[i])) sums->add(TraceSums::Blocked, ray.part * opacity);
-        Color shown = color;
-        if (binding.atmosphere && !(binding.matte && ray.type == RayType::Camera)) { // pairs were scaled in shadeGroup
+        Color shown = color, clear = Color(1) - opacity;
+        if (!c.haze.empty() && c.haze[size_t(i)].on && !(binding.matte && ray.type == RayType::Camera)) { // pairs were scaled in shadeGroup
             shown = c.haze[size_t(i)].shown;
             opacity = c.haze[size_t(i)].opacity;
         }
+        // An atmosphere goes on behind what is not opaque, as if nothing were there. A medium ends, and another begins.
+        if (media && (ray.media.top() >= 0 || binding.beyond(ray.media, c.points[i].surface.n, ray.dir, ray.dir).top() >= 0))
+            clear = clear * (c.haze.empty() ? Color(1) : c.haze[size_t(i)].slope);
+        else clear = Color(1) - opacity;
         sched.add(c.targets[i], ray.weight * shown);
         if (ray.cameraSample >= 0) {
             SampleResult& r = *results[ray.cameraSample];
@@ -166,7 +172,7 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched) {
                 at += size_t(width);
             }
         }
-        if (opacity.x < 1 || opacity.y < 1 || opacity.z < 1) passThrough(ray, c.targets[i], c.points[i], Color(1) - opacity, sched);
+        if (maxComponent(clear) > 0) passThrough(binding, ray, c.targets[i], c.points[i], clear, sched);
     }
 }
 
@@ -246,12 +252,13 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
     kernel.run(&c->batch->call());
 
     // Affine pairs by point, in order of emission. Atmosphere scales them.
-    bool hazy = std::any_of(c->bindings.begin(), c->bindings.end(), [&](int b) { return world_->bindings_[size_t(b)].atmosphere != nullptr; });
+    const bool media = !world_->media_.empty();
+    bool hazy = media || std::any_of(c->bindings.begin(), c->bindings.end(), [&](int b) { return world_->bindings_[size_t(b)].atmosphere.shader != nullptr; });
     std::vector<Color> slope(n, Color(1));
     if (hazy) {
-        hazeOfBatch(*c, 0, n, !c->emits.empty());
+        hazeOfBatch(*c, 0, n, media || !c->emits.empty());
         for (int i = 0; i < n; ++i)
-            if (world_->bindings_[size_t(c->bindings[size_t(i)])].atmosphere) slope[size_t(i)] = c->haze[size_t(i)].slope;
+            if (c->haze[size_t(i)].on) slope[size_t(i)] = c->haze[size_t(i)].slope;
     }
     std::vector<uint32_t>& occurrence = occurrence_;
     occurrence.assign(c->emits.empty() ? 0 : c->bound->sites.size() * size_t(n), 0);

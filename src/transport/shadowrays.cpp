@@ -3,6 +3,7 @@
 #include "transport/engine.h"
 #include "transport/raysets.h"
 #include "transport/sampling.h"
+#include <limits>
 
 namespace alpenglow::transport {
 
@@ -35,6 +36,17 @@ Way wayBetween(const Vec3& a, const Vec3& b, const Vec3& at, const geometry::Sur
     const Vec3 from = end(a, d), to = end(b, -d), left = to - from;
     const float l = length(left);
     return dot(left, d) > 0 ? Way{from, left / l, l} : Way{from, d, 0};
+}
+
+void WorldImpl::goOn(accel::Ray& ray, const accel::Hit& h) const {
+    if (shapes_[h.shape]->exact()) { // may be met again: a ball twice
+        ray.excludeShape = ray.excludePrim = accel::kNone;
+        ray.tnear = std::nextafter(h.t, std::numeric_limits<float>::infinity());
+        return;
+    }
+    ray.excludeShape = h.shape;
+    ray.excludePrim = h.prim;
+    ray.tnear = h.t;
 }
 
 void Engine::opacities(std::span<const OpacityQuery> met, std::span<Color> out) {
@@ -89,7 +101,8 @@ void Engine::opacities(std::span<const OpacityQuery> met, std::span<Color> out) 
 
 void Engine::transmittances(std::span<const ShadowRay> rays, std::span<Color> out) {
     counters.shadow += rays.size();
-    if (world_->allOpaque_) {
+    const bool media = !world_->media_.empty();
+    if (world_->allOpaque_ && !media) {
         shadowRays_.clear();
         for (const ShadowRay& r : rays) shadowRays_.push_back(shadowRay(r));
         blocked_.resize(rays.size());
@@ -97,13 +110,14 @@ void Engine::transmittances(std::span<const ShadowRay> rays, std::span<Color> ou
         for (size_t i = 0; i < rays.size(); ++i) out[i] = blocked_[i] ? Color(0) : Color(1);
         return;
     }
-    struct Going { accel::Ray ray; size_t index; int layers; };
+    struct Going { accel::Ray ray; size_t index; int layers; shading::Media media; Vec3 begin; };
+    std::vector<MediumPart> parts;
     std::vector<Going> now, next;
     std::vector<OpacityQuery> met;
     std::vector<size_t> order, metOf; ///< metOf[i]: the ray in `next` that query i belongs to
     for (size_t i = 0; i < rays.size(); ++i) {
         out[i] = Color(1);
-        now.push_back({shadowRay(rays[i]), i, 0});
+        now.push_back({shadowRay(rays[i]), i, 0, rays[i].media, rays[i].origin});
     }
     while (!now.empty()) {
         next.clear();
@@ -112,13 +126,22 @@ void Engine::transmittances(std::span<const ShadowRay> rays, std::span<Color> ou
             Color& t = out[g.index];
             for (;; ++g.layers) {
                 accel::Hit h;
-                if (!world_->accel_->intersect(g.ray, h)) break;
+                if (!world_->accel_->intersect(g.ray, h)) {
+                    if (const float end = rays[g.index].distance; g.media.top() >= 0 && end < 1e30f)
+                        parts.push_back({g.media.top(), g.index, g.begin, rays[g.index].origin + g.ray.dir * end});
+                    break;
+                }
                 if (g.layers >= limits::kShadowLayers) { t = Color(0); ++counters.depthCap; break; }
                 int binding = world_->bindingOf_[h.shape];
                 const SurfaceBinding& b = world_->bindings_[size_t(binding)];
-                g.ray.excludeShape = h.shape;
-                g.ray.excludePrim = h.prim;
-                g.ray.tnear = h.t;
+                world_->goOn(g.ray, h);
+                if (media) {
+                    const geometry::SurfacePoint at = world_->accel_->point(h);
+                    const Vec3 end = at.displaced ? at.displacedP : at.P;
+                    if (g.media.top() >= 0) parts.push_back({g.media.top(), g.index, g.begin, end});
+                    g.media = b.beyond(g.media, at.n, g.ray.dir, g.ray.dir);
+                    g.begin = end;
+                }
                 const Opacity& takes = b.opacityFor(rays[g.index].set.mode);
                 if (takes.kernel) {
                     ++g.layers;
@@ -149,6 +172,7 @@ void Engine::transmittances(std::span<const ShadowRay> rays, std::span<Color> ou
         now.swap(next);
         if (stop && *stop) break; // the result is void
     }
+    dim(parts, rays, out);
 }
 
 Color Engine::transmittance(const ShadowRay& s) {

@@ -1,5 +1,6 @@
 #include "transport/surfaces.h"
 #include "transport/answers.h"
+#include <limits>
 #include <set>
 
 namespace alpenglow::transport {
@@ -46,7 +47,7 @@ bool SurfaceBinder::bindAll() {
         const int b = bind(shape);
         if (b < 0) return false;
         world_.bindingOf_.push_back(b);
-        if (path_ && world_.bindings_[size_t(b)].atmosphere && shape->attributes().areaLight >= 0) world_.hazyEmitters_[shape.get()] = b;
+        if (path_ && world_.bindings_[size_t(b)].atmosphere.shader && shape->attributes().areaLight >= 0) world_.hazyEmitters_[shape.get()] = b;
     }
     return bindMixed() && bindHitModes();
 }
@@ -76,10 +77,10 @@ int SurfaceBinder::bind(const geometry::ShapeRef& shape) {
     // A class with surface and displacement is both.
     if (!a.displacement && b.explicitSurface && rsl::ShaderCompiler::variant(b.surface->program, rsl::ShaderKind::Displacement))
         b.displacement = world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Displacement), a.coshaders, diagnostics_);
-    b.atmosphere = world_.withCoShaders(instanceOf(a.atmosphere, rsl::ShaderKind::Volume), a.coshaders, diagnostics_);
+    b.atmosphere.shader = world_.withCoShaders(instanceOf(a.atmosphere, rsl::ShaderKind::Volume), a.coshaders, diagnostics_);
     const Names varying = varyingOf(*shape, *b.surface);
     const Names displacementVarying = b.displacement ? varyingOf(*shape, *b.displacement) : Names{};
-    const Names atmosphereVarying = b.atmosphere ? varyingOf(*shape, *b.atmosphere) : Names{};
+    const Names atmosphereVarying = b.atmosphere.shader ? varyingOf(*shape, *b.atmosphere.shader) : Names{};
     std::string key;
     auto add = [&](auto v) { key.append(reinterpret_cast<const char*>(&v), sizeof v); };
     add(b.surface.get());
@@ -107,8 +108,10 @@ int SurfaceBinder::bind(const geometry::ShapeRef& shape) {
     auto [it, fresh] = bindingByKey_.try_emplace(key, int(world_.bindings_.size()));
     if (!fresh) return it->second;
 
-    b.interior = instanceOf(a.interior, rsl::ShaderKind::Volume);
-    b.exterior = instanceOf(a.exterior, rsl::ShaderKind::Volume);
+    b.interior = world_.withCoShaders(instanceOf(a.interior, rsl::ShaderKind::Volume), a.coshaders, diagnostics_);
+    b.exterior = world_.withCoShaders(instanceOf(a.exterior, rsl::ShaderKind::Volume), a.coshaders, diagnostics_);
+    b.inside = mediumOf(b.interior, *shape);
+    b.outside = mediumOf(b.exterior, *shape);
     // Who asks comes before who is asked: an atmosphere asks for outputs of the surface, both for those of the displacement.
     bindDisplacement(b, displacementVarying, {});
     bindAtmosphere(b, atmosphereVarying);
@@ -145,7 +148,7 @@ SurfaceBinder::Names SurfaceBinder::outputsOf(const SurfaceBinding& b) const {
         if (n != "Ci" && n != "Oi" && (std::find(std::begin(kVariables), std::end(kVariables), n) != std::end(kVariables) || gives(*b.surface, n))) outputs.push_back(n);
     std::set<std::string> asked;
     if (path_) asked.insert(world_.lightMessages_.begin(), world_.lightMessages_.end()); // lighting shadeops: lights run when the surface's kernel is done
-    const bool all = b.atmosphere && questions(b.atmosphereS, "surface", asked);
+    const bool all = b.atmosphere.shader && questions(b.atmosphere.kernel, "surface", asked);
     for (const auto& p : b.surface->program->parameters())
         if (p.output && (all || asked.count(p.name))) outputs.push_back("param:" + p.name);
     return outputs;
@@ -165,7 +168,7 @@ bool SurfaceBinder::questions(const BoundKernel& k, const char* op, std::set<std
 void SurfaceBinder::hearDisplacement(SurfaceBinding& b, const Names& varying, const Names& displacementVarying) {
     if (!b.displacement || b.displacementS.kernel->facts().suspends) return;
     std::set<std::string> asked;
-    const bool all = questions(b.surfaceS, "displacement", asked) | (b.atmosphere && questions(b.atmosphereS, "displacement", asked));
+    const bool all = questions(b.surfaceS, "displacement", asked) | (b.atmosphere.shader && questions(b.atmosphere.kernel, "displacement", asked));
     Names outputs;
     auto told = std::make_shared<ShaderInstance>(*b.surface);
     for (const auto& p : b.displacement->program->parameters()) {
@@ -220,23 +223,39 @@ bool SurfaceBinder::bindMixed() {
     return true;
 }
 
-void SurfaceBinder::bindAtmosphere(SurfaceBinding& b, const Names& varying) {
-    if (!b.atmosphere) return;
+void SurfaceBinder::bindAtmosphere(SurfaceBinding& b, const Names& varying) { b.atmosphere = bindVolume(b.atmosphere.shader, varying); }
+
+Medium SurfaceBinder::bindVolume(const InstanceRef& shader, const Names& varying) {
+    if (!shader) return {};
     Names outputs{"Ci", "Oi", "slope:Ci"};
     for (const auto& n : world_.settings_.outputs)
-        if (n != "Ci" && n != "Oi" && gives(*b.atmosphere, n)) outputs.push_back(n);
-    b.atmosphereS = world_.kernel(*b.atmosphere, outputs, varying, false, false, diagnostics_);
-    const std::string name = "\"" + b.atmosphere->name + "\"";
-    if (!b.atmosphereS) {
-        b.atmosphere = nullptr;
-    } else if (b.atmosphereS.kernel->facts().suspends) {
-        diagnostics_.reportOnce("atmosphere:" + b.atmosphere->name, {Severity::Warning, Rie::Unimplement, b.atmosphere->place,
-                                "volume shader " + name + " waits for rays (" + b.atmosphereS.kernel->facts().whyNot + "); it is left out", {}, {}});
-        b.atmosphere = nullptr;
-    } else if (b.atmosphereS.plan->output("slope:Ci") < 0) {
-        diagnostics_.reportOnce("atmosphere:" + b.atmosphere->name, {Severity::Info, Rie::NoError, b.atmosphere->place,
-                                "volume shader " + name + " is not affine in Ci as written; what light loses in it is measured between Ci = 0 and 1", {}, {}});
+        if (n != "Ci" && n != "Oi" && gives(*shader, n)) outputs.push_back(n);
+    Medium m;
+    m.kernel = world_.kernel(*shader, outputs, varying, false, false, diagnostics_);
+    if (!m.kernel) return {};
+    const std::string name = "\"" + shader->name + "\"";
+    if (m.kernel.kernel->facts().suspends) {
+        diagnostics_.reportOnce("atmosphere:" + shader->name, {Severity::Warning, Rie::Unimplement, shader->place,
+                                "volume shader " + name + " waits for rays (" + m.kernel.kernel->facts().whyNot + "); it is left out", {}, {}});
+        return {};
     }
+    if (m.kernel.plan->output("slope:Ci") < 0)
+        diagnostics_.reportOnce("atmosphere:" + shader->name, {Severity::Info, Rie::NoError, shader->place,
+                                "volume shader " + name + " is not affine in Ci as written; what light loses in it is measured between Ci = 0 and 1", {}, {}});
+    m.shader = shader;
+    return m;
+}
+
+int SurfaceBinder::mediumOf(const InstanceRef& shader, const geometry::Shape& shape) {
+    if (!shader) return -1;
+    for (size_t i = 0; i < world_.media_.size(); ++i)
+        if (world_.media_[i].shader == shader) return int(i);
+    Medium m = bindVolume(shader, {});
+    if (!m.shader || world_.media_.size() > size_t(std::numeric_limits<int16_t>::max() - 1)) return -1;
+    m.shape = &shape;
+    m.binding = int(world_.bindings_.size()); // that is bound now
+    world_.media_.push_back(std::move(m));
+    return int(world_.media_.size()) - 1;
 }
 
 void SurfaceBinder::bindDisplacement(SurfaceBinding& b, const Names& varying, const Names& more) {

@@ -32,6 +32,10 @@ private:
     /// False when not even the default surface could be compiled.
     bool bindSurface(SurfaceBinding&, Names varying);
     void bindAtmosphere(SurfaceBinding&, const Names& varying);
+    /// The kernel of a volume shader; no shader where it cannot run, which was reported.
+    Medium bindVolume(const InstanceRef&, const Names& varying);
+    /// WorldImpl::media_ of an Interior or Exterior; -1: none.
+    int mediumOf(const InstanceRef&, const geometry::Shape&);
     /// `more`: outputs besides P, N and their derivatives.
     void bindDisplacement(SurfaceBinding&, const Names& varying, const Names& more);
     void bindLights(SurfaceBinding&, const scene::Attributes&);

@@ -5,7 +5,7 @@
 
 namespace alpenglow::transport {
 
-void Engine::passThrough(const PathRay& ray, TargetId target, const ShadePoint& p, const Color& transparency, Sched& sched) {
+void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId target, const ShadePoint& p, const Color& transparency, Sched& sched) {
     Color t(std::clamp(transparency.x, 0.f, 1.f), std::clamp(transparency.y, 0.f, 1.f), std::clamp(transparency.z, 0.f, 1.f));
     float most = maxComponent(t);
     if (!(most > 0)) return;
@@ -24,6 +24,8 @@ void Engine::passThrough(const PathRay& ray, TargetId target, const ShadePoint& 
     r.width = ray.width + ray.spread * travelled;
     r.shape = geometry::kNone;
     r.first = false;
+    r.media = b.beyond(ray.media, p.surface.n, ray.dir, ray.dir);
+    r.parted |= ray.type == RayType::Camera && (ray.media.top() >= 0 || r.media.top() >= 0);
     r.vertex = childVertex(ray.vertex, 0xfffff, 0);
     ++r.layers;
     if (r.layers > limits::kPathDepth / 32 || !(r.maxDistance > 0)) { ++counters.depthCap; return; }
@@ -94,7 +96,19 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
         value.assign(q.size(), {});
         LitSurface lit;
         if (light.asksSurface) lit = litBy(litBy_);
-        evaluateLight(light, q, value, {.lit = light.asksSurface ? &lit : nullptr});
+        std::vector<char> inMedium;
+        if (!world_->media_.empty())
+            for (size_t i = first; i < end; ++i) inMedium.push_back(met[i].point->ray->media.top() >= 0);
+        evaluateLight(light, q, value, {.lit = light.asksSurface ? &lit : nullptr, .inMedium = inMedium.empty() ? nullptr : &inMedium});
+        for (size_t i = 0; i < inMedium.size(); ++i) {
+            if (!inMedium[i] || !value[i].lit) continue;
+            const PathRay& r = *met[first + i].point->ray;
+            const MediumPart part{r.media.top(), 0, r.volumeBegin(), met[first + i].point->P};
+            ShadowRay way{};
+            way.ray = &r;
+            way.time = r.time;
+            dim({&part, 1}, {&way, 1}, {&value[i].Cl, 1});
+        }
         for (size_t i = first; i < end; ++i) {
             const LightValue& v = value[i - first];
             if (!v.lit || !(maxComponent(v.Cl) > 0)) continue;

@@ -104,6 +104,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
             w->fades_ = true;
         }
     if (w->fades_) w->accel_->setLevels(std::move(levels));
+    w->findEye();
     w->bindSentStrings(d);
     w->measureLights(engine, d);
     for (const auto& [shape, binding] : w->hazyEmitters_) {

@@ -150,12 +150,24 @@ struct Opacity {
     bool opaque() const { return !kernel && constant == Color(1); }
 };
 
+/// A volume shader as it runs: of an atmosphere, or of the inside or outside of primitives.
+struct Medium {
+    InstanceRef shader;
+    BoundKernel kernel;
+    const geometry::Shape* shape = nullptr;    ///< inside and outside: the first primitive, and its binding, for rays that meet nothing
+    int binding = -1;
+};
+
 /// Shapes with the same surface, atmosphere and light list are shaded together.
 struct SurfaceBinding {
-    InstanceRef surface, atmosphere, displacement, interior, exterior; ///< the last two only for messages
+    InstanceRef surface, displacement, interior, exterior; ///< the last two are asked by messages
     BoundKernel surfaceS;
     BoundKernel surfaceV;                      ///< only where batches of the scene need it: several bindings, or different spaces
-    BoundKernel atmosphereS, displacementS;
+    BoundKernel displacementS;
+    Medium atmosphere;                         ///< no shader: none
+    int inside = -1, outside = -1;             ///< WorldImpl::media_ of Interior and Exterior; -1: none
+    /// Where a ray is that comes from `from` and leaves a point with normal n in direction `to`; it arrived in direction `in`.
+    shading::Media beyond(const shading::Media& from, const Vec3& n, const Vec3& in, const Vec3& to) const;
     bool displacementTells = false;            ///< displacementS gives the outputs of its shader, for those who ask by displacement()
     BoundKernel moveS;                         ///< P as the surface shader leaves it, where that displaces the primitive (no displacement shader)
     std::vector<int> lights;                   ///< indices into lights
@@ -234,6 +246,10 @@ public:
     std::unordered_map<const geometry::Shape*, uint32_t> numberOfShape_; ///< index into shapes_
     std::vector<int> bindingOf_;               ///< by shape
     std::vector<SurfaceBinding> bindings_;
+    std::vector<Medium> media_;                ///< of Interior and Exterior
+    shading::Media eye_;                       ///< where camera rays begin
+    void findEye();                            ///< fills eye_; once rays can be sent
+    void goOn(accel::Ray&, const accel::Hit&) const; ///< behind what it met
     int groups_ = 0;                           ///< number of different SurfaceBinding::group
     std::vector<BoundLight> lights_;
     std::unique_ptr<accel::Accel> accel_;

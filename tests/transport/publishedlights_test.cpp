@@ -14,8 +14,8 @@ TEST(PublishedLights, WindowWithCrossbars) {
     const std::string window = "LightSource \"windowlight\" 1 \"float intensity\" 2 \"color lightcolor\" [.5 .25 .125] \"color darkcolor\" [.01 .02 .03] "
                                "\"point from\" [0 1 0] \"point to\" [0 0 0] \"point center\" [0 4 0] \"vector in\" [0 -1 0] \"vector up\" [0 0 1] "
                                "\"float panewidth\" 2 \"float paneheight\" 1 \"float framewidth\" .2 \"float frameheight\" .2 \"float fuzz\" 0.01\n";
-    // A wall above the window casts no shadow through it; one below does.
-    const std::string above = "AttributeBegin Surface \"matte\" Polygon \"P\" [-9 5 -9  -9 5 9  9 5 9  9 5 -9] AttributeEnd\n";
+    // A wall above the window casts no shadow through it. It is black: nothing comes back from it under path.
+    const std::string above = "AttributeBegin Surface \"matte\" Color 0 0 0 Polygon \"P\" [-9 5 -9  -9 5 9  9 5 9  9 5 -9] AttributeEnd\n";
     for (const Hider h : {Hider::Hidden, Hider::Path}) {
         Scene s(world(window + kMatte + kFloor + above), withShaders(h));
         const auto at = [&](float x, float z) { return s.one(rayTo({x + .1f, 1, z - .1f}, {x, 0, z})); };

@@ -1,5 +1,6 @@
 // Co-shaders that call each other through arrays of handles; the handles light, surface and caller; what asks about a light, a map, a
 // primitive or a space by a name. Closed forms.
+#include "display/imageio.h"
 #include "transport/harness.h"
 
 using namespace alpenglow;
@@ -116,6 +117,25 @@ TEST(Handles, MapsThatAreNotThereAreNoFaultOfWhoAsks) {
     const Seen r = seen("Surface \"handlemap\"\n");
     EXPECT_EQ(r.said, "");
     EXPECT_FLOAT_EQ(r.color.y, 6);
+}
+
+// A filter that is made when the shader runs reads as the one that is written down.
+TEST(Handles, FiltersOfMapsMayBeMadeWhenTheShaderRuns) {
+    display::Image m = display::makeImage(64, 64, display::defaultChannels(3));
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x)
+            for (int c = 0; c < 3; ++c) m.pixel(x, y)[c] = x < 32 ? 0.f : 1.f;
+    Diagnostics d;
+    display::WriteOptions o;
+    o.format = display::Format::Exr;
+    o.sample = display::Sample::Float;
+    o.policy = {shaderFolder(), false, -1};
+    ASSERT_TRUE(display::writeImage("handlestep.exr", m, o, d));
+    writeShader("handlefilter", "surface handlefilter(string map = \"" + shaderFolder() + "/handlestep.exr\";) { Oi = 1; string f = (u < 2) ? \"box\" : \"gaussian\", g = (u < 2) ? \"gaussian\" : \"box\";\n"
+                                "    float b = texture(map, .4, .5, \"blur\", .5, \"filter\", \"box\"), w = texture(map, .4, .5, \"blur\", .5, \"filter\", \"gaussian\");\n"
+                                "    float fb = texture(map, .4, .5, \"blur\", .5, \"filter\", f), fw = texture(map, .4, .5, \"blur\", .5, \"filter\", g);\n"
+                                "    Ci = color(abs(fb - b), abs(fw - w), abs(b - w) > .001 ? 1 : 0); }\n");
+    expectColor(seen("Surface \"handlefilter\"\n").color, {0, 0, 1});
 }
 
 TEST(PrimitiveText, CountsMoreThanTheParameterOfItsName) {

@@ -106,6 +106,8 @@ Color coneNumbers(Vec2 random);
 
 class Engine;
 
+/// Whether a shader gives an output only where it makes that name when it runs.
+bool givesPerhaps(const ShaderInstance&, const std::string& output);
 /// The outputs of a kernel that make up the AOV of a name: of an array all its elements. Empty: it has none.
 std::vector<int> outputsNamed(const shading::Batch&, const std::string& name);
 

@@ -39,13 +39,13 @@ void Engine::haze(const Medium& medium, const SurfaceBinding& binding, std::vect
     run([&](size_t i, const Color& ci, const Color&, const Color&) { out[i].slope += ci; });
 }
 
-/// Outputs that displays ask for and that the surface does not have.
+/// Outputs that displays ask for and that the surface does not have, or may not have.
 void Engine::keepOutputs(const shading::Batch& volume, BatchContext& surface, std::span<const int> of) {
     const auto& wanted = world_->settings_.outputs;
     size_t all = 0, at = 0;
     for (int w : world_->outputWidths_) all += size_t(w);
     for (size_t k = 0; k < wanted.size(); at += size_t(world_->outputWidths_[k++])) {
-        if (!outputsNamed(*surface.batch, wanted[k]).empty()) continue;
+        if (!outputsNamed(*surface.batch, wanted[k]).empty() && !(surface.binding && givesPerhaps(*surface.binding->surface, wanted[k]))) continue;
         size_t to = at;
         const size_t end = at + size_t(world_->outputWidths_[k]);
         for (int o : outputsNamed(volume, wanted[k])) {

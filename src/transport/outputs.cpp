@@ -47,6 +47,16 @@ bool gives(const ShaderInstance& shader, const std::string& output) { return wid
 
 bool givesChannel(const ShaderInstance& shader, const std::string& output) { return channelWidth(shader, output) > 0; }
 
+bool givesPerhaps(const ShaderInstance& shader, const std::string& output) {
+    const std::string base = withoutIndex(output);
+    for (const rsl::ParameterInfo& p : shader.program->parameters())
+        if (p.name == base && p.output) return false;
+    const auto says = [&](const rsl::Program& program) { return program.channels.count(base) > 0; };
+    for (const rsl::CoShader& co : shader.coShaders)
+        if (says(*co.program)) return false;
+    return !says(shader.program->program()) && channelWidth(shader, output) > 0;
+}
+
 std::vector<int> outputsNamed(const shading::Batch& b, const std::string& name) {
     if (const int whole = b.output(name); whole >= 0) return {whole};
     std::vector<int> elements;
@@ -68,7 +78,12 @@ void WorldImpl::measureOutputs() {
         const std::string& name = settings_.outputs[k];
         int width = kNumbers.count(name) ? 1 : kTriples.count(name) ? 3 : 0;
         if (width == 0)
-            for (const ShaderInstance* i : shaders) width = std::max(width, widthIn(*i, name));
+            for (const bool perhaps : {false, true}) { // who may give it at some points counts where nobody gives it for certain
+                int found = 0;
+                for (const ShaderInstance* i : shaders)
+                    if (givesPerhaps(*i, name) == perhaps) found = std::max(found, widthIn(*i, name));
+                if (width == 0) width = found;
+            }
         if (width == 0 && k < settings_.outputWidths.size()) width = settings_.outputWidths[k]; // nobody gives it: zeros, as the display says
         outputWidths_.push_back(width > 0 ? width : 3);
     }

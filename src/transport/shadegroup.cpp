@@ -125,6 +125,7 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched) {
     const auto& wanted = world_->settings_.outputs;
     std::vector<std::vector<int>> wantedAt; // by AOV: the kernel's outputs, for arrays one an element
     for (const std::string& name : wanted) wantedAt.push_back(outputsNamed(b, name));
+    std::vector<char> perhaps; // by AOV: a surface that makes the names of its outputs when it runs gives it at some points, and zero at others
     bool suspended = b.kernel().facts().suspends; // then nobody has asked for the atmosphere yet
     const bool media = !world_->media_.empty();
     if (suspended) hazeOfBatch(c, first, lanes, media);
@@ -161,11 +162,20 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched) {
             for (size_t k = 0; k < wanted.size(); ++k) {
                 const int width = world_->outputWidths_[k];
                 int to = 0;
+                bool others = wantedAt[k].empty(); // what lights and the atmosphere give
+                if (!others && !c.lightChannels.empty()) {
+                    if (perhaps.empty())
+                        for (const std::string& name : wanted) perhaps.push_back(c.binding && givesPerhaps(*c.binding->surface, name));
+                    others = perhaps[k];
+                    for (int o : wantedAt[k])
+                        for (int w = 0; others && w < rsl::ir::components(b.kernel().outputs()[size_t(o)].kind); ++w) others = b.value(o, w, i) == 0;
+                }
                 for (int o : wantedAt[k]) {
+                    if (others) break;
                     const int size = rsl::ir::components(b.kernel().outputs()[size_t(o)].kind);
                     for (int w = 0; w < size && to < width; ++w, ++to) r.aovs[at + size_t(to)] += (size == 3 ? ray.weight[w] : luminance(ray.weight)) * b.value(o, w, i);
                 }
-                if (wantedAt[k].empty() && !c.lightChannels.empty()) // what lights and the atmosphere give
+                if (others && !c.lightChannels.empty())
                     for (int w = 0; w < width; ++w)
                         r.aovs[at + size_t(w)] += (width % 3 == 0 ? ray.weight[w % 3] : luminance(ray.weight)) *
                                                   c.lightChannels[size_t(i) * (c.lightChannels.size() / c.points.size()) + at + size_t(w)];

@@ -67,6 +67,24 @@ TEST(Outputs, OfLights) {
     }
 }
 
+// A surface that makes its names when it runs may give any: where it does not, what the atmosphere and the lights give is shown.
+TEST(Outputs, NamesMadeByTheSurfaceHideNobody) {
+    writeShader("mist", "volume mist(output varying float thick = 0;) { thick = length(I); outputchannel(\"mist\", color(1, 2, 3)); outputchannel(\"both\", 5.0); Ci = Ci; Oi = Oi; }\n");
+    writeShader("names", "surface names(string mine = \"own\"; float way = 0;) { string n = (xcomp(P) > 1000) ? \"nobody\" : mine; outputchannel(n, color(7, 8, 9)); Oi = 1; Ci = diffuse(faceforward(N, I)); }\n");
+    writeShader("far", "light far() { illuminate(point \"world\" (0, 2, 0)) { Cl = 1; outputchannel(\"far\", length(L)); } }\n");
+    const float way = length(Vec3(.3f, .8f, -.4f));
+    for (Hider h : {Hider::Hidden, Hider::Path}) {
+        const std::string begin = "LightSource \"far\" 1\nAtmosphere \"mist\"\nSurface \"names\" \"mine\" ";
+        const Floats a = aovs(begin + "\"own\"\n", h, {"own", "mist", "thick", "far"});
+        ASSERT_EQ(a.size(), 8u); // as wide as those give them that give them for certain
+        EXPECT_EQ(Floats(a.begin(), a.begin() + 6), (Floats{7, 8, 9, 1, 2, 3}));
+        EXPECT_NEAR(a[6], way, 1e-5);
+        EXPECT_NEAR(a[7], 2, 1e-5);
+        const Floats b = aovs(begin + "\"mist\"\n", h, {"mist"});
+        EXPECT_EQ(b, (Floats{7, 8, 9})); // that of the surface comes first
+    }
+}
+
 // Arrays of co-shaders: by element, as a whole, their length, through getvar(); of two that a handle can mean.
 TEST(Outputs, ArraysOfCoShaders) {
     writeShader("table", "class table(float tab[3] = {1, 2, 3}; color tones[2] = {0, 0}; float open[] = {5, 6}; color tint = color(.25, .5, .75); string __category = \"t\";) {\n"

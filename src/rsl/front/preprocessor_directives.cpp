@@ -1,6 +1,7 @@
 // The lines that begin with #.
 #include "rsl/front/preprocessor_machine.h"
 #include "base/limits.h"
+#include <algorithm>
 #include <cctype>
 #include <cstdlib>
 #include <filesystem>
@@ -226,7 +227,7 @@ void Preprocessor::lineDirective(const std::vector<Token>& line, Place hash) {
     }
     Lexer& lexer = *frames_.back().lexer;
     const int real = hash.line - delta_[lexer.file()];
-    const int delta = std::atoi(std::string(line[i].text).c_str()) - (real + 1);
+    const int delta = std::max(1, std::atoi(std::string(line[i].text).c_str())) - (real + 1); // lines count from 1
     const bool named = i + 1 < line.size() && line[i + 1].kind == Tok::String;
     const std::string name = named ? stringValue(line[i + 1].text) : sources_.name(hash.file);
     delta_[lexer.file()] = delta;

@@ -25,6 +25,10 @@ void expectColor(const Color& c, const Color& want, float within = 1e-5f) {
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(c[k], want[k], within) << k;
 }
 
+void writeLight() {
+    writeShader("handlelight", "light handlelight(string __group = \"key\"; float power = 4;) { solar(vector \"world\" (0, 0, 1), 0) Cl = power; }\n");
+}
+
 void writeLayers() {
     writeShader("handlelayer", "class handlelayer(color tint = 1; shader below[] = {};) {\n    public color get() {\n        color c = tint * .25;\n"
                                "        if (arraylength(below) > 0) c += below[0]->get();\n        return c;\n    }\n}\n");
@@ -70,7 +74,7 @@ TEST(Handles, ThatLackAMethodAreNotMeant) {
 }
 
 TEST(Handles, LightSurfaceAndCaller) {
-    writeShader("handlelight", "light handlelight(string __group = \"key\"; float power = 4;) { solar(vector \"world\" (0, 0, 1), 0) Cl = power; }\n");
+    writeLight();
     writeShader("handlesees", "surface handlesees(string name = \"power\";) { Ci = 0; Oi = 1;\n    illuminance(P) { string g = \"none\"; float p = 0;\n"
                               "        if (getvar(light, \"__group\", g) == 1 && g == \"key\") { getvar(light, name, p); Ci += color(1, p, light->power); } } }\n");
     const Seen lit = seen("LightSource \"handlelight\" 1\nSurface \"handlesees\"\n");
@@ -106,6 +110,7 @@ TEST(Handles, NamesThatAreMadeWhenTheShaderRuns) {
 TEST(Handles, WhatAsksAboutTheLightOutsideOfLoopsHasNoAnswer) {
     writeShader("handlegone", "surface handlegone() { Ci = 0; Oi = 1; float inside = 0, after = 7, group = 7;\n    illuminance(P) { float p = 0; inside += lightsource(\"power\", p) * p; }\n"
                               "    float found = lightsource(\"power\", after) + attribute(\"light:user:group\", group) + islightcategory(\"\");\n    Ci = color(inside, found, after + group); }\n");
+    writeLight();
     const Seen r = seen("Attribute \"user\" \"float group\" [3]\nLightSource \"handlelight\" 1\nSurface \"handlegone\"\n");
     expectColor(r.color, {4, 0, 14});
     EXPECT_NE(r.said.find("lightsource() asks about the light of an illuminance loop; there is none here"), std::string::npos) << r.said;

@@ -123,6 +123,7 @@ std::shared_ptr<const RaySite> raySite(const SiteInfo& i, WorldImpl& world, cons
     }
     world.hitModes_ |= r->set.mode != HitMode::Default || r->mode >= 0;
     r->set.only = world.subsets_.find(world, r->subsetText, r->excludeText);
+    r->fixed = r->subset < 0 && r->exclude < 0 && r->sides < 0 && r->mode < 0 && r->label < 0 && r->type < 0;
     return r;
 }
 

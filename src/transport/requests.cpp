@@ -86,7 +86,13 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
             l.params.horizon = unit(vector(s.rowHorizon, p.surface.n), p.surface.n);
             l.params.hasHorizon = true;
         }
-        l.set = raySetOf(*world_, s, f, p.shape, l.type, l.label);
+        if (s.rays->fixed && !(world_->traceSubsets_ && s.rays->subsetText.empty())) { // what most calls are, many times a sample
+            l.set = s.rays->set;
+            l.type = s.rays->rays;
+            l.label = s.label;
+        } else {
+            l.set = raySetOf(*world_, s, f, p.shape, l.type, l.label);
+        }
         l.lights = number(s.rowLights, 0) != 0;
         l.bias = number(s.rays->bias, -1);
         l.base = number(s.rays->base, 0);

@@ -85,6 +85,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     w->settings_.shaderPaths.push_back(shippedShaders());
     w->shapes_ = geometry::buildShapes(*frame, d);
     for (const auto& shape : w->shapes_) w->numberOfShape_.emplace(shape.get(), uint32_t(w->numberOfShape_.size()));
+    for (const auto& shape : w->shapes_) w->traceSubsets_ |= shape->attributes().value("grouping:tracesubset") != nullptr;
     w->clippingPlanes_ = o.clippingPlanes;
     w->clipNear_ = o.clipNear;
     w->clipFar_ = o.clipFar;

@@ -33,6 +33,7 @@ struct RaySite {
     std::string subsetText, excludeText;
     shading::RaySet set;                  ///< what is known beforehand
     RayType rays = RayType::Specular;
+    bool fixed = false;                   ///< nothing of the set, the label and the type is known only when the shader runs
 };
 
 /// The subsets of a world's shapes that rays were restricted to.
@@ -244,6 +245,7 @@ public:
     Facts facts_;
     std::vector<geometry::ShapeRef> shapes_;
     std::unordered_map<const geometry::Shape*, uint32_t> numberOfShape_; ///< index into shapes_
+    bool traceSubsets_ = false;                ///< some shape has Attribute "grouping" "tracesubset"
     std::vector<int> bindingOf_;               ///< by shape
     std::vector<SurfaceBinding> bindings_;
     std::vector<Medium> media_;                ///< of Interior and Exterior

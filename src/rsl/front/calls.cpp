@@ -189,6 +189,10 @@ void Checker::surveyCall(Expr& e, Info& info) {
         return;
     }
     bestByArguments(info.choices);
+    // trace(P, R) is light wherever that can be, and a distance where nothing but a float will do: k * trace(P, R) + j * trace(P, T).
+    constexpr int kLastResort = 1000; // above what numbers in one expression cost that become colors
+    for (Choice& c : info.choices)
+        if (c.shadeop && c.shadeop->name == "trace" && c.result == Type{Base::Float, 0}) c.cost += kLastResort;
     for (const Choice& c : info.choices)
         if (c.result.base == Base::String) {
             const bool fromArray = c.shadeop && c.shadeop->section == "Arrays" && !e.args.empty();

@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
         auto kernel = compiler.kernel(shader, options, diagnostics);
         if (!kernel) return 1;
         const double compileMs = 1e3 * (compiler.statistics().seconds - before);
-        const auto defaults = compiler.parameterDefaults(shader, diagnostics);
+        const auto defaults = compiler.parameterValues(shader, diagnostics);
         std::vector<const float*> in;
         std::vector<float*> out;
         for (const auto& i : kernel->inputs()) {

@@ -117,7 +117,7 @@ int shade(const Arguments& a) {
         }
         shader = wanted;
     }
-    auto values = compiler.parameterDefaults(shader, diags);
+    auto values = compiler.parameterValues(shader, diags);
     std::vector<rsl::ParameterValue> given;
     rsl::KernelOptions options;
     options.lanes = a.lanes;
@@ -152,7 +152,7 @@ int shade(const Arguments& a) {
         i->numbers.assign(numbers->begin(), numbers->end());
         given.push_back(*i);
     }
-    if (!given.empty()) values = compiler.parameterDefaults(shader, diags, {}, given); // defaults may read what is given
+    if (!given.empty()) values = compiler.parameterValues(shader, diags, {}, given); // defaults may read what is given
     std::set<std::string> names;
     for (const auto& v : given) names.insert(v.name);
     options.computedParameters = shader->computedParameters(names, {});

@@ -51,7 +51,7 @@ bool known(const rsl::ir::Inst* i, int depth = 0) {
 /// Parameters whose default some scene must be asked for.
 std::set<std::string> computedDefaults(const rsl::CompiledShader& s) {
     std::set<std::string> names;
-    Diagnostics quiet; // parameterDefaults() says what there is to say
+    Diagnostics quiet; // parameterValues() says what there is to say
     const auto k = rsl::buildDefaults(s.program(), s.shader(), quiet);
     if (!k) return names;
     rsl::ir::optimize(*k, {}, quiet);
@@ -201,7 +201,7 @@ ShaderDescription describe(rsl::ShaderCompiler& compiler, const std::shared_ptr<
     d.annotations = s.annotations;
     d.plugins = shader->program().plugins;
     d.structs = shader->program().structs;
-    auto values = compiler.parameterDefaults(shader, diagnostics);
+    auto values = compiler.parameterValues(shader, diagnostics);
     const std::set<std::string> computed = computedDefaults(*shader);
     for (size_t i = 0; i < std::min(shader->parameters().size(), s.parameters.size()); ++i) {
         const rsl::ParameterInfo& info = shader->parameters()[i];

@@ -384,7 +384,7 @@ std::vector<std::string> CompiledShader::computedParameters(const std::set<std::
     return computed;
 }
 
-std::vector<ParameterValue> ShaderCompiler::parameterDefaults(const ShaderPtr& shader, Diagnostics& diagnostics, const SpaceFn& spaces,
+std::vector<ParameterValue> ShaderCompiler::parameterValues(const ShaderPtr& shader, Diagnostics& diagnostics, const SpaceFn& spaces,
                                                               const std::vector<ParameterValue>& given) {
     std::vector<ParameterValue> values;
     if (!shader) return values;

@@ -94,7 +94,7 @@ public:
 
     /// The values of all parameters, in order: what is `given` (as the shader sees it, in "current"), else the default, which may read
     /// parameters before it. Those without either are zero, "" or for matrices zero. `spaces` resolves named spaces.
-    std::vector<ParameterValue> parameterDefaults(const std::shared_ptr<const CompiledShader>&, Diagnostics&, const SpaceFn& spaces = {},
+    std::vector<ParameterValue> parameterValues(const std::shared_ptr<const CompiledShader>&, Diagnostics&, const SpaceFn& spaces = {},
                                                   const std::vector<ParameterValue>& given = {});
 
     /// Our IR after the passes, as text; with `llvm` also the optimised LLVM IR. Empty after an error.

@@ -166,7 +166,7 @@ InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind k
         for (int k = 0; k < 16; ++k) out[k] = float(m.m[k / 4][k % 4]);
         return known;
     };
-    for (auto& v : compiler_->parameterDefaults(program, d, spaces, values)) {
+    for (auto& v : compiler_->parameterValues(program, d, spaces, values)) {
         if (v.type.base == rsl::Base::String && v.type.array != 0) { // elements have names of their own: "maps[1]"
             for (size_t e = 0; e < v.strings.size(); ++e) i->parameters.strings[v.name + "[" + std::to_string(e) + "]"] = v.strings[e];
         } else if (v.type.base == rsl::Base::String) i->parameters.strings[v.name] = v.strings.empty() ? "" : v.strings[0];

@@ -45,7 +45,7 @@ std::vector<float> shade(const std::string& body, const std::vector<std::string>
     const auto kernel = compiler.kernel(surface, o, d);
     if (!kernel) return {};
     std::vector<std::vector<float>> out;
-    if (!runPoints(*kernel, mixed, 1, evaluationPoint(), compiler.parameterDefaults(surface, d), out, d)) return {};
+    if (!runPoints(*kernel, mixed, 1, evaluationPoint(), compiler.parameterValues(surface, d), out, d)) return {};
     std::vector<float> values;
     for (const auto& v : out) values.push_back(v[0]);
     return values;
@@ -163,7 +163,7 @@ std::string chain(int n, float& value) {
     }
     std::vector<std::vector<float>> out;
     const auto kernel = compiler.kernel(top, o, d);
-    if (kernel && runPoints(*kernel, false, 1, evaluationPoint(), compiler.parameterDefaults(top, d), out, d)) value = out[0][0];
+    if (kernel && runPoints(*kernel, false, 1, evaluationPoint(), compiler.parameterValues(top, d), out, d)) value = out[0][0];
     std::string all;
     for (const auto& m : d.all())
         if (m.severity >= Severity::Error) all += m.message;
@@ -206,7 +206,7 @@ TEST(CoShaders, TakeAndChangeStructures) {
     o.coShaders.push_back(ShaderCompiler::coShader(layer, "layer"));
     std::vector<std::vector<float>> out;
     const auto kernel = compiler.kernel(top, o, d);
-    ASSERT_TRUE(kernel && runPoints(*kernel, false, 1, evaluationPoint(), compiler.parameterDefaults(top, d), out, d));
+    ASSERT_TRUE(kernel && runPoints(*kernel, false, 1, evaluationPoint(), compiler.parameterValues(top, d), out, d));
     EXPECT_EQ(out[0][0], 76);
     EXPECT_EQ(d.errors(), 0);
 }

@@ -77,7 +77,7 @@ TEST(Manual, EveryProgramDoesWhatThePageSays) {
         ASSERT_TRUE(kernel);
         if (p.gives.empty()) continue;
         std::vector<std::vector<float>> out;
-        ASSERT_TRUE(runPoints(*kernel, false, 1, evaluationPoint(), compiler.parameterDefaults(shader, d), out, d));
+        ASSERT_TRUE(runPoints(*kernel, false, 1, evaluationPoint(), compiler.parameterValues(shader, d), out, d));
         for (size_t k = 0; k < p.gives.size(); ++k) {
             std::istringstream numbers(p.gives[k].second);
             for (size_t c = 0; c < out[k].size(); ++c) {

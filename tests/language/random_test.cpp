@@ -271,7 +271,7 @@ TEST(RandomPrograms, MachineCodeAndEvaluatorAgree) {
             const auto at = [](const std::string& name, int component, int part, int point) {
                 return part == 0 ? value(name, component, point) : 0.0f;
             };
-            ASSERT_TRUE(runPoints(*kernel, o.mixed, kPoints, at, compiler.parameterDefaults(shader, d), got, d));
+            ASSERT_TRUE(runPoints(*kernel, o.mixed, kPoints, at, compiler.parameterValues(shader, d), got, d));
             for (size_t k = 0; k < got.size(); k++)
                 for (size_t x = 0; x < got[k].size(); x++) {
                     const float want = expected[x % kPoints].at(kernel->outputs()[k].name).at(x / kPoints);
@@ -314,7 +314,7 @@ TEST(RandomPrograms, DerivativesHaveTheSameBitsEverywhere) {
                 EvaluationPoint::value(name, component, part, v);
                 return part == 0 ? value(name, component, point) : v;
             };
-            ASSERT_TRUE(runPoints(*kernel, o.mixed, kPoints, at, compiler.parameterDefaults(shader, d), got, d));
+            ASSERT_TRUE(runPoints(*kernel, o.mixed, kPoints, at, compiler.parameterValues(shader, d), got, d));
             if (first.empty()) first = got;
             for (size_t k = 0; k < got.size(); k++)
                 for (size_t x = 0; x < got[k].size(); x++) {

@@ -75,7 +75,7 @@ std::unique_ptr<ShaderCompiler> makeCompiler() {
 void runEverywhere(ShaderCompiler& compiler, const std::shared_ptr<const CompiledShader>& shader,
                    const std::vector<std::string>& outputs, const std::vector<const Expectation*>& cases,
                    const std::vector<std::string>& types, const std::string& file, Diagnostics& d) {
-    const auto defaults = compiler.parameterDefaults(shader, d);
+    const auto defaults = compiler.parameterValues(shader, d);
     std::vector<std::vector<float>> reference;
     for (KernelOptions o : configurations()) {
         SCOPED_TRACE(describe(o));

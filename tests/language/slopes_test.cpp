@@ -198,7 +198,7 @@ TEST(Slopes, OfEveryShadeopAreThoseOfItsValues) {
         const auto kernel = compiler.kernel(shader, o, d);
         ASSERT_TRUE(kernel);
         std::vector<std::vector<float>> out;
-        ASSERT_TRUE(runPoints(*kernel, false, kPlaces, place, compiler.parameterDefaults(shader, d), out, d));
+        ASSERT_TRUE(runPoints(*kernel, false, kPlaces, place, compiler.parameterValues(shader, d), out, d));
         for (size_t k = begin; k < end; ++k) {
             SCOPED_TRACE(all[k].slope.what + ": " + all[k].slope.statements);
             const auto& f = out[3 * (k - begin)];

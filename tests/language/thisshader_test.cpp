@@ -44,7 +44,7 @@ std::vector<float> shade(const std::string& body, const std::string& outputs, co
     const auto kernel = compiler.kernel(surface, o, d);
     if (!kernel) return {};
     std::vector<std::vector<float>> out;
-    if (!runPoints(*kernel, false, 1, evaluationPoint(), compiler.parameterDefaults(surface, d), out, d)) return {};
+    if (!runPoints(*kernel, false, 1, evaluationPoint(), compiler.parameterValues(surface, d), out, d)) return {};
     std::vector<float> values;
     for (const auto& v : out) values.push_back(v[0]);
     return values;

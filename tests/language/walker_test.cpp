@@ -70,7 +70,7 @@ struct Machine {
             compiles = false;
             return e.what();
         }
-        const auto defaults = compiler.parameterDefaults(shader, d);
+        const auto defaults = compiler.parameterValues(shader, d);
         for (KernelOptions o : all) {
             for (size_t n = 0; n < programs.size(); n++)
                 for (const auto& [name, type] : outputs(int(n))) o.outputs.push_back(name);

@@ -55,7 +55,7 @@ std::vector<float> run(ShaderCompiler& c, const std::string& body, const KernelO
         EvaluationPoint::value(name, component, part, v);
         return name == "u" && part == 0 ? float(point) / float(n) : v;
     };
-    EXPECT_TRUE(runPoints(*kernel, o.mixed, n, value, c.parameterDefaults(shader, d), out, d));
+    EXPECT_TRUE(runPoints(*kernel, o.mixed, n, value, c.parameterValues(shader, d), out, d));
     return out.empty() ? std::vector<float>() : out[0];
 }
 

@@ -175,7 +175,7 @@ TEST(Compiler, Defaults) {
     Diagnostics diagnostics;
     auto shader = compiler.loadText(kShader, "s", diagnostics);
     ASSERT_TRUE(shader);
-    auto values = compiler.parameterDefaults(shader, diagnostics, [](const std::string& from, const std::string&, float m[16]) {
+    auto values = compiler.parameterValues(shader, diagnostics, [](const std::string& from, const std::string&, float m[16]) {
         if (from == "shader") m[12] = 10; // a translation along x, row vectors
         return true;
     });

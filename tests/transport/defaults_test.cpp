@@ -1,5 +1,5 @@
 // Defaults of parameters that read earlier parameters or the point itself (rsl.md 2.1), and shaders that share a file. Closed forms.
-#include "transport/harness.h"
+#include "transport/floorscene.h"
 
 using namespace alpenglow;
 using namespace alpenglow::transport;
@@ -62,8 +62,12 @@ TEST(Defaults, ShadersOfOneFileAreFoundByTheirNames) {
 }
 
 TEST(Defaults, TheImagerBackgroundTakesItsColourAsColor) {
-    Scene s("Imager \"background\" \"uniform color color\" [.25 .5 1]\nWorldBegin\nWorldEnd\n");
+    Scene s(std::string("Imager \"background\" \"uniform color color\" [.25 .5 1]\nWorldBegin\n") + kSquare + "WorldEnd\n", withShaders(Hider::Hidden));
+    const float x[1] = {.5f}, y[1] = {.5f};
+    float r[1] = {.1f}, g[1] = {.1f}, b[1] = {.1f}, a[1] = {.5f}; // over a half covered pixel half of it
+    ASSERT_TRUE(s.world->runImager(1, x, y, r, g, b, a, s.diagnostics));
     EXPECT_EQ(s.messages(), "");
+    expectNear(Color(r[0], g[0], b[0]), {.225f, .35f, .6f});
 }
 
 } // namespace

@@ -1,6 +1,6 @@
 // Normals of displaced surfaces, and bumps on top of them, against the analytic surface; footprints against closed forms.
-#include "display/imageio.h"
 #include "transport/harness.h"
+#include "transport/maps.h"
 
 using namespace alpenglow;
 using namespace alpenglow::transport;
@@ -36,18 +36,7 @@ constexpr int kMap = 256;
 double relief(double s, double t) { return std::sin(6 * kPi * s) * std::cos(4 * kPi * t); }
 
 template <class F> std::string mapFile(const std::string& name, int width, int height, F value) {
-    display::Image m = display::makeImage(width, height, display::defaultChannels(3));
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
-            for (int c = 0; c < 3; ++c) m.pixel(x, y)[c] = float((1 + c) * value((x + .5) / width, (y + .5) / height));
-    m.metadata["wrapmodes"] = "periodic,periodic";
-    Diagnostics d;
-    display::WriteOptions o;
-    o.format = display::Format::Exr;
-    o.sample = display::Sample::Float;
-    o.policy = {shaderFolder(), false, -1};
-    EXPECT_TRUE(display::writeImage(name, m, o, d));
-    return "\"" + shaderFolder() + "/" + name + "\"";
+    return writeMap(name, width, height, [&](int x, int y, int c) { return float((1 + c) * value((x + .5) / width, (y + .5) / height)); }, "periodic,periodic");
 }
 
 /// A grid of ten by ten rays from the eye over the plane z = 3, of footprints that grow by `spread`.

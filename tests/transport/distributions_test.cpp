@@ -1,10 +1,10 @@
 // The distributions that trace() has in common with bsdf(): what is drawn against what the functions say, and traced scenes against
 // integrals.
-#include "display/imageio.h"
 #include "shadeops/descriptor.h"
 #include "transport/harness.h"
 #include "transport/lobe.h"
 #include "transport/sampling.h"
+#include "transport/maps.h"
 #include <random>
 
 using namespace alpenglow;
@@ -150,23 +150,10 @@ TEST(TraceDistributions, Parts) {
     EXPECT_NEAR(lights.mean(), whole.mean(), kZ * std::hypot(lights.se(), whole.se()));
     EXPECT_EQ(of("refracted").mean(), 0);
 }
-std::string mapOf(const std::string& name, Color c) {
-    display::Image m = display::makeImage(8, 4, display::defaultChannels(3));
-    for (int y = 0; y < 4; ++y)
-        for (int x = 0; x < 8; ++x)
-            for (int k = 0; k < 3; ++k) m.pixel(x, y)[k] = c[k];
-    Diagnostics d;
-    display::WriteOptions o;
-    o.format = display::Format::Exr;
-    o.sample = display::Sample::Float;
-    o.policy = {shaderFolder(), false, -1};
-    EXPECT_TRUE(display::writeImage(name, m, o, d));
-    return "\"" + shaderFolder() + "/" + name + "\"";
-}
 // A map of one colour over a floor, half of the sky behind an endless black wall: what reaches the floor is tint times half of it; without
 // the wall all. A pane of opacity a quarter before all of it leaves three.
 TEST(TraceDistributions, EnvironmentMap) {
-    const std::string map = mapOf("even.exr", Color(.5f, 1, 2));
+    const std::string map = writeMap("even.exr", 8, 4, Color(.5f, 1, 2));
     auto shader = [&](const char* name, const char* result) {
         writeShader(name, std::string("surface ") + name + R"(() {
     normal Nf = faceforward(normalize(N), I);

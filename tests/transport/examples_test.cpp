@@ -1,8 +1,8 @@
 // The examples of shadeops that need more than a point (Example::when), each in the scene that it speaks of. The text of the
 // example runs as it stands in the manual, in a surface or a light called "example".
-#include "display/imageio.h"
 #include "rsl/front/ast.h"
 #include "transport/floorscene.h"
+#include "transport/maps.h"
 #include <functional>
 #include <map>
 
@@ -14,16 +14,7 @@ namespace {
 
 /// A map of one colour in the folder of the test's shaders.
 void oneColour(const std::string& name, Color c, bool sky = false) {
-    display::Image m = display::makeImage(sky ? 32 : 16, 16, display::defaultChannels(3));
-    for (int y = 0; y < 16; ++y)
-        for (int x = 0; x < (sky ? 32 : 16); ++x)
-            for (int k = 0; k < 3; ++k) m.pixel(x, y)[k] = c[k];
-    Diagnostics d;
-    display::WriteOptions o;
-    o.format = display::Format::Exr;
-    o.sample = display::Sample::Float;
-    o.policy = {shaderFolder(), false, -1};
-    EXPECT_TRUE(display::writeImage(name, m, o, d));
+    writeMap(name, sky ? 32 : 16, 16, c);
 }
 
 struct Stage {

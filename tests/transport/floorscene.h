@@ -4,9 +4,10 @@
 
 namespace alpenglow::transport::testing {
 
-inline Settings under(Hider h) {
+inline Settings under(Hider h, bool suspend = false) {
     Settings s;
     s.hider = h;
+    s.suspend = suspend;
     return s;
 }
 /// The same with the shaders that are shipped.

@@ -1,7 +1,7 @@
 // illuminance in all its forms, and lights by their handles. A large floor y = 0 seen at the origin; a point light of intensity I at
 // height h straight above gives Cl = I / h^2 there, L = (0, h, 0). Under path the same, for nothing lies between.
 #include "base/limits.h"
-#include "transport/harness.h"
+#include "transport/floorscene.h"
 
 using namespace alpenglow;
 using namespace alpenglow::transport;
@@ -9,15 +9,6 @@ using namespace alpenglow::transport::testing;
 
 namespace {
 
-const char* kFloor = "Polygon \"P\" [-60 0 -60  -60 0 60  60 0 60  60 0 -60]\n";
-const CameraRay kView = rayTo({.3f, .8f, -.4f}, {0, 0, 0});
-
-Settings under(Hider h, bool suspend = false) {
-    Settings s;
-    s.hider = h;
-    s.suspend = suspend;
-    return s;
-}
 std::string scene(const std::string& lights, const std::string& surface) {
     return "WorldBegin\nSides 2\n" + lights + "AttributeBegin\nSurface " + surface + "\n" + kFloor + "AttributeEnd\nWorldEnd\n";
 }

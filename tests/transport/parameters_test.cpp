@@ -1,7 +1,7 @@
 // Every optional parameter of the shadeops that ask maps and rays, in scenes where each answer is known whatever they say: maps
 // of one colour, and closed rooms of one brightness.
-#include "display/imageio.h"
 #include "transport/floorscene.h"
+#include "transport/maps.h"
 
 using namespace alpenglow;
 using namespace alpenglow::transport;
@@ -11,17 +11,7 @@ namespace {
 
 /// A map of one colour.
 std::string plain(const std::string& name, int width, Color c) {
-    display::Image m = display::makeImage(width, 16, display::defaultChannels(3));
-    for (int y = 0; y < 16; ++y)
-        for (int x = 0; x < width; ++x)
-            for (int k = 0; k < 3; ++k) m.pixel(x, y)[k] = c[k];
-    Diagnostics d;
-    display::WriteOptions o;
-    o.format = display::Format::Exr;
-    o.sample = display::Sample::Float;
-    o.policy = {shaderFolder(), false, -1};
-    EXPECT_TRUE(display::writeImage(name, m, o, d));
-    return "\"map\" \"" + shaderFolder() + "/" + name + "\"";
+    return "\"map\" " + writeMap(name, width, 16, c);
 }
 
 void near(const Color& got, const Color& want, double tolerance, const std::string& what) {
@@ -113,19 +103,9 @@ TEST(Parameters, SlopesOfBump) {
     Ci = color(Du(xcomp(g)) / (k * k) - 0.3 * sin(k * x), Dv(xcomp(g)) / (k * k) - 0.2 * sin(k * x), xcomp(g) / k + cos(k * x));
 }
 )");
-    display::Image m = display::makeImage(256, 256, display::defaultChannels(3));
-    for (int y = 0; y < 256; ++y)
-        for (int x = 0; x < 256; ++x)
-            for (int c = 0; c < 3; ++c) m.pixel(x, y)[c] = float(std::sin(2 * kPi * (x + .5) / 256));
-    m.metadata["wrapmodes"] = "periodic,periodic";
-    Diagnostics d;
-    display::WriteOptions o;
-    o.format = display::Format::Exr;
-    o.sample = display::Sample::Float;
-    o.policy = {shaderFolder(), false, -1};
-    EXPECT_TRUE(display::writeImage("parameters_wave.exr", m, o, d));
-    Scene s(world("Surface \"slopebump\" \"map\" \"" + shaderFolder() + "/parameters_wave.exr\"\n" + kFloor),
-            under(Hider::Hidden));
+    const std::string wave = writeMap("parameters_wave.exr", 256, 256, [](int x, int, int) { return float(std::sin(2 * kPi * (x + .5) / 256)); }, "periodic,periodic");
+    Scene s(world("Surface \"slopebump\" \"map\" " + wave + "\n" + kFloor), under(Hider::Hidden));
+    // Slopes of .36 at most, two texels of phase off (2 pi / 256 each): .018.
     for (int i = 0; i < 16; ++i)
         near(s.one(rayTo({0, 8, 0}, {float(i % 4 * 20 - 31), 0, float(i / 4 * 20 - 27)})), Color(0), .02,
              "slopes " + std::to_string(i));

@@ -1,5 +1,5 @@
 // Words of published light shaders: Ngs, getlights(); and rays that are asked for nothing but the light of area lights.
-#include "transport/harness.h"
+#include "transport/floorscene.h"
 
 using namespace alpenglow;
 using namespace alpenglow::transport;
@@ -7,15 +7,6 @@ using namespace alpenglow::transport::testing;
 
 namespace {
 
-const char* kFloor = "Polygon \"P\" [-60 0 -60  -60 0 60  60 0 60  60 0 -60]\n";
-const CameraRay kView = rayTo({.3f, .8f, -.4f}, {0, 0, 0});
-
-Settings under(Hider h, bool suspend = false) {
-    Settings s;
-    s.hider = h;
-    s.suspend = suspend;
-    return s;
-}
 std::string scene(const std::string& lights, const std::string& surface) {
     return "WorldBegin\nSides 2\n" + lights + "AttributeBegin\nSurface \"" + surface + "\"\n" + kFloor + "AttributeEnd\nWorldEnd\n";
 }

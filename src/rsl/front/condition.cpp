@@ -2,6 +2,7 @@
 // those of arithmetic and comparison.
 #include "base/limits.h"
 #include "rsl/front/preprocessor.h"
+#include <optional>
 #include <charconv>
 #include <cmath>
 
@@ -67,18 +68,22 @@ private:
             a = apply(op, a, binary(level + 1));
         }
     }
+    template <class T> static std::optional<bool> compared(std::string_view op, T a, T b) {
+        if (op == "==") return a == b;
+        if (op == "!=") return a != b;
+        if (op == "<=") return a <= b;
+        if (op == ">=") return a >= b;
+        if (op == "<") return a < b;
+        if (op == ">") return a > b;
+        return {};
+    }
     Value apply(std::string_view op, const Value& l, const Value& r) {
         using U = unsigned long long; // wraps instead of overflowing
         if (op == "||") return l.yes() || r.yes();
         if (op == "&&") return l.yes() && r.yes();
         if (l.isReal || r.isReal) {
             const double a = l.real, b = r.real;
-            if (op == "==") return a == b;
-            if (op == "!=") return a != b;
-            if (op == "<=") return a <= b;
-            if (op == ">=") return a >= b;
-            if (op == "<") return a < b;
-            if (op == ">") return a > b;
+            if (const auto c = compared(op, a, b)) return *c;
             if (op == "+") return Value::fraction(a + b);
             if (op == "-") return Value::fraction(a - b);
             if (op == "*") return Value::fraction(a * b);
@@ -88,12 +93,7 @@ private:
         if (op == "|") return a | b;
         if (op == "^") return a ^ b;
         if (op == "&") return a & b;
-        if (op == "==") return a == b;
-        if (op == "!=") return a != b;
-        if (op == "<=") return a <= b;
-        if (op == ">=") return a >= b;
-        if (op == "<") return a < b;
-        if (op == ">") return a > b;
+        if (const auto c = compared(op, a, b)) return *c;
         if (op == "<<") return (long long)(U(a) << (b & 63));
         if (op == ">>") return (long long)(U(a) >> (b & 63));
         if (op == "+") return (long long)(U(a) + U(b));

@@ -70,16 +70,7 @@ Inst* Builder::lightMember(Inst* handle, Inst* name, Kind kind, const Expr* to) 
     addArgument(s, args, handle, {Base::String, 0});
     if (name->op == Op::ConstString) s.strings = {name->text};
     else addArgument(s, args, name, {Base::String, 0});
-    s.resultKinds = {Kind::Float};
-    s.resultNames = {""};
-    s.resultType = {Base::Float, 0};
-    Receiver r;
-    if (to) r = receiver(s, *to, "value");
-    else s.resultKinds.push_back(kind), s.resultNames.push_back("value");
-    const std::vector<Inst*> v = call(Op::Service, std::move(s), std::move(args));
-    if (!to) return v[1];
-    receive(r, std::span(v).subspan(1), emit(Op::NotEqual, Kind::Bool, {v[0], constant(0)}));
-    return v[0];
+    return answered(std::move(s), std::move(args), kind, to);
 }
 
 Inst* Builder::getLight(const Expr& e) {

@@ -194,6 +194,7 @@ private:
     bool possibleTexts(const Inst*, std::set<std::string>& out, int depth = 0) const;
     void complain(const Place&, const std::string&);
     Inst* handleText(const Expr&);
+    Inst* answered(Site, std::vector<Inst*> args, Kind, const Expr* to);
     Inst* ofSurface(const Expr& handle, const std::string& name, Kind, const Expr* to);
     CoShader selfBinding_;        ///< of the shader itself, under the name that `this` has
     std::vector<size_t> current_; ///< the instances whose methods are open; the shader itself where there is none

@@ -1,0 +1,286 @@
+// Members of co-shaders and variables of the primitive: a->x, a->list[i], getvar(), readprimvar(), hasmethod().
+#include "rsl/ir/builder.h"
+#include <algorithm>
+
+namespace alpenglow::rsl::ir {
+
+/// The member or parameter of that name; null when it is not to be seen.
+const Symbol* Builder::memberOf(size_t i, const std::string& name) const {
+    const Shader& s = *instances_[i].binding->shader;
+    for (const ShaderParameter& p : s.parameters)
+        if (p.symbol->name == name) return p.symbol;
+    if (!s.object || !s.publics.count(name)) return nullptr;
+    for (const StmtPtr& x : s.body->body)
+        for (const Stmt::Declarator& d : x->declarators)
+            if (d.symbol->name == name) return d.symbol;
+    return nullptr;
+}
+
+/// All that memberOf() knows.
+std::vector<const Symbol*> Builder::membersOf(size_t i) const {
+    const Shader& s = *instances_[i].binding->shader;
+    std::vector<const Symbol*> all;
+    for (const ShaderParameter& p : s.parameters) all.push_back(p.symbol);
+    if (s.object)
+        for (const StmtPtr& x : s.body->body)
+            for (const Stmt::Declarator& d : x->declarators)
+                if (s.publics.count(d.symbol->name)) all.push_back(d.symbol);
+    return all;
+}
+
+Inst* Builder::memberValue(size_t i, const Symbol& s) {
+    enterInstance(i);
+    Inst* v = get(slot(&s));
+    leaveInstance();
+    return v;
+}
+
+/// The type of what `handle->name` or `handle->name()` gives, for who takes any: that of the shader that the handle names, or of the first
+/// that has one; a number where that is not to be seen.
+Type Builder::typeOfMember(const Expr& e) {
+    Inst* h = e.args[0]->kind == ExprKind::Variable || e.args[0]->kind == ExprKind::String ? expr(*e.args[0]) : nullptr;
+    const bool known = h && h->op == Op::ConstString;
+    for (size_t i = 0; i < instances_.size(); ++i) {
+        if (known && instances_[i].binding->handle != h->text) continue;
+        if (e.kind == ExprKind::Method) {
+            if (const Function* f = methodOf(i, e)) return f->result.base == Base::Void ? Type{Base::Float, 0} : f->result;
+        } else if (const Symbol* s = memberOf(i, e.text)) {
+            return s->type;
+        }
+    }
+    return {Base::Float, 0};
+}
+
+Inst* Builder::memberAccess(const Expr& e) {
+    const Kind kind = kindOf(e.type.base == Base::Void ? typeOfMember(e) : e.type);
+    if (Inst* v = ofSurface(*e.args[0], e.text, kind, nullptr)) return v;
+    return forHandle(*e.args[0], kind, [&](size_t i) -> Inst* {
+        const CoShader& c = *instances_[i].binding;
+        const Symbol* s = memberOf(i, e.text);
+        const bool fits = s && !s->type.array &&
+                          (kindOf(s->type) == kind || (kindOf(s->type) == Kind::Float && kind != Kind::String));
+        if (!fits && !certain_ && isSelf(i)) return zero(kind);
+        if (!fits) {
+            error(e.place, "co-shader '" + c.handle + "' (" + c.shader->name + ") " +
+                               (s ? "has '" + e.text + "' as " + toString(s->type) + ", not " + toString(e.type)
+                                  : "has no public member '" + e.text + "'"));
+            return zero(kind);
+        }
+        return memberValue(i, *s);
+    }, [&](Inst* handle) { return lightMember(handle, leaves_.string(e.text), kind, nullptr); });
+}
+
+namespace {
+bool among(const std::string& name, std::initializer_list<const char*> names) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+} // namespace
+
+/// getvar(null, name [, variable]): of the primitive. `to` may be null.
+Inst* Builder::primitiveVariable(const std::string& name, const Expr* to) {
+    if (shader_.kind == ShaderKind::Light || shader_.kind == ShaderKind::Imager || (to && (to->type.array || to->type.base == Base::String)))
+        return askPrimitive(leaves_.string(name), to);
+    const auto& there = options_.varyingParameters;
+    if (std::find(there.begin(), there.end(), name) == there.end()) {
+        // What every primitive has, as it comes to the shader, with its derivatives.
+        const bool triple = among(name, {"P", "N", "Cs", "Os"});
+        if (!triple && !among(name, {"s", "t"})) return askPrimitive(leaves_.string(name), to);
+        if (!to) return constant(1);
+        if (kindOf(to->type) != (triple ? Kind::Triple : Kind::Float)) return constant(0);
+        assign(*to, input(name, to->type, false));
+        return constant(1);
+    }
+    if (!to) return constant(1);
+    const Type wanted = to->type;
+    for (const ShaderParameter& p : shader_.parameters)
+        if (p.symbol->name == name && p.symbol->type != wanted) return constant(0);
+    // The scene knows one type for it: that of the first who asks, the shader before its co-shaders.
+    const auto asked = [&](const Program& p) {
+        const auto found = p.primitiveVariables.find(name);
+        return found == p.primitiveVariables.end() ? nullptr : &found->second;
+    };
+    const Type* first = asked(program_);
+    for (size_t i = 0; i < instances_.size() && !first; ++i) first = asked(*instances_[i].binding->program);
+    if (first && *first != wanted) return constant(0);
+    assign(*to, input("param:" + name, wanted, false));
+    return constant(1);
+}
+
+Inst* Builder::readPrimitiveVariable(const Expr& e) {
+    Inst* name = expr(*e.args[0]);
+    place_ = e.place;
+    if (name->op == Op::ConstString) return primitiveVariable(name->text, e.args[1].get());
+    return askPrimitive(name, e.args[1].get());
+}
+
+/// Whether the shader of a handle has a public method of that name, with any parameters.
+Inst* Builder::hasMethod(const Expr& e) {
+    Inst* name = expr(*e.args[1]);
+    Inst* handle = expr(*e.args[0]);
+    place_ = e.place;
+    if (name->op != Op::ConstString) {
+        warn(e.place, "hasmethod() needs a name that is known when the shader is compiled; it gives 0");
+        return constant(0);
+    }
+    const auto has = [&](const Shader& s) {
+        return s.publics.count(name->text) > 0 &&
+               std::any_of(s.nested.begin(), s.nested.end(), [&](const auto& f) { return f->name == name->text; });
+    };
+    if (handle->op == Op::ConstString) {
+        if (handle->text == selfBinding_.handle) return constant(has(shader_) ? 1.0f : 0.0f);
+        for (const Instance& i : instances_)
+            if (i.binding->handle == handle->text) return constant(has(*i.binding->shader) ? 1.0f : 0.0f);
+        return constant(0);
+    }
+    return forHandle(*e.args[0], Kind::Float, [&](size_t i) { return constant(has(*instances_[i].binding->shader) ? 1.0f : 0.0f); },
+                     [&](Inst* other) -> Inst* { // no co-shader: a light, or null
+                         if (name->text != "light") return constant(0);
+                         Inst* null = emit(Op::Equal, Kind::Bool, {other, leaves_.string("")});
+                         return emit(Op::Select, Kind::Float, {null, constant(0), constant(1)});
+                     });
+}
+
+/// Copies an array of another shader. False, and nothing is done, where it is of another type or does not fill the variable.
+bool Builder::takeArray(const Expr& to, Inst* from) {
+    Inst* a = array(to);
+    if (a->op != Op::ArrayNew || from->kind != Kind::Array || from->element != a->element) return false;
+    if (const Lengths* l = lengths(a)) {
+        const Lengths slots = *l;
+        Inst* n = limitLength(a, lengthOf(from));
+        set(slots.length, n);
+        set(slots.reserved, runtime1("al_max_f", {get(slots.reserved), n}, Kind::Float));
+    } else if (arrayLength(from) < arrayLength(a)) {
+        return false;
+    }
+    const int storage = lengths(from) ? from->index : arrayLength(from);
+    for (int n = 0; n < std::min(lengths(a) ? a->index : arrayLength(a), storage); ++n) {
+        Inst* at = constant(static_cast<float>(n));
+        emit(Op::ArrayStore, Kind::None, {a, at, emit(Op::ArrayLoad, a->element, {from, at})});
+    }
+    return true;
+}
+
+/// handle->tab as a whole: a copy, empty of null.
+Inst* Builder::memberArray(const Expr& e) {
+    int room = 1;
+    for (size_t i = 0; i < instances_.size(); ++i)
+        if (const Symbol* s = memberOf(i, e.text); s && s->type.array)
+            if (Inst* v = memberValue(i, *s); v->kind == Kind::Array) room = std::max(room, lengths(v) ? v->index : arrayLength(v));
+    Inst* a = newResizable(e.type.base, room);
+    const Lengths l = *lengths(a);
+    set(l.length, constant(0));
+    set(l.reserved, constant(0));
+    forHandle(*e.args[0], Kind::Float, [&](size_t i) -> Inst* {
+        const Symbol* s = memberOf(i, e.text);
+        Inst* from = s && s->type.array ? memberValue(i, *s) : nullptr;
+        if (!from || from->kind != Kind::Array || from->element != a->element) {
+            const CoShader& c = *instances_[i].binding;
+            error(e.place, "co-shader '" + c.handle + "' (" + c.shader->name + ") " +
+                               (s ? "has '" + e.text + "' as " + toString(s->type) + ", not an array of " + toString(e.type.element()) : "has no public member '" + e.text + "'"));
+            return constant(0);
+        }
+        set(l.length, lengthOf(from));
+        set(l.reserved, lengthOf(from));
+        for (int n = 0; n < std::min(a->index, lengths(from) ? from->index : arrayLength(from)); ++n) {
+            Inst* at = constant(static_cast<float>(n));
+            emit(Op::ArrayStore, Kind::None, {a, at, emit(Op::ArrayLoad, a->element, {from, at})});
+        }
+        return constant(1);
+    }, [&](Inst* handle) -> Inst* { // a light
+        Site s;
+        s.op = "lightparameter";
+        s.place = place_;
+        s.strings = {e.text};
+        s.resultKinds = {Kind::Float, Kind::Float};
+        s.resultNames = {"", "length value"};
+        s.resultType = {Base::Float, 0};
+        for (int n = 0; n < a->index; ++n) {
+            s.resultKinds.push_back(a->element);
+            s.resultNames.push_back("value[" + std::to_string(n) + "]");
+        }
+        std::vector<Inst*> args;
+        addArgument(s, args, handle, {Base::String, 0});
+        const std::vector<Inst*> v = call(Op::Service, std::move(s), std::move(args));
+        Inst* n = limitLength(a, v[1]);
+        set(l.length, n);
+        set(l.reserved, n);
+        for (int k = 0; k < a->index; ++k) emit(Op::ArrayStore, Kind::None, {a, constant(static_cast<float>(k)), v[static_cast<size_t>(k) + 2]});
+        return v[0];
+    });
+    return a;
+}
+
+/// The length of handle->tab, of any type; 0 of null.
+Inst* Builder::memberLength(const Expr& e) {
+    return forHandle(*e.args[0], Kind::Float, [&](size_t i) -> Inst* {
+        const Symbol* s = memberOf(i, e.text);
+        if (s && s->type.array)
+            if (Inst* v = memberValue(i, *s); v->kind == Kind::Array) return lengthOf(v);
+        const CoShader& c = *instances_[i].binding;
+        error(e.place, "co-shader '" + c.handle + "' (" + c.shader->name + ") has no public array '" + e.text + "'");
+        return constant(0);
+    });
+}
+
+/// handle->tab[i]: an element of an array, or a component of a tuple.
+Inst* Builder::memberElement(const Expr& e) {
+    const Expr& member = *e.args[0];
+    const Kind kind = kindOf(e.type);
+    Inst* at = expr(*e.args[1], Kind::Float);
+    place_ = e.place;
+    return forHandle(*member.args[0], kind, [&](size_t i) -> Inst* {
+        const CoShader& c = *instances_[i].binding;
+        const Symbol* s = memberOf(i, member.text);
+        Inst* v = s ? memberValue(i, *s) : nullptr;
+        if (v && v->kind == Kind::Array && (v->element == kind || (v->element == Kind::Float && kind == Kind::Triple)))
+            return emit(Op::ArrayLoad, v->element, {v, elementOf(v, at)});
+        if (v && v->kind == Kind::Triple && kind != Kind::String && kind != Kind::Matrix) {
+            const auto part = [&](int n) { return emit(Op::Extract, Kind::Float, {v}, n); };
+            Inst* low = emit(Op::Select, Kind::Float, {emit(Op::LessEqual, Kind::Bool, {constant(1), at}), part(1), part(0)});
+            return emit(Op::Select, Kind::Float, {emit(Op::LessEqual, Kind::Bool, {constant(2), at}), part(2), low});
+        }
+        error(e.place, "co-shader '" + c.handle + "' (" + c.shader->name + ") " +
+                           (s ? "has '" + member.text + "' as " + toString(s->type) + ", which has no element of type " + toString(e.type)
+                              : "has no public member '" + member.text + "'"));
+        return zero(kind);
+    }, [&](Inst* handle) { return isConst(at) ? lightMember(handle, leaves_.string(member.text + "[" + std::to_string(static_cast<int>(at->numbers[0])) + "]"), kind, nullptr) : zero(kind); });
+}
+
+/// getvar(handle, name [, variable]): 1 when there is such a member.
+Inst* Builder::getVariable(const Expr& e) {
+    Inst* name = expr(*e.args[1]);
+    place_ = e.place;
+    Inst* handle = expr(*e.args[0]);
+    const Expr* to = e.args.size() > 2 ? e.args[2].get() : nullptr;
+    const bool null = handle->op == Op::ConstString && handle->text.empty();
+    if (null) return name->op == Op::ConstString ? primitiveVariable(name->text, to) : askPrimitive(name, to);
+    if (name->op == Op::ConstString)
+        if (Inst* v = ofSurface(*e.args[0], name->text, Kind::Float, to)) return v;
+    const auto take = [&](size_t i, const Symbol* s) -> Inst* {
+        if (!s) return constant(0);
+        if (!to) return constant(1);
+        if ((s->type.array != 0) != (to->type.array != 0) || kindOf(s->type.element()) != kindOf(to->type.element())) return constant(0);
+        const bool varying = s->origin == Symbol::Origin::ShaderParameter && s->storage == Storage::Varying;
+        if (varying && to->symbol && to->symbol->storage == Storage::Uniform) { // a varying parameter does not become a uniform variable, as in messages
+            warn(e.place, "getvar(): parameter '" + name->text + "' of '" + instances_[i].binding->shader->name +
+                              "' is varying and the variable is uniform: nothing is assigned, and the result is 0");
+            return constant(0);
+        }
+        if (s->type.array) return constant(takeArray(*to, memberValue(i, *s)) ? 1.0f : 0.0f);
+        assign(*to, memberValue(i, *s));
+        return constant(1);
+    };
+    return forHandle(*e.args[0], Kind::Float, [&](size_t i) -> Inst* {
+        if (name->op == Op::ConstString) return take(i, memberOf(i, name->text));
+        Inst* found = constant(0); // a name that is made when the shader runs is compared with all
+        for (const Symbol* s : membersOf(i)) {
+            if (to && ((s->type.array != 0) != (to->type.array != 0) || kindOf(s->type.element()) != kindOf(to->type.element()))) continue;
+            found = branch(
+                emit(Op::Equal, Kind::Bool, {name, leaves_.string(s->name)}), [&] { return std::vector<Inst*>{take(i, s)}; },
+                [&] { return std::vector<Inst*>{found}; })[0];
+        }
+        return found;
+    }, [&](Inst* light) -> Inst* { return lightMember(light, name, to ? kindOf(to->type.element()) : Kind::Float, to); });
+}
+
+} // namespace alpenglow::rsl::ir

@@ -163,6 +163,14 @@ TEST(DefaultSpaces, AreThoseTheyName) {
     EXPECT_EQ(s.messages(), "");
 }
 
+TEST(DefaultSpaces, AreThoseThatAnEarlierParameterNames) {
+    writeShader("spaceby", "surface spaceby(string in = \"object\"; point o = point in (0, 0, 0);) { Oi = 1; Ci = color(o); }\n");
+    Scene s("WorldBegin\nSurface \"spaceby\"\nTransformBegin\nTranslate .5 0 0\n" + std::string(kSquare) + "TransformEnd\nTranslate .25 4 0\n" + kSquare + "WorldEnd\n");
+    expectColor(s.one(rayTo({0, 0, 0}, {.2f, .3f, 2})), {.5f, 0, 0});
+    expectColor(s.one(rayTo({0, 0, 0}, {.2f, 4.3f, 2})), {.25f, 4, 0});
+    EXPECT_EQ(s.messages(), "");
+}
+
 TEST(DefaultSpaces, UnknownOnesAreSaidWhereTheyStand) {
     writeShader("spacewrong", "surface spacewrong(\n    point o = point \"nowhere\" (3, 0, 0);)\n{ Oi = 1; point q = transform(\"elsewhere\", P);\n  Ci = color(xcomp(o), xcomp(q), 0); }\n");
     const Seen r = seen("Surface \"spacewrong\"\n");

@@ -24,7 +24,7 @@ surface brick(
     normal bumped = calculatenormal(P + depth * height * Nn);
     normal Nf = faceforward(normalize(bumped + normalize(N) - normalize(Ng)), I);
 
-    color tint = brickcolor * (1 + variation * (cellnoise(column, row) - .5));
+    color tint = brickcolor * (1 + variation * (float cellnoise(column, row) - .5));
     tint = mix(tint, tint * color(.6, .5, .55), smoothstep(.6, .95, cellnoise(row + .5, column + 77)));
     color C = mix(mortarcolor * (.85 + .3 * rough), tint * (.75 + .5 * rough), inside);
     Oi = Os;

@@ -25,7 +25,7 @@ surface ceramictiles(
     float flower = 1 - filterstep(.42, petals(x - .5, y - .5, 8));
     float rim = filterstep(.38, distance(point(x, y, 0), point(round(x), round(y), 0))) - filterstep(.46, distance(point(x, y, 0), point(round(x), round(y), 0)));
     float painted = even > .5 ? max(flower, rim) : rim;
-    color C = mix(glaze, ornament, painted) * (.94 + .12 * cellnoise(cs, ct));
+    color C = mix(glaze, ornament, painted) * (.94 + .12 * float cellnoise(cs, ct));
 
     normal Nf = faceforward(normalize(N), I);
     vector V = -normalize(I);

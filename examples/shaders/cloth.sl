@@ -14,7 +14,7 @@ surface cloth(float threads = 90, Ka = 1, Kd = .9, fuzz = .25; color warp = colo
     float twist = .5 + .5 * sin(2 * PI * (alongyarn * 2 + across * 1.5));
     normal Nf = faceforward(normalize(N), I);
     normal Ny = normalize(Nf + seen * 1.4 * across * side);
-    color yarn = up > .5 ? warp * (.85 + .3 * cellnoise(cx)) : weft * (.85 + .3 * cellnoise(cy + 40));
+    color yarn = up > .5 ? warp * (.85 + .3 * float cellnoise(cx)) : weft * (.85 + .3 * float cellnoise(cy + 40));
     color C = mix(mix(warp, weft, 1 / 3), yarn * (.8 + .2 * twist) * (1 - .7 * pow(2 * abs(across), 4)), seen);
     vector V = -normalize(I);
     float rim = pow(1 - max(0, Nf . V), 3);

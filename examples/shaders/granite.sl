@@ -23,7 +23,7 @@ surface granite(
             break;
         }
     }
-    C *= .8 + .4 * noise(Q * 4);
+    C *= .8 + .4 * float noise(Q * 4);
     C *= .75 + .25 * smoothstep(0, .15, f2 - f1);
     float width = sqrt(area(Q));
     C = mix(C, color(.58, .5, .47), smoothstep(.8, 2.5, width));

@@ -37,9 +37,9 @@ surface hair(
         float which = floor(wave), across = mod(wave, 1);
         along = normalize(along + .12 * (cellnoise(which) - .5) * normalize(dPdu));
         float blur = clamp(abs(Du(wave) * du) + abs(Dv(wave) * dv), 0, 1);
-        body *= mix(.45 + .9 * cellnoise(which + .5) * (.4 + .6 * sin(PI * across)), .75, blur);
+        body *= mix(.45 + .9 * float cellnoise(which + .5) * (.4 + .6 * sin(PI * across)), .75, blur);
     } else {
-        body *= .8 + .4 * cellnoise(u);
+        body *= .8 + .4 * float cellnoise(u);
     }
     vector V = -normalize(I);
     normal Nf = faceforward(normalize(N), I);

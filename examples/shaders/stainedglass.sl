@@ -24,7 +24,7 @@ surface stainedglass(float panes = 7, lead = .06, Kt = .85, Ks = .5; string pale
     float isLead = max(1 - smoothstep(lead - w, lead + w, d), 1 - smoothstep(lead / 2 - w, lead / 2 + w, rim));
     float inner = abs(cx) + abs(cy) < .5 ? 0 : 1;
     float which = mod(floor(arraylength(glasses) * cellnoise(floor(x), row + 7 * inner)), arraylength(glasses));
-    color g = glasses[which] * (.8 + .4 * noise(s * 60, t * 60));
+    color g = glasses[which] * (.8 + .4 * float noise(s * 60, t * 60));
     normal Nf = faceforward(normalize(N), I);
     vector V = -normalize(I);
     color leadlight = color(.12, .12, .13) * (ambient() + diffuse(Nf)) + .2 * specular(Nf, V, .15);

@@ -47,7 +47,7 @@ int Checker::argumentCost(Expr& argument, const ParameterView& parameter, bool i
     if (output && !isVariable(argument) && !ignoreOutputs) return kNever;
     if (wanted.base == Base::Void) return info.listLength >= 0 ? kNever : 0; // any value
     if (wanted.array != 0) {
-        if (argument.kind == ExprKind::Member && !output) return 1;
+        if (argument.kind == ExprKind::Member && !output) return kConversion;
         if (info.listLength >= 0 && !output) {
             if (wanted.array > 0 && info.listLength > wanted.array) return kNever;
             int cost = 0;
@@ -56,13 +56,13 @@ int Checker::argumentCost(Expr& argument, const ParameterView& parameter, bool i
         }
         const bool fits = info.array.base == wanted.base && info.array.array != 0 &&
                           (wanted.array < 0 || info.array.array < 0 || wanted.array == info.array.array);
-        return fits ? (wanted.array < 0 ? 1 : 0) : kNever;
+        return fits ? (wanted.array < 0 ? kConversion : 0) : kNever;
     }
     if (info.array.array || info.listLength >= 0) return kNever;
     if (output) {
         const Base have = cheapest(info);
         if (have == wanted.base) return 0;
-        return have != Base::Void && implicitCost(have, wanted.base) == 1 ? 1 : kNever; // among point, vector, normal
+        return have != Base::Void && implicitCost(have, wanted.base) == kConversion ? kConversion : kNever; // among point, vector, normal
     }
     return costTo(info, wanted.base);
 }
@@ -76,7 +76,7 @@ bool Checker::match(const std::vector<ParameterView>& parameters, bool repeats, 
     for (; i < parameters.size(); ++i) {
         const int c = argumentCost(*call.args[i], parameters[i], ignoreOutputs);
         if (c >= kNever) return false;
-        choice.cost += c;
+        choice.cost = std::min(kNever - 1, choice.cost + c);
     }
     if (repeats && !parameters.empty())
         for (; i < n; ++i) {
@@ -84,7 +84,7 @@ bool Checker::match(const std::vector<ParameterView>& parameters, bool repeats, 
             if (pairs && call.args[i]->kind == ExprKind::String && parameters.back().type.base != Base::String) break;
             const int c = argumentCost(*call.args[i], parameters.back(), ignoreOutputs);
             if (c >= kNever) return false;
-            choice.cost += c;
+            choice.cost = std::min(kNever - 1, choice.cost + c);
         }
     choice.positional = i;
     if (i == n) return true;
@@ -95,7 +95,7 @@ bool Checker::match(const std::vector<ParameterView>& parameters, bool repeats, 
         const Info& text = infos_.at(&name);
         const bool variable = choice.shadeop && (name.kind == ExprKind::Variable || name.kind == ExprKind::Index) && text.cost[int(Base::String)] == 0 && text.handle != Handle::Shader;
         if (!variable) return false;
-        choice.cost += 1000;
+        choice.cost = std::min(kNever - 1, choice.cost + kLastResort);
     }
     return true;
 }
@@ -189,10 +189,8 @@ void Checker::surveyCall(Expr& e, Info& info) {
         return;
     }
     bestByArguments(info.choices);
-    // trace(P, R) is light wherever that can be, and a distance where nothing but a float will do: k * trace(P, R) + j * trace(P, T).
-    constexpr int kLastResort = 1000; // above what numbers in one expression cost that become colors
     for (Choice& c : info.choices)
-        if (c.shadeop && c.shadeop->name == "trace" && c.result == Type{Base::Float, 0}) c.cost += kLastResort;
+        if (c.shadeop && c.result.base != Base::Void && c.result == Type{c.shadeop->lastResort, 0}) c.cost += kLastResort;
     for (const Choice& c : info.choices)
         if (c.result.base == Base::String) {
             const bool fromArray = c.shadeop && c.shadeop->section == "Arrays" && !e.args.empty();
@@ -218,7 +216,7 @@ void Checker::bestByArguments(std::vector<Choice>& choices) {
     const std::vector<Choice> all = choices;
     std::erase_if(choices, [&](const Choice& c) {
         return std::any_of(all.begin(), all.end(), [&](const Choice& better) {
-            if (better.cost >= c.cost || (better.result.array != 0) != (c.result.array != 0)) return false;
+            if (better.cost / kConversion >= c.cost / kConversion || (better.result.array != 0) != (c.result.array != 0)) return false;
             return better.result == c.result || (c.result.array == 0 && implicitCost(better.result.base, c.result.base) < kNever);
         });
     });

@@ -96,6 +96,7 @@ private:
     static std::string named(Type, Handle); ///< "shader" for a handle
     static Base cheapest(const Info&);
     static int costTo(const Info&, Base to);
+    static int operandCost(ExprOp, const Operation&, const Info& left, Base leftAs, const Info& right, Base rightAs);
     bool isVariable(const Expr&) const;
     void poison(Expr&, Info&);
 

@@ -3,32 +3,30 @@
 
 namespace alpenglow::rsl::front {
 
-namespace {
-bool pointLike(Base b) { return b == Base::Point || b == Base::Vector || b == Base::Normal; }
-bool tuple(Base b) { return b == Base::Color || pointLike(b); }
-} // namespace
+bool isPointLike(Base b) { return b == Base::Point || b == Base::Vector || b == Base::Normal; }
+static bool tuple(Base b) { return b == Base::Color || isPointLike(b); }
 
 int implicitCost(Base from, Base to) {
     if (from == to) return 0;
-    if (pointLike(from) && pointLike(to)) return 1;
-    if (from == Base::Float && tuple(to)) return 8;
-    if (from == Base::Float && to == Base::Matrix) return 12;
-    if (from == Base::Bool && to == Base::Float) return 4;
-    if (from == Base::Bool && tuple(to)) return 16;
+    if (isPointLike(from) && isPointLike(to)) return kConversion;
+    if (from == Base::Float && tuple(to)) return kBroadcast;
+    if (from == Base::Float && to == Base::Matrix) return kBroadcast + 4 * kConversion;
+    if (from == Base::Bool && to == Base::Float) return 4 * kConversion;
+    if (from == Base::Bool && tuple(to)) return 2 * kBroadcast;
     return kNever;
 }
 
 int castCost(Base from, Base to) {
     const int c = implicitCost(from, to);
     if (c < kNever) return c;
-    if (tuple(from) && tuple(to)) return 20; // color and point-like: only when written
+    if (tuple(from) && tuple(to)) return 3 * kBroadcast; // color and point-like: only when written
     return kNever;
 }
 
 int conditionCost(Base from) {
     if (from == Base::Bool) return 0;
-    if (from == Base::Float) return 1;
-    return tuple(from) ? 4 : kNever;
+    if (from == Base::Float) return kConversion;
+    return tuple(from) ? 4 * kConversion : kNever;
 }
 
 std::optional<Operation> operation(ExprOp op, Base l, Base r) {
@@ -40,8 +38,8 @@ std::optional<Operation> operation(ExprOp op, Base l, Base r) {
     const bool relation = op == ExprOp::Less || op == ExprOp::LessEqual || op == ExprOp::Greater || op == ExprOp::GreaterEqual ||
                           op == ExprOp::Equal || op == ExprOp::NotEqual;
     int cost = 0;
-    if (l == Base::Bool) { l = Base::Float; cost += 4; }
-    if (r == Base::Bool) { r = Base::Float; cost += 4; }
+    if (l == Base::Bool) { l = Base::Float; cost += 4 * kConversion; }
+    if (r == Base::Bool) { r = Base::Float; cost += 4 * kConversion; }
     if (l == Base::String || r == Base::String) {
         if (l != r || (op != ExprOp::Equal && op != ExprOp::NotEqual && op != ExprOp::Add)) return std::nullopt;
         return Operation{Base::String, op == ExprOp::Add ? Base::String : Base::Bool, cost};
@@ -49,12 +47,12 @@ std::optional<Operation> operation(ExprOp op, Base l, Base r) {
     if (l == Base::Void || r == Base::Void) return std::nullopt;
     if (l == Base::Matrix || r == Base::Matrix) {
         const bool fits = (l == Base::Matrix || l == Base::Float) && (r == Base::Matrix || r == Base::Float);
-        if (fits && (op == ExprOp::Equal || op == ExprOp::NotEqual)) return Operation{Base::Matrix, Base::Bool, cost + (l != r ? 4 : 0)};
+        if (fits && (op == ExprOp::Equal || op == ExprOp::NotEqual)) return Operation{Base::Matrix, Base::Bool, cost + (l != r ? 4 * kConversion : 0)};
         if (!fits || (op != ExprOp::Mul && op != ExprOp::Div)) return std::nullopt;
-        return Operation{Base::Matrix, Base::Matrix, cost + (l != r ? 4 : 0)};
+        return Operation{Base::Matrix, Base::Matrix, cost + (l != r ? 4 * kConversion : 0)};
     }
     if (op == ExprOp::Cross) {
-        if (!pointLike(l) || !pointLike(r)) return std::nullopt;
+        if (!isPointLike(l) || !isPointLike(r)) return std::nullopt;
         return Operation{Base::Vector, Base::Vector, cost};
     }
     if (op == ExprOp::Dot) {
@@ -64,13 +62,13 @@ std::optional<Operation> operation(ExprOp op, Base l, Base r) {
     Base common;
     bool promoted = false;
     if (l == r) common = l;
-    else if (l == Base::Float || r == Base::Float) { common = l == Base::Float ? r : l; cost += 4; promoted = true; }
-    else if (pointLike(l) && pointLike(r)) common = l == Base::Point || r == Base::Point ? Base::Point : Base::Vector;
+    else if (l == Base::Float || r == Base::Float) { common = l == Base::Float ? r : l; promoted = true; }
+    else if (isPointLike(l) && isPointLike(r)) common = l == Base::Point || r == Base::Point ? Base::Point : Base::Vector;
     else return std::nullopt;
     Base result = relation ? Base::Bool : common;
     // The difference of two positions is a direction.
     if (op == ExprOp::Sub && common == Base::Point && l == r && !promoted) result = Base::Vector;
-    return Operation{common, result, cost};
+    return Operation{common, result, cost, promoted};
 }
 
 const char* spelling(ExprOp op) {

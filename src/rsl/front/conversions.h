@@ -9,7 +9,13 @@ enum class ExprOp : uint8_t;
 }
 namespace alpenglow::rsl::front {
 
-inline constexpr int kNever = 1 << 24;
+// Costs by weight: one of a kind outweighs whatever a program has of those above it.
+inline constexpr int kPromotion = 1;                 ///< a number meets a tuple in arithmetic: what `2 * c` means
+inline constexpr int kConversion = 1 << 8;           ///< the least that is a conversion: a point where a vector is wanted
+inline constexpr int kBroadcast = 16 * kConversion;  ///< a number becomes a tuple of three alike
+inline constexpr int kLastResort = 1 << 18;          ///< Shadeop::lastResort
+inline constexpr int kCompared = 1 << 19;            ///< a tuple is compared with a number
+inline constexpr int kNever = 1 << 28;
 inline constexpr int kBases = 9;
 
 /// Cost of an implicit conversion; 0 for the same type, kNever if there is none.
@@ -23,9 +29,11 @@ struct Operation {
     Base operand; ///< both operands are brought to this type
     Base result;
     int cost;     ///< of doing so
+    bool promotes = false; ///< one is a number, the other a tuple
 };
 /// What `left op right` means, if anything.
 std::optional<Operation> operation(ExprOp, Base left, Base right);
 const char* spelling(ExprOp);
+bool isPointLike(Base);
 
 } // namespace alpenglow::rsl::front

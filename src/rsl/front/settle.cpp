@@ -278,7 +278,7 @@ void Checker::settleBinary(ExprPtr& e, Base t) {
             if (l.cost[int(a)] >= kNever || r.cost[int(b)] >= kNever) continue;
             const auto o = operation(e->op, a, b);
             if (!o || o->result != t) continue;
-            const int c = l.cost[int(a)] + r.cost[int(b)] + o->cost;
+            const int c = l.cost[int(a)] + r.cost[int(b)] + operandCost(e->op, *o, l, a, r, b);
             if (c < cost) { cost = c; left = a; right = b; best = *o; }
         }
     if (best.operand == Base::Bool) {
@@ -332,6 +332,7 @@ void Checker::settleAssign(ExprPtr& e) {
     } else if (e->op == ExprOp::Assign || target.array != 0) {
         settle(e->args[1], target, Handle::Either); // survey compared them
     } else {
+        const Info& l = infos_.at(e->args[0].get());
         const Info& r = infos_.at(e->args[1].get());
         int cost = kNever;
         Base best = Base::Void, operand = target.base;
@@ -339,9 +340,8 @@ void Checker::settleAssign(ExprPtr& e) {
             if (r.cost[int(b)] >= kNever) continue;
             const auto o = operation(e->op, target.base, b);
             if (!o || implicitCost(o->result, target.base) >= kNever) continue;
-            const int c = r.cost[int(b)] + o->cost + implicitCost(o->result, target.base);
-            // Of equals the type of the variable: trace(P, R) * k is the light in a color, as behind a "=".
-            if (c < cost || (c == cost && b == target.base)) { cost = c; best = b; operand = o->operand; }
+            const int c = r.cost[int(b)] + operandCost(e->op, *o, l, target.base, r, b) + implicitCost(o->result, target.base);
+            if (c < cost) { cost = c; best = b; operand = o->operand; }
         }
         settleAs(e->args[1], best);
         convert(e->args[1],

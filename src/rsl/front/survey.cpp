@@ -223,6 +223,24 @@ void Checker::surveyIndex(Expr& e, Info& info) {
     info.any = true;
 }
 
+/// What it costs to read the operands `l` and `r` as `a` and `b`. What is wanted reaches through arithmetic: in a color .5 + .5 *
+/// noise(P) is colored, so that what could be a tuple is no number beside one; numbers that are nothing else cost next to nothing.
+/// But what is multiplied by a point, vector or normal scales it: P + noise(P) * N goes along N. docs/language.md has the rule.
+int Checker::operandCost(ExprOp op, const Operation& o, const Info& l, Base a, const Info& r, Base b) {
+    const bool scales = op == ExprOp::Mul || op == ExprOp::Div;
+    const auto canBe = [](const Info& i, Base as) {
+        return i.cost[int(as)] < kNever || (isPointLike(as) && (i.cost[int(Base::Point)] < kNever || i.cost[int(Base::Vector)] < kNever));
+    };
+    const bool left = canBe(l, Base::Float), right = canBe(r, Base::Float);
+    if (!o.promotes)
+        return o.cost + (scales && isPointLike(a) && isPointLike(b) && left != right ? kBroadcast : 0);
+    if (o.result == Base::Bool) return o.cost + kCompared;
+    const bool leftIsNumber = !Type{a, 0}.isTuple();
+    const bool other = leftIsNumber ? right : left; // may be a number, too
+    const bool choice = canBe(leftIsNumber ? l : r, o.operand);
+    return o.cost + (choice && (other || !scales || !isPointLike(o.operand)) ? kBroadcast : kPromotion);
+}
+
 void Checker::surveyBinary(Expr& e, Info& info) {
     const Info& l = survey(*e.args[0]);
     const Info& r = survey(*e.args[1]);
@@ -238,7 +256,8 @@ void Checker::surveyBinary(Expr& e, Info& info) {
             if (mixed && a == Base::String && b == Base::String) continue;
             if (const auto o = operation(e.op, a, b)) {
                 int& c = info.cost[int(o->result)];
-                c = std::min(c, l.cost[int(a)] + r.cost[int(b)] + o->cost);
+                // A truth is a truth: how it was come by chooses nothing around it.
+                c = o->result == Base::Bool ? 0 : std::min(c, sum(sum(l.cost[int(a)], r.cost[int(b)]), operandCost(e.op, *o, l, a, r, b)));
             }
         }
     }
@@ -285,7 +304,7 @@ void Checker::surveyAssign(Expr& e, Info& info) {
         for (Base b : kAll) {
             const auto o = r.cost[int(b)] < kNever ? operation(e.op, target, b) : std::nullopt;
             if (o && implicitCost(o->result, target) < kNever)
-                cost = std::min(cost, r.cost[int(b)] + o->cost + implicitCost(o->result, target));
+                cost = std::min(cost, r.cost[int(b)] + operandCost(e.op, *o, l, target, r, b) + implicitCost(o->result, target));
         }
     }
     info.handle = l.handle;

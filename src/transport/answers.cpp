@@ -44,8 +44,17 @@ void ServiceCall::answer(int lane, const Told& t) const {
     const size_t before = open ? 2 : 1; // rows
     if (d.resultKinds.size() <= before) return;
     const Kind wanted = d.resultKinds[before];
-    if (t.varying && wanted != Kind::String && s.text.count("__uniform")) return;
     if (t.kind && (*t.kind != wanted || (t.elements > 0) != array)) return;
+    if (t.varying && wanted != Kind::String && s.text.count("__uniform")) {
+        if (c.engine) {
+            const SourcePlace at = place();
+            c.engine->diagnostics().reportOnce("uniform:" + at.file + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ":" + name(lane),
+                                               {Severity::Warning, Rie::Consistency, at,
+                                                d.op + "(): \"" + name(lane) + "\" is varying and the variable that takes it is uniform: it stays as it is, and the result is 0",
+                                                "a varying variable takes it", {}});
+        }
+        return;
+    }
     const size_t size = size_t(rsl::ir::components(wanted)), rows = size_t(s.resultRowCount) - before;
     const size_t have = wanted == Kind::String ? t.texts.size() : t.numbers.size();
     if (!t.kind && (wanted == Kind::String || (array ? have % size != 0 : have != rows))) return;

@@ -1,4 +1,5 @@
 #include "transport/surfaces.h"
+#include "rsl/front/leftmembers.h"
 #include "transport/answers.h"
 #include <limits>
 #include <set>
@@ -75,8 +76,8 @@ int SurfaceBinder::bind(const geometry::ShapeRef& shape) {
     if (!b.surface) b.surface = fallback_;
     b.displacement = world_.withCoShaders(instanceOf(a.displacement, rsl::ShaderKind::Displacement), a.coshaders, diagnostics_);
     // A class with surface and displacement is both.
-    if (!a.displacement && b.explicitSurface && rsl::ShaderCompiler::variant(b.surface->program, rsl::ShaderKind::Displacement))
-        b.displacement = world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Displacement), a.coshaders, diagnostics_);
+    const bool both = !a.displacement && b.explicitSurface && rsl::ShaderCompiler::variant(b.surface->program, rsl::ShaderKind::Displacement);
+    if (both) b.displacement = quiet(world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Displacement), a.coshaders, diagnostics_));
     b.atmosphere.shader = world_.withCoShaders(instanceOf(a.atmosphere, rsl::ShaderKind::Volume), a.coshaders, diagnostics_);
     const Names varying = varyingOf(*shape, *b.surface);
     const Names displacementVarying = b.displacement ? varyingOf(*shape, *b.displacement) : Names{};
@@ -113,10 +114,12 @@ int SurfaceBinder::bind(const geometry::ShapeRef& shape) {
     b.inside = mediumOf(b.interior, *shape);
     b.outside = mediumOf(b.exterior, *shape);
     // Who asks comes before who is asked: an atmosphere asks for outputs of the surface, both for those of the displacement.
-    bindDisplacement(b, displacementVarying, {});
+    const Names left = both ? leftBy(b) : Names{};
+    bindDisplacement(b, displacementVarying, left);
+    if (!left.empty()) hearMembers(b);
     bindAtmosphere(b, atmosphereVarying);
     if (!bindSurface(b, varying)) return -1;
-    hearDisplacement(b, varying, displacementVarying);
+    hearDisplacement(b, varying, displacementVarying, left);
     if (!b.displacement) b.moveS = world_.movingKernel(*b.surface, b.surfaceS, asked_.back().varying, diagnostics_);
     bindLights(b, a);
     b.areaLight = a.areaLight;
@@ -165,11 +168,60 @@ bool SurfaceBinder::questions(const BoundKernel& k, const char* op, std::set<std
     return any;
 }
 
-void SurfaceBinder::hearDisplacement(SurfaceBinding& b, const Names& varying, const Names& displacementVarying) {
+InstanceRef SurfaceBinder::quiet(const InstanceRef& displacement) {
+    if (!displacement) return nullptr;
+    InstanceRef& known = quiet_[displacement.get()];
+    if (!known) {
+        auto same = std::make_shared<ShaderInstance>(*displacement);
+        same->parameters.strings["begin()"] = "quiet";
+        known = same;
+        kept_.push_back(displacement);
+    }
+    return known;
+}
+
+SurfaceBinder::Names SurfaceBinder::leftBy(const SurfaceBinding& b) {
+    Names outputs;
+    if (!b.displacement) return outputs;
+    for (const std::string& name : rsl::membersLeft(b.displacement->program->shader(), b.surface->program->shader())) {
+        outputs.push_back("param:this->" + name);
+        const rsl::Type type = rsl::ownMember(b.displacement->program->shader(), name)->type;
+        if (type.array) outputs.push_back("param:this->" + name + "#");
+        else if (type.base != rsl::Base::String && type.base != rsl::Base::Matrix)
+            outputs.insert(outputs.end(), {"Du:param:this->" + name, "Dv:param:this->" + name});
+    }
+    return outputs;
+}
+
+void SurfaceBinder::hearMembers(SurfaceBinding& b) {
+    if (!b.displacement) return;
+    if (b.displacementS.kernel->facts().suspends) {
+        diagnostics_.reportOnce("left:" + b.displacement->name, {Severity::Warning, Rie::Unimplement, b.displacement->place,
+                                "displacement() of \"" + b.displacement->name + "\" waits for rays (" + b.displacementS.kernel->facts().whyNot +
+                                    "): the surface does not see what it writes to members", {}, {}});
+        return;
+    }
+    auto told = std::make_shared<ShaderInstance>(*b.surface);
+    const std::string head = "param:this->";
+    for (const auto& o : b.displacementS.kernel->outputs()) {
+        if (o.name.rfind(head, 0) != 0) continue;
+        const std::string name = o.name.substr(head.size());
+        std::string& what = told->parameters.strings["displacement:this->" + name.substr(0, name.find_first_of("[#"))];
+        if (name.back() == '#') what += " length";
+        else if (const size_t bracket = name.find('['); bracket == std::string::npos) what = "0";
+        else if (const int count = std::atoi(name.c_str() + bracket + 1) + 1; count > std::atoi(what.c_str())) what = std::to_string(count);
+    }
+    InstanceRef& known = told_[{b.surface.get(), b.displacement.get()}];
+    if (!known) kept_.push_back(b.surface), known = told;
+    b.surface = known;
+    b.displacementTells = true;
+}
+
+void SurfaceBinder::hearDisplacement(SurfaceBinding& b, const Names& varying, const Names& displacementVarying, const Names& left) {
     if (!b.displacement || b.displacementS.kernel->facts().suspends) return;
     std::set<std::string> asked;
     const bool all = questions(b.surfaceS, "displacement", asked) | (b.atmosphere.shader && questions(b.atmosphere.kernel, "displacement", asked));
-    Names outputs;
+    Names outputs = left;
     auto told = std::make_shared<ShaderInstance>(*b.surface);
     for (const auto& p : b.displacement->program->parameters()) {
         if (!p.output || (!all && !asked.count(p.name))) continue;
@@ -183,7 +235,7 @@ void SurfaceBinder::hearDisplacement(SurfaceBinding& b, const Names& varying, co
         told->parameters.strings["displacement:" + p.name] = std::to_string(int(Told::kindOf(p.type.base))) + " " + std::to_string(length) + " " +
                                                              std::to_string(int(p.storage == rsl::Storage::Varying));
     }
-    if (outputs.empty()) return;
+    if (outputs.size() == left.size()) return;
     bindDisplacement(b, displacementVarying, outputs);
     b.displacementTells = b.displacement != nullptr;
     if (!b.displacementTells) return;

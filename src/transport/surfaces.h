@@ -28,7 +28,13 @@ private:
     /// Adds the names that a kernel asks for by `op` ("surface", "displacement"). True when some are made only when it runs.
     static bool questions(const BoundKernel&, const char* op, std::set<std::string>& names);
     /// Where the surface or the atmosphere asks for outputs of the displacement shader: kernels that give and take them.
-    void hearDisplacement(SurfaceBinding&, const Names& varying, const Names& displacementVarying);
+    void hearDisplacement(SurfaceBinding&, const Names& varying, const Names& displacementVarying, const Names& left);
+    /// The same displacement, whose begin() prints nothing: the class prints when it shades.
+    InstanceRef quiet(const InstanceRef& displacement);
+    /// The outputs by which the displacement() of a class tells its other methods what it wrote to members (rsl/front/leftmembers.h).
+    static Names leftBy(const SurfaceBinding&);
+    /// The surface takes them.
+    void hearMembers(SurfaceBinding&);
     /// False when not even the default surface could be compiled.
     bool bindSurface(SurfaceBinding&, Names varying);
     void bindAtmosphere(SurfaceBinding&, const Names& varying);
@@ -51,6 +57,9 @@ private:
     InstanceRef fallback_;
     std::map<std::pair<const scene::ShaderCall*, int>, InstanceRef> instances_;
     std::map<std::pair<const void*, const void*>, InstanceRef> told_; ///< surfaces that know the outputs of a displacement; by both
+    std::map<const void*, InstanceRef> quiet_; ///< by the displacement that is not
+    std::vector<InstanceRef> kept_;            ///< their addresses are keys
+    std::map<std::pair<const void*, std::string>, InstanceRef> volumes_; ///< by the shader as the scene gave it and what overrides it
     std::map<std::string, int> bindingByKey_;
     std::map<std::vector<const void*>, int> programs_;
     std::map<std::vector<int>, int> lightLists_;

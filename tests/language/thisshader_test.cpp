@@ -19,6 +19,7 @@ class layer(float gain = 5;)
     public float ask(shader who) { asked += 1; return who->twice(gain) + back(this) * 100; }
     public float back(shader other) { return other->own; }
     public float among(shader who) { shader me = this; return me == this && who != me ? me->gain + asked : 0; }
+    public float round(shader who) { return who->around(this); }
     public string name() { return format("%h", this); }
 })";
 
@@ -32,6 +33,7 @@ std::vector<float> shade(const std::string& body, const std::string& outputs, co
 {
     public float count = 3;
     public float twice(float x) { count += 1; return x * 2; }
+    public float around(shader who) { return who->round(this); }
     float gainOf(shader who) { return who->gain; }
     public void surface(output color Ci, Oi) { )" + body + "}\n}", "asker.sl", d);
     if (!layer || !surface) return {};
@@ -115,6 +117,22 @@ TEST(ThisShader, WhatItHasNotIsAnError) {
     EXPECT_EQ(shade("shader me = this; a = me->thrice(2);", "output varying float a = 0;", {"a"}, d), Values{});
     ASSERT_EQ(d.errors(), 1);
     EXPECT_NE(d.all().back().message.find("'thrice'"), std::string::npos);
+}
+
+/// The error stands at the call that closes the circle, the first time round, and tells the way.
+TEST(ThisShader, CirclesEndWhereTheyClose) {
+    struct { const char *body, *file, *way; } const circles[] = {
+        {"shader me = this; me->surface(Ci, Oi);", "asker.sl", ": surface() > surface()"},
+        {"shader coat = getshader(\"coat\"); a = coat->round(this);", "asker.sl", ": coat->round() > around() > coat->round()"},
+        {"shader coat = getshader(\"coat\"); a = around(coat);", "layer.sl", ": around() > coat->round() > around()"}};
+    for (const auto& c : circles) {
+        Diagnostics d;
+        EXPECT_EQ(shade(c.body, "output varying float a = 0;", {"a"}, d), Values{}) << c.body;
+        ASSERT_EQ(d.errors(), 1) << c.body;
+        const Diagnostic said = d.all().back();
+        EXPECT_EQ(said.place.file, c.file) << said.message;
+        EXPECT_TRUE(said.message.ends_with(c.way)) << said.message;
+    }
 }
 
 } // namespace

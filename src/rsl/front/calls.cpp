@@ -122,6 +122,8 @@ void Checker::surveyCall(Expr& e, Info& info) {
     bool broken = false;
     for (auto& a : e.args) broken |= survey(*a).any;
     if (e.text.empty()) { info.any = true; return; } // what is called was reported
+    const bool shipped = e.text.starts_with("::"); // by a pass before this one: not what the shader calls so
+    if (shipped) e.text.erase(0, 2);
     std::vector<std::string> candidates, notes;
     bool known = false, outputsOnly = false;
     const auto offer = [&](Choice choice, const std::vector<ParameterView>& parameters, bool repeats, bool pairs,
@@ -136,7 +138,7 @@ void Checker::surveyCall(Expr& e, Info& info) {
                 notes.push_back("candidate " + text + ": " + whyNot(parameters, repeats, pairs, e));
         }
     };
-    for (size_t i = scopes_.size(); i-- > 0 && info.choices.empty();) {
+    for (size_t i = scopes_.size(); i-- > 0 && info.choices.empty() && !shipped;) {
         const auto [from, to] = scopes_[i].functions.equal_range(e.text);
         for (auto f = from; f != to; ++f) {
             Choice c;
@@ -146,7 +148,7 @@ void Checker::surveyCall(Expr& e, Info& info) {
             offer(c, views(*f->second), false, false, signatureText(*f->second));
         }
     }
-    if (info.choices.empty())
+    if (info.choices.empty() && !shipped)
         for (const auto& f : unit_->functions) {
             if (f->name != e.text) continue;
             Choice c;
@@ -169,7 +171,7 @@ void Checker::surveyCall(Expr& e, Info& info) {
     };
     // A function of the shader's own joins those of its name, and the one that fits best is called; among functions that fit equally well
     // the first counts: the shader's, then those of plug-ins.
-    if (unit_ == &main_)
+    if (unit_ == &main_ && !shipped)
         for (const auto& p : program_.plugins) offerAll(p->find(e.text));
     if (unit_ == &main_ || info.choices.empty()) offerAll(findShadeop(e.text));
     if (info.choices.empty()) {

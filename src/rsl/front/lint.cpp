@@ -319,7 +319,7 @@ void lint(const Program& program, const std::vector<Token>& tokens, const std::u
                 if (d.symbol) unused(*d.symbol, false);
             if (s.condition) lintCondition(*s.condition, sources);
             lintPairs(s, sources);
-        }, [&](const Expr& e) { lintCall(e, sources); });
+        }, [&](const Expr& e) { lintCall(e, sources), lintMessage(e, program, sources); });
         Flow(sources, reached, surface).run(b);
     };
     for (const auto& s : program.shaders) {

@@ -179,6 +179,30 @@ void lintCall(const Expr& e, SourceSet& sources) {
     }
 }
 
+void lintMessage(const Expr& e, const Program& program, SourceSet& sources) {
+    if (!e.shadeop || e.args.size() < 2 || e.args[0]->kind != ExprKind::String) return;
+    const std::string& op = e.shadeop->name;
+    ShaderKind kind;
+    if (op == "surface") kind = ShaderKind::Surface;
+    else if (op == "displacement") kind = ShaderKind::Displacement;
+    else if (op == "lightsource") kind = ShaderKind::Light;
+    else if (op == "atmosphere" || op == "incident" || op == "opposite") kind = ShaderKind::Volume;
+    else return;
+    const Expr* to = e.args[1].get();
+    while (to->kind == ExprKind::Index && !to->args.empty()) to = to->args[0].get();
+    if (!to->symbol || to->symbol->storage != Storage::Uniform || to->type.base == Base::String) return;
+    const Shader* varying = nullptr;
+    for (const auto& s : program.shaders)
+        for (const ShaderParameter& p : s->parameters) {
+            if (s->kind != kind || p.symbol->name != e.args[0]->text) continue;
+            if (p.symbol->storage != Storage::Varying) return; // of one that it may take
+            varying = s.get();
+        }
+    if (varying)
+        sources.warning(e.args[1]->place, "'" + to->symbol->name + "' is uniform and takes no varying parameter, as \"" + e.args[0]->text + "\" of '" +
+                                              varying->name + "' is: " + op + "() leaves it as it is", "a varying variable takes it");
+}
+
 void lintCondition(const Expr& e, SourceSet& sources) {
     const Expr& x = bare(e);
     if (x.kind == ExprKind::Assign && x.op == ExprOp::Assign)

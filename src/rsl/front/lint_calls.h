@@ -10,6 +10,9 @@ namespace alpenglow::rsl::front {
 /// Warns about one expression of a checked program, not about those below it.
 void lintCall(const Expr&, SourceSet&);
 
+/// Warns where a uniform variable is to take what a shader of the same file has as varying: surface("x", u).
+void lintMessage(const Expr&, const Program&, SourceSet&);
+
 /// Warns about a condition of `if`, `while`, `for` that is an assignment.
 void lintCondition(const Expr&, SourceSet&);
 

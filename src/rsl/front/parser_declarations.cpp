@@ -1,5 +1,6 @@
 // Functions, parameters, and what declarations are made of.
 #include "base/limits.h"
+#include "rsl/front/clone.h"
 #include "rsl/front/parser.h"
 #include <utility>
 
@@ -116,11 +117,17 @@ ExprPtr Parser::declaredSpace(Base base) {
 }
 
 ExprPtr Parser::inSpace(ExprPtr value, Base base, const Expr* space) {
-    if (!space || value->kind == ExprKind::ArrayList) return value;
+    if (!space) return value;
+    if (value->kind == ExprKind::ArrayList) { // each element is in that space
+        for (ExprPtr& a : value->args) {
+            a = inSpace(std::move(a), base, space);
+            grow(*value, *a);
+        }
+        return value;
+    }
     auto e = node(ExprKind::Cast, value->place);
     e->type.base = base;
-    e->space = node(ExprKind::String, space->place);
-    e->space->text = space->text;
+    e->space = clone(*space);
     adopt(*e, std::move(value));
     return e;
 }

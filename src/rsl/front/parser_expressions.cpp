@@ -147,7 +147,7 @@ ExprPtr Parser::castExpression() {
         size_t k = 0;
         while (peek(k).kind == Tok::String) ++k;
         const Token& n = peek(k);
-        const bool operand = n.is("(") || n.kind == Tok::Number || n.kind == Tok::Identifier || n.is("-");
+        const bool operand = n.is("(") || n.kind == Tok::Number || n.kind == Tok::Identifier || n.is("-") || n.is("{");
         if (operand) {
             e->space = primary();
             grow(*e, *e->space);
@@ -158,7 +158,9 @@ ExprPtr Parser::castExpression() {
         e->space = primary();
         grow(*e, *e->space);
     }
-    adopt(*e, unary());
+    ExprPtr operand = unary();
+    if (e->space && operand->kind == ExprKind::ArrayList) return inSpace(std::move(operand), e->type.base, e->space.get());
+    adopt(*e, std::move(operand));
     return e;
 }
 

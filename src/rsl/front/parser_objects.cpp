@@ -63,6 +63,7 @@ void Parser::structure() {
                 continue;
             }
             if (base == Base::Void) fail(s.place, "a member cannot be void");
+            const ExprPtr space = declaredSpace(base);
             const Type group = dimensions({base, 0});
             do {
                 if (peek().kind != Tok::Identifier) failHere("expected the name of a member");
@@ -72,7 +73,7 @@ void Parser::structure() {
                 m.type = dimensions(group);
                 m.handle = handle;
                 m.storage = s.storage;
-                if (accept("=")) m.init = at("{") ? arrayList() : assignment();
+                if (accept("=")) m.init = inSpace(at("{") ? arrayList() : assignment(), base, space.get());
                 for (const StructMember& other : type.members)
                     if (other.name == m.name) sources_.error(m.place, "there are two members called '" + m.name + "'");
                 type.members.push_back(std::move(m));

@@ -109,7 +109,7 @@ StmtPtr Parser::statementOnce() {
         const Token& n = peek(1);
         if (n.is("[") || n.is("=") || n.is(";") || n.is(",") || w == "void") return declaration();
         const bool spaced = n.kind == Tok::String && peek(2).kind == Tok::Identifier && w != "string" &&
-                            (peek(3).is("=") || peek(3).is(";") || peek(3).is(","));
+                            (peek(3).is("=") || peek(3).is(";") || peek(3).is(",") || peek(3).is("["));
         ++at_;
         const bool name = atName();
         --at_;

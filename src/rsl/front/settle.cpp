@@ -160,6 +160,13 @@ void Checker::settleArray(ExprPtr& e, Type want, Handle handle) {
     } else if (e->kind == ExprKind::Cast) {
         ExprPtr inner = std::move(e->args[0]);
         settleArray(inner, want);
+        if (e->space) { // each element is in that space
+            settle(e->space, {Base::String, 0});
+            e->type = inner->type;
+            e->args[0] = std::move(inner);
+            finish(*e);
+            return;
+        }
         e = std::move(inner);
     }
 }

@@ -26,7 +26,7 @@ const StructType& Lowering::structOf(Type t) const {
 
 std::string Lowering::shown(Type t) const { return isStruct(t) ? "structure '" + structOf(t).name + "'" : toString(t); }
 
-/// A structure inside itself would have no end; members that are arrays of structures with arrays have no storage.
+/// A structure inside itself would have no end; what changes its length has no place in an array of structures.
 void Lowering::checkType(size_t index) {
     for (auto& m : unit_.structs[index].members) {
         if (!isStruct(m.type)) continue;
@@ -34,22 +34,18 @@ void Lowering::checkType(size_t index) {
         if (inner >= index) { // the parser knows only earlier ones; it could be itself after a second definition
             sources_.error(m.place, "a structure cannot contain itself");
             m.type = {Base::Float, 0};
-        } else if (m.type.array != 0 && hasArrays(m.type)) {
-            sources_.error(m.place, "an array of structures with arrays in them is not available");
+        } else if (!arrayPossible(m.type, m.place)) {
             m.type.array = 0;
         }
     }
 }
 
-bool Lowering::hasArrays(Type t) const {
-    for (const auto& m : structOf(t).members)
-        if (m.type.array != 0 || (isStruct(m.type) && hasArrays(m.type))) return true;
-    return false;
-}
-
 void Lowering::note(const Function& f) {
-    Result r{f.result, {}};
-    for (const Symbol* p : f.parameters) r.parameters.push_back(p->type);
+    Result r{f.result, {}, {}};
+    for (const Symbol* p : f.parameters) {
+        r.parameters.push_back(p->type);
+        r.outputs.push_back(p->output);
+    }
     functions_.emplace(f.name, std::move(r));
     for (const auto& n : f.nested) note(*n);
 }
@@ -63,13 +59,12 @@ std::vector<Leaf> Lowering::leaves(Type t) const {
         }
         for (Leaf l : leaves({m.type.base, 0})) {
             l.path = "->" + m.name + l.path;
-            if (m.type.array) l.type.array = m.type.array;
+            l.type.array = flatLength(m.type.array, l.type.array);
             if (l.storage == Storage::Unspecified) l.storage = m.storage;
             all.push_back(l);
         }
     }
-    if (t.array)
-        for (Leaf& l : all) l.type.array = t.array;
+    for (Leaf& l : all) l.type.array = flatLength(t.array, l.type.array);
     return all;
 }
 
@@ -171,10 +166,7 @@ Symbol* Lowering::newSymbol(const std::string& name, Type type, Storage storage,
 /// The variables of one variable of a structure; all that was said about it holds for each.
 std::vector<Symbol*> Lowering::split(const Symbol& s) {
     std::vector<Symbol*> all;
-    if (s.type.array && hasArrays(s.type)) {
-        sources_.error(s.place, "an array of structures with arrays in them is not available");
-        return all;
-    }
+    if (!arrayPossible(s.type, s.place)) return all;
     for (const Leaf& l : leaves(s.type)) {
         Symbol* n = newSymbol(s.name + l.path, l.type, s.storage == Storage::Unspecified ? l.storage : s.storage, s.place);
         n->handle = l.member->handle;
@@ -207,7 +199,7 @@ void Lowering::spill(List& values, Type type, List& pre, Place place) {
     const std::string t = temporary(type, place);
     const auto all = leaves(type);
     for (size_t i = 0; i < values.size() && i < all.size(); ++i) {
-        pre.push_back(assign(variable(t + all[i].path, place), std::move(values[i]), place));
+        pre.push_back(assign(variable(t + all[i].path, place), whole(std::move(values[i])), place));
         values[i] = variable(t + all[i].path, place);
     }
 }

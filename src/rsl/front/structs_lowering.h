@@ -33,6 +33,7 @@ private:
     struct Result {
         Type type;
         std::vector<Type> parameters;
+        std::vector<bool> outputs; ///< of the parameters
     };
     using List = std::vector<ExprPtr>;
 
@@ -40,9 +41,8 @@ private:
     /// Of anything else, after an error, a structure without members.
     const StructType& structOf(Type t) const;
     std::string shown(Type t) const;
-    /// A structure inside itself would have no end; members that are arrays of structures with arrays have no storage.
+    /// A structure inside itself would have no end; what changes its length has no place in an array of structures.
     void checkType(size_t index);
-    bool hasArrays(Type t) const;
     void note(const Function& f);
     std::vector<Leaf> leaves(Type t) const;
     const StructMember* member(Type t, const std::string& name) const;
@@ -64,6 +64,26 @@ private:
     void defaults(Type t, Place place, List& pre, List& out);
     bool hasDefaults(Type t) const;
 
+    // structs_arrays.cpp
+    static bool isSlice(const Expr&);
+    static int flatLength(int outer, int inner);
+    const StructMember* openMember(Type) const;
+    bool arrayPossible(Type, Place);
+    ExprPtr bounded(ExprPtr index, int length, const Expr& array, int each);
+    static ExprPtr partAt(ExprPtr array, ExprPtr at, int each);
+    void elements(ExprPtr array, Type, List& pre, List& out);
+    static ExprPtr whole(ExprPtr);
+    void store(ExprPtr left, ExprPtr right, Base, Place, List& pre);
+    const StructMember* arrayMember(const Expr&) const;
+    bool rewriteArray(ExprPtr&);
+    static bool inArray(const Expr&);
+    bool putsOut(const std::string& function, size_t arguments, size_t i) const;
+    ExprPtr argument(ExprPtr part, Type, bool output, List& pre, List& after);
+    void changeLength(Expr& call, List& pre);
+    void popLast(Expr& call, Type, List& pre, List& out);
+    void measure(ExprPtr& call, List& pre);
+    void listOf(Expr&, Type want, List& pre, List& out);
+
     // structs_methods.cpp
     /// Methods to functions of the unit, called "Structure->method".
     void methods();
@@ -84,11 +104,13 @@ private:
     void assignTo(Expr& e, List& pre, List* value = nullptr);
     static bool path(const Expr& e);
     void checkArguments(Expr& call);
-    void arguments(Expr& call, List& pre);
+    /// `after`: what must happen when the call is done.
+    void arguments(Expr& call, List& pre, List& after);
     void handleArguments(Expr& call, List& pre);
     Base wanted(const std::string& function, size_t arguments, size_t i, Type have) const;
     /// What must happen first, and then the expression, as one expression.
     void sequence(ExprPtr& e, List pre);
+    void called(ExprPtr& e, List& pre, List after);
     /// What must happen before a place can be named goes to `pre`.
     static void hoist(ExprPtr& place, List& pre);
     /// An expression that is no structure itself.

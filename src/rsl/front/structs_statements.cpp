@@ -47,13 +47,19 @@ void Lowering::declare(StmtPtr s, std::vector<StmtPtr>& out) {
             valueOf(std::move(d.init), type, pre, values);
         } else if (!type.array && hasDefaults(type) && !symbol.isExtern) {
             defaults(type, symbol.place, pre, values);
-        } else if (type.array > 0 && !hasArrays(type) && hasDefaults(type) && !symbol.isExtern) { // {default, ...} for each member
-            defaults({type.base, 0}, symbol.place, pre, values);
-            for (ExprPtr& v : values) {
-                auto all = node(ExprKind::ArrayList, symbol.place);
-                all->text = "...";
-                adopt(*all, std::move(v));
-                v = std::move(all);
+        } else if (type.array > 0 && hasDefaults(type) && !symbol.isExtern) { // {default, ...} for each member
+            List one;
+            defaults({type.base, 0}, symbol.place, pre, one);
+            const auto all = leaves({type.base, 0});
+            for (size_t i = 0; i < one.size() && i < all.size(); ++i) {
+                auto list = node(ExprKind::ArrayList, symbol.place);
+                List parts;
+                if (all[i].type.array) elements(std::move(one[i]), all[i].type, pre, parts);
+                else parts.push_back(std::move(one[i])), list->text = "...";
+                const int times = all[i].type.array && arrayPossible(type, symbol.place) ? type.array : 1;
+                for (int n = 0; n < times; ++n)
+                    for (auto& p : parts) adopt(*list, clone(*p));
+                values.push_back(std::move(list));
             }
         }
         for (auto& x : *before_) out.push_back(std::move(x)); // what is computed first, between the variables
@@ -61,7 +67,7 @@ void Lowering::declare(StmtPtr s, std::vector<StmtPtr>& out) {
         flush(pre, out);
         const auto symbols = split(symbol);
         for (size_t i = 0; i < symbols.size(); ++i)
-            now->declarators.push_back({symbols[i], i < values.size() ? std::move(values[i]) : nullptr});
+            now->declarators.push_back({symbols[i], i < values.size() ? whole(std::move(values[i])) : nullptr});
         if (!now->declarators.empty()) out.push_back(std::exchange(now, fresh()));
         scopes_.back()[symbol.name] = symbols.empty() && !leaves(type).empty() ? kNone : type; // some have methods only
     }
@@ -75,23 +81,7 @@ void Lowering::expression(StmtPtr s, std::vector<StmtPtr>& out) {
     const bool call = e.kind == ExprKind::ShadeopCall;
     if (call && (e.text == "push" || e.text == "resize" || e.text == "reserve") && e.args.size() == 2 &&
         isStruct(typeOf(*e.args[0]))) {
-        const Type t = typeOf(*e.args[0]);
-        List arrays, values;
-        flatten(std::move(e.args[0]), pre, arrays);
-        if (e.text == "push") valueOf(std::move(e.args[1]), {t.base, 0}, pre, values);
-        else rewrite(e.args[1]);
-        if (e.text != "push" && arrays.size() > 1 && e.args[1]->kind != ExprKind::Number && e.args[1]->kind != ExprKind::Variable) {
-            const std::string length = temporary({Base::Float, 0}, e.place); // computed once
-            pre.push_back(assign(variable(length, e.place), std::move(e.args[1]), e.place));
-            e.args[1] = variable(length, e.place);
-        }
-        for (size_t i = 0; i < arrays.size() && (e.text != "push" || i < values.size()); ++i) {
-            auto one = node(ExprKind::ShadeopCall, e.place);
-            one->text = e.text;
-            adopt(*one, std::move(arrays[i]));
-            adopt(*one, e.text == "push" ? std::move(values[i]) : clone(*e.args[1]));
-            pre.push_back(std::move(one));
-        }
+        changeLength(e, pre);
     } else if (e.kind == ExprKind::Assign && isStruct(typeOf(e))) {
         assignTo(e, pre);
     } else if (call && isStruct(typeOf(e)) && structNamed(e.text) < 0) {
@@ -135,7 +125,7 @@ void Lowering::statement(StmtPtr s, std::vector<StmtPtr>& target) {
         const Place place = s->value->place;
         valueOf(std::move(s->value), result_, pre, values);
         for (size_t i = 0; i < values.size() && i < results_.size(); ++i)
-            pre.push_back(assign(variable(results_[i]->name, place), std::move(values[i]), place));
+            pre.push_back(assign(variable(results_[i]->name, place), whole(std::move(values[i])), place));
         flush(pre, out);
         s->value.reset();
         out.push_back(std::move(s));
@@ -234,7 +224,7 @@ void Lowering::shader(Shader& s) {
         scopes_.back()[symbol.name] = symbol.type;
         const auto parts = split(symbol);
         for (size_t i = 0; i < parts.size(); ++i)
-            parameters.push_back({parts[i], i < values.size() ? std::move(values[i]) : nullptr, {}});
+            parameters.push_back({parts[i], i < values.size() ? whole(std::move(values[i])) : nullptr, {}});
     }
     s.parameters = std::move(parameters);
     body(s.body);

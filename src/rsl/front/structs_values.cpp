@@ -15,17 +15,7 @@ void Lowering::valueOf(ExprPtr e, Type want, List& pre, List& out) {
     }
     const size_t count = leaves(want).size();
     const Place place = e->place;
-    if (want.array && e->kind == ExprKind::ArrayList) {
-        std::vector<ExprPtr> lists;
-        for (size_t i = 0; i < count; ++i) lists.push_back(node(ExprKind::ArrayList, place));
-        for (auto& a : e->args) {
-            List parts;
-            valueOf(std::move(a), {want.base, 0}, pre, parts);
-            for (size_t i = 0; i < count && i < parts.size(); ++i) adopt(*lists[i], std::move(parts[i]));
-        }
-        for (auto& l : lists) out.push_back(std::move(l));
-        return;
-    }
+    if (want.array && e->kind == ExprKind::ArrayList) return listOf(*e, want, pre, out);
     if (!want.array && e->kind == ExprKind::ArrayList) { // {a, b}: like the constructor
         construct(want, *e, pre, out);
         return;
@@ -84,6 +74,8 @@ void Lowering::flatten(ExprPtr e, List& pre, List& out) {
         return;
     case ExprKind::Index: {
         List base;
+        const int length = typeOf(*e->args[0]).array;
+        const auto inner = leaves(type);
         flatten(std::move(e->args[0]), pre, base);
         ExprPtr index = std::move(e->args[1]);
         rewrite(index);
@@ -92,7 +84,14 @@ void Lowering::flatten(ExprPtr e, List& pre, List& out) {
             pre.push_back(assign(variable(t, place), std::move(index), place));
             index = variable(t, place);
         }
-        for (auto& b : base) {
+        for (size_t n = 0; n < base.size(); ++n) {
+            ExprPtr& b = base[n];
+            const int each = n < inner.size() ? inner[n].type.array : 0;
+            if (each || isSlice(*b)) {
+                ExprPtr at = bounded(clone(*index), length, *b, std::max(1, each));
+                out.push_back(partAt(std::move(b), std::move(at), each));
+                continue;
+            }
             auto i = node(ExprKind::Index, place);
             adopt(*i, std::move(b));
             adopt(*i, clone(*index));
@@ -122,7 +121,7 @@ void Lowering::flatten(ExprPtr e, List& pre, List& out) {
             const auto side = [&](List& first, List& parts) {
                 const auto all = leaves(type);
                 for (size_t i = 0; i < all.size() && i < parts.size(); ++i)
-                    first.push_back(assign(variable(chosen + all[i].path, place), std::move(parts[i]), place));
+                    first.push_back(assign(variable(chosen + all[i].path, place), whole(std::move(parts[i])), place));
                 ExprPtr done = node(ExprKind::Number, place);
                 sequence(done, std::move(first));
                 return done;
@@ -135,39 +134,40 @@ void Lowering::flatten(ExprPtr e, List& pre, List& out) {
             for (const Leaf& l : leaves(type)) out.push_back(variable(chosen + l.path, place));
             return;
         }
-        for (size_t i = 0; i < yes.size() && i < no.size(); ++i) {
+        const auto either = [&](ExprPtr a, ExprPtr b) {
             auto c = node(ExprKind::Conditional, place);
             adopt(*c, variable(t, place));
-            adopt(*c, std::move(yes[i]));
-            adopt(*c, std::move(no[i]));
-            out.push_back(std::move(c));
+            adopt(*c, std::move(a));
+            adopt(*c, std::move(b));
+            return c;
+        };
+        const auto all = leaves(type);
+        for (size_t i = 0; i < yes.size() && i < no.size(); ++i) {
+            if (i >= all.size() || all[i].type.array <= 0) {
+                out.push_back(either(std::move(yes[i]), std::move(no[i])));
+                continue;
+            }
+            List first, second; // arrays one element after the other
+            elements(std::move(yes[i]), all[i].type, pre, first);
+            elements(std::move(no[i]), all[i].type, pre, second);
+            out.push_back(node(ExprKind::ArrayList, place));
+            for (size_t k = 0; k < first.size(); ++k) adopt(*out.back(), either(std::move(first[k]), std::move(second[k])));
         }
         return;
     }
     case ExprKind::Assign: return assignTo(*e, pre, &out);
     case ExprKind::ShadeopCall: {
         if (structNamed(e->text) >= 0) return construct(type, *e, pre, out);
-        if (e->text == "pop") {
-            const std::string t = temporary(type, place);
-            List arrays;
-            flatten(std::move(e->args[0]), pre, arrays);
-            const auto all = leaves(type);
-            for (size_t i = 0; i < all.size() && i < arrays.size(); ++i) {
-                auto call = node(ExprKind::ShadeopCall, place);
-                call->text = "pop";
-                adopt(*call, std::move(arrays[i]));
-                pre.push_back(assign(variable(t + all[i].path, place), std::move(call), place));
-                out.push_back(variable(t + all[i].path, place));
-            }
-            return;
-        }
+        if (e->text == "pop") return popLast(*e, type, pre, out);
         const std::string t = temporary(type, place);
-        arguments(*e, pre);
+        List after;
+        arguments(*e, pre, after);
         for (const Leaf& l : leaves(type)) {
             adopt(*e, variable(t + l.path, place));
             out.push_back(variable(t + l.path, place));
         }
         pre.push_back(std::move(e));
+        for (auto& a : after) pre.push_back(std::move(a));
         return;
     }
     default:
@@ -204,8 +204,9 @@ void Lowering::assignTo(Expr& e, List& pre, List* value) {
     valueOf(std::move(e.args[1]), type, pre, right);
     if ((!simple || (list && !type.array)) && right.size() > 1) spill(right, type, pre, place); // a = S(a->y, a->x)
     for (size_t i = 0; value && i < left.size(); ++i) value->push_back(clone(*left[i])); // indices are numbers and variables by now
-    for (size_t i = 0; i < left.size() && i < right.size(); ++i)
-        pre.push_back(assign(std::move(left[i]), std::move(right[i]), place));
+    const auto all = leaves(type);
+    for (size_t i = 0; i < left.size() && i < right.size() && i < all.size(); ++i)
+        store(std::move(left[i]), std::move(right[i]), all[i].type.base, place, pre);
 }
 
 bool Lowering::path(const Expr& e) {
@@ -241,12 +242,18 @@ void Lowering::checkArguments(Expr& call) {
     call.text.clear(); // nothing more is said about this call
 }
 
-void Lowering::arguments(Expr& call, List& pre) {
+void Lowering::arguments(Expr& call, List& pre, List& after) {
     checkArguments(call);
     std::vector<ExprPtr> given = std::move(call.args);
     call.args.clear();
     for (size_t i = 0; i < given.size(); ++i) {
         ExprPtr& a = given[i];
+        if (const StructMember* m = arrayMember(*a); m && inArray(*a->args[0])) { // the array of one of many structures
+            List out;
+            pick(*a, pre, out);
+            adopt(call, argument(std::move(out[0]), m->type, putsOut(call.text, given.size(), i), pre, after));
+            continue;
+        }
         if (!isStruct(typeOf(*a))) {
             rewrite(a);
             hoist(a, pre);
@@ -256,8 +263,10 @@ void Lowering::arguments(Expr& call, List& pre) {
         const Base want = wanted(call.text, given.size(), i, typeOf(*a));
         List parts;
         flatten(std::move(a), pre, parts);
-        if (const size_t count = leaves({want, 0}).size(); isStruct({want, 0}) && parts.size() > count) parts.resize(count);
-        for (auto& p : parts) adopt(call, std::move(p));
+        const auto all = leaves({want, 0});
+        if (isStruct({want, 0}) && parts.size() > all.size()) parts.resize(all.size());
+        const bool output = putsOut(call.text, given.size(), i);
+        for (size_t n = 0; n < parts.size(); ++n) adopt(call, argument(std::move(parts[n]), n < all.size() ? all[n].type : kNone, output, pre, after));
     }
 }
 
@@ -273,7 +282,7 @@ void Lowering::handleArguments(Expr& call, List& pre) {
             rewrite(a);
             parts.push_back(std::move(a));
         }
-        for (auto& p : parts) adopt(call, std::move(p));
+        for (auto& p : parts) adopt(call, whole(std::move(p)));
     }
 }
 
@@ -317,7 +326,8 @@ void Lowering::rewrite(ExprPtr& e) {
         e = variable("", e->place);
         return;
     }
-    List pre;
+    if (rewriteArray(e)) return;
+    List pre, after;
     methodCall(*e);
     regions(*e);
     if (e->kind == ExprKind::Binary && e->op == ExprOp::Dot && isStruct(typeOf(*e->args[0]))) {
@@ -345,6 +355,12 @@ void Lowering::rewrite(ExprPtr& e) {
             const Place place = e->place;
             pick(*e, pre, out);
             e = std::move(out[0]);
+            if (isSlice(*e)) { // the values; what happens first, before the first of them
+                e = whole(std::move(e));
+                sequence(e->args[0], std::move(pre));
+                e->height = std::max(e->height, e->args[0]->height + 1);
+                return;
+            }
             if (array && !pre.empty()) sources_.error(place, "an array in the result of a call must be stored in a variable first");
             sequence(e, std::move(pre));
             return;
@@ -353,13 +369,11 @@ void Lowering::rewrite(ExprPtr& e) {
     if (e->kind == ExprKind::ShadeopCall) {
         const bool sizes = e->text == "arraylength" || e->text == "capacity";
         if (sizes && e->args.size() == 1 && isStruct(typeOf(*e->args[0]))) {
-            List parts;
-            flatten(std::move(e->args[0]), pre, parts);
-            e->args[0] = parts.empty() ? variable("", e->place) : std::move(parts[0]);
+            measure(e, pre);
             sequence(e, std::move(pre));
             return;
         }
-        arguments(*e, pre);
+        arguments(*e, pre, after);
     } else if (e->kind == ExprKind::Method) {
         handleArguments(*e, pre);
     } else {
@@ -371,7 +385,28 @@ void Lowering::rewrite(ExprPtr& e) {
     for (auto& p : e->pairs) rewrite(p.value);
     for (const auto& a : e->args)
         if (a) e->height = std::max(e->height, a->height + 1);
+    if (!after.empty()) called(e, pre, std::move(after));
     sequence(e, std::move(pre));
+}
+
+/// A call and what must happen behind it, which has the value of the call.
+void Lowering::called(ExprPtr& e, List& pre, List after) {
+    const Place place = e->place;
+    Type result = kNone;
+    const auto [from, to] = functions_.equal_range(e->text);
+    for (auto f = from; f != to; ++f) result = f->second.type;
+    if (result.array) sources_.error(place, "an array in the result of a call must be stored in a variable first");
+    if (result == kNone) {
+        pre.push_back(std::move(e));
+        e = std::move(after.back());
+        after.pop_back();
+        for (auto& a : after) pre.push_back(std::move(a));
+        return;
+    }
+    const std::string t = temporary({result.base, 0}, place);
+    pre.push_back(assign(variable(t, place), std::move(e), place));
+    for (auto& a : after) pre.push_back(std::move(a));
+    e = variable(t, place);
 }
 
 } // namespace alpenglow::rsl::front

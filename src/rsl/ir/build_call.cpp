@@ -108,7 +108,10 @@ Inst* Builder::inlineFunction(const Function& f, const std::vector<const Expr*>&
     frames_.push_back(frame);
     const bool constructs = f.name == "construct" && (shader_.object || handleDepth_ > 0);
     constructing_ += constructs;
+    const auto method = methodByName(f); // a handle may come back to it
+    if (method) openMethods_.insert(*method), way_.push_back(*method);
     if (f.body) statement(*f.body);
+    if (method) openMethods_.erase(*method), way_.pop_back();
     constructing_ -= constructs;
     frames_.pop_back();
     sharing_ -= !shared.empty();

@@ -99,7 +99,8 @@ Inst* Builder::array(const Expr& e) {
         if (!v) v = get(n);
         return v;
     }
-    if (e.kind == ExprKind::Cast && !e.args.empty() && e.args[0]->type.array) return array(*e.args[0]);
+    if (e.kind == ExprKind::Cast && !e.args.empty() && e.args[0]->type.array && !e.space) return array(*e.args[0]);
+    if (e.kind == ExprKind::Cast && !e.args.empty() && e.args[0]->type.array) return inSpace(*e.space, array(*e.args[0]), e.type.base);
     if (e.kind == ExprKind::Member) return memberArray(e);
     if (returnsArray(e)) {
         std::vector<const Expr*> args;
@@ -277,6 +278,20 @@ Inst* Builder::dynamicSpace(const char* op, Inst* from, Inst* to, Inst* value, B
 
 /// `value`, given in the space that the expression names, in current space (colours: rgb).
 Inst* Builder::inSpace(const Expr& spaceName, Inst* value, Base base) {
+    if (value->kind == Kind::Array) { // each of the elements
+        const Lengths* known = lengths(value);
+        Inst* a = known ? newResizable(base, 0) : newArray(base, arrayLength(value));
+        if (known) {
+            set(lengths(a)->length, limitLength(a, lengthOf(value)));
+            set(lengths(a)->reserved, get(lengths(a)->length));
+        }
+        const int storage = std::min(known ? value->index : arrayLength(value), known ? a->index : arrayLength(a));
+        for (int n = 0; n < storage; ++n) {
+            Inst* at = constant(static_cast<float>(n));
+            emit(Op::ArrayStore, Kind::None, {a, at, inSpace(spaceName, emit(Op::ArrayLoad, value->element, {value, at}), base)});
+        }
+        return a;
+    }
     Inst* name = expr(spaceName);
     if (base == Base::Color) {
         if (name->op == Op::ConstString) return colourSpace(name->text, "rgb", value);

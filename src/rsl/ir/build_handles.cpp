@@ -263,11 +263,11 @@ Inst* Builder::methodCall(const Expr& e) {
             return zero(kind);
         }
         if (openMethods_.count({i, f}) && !certain_) { // it may be another each time: whether it is a circle shows when the shader runs
-            complain(e.place, "method '" + e.text + "' of co-shader '" + c.handle + "' calls itself; the inner call does nothing");
+            complain(e.place, "method '" + e.text + "' of co-shader '" + c.handle + "' calls itself; the inner call does nothing: " + wayTo(i, *f));
             return zero(kind);
         }
         if (openMethods_.count({i, f})) {
-            error(e.place, "method '" + e.text + "' of co-shader '" + c.handle + "' calls itself; recursion is not allowed");
+            error(e.place, "method '" + e.text + "' of co-shader '" + c.handle + "' calls itself; recursion is not allowed: " + wayTo(i, *f));
             return zero(kind);
         }
         std::vector<const Expr*> arguments;
@@ -308,6 +308,7 @@ Inst* Builder::methodCall(const Expr& e) {
             if (arguments[n] && !values[n]) values[n] = coerce(expr(*arguments[n]), f->parameters[n]->type);
         if (failed_) return zero(kind);
         openMethods_.insert({i, f});
+        way_.push_back({i, f});
         enterInstance(i);
         ++handleDepth_;
         for (size_t n = 0; n < values.size(); ++n) {
@@ -333,6 +334,7 @@ Inst* Builder::methodCall(const Expr& e) {
         --handleDepth_;
         leaveInstance();
         openMethods_.erase({i, f});
+        way_.pop_back();
         place_ = e.place;
         for (size_t n = 0; n < outputs.size(); ++n)
             if (f->parameters[n]->output && !f->parameters[n]->type.array && arguments[n])
@@ -345,6 +347,32 @@ Inst* Builder::methodCall(const Expr& e) {
         }
         return result;
     }, [&](Inst* handle) { return lightMethod(e, handle); });
+}
+
+/// The method of a shader with handles that the function is when it is called by its bare name; none where it is no method, or open already.
+std::optional<std::pair<size_t, const Function*>> Builder::methodByName(const Function& f) const {
+    size_t i = instances_.size();
+    if (!current_.empty()) i = current_.back();
+    else
+        for (size_t n = 0; n < instances_.size(); ++n)
+            if (isSelf(n)) i = n;
+    if (i == instances_.size()) return std::nullopt;
+    const auto& methods = instances_[i].binding->shader->nested;
+    const bool method = std::any_of(methods.begin(), methods.end(), [&](const auto& m) { return m.get() == &f; });
+    if (!method || openMethods_.count({i, &f})) return std::nullopt;
+    return std::pair{i, &f};
+}
+
+/// The calls from an open method to the one that would open it again: "surface() > coat->go() > surface()".
+std::string Builder::wayTo(size_t i, const Function& f) const {
+    const std::pair<size_t, const Function*> again{i, &f};
+    std::string text;
+    const auto add = [&](const auto& m) {
+        text += (text.empty() ? "" : " > ") + (isSelf(m.first) ? "" : instances_[m.first].binding->handle + "->") + m.second->name + "()";
+    };
+    for (auto m = std::find(way_.begin(), way_.end(), again); m != way_.end(); ++m) add(*m);
+    add(again);
+    return text;
 }
 
 /// What the methods that a call can mean assign.

@@ -63,7 +63,8 @@ bool Builder::heardDisplacement(const Expr& call, const std::string& name, Inst*
         Inst* a = to.type.array ? array(to) : nullptr;
         const bool open = a && lengths(a);
         found = constant(0);
-        if (static_cast<int>(kindOf(to.type.element())) != kind || (length > 0) != (a != nullptr) || (uniform && varying)) return true;
+        if (static_cast<int>(kindOf(to.type.element())) != kind || (length > 0) != (a != nullptr)) return true;
+        if (uniform && varying) return false; // there is no answer either, and a message why
         if (a && (a->op != Op::ArrayNew || (!open && arrayLength(a) > length))) return true;
         found = constant(1);
         if (!a) {

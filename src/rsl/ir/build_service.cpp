@@ -220,6 +220,7 @@ Inst* Builder::service(const Expr& e, Op kind, int part) {
             s.pairStrings.push_back("");
             addArgument(s, args, v, parameter.second);
         }
+    if (quiet_ > 0 && (op.name == "printf" || op.name == "print")) return constant(0);
     if (constructing_ > 0 && (op.name == "printf" || op.name == "print")) { // once for the shader (printlog.h)
         s.names.push_back("__once");
         s.pairStrings.push_back("1");

@@ -2,6 +2,7 @@
 #include "base/limits.h"
 #include "rsl/ir/build.h"
 #include "rsl/ir/builder.h"
+#include "rsl/front/leftmembers.h"
 #include <algorithm>
 #include <cstdlib>
 #include <functional>
@@ -152,6 +153,9 @@ bool Builder::buildShader() {
     std::set<const Function*> seen;
     if (shader_.body) scanAssigned(*shader_.body, assigned, seen);
     assignedAnywhere_ = assigned;
+    for (const auto& heard : options_.stringParameters)
+        if (heard.first.rfind("displacement:this->", 0) == 0)
+            if (const Symbol* s = ownMember(shader_, heard.first.substr(19))) assigned.insert(slot(s));
     for (const ShaderParameter& p : shader_.parameters) {
         place_ = p.symbol->place;
         const int n = slot(p.symbol);
@@ -183,16 +187,9 @@ bool Builder::buildShader() {
     lightBlocks_.clear();
     blockRan_ = newSlot(boolean(false));
     if (shader_.kind == ShaderKind::Light && shader_.body) findBlocks(*shader_.body);
-    // What stops shadows is what opacity() gives, before the other methods change it.
-    const bool opacityOnly = shader_.object && std::any_of(options_.stringParameters.begin(), options_.stringParameters.end(), [](const auto& p) { return p.first == "opacity()"; });
-    if (shader_.body && opacityOnly) {
-        for (const StmtPtr& s : shader_.body->body) {
-            statement(*s);
-            if (s->kind == StmtKind::Expression && s->value && s->value->text == "opacity") break;
-        }
-    } else if (shader_.body) {
-        statement(*shader_.body);
-    }
+    const bool opacityOnly = std::any_of(options_.stringParameters.begin(), options_.stringParameters.end(), [](const auto& p) { return p.first == "opacity()"; });
+    if (shader_.body && shader_.object) objectBody(opacityOnly);
+    else if (shader_.body) statement(*shader_.body);
     place_ = shader_.place;
 
     const auto output = [&](const std::string& name, Inst* value, Type type) {
@@ -259,6 +256,10 @@ bool Builder::buildShader() {
                 continue;
             }
             if (found) continue;
+        }
+        if (Type left; Inst* v = leftBehind(name, left)) {
+            output(name, v, left);
+            continue;
         }
         bool found = false;
         // "list[1]", "param:list[1]": an element. "Du:param:x", "Dv:param:x": how a parameter changes with u and v.

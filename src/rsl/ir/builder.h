@@ -230,6 +230,10 @@ private:
     Receiver receiver(Site&, const Expr& to, const std::string& name);
     void receive(const Receiver&, std::span<Inst* const> values, Inst* found);
     Inst* readPrimitiveVariable(const Expr&);
+    // build_left.cpp: members that displacement() leaves behind
+    Inst* leftBehind(const std::string& name, Type&);
+    void hearMembers();
+    void objectBody(bool opacityOnly);
     Inst* evalParameter(const Expr&); // build_parameters.cpp
     Inst* hasMethod(const Expr&);
     Inst* getShader(const Expr&);
@@ -333,8 +337,12 @@ private:
     const std::vector<std::string>* files_ = &program_.files; ///< those that places refer to just now
     int handleDepth_ = 0; ///< methods of co-shaders that are open
     int constructing_ = 0; ///< open construct()
+    int quiet_ = 0;        ///< what runs now prints nothing
     int sharing_ = 0;     ///< open functions whose output parameters are variables of the caller
     std::set<std::pair<size_t, const Function*>> openMethods_, scannedMethods_;
+    std::vector<std::pair<size_t, const Function*>> way_; ///< openMethods_ in the order of their calls
+    std::optional<std::pair<size_t, const Function*>> methodByName(const Function&) const;
+    std::string wayTo(size_t instance, const Function&) const;
     std::map<std::string, std::pair<int, Type>> channels_; ///< by name: slot and type
     int lightDepth_ = 0;
     int blockDepth_ = 0;   ///< blocks of a light that are open

@@ -9,7 +9,9 @@
 #include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
+#include <tuple>
 
 namespace alpenglow::cli {
 namespace {
@@ -64,7 +66,7 @@ void warnNonlinear(const rsl::CompiledShader& shader, const rsl::KernelOptions& 
 std::vector<std::shared_ptr<const rsl::CompiledShader>> kindsOf(const std::shared_ptr<const rsl::CompiledShader>& shader) {
     std::vector<std::shared_ptr<const rsl::CompiledShader>> all{shader};
     for (const auto& s : shader->program().shaders)
-        if (shader->shader().object && s->kind != shader->kind())
+        if (shader->shader().object && s->name == shader->name() && s->kind != shader->kind())
             if (auto v = rsl::ShaderCompiler::variant(shader, s->kind)) all.push_back(std::move(v));
     return all;
 }
@@ -96,12 +98,14 @@ void addCompile(CLI::App& app, int* status) {
     c->add_flag("-W,--warnings", a->warn, "Warn also about unused, uninitialised and non-linear use under path");
     c->add_flag("--json", a->json, "Diagnostics as JSON on standard output, for editors");
     c->add_flag("-q,--quiet", a->quiet, "Errors only");
-    c->footer("Errors are shown with file:line:column, the line and a caret. Exit status 0 when all shaders compile, else 1.");
+    c->footer("All shaders of a file are compiled. Errors are shown with file:line:column, the line and a caret. Exit status 0 when all shaders compile, else 1.");
     c->callback([a, status] {
         Json report = Json::array();
         const auto print = printer(a->quiet ? Severity::Error : Severity::Warning);
         std::string current, input; // the shader that is looked at, and what came by standard input
+        std::set<std::tuple<std::string, int, int, std::string>> told; // what the shaders of a file share is said once
         Diagnostics diags([&, print](Diagnostic d) {
+            if (d.place.line > 0 && !told.emplace(d.place.file, d.place.line, d.place.column, d.message).second) return;
             if (d.place.file.empty() && a->json) d.place.file = current;
             if (d.sourceLine.empty() && d.place.line > 0) d.sourceLine = lineOf(d.place, input);
             rsl::complete(d);
@@ -134,21 +138,24 @@ void addCompile(CLI::App& app, int* status) {
             current = f;
             const int before = diags.errors();
             if (f == "-") input.assign(std::istreambuf_iterator<char>(std::cin), {});
-            auto shader = f == "-" ? compiler.loadText(input, kStandardInput, diags) : compiler.load(f, paths, diags);
-            bool ok = shader != nullptr;
-            for (const auto& s : ok ? kindsOf(shader) : decltype(kindsOf(shader)){}) {
-                if (!a->json && (a->ir || a->llvm)) {
-                    std::string text = compiler.dump(s, options, diags, a->llvm);
-                    std::fputs(text.c_str(), stdout);
-                    ok = ok && !text.empty();
+            const auto first = f == "-" ? compiler.loadText(input, kStandardInput, diags) : compiler.load(f, paths, diags);
+            bool all = first != nullptr;
+            if (!first) shaders.push_back({{"file", f}, {"ok", false}});
+            for (const auto& shader : rsl::ShaderCompiler::allOfFile(first)) {
+                bool ok = true;
+                for (const auto& s : kindsOf(shader)) {
+                    if (!a->json && (a->ir || a->llvm)) {
+                        std::string text = compiler.dump(s, options, diags, a->llvm);
+                        std::fputs(text.c_str(), stdout);
+                        ok = ok && !text.empty();
+                    }
+                    ok = ok && compiler.kernel(s, options, diags) != nullptr;
+                    if (ok && a->warn && s->kind() == rsl::ShaderKind::Surface) warnNonlinear(*s, options, diags);
                 }
-                ok = ok && compiler.kernel(s, options, diags) != nullptr;
-                if (ok && a->warn && s->kind() == rsl::ShaderKind::Surface) warnNonlinear(*s, options, diags);
+                shaders.push_back({{"file", f}, {"ok", ok}, {"name", shader->name()}, {"type", toString(shader->kind())}});
+                all = all && ok;
             }
-            Json entry = {{"file", f}, {"ok", ok}};
-            if (shader) entry["name"] = shader->name(), entry["type"] = toString(shader->kind());
-            shaders.push_back(std::move(entry));
-            if (!ok) {
+            if (!all) {
                 ++failed;
                 if (diags.errors() == before) diags.report(Severity::Error, Rie::NoShader, {f}, "it cannot be compiled");
             }

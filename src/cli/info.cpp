@@ -50,7 +50,7 @@ void addInfo(CLI::App& app, int* status) {
     };
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("info", "Tell what a shader is, or how a shadeop works");
-    c->add_option("shader", a->file, "RSL file, or the name of a shader on the search path");
+    c->add_option("shader", a->file, "RSL file (all of its shaders), or the name of a shader on the search path");
     CLI::Option* ops = c->add_option("--shadeops", a->shadeop, "List the shadeops, or print the manual of one")
                            ->expected(0, 1)
                            ->type_name("[NAME]");
@@ -83,9 +83,19 @@ void addInfo(CLI::App& app, int* status) {
         auto shader = compiler.load(a->file, paths, diags);
         *status = shader ? kDone : kDoneWithErrors;
         if (!shader) return;
-        const ShaderDescription d = describe(compiler, shader, diags);
-        if (a->json) std::printf("%s\n", descriptionJson(d).dump(2, ' ', false, Json::error_handler_t::replace).c_str());
-        else std::fputs(descriptionText(d).c_str(), stdout);
+        // A file tells about all of its shaders, beginning with the one that its name means; a name about one.
+        std::vector<std::shared_ptr<const rsl::CompiledShader>> wanted{shader};
+        if (a->file.ends_with(".sl"))
+            for (auto& other : rsl::ShaderCompiler::allOfFile(shader))
+                if (other != shader) wanted.push_back(std::move(other));
+        Json first;
+        for (const auto& s : wanted) {
+            const ShaderDescription d = describe(compiler, s, diags);
+            if (!a->json) std::fputs(((s == shader ? "" : "\n") + descriptionText(d)).c_str(), stdout);
+            else if (s == shader) first = descriptionJson(d);
+            else first["others"].push_back(descriptionJson(d));
+        }
+        if (a->json) std::printf("%s\n", first.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
         if (diags.errors() > 0) *status = kDoneWithErrors;
     });
 }

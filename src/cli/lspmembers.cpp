@@ -146,9 +146,9 @@ std::vector<Document::Member> Document::members(const Receiver& r, size_t positi
         for (size_t i = 0; i < list.size(); ++i) {
             list[i].of = s.name;
             list[i].detail = s.members[i].type + " " + s.members[i].name;
-            list[i].place = s.place;
+            list[i].place = s.members[i].place;
         }
-        for (const std::string& m : s.methods) add({m, m + "()", s.name, s.place, true});
+        for (const auto& m : s.methods) add({m.name, m.name + "()", s.name, m.place, true});
         break;
     }
     // Which shader stands behind a handle, a scene decides: the classes of this text are offered.

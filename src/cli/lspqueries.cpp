@@ -69,7 +69,7 @@ std::optional<Document::Member> memberNamed(const Document& d, const Document::R
 std::string structText(const rsl::StructSummary& s) {
     std::string t = "struct " + s.name + " {\n";
     for (const auto& m : s.members) t += "    " + m.type + " " + m.name + ";\n";
-    for (const std::string& m : s.methods) t += "    " + m + "()\n";
+    for (const auto& m : s.methods) t += "    " + m.name + "()\n";
     return t + "}";
 }
 
@@ -274,7 +274,7 @@ Json LanguageServer::definition(const Json& params) {
     const Document::Use use = useOf(*d, word->first);
     Origin o;
     if (const auto r = d->receiver(word->first))
-        if (const auto m = memberNamed(*d, *r, word->first, name)) return location(d->origin(m->place), m->method ? name.size() : 0);
+        if (const auto m = memberNamed(*d, *r, word->first, name)) return location(d->origin(m->place), name.size());
     if (const auto* s = d->structure(name)) o = d->origin(s->place);
     else if (use.symbol) o = d->origin(use.symbol->place);
     else if (use.shader) o = d->origin(use.shader->place);

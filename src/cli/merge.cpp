@@ -10,17 +10,23 @@ void addMerge(CLI::App& app, int* status) {
     struct Arguments {
         std::vector<std::string> parts;
         std::string output;
-        bool allowWrite = false;
+        std::vector<std::string> searchPaths;
+        render::MergeSettings settings;
     };
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("merge", "Add parts rendered with --samples; the same bits as one render");
     c->add_option("parts", a->parts, "Pictures with their .part files beside them, or .part files, in any order")->required();
     c->add_option("-o", a->output, "The picture; without it, those that the scene's displays name")->type_name("FILE");
-    c->add_flag("--allow-write", a->allowWrite, "Let display names lead outside the current folder");
+    c->add_flag("--allow-write", a->settings.allowWrite, "Let display names lead outside the current folder");
+    c->add_flag("--allow-exec", a->settings.allowExec, "Let the imager load plug-ins");
+    c->add_option("--searchpath", a->searchPaths, "Folders for the imager's shaders before those of the render, separated by :")
+        ->type_name("DIRS")
+        ->allow_extra_args(false);
     c->footer("Parts fit when scene, options, seed and crop window are the same and no sample is in two of them.");
     c->callback([a, status] {
         Diagnostics diags(printer());
-        switch (render::mergePictures(a->parts, a->output, a->allowWrite, diags)) {
+        a->settings.shaderPaths = folders(a->searchPaths);
+        switch (render::mergePictures(a->parts, a->output, a->settings, diags)) {
         case render::MergeResult::Done:
             *status = diags.errors() ? kDoneWithErrors : kDone;
             break;

@@ -280,7 +280,9 @@ nlohmann::ordered_json descriptionJson(const ShaderDescription& d) {
     for (const auto& s : d.structs) {
         Json members = Json::array();
         for (const auto& m : s.members) members.push_back({{"name", m.name}, {"type", m.type}});
-        j["structs"].push_back({{"name", s.name}, {"members", std::move(members)}, {"methods", s.methods}});
+        Json methods = Json::array();
+        for (const auto& m : s.methods) methods.push_back(m.name);
+        j["structs"].push_back({{"name", s.name}, {"members", std::move(members)}, {"methods", std::move(methods)}});
     }
     for (const auto& plugin : d.plugins)
         for (const rsl::Shadeop& f : plugin->functions)
@@ -323,7 +325,7 @@ std::string descriptionText(const ShaderDescription& d) {
         t += "struct " + s.name + " {";
         for (const auto& m : s.members) t += " " + m.type + " " + m.name + ";";
         t += " }\n";
-        for (const std::string& m : s.methods) t += "    method of " + s.name + ": " + m + "()\n";
+        for (const auto& m : s.methods) t += "    method of " + s.name + ": " + m.name + "()\n";
     }
     for (const auto& m : d.members)
         t += "member: " + std::string(m.isPublic ? "public " : "") + (m.constant ? "constant " : m.storage + " ") + m.type + " " + m.name + "\n";

@@ -1,4 +1,5 @@
 #include "render/filmpicture.h"
+#include "render/imagertext.h"
 #include "render/noise.h"
 #include "render/partfile.h"
 
@@ -9,6 +10,21 @@ std::string number(double v) {
     char text[40];
     std::snprintf(text, sizeof text, "%.9g", v);
     return text;
+}
+
+/// The world that runs the imager of a merged film. Null: there is none, or it cannot be made (reported).
+std::shared_ptr<const transport::World> imagerWorld(const Film& film, const std::string& file, const MergeSettings& settings, Diagnostics& diags) {
+    const auto text = film.metadata.find(kImagerKey);
+    if (text == film.metadata.end()) {
+        diags.report(Severity::Error, Rie::Incapable, {file}, "the scene has an imager shader, of which the part file says nothing; it is not run");
+        return nullptr;
+    }
+    auto scene = imagerFromText(text->second, file, diags);
+    if (!scene) return nullptr;
+    auto& paths = scene->settings.shaderPaths;
+    paths.insert(paths.begin(), settings.shaderPaths.begin(), settings.shaderPaths.end());
+    scene->settings.allowExec = settings.allowExec;
+    return transport::World::build(scene->frame, scene->settings, diags);
 }
 
 } // namespace
@@ -39,7 +55,7 @@ bool writeFilm(const Film& film, const OutputPlan& plan, PictureFacts facts, con
     return writeOutputs(plan, facts, pixels, imager, allowWrite, diags);
 }
 
-MergeResult mergePictures(const std::vector<std::string>& parts, const std::string& output, bool allowWrite, Diagnostics& diags) {
+MergeResult mergePictures(const std::vector<std::string>& parts, const std::string& output, const MergeSettings& settings, Diagnostics& diags) {
     std::vector<std::string> files;
     for (const std::string& p : parts) files.push_back(p.size() > 5 && p.ends_with(".part") ? p : sidecarName(p));
     std::unique_ptr<Film> film = mergeParts(files, diags);
@@ -59,10 +75,13 @@ MergeResult mergePictures(const std::vector<std::string>& parts, const std::stri
         plan->first.pictures.assign(1, singleOutput(output, plan->first.basis, diags));
         plan->first.resolve(plan->first.engineWidths, diags);
     }
+    Imager imager;
     if (plan->second.imager)
-        diags.report(Severity::Error, Rie::Incapable, {files.front()},
-                     "the scene has an imager shader, which merging does not run");
-    bool written = writeFilm(*film, plan->first, plan->second, {}, allowWrite, diags);
+        if (auto world = imagerWorld(*film, files.front(), settings, diags))
+            imager = [world, &diags](int n, const float* x, const float* y, float* r, float* g, float* b, float* a) {
+                world->runImager(n, x, y, r, g, b, a, diags);
+            };
+    bool written = writeFilm(*film, plan->first, plan->second, imager, settings.allowWrite, diags);
     // What is not the beginning of a sequence may be merged further.
     const auto& r = film->ranges();
     if (written && (r.size() != 1 || r.front().begin != 0) && !plan->first.pictures.empty())

@@ -2,6 +2,7 @@
 #include "base/limits.h"
 #include "render/digest.h"
 #include "render/filmpicture.h"
+#include "render/imagertext.h"
 #include "render/imaging.h"
 #include "render/levels.h"
 #include "render/partfile.h"
@@ -241,6 +242,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
         }
         if (!film) film = std::make_unique<Film>(d);
         film->metadata[kPicturesKey] = planToText(plan, picture);
+        if (std::string seen = imagerToText(*frame, t); !seen.empty()) film->metadata[kImagerKey] = std::move(seen);
         double saved = clockSeconds();
         auto checkpoint = [&](Film& f) {
             if (settings_.checkpoint.empty() || clockSeconds() - saved < settings_.checkpointSeconds) return;

@@ -181,7 +181,7 @@ void Interpreter::worldBegin(const Call& call) {
         state.scoped = std::move(scoped);
     }
     rebase(attributes(), cameraToWorld);
-    options.coshaders = attributes().coshaders;
+    options.attributes = snapshot();
     state.ctm = scene::Transform();
 }
 

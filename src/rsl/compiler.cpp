@@ -19,6 +19,7 @@
 #include <future>
 #include <map>
 #include <mutex>
+#include <set>
 #include <sys/stat.h>
 
 namespace fs = std::filesystem;
@@ -125,11 +126,9 @@ void sayWithoutShader(const Program* program, const std::string& path, Diagnosti
 ShaderPtr ShaderCompiler::finish(std::unique_ptr<Program> program, const std::string& path, const std::string& wanted,
                                  const std::string& text) {
     if (!program || program->shaders.empty()) return nullptr;
-    auto c = std::make_shared<CompiledShader>();
-    c->path_ = path;
-    c->shader_ = program->shaders[0].get();
+    const Shader* shader = program->shaders[0].get();
     for (const auto& s : program->shaders)
-        if (s->name == wanted) c->shader_ = s.get();
+        if (s->name == wanted) shader = s.get();
     // The texts themselves, so that the places in messages are right too.
     std::string all = text + '\1' + program->preprocessed;
     for (const auto& f : program->dependencies) all += '\1' + f + '\1' + readText(f);
@@ -137,7 +136,15 @@ ShaderPtr ShaderCompiler::finish(std::unique_ptr<Program> program, const std::st
     for (const auto& p : program->plugins) // which functions there are, and what they are called in the code
         for (const Shadeop& f : p->functions)
             for (const Signature& s : f.signatures) all += '\3' + s.symbol;
-    c->digest_ = jit::sha256(all + '\3' + c->shader_->name);
+    return describe(std::move(program), *shader, path, jit::sha256(all));
+}
+
+ShaderPtr ShaderCompiler::describe(std::shared_ptr<const Program> program, const Shader& shader, const std::string& path, const std::string& source) {
+    auto c = std::make_shared<CompiledShader>();
+    c->path_ = path;
+    c->shader_ = &shader;
+    c->source_ = source;
+    c->digest_ = jit::sha256(source + '\3' + shader.name + '\1' + toString(shader.kind));
     for (const ShaderParameter& p : c->shader_->parameters) {
         ParameterInfo i{p.symbol->name, p.symbol->type, p.symbol->storage, p.symbol->output, p.defaultValue != nullptr,
                         p.symbol->place};
@@ -230,6 +237,27 @@ ShaderPtr ShaderCompiler::variant(const ShaderPtr& s, ShaderKind kind) {
         c->digest_ = jit::sha256(s->digest_ + '\1' + toString(kind));
         return c;
     }
+    return nullptr;
+}
+
+std::vector<ShaderPtr> ShaderCompiler::allOfFile(const ShaderPtr& shader) {
+    std::vector<ShaderPtr> all;
+    std::set<std::string> classes;
+    if (shader)
+        for (const auto& s : shader->program().shaders) {
+            if (s->object && !classes.insert(s->name).second) continue;
+            const bool same = &shader->shader() == s.get() || (s->object && s->name == shader->name());
+            all.push_back(same ? shader : describe(shader->program_, *s, shader->path(), shader->source_));
+        }
+    return all;
+}
+
+ShaderPtr ShaderCompiler::ofKind(const ShaderPtr& shader, ShaderKind kind, const std::string& name) {
+    if (!shader) return nullptr;
+    const auto& shaders = shader->program().shaders;
+    const bool named = std::any_of(shaders.begin(), shaders.end(), [&](const auto& s) { return s->name == name; });
+    for (const auto& s : shaders)
+        if (s->kind == kind && (!named || s->name == name)) return describe(shader->program_, *s, shader->path(), shader->source_);
     return nullptr;
 }
 

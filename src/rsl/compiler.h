@@ -41,7 +41,8 @@ public:
 private:
     friend class ShaderCompiler;
     std::string path_;
-    std::string digest_; ///< of everything that the source says
+    std::string source_; ///< digest of everything that the source says
+    std::string digest_; ///< of that and of which of its shaders this is
     std::shared_ptr<const Program> program_;
     const Shader* shader_ = nullptr;
     std::vector<ParameterInfo> parameters_;
@@ -84,6 +85,11 @@ public:
 
     /// A class can be shaders of several kinds: the same class as one of another kind. Null when it is none.
     static std::shared_ptr<const CompiledShader> variant(const std::shared_ptr<const CompiledShader>&, ShaderKind);
+    /// All shaders of the file, in the order of its text; a class once, as the first of its kinds.
+    static std::vector<std::shared_ptr<const CompiledShader>> allOfFile(const std::shared_ptr<const CompiledShader>&);
+    /// The shader of a file that a request for one of this kind and name means, where the file has several: the one of that name and
+    /// kind, else, when none has the name, the first of the kind. Null when there is none.
+    static std::shared_ptr<const CompiledShader> ofKind(const std::shared_ptr<const CompiledShader>&, ShaderKind, const std::string& name);
     /// For KernelOptions::coShaders; parameters are left to the caller.
     static CoShader coShader(const std::shared_ptr<const CompiledShader>&, const std::string& handle);
 
@@ -105,8 +111,10 @@ public:
     CompilerStatistics statistics() const;
 
 private:
-    std::shared_ptr<const CompiledShader> finish(std::unique_ptr<Program>, const std::string& path, const std::string& wanted,
-                                                 const std::string& text);
+    static std::shared_ptr<const CompiledShader> finish(std::unique_ptr<Program>, const std::string& path, const std::string& wanted,
+                                                        const std::string& text);
+    static std::shared_ptr<const CompiledShader> describe(std::shared_ptr<const Program>, const Shader&, const std::string& path,
+                                                          const std::string& source);
     struct State;
     std::unique_ptr<State> state_;
 };

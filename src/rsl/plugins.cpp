@@ -75,7 +75,7 @@ std::shared_ptr<Plugin> describe(const AlpenglowRslPlugin& from, const std::stri
         if (why.empty() && !seen.insert(text).second) why = "it stands there twice";
         if (why.empty()) why = unfit(s, e);
         if (!why.empty()) {
-            why = "plug-in \"" + name + "\" is not usable: of the signature \"" + text + "\", " + why;
+            why = "plug-in \"" + name + "\" is not usable: of the signature \"" + text + "\" in " + path + ", " + why;
             return nullptr;
         }
         addresses[s.symbol] = reinterpret_cast<void*>(e.call);

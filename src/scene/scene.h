@@ -174,7 +174,7 @@ struct Options {
     PixelFilter filter;
     float gain = 1, gamma = 1;
     ShaderRef imager;
-    std::map<std::string, ShaderRef> coshaders; ///< those that there are at WorldBegin: the imager's
+    AttributesRef attributes;          ///< those at WorldBegin: what the imager sees. Null where no stream was read
     Quantize quantizeRgba{255, 0, 255, 0.5f, false}, quantizeZ{0, 0, 0, 0, false};
     std::vector<Display> displays;     ///< empty: ri.pic
     std::map<std::string, Param> displayChannels;          ///< by name: the declaration, no values

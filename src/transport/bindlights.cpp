@@ -30,10 +30,11 @@ float numberOf(const scene::AttributesRef& a, const char* key, float fallback) {
 
 void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const geometry::Shape&)>& visibility) {
     const bool path = settings_.hider == Hider::Path;
-    const auto aovOf = [&](const std::string& name) { // by number; measureOutputs() makes the place of its first number of it
-        for (const std::string& n : {name, name.substr(0, name.find('['))})
-            if (const auto i = std::find(settings_.outputs.begin(), settings_.outputs.end(), n); i != settings_.outputs.end()) return int(i - settings_.outputs.begin());
-        return -1;
+    const auto aovsOf = [&](const std::string& name) { // by number; measureOutputs() makes the place of its first number of them
+        std::vector<int> all; // "list[1]" is also one of "list"
+        for (size_t i = 0; i < settings_.outputs.size(); ++i)
+            if (settings_.outputs[i] == name || settings_.outputs[i] == name.substr(0, name.find('['))) all.push_back(int(i));
+        return all;
     };
     std::map<int, std::vector<const geometry::Shape*>> emitters;
     for (const auto& s : shapes_)
@@ -60,7 +61,7 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
                     extra.push_back(name);
             // What it gives to the outputs of the surface by outputchannel(), where a display asks for it.
             for (const std::string& name : settings_.outputs)
-                if (givesChannel(*l.instance, name)) extra.push_back(name);
+                if (givesChannel(*l.instance, name)) addOutput(*l.instance, name, extra);
             if (!extra.empty()) {
                 outputs = {"L", "Cl", "Ol", "lit"};
                 outputs.insert(outputs.end(), extra.begin(), extra.end());
@@ -99,6 +100,7 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
             BoundLight part = l;
             std::string tail = k ? "#" + std::to_string(k) : "";
             const auto& outputs = l.kernel.kernel->outputs();
+            std::set<std::string> channels; // "list[1]" may be there twice: of "list", and by itself
             for (size_t i = 0; i < outputs.size(); ++i) {
                 const std::string& n = outputs[i].name;
                 if (n == "L" + tail) part.outL = int(i);
@@ -110,10 +112,15 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
                 if (n.rfind("param:", 0) == 0) {
                     part.values.push_back({n.substr(6), int(i), rsl::ir::components(outputs[i].kind)});
                     part.valueWidth += part.values.back().components;
-                } else if (const int aov = aovOf(n); aov >= 0 && givesChannel(*l.instance, n)) {
-                    part.values.push_back({n, int(i), rsl::ir::components(outputs[i].kind), aov});
-                    part.valueWidth += part.values.back().components;
-                    part.channels = lightChannels_ = true;
+                } else if (n.rfind(kGiven, 0) == 0) {
+                    part.values.push_back({n, int(i), 1});
+                    part.valueWidth += 1;
+                } else if (givesChannel(*l.instance, n) && channels.insert(n).second) {
+                    for (const int aov : aovsOf(n)) {
+                        part.values.push_back({n, int(i), rsl::ir::components(outputs[i].kind), aov});
+                        part.valueWidth += part.values.back().components;
+                        part.channels = lightChannels_ = true;
+                    }
                 }
             }
             if (part.outCl < 0) continue;

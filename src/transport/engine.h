@@ -110,6 +110,12 @@ class Engine;
 bool givesPerhaps(const ShaderInstance&, const std::string& output);
 /// The outputs of a kernel that make up the AOV of a name: of an array all its elements. Empty: it has none.
 std::vector<int> outputsNamed(const shading::Batch&, const std::string& name);
+/// Before the name of an output that outputchannel() makes when the shader runs: the output that is 1 where it was made.
+inline constexpr char kGiven[] = "given:";
+/// Adds to the outputs of a kernel one that displays ask for, and before it the one that tells where it is given.
+void addOutput(const ShaderInstance&, const std::string& name, std::vector<std::string>& outputs);
+/// False where the shader might have made this output at the point, and did not.
+bool givenAt(const shading::Batch&, const std::string& name, int point);
 
 /// State of one batch while its kernel runs; KernelCall::user.
 struct BatchContext {

@@ -51,7 +51,8 @@ void Engine::keepOutputs(const shading::Batch& volume, BatchContext& surface, st
         for (int o : outputsNamed(volume, wanted[k])) {
             if (surface.lightChannels.empty()) surface.lightChannels.assign(surface.points.size() * all, 0);
             for (int r = 0; r < rsl::ir::components(volume.kernel().outputs()[size_t(o)].kind) && to < end; ++r, ++to)
-                for (size_t i = 0; i < of.size(); ++i) surface.lightChannels[size_t(of[i]) * all + to] = volume.value(o, r, int(i));
+                for (size_t i = 0; i < of.size(); ++i)
+                    if (givenAt(volume, wanted[k], int(i))) surface.lightChannels[size_t(of[i]) * all + to] = volume.value(o, r, int(i));
         }
     }
 }

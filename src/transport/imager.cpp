@@ -8,7 +8,8 @@ bool WorldImpl::runImager(int count, const float* x, const float* y, float* r, f
     if (!imager) return false;
     std::lock_guard lock(imagerMutex_);
     auto* self = const_cast<WorldImpl*>(this); // compiles on first use, under the lock
-    InstanceRef i = self->withCoShaders(self->instance(*imager, rsl::ShaderKind::Imager, d), frame_->options.coshaders, d);
+    InstanceRef i = self->instance(*imager, rsl::ShaderKind::Imager, d);
+    if (const scene::AttributesRef& a = frame_->options.attributes) i = self->withCoShaders(i, a->coshaders, d);
     if (!i) return false;
     BoundKernel k = self->kernel(*i, {}, {}, false, false, d);
     if (!k || k.kernel->facts().suspends) return false;

@@ -153,8 +153,13 @@ void Engine::keepChannels(BatchContext& c, const BoundLight& light, int point, c
     size_t width = 0;
     for (int w : world_->outputWidths_) width += size_t(w);
     c.lightChannels.resize(c.points.size() * width);
+    std::vector<std::string_view> missing; // what it might have given, and did not
+    const auto given = [&](const std::string& name) {
+        return std::none_of(missing.begin(), missing.end(), [&](std::string_view m) { return name.compare(0, name.find('['), m) == 0; });
+    };
     for (const BoundLight::Value& v : light.values) {
-        if (v.aov >= 0)
+        if (v.name.rfind(kGiven, 0) == 0 && *values == 0) missing.push_back(std::string_view(v.name).substr(sizeof kGiven - 1));
+        if (v.aov >= 0 && given(v.name))
             for (int r = 0; r < v.components && size_t(v.aov + r) < width; ++r) c.lightChannels[size_t(point) * width + size_t(v.aov + r)] = values[r];
         values += v.components;
     }

@@ -142,6 +142,15 @@ std::optional<Information> ofTheLightOfTheTurn(const WorldImpl& w, const scene::
     return std::nullopt;
 }
 
+/// Only imagers run without a primitive and without a light.
+bool runsImager(const BatchContext& c) { return !c.light && !c.binding && c.bindings.empty(); }
+
+/// An imager sees what held when the world began (RISpec 3.2, section 4).
+std::optional<Information> ofTheFrame(const WorldImpl& w, const std::string& name) {
+    const scene::AttributesRef& a = w.frame().options.attributes;
+    return a ? attributeOf(w, *a, name, nullptr, nullptr) : std::nullopt;
+}
+
 std::optional<Information> ofThePrimitive(const WorldImpl& w, const ShadePoint& p, const std::string& name, const SurfaceBinding* b) {
     return p.shape ? attributeOf(w, p.shape->attributes(), name, &p, b) : std::nullopt;
 }
@@ -153,12 +162,14 @@ void answerAttribute(Engine& engine, const ServiceCall& q) {
     const scene::Light* self = q.c.light ? q.c.light->source : nullptr;
     const int turn = self || q.s.text.count("__outside") ? -1 : engine.lightLoop(q.c, q.first, q.lanes).light;
     const scene::Light* other = turn >= 0 ? w.lights_[size_t(turn)].source : nullptr;
+    const bool imager = runsImager(q.c);
     q.each([&](int lane, const ShadePoint& p) {
         const std::string name = q.name(lane);
         std::optional<Information> i;
         if (self) i = ofTheLightItself(w, *self, name);
         else if (other) i = ofTheLightOfTheTurn(w, *other, name);
-        if (!i && !self) i = ofThePrimitive(w, p, name, q.binding(w, lane));
+        if (!i && imager) i = ofTheFrame(w, name);
+        else if (!i && !self) i = ofThePrimitive(w, p, name, q.binding(w, lane));
         if (i) q.answer(lane, Told(*i));
     });
 }
@@ -178,7 +189,7 @@ void answerShaderName(Engine& engine, const ServiceCall& q) {
         } else if (b && own) of = c.bound == &b->displacementS ? b->displacement : c.volume ? c.volume->shader : b->surface;
         else if (b) of = shaderOf(*b, asked(kind), p);
         std::string name = of ? of->name : "";
-        if (!of && !c.light && !c.binding && (own || kind == "imager") && w.frame().options.imager) name = w.frame().options.imager->name;
+        if (!of && runsImager(c) && (own || kind == "imager") && w.frame().options.imager) name = w.frame().options.imager->name;
         q.putText(0, lane, name);
     });
 }

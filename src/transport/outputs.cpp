@@ -57,6 +57,16 @@ bool givesPerhaps(const ShaderInstance& shader, const std::string& output) {
     return !says(shader.program->program()) && channelWidth(shader, output) > 0;
 }
 
+void addOutput(const ShaderInstance& shader, const std::string& name, std::vector<std::string>& outputs) {
+    if (givesPerhaps(shader, name)) outputs.push_back(kGiven + withoutIndex(name));
+    outputs.push_back(name);
+}
+
+bool givenAt(const shading::Batch& b, const std::string& name, int point) {
+    const int given = b.output(kGiven + withoutIndex(name));
+    return given < 0 || b.value(given, 0, point) != 0;
+}
+
 std::vector<int> outputsNamed(const shading::Batch& b, const std::string& name) {
     if (const int whole = b.output(name); whole >= 0) return {whole};
     std::vector<int> elements;

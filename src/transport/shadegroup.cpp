@@ -166,9 +166,7 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched) {
                 if (!others && !c.lightChannels.empty()) {
                     if (perhaps.empty())
                         for (const std::string& name : wanted) perhaps.push_back(c.binding && givesPerhaps(*c.binding->surface, name));
-                    others = perhaps[k];
-                    for (int o : wantedAt[k])
-                        for (int w = 0; others && w < rsl::ir::components(b.kernel().outputs()[size_t(o)].kind); ++w) others = b.value(o, w, i) == 0;
+                    others = perhaps[k] && !givenAt(b, wanted[k], i);
                 }
                 for (int o : wantedAt[k]) {
                     if (others) break;

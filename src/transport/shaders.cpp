@@ -97,6 +97,7 @@ InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind k
     facts_.compileSec += seconds() - begin;
     if (!program) return nullptr;
     if (auto same = rsl::ShaderCompiler::variant(program, kind)) program = same; // a class can be several kinds of shader
+    else if (auto other = anyKind ? nullptr : rsl::ShaderCompiler::ofKind(program, kind, std::filesystem::path(call.name).stem().string())) program = other;
     if (program->kind() != kind && !anyKind) {
         d.report(Severity::Error, Rie::NoShader, call.place,
                  "shader \"" + call.name + "\" is a " + rsl::toString(program->kind()) + " shader, not a " + rsl::toString(kind) + " shader");

@@ -148,7 +148,7 @@ SurfaceBinder::Names SurfaceBinder::outputsOf(const SurfaceBinding& b) const {
     static const char* const kVariables[] = {"P", "N", "Cs", "Os", "u", "v", "s", "t", "Ng", "I", "dPdu", "dPdv"};
     Names outputs{"Ci", "Oi"};
     for (const auto& n : world_.settings_.outputs)
-        if (n != "Ci" && n != "Oi" && (std::find(std::begin(kVariables), std::end(kVariables), n) != std::end(kVariables) || gives(*b.surface, n))) outputs.push_back(n);
+        if (n != "Ci" && n != "Oi" && (std::find(std::begin(kVariables), std::end(kVariables), n) != std::end(kVariables) || gives(*b.surface, n))) addOutput(*b.surface, n, outputs);
     std::set<std::string> asked;
     if (path_) asked.insert(world_.lightMessages_.begin(), world_.lightMessages_.end()); // lighting shadeops: lights run when the surface's kernel is done
     const bool all = b.atmosphere.shader && questions(b.atmosphere.kernel, "surface", asked);
@@ -281,7 +281,7 @@ Medium SurfaceBinder::bindVolume(const InstanceRef& shader, const Names& varying
     if (!shader) return {};
     Names outputs{"Ci", "Oi", "slope:Ci"};
     for (const auto& n : world_.settings_.outputs)
-        if (n != "Ci" && n != "Oi" && gives(*shader, n)) outputs.push_back(n);
+        if (n != "Ci" && n != "Oi" && gives(*shader, n)) addOutput(*shader, n, outputs);
     Medium m;
     m.kernel = world_.kernel(*shader, outputs, varying, false, false, diagnostics_);
     if (!m.kernel) return {};

@@ -45,6 +45,17 @@ TEST_F(Server, DefinitionOfAStructure) {
     const Json d = ask("definition", "struct Ray { point o; };\nsurface a() { R|ay q; q->o = P; Ci = 1; }\n");
     EXPECT_EQ(d["range"], span(0, 7, 10));
 }
+// The members themselves, not the structure around them; those of a structure that is a member, and those that are inherited, too.
+const std::string kNested = "struct Seed {\n    float at;\n};\nstruct Tree : Seed {\n    Seed inner;\n    color leaf = 1;\n    float height() { return 2; }\n};\n";
+TEST_F(Server, DefinitionOfAMemberOfAStructure) {
+    EXPECT_EQ(ask("definition", kNested + "surface a() { Tree t; Ci = t->le|af; }\n")["range"], span(5, 10, 14));
+}
+TEST_F(Server, DefinitionOfAMemberOfAMember) {
+    EXPECT_EQ(ask("definition", kNested + "surface a() { Tree t; Ci = t->inner->a|t; }\n")["range"], span(1, 10, 12));
+}
+TEST_F(Server, DefinitionOfAMethodOfAStructure) {
+    EXPECT_EQ(ask("definition", kNested + "surface a() { Tree t; Ci = t.hei|ght(); }\n")["range"], span(6, 10, 16));
+}
 TEST_F(Server, TheDotIsAlsoTheDotProduct) { EXPECT_TRUE(has(labels(ask("completion", "surface a() { Ci = P.|N; }")), "N")); }
 TEST_F(Server, NothingBehindAComparison) { EXPECT_TRUE(ask("completion", "surface a() { if (u >| 1) Ci = 1; }").empty()); }
 TEST_F(Server, HandlesAreOfTypeShader) {

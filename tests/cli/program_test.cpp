@@ -208,6 +208,46 @@ TEST_F(Program, SameBitsForThreadsLanesAndParts) {
     EXPECT_EQ(run("diff whole.exr none.exr").status, 3);
 }
 
+// An imager with a co-shader, a space of the scene, an attribute, an option, and the shader found along a path of the scene: merging
+// runs it as the whole render did, wherever the scene is by then.
+TEST_F(Program, MergingRunsTheImager) {
+    fs::create_directory(dir / "far");
+    write("far/grade.sl", "class grade(color by = color(1, 2, 4);) { public void tone(output color c) { c *= by; } }\n");
+    write("far/finish.sl", R"(imager finish(float gain = 1; string map = "";) {
+    shader g = getshader("look");
+    float lens = 0, format[3] = {0, 0, 0}; string name = "";
+    float found = attribute("user:lens", lens) + option("Format", format) + option("user:stock", name);
+    color c = Ci * gain;
+    g->tone(c);
+    Ci = found == 3 && name == "fast" ? c + color(P / format[0]) * lens : color(-1, 0, 0);
+    Oi = 1;
+    alpha = comp(transform("stage", point(0, 0, 0)), 0);
+}
+)");
+    std::string scene = kRoom;
+    const std::string head = "Option \"searchpath\" \"string shader\" [\"far\"]\nOption \"user\" \"string stock\" [\"fast\"]\nAttribute \"user\" \"uniform float lens\" 3\n"
+                             "TransformBegin\nTranslate 5 0 0\nCoordinateSystem \"stage\"\nTransformEnd\nShader \"grade\" \"look\" \"color by\" [2 3 5]\nImager \"finish\" \"gain\" .5\n";
+    scene.insert(scene.find("WorldBegin"), head);
+    write("r.rib", scene);
+    ASSERT_EQ(run("render -q --spp 6 -o whole.exr r.rib").status, 0) << read("err");
+    ASSERT_EQ(run("render -q --samples 0:4 -o p0.exr r.rib").status, 0) << read("err");
+    ASSERT_EQ(run("render -q --samples 4:6 -o p1.exr r.rib").status, 0) << read("err");
+    fs::remove(dir / "r.rib");
+    fs::create_directory(dir / "other");
+    for (const char* part : {"p0.exr.part", "p1.exr.part"}) fs::copy(dir / part, dir / "other");
+    EXPECT_EQ(run("merge p1.exr p0.exr -o m.exr").status, 0) << read("err");
+    EXPECT_TRUE(read("m.exr") == read("whole.exr"));
+    EXPECT_EQ(run("merge other/p0.exr other/p1.exr -o m2.exr").status, 0) << read("err");
+    EXPECT_TRUE(read("m2.exr") == read("whole.exr"));
+    // A shader that is gone: the picture without it, and an error that says so; elsewhere it is found again.
+    fs::rename(dir / "far", dir / "near");
+    EXPECT_EQ(run("merge p0.exr p1.exr -o m3.exr").status, 1);
+    EXPECT_NE(read("err").find("finish"), std::string::npos) << read("err");
+    EXPECT_TRUE(has("m3.exr"));
+    EXPECT_EQ(run("merge --searchpath near p0.exr p1.exr -o m4.exr").status, 0) << read("err");
+    EXPECT_TRUE(read("m4.exr") == read("whole.exr"));
+}
+
 TEST_F(Program, CheckpointAndResume) {
     write("r.rib", kRoom);
     ASSERT_EQ(run("render -q --spp 12 -o whole.exr r.rib").status, 0);

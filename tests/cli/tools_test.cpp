@@ -285,3 +285,33 @@ TEST_F(Tools, ManualIsUpToDate) {
     const std::string page{std::istreambuf_iterator<char>(in), {}};
     EXPECT_TRUE(page == run("info --shadeops --markdown")) << "make it again: cmake --build ... --target shadeops_manual";
 }
+
+// A file of several shaders: each is compiled, a fault in one is its own, and info tells about all of them, beginning with the one
+// that has the file's name.
+TEST_F(Tools, AFileOfSeveralShaders) {
+    write("wood.sl", "float ring(float x) { return mod(x, 1); }\nlight lamp(float k = 2;) { solar() { Cl = k; } }\nsurface wood(float rings = 3;) { Ci = ring(rings * u); Oi = 1; }\n"
+                     "class grain(float fine = 4;) { public void surface(output color Ci, Oi) { Ci = fine; } public void displacement(output point P; output normal N) { P += fine * N; } }\n");
+    Json j = Json::parse(run("compile --json wood.sl"));
+    EXPECT_EQ(status, 0) << j;
+    ASSERT_EQ(j["shaders"].size(), 3u) << j;
+    const std::pair<const char*, const char*> expected[] = {{"lamp", "light"}, {"wood", "surface"}, {"grain", ""}};
+    for (size_t k = 0; k < 3; ++k) {
+        EXPECT_EQ(j["shaders"][k]["name"], expected[k].first);
+        EXPECT_EQ(j["shaders"][k]["file"], "wood.sl");
+        EXPECT_EQ(j["shaders"][k]["ok"], true);
+        if (*expected[k].second) EXPECT_EQ(j["shaders"][k]["type"], expected[k].second);
+    }
+    const std::string ir = run("compile --dump-ir wood.sl");
+    for (const char* name : {"lamp", "wood", "grain"}) EXPECT_NE(ir.find(name), std::string::npos) << name;
+    j = Json::parse(run("info --json wood.sl"));
+    EXPECT_EQ(j["name"], "wood");
+    ASSERT_EQ(j["others"].size(), 2u) << j;
+    EXPECT_EQ(j["others"][0]["name"], "lamp");
+    EXPECT_EQ(j["others"][1]["parameters"][0]["name"], "fine");
+    const std::string text = run("info wood.sl");
+    EXPECT_NE(text.find("light \"lamp\""), std::string::npos) << text;
+    EXPECT_LT(text.find("surface \"wood\""), text.find("light \"lamp\""));
+    // By its name a shader is found in a file of another name, alone.
+    EXPECT_EQ(run("info lamp").rfind("light \"lamp\"", 0), 0u);
+    EXPECT_EQ(run("info lamp").find("wood\"  ("), std::string::npos);
+}

@@ -135,7 +135,7 @@ TEST(Plugins, WhatIsNoPluginIsRefused) {
     EXPECT_NE(refusal(c, "plugin \"\";\n" + tail).find("was not found"), std::string::npos);
     EXPECT_NE(refusal(c, "plugin \"stranger\";\n" + tail).find("is no RSL plug-in"), std::string::npos);
     EXPECT_NE(refusal(c, "plugin \"misfit\";\n" + tail)
-                  .find("of the signature \"float sum(float a; color b)\", it says 4 numbers in and 1 out, its function has 2 and 1"),
+                  .find("of the signature \"float sum(float a; color b)\" in " ALPENGLOW_PLUGINS "/misfit.so, it says 4 numbers in and 1 out, its function has 2 and 1"),
               std::string::npos);
     const fs::path text = fs::temp_directory_path() / ("alpenglow_plugin_" + std::to_string(getpid()) + ".so");
     std::ofstream(text) << "this is no library\n";
@@ -145,6 +145,11 @@ TEST(Plugins, WhatIsNoPluginIsRefused) {
 
 TEST(Plugins, ArgumentsAreChecked) {
     ShaderCompiler c(trusting());
+    Diagnostics d;
+    EXPECT_FALSE(c.loadText("plugin \"weave\";\nsurface t() { Ci = triangle(\"a\"); }", "test", d));
+    ASSERT_EQ(d.errors(), 1) << said(d);
+    ASSERT_FALSE(d.all()[0].notes.empty());
+    EXPECT_EQ(d.all()[0].notes.back(), "'triangle' is a function of plug-in \"weave\": " ALPENGLOW_PLUGINS "/weave.so");
     EXPECT_NE(refusal(c, "plugin \"weave\";\nsurface t() { Ci = triangle(\"a\"); }").find("'triangle' cannot be called with (string)"),
               std::string::npos);
     EXPECT_NE(refusal(c, "plugin \"weave\";\nsurface t() { vector a = 0; swap(a, a + a); }").find("output argument"), std::string::npos);

@@ -228,13 +228,13 @@ TEST(Renderer, MergedPartsAreTheWhole) {
     render(dir / "b.exr", SampleRange{3, 4});
     render(dir / "c.exr", SampleRange{4, 11});
     Diagnostics d;
-    EXPECT_EQ(mergePictures({dir / "c.exr", dir / "a.exr", dir / "b.exr.part"}, dir / "m.exr", false, d), MergeResult::Done);
+    EXPECT_EQ(mergePictures({dir / "c.exr", dir / "a.exr", dir / "b.exr.part"}, dir / "m.exr", {}, d), MergeResult::Done);
     EXPECT_EQ(d.errors(), 0);
     EXPECT_TRUE(bytesOf(dir / "m.exr") == bytesOf(dir / "whole.exr"));
-    EXPECT_EQ(mergePictures({dir / "a.exr", dir / "a.exr"}, dir / "n.exr", false, d),
+    EXPECT_EQ(mergePictures({dir / "a.exr", dir / "a.exr"}, dir / "n.exr", {}, d),
               MergeResult::NoInput); // the same samples twice
     EXPECT_FALSE(fs::exists(dir / "n.exr"));
-    EXPECT_EQ(mergePictures({dir / "none.exr"}, dir / "n.exr", false, d), MergeResult::NoInput);
+    EXPECT_EQ(mergePictures({dir / "none.exr"}, dir / "n.exr", {}, d), MergeResult::NoInput);
 }
 
 TEST(Renderer, PartsOfDifferentScenesDoNotMerge) {
@@ -249,7 +249,7 @@ TEST(Renderer, PartsOfDifferentScenesDoNotMerge) {
         run.frame(f);
     }
     Diagnostics d;
-    EXPECT_EQ(mergePictures({dir / "a.exr", dir / "b.exr"}, dir / "m.exr", false, d), MergeResult::NoInput);
+    EXPECT_EQ(mergePictures({dir / "a.exr", dir / "b.exr"}, dir / "m.exr", {}, d), MergeResult::NoInput);
     EXPECT_GT(d.errors(), 0);
 }
 

@@ -85,6 +85,94 @@ TEST(Outputs, NamesMadeByTheSurfaceHideNobody) {
     }
 }
 
+// Zero is a value: what a shader gives under a name that it makes when it runs hides what others give, and two lights do not overwrite
+// each other's outputs with what they do not give.
+TEST(Outputs, AZeroThatIsGivenHidesOthers) {
+    writeShader("mists", "volume mists() { outputchannel(\"mist\", 3.0); Ci = Ci; Oi = Oi; }\n");
+    writeShader("zeroes", "surface zeroes(string mine = \"own\";) { string n = (xcomp(P) > 1000) ? \"nobody\" : mine; outputchannel(n, 0.0); Oi = 1; Ci = diffuse(faceforward(N, I)); }\n");
+    writeShader("lists", "light lists(string mine = \"a\"; float by = 1;) { string n = (xcomp(Ps) > 1000) ? \"nobody\" : mine; float both[2] = {by, by + 1}; illuminate(point \"world\" (0, 2, 0)) { Cl = 1; outputchannel(n, both); } }\n");
+    for (Hider h : {Hider::Hidden, Hider::Path}) {
+        EXPECT_EQ(aovs("Atmosphere \"mists\"\nSurface \"zeroes\" \"mine\" \"mist\"\n", h, {"mist"}), (Floats{0}));
+        EXPECT_EQ(aovs("Atmosphere \"mists\"\nSurface \"zeroes\" \"mine\" \"other\"\n", h, {"mist"}), (Floats{3}));
+        EXPECT_EQ(aovs("LightSource \"lists\" 1 \"mine\" \"a\" \"by\" 5\nLightSource \"lists\" 2 \"mine\" \"b\" \"by\" 7\nSurface \"matte\"\n", h, {"a", "b"}), (Floats{5, 6, 7, 8}));
+    }
+}
+
+// One name, given a float at some points and a colour at others: each point shows what it was given, a float as a grey.
+TEST(Outputs, NamesOfTwoTypes) {
+    writeShader("twotypes", R"(surface twotypes(float tinted = 0;) {
+    string n = (xcomp(P) > 1000) ? "nobody" : "shown";
+    if (tinted == 1) outputchannel(n, color(1, 2, 3));
+    else outputchannel(n, 4.0);
+    Oi = 1; Ci = 0;
+}
+)");
+    for (Hider h : {Hider::Hidden, Hider::Path}) {
+        EXPECT_EQ(aovs("Surface \"twotypes\" \"tinted\" 1\n", h, {"shown"}), (Floats{1, 2, 3}));
+        EXPECT_EQ(aovs("Surface \"twotypes\" \"tinted\" 0\n", h, {"shown"}), (Floats{4, 4, 4}));
+    }
+}
+
+// A display of a whole array and another of one of its elements: of a surface, of a light, of an atmosphere.
+TEST(Outputs, AnArrayAndOneOfItsElements) {
+    const std::string gives = "float list[3] = {7, 8, 9}; outputchannel(\"list\", list); ";
+    writeShader("surfacelist", "surface surfacelist() { " + gives + "Oi = 1; Ci = 0; }\n");
+    writeShader("lightlist", "light lightlist() { illuminate(point \"world\" (0, 2, 0)) { Cl = 1; " + gives + "} }\n");
+    writeShader("airlist", "volume airlist() { " + gives + "Ci = Ci; Oi = Oi; }\n");
+    for (Hider h : {Hider::Hidden, Hider::Path})
+        for (const char* rib : {"Surface \"surfacelist\"\n", "LightSource \"lightlist\" 1\nSurface \"matte\"\n", "Atmosphere \"airlist\"\nSurface \"constant\"\n"}) {
+            EXPECT_EQ(aovs(rib, h, {"list", "list[1]"}), (Floats{7, 8, 9, 8})) << rib;
+            EXPECT_EQ(aovs(rib, h, {"list[2]", "list"}), (Floats{9, 7, 8, 9})) << rib;
+        }
+}
+
+// What a renderer says of itself, whole and in parts, in a surface; a value of another type or length is not told.
+TEST(Outputs, WhatTheRendererSaysOfItself) {
+    writeShader("whoami", R"(surface whoami() {
+    string name = "", text = ""; float v[4] = {9, 9, 9, 9}, one = 5, three[3] = {8, 8, 8};
+    float found = rendererinfo("renderer", name) + 2 * rendererinfo("version", v) + 4 * rendererinfo("versionstring", text);
+    float wrong = rendererinfo("nothing", name) + rendererinfo("renderer", one) + rendererinfo("version", text) + rendererinfo("versionstring", v);
+    string joined = format("%d.%d", v[0], v[1]);
+    Oi = 1;
+    Ci = color(found, wrong + one, name == "Alpenglow" && text == joined ? v[2] + v[3] + 1 : -1);
+}
+)");
+    for (Hider h : {Hider::Hidden, Hider::Path}) {
+        Scene s(world("Surface \"whoami\"\n" + std::string(kFloor)), under(h));
+        EXPECT_EQ(s.one(kView), Color(7, 5, 1)) << s.messages();
+    }
+}
+
+// Attributes of an imager are those at the beginning of the world: what the world sets is not.
+TEST(Outputs, AnImagerSeesTheAttributesAtWorldBegin) {
+    writeShader("seesattributes", R"(imager seesattributes() {
+    float lens = -1, missing = -1, rate = -1; color tint = -1; string who = "";
+    float found = attribute("user:lens", lens) + 2 * attribute("user:later", missing) + 4 * attribute("Ri:ShadingRate", rate)
+                + 8 * attribute("Ri:Color", tint) + 16 * attribute("identifier:name", who);
+    Ci = found == 29 && missing == -1 && who == "camera" ? tint : color(found, missing, rate);
+    alpha = lens + 10 * rate;
+}
+)");
+    Scene s("Imager \"seesattributes\"\nAttribute \"user\" \"uniform float lens\" 2\n"
+            "Attribute \"identifier\" \"name\" \"camera\"\nShadingRate 4\nColor .25 .5 .75\n" +
+                world(std::string("Attribute \"user\" \"uniform float lens\" 7 \"uniform float later\" 8\nColor 1 1 1\n") + kFloor),
+            under(Hider::Hidden));
+    const float x[1] = {.5f}, y[1] = {.5f};
+    float r[1] = {1}, g[1] = {1}, b[1] = {1}, a[1] = {1};
+    ASSERT_TRUE(s.world->runImager(1, x, y, r, g, b, a, s.diagnostics));
+    EXPECT_EQ(s.diagnostics.errors() + s.diagnostics.warnings(), 0) << s.messages();
+    EXPECT_EQ(Color(r[0], g[0], b[0]), Color(.25f, .5f, .75f));
+    EXPECT_EQ(a[0], 42);
+}
+
+// A light and a surface in a file that is named after neither, or of which one has the name: a request means the one of its kind.
+TEST(Outputs, AFileWithShadersOfSeveralKinds) {
+    writeShader("pair", "surface first() { Oi = 1; Ci = diffuse(faceforward(N, I)); }\nlight second() { solar(vector \"world\" (0, -1, 0), 0) { Cl = color(1, 2, 3); } }\n");
+    Scene s(world(std::string("LightSource \"pair\" 1\nSurface \"pair\"\n") + kFloor), under(Hider::Hidden));
+    EXPECT_EQ(s.diagnostics.warnings(), 0) << s.messages();
+    EXPECT_EQ(s.one(kView), Color(1, 2, 3));
+}
+
 // Arrays of co-shaders: by element, as a whole, their length, through getvar(); of two that a handle can mean.
 TEST(Outputs, ArraysOfCoShaders) {
     writeShader("table", "class table(float tab[3] = {1, 2, 3}; color tones[2] = {0, 0}; float open[] = {5, 6}; color tint = color(.25, .5, .75); string __category = \"t\";) {\n"

@@ -135,10 +135,10 @@ struct ShaderParameter {
 
 /// A structure as the shader declares it, for who shows shaders; types in words.
 struct StructSummary {
-    struct Member { std::string type, name; };
+    struct Member { std::string type, name; Place place; }; ///< methods have no type
     std::string name;
     std::vector<Member> members;
-    std::vector<std::string> methods; ///< names
+    std::vector<Member> methods;
     Place place;
 };
 

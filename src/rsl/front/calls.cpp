@@ -249,6 +249,8 @@ void Checker::noMatch(Expr& e, const std::vector<std::string>& candidates, std::
     const std::string what = outputsOnly ? "an output argument of '" + e.text + "' must be a variable of the same type"
                              : e.args.empty() ? "'" + e.text + "' cannot be called without arguments"
                                               : "'" + e.text + "' cannot be called with (" + given + ")";
+    for (const auto& p : program_.plugins)
+        if (p->find(e.text)) notes.push_back("'" + e.text + "' is a function of plug-in \"" + p->name + "\": " + p->path);
     sources_.error(e.place, what, hint, std::move(notes));
 }
 

@@ -32,12 +32,21 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
     const Shadeop& op = *choice.shadeop;
     e.shadeop = &op;
     e.signature = choice.signature;
-    if ((op.name == "outputchannel" || op.name == "writeaov") && e.args[0]->kind == ExprKind::String) {
-        std::string name = e.args[0]->text;
+    if (op.name == "outputchannel" || op.name == "writeaov") {
+        const Type type = e.args[1]->type;
+        const bool written = e.args[0]->kind == ExprKind::String; // else it is any name that displays ask for
+        std::string name = written ? e.args[0]->text : "?" + toString(type);
         if (name.rfind("light:", 0) == 0 || name.rfind("local:", 0) == 0) name.erase(0, 6);
-        program_.channels.emplace(name, e.args[1]->type);
-    } else if (op.name == "outputchannel" || op.name == "writeaov") { // under any name that displays ask for
-        program_.channels.emplace("?" + toString(e.args[1]->type), e.args[1]->type);
+        const bool parameter = written && shaderParameters_.count(name) > 0;
+        if (type.array < 0 && !parameter) {
+            sources_.warning(e.args[1]->place, "an array of open length is no output: displays would not know how many numbers it has",
+                             "copy it to an array of fixed length, or give it to an output parameter");
+        } else {
+            const auto [i, fresh] = program_.channels.emplace(name, type);
+            const Type first = i->second;
+            if (!fresh && !parameter && (componentCount(first.base) != componentCount(type.base) || (first.array != 0) != (type.array != 0)))
+                sources_.warning(e.args[1]->place, "output '" + name + "' is a " + toString(first) + " in an earlier call, and a " + toString(type) + " here; only the first is shown");
+        }
     }
     if (op.name == "getvar" && e.args[1]->kind == ExprKind::String)
         program_.primitiveVariables.emplace(e.args[1]->text, e.args.size() > 2 ? e.args[2]->type : Type{});

@@ -50,9 +50,9 @@ StructSummary summary(const StructType& s, const Unit& unit) {
         }
         if (m.storage != Storage::Unspecified) type.insert(0, m.storage == Storage::Uniform ? "uniform " : "varying ");
         if (m.type.array) type += m.type.array > 0 ? "[" + std::to_string(m.type.array) + "]" : "[]";
-        r.members.push_back({std::move(type), m.name});
+        r.members.push_back({std::move(type), m.name, m.place});
     }
-    for (const auto& f : s.methods) r.methods.push_back(f->name);
+    for (const auto& f : s.methods) r.methods.push_back({"", f->name, f->place});
     return r;
 }
 

@@ -59,7 +59,9 @@ private:
 /// which on some way.
 class Flow {
 public:
-    Flow(SourceSet& s, const std::set<const Symbol*>& ignored, bool surface) : sources_(s), ignored_(ignored), surface_(surface) {}
+    /// `lit`: the body of a shader that meets light in illuminance() only; a function may be called from there.
+    Flow(SourceSet& s, const std::set<const Symbol*>& ignored, bool surface, bool lit)
+        : sources_(s), ignored_(ignored), surface_(surface), lit_(lit) {}
     void run(const Stmt* body) { statement(body); }
 
 private:
@@ -84,7 +86,18 @@ private:
         now_.sometimes.insert(at->second);
     }
 
+    /// L, Cl and Ol mean something where a light shines on the point.
+    void unlit(const Expr& e) {
+        const Symbol* s = e.symbol;
+        if (!lit_ || lightLoops_ > 0 || now_.dead || !s || s->origin != Symbol::Origin::Global || assigned_.count(s)) return;
+        if ((s->name != "L" && s->name != "Cl" && s->name != "Ol") || !told_.insert(s).second) return;
+        sources_.warning(e.place, "'" + s->name + "' is read outside illuminance(); no light is meant there, and it is zero",
+                         "illuminance (P, N, PI/2) { ... } runs once for each light; " +
+                             std::string(s->name == "L" ? "I is the direction of view" : "diffuse(N) adds them all"));
+    }
+
     void read(const Expr& e) {
+        unlit(e);
         const Symbol* s = e.symbol;
         const auto at = tracked_.find(s);
         if (!s || s->name.rfind('(', 0) == 0 || now_.dead || at == tracked_.end() || now_.always.has(at->second) || !told_.insert(s).second) return;
@@ -103,6 +116,7 @@ private:
         if (surface_ && s && s->origin == Symbol::Origin::Global && s->name == "P")
             sources_.warning(e.place, "a surface shader that moves 'P' displaces its primitive, but not where light or rays decide how far",
                              "a displacement shader is the place for it");
+        if (s) assigned_.insert(s);
         given(s);
     }
 
@@ -179,9 +193,11 @@ private:
             else expression(*p.value);
         }
         ++loops_;
+        lightLoops_ += s.kind == StmtKind::Illuminance;
         statement(s.body.empty() ? nullptr : s.body[0].get());
         if (s.step && !now_.dead) expression(*s.step);
         --loops_;
+        lightLoops_ -= s.kind == StmtKind::Illuminance;
         varyingConditions_ -= varying;
         const bool endless = s.condition && s.condition->kind == ExprKind::Number && s.condition->number != 0;
         now_.dead = false;
@@ -267,12 +283,13 @@ private:
 
     SourceSet& sources_;
     const std::set<const Symbol*>& ignored_;
-    const bool surface_;
+    const bool surface_, lit_;
+    std::set<const Symbol*> assigned_; ///< by the statements so far
     std::unordered_map<const Symbol*, size_t> tracked_;
     std::set<const Symbol*> told_;
     std::unordered_map<const Symbol*, int> under_;
     State now_;
-    int loops_ = 0, varyingConditions_ = 0;
+    int loops_ = 0, lightLoops_ = 0, varyingConditions_ = 0;
 };
 
 } // namespace
@@ -311,7 +328,7 @@ void lint(const Program& program, const std::vector<Token>& tokens, const std::u
         sources.warning(s.place, std::string(parameter ? "parameter" : "variable") + " '" + s.name + "' is not used");
     };
     lintCommas(tokens, sources);
-    bool surface = false;
+    bool surface = false, lit = false;
     const auto body = [&](const Stmt* b, Place where) {
         if (!b || !ours(where)) return;
         everyStmt(*b, [&](const Stmt& s) {
@@ -320,7 +337,7 @@ void lint(const Program& program, const std::vector<Token>& tokens, const std::u
             if (s.condition) lintCondition(*s.condition, sources);
             lintPairs(s, sources);
         }, [&](const Expr& e) { lintCall(e, sources), lintMessage(e, program, sources); });
-        Flow(sources, reached, surface).run(b);
+        Flow(sources, reached, surface, lit).run(b);
     };
     for (const auto& s : program.shaders) {
         for (const auto& p : s->parameters) {
@@ -328,8 +345,10 @@ void lint(const Program& program, const std::vector<Token>& tokens, const std::u
             if (p.defaultValue && ours(s->place)) everyExpr(*p.defaultValue, [&](const Expr& e) { lintCall(e, sources); });
         }
         surface = s->kind == ShaderKind::Surface;
+        lit = s->kind != ShaderKind::Light;
         body(s->body.get(), s->place);
     }
+    lit = false;
     // A method that is not public, of a name that the renderer does not know, and that no other calls.
     const std::vector<std::string> entries = {"construct", "begin", "displacement", "opacity", "prelighting", "lighting", "diffuselighting",
                                               "specularlighting", "postlighting", "surface", "volume", "light", "imager"};

@@ -191,7 +191,10 @@ constexpr MessageKind kKinds[] = {
     // uniform and varying
     {"varying-to-uniform", "a varying value is given to the uniform variable '*'*"},
     {"uniform-in-varying", "the uniform variable '*' is changed where only some points come*"},
+    {"channel-open", "an array of open length is no output*"},
+    {"channel-types", "output '*' is a * in an earlier call, and a * here*"},
     // of `compile -W`
+    {"unlit", "'*' is read outside illuminance()*"},
     {"unused-parameter", "parameter '*' is not used"},
     {"unused-variable", "variable '*' is not used"},
     {"two-signs", "'*' before a variable is two signs *"},

@@ -1,5 +1,6 @@
 // outputchannel(), writeaov() and readaov(): outputs that no parameter declares. Each is a variable of the kernel, zero until a call gives it a value.
-// A name that is made when the shader runs means one of those that displays ask for: each point may have its own.
+// A name that is made when the shader runs means one of those that displays ask for: each point may have its own. Whether a point has it
+// is an output, too ("given:NAME"), as a zero that was given hides what others give and one that was not does not.
 #include "rsl/ir/builder.h"
 
 namespace alpenglow::rsl::ir {
@@ -7,6 +8,9 @@ namespace alpenglow::rsl::ir {
 namespace {
 
 constexpr char kAnyName = '?'; ///< before the type of calls whose names are not written in them (front/calls_bind.cpp)
+
+constexpr char kGiven[] = "given:"; ///< before the key of a channel: 1 where a call has given it a value
+bool isFlag(const std::string& key) { return key.rfind(kGiven, 0) == 0; }
 
 /// The name without "light:" or "local:"; `kept` tells of such a prefix.
 std::string bareName(const std::string& name, bool& kept) {
@@ -19,10 +23,11 @@ bool alike(Type a, Type b) { return kindOf(a.element()) == kindOf(b.element()) &
 } // namespace
 
 void Builder::beginChannels() {
-    const auto make = [&](std::string name, Type type) {
+    const auto make = [&](std::string name, Type type, bool flag) {
         if (type.array < 0) return; // of open length: displays would not know how many
-        if (channels_.count(name)) name += kAnyName + toString(type); // the same name for several types: the one that is given a value shows
+        if (channels_.count(name)) name += kAnyName + toString(type); // the same name for several types: channelValue() decides
         if (channels_.count(name)) return;
+        if (flag) channels_[kGiven + name] = {newSlot(constant(0)), {Base::Float, 0}};
         if (!type.array) {
             channels_[name] = {newSlot(zero(kindOf(type))), type};
             return;
@@ -35,7 +40,7 @@ void Builder::beginChannels() {
     for (const CoShader& c : options_.coShaders) programs.push_back(c.program);
     for (const Program* p : programs)
         for (const auto& [name, type] : p->channels)
-            if (name[0] != kAnyName && !channels_.count(name)) make(name, type);
+            if (name[0] != kAnyName && !channels_.count(name)) make(name, type, false);
     for (const Program* p : programs)
         for (const auto& [key, type] : p->channels) {
             if (key[0] != kAnyName) continue;
@@ -43,7 +48,7 @@ void Builder::beginChannels() {
                 const std::string name = output.substr(0, output.find('['));
                 const bool declared = std::any_of(shader_.parameters.begin(), shader_.parameters.end(), [&](const ShaderParameter& q) { return q.symbol->name == name; });
                 const auto written = [&](const Program* q) { return q->channels.count(name) > 0; };
-                if (!declared && std::none_of(programs.begin(), programs.end(), written) && name.find(':') == std::string::npos && !hasGlobal(name.c_str())) make(name, type);
+                if (!declared && std::none_of(programs.begin(), programs.end(), written) && name.find(':') == std::string::npos && !hasGlobal(name.c_str())) make(name, type, true);
             }
         }
 }
@@ -54,7 +59,7 @@ std::vector<std::pair<std::string, int>> Builder::channelsFor(Type type) {
     for (const ShaderParameter& p : shader_.parameters)
         if (p.symbol->output && alike(p.symbol->type, type)) all.emplace_back(p.symbol->name, slot(p.symbol));
     for (const auto& [name, c] : channels_)
-        if (alike(c.second, type) && !hasGlobal(name.c_str())) all.emplace_back(name.substr(0, name.find(kAnyName)), c.first);
+        if (!isFlag(name) && alike(c.second, type) && !hasGlobal(name.c_str())) all.emplace_back(name.substr(0, name.find(kAnyName)), c.first);
     return all;
 }
 
@@ -64,6 +69,39 @@ const std::pair<int, Type>* Builder::channelNamed(const std::string& name) {
     for (auto c = channels_.lower_bound(name); c != channels_.end() && c->first.rfind(name, 0) == 0; ++c)
         if ((c->first == name || c->first[name.size()] == kAnyName) && (!found || isConst(get(found->first)))) found = &c->second;
     return found;
+}
+
+/// Its value at the end. Of one that was given a colour here and a float there the colour comes first, and the float is grey.
+Inst* Builder::channelValue(const std::string& name, Type& type) {
+    const auto* c = channelNamed(name);
+    if (!c || hasGlobal(name.c_str())) return nullptr;
+    type = c->second;
+    const std::pair<int, Type>*triple = nullptr, *grey = nullptr;
+    std::string tripleKey, greyKey;
+    for (const auto& [key, of] : channels_) {
+        if (key.substr(0, key.find(kAnyName)) != name || of.second.array || !channels_.count(kGiven + key)) continue;
+        const bool isTriple = kindOf(of.second) == Kind::Triple;
+        if (!isTriple && kindOf(of.second) != Kind::Float) continue;
+        (isTriple ? triple : grey) = &of;
+        (isTriple ? tripleKey : greyKey) = key;
+    }
+    if (!triple || !grey || type.array) return get(c->first);
+    const auto given = [&](const std::string& key) { return emit(Op::NotEqual, Kind::Bool, {get(channels_.at(kGiven + key).first), constant(0)}); };
+    type = triple->second;
+    Inst* floats = emit(Op::Select, Kind::Triple, {given(greyKey), coerce(get(grey->first), Kind::Triple), zero(Kind::Triple)});
+    return emit(Op::Select, Kind::Triple, {given(tripleKey), get(triple->first), floats});
+}
+
+/// "given:NAME": 1 where a call has given that output a value; null for other names, and where its name is no matter of running.
+Inst* Builder::channelGiven(const std::string& text) {
+    Inst* all = nullptr;
+    const std::string name = isFlag(text) ? text.substr(sizeof kGiven - 1) : "";
+    for (const auto& [key, flag] : channels_) {
+        if (name.empty() || !isFlag(key) || key.substr(sizeof kGiven - 1, key.find(kAnyName) - (sizeof kGiven - 1)) != name) continue;
+        Inst* one = get(flag.first);
+        all = all ? emit(Op::Select, Kind::Float, {emit(Op::NotEqual, Kind::Bool, {one, constant(0)}), one, all}) : one;
+    }
+    return all;
 }
 
 /// The slot that a call assigns: of a parameter of the main shader, or of a channel. -1: nothing is assigned.
@@ -78,6 +116,11 @@ int Builder::channelSlot(const std::string& text, Type type) {
 
 /// The value goes to the output `n`, where `condition` (null: everywhere).
 void Builder::giveChannel(int n, const Expr& value, Inst* whole, Inst* condition) {
+    for (const auto& [key, channel] : channels_)
+        if (const auto flag = channels_.find(kGiven + key); channel.first == n && flag != channels_.end()) {
+            const int at = flag->second.first;
+            set(at, condition ? emit(Op::Select, Kind::Float, {condition, constant(1), get(at)}) : constant(1));
+        }
     if (whole) {
         Inst* old = get(n);
         return set(n, condition ? emit(Op::Select, old->kind, {condition, coerce(whole, old->kind), old}) : whole);

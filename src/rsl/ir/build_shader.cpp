@@ -284,8 +284,12 @@ bool Builder::buildShader() {
                 break;
             }
         if (found) continue;
-        if (const auto* c = channelNamed(name); c && !hasGlobal(name.c_str())) {
-            output(name, get(c->first), c->second);
+        if (Inst* given = channelGiven(name)) {
+            output(name, given, real);
+            continue;
+        }
+        if (Type type; Inst* v = channelValue(name, type)) {
+            output(name, v, type);
             continue;
         }
         for (const GlobalVariable& g : globalVariables(shader_.kind))

@@ -254,6 +254,8 @@ private:
     std::vector<std::pair<std::string, int>> channelsFor(Type);
     const std::pair<int, Type>* channelNamed(const std::string& name);
     void giveChannel(int slot, const Expr& value, Inst* whole, Inst* condition);
+    Inst* channelValue(const std::string& name, Type&);
+    Inst* channelGiven(const std::string& name);
     Inst* outputChannel(const Expr&);
     Inst* writeAov(const Expr&);
     Inst* readAov(const Expr&);

@@ -23,6 +23,14 @@ struct stdrsl_SpecularAS
     {
         init(context, c, roughness, anisotropy, roughscale, 0, 0);
     }
+    /* For roughness that was sent along the ray: never sharper than what the ray came from; below 0 none was sent. `sent` is for the
+       rays that go on. */
+    public void initWithDownstreamRoughness(float received; stdrsl_ShadingContext context; color c; float roughness, anisotropy;
+                                            uniform float fewest, most; output float sent)
+    {
+        sent = max(roughness, received);
+        init(context, c, sent, anisotropy, 1, fewest, most);
+    }
     void stdrsl_answer(stdrsl_ShadingContext context; vector l; output color answer; output float pdf)
     {
         vector n = vector(context->m_Ns), v = context->m_Vn;

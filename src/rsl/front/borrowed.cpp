@@ -19,13 +19,15 @@ void hashComments(SourceSet& sources, Preprocessed& p) {
     std::vector<size_t> dropped; // how many, up to each token
     for (size_t i = 0; i < p.tokens.size();) {
         const Token& t = p.tokens[i];
-        const bool hash = t.text == "#" && !t.lineStart && t.kind != Tok::String && t.kind != Tok::End;
+        const bool two = t.text == "##" && t.kind != Tok::String; // of macros it is gone by now
+        const bool hash = two || (t.text == "#" && !t.lineStart && t.kind != Tok::String && t.kind != Tok::End);
         if (!hash) {
             dropped.push_back(i - kept.size());
             kept.push_back(p.tokens[i++]);
             continue;
         }
-        sources.warning(t.place, "'#' in the middle of a line begins no directive; the rest of the line is taken as a comment", "a comment begins with //");
+        sources.warning(t.place, std::string(two ? "'##' begins no directive" : "'#' in the middle of a line begins no directive") +
+                                     "; the rest of the line is taken as a comment", "a comment begins with //");
         const Place line = t.place;
         for (; i < p.tokens.size() && p.tokens[i].kind != Tok::End && p.tokens[i].place.file == line.file && p.tokens[i].place.line == line.line; ++i)
             dropped.push_back(i - kept.size());

@@ -1,5 +1,7 @@
 #include "rsl/front/checker.h"
 #include "rsl/front/clone.h"
+#include "rsl/front/visit.h"
+#include <algorithm>
 #include <utility>
 
 namespace alpenglow::rsl::front {
@@ -26,13 +28,45 @@ void Checker::condition(ExprPtr& e) {
     infos_.clear();
 }
 
+namespace {
+
+/// The value of a function that ends in its only return; null for others.
+const Expr* onlyResult(const Function& f) {
+    const Stmt* body = f.body.get();
+    if (!body || body->body.empty() || !body->body.back() || body->body.back()->kind != StmtKind::Return) return nullptr;
+    int returns = 0;
+    everyStmt(*body, [&](const Stmt& s) { returns += s.kind == StmtKind::Return; }, [](const Expr&) {});
+    return returns == 1 ? body->body.back()->value.get() : nullptr;
+}
+
+/// Is it the same for all points of a batch? That is what gridmin() and gridmax() give, what is made of it, and what functions make of it.
+bool sameForAll(const Expr& e) {
+    if (!e.varying) return true;
+    if (e.shadeop) return e.shadeop->name == "gridmin" || e.shadeop->name == "gridmax";
+    const auto all = [&] { return std::all_of(e.args.begin(), e.args.end(), [](const ExprPtr& a) { return sameForAll(*a); }); };
+    switch (e.kind) {
+    case ExprKind::Cast:
+    case ExprKind::Unary:
+    case ExprKind::Binary:
+    case ExprKind::Conditional:
+    case ExprKind::Tuple: return all();
+    case ExprKind::FunctionCall: {
+        const Expr* result = e.function ? onlyResult(*e.function) : nullptr;
+        if (!result || !sameForAll(*result)) return false;
+        for (size_t i = 0; i < std::min(e.args.size(), e.function->parameters.size()); ++i) // uniform parameters are what they are given
+            if (e.function->parameters[i]->storage == Storage::Uniform && !sameForAll(*e.args[i])) return false;
+        return true;
+    }
+    default: return false;
+    }
+}
+
+} // namespace
+
 void Checker::assignedToUniform(const Symbol& s, const Expr& value) {
     if (s.storage != Storage::Uniform || !value.varying || s.type.base == Base::String) return;
     if (value.kind == ExprKind::Member || value.kind == ExprKind::Method) return; // what a handle gives is of the class that is wanted
-    // What is the same for the points of a batch is uniform enough, also behind functions.
-    const Expr* from = &value;
-    while (from->kind == ExprKind::Cast && !from->args.empty()) from = from->args[0].get();
-    if (from->shadeop && (from->shadeop->name == "gridmin" || from->shadeop->name == "gridmax")) return;
+    if (sameForAll(value)) return;
     sources_.warning(value.place,
                      "a varying value is given to the uniform variable '" + s.name + "'; each shaded point keeps its own");
 }

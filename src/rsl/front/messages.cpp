@@ -15,6 +15,7 @@ constexpr MessageKind kKinds[] = {
     {"stray-character", "the character * means nothing here"},
     {"bad-number", "'*' is not a number"},
     {"hash-comment", "'#' in the middle of a line begins no directive*"},
+    {"hash-comment", "'##' begins no directive*"},
     {"number-suffix", "numbers take no suffix*"},
     // preprocessor
     {"pp-unfinished-if", "this #if has no #endif"},

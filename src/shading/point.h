@@ -1,6 +1,7 @@
 // What the renderer knows about a point that a shader is going to run at, and about the ray that found it. Camera space ("current").
 #pragma once
 #include "accel/accel.h"
+#include "base/limits.h"
 #include "geometry/shape.h"
 #include "scene/scene.h"
 #include "shading/scheduler.h"
@@ -22,9 +23,9 @@ struct RaySet {
 
 /// The volumes that a ray is inside of, the innermost last: numbers of the media of the world, -1 for one where nothing is.
 struct Media {
-    static constexpr int kMost = 4;   ///< deeper ones push the outermost out
-    int16_t in[kMost] = {};
+    int16_t in[limits::kMedia] = {};
     int8_t count = 0;
+    bool lost = false;                ///< one more was entered than are known
     int top() const { return count ? in[count - 1] : -1; }
     void push(int medium);
     /// Leaves the innermost volume of that medium; none where the ray is in no such volume.

@@ -78,6 +78,7 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
             if (s.kind == SiteKind::Message || s.kind == SiteKind::LightHandles) {
                 l.asksSurface = true;
                 if (s.site->op == "surface" && !s.site->strings.empty()) lightMessages_.push_back(s.site->strings[0]);
+                if (s.site->op == "displacement") lightDisplacements_.insert(s.site->strings.empty() ? "" : s.site->strings[0]);
             }
         std::vector<std::string> blocks = l.kernel.kernel->facts().blocks;
         if (blocks.empty()) blocks = {"outside"};
@@ -110,6 +111,8 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
                 else if (n == "param:__nondiffuse") part.nonDiffuse = int(i);
                 else if (n == "param:__nonspecular") part.nonSpecular = int(i);
                 if (n.rfind("param:", 0) == 0) {
+                    if (n == "param:__sentL[0]") part.sentL = part.valueWidth;
+                    if (n == "param:__sentCl[0]") part.sentCl = part.valueWidth;
                     part.values.push_back({n.substr(6), int(i), rsl::ir::components(outputs[i].kind)});
                     part.valueWidth += part.values.back().components;
                 } else if (n.rfind(kGiven, 0) == 0) {
@@ -128,9 +131,13 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
             if (blocks[k] == "outside") part.kind = LightKind::Ambient;
             else if (blocks[k] == "solar()" || l.instance->name == "envlight") part.kind = LightKind::Environment;
             else if (solar) part.kind = LightKind::Distant;
-            else part.kind = area ? LightKind::Area : LightKind::Point;
+            else part.kind = area && part.sentCl < 0 ? LightKind::Area : LightKind::Point; // samples need no geometry
             part.cone = blocks[k] == "solar cone";
             if (part.kind != LightKind::Area && !((part.kind == LightKind::Environment || part.cone) && path)) part.samples = 1;
+            if (part.sentCl >= 0) { // its samples: each has a turn
+                part.samples = limits::kLightTurns;
+                part.shadows |= !path && l.instance->parameters.numbers.count("__sentShadows") > 0;
+            }
             if (part.kind != LightKind::Area) part.emitter = nullptr;
             if (k == 0) {
                 lights_[li] = std::move(part);

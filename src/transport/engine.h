@@ -41,6 +41,8 @@ Way wayBetween(const Vec3& a, const Vec3& b, const Vec3& at, const geometry::Sur
 struct LitValues {
     int binding = -1;
     std::vector<std::pair<std::string, std::vector<float>>> outputs; ///< those that are not here are as the surface was given them
+    std::shared_ptr<const struct BatchContext> displaced; ///< BatchContext::displaced of the surface, and the point there
+    int point = -1;
     bool output(const std::string& name, std::vector<float>& v) const;
 };
 
@@ -182,6 +184,7 @@ public:
     void hazeOfEmitters(const BoundLight&, std::span<const ShadePoint>, std::span<LightValue>, const std::vector<char>* inMedium);
     // media.cpp
     /// Where a ray from a point of a batch in direction w begins.
+    void tellLost(const shading::Media&, const ShadePoint&) const; ///< says once that a ray was in more volumes than are known
     shading::Media mediaTowards(const BatchContext&, int point, const Vec3& w) const;
     /// Where shadow rays between a and b begin, one of which may be the point `at` of a surface. Those that end there are turned about.
     void shadowsInMedia(std::span<ShadowRay>, const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint*, const SurfaceBinding*) const;
@@ -252,6 +255,10 @@ private:
     void shadowLoop(const BatchContext&, const BoundLight&, int first, std::span<const ShadePoint>, std::span<const int> laneOf, std::span<LightValue>);
     /// Sample `turn` of `turns` of a light for the points of a mask, into `kept`; gives the points that it lights.
     uint64_t sampleLight(BatchContext&, const LightLoop&, int light, int turn, int turns, int first, uint64_t mask, int lanes, LightLoop::Kept& kept);
+    /// Sample `turn` of a light that sends through generateSamples(), by its BoundLight::values at a point.
+    static void sentSample(const BoundLight&, int turn, const float* values, LightValue&);
+    /// One of those samples, in proportion to what each gives, for the sum of all. `u`: evenly from 0 to 1.
+    static void chooseSent(const BoundLight&, float u, const float* values, LightValue&);
     uint64_t sentKey(const BatchContext&, const LightLoop&) const;
     int lightOfHandle(const BatchContext&, const std::string& handle) const;
     /// Contexts and their memory are used again: a slice makes several, of some hundred kilobytes.

@@ -132,6 +132,10 @@ void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, i
             one.values.assign(width * size_t(light.valueWidth), 0);
             const uint64_t now = sampleLight(c, turn, li, k, light.samples, first, of, lanes, one);
             if (k == 0) kept = one;
+            if (k == 0 && light.sentCl >= 0) {
+                turn.kept[uint64_t(li) << 12] = one;
+                turn.kept[uint64_t(li) << 12].have = of;
+            }
             lit |= now;
             if (light.samples == 1) break;
             // One of the samples, drawn in proportion to what it gives, stands for the sum of all.

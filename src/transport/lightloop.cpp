@@ -157,7 +157,9 @@ uint64_t Engine::lightFetch(BatchContext& c, int index, int first, uint64_t mask
         const size_t l = size_t(lane);
         const float angle = loop.rows[6 * width + l];
         if (angle < float(kPi) && light.kind != LightKind::Environment) {
-            const Vec3 axis(loop.rows[3 * width + l], loop.rows[4 * width + l], loop.rows[5 * width + l]);
+            Vec3 axis(loop.rows[3 * width + l], loop.rows[4 * width + l], loop.rows[5 * width + l]);
+            const float most = std::max({std::fabs(axis.x), std::fabs(axis.y), std::fabs(axis.z)});
+            if (most > 1e15f || (most > 0 && most < 1e-15f)) axis = axis / most; // its square must be a number
             const Vec3 toLight(kept.out[l], kept.out[width + l], kept.out[2 * width + l]);
             const float la = length(axis), ll = length(toLight);
             if (la > 0 && ll > 0 && !(dot(axis, toLight) >= la * ll * std::cos(angle))) continue;

@@ -11,6 +11,8 @@ struct LitSurface {
     std::function<const SurfaceBinding*(int query)> binding;
     /// Value of an output parameter as it is now; false: ask the instance.
     std::function<bool(int query, const std::string& name, std::vector<float>&)> output;
+    /// The run of its displacement shader and the point there; null: ask the instance.
+    std::function<const struct BatchContext*(int query, int& point)> displaced;
 };
 
 /// One run of a light's kernel: what differs from the light as it is bound.
@@ -40,7 +42,7 @@ struct LightLoop {
 
     /// Results of one light sample for the points of the strip.
     struct Kept {
-        uint64_t have = 0, lit = 0;
+        uint64_t have = 0, lit = 0, ran = 0;      ///< ran: of a light with many samples, where some may be lit
         std::vector<float> key;                   ///< the seven rows
         std::vector<uint64_t> hash;
         std::vector<float> out, values;           ///< L, Cl, Ol: nine rows; values by lane

@@ -22,6 +22,11 @@ LitSurface Engine::litBy(std::span<const int> of) const {
     lit.output = [this, of](int q, const std::string& name, std::vector<float>& v) {
         return of[size_t(q)] >= 0 && litValues_[size_t(of[size_t(q)])].output(name, v);
     };
+    lit.displaced = [this, of](int q, int& point) -> const BatchContext* {
+        if (of[size_t(q)] < 0) return nullptr;
+        point = litValues_[size_t(of[size_t(q)])].point;
+        return litValues_[size_t(of[size_t(q)])].displaced.get();
+    };
     return lit;
 }
 
@@ -30,6 +35,10 @@ LitSurface Engine::litSurface(BatchContext& c, const LightLoop& loop, const std:
     lit.binding = [this, &c, &points](int q) -> const SurfaceBinding* {
         const size_t point = size_t(points[size_t(q)]);
         return point < c.bindings.size() ? &world_->bindings_[size_t(c.bindings[point])] : c.binding;
+    };
+    lit.displaced = [&c, &points](int q, int& point) {
+        point = points[size_t(q)];
+        return c.displaced.get();
     };
     lit.output = [&c, &loop, &points, first, lanes](int q, const std::string& name, std::vector<float>& v) {
         if (loop.setup < 0) return false;
@@ -165,6 +174,33 @@ void Engine::keepChannels(BatchContext& c, const BoundLight& light, int point, c
     }
 }
 
+void Engine::sentSample(const BoundLight& light, int turn, const float* values, LightValue& v) {
+    const float* way = values + light.sentL + 3 * turn;
+    const float* sent = values + light.sentCl + 3 * turn;
+    v.L = {way[0], way[1], way[2]};
+    v.Cl = {sent[0], sent[1], sent[2]};
+    v.lit &= (v.Cl.x != 0 || v.Cl.y != 0 || v.Cl.z != 0) && length(v.L) > 0;
+}
+
+void Engine::chooseSent(const BoundLight& light, float u, const float* values, LightValue& v) {
+    const auto weight = [&](int k) {
+        const float* sent = values + light.sentCl + 3 * k;
+        const float w = luminance(Color(sent[0], sent[1], sent[2]));
+        return std::isfinite(w) ? std::max(w, 0.f) : 0.f;
+    };
+    double sum = 0, before = 0;
+    for (int k = 0; k < limits::kLightTurns; ++k) sum += weight(k);
+    int chosen = -1;
+    for (int k = 0; k < limits::kLightTurns && before <= u * sum; ++k)
+        if (const float w = weight(k); w > 0) chosen = k, before += w;
+    if (chosen < 0) {
+        v.lit = false;
+        return;
+    }
+    sentSample(light, chosen, values, v);
+    v.Cl *= float(sum / weight(chosen));
+}
+
 uint64_t Engine::sampleLight(BatchContext& c, const LightLoop& loop, int li, int turn, int turns, int first, uint64_t mask, int lanes, LightLoop::Kept& kept) {
     const BoundLight& light = world_->lights_[size_t(li)];
     auto row = [&](int r, int lane) { return loop.rows[size_t(r) * size_t(lanes) + size_t(lane)]; };
@@ -228,7 +264,25 @@ uint64_t Engine::sampleLight(BatchContext& c, const LightLoop& loop, int li, int
     }
     std::vector<LightValue> v;
     std::vector<float> values;
-    evaluateForLoop(c, loop, li, first, lanes, q, laneOf, v, values);
+    const size_t width = size_t(light.valueWidth);
+    // A light that sends many samples gives all of them when it runs for the first.
+    const auto ran = light.sentCl >= 0 && turn > 0 ? loop.kept.find(uint64_t(li) << 12) : loop.kept.end();
+    if (ran != loop.kept.end() && (ran->second.have & mask) == mask) {
+        v.assign(q.size(), {});
+        for (size_t i = 0; i < q.size(); ++i) {
+            v[i].lit = ran->second.ran >> laneOf[i] & 1;
+            const auto from = ran->second.values.begin() + laneOf[i] * light.valueWidth;
+            values.insert(values.end(), from, from + light.valueWidth);
+        }
+    } else {
+        evaluateForLoop(c, loop, li, first, lanes, q, laneOf, v, values);
+    }
+    kept.ran &= ~mask;
+    if (light.sentCl >= 0)
+        for (size_t i = 0; i < q.size(); ++i) {
+            kept.ran |= uint64_t(v[i].lit) << laneOf[i];
+            sentSample(light, turn, values.data() + i * width, v[i]);
+        }
     if (light.shadows) shadowLoop(c, light, first, q, laneOf, v);
     for (size_t i = 0; i < q.size(); ++i) {
         const size_t lane = size_t(laneOf[i]);

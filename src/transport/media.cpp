@@ -7,7 +7,10 @@
 namespace alpenglow::shading {
 
 void Media::push(int medium) {
-    if (count == kMost) std::copy(in + 1, in + count--, in);
+    if (count == limits::kMedia) {
+        std::copy(in + 1, in + count--, in);
+        lost = true;
+    }
     in[count++] = int16_t(medium);
 }
 
@@ -41,11 +44,20 @@ Media SurfaceBinding::beyond(const Media& from, const Vec3& n, const Vec3& in, c
     return m;
 }
 
+void Engine::tellLost(const Media& m, const ShadePoint& p) const {
+    if (m.lost)
+        diagnostics_.reportOnce("media", {Severity::Warning, Rie::Limit, p.shape ? p.shape->place() : SourcePlace{},
+                                "a ray is inside of more than " + std::to_string(limits::kMedia) + " volumes; the outermost are forgotten",
+                                {}, {}});
+}
+
 Media Engine::mediaTowards(const BatchContext& c, int point, const Vec3& w) const {
     if (world_->media_.empty() || size_t(point) >= c.bindings.size()) return {};
     const ShadePoint& p = c.points[size_t(point)];
     const PathRay& ray = c.rays[size_t(point)];
-    return world_->bindings_[size_t(c.bindings[size_t(point)])].beyond(ray.media, p.surface.n, ray.dir, w);
+    const Media m = world_->bindings_[size_t(c.bindings[size_t(point)])].beyond(ray.media, p.surface.n, ray.dir, w);
+    tellLost(m, p);
+    return m;
 }
 
 void Engine::shadowsInMedia(std::span<ShadowRay> rays, const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint* s, const SurfaceBinding* binding) const {

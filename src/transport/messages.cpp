@@ -70,6 +70,9 @@ void answerMessage(Engine& engine, const ServiceCall& q) {
         const int point = q.first + lane;
         if (c.lit) { // a light asks: its point is not that of the surface
             if (std::vector<float> now; who == Asks::Surface && c.lit->output(point, name, now)) t->numbers = now;
+            int there = -1;
+            const BatchContext* displaced = who == Asks::Displacement ? c.lit->displaced(point, there) : nullptr;
+            if (displaced) writtenBy(*displaced->batch, there, name, *t);
             return q.answer(lane, *t);
         }
         if (who == Asks::Surface || who == Asks::Displacement || who == Asks::Atmosphere) overridden(p, name, *t);

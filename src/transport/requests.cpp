@@ -52,10 +52,12 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     l.ownsTarget = owns;
     l.site = uint32_t(s.site - c.bound->kernel->sites().data());
     l.occurrence = occurrence;
-    if (!world_->lightMessages_.empty()) {
+    if (world_->lightsAsk()) {
         l.lit = int(litValues_.size());
         LitValues& told = litValues_.emplace_back();
         told.binding = size_t(point) < c.bindings.size() ? c.bindings[size_t(point)] : -1; // a light's own ray: none
+        told.displaced = c.displaced;
+        told.point = point;
         for (const SiteInfo::Output& o : s.outputs) {
             auto& of = told.outputs.emplace_back(o.name, std::vector<float>());
             for (int r = 0; r < o.size; ++r) of.second.push_back(f(o.row + r));
@@ -141,7 +143,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
     auto lobesOf = [&](size_t pi) { return std::span<const int>(order).subspan(size_t(begin[pi]), size_t(begin[pi + 1] - begin[pi])); };
 
     // What lights are told: a vertex has one answer. Where its requests are summed up, its kernel is done: its outputs as they are now.
-    if (!world_->lightMessages_.empty())
+    if (world_->lightsAsk())
         for (size_t pi = 0; pi < c.points.size(); ++pi) {
             auto list = lobesOf(pi);
             if (list.empty()) continue;
@@ -294,6 +296,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
             if (light.asksSurface) {
                 lit.binding = [&](int k) { return &world_->bindings_[size_t(told(k).binding)]; };
                 lit.output = [&](int k, const std::string& name, std::vector<float>& now) { return told(k).output(name, now); };
+                lit.displaced = [&](int k, int& point) { return point = told(k).point, told(k).displaced.get(); };
                 call.lit = &lit;
             }
             std::vector<char> inMedium;
@@ -301,9 +304,18 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 for (size_t k = 0; k < used; ++k) inMedium.push_back(mediaTowards(c, pointOf[k], drawn[k].direction).top() >= 0);
                 call.inMedium = &inMedium;
             }
-            std::vector<float> values(light.channels ? used * size_t(light.valueWidth) : 0);
-            if (light.channels) call.values = &values;
+            const bool sends = light.sentCl >= 0; // many samples: one of them
+            std::vector<float> values(light.channels || sends ? used * size_t(light.valueWidth) : 0);
+            if (light.channels || sends) call.values = &values;
             evaluateLight(light, q, value, call);
+            for (size_t k = 0; k < used && sends; ++k) {
+                const PathRay& ray = c.rays[size_t(pointOf[k])];
+                const LobeVertex& l0 = lobes[size_t(lobesOf(size_t(pointOf[k]))[0])];
+                uint32_t vertex = ray.vertex;
+                if (l0.ownsTarget) vertex = childVertex(vertex, kLightPoint + l0.site, l0.occurrence);
+                const float u = random(ray).one(vertex, kLightPoint + uint32_t(li), 0);
+                chooseSent(light, u, values.data() + k * size_t(light.valueWidth), value[k]);
+            }
             for (size_t k = 0; k < used && light.channels; ++k) keepChannels(c, light, pointOf[k], values.data() + long(k) * light.valueWidth);
             for (size_t k = 0; k < used; ++k) {
                 const LightValue& v = value[k];

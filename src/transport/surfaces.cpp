@@ -82,13 +82,15 @@ int SurfaceBinder::bind(const geometry::ShapeRef& shape) {
     const Names varying = varyingOf(*shape, *b.surface);
     const Names displacementVarying = b.displacement ? varyingOf(*shape, *b.displacement) : Names{};
     const Names atmosphereVarying = b.atmosphere.shader ? varyingOf(*shape, *b.atmosphere.shader) : Names{};
+    b.interior = volumeOf(a.interior, *shape);
+    b.exterior = volumeOf(a.exterior, *shape);
     std::string key;
     auto add = [&](auto v) { key.append(reinterpret_cast<const char*>(&v), sizeof v); };
     add(b.surface.get());
     add(a.displacement.get());
     add(a.atmosphere.get());
-    add(a.interior.get());
-    add(a.exterior.get());
+    add(b.interior.get());
+    add(b.exterior.get());
     for (const auto& [handle, call] : a.coshaders) add(call.get());
     for (int l : a.lights) add(l);
     add(-1);
@@ -109,8 +111,6 @@ int SurfaceBinder::bind(const geometry::ShapeRef& shape) {
     auto [it, fresh] = bindingByKey_.try_emplace(key, int(world_.bindings_.size()));
     if (!fresh) return it->second;
 
-    b.interior = world_.withCoShaders(instanceOf(a.interior, rsl::ShaderKind::Volume), a.coshaders, diagnostics_);
-    b.exterior = world_.withCoShaders(instanceOf(a.exterior, rsl::ShaderKind::Volume), a.coshaders, diagnostics_);
     b.inside = mediumOf(b.interior, *shape);
     b.outside = mediumOf(b.exterior, *shape);
     // Who asks comes before who is asked: an atmosphere asks for outputs of the surface, both for those of the displacement.
@@ -220,7 +220,10 @@ void SurfaceBinder::hearMembers(SurfaceBinding& b) {
 void SurfaceBinder::hearDisplacement(SurfaceBinding& b, const Names& varying, const Names& displacementVarying, const Names& left) {
     if (!b.displacement || b.displacementS.kernel->facts().suspends) return;
     std::set<std::string> asked;
-    const bool all = questions(b.surfaceS, "displacement", asked) | (b.atmosphere.shader && questions(b.atmosphere.kernel, "displacement", asked));
+    asked = world_.lightDisplacements_;
+    bool all = asked.erase("") > 0;
+    all |= questions(b.surfaceS, "displacement", asked);
+    all |= b.atmosphere.shader && questions(b.atmosphere.kernel, "displacement", asked);
     Names outputs = left;
     auto told = std::make_shared<ShaderInstance>(*b.surface);
     for (const auto& p : b.displacement->program->parameters()) {
@@ -296,6 +299,44 @@ Medium SurfaceBinder::bindVolume(const InstanceRef& shader, const Names& varying
                                 "volume shader " + name + " is not affine in Ci as written; what light loses in it is measured between Ci = 0 and 1", {}, {}});
     m.shader = shader;
     return m;
+}
+
+InstanceRef SurfaceBinder::volumeOf(const scene::ShaderRef& call, const geometry::Shape& shape) {
+    const InstanceRef plain = instanceOf(call, rsl::ShaderKind::Volume);
+    const InstanceRef shader = world_.withCoShaders(plain, shape.attributes().coshaders, diagnostics_);
+    if (!shader) return nullptr;
+    shading::ParameterBlock own = shader->parameters;
+    std::string key;
+    for (const rsl::ParameterInfo& p : shader->program->parameters()) {
+        const int v = shape.findPrimvar(p.name);
+        if (v < 0) continue;
+        const geometry::PrimVar& variable = shape.primvars()[size_t(v)];
+        if (variable.cls != scene::Class::Constant) {
+            diagnostics_.reportOnce("medium:" + shader->name + ":" + p.name,
+                                    {Severity::Warning, Rie::Unimplement, shape.place(),
+                                     "\"" + p.name + "\" is not the same everywhere on the primitive: it does not override the parameter of the " +
+                                         "volume shader \"" + shader->name + "\", which runs inside of it",
+                                     "a constant variable does", {}});
+            continue;
+        }
+        const std::optional<Told> value = primitiveVariable(shape, {}, p.name);
+        const auto number = own.numbers.find(p.name);
+        const auto text = own.strings.find(p.name);
+        if (value->kind == rsl::ir::Kind::String && !value->elements && text != own.strings.end()) text->second = value->texts[0];
+        else if (value->kind != Told::kindOf(p.type.base) || number == own.numbers.end()) continue;
+        else if (number->second.size() != value->numbers.size()) continue;
+        else number->second = value->numbers;
+        key += p.name + '\1' + (value->texts.empty() ? "" : value->texts[0]);
+        key.append(reinterpret_cast<const char*>(value->numbers.data()), value->numbers.size() * sizeof(float));
+    }
+    if (key.empty()) return shader;
+    InstanceRef& known = volumes_[{shader.get(), key}];
+    if (!known) {
+        auto with = std::make_shared<ShaderInstance>(*shader);
+        with->parameters = std::move(own);
+        known = with;
+    }
+    return known;
 }
 
 int SurfaceBinder::mediumOf(const InstanceRef& shader, const geometry::Shape& shape) {

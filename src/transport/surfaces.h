@@ -40,6 +40,8 @@ private:
     void bindAtmosphere(SurfaceBinding&, const Names& varying);
     /// The kernel of a volume shader; no shader where it cannot run, which was reported.
     Medium bindVolume(const InstanceRef&, const Names& varying);
+    /// The shader of an Interior or Exterior with what constant variables of the primitive override; null: none.
+    InstanceRef volumeOf(const scene::ShaderRef&, const geometry::Shape&);
     /// WorldImpl::media_ of an Interior or Exterior; -1: none.
     int mediumOf(const InstanceRef&, const geometry::Shape&);
     /// `more`: outputs besides P, N and their derivatives.
@@ -59,6 +61,7 @@ private:
     std::map<std::pair<const void*, const void*>, InstanceRef> told_; ///< surfaces that know the outputs of a displacement; by both
     std::map<const void*, InstanceRef> quiet_; ///< by the displacement that is not
     std::vector<InstanceRef> kept_;            ///< their addresses are keys
+    std::map<std::pair<const void*, std::string>, InstanceRef> volumes_; ///< by the shader as the scene gave it and what overrides it
     std::map<std::pair<const void*, std::string>, InstanceRef> volumes_; ///< by the shader as the scene gave it and what overrides it
     std::map<std::string, int> bindingByKey_;
     std::map<std::vector<const void*>, int> programs_;

@@ -25,6 +25,7 @@ void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId t
     r.shape = geometry::kNone;
     r.first = false;
     r.media = b.beyond(ray.media, p.surface.n, ray.dir, ray.dir);
+    tellLost(r.media, p);
     r.parted |= ray.type == RayType::Camera && (ray.media.top() >= 0 || r.media.top() >= 0);
     r.vertex = childVertex(ray.vertex, 0xfffff, 0);
     ++r.layers;

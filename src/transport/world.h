@@ -10,6 +10,7 @@
 #include "transport/lobe.h"
 #include <functional>
 #include <mutex>
+#include <set>
 #include <unordered_map>
 
 namespace alpenglow::transport {
@@ -127,6 +128,8 @@ struct BoundLight {
     bool asksSurface = false;                  ///< its kernel asks for parameters of the surface that it lights
     bool channels = false;                     ///< some of `values` are AOVs
     bool cone = false;                         ///< Distant: solar() with an angle, which path samples
+    /// Of a light that sends through generateSamples(): where in `values` the ways and the light of its samples begin; -1: another light.
+    int sentL = -1, sentCl = -1;
     bool shadows = false;                      ///< outside of path: its light is traced (Attribute "light" "shadows" "on")
     /// Kernels for strings that a surface sends: by sentStrings() of the loop.
     std::map<std::string, BoundKernel> variants;
@@ -264,6 +267,8 @@ public:
     mutable rsl::PrintLog prints_;
     mutable std::mutex imagerMutex_;
     std::vector<std::string> lightMessages_;   ///< parameters of surfaces that lights and atmospheres ask for, sorted
+    std::set<std::string> lightDisplacements_; ///< outputs of displacement shaders that lights ask for; "": of names made when they run
+    bool lightsAsk() const { return !lightMessages_.empty() || !lightDisplacements_.empty(); }
     int maxDepth_ = 32;
     bool lightChannels_ = false;               ///< lights give AOVs by outputchannel()
     bool footprints_ = false;                  ///< some kernel reads du or dv

@@ -67,6 +67,7 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
     program->dependencies.insert(program->dependencies.end(), p.dependencies.begin(), p.dependencies.end());
     hashComments(sources, p);
     readBorrowedWords(sources, p);
+    addSampledLights(sources, p);
     addDirectLighting(sources, p);
     addPrelude(sources, p);
     Unit unit = Parser(p, sources).parse();

@@ -11,4 +11,7 @@ void addPrelude(SourceSet&, Preprocessed&);
 /// that do it, which they call instead.
 void addDirectLighting(SourceSet&, Preprocessed&);
 
+/// Gives class lights of PRMan that send their light through generateSamples() a method light() that takes it from there.
+void addSampledLights(SourceSet&, Preprocessed&);
+
 } // namespace alpenglow::rsl::front

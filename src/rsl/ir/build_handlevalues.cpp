@@ -124,19 +124,31 @@ Inst* Builder::storeHandles(Inst* to, const Expr& e) {
     std::vector<Inst*> when;
     const std::vector<Inst*> all = handlesOf(e, &when);
     const size_t room = static_cast<size_t>(lengths(to) ? to->index : arrayLength(to));
+    const auto full = [&] {
+        complain(e.place, "more shaders than the array has room for: getshaders() gives the first " + std::to_string(room));
+    };
     if (when.empty()) {
+        if (all.size() > room) full();
         for (size_t n = 0; n < std::min(all.size(), room); ++n) emit(Op::ArrayStore, Kind::None, {to, constant(static_cast<float>(n)), all[n]});
         return constant(static_cast<float>(std::min(all.size(), room)));
     }
     Inst* next = constant(0);
-    for (size_t n = 0; n < std::min(all.size(), room); ++n)
-        next = branch(
-            when[n],
-            [&] {
-                emit(Op::ArrayStore, Kind::None, {to, next, all[n]});
-                return std::vector<Inst*>{emit(Op::Add, Kind::Float, {next, constant(1)})};
-            },
-            [&] { return std::vector<Inst*>{next}; })[0];
+    const auto same = [&] { return std::vector<Inst*>{next}; };
+    for (size_t n = 0; n < all.size(); ++n) {
+        const auto store = [&] {
+            emit(Op::ArrayStore, Kind::None, {to, next, all[n]});
+            return std::vector<Inst*>{emit(Op::Add, Kind::Float, {next, constant(1)})};
+        };
+        const auto storeOrSay = [&] {
+            Inst* fits = emit(Op::Less, Kind::Bool, {next, constant(static_cast<float>(room))});
+            return branch(fits, store, [&] {
+                full();
+                return same();
+            });
+        };
+        if (n < room) next = branch(when[n], store, same)[0];
+        else next = branch(when[n], storeOrSay, same)[0];
+    }
     return next;
 }
 

@@ -1,5 +1,7 @@
 // illuminance in surfaces and volumes; illuminate and solar in lights.
 #include "base/category.h"
+#include "base/limits.h"
+#include "rsl/front/visit.h"
 #include "rsl/ir/builder.h"
 #include <functional>
 #include <utility>
@@ -221,12 +223,21 @@ int Builder::addBlock(const Stmt& s) {
     return static_cast<int>(lightBlocks_.size()) - 1;
 }
 
-/// Blocks of the shader's body, in order of the text, so that loops and conditions around them carry their slots.
+/// Blocks of the shader's body and of the functions that it calls, once for each call, in order of the text, so that loops and
+/// conditions around them carry their slots.
 void Builder::findBlocks(const Stmt& s) {
-    if (s.kind == StmtKind::Illuminate || s.kind == StmtKind::Solar) addBlock(s);
-    for (const StmtPtr& b : s.body)
-        if (b) findBlocks(*b);
-    if (s.elseBody) findBlocks(*s.elseBody);
+    const auto statement = [&](const Stmt& x) {
+        if (x.kind == StmtKind::Illuminate || x.kind == StmtKind::Solar) addBlock(x);
+    };
+    front::everyStmt(s, statement, [&](const Expr& e) {
+        if (e.function && e.function->body && lightBlocks_.size() < limits::kLightBlocks) findBlocks(*e.function->body);
+    });
+}
+
+/// The angle of a cone: beyond pi it has all directions.
+Inst* Builder::within(Inst* angle) {
+    Inst* most = constant(3.14159265f);
+    return emit(Op::Select, Kind::Float, {emit(Op::Less, Kind::Bool, {most, angle}), most, angle});
 }
 
 /// A direction of the cone about `axis`, as long as it. The renderer's numbers (transport: coneNumbers) are three: how far from the axis,
@@ -243,7 +254,7 @@ Inst* Builder::inCone(Inst* axis, Inst* angle) {
                         {steep, leaves_.constant(Kind::Triple, std::vector<float>{1, 0, 0}), leaves_.constant(Kind::Triple, std::vector<float>{0, 1, 0})});
     Inst* t = runtime1("al_normalize_t", {cross(n, beside)}, Kind::Triple);
     Inst* u = cross(n, t);
-    Inst* half = runtime1("al_sin", {product(angle, constant(0.5f))}, Kind::Float);
+    Inst* half = runtime1("al_sin", {product(within(angle), constant(0.5f))}, Kind::Float);
     Inst* height = product(part(numbers, 0), product(constant(2), product(half, half))); // 1 - cos
     Inst* away = runtime1("al_sqrt", {product(height, minus(constant(2), height))}, Kind::Float);
     Inst* sideways = emit(Op::Add, Kind::Triple, {times(t, part(numbers, 1)), times(u, part(numbers, 2))});
@@ -253,9 +264,15 @@ Inst* Builder::inCone(Inst* axis, Inst* angle) {
 
 void Builder::lightBlock(const Stmt& s) {
     int index = -1;
-    for (size_t n = 0; n < lightBlocks_.size(); ++n)
-        if (lightBlocks_[n].stmt == &s) index = static_cast<int>(n);
-    if (index < 0) index = addBlock(s); // inside a function
+    for (size_t n = 0; n < lightBlocks_.size() && index < 0; ++n)
+        if (lightBlocks_[n].stmt == &s && !lightBlocks_[n].built) index = static_cast<int>(n);
+    if (lightBlocks_.size() >= limits::kLightBlocks) {
+        error(s.place, "a light has no more than " + std::to_string(limits::kLightBlocks) +
+                           " illuminate() and solar() blocks, those of functions once for each call");
+        return;
+    }
+    if (index < 0) index = addBlock(s); // in a method of a co-shader
+    lightBlocks_[static_cast<size_t>(index)].built = true;
     const LightBlock b = lightBlocks_[static_cast<size_t>(index)];
     Inst *L, *lit = boolean(true);
     if (s.kind == StmtKind::Solar) {
@@ -277,7 +294,7 @@ void Builder::lightBlock(const Stmt& s) {
             place_ = s.place;
             Inst* lengths =
                 emit(Op::Mul, Kind::Float, {runtime1("al_length", {L}, Kind::Float), runtime1("al_length", {axis}, Kind::Float)});
-            Inst* limit = emit(Op::Mul, Kind::Float, {runtime1("al_cos", {angle}, Kind::Float), lengths});
+            Inst* limit = emit(Op::Mul, Kind::Float, {runtime1("al_cos", {within(angle)}, Kind::Float), lengths});
             lit = emit(Op::LessEqual, Kind::Bool, {limit, dot(L, axis)});
         }
     }

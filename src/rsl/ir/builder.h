@@ -70,6 +70,7 @@ private:
     Inst* inCone(Inst* axis, Inst* angle);
     void findBlocks(const Stmt&);
     int addBlock(const Stmt&);
+    Inst* within(Inst* angle);
     Inst* alive();
     void scanAssigned(const Stmt&, std::set<int>& out, std::set<const Function*>& seen);
     void scanAssigned(const Expr&, std::set<int>& out, std::set<const Function*>& seen);
@@ -322,6 +323,7 @@ private:
         bool solar;
         int L, Cl, Ol, lit;
         bool cone = false; ///< solar with an angle that may be above 0
+        bool built = false; ///< a block of a function is one for each call, in order of the text
         /// The only block, and one that always runs: what the shader does to Cl and Ol behind it counts too.
         bool only = false;
     };

@@ -1,0 +1,161 @@
+// Class lights of PRMan that send their light through generateSamples(). Before anything is parsed they get a method light() that
+// asks for the samples and puts each into two outputs, from which light loops take a turn for each (transport: BoundLight::sentL).
+#include "base/limits.h"
+#include "rsl/front/prelude.h"
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <string>
+
+namespace alpenglow::rsl::front {
+
+namespace {
+
+using Tokens = std::vector<Token>;
+
+constexpr const char* kOutputs = "output varying vector __sentL[MOST] = {0}; output varying color __sentCl[MOST] = {0};";
+/// Where the class wants shadows: shadowSamples() of PRMan.
+constexpr const char* kShadows = "uniform float __sentShadows = 1;";
+
+// What a sample with radiance R and density pdf of n adds to the irradiance over pi that Cl means is R / (pi pdf n). A density of zero
+// says that there is no sample. Those beyond MOST share the places of others: of two one is kept, in proportion to its luminance, for
+// both.
+constexpr const char* kLight = R"(
+    public void light(output vector L; output color Cl) {
+        __radiancesample sent[];
+        generateSamples("sphere", sent);
+        uniform float i, n = arraylength(sent);
+        float counted = 0;
+        for (i = 0; i < n; i += 1)
+            if (sent[i]->lightPdf != 0) counted += 1;
+        color sum = 0;
+        for (i = 0; i < n; i += 1) {
+            uniform float place = mod(i, MOST);
+            if (sent[i]->lightPdf > 0) {
+                color c = sent[i]->radiance / (PI * sent[i]->lightPdf * counted);
+                vector way = -min(sent[i]->distance, 1e15) * normalize(sent[i]->direction);
+                float had = luminance(__sentCl[place]), comes = luminance(c);
+                if (i < MOST || had <= 0) {
+                    __sentL[place] = way;
+                    __sentCl[place] = c;
+                } else if (comes > 0) {
+                    if (random() * (had + comes) < comes) {
+                        __sentL[place] = way;
+                        __sentCl[place] = c * ((had + comes) / comes);
+                    } else {
+                        __sentCl[place] *= (had + comes) / had;
+                    }
+                }
+                sum += c;
+            }
+        }
+        L = __sentL[0];
+        Cl = sum;
+    }
+)";
+
+/// Behind the bracket that closes the one at `open`; the end of the text if there is none.
+size_t behind(const Tokens& t, size_t open) {
+    int depth = 0;
+    for (size_t i = open; i < t.size(); ++i) {
+        if (t[i].is("(") || t[i].is("{") || t[i].is("[")) ++depth;
+        if ((t[i].is(")") || t[i].is("}") || t[i].is("]")) && --depth == 0) return i + 1;
+    }
+    return t.size();
+}
+
+/// Whether the method with parameters at `open` does nothing but set something to zero: it only says that the class is a light.
+bool setsZero(const Tokens& t, size_t open) {
+    const size_t body = behind(t, open);
+    if (body >= t.size() || !t[body].is("{")) return false;
+    const size_t end = behind(t, body);
+    for (size_t i = body; i < end; ++i) {
+        if (t[i].kind == Tok::Number && t[i].text.find_first_of("123456789") != std::string_view::npos) return false;
+        if (t[i].kind != Tok::Identifier) continue;
+        if (t[i].is("color") || t[i].is("vector") || t[i].is("point") || t[i].is("extern")) continue;
+        if (!t[i + 1].is("=") && !t[i + 1].is(";")) return false;
+    }
+    return true;
+}
+
+/// What a class has of a light, as places among its tokens; 0: none.
+struct Found {
+    size_t light = 0;
+    bool generates = false, shadows = false, surface = false;
+    bool domain = false; ///< generateSamples() has a parameter that lights of PRMan call so; layers of materials call theirs otherwise
+};
+
+Found methodsOf(const Tokens& t, size_t body, size_t end) {
+    constexpr std::array<std::string_view, 8> kOthers = {"surface", "lighting", "diffuselighting", "specularlighting",
+                                                         "displacement", "volume", "imager", "opacity"};
+    Found f;
+    int depth = 0;
+    for (size_t k = body + 1; k + 2 < end; ++k) {
+        if (t[k].is("{")) ++depth;
+        if (t[k].is("}")) --depth;
+        if (depth != 0 || !t[k].is("void") || !t[k + 2].is("(")) continue;
+        const size_t last = behind(t, k + 2);
+        if (t[k + 1].is("generateSamples")) { // (string; __radiancesample[])
+            bool samples = false;
+            int parameters = 1;
+            for (size_t i = k + 3; i + 1 < last; ++i) {
+                samples |= t[i].is("__radiancesample");
+                f.domain |= t[i].is("integrationdomain");
+                parameters += (t[i].is(";") || t[i].is(",")) && i + 2 < last;
+            }
+            f.generates |= samples && parameters == 2;
+        }
+        if (t[k + 1].is("light")) f.light = k + 1;
+        f.shadows |= t[k + 1].is("shadowSamples");
+        for (std::string_view o : kOthers) f.surface |= t[k + 1].is(o);
+    }
+    return f;
+}
+
+std::string withLimit(std::string text) {
+    static const std::string word = "MOST", most = std::to_string(limits::kLightTurns);
+    for (size_t at = text.find(word); at != std::string::npos; at = text.find(word, at)) text.replace(at, word.size(), most);
+    return text;
+}
+
+} // namespace
+
+void addSampledLights(SourceSet& sources, Preprocessed& p) {
+    if (std::none_of(p.tokens.begin(), p.tokens.end(), [](const Token& t) { return t.is("generateSamples"); })) return;
+    Tokens& t = p.tokens;
+    Tokens out;
+    std::vector<std::pair<size_t, size_t>> moved; // from this token on, so many more: the places of annotations
+    size_t done = 0;
+    const auto insert = [&](size_t before, const std::string& text) {
+        out.insert(out.end(), t.begin() + long(done), t.begin() + long(before));
+        done = before;
+        Preprocessed own = preprocess(sources, sources.add("<generateSamples>", withLimit(text)), {});
+        own.tokens.pop_back(); // the end
+        out.insert(out.end(), std::make_move_iterator(own.tokens.begin()), std::make_move_iterator(own.tokens.end()));
+        moved.push_back({before, out.size() - done});
+    };
+    for (size_t i = 0; i + 2 < t.size(); ++i) {
+        if (!t[i].is("class") || t[i + 1].kind != Tok::Identifier || !t[i + 2].is("(")) continue;
+        const size_t body = behind(t, i + 2);
+        if (body >= t.size() || !t[body].is("{")) continue;
+        const size_t end = behind(t, body);
+        if (end == t.size()) continue; // brackets that do not close, which the parser reports
+        const Found f = methodsOf(t, body, end);
+        if (!f.generates || (f.light ? !setsZero(t, f.light + 1) : f.surface || !f.domain)) continue;
+        if (f.light) t[f.light].text = "__light";
+        insert(i + 3, std::string(kOutputs) + (f.shadows ? kShadows : ""));
+        insert(end - 1, kLight);
+        i = end - 1;
+    }
+    if (done == 0) return;
+    out.insert(out.end(), t.begin() + long(done), t.end());
+    for (Annotation& a : p.annotations) {
+        size_t by = 0;
+        for (const auto& [from, shift] : moved)
+            if (a.token >= from) by = shift;
+        a.token += by;
+    }
+    p.tokens = std::move(out);
+}
+
+} // namespace alpenglow::rsl::front

@@ -62,7 +62,6 @@ private:
     std::map<const void*, InstanceRef> quiet_; ///< by the displacement that is not
     std::vector<InstanceRef> kept_;            ///< their addresses are keys
     std::map<std::pair<const void*, std::string>, InstanceRef> volumes_; ///< by the shader as the scene gave it and what overrides it
-    std::map<std::pair<const void*, std::string>, InstanceRef> volumes_; ///< by the shader as the scene gave it and what overrides it
     std::map<std::string, int> bindingByKey_;
     std::map<std::vector<const void*>, int> programs_;
     std::map<std::vector<int>, int> lightLists_;

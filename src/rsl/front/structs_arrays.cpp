@@ -309,8 +309,9 @@ void Lowering::measure(ExprPtr& e, List& pre) {
             best = i;
             break;
         }
-    e->args[0] = parts.empty() ? variable("", e->place) : whole(std::move(parts[best]));
-    if (!parts.empty() && all[best].type.array) e = joined(ExprOp::Div, std::move(e), number(all[best].type.array, e->place));
+    const Place place = e->place;
+    e->args[0] = parts.empty() ? variable("", place) : whole(std::move(parts[best]));
+    if (!parts.empty() && all[best].type.array) e = joined(ExprOp::Div, std::move(e), number(all[best].type.array, place));
 }
 
 /// {a, b, ...} for an array of structures, one list for each leaf.

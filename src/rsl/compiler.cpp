@@ -67,7 +67,7 @@ namespace {
 std::string coShaderKey(const KernelOptions& o) {
     std::string k;
     for (const CoShader& c : o.coShaders) {
-        k += '\1' + c.handle + '\2' + c.digest;
+        k += '\1' + c.handle + '\2' + c.digest + '\10' + c.space + (c.light ? "l" : "");
         for (const auto& name : c.computed) k += '\7' + name;
         for (const auto& [name, value] : c.strings) k += '\3' + name + '\4' + value;
         for (const auto& [name, value] : c.numbers) {

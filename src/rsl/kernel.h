@@ -75,6 +75,8 @@ struct CoShader {
     std::map<std::string, std::vector<float>> numbers;
     std::map<std::string, std::string> strings;
     std::vector<std::string> computed; ///< KernelOptions::computedParameters of this one
+    std::string space;                 ///< what the renderer calls its "shader" space; empty: that of the shader that calls
+    bool light = false;                ///< a light of the scene: what it sends and its outputs are the renderer's to say
 };
 
 struct KernelOptions {

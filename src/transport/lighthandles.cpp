@@ -2,20 +2,17 @@
 #include "base/category.h"
 #include "transport/answers.h"
 #include "transport/lightloop.h"
+#include "transport/lightobjects.h"
 #include <bit>
 #include <charconv>
 
 namespace alpenglow::transport {
 
-namespace {
-constexpr char kHandle[] = "light#"; // before the number of a light, in the handles that getlights() gives
-} // namespace
-
 /// -1: no light of this surface. Null: of no surface.
 static int numberOfLight(const SurfaceBinding* surface, const std::string& handle) {
-    if (handle.rfind(kHandle, 0) != 0 || !surface) return -1;
+    if (handle.rfind(kLightHandle, 0) != 0 || !surface) return -1;
     int n = -1;
-    const char* digits = handle.c_str() + sizeof kHandle - 1;
+    const char* digits = handle.c_str() + sizeof kLightHandle - 1;
     if (std::from_chars(digits, handle.c_str() + handle.size(), n).ec != std::errc()) return -1;
     const auto& on = surface->lights;
     return std::find(on.begin(), on.end(), n) == on.end() ? -1 : n;
@@ -50,7 +47,7 @@ void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, i
         return;
     }
     if (d.op == "currentlight") {
-        if (loop.light >= 0) each([&](int lane) { put(0, lane, std::bit_cast<float>(rsl::internString(kHandle + std::to_string(loop.light)))); });
+        if (loop.light >= 0) each([&](int lane) { put(0, lane, std::bit_cast<float>(rsl::internString(kLightHandle + std::to_string(loop.light)))); });
         return;
     }
     if (d.op == "getlights") { // rows: how many, then the handles
@@ -67,7 +64,7 @@ void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, i
                                                               " lights; the others are left out", {}, {}});
                         break;
                     }
-                    put(size_t(++n), lane, std::bit_cast<float>(rsl::internString(kHandle + std::to_string(i))));
+                    put(size_t(++n), lane, std::bit_cast<float>(rsl::internString(kLightHandle + std::to_string(i))));
                 }
             put(0, lane, float(n));
         });
@@ -79,7 +76,7 @@ void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, i
             if (const SurfaceBinding* surface = bindingOf(lane))
                 for (int i : surface->lights)
                     if (visible(world_->lights_[size_t(i)]) && world_->lights_[size_t(i)].handle == want) {
-                        put(0, lane, std::bit_cast<float>(rsl::internString(kHandle + std::to_string(i))));
+                        put(0, lane, std::bit_cast<float>(rsl::internString(kLightHandle + std::to_string(i))));
                         break;
                     }
         });

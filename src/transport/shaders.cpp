@@ -1,6 +1,7 @@
 // Shader calls of the scene made into programs with values, and those into kernels.
 #include "base/limits.h"
 #include "rsl/front/visit.h"
+#include "transport/lightobjects.h"
 #include "transport/world.h"
 #include <chrono>
 #include <filesystem>
@@ -182,18 +183,31 @@ InstanceRef WorldImpl::builtin(const std::string& name, rsl::ShaderKind kind, Di
     return instance(call, kind, d);
 }
 
-InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const std::map<std::string, scene::ShaderRef>& coshaders, Diagnostics& d) {
-    if (!shader || !shader->program->program().handles || coshaders.empty()) return shader;
+InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const std::map<std::string, scene::ShaderRef>& coshaders, Diagnostics& d,
+                                     const std::vector<int>& lights) {
+    if (!shader || !shader->program->program().handles) return shader;
+    std::vector<std::pair<std::string, scene::ShaderRef>> called(coshaders.begin(), coshaders.end());
+    if (const std::set<std::string> names = lights.empty() ? std::set<std::string>{} : calledOfLights(shader->program->program()); !names.empty())
+        for (int l : lights) {
+            const BoundLight& light = lights_[size_t(l)];
+            if (light.source && light.source->shader && light.instance && answers(*light.instance->program, names))
+                called.emplace_back(kLightHandle + std::to_string(l), light.source->shader);
+        }
+    if (called.empty()) return shader;
     std::vector<const void*> key{shader.get()};
-    for (const auto& [handle, call] : coshaders) key.push_back(call.get());
+    for (const auto& [handle, call] : called) key.push_back(call.get());
     InstanceRef& bound = withCoShaders_[key];
     if (bound) return bound;
     auto copy = std::make_shared<ShaderInstance>(*shader);
-    for (const auto& [handle, call] : coshaders) {
+    for (const auto& [handle, call] : called) {
         auto [i, fresh] = coShaders_.try_emplace(call.get());
-        if (fresh) i->second = instance(*call, rsl::ShaderKind::Surface, d, true);
+        Diagnostics said; // what is to be said of a light was said when it was bound
+        const bool light = !coshaders.count(handle);
+        if (fresh) i->second = instance(*call, rsl::ShaderKind::Surface, light ? said : d, true);
         if (!i->second) continue;
         rsl::CoShader c = rsl::ShaderCompiler::coShader(i->second->program, handle);
+        c.light = light;
+        if (!(i->second->toCurrent == shader->toCurrent)) c.space = spaceAt(i->second->toCurrent);
         for (const auto& [name, v] : i->second->parameters.numbers) c.numbers[name] = v;
         for (const auto& [name, v] : i->second->parameters.strings) c.strings[name] = v;
         c.computed = i->second->program->computedParameters(i->second->given, {});

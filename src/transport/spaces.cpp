@@ -1,4 +1,5 @@
 // Coordinate systems: the camera's own, named ones, and the matrices between them.
+#include "transport/lightobjects.h"
 #include "transport/world.h"
 #include <set>
 
@@ -43,12 +44,14 @@ void WorldImpl::setCamera(const scene::Options& o) {
 }
 bool WorldImpl::knowsSpace(const std::string& name) const {
     static const std::set<std::string> kOwn = {"current", "camera", "eye", "world", "screen", "NDC", "raster", "object", "shader"};
-    return kOwn.count(name) || frame_->coordinateSystems.count(name) || frame_->options.cameraSpaces.count(name);
+    Matrix m;
+    return placeOf(name, m) || kOwn.count(name) || frame_->coordinateSystems.count(name) || frame_->options.cameraSpaces.count(name);
 }
 
 bool WorldImpl::matrix(const std::string& from, const std::string& to, Matrix& out) const {
     auto toCurrent = [&](const std::string& name, Matrix& m) {
         if (name == "current" || name == "camera" || name == "eye") { m = Matrix{}; return true; }
+        if (placeOf(name, m)) return true;
         if (name == "world") { m = worldToCamera_; return true; }
         if (name == "screen") { m = inverse(cameraToScreen_); return true; }
         if (name == "NDC") { m = inverse(screenToNdc_) * inverse(cameraToScreen_); return true; }

@@ -71,7 +71,7 @@ bool SurfaceBinder::bindHitModes() {
 int SurfaceBinder::bind(const geometry::ShapeRef& shape) {
     const scene::Attributes& a = shape->attributes();
     SurfaceBinding b;
-    b.surface = world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Surface), a.coshaders, diagnostics_);
+    b.surface = world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Surface), a.coshaders, diagnostics_, a.lights);
     b.explicitSurface = b.surface != nullptr;
     if (!b.surface) b.surface = fallback_;
     b.displacement = world_.withCoShaders(instanceOf(a.displacement, rsl::ShaderKind::Displacement), a.coshaders, diagnostics_);

@@ -245,13 +245,15 @@ Inst* Builder::methodCall(const Expr& e) {
     const Kind kind = kindOf(type) == Kind::None ? Kind::Float : kindOf(type);
     return forHandle(*e.args[0], kind, [&](size_t i) -> Inst* {
         const CoShader& c = *instances_[i].binding;
+        if (c.light && e.text == "light" && (e.args.size() == 3 || (e.args.size() == 4 && e.args[3]->type == Type{Base::Color, 0})))
+            return lightMethod(e, leaves_.string(c.handle)); // with its samples and shadows
         const Function* f = methodOf(i, e);
         if (!certain_ && isSelf(i) && (!f || !c.shader->publics.count(e.text))) return zero(kind); // one of the others is meant
         const auto has = [&](size_t other) { return methodOf(other, e) && instances_[other].binding->shader->publics.count(e.text); };
         if (!certain_ && !has(i)) { // as long as another can be meant
             bool another = false;
             for (size_t n = 0; n < instances_.size(); ++n) another |= n != i && has(n);
-            if (another) {
+            if (another || c.light) {
                 complain(e.place, "co-shader '" + c.handle + "' (" + c.shader->name + ") has no public method '" + e.text + "' with " +
                                       std::to_string(e.args.size() - 1) + " arguments; the call does nothing");
                 return zero(kind);

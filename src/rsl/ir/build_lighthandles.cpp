@@ -18,7 +18,7 @@ Site question(const char* op, const Place& place) {
 } // namespace
 
 /// handle->light(L, Cl [, Ol]): L from the light to the surface, as the light's shader has it; under path with the shadow at P.
-/// What else a call gives is for shader objects whose methods light() take more; a light of the scene does not see it.
+/// What else a call gives is for shader objects whose methods light() take more (methodCall()); other lights do not see it.
 Inst* Builder::lightMethod(const Expr& e, Inst* handle) {
     if (e.text != "light" || e.args.size() < 3) return zero(Kind::Float);
     if (shader_.kind == ShaderKind::Light) {
@@ -28,7 +28,8 @@ Inst* Builder::lightMethod(const Expr& e, Inst* handle) {
     const auto colour = [&](const Expr& a) { return a.type == Type{Base::Color, 0} && a.kind == ExprKind::Variable; };
     const size_t asked = e.args.size() == 4 || (e.args.size() > 4 && colour(*e.args[3])) ? 4 : 3;
     if (e.args.size() > asked && options_.coShaders.empty())
-        warn(e.args[asked]->place, "a light gives L, Cl and Ol; the other arguments of light() keep what they hold");
+        warn(e.args[asked]->place, "only class lights whose light() has these parameters give more than L, Cl and Ol; "
+                                   "for others the arguments keep what they hold");
     const Type vector{Base::Vector, 0}, real{Base::Float, 0};
     Site s = question("lightcall", e.place);
     std::vector<Inst*> args;

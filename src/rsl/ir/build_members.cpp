@@ -60,6 +60,7 @@ Inst* Builder::memberAccess(const Expr& e) {
         const bool fits = s && !s->type.array &&
                           (kindOf(s->type) == kind || (kindOf(s->type) == Kind::Float && kind != Kind::String));
         if (!fits && !certain_ && isSelf(i)) return zero(kind);
+        if (c.light && (!fits || s->output)) return lightMember(leaves_.string(c.handle), leaves_.string(e.text), kind, nullptr);
         if (!fits) {
             error(e.place, "co-shader '" + c.handle + "' (" + c.shader->name + ") " +
                                (s ? "has '" + e.text + "' as " + toString(s->type) + ", not " + toString(e.type)

@@ -48,6 +48,8 @@ constexpr size_t kDirectExact = 4;
 // Weights of a triangle may be this far outside of it: twice what double arithmetic makes of a ray through a shared edge, so that none
 // slips between two triangles.
 constexpr double kEdge = 1e-12;
+// Neighbours that a ray meets along their edge are this far apart at most: single precision, in which Embree finds them.
+constexpr double kSame = 1e-6;
 
 } // namespace
 
@@ -93,10 +95,20 @@ struct Accel::Impl {
         return r.excludeShape == s && (r.excludePrim == kNone || r.excludePrim == prim);
     }
 
+    /// A ray that goes on behind a triangle through its edge has met the neighbours as well.
+    bool sameCrossing(const Ray& r, uint32_t s, double t, const Vec3& a, const Vec3& b, const Vec3& c) const {
+        if (!(t <= r.passed * (1 + kSame)) || r.excludeShape != s || r.excludePrim == kNone) return false;
+        const geometry::TriMesh& m = shapes[s]->mesh();
+        for (int k = 0; k < 3; ++k) // by place: meshes have a seam where they close
+            if (const Vec3& p = m.P[m.index[3 * size_t(r.excludePrim) + size_t(k)]]; p == a || p == b || p == c) return true;
+        return false;
+    }
+
     /// Whether a candidate counts; then q.best is it. t is ours.
     bool take(Query& q, uint32_t s, uint32_t prim, double t, double b1, double b2) const {
         const Ray& r = *q.ray;
         if (!(t > r.tnear && t < r.tfar)) return false;
+        if (t <= r.passed && (t < r.passed || std::pair(s, prim) <= std::pair(r.excludeShape, r.excludePrim))) return false;
         if (!q.any && !before(t, s, prim, q.best)) return false;
         const Shape& shape = *shapes[s];
         if (shape.oneSided() && r.sides != Sides::Both && (dot(shape.hitNormal(prim, b1, b2), Vec3d(r.dir)) >= 0) != (r.sides == Sides::Back)) return false;
@@ -120,7 +132,7 @@ struct Accel::Impl {
         const uint32_t* i = &m.index[3 * size_t(prim)];
         double t, b1, b2, outside;
         if (!meetTriangle(q.ray->org, q.ray->dir, m.P[i[0]], m.P[i[1]], m.P[i[2]], t, b1, b2, outside)) return;
-        if (!me.take(q, s, prim, t, b1, b2)) return;
+        if (me.sameCrossing(*q.ray, s, t, m.P[i[0]], m.P[i[1]], m.P[i[2]]) || !me.take(q, s, prim, t, b1, b2)) return;
         a->valid[0] = -1;
         if (!q.any) ray.tfar = far(q);
     }
@@ -245,7 +257,7 @@ void Accel::Impl::meetDirect(Query& q) const {
         if (!visible(r, t.shape) || excluded(r, t.shape, t.prim)) continue;
         double at, b1, b2, outside;
         if (!meetTriangle(r.org, r.dir, t.a, t.b, t.c, at, b1, b2, outside) || outside > kEdge) continue;
-        if (take(q, t.shape, t.prim, at, b1, b2) && q.any) return;
+        if (!sameCrossing(r, t.shape, at, t.a, t.b, t.c) && take(q, t.shape, t.prim, at, b1, b2) && q.any) return;
     }
     double dd = dot(d, d);
     for (const Ball& b : balls) {
@@ -387,7 +399,7 @@ bool Accel::Impl::intersectOne(const Ray& r, Hit& hit) const {
         rtcIntersect1(scene, &q.rtc, &rh);
     }
     if (q.best.shape == kNone) return false;
-    hit = {float(q.best.t), q.best.shape, q.best.prim, q.best.b1, q.best.b2};
+    hit = {float(q.best.t), q.best.shape, q.best.prim, q.best.b1, q.best.b2, q.best.t};
     return true;
 }
 

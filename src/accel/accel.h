@@ -31,6 +31,9 @@ struct Ray {
     float time = 0;                  ///< shutter time; nothing moves yet
     uint32_t mask = kAll;            ///< meets shapes whose visibility shares a bit
     uint32_t excludeShape = kNone, excludePrim = kNone; ///< a surface to pass through: one primitive; prim kNone: the whole shape
+    /// Hit::distance of the excluded primitive, for a ray that goes on behind it: of what lies at one distance it has met those that come
+    /// first in the order of shapes and primitives, and neighbours in the mesh, whose edge or corner it went through. Negative: it begins.
+    double passed = -1;
     Sides sides = Sides::Front;
     const uint8_t* only = nullptr;   ///< by shape: 0 is passed through; null: all are considered
     float level = 0.5f;              ///< meets shapes within whose levels it lies: setLevels()
@@ -42,6 +45,7 @@ struct Hit {
     uint32_t shape = kNone;          ///< index into the vector the Accel was built from
     uint32_t prim = 0;
     double b1 = 0, b2 = 0;
+    double distance = 0;             ///< t before it was rounded
     bool valid() const { return shape != kNone; }
 };
 

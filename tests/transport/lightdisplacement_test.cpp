@@ -8,7 +8,7 @@ using namespace alpenglow::transport::testing;
 namespace {
 
 // A small one: it is diced.
-const char kTile[] = "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2]\n";
+const char kTile[] = "ShadingRate 25 Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2]\n";
 
 class LightDisplacement : public ::testing::TestWithParam<Hider> {
 protected:

@@ -113,4 +113,14 @@ TEST(LightObjects, NamesOfPlacesKeepEveryDigit) {
     for (const char* name : {"shader", "shader@", "shader@1 2 3", "world", ""}) EXPECT_FALSE(placeOf(name, back)) << name;
 }
 
+TEST(LightObjects, ALightWithoutMethodsSaysSo) {
+    writeShader("plain", "light plain() { solar(vector \"world\" (0, -1, 0), 0) Cl = 1; }\n");
+    writeShader("asksplain", "surface asksplain(float any = 1;) { shader all[] = getlights(); Oi = 1; Ci = .25;\n  if (any == 1) Ci += all[0]->twice(3); }\n");
+    for (const auto& [given, said] : {std::pair{"", 1}, {" \"any\" 0", 0}}) {
+        Scene s("WorldBegin\nSides 2\nLightSource \"plain\" 1\nSurface \"asksplain\"" + std::string(given) + "\n" + kFloor + "WorldEnd\n", under(Hider::Hidden));
+        EXPECT_NEAR(s.one(kView)[0], .25f, 1e-6f);
+        EXPECT_EQ(s.messages().find("asksplain.sl:2:29") != std::string::npos && s.messages().find("has no method 'twice'") != std::string::npos, said == 1) << s.messages();
+    }
+}
+
 } // namespace

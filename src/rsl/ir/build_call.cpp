@@ -283,7 +283,7 @@ Inst* Builder::isOutput(const Expr& e) {
     if (parameter(a)) name = a.symbol->name;
     else if (a.kind == ExprKind::Index && parameter(*a.args[0]) && a.args[0]->type.array) { // an element: which, if that is known
         Inst* at = expr(*a.args[1], Kind::Float);
-        name = a.args[0]->symbol->name + (isConst(at) ? "[" + std::to_string(static_cast<int>(at->numbers[0])) + "]" : "");
+        name = a.args[0]->symbol->name + (isConst(at) ? "[" + indexText(at->numbers[0]) + "]" : "");
     }
     Inst* const text = name.empty() && a.type == Type{Base::String, 0} ? expr(a) : nullptr;
     if (text && text->op != Op::ConstString) { // one of those that are asked for

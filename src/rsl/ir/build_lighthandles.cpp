@@ -20,7 +20,14 @@ Site question(const char* op, const Place& place) {
 /// handle->light(L, Cl [, Ol]): L from the light to the surface, as the light's shader has it; under path with the shadow at P.
 /// What else a call gives is for shader objects whose methods light() take more (methodCall()); other lights do not see it.
 Inst* Builder::lightMethod(const Expr& e, Inst* handle) {
-    if (e.text != "light" || e.args.size() < 3) return zero(Kind::Float);
+    if (e.text != "light" || e.args.size() < 3) { // null is null; another handle is that of a shader without methods
+        Inst* some = emit(Op::NotEqual, Kind::Bool, {handle, leaves_.string("")});
+        branch(some, [&] {
+            complain(e.place, "the shader of this handle has no method '" + e.text + "' with these arguments, and the call gives 0");
+            return std::vector<Inst*>{zero(Kind::Float)};
+        }, [&] { return std::vector<Inst*>{zero(Kind::Float)}; });
+        return zero(Kind::Float);
+    }
     if (shader_.kind == ShaderKind::Light) {
         warn(e.place, "light() of another light is not yet available in a light shader; its variables keep what they hold");
         return zero(Kind::Float);

@@ -244,7 +244,7 @@ Inst* Builder::memberElement(const Expr& e) {
                            (s ? "has '" + member.text + "' as " + toString(s->type) + ", which has no element of type " + toString(e.type)
                               : "has no public member '" + member.text + "'"));
         return zero(kind);
-    }, [&](Inst* handle) { return isConst(at) ? lightMember(handle, leaves_.string(member.text + "[" + std::to_string(static_cast<int>(at->numbers[0])) + "]"), kind, nullptr) : zero(kind); });
+    }, [&](Inst* handle) { return isConst(at) ? lightMember(handle, leaves_.string(member.text + "[" + indexText(at->numbers[0]) + "]"), kind, nullptr) : zero(kind); });
 }
 
 /// getvar(handle, name [, variable]): 1 when there is such a member.

@@ -2,7 +2,9 @@
 #pragma once
 #include "rsl/ir/build.h"
 #include "rsl/ir/edit.h"
+#include <cmath>
 #include <deque>
+#include <fmt/format.h>
 #include <functional>
 #include <map>
 #include <optional>
@@ -17,6 +19,9 @@ inline bool returnsArray(const Expr& e) { return e.kind == ExprKind::FunctionCal
 
 /// A lobe call to be inlined even under path: its place.
 using DirectSet = std::set<std::tuple<int, int, int>>;
+
+/// A constant index in words, of whatever size.
+inline std::string indexText(float x) { return fmt::format("{:.9g}", std::trunc(x) + 0.f); }
 
 class Builder {
 public:

@@ -95,12 +95,16 @@ struct Accel::Impl {
         return r.excludeShape == s && (r.excludePrim == kNone || r.excludePrim == prim);
     }
 
-    /// A ray that goes on behind a triangle through its edge has met the neighbours as well.
+    /// A ray that goes on behind a triangle through its edge has met the neighbours as well, those that show it the same side: it leaves a
+    /// small thing far away right behind where it came in.
     bool sameCrossing(const Ray& r, uint32_t s, double t, const Vec3& a, const Vec3& b, const Vec3& c) const {
         if (!(t <= r.passed * (1 + kSame)) || r.excludeShape != s || r.excludePrim == kNone) return false;
         const geometry::TriMesh& m = shapes[s]->mesh();
+        const uint32_t* last = &m.index[3 * size_t(r.excludePrim)];
+        const auto side = [&](const Vec3& p, const Vec3& q, const Vec3& w) { return dot(cross(Vec3d(q) - Vec3d(p), Vec3d(w) - Vec3d(p)), Vec3d(r.dir)) > 0; };
+        if (side(a, b, c) != side(m.P[last[0]], m.P[last[1]], m.P[last[2]])) return false;
         for (int k = 0; k < 3; ++k) // by place: meshes have a seam where they close
-            if (const Vec3& p = m.P[m.index[3 * size_t(r.excludePrim) + size_t(k)]]; p == a || p == b || p == c) return true;
+            if (const Vec3& p = m.P[last[k]]; p == a || p == b || p == c) return true;
         return false;
     }
 

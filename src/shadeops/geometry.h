@@ -16,20 +16,24 @@ template <class T> AL_INLINE vf midRange(const Triple<T>& v) {
     const vf x = value(v.x), y = value(v.y), z = value(v.z), square = mad(x, x, mad(y, y, z * z));
     return select(square < 0x1p-100f, vf(0x1p100f), select(square > 0x1p120f, vf(0x1p-70f), vf(1)));
 }
+/// What undoes midRange().
+AL_INLINE vf fromMidRange(vf k) { return select(k > 1, vf(0x1p-100f), select(k < 1, vf(0x1p70f), vf(1))); }
+template <class T> AL_INLINE Triple<T> scaled(const Triple<T>& v, vf k) { return {v.x * k, v.y * k, v.z * k}; }
 template <class T> AL_INLINE T opLength(const Triple<T>& v) {
-    const vf k = midRange(v), back = select(k > 1, vf(0x1p-100f), select(k < 1, vf(0x1p70f), vf(1)));
-    return length(Triple<T>{v.x * k, v.y * k, v.z * k}) * back;
+    const vf k = midRange(v);
+    return length(scaled(v, k)) * fromMidRange(k);
 }
 template <class T> AL_INLINE T opDistance(const Triple<T>& a, const Triple<T>& b) { return opLength(b - a); }
 template <class T> AL_INLINE Triple<T> opNormalize(const Triple<T>& v) {
-    const vf k = midRange(v);
-    return normalize(Triple<T>{v.x * k, v.y * k, v.z * k});
+    return normalize(scaled(v, midRange(v)));
 }
 template <class T> AL_INLINE T opPtlined(const Triple<T>& a, const Triple<T>& b, const Triple<T>& q) {
     const Triple<T> d = b - a, e = q - a;
-    const T t = divide(dot(d, e), dot(d, d));
+    const vf kd = midRange(d), ke = midRange(e);
+    const Triple<T> dm = scaled(d, kd), em = scaled(e, ke);
+    const T t = divide(dot(dm, em), dot(dm, dm)) * kd * fromMidRange(ke);
     const T s = larger(T(vf(0)), smaller(t, T(vf(1))));
-    return length(e - times(d, s));
+    return opLength(e - times(d, s));
 }
 
 /// Rodrigues' formula about the line through a along b - a.

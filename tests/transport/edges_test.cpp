@@ -1,6 +1,7 @@
 // Rays through the edges and corners of meshes that let light through meet them once: a pane lets through what its opacity says also where
 // its two triangles meet, and where pieces of a displaced or closed surface do.
 #include "transport/floorscene.h"
+#include <fmt/format.h>
 
 using namespace alpenglow;
 using namespace alpenglow::transport;
@@ -43,6 +44,18 @@ TEST(Edges, TwoPanesAtOnePlaceAreTwo) {
     // A closed box: in at the top, out at the bottom, along its edges and its middle.
     const std::string box = pane + "Sides 2\nPointsPolygons [4 4 4 4 4 4] [0 1 2 3  4 7 6 5  0 4 5 1  1 5 6 2  2 6 7 3  3 7 4 0] \"P\" [-1 1 -1  -1 1 1  1 1 1  1 1 -1  -1 .5 -1  -1 .5 1  1 .5 1  1 .5 -1]\n";
     for (const float x : {0.f, .25f, .37f, -.5f}) EXPECT_NEAR(through(box, x, x), .25f, 1e-5f) << x;
+}
+
+// A box of half a thousandth, a thousand away on the slope of the light: in at the bottom, out at a side that touches it.
+TEST(Edges, SmallThingsFarAwayHaveTwoSides) {
+    writeShaders();
+    std::string corners;
+    const double h = 1. / 4096;
+    for (int k = 0; k < 8; ++k) corners += fmt::format("{:.17g} {:.17g} {:.17g} ", 1000 + (k & 1 ? h : -h), 1000 + (k & 2 ? h : -h), k & 4 ? h : -h);
+    Scene s(world("LightSource \"distantlight\" 1 \"point from\" [1 1 0] \"point to\" [0 0 0]\nAttributeBegin\nSurface \"lets\"\nSides 2\n"
+                  "PointsPolygons [4 4 4 4 4 4] [0 1 3 2  4 6 7 5  0 4 5 1  2 3 7 6  0 2 6 4  1 5 7 3] \"P\" [" + corners + "]\nAttributeEnd\nSurface \"matte\"\n" + kFloor), withShaders(Hider::Path));
+    for (const float x : {2.4e-4f, -2.4e-4f})
+        for (const float z : {1e-4f, -1e-4f}) EXPECT_NEAR(s.one(rayTo({x + .3f, .2f, z - .4f}, {x, 0, z}))[0], .25f * std::sqrt(.5f), 1e-4f) << x << " " << z;
 }
 
 } // namespace

@@ -54,18 +54,6 @@ constexpr const char* kIndirect = R"(
     }
 )";
 
-using Tokens = std::vector<Token>;
-
-/// Behind the bracket that closes the one at `open`; the end of the text if there is none.
-size_t behind(const Tokens& t, size_t open) {
-    int depth = 0;
-    for (size_t i = open; i < t.size(); ++i) {
-        if (t[i].is("(") || t[i].is("{") || t[i].is("[")) ++depth;
-        if ((t[i].is(")") || t[i].is("}") || t[i].is("]")) && --depth == 0) return i + 1;
-    }
-    return t.size();
-}
-
 struct Range { size_t begin, end; };
 
 std::vector<Range> arguments(const Tokens& t, size_t open, size_t end) {

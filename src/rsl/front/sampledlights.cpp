@@ -11,8 +11,6 @@ namespace alpenglow::rsl::front {
 
 namespace {
 
-using Tokens = std::vector<Token>;
-
 constexpr const char* kOutputs = "output varying vector __sentL[MOST] = {0}; output varying color __sentCl[MOST] = {0};";
 /// Where the class wants shadows: shadowSamples() of PRMan.
 constexpr const char* kShadows = "uniform float __sentShadows = 1;";
@@ -53,16 +51,6 @@ constexpr const char* kLight = R"(
         Cl = sum;
     }
 )";
-
-/// Behind the bracket that closes the one at `open`; the end of the text if there is none.
-size_t behind(const Tokens& t, size_t open) {
-    int depth = 0;
-    for (size_t i = open; i < t.size(); ++i) {
-        if (t[i].is("(") || t[i].is("{") || t[i].is("[")) ++depth;
-        if ((t[i].is(")") || t[i].is("}") || t[i].is("]")) && --depth == 0) return i + 1;
-    }
-    return t.size();
-}
 
 /// Whether the method with parameters at `open` does nothing but set something to zero: it only says that the class is a light.
 bool setsZero(const Tokens& t, size_t open) {

@@ -38,7 +38,7 @@ template <class T> AL_INLINE T opPtlined(const Triple<T>& a, const Triple<T>& b,
 
 /// Rodrigues' formula about the line through a along b - a.
 template <class T> AL_INLINE Triple<T> opRotatePoint(const Triple<T>& q, const T& angle, const Triple<T>& a, const Triple<T>& b) {
-    const Triple<T> k = normalize(b - a), d = q - a;
+    const Triple<T> k = opNormalize(b - a), d = q - a;
     const T c = cosine(angle), s = sine(angle);
     const Triple<T> r = mad3(k, dot(k, d) * (vf(1) - c), mad3(cross(k, d), s, times(d, c)));
     return select3(value(dot(k, k)) == 0, q, a + r);

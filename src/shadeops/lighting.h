@@ -8,7 +8,7 @@
 namespace alpenglow::rsl::AL_NAMESPACE {
 
 template <class T> AL_INLINE Triple<T> opSpecularBrdf(const Triple<T>& l, const Triple<T>& n, const Triple<T>& v, const T& roughness) {
-    const T cosine = larger(T(vf(0)), dot(n, normalize(normalize(l) + v)));
+    const T cosine = larger(T(vf(0)), dot(n, opNormalize(opNormalize(l) + v)));
     const T p = power(cosine, divide(T(vf(kSpecularExponent)), roughness));
     const T r = select(value(roughness) > 0, p, T(vf(0)));
     return {r, r, r};

@@ -1,6 +1,7 @@
 // Matrices: rsl.md 10.3 (seed 6.4.3). Row vectors, p' = p M, translation in the last row, as base/matrix.h.
 #pragma once
 #include "shadeops/call.h"
+#include "shadeops/geometry.h"
 
 namespace alpenglow::rsl::AL_NAMESPACE {
 
@@ -23,7 +24,7 @@ template <class T> AL_INLINE Matrix<T> opScale(const Matrix<T>& a, const Triple<
 }
 /// Rows of the rotation: cos I + (1 - cos) k k' + sin [k], so that a positive angle about z takes x to y.
 template <class T> AL_INLINE Matrix<T> opRotateMatrix(const Matrix<T>& a, const T& angle, const Triple<T>& axis) {
-    const Triple<T> k = normalize(axis);
+    const Triple<T> k = opNormalize(axis);
     const T c = cosine(angle), s = sine(angle), d = vf(1) - c;
     const T xy = k.x * k.y * d, yz = k.y * k.z * d, zx = k.z * k.x * d;
     const T row[9] = {mad(k.x * k.x, d, c), xy + k.z * s, zx - k.y * s, xy - k.z * s, mad(k.y * k.y, d, c),

@@ -71,8 +71,9 @@ float smooth(float lo, float hi, float x) {
 float blend(float x, float y, float alpha) { return std::fma(y, alpha, x * (1 - alpha)); }
 
 float segmentDistance(const V3& a, const V3& b, const V3& q) {
-    const V3 d = minus(b, a), e = minus(q, a);
-    return length(minus(e, times(d, greater(0, lesser(over(dot(d, e), dot(d, d)), 1)))));
+    const V3 d = minus(b, a), e = minus(q, a), dm = times(d, midRange(d)), em = times(e, midRange(e));
+    const float t = over(dot(dm, em), dot(dm, dm)) * midRange(d) / midRange(e);
+    return length(minus(e, times(d, greater(0, lesser(t, 1)))));
 }
 
 V3 refracted(const V3& i, const V3& n, float eta) {

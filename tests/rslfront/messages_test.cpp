@@ -99,6 +99,44 @@ TEST(Messages, CandidatesSayWhyNot) {
                                         "candidate float half(point): argument 1 is string, not point"}));
 }
 
+/// By the time calls are checked a structure is as many values as it has members; who reads the message wrote one.
+TEST(Messages, StructuresInCallsAreWhatWasWritten) {
+    const std::string structs = "struct S { float a = 1; color b = 2; float k[3]; public void put(float x; color c) { a = x; } }\n"
+                                "struct T { S s[2]; float t; }\n"
+                                "float f(S s; float x) { return x * s->a; }\n"
+                                "T g(output S s[]; string t) { T r; return r; }\n";
+    const auto told = [&](const std::string& statements) {
+        const auto c = compileSnippet(structs + "surface s() { S s, q[3]; " + statements + " }\n");
+        EXPECT_EQ(c.errors(), 1) << c.text();
+        return c.messages.empty() ? Diagnostic{} : c.messages[0];
+    };
+    Diagnostic d = told("s->put(1);");
+    EXPECT_EQ(d.message, "'S->put' cannot be called with (float)");
+    EXPECT_EQ(d.notes, (Ids{"candidate void S->put(float, color): it takes 2 arguments, not 1"}));
+    EXPECT_EQ(d.hint, "it can be called as void S->put(float, color)");
+    d = told("q[1]->put(\"x\", 1);");
+    EXPECT_EQ(d.notes, (Ids{"candidate void S->put(float, color): argument 1 is string, not float"}));
+    d = told("s->put();");
+    EXPECT_EQ(d.message, "'S->put' cannot be called without arguments");
+    d = told("Ci = f(s);");
+    EXPECT_EQ(d.message, "'f' cannot be called with (S)");
+    EXPECT_EQ(d.notes, (Ids{"candidate float f(S, float): it takes 2 arguments, not 1"}));
+    d = told("Ci = f(s, \"x\");");
+    EXPECT_EQ(d.notes, (Ids{"candidate float f(S, float): argument 2 is string, not float"}));
+    d = told("T r = g(q, 1);");
+    EXPECT_EQ(d.message, "'g' cannot be called with (S[3], float)");
+    EXPECT_EQ(d.hint, "it can be called as T g(output S[], string)");
+}
+
+TEST(Messages, SpacesOfMapsAreNamesOrMatrices) {
+    const auto c = compileSnippet("surface s(matrix m = 1; string e = \"\") {\n"
+                                  "    Ci = trace(P, I, \"environmentmap\", e, \"environmentspace\", m) +\n"
+                                  "         occlusion(P, N, 16, \"environmentmap\", e, \"environmentspace\", m) +\n"
+                                  "         occlusion(P, N, 16, \"environmentspace\", \"shader\");\n}\n");
+    EXPECT_EQ(c.errors(), 0) << c.text();
+    EXPECT_EQ(compileSnippet("surface s() { Ci = trace(P, I, \"environmentspace\", N); }\n").errors(), 1);
+}
+
 TEST(Messages, CandidatesAreBounded) {
     std::string text;
     for (int k = 1; k < 3 * limits::kCandidateNotes; ++k) {

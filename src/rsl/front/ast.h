@@ -28,6 +28,15 @@ struct Function;
 using ExprPtr = std::unique_ptr<Expr>;
 using StmtPtr = std::unique_ptr<Stmt>;
 
+/// The first of the members that stand where one structure was written, in a call or among the parameters of a function. For
+/// messages, which show what was written.
+struct Whole {
+    int structure = -1; ///< by its number in Program::structs; -1: no structure begins here
+    int members = 0;    ///< from here on
+    int array = 0;      ///< as Type::array
+    bool self = false;  ///< what a method is called for, or the result of a function: neither is an argument
+};
+
 /// A variable of any origin. Address identity: two uses of one variable share the Symbol.
 struct Symbol {
     enum class Origin : uint8_t { Local, ShaderParameter, FunctionParameter, Global };
@@ -43,6 +52,7 @@ struct Symbol {
     bool resizable = false;   ///< `float x[]`, local or a parameter of a function: its length may change
     bool isExtern = false;    ///< only between parser and checker, which puts the outer variable in its place
     Place place;
+    Whole whole{}; ///< of a parameter of a function
 };
 
 enum class ExprKind : uint8_t {
@@ -75,6 +85,7 @@ struct Expr {
     bool varying = true;              ///< by declaration and operands; the IR infers more
     Place place;
     bool handle = false;              ///< Cast to `shader`, and the literal null (a String): a handle, no text
+    Whole whole{};                    ///< of an argument
     int height = 1;                   ///< of this tree; never above limits::kTreeHeight, so recursion over it is safe
     double number = 0;
     std::string text;                 ///< String; callee name before binding

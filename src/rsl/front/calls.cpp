@@ -6,19 +6,6 @@
 
 namespace alpenglow::rsl::front {
 
-namespace {
-
-std::string typeText(Type t, bool handle) { return handle ? "shader" + toString(t).substr(6) : toString(t); }
-
-std::string signatureText(const Function& f) {
-    std::string s = typeText(f.result, f.handle) + " " + f.name + "(";
-    for (const Symbol* p : f.parameters)
-        s += (p == f.parameters[0] ? "" : ", ") + std::string(p->output ? "output " : "") + typeText(p->type, p->handle);
-    return s + ")";
-}
-
-} // namespace
-
 /// What the renderer's own functions take for handles stands in their texts; arrays and what is put out can be either.
 std::vector<Checker::ParameterView> Checker::views(const Signature& s, const Shadeop& op) {
     std::vector<ParameterView> v;
@@ -33,7 +20,7 @@ std::vector<Checker::ParameterView> Checker::views(const Signature& s, const Sha
 
 std::vector<Checker::ParameterView> Checker::views(const Function& f) {
     std::vector<ParameterView> v;
-    for (const Symbol* p : f.parameters) v.push_back({p->type, p->output, p->handle ? Handle::Shader : Handle::Text});
+    for (const Symbol* p : f.parameters) v.push_back({p->type, p->output, p->handle ? Handle::Shader : Handle::Text, p->whole});
     return v;
 }
 
@@ -237,21 +224,6 @@ void Checker::preferArray(const Expr& e, Type wanted) {
             info.array = c.result;
             info.cost.fill(kNever);
         }
-}
-
-void Checker::noMatch(Expr& e, const std::vector<std::string>& candidates, std::vector<std::string> notes,
-                      bool outputsOnly) {
-    std::string given;
-    for (auto& a : e.args) given += (given.empty() ? "" : ", ") + describe(*a);
-    std::string hint = "it can be called as";
-    for (size_t i = 0; i < candidates.size() && i < 6; ++i) hint += (i ? "; " : " ") + candidates[i];
-    if (candidates.size() > 6) hint += "; and " + std::to_string(candidates.size() - 6) + " more";
-    const std::string what = outputsOnly ? "an output argument of '" + e.text + "' must be a variable of the same type"
-                             : e.args.empty() ? "'" + e.text + "' cannot be called without arguments"
-                                              : "'" + e.text + "' cannot be called with (" + given + ")";
-    for (const auto& p : program_.plugins)
-        if (p->find(e.text)) notes.push_back("'" + e.text + "' is a function of plug-in \"" + p->name + "\": " + p->path);
-    sources_.error(e.place, what, hint, std::move(notes));
 }
 
 void Checker::settleCall(ExprPtr& pointer, Type result) {

@@ -172,7 +172,9 @@ void Checker::settlePairs(Expr& e, size_t positional, const Shadeop* op) {
             names.push_back(o.name);
             if (o.name == pair.name) optional = &o;
         }
-        if (info.any) {
+        // A space is named, or given as a matrix: PRMan takes what stands there.
+        const bool space = optional && optional->type == Type{Base::String, 0} && pair.name.ends_with("space") && cheapest(info) == Base::Matrix;
+        if (info.any || space) {
             settleCheapest(value);
         } else if (!optional) {
             // Names with a prefix are messages ("light:x"), those of bake3d and texture3d are channels.

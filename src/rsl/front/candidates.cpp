@@ -1,14 +1,74 @@
 // Why a function or shadeop does not fit a call: the words behind each candidate of a failed overload.
 #include "rsl/front/checker.h"
+#include <algorithm>
+#include <utility>
 
 namespace alpenglow::rsl::front {
 
 namespace {
+
 std::string counted(size_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); }
+
+std::string typeText(Type t, bool handle) { return handle ? "shader" + toString(t).substr(6) : toString(t); }
+
+/// What was written at one place among arguments or parameters: a value, or a structure, which by now is as many as it has members.
+struct Written {
+    size_t at;
+    bool structure;
+};
+
+/// `wholeAt(i)`: what the i-th of them says of a structure that begins there.
+template <class F> std::vector<Written> asWritten(size_t count, F wholeAt) {
+    std::vector<Written> all;
+    for (size_t i = 0; i < count;) {
+        const Whole& w = wholeAt(i);
+        if (!w.self) all.push_back({i, w.structure >= 0});
+        i += size_t(std::max(w.members, 1));
+    }
+    return all;
+}
+
 } // namespace
+
+std::string Checker::structureText(const Whole& w) const {
+    const bool known = w.structure >= 0 && size_t(w.structure) < program_.structs.size();
+    return (known ? program_.structs[size_t(w.structure)].name : "a structure") +
+           (w.array ? "[" + (w.array > 0 ? std::to_string(w.array) : "") + "]" : "");
+}
+
+std::string Checker::signatureText(const Function& f) const {
+    const auto parameters = asWritten(f.parameters.size(), [&](size_t i) { return f.parameters[i]->whole; });
+    std::string result = typeText(f.result, f.handle), list;
+    for (const Symbol* p : f.parameters)
+        if (p->whole.self && p->name.starts_with("(result)")) result = structureText(p->whole);
+    for (const Written& w : parameters) {
+        const Symbol& p = *f.parameters[w.at];
+        list += (list.empty() ? "" : ", ") + std::string(p.output ? "output " : "") +
+                (w.structure ? structureText(p.whole) : typeText(p.type, p.handle));
+    }
+    return result + " " + f.name + "(" + list + ")";
+}
 
 std::string Checker::whyNot(const std::vector<ParameterView>& parameters, bool repeats, bool pairs, Expr& call) {
     const size_t n = call.args.size();
+    const auto given = asWritten(n, [&](size_t i) { return call.args[i]->whole; });
+    const auto taken = asWritten(parameters.size(), [&](size_t i) { return parameters[i].whole; });
+    if (given.size() != n || taken.size() != parameters.size()) {
+        if (given.size() != taken.size()) return "it takes " + counted(taken.size(), "argument") + ", not " + std::to_string(given.size());
+        for (size_t k = 0; k < given.size(); ++k) {
+            Expr& a = *call.args[given[k].at];
+            const ParameterView& p = parameters[taken[k].at];
+            const bool plain = !given[k].structure && !taken[k].structure;
+            if (!plain && given[k].structure == taken[k].structure && (a.whole.array != 0) == (p.whole.array != 0)) continue;
+            if (plain && argumentCost(a, p, false) < kNever) continue;
+            const std::string which = "argument " + std::to_string(k + 1);
+            if (plain && p.output && !isVariable(a)) return which + " is an output and must be a variable";
+            return which + " is " + (given[k].structure ? structureText(a.whole) : describe(a)) + ", not " +
+                   (taken[k].structure ? structureText(p.whole) : named(p.type, p.handle)) +
+                   (p.output ? ", and what is put out is not converted" : "");
+        }
+        return "a structure does not fit";
+    }
     if (n < parameters.size())
         return "it takes " + std::string(repeats || pairs ? "at least " : "") + counted(parameters.size(), "argument") + ", not " +
                std::to_string(n);
@@ -27,6 +87,24 @@ std::string Checker::whyNot(const std::vector<ParameterView>& parameters, bool r
     if (i == n) return "";
     if (!pairs) return "it takes " + counted(parameters.size(), "argument") + ", not " + std::to_string(n);
     return "behind argument " + std::to_string(i) + " stand pairs: a name in quotes, then its value";
+}
+
+void Checker::noMatch(Expr& e, const std::vector<std::string>& candidates, std::vector<std::string> notes,
+                      bool outputsOnly) {
+    std::string given;
+    for (const Written& w : asWritten(e.args.size(), [&](size_t i) { return e.args[i]->whole; })) {
+        Expr& a = *e.args[w.at];
+        given += (given.empty() ? "" : ", ") + (w.structure ? structureText(a.whole) : describe(a));
+    }
+    std::string hint = "it can be called as";
+    for (size_t i = 0; i < candidates.size() && i < 6; ++i) hint += (i ? "; " : " ") + candidates[i];
+    if (candidates.size() > 6) hint += "; and " + std::to_string(candidates.size() - 6) + " more";
+    const std::string what = outputsOnly ? "an output argument of '" + e.text + "' must be a variable of the same type"
+                             : given.empty() ? "'" + e.text + "' cannot be called without arguments"
+                                              : "'" + e.text + "' cannot be called with (" + given + ")";
+    for (const auto& p : program_.plugins)
+        if (p->find(e.text)) notes.push_back("'" + e.text + "' is a function of plug-in \"" + p->name + "\": " + p->path);
+    sources_.error(e.place, what, hint, std::move(notes));
 }
 
 } // namespace alpenglow::rsl::front

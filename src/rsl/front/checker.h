@@ -40,7 +40,7 @@ private:
         std::vector<Choice> choices;
         Info() { cost.fill(kNever); }
     };
-    struct ParameterView { Type type; bool output; Handle handle = Handle::Text; };
+    struct ParameterView { Type type; bool output; Handle handle = Handle::Text; Whole whole{}; };
     static std::vector<ParameterView> views(const Signature&, const Shadeop&);
     static std::vector<ParameterView> views(const Function&);
     struct Scope {
@@ -89,6 +89,9 @@ private:
     static void bestByArguments(std::vector<Choice>&);
     void preferArray(const Expr&, Type wanted);
     void noMatch(Expr& call, const std::vector<std::string>& candidates, std::vector<std::string> notes, bool outputsOnly);
+    /// A structure as the shader names it, and as an array.
+    std::string structureText(const Whole&) const;
+    std::string signatureText(const Function&) const; ///< as the shader writes it, structures by their names
     /// Why these parameters do not fit the call, in words; "" when they do.
     std::string whyNot(const std::vector<ParameterView>&, bool repeats, bool pairs, Expr& call);
     std::string describe(Expr&);

@@ -19,6 +19,7 @@ struct Cloner {
         c->varying = e.varying;
         c->handle = e.handle;
         c->place = e.place;
+        c->whole = e.whole;
         c->height = e.height;
         c->number = e.number;
         c->text = !rename.first.empty() && e.text == rename.first ? rename.second : e.text;

@@ -105,6 +105,8 @@ private:
     static bool path(const Expr& e);
     void checkArguments(Expr& call);
     /// `after`: what must happen when the call is done.
+    /// What the first of the members that stand for a structure says of it.
+    static Whole wholeOf(Type, size_t members, bool self);
     void arguments(Expr& call, List& pre, List& after);
     void handleArguments(Expr& call, List& pre);
     Base wanted(const std::string& function, size_t arguments, size_t i, Type have) const;

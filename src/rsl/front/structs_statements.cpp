@@ -165,7 +165,9 @@ void Lowering::function(Function& f) {
             parameters.push_back(p);
             continue;
         }
+        const size_t first = parameters.size();
         for (Symbol* part : split(*p)) parameters.push_back(part);
+        if (first < parameters.size()) parameters[first]->whole = wholeOf(p->type, parameters.size() - first, p->name == "this");
     }
     if (isStruct(f.result)) {
         for (const Leaf& l : leaves(f.result)) {
@@ -176,6 +178,7 @@ void Lowering::function(Function& f) {
             results_.push_back(r);
             parameters.push_back(r);
         }
+        if (!results_.empty()) results_[0]->whole = wholeOf(f.result, results_.size(), true);
         f.result = kNone;
     }
     f.parameters = std::move(parameters);

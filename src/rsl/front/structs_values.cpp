@@ -162,10 +162,12 @@ void Lowering::flatten(ExprPtr e, List& pre, List& out) {
         const std::string t = temporary(type, place);
         List after;
         arguments(*e, pre, after);
+        const size_t first = e->args.size();
         for (const Leaf& l : leaves(type)) {
             adopt(*e, variable(t + l.path, place));
             out.push_back(variable(t + l.path, place));
         }
+        if (first < e->args.size()) e->args[first]->whole = wholeOf(type, e->args.size() - first, true);
         pre.push_back(std::move(e));
         for (auto& a : after) pre.push_back(std::move(a));
         return;
@@ -242,6 +244,10 @@ void Lowering::checkArguments(Expr& call) {
     call.text.clear(); // nothing more is said about this call
 }
 
+Whole Lowering::wholeOf(Type t, size_t members, bool self) {
+    return {int(t.base) - kFirstStruct, int(members), t.array, self};
+}
+
 void Lowering::arguments(Expr& call, List& pre, List& after) {
     checkArguments(call);
     std::vector<ExprPtr> given = std::move(call.args);
@@ -260,13 +266,17 @@ void Lowering::arguments(Expr& call, List& pre, List& after) {
             adopt(call, std::move(a));
             continue;
         }
-        const Base want = wanted(call.text, given.size(), i, typeOf(*a));
+        const Type type = typeOf(*a);
+        const Base want = wanted(call.text, given.size(), i, type);
         List parts;
         flatten(std::move(a), pre, parts);
         const auto all = leaves({want, 0});
         if (isStruct({want, 0}) && parts.size() > all.size()) parts.resize(all.size());
         const bool output = putsOut(call.text, given.size(), i);
+        const size_t first = call.args.size();
         for (size_t n = 0; n < parts.size(); ++n) adopt(call, argument(std::move(parts[n]), n < all.size() ? all[n].type : kNone, output, pre, after));
+        const bool self = i == 0 && call.text.find("->") != call.text.npos;
+        if (first < call.args.size()) call.args[first]->whole = wholeOf(type, call.args.size() - first, self);
     }
 }
 

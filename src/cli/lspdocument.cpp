@@ -343,13 +343,25 @@ std::string declarationOf(const rsl::Symbol& s) {
     return t + typeOf(s) + " " + s.name + brackets(s);
 }
 
-std::string signatureOf(const rsl::Function& f) {
-    std::string t = (f.handle ? "shader" + rsl::toString(f.result).substr(rsl::toString(f.result.element()).size()) : rsl::toString(f.result)) + " " + f.name + "(";
-    for (size_t i = 0; i < f.parameters.size(); ++i) {
+std::string signatureOf(const rsl::Function& f, const rsl::Program& program) {
+    std::string result = rsl::toString(f.result), list;
+    if (f.handle) result = "shader" + result.substr(rsl::toString(f.result.element()).size());
+    for (size_t i = 0; i < f.parameters.size();) {
         const rsl::Symbol& p = *f.parameters[i];
-        t += (i ? "; " : "") + std::string(p.output ? "output " : "") + typeOf(p) + " " + p.name + brackets(p);
+        const bool whole = p.whole.structure >= 0; // the first of the members that stand for a structure
+        i += size_t(std::max(p.whole.members, 1));
+        if (p.name.starts_with("(result)")) result = rsl::toString(p.whole, program);
+        if (p.whole.self) continue;
+        list += (list.empty() ? "" : "; ") + std::string(p.output ? "output " : "");
+        if (whole) {
+            const std::string type = rsl::toString(p.whole, program);
+            const size_t bracket = std::min(type.find('['), type.size());
+            list += type.substr(0, bracket) + " " + p.name.substr(0, p.name.find("->")) + type.substr(bracket);
+        } else {
+            list += typeOf(p) + " " + p.name + brackets(p);
+        }
     }
-    return t + ")";
+    return result + " " + f.name + "(" + list + ")";
 }
 
 } // namespace alpenglow::cli

@@ -110,8 +110,8 @@ private:
 
 /// Absolute, without "." and "..".
 std::string normalPath(const std::string&);
-/// "float f(float a; output color b)", with the names.
-std::string signatureOf(const rsl::Function&);
+/// "float f(float a; output S b[])", with the names; structures as the program declares them.
+std::string signatureOf(const rsl::Function&, const rsl::Program&);
 /// "output varying color x".
 std::string declarationOf(const rsl::Symbol&);
 

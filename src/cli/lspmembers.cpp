@@ -100,7 +100,7 @@ std::vector<Document::Member> Document::members(const Receiver& r, size_t positi
     };
     const auto ofClass = [&](const rsl::Shader& s, bool everything) {
         for (const auto& f : s.nested)
-            if (everything || s.publics.count(f->name)) add({f->name, signatureOf(*f), s.name, f->place, true});
+            if (everything || s.publics.count(f->name)) add({f->name, signatureOf(*f, *program_), s.name, f->place, true});
         for (const auto& v : s.symbols) {
             const bool parameter = v->origin == rsl::Symbol::Origin::ShaderParameter;
             if (v->origin == rsl::Symbol::Origin::Global || v->name.find("->") != std::string::npos) continue;

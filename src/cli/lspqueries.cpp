@@ -166,7 +166,8 @@ Json LanguageServer::completion(const Json& params) {
         if (a.shader && int(a.shader->kind) != k) continue;
         for (const auto& g : rsl::globalVariables(rsl::ShaderKind(k))) offer(g.name, kVariable, globalText(g), g.doc);
     }
-    for (const rsl::Function* f : d->functions()) offer(f->name, kFunction, signatureOf(*f));
+    for (const rsl::Function* f : d->functions())
+        if (f->name.find("->") == std::string::npos) offer(f->name, kFunction, signatureOf(*f, *d->program()));
     for (const auto& s : rsl::shadeops()) {
         if (s.name.rfind("__", 0) == 0) continue;
         if (a.shader && !(s.contexts & rsl::contextOf(a.shader->kind))) continue;
@@ -189,7 +190,7 @@ Json LanguageServer::hover(const Json& params) {
     const bool string = d->where(word->first + 1) == Document::Where::String;
     std::string text;
     const auto function = [&](const rsl::Function& f) {
-        text = fenced(signatureOf(f));
+        text = fenced(signatureOf(f, *d->program()));
         const Origin o = d->origin(f.place);
         if (o.file.empty()) return;
         const std::string comment = Document::commentAbove(o.file == d->path() ? d->text() : textOf(o.file), size_t(o.line) - 1);
@@ -322,7 +323,7 @@ Json LanguageServer::symbols(const Json& params) {
         list.push_back(std::move(j));
     }
     for (const rsl::Function* f : d->functions())
-        if (d->isHere(f->place)) list.push_back(symbol(f->name, kFunctionSymbol, signatureOf(*f), f->place, true));
+        if (d->isHere(f->place)) list.push_back(symbol(f->name, kFunctionSymbol, signatureOf(*f, *d->program()), f->place, true));
     return list;
 }
 
@@ -334,10 +335,12 @@ Json LanguageServer::signatureHelp(const Json& params) {
     if (!call) return nullptr;
     std::vector<std::string> texts;
     std::string doc;
-    for (const rsl::Function* f : d->functions(call->name)) {
+    const bool method = d->functions(call->name).empty(); // of a structure: "S->f"
+    for (const rsl::Function* f : d->functions()) {
+        if (!(f->name == call->name || (method && f->name.ends_with("->" + call->name)))) continue;
         // At the definition itself there is nothing to choose.
         if (d->isHere(f->place) && d->offset(size_t(f->place.line) - 1, size_t(f->place.column) - 1) == call->at) return nullptr;
-        texts.push_back(signatureOf(*f));
+        texts.push_back(signatureOf(*f, *d->program()));
     }
     size_t chosen = 0;
     if (const rsl::Shadeop* op = rsl::findShadeop(call->name)) {

@@ -201,10 +201,16 @@ ShaderDescription describe(rsl::ShaderCompiler& compiler, const std::shared_ptr<
     d.annotations = s.annotations;
     d.plugins = shader->program().plugins;
     d.structs = shader->program().structs;
+    const rsl::Program& program = shader->program();
+    // What a pass of the compiler adds stands in a file of its own, "<generateSamples>": nobody gives it or calls it.
+    const auto added = [&](const rsl::Place& place) {
+        return place.file >= 0 && size_t(place.file) < program.files.size() && program.files[size_t(place.file)].starts_with("<");
+    };
     auto values = compiler.parameterValues(shader, diagnostics);
     const std::set<std::string> computed = computedDefaults(*shader);
     for (size_t i = 0; i < std::min(shader->parameters().size(), s.parameters.size()); ++i) {
         const rsl::ParameterInfo& info = shader->parameters()[i];
+        if (added(s.parameters[i].symbol->place)) continue;
         ParameterDescription p;
         p.name = info.name;
         p.type = typeText(info.type, s.parameters[i].symbol);
@@ -230,8 +236,14 @@ ShaderDescription describe(rsl::ShaderCompiler& compiler, const std::shared_ptr<
         const auto variant = other.get() == &s ? shader : rsl::ShaderCompiler::variant(shader, other->kind);
         if (variant) d.kinds.push_back(describeKind(compiler, *variant, diagnostics));
         for (const auto& f : other->nested)
-            if (methods.insert({f->place.file, f->place.line, f->place.column}).second)
-                d.methods.push_back({signatureOf(*f), f->name, other->publics.count(f->name) > 0, s.object && isEntry(f->name)});
+            if (!added(f->place) && methods.insert({f->place.file, f->place.line, f->place.column}).second) {
+                std::string text = signatureOf(*f, program), name = f->name;
+                if (name == rsl::kReplacedLight) {
+                    text.replace(text.find(name), name.size(), "light");
+                    name = "light";
+                }
+                d.methods.push_back({text, name, other->publics.count(name) > 0, s.object && isEntry(name)});
+            }
         if (!s.object || !other->body) continue;
         for (const auto& b : other->body->body)
             for (const auto& v : b->declarators)

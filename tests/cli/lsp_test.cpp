@@ -231,6 +231,11 @@ TEST_F(Server, SignatureHelp) {
     ASSERT_TRUE(s.is_object());
     EXPECT_EQ(s["signatures"][0]["label"], "float f(float a; color b)");
     EXPECT_EQ(s["signatures"][0]["parameters"][1]["label"], (Json{17, 24}));
+    input.clear(), ids = 0;
+    s = ask("signatureHelp", "struct S { float a; public float g(S b; float c[]) { return a; } }\nsurface a() { S s; Ci = s->g(s, |1); }");
+    ASSERT_EQ(s["signatures"].size(), 1u) << s;
+    EXPECT_EQ(s["signatures"][0]["label"], "float S->g(S b; float c[])");
+    EXPECT_EQ(s["activeParameter"], 1);
 }
 
 TEST_F(Server, GarbageIsAnswered) {

@@ -181,6 +181,20 @@ TEST_F(Tools, InfoOfDefaults) {
         EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
 }
 
+TEST_F(Tools, InfoShowsWhatWasWrittenNotWhatTheCompilerMadeOfIt) {
+    write("l.sl", "#include <stdrsl/RadianceSample.h>\nstruct S { float a; color b; }\n"
+                  "class l(color c = 1;) {\n"
+                  "    public void generateSamples(string domain; output __radiancesample samples[]) { resize(samples, 1); }\n"
+                  "    public void light(output vector L; output color Cl) { L = 0; Cl = 0; }\n"
+                  "    public S mine(S one; output S two[3]; float k) { return one; }\n}\n");
+    const Json j = Json::parse(run("info --json l.sl"));
+    EXPECT_EQ(j["types"][0], "light");
+    ASSERT_EQ(j["parameters"].size(), 1u) << j["parameters"];
+    EXPECT_EQ(j["methods"], Json::array({"void generateSamples(string domain; output __radiancesample samples[])",
+                                         "void light(output vector L; output color Cl)", "S mine(S one; output S two[3]; float k)"}));
+    EXPECT_EQ(j["publicMethods"], Json::array({"generateSamples", "light", "mine"}));
+}
+
 TEST_F(Tools, InfoOfAClassOfSeveralKinds) {
     write("c.sl", "#pragma annotation \"author\" \"x\"\n#pragma annotation \"tag\" \"1\"\n#pragma annotation \"tag\" \"2\"\n"
                   "struct Ray { point from; vector d[2]; float size() { return 1; } };\n"

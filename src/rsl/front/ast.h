@@ -138,6 +138,9 @@ struct Function {
     Place place;
 };
 
+/// What the light() of a class is called by now where it gave nothing and the samples of the class light instead.
+inline constexpr const char* kReplacedLight = "__light";
+
 struct ShaderParameter {
     Symbol* symbol = nullptr;
     ExprPtr defaultValue;
@@ -183,6 +186,9 @@ struct Program {
     std::vector<std::string> dependencies;          ///< every file read
     std::vector<std::shared_ptr<const Plugin>> plugins; ///< in the order in which the text asks for them; calls refer to these
 };
+
+/// A structure as the shader names it, with the brackets of an array of them: "S", "S[3]", "S[]".
+std::string toString(const Whole&, const Program&);
 
 struct FrontOptions {
     std::vector<std::string> includePaths;

@@ -3,7 +3,15 @@
 #include <algorithm>
 #include <utility>
 
-namespace alpenglow::rsl::front {
+namespace alpenglow::rsl {
+
+std::string toString(const Whole& w, const Program& program) {
+    const bool known = w.structure >= 0 && size_t(w.structure) < program.structs.size();
+    return (known ? program.structs[size_t(w.structure)].name : "a structure") +
+           (w.array ? "[" + (w.array > 0 ? std::to_string(w.array) : "") + "]" : "");
+}
+
+namespace front {
 
 namespace {
 
@@ -30,21 +38,15 @@ template <class F> std::vector<Written> asWritten(size_t count, F wholeAt) {
 
 } // namespace
 
-std::string Checker::structureText(const Whole& w) const {
-    const bool known = w.structure >= 0 && size_t(w.structure) < program_.structs.size();
-    return (known ? program_.structs[size_t(w.structure)].name : "a structure") +
-           (w.array ? "[" + (w.array > 0 ? std::to_string(w.array) : "") + "]" : "");
-}
-
 std::string Checker::signatureText(const Function& f) const {
     const auto parameters = asWritten(f.parameters.size(), [&](size_t i) { return f.parameters[i]->whole; });
     std::string result = typeText(f.result, f.handle), list;
     for (const Symbol* p : f.parameters)
-        if (p->whole.self && p->name.starts_with("(result)")) result = structureText(p->whole);
+        if (p->whole.self && p->name.starts_with("(result)")) result = toString(p->whole, program_);
     for (const Written& w : parameters) {
         const Symbol& p = *f.parameters[w.at];
         list += (list.empty() ? "" : ", ") + std::string(p.output ? "output " : "") +
-                (w.structure ? structureText(p.whole) : typeText(p.type, p.handle));
+                (w.structure ? toString(p.whole, program_) : typeText(p.type, p.handle));
     }
     return result + " " + f.name + "(" + list + ")";
 }
@@ -63,8 +65,8 @@ std::string Checker::whyNot(const std::vector<ParameterView>& parameters, bool r
             if (plain && argumentCost(a, p, false) < kNever) continue;
             const std::string which = "argument " + std::to_string(k + 1);
             if (plain && p.output && !isVariable(a)) return which + " is an output and must be a variable";
-            return which + " is " + (given[k].structure ? structureText(a.whole) : describe(a)) + ", not " +
-                   (taken[k].structure ? structureText(p.whole) : named(p.type, p.handle)) +
+            return which + " is " + (given[k].structure ? toString(a.whole, program_) : describe(a)) + ", not " +
+                   (taken[k].structure ? toString(p.whole, program_) : named(p.type, p.handle)) +
                    (p.output ? ", and what is put out is not converted" : "");
         }
         return "a structure does not fit";
@@ -94,7 +96,7 @@ void Checker::noMatch(Expr& e, const std::vector<std::string>& candidates, std::
     std::string given;
     for (const Written& w : asWritten(e.args.size(), [&](size_t i) { return e.args[i]->whole; })) {
         Expr& a = *e.args[w.at];
-        given += (given.empty() ? "" : ", ") + (w.structure ? structureText(a.whole) : describe(a));
+        given += (given.empty() ? "" : ", ") + (w.structure ? toString(a.whole, program_) : describe(a));
     }
     std::string hint = "it can be called as";
     for (size_t i = 0; i < candidates.size() && i < 6; ++i) hint += (i ? "; " : " ") + candidates[i];
@@ -107,4 +109,5 @@ void Checker::noMatch(Expr& e, const std::vector<std::string>& candidates, std::
     sources_.error(e.place, what, hint, std::move(notes));
 }
 
-} // namespace alpenglow::rsl::front
+} // namespace front
+} // namespace alpenglow::rsl

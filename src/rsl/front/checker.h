@@ -89,8 +89,6 @@ private:
     static void bestByArguments(std::vector<Choice>&);
     void preferArray(const Expr&, Type wanted);
     void noMatch(Expr& call, const std::vector<std::string>& candidates, std::vector<std::string> notes, bool outputsOnly);
-    /// A structure as the shader names it, and as an array.
-    std::string structureText(const Whole&) const;
     std::string signatureText(const Function&) const; ///< as the shader writes it, structures by their names
     /// Why these parameters do not fit the call, in words; "" when they do.
     std::string whyNot(const std::vector<ParameterView>&, bool repeats, bool pairs, Expr& call);

@@ -130,7 +130,7 @@ void addSampledLights(SourceSet& sources, Preprocessed& p) {
         if (end == t.size()) continue; // brackets that do not close, which the parser reports
         const Found f = methodsOf(t, body, end);
         if (!f.generates || (f.light ? !setsZero(t, f.light + 1) : f.surface || !f.domain)) continue;
-        if (f.light) t[f.light].text = "__light";
+        if (f.light) t[f.light].text = kReplacedLight;
         insert(i + 3, std::string(kOutputs) + (f.shadows ? kShadows : ""));
         insert(end - 1, kLight);
         i = end - 1;

@@ -1,5 +1,6 @@
 // The imager of a frame, run over finished pixels.
 #include "transport/engine.h"
+#include <algorithm>
 
 namespace alpenglow::transport {
 
@@ -14,6 +15,10 @@ bool WorldImpl::runImager(int count, const float* x, const float* y, float* r, f
     BoundKernel k = self->kernel(*i, {}, {}, false, false, d);
     if (!k || k.kernel->facts().suspends) return false;
     Engine engine(std::shared_ptr<const WorldImpl>(std::shared_ptr<const WorldImpl>{}, this), d);
+    // alpha is what the shader writes to it; one that only makes its pixels opaque means that, too (methods of classes have no alpha).
+    const auto& writes = k.kernel->facts().writes;
+    const auto written = [&](const char* name) { return std::find(writes.begin(), writes.end(), name) != writes.end(); };
+    const bool opacityOnly = written("Oi") && !written("alpha");
     constexpr int kChunk = 4096;
     for (int begin = 0; begin < count; begin += kChunk) {
         int n = std::min(kChunk, count - begin);
@@ -35,14 +40,19 @@ bool WorldImpl::runImager(int count, const float* x, const float* y, float* r, f
         c.batch = std::make_shared<shading::Batch>(k.kernel, *k.plan, c.points, views, *this);
         engine.bindCall(c.batch->call(), c);
         k.kernel->run(&c.batch->call());
-        int ci = c.batch->output("Ci"), ai = c.batch->output("alpha");
+        const int ci = c.batch->output("Ci"), ai = c.batch->output("alpha"), oi = c.batch->output("Oi");
         for (int p = 0; p < n; ++p) {
             int at = begin + p;
             if (ci >= 0) {
                 Color v = c.batch->color(ci, p);
                 r[at] = v.x; g[at] = v.y; b[at] = v.z;
             }
-            if (ai >= 0) alpha[at] = c.batch->value(ai, 0, p);
+            if (opacityOnly && oi >= 0) {
+                const Color v = c.batch->color(oi, p);
+                alpha[at] = (v.x + v.y + v.z) / 3;
+            } else if (ai >= 0) {
+                alpha[at] = c.batch->value(ai, 0, p);
+            }
         }
     }
     return true;

@@ -294,6 +294,27 @@ TEST(Outputs, AClassIsAnImager) {
     EXPECT_EQ(Color(r[0], g[0], b[0]), Color(3, 6, 12));
 }
 
+// Published imagers put a colour behind the picture and say Oi = 1, without a word on alpha: the mean of Oi is the alpha then.
+TEST(Outputs, WhatAnImagerMakesOpaqueHasAlpha) {
+    writeShader("opaque", "imager opaque(color behind = color(0, 0, 1);) { Ci += (1 - alpha) * behind; Oi = color(.25, .5, 1); }\n");
+    writeShader("opaqueclass", "class opaqueclass() { public void imager(output varying color Ci, Oi) { Ci += (1 - Oi) * color(0, 0, 1); Oi = 1; } }\n");
+    writeShader("bothways", "imager bothways() { Oi = 1; alpha = .125; }\n");
+    writeShader("neither", "imager neither() { Ci *= Oi; }\n");
+    writeShader("someopaque", "imager someopaque() { if (alpha > .5) Oi = 1; }\n");
+    const std::pair<const char*, std::pair<float, float>> all[] = {
+        {"opaque", {1.75f / 3, 1.75f / 3}}, {"opaqueclass", {1, 1}}, {"bothways", {.125f, .125f}}, {"neither", {.25f, .75f}}, {"someopaque", {.25f, 1}}};
+    for (const auto& [name, wanted] : all) {
+        Scene s("Imager \"" + std::string(name) + "\"\n" + world(kFloor), under(Hider::Hidden));
+        const float x[2] = {.5f, 1.5f}, y[2] = {.5f, .5f};
+        float r[2] = {.5f, .5f}, g[2] = {0, 0}, b[2] = {0, 0}, a[2] = {.25f, .75f};
+        ASSERT_TRUE(s.world->runImager(2, x, y, r, g, b, a, s.diagnostics)) << name;
+        EXPECT_EQ(s.diagnostics.errors() + s.diagnostics.warnings(), 0) << s.messages();
+        EXPECT_FLOAT_EQ(a[0], wanted.first) << name;
+        EXPECT_FLOAT_EQ(a[1], wanted.second) << name;
+        EXPECT_FLOAT_EQ(b[0], std::string(name).starts_with("opaque") ? .75f : 0.f) << name;
+    }
+}
+
 // attribute(): a value of another type or size is no answer.
 TEST(Outputs, AttributesOfAnotherTypeAreNotTold) {
     writeShader("askswrong", R"(surface askswrong() {

@@ -183,7 +183,13 @@ void Checker::settlePairs(Expr& e, size_t positional, const Shadeop* op) {
             if (pair.name.find(':') == std::string::npos && !channels && op->lowering != Lowering::Unavailable)
                 sources_.warning(pair.place, "'" + op->name + "' has no parameter \"" + pair.name + "\"; it is ignored",
                                  near.empty() ? "" : "did you mean \"" + near + "\"?");
-            settleCheapest(value);
+            pair.output = op->name == "texture3d" && isVariable(*value); // what is read from the file goes there
+            if (pair.output) {
+                settleVariable(value);
+                written(*value);
+            } else {
+                settleCheapest(value);
+            }
         } else if (optional->output) {
             pair.output = true;
             const int cost = argumentCost(*value, {optional->type, true, Handle::Either}, false);

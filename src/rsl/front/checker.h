@@ -133,6 +133,7 @@ private:
     std::unordered_set<const Function*> checking_, used_, varyingFunctions_;
     std::unordered_map<const Shadeop*, std::unique_ptr<Unit>> rslUnits_;
     std::set<const Shadeop*> reportedUnavailable_;
+    std::set<const Symbol*> toldNotOutput_; ///< parameters that are given values though they are not output: said once
     // the function being checked
     const Unit* unit_ = nullptr;
     Function* function_ = nullptr;

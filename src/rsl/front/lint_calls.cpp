@@ -75,7 +75,8 @@ std::string counted(size_t n, const char* what) { return std::to_string(n) + " "
 
 /// A name of a list that is complete, or that is at least well known.
 void name(const std::string& given, Place place, const NamedArgument& a, SourceSet& sources) {
-    if (given.empty() || contains(a.names, given)) return;
+    // The names of the interface have a prefix today and had none in the specification: "Clipping", "Sides".
+    if (given.empty() || contains(a.names, given) || contains(a.names, "Ri:" + given)) return;
     const std::string near = nearestName(given, a.names);
     if (!a.all && (near.empty() || near == given)) return;
     const std::string what = a.what;

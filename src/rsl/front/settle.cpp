@@ -403,11 +403,11 @@ void Checker::written(const Expr& variable) {
                                                  "; the shader changes a copy of its own");
         break;
     case Symbol::Origin::ShaderParameter:
-        if (!s->output)
+        if (!s->output && toldNotOutput_.insert(s).second)
             sources_.warning(variable.place, "parameter " + name + " is not output; the shader changes a copy of its own");
         break;
     case Symbol::Origin::FunctionParameter:
-        if (!s->output)
+        if (!s->output && toldNotOutput_.insert(s).second)
             sources_.warning(variable.place, "parameter " + name + " is not output; the function changes a copy of its own");
         break;
     }

@@ -225,6 +225,7 @@ int shade(const Arguments& a) {
     };
     call.lightBegin = [](rsl::KernelCall*, int32_t, int32_t, uint64_t, int32_t, const float*) { return int32_t(0); };
     call.lightFetch = [](rsl::KernelCall*, int32_t, int32_t, int32_t, uint64_t, int32_t, float*) { return uint64_t(0); };
+    call.lightEnd = [](rsl::KernelCall*, int32_t, int32_t, int32_t) {};
 
     auto fill = [&](const std::vector<Vec2>& at) {
         call.n = int32_t(at.size());

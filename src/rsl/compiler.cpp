@@ -391,6 +391,7 @@ void runOnce(const CompiledKernel& k, const SpaceFn& spaces, std::vector<std::ve
     call.strings = k.strings().data();
     call.service = [](KernelCall*, int32_t, int32_t, uint64_t, int32_t, const float*, float*) {};
     call.lightBegin = [](KernelCall*, int32_t, int32_t, uint64_t, int32_t, const float*) { return int32_t(0); };
+    call.lightEnd = [](KernelCall*, int32_t, int32_t, int32_t) {};
     k.run(&call);
     for (size_t o = 0; o < outs.size(); o++) {
         out.emplace_back();

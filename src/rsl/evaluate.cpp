@@ -128,6 +128,7 @@ bool runAtPoint(const CompiledKernel& k, bool mixed, int n, int at, std::vector<
     };
     call.lightBegin = [](KernelCall*, int32_t, int32_t, uint64_t, int32_t, const float*) { return int32_t(0); };
     call.lightFetch = [](KernelCall*, int32_t, int32_t, int32_t, uint64_t, int32_t, float*) { return uint64_t(0); };
+    call.lightEnd = [](KernelCall*, int32_t, int32_t, int32_t) {};
     k.run(&call);
     for (size_t o = 0; o < outs.size(); o++) {
         out.emplace_back();

@@ -20,7 +20,8 @@ struct KernelCall;
 using ServiceFn = void (*)(KernelCall*, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out);
 
 /// Steps of an illuminance loop, in this order: begin gives the number of lights (the same for all lanes of the strip), then for each
-/// light: fetch writes L, Cl, Ol (nine rows of W floats) and returns the mask of the lanes the body runs for.
+/// light: fetch writes L, Cl, Ol (nine rows of W floats) and returns the mask of the lanes the body runs for; then end, also when the loop
+/// is left early. Loops stand in each other: what is fetched and ended is of the one begun last in the strip.
 struct KernelCall {
     const float* const* in;   ///< per Kernel::inputs: varying: component c, jet part j at in[k] + (c * parts + j) * stride;
                               ///< uniform (build S): in[k][c], arrays in[k][e * components + c]
@@ -32,6 +33,7 @@ struct KernelCall {
     ServiceFn service;
     int32_t (*lightBegin)(KernelCall*, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* pAxisAngle);
     uint64_t (*lightFetch)(KernelCall*, int32_t site, int32_t light, int32_t first, uint64_t mask, int32_t lanes, float* lClOl);
+    void (*lightEnd)(KernelCall*, int32_t site, int32_t first, int32_t lanes);
     const volatile int32_t* stop; ///< loops leave early when *stop != 0
     const int32_t* pairCount; ///< not used by generated code; room for the caller's bookkeeping
     /// Frames of suspending kernels: `bytes` of memory, 64-byte aligned, or null when there is none left (start then returns null).

@@ -206,6 +206,7 @@ public:
     /// Shadeops about lights and their handles: getlight, getlights, islightcategory, and what is called through a handle.
     void lightHandles(BatchContext&, int site, int first, uint64_t mask, int lanes, const float* in, float* out);
     int32_t lightBegin(BatchContext&, int site, int first, uint64_t mask, int lanes, const float* rows);
+    void lightEnd(BatchContext&, int first, int lanes);
     uint64_t lightFetch(BatchContext&, int light, int first, uint64_t mask, int lanes, float* out);
     // services.cpp
     void service(BatchContext&, int site, int first, uint64_t mask, int lanes, const float* in, float* out);

@@ -62,6 +62,10 @@ uint64_t onLightFetch(rsl::KernelCall* call, int32_t site, int32_t light, int32_
     BatchContext& c = contextOf(call);
     return c.engine->lightFetch(c, light, first, mask, lanes, out);
 }
+void onLightEnd(rsl::KernelCall* call, int32_t, int32_t first, int32_t lanes) {
+    BatchContext& c = contextOf(call);
+    c.engine->lightEnd(c, first, lanes);
+}
 void* onAlloc(rsl::KernelCall*, uint64_t bytes) { return ::operator new(bytes, std::align_val_t(64), std::nothrow); }
 void onRelease(rsl::KernelCall*, void* p, uint64_t) { ::operator delete(p, std::align_val_t(64)); }
 
@@ -74,6 +78,7 @@ void Engine::bindCall(rsl::KernelCall& call, BatchContext& c) {
     call.service = onService;
     call.lightBegin = onLightBegin;
     call.lightFetch = onLightFetch;
+    call.lightEnd = onLightEnd;
     call.alloc = onAlloc;
     call.release = onRelease;
     call.stop = stop ? stop : &kGo;

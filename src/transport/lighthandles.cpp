@@ -112,6 +112,7 @@ void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, i
     // lightcall: handle, P; rows: found, L (light to surface), Cl, Ol, place for the distance.
     c.lightDistance.assign(width, 1e38f);
     LightLoop turn;
+    turn.depth = loop.depth + 1; // a call is a loop of its own
     turn.rows.assign(7 * width, 0);
     for (int lane = 0; lane < lanes; ++lane) {
         for (size_t r = 0; r < 3; ++r) turn.rows[r * width + size_t(lane)] = in[(r + 1) * width + size_t(lane)];
@@ -130,8 +131,9 @@ void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, i
             const uint64_t now = sampleLight(c, turn, li, k, light.samples, first, of, lanes, one);
             if (k == 0) kept = one;
             if (k == 0 && light.sentCl >= 0) {
-                turn.kept[uint64_t(li) << 12] = one;
-                turn.kept[uint64_t(li) << 12].have = of;
+                LightLoop::Kept& ran = turn.kept[keptName(turn, light, li, 0, world_->settings_.hider == Hider::Path)];
+                ran = one;
+                ran.have = of;
             }
             lit |= now;
             if (light.samples == 1) break;

@@ -28,6 +28,22 @@ std::string sentStrings(const SiteInfo& s) {
     return key;
 }
 
+bool sampledAnew(const BoundLight& l, bool path) {
+    return l.kind == LightKind::Area || l.sentCl >= 0 || (path && (l.cone || l.kind == LightKind::Environment));
+}
+
+// Room for limits::kLightTurns turns and more.
+static constexpr int kTurnBits = 12;
+
+uint32_t drawOf(const LightLoop& loop, int turn) {
+    return uint32_t(turn) + 1 + (uint32_t(std::max(loop.depth - 1, 0)) << kTurnBits); // 0 is gather()'s
+}
+
+uint64_t keptName(const LightLoop& loop, const BoundLight& l, int light, int turn, bool path) {
+    const uint64_t name = uint64_t(light) << kTurnBits | uint64_t(turn);
+    return sampledAnew(l, path) && loop.depth > 1 ? name | uint64_t(loop.depth - 1) << 48 : name;
+}
+
 LightLoop& Engine::lightLoop(BatchContext& c, int first, int lanes) {
     // Strips that never wait run one after the other: they share one.
     const size_t at = c.bound->kernel->facts().suspends ? size_t(first / std::max(lanes, 1)) : 0;
@@ -42,21 +58,21 @@ void Engine::lightSetup(BatchContext& c, int site, int first, uint64_t mask, int
     const SiteInfo& s = c.bound->sites[size_t(site)];
     size_t rows = 0;
     for (rsl::ir::Kind k : s.site->argKinds) rows += size_t(rsl::ir::components(k));
-    loop.setup = site;
-    loop.fresh = true;
-    loop.given.assign(in, in + rows * size_t(lanes));
+    LightSetup& next = loop.next;
+    next.setup = site;
+    next.given.assign(in, in + rows * size_t(lanes));
     // The category is no matter of the lights: what was kept stays good under another.
-    loop.givenHash.assign(size_t(lanes), 0);
+    next.givenHash.assign(size_t(lanes), 0);
     for (const auto& [name, row] : s.named) {
         if (name == "category") continue;
-        const auto next = std::min_element(s.named.begin(), s.named.end(), [row = row](const auto& a, const auto& b) {
+        const auto following = std::min_element(s.named.begin(), s.named.end(), [row = row](const auto& a, const auto& b) {
             return (a.second > row ? a.second : INT32_MAX) < (b.second > row ? b.second : INT32_MAX);
         });
-        const size_t end = next->second > row ? size_t(next->second) : rows;
+        const size_t end = following->second > row ? size_t(following->second) : rows;
         const uint64_t salt = std::hash<std::string>{}(name);
         for (int lane = 0; lane < lanes; ++lane)
             for (size_t r = size_t(row); r < end; ++r)
-                loop.givenHash[size_t(lane)] = mixed(loop.givenHash[size_t(lane)] ^ salt, std::bit_cast<uint32_t>(in[r * size_t(lanes) + size_t(lane)]));
+                next.givenHash[size_t(lane)] = mixed(next.givenHash[size_t(lane)] ^ salt, std::bit_cast<uint32_t>(in[r * size_t(lanes) + size_t(lane)]));
     }
     (void)mask;
 }
@@ -64,8 +80,14 @@ void Engine::lightSetup(BatchContext& c, int site, int first, uint64_t mask, int
 int32_t Engine::lightBegin(BatchContext& c, int site, int first, uint64_t mask, int lanes, const float* rows) {
     LightLoop& loop = lightLoop(c, first, lanes);
     const SiteInfo& info = c.bound->sites[size_t(site)];
-    if (!loop.fresh) loop.setup = -1;
-    loop.fresh = false;
+    // The loop around waits; when this one ends it is as it was.
+    if (loop.around.size() <= size_t(loop.depth)) loop.around.emplace_back();
+    loop.distance = c.lightDistance;
+    std::swap(static_cast<LightTurns&>(loop), loop.around[size_t(loop.depth)]);
+    ++loop.depth;
+    std::swap(static_cast<LightSetup&>(loop), loop.next);
+    loop.next.setup = -1;
+    if (!info.text.count("__setup")) loop.setup = -1; // that of a loop of which nobody wanted the result
     loop.lights.clear();
     loop.light = -1;
     loop.rows.assign(rows, rows + size_t(7) * size_t(lanes));
@@ -94,6 +116,14 @@ int32_t Engine::lightBegin(BatchContext& c, int site, int first, uint64_t mask, 
     return int32_t(loop.lights.size());
 }
 
+void Engine::lightEnd(BatchContext& c, int first, int lanes) {
+    LightLoop& loop = lightLoop(c, first, lanes);
+    if (loop.depth == 0) return;
+    --loop.depth;
+    std::swap(static_cast<LightTurns&>(loop), loop.around[size_t(loop.depth)]);
+    c.lightDistance = loop.distance;
+}
+
 void Engine::checkCategory(BatchContext& c, const rsl::ir::Site& site, const std::string& expression) {
     const std::string error = categoryError(expression);
     if (error.empty()) return;
@@ -120,7 +150,7 @@ uint64_t Engine::lightFetch(BatchContext& c, int index, int first, uint64_t mask
         }
     }
     // Kept: the same light, sample, P, Ns, sent values and outputs of the surface; of a sky also the same cone.
-    const uint64_t name = uint64_t(li) << 12 | uint64_t(k);
+    const uint64_t name = keptName(loop, light, li, k, world_->settings_.hider == Hider::Path);
     LightLoop::Kept passing;
     const bool room = loop.kept.size() < limits::kLightCache || loop.kept.count(name);
     LightLoop::Kept& kept = room ? loop.kept[name] : passing;

@@ -1,6 +1,7 @@
 // illuminance: what a loop over lights remembers between its turns, and what is kept for the next loop of the same points.
 #pragma once
 #include "transport/world.h"
+#include <deque>
 #include <functional>
 #include <unordered_map>
 
@@ -24,21 +25,31 @@ struct LightCall {
     std::vector<float>* values = nullptr;                ///< gets BoundLight::values: valueWidth numbers a query
 };
 
-/// State of the loop of one strip. A strip that waits for rays in the middle of its loop keeps it while others run theirs.
-struct LightLoop {
-    int first = -1;                               ///< the strip's first point; -1: unused
-    std::vector<std::pair<int, int>> lights;      ///< (light, sample) by turn
-    std::vector<float> rows;                      ///< P, axis, angle: seven rows
-    std::string category;
-    bool refresh = false;                         ///< "lightcache" "refresh"
-    // What the setup before the loop gave; setup < 0: none.
-    int setup = -1;                               ///< its call site
-    bool fresh = false;                           ///< it belongs to the loop that begins now
+/// What the setup before a loop gave.
+struct LightSetup {
+    int setup = -1;                               ///< its call site; -1: none
     std::vector<float> given;                     ///< its arguments
     std::vector<uint64_t> givenHash;              ///< by lane, over what lights can see of them
+};
+
+/// One loop that runs, and its turn.
+struct LightTurns : LightSetup {
+    std::vector<std::pair<int, int>> lights;      ///< (light, sample) by turn
+    std::vector<float> rows;                      ///< P, axis, angle: seven rows
+    bool refresh = false;                         ///< "lightcache" "refresh"
     // The turn that runs now.
-    int light = -1;
+    int light = -1;                               ///< -1: no loop runs
     std::vector<float> values;                    ///< by lane, the light's BoundLight::values
+    std::vector<float> distance;                  ///< by lane: BatchContext::lightDistance
+};
+
+/// State of the loops of one strip: of the innermost that runs. A strip that waits for rays in the middle of its loop keeps it while others
+/// run theirs.
+struct LightLoop : LightTurns {
+    int first = -1;                               ///< the strip's first point; -1: unused
+    int depth = 0;                                ///< how many loops run, one in the block of the other
+    std::deque<LightTurns> around;                ///< of those the outer ones, outermost first; behind them is memory for others
+    LightSetup next;                              ///< of the loop that begins next
 
     /// Results of one light sample for the points of the strip.
     struct Kept {
@@ -48,16 +59,24 @@ struct LightLoop {
         std::vector<float> out, values;           ///< L, Cl, Ol: nine rows; values by lane
         std::vector<float> distance;
     };
-    std::unordered_map<uint64_t, Kept> kept;      ///< by light and sample
+    std::unordered_map<uint64_t, Kept> kept;      ///< by keptName()
 
     void reset(int strip) {
         first = strip;
-        setup = light = -1;
-        fresh = false;
+        setup = light = next.setup = -1;
+        depth = 0;
         lights.clear();
         kept.clear();
     }
 };
+
+/// Lights that are sampled give every depth of loops samples of its own: the product of an outer and of an inner loop has the mean that it
+/// should have.
+bool sampledAnew(const BoundLight&, bool path);
+/// The occurrence of random numbers for a turn of a light.
+uint32_t drawOf(const LightLoop&, int turn);
+/// The name of what is kept of a turn of a light.
+uint64_t keptName(const LightLoop&, const BoundLight&, int light, int turn, bool path);
 
 /// The words of a light's __category.
 std::string categoriesOf(const BoundLight&);

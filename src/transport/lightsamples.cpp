@@ -218,7 +218,7 @@ uint64_t Engine::sampleLight(BatchContext& c, const LightLoop& loop, int li, int
         p.viewI = p.I;
         p.Ci = Color(0);
         float f = 1;
-        const uint32_t use = kLightPoint + uint32_t(li), nth = uint32_t(turn) + 1; // 0 is gather()'s
+        const uint32_t use = kLightPoint + uint32_t(li), nth = drawOf(loop, turn);
         if (light.kind == LightKind::Area) {
             if (!light.emitter || !p.ray) continue;
             Random rng = random(*p.ray);
@@ -266,7 +266,7 @@ uint64_t Engine::sampleLight(BatchContext& c, const LightLoop& loop, int li, int
     std::vector<float> values;
     const size_t width = size_t(light.valueWidth);
     // A light that sends many samples gives all of them when it runs for the first.
-    const auto ran = light.sentCl >= 0 && turn > 0 ? loop.kept.find(uint64_t(li) << 12) : loop.kept.end();
+    const auto ran = light.sentCl >= 0 && turn > 0 ? loop.kept.find(keptName(loop, light, li, 0, world_->settings_.hider == Hider::Path)) : loop.kept.end();
     if (ran != loop.kept.end() && (ran->second.have & mask) == mask) {
         v.assign(q.size(), {});
         for (size_t i = 0; i < q.size(); ++i) {

@@ -77,7 +77,7 @@ inline bool runPoints(const CompiledKernel& k, bool mixed, int n, const PointVal
     struct Context {
         const CompiledKernel* kernel;
         Diagnostics* diagnostics;
-        std::vector<float> cone;
+        std::vector<std::vector<float>> cones; ///< of the loops that run, outermost first
     } context{&k, &diagnostics, {}};
     KernelCall call{};
     call.in = in.data();
@@ -98,11 +98,11 @@ inline bool runPoints(const CompiledKernel& k, bool mixed, int n, const PointVal
         }
     };
     call.lightBegin = [](KernelCall* c, int32_t, int32_t, uint64_t, int32_t lanes, const float* rows) { // P, axis, angle
-        static_cast<Context*>(c->user)->cone.assign(rows, rows + 7 * lanes);
+        static_cast<Context*>(c->user)->cones.emplace_back(rows, rows + 7 * lanes);
         return int32_t(2);
     };
     call.lightFetch = [](KernelCall* c, int32_t, int32_t light, int32_t, uint64_t mask, int32_t lanes, float* out) {
-        const std::vector<float>& cone = static_cast<Context*>(c->user)->cone;
+        const std::vector<float>& cone = static_cast<Context*>(c->user)->cones.back();
         uint64_t lit = 0;
         for (int l = 0; l < lanes; l++) {
             for (int r = 0; r < 9; r++) out[r * lanes + l] = kTestLights[light][r];
@@ -112,6 +112,7 @@ inline bool runPoints(const CompiledKernel& k, bool mixed, int n, const PointVal
         }
         return lit & mask;
     };
+    call.lightEnd = [](KernelCall* c, int32_t, int32_t, int32_t) { static_cast<Context*>(c->user)->cones.pop_back(); };
     k.run(&call);
     out.clear();
     for (size_t o = 0; o < results.size(); o++) {

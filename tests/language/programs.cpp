@@ -36,7 +36,6 @@ struct Scope {
     char result = 0; ///< of the function around, 0 in the body, 'v' for void
     int loops = 0;   ///< around this place
     int turns = 1;   ///< that they make at most
-    bool lit = false; ///< in a loop over lights, where there is no other; functions have none, as they may be called there
 };
 
 class Writer {
@@ -240,7 +239,6 @@ private:
         Scope inner = s;
         inner.loops++;
         inner.turns *= 2;
-        inner.lit = true;
         for (const char* n : {"Cl", "Ol"}) inner.read['C'].push_back(n);
         inner.read['V'].push_back("L");
         if (pick(3) == 0) return {'s', "illuminance(P) $", {block(inner, depth)}};
@@ -312,7 +310,7 @@ private:
             return t;
         }
         case 17:
-            if (s.loops < 3 && s.turns <= 12 && !s.lit && s.result == 0) return lights(s, depth);
+            if (s.loops < 3 && s.turns <= 12 && s.result == 0) return lights(s, depth);
             break;
         default:
             if (s.loops < 3 && s.turns <= 24) return loop(s, depth);

@@ -59,7 +59,6 @@ const Case kBodies[] = {
     {"return 1;", "2:1: error: a shader returns no value"},
     {"illuminate(P) Cl = 1;", "2:1: error: 'illuminate' cannot be used in a surface shader"},
     {"illuminance(P, N) c += Cl;", "2:1: error: wrong arguments of 'illuminance' (illuminance([category,]"},
-    {"illuminance(P) illuminance(P) c += Cl;", "2:16: error: 'illuminance' inside 'illuminance' is not allowed"},
     {"illuminance(P, N, 1, \"light:x\", 3) ;", "2:33: error: the value of \"light:x\" must be a variable"},
     {"time = 1;", "2:1: error: 'time' cannot be written"},
     {"float x = 1; color x = 2;", "2:20: error: 'x' was declared in this block already, as float"},

@@ -338,6 +338,7 @@ TEST(Codegen, LightLoop) {
             }
             return lit & mask;
         };
+        run.call.lightEnd = [](KernelCall*, int32_t, int32_t, int32_t) {};
         run(*kernel, o, [](int, int n, int) { return float(n % 5) - 2; });
         for (int n = 0; n < kPoints; n++) {
             const float x = float(n % 5) - 2;

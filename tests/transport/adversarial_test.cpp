@@ -184,8 +184,6 @@ TEST(Adversarial, Lights) {
 // Programs that cannot be compiled are said, and the scene is drawn without them.
 TEST(Adversarial, Refused) {
     const std::pair<const char*, const char*> cases[] = {
-        {"surface NAME() { illuminance(P) { illuminance(P) Ci += Cl; } }", "illuminance"},
-        {"surface NAME() { color f() { color c = 0; illuminance(P) c += Cl; return c; } illuminance(P) Ci += f(); }", "illuminance inside illuminance"},
         {"surface NAME() { illuminate(P) Ci = 1; }", "illuminate"},
         {"surface NAME() { solar() Ci = 1; }", "solar"},
         {"surface NAME() { break; }", "break"},

@@ -295,9 +295,6 @@ void Checker::checkLight(Stmt& s) {
     infos_.clear();
     if (s.kind == StmtKind::Gather && sources_.errors() == errors)
         sources_.warning(s.place, "'gather' is not yet available: no ray hits anything, the else statement runs once");
-    if (s.kind == StmtKind::Illuminance && inIlluminance_)
-        sources_.error(s.place, "'illuminance' inside 'illuminance' is not allowed");
-    const bool outer = std::exchange(inIlluminance_, inIlluminance_ || s.kind == StmtKind::Illuminance);
     const bool outerForeign = std::exchange(foreignLight_, foreignLight_ || foreign);
     scopes_.emplace_back();
     if (s.kind == StmtKind::Illuminance || s.kind == StmtKind::Gather) checkLoopBody(s);
@@ -309,7 +306,6 @@ void Checker::checkLight(Stmt& s) {
     }
     scopes_.pop_back();
     foreignLight_ = outerForeign;
-    inIlluminance_ = outer;
     if (s.elseBody) check(s.elseBody);
 }
 

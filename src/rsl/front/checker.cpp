@@ -94,7 +94,6 @@ Function* Checker::instance(Function& f, const Unit& unit, const std::pair<std::
 void Checker::checkBody(Function& f) {
     Function* outer = std::exchange(function_, &f);
     const int loops = std::exchange(loops_, 0);
-    const bool illuminance = std::exchange(inIlluminance_, false);
     scopes_.emplace_back();
     for (Symbol*& p : f.parameters) {
         if (p->storage == Storage::Unspecified) p->storage = p->type.base == Base::String ? Storage::Uniform : Storage::Varying;
@@ -115,7 +114,6 @@ void Checker::checkBody(Function& f) {
     if (varyingFunctions_.count(&f) && outer) varyingFunctions_.insert(outer);
     function_ = outer;
     loops_ = loops;
-    inIlluminance_ = illuminance;
 }
 
 const Unit& Checker::rslUnit(const Shadeop& op) {

@@ -140,7 +140,6 @@ private:
     std::vector<Scope> scopes_;
     int loops_ = 0;
     int instanceDepth_ = 0;
-    bool inIlluminance_ = false;
     bool foreignLight_ = false; ///< in the block of a light that stands in another shader, which was reported
     std::unordered_map<const Expr*, Info> infos_;
 };

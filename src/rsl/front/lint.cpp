@@ -192,6 +192,9 @@ private:
             if (p.output) target(*p.value, false);
             else expression(*p.value);
         }
+        if (s.kind == StmtKind::Illuminance && lightLoops_ > 0 && !now_.dead)
+            sources_.warning(s.place, "illuminance inside illuminance: the RenderMan specification forbids it, and other renderers may refuse it",
+                             "here the inner loop visits all its lights in every turn of the outer one");
         ++loops_;
         lightLoops_ += s.kind == StmtKind::Illuminance;
         statement(s.body.empty() ? nullptr : s.body[0].get());

@@ -178,8 +178,6 @@ constexpr MessageKind kKinds[] = {
     {"return-missing", "function '*' can end without returning a value; it is zero then"},
     {"light-arguments", "gather begins with a category, a string"},
     {"light-arguments", "wrong arguments of '*'"},
-    {"nested-illuminance", "'illuminance' inside 'illuminance' is not allowed"},
-    {"nested-illuminance", "illuminance inside illuminance"},
     {"no-effect", "this expression has no effect"},
     {"array-from-one", "one value for a whole array: it is computed again for each element"},
     // what may be written
@@ -196,6 +194,7 @@ constexpr MessageKind kKinds[] = {
     {"channel-types", "output '*' is a * in an earlier call, and a * here*"},
     // of `compile -W`
     {"unlit", "'*' is read outside illuminance()*"},
+    {"nested-illuminance", "illuminance inside illuminance*"},
     {"unused-parameter", "parameter '*' is not used"},
     {"unused-variable", "variable '*' is not used"},
     {"two-signs", "'*' before a variable is two signs *"},

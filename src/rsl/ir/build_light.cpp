@@ -9,10 +9,6 @@
 namespace alpenglow::rsl::ir {
 
 void Builder::illuminance(const Stmt& s) {
-    if (lightDepth_ > 0) {
-        error(s.place, "illuminance inside illuminance");
-        return;
-    }
     const Type vector{Base::Vector, 0}, color{Base::Color, 0};
     Site site;
     site.op = "illuminance";
@@ -85,6 +81,8 @@ void Builder::illuminance(const Stmt& s) {
     inst->args.push_back(s.exprs.size() > 2 ? expr(*s.exprs[2], Kind::Float) : constant(3.14159274f));
 
     if (!setup.names.empty()) {
+        site.names.push_back("__setup");
+        site.pairStrings.push_back("1");
         place_ = s.place;
         call(Op::Service, std::move(setup), std::move(given));
     }

@@ -234,6 +234,7 @@ void Emitter::emitLightLoop(const Inst* i) {
     auto* i32 = i32_;
     Value* begin = field(offsetof(KernelCall, lightBegin), ptr_, "lightBegin");
     Value* fetch = field(offsetof(KernelCall, lightFetch), ptr_, "lightFetch");
+    Value* end = field(offsetof(KernelCall, lightEnd), ptr_, "lightEnd");
     Value* site = b_.getInt32(uint32_t(i->site));
     Value* lanesValue = b_.getInt32(uint32_t(width_));
     auto* beginType = llvm::FunctionType::get(i32, {ptr_, i32, i32, i64_, i32, ptr_}, false);
@@ -296,6 +297,7 @@ void Emitter::emitLightLoop(const Inst* i) {
     index->addIncoming(following, latch);
     for (size_t k = 0; k < count; k++) addIncoming(phi[k], joined[k], latch);
     b_.SetInsertPoint(exit);
+    b_.CreateCall(llvm::FunctionType::get(b_.getVoidTy(), {ptr_, i32, i32, i32}, false), end, {call_, site, first_, lanesValue});
     mask_ = outer;
     rootMask_ = outerRoot;
     for (size_t k = 0; k < count; k++) define(i, int(k), phi[k]);

@@ -58,7 +58,13 @@ bool givesPerhaps(const ShaderInstance& shader, const std::string& output) {
 }
 
 void addOutput(const ShaderInstance& shader, const std::string& name, std::vector<std::string>& outputs) {
-    if (givesPerhaps(shader, name)) outputs.push_back(kGiven + withoutIndex(name));
+    const std::string base = withoutIndex(name);
+    const auto declares = [&](const rsl::ParameterInfo& p) { return p.output && p.name == base; };
+    const auto& parameters = shader.program->parameters();
+    const rsl::ShaderKind kind = shader.program->kind();
+    const bool oneOfMany = kind == rsl::ShaderKind::Light || kind == rsl::ShaderKind::Volume; // what others gave stays where it does not give
+    const bool channel = std::none_of(parameters.begin(), parameters.end(), declares) && channelWidth(shader, name) > 0;
+    if (givesPerhaps(shader, name) || (oneOfMany && channel)) outputs.push_back(kGiven + withoutIndex(name));
     outputs.push_back(name);
 }
 

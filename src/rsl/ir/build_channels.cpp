@@ -1,6 +1,7 @@
 // outputchannel(), writeaov() and readaov(): outputs that no parameter declares. Each is a variable of the kernel, zero until a call gives it a value.
 // A name that is made when the shader runs means one of those that displays ask for: each point may have its own. Whether a point has it
-// is an output, too ("given:NAME"), as a zero that was given hides what others give and one that was not does not.
+// is an output, too ("given:NAME"), as a zero that was given hides what others give and one that was not does not. Lights and volumes tell it
+// of all their names: where a condition keeps them from the call, what others gave to the surface stays.
 #include "rsl/ir/builder.h"
 
 namespace alpenglow::rsl::ir {
@@ -38,9 +39,13 @@ void Builder::beginChannels() {
     };
     std::vector<const Program*> programs{&program_};
     for (const CoShader& c : options_.coShaders) programs.push_back(c.program);
+    const bool oneOfMany = shader_.kind == ShaderKind::Light || shader_.kind == ShaderKind::Volume;
+    const auto isParameter = [&](const std::string& name) {
+        return std::any_of(shader_.parameters.begin(), shader_.parameters.end(), [&](const ShaderParameter& p) { return p.symbol->output && p.symbol->name == name; });
+    };
     for (const Program* p : programs)
         for (const auto& [name, type] : p->channels)
-            if (name[0] != kAnyName && !channels_.count(name)) make(name, type, false);
+            if (name[0] != kAnyName && !channels_.count(name)) make(name, type, oneOfMany && !isParameter(name));
     for (const Program* p : programs)
         for (const auto& [key, type] : p->channels) {
             if (key[0] != kAnyName) continue;

@@ -1,6 +1,7 @@
 #include "rsl/services_basic.h"
 #include "base/category.h"
 #include "base/limits.h"
+#include "rsl/handlename.h"
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -184,11 +185,12 @@ std::string formatSite(const ir::Site& s, int32_t lanes, const float* in, int la
         const bool text = letter == 's' || letter == 'h';
         if (!(text && a.more(true)) && a.more(false)) {
             v = a.value();
-            return &v;
+        } else if (!a.more(true)) {
+            return nullptr;
+        } else {
+            v = FormatValue{Base::String, {}, a.string()};
         }
-        if (!a.more(true)) return nullptr;
-        v = FormatValue{Base::String, {}, a.string()};
-        if (letter == 'h' && v.text.empty()) v.text = "<null>";
+        if (letter == 'h' && v.base == Base::String) v.text = shownHandle(v.text);
         return &v;
     });
 }

@@ -2,12 +2,7 @@
 
 namespace alpenglow::transport {
 
-Told::Told(const Information& i) {
-    numbers = i.numbers;
-    if (!i.isText) return;
-    kind = rsl::ir::Kind::String;
-    texts = {i.text};
-}
+Told::Told(const Information& i) : numbers(i.numbers), texts(i.texts) {}
 
 rsl::ir::Kind Told::kindOf(rsl::Base b) {
     using rsl::ir::Kind;
@@ -57,7 +52,7 @@ void ServiceCall::answer(int lane, const Told& t) const {
     }
     const size_t size = size_t(rsl::ir::components(wanted)), rows = size_t(s.resultRowCount) - before;
     const size_t have = wanted == Kind::String ? t.texts.size() : t.numbers.size();
-    if (!t.kind && (wanted == Kind::String || (array ? have % size != 0 : have != rows))) return;
+    if (!t.kind && (have == 0 || (array ? have % size != 0 : have != rows))) return;
     if (!open && have < rows) return;
     if (open) put(1, lane, float(have / size));
     for (size_t r = 0; r < std::min(rows, have); ++r) {

@@ -9,7 +9,8 @@ namespace alpenglow::transport {
 
 /// What somebody is told: the value of a parameter, of a primitive variable, of an attribute.
 struct Told {
-    std::optional<rsl::ir::Kind> kind; ///< of an element; none: as many numbers as there are, for a variable of that size
+    /// Of an element; none: as many numbers or texts as there are, for a variable of that size.
+    std::optional<rsl::ir::Kind> kind;
     int elements = 0;                  ///< 0: no array. Not used where the kind is not known
     bool varying = false;              ///< does not fit a uniform variable
     std::vector<float> numbers;

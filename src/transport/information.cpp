@@ -6,11 +6,11 @@ namespace alpenglow::transport {
 namespace {
 
 Information number(float f) { return {{f}, {}, false}; }
-Information words(std::string s) { return {{}, std::move(s), true}; }
+Information words(const std::string& s) { return {{}, {s}, true}; }
 
 std::optional<Information> given(const scene::Param* p) {
     if (!p) return std::nullopt;
-    if (!p->strings.empty()) return words(p->strings[0]);
+    if (!p->strings.empty()) return Information{{}, p->strings, true};
     return Information{p->numbers, {}, false};
 }
 

@@ -5,10 +5,10 @@
 
 namespace alpenglow::transport {
 
-/// Numbers, or a text.
+/// Numbers, or texts: one, or those of an array.
 struct Information {
     std::vector<float> numbers;
-    std::string text;
+    std::vector<std::string> texts;
     bool isText = false;
 };
 

@@ -47,7 +47,7 @@ void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, i
         return;
     }
     if (d.op == "currentlight") {
-        if (loop.light >= 0) each([&](int lane) { put(0, lane, std::bit_cast<float>(rsl::internString(kLightHandle + std::to_string(loop.light)))); });
+        if (loop.light >= 0) each([&](int lane) { put(0, lane, std::bit_cast<float>(rsl::internString(handleOfLight(loop.light, world_->lights_[size_t(loop.light)].handle)))); });
         return;
     }
     if (d.op == "getlights") { // rows: how many, then the handles
@@ -64,7 +64,7 @@ void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, i
                                                               " lights; the others are left out", {}, {}});
                         break;
                     }
-                    put(size_t(++n), lane, std::bit_cast<float>(rsl::internString(kLightHandle + std::to_string(i))));
+                    put(size_t(++n), lane, std::bit_cast<float>(rsl::internString(handleOfLight(i, world_->lights_[size_t(i)].handle))));
                 }
             put(0, lane, float(n));
         });
@@ -76,7 +76,7 @@ void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, i
             if (const SurfaceBinding* surface = bindingOf(lane))
                 for (int i : surface->lights)
                     if (visible(world_->lights_[size_t(i)]) && world_->lights_[size_t(i)].handle == want) {
-                        put(0, lane, std::bit_cast<float>(rsl::internString(kLightHandle + std::to_string(i))));
+                        put(0, lane, std::bit_cast<float>(rsl::internString(handleOfLight(i, world_->lights_[size_t(i)].handle))));
                         break;
                     }
         });

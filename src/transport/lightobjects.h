@@ -2,13 +2,16 @@
 #pragma once
 #include "base/matrix.h"
 #include "rsl/compiler.h"
+#include "rsl/handlename.h"
 #include <set>
 #include <string>
 
 namespace alpenglow::transport {
 
-/// Before the number of a light, in the handles that getlights() gives.
-inline constexpr char kLightHandle[] = "light#";
+using rsl::kLightHandle;
+
+/// The handle that getlights() gives of a light: its number among those of the world, and what its declaration called it.
+inline std::string handleOfLight(int light, const std::string& declared) { return kLightHandle + std::to_string(light) + ":" + declared; }
 
 /// Names of methods and members that a shader asks of handles which getlights() or getlight() gave, as far as its text shows. light(L, Cl)
 /// and light(L, Cl, Ol) are not among them: the renderer answers those.

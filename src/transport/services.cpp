@@ -138,7 +138,7 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
             if (field == "resolution") i.numbers = {float(info->width), float(info->height)};
             else if (field == "channels") i.numbers = {float(info->channels)};
             else if (field == "bitsperchannel") i.numbers = {float(info->bits)};
-            else if (field == "type") i = {{}, info->type, true};
+            else if (field == "type") i = {{}, {info->type}, true};
             else return;
             call.answer(lane, Told(i));
         });

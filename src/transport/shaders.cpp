@@ -191,7 +191,7 @@ InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const std::map<s
         for (int l : lights) {
             const BoundLight& light = lights_[size_t(l)];
             if (light.source && light.source->shader && light.instance && answers(*light.instance->program, names))
-                called.emplace_back(kLightHandle + std::to_string(l), light.source->shader);
+                called.emplace_back(handleOfLight(l, light.handle), light.source->shader);
         }
     if (called.empty()) return shader;
     std::vector<const void*> key{shader.get()};

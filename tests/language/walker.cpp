@@ -367,7 +367,9 @@ private:
             return v;
         }
         case ExprKind::Binary: {
-            const Walked a = expr(*e.args[0]), b = expr(*e.args[1]);
+            const Walked a = expr(*e.args[0]);
+            if ((e.op == ExprOp::And && a.n[0] == 0) || (e.op == ExprOp::Or && a.n[0] != 0)) return truth(a.n[0] != 0); // as in C
+            const Walked b = expr(*e.args[1]);
             Walked r = binary(e.op, a, b);
             if (e.type.base != Base::Bool && width(r.base) == width(e.type.base)) r.base = e.type.base;
             return r;

@@ -255,7 +255,8 @@ void Checker::settleCall(ExprPtr& pointer, Type result) {
         } else {
             settle(a, p.type, p.handle);
             // printf("%s", h->name): what another shader gives, of whatever type it is.
-            const bool member = a->kind == ExprKind::Member || a->kind == ExprKind::Method;
+            const bool element = a->kind == ExprKind::Index && a->args[0]->kind == ExprKind::Member;
+            const bool member = a->kind == ExprKind::Member || a->kind == ExprKind::Method || element;
             if (member && p.type.base == Base::Void && choice.shadeop && choice.shadeop->section == "Strings") a->type = {Base::Void, 0};
         }
     }

@@ -23,7 +23,7 @@ bool Checker::uniformResult(const Expr& e, const Choice& choice) const {
     const Shadeop& op = *choice.shadeop;
     if (op.name == "arraylength" || op.name == "capacity" || op.name == "textureinfo") return e.kind == ExprKind::ShadeopCall;
     if (op.section == kPluginSection) return true;
-    static const std::set<std::string_view> kOfThePoint = {"gridmin", "gridmax", "getvar", "readprimvar", "readaov", "evalparam"};
+    static const std::set<std::string_view> kOfThePoint = {"gridmin", "gridmax", "readaov", "evalparam"};
     if (op.section == "Messages") return !kOfThePoint.count(op.name);
     return (op.name == "texture" || op.name == "environment") && e.args.size() > 1;
 }

@@ -65,7 +65,8 @@ bool sameForAll(const Expr& e) {
 
 void Checker::assignedToUniform(const Symbol& s, const Expr& value) {
     if (s.storage != Storage::Uniform || !value.varying || s.type.base == Base::String) return;
-    if (value.kind == ExprKind::Member || value.kind == ExprKind::Method) return; // what a handle gives is of the class that is wanted
+    const Expr& whole = value.kind == ExprKind::Index ? *value.args[0] : value;
+    if (whole.kind == ExprKind::Member || whole.kind == ExprKind::Method) return; // what a handle gives is of the class that is wanted
     if (sameForAll(value)) return;
     sources_.warning(value.place,
                      "a varying value is given to the uniform variable '" + s.name + "'; each shaded point keeps its own");

@@ -120,7 +120,7 @@ constexpr MessageKind kKinds[] = {
     {"null-handle", "this handle is null here*"},
     {"null-handle", "'*' is null here*"},
     {"no-such-method", "co-shader '*' (*) has no public method '*' with * argument*"},
-    {"no-such-member", "co-shader '*' (*) has no public member '*'"},
+    {"no-such-member", "co-shader '*' (*) has no public member '*'*"},
     {"member-type", "co-shader '*' (*) has '*' as *, not *"},
     {"method-argument", "argument * of method '*' of co-shader '*' is *, not *"},
     {"method-argument", "argument * of light() is a variable of type *"},

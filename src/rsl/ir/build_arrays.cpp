@@ -51,7 +51,8 @@ int Builder::largestResize() {
         for (size_t n = 0; n < e.args.size(); ++n) {
             const bool output = e.signature ? n < e.signature->parameters.size() && e.signature->parameters[n].output
                                             : e.function && n < e.function->parameters.size() && e.function->parameters[n]->output;
-            if (output && e.args[n]) grows(*e.args[n]);
+            const bool other = e.kind == ExprKind::Method; // its parameters are not known yet
+            if ((output || other) && e.args[n]) grows(*e.args[n]);
         }
         const bool sizes = e.shadeop && (e.shadeop->name == "resize" || e.shadeop->name == "reserve") && e.args.size() == 2;
         if (sizes) wanted(*e.args[1]);

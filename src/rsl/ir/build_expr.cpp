@@ -1,4 +1,5 @@
 // Expressions: operators, conversions, spaces, arrays.
+#include "rsl/front/visit.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
 #include <cctype>
@@ -40,9 +41,39 @@ Inst* Builder::multiply(Inst* a, Inst* b) {
     return emit(Op::MatrixOf, Kind::Matrix, m);
 }
 
+namespace {
+/// Does the expression do more than give a value: assign, print, call what may do so?
+bool hasEffects(const Expr& root) {
+    bool found = false;
+    front::everyExpr(root, [&](const Expr& e) {
+        found |= e.kind == ExprKind::Assign || e.kind == ExprKind::Method || e.kind == ExprKind::FunctionCall;
+        if (e.kind != ExprKind::ShadeopCall || !e.signature) return;
+        found |= e.type.base == Base::Void || e.shadeop->name == "pop";
+        for (const auto& p : e.signature->parameters) found |= p.output && e.shadeop->section != "Arrays";
+    });
+    return found;
+}
+} // namespace
+
+/// && and ||. What the first operand decides alone leaves the second undone, as in C; one that only gives a value is computed all the
+/// same where the points differ, which nobody sees.
+Inst* Builder::both(const Expr& e) {
+    const bool all = e.op == ExprOp::And;
+    Inst* a = condition(*e.args[0]);
+    if (isConst(a) && (a->numbers[0] != 0) != all) return boolean(!all);
+    if (isConst(a)) return condition(*e.args[1]);
+    if (hasEffects(*e.args[1])) {
+        const auto second = [&] { return std::vector<Inst*>{condition(*e.args[1])}; };
+        const auto decided = [&] { return std::vector<Inst*>{boolean(!all)}; };
+        place_ = e.place;
+        return all ? branch(a, second, decided)[0] : branch(a, decided, second)[0];
+    }
+    Inst* b = condition(*e.args[1]);
+    place_ = e.place;
+    return emit(all ? Op::And : Op::Or, Kind::Bool, {a, b});
+}
+
 Inst* Builder::binary(const Expr& e, Inst* a, Inst* b) {
-    if (e.op == ExprOp::And || e.op == ExprOp::Or)
-        return emit(e.op == ExprOp::And ? Op::And : Op::Or, Kind::Bool, {coerce(a, Kind::Bool), coerce(b, Kind::Bool)});
     if (a->kind == Kind::Bool) a = coerce(a, Kind::Float);
     if (b->kind == Kind::Bool) b = coerce(b, Kind::Float);
     if (a->kind != b->kind) {
@@ -362,6 +393,7 @@ Inst* Builder::expr(const Expr& e) {
         return emit(Op::Neg, v->kind, {v});
     }
     case ExprKind::Binary: {
+        if (e.op == ExprOp::And || e.op == ExprOp::Or) return both(e);
         Inst* a = expr(*e.args[0]);
         Inst* b = expr(*e.args[1]);
         place_ = e.place;

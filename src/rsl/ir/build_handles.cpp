@@ -3,6 +3,7 @@
 #include "base/category.h"
 #include "base/limits.h"
 #include "rsl/front/visit.h"
+#include "rsl/handlename.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
 
@@ -254,22 +255,22 @@ Inst* Builder::methodCall(const Expr& e) {
             bool another = false;
             for (size_t n = 0; n < instances_.size(); ++n) another |= n != i && has(n);
             if (another || c.light) {
-                complain(e.place, "co-shader '" + c.handle + "' (" + c.shader->name + ") has no public method '" + e.text + "' with " +
+                complain(e.place, "co-shader '" + shownHandle(c.handle) + "' (" + c.shader->name + ") has no public method '" + e.text + "' with " +
                                       std::to_string(e.args.size() - 1) + " arguments; the call does nothing");
                 return zero(kind);
             }
         }
         if (!f || !c.shader->publics.count(e.text)) {
-            error(e.place, "co-shader '" + c.handle + "' (" + c.shader->name + ") has no public method '" + e.text + "' with " +
+            error(e.place, "co-shader '" + shownHandle(c.handle) + "' (" + c.shader->name + ") has no public method '" + e.text + "' with " +
                                std::to_string(e.args.size() - 1) + " arguments");
             return zero(kind);
         }
         if (openMethods_.count({i, f}) && !certain_) { // it may be another each time: whether it is a circle shows when the shader runs
-            complain(e.place, "method '" + e.text + "' of co-shader '" + c.handle + "' calls itself; the inner call does nothing: " + wayTo(i, *f));
+            complain(e.place, "method '" + e.text + "' of co-shader '" + shownHandle(c.handle) + "' calls itself; the inner call does nothing: " + wayTo(i, *f));
             return zero(kind);
         }
         if (openMethods_.count({i, f})) {
-            error(e.place, "method '" + e.text + "' of co-shader '" + c.handle + "' calls itself; recursion is not allowed: " + wayTo(i, *f));
+            error(e.place, "method '" + e.text + "' of co-shader '" + shownHandle(c.handle) + "' calls itself; recursion is not allowed: " + wayTo(i, *f));
             return zero(kind);
         }
         std::vector<const Expr*> arguments;
@@ -288,7 +289,7 @@ Inst* Builder::methodCall(const Expr& e) {
                               (kindOf(given.type.element()) == kindOf(p.type.element()) ||
                                (given.type == Type{Base::Float, 0} && !p.output && kindOf(p.type) != Kind::String));
             if (!fits || (p.output && !variable)) {
-                error(given.place, "argument " + std::to_string(n + 1) + " of method '" + e.text + "' of co-shader '" + c.handle +
+                error(given.place, "argument " + std::to_string(n + 1) + " of method '" + e.text + "' of co-shader '" + shownHandle(c.handle) +
                                        "' is " + (p.output ? "a variable of type " : "") + toString(p.type) + ", not " +
                                        toString(given.type));
                 return zero(kind);
@@ -343,7 +344,7 @@ Inst* Builder::methodCall(const Expr& e) {
                 assign(*arguments[n], outputs[n]);
         Inst* result = frame.result >= 0 ? get(frame.result) : zero(kind);
         if (result->kind != kind && !(result->kind == Kind::Float && kind != Kind::String)) {
-            error(e.place, "method '" + e.text + "' of co-shader '" + c.handle + "' gives " + toString(f->result) + ", not " +
+            error(e.place, "method '" + e.text + "' of co-shader '" + shownHandle(c.handle) + "' gives " + toString(f->result) + ", not " +
                                toString(e.type));
             return zero(kind);
         }

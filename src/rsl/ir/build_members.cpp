@@ -1,4 +1,5 @@
 // Members of co-shaders and variables of the primitive: a->x, a->list[i], getvar(), readprimvar(), hasmethod().
+#include "rsl/handlename.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
 
@@ -38,33 +39,51 @@ Inst* Builder::memberValue(size_t i, const Symbol& s) {
 /// The type of what `handle->name` or `handle->name()` gives, for who takes any: that of the shader that the handle names, or of the first
 /// that has one; a number where that is not to be seen.
 Type Builder::typeOfMember(const Expr& e) {
-    Inst* h = e.args[0]->kind == ExprKind::Variable || e.args[0]->kind == ExprKind::String ? expr(*e.args[0]) : nullptr;
+    const bool element = e.kind == ExprKind::Index; // of an array, or a component
+    const Expr& member = element ? *e.args[0] : e;
+    const Expr& of = *member.args[0];
+    Inst* h = of.kind == ExprKind::Variable || of.kind == ExprKind::String ? expr(of) : nullptr;
     const bool known = h && h->op == Op::ConstString;
     for (size_t i = 0; i < instances_.size(); ++i) {
         if (known && instances_[i].binding->handle != h->text) continue;
         if (e.kind == ExprKind::Method) {
             if (const Function* f = methodOf(i, e)) return f->result.base == Base::Void ? Type{Base::Float, 0} : f->result;
-        } else if (const Symbol* s = memberOf(i, e.text)) {
-            return s->type;
+        } else if (const Symbol* s = memberOf(i, member.text)) {
+            if (!element) return s->type;
+            if (s->type.array) return s->type.element();
         }
     }
     return {Base::Float, 0};
 }
 
+/// The shader of this turn of forHandle() lacks what is asked. Where the handle may mean another, which has it, that is said when the
+/// shader runs and comes here with this one; else it is an error. `lack`: what comes behind the shader's name.
+void Builder::lacks(const Place& place, size_t i, const std::string& lack, const std::function<bool(size_t)>& has) {
+    if (!certain_ && isSelf(i)) return; // one of the others is meant
+    const CoShader& c = *instances_[i].binding;
+    const std::string text = "co-shader '" + shownHandle(c.handle) + "' (" + c.shader->name + ") " + lack;
+    bool another = false;
+    for (size_t n = 0; n < instances_.size() && !certain_; ++n) another |= n != i && has(n);
+    if (another) complain(place, text + "; the value is nothing");
+    else error(place, text);
+}
+
 Inst* Builder::memberAccess(const Expr& e) {
-    const Kind kind = kindOf(e.type.base == Base::Void ? typeOfMember(e) : e.type);
+    const Type type = e.type.base == Base::Void ? typeOfMember(e) : e.type;
+    const Kind kind = kindOf(type);
     if (Inst* v = ofSurface(*e.args[0], e.text, kind, nullptr)) return v;
+    const auto fits = [&](size_t i) {
+        const Symbol* s = memberOf(i, e.text);
+        return s && !s->type.array && (kindOf(s->type) == kind || (kindOf(s->type) == Kind::Float && kind != Kind::String));
+    };
     return forHandle(*e.args[0], kind, [&](size_t i) -> Inst* {
         const CoShader& c = *instances_[i].binding;
         const Symbol* s = memberOf(i, e.text);
-        const bool fits = s && !s->type.array &&
-                          (kindOf(s->type) == kind || (kindOf(s->type) == Kind::Float && kind != Kind::String));
-        if (!fits && !certain_ && isSelf(i)) return zero(kind);
-        if (c.light && (!fits || s->output)) return lightMember(leaves_.string(c.handle), leaves_.string(e.text), kind, nullptr);
-        if (!fits) {
-            error(e.place, "co-shader '" + c.handle + "' (" + c.shader->name + ") " +
-                               (s ? "has '" + e.text + "' as " + toString(s->type) + ", not " + toString(e.type)
-                                  : "has no public member '" + e.text + "'"));
+        if (c.light && !(isSelf(i) && !certain_) && (!fits(i) || s->output))
+            return lightMember(leaves_.string(c.handle), leaves_.string(e.text), kind, nullptr);
+        if (!fits(i)) {
+            lacks(e.place, i, s ? "has '" + e.text + "' as " + toString(s->type) + ", not " + toString(type)
+                                : "has no public member '" + e.text + "'", fits);
             return zero(kind);
         }
         return memberValue(i, *s);
@@ -171,13 +190,17 @@ Inst* Builder::memberArray(const Expr& e) {
     const Lengths l = *lengths(a);
     set(l.length, constant(0));
     set(l.reserved, constant(0));
-    forHandle(*e.args[0], Kind::Float, [&](size_t i) -> Inst* {
+    const auto given = [&](size_t i) -> Inst* {
         const Symbol* s = memberOf(i, e.text);
         Inst* from = s && s->type.array ? memberValue(i, *s) : nullptr;
-        if (!from || from->kind != Kind::Array || from->element != a->element) {
-            const CoShader& c = *instances_[i].binding;
-            error(e.place, "co-shader '" + c.handle + "' (" + c.shader->name + ") " +
-                               (s ? "has '" + e.text + "' as " + toString(s->type) + ", not an array of " + toString(e.type.element()) : "has no public member '" + e.text + "'"));
+        return from && from->kind == Kind::Array && from->element == a->element ? from : nullptr;
+    };
+    forHandle(*e.args[0], Kind::Float, [&](size_t i) -> Inst* {
+        Inst* from = given(i);
+        if (!from) {
+            const Symbol* s = memberOf(i, e.text);
+            lacks(e.place, i, s ? "has '" + e.text + "' as " + toString(s->type) + ", not an array of " + toString(e.type.element())
+                                : "has no public member '" + e.text + "'", given);
             return constant(0);
         }
         set(l.length, lengthOf(from));
@@ -213,12 +236,14 @@ Inst* Builder::memberArray(const Expr& e) {
 
 /// The length of handle->tab, of any type; 0 of null.
 Inst* Builder::memberLength(const Expr& e) {
-    return forHandle(*e.args[0], Kind::Float, [&](size_t i) -> Inst* {
+    const auto found = [&](size_t i) -> Inst* {
         const Symbol* s = memberOf(i, e.text);
-        if (s && s->type.array)
-            if (Inst* v = memberValue(i, *s); v->kind == Kind::Array) return lengthOf(v);
-        const CoShader& c = *instances_[i].binding;
-        error(e.place, "co-shader '" + c.handle + "' (" + c.shader->name + ") has no public array '" + e.text + "'");
+        Inst* v = s && s->type.array ? memberValue(i, *s) : nullptr;
+        return v && v->kind == Kind::Array ? v : nullptr;
+    };
+    return forHandle(*e.args[0], Kind::Float, [&](size_t i) -> Inst* {
+        if (Inst* v = found(i)) return lengthOf(v);
+        lacks(e.place, i, "has no public member '" + e.text + "' that is an array", found);
         return constant(0);
     });
 }
@@ -226,23 +251,30 @@ Inst* Builder::memberLength(const Expr& e) {
 /// handle->tab[i]: an element of an array, or a component of a tuple.
 Inst* Builder::memberElement(const Expr& e) {
     const Expr& member = *e.args[0];
-    const Kind kind = kindOf(e.type);
+    const Type type = e.type.base == Base::Void ? typeOfMember(e) : e.type;
+    const Kind kind = kindOf(type);
     Inst* at = expr(*e.args[1], Kind::Float);
     place_ = e.place;
+    const auto inArray = [&](const Inst* v) {
+        return v->kind == Kind::Array && (v->element == kind || (v->element == Kind::Float && kind == Kind::Triple));
+    };
+    const auto inTuple = [&](const Inst* v) { return v->kind == Kind::Triple && kind != Kind::String && kind != Kind::Matrix; };
+    const auto has = [&](size_t i) {
+        const Symbol* s = memberOf(i, member.text);
+        const Inst* v = s ? memberValue(i, *s) : nullptr;
+        return v && (inArray(v) || inTuple(v));
+    };
     return forHandle(*member.args[0], kind, [&](size_t i) -> Inst* {
-        const CoShader& c = *instances_[i].binding;
         const Symbol* s = memberOf(i, member.text);
         Inst* v = s ? memberValue(i, *s) : nullptr;
-        if (v && v->kind == Kind::Array && (v->element == kind || (v->element == Kind::Float && kind == Kind::Triple)))
-            return emit(Op::ArrayLoad, v->element, {v, elementOf(v, at)});
-        if (v && v->kind == Kind::Triple && kind != Kind::String && kind != Kind::Matrix) {
+        if (v && inArray(v)) return emit(Op::ArrayLoad, v->element, {v, elementOf(v, at)});
+        if (v && inTuple(v)) {
             const auto part = [&](int n) { return emit(Op::Extract, Kind::Float, {v}, n); };
             Inst* low = emit(Op::Select, Kind::Float, {emit(Op::LessEqual, Kind::Bool, {constant(1), at}), part(1), part(0)});
             return emit(Op::Select, Kind::Float, {emit(Op::LessEqual, Kind::Bool, {constant(2), at}), part(2), low});
         }
-        error(e.place, "co-shader '" + c.handle + "' (" + c.shader->name + ") " +
-                           (s ? "has '" + member.text + "' as " + toString(s->type) + ", which has no element of type " + toString(e.type)
-                              : "has no public member '" + member.text + "'"));
+        lacks(e.place, i, s ? "has '" + member.text + "' as " + toString(s->type) + ", not an array of " + toString(type)
+                            : "has no public member '" + member.text + "'", has);
         return zero(kind);
     }, [&](Inst* handle) { return isConst(at) ? lightMember(handle, leaves_.string(member.text + "[" + indexText(at->numbers[0]) + "]"), kind, nullptr) : zero(kind); });
 }

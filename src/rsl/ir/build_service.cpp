@@ -148,7 +148,7 @@ Inst* Builder::service(const Expr& e, Op kind, int part) {
         all.push_back(v);
         if (v->kind == Kind::String) s.strings.push_back(v->op == Op::ConstString ? v->text : "");
         // Where any strings come in rows, "" in the site stands for the next row: an empty one among them needs its own.
-        const bool untyped = (a.kind == ExprKind::Member || a.kind == ExprKind::Method) && a.type.base == Base::Void;
+        const bool untyped = (a.kind == ExprKind::Member || a.kind == ExprKind::Method || a.kind == ExprKind::Index) && a.type.base == Base::Void;
         if (v->op != Op::ConstString || (v->text.empty() && op.section == "Strings")) addArgument(s, args, v, untyped ? typeOfMember(a) : a.type);
     }
     if (Inst* c = foldString(op.name, all)) return c;

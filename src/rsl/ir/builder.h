@@ -120,6 +120,7 @@ private:
     friend class Held;
     std::unordered_map<const Expr*, Inst*> held_;
     void copyArray(Inst* to, const Expr& from);
+    Inst* both(const Expr&);
     Inst* binary(const Expr&, Inst* a, Inst* b);
     Inst* dot(Inst*, Inst*);
     Inst* cross(Inst*, Inst*);
@@ -217,6 +218,7 @@ private:
     const Function* methodOf(size_t instance, const Expr& call) const;
     const Symbol* memberOf(size_t instance, const std::string& name) const;
     Inst* memberValue(size_t instance, const Symbol&);
+    void lacks(const Place&, size_t instance, const std::string& lack, const std::function<bool(size_t)>& has);
     Inst* methodCall(const Expr&);
     Inst* memberAccess(const Expr&);
     Inst* memberArray(const Expr&);

@@ -37,6 +37,10 @@ void ServiceCall::answer(int lane, const Told& t) const {
     const std::string& variable = d.resultNames[1];
     const bool open = variable.rfind("length ", 0) == 0, array = open || (!variable.empty() && variable.back() == ']');
     const size_t before = open ? 2 : 1; // rows
+    if (open && d.resultKinds.size() == before && t.elements > 0) { // how long it is was all that was asked
+        put(1, lane, float(t.elements));
+        put(0, lane, 1);
+    }
     if (d.resultKinds.size() <= before) return;
     const Kind wanted = d.resultKinds[before];
     if (t.kind && (*t.kind != wanted || (t.elements > 0) != array)) return;

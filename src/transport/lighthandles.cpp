@@ -18,6 +18,28 @@ static int numberOfLight(const SurfaceBinding* surface, const std::string& handl
     return std::find(on.begin(), on.end(), n) == on.end() ? -1 : n;
 }
 
+/// A parameter, or one element or component of it: "steps[1]", "lightcolor[0]". The nearest where the index is outside.
+static std::optional<Told> partTold(const ShaderInstance& light, const std::string& name) {
+    const size_t bracket = name.find('[');
+    if (bracket == std::string::npos) return toldBy(light, name);
+    std::optional<Told> t = toldBy(light, name.substr(0, bracket));
+    if (!t || !t->kind) return std::nullopt;
+    float index = 0;
+    std::from_chars(name.c_str() + bracket + 1, name.c_str() + name.size(), index);
+    if (!t->elements && *t->kind == rsl::ir::Kind::Triple) {
+        t->kind = rsl::ir::Kind::Float;
+        t->elements = 3;
+    }
+    if (!t->elements) return std::nullopt;
+    const size_t at = size_t(std::clamp(index, 0.f, float(t->elements - 1))), each = size_t(rsl::ir::components(*t->kind));
+    if (*t->kind == rsl::ir::Kind::String && at < t->texts.size()) t->texts = {std::string(t->texts[at])};
+    else if (const size_t from = at * each; from + each <= t->numbers.size())
+        t->numbers = std::vector<float>(t->numbers.begin() + long(from), t->numbers.begin() + long(from + each));
+    else return std::nullopt;
+    t->elements = 0;
+    return t;
+}
+
 int Engine::lightOfHandle(const BatchContext& c, const std::string& handle) const { return numberOfLight(c.binding, handle); }
 
 void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, int lanes, const float* in, float* out) {
@@ -90,7 +112,7 @@ void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, i
         const ServiceCall call(c, site, first, mask, lanes, in, out);
         for (auto [li, of] : asked) {
             const auto tell = [&](const std::string& name, uint64_t points) {
-                std::optional<Told> t = toldBy(*world_->lights_[size_t(li)].instance, name);
+                std::optional<Told> t = partTold(*world_->lights_[size_t(li)].instance, name);
                 if (!t) return;
                 if (t->kind == rsl::ir::Kind::Float && !t->elements && d.resultKinds.size() > 1 && d.resultKinds[1] == rsl::ir::Kind::Triple) { // a float also where a color is wanted
                     t->kind = rsl::ir::Kind::Triple;

@@ -106,6 +106,20 @@ TEST(HandleMembers, ArraysOfTextsOfAttributesAndOptions) {
     EXPECT_FLOAT_EQ(a.seen.z, 1);
 }
 
+TEST(HandleMembers, AClassLightWithoutTheArrayLeavesThePlainOneItsOwn) {
+    writeShader("bare", "class bare() { public float once() { return 8; } public void light(output vector L; output color Cl;) { L = vector(0, 0, 1); Cl = 1; } }\n");
+    writeShader("listed", "light listed(uniform float steps[2] = {3, 4}; color tint = color(5, 6, 7); string words[2] = {\"a\", \"b\"};) { illuminate(point \"world\" (0, 0, 0)) Cl = 1; }\n");
+    writeShader("readslights", "class readslights() {\n    public void surface(output color Ci, Oi) {\n        shader all[] = getlights(); uniform float i; Oi = 1; Ci = 0;\n"
+                               "        for (i = 0; i < arraylength(all); i += 1) {\n"
+                               "            if (i == 0) Ci += color(all[i]->once(), 0, 0); else Ci += color(0, all[i]->steps[1] + arraylength(all[i]->steps) * 10, all[i]->tint[2] + (all[i]->words[1] == \"b\" ? 20 : 0));\n        }\n    }\n}\n");
+    Scene s(std::string("WorldBegin\nLightSource \"bare\" 1\nLightSource \"listed\" 2\nSurface \"readslights\"\n") + kSquare + "WorldEnd\n");
+    const Color c = s.one(rayTo({0, 0, 0}, {.2f, .3f, 2}));
+    EXPECT_EQ(s.messages(), "");
+    EXPECT_FLOAT_EQ(c.x, 8);
+    EXPECT_FLOAT_EQ(c.y, 24);
+    EXPECT_FLOAT_EQ(c.z, 27);
+}
+
 TEST(HandleMembers, LightsArePrintedByTheHandleOfTheirDeclaration) { // seed, format(): %h
     writeShader("named", "class named() {\n    public void surface(output color Ci, Oi) {\n        shader all[] = getlights(); Oi = 1;\n"
                          "        Ci = color(format(\"%h %h\", all[0], all[1]) == \"key 7\", getlight(\"key\") == all[0], getlight(\"7\") == all[1] && all[0] != all[1]);\n    }\n}\n");

@@ -62,7 +62,7 @@ void Builder::lacks(const Place& place, size_t i, const std::string& lack, const
     if (!certain_ && isSelf(i)) return; // one of the others is meant
     const CoShader& c = *instances_[i].binding;
     const std::string text = "co-shader '" + shownHandle(c.handle) + "' (" + c.shader->name + ") " + lack;
-    bool another = false;
+    bool another = c.light && !certain_; // lights of other kinds may have it, which are asked when the shader runs
     for (size_t n = 0; n < instances_.size() && !certain_; ++n) another |= n != i && has(n);
     if (another) complain(place, text + "; the value is nothing");
     else error(place, text);
@@ -245,6 +245,17 @@ Inst* Builder::memberLength(const Expr& e) {
         if (Inst* v = found(i)) return lengthOf(v);
         lacks(e.place, i, "has no public member '" + e.text + "' that is an array", found);
         return constant(0);
+    }, [&](Inst* handle) -> Inst* { // a light
+        Site s;
+        s.op = "lightparameter";
+        s.place = place_;
+        s.strings = {e.text};
+        s.resultKinds = {Kind::Float, Kind::Float};
+        s.resultNames = {"", "length value"};
+        s.resultType = {Base::Float, 0};
+        std::vector<Inst*> args;
+        addArgument(s, args, handle, {Base::String, 0});
+        return call(Op::Service, std::move(s), std::move(args))[1];
     });
 }
 

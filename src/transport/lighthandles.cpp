@@ -31,7 +31,7 @@ static std::optional<Told> partTold(const ShaderInstance& light, const std::stri
         t->elements = 3;
     }
     if (!t->elements) return std::nullopt;
-    const size_t at = size_t(std::clamp(index, 0.f, float(t->elements - 1))), each = size_t(rsl::ir::components(*t->kind));
+    const size_t at = size_t(index > 0 ? std::min(index, float(t->elements - 1)) : 0.f), each = size_t(rsl::ir::components(*t->kind));
     if (*t->kind == rsl::ir::Kind::String && at < t->texts.size()) t->texts = {std::string(t->texts[at])};
     else if (const size_t from = at * each; from + each <= t->numbers.size())
         t->numbers = std::vector<float>(t->numbers.begin() + long(from), t->numbers.begin() + long(from + each));

@@ -38,14 +38,14 @@ std::vector<Shadeop> publishedShadeops() {
     Shadeop& normal = add("shadingnormal", "Geometry", sigs({{"normal shadingnormal(normal n)"}}), Lowering::Rsl,
                           "n with length 1, turned toward the viewer where the surface has two sides (attribute \"Sides\").");
     list.back().examples = {{"zcomp(shadingnormal(2 * N))", "-1"}};
-    normal.contexts = kSurface | kDisplacement;
+    normal.contexts = kSurface | kDisplacement | kLight; // lights of PRMan send along the normal of what they light
     normal.rsl = R"(
 normal shadingnormal(normal n) {
     extern vector I;
     float sides = 2;
     attribute("Sides", sides);
     normal one = normalize(n);
-    return (sides == 1) ? one : faceforward(one, I);
+    return (sides == 1) ? one : faceforward(one, I, one);
 }
 )";
     Shadeop& reverse = add("reverse", "Arrays", each("float color point vector normal matrix string", "void reverse(output $ a[])"), Lowering::Rsl,

@@ -118,6 +118,18 @@ TEST(Warnings, NotWhereNothingIsWrong) {
                     "float f(vector p; float r) { p[0] = abs(p[0]); p *= 2; p[1] -= r; r = 2; return xcomp(p) * r; }\n"), 2);
 }
 
+// What a parameter without a default is.
+TEST(Warnings, SayWhatIsThere) {
+    const std::pair<const char*, const char*> cases[] = {{"string map", "it is empty unless set"}, {"float k", "it is zero unless set"},
+                                                         {"matrix m", "it is zero unless set"}, {"shader s", "it is null unless set"}};
+    for (const auto& [parameter, what] : cases) {
+        const auto all = said("surface t(" + std::string(parameter) + ";) { }\n", false);
+        ASSERT_EQ(all.size(), 1u) << parameter;
+        EXPECT_NE(all[0].message.find(what), std::string::npos) << all[0].message;
+        EXPECT_STREQ(messageId(all[0].message), "no-default");
+    }
+}
+
 TEST(Includes, CapitalsDoNotMatter) {
     std::string name = (fs::temp_directory_path() / "alpenglow-include-XXXXXX").string();
     ASSERT_NE(mkdtemp(name.data()), nullptr);

@@ -200,7 +200,8 @@ private:
                 return make(StmtKind::Block, f.place);
             }
             if (!optional(i) && !irradiance && locals->declarators.empty())
-                sources_.warning(p.place, "parameter '" + p.name + "' has no default value; it is zero unless set");
+                sources_.warning(p.place, "parameter '" + p.name + "' has no default value; it is " +
+                                              (p.type.base != Base::String ? "zero" : p.handle ? "null" : "empty") + " unless set");
             auto symbol = std::make_unique<Symbol>(p);
             symbol->name = "(" + name + ")->" + p.name;
             symbol->origin = Symbol::Origin::Local;

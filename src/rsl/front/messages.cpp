@@ -84,7 +84,7 @@ constexpr MessageKind kKinds[] = {
     {"array-length", "the length of an array must be *"},
     {"array-length", "an array has at most * elements"},
     {"function-default", "parameters of functions have no default values*"},
-    {"no-default", "parameter '*' has no default value; it is zero unless set"},
+    {"no-default", "parameter '*' has no default value; it is * unless set"},
     {"extern-value", "an extern variable has its value already and takes no other here"},
     {"loop-levels", "the number of loops to leave must be a whole number from 1"},
     {"not-available", "* not yet available*"},

@@ -205,7 +205,9 @@ void Parser::parameters(Owner owner, std::vector<ShaderParameter>* shader, std::
                     defaults->back() = std::move(value);
                 } else sources_.warning(value->place, "parameters of functions have no default values; this one is ignored");
             } else if (shader && !symbol->output && !isStruct(type) && type.base != Base::Void && symbol->type.array >= 0) {
-                sources_.warning(symbol->place, "parameter '" + symbol->name + "' has no default value; it is zero unless set");
+                const char* what = type.base != Base::String ? "zero" : symbol->handle ? "null" : "empty";
+                sources_.warning(symbol->place,
+                                 "parameter '" + symbol->name + "' has no default value; it is " + what + " unless set");
             }
             if (at(")") || at(";") || at(",")) continue;
             if (atTypeName() || at("uniform") || at("varying") || at("output"))

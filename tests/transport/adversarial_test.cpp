@@ -217,7 +217,7 @@ TEST(Adversarial, Refused) {
 // A block of a function is one for each call, up to a limit.
 TEST(Adversarial, TooManyBlocks) {
     writeShader("evilsum", "surface evilsum() { Oi = 1; Ci = 0; illuminance(P) Ci += Cl; }\n");
-    for (const size_t calls : {size_t(20), limits::kLightBlocks + 1}) {
+    for (const size_t calls : {size_t(20), limits::kLightBlocks, limits::kLightBlocks + 1}) {
         const std::string name = "evilblocks" + std::to_string(calls);
         std::string body;
         for (size_t k = 0; k < calls; ++k) body += " lamp();";
@@ -227,6 +227,20 @@ TEST(Adversarial, TooManyBlocks) {
         EXPECT_EQ(s.messages.find("has no more than " + std::to_string(limits::kLightBlocks)) == std::string::npos, few) << s.messages;
         EXPECT_NEAR(s.colour[0], few ? float(calls) : 0.f, 1e-4);
     }
+}
+
+// Functions that call each other 2^39 times: what looks into calls looks into each function once, or until there are too many blocks.
+TEST(Adversarial, CallsOfCalls) {
+    std::string chain;
+    for (int k = 1; k < 40; ++k) chain += " float f" + std::to_string(k) + "(float x) { return f" + std::to_string(k - 1) + "(x) + f" + std::to_string(k - 1) + "(x); }\n";
+    writeShader("evildark", "float f0(float x) { return x; }\n" + chain + "light evildark() { illuminate(point \"world\" (0, 2, 0)) Cl = 1; if (xcomp(Ps) > 1e6) Cl = f39(1); }\n");
+    writeShader("evilblocks", "float f0(float x) { illuminate(point \"world\" (0, 2, 0)) Cl = 1; return x; }\n" + chain + "light evilblocks() { float x = f39(1); }\n");
+    writeShader("evilgrid", "float f0(float x) { return gridmin(x); }\n" + chain + "surface evilgrid() { uniform float most = 0; if (xcomp(P) > 1e6) most = f39(xcomp(P)); Oi = 1; Ci = 1 + most; }\n");
+    writeShader("evilsum", "surface evilsum() { Oi = 1; Ci = 0; illuminance(P) Ci += Cl; }\n");
+    EXPECT_NEAR(shown(world(std::string("LightSource \"evildark\" 1\nSurface \"evilsum\" ") + kFloor), Hider::Hidden).colour[0], 1, 1e-5);
+    const Shown blocks = shown(world(std::string("LightSource \"evilblocks\" 1\nSurface \"evilsum\" ") + kFloor), Hider::Hidden);
+    EXPECT_NE(blocks.messages.find("has no more than " + std::to_string(limits::kLightBlocks)), std::string::npos) << blocks.messages;
+    EXPECT_NEAR(shown(world(std::string("Surface \"evilgrid\" ") + kFloor), Hider::Hidden).colour[0], 1, 1e-5);
 }
 
 // More lights than a strip remembers, each with its turn; more samples than anybody wants.

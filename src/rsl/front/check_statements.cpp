@@ -2,6 +2,7 @@
 #include "rsl/front/clone.h"
 #include "rsl/front/visit.h"
 #include <algorithm>
+#include <map>
 #include <utility>
 
 namespace alpenglow::rsl::front {
@@ -39,11 +40,14 @@ const Expr* onlyResult(const Function& f) {
     return returns == 1 ? body->body.back()->value.get() : nullptr;
 }
 
+using Answers = std::map<const Function*, bool>;
+
 /// Is it the same for all points of a batch? That is what gridmin() and gridmax() give, what is made of it, and what functions make of it.
-bool sameForAll(const Expr& e) {
+/// `known`: of functions that were looked at, as calls of calls would be looked at again and again.
+bool sameForAll(const Expr& e, Answers& known) {
     if (!e.varying) return true;
     if (e.shadeop) return e.shadeop->name == "gridmin" || e.shadeop->name == "gridmax";
-    const auto all = [&] { return std::all_of(e.args.begin(), e.args.end(), [](const ExprPtr& a) { return sameForAll(*a); }); };
+    const auto all = [&] { return std::all_of(e.args.begin(), e.args.end(), [&](const ExprPtr& a) { return sameForAll(*a, known); }); };
     switch (e.kind) {
     case ExprKind::Cast:
     case ExprKind::Unary:
@@ -51,10 +55,15 @@ bool sameForAll(const Expr& e) {
     case ExprKind::Conditional:
     case ExprKind::Tuple: return all();
     case ExprKind::FunctionCall: {
-        const Expr* result = e.function ? onlyResult(*e.function) : nullptr;
-        if (!result || !sameForAll(*result)) return false;
+        if (!e.function) return false;
+        auto answer = known.find(e.function);
+        if (answer == known.end()) {
+            const Expr* result = onlyResult(*e.function);
+            answer = known.emplace(e.function, result && sameForAll(*result, known)).first;
+        }
+        if (!answer->second) return false;
         for (size_t i = 0; i < std::min(e.args.size(), e.function->parameters.size()); ++i) // uniform parameters are what they are given
-            if (e.function->parameters[i]->storage == Storage::Uniform && !sameForAll(*e.args[i])) return false;
+            if (e.function->parameters[i]->storage == Storage::Uniform && !sameForAll(*e.args[i], known)) return false;
         return true;
     }
     default: return false;
@@ -67,7 +76,7 @@ void Checker::assignedToUniform(const Symbol& s, const Expr& value) {
     if (s.storage != Storage::Uniform || !value.varying || s.type.base == Base::String) return;
     const Expr& whole = value.kind == ExprKind::Index ? *value.args[0] : value;
     if (whole.kind == ExprKind::Member || whole.kind == ExprKind::Method) return; // what a handle gives is of the class that is wanted
-    if (sameForAll(value)) return;
+    if (Answers known; sameForAll(value, known)) return;
     sources_.warning(value.place,
                      "a varying value is given to the uniform variable '" + s.name + "'; each shaded point keeps its own");
 }

@@ -216,11 +216,27 @@ ExprPtr Lowering::zero(const Leaf& l, Place place) {
 
 /// Members that nobody gives a value.
 void Lowering::defaults(Type t, Place place, List& pre, List& out) {
+    if (t.array > 0) { // those of one, again and again, in a list for each leaf
+        List one;
+        defaults({t.base, 0}, place, pre, one);
+        const auto all = leaves({t.base, 0});
+        if (!arrayPossible(t, place)) return;
+        for (size_t i = 0; i < one.size() && i < all.size(); ++i) {
+            auto list = node(ExprKind::ArrayList, place);
+            List parts;
+            if (all[i].type.array) elements(std::move(one[i]), all[i].type, pre, parts);
+            else parts.push_back(std::move(one[i])), list->text = "...";
+            for (int n = 0; n < (all[i].type.array ? t.array : 1); ++n)
+                for (auto& p : parts) adopt(*list, clone(*p));
+            out.push_back(std::move(list));
+        }
+        return;
+    }
     for (const StructMember& m : structOf(t).members) {
         if (m.init) {
             ExprPtr e = clone(*m.init);
             valueOf(std::move(e), m.type, pre, out);
-        } else if (isStruct(m.type) && m.type.array == 0) {
+        } else if (isStruct(m.type) && (m.type.array == 0 || (m.type.array > 0 && hasDefaults(m.type)))) {
             defaults(m.type, place, pre, out);
         } else if (isStruct(m.type)) {
             for (const Leaf& l : leaves(m.type)) out.push_back(zero(l, place));

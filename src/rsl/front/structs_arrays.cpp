@@ -6,6 +6,7 @@
 #include "rsl/front/structs_lowering.h"
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <utility>
 
 namespace alpenglow::rsl::front {
@@ -38,6 +39,12 @@ ExprPtr shipped(const char* name, ExprPtr a, Place place) {
     e->text = std::string("::") + name;
     adopt(*e, std::move(a));
     return e;
+}
+
+/// How many structures so many elements are, of which each has `each`; what a scene gives may end within one.
+ExprPtr wholeStructures(ExprPtr elements, int each) {
+    const Place place = elements->place;
+    return each == 1 ? std::move(elements) : shipped("floor", joined(ExprOp::Div, std::move(elements), number(each, place)), place);
 }
 
 ExprPtr indexed(ExprPtr array, ExprPtr at) {
@@ -89,15 +96,15 @@ bool Lowering::arrayPossible(Type t, Place place) {
 ExprPtr Lowering::bounded(ExprPtr index, int length, const Expr& array, int each) {
     const Place place = index->place;
     if (index->kind == ExprKind::Number && length > 0) {
-        const double at = std::floor(index->number), nearest = std::min(std::max(at, 0.0), double(length - 1));
+        const double at = std::trunc(index->number), nearest = std::min(std::max(at, 0.0), double(length - 1));
         if (at != nearest)
-            sources_.warning(place, "index " + std::to_string(long(at)) + " is outside the array of length " + std::to_string(length) +
+            sources_.warning(place, "index " + fmt::format("{:.9g}", at) + " is outside the array of length " + std::to_string(length) +
                                         "; the nearest element is taken");
         return number(nearest, place);
     }
     ExprPtr last = number(length - 1, place);
     if (length < 0)
-        last = joined(ExprOp::Add, joined(ExprOp::Div, shipped("arraylength", clone(array), place), number(each, place)), number(-1, place));
+        last = joined(ExprOp::Add, wholeStructures(shipped("arraylength", clone(array), place), each), number(-1, place));
     ExprPtr e = shipped("clamp", shipped("floor", std::move(index), place), place);
     adopt(*e, number(0, place));
     adopt(*e, std::move(last));
@@ -303,15 +310,11 @@ void Lowering::measure(ExprPtr& e, List& pre) {
         e = number(length, e->place);
         return;
     }
-    size_t best = 0;
+    size_t best = 0; // the member that has no room for more first
     for (size_t i = 0; i < parts.size(); ++i)
-        if (all[i].type.array == 0) {
-            best = i;
-            break;
-        }
-    const Place place = e->place;
-    e->args[0] = parts.empty() ? variable("", place) : whole(std::move(parts[best]));
-    if (!parts.empty() && all[best].type.array) e = joined(ExprOp::Div, std::move(e), number(all[best].type.array, place));
+        if (all[i].type.array > all[best].type.array) best = i;
+    e->args[0] = parts.empty() ? variable("", e->place) : whole(std::move(parts[best]));
+    if (!parts.empty()) e = wholeStructures(std::move(e), std::max(1, all[best].type.array));
 }
 
 /// {a, b, ...} for an array of structures, one list for each leaf.

@@ -45,22 +45,8 @@ void Lowering::declare(StmtPtr s, std::vector<StmtPtr>& out) {
         const Type type = symbol.type;
         if (d.init) {
             valueOf(std::move(d.init), type, pre, values);
-        } else if (!type.array && hasDefaults(type) && !symbol.isExtern) {
+        } else if (type.array >= 0 && hasDefaults(type) && !symbol.isExtern) {
             defaults(type, symbol.place, pre, values);
-        } else if (type.array > 0 && hasDefaults(type) && !symbol.isExtern) { // {default, ...} for each member
-            List one;
-            defaults({type.base, 0}, symbol.place, pre, one);
-            const auto all = leaves({type.base, 0});
-            for (size_t i = 0; i < one.size() && i < all.size(); ++i) {
-                auto list = node(ExprKind::ArrayList, symbol.place);
-                List parts;
-                if (all[i].type.array) elements(std::move(one[i]), all[i].type, pre, parts);
-                else parts.push_back(std::move(one[i])), list->text = "...";
-                const int times = all[i].type.array && arrayPossible(type, symbol.place) ? type.array : 1;
-                for (int n = 0; n < times; ++n)
-                    for (auto& p : parts) adopt(*list, clone(*p));
-                values.push_back(std::move(list));
-            }
         }
         for (auto& x : *before_) out.push_back(std::move(x)); // what is computed first, between the variables
         before_->clear();

@@ -80,11 +80,7 @@ Inst* Builder::input(const std::string& name, Type type, bool uniform) {
 }
 
 Inst* Builder::space(const std::string& from, const std::string& to) {
-    const auto named = [&](const std::string& s) { // that of a co-shader is where it was named
-        const bool other = s == "shader" && !current_.empty() && !isSelf(current_.back());
-        return other && !instances_[current_.back()].binding->space.empty() ? instances_[current_.back()].binding->space : s;
-    };
-    return input("space:" + named(from) + ">" + named(to), {Base::Matrix, 0}, true);
+    return input("space:" + ownSpace(leaves_.string(from))->text + ">" + ownSpace(leaves_.string(to))->text, {Base::Matrix, 0}, true);
 }
 
 std::vector<Inst*> Builder::runtime(const std::string& symbol, std::vector<Inst*> args, std::vector<Kind> results) {

@@ -94,6 +94,39 @@ bool Builder::grows(const Stmt::Declarator& d) {
     return d.symbol->resizable && (grown_.count(d.symbol) || !measured);
 }
 
+/// Builds what is done with each of `count` elements: one after the other, so that short arrays become values; a loop where there are many,
+/// as code for each would take minutes to compile.
+void Builder::everyElement(int count, const std::function<void(Inst* at)>& each) {
+    constexpr int kOneByOne = 256;
+    if (count <= kOneByOne) {
+        for (int i = 0; i < count; ++i) each(constant(static_cast<float>(i)));
+        return;
+    }
+    Inst* inst = k_.make(Op::Loop, Kind::None);
+    inst->place = place_;
+    inst->args = {constant(0)};
+    inst->results = {Kind::Float};
+    inst->regions.resize(2);
+    Region* const saved = region_;
+    const size_t mark = log_.size();
+    const auto enter = [&](Region& r) {
+        region_ = &r;
+        r.params.push_back(k_.make(Op::RegionParam, Kind::Float));
+        return r.params.back();
+    };
+    Inst* at = enter(inst->regions[0]);
+    inst->regions[0].yields.push_back(emit(Op::Less, Kind::Bool, {at, constant(static_cast<float>(count))}));
+    at = enter(inst->regions[1]);
+    each(at);
+    inst->regions[1].yields.push_back(emit(Op::Add, Kind::Float, {at, constant(1)}));
+    region_ = saved;
+    while (log_.size() > mark) {
+        env_[static_cast<size_t>(log_.back().first)] = log_.back().second;
+        log_.pop_back();
+    }
+    region_->body.push_back(inst);
+}
+
 /// Storage for an array that begins with `length` elements.
 Inst* Builder::newResizable(Base base, int length) {
     const int room = std::clamp(std::max(length, largestResize()), limits::kResizableArray, limits::kShaderArray);
@@ -158,10 +191,9 @@ void Builder::copyResizable(Inst* to, const Expr& from) {
         if (a == to) return;
         Inst* n = lengthOf(a);
         if (!isConst(n)) { // as far as either storage goes
-            for (int i = 0; i < std::min(to->index, a->index); ++i) {
-                Inst* at = constant(static_cast<float>(i));
+            everyElement(std::min(to->index, a->index), [&](Inst* at) {
                 emit(Op::ArrayStore, Kind::None, {to, at, emit(Op::ArrayLoad, a->element, {a, at})});
-            }
+            });
             return setLength(limitLength(to, n));
         }
         setLength(limitLength(to, n));

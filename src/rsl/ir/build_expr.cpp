@@ -164,9 +164,8 @@ void Builder::copyArray(Inst* to, const Expr& from) {
         return;
     }
     if (!from.type.array) { // float a[42] = 0: the value for every element
-        Inst* v = expr(from);
-        for (int i = 0; i < n; ++i) store(i, v);
-        return;
+        Inst* v = coerce(expr(from), to->element);
+        return everyElement(n, [&](Inst* at) { emit(Op::ArrayStore, Kind::None, {to, at, v}); });
     }
     if (from.kind == ExprKind::ShadeopCall && from.shadeop && from.shadeop->name == "getshaders") {
         for (int i = 0; i < n; ++i) store(i, zero(to->element));
@@ -193,7 +192,7 @@ void Builder::copyArray(Inst* to, const Expr& from) {
     Inst* a = array(from);
     if (a == to) return;
     const int m = std::min(n, arrayLength(a));
-    for (int i = 0; i < m; ++i) store(i, emit(Op::ArrayLoad, a->element, {a, constant(static_cast<float>(i))}));
+    everyElement(m, [&](Inst* at) { emit(Op::ArrayStore, Kind::None, {to, at, coerce(emit(Op::ArrayLoad, a->element, {a, at}), to->element)}); });
 }
 
 void Builder::Held::hold(const Expr& place) {
@@ -229,7 +228,7 @@ void Builder::assign(const Expr& l, Inst* value) {
     if (base.type.array) {
         Inst* a = array(base);
         Inst* at = expr(*l.args[1], Kind::Float);
-        if (isConst(at) && lengthKnown(a) && (at->numbers[0] < 0 || at->numbers[0] >= static_cast<float>(arrayLength(a))))
+        if (isConst(at) && lengthKnown(a) && (at->numbers[0] <= -1 || at->numbers[0] >= static_cast<float>(arrayLength(a))))
             warn(l.args[1]->place, "index " + indexText(at->numbers[0]) + " is outside the array of length " +
                               std::to_string(arrayLength(a)) + "; the nearest element is taken");
         if (a->op == Op::ArrayNew) emit(Op::ArrayStore, Kind::None, {a, elementOf(a, at), coerce(value, a->element)});
@@ -284,8 +283,20 @@ Inst* Builder::colourSpace(const std::string& from, const std::string& to, Inst*
     return t == "rgb" ? v : runtime1("al_rgb_to_" + t, {v}, Kind::Triple);
 }
 
+/// The name of a space as the renderer has it: "shader" of a co-shader is where that was named.
+Inst* Builder::ownSpace(Inst* name) {
+    if (current_.empty() || isSelf(current_.back())) return name;
+    const std::string& own = instances_[current_.back()].binding->space;
+    if (own.empty()) return name;
+    Inst* there = leaves_.string(own);
+    if (name->op == Op::ConstString) return name->text == "shader" ? there : name;
+    return emit(Op::Select, Kind::String, {emit(Op::Equal, Kind::Bool, {name, leaves_.string("shader")}), there, name});
+}
+
 /// Names that are not known at compile time: the renderer answers. Two Strings and the value.
 Inst* Builder::dynamicSpace(const char* op, Inst* from, Inst* to, Inst* value, Base base) {
+    if (base != Base::Color)
+        for (Inst** name : {&from, &to}) *name = ownSpace(*name);
     Site s;
     s.op = op;
     s.strings = {from->op == Op::ConstString ? from->text : "", to->op == Op::ConstString ? to->text : ""};
@@ -317,10 +328,9 @@ Inst* Builder::inSpace(const Expr& spaceName, Inst* value, Base base) {
             set(lengths(a)->reserved, get(lengths(a)->length));
         }
         const int storage = std::min(known ? value->index : arrayLength(value), known ? a->index : arrayLength(a));
-        for (int n = 0; n < storage; ++n) {
-            Inst* at = constant(static_cast<float>(n));
+        everyElement(storage, [&](Inst* at) {
             emit(Op::ArrayStore, Kind::None, {a, at, inSpace(spaceName, emit(Op::ArrayLoad, value->element, {value, at}), base)});
-        }
+        });
         return a;
     }
     Inst* name = expr(spaceName);
@@ -361,7 +371,7 @@ Inst* Builder::expr(const Expr& e) {
         if (base.type.array) {
             Inst* a = array(base);
             Inst* at = expr(*e.args[1], Kind::Float);
-            if (isConst(at) && lengthKnown(a) && (at->numbers[0] < 0 || at->numbers[0] >= static_cast<float>(arrayLength(a))))
+            if (isConst(at) && lengthKnown(a) && (at->numbers[0] <= -1 || at->numbers[0] >= static_cast<float>(arrayLength(a))))
                 warn(e.args[1]->place, "index " + indexText(at->numbers[0]) + " is outside the array of length " +
                                   std::to_string(arrayLength(a)) + "; the nearest element is taken");
             const auto open = given_.find(a); // as long as the scene wants it: behind that there is nothing

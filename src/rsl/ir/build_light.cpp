@@ -4,6 +4,7 @@
 #include "rsl/front/visit.h"
 #include "rsl/ir/builder.h"
 #include <functional>
+#include <set>
 #include <utility>
 
 namespace alpenglow::rsl::ir {
@@ -221,15 +222,26 @@ int Builder::addBlock(const Stmt& s) {
     return static_cast<int>(lightBlocks_.size()) - 1;
 }
 
-/// Blocks of the shader's body and of the functions that it calls, once for each call, in order of the text, so that loops and
-/// conditions around them carry their slots.
-void Builder::findBlocks(const Stmt& s) {
+/// Blocks of a body and of the functions that it calls, once for each call, in order of the text, up to one more than there may be.
+/// `without`: functions that have none, which are not looked into again.
+static void blocksOf(const Stmt& s, std::vector<const Stmt*>& found, std::set<const Function*>& without) {
     const auto statement = [&](const Stmt& x) {
-        if (x.kind == StmtKind::Illuminate || x.kind == StmtKind::Solar) addBlock(x);
+        if ((x.kind == StmtKind::Illuminate || x.kind == StmtKind::Solar) && found.size() <= limits::kLightBlocks) found.push_back(&x);
     };
     front::everyStmt(s, statement, [&](const Expr& e) {
-        if (e.function && e.function->body && lightBlocks_.size() < limits::kLightBlocks) findBlocks(*e.function->body);
+        if (!e.function || !e.function->body || found.size() > limits::kLightBlocks || without.count(e.function)) return;
+        const size_t before = found.size();
+        blocksOf(*e.function->body, found, without);
+        if (found.size() == before) without.insert(e.function);
     });
+}
+
+/// The blocks of the shader, before any is built, so that loops and conditions around them carry their slots.
+void Builder::findBlocks(const Stmt& s) {
+    std::vector<const Stmt*> found;
+    std::set<const Function*> without;
+    blocksOf(s, found, without);
+    for (const Stmt* b : found) addBlock(*b);
 }
 
 /// The angle of a cone: beyond pi it has all directions.
@@ -264,7 +276,7 @@ void Builder::lightBlock(const Stmt& s) {
     int index = -1;
     for (size_t n = 0; n < lightBlocks_.size() && index < 0; ++n)
         if (lightBlocks_[n].stmt == &s && !lightBlocks_[n].built) index = static_cast<int>(n);
-    if (lightBlocks_.size() >= limits::kLightBlocks) {
+    if (lightBlocks_.size() > limits::kLightBlocks || (index < 0 && lightBlocks_.size() == limits::kLightBlocks)) {
         error(s.place, "a light has no more than " + std::to_string(limits::kLightBlocks) +
                            " illuminate() and solar() blocks, those of functions once for each call");
         return;

@@ -127,6 +127,7 @@ private:
     Inst* multiply(Inst* a, Inst* b);
     Inst* toSpace(const std::string& from, const std::string& to, Inst*, Base, const Place&);
     Inst* colourSpace(const std::string& from, const std::string& to, Inst*);
+    Inst* ownSpace(Inst* name);
     Inst* dynamicSpace(const char* op, Inst* from, Inst* to, Inst* value, Base);
     Inst* transformBy(Inst* matrix, Inst* value, Base);
     Inst* inSpace(const Expr& space, Inst* value, Base);
@@ -238,6 +239,7 @@ private:
     Receiver receiver(Site&, const Expr& to, const std::string& name);
     void receive(const Receiver&, std::span<Inst* const> values, Inst* found);
     Inst* readPrimitiveVariable(const Expr&);
+    void everyElement(int count, const std::function<void(Inst* at)>& each);
     // build_left.cpp: members that displacement() leaves behind
     Inst* leftBehind(const std::string& name, Type&);
     void hearMembers();

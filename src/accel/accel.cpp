@@ -141,13 +141,22 @@ struct Accel::Impl {
         if (!q.any) ray.tfar = far(q);
     }
 
+    /// Points of an exact shape count behind this t. The shape that the ray goes on behind may be met again (a ball twice), another that
+    /// lies at its place and comes after it is yet to be met there.
+    static double exactFrom(const Ray& r, uint32_t s) {
+        const double near = r.tnear;
+        if (r.passed < 0) return near;
+        if (s == r.excludeShape) return std::max(near, double(std::nextafter(float(r.passed), INFINITY)));
+        return std::max(near, s < r.excludeShape ? r.passed : std::nextafter(r.passed, 0.0));
+    }
     /// Tries all points of one exact shape; true when one was taken.
     bool meetExact(Query& q, uint32_t s) const {
-        if (!visible(*q.ray, s) || excluded(*q.ray, s, 0)) return false;
+        const Ray& r = *q.ray;
+        if (!visible(r, s) || (r.passed < 0 && excluded(r, s, 0))) return false;
         geometry::ExactHit h[4];
         const Shape& shape = *shapes[s];
         const auto wanted = shape.oneSided() && q.ray->sides != Sides::Both ? Shape::Wanted::All : q.any ? Shape::Wanted::Any : Shape::Wanted::Nearest;
-        int n = shape.exactHits(Vec3d(q.ray->org), Vec3d(q.ray->dir), q.ray->tnear, std::min(double(q.ray->tfar), q.best.t), wanted, h);
+        int n = shape.exactHits(Vec3d(r.org), Vec3d(r.dir), exactFrom(r, s), std::min(double(r.tfar), q.best.t), wanted, h);
         bool taken = false;
         for (int i = 0; i < n; ++i) {
             taken |= take(q, s, 0, h[i].t, h[i].u, h[i].v);
@@ -374,7 +383,8 @@ bool fill(const Ray& r, RTCRay& o) {
     if (!usable(r)) return false;
     o.org_x = r.org.x; o.org_y = r.org.y; o.org_z = r.org.z;
     o.dir_x = r.dir.x; o.dir_y = r.dir.y; o.dir_z = r.dir.z;
-    o.tnear = std::max(0.f, r.tnear);
+    // Embree's own t is rounded differently: what lies at the place that the ray goes on from must not be lost.
+    o.tnear = std::max(0.f, r.passed < 0 ? r.tnear : r.tnear * float(1 - kSlack));
     o.tfar = r.tfar;
     o.time = 0;
     o.mask = kAll;

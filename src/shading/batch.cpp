@@ -202,6 +202,12 @@ void Batch::fillVariables(std::span<const ShadePoint> points) {
     }
 }
 
+/// Whether a variable of a primitive holds what a parameter is: as many numbers, or elements of the same kind (arrays of open length).
+static bool fits(const geometry::PrimVar& v, int components, int elements) {
+    if (v.type == scene::Type::String) return false;
+    return v.outWidth() == components * elements || (v.arrayLength > 0 && elements > 1 && v.outWidth() == components * v.elements());
+}
+
 void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePoint> points, const Views& views, const SpaceResolver& spaces) {
     using From = BatchPlan::From;
     int n = int(points.size()), np = s.parts, comps = s.components;
@@ -295,13 +301,17 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
         }
         if (s.scalar) std::fill_n(row, size_t(comps) * s.elements, 0.f);
         else for (size_t r = 0; r < s.rows; ++r) std::fill_n(row + r * stride, n, 0.f);
+        std::vector<float> interpolated; // value, du, dv
         for (int i = 0; i < count; ++i) {
             if (points[i].shape) {
-                int v = points[i].shape->findPrimvar(s.name);
-                if (v >= 0) {
-                    float value[16] = {}, du[16] = {}, dv[16] = {};
-                    if (points[i].shape->primvars()[v].outWidth() <= 16) points[i].shape->interpolate(v, points[i].surface, value, du, dv);
-                    for (int c = 0; c < std::min(comps * s.elements, 16); ++c) {
+                const int v = points[i].shape->findPrimvar(s.name);
+                const geometry::PrimVar* variable = v >= 0 ? &points[i].shape->primvars()[size_t(v)] : nullptr;
+                if (variable && fits(*variable, comps, s.elements)) {
+                    const size_t width = size_t(variable->outWidth());
+                    interpolated.resize(3 * width);
+                    float *value = interpolated.data(), *du = value + width, *dv = du + width;
+                    points[i].shape->interpolate(v, points[i].surface, value, du, dv);
+                    for (int c = 0; c < std::min(comps * s.elements, int(width)); ++c) {
                         at(c, 0, i) = value[c];
                         if (np > 1) { at(c, 1, i) = du[c]; at(c, 2, i) = dv[c]; }
                     }

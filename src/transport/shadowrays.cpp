@@ -39,12 +39,6 @@ Way wayBetween(const Vec3& a, const Vec3& b, const Vec3& at, const geometry::Sur
 }
 
 void WorldImpl::goOn(accel::Ray& ray, const accel::Hit& h) const {
-    if (shapes_[h.shape]->exact()) { // may be met again: a ball twice
-        ray.excludeShape = ray.excludePrim = accel::kNone;
-        ray.passed = -1;
-        ray.tnear = std::nextafter(h.t, std::numeric_limits<float>::infinity());
-        return;
-    }
     ray.tnear = std::nextafter(h.t, 0.f); // other surfaces may lie just there
     ray.passed = h.distance;
     ray.excludeShape = h.shape;

@@ -18,18 +18,35 @@ InstanceRef SurfaceBinder::instanceOf(const scene::ShaderRef& r, rsl::ShaderKind
     return i->second;
 }
 
+/// Whether a variable of a primitive holds what a parameter is: one text, as many numbers, or elements of the same kind.
+static bool overrides(const geometry::PrimVar& v, const rsl::ParameterInfo& p) {
+    if (p.type.base == rsl::Base::String || v.type == scene::Type::String)
+        return p.type.base == rsl::Base::String && v.type == scene::Type::String && !p.type.array && !p.open && !v.arrayLength;
+    const int each = rsl::componentCount(p.type.base);
+    return p.open ? v.arrayLength > 0 && v.outWidth() == each * v.elements() : v.outWidth() == each * std::max(1, p.type.array);
+}
+
 SurfaceBinder::Names SurfaceBinder::varyingOf(const geometry::Shape& shape, const ShaderInstance& shader) {
     Names varying;
     for (const auto& v : shape.primvars())
-        for (const auto& p : shader.program->parameters())
-            if (p.name == v.name && (p.type.base == rsl::Base::String ? v.type == scene::Type::String && !p.type.array && !p.open : true)) varying.push_back(p.name);
+        for (const auto& p : shader.program->parameters()) {
+            if (p.name != v.name) continue;
+            if (overrides(v, p)) varying.push_back(p.name);
+            else
+                diagnostics_.reportOnce("override:" + shader.name + ":" + p.name,
+                                        {Severity::Warning, Rie::Consistency, v.param->place,
+                                         "the variable \"" + p.name + "\" of the primitive does not fit the parameter of shader \"" + shader.name +
+                                             "\", which is a " + rsl::toString(p.type) + ": the parameter keeps its value",
+                                         {}, {}});
+        }
     // What a shader and its co-shaders ask about the primitive, with the type that the first of them wants.
     std::map<std::string, rsl::Type> all = shader.program->program().primitiveVariables;
     for (const rsl::CoShader& c : shader.coShaders) all.insert(c.program->primitiveVariables.begin(), c.program->primitiveVariables.end());
     for (const auto& [name, type] : all) {
         const int v = shape.findPrimvar(name);
         const int width = type.base == rsl::Base::Void ? 0 : rsl::componentCount(type.base) * std::max(1, type.array);
-        if (v >= 0 && (width == 0 || width == shape.primvars()[size_t(v)].outWidth()) && std::find(varying.begin(), varying.end(), name) == varying.end())
+        const bool text = v >= 0 && shape.primvars()[size_t(v)].type == scene::Type::String;
+        if (v >= 0 && (width == 0 || (width == shape.primvars()[size_t(v)].outWidth() && text == (type.base == rsl::Base::String))) && std::find(varying.begin(), varying.end(), name) == varying.end())
             varying.push_back(name);
     }
     std::sort(varying.begin(), varying.end());
@@ -343,8 +360,14 @@ int SurfaceBinder::mediumOf(const InstanceRef& shader, const geometry::Shape& sh
     if (!shader) return -1;
     for (size_t i = 0; i < world_.media_.size(); ++i)
         if (world_.media_[i].shader == shader) return int(i);
+    constexpr size_t kMost = std::numeric_limits<int16_t>::max(); // shading::Media numbers them
+    if (world_.media_.size() >= kMost) {
+        diagnostics_.reportOnce("media:count", {Severity::Error, Rie::Limit, shape.place(),
+                                "a frame has no more than " + std::to_string(kMost) + " different interiors and exteriors; the others are empty", {}, {}});
+        return -1;
+    }
     Medium m = bindVolume(shader, {});
-    if (!m.shader || world_.media_.size() > size_t(std::numeric_limits<int16_t>::max() - 1)) return -1;
+    if (!m.shader) return -1;
     m.shape = &shape;
     m.binding = int(world_.bindings_.size()); // that is bound now
     world_.media_.push_back(std::move(m));

@@ -22,7 +22,7 @@ private:
     using Names = std::vector<std::string>;
     InstanceRef instanceOf(const scene::ShaderRef&, rsl::ShaderKind);
     /// The primitive variables that override parameters of a shader or that getvar(null, ...) finds; sorted.
-    static Names varyingOf(const geometry::Shape&, const ShaderInstance&);
+    Names varyingOf(const geometry::Shape&, const ShaderInstance&);
     int bind(const geometry::ShapeRef&);
     Names outputsOf(const SurfaceBinding&) const;
     /// Adds the names that a kernel asks for by `op` ("surface", "displacement"). True when some are made only when it runs.

@@ -74,7 +74,7 @@ struct Shadeop {
     std::string source;          ///< seed, RISpec, (k)
     std::vector<Example> examples;
     std::vector<OptionalParameter> optional;
-    Base lastResort = Base::Void; ///< a result that is meant only where no other becomes what is wanted: the distance of trace()
+    std::vector<Base> lastResort; ///< results that are meant only where no other becomes what is wanted: the distance of trace()
     std::string rsl;             ///< Lowering::Rsl: the functions in RSL; names as in signatures
 };
 

@@ -51,6 +51,7 @@ template <class T> AL_INLINE T opMix(const T& x, const T& y, const T& alpha) { r
     template <class T> AL_INLINE Triple<T> name(const Triple<T>& a, const Triple<T>& b, const Triple<T>& c) {                    \
         return {f(a.x, b.x, c.x), f(a.y, b.y, c.y), f(a.z, b.z, c.z)};                                                           \
     }
+template <class T> AL_INLINE Triple<T> opAbs3(const Triple<T>& a) { return {absolute(a.x), absolute(a.y), absolute(a.z)}; }
 AL_COMPONENTS1(opMin3, opMin)
 AL_COMPONENTS1(opMax3, opMax)
 AL_COMPONENTS1(opStep3, opStep)
@@ -127,6 +128,7 @@ AL_RUNTIME(al_logbase, opLogBase)
 AL_RUNTIME(al_sign, opSign)
 AL_RUNTIME(al_mod, opMod)
 AL_RUNTIME(al_abs, absolute)
+AL_RUNTIME(al_abs_t, opAbs3)
 AL_RUNTIME(al_floor, opFloor)
 AL_RUNTIME(al_ceil, opCeil)
 AL_RUNTIME(al_round, opRound)
@@ -211,7 +213,11 @@ std::vector<Shadeop> mathematicsShadeops() {
     list.push_back(mathOp("mod", {{"float mod(float x, float y)", "al_mod"}},
                           "x - n y with n = floor(x / y): in [0, y] for positive y, in [y, 0] for negative y; mod(x, 0) is 0.", "seed",
                           {{"mod(-1, 3)", "2"}, {"mod(7, 3)", "1"}}));
-    list.push_back(mathOp("abs", {{"float abs(float x)", "al_abs"}}, "Absolute value.", "(3D)", {{"abs(-2)", "2"}}));
+    Shadeop absolute = mathOp("abs", {}, "Absolute value. Tuples component by component (seen in the wild), where no number is meant.", "(3D)",
+                              {{"abs(-2)", "2"}, {"abs(vector(-1, 2, -3))", "1 2 3"}});
+    absolute.signatures = sigs({{"float abs(float x)", "al_abs"}}) + each(kTuples, "$ abs($ x)", "al_abs");
+    absolute.lastResort = {Base::Color, Base::Point, Base::Vector, Base::Normal};
+    list.push_back(absolute);
     list.push_back(flatOp(mathOp("floor", {{"float floor(float x)", "al_floor"}}, "Largest integer not above x.", "(3D)", {{"floor(-1.5)", "-2"}})));
     list.push_back(flatOp(mathOp("ceil", {{"float ceil(float x)", "al_ceil"}}, "Smallest integer not below x.", "(3D)", {{"ceil(1.25)", "2"}})));
     list.push_back(flatOp(mathOp("round", {{"float round(float x)", "al_round"}}, "Nearest integer, halves away from zero.", "(3D), halves (k)",

@@ -111,7 +111,7 @@ std::vector<Shadeop> raytracingShadeops() {
                          "Light arriving at p from direction r, or gathered over a distribution about r. An array gets the parts of glass-ggx (reflected, refracted) or of hair (one a lobe), each by rays of its own. dist: distance of the nearest hit, above 1e30 for none. "
                          "The float form is that distance, among objects visible to transmission. Current space.");
     list.back().examples = {{"trace(P, N)", "1 1 1", "", kWhite}};
-    trace.lastResort = Base::Float;
+    trace.lastResort = {Base::Float};
     trace.optional = trace.optional + distributionParameters() +
                      std::vector<OptionalParameter>{{kS, "environmentmap", false, "\"\"", "light of directions that hit nothing"},
                                                     {kS, "environmentspace", false, "\"current\"", "space of the map"},

@@ -179,7 +179,7 @@ void Checker::surveyCall(Expr& e, Info& info) {
     }
     bestByArguments(info.choices);
     for (Choice& c : info.choices)
-        if (c.shadeop && c.result.base != Base::Void && c.result == Type{c.shadeop->lastResort, 0}) c.cost += kLastResort;
+        if (c.shadeop && c.result.array == 0 && std::ranges::count(c.shadeop->lastResort, c.result.base)) c.cost += kLastResort;
     for (const Choice& c : info.choices)
         if (c.result.base == Base::String) {
             const bool fromArray = c.shadeop && c.shadeop->section == "Arrays" && !e.args.empty();

@@ -3,6 +3,7 @@
 #include "rsl/front/visit.h"
 #include <algorithm>
 #include <array>
+#include <map>
 #include <set>
 #include <unordered_map>
 
@@ -59,9 +60,12 @@ private:
 /// which on some way.
 class Flow {
 public:
+    /// What functions read of the light that shines where they are called: the first such variable; null: none.
+    using LightReads = std::map<const Function*, const Symbol*>;
+
     /// `lit`: the body of a shader that meets light in illuminance() only; a function may be called from there.
-    Flow(SourceSet& s, const std::set<const Symbol*>& ignored, bool surface, bool lit)
-        : sources_(s), ignored_(ignored), surface_(surface), lit_(lit) {}
+    Flow(SourceSet& s, const std::set<const Symbol*>& ignored, bool surface, bool lit, LightReads& reads)
+        : sources_(s), ignored_(ignored), surface_(surface), lit_(lit), reads_(reads) {}
     void run(const Stmt* body) { statement(body); }
 
 private:
@@ -87,20 +91,35 @@ private:
     }
 
     /// L, Cl and Ol mean something where a light shines on the point.
-    void unlit(const Expr& e) {
-        const Symbol* s = e.symbol;
+    void unlit(const Symbol* s, const Place& place, const std::string& where) {
         if (!lit_ || lightLoops_ > 0 || now_.dead || !s || s->origin != Symbol::Origin::Global || assigned_.count(s)) return;
-        if ((s->name != "L" && s->name != "Cl" && s->name != "Ol") || !told_.insert(s).second) return;
-        sources_.warning(e.place, "'" + s->name + "' is read outside illuminance(); no light is meant there, and it is zero",
+        if (s->name != "L" && s->name != "Cl" && s->name != "Ol") return;
+        if (found_ && !*found_) *found_ = s;
+        if (found_ || !told_.insert(s).second) return;
+        sources_.warning(place, "'" + s->name + "' is read outside illuminance()" + where + "; no light is meant there, and it is zero",
                          "illuminance (P, N, PI/2) { ... } runs once for each light; " +
                              std::string(s->name == "L" ? "I is the direction of view" : "diffuse(N) adds them all"));
     }
 
+    /// A function means the light of the illuminance() that calls it.
+    void unlitCall(const Expr& e) {
+        if (!lit_ || lightLoops_ > 0 || now_.dead || !e.function || e.shadeop) return;
+        const auto [at, fresh] = reads_.emplace(e.function, nullptr);
+        if (fresh) {
+            const Symbol* found = nullptr;
+            Flow inside(sources_, ignored_, false, true, reads_);
+            inside.found_ = &found;
+            inside.run(e.function->body.get());
+            at->second = found;
+        }
+        unlit(at->second, e.place, ", in '" + e.function->name + "'");
+    }
+
     void read(const Expr& e) {
-        unlit(e);
         const Symbol* s = e.symbol;
+        unlit(s, e.place, "");
         const auto at = tracked_.find(s);
-        if (!s || s->name.rfind('(', 0) == 0 || now_.dead || at == tracked_.end() || now_.always.has(at->second) || !told_.insert(s).second) return;
+        if (found_ || !s || s->name.rfind('(', 0) == 0 || now_.dead || at == tracked_.end() || now_.always.has(at->second) || !told_.insert(s).second) return;
         const bool maybe = now_.sometimes.has(at->second) || loops_ > 0;
         sources_.warning(e.place, "'" + s->name + "' " + (maybe ? "may be" : "is") + " read before it has a value; it is " +
                                       (s->type.base != Base::String ? "zero" : s->handle ? "null" : "empty") + " then");
@@ -112,7 +131,7 @@ private:
         else
             for (const Expr* x = &e; x->kind == ExprKind::Index && x->args.size() > 1; x = x->args[0].get()) expression(*x->args[1]);
         const Symbol* s = root(e);
-        uniformHazard(e, s);
+        if (!found_) uniformHazard(e, s);
         if (surface_ && s && s->origin == Symbol::Origin::Global && s->name == "P")
             sources_.warning(e.place, "a surface shader that moves 'P' displaces its primitive, but not where light or rays decide how far",
                              "a displacement shader is the place for it");
@@ -155,7 +174,8 @@ private:
             return;
         case ExprKind::ShadeopCall:
         case ExprKind::FunctionCall: {
-            sharedOutputs(e);
+            unlitCall(e);
+            if (!found_) sharedOutputs(e);
             for (size_t i = 0; i < e.args.size(); ++i)
                 if (e.args[i] && !isOutput(e, i)) expression(*e.args[i]);
             if (e.channel) expression(*e.channel);
@@ -192,7 +212,7 @@ private:
             if (p.output) target(*p.value, false);
             else expression(*p.value);
         }
-        if (s.kind == StmtKind::Illuminance && lightLoops_ > 0 && !now_.dead)
+        if (s.kind == StmtKind::Illuminance && lightLoops_ > 0 && !now_.dead && !found_)
             sources_.warning(s.place, "illuminance inside illuminance: the RenderMan specification forbids it, and other renderers may refuse it",
                              "here the inner loop visits all its lights in every turn of the outer one");
         ++loops_;
@@ -287,6 +307,8 @@ private:
     SourceSet& sources_;
     const std::set<const Symbol*>& ignored_;
     const bool surface_, lit_;
+    LightReads& reads_;
+    const Symbol** found_ = nullptr; ///< of a function that is looked into: nothing is told but this
     std::set<const Symbol*> assigned_; ///< by the statements so far
     std::unordered_map<const Symbol*, size_t> tracked_;
     std::set<const Symbol*> told_;
@@ -331,6 +353,7 @@ void lint(const Program& program, const std::vector<Token>& tokens, const std::u
         sources.warning(s.place, std::string(parameter ? "parameter" : "variable") + " '" + s.name + "' is not used");
     };
     lintCommas(tokens, sources);
+    Flow::LightReads reads;
     bool surface = false, lit = false;
     const auto body = [&](const Stmt* b, Place where) {
         if (!b || !ours(where)) return;
@@ -340,7 +363,7 @@ void lint(const Program& program, const std::vector<Token>& tokens, const std::u
             if (s.condition) lintCondition(*s.condition, sources);
             lintPairs(s, sources);
         }, [&](const Expr& e) { lintCall(e, sources), lintMessage(e, program, sources); });
-        Flow(sources, reached, surface, lit).run(b);
+        Flow(sources, reached, surface, lit, reads).run(b);
     };
     for (const auto& s : program.shaders) {
         for (const auto& p : s->parameters) {

@@ -3,6 +3,7 @@
 #include "rsl/front/visit.h"
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 
 namespace alpenglow::rsl::front {
@@ -40,15 +41,24 @@ const Expr* onlyResult(const Function& f) {
     return returns == 1 ? body->body.back()->value.get() : nullptr;
 }
 
-using Answers = std::map<const Function*, bool>;
+struct Known {
+    struct Result {
+        bool same = false;
+        std::set<const Symbol*> needs; ///< if these parameters are the same, too
+    };
+    const std::set<const Symbol*>& unclassed;
+    std::set<const Symbol*> met{};                 ///< of those, in the expression that is looked at
+    std::map<const Function*, Result> functions{}; ///< that were looked at, as calls of calls would be looked at again and again
+};
 
 /// Is it the same for all points of a batch? That is what gridmin() and gridmax() give, what is made of it, and what functions make of it.
-/// `known`: of functions that were looked at, as calls of calls would be looked at again and again.
-bool sameForAll(const Expr& e, Answers& known) {
+/// Of a parameter that is neither uniform nor varying each call decides.
+bool sameForAll(const Expr& e, Known& known) {
     if (!e.varying) return true;
     if (e.shadeop) return e.shadeop->name == "gridmin" || e.shadeop->name == "gridmax";
     const auto all = [&] { return std::all_of(e.args.begin(), e.args.end(), [&](const ExprPtr& a) { return sameForAll(*a, known); }); };
     switch (e.kind) {
+    case ExprKind::Variable: return known.unclassed.count(e.symbol) > 0 && (known.met.insert(e.symbol), true);
     case ExprKind::Cast:
     case ExprKind::Unary:
     case ExprKind::Binary:
@@ -56,14 +66,17 @@ bool sameForAll(const Expr& e, Answers& known) {
     case ExprKind::Tuple: return all();
     case ExprKind::FunctionCall: {
         if (!e.function) return false;
-        auto answer = known.find(e.function);
-        if (answer == known.end()) {
+        auto answer = known.functions.find(e.function);
+        if (answer == known.functions.end()) {
             const Expr* result = onlyResult(*e.function);
-            answer = known.emplace(e.function, result && sameForAll(*result, known)).first;
+            auto outer = std::exchange(known.met, {});
+            const bool same = result && sameForAll(*result, known);
+            answer = known.functions.emplace(e.function, Known::Result{same, std::exchange(known.met, std::move(outer))}).first;
         }
-        if (!answer->second) return false;
-        for (size_t i = 0; i < std::min(e.args.size(), e.function->parameters.size()); ++i) // uniform parameters are what they are given
-            if (e.function->parameters[i]->storage == Storage::Uniform && !sameForAll(*e.args[i], known)) return false;
+        if (!answer->second.same) return false;
+        const auto& parameters = e.function->parameters;
+        for (size_t i = 0; i < std::min(e.args.size(), parameters.size()); ++i) // those that are what they are given
+            if ((parameters[i]->storage == Storage::Uniform || answer->second.needs.count(parameters[i])) && !sameForAll(*e.args[i], known)) return false;
         return true;
     }
     default: return false;
@@ -76,7 +89,7 @@ void Checker::assignedToUniform(const Symbol& s, const Expr& value) {
     if (s.storage != Storage::Uniform || !value.varying || s.type.base == Base::String) return;
     const Expr& whole = value.kind == ExprKind::Index ? *value.args[0] : value;
     if (whole.kind == ExprKind::Member || whole.kind == ExprKind::Method) return; // what a handle gives is of the class that is wanted
-    if (Answers known; sameForAll(value, known)) return;
+    if (Known known{unclassed_}; sameForAll(value, known)) return;
     sources_.warning(value.place,
                      "a varying value is given to the uniform variable '" + s.name + "'; each shaded point keeps its own");
 }

@@ -96,7 +96,10 @@ void Checker::checkBody(Function& f) {
     const int loops = std::exchange(loops_, 0);
     scopes_.emplace_back();
     for (Symbol*& p : f.parameters) {
-        if (p->storage == Storage::Unspecified) p->storage = p->type.base == Base::String ? Storage::Uniform : Storage::Varying;
+        if (p->storage == Storage::Unspecified) {
+            p->storage = p->type.base == Base::String ? Storage::Uniform : Storage::Varying;
+            if (p->storage == Storage::Varying) unclassed_.insert(p);
+        }
         if (p->name == "," || p->name == ")" || p->name == ";") continue; // it has no name
         const size_t n = size_t(&p - f.parameters.data());
         if (n < f.defaults.size() && f.defaults[n]) { // earlier parameters are visible

@@ -131,6 +131,7 @@ private:
     std::unordered_map<std::string, Symbol*> globals_, shaderParameters_;
     std::map<std::pair<const Function*, std::string>, Function*> instances_;
     std::unordered_set<const Function*> checking_, used_, varyingFunctions_;
+    std::set<const Symbol*> unclassed_; ///< parameters of functions that are neither uniform nor varying: what they are given
     std::unordered_map<const Shadeop*, std::unique_ptr<Unit>> rslUnits_;
     std::set<const Shadeop*> reportedUnavailable_;
     std::set<const Symbol*> toldNotOutput_; ///< parameters that are given values though they are not output: said once

@@ -9,7 +9,7 @@ enum class ExprOp : uint8_t;
 }
 namespace alpenglow::rsl::front {
 
-// Costs by weight: one of a kind outweighs whatever a program has of those above it.
+// Costs by weight: one of a kind outweighs some hundreds of those above it, which is more than people write in one expression.
 inline constexpr int kPromotion = 1;                 ///< a number meets a tuple in arithmetic: what `2 * c` means
 inline constexpr int kConversion = 1 << 8;           ///< the least that is a conversion: a point where a vector is wanted
 inline constexpr int kBroadcast = 16 * kConversion;  ///< a number becomes a tuple of three alike

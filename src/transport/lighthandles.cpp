@@ -121,12 +121,18 @@ void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, i
                 for (int lane = 0; lane < lanes; ++lane)
                     if (points >> lane & 1) call.answer(lane, *t);
             };
-            if (!d.strings.empty()) {
+            const bool element = d.argKinds.back() == rsl::ir::Kind::Float; // which one stands last
+            if (!d.strings.empty() && !element) {
                 tell(d.strings.back(), of);
                 continue;
             }
-            for (int lane = 0; lane < lanes; ++lane) // the name stands behind the handle
-                if (of >> lane & 1) tell(rsl::internedString(std::bit_cast<int32_t>(in[width + size_t(lane)])), uint64_t(1) << lane);
+            for (int lane = 0; lane < lanes; ++lane) { // a name that is not known stands behind the handle
+                if (!(of >> lane & 1)) continue;
+                std::string name = d.strings.empty() ? rsl::internedString(std::bit_cast<int32_t>(in[width + size_t(lane)])) : d.strings.back();
+                if (const float at = element ? in[(d.argKinds.size() - 1) * width + size_t(lane)] : 0; element)
+                    name += "[" + std::to_string(at >= 1 ? int(std::min(at, float(limits::kShaderArray))) : 0) + "]";
+                tell(name, uint64_t(1) << lane);
+            }
         }
         return;
     }

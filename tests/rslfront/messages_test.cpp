@@ -128,6 +128,12 @@ TEST(Messages, StructuresInCallsAreWhatWasWritten) {
     EXPECT_EQ(d.hint, "it can be called as T g(output S[], string)");
 }
 
+TEST(Messages, WhatWasSaidToBeUnknownIsNoAdvice) {
+    const auto c = compileSnippet("surface s() { Ci = list; Ci += lost; }\n");
+    ASSERT_EQ(c.messages.size(), 2u) << c.text();
+    EXPECT_EQ(c.messages[1].hint, "");
+}
+
 TEST(Messages, SpacesOfMapsAreNamesOrMatrices) {
     const auto c = compileSnippet("surface s(matrix m = 1; string e = \"\") {\n"
                                   "    Ci = trace(P, I, \"environmentmap\", e, \"environmentspace\", m) +\n"

@@ -120,6 +120,19 @@ TEST(HandleMembers, AClassLightWithoutTheArrayLeavesThePlainOneItsOwn) {
     EXPECT_FLOAT_EQ(c.z, 27);
 }
 
+TEST(HandleMembers, ElementsOfLightsByANumberThatTheRunMakes) {
+    writeShader("list3", "light list3(uniform float steps[3] = {3, 4, 5}; color tint = color(10, 20, 30); string words[2] = {\"a\", \"b\"};) { illuminate(point \"world\" (0, 0, 0)) Cl = 1; }\n");
+    writeShader("readlist", "class readlist() {\n    public void surface(output color Ci, Oi) {\n        shader all[] = getlights(); Oi = 1; Ci = 0; float k; float half = u - u + 0.5;\n"
+                            "        for (k = half; k < 3; k += 1) Ci += color(all[0]->steps[k], all[0]->tint[k], 0);\n"
+                            "        if (all[0]->words[half + 1] == \"b\" && all[0]->words[-half] == \"a\" && all[0]->steps[half - 3] == 3) Ci += color(0, 0, 7);\n    }\n}\n");
+    Scene s(std::string("WorldBegin\nLightSource \"list3\" 1\nSurface \"readlist\"\n") + kSquare + "WorldEnd\n");
+    const Color c = s.one(rayTo({0, 0, 0}, {.2f, .3f, 2}));
+    EXPECT_EQ(s.messages(), "");
+    EXPECT_FLOAT_EQ(c.x, 12);
+    EXPECT_FLOAT_EQ(c.y, 60);
+    EXPECT_FLOAT_EQ(c.z, 7);
+}
+
 TEST(HandleMembers, LightsArePrintedByTheHandleOfTheirDeclaration) { // seed, format(): %h
     writeShader("named", "class named() {\n    public void surface(output color Ci, Oi) {\n        shader all[] = getlights(); Oi = 1;\n"
                          "        Ci = color(format(\"%h %h\", all[0], all[1]) == \"key 7\", getlight(\"key\") == all[0], getlight(\"7\") == all[1] && all[0] != all[1]);\n    }\n}\n");

@@ -211,7 +211,8 @@ void Checker::declareLocal(Symbol& s) {
 std::vector<std::string> Checker::visibleNames() {
     std::vector<std::string> names = {"PI"};
     for (const auto& s : scopes_)
-        for (const auto& [name, symbol] : s.names) names.push_back(name);
+        for (const auto& [name, symbol] : s.names)
+            if (symbol->type.base != Base::Void) names.push_back(name); // else one that was said to be unknown
     for (const auto& [name, symbol] : shaderParameters_) names.push_back(name);
     for (const GlobalVariable& g : globalVariables(kind_.value_or(ShaderKind::Surface))) names.push_back(g.name);
     std::sort(names.begin(), names.end()); // nothing may depend on the order in a hash table

@@ -72,12 +72,13 @@ Inst* Builder::lightMethod(const Expr& e, Inst* handle) {
 }
 
 /// A parameter of a light. `to`: the variable that getvar() fills, which then gives whether there is one; else the value is given.
-Inst* Builder::lightMember(Inst* handle, Inst* name, Kind kind, const Expr* to) {
+Inst* Builder::lightMember(Inst* handle, Inst* name, Kind kind, const Expr* to, Inst* at) {
     Site s = question("lightparameter", place_);
     std::vector<Inst*> args;
     addArgument(s, args, handle, {Base::String, 0});
     if (name->op == Op::ConstString) s.strings = {name->text};
     else addArgument(s, args, name, {Base::String, 0});
+    if (at) addArgument(s, args, at, {Base::Float, 0});
     return answered(std::move(s), std::move(args), kind, to);
 }
 

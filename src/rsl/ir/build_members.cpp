@@ -287,7 +287,7 @@ Inst* Builder::memberElement(const Expr& e) {
         lacks(e.place, i, s ? "has '" + member.text + "' as " + toString(s->type) + ", not an array of " + toString(type)
                             : "has no public member '" + member.text + "'", has);
         return zero(kind);
-    }, [&](Inst* handle) { return isConst(at) ? lightMember(handle, leaves_.string(member.text + "[" + indexText(at->numbers[0]) + "]"), kind, nullptr) : zero(kind); });
+    }, [&](Inst* handle) { return lightMember(handle, leaves_.string(member.text), kind, nullptr, at); });
 }
 
 /// getvar(handle, name [, variable]): 1 when there is such a member.

@@ -253,7 +253,7 @@ private:
     void scanMethod(const Expr&, std::set<int>& out);
     // build_lighthandles.cpp: lights by their handles
     Inst* lightMethod(const Expr& call, Inst* handle);
-    Inst* lightMember(Inst* handle, Inst* name, Kind, const Expr* to);
+    Inst* lightMember(Inst* handle, Inst* name, Kind, const Expr* to, Inst* at = nullptr);
     Inst* getLight(const Expr&);
     std::vector<Inst*> lightHandles(const Expr&);
     Inst* isLightCategory(const Expr&);

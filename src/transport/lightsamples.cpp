@@ -18,7 +18,10 @@ bool LitValues::output(const std::string& name, std::vector<float>& v) const {
 
 LitSurface Engine::litBy(std::span<const int> of) const {
     LitSurface lit;
-    lit.binding = [this, of](int q) { return of[size_t(q)] < 0 ? nullptr : &world_->bindings_[size_t(litValues_[size_t(of[size_t(q)])].binding)]; };
+    lit.binding = [this, of](int q) -> const SurfaceBinding* {
+        const int b = of[size_t(q)] < 0 ? -1 : litValues_[size_t(of[size_t(q)])].binding;
+        return b < 0 ? nullptr : &world_->bindings_[size_t(b)];
+    };
     lit.output = [this, of](int q, const std::string& name, std::vector<float>& v) {
         return of[size_t(q)] >= 0 && litValues_[size_t(of[size_t(q)])].output(name, v);
     };

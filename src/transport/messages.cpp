@@ -43,8 +43,8 @@ Asks asked(const std::string& op) {
 
 const InstanceRef& shaderOf(const SurfaceBinding& b, Asks who, const ShadePoint& p) {
     static const InstanceRef none;
-    // A ray that sees the back comes from inside.
-    const bool back = dot(p.surface.n, p.I) > 0;
+    // A ray that sees the back comes from inside. A light asks about the surface that it lights.
+    const bool back = p.lit ? dot(p.lit->n, p.viewI) > 0 : dot(p.surface.n, p.I) > 0;
     switch (who) {
     case Asks::Surface: return b.surface;
     case Asks::Displacement: return b.displacement;

@@ -294,7 +294,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
             LitSurface lit;
             auto told = [&](int k) -> const LitValues& { return litValues_[size_t(lobes[size_t(lobesOf(size_t(pointOf[size_t(k)]))[0])].lit)]; };
             if (light.asksSurface) {
-                lit.binding = [&](int k) { return &world_->bindings_[size_t(told(k).binding)]; };
+                lit.binding = [&](int k) { return told(k).binding < 0 ? nullptr : &world_->bindings_[size_t(told(k).binding)]; };
                 lit.output = [&](int k, const std::string& name, std::vector<float>& now) { return told(k).output(name, now); };
                 lit.displaced = [&](int k, int& point) { return point = told(k).point, told(k).displaced.get(); };
                 call.lit = &lit;

@@ -100,8 +100,9 @@ InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind k
     if (auto same = rsl::ShaderCompiler::variant(program, kind)) program = same; // a class can be several kinds of shader
     else if (auto other = anyKind ? nullptr : rsl::ShaderCompiler::ofKind(program, kind, std::filesystem::path(call.name).stem().string())) program = other;
     if (program->kind() != kind && !anyKind) {
-        d.report(Severity::Error, Rie::NoShader, call.place,
-                 "shader \"" + call.name + "\" is a " + rsl::toString(program->kind()) + " shader, not a " + rsl::toString(kind) + " shader");
+        d.reportOnce("kind:" + call.name + ":" + rsl::toString(kind),
+                     {Severity::Error, Rie::NoShader, call.place,
+                      "shader \"" + call.name + "\" is a " + rsl::toString(program->kind()) + " shader, not a " + rsl::toString(kind) + " shader", {}, {}});
         return nullptr;
     }
     auto i = std::make_shared<ShaderInstance>();

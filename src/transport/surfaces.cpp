@@ -139,7 +139,8 @@ int SurfaceBinder::bind(const geometry::ShapeRef& shape) {
     hearDisplacement(b, varying, displacementVarying, left);
     if (!b.displacement) b.moveS = world_.movingKernel(*b.surface, b.surfaceS, asked_.back().varying, diagnostics_);
     bindLights(b, a);
-    b.areaLight = a.areaLight;
+    // A light without a kernel (its shader is missing, does not compile or is no light) was reported; its geometry is an ordinary surface.
+    b.areaLight = a.areaLight >= 0 && world_.lights_[size_t(a.areaLight)].kernel ? a.areaLight : -1;
     b.matte = a.matte;
     b.shadingRate = a.shadingRate;
     b.maxDiffuse = int(attributeNumber(a, "trace:maxdiffusedepth", path_ ? -1 : 1));

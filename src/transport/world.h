@@ -270,7 +270,8 @@ public:
     mutable std::mutex imagerMutex_;
     std::vector<std::string> lightMessages_;   ///< parameters of surfaces that lights and atmospheres ask for, sorted
     std::set<std::string> lightDisplacements_; ///< outputs of displacement shaders that lights ask for; "": of names made when they run
-    bool lightsAsk() const { return !lightMessages_.empty() || !lightDisplacements_.empty(); }
+    bool lightsAsk_ = false;                   ///< some light asks about the surface that it lights (BoundLight::asksSurface)
+    bool lightsAsk() const { return lightsAsk_; }
     int maxDepth_ = 32;
     bool lightChannels_ = false;               ///< lights give AOVs by outputchannel()
     bool footprints_ = false;                  ///< some kernel reads du or dv

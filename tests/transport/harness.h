@@ -61,14 +61,15 @@ struct Scene final : scene::FrameConsumer {
     std::shared_ptr<const scene::Frame> frame;
     std::shared_ptr<const World> world;
 
-    Scene(const std::string& rib, Settings settings = {}) {
+    /// `errors`: messages of that severity that the scene is known to cause.
+    Scene(const std::string& rib, Settings settings = {}, int errors = 0) {
         ri::RibReader reader({}, *this, diagnostics);
         reader.readMemory(rib, "test.rib");
         settings.shaderPaths.push_back(shaderFolder());
         settings.seed += seedBase();
         if (frame) world = World::build(frame, settings, diagnostics);
         EXPECT_NE(world, nullptr) << messages();
-        EXPECT_EQ(diagnostics.errors(), 0) << messages() << rib;
+        EXPECT_EQ(diagnostics.errors(), errors) << messages() << rib;
     }
     void render(std::shared_ptr<const scene::Frame> f) override { frame = std::move(f); }
     void makeTexture(const std::string&, const std::vector<std::string>&, const scene::ParamList&, const SourcePlace&) override {}

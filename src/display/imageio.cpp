@@ -68,13 +68,11 @@ std::optional<Image> decodeImage(std::span<const uint8_t> b, const std::string& 
         if (starts({0xff, 0xd8, 0xff})) return decodeJpeg(b, ctx);
         if (starts({0x2f, 0x08, 0x67, 0xab}) || starts({0xab, 0x67, 0x08, 0x2f})) return decodeZfile(b, ctx);
         if (starts({'#', '?'})) return decodeRadiance(b, ctx);
+        if (starts({0xfa, 0xce}) || starts({0xce, 0xfa})) return decodePixar(b, ctx);
     } catch (const std::bad_alloc&) { return ctx.refuse("out of memory", Rie::NoMem); } catch (const std::length_error&) {
         return ctx.refuse("out of memory", Rie::NoMem);
     }
-    if (starts({0xfa, 0xce}) || starts({0xce, 0xfa}))
-        return ctx.refuse("it is a texture in Pixar's native format, which is not published; make it again from the picture",
-                          Rie::Unimplement);
-    return ctx.refuse("it is not a picture in a known format (OpenEXR, TIFF, PNG, JPEG, Radiance, zfile)");
+    return ctx.refuse("it is not a picture in a known format (OpenEXR, TIFF, PNG, JPEG, Radiance, zfile, Pixar's native textures)");
 }
 
 std::optional<Image> readImage(const std::string& path, Diagnostics& diags, const ReadOptions& options) {

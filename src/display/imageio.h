@@ -1,4 +1,4 @@
-// Reading and writing pictures: OpenEXR, TIFF, PNG; reading only: JPEG, Radiance, zfiles.
+// Reading and writing pictures: OpenEXR, TIFF, PNG; reading only: JPEG, Radiance, zfiles, Pixar's native textures.
 #pragma once
 #include "base/file.h"
 #include "display/image.h"

@@ -261,14 +261,17 @@ std::vector<display::Image> reducedLevels(const display::Image& m, const Reducti
     return levels;
 }
 
-bool hasAllLevels(const display::Image& m) {
+size_t storedLevels(const display::Image& m) {
     int w = m.width, h = m.height;
+    size_t n = 0;
     for (const display::Image& l : m.levels) {
+        if (w == 1 && h == 1) break;
         w = std::max(1, w / 2);
         h = std::max(1, h / 2);
-        if (l.width != w || l.height != h || l.channels.size() != m.channels.size()) return false;
+        if (l.width != w || l.height != h || l.channels.size() != m.channels.size()) break;
+        ++n;
     }
-    return w == 1 && h == 1;
+    return n;
 }
 
 } // namespace alpenglow::texture

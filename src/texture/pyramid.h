@@ -48,7 +48,7 @@ display::Image reduced(const display::Image&, const Reduction& = {}, Wrap swrap 
 /// All levels below a picture, down to 1x1.
 std::vector<display::Image> reducedLevels(const display::Image&, const Reduction& = {}, Wrap swrap = Wrap::Clamp,
                                           Wrap twrap = Wrap::Clamp);
-/// Whether image.levels are all of them, each half the one before.
-bool hasAllLevels(const display::Image&);
+/// How many of image.levels, from the first on, are each half the one before and have its channels.
+size_t storedLevels(const display::Image&);
 
 } // namespace alpenglow::texture

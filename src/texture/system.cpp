@@ -100,13 +100,12 @@ std::shared_ptr<const Texture> makeTextureFrom(const display::Image& image, cons
     }
     tex->levels.push_back(levelOf(image, image.bits == 8 && !image.floating));
     if (tex->kind == Kind::Shadow) return tex; // depths have no mean
-    if (hasAllLevels(image)) {
-        for (const display::Image& l : image.levels) tex->levels.push_back(levelOf(l, false));
-        return tex;
-    }
+    // The levels that the file has; below the last of them (files may end at 2x1) they are made.
+    const size_t stored = storedLevels(image);
+    for (size_t i = 0; i < stored; ++i) tex->levels.push_back(levelOf(image.levels[i], false));
     bool round = tex->kind == Kind::LatLong;
-    for (const display::Image& l :
-         reducedLevels(image, {}, round ? Wrap::Periodic : tex->swrap, round ? Wrap::Clamp : tex->twrap))
+    for (const display::Image& l : reducedLevels(stored ? image.levels[stored - 1] : image, {}, round ? Wrap::Periodic : tex->swrap,
+                                                 round ? Wrap::Clamp : tex->twrap))
         tex->levels.push_back(levelOf(l, false));
     return tex;
 }

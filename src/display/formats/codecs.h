@@ -25,6 +25,7 @@ std::optional<Image> decodePng(Bytes, const DecodeContext&);
 std::optional<Image> decodeJpeg(Bytes, const DecodeContext&);
 std::optional<Image> decodeZfile(Bytes, const DecodeContext&);
 std::optional<Image> decodeRadiance(Bytes, const DecodeContext&);
+std::optional<Image> decodePixar(Bytes, const DecodeContext&);
 
 /// Encoders write to an open file; false: `why` says what went wrong (or the file holds the error).
 bool encodeExr(OutputFile&, const Image&, const WriteOptions&, std::string& why);

@@ -125,6 +125,36 @@ TEST(Film, MomentsByHand) {
     EXPECT_EQ(n, 1u);
 }
 
+// Every sample is counted and summed, whatever its index: 3,000 samples in three ranges, sums in integers that float holds exactly.
+TEST(Film, EverySampleOfThousandsIsCounted) {
+    Film f(describe(2, 1));
+    double s1 = 0, s2 = 0;
+    for (uint32_t i = 0; i < 3000; ++i) {
+        const double v = double(i * 7919 % 4096);
+        s1 += v, s2 += v * v;
+        for (int x = 0; x < 2; ++x) EXPECT_TRUE(f.add(x, 0, i, {Color(float(v)), 1, {}}));
+        if (i == 998 || i == 1000) EXPECT_TRUE(f.addRange({i == 998 ? 0u : 999u, i + 1}));
+    }
+    EXPECT_TRUE(f.addRange({1001, 3000}));
+    EXPECT_EQ(f.samplesPerPixel(), 3000u);
+    for (int x = 0; x < 2; ++x) {
+        EXPECT_EQ(f.count(x, 0), f.samplesPerPixel());
+        const Moments m = f.moments(x, 0);
+        EXPECT_EQ(m.n, 3000u);
+        EXPECT_NEAR(m.s1, s1, 1e-6 * s1);
+        EXPECT_NEAR(m.s2, s2, 1e-6 * s2);
+        uint32_t all = 0;
+        for (uint32_t r = 0; r < kReplicas; ++r) {
+            double sum;
+            uint32_t n;
+            f.replica(x, 0, r, &sum, &n);
+            EXPECT_EQ(n, 375u) << "replica " << r;
+            all += n;
+        }
+        EXPECT_EQ(all, 3000u);
+    }
+}
+
 TEST(Film, EqualSamplesHaveNoVarianceAtAll) {
     for (float v : {0.1f, 1e-7f, 12345.678f, 3e15f}) {
         Film f(describe(1, 1));

@@ -224,6 +224,54 @@ TEST(BiasFloor, SlopeOfTheError) {
     }
 }
 
+// A light of two polygons draws which of them and where on it at one key: with the film's sequences its error falls as fast as that of one
+// shape. The slope of log RMSE over log N, against the closed form, by light samples of diffuse() and of a loop. Power: 64 streams, so a
+// slope is known to .02; one of -.4 would be found, and one of 0 is what locked orders give.
+TEST(BiasFloor, SlopeOfALightOfTwoPolygons) {
+    writeShader("twopolygons", "light twopolygons() { illuminate(P, N, PI / 2) Cl = 5; }\n");
+    writeShader("polygonloop", "surface polygonloop() { Oi = 1; Ci = 0; illuminance(P, normal(0, 1, 0), PI / 2) Ci += Cl * (normalize(L) . normal(0, 1, 0)); }\n");
+    writeShader("polygondiffuse", "surface polygondiffuse() { Oi = 1; Ci = diffuse(normal(0, 1, 0)); }\n");
+    // Two squares of side 1, their inner corners over the origin at height 1, one twice as bright to the point as far away: X over the origin's
+    // quadrant, the other beyond it. Corner forms of Lambert's sum.
+    auto corner = [](double a, double b) {
+        const double A = a / std::sqrt(1 + a * a), B = b / std::sqrt(1 + b * b);
+        return (A * std::atan(b / std::sqrt(1 + a * a)) + B * std::atan(a / std::sqrt(1 + b * b))) / (2 * kPi);
+    };
+    const double truth = 5 * (corner(1, 1) + corner(2.5, 1) - corner(1.5, 1));
+    const std::string rib = "WorldBegin\nSides 2\nAttributeBegin\nAreaLightSource \"twopolygons\" 7\nSurface \"constant\"\nColor 0 0 0\n"
+                            "Polygon \"P\" [0 1 0  1 1 0  1 1 1  0 1 1]\nPolygon \"P\" [-2.5 1 0  -1.5 1 0  -1.5 1 1  -2.5 1 1]\nAttributeEnd\nIlluminate 7 1\n";
+    for (const char* look : {"polygondiffuse", "polygonloop"}) {
+        Settings settings;
+        settings.hider = std::string(look) == "polygonloop" ? Hider::Hidden : Hider::Path;
+        settings.lightOnly = settings.hider == Hider::Path;
+        settings.seed = 31;
+        Scene scene(rib + "Surface \"" + look + "\"\nPolygon \"P\" [-60 0 -60  -60 0 60  60 0 60  60 0 -60]\nWorldEnd\n", settings);
+        const int pixels = 64, first = 4, last = nightly() ? 13 : 10;
+        double sx = 0, sy = 0, sxx = 0, sxy = 0, count = 0;
+        for (int m = first; m <= last; ++m) {
+            const uint32_t n = 1u << m;
+            std::vector<double> sum(size_t(pixels), 0.0);
+            for (int p = 0; p < pixels; ++p) {
+                std::vector<CameraRay> rays;
+                for (uint32_t i = 0; i < n; ++i) {
+                    rays.push_back(rayTo({.3f, .5f, -.4f}, {0, 0, 0}));
+                    rays.back().px = p;
+                    rays.back().py = m;
+                    rays.back().sample = i;
+                }
+                for (const SampleResult& r : scene.trace(rays)) sum[size_t(p)] += r.color.x;
+            }
+            double square = 0;
+            for (double s : sum) square += (s / n - truth) * (s / n - truth) / pixels;
+            const double x = m * std::log(2.0), y = .5 * std::log(square);
+            sx += x, sy += y, sxx += x * x, sxy += x * y, ++count;
+        }
+        const double spread = sxx - sx * sx / count, slope = (sxy - sx * sy / count) / spread, se = std::sqrt(1 / (2.0 * pixels) / spread);
+        std::printf("%s: slope %.4f +- %.4f\n", look, slope, se);
+        EXPECT_LE(slope, -.5 + kZ * se) << look;
+    }
+}
+
 // T10: one film whatever the order of tiles, their size, the number of threads; and 7 ranges of samples, merged in any order.
 class FilmBits : public ::testing::Test {
 protected:

@@ -19,7 +19,8 @@ Image codePicture(int w, int h, int channels) {
     for (int y = 0; y < h; ++y)
         for (int x = 0; x < w; ++x)
             for (int c = 0; c < channels; ++c)
-                m.pixel(x, y)[c] = float(x * 2 < w ? (y * 2 < h ? 17 + c : (x + y) & 255) : (x / 3 % 5) * 40 + c + (y * 2 < h ? y * x % 7 : 0));
+                m.pixel(x, y)[c] =
+                    float(x * 2 < w ? (y * 2 < h ? 17 + c : (x + y) & 255) : (x / 3 % 5) * 40 + c + (y * 2 < h ? y * x % 7 : 0));
     return m;
 }
 
@@ -262,15 +263,15 @@ TEST(PixarNative, UnknownVariantsAreClearErrors) {
         EXPECT_NE(messages(d).find("a.tx"), std::string::npos);
         return messages(d);
     };
-    EXPECT_NE(messageOf(8, 4).find("six pictures"), std::string::npos);       // cube faces
+    EXPECT_NE(messageOf(8, 4).find("six pictures"), std::string::npos); // cube faces
     EXPECT_NE(messageOf(3, 4).find("version 4"), std::string::npos);
     EXPECT_NE(messageOf(0x14, 2).find("16 bits"), std::string::npos);
     const size_t code = good.size() - 64 - 2; // of the only tile
     EXPECT_NE(messageOf(code, 4 << 5).find("coding 4"), std::string::npos);
     EXPECT_NE(messageOf(code, 7 << 5).find("coding 7"), std::string::npos);
-    EXPECT_NE(messageOf(18, 9).find("damaged"), std::string::npos);           // channels
-    EXPECT_NE(messageOf(13, 15).find("damaged"), std::string::npos);          // a width beyond the tables
-    EXPECT_NE(messageOf(13, 4).find("missing"), std::string::npos);           // a level that is not there
+    EXPECT_NE(messageOf(18, 9).find("damaged"), std::string::npos);  // channels
+    EXPECT_NE(messageOf(13, 15).find("damaged"), std::string::npos); // a width beyond the tables
+    EXPECT_NE(messageOf(13, 4).find("missing"), std::string::npos);  // a level that is not there
     ByteList wrap = good;
     wrap[16] = 9;
     Diagnostics d;
@@ -337,7 +338,7 @@ TEST(PixarNative, SampleShadowMapSeesTheSpheresOfItsScene) {
 
 TEST(PixarNative, TruncationGivesAnErrorOrThePicture) {
     for (const ByteList& seed : damageSeeds())
-        for (size_t n = 0; n < seed.size(); n += seed.size() > 4096 ? 64 : 1) {
+        for (size_t n = 0; n<seed.size(); n += seed.size()> 4096 ? 64 : 1) {
             Diagnostics d;
             auto m = decoded(ByteList(seed.begin(), seed.begin() + std::ptrdiff_t(n)), d);
             if (m) EXPECT_EQ(m->data.size(), m->sampleCount()) << n;

@@ -1,5 +1,5 @@
-// Writes Pixar's native textures, for tests: every coding of a tile, both byte orders, versions 2 and 3. Written from the description
-// of the layout, apart from the reader. Values are codes 0..255 for samples of one byte, floats for those of four.
+// Writes Pixar's native textures, for tests: every coding of a tile, both byte orders, versions 2 and 3. Written from the
+// description of the layout, apart from the reader. Values are codes 0..255 for samples of one byte, floats for those of four.
 #pragma once
 #include "display/image.h"
 #include <bit>
@@ -20,9 +20,9 @@ enum class Coding : int { Raw = 0, Constant = 1, Runs = 2, Lzw = 3, Huffman = 5,
 struct PixarFile {
     bool big = true, floats = false, compressedFlag = true;
     int version = 3, type = 1, wrap[2] = {1, 1};
-    std::vector<Image> levels;               ///< from the largest on; sides are powers of two
-    std::vector<float> matrices;             ///< 32 numbers, or none
-    std::function<Coding(int)> coding;       ///< of the n-th tile of the file; Raw where it is not set
+    std::vector<Image> levels;         ///< from the largest on; sides are powers of two
+    std::vector<float> matrices;       ///< 32 numbers, or none
+    std::function<Coding(int)> coding; ///< of the n-th tile of the file; Raw where it is not set
 
     ByteList bytes() const;
 };
@@ -54,7 +54,9 @@ inline ByteList runLengths(const ByteList& t, size_t sample) {
     ByteList out;
     const size_t n = t.size() / sample;
     const auto same = [&](size_t a, size_t b) { return std::memcmp(&t[a * sample], &t[b * sample], sample) == 0; };
-    const auto copy = [&](size_t from, size_t count) { out.insert(out.end(), &t[from * sample], &t[from * sample] + count * sample); };
+    const auto copy = [&](size_t from, size_t count) {
+        out.insert(out.end(), &t[from * sample], &t[from * sample] + count * sample);
+    };
     for (size_t i = 0; i < n;) {
         size_t run = 1;
         while (i + run < n && run < 128 && same(i, i + run)) ++run;
@@ -106,8 +108,8 @@ inline ByteList lzw(const ByteList& t) {
     return out;
 }
 
-/// Codes as the layout allows them, not canonical: the more frequent value is a string of ones and a zero, up to 16 bits; many values:
-/// eight bits each, the bits turned over.
+/// Codes as the layout allows them, not canonical: the more frequent value is a string of ones and a zero, up to 16 bits; many
+/// values: eight bits each, the bits turned over.
 inline ByteList huffman(const ByteList& t) {
     std::map<int, size_t> count;
     for (uint8_t v : t) ++count[v];
@@ -260,7 +262,8 @@ inline std::vector<Image> withCodeLevels(Image m, int smallest = 1) {
             for (int x = 0; x < half.width; ++x)
                 for (int c = 0; c < a.channelCount(); ++c)
                     half.pixel(x, y)[c] = float((int(a.pixel(2 * x, 2 * y)[c]) + int(a.pixel(2 * x + 1, 2 * y)[c]) +
-                                                 int(a.pixel(2 * x, 2 * y + 1)[c]) + int(a.pixel(2 * x + 1, 2 * y + 1)[c]) + 2) >> 2);
+                                                 int(a.pixel(2 * x, 2 * y + 1)[c]) + int(a.pixel(2 * x + 1, 2 * y + 1)[c]) + 2) >>
+                                                2);
         all.push_back(std::move(half));
     }
     return all;

@@ -1,7 +1,7 @@
-// Pixar's native textures, latitude-longitude environments and shadow maps: magic FA CE (or CE FA, the other byte order), versions 2
-// and 3. The layout was worked out from files, since it is not published: a header of 72 bytes; for each channel a table of the
-// levels by log2 of height and width; for shadows two matrices; then levels in tiles of one channel and at most 4096 bytes, raw in
-// version 2, each with a coding of its own behind a directory in version 3. Row 0 is the top.
+// Pixar's native textures, latitude-longitude environments and shadow maps: magic FA CE (or CE FA, the other byte order),
+// versions 2 and 3. The layout was worked out from files, since it is not published: a header of 72 bytes; for each channel a
+// table of the levels by log2 of height and width; for shadows two matrices; then levels in tiles of one channel and at most 4096
+// bytes, raw in version 2, each with a coding of its own behind a directory in version 3. Row 0 is the top.
 #include "display/formats/pixar.h"
 #include "display/formats/codecs.h"
 #include <algorithm>
@@ -46,13 +46,15 @@ Header headerOf(const Reader& r, std::string& why) {
         why = "it is in version " + std::to_string(h.version) + " of Pixar's native format; 2 and 3 are known";
     else if (h.type > int(Type::LatLong))
         why = "it is a map of type " + std::to_string(h.type) +
-              " in Pixar's native format; textures, latitude-longitude environments and shadow maps can be read, cube faces not: make the "
+              " in Pixar's native format; textures, latitude-longitude environments and shadow maps can be read, cube faces not: "
+              "make the "
               "environment again from its six pictures";
     else if (h.type == 0 || !sizes || h.channels < 1 || h.channels > mostChannels) why = "its header is damaged";
     else if (!r.holds(0, h.tablesEnd())) why = "it is truncated";
     for (int c = 0; why.empty() && c < h.channels; ++c) {
         if (h.sampleBytes[c] == 2)
-            why = "it has samples of 16 bits, for which the layout of Pixar's native format is not known; make it again from the picture";
+            why = "it has samples of 16 bits, for which the layout of Pixar's native format is not known; make it again from the "
+                  "picture";
         else if (h.sampleBytes[c] != 1 && h.sampleBytes[c] != 4) why = "its header is damaged";
     }
     if (why.empty() && h.type == int(Type::Shadow) && (h.channels != 1 || h.sampleBytes[0] != 4)) why = "its header is damaged";
@@ -111,7 +113,8 @@ private:
     }
 
     std::optional<Image> level(int y, int x) {
-        Image m = makeImage(1 << x, 1 << y, h_.type == int(Type::Shadow) ? std::vector<std::string>{"z"} : defaultChannels(h_.channels));
+        Image m = makeImage(1 << x, 1 << y,
+                            h_.type == int(Type::Shadow) ? std::vector<std::string>{"z"} : defaultChannels(h_.channels));
         for (int c = 0; c < h_.channels; ++c)
             if (!plane(m, c, entry(c, y, x))) return {};
         return m;
@@ -121,7 +124,8 @@ private:
     bool plane(Image& m, int c, uint64_t at) {
         const size_t sample = h_.sampleBytes[c];
         const int side = sample == 1 ? 64 : 32, tw = std::min(side, m.width), th = std::min(side, m.height);
-        const size_t across = size_t(m.width / tw), count = across * size_t(m.height / th), need = size_t(tw) * size_t(th) * sample;
+        const size_t across = size_t(m.width / tw), count = across * size_t(m.height / th),
+                     need = size_t(tw) * size_t(th) * sample;
         const uint64_t values = at + 8, codes = values + 4 * count;
         if (!r_.holds(at, raw_ ? count * need : 8 + 6 * count)) return refuse("a level lies outside of the file");
         uint8_t bytes[tileBytes];
@@ -224,8 +228,7 @@ std::optional<Image> decodePixar(Bytes b, const DecodeContext& ctx) {
     const Reader r{b, b[0] == 0xfa};
     std::string why;
     const Header h = headerOf(r, why);
-    if (!why.empty())
-        return ctx.refuse(why, why.find("native") != std::string::npos ? Rie::Unimplement : Rie::BadFile);
+    if (!why.empty()) return ctx.refuse(why, why.find("native") != std::string::npos ? Rie::Unimplement : Rie::BadFile);
     return Decoder(r, h, ctx).picture();
 }
 

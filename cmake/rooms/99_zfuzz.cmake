@@ -1,0 +1,13 @@
+# The fuzz runner (tests/fuzz; scripts/fuzz runs it). In ./check it runs the corpus and a few inputs of each target, in ./check --all ten minutes.
+if(ALPENGLOW_TESTS)
+  file(GLOB fuzz_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/fuzz/*.cpp)
+  set(fuzz_program ${cli_sources})
+  list(FILTER fuzz_program EXCLUDE REGEX "/main[.]cpp$")
+  add_executable(fuzz_alpenglow ${fuzz_sources} ${fuzz_program})
+  target_link_libraries(fuzz_alpenglow PRIVATE render ri transport shading texture display rsl_jit shadeops base CLI11::CLI11 nlohmann_json::nlohmann_json ZLIB::ZLIB)
+  target_compile_definitions(fuzz_alpenglow PRIVATE ALPENGLOW_VERSION="0.1" ALPENGLOW_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  add_test(NAME Fuzz.EveryTarget COMMAND fuzz_alpenglow --check --keep ${CMAKE_BINARY_DIR}/fuzz)
+  add_test(NAME Fuzz.NoticesEveryEnd COMMAND fuzz_alpenglow --self-test)
+  set_tests_properties(Fuzz.NoticesEveryEnd PROPERTIES LABELS fuzz)
+  set_tests_properties(Fuzz.EveryTarget PROPERTIES LABELS fuzz TIMEOUT 1800)
+endif()

@@ -48,7 +48,8 @@ std::vector<Case> cases() {
     return all;
 }
 
-// A distribution of the list, whichever it is, with the same parameters: what a kind does not read it does not notice. By viewer, four each.
+// A distribution of the list, whichever it is, with the same parameters: what a kind does not read it does not notice. By viewer,
+// four each.
 constexpr size_t kDistributionCases = 4;
 std::vector<Case> distributionCases(const LobeKind& k) {
     struct Surface {
@@ -69,7 +70,10 @@ std::vector<Case> distributionCases(const LobeKind& k) {
                     m->absorption = Color(.2f, .4f, .8f);
                     m->part = s.part;
                     const float sine = std::sqrt(1 - cosine * cosine);
-                    Case c{k.name, {Vec3(std::sin(tilt), 0, std::cos(tilt)), Vec3(sine * std::cos(azimuth), sine * std::sin(azimuth), cosine), {}}};
+                    Case c{k.name,
+                           {Vec3(std::sin(tilt), 0, std::cos(tilt)),
+                            Vec3(sine * std::cos(azimuth), sine * std::sin(azimuth), cosine),
+                            {}}};
                     c.p.more = m;
                     all.push_back(c);
                 }
@@ -94,7 +98,8 @@ std::vector<Case> allCases(size_t stride = 13) {
 TEST(LobeCases, EveryKindOfTheListHasCases) {
     std::set<std::string_view> with;
     for (const Case& c : allCases()) with.insert(c.kind);
-    for (const LobeKind* k : lobeKinds()) EXPECT_TRUE(with.count(k->name)) << k->name << " is in the list of lobes, and no case tests it";
+    for (const LobeKind* k : lobeKinds())
+        EXPECT_TRUE(with.count(k->name)) << k->name << " is in the list of lobes, and no case tests it";
     EXPECT_EQ(with.size(), lobeKinds().size());
 }
 
@@ -147,7 +152,8 @@ double cellIntegral(const LobeKind& k, const LobeParams& p, const Basis& grid, d
            cellIntegral(k, p, grid, c, c1, f, p1, part[3], d, depth + 1);
 }
 
-// No tolerance but the statistics' own: expectations are integrals to about 1e-7 of the whole, edges included. False: too few cells to test.
+// No tolerance but the statistics' own: expectations are integrals to about 1e-7 of the whole, edges included. False: too few
+// cells to test.
 bool followsItsDensity(const Case& c, size_t ci, int kN) {
     const int kCos = nightly() ? 51 : 10, kPhi = nightly() ? 102 : 20;
     const LobeKind& k = *findLobe(c.kind);
@@ -176,7 +182,8 @@ bool followsItsDensity(const Case& c, size_t ci, int kN) {
     for (int i = 0; i < kCos; ++i)
         for (int j = 0; j < kPhi; ++j) {
             double c0 = low + step * i, c1 = low + step * (i + 1), p0 = 2 * kPi * j / kPhi, p1 = 2 * kPi * (j + 1) / kPhi;
-            double v = cellIntegral(k, c.p, grid, c0, c1, p0, p1, gauss3(k, c.p, grid, c0, c1, p0, p1), nightly() ? kFine : kCoarse, 0);
+            double v =
+                cellIntegral(k, c.p, grid, c0, c1, p0, p1, gauss3(k, c.p, grid, c0, c1, p0, p1), nightly() ? kFine : kCoarse, 0);
             if (pole && size_t(i * kPhi + j) == poleCell) continue;
             expected[size_t(i * kPhi + j)] = v * kN;
             total += v;
@@ -218,17 +225,19 @@ TEST_P(LobeT1, SamplersFollowTheirDensities) {
 }
 INSTANTIATE_TEST_SUITE_P(Quarters, LobeT1, ::testing::Range(0, 4));
 
-// Each distribution of the list: here two viewers for each of its parameters, one of them well above the surface; nightly nine, on 5,202 cells with 2e6
-// draws (finds 1.9 %).
+// Each distribution of the list: here two viewers for each of its parameters, one of them well above the surface; nightly nine,
+// on 5,202 cells with 2e6 draws (finds 1.9 %).
 class DistributionT1 : public ::testing::TestWithParam<const LobeKind*> {};
 TEST_P(DistributionT1, SamplersFollowTheirDensities) {
     const auto all = distributionCases(*GetParam());
     int tested = 0;
     for (size_t ci = 0; ci < all.size(); ++ci) {
         const size_t viewer = ci / kDistributionCases, of = ci % kDistributionCases;
-        if (nightly() ? viewer % 4 == of : viewer % 18 == (of * 5 + 2) % 18) tested += followsItsDensity(all[ci], ci, samples(400000, 2000000));
+        if (nightly() ? viewer % 4 == of : viewer % 18 == (of * 5 + 2) % 18)
+            tested += followsItsDensity(all[ci], ci, samples(400000, 2000000));
     }
-    EXPECT_GE(tested, int(nightly() ? all.size() / 5 : 2 * kDistributionCases - 1)) << "a kind whose every draw fails shows nothing";
+    EXPECT_GE(tested, int(nightly() ? all.size() / 5 : 2 * kDistributionCases - 1))
+        << "a kind whose every draw fails shows nothing";
 }
 INSTANTIATE_TEST_SUITE_P(Kinds, DistributionT1, ::testing::ValuesIn(distributions()), [](const auto& i) {
     std::string name(i.param->name);
@@ -281,8 +290,7 @@ TEST(LobeT2, SupportOfTheDensityCoversTheValue) {
 TEST(LobeT4, MeanOfTheWeightsIsTheIntegral) {
     for (const Case& c : allCases(29)) {
         const LobeKind& k = *findLobe(c.kind);
-        if (c.p.hasHorizon || c.p.wo.z < 0.2f || dot(c.p.axis, c.p.wo) < 0.2f || c.kind == "uniform" ||
-            c.kind == "cosine")
+        if (c.p.hasHorizon || c.p.wo.z < 0.2f || dot(c.p.axis, c.p.wo) < 0.2f || c.kind == "uniform" || c.kind == "cosine")
             continue; // edges: below
         std::mt19937_64 rng(8 + seedBase());
         std::uniform_real_distribution<float> u01(0, 0x1.fffffep-1f);

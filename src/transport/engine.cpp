@@ -139,6 +139,8 @@ void Engine::giveBack(std::shared_ptr<BatchContext> c) {
     c->emits.clear();
     c->arena.clear();
     c->haze.clear();
+    c->clear.clear();
+    c->passes.clear();
     c->lightDistance.clear();
     c->lightChannels.clear();
     c->draws.clear();

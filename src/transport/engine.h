@@ -132,6 +132,8 @@ struct BatchContext {
     std::vector<EmitRecord> emits;
     std::vector<float> arena;
     std::vector<Haze> haze;                    ///< by point; only where a volume lies before some point
+    std::vector<Color> clear;                  ///< by point: what goes on behind it; only while gather() runs for a kernel that does not wait
+    std::vector<float> passes;                 ///< by point: the chance with which its ray goes on, 0: another was taken; empty: it always does
     std::deque<LightLoop> loops;               ///< Engine::lightLoop()
     const BoundLight* light = nullptr;         ///< whose kernel runs
     const LitSurface* lit = nullptr;           ///< while a light's kernel runs: what it lights
@@ -219,7 +221,13 @@ public:
     /// The environment map of a trace() in direction w (unit, current space).
     Color mapTowards(const TraceSite&, const Vec3& w, float spread) const;
     void flushShadows(Sched&);
-    void finishStrip(BatchContext&, int first, int lanes, Sched&);
+    /// `asked`: by lane, the rays that a waiting kernel has asked for there.
+    void finishStrip(BatchContext&, int first, int lanes, Sched&, std::span<const uint32_t> asked = {});
+    /// The share of the light from behind a shaded point that comes through, 0 to 1.
+    Color clearAt(const BatchContext&, int point) const;
+    /// Energy rule of one point under path and what of its lobes and what is behind will be followed: fills LobeVertex::albedo, delta,
+    /// followed and chosen. Returns the factor of its lighting shadeops' rays. `passes`: the chance that the ray goes on instead.
+    float chooseLobes(const BatchContext&, size_t point, std::span<const int> list, float& passes);
     const WorldImpl& world() const { return *world_; }
     Diagnostics& diagnostics() { return diagnostics_; }
     void shadeGroup(std::shared_ptr<BatchContext>, Sched&);
@@ -269,7 +277,7 @@ private:
     /// Memory that gather() keeps between batches.
     struct GatherRoom {
         std::vector<int> begin, order, next, pointOf;
-        std::vector<float> indirectScale, chance;
+        std::vector<float> indirectScale, chance, passes;
         std::vector<ShadePoint> q;
         std::vector<Emitter::Sample> drawn;
         std::vector<LightValue> value;
@@ -289,7 +297,8 @@ private:
     struct Met { int light; TargetId target; const ShadePoint* point; };
     /// Light that emitters send along the rays that met them; sorted by light.
     void emission(std::span<const Met>, Sched&);
-    void passThrough(const SurfaceBinding&, const PathRay&, TargetId, const ShadePoint&, const Color& transparency, Sched&);
+    /// Goes on behind a point. `chance`: with which it was chosen to; `asked`: rays that a waiting kernel has asked for there.
+    void passThrough(const SurfaceBinding&, const PathRay&, TargetId, const ShadePoint&, const Color& transparency, float chance, uint32_t asked, Sched&);
     std::shared_ptr<const WorldImpl> world_;
     Diagnostics& diagnostics_;
     render::SeedKey seed_;

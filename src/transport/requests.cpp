@@ -122,6 +122,62 @@ Color Engine::mapTowards(const TraceSite& t, const Vec3& w, float spread) const 
     return {v[0], v[1], v[2]};
 }
 
+float Engine::chooseLobes(const BatchContext& c, size_t pi, std::span<const int> list, float& passes) {
+    const Settings& set = world_->settings_;
+    const bool path = set.hider == Hider::Path;
+    const PathRay& from = c.rays[pi];
+    const SurfaceBinding& b = world_->bindings_[size_t(c.bindings[pi])];
+    const Color clear = c.clear.empty() ? Color(0) : c.clear[pi];
+    // Under path one ray goes on from a vertex: along one of the lobes, or behind the surface where that lets light through. Those two may have
+    // quite different colours: what the way here has left of each decides, else a channel could grow without end. A camera ray goes on besides.
+    const bool competes = path && from.bounces > 0 && maxComponent(clear) > 0;
+    const Color left(std::fabs(from.weight.x), std::fabs(from.weight.y), std::fabs(from.weight.z));
+    const auto worth = [&](const Color& share) { return competes ? dot(share, left) / 3 : luminance(share); };
+    Color sum(0);
+    bool cut = false; // by the depth of the render, not by a depth that a primitive asks for
+    for (int i : list) {
+        LobeVertex& l = lobes[size_t(i)];
+        const Color weight(std::fabs(l.weight.x), std::fabs(l.weight.y), std::fabs(l.weight.z));
+        l.albedo = l.kind->albedo(l.params);
+        l.delta = l.kind->isDelta(l.params);
+        if (l.lobeOfShader) sum += weight * l.albedo;
+        l.chosen = std::max(worth(weight) * l.albedo, 0.f);
+        // A lobe whose ray would go too deep is not followed; light samples then count in full.
+        const bool diffuse = l.type == RayType::Diffuse;
+        const bool deep = from.bounces + 1 > world_->maxDepth_ || (b.maxDiffuse >= 0 && from.diffuseBounces + diffuse > b.maxDiffuse) ||
+                          (b.maxSpecular >= 0 && from.specularBounces + !diffuse > b.maxSpecular);
+        cut |= from.bounces + 1 > world_->maxDepth_ && l.chosen > 0;
+        const bool stays = deep || (diffuse && !set.indirect);
+        if (stays) l.chosen = 0;
+        l.followed = l.chosen > 0 || (l.ownsTarget && !stays);
+    }
+    counters.depthCap += cut;
+    // What is reflected and what comes through is at most what arrives.
+    float scale = 1;
+    for (int k = 0; k < 3 && !set.unbiased; ++k)
+        if (sum[k] + clear[k] > 1 && sum[k] > 0) scale = std::min(scale, (1 - clear[k]) / sum[k]);
+    if (scale < 0.999f && tamed_.insert(b.surface.get()).second) // beyond rounding; said once a shader
+        diagnostics_.reportOnce("energy:" + b.surface->name,
+                                {Severity::Warning, Rie::NoError, b.surface->place,
+                                 "shader \"" + b.surface->name + "\" reflects" + (maxComponent(sum) > 1 ? "" : ", together with what comes through it,") +
+                                     " more light than it receives; its indirect light is scaled down to what it receives",
+                                 maxComponent(sum) > 1 ? "--unbiased leaves it as it is" : "Ci = Oi * (...) is what makes the two one; --unbiased leaves it as it is", {}});
+    const float behind = competes ? worth(clear) : 0;
+    double total = behind;
+    for (int i : list)
+        if (LobeVertex& l = lobes[size_t(i)]; !l.ownsTarget) {
+            if (behind > 0 && l.lobeOfShader) l.chosen *= scale;
+            total += l.chosen;
+        }
+    for (int i : list) {
+        LobeVertex& l = lobes[size_t(i)];
+        if (l.ownsTarget || !path) l.chosen = l.followed ? 1 : 0;
+        else l.chosen = total > 0 ? (total == l.chosen ? 1 : float(l.chosen / total)) : 0;
+    }
+    passes = behind > 0 && total > behind ? float(behind / total) : 1;
+    return scale;
+}
+
 // Gathers light over the lobes collected for this batch, then sends rays.
 void Engine::gather(BatchContext& c, Sched& sched) {
     const Settings& set = world_->settings_;
@@ -161,49 +217,12 @@ void Engine::gather(BatchContext& c, Sched& sched) {
         return geometry::offsetOrigin(p.surface, w, p.P == p.surface.P ? 0 : length(p.P - p.surface.P));
     };
 
-    // A lobe whose ray would go too deep is not followed; light samples then count in full.
-    auto tooDeep = [&](const LobeVertex& l) {
-        const PathRay& from = c.rays[size_t(l.point)];
-        const SurfaceBinding& b = world_->bindings_[size_t(c.bindings[size_t(l.point)])];
-        bool diffuse = l.type == RayType::Diffuse;
-        return from.bounces + 1 > world_->maxDepth_ || (b.maxDiffuse >= 0 && from.diffuseBounces + diffuse > b.maxDiffuse) ||
-               (b.maxSpecular >= 0 && from.specularBounces + !diffuse > b.maxSpecular);
-    };
-
-    // Which lobe's ray will be followed (path): in proportion to luminance of weight times albedo; the energy rule for shader lobes.
     std::vector<float>& indirectScale = room.indirectScale;
     indirectScale.assign(c.points.size(), 1.f);
-    for (size_t pi = 0; pi < c.points.size(); ++pi) {
-        auto list = lobesOf(pi);
-        Color sum(0);
-        double total = 0;
-        for (int i : list) {
-            LobeVertex& l = lobes[i];
-            float albedo = l.albedo = l.kind->albedo(l.params);
-            l.delta = l.kind->isDelta(l.params);
-            if (l.lobeOfShader) sum += Color(std::fabs(l.weight.x), std::fabs(l.weight.y), std::fabs(l.weight.z)) * albedo;
-            l.chosen = std::max(luminance(Color(std::fabs(l.weight.x), std::fabs(l.weight.y), std::fabs(l.weight.z))) * albedo, 0.f);
-            bool deep = tooDeep(l);
-            counters.depthCap += deep;
-            if ((l.type == RayType::Diffuse && !set.indirect) || deep) l.chosen = 0;
-            l.followed = l.chosen > 0 || (l.ownsTarget && !deep && !(l.type == RayType::Diffuse && !set.indirect));
-            if (!l.ownsTarget) total += l.chosen;
-        }
-        if (!set.unbiased && maxComponent(sum) > 1) {
-            indirectScale[pi] = 1 / maxComponent(sum);
-            const ShaderInstance* shader = world_->bindings_[c.bindings[pi]].surface.get();
-            if (maxComponent(sum) > 1.001f && tamed_.insert(shader).second) // above rounding; said once a shader
-                diagnostics_.reportOnce("energy:" + shader->name,
-                                        {Severity::Warning, Rie::NoError, shader->place,
-                                         "shader \"" + shader->name + "\" reflects more light than it receives; its indirect light is scaled down to what it receives",
-                                         "--unbiased leaves it as it is", {}});
-        }
-        for (int i : list) {
-            LobeVertex& l = lobes[i];
-            if (l.ownsTarget || !path) l.chosen = l.followed ? 1 : 0;
-            else l.chosen = total > 0 ? (total == l.chosen ? 1 : float(l.chosen / total)) : 0;
-        }
-    }
+    std::vector<float>& passes = room.passes; // by point: the chance that its ray goes on behind it
+    passes.assign(c.points.size(), 1.f);
+    for (size_t pi = 0; pi < c.points.size(); ++pi)
+        if (auto list = lobesOf(pi); !list.empty()) indirectScale[pi] = chooseLobes(c, pi, list, passes[pi]);
 
     // Whether a lobe asks this light for samples. trace() knows emitters only, and not those that are illuminance's.
     auto samples = [](const LobeVertex& l, const BoundLight& light) {
@@ -381,7 +400,8 @@ void Engine::gather(BatchContext& c, Sched& sched) {
         const ShadePoint& p = c.points[pi];
         const PathRay& from = c.rays[pi];
         Random rng = random(from);
-        float pick = path && list.size() > 1 ? rng.one(from.vertex, kChooseLobe, 0) : 0, sum = 0;
+        const bool mayPass = passes[pi] < 1; // then lobes have the rest of the chance
+        float pick = path && (list.size() > 1 || mayPass) ? rng.one(from.vertex, kChooseLobe, 0) : 0, sum = 0;
         bool taken = false;
         for (int i : list) {
             LobeVertex& l = lobes[i];
@@ -390,7 +410,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
             int count = l.samples;
             if (path && !l.ownsTarget) {
                 sum += l.chosen;
-                if (taken || (pick >= sum && !(i == list.back()))) continue;
+                if (taken || (pick >= sum && (mayPass || i != list.back()))) continue;
                 taken = true;
                 scale = 1 / l.chosen;
                 count = 1;
@@ -474,6 +494,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 ++counters.depthSum; // over camera rays: the mean number of bounces
             }
         }
+        if (mayPass) c.passes[pi] = taken ? 0 : passes[pi];
     }
     lobes.clear();
     gatherRoom_ = std::move(room);

@@ -46,7 +46,7 @@ public:
         Engine& e = *c_->engine;
         const auto& kernel = *c_->bound->kernel;
         if (kernel.finished(handle_)) {
-            e.finishStrip(*c_, first_, kernel.lanes(), s);
+            e.finishStrip(*c_, first_, kernel.lanes(), s, asked_);
             for (int i = first_; i < std::min(first_ + kernel.lanes(), int(c_->points.size())); ++i) s.release(c_->targets[i]);
             return true;
         }
@@ -119,7 +119,23 @@ void Engine::lightVisibility(BatchContext& c, const SiteInfo& s, int point, cons
     shadows.back().media = mediaTowards(c, point, w);
 }
 
-void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched) {
+Color Engine::clearAt(const BatchContext& c, int i) const {
+    const shading::Batch& b = *c.batch;
+    const int oi = b.plan().Oi;
+    if (oi < 0) return Color(0);
+    Color clear = Color(1) - b.color(oi, i);
+    // An atmosphere goes on behind what is not opaque, as if nothing were there. A medium ends, and another begins.
+    const PathRay& ray = c.rays[size_t(i)];
+    if (!world_->media_.empty() && !c.haze.empty() && c.haze[size_t(i)].on) {
+        const SurfaceBinding& binding = world_->bindings_[size_t(c.bindings[size_t(i)])];
+        if (ray.media.top() >= 0 || binding.beyond(ray.media, c.points[size_t(i)].surface.n, ray.dir, ray.dir).top() >= 0)
+            clear = clear * c.haze[size_t(i)].slope;
+    }
+    for (int k = 0; k < 3; ++k) clear[k] = clear[k] > 0 ? std::min(clear[k], 1.f) : 0; // not a number: opaque
+    return clear;
+}
+
+void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, std::span<const uint32_t> asked) {
     shading::Batch& b = *c.batch;
     int ci = b.plan().Ci, oi = b.plan().Oi;
     const auto& wanted = world_->settings_.outputs;
@@ -142,15 +158,11 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched) {
             sched.setTransmission(c.targets[i], Color(1) - opacity);
         }
         if (TraceSums* sums = sumsOf(c.targets[i])) sums->add(TraceSums::Blocked, ray.part * opacity);
-        Color shown = color, clear = Color(1) - opacity;
+        Color shown = color;
         if (!c.haze.empty() && c.haze[size_t(i)].on && !(binding.matte && ray.type == RayType::Camera)) { // pairs were scaled in shadeGroup
             shown = c.haze[size_t(i)].shown;
             opacity = c.haze[size_t(i)].opacity;
         }
-        // An atmosphere goes on behind what is not opaque, as if nothing were there. A medium ends, and another begins.
-        if (media && (ray.media.top() >= 0 || binding.beyond(ray.media, c.points[i].surface.n, ray.dir, ray.dir).top() >= 0))
-            clear = clear * (c.haze.empty() ? Color(1) : c.haze[size_t(i)].slope);
-        else clear = Color(1) - opacity;
         sched.add(c.targets[i], ray.weight * shown);
         if (ray.cameraSample >= 0) {
             SampleResult& r = *results[ray.cameraSample];
@@ -180,7 +192,9 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched) {
                 at += size_t(width);
             }
         }
-        if (maxComponent(clear) > 0) passThrough(binding, ray, c.targets[i], c.points[i], clear, sched);
+        const float chance = c.passes.empty() ? 1 : c.passes[size_t(i)];
+        const Color clear = chance > 0 ? c.clear.empty() ? clearAt(c, i) : c.clear[size_t(i)] : Color(0);
+        if (maxComponent(clear) > 0) passThrough(binding, ray, c.targets[i], c.points[i], clear, chance, asked.empty() ? 0 : asked[size_t(i - first)], sched);
     }
 }
 
@@ -289,6 +303,11 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
             if (s.kind == SiteKind::Transmission) weight *= c->rays[point].weight;
             request(*c, s, point, args, e.lanes, lane, weight, c->targets[point], false, occurrence[size_t(e.site) * size_t(n) + size_t(point)]++);
         }
+    }
+    if (world_->settings_.hider == Hider::Path) {
+        c->clear.resize(size_t(n));
+        for (int i = 0; i < n; ++i) c->clear[size_t(i)] = clearAt(*c, i);
+        c->passes.assign(size_t(n), 1.f);
     }
     gather(*c, sched);
     flushShadows(sched);

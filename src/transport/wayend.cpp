@@ -5,17 +5,30 @@
 
 namespace alpenglow::transport {
 
-void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId target, const ShadePoint& p, const Color& transparency, Sched& sched) {
-    Color t(std::clamp(transparency.x, 0.f, 1.f), std::clamp(transparency.y, 0.f, 1.f), std::clamp(transparency.z, 0.f, 1.f));
-    float most = maxComponent(t);
-    if (!(most > 0)) return;
+void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId target, const ShadePoint& p, const Color& transparency, float chance, uint32_t asked, Sched& sched) {
+    const Color t = transparency / chance;
     PathRay r = ray;
     r.weight = ray.weight * t;
     r.part = ray.part * t;
-    if (world_->settings_.hider == Hider::Path && ray.bounces > 0 && most < 1) { // a gamble keeps the number of rays linear in depth
-        if (random(ray).one(ray.vertex, kPassThrough, 0) >= most) return;
-        r.weight = r.weight / most;
-        r.part = r.part / most;
+    const Settings& set = world_->settings_;
+    // What a camera ray shows behind a surface is always followed, so that opacity, depth and AOVs are exact.
+    if (set.hider == Hider::Path && set.roulette && ray.bounces > 0) {
+        const int depth = ray.bounces + ray.layers + 1;
+        auto dice = [&] { return random(ray).one(ray.vertex, kPassThrough, 0); };
+        float q = 1;
+        if (asked > 0) { // one more of what the kernel has asked for
+            r.asked = uint16_t(std::min<uint32_t>(std::max<uint32_t>(ray.asked, asked + 1), 0xffff));
+            q = std::min(rouletteWaiting(ray.bounces, r.asked), maxComponent(transparency));
+            if (q < 1 && dice() >= q) q = 0;
+        } else if (set.localRoulette) {
+            q = rouletteLocal(depth, t, depth > 3 ? dice() : 0);
+        } else if (depth > 3) {
+            const float m = std::min(1.f, maxComponent(Color(std::fabs(r.weight.x), std::fabs(r.weight.y), std::fabs(r.weight.z))));
+            q = m >= 1 ? 1 : m > 0 && dice() < m ? m : 0;
+        }
+        if (!(q > 0)) return;
+        r.weight = r.weight / q;
+        r.part = r.part / q;
     }
     const float travelled = length(p.P - ray.origin);
     r.origin = geometry::offsetOrigin(p.surface, ray.dir);

@@ -42,6 +42,30 @@ TEST(Growth, RaysAreLinearInDepth) {
         EXPECT_GT(m.mean(), 0);
     }
 }
+// What bounces and what goes on through surfaces are one choice: closed spheres of half opacity cost no more rays a bounce than opaque ones
+// do. A shader that does not multiply its Ci by Oi gives away more than it receives, and is tamed by what comes through.
+TEST(Growth, HalfOpaqueSurfacesAreLinearInDepth) {
+    writeShader("notpremultiplied", "surface notpremultiplied() { Oi = Os; Ci = Cs * diffuse(faceforward(normalize(N), I)); }\n");
+    for (const bool roulette : {false, true}) {
+        double rays[2];
+        for (int k = 0; k < 2; ++k) {
+            Settings s;
+            s.hider = Hider::Path;
+            s.roulette = roulette;
+            s.maxDepth = k ? 24 : 8;
+            Scene scene("WorldBegin\nSides 2\nLightSource \"pointlight\" 1 \"intensity\" 1\nSurface \"notpremultiplied\"\nOpacity [.5 .5 .5]\n"
+                        "Sphere 3 -3 3 360\nSphere 4 -4 4 360\nOpacity [1 1 1]\nSphere 5 -5 5 360\nWorldEnd\n", s);
+            Counters c;
+            const Moments m = scene.estimate(kEye, 2000, &c);
+            EXPECT_TRUE(std::isfinite(m.mean()));
+            rays[k] = double(c.diffuse + c.camera) / double(c.paths);
+            // Three vertices of the camera; from each a path that passes a surface about as often as it bounces.
+            EXPECT_LE(rays[k], 3 * 3 * (s.maxDepth + 1));
+            EXPECT_NE(scene.messages().find("more light than it receives"), std::string::npos);
+        }
+        EXPECT_LE(rays[1] / rays[0], 3.2) << "from depth 8 to 24";
+    }
+}
 // Roulette on, as it is used: a path ends by itself, so rays a sample stop growing where the depth no longer matters.
 TEST(Growth, RouletteEndsPaths) {
     double rays[2];

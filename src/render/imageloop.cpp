@@ -6,6 +6,7 @@
 #include "render/rendering.h"
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 namespace alpenglow::render {
 
@@ -46,7 +47,7 @@ transport::CameraRay imageRay(const Camera& camera, Vec2 position, uint64_t seed
     return r;
 }
 
-std::vector<Image> renderImages(Job& job, int nx, int ny, Jitter jitter, uint64_t seed, uint64_t* nonFinite) {
+std::vector<Image> renderImages(Job& job, int nx, int ny, Jitter jitter, uint64_t seed, DroppedSamples* dropped) {
     const OutputPlan& plan = job.plan;
     const Window window = job.camera.window();
     std::vector<Channel> aovs;
@@ -72,7 +73,13 @@ std::vector<Image> renderImages(Job& job, int nx, int ny, Jitter jitter, uint64_
     int band = int(std::clamp(kPassBytes / std::max(perRow, size_t(1)), size_t(1), size_t(limits::kImageSide))) - border;
     band = std::max({band, 2 * border, kTile});
     const int bands = (window.height() + band - 1) / band;
-    *nonFinite = 0;
+    *dropped = {};
+    std::mutex droppedMutex;
+    const auto drop = [&](const transport::CameraRay& r) { // the same whatever thread meets it first
+        std::lock_guard lock(droppedMutex);
+        const std::array<int, 3> at{int(r.sample), r.py, r.px};
+        if (const bool seen = window.contains(r.px, r.py); seen && (!dropped->first || at < *dropped->first)) dropped->first = at;
+    };
     auto tell = [&](double fraction, bool last) {
         ProgressState s;
         s.fraction = fraction;
@@ -107,7 +114,7 @@ std::vector<Image> renderImages(Job& job, int nx, int ny, Jitter jitter, uint64_
                         if (r.z < 1e38f) s.z = r.z;
                         if (r.zSecond < 1e38f) s.zSecond = r.zSecond;
                         s.aovs = r.aovs;
-                        buffer.set(rays[k].px, rays[k].py, int(rays[k].sample), s);
+                        if (!buffer.set(rays[k].px, rays[k].py, int(rays[k].sample), s)) drop(rays[k]);
                     }
                     rays.clear();
                     return true;
@@ -125,7 +132,7 @@ std::vector<Image> renderImages(Job& job, int nx, int ny, Jitter jitter, uint64_
                 reached = (b + double(done) / double(tiles.size())) / bands;
                 tell(reached, false);
             });
-        *nonFinite += buffer.nonFinite();
+        dropped->count += buffer.nonFinite();
         // Pictures with the same filters share the work.
         for (size_t p = 0; p < images.size(); ++p) {
             const OutputSpec& s = plan.pictures[p];

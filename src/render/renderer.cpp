@@ -260,12 +260,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
                                     "interrupted before the first pass was whole; nothing is written");
         } else {
             ++outcome_.rendered;
-            if (auto first = film->firstDropped())
-                diagnostics_.report(Severity::Warning, Rie::Math, {},
-                                    std::to_string(film->nonFinite()) +
-                                        " samples were not finite and are left out; the first is made by --pixel " +
-                                        std::to_string(first->x) + "," + std::to_string(first->y) + "," +
-                                        std::to_string(first->sample) + " --seed " + std::to_string(settings_.seed));
+            if (auto first = film->firstDropped()) reportDropped(film->nonFinite(), first->x, first->y, first->sample);
             if (film->saturated())
                 diagnostics_.report(Severity::Warning, Rie::Range, {},
                                     std::to_string(film->saturated()) + " values beyond 2^60 were cut there");
@@ -283,7 +278,9 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
         stats_.saturated += film->saturated();
         nonFinite = film->nonFinite();
     } else {
-        std::vector<Image> images = renderImages(job, nx, ny, jitterOf(o, diagnostics_), settings_.seed, &nonFinite);
+        DroppedSamples dropped;
+        std::vector<Image> images = renderImages(job, nx, ny, jitterOf(o, diagnostics_), settings_.seed, &dropped);
+        nonFinite = dropped.count;
         stats_.renderSec += job.elapsed();
         stats_.spp = spp;
         outcome_.interrupted |= job.interrupted;
@@ -291,9 +288,11 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
         if (job.interrupted)
             diagnostics_.report(Severity::Warning, Rie::NoError, {},
                                 "interrupted: what was not reached stays black in the picture");
-        if (nonFinite)
-            diagnostics_.report(Severity::Warning, Rie::Math, {},
-                                std::to_string(nonFinite) + " samples were not finite and are left out");
+        if (nonFinite) {
+            const auto at = dropped.first.value_or(std::array{-1, -1, -1});
+            reportDropped(nonFinite, at[2], at[1], at[0]);
+        }
+        picture.metadata["nonFinite"] = std::to_string(nonFinite);
         picture.metadata["spp"] = std::to_string(spp);
         picture.metadata["seed"] = std::to_string(settings_.seed);
         auto pixels = [&](const OutputSpec& s) -> const Image& { return images[size_t(&s - plan.pictures.data())]; };
@@ -315,7 +314,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
     depthSum_ += double(c.depthSum);
     paths_ += double(c.paths);
     stats_.depth.maximum = std::max(stats_.depth.maximum, c.depthMax);
-    stats_.nonFinite += std::max(nonFinite, c.nonFinite);
+    stats_.nonFinite += nonFinite;
     facts = world->facts(); // kernels may be compiled while rendering
     stats_.shading.kernels = facts.kernels;
     stats_.shading.affineKernels = facts.affine;
@@ -328,6 +327,13 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
     if (c.depthCap && path)
         diagnostics_.report(Severity::Info, Rie::NoError, {},
                             std::to_string(c.depthCap) + " paths were cut at the greatest depth, which is a bias (--max-depth)");
+}
+
+void Renderer::reportDropped(uint64_t count, int x, int y, int64_t sample) {
+    const std::string at = std::to_string(x) + "," + std::to_string(y) + "," + std::to_string(sample);
+    diagnostics_.report(Severity::Warning, Rie::Math, {},
+                        std::to_string(count) + (count == 1 ? " sample was not finite and is left out" : " samples were not finite and are left out") +
+                            (sample < 0 ? "" : "; the first is made by --pixel " + at + " --seed " + std::to_string(settings_.seed)));
 }
 
 void Renderer::printPixel(Job& job, const scene::Options& o, uint32_t spp, bool path) {

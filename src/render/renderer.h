@@ -45,6 +45,8 @@ private:
     std::string fileFor(const scene::Options&, uint32_t spp);
     std::vector<std::string> searchPaths(const scene::Options&, const char* kind, const std::vector<std::string>& own,
                                          bool shaders) const;
+    /// Says that samples were left out, and how to make the first of them again. `sample` < 0: it is not known.
+    void reportDropped(uint64_t count, int x, int y, int64_t sample);
     void printPixel(struct Job&, const scene::Options&, uint32_t spp, bool path);
 
     RenderSettings settings_;

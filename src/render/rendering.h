@@ -7,8 +7,10 @@
 #include "render/progress.h"
 #include "render/settings.h"
 #include "render/team.h"
+#include <array>
 #include <atomic>
 #include <functional>
+#include <optional>
 
 namespace alpenglow::render {
 
@@ -66,6 +68,8 @@ void gridOf(const scene::Options&, const RenderSettings&, int* nx, int* ny);
 Jitter jitterOf(const scene::Options&, Diagnostics&);
 transport::CameraRay imageRay(const Camera&, Vec2 position, uint64_t seed, int x, int y, uint32_t sample);
 /// A reconstructed picture for each picture of the plan, in its order. When the user stops, pixels not reached stay black.
-std::vector<Image> renderImages(Job&, int nx, int ny, Jitter, uint64_t seed, uint64_t* nonFinite);
+/// Samples that are not finite numbers: how many, and sample, y and x of the first in the picture.
+struct DroppedSamples { uint64_t count = 0; std::optional<std::array<int, 3>> first; };
+std::vector<Image> renderImages(Job&, int nx, int ny, Jitter, uint64_t seed, DroppedSamples*);
 
 } // namespace alpenglow::render

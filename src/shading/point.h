@@ -53,8 +53,7 @@ struct PathRay {
     bool fromTrace = false;           ///< drawn by trace(), not by a lighting shadeop
     bool wantsLight = true;           ///< false: emission of area lights is not counted (they are not sampled by this trace())
     float width = 0, spread = 0;      ///< footprint: half width at the origin, and its growth with distance
-    uint32_t shape = geometry::kNone; ///< surface it leaves, for the exclusion of its own primitive
-    uint32_t prim = geometry::kNone;
+    int path = -1;                    ///< index of the camera sample that it comes from, in the call of Integrator::trace()
     int32_t label = 0;                ///< interned label of the trace() that sent it
     int cameraSample = -1;            ///< index of the sample whose opacity, depth and AOVs this ray's hit writes; -1: none
     bool first = true;                ///< one of those that its target asked for: writes distance and transmission

@@ -1,6 +1,7 @@
 // Following a slice of rays: intersect, group by shader, shade, hand on.
 #include "transport/engine.h"
 #include <algorithm>
+#include <limits>
 
 namespace alpenglow::transport {
 
@@ -39,8 +40,7 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
             }
         rays[i].time = r.time;
         rays[i].mask = visibilityBit(r.type);
-        rays[i].excludeShape = r.shape;
-        rays[i].excludePrim = r.prim;
+        rays[i].excludeShape = rays[i].excludePrim = geometry::kNone;
         rays[i].sides = r.set.sides;
         rays[i].only = r.set.only;
         rays[i].level = r.level;
@@ -181,9 +181,10 @@ bool Engine::trace(std::span<const CameraRay> rays, std::span<SampleResult> out,
         r.start = c.start;
         r.media = world_->eye_;
         if (world_->fades_) r.level = random(r).one(0, kLevel, 0);
-        r.cameraSample = int(i);
+        r.cameraSample = r.path = int(i);
     }
     counters.paths += rays.size();
+    spoiled_.clear();
     bool done = sched.run();
     float clampAt = world_->settings_.sampleClamp;
     for (size_t i = 0; i < rays.size(); ++i) {
@@ -194,6 +195,7 @@ bool Engine::trace(std::span<const CameraRay> rays, std::span<SampleResult> out,
         Color& o = out[i].opacity;
         o = {std::min(o.x, 1.f), std::min(o.y, 1.f), std::min(o.z, 1.f)};
     }
+    for (int i : spoiled_) out[size_t(i)].color = Color(std::numeric_limits<float>::quiet_NaN());
     counters.nonFinite += sched.nonFinite();
     counters.overLimit += sched.overLimit();
     counters.peakFrameBytes = std::max(counters.peakFrameBytes, sched.peakFrameBytes());

@@ -108,6 +108,8 @@ Color coneNumbers(Vec2 random);
 
 class Engine;
 
+inline bool isFinite(const Color& c) { return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z); }
+
 /// Whether a shader gives an output only where it makes that name when it runs.
 bool givesPerhaps(const ShaderInstance&, const std::string& output);
 /// The outputs of a kernel that make up the AOV of a name: of an array all its elements. Empty: it has none.
@@ -160,6 +162,13 @@ public:
     void follow(std::span<const Sched::Task> slice, Sched&) override;
     Counters counters;
 
+    // faults.cpp
+    /// A value on the way of a ray is not a finite number: the whole camera sample is left out. `what` made it, at `place`: said once.
+    void notFinite(const PathRay*, const std::string& what, const SourcePlace& place);
+    void notFinite(const PathRay* ray, const char* what, const ShaderInstance* of);
+    void notFinite(const BatchContext&, const PathRay&, uint32_t site); ///< what a call site gives
+    /// Adds light that a ray brings to its target.
+    void add(Sched&, TargetId, const PathRay&, const Color&, const ShaderInstance* of);
     // lights.cpp
     /// Light arriving at queries from one light; for area lights `samples[i]` is the point on the emitter.
     void evaluateLight(const BoundLight&, std::vector<ShadePoint>& queries, std::span<LightValue> out, const LightCall& = {});
@@ -247,6 +256,7 @@ public:
     std::vector<int> litBy_;           ///< PathRay::lit of the queries of a light
     std::vector<LitValues> litValues_; ///< of what runs now; only where lights ask for outputs of surfaces
     std::vector<SampleResult*> results;
+    std::vector<int> spoiled_;         ///< PathRay::path of samples that notFinite() has seen; some twice
     std::vector<LobeVertex> lobes;
     std::vector<ShadowRay> shadows;
     const volatile int32_t* stop = nullptr;
@@ -304,7 +314,7 @@ private:
     render::SeedKey seed_;
     std::vector<float> chances_;
     std::vector<Color> transmitted_;
-    std::set<const void*> tamed_;              ///< shaders that were named because they reflect more than they receive
+    std::set<const void*> tamed_, tamedClear_; ///< shaders that were named because they reflect more than they receive; with what comes through
 };
 
 } // namespace alpenglow::transport

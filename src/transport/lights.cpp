@@ -31,6 +31,8 @@ shading::TargetValue Engine::rayOfLight(BatchContext& c, const SiteInfo& s, int 
     value = inner_->follow(c, s, point, row, occurrence);
     counters += inner_->counters;
     inner_->counters = {};
+    spoiled_.insert(spoiled_.end(), inner_->spoiled_.begin(), inner_->spoiled_.end());
+    inner_->spoiled_.clear();
     return value;
 }
 
@@ -83,7 +85,6 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
         r.lobeBinding = -1;
         r.fromTrace = r.wantsLight = r.first = true;
         r.spread = std::max(from.spread, l.kind->spread(l.params) * 0.5f);
-        r.shape = geometry::kNone;
         r.cameraSample = -1;
         sched.spawn(r.bounces + r.layers, target, r);
     }

@@ -142,6 +142,10 @@ float Engine::chooseLobes(const BatchContext& c, size_t pi, std::span<const int>
         l.delta = l.kind->isDelta(l.params);
         if (l.lobeOfShader) sum += weight * l.albedo;
         l.chosen = std::max(worth(weight) * l.albedo, 0.f);
+        if (!std::isfinite(l.chosen)) {
+            notFinite(c, from, l.site);
+            l.chosen = 0;
+        }
         // A lobe whose ray would go too deep is not followed; light samples then count in full.
         const bool diffuse = l.type == RayType::Diffuse;
         const bool deep = from.bounces + 1 > world_->maxDepth_ || (b.maxDiffuse >= 0 && from.diffuseBounces + diffuse > b.maxDiffuse) ||
@@ -156,12 +160,13 @@ float Engine::chooseLobes(const BatchContext& c, size_t pi, std::span<const int>
     float scale = 1;
     for (int k = 0; k < 3 && !set.unbiased; ++k)
         if (sum[k] + clear[k] > 1 && sum[k] > 0) scale = std::min(scale, (1 - clear[k]) / sum[k]);
-    if (scale < 0.999f && tamed_.insert(b.surface.get()).second) // beyond rounding; said once a shader
-        diagnostics_.reportOnce("energy:" + b.surface->name,
-                                {Severity::Warning, Rie::NoError, b.surface->place,
-                                 "shader \"" + b.surface->name + "\" reflects" + (maxComponent(sum) > 1 ? "" : ", together with what comes through it,") +
+    const bool more = maxComponent(sum) > 1; // by itself: else a highlight on what is clear, say, which is common
+    if (scale < 0.999f && (more ? tamed_ : tamedClear_).insert(b.surface.get()).second) // beyond rounding; said once a shader
+        diagnostics_.reportOnce((more ? "energy:" : "energyclear:") + b.surface->name,
+                                {more ? Severity::Warning : Severity::Info, Rie::NoError, b.surface->place,
+                                 "shader \"" + b.surface->name + "\" reflects" + (more ? "" : ", together with what comes through it,") +
                                      " more light than it receives; its indirect light is scaled down to what it receives",
-                                 maxComponent(sum) > 1 ? "--unbiased leaves it as it is" : "Ci = Oi * (...) is what makes the two one; --unbiased leaves it as it is", {}});
+                                 "--unbiased leaves it as it is", {}});
     const float behind = competes ? worth(clear) : 0;
     double total = behind;
     for (int i : list)
@@ -228,6 +233,14 @@ void Engine::gather(BatchContext& c, Sched& sched) {
     auto samples = [](const LobeVertex& l, const BoundLight& light) {
         bool area = light.kind == LightKind::Area;
         return l.lights && !l.elsewhere && (area || l.deltaLights) && (l.lobeOfShader || light.strategy != LightStrategy::Illuminance);
+    };
+
+    // A light sample of trace() finds what a ray of it could meet there: within its distance, of its set, from the sides that it meets.
+    auto meets = [&](const LobeVertex& l, const Emitter::Sample& s, const geometry::SurfacePoint& at, const Vec3& w, const Vec3& from, const Vec3& end) {
+        if (l.set.only && !l.set.only[world_->numberOfShape_.at(s.shape)]) return false;
+        if (s.shape->oneSided() && l.set.sides != accel::Sides::Both && (dot(at.n, w) >= 0) != (l.set.sides == accel::Sides::Back)) return false;
+        const Vec3 way = end - from;
+        return dot(way, w) > 0 && !(length(way) > l.maxDistance);
     };
 
     // Light samples: every light for every point with lobes that want it, in batches a light.
@@ -338,6 +351,10 @@ void Engine::gather(BatchContext& c, Sched& sched) {
             for (size_t k = 0; k < used && light.channels; ++k) keepChannels(c, light, pointOf[k], values.data() + long(k) * light.valueWidth);
             for (size_t k = 0; k < used; ++k) {
                 const LightValue& v = value[k];
+                if (v.lit && !isFinite(v.Cl)) {
+                    notFinite(&c.rays[size_t(pointOf[k])], "Cl", light.instance.get());
+                    continue;
+                }
                 if (!v.lit || !(maxComponent(v.Cl) > 0)) continue;
                 const ShadePoint& p = c.points[pointOf[k]];
                 Vec3 w = area ? drawn[k].direction : unit(-v.L, Vec3(0, 0, 1));
@@ -346,8 +363,11 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     LobeVertex& l = lobes[i];
                     if (l.delta || !samples(l, light)) continue;
                     float fcos = l.kind->fcos(l.params, w);
+                    if (std::isnan(fcos)) notFinite(c, c.rays[size_t(l.point)], l.site);
                     if (!(fcos > 0)) continue;
                     float kept = l.lobeOfShader ? v.kept(l.type) : 1;
+                    Vec3 o = l.bias >= 0 ? p.P + w * l.bias : sourcePoint(size_t(l.point), w);
+                    if (l.trace && area && !meets(l, drawn[k], q[k].surface, w, o, geometry::offsetOrigin(q[k].surface, -w))) continue;
                     Color contribution = l.weight * c.rays[l.point].weight * v.Cl;
                     if (l.ownsTarget) contribution = l.weight * v.Cl;
                     if (l.kind->colour) contribution *= l.kind->colour(l.params, w) / fcos;
@@ -363,7 +383,6 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     } else {
                         contribution *= kept * float(kPi) * fcos / chance[k]; // Cl is irradiance / pi
                     }
-                    Vec3 o = sourcePoint(size_t(l.point), w);
                     // The light's own surface must not block: stop short of it by both error bounds.
                     float stop = distance;
                     if (area) {
@@ -373,6 +392,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     } else {
                         shadows.push_back({o, w, stop < 1e30f ? stop * (1 - 1e-5f) : stop, contribution, l.target, p.time, p.ray});
                     }
+                    if (l.trace) shadows.back().set = l.set;
                     shadows.back().media = mediaTowards(c, l.point, w);
                 }
             }
@@ -433,6 +453,10 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     if (TraceSums* of = l.trace->sums ? sumsOf(l.target) : nullptr) of->add(TraceSums::UnshadowedEnvironment, through * environment);
                 }
                 Color weight = l.ownsTarget ? through : from.weight * through;
+                if (!isFinite(weight)) {
+                    notFinite(c, from, l.site);
+                    continue;
+                }
                 if (!(maxComponent(weight) > 0) && !(std::min({weight.x, weight.y, weight.z}) < 0) && !l.ownsTarget) continue;
                 const uint32_t vertex = childVertex(from.vertex, l.site, occurrence);
                 uint16_t asked = from.asked;
@@ -487,7 +511,6 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 r.lobeBinding = l.lights && !l.elsewhere && !delta ? c.bindings[pi] : -1;
                 r.width = from.width + from.spread * length(p.P - from.origin);
                 r.spread = std::max(from.spread, l.kind->spread(l.params) * 0.5f);
-                r.shape = geometry::kNone;
                 r.cameraSample = -1;
                 r.first = l.ownsTarget;
                 counters.depthMax = std::max(counters.depthMax, bounces);

@@ -163,7 +163,9 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, st
             shown = c.haze[size_t(i)].shown;
             opacity = c.haze[size_t(i)].opacity;
         }
-        sched.add(c.targets[i], ray.weight * shown);
+        if (!isFinite(opacity)) notFinite(&ray, "Oi", binding.surface.get());
+        if (isFinite(shown)) add(sched, c.targets[i], ray, ray.weight * shown, binding.surface.get());
+        else notFinite(&ray, "Ci", binding.surface.get());
         if (ray.cameraSample >= 0) {
             SampleResult& r = *results[ray.cameraSample];
             if (!binding.matte) r.opacity += ray.weight * opacity;
@@ -291,7 +293,10 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
             int point = e.first + lane;
             if (!(e.mask >> lane & 1) || point >= n) continue;
             Color weight = Color(rows[lane], rows[e.lanes + lane], rows[2 * e.lanes + lane]) * slope[point];
-            if (!(std::isfinite(weight.x) && std::isfinite(weight.y) && std::isfinite(weight.z))) { ++counters.nonFinite; continue; }
+            if (!isFinite(weight)) {
+                notFinite(*c, c->rays[size_t(point)], uint32_t(e.site));
+                continue;
+            }
             if (weight == Color(0)) continue;
             if (world_->bindings_[c->bindings[point]].matte && c->rays[point].type == RayType::Camera) continue;
             const float* args = rows + size_t(3) * e.lanes;

@@ -87,8 +87,8 @@ void Engine::opacities(std::span<const OpacityQuery> met, std::span<Color> out) 
     counters.points += met.size();
     for (size_t i = 0; i < met.size(); ++i) {
         Color o = c.batch->color(c.batch->plan().Oi, int(i));
-        if (!(std::isfinite(o.x) && std::isfinite(o.y) && std::isfinite(o.z))) {
-            ++counters.nonFinite;
+        if (!isFinite(o)) {
+            notFinite(met[i].ray->ray, "Oi", b.surface.get());
             o = Color(1);
         }
         out[i] = between0And1(o);
@@ -211,7 +211,9 @@ void Engine::flushShadows(Sched& s) {
     transmitted_.resize(shadows.size());
     transmittances(shadows, transmitted_);
     for (size_t i = 0; i < shadows.size(); ++i) {
-        s.add(shadows[i].target, shadows[i].contribution * transmitted_[i]);
+        const Color c = shadows[i].contribution * transmitted_[i];
+        if (isFinite(c)) s.add(shadows[i].target, c);
+        else notFinite(shadows[i].ray, "light that is sampled", nullptr);
         if (shadows[i].areaLight)
             if (TraceSums* sums = sumsOf(shadows[i].target)) sums->add(TraceSums::AreaLight, shadows[i].contribution * transmitted_[i]);
     }

@@ -35,7 +35,6 @@ void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId t
     if (ray.type == RayType::Camera) r.start = ray.start + dot(r.origin - ray.origin, ray.dir); // the eye has not moved
     r.maxDistance = ray.maxDistance - travelled;
     r.width = ray.width + ray.spread * travelled;
-    r.shape = geometry::kNone;
     r.first = false;
     r.media = b.beyond(ray.media, p.surface.n, ray.dir, ray.dir);
     tellLost(r.media, p);
@@ -53,7 +52,7 @@ void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId t
 void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
     for (const Sched::Task* t : tasks) // the map of a trace()
         if (const PathRay& r = t->payload; maxComponent(r.environment) > 0) {
-            sched.add(t->target, r.weight * r.environment);
+            add(sched, t->target, r, r.weight * r.environment, nullptr);
             if (TraceSums* sums = sumsOf(t->target)) sums->add(TraceSums::Environment, r.weight * r.environment);
         }
     if (world_->settings_.hider != Hider::Path || tasks.empty()) return;
@@ -85,7 +84,7 @@ void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
             if (value[i].lit) {
                 const PathRay& r = of[i]->payload;
                 const bool weighed = l.kind == LightKind::Environment && r.bounces > 0 && !r.fromTrace; // met by a lobe of a lighting shadeop
-                sched.add(of[i]->target, r.weight * value[i].Cl * (weighed ? value[i].kept(r.type) : 1.f));
+                add(sched, of[i]->target, r, r.weight * value[i].Cl * (weighed ? value[i].kept(r.type) : 1.f), l.instance.get());
             }
     }
 }
@@ -125,9 +124,10 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
         }
         for (size_t i = first; i < end; ++i) {
             const LightValue& v = value[i - first];
-            if (!v.lit || !(maxComponent(v.Cl) > 0)) continue;
             const ShadePoint& p = *met[i].point;
             const PathRay& r = *p.ray;
+            if (v.lit && !isFinite(v.Cl)) notFinite(&r, "Cl", light.instance.get());
+            if (!v.lit || !(maxComponent(v.Cl) > 0) || !isFinite(v.Cl)) continue;
             float weight = 1;
             if (r.lobePdf >= 0 && light.emitter) {
                 float pdf = light.emitter->pdf(p.shape, p.surface, r.lobeOrigin);
@@ -135,7 +135,7 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
                 weight = set.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
             }
             if (r.bounces > 0 && !r.fromTrace) weight *= v.kept(r.type);
-            sched.add(met[i].target, r.weight * v.Cl * weight);
+            add(sched, met[i].target, r, r.weight * v.Cl * weight, light.instance.get());
             if (TraceSums* sums = sumsOf(met[i].target); sums && maxComponent(r.part) > 0) sums->add(TraceSums::AreaLight, r.weight * v.Cl * weight);
         }
     }

@@ -124,6 +124,7 @@ constexpr Known kImplementation[] = {
     {"shade:diffusehitmode", "string"},
     {"shade:specularhitmode", "string"},
     {"shade:camerahitmode", "string"},
+    {"shade:derivatives", "string"},
     {"shade:strategy", "string"},
     {"irradiance:shadingrate", "float"},
     {"irradiance:nsamples", "int"},

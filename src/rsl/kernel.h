@@ -90,6 +90,7 @@ struct KernelOptions {
     /// User functions of more operations than this, called more than once, become functions of the machine code; smaller ones are
     /// inlined. 0: all that can be (tests). Never changes a bit of the result.
     int outline = limits::kOutlineInstructions;
+    bool differences = false;  ///< derivatives are differences over du and dv, not exact (passes/differences.h)
     bool path = false;         ///< lobe shadeops (diffuse, specular, ...) are requests to the light transport engine
     std::vector<std::string> outputs;  ///< requested; empty: what the shader kind gives (Ci Oi, P N, L Cl Ol, ...)
     /// Values of string parameters, and of numeric ones known to be 0 or 1 for good: specialised into the code. Elements of arrays of strings

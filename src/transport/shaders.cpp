@@ -223,6 +223,7 @@ rsl::KernelOptions WorldImpl::kernelOptions(const ShaderInstance& i, const std::
     o.lanes = settings_.lanes;
     o.mixed = mixed;
     o.path = path;
+    o.differences = i.differences;
     o.suspend = settings_.suspend && i.program->kind() == rsl::ShaderKind::Surface;
     o.outputs = outputs;
     for (const auto& [k, v] : i.parameters.strings) o.stringParameters.push_back({k, v});

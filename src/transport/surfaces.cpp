@@ -11,11 +11,30 @@ float attributeNumber(const scene::Attributes& a, const std::string& key, float 
     return p && !p->numbers.empty() ? p->numbers[0] : fallback;
 }
 
-InstanceRef SurfaceBinder::instanceOf(const scene::ShaderRef& r, rsl::ShaderKind kind) {
+InstanceRef SurfaceBinder::instanceOf(const scene::ShaderRef& r, rsl::ShaderKind kind, bool differences) {
     if (!r) return nullptr;
-    auto [i, fresh] = instances_.try_emplace({r.get(), int(kind)});
-    if (fresh && !(r->name == "null" && kind != rsl::ShaderKind::Surface)) i->second = world_.instance(*r, kind, diagnostics_);
+    auto [i, fresh] = instances_.try_emplace({r.get(), int(kind), differences});
+    if (!fresh) return i->second;
+    if (differences) {
+        if (const InstanceRef exact = instanceOf(r, kind)) {
+            auto same = std::make_shared<ShaderInstance>(*exact);
+            same->differences = true;
+            i->second = same;
+        }
+    } else if (!(r->name == "null" && kind != rsl::ShaderKind::Surface)) {
+        i->second = world_.instance(*r, kind, diagnostics_);
+    }
     return i->second;
+}
+
+bool SurfaceBinder::differences(const geometry::Shape& shape) {
+    const scene::Param* p = shape.attributes().value("shade:derivatives");
+    if (!p || p->strings.empty()) return !path_;
+    const std::string& how = p->strings[0];
+    if (how != "exact" && how != "differences")
+        diagnostics_.reportOnce("derivatives:" + how, {Severity::Warning, Rie::Range, p->place,
+                                "Attribute \"shade\" \"derivatives\" cannot be \"" + how + "\"; the default is used", "it can be \"exact\" or \"differences\"", {}});
+    return how == "differences" || (how != "exact" && !path_);
 }
 
 /// Whether a variable of a primitive holds what a parameter is: one text, as many numbers, or elements of the same kind.
@@ -88,13 +107,14 @@ bool SurfaceBinder::bindHitModes() {
 int SurfaceBinder::bind(const geometry::ShapeRef& shape) {
     const scene::Attributes& a = shape->attributes();
     SurfaceBinding b;
-    b.surface = world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Surface), a.coshaders, diagnostics_, a.lights);
+    const bool grid = differences(*shape);
+    b.surface = world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Surface, grid), a.coshaders, diagnostics_, a.lights);
     b.explicitSurface = b.surface != nullptr;
     if (!b.surface) b.surface = fallback_;
-    b.displacement = world_.withCoShaders(instanceOf(a.displacement, rsl::ShaderKind::Displacement), a.coshaders, diagnostics_);
+    b.displacement = world_.withCoShaders(instanceOf(a.displacement, rsl::ShaderKind::Displacement, grid), a.coshaders, diagnostics_);
     // A class with surface and displacement is both.
     const bool both = !a.displacement && b.explicitSurface && rsl::ShaderCompiler::variant(b.surface->program, rsl::ShaderKind::Displacement);
-    if (both) b.displacement = quiet(world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Displacement), a.coshaders, diagnostics_));
+    if (both) b.displacement = quiet(world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Displacement, grid), a.coshaders, diagnostics_));
     b.atmosphere.shader = world_.withCoShaders(instanceOf(a.atmosphere, rsl::ShaderKind::Volume), a.coshaders, diagnostics_);
     const Names varying = varyingOf(*shape, *b.surface);
     const Names displacementVarying = b.displacement ? varyingOf(*shape, *b.displacement) : Names{};
@@ -105,6 +125,7 @@ int SurfaceBinder::bind(const geometry::ShapeRef& shape) {
     auto add = [&](auto v) { key.append(reinterpret_cast<const char*>(&v), sizeof v); };
     add(b.surface.get());
     add(a.displacement.get());
+    add(grid);
     add(a.atmosphere.get());
     add(b.interior.get());
     add(b.exterior.get());

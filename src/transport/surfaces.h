@@ -20,7 +20,9 @@ public:
 
 private:
     using Names = std::vector<std::string>;
-    InstanceRef instanceOf(const scene::ShaderRef&, rsl::ShaderKind);
+    InstanceRef instanceOf(const scene::ShaderRef&, rsl::ShaderKind, bool differences = false);
+    /// Attribute "shade" "derivatives": whether shaders take derivatives as grids have them; by default under hidden and raytrace.
+    bool differences(const geometry::Shape&);
     /// The primitive variables that override parameters of a shader or that getvar(null, ...) finds; sorted.
     Names varyingOf(const geometry::Shape&, const ShaderInstance&);
     int bind(const geometry::ShapeRef&);
@@ -57,7 +59,7 @@ private:
     Diagnostics& diagnostics_;
     bool path_ = false;
     InstanceRef fallback_;
-    std::map<std::pair<const scene::ShaderCall*, int>, InstanceRef> instances_;
+    std::map<std::tuple<const scene::ShaderCall*, int, bool>, InstanceRef> instances_; ///< by kind, and by how derivatives are taken
     std::map<std::pair<const void*, const void*>, InstanceRef> told_; ///< surfaces that know the outputs of a displacement; by both
     std::map<const void*, InstanceRef> quiet_; ///< by the displacement that is not
     std::vector<InstanceRef> kept_;            ///< their addresses are keys

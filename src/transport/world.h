@@ -107,6 +107,7 @@ struct ShaderInstance {
     std::vector<rsl::CoShader> coShaders; ///< those of the attributes under which the shader was named
     Matrix toCurrent;
     SourcePlace place;
+    bool differences = false; ///< how its kernels take derivatives (rsl/kernel.h)
 };
 using InstanceRef = std::shared_ptr<const ShaderInstance>;
 

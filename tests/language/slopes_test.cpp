@@ -164,12 +164,11 @@ std::vector<Measured> table() {
     return all;
 }
 
-TEST(Slopes, OfEveryShadeopAreThoseOfItsValues) {
+/// Runs the whole table at the places: look(entry, f, Du(f), Dv(f)), each component after component.
+template <class Look> void measure(const std::vector<Measured>& all, bool differences, const Look& look) {
     ShaderCompiler::Settings settings;
     settings.useDefaultCache = false;
     ShaderCompiler compiler(settings);
-    const std::vector<Measured> all = table();
-    std::set<const Signature*> met;
     constexpr size_t kTogether = 24;
     for (size_t begin = 0; begin < all.size(); begin += kTogether) {
         const size_t end = std::min(all.size(), begin + kTogether);
@@ -177,6 +176,7 @@ TEST(Slopes, OfEveryShadeopAreThoseOfItsValues) {
         KernelOptions o;
         o.lanes = 16;
         o.optimize = 0; // the bits are those of every other level: runner_test.cpp
+        o.differences = differences;
         for (size_t k = begin; k < end; ++k) {
             const Slope& s = all[k].slope;
             const std::string type = toString(s.type), slope = s.type.isPointLike() ? "vector" : type,
@@ -198,29 +198,41 @@ TEST(Slopes, OfEveryShadeopAreThoseOfItsValues) {
         const auto kernel = compiler.kernel(shader, o, d);
         ASSERT_TRUE(kernel);
         std::vector<std::vector<float>> out;
-        ASSERT_TRUE(runPoints(*kernel, false, kPlaces, place, compiler.parameterValues(shader, d), out, d));
+        const auto at = [&](const std::string& name, int component, int part, int p) {
+            if (differences && (name == "du" || name == "dv")) return part == 0 ? float(kStep) : 0.0f;
+            return place(name, component, part, p);
+        };
+        ASSERT_TRUE(runPoints(*kernel, false, kPlaces, at, compiler.parameterValues(shader, d), out, d));
         for (size_t k = begin; k < end; ++k) {
             SCOPED_TRACE(all[k].slope.what + ": " + all[k].slope.statements);
-            const auto& f = out[3 * (k - begin)];
-            bool moves = false;
-            for (size_t c = 0; c < f.size(); c += kPlaces) {
-                const auto at = [&](int p) { return double(f[c + size_t(p)]); };
-                const double value = at(0), byU = (8 * (at(3) - at(2)) - (at(4) - at(1))) / (12 * kStep),
-                             byV = (8 * (at(7) - at(6)) - (at(8) - at(5))) / (12 * kStep);
-                const double gotU = double(out[3 * (k - begin) + 1][c]), gotV = double(out[3 * (k - begin) + 2][c]);
-                EXPECT_TRUE(std::isfinite(value)) << "component " << c / kPlaces;
-                if (all[k].zero) {
-                    EXPECT_EQ(gotU, 0);
-                    EXPECT_EQ(gotV, 0);
-                    continue;
-                }
-                EXPECT_NEAR(gotU, byU, kTolerance * (1 + std::fabs(value) + std::fabs(byU))) << "Du, component " << c / kPlaces;
-                EXPECT_NEAR(gotV, byV, kTolerance * (1 + std::fabs(value) + std::fabs(byV))) << "Dv, component " << c / kPlaces;
-                moves |= std::fabs(byU) + std::fabs(byV) > 1e-3;
-            }
-            if (moves) met.insert(all[k].signature);
+            const size_t first = 3 * (k - begin);
+            look(all[k], out[first], out[first + 1], out[first + 2]);
         }
     }
+}
+
+TEST(Slopes, OfEveryShadeopAreThoseOfItsValues) {
+    const std::vector<Measured> all = table();
+    std::set<const Signature*> met;
+    measure(all, false, [&](const Measured& m, const std::vector<float>& f, const std::vector<float>& du, const std::vector<float>& dv) {
+        bool moves = false;
+        for (size_t c = 0; c < f.size(); c += kPlaces) {
+            const auto at = [&](int p) { return double(f[c + size_t(p)]); };
+            const double value = at(0), byU = (8 * (at(3) - at(2)) - (at(4) - at(1))) / (12 * kStep),
+                         byV = (8 * (at(7) - at(6)) - (at(8) - at(5))) / (12 * kStep);
+            const double gotU = double(du[c]), gotV = double(dv[c]);
+            EXPECT_TRUE(std::isfinite(value)) << "component " << c / kPlaces;
+            if (m.zero) {
+                EXPECT_EQ(gotU, 0);
+                EXPECT_EQ(gotV, 0);
+                continue;
+            }
+            EXPECT_NEAR(gotU, byU, kTolerance * (1 + std::fabs(value) + std::fabs(byU))) << "Du, component " << c / kPlaces;
+            EXPECT_NEAR(gotV, byV, kTolerance * (1 + std::fabs(value) + std::fabs(byV))) << "Dv, component " << c / kPlaces;
+            moves |= std::fabs(byU) + std::fabs(byV) > 1e-3;
+        }
+        if (moves) met.insert(m.signature);
+    });
     // Each signature must have been seen to move: what stays the same proves nothing.
     for (const Shadeop& op : shadeops()) {
         const bool passes = op.derivative == DerivativeRule::Jet || op.derivative == DerivativeRule::Inherent ||
@@ -233,6 +245,23 @@ TEST(Slopes, OfEveryShadeopAreThoseOfItsValues) {
     }
     RecordProperty("slopes", int(all.size()));
     EXPECT_GT(all.size(), 500u);
+}
+
+// As a grid has them, they are the differences of the values at the next place, whatever lies between; those that jump too. What
+// is left is rounding: 1e-7 of the value over the step, a few times where functions of functions magnify it.
+TEST(Slopes, AsDifferencesAreThoseOfTheNextPlace) {
+    size_t moved = 0;
+    measure(table(), true, [&](const Measured&, const std::vector<float>& f, const std::vector<float>& du, const std::vector<float>& dv) {
+        bool moves = false;
+        for (size_t c = 0; c < f.size(); c += kPlaces) {
+            const double value = double(f[c]), byU = (double(f[c + 3]) - value) / kStep, byV = (double(f[c + 7]) - value) / kStep;
+            EXPECT_NEAR(double(du[c]), byU, 1e-4 * (1 + std::fabs(value) + std::fabs(byU))) << "Du, component " << c / kPlaces;
+            EXPECT_NEAR(double(dv[c]), byV, 1e-4 * (1 + std::fabs(value) + std::fabs(byV))) << "Dv, component " << c / kPlaces;
+            moves |= std::fabs(byU) + std::fabs(byV) > 1e-3;
+        }
+        moved += moves;
+    });
+    EXPECT_GT(moved, 500u);
 }
 
 // The list of exceptions names what there is, and nothing for which the rule of its descriptor speaks already.

@@ -16,11 +16,9 @@ struct Gradients {
 
     /// The coordinates of a lookup: s and t, or the direction. Empty when they do not move. What must be computed goes to `body`.
     std::vector<Inst*> coordinates(const Inst* i, std::vector<Inst*>& body) {
-        const Site& s = k.sites[static_cast<size_t>(i->site)];
-        const auto pairs = std::count_if(s.pairStrings.begin(), s.pairStrings.end(), [](const std::string& t) { return t.empty(); });
-        std::vector<Inst*> a(i->args.begin(), i->args.end() - std::min<long>(pairs, static_cast<long>(i->args.size())));
-        if (!a.empty() && a[0]->kind == Kind::String) a.erase(a.begin());
-        const bool direction = !a.empty() && a[0]->kind == Kind::Triple;
+        const std::vector<size_t> which = lookupCoordinates(k, i);
+        std::vector<Inst*> a;
+        for (const size_t n : which) a.push_back(i->args[n]);
         const auto mean = [&](std::vector<Inst*> of) {
             Inst* sum = of[0];
             for (size_t n = 1; n < of.size(); ++n) body.push_back(sum = k.make(Op::Add, sum->kind, {sum, of[n]}));
@@ -28,10 +26,10 @@ struct Gradients {
             return sum;
         };
         std::vector<Inst*> at;
-        if (direction && a.size() == 3) at = {a[0]};
+        const bool direction = !a.empty() && a[0]->kind == Kind::Triple;
+        if (a.size() == (direction ? 1u : 2u)) at = a;
         else if (direction && a.size() == 4) at = {mean(a)};
-        else if (!direction && a.size() == 6) at = {a[0], a[1]};
-        else if (!direction && a.size() == 8) at = {mean({a[0], a[2], a[4], a[6]}), mean({a[1], a[3], a[5], a[7]})};
+        else if (a.size() == 8) at = {mean({a[0], a[2], a[4], a[6]}), mean({a[1], a[3], a[5], a[7]})};
         const bool still = std::all_of(at.begin(), at.end(), [&](const Inst* c) {
             return isConst(c) || (c->op == Op::Input && k.inputs[static_cast<size_t>(c->index)].constant);
         });
@@ -114,6 +112,27 @@ struct Gradients {
 };
 
 } // namespace
+
+std::vector<size_t> lookupCoordinates(const Kernel& k, const Inst* i) {
+    const Site& s = k.sites[static_cast<size_t>(i->site)];
+    const auto pairs = std::count_if(s.pairStrings.begin(), s.pairStrings.end(), [](const std::string& t) { return t.empty(); });
+    const size_t end = i->args.size() - std::min(static_cast<size_t>(pairs), i->args.size());
+    const size_t first = end > 0 && i->args[0]->kind == Kind::String ? 1 : 0;
+    const bool direction = end > first && i->args[first]->kind == Kind::Triple;
+    switch (end - first) {
+    case 3:
+        return direction ? std::vector<size_t>{first} : std::vector<size_t>();
+    case 4:
+        return direction ? std::vector<size_t>{first, first + 1, first + 2, first + 3} : std::vector<size_t>();
+    case 6:
+        return direction ? std::vector<size_t>() : std::vector<size_t>{first, first + 1};
+    case 8:
+        if (direction) return {};
+        return {first, first + 1, first + 2, first + 3, first + 4, first + 5, first + 6, first + 7};
+    default:
+        return {};
+    }
+}
 
 void addGradients(Kernel& k) { Gradients{k, Leaves(k), {}, {}, {}, {}}.run(); }
 

@@ -6,6 +6,7 @@
 #include "rsl/passes/cse.h"
 #include "rsl/passes/dce.h"
 #include "rsl/passes/derivatives.h"
+#include "rsl/passes/differences.h"
 #include "rsl/passes/fold.h"
 #include "rsl/passes/gradients.h"
 #include "rsl/passes/ifconvert.h"
@@ -71,8 +72,15 @@ void optimize(Kernel& k, const KernelOptions& options, Diagnostics& diagnostics)
         check(k, "dce");
     }
     orderDerivatives(k, diagnostics); // warns of derivatives of rays while the rays are still there
-    addGradients(k);
-    check(k, "gradients");
+    if (options.differences) {
+        takeDifferences(k);
+        check(k, "differences");
+        if (options.optimize > 0) clean(k);
+        else removeDeadCode(k);
+    } else {
+        addGradients(k);
+        check(k, "gradients");
+    }
     if (k.kind == ShaderKind::Volume && std::find(options.outputs.begin(), options.outputs.end(), kSlopeOutput) != options.outputs.end()) {
         addSlope(k);
         check(k, "slope");

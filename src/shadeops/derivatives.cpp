@@ -1,4 +1,5 @@
-// Derivatives: rsl.md 10.1 and 10.3. Du and Dv are known to the code generator; the rest is RSL over them, so exact where they are.
+// Derivatives: rsl.md 10.1 and 10.3. Du and Dv are known to the code generator, or differences (rsl/passes/differences.h); the rest is
+// RSL over them.
 #include "shadeops/describe.h"
 
 namespace alpenglow::rsl {
@@ -22,8 +23,9 @@ std::vector<Shadeop> derivativeShadeops() {
     for (const char* name : {"Du", "Dv"}) {
         const std::string n = name;
         Shadeop& op = add(name, {}, Lowering::Special, "", "");
-        op.doc = "Exact derivative of the argument per unit of the surface parameter " + std::string(n == "Du" ? "u" : "v") +
-                 ". Results of rays and lights count as constant; those of maps have the slope of the map (texture).";
+        op.doc = "Derivative of the argument per unit of the surface parameter " + std::string(n == "Du" ? "u" : "v") +
+                 ": exact under path, the difference over the footprint under hidden and raytrace (docs/language.md). Results of rays and lights "
+                 "count as constant; those of maps have the slope of the map (texture).";
         op.signatures = sigs({{("float " + n + "(float x)").c_str()},
                               {("color " + n + "(color x)").c_str()},
                               {("vector " + n + "(point x)").c_str()},

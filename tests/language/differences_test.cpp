@@ -2,6 +2,7 @@
 #include "points.h"
 #include "rsl/compiler.h"
 #include <gtest/gtest.h>
+#include <map>
 
 namespace alpenglow::rsl {
 namespace {
@@ -74,7 +75,7 @@ TEST(Differences, AgreeWithTheExactFormToFirstOrder) {
         SCOPED_TRACE(smooth[k]);
         const auto error = [&](size_t p) { return std::fabs(double(coarse[k][p]) - double(exact[k][p])); };
         const bool second = smooth[k].find("Du(Du") == 0 || smooth[k].find("Du(Dv") == 0;
-        EXPECT_LT(error(1), 0.25 * std::fabs(double(exact[k][1])) + 0.1);
+        EXPECT_LT(error(second ? 2 : 3), 0.05 * std::fabs(double(exact[k][3])) + 0.05);
         for (size_t p = second ? 0 : 1; p + 1 < (second ? 3 : places.size()); ++p) {
             const double rounding = 4e-7 * (1 + std::fabs(double(exact[k][p]))) / places[p + 1].du / (second ? places[p + 1].du : 1);
             EXPECT_LE(error(p + 1), 0.6 * error(p) + rounding) << "footprint " << places[p + 1].du;
@@ -131,7 +132,8 @@ float turns(float x, y) { float i, s = 0; for (i = 0; i < 10 * x; i += 1) { s +=
 float twice(float x, y) { float a = shape(x, y); float b = shape(a, x * y); return a * b + turns(b, a) + Du(x * x); }
 )";
 
-// The place that is one step on gives the other value of the difference: its own branches, turns and elements, in all forms.
+// The place that is one step on gives the other value of the difference: its own branches, turns and elements, in all forms. Lanes,
+// builds S and V, and who shares a batch change no bit.
 TEST(Differences, NeighboursGoTheirOwnWay) {
     constexpr double h = 1.0 / 32;
     std::vector<Place> places;
@@ -145,13 +147,19 @@ TEST(Differences, NeighboursGoTheirOwnWay) {
                 std::to_string(types.size() + 2) + " = Dv(f); }\n";
         types.insert(types.end(), 3, "float");
     }
+    std::map<std::pair<int, int>, std::vector<std::vector<float>>> reference; // by how the code is made
     for (KernelOptions o : configurations()) {
+        if (o.lanes == 8 && o.optimize == 0) continue; // for the time it takes
         SCOPED_TRACE(describe(o));
         o.differences = true;
         const auto out = run(body, types, places, o, kFunctions);
+        auto& first = reference[{o.optimize, o.outline}];
+        if (first.empty()) first = out;
         ASSERT_EQ(out.size(), types.size());
         for (size_t f = 0; f < std::size(kFlows); ++f) {
             SCOPED_TRACE(kFlows[f].name);
+            for (size_t k = 3 * f; k < 3 * f + 3; ++k)
+                for (size_t p = 0; p < places.size(); ++p) EXPECT_TRUE(sameBits(out[k][p], first[k][p])) << "point " << p;
             for (size_t p = 0; p < places.size(); p += 3) {
                 const double value = double(out[3 * f][p]), byU = (double(out[3 * f][p + 1]) - value) / h, byV = (double(out[3 * f][p + 2]) - value) / h;
                 EXPECT_NEAR(double(out[3 * f + 1][p]), byU, 2e-4 * (1 + std::fabs(value) + std::fabs(byU))) << "Du, place " << p / 3;
@@ -159,6 +167,10 @@ TEST(Differences, NeighboursGoTheirOwnWay) {
             }
         }
     }
+    const std::vector<Place> one = {places[4]};
+    const auto alone = run(body, types, one, grid(), kFunctions);
+    const auto& all = reference[{grid().optimize, grid().outline}];
+    for (size_t k = 0; k < alone.size(); ++k) EXPECT_TRUE(sameBits(alone[k][0], all[k][4])) << kFlows[k / 3].name;
 }
 
 // Inside of a branch or a loop the neighbour goes where the point goes: what is asked there is a difference of what is there.
@@ -188,32 +200,6 @@ TEST(Differences, WithoutAFootprintAreOverASmallStep) {
     ASSERT_EQ(out.size(), 2u);
     EXPECT_NEAR(double(out[0][0]), 1, 2e-3);
     EXPECT_NEAR(double(out[1][0]), std::cos(0.25), 2e-3);
-}
-
-// Lanes, builds S and V, and who shares a batch change no bit.
-TEST(Differences, AreTheSameBitsInEveryBuild) {
-    std::vector<Place> places;
-    for (int p = 0; p < 83; ++p) places.push_back({(p * 17 % 83) / 83.0, (p * 29 % 83) / 83.0, 0.01 + 0.001 * p, 0.09 - 0.001 * p});
-    std::string body;
-    std::vector<std::string> types;
-    for (const Flow& flow : kFlows) {
-        body += "{ float U = u, V = v; " + std::string(flow.body) + " r" + std::to_string(types.size()) + " = Du(f) + Dv(f); }\n";
-        types.emplace_back("float");
-    }
-    std::map<std::pair<int, int>, std::vector<std::vector<float>>> reference; // by how the code is made
-    for (KernelOptions o : configurations()) {
-        SCOPED_TRACE(describe(o));
-        o.differences = true;
-        const auto all = run(body, types, places, o, kFunctions);
-        auto& first = reference[{o.optimize, o.outline}];
-        if (first.empty()) first = all;
-        for (size_t k = 0; k < all.size(); ++k)
-            for (size_t x = 0; x < all[k].size(); ++x) ASSERT_TRUE(sameBits(all[k][x], first[k][x])) << kFlows[k].name << ", point " << x;
-        if (o.lanes != 8) continue;
-        const std::vector<Place> one = {places[40]};
-        const auto alone = run(body, types, one, o, kFunctions);
-        for (size_t k = 0; k < all.size(); ++k) ASSERT_TRUE(sameBits(alone[k][0], all[k][40])) << kFlows[k].name;
-    }
 }
 
 } // namespace

@@ -21,7 +21,8 @@ public:
     explicit Generator(unsigned seed) : rng_(seed) {}
 
     /// With derivatives of the variables, first and second, in the outputs when `derived`.
-    std::string shader(bool derived = false) {
+    /// With the values of the variables and how they change, when `steps`.
+    std::string shader(bool derived = false, bool steps = false) {
         std::string s = "surface random(float k = 1.5; color t = color(0.5, 0.25, 1); output varying float o = 0; output varying "
                         "point q = 0;)\n{\n";
         for (int n = pick(3); n > 0; n--) s += function();
@@ -30,6 +31,7 @@ public:
         for (int n = 3 + pick(5); n > 0; n--) s += statement() + "\n";
         if (derived)
             s += "x = Du(x) + Dv(y); y = Du(Dv(z)) + Dv(Dv(z)); z = area(p); w = point(calculatenormal(w)); d = Du(d);\n";
+        if (steps) return s + "Ci = color(x, y, z); q = point(Du(x), Dv(y), Du(z)); o = 0;\n}\n";
         return s + "Ci = c + d; Oi = color(x, y, z); o = a[0] + a[1] * a[2] - a[3]; q = p + w;\n}\n";
     }
 
@@ -326,6 +328,69 @@ TEST(RandomPrograms, DerivativesHaveTheSameBitsEverywhere) {
         }
     }
     EXPECT_EQ(compared, kDerived * 4 * kPoints * 10);
+}
+
+// As differences: the passes leave sound code, lanes and builds S and V have the same bits; and where the value is no neighbour's by
+// chance of rounding, the derivative is the difference of the values at the place and one step on, whatever branches, loops, functions
+// and arrays lie between. Arrays that are written within a branch or a loop follow the point there, and a condition can turn by
+// rounding: a few places in a hundred may differ.
+TEST(RandomPrograms, DifferencesAreThoseOfTheNextPlace) {
+    ShaderCompiler::Settings settings;
+    settings.useDefaultCache = false;
+    ShaderCompiler compiler(settings);
+    constexpr double h = 1.0 / 64;
+    constexpr int kPlaces = 36; // in threes: the place, its neighbours along u and v
+    const auto at = [&](const std::string& name, int component, int part, int point) {
+        float v = 0;
+        EvaluationPoint::value(name, component, part, v);
+        if (name == "du" || name == "dv") return part == 0 ? float(h) : 0.0f;
+        if (part != 0) return v;
+        const int place = point / 3, turn = point % 3;
+        const float x = float((place * 5 % 12) / 12.0 + (turn == 1 ? h : 0)), y = float((place * 7 % 12) / 12.0 + (turn == 2 ? h : 0));
+        if (name == "u" || name == "s" || (name == "P" && component == 0)) return x;
+        if (name == "v" || name == "t" || (name == "P" && component == 1)) return y;
+        return v;
+    };
+    int compared = 0, differ = 0;
+    for (unsigned seed = 1; seed <= unsigned(kDerived); seed++) {
+        const std::string source = Generator(seed * 104729).shader(false, true);
+        SCOPED_TRACE("seed " + std::to_string(seed) + "\n" + source);
+        Diagnostics d([](const Diagnostic& m) {
+            if (m.severity >= Severity::Error) ADD_FAILURE() << toString(m);
+        });
+        const auto shader = compiler.loadText(source, "random", d);
+        ASSERT_TRUE(shader);
+        std::vector<std::vector<float>> first;
+        for (const int lanes : {16, 8, 4}) {
+            KernelOptions o;
+            o.lanes = lanes;
+            o.mixed = lanes == 8;
+            o.optimize = seed % 2 ? 2 : 0;
+            o.outline = seed % 3 ? o.outline : 0;
+            o.differences = true;
+            o.outputs = {"Ci", "q", "o"};
+            const auto tree = compiler.analyse(*shader, o, d);
+            ASSERT_TRUE(tree);
+            ASSERT_EQ(ir::verify(*tree), "");
+            const auto kernel = compiler.kernel(shader, o, d);
+            ASSERT_TRUE(kernel);
+            std::vector<std::vector<float>> got;
+            ASSERT_TRUE(runPoints(*kernel, o.mixed, kPlaces, at, compiler.parameterValues(shader, d), got, d));
+            if (first.empty()) first = got;
+            for (size_t k = 0; k < got.size(); k++)
+                for (size_t x = 0; x < got[k].size(); x++) ASSERT_TRUE(sameBits(got[k][x], first[k][x])) << "output " << k << ", value " << x;
+        }
+        for (size_t c = 0; c < 3; c++) // Ci = (x, y, z), q = (Du(x), Dv(y), Du(z))
+            for (size_t p = 0; p < size_t(kPlaces); p += 3) {
+                const double here = double(first[0][c * kPlaces + p]), next = double(first[0][c * kPlaces + p + (c == 1 ? 2 : 1)]);
+                const double got = double(first[1][c * kPlaces + p]);
+                if (!std::isfinite(here) || !std::isfinite(next) || std::fabs(here) + std::fabs(next) > 1e4) continue;
+                ++compared;
+                differ += !(std::fabs(got - (next - here) / h) <= 2e-3 * (1 + std::fabs(here) + std::fabs(next - here) / h));
+            }
+    }
+    EXPECT_GT(compared, 20 * kDerived);
+    EXPECT_LT(differ, compared / 25) << compared;
 }
 
 } // namespace

@@ -16,9 +16,10 @@ TEST(Build, EveryShippedShader) {
         std::ifstream f(file.path());
         std::stringstream s;
         s << f.rdbuf();
-        for (const bool path : {false, true}) {
+        for (const int form : {0, 1, 2}) {
             KernelOptions o;
-            o.path = path;
+            o.path = form == 1;
+            o.differences = form == 2;
             const Compiled c = compile(s.str(), o);
             if (c.kernel) EXPECT_FALSE(c.kernel->outputs.empty());
         }

@@ -1,4 +1,5 @@
-// Normals of displaced surfaces, and bumps on top of them, against the analytic surface; footprints against closed forms.
+// Exact derivatives: normals of displaced surfaces, and bumps on top of them, against the analytic surface; footprints against closed
+// forms. As grids have them: differences_test.cpp.
 #include "transport/harness.h"
 #include "transport/maps.h"
 
@@ -135,12 +136,12 @@ void expectNormals(const std::string& rib, F surface, Vec3 eye, Vec3 towards, co
 
 std::string sphereRib(const char* displacement, const char* surface) {
     return std::string("Format 200 200 1\nProjection \"perspective\" \"fov\" 40\nWorldBegin\nSides 2\nAttribute "
-                       "\"displacementbound\" \"sphere\" .1\n") +
+                       "\"displacementbound\" \"sphere\" .1\nAttribute \"shade\" \"derivatives\" \"exact\"\n") +
            displacement + "Surface \"" + surface + "\"\nTranslate 0 0 4\nSphere 1 -1 1 360\nWorldEnd\n";
 }
 std::string patchRib(const char* displacement, const char* surface) {
     return std::string("Format 200 200 1\nProjection \"perspective\" \"fov\" 40\nWorldBegin\nSides 2\nAttribute "
-                       "\"displacementbound\" \"sphere\" .1\n") +
+                       "\"displacementbound\" \"sphere\" .1\nAttribute \"shade\" \"derivatives\" \"exact\"\n") +
            displacement + "Surface \"" + surface +
            "\"\nPatch \"bilinear\" \"P\" [-1 -1 3.4  1 -1 2.6  -1 1 2.6  1 1 3.4]\nWorldEnd\n";
 }

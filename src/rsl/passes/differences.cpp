@@ -10,6 +10,8 @@ namespace {
 
 /// The step where there is no footprint (du = 0): small against the surface, large against rounding.
 constexpr float kStep = 1.0f / 1024;
+/// No step is shorter: rounding, 6e-8 of the values, would be more than a hundredth of what is left.
+constexpr float kLeastStep = 1.0f / 131072;
 /// Sums deeper than this are not looked through for inputs.
 constexpr int kSumDepth = 24;
 
@@ -117,8 +119,9 @@ private:
     Inst* step(bool v) {
         return rootValue(footprint(v), Neighbour::U, [&] {
             Inst* h = footprint(v);
-            Inst* none = atRoot(Op::Equal, Kind::Bool, {h, constant(Kind::Float, 0)});
-            return atRoot(Op::Select, Kind::Float, {none, constant(Kind::Float, kStep), h});
+            Inst *none = atRoot(Op::Equal, Kind::Bool, {h, constant(Kind::Float, 0)}), *least = constant(Kind::Float, kLeastStep);
+            Inst* some = atRoot(Op::Select, Kind::Float, {atRoot(Op::Less, Kind::Bool, {h, least}), least, h});
+            return atRoot(Op::Select, Kind::Float, {none, constant(Kind::Float, kStep), some});
         });
     }
     Inst* steps(bool v, float count) {

@@ -124,6 +124,29 @@ TEST(Affine, LobeUsedNonlinearlyStaysDirect) {
     EXPECT_EQ(c.sites(Op::Request, "specular"), 1) << c.text();
 }
 
+TEST(Affine, CallsBetweenTwoLobesAreNotTakenForThem) {
+    // Services have site numbers too: with 63 of them the two lobes are 64 sites apart.
+    for (int calls : {0, 62, 63, 64, 127, 191}) {
+        std::string text = "surface s() { normal n = normalize(N); uniform float x, sum = 0;\nCi = diffuse(n);\n";
+        for (int i = 0; i < calls; ++i) text += "if (attribute(\"user:a" + std::to_string(i) + "\", x) != 0) sum += x;\n";
+        const Compiled c = compile(text + "color h = specular(n, -I, 0.1); if (h[0] > 0.5) Ci += sum; }", pathOptions());
+        ASSERT_NE(c.kernel, nullptr);
+        ASSERT_EQ(c.kernel->facts.direct.size(), 1u) << calls << " calls";
+        EXPECT_EQ(c.kernel->facts.direct[0].rfind("specular", 0), 0u) << calls << " calls: " << c.kernel->facts.direct[0];
+    }
+}
+
+TEST(Affine, MoreLobesThanAWordHasBits) {
+    // Each of the seventy keeps its own dependence; the one that is not affine is the last.
+    std::string text = "surface s() { normal n = normalize(N); Ci = 0;\n";
+    for (int i = 0; i < 70; ++i) text += "Ci += " + std::to_string(i + 1) + " * specular(n, -I, 0.1);\n";
+    const Compiled c = compile(text + "color h = diffuse(n); if (h[0] > 0.5) Ci += 1; }", pathOptions());
+    ASSERT_NE(c.kernel, nullptr);
+    ASSERT_EQ(c.kernel->facts.direct.size(), 1u);
+    EXPECT_EQ(c.kernel->facts.direct[0].rfind("diffuse", 0), 0u) << c.kernel->facts.direct[0];
+    EXPECT_EQ(c.sites(Op::Request, "specular") + c.sites(Op::Emit, "specular"), 70);
+}
+
 TEST(Affine, IlluminanceUnderPathEmitsShadows) {
     const Compiled c = compile("surface s(float Kd = 0.5) { color sum = 0; illuminance(P, N, PI/2) { sum += Cl * (normalize(L) . "
                                "N); } Ci = Cs * Kd * sum; }",

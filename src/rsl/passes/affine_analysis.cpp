@@ -29,29 +29,28 @@ struct Analysis {
 
     std::string where(const Inst* i) const { return i->place.line ? " (line " + std::to_string(i->place.line) + ")" : ""; }
 
-    void bad(uint64_t mask, const Inst* at, const std::string& why) {
+    void bad(const SiteSet& mask, const Inst* at, const std::string& why) {
         if (!mask) return;
         if (!symbol.empty()) {
             d.bad.emplace(-1, why + where(at));
             return;
         }
         for (size_t s = 0; s < k.sites.size(); ++s)
-            if ((mask >> (s % 64)) & 1 && requested[s] && d.bad.emplace(static_cast<int>(s), why + where(at)).second)
+            if (d.ordinals[s] >= 0 && mask.has(static_cast<size_t>(d.ordinals[s])) && d.bad.emplace(static_cast<int>(s), why + where(at)).second)
                 changed = true;
     }
 
-    void raise(const Inst* i, uint64_t mask, uint8_t ch) {
-        if ((d.sites[i->id] | mask) != d.sites[i->id] || (channel[i->id] | ch) != channel[i->id]) {
-            d.sites[i->id] |= mask;
-            channel[i->id] |= ch;
-            changed = true;
-        }
+    void raise(const Inst* i, const SiteSet& mask, uint8_t ch) {
+        const bool more = d.sites[i->id].join(mask);
+        if (!more && (channel[i->id] | ch) == channel[i->id]) return;
+        channel[i->id] |= ch;
+        changed = true;
     }
 
-    uint64_t dep(const Inst* i) const { return d.sites[i->id]; }
-    uint64_t all(const Inst* i) const {
-        uint64_t m = 0;
-        for (const Inst* a : i->args) m |= dep(a);
+    const SiteSet& dep(const Inst* i) const { return d.sites[i->id]; }
+    SiteSet all(const Inst* i) const {
+        SiteSet m;
+        for (const Inst* a : i->args) m.join(dep(a));
         return m;
     }
     uint8_t channels(const Inst* i) const {
@@ -59,8 +58,6 @@ struct Analysis {
         for (const Inst* a : i->args) c |= channel[a->id];
         return c;
     }
-
-    std::vector<char> requested;
 
     void construct(const Inst* i) {
         const auto copy = [&](const Inst* to, const Inst* from) { raise(to, dep(from), channel[from->id]); };
@@ -100,7 +97,7 @@ struct Analysis {
             break;
         }
         case Op::Request: {
-            const uint64_t bit = uint64_t(1) << (o->site % 64);
+            const SiteSet bit = SiteSet::of(d.ordinal(o));
             raise(i, bit, i->kind == Kind::Float ? kGrey : 0);
             const bool distance = i->kind == Kind::Float && k.sites[static_cast<size_t>(o->site)].op == "trace"; // the form that gives no light
             if (n > 0 || distance || (i->kind != Kind::Float && i->kind != Kind::Triple))
@@ -125,8 +122,8 @@ struct Analysis {
     }
 
     void inst(const Inst* i) {
-        const uint64_t m = all(i);
-        if (i->op == Op::Input && !symbol.empty() && k.inputs[static_cast<size_t>(i->index)].name == symbol) raise(i, 1, 0);
+        const SiteSet m = all(i);
+        if (i->op == Op::Input && !symbol.empty() && k.inputs[static_cast<size_t>(i->index)].name == symbol) raise(i, SiteSet::of(0), 0);
         switch (i->op) {
         case Op::Result:
             result(i, i->args[0], static_cast<size_t>(i->index));
@@ -215,10 +212,14 @@ struct Analysis {
 } // namespace
 
 Dependence analyseDependence(const Kernel& k) {
-    Analysis a{k, {}, std::vector<uint8_t>(k.pool.size()), false, {}, std::vector<char>(k.sites.size())};
-    a.d.sites.assign(k.pool.size(), 0);
+    Analysis a{k, {}, std::vector<uint8_t>(k.pool.size()), false, {}};
+    a.d.sites.resize(k.pool.size());
+    a.d.ordinals.assign(k.sites.size(), -1);
+    int requests = 0;
     forEach(k.body, [&](const Inst* i) {
-        if (i->op == Op::Request) a.requested[static_cast<size_t>(i->site)] = 1;
+        if (i->op != Op::Request) return;
+        int& n = a.d.ordinals[static_cast<size_t>(i->site)];
+        if (n < 0) n = requests++;
     });
     do {
         a.changed = false;
@@ -228,8 +229,9 @@ Dependence analyseDependence(const Kernel& k) {
 }
 
 Dependence analyseInput(const Kernel& k, const std::string& input) {
-    Analysis a{k, {}, std::vector<uint8_t>(k.pool.size()), false, input, std::vector<char>(k.sites.size())};
-    a.d.sites.assign(k.pool.size(), 0);
+    Analysis a{k, {}, std::vector<uint8_t>(k.pool.size()), false, input};
+    a.d.sites.resize(k.pool.size());
+    a.d.ordinals.assign(k.sites.size(), -1);
     do {
         a.changed = false;
         a.region(k.body);

@@ -1,23 +1,30 @@
 // First half of the affine proof: which values depend on ray and light results, and where that is not affine.
 #pragma once
 #include "rsl/ir/ir.h"
+#include "rsl/passes/siteset.h"
 #include <map>
 #include <string>
 
 namespace alpenglow::rsl::ir {
 
 struct Dependence {
-    /// By instruction id: bit (site % 64) of every Request the value depends on. 0: independent.
-    std::vector<uint64_t> sites;
+    /// By instruction id: the Requests that the value depends on, by ordinal. Empty: independent.
+    std::vector<SiteSet> sites;
+    /// By site: the number of the Request there among the sites with Requests; -1: there is none.
+    std::vector<int> ordinals;
     /// Requests used in a way that is not affine, with the first reason.
     std::map<int, std::string> bad;
-    uint64_t of(const Inst* i) const { return i->id < sites.size() ? sites[i->id] : 0; }
+    const SiteSet& of(const Inst* i) const {
+        static const SiteSet none;
+        return i->id < sites.size() ? sites[i->id] : none;
+    }
+    size_t ordinal(const Inst* request) const { return static_cast<size_t>(ordinals[static_cast<size_t>(request->site)]); }
 };
 
 /// Either form.
 Dependence analyseDependence(const Kernel&);
 
-/// The same for one input instead of Requests: values that depend on it have bits set; `bad`, when not empty, says at key -1 why the
+/// The same for one input instead of Requests: values that depend on it have a member; `bad`, when not empty, says at key -1 why the
 /// kernel is not affine in it. Long form, for kernels without Requests.
 Dependence analyseInput(const Kernel&, const std::string& input);
 

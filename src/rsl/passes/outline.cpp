@@ -100,7 +100,7 @@ int inlineCalls(Kernel& k, int budget) {
         const Dependence d = analyseDependence(k);
         Inliner traced{k, {}, {}, {}, 0};
         forEach(k.body, [&](Inst* i) {
-            if (i->op == Op::Call && std::any_of(i->args.begin() + 1, i->args.end(), [&](Inst* a) { return d.of(a); }))
+            if (i->op == Op::Call && std::any_of(i->args.begin() + 1, i->args.end(), [&](Inst* a) { return bool(d.of(a)); }))
                 traced.calls.insert(i);
         });
         if (traced.calls.empty()) return changes;

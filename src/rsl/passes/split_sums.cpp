@@ -2,7 +2,6 @@
 #include "rsl/ir/edit.h"
 #include "rsl/passes/affine_analysis.h"
 #include "rsl/passes/dce.h"
-#include <bit>
 
 namespace alpenglow::rsl::ir {
 namespace {
@@ -26,22 +25,22 @@ struct Splitter {
     std::vector<size_t> parts(const Inst* i) const {
         const size_t fixed = i->op == Op::LightLoop ? 4 : 0;
         const Region& body = i->regions.back();
-        uint64_t inside = 0;
-        int count = 0;
+        SiteSet inside;
+        bool alike = false; // two of the same site
         for (const Region& r : i->regions)
             forEach(r, [&](const Inst* x) {
                 if (x->op != Op::Request) return;
-                inside |= uint64_t(1) << (x->site % 64);
-                ++count;
+                alike = alike || inside.has(d.ordinal(x));
+                inside.add(d.ordinal(x));
             });
-        if (count != std::popcount(inside)) return {}; // two that look alike
+        if (alike) return {};
         std::vector<size_t> vars;
-        uint64_t seen = 0;
+        SiteSet seen;
         for (size_t n = 0; n < body.yields.size(); ++n) {
             if (!d.of(body.params[fixed + n])) continue;
-            const uint64_t mine = d.of(body.yields[n]) & inside;
+            const SiteSet mine = d.of(body.yields[n]) & inside;
             if (mine & seen) return {};
-            seen |= mine;
+            seen.join(mine);
             vars.push_back(n);
         }
         return vars;

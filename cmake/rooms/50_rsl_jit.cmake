@@ -2,7 +2,20 @@
 find_package(LLVM 19.1 REQUIRED CONFIG PATHS /usr/lib/llvm-19/cmake NO_DEFAULT_PATH)
 file(GLOB jit_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/rsl/jit/*.cpp ${CMAKE_SOURCE_DIR}/src/rsl/*.cpp)
 file(GLOB jit_llvm_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/rsl/jit/llvm/*.cpp)
-add_library(alpenglow_jit MODULE ${jit_llvm_sources})
+# The program and the module pass these types to each other: both hold the digest of their headers and compare it when one loads the
+# other. The build ids of both are in the key of the kernel cache.
+set(jit_headers ${CMAKE_SOURCE_DIR}/src/rsl/ir/ir.h ${CMAKE_SOURCE_DIR}/src/rsl/kernel.h ${CMAKE_SOURCE_DIR}/src/rsl/jit/module.h
+    ${CMAKE_SOURCE_DIR}/src/rsl/front/ast.h ${CMAKE_SOURCE_DIR}/src/rsl/front/plugin.h ${CMAKE_SOURCE_DIR}/src/shadeops/descriptor.h
+    ${CMAKE_SOURCE_DIR}/src/shadeops/types.h ${CMAKE_SOURCE_DIR}/src/base/diagnostics.h)
+set(jit_stamp ${CMAKE_BINARY_DIR}/generated/rsl/jit/stamp.h)
+string(TOUPPER "${CMAKE_BUILD_TYPE}" jit_build_type)
+set(jit_compiler "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION} ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${jit_build_type}} ${ALPENGLOW_ASAN}")
+add_custom_command(OUTPUT ${jit_stamp} DEPENDS ${jit_headers} ${CMAKE_SOURCE_DIR}/cmake/stamp.cmake
+  COMMAND ${CMAKE_COMMAND} -DOUT=${jit_stamp} "-DFILES=${jit_headers}" "-DEXTRA=${jit_compiler}" -P ${CMAKE_SOURCE_DIR}/cmake/stamp.cmake
+  VERBATIM)
+add_library(alpenglow_jit MODULE ${jit_llvm_sources} ${jit_stamp})
+target_include_directories(alpenglow_jit PRIVATE ${CMAKE_BINARY_DIR}/generated)
+target_link_options(alpenglow_jit PRIVATE LINKER:--build-id=sha1)
 target_include_directories(alpenglow_jit SYSTEM PRIVATE ${LLVM_INCLUDE_DIRS})
 target_compile_options(alpenglow_jit PRIVATE -fvisibility=hidden)
 # names of kinds and instructions: the only code shared with the program
@@ -10,11 +23,16 @@ target_sources(alpenglow_jit PRIVATE ${CMAKE_SOURCE_DIR}/src/rsl/ir/ir.cpp)
 target_link_libraries(alpenglow_jit PRIVATE LLVM)
 set_target_properties(alpenglow_jit PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 
-add_library(rsl_jit STATIC ${jit_sources})
+add_library(rsl_jit STATIC ${jit_sources} ${jit_stamp})
+target_include_directories(rsl_jit PRIVATE ${CMAKE_BINARY_DIR}/generated)
+target_link_options(rsl_jit INTERFACE LINKER:--build-id=sha1)
 target_link_libraries(rsl_jit PUBLIC rsl_ir rsl_front shadeops base ${CMAKE_DL_LIBS})
 target_compile_definitions(rsl_jit PRIVATE ALPENGLOW_JIT_MODULE="${CMAKE_BINARY_DIR}/bin/libalpenglow_jit.so")
 add_dependencies(rsl_jit alpenglow_jit)
 room_tests(rsljit DEPS rsl_jit)
+if(TARGET test_rsljit)
+  target_include_directories(test_rsljit PRIVATE ${CMAKE_BINARY_DIR}/generated)
+endif()
 room_tests(language DEPS rsl_jit)
 if(TARGET test_language) # the second evaluator, and the programs that it is asked about
   find_package(rapidcheck CONFIG REQUIRED)

@@ -15,7 +15,7 @@ using Json = nlohmann::json;
 namespace {
 
 // Of JSON-RPC and of the protocol.
-constexpr int kInvalidRequest = -32600, kMethodNotFound = -32601, kInvalidParams = -32602, kNotInitialized = -32002;
+constexpr int kInvalidRequest = -32600, kMethodNotFound = -32601, kInvalidParams = -32602, kInternalError = -32603, kNotInitialized = -32002;
 
 /// A wrong shape of parameters; becomes an error of the request.
 struct BadParams {};
@@ -113,6 +113,8 @@ std::vector<Json> LanguageServer::handle(const Json& message) {
         if (hasId) out.push_back(error(id, kInvalidParams, "the parameters are not as the protocol has them"));
     } catch (const Json::exception&) {
         if (hasId) out.push_back(error(id, kInvalidParams, "the parameters are not as the protocol has them"));
+    } catch (const std::exception& e) { // no memory, a folder that cannot be read: the next message may do
+        if (hasId) out.push_back(error(id, kInternalError, e.what()));
     }
     return out;
 }
@@ -254,8 +256,18 @@ std::vector<Json> LanguageServer::publish() {
     for (const std::string& uri : changed_) {
         const auto d = documents_.find(uri);
         if (d == documents_.end()) continue;
-        d->second.analyse(optionsFor(d->second));
-        out.push_back(notice("textDocument/publishDiagnostics", {{"uri", uri}, {"diagnostics", diagnosticsOf(uri, d->second)}}));
+        Json found = Json::array();
+        try {
+            d->second.analyse(optionsFor(d->second));
+            found = diagnosticsOf(uri, d->second);
+        } catch (const std::exception& e) { // the text stays open; its next change is checked again
+            const Json start = {{"line", 0}, {"character", 0}};
+            found.push_back({{"range", {{"start", start}, {"end", start}}},
+                             {"severity", 1},
+                             {"source", "alpenglow"},
+                             {"message", std::string("this text could not be checked: ") + e.what()}});
+        }
+        out.push_back(notice("textDocument/publishDiagnostics", {{"uri", uri}, {"diagnostics", std::move(found)}}));
     }
     changed_.clear();
     return out;

@@ -5,12 +5,14 @@
 #include "rsl/ir/build.h"
 #include "rsl/ir/print.h"
 #include "rsl/jit/cache.h"
+#include "rsl/jit/identity.h"
 #include "rsl/jit/jit.h"
 #include "rsl/jit/sha256.h"
 #include "rsl/passes/optimize.h"
 #include "rsl/plugins.h"
 #include "rsl/shadersearch.h"
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <chrono>
 #include <cstring>
@@ -20,7 +22,6 @@
 #include <map>
 #include <mutex>
 #include <set>
-#include <sys/stat.h>
 
 namespace fs = std::filesystem;
 
@@ -41,16 +42,6 @@ const std::string& descriptorDigest() {
             for (const OptionalParameter& p : op.optional) all += toString(p.type) + p.name + p.defaultText + '\1';
         }
         return jit::sha256(all);
-    }();
-    return digest;
-}
-
-// This very program: the passes are part of it, so another build of it makes its own kernels.
-const std::string& programDigest() {
-    static const std::string digest = [] {
-        struct stat s{};
-        if (stat("/proc/self/exe", &s) != 0) return std::string("?");
-        return std::to_string(s.st_size) + "." + std::to_string(s.st_mtim.tv_sec) + "." + std::to_string(s.st_mtim.tv_nsec);
     }();
     return digest;
 }
@@ -82,6 +73,7 @@ std::string coShaderKey(const KernelOptions& o) {
 struct ShaderCompiler::State {
     Settings settings;
     std::unique_ptr<jit::KernelCache> cache;
+    std::atomic<bool> cacheRefused = false; ///< which was reported
     mutable std::mutex mutex;
     std::map<std::string, std::shared_future<ShaderPtr>> shaders;
     std::map<std::string, std::shared_future<KernelPtr>> kernels;
@@ -178,6 +170,20 @@ ShaderPtr ShaderCompiler::load(const std::string& name, const std::vector<std::s
         state_->shaders.emplace(key, promise.get_future().share());
     }
     ShaderPtr result;
+    try {
+        result = find(name, directories, diagnostics);
+    } catch (...) { // whoever waits for the same shader gets an answer, and the next request tries again
+        promise.set_value(nullptr);
+        std::lock_guard lock(state_->mutex);
+        state_->shaders.erase(key);
+        throw;
+    }
+    promise.set_value(result);
+    return result;
+}
+
+ShaderPtr ShaderCompiler::find(const std::string& name, const std::vector<std::string>& directories, Diagnostics& diagnostics) {
+    ShaderPtr result;
     const std::string stem = fs::path(name).filename().replace_extension().string();
     auto at = [&](const std::string& n) { return findFile(n, directories); };
     std::optional<FoundFile> found;
@@ -210,7 +216,6 @@ ShaderPtr ShaderCompiler::load(const std::string& name, const std::vector<std::s
             diagnostics.report(Severity::Error, Rie::NoShader, {}, "shader \"" + name + "\" was not found",
                                directories.empty() ? "no shader search path is set" : "");
     }
-    promise.set_value(result);
     return result;
 }
 
@@ -273,7 +278,7 @@ CoShader ShaderCompiler::coShader(const ShaderPtr& s, const std::string& handle)
 
 KernelPtr ShaderCompiler::kernel(const ShaderPtr& shader, const KernelOptions& options, Diagnostics& diagnostics) {
     if (!shader) return nullptr;
-    const std::string key = jit::sha256(shader->digest_ + '\n' + jit::codeKey(options) + descriptorDigest() + programDigest() +
+    const std::string key = jit::sha256(shader->digest_ + '\n' + jit::codeKey(options) + descriptorDigest() + jit::programIdentity() +
                                     coShaderKey(options));
     std::promise<KernelPtr> promise;
     {
@@ -291,6 +296,8 @@ KernelPtr ShaderCompiler::kernel(const ShaderPtr& shader, const KernelOptions& o
     std::string error;
     bool fromDisk = false;
     try {
+        if (const std::string why = state_->cache->refusal(); !why.empty() && !state_->cacheRefused.exchange(true))
+            diagnostics.report(Severity::Warning, Rie::System, {}, why);
         if (auto file = state_->cache->load(key)) {
             result = jit::load(*file, true, error, state_->outside);
             fromDisk = result != nullptr;
@@ -438,7 +445,9 @@ std::vector<ParameterValue> ShaderCompiler::parameterValues(const ShaderPtr& sha
     KernelOptions options;
     options.lanes = 4;
     options.vectors = 1;
+    const int errors = diagnostics.errors();
     ir::optimize(*k, options, diagnostics);
+    if (diagnostics.errors() > errors) return values;
     // Mostly everything is constant by now, and no code is needed.
     std::vector<const ir::Inst*> results(k->outputs.size(), nullptr);
     bool constant = true;
@@ -456,7 +465,7 @@ std::vector<ParameterValue> ShaderCompiler::parameterValues(const ShaderPtr& sha
         std::string error;
         options.optimize = 0;
         KernelPtr code;
-        std::string key = shader->digest_ + "\ndefaults\n" + jit::codeKey(options) + descriptorDigest() + programDigest();
+        std::string key = shader->digest_ + "\ndefaults\n" + jit::codeKey(options) + descriptorDigest() + jit::programIdentity();
         for (const ParameterValue& v : read) {
             key += '\1' + v.name + '\2';
             key.append(reinterpret_cast<const char*>(v.numbers.data()), v.numbers.size() * sizeof(float));

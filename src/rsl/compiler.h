@@ -77,7 +77,7 @@ public:
     /// Finds NAME or NAME.sl in the directories, in order; includes are looked for beside the file, then in the directories. The
     /// shader of that name in the file, else the first. Null after an error; an error is reported the first time a name is asked
     /// for. A compiled shader of another renderer (.slo, .sdl, .sdr, .slx, .sdw) without its source is an error that names the
-    /// missing source.
+    /// missing source. What memory and file system throw passes through; the next request for the name then tries again.
     std::shared_ptr<const CompiledShader> load(const std::string& name, const std::vector<std::string>& directories,
                                                Diagnostics&);
     /// The first shader of a text. Not kept.
@@ -111,6 +111,7 @@ public:
     CompilerStatistics statistics() const;
 
 private:
+    std::shared_ptr<const CompiledShader> find(const std::string& name, const std::vector<std::string>& directories, Diagnostics&);
     static std::shared_ptr<const CompiledShader> finish(std::unique_ptr<Program>, const std::string& path, const std::string& wanted,
                                                         const std::string& text);
     static std::shared_ptr<const CompiledShader> describe(std::shared_ptr<const Program>, const Shader&, const std::string& path,

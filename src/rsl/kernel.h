@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -40,12 +41,25 @@ struct KernelCall {
     /// The KernelCall itself, and everything it points to, must stay valid until the coroutine is destroyed.
     void* (*alloc)(KernelCall*, uint64_t bytes);
     void (*release)(KernelCall*, void* frame, uint64_t bytes);
+    void* memory;             ///< CompiledKernel::run's, for arrays that the stack has no room for; callers leave it alone
 };
 
 /// Site numbers that `service` gets for the two operations on the strip's list of affine pairs.
 /// Mark: out = one row, the number of pairs emitted so far for this strip. Rescale: in = row of the mark, three rows of factors, row of
 /// the end mark: pairs between the two marks are multiplied, lane by lane (pairs of other lanes stay as they are).
 inline constexpr int32_t kSiteMark = -1, kSiteRescale = -2;
+
+/// Alignment of KernelCall::memory in bytes: that of the widest strip.
+inline constexpr size_t kMemoryAlign = 256;
+
+/// Memory for the large local arrays of a kernel while it runs.
+struct LocalMemory {
+    void* bytes;
+    explicit LocalMemory(uint64_t size) : bytes(::operator new(size, std::align_val_t(kMemoryAlign))) {}
+    ~LocalMemory() { ::operator delete(bytes, std::align_val_t(kMemoryAlign)); }
+    LocalMemory(const LocalMemory&) = delete;
+    LocalMemory& operator=(const LocalMemory&) = delete;
+};
 
 /// Rows per component of a varying input: 1, 3 (v, du, dv) or 6 (v, du, dv, duu, duv, dvv). Inputs that are uniform by declaration,
 /// matrices, strings and arrays have no derivatives: always 1 (in build V too, where component c of element e is row e * components + c).
@@ -57,6 +71,9 @@ inline int inputParts(const ir::Input& i) {
 /// Strings at run time are ids. Ids are assigned in order of first use, never travel between processes; "" is 0. Thread safe.
 int32_t internString(const std::string&);
 const std::string& internedString(int32_t id);
+/// The same for a text that a shader made while it ran. Ids are never taken back, so all such texts together have a limit
+/// (limits::kRuntimeStrings): beyond it a new text is "", and `full` is set.
+int32_t internRuntimeString(const std::string&, bool& full);
 
 /// What kind of machine code is wanted. All of it is part of the cache key.
 /// A parameter with a value. Strings for string types, else numbers, element after element.
@@ -116,8 +133,14 @@ public:
     int lanes() const { return lanes_; } ///< points per strip: KernelOptions::lanes * vectors
     bool fromCache() const { return fromCache_; }
 
-    /// Non-suspending kernels: shades all n points.
-    void run(KernelCall* c) const { entry_(c); }
+    /// Non-suspending kernels: shades all n points. Throws std::bad_alloc when there is no memory for the shader's arrays.
+    void run(KernelCall* c) const {
+        if (localBytes_ == 0) return entry_(c);
+        const LocalMemory memory(localBytes_);
+        c->memory = memory.bytes;
+        entry_(c);
+        c->memory = nullptr;
+    }
     /// Suspending kernels: starts the strip that begins at point `first`. Frame memory comes from alloc/release of the call's
     /// scheduler. Returns the coroutine; done when finished(handle). A Request calls service (which notes it), then suspends;
     /// before resume the caller must have stored the results in the row block that service was given as `out`.
@@ -134,6 +157,7 @@ protected:
     ir::KernelFacts facts_;
     std::vector<int32_t> strings_;
     int lanes_ = 16;
+    uint64_t localBytes_ = 0; ///< of KernelCall::memory
     bool fromCache_ = false;
     void (*entry_)(KernelCall*) = nullptr;
     void* (*start_)(KernelCall*, int32_t) = nullptr;

@@ -2,6 +2,7 @@
 #include "base/category.h"
 #include "base/limits.h"
 #include "rsl/handlename.h"
+#include "rsl/pattern.h"
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -9,7 +10,8 @@
 #include <cstring>
 #include <map>
 #include <mutex>
-#include <regex.h>
+#include <shared_mutex>
+#include <unordered_map>
 
 namespace alpenglow::rsl {
 namespace {
@@ -202,17 +204,41 @@ std::string formatText(const std::string& pattern, const std::vector<FormatValue
     return formatWith(pattern, [&](char) { return at < values.size() ? &values[at++] : nullptr; });
 }
 
-bool matchText(const std::string& pattern, const std::string& subject, std::string* error) {
-    regex_t r;
-    if (int e = regcomp(&r, pattern.c_str(), REG_EXTENDED | REG_NOSUB)) {
-        char text[200];
-        regerror(e, &r, text, sizeof text);
-        if (error) *error = text;
-        return false;
+namespace {
+
+/// Patterns by their texts: a shader asks for the same ones at every point.
+struct Patterns {
+    struct Entry {
+        std::shared_ptr<const Pattern> pattern;
+        std::string error;
+    };
+    std::shared_mutex mutex;
+    std::unordered_map<std::string, Entry> all;
+
+    Entry get(const std::string& text) {
+        {
+            const std::shared_lock lock(mutex);
+            if (const auto it = all.find(text); it != all.end()) return it->second;
+        }
+        Entry e;
+        e.pattern = Pattern::make(text, e.error);
+        const std::unique_lock lock(mutex);
+        if (all.size() >= limits::kPatternCache) all.clear();
+        return all.insert_or_assign(text, e).first->second;
     }
-    const bool found = regexec(&r, subject.c_str(), 0, nullptr, 0) == 0;
-    regfree(&r);
-    return found;
+};
+
+Patterns& patterns() {
+    static Patterns p;
+    return p;
+}
+
+} // namespace
+
+bool matchText(const std::string& pattern, const std::string& subject, std::string* error) {
+    const Patterns::Entry e = patterns().get(pattern);
+    if (!e.pattern && error) *error = e.error;
+    return e.pattern && e.pattern->occurs(subject);
 }
 
 void hashText(const std::string& s, float out[3]) {
@@ -236,7 +262,19 @@ bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* 
             if (mask >> l & 1) f(l);
     };
     auto put = [&](int row, int lane, float v) { out[size_t(row) * size_t(lanes) + size_t(lane)] = v; };
-    auto putString = [&](int lane, const std::string& t) { put(0, lane, std::bit_cast<float>(internString(t))); };
+    auto putString = [&](int lane, const std::string& t) {
+        bool full = false;
+        put(0, lane, std::bit_cast<float>(internRuntimeString(t, full)));
+        if (!full) return;
+        Diagnostic d;
+        d.severity = Severity::Error;
+        d.code = Rie::Limit;
+        d.place = {file, s.place.line, s.place.column};
+        d.message = "the strings that shaders make while they run take more than " + std::to_string(limits::kRuntimeStrings) +
+                    " bytes; further ones are empty";
+        d.hint = "a string that differs at every point is kept for each of them: print it, or make it from uniform values";
+        diagnostics.reportOnce("runtime strings", d);
+    };
     // A string that is joined with itself in a loop doubles each time.
     auto cut = [&](std::string& t) {
         if (t.size() <= limits::kTokenBytes) return;

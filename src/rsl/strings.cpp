@@ -1,4 +1,5 @@
 // Interned strings: kernels handle ids.
+#include "base/limits.h"
 #include "rsl/kernel.h"
 #include <deque>
 #include <mutex>
@@ -12,6 +13,7 @@ namespace {
 // out.
 struct StringTable {
     std::shared_mutex mutex;
+    size_t runtimeBytes = 0; ///< of texts that shaders made
     std::deque<std::string> texts{std::string()};
     std::unordered_map<std::string_view, int32_t> ids{{texts[0], 0}};
 };
@@ -21,9 +23,9 @@ StringTable& table() {
     return t;
 }
 
-} // namespace
+constexpr size_t kEntryBytes = 96; // of a text's places in the table
 
-int32_t internString(const std::string& s) {
+int32_t intern(const std::string& s, bool runtime, bool& full) {
     StringTable& t = table();
     {
         std::shared_lock lock(t.mutex);
@@ -31,11 +33,26 @@ int32_t internString(const std::string& s) {
     }
     std::unique_lock lock(t.mutex);
     if (auto it = t.ids.find(s); it != t.ids.end()) return it->second;
+    const size_t bytes = s.size() + kEntryBytes;
+    if (runtime && t.runtimeBytes + bytes > limits::kRuntimeStrings) {
+        full = true;
+        return 0;
+    }
+    t.runtimeBytes += runtime ? bytes : 0;
     t.texts.push_back(s);
     const auto id = int32_t(t.texts.size() - 1);
     t.ids.emplace(t.texts.back(), id);
     return id;
 }
+
+} // namespace
+
+int32_t internString(const std::string& s) {
+    bool full = false;
+    return intern(s, false, full);
+}
+
+int32_t internRuntimeString(const std::string& s, bool& full) { return intern(s, true, full); }
 
 const std::string& internedString(int32_t id) {
     StringTable& t = table();

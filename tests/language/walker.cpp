@@ -198,7 +198,8 @@ private:
         if (e.kind != ExprKind::ArrayList) return arrayOf(e).elements;
         std::vector<Walked> v;
         for (const ExprPtr& a : e.args) v.push_back(converted(expr(*a), e.type.base));
-        if (e.text == "..." && !v.empty() && e.type.array > int(v.size())) v.resize(size_t(e.type.array), v.back());
+        if (e.type.array > int(v.size()))
+            v.resize(size_t(e.type.array), e.text == "..." && !v.empty() ? v.back() : converted(Walked{}, e.type.base));
         return v;
     }
 

@@ -21,8 +21,8 @@ const Case kStatements[] = {
     {";", "(block)"},
     {"{ float f = 2; g = f; }", "(block (declare (varying float f = 2)) (= g f))"},
     {"uniform float k = 2, l;", "(declare (uniform float k = 2) (uniform float l))"},
-    {"float b[3] = {1, 2};", "(declare (varying float[3] b = (list:float[3] 1 2 0)))"},
-    {"float b[2] = 0;", "(declare (varying float[2] b = (list:float[2] 0 0)))"},
+    {"float b[3] = {1, 2};", "(declare (varying float[3] b = (list:float[3] 1 2)))"},
+    {"float b[2] = 0;", "(declare (varying float[2] b = (list:float[2] 0 ...)))"},
     {"color b[2] = {0, c};", "(declare (varying color[2] b = (list:color[2] (cast:color 0) c)))"},
     {"uniform float b[] = {1, 2, 3};", "(declare (uniform float[] b = (list:float[3] 1 2 3)))"},
     {"float b[2*3];", "(declare (varying float[6] b))"},
@@ -78,7 +78,7 @@ TEST(FrontShaders, Parameters) {
               "surface s(uniform float[2] x = (list:float[2] 1 2)) (block)");
     EXPECT_EQ(shaderOf("surface s(color c[];) {}"), "surface s(uniform color[] c) (block)");
     EXPECT_EQ(shaderOf("surface s(color d[3] = {0,0};) {}"),
-              "surface s(uniform color[3] d = (list:color[3] (cast:color 0) (cast:color 0) (cast:color 0))) (block)");
+              "surface s(uniform color[3] d = (list:color[3] (cast:color 0) (cast:color 0))) (block)");
     EXPECT_EQ(shaderOf("surface s(point p = point \"shader\" (0,0,0)) {}"),
               "surface s(uniform point p = (point \"shader\" 0 0 0)) (block)");
     EXPECT_EQ(shaderOf("surface s {}"), "surface s() (block)");

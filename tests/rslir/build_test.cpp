@@ -91,20 +91,6 @@ TEST(Build, Lights) {
     EXPECT_EQ(two.kernel->outputs[4].name, "L#1");
 }
 
-TEST(Build, UniformIsFoundInVaryingVariables) {
-    const Compiled c = compile("surface s(float a = 2) { float x = a * 3; if (x > 1) x = sin(a); Ci = x * s; }");
-    bool sinUniform = false;
-    forEach(static_cast<const Region&>(c.kernel->body),
-            [&](const Inst* i) { sinUniform = sinUniform || (i->text == "al_sin" && !i->varying); });
-    EXPECT_TRUE(sinUniform) << c.text();
-    KernelOptions mixed;
-    mixed.mixed = true;
-    const Compiled v = compile("surface s(float a = 2) { Ci = sin(a) * s; }", mixed);
-    forEach(static_cast<const Region&>(v.kernel->body), [&](const Inst* i) {
-        if (i->text == "al_sin") EXPECT_TRUE(i->varying);
-    });
-}
-
 int orderOf(const Compiled& c, const std::string& input) {
     for (const Input& i : c.kernel->inputs)
         if (i.name == input) return i.order;

@@ -3,7 +3,10 @@
 #include "rsl/compiler.h"
 #include "rsl/evaluate.h"
 #include "rsl/jit/cache.h"
+#include "rsl/jit/identity.h"
 #include "rsl/jit/loader.h"
+#include "rsl/jit/module.h"
+#include "rsl/jit/stamp.h"
 #include "rsl/jit/sha256.h"
 #include "rsl/services_basic.h"
 #include <filesystem>
@@ -123,6 +126,108 @@ TEST(Cache, StoresLoadsTrims) {
     // Code that others can write is not run.
     fs::permissions(d.path / "c", fs::perms::all);
     EXPECT_FALSE(cache.load("key0"));
+}
+
+TEST(Cache, AnotherKernelsFileIsNotTaken) {
+    Directory d;
+    jit::KernelCache cache((d.path / "c").string(), size_t(1) << 30);
+    jit::KernelFile one = simpleKernel(), two = one;
+    two.facts.whyNot = "two";
+    cache.store("one", one);
+    cache.store("two", two);
+    const fs::path a = d.path / "c" / "one.kernel", b = d.path / "c" / "two.kernel";
+    fs::rename(a, d.path / "t");
+    fs::rename(b, a);
+    fs::rename(d.path / "t", b);
+    EXPECT_FALSE(cache.load("one")); // its digest is right, its key is not
+    EXPECT_FALSE(cache.load("two"));
+    EXPECT_FALSE(fs::exists(a));
+    cache.store("one", one);
+    ASSERT_TRUE(cache.load("one"));
+    EXPECT_EQ(cache.load("one")->facts.whyNot, "because");
+    // Nor a file that others can write, nor a link.
+    fs::permissions(a, fs::perms::owner_all | fs::perms::group_write);
+    EXPECT_FALSE(cache.load("one"));
+    cache.store("two", two);
+    fs::remove(a);
+    fs::create_symlink(b, a);
+    EXPECT_FALSE(cache.load("one"));
+}
+
+TEST(Cache, FolderThatOthersCanWriteIsNamedOnce) {
+    Directory d;
+    const fs::path folder = d.path / "c";
+    fs::create_directory(folder);
+    fs::permissions(folder, fs::perms::owner_all | fs::perms::group_all);
+    ShaderCompiler::Settings settings;
+    settings.cacheDirectory = folder.string();
+    ShaderCompiler compiler(settings);
+    Diagnostics diagnostics;
+    for (const char* text : {"surface a() { Ci = u; }", "surface b() { Ci = v; }"}) {
+        auto shader = compiler.loadText(text, "t.sl", diagnostics);
+        ASSERT_TRUE(shader);
+        EXPECT_TRUE(compiler.kernel(shader, KernelOptions{}, diagnostics));
+    }
+    ASSERT_EQ(diagnostics.all().size(), 1u);
+    EXPECT_NE(diagnostics.all()[0].message.find("others can write to it"), std::string::npos) << diagnostics.all()[0].message;
+    EXPECT_TRUE(fs::is_empty(folder)); // what is never read is not written
+}
+
+TEST(Cache, TemporariesOfKilledProgramsGo) {
+    Directory d;
+    jit::KernelCache cache(d.path.string(), size_t(1) << 30);
+    for (const char* name : {"old.kernel.1.0.tmp", "new.kernel.1.0.tmp"}) std::ofstream(d.path / name) << "x";
+    fs::last_write_time(d.path / "old.kernel.1.0.tmp", fs::file_time_type::clock::now() - std::chrono::hours(25));
+    cache.store("k", simpleKernel());
+    EXPECT_FALSE(fs::exists(d.path / "old.kernel.1.0.tmp"));
+    EXPECT_TRUE(fs::exists(d.path / "new.kernel.1.0.tmp"));
+}
+
+TEST(Module, BuildIdsAreInTheKey) {
+    const std::string file = jit::moduleFile();
+    ASSERT_FALSE(file.empty());
+    const std::string module = jit::buildIdOfFile(file), program = jit::buildIdOfFile("/proc/self/exe");
+    EXPECT_EQ(module.size(), 40u);
+    EXPECT_EQ(program.size(), 40u);
+    EXPECT_EQ(jit::programIdentity(), program + "+" + module);
+    EXPECT_EQ(jit::buildIdOfFile("/dev/null"), "");
+}
+
+// A module from other sources is refused with what to do; it is never run.
+TEST(ModuleDeathTest, OfAnotherBuild) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    Directory d;
+    std::ifstream in(jit::moduleFile(), std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    const size_t at = bytes.find(jit::kModuleStamp);
+    ASSERT_NE(at, std::string::npos);
+    bytes[at] = bytes[at] == '0' ? '1' : '0';
+    const std::string copy = (d.path / "libalpenglow_jit.so").string();
+    std::ofstream(copy, std::ios::binary) << bytes;
+    EXPECT_EXIT(
+        {
+            setenv("ALPENGLOW_JIT", copy.c_str(), 1);
+            Made m;
+            m.output("y", m.number(1));
+            jit::KernelFile f;
+            std::string error;
+            const bool made = jit::generate(m.k, KernelOptions{}, f, error);
+            std::fprintf(stderr, "%s\n", error.c_str());
+            std::_Exit(made ? 1 : 0);
+        },
+        ::testing::ExitedWithCode(0), "built from other sources than this program; build and install both together");
+}
+
+TEST(Compiler, ThrowsPassThroughTheLoader) {
+    // Whoever asks next gets an answer, not a broken promise.
+    ShaderCompiler::Settings settings;
+    settings.useDefaultCache = false;
+    ShaderCompiler compiler(settings);
+    Diagnostics throws([](const Diagnostic&) { throw std::bad_alloc(); });
+    EXPECT_THROW(compiler.load("nosuch", {"/nowhere"}, throws), std::bad_alloc);
+    Diagnostics diagnostics;
+    EXPECT_FALSE(compiler.load("nosuch", {"/nowhere"}, diagnostics));
+    EXPECT_EQ(diagnostics.errors(), 1);
 }
 
 constexpr const char* kShader = "surface s(float Kd = 0.5; color c = color(1, 2, 3); string name = \"n\"; float a[3] = {1, 2, "

@@ -66,7 +66,7 @@ enum class ExprKind : uint8_t {
     Conditional, ///< args[0] ? args[1] : args[2]
     Tuple,       ///< (a,b,c) of type Color/Point/Vector/Normal; args = three floats; `space` = optional space name expression
     MatrixTuple, ///< 16 floats; `space` optional
-    ArrayList,   ///< {a, b, ...} of an array type
+    ArrayList,   ///< {a, b, c} of an array type, type.array long; elements beyond the args are the last again (text "...") or zero
     Cast,        ///< to `type`, from args[0] (Bool to Float too); `space` when written `point "shader" p` (value given in that space) or color "hsv" c
     ShadeopCall, ///< shadeop, signature; args = positional; pairs; `channel` for texture(name[channel]); outputs are lvalues
     FunctionCall,///< function; args

@@ -274,6 +274,11 @@ void Checker::settleCall(ExprPtr& pointer, Type result) {
     } else {
         e.function = instance(*choice.function, *choice.unit, {}, e.place);
     }
+    if (e.function && callHeight_[e.function] >= limits::kCallDepth) { // methods and functions inside of functions, too
+        sources_.error(e.place, "calls of functions are nested more than " + std::to_string(limits::kCallDepth) + " deep");
+        e.function = nullptr;
+    }
+    if (e.function && function_) callHeight_[function_] = std::max(callHeight_[function_], callHeight_[e.function] + 1);
     if (e.function && varyingFunctions_.count(e.function)) {
         e.varying = true;
         readsPoint(e, "what '" + e.text + "' gives");

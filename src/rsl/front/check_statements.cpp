@@ -109,7 +109,7 @@ void Checker::initialise(Symbol& s, ExprPtr& value) {
         s.type.array = 1; // float a[] = 0: an array of one
     const bool scalar = s.type.array > 0 && info.listLength < 0 && info.array.array == 0 && !info.any;
     if (scalar) {
-        // float a[42] = 0: every element.
+        // float a[42] = 0: {0, ...}.
         settle(value, s.type.element(), s.handle ? Handle::Shader : Handle::Text);
         auto list = std::make_unique<Expr>();
         list->kind = ExprKind::ArrayList;
@@ -117,10 +117,7 @@ void Checker::initialise(Symbol& s, ExprPtr& value) {
         list->type = s.type;
         list->height = value->height + 1;
         list->varying = value->varying;
-        const bool simple = value->kind == ExprKind::Number || value->kind == ExprKind::String ||
-                            (value->kind == ExprKind::Cast && value->args[0]->kind == ExprKind::Number);
-        if (!simple) sources_.warning(value->place, "one value for a whole array: it is computed again for each element");
-        for (int i = 1; i < s.type.array; ++i) list->args.push_back(clone(*value));
+        list->text = "...";
         list->args.push_back(std::move(value));
         value = std::move(list);
     } else {

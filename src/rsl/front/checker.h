@@ -141,6 +141,7 @@ private:
     std::vector<Scope> scopes_;
     int loops_ = 0;
     int instanceDepth_ = 0;
+    std::map<const Function*, int> callHeight_; ///< how deep the calls inside of a function are nested
     bool foreignLight_ = false; ///< in the block of a light that stands in another shader, which was reported
     std::unordered_map<const Expr*, Info> infos_;
 };

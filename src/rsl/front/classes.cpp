@@ -1,4 +1,5 @@
 #include "rsl/front/classes.h"
+#include "base/limits.h"
 #include "rsl/front/clone.h"
 #include "rsl/front/nodes.h"
 #include <algorithm>
@@ -107,20 +108,28 @@ private:
     /// Methods may stand in any order, so a circle among them is found here.
     bool recursive() {
         bool found = false;
-        std::map<std::string, int> state;
-        const std::function<void(const std::string&)> visit = [&](const std::string& name) {
-            if (!names_.count(name) || state[name] == 2) return;
+        std::map<std::string, int> state, height;
+        const std::function<void(const std::string&, int)> visit = [&](const std::string& name, int depth) {
+            if (found || !names_.count(name) || state[name] == 2) return;
             if (state[name] == 1) {
                 if (!found) sources_.error(method(name)->place, "method '" + name + "' calls itself; recursion is not allowed");
                 found = true;
                 return;
             }
             state[name] = 1;
-            for (const auto& c : calls_[name]) visit(c);
+            int& tall = height[name];
+            for (const auto& c : calls_[name]) {
+                if (depth < limits::kCallDepth) visit(c, depth + 1);
+                tall = std::max(tall, depth < limits::kCallDepth ? height[c] + 1 : limits::kCallDepth + 1);
+            }
+            if (!found && tall > limits::kCallDepth) {
+                sources_.error(method(name)->place, "calls of methods are nested more than " + std::to_string(limits::kCallDepth) + " deep");
+                found = true;
+            }
             state[name] = 2;
             order_.push_back(name);
         };
-        for (const auto& f : class_.shader->nested) visit(f->name);
+        for (const auto& f : class_.shader->nested) visit(f->name, 0);
         return found;
     }
 

@@ -54,7 +54,12 @@ constexpr MessageKind kKinds[] = {
     {"too-many-errors", "too many errors; giving up on this file"},
     {"no-shader", "there is no shader in this file"},
     {"too-deep", "nested more than * deep"},
-    {"too-deep", "calls of functions are nested too deeply"},
+    {"too-deep", "calls of functions are nested more than * deep"},
+    {"too-deep", "calls of methods are nested more than * deep"},
+    {"struct-members", "a structure has no more than * members*"},
+    {"too-many-includes", "more than * files are included"},
+    {"too-many-includes", "the included files have more than * bytes together"},
+    {"light-blocks", "a light has no more than * blocks*"},
     {"too-long", "this expression is longer than * operations in a row"},
     {"expected-semicolon", "expected ';' after *"},
     {"expected-semicolon", "expected ';' before the next parameter*"},
@@ -179,7 +184,6 @@ constexpr MessageKind kKinds[] = {
     {"light-arguments", "gather begins with a category, a string"},
     {"light-arguments", "wrong arguments of '*'"},
     {"no-effect", "this expression has no effect"},
-    {"array-from-one", "one value for a whole array: it is computed again for each element"},
     // what may be written
     {"read-only", "'*' cannot be written"},
     {"read-only-copy", "'*' is read-only*"},
@@ -231,7 +235,8 @@ constexpr MessageKind kKinds[] = {
     {"light-pair", "the pair \"*\" means nothing to illuminance"},
     {"outside-illuminance", "*() asks about the light of an illuminance loop*"},
     {"no-code", "*() has no code"},
-    {"shader-too-large", "*more than * instructions*"},
+    {"shader-too-large", "*more than * operations*"},
+    {"shader-memory", "the local arrays of * bytes a point; the limit is *"},
 };
 
 /// Does the text look like the pattern? Linear in practice: only the last '*' is tried again.

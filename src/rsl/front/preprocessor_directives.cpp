@@ -148,6 +148,15 @@ void Preprocessor::include(std::vector<Token> line, Place hash) {
         out_.incomplete = true;
         return;
     }
+    if (++includes_ > limits::kIncludes || read_ > limits::kSourceBytes) {
+        if (!stopped_)
+            sources_.error(hash, includes_ > limits::kIncludes
+                                     ? "more than " + std::to_string(limits::kIncludes) + " files are included"
+                                     : "the included files have more than " + std::to_string(limits::kSourceBytes) + " bytes together",
+                           "does a file include itself? #pragma once, or #ifndef around its text, keeps it from being read again");
+        stopped_ = out_.incomplete = true;
+        return;
+    }
     std::vector<std::string> folders = {fs::path(sources_.name(frames_.back().lexer->file())).parent_path().string()};
     folders.insert(folders.end(), options_.includePaths.begin(), options_.includePaths.end());
     const std::string slashed = withSlashes(name);

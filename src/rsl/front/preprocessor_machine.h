@@ -83,6 +83,7 @@ private:
     struct If { bool taking, taken, sawElse; Place place; };
 
     void pushFile(int file) {
+        read_ += sources_.text(file).size();
         Frame f;
         f.lexer = std::make_unique<Lexer>(sources_, file);
         f.conditions = ifs_.size();
@@ -324,6 +325,8 @@ private:
     size_t produced_ = 0;
     int files_ = 0, depth_ = 0;
     bool stopped_ = false;
+    int includes_ = 0;    ///< #include lines that were followed
+    size_t read_ = 0;     ///< bytes of files so far
 };
 
 } // namespace alpenglow::rsl::front

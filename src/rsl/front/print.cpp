@@ -32,6 +32,7 @@ std::string list(const Expr& e, const std::string& head) {
     std::string s = "(" + head;
     if (e.space) s += " " + print(*e.space);
     for (const auto& a : e.args) s += " " + print(*a);
+    if (e.kind == ExprKind::ArrayList && e.text == "...") s += " ...";
     if (e.channel) s += " [" + print(*e.channel) + "]";
     for (const auto& p : e.pairs) s += " " + quoted(p.name) + (p.output ? "=>" : "=") + print(*p.value);
     return s + ")";

@@ -123,16 +123,7 @@ void Checker::settleArray(ExprPtr& e, Type want, Handle handle) {
             e->args.resize(size_t(length));
         }
         for (auto& a : e->args) settle(a, want.element(), handle);
-        while (e->text == "..." && !e->args.empty() && int(e->args.size()) < length) e->args.push_back(clone(*e->args.back()));
-        while (int(e->args.size()) < length) { // missing elements are zero
-            auto z = std::make_unique<Expr>();
-            z->kind = want.base == Base::String ? ExprKind::String : ExprKind::Number;
-            z->type = {want.base == Base::String ? Base::String : Base::Float, 0};
-            z->place = e->place;
-            z->varying = false;
-            convert(z, want.element());
-            e->args.push_back(std::move(z));
-        }
+        // Elements that are not given are the last one again after "...", else zero: the list stays as short as it was written.
         for (const auto& a : e->args) e->height = std::max(e->height, a->height + 1);
         e->type = {want.base, length};
         finish(*e);

@@ -90,6 +90,7 @@ void SourceSet::flush(Diagnostics& d) {
         return std::tie(a.place.file, a.place.line, a.place.column, a.order) <
                std::tie(b.place.file, b.place.line, b.place.column, b.order);
     });
+    size_t kept = 0; // bytes of source lines: thousands of messages about one long line must not keep it thousands of times
     for (auto& m : messages_) {
         Diagnostic out;
         out.severity = m.severity;
@@ -97,7 +98,8 @@ void SourceSet::flush(Diagnostics& d) {
         if (m.place.file >= 0 && m.place.file < int(entries_.size())) out.place.file = entries_[m.place.file].name;
         out.place.line = m.place.line;
         out.place.column = m.place.column;
-        out.sourceLine = line(m.place);
+        if (kept < limits::kExcerptBytes) out.sourceLine = line(m.place);
+        kept += out.sourceLine.size();
         out.message = std::move(m.text);
         out.hint = std::move(m.hint);
         out.notes = std::move(m.notes);

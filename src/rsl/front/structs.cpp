@@ -1,5 +1,6 @@
 // Which structures there are, what is in them, and the variables that stand for one variable of them.
 #include "rsl/front/structs.h"
+#include "base/limits.h"
 #include "rsl/front/clone.h"
 #include "rsl/front/structs_lowering.h"
 
@@ -28,13 +29,21 @@ std::string Lowering::shown(Type t) const { return isStruct(t) ? "structure '" +
 
 /// A structure inside itself would have no end; what changes its length has no place in an array of structures.
 void Lowering::checkType(size_t index) {
+    size_t& all = members_.emplace_back(1);
     for (auto& m : unit_.structs[index].members) {
-        if (!isStruct(m.type)) continue;
+        if (!isStruct(m.type)) {
+            ++all;
+            continue;
+        }
         const size_t inner = size_t(int(m.type.base) - kFirstStruct);
         if (inner >= index) { // the parser knows only earlier ones; it could be itself after a second definition
             sources_.error(m.place, "a structure cannot contain itself");
             m.type = {Base::Float, 0};
-        } else if (!arrayPossible(m.type, m.place)) {
+        } else if (all + members_[inner] > limits::kStructMembers) {
+            sources_.error(m.place, "a structure has no more than " + std::to_string(limits::kStructMembers) +
+                                        " members, those of its members included");
+            m.type = {Base::Float, 0};
+        } else if (all += members_[inner]; !arrayPossible(m.type, m.place)) {
             m.type.array = 0;
         }
     }

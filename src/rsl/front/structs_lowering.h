@@ -136,6 +136,7 @@ private:
     std::vector<Symbol*> results_;
     std::vector<StmtPtr>* before_ = nullptr;
     int temporaries_ = 0;
+    std::vector<size_t> members_; ///< by structure: itself, its members, and those of members that are structures
 };
 
 } // namespace alpenglow::rsl::front

@@ -1,5 +1,4 @@
 // Expressions: operators, conversions, spaces, arrays.
-#include "rsl/front/visit.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
 #include <cctype>
@@ -40,20 +39,6 @@ Inst* Builder::multiply(Inst* a, Inst* b) {
         }
     return emit(Op::MatrixOf, Kind::Matrix, m);
 }
-
-namespace {
-/// Does the expression do more than give a value: assign, print, call what may do so?
-bool hasEffects(const Expr& root) {
-    bool found = false;
-    front::everyExpr(root, [&](const Expr& e) {
-        found |= e.kind == ExprKind::Assign || e.kind == ExprKind::Method || e.kind == ExprKind::FunctionCall;
-        if (e.kind != ExprKind::ShadeopCall || !e.signature) return;
-        found |= e.type.base == Base::Void || e.shadeop->name == "pop";
-        for (const auto& p : e.signature->parameters) found |= p.output && e.shadeop->section != "Arrays";
-    });
-    return found;
-}
-} // namespace
 
 /// && and ||. What the first operand decides alone leaves the second undone, as in C; one that only gives a value is computed all the
 /// same where the points differ, which nobody sees.
@@ -160,7 +145,12 @@ void Builder::copyArray(Inst* to, const Expr& from) {
         std::vector<Inst*> values;
         for (const ExprPtr& a : from.args) values.push_back(expr(*a));
         for (int i = 0; i < n && i < static_cast<int>(values.size()); ++i) store(i, values[static_cast<size_t>(i)]);
-        for (int i = static_cast<int>(values.size()); i < n; ++i) store(i, zero(to->element));
+        const int given = static_cast<int>(values.size());
+        Inst* rest = from.text == "..." && given > 0 ? coerce(values.back(), to->element) : zero(to->element);
+        if (given < n)
+            everyElement(n - given, [&](Inst* at) {
+                emit(Op::ArrayStore, Kind::None, {to, emit(Op::Add, Kind::Float, {at, constant(static_cast<float>(given))}), rest});
+            });
         return;
     }
     if (!from.type.array) { // float a[42] = 0: the value for every element

@@ -1,5 +1,7 @@
 // Statements: assignments become values, jumps become guards.
 #include "rsl/ir/builder.h"
+#include <algorithm>
+#include <limits>
 
 namespace alpenglow::rsl::ir {
 
@@ -56,14 +58,33 @@ Inst* Builder::alive() {
     return dead ? emit(Op::Not, Kind::Bool, {dead}) : boolean(true);
 }
 
-void Builder::statements(const std::vector<StmtPtr>& list, size_t from) {
-    for (size_t n = from; n < list.size() && !failed_; ++n) {
+// Whether the variables that these statements declare can be carried out of a condition without a change of what is known about them.
+static bool plainDeclarations(const std::vector<StmtPtr>& list, size_t from) {
+    return std::all_of(list.begin() + static_cast<ptrdiff_t>(from), list.end(), [](const StmtPtr& s) {
+        return !s->definition && std::all_of(s->declarators.begin(), s->declarators.end(), [](const Stmt::Declarator& d) {
+            return d.symbol->type.array == 0 && d.symbol->type.base != Base::String && d.symbol->storage != Storage::Uniform;
+        });
+    });
+}
+
+/// Behind a statement that may have left the function or the turn of the loop, the rest stands in a condition; behind the next such
+/// statement in a condition inside of that. That deep nesting costs time that grows with its square, so after kGuards of them all
+/// conditions are closed (`depth` counts them) and the next begins outside. Returns how far the list was built.
+size_t Builder::statements(const std::vector<StmtPtr>& list, size_t from, int depth) {
+    constexpr int kGuards = 128;
+    for (size_t n = from; n < list.size() && !failed_;) {
         Inst* live = alive();
         if (isConst(live)) {
-            if (live->numbers[0] == 0) return;
-            statement(*list[n]);
+            if (live->numbers[0] == 0) return list.size();
+            statement(*list[n++]);
             continue;
         }
+        if (depth == kGuards) return n;
+        const bool parted = depth == 0 && list.size() - n > kGuards && plainDeclarations(list, n);
+        if (parted) // what one part declares the next one reads
+            for (size_t later = n; later < list.size(); ++later)
+                for (const Stmt::Declarator& d : list[later]->declarators) set(slot(d.symbol), zero(kindOf(d.symbol->type)));
+        size_t reached = list.size();
         branch(
             live,
             [&] {
@@ -75,12 +96,15 @@ void Builder::statements(const std::vector<StmtPtr>& list, size_t from) {
                 } else {
                     set(f.returned, boolean(false));
                 }
-                statements(list, n);
+                const int inside = parted ? 1 : depth == 0 ? std::numeric_limits<int>::min() : depth + 1;
+                reached = statements(list, n, inside);
                 return std::vector<Inst*>{};
             },
             [] { return std::vector<Inst*>{}; });
-        return;
+        if (depth != 0) return reached;
+        n = reached;
     }
+    return list.size();
 }
 
 void Builder::declare(const Stmt& s) {

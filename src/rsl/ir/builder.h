@@ -66,7 +66,7 @@ private:
     /// If with everything assigned in a branch yielded; extra values of the branches, too.
     std::vector<Inst*> branch(Inst* condition, const std::function<std::vector<Inst*>()>& yes,
                               const std::function<std::vector<Inst*>()>& no);
-    void statements(const std::vector<StmtPtr>&, size_t from);
+    size_t statements(const std::vector<StmtPtr>&, size_t from, int depth = 0);
     void statement(const Stmt&);
     void declare(const Stmt&);
     void loop(const Expr* condition, const Expr* step, const Stmt* body, const Place&);

@@ -24,7 +24,6 @@ static void longForm(Kernel& k, Region& r, Replacements& rep) {
             Inst* result = k.make(Op::Result, i->kind, {i});
             result->place = i->place;
             result->order = i->order;
-            result->varying = i->varying;
             i->results = {i->kind};
             i->kind = Kind::None;
             rep.set(i, result);
@@ -51,7 +50,6 @@ static void shortForm(Region& r, Replacements& rep) {
             owner->kind = i->kind;
             owner->results.clear();
             owner->order = std::max(owner->order, i->order);
-            owner->varying = owner->varying || i->varying;
             rep.set(i, owner);
             continue;
         }
@@ -187,7 +185,6 @@ Inst* Leaves::constant(Kind kind, const std::vector<float>& numbers) {
     if (!c) {
         c = kernel_.make(Op::Const, kind);
         c->numbers = numbers;
-        c->varying = false;
         front_.push_back(c);
     }
     return c;
@@ -198,7 +195,6 @@ Inst* Leaves::string(const std::string& text) {
     if (!c) {
         c = kernel_.make(Op::ConstString, Kind::String);
         c->text = text;
-        c->varying = false;
         front_.push_back(c);
     }
     return c;

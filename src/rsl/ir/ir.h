@@ -82,9 +82,7 @@ struct Inst {
     Place place;
     uint32_t id = 0;              ///< for printing
     // filled by passes
-    bool varying = true;          ///< passes/uniform.h
     uint8_t order = 0;            ///< jet order that must be carried, 0..2 (passes/derivatives.h)
-    bool constraint = false;      ///< reserved for a pass's own marking; cleared before each pass
 };
 
 /// A value that comes from outside: a predefined variable, an instance parameter, a matrix between spaces.

@@ -27,7 +27,7 @@ struct Printer {
     }
 
     static std::string flags(const Inst* i) {
-        return std::string(i->varying ? "" : "~") + (i->order == 0 ? "" : i->order == 1 ? "'" : "''");
+        return i->order == 0 ? "" : i->order == 1 ? "'" : "''";
     }
 
     void line(int depth, const std::string& s) { out += std::string(static_cast<size_t>(depth) * 4, ' ') + s + "\n"; }

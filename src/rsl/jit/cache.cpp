@@ -1,7 +1,10 @@
 #include "rsl/jit/cache.h"
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
+#include <chrono>
 #include <cstdlib>
+#include <fcntl.h>
 #include <filesystem>
 #include <fstream>
 #include <sys/stat.h>
@@ -10,6 +13,8 @@
 namespace fs = std::filesystem;
 
 namespace alpenglow::rsl::jit {
+
+constexpr std::chrono::hours kTemporaryAge(24);
 
 std::string defaultCacheDirectory() {
     auto env = [](const char* name) {
@@ -26,27 +31,48 @@ KernelCache::KernelCache(std::string directory, size_t maxBytes) : directory_(st
 
 std::string KernelCache::path(const std::string& key) const { return directory_ + "/" + key + ".kernel"; }
 
+std::string KernelCache::refusal() const {
+    struct stat s{};
+    if (directory_.empty() || stat(directory_.c_str(), &s) != 0) return {};
+    const std::string cure = "; set ALPENGLOW_CACHE to a folder of your own, or to \"off\"";
+    if (!S_ISDIR(s.st_mode)) return {};
+    if (s.st_uid != geteuid()) return "the kernel cache " + directory_ + " belongs to another user and is not used" + cure;
+    if ((s.st_mode & 022) == 0) return {};
+    return "the kernel cache " + directory_ + " is not used because others can write to it; chmod go-w makes it safe" + cure;
+}
+
 std::optional<KernelFile> KernelCache::load(const std::string& key) const {
-    if (directory_.empty()) return {};
     // Code is run from here: only from a file and a directory of this user that no one else can write.
-    struct stat dir{}, file{};
-    if (stat(directory_.c_str(), &dir) != 0 || dir.st_uid != geteuid() || (dir.st_mode & 022)) return {};
+    if (directory_.empty() || !refusal().empty()) return {};
     const std::string name = path(key);
-    if (stat(name.c_str(), &file) != 0 || !S_ISREG(file.st_mode) || file.st_uid != geteuid() || size_t(file.st_size) > maxBytes_)
-        return {};
-    std::ifstream in(name, std::ios::binary);
-    std::string bytes(size_t(file.st_size), 0);
-    if (!in.read(bytes.data(), std::streamsize(bytes.size()))) return {};
+    const int fd = open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+    if (fd < 0) return {};
+    struct stat s{};
+    std::string bytes;
+    bool whole = fstat(fd, &s) == 0 && S_ISREG(s.st_mode) && s.st_uid == geteuid() && !(s.st_mode & 022) && size_t(s.st_size) <= maxBytes_;
+    if (whole) bytes.resize(size_t(s.st_size));
+    for (size_t at = 0; whole && at < bytes.size();) {
+        const ssize_t n = read(fd, bytes.data() + at, bytes.size() - at);
+        if (n < 0 && errno == EINTR) continue;
+        whole = n > 0;
+        at += whole ? size_t(n) : 0;
+    }
+    close(fd);
+    if (!whole) return {};
     auto k = unpack(bytes);
     std::error_code ignored;
-    if (!k) fs::remove(name, ignored);
-    else fs::last_write_time(name, fs::file_time_type::clock::now(), ignored); // when it was last used
+    if (!k || k->key != key) { // damaged, or another kernel's
+        fs::remove(name, ignored);
+        return {};
+    }
+    fs::last_write_time(name, fs::file_time_type::clock::now(), ignored); // when it was last used
     return k;
 }
 
 void KernelCache::store(const std::string& key, const KernelFile& k) const {
     if (directory_.empty()) return;
     std::error_code e;
+    if (!refusal().empty()) return;
     if (!fs::exists(directory_, e)) {
         fs::create_directories(directory_, e);
         if (!e) fs::permissions(directory_, fs::perms::owner_all, e);
@@ -55,7 +81,9 @@ void KernelCache::store(const std::string& key, const KernelFile& k) const {
     const std::string temporary = path(key) + "." + std::to_string(getpid()) + "." + std::to_string(counter++) + ".tmp";
     {
         std::ofstream out(temporary, std::ios::binary);
-        const std::string bytes = pack(k);
+        KernelFile named = k;
+        named.key = key;
+        const std::string bytes = pack(named);
         out.write(bytes.data(), std::streamsize(bytes.size()));
         out.close();
         if (!out) {
@@ -79,8 +107,13 @@ void KernelCache::trim() const {
     uintmax_t total = 0;
     std::error_code e;
     for (fs::directory_iterator it(directory_, e), end; !e && it != end; it.increment(e)) {
-        if (it->path().extension() != ".kernel") continue;
         std::error_code f;
+        if (it->path().extension() == ".tmp") { // of a program that was killed while it wrote
+            const auto written = it->last_write_time(f);
+            if (!f && written < fs::file_time_type::clock::now() - kTemporaryAge) fs::remove(it->path(), f);
+            continue;
+        }
+        if (it->path().extension() != ".kernel") continue;
         Entry x{it->path(), it->last_write_time(f), it->file_size(f)};
         if (f) continue;
         total += x.size;

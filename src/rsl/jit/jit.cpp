@@ -39,6 +39,7 @@ public:
         facts_ = k.facts;
         for (const auto& s : k.strings) strings_.push_back(internString(s));
         lanes_ = k.strip;
+        localBytes_ = k.localBytes;
         fromCache_ = fromCache;
         entry_ = reinterpret_cast<decltype(entry_)>(object_->find(kEntryName));
         start_ = reinterpret_cast<decltype(start_)>(object_->find(kStartName));
@@ -88,6 +89,7 @@ bool generate(const ir::Kernel& kernel, const KernelOptions& options, KernelFile
     out.strings = result.strings;
     out.strip = result.strip;
     out.suspending = result.suspending;
+    out.localBytes = result.localBytes;
     out.object = std::move(result.object);
     return true;
 }

@@ -5,7 +5,7 @@
 namespace alpenglow::rsl::jit {
 namespace {
 
-constexpr char kMagic[] = "alpenglow kernel 2\n";
+constexpr char kMagic[] = "alpenglow kernel 3\n";
 constexpr size_t kDigest = 64;
 
 // One function a type describes both directions: `a(x)` writes x or reads it.
@@ -116,6 +116,7 @@ template <class A> void item(A& a, Diagnostic& d) {
     a(d.sourceLine);
 }
 template <class A> void item(A& a, KernelFile& k) {
+    a(k.key);
     a(k.inputs);
     a(k.outputs);
     a(k.sites);
@@ -124,6 +125,7 @@ template <class A> void item(A& a, KernelFile& k) {
     a(k.strings);
     a(k.strip);
     a(k.suspending);
+    a(k.localBytes);
     a(k.messages);
     a(k.object);
 }

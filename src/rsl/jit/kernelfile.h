@@ -10,6 +10,7 @@
 namespace alpenglow::rsl::jit {
 
 struct KernelFile {
+    std::string key; ///< what it is stored under in the cache
     std::vector<ir::Input> inputs;
     std::vector<ir::OutputSlot> outputs;
     std::vector<ir::Site> sites;
@@ -18,6 +19,7 @@ struct KernelFile {
     std::vector<std::string> strings; ///< texts; ids are given when loaded
     int strip = 0;
     bool suspending = false;
+    uint64_t localBytes = 0; ///< of KernelCall::memory
     std::vector<Diagnostic> messages; ///< warnings of the build, said again when the kernel comes from the cache
     std::string object;
 };

@@ -1,5 +1,7 @@
 #include "rsl/jit/module.h"
+#include "rsl/jit/stamp.h"
 #include <cstdlib>
+#include <cstring>
 #include <dlfcn.h>
 #include <filesystem>
 #include <mutex>
@@ -44,6 +46,30 @@ Module* loaded = nullptr; // never unloaded: LLVM's static data outlives every t
 
 Module* loadModule() {
     auto* m = new Module;
+    const auto fail = [&](const std::string& why) {
+        m->error = "the shader compiler's module libalpenglow_jit.so cannot be loaded: " + why;
+        return m;
+    };
+    const std::string file = moduleFile();
+    if (file.empty()) return fail("it is not beside the program");
+    void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!handle) {
+        const char* why = dlerror();
+        return fail(why ? why : file);
+    }
+    // Types of ours pass between the two: from other headers they would be other types.
+    auto stamp = reinterpret_cast<ModuleStampFn>(dlsym(handle, "alpenglow_jit_stamp"));
+    auto compile = reinterpret_cast<ModuleCompileFn>(dlsym(handle, "alpenglow_jit_compile"));
+    if (!stamp || !compile || std::strcmp(stamp(), kModuleStamp) != 0)
+        return fail(file + " was built from other sources than this program; build and install both together" +
+                    (std::getenv("ALPENGLOW_JIT") ? ", or unset ALPENGLOW_JIT" : ""));
+    m->compile = compile;
+    return m;
+}
+
+} // namespace
+
+std::string moduleFile() {
     std::vector<std::string> places;
     if (const char* p = std::getenv("ALPENGLOW_JIT")) places.push_back(p);
     std::error_code e;
@@ -52,29 +78,10 @@ Module* loadModule() {
         places.push_back((exe.parent_path().parent_path() / "lib" / "libalpenglow_jit.so").string());
     }
     places.push_back(ALPENGLOW_JIT_MODULE);
-    for (const auto& p : places) {
-        if (!std::filesystem::exists(p, e)) continue;
-        void* handle = dlopen(p.c_str(), RTLD_NOW | RTLD_LOCAL);
-        if (!handle) {
-            const char* why = dlerror();
-            m->error += std::string(why ? why : p) + "; ";
-            continue;
-        }
-        auto abi = reinterpret_cast<ModuleAbiFn>(dlsym(handle, "alpenglow_jit_abi"));
-        auto compile = reinterpret_cast<ModuleCompileFn>(dlsym(handle, "alpenglow_jit_compile"));
-        if (!abi || !compile || abi() != kModuleAbi) {
-            m->error += p + " is of another version; ";
-            continue;
-        }
-        m->compile = compile;
-        return m;
-    }
-    m->error = "the shader compiler's module libalpenglow_jit.so cannot be loaded: " +
-               (m->error.empty() ? "it is not beside the program" : m->error);
-    return m;
+    for (const auto& p : places)
+        if (std::filesystem::is_regular_file(p, e)) return p;
+    return {};
 }
-
-} // namespace
 
 bool moduleLoaded() {
     std::lock_guard lock(mutex);

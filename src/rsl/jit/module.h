@@ -39,6 +39,7 @@ struct ModuleResult {
     std::string text;
     int strip = 0; ///< points per strip: lanes * vectors
     bool suspending = false;
+    uint64_t localBytes = 0; ///< of KernelCall::memory
     std::vector<std::string> strings; ///< string constants in the order of KernelCall::strings
 };
 
@@ -49,11 +50,14 @@ inline constexpr const char* kResumeName = "alpenglow_resume";
 inline constexpr const char* kFinishedName = "alpenglow_finished";
 inline constexpr const char* kDestroyName = "alpenglow_destroy";
 
-/// What the module exports, by these names. Thread safe; never throws.
-inline constexpr int kModuleAbi = 1;
+/// What the module exports: alpenglow_jit_stamp, which gives the kModuleStamp that it was built with, and alpenglow_jit_compile.
+/// Thread safe; neither throws.
 using ModuleCompileFn = void (*)(const ModuleRequest*, ModuleResult*);
-using ModuleAbiFn = int (*)();
+using ModuleStampFn = const char* (*)();
 
+/// The file that is loaded: $ALPENGLOW_JIT, else libalpenglow_jit.so beside the program, in ../lib, or where it was built; "" when there
+/// is none.
+std::string moduleFile();
 /// Compiles through the module, loading it when needed. The error says where it was looked for.
 void compileWithModule(const ModuleRequest&, ModuleResult&);
 /// True once the module, and with it LLVM, is in the process.

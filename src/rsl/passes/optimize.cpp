@@ -10,10 +10,10 @@
 #include "rsl/passes/fold.h"
 #include "rsl/passes/gradients.h"
 #include "rsl/passes/ifconvert.h"
+#include "rsl/passes/localmemory.h"
 #include "rsl/passes/outline.h"
 #include "rsl/passes/promote.h"
 #include "rsl/passes/slope.h"
-#include "rsl/passes/uniform.h"
 #include "rsl/passes/unroll.h"
 #include "rsl/passes/unused_results.h"
 #include <algorithm>
@@ -108,11 +108,11 @@ void optimize(Kernel& k, const KernelOptions& options, Diagnostics& diagnostics)
     }
     removeUnusedInputs(k);
     toShortForm(k);
-    markUniform(k, options.mixed);
     specialiseFunctions(k);
     check(k, "specialise");
     orderDerivatives(k, diagnostics);
     check(k, "derivatives");
+    checkLocalMemory(k, diagnostics);
 }
 
 } // namespace alpenglow::rsl::ir

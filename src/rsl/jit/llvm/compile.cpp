@@ -1,6 +1,7 @@
 // The LLVM side of the door: module set-up, passes, machine code. Everything else of LLVM's size is here and nowhere else.
 #include "rsl/jit/llvm/emitter.h"
 #include "rsl/jit/llvm/masks.h"
+#include "rsl/jit/stamp.h"
 #include <llvm/Bitcode/BitcodeReader.h>
 #include <llvm/IR/LegacyPassManager.h>
 #include <llvm/IR/Verifier.h>
@@ -62,6 +63,7 @@ void setAttributes(llvm::Module& m, const Target& t, int width) {
         f.addFnAttr("prefer-vector-width", t.preferred);
         f.addFnAttr("min-legal-vector-width", std::string(t.preferred) == "512" ? "512" : "256");
         f.addFnAttr(llvm::Attribute::NoUnwind);
+        f.addFnAttr("probe-stack", "inline-asm"); // a large frame meets the guard page and never steps over it
         (void)width;
     }
 }
@@ -158,6 +160,7 @@ void compile(const ModuleRequest& request, ModuleResult& result) {
     else emitter.emitLoopKernel();
     result.strings = emitter.strings();
     result.strip = width;
+    if (!result.suspending) result.localBytes = emitter.localBytes();
     if (llvm::Linker::linkModules(*module, std::move(runtime), llvm::Linker::LinkOnlyNeeded))
         throw CodegenError("the runtime does not link");
     for (llvm::Function& f : *module)
@@ -184,7 +187,7 @@ void compile(const ModuleRequest& request, ModuleResult& result) {
 } // namespace
 } // namespace alpenglow::rsl::jit
 
-extern "C" __attribute__((visibility("default"))) int alpenglow_jit_abi() { return alpenglow::rsl::jit::kModuleAbi; }
+extern "C" __attribute__((visibility("default"))) const char* alpenglow_jit_stamp() { return alpenglow::rsl::jit::kModuleStamp; }
 
 extern "C" __attribute__((visibility("default"))) void alpenglow_jit_compile(const alpenglow::rsl::jit::ModuleRequest* request,
                                                                              alpenglow::rsl::jit::ModuleResult* result) {

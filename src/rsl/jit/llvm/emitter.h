@@ -41,6 +41,8 @@ public:
     void emitLoopKernel();
     void emitCoroutine();
     const std::vector<std::string>& strings() const { return shared_->strings; }
+    /// Bytes of KernelCall::memory that a kernel that does not suspend wants.
+    uint64_t localBytes() const { return shared_->localBytes; }
 
 private:
     /// One component as it passes a call: lanes or one number, and which parts there are.
@@ -57,6 +59,8 @@ private:
         std::vector<std::string> strings;
         std::map<std::string, llvm::Function*> wrappers;
         std::map<std::string, Made> made;
+        uint64_t stackBytes = 0; ///< of arrays and scratch rows on the stack, all functions of the kernel together
+        uint64_t localBytes = 0; ///< of those in the kernel's local memory (KernelCall::memory, or behind a coroutine's frame)
     };
     /// The emitter of a function that `caller` calls.
     Emitter(const Emitter& caller, const Shapes&);
@@ -109,6 +113,7 @@ private:
     void input(const ir::Inst*);
     void output(const ir::Inst*);
     void arrayNew(const ir::Inst*);
+    llvm::Value* localMemory(uint64_t bytes, uint64_t align, llvm::Instruction* place);
     void arrayInput(const ir::Inst*);
     void arrayLoad(const ir::Inst*);
     void arrayStore(const ir::Inst*);
@@ -151,6 +156,7 @@ private:
     llvm::BasicBlock* entryBlock_ = nullptr;
     llvm::Value *call_ = nullptr, *first_ = nullptr, *first64_ = nullptr, *mask_ = nullptr, *stop_ = nullptr, *stride_ = nullptr;
     llvm::Value *in_ = nullptr, *out_ = nullptr, *stringIds_ = nullptr, *n_ = nullptr;
+    llvm::Value* memory_ = nullptr; ///< of arrays that the stack has no room for; functions get it from their caller
     bool rootMask_ = true; ///< the mask is that of the strip: lanes beyond n may be overwritten
     // Scratch rows: arguments and results of runtime calls (promoted to registers), of services (escape).
     struct Scratch {

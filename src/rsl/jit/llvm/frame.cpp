@@ -44,11 +44,16 @@ void Emitter::finishScratch() {
     for (size_t k = 0; k < scratch_.size(); k++) {
         auto& s = scratch_[k];
         if (s.rows > 0) {
-            B at(s.place);
-            auto* a = at.CreateAlloca(llvm::ArrayType::get(vf_, uint64_t(s.rows)));
             // Rows of runtime calls have the alignment of a whole vector type; those of services are promised 64 bytes.
-            a->setAlignment(llvm::Align(k < 2 && width_ > 16 ? uint64_t(width_) * 4 : 64));
-            s.place->replaceAllUsesWith(a);
+            const uint64_t align = k < 2 && width_ > 16 ? uint64_t(width_) * 4 : 64;
+            Value* rows = localMemory(uint64_t(s.rows) * uint64_t(width_) * 4, align, entryBlock_->getTerminator());
+            if (!rows) {
+                B at(s.place);
+                auto* a = at.CreateAlloca(llvm::ArrayType::get(vf_, uint64_t(s.rows)));
+                a->setAlignment(llvm::Align(align));
+                rows = a;
+            }
+            s.place->replaceAllUsesWith(rows);
         }
         s.place->eraseFromParent();
         s.place = nullptr;
@@ -70,6 +75,7 @@ void Emitter::emitLoopKernel() {
     auto* f = Function::Create(FunctionType::get(void_, {ptr_}, false), Function::ExternalLinkage, kEntryName, module_);
     beginFunction(f);
     loadCall(f->getArg(0));
+    memory_ = field(offsetof(KernelCall, memory), ptr_, "memory");
     entryBlock_ = b_.GetInsertBlock();
     entry_.SetInsertPoint(entryBlock_);
     BasicBlock *head = block("strips"), *body = block("strip"), *exit = block("done");
@@ -107,7 +113,15 @@ void Emitter::emitCoroutine() {
     auto* null = llvm::ConstantPointerNull::get(llvm::cast<llvm::PointerType>(ptr_));
     Value* token = llvm::ConstantTokenNone::get(context_);
     Value* id = b_.CreateIntrinsic(llvm::Intrinsic::coro_id, {}, {b_.getInt32(64), null, null, null});
-    Value* size = b_.CreateIntrinsic(llvm::Intrinsic::coro_size, {i64_}, {});
+    // The local memory stands behind the frame. How much it is, is known when the body has been written.
+    auto* local = new llvm::GlobalVariable(module_, i64_, /*constant=*/true, llvm::GlobalValue::InternalLinkage,
+                                           llvm::ConstantInt::get(i64_, 0), "local");
+    const auto frameBytes = [&] {
+        Value* n = b_.CreateIntrinsic(llvm::Intrinsic::coro_size, {i64_}, {});
+        return b_.CreateAnd(b_.CreateAdd(n, b_.getInt64(kMemoryAlign - 1)), b_.getInt64(~uint64_t(kMemoryAlign - 1)));
+    };
+    Value* behind = frameBytes();
+    Value* size = b_.CreateAdd(behind, b_.CreateLoad(i64_, local));
     call_ = call;
     Value* alloc = field(offsetof(KernelCall, alloc), ptr_, "alloc");
     Value* memory = b_.CreateCall(FunctionType::get(ptr_, {ptr_, i64_}, false), alloc, {call, size}, "frame");
@@ -119,6 +133,7 @@ void Emitter::emitCoroutine() {
     b_.CreateRet(null);
     b_.SetInsertPoint(begin);
     Value* handle = b_.CreateIntrinsic(llvm::Intrinsic::coro_begin, {}, {id, memory});
+    memory_ = b_.CreateGEP(llvm::Type::getInt8Ty(context_), memory, behind, "memory");
     loadCall(call);
     entryBlock_ = begin;
     entry_.SetInsertPoint(begin);
@@ -135,7 +150,7 @@ void Emitter::emitCoroutine() {
     b_.SetInsertPoint(cleanupBlock_);
     Value* freed = b_.CreateIntrinsic(llvm::Intrinsic::coro_free, {}, {id, handle});
     Value* release = field(offsetof(KernelCall, release), ptr_, "release");
-    Value* bytes = b_.CreateIntrinsic(llvm::Intrinsic::coro_size, {i64_}, {});
+    Value* bytes = b_.CreateAdd(frameBytes(), b_.CreateLoad(i64_, local));
     b_.CreateCall(FunctionType::get(void_, {ptr_, ptr_, i64_}, false), release, {call, freed, bytes});
     b_.CreateBr(suspendBlock_);
     b_.SetInsertPoint(suspendBlock_);
@@ -143,6 +158,7 @@ void Emitter::emitCoroutine() {
     b_.CreateRet(handle);
     entry_.CreateBr(body);
     finishScratch();
+    local->setInitializer(llvm::ConstantInt::get(i64_, shared_->localBytes));
 
     auto small = [&](const char* name, llvm::Type* result) {
         auto* g = Function::Create(FunctionType::get(result, {ptr_}, false), Function::ExternalLinkage, name, module_);

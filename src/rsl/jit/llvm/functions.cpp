@@ -58,7 +58,7 @@ Jet Emitter::receive(Kind k, const Slot& s, const std::function<Value*()>& next)
 Emitter::Made Emitter::function(const Inst* f, const std::vector<std::vector<Slot>>& arguments) {
     std::string key = std::to_string(f->id);
     std::vector<Shape> shapes;
-    std::vector<llvm::Type*> types = {ptr_, i32_, vi_}; // the kernel's call, the strip's first point, the mask
+    std::vector<llvm::Type*> types = {ptr_, i32_, vi_, ptr_}; // the kernel's call, the strip's first point, the mask, local memory
     const ir::Region& body = f->regions[0];
     for (size_t a = 0; a < arguments.size(); a++) {
         Shape shape;
@@ -82,11 +82,12 @@ Emitter::Made Emitter::function(const Inst* f, const std::vector<std::vector<Slo
     e.first64_ = e.b_.CreateSExt(e.first_, i64_);
     e.mask_ = e.b_.CreateICmpNE(draft->getArg(2), llvm::Constant::getNullValue(vi_), "mask");
     e.rootMask_ = false;
+    e.memory_ = draft->getArg(3);
     e.entryBlock_ = e.b_.GetInsertBlock();
     e.entry_.SetInsertPoint(e.entryBlock_);
     llvm::BasicBlock* start = e.block("body");
     e.b_.SetInsertPoint(start);
-    unsigned at = 3;
+    unsigned at = 4;
     const auto next = [&]() -> Value* { return draft->getArg(at++); };
     for (size_t a = 0; a < arguments.size(); a++) {
         Val v;
@@ -145,7 +146,7 @@ void Emitter::call(const Inst* i) {
     const ir::Region& body = f->regions[0];
     std::vector<std::vector<Slot>> arguments;
     Value* mask = b_.CreateSExt(mask_, vi_);
-    std::vector<Value*> values = {call_, first_, mask};
+    std::vector<Value*> values = {call_, first_, mask, memory_};
     for (size_t a = 0; a < body.params.size(); a++) {
         const uint8_t wanted = partsOfOrder(body.params[a]->order);
         arguments.emplace_back();

@@ -1,4 +1,5 @@
 // Inputs, outputs, arrays, string constants.
+#include "base/limits.h"
 #include "rsl/jit/llvm/emitter.h"
 #include "rsl/kernel.h"
 #include <algorithm>
@@ -91,7 +92,24 @@ void Emitter::output(const Inst* i) {
     }
 }
 
+// Null while the stack has room for `bytes` more; else a place in the kernel's local memory, which is known from `place` on (null: in
+// the whole body). One kernel has one stack and one memory, however its functions call each other: no RSL function calls itself.
+Value* Emitter::localMemory(uint64_t bytes, uint64_t align, llvm::Instruction* place) {
+    if (shared_->stackBytes + bytes <= limits::kKernelStack) {
+        shared_->stackBytes += bytes;
+        return nullptr;
+    }
+    const uint64_t at = (shared_->localBytes + align - 1) / align * align;
+    shared_->localBytes = at + (bytes + 63) / 64 * 64;
+    llvm::Type* byte = llvm::Type::getInt8Ty(context_);
+    if (!place) return entry_.CreateConstInBoundsGEP1_64(byte, memory_, at, "array");
+    return B(place).CreateConstInBoundsGEP1_64(byte, memory_, at, "rows");
+}
+
 void Emitter::arrayNew(const Inst* i) {
+    const auto bytesOf = [&](const ArrayStorage& a) {
+        return uint64_t(a.length) * uint64_t(a.rows()) * 4 * uint64_t(a.shape.varying ? width_ : 1);
+    };
     ArrayStorage& a = arrays_[i];
     if (!a.base) {
         a.length = std::max(1, i->index);
@@ -100,12 +118,15 @@ void Emitter::arrayNew(const Inst* i) {
         a.shape = shapes_.of(i);
         llvm::Type* t =
             a.element == Kind::String ? (a.shape.varying ? (llvm::Type*)vi_ : i32_) : (a.shape.varying ? (llvm::Type*)vf_ : f32_);
-        B top(&function_->getEntryBlock(), function_->getEntryBlock().begin());
-        auto* storage = top.CreateAlloca(llvm::ArrayType::get(t, uint64_t(a.length) * uint64_t(a.rows())), nullptr, "array");
-        storage->setAlignment(llvm::Align(64));
-        a.base = storage;
+        a.base = localMemory(bytesOf(a), 64, nullptr);
+        if (!a.base) {
+            B top(&function_->getEntryBlock(), function_->getEntryBlock().begin());
+            auto* storage = top.CreateAlloca(llvm::ArrayType::get(t, uint64_t(a.length) * uint64_t(a.rows())), nullptr, "array");
+            storage->setAlignment(llvm::Align(64));
+            a.base = storage;
+        }
     }
-    const uint64_t bytes = uint64_t(a.length) * uint64_t(a.rows()) * 4 * uint64_t(a.shape.varying ? width_ : 1);
+    const uint64_t bytes = bytesOf(a);
     b_.CreateMemSet(a.base, b_.getInt8(0), bytes, llvm::MaybeAlign(64));
     define(i, 0, {Jet{a.base}});
 }

@@ -25,8 +25,8 @@ struct Shape {
     }
 };
 
-/// Shapes of all values of a kernel: the least fixed point over its tree. Sound for any kernel that verify() accepts; does not
-/// rely on Inst::varying, only on Inst::order.
+/// Shapes of all values of a kernel: the least fixed point over its tree. Sound for any kernel that verify() accepts; relies on
+/// Inst::order.
 class Shapes {
 public:
     Shapes(const ir::Kernel&, bool mixed, const std::set<std::string>* zeroDerivative);

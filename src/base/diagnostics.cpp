@@ -1,5 +1,6 @@
 #include "base/diagnostics.h"
 #include "base/limits.h"
+#include "base/printable.h"
 #include <algorithm>
 
 namespace alpenglow {
@@ -10,7 +11,8 @@ bool continues(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; 
 
 /// The line, or of a long one what stands around the column, and below it the caret and its range.
 std::string excerpt(const Diagnostic& d) {
-    const std::string& line = d.sourceLine;
+    std::string_view line = d.sourceLine;
+    if (line.ends_with('\r')) line.remove_suffix(1); // of a file whose lines end with two characters
     const size_t room = limits::kExcerptColumns, at = d.place.column > 0 ? std::min(size_t(d.place.column) - 1, line.size()) : 0;
     size_t begin = 0, end = line.size();
     if (line.size() > room) {
@@ -24,17 +26,20 @@ std::string excerpt(const Diagnostic& d) {
         while (end < line.size() && continues(line[end])) ++end;
     }
     const std::string head = begin > 0 ? "... " : "";
-    std::string s = "  " + head + line.substr(begin, end - begin) + (end < line.size() ? " ..." : "") + "\n";
-    if (d.place.column <= 0) return s;
-    s += "  " + std::string(head.size(), ' ');
-    for (size_t i = begin; i < at; ++i) {
-        if (i < line.size() && continues(line[i])) continue; // one place for one character
-        s += i < line.size() && line[i] == '\t' ? '\t' : ' ';
+    std::string shown, below;
+    for (size_t i = begin; i < end;) { // below: one place for one character, more for one that is shown by its bytes
+        const size_t from = shown.size(), n = appendPrintable(line, i, shown);
+        const bool caret = i <= at && at < i + n, under = i > at && i < at + size_t(std::max(d.length, 0));
+        const bool bytes = shown[from] == '\\' && line[i] != '\\';
+        below += caret ? '^' : under ? '~' : i < at && line[i] == '\t' ? '\t' : ' ';
+        if (bytes) below.append(shown.size() - from - 1, caret || under ? '~' : ' ');
+        i += n;
     }
-    s += "^";
-    for (size_t i = at + 1; i < at + size_t(std::max(d.length, 0)) && i < end; ++i)
-        if (!continues(line[i])) s += "~";
-    return s + "\n";
+    if (at >= end) below.append(at - end, ' ').append("^");
+    std::string s = "  " + head + shown + (end < line.size() ? " ..." : "") + "\n";
+    if (d.place.column <= 0) return s;
+    below.resize(below.find_last_not_of(" \t") + 1);
+    return s + "  " + std::string(head.size(), ' ') + below + "\n";
 }
 
 } // namespace
@@ -42,7 +47,7 @@ std::string excerpt(const Diagnostic& d) {
 std::string toString(const Diagnostic& d) {
     std::string s;
     if (!d.place.file.empty()) {
-        s += d.place.file;
+        for (const char c : printable(d.place.file)) c == '\n' ? s += "\\x0a" : s += c;
         if (d.place.line > 0) {
             s += ":" + std::to_string(d.place.line);
             if (d.place.column > 0) s += ":" + std::to_string(d.place.column);
@@ -50,12 +55,12 @@ std::string toString(const Diagnostic& d) {
         s += ": ";
     }
     s += d.severity == Severity::Info ? "note: " : d.severity == Severity::Warning ? "warning: " : "error: ";
-    s += d.message;
+    s += printable(d.message);
     if (!d.id.empty()) s += " [" + d.id + "]";
     s += "\n";
     if (!d.sourceLine.empty()) s += excerpt(d);
-    for (const std::string& n : d.notes) s += "  note: " + n + "\n";
-    if (!d.hint.empty()) s += "  hint: " + d.hint + "\n";
+    for (const std::string& n : d.notes) s += "  note: " + printable(n) + "\n";
+    if (!d.hint.empty()) s += "  hint: " + printable(d.hint) + "\n";
     return s;
 }
 

@@ -1,4 +1,5 @@
 // alpenglow compile: checks shaders, compiles them to machine code, shows what became of them.
+#include "base/printable.h"
 #include "cli/command.h"
 #include "rsl/compiler.h"
 #include "rsl/front/messages.h"
@@ -146,7 +147,7 @@ void addCompile(CLI::App& app, int* status) {
                 for (const auto& s : kindsOf(shader)) {
                     if (!a->json && (a->ir || a->llvm)) {
                         std::string text = compiler.dump(s, options, diags, a->llvm);
-                        std::fputs(text.c_str(), stdout);
+                        std::fputs(printable(text).c_str(), stdout);
                         ok = ok && !text.empty();
                     }
                     ok = ok && compiler.kernel(s, options, diags) != nullptr;

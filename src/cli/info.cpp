@@ -1,4 +1,5 @@
 // alpenglow info: what a shader is, and the manual of the shadeops.
+#include "base/printable.h"
 #include "cli/command.h"
 #include "cli/manual.h"
 #include "cli/shaderdescription.h"
@@ -31,7 +32,7 @@ int shadeops(const std::string& name, bool json) {
         std::vector<std::string> names;
         for (const auto& o : rsl::shadeops()) names.push_back(o.name);
         std::string near = nearestName(name, names);
-        std::fprintf(stderr, "alpenglow: there is no shadeop \"%s\"%s%s\n", name.c_str(), near.empty() ? "" : "; did you mean ",
+        std::fprintf(stderr, "alpenglow: there is no shadeop \"%s\"%s%s\n", printable(name).c_str(), near.empty() ? "" : "; did you mean ",
                      near.c_str());
         return kDoneWithErrors;
     }
@@ -91,7 +92,7 @@ void addInfo(CLI::App& app, int* status) {
         Json first;
         for (const auto& s : wanted) {
             const ShaderDescription d = describe(compiler, s, diags);
-            if (!a->json) std::fputs(((s == shader ? "" : "\n") + descriptionText(d)).c_str(), stdout);
+            if (!a->json) std::fputs(printable((s == shader ? "" : "\n") + descriptionText(d)).c_str(), stdout);
             else if (s == shader) first = descriptionJson(d);
             else first["others"].push_back(descriptionJson(d));
         }

@@ -1,8 +1,10 @@
 // The program: finds the subcommand, reads its arguments. `alpenglow scene.rib` is `alpenglow render scene.rib`.
+#include "base/printable.h"
 #include "cli/command.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <sstream>
 
 using namespace alpenglow;
 using namespace alpenglow::cli;
@@ -55,12 +57,16 @@ int main(int argc, char** argv) {
     try {
         app.parse(args);
     } catch (const CLI::ParseError& e) {
-        return app.exit(e, std::cout, std::cerr) == 0 ? kDone : kWrongUse;
+        std::ostringstream out, err; // they name what was given
+        const int code = app.exit(e, out, err);
+        std::fputs(printable(out.str()).c_str(), stdout);
+        std::fputs(printable(err.str()).c_str(), stderr);
+        return code == 0 ? kDone : kWrongUse;
     } catch (const std::bad_alloc&) {
         std::fputs("alpenglow: out of memory\n", stderr);
         return kLimit;
     } catch (const std::exception& e) {
-        std::fprintf(stderr, "alpenglow: %s\n", e.what());
+        std::fprintf(stderr, "alpenglow: %s\n", printable(e.what()).c_str());
         return kNothingRendered;
     }
     return status;

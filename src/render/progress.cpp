@@ -1,4 +1,5 @@
 #include "render/progress.h"
+#include "base/printable.h"
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -67,7 +68,7 @@ std::string Progress::line(const ProgressState& s, std::string_view what, bool l
     else if (s.fraction > 0)
         text += "  ETA " + formatDuration(elapsed * (1 - std::min(s.fraction, 1.0)) / s.fraction);
     if (!what.empty())
-        text = std::string(what) + "  " + text;
+        text = printable(what) + "  " + text;
     return text;
 }
 

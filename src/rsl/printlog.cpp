@@ -1,5 +1,6 @@
 #include "rsl/printlog.h"
 #include "base/limits.h"
+#include "base/printable.h"
 #include <algorithm>
 #include <bit>
 #include <tuple>
@@ -50,7 +51,10 @@ void PrintLog::discard() {
 void PrintLog::write() {
     std::stable_sort(messages_.begin(), messages_.end(),
                      [](const Message& a, const Message& b) { return order(a.key) < order(b.key); });
-    for (const Message& m : messages_) std::fwrite(m.text.data(), 1, m.text.size(), to_);
+    for (const Message& m : messages_) {
+        const std::string text = printable(m.text);
+        std::fwrite(text.data(), 1, text.size(), to_);
+    }
     messages_.clear();
     bytes_ = 0;
 }

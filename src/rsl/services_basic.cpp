@@ -1,4 +1,5 @@
 #include "rsl/services_basic.h"
+#include "base/printable.h"
 #include "base/category.h"
 #include "base/limits.h"
 #include "rsl/handlename.h"
@@ -314,7 +315,7 @@ bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* 
         each([&](int l) {
             const std::string t = formatSite(s, lanes, in, l) + (s.op == "print" ? "\n" : "");
             if (print) print(l, t);
-            else std::fwrite(t.data(), 1, t.size(), stdout);
+            else std::fputs(printable(t).c_str(), stdout);
         });
     } else if (s.op == "concat") {
         each([&](int l) {

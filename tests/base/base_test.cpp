@@ -1,3 +1,4 @@
+#include "base/printable.h"
 #include "base/diagnostics.h"
 #include "base/limits.h"
 #include "base/matrix.h"
@@ -58,6 +59,27 @@ TEST(Matrix, PerspectiveFormula) { // x' = x/(z t), z' = (z-1)/z
 TEST(Diagnostics, TextHasPlaceCaretAndHint) {
     Diagnostic d{Severity::Error, Rie::Syntax, {"a.sl", 3, 5}, "no such thing", "did you mean \"that\"?", "\tfoo bar"};
     EXPECT_EQ(toString(d), "a.sl:3:5: error: no such thing\n  \tfoo bar\n  \t   ^\n  hint: did you mean \"that\"?\n");
+}
+
+// Names from files may hold what a terminal obeys: it is shown by its bytes, and the caret stands where it belongs.
+TEST(Diagnostics, ControlCharactersAreShownByTheirBytes) {
+    EXPECT_EQ(printable("a\tb\nc"), "a\tb\nc");
+    EXPECT_EQ(printable("\x1b[31mred\x07\x7f\r"), "\\x1b[31mred\\x07\\x7f\\x0d");
+    EXPECT_EQ(printable("\xC2\x9B""31m \x9B""31m"), "\\xc2\\x9b31m \\x9b31m"); // the one-byte CSI, as UTF-8 and by itself
+    EXPECT_EQ(printable("gr\xC3\xBC\xC3\x9F \xE2\x82\xAC \xF0\x9F\x8C\x84 caf\xE9"), "gr\xC3\xBC\xC3\x9F \xE2\x82\xAC \xF0\x9F\x8C\x84 caf\xE9");
+    EXPECT_EQ(printable(std::string("\0x", 2)), "\\x00x");
+    Diagnostic d;
+    d.place = {"a\x1b]0;x\x07.sl", 1, 4};
+    d.message = "no \x1b[2J";
+    d.sourceLine = "\x1b\x01 foo\r";
+    d.length = 3;
+    d.hint = "did you mean '\b'?";
+    d.notes = {"candidate \x1b"};
+    EXPECT_EQ(toString(d), "a\\x1b]0;x\\x07.sl:1:4: error: no \\x1b[2J\n  \\x1b\\x01 foo\n           ^~~\n"
+                           "  note: candidate \\x1b\n  hint: did you mean '\\x08'?\n");
+    d.place.column = 2;
+    d.length = 1;
+    EXPECT_NE(toString(d).find("\n  \\x1b\\x01 foo\n      ^~~~\n"), std::string::npos) << toString(d);
 }
 
 // A letter of several bytes takes one place, and of a long line only what stands around the column is shown.

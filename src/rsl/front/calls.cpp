@@ -197,6 +197,33 @@ void Checker::surveyCall(Expr& e, Info& info) {
         for (int c : info.cost) single |= c < kNever;
         if (single) info.array = {};
     }
+    if (!info.array.array) info.either = eitherOf(e, info, infos_);
+}
+
+/// Info::either of a call: it has the same parameters for a float and a tuple; or its arguments make it either, as in max(noise(P), noise(Q)).
+const Expr* Checker::eitherOf(const Expr& call, const Info& info, const std::unordered_map<const Expr*, Info>& infos) {
+    const auto mayBeBoth = [](const Info& i) {
+        return i.cost[int(Base::Float)] < kNever && (i.cost[int(Base::Color)] < kNever || i.cost[int(Base::Point)] < kNever || i.cost[int(Base::Vector)] < kNever);
+    };
+    if (!mayBeBoth(info)) return nullptr;
+    for (const Choice& a : info.choices) {
+        if (a.shadeop && (a.shadeop->section == "Texture" || a.shadeop->section == "Ray tracing")) return nullptr;
+        if (a.result != Type{Base::Float, 0}) continue;
+        const auto parameters = a.signature ? views(*a.signature, *a.shadeop) : views(*a.function);
+        for (const Choice& b : info.choices) {
+            if (!b.result.isTuple() || b.positional != a.positional) continue;
+            const auto others = b.signature ? views(*b.signature, *b.shadeop) : views(*b.function);
+            if (std::equal(parameters.begin(), parameters.end(), others.begin(), others.end(), [](const auto& x, const auto& y) { return x.type == y.type; }))
+                return &call;
+        }
+    }
+    const Expr* found = nullptr;
+    for (const auto& a : call.args) {
+        const Info& i = infos.at(a.get());
+        if (i.either) found = found ? found : i.either;
+        else if (mayBeBoth(i)) return nullptr;
+    }
+    return found;
 }
 
 /// The types of the arguments decide first: what is wanted chooses only among functions that take them equally well. A function that

@@ -14,6 +14,8 @@ class Checker {
 public:
     Checker(SourceSet& s, Unit& u, Program& p) : sources_(s), main_(u), program_(p) {}
     void run();
+    /// For lint: warns of the calls that are floats because they stand in arithmetic with a number, where a tuple is wanted.
+    void warnOfNumbers();
 
 private:
     /// One way to read a call.
@@ -38,6 +40,10 @@ private:
         Handle handle = Handle::Text; ///< what the string is, if it is one
         bool channel = false;///< name[channel] of a string that is no array
         std::vector<Choice> choices;
+        /// A call that differs only in what it returns, a float or a tuple, and makes the expression either. Not what is read from maps and
+        /// rays: how many channels these bring is in the map, not in the text.
+        const Expr* either = nullptr;
+        const Expr* number = nullptr; ///< such a call that arithmetic with a number has made a float: docs/language.md has the rule
         Info() { cost.fill(kNever); }
     };
     struct ParameterView { Type type; bool output; Handle handle = Handle::Text; Whole whole{}; };
@@ -93,6 +99,9 @@ private:
     /// Why these parameters do not fit the call, in words; "" when they do.
     std::string whyNot(const std::vector<ParameterView>&, bool repeats, bool pairs, Expr& call);
     std::string describe(Expr&);
+    static bool isNumber(const Info&); ///< it can be nothing else, but for a last resort
+    static const Expr* eitherOf(const Expr& call, const Info&, const std::unordered_map<const Expr*, Info>&);
+    void becomesTuple(const Info&, const Expr& settled, Base wanted);
     static std::string componentHint(Base tuple);
     static std::string named(Type, Handle); ///< "shader" for a handle
     static Base cheapest(const Info&);
@@ -105,6 +114,7 @@ private:
     void settle(ExprPtr&, Type, Handle = Handle::Text); ///< to this type, with conversions
     void settleCheapest(ExprPtr&);
     void settleAs(ExprPtr&, Base);           ///< exactly this type, which must have a finite cost
+    void settleIndexed(ExprPtr&);
     void settleCondition(ExprPtr&);
     void settleArray(ExprPtr&, Type, Handle = Handle::Either);
     void settleVariable(ExprPtr&);           ///< an output argument: no conversion
@@ -135,6 +145,8 @@ private:
     std::unordered_map<const Shadeop*, std::unique_ptr<Unit>> rslUnits_;
     std::set<const Shadeop*> reportedUnavailable_;
     std::set<const Symbol*> toldNotOutput_; ///< parameters that are given values though they are not output: said once
+    struct MadeNumber { std::string name; Base wanted; };
+    std::map<std::array<int, 3>, MadeNumber> madeNumbers_; ///< by place, for warnOfNumbers()
     // the function being checked
     const Unit* unit_ = nullptr;
     Function* function_ = nullptr;

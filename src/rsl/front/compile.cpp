@@ -91,7 +91,8 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
                 s->annotations.emplace_back(a.key, a.value);
     }
     findPlugins(unit, options, name, sources, *program);
-    Checker(sources, unit, *program).run();
+    Checker checker(sources, unit, *program);
+    checker.run();
     // An include that is missing does no harm when nothing of it is missed.
     for (const auto& m : p.missing) {
         const std::string text = "cannot find the included file '" + m.name + "'";
@@ -101,6 +102,7 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
     }
     const bool failed = sources.errors() > 0;
     checkColourNames(*program, sources);
+    if (options.lint) checker.warnOfNumbers();
     if (options.lint) lint(*program, p.tokens, unit.skipped, sources);
     sources.flush(diagnostics);
     program->files = sources.names();

@@ -170,6 +170,7 @@ constexpr MessageKind kKinds[] = {
     {"no-space", "a * is in no space"},
     {"list-place", "a list of elements {...} is of use only as the value of an array"},
     {"too-many-elements", "* elements for an array of *"},
+    {"number-call", "*() is a float in arithmetic with a number; *"},
     {"tuple-length", "* components*"},
     {"type-mismatch", "expected *, not *"},
     {"fixed-length", "the length of '*' is fixed"},

@@ -58,7 +58,24 @@ void Checker::settle(ExprPtr& e, Type want, Handle handle) {
         return;
     }
     settleAs(e, best);
+    becomesTuple(info, *e, want.base);
     convert(e, want);
+}
+
+/// What arithmetic with a number has made a float is wanted as a tuple, and so gets three alike components.
+void Checker::becomesTuple(const Info& info, const Expr& settled, Base wanted) {
+    if (unit_ != &main_ || !info.number || settled.type != Type{Base::Float, 0} || !Type{wanted, 0}.isTuple()) return;
+    const Place& p = info.number->place;
+    madeNumbers_.emplace(std::array{p.file, p.line, p.column}, MadeNumber{info.number->text, wanted});
+}
+
+void Checker::warnOfNumbers() {
+    for (const auto& [place, what] : madeNumbers_) {
+        if (place[0] != 0) continue; // headers are others'
+        const std::string type = toString({what.wanted, 0});
+        sources_.warning({place[0], place[1], place[2]}, what.name + "() is a float in arithmetic with a number; the " + type + " that is wanted has three alike components",
+                         "'" + type + " " + what.name + "(...)' has three of its own; 'float " + what.name + "(...)' says that one is meant");
+    }
 }
 
 void Checker::settleCheapest(ExprPtr& e) {
@@ -75,6 +92,16 @@ void Checker::settleCheapest(ExprPtr& e) {
     const Base b = cheapest(info);
     if (b == Base::Void && e->kind == ExprKind::ShadeopCall) return settleCall(e, {Base::Void, 0});
     settleAs(e, b);
+}
+
+/// What has elements: an array, or what can be a tuple as one, noise(P)[1] too.
+void Checker::settleIndexed(ExprPtr& e) {
+    const Info& info = infos_.at(e.get());
+    Base best = Base::Void;
+    for (Base b : kAll)
+        if (Type{b, 0}.isTuple() && info.cost[int(b)] < (best == Base::Void ? kNever : info.cost[int(best)])) best = b;
+    if (info.any || info.array.array || info.listLength >= 0 || best == Base::Void || e->kind == ExprKind::Member) return settleCheapest(e);
+    settleAs(e, best);
 }
 
 void Checker::settleCondition(ExprPtr& e) {
@@ -187,7 +214,7 @@ void Checker::settleAs(ExprPtr& e, Base t) {
     case ExprKind::Index:
         if (info.channel)
             sources_.error(e->place, "a string has no elements; name[channel] has its place in texture() and its kin");
-        settleCheapest(e->args[0]);
+        settleIndexed(e->args[0]);
         settle(e->args[1], {Base::Float, 0});
         e->type = {t, 0};
         if (e->args[0]->kind == ExprKind::Member) {
@@ -242,6 +269,7 @@ void Checker::settleAs(ExprPtr& e, Base t) {
             if (c < cost) { cost = c; best = b; }
         }
         settleAs(e->args[0], best);
+        becomesTuple(a, *e->args[0], t);
         Expr& inner = *e->args[0];
         if (e->space && (inner.kind == ExprKind::Tuple || inner.kind == ExprKind::MatrixTuple) && !inner.space)
             inner.space = std::move(e->space);
@@ -283,9 +311,12 @@ void Checker::settleBinary(ExprPtr& e, Base t) {
         settleCondition(e->args[0]);
         settleCondition(e->args[1]);
     } else {
+        const bool scales = (e->op == ExprOp::Mul || e->op == ExprOp::Div) && isPointLike(best.operand);
         settleAs(e->args[0], left);
+        if (!scales) becomesTuple(l, *e->args[0], best.operand);
         convert(e->args[0], {best.operand, 0});
         settleAs(e->args[1], right);
+        if (!scales) becomesTuple(r, *e->args[1], best.operand);
         convert(e->args[1], {best.operand, 0});
     }
     e->type = {best.result, 0};
@@ -342,6 +373,7 @@ void Checker::settleAssign(ExprPtr& e) {
             if (c < cost) { cost = c; best = b; operand = o->operand; }
         }
         settleAs(e->args[1], best);
+        if (!isPointLike(target.base) || e->op == ExprOp::Add || e->op == ExprOp::Sub) becomesTuple(r, *e->args[1], target.base);
         convert(e->args[1],
                 {operand == Base::Matrix || target.base == Base::Color || target.base == Base::Float ? operand : target.base, 0});
     }

@@ -76,6 +76,8 @@ Checker::Info& Checker::survey(Expr& e) {
         } else {
             info.cost[int(Base::Float)] = std::min(a.cost[int(Base::Float)], sum(a.cost[int(Base::Bool)], 4));
             for (Base b : kTuples) info.cost[int(b)] = a.cost[int(b)];
+            info.either = a.either;
+            info.number = a.number;
         }
         if (cheapest(info) == Base::Void) {
             sources_.error(e.place, std::string("'") + spelling(e.op) + "' cannot be applied to " + describe(*e.args[0]));
@@ -223,12 +225,20 @@ void Checker::surveyIndex(Expr& e, Info& info) {
     info.any = true;
 }
 
+bool Checker::isNumber(const Info& i) {
+    if (i.number) return true;
+    for (Base b : kAll)
+        if (b != Base::Float && b != Base::Bool && i.cost[int(b)] < kNever) return false;
+    return i.cost[int(Base::Float)] < kNever;
+}
+
 /// What it costs to read the operands `l` and `r` as `a` and `b`. What is wanted reaches through arithmetic: in a color .5 + .5 *
-/// noise(P) is colored, so that what could be a tuple is no number beside one; numbers that are nothing else cost next to nothing.
+/// texture(m) is colored, so that what could be a tuple is no number beside one; numbers that are nothing else cost next to nothing.
 /// But what is multiplied by a point, vector or normal scales it: P + noise(P) * N goes along N. docs/language.md has the rule.
 int Checker::operandCost(ExprOp op, const Operation& o, const Info& l, Base a, const Info& r, Base b) {
     const bool scales = op == ExprOp::Mul || op == ExprOp::Div;
     const auto canBe = [](const Info& i, Base as) {
+        if (i.number) return as == Base::Float;
         return i.cost[int(as)] < kNever || (isPointLike(as) && (i.cost[int(Base::Point)] < kNever || i.cost[int(Base::Vector)] < kNever));
     };
     const bool left = canBe(l, Base::Float), right = canBe(r, Base::Float);
@@ -249,6 +259,11 @@ void Checker::surveyBinary(Expr& e, Info& info) {
     // A handle is compared with a handle, and never joined to a text.
     const bool mixed = strings && (!alike(l.handle, r.handle) ||
                                    (e.op == ExprOp::Add && (l.handle == Handle::Shader || r.handle == Handle::Shader)));
+    const bool arithmetic = e.op == ExprOp::Add || e.op == ExprOp::Sub || e.op == ExprOp::Mul || e.op == ExprOp::Div;
+    if (arithmetic && isNumber(l) && isNumber(r)) info.number = l.number ? l.number : r.number;
+    else if (arithmetic && isNumber(r)) info.number = l.either;
+    else if (arithmetic && isNumber(l)) info.number = r.either;
+    else if (arithmetic && l.either && r.either) info.either = l.either;
     for (Base a : kAll) {
         if (l.cost[int(a)] >= kNever) continue;
         for (Base b : kAll) {
@@ -261,6 +276,8 @@ void Checker::surveyBinary(Expr& e, Info& info) {
             }
         }
     }
+    if (info.number)
+        for (Base b : kTuples) info.cost[int(b)] = sum(info.cost[int(b)], kLastResort);
     if (cheapest(info) != Base::Void) return;
     std::string hint;
     const Base a = cheapest(l), b = cheapest(r);
@@ -337,6 +354,8 @@ void Checker::surveyConditional(Expr& e, Info& info) {
     if (info.any) return;
     for (Base t : kAll)
         if (a.cost[int(t)] < kNever || b.cost[int(t)] < kNever) info.cost[int(t)] = sum(cost, sum(costTo(a, t), costTo(b, t)));
+    if (isNumber(a) && isNumber(b)) info.number = a.number ? a.number : b.number;
+    else if ((a.either || isNumber(a)) && (b.either || isNumber(b))) info.either = a.either ? a.either : b.either;
     const bool strings = a.cost[int(Base::String)] < kNever && b.cost[int(Base::String)] < kNever;
     info.handle = a.handle == Handle::Either ? b.handle : a.handle;
     if (cheapest(info) == Base::Void || (strings && !alike(a.handle, b.handle))) {

@@ -12,7 +12,7 @@ std::vector<Shadeop> derivativeShadeops() {
         op.source = "seed";
         op.name = name;
         op.signatures = std::move(signatures);
-        op.contexts = kSurface | kDisplacement | kVolume | kLight;
+        op.contexts = kSurface | kDisplacement | kVolume | kLight | kImager;
         op.lowering = lowering;
         op.derivative = DerivativeRule::Inherent;
         op.doc = doc;
@@ -24,8 +24,9 @@ std::vector<Shadeop> derivativeShadeops() {
         const std::string n = name;
         Shadeop& op = add(name, {}, Lowering::Special, "", "");
         op.doc = "Derivative of the argument per unit of the surface parameter " + std::string(n == "Du" ? "u" : "v") +
-                 ": exact under path, the difference over the footprint under hidden and raytrace (docs/language.md). Results of rays and lights "
-                 "count as constant; those of maps have the slope of the map (texture).";
+                 ": exact under path, the difference over the footprint under hidden and raytrace (docs/language.md); in an imager " +
+                 (n == "Du" ? "u runs from 0 to 1 across" : "v runs from 0 to 1 down") +
+                 " the picture. Results of rays and lights count as constant; those of maps have the slope of the map (texture).";
         op.signatures = sigs({{("float " + n + "(float x)").c_str()},
                               {("color " + n + "(color x)").c_str()},
                               {("vector " + n + "(point x)").c_str()},
@@ -68,7 +69,7 @@ normal calculatenormal(point p) {
                               Lowering::Rsl,
                               "step(edge, value) filtered over the footprint of the sample, or over value1..value2. The \"filter\" chooses which of the functions "
                               "__filterstep_catmullrom (default), __filterstep_box, __filterstep_triangle, __filterstep_gaussian gets (edge, value1, value2); "
-                              "\"width\" widens the interval about its middle. Outside surfaces du and dv are 0 and the result is step().",
+                              "\"width\" widens the interval about its middle. In an imager the footprint is a pixel; in volumes du and dv are 0 and the result is step().",
                               R"(
 float filterstep(float edge, value) {
     extern float du, dv;

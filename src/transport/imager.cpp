@@ -29,9 +29,17 @@ bool WorldImpl::runImager(int count, const float* x, const float* y, float* r, f
         for (int p = 0; p < n; ++p) {
             ShadePoint& s = c.points[size_t(p)];
             int at = begin + p;
+            const auto width = float(std::max(1, frame_->options.xres)), height = float(std::max(1, frame_->options.yres));
             s.P = {x[at], y[at], 0};
-            s.surface.u = s.surface.s = x[at] / float(std::max(1, frame_->options.xres)); // not in RISpec; imagers of Aqsis have them
-            s.surface.v = s.surface.t = y[at] / float(std::max(1, frame_->options.yres));
+            s.surface.u = s.surface.s = x[at] / width; // not in RISpec; imagers of Aqsis have them
+            s.surface.v = s.surface.t = y[at] / height;
+            // The picture is the surface and a pixel the footprint.
+            s.surface.dPdu = {width, 0, 0};
+            s.surface.dPdv = {0, height, 0};
+            s.surface.dsdu = s.surface.dtdv = 1;
+            s.surface.dtdu = s.surface.dsdv = 0;
+            s.du = 1 / width;
+            s.dv = 1 / height;
             s.Ci = {r[at], g[at], b[at]};
             s.Oi = Color(alpha[at]);
             s.alpha = alpha[at];

@@ -282,6 +282,29 @@ TEST(Outputs, ImagersHaveCoShaders) {
     EXPECT_EQ(a[0], 40);
 }
 
+// The picture is an imager's surface and a pixel its footprint: derivatives and filterstep() know both.
+TEST(Outputs, ImagersHaveDerivatives) {
+    writeShader("stepped", R"(imager stepped() {
+    vector across = Du(P), down = Dv(P);
+    float sizes = xcomp(across) + 100 * ycomp(down) + 10000 * (xcomp(down) + ycomp(across));
+    Ci = color(filterstep(10, xcomp(P), "filter", "box"), filterstep(.5, t, "filter", "box", "width", 2), area(P) + Deriv(u * u, u) - 2 * u - Dv(u) + Deriv(s, v));
+    alpha = sizes;
+}
+)");
+    Scene s("Format 40 30 1\nImager \"stepped\"\n" + world(kFloor), under(Hider::Hidden));
+    const float x[3] = {9.75f, 10.25f, 30.5f}, y[3] = {15.25f, 14.5f, 3.5f};
+    float r[3] = {1, 1, 1}, g[3] = {1, 1, 1}, b[3] = {1, 1, 1}, a[3] = {1, 1, 1};
+    ASSERT_TRUE(s.world->runImager(3, x, y, r, g, b, a, s.diagnostics));
+    EXPECT_EQ(s.diagnostics.errors(), 0) << s.messages();
+    const float red[3] = {.25f, .75f, 1}, green[3] = {.625f, .25f, 0};
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_NEAR(r[i], red[i], 1e-5) << i;
+        EXPECT_NEAR(g[i], green[i], 1e-5) << i;
+        EXPECT_NEAR(b[i], 1, 1e-5) << i;
+        EXPECT_NEAR(a[i], 3040, 1e-3) << i;
+    }
+}
+
 // The method of a class is an imager too, and finds the same co-shaders.
 TEST(Outputs, AClassIsAnImager) {
     writeShader("grade", "class grade(color by = color(1, 2, 4);) { public void tone(output color c) { c *= by; } }\n");

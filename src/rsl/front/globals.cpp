@@ -66,6 +66,8 @@ constexpr GlobalVariable kImagerOwn[] = {{"P", kP, V, R, "pixel position in rast
                                          {"t", kF, V, R, "position down the picture, 0 to 1"},
                                          {"u", kF, V, R, "as s"},
                                          {"v", kF, V, R, "as t"},
+                                         {"du", kF, V, R, "a pixel, in u"},
+                                         {"dv", kF, V, R, "a pixel, in v"},
                                          {"Ci", kC, V, W, "colour of the pixel"},
                                          {"Oi", kC, V, W, "opacity of the pixel"},
                                          {"alpha", kF, V, W, "coverage"}};

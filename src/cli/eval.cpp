@@ -8,7 +8,7 @@ namespace alpenglow::cli {
 
 void addEval(CLI::App& app, int* status) {
     struct Arguments {
-        std::string setup, expression;
+        std::string setup, expression, dialect;
         int lanes = 16;
         bool allowExec = false;
     };
@@ -17,6 +17,7 @@ void addEval(CLI::App& app, int* status) {
     c->add_option("expression", a->expression, "An expression, or statements that print")->required();
     c->add_option("--setup", a->setup, "Statements that run first, for example 'float x = 2;'")->type_name("'STATEMENTS'");
     c->add_option("--lanes", a->lanes, "Width of the machine code")->check(CLI::IsMember({4, 8, 16}))->type_name("N");
+    addDialect(*c, a->dialect);
     c->add_flag("--allow-exec", a->allowExec, "Let the shader load plug-ins");
     c->footer(
         "The point: u=v=s=t=0.5, P=(0,0,0), N=(0,0,1), I=(0,0,1), Cs=Os=1, du=dv=1. Numbers are printed as %.7g, separated by\n"
@@ -26,6 +27,7 @@ void addEval(CLI::App& app, int* status) {
         Diagnostics diags(printer());
         rsl::ShaderCompiler::Settings settings;
         settings.allowExec = a->allowExec;
+        settings.dialect = a->dialect;
         settings.pluginPaths = {"."};
         for (std::string& f : environmentShaders()) settings.pluginPaths.push_back(std::move(f));
         rsl::ShaderCompiler compiler(settings);

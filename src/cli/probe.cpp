@@ -44,7 +44,7 @@ double extentFrom(const scene::Frame& f, const Vec3d& centre) {
 }
 
 struct Arguments {
-    std::string scene, point, normal;
+    std::string scene, point, normal, dialect;
     uint32_t spp = 4096;
     uint64_t seed = 0;
     int threads = 0, maxDepth = -1, lanes = 16;
@@ -124,6 +124,7 @@ int probe(const Arguments& a) {
     t.maxDepth = a.maxDepth;
     t.unbiased = a.unbiased;
     t.allowExec = a.allowExec;
+    t.dialect = a.dialect;
     t.shaderPaths = folders(a.searchPaths);
     for (std::string& e : environmentShaders()) t.shaderPaths.push_back(std::move(e));
     size_t slash = a.scene.find_last_of('/');
@@ -211,6 +212,7 @@ void addProbe(CLI::App& app, int* status) {
                   "Outer radius of the ring around the point that is looked at; a 400th of the scene when not given")
         ->check(CLI::PositiveNumber)
         ->type_name("R");
+    addDialect(*c, a->dialect);
     c->add_flag("--allow-exec", a->allowExec, "Let shaders load plug-ins");
     c->add_flag("--unbiased", a->unbiased, "Do not tame shaders that reflect more than they receive");
     c->add_option("--searchpath", a->searchPaths, "Folders for shaders, textures and archives, separated by :")

@@ -17,7 +17,7 @@ namespace alpenglow::cli {
 namespace {
 
 struct Arguments {
-    std::string shader, output = "out.exr", format = "256x256", kind;
+    std::string shader, output = "out.exr", format = "256x256", kind, dialect;
     std::vector<std::string> params, searchPaths, outputs;
     int spp = 1, iterations = 0, lanes = 16, vectors = 0;
     float gamma = 0;
@@ -97,6 +97,7 @@ int shade(const Arguments& a) {
     if (std::string s = shippedShaders(); !s.empty()) paths.push_back(s);
     rsl::ShaderCompiler::Settings settings;
     settings.allowExec = a.allowExec;
+    settings.dialect = a.dialect;
     settings.pluginPaths = paths;
     rsl::ShaderCompiler compiler(settings);
     auto shader = compiler.load(a.shader, paths, diags);
@@ -342,6 +343,7 @@ void addShade(CLI::App& app, int* status) {
     c->add_option("--searchpath", a->searchPaths, "Folders for shaders and #include, separated by :")
         ->type_name("DIRS")
         ->allow_extra_args(false);
+    addDialect(*c, a->dialect);
     c->add_flag("--allow-exec", a->allowExec, "Let the shader load plug-ins");
     c->footer(
         "The patch: P = (u, v, 0), u to the right and v downward over the picture, s = u, t = v, N = (0,0,1), seen from the eye "

@@ -223,7 +223,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
             char how[160];
             std::snprintf(how, sizeof how, "path depth %d clamp %.9g direct %d indirect %d unbiased %d local %d", t.maxDepth,
                           double(t.sampleClamp), t.direct, t.indirect, t.unbiased, t.localRoulette);
-            d.scene = sceneDigest(*frame, how);
+            d.scene = sceneDigest(*frame, how + (t.dialect.empty() ? "" : " dialect " + t.dialect));
         }
         if (!Film::check(d, diagnostics_)) {
             ++outcome_.refused;

@@ -126,6 +126,7 @@ constexpr Known kImplementation[] = {
     {"shade:camerahitmode", "string"},
     {"shade:derivatives", "string"},
     {"shade:strategy", "string"},
+    {"shade:specular", "string"},
     {"irradiance:shadingrate", "float"},
     {"irradiance:nsamples", "int"},
     {"irradiance:handle", "string"},

@@ -86,6 +86,7 @@ struct ShaderCompiler::State {
         FrontOptions o;
         o.defines = settings.defines;
         o.dialect = settings.dialect;
+        o.rispecSpecular = settings.rispecSpecular;
         o.lint = settings.lint;
         if (settings.allowExec)
             o.plugin = [this](const std::string& name, const std::string& beside, std::string& why, std::string& hint) {
@@ -123,6 +124,7 @@ ShaderPtr ShaderCompiler::finish(std::unique_ptr<Program> program, const std::st
         if (s->name == wanted) shader = s.get();
     // The texts themselves, so that the places in messages are right too.
     std::string all = text + '\1' + program->preprocessed;
+    if (program->rispecSpecular) all += "\1rispec";
     for (const auto& f : program->dependencies) all += '\1' + f + '\1' + readText(f);
     for (const auto& f : program->files) all += '\2' + f;
     for (const auto& p : program->plugins) // which functions there are, and what they are called in the code

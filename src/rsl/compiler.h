@@ -66,6 +66,7 @@ public:
         bool useDefaultCache = true; ///< take jit::defaultCacheDirectory() when cacheDirectory is empty
         std::vector<std::pair<std::string, std::string>> defines;
         std::string dialect; ///< whose macros are predefined: FrontOptions::dialect
+        bool rispecSpecular = false; ///< FrontOptions::rispecSpecular
         bool lint = false; ///< the warnings for who writes shaders (front/lint.h)
         bool allowExec = false; ///< `plugin "name"` loads code (rsl/plugins.h); else it is an error that says so
         std::vector<std::string> pluginPaths; ///< where plug-ins are looked for, after the folder of the shader

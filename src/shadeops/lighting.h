@@ -91,11 +91,12 @@ color specular(vector n, v; float roughness) {
 }
 )";
     Shadeop& brdf = add("specularbrdf", sigs({{"color specularbrdf(vector l, vector n, vector v; float roughness)", "al_specularbrdf"}}), Lowering::Runtime,
-                        "One direction of specular(): pow(max(0, n . h), 1 / roughness), h = normalize(l + v), l, n, v unit. The factor 1 stands in one place "
-                        "of the code (kSpecularExponent). 0 for roughness 0.");
-    brdf.source = "seed; RISpec; fitted on published pictures, docs/gallery.md";
+                        "One direction of specular(): pow(max(0, n . h), 8 / roughness), h = normalize(l + v), l, n, v unit. 0 for roughness 0. "
+                        "1 / roughness, as RISpec prints it, with Option \"shade\" \"specular\" \"rispec\" or --dialect rispec.");
+    brdf.source = "seed; fitted on published pictures, docs/gallery.md";
     brdf.contexts = kAnyContext;
-    brdf.examples = {{"specularbrdf(vector(0,0,1), vector(0,0,1), vector(0,0,1), 0.1)", "1 1 1"}};
+    brdf.examples = {{"specularbrdf(vector(0,0,1), vector(0,0,1), vector(0,0,1), 0.1)", "1 1 1"},
+                     {"specularbrdf(vector(1,0,0), vector(0,0,1), vector(0,0,1), 4)", "0.5 0.5 0.5"}};
     Shadeop& standard = add("specularstd", sigs({{"color specularstd(normal n; vector v; float roughness)"}}), Lowering::Rsl,
                             "The text-book model: sum over lights of Cl pow(max(0, n . h), 1 / roughness) (1 - __nonspecular), h = normalize(normalize(L) + v).");
     list.back().examples = {{"specularstd(N, N, 0.1)", "1 1 1", "", kOneLight}};

@@ -1,4 +1,5 @@
 // What the call sites of a kernel mean to the engine, worked out once per kernel.
+#include "shadeops/specular.h"
 #include "transport/engine.h"
 #include "transport/raysets.h"
 
@@ -103,7 +104,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         if (i.kind == SiteKind::Diffuse) i.lobe = findLobe("diffuse");
         if (i.kind == SiteKind::Specular) i.lobe = findLobe("specular");
         if (i.kind == SiteKind::Phong) i.lobe = findLobe("phong");
-        i.standard = s.op == "specularstd";
+        i.exponent = s.op == "specularstd" || world->rispecSpecular_ ? kRispecExponent : kSpecularExponent;
         auto rowOf = [&](const char* name) { auto f = i.named.find(name); return f == i.named.end() ? -1 : f->second; };
         static const std::string kOutput = "surface:";
         for (const auto& [name, at] : i.named)

@@ -1,6 +1,5 @@
 // What becomes of the requests of a batch: lobes are gathered over lights, then rays are sent (design decisions 2 and 3).
 #include "transport/engine.h"
-#include "shadeops/specular.h"
 #include "texture/lookup.h"
 #include "transport/raysets.h"
 #include "transport/sampling.h"
@@ -75,7 +74,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         l.params.wo = unit(v(1), l.params.wo);
         l.params.a = f(s.rows[2]);
         if (s.kind == SiteKind::Specular)
-            l.params.a = (s.standard ? 1 : kSpecularExponent) / std::max(l.params.a, 1e-6f);
+            l.params.a = s.exponent / std::max(l.params.a, 1e-6f);
         l.type = RayType::Specular;
         break;
     case SiteKind::Trace:

@@ -1,6 +1,7 @@
 // From a frame's description to something that can be traced.
 #include "base/file.h"
 #include "geometry/build.h"
+#include "rsl/front/headers.h"
 #include "transport/surfaces.h"
 #include <chrono>
 #include <cstdlib>
@@ -57,6 +58,17 @@ uint32_t visibilityOf(const scene::Attributes& a, bool all) {
     return bits;
 }
 
+/// Whether specular() has RISpec's exponent: Option "shade" "specular" "rispec" (or "prman", which is what it is without), or the dialect.
+bool rispecSpecular(const scene::Options& o, const std::string& dialect, Diagnostics& d) {
+    const auto i = o.values.find("shade:specular");
+    if (i == o.values.end()) return rsl::front::dialectRispecSpecular(dialect);
+    const std::string value = i->second.strings.empty() ? "" : i->second.strings[0];
+    if (value != "rispec" && value != "prman")
+        d.report(Severity::Error, Rie::BadToken, i->second.place, "Option \"shade\" \"specular\" cannot be \"" + value + "\"; it is \"prman\"",
+                 "\"rispec\": exponent 1/roughness; \"prman\": 8/roughness");
+    return value == "rispec" || rsl::front::dialectRispecSpecular(dialect);
+}
+
 } // namespace
 
 std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> frame, const Settings& settings, Diagnostics& d) {
@@ -77,6 +89,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     rsl::ShaderCompiler::Settings cs;
     cs.cacheDirectory = settings.cacheDirectory;
     cs.dialect = settings.dialect;
+    cs.rispecSpecular = w->rispecSpecular_ = rispecSpecular(o, settings.dialect, d);
     cs.allowExec = settings.allowExec;
     cs.pluginPaths = settings.pluginPaths;
     w->compiler_ = std::make_shared<rsl::ShaderCompiler>(cs);

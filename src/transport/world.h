@@ -74,7 +74,7 @@ struct SiteInfo {
     std::map<std::string, int> resultRows;     ///< "" and output names -> first row of `out`
     int resultRowCount = 0;
     const LobeKind* lobe = nullptr;            ///< Trace: the distribution; the lobe of a lighting shadeop
-    bool standard = false;                     ///< specularstd, not specular
+    float exponent = 1;                        ///< Specular: this over the roughness (shadeops/specular.h)
     int rowWo = -1, rowExponent = -1, rowCone = -1, rowHorizon = -1, rowLights = -1; ///< of `named`
     std::shared_ptr<const struct TraceSite> trace; ///< Trace: what only some calls use
     std::shared_ptr<const RaySite> rays;       ///< Trace, Transmission
@@ -246,6 +246,7 @@ public:
 
     std::shared_ptr<const scene::Frame> frame_;
     Settings settings_;
+    bool rispecSpecular_ = false;              ///< specular() has RISpec's exponent (shadeops/specular.h)
     std::map<const scene::ShaderCall*, InstanceRef> coShaders_;              ///< instances, one a request
     std::map<std::vector<const void*>, InstanceRef> withCoShaders_;          ///< by shader, then the requests of its co-shaders
     Facts facts_;

@@ -107,6 +107,29 @@ TEST_F(Tools, DialectsOfEverySubcommand) {
     EXPECT_EQ(status, 2);
 }
 
+// "rispec": specular() with the exponent 1 / roughness, 8 / roughness without. h is 45 degrees off N, so that roughness 4 and .5 give one half.
+TEST_F(Tools, TheDialectRispec) {
+    const std::string half = "vector(1,0,0), vector(0,0,1), vector(0,0,1)";
+    for (int again = 0; again < 2; ++again) { // the second time from the cache
+        EXPECT_EQ(run("eval 'specularbrdf(" + half + ", 4)'"), "0.5 0.5 0.5\n");
+        EXPECT_EQ(run("eval --dialect rispec 'specularbrdf(" + half + ", .5)'"), "0.5 0.5 0.5\n");
+        EXPECT_EQ(run("eval --dialect prman --setup 'float r = 8 * u;' 'specularbrdf(" + half + ", r)'"), "0.5 0.5 0.5\n");
+        EXPECT_EQ(run("eval --dialect RISpec --setup 'float r = u;' 'specularbrdf(" + half + ", r)'"), "0.5 0.5 0.5\n");
+    }
+    write("a.sl", "surface a(color c = specularbrdf(" + half + ", .5);) { Ci = c; Oi = 1; }\n");
+    EXPECT_EQ(Json::parse(run("info --json --dialect rispec a.sl"))["parameters"][0]["default"], Json::array({.5, .5, .5}));
+    EXPECT_EQ(Json::parse(run("info --json a.sl"))["parameters"][0]["default"], Json::array({1. / 256, 1. / 256, 1. / 256}));
+    run("shade --dialect rispec a.sl -o a.exr");
+    EXPECT_EQ(status, 0) << errors();
+    write("a.rib", "Option \"shade\" \"string specular\" \"blinn\"\nFormat 8 8 1\nProjection \"perspective\"\nWorldBegin\nTranslate 0 0 3\nSphere 1 -1 1 360\nWorldEnd\n");
+    run("render a.rib -o a.exr");
+    EXPECT_EQ(status, 1);
+    EXPECT_NE(errors().find("a.rib:1:18: error"), std::string::npos) << errors();
+    EXPECT_NE(errors().find("Option \"shade\" \"specular\" cannot be \"blinn\""), std::string::npos) << errors();
+    run("probe --dialect rispec --spp 16 a.rib 0,0,2 0,0,-1");
+    EXPECT_EQ(errors().find("--dialect"), std::string::npos) << errors();
+}
+
 TEST_F(Tools, Info) {
     write("a.sl", "#pragma annotation \"author\" \"nobody\"\n"
                   "surface a(float Kd = 0.5; color tint = color \"hsv\" (0, 0, 1); point from = point \"world\" (1, 2, 3);\n"

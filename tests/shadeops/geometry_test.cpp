@@ -167,9 +167,10 @@ TEST(Filterstep, ClosedForms) {
 }
 
 TEST(Lighting, SpecularBrdf) {
-    // h = n: 1. h at 45 degrees with roughness 1: exponent 1.
+    // h = n: 1. h at 45 degrees: cos^(8 / roughness), so 1/16 with roughness 1.
     near(run("al_specularbrdf", {0, 0, 2, 0, 0, 1, 0, 0, 1, 0.1f}), {1, 1, 1}, 0, "mirror direction, any length of L");
-    near(run("al_specularbrdf", {1, 0, 0, 0, 0, 1, 0, 0, 1, 1}), Floats(3, std::sqrt(0.5f)), 1e-6, "45 degrees");
+    near(run("al_specularbrdf", {1, 0, 0, 0, 0, 1, 0, 0, 1, 8}), Floats(3, std::sqrt(0.5f)), 1e-6, "45 degrees");
+    near(run("al_specularbrdf", {1, 0, 0, 0, 0, 1, 0, 0, 1, 1}), Floats(3, 1 / 16.f), 1e-6, "45 degrees, exponent 8");
     near(run("al_specularbrdf", {0, 0, -1, 0, 0, 1, 0, 0.6f, -0.8f, 1}), {0, 0, 0}, 0, "behind");
     near(run("al_specularbrdf", {0, 0, 1, 0, 0, 1, 0, 0, 1, 0}), {0, 0, 0}, 0, "no roughness");
 }

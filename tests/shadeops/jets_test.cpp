@@ -30,7 +30,7 @@ Domain domainOf(std::string_view symbol, int input, int inputs) {
     if (symbol == "al_pow")
         return input == 0 ? Domain{0.2f, 3} : Domain{-3, 3};
     if (symbol == "al_specularbrdf")
-        return input == 9 ? Domain{0.5f, 2} : input == 2 || input == 5 || input == 8 ? Domain{1, 2} : Domain{-0.7f, 0.7f};
+        return input == 9 ? Domain{4, 16} : input == 2 || input == 5 || input == 8 ? Domain{1, 2} : Domain{-0.7f, 0.7f};
     if (starts(symbol, "al_fresnel"))
         return input == 2 ? Domain{-1, -0.8f} : input == 5 ? Domain{0.8f, 1} : input == 6 ? Domain{0.5f, 0.8f} : Domain{-0.2f, 0.2f};
     if (starts(symbol, "al_rgb") || starts(symbol, "al_hs") || starts(symbol, "al_yiq") || starts(symbol, "al_xyz"))

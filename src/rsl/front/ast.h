@@ -173,6 +173,7 @@ struct Shader {
 /// One source file with its includes: shaders (usually one) and functions.
 struct Program {
     std::map<std::string, Type> primitiveVariables; ///< what getvar() asks for, with the types of the variables it fills
+    bool rispecSpecular = false; ///< FrontOptions::rispecSpecular, or by the dialect
     bool handles = false; ///< it uses members or methods of other shaders, or asks for them
     /// Outputs that outputchannel() makes, and their types; without "light:" or "local:".
     std::map<std::string, Type> channels;
@@ -192,7 +193,9 @@ std::string toString(const Whole&, const Program&);
 
 struct FrontOptions {
     std::vector<std::string> includePaths;
-    std::string dialect; ///< whose predefined macros there are: "prman", "3delight" (also when empty), "aqsis", "bmrt", ...
+    /// Whose predefined macros there are: "prman", "3delight" (also when empty), "aqsis", "bmrt", ... "rispec" has none, and rispecSpecular.
+    std::string dialect;
+    bool rispecSpecular = false; ///< specular() and specularbrdf() have the exponent that RISpec prints (shadeops/specular.h)
     std::vector<std::pair<std::string, std::string>> defines;
     PluginFinder plugin; ///< empty: code from outside is not run, and `plugin "name"` is an error that says so
     bool lint = false; ///< warn about unused, uninitialised and the like, too (lint.h)

@@ -3,6 +3,7 @@
 #include "rsl/front/checker.h"
 #include "rsl/front/classes.h"
 #include "rsl/front/colournames.h"
+#include "rsl/front/headers.h"
 #include "rsl/front/inspect.h"
 #include "rsl/front/lint.h"
 #include "rsl/front/prelude.h"
@@ -60,6 +61,7 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
                                  Diagnostics& diagnostics, bool keep = false) {
     SourceSet sources;
     auto program = std::make_unique<Program>();
+    program->rispecSpecular = options.rispecSpecular || dialectRispecSpecular(options.dialect);
     const int main = sources.add(name, text);
     if (isFile) program->dependencies.push_back(name);
     Preprocessed p = preprocess(sources, main, options);

@@ -30,7 +30,7 @@ constexpr OtherName kOtherNames[] = {
     {"pxslrayutil.h", "pxslutil.h"},   {"rfm_blinn.h", "pxslutil.h"},      {"normals.h", "pxslutil.h"},
 };
 
-constexpr std::array<std::string_view, 7> kDialects = {"3delight", "prman", "aqsis", "bmrt", "pixie", "entropy", "air"};
+constexpr std::array<std::string_view, 8> kDialects = {"3delight", "prman", "aqsis", "bmrt", "pixie", "entropy", "air", "rispec"};
 constexpr std::array<std::string_view, 1> kDelight = {"DELIGHT 1"};
 constexpr std::array<std::string_view, 1> kPrman = {"PRMAN 1"};
 constexpr std::array<std::string_view, 1> kAqsis = {"AQSIS 1"};
@@ -75,5 +75,7 @@ std::string_view dialectPrelude(std::string_view dialect) {
     const std::string d = lower(dialect);
     return d == "bmrt" || d == "entropy" ? "#include \"rayserver.h\"\n" : "";
 }
+
+bool dialectRispecSpecular(std::string_view dialect) { return lower(dialect) == "rispec"; }
 
 } // namespace alpenglow::rsl::front

@@ -19,5 +19,7 @@ std::span<const std::string_view> dialects();
 std::span<const std::string_view> dialectMacros(std::string_view dialect);
 /// Text that stands before every file of this dialect: an #include of what its compiler has built in and ours calls otherwise.
 std::string_view dialectPrelude(std::string_view dialect);
+/// Whether specular() and specularbrdf() have RISpec's exponent in this dialect (shadeops/specular.h).
+bool dialectRispecSpecular(std::string_view dialect);
 
 } // namespace alpenglow::rsl::front

@@ -1,5 +1,6 @@
 // Calls: user functions inlined, shadeops by their Lowering.
 #include "rsl/ir/builder.h"
+#include "shadeops/specular.h"
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -188,6 +189,8 @@ Inst* Builder::runtimeCall(const Expr& e) {
         error(e.place, e.shadeop->name + "() has no code");
         return zero(Kind::Float);
     }
+    if (program_.rispecSpecular && e.shadeop->name == "specularbrdf") // its exponent is kSpecularExponent / roughness
+        args.back() = emit(Op::Mul, args.back()->kind, {args.back(), constant(kSpecularExponent / kRispecExponent)});
     const Kind result = kindOf(s.result);
     if (s.repeats && args.size() > 2) {
         Inst* v = args[0];

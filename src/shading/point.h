@@ -58,6 +58,7 @@ struct PathRay {
     int cameraSample = -1;            ///< index of the sample whose opacity, depth and AOVs this ray's hit writes; -1: none
     bool first = true;                ///< one of those that its target asked for: writes distance and transmission
     Color part{1};                    ///< of a ray that a target asked for, and of what goes on through surfaces: its share of all that were asked
+    int32_t share = -1;               ///< Engine::shares_: which outputs have a part of what it adds to its target; -1: none
     int lit = -1;                     ///< what lights are told about the surface that sent it, where lights ask; -1: nothing
     Color environment{0};             ///< of trace() with a map: the light where nothing is
     RaySet set;

@@ -149,6 +149,7 @@ void Engine::giveBack(std::shared_ptr<BatchContext> c) {
     c->lit = nullptr;
     c->displaced.reset();
     c->light = nullptr;
+    c->aside = nullptr;
     c->volume = nullptr;
     c->lightVisibilityDistance = 0;
     pool_.push_back(std::move(c));
@@ -163,12 +164,16 @@ bool Engine::trace(std::span<const CameraRay> rays, std::span<SampleResult> out,
     for (int w : world_->outputWidths_) aovs += size_t(w);
     results.resize(rays.size());
     std::vector<TargetId> roots(rays.size());
+    lightTargets_.clear();
+    shares_.clear();
+    nowhere_ = world_->lightOutputs_.empty() ? shading::kNoTarget : sched.newRoot();
     for (size_t i = 0; i < rays.size(); ++i) {
         const CameraRay& c = rays[i];
         out[i] = SampleResult{};
         out[i].aovs.assign(aovs, 0.f);
         results[i] = &out[i];
         roots[i] = sched.newRoot();
+        for (size_t k = 0; k < world_->lightOutputs_.size(); ++k) lightTargets_.push_back(sched.newRoot());
         PathRay& r = sched.spawn(0, roots[i]).payload;
         r.origin = c.origin;
         r.dir = c.direction;
@@ -192,6 +197,14 @@ bool Engine::trace(std::span<const CameraRay> rays, std::span<SampleResult> out,
         float m = maxComponent(c);
         if (clampAt > 0 && m > clampAt) c *= clampAt / m; // pathtracer.md 6
         out[i].color = c;
+        for (size_t k = 0; k < world_->lightOutputs_.size(); ++k) {
+            const LightOutputPlace& to = world_->lightOutputs_[k];
+            if (to.first < 0) continue;
+            const Color light = sched.value(lightTargets_[i * world_->lightOutputs_.size() + k]).radiance;
+            if (to.size == 1) out[i].aovs[size_t(to.first)] += light.x + light.y + light.z;
+            else
+                for (int n = 0; n < 3; ++n) out[i].aovs[size_t(to.first + n)] += light[n];
+        }
         Color& o = out[i].opacity;
         o = {std::min(o.x, 1.f), std::min(o.y, 1.f), std::min(o.z, 1.f)};
     }

@@ -31,6 +31,7 @@ struct ShadowRay {
     RayType type = RayType::Transmission; ///< whose visibility counts
     int32_t label = 0;
     shading::Media media{}; ///< where it begins
+    int32_t share = -1;     ///< PathRay::share
 };
 
 /// The way from a to b for a shadow ray; where an end is `at`, a shaded point of the surface `s` (null: none), that surface does not block.
@@ -88,6 +89,7 @@ struct LobeVertex {
     shading::RaySet set;
     int32_t label = 0;
     int lit = -1;          ///< of Engine::litValues_
+    int32_t share = -1;    ///< Engine::shares_: outputs that hold this request too; -1: none
     Color tint{1};         ///< of the environment map
     const TraceSite* trace = nullptr;
     float albedo = 0;      ///< kind->albedo(params)
@@ -105,6 +107,9 @@ struct LightValue {
 
 /// The numbers that a solar() with an angle makes a direction of: how far from its axis (0: along it), and the turn about it.
 Color coneNumbers(Vec2 random);
+
+/// A part of what is added to a target that an output has as well, and the next one of the same light.
+struct Share { TargetId target; Color ratio; int32_t next; };
 
 class Engine;
 
@@ -140,6 +145,7 @@ struct BatchContext {
     const BoundLight* light = nullptr;         ///< whose kernel runs
     const LitSurface* lit = nullptr;           ///< while a light's kernel runs: what it lights
     std::shared_ptr<BatchContext> displaced;   ///< the displacement shader's run at these points, where its outputs are asked for
+    const LightOutput* aside = nullptr;        ///< the run gives this output and nothing else; `targets` are its own
     const Medium* volume = nullptr;            ///< while a volume's kernel runs
     const BatchContext* surface = nullptr;     ///< while an atmosphere's kernel runs: the surface's run that it dims
     std::vector<int> surfacePoint;             ///< by point: its number in that run
@@ -222,6 +228,23 @@ public:
     // services.cpp
     void service(BatchContext&, int site, int first, uint64_t mask, int lanes, const float* in, float* out);
     void drawRandom(const class ServiceCall&); // draws.cpp
+    // lightoutputs.cpp
+    /// Adds light to a target, and their parts of it to the outputs that share it.
+    void deposit(Sched&, TargetId, int32_t share, const Color&);
+    /// For the camera's points of a batch that is filled: runs for the outputs that light reaches. `fill` fills one.
+    std::vector<std::shared_ptr<BatchContext>> asides(const BatchContext&, Sched&, const std::function<void(BatchContext&)>& fill);
+    /// A lobe of a batch, and the pair that it came from.
+    struct AskedLobe { int lobe, record, lane; };
+    /// A pair of an output that shares no lobe of Ci, or not in all components.
+    struct AskedAside { BatchContext* run; int record, lane; Color weight; };
+    /// Gives the lobes of a batch their shares; what is left is returned. The asides have run.
+    std::vector<AskedAside> shareLight(const BatchContext&, std::span<const AskedLobe>, std::span<const std::shared_ptr<BatchContext>>, Sched&);
+    /// What shares nothing, and the outputs whose kernels wait for rays.
+    void followAsides(std::span<const AskedAside>, std::span<std::shared_ptr<BatchContext>>, Sched&);
+    /// Adds the outputs of points that are done.
+    void finishAside(BatchContext&, int first, int lanes, Sched&);
+    /// Starts the strips of a kernel that waits for rays.
+    void startStrips(const std::shared_ptr<BatchContext>&, Sched&);
     // requests.cpp
     void request(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId, bool owns,
                  uint32_t occurrence);
@@ -253,6 +276,9 @@ public:
         return i == traceSums_.end() ? nullptr : &i->second;
     }
     std::unordered_map<TargetId, TraceSums> traceSums_;
+    std::vector<Share> shares_;
+    std::vector<TargetId> lightTargets_; ///< by camera sample, WorldImpl::lightOutputs_
+    TargetId nowhere_ = shading::kNoTarget; ///< nobody reads it
     std::vector<int> litBy_;           ///< PathRay::lit of the queries of a light
     std::vector<LitValues> litValues_; ///< of what runs now; only where lights ask for outputs of surfaces
     std::vector<SampleResult*> results;

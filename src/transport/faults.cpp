@@ -23,7 +23,7 @@ void Engine::notFinite(const BatchContext& c, const PathRay& ray, uint32_t site)
 }
 
 void Engine::add(Sched& sched, TargetId target, const PathRay& ray, const Color& c, const ShaderInstance* of) {
-    if (isFinite(c)) return sched.add(target, c);
+    if (isFinite(c)) return deposit(sched, target, ray.share, c);
     notFinite(&ray, "light", of);
 }
 

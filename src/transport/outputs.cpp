@@ -103,6 +103,11 @@ void WorldImpl::measureOutputs() {
         if (width == 0 && k < settings_.outputWidths.size()) width = settings_.outputWidths[k]; // nobody gives it: zeros, as the display says
         outputWidths_.push_back(width > 0 ? width : 3);
     }
+    for (LightOutputPlace& p : lightOutputs_) {
+        if (p.component + p.size > outputWidths_[size_t(p.aov)]) continue;
+        p.first = p.component;
+        for (int k = 0; k < p.aov; ++k) p.first += outputWidths_[size_t(k)];
+    }
     for (BoundLight& l : lights_)
         for (BoundLight::Value& v : l.values) {
             if (v.aov < 0) continue;

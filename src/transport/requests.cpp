@@ -38,6 +38,8 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     if (s.kind == SiteKind::Transmission) {
         const size_t had = shadows.size();
         transmissionRays(s, p, p.P, &p.surface, f, weight, target, uint32_t(s.site - c.bound->kernel->sites().data()), occurrence, shadows);
+        if (!owns && p.ray)
+            for (size_t k = had; k < shadows.size(); ++k) shadows[k].share = p.ray->share;
         shadowsInMedia(std::span(shadows).subspan(had), v(0), v(1), p.P, &p.surface, c.bindings.empty() ? nullptr : &world_->bindings_[size_t(c.bindings[size_t(point)])]);
         return;
     }
@@ -157,7 +159,7 @@ float Engine::chooseLobes(const BatchContext& c, size_t pi, std::span<const int>
     counters.depthCap += cut;
     // What is reflected and what comes through is at most what arrives.
     float scale = 1;
-    for (int k = 0; k < 3 && !set.unbiased; ++k)
+    for (int k = 0; k < 3 && !set.unbiased && !c.aside; ++k) // what an output adds up is nobody's energy
         if (sum[k] + clear[k] > 1 && sum[k] > 0) scale = std::min(scale, (1 - clear[k]) / sum[k]);
     const bool more = maxComponent(sum) > 1; // by itself: else a highlight on what is clear, say, which is common
     if (scale < 0.999f && (more ? tamed_ : tamedClear_).insert(b.surface.get()).second) // beyond rounding; said once a shader
@@ -220,6 +222,9 @@ void Engine::gather(BatchContext& c, Sched& sched) {
         if (const float bias = world_->bindings_[size_t(c.bindings[pi])].bias; bias > 0) return p.P + w * bias;
         return geometry::offsetOrigin(p.surface, w, p.P == p.surface.P ? 0 : length(p.P - p.surface.P));
     };
+
+    // A waiting kernel's result goes to the target of its own that has no shares; what it makes of it has those of its ray.
+    auto shareOf = [&](const LobeVertex& l) { return l.ownsTarget ? -1 : l.share >= 0 ? l.share : c.rays[size_t(l.point)].share; };
 
     std::vector<float>& indirectScale = room.indirectScale;
     indirectScale.assign(c.points.size(), 1.f);
@@ -393,6 +398,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     }
                     if (l.trace) shadows.back().set = l.set;
                     shadows.back().media = mediaTowards(c, l.point, w);
+                    shadows.back().share = shareOf(l);
                 }
             }
         }
@@ -500,6 +506,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 }
                 r.environment = environment;
                 r.lit = l.lit;
+                r.share = shareOf(l);
                 r.part = l.ownsTarget ? Color(1.f / float(count)) : Color(0);
                 bool sampled = l.lights && !l.elsewhere && !delta && set.direct && !set.bsdfOnly && path;
                 bool sampledElsewhere = l.lights && !l.elsewhere && !delta && set.direct && !set.bsdfOnly && !path && l.ownsTarget;

@@ -181,7 +181,7 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
     }
     rsl::basicService(d, mask, lanes, in, out, diagnostics_, [&](int lane, const std::string& text) {
         if (first + lane >= int(c.points.size())) return;
-        if (c.binding && c.bound == &c.binding->moveS) return; // the surface shader says it when it shades
+        if (c.aside || (c.binding && c.bound == &c.binding->moveS)) return; // the surface shader says it when it shades
         const ShadePoint& p = c.points[size_t(first + lane)];
         const PathRay* r = c.rays.empty() ? p.ray : &c.rays[size_t(first + lane)];
         rsl::PrintKey key;

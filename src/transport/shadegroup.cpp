@@ -136,6 +136,7 @@ Color Engine::clearAt(const BatchContext& c, int i) const {
 }
 
 void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, std::span<const uint32_t> asked) {
+    if (c.aside) return finishAside(c, first, lanes, sched);
     shading::Batch& b = *c.batch;
     int ci = b.plan().Ci, oi = b.plan().Oi;
     const auto& wanted = world_->settings_.outputs;
@@ -176,6 +177,10 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, st
             for (size_t k = 0; k < wanted.size(); ++k) {
                 const int width = world_->outputWidths_[k];
                 int to = 0;
+                if (!binding.aside.empty() && binding.aside[k]) { // asides() give it
+                    at += size_t(width);
+                    continue;
+                }
                 bool others = wantedAt[k].empty(); // what lights and the atmosphere give
                 if (!others && !c.lightChannels.empty()) {
                     if (perhaps.empty())
@@ -197,6 +202,23 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, st
         const float chance = c.passes.empty() ? 1 : c.passes[size_t(i)];
         const Color clear = chance > 0 ? c.clear.empty() ? clearAt(c, i) : c.clear[size_t(i)] : Color(0);
         if (maxComponent(clear) > 0) passThrough(binding, ray, c.targets[i], c.points[i], clear, chance, asked.empty() ? 0 : asked[size_t(i - first)], sched);
+    }
+}
+
+void Engine::startStrips(const std::shared_ptr<BatchContext>& c, Sched& sched) {
+    const auto& kernel = *c->bound->kernel;
+    const int n = int(c->points.size());
+    for (int first = 0; first < n; first += kernel.lanes()) {
+        for (int i = first; i < std::min(first + kernel.lanes(), n); ++i) sched.hold(c->targets[i]);
+        void* h = kernel.start(&c->batch->call(), first);
+        if (!h) {
+            ++counters.overLimit;
+            for (int i = first; i < std::min(first + kernel.lanes(), n); ++i) sched.release(c->targets[i]);
+            continue;
+        }
+        auto strip = std::make_unique<KernelStrip>(c, h, first, c->rays[first].bounces + c->rays[first].layers);
+        KernelStrip* s = strip.get();
+        s->advance(sched, std::move(strip));
     }
 }
 
@@ -251,6 +273,7 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
     const auto& kernel = *c->bound->kernel;
     fill(*c, &SurfaceBinding::surface);
     if (c->displaced) c->batch->tell(*c->displaced->batch);
+    auto aside = asides(*c, sched, [&](BatchContext& to) { fill(to, &SurfaceBinding::surface); });
     if (c->binding->moveS) moveToFacets(*c); // the kernel moves P itself: it begins with the surface as it was
     int n = int(c->points.size());
     counters.points += uint64_t(n);
@@ -259,18 +282,8 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
     counters.lanesRun += uint64_t((n + kernel.lanes() - 1) / kernel.lanes() * kernel.lanes());
 
     if (kernel.facts().suspends) {
-        for (int first = 0; first < n; first += kernel.lanes()) {
-            for (int i = first; i < std::min(first + kernel.lanes(), n); ++i) sched.hold(c->targets[i]);
-            void* h = kernel.start(&c->batch->call(), first);
-            if (!h) {
-                ++counters.overLimit;
-                for (int i = first; i < std::min(first + kernel.lanes(), n); ++i) sched.release(c->targets[i]);
-                continue;
-            }
-            auto strip = std::make_unique<KernelStrip>(c, h, first, c->rays[first].bounces + c->rays[first].layers);
-            KernelStrip* s = strip.get();
-            s->advance(sched, std::move(strip));
-        }
+        startStrips(c, sched);
+        followAsides(shareLight(*c, {}, aside, sched), aside, sched);
         return;
     }
     kernel.run(&c->batch->call());
@@ -286,6 +299,7 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
     }
     std::vector<uint32_t>& occurrence = occurrence_;
     occurrence.assign(c->emits.empty() ? 0 : c->bound->sites.size() * size_t(n), 0);
+    std::vector<AskedLobe> asked; // only where outputs share lobes
     for (const EmitRecord& e : c->emits) {
         const SiteInfo& s = c->bound->sites[e.site];
         const float* rows = c->arena.data() + e.offset;
@@ -301,12 +315,16 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
             if (world_->bindings_[c->bindings[point]].matte && c->rays[point].type == RayType::Camera) continue;
             const float* args = rows + size_t(3) * e.lanes;
             if (s.kind == SiteKind::LightVisibility) {
+                const size_t had = shadows.size();
                 lightVisibility(*c, s, point, args, e.lanes, lane, weight * c->rays[point].weight, c->targets[point],
                                 args[size_t(s.rows[0]) * e.lanes + lane]);
+                if (shadows.size() > had) shadows.back().share = c->rays[point].share;
                 continue;
             }
             if (s.kind == SiteKind::Transmission) weight *= c->rays[point].weight;
+            const size_t had = lobes.size();
             request(*c, s, point, args, e.lanes, lane, weight, c->targets[point], false, occurrence[size_t(e.site) * size_t(n) + size_t(point)]++);
+            if (!aside.empty() && lobes.size() > had) asked.push_back({int(had), int(&e - c->emits.data()), lane});
         }
     }
     if (world_->settings_.hider == Hider::Path) {
@@ -314,9 +332,11 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
         for (int i = 0; i < n; ++i) c->clear[size_t(i)] = clearAt(*c, i);
         c->passes.assign(size_t(n), 1.f);
     }
+    const auto rest = shareLight(*c, asked, aside, sched);
     gather(*c, sched);
     flushShadows(sched);
     finishStrip(*c, 0, n, sched);
+    followAsides(rest, aside, sched);
 }
 
 } // namespace alpenglow::transport

@@ -1,4 +1,5 @@
 // Shader calls of the scene made into programs with values, and those into kernels.
+#include "rsl/ir/build.h"
 #include "base/limits.h"
 #include "rsl/front/visit.h"
 #include "transport/lightobjects.h"
@@ -234,9 +235,15 @@ rsl::KernelOptions WorldImpl::kernelOptions(const ShaderInstance& i, const std::
     return o;
 }
 
+std::vector<rsl::ir::OutputLight> WorldImpl::lightOfOutputs(const ShaderInstance& i, const std::vector<std::string>& outputs, const std::vector<std::string>& varying,
+                                                            bool path) const {
+    return rsl::lightOfOutputs(i.program->program(), i.program->shader(), kernelOptions(i, outputs, varying, false, path));
+}
+
 BoundKernel WorldImpl::kernel(const ShaderInstance& i, const std::vector<std::string>& outputs, const std::vector<std::string>& varying, bool mixed, bool path,
-                              Diagnostics& d) {
-    const rsl::KernelOptions o = kernelOptions(i, outputs, varying, mixed, path);
+                              Diagnostics& d, const std::string& light) {
+    rsl::KernelOptions o = kernelOptions(i, outputs, varying, mixed, path);
+    o.light = light;
     double begin = seconds();
     auto k = compiler_->kernel(i.program, o, d);
     facts_.compileSec += seconds() - begin;

@@ -212,7 +212,7 @@ void Engine::flushShadows(Sched& s) {
     transmittances(shadows, transmitted_);
     for (size_t i = 0; i < shadows.size(); ++i) {
         const Color c = shadows[i].contribution * transmitted_[i];
-        if (isFinite(c)) s.add(shadows[i].target, c);
+        if (isFinite(c)) deposit(s, shadows[i].target, shadows[i].share, c);
         else notFinite(shadows[i].ray, "light that is sampled", nullptr);
         if (shadows[i].areaLight)
             if (TraceSums* sums = sumsOf(shadows[i].target)) sums->add(TraceSums::AreaLight, shadows[i].contribution * transmitted_[i]);

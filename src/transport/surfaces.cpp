@@ -290,15 +290,24 @@ void SurfaceBinder::hearDisplacement(SurfaceBinding& b, const Names& varying, co
 
 bool SurfaceBinder::bindSurface(SurfaceBinding& b, Names varying) {
     Names outputs = outputsOf(b);
+    partLightOutputs(b, outputs, varying);
     b.surfaceS = world_.kernel(*b.surface, outputs, varying, false, path_, diagnostics_);
     if (!b.surfaceS) { // an error was reported: the default surface stands in
         b.surface = fallback_;
         varying.clear();
         outputs.clear();
+        b.lightOutputs.clear();
+        b.aside.clear();
         b.surfaceS = world_.kernel(*fallback_, outputs, varying, false, path_, diagnostics_);
     }
     if (!b.surfaceS) return false;
-    for (const auto& in : b.surfaceS.kernel->inputs()) b.usesObjectSpace |= in.name.find("object") != std::string::npos && in.name.rfind("space:", 0) == 0;
+    std::vector<const BoundKernel*> kernels{&b.surfaceS};
+    for (LightOutput& o : b.lightOutputs) {
+        o.S = lightKernel(b, o, varying, false);
+        if (o.S.bound) kernels.push_back(&o.S.bound);
+    }
+    for (const BoundKernel* k : kernels)
+        for (const auto& in : k->kernel->inputs()) b.usesObjectSpace |= in.name.find("object") != std::string::npos && in.name.rfind("space:", 0) == 0;
     asked_.push_back({std::move(outputs), std::move(varying), {}});
     return true;
 }
@@ -312,6 +321,9 @@ bool SurfaceBinder::bindMixed() {
         if (!always && !b.usesObjectSpace && sharing[size_t(b.group)] == 1) continue;
         b.surfaceV = world_.kernel(*b.surface, asked_[i].outputs, asked_[i].varying, true, path_, diagnostics_);
         if (!b.surfaceV) return false;
+        for (LightOutput& o : b.lightOutputs) o.V = lightKernel(b, o, asked_[i].varying, true);
+        if (always)
+            for (LightOutput& o : b.lightOutputs) o.S = o.V;
         if (always) b.surfaceS = b.surfaceV;
     }
     return true;

@@ -2,6 +2,7 @@
 #pragma once
 #include "accel/accel.h"
 #include "rsl/compiler.h"
+#include "rsl/passes/optimize.h"
 #include "rsl/printlog.h"
 #include "shading/batch.h"
 #include "texture/texture.h"
@@ -163,6 +164,22 @@ struct Medium {
     int binding = -1;
 };
 
+/// An output that displays ask for and that light reaches: a kernel of its own gives it, so that Ci is what it is without the display.
+struct LightOutput {
+    /// `own`, `main`: by site of this kernel and of the surface's, the first site of the surface's that is the same call; -1: none.
+    struct Kernel { BoundKernel bound; std::vector<int> own, main; };
+    int number = 0;                            ///< WorldImpl::lightOutputs_
+    std::string slot;                          ///< as kernels call it: "d", of an array "list[1]"
+    std::vector<std::string> outputs;
+    Kernel S, V;                               ///< as SurfaceBinding::surfaceS, surfaceV
+};
+/// Where it lies among the AOVs.
+struct LightOutputPlace {
+    std::string slot;
+    int aov = 0, component = 0, size = 3;      ///< which AOV; numbers of it before this output; 1 or 3
+    int first = -1;                            ///< of all numbers of a sample; -1: beyond the width of the AOV
+};
+
 /// Shapes with the same surface, atmosphere and light list are shaded together.
 struct SurfaceBinding {
     InstanceRef surface, displacement, interior, exterior; ///< the last two are asked by messages
@@ -175,6 +192,8 @@ struct SurfaceBinding {
     shading::Media beyond(const shading::Media& from, const Vec3& n, const Vec3& in, const Vec3& to) const;
     bool displacementTells = false;            ///< displacementS gives the outputs of its shader, for those who ask by displacement()
     BoundKernel moveS;                         ///< P as the surface shader leaves it, where that displaces the primitive (no displacement shader)
+    std::vector<LightOutput> lightOutputs;
+    std::vector<char> aside;                   ///< by AOV: `lightOutputs` give it; empty: none
     std::vector<int> lights;                   ///< indices into lights
     int group = 0;                             ///< equal: same program and light list, so that points are shaded in one batch
     int program = 0;                           ///< equal: the same kernel, so that points may share a V batch
@@ -221,7 +240,10 @@ public:
     rsl::KernelOptions kernelOptions(const ShaderInstance&, const std::vector<std::string>& outputs, const std::vector<std::string>& varying, bool mixed,
                                      bool path) const;
     BoundKernel kernel(const ShaderInstance&, const std::vector<std::string>& outputs, const std::vector<std::string>& varying, bool mixed,
-                       bool path, Diagnostics&);
+                       bool path, Diagnostics&, const std::string& light = "Ci");
+    /// The outputs of the kernel() of an instance, and whether light that it asks for reaches them.
+    std::vector<rsl::ir::OutputLight> lightOfOutputs(const ShaderInstance&, const std::vector<std::string>& outputs, const std::vector<std::string>& varying,
+                                                     bool path) const;
 
     /// Matrices of the camera, from the frame's options.
     void setCamera(const scene::Options&);
@@ -265,6 +287,7 @@ public:
     Matrix worldToCamera_, cameraToWorld_;
     Matrix cameraToScreen_, screenToNdc_, ndcToRaster_;
     std::vector<int> outputWidths_;
+    std::vector<LightOutputPlace> lightOutputs_;
     std::unique_ptr<texture::TextureSystem> textures_;
     std::shared_ptr<rsl::ShaderCompiler> compiler_;
     Diagnostics* diagnostics_ = nullptr;

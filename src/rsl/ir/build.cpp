@@ -217,6 +217,7 @@ static std::unique_ptr<Kernel> newKernel(const Program& p, const Shader& s) {
 static std::unique_ptr<Kernel> buildOnce(const Program& p, const Shader& s, const KernelOptions& o, Diagnostics& d,
                                          const DirectSet& direct) {
     auto k = newKernel(p, s);
+    k->light = o.light;
     bool good = false;
     {
         Builder b(*k, p, s, o, d, direct);
@@ -264,6 +265,12 @@ std::unique_ptr<Kernel> buildKernel(const Program& p, const Shader& s, const Ker
     k->facts.direct = notes;
     k->facts.nonLinear = std::move(nonLinear);
     return k;
+}
+
+std::vector<OutputLight> lightOfOutputs(const Program& p, const Shader& s, const KernelOptions& o) {
+    Diagnostics quiet; // what there is to say is said when the kernel is made
+    const auto k = buildOnce(p, s, o, quiet, {});
+    return k ? lightOfOutputs(*k, o) : std::vector<OutputLight>();
 }
 
 std::unique_ptr<Kernel> buildDefaults(const Program& p, const Shader& s, Diagnostics& d, const std::vector<ParameterValue>& given) {

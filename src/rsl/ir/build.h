@@ -2,6 +2,7 @@
 #pragma once
 #include "rsl/ir/ir.h"
 #include "rsl/kernel.h"
+#include "rsl/passes/optimize.h"
 #include <memory>
 
 namespace alpenglow::rsl {
@@ -16,6 +17,10 @@ namespace alpenglow::rsl {
 /// ambient light has "Cl" and "Ol" only. Output shader parameters appear under their own name, any parameter as "param:NAME" on
 /// request.
 std::unique_ptr<ir::Kernel> buildKernel(const Program&, const Shader&, const KernelOptions&, Diagnostics&);
+
+/// The outputs that a kernel under `options` would have, in order, and whether light that is asked for (KernelOptions::path says which
+/// calls ask) reaches them, as a value or by what is decided on it. Empty after an error.
+std::vector<ir::OutputLight> lightOfOutputs(const Program&, const Shader&, const KernelOptions& options);
 
 /// A kernel whose outputs "param:NAME" (arrays: "param:NAME[i]") are the parameters' defaults, in declaration order.
 /// `given`: values of parameters that stand for their defaults.

@@ -137,6 +137,7 @@ struct KernelFacts {
 struct Kernel {
     std::string name;
     ShaderKind kind{};
+    std::string light = "Ci"; ///< KernelOptions::light
     std::vector<Input> inputs;
     std::vector<OutputSlot> outputs;
     std::vector<Site> sites;

@@ -112,6 +112,8 @@ std::string codeKey(const KernelOptions& o) {
     auto text = [&](const std::string& s) { k += std::to_string(s.size()) + ":" + s; };
     k += "\noutputs ";
     for (const auto& s : o.outputs) text(s);
+    k += "\nlight ";
+    text(o.light);
     k += "\nstrings ";
     auto strings = o.stringParameters;
     std::sort(strings.begin(), strings.end());

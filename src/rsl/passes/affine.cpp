@@ -31,7 +31,7 @@ bool prove(Kernel& k, bool split) {
     Inst* ci = nullptr;
     forEach(k.body, [&](Inst* i) {
         any = any || i->op == Op::Request;
-        if (i->op == Op::Output && k.outputs[static_cast<size_t>(i->index)].name == "Ci") ci = i;
+        if (i->op == Op::Output && k.outputs[static_cast<size_t>(i->index)].name == k.light) ci = i;
     });
     if (!any) return true;
     const auto refuse = [&](int site, const std::string& why) {
@@ -57,7 +57,7 @@ bool prove(Kernel& k, bool split) {
     ci = nullptr;
     d = analyseDependence(k);
     forEach(k.body, [&](Inst* i) {
-        if (i->op == Op::Output && k.outputs[static_cast<size_t>(i->index)].name == "Ci") ci = i;
+        if (i->op == Op::Output && k.outputs[static_cast<size_t>(i->index)].name == k.light) ci = i;
     });
     bool good = false;
     std::string why;

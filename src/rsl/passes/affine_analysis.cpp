@@ -18,7 +18,7 @@ std::string spoken(const std::string& symbol) {
 }
 
 /// What a Float made from a result may become: component c of a triple, or any (from a Float result).
-constexpr uint8_t kGrey = 8;
+constexpr uint8_t kGrey = Dependence::kGrey;
 
 struct Analysis {
     const Kernel& k;
@@ -183,7 +183,9 @@ struct Analysis {
         case Op::Dv:
             return; // such results count as constant
         case Op::Output:
-            if (k.outputs[static_cast<size_t>(i->index)].name != "Ci" ||
+            if (i->args[0]->kind == Kind::Float && (channel[i->args[0]->id] & kGrey) && (channel[i->args[0]->id] & 7))
+                bad(m, i, "a float and a component of a colour are added up");
+            if (k.outputs[static_cast<size_t>(i->index)].name != k.light ||
                 (k.kind != ShaderKind::Surface && k.kind != ShaderKind::Volume))
                 bad(m, i, "the output " + k.outputs[static_cast<size_t>(i->index)].name + " depends on it");
             return;
@@ -225,6 +227,7 @@ Dependence analyseDependence(const Kernel& k) {
         a.changed = false;
         a.region(k.body);
     } while (a.changed);
+    a.d.channels = std::move(a.channel);
     return a.d;
 }
 

@@ -14,6 +14,9 @@ struct Dependence {
     std::vector<int> ordinals;
     /// Requests used in a way that is not affine, with the first reason.
     std::map<int, std::string> bad;
+    /// By instruction id, of floats: bits 0 to 2, the components that the value was made of; bit 3, the float result of a Request.
+    std::vector<uint8_t> channels;
+    static constexpr uint8_t kGrey = 8;
     const SiteSet& of(const Inst* i) const {
         static const SiteSet none;
         return i->id < sites.size() ? sites[i->id] : none;

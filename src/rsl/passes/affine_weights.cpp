@@ -9,7 +9,16 @@ bool Weights::run(Inst* ci) {
     index(k.body, nullptr, nullptr);
     WeightedValues seeds, outer;
     std::vector<Inst*> code;
-    if (ci) seeds.emplace_back(ci->args[0], one());
+    if (ci) { // a float is the sum of its components; a float result is the same in all three
+        const Inst* v = ci->args[0];
+        const bool grey = v->kind == Kind::Float && v->id < d.channels.size() && (d.channels[v->id] & Dependence::kGrey);
+        Inst* w = one();
+        if (grey) {
+            w = k.make(Op::Triple, Kind::Triple, {leaves.constant(Kind::Float, 1.0f), leaves.constant(Kind::Float, 0.0f), leaves.constant(Kind::Float, 0.0f)});
+            code.push_back(w);
+        }
+        seeds.emplace_back(ci->args[0], w);
+    }
     if (!scoped(k.body, code, seeds, outer)) return false;
     tails[&k.body] = std::move(code);
     assemble(k.body);

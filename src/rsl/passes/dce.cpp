@@ -62,6 +62,11 @@ struct Marker {
             }
         };
         roots(roots, k.body);
+        spread();
+    }
+
+    /// Marks what the marked instructions need.
+    void spread() {
         while (!work.empty()) {
             Inst* i = work.back();
             work.pop_back();
@@ -228,6 +233,16 @@ int removeInvariant(Kernel& k) {
 }
 
 } // namespace
+
+bool needsLight(Kernel& k, Inst* output) {
+    Marker m(k);
+    m.index(k.body, nullptr);
+    m.mark(output);
+    m.spread();
+    bool light = false;
+    forEach(k.body, [&](const Inst* i) { light = light || (i->op == Op::Request && m.live[i->id]); });
+    return light;
+}
 
 int removeDeadCode(Kernel& k) {
     int changes = removeInvariant(k);

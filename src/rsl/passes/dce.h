@@ -6,6 +6,8 @@ namespace alpenglow::rsl::ir {
 
 /// Long form. Returns the number of changes.
 int removeDeadCode(Kernel&);
+/// Whether the result of some Request reaches an Output, as a value or by what is decided on it. Long form.
+bool needsLight(Kernel&, Inst* output);
 /// Drops the inputs that no instruction reads and renumbers the others.
 void removeUnusedInputs(Kernel&);
 

@@ -47,9 +47,8 @@ void clean(Kernel& k) {
     }
 }
 
-} // namespace
-
-void optimize(Kernel& k, const KernelOptions& options, Diagnostics& diagnostics) {
+/// What comes before light and derivatives.
+void simplifyAll(Kernel& k, const KernelOptions& options) {
     toLongForm(k);
     check(k, "build");
     inlineCalls(k, options.outline);
@@ -71,6 +70,22 @@ void optimize(Kernel& k, const KernelOptions& options, Diagnostics& diagnostics)
         removeDeadCode(k);
         check(k, "dce");
     }
+}
+
+} // namespace
+
+std::vector<OutputLight> lightOfOutputs(Kernel& k, const KernelOptions& options) {
+    simplifyAll(k, options);
+    std::vector<OutputLight> all;
+    for (const OutputSlot& o : k.outputs) all.push_back({o, false});
+    forEach(k.body, [&](Inst* i) {
+        if (i->op == Op::Output) all[static_cast<size_t>(i->index)].light = needsLight(k, i);
+    });
+    return all;
+}
+
+void optimize(Kernel& k, const KernelOptions& options, Diagnostics& diagnostics) {
+    simplifyAll(k, options);
     orderDerivatives(k, diagnostics); // warns of derivatives of rays while the rays are still there
     if (options.differences) {
         takeDifferences(k);

@@ -6,6 +6,11 @@
 
 namespace alpenglow::rsl::ir {
 
+/// An output of a kernel, and whether the light that its Requests ask for reaches it.
+struct OutputLight { OutputSlot output; bool light; };
+/// Of a kernel as it was built; changes it. In order of its outputs.
+std::vector<OutputLight> lightOfOutputs(Kernel&, const KernelOptions&);
+
 /// Runs every pass; in builds with assertions the kernel is verified after each. At options.optimize == 0 only what changes
 /// meaning or interface: affine form, derivative orders, uniformity, unused inputs.
 void optimize(Kernel&, const KernelOptions&, Diagnostics&);

@@ -376,4 +376,33 @@ TEST(Sampling, RouletteIsUnbiased) {
     EXPECT_LT(std::fabs(mean - 4) / se, 4.753);
 }
 
+// Every direction that a narrow cone draws is in it and has the density of the whole, down to 1e-5 radians; far outside there is none.
+TEST(Lobe, NarrowCones) {
+    std::mt19937_64 rng(seedBase() + 11);
+    std::uniform_real_distribution<float> u01(0, 0x1.fffffep-1f);
+    for (const char* name : {"uniform", "cosine"}) {
+        const LobeKind& kind = *findLobe(name);
+        for (float a : {1e-5f, 3e-5f, 1e-4f, 3e-4f, 5e-4f, 1e-3f, 1.7e-3f, 3e-3f, 0.01f, 0.1f})
+            for (int turn = 0; turn < 20; ++turn) {
+                const Vec3 axis = normalize(Vec3(u01(rng) - .5f, u01(rng) - .5f, u01(rng) - .5f));
+                LobeParams p;
+                p.axis = axis;
+                p.a = a;
+                const double half = std::sin(0.5 * double(a)), sine = std::sin(double(a));
+                const double want = std::string_view(name) == "uniform" ? 1 / (4 * kPi * half * half) : 1 / (kPi * sine * sine); // cos: 1 up to a^2 / 2
+                int lost = 0;
+                double worst = 0;
+                for (int i = 0; i < 500; ++i) {
+                    Vec3 w;
+                    if (!kind.sample(p, {u01(rng), u01(rng)}, w) || !(kind.pdf(p, w) > 0)) { ++lost; continue; }
+                    worst = std::max(worst, std::fabs(kind.pdf(p, w) / want - 1));
+                }
+                EXPECT_EQ(lost, 0) << name << " " << a;
+                EXPECT_LT(worst, double(a) * a + 1e-5) << name << " " << a;
+                const Vec3 beside = normalize(axis + Basis(axis).t * (1.1f * a + 1e-6f));
+                EXPECT_EQ(kind.pdf(p, beside), 0) << name << " " << a;
+            }
+    }
+}
+
 } // namespace

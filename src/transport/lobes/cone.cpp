@@ -10,7 +10,9 @@ float oneMinusCos(float a) {
 }
 bool inside(const LobeParams& p, Vec3 w) {
     if (p.hasHorizon && !(dot(p.horizon, w) > 0)) return false;
-    return 1 - dot(p.axis, w) <= oneMinusCos(p.a) * (1 + 1e-6f);
+    // By the chord: 1 - cos of a narrow cone is lost in rounding. The last term is that of the components of both vectors.
+    const Vec3d chord = Vec3d(w) - Vec3d(p.axis);
+    return length(chord) <= std::sqrt(2 * double(oneMinusCos(p.a))) * (1 + 1e-6) + 3e-7;
 }
 bool delta(const LobeParams& p) { return !(p.a > 1e-6f); }
 float uniformValue(const LobeParams& p, Vec3 w) { return !delta(p) && inside(p, w) ? 1 / (2 * float(kPi) * oneMinusCos(p.a)) : 0; }

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <embree3/rtcore.h>
+#include <new>
 #include <optional>
 #include <pmmintrin.h>
 #include <xmmintrin.h>
@@ -60,6 +61,7 @@ struct Accel::Impl {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
     geometry::Bounds bounds;
+    bool sound = true;
 
     /// What an Embree geometry holds: whole shapes, one after the other.
     struct Group {
@@ -339,24 +341,25 @@ Accel::Accel(std::vector<ShapeRef> shapes, std::vector<uint32_t> visibility, Dia
     impl_->visibility.resize(impl_->shapes.size(), kAll);
     if (impl_->readyDirect()) return;
     FlushDenormals flush;
+    // A scene without its tree would be a black picture.
+    const auto giveUp = [&](RTCError e, const char* what) {
+        impl_->sound = false;
+        if (e == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+        diag.report(Severity::Severe, Rie::System, {}, std::string(what) + " (code " + std::to_string(int(e)) + ")");
+    };
     impl_->device = rtcNewDevice(nullptr);
     if (!impl_->device) {
-        diag.report(Severity::Severe, Rie::System, {},
-                    "Embree did not start (code " + std::to_string(int(rtcGetDeviceError(nullptr))) + ")");
+        giveUp(rtcGetDeviceError(nullptr), "Embree did not start");
         return;
     }
     impl_->scene = rtcNewScene(impl_->device);
-    impl_->build();
-    RTCError e = rtcGetDeviceError(impl_->device);
-    if (e != RTC_ERROR_NONE) {
-        diag.report(Severity::Severe, e == RTC_ERROR_OUT_OF_MEMORY ? Rie::NoMem : Rie::Bug, {},
-                    "Embree could not build the scene (code " + std::to_string(int(e)) + "); nothing will be hit");
-        rtcReleaseScene(impl_->scene);
-        impl_->scene = nullptr;
-    }
+    if (impl_->scene) impl_->build();
+    if (RTCError e = rtcGetDeviceError(impl_->device); e != RTC_ERROR_NONE) giveUp(e, "Embree could not build the scene");
 }
 
 Accel::~Accel() = default;
+
+bool Accel::sound() const { return impl_->sound; }
 
 void Accel::setLevels(std::vector<Levels> levels) {
     levels.resize(impl_->shapes.size());

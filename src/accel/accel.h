@@ -52,9 +52,10 @@ struct Hit {
 class Accel {
 public:
     /// shapes must have been diced (geometry/dice.h); the Accel keeps them. visibility: a mask a shape, or empty for kAll.
-    /// Failures of memory are reported; the Accel is then empty.
+    /// Throws std::bad_alloc when memory is short. Other failures are reported: sound() is then false, and nothing will be met.
     Accel(std::vector<geometry::ShapeRef> shapes, std::vector<uint32_t> visibility, Diagnostics&);
     ~Accel();
+    bool sound() const;
     Accel(const Accel&) = delete;
     Accel& operator=(const Accel&) = delete;
 

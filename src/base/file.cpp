@@ -1,10 +1,15 @@
 #include "base/file.h"
+#include "base/limits.h"
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
+#include <string_view>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -45,12 +50,78 @@ bool staysBelow(const fs::path& root, const fs::path& path) {
     return m.first == r.end() || m.first->empty(); // a trailing slash leaves an empty component
 }
 
-Rie codeOf(int error) { return error == ENOSPC || error == EDQUOT ? Rie::DiskFull : Rie::System; }
-
 bool isRegular(const fs::path& p) {
     std::error_code e;
     return fs::is_regular_file(p, e);
 }
+
+/// Whether a component of a path is hidden: ".ssh", "a/.git/config". Not "." and "..".
+bool hidden(const std::string& s) {
+    for (size_t i = 0; i <= s.size();) {
+        size_t j = i;
+        while (j < s.size() && !isSeparator(s[j])) ++j;
+        if (j - i >= 2 && s[i] == '.' && !(j - i == 2 && s[i + 1] == '.')) return true;
+        i = j + 1;
+    }
+    return false;
+}
+
+/// Whether a scene may replace the file that is there: one of ours or of our kind, by its first bytes, or an empty one. Scenes, shaders,
+/// programs and notes are none.
+bool replaceable(const fs::path& p) {
+    using namespace std::string_view_literals;
+    constexpr std::string_view kKnown[] = {
+        "II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv,    // TIFF, BigTIFF
+        "\x76\x2f\x31\x01"sv, "\x89PNG"sv, "\xff\xd8\xff"sv, "#?"sv, // OpenEXR, PNG, JPEG, Radiance
+        "\x2f\x08\x67\xab"sv, "\xab\x67\x08\x2f"sv,   // zfile
+        "\xfa\xce"sv, "\xce\xfa"sv,                     // Pixar's maps
+        "ALPGPART"sv};
+    if (!isRegular(p)) return true; // nothing, or what open() has a message for
+    int fd = ::open(p.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (fd < 0) return errno == ENOENT;
+    char head[8];
+    ssize_t n = ::read(fd, head, sizeof head);
+    ::close(fd);
+    if (n <= 0) return n == 0;
+    const std::string_view have(head, size_t(n));
+    return std::any_of(std::begin(kKnown), std::end(kKnown), [&](std::string_view k) { return have.substr(0, k.size()) == k; });
+}
+
+constexpr const char* kTemporary = ".alpenglow-";
+
+/// Eight digits for this machine and its table of processes: on a folder that several share, a process number alone says nothing.
+std::string machineName() {
+    char host[256] = "";
+    gethostname(host, sizeof host - 1);
+    char space[64] = "";
+    [[maybe_unused]] ssize_t n = readlink("/proc/self/ns/pid", space, sizeof space - 1);
+    uint32_t h = 2166136261u; // FNV-1a
+    for (const char* s : {static_cast<const char*>(host), static_cast<const char*>(space)})
+        for (; *s; ++s) h = (h ^ static_cast<unsigned char>(*s)) * 16777619u;
+    char text[12];
+    std::snprintf(text, sizeof text, "%08x", unsigned(h));
+    return text;
+}
+
+/// Removes temporaries that killed renders left in a folder: those of a process of this machine that is gone, and any of a day ago.
+void removeAbandoned(const fs::path& dir) {
+    constexpr auto kOld = std::chrono::hours(24);
+    std::error_code e;
+    const std::string mine = kTemporary + machineName() + "-";
+    int left = limits::kFolderEntries;
+    for (fs::directory_iterator i(dir.empty() ? fs::path(".") : dir, e), end; !e && i != end && left-- > 0; i.increment(e)) {
+        const std::string name = i->path().filename().string();
+        if (!name.starts_with(kTemporary) || !name.ends_with(".tmp")) continue;
+        std::error_code unknown;
+        if (fs::symlink_status(i->path(), unknown).type() != fs::file_type::regular || unknown) continue;
+        const long process = name.starts_with(mine) ? std::strtol(name.c_str() + mine.size(), nullptr, 10) : 0;
+        const bool gone = process > 0 && ::kill(pid_t(process), 0) != 0 && errno == ESRCH;
+        const auto written = fs::last_write_time(i->path(), unknown);
+        if (gone || (!unknown && fs::file_time_type::clock::now() - written > kOld)) fs::remove(i->path(), unknown);
+    }
+}
+
+Rie codeOf(int error) { return error == ENOSPC || error == EDQUOT ? Rie::DiskFull : Rie::System; }
 
 std::string lower(std::string s) {
     for (char& c : s) c = char(std::tolower((unsigned char)c));
@@ -114,6 +185,16 @@ std::optional<std::string> resolveOutputPath(const std::string& name, const Outp
         }
     }
     std::string path = (policy.root.empty() || policy.root == ".") ? below : (root / below).string();
+    if (hidden(below)) {
+        diags.report(Severity::Error, Rie::NoFile, place, "\"" + name + "\" is a hidden name, which a scene may not write",
+                     "--allow-write permits it");
+        return {};
+    }
+    if (!replaceable(path)) {
+        diags.report(Severity::Error, Rie::NoFile, place, "\"" + path + "\" is there and is no picture; a scene may not replace it",
+                     "choose another name, or permit it by --allow-write");
+        return {};
+    }
     if (outside) {
         Diagnostic d;
         d.severity = Severity::Warning;
@@ -144,10 +225,12 @@ std::optional<OutputFile> OutputFile::open(const std::string& name, const Output
     }
     fs::path dir = target.parent_path();
     if (!dir.empty() && !fs::exists(dir, e)) fs::create_directories(dir, e);
-    // The name holds the process, so that two processes never share one; O_EXCL settles threads.
+    removeAbandoned(dir);
+    // The name holds the machine and the process, so that two processes never share one; O_EXCL settles threads.
     int fd = -1;
+    const std::string own = kTemporary + machineName() + "-" + std::to_string(getpid()) + "-";
     for (int n = 0; n < 10000 && fd < 0; ++n) {
-        f.temporary_ = (dir / (".alpenglow-" + std::to_string(getpid()) + "-" + std::to_string(n) + ".tmp")).string();
+        f.temporary_ = (dir / (own + std::to_string(n) + ".tmp")).string();
         fd = ::open(f.temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (fd < 0 && errno != EEXIST) break;
     }
@@ -187,7 +270,11 @@ void OutputFile::fail(int error) {
 
 bool OutputFile::write(const void* bytes, size_t n) {
     if (!file_ || error_) return false;
-    if (lastWasRead_) std::fseek(file_, 0, SEEK_CUR); // stdio wants a seek between reading and writing
+    // stdio wants a seek between reading and writing.
+    if (lastWasRead_ && std::fseek(file_, 0, SEEK_CUR) != 0) {
+        fail(errno);
+        return false;
+    }
     lastWasRead_ = false;
     written_ += n;
     if (failAfter_ >= 0 && written_ > uint64_t(failAfter_)) {
@@ -200,9 +287,14 @@ bool OutputFile::write(const void* bytes, size_t n) {
 
 size_t OutputFile::read(void* bytes, size_t n) {
     if (!file_ || error_) return 0;
-    if (!lastWasRead_) std::fseek(file_, 0, SEEK_CUR);
+    if (!lastWasRead_ && std::fseek(file_, 0, SEEK_CUR) != 0) {
+        fail(errno);
+        return 0;
+    }
     lastWasRead_ = true;
-    return std::fread(bytes, 1, n, file_);
+    const size_t got = std::fread(bytes, 1, n, file_);
+    if (got < n && std::ferror(file_)) fail(errno);
+    return got;
 }
 
 bool OutputFile::seek(uint64_t position) {
@@ -213,6 +305,7 @@ bool OutputFile::seek(uint64_t position) {
 
 uint64_t OutputFile::tell() {
     off_t p = file_ ? ftello(file_) : 0;
+    if (p < 0) fail(errno);
     return p < 0 ? 0 : uint64_t(p);
 }
 
@@ -220,7 +313,11 @@ uint64_t OutputFile::size() {
     if (!file_) return 0;
     struct stat st{};
     if (std::fflush(file_) != 0) fail(errno);
-    return fstat(fileno(file_), &st) == 0 ? uint64_t(st.st_size) : 0;
+    if (fstat(fileno(file_), &st) != 0) {
+        fail(errno);
+        return 0;
+    }
+    return uint64_t(st.st_size);
 }
 
 bool OutputFile::commit(Diagnostics& diags) {
@@ -296,24 +393,66 @@ std::vector<std::string> splitSearchPath(const std::string& path, const std::vec
     return out;
 }
 
+bool liesBelow(const std::string& path, const std::vector<std::string>& folders) {
+    std::error_code e;
+    const auto plain = [&](const std::string& p) { return fs::absolute(p.empty() ? "." : p, e).lexically_normal(); };
+    const fs::path file = plain(path);
+    for (const std::string& folder : folders) {
+        const fs::path root = plain(folder);
+        const auto m = std::mismatch(root.begin(), root.end(), file.begin(), file.end());
+        if (m.first == root.end() || m.first->empty()) return true; // a trailing slash leaves an empty component
+    }
+    return false;
+}
+
+ReadPolicy readPolicyOf(const std::string& sceneFolder, bool anywhere) {
+    ReadPolicy policy{anywhere, {sceneFolder, "."}};
+    std::error_code e;
+    fs::path folder = fs::absolute(sceneFolder.empty() ? "." : sceneFolder, e).lexically_normal();
+    if (!folder.has_filename()) folder = folder.parent_path();
+    if (const fs::path holder = folder.parent_path(); !e && holder != holder.root_path()) policy.folders.push_back(holder.string());
+    return policy;
+}
+
+Diagnostic outsideMessage(const std::string& what, const std::string& name, const std::string& path, const SourcePlace& place) {
+    Diagnostic d;
+    d.code = Rie::NoFile;
+    d.place = place;
+    d.message = what + " \"" + name + "\" is not read: it lies outside the folders that a scene may read";
+    d.hint = "--searchpath " + fs::path(path).parent_path().lexically_normal().string() + " adds its folder, --allow-read permits any";
+    return d;
+}
+
 std::optional<FoundFile> findFile(const std::string& name, const std::vector<std::string>& directories) {
+    std::string outside;
+    return findFile(name, directories, {}, &outside);
+}
+
+std::optional<FoundFile> findFile(const std::string& name, const std::vector<std::string>& directories, const ReadPolicy& policy,
+                                  std::string* outside) {
+    outside->clear();
     if (name.empty() || name.find('\0') != std::string::npos) return {};
     std::string slashed = name;
     std::replace(slashed.begin(), slashed.end(), '\\', '/');
     bool absolute = fs::path(slashed).is_absolute();
     std::vector<std::string> names{name};
     if (slashed != name) names.push_back(slashed);
+    const auto allowed = [&](const std::string& p) {
+        if (policy.anywhere || liesBelow(p, directories) || liesBelow(p, policy.folders)) return true;
+        if (outside->empty()) *outside = p;
+        return false;
+    };
     auto look = [&](const std::string& n, bool anyCase) -> std::optional<std::string> {
         if (fs::path(n).is_absolute()) {
-            if (!anyCase && isRegular(n)) return n;
-            return anyCase ? existingIgnoringCase("", n) : std::nullopt;
+            std::optional<std::string> p = anyCase ? existingIgnoringCase("", n) : isRegular(n) ? std::optional(n) : std::nullopt;
+            return p && allowed(*p) ? p : std::nullopt;
         }
         for (const std::string& d : directories) {
             if (anyCase) {
-                if (auto p = existingIgnoringCase(d, n)) return p;
+                if (auto p = existingIgnoringCase(d, n); p && allowed(*p)) return p;
             } else {
                 std::string p = (fs::path(d) / n).string();
-                if (isRegular(p)) return p;
+                if (isRegular(p) && allowed(p)) return p;
             }
         }
         return {};

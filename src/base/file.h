@@ -19,7 +19,8 @@ struct OutputPolicy {
 
 /// The path that a file called `name` will be written to. Without allowWrite a name that is absolute (also "C:\x" and
 /// "\\host\x"), has a ".." component, or leads out of the root through a symbolic link, becomes its base name below the root;
-/// this is said once per name. Nothing: the name is unusable, and an error was reported.
+/// this is said once per name. Hidden names (".bashrc", ".git/config") and files that are there and are no pictures, maps or part files
+/// are refused. Nothing: the name is unusable, and an error was reported.
 std::optional<std::string> resolveOutputPath(const std::string& name, const OutputPolicy&, Diagnostics&, const SourcePlace& = {});
 
 /// A file under a temporary name in the directory of its target, renamed to it when whole. Until commit() succeeds the old
@@ -27,6 +28,7 @@ std::optional<std::string> resolveOutputPath(const std::string& name, const Outp
 class OutputFile {
 public:
     /// Resolves the name by the policy, makes missing directories below the root, opens. Nothing: an error was reported.
+    /// Temporaries that killed processes left in the folder are removed.
     static std::optional<OutputFile> open(const std::string& name, const OutputPolicy&, Diagnostics&, const SourcePlace& = {});
     OutputFile(OutputFile&&) noexcept;
     OutputFile& operator=(OutputFile&&) = delete;
@@ -75,5 +77,20 @@ struct FoundFile {
 /// Looks for a name: as it is when absolute, else below each directory in order ("" = the working directory). Backslashes count
 /// as slashes. Then again without regard to case, then the base name alone (absolute paths of other machines).
 std::optional<FoundFile> findFile(const std::string& name, const std::vector<std::string>& directories);
+
+/// Where names that a scene or a shader gives may lead. Links are followed: they are the user's.
+struct ReadPolicy {
+    bool anywhere = true;               ///< --allow-read; or the user gave the name
+    std::vector<std::string> folders{}; ///< what is below them may be read, beside what is below the folders that are searched
+};
+/// The policy of a scene in this folder: below it, and below the folder that holds it ("../textures" is how old projects lie).
+ReadPolicy readPolicyOf(const std::string& sceneFolder, bool anywhere);
+/// Whether a path names something below one of the folders, by its letters.
+bool liesBelow(const std::string& path, const std::vector<std::string>& folders);
+/// As above, but what lies elsewhere counts as missing; *outside is then its path, else "".
+std::optional<FoundFile> findFile(const std::string& name, const std::vector<std::string>& directories, const ReadPolicy&,
+                                  std::string* outside);
+/// The message about a file that is there and may not be read; what: "texture", "archive".
+Diagnostic outsideMessage(const std::string& what, const std::string& name, const std::string& path, const SourcePlace&);
 
 } // namespace alpenglow

@@ -66,6 +66,9 @@ inline constexpr int kFrontErrors = 100;                       ///< errors repor
 inline constexpr size_t kInlinedInstructions = 400'000;        ///< IR of one kernel after inlining
 inline constexpr int kOutlineInstructions = 400;               ///< RSL functions that are larger once inlined are called instead
 inline constexpr size_t kPrintBytes = size_t(256) << 20;        ///< of shaders' printf() held back until they can be sorted
+inline constexpr size_t kPrintRuns = 64;                       ///< times that it goes to a temporary file until then
+inline constexpr int kSplinePoints = 4096;                     ///< control points of a spline() that are written one by one
+inline constexpr int kSolvedSplinePoints = 512;                ///< of one that is solved for its value: each segment is tried
 inline constexpr size_t kAffineInlining = 100'000;             ///< IR of a kernel up to which calls are inlined for the affine proof
 inline constexpr size_t kKernelCacheBytes = size_t(512) << 20; ///< compiled kernels on disk; the least recently used go first
 

@@ -26,7 +26,7 @@ Diagnostics::Handler printer(Severity least) {
 namespace {
 
 // A signal handler can reach nothing but a global.
-volatile int32_t interrupted = 0;
+StopFlag interrupted{0};
 
 extern "C" void onInterrupt(int) {
     if (interrupted) _exit(kInterrupted);
@@ -40,7 +40,7 @@ bool isFolder(const std::string& p) {
 
 } // namespace
 
-const volatile int32_t* watchInterrupts() {
+const StopFlag* watchInterrupts() {
     struct sigaction a;
     std::memset(&a, 0, sizeof a);
     a.sa_handler = onInterrupt;

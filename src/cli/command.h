@@ -2,6 +2,7 @@
 // itself to the program by its add function.
 #pragma once
 #include "base/diagnostics.h"
+#include "base/stopflag.h"
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -41,7 +42,7 @@ void addLsp(CLI::App&, int* status);
 Diagnostics::Handler printer(Severity least = Severity::Warning);
 
 /// Flags of the process that a signal sets: 0, then 1 after the first Ctrl-C. A second ends the process at once with status 130.
-const volatile int32_t* watchInterrupts();
+const StopFlag* watchInterrupts();
 
 /// Folder of the shaders that ship; "" when none is found beside the program.
 std::string shippedShaders();

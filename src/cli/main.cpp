@@ -1,10 +1,20 @@
 // The program: finds the subcommand, reads its arguments. `alpenglow scene.rib` is `alpenglow render scene.rib`.
+#include "base/memory.h"
 #include "base/printable.h"
 #include "cli/command.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <iostream>
+#include <new>
 #include <sstream>
+#include <thread>
+#include <unistd.h>
 
 using namespace alpenglow;
 using namespace alpenglow::cli;
@@ -29,9 +39,30 @@ std::vector<std::string> normalise(int argc, char** argv, const CLI::App& app) {
     return args;
 }
 
-} // namespace
+/// The end of a process that nothing can catch any more: memory that ran out where no exception may pass (kernels, destructors).
+[[noreturn]] void onTerminate() {
+    try {
+        if (std::exception_ptr e = std::current_exception()) std::rethrow_exception(e);
+    } catch (const std::bad_alloc&) {
+        constexpr char text[] = "alpenglow: out of memory\n";
+        [[maybe_unused]] ssize_t n = ::write(STDERR_FILENO, text, sizeof text - 1);
+        _exit(kLimit);
+    } catch (...) {}
+    std::abort();
+}
 
-int main(int argc, char** argv) {
+/// Before all others, so that it holds while static data are made.
+[[gnu::constructor(101)]] void takeTerminate() { std::set_terminate(onTerminate); }
+
+/// Whether all of standard output has arrived; says why not. A reader that went away (head) needs no message.
+bool outputArrived() {
+    errno = 0;
+    const bool fine = std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good();
+    if (!fine && errno != EPIPE) std::fprintf(stderr, "alpenglow: cannot write standard output: %s\n", std::strerror(errno ? errno : EIO));
+    return fine;
+}
+
+int runProgram(int argc, char** argv) {
     int status = kDone;
     CLI::App app("Alpenglow renders RenderMan scenes: RIB in, shaders in RSL as machine code, path-traced pictures out.",
                  "alpenglow");
@@ -53,6 +84,8 @@ int main(int argc, char** argv) {
     addMerge(app, &status);
     addLsp(app, &status);
     std::vector<std::string> args = normalise(argc, argv, app);
+    if (!args.empty() && args.front() != "render") // which has an option for it
+        if (const size_t bytes = defaultMemoryLimit()) limitMemory(bytes, int(std::thread::hardware_concurrency()));
     std::reverse(args.begin(), args.end()); // as the parser takes vectors
     try {
         app.parse(args);
@@ -62,6 +95,19 @@ int main(int argc, char** argv) {
         std::fputs(printable(out.str()).c_str(), stdout);
         std::fputs(printable(err.str()).c_str(), stderr);
         return code == 0 ? kDone : kWrongUse;
+    }
+    return status;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    // Write errors are seen where they happen; these would end the process in the middle of a file.
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
+    int status = kDone;
+    try {
+        status = runProgram(argc, argv);
     } catch (const std::bad_alloc&) {
         std::fputs("alpenglow: out of memory\n", stderr);
         return kLimit;
@@ -69,5 +115,6 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "alpenglow: %s\n", printable(e.what()).c_str());
         return kNothingRendered;
     }
+    if (!outputArrived() && (status == kDone || status == kDoneWithErrors)) status = kOutputFailed;
     return status;
 }

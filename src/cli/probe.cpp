@@ -19,6 +19,11 @@
 namespace alpenglow::cli {
 namespace {
 
+std::string folderOf(const std::string& file) {
+    const size_t slash = file.find_last_of('/');
+    return slash == std::string::npos ? "." : file.substr(0, slash + 1);
+}
+
 /// Keeps the last frame of the streams.
 struct Keeper final : scene::FrameConsumer {
     std::shared_ptr<const scene::Frame> frame;
@@ -49,7 +54,7 @@ struct Arguments {
     uint64_t seed = 0;
     int threads = 0, maxDepth = -1, lanes = 16;
     double radius = 0; ///< 0: a 400th of the scene
-    bool unbiased = false, allowExec = false;
+    bool unbiased = false, allowExec = false, allowRead = false;
     std::vector<std::string> searchPaths;
 };
 
@@ -64,6 +69,7 @@ int probe(const Arguments& a) {
     Keeper keeper;
     ri::ReaderOptions options;
     options.searchPaths = folders(a.searchPaths);
+    options.allowRead = a.allowRead;
     ri::RibReader(options, keeper, diags).readFile(a.scene);
     if (!keeper.frame) {
         diags.report(Severity::Error, Rie::MissingData, {a.scene}, "there is no world in it");
@@ -124,11 +130,11 @@ int probe(const Arguments& a) {
     t.maxDepth = a.maxDepth;
     t.unbiased = a.unbiased;
     t.allowExec = a.allowExec;
+    t.read = readPolicyOf(folderOf(a.scene), a.allowRead);
     t.dialect = a.dialect;
     t.shaderPaths = folders(a.searchPaths);
     for (std::string& e : environmentShaders()) t.shaderPaths.push_back(std::move(e));
-    size_t slash = a.scene.find_last_of('/');
-    std::string folder = slash == std::string::npos ? "." : a.scene.substr(0, slash + 1);
+    const std::string folder = folderOf(a.scene);
     t.texturePaths = folders(a.searchPaths);
     t.shaderPaths.push_back(folder);
     t.texturePaths.push_back(folder);
@@ -136,7 +142,10 @@ int probe(const Arguments& a) {
     if (std::string s = shippedShaders(); !s.empty()) t.shaderPaths.push_back(s);
     t.pluginPaths = t.shaderPaths;
     render::Engine engine = render::transportEngine();
+    const StopFlag* stop = watchInterrupts();
+    t.stop = stop;
     auto world = engine.build(frame, t, diags);
+    if (*stop) return kInterrupted;
     if (!world) return kNothingRendered;
 
     // Samples in up to 64 blocks, each a stratified sequence of its own: their means are independent, so their spread is the
@@ -146,38 +155,41 @@ int probe(const Arguments& a) {
     ray.direction = Vec3(normalize(transformVector(toCamera, -N)));
     ray.width = float(radius);
     ray.time = frame->options.shutterOpen;
-    const volatile int32_t* stop = watchInterrupts();
     std::vector<Color> means(blocks);
-    std::atomic<uint32_t> next{0}, missed{0};
-    int threads = a.threads > 0 ? a.threads : std::max(1, int(std::thread::hardware_concurrency()));
-    std::vector<std::thread> team;
-    for (int w = 0; w < std::min(threads, int(blocks)); ++w)
-        team.emplace_back([&] {
-            auto tracer = engine.tracer(world, diags);
-            for (uint32_t b; (b = next++) < blocks && !*stop;) {
-                double sum[3] = {0, 0, 0};
-                for (uint32_t begin = 0; begin < each; begin += 1024) {
-                    std::vector<transport::CameraRay> rays;
-                    for (uint32_t s = begin; s < std::min(each, begin + 1024); ++s) {
-                        Vec2 e = render::Sampler(a.seed, int(b), 0).get2(0, render::kUseFilter, 0, s);
-                        double r = radius * std::sqrt(0.25 + 0.75 * e.x), phi = 2 * kPi * e.y;
-                        Vec3d from = C + N * above + u * (r * std::cos(phi)) + v * (r * std::sin(phi));
-                        rays.push_back(ray);
-                        rays.back().origin = Vec3(transformPoint(toCamera, from));
-                        rays.back().px = int(b);
-                        rays.back().sample = s;
-                    }
-                    std::vector<transport::SampleResult> results(rays.size());
-                    if (!tracer->trace(rays, results, stop)) return;
-                    for (const auto& r : results) {
-                        for (int k = 0; k < 3; ++k) sum[k] += double(r.color[k]);
-                        if (r.z >= 1e38f) ++missed;
-                    }
+    std::atomic<uint32_t> missed{0};
+    const int threads = a.threads > 0 ? a.threads : std::max(1, int(std::thread::hardware_concurrency()));
+    render::Team team(std::min(threads, int(blocks)));
+    std::vector<std::unique_ptr<render::Tracer>> tracers(size_t(team.threads()));
+    StopFlag halt;
+    team.run(
+        blocks, &halt,
+        [&](int worker, size_t b) {
+            auto& tracer = tracers[size_t(worker)];
+            if (!tracer) tracer = engine.tracer(world, diags);
+            double sum[3] = {0, 0, 0};
+            for (uint32_t begin = 0; begin < each; begin += 1024) {
+                std::vector<transport::CameraRay> rays;
+                for (uint32_t s = begin; s < std::min(each, begin + 1024); ++s) {
+                    Vec2 e = render::Sampler(a.seed, int(b), 0).get2(0, render::kUseFilter, 0, s);
+                    double r = radius * std::sqrt(0.25 + 0.75 * e.x), phi = 2 * kPi * e.y;
+                    Vec3d from = C + N * above + u * (r * std::cos(phi)) + v * (r * std::sin(phi));
+                    rays.push_back(ray);
+                    rays.back().origin = Vec3(transformPoint(toCamera, from));
+                    rays.back().px = int(b);
+                    rays.back().sample = s;
                 }
-                for (int k = 0; k < 3; ++k) means[b][k] = float(sum[k] / each);
+                std::vector<transport::SampleResult> results(rays.size());
+                if (!tracer->trace(rays, results, &halt)) return;
+                for (const auto& r : results) {
+                    for (int k = 0; k < 3; ++k) sum[k] += double(r.color[k]);
+                    if (r.z >= 1e38f) ++missed;
+                }
             }
+            for (int k = 0; k < 3; ++k) means[b][k] = float(sum[k] / each);
+        },
+        [&](size_t) {
+            if (*stop) halt = 1;
         });
-    for (std::thread& th : team) th.join();
     if (*stop) return kInterrupted;
     if (missed) {
         diags.report(Severity::Error, Rie::Math, {},
@@ -214,6 +226,7 @@ void addProbe(CLI::App& app, int* status) {
         ->type_name("R");
     addDialect(*c, a->dialect);
     c->add_flag("--allow-exec", a->allowExec, "Let shaders load plug-ins");
+    c->add_flag("--allow-read", a->allowRead, "Let the scene read maps and archives anywhere");
     c->add_flag("--unbiased", a->unbiased, "Do not tame shaders that reflect more than they receive");
     c->add_option("--searchpath", a->searchPaths, "Folders for shaders, textures and archives, separated by :")
         ->type_name("DIRS")

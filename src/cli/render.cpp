@@ -1,5 +1,6 @@
 // alpenglow render: scenes to pictures.
 #include "base/limits.h"
+#include "base/memory.h"
 #include "cli/command.h"
 #include "render/renderer.h"
 #include "ri/reader.h"
@@ -15,7 +16,7 @@ namespace {
 struct Arguments {
     render::RenderSettings settings;
     std::vector<std::string> scenes, searchPaths, displays, rib;
-    std::string format, crop, samples, frames, pixel, preset, progress = "auto";
+    std::string format, crop, samples, frames, pixel, preset, memory, progress = "auto";
     float gamma = 0;
     bool noDirect = false, noIndirect = false, watch = false, quiet = false, verbose = false;
     std::vector<int> frameList;
@@ -59,6 +60,12 @@ void checkLate(Arguments& a, const CLI::App& app) {
         s.pixel = {int((*v)[0]), int((*v)[1])};
         if (v->size() == 3) s.pixelSample = uint32_t((*v)[2]);
     }
+    s.memoryLimit = defaultMemoryLimit();
+    if (!a.memory.empty()) {
+        auto bytes = parseMemorySize(a.memory);
+        if (!bytes) wrong("--memory-limit", "takes a size like 800M or 4G");
+        s.memoryLimit = *bytes;
+    }
     for (const std::string& d : a.displays) {
         size_t colon = d.find(':');
         if (colon == std::string::npos || colon == 0 || colon + 1 == d.size())
@@ -84,7 +91,7 @@ void checkLate(Arguments& a, const CLI::App& app) {
     s.shippedShaders = shippedShaders();
 }
 
-int renderOnce(const Arguments& a, const volatile int32_t* stop) {
+int renderOnce(const Arguments& a, const StopFlag* stop) {
     Diagnostics diags(printer(a.quiet ? Severity::Error : a.verbose ? Severity::Info : Severity::Warning));
     render::RenderSettings settings = a.settings;
     settings.stop = stop;
@@ -94,6 +101,7 @@ int renderOnce(const Arguments& a, const volatile int32_t* stop) {
     ri::ReaderOptions options;
     options.searchPaths = folders(a.searchPaths);
     options.allowExec = settings.allowExec;
+    options.allowRead = settings.allowRead;
     options.frames = a.frameList;
     options.overrides = [&](scene::Options& o) { renderer.override(o); };
     bool memory = false;
@@ -107,7 +115,8 @@ int renderOnce(const Arguments& a, const volatile int32_t* stop) {
         }
     } catch (const std::bad_alloc&) {
         memory = true;
-        diags.report(Severity::Severe, Rie::NoMem, {}, "out of memory");
+        diags.report(Severity::Severe, Rie::NoMem, {}, "out of memory while the scene was read",
+                     "the limit is " + memorySizeText(settings.memoryLimit) + "; --memory-limit sets another");
     }
     const auto& outcome = renderer.outcome();
     bool interrupted = outcome.interrupted || *stop;
@@ -139,7 +148,9 @@ std::vector<int64_t> timesOf(const std::vector<std::string>& files) {
 }
 
 int renderAll(const Arguments& a) {
-    const volatile int32_t* stop = watchInterrupts();
+    if (const size_t bytes = a.settings.memoryLimit)
+        limitMemory(bytes, a.settings.threads > 0 ? a.settings.threads : int(std::thread::hardware_concurrency()));
+    const StopFlag* stop = watchInterrupts();
     if (!a.watch) return renderOnce(a, stop);
     while (true) {
         auto before = timesOf(a.scenes);
@@ -231,6 +242,11 @@ void addRender(CLI::App& app, int* status) {
         ->check(CLI::IsMember({4, 8, 16}))
         ->type_name("N")
         ->group("Machine");
+    c->add_option("--memory-limit", a->memory,
+                  "End with status 4 rather than take more memory than SIZE, for example 800M or 4G; nine tenths of the machine's when "
+                  "not given")
+        ->type_name("SIZE")
+        ->group("Machine");
     c->add_option("--checkpoint", s.checkpoint, "path: keep the samples so far in FILE, every half minute and at the end")
         ->type_name("FILE")
         ->group("Machine");
@@ -252,7 +268,10 @@ void addRender(CLI::App& app, int* status) {
         ->allow_extra_args(false)
         ->group("Input");
     c->add_flag("--allow-exec", s.allowExec, "Let the scene run programs and load plug-ins")->group("Input");
-    c->add_flag("--allow-write", s.allowWrite, "Let the scene write outside the current folder")->group("Input");
+    c->add_flag("--allow-read", s.allowRead, "Let the scene read maps and archives anywhere, not only below its folders and --searchpath")
+        ->group("Input");
+    c->add_flag("--allow-write", s.allowWrite, "Let the scene write outside the current folder, hidden files, and over what is no picture")
+        ->group("Input");
 
     c->add_option("--progress", a->progress, "auto, bar, plain or none")
         ->check(CLI::IsMember({"auto", "bar", "plain", "none"}))

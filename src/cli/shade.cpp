@@ -203,7 +203,7 @@ int shade(const Arguments& a) {
         outRows.push_back(out.back().data.get());
     }
     Context context{kernel.get(), &diags, true};
-    const volatile int32_t* stop = watchInterrupts();
+    const StopFlag* stop = watchInterrupts();
     rsl::KernelCall call{};
     call.in = inRows.data();
     call.out = outRows.data();

@@ -42,6 +42,7 @@ struct DriverDescriptor {
     std::vector<std::string> names; ///< display types it answers to, any case
     std::string doc;                ///< for the manual: what it writes, which parameters it reads
     std::unique_ptr<Driver> (*make)();
+    bool writes = true; ///< a file under the display's name
 };
 
 /// All drivers, in the order of the manual.

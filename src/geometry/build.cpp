@@ -35,13 +35,16 @@ void once(Diagnostics& diag, const std::string& key, Rie code, const SourcePlace
     diag.reportOnce("geometry:" + key, d);
 }
 
-// RenderMan's defaults where a caller gave no attributes or no basis.
-void fillBasis(scene::Basis& b) {
-    bool zero = true;
+bool unset(const scene::Basis& b) {
     for (auto& row : b.m)
         for (double x : row)
-            if (x != 0) zero = false;
-    if (!zero) return;
+            if (x != 0) return false;
+    return true;
+}
+
+// RenderMan's defaults where a caller gave no attributes or no basis.
+void fillBasis(scene::Basis& b) {
+    if (!unset(b)) return;
     static constexpr double bezier[4][4] = {{-1, 3, -3, 1}, {3, -6, 3, 0}, {-3, 3, 0, 0}, {1, 0, 0, 0}};
     std::memcpy(b.m, bezier, sizeof bezier);
     b.step = 3;
@@ -79,17 +82,13 @@ ShapeRef buildShape(const scene::PrimitiveRef& prim, const scene::AttributesRef&
     s.primitive = prim;
     s.toCamera = toCamera;
     s.instance = instance;
-    auto a = given ? std::make_shared<scene::Attributes>(*given) : nullptr;
-    bool bases = prim->kind == "Patch" || prim->kind == "PatchMesh";
-    if (!given || bases) {
-        if (!a) a = std::make_shared<scene::Attributes>();
-        scene::Basis u = a->ubasis, v = a->vbasis;
+    s.attributes = given;
+    const bool patch = prim->kind == "Patch" || prim->kind == "PatchMesh";
+    if (!given || (patch && (unset(given->ubasis) || unset(given->vbasis)))) {
+        auto a = given ? std::make_shared<scene::Attributes>(*given) : std::make_shared<scene::Attributes>();
         fillBasis(a->ubasis);
         fillBasis(a->vbasis);
-        bool changed = !given || std::memcmp(u.m, a->ubasis.m, sizeof u.m) || std::memcmp(v.m, a->vbasis.m, sizeof v.m);
-        s.attributes = changed ? scene::AttributesRef(a) : given;
-    } else {
-        s.attributes = given;
+        s.attributes = std::move(a);
     }
     return entry->make(std::move(s), diag);
 }

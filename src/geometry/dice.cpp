@@ -74,7 +74,7 @@ void displaceMesh(const Shape& shape, const DiceOptions& opt, Diagnostics& diag,
     uint32_t n = uint32_t(mesh.P.size());
     double bound = displacementBound(shape, opt), farthest = 0;
     size_t notFinite = 0, tooFar = 0;
-    for (uint32_t begin = 0; begin < n; begin += kRun) {
+    for (uint32_t begin = 0; begin < n && !(opt.stop && *opt.stop); begin += kRun) {
         uint32_t count = std::min(kRun, n - begin);
         DiceGrid g;
         for (uint32_t i = 0; i < count; ++i) {
@@ -95,6 +95,7 @@ void displaceMesh(const Shape& shape, const DiceOptions& opt, Diagnostics& diag,
             if (!(p == g.points[i].P)) mesh.P[begin + i] = p;
         }
     }
+    if (opt.stop && *opt.stop) return; // what kernels left early is void
     if (notFinite)
         diag.report(Severity::Error, Rie::Math, shape.place(),
                     "displacement of this " + shape.kind() + " is not finite at " + std::to_string(notFinite) +
@@ -113,6 +114,7 @@ void diceShapes(const std::vector<ShapeRef>& shapes, const DiceOptions& opt, Dia
     // Messages are kept by shape and passed on in order, so that they do not depend on threads.
     std::vector<std::vector<Diagnostic>> said(shapes.size());
     tbb::parallel_for(size_t(0), shapes.size(), [&](size_t i) {
+        if (opt.stop && *opt.stop) return;
         Diagnostics own;
         shapes[i]->dice(opt, own);
         said[i] = own.all();

@@ -1,5 +1,6 @@
 // Dicing by screen size (design decision 9): how fine, and displacement of what was diced.
 #pragma once
+#include "base/stopflag.h"
 #include "geometry/shape.h"
 #include <functional>
 
@@ -25,6 +26,7 @@ struct DiceGrid {
 
 struct DiceOptions {
     DiceCamera camera;
+    const StopFlag* stop = nullptr; ///< set: shapes not yet diced stay as they are, and what is diced is void; null: never
     /// Whether displace is to run for a shape; null: for those with a displacement shader (attributes().displacement).
     std::function<bool(const Shape&)> displaces;
     /// Runs what displaces a shape. Must be thread safe: shapes are diced

@@ -7,7 +7,7 @@ class IntegratorTracer final : public Tracer {
 public:
     IntegratorTracer(std::shared_ptr<const transport::World> w, Diagnostics& d) : integrator_(std::move(w), d) {}
     bool trace(std::span<const transport::CameraRay> rays, std::span<transport::SampleResult> results,
-               const volatile int32_t* stop) override {
+               const StopFlag* stop) override {
         return integrator_.trace(rays, results, stop);
     }
     const transport::Counters& counters() const override { return integrator_.counters(); }

@@ -1,5 +1,6 @@
 // The door from render/ to transport/: a pair of functions, so that tests can put a scene of closed forms behind it.
 #pragma once
+#include "base/stopflag.h"
 #include "transport/integrator.h"
 #include <functional>
 #include <memory>
@@ -12,7 +13,7 @@ class Tracer {
 public:
     virtual ~Tracer() = default;
     virtual bool trace(std::span<const transport::CameraRay>, std::span<transport::SampleResult>,
-                       const volatile int32_t* stop) = 0;
+                       const StopFlag* stop) = 0;
     virtual const transport::Counters& counters() const = 0;
 };
 

@@ -80,6 +80,7 @@ MergeResult mergePictures(const std::vector<std::string>& parts, const std::stri
         if (auto world = imagerWorld(*film, files.front(), settings, diags))
             imager = [world, &diags](int n, const float* x, const float* y, float* r, float* g, float* b, float* a) {
                 world->runImager(n, x, y, r, g, b, a, diags);
+                return true;
             };
     bool written = writeFilm(*film, plan->first, plan->second, imager, settings.allowWrite, diags);
     // What is not the beginning of a sequence may be merged further.

@@ -47,7 +47,7 @@ transport::CameraRay imageRay(const Camera& camera, Vec2 position, uint64_t seed
     return r;
 }
 
-std::vector<Image> renderImages(Job& job, int nx, int ny, Jitter jitter, uint64_t seed, DroppedSamples* dropped) {
+Reconstructions renderImages(Job& job, int nx, int ny, Jitter jitter, uint64_t seed, DroppedSamples* dropped) {
     const OutputPlan& plan = job.plan;
     const Window window = job.camera.window();
     std::vector<Channel> aovs;
@@ -58,7 +58,18 @@ std::vector<Image> renderImages(Job& job, int nx, int ny, Jitter jitter, uint64_
         xw = std::max(xw, p.filter.xw);
         yw = std::max(yw, p.filter.yw);
     }
-    std::vector<Image> images(plan.pictures.size());
+    // One for all pictures with the same filters: a frame may have hundreds.
+    Reconstructions result;
+    std::vector<const OutputSpec*> filtered;
+    for (const OutputSpec& p : plan.pictures) {
+        const auto same = std::find_if(filtered.begin(), filtered.end(), [&](const OutputSpec* s) {
+            return s->depth == p.depth && s->filter.kind == p.filter.kind && s->filter.xw == p.filter.xw && s->filter.yw == p.filter.yw;
+        });
+        result.of.push_back(size_t(same - filtered.begin()));
+        if (same == filtered.end()) filtered.push_back(&p);
+    }
+    std::vector<Image>& images = result.images;
+    images.resize(filtered.size());
     for (Image& i : images) {
         i.window = window;
         i.channels = {"r", "g", "b", "a", "Or", "Og", "Ob", "z"};
@@ -133,21 +144,11 @@ std::vector<Image> renderImages(Job& job, int nx, int ny, Jitter jitter, uint64_
                 tell(reached, false);
             });
         dropped->count += buffer.nonFinite();
-        // Pictures with the same filters share the work.
         for (size_t p = 0; p < images.size(); ++p) {
-            const OutputSpec& s = plan.pictures[p];
-            size_t same = 0;
-            while (same < p && !(plan.pictures[same].depth == s.depth && plan.pictures[same].filter.kind == s.filter.kind &&
-                                 plan.pictures[same].filter.xw == s.filter.xw && plan.pictures[same].filter.yw == s.filter.yw))
-                ++same;
-            size_t stride = images[p].channels.size(), rowFloats = size_t(window.width()) * stride;
+            const OutputSpec& s = *filtered[p];
+            const size_t rowFloats = size_t(window.width()) * images[p].channels.size();
             float* to = images[p].data.data() + size_t(part.y0 - window.y0) * rowFloats;
-            if (same < p) {
-                const float* from = images[same].data.data() + size_t(part.y0 - window.y0) * rowFloats;
-                std::copy(from, from + size_t(part.height()) * rowFloats, to);
-                continue;
-            }
-            volatile int32_t go = 0;
+            StopFlag go{0};
             job.team.run(
                 size_t(part.height()), &go,
                 [&](int, size_t row) {
@@ -161,7 +162,7 @@ std::vector<Image> renderImages(Job& job, int nx, int ny, Jitter jitter, uint64_
     if (job.world) job.world->flushPrints(true);
     tell(job.interrupted ? reached : 1, true);
     job.halt = 0;
-    return images;
+    return result;
 }
 
 } // namespace alpenglow::render

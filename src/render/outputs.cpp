@@ -350,7 +350,7 @@ bool writeOutputs(const OutputPlan& plan, const PictureFacts& facts, const std::
                 rx[size_t(x)] = float(facts.window.x0 + x) + 0.5f;
                 ry[size_t(x)] = float(facts.window.y0 + y) + 0.5f;
             }
-            if (imager) imager(w, rx.data(), ry.data(), r, g, b, a);
+            if (imager && !imager(w, rx.data(), ry.data(), r, g, b, a)) return all;
             for (int x = 0; x < w; ++x) {
                 const float* p = src + size_t(x) * stride;
                 float* q = out.pixel(x, y);

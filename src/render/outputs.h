@@ -84,11 +84,11 @@ struct PictureFacts {
     bool imager = false; ///< the frame has an imager shader
 };
 
-/// Runs an imager over `count` pixels in place; see transport::World::runImager. Null: none.
-using Imager = std::function<void(int count, const float* x, const float* y, float* r, float* g, float* b, float* a)>;
+/// Runs an imager over `count` pixels in place; see transport::World::runImager. False: the user stopped it, the pixels are void. Null: none.
+using Imager = std::function<bool(int count, const float* x, const float* y, float* r, float* g, float* b, float* a)>;
 
 /// Writes all pictures of the plan. pixels(spec) gives what was reconstructed for it. False when any could not be written (an
-/// error was reported); the others are written all the same.
+/// error was reported); the others are written all the same. What the imager was stopped in and what comes behind it is not.
 bool writeOutputs(const OutputPlan&, const PictureFacts&, const std::function<const Image&(const OutputSpec&)>& pixels,
                   const Imager&, bool allowWrite, Diagnostics&);
 

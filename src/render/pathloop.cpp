@@ -6,6 +6,7 @@
 #include "render/rendering.h"
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 namespace alpenglow::render {
 namespace {
@@ -85,51 +86,52 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
             }
         }
         double begun = clockSeconds();
-        bool whole = job.team.run(
-            tiles.size(), &job.halt,
-            [&](int worker, size_t i) {
-                const Window& t = tiles[i];
-                std::vector<float>& out = held[i];
-                out.clear();
-                out.reserve(t.pixels() * count * stride);
-                std::vector<transport::CameraRay> rays;
-                std::vector<transport::SampleResult> results;
-                std::vector<float> weights;
-                auto flush = [&] {
-                    results.resize(rays.size());
-                    if (!job.trace(worker, rays, results)) return false;
-                    for (size_t k = 0; k < rays.size(); ++k) {
-                        const transport::SampleResult& r = results[k];
-                        float w = weights[k];
-                        Color c = clampSample(r.color, settings.sampleClamp) * w;
-                        out.insert(out.end(), {c.x, c.y, c.z, (r.opacity.x + r.opacity.y + r.opacity.z) / 3 * w});
-                        size_t at = out.size();
-                        if (!channels.empty()) filmValues(job.plan, r.opacity, r.z, r.zSecond, r.aovs, &out);
-                        for (size_t j = 0; j < channels.size(); ++j)
-                            if (channels[j].rule == ChannelRule::Average) out[at + j] *= w;
+        const auto traceTile = [&](int worker, size_t i) {
+            const Window& t = tiles[i];
+            std::vector<float>& out = held[i];
+            out.clear();
+            out.reserve(t.pixels() * count * stride);
+            std::vector<transport::CameraRay> rays;
+            std::vector<transport::SampleResult> results;
+            std::vector<float> weights;
+            auto flush = [&] {
+                results.resize(rays.size());
+                if (!job.trace(worker, rays, results)) return false;
+                for (size_t k = 0; k < rays.size(); ++k) {
+                    const transport::SampleResult& r = results[k];
+                    float w = weights[k];
+                    Color c = clampSample(r.color, settings.sampleClamp) * w;
+                    out.insert(out.end(), {c.x, c.y, c.z, (r.opacity.x + r.opacity.y + r.opacity.z) / 3 * w});
+                    size_t at = out.size();
+                    if (!channels.empty()) filmValues(job.plan, r.opacity, r.z, r.zSecond, r.aovs, &out);
+                    for (size_t j = 0; j < channels.size(); ++j)
+                        if (channels[j].rule == ChannelRule::Average) out[at + j] *= w;
+                }
+                rays.clear();
+                weights.clear();
+                return true;
+            };
+            for (int y = t.y0; y < t.y1; ++y)
+                for (int x = t.x0; x < t.x1; ++x)
+                    for (uint32_t s = next; s < next + count; ++s) {
+                        float w;
+                        rays.push_back(pathRay(job.camera, filter, seed, x, y, s, &w));
+                        weights.push_back(w);
+                        if (rays.size() == kRaysPerCall && !flush()) return;
                     }
-                    rays.clear();
-                    weights.clear();
-                    return true;
-                };
-                for (int y = t.y0; y < t.y1; ++y)
-                    for (int x = t.x0; x < t.x1; ++x)
-                        for (uint32_t s = next; s < next + count; ++s) {
-                            float w;
-                            rays.push_back(pathRay(job.camera, filter, seed, x, y, s, &w));
-                            weights.push_back(w);
-                            if (rays.size() == kRaysPerCall && !flush()) return;
-                        }
-                if (!rays.empty()) flush();
-            },
-            [&](size_t done) {
+            if (!rays.empty()) flush();
+        };
+        bool whole = false;
+        try {
+            whole = job.team.run(tiles.size(), &job.halt, traceTile, [&](size_t done) {
                 job.pollStop();
                 if (settings.seconds > 0 && any && job.elapsed() > settings.seconds) job.halt = 1;
                 tell(double(count) * double(done) / double(tiles.size()), false);
             });
+        } catch (const std::bad_alloc&) { job.outOfMemory = true; } // the film has whole passes only
         if (job.world) job.world->flushPrints(whole);
         if (!whole) break;
-        volatile int32_t go = 0;
+        StopFlag go{0};
         job.team.run(
             tiles.size(), &go,
             [&](int, size_t i) {

@@ -1,5 +1,7 @@
 #include "render/renderer.h"
 #include "base/limits.h"
+#include "base/memory.h"
+#include "display/driver.h"
 #include "render/digest.h"
 #include "render/filmpicture.h"
 #include "render/imagertext.h"
@@ -9,6 +11,7 @@
 #include "render/rendering.h"
 #include "texture/maketexture.h"
 #include <cmath>
+#include <filesystem>
 #include <new>
 #include <tbb/global_control.h>
 #include <thread>
@@ -111,6 +114,48 @@ std::string Renderer::fileFor(const scene::Options& o, uint32_t spp) {
     return name;
 }
 
+std::string Renderer::checkpointFile() {
+    if (settings_.checkpoint.empty() || checkpoints_++ == 0) return settings_.checkpoint;
+    return numberedName(settings_.checkpoint, checkpoints_);
+}
+
+bool Renderer::canWrite(const OutputPlan& plan, const std::string& checkpoint) {
+    const OutputPolicy anywhere{".", true};
+    bool all = true;
+    const auto attempt = [&](const std::string& name, const OutputPolicy& policy, const SourcePlace& place) {
+        all &= OutputFile::open(name, policy, diagnostics_, place).has_value(); // whose destructor leaves no trace
+    };
+    if (!settings_.statsFile.empty()) attempt(settings_.statsFile, anywhere, {});
+    if (!checkpoint.empty()) attempt(checkpoint, anywhere, {});
+    if (settings_.pixel) return all; // no picture is written
+    for (const OutputSpec& s : plan.pictures) {
+        const display::DriverDescriptor* driver = display::findDriver(s.type);
+        if (driver && !driver->writes) continue;
+        const OutputPolicy policy{".", settings_.allowWrite || s.userFile};
+        attempt(s.name, policy, s.place);
+        if (settings_.samples && &s == &plan.pictures.front()) attempt(sidecarName(s.name), policy, s.place);
+    }
+    return all;
+}
+
+bool Renderer::resume(const std::string& checkpoint, const FilmDescription& wanted, std::unique_ptr<Film>& film) {
+    if (std::error_code e; !std::filesystem::exists(checkpoint, e)) {
+        diagnostics_.report(Severity::Warning, Rie::NoError, {checkpoint}, "there is no checkpoint yet; rendering begins anew");
+        return true;
+    }
+    film = loadPart(checkpoint, diagnostics_);
+    if (film && film->description() == wanted) return true;
+    if (film)
+        diagnostics_.report(Severity::Error, Rie::Consistency, {checkpoint},
+                            "the checkpoint belongs to another picture, scene or seed; it is left as it is, and nothing is rendered",
+                            "render what it belongs to, name another file, or leave --resume away to begin anew");
+    else
+        diagnostics_.report(Severity::Warning, Rie::NoError, {checkpoint}, "the checkpoint is left as it is, and nothing is rendered",
+                            "leave --resume away to begin anew");
+    film.reset();
+    return false;
+}
+
 void Renderer::render(std::shared_ptr<const scene::Frame> frame) {
     double now = clockSeconds();
     stats_.parseSec += now - parseMark_;
@@ -119,7 +164,12 @@ void Renderer::render(std::shared_ptr<const scene::Frame> frame) {
     } catch (const std::bad_alloc&) {
         outcome_.outOfMemory = true;
         ++outcome_.refused;
-        diagnostics_.report(Severity::Severe, Rie::NoMem, {}, "out of memory; this frame is given up");
+        diagnostics_.report(Severity::Severe, Rie::NoMem, {}, "out of memory; this frame is given up",
+                            settings_.memoryLimit ? "the limit is " + memorySizeText(settings_.memoryLimit) + "; --memory-limit sets another" : "");
+    } catch (const std::exception& e) { // of libraries that could not get what they need: threads, mostly
+        outcome_.outOfMemory = true;
+        ++outcome_.refused;
+        diagnostics_.report(Severity::Severe, Rie::System, {}, std::string("this frame is given up: ") + e.what());
     }
     parseMark_ = clockSeconds();
 }
@@ -130,7 +180,12 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
         return;
     }
     const scene::Options& o = frame->options;
-    tbb::global_control threads(tbb::global_control::max_allowed_parallelism, size_t(settings_.threads));
+    const int team = Team::startable(settings_.threads);
+    if (team < settings_.threads)
+        diagnostics_.reportOnce("threads", {Severity::Warning, Rie::System, {},
+                                            "only " + std::to_string(team) + " of " + std::to_string(settings_.threads) +
+                                                " threads can be started; the picture is the same, later", {}, {}});
+    tbb::global_control threads(tbb::global_control::max_allowed_parallelism, size_t(team));
 
     Hider hider = hiderOf(o, diagnostics_);
     const bool path = hider == Hider::Path;
@@ -158,6 +213,12 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
         diagnostics_.report(Severity::Error, Rie::MissingData, {}, "no Display of this frame can be made; it is not rendered");
         return;
     }
+    const std::string checkpoint = checkpointFile();
+    if (!canWrite(plan, path ? checkpoint : "")) {
+        ++outcome_.refused;
+        outcome_.outputFailed = true;
+        return;
+    }
 
     transport::Settings t;
     t.hider = hider;
@@ -171,13 +232,16 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
     t.localRoulette = settings_.localRoulette;
     t.dialect = settings_.dialect;
     t.allowExec = settings_.allowExec;
+    t.read = readPolicyOf(settings_.scenePath, settings_.allowRead);
     t.pluginPaths = searchPaths(o, "rslplugin", settings_.shaderPaths, true);
     t.shaderPaths = searchPaths(o, "shader", settings_.shaderPaths, true);
     t.texturePaths = searchPaths(o, "texture", settings_.texturePaths, false);
     t.outputs = plan.engineOutputs;
     t.outputWidths = plan.engineWidths;
+    t.stop = settings_.stop;
     auto world = engine_.build(drawnLevels(frame, camera), t, diagnostics_);
     if (!world) {
+        if (settings_.stop && *settings_.stop) outcome_.interrupted = true;
         ++outcome_.refused;
         return;
     }
@@ -187,13 +251,22 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
     stats_.compileSec += facts.compileSec;
 
     double cpu = processCpuSeconds();
-    Job job(settings_, camera, plan, engine_, world, settings_.threads, progress_, diagnostics_);
+    Job job(settings_, camera, plan, engine_, world, team, progress_, diagnostics_);
     job.what = plan.pictures.front().name;
     if (o.frameNumber > 0) job.what += " (frame " + std::to_string(o.frameNumber) + ")";
     Imager imager;
     if (o.imager)
-        imager = [&](int n, const float* x, const float* y, float* r, float* g, float* b, float* a) {
-            world->runImager(n, x, y, r, g, b, a, diagnostics_);
+        imager = [&, poll = static_cast<const StopFlag*>(nullptr), begun = false](
+                     int n, const float* x, const float* y, float* r, float* g, float* b, float* a) mutable {
+            // A stop that was asked for while rendering is obeyed by now: it must not end the imager's loops.
+            if (!begun) poll = settings_.stop && !*settings_.stop ? settings_.stop : nullptr;
+            begun = true;
+            world->runImager(n, x, y, r, g, b, a, diagnostics_, poll);
+            if (!poll || !*poll) return true;
+            outcome_.interrupted = true;
+            diagnostics_.reportOnce("imager:stopped", {Severity::Warning, Rie::NoError, o.imager->place,
+                                                       "interrupted while the imager was running; the picture is not written", {}, {}});
+            return false;
         };
     PictureFacts picture;
     picture.width = camera.width();
@@ -232,27 +305,27 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
         }
         std::unique_ptr<Film> film;
         const OutputPolicy anywhere{".", true};
-        if (settings_.resume) {
-            film = loadPart(settings_.checkpoint, diagnostics_);
-            if (film && !(film->description() == d)) {
-                diagnostics_.report(Severity::Error, Rie::Consistency, {settings_.checkpoint},
-                                    "the checkpoint belongs to another picture, scene or seed; it is not used");
-                film.reset();
-            }
+        if (settings_.resume && !resume(checkpoint, d, film)) {
+            ++outcome_.refused;
+            return;
         }
         if (!film) film = std::make_unique<Film>(d);
         film->metadata[kPicturesKey] = planToText(plan, picture);
         if (std::string seen = imagerToText(*frame, t); !seen.empty()) film->metadata[kImagerKey] = std::move(seen);
         double saved = clockSeconds();
-        auto checkpoint = [&](Film& f) {
-            if (settings_.checkpoint.empty() || clockSeconds() - saved < settings_.checkpointSeconds) return;
-            outcome_.outputFailed |= !savePart(f, settings_.checkpoint, anywhere, diagnostics_);
+        auto keep = [&](Film& f, bool now = false) {
+            if (checkpoint.empty() || (!now && clockSeconds() - saved < settings_.checkpointSeconds)) return;
+            outcome_.outputFailed |= !savePart(f, checkpoint, anywhere, diagnostics_);
             saved = clockSeconds();
         };
-        bool any = renderPath(job, *film, wanted, settings_.seed, checkpoint);
+        bool any = renderPath(job, *film, wanted, settings_.seed, keep);
         double renderSec = job.elapsed();
         stats_.renderSec += renderSec;
         outcome_.interrupted |= job.interrupted;
+        if (job.outOfMemory) { // the old picture is better than few samples; a checkpoint goes on later
+            if (any) keep(*film, true);
+            throw std::bad_alloc();
+        }
         if (!any) {
             ++outcome_.refused;
             if (job.interrupted)
@@ -270,8 +343,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
                 outcome_.outputFailed |=
                     !savePart(*film, sidecarName(first.name), {".", settings_.allowWrite || first.userFile}, diagnostics_);
             }
-            if (!settings_.checkpoint.empty())
-                outcome_.outputFailed |= !savePart(*film, settings_.checkpoint, anywhere, diagnostics_);
+            if (!checkpoint.empty()) outcome_.outputFailed |= !savePart(*film, checkpoint, anywhere, diagnostics_);
         }
         stats_.spp = film->samplesPerPixel();
         stats_.noise = noiseFigures(*film);
@@ -279,7 +351,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
         nonFinite = film->nonFinite();
     } else {
         DroppedSamples dropped;
-        std::vector<Image> images = renderImages(job, nx, ny, jitterOf(o, diagnostics_), settings_.seed, &dropped);
+        Reconstructions made = renderImages(job, nx, ny, jitterOf(o, diagnostics_), settings_.seed, &dropped);
         nonFinite = dropped.count;
         stats_.renderSec += job.elapsed();
         stats_.spp = spp;
@@ -295,7 +367,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
         picture.metadata["nonFinite"] = std::to_string(nonFinite);
         picture.metadata["spp"] = std::to_string(spp);
         picture.metadata["seed"] = std::to_string(settings_.seed);
-        auto pixels = [&](const OutputSpec& s) -> const Image& { return images[size_t(&s - plan.pictures.data())]; };
+        auto pixels = [&](const OutputSpec& s) -> const Image& { return made.images[made.of[size_t(&s - plan.pictures.data())]]; };
         outcome_.outputFailed |= !writeOutputs(plan, picture, pixels, imager, settings_.allowWrite, diagnostics_);
     }
     stats_.cpuSec += processCpuSeconds() - cpu;
@@ -387,6 +459,7 @@ void Renderer::makeTexture(const std::string& kind, const std::vector<std::strin
     stats_.parseSec += now - parseMark_;
     texture::MakeOptions m;
     m.policy.allowWrite = settings_.allowWrite;
+    m.read = readPolicyOf(settings_.scenePath, settings_.allowRead);
     m.place = place;
     m.searchPath = {""};
     if (!settings_.scenePath.empty()) m.searchPath.push_back(settings_.scenePath);

@@ -47,6 +47,12 @@ private:
                                          bool shaders) const;
     /// Says that samples were left out, and how to make the first of them again. `sample` < 0: it is not known.
     void reportDropped(uint64_t count, int x, int y, int64_t sample);
+    /// --checkpoint; from the second frame on with its number in it, so that each frame can be resumed.
+    std::string checkpointFile();
+    /// Whether the files of this frame can be written, as far as can be known before its first ray. Errors were reported.
+    bool canWrite(const struct OutputPlan&, const std::string& checkpoint);
+    /// What the checkpoint holds, if there is one. False: it is of something else or damaged (an error was reported).
+    bool resume(const std::string& checkpoint, const FilmDescription& wanted, std::unique_ptr<Film>& film);
     void printPixel(struct Job&, const scene::Options&, uint32_t spp, bool path);
 
     RenderSettings settings_;
@@ -58,6 +64,7 @@ private:
     RenderStats stats_;
     double depthSum_ = 0, paths_ = 0, lanesUsed_ = 0, lanesRun_ = 0;
     double parseMark_ = 0; ///< since when the reader is at work
+    int checkpoints_ = 0;  ///< frames that had one
     int saved_ = 0;        ///< pictures made for -o or the save pattern
 };
 

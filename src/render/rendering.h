@@ -34,8 +34,9 @@ struct Job {
     Diagnostics& diagnostics;
     std::string what;                             ///< the picture's name, for the progress line
     double startSeconds = 0;                      ///< clock() when rendering began
-    volatile int32_t halt = 0;                    ///< what tracers poll
+    StopFlag halt{0};                    ///< what tracers poll
     bool interrupted = false;                     ///< the user's stop was seen
+    bool outOfMemory = false;                     ///< the samples of a pass did not fit; what is whole stays
     std::vector<std::unique_ptr<Tracer>> tracers; ///< by worker
     std::vector<uint64_t> rays;                   ///< by worker, as last told
     std::atomic<uint64_t> rayTotal{0};
@@ -67,9 +68,14 @@ bool renderPath(Job&, Film&, SampleRange wanted, uint64_t seed, const std::funct
 void gridOf(const scene::Options&, const RenderSettings&, int* nx, int* ny);
 Jitter jitterOf(const scene::Options&, Diagnostics&);
 transport::CameraRay imageRay(const Camera&, Vec2 position, uint64_t seed, int x, int y, uint32_t sample);
-/// A reconstructed picture for each picture of the plan, in its order. When the user stops, pixels not reached stay black.
 /// Samples that are not finite numbers: how many, and sample, y and x of the first in the picture.
 struct DroppedSamples { uint64_t count = 0; std::optional<std::array<int, 3>> first; };
-std::vector<Image> renderImages(Job&, int nx, int ny, Jitter, uint64_t seed, DroppedSamples*);
+/// Reconstructed pictures: that of plan.pictures[i] is images[of[i]].
+struct Reconstructions {
+    std::vector<Image> images;
+    std::vector<size_t> of;
+};
+/// When the user stops, pixels not reached stay black.
+Reconstructions renderImages(Job&, int nx, int ny, Jitter, uint64_t seed, DroppedSamples*);
 
 } // namespace alpenglow::render

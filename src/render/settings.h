@@ -1,5 +1,6 @@
 // What a user may ask of a render beside what the scene says. Defaults mean "as the scene says".
 #pragma once
+#include "base/stopflag.h"
 #include "render/film.h"
 #include "render/progress.h"
 #include <array>
@@ -38,10 +39,11 @@ struct RenderSettings {
     std::string dialect;                                ///< FrontOptions::dialect of the shaders
     std::string scenePath;                              ///< where the scene lies: the last place but one to look in; "" = nowhere
     std::string shippedShaders;                         ///< the last place to look for shaders in
-    bool allowExec = false, allowWrite = false;
+    bool allowExec = false, allowWrite = false, allowRead = false;
+    size_t memoryLimit = 0;                             ///< what the process is bound to (base/memory.h), for messages; 0 = nothing
     ProgressMode progress = ProgressMode::Auto;
     bool quiet = false;
-    const volatile int32_t* stop = nullptr; ///< non-zero: end soon and keep what is whole
+    const StopFlag* stop = nullptr; ///< non-zero: end soon and keep what is whole
 };
 
 } // namespace alpenglow::render

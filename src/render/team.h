@@ -1,12 +1,15 @@
 // Threads that work through a list of tasks. Plain threads, not TBB: a tracer is busy with one call at a time, and a TBB thread
 // that waits inside a trace may begin another task of the same list with the same tracer.
 #pragma once
+#include "base/stopflag.h"
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
 #include <mutex>
+#include <new>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -20,31 +23,47 @@ public:
     /// Calls work(worker, task) for tasks 0 .. count-1, each once, on `threads` threads; worker < threads. Meanwhile tick(done)
     /// runs on the calling thread about every 20 ms. Once *halt is set no further task begins. Throws what a task threw, after
     /// all have ended. True when every task was done.
-    template <class Work, class Tick> bool run(size_t count, volatile int32_t* halt, Work work, Tick tick) {
+    /// A thread that cannot be started (no memory, or no more processes for this user) is done without; if none can be, the calling
+    /// thread works, with tick() between its tasks.
+    template <class Work, class Tick> bool run(size_t count, StopFlag* halt, Work work, Tick tick) {
         std::atomic<size_t> next{0}, done{0};
-        int running = threads_;
+        int running = 0;
         std::exception_ptr thrown;
         std::mutex mutex;
         std::condition_variable ended;
-        std::vector<std::thread> threads;
-        for (int w = 0; w < threads_; ++w)
-            threads.emplace_back([&, w] {
-                try {
-                    while (!*halt) {
-                        size_t i = next++;
-                        if (i >= count) break;
-                        work(w, i);
-                        ++done;
-                    }
-                } catch (...) {
-                    std::lock_guard lock(mutex);
-                    if (!thrown) thrown = std::current_exception();
-                    *halt = 1;
+        const auto each = [&](int w, auto after) {
+            try {
+                while (!*halt) {
+                    size_t i = next++;
+                    if (i >= count) break;
+                    work(w, i);
+                    after(++done);
                 }
+            } catch (...) {
+                std::lock_guard lock(mutex);
+                if (!thrown) thrown = std::current_exception();
+                *halt = 1;
+            }
+        };
+        std::vector<std::thread> threads;
+        threads.reserve(size_t(threads_));
+        for (int w = 0; w < threads_; ++w) {
+            {
+                std::lock_guard lock(mutex);
+                ++running;
+            }
+            if (!start(threads, [&, w] {
+                    each(w, [](size_t) {});
+                    std::lock_guard lock(mutex);
+                    --running;
+                    ended.notify_one();
+                })) {
                 std::lock_guard lock(mutex);
                 --running;
-                ended.notify_one();
-            });
+                break;
+            }
+        }
+        if (threads.empty()) each(0, tick);
         {
             std::unique_lock lock(mutex);
             while (running > 0) {
@@ -59,7 +78,35 @@ public:
         return done == count && !*halt;
     }
 
+    /// How many of `wanted` threads can be started at one time beside the calling one; at least 1, which may then be that one.
+    static int startable(int wanted) {
+        std::vector<std::thread> threads;
+        threads.reserve(size_t(wanted));
+        std::mutex mutex;
+        std::condition_variable all;
+        bool go = false;
+        for (int w = 0; w < wanted; ++w)
+            if (!start(threads, [&] {
+                    std::unique_lock lock(mutex);
+                    all.wait(lock, [&] { return go; });
+                }))
+                break;
+        {
+            std::lock_guard lock(mutex);
+            go = true;
+        }
+        all.notify_all();
+        for (std::thread& t : threads) t.join();
+        return threads.empty() ? 1 : int(threads.size());
+    }
+
 private:
+    template <class Body> static bool start(std::vector<std::thread>& threads, Body body) {
+        try {
+            threads.emplace_back(std::move(body));
+            return true;
+        } catch (const std::system_error&) { return false; } catch (const std::bad_alloc&) { return false; }
+    }
     int threads_;
 };
 

@@ -1,4 +1,5 @@
 // ReadArchive and inline archives (ri.md 10.2).
+#include "base/file.h"
 #include "base/limits.h"
 #include "ri/interpreter.h"
 #include "ri/parser.h"
@@ -6,6 +7,7 @@
 #include <cctype>
 #include <filesystem>
 #include <fmt/format.h>
+#include <string_view>
 
 namespace alpenglow::ri {
 namespace {
@@ -23,13 +25,22 @@ bool sameButCase(const std::string& a, const std::string& b) {
            });
 }
 
-std::string along(const std::string& name, const std::vector<std::string>& folders) {
-    if (fs::path(name).is_absolute()) return regular(name) ? name : std::string();
+std::string along(const std::string& name, const std::vector<std::string>& folders, const MayRead& may) {
+    if (fs::path(name).is_absolute()) return regular(name) && may(name) ? name : std::string();
     for (const std::string& f : folders) {
         fs::path p = fs::path(f) / name;
-        if (regular(p)) return p.string();
+        if (regular(p) && may(p.string())) return p.string();
     }
     return {};
+}
+
+/// Whether a name says that its file is RIB. Others a scene reads only from its own folder and those that the user named: words of what
+/// is no RIB would stand in the messages about it.
+bool namedAsRib(const std::string& path) {
+    std::string e = fs::path(path).extension().string();
+    for (char& c : e) c = char(std::tolower(static_cast<unsigned char>(c)));
+    constexpr std::string_view kKnown[] = {".rib", ".ribz", ".gz", ".rz", ".rlf", ".arc", ".archive"};
+    return std::find(std::begin(kKnown), std::end(kKnown), e) != std::end(kKnown);
 }
 
 } // namespace
@@ -50,21 +61,22 @@ std::vector<std::string> splitSearchPath(const std::string& text) {
     return out;
 }
 
-std::string findFile(const std::string& name, const std::vector<std::string>& folders, std::string* fallback) {
+std::string findFile(const std::string& name, const std::vector<std::string>& folders, std::string* fallback,
+                     const MayRead& may) {
     fallback->clear();
     if (name.empty() || name.find('\0') != std::string::npos) return {};
-    if (std::string p = along(name, folders); !p.empty()) return p;
+    if (std::string p = along(name, folders, may); !p.empty()) return p;
     std::string slashes = name;
     std::replace(slashes.begin(), slashes.end(), '\\', '/');
     if (slashes != name) {
         *fallback = "with / for \\";
-        if (std::string p = along(slashes, folders); !p.empty()) return p;
+        if (std::string p = along(slashes, folders, may); !p.empty()) return p;
     }
     std::string base = fs::path(slashes).filename().string();
     if (base.empty()) return {};
     if (base != slashes) {
         *fallback = "by its base name";
-        if (std::string p = along(base, folders); !p.empty()) return p;
+        if (std::string p = along(base, folders, may); !p.empty()) return p;
     }
     *fallback = "with other upper and lower case";
     for (const std::string& f : folders) {
@@ -72,7 +84,7 @@ std::string findFile(const std::string& name, const std::vector<std::string>& fo
         std::error_code ec;
         for (fs::directory_iterator i(f, ec), e; !ec && i != e; i.increment(ec)) {
             std::string n = i->path().filename().string();
-            if (sameButCase(n, base) && regular(i->path()) && (best.empty() || i->path().string() < best))
+            if (sameButCase(n, base) && regular(i->path()) && may(i->path().string()) && (best.empty() || i->path().string() < best))
                 best = i->path().string();
         }
         if (!best.empty()) return best;
@@ -136,8 +148,21 @@ void Interpreter::readArchive(const std::string& name, const SourcePlace& place)
         std::string beside = fs::path(place.file).parent_path().string();
         folders.push_back(beside.empty() ? "." : beside);
         folders.push_back(".");
-        std::string fallback, why;
-        file = findFile(name, folders, &fallback);
+        std::string fallback, why, outside;
+        std::vector<std::string> own = settings.searchPaths; // below them everything is read
+        own.insert(own.end(), {sceneFolder_.empty() ? "." : sceneFolder_, "."});
+        const ReadPolicy policy = readPolicyOf(sceneFolder_, settings.allowRead);
+        file = findFile(name, folders, &fallback, [&](const std::string& path) {
+            if (policy.anywhere || liesBelow(path, own)) return true;
+            if (namedAsRib(path) && (liesBelow(path, folders) || liesBelow(path, policy.folders))) return true;
+            if (outside.empty()) outside = path;
+            return false;
+        });
+        if (file.empty() && !outside.empty()) {
+            const Diagnostic d = outsideMessage("archive", name, outside, place);
+            reporter.error(d.code, place, d.message, d.hint);
+            return;
+        }
         if (file.empty()) {
             std::string looked;
             for (const std::string& f : folders) looked += (looked.empty() ? "" : ", ") + f;

@@ -55,7 +55,10 @@ void Interpreter::light(const Call& call, bool area) {
     l.shader = shader(call);
     l.handle = call.text(1);
     l.area = area;
-    l.attributes = snapshot();
+    // A light asks nothing of the list of lights; without it, thousands in a row take no square of their number.
+    auto own = std::make_shared<scene::Attributes>(*snapshot());
+    own->lights.clear();
+    l.attributes = std::move(own);
     int index = int(lights().size());
     lights().push_back(std::move(l));
     if (!call.text(1).empty()) handles_[call.text(1)] = index;

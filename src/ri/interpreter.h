@@ -8,6 +8,7 @@
 #include "ri/reporter.h"
 #include "ri/requests/request.h"
 #include "ri/source.h"
+#include <functional>
 #include <map>
 #include <set>
 
@@ -200,9 +201,11 @@ using ConditionLookup = std::function<std::optional<ConditionValue>(const std::s
 /// Unknown variables and syntax errors are reported; they are false.
 bool evaluateCondition(const std::string& text, const ConditionLookup& lookup, Reporter& reporter, const SourcePlace& place);
 
+/// Whether a file may be read.
+using MayRead = std::function<bool(const std::string& path)>;
 /// The path of an archive along folders: as given, then with '/' for '\', its base name, other case. "" = not found.
 /// *fallback says which liberty was taken, or is "".
-std::string findFile(const std::string& name, const std::vector<std::string>& folders, std::string* fallback);
+std::string findFile(const std::string& name, const std::vector<std::string>& folders, std::string* fallback, const MayRead& may);
 /// "a:b;c" to folders; a single letter before ":/" or ":\" is a drive, "&" and "@" are left to the caller.
 std::vector<std::string> splitSearchPath(const std::string& text);
 

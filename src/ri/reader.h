@@ -14,6 +14,7 @@ namespace alpenglow::ri {
 struct ReaderOptions {
     std::vector<std::string> searchPaths; ///< folders for archives, after those of Option "searchpath" "archive"
     bool allowExec = false;               ///< RunProgram, DynamicLoad, System were asked for by the user
+    bool allowRead = true;                ///< archives may lie anywhere; false: below the folders that archive.cpp names
     size_t mostLights = limits::kLights;  ///< of one frame; further ones are reported
     std::vector<int> frames; ///< only these FrameBegin numbers are rendered; empty = all. Worlds outside frames always are
     /// Called for each frame on its own copy of the options, just before it is handed over: the command line has the last word.

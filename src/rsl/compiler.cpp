@@ -325,6 +325,13 @@ KernelPtr ShaderCompiler::kernel(const ShaderPtr& shader, const KernelOptions& o
                     "no code could be made for shader \"" + shader->name() + "\": " + error);
             }
         }
+    } catch (const std::bad_alloc&) { // the frame is given up, not rendered without its shader
+        {
+            std::lock_guard lock(state_->mutex);
+            state_->kernels.erase(key);
+        }
+        promise.set_value(nullptr);
+        throw;
     } catch (const std::exception& e) {
         diagnostics.report(Severity::Error, Rie::Bug, {shader->path(), 0, 0},
                            "no code could be made for shader \"" + shader->name() + "\": " + e.what());

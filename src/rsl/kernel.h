@@ -1,6 +1,7 @@
 // The one door between generated code and the renderer. Plain C layout: generated code knows these offsets.
 #pragma once
 #include "base/limits.h"
+#include "base/stopflag.h"
 #include "rsl/ir/ir.h"
 #include <cstdint>
 #include <functional>
@@ -35,7 +36,7 @@ struct KernelCall {
     int32_t (*lightBegin)(KernelCall*, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* pAxisAngle);
     uint64_t (*lightFetch)(KernelCall*, int32_t site, int32_t light, int32_t first, uint64_t mask, int32_t lanes, float* lClOl);
     void (*lightEnd)(KernelCall*, int32_t site, int32_t first, int32_t lanes);
-    const volatile int32_t* stop; ///< loops leave early when *stop != 0
+    const StopFlag* stop; ///< loops leave early when *stop != 0
     const int32_t* pairCount; ///< not used by generated code; room for the caller's bookkeeping
     /// Frames of suspending kernels: `bytes` of memory, 64-byte aligned, or null when there is none left (start then returns null).
     /// The KernelCall itself, and everything it points to, must stay valid until the coroutine is destroyed.

@@ -18,7 +18,7 @@ auto order(const PrintKey& k) {
 
 void PrintLog::keep(Message m) {
     bytes_ += sizeof(Message) + m.text.size() + m.key.program.size();
-    if (bytes_ > limits::kPrintBytes) write();
+    if (bytes_ > most_ && !spill()) write();
     messages_.push_back(std::move(m));
 }
 
@@ -44,17 +44,78 @@ void PrintLog::flush() {
 
 void PrintLog::discard() {
     const std::lock_guard lock(mutex_);
+    runs_.clear();
     std::erase_if(messages_, [](const Message& m) { return !m.lasting; });
     bytes_ = 0;
 }
 
+bool PrintLog::before(const Message& a, const Message& b) { return order(a.key) < order(b.key); }
+
+void PrintLog::sort() { std::stable_sort(messages_.begin(), messages_.end(), before); }
+
+bool PrintLog::put(std::FILE* f, const Message& m) {
+    const PrintKey& k = m.key;
+    const uint64_t lengths[2] = {k.program.size(), m.text.size()};
+    const auto all = [f](const void* p, size_t n) { return std::fwrite(p, 1, n, f) == n; };
+    return all(&k.sample, sizeof k.sample) && all(&k.y, sizeof k.y) && all(&k.x, sizeof k.x) && all(&k.bounces, sizeof k.bounces) &&
+           all(&k.vertex, sizeof k.vertex) && all(k.place.data(), sizeof k.place) && all(lengths, sizeof lengths) &&
+           all(k.program.data(), k.program.size()) && all(m.text.data(), m.text.size());
+}
+
+bool PrintLog::get(std::FILE* f, Message& m) {
+    PrintKey& k = m.key;
+    uint64_t lengths[2];
+    const auto all = [f](void* p, size_t n) { return std::fread(p, 1, n, f) == n; };
+    if (!all(&k.sample, sizeof k.sample) || !all(&k.y, sizeof k.y) || !all(&k.x, sizeof k.x) || !all(&k.bounces, sizeof k.bounces) ||
+        !all(&k.vertex, sizeof k.vertex) || !all(k.place.data(), sizeof k.place) || !all(lengths, sizeof lengths))
+        return false;
+    k.program.resize(lengths[0]);
+    m.text.resize(lengths[1]);
+    return all(k.program.data(), lengths[0]) && all(m.text.data(), lengths[1]);
+}
+
+/// Moves what discard() would forget to a file. False: there is no room for it, and nothing has changed.
+bool PrintLog::spill() {
+    if (runs_.size() >= limits::kPrintRuns) return false;
+    Run run(std::tmpfile());
+    if (!run) return false;
+    sort();
+    for (const Message& m : messages_)
+        if (!m.lasting && !put(run.get(), m)) return false;
+    if (std::fflush(run.get()) != 0) return false;
+    std::rewind(run.get());
+    runs_.push_back(std::move(run));
+    std::erase_if(messages_, [](const Message& m) { return !m.lasting; });
+    bytes_ = 0;
+    return true;
+}
+
 void PrintLog::write() {
-    std::stable_sort(messages_.begin(), messages_.end(),
-                     [](const Message& a, const Message& b) { return order(a.key) < order(b.key); });
-    for (const Message& m : messages_) {
-        const std::string text = printable(m.text);
+    sort();
+    struct Source {
+        std::FILE* file; ///< null: the messages in memory, which are the last to have come
+        size_t next = 0;
+        Message head{};
+    };
+    std::vector<Source> sources;
+    const auto advance = [&](Source& s) {
+        if (s.file) return get(s.file, s.head);
+        if (s.next == messages_.size()) return false;
+        s.head = std::move(messages_[s.next++]);
+        return true;
+    };
+    const auto add = [&](std::FILE* f) {
+        if (Source s{f}; advance(s)) sources.push_back(std::move(s));
+    };
+    for (const Run& r : runs_) add(r.get());
+    add(nullptr);
+    while (!sources.empty()) {
+        const auto first = std::min_element(sources.begin(), sources.end(), [](const Source& a, const Source& b) { return before(a.head, b.head); });
+        const std::string text = printable(first->head.text);
         std::fwrite(text.data(), 1, text.size(), to_);
+        if (!advance(*first)) sources.erase(first);
     }
+    runs_.clear();
     messages_.clear();
     bytes_ = 0;
 }

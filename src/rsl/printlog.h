@@ -1,9 +1,11 @@
 // What shaders print, in an order that no thread and no batch decides.
 #pragma once
+#include "base/limits.h"
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <string>
@@ -25,11 +27,12 @@ struct PrintKey {
 /// Collects messages until flush(). Thread safe. Messages with equal keys come from one run of a shader and stay in their order.
 class PrintLog {
 public:
-    explicit PrintLog(std::FILE* to = stdout) : to_(to) {}
+    explicit PrintLog(std::FILE* to = stdout, size_t most = limits::kPrintBytes) : most_(most), to_(to) {}
     ~PrintLog() { flush(); }
     PrintLog(const PrintLog&) = delete;
     PrintLog& operator=(const PrintLog&) = delete;
-    /// Keeps a copy. Beyond limits::kPrintBytes everything collected is written first: the order then holds within each part.
+    /// Keeps a copy. Beyond limits::kPrintBytes what was collected goes to a temporary file, sorted, and flush() merges. With more than
+    /// limits::kPrintRuns of these, or no room for them, everything is written first: the order then holds within each part.
     void add(const PrintKey&, const std::string& text);
     /// The same for what construct() prints, which runs once for a shader by the book and here in every run of its code: a text of one
     /// place (`where`, any name for it) is kept once, before all samples, and discard() does not forget it. Beyond limits::kPrintBytes of them
@@ -46,8 +49,19 @@ private:
         std::string text;
         bool lasting = false;
     };
+    struct CloseFile {
+        void operator()(std::FILE* f) const { std::fclose(f); }
+    };
+    using Run = std::unique_ptr<std::FILE, CloseFile>; ///< sorted messages in a file without a name
+    static bool before(const Message&, const Message&);
+    static bool put(std::FILE*, const Message&);
+    static bool get(std::FILE*, Message&);
+    void sort();
+    bool spill();
     void write();
     void keep(Message);
+    std::vector<Run> runs_;
+    size_t most_;
     std::mutex mutex_;
     std::vector<Message> messages_;
     std::set<std::pair<std::string, std::string>> said_; ///< by once()

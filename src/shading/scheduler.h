@@ -10,6 +10,7 @@
 #pragma once
 #include "base/exactsum.h"
 #include "base/limits.h"
+#include "base/stopflag.h"
 #include "base/vec.h"
 #include <cstddef>
 #include <cstdint>
@@ -62,7 +63,7 @@ public:
     };
 
     /// `stop`: polled between slices; when it is set run() gives up what is left. May be null.
-    explicit Scheduler(RayService& service, const volatile int32_t* stop = nullptr, size_t frameLimit = limits::kFrameBytesPerThread,
+    explicit Scheduler(RayService& service, const StopFlag* stop = nullptr, size_t frameLimit = limits::kFrameBytesPerThread,
                        int sliceRays = limits::kSliceRays)
         : service_(service), stop_(stop), frameLimit_(frameLimit), sliceRays_(sliceRays) {}
 
@@ -166,7 +167,7 @@ public:
         return v;
     }
     /// As new, in the memory that is there.
-    void restart(const volatile int32_t* stop) {
+    void restart(const StopFlag* stop) {
         stop_ = stop;
         targets_.clear();
         freeTargets_.clear();
@@ -274,7 +275,7 @@ public:
 
 private:
     RayService& service_;
-    const volatile int32_t* stop_;
+    const StopFlag* stop_;
     size_t frameLimit_;
     int sliceRays_;
     std::vector<Target> targets_;

@@ -9,7 +9,12 @@ namespace {
 constexpr int tileSide = 64; // 48 KiB of rgb floats: a disk read, a few cache ways
 
 std::optional<display::Image> readPicture(const std::string& name, const MakeOptions& o, Diagnostics& diags) {
-    auto found = findFile(name, o.searchPath);
+    std::string outside;
+    auto found = findFile(name, o.searchPath, o.read, &outside);
+    if (!found && !outside.empty()) {
+        diags.report(outsideMessage("picture", name, outside, o.place));
+        return {};
+    }
     if (!found) {
         diags.report(Severity::Error, Rie::NoFile, o.place, "picture \"" + name + "\" was not found");
         return {};

@@ -12,6 +12,7 @@ struct MakeOptions {
     float swidth = 1, twidth = 1;
     std::vector<std::string> searchPath{""}; ///< of the picture
     OutputPolicy policy;
+    ReadPolicy read{}; ///< where the names of pictures may lead
     SourcePlace place;
 };
 

@@ -150,7 +150,12 @@ std::shared_ptr<const Texture> TextureSystem::load(const std::string& path, cons
 
 std::shared_ptr<const Texture> TextureSystem::loadFile(const std::string& name, const std::vector<std::string>& searchPath,
                                                        const SourcePlace& place) {
-    auto found = findFile(name, searchPath);
+    std::string outside;
+    auto found = findFile(name, searchPath, settings_.read, &outside);
+    if (!found && !outside.empty()) {
+        diags_.reportOnce("texture:" + name, outsideMessage("texture", name, outside, place));
+        return {};
+    }
     Diagnostic d;
     d.place = place;
     if (!found) {
@@ -183,7 +188,9 @@ std::shared_ptr<const Texture> TextureSystem::loadTiles(const std::string& name,
     for (int number = 1001; number <= 1100; ++number) {
         std::string tile = name;
         tile.replace(from, length, std::to_string(number));
-        auto found = findFile(tile, searchPath);
+        std::string outside;
+        auto found = findFile(tile, searchPath, settings_.read, &outside);
+        if (!outside.empty()) diags_.reportOnce("texture:" + name, outsideMessage("texture", name, outside, place));
         if (!found) continue;
         if (auto t = load(found->path, place)) tex->tiles[number] = t;
     }
@@ -202,6 +209,11 @@ std::shared_ptr<const Texture> TextureSystem::loadTiles(const std::string& name,
     return tex;
 }
 
+bool TextureSystem::find(const std::string& name, const std::vector<std::string>& searchPath) const {
+    std::string outside;
+    return findFile(name, searchPath, settings_.read, &outside).has_value();
+}
+
 Handle TextureSystem::open(const std::string& name, const std::vector<std::string>& searchPath, const SourcePlace& place) {
     std::string key = name;
     for (const std::string& d : searchPath) key += '\n' + d;
@@ -213,7 +225,7 @@ Handle TextureSystem::open(const std::string& name, const std::vector<std::strin
         entry = e;
     }
     std::call_once(entry->once, [&] {
-        bool tiles = name.find("UDIM") != std::string::npos && !findFile(name, searchPath);
+        bool tiles = name.find("UDIM") != std::string::npos && !find(name, searchPath);
         entry->texture = tiles ? loadTiles(name, searchPath, place) : loadFile(name, searchPath, place);
     });
     return entry->texture.get();
@@ -225,13 +237,13 @@ bool TextureSystem::present(const std::string& name, const std::vector<std::stri
     std::lock_guard lock(mutex_);
     const auto [known, fresh] = present_.try_emplace(key, false);
     if (!fresh) return known->second;
-    bool there = findFile(name, searchPath).has_value();
+    bool there = find(name, searchPath);
     if (size_t at = name.find("UDIM"); !there && at != std::string::npos) {
         size_t length = 4;
         if (at > 0 && name[at - 1] == '<' && at + 4 < name.size() && name[at + 4] == '>') --at, length = 6;
         for (int number = 1001; number <= 1100 && !there; ++number) {
             std::string tile = name;
-            there = findFile(tile.replace(at, length, std::to_string(number)), searchPath).has_value();
+            there = find(tile.replace(at, length, std::to_string(number)), searchPath);
         }
     }
     return known->second = there;

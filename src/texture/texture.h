@@ -11,6 +11,7 @@
 // are smooth across texels, as coarse as the value, and those of a map that is seen from afar fade as its value does. Not done: separate treatment of parallelogram and ellipse; sharpening (negative lobes) in lookups.
 #pragma once
 #include "base/diagnostics.h"
+#include "base/file.h"
 #include "base/matrix.h"
 #include "texture/pyramid.h"
 #include <map>
@@ -129,6 +130,7 @@ struct TextureSettings {
     Wrap plainWrap = Wrap::Clamp; ///< of pictures that state none
     bool linearise = true;        ///< colours of files that declare a gamma (PNG) become linear on loading
     LatLong latLong;
+    ReadPolicy read{};            ///< where the names of maps may lead
 };
 
 /// The maps of a render. Thread safe.
@@ -152,6 +154,7 @@ public:
 
 private:
     struct Entry;
+    bool find(const std::string& name, const std::vector<std::string>& searchPath) const;
     std::shared_ptr<const Texture> load(const std::string& path, const SourcePlace&);
     std::shared_ptr<const Texture> loadFile(const std::string& name, const std::vector<std::string>& searchPath,
                                             const SourcePlace&);

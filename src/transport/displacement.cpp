@@ -55,6 +55,7 @@ void WorldImpl::displaceGrid(const SurfaceBinding& b, const geometry::Shape& sha
     if (!bound || bound.kernel->facts().suspends) return;
     const ShaderInstance& shader = b.displacement ? *b.displacement : *b.surface;
     Engine engine(std::shared_ptr<const WorldImpl>(std::shared_ptr<const WorldImpl>{}, this), d);
+    engine.stop = settings_.stop;
     BatchContext c;
     c.engine = &engine;
     c.bound = &bound;
@@ -111,9 +112,8 @@ void Engine::moveToFacets(BatchContext& c) {
 void WorldImpl::diceShapes(Diagnostics& d) {
     geometry::DiceOptions dice;
     dice.camera = geometry::DiceCamera::from(frame_->options);
-    std::map<const geometry::Shape*, int> bindingOfShape;
-    for (size_t i = 0; i < shapes_.size(); ++i) bindingOfShape[shapes_[i].get()] = bindingOf_[i];
-    const auto bindingOf = [&](const geometry::Shape& s) -> const SurfaceBinding& { return bindings_[size_t(bindingOfShape.at(&s))]; };
+    dice.stop = settings_.stop;
+    const auto bindingOf = [&](const geometry::Shape& s) -> const SurfaceBinding& { return bindings_[size_t(bindingOf_[numberOfShape_.at(&s)])]; };
     dice.displaces = [&](const geometry::Shape& shape) { return bindingOf(shape).displacement || bindingOf(shape).moveS; };
     dice.displace = [&](const geometry::Shape& shape, geometry::DiceGrid& grid) { displaceGrid(bindingOf(shape), shape, grid, d); };
     dice.declaredBound = [&](const geometry::Shape& shape) {

@@ -155,7 +155,7 @@ void Engine::giveBack(std::shared_ptr<BatchContext> c) {
     pool_.push_back(std::move(c));
 }
 
-bool Engine::trace(std::span<const CameraRay> rays, std::span<SampleResult> out, const volatile int32_t* stopFlag) {
+bool Engine::trace(std::span<const CameraRay> rays, std::span<SampleResult> out, const StopFlag* stopFlag) {
     stop = stopFlag;
     if (!sched_) sched_ = std::make_unique<Sched>(*this, stopFlag, limits::kFrameBytesPerThread, kCacheSlice);
     Sched& sched = *sched_;
@@ -226,7 +226,7 @@ struct Integrator::Impl {
 Integrator::Integrator(std::shared_ptr<const World> w, Diagnostics& d)
     : impl_(std::make_unique<Impl>(std::static_pointer_cast<const WorldImpl>(std::move(w)), d)) {}
 Integrator::~Integrator() = default;
-bool Integrator::trace(std::span<const CameraRay> r, std::span<SampleResult> out, const volatile int32_t* stop) { return impl_->engine.trace(r, out, stop); }
+bool Integrator::trace(std::span<const CameraRay> r, std::span<SampleResult> out, const StopFlag* stop) { return impl_->engine.trace(r, out, stop); }
 const Counters& Integrator::counters() const { return impl_->engine.counters; }
 
 } // namespace alpenglow::transport

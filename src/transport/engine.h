@@ -164,7 +164,7 @@ struct BatchContext {
 class Engine final : public Sched::RayService {
 public:
     Engine(std::shared_ptr<const WorldImpl> w, Diagnostics& d) : world_(std::move(w)), diagnostics_(d), seed_(world_->settings_.seed) {}
-    bool trace(std::span<const CameraRay>, std::span<SampleResult>, const volatile int32_t* stop);
+    bool trace(std::span<const CameraRay>, std::span<SampleResult>, const StopFlag* stop);
     void follow(std::span<const Sched::Task> slice, Sched&) override;
     Counters counters;
 
@@ -285,7 +285,7 @@ public:
     std::vector<int> spoiled_;         ///< PathRay::path of samples that notFinite() has seen; some twice
     std::vector<LobeVertex> lobes;
     std::vector<ShadowRay> shadows;
-    const volatile int32_t* stop = nullptr;
+    const StopFlag* stop = nullptr;
 
 private:
     friend class KernelStrip;

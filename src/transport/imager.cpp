@@ -4,7 +4,8 @@
 
 namespace alpenglow::transport {
 
-bool WorldImpl::runImager(int count, const float* x, const float* y, float* r, float* g, float* b, float* alpha, Diagnostics& d) const {
+bool WorldImpl::runImager(int count, const float* x, const float* y, float* r, float* g, float* b, float* alpha, Diagnostics& d,
+                          const StopFlag* stop) const {
     const scene::ShaderRef& imager = frame_->options.imager;
     if (!imager) return false;
     std::lock_guard lock(imagerMutex_);
@@ -15,6 +16,7 @@ bool WorldImpl::runImager(int count, const float* x, const float* y, float* r, f
     BoundKernel k = self->kernel(*i, {}, {}, false, false, d);
     if (!k || k.kernel->facts().suspends) return false;
     Engine engine(std::shared_ptr<const WorldImpl>(std::shared_ptr<const WorldImpl>{}, this), d);
+    engine.stop = stop;
     // alpha is what the shader writes to it; one that only makes its pixels opaque means that, too (methods of classes have no alpha).
     const auto& writes = k.kernel->facts().writes;
     const auto written = [&](const char* name) { return std::find(writes.begin(), writes.end(), name) != writes.end(); };

@@ -2,6 +2,8 @@
 // "raytrace" shaders mean what they meant; under "path" their lobes are estimated with all light (design decisions 1 to 4).
 #pragma once
 #include "base/diagnostics.h"
+#include "base/file.h"
+#include "base/stopflag.h"
 #include "scene/scene.h"
 #include <array>
 #include <atomic>
@@ -35,11 +37,13 @@ struct Settings {
     bool bsdfOnly = false;          ///< no light sampling, emission counts in full (tests, T6)
     bool lightOnly = false;         ///< light sampling only: emission met by lobe sampling does not count (tests, T6)
     std::vector<std::string> shaderPaths, texturePaths;
+    ReadPolicy read{};              ///< where the names of maps may lead
     bool allowExec = false;         ///< shaders may load plug-ins
     std::vector<std::string> pluginPaths; ///< where those are looked for
     std::string dialect;            ///< whose macros the shaders see: rsl::FrontOptions::dialect
     std::string cacheDirectory;     ///< "" = default
     std::vector<std::string> outputs; ///< AOVs: names of output shader parameters ("list[1]": an element) or predefined variables, in order
+    const StopFlag* stop = nullptr; ///< polled while the world is made (dicing, displacement); set: build() gives up. May be null
     std::vector<int> outputWidths; ///< floats of each where a display declares it; 0 or missing: the shaders decide
 };
 
@@ -69,7 +73,9 @@ public:
     /// Writes what shaders have printed since the last call, in the order of the samples; or forgets it. Between passes.
     virtual void flushPrints(bool keep) const = 0;
     /// Runs the frame's imager over finished pixels, in place. rgb: linear colour, alpha: coverage, P: raster position. True when there is one.
-    virtual bool runImager(int count, const float* rasterX, const float* rasterY, float* r, float* g, float* b, float* alpha, Diagnostics&) const = 0;
+    /// Once *stop is set its loops end early, and the pixels are void; null: never.
+    virtual bool runImager(int count, const float* rasterX, const float* rasterY, float* r, float* g, float* b, float* alpha, Diagnostics&,
+                           const StopFlag* stop = nullptr) const = 0;
 };
 
 /// One camera ray: a position on the raster and its sample number. Camera space.
@@ -95,7 +101,7 @@ public:
     ~Integrator();
     /// Follows all rays to the end. Results do not depend on which rays share a call. False when `stop` was set meanwhile: then the
     /// results are void. One Integrator per thread.
-    bool trace(std::span<const CameraRay>, std::span<SampleResult>, const volatile int32_t* stop);
+    bool trace(std::span<const CameraRay>, std::span<SampleResult>, const StopFlag* stop);
     const Counters& counters() const;
 
 private:

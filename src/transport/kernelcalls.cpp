@@ -69,7 +69,7 @@ void onLightEnd(rsl::KernelCall* call, int32_t, int32_t first, int32_t lanes) {
 void* onAlloc(rsl::KernelCall*, uint64_t bytes) { return ::operator new(bytes, std::align_val_t(64), std::nothrow); }
 void onRelease(rsl::KernelCall*, void* p, uint64_t) { ::operator delete(p, std::align_val_t(64)); }
 
-constexpr int32_t kGo = 0;
+constexpr StopFlag kGo;
 
 } // namespace
 

@@ -104,7 +104,25 @@ bool SurfaceBinder::bindHitModes() {
     return true;
 }
 
+/// Whether what a shape's variables are called and hold is the same, so that equal attributes mean equal bindings. Interiors take
+/// values of variables, too.
+static bool sameVariables(const geometry::Shape& a, const geometry::Shape& b) {
+    const auto &p = a.primvars(), &q = b.primvars();
+    if (!p.empty() && (a.attributes().interior || a.attributes().exterior)) return false;
+    return std::equal(p.begin(), p.end(), q.begin(), q.end(), [](const geometry::PrimVar& x, const geometry::PrimVar& y) {
+        return x.name == y.name && x.cls == y.cls && x.type == y.type && x.arrayLength == y.arrayLength;
+    });
+}
+
 int SurfaceBinder::bind(const geometry::ShapeRef& shape) {
+    auto& [like, known] = bindingOfAttributes_[&shape->attributes()];
+    if (like && sameVariables(*like, *shape)) return known;
+    const int b = bindAnew(shape);
+    if (b >= 0) bindingOfAttributes_[&shape->attributes()] = {shape, b};
+    return b;
+}
+
+int SurfaceBinder::bindAnew(const geometry::ShapeRef& shape) {
     const scene::Attributes& a = shape->attributes();
     SurfaceBinding b;
     const bool grid = differences(*shape);

@@ -1,6 +1,7 @@
 // Shapes bound to what shades them: shaders, kernels, lights. What may be shaded together shares a binding.
 #pragma once
 #include "transport/engine.h"
+#include <unordered_map>
 
 namespace alpenglow::transport {
 
@@ -25,7 +26,9 @@ private:
     bool differences(const geometry::Shape&);
     /// The primitive variables that override parameters of a shader or that getvar(null, ...) finds; sorted.
     Names varyingOf(const geometry::Shape&, const ShaderInstance&);
+    /// The binding of a shape: that of one with the same attributes and variables where there is one.
     int bind(const geometry::ShapeRef&);
+    int bindAnew(const geometry::ShapeRef&);
     Names outputsOf(const SurfaceBinding&) const;
     /// Adds the names that a kernel asks for by `op` ("surface", "displacement"). True when some are made only when it runs.
     static bool questions(const BoundKernel&, const char* op, std::set<std::string>& names);
@@ -68,6 +71,7 @@ private:
     std::vector<InstanceRef> kept_;            ///< their addresses are keys
     std::map<std::pair<const void*, std::string>, InstanceRef> volumes_; ///< by the shader as the scene gave it and what overrides it
     std::map<std::string, int> bindingByKey_;
+    std::unordered_map<const scene::Attributes*, std::pair<geometry::ShapeRef, int>> bindingOfAttributes_; ///< of the last shape that had them
     std::map<std::vector<const void*>, int> programs_;
     std::map<std::vector<int>, int> lightLists_;
     std::map<std::pair<int, int>, int> groups_;

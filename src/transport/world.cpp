@@ -85,7 +85,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
         w->maxDepth_ = int(std::clamp(double(i->second.numbers[0]), -1.0, double(limits::kPathDepth))); // what no int holds, too
     if (settings.maxDepth >= 0) w->maxDepth_ = settings.maxDepth;
     w->maxDepth_ = std::min(w->maxDepth_, limits::kPathDepth);
-    w->textures_ = std::make_unique<texture::TextureSystem>(d);
+    w->textures_ = std::make_unique<texture::TextureSystem>(d, texture::TextureSettings{.read = settings.read});
     rsl::ShaderCompiler::Settings cs;
     cs.cacheDirectory = settings.cacheDirectory;
     cs.dialect = settings.dialect;
@@ -105,12 +105,17 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     const bool all = path || !saysVisibility(w->shapes_);
     w->bindLights(d, [all](const geometry::Shape& s) { return visibilityOf(s.attributes(), all); });
     Engine engine(std::shared_ptr<const WorldImpl>(std::shared_ptr<const WorldImpl>{}, w.get()), d); // runs kernels while the world is made
+    engine.stop = settings.stop;
+    const auto stopped = [&settings] { return settings.stop && *settings.stop; };
     if (!SurfaceBinder(*w, engine, d).bindAll()) return nullptr;
     w->measureOutputs();
+    if (stopped()) return nullptr;
     w->diceShapes(d); // with displacement, by the same kernels that shade
+    if (stopped()) return nullptr;
     std::vector<uint32_t> visibility;
     for (const auto& shape : w->shapes_) visibility.push_back(visibilityOf(shape->attributes(), all));
     w->accel_ = std::make_unique<accel::Accel>(w->shapes_, visibility, d);
+    if (!w->accel_->sound()) return nullptr;
     std::vector<accel::Accel::Levels> levels(w->shapes_.size());
     for (size_t i = 0; i < levels.size(); ++i)
         if (const scene::Param* p = w->shapes_[i]->attributes().value(kLevelAttribute); p && p->numbers.size() == 2) {

@@ -224,7 +224,7 @@ public:
     Facts facts() const override { return facts_; }
     std::vector<int> outputWidths() const override { return outputWidths_; }
     void flushPrints(bool keep) const override { keep ? prints_.flush() : prints_.discard(); }
-    bool runImager(int, const float*, const float*, float*, float*, float*, float*, Diagnostics&) const override;
+    bool runImager(int, const float*, const float*, float*, float*, float*, float*, Diagnostics&, const StopFlag* stop) const override;
     bool matrix(const std::string& from, const std::string& to, Matrix& out) const override;
     /// Whether a space of this name is predefined or the scene has one.
     bool knowsSpace(const std::string& name) const;

@@ -43,6 +43,28 @@ TEST(PrintLog, SamplesThenRowsThenBounces) {
     std::fclose(f);
 }
 
+TEST(PrintLog, OrderHoldsBeyondItsMemory) {
+    // Two thousand messages in a scrambled order, with room for some dozens: 7919 is coprime to 2000.
+    std::FILE* f = std::tmpfile();
+    ASSERT_NE(f, nullptr);
+    std::string expected;
+    for (int i = 0; i < 2000; ++i) expected += std::to_string(i) + "a " + std::to_string(i) + "b ";
+    {
+        PrintLog log(f, 16 << 10);
+        for (int i = 0; i < 2000; ++i) {
+            const int n = i * 7919 % 2000;
+            PrintKey k;
+            k.sample = n / 100;
+            k.y = n / 10 % 10;
+            k.place[0] = float(n % 10);
+            log.add(k, std::to_string(n) + "a ");
+            log.add(k, std::to_string(n) + "b ");
+        }
+    }
+    EXPECT_EQ(textOf(f), expected);
+    std::fclose(f);
+}
+
 TEST(PrintLog, WhatConstructPrintsComesOnceAndFirst) {
     std::FILE* f = std::tmpfile();
     ASSERT_NE(f, nullptr);

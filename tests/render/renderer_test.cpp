@@ -26,7 +26,8 @@ struct FakeWorld final : transport::World {
         for (const std::string& o : settings_.outputs) w.push_back(o == "depthish" ? 1 : 3);
         return w;
     }
-    bool runImager(int n, const float* x, const float*, float* r, float*, float*, float* a, Diagnostics&) const override {
+    bool runImager(int n, const float* x, const float*, float* r, float*, float*, float* a, Diagnostics&,
+                   const StopFlag*) const override {
         for (int i = 0; i < n; ++i) {
             r[i] = x[i]; // raster x, so that the test sees where it was run
             a[i] = 1;
@@ -40,7 +41,7 @@ struct FakeTracer final : Tracer {
     transport::Counters counts;
     std::vector<std::string> outputs;
     bool trace(std::span<const transport::CameraRay> rays, std::span<transport::SampleResult> out,
-               const volatile int32_t* stop) override {
+               const StopFlag* stop) override {
         for (size_t i = 0; i < rays.size(); ++i) {
             Vec3 p = rays[i].direction * (1 / rays[i].direction.z);
             out[i].color = {p.x, p.y, p.x < 0 ? 7.f : 0.f};
@@ -391,7 +392,7 @@ TEST(Renderer, OneDisplayForEachFile) {
 TEST(Team, EveryTaskOnceAndExceptionsArrive) {
     Team team(3);
     std::vector<std::atomic<int>> done(1000);
-    volatile int32_t halt = 0;
+    StopFlag halt{0};
     EXPECT_TRUE(team.run(done.size(), &halt, [&](int w, size_t i) { done[i] += w < 3 ? 1 : 100; }, [](size_t) {}));
     for (auto& d : done) EXPECT_EQ(d, 1);
     EXPECT_THROW(team.run(

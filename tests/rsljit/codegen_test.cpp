@@ -175,7 +175,7 @@ TEST(Codegen, EndlessLoopStops) {
     auto kernel = compile(m, o);
     ASSERT_TRUE(kernel);
     Batch run;
-    volatile int32_t stop = 1;
+    StopFlag stop{1};
     run.call.stop = &stop;
     run(*kernel, o, [](int, int n, int) { return float(n); });
     EXPECT_EQ(run(0, 0, 3), 3.0f);

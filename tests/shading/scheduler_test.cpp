@@ -294,7 +294,7 @@ TEST(Scheduler, OverTheLimitIsCountedNotHung) {
 }
 
 TEST(Scheduler, Cancellation) {
-    volatile int32_t stop = 0;
+    StopFlag stop{0};
     FakeService service;
     int slices = 0;
     service.onSlice = [&] { if (++slices == 5) stop = 1; };

@@ -304,7 +304,7 @@ protected:
         auto list = tiles(size, order);
         std::vector<std::unique_ptr<Integrator>> integrators;
         for (int i = 0; i < threads; ++i) integrators.push_back(std::make_unique<Integrator>(scene_->world, scene_->diagnostics));
-        volatile int32_t stop = 0;
+        StopFlag stop{0};
         render::Team(threads).run(
             list.size(), &stop,
             [&](int worker, size_t i) {

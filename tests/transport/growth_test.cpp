@@ -208,7 +208,7 @@ TEST(Growth, ManyRaysOfAWaitingShaderStayFinite) {
 /// Traces rays that take far longer than 150 ms, asks to stop after those, and expects the end within the 0.2 s that the issue asks for.
 void expectPromptStop(Scene& scene, const std::vector<CameraRay>& rays) {
     std::vector<SampleResult> out(rays.size());
-    volatile int32_t stop = 0;
+    StopFlag stop{0};
     using Clock = std::chrono::steady_clock;
     Clock::time_point asked;
     std::thread killer([&] {

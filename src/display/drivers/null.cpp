@@ -14,6 +14,7 @@ class Null : public Driver {
 
 const DriverDescriptor nullDriver{{"null", "none"},
                                   "Nothing: the picture is rendered and thrown away.",
-                                  []() -> std::unique_ptr<Driver> { return std::make_unique<Null>(); }};
+                                  []() -> std::unique_ptr<Driver> { return std::make_unique<Null>(); },
+                                  false};
 
 } // namespace alpenglow::display

@@ -183,12 +183,33 @@ void Preprocessor::include(std::vector<Token> line, Place hash) {
         return;
     }
     out_.incomplete = true;
+    if (!refused_.empty()) {
+        sources_.error(place, "'" + refused_ + "' is not read: it lies outside the shader's folder, and its name is none of a header",
+                       "headers end in .h, .sl or .inc");
+        refused_.clear();
+        return;
+    }
     out_.missing.push_back({place, name});
 }
 
+/// Whether a name says that its file is meant to be included. Others are read only below the folder of the shader: words of what is no
+/// RSL would stand in the messages about it.
+static bool namedAsHeader(const fs::path& path) {
+    std::string e = path.extension().string();
+    for (char& c : e) c = char(std::tolower(static_cast<unsigned char>(c)));
+    constexpr const char* kKnown[] = {".h", ".sl", ".inc", ".hsl", ".slh", ".rsl", ".rslh", ".hh", ".hpp", ".def"};
+    return std::find(std::begin(kKnown), std::end(kKnown), e) != std::end(kKnown);
+}
+
 bool Preprocessor::includeFrom(const std::vector<std::string>& folders, const std::string& wanted) {
+    const bool climbs = fs::path(wanted).is_absolute() || wanted.find("..") != wanted.npos;
     for (const auto& folder : folders) {
         const std::string path = (fs::path(folder) / wanted).string();
+        if ((climbs || &folder != &folders.front()) && !namedAsHeader(path)) {
+            std::error_code e;
+            if (fs::is_regular_file(path, e)) refused_ = path;
+            continue;
+        }
         std::optional<std::string> text = options_.openText ? options_.openText(path) : std::nullopt;
         if (!text) text = readSource(path);
         if (text) {

@@ -314,6 +314,7 @@ private:
     static std::string withSlashes(std::string s);
     void lineDirective(const std::vector<Token>& line, Place hash);
 
+    std::string refused_; ///< a file that is there and may not be included
     SourceSet& sources_;
     const FrontOptions& options_;
     Preprocessed out_;

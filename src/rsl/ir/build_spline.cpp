@@ -1,4 +1,5 @@
 // spline(): the segment, its four control points, and the curve through them; solve... the other way about.
+#include "base/limits.h"
 #include "rsl/ir/builder.h"
 
 namespace alpenglow::rsl::ir {
@@ -35,6 +36,12 @@ Inst* Builder::spline(const Expr& e) {
         c.length = constant(static_cast<float>(c.most));
     }
     place_ = e.place;
+    const bool solved = name->op != Op::ConstString || name->text.rfind("solve", 0) == 0;
+    const int limit = solved && c.kind == Kind::Float ? limits::kSolvedSplinePoints : c.storage ? limits::kShaderArray : limits::kSplinePoints;
+    if (c.most > limit) {
+        error(e.place, "this spline has " + std::to_string(c.most) + " control points; the limit is " + std::to_string(limit));
+        return zero(c.kind);
+    }
     if (c.most < 4) {
         warn(e.place, "a spline needs at least four control points; this one is 0");
         return zero(c.kind);

@@ -1,8 +1,10 @@
 #include "rsl/jit/loader.h"
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <elf.h>
+#include <new>
 #include <sys/mman.h>
 #include <unistd.h>
 #include <vector>
@@ -110,7 +112,7 @@ std::unique_ptr<LoadedObject> LoadedObject::load(const std::string& elf, std::st
     groupStart[3] = end = roundUp(std::max<size_t>(end, 1), page);
     std::unique_ptr<LoadedObject> o(new LoadedObject);
     void* memory = mmap(nullptr, end, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (memory == MAP_FAILED) return fail("no memory");
+    if (memory == MAP_FAILED) throw std::bad_alloc();
     o->memory_ = memory;
     o->size_ = end;
     auto* base = static_cast<unsigned char*>(memory);
@@ -218,7 +220,10 @@ std::unique_ptr<LoadedObject> LoadedObject::load(const std::string& elf, std::st
         const size_t size = groupStart[group + 1] - groupStart[group];
         return size == 0 || mprotect(base + groupStart[group], size, flags) == 0;
     };
-    if (!protect(0, PROT_READ | PROT_EXEC) || !protect(1, PROT_READ)) return fail("memory cannot be made executable");
+    if (!protect(0, PROT_READ | PROT_EXEC) || !protect(1, PROT_READ)) {
+        if (errno == ENOMEM) throw std::bad_alloc();
+        return fail("memory cannot be made executable");
+    }
     return o;
 }
 

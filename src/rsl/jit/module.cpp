@@ -5,6 +5,7 @@
 #include <dlfcn.h>
 #include <filesystem>
 #include <mutex>
+#include <new>
 
 namespace alpenglow::rsl::jit {
 
@@ -55,7 +56,14 @@ Module* loadModule() {
     void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!handle) {
         const char* why = dlerror();
-        return fail(why ? why : file);
+        const std::string text = why ? why : file;
+        // What the loader says when there is no memory; with some, the next frame may be more fortunate.
+        for (const char* sign : {"failed to map", "cannot allocate", "Cannot allocate", "cannot create shared object descriptor"})
+            if (text.find(sign) != std::string::npos) {
+                delete m;
+                throw std::bad_alloc();
+            }
+        return fail(text);
     }
     // Types of ours pass between the two: from other headers they would be other types.
     auto stamp = reinterpret_cast<ModuleStampFn>(dlsym(handle, "alpenglow_jit_stamp"));
@@ -97,6 +105,7 @@ void compileWithModule(const ModuleRequest& request, ModuleResult& result) {
         if (!compile) result.error = loaded->error;
     }
     if (compile) compile(&request, &result);
+    if (result.error == kOutOfMemory) throw std::bad_alloc();
 }
 
 } // namespace alpenglow::rsl::jit

@@ -43,6 +43,9 @@ struct ModuleResult {
     std::vector<std::string> strings; ///< string constants in the order of KernelCall::strings
 };
 
+/// ModuleResult::error when memory was short.
+inline constexpr const char* kOutOfMemory = "out of memory";
+
 /// Names of the functions in the object.
 inline constexpr const char* kEntryName = "alpenglow_entry";
 inline constexpr const char* kStartName = "alpenglow_start";
@@ -58,7 +61,8 @@ using ModuleStampFn = const char* (*)();
 /// The file that is loaded: $ALPENGLOW_JIT, else libalpenglow_jit.so beside the program, in ../lib, or where it was built; "" when there
 /// is none.
 std::string moduleFile();
-/// Compiles through the module, loading it when needed. The error says where it was looked for.
+/// Compiles through the module, loading it when needed. The error says where it was looked for. Throws std::bad_alloc when memory is
+/// short.
 void compileWithModule(const ModuleRequest&, ModuleResult&);
 /// True once the module, and with it LLVM, is in the process.
 bool moduleLoaded();

@@ -8,6 +8,7 @@
 #include <llvm/Linker/Linker.h>
 #include <llvm/MC/TargetRegistry.h>
 #include <llvm/Passes/PassBuilder.h>
+#include <llvm/Support/ErrorHandling.h>
 #include <llvm/Support/MemoryBuffer.h>
 #include <llvm/Support/TargetSelect.h>
 #include <llvm/Support/raw_ostream.h>
@@ -27,6 +28,8 @@
 #include <llvm/Transforms/Scalar/SROA.h>
 #include <llvm/Transforms/Scalar/SimplifyCFG.h>
 #include <mutex>
+#include <new>
+#include <unistd.h>
 
 namespace alpenglow::rsl::jit {
 namespace {
@@ -115,6 +118,12 @@ void optimise(llvm::Module& m, llvm::TargetMachine* tm, int level, bool coroutin
 void initialise() {
     static std::once_flag once;
     std::call_once(once, [] {
+        // LLVM would abort; nothing can be unwound through it.
+        llvm::install_bad_alloc_error_handler([](void*, const char*, bool) {
+            constexpr char text[] = "alpenglow: out of memory\n";
+            [[maybe_unused]] ssize_t n = ::write(STDERR_FILENO, text, sizeof text - 1);
+            _exit(4); // the status of a limit or memory
+        });
         LLVMInitializeX86TargetInfo();
         LLVMInitializeX86Target();
         LLVMInitializeX86TargetMC();
@@ -193,6 +202,9 @@ extern "C" __attribute__((visibility("default"))) void alpenglow_jit_compile(con
                                                                              alpenglow::rsl::jit::ModuleResult* result) {
     try {
         alpenglow::rsl::jit::compile(*request, *result);
+    } catch (const std::bad_alloc&) {
+        result->object.clear();
+        result->error = alpenglow::rsl::jit::kOutOfMemory;
     } catch (const std::exception& e) {
         result->object.clear();
         result->error = e.what();

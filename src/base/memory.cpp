@@ -1,0 +1,107 @@
+#include "base/memory.h"
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(memory_sanitizer) || __has_feature(thread_sanitizer)
+#define ALPENGLOW_SHADOW_MEMORY // sanitizers map terabytes that are never touched
+#endif
+#endif
+
+namespace alpenglow {
+namespace {
+
+/// The number in a file; 0 when there is none ("max").
+size_t numberIn(const std::string& file) {
+    std::ifstream in(file);
+    size_t n = 0;
+    return in >> n ? n : 0;
+}
+
+/// The least of the bounds from a control group up to the root.
+size_t alongGroups(const std::string& root, std::string group, const char* file) {
+    size_t least = 0;
+    const auto take = [&](size_t n) {
+        if (n && (!least || n < least)) least = n;
+    };
+    while (!group.empty() && group != "/") {
+        take(numberIn(root + group + "/" + file));
+        group.erase(group.find_last_of('/'));
+    }
+    take(numberIn(root + "/" + file));
+    return least;
+}
+
+size_t groupMemory() {
+    size_t least = 0;
+    std::ifstream in("/proc/self/cgroup");
+    for (std::string line; std::getline(in, line);) { // "0::/path" (version 2) or "4:memory:/path" (version 1)
+        const size_t first = line.find(':'), second = first == std::string::npos ? first : line.find(':', first + 1);
+        if (second == std::string::npos) continue;
+        const std::string controllers = "," + line.substr(first + 1, second - first - 1) + ",", group = line.substr(second + 1);
+        size_t n = 0;
+        if (controllers == ",,") n = alongGroups("/sys/fs/cgroup", group, "memory.max");
+        else if (controllers.find(",memory,") != std::string::npos)
+            n = alongGroups("/sys/fs/cgroup/memory", group, "memory.limit_in_bytes");
+        if (n && (!least || n < least)) least = n;
+    }
+    return least;
+}
+
+} // namespace
+
+size_t machineMemory() {
+    const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
+    const size_t machine = pages > 0 && page > 0 ? size_t(pages) * size_t(page) : 0, group = groupMemory();
+    return group && (!machine || group < machine) ? group : machine;
+}
+
+std::optional<size_t> parseMemorySize(const std::string& s) {
+    char* end = nullptr;
+    double n = std::strtod(s.c_str(), &end);
+    if (end == s.c_str() || !std::isfinite(n)) return {};
+    std::string unit = end;
+    for (char& c : unit) c = char(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
+    if (unit.size() > 1 && unit.back() == 'B') unit.pop_back();
+    if (unit.size() > 1 && unit.back() == 'I') unit.pop_back();
+    constexpr const char* kUnits[] = {"", "K", "M", "G", "T"};
+    for (const char* u : kUnits) {
+        if (unit == u) return n >= 1 && n < 0x1p62 ? std::optional(size_t(n)) : std::nullopt;
+        n *= 1024;
+    }
+    return {};
+}
+
+std::string memorySizeText(size_t bytes) {
+    constexpr const char* kUnits[] = {"bytes", "KiB", "MiB", "GiB", "TiB"};
+    double n = double(bytes);
+    int unit = 0;
+    while (n >= 1024 && unit < 4) n /= 1024, ++unit;
+    char text[40];
+    std::snprintf(text, sizeof text, "%.3g %s", n, kUnits[unit]);
+    return text;
+}
+
+size_t defaultMemoryLimit() { return machineMemory() / 10 * 9; }
+
+bool limitMemory([[maybe_unused]] size_t bytes, [[maybe_unused]] int threads) {
+#ifdef ALPENGLOW_SHADOW_MEMORY
+    return true;
+#else
+    rlimit stack{}, data{};
+    if (getrlimit(RLIMIT_STACK, &stack) != 0 || getrlimit(RLIMIT_DATA, &data) != 0) return false;
+    // The stack of a thread is as large as RLIMIT_STACK says, 2 MiB where that is unlimited; twice, for the threads of libraries.
+    const size_t each = stack.rlim_cur == RLIM_INFINITY ? size_t(2) << 20 : std::min(size_t(stack.rlim_cur), size_t(64) << 20);
+    const rlim_t most = rlim_t(bytes) + rlim_t(2 * each * size_t(std::max(1, threads)));
+    data.rlim_cur = std::min({most, data.rlim_cur, data.rlim_max}); // RLIM_INFINITY is the largest
+    return setrlimit(RLIMIT_DATA, &data) == 0;
+#endif
+}
+
+} // namespace alpenglow

@@ -1,0 +1,27 @@
+// How much memory a run may take (reliability: bounded memory).
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+
+namespace alpenglow {
+
+/// Bytes of memory that this process can have: the machine's, or less where a control group (a container, a batch system) bounds it.
+/// 0: not known.
+size_t machineMemory();
+
+/// "512M", "4G", "1.5G", "300000K" or bytes; powers of 1024. Nothing: no size, or none above zero.
+std::optional<size_t> parseMemorySize(const std::string&);
+
+/// "3.6 GiB", for messages.
+std::string memorySizeText(size_t bytes);
+
+/// What a run may take when the user does not say: nine tenths of machineMemory(), which leave room for the system. 0: unlimited.
+size_t defaultMemoryLimit();
+
+/// Bounds the data of this process (heap and private mappings, of all libraries): what goes beyond fails as std::bad_alloc. Stacks of
+/// `threads` threads, of which most is never touched, are not counted. Once a process: a bound that is there already (ulimit -d) is never raised.
+/// False: the system refused.
+bool limitMemory(size_t bytes, int threads);
+
+} // namespace alpenglow

@@ -102,6 +102,7 @@ int renderOnce(const Arguments& a, const StopFlag* stop) {
     options.searchPaths = folders(a.searchPaths);
     options.allowExec = settings.allowExec;
     options.allowRead = settings.allowRead;
+    options.stop = stop;
     options.frames = a.frameList;
     options.overrides = [&](scene::Options& o) { renderer.override(o); };
     bool memory = false;

@@ -53,7 +53,7 @@ void Interpreter::readStream(std::unique_ptr<ByteSource> raw, const std::string&
         end = parser.here();
         reporter.lineText = outer;
     }
-    if (stopped()) reporter.report(Severity::Warning, Rie::IllState, end, "ErrorHandler \"abort\": the rest is not read");
+    if (aborted()) reporter.report(Severity::Warning, Rie::IllState, end, "ErrorHandler \"abort\": the rest is not read");
     closeOpenEnds(0, end);
     unwind(0, end, false);
     overflow_ = 0;

@@ -47,7 +47,8 @@ public:
     void readStream(std::unique_ptr<ByteSource> raw, const std::string& name);
     void execute(const Call& call);
     /// ErrorHandler "abort" has met an error.
-    bool stopped() const { return abort_ && reporter.errors() > errorsBefore_; }
+    bool stopped() const { return aborted() || (settings.stop && *settings.stop); }
+    bool aborted() const { return abort_ && reporter.errors() > errorsBefore_; }
 
     // --- for handlers ---
     Reporter reporter;

@@ -1,6 +1,7 @@
 // The door to ri/: RIB streams in, frames out.
 #pragma once
 #include "base/limits.h"
+#include "base/stopflag.h"
 #include "scene/scene.h"
 #include <functional>
 #include <istream>
@@ -14,6 +15,7 @@ namespace alpenglow::ri {
 struct ReaderOptions {
     std::vector<std::string> searchPaths; ///< folders for archives, after those of Option "searchpath" "archive"
     bool allowExec = false;               ///< RunProgram, DynamicLoad, System were asked for by the user
+    const StopFlag* stop = nullptr;       ///< set: the rest is not read; may be null
     bool allowRead = true;                ///< archives may lie anywhere; false: below the folders that archive.cpp names
     size_t mostLights = limits::kLights;  ///< of one frame; further ones are reported
     std::vector<int> frames; ///< only these FrameBegin numbers are rendered; empty = all. Worlds outside frames always are

@@ -17,8 +17,9 @@ auto order(const PrintKey& k) {
 } // namespace
 
 void PrintLog::keep(Message m) {
-    bytes_ += sizeof(Message) + m.text.size() + m.key.program.size();
-    if (bytes_ > most_ && !spill()) write();
+    const size_t bytes = sizeof(Message) + m.text.size() + m.key.program.size();
+    if (bytes_ + bytes > most_ && !spill()) write();
+    bytes_ += bytes;
     messages_.push_back(std::move(m));
 }
 

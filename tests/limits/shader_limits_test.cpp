@@ -176,7 +176,8 @@ TEST(ShaderLimits, PrintedText) {
     std::FILE* file = std::tmpfile();
     ASSERT_TRUE(file);
     {
-        PrintLog log(file, 1 << 20); // the same code with a smaller number
+        static_assert(limits::kPrintBytes >= 1 << 20); // the same code with a smaller number
+        PrintLog log(file, 1 << 20);
         const std::string text(700u << 10, '.'); // one is a run
         for (size_t i = 0; i <= limits::kPrintRuns; ++i) log.add({.sample = int64_t(i)}, text);
         EXPECT_EQ(std::ftell(file), 0);

@@ -90,18 +90,23 @@ std::string memorySizeText(size_t bytes) {
 
 size_t defaultMemoryLimit() { return machineMemory() / 10 * 9; }
 
-bool limitMemory([[maybe_unused]] size_t bytes, [[maybe_unused]] int threads) {
-#ifdef ALPENGLOW_SHADOW_MEMORY
-    return true;
-#else
+MemoryLimit::MemoryLimit([[maybe_unused]] size_t bytes, [[maybe_unused]] int threads) {
+#ifndef ALPENGLOW_SHADOW_MEMORY
     rlimit stack{}, data{};
-    if (getrlimit(RLIMIT_STACK, &stack) != 0 || getrlimit(RLIMIT_DATA, &data) != 0) return false;
+    if (!bytes || getrlimit(RLIMIT_STACK, &stack) != 0 || getrlimit(RLIMIT_DATA, &data) != 0) return;
     // The stack of a thread is as large as RLIMIT_STACK says, 2 MiB where that is unlimited; twice, for the threads of libraries.
     const size_t each = stack.rlim_cur == RLIM_INFINITY ? size_t(2) << 20 : std::min(size_t(stack.rlim_cur), size_t(64) << 20);
-    const rlim_t most = rlim_t(bytes) + rlim_t(2 * each * size_t(std::max(1, threads)));
+    const rlim_t most = rlim_t(bytes) + rlim_t(2 * each * size_t(std::max(1, threads))), before = data.rlim_cur;
     data.rlim_cur = std::min({most, data.rlim_cur, data.rlim_max}); // RLIM_INFINITY is the largest
-    return setrlimit(RLIMIT_DATA, &data) == 0;
+    if (setrlimit(RLIMIT_DATA, &data) == 0) before_ = before;
 #endif
+}
+
+MemoryLimit::~MemoryLimit() {
+    rlimit data{};
+    if (!before_ || getrlimit(RLIMIT_DATA, &data) != 0) return;
+    data.rlim_cur = *before_;
+    setrlimit(RLIMIT_DATA, &data);
 }
 
 } // namespace alpenglow

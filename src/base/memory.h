@@ -19,9 +19,18 @@ std::string memorySizeText(size_t bytes);
 /// What a run may take when the user does not say: nine tenths of machineMemory(), which leave room for the system. 0: unlimited.
 size_t defaultMemoryLimit();
 
-/// Bounds the data of this process (heap and private mappings, of all libraries): what goes beyond fails as std::bad_alloc. Stacks of
-/// `threads` threads, of which most is never touched, are not counted. Once a process: a bound that is there already (ulimit -d) is never raised.
-/// False: the system refused.
-bool limitMemory(size_t bytes, int threads);
+/// Bounds the data of this process (heap and private mappings, of all libraries) while it lives: what goes beyond fails as
+/// std::bad_alloc. Stacks of `threads` threads, of which most is never touched, are not counted. A bound that is there already
+/// (ulimit -d) is never raised. 0 bytes: no bound.
+class MemoryLimit {
+public:
+    MemoryLimit(size_t bytes, int threads);
+    ~MemoryLimit();
+    MemoryLimit(const MemoryLimit&) = delete;
+    MemoryLimit& operator=(const MemoryLimit&) = delete;
+
+private:
+    std::optional<unsigned long> before_; ///< the bound that comes back
+};
 
 } // namespace alpenglow

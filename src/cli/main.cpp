@@ -84,8 +84,8 @@ int runProgram(int argc, char** argv) {
     addMerge(app, &status);
     addLsp(app, &status);
     std::vector<std::string> args = normalise(argc, argv, app);
-    if (!args.empty() && args.front() != "render") // which has an option for it
-        if (const size_t bytes = defaultMemoryLimit()) limitMemory(bytes, int(std::thread::hardware_concurrency()));
+    const bool own = !args.empty() && args.front() == "render"; // has an option for it
+    const MemoryLimit limit(own ? 0 : defaultMemoryLimit(), int(std::thread::hardware_concurrency()));
     std::reverse(args.begin(), args.end()); // as the parser takes vectors
     try {
         app.parse(args);

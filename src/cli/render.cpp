@@ -149,8 +149,7 @@ std::vector<int64_t> timesOf(const std::vector<std::string>& files) {
 }
 
 int renderAll(const Arguments& a) {
-    if (const size_t bytes = a.settings.memoryLimit)
-        limitMemory(bytes, a.settings.threads > 0 ? a.settings.threads : int(std::thread::hardware_concurrency()));
+    const MemoryLimit limit(a.settings.memoryLimit, a.settings.threads > 0 ? a.settings.threads : int(std::thread::hardware_concurrency()));
     const StopFlag* stop = watchInterrupts();
     if (!a.watch) return renderOnce(a, stop);
     while (true) {

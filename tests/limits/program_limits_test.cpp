@@ -118,9 +118,9 @@ TEST_F(ProgramLimits, MemoryOfOneFrame) {
     render("--memory-limit 300M -o old.png b.rib");
     EXPECT_EQ(status, 4) << err;
     EXPECT_EQ(read("old.png"), "\x89PNG: the old one");
-    for (const char* bad : {"0", "4X", "-1G", "much", ""}) {
+    for (const char* bad : {"0", "4X", "-1G", "much"}) {
         render("--memory-limit '" + std::string(bad) + "' -o a.png s.rib");
-        if (*bad) EXPECT_EQ(status, 2) << bad;
+        EXPECT_EQ(status, 2) << bad;
     }
 }
 

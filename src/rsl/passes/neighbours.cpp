@@ -15,8 +15,10 @@ bool stepFrom(Neighbour n, bool v, Neighbour& next) {
 
 // Motion
 
-Motion::Motion(Kernel& k) : k_(k), owner_(k.pool.size()), stores_(k.pool.size()), moves_(k.pool.size()), position_(k.pool.size()) {
+Motion::Motion(Kernel& k) : k_(k), owner_(k.pool.size()), stores_(k.pool.size()), moves_(k.pool.size()), position_(k.pool.size()),
+                           plain_(k.pool.size()) {
     index(k.body, nullptr);
+    markPlain(k.body);
     while (grow()) {}
 }
 
@@ -30,6 +32,20 @@ void Motion::index(Region& r, Inst* around) {
         if (i->op == Op::ArrayStore) stores_[i->args[0]->id].push_back(i);
         for (Region& sub : i->regions) index(sub, i);
     }
+}
+
+bool Motion::markPlain(const Region& r) {
+    bool plain = true;
+    for (const Inst* i : r.body) {
+        bool own = true;
+        for (const Region& sub : i->regions) own &= markPlain(sub);
+        plain_[i->id] = own;
+        if (i->op == Op::Function) continue;
+        const bool effect = i->op == Op::ArrayStore || i->op == Op::Request || i->op == Op::LightLoop || i->op == Op::Output ||
+                            (i->op == Op::Service && !k_.sites[static_cast<size_t>(i->site)].pure) || (i->op == Op::Call && !plain_[i->args[0]->id]);
+        plain = plain && own && !effect;
+    }
+    return plain;
 }
 
 int Motion::position(const Inst* p) const { return position_[p->id]; }
@@ -184,6 +200,7 @@ struct Motion::Slice {
 };
 
 bool Motion::repeatable(const Inst* o, int n) const {
+    if (plain_[o->id]) return true;
     const auto [it, fresh] = repeatable_.try_emplace({o, n}, true);
     if (!fresh) return it->second;
     Slice s{*this, o, {}, {}, true};

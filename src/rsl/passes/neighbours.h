@@ -42,6 +42,7 @@ public:
 private:
     struct Slice;
     void index(Region&, Inst* around);
+    bool markPlain(const Region&);
     bool grow();
     bool movesNow(const Inst*) const;
     bool resultMoves(const Inst* owner, size_t index) const;
@@ -50,6 +51,7 @@ private:
     std::vector<std::vector<Inst*>> stores_;
     std::vector<char> moves_;
     std::vector<int> position_;
+    std::vector<char> plain_; ///< constructs in which nothing keeps any result from being worked out again
     mutable std::map<std::pair<const Inst*, int>, bool> repeatable_;
 };
 

@@ -6,6 +6,7 @@
 #include "rsl/compiler.h"
 #include "rsl/printlog.h"
 #include "rsl/services_basic.h"
+#include "transport/withoutscene.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -75,6 +76,7 @@ struct Rows {
 struct Context {
     const rsl::CompiledKernel* kernel;
     Diagnostics* diagnostics;
+    transport::WithoutScene* services;
     bool print;
     size_t begun = 0; ///< index of the batch's first point
     rsl::PrintLog prints{};
@@ -93,6 +95,7 @@ int shade(const Arguments& a) {
     Diagnostics diags(printer());
     std::vector<std::string> paths{"."};
     for (std::string& f : folders(a.searchPaths)) paths.push_back(std::move(f));
+    const std::vector<std::string> texturePaths = paths;
     for (std::string& f : environmentShaders()) paths.push_back(std::move(f));
     if (std::string s = shippedShaders(); !s.empty()) paths.push_back(s);
     rsl::ShaderCompiler::Settings settings;
@@ -202,7 +205,8 @@ int shade(const Arguments& a) {
         out.emplace_back(size_t(rsl::ir::components(o.kind)) * stride);
         outRows.push_back(out.back().data.get());
     }
-    Context context{kernel.get(), &diags, true};
+    transport::WithoutScene services(texturePaths, diags);
+    Context context{kernel.get(), &diags, &services, true};
     const StopFlag* stop = watchInterrupts();
     rsl::KernelCall call{};
     call.in = inRows.data();
@@ -214,7 +218,7 @@ int shade(const Arguments& a) {
     call.service = [](rsl::KernelCall* c, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* rowsIn,
                       float* rowsOut) {
         auto& x = *static_cast<Context*>(c->user);
-        if (site < 0) return;
+        if (site < 0 || x.services->answer(*x.kernel, site, first, mask, lanes, rowsIn, rowsOut)) return;
         rsl::basicService(x.kernel->sites()[size_t(site)], mask, lanes, rowsIn, rowsOut, *x.diagnostics,
                           [&](int lane, const std::string& text) {
                               if (!x.print) return;
@@ -230,6 +234,9 @@ int shade(const Arguments& a) {
 
     auto fill = [&](const std::vector<Vec2>& at) {
         call.n = int32_t(at.size());
+        std::vector<Vec3> points;
+        for (const Vec2& p : at) points.push_back({p.x, p.y, 0});
+        services.setPoints({0.5f, 0.5f, 1}, points);
         for (size_t k = 0; k < in.size(); ++k) {
             const auto& i = kernel->inputs()[k];
             float* rows = in[k].data.get();
@@ -340,7 +347,7 @@ void addShade(CLI::App& app, int* status) {
     c->add_option("--vectors", a->vectors, "Vectors in flight; 0 lets the compiler choose")
         ->check(CLI::Range(0, 4))
         ->type_name("K");
-    c->add_option("--searchpath", a->searchPaths, "Folders for shaders and #include, separated by :")
+    c->add_option("--searchpath", a->searchPaths, "Folders for shaders, #include and maps, separated by :")
         ->type_name("DIRS")
         ->allow_extra_args(false);
     addDialect(*c, a->dialect);

@@ -43,7 +43,8 @@ struct PointContext {
     std::string* printed;
     Diagnostics* diagnostics;
     int points = 0;
-    std::vector<int> draws; ///< by site and point: random numbers drawn so far
+    const AnswerFn* answer = nullptr;
+    std::vector<int> draws{}; ///< by site and point: random numbers drawn so far
 };
 
 constexpr const char* kTypes[] = {"float", "color", "point", "vector", "normal", "matrix", "string"};
@@ -62,7 +63,7 @@ bool EvaluationPoint::value(const std::string& name, int component, int part, fl
 }
 
 bool runAtPoint(const CompiledKernel& k, bool mixed, int n, int at, std::vector<std::vector<float>>& out, std::string* printed,
-                Diagnostics& diagnostics) {
+                Diagnostics& diagnostics, const AnswerFn& answer) {
     if (k.facts().suspends) return false;
     const int stride = (n + 63) / 64 * 64;
     std::vector<std::unique_ptr<float, decltype(&std::free)>> blocks;
@@ -91,7 +92,7 @@ bool runAtPoint(const CompiledKernel& k, bool mixed, int n, int at, std::vector<
     }
     std::vector<float*> outs;
     for (const auto& o : k.outputs()) outs.push_back(make(ir::components(o.kind)));
-    PointContext context{&k, printed, &diagnostics, n, {}};
+    PointContext context{&k, printed, &diagnostics, n, &answer};
     KernelCall call{};
     call.in = in.data();
     call.out = outs.data();
@@ -102,6 +103,7 @@ bool runAtPoint(const CompiledKernel& k, bool mixed, int n, int at, std::vector<
     call.service = [](KernelCall* c, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
         auto& x = *static_cast<PointContext*>(c->user);
         if (site < 0) return;
+        if (*x.answer && (*x.answer)(*x.kernel, site, first, mask, lanes, in, out)) return;
         const ir::Site& s = x.kernel->sites()[size_t(site)];
         basicService(s, mask, lanes, in, out, *x.diagnostics, [&](int lane, const std::string& text) {
             if (x.printed && first + lane == 0) *x.printed += text;
@@ -150,7 +152,7 @@ std::string formatNumbers(const std::vector<float>& numbers) {
 }
 
 Evaluation evaluate(ShaderCompiler& compiler, const std::string& setup, const std::string& expression,
-                    const KernelOptions& options, Diagnostics& diagnostics) {
+                    const KernelOptions& options, Diagnostics& diagnostics, const AnswerFn& answer) {
     Evaluation r;
     std::shared_ptr<const CompiledShader> shader;
     auto attempt = [&](const std::string& text) {
@@ -185,7 +187,7 @@ Evaluation evaluate(ShaderCompiler& compiler, const std::string& setup, const st
     auto kernel = compiler.kernel(shader, o, diagnostics);
     if (!kernel) return r;
     std::vector<std::vector<float>> out;
-    if (!runAtPoint(*kernel, o.mixed, 1, 0, out, &r.printed, diagnostics)) {
+    if (!runAtPoint(*kernel, o.mixed, 1, 0, out, &r.printed, diagnostics, answer)) {
         diagnostics.report(Severity::Error, Rie::IllState, {"expression", 0, 0}, "rays cannot be traced here: there is no scene");
         return r;
     }

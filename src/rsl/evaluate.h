@@ -25,15 +25,19 @@ struct Evaluation {
     std::string printed; ///< by printf()
 };
 
+/// As ServiceFn, of a kernel; false: not answered, and nothing written. What this room does not know, maps and rays, the caller may.
+using AnswerFn = std::function<bool(const CompiledKernel&, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out)>;
+
 /// Evaluates `expression` after the statements of `setup` in a surface shader at the point above. The type is the first of float,
 /// color, point, vector, normal, matrix, string that the expression can be assigned to. Places in messages refer to the file name
 /// "expression".
-Evaluation evaluate(ShaderCompiler&, const std::string& setup, const std::string& expression, const KernelOptions&, Diagnostics&);
+Evaluation evaluate(ShaderCompiler&, const std::string& setup, const std::string& expression, const KernelOptions&, Diagnostics&,
+                    const AnswerFn& answer = {});
 
 /// The batch behind evaluate(): runs a kernel on n copies of the point. out[output][component] of point `at`.
 /// False when the kernel suspends. printf() of the first point is appended to `printed` when not null.
 bool runAtPoint(const CompiledKernel&, bool mixed, int n, int at, std::vector<std::vector<float>>& out, std::string* printed,
-                Diagnostics&);
+                Diagnostics&, const AnswerFn& answer = {});
 
 /// "%.7g" of each, separated by spaces.
 std::string formatNumbers(const std::vector<float>&);

@@ -130,6 +130,51 @@ TEST_F(Tools, TheDialectRispec) {
     EXPECT_EQ(errors().find("--dialect"), std::string::npos) << errors();
 }
 
+// eval and shade have maps, what a camera ray knows, and the name of the renderer.
+TEST_F(Tools, MapsAndRaysWithoutAScene) {
+    write("grey.sl", "surface grey() { Ci = color(.25, .5, .75); Oi = 1; }\n");
+    run("shade grey.sl --format 8x8 -o map.exr");
+    ASSERT_EQ(status, 0) << errors();
+    EXPECT_EQ(run("eval 'color texture(\"map.exr\", .5, .5)'"), "0.25 0.5 0.75\n") << errors();
+    EXPECT_EQ(status, 0) << errors();
+    EXPECT_EQ(run("eval 'float texture(\"map.exr\"[1], s, t)'"), "0.5\n") << errors();
+    EXPECT_EQ(run("eval 'color environment(\"map.exr\", vector(1, 2, 3))'"), "0.25 0.5 0.75\n") << errors();
+    EXPECT_EQ(run("eval --setup 'float r[2] = {0, 0}; textureinfo(\"map.exr\", \"resolution\", r);' 'r[0] + 10 * r[1]'"), "88\n");
+    EXPECT_EQ(run("eval 'textureinfo(\"nosuch\", \"exists\", 0)'"), "0\n");
+    EXPECT_EQ(status, 0) << errors();
+    EXPECT_EQ(run("eval 'color texture(\"nosuch.tex\")'"), "0 0 0\n");
+    EXPECT_EQ(status, 1);
+    const std::string said = errors();
+    EXPECT_NE(said.find("nosuch.tex"), std::string::npos) << said;
+    EXPECT_NE(said.find("expression:"), std::string::npos) << said;
+    EXPECT_EQ(said.find("error:"), said.rfind("error:")) << said;
+    EXPECT_EQ(run("eval --setup 'float d = 3; string w = \"\"; float n = rayinfo(\"depth\", d) + rayinfo(\"type\", w); string r = \"\"; n += rendererinfo(\"renderer\", r);' "
+                  "'format(\"%f %f %s %s\", n, d, w, r)'"), "3.000000 0.000000 camera Alpenglow\n") << errors();
+    EXPECT_EQ(run("eval --setup 'point o = 0; vector d = 0; float l = 0; rayinfo(\"origin\", o, \"direction\", d, \"length\", l);' 'color(zcomp(o), zcomp(d), l)'"), "-1 1 1\n") << errors();
+    write("mapped.sl", "surface mapped(string name = \"map.exr\";) { string t = \"\"; vector d = 0; rayinfo(\"type\", t); rayinfo(\"direction\", d);\n"
+                       "    color e = match(\"camera\", t) ? color texture(name) : 0; Ci = e * length(d - normalize(I)) + e; Oi = 1; }\n");
+    run("shade mapped.sl --format 8x8 -o a.exr");
+    EXPECT_EQ(status, 0) << errors();
+    run("diff map.exr a.exr --tolerance 1e-5");
+    EXPECT_EQ(status, 0);
+    run("shade mapped.sl --param name=nosuch.tex --format 8x8 -o a.exr");
+    EXPECT_EQ(status, 1);
+    EXPECT_NE(errors().find("mapped.sl:2:"), std::string::npos) << errors();
+}
+
+// What a terminal obeys is shown by its bytes, in messages and in what shaders print.
+TEST_F(Tools, EscapesAreNotObeyed) {
+    EXPECT_EQ(run("eval --setup 'string e = \"\\033[31m\"; printf(\"a\\t%sb\\n\", e);' 1"), "a\t\\x1b[31mb\n1\n");
+    run("render $'no\\x1b[2Jsuch.rib'");
+    EXPECT_EQ(errors().find('\x1b'), std::string::npos) << errors();
+    run("eval \"$(printf 'x\\033[31m')\"");
+    EXPECT_EQ(errors().find('\x1b'), std::string::npos) << errors();
+    EXPECT_EQ(status, 1);
+    run("eval --lanes \"$(printf '\\033[31m')\" 1");
+    EXPECT_EQ(errors().find('\x1b'), std::string::npos) << errors();
+    EXPECT_EQ(status, 2);
+}
+
 TEST_F(Tools, Info) {
     write("a.sl", "#pragma annotation \"author\" \"nobody\"\n"
                   "surface a(float Kd = 0.5; color tint = color \"hsv\" (0, 0, 1); point from = point \"world\" (1, 2, 3);\n"

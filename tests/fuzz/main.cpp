@@ -262,7 +262,7 @@ int main(int argc, char** argv) {
     if (kSanitized) { // shadow memory, and several times slower
         a.limits.memory *= 4;
         a.limits.processorSeconds *= 6;
-        a.limits.wallSeconds *= 4;
+        a.limits.stallSeconds *= 4;
         a.limits.graceSeconds *= 4;
     }
     if (a.selfTest) return selfTest();

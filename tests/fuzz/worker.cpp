@@ -165,36 +165,56 @@ struct Ending {
     Verdict verdict{};   ///< of that
 };
 
+/// The running input of a child, as the parent sees it from time to time. Only processor time tells work from a machine that is
+/// busy with other things; the clock on the wall tells nothing but that a child has not worked at all.
+class Watched {
+public:
+    Watched(pid_t pid, const SharedMemory& shared, const Limits& limits) : pid_(pid), shared_(shared), limits_(limits) {}
+
+    void look() {
+        const double now = clockSeconds(), spent = processorSeconds(pid_);
+        if (spent > spent_ + 0.01) spent_ = spent, worked_ = now;
+        if (residentBytes(pid_) > limits_.memory) tooMuch = true;
+        const bool running = shared_->done <= shared_->current, stalled = now - worked_ > limits_.stallSeconds;
+        if (!interrupted && running && (spent - shared_->started > limits_.processorSeconds || stalled)) {
+            interrupted = true;
+            at_ = shared_->done;
+            spentThen_ = spent;
+            worked_ = now; // once more for the interrupt
+            shared_->interrupted = true;
+            kill(pid_, SIGINT);
+        } else if (interrupted && shared_->done == at_ && (spent - spentThen_ > limits_.graceSeconds || stalled)) {
+            tooLong = true;
+        }
+    }
+
+    bool tooMuch = false, interrupted = false, tooLong = false;
+
+private:
+    pid_t pid_;
+    const SharedMemory& shared_;
+    const Limits& limits_;
+    double worked_ = clockSeconds(), spent_ = 0, spentThen_ = 0;
+    size_t at_ = 0;
+};
+
 /// Watches a child until it ends or `end` is past; inputs that take too long or too much are ended.
 Ending watch(pid_t pid, const Target& target, const SharedMemory& shared, double end, const Limits& limits,
              const fs::path& logs) {
-    size_t seen = size_t(-1), interruptedAt = size_t(-1);
-    double since = clockSeconds(), interruptedSince = 0;
-    bool tooMuch = false, tooLong = false, interrupted = false, stopped = false;
+    Watched w(pid, shared, limits);
+    bool stopped = false;
     int status = 0;
     for (useconds_t nap = 300; waitpid(pid, &status, WNOHANG) == 0; nap = std::min<useconds_t>(nap * 2, 5000)) {
         usleep(nap);
-        const double now = clockSeconds();
-        const size_t current = shared->current + shared->done * kBatch; // changes with either
-        if (current != seen) seen = current, since = now;
-        if (residentBytes(pid) > limits.memory) tooMuch = true;
-        const double spent = processorSeconds(pid) - shared->started;
-        const bool running = shared->done <= shared->current;
-        if (!interrupted && running && (spent > limits.processorSeconds || now - since > limits.wallSeconds)) {
-            interrupted = true;
-            interruptedAt = current;
-            interruptedSince = now;
-            shared->interrupted = true;
-            kill(pid, SIGINT);
-        }
-        if (interrupted && current == interruptedAt && now - interruptedSince > limits.graceSeconds) tooLong = true;
-        stopped = now > end && !interrupted;
-        if (tooMuch || tooLong || stopped) {
+        w.look();
+        stopped = clockSeconds() > end && !w.interrupted;
+        if (w.tooMuch || w.tooLong || stopped) {
             kill(pid, SIGKILL);
             waitpid(pid, &status, 0);
             break;
         }
     }
+    const bool interrupted = w.interrupted, tooMuch = w.tooMuch, tooLong = w.tooLong;
     Ending e;
     e.done = shared->done;
     const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;

@@ -7,8 +7,8 @@ namespace alpenglow::fuzz {
 
 struct Limits {
     double processorSeconds = 10;    ///< of one input
-    double wallSeconds = 90;         ///< of one input, also when it only waits
-    double graceSeconds = 10;        ///< after an interrupt
+    double stallSeconds = 60;        ///< on the wall without any work: it waits for what does not come
+    double graceSeconds = 5;         ///< of processor time after an interrupt
     size_t memory = size_t(2) << 30; ///< resident bytes of a child
 };
 

@@ -58,7 +58,7 @@ uint32_t crcOf(const Bytes& b, size_t at, size_t n) {
 
 uint32_t numberAt(const Bytes& b, size_t at, bool big) {
     uint32_t v = 0;
-    for (size_t i = 0; i < 4; ++i) v |= uint32_t(uint8_t(b[at + i])) << 8 * (big ? 3 - i : i);
+    for (size_t i = 0; i < 4 && at + i < b.size(); ++i) v |= uint32_t(uint8_t(b[at + i])) << 8 * (big ? 3 - i : i);
     return v;
 }
 
@@ -109,7 +109,7 @@ Bytes mutateBytes(Random& r, Bytes b, const Seeds& seeds) {
             break;
         }
         default:
-            putNumber(b, at, numberAt(b + "\0\0\0\0\0", at, false) + uint32_t(r.below(9)) - 4, 4, false);
+            putNumber(b, at, numberAt(b, at, false) + uint32_t(r.below(9)) - 4, 4, false);
             break;
         }
     }

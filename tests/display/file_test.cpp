@@ -33,6 +33,18 @@ TEST(OutputPath, RefusesWhatHasNoName) {
     EXPECT_EQ(d.errors(), 4);
 }
 
+TEST(OutputPath, HiddenNamesAndWhatIsNoPicture) {
+    Scratch s;
+    putBytes(s / "notes.txt", {'m', 'i', 'n', 'e'});
+    putBytes(s / "old.tif", {'I', 'I', '*', 0, 8, 0, 0, 0});
+    putBytes(s / "empty", {});
+    Diagnostics d;
+    for (const char* name : {".bashrc", "a/.ssh/keys", ".git/config", "notes.txt"}) EXPECT_FALSE(resolveOutputPath(name, s.policy(), d)) << name;
+    EXPECT_EQ(d.errors(), 4);
+    for (const char* name : {"old.tif", "empty", "new.tif", "./a.tif", "a.b/c.tif"}) EXPECT_TRUE(resolveOutputPath(name, s.policy(), d)) << name;
+    EXPECT_EQ(d.errors(), 4);
+}
+
 TEST(OutputPath, AllowWriteTakesThePathAsItIs) {
     Scratch s;
     Diagnostics d;
@@ -57,16 +69,18 @@ TEST(OutputPath, SymbolicLinksDoNotLeadOut) {
 TEST(OutputFileTest, AppearsWholeOrNotAtAll) {
     Scratch s;
     Diagnostics d;
+    OutputPolicy any = s.policy();
+    any.allowWrite = true; // the old file is no picture
     putBytes(s / "a.bin", {'o', 'l', 'd'});
     {
-        auto f = OutputFile::open("a.bin", s.policy(), d);
+        auto f = OutputFile::open("a.bin", any, d);
         ASSERT_TRUE(f);
         EXPECT_TRUE(f->write("new!", 4));
         EXPECT_EQ(bytesOf(s / "a.bin"), (std::vector<uint8_t>{'o', 'l', 'd'}));
     } // never committed
     EXPECT_EQ(bytesOf(s / "a.bin"), (std::vector<uint8_t>{'o', 'l', 'd'}));
     EXPECT_EQ(s.files(), 1u);
-    auto f = OutputFile::open("a.bin", s.policy(), d);
+    auto f = OutputFile::open("a.bin", any, d);
     ASSERT_TRUE(f);
     EXPECT_TRUE(f->write("new!", 4));
     EXPECT_TRUE(f->seek(0));
@@ -82,6 +96,7 @@ TEST(OutputFileTest, FullDiskKeepsTheOldFile) {
     Diagnostics d;
     putBytes(s / "a.bin", {'o', 'l', 'd'});
     OutputPolicy p = s.policy();
+    p.allowWrite = true; // the old file is no picture
     p.failAfterBytes = 5;
     auto f = OutputFile::open("a.bin", p, d);
     ASSERT_TRUE(f);

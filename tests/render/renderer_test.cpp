@@ -335,7 +335,7 @@ TEST(Renderer, PixelPrintsASample) {
 
 TEST(Renderer, StopBeforeAPassWritesNothing) {
     Folder dir;
-    int32_t stop = 1;
+    StopFlag stop{1};
     RenderSettings s;
     s.output = dir / "a.exr";
     s.stop = &stop;

@@ -150,7 +150,7 @@ TEST_F(Tools, MapsAndRaysWithoutAScene) {
     EXPECT_EQ(said.find("error:"), said.rfind("error:")) << said;
     EXPECT_EQ(run("eval --setup 'float d = 3; string w = \"\"; float n = rayinfo(\"depth\", d) + rayinfo(\"type\", w); string r = \"\"; n += rendererinfo(\"renderer\", r);' "
                   "'format(\"%f %f %s %s\", n, d, w, r)'"), "3.000000 0.000000 camera Alpenglow\n") << errors();
-    EXPECT_EQ(run("eval --setup 'point o = 0; vector d = 0; float l = 0; rayinfo(\"origin\", o, \"direction\", d, \"length\", l);' 'color(zcomp(o), zcomp(d), l)'"), "-1 1 1\n") << errors();
+    EXPECT_EQ(run("eval --setup 'point o = 0; vector d = 0; float l = 0; rayinfo(\"origin\", o); rayinfo(\"direction\", d); rayinfo(\"length\", l);' 'color(zcomp(o), zcomp(d), l)'"), "-1 1 1\n") << errors();
     write("mapped.sl", "surface mapped(string name = \"map.exr\";) { string t = \"\"; vector d = 0; rayinfo(\"type\", t); rayinfo(\"direction\", d);\n"
                        "    color e = match(\"camera\", t) ? color texture(name) : 0; Ci = e * length(d - normalize(I)) + e; Oi = 1; }\n");
     run("shade mapped.sl --format 8x8 -o a.exr");

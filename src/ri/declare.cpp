@@ -162,6 +162,7 @@ constexpr Known kImplementation[] = {
     {"hider:composite", "int"},
     {"light:samples", "int"},
     {"light:samplingstrategy", "string"},
+    {"light:units", "string"},
     {"light:emitphotons", "int"},
     {"trimcurve:sense", "string"},
 };

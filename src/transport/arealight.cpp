@@ -98,6 +98,22 @@ bool Emitter::sample(const Vec3& from, Vec2 u, float choose, Sample& out, geomet
     return out.pdf > 0 && std::isfinite(out.pdf);
 }
 
+bool Emitter::sampleSurface(const Vec3& from, Vec2 u, float choose, Sample& out, geometry::SurfacePoint& point) const {
+    if (entries_.empty()) return false;
+    size_t i = 0;
+    while (i + 1 < entries_.size() && choose >= entries_[i].cumulative) ++i;
+    const Entry& e = entries_[i];
+    out.shape = e.shape;
+    out.visibility = e.visibility;
+    e.shape->sampleArea(u.x, u.y, point);
+    const Vec3 d = point.P - from;
+    out.distance = length(d);
+    if (!(out.distance > 0)) return false;
+    out.direction = d / out.distance;
+    out.pdf = float(e.shape->sampleDensity(point) * e.share * area_); // the share of a shape is its part of the area
+    return out.pdf > 0 && std::isfinite(out.pdf);
+}
+
 float Emitter::pdf(const geometry::Shape* shape, const geometry::SurfacePoint& hit, const Vec3& from) const {
     for (const Entry& e : entries_) {
         if (e.shape != shape) continue;

@@ -26,6 +26,18 @@ float numberOf(const scene::AttributesRef& a, const char* key, float fallback) {
     return p && !p->numbers.empty() ? p->numbers[0] : fallback;
 }
 
+/// Whether an area light gives the mean of its Cl over samples of its geometry, as BMRT and 3Delight had it, and not radiance.
+bool givesMean(const scene::Light& source, const std::string& shader, bool path, Diagnostics& d) {
+    static const std::set<std::string> kRadiance = {"slrect", "slpoint", "slspot", "sldirect"}; // as they ship
+    const scene::Param* p = source.attributes ? source.attributes->value("light:units") : nullptr;
+    const std::string units = p && !p->strings.empty() ? p->strings[0] : "";
+    if (units == "samples") return true;
+    if (!units.empty() && units != "radiance")
+        d.reportOnce("lightunits:" + units, {Severity::Warning, Rie::BadToken, p->place, "unknown units of light \"" + units + "\"",
+                                             "\"radiance\" and \"samples\" are known", {}});
+    return units != "radiance" && !path && !kRadiance.count(shader);
+}
+
 } // namespace
 
 void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const geometry::Shape&)>& visibility) {
@@ -138,6 +150,10 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
                 part.samples = limits::kLightTurns;
                 part.shadows |= !path && l.instance->parameters.numbers.count("__sentShadows") > 0;
             }
+            if (part.kind == LightKind::Area && givesMean(source, l.instance->name, path, d)) {
+                part.mean = true;
+                part.strategy = LightStrategy::Illuminance; // it has no radiance that trace() could find
+            }
             if (part.kind != LightKind::Area) part.emitter = nullptr;
             if (k == 0) {
                 lights_[li] = std::move(part);
@@ -228,6 +244,10 @@ void WorldImpl::measureLights(Engine& engine, Diagnostics& d) {
                 if (!(b[0] > 0)) continue;
                 ++seen;
                 square += std::fabs(b[1] * 4 / b[0] - 1) < 1e-3f && std::fabs(b[2] * 16 / b[0] - 1) < 1e-3f;
+            }
+            if (l.mean) {
+                l.power = mean * step * step;
+                continue;
             }
             if (seen > 0 && square == seen) {
                 l.intensityScale = float(kPi) / float(l.emitter->area());

@@ -102,7 +102,7 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
             if (std::find(on.begin(), on.end(), b.areaLight) == on.end()) continue;
         }
         const BoundLight& light = world_->lights_[size_t(b.areaLight)];
-        if (r.fromTrace && light.strategy == LightStrategy::Illuminance) continue;
+        if (light.mean || (r.fromTrace && light.strategy == LightStrategy::Illuminance)) continue;
         met.push_back({b.areaLight, slice[i].target, &p});
         for (int part : light.parts)
             if (world_->lights_[size_t(part)].kind == LightKind::Area) met.push_back({part, slice[i].target, &p});

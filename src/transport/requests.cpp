@@ -305,7 +305,9 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     Random rng = random(ray);
                     uint32_t use = kLightPoint + uint32_t(li);
                     Emitter::Sample& s = drawn.emplace_back();
-                    if (!light.emitter->sample(p.Ps, rng.pair(vertex, use, 0), light.emitter->chooses() ? rng.one(vertex, use, 0) : 0, s, p.surface)) {
+                    const Vec2 u = rng.pair(vertex, use, 0);
+                    const float choose = light.emitter->chooses() ? rng.one(vertex, use, 0) : 0;
+                    if (!(light.mean ? light.emitter->sampleSurface(p.Ps, u, choose, s, p.surface) : light.emitter->sample(p.Ps, u, choose, s, p.surface))) {
                         drawn.pop_back();
                         continue;
                     }
@@ -366,6 +368,10 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 for (int i : lobesOf(size_t(pointOf[k]))) {
                     LobeVertex& l = lobes[i];
                     if (l.delta || !samples(l, light)) continue;
+                    // Sides 1: from where rays of this lobe pass through the emitter they cannot meet it, and it sends nothing.
+                    if (area && !light.mean && drawn[k].shape->oneSided() && l.set.sides != accel::Sides::Both &&
+                        (dot(q[k].surface.n, w) >= 0) != (l.set.sides == accel::Sides::Back))
+                        continue;
                     float fcos = l.kind->fcos(l.params, w);
                     if (std::isnan(fcos)) notFinite(c, c.rays[size_t(l.point)], l.site);
                     if (!(fcos > 0)) continue;
@@ -378,14 +384,14 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     const bool sums = l.trace && l.trace->sums;
                     if (sums)
                         if (TraceSums* of = sumsOf(l.target)) of->add(TraceSums::UnshadowedAreaLight, contribution * (fcos / (drawn[k].pdf * chance[k])));
-                    if (area) {
+                    if (area && !light.mean) {
                         float other = 0; // the density with which the lobe's own ray would have come here
                         if (!set.lightOnly && l.chosen > 0 && (drawn[k].visibility & visibilityBit(l.type)))
                             other = (l.kind->pdf == l.kind->fcos ? fcos : l.kind->pdf(l.params, w)) * l.chosen;
                         float pdf = drawn[k].pdf * chance[k];
                         contribution *= kept * fcos / pdf * misWeight(pdf, other);
                     } else {
-                        contribution *= kept * float(kPi) * fcos / chance[k]; // Cl is irradiance / pi
+                        contribution *= kept * float(kPi) * fcos / (chance[k] * (area ? drawn[k].pdf : 1)); // Cl is irradiance / pi
                     }
                     // The light's own surface must not block: stop short of it by both error bounds.
                     float stop = distance;

@@ -142,6 +142,7 @@ struct BoundLight {
     std::vector<int> parts;                    ///< lights of the further blocks of the same shader
     LightStrategy strategy = LightStrategy::Both;
     float intensityScale = 0;                  ///< > 0: Cl is an intensity over squared distance; radiance is Cl d^2 times this
+    bool mean = false;                         ///< Area: gives the mean of its Cl over its surface, with no other factor, and no ray finds it
     bool hazy = false;                         ///< Area, path: some of its shapes lie in an atmosphere
     // For the choice among many lights: brightness at distance 1 (Distant: anywhere; Area: radiance times area / pi).
     float power = 0;

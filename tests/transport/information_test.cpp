@@ -180,7 +180,7 @@ TEST(Information, ArraysGoToArraysOfTheirClass) {
 const char* kDisk = "Surface \"constant\"\nColor 0 0 0\nTranslate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\nAttributeEnd\nIlluminate 7 1\n";
 std::string disk(const std::string& attributes) {
     writeShader("shine", "light shine() { illuminate(P, N, PI / 2) Cl = 5; }\n");
-    return "AttributeBegin\n" + attributes + "AreaLightSource \"shine\" 7\n" + kDisk;
+    return "AttributeBegin\n" + attributes + "Attribute \"light\" \"string units\" \"radiance\" AreaLightSource \"shine\" 7\n" + kDisk;
 }
 // As many turns of the loop as the light has samples, by either name; together they are the light.
 TEST(Information, SamplesOfAreaLights) {

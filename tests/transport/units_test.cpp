@@ -72,7 +72,7 @@ std::string floorScene(const std::string& lights, const std::string& look, const
            "\nPolygon \"P\" [-60 0 -60  -60 0 60  60 0 60  60 0 -60]\nAttributeEnd\n" + more + "WorldEnd\n";
 }
 std::string areaLight(double radiance, const std::string& geometry, const std::string& shader = "slrect") {
-    return "AttributeBegin\nAreaLightSource \"" + shader + "\" 7 \"float intensity\" [" + std::to_string(radiance) +
+    return "AttributeBegin\nAttribute \"light\" \"string units\" \"radiance\" AreaLightSource \"" + shader + "\" 7 \"float intensity\" [" + std::to_string(radiance) +
            "]\nSurface \"constant\"\nColor 0 0 0\n" + geometry + "\nAttributeEnd\nIlluminate 7 1\n";
 }
 

@@ -134,6 +134,7 @@ Emitter::Made Emitter::function(const Inst* f, const std::vector<std::vector<Slo
     made.function->splice(made.function->begin(), draft);
     for (unsigned n = 0; n < draft->arg_size(); n++) draft->getArg(n)->replaceAllUsesWith(made.function->getArg(n));
     e.function_ = made.function;
+    e.memory_ = made.function->getArg(3);
     e.b_.CreateRet(all);
     e.entry_.CreateBr(start);
     e.finishScratch();

@@ -201,6 +201,6 @@ template <class T> AL_INLINE T power(const T& x, const T& y) {
 template <class T> AL_INLINE T smaller(const T& a, const T& b) { return select(value(a) < value(b), a, b); }
 template <class T> AL_INLINE T larger(const T& a, const T& b) { return select(value(a) > value(b), a, b); }
 template <class T> AL_INLINE T absolute(const T& a) { return select(value(a) < 0, -a, withValue(a, absLanes(value(a)))); }
-template <> AL_INLINE vf absolute<vf>(const vf& a) { return absLanes(a); }
+template <> AL_MEMBER vf absolute<vf>(const vf& a) { return absLanes(a); }
 
 } // namespace alpenglow::rsl::AL_NAMESPACE

@@ -282,6 +282,9 @@ private:
             values_[i] = v;
             break;
         }
+        case Op::Function: // this evaluator runs kernels whose functions are inlined
+        case Op::Call:
+            throw std::runtime_error("an outlined function");
         case Op::Output:
             outputs[k_.outputs[static_cast<size_t>(i->index)].name] = arg(0).n;
             break;

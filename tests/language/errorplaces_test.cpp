@@ -115,7 +115,8 @@ TEST(ErrorPlaces, EveryKindOfMessageAndThreeHundredPrograms) {
     EXPECT_GE(wrong, 300);
     // These need files beside the shader, or other renderers' limits: each has a test of its own elsewhere.
     const std::set<std::string> elsewhere = {"pp-include-elsewhere", "pp-include-depth", "shader-too-large", "too-many-errors",
-                                             "plugin-missing", "plugin-unusable", "coshader-depth", "no-code"};
+                                             "plugin-missing", "plugin-unusable", "coshader-depth", "no-code",
+                                             "struct-members", "too-many-includes", "light-blocks", "shader-memory"};
     for (const MessageKind& k : messageKinds())
         if (!elsewhere.count(k.id)) EXPECT_TRUE(ids.count(k.id)) << "no program has the message " << k.id;
 }

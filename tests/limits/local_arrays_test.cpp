@@ -93,7 +93,7 @@ TEST(LocalArrays, OfAKernelThatWaits) {
     Scene scene("WorldBegin\nSurface \"waits\"\nSides 2\nTransformBegin Translate 0 0 3 Disk 0 1 360 TransformEnd\n"
                 "Surface \"glow\"\nSphere 50 -50 50 360\nWorldEnd\n");
     ASSERT_TRUE(scene.world);
-    CameraRay rays[] = {rayTo({0, 0, 0}, {0.1f, 0.1f, 3}), rayTo({0, 0, 0}, {0.2f, 0.1f, 3})};
+    alpenglow::transport::CameraRay rays[] = {rayTo({0, 0, 0}, {0.1f, 0.1f, 3}), rayTo({0, 0, 0}, {0.2f, 0.1f, 3})};
     const auto results = scene.trace(rays);
-    for (const auto& r : results) EXPECT_EQ(r.color.r, 1.5f * 19);
+    for (const auto& r : results) EXPECT_EQ(r.color.x, 1.5f * 19);
 }

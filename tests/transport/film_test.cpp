@@ -238,7 +238,7 @@ TEST(BiasFloor, SlopeOfALightOfTwoPolygons) {
         return (A * std::atan(b / std::sqrt(1 + a * a)) + B * std::atan(a / std::sqrt(1 + b * b))) / (2 * kPi);
     };
     const double truth = 5 * 2 * corner(8, 2);
-    const std::string rib = "WorldBegin\nSides 2\nAttributeBegin\nAreaLightSource \"twopolygons\" 7\nSurface \"constant\"\nColor 0 0 0\n"
+    const std::string rib = "WorldBegin\nSides 2\nAttributeBegin\nAttribute \"light\" \"string units\" \"radiance\"\nAreaLightSource \"twopolygons\" 7\nSurface \"constant\"\nColor 0 0 0\n"
                             "Polygon \"P\" [0 .5 0  4 .5 0  4 .5 1  0 .5 1]\nPolygon \"P\" [-4 .5 0  0 .5 0  0 .5 1  -4 .5 1]\nAttributeEnd\nIlluminate 7 1\n";
     for (const char* look : {"polygondiffuse", "polygonloop"}) {
         Settings settings;

@@ -42,7 +42,7 @@ struct Light {
 std::vector<Light> lights() {
     const std::string shadows = "Attribute \"light\" \"string shadows\" \"on\"\n";
     auto area = [&](const std::string& shape) {
-        return "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\n" + shadows +
+        return "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nAttribute \"light\" \"string units\" \"radiance\"\n" + shadows +
                "AreaLightSource \"radiant\" 7 \"radiance\" 9\nSurface \"constant\"\nColor 0 0 0\n" + shape +
                "AttributeEnd\nIlluminate 7 1\n";
     };

@@ -8,16 +8,19 @@ using namespace alpenglow::transport::testing;
 
 namespace {
 
-const std::string kDisk = "AttributeBegin\nAttribute \"grouping\" \"membership\" \"lamps\"\nAreaLightSource \"hanging\" 1\nSurface \"black\"\nDisk 1 .5 360\nAttributeEnd\nIlluminate 1 1\n";
+// Radiance: raytrace would take the light for one of its day, which no ray meets.
+const std::string kDisk = "AttributeBegin\nAttribute \"light\" \"string units\" \"radiance\"\nAttribute \"grouping\" \"membership\" \"lamps\"\nAreaLightSource \"hanging\" 1\nSurface \"black\"\nDisk 1 .5 360\nAttributeEnd\nIlluminate 1 1\n";
 const std::string kCard = "AttributeBegin\nAttribute \"grouping\" \"membership\" \"cards\"\nSurface \"black\"\nDisk 1.5 .25 360\nAttributeEnd\n";
 const CameraRay kFloorSeen = rayTo({0, 0, 1.75f}, {0, 0, 2});
+
+void writeLight() { writeShader("hanging", "light hanging() { illuminate(P, vector \"world\" (0, 0, 1), PI / 2) Cl = 1; }\n"); }
 
 /// By light samples and rays, by light samples alone, by rays alone; affine and waiting kernels; both hiders that trace.
 void expectAll(const std::string& options, const std::string& others, double want, const std::string& floor = "", double precision = .02) {
     static int number = 0;
     const std::string name = "asking" + std::to_string(number++);
     writeShader("black", "surface black() { Oi = 1; Ci = 0; }\n");
-    writeShader("hanging", "light hanging() { illuminate(P, vector \"world\" (0, 0, 1), PI / 2) Cl = 1; }\n");
+    writeLight();
     writeShader(name, "surface " + name + "() { Oi = 1; Ci = trace(P, vector(faceforward(normalize(N), I)), \"distribution\", \"cosine\", \"samplecone\", PI / 2, "
                       "\"samplearealights\", 1" + options + "); }\n");
     for (int mode = 0; mode < 5; ++mode) {
@@ -52,6 +55,7 @@ TEST(TraceLights, OfASet) {
 }
 // One-sided cards are met from one side only, by rays and by shadows alike.
 TEST(TraceLights, Sides) {
+    writeLight();
     for (const bool turned : {false, true}) {
         std::string card = kCard;
         card.insert(card.find("Disk"), turned ? "Sides 1\nReverseOrientation\n" : "Sides 1\n");

@@ -144,8 +144,8 @@ void Preprocessor::include(std::vector<Token> line, Place hash) {
     }
     if (name.empty()) { sources_.error(hash, "#include needs \"file\" or <file>"); out_.incomplete = true; return; }
     if (files_ > limits::kIncludeDepth) {
-        sources_.error(hash, "includes are nested more than " + std::to_string(limits::kIncludeDepth) + " deep");
-        out_.incomplete = true;
+        if (!nestedTooDeep_) sources_.error(hash, "includes are nested more than " + std::to_string(limits::kIncludeDepth) + " deep");
+        nestedTooDeep_ = out_.incomplete = true; // once: a file that includes itself twice would say so thousands of times
         return;
     }
     if (++includes_ > limits::kIncludes || read_ > limits::kSourceBytes) {

@@ -326,6 +326,7 @@ private:
     size_t produced_ = 0;
     int files_ = 0, depth_ = 0;
     bool stopped_ = false;
+    bool nestedTooDeep_ = false; ///< the limit of nested includes was reported
     int includes_ = 0;    ///< #include lines that were followed
     size_t read_ = 0;     ///< bytes of files so far
 };

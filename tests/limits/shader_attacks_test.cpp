@@ -63,9 +63,19 @@ TEST(ShaderAttacks, FileThatIncludesItselfTwice) {
     f.put("x.h", "#include \"x.h\"\n#include \"x.h\"\n");
     FrontOptions o;
     o.includePaths = {f.path.string()};
+    // 2^64 inclusions at the limit of their depth, each an error; there is an end to it.
     const std::string m = complaint("#include \"x.h\"\nsurface s() { Ci = 1; }", o);
-    EXPECT_TRUE(says(m, "more than " + number(limits::kIncludes) + " files are included")) << m.substr(0, 2000);
+    EXPECT_TRUE(says(m, "nested more than " + number(size_t(limits::kIncludeDepth)))) << m.substr(0, 2000);
     EXPECT_TRUE(says(m, "x.h:")) << m.substr(0, 2000);
+    // 2^20 files without an error of their own.
+    for (int i = 0; i < 20; ++i) {
+        const std::string next = "#include \"b" + std::to_string(i + 1) + ".h\"\n";
+        f.put("b" + std::to_string(i) + ".h", next + next);
+    }
+    f.put("b20.h", "\n");
+    const std::string many = complaint("#include \"b0.h\"\nsurface s() { Ci = 1; }", o);
+    EXPECT_TRUE(says(many, "more than " + number(size_t(limits::kIncludes)) + " files are included")) << many.substr(0, 2000);
+    EXPECT_TRUE(says(many, ".h:")) << many.substr(0, 2000);
 }
 
 TEST(ShaderAttacks, LargeFileManyTimes) {

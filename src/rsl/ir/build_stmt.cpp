@@ -71,7 +71,7 @@ static bool plainDeclarations(const std::vector<StmtPtr>& list, size_t from) {
 /// statement in a condition inside of that. That deep nesting costs time that grows with its square, so after kGuards of them all
 /// conditions are closed (`depth` counts them) and the next begins outside. Returns how far the list was built.
 size_t Builder::statements(const std::vector<StmtPtr>& list, size_t from, int depth) {
-    constexpr int kGuards = 128;
+    constexpr int kGuards = 128, kPart = 4;
     for (size_t n = from; n < list.size() && !failed_;) {
         Inst* live = alive();
         if (isConst(live)) {
@@ -79,7 +79,7 @@ size_t Builder::statements(const std::vector<StmtPtr>& list, size_t from, int de
             statement(*list[n++]);
             continue;
         }
-        if (depth == kGuards) return n;
+        if (depth == kPart) return n;
         const bool parted = depth == 0 && list.size() - n > kGuards && plainDeclarations(list, n);
         if (parted) // what one part declares the next one reads
             for (size_t later = n; later < list.size(); ++later)

@@ -63,7 +63,7 @@ TEST(ShaderAttacks, FileThatIncludesItselfTwice) {
     f.put("x.h", "#include \"x.h\"\n#include \"x.h\"\n");
     FrontOptions o;
     o.includePaths = {f.path.string()};
-    // 2^64 inclusions at the limit of their depth, each an error; there is an end to it.
+    // 2^64 inclusions at the limit of their depth: there is an end to it.
     const std::string m = complaint("#include \"x.h\"\nsurface s() { Ci = 1; }", o);
     EXPECT_TRUE(says(m, "nested more than " + number(size_t(limits::kIncludeDepth)))) << m.substr(0, 2000);
     EXPECT_TRUE(says(m, "x.h:")) << m.substr(0, 2000);

@@ -1,5 +1,6 @@
 // Samples of lights for the points of a loop: where they lie, the light's kernel with what the surface sends, what stands in between.
 #include "transport/engine.h"
+#include "transport/emitterfootprint.h"
 #include "transport/lightloop.h"
 #include "transport/sampling.h"
 #include <bit>
@@ -211,6 +212,9 @@ uint64_t Engine::sampleLight(BatchContext& c, const LightLoop& loop, int li, int
     std::vector<int> laneOf;
     std::vector<float> factor;
     uint64_t lit = 0;
+    // A loop has no lobe of its own: it sees an emitter as wide as diffuse() does.
+    const bool wide = light.kind == LightKind::Area && usesFootprint(light);
+    const float diffuse = wide ? findLobe("diffuse")->spread({}) : 0;
     for (int lane = 0; lane < lanes; ++lane) {
         if (!(mask >> lane & 1) || first + lane >= int(c.points.size())) continue;
         ShadePoint p = c.points[size_t(first + lane)];
@@ -232,6 +236,7 @@ uint64_t Engine::sampleLight(BatchContext& c, const LightLoop& loop, int li, int
             p.shape = s.shape;
             p.P = p.surface.P;
             p.N = p.surface.n;
+            if (wide) setEmitterFootprint(p, *p.ray, at, spreadBehind(*p.ray, diffuse));
             f = light.mean ? 1 / (s.pdf * float(turns)) : 1 / (float(kPi) * s.pdf * float(turns)); // cosLight A / (pi d^2 n), design decision 4
         } else if (light.kind == LightKind::Environment && world_->settings_.hider != Hider::Path) {
             // One direction, that of the surface: what diffuse() makes of it is what an even sky gives.

@@ -1,6 +1,7 @@
 // What becomes of the requests of a batch: lobes are gathered over lights, then rays are sent (design decisions 2 and 3).
 #include "transport/engine.h"
 #include "texture/lookup.h"
+#include "transport/emitterfootprint.h"
 #include "transport/raysets.h"
 #include "transport/sampling.h"
 
@@ -273,6 +274,9 @@ void Engine::gather(BatchContext& c, Sched& sched) {
             size_t li = size_t(on[at]);
             const BoundLight& light = world_->lights_[li];
             bool area = light.kind == LightKind::Area;
+            // A light that filters over its surface is asked once for every width of the lobes at a point, at the same sample.
+            const bool wide = area && usesFootprint(light);
+            std::vector<float> spread; // by query; empty: it is for all lobes of its point
             size_t used = 0; // of q: its points are written again, not made anew
             chance.clear();
             pointOf.clear();
@@ -325,6 +329,23 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 ++used;
                 pointOf.push_back(int(pi));
                 chance.push_back(many ? chosenAt[at][k].second : 1.f);
+                const size_t first = spread.size();
+                for (int i : wide ? lobesOf(pi) : std::span<const int>()) {
+                    const LobeVertex& l = lobes[size_t(i)];
+                    if (l.delta || !samples(l, light)) continue;
+                    const float s = spreadBehind(c.rays[pi], l.kind->spread(l.params));
+                    if (std::find(spread.begin() + long(first), spread.end(), s) != spread.end()) continue;
+                    spread.push_back(s);
+                    if (spread.size() > used) {
+                        if (used == q.size()) q.emplace_back();
+                        q[used] = q[used - 1];
+                        ++used;
+                        drawn.push_back(Emitter::Sample(drawn.back()));
+                        pointOf.push_back(int(pi));
+                        chance.push_back(chance.back());
+                    }
+                    setEmitterFootprint(q[used - 1], c.rays[pi], c.points[pi].P, s);
+                }
             }
             q.resize(used);
             value.assign(used, {});
@@ -354,7 +375,9 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 const float u = random(ray).one(vertex, kLightPoint + uint32_t(li), 0);
                 chooseSent(light, u, values.data() + k * size_t(light.valueWidth), value[k]);
             }
-            for (size_t k = 0; k < used && light.channels; ++k) keepChannels(c, light, pointOf[k], values.data() + long(k) * light.valueWidth);
+            for (size_t k = 0; k < used && light.channels; ++k)
+                if (k == 0 || pointOf[k] != pointOf[k - 1]) // of several widths the first
+                    keepChannels(c, light, pointOf[k], values.data() + long(k) * light.valueWidth);
             for (size_t k = 0; k < used; ++k) {
                 const LightValue& v = value[k];
                 if (v.lit && !isFinite(v.Cl)) {
@@ -368,6 +391,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 for (int i : lobesOf(size_t(pointOf[k]))) {
                     LobeVertex& l = lobes[i];
                     if (l.delta || !samples(l, light)) continue;
+                    if (!spread.empty() && spread[k] != spreadBehind(c.rays[size_t(l.point)], l.kind->spread(l.params))) continue;
                     // Sides 1: from where rays of this lobe pass through the emitter they cannot meet it, and it sends nothing.
                     if (area && !light.mean && drawn[k].shape->oneSided() && l.set.sides != accel::Sides::Both &&
                         (dot(q[k].surface.n, w) >= 0) != (l.set.sides == accel::Sides::Back))
@@ -522,7 +546,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 r.lobeOrigin = p.P;
                 r.lobeBinding = l.lights && !l.elsewhere && !delta ? c.bindings[pi] : -1;
                 r.width = from.width + from.spread * length(p.P - from.origin);
-                r.spread = std::max(from.spread, l.kind->spread(l.params) * 0.5f);
+                r.spread = spreadBehind(from, l.kind->spread(l.params));
                 r.cameraSample = -1;
                 r.first = l.ownsTarget;
                 counters.depthMax = std::max(counters.depthMax, bounces);

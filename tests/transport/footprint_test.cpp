@@ -1,7 +1,7 @@
 // Footprints under transport: what a texture's filter sees after camera rays and after bounces. A checker of single texels on a large
 // wall has the mean 1/2; a lookup that is wide enough gives it in every single sample, one that is not gives 0 or 1.
 #include "display/imageio.h"
-#include "transport/harness.h"
+#include "transport/floorscene.h"
 
 using namespace alpenglow;
 using namespace alpenglow::transport;
@@ -104,6 +104,57 @@ TEST(Footprint, DiffuseBounce) {
     // Square of half side 50 at distance 100 seen by a parallel element: F = 4 / (2 pi) 2 (a / sqrt(1 + a^2)) atan(a / sqrt(1 + a^2)), a = 1/2.
     double a = .5, q = a / std::sqrt(1 + a * a), factor = 4 / (2 * kPi) * 2 * q * std::atan(q);
     expectMean(s.estimate(r, samples(20000)), .5 * factor, .02, "shape factor");
+}
+
+// A matte floor under a square emitter of half side a at height 2, whose radiance depends on how wide it is seen.
+Scene underSquare(const std::string& light, double a, const std::string& surface, bool lightOnly, bool bsdfOnly) {
+    Settings set = under(Hider::Path);
+    set.lightOnly = lightOnly;
+    set.bsdfOnly = bsdfOnly;
+    const auto corner = [&](int x, int z) { return std::to_string(a * x) + " 2 " + std::to_string(a * z) + " "; };
+    return Scene(world("AttributeBegin\nAreaLightSource \"" + light + "\" 7\nSurface \"constant\"\nColor 0 0 0\nPatch \"bilinear\" \"P\" [" + corner(-1, -1) +
+                       corner(1, -1) + corner(-1, 1) + corner(1, 1) + "]\nAttributeEnd\nIlluminate 7 1\nSurface \"" + surface + "\"\n" + kFloor),
+                 set);
+}
+void writeEmitters() {
+    writeShader("seenwide", "light seenwide() { illuminate(P) Cl = 3 * du; }\n");
+    writeShader("seenfine", "light seenfine() { illuminate(P) Cl = 3 * abs(float texture(\"" + checker() + "\", 50 * s, 50 * t) - .5); }\n");
+    writeShader("widematte", "surface widematte() { Oi = 1; Ci = diffuse(normalize(N)); }\n");
+    writeShader("wideboth", "surface wideboth() { normal n = normalize(N); Oi = 1; Ci = .5 * diffuse(n) + specular(n, vector(n), .4); }\n");
+    writeShader("widewaits", R"(surface widewaits() {
+    color c = trace(P, vector(normalize(N)), "distribution", "cosine", "samplecone", 1, "samplearealights", 1);
+    Oi = 1;
+    if (comp(c, 0) > -1) Ci = c;
+}
+)");
+    writeShader("wideloop", "surface wideloop() { normal n = normalize(N); Oi = 1; Ci = 0; illuminance(P, n, PI / 2) Ci += Cl * (normalize(L) . n); }\n");
+}
+
+// A small emitter over a point that a ray of no width finds: a ray of half angle .35 sees it 2 * .35 * 2 wide, in u over its side.
+TEST(Footprint, OfALightSample) {
+    writeEmitters();
+    const double a = .05, want = 3 * (2 * .35 * 2) / (2 * a) * (4 * a * a) / (kPi * 4);
+    for (const char* surface : {"widematte", "wideloop"})
+        EXPECT_NEAR(underSquare("seenwide", a, surface, true, false).estimate(kView, 2000).mean(), want, 1e-3 * want) << surface; // its corners: 1e-3 off
+}
+
+// Light samples and rays of the lobes estimate one function, whatever the emitter makes of its footprint; so does a loop, as diffuse().
+TEST(Footprint, EmittersLookTheSameToLightSamplesAndRays) {
+    writeEmitters();
+    for (const char* light : {"seenwide", "seenfine"}) {
+        Moments matte;
+        for (const char* surface : {"widematte", "wideboth", "widewaits"}) {
+            const Moments both = underSquare(light, 1, surface, false, false).estimate(kView, 20000);
+            const Moments samples = underSquare(light, 1, surface, true, false).estimate(kView, 20000);
+            const Moments rays = underSquare(light, 1, surface, false, true).estimate(kView, 40000);
+            if (!matte.n) matte = samples;
+            EXPECT_GT(rays.mean(), 0) << light << " " << surface;
+            for (const Moments* m : {&both, &samples})
+                EXPECT_LE(std::fabs(m->mean() - rays.mean()), kZ * std::hypot(m->se(), rays.se()) + 1e-4 * rays.mean()) << light << " " << surface;
+        }
+        const Moments loop = underSquare(light, 1, "wideloop", false, false).estimate(kView, 20000);
+        EXPECT_LE(std::fabs(loop.mean() - matte.mean()), kZ * std::hypot(loop.se(), matte.se()) + 1e-4 * matte.mean()) << light << " loop";
+    }
 }
 
 } // namespace

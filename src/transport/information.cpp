@@ -91,6 +91,10 @@ std::optional<Information> attributeOf(const WorldImpl& w, const scene::Attribut
     if (b && name == "shaderdisplacementbound:sphere") return shaderBound(*b, false);
     if (b && name == "shaderdisplacementbound:coordinatesystem") return shaderBound(*b, true);
     if (const scene::Param* set = a.value(name)) return given(set);
+    if (name == "light:units") { // what an area light gives that has not said it
+        const bool emits = a.areaLight >= 0 && size_t(a.areaLight) < w.lights_.size();
+        return words((emits ? w.lights_[size_t(a.areaLight)].mean : w.settings().hider != Hider::Path) ? "samples" : "radiance");
+    }
     return unset(name, w.settings().hider == Hider::Path);
 }
 

@@ -85,6 +85,7 @@ TEST(Attributes, Texts) {
         {"photon:globalmap", "Attribute \"photon\" \"string globalmap\" \"g.map\"\n", "g.map"},
         {"subsurface:groupname", "Attribute \"subsurface\" \"string groupname\" \"skin\"\n", "skin"},
         {"attribute:light:samplingstrategy", "Attribute \"light\" \"string samplingstrategy\" \"trace\"\n", "trace"},
+        {"light:units", "Attribute \"light\" \"string units\" \"samples\"\n", "samples"},
         {"user:word", "Attribute \"user\" \"uniform string word\" \"w\"\n", "w"}};
     std::string rib, body;
     for (const auto& r : rows) {

@@ -43,6 +43,9 @@ TEST(Information, AttributesAsTheyAreWhenUnset) {
             Scene s(world("Surface \"asks\" \"what\" \"" + std::string(r.name) + "\"\n" + kFloor), under(h));
             EXPECT_EQ(s.one(kView), Color(r.found, h == Hider::Path ? r.path : r.hidden, 0)) << r.name;
         }
+    writeShader("asksunits", "surface asksunits() { string v = \"?\"; float found = attribute(\"light:units\", v); Oi = 1; Ci = color(found, v == \"radiance\", v == \"samples\"); }\n");
+    for (Hider h : {Hider::Hidden, Hider::Path}) // what an area light would give
+        EXPECT_EQ(Scene(world(std::string("Surface \"asksunits\"\n") + kFloor), under(h)).one(kView), h == Hider::Path ? Color(1, 1, 0) : Color(1, 0, 1));
     Scene given(world(std::string("Attribute \"user\" \"uniform float nobody\" 4\nSurface \"asks\" \"what\" \"user:nobody\"\n") + kFloor), under(Hider::Hidden));
     EXPECT_EQ(given.one(kView), Color(1, 4, 0));
 }

@@ -54,8 +54,8 @@ const std::vector<NamedArgument>& namedArguments() {
           "visibility:camera", "visibility:diffuse", "visibility:specular", "visibility:transmission", "visibility:photon", "photon:estimator",
           "photon:shadingmodel", "photon:causticmap", "photon:globalmap", "dice:hair", "dice:rasterorient", "cull:backfacing", "cull:hidden",
           "derivatives:smooth", "derivatives:centered", "subsurface:scale", "subsurface:refractionindex", "subsurface:shadingrate",
-          "subsurface:groupname", "light:samples", "light:emitphotons", "light:samplingstrategy", "irradiance:shadingrate",
-          "irradiance:nsamples", "hider:composite"}}};
+          "subsurface:groupname", "light:samples", "light:emitphotons", "light:samplingstrategy", "light:units",
+          "irradiance:shadingrate", "irradiance:nsamples", "hider:composite"}}};
     return all;
 }
 

@@ -37,7 +37,8 @@ std::string crowd() {
     normal Nf = faceforward(normalize(N), I);
     color c = Cs * (.5 + .5 * noise(4 * P));
     color loop = 0;
-    illuminance(P, Nf, PI / 2) { loop += Cl * (normalize(L) . Nf); }
+    color around = 0;
+    illuminance(P, Nf, PI / 2, "light:around", around) { loop += Cl * (normalize(L) . Nf) + .1 * around; }
     float r = random();
     Oi = Os;
     Ci = Os * (c * Kd * diffuse(Nf) + .1 * loop + .05 * r + .2 * specular(Nf, -normalize(I), .1));
@@ -53,7 +54,20 @@ std::string crowd() {
         Ci = color(.1, .2, .3) * diffuse(Nf);
 }
 )");
-    std::string s = "WorldBegin\nSides 2\n"
+    // Lights that trace: a soft shadow by several rays, and what is seen around the lit point.
+    writeShader("softly", R"(light softly() {
+    point at = point "world" (-1, 2, 3);
+    illuminate(at) Cl = 2 * transmission(Ps, at, "samplecone", .1, "samples", 3) / (1 + .1 * (L . L));
+}
+)");
+    writeShader("around", R"(light around(output varying color around = 0;) {
+    illuminate(point "world" (2, 2, 4)) {
+        around = trace(Ps, vector "world" (0, 1, 0), "distribution", "uniform", "samplecone", 1, "samples", 2, "subset", "near");
+        Cl = .2 + .3 * around;
+    }
+}
+)");
+    std::string s = "WorldBegin\nSides 2\nLightSource \"softly\" 6\nLightSource \"around\" 7\n"
                     "LightSource \"pointlight\" 1 \"intensity\" 8 \"from\" [1 3 2]\nLightSource \"spotlight\" 2 \"intensity\" 9 "
                     "\"from\" [-2 3 3] \"to\" [0 0 5]\n"
                     "LightSource \"distantlight\" 3 \"intensity\" .3 \"from\" [1 1 -1] \"to\" [0 0 0]\nLightSource \"envlight\" "
@@ -63,6 +77,8 @@ std::string crowd() {
     const char* shaders[] = {
         "plastic", "busy", "waits", "matte",
         "slmaterial\" \"color diffusecolor\" [0 0 0] \"color transmissive\" [1 1 1] \"float kn\" 1.5 \"string fresnel\" \"exact"};
+    // What lights see: what asks no light, for each vertex of such a ray would ask all of them again.
+    s += "AttributeBegin\nAttribute \"grouping\" \"membership\" \"near\"\nSurface \"constant\"\nColor .2 .5 .9\nPolygon \"P\" [-3 3 4  -3 3 6  0 3 6  0 3 4]\nAttributeEnd\n";
     for (int i = 0; i < 15; ++i) {
         s += "AttributeBegin\nSurface \"" + std::string(shaders[i % 5]) + "\"\nColor [" + std::to_string(.3 + .04 * i) +
              " .5 .6]\n";

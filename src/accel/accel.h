@@ -17,7 +17,7 @@ inline constexpr uint32_t kNone = geometry::kNone;
 
 /// Kinds of rays, for Ray::mask and the shapes' visibility.
 enum Visibility : uint32_t {
-    kCamera = 1, kDiffuse = 2, kSpecular = 4, kTransmission = 8, kPhoton = 16, kShadow = 32, kAll = 0xffffffffu
+    kCamera = 1, kDiffuse = 2, kSpecular = 4, kTransmission = 8, kAll = 0xffffffffu
 };
 
 /// From where a ray meets surfaces with Sides 1; those with two sides it meets from both.

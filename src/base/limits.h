@@ -27,6 +27,7 @@ inline constexpr int kTextureTaps = 32;                        ///< probes of on
 inline constexpr float kDisplacementBound = 1e6f;
 inline constexpr int kPathDepth = 10'000;                      ///< hard cap, counted when hit: it is a bias
 inline constexpr size_t kFrameBytesPerThread = 64u << 20;      ///< suspended kernel frames (design decision 2)
+inline constexpr size_t kRequestBytes = size_t(256) << 20;     ///< of rays that a kernel that does not wait asks for in one batch; then the frame is given up
 inline constexpr int kLightsSampled = 8;                       ///< lights sampled at a vertex under path; with more, about this many
 inline constexpr int kCategoryDepth = 32;                      ///< nesting of a category expression of lights
 inline constexpr size_t kLightCache = 256;                     ///< light samples that one strip of points keeps for its next light loop

@@ -182,6 +182,8 @@ public:
     /// Forgets all targets; only when nothing is pending.
     void reset() { targets_.clear(); freeTargets_.clear(); strips_.clear(); freeStrips_.clear(); queues_.clear(); queued_ = 0; ready_.clear(); frameBytes_ = 0; }
 
+    size_t frameBytes() const { return frameBytes_; } ///< that wait now
+    size_t frameLimit() const { return frameLimit_; }
     size_t peakFrameBytes() const { return peakFrameBytes_; }
     size_t largestSlice() const { return largestSlice_; }
     uint64_t suspensions() const { return suspensions_; }

@@ -75,6 +75,7 @@ void WorldImpl::displaceGrid(const SurfaceBinding& b, const geometry::Shape& sha
     c.batch = std::make_shared<shading::Batch>(bound.kernel, *bound.plan, c.points, views, *this);
     engine.bindCall(c.batch->call(), c);
     bound.kernel->run(&c.batch->call());
+    c.ran();
     int out = c.batch->output("P");
     for (size_t i = 0; out >= 0 && i < grid.P.size(); ++i) grid.P[i] = c.batch->color(out, int(i));
 }
@@ -96,6 +97,7 @@ std::shared_ptr<BatchContext> Engine::displace(const BatchContext& c) {
     d->batch->assign(bound.kernel, *bound.plan, d->points, {&view, 1}, {}, *world_);
     bindCall(d->batch->call(), *d);
     bound.kernel->run(&d->batch->call());
+    d->ran();
     return d;
 }
 

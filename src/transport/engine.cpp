@@ -44,12 +44,7 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
         rays[i].sides = r.set.sides;
         rays[i].only = r.set.only;
         rays[i].level = r.level;
-        switch (r.type) {
-        case RayType::Camera: ++counters.camera; break;
-        case RayType::Diffuse: ++counters.diffuse; break;
-        case RayType::Specular: ++counters.specular; break;
-        default: ++counters.transmission;
-        }
+        ++raysOf(r.type);
     }
     world_->accel_->intersect(rays, hits);
 
@@ -59,8 +54,7 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
     std::vector<std::shared_ptr<BatchContext>> groups(shaded * (world_->primitiveHit_ ? 2 : 1));
     std::vector<int> sizes(groups.size());
     const auto groupOf = [&](const SurfaceBinding& b, const PathRay& r) { return size_t(b.group) + (groups.size() > shaded && b.asPrimitive(r.set.mode, r.type) ? shaded : 0); };
-    for (size_t i = 0; i < n; ++i)
-        if (hits[i].valid()) ++sizes[groupOf(world_->bindings_[size_t(world_->bindingOf_[hits[i].shape])], slice[i].payload)];
+    const std::vector<char> later = putBack(slice, sizes, groupOf, sched);
     for (size_t g = 0; g < groups.size(); ++g) {
         if (!sizes[g]) continue;
         auto& c = groups[g] = takeContext();
@@ -74,6 +68,7 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
     std::vector<const Sched::Task*> missed;
     for (size_t i = 0; i < n; ++i) {
         if (!hits[i].valid()) { missed.push_back(&slice[i]); continue; }
+        if (later[i]) continue;
         const PathRay& r = slice[i].payload;
         int binding = world_->bindingOf_[hits[i].shape];
         const SurfaceBinding& b = world_->bindings_[size_t(binding)];
@@ -121,6 +116,47 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
     }
 }
 
+uint64_t& Engine::raysOf(RayType t) {
+    switch (t) {
+    case RayType::Camera: return counters.camera;
+    case RayType::Diffuse: return counters.diffuse;
+    case RayType::Specular: return counters.specular;
+    default: return counters.transmission;
+    }
+}
+
+std::vector<char> Engine::putBack(std::span<const Sched::Task> slice, std::span<int> sizes, const GroupOf& groupOf, Sched& sched) {
+    std::vector<int> room(sizes.size(), -1); // by group; -1: not asked yet
+    std::vector<char> later(slice.size());
+    for (size_t i = 0; i < slice.size(); ++i) {
+        if (!hits_[i].valid()) continue;
+        const PathRay& r = slice[i].payload;
+        const SurfaceBinding& b = world_->bindings_[size_t(world_->bindingOf_[hits_[i].shape])];
+        const size_t g = groupOf(b, r);
+        const BoundKernel& k = world_->primitiveHit_ && b.asPrimitive(r.set.mode, r.type) ? world_->primitiveHit_ : b.surfaceS;
+        if (k.kernel->facts().suspends) {
+            if (room[g] < 0) room[g] = roomFor(*k.kernel, &k == &b.surfaceS ? b.surfaceV.kernel.get() : nullptr, sched);
+            if (sizes[g] >= room[g]) {
+                later[i] = 1;
+                --raysOf(r.type);
+                sched.spawn(slice[i]);
+                continue;
+            }
+        }
+        ++sizes[g];
+    }
+    return later;
+}
+
+int Engine::roomFor(const rsl::CompiledKernel& k, const rsl::CompiledKernel* other, const Sched& sched) const {
+    size_t frame = 0;
+    for (const rsl::CompiledKernel* one : {&k, other})
+        if (const auto known = frameOf_.find(one); known != frameOf_.end()) frame = std::max(frame, known->second);
+    if (frame == 0) return k.lanes(); // the first strip tells
+    const size_t most = sched.frameLimit() / 4, left = most - std::min(most, sched.frameBytes());
+    return int(std::clamp<size_t>(left / frame, 1, size_t(limits::kSliceRays))) * k.lanes();
+}
+
 std::shared_ptr<BatchContext> Engine::takeContext() {
     if (pool_.empty()) return std::make_shared<BatchContext>();
     auto c = std::move(pool_.back());
@@ -137,6 +173,8 @@ void Engine::giveBack(std::shared_ptr<BatchContext> c) {
     c->targets.clear();
     c->bindings.clear();
     c->emits.clear();
+    c->emitted = 0;
+    c->failure = nullptr;
     c->arena.clear();
     c->haze.clear();
     c->clear.clear();

@@ -5,8 +5,10 @@
 #include "shading/scheduler.h"
 #include "transport/lightloop.h"
 #include <deque>
+#include <exception>
 #include <functional>
 #include <set>
+#include <utility>
 
 namespace alpenglow::transport {
 
@@ -154,6 +156,11 @@ struct BatchContext {
     float lightVisibilityDistance = 0;
     bool forShadow = false;                    ///< the kernel tells its opacity to shadow rays
     std::vector<float> lightDistance;          ///< by lane: to the light sample; 1e38 for distant lights
+    std::exception_ptr failure;                ///< of a callback while the kernel ran: exceptions cannot pass generated code
+    /// After each run of the kernel: throws what a callback threw.
+    void ran() { if (failure) std::rethrow_exception(std::exchange(failure, nullptr)); }
+    size_t emitted = 0;                        ///< requests of all points so far
+    size_t frame = 0;                          ///< bytes of the frame of the strip that was started last
     // suspended request of the strip that runs now
     int requestSite = -1, requestFirst = 0, requestLanes = 0;
     uint64_t requestMask = 0;
@@ -164,6 +171,7 @@ struct BatchContext {
 class Engine final : public Sched::RayService {
 public:
     Engine(std::shared_ptr<const WorldImpl> w, Diagnostics& d) : world_(std::move(w)), diagnostics_(d), seed_(world_->settings_.seed) {}
+    ~Engine() override { inner_.reset(), sched_.reset(); } // strips of a frame that was given up need their kernels
     bool trace(std::span<const CameraRay>, std::span<SampleResult>, const StopFlag* stop);
     void follow(std::span<const Sched::Task> slice, Sched&) override;
     Counters counters;
@@ -340,6 +348,15 @@ private:
     render::SeedKey seed_;
     std::vector<float> chances_;
     std::vector<Color> transmitted_;
+    uint64_t& raysOf(RayType); ///< the counter of such rays
+    using GroupOf = std::function<size_t(const SurfaceBinding&, const PathRay&)>;
+    /// Of a kernel that waits no more points are shaded than its frames have room for: the other rays of the slice are followed again, later.
+    /// Writes how many points of each group are shaded now; 1 for each ray that was put back. hits_ are those of the slice.
+    std::vector<char> putBack(std::span<const Sched::Task> slice, std::span<int> sizes, const GroupOf&, Sched&);
+    /// Points of a waiting kernel that may be shaded now, so that its frames stay within a quarter of the limit; at least one strip.
+    /// `other`: the same shader for points of several surfaces, or null; which of the two runs is not known yet.
+    int roomFor(const rsl::CompiledKernel&, const rsl::CompiledKernel* other, const Sched&) const;
+    std::unordered_map<const rsl::CompiledKernel*, size_t> frameOf_; ///< bytes of a strip's frame, of kernels that were started
     std::set<const void*> tamed_, tamedClear_; ///< shaders that were named because they reflect more than they receive; with what comes through
 };
 

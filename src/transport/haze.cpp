@@ -22,6 +22,7 @@ void Engine::haze(const Medium& medium, const SurfaceBinding& binding, std::vect
         c.batch = std::make_shared<shading::Batch>(kernel, *medium.kernel.plan, c.points, views, *world_);
         bindCall(c.batch->call(), c);
         kernel->run(&c.batch->call());
+        c.ran();
         int ci = c.batch->plan().Ci, oi = c.batch->plan().Oi;
         for (size_t i = 0; i < c.points.size(); ++i)
             take(i, ci >= 0 ? c.batch->color(ci, int(i)) : c.points[i].Ci, oi >= 0 ? c.batch->color(oi, int(i)) : c.points[i].Oi,

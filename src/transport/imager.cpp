@@ -50,6 +50,7 @@ bool WorldImpl::runImager(int count, const float* x, const float* y, float* r, f
         c.batch = std::make_shared<shading::Batch>(k.kernel, *k.plan, c.points, views, *this);
         engine.bindCall(c.batch->call(), c);
         k.kernel->run(&c.batch->call());
+        c.ran();
         const int ci = c.batch->output("Ci"), ai = c.batch->output("alpha"), oi = c.batch->output("Oi");
         for (int p = 0; p < n; ++p) {
             int at = begin + p;

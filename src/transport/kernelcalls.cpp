@@ -1,5 +1,6 @@
 // What generated code calls back while a kernel runs: services and requests find their engine through KernelCall::user.
 #include "transport/engine.h"
+#include <bit>
 
 namespace alpenglow::transport {
 
@@ -13,8 +14,35 @@ bool isRequest(SiteKind k, bool path) {
 // The callbacks of generated code: C functions that find their engine through KernelCall::user.
 BatchContext& contextOf(rsl::KernelCall* c) { return *static_cast<BatchContext*>(c->user); }
 
-void onService(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
+/// Exceptions cannot pass generated code: what fails in a callback is kept, the kernel is made to end its loops, and who ran it throws
+/// again (BatchContext::ran). Nothing more is done for it meanwhile.
+constexpr StopFlag kEnd{1};
+void failed(rsl::KernelCall* call) noexcept {
     BatchContext& c = contextOf(call);
+    if (!c.failure) c.failure = std::current_exception();
+    call->stop = &kEnd;
+}
+
+/// Room for another request of a kernel that does not wait. Throws where there is none.
+void takeRoom(BatchContext& c, const SiteInfo& s, size_t rows, int lanes, uint64_t mask) {
+    const size_t held = c.arena.size() * sizeof(float) + c.emits.size() * sizeof(EmitRecord) + c.emitted * sizeof(LobeVertex);
+    c.emitted += size_t(std::popcount(mask));
+    if (held + rows * size_t(lanes) * sizeof(float) <= limits::kRequestBytes) return;
+    const auto& files = c.bound->kernel->files();
+    const auto& at = s.site->place;
+    const SourcePlace place{at.file < int(files.size()) ? files[size_t(at.file)] : "", at.line, at.column};
+    if (c.engine)
+        c.engine->diagnostics().reportOnce("requests:" + place.file + std::to_string(place.line),
+                                           {Severity::Error, Rie::Limit, place,
+                                            "a shader asks for more rays at its points than fit into " +
+                                                std::to_string(limits::kRequestBytes >> 20) + " MiB",
+                                            "a loop around such a call needs fewer turns", {}});
+    throw std::bad_alloc();
+}
+
+void serve(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
+    BatchContext& c = contextOf(call);
+    if (c.failure) return;
     if (site == rsl::kSiteMark) {
         for (int i = 0; i < lanes; ++i) out[i] = float(c.emits.size());
         return;
@@ -44,6 +72,7 @@ void onService(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask
             c.requestOut = out;
             return;
         }
+        takeRoom(c, s, rows + 3, lanes, mask);
         EmitRecord e{site, first, lanes, mask, c.arena.size()};
         c.arena.insert(c.arena.end(), in, in + (rows + 3) * lanes);
         if (s.kind == SiteKind::LightVisibility) // the row of the light's index is replaced by the distance, which only the loop knows
@@ -54,19 +83,35 @@ void onService(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask
     }
     c.engine->service(c, site, first, mask, lanes, in, out);
 }
+void onService(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
+    try {
+        serve(call, site, first, mask, lanes, in, out);
+    } catch (...) { failed(call); }
+}
 int32_t onLightBegin(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* rows) {
     BatchContext& c = contextOf(call);
-    return c.engine->lightBegin(c, site, first, mask, lanes, rows);
+    try {
+        if (!c.failure) return c.engine->lightBegin(c, site, first, mask, lanes, rows);
+    } catch (...) { failed(call); }
+    return 0;
 }
-uint64_t onLightFetch(rsl::KernelCall* call, int32_t site, int32_t light, int32_t first, uint64_t mask, int32_t lanes, float* out) {
+uint64_t onLightFetch(rsl::KernelCall* call, int32_t, int32_t light, int32_t first, uint64_t mask, int32_t lanes, float* out) {
     BatchContext& c = contextOf(call);
-    return c.engine->lightFetch(c, light, first, mask, lanes, out);
+    try {
+        if (!c.failure) return c.engine->lightFetch(c, light, first, mask, lanes, out);
+    } catch (...) { failed(call); }
+    return 0;
 }
 void onLightEnd(rsl::KernelCall* call, int32_t, int32_t first, int32_t lanes) {
     BatchContext& c = contextOf(call);
-    c.engine->lightEnd(c, first, lanes);
+    try {
+        if (!c.failure) c.engine->lightEnd(c, first, lanes);
+    } catch (...) { failed(call); }
 }
-void* onAlloc(rsl::KernelCall*, uint64_t bytes) { return ::operator new(bytes, std::align_val_t(64), std::nothrow); }
+void* onAlloc(rsl::KernelCall* call, uint64_t bytes) {
+    contextOf(call).frame = bytes;
+    return ::operator new(bytes, std::align_val_t(64), std::nothrow);
+}
 void onRelease(rsl::KernelCall*, void* p, uint64_t) { ::operator delete(p, std::align_val_t(64)); }
 
 constexpr StopFlag kGo;

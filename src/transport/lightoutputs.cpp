@@ -148,6 +148,7 @@ std::vector<std::shared_ptr<BatchContext>> Engine::asides(const BatchContext& c,
         if (b.moveS) moveToFacets(*run);
         if (!bound.kernel->facts().suspends) {
             bound.kernel->run(&run->batch->call());
+            run->ran();
             finishAside(*run, 0, int(of.size()), sched);
         }
         all.push_back(std::move(run));

@@ -113,7 +113,10 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
         std::vector<uint32_t> asked(bound.sites.size() * size_t(c->batch->size()));
         for (int first = 0; first < c->batch->size(); first += k.lanes()) {
             void* h = k.start(&c->batch->call(), first);
-            while (h && !k.finished(h)) {
+            if (!h) throw std::bad_alloc();
+            const std::unique_ptr<void, std::function<void(void*)>> frame(h, [&](void* f) { k.destroy(f); });
+            c->ran();
+            while (!k.finished(h)) {
                 const SiteInfo& s = bound.sites[c->requestSite];
                 for (int lane = 0; lane < c->requestLanes; ++lane) {
                     if (!(c->requestMask >> lane & 1) || first + lane >= int(c->points.size())) continue;
@@ -131,11 +134,12 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
                     put("hitnormal", 3, t.normal);
                 }
                 k.resume(h);
+                c->ran();
             }
-            if (h) k.destroy(h);
         }
     } else {
         k.run(&c->batch->call());
+        c->ran();
     }
     const auto& b = *c->batch;
     queries.swap(c->points);

@@ -25,7 +25,7 @@ struct LobeParams {
     Vec3 axis;            ///< normal, mirror or cone direction; unit
     Vec3 wo;              ///< toward the viewer; unit
     Vec3 horizon;         ///< normal of the plane that cuts the lobe; used when hasHorizon
-    float a = 0, b = 0;   ///< roughness, exponent or cone half angle; second axis
+    float a = 0;          ///< roughness, exponent or cone half angle
     bool hasHorizon = false;
     std::shared_ptr<const DistributionParams> more; ///< kinds with `distribution` need it; null for others
 };

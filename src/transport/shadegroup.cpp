@@ -8,10 +8,12 @@ namespace alpenglow::transport {
 /// A strip of a suspending kernel while it waits.
 class KernelStrip final : public Sched::Strip {
 public:
-    KernelStrip(std::shared_ptr<BatchContext> c, void* handle, int first, int depth) : c_(std::move(c)), handle_(handle), first_(first), depth_(depth) {}
+    KernelStrip(std::shared_ptr<BatchContext> c, void* handle, int first, int depth)
+        : c_(std::move(c)), handle_(handle), first_(first), depth_(depth), bytes_(c_->frame) {}
     ~KernelStrip() override { if (handle_) c_->bound->kernel->destroy(handle_); }
     int depth() const override { return depth_; }
-    size_t frameBytes() const override { return 4096 + size_t(c_->bound->kernel->lanes()) * 256; }
+    /// Its frame, and about what its points take.
+    size_t frameBytes() const override { return bytes_ + 4096 + size_t(c_->bound->kernel->lanes()) * 256; }
 
     bool resume(Sched& s, std::span<const shading::TargetValue> results) override {
         const SiteInfo& site = c_->bound->sites[site_];
@@ -38,6 +40,7 @@ public:
         for (TargetId id : ids_) c_->engine->traceSums_.erase(id);
         ids_.clear();
         c_->bound->kernel->resume(handle_);
+        c_->ran();
         return advance(s, s.takeResuming());
     }
 
@@ -98,6 +101,7 @@ private:
     std::shared_ptr<BatchContext> c_;
     void* handle_;
     int first_, depth_;
+    size_t bytes_;
     int site_ = 0, lanes_ = 0;
     std::vector<uint32_t> occurrences_;
     std::array<uint32_t, 64> asked_{}; ///< rays that a lane has asked for so far
@@ -216,7 +220,9 @@ void Engine::startStrips(const std::shared_ptr<BatchContext>& c, Sched& sched) {
             for (int i = first; i < std::min(first + kernel.lanes(), n); ++i) sched.release(c->targets[i]);
             continue;
         }
+        frameOf_[&kernel] = std::max<size_t>(c->frame, 1);
         auto strip = std::make_unique<KernelStrip>(c, h, first, c->rays[first].bounces + c->rays[first].layers);
+        c->ran();
         KernelStrip* s = strip.get();
         s->advance(sched, std::move(strip));
     }
@@ -287,6 +293,7 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
         return;
     }
     kernel.run(&c->batch->call());
+    c->ran();
 
     // Affine pairs by point, in order of emission. Atmosphere scales them.
     const bool media = !world_->media_.empty();

@@ -83,6 +83,7 @@ void Engine::opacities(std::span<const OpacityQuery> met, std::span<Color> out) 
     if (b.displacementTells && (c.displaced = displace(c))) c.batch->tell(*c.displaced->batch);
     bindCall(c.batch->call(), c);
     c.bound->kernel->run(&c.batch->call());
+    c.ran();
     ++counters.batches;
     counters.points += met.size();
     for (size_t i = 0; i < met.size(); ++i) {
@@ -110,7 +111,7 @@ void Engine::transmittances(std::span<const ShadowRay> rays, std::span<Color> ou
     std::vector<MediumPart> parts;
     std::vector<Going> now, next;
     std::vector<OpacityQuery> met;
-    std::vector<size_t> order, metOf; ///< metOf[i]: the ray in `next` that query i belongs to
+    std::vector<size_t> order;
     for (size_t i = 0; i < rays.size(); ++i) {
         out[i] = Color(1);
         now.push_back({shadowRay(rays[i]), i, 0, rays[i].media, rays[i].origin});

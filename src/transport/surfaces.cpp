@@ -505,6 +505,7 @@ Opacity WorldImpl::opacityOf(const SurfaceBinding& b, const geometry::Shape& sha
     c.batch = std::make_shared<shading::Batch>(k.kernel, *k.plan, c.points, std::span(&view, 1), *this);
     engine.bindCall(c.batch->call(), c);
     k.kernel->run(&c.batch->call());
+    c.ran();
     Color o = c.batch->color(k.plan->Oi, 0);
     for (int i = 0; i < 3; ++i) result.constant[i] = std::isfinite(o[i]) ? std::clamp(o[i], 0.f, 1.f) : 1;
     return result;

@@ -71,4 +71,16 @@ TEST(AttackLights, WhatAnAreaLightAsksAboutTheSurface) {
     EXPECT_NEAR(m.mean(), 4, .2) << s.messages();
 }
 
+// 30,000 lights took 2.3 GB: each kept the list of those before it.
+TEST(AttackLights, ManyLightsKeepNoListsOfEachOther) {
+    std::string rib = "WorldBegin\n";
+    for (int i = 0; i < 200; ++i) rib += "LightSource \"pointlight\" \"l" + std::to_string(i) + "\"\n";
+    Scene s(rib + "Illuminate \"l7\" 0\nSphere 1 -1 1 360\nWorldEnd\n");
+    ASSERT_TRUE(s.frame);
+    ASSERT_EQ(s.frame->lights.size(), 200u);
+    for (const scene::Light& l : s.frame->lights) EXPECT_TRUE(l.attributes->lights.empty());
+    ASSERT_EQ(s.frame->primitives.size(), 1u);
+    EXPECT_EQ(s.frame->primitives[0]->attributes->lights.size(), 199u);
+}
+
 } // namespace

@@ -35,14 +35,14 @@ std::vector<Case> cases() {
                 for (float e : {4.f, 20.f, 80.f}) {
                     all.push_back({"specular", {n, wo, {}, e}});
                     all.push_back({"phong", {n, wo, {}, e}});
-                    all.push_back({"slphong", {mirror, wo, n, e, 0, true}});
+                    all.push_back({"slphong", {mirror, wo, n, e, true}});
                 }
                 all.push_back({"slphong", {mirror, wo, {}, 30}});
                 all.push_back({"diffuse", {n, wo, {}}});
                 for (float cone : {0.2f, 1.f, float(kPi) / 2}) {
                     all.push_back({"uniform", {mirror, wo, {}, cone}});
                     all.push_back({"cosine", {n, wo, {}, cone}});
-                    all.push_back({"uniform", {mirror, wo, n, cone, 0, true}});
+                    all.push_back({"uniform", {mirror, wo, n, cone, true}});
                 }
             }
     return all;

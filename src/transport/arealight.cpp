@@ -62,11 +62,15 @@ float Emitter::areaPdf(const Entry& e, const geometry::SurfacePoint& p, const Ve
     return float(e.share * e.shape->sampleDensity(p) * d2 / cosine);
 }
 
-bool Emitter::sample(const Vec3& from, Vec2 u, float choose, Sample& out, geometry::SurfacePoint& point) const {
-    if (entries_.empty()) return false;
+const Emitter::Entry& Emitter::entryAt(float choose) const {
     size_t i = 0;
     while (i + 1 < entries_.size() && choose >= entries_[i].cumulative) ++i;
-    const Entry& e = entries_[i];
+    return entries_[i];
+}
+
+bool Emitter::sample(const Vec3& from, Vec2 u, float choose, Sample& out, geometry::SurfacePoint& point) const {
+    if (entries_.empty()) return false;
+    const Entry& e = entryAt(choose);
     out.shape = e.shape;
     out.visibility = e.visibility;
     if (e.sphere) {
@@ -100,9 +104,7 @@ bool Emitter::sample(const Vec3& from, Vec2 u, float choose, Sample& out, geomet
 
 bool Emitter::sampleSurface(const Vec3& from, Vec2 u, float choose, Sample& out, geometry::SurfacePoint& point) const {
     if (entries_.empty()) return false;
-    size_t i = 0;
-    while (i + 1 < entries_.size() && choose >= entries_[i].cumulative) ++i;
-    const Entry& e = entries_[i];
+    const Entry& e = entryAt(choose);
     out.shape = e.shape;
     out.visibility = e.visibility;
     e.shape->sampleArea(u.x, u.y, point);

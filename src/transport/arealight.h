@@ -44,6 +44,8 @@ private:
         float radius = 0;
         uint32_t visibility = ~0u;
     };
+    /// The shape that a number in [0, 1) chooses, by their shares. There is at least one.
+    const Entry& entryAt(float choose) const;
     float areaPdf(const Entry&, const geometry::SurfacePoint&, const Vec3& from) const;
     std::vector<Entry> entries_;
     double area_ = 0;

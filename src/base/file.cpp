@@ -66,8 +66,8 @@ bool hidden(const std::string& s) {
     return false;
 }
 
-/// Whether a scene may replace the file that is there: one of ours or of our kind, by its first bytes, or an empty one. Scenes, shaders,
-/// programs and notes are none.
+/// Whether a scene may replace the file that is there: one of ours or of our kind, by its first bytes, or an empty one. Scenes,
+/// shaders, programs and notes are none.
 bool replaceable(const fs::path& p) {
     using namespace std::string_view_literals;
     constexpr std::string_view kKnown[] = {
@@ -103,7 +103,8 @@ std::string machineName() {
     return text;
 }
 
-/// Removes temporaries that killed renders left in a folder: those of a process of this machine that is gone, and any of a day ago.
+/// Removes temporaries that killed renders left in a folder: those of a process of this machine that is gone, and any of a day
+/// ago.
 void removeAbandoned(const fs::path& dir) {
     constexpr auto kOld = std::chrono::hours(24);
     std::error_code e;
@@ -191,7 +192,8 @@ std::optional<std::string> resolveOutputPath(const std::string& name, const Outp
         return {};
     }
     if (!replaceable(path)) {
-        diags.report(Severity::Error, Rie::NoFile, place, "\"" + path + "\" is there and is no picture; a scene may not replace it",
+        diags.report(Severity::Error, Rie::NoFile, place,
+                     "\"" + path + "\" is there and is no picture; a scene may not replace it",
                      "choose another name, or permit it by --allow-write");
         return {};
     }
@@ -410,7 +412,8 @@ ReadPolicy readPolicyOf(const std::string& sceneFolder, bool anywhere) {
     std::error_code e;
     fs::path folder = fs::absolute(sceneFolder.empty() ? "." : sceneFolder, e).lexically_normal();
     if (!folder.has_filename()) folder = folder.parent_path();
-    if (const fs::path holder = folder.parent_path(); !e && holder != holder.root_path()) policy.folders.push_back(holder.string());
+    if (const fs::path holder = folder.parent_path(); !e && holder != holder.root_path())
+        policy.folders.push_back(holder.string());
     return policy;
 }
 
@@ -419,7 +422,8 @@ Diagnostic outsideMessage(const std::string& what, const std::string& name, cons
     d.code = Rie::NoFile;
     d.place = place;
     d.message = what + " \"" + name + "\" is not read: it lies outside the folders that a scene may read";
-    d.hint = "--searchpath " + fs::path(path).parent_path().lexically_normal().string() + " adds its folder, --allow-read permits any";
+    d.hint =
+        "--searchpath " + fs::path(path).parent_path().lexically_normal().string() + " adds its folder, --allow-read permits any";
     return d;
 }
 

@@ -19,8 +19,8 @@ struct OutputPolicy {
 
 /// The path that a file called `name` will be written to. Without allowWrite a name that is absolute (also "C:\x" and
 /// "\\host\x"), has a ".." component, or leads out of the root through a symbolic link, becomes its base name below the root;
-/// the refusal is reported once per name. Hidden names (".bashrc", ".git/config") and files that are there and are no pictures, maps or part files
-/// are refused. Nothing: the name is unusable, and an error was reported.
+/// the refusal is reported once per name. Hidden names (".bashrc", ".git/config") and files that are there and are no pictures,
+/// maps or part files are refused. Nothing: the name is unusable, and an error was reported.
 std::optional<std::string> resolveOutputPath(const std::string& name, const OutputPolicy&, Diagnostics&, const SourcePlace& = {});
 
 /// A file under a temporary name in the directory of its target, renamed to it when whole. Until commit() succeeds the old

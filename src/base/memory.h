@@ -6,8 +6,8 @@
 
 namespace alpenglow {
 
-/// Bytes of memory that this process can have: the machine's, or less where a control group (a container, a batch system) bounds it.
-/// 0: not known.
+/// Bytes of memory that this process can have: the machine's, or less where a control group (a container, a batch system) bounds
+/// it. 0: not known.
 size_t machineMemory();
 
 /// "512M", "4G", "1.5G", "300000K" or bytes; powers of 1024. Nothing: no size, or none above zero.

@@ -5,9 +5,9 @@
 
 namespace alpenglow {
 
-/// Appends the character that begins at byte `at` of `text` to `out` and returns how many bytes it has (at least 1; `at` must be less than the
-/// size). A control character other than tab and newline (below 32, 127, and 128 to 159, as UTF-8 or as bytes by themselves) becomes "\x1b" of
-/// each of its bytes in hexadecimal; all else stays as it is.
+/// Appends the character that begins at byte `at` of `text` to `out` and returns how many bytes it has (at least 1; `at` must be
+/// less than the size). A control character other than tab and newline (below 32, 127, and 128 to 159, as UTF-8 or as bytes by
+/// themselves) becomes "\x1b" of each of its bytes in hexadecimal; all else stays as it is.
 size_t appendPrintable(std::string_view text, size_t at, std::string& out);
 
 /// The whole text so.

@@ -5,8 +5,8 @@
 
 namespace alpenglow {
 
-/// 0: go on; anything else: stop soon. Loads and stores are relaxed: a flag carries nothing but itself. Kernels read the four bytes at
-/// its address, and a signal handler may set it (it is free of locks).
+/// 0: go on; anything else: stop soon. Loads and stores are relaxed: a flag carries nothing but itself. Kernels read the four
+/// bytes at its address, and a signal handler may set it (it is free of locks).
 class StopFlag {
 public:
     constexpr StopFlag(int32_t v = 0) : value_(v) {}

@@ -24,7 +24,8 @@ void addEval(CLI::App& app, int* status) {
     c->add_flag("--allow-exec", a->allowExec, "Let the shader load plug-ins");
     c->footer(
         "The point: u=v=s=t=0.5, P=(0,0,0), N=(0,0,1), I=(0,0,1), Cs=Os=1, du=dv=1. Numbers are printed as %.7g, separated by\n"
-        "spaces, a string as it is. Maps are looked for in the current folder; there are no lights and nothing for rays to meet.\n\nExamples:\n  alpenglow eval 'noise(P + 1.5)'\n"
+        "spaces, a string as it is. Maps are looked for in the current folder; there are no lights and nothing for rays to "
+        "meet.\n\nExamples:\n  alpenglow eval 'noise(P + 1.5)'\n"
         "  alpenglow eval --setup 'color c = (1, .5, 0);' 'ctransform(\"hsv\", c)'");
     c->callback([a, status] {
         Diagnostics diags(printer());
@@ -39,12 +40,12 @@ void addEval(CLI::App& app, int* status) {
         transport::WithoutScene services({"."}, diags);
         const Vec3 point;
         services.setPoints({0, 0, -1}, {&point, 1});
-        const auto answer = [&](const rsl::CompiledKernel& k, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
-            return services.answer(k, site, first, mask, lanes, in, out);
-        };
+        const auto answer = [&](const rsl::CompiledKernel& k, int32_t site, int32_t first, uint64_t mask, int32_t lanes,
+                                const float* in, float* out) { return services.answer(k, site, first, mask, lanes, in, out); };
         rsl::Evaluation e = rsl::evaluate(compiler, a->setup, a->expression, options, diags, answer);
         std::fputs(printable(e.printed).c_str(), stdout);
-        if (e.ok && e.type.base != rsl::Base::Void) std::printf("%s\n", (isatty(STDOUT_FILENO) ? printable(e.text) : e.text).c_str());
+        if (e.ok && e.type.base != rsl::Base::Void)
+            std::printf("%s\n", (isatty(STDOUT_FILENO) ? printable(e.text) : e.text).c_str());
         *status = e.ok && diags.errors() == 0 ? kDone : kDoneWithErrors;
     });
 }

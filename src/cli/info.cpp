@@ -32,8 +32,8 @@ int shadeops(const std::string& name, bool json) {
         std::vector<std::string> names;
         for (const auto& o : rsl::shadeops()) names.push_back(o.name);
         std::string near = nearestName(name, names);
-        std::fprintf(stderr, "alpenglow: there is no shadeop \"%s\"%s%s\n", printable(name).c_str(), near.empty() ? "" : "; did you mean ",
-                     near.c_str());
+        std::fprintf(stderr, "alpenglow: there is no shadeop \"%s\"%s%s\n", printable(name).c_str(),
+                     near.empty() ? "" : "; did you mean ", near.c_str());
         return kDoneWithErrors;
     }
     if (json) std::printf("%s\n", manualJson(*s).dump(2).c_str());

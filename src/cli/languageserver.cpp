@@ -15,7 +15,8 @@ using Json = nlohmann::json;
 namespace {
 
 // Of JSON-RPC and of the protocol.
-constexpr int kInvalidRequest = -32600, kMethodNotFound = -32601, kInvalidParams = -32602, kInternalError = -32603, kNotInitialized = -32002;
+constexpr int kInvalidRequest = -32600, kMethodNotFound = -32601, kInvalidParams = -32602, kInternalError = -32603,
+              kNotInitialized = -32002;
 
 /// A wrong shape of parameters; becomes an error of the request.
 struct BadParams {};

@@ -58,7 +58,8 @@ std::vector<std::string> normalise(int argc, char** argv, const CLI::App& app) {
 bool outputArrived() {
     errno = 0;
     const bool fine = std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good();
-    if (!fine && errno != EPIPE) std::fprintf(stderr, "alpenglow: cannot write standard output: %s\n", std::strerror(errno ? errno : EIO));
+    if (!fine && errno != EPIPE)
+        std::fprintf(stderr, "alpenglow: cannot write standard output: %s\n", std::strerror(errno ? errno : EIO));
     return fine;
 }
 

@@ -149,7 +149,8 @@ std::vector<int64_t> timesOf(const std::vector<std::string>& files) {
 }
 
 int renderAll(const Arguments& a) {
-    const MemoryLimit limit(a.settings.memoryLimit, a.settings.threads > 0 ? a.settings.threads : int(std::thread::hardware_concurrency()));
+    const MemoryLimit limit(a.settings.memoryLimit,
+                            a.settings.threads > 0 ? a.settings.threads : int(std::thread::hardware_concurrency()));
     const StopFlag* stop = watchInterrupts();
     if (!a.watch) return renderOnce(a, stop);
     while (true) {
@@ -242,9 +243,10 @@ void addRender(CLI::App& app, int* status) {
         ->check(CLI::IsMember({4, 8, 16}))
         ->type_name("N")
         ->group("Machine");
-    c->add_option("--memory-limit", a->memory,
-                  "End with status 4 rather than take more memory than SIZE, for example 800M or 4G; nine tenths of the machine's when "
-                  "not given")
+    c->add_option(
+         "--memory-limit", a->memory,
+         "End with status 4 rather than take more memory than SIZE, for example 800M or 4G; nine tenths of the machine's when "
+         "not given")
         ->type_name("SIZE")
         ->group("Machine");
     c->add_option("--checkpoint", s.checkpoint, "path: keep the samples so far in FILE, every half minute and at the end")
@@ -268,9 +270,11 @@ void addRender(CLI::App& app, int* status) {
         ->allow_extra_args(false)
         ->group("Input");
     c->add_flag("--allow-exec", s.allowExec, "Let the scene run programs and load plug-ins")->group("Input");
-    c->add_flag("--allow-read", s.allowRead, "Let the scene read maps and archives anywhere, not only below its folders and --searchpath")
+    c->add_flag("--allow-read", s.allowRead,
+                "Let the scene read maps and archives anywhere, not only below its folders and --searchpath")
         ->group("Input");
-    c->add_flag("--allow-write", s.allowWrite, "Let the scene write outside the current folder, hidden files, and over what is no picture")
+    c->add_flag("--allow-write", s.allowWrite,
+                "Let the scene write outside the current folder, hidden files, and over what is no picture")
         ->group("Input");
 
     c->add_option("--progress", a->progress, "auto, bar, plain or none")

@@ -72,7 +72,8 @@ std::optional<Image> decodeImage(std::span<const uint8_t> b, const std::string& 
     } catch (const std::bad_alloc&) { return ctx.refuse("out of memory", Rie::NoMem); } catch (const std::length_error&) {
         return ctx.refuse("out of memory", Rie::NoMem);
     }
-    return ctx.refuse("it is not a picture in a known format (OpenEXR, TIFF, PNG, JPEG, Radiance, zfile, Pixar's native textures)");
+    return ctx.refuse(
+        "it is not a picture in a known format (OpenEXR, TIFF, PNG, JPEG, Radiance, zfile, Pixar's native textures)");
 }
 
 std::optional<Image> readImage(const std::string& path, Diagnostics& diags, const ReadOptions& options) {

@@ -63,7 +63,8 @@ Reconstructions renderImages(Job& job, int nx, int ny, Jitter jitter, uint64_t s
     std::vector<const OutputSpec*> filtered;
     for (const OutputSpec& p : plan.pictures) {
         const auto same = std::find_if(filtered.begin(), filtered.end(), [&](const OutputSpec* s) {
-            return s->depth == p.depth && s->filter.kind == p.filter.kind && s->filter.xw == p.filter.xw && s->filter.yw == p.filter.yw;
+            return s->depth == p.depth && s->filter.kind == p.filter.kind && s->filter.xw == p.filter.xw &&
+                   s->filter.yw == p.filter.yw;
         });
         result.of.push_back(size_t(same - filtered.begin()));
         if (same == filtered.end()) filtered.push_back(&p);

@@ -84,7 +84,8 @@ struct PictureFacts {
     bool imager = false; ///< the frame has an imager shader
 };
 
-/// Runs an imager over `count` pixels in place; see transport::World::runImager. False: the user stopped it, the pixels are void. Null: none.
+/// Runs an imager over `count` pixels in place; see transport::World::runImager. False: the user stopped it, the pixels are void.
+/// Null: none.
 using Imager = std::function<bool(int count, const float* x, const float* y, float* r, float* g, float* b, float* a)>;
 
 /// Writes all pictures of the plan. pixels(spec) gives what was reconstructed for it. False when any could not be written (an

@@ -146,12 +146,13 @@ bool Renderer::resume(const std::string& checkpoint, const FilmDescription& want
     film = loadPart(checkpoint, diagnostics_);
     if (film && film->description() == wanted) return true;
     if (film)
-        diagnostics_.report(Severity::Error, Rie::Consistency, {checkpoint},
-                            "the checkpoint belongs to another picture, scene or seed; it is left as it is, and nothing is rendered",
-                            "render what it belongs to, name another file, or leave --resume away to begin anew");
+        diagnostics_.report(
+            Severity::Error, Rie::Consistency, {checkpoint},
+            "the checkpoint belongs to another picture, scene or seed; it is left as it is, and nothing is rendered",
+            "render what it belongs to, name another file, or leave --resume away to begin anew");
     else
-        diagnostics_.report(Severity::Warning, Rie::NoError, {checkpoint}, "the checkpoint is left as it is, and nothing is rendered",
-                            "leave --resume away to begin anew");
+        diagnostics_.report(Severity::Warning, Rie::NoError, {checkpoint},
+                            "the checkpoint is left as it is, and nothing is rendered", "leave --resume away to begin anew");
     film.reset();
     return false;
 }
@@ -165,7 +166,9 @@ void Renderer::render(std::shared_ptr<const scene::Frame> frame) {
         outcome_.outOfMemory = true;
         ++outcome_.refused;
         diagnostics_.report(Severity::Severe, Rie::NoMem, {}, "out of memory; this frame is given up",
-                            settings_.memoryLimit ? "the limit is " + memorySizeText(settings_.memoryLimit) + "; --memory-limit sets another" : "");
+                            settings_.memoryLimit
+                                ? "the limit is " + memorySizeText(settings_.memoryLimit) + "; --memory-limit sets another"
+                                : "");
     } catch (const std::exception& e) { // of libraries that could not get what they need: threads, mostly
         outcome_.outOfMemory = true;
         ++outcome_.refused;
@@ -264,8 +267,12 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
             world->runImager(n, x, y, r, g, b, a, diagnostics_, poll);
             if (!poll || !*poll) return true;
             outcome_.interrupted = true;
-            diagnostics_.reportOnce("imager:stopped", {Severity::Warning, Rie::NoError, o.imager->place,
-                                                       "interrupted while the imager was running; the picture is not written", {}, {}});
+            diagnostics_.reportOnce("imager:stopped", {Severity::Warning,
+                                                       Rie::NoError,
+                                                       o.imager->place,
+                                                       "interrupted while the imager was running; the picture is not written",
+                                                       {},
+                                                       {}});
             return false;
         };
     PictureFacts picture;
@@ -367,7 +374,9 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
         picture.metadata["nonFinite"] = std::to_string(nonFinite);
         picture.metadata["spp"] = std::to_string(spp);
         picture.metadata["seed"] = std::to_string(settings_.seed);
-        auto pixels = [&](const OutputSpec& s) -> const Image& { return made.images[made.of[size_t(&s - plan.pictures.data())]]; };
+        auto pixels = [&](const OutputSpec& s) -> const Image& {
+            return made.images[made.of[size_t(&s - plan.pictures.data())]];
+        };
         outcome_.outputFailed |= !writeOutputs(plan, picture, pixels, imager, settings_.allowWrite, diagnostics_);
     }
     stats_.cpuSec += processCpuSeconds() - cpu;
@@ -403,9 +412,11 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
 
 void Renderer::reportDropped(uint64_t count, int x, int y, int64_t sample) {
     const std::string at = std::to_string(x) + "," + std::to_string(y) + "," + std::to_string(sample);
-    diagnostics_.report(Severity::Warning, Rie::Math, {},
-                        std::to_string(count) + (count == 1 ? " sample was not finite and is left out" : " samples were not finite and are left out") +
-                            (sample < 0 ? "" : "; the first is made by --pixel " + at + " --seed " + std::to_string(settings_.seed)));
+    diagnostics_.report(
+        Severity::Warning, Rie::Math, {},
+        std::to_string(count) +
+            (count == 1 ? " sample was not finite and is left out" : " samples were not finite and are left out") +
+            (sample < 0 ? "" : "; the first is made by --pixel " + at + " --seed " + std::to_string(settings_.seed)));
 }
 
 void Renderer::printPixel(Job& job, const scene::Options& o, uint32_t spp, bool path) {

@@ -40,7 +40,7 @@ struct RenderSettings {
     std::string scenePath;                              ///< where the scene lies: the last place but one to look in; "" = nowhere
     std::string shippedShaders;                         ///< the last place to look for shaders in
     bool allowExec = false, allowWrite = false, allowRead = false;
-    size_t memoryLimit = 0;                             ///< what the process is bound to (base/memory.h), for messages; 0 = nothing
+    size_t memoryLimit = 0; ///< what the process is bound to (base/memory.h), for messages; 0 = nothing
     ProgressMode progress = ProgressMode::Auto;
     bool quiet = false;
     const StopFlag* stop = nullptr; ///< non-zero: end soon and keep what is whole

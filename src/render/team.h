@@ -23,8 +23,8 @@ public:
     /// Calls work(worker, task) for tasks 0 .. count-1, each once, on `threads` threads; worker < threads. Meanwhile tick(done)
     /// runs on the calling thread about every 20 ms. Once *halt is set no further task begins. Throws what a task threw, after
     /// all have ended. True when every task was done.
-    /// A thread that cannot be started (no memory, or no more processes for this user) is done without; if none can be, the calling
-    /// thread works, with tick() between its tasks.
+    /// A thread that cannot be started (no memory, or no more processes for this user) is done without; if none can be, the
+    /// calling thread works, with tick() between its tasks.
     template <class Work, class Tick> bool run(size_t count, StopFlag* halt, Work work, Tick tick) {
         std::atomic<size_t> next{0}, done{0};
         int running = 0;

@@ -34,8 +34,8 @@ std::string along(const std::string& name, const std::vector<std::string>& folde
     return {};
 }
 
-/// Whether a name says that its file is RIB. Others a scene reads only from its own folder and those that the user named: words of what
-/// is no RIB would stand in the messages about it.
+/// Whether a name says that its file is RIB. Others a scene reads only from its own folder and those that the user named: words
+/// of what is no RIB would stand in the messages about it.
 bool namedAsRib(const std::string& path) {
     std::string e = fs::path(path).extension().string();
     for (char& c : e) c = char(std::tolower(static_cast<unsigned char>(c)));
@@ -84,7 +84,8 @@ std::string findFile(const std::string& name, const std::vector<std::string>& fo
         std::error_code ec;
         for (fs::directory_iterator i(f, ec), e; !ec && i != e; i.increment(ec)) {
             std::string n = i->path().filename().string();
-            if (sameButCase(n, base) && regular(i->path()) && may(i->path().string()) && (best.empty() || i->path().string() < best))
+            if (sameButCase(n, base) && regular(i->path()) && may(i->path().string()) &&
+                (best.empty() || i->path().string() < best))
                 best = i->path().string();
         }
         if (!best.empty()) return best;

@@ -280,8 +280,8 @@ CoShader ShaderCompiler::coShader(const ShaderPtr& s, const std::string& handle)
 
 KernelPtr ShaderCompiler::kernel(const ShaderPtr& shader, const KernelOptions& options, Diagnostics& diagnostics) {
     if (!shader) return nullptr;
-    const std::string key = jit::sha256(shader->digest_ + '\n' + jit::codeKey(options) + descriptorDigest() + jit::programIdentity() +
-                                    coShaderKey(options));
+    const std::string key = jit::sha256(shader->digest_ + '\n' + jit::codeKey(options) + descriptorDigest() +
+                                        jit::programIdentity() + coShaderKey(options));
     std::promise<KernelPtr> promise;
     {
         std::unique_lock lock(state_->mutex);

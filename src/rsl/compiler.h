@@ -112,7 +112,8 @@ public:
     CompilerStatistics statistics() const;
 
 private:
-    std::shared_ptr<const CompiledShader> find(const std::string& name, const std::vector<std::string>& directories, Diagnostics&);
+    std::shared_ptr<const CompiledShader> find(const std::string& name, const std::vector<std::string>& directories,
+                                               Diagnostics&);
     static std::shared_ptr<const CompiledShader> finish(std::unique_ptr<Program>, const std::string& path, const std::string& wanted,
                                                         const std::string& text);
     static std::shared_ptr<const CompiledShader> describe(std::shared_ptr<const Program>, const Shader&, const std::string& path,

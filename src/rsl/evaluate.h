@@ -25,8 +25,10 @@ struct Evaluation {
     std::string printed; ///< by printf()
 };
 
-/// As ServiceFn, of a kernel; false: not answered, and nothing written. What this room does not know, maps and rays, the caller may.
-using AnswerFn = std::function<bool(const CompiledKernel&, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out)>;
+/// As ServiceFn, of a kernel; false: not answered, and nothing written. What this room does not know, maps and rays, the caller
+/// may.
+using AnswerFn = std::function<bool(const CompiledKernel&, int32_t site, int32_t first, uint64_t mask, int32_t lanes,
+                                    const float* in, float* out)>;
 
 /// Evaluates `expression` after the statements of `setup` in a surface shader at the point above. The type is the first of float,
 /// color, point, vector, normal, matrix, string that the expression can be assigned to. Places in messages refer to the file name

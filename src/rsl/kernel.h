@@ -111,7 +111,8 @@ struct KernelOptions {
     bool differences = false;  ///< derivatives are differences over du and dv, not exact (passes/differences.h)
     bool path = false;         ///< lobe shadeops (diffuse, specular, ...) are requests to the light transport engine
     std::vector<std::string> outputs;  ///< requested; empty: what the shader kind gives (Ci Oi, P N, L Cl Ol, ...)
-    /// The one output that affine requests are for: pairs (weight, request) are its own. A float has the sum of the three components.
+    /// The one output that affine requests are for: pairs (weight, request) are its own. A float has the sum of the three
+    /// components.
     std::string light = "Ci";
     /// Values of string parameters, and of numeric ones known to be 0 or 1 for good: specialised into the code. Elements of arrays of strings
     /// are "name[0]", "name[1]" ...; "name[]" is the length of an array that the shader leaves open.

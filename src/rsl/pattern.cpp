@@ -182,7 +182,8 @@ private:
         const auto number = [&](int& n) {
             const size_t first = at_;
             n = 0;
-            for (; more() && std::isdigit(static_cast<unsigned char>(peek())); ++at_) n = std::min(n * 10 + (peek() - '0'), kMostRepeats + 1);
+            for (; more() && std::isdigit(static_cast<unsigned char>(peek())); ++at_)
+                n = std::min(n * 10 + (peek() - '0'), kMostRepeats + 1);
             return at_ > first;
         };
         ++at_;

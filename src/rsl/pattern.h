@@ -10,8 +10,10 @@
 namespace alpenglow::rsl {
 
 /// A pattern, translated. Immutable: threads may share one.
-/// Understood: characters, `.`, `[...]` with ranges and classes, `( )`, `|`, `* + ? {n} {n,} {n,m}`, `^ $`, `\` before a character, and
-/// \w \W \s \S for words and blanks, \b \B \< \> for their edges, \` \' for those of the text. Bytes are characters, as in the C locale.
+/// Understood: characters, `.`, `[...]` with ranges and classes, `( )`, `|`, `* + ? {n} {n,} {n,m}`, `^ $`, `\` before a
+/// character, and
+/// \w \W \s \S for words and blanks, \b \B \< \> for their edges, \` \' for those of the text. Bytes are characters, as in the C
+/// locale.
 class Pattern {
 public:
     /// Null for what is no pattern, is too large (limits::kPatternStates), or has back-references; `error` says what is wrong.

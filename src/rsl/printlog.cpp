@@ -58,17 +58,18 @@ bool PrintLog::put(std::FILE* f, const Message& m) {
     const PrintKey& k = m.key;
     const uint64_t lengths[2] = {k.program.size(), m.text.size()};
     const auto all = [f](const void* p, size_t n) { return std::fwrite(p, 1, n, f) == n; };
-    return all(&k.sample, sizeof k.sample) && all(&k.y, sizeof k.y) && all(&k.x, sizeof k.x) && all(&k.bounces, sizeof k.bounces) &&
-           all(&k.vertex, sizeof k.vertex) && all(k.place.data(), sizeof k.place) && all(lengths, sizeof lengths) &&
-           all(k.program.data(), k.program.size()) && all(m.text.data(), m.text.size());
+    return all(&k.sample, sizeof k.sample) && all(&k.y, sizeof k.y) && all(&k.x, sizeof k.x) &&
+           all(&k.bounces, sizeof k.bounces) && all(&k.vertex, sizeof k.vertex) && all(k.place.data(), sizeof k.place) &&
+           all(lengths, sizeof lengths) && all(k.program.data(), k.program.size()) && all(m.text.data(), m.text.size());
 }
 
 bool PrintLog::get(std::FILE* f, Message& m) {
     PrintKey& k = m.key;
     uint64_t lengths[2];
     const auto all = [f](void* p, size_t n) { return std::fread(p, 1, n, f) == n; };
-    if (!all(&k.sample, sizeof k.sample) || !all(&k.y, sizeof k.y) || !all(&k.x, sizeof k.x) || !all(&k.bounces, sizeof k.bounces) ||
-        !all(&k.vertex, sizeof k.vertex) || !all(k.place.data(), sizeof k.place) || !all(lengths, sizeof lengths))
+    if (!all(&k.sample, sizeof k.sample) || !all(&k.y, sizeof k.y) || !all(&k.x, sizeof k.x) ||
+        !all(&k.bounces, sizeof k.bounces) || !all(&k.vertex, sizeof k.vertex) || !all(k.place.data(), sizeof k.place) ||
+        !all(lengths, sizeof lengths))
         return false;
     k.program.resize(lengths[0]);
     m.text.resize(lengths[1]);
@@ -111,7 +112,8 @@ void PrintLog::write() {
     for (const Run& r : runs_) add(r.get());
     add(nullptr);
     while (!sources.empty()) {
-        const auto first = std::min_element(sources.begin(), sources.end(), [](const Source& a, const Source& b) { return before(a.head, b.head); });
+        const auto first = std::min_element(sources.begin(), sources.end(),
+                                            [](const Source& a, const Source& b) { return before(a.head, b.head); });
         const std::string text = printable(first->head.text);
         std::fwrite(text.data(), 1, text.size(), to_);
         if (!advance(*first)) sources.erase(first);

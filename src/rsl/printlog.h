@@ -31,8 +31,9 @@ public:
     ~PrintLog() { flush(); }
     PrintLog(const PrintLog&) = delete;
     PrintLog& operator=(const PrintLog&) = delete;
-    /// Keeps a copy. Beyond limits::kPrintBytes what was collected goes to a temporary file, sorted, and flush() merges. With more than
-    /// limits::kPrintRuns of these, or no room for them, everything is written first: the order then holds within each part.
+    /// Keeps a copy. Beyond limits::kPrintBytes what was collected goes to a temporary file, sorted, and flush() merges. With
+    /// more than limits::kPrintRuns of these, or no room for them, everything is written first: the order then holds within each
+    /// part.
     void add(const PrintKey&, const std::string& text);
     /// The same for what construct() prints, which runs once for a shader by the book and here in every run of its code: a text of one
     /// place (`where`, any name for it) is kept once, before all samples, and discard() does not forget it. Beyond limits::kPrintBytes of them

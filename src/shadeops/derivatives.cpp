@@ -1,5 +1,5 @@
-// Derivatives: rsl.md 10.1 and 10.3. Du and Dv are known to the code generator, or differences (rsl/passes/differences.h); the rest is
-// RSL over them.
+// Derivatives: rsl.md 10.1 and 10.3. Du and Dv are known to the code generator, or differences (rsl/passes/differences.h); the
+// rest is RSL over them.
 #include "shadeops/describe.h"
 
 namespace alpenglow::rsl {
@@ -23,10 +23,11 @@ std::vector<Shadeop> derivativeShadeops() {
     for (const char* name : {"Du", "Dv"}) {
         const std::string n = name;
         Shadeop& op = add(name, {}, Lowering::Special, "", "");
-        op.doc = "Derivative of the argument per unit of the surface parameter " + std::string(n == "Du" ? "u" : "v") +
-                 ": exact under path, the difference over the footprint under hidden and raytrace (docs/language.md); in an imager " +
-                 (n == "Du" ? "u runs from 0 to 1 across" : "v runs from 0 to 1 down") +
-                 " the picture. Results of rays and lights count as constant; those of maps have the slope of the map (texture).";
+        op.doc =
+            "Derivative of the argument per unit of the surface parameter " + std::string(n == "Du" ? "u" : "v") +
+            ": exact under path, the difference over the footprint under hidden and raytrace (docs/language.md); in an imager " +
+            (n == "Du" ? "u runs from 0 to 1 across" : "v runs from 0 to 1 down") +
+            " the picture. Results of rays and lights count as constant; those of maps have the slope of the map (texture).";
         op.signatures = sigs({{("float " + n + "(float x)").c_str()},
                               {("color " + n + "(color x)").c_str()},
                               {("vector " + n + "(point x)").c_str()},
@@ -65,11 +66,15 @@ normal calculatenormal(point p) {
     list.back().examples = {{"calculatenormal(P)", "0 0 1"}};
 
     Shadeop& filterstep = add("filterstep",
-                              sigs({{"float filterstep(float edge, float value; pairs)"}, {"float filterstep(float edge, float value1, float value2; pairs)"}}),
+                              sigs({{"float filterstep(float edge, float value; pairs)"},
+                                    {"float filterstep(float edge, float value1, float value2; pairs)"}}),
                               Lowering::Rsl,
-                              "step(edge, value) filtered over the footprint of the sample, or over value1..value2. The \"filter\" chooses which of the functions "
-                              "__filterstep_catmullrom (default), __filterstep_box, __filterstep_triangle, __filterstep_gaussian gets (edge, value1, value2); "
-                              "\"width\" widens the interval about its middle. In an imager the footprint is a pixel; in volumes du and dv are 0 and the result is step().",
+                              "step(edge, value) filtered over the footprint of the sample, or over value1..value2. The "
+                              "\"filter\" chooses which of the functions "
+                              "__filterstep_catmullrom (default), __filterstep_box, __filterstep_triangle, __filterstep_gaussian "
+                              "gets (edge, value1, value2); "
+                              "\"width\" widens the interval about its middle. In an imager the footprint is a pixel; in volumes "
+                              "du and dv are 0 and the result is step().",
                               R"(
 float filterstep(float edge, value) {
     extern float du, dv;

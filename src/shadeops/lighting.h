@@ -90,9 +90,11 @@ color specular(vector n, v; float roughness) {
     return sum;
 }
 )";
-    Shadeop& brdf = add("specularbrdf", sigs({{"color specularbrdf(vector l, vector n, vector v; float roughness)", "al_specularbrdf"}}), Lowering::Runtime,
-                        "One direction of specular(): pow(max(0, n . h), 8 / roughness), h = normalize(l + v), l, n, v unit. 0 for roughness 0. "
-                        "1 / roughness, as RISpec prints it, with Option \"shade\" \"specular\" \"rispec\" or --dialect rispec.");
+    Shadeop& brdf = add(
+        "specularbrdf", sigs({{"color specularbrdf(vector l, vector n, vector v; float roughness)", "al_specularbrdf"}}),
+        Lowering::Runtime,
+        "One direction of specular(): pow(max(0, n . h), 8 / roughness), h = normalize(l + v), l, n, v unit. 0 for roughness 0. "
+        "1 / roughness, as RISpec prints it, with Option \"shade\" \"specular\" \"rispec\" or --dialect rispec.");
     brdf.source = "seed; fitted on published pictures, docs/gallery.md";
     brdf.contexts = kAnyContext;
     brdf.examples = {{"specularbrdf(vector(0,0,1), vector(0,0,1), vector(0,0,1), 0.1)", "1 1 1"},

@@ -104,8 +104,8 @@ std::shared_ptr<const Texture> makeTextureFrom(const display::Image& image, cons
     const size_t stored = storedLevels(image);
     for (size_t i = 0; i < stored; ++i) tex->levels.push_back(levelOf(image.levels[i], false));
     bool round = tex->kind == Kind::LatLong;
-    for (const display::Image& l : reducedLevels(stored ? image.levels[stored - 1] : image, {}, round ? Wrap::Periodic : tex->swrap,
-                                                 round ? Wrap::Clamp : tex->twrap))
+    for (const display::Image& l : reducedLevels(stored ? image.levels[stored - 1] : image, {},
+                                                 round ? Wrap::Periodic : tex->swrap, round ? Wrap::Clamp : tex->twrap))
         tex->levels.push_back(levelOf(l, false));
     return tex;
 }

@@ -33,8 +33,12 @@ bool givesMean(const scene::Light& source, const std::string& shader, bool path,
     const std::string units = p && !p->strings.empty() ? p->strings[0] : "";
     if (units == "samples") return true;
     if (!units.empty() && units != "radiance")
-        d.reportOnce("lightunits:" + units, {Severity::Warning, Rie::BadToken, p->place, "unknown units of light \"" + units + "\"",
-                                             "\"radiance\" and \"samples\" are known", {}});
+        d.reportOnce("lightunits:" + units, {Severity::Warning,
+                                             Rie::BadToken,
+                                             p->place,
+                                             "unknown units of light \"" + units + "\"",
+                                             "\"radiance\" and \"samples\" are known",
+                                             {}});
     return units != "radiance" && !path && !kRadiance.count(shader);
 }
 

@@ -115,7 +115,9 @@ void WorldImpl::diceShapes(Diagnostics& d) {
     geometry::DiceOptions dice;
     dice.camera = geometry::DiceCamera::from(frame_->options);
     dice.stop = settings_.stop;
-    const auto bindingOf = [&](const geometry::Shape& s) -> const SurfaceBinding& { return bindings_[size_t(bindingOf_[numberOfShape_.at(&s)])]; };
+    const auto bindingOf = [&](const geometry::Shape& s) -> const SurfaceBinding& {
+        return bindings_[size_t(bindingOf_[numberOfShape_.at(&s)])];
+    };
     dice.displaces = [&](const geometry::Shape& shape) { return bindingOf(shape).displacement || bindingOf(shape).moveS; };
     dice.displace = [&](const geometry::Shape& shape, geometry::DiceGrid& grid) { displaceGrid(bindingOf(shape), shape, grid, d); };
     dice.declaredBound = [&](const geometry::Shape& shape) {

@@ -125,7 +125,8 @@ uint64_t& Engine::raysOf(RayType t) {
     }
 }
 
-std::vector<char> Engine::putBack(std::span<const Sched::Task> slice, std::span<int> sizes, const GroupOf& groupOf, Sched& sched) {
+std::vector<char> Engine::putBack(std::span<const Sched::Task> slice, std::span<int> sizes, const GroupOf& groupOf,
+                                  Sched& sched) {
     std::vector<int> room(sizes.size(), -1); // by group; -1: not asked yet
     std::vector<char> later(slice.size());
     for (size_t i = 0; i < slice.size(); ++i) {
@@ -264,7 +265,9 @@ struct Integrator::Impl {
 Integrator::Integrator(std::shared_ptr<const World> w, Diagnostics& d)
     : impl_(std::make_unique<Impl>(std::static_pointer_cast<const WorldImpl>(std::move(w)), d)) {}
 Integrator::~Integrator() = default;
-bool Integrator::trace(std::span<const CameraRay> r, std::span<SampleResult> out, const StopFlag* stop) { return impl_->engine.trace(r, out, stop); }
+bool Integrator::trace(std::span<const CameraRay> r, std::span<SampleResult> out, const StopFlag* stop) {
+    return impl_->engine.trace(r, out, stop);
+}
 const Counters& Integrator::counters() const { return impl_->engine.counters; }
 
 } // namespace alpenglow::transport

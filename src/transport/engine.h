@@ -141,8 +141,8 @@ struct BatchContext {
     std::vector<EmitRecord> emits;
     std::vector<float> arena;
     std::vector<Haze> haze;                    ///< by point; only where a volume lies before some point
-    std::vector<Color> clear;                  ///< by point: what goes on behind it; only while gather() runs for a kernel that does not wait
-    std::vector<float> passes;                 ///< by point: the chance with which its ray goes on, 0: another was taken; empty: it always does
+    std::vector<Color> clear;  ///< by point: what goes on behind it; only while gather() runs for a kernel that does not wait
+    std::vector<float> passes; ///< by point: the chance with which its ray goes on, 0: another was taken; empty: it always does
     std::deque<LightLoop> loops;               ///< Engine::lightLoop()
     const BoundLight* light = nullptr;         ///< whose kernel runs
     const LitSurface* lit = nullptr;           ///< while a light's kernel runs: what it lights
@@ -177,7 +177,8 @@ public:
     Counters counters;
 
     // faults.cpp
-    /// A value on the way of a ray is not a finite number: the whole camera sample is left out. `what` made it, at `place`: said once.
+    /// A value on the way of a ray is not a finite number: the whole camera sample is left out. `what` made it, at `place`: said
+    /// once.
     void notFinite(const PathRay*, const std::string& what, const SourcePlace& place);
     void notFinite(const PathRay* ray, const char* what, const ShaderInstance* of);
     void notFinite(const BatchContext&, const PathRay&, uint32_t site); ///< what a call site gives
@@ -240,13 +241,15 @@ public:
     /// Adds light to a target, and their parts of it to the outputs that share it.
     void deposit(Sched&, TargetId, int32_t share, const Color&);
     /// For the camera's points of a batch that is filled: runs for the outputs that light reaches. `fill` fills one.
-    std::vector<std::shared_ptr<BatchContext>> asides(const BatchContext&, Sched&, const std::function<void(BatchContext&)>& fill);
+    std::vector<std::shared_ptr<BatchContext>> asides(const BatchContext&, Sched&,
+                                                      const std::function<void(BatchContext&)>& fill);
     /// A lobe of a batch, and the pair that it came from.
     struct AskedLobe { int lobe, record, lane; };
     /// A pair of an output that shares no lobe of Ci, or not in all components.
     struct AskedAside { BatchContext* run; int record, lane; Color weight; };
     /// Gives the lobes of a batch their shares; what is left is returned. The asides have run.
-    std::vector<AskedAside> shareLight(const BatchContext&, std::span<const AskedLobe>, std::span<const std::shared_ptr<BatchContext>>, Sched&);
+    std::vector<AskedAside> shareLight(const BatchContext&, std::span<const AskedLobe>,
+                                       std::span<const std::shared_ptr<BatchContext>>, Sched&);
     /// What shares nothing, and the outputs whose kernels wait for rays.
     void followAsides(std::span<const AskedAside>, std::span<std::shared_ptr<BatchContext>>, Sched&);
     /// Adds the outputs of points that are done.
@@ -265,8 +268,9 @@ public:
     void finishStrip(BatchContext&, int first, int lanes, Sched&, std::span<const uint32_t> asked = {});
     /// The share of the light from behind a shaded point that comes through, 0 to 1.
     Color clearAt(const BatchContext&, int point) const;
-    /// Energy rule of one point under path and what of its lobes and what is behind will be followed: fills LobeVertex::albedo, delta,
-    /// followed and chosen. Returns the factor of its lighting shadeops' rays. `passes`: the chance that the ray goes on instead.
+    /// Energy rule of one point under path and what of its lobes and what is behind will be followed: fills LobeVertex::albedo,
+    /// delta, followed and chosen. Returns the factor of its lighting shadeops' rays. `passes`: the chance that the ray goes on
+    /// instead.
     float chooseLobes(const BatchContext&, size_t point, std::span<const int> list, float& passes);
     const WorldImpl& world() const { return *world_; }
     Diagnostics& diagnostics() { return diagnostics_; }
@@ -342,7 +346,8 @@ private:
     /// Light that emitters send along the rays that met them; sorted by light.
     void emission(std::span<const Met>, Sched&);
     /// Goes on behind a point. `chance`: with which it was chosen to; `asked`: rays that a waiting kernel has asked for there.
-    void passThrough(const SurfaceBinding&, const PathRay&, TargetId, const ShadePoint&, const Color& transparency, float chance, uint32_t asked, Sched&);
+    void passThrough(const SurfaceBinding&, const PathRay&, TargetId, const ShadePoint&, const Color& transparency, float chance,
+                     uint32_t asked, Sched&);
     std::shared_ptr<const WorldImpl> world_;
     Diagnostics& diagnostics_;
     render::SeedKey seed_;
@@ -350,14 +355,16 @@ private:
     std::vector<Color> transmitted_;
     uint64_t& raysOf(RayType); ///< the counter of such rays
     using GroupOf = std::function<size_t(const SurfaceBinding&, const PathRay&)>;
-    /// Of a kernel that waits no more points are shaded than its frames have room for: the other rays of the slice are followed again, later.
-    /// Writes how many points of each group are shaded now; 1 for each ray that was put back. hits_ are those of the slice.
+    /// Of a kernel that waits no more points are shaded than its frames have room for: the other rays of the slice are followed
+    /// again, later. Writes how many points of each group are shaded now; 1 for each ray that was put back. hits_ are those of
+    /// the slice.
     std::vector<char> putBack(std::span<const Sched::Task> slice, std::span<int> sizes, const GroupOf&, Sched&);
-    /// Points of a waiting kernel that may be shaded now, so that its frames stay within a quarter of the limit; at least one strip.
-    /// `other`: the same shader for points of several surfaces, or null; which of the two runs is not known yet.
+    /// Points of a waiting kernel that may be shaded now, so that its frames stay within a quarter of the limit; at least one
+    /// strip. `other`: the same shader for points of several surfaces, or null; which of the two runs is not known yet.
     int roomFor(const rsl::CompiledKernel&, const rsl::CompiledKernel* other, const Sched&) const;
     std::unordered_map<const rsl::CompiledKernel*, size_t> frameOf_; ///< bytes of a strip's frame, of kernels that were started
-    std::set<const void*> tamed_, tamedClear_; ///< shaders that were named because they reflect more than they receive; with what comes through
+    std::set<const void*> tamed_,
+        tamedClear_; ///< shaders that were named because they reflect more than they receive; with what comes through
 };
 
 } // namespace alpenglow::transport

@@ -1,5 +1,5 @@
-// Values that are not finite numbers. What a shader, a light or a lobe makes of them spoils the whole camera sample: Integrator::trace() gives
-// it back as not a number, so that the film leaves it out, counts it and names it (--pixel x,y,sample).
+// Values that are not finite numbers. What a shader, a light or a lobe makes of them spoils the whole camera sample:
+// Integrator::trace() gives it back as not a number, so that the film leaves it out, counts it and names it (--pixel x,y,sample).
 #include "transport/engine.h"
 
 namespace alpenglow::transport {
@@ -7,8 +7,9 @@ namespace alpenglow::transport {
 void Engine::notFinite(const PathRay* ray, const std::string& what, const SourcePlace& place) {
     ++counters.nonFinite;
     if (ray && ray->path >= 0) spoiled_.push_back(ray->path);
-    diagnostics_.reportOnce("nonfinite:" + what + place.file + std::to_string(place.line),
-                            {Severity::Warning, Rie::Math, place, what + " is not a finite number; samples that meet it are left out", {}, {}});
+    diagnostics_.reportOnce(
+        "nonfinite:" + what + place.file + std::to_string(place.line),
+        {Severity::Warning, Rie::Math, place, what + " is not a finite number; samples that meet it are left out", {}, {}});
 }
 
 void Engine::notFinite(const PathRay* ray, const char* what, const ShaderInstance* of) {
@@ -19,7 +20,8 @@ void Engine::notFinite(const PathRay* ray, const char* what, const ShaderInstanc
 void Engine::notFinite(const BatchContext& c, const PathRay& ray, uint32_t site) {
     const rsl::ir::Site& s = *c.bound->sites[site].site;
     const auto& files = c.bound->kernel->files();
-    notFinite(&ray, "light of " + s.op + "(), or its weight,", {s.place.file < int(files.size()) ? files[size_t(s.place.file)] : "", s.place.line, s.place.column});
+    notFinite(&ray, "light of " + s.op + "(), or its weight,",
+              {s.place.file < int(files.size()) ? files[size_t(s.place.file)] : "", s.place.line, s.place.column});
 }
 
 void Engine::add(Sched& sched, TargetId target, const PathRay& ray, const Color& c, const ShaderInstance* of) {

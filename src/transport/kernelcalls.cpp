@@ -14,8 +14,8 @@ bool isRequest(SiteKind k, bool path) {
 // The callbacks of generated code: C functions that find their engine through KernelCall::user.
 BatchContext& contextOf(rsl::KernelCall* c) { return *static_cast<BatchContext*>(c->user); }
 
-/// Exceptions cannot pass generated code: what fails in a callback is kept, the kernel is made to end its loops, and who ran it throws
-/// again (BatchContext::ran). Nothing more is done for it meanwhile.
+/// Exceptions cannot pass generated code: what fails in a callback is kept, the kernel is made to end its loops, and who ran it
+/// throws again (BatchContext::ran). Nothing more is done for it meanwhile.
 constexpr StopFlag kEnd{1};
 void failed(rsl::KernelCall* call) noexcept {
     BatchContext& c = contextOf(call);

@@ -1,6 +1,7 @@
-// Outputs that displays ask for and that light reaches. Ci is shaded as if nobody asked: each such output has a kernel of its own, run
-// at the camera's points alone. Where that asks for the very light that Ci asks for, it has a part of what the lobe of Ci finds: the
-// ratio of the two weights. The parts of Ci that a shader gives away so add up to Ci in every sample. The rest is followed by itself.
+// Outputs that displays ask for and that light reaches. Ci is shaded as if nobody asked: each such output has a kernel of its
+// own, run at the camera's points alone. Where that asks for the very light that Ci asks for, it has a part of what the lobe of
+// Ci finds: the ratio of the two weights. The parts of Ci that a shader gives away so add up to Ci in every sample. The rest is
+// followed by itself.
 #include "transport/surfaces.h"
 #include <algorithm>
 #include <cstring>
@@ -11,7 +12,8 @@ namespace alpenglow::transport {
 
 namespace {
 
-/// An output that is more than this much of Ci has rays of its own: those of Ci are too rarely sent where so little of it depends on them.
+/// An output that is more than this much of Ci has rays of its own: those of Ci are too rarely sent where so little of it depends
+/// on them.
 constexpr float kMostShare = 16;
 
 /// What makes two sites ask for the same, wherever they are in the text. Arguments are compared by value when it runs.
@@ -21,18 +23,21 @@ auto callOf(const rsl::ir::Site& s) { return std::tie(s.op, s.strings, s.names, 
 std::vector<int> sameCalls(const BoundKernel& of, const BoundKernel& in) {
     std::vector<int> same;
     for (const SiteInfo& s : of.sites) {
-        const auto found = std::find_if(in.sites.begin(), in.sites.end(), [&](const SiteInfo& t) { return callOf(*s.site) == callOf(*t.site); });
+        const auto found =
+            std::find_if(in.sites.begin(), in.sites.end(), [&](const SiteInfo& t) { return callOf(*s.site) == callOf(*t.site); });
         same.push_back(found == in.sites.end() ? -1 : int(found - in.sites.begin()));
     }
     return same;
 }
 
 /// Whether two pairs ask for the same thing.
-bool sameArguments(const BatchContext& a, const EmitRecord& ra, int laneA, const BatchContext& b, const EmitRecord& rb, int laneB) {
+bool sameArguments(const BatchContext& a, const EmitRecord& ra, int laneA, const BatchContext& b, const EmitRecord& rb,
+                   int laneB) {
     size_t rows = 0;
     for (rsl::ir::Kind k : a.bound->sites[size_t(ra.site)].site->argKinds) rows += size_t(rsl::ir::components(k));
     for (size_t r = 3; r < rows + 3; ++r)
-        if (std::memcmp(&a.arena[ra.offset + r * size_t(ra.lanes) + size_t(laneA)], &b.arena[rb.offset + r * size_t(rb.lanes) + size_t(laneB)], sizeof(float)) != 0)
+        if (std::memcmp(&a.arena[ra.offset + r * size_t(ra.lanes) + size_t(laneA)],
+                        &b.arena[rb.offset + r * size_t(rb.lanes) + size_t(laneB)], sizeof(float)) != 0)
             return false;
     return true;
 }
@@ -76,7 +81,9 @@ void SurfaceBinder::partLightOutputs(SurfaceBinding& b, Names& outputs, const Na
         aside[k] = 1;
         std::erase(plain, wanted[k]);
         for (size_t i = 0; i < found.size(); ++i) {
-            const auto same = [&](const LightOutputPlace& p) { return p.aov == places[i].aov && p.component == places[i].component && p.size == places[i].size; };
+            const auto same = [&](const LightOutputPlace& p) {
+                return p.aov == places[i].aov && p.component == places[i].component && p.size == places[i].size;
+            };
             const auto known = std::find_if(world_.lightOutputs_.begin(), world_.lightOutputs_.end(), same);
             found[i].number = int(known - world_.lightOutputs_.begin());
             if (known == world_.lightOutputs_.end()) world_.lightOutputs_.push_back(places[i]);
@@ -100,19 +107,25 @@ LightOutput::Kernel SurfaceBinder::lightKernel(const SurfaceBinding& b, const Li
     k.main = sameCalls(main, main);
     k.own = sameCalls(k.bound, main);
     if (const auto& direct = k.bound.kernel->facts().direct; !direct.empty())
-        diagnostics_.reportOnce("direct:" + b.surface->name + ":" + o.slot,
-                                {Severity::Warning, Rie::NoError, b.surface->place,
-                                 "output \"" + o.slot + "\" of shader \"" + b.surface->name + "\" holds only the direct light of " + direct[0],
-                                 "Ci has all of it; sums and products with what does not depend on light give an output its indirect light, too", {}});
+        diagnostics_.reportOnce(
+            "direct:" + b.surface->name + ":" + o.slot,
+            {Severity::Warning,
+             Rie::NoError,
+             b.surface->place,
+             "output \"" + o.slot + "\" of shader \"" + b.surface->name + "\" holds only the direct light of " + direct[0],
+             "Ci has all of it; sums and products with what does not depend on light give an output its indirect light, too",
+             {}});
     return k;
 }
 
 void Engine::deposit(Sched& sched, TargetId target, int32_t share, const Color& light) {
     sched.add(target, light);
-    for (; share >= 0; share = shares_[size_t(share)].next) sched.add(shares_[size_t(share)].target, light * shares_[size_t(share)].ratio);
+    for (; share >= 0; share = shares_[size_t(share)].next)
+        sched.add(shares_[size_t(share)].target, light * shares_[size_t(share)].ratio);
 }
 
-std::vector<std::shared_ptr<BatchContext>> Engine::asides(const BatchContext& c, Sched& sched, const std::function<void(BatchContext&)>& fill) {
+std::vector<std::shared_ptr<BatchContext>> Engine::asides(const BatchContext& c, Sched& sched,
+                                                          const std::function<void(BatchContext&)>& fill) {
     std::vector<std::shared_ptr<BatchContext>> all;
     const SurfaceBinding& b = *c.binding;
     if (b.lightOutputs.empty() || (c.bound != &b.surfaceS && c.bound != &b.surfaceV)) return all;
@@ -139,7 +152,8 @@ std::vector<std::shared_ptr<BatchContext>> Engine::asides(const BatchContext& c,
             const int sample = c.rays[of[k]].cameraSample;
             run->rays.push_back(c.rays[of[k]]);
             run->bindings.push_back(c.bindings[of[k]]);
-            run->targets.push_back(sample < 0 ? nowhere_ : lightTargets_[size_t(sample) * world_->lightOutputs_.size() + size_t(o.number)]);
+            run->targets.push_back(sample < 0 ? nowhere_
+                                              : lightTargets_[size_t(sample) * world_->lightOutputs_.size() + size_t(o.number)]);
             run->points[k] = c.points[of[k]];
             run->points[k].ray = &run->rays.back();
         }
@@ -162,11 +176,13 @@ void Engine::finishAside(BatchContext& c, int first, int lanes, Sched& sched) {
     for (int i = first; output >= 0 && i < std::min(first + lanes, int(c.points.size())); ++i) {
         const PathRay& ray = c.rays[size_t(i)];
         if (ray.cameraSample < 0) continue;
-        sched.add(c.targets[size_t(i)], triple ? ray.weight * c.batch->color(output, i) : Color(luminance(ray.weight) * c.batch->value(output, 0, i), 0, 0));
+        sched.add(c.targets[size_t(i)], triple ? ray.weight * c.batch->color(output, i)
+                                               : Color(luminance(ray.weight) * c.batch->value(output, 0, i), 0, 0));
     }
 }
 
-std::vector<Engine::AskedAside> Engine::shareLight(const BatchContext& c, std::span<const AskedLobe> asked, std::span<const std::shared_ptr<BatchContext>> runs, Sched&) {
+std::vector<Engine::AskedAside> Engine::shareLight(const BatchContext& c, std::span<const AskedLobe> asked,
+                                                   std::span<const std::shared_ptr<BatchContext>> runs, Sched&) {
     std::vector<AskedAside> rest;
     if (runs.empty()) return rest;
     std::vector<std::vector<const AskedLobe*>> lobesOf(c.points.size());
@@ -181,16 +197,21 @@ std::vector<Engine::AskedAside> Engine::shareLight(const BatchContext& c, std::s
             const int same = calls.own[size_t(e.site)];
             for (int lane = 0; lane < e.lanes; ++lane) {
                 const int point = e.first + lane;
-                if (!(e.mask >> lane & 1) || point >= int(run->points.size()) || run->rays[size_t(point)].cameraSample < 0) continue;
+                if (!(e.mask >> lane & 1) || point >= int(run->points.size()) || run->rays[size_t(point)].cameraSample < 0)
+                    continue;
                 Color weight = weightOf(*run, e, lane);
-                if (!(std::isfinite(weight.x) && std::isfinite(weight.y) && std::isfinite(weight.z))) { ++counters.nonFinite; continue; }
+                if (!(std::isfinite(weight.x) && std::isfinite(weight.y) && std::isfinite(weight.z))) {
+                    ++counters.nonFinite;
+                    continue;
+                }
                 if (world_->lightOutputs_[size_t(run->aside->number)].size == 1) { // throughput of a number is the luminance
                     const Color& through = run->rays[size_t(point)].weight;
                     for (int k = 0; k < 3; ++k) weight[k] *= through[k] > 0 ? luminance(through) / through[k] : 0;
                 }
                 for (const AskedLobe* a : lobesOf[size_t(pointOf[size_t(point)])]) {
                     const EmitRecord& main = c.emits[size_t(a->record)];
-                    if (same < 0 || calls.main[size_t(main.site)] != same || !sameArguments(*run, e, lane, c, main, a->lane)) continue;
+                    if (same < 0 || calls.main[size_t(main.site)] != same || !sameArguments(*run, e, lane, c, main, a->lane))
+                        continue;
                     LobeVertex& l = lobes[size_t(a->lobe)];
                     Color ratio(0);
                     for (int k = 0; k < 3; ++k)
@@ -228,10 +249,11 @@ void Engine::followAsides(std::span<const AskedAside> rest, std::span<std::share
             const TargetId target = c.targets[size_t(point)];
             const Color through = c.rays[size_t(point)].weight;
             if (s.kind == SiteKind::LightVisibility)
-                lightVisibility(c, s, point, args, e.lanes, a.lane, a.weight * through, target, args[size_t(s.rows[0]) * size_t(e.lanes) + size_t(a.lane)]);
+                lightVisibility(c, s, point, args, e.lanes, a.lane, a.weight * through, target,
+                                args[size_t(s.rows[0]) * size_t(e.lanes) + size_t(a.lane)]);
             else
-                request(c, s, point, args, e.lanes, a.lane, s.kind == SiteKind::Transmission ? a.weight * through : a.weight, target, false,
-                        occurrence[{e.site, point}]++);
+                request(c, s, point, args, e.lanes, a.lane, s.kind == SiteKind::Transmission ? a.weight * through : a.weight,
+                        target, false, occurrence[{e.site, point}]++);
         }
         gather(c, sched);
         flushShadows(sched);

@@ -157,7 +157,8 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
                 for (int r = 0; r < value.components; ++r) *to++ = b.value(value.output, r, int(i));
         }
     }
-    // Affine requests of the light itself: shadows that it asks for. Counted by site and point: no random number depends on the batch.
+    // Affine requests of the light itself: shadows that it asks for. Counted by site and point: no random number depends on the
+    // batch.
     std::vector<uint32_t> asked(c->emits.empty() ? 0 : bound.sites.size() * queries.size());
     for (const EmitRecord& e : c->emits) {
         const SiteInfo& s = bound.sites[e.site];
@@ -166,7 +167,10 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
             if (!(e.mask >> lane & 1) || e.first + lane >= int(queries.size())) continue;
             auto at = [&](int row) { return c->arena[e.offset + size_t(row) * e.lanes + lane]; };
             c->points.swap(queries); // the rays start from them
-            const Color light = rayOfLight(*c, s, e.first + lane, [&](int row) { return at(row + 3); }, asked[size_t(e.site) * queries.size() + size_t(e.first + lane)]++).radiance;
+            const Color light = rayOfLight(
+                                    *c, s, e.first + lane, [&](int row) { return at(row + 3); },
+                                    asked[size_t(e.site) * queries.size() + size_t(e.first + lane)]++)
+                                    .radiance;
             c->points.swap(queries);
             out[e.first + lane].Cl += Color(at(0), at(1), at(2)) * light;
         }

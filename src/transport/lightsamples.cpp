@@ -232,12 +232,15 @@ uint64_t Engine::sampleLight(BatchContext& c, const LightLoop& loop, int li, int
             Emitter::Sample s;
             const float choose = light.emitter->chooses() ? rng.one(p.ray->vertex, use, nth) : 0;
             const Vec2 u = rng.pair(p.ray->vertex, use, nth);
-            if (!(light.mean ? light.emitter->sampleSurface(at, u, choose, s, p.surface) : light.emitter->sample(at, u, choose, s, p.surface))) continue;
+            if (!(light.mean ? light.emitter->sampleSurface(at, u, choose, s, p.surface)
+                             : light.emitter->sample(at, u, choose, s, p.surface)))
+                continue;
             p.shape = s.shape;
             p.P = p.surface.P;
             p.N = p.surface.n;
             if (wide) setEmitterFootprint(p, *p.ray, at, spreadBehind(*p.ray, diffuse));
-            f = light.mean ? 1 / (s.pdf * float(turns)) : 1 / (float(kPi) * s.pdf * float(turns)); // cosLight A / (pi d^2 n), design decision 4
+            f = light.mean ? 1 / (s.pdf * float(turns))
+                           : 1 / (float(kPi) * s.pdf * float(turns)); // cosLight A / (pi d^2 n), design decision 4
         } else if (light.kind == LightKind::Environment && world_->settings_.hider != Hider::Path) {
             // One direction, that of the surface: what diffuse() makes of it is what an even sky gives.
             Vec3 axis(row(3, lane), row(4, lane), row(5, lane));

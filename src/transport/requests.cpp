@@ -130,8 +130,9 @@ float Engine::chooseLobes(const BatchContext& c, size_t pi, std::span<const int>
     const PathRay& from = c.rays[pi];
     const SurfaceBinding& b = world_->bindings_[size_t(c.bindings[pi])];
     const Color clear = c.clear.empty() ? Color(0) : c.clear[pi];
-    // Under path one ray goes on from a vertex: along one of the lobes, or behind the surface where that lets light through. Those two may have
-    // quite different colours: what the way here has left of each decides, else a channel could grow without end. A camera ray goes on besides.
+    // Under path one ray goes on from a vertex: along one of the lobes, or behind the surface where that lets light through.
+    // Those two may have quite different colours: what the way here has left of each decides, else a channel could grow without
+    // end. A camera ray goes on besides.
     const bool competes = path && from.bounces > 0 && maxComponent(clear) > 0;
     const Color left(std::fabs(from.weight.x), std::fabs(from.weight.y), std::fabs(from.weight.z));
     const auto worth = [&](const Color& share) { return competes ? dot(share, left) / 3 : luminance(share); };
@@ -150,7 +151,8 @@ float Engine::chooseLobes(const BatchContext& c, size_t pi, std::span<const int>
         }
         // A lobe whose ray would go too deep is not followed; light samples then count in full.
         const bool diffuse = l.type == RayType::Diffuse;
-        const bool deep = from.bounces + 1 > world_->maxDepth_ || (b.maxDiffuse >= 0 && from.diffuseBounces + diffuse > b.maxDiffuse) ||
+        const bool deep = from.bounces + 1 > world_->maxDepth_ ||
+                          (b.maxDiffuse >= 0 && from.diffuseBounces + diffuse > b.maxDiffuse) ||
                           (b.maxSpecular >= 0 && from.specularBounces + !diffuse > b.maxSpecular);
         cut |= from.bounces + 1 > world_->maxDepth_ && l.chosen > 0;
         const bool stays = deep || (diffuse && !set.indirect);
@@ -165,10 +167,14 @@ float Engine::chooseLobes(const BatchContext& c, size_t pi, std::span<const int>
     const bool more = maxComponent(sum) > 1; // by itself: else a highlight on what is clear, say, which is common
     if (scale < 0.999f && (more ? tamed_ : tamedClear_).insert(b.surface.get()).second) // beyond rounding; said once a shader
         diagnostics_.reportOnce((more ? "energy:" : "energyclear:") + b.surface->name,
-                                {more ? Severity::Warning : Severity::Info, Rie::NoError, b.surface->place,
-                                 "shader \"" + b.surface->name + "\" reflects" + (more ? "" : ", together with what comes through it,") +
+                                {more ? Severity::Warning : Severity::Info,
+                                 Rie::NoError,
+                                 b.surface->place,
+                                 "shader \"" + b.surface->name + "\" reflects" +
+                                     (more ? "" : ", together with what comes through it,") +
                                      " more light than it receives; its indirect light is scaled down to what it receives",
-                                 "--unbiased leaves it as it is", {}});
+                                 "--unbiased leaves it as it is",
+                                 {}});
     const float behind = competes ? worth(clear) : 0;
     double total = behind;
     for (int i : list)
@@ -225,7 +231,9 @@ void Engine::gather(BatchContext& c, Sched& sched) {
     };
 
     // A waiting kernel's result goes to the target of its own that has no shares; what it makes of it has those of its ray.
-    auto shareOf = [&](const LobeVertex& l) { return l.ownsTarget ? -1 : l.share >= 0 ? l.share : c.rays[size_t(l.point)].share; };
+    auto shareOf = [&](const LobeVertex& l) {
+        return l.ownsTarget ? -1 : l.share >= 0 ? l.share : c.rays[size_t(l.point)].share;
+    };
 
     std::vector<float>& indirectScale = room.indirectScale;
     indirectScale.assign(c.points.size(), 1.f);
@@ -240,10 +248,14 @@ void Engine::gather(BatchContext& c, Sched& sched) {
         return l.lights && !l.elsewhere && (area || l.deltaLights) && (l.lobeOfShader || light.strategy != LightStrategy::Illuminance);
     };
 
-    // A light sample of trace() finds what a ray of it could meet there: within its distance, of its set, from the sides that it meets.
-    auto meets = [&](const LobeVertex& l, const Emitter::Sample& s, const geometry::SurfacePoint& at, const Vec3& w, const Vec3& from, const Vec3& end) {
+    // A light sample of trace() finds what a ray of it could meet there: within its distance, of its set, from the sides that it
+    // meets.
+    auto meets = [&](const LobeVertex& l, const Emitter::Sample& s, const geometry::SurfacePoint& at, const Vec3& w,
+                     const Vec3& from, const Vec3& end) {
         if (l.set.only && !l.set.only[world_->numberOfShape_.at(s.shape)]) return false;
-        if (s.shape->oneSided() && l.set.sides != accel::Sides::Both && (dot(at.n, w) >= 0) != (l.set.sides == accel::Sides::Back)) return false;
+        if (s.shape->oneSided() && l.set.sides != accel::Sides::Both &&
+            (dot(at.n, w) >= 0) != (l.set.sides == accel::Sides::Back))
+            return false;
         const Vec3 way = end - from;
         return dot(way, w) > 0 && !(length(way) > l.maxDistance);
     };
@@ -311,7 +323,8 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     Emitter::Sample& s = drawn.emplace_back();
                     const Vec2 u = rng.pair(vertex, use, 0);
                     const float choose = light.emitter->chooses() ? rng.one(vertex, use, 0) : 0;
-                    if (!(light.mean ? light.emitter->sampleSurface(p.Ps, u, choose, s, p.surface) : light.emitter->sample(p.Ps, u, choose, s, p.surface))) {
+                    if (!(light.mean ? light.emitter->sampleSurface(p.Ps, u, choose, s, p.surface)
+                                     : light.emitter->sample(p.Ps, u, choose, s, p.surface))) {
                         drawn.pop_back();
                         continue;
                     }
@@ -401,7 +414,8 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     if (!(fcos > 0)) continue;
                     float kept = l.lobeOfShader ? v.kept(l.type) : 1;
                     Vec3 o = l.bias >= 0 ? p.P + w * l.bias : sourcePoint(size_t(l.point), w);
-                    if (l.trace && area && !meets(l, drawn[k], q[k].surface, w, o, geometry::offsetOrigin(q[k].surface, -w))) continue;
+                    if (l.trace && area && !meets(l, drawn[k], q[k].surface, w, o, geometry::offsetOrigin(q[k].surface, -w)))
+                        continue;
                     Color contribution = l.weight * c.rays[l.point].weight * v.Cl;
                     if (l.ownsTarget) contribution = l.weight * v.Cl;
                     if (l.kind->colour) contribution *= l.kind->colour(l.params, w) / fcos;
@@ -415,7 +429,8 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                         float pdf = drawn[k].pdf * chance[k];
                         contribution *= kept * fcos / pdf * misWeight(pdf, other);
                     } else {
-                        contribution *= kept * float(kPi) * fcos / (chance[k] * (area ? drawn[k].pdf : 1)); // Cl is irradiance / pi
+                        contribution *=
+                            kept * float(kPi) * fcos / (chance[k] * (area ? drawn[k].pdf : 1)); // Cl is irradiance / pi
                     }
                     // The light's own surface must not block: stop short of it by both error bounds.
                     float stop = distance;

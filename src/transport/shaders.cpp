@@ -102,8 +102,13 @@ InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind k
     else if (auto other = anyKind ? nullptr : rsl::ShaderCompiler::ofKind(program, kind, std::filesystem::path(call.name).stem().string())) program = other;
     if (program->kind() != kind && !anyKind) {
         d.reportOnce("kind:" + call.name + ":" + rsl::toString(kind),
-                     {Severity::Error, Rie::NoShader, call.place,
-                      "shader \"" + call.name + "\" is a " + rsl::toString(program->kind()) + " shader, not a " + rsl::toString(kind) + " shader", {}, {}});
+                     {Severity::Error,
+                      Rie::NoShader,
+                      call.place,
+                      "shader \"" + call.name + "\" is a " + rsl::toString(program->kind()) + " shader, not a " +
+                          rsl::toString(kind) + " shader",
+                      {},
+                      {}});
         return nullptr;
     }
     auto i = std::make_shared<ShaderInstance>();
@@ -235,8 +240,8 @@ rsl::KernelOptions WorldImpl::kernelOptions(const ShaderInstance& i, const std::
     return o;
 }
 
-std::vector<rsl::ir::OutputLight> WorldImpl::lightOfOutputs(const ShaderInstance& i, const std::vector<std::string>& outputs, const std::vector<std::string>& varying,
-                                                            bool path) const {
+std::vector<rsl::ir::OutputLight> WorldImpl::lightOfOutputs(const ShaderInstance& i, const std::vector<std::string>& outputs,
+                                                            const std::vector<std::string>& varying, bool path) const {
     return rsl::lightOfOutputs(i.program->program(), i.program->shader(), kernelOptions(i, outputs, varying, false, path));
 }
 

@@ -32,8 +32,13 @@ bool SurfaceBinder::differences(const geometry::Shape& shape) {
     if (!p || p->strings.empty()) return !path_;
     const std::string& how = p->strings[0];
     if (how != "exact" && how != "differences")
-        diagnostics_.reportOnce("derivatives:" + how, {Severity::Warning, Rie::Range, p->place,
-                                "Attribute \"shade\" \"derivatives\" cannot be \"" + how + "\"; the default is used", "it can be \"exact\" or \"differences\"", {}});
+        diagnostics_.reportOnce("derivatives:" + how,
+                                {Severity::Warning,
+                                 Rie::Range,
+                                 p->place,
+                                 "Attribute \"shade\" \"derivatives\" cannot be \"" + how + "\"; the default is used",
+                                 "it can be \"exact\" or \"differences\"",
+                                 {}});
     return how == "differences" || (how != "exact" && !path_);
 }
 
@@ -129,10 +134,13 @@ int SurfaceBinder::bindAnew(const geometry::ShapeRef& shape) {
     b.surface = world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Surface, grid), a.coshaders, diagnostics_, a.lights);
     b.explicitSurface = b.surface != nullptr;
     if (!b.surface) b.surface = fallback_;
-    b.displacement = world_.withCoShaders(instanceOf(a.displacement, rsl::ShaderKind::Displacement, grid), a.coshaders, diagnostics_);
+    b.displacement =
+        world_.withCoShaders(instanceOf(a.displacement, rsl::ShaderKind::Displacement, grid), a.coshaders, diagnostics_);
     // A class with surface and displacement is both.
     const bool both = !a.displacement && b.explicitSurface && rsl::ShaderCompiler::variant(b.surface->program, rsl::ShaderKind::Displacement);
-    if (both) b.displacement = quiet(world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Displacement, grid), a.coshaders, diagnostics_));
+    if (both)
+        b.displacement =
+            quiet(world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Displacement, grid), a.coshaders, diagnostics_));
     b.atmosphere.shader = world_.withCoShaders(instanceOf(a.atmosphere, rsl::ShaderKind::Volume), a.coshaders, diagnostics_);
     const Names varying = varyingOf(*shape, *b.surface);
     const Names displacementVarying = b.displacement ? varyingOf(*shape, *b.displacement) : Names{};
@@ -178,7 +186,8 @@ int SurfaceBinder::bindAnew(const geometry::ShapeRef& shape) {
     hearDisplacement(b, varying, displacementVarying, left);
     if (!b.displacement) b.moveS = world_.movingKernel(*b.surface, b.surfaceS, asked_.back().varying, diagnostics_);
     bindLights(b, a);
-    // A light without a kernel (its shader is missing, does not compile or is no light) was reported; its geometry is an ordinary surface.
+    // A light without a kernel (its shader is missing, does not compile or is no light) was reported; its geometry is an ordinary
+    // surface.
     b.areaLight = a.areaLight >= 0 && world_.lights_[size_t(a.areaLight)].kernel ? a.areaLight : -1;
     b.matte = a.matte;
     b.shadingRate = a.shadingRate;
@@ -325,7 +334,8 @@ bool SurfaceBinder::bindSurface(SurfaceBinding& b, Names varying) {
         if (o.S.bound) kernels.push_back(&o.S.bound);
     }
     for (const BoundKernel* k : kernels)
-        for (const auto& in : k->kernel->inputs()) b.usesObjectSpace |= in.name.find("object") != std::string::npos && in.name.rfind("space:", 0) == 0;
+        for (const auto& in : k->kernel->inputs())
+            b.usesObjectSpace |= in.name.find("object") != std::string::npos && in.name.rfind("space:", 0) == 0;
     asked_.push_back({std::move(outputs), std::move(varying), {}});
     return true;
 }

@@ -22,7 +22,8 @@ public:
 private:
     using Names = std::vector<std::string>;
     InstanceRef instanceOf(const scene::ShaderRef&, rsl::ShaderKind, bool differences = false);
-    /// Attribute "shade" "derivatives": whether shaders take derivatives as grids have them; by default under hidden and raytrace.
+    /// Attribute "shade" "derivatives": whether shaders take derivatives as grids have them; by default under hidden and
+    /// raytrace.
     bool differences(const geometry::Shape&);
     /// The primitive variables that override parameters of a shader or that getvar(null, ...) finds; sorted.
     Names varyingOf(const geometry::Shape&, const ShaderInstance&);
@@ -65,13 +66,15 @@ private:
     Diagnostics& diagnostics_;
     bool path_ = false;
     InstanceRef fallback_;
-    std::map<std::tuple<const scene::ShaderCall*, int, bool>, InstanceRef> instances_; ///< by kind, and by how derivatives are taken
+    std::map<std::tuple<const scene::ShaderCall*, int, bool>, InstanceRef>
+        instances_;                                                   ///< by kind, and by how derivatives are taken
     std::map<std::pair<const void*, const void*>, InstanceRef> told_; ///< surfaces that know the outputs of a displacement; by both
     std::map<const void*, InstanceRef> quiet_; ///< by the displacement that is not
     std::vector<InstanceRef> kept_;            ///< their addresses are keys
     std::map<std::pair<const void*, std::string>, InstanceRef> volumes_; ///< by the shader as the scene gave it and what overrides it
     std::map<std::string, int> bindingByKey_;
-    std::unordered_map<const scene::Attributes*, std::pair<geometry::ShapeRef, int>> bindingOfAttributes_; ///< of the last shape that had them
+    std::unordered_map<const scene::Attributes*, std::pair<geometry::ShapeRef, int>>
+        bindingOfAttributes_; ///< of the last shape that had them
     std::map<std::vector<const void*>, int> programs_;
     std::map<std::vector<int>, int> lightLists_;
     std::map<std::pair<int, int>, int> groups_;

@@ -5,7 +5,8 @@
 
 namespace alpenglow::transport {
 
-void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId target, const ShadePoint& p, const Color& transparency, float chance, uint32_t asked, Sched& sched) {
+void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId target, const ShadePoint& p,
+                         const Color& transparency, float chance, uint32_t asked, Sched& sched) {
     const Color t = transparency / chance;
     PathRay r = ray;
     r.weight = ray.weight * t;
@@ -23,7 +24,8 @@ void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId t
         } else if (set.localRoulette) {
             q = rouletteLocal(depth, t, depth > 3 ? dice() : 0);
         } else if (depth > 3) {
-            const float m = std::min(1.f, maxComponent(Color(std::fabs(r.weight.x), std::fabs(r.weight.y), std::fabs(r.weight.z))));
+            const float m =
+                std::min(1.f, maxComponent(Color(std::fabs(r.weight.x), std::fabs(r.weight.y), std::fabs(r.weight.z))));
             q = m >= 1 ? 1 : m > 0 && dice() < m ? m : 0;
         }
         if (!(q > 0)) return;

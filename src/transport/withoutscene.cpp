@@ -37,15 +37,19 @@ void WithoutScene::setPoints(const Vec3& eye, std::span<const Vec3> points) {
     }
 }
 
-bool WithoutScene::answer(const rsl::CompiledKernel& k, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
+bool WithoutScene::answer(const rsl::CompiledKernel& k, int32_t site, int32_t first, uint64_t mask, int32_t lanes,
+                          const float* in, float* out) {
     if (site < 0) return false;
     const std::string& op = k.sites()[size_t(site)].op;
     bool asks = false;
-    for (const char* name : {"texture", "environment", "textureinfo", "rayinfo", "rendererinfo", "raylevel", "isindirectray", "isshadowray"}) asks |= op == name;
+    for (const char* name :
+         {"texture", "environment", "textureinfo", "rayinfo", "rendererinfo", "raylevel", "isindirectray", "isshadowray"})
+        asks |= op == name;
     if (!asks) return false;
     State& s = *state_;
     if (s.kernel != &k) {
-        s.bound = bindKernel(std::shared_ptr<const rsl::CompiledKernel>(std::shared_ptr<const rsl::CompiledKernel>{}, &k), false, false, s.world.get());
+        s.bound = bindKernel(std::shared_ptr<const rsl::CompiledKernel>(std::shared_ptr<const rsl::CompiledKernel>{}, &k), false,
+                             false, s.world.get());
         s.kernel = &k;
         s.context.engine = s.engine.get();
         s.context.bound = &s.bound;

@@ -58,13 +58,15 @@ uint32_t visibilityOf(const scene::Attributes& a, bool all) {
     return bits;
 }
 
-/// Whether specular() has RISpec's exponent: Option "shade" "specular" "rispec" (or "prman", which is what it is without), or the dialect.
+/// Whether specular() has RISpec's exponent: Option "shade" "specular" "rispec" (or "prman", which is what it is without), or the
+/// dialect.
 bool rispecSpecular(const scene::Options& o, const std::string& dialect, Diagnostics& d) {
     const auto i = o.values.find("shade:specular");
     if (i == o.values.end()) return rsl::front::dialectRispecSpecular(dialect);
     const std::string value = i->second.strings.empty() ? "" : i->second.strings[0];
     if (value != "rispec" && value != "prman")
-        d.report(Severity::Error, Rie::BadToken, i->second.place, "Option \"shade\" \"specular\" cannot be \"" + value + "\"; it is \"prman\"",
+        d.report(Severity::Error, Rie::BadToken, i->second.place,
+                 "Option \"shade\" \"specular\" cannot be \"" + value + "\"; it is \"prman\"",
                  "\"rispec\": exponent 1/roughness; \"prman\": 8/roughness");
     return value == "rispec" || rsl::front::dialectRispecSpecular(dialect);
 }

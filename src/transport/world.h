@@ -142,7 +142,7 @@ struct BoundLight {
     std::vector<int> parts;                    ///< lights of the further blocks of the same shader
     LightStrategy strategy = LightStrategy::Both;
     float intensityScale = 0;                  ///< > 0: Cl is an intensity over squared distance; radiance is Cl d^2 times this
-    bool mean = false;                         ///< Area: gives the mean of its Cl over its surface, with no other factor, and no ray finds it
+    bool mean = false; ///< Area: gives the mean of its Cl over its surface, with no other factor, and no ray finds it
     bool hazy = false;                         ///< Area, path: some of its shapes lie in an atmosphere
     // For the choice among many lights: brightness at distance 1 (Distant: anywhere; Area: radiance times area / pi).
     float power = 0;
@@ -165,9 +165,11 @@ struct Medium {
     int binding = -1;
 };
 
-/// An output that displays ask for and that light reaches: a kernel of its own gives it, so that Ci is what it is without the display.
+/// An output that displays ask for and that light reaches: a kernel of its own gives it, so that Ci is what it is without the
+/// display.
 struct LightOutput {
-    /// `own`, `main`: by site of this kernel and of the surface's, the first site of the surface's that is the same call; -1: none.
+    /// `own`, `main`: by site of this kernel and of the surface's, the first site of the surface's that is the same call; -1:
+    /// none.
     struct Kernel { BoundKernel bound; std::vector<int> own, main; };
     int number = 0;                            ///< WorldImpl::lightOutputs_
     std::string slot;                          ///< as kernels call it: "d", of an array "list[1]"
@@ -225,7 +227,8 @@ public:
     Facts facts() const override { return facts_; }
     std::vector<int> outputWidths() const override { return outputWidths_; }
     void flushPrints(bool keep) const override { keep ? prints_.flush() : prints_.discard(); }
-    bool runImager(int, const float*, const float*, float*, float*, float*, float*, Diagnostics&, const StopFlag* stop) const override;
+    bool runImager(int, const float*, const float*, float*, float*, float*, float*, Diagnostics&,
+                   const StopFlag* stop) const override;
     bool matrix(const std::string& from, const std::string& to, Matrix& out) const override;
     /// Whether a space of this name is predefined or the scene has one.
     bool knowsSpace(const std::string& name) const;
@@ -243,8 +246,8 @@ public:
     BoundKernel kernel(const ShaderInstance&, const std::vector<std::string>& outputs, const std::vector<std::string>& varying, bool mixed,
                        bool path, Diagnostics&, const std::string& light = "Ci");
     /// The outputs of the kernel() of an instance, and whether light that it asks for reaches them.
-    std::vector<rsl::ir::OutputLight> lightOfOutputs(const ShaderInstance&, const std::vector<std::string>& outputs, const std::vector<std::string>& varying,
-                                                     bool path) const;
+    std::vector<rsl::ir::OutputLight> lightOfOutputs(const ShaderInstance&, const std::vector<std::string>& outputs,
+                                                     const std::vector<std::string>& varying, bool path) const;
 
     /// Matrices of the camera, from the frame's options.
     void setCamera(const scene::Options&);

@@ -66,7 +66,8 @@ TEST(Diagnostics, ControlCharactersAreShownByTheirBytes) {
     EXPECT_EQ(printable("a\tb\nc"), "a\tb\nc");
     EXPECT_EQ(printable("\x1b[31mred\x07\x7f\r"), "\\x1b[31mred\\x07\\x7f\\x0d");
     EXPECT_EQ(printable("\xC2\x9B""31m \x9B""31m"), "\\xc2\\x9b31m \\x9b31m"); // the one-byte CSI, as UTF-8 and by itself
-    EXPECT_EQ(printable("gr\xC3\xBC\xC3\x9F \xE2\x82\xAC \xF0\x9F\x8C\x84 caf\xE9"), "gr\xC3\xBC\xC3\x9F \xE2\x82\xAC \xF0\x9F\x8C\x84 caf\xE9");
+    EXPECT_EQ(printable("gr\xC3\xBC\xC3\x9F \xE2\x82\xAC \xF0\x9F\x8C\x84 caf\xE9"),
+              "gr\xC3\xBC\xC3\x9F \xE2\x82\xAC \xF0\x9F\x8C\x84 caf\xE9");
     EXPECT_EQ(printable(std::string("\0x", 2)), "\\x00x");
     Diagnostic d;
     d.place = {"a\x1b]0;x\x07.sl", 1, 4};

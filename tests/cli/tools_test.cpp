@@ -107,7 +107,8 @@ TEST_F(Tools, DialectsOfEverySubcommand) {
     EXPECT_EQ(status, 2);
 }
 
-// "rispec": specular() with the exponent 1 / roughness, 8 / roughness without. h is 45 degrees off N, so that roughness 4 and .5 give one half.
+// "rispec": specular() with the exponent 1 / roughness, 8 / roughness without. h is 45 degrees off N, so that roughness 4 and .5
+// give one half.
 TEST_F(Tools, TheDialectRispec) {
     const std::string half = "vector(1,0,0), vector(0,0,1), vector(0,0,1)";
     for (int again = 0; again < 2; ++again) { // the second time from the cache
@@ -122,7 +123,8 @@ TEST_F(Tools, TheDialectRispec) {
     EXPECT_NEAR(Json::parse(run("info --json a.sl"))["parameters"][0]["default"][0].get<double>(), 1. / 256, 1e-8);
     run("shade --dialect rispec a.sl -o a.exr");
     EXPECT_EQ(status, 0) << errors();
-    write("a.rib", "Option \"shade\" \"string specular\" \"blinn\"\nFormat 8 8 1\nProjection \"perspective\"\nWorldBegin\nTranslate 0 0 3\nSphere 1 -1 1 360\nWorldEnd\n");
+    write("a.rib", "Option \"shade\" \"string specular\" \"blinn\"\nFormat 8 8 1\nProjection "
+                   "\"perspective\"\nWorldBegin\nTranslate 0 0 3\nSphere 1 -1 1 360\nWorldEnd\n");
     run("render a.rib -o a.exr");
     EXPECT_EQ(status, 1);
     EXPECT_NE(errors().find("a.rib:1:16: error"), std::string::npos) << errors();
@@ -149,11 +151,19 @@ TEST_F(Tools, MapsAndRaysWithoutAScene) {
     EXPECT_NE(said.find("nosuch.tex"), std::string::npos) << said;
     EXPECT_NE(said.find("expression:"), std::string::npos) << said;
     EXPECT_EQ(said.find("error:"), said.rfind("error:")) << said;
-    EXPECT_EQ(run("eval --setup 'float d = 3; string w = \"\"; float n = rayinfo(\"depth\", d) + rayinfo(\"type\", w); string r = \"\"; n += rendererinfo(\"renderer\", r);' "
-                  "'format(\"%f %f %s %s\", n, d, w, r)'"), "3.000000 0.000000 camera Alpenglow\n") << errors();
-    EXPECT_EQ(run("eval --setup 'point o = 0; vector d = 0; float l = 0; rayinfo(\"origin\", o); rayinfo(\"direction\", d); rayinfo(\"length\", l);' 'color(zcomp(o), zcomp(d), l)'"), "-1 1 1\n") << errors();
-    write("mapped.sl", "surface mapped(string name = \"map.exr\";) { string t = \"\"; vector d = 0; rayinfo(\"type\", t); rayinfo(\"direction\", d);\n"
-                       "    color e = match(\"camera\", t) ? color texture(name) : 0; Ci = e * length(d - normalize(I)) + e; Oi = 1; }\n");
+    EXPECT_EQ(run("eval --setup 'float d = 3; string w = \"\"; float n = rayinfo(\"depth\", d) + rayinfo(\"type\", w); string r "
+                  "= \"\"; n += rendererinfo(\"renderer\", r);' "
+                  "'format(\"%f %f %s %s\", n, d, w, r)'"),
+              "3.000000 0.000000 camera Alpenglow\n")
+        << errors();
+    EXPECT_EQ(run("eval --setup 'point o = 0; vector d = 0; float l = 0; rayinfo(\"origin\", o); rayinfo(\"direction\", d); "
+                  "rayinfo(\"length\", l);' 'color(zcomp(o), zcomp(d), l)'"),
+              "-1 1 1\n")
+        << errors();
+    write("mapped.sl",
+          "surface mapped(string name = \"map.exr\";) { string t = \"\"; vector d = 0; rayinfo(\"type\", t); "
+          "rayinfo(\"direction\", d);\n"
+          "    color e = match(\"camera\", t) ? color texture(name) : 0; Ci = e * length(d - normalize(I)) + e; Oi = 1; }\n");
     run("shade mapped.sl --format 8x8 -o a.exr");
     EXPECT_EQ(status, 0) << errors();
     run("diff map.exr a.exr --tolerance 1e-5");

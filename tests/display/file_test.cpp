@@ -39,9 +39,11 @@ TEST(OutputPath, HiddenNamesAndWhatIsNoPicture) {
     putBytes(s / "old.tif", {'I', 'I', '*', 0, 8, 0, 0, 0});
     putBytes(s / "empty", {});
     Diagnostics d;
-    for (const char* name : {".bashrc", "a/.ssh/keys", ".git/config", "notes.txt"}) EXPECT_FALSE(resolveOutputPath(name, s.policy(), d)) << name;
+    for (const char* name : {".bashrc", "a/.ssh/keys", ".git/config", "notes.txt"})
+        EXPECT_FALSE(resolveOutputPath(name, s.policy(), d)) << name;
     EXPECT_EQ(d.errors(), 4);
-    for (const char* name : {"old.tif", "empty", "new.tif", "./a.tif", "a.b/c.tif"}) EXPECT_TRUE(resolveOutputPath(name, s.policy(), d)) << name;
+    for (const char* name : {"old.tif", "empty", "new.tif", "./a.tif", "a.b/c.tif"})
+        EXPECT_TRUE(resolveOutputPath(name, s.policy(), d)) << name;
     EXPECT_EQ(d.errors(), 4);
 }
 

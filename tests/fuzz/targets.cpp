@@ -292,53 +292,53 @@ std::vector<Target> allTargets() {
         return s;
     };
     const Input sl = text(slWords), rib = text(ribWords);
-    return {
-        {"rib-ascii", "the RIB reader: text", ".rib", 1, false, scenes, rib, readRib},
-        {"rib-binary", "the RIB reader: the binary encoding", ".rib", 1, false, scenes, anyBinaryRib, readRib},
-        {"rib-gzip", "the RIB reader: compressed streams", ".rib", 1, false, scenes, anyGzip, readRib},
-        {"rib-generated", "the RIB reader: random requests", ".rib", 1, false, scenes,
-         [](Random& r, const Seeds&) { return generateRib(r); }, readRib},
-        {"rib-render", "tiny renders of damaged scenes", ".rib", 4, true, scenes, rib, renderRib, true},
-        {"rib-requests", "tiny renders of random requests", ".rib", 4, true, none,
-         [](Random& r, const Seeds&) { return generateRib(r); }, renderRib, true},
-        {"sl-preprocess", "the preprocessor", ".sl", 1, false, none, sl, checkShader},
-        {"sl-check", "parser and checker", ".sl", 1, false, shaders, sl, checkShader},
-        {"sl-shade", "damaged shaders, compiled and run", ".sl", 20, true, shaders, sl, shadeShader},
-        {"sl-generated", "made shaders at three widths of the machine code", ".sl", 40, true, none,
-         [](Random& r, const Seeds&) { return generateShader(r); }, shadeInWidths},
-        {"sl-render", "damaged shaders in a scene", ".sl", 25, true, shaders, sl, renderShader},
-        {"eval", "damaged and made expressions at two widths", ".txt", 20, true,
-         [] {
-             Seeds s = linesOf("tests/fuzz/corpus/expressions.txt");
-             for (const Bytes& e : examplesOfShadeops()) s.push_back(e);
-             return s;
-         },
-         [sl](Random& r, const Seeds& seeds) {
-             static const char* const types[] = {"float", "color", "point", "vector", "string", "matrix"};
-             return r.once(2) ? generateExpression(r, r.of(types), 3) : sl(r, seeds);
-         },
-         evaluate},
-        {"pictures", "all decoders; maps and lookups", ".tx", 1, false, pictures, mendedBytes, decodePicture},
-        {"picture-files", "diff, maketx and scenes with damaged pictures", ".tx", 2, false, pictures, mendedBytes, usePicture, true},
-        {"parts", "merge and --resume with damaged part files", ".part", 4, false,
-         [] { return madeInChild(makeParts, {".part"}); }, mendedBytes, usePart, true},
-        {"lsp", "sessions of the language server", ".lsp", 2, false,
-         [] {
-             Seeds s;
-             for (const Bytes& b : filesOf(source("tests/fuzz/corpus/sessions"), {".jsonl"})) {
-                 std::vector<std::string> lines;
-                 for (size_t at = 0; at < b.size();) {
-                     const size_t end = std::min(b.find('\n', at), b.size());
-                     lines.push_back(b.substr(at, end - at));
-                     at = end + 1;
+    return {{"rib-ascii", "the RIB reader: text", ".rib", 1, false, scenes, rib, readRib},
+            {"rib-binary", "the RIB reader: the binary encoding", ".rib", 1, false, scenes, anyBinaryRib, readRib},
+            {"rib-gzip", "the RIB reader: compressed streams", ".rib", 1, false, scenes, anyGzip, readRib},
+            {"rib-generated", "the RIB reader: random requests", ".rib", 1, false, scenes,
+             [](Random& r, const Seeds&) { return generateRib(r); }, readRib},
+            {"rib-render", "tiny renders of damaged scenes", ".rib", 4, true, scenes, rib, renderRib, true},
+            {"rib-requests", "tiny renders of random requests", ".rib", 4, true, none,
+             [](Random& r, const Seeds&) { return generateRib(r); }, renderRib, true},
+            {"sl-preprocess", "the preprocessor", ".sl", 1, false, none, sl, checkShader},
+            {"sl-check", "parser and checker", ".sl", 1, false, shaders, sl, checkShader},
+            {"sl-shade", "damaged shaders, compiled and run", ".sl", 20, true, shaders, sl, shadeShader},
+            {"sl-generated", "made shaders at three widths of the machine code", ".sl", 40, true, none,
+             [](Random& r, const Seeds&) { return generateShader(r); }, shadeInWidths},
+            {"sl-render", "damaged shaders in a scene", ".sl", 25, true, shaders, sl, renderShader},
+            {"eval", "damaged and made expressions at two widths", ".txt", 20, true,
+             [] {
+                 Seeds s = linesOf("tests/fuzz/corpus/expressions.txt");
+                 for (const Bytes& e : examplesOfShadeops()) s.push_back(e);
+                 return s;
+             },
+             [sl](Random& r, const Seeds& seeds) {
+                 static const char* const types[] = {"float", "color", "point", "vector", "string", "matrix"};
+                 return r.once(2) ? generateExpression(r, r.of(types), 3) : sl(r, seeds);
+             },
+             evaluate},
+            {"pictures", "all decoders; maps and lookups", ".tx", 1, false, pictures, mendedBytes, decodePicture},
+            {"picture-files", "diff, maketx and scenes with damaged pictures", ".tx", 2, false, pictures, mendedBytes, usePicture,
+             true},
+            {"parts", "merge and --resume with damaged part files", ".part", 4, false,
+             [] { return madeInChild(makeParts, {".part"}); }, mendedBytes, usePart, true},
+            {"lsp", "sessions of the language server", ".lsp", 2, false,
+             [] {
+                 Seeds s;
+                 for (const Bytes& b : filesOf(source("tests/fuzz/corpus/sessions"), {".jsonl"})) {
+                     std::vector<std::string> lines;
+                     for (size_t at = 0; at < b.size();) {
+                         const size_t end = std::min(b.find('\n', at), b.size());
+                         lines.push_back(b.substr(at, end - at));
+                         at = end + 1;
+                     }
+                     s.push_back(framed(lines));
                  }
-                 s.push_back(framed(lines));
-             }
-             return s;
-         },
-         anySession, serveEditor},
-        {"command-line", "arguments", ".txt", 4, true, [] { return linesOf("tests/fuzz/corpus/commands.txt"); },
-         text(optionWords), commandLine, true}};
+                 return s;
+             },
+             anySession, serveEditor},
+            {"command-line", "arguments", ".txt", 4, true, [] { return linesOf("tests/fuzz/corpus/commands.txt"); },
+             text(optionWords), commandLine, true}};
 }
 
 Seeds seedsOf(const Target& t) {

@@ -84,7 +84,8 @@ TEST(DialectHeaders, AFileOfThatNameComesFirst) {
 
 TEST(DialectMacros, EachHasItsOwnAndOurs) {
     const std::pair<const char*, const char*> kMacros[] = {{"", "DELIGHT"},    {"3delight", "DELIGHT"}, {"prman", "PRMAN"},
-                                                           {"aqsis", "AQSIS"}, {"bmrt", "BMRT"},        {"PRMan", "PRMAN"}, {"rispec", "none"}};
+                                                           {"aqsis", "AQSIS"}, {"bmrt", "BMRT"},        {"PRMan", "PRMAN"},
+                                                           {"rispec", "none"}};
     for (const auto& [dialect, macro] : kMacros)
         for (const char* other : {"DELIGHT", "PRMAN", "AQSIS", "BMRT"}) {
             FrontOptions options;

@@ -26,8 +26,8 @@ PointValue at(const std::vector<Place>& places) {
 }
 
 /// Values of the outputs r0, r1 ... of a body; [output][component * places + place].
-std::vector<std::vector<float>> run(const std::string& body, const std::vector<std::string>& types, const std::vector<Place>& places,
-                                    KernelOptions o, const std::string& functions = "") {
+std::vector<std::vector<float>> run(const std::string& body, const std::vector<std::string>& types,
+                                    const std::vector<Place>& places, KernelOptions o, const std::string& functions = "") {
     ShaderCompiler::Settings settings;
     settings.useDefaultCache = false;
     ShaderCompiler compiler(settings);
@@ -37,7 +37,8 @@ std::vector<std::vector<float>> run(const std::string& body, const std::vector<s
         o.outputs.push_back("r" + std::to_string(k));
         parameters += "output varying " + types[k] + " " + o.outputs.back() + " = 0;\n";
     }
-    const auto shader = compiler.loadText(functions + "surface differences(" + parameters + ") {\n" + body + "}\n", "differences", d);
+    const auto shader =
+        compiler.loadText(functions + "surface differences(" + parameters + ") {\n" + body + "}\n", "differences", d);
     std::vector<std::vector<float>> out;
     EXPECT_TRUE(shader);
     const auto kernel = shader ? compiler.kernel(shader, o, d) : nullptr;
@@ -54,15 +55,25 @@ KernelOptions grid() {
     return o;
 }
 
-// What falls at least as fast as the footprint: halved with it, but for rounding and the next term. The error of a first difference is
-// h / 2 times the second derivative. Rounding is 1e-7 of the value over the step, of second differences over its square: they are
-// looked at where the step is not too small for it.
+// What falls at least as fast as the footprint: halved with it, but for rounding and the next term. The error of a first
+// difference is h / 2 times the second derivative. Rounding is 1e-7 of the value over the step, of second differences over its
+// square: they are looked at where the step is not too small for it.
 TEST(Differences, AgreeWithTheExactFormToFirstOrder) {
     const std::vector<std::string> smooth = {
-        "Du(sin(3 * u) * cos(2 * v))", "Dv(pow(u + 1, v + 0.5))", "Du(exp(u * v))", "Dv(noise(2 * u, 3 * v))", "Du(noise(P * 3))",
-        "Dv(smoothstep(0, 1.1, u * v + 0.2))", "Deriv(sin(u + v), u * v + 2 * u)", "Du(Dv(u * u * v * sin(v)))", "Du(Du(exp(u + v)))",
-        "area(P * (1 + 0.3 * sin(2 * u + v))) / (du * dv)", "Du(spline(u, 0, 1, 0.3, 0.5, 0.2, 1))", "Dv(atan(u + v, 1 + v * v))",
-        "comp(calculatenormal(P + 0.1 * sin(4 * u) * cos(3 * v) * N), 0)", "comp(calculatenormal(P + 0.1 * noise(3 * P) * N), 1)",
+        "Du(sin(3 * u) * cos(2 * v))",
+        "Dv(pow(u + 1, v + 0.5))",
+        "Du(exp(u * v))",
+        "Dv(noise(2 * u, 3 * v))",
+        "Du(noise(P * 3))",
+        "Dv(smoothstep(0, 1.1, u * v + 0.2))",
+        "Deriv(sin(u + v), u * v + 2 * u)",
+        "Du(Dv(u * u * v * sin(v)))",
+        "Du(Du(exp(u + v)))",
+        "area(P * (1 + 0.3 * sin(2 * u + v))) / (du * dv)",
+        "Du(spline(u, 0, 1, 0.3, 0.5, 0.2, 1))",
+        "Dv(atan(u + v, 1 + v * v))",
+        "comp(calculatenormal(P + 0.1 * sin(4 * u) * cos(3 * v) * N), 0)",
+        "comp(calculatenormal(P + 0.1 * noise(3 * P) * N), 1)",
         "comp(calculatenormal(P + 0.1 * smoothstep(0.1, 0.9, u) * normalize(N + 0.2 * sin(v))), 2)"};
     std::vector<Place> places;
     for (int k = 0; k < 4; ++k) places.push_back({0.37, 0.58, std::ldexp(1, -5 - k), std::ldexp(1, -5 - k)});
@@ -77,7 +88,8 @@ TEST(Differences, AgreeWithTheExactFormToFirstOrder) {
         const bool second = smooth[k].find("Du(Du") == 0 || smooth[k].find("Du(Dv") == 0;
         EXPECT_LT(error(second ? 2 : 3), 0.05 * std::fabs(double(exact[k][3])) + 0.05);
         for (size_t p = second ? 0 : 1; p + 1 < (second ? 3 : places.size()); ++p) {
-            const double rounding = 4e-7 * (1 + std::fabs(double(exact[k][p]))) / places[p + 1].du / (second ? places[p + 1].du : 1);
+            const double rounding =
+                4e-7 * (1 + std::fabs(double(exact[k][p]))) / places[p + 1].du / (second ? places[p + 1].du : 1);
             EXPECT_LE(error(p + 1), 0.6 * error(p) + rounding) << "footprint " << places[p + 1].du;
         }
     }
@@ -85,13 +97,16 @@ TEST(Differences, AgreeWithTheExactFormToFirstOrder) {
 
 // Far below the footprint, where slopes say nothing.
 TEST(Differences, OfFineDetailAreThoseOfItsSamples) {
-    const std::vector<Place> places = {{0.3, 0.2, 0.05, 0.07}, {0.71, 0.9, 0.011, 0.2}, {0.5, 0.5, 0.25, 0.125}, {0.1, 0.6, 0.001, 0.03}};
+    const std::vector<Place> places = {
+        {0.3, 0.2, 0.05, 0.07}, {0.71, 0.9, 0.011, 0.2}, {0.5, 0.5, 0.25, 0.125}, {0.1, 0.6, 0.001, 0.03}};
     const auto f = [](double u, double v) { return std::sin(2000 * u) * std::cos(1700 * v + 1); };
-    const auto out = run("float f = sin(2000 * u) * cos(1700 * v + 1); r0 = Du(f); r1 = Dv(f); normal n = calculatenormal(P + f * N); r2 = n;",
-                         {"float", "float", "normal"}, places, grid());
+    const auto out =
+        run("float f = sin(2000 * u) * cos(1700 * v + 1); r0 = Du(f); r1 = Dv(f); normal n = calculatenormal(P + f * N); r2 = n;",
+            {"float", "float", "normal"}, places, grid());
     ASSERT_EQ(out.size(), 3u);
     for (size_t p = 0; p < places.size(); ++p) {
-        const double u = double(float(places[p].u)), v = double(float(places[p].v)), du = double(float(places[p].du)), dv = double(float(places[p].dv));
+        const double u = double(float(places[p].u)), v = double(float(places[p].v)), du = double(float(places[p].du)),
+                     dv = double(float(places[p].dv));
         const double byU = (f(double(float(u + du)), v) - f(u, v)) / du, byV = (f(u, double(float(v + dv))) - f(u, v)) / dv;
         // The arguments are rounded at 2000: 1.2e-4 of the value.
         EXPECT_NEAR(double(out[0][p]), byU, 5e-4 / du);
@@ -109,16 +124,20 @@ struct Flow {
 };
 const Flow kFlows[] = {
     {"a branch that the neighbour does not take", "float f = 3; if (U > 0.52) f = 5 * V;"},
-    {"a branch with noise on both sides", "float f; if (U + V > 1.02) f = noise(9 * U, V) * 2; else { f = noise(7 * V, U); f *= f + U; }"},
-    {"branches in branches", "float f = 0; if (U > 0.4) { if (V > 0.53) f = sin(9 * U); else { f = cos(7 * V); if (U > 0.52) f += U * 3; } }"},
+    {"a branch with noise on both sides",
+     "float f; if (U + V > 1.02) f = noise(9 * U, V) * 2; else { f = noise(7 * V, U); f *= f + U; }"},
+    {"branches in branches",
+     "float f = 0; if (U > 0.4) { if (V > 0.53) f = sin(9 * U); else { f = cos(7 * V); if (U > 0.52) f += U * 3; } }"},
     {"a loop with as many turns as the place says", "float i, f = 0; for (i = 0; i < 30 * U; i += 1) f += sin(i * V);"},
-    {"a loop within a loop", "float i, j, f = 0; for (i = 0; i < 9 * U; i += 1) for (j = 0; j < 11 * V; j += 1) f += noise(i * U, j * V);"},
+    {"a loop within a loop",
+     "float i, j, f = 0; for (i = 0; i < 9 * U; i += 1) for (j = 0; j < 11 * V; j += 1) f += noise(i * U, j * V);"},
     {"a loop that is left early", "float i, f = 1; for (i = 0; i < 40; i += 1) { f *= 1 + 0.1 * V; if (f > 2 + 5 * U) break; }"},
     {"a function", "float f = shape(U, V) + shape(V, U) * 2;"},
     {"a function with a condition and a loop", "float f = turns(U * 3, V);"},
     {"a function that calls one", "float f = twice(U, V);"},
     {"an array", "float a[3] = {U * V, V * V, sin(U)}; a[1] += a[0] * a[2]; float f = a[1] + a[2];"},
-    {"an array of many, by a varying index", "float a[40]; float i; for (i = 0; i < 40; i += 1) a[i] = sin(i * V); float f = a[floor(39 * U)];"},
+    {"an array of many, by a varying index",
+     "float a[40]; float i; for (i = 0; i < 40; i += 1) a[i] = sin(i * V); float f = a[floor(39 * U)];"},
     {"steps and floors", "float f = floor(20 * U) + step(0.53, V) + mod(7 * U, 1) + cellnoise(9 * U, 9 * V);"},
     {"a choice", "float f = (U > 0.52) ? V : 2 * U;"},
     {"a width of a filter", "float w = abs(Du(9 * U * U)) * 0.02 + 0.01; float f = smoothstep(0.5 - w, 0.5 + w, V);"},
@@ -132,8 +151,8 @@ float turns(float x, y) { float i, s = 0; for (i = 0; i < 10 * x; i += 1) { s +=
 float twice(float x, y) { float a = shape(x, y); float b = shape(a, x * y); return a * b + turns(b, a) + Du(x * x); }
 )";
 
-// The place that is one step on gives the other value of the difference: its own branches, turns and elements, in all forms. Lanes,
-// builds S and V, and who shares a batch change no bit.
+// The place that is one step on gives the other value of the difference: its own branches, turns and elements, in all forms.
+// Lanes, builds S and V, and who shares a batch change no bit.
 TEST(Differences, NeighboursGoTheirOwnWay) {
     constexpr double h = 1.0 / 32;
     std::vector<Place> places;
@@ -143,8 +162,8 @@ TEST(Differences, NeighboursGoTheirOwnWay) {
     std::vector<std::string> types;
     for (const Flow& flow : kFlows) {
         const std::string n = std::to_string(types.size());
-        body += "{ float U = u, V = v; " + std::string(flow.body) + " r" + n + " = f; r" + std::to_string(types.size() + 1) + " = Du(f); r" +
-                std::to_string(types.size() + 2) + " = Dv(f); }\n";
+        body += "{ float U = u, V = v; " + std::string(flow.body) + " r" + n + " = f; r" + std::to_string(types.size() + 1) +
+                " = Du(f); r" + std::to_string(types.size() + 2) + " = Dv(f); }\n";
         types.insert(types.end(), 3, "float");
     }
     std::map<std::pair<int, int>, std::vector<std::vector<float>>> reference; // by how the code is made
@@ -161,9 +180,12 @@ TEST(Differences, NeighboursGoTheirOwnWay) {
             for (size_t k = 3 * f; k < 3 * f + 3; ++k)
                 for (size_t p = 0; p < places.size(); ++p) EXPECT_TRUE(sameBits(out[k][p], first[k][p])) << "point " << p;
             for (size_t p = 0; p < places.size(); p += 3) {
-                const double value = double(out[3 * f][p]), byU = (double(out[3 * f][p + 1]) - value) / h, byV = (double(out[3 * f][p + 2]) - value) / h;
-                EXPECT_NEAR(double(out[3 * f + 1][p]), byU, 2e-4 * (1 + std::fabs(value) + std::fabs(byU))) << "Du, place " << p / 3;
-                EXPECT_NEAR(double(out[3 * f + 2][p]), byV, 2e-4 * (1 + std::fabs(value) + std::fabs(byV))) << "Dv, place " << p / 3;
+                const double value = double(out[3 * f][p]), byU = (double(out[3 * f][p + 1]) - value) / h,
+                             byV = (double(out[3 * f][p + 2]) - value) / h;
+                EXPECT_NEAR(double(out[3 * f + 1][p]), byU, 2e-4 * (1 + std::fabs(value) + std::fabs(byU)))
+                    << "Du, place " << p / 3;
+                EXPECT_NEAR(double(out[3 * f + 2][p]), byV, 2e-4 * (1 + std::fabs(value) + std::fabs(byV)))
+                    << "Dv, place " << p / 3;
             }
         }
     }

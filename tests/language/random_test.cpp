@@ -330,10 +330,10 @@ TEST(RandomPrograms, DerivativesHaveTheSameBitsEverywhere) {
     EXPECT_EQ(compared, kDerived * 4 * kPoints * 10);
 }
 
-// As differences: the passes leave sound code, lanes and builds S and V have the same bits; and where the value is no neighbour's by
-// chance of rounding, the derivative is the difference of the values at the place and one step on, whatever branches, loops, functions
-// and arrays lie between. Arrays that are written within a branch or a loop follow the point there, and a condition can turn by
-// rounding: a few places in a hundred may differ.
+// As differences: the passes leave sound code, lanes and builds S and V have the same bits; and where the value is no neighbour's
+// by chance of rounding, the derivative is the difference of the values at the place and one step on, whatever branches, loops,
+// functions and arrays lie between. Arrays that are written within a branch or a loop follow the point there, and a condition can
+// turn by rounding: a few places in a hundred may differ.
 TEST(RandomPrograms, DifferencesAreThoseOfTheNextPlace) {
     ShaderCompiler::Settings settings;
     settings.useDefaultCache = false;
@@ -346,7 +346,8 @@ TEST(RandomPrograms, DifferencesAreThoseOfTheNextPlace) {
         if (name == "du" || name == "dv") return part == 0 ? float(h) : 0.0f;
         if (part != 0) return v;
         const int place = point / 3, turn = point % 3;
-        const float x = float((place * 5 % 12) / 12.0 + (turn == 1 ? h : 0)), y = float((place * 7 % 12) / 12.0 + (turn == 2 ? h : 0));
+        const float x = float((place * 5 % 12) / 12.0 + (turn == 1 ? h : 0)),
+                    y = float((place * 7 % 12) / 12.0 + (turn == 2 ? h : 0));
         if (name == "u" || name == "s" || (name == "P" && component == 0)) return x;
         if (name == "v" || name == "t" || (name == "P" && component == 1)) return y;
         return v;
@@ -378,11 +379,13 @@ TEST(RandomPrograms, DifferencesAreThoseOfTheNextPlace) {
             ASSERT_TRUE(runPoints(*kernel, o.mixed, kPlaces, at, compiler.parameterValues(shader, d), got, d));
             if (first.empty()) first = got;
             for (size_t k = 0; k < got.size(); k++)
-                for (size_t x = 0; x < got[k].size(); x++) ASSERT_TRUE(sameBits(got[k][x], first[k][x])) << "output " << k << ", value " << x;
+                for (size_t x = 0; x < got[k].size(); x++)
+                    ASSERT_TRUE(sameBits(got[k][x], first[k][x])) << "output " << k << ", value " << x;
         }
         for (size_t c = 0; c < 3; c++) // Ci = (x, y, z), q = (Du(x), Dv(y), Du(z))
             for (size_t p = 0; p < size_t(kPlaces); p += 3) {
-                const double here = double(first[0][c * kPlaces + p]), next = double(first[0][c * kPlaces + p + (c == 1 ? 2 : 1)]);
+                const double here = double(first[0][c * kPlaces + p]),
+                             next = double(first[0][c * kPlaces + p + (c == 1 ? 2 : 1)]);
                 const double got = double(first[1][c * kPlaces + p]);
                 if (!std::isfinite(here) || !std::isfinite(next) || std::fabs(here) + std::fabs(next) > 1e4) continue;
                 ++compared;

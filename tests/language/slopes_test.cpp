@@ -214,25 +214,28 @@ template <class Look> void measure(const std::vector<Measured>& all, bool differ
 TEST(Slopes, OfEveryShadeopAreThoseOfItsValues) {
     const std::vector<Measured> all = table();
     std::set<const Signature*> met;
-    measure(all, false, [&](const Measured& m, const std::vector<float>& f, const std::vector<float>& du, const std::vector<float>& dv) {
-        bool moves = false;
-        for (size_t c = 0; c < f.size(); c += kPlaces) {
-            const auto at = [&](int p) { return double(f[c + size_t(p)]); };
-            const double value = at(0), byU = (8 * (at(3) - at(2)) - (at(4) - at(1))) / (12 * kStep),
-                         byV = (8 * (at(7) - at(6)) - (at(8) - at(5))) / (12 * kStep);
-            const double gotU = double(du[c]), gotV = double(dv[c]);
-            EXPECT_TRUE(std::isfinite(value)) << "component " << c / kPlaces;
-            if (m.zero) {
-                EXPECT_EQ(gotU, 0);
-                EXPECT_EQ(gotV, 0);
-                continue;
-            }
-            EXPECT_NEAR(gotU, byU, kTolerance * (1 + std::fabs(value) + std::fabs(byU))) << "Du, component " << c / kPlaces;
-            EXPECT_NEAR(gotV, byV, kTolerance * (1 + std::fabs(value) + std::fabs(byV))) << "Dv, component " << c / kPlaces;
-            moves |= std::fabs(byU) + std::fabs(byV) > 1e-3;
-        }
-        if (moves) met.insert(m.signature);
-    });
+    measure(all, false,
+            [&](const Measured& m, const std::vector<float>& f, const std::vector<float>& du, const std::vector<float>& dv) {
+                bool moves = false;
+                for (size_t c = 0; c < f.size(); c += kPlaces) {
+                    const auto at = [&](int p) { return double(f[c + size_t(p)]); };
+                    const double value = at(0), byU = (8 * (at(3) - at(2)) - (at(4) - at(1))) / (12 * kStep),
+                                 byV = (8 * (at(7) - at(6)) - (at(8) - at(5))) / (12 * kStep);
+                    const double gotU = double(du[c]), gotV = double(dv[c]);
+                    EXPECT_TRUE(std::isfinite(value)) << "component " << c / kPlaces;
+                    if (m.zero) {
+                        EXPECT_EQ(gotU, 0);
+                        EXPECT_EQ(gotV, 0);
+                        continue;
+                    }
+                    EXPECT_NEAR(gotU, byU, kTolerance * (1 + std::fabs(value) + std::fabs(byU)))
+                        << "Du, component " << c / kPlaces;
+                    EXPECT_NEAR(gotV, byV, kTolerance * (1 + std::fabs(value) + std::fabs(byV)))
+                        << "Dv, component " << c / kPlaces;
+                    moves |= std::fabs(byU) + std::fabs(byV) > 1e-3;
+                }
+                if (moves) met.insert(m.signature);
+            });
     // Each signature must have been seen to move: what stays the same proves nothing.
     for (const Shadeop& op : shadeops()) {
         const bool passes = op.derivative == DerivativeRule::Jet || op.derivative == DerivativeRule::Inherent ||
@@ -251,16 +254,20 @@ TEST(Slopes, OfEveryShadeopAreThoseOfItsValues) {
 // is left is rounding: 1e-7 of the value over the step, a few times where functions of functions magnify it.
 TEST(Slopes, AsDifferencesAreThoseOfTheNextPlace) {
     size_t moved = 0;
-    measure(table(), true, [&](const Measured&, const std::vector<float>& f, const std::vector<float>& du, const std::vector<float>& dv) {
-        bool moves = false;
-        for (size_t c = 0; c < f.size(); c += kPlaces) {
-            const double value = double(f[c]), byU = (double(f[c + 3]) - value) / kStep, byV = (double(f[c + 7]) - value) / kStep;
-            EXPECT_NEAR(double(du[c]), byU, 1e-4 * (1 + std::fabs(value) + std::fabs(byU))) << "Du, component " << c / kPlaces;
-            EXPECT_NEAR(double(dv[c]), byV, 1e-4 * (1 + std::fabs(value) + std::fabs(byV))) << "Dv, component " << c / kPlaces;
-            moves |= std::fabs(byU) + std::fabs(byV) > 1e-3;
-        }
-        moved += moves;
-    });
+    measure(table(), true,
+            [&](const Measured&, const std::vector<float>& f, const std::vector<float>& du, const std::vector<float>& dv) {
+                bool moves = false;
+                for (size_t c = 0; c < f.size(); c += kPlaces) {
+                    const double value = double(f[c]), byU = (double(f[c + 3]) - value) / kStep,
+                                 byV = (double(f[c + 7]) - value) / kStep;
+                    EXPECT_NEAR(double(du[c]), byU, 1e-4 * (1 + std::fabs(value) + std::fabs(byU)))
+                        << "Du, component " << c / kPlaces;
+                    EXPECT_NEAR(double(dv[c]), byV, 1e-4 * (1 + std::fabs(value) + std::fabs(byV)))
+                        << "Dv, component " << c / kPlaces;
+                    moves |= std::fabs(byU) + std::fabs(byV) > 1e-3;
+                }
+                moved += moves;
+            });
     EXPECT_GT(moved, 500u);
 }
 

@@ -15,7 +15,8 @@ std::string all(const Diagnostics& d) {
 }
 
 /// The value of an expression at each number of lanes, or the messages.
-void expectValue(const std::string& setup, const std::string& expression, float value, int outline = limits::kOutlineInstructions) {
+void expectValue(const std::string& setup, const std::string& expression, float value,
+                 int outline = limits::kOutlineInstructions) {
     for (int lanes : {4, 8, 16}) {
         ShaderCompiler::Settings settings;
         settings.useDefaultCache = false;
@@ -48,7 +49,8 @@ std::string arrays(int n) {
 TEST(LocalArrays, OneAsLargeAsTheLimit) {
     // 16,384 matrices are 1 MiB a point: 16 MiB with 16 lanes, twice the usual stack.
     static_assert(limits::kShaderArray * 16 * sizeof(float) == limits::kShaderMemory);
-    expectValue("matrix m[16384]; uniform float i; for (i = 0; i < 16384; i += 1) m[i] = matrix (i + u * 0);", "comp(m[3 + u * 0], 0, 0)", 3);
+    expectValue("matrix m[16384]; uniform float i; for (i = 0; i < 16384; i += 1) m[i] = matrix (i + u * 0);",
+                "comp(m[3 + u * 0], 0, 0)", 3);
 }
 
 TEST(LocalArrays, SeveralLargeOnes) {
@@ -57,10 +59,11 @@ TEST(LocalArrays, SeveralLargeOnes) {
 }
 
 TEST(LocalArrays, OfFunctionsThatAreCalled) {
-    const std::string functions = "float f(float x) { uniform float i; varying float a[4000]; for (i = 0; i < 4000; i += 1) a[i] = i + x;"
-                                  " return a[10 + x]; }\n"
-                                  "float g(float x) { uniform float i; varying float b[4000]; for (i = 0; i < 4000; i += 1) b[i] = 2 * i;"
-                                  " float y = f(x); return y + b[20 + x]; }\n";
+    const std::string functions =
+        "float f(float x) { uniform float i; varying float a[4000]; for (i = 0; i < 4000; i += 1) a[i] = i + x;"
+        " return a[10 + x]; }\n"
+        "float g(float x) { uniform float i; varying float b[4000]; for (i = 0; i < 4000; i += 1) b[i] = 2 * i;"
+        " float y = f(x); return y + b[20 + x]; }\n";
     // f(x) is 10 + 2x, g(x) is f(x) + 40 + 2x.
     for (int outline : {0, limits::kOutlineInstructions})
         expectValue(functions + "varying float x = u * 0 + 1;", "f(x) + g(x) + f(x + 1) + g(x + 2)", 12 + 54 + 14 + 62, outline);
@@ -77,7 +80,8 @@ TEST(LocalArrays, SumOverTheLimit) {
         EXPECT_EQ(compiler.kernel(s, {}, d) != nullptr, fits) << n;
         EXPECT_EQ(d.errors(), fits ? 0 : 1) << all(d);
         if (fits) continue;
-        EXPECT_NE(all(d).find("bytes a point; the limit is " + std::to_string(limits::kShaderMemory)), std::string::npos) << all(d);
+        EXPECT_NE(all(d).find("bytes a point; the limit is " + std::to_string(limits::kShaderMemory)), std::string::npos)
+            << all(d);
         EXPECT_NE(all(d).find("big.sl:3:"), std::string::npos) << all(d);
     }
 }

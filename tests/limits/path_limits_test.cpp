@@ -40,7 +40,8 @@ TEST(PathLimits, TransparentLayers) {
 
 TEST(PathLimits, RaysOfALoopThatDoesNotWait) {
     // Requests of an affine kernel are kept until it is done: so many of them and no more. The frame is given up with a message.
-    writeShader("greedy", "surface greedy() { float i; color c = 0; for (i = 0; i < 1e7; i += 1) c += trace(P, reflect(I, N)); Oi = 1; Ci = c; }\n");
+    writeShader("greedy", "surface greedy() { float i; color c = 0; for (i = 0; i < 1e7; i += 1) c += trace(P, reflect(I, N)); "
+                          "Oi = 1; Ci = c; }\n");
     for (const Hider h : {Hider::Hidden, Hider::Path}) {
         Settings s;
         s.hider = h;
@@ -49,20 +50,27 @@ TEST(PathLimits, RaysOfALoopThatDoesNotWait) {
         ASSERT_EQ(scene.world->facts().suspending, 0);
         const CameraRay ray = rayTo({0, 0, -3}, {0, 0, 0});
         EXPECT_THROW(scene.trace({&ray, 1}), std::bad_alloc);
-        EXPECT_NE(scene.messages().find("more rays at its points than fit into " + std::to_string(limits::kRequestBytes >> 20)), std::string::npos) << scene.messages();
+        EXPECT_NE(scene.messages().find("more rays at its points than fit into " + std::to_string(limits::kRequestBytes >> 20)),
+                  std::string::npos)
+            << scene.messages();
         EXPECT_NE(scene.messages().find("greedy.sl:1:"), std::string::npos) << scene.messages();
     }
 }
 
 TEST(PathLimits, FramesOfWaitingShaders) {
-    // An array that must survive a trace() lies in the frame of the strip: 64 kB a point. What waits at one time is bounded all the same.
-    writeShader("bigframe", "surface bigframe() {\n    matrix m[1000]; float i; color c = 0;\n    for (i = 0; i < 1000; i += 1) m[i] = matrix (i + u);\n"
-                            "    c = trace(P, reflect(normalize(I), -normalize(N)));\n    if (comp(c, 0) < 5) c += comp(m[mod(floor(1000 * (u + comp(c, 0))), 1000)], 0, 0) * 0;\n"
+    // An array that must survive a trace() lies in the frame of the strip: 64 kB a point. What waits at one time is bounded all
+    // the same.
+    writeShader("bigframe", "surface bigframe() {\n    matrix m[1000]; float i; color c = 0;\n    for (i = 0; i < 1000; i += 1) "
+                            "m[i] = matrix (i + u);\n"
+                            "    c = trace(P, reflect(normalize(I), -normalize(N)));\n    if (comp(c, 0) < 5) c += "
+                            "comp(m[mod(floor(1000 * (u + comp(c, 0))), 1000)], 0, 0) * 0;\n"
                             "    Oi = 1; Ci = .25 + .5 * c;\n}\n");
     Settings s;
     s.hider = Hider::Raytrace;
     s.maxDepth = 6;
-    Scene scene("Option \"trace\" \"int maxdepth\" [6]\nWorldBegin\nSurface \"bigframe\"\nSides 2\nAttribute \"trace\" \"int maxspeculardepth\" [6]\nSphere 1 -1 1 360\nWorldEnd\n", s);
+    Scene scene("Option \"trace\" \"int maxdepth\" [6]\nWorldBegin\nSurface \"bigframe\"\nSides 2\nAttribute \"trace\" \"int "
+                "maxspeculardepth\" [6]\nSphere 1 -1 1 360\nWorldEnd\n",
+                s);
     ASSERT_TRUE(scene.world);
     ASSERT_GT(scene.world->facts().suspending, 0) << scene.messages();
     std::vector<CameraRay> rays;

@@ -18,8 +18,9 @@ namespace {
 
 /// Sixteen balls: more than a scene without Embree's tree has.
 std::string balls(const std::string& first = "") {
-    std::string s = "Format 16 12 1\n" + first + "Projection \"perspective\" \"fov\" 60\nLightSource \"distantlight\" 1\nWorldBegin\n"
-                                                 "Translate 0 0 6\n";
+    std::string s = "Format 16 12 1\n" + first +
+                    "Projection \"perspective\" \"fov\" 60\nLightSource \"distantlight\" 1\nWorldBegin\n"
+                    "Translate 0 0 6\n";
     for (int i = 0; i < 16; ++i)
         s += "TransformBegin Translate " + std::to_string(i % 4 - 1.5) + " " + std::to_string(i / 4 - 1.5) +
              " 0 Surface \"matte\" Sphere .4 -.4 .4 360 TransformEnd\n";
@@ -76,7 +77,8 @@ TEST_F(ProgramLimits, ThreadsAndMemoryThatAreNotThere) {
             shell("ulimit -v " + std::to_string(kilobytes) + "; '" ALPENGLOW_PROGRAM "' render --progress none --threads " +
                   std::to_string(threads) + " -o old.png s.rib");
             if (status == 127) continue; // the dynamic loader had no room
-            EXPECT_TRUE(status == 0 || status == 4) << status << " with " << kilobytes << " kB, " << threads << " threads: " << err;
+            EXPECT_TRUE(status == 0 || status == 4)
+                << status << " with " << kilobytes << " kB, " << threads << " threads: " << err;
             EXPECT_TRUE(read("old.png") == (status == 0 ? good : old)) << kilobytes << " kB, " << threads << " threads";
             fewer |= status == 0 && says("threads can be started");
         }
@@ -87,7 +89,8 @@ TEST_F(ProgramLimits, MemoryWhileShadersAreCompiled) {
     if (kSanitized) GTEST_SKIP() << "sanitizers map terabytes";
     const std::string old = "\x89PNG: the old one";
     for (int kilobytes : {200000, 300000, 400000}) {
-        write("own.sl", "surface own() { float a = " + std::to_string(kilobytes) + "; Ci = noise(P * a) * diffuse(N); Oi = 1; }\n");
+        write("own.sl",
+              "surface own() { float a = " + std::to_string(kilobytes) + "; Ci = noise(P * a) * diffuse(N); Oi = 1; }\n");
         std::string s = balls();
         for (size_t at; (at = s.find("\"matte\"")) != std::string::npos;) s.replace(at, 7, "\"own\"");
         write("s.rib", s);
@@ -138,7 +141,8 @@ TEST(MemoryLimit, Sizes) {
 
 TEST_F(ProgramLimits, DisplaysThatAreThrownAway) {
     std::string s = "Format 640 480 1\nPixelSamples 1 1\n";
-    for (int i = 0; i < 500; ++i) s += "Display \"" + std::string(i ? "+" : "") + "n" + std::to_string(i) + "\" \"null\" \"rgba\"\n";
+    for (int i = 0; i < 500; ++i)
+        s += "Display \"" + std::string(i ? "+" : "") + "n" + std::to_string(i) + "\" \"null\" \"rgba\"\n";
     write("s.rib", s + "WorldBegin\nWorldEnd\n");
     render("--stats s.json s.rib");
     ASSERT_EQ(status, 0) << err;
@@ -297,7 +301,8 @@ TEST_F(ProgramLimits, ReadsOutsideTheFolders) {
         in("ReadArchive \"" + name + "\"", "");
         hides();
     }
-    in("ReadArchive \"shadow\"", "Option \"searchpath\" \"archive\" [\"" + top + "/a\"]"); // a folder that the scene names: RIB only
+    in("ReadArchive \"shadow\"",
+       "Option \"searchpath\" \"archive\" [\"" + top + "/a\"]"); // a folder that the scene names: RIB only
     hides();
     in("ReadArchive \"../near.rib\"", "");
     EXPECT_EQ(status, 0) << err;
@@ -315,7 +320,8 @@ TEST_F(ProgramLimits, ReadsOutsideTheFolders) {
         hides();
         EXPECT_TRUE(says("--searchpath")) << err;
     }
-    in("Surface \"t\" \"name\" \"" + top + "/a/paint.tif\" Sphere 1 -1 1 360", "Option \"searchpath\" \"texture\" [\"" + top + "/a\"]");
+    in("Surface \"t\" \"name\" \"" + top + "/a/paint.tif\" Sphere 1 -1 1 360",
+       "Option \"searchpath\" \"texture\" [\"" + top + "/a\"]");
     EXPECT_EQ(status, 0) << err;
     in("Surface \"t\" \"name\" \"" + top + "/a/paint.tif\" Sphere 1 -1 1 360", "", "--allow-read");
     EXPECT_EQ(status, 0) << err;
@@ -370,5 +376,6 @@ TEST_F(ProgramLimits, ControlPointsOfSplines) {
     EXPECT_TRUE(says("control points")) << err;
     go("eval '" + spline("\"solvelinear\", ", limits::kSolvedSplinePoints + 1) + "'");
     EXPECT_EQ(status, 1);
-    EXPECT_EQ(go("eval '" + spline("\"linear\", ", 101) + "'"), "50\n") << err; // segments between the second point and the last but one
+    EXPECT_EQ(go("eval '" + spline("\"linear\", ", 101) + "'"), "50\n")
+        << err; // segments between the second point and the last but one
 }

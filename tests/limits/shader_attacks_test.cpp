@@ -119,10 +119,12 @@ TEST(ShaderAttacks, MethodsThatCallEachOther) {
         std::string text;
         for (int i = 0; i < n; ++i) {
             const std::string name = "m" + std::to_string(i);
-            const std::string m = "public float " + name + "(float x) { return " + (i ? "m" + std::to_string(i - 1) + "(x) + 1" : "x") + "; }\n";
+            const std::string m =
+                "public float " + name + "(float x) { return " + (i ? "m" + std::to_string(i - 1) + "(x) + 1" : "x") + "; }\n";
             text = backwards ? m + text : text + m;
         }
-        return complaint("class c() {\n" + text + "public void surface(output color Ci, Oi) { Ci = m" + std::to_string(n - 1) + "(u); }\n}\n");
+        return complaint("class c() {\n" + text + "public void surface(output color Ci, Oi) { Ci = m" + std::to_string(n - 1) +
+                         "(u); }\n}\n");
     };
     for (bool backwards : {false, true}) {
         EXPECT_EQ(chain(limits::kCallDepth / 2, backwards), "");
@@ -136,7 +138,8 @@ TEST(ShaderAttacks, FunctionsInsideOfShaders) {
     auto chain = [](int n) {
         std::string text = "surface s() {\n";
         for (int i = 0; i < n; ++i)
-            text += "float f" + std::to_string(i) + "(float x) { return " + (i ? "f" + std::to_string(i - 1) + "(x) + 1" : "x") + "; }\n";
+            text += "float f" + std::to_string(i) + "(float x) { return " + (i ? "f" + std::to_string(i - 1) + "(x) + 1" : "x") +
+                    "; }\n";
         return complaint(text + "Ci = f" + std::to_string(n - 1) + "(u);\n}\n");
     };
     EXPECT_EQ(chain(limits::kCallDepth / 2), "");
@@ -147,8 +150,10 @@ TEST(ShaderAttacks, FunctionsInsideOfShaders) {
 TEST(ShaderAttacks, OneValueForLargeArrays) {
     // The value is kept once, not once an element.
     Diagnostics d;
-    auto p = compileText("surface s() {\n" + repeat("{ float a[16384] = 0, b[16384] = {1, ...}, c[16384] = {2}; Ci = a[3] + b[4] + c[5]; }\n", 100) + "}\n",
-                         "t.sl", {}, d);
+    auto p = compileText(
+        "surface s() {\n" +
+            repeat("{ float a[16384] = 0, b[16384] = {1, ...}, c[16384] = {2}; Ci = a[3] + b[4] + c[5]; }\n", 100) + "}\n",
+        "t.sl", {}, d);
     ASSERT_TRUE(p) << all(d);
     std::function<size_t(const Expr&)> nodes = [&](const Expr& e) {
         size_t n = 1;
@@ -175,7 +180,8 @@ TEST(ShaderAttacks, ElementsThatAreNotWritten) {
         const std::string length = std::to_string(n), last = std::to_string(n - 1);
         for (const auto& [init, sum] : {std::pair{"5", 10}, {"{5, ...}", 10}, {"{1, 2, ...}", 3}, {"{7}", 7}, {"v0 + 2", 10}}) {
             Diagnostics d;
-            const Evaluation e = evaluate(compiler, "float v0 = 3; float a[" + length + "] = " + init + ";", "a[0] + a[" + last + "]", {}, d);
+            const Evaluation e =
+                evaluate(compiler, "float v0 = 3; float a[" + length + "] = " + init + ";", "a[0] + a[" + last + "]", {}, d);
             ASSERT_TRUE(e.ok) << all(d);
             EXPECT_EQ(e.numbers[0], sum) << init << " for " << n;
             EXPECT_EQ(all(d), "");
@@ -186,10 +192,12 @@ TEST(ShaderAttacks, ElementsThatAreNotWritten) {
 TEST(ShaderAttacks, ThousandsOfEarlyReturns) {
     // f(x) is the first of the numbers 0, 2, 4 ... that x is below, plus what was added before it; g leaves a loop the same way.
     auto text = [](int n) {
-        std::string f = "float f(float x) { float a = 0.5;\n", g = "float g(float x) { float r = 0, i; for (i = 0; i < 2; i += 1) {\n";
+        std::string f = "float f(float x) { float a = 0.5;\n",
+                    g = "float g(float x) { float r = 0, i; for (i = 0; i < 2; i += 1) {\n";
         for (int i = 0; i < n; ++i) {
             const std::string k = std::to_string(2 * i), name = "b" + std::to_string(i);
-            f += "if (x < " + k + ") return " + k + " + a;\n" + (i % 100 == 50 ? "float " + name + " = a; a = " + name + " + 1;\n" : "");
+            f += "if (x < " + k + ") return " + k + " + a;\n" +
+                 (i % 100 == 50 ? "float " + name + " = a; a = " + name + " + 1;\n" : "");
             g += "if (x < " + k + ") { r = " + k + "; break; }\n";
         }
         return f + "return -1; }\n" + g + "} return r; }\n";
@@ -253,6 +261,7 @@ TEST(ShaderAttacks, TooManyLightBlocksAndOperationsHaveIds) {
     EXPECT_FALSE(buildKernel(*p, *p->shaders[0], {}, d));
     ASSERT_EQ(d.errors(), 1) << all(d);
     EXPECT_STREQ(messageId(d.all().back().message), "light-blocks") << d.all().back().message;
-    EXPECT_STREQ(messageId("the shader is too large once its functions are inlined: more than 400000 operations"), "shader-too-large");
+    EXPECT_STREQ(messageId("the shader is too large once its functions are inlined: more than 400000 operations"),
+                 "shader-too-large");
     EXPECT_STREQ(messageId("the local arrays of \"s\" need 2 bytes a point; the limit is 1"), "shader-memory");
 }

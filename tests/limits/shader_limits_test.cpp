@@ -172,7 +172,8 @@ TEST(ShaderLimits, InliningForTheAffineProof) {
 }
 
 TEST(ShaderLimits, PrintedText) {
-    // Nothing is written while temporary files can take it; when they are used up, what was collected. Void samples leave nothing.
+    // Nothing is written while temporary files can take it; when they are used up, what was collected. Void samples leave
+    // nothing.
     std::FILE* file = std::tmpfile();
     ASSERT_TRUE(file);
     {

@@ -125,7 +125,8 @@ TEST(Film, MomentsByHand) {
     EXPECT_EQ(n, 1u);
 }
 
-// Every sample is counted and summed, whatever its index: 3,000 samples in three ranges, sums in integers that float holds exactly.
+// Every sample is counted and summed, whatever its index: 3,000 samples in three ranges, sums in integers that float holds
+// exactly.
 TEST(Film, EverySampleOfThousandsIsCounted) {
     Film f(describe(2, 1));
     double s1 = 0, s2 = 0;

@@ -189,10 +189,11 @@ TEST(Sampler, PairsArePadded) {
     EXPECT_LE(std::fabs(correlation(a, b)), 4.75 / std::sqrt(double(a.size())));
 }
 
-// One number and a pair of the same key walk the sequence in orders of their own (a light of two shapes draws both at one key: where the
-// orders are locked together its error never falls). The first bit of point 2k against that of point 0, for the number and for each
-// coordinate of the pair: whether they flip together is a fair coin for each k, so eight of them are 256 equal cells. Finds a lock in 3 % of
-// the streams: cell 0 of 20,000 streams then has .03 * 20,000 more than its 78, noncentrality 4,600 against 7.1 sqrt(2 * 255) = 160.
+// One number and a pair of the same key walk the sequence in orders of their own (a light of two shapes draws both at one key:
+// where the orders are locked together its error never falls). The first bit of point 2k against that of point 0, for the number
+// and for each coordinate of the pair: whether they flip together is a fair coin for each k, so eight of them are 256 equal
+// cells. Finds a lock in 3 % of the streams: cell 0 of 20,000 streams then has .03 * 20,000 more than its 78, noncentrality 4,600
+// against 7.1 sqrt(2 * 255) = 160.
 TEST(Sampler, OneNumberAgainstThePairOfItsKey) {
     std::vector<double> with[2] = {std::vector<double>(256, 0), std::vector<double>(256, 0)};
     const int streams = 20000;

@@ -32,12 +32,63 @@ int theirs(const std::string& pattern, const std::string& text) {
 }
 
 TEST(Pattern, WrittenOnes) {
-    const char* patterns[] = {"", "a", "a+b", "^a+b$", "a|b|", "(ab|cd)e", "[^a-c]", "[]a]x", "[^]a]", "[a-]", "[[:digit:][:upper:]_]+$", "a{2}", "a{0}b",
-                              "a{2,}", "(ab){1,2}c", "a{,2}b", "()", "(|a)b", "a**", "a+?b", "\\.", "\\*a", "\\w+\\s\\W", "\\S$", "\\bab\\b", "\\Bb",
-                              "\\<b", "a\\>", "\\`a", "b\\'", "a.c", "[.]", "[[.a.]-c]d", "[[=a=]]b", "x*", "(a*)*b", "(a|b)*abb", "^$", "a$b", "a^b", "a]", "a}",
-                              "(", "[", "a{2", "a{3,2}", "*a", "a|*b", "(*a)", "[b-a]", "[[:nosuch:]]", "\\", "{1}", "a{99999}"};
-    const char* texts[] = {"", "a", "b", "ab", "ba", "aab", "abc", "a.c", "a*a", "aa", "aaa", "abab", "ababc", "cde", "x", "]x", "-", "A_9", "two words", "a b",
-                           "a]", "a}", "abb", "babb", "a-b", "cd", "aabb c", "\n", "a\nb"};
+    const char* patterns[] = {"",
+                              "a",
+                              "a+b",
+                              "^a+b$",
+                              "a|b|",
+                              "(ab|cd)e",
+                              "[^a-c]",
+                              "[]a]x",
+                              "[^]a]",
+                              "[a-]",
+                              "[[:digit:][:upper:]_]+$",
+                              "a{2}",
+                              "a{0}b",
+                              "a{2,}",
+                              "(ab){1,2}c",
+                              "a{,2}b",
+                              "()",
+                              "(|a)b",
+                              "a**",
+                              "a+?b",
+                              "\\.",
+                              "\\*a",
+                              "\\w+\\s\\W",
+                              "\\S$",
+                              "\\bab\\b",
+                              "\\Bb",
+                              "\\<b",
+                              "a\\>",
+                              "\\`a",
+                              "b\\'",
+                              "a.c",
+                              "[.]",
+                              "[[.a.]-c]d",
+                              "[[=a=]]b",
+                              "x*",
+                              "(a*)*b",
+                              "(a|b)*abb",
+                              "^$",
+                              "a$b",
+                              "a^b",
+                              "a]",
+                              "a}",
+                              "(",
+                              "[",
+                              "a{2",
+                              "a{3,2}",
+                              "*a",
+                              "a|*b",
+                              "(*a)",
+                              "[b-a]",
+                              "[[:nosuch:]]",
+                              "\\",
+                              "{1}",
+                              "a{99999}"};
+    const char* texts[] = {"",    "a",    "b",     "ab",   "ba",  "aab", "abc",    "a.c", "a*a",       "aa",
+                           "aaa", "abab", "ababc", "cde",  "x",   "]x",  "-",      "A_9", "two words", "a b",
+                           "a]",  "a}",   "abb",   "babb", "a-b", "cd",  "aabb c", "\n",  "a\nb"};
     for (const char* p : patterns)
         for (const char* t : texts) EXPECT_EQ(ours(p, t), theirs(p, t)) << '"' << p << "\" in \"" << t << '"';
 }
@@ -84,7 +135,8 @@ TEST(Pattern, DrawnOnesAgainstTheLibrary) {
 TEST(Pattern, CostIsBounded) {
     const auto start = std::chrono::steady_clock::now();
     std::string error;
-    for (int depth : {4, 7, 12}) EXPECT_FALSE(Pattern::make(repeat("(", depth) + "a{1,99}" + repeat("){1,99}", depth) + "b", error));
+    for (int depth : {4, 7, 12})
+        EXPECT_FALSE(Pattern::make(repeat("(", depth) + "a{1,99}" + repeat("){1,99}", depth) + "b", error));
     EXPECT_NE(error.find("too large"), std::string::npos) << error;
     EXPECT_FALSE(Pattern::make("(((a{1,255}){1,255}){1,255})", error));
     EXPECT_FALSE(Pattern::make(std::string(limits::kPatternStates + 1, 'a'), error));

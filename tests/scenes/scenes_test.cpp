@@ -60,16 +60,20 @@ Measure compare(const display::Image& ours, const display::Image& theirs, int dx
 // Two ways of taking samples, told apart by fitting each published picture as a sum of finely rendered points near its edges
 // (docs/gallery.md): one unjittered sample in the middle of a pixel under a gaussian two pixels wide, or several under a triangle.
 // Their renderer's specular() has the exponent 1 / roughness.
-constexpr const char* kOneSample = "Option \"shade\" \"string specular\" \"rispec\"\nPixelFilter \"gaussian\" 2 2\nPixelSamples 1 1\nHider \"hidden\" \"jitter\" [0]\n";
-constexpr const char* kSeveralRispec = "Option \"shade\" \"string specular\" \"rispec\"\nPixelFilter \"triangle\" 2 2\n"; // bulb's is nearer to it
+constexpr const char* kOneSample = "Option \"shade\" \"string specular\" \"rispec\"\nPixelFilter \"gaussian\" 2 2\nPixelSamples "
+                                   "1 1\nHider \"hidden\" \"jitter\" [0]\n";
+constexpr const char* kSeveralRispec =
+    "Option \"shade\" \"string specular\" \"rispec\"\nPixelFilter \"triangle\" 2 2\n"; // bulb's is nearer to it
 constexpr const char* kSeveral = "PixelFilter \"triangle\" 2 2\n";
 // uteapot sets PixelSamples 2 2 itself; its picture lies 5/8 of a pixel right and below, which ScreenWindow moves ours by.
-constexpr const char* kOneSampleMoved = "Option \"shade\" \"string specular\" \"rispec\"\nPixelFilter \"gaussian\" 2 2\nHider \"hidden\" \"jitter\" [0]\n"
-                                        "ScreenWindow -1.60625 1.59375 -.99375 1.00625\n";
+constexpr const char* kOneSampleMoved =
+    "Option \"shade\" \"string specular\" \"rispec\"\nPixelFilter \"gaussian\" 2 2\nHider \"hidden\" \"jitter\" [0]\n"
+    "ScreenWindow -1.60625 1.59375 -.99375 1.00625\n";
 
 // With the facets of its renderer (below) the edges of uteapot's picture tell its filter better: a little wider, more samples.
-constexpr const char* kManyMoved = "Option \"shade\" \"string specular\" \"rispec\"\nPixelFilter \"gaussian\" 2.25 2.25\nHider \"hidden\" \"jitter\" [0]\n"
-                                   "ScreenWindow -1.60625 1.59375 -.99375 1.00625\n";
+constexpr const char* kManyMoved =
+    "Option \"shade\" \"string specular\" \"rispec\"\nPixelFilter \"gaussian\" 2.25 2.25\nHider \"hidden\" \"jitter\" [0]\n"
+    "ScreenWindow -1.60625 1.59375 -.99375 1.00625\n";
 
 // uteapot's renderer cut patches in few triangles, seen at once on the handle and the knob. How few was searched on its picture, part by
 // part: overlap of the knob .993 when cut in 4 and .97 to .98 when cut in 6 to 12, of the handle .992 against .98.

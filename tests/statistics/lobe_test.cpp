@@ -233,7 +233,8 @@ TEST(LobeT1, NarrowCones) {
     for (const char* kind : {"uniform", "cosine"})
         for (float cone : {.003f, .0005f})
             for (Vec3 axis : {Vec3(0, 0, 1), normalize(Vec3(.3f, -.8f, .5f)), normalize(Vec3(-.7f, .1f, -.6f))})
-                EXPECT_TRUE(followsItsDensity({kind, {axis, axis, {}, cone}}, ci++, samples(100000, 1000000))) << kind << " " << cone;
+                EXPECT_TRUE(followsItsDensity({kind, {axis, axis, {}, cone}}, ci++, samples(100000, 1000000)))
+                    << kind << " " << cone;
 }
 
 // Each distribution of the list: here two viewers for each of its parameters, one of them well above the surface; nightly nine,
@@ -387,7 +388,8 @@ TEST(Sampling, RouletteIsUnbiased) {
     EXPECT_LT(std::fabs(mean - 4) / se, 4.753);
 }
 
-// Every direction that a narrow cone draws is in it and has the density of the whole, down to 1e-5 radians; far outside there is none.
+// Every direction that a narrow cone draws is in it and has the density of the whole, down to 1e-5 radians; far outside there is
+// none.
 TEST(Lobe, NarrowCones) {
     std::mt19937_64 rng(seedBase() + 11);
     std::uniform_real_distribution<float> u01(0, 0x1.fffffep-1f);
@@ -400,7 +402,8 @@ TEST(Lobe, NarrowCones) {
                 p.axis = axis;
                 p.a = a;
                 const double half = std::sin(0.5 * double(a)), sine = std::sin(double(a));
-                const double want = std::string_view(name) == "uniform" ? 1 / (4 * kPi * half * half) : 1 / (kPi * sine * sine); // cos: 1 up to a^2 / 2
+                const double want = std::string_view(name) == "uniform" ? 1 / (4 * kPi * half * half)
+                                                                        : 1 / (kPi * sine * sine); // cos: 1 up to a^2 / 2
                 int lost = 0;
                 double worst = 0;
                 for (int i = 0; i < 500; ++i) {

@@ -250,7 +250,9 @@ TEST(Adversarial, Many) {
     for (int k = 0; k < 300; ++k) many += "LightSource \"evillamp\" " + std::to_string(10 + k) + " \"h\" 2\n";
     EXPECT_NEAR(shown(world(many + "Surface \"evilsum\" " + kFloor), Hider::Hidden).colour[0], 2 * 411, 1e-3);
     writeShader("evilarea", "light evilarea() { illuminate(P, N, PI / 2) Cl = 1; }\n");
-    const std::string area = "AttributeBegin Attribute \"light\" \"samples\" [1000000000] Attribute \"light\" \"string units\" \"radiance\" AreaLightSource \"evilarea\" 1 Translate 0 2 0 Rotate 90 1 0 0 Sphere .5 -.5 .5 360 AttributeEnd\n";
+    const std::string area =
+        "AttributeBegin Attribute \"light\" \"samples\" [1000000000] Attribute \"light\" \"string units\" \"radiance\" "
+        "AreaLightSource \"evilarea\" 1 Translate 0 2 0 Rotate 90 1 0 0 Sphere .5 -.5 .5 360 AttributeEnd\n";
     // Of a ball that ends a sixteenth of the sky: its radiance 1 has Cl cos = 1 / 16 in the mean.
     writeShader("evilcos", "surface evilcos() { Oi = 1; Ci = 0; illuminance(P, N, PI / 2) Ci += Cl * (normalize(N) . normalize(L)); }\n");
     const Shown s = shown(world(area + "Illuminate 1 1 Surface \"evilcos\" " + kFloor), Hider::Hidden);

@@ -1,4 +1,5 @@
-// Area lights with light shaders of their day: outside of path the mean of Cl over the geometry, with no factor but the shader's own.
+// Area lights with light shaders of their day: outside of path the mean of Cl over the geometry, with no factor but the shader's
+// own.
 #include "transport/floorscene.h"
 
 using namespace alpenglow;
@@ -19,14 +20,16 @@ template <class F> double overSquare(double a, double h, F f) {
 /// A matte floor of 1 seen at the origin, under the square of half side 1 at height 2, whose shader has `body`.
 Moments under(const std::string& name, const std::string& body, Hider h, const std::string& attributes, int n = 20000) {
     writeShader(name, "light " + name + "(float intensity = 3;) { " + body + " }\n");
-    const std::string light = "AttributeBegin\n" + attributes + "AreaLightSource \"" + name +
-                              "\" 7\nSurface \"constant\"\nColor 0 0 0\nPolygon \"P\" [-1 2 -1  1 2 -1  1 2 1  -1 2 1]\nAttributeEnd\nIlluminate 7 1\n";
+    const std::string light =
+        "AttributeBegin\n" + attributes + "AreaLightSource \"" + name +
+        "\" 7\nSurface \"constant\"\nColor 0 0 0\nPolygon \"P\" [-1 2 -1  1 2 -1  1 2 1  -1 2 1]\nAttributeEnd\nIlluminate 7 1\n";
     Scene s(world(light + "Surface \"matte\" \"Ka\" 0 \"Kd\" 1\n" + kFloor), transport::testing::under(h));
     EXPECT_EQ(s.diagnostics.warnings(), 0) << s.messages();
     return s.estimate(kView, n);
 }
 
-const std::string kSamples = "Attribute \"light\" \"string units\" \"samples\"\n", kRadiance = "Attribute \"light\" \"string units\" \"radiance\"\n";
+const std::string kSamples = "Attribute \"light\" \"string units\" \"samples\"\n",
+                  kRadiance = "Attribute \"light\" \"string units\" \"radiance\"\n";
 
 // A light without falloff: the mean of I cos. It was taken as radiance, and nearly black.
 TEST(AreaLights, MeanOfClWithoutFalloff) {
@@ -62,12 +65,14 @@ TEST(AreaLights, OneSidedFromBehind) {
     double seen[2];
     for (const bool turned : {false, true}) {
         const std::string light = std::string("AttributeBegin\nSides 1\n") + (turned ? "ReverseOrientation\n" : "") +
-                                  "AreaLightSource \"plainarea\" 7\nSurface \"constant\"\nColor 0 0 0\nPolygon \"P\" [-1 2 -1  1 2 -1  1 2 1  -1 2 1]\nAttributeEnd\nIlluminate 7 1\n";
+                                  "AreaLightSource \"plainarea\" 7\nSurface \"constant\"\nColor 0 0 0\nPolygon \"P\" [-1 2 -1  1 "
+                                  "2 -1  1 2 1  -1 2 1]\nAttributeEnd\nIlluminate 7 1\n";
         Settings all = transport::testing::under(Hider::Path), lights = all, rays = all;
         lights.lightOnly = true;
         rays.bsdfOnly = true;
         const std::string rib = world(light + "Surface \"matte\" \"Ka\" 0 \"Kd\" 1\n" + kFloor);
-        const Moments a = Scene(rib, all).estimate(kView, 20000), b = Scene(rib, lights).estimate(kView, 20000), c = Scene(rib, rays).estimate(kView, 20000);
+        const Moments a = Scene(rib, all).estimate(kView, 20000), b = Scene(rib, lights).estimate(kView, 20000),
+                      c = Scene(rib, rays).estimate(kView, 20000);
         seen[turned] = a.mean();
         for (const Moments* m : {&b, &c}) EXPECT_LE(std::fabs(m->mean() - a.mean()), kZ * std::hypot(m->se(), a.se())) << turned;
     }

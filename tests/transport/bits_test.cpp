@@ -78,7 +78,8 @@ std::string crowd() {
         "plastic", "busy", "waits", "matte",
         "slmaterial\" \"color diffusecolor\" [0 0 0] \"color transmissive\" [1 1 1] \"float kn\" 1.5 \"string fresnel\" \"exact"};
     // What lights see: what asks no light, for each vertex of such a ray would ask all of them again.
-    s += "AttributeBegin\nAttribute \"grouping\" \"membership\" \"near\"\nSurface \"constant\"\nColor .2 .5 .9\nPolygon \"P\" [-3 3 4  -3 3 6  0 3 6  0 3 4]\nAttributeEnd\n";
+    s += "AttributeBegin\nAttribute \"grouping\" \"membership\" \"near\"\nSurface \"constant\"\nColor .2 .5 .9\nPolygon \"P\" "
+         "[-3 3 4  -3 3 6  0 3 6  0 3 4]\nAttributeEnd\n";
     for (int i = 0; i < 15; ++i) {
         s += "AttributeBegin\nSurface \"" + std::string(shaders[i % 5]) + "\"\nColor [" + std::to_string(.3 + .04 * i) +
              " .5 .6]\n";

@@ -1,5 +1,5 @@
-// Exact derivatives: normals of displaced surfaces, and bumps on top of them, against the analytic surface; footprints against closed
-// forms. As grids have them: differences_test.cpp.
+// Exact derivatives: normals of displaced surfaces, and bumps on top of them, against the analytic surface; footprints against
+// closed forms. As grids have them: differences_test.cpp.
 #include "transport/harness.h"
 #include "transport/maps.h"
 

@@ -11,19 +11,29 @@ namespace {
 const std::string kOutputs = "(output varying normal shown = 0; output varying point uv = 0;)";
 
 void writeShaders() {
-    writeShader("diffslope", "surface diffslope" + kOutputs +
-                                 " { float f = sin(3000 * u); shown = normal(Du(f), du, dv); uv = point(u, v, 0); Ci = 1; Oi = 1; }\n");
-    writeShader("diffnormal", "surface diffnormal" + kOutputs + " { shown = normalize(N); uv = point(u, v, du); Ci = dv; Oi = 1; }\n");
-    writeShader("diffwaves", "displacement diffwaves() { P += 0.001 * sin(3000 * u) * cos(2500 * v) * normalize(N); N = calculatenormal(P); }\n");
-    writeShader("diffgrain", "surface diffgrain(float depth = 0) { normal n = faceforward(normalize(calculatenormal(P + depth * noise(P * 40000) * normalize(N))), I);\n"
+    writeShader("diffslope",
+                "surface diffslope" + kOutputs +
+                    " { float f = sin(3000 * u); shown = normal(Du(f), du, dv); uv = point(u, v, 0); Ci = 1; Oi = 1; }\n");
+    writeShader("diffnormal",
+                "surface diffnormal" + kOutputs + " { shown = normalize(N); uv = point(u, v, du); Ci = dv; Oi = 1; }\n");
+    writeShader(
+        "diffwaves",
+        "displacement diffwaves() { P += 0.001 * sin(3000 * u) * cos(2500 * v) * normalize(N); N = calculatenormal(P); }\n");
+    writeShader("diffgrain", "surface diffgrain(float depth = 0) { normal n = faceforward(normalize(calculatenormal(P + depth * "
+                             "noise(P * 40000) * normalize(N))), I);\n"
                              "Ci = max(0, n . normalize(vector(0.6, 0.2, -1))); Oi = 1; }\n");
-    writeShader("diffgrained", "displacement diffgrained(float depth = 0) { P += depth * noise(P * 40000) * normalize(N); N = calculatenormal(P); }\n");
-    writeShader("difflit", "surface difflit() { Ci = max(0, faceforward(normalize(N), I) . normalize(vector(0.6, 0.2, -1))); Oi = 1; }\n");
+    writeShader(
+        "diffgrained",
+        "displacement diffgrained(float depth = 0) { P += depth * noise(P * 40000) * normalize(N); N = calculatenormal(P); }\n");
+    writeShader("difflit",
+                "surface difflit() { Ci = max(0, faceforward(normalize(N), I) . normalize(vector(0.6, 0.2, -1))); Oi = 1; }\n");
 }
 
 const std::string kPatch = "Patch \"bilinear\" \"P\" [-1 -1 3  1 -1 3  -1 1 3  1 1 3]\n";
 
-std::string rib(const std::string& what) { return "Format 200 200 1\nProjection \"perspective\" \"fov\" 40\nWorldBegin\nSides 2\n" + what + "WorldEnd\n"; }
+std::string rib(const std::string& what) {
+    return "Format 200 200 1\nProjection \"perspective\" \"fov\" 40\nWorldBegin\nSides 2\n" + what + "WorldEnd\n";
+}
 
 /// Twenty by twenty rays over the patch, of footprints a pixel wide.
 std::vector<CameraRay> manyRays(float spread) {
@@ -44,8 +54,8 @@ std::vector<SampleResult> render(const std::string& what, float spread, Hider hi
     return scene.trace(manyRays(spread));
 }
 
-/// How far Du(sin(3000 u)) is, at most, from the exact slope and from the difference. The step makes 18 turns of the wave, so no two
-/// places agree by chance; its argument is rounded at 3000, which is 1.2e-4 of the wave over the step.
+/// How far Du(sin(3000 u)) is, at most, from the exact slope and from the difference. The step makes 18 turns of the wave, so no
+/// two places agree by chance; its argument is rounded at 3000, which is 1.2e-4 of the wave over the step.
 void expectForm(const std::vector<SampleResult>& all, bool differences, const std::string& what, int least = 300) {
     int hits = 0;
     double exact = 0, difference = 0;
@@ -69,7 +79,8 @@ TEST(Differences, TheHiderDecidesAndTheAttributeOverridesIt) {
         const std::string what = "hider " + std::to_string(int(h));
         expectForm(render(plain, .02f, h), h != Hider::Path, what);
         expectForm(render("Attribute \"shade\" \"derivatives\" \"exact\"\n" + plain, .02f, h), false, what + ", exact");
-        expectForm(render("Attribute \"shade\" \"string derivatives\" \"differences\"\n" + plain, .02f, h), true, what + ", differences");
+        expectForm(render("Attribute \"shade\" \"string derivatives\" \"differences\"\n" + plain, .02f, h), true,
+                   what + ", differences");
     }
 }
 
@@ -97,7 +108,9 @@ TEST(Differences, NormalsOfDisplacedSurfaces) {
     writeShaders();
     const auto height = [](double u, double v) { return .001 * std::sin(3000 * u) * std::cos(2500 * v); };
     int hits = 0;
-    for (const SampleResult& r : render("Attribute \"displacementbound\" \"sphere\" .1\nDisplacement \"diffwaves\"\nSurface \"diffnormal\"\n" + kPatch, .01f)) {
+    for (const SampleResult& r :
+         render("Attribute \"displacementbound\" \"sphere\" .1\nDisplacement \"diffwaves\"\nSurface \"diffnormal\"\n" + kPatch,
+                .01f)) {
         if (r.opacity.x < 1) continue;
         ++hits;
         const double u = double(r.aovs[3]), v = double(r.aovs[4]), du = double(r.aovs[5]), dv = double(r.color.x);
@@ -105,7 +118,8 @@ TEST(Differences, NormalsOfDisplacedSurfaces) {
         const Vec3d n = normalize(cross(a, b)), got(double(r.aovs[0]), double(r.aovs[1]), double(r.aovs[2]));
         // The sign of z is that of the side; 3000 u is rounded to 1.2e-4, so the slopes to 1.2e-7 / du.
         const Vec3d same(n.x, n.y, n.z), other(-n.x, -n.y, n.z);
-        EXPECT_LT(std::min({length(same - got), length(same + got), length(other - got), length(other + got)}), 2e-4) << u << " " << v;
+        EXPECT_LT(std::min({length(same - got), length(same + got), length(other - got), length(other + got)}), 2e-4)
+            << u << " " << v;
     }
     EXPECT_GT(hits, 300);
 }
@@ -128,13 +142,15 @@ Brightness brightness(const std::string& what) {
     return b;
 }
 
-// Grain of a thousandth, 900 turns of noise in a pixel of .02: of its difference, at most .1 and mostly .02, the first power has mean 0 and
-// the second is below a thousandth of the light. Its exact slope is about 20: a third of it looks away from the light.
+// Grain of a thousandth, 900 turns of noise in a pixel of .02: of its difference, at most .1 and mostly .02, the first power has
+// mean 0 and the second is below a thousandth of the light. Its exact slope is about 20: a third of it looks away from the light.
 TEST(Differences, DetailFinerThanAPixelIsNotSpeckled) {
     writeShaders();
-    const std::string bound = "Attribute \"displacementbound\" \"sphere\" .1\n", exact = "Attribute \"shade\" \"derivatives\" \"exact\"\n";
+    const std::string bound = "Attribute \"displacementbound\" \"sphere\" .1\n",
+                      exact = "Attribute \"shade\" \"derivatives\" \"exact\"\n";
     const double smooth = 1 / std::sqrt(1 + .36 + .04);
-    for (const std::string grain : {"Surface \"diffgrain\" \"depth\" .001\n", "Displacement \"diffgrained\" \"depth\" .001\nSurface \"difflit\"\n"}) {
+    for (const std::string grain :
+         {"Surface \"diffgrain\" \"depth\" .001\n", "Displacement \"diffgrained\" \"depth\" .001\nSurface \"difflit\"\n"}) {
         const Brightness b = brightness(bound + grain + kPatch), was = brightness(bound + exact + grain + kPatch);
         EXPECT_NEAR(b.mean, smooth, .01 * smooth) << grain;
         EXPECT_LT(b.deviation, .05 * smooth) << grain;
@@ -145,7 +161,9 @@ TEST(Differences, DetailFinerThanAPixelIsNotSpeckled) {
 
 TEST(Differences, AreTheSameBitsAtEveryWidth) {
     writeShaders();
-    const std::string what = "Attribute \"displacementbound\" \"sphere\" .1\nDisplacement \"diffgrained\" \"depth\" .01\nSurface \"diffgrain\" \"depth\" .01\n" + kPatch;
+    const std::string what = "Attribute \"displacementbound\" \"sphere\" .1\nDisplacement \"diffgrained\" \"depth\" .01\nSurface "
+                             "\"diffgrain\" \"depth\" .01\n" +
+                             kPatch;
     const auto first = render(what, .01f);
     for (const int lanes : {4, 8}) {
         const auto other = render(what, .01f, Hider::Hidden, lanes);

@@ -91,7 +91,8 @@ const CameraRay kView = rayTo({.3f, .8f, -.4f}, {0, 0, 0});
 std::string scene(const std::string& lights, const std::string& surface) {
     return "WorldBegin\nSides 2\n" + lights + "AttributeBegin\nSurface \"" + surface + "\"\n" + kFloor + "AttributeEnd\nWorldEnd\n";
 }
-const char* kDisk = "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nAttribute \"light\" \"string units\" \"radiance\" AreaLightSource \"arealight\" 7 \"intensity\" 5\nSurface \"constant\"\nColor 0 0 0\n"
+const char* kDisk = "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nAttribute \"light\" \"string units\" \"radiance\" "
+                    "AreaLightSource \"arealight\" 7 \"intensity\" 5\nSurface \"constant\"\nColor 0 0 0\n"
                     "Translate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\nAttributeEnd\nIlluminate 7 1\n";
 void tracer(const std::string& name, const std::string& pairs, const std::string& about = "vector(Nf)") {
     writeShader(name, "surface " + name + "() { normal Nf = faceforward(normalize(N), I); Oi = 1; Ci = trace(P, " + about + ", " + pairs +

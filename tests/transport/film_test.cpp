@@ -224,28 +224,34 @@ TEST(BiasFloor, SlopeOfTheError) {
     }
 }
 
-// A light of two polygons draws which of them and where on it at one key: with the film's sequences its error falls at least as fast as with
-// independent numbers. The slope of log RMSE over log N, against the closed form, by light samples of diffuse() and of a loop. Two strips, near
-// to the point at one end, so that it matters when only a half of each is ever drawn. Power: 64 streams, so a slope is known to .024; one of
+// A light of two polygons draws which of them and where on it at one key: with the film's sequences its error falls at least as
+// fast as with independent numbers. The slope of log RMSE over log N, against the closed form, by light samples of diffuse() and
+// of a loop. Two strips, near to the point at one end, so that it matters when only a half of each is ever drawn. Power: 64
+// streams, so a slope is known to .024; one of
 // -.33 is found; locked orders give -.27 here.
 TEST(BiasFloor, SlopeOfALightOfTwoPolygons) {
     writeShader("twopolygons", "light twopolygons() { illuminate(P, N, PI / 2) Cl = 5; }\n");
-    writeShader("polygonloop", "surface polygonloop() { Oi = 1; Ci = 0; illuminance(P, normal(0, 1, 0), PI / 2) Ci += Cl * (normalize(L) . normal(0, 1, 0)); }\n");
+    writeShader("polygonloop", "surface polygonloop() { Oi = 1; Ci = 0; illuminance(P, normal(0, 1, 0), PI / 2) Ci += Cl * "
+                               "(normalize(L) . normal(0, 1, 0)); }\n");
     writeShader("polygondiffuse", "surface polygondiffuse() { Oi = 1; Ci = diffuse(normal(0, 1, 0)); }\n");
-    // At height .5, 4 long and 1 wide, each with a corner above the point: twice Lambert's sum for a corner of sides 8 and 2 heights.
+    // At height .5, 4 long and 1 wide, each with a corner above the point: twice Lambert's sum for a corner of sides 8 and 2
+    // heights.
     auto corner = [](double a, double b) {
         const double A = a / std::sqrt(1 + a * a), B = b / std::sqrt(1 + b * b);
         return (A * std::atan(b / std::sqrt(1 + a * a)) + B * std::atan(a / std::sqrt(1 + b * b))) / (2 * kPi);
     };
     const double truth = 5 * 2 * corner(8, 2);
-    const std::string rib = "WorldBegin\nSides 2\nAttributeBegin\nAttribute \"light\" \"string units\" \"radiance\"\nAreaLightSource \"twopolygons\" 7\nSurface \"constant\"\nColor 0 0 0\n"
-                            "Polygon \"P\" [0 .5 0  4 .5 0  4 .5 1  0 .5 1]\nPolygon \"P\" [-4 .5 0  0 .5 0  0 .5 1  -4 .5 1]\nAttributeEnd\nIlluminate 7 1\n";
+    const std::string rib = "WorldBegin\nSides 2\nAttributeBegin\nAttribute \"light\" \"string units\" "
+                            "\"radiance\"\nAreaLightSource \"twopolygons\" 7\nSurface \"constant\"\nColor 0 0 0\n"
+                            "Polygon \"P\" [0 .5 0  4 .5 0  4 .5 1  0 .5 1]\nPolygon \"P\" [-4 .5 0  0 .5 0  0 .5 1  -4 .5 "
+                            "1]\nAttributeEnd\nIlluminate 7 1\n";
     for (const char* look : {"polygondiffuse", "polygonloop"}) {
         Settings settings;
         settings.hider = std::string(look) == "polygonloop" ? Hider::Hidden : Hider::Path;
         settings.lightOnly = settings.hider == Hider::Path;
         settings.seed = 31;
-        Scene scene(rib + "Surface \"" + look + "\"\nPolygon \"P\" [-60 0 -60  -60 0 60  60 0 60  60 0 -60]\nWorldEnd\n", settings);
+        Scene scene(rib + "Surface \"" + look + "\"\nPolygon \"P\" [-60 0 -60  -60 0 60  60 0 60  60 0 -60]\nWorldEnd\n",
+                    settings);
         const int pixels = 64, first = 4, last = nightly() ? 13 : 10;
         double sx = 0, sy = 0, sxx = 0, sxy = 0, count = 0;
         for (int m = first; m <= last; ++m) {
@@ -266,7 +272,8 @@ TEST(BiasFloor, SlopeOfALightOfTwoPolygons) {
             const double x = m * std::log(2.0), y = .5 * std::log(square);
             sx += x, sy += y, sxx += x * x, sxy += x * y, ++count;
         }
-        const double spread = sxx - sx * sx / count, slope = (sxy - sx * sy / count) / spread, se = std::sqrt(1 / (2.0 * pixels) / spread);
+        const double spread = sxx - sx * sx / count, slope = (sxy - sx * sy / count) / spread,
+                     se = std::sqrt(1 / (2.0 * pixels) / spread);
         std::printf("%s: slope %.4f +- %.4f\n", look, slope, se);
         EXPECT_LE(slope, -.5 + kZ * se) << look;
     }

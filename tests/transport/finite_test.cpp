@@ -11,11 +11,15 @@ void writeShaders() {
     writeShader("infinite", "surface infinite() { float big = 1e30 * (2 + u); Oi = 1; Ci = big * big; }\n");
     writeShader("nonumber", "surface nonumber() { float big = 1e30 * (2 + u); Oi = 1; Ci = big * big - big * big; }\n");
     writeShader("nonumberoi", "surface nonumberoi() { float big = 1e30 * (2 + u); Oi = big * big - big * big; Ci = .5; }\n");
-    writeShader("heavy", "surface heavy() { float big = 1e30 * (2 + u); Oi = 1;\n    Ci = big * big * diffuse(faceforward(normalize(N), I)); }\n");
-    writeShader("lamp", "light lamp() { float big = 1e30 * (2 + length(Ps)); solar(vector \"world\" (0, 0, 1), 0) Cl = big * big - big * big; }\n");
+    writeShader(
+        "heavy",
+        "surface heavy() { float big = 1e30 * (2 + u); Oi = 1;\n    Ci = big * big * diffuse(faceforward(normalize(N), I)); }\n");
+    writeShader("lamp", "light lamp() { float big = 1e30 * (2 + length(Ps)); solar(vector \"world\" (0, 0, 1), 0) Cl = big * big "
+                        "- big * big; }\n");
     writeShader("glowing", "light glowing() { float big = 1e30 * (2 + length(Ps)); illuminate(P, N, PI) Cl = big * big; }\n");
     writeShader("mirrorof", "surface mirrorof() { Oi = 1; Ci = .5 * trace(P, reflect(normalize(I), normalize(N))); }\n");
-    writeShader("hides", "surface hides() { color c = trace(P, reflect(normalize(I), normalize(N))); Oi = 1; Ci = comp(c, 0) > 0 ? color(1) : color(.25); }\n");
+    writeShader("hides", "surface hides() { color c = trace(P, reflect(normalize(I), normalize(N))); Oi = 1; Ci = comp(c, 0) > 0 "
+                         "? color(1) : color(.25); }\n");
 }
 Settings under(Hider h) {
     Settings s;
@@ -36,10 +40,20 @@ TEST(NotFinite, TheSampleIsLeftOutAndNamed) {
         {"weight", "LightSource \"distantlight\" 2\n" + std::string("Surface \"heavy\"\n") + kBall, "diffuse()", true},
         {"light", lamp + matte + kBall, "\"lamp\"", true},
         {"light in a loop", lamp + matte + kBall, "\"matte\"", false},
-        {"emitter that is sampled or met", "AttributeBegin\nAreaLightSource \"glowing\" 1\nSides 2\nReverseOrientation\nSphere 9 -9 9 360\nAttributeEnd\nIlluminate 1 1\n" + matte + kBall, "\"glowing\"", true},
-        {"behind a mirror", std::string("Surface \"mirrorof\"\n") + kBall + "Surface \"infinite\"\nSides 2\nSphere 9 -9 9 360\n", "\"infinite\"", false},
-        {"behind a shader that hides it", std::string("Surface \"hides\"\n") + kBall + "Surface \"nonumber\"\nSides 2\nSphere 9 -9 9 360\n", "\"nonumber\"", false},
-        {"shadow", "LightSource \"distantlight\" 2 \"from\" [0 0 -1] \"to\" [0 0 0]\n" + matte + "Disk 0 1 360\nSurface \"nonumberoi\"\nDisk -4 9 360\n", "Oi of shader \"nonumberoi\"", true}};
+        {"emitter that is sampled or met",
+         "AttributeBegin\nAreaLightSource \"glowing\" 1\nSides 2\nReverseOrientation\nSphere 9 -9 9 "
+         "360\nAttributeEnd\nIlluminate 1 1\n" +
+             matte + kBall,
+         "\"glowing\"", true},
+        {"behind a mirror", std::string("Surface \"mirrorof\"\n") + kBall + "Surface \"infinite\"\nSides 2\nSphere 9 -9 9 360\n",
+         "\"infinite\"", false},
+        {"behind a shader that hides it",
+         std::string("Surface \"hides\"\n") + kBall + "Surface \"nonumber\"\nSides 2\nSphere 9 -9 9 360\n", "\"nonumber\"",
+         false},
+        {"shadow",
+         "LightSource \"distantlight\" 2 \"from\" [0 0 -1] \"to\" [0 0 0]\n" + matte +
+             "Disk 0 1 360\nSurface \"nonumberoi\"\nDisk -4 9 360\n",
+         "Oi of shader \"nonumberoi\"", true}};
     for (const Case& c : cases)
         for (const Hider h : {Hider::Path, Hider::Raytrace}) {
             if (c.path != (h == Hider::Path) && (c.path || c.what == "light in a loop")) continue;
@@ -56,14 +70,16 @@ TEST(NotFinite, TheSampleIsLeftOutAndNamed) {
 // Where the call stands that gives it.
 TEST(NotFinite, TheCallIsNamed) {
     writeShaders();
-    Scene s(std::string("WorldBegin\nLightSource \"distantlight\" 2\nSurface \"heavy\"\n") + kBall + "WorldEnd\n", under(Hider::Path));
+    Scene s(std::string("WorldBegin\nLightSource \"distantlight\" 2\nSurface \"heavy\"\n") + kBall + "WorldEnd\n",
+            under(Hider::Path));
     s.one(kSee);
     EXPECT_NE(s.messages().find("heavy.sl:2:"), std::string::npos) << s.messages();
 }
 // Samples that share a call with a spoiled one keep their bits.
 TEST(NotFinite, OtherSamplesStay) {
     writeShaders();
-    const std::string rib = std::string("WorldBegin\nLightSource \"distantlight\" 2\nSurface \"matte\"\n") + kBall + "Surface \"infinite\"\nTranslate 0 0 20\nSphere 9 -9 9 360\nWorldEnd\n";
+    const std::string rib = std::string("WorldBegin\nLightSource \"distantlight\" 2\nSurface \"matte\"\n") + kBall +
+                            "Surface \"infinite\"\nTranslate 0 0 20\nSphere 9 -9 9 360\nWorldEnd\n";
     Scene s(rib, under(Hider::Path));
     std::vector<CameraRay> rays{kSee, rayTo({0, 0, -3}, {.8f, .8f, 0}), rayTo({0, 0, -3}, {-.2f, .1f, 0})};
     for (int i = 0; i < 3; ++i) rays[size_t(i)].px = i;

@@ -112,33 +112,40 @@ Scene underSquare(const std::string& light, double a, const std::string& surface
     set.lightOnly = lightOnly;
     set.bsdfOnly = bsdfOnly;
     const auto corner = [&](int x, int z) { return std::to_string(a * x) + " 2 " + std::to_string(a * z) + " "; };
-    return Scene(world("AttributeBegin\nAreaLightSource \"" + light + "\" 7\nSurface \"constant\"\nColor 0 0 0\nPatch \"bilinear\" \"P\" [" + corner(-1, -1) +
-                       corner(1, -1) + corner(-1, 1) + corner(1, 1) + "]\nAttributeEnd\nIlluminate 7 1\nSurface \"" + surface + "\"\n" + kFloor),
+    return Scene(world("AttributeBegin\nAreaLightSource \"" + light +
+                       "\" 7\nSurface \"constant\"\nColor 0 0 0\nPatch \"bilinear\" \"P\" [" + corner(-1, -1) + corner(1, -1) +
+                       corner(-1, 1) + corner(1, 1) + "]\nAttributeEnd\nIlluminate 7 1\nSurface \"" + surface + "\"\n" + kFloor),
                  set);
 }
 void writeEmitters() {
     writeShader("seenwide", "light seenwide() { illuminate(P) Cl = 3 * du; }\n");
-    writeShader("seenfine", "light seenfine() { illuminate(P) Cl = 3 * abs(float texture(\"" + checker() + "\", 50 * s, 50 * t) - .5); }\n");
+    writeShader("seenfine",
+                "light seenfine() { illuminate(P) Cl = 3 * abs(float texture(\"" + checker() + "\", 50 * s, 50 * t) - .5); }\n");
     writeShader("widematte", "surface widematte() { Oi = 1; Ci = diffuse(normalize(N)); }\n");
-    writeShader("wideboth", "surface wideboth() { normal n = normalize(N); Oi = 1; Ci = .5 * diffuse(n) + specular(n, vector(n), .4); }\n");
+    writeShader("wideboth",
+                "surface wideboth() { normal n = normalize(N); Oi = 1; Ci = .5 * diffuse(n) + specular(n, vector(n), .4); }\n");
     writeShader("widewaits", R"(surface widewaits() {
     color c = trace(P, vector(normalize(N)), "distribution", "cosine", "samplecone", 1, "samplearealights", 1);
     Oi = 1;
     if (comp(c, 0) > -1) Ci = c;
 }
 )");
-    writeShader("wideloop", "surface wideloop() { normal n = normalize(N); Oi = 1; Ci = 0; illuminance(P, n, PI / 2) Ci += Cl * (normalize(L) . n); }\n");
+    writeShader("wideloop", "surface wideloop() { normal n = normalize(N); Oi = 1; Ci = 0; illuminance(P, n, PI / 2) Ci += Cl * "
+                            "(normalize(L) . n); }\n");
 }
 
-// A small emitter over a point that a ray of no width finds: a ray of half angle .35 sees it 2 * .35 * 2 wide, in u over its side.
+// A small emitter over a point that a ray of no width finds: a ray of half angle .35 sees it 2 * .35 * 2 wide, in u over its
+// side.
 TEST(Footprint, OfALightSample) {
     writeEmitters();
     const double a = .05, want = 3 * (2 * .35 * 2) / (2 * a) * (4 * a * a) / (kPi * 4);
     for (const char* surface : {"widematte", "wideloop"})
-        EXPECT_NEAR(underSquare("seenwide", a, surface, true, false).estimate(kView, 2000).mean(), want, 1e-3 * want) << surface; // its corners: 1e-3 off
+        EXPECT_NEAR(underSquare("seenwide", a, surface, true, false).estimate(kView, 2000).mean(), want, 1e-3 * want)
+            << surface; // its corners: 1e-3 off
 }
 
-// Light samples and rays of the lobes estimate one function, whatever the emitter makes of its footprint; so does a loop, as diffuse().
+// Light samples and rays of the lobes estimate one function, whatever the emitter makes of its footprint; so does a loop, as
+// diffuse().
 TEST(Footprint, EmittersLookTheSameToLightSamplesAndRays) {
     writeEmitters();
     for (const char* light : {"seenwide", "seenfine"}) {
@@ -150,10 +157,12 @@ TEST(Footprint, EmittersLookTheSameToLightSamplesAndRays) {
             if (!matte.n) matte = samples;
             EXPECT_GT(rays.mean(), 0) << light << " " << surface;
             for (const Moments* m : {&both, &samples})
-                EXPECT_LE(std::fabs(m->mean() - rays.mean()), kZ * std::hypot(m->se(), rays.se()) + 1e-4 * rays.mean()) << light << " " << surface;
+                EXPECT_LE(std::fabs(m->mean() - rays.mean()), kZ * std::hypot(m->se(), rays.se()) + 1e-4 * rays.mean())
+                    << light << " " << surface;
         }
         const Moments loop = underSquare(light, 1, "wideloop", false, false).estimate(kView, 20000);
-        EXPECT_LE(std::fabs(loop.mean() - matte.mean()), kZ * std::hypot(loop.se(), matte.se()) + 1e-4 * matte.mean()) << light << " loop";
+        EXPECT_LE(std::fabs(loop.mean() - matte.mean()), kZ * std::hypot(loop.se(), matte.se()) + 1e-4 * matte.mean())
+            << light << " loop";
     }
 }
 

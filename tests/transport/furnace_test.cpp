@@ -117,15 +117,18 @@ TEST(Furnace, TransparentLayers) {
         EXPECT_NEAR(r.zSecond, 4, 1e-5);
     }
 }
-// Spheres in spheres, each of which sends out e, reflects a and lets t through, in an opaque one that sends out e and reflects 1 - e: with
-// e + a + t = 1 all see the same radiance, L = e + (a + t) L = 1. One continuation a vertex, chosen between the lobe and what is behind:
-// for grey layers each is worth a + t, so without roulette every sample is the series itself.
+// Spheres in spheres, each of which sends out e, reflects a and lets t through, in an opaque one that sends out e and reflects 1
+// - e: with e + a + t = 1 all see the same radiance, L = e + (a + t) L = 1. One continuation a vertex, chosen between the lobe
+// and what is behind: for grey layers each is worth a + t, so without roulette every sample is the series itself.
 const char* kNested = "Sphere .6 -.6 .6 360\nSphere .8 -.8 .8 360\nSphere 1 -1 1 360\n";
 void writeLayer() {
-    writeShader("layer", "surface layer(color e = .2, a = .3, t = .5;) { Oi = 1 - t; Ci = e + a * diffuse(faceforward(normalize(N), I)); }\n");
+    writeShader(
+        "layer",
+        "surface layer(color e = .2, a = .3, t = .5;) { Oi = 1 - t; Ci = e + a * diffuse(faceforward(normalize(N), I)); }\n");
 }
 std::string nested(const std::string& layer, const std::string& wall) {
-    return "WorldBegin\nSides 2\nSurface \"layer\" " + layer + "\n" + kNested + "Surface \"layer\" " + wall + "\n" + kSphere + "WorldEnd\n";
+    return "WorldBegin\nSides 2\nSurface \"layer\" " + layer + "\n" + kNested + "Surface \"layer\" " + wall + "\n" + kSphere +
+           "WorldEnd\n";
 }
 TEST(Furnace, NestedLayersAreASeries) {
     writeLayer();
@@ -144,7 +147,8 @@ TEST(Furnace, NestedLayersAreASeries) {
 }
 TEST(Furnace, NestedLayersWithRoulette) {
     writeLayer();
-    const std::string layer = "\"e\" [.2 .3 .1] \"a\" [.3 .6 .2] \"t\" [.5 .1 .7]", wall = "\"e\" [.2 .3 .1] \"a\" [.8 .7 .9] \"t\" [0 0 0]";
+    const std::string layer = "\"e\" [.2 .3 .1] \"a\" [.3 .6 .2] \"t\" [.5 .1 .7]",
+                      wall = "\"e\" [.2 .3 .1] \"a\" [.8 .7 .9] \"t\" [0 0 0]";
     for (int k = 0; k < 4; ++k) {
         Settings s;
         s.hider = Hider::Path;
@@ -160,8 +164,8 @@ TEST(Furnace, NestedLayersWithRoulette) {
         }
     }
 }
-// The same about layers that send out nothing, in walls that are area lights: light samples go through the layers, and are weighted
-// against lobe rays that compete with what is behind.
+// The same about layers that send out nothing, in walls that are area lights: light samples go through the layers, and are
+// weighted against lobe rays that compete with what is behind.
 TEST(Furnace, NestedLayersInWallsOfLight) {
     writeLayer();
     writeShader("glow", "light glow() { illuminate(P, -N, PI / 2) Cl = 1; }\n");
@@ -171,10 +175,15 @@ TEST(Furnace, NestedLayersInWallsOfLight) {
         s.maxDepth = 500;
         s.bsdfOnly = mode == 1;
         s.lightOnly = mode == 2;
-        Scene scene(std::string("WorldBegin\nSides 2\nAttributeBegin\nAreaLightSource \"glow\" 3\nSurface \"layer\" \"e\" [0 0 0] \"a\" [0 0 0] \"t\" [0 0 0]\n"
-                                "Sphere 1.3 -1.3 1.3 360\nAttributeEnd\nIlluminate 3 1\nSurface \"layer\" \"e\" [0 0 0] \"t\" [.7 .7 .7]\n") + kNested + "WorldEnd\n",
-                    s);
-        expectMean(scene.estimate(kInside, samples(20000, 1'000'000)), 1, nightly() ? .002 : .015, "mode " + std::to_string(mode));
+        Scene scene(
+            std::string(
+                "WorldBegin\nSides 2\nAttributeBegin\nAreaLightSource \"glow\" 3\nSurface \"layer\" \"e\" [0 0 0] \"a\" [0 0 0] "
+                "\"t\" [0 0 0]\n"
+                "Sphere 1.3 -1.3 1.3 360\nAttributeEnd\nIlluminate 3 1\nSurface \"layer\" \"e\" [0 0 0] \"t\" [.7 .7 .7]\n") +
+                kNested + "WorldEnd\n",
+            s);
+        expectMean(scene.estimate(kInside, samples(20000, 1'000'000)), 1, nightly() ? .002 : .015,
+                   "mode " + std::to_string(mode));
     }
 }
 TEST(Furnace, FogAndMatte) {

@@ -42,8 +42,9 @@ TEST(Growth, RaysAreLinearInDepth) {
         EXPECT_GT(m.mean(), 0);
     }
 }
-// What bounces and what goes on through surfaces are one choice: closed spheres of half opacity cost no more rays a bounce than opaque ones
-// do. A shader that does not multiply its Ci by Oi gives away more than it receives, and is tamed by what comes through.
+// What bounces and what goes on through surfaces are one choice: closed spheres of half opacity cost no more rays a bounce than
+// opaque ones do. A shader that does not multiply its Ci by Oi gives away more than it receives, and is tamed by what comes
+// through.
 TEST(Growth, HalfOpaqueSurfacesAreLinearInDepth) {
     writeShader("notpremultiplied", "surface notpremultiplied() { Oi = Os; Ci = Cs * diffuse(faceforward(normalize(N), I)); }\n");
     for (const bool roulette : {false, true}) {
@@ -53,8 +54,10 @@ TEST(Growth, HalfOpaqueSurfacesAreLinearInDepth) {
             s.hider = Hider::Path;
             s.roulette = roulette;
             s.maxDepth = k ? 24 : 8;
-            Scene scene("WorldBegin\nSides 2\nLightSource \"pointlight\" 1 \"intensity\" 1\nSurface \"notpremultiplied\"\nOpacity [.5 .5 .5]\n"
-                        "Sphere 3 -3 3 360\nSphere 4 -4 4 360\nOpacity [1 1 1]\nSphere 5 -5 5 360\nWorldEnd\n", s);
+            Scene scene("WorldBegin\nSides 2\nLightSource \"pointlight\" 1 \"intensity\" 1\nSurface "
+                        "\"notpremultiplied\"\nOpacity [.5 .5 .5]\n"
+                        "Sphere 3 -3 3 360\nSphere 4 -4 4 360\nOpacity [1 1 1]\nSphere 5 -5 5 360\nWorldEnd\n",
+                        s);
             Counters c;
             const Moments m = scene.estimate(kEye, 2000, &c);
             EXPECT_TRUE(std::isfinite(m.mean()));

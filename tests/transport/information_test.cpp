@@ -43,9 +43,11 @@ TEST(Information, AttributesAsTheyAreWhenUnset) {
             Scene s(world("Surface \"asks\" \"what\" \"" + std::string(r.name) + "\"\n" + kFloor), under(h));
             EXPECT_EQ(s.one(kView), Color(r.found, h == Hider::Path ? r.path : r.hidden, 0)) << r.name;
         }
-    writeShader("asksunits", "surface asksunits() { string v = \"?\"; float found = attribute(\"light:units\", v); Oi = 1; Ci = color(found, v == \"radiance\", v == \"samples\"); }\n");
+    writeShader("asksunits", "surface asksunits() { string v = \"?\"; float found = attribute(\"light:units\", v); Oi = 1; Ci = "
+                             "color(found, v == \"radiance\", v == \"samples\"); }\n");
     for (Hider h : {Hider::Hidden, Hider::Path}) // what an area light would give
-        EXPECT_EQ(Scene(world(std::string("Surface \"asksunits\"\n") + kFloor), under(h)).one(kView), h == Hider::Path ? Color(1, 1, 0) : Color(1, 0, 1));
+        EXPECT_EQ(Scene(world(std::string("Surface \"asksunits\"\n") + kFloor), under(h)).one(kView),
+                  h == Hider::Path ? Color(1, 1, 0) : Color(1, 0, 1));
     Scene given(world(std::string("Attribute \"user\" \"uniform float nobody\" 4\nSurface \"asks\" \"what\" \"user:nobody\"\n") + kFloor), under(Hider::Hidden));
     EXPECT_EQ(given.one(kView), Color(1, 4, 0));
 }
@@ -183,7 +185,8 @@ TEST(Information, ArraysGoToArraysOfTheirClass) {
 const char* kDisk = "Surface \"constant\"\nColor 0 0 0\nTranslate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\nAttributeEnd\nIlluminate 7 1\n";
 std::string disk(const std::string& attributes) {
     writeShader("shine", "light shine() { illuminate(P, N, PI / 2) Cl = 5; }\n");
-    return "AttributeBegin\n" + attributes + "Attribute \"light\" \"string units\" \"radiance\" AreaLightSource \"shine\" 7\n" + kDisk;
+    return "AttributeBegin\n" + attributes + "Attribute \"light\" \"string units\" \"radiance\" AreaLightSource \"shine\" 7\n" +
+           kDisk;
 }
 // As many turns of the loop as the light has samples, by either name; together they are the light.
 TEST(Information, SamplesOfAreaLights) {

@@ -7,10 +7,11 @@ using namespace alpenglow::transport::testing;
 
 namespace {
 
-/// The plane z = 5 from -2 to 2: u = (x + 2) / 4, v = (y + 2) / 4. It moves by less than one. Pieces of five pixels: what lies on a
-/// parabola is off by 1e-5, and there are 25 times fewer of them. Derivatives are exact under all hiders: a difference over such a
-/// piece would be off by half of it.
-const std::string kPatch = "ShadingRate 25\nAttribute \"shade\" \"derivatives\" \"exact\"\nAttribute \"displacementbound\" \"float sphere\" 1\nPatch \"bilinear\" \"P\" [-2 -2 5  2 -2 5  -2 2 5  2 2 5]\n";
+/// The plane z = 5 from -2 to 2: u = (x + 2) / 4, v = (y + 2) / 4. It moves by less than one. Pieces of five pixels: what lies on
+/// a parabola is off by 1e-5, and there are 25 times fewer of them. Derivatives are exact under all hiders: a difference over
+/// such a piece would be off by half of it.
+const std::string kPatch = "ShadingRate 25\nAttribute \"shade\" \"derivatives\" \"exact\"\nAttribute \"displacementbound\" "
+                           "\"float sphere\" 1\nPatch \"bilinear\" \"P\" [-2 -2 5  2 -2 5  -2 2 5  2 2 5]\n";
 const Hider kHiders[] = {Hider::Hidden, Hider::Raytrace, Hider::Path};
 
 /// What the camera sees where u and v are these.

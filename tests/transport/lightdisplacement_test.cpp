@@ -47,8 +47,11 @@ INSTANTIATE_TEST_SUITE_P(Hiders, LightDisplacement, ::testing::Values(Hider::Hid
 TEST(LightDisplacementPath, EmittersThatAreMet) {
     writeShader("tells", "displacement tells(float k = 1; output varying float told = 0; output varying color tint = 0;) { told = 7 + k; tint = color(1, k, 3); }\n");
     writeShader("glows", "light glows() { float v = 0; displacement(\"told\", v); illuminate(P, N, PI / 2) Cl = v; }\n");
-    const std::string rib = world("AttributeBegin Surface \"constant\" Color 0 0 0 Attribute \"light\" \"string units\" \"radiance\" AreaLightSource \"glows\" 1 Translate 0 2 0 Sphere .5 -.5 .5 360 AttributeEnd\nIlluminate 1 1\n"
-                                  "Surface \"matte\" Displacement \"tells\" " + std::string(kTile));
+    const std::string rib =
+        world("AttributeBegin Surface \"constant\" Color 0 0 0 Attribute \"light\" \"string units\" \"radiance\" AreaLightSource "
+              "\"glows\" 1 Translate 0 2 0 Sphere .5 -.5 .5 360 AttributeEnd\nIlluminate 1 1\n"
+              "Surface \"matte\" Displacement \"tells\" " +
+              std::string(kTile));
     for (const bool only : {false, true}) {
         Settings s = withShaders(Hider::Path);
         s.bsdfOnly = only;

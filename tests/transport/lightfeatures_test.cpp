@@ -39,7 +39,8 @@ void writeLooks() {
 )");
 }
 std::string disk(const std::string& attributes, const std::string& light) {
-    return "AttributeBegin\n" + attributes + "Attribute \"light\" \"string units\" \"radiance\" AreaLightSource " + light + "\nSurface \"constant\"\nColor 0 0 0\nTranslate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\nAttributeEnd\n" +
+    return "AttributeBegin\n" + attributes + "Attribute \"light\" \"string units\" \"radiance\" AreaLightSource " + light +
+           "\nSurface \"constant\"\nColor 0 0 0\nTranslate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\nAttributeEnd\n" +
            "Illuminate 7 1\n";
 }
 const double kDiskValue = 5 * .49 / 4.49; // L R^2 / (R^2 + h^2)
@@ -150,9 +151,11 @@ TEST(ManyLights, SumStaysTheSame) {
         double d2 = x * x + y * y + z * z;
         if (i % 10 == 9) { // a sphere wholly above the horizon: L (R / d)^2 cos a
             double radius = .2;
-            lights += "AttributeBegin\nAttribute \"light\" \"string units\" \"radiance\" AreaLightSource \"slrect\" " + std::to_string(i + 1) + " \"float intensity\" " + std::to_string(power * 8) +
-                      "\nSurface \"constant\"\nColor 0 0 0\nOpacity 0 0 0\nTranslate " + std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) +
-                      "\nSphere .2 -.2 .2 360\nAttributeEnd\nIlluminate " + std::to_string(i + 1) + " 1\n";
+            lights += "AttributeBegin\nAttribute \"light\" \"string units\" \"radiance\" AreaLightSource \"slrect\" " +
+                      std::to_string(i + 1) + " \"float intensity\" " + std::to_string(power * 8) +
+                      "\nSurface \"constant\"\nColor 0 0 0\nOpacity 0 0 0\nTranslate " + std::to_string(x) + " " +
+                      std::to_string(y) + " " + std::to_string(z) + "\nSphere .2 -.2 .2 360\nAttributeEnd\nIlluminate " +
+                      std::to_string(i + 1) + " 1\n";
             want += power * 8 * radius * radius / d2 * y / std::sqrt(d2);
         } else {
             lights += "LightSource \"pointlight\" " + std::to_string(i + 1) + " \"float intensity\" " + std::to_string(power) + " \"point from\" [" + std::to_string(x) + " " +

@@ -236,7 +236,8 @@ TEST(Illuminance, OutputsAreReadWhereRaysMeetLights) {
     illuminate(P, N, PI / 2) Cl = strength;
 }
 )");
-    const std::string disk = "AttributeBegin\nAttribute \"light\" \"string units\" \"radiance\" AreaLightSource \"readsarea\" 7\nSurface \"constant\"\nColor 0 0 0\n"
+    const std::string disk = "AttributeBegin\nAttribute \"light\" \"string units\" \"radiance\" AreaLightSource \"readsarea\" "
+                             "7\nSurface \"constant\"\nColor 0 0 0\n"
                              "Translate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\nAttributeEnd\nIlluminate 7 1\n";
     const char* kUp = "normal n = normal \"world\" (0, 1, 0); ";
     const struct { const char *body, *what; } cases[] = {
@@ -263,8 +264,10 @@ TEST(LightHandles, LightOfAllSamples) {
     all[0]->light(l, c);
     Ci = c * max(0, normalize(-l) . normal "world" (0, 1, 0));)");
     auto with = [&](int n) {
-        const std::string disk = "AttributeBegin\nAttribute \"light\" \"integer samples\" [" + std::to_string(n) + "]\nAttribute \"light\" \"string units\" \"radiance\" AreaLightSource \"halfdark\" 7\nSurface \"constant\"\n"
-                                 "Color 0 0 0\nTranslate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\nAttributeEnd\nIlluminate 7 1\n";
+        const std::string disk =
+            "AttributeBegin\nAttribute \"light\" \"integer samples\" [" + std::to_string(n) +
+            "]\nAttribute \"light\" \"string units\" \"radiance\" AreaLightSource \"halfdark\" 7\nSurface \"constant\"\n"
+            "Color 0 0 0\nTranslate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\nAttributeEnd\nIlluminate 7 1\n";
         return Scene(scene(disk, "\"byhandle\""), under(Hider::Hidden)).estimate(kView, samples(6000));
     };
     const auto one = with(1), nine = with(9);
@@ -287,7 +290,8 @@ TEST(Illuminance, CoShadersLoopOverLights) {
 
 TEST(Illuminance, SamplesOfAnAreaLightAreTurns) {
     surfaceOf("turns", "    illuminance(P) Ci += 1;");
-    const std::string disk = "AttributeBegin\nAttribute \"light\" \"integer samples\" [6]\nAttribute \"light\" \"string units\" \"radiance\" AreaLightSource \"slrect\" 7\nSurface \"constant\"\nColor 0 0 0\n"
+    const std::string disk = "AttributeBegin\nAttribute \"light\" \"integer samples\" [6]\nAttribute \"light\" \"string units\" "
+                             "\"radiance\" AreaLightSource \"slrect\" 7\nSurface \"constant\"\nColor 0 0 0\n"
                              "Translate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\nAttributeEnd\nIlluminate 7 1\n";
     Scene s(scene(disk, "\"turns\""), under(Hider::Hidden));
     EXPECT_NEAR(s.one(kView).x, 6, 1e-5);
@@ -316,7 +320,8 @@ TEST(LightWeights, NonDiffuseAndNonSpecular) {
 // Emitters that a lobe's own ray meets are weighed like those that it samples: L R^2 / (R^2 + h^2) in all three ways.
 TEST(LightWeights, OfEmittersMetByRays) {
     writeShader("weighedarea", "light weighedarea(float __nondiffuse = .75;) { illuminate(P, N, PI / 2) Cl = 5; }\n");
-    const std::string disk = "AttributeBegin\nAttribute \"light\" \"string units\" \"radiance\" AreaLightSource \"weighedarea\" 7\nSurface \"constant\"\nColor 0 0 0\nTranslate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\n"
+    const std::string disk = "AttributeBegin\nAttribute \"light\" \"string units\" \"radiance\" AreaLightSource \"weighedarea\" "
+                             "7\nSurface \"constant\"\nColor 0 0 0\nTranslate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\n"
                              "AttributeEnd\nIlluminate 7 1\n";
     for (int mode : {0, 1, 2}) {
         Settings set = under(Hider::Path);
@@ -420,7 +425,8 @@ TEST(Illuminance, MoreLightsThanAreKept) {
 // Lights with several samples give as many turns, and the kept samples are those of the first loop: a difference of two loops is nothing.
 TEST(Illuminance, SamplesAreKeptOneByOne) {
     surfaceOf("difference", "    color a = 0, b = 0; illuminance(P) { a += Cl * length(L); } illuminance(P) { b += Cl * length(L); } Ci = abs(comp(a - b, 0)); Ci += a;");
-    const std::string disk = "AttributeBegin\nAttribute \"light\" \"integer samples\" [5]\nAttribute \"light\" \"string units\" \"radiance\" AreaLightSource \"slrect\" 7\nSurface \"constant\"\nColor 0 0 0\n"
+    const std::string disk = "AttributeBegin\nAttribute \"light\" \"integer samples\" [5]\nAttribute \"light\" \"string units\" "
+                             "\"radiance\" AreaLightSource \"slrect\" 7\nSurface \"constant\"\nColor 0 0 0\n"
                              "Translate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\nAttributeEnd\nIlluminate 7 1\n";
     surfaceOf("samesum", "    illuminance(P) { Ci += Cl * length(L); }");
     Scene one(scene(disk, "\"samesum\""), under(Hider::Hidden)), two(scene(disk, "\"difference\""), under(Hider::Hidden));

@@ -1,4 +1,5 @@
-// Outputs that light reaches, displayed beside Ci: the beauty is what it is without them, to the bit, and they have all of their light.
+// Outputs that light reaches, displayed beside Ci: the beauty is what it is without them, to the bit, and they have all of their
+// light.
 #include "transport/box.h"
 #include "transport/floorscene.h"
 #include <cstring>
@@ -24,7 +25,8 @@ struct Shown {
     }
 };
 
-Shown show(const std::string& rib, const std::vector<CameraRay>& rays, const std::vector<std::string>& outputs, Hider h = Hider::Path, int lanes = 16) {
+Shown show(const std::string& rib, const std::vector<CameraRay>& rays, const std::vector<std::string>& outputs,
+           Hider h = Hider::Path, int lanes = 16) {
     Settings set = withShaders(h);
     set.outputs = outputs;
     set.lanes = lanes;
@@ -47,7 +49,8 @@ std::string boxWith(const std::string& shader, bool spheres = true) {
 void expectSameBeauty(const Shown& a, const Shown& b, const std::string& what) {
     ASSERT_EQ(a.samples.size(), b.samples.size());
     int differ = 0;
-    for (size_t i = 0; i < a.samples.size(); ++i) differ += std::memcmp(&a.samples[i].color, &b.samples[i].color, sizeof(Color)) != 0;
+    for (size_t i = 0; i < a.samples.size(); ++i)
+        differ += std::memcmp(&a.samples[i].color, &b.samples[i].color, sizeof(Color)) != 0;
     EXPECT_EQ(differ, 0) << what << ": of " << a.samples.size() << " samples";
 }
 
@@ -59,11 +62,13 @@ void expectIsBeauty(const Shown& a, size_t at, const std::string& what) {
     double worst = 0;
     for (const SampleResult& r : a.samples)
         for (int k = 0; k < 3 && !seesLamp(r); ++k)
-            worst = std::max(worst, std::fabs(double(r.aovs[at + size_t(k)]) - r.color[k]) / (1e-3 + std::fabs(double(r.color[k]))));
+            worst =
+                std::max(worst, std::fabs(double(r.aovs[at + size_t(k)]) - r.color[k]) / (1e-3 + std::fabs(double(r.color[k]))));
     EXPECT_LT(worst, 2e-6) << what;
 }
 
-const char* const kParts = R"(surface parts(output varying color d = 0; output varying color gloss = 0; output varying color none = 0; output varying float red = 0;) {
+const char* const kParts =
+    R"(surface parts(output varying color d = 0; output varying color gloss = 0; output varying color none = 0; output varying float red = 0;) {
     normal Nf = faceforward(normalize(N), I);
     d = Cs * diffuse(Nf);
     gloss = 0.3 * Cs * specular(Nf, -normalize(I), 0.3);
@@ -73,7 +78,9 @@ const char* const kParts = R"(surface parts(output varying color d = 0; output v
 })";
 
 TEST(LightOutputs, AnOutputThatIsCi) {
-    writeShader("isci", "surface isci(output varying color d = 0;) { d = Cs * diffuse(faceforward(normalize(N), I)); Oi = Os; Ci = d; }\n");
+    writeShader(
+        "isci",
+        "surface isci(output varying color d = 0;) { d = Cs * diffuse(faceforward(normalize(N), I)); Oi = Os; Ci = d; }\n");
     const auto rays = boxRays(24, 3);
     const std::string rib = boxWith("isci");
     const Shown plain = show(rib, rays, {});
@@ -85,7 +92,8 @@ TEST(LightOutputs, AnOutputThatIsCi) {
     }
 }
 
-// Two parts add up to Ci in every sample; a part that Ci does not have, and a number made of components, have the means of closed forms.
+// Two parts add up to Ci in every sample; a part that Ci does not have, and a number made of components, have the means of closed
+// forms.
 TEST(LightOutputs, PartsOfCi) {
     writeShader("parts", kParts);
     const auto rays = boxRays(24, 5);
@@ -99,7 +107,8 @@ TEST(LightOutputs, PartsOfCi) {
         for (const SampleResult& r : with.samples) {
             if (seesLamp(r)) continue;
             for (size_t k = 0; k < 3; ++k)
-                worst = std::max(worst, std::fabs(double(r.aovs[k]) + r.aovs[3 + k] - r.color[int(k)]) / (1e-3 + std::fabs(double(r.color[int(k)]))));
+                worst = std::max(worst, std::fabs(double(r.aovs[k]) + r.aovs[3 + k] - r.color[int(k)]) /
+                                            (1e-3 + std::fabs(double(r.color[int(k)]))));
             worst = std::max(worst, std::fabs(double(r.aovs[9]) - 2 * double(r.aovs[0])) / (1e-3 + std::fabs(double(r.aovs[0]))));
         }
         EXPECT_LT(worst, 3e-6);
@@ -111,7 +120,8 @@ TEST(LightOutputs, PartsOfCi) {
 }
 
 /// A white floor under an even sky, whose shader tells outputs: means over n samples of one ray.
-std::vector<Moments> underASky(const std::string& surface, const std::vector<std::string>& outputs, Hider h, int n, bool suspend = false, std::string* said = nullptr) {
+std::vector<Moments> underASky(const std::string& surface, const std::vector<std::string>& outputs, Hider h, int n,
+                               bool suspend = false, std::string* said = nullptr) {
     Settings set = withShaders(h);
     set.outputs = outputs;
     set.suspend = suspend;
@@ -128,7 +138,8 @@ std::vector<Moments> underASky(const std::string& surface, const std::vector<std
     return m;
 }
 
-// diffuse() under a sky of radiance 1 is 1. Outputs that Ci does not have, or has with another weight, through transparent layers too.
+// diffuse() under a sky of radiance 1 is 1. Outputs that Ci does not have, or has with another weight, through transparent layers
+// too.
 TEST(LightOutputs, ClosedForms) {
     writeShader("tells", R"(surface tells(output varying color a = 0; output varying color b = 0; output varying color c = 0;) {
     normal Nf = faceforward(normalize(N), I);
@@ -136,13 +147,16 @@ TEST(LightOutputs, ClosedForms) {
     a = d; b = color(0, 3, 0.25) * d + 0.5; c = 100 * d;
     Oi = Os; Ci = Oi * (color(0.25, 0, 0.5) * d + 0.125);
 })");
-    const std::string pane = "Opacity [.5 .5 .5]\nSurface \"tells\"\nPolygon \"P\" [-1 .3 -1  -1 .3 1  1 .3 1  1 .3 -1]\nOpacity [1 1 1]\n";
+    const std::string pane =
+        "Opacity [.5 .5 .5]\nSurface \"tells\"\nPolygon \"P\" [-1 .3 -1  -1 .3 1  1 .3 1  1 .3 -1]\nOpacity [1 1 1]\n";
     for (bool suspend : {false, true}) {
         const auto m = underASky("Surface \"tells\"\n", {"a", "b", "c"}, Hider::Path, 4096, suspend);
         ASSERT_EQ(m.size(), 4u);
         const double want[4][3] = {{.375, .125, .625}, {1, 1, 1}, {.5, 3.5, .75}, {100, 100, 100}};
         for (size_t o = 0; o < 4; ++o)
-            for (int k = 0; k < 3; ++k) EXPECT_LE(std::fabs(m[o].mean(k) - want[o][k]), kZ * m[o].se(k) + 1e-5 * want[o][k]) << o << " " << k << " " << m[o].mean(k);
+            for (int k = 0; k < 3; ++k)
+                EXPECT_LE(std::fabs(m[o].mean(k) - want[o][k]), kZ * m[o].se(k) + 1e-5 * want[o][k])
+                    << o << " " << k << " " << m[o].mean(k);
     }
     // The pane shows half of its outputs, and half of the floor's: .5 of a on the pane (with half its sky), and of the floor's.
     const auto one = underASky("Surface \"tells\"\n" + pane, {"a"}, Hider::Path, 4096);
@@ -150,7 +164,8 @@ TEST(LightOutputs, ClosedForms) {
     EXPECT_LT(one[1].mean(), 1.5);
 }
 
-// An output that is not affine in light while Ci is: Ci keeps all of it to the bit, the output has direct light, and that is said.
+// An output that is not affine in light while Ci is: Ci keeps all of it to the bit, the output has direct light, and that is
+// said.
 TEST(LightOutputs, NotAffine) {
     writeShader("bent", R"(surface bent(output varying color d = 0; output varying color e = 0;) {
     color c = Cs * diffuse(faceforward(normalize(N), I));
@@ -162,7 +177,8 @@ TEST(LightOutputs, NotAffine) {
     const Shown plain = show(rib, rays, {}), with = show(rib, rays, {"d", "e"});
     expectSameBeauty(plain, with, "bent");
     expectIsBeauty(with, 3, "the other output");
-    EXPECT_NE(with.messages.find("output \"d\" of shader \"bent\" holds only the direct light of diffuse"), std::string::npos) << with.messages;
+    EXPECT_NE(with.messages.find("output \"d\" of shader \"bent\" holds only the direct light of diffuse"), std::string::npos)
+        << with.messages;
     EXPECT_GT(with.mean(0), 0.005);
     EXPECT_LT(with.mean(0), with.mean(3)); // no indirect light
 }
@@ -175,7 +191,8 @@ TEST(LightOutputs, WaitsAlone) {
     d = comp(t, 0) > 0.5 ? color(2) : color(1);
     Oi = 1; Ci = 0.5 * t;
 })");
-    const auto with = underASky("Surface \"waits\"\n", {"d"}, Hider::Path, 256), plain = underASky("Surface \"waits\"\n", {}, Hider::Path, 256);
+    const auto with = underASky("Surface \"waits\"\n", {"d"}, Hider::Path, 256),
+               plain = underASky("Surface \"waits\"\n", {}, Hider::Path, 256);
     EXPECT_EQ(with[0].s[0], plain[0].s[0]);
     EXPECT_NEAR(with[1].mean(), 2, 1e-6);
     EXPECT_NEAR(with[0].mean(), .5, 1e-5);
@@ -193,7 +210,9 @@ TEST(LightOutputs, LoopsAndArrays) {
     for (Hider h : {Hider::Hidden, Hider::Path}) {
         Settings set = withShaders(h);
         set.outputs = {"list"};
-        Scene s(world("LightSource \"pointlight\" 1 \"point from\" [0 2 0] \"intensity\" 8\nSurface \"loops\"\n" + std::string(kFloor)), set);
+        Scene s(world("LightSource \"pointlight\" 1 \"point from\" [0 2 0] \"intensity\" 8\nSurface \"loops\"\n" +
+                      std::string(kFloor)),
+                set);
         const SampleResult r = s.trace(std::vector<CameraRay>{kView})[0];
         EXPECT_EQ(s.messages(), "");
         EXPECT_NEAR(r.color.x, 1, 1e-5); // I cos / d^2 / 2

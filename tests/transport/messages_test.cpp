@@ -54,7 +54,8 @@ TEST_P(Hiders, OutputsOfTheDisplacement) {
 TEST_P(Hiders, OutputsOfTheDisplacementHaveDerivatives) {
     writeHump();
     writeShader("slopes", "surface slopes() { float h = 0; displacement(\"hump\", h); Oi = 1; Ci = color(Du(h), Dv(h), h * 0 + Du(h * h)); }\n");
-    Scene s(displaced("Attribute \"shade\" \"string derivatives\" \"exact\"\nDisplacement \"humps\"\nSurface \"slopes\"\n"), under(GetParam()));
+    Scene s(displaced("Attribute \"shade\" \"string derivatives\" \"exact\"\nDisplacement \"humps\"\nSurface \"slopes\"\n"),
+            under(GetParam()));
     const float h = 3 * .2f + 5 * .3f;
     expectNear(s.one(kMiddle), Color(3, 5, 2 * h * 3), 1e-4f, "slopes");
 }

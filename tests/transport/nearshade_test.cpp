@@ -42,8 +42,8 @@ struct Light {
 std::vector<Light> lights() {
     const std::string shadows = "Attribute \"light\" \"string shadows\" \"on\"\n";
     auto area = [&](const std::string& shape) {
-        return "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nAttribute \"light\" \"string units\" \"radiance\"\n" + shadows +
-               "AreaLightSource \"radiant\" 7 \"radiance\" 9\nSurface \"constant\"\nColor 0 0 0\n" + shape +
+        return "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nAttribute \"light\" \"string units\" \"radiance\"\n" +
+               shadows + "AreaLightSource \"radiant\" 7 \"radiance\" 9\nSurface \"constant\"\nColor 0 0 0\n" + shape +
                "AttributeEnd\nIlluminate 7 1\n";
     };
     return {{"point", shadows + "LightSource \"pointlight\" 7 \"intensity\" 36 \"from\" [0 2 0]\n", false},

@@ -221,8 +221,10 @@ TEST(NestedIlluminance, SamplesOfAreaLights) {
     surfaceOf("nesthandle", R"(    shader all[] = getlights();
     illuminance(P, n, PI / 2) { color o = Cl * (normalize(L) . n), c = 0; vector l = 0; all[0]->light(l, c); Ci += o * c * (normalize(-l) . n); })");
     const auto disk = [](const std::string& shader, int samples) {
-        return "AttributeBegin\nAttribute \"light\" \"integer samples\" [" + std::to_string(samples) + "]\nAttribute \"light\" \"string units\" \"radiance\" AreaLightSource \"" + shader +
-               "\" 7\nSurface \"constant\"\nColor 0 0 0\nTranslate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\nAttributeEnd\nIlluminate 7 1\n";
+        return "AttributeBegin\nAttribute \"light\" \"integer samples\" [" + std::to_string(samples) +
+               "]\nAttribute \"light\" \"string units\" \"radiance\" AreaLightSource \"" + shader +
+               "\" 7\nSurface \"constant\"\nColor 0 0 0\nTranslate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 "
+               "360\nAttributeEnd\nIlluminate 7 1\n";
     };
     const float once = 4 * .49f / 4.49f;
     for (int n : {1, 4})

@@ -104,7 +104,8 @@ TEST(Parameters, SlopesOfBump) {
 }
 )");
     const std::string wave = writeMap("parameters_wave.exr", 256, 256, [](int x, int, int) { return float(std::sin(2 * kPi * (x + .5) / 256)); }, "periodic,periodic");
-    Scene s(world("Attribute \"shade\" \"derivatives\" \"exact\"\nSurface \"slopebump\" \"map\" " + wave + "\n" + kFloor), under(Hider::Hidden));
+    Scene s(world("Attribute \"shade\" \"derivatives\" \"exact\"\nSurface \"slopebump\" \"map\" " + wave + "\n" + kFloor),
+            under(Hider::Hidden));
     // Slopes of .36 at most, two texels of phase off (2 pi / 256 each): .018.
     for (int i = 0; i < 16; ++i)
         near(s.one(rayTo({0, 8, 0}, {float(i % 4 * 20 - 31), 0, float(i / 4 * 20 - 27)})), Color(0), .02,

@@ -1,5 +1,6 @@
-// trace() that samples area lights: what its light samples find is what its rays could meet. A disk of radius 1/2 and radiance 1 hangs 1 above
-// the floor: "cosine" gives R^2 / (R^2 + h^2) = 1/5 of it, and of the part within a distance D, whose radius is sqrt(D^2 - h^2), the same.
+// trace() that samples area lights: what its light samples find is what its rays could meet. A disk of radius 1/2 and radiance 1
+// hangs 1 above the floor: "cosine" gives R^2 / (R^2 + h^2) = 1/5 of it, and of the part within a distance D, whose radius is
+// sqrt(D^2 - h^2), the same.
 #include "transport/harness.h"
 
 using namespace alpenglow;
@@ -9,27 +10,36 @@ using namespace alpenglow::transport::testing;
 namespace {
 
 // Radiance: raytrace would take the light for one of its day, which no ray meets.
-const std::string kDisk = "AttributeBegin\nAttribute \"light\" \"string units\" \"radiance\"\nAttribute \"grouping\" \"membership\" \"lamps\"\nAreaLightSource \"hanging\" 1\nSurface \"black\"\nDisk 1 .5 360\nAttributeEnd\nIlluminate 1 1\n";
-const std::string kCard = "AttributeBegin\nAttribute \"grouping\" \"membership\" \"cards\"\nSurface \"black\"\nDisk 1.5 .25 360\nAttributeEnd\n";
+const std::string kDisk =
+    "AttributeBegin\nAttribute \"light\" \"string units\" \"radiance\"\nAttribute \"grouping\" \"membership\" "
+    "\"lamps\"\nAreaLightSource \"hanging\" 1\nSurface \"black\"\nDisk 1 .5 360\nAttributeEnd\nIlluminate 1 1\n";
+const std::string kCard =
+    "AttributeBegin\nAttribute \"grouping\" \"membership\" \"cards\"\nSurface \"black\"\nDisk 1.5 .25 360\nAttributeEnd\n";
 const CameraRay kFloorSeen = rayTo({0, 0, 1.75f}, {0, 0, 2});
 
 void writeLight() { writeShader("hanging", "light hanging() { illuminate(P, vector \"world\" (0, 0, 1), PI / 2) Cl = 1; }\n"); }
 
 /// By light samples and rays, by light samples alone, by rays alone; affine and waiting kernels; both hiders that trace.
-void expectAll(const std::string& options, const std::string& others, double want, const std::string& floor = "", double precision = .02) {
+void expectAll(const std::string& options, const std::string& others, double want, const std::string& floor = "",
+               double precision = .02) {
     static int number = 0;
     const std::string name = "asking" + std::to_string(number++);
     writeShader("black", "surface black() { Oi = 1; Ci = 0; }\n");
     writeLight();
-    writeShader(name, "surface " + name + "() { Oi = 1; Ci = trace(P, vector(faceforward(normalize(N), I)), \"distribution\", \"cosine\", \"samplecone\", PI / 2, "
-                      "\"samplearealights\", 1" + options + "); }\n");
+    writeShader(name, "surface " + name +
+                          "() { Oi = 1; Ci = trace(P, vector(faceforward(normalize(N), I)), \"distribution\", \"cosine\", "
+                          "\"samplecone\", PI / 2, "
+                          "\"samplearealights\", 1" +
+                          options + "); }\n");
     for (int mode = 0; mode < 5; ++mode) {
         Settings s;
         s.hider = mode == 4 ? Hider::Raytrace : Hider::Path;
         s.lightOnly = mode == 1;
         s.bsdfOnly = mode == 2;
         s.suspend = mode == 3;
-        Scene scene("WorldBegin\nSides 2\n" + others + floor + "Surface \"" + name + "\"\nPolygon \"P\" [-9 -9 2  9 -9 2  9 9 2  -9 9 2]\nWorldEnd\n", s);
+        Scene scene("WorldBegin\nSides 2\n" + others + floor + "Surface \"" + name +
+                        "\"\nPolygon \"P\" [-9 -9 2  9 -9 2  9 9 2  -9 9 2]\nWorldEnd\n",
+                    s);
         const Moments m = scene.estimate(kFloorSeen, 40000);
         if (want == 0) EXPECT_EQ(m.mean(), 0) << options << " mode " << mode;
         else expectMean(m, want, precision, options + " mode " + std::to_string(mode));
@@ -65,13 +75,18 @@ TEST(TraceLights, Sides) {
             s.hider = Hider::Path;
             writeShader("black", "surface black() { Oi = 1; Ci = 0; }\n");
             const std::string name = std::string("oneside") + side;
-            writeShader(name, "surface " + name + "() { Oi = 1; Ci = trace(P, vector(faceforward(normalize(N), I)), \"distribution\", \"cosine\", \"samplecone\", PI / 2, "
-                              "\"samplearealights\", 1, \"hitsides\", \"" + side + "\"); }\n");
+            writeShader(name, "surface " + name +
+                                  "() { Oi = 1; Ci = trace(P, vector(faceforward(normalize(N), I)), \"distribution\", "
+                                  "\"cosine\", \"samplecone\", PI / 2, "
+                                  "\"samplearealights\", 1, \"hitsides\", \"" +
+                                  side + "\"); }\n");
             double means[2];
             for (int mode = 0; mode < 2; ++mode) {
                 s.lightOnly = mode == 0;
                 s.bsdfOnly = mode == 1;
-                Scene scene("WorldBegin\nSides 2\n" + kDisk + card + "Surface \"" + name + "\"\nPolygon \"P\" [-9 -9 2  9 -9 2  9 9 2  -9 9 2]\nWorldEnd\n", s);
+                Scene scene("WorldBegin\nSides 2\n" + kDisk + card + "Surface \"" + name +
+                                "\"\nPolygon \"P\" [-9 -9 2  9 -9 2  9 9 2  -9 9 2]\nWorldEnd\n",
+                            s);
                 means[mode] = scene.estimate(kFloorSeen, 20000).mean();
             }
             EXPECT_NEAR(means[0], means[1], .02) << side;
@@ -84,16 +99,21 @@ TEST(TraceLights, Sides) {
 // "maxdist" bounds what a ray meets. One that meets nothing within it sees the sky, as if nothing were behind.
 TEST(TraceLights, SkyBehindADistance) {
     writeShader("black", "surface black() { Oi = 1; Ci = 0; }\n");
-    const std::string roof = "LightSource \"envlight\" 5 \"intensity\" [2]\nAttributeBegin\nSurface \"black\"\nPolygon \"P\" [-99 -99 1  99 -99 1  99 99 1  -99 99 1]\nAttributeEnd\n";
-    for (const auto& [options, want] : {std::pair<std::string, double>{"", 0}, {", \"maxdist\", 2", 0}, {", \"maxdist\", .5", 2}, {", \"maxhitdist\", .5", 2}})
+    const std::string roof = "LightSource \"envlight\" 5 \"intensity\" [2]\nAttributeBegin\nSurface \"black\"\nPolygon \"P\" "
+                             "[-99 -99 1  99 -99 1  99 99 1  -99 99 1]\nAttributeEnd\n";
+    for (const auto& [options, want] :
+         {std::pair<std::string, double>{"", 0}, {", \"maxdist\", 2", 0}, {", \"maxdist\", .5", 2}, {", \"maxhitdist\", .5", 2}})
         for (const bool wait : {false, true}) {
             Settings s;
             s.hider = Hider::Path;
             s.suspend = wait;
             static int number = 0;
             const std::string name = "skyward" + std::to_string(number++);
-            writeShader(name, "surface " + name + "() { Oi = 1; Ci = trace(P, vector(faceforward(normalize(N), I))" + options + "); }\n");
-            Scene scene("WorldBegin\nSides 2\n" + roof + "Surface \"" + name + "\"\nPolygon \"P\" [-9 -9 2  9 -9 2  9 9 2  -9 9 2]\nWorldEnd\n", s);
+            writeShader(name, "surface " + name + "() { Oi = 1; Ci = trace(P, vector(faceforward(normalize(N), I))" + options +
+                                  "); }\n");
+            Scene scene("WorldBegin\nSides 2\n" + roof + "Surface \"" + name +
+                            "\"\nPolygon \"P\" [-9 -9 2  9 -9 2  9 9 2  -9 9 2]\nWorldEnd\n",
+                        s);
             EXPECT_NEAR(scene.one(kFloorSeen).x, want, 1e-5) << options;
         }
 }

@@ -72,8 +72,9 @@ std::string floorScene(const std::string& lights, const std::string& look, const
            "\nPolygon \"P\" [-60 0 -60  -60 0 60  60 0 60  60 0 -60]\nAttributeEnd\n" + more + "WorldEnd\n";
 }
 std::string areaLight(double radiance, const std::string& geometry, const std::string& shader = "slrect") {
-    return "AttributeBegin\nAttribute \"light\" \"string units\" \"radiance\" AreaLightSource \"" + shader + "\" 7 \"float intensity\" [" + std::to_string(radiance) +
-           "]\nSurface \"constant\"\nColor 0 0 0\n" + geometry + "\nAttributeEnd\nIlluminate 7 1\n";
+    return "AttributeBegin\nAttribute \"light\" \"string units\" \"radiance\" AreaLightSource \"" + shader +
+           "\" 7 \"float intensity\" [" + std::to_string(radiance) + "]\nSurface \"constant\"\nColor 0 0 0\n" + geometry +
+           "\nAttributeEnd\nIlluminate 7 1\n";
 }
 
 // Irradiance at the origin of a plane with normal +y from a polygon of radiance 1 above it: Lambert's formula.
@@ -314,31 +315,37 @@ TEST(Units, HighlightsOfWideLights) {
     for (const auto& [roughness, asked] : {std::pair{".8", false}, {".1", true}}) {
         const std::string look = std::string("\"look_highlight\" \"roughness\" ") + roughness;
         Scene under((asked ? rispec : "") + floorScene(sky, look), s);
-        expectMean(under.estimate(kEye, samples(20000)), .8 * 8 / (e + 2) * (1 - std::pow(.5, (e + 2) / 2)), .006, "specular under a sky");
+        expectMean(under.estimate(kEye, samples(20000)), .8 * 8 / (e + 2) * (1 - std::pow(.5, (e + 2) / 2)), .006,
+                   "specular under a sky");
         Scene below((asked ? rispec : "") + floorScene(disk, look), s);
-        expectMean(below.estimate(kEye, samples(20000)), 3 * 8 / (e + 2) * (1 - std::pow(half, e + 2)), .006, "specular under a disk");
+        expectMean(below.estimate(kEye, samples(20000)), 3 * 8 / (e + 2) * (1 - std::pow(half, e + 2)), .006,
+                   "specular under a disk");
     }
 }
 
-// The exponent of specular() in one process under both settings, asked for by the scene and by the dialect: a point light with H 30
-// degrees off N, so that N.H is sqrt(3)/2.
+// The exponent of specular() in one process under both settings, asked for by the scene and by the dialect: a point light with H
+// 30 degrees off N, so that N.H is sqrt(3)/2.
 TEST(Units, TheExponentOfSpecular) {
     writeLooks();
     const std::string light = "LightSource \"distantlight\" 1 \"from\" [.866025404 .5 0] \"to\" [0 0 0]\n";
     const double c = std::sqrt(.75);
-    struct Case { const char* option; const char* dialect; double exponent; } const cases[] = {
-        {"", "", 80}, {"rispec", "", 10}, {"", "rispec", 10}, {"prman", "", 80}, {"", "prman", 80}, {"prman", "rispec", 10}, {"", "", 80}};
+    struct Case { const char* option; const char* dialect; double exponent;
+    } const cases[] = {{"", "", 80},      {"rispec", "", 10},      {"", "rispec", 10}, {"prman", "", 80},
+                       {"", "prman", 80}, {"prman", "rispec", 10}, {"", "", 80}};
     for (Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path})
         for (const Case& k : cases) {
             Settings s;
             s.hider = h;
             s.dialect = k.dialect;
-            const std::string option = *k.option ? std::string("Option \"shade\" \"string specular\" \"") + k.option + "\"\n" : "";
+            const std::string option =
+                *k.option ? std::string("Option \"shade\" \"string specular\" \"") + k.option + "\"\n" : "";
             Scene scene(option + floorScene(light, "\"look_highlight\""), s);
             const double want = std::pow(c, k.exponent);
-            EXPECT_NEAR(scene.one(kEye).x, want, 1e-4 * want) << k.option << " " << k.dialect << " " << int(h) << scene.messages();
+            EXPECT_NEAR(scene.one(kEye).x, want, 1e-4 * want)
+                << k.option << " " << k.dialect << " " << int(h) << scene.messages();
             Scene standard(option + floorScene(light, "\"look_specular\""), s);
-            EXPECT_NEAR(standard.one(kEye).x, std::pow(c, 10), 1e-4) << "specularstd " << k.option << " " << k.dialect << " " << int(h);
+            EXPECT_NEAR(standard.one(kEye).x, std::pow(c, 10), 1e-4)
+                << "specularstd " << k.option << " " << k.dialect << " " << int(h);
             EXPECT_EQ(scene.diagnostics.errors(), 0) << scene.messages();
         }
 }

@@ -101,7 +101,9 @@ TEST(TraceForAreaLights, NoRaysWithoutLights) {
     EXPECT_EQ(c.x, .25f);
     EXPECT_GE(rays("everything", card, c), 16u);
     // A light to one side: of the directions some meet the ball about it.
-    const std::string light = "AttributeBegin\nTranslate 2 3 0\nAttribute \"light\" \"string units\" \"radiance\" AreaLightSource \"arealight\" 7 \"intensity\" 1\nSphere 0.2 -0.2 0.2 360\nAttributeEnd\nIlluminate 7 1\n";
+    const std::string light =
+        "AttributeBegin\nTranslate 2 3 0\nAttribute \"light\" \"string units\" \"radiance\" AreaLightSource \"arealight\" 7 "
+        "\"intensity\" 1\nSphere 0.2 -0.2 0.2 360\nAttributeEnd\nIlluminate 7 1\n";
     EXPECT_LT(rays("lightonly", light, c), 16u);
 }
 

@@ -62,17 +62,19 @@ enum class ExprKind : uint8_t {
     Index,       ///< args[0][args[1]]: array element, or component of a tuple (type Float), or matrix row is not allowed
     Unary,       ///< op Negate, Not
     Binary,      ///< op; operands already of matching types; Float operand of a tuple operation has been cast to the tuple
-    Assign,      ///< args[0] = args[1]; op Assign (compound forms keep op: `a op= b`, args[1] cast to what op needs); value = new value
+    Assign,      ///< args[0] = args[1]; op Assign (compound forms keep op: `a op= b`, args[1] cast to what op needs); value = new
+                 ///< value
     Conditional, ///< args[0] ? args[1] : args[2]
     Tuple,       ///< (a,b,c) of type Color/Point/Vector/Normal; args = three floats; `space` = optional space name expression
     MatrixTuple, ///< 16 floats; `space` optional
-    ArrayList,   ///< {a, b, c} of an array type, type.array long; elements beyond the args are the last again (text "...") or zero
-    Cast,        ///< to `type`, from args[0] (Bool to Float too); `space` when written `point "shader" p` (value given in that space) or color "hsv" c
-    ShadeopCall, ///< shadeop, signature; args = positional; pairs; `channel` for texture(name[channel]); outputs are lvalues
-    FunctionCall,///< function; args
-    Sequence,    ///< args one after the other; its value is that of the last, which is no array
-    Member,      ///< args[0]->text: a member of a structure (gone before checking) or of another shader
-    Method       ///< args[0]->text(args[1], ...): a method of another shader
+    ArrayList, ///< {a, b, c} of an array type, type.array long; elements beyond the args are the last again (text "...") or zero
+    Cast, ///< to `type`, from args[0] (Bool to Float too); `space` when written `point "shader" p` (value given in that space) or
+          ///< color "hsv" c
+    ShadeopCall,  ///< shadeop, signature; args = positional; pairs; `channel` for texture(name[channel]); outputs are lvalues
+    FunctionCall, ///< function; args
+    Sequence,     ///< args one after the other; its value is that of the last, which is no array
+    Member,       ///< args[0]->text: a member of a structure (gone before checking) or of another shader
+    Method        ///< args[0]->text(args[1], ...): a method of another shader
 };
 enum class ExprOp : uint8_t { None, Add, Sub, Mul, Div, Dot, Cross, Less, LessEqual, Greater, GreaterEqual, Equal, NotEqual, And, Or, Negate, Not, Assign };
 
@@ -193,7 +195,8 @@ std::string toString(const Whole&, const Program&);
 
 struct FrontOptions {
     std::vector<std::string> includePaths;
-    /// Whose predefined macros there are: "prman", "3delight" (also when empty), "aqsis", "bmrt", ... "rispec" has none, and rispecSpecular.
+    /// Whose predefined macros there are: "prman", "3delight" (also when empty), "aqsis", "bmrt", ... "rispec" has none, and
+    /// rispecSpecular.
     std::string dialect;
     bool rispecSpecular = false; ///< specular() and specularbrdf() have the exponent that RISpec prints (shadeops/specular.h)
     std::vector<std::pair<std::string, std::string>> defines;

@@ -200,10 +200,12 @@ void Checker::surveyCall(Expr& e, Info& info) {
     if (!info.array.array) info.either = eitherOf(e, info, infos_);
 }
 
-/// Info::either of a call: it has the same parameters for a float and a tuple; or its arguments make it either, as in max(noise(P), noise(Q)).
+/// Info::either of a call: it has the same parameters for a float and a tuple; or its arguments make it either, as in
+/// max(noise(P), noise(Q)).
 const Expr* Checker::eitherOf(const Expr& call, const Info& info, const std::unordered_map<const Expr*, Info>& infos) {
     const auto mayBeBoth = [](const Info& i) {
-        return i.cost[int(Base::Float)] < kNever && (i.cost[int(Base::Color)] < kNever || i.cost[int(Base::Point)] < kNever || i.cost[int(Base::Vector)] < kNever);
+        return i.cost[int(Base::Float)] < kNever &&
+               (i.cost[int(Base::Color)] < kNever || i.cost[int(Base::Point)] < kNever || i.cost[int(Base::Vector)] < kNever);
     };
     if (!mayBeBoth(info)) return nullptr;
     for (const Choice& a : info.choices) {
@@ -213,7 +215,8 @@ const Expr* Checker::eitherOf(const Expr& call, const Info& info, const std::uno
         for (const Choice& b : info.choices) {
             if (!b.result.isTuple() || b.positional != a.positional) continue;
             const auto others = b.signature ? views(*b.signature, *b.shadeop) : views(*b.function);
-            if (std::equal(parameters.begin(), parameters.end(), others.begin(), others.end(), [](const auto& x, const auto& y) { return x.type == y.type; }))
+            if (std::equal(parameters.begin(), parameters.end(), others.begin(), others.end(),
+                           [](const auto& x, const auto& y) { return x.type == y.type; }))
                 return &call;
         }
     }

@@ -66,8 +66,9 @@ Function* Checker::instance(Function& f, const Unit& unit, const std::pair<std::
     const auto key = std::make_pair(static_cast<const Function*>(&f), rename.second);
     if (const auto found = instances_.find(key); found != instances_.end()) return found->second;
     if (checking_.count(&f) || instanceDepth_ >= limits::kCallDepth) {
-        sources_.error(call, checking_.count(&f) ? "function '" + f.name + "' calls itself; recursion is not allowed"
-                                                 : "calls of functions are nested more than " + std::to_string(limits::kCallDepth) + " deep");
+        sources_.error(call, checking_.count(&f)
+                                 ? "function '" + f.name + "' calls itself; recursion is not allowed"
+                                 : "calls of functions are nested more than " + std::to_string(limits::kCallDepth) + " deep");
         return nullptr;
     }
     checking_.insert(&f);

@@ -40,10 +40,11 @@ private:
         Handle handle = Handle::Text; ///< what the string is, if it is one
         bool channel = false;///< name[channel] of a string that is no array
         std::vector<Choice> choices;
-        /// A call that differs only in what it returns, a float or a tuple, and makes the expression either. Not what is read from maps and
-        /// rays: how many channels these bring is in the map, not in the text.
+        /// A call that differs only in what it returns, a float or a tuple, and makes the expression either. Not what is read
+        /// from maps and rays: how many channels these bring is in the map, not in the text.
         const Expr* either = nullptr;
-        const Expr* number = nullptr; ///< such a call that arithmetic with a number has made a float: docs/language.md has the rule
+        const Expr* number =
+            nullptr; ///< such a call that arithmetic with a number has made a float: docs/language.md has the rule
         Info() { cost.fill(kNever); }
     };
     struct ParameterView { Type type; bool output; Handle handle = Handle::Text; Whole whole{}; };

@@ -123,7 +123,8 @@ private:
                 tall = std::max(tall, depth < limits::kCallDepth ? height[c] + 1 : limits::kCallDepth + 1);
             }
             if (!found && tall > limits::kCallDepth) {
-                sources_.error(method(name)->place, "calls of methods are nested more than " + std::to_string(limits::kCallDepth) + " deep");
+                sources_.error(method(name)->place,
+                               "calls of methods are nested more than " + std::to_string(limits::kCallDepth) + " deep");
                 found = true;
             }
             state[name] = 2;

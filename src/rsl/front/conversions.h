@@ -13,7 +13,7 @@ namespace alpenglow::rsl::front {
 inline constexpr int kPromotion = 1;                 ///< a number meets a tuple in arithmetic: what `2 * c` means
 inline constexpr int kConversion = 1 << 8;           ///< the least that is a conversion: a point where a vector is wanted
 inline constexpr int kBroadcast = 16 * kConversion;  ///< a number becomes a tuple of three alike
-inline constexpr int kLastResort = 1 << 18;          ///< Shadeop::lastResort; a tuple where arithmetic with a number makes a call a float
+inline constexpr int kLastResort = 1 << 18; ///< Shadeop::lastResort; a tuple where arithmetic with a number makes a call a float
 inline constexpr int kCompared = 1 << 19;            ///< a tuple is compared with a number
 inline constexpr int kNever = 1 << 28;
 inline constexpr int kBases = 9;

@@ -144,16 +144,19 @@ void Preprocessor::include(std::vector<Token> line, Place hash) {
     }
     if (name.empty()) { sources_.error(hash, "#include needs \"file\" or <file>"); out_.incomplete = true; return; }
     if (files_ > limits::kIncludeDepth) {
-        if (!nestedTooDeep_) sources_.error(hash, "includes are nested more than " + std::to_string(limits::kIncludeDepth) + " deep");
+        if (!nestedTooDeep_)
+            sources_.error(hash, "includes are nested more than " + std::to_string(limits::kIncludeDepth) + " deep");
         nestedTooDeep_ = out_.incomplete = true; // once: a file that includes itself twice would say so thousands of times
         return;
     }
     if (++includes_ > limits::kIncludes || read_ > limits::kSourceBytes) {
         if (!stopped_)
-            sources_.error(hash, includes_ > limits::kIncludes
-                                     ? "more than " + std::to_string(limits::kIncludes) + " files are included"
-                                     : "the included files have more than " + std::to_string(limits::kSourceBytes) + " bytes together",
-                           "does a file include itself? #pragma once, or #ifndef around its text, keeps it from being read again");
+            sources_.error(
+                hash,
+                includes_ > limits::kIncludes
+                    ? "more than " + std::to_string(limits::kIncludes) + " files are included"
+                    : "the included files have more than " + std::to_string(limits::kSourceBytes) + " bytes together",
+                "does a file include itself? #pragma once, or #ifndef around its text, keeps it from being read again");
         stopped_ = out_.incomplete = true;
         return;
     }
@@ -184,7 +187,8 @@ void Preprocessor::include(std::vector<Token> line, Place hash) {
     }
     out_.incomplete = true;
     if (!refused_.empty()) {
-        sources_.error(place, "'" + refused_ + "' is not read: it lies outside the shader's folder, and its name is none of a header",
+        sources_.error(place,
+                       "'" + refused_ + "' is not read: it lies outside the shader's folder, and its name is none of a header",
                        "headers end in .h, .sl or .inc");
         refused_.clear();
         return;
@@ -192,8 +196,8 @@ void Preprocessor::include(std::vector<Token> line, Place hash) {
     out_.missing.push_back({place, name});
 }
 
-/// Whether a name says that its file is meant to be included. Others are read only below the folder of the shader: words of what is no
-/// RSL would stand in the messages about it.
+/// Whether a name says that its file is meant to be included. Others are read only below the folder of the shader: words of what
+/// is no RSL would stand in the messages about it.
 static bool namedAsHeader(const fs::path& path) {
     std::string e = path.extension().string();
     for (char& c : e) c = char(std::tolower(static_cast<unsigned char>(c)));

@@ -73,8 +73,10 @@ void Checker::warnOfNumbers() {
     for (const auto& [place, what] : madeNumbers_) {
         if (place[0] != 0) continue; // headers are others'
         const std::string type = toString({what.wanted, 0});
-        sources_.warning({place[0], place[1], place[2]}, what.name + "() is a float in arithmetic with a number; the " + type + " that is wanted has three alike components",
-                         "'" + type + " " + what.name + "(...)' has three of its own; 'float " + what.name + "(...)' says that one is meant");
+        sources_.warning(
+            {place[0], place[1], place[2]},
+            what.name + "() is a float in arithmetic with a number; the " + type + " that is wanted has three alike components",
+            "'" + type + " " + what.name + "(...)' has three of its own; 'float " + what.name + "(...)' says that one is meant");
     }
 }
 
@@ -100,7 +102,8 @@ void Checker::settleIndexed(ExprPtr& e) {
     Base best = Base::Void;
     for (Base b : kAll)
         if (Type{b, 0}.isTuple() && info.cost[int(b)] < (best == Base::Void ? kNever : info.cost[int(best)])) best = b;
-    if (info.any || info.array.array || info.listLength >= 0 || best == Base::Void || e->kind == ExprKind::Member) return settleCheapest(e);
+    if (info.any || info.array.array || info.listLength >= 0 || best == Base::Void || e->kind == ExprKind::Member)
+        return settleCheapest(e);
     settleAs(e, best);
 }
 

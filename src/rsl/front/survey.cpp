@@ -233,8 +233,9 @@ bool Checker::isNumber(const Info& i) {
 }
 
 /// What it costs to read the operands `l` and `r` as `a` and `b`. What is wanted reaches through arithmetic: in a color .5 + .5 *
-/// texture(m) is colored, so that what could be a tuple is no number beside one; numbers that are nothing else cost next to nothing.
-/// But what is multiplied by a point, vector or normal scales it: P + noise(P) * N goes along N. docs/language.md has the rule.
+/// texture(m) is colored, so that what could be a tuple is no number beside one; numbers that are nothing else cost next to
+/// nothing. But what is multiplied by a point, vector or normal scales it: P + noise(P) * N goes along N. docs/language.md has
+/// the rule.
 int Checker::operandCost(ExprOp op, const Operation& o, const Info& l, Base a, const Info& r, Base b) {
     const bool scales = op == ExprOp::Mul || op == ExprOp::Div;
     const auto canBe = [](const Info& i, Base as) {

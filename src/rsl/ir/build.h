@@ -18,8 +18,8 @@ namespace alpenglow::rsl {
 /// request.
 std::unique_ptr<ir::Kernel> buildKernel(const Program&, const Shader&, const KernelOptions&, Diagnostics&);
 
-/// The outputs that a kernel under `options` would have, in order, and whether light that is asked for (KernelOptions::path says which
-/// calls ask) reaches them, as a value or by what is decided on it. Empty after an error.
+/// The outputs that a kernel under `options` would have, in order, and whether light that is asked for (KernelOptions::path says
+/// which calls ask) reaches them, as a value or by what is decided on it. Empty after an error.
 std::vector<ir::OutputLight> lightOfOutputs(const Program&, const Shader&, const KernelOptions& options);
 
 /// A kernel whose outputs "param:NAME" (arrays: "param:NAME[i]") are the parameters' defaults, in declaration order.

@@ -149,7 +149,8 @@ void Builder::copyArray(Inst* to, const Expr& from) {
         Inst* rest = from.text == "..." && given > 0 ? coerce(values.back(), to->element) : zero(to->element);
         if (given < n)
             everyElement(n - given, [&](Inst* at) {
-                emit(Op::ArrayStore, Kind::None, {to, emit(Op::Add, Kind::Float, {at, constant(static_cast<float>(given))}), rest});
+                emit(Op::ArrayStore, Kind::None,
+                     {to, emit(Op::Add, Kind::Float, {at, constant(static_cast<float>(given))}), rest});
             });
         return;
     }

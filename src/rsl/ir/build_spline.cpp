@@ -37,7 +37,9 @@ Inst* Builder::spline(const Expr& e) {
     }
     place_ = e.place;
     const bool solved = name->op != Op::ConstString || name->text.rfind("solve", 0) == 0;
-    const int limit = solved && c.kind == Kind::Float ? limits::kSolvedSplinePoints : c.storage ? limits::kShaderArray : limits::kSplinePoints;
+    const int limit = solved && c.kind == Kind::Float ? limits::kSolvedSplinePoints
+                      : c.storage                     ? limits::kShaderArray
+                                                      : limits::kSplinePoints;
     if (c.most > limit) {
         error(e.place, "this spline has " + std::to_string(c.most) + " control points; the limit is " + std::to_string(limit));
         return zero(c.kind);

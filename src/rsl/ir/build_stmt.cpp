@@ -58,7 +58,8 @@ Inst* Builder::alive() {
     return dead ? emit(Op::Not, Kind::Bool, {dead}) : boolean(true);
 }
 
-// Whether the variables that these statements declare can be carried out of a condition without a change of what is known about them.
+// Whether the variables that these statements declare can be carried out of a condition without a change of what is known about
+// them.
 static bool plainDeclarations(const std::vector<StmtPtr>& list, size_t from) {
     return std::all_of(list.begin() + static_cast<ptrdiff_t>(from), list.end(), [](const StmtPtr& s) {
         return !s->definition && std::all_of(s->declarators.begin(), s->declarators.end(), [](const Stmt::Declarator& d) {
@@ -67,9 +68,9 @@ static bool plainDeclarations(const std::vector<StmtPtr>& list, size_t from) {
     });
 }
 
-/// Behind a statement that may have left the function or the turn of the loop, the rest stands in a condition; behind the next such
-/// statement in a condition inside of that. That deep nesting costs time that grows with its square, so after kGuards of them all
-/// conditions are closed (`depth` counts them) and the next begins outside. Returns how far the list was built.
+/// Behind a statement that may have left the function or the turn of the loop, the rest stands in a condition; behind the next
+/// such statement in a condition inside of that. That deep nesting costs time that grows with its square, so after kGuards of
+/// them all conditions are closed (`depth` counts them) and the next begins outside. Returns how far the list was built.
 size_t Builder::statements(const std::vector<StmtPtr>& list, size_t from, int depth) {
     constexpr int kGuards = 128, kPart = 4;
     for (size_t n = from; n < list.size() && !failed_;) {

@@ -49,7 +49,8 @@ std::optional<KernelFile> KernelCache::load(const std::string& key) const {
     if (fd < 0) return {};
     struct stat s{};
     std::string bytes;
-    bool whole = fstat(fd, &s) == 0 && S_ISREG(s.st_mode) && s.st_uid == geteuid() && !(s.st_mode & 022) && size_t(s.st_size) <= maxBytes_;
+    bool whole =
+        fstat(fd, &s) == 0 && S_ISREG(s.st_mode) && s.st_uid == geteuid() && !(s.st_mode & 022) && size_t(s.st_size) <= maxBytes_;
     if (whole) bytes.resize(size_t(s.st_size));
     for (size_t at = 0; whole && at < bytes.size();) {
         const ssize_t n = read(fd, bytes.data() + at, bytes.size() - at);

@@ -13,7 +13,8 @@ public:
     /// An empty directory name: no cache. The directory is made on the first store, for its owner only.
     explicit KernelCache(std::string directory, size_t maxBytes);
     std::optional<KernelFile> load(const std::string& key) const;
-    /// Why the directory is neither read nor written, in a sentence that says what to do: it is another user's, or others can write to it.
+    /// Why the directory is neither read nor written, in a sentence that says what to do: it is another user's, or others can
+    /// write to it.
     /// "" when it can be used or does not exist yet.
     std::string refusal() const;
     /// A full or read-only disk is no error: the next run compiles again.

@@ -108,7 +108,8 @@ std::shared_ptr<const CompiledKernel> load(const KernelFile& k, bool fromCache, 
 
 std::string codeKey(const KernelOptions& o) {
     std::string k = std::string(kVersion) + "\n" + std::string(runtimeHash()) + "\n" + name(isaFor(o.lanes)) + "\n";
-    for (int n : {o.lanes, o.vectors, int(o.mixed), o.optimize, int(o.suspend), int(o.path), o.outline, int(o.differences)}) k += std::to_string(n) + ",";
+    for (int n : {o.lanes, o.vectors, int(o.mixed), o.optimize, int(o.suspend), int(o.path), o.outline, int(o.differences)})
+        k += std::to_string(n) + ",";
     auto text = [&](const std::string& s) { k += std::to_string(s.size()) + ":" + s; };
     k += "\noutputs ";
     for (const auto& s : o.outputs) text(s);

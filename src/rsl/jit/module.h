@@ -58,11 +58,11 @@ inline constexpr const char* kDestroyName = "alpenglow_destroy";
 using ModuleCompileFn = void (*)(const ModuleRequest*, ModuleResult*);
 using ModuleStampFn = const char* (*)();
 
-/// The file that is loaded: $ALPENGLOW_JIT, else libalpenglow_jit.so beside the program, in ../lib, or where it was built; "" when there
-/// is none.
+/// The file that is loaded: $ALPENGLOW_JIT, else libalpenglow_jit.so beside the program, in ../lib, or where it was built; ""
+/// when there is none.
 std::string moduleFile();
-/// Compiles through the module, loading it when needed. The error says where it was looked for. Throws std::bad_alloc when memory is
-/// short.
+/// Compiles through the module, loading it when needed. The error says where it was looked for. Throws std::bad_alloc when memory
+/// is short.
 void compileWithModule(const ModuleRequest&, ModuleResult&);
 /// True once the module, and with it LLVM, is in the process.
 bool moduleLoaded();

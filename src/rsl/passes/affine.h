@@ -8,7 +8,8 @@
 
 namespace alpenglow::rsl::ir {
 
-/// Requests whose results are not used affinely in Kernel::light (Ci, mostly) alone, with the reason, in order of their sites. Long or short form.
+/// Requests whose results are not used affinely in Kernel::light (Ci, mostly) alone, with the reason, in order of their sites.
+/// Long or short form.
 std::vector<std::pair<int, std::string>> nonAffineSites(const Kernel&);
 
 /// Replaces every Request by an Emit (Mark and Rescale where the weight is only known after a loop) when all of them are affine;

@@ -36,7 +36,8 @@ struct Analysis {
             return;
         }
         for (size_t s = 0; s < k.sites.size(); ++s)
-            if (d.ordinals[s] >= 0 && mask.has(static_cast<size_t>(d.ordinals[s])) && d.bad.emplace(static_cast<int>(s), why + where(at)).second)
+            if (d.ordinals[s] >= 0 && mask.has(static_cast<size_t>(d.ordinals[s])) &&
+                d.bad.emplace(static_cast<int>(s), why + where(at)).second)
                 changed = true;
     }
 
@@ -123,7 +124,8 @@ struct Analysis {
 
     void inst(const Inst* i) {
         const SiteSet m = all(i);
-        if (i->op == Op::Input && !symbol.empty() && k.inputs[static_cast<size_t>(i->index)].name == symbol) raise(i, SiteSet::of(0), 0);
+        if (i->op == Op::Input && !symbol.empty() && k.inputs[static_cast<size_t>(i->index)].name == symbol)
+            raise(i, SiteSet::of(0), 0);
         switch (i->op) {
         case Op::Result:
             result(i, i->args[0], static_cast<size_t>(i->index));

@@ -14,7 +14,8 @@ struct Dependence {
     std::vector<int> ordinals;
     /// Requests used in a way that is not affine, with the first reason.
     std::map<int, std::string> bad;
-    /// By instruction id, of floats: bits 0 to 2, the components that the value was made of; bit 3, the float result of a Request.
+    /// By instruction id, of floats: bits 0 to 2, the components that the value was made of; bit 3, the float result of a
+    /// Request.
     std::vector<uint8_t> channels;
     static constexpr uint8_t kGrey = 8;
     const SiteSet& of(const Inst* i) const {
@@ -27,8 +28,8 @@ struct Dependence {
 /// Either form.
 Dependence analyseDependence(const Kernel&);
 
-/// The same for one input instead of Requests: values that depend on it have a member; `bad`, when not empty, says at key -1 why the
-/// kernel is not affine in it. Long form, for kernels without Requests.
+/// The same for one input instead of Requests: values that depend on it have a member; `bad`, when not empty, says at key -1 why
+/// the kernel is not affine in it. Long form, for kernels without Requests.
 Dependence analyseInput(const Kernel&, const std::string& input);
 
 /// Runtime calls that are affine in their first two arguments: mix.

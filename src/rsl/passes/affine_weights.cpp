@@ -14,7 +14,9 @@ bool Weights::run(Inst* ci) {
         const bool grey = v->kind == Kind::Float && v->id < d.channels.size() && (d.channels[v->id] & Dependence::kGrey);
         Inst* w = one();
         if (grey) {
-            w = k.make(Op::Triple, Kind::Triple, {leaves.constant(Kind::Float, 1.0f), leaves.constant(Kind::Float, 0.0f), leaves.constant(Kind::Float, 0.0f)});
+            w = k.make(
+                Op::Triple, Kind::Triple,
+                {leaves.constant(Kind::Float, 1.0f), leaves.constant(Kind::Float, 0.0f), leaves.constant(Kind::Float, 0.0f)});
             code.push_back(w);
         }
         seeds.emplace_back(ci->args[0], w);

@@ -19,8 +19,8 @@ class Weights {
 public:
     Weights(Kernel& kernel, const Dependence& dependence) : k(kernel), d(dependence) {}
 
-    /// Puts an Emit in place of every Request that reaches `ci` (an Output of Kernel::light, or null for none). The Requests stay.
-    /// False when a weight cannot be had: then why() and stuckSite() tell.
+    /// Puts an Emit in place of every Request that reaches `ci` (an Output of Kernel::light, or null for none). The Requests
+    /// stay. False when a weight cannot be had: then why() and stuckSite() tell.
     bool run(Inst* ci);
     /// Adds Output number `output`, the weight of the inputs together in `ci`. Dependence on them: analyseInput. False as above.
     bool runToInputs(Inst* ci, const std::vector<Inst*>& inputs, int output);

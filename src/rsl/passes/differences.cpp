@@ -124,7 +124,9 @@ private:
         r[k] = {by, as};
     }
 
-    bool wanted(const Inst* o, size_t k, Neighbour n, const Inst* within) const { return (demand_->result(o, k, within) & bitOf(n)) != 0; }
+    bool wanted(const Inst* o, size_t k, Neighbour n, const Inst* within) const {
+        return (demand_->result(o, k, within) & bitOf(n)) != 0;
+    }
 
     void repeat(Inst* o, Neighbour n, const Inst* within) {
         switch (o->op) {
@@ -156,7 +158,8 @@ private:
     void callAt(Inst* o, size_t k, Neighbour n) {
         Inst* f = o->args[0];
         std::vector<Inst*> args{functionAt(f, static_cast<int>(k), n)};
-        for (const auto& [p, m] : demand_->function(f, static_cast<int>(k), n).carried(f, f)) args.push_back(value(o->args[static_cast<size_t>(p) + 1], m));
+        for (const auto& [p, m] : demand_->function(f, static_cast<int>(k), n).carried(f, f))
+            args.push_back(value(o->args[static_cast<size_t>(p) + 1], m));
         Inst* c = put(like(o, std::move(args)));
         c->results = {o->results[k]};
         setResult(o, n, k, c, 0);
@@ -175,7 +178,8 @@ private:
         if (c->results.empty() && !(demand_->effects(o, within) && n == base_)) return;
         repeating(n, within, [&] {
             for (size_t r = 0; r < 2; ++r)
-                c->regions.push_back(repeatedRegion(o->regions[r], n, within ? within : o, [](Region&) {}, [&](Region& to) { to.yields = values(which[r], n); }));
+                c->regions.push_back(repeatedRegion(
+                    o->regions[r], n, within ? within : o, [](Region&) {}, [&](Region& to) { to.yields = values(which[r], n); }));
         });
         put(c);
     }
@@ -198,7 +202,8 @@ private:
             for (size_t r = 0; r < 2; ++r) {
                 const Region& from = o->regions[r];
                 const auto begin = [&](Region& to) {
-                    for (const auto& [k, m] : carried) to.params.push_back(parameter(from.params[static_cast<size_t>(k)], m, to.params.size()));
+                    for (const auto& [k, m] : carried)
+                        to.params.push_back(parameter(from.params[static_cast<size_t>(k)], m, to.params.size()));
                 };
                 const auto end = [&](Region& to) {
                     if (r == 0) to.yields = values(from.yields, n);
@@ -285,7 +290,8 @@ private:
         demand_ = &own;
         Inst* yield = f->regions[0].yields[static_cast<size_t>(result)];
         const auto begin = [&](Region& to) {
-            for (const auto& [p, m] : own.carried(f, f)) to.params.push_back(parameter(f->regions[0].params[static_cast<size_t>(p)], m, to.params.size()));
+            for (const auto& [p, m] : own.carried(f, f))
+                to.params.push_back(parameter(f->regions[0].params[static_cast<size_t>(p)], m, to.params.size()));
         };
         mine->regions.push_back(repeatedRegion(f->regions[0], n, f, begin, [&](Region& to) { to.yields = {value(yield, n)}; }));
         demand_ = outer;
@@ -302,7 +308,8 @@ private:
         Region& r = f->regions[0];
         Scope s;
         scopes_ = {&s};
-        for (const auto& [p, n] : demand_->carried(f, nullptr)) r.params.push_back(parameter(r.params[static_cast<size_t>(p)], n, r.params.size()));
+        for (const auto& [p, n] : demand_->carried(f, nullptr))
+            r.params.push_back(parameter(r.params[static_cast<size_t>(p)], n, r.params.size()));
         for (Inst* i : r.body) mainInst(i);
         r.body = std::move(s.out);
         scopes_.clear();
@@ -338,7 +345,8 @@ private:
             beside(demand_->results(i, nullptr), [&](Neighbour n) { repeat(i, n, nullptr); });
             std::vector<Inst*> more;
             if (i->op == Op::Call)
-                for (const auto& [p, n] : demand_->carried(i->args[0], nullptr)) more.push_back(value(i->args[static_cast<size_t>(p) + 1], n));
+                for (const auto& [p, n] : demand_->carried(i->args[0], nullptr))
+                    more.push_back(value(i->args[static_cast<size_t>(p) + 1], n));
             i->args.insert(i->args.end(), more.begin(), more.end());
             put(i);
             return;
@@ -356,7 +364,8 @@ private:
         const Demand::Carried carried = demand_->carried(o, nullptr);
         std::vector<Inst*> more;
         for (const auto& [k, n] : carried) {
-            if (!repeated(o, n, static_cast<size_t>(k))) setResult(o, n, static_cast<size_t>(k), o, static_cast<int>(o->results.size()));
+            if (!repeated(o, n, static_cast<size_t>(k)))
+                setResult(o, n, static_cast<size_t>(k), o, static_cast<int>(o->results.size()));
             const size_t at = static_cast<size_t>(k) + (light ? 3 : 0);
             o->results.push_back(o->results[static_cast<size_t>(k)]);
             if (!branch) more.push_back(value(o->args[at], n));
@@ -368,7 +377,8 @@ private:
             scopes_.push_back(&s);
             if (!branch)
                 for (const auto& [k, n] : carried)
-                    region.params.push_back(parameter(region.params[static_cast<size_t>(k) + (light ? 4 : 0)], n, region.params.size()));
+                    region.params.push_back(
+                        parameter(region.params[static_cast<size_t>(k) + (light ? 4 : 0)], n, region.params.size()));
             for (Inst* i : region.body) mainInst(i);
             if (branch || r + 1 == o->regions.size()) // not the condition of a loop
                 for (const auto& [k, n] : carried) region.yields.push_back(value(region.yields[static_cast<size_t>(k)], n));

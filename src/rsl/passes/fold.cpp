@@ -183,7 +183,8 @@ struct Folder {
                 rep.set(i, rep(owner->regions[owner->args[0]->numbers[0] != 0 ? 0 : 1].yields[static_cast<size_t>(i->index)]));
                 return;
             }
-            if (owner->op == Op::Runtime && owner->text == "al_comp" && isConst(owner->args[1])) { // light can be followed through it
+            if (owner->op == Op::Runtime && owner->text == "al_comp" &&
+                isConst(owner->args[1])) { // light can be followed through it
                 const float n = owner->args[1]->numbers[0];
                 if (n == 0 || n == 1 || n == 2) {
                     Inst* part = k.make(Op::Extract, Kind::Float, {owner->args[0]});

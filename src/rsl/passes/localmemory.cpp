@@ -9,7 +9,8 @@ namespace {
 // A value and its derivative parts: 1, 3 or 6 floats a component.
 size_t bytesOf(const Inst* array) {
     const size_t parts = array->order == 0 ? 1 : array->order == 1 ? 3 : 6;
-    return static_cast<size_t>(std::max(1, array->index)) * static_cast<size_t>(components(array->element)) * parts * sizeof(float);
+    return static_cast<size_t>(std::max(1, array->index)) * static_cast<size_t>(components(array->element)) * parts *
+           sizeof(float);
 }
 
 } // namespace

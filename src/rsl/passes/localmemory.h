@@ -5,8 +5,8 @@
 
 namespace alpenglow::rsl::ir {
 
-/// Bytes that the local arrays of a kernel whose derivatives are ordered (passes/derivatives.h) take for one point at most, those of its
-/// functions included.
+/// Bytes that the local arrays of a kernel whose derivatives are ordered (passes/derivatives.h) take for one point at most, those
+/// of its functions included.
 size_t localArrayBytes(const Kernel&);
 /// An error at the largest array when that is more than limits::kShaderMemory. The same for every number of lanes.
 void checkLocalMemory(const Kernel&, Diagnostics&);

@@ -7,7 +7,8 @@
 namespace alpenglow::rsl::ir {
 
 bool stepFrom(Neighbour n, bool v, Neighbour& next) {
-    static constexpr Neighbour kNext[3][2] = {{Neighbour::U, Neighbour::V}, {Neighbour::UU, Neighbour::UV}, {Neighbour::UV, Neighbour::VV}};
+    static constexpr Neighbour kNext[3][2] = {
+        {Neighbour::U, Neighbour::V}, {Neighbour::UU, Neighbour::UV}, {Neighbour::UV, Neighbour::VV}};
     if (n > Neighbour::V) return false;
     next = kNext[static_cast<size_t>(n)][v];
     return true;
@@ -42,7 +43,8 @@ bool Motion::markPlain(const Region& r) {
         plain_[i->id] = own;
         if (i->op == Op::Function) continue;
         const bool effect = i->op == Op::ArrayStore || i->op == Op::Request || i->op == Op::LightLoop || i->op == Op::Output ||
-                            (i->op == Op::Service && !k_.sites[static_cast<size_t>(i->site)].pure) || (i->op == Op::Call && !plain_[i->args[0]->id]);
+                            (i->op == Op::Service && !k_.sites[static_cast<size_t>(i->site)].pure) ||
+                            (i->op == Op::Call && !plain_[i->args[0]->id]);
         plain = plain && own && !effect;
     }
     return plain;
@@ -323,7 +325,8 @@ void Demand::spreadResult(Inst* o, int index, Neighbour n, const Inst* within) {
     case Op::Service:
         return spreadService(o, n, within);
     case Op::Call:
-        for (const auto& [p, m] : function(o->args[0], index, n).carried(o->args[0], o->args[0])) want(o->args[static_cast<size_t>(p) + 1], m, within);
+        for (const auto& [p, m] : function(o->args[0], index, n).carried(o->args[0], o->args[0]))
+            want(o->args[static_cast<size_t>(p) + 1], m, within);
         return;
     case Op::If: {
         const bool repeat = within || motion_.repeatable(o, index);

@@ -34,8 +34,8 @@ public:
     bool inside(const Inst* i, const Inst* construct) const;
     Inst* owner(const Inst* i) const { return owner_[i->id]; } ///< the construct around it; null: none
     const std::vector<Inst*>& stores(const Inst* array) const { return stores_[array->id]; }
-    /// Whether result `index` of an If or a Loop, or of a Function, can be worked out again elsewhere: what it needs from within has
-    /// no effects, asks no rays and no lights, and reads no array that is written both there and outside.
+    /// Whether result `index` of an If or a Loop, or of a Function, can be worked out again elsewhere: what it needs from within
+    /// has no effects, asks no rays and no lights, and reads no array that is written both there and outside.
     bool repeatable(const Inst* construct, int index) const;
     int position(const Inst* parameter) const; ///< in the regions of its construct
 
@@ -55,9 +55,9 @@ private:
     mutable std::map<std::pair<const Inst*, int>, bool> repeatable_;
 };
 
-/// What is wanted at which neighbours. A value within a construct is wanted either there, beside the point, so that its neighbours
-/// take the branch that the point takes; or in a repetition of the construct at the neighbour, which takes the neighbour's own
-/// branches. `within` names the outermost repeated construct, null for none.
+/// What is wanted at which neighbours. A value within a construct is wanted either there, beside the point, so that its
+/// neighbours take the branch that the point takes; or in a repetition of the construct at the neighbour, which takes the
+/// neighbour's own branches. `within` names the outermost repeated construct, null for none.
 class Demand {
 public:
     using Functions = std::map<std::tuple<const Inst*, int, Neighbour>, std::unique_ptr<Demand>>;
@@ -71,7 +71,8 @@ public:
     uint8_t array(const Inst* a, const Inst* within) const { return get(arrays_, a, within); }
     uint8_t result(const Inst* owner, size_t index, const Inst* within) const { return get(results_, owner, within, index); }
     uint8_t results(const Inst* owner, const Inst* within) const;
-    /// What a Loop, LightLoop or Function carries beside its own values, or what a followed If gives: index and neighbour, in order.
+    /// What a Loop, LightLoop or Function carries beside its own values, or what a followed If gives: index and neighbour, in
+    /// order.
     using Carried = std::vector<std::pair<int, Neighbour>>;
     Carried carried(const Inst* construct, const Inst* within) const;
     Demand& function(const Inst* f, int result, Neighbour);

@@ -1,4 +1,5 @@
-// Values of a kernel beside the point while differences are taken: where each stands, and what inputs are there (differences.cpp).
+// Values of a kernel beside the point while differences are taken: where each stands, and what inputs are there
+// (differences.cpp).
 #pragma once
 #include "rsl/ir/edit.h"
 #include "rsl/passes/neighbours.h"
@@ -102,7 +103,8 @@ protected:
         return count == 1 ? step(v) : atRoot(Op::Mul, Kind::Float, {step(v), constant(Kind::Float, count)});
     }
     Inst* perStep(bool v) {
-        return rootValue(footprint(v), Neighbour::V, [&] { return atRoot(Op::Div, Kind::Float, {constant(Kind::Float, 1), step(v)}); });
+        return rootValue(footprint(v), Neighbour::V,
+                         [&] { return atRoot(Op::Div, Kind::Float, {constant(Kind::Float, 1), step(v)}); });
     }
     /// a + b k.
     Inst* plus(Inst* a, Inst* b, Inst* k) {

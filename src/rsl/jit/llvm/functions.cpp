@@ -58,7 +58,8 @@ Jet Emitter::receive(Kind k, const Slot& s, const std::function<Value*()>& next)
 Emitter::Made Emitter::function(const Inst* f, const std::vector<std::vector<Slot>>& arguments) {
     std::string key = std::to_string(f->id);
     std::vector<Shape> shapes;
-    std::vector<llvm::Type*> types = {ptr_, i32_, vi_, ptr_}; // the kernel's call, the strip's first point, the mask, local memory
+    std::vector<llvm::Type*> types = {ptr_, i32_, vi_,
+                                      ptr_}; // the kernel's call, the strip's first point, the mask, local memory
     const ir::Region& body = f->regions[0];
     for (size_t a = 0; a < arguments.size(); a++) {
         Shape shape;

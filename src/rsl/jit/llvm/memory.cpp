@@ -92,8 +92,9 @@ void Emitter::output(const Inst* i) {
     }
 }
 
-// Null while the stack has room for `bytes` more; else a place in the kernel's local memory, which is known from `place` on (null: in
-// the whole body). One kernel has one stack and one memory, however its functions call each other: no RSL function calls itself.
+// Null while the stack has room for `bytes` more; else a place in the kernel's local memory, which is known from `place` on
+// (null: in the whole body). One kernel has one stack and one memory, however its functions call each other: no RSL function
+// calls itself.
 Value* Emitter::localMemory(uint64_t bytes, uint64_t align, llvm::Instruction* place) {
     if (shared_->stackBytes + bytes <= limits::kKernelStack) {
         shared_->stackBytes += bytes;

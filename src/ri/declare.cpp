@@ -1,4 +1,5 @@
 #include "ri/declare.h"
+#include "scene/knownoptions.h"
 #include <charconv>
 #include <vector>
 
@@ -66,116 +67,23 @@ constexpr Known kStandard[] = {
     {"emit", "int"},
 };
 
-// ri.md 15: names of options and attributes, keyed "class:name". A name that is numbers here and strings there is absent:
-// its value decides.
-constexpr Known kImplementation[] = {
-    {"searchpath:shader", "string"},
-    {"searchpath:texture", "string"},
-    {"searchpath:archive", "string"},
-    {"searchpath:procedural", "string"},
-    {"searchpath:display", "string"},
-    {"searchpath:resource", "string"},
-    {"searchpath:rslplugin", "string"},
-    {"limits:bucketsize", "int[2]"},
-    {"limits:gridsize", "int"},
-    {"limits:eyesplits", "int"},
-    {"limits:texturememory", "int"},
-    {"limits:texturesample", "int"},
-    {"limits:othreshold", "color"},
-    {"limits:zthreshold", "color"},
-    {"limits:brickmemory", "int"},
-    {"limits:numthreads", "int"},
-    {"trace:maxdepth", "int"},
-    {"shadow:sample", "int"},
-    {"shadow:bias", "float"},
-    {"shadow:bias0", "float"},
-    {"shadow:bias1", "float"},
-    {"render:bucketorder", "string"},
-    {"render:nthreads", "int"},
-    {"shutter:offset", "float"},
-    {"shutter:shutteropening", "float[2]"},
-    {"statistics:endofframe", "int"},
-    {"statistics:filename", "string"},
-    {"statistics:progress", "int"},
-    {"hider:jitter", "int"},
-    {"hider:depthfilter", "string"},
-    {"ribparse:varsubst", "string"},
-    {"netcache:directory", "string"},
-    {"netcache:size", "int"},
-    {"photon:emit", "int"},
-    {"identifier:name", "string"},
-    {"identifier:shadinggroup", "string"},
-    {"grouping:membership", "string"},
-    {"grouping:tracesubset", "string"},
-    {"visibility:camera", "int"},
-    {"visibility:trace", "int"},
-    {"visibility:diffuse", "int"},
-    {"visibility:specular", "int"},
-    {"visibility:subset", "string"},
-    {"sides:doubleshaded", "int"},
-    {"displacementbound:sphere", "float"},
-    {"displacementbound:coordinatesystem", "string"},
-    {"trace:bias", "float"},
-    {"trace:displacements", "int"},
-    {"trace:samplemotion", "int"},
-    {"trace:maxdiffusedepth", "int"},
-    {"trace:maxspeculardepth", "int"},
-    {"shade:transmissionhitmode", "string"},
-    {"shade:diffusehitmode", "string"},
-    {"shade:specularhitmode", "string"},
-    {"shade:camerahitmode", "string"},
-    {"shade:derivatives", "string"},
-    {"shade:strategy", "string"},
-    {"shade:specular", "string"},
-    {"irradiance:shadingrate", "float"},
-    {"irradiance:nsamples", "int"},
-    {"irradiance:handle", "string"},
-    {"irradiance:filemode", "string"},
-    {"irradiance:maxerror", "float"},
-    {"irradiance:maxpixeldist", "float"},
-    {"photon:globalmap", "string"},
-    {"photon:causticmap", "string"},
-    {"photon:shadingmodel", "string"},
-    {"photon:estimator", "int"},
-    {"subsurface:groupname", "string"},
-    {"subsurface:scale", "float"},
-    {"subsurface:refractionindex", "float"},
-    {"subsurface:shadingrate", "float"},
-    {"subsurface:absorption", "color"},
-    {"subsurface:scattering", "color"},
-    {"subsurface:meanfreepath", "color"},
-    {"subsurface:reflectance", "color"},
-    {"subsurface:samples", "int"},
-    {"dice:rasterorient", "int"},
-    {"dice:hair", "int"},
-    {"dice:referencecamera", "string"},
-    {"dice:strategy", "string"},
-    {"dice:minlength", "float"},
-    {"dice:binary", "int"},
-    {"derivatives:smooth", "int"},
-    {"derivatives:centered", "int"},
-    {"cull:hidden", "int"},
-    {"cull:backfacing", "int"},
-    {"geometry:backfacing", "int"},
-    {"geometry:frontfacing", "int"},
-    {"geometry:geometricnormal", "int"},
-    {"hider:composite", "int"},
-    {"light:samples", "int"},
-    {"light:samplingstrategy", "string"},
-    {"light:units", "string"},
-    {"light:emitphotons", "int"},
-    {"trimcurve:sense", "string"},
-};
-
-// Numbers in one file, strings in another: the value decides.
-constexpr const char* kByValue[] = {"visibility:transmission", "visibility:photon", "photon:estimator", "light:shadows",
-                                    "shade:resolution"};
-
 using Table = std::map<std::string, Declaration, std::less<>>;
 
 template <size_t N> Table makeTable(const Known (&rows)[N]) {
     Table t;
     for (const Known& k : rows) t[k.name] = *parseDeclaration(k.declaration);
+    return t;
+}
+
+/// Types of options and attributes, keyed "class:name"; empty: numbers in one file, strings in another, so the value decides. Names
+/// of other renderers without a type are not here: they are noted at -v.
+using KnownTypes = std::map<std::string, std::optional<Declaration>, std::less<>>;
+
+KnownTypes implementationTypes() {
+    KnownTypes t;
+    for (auto table : {scene::knownOptions(), scene::knownAttributes()})
+        for (const scene::OptionDescription& d : table)
+            if (!d.type.empty() || d.effect != scene::Effect::Ignored) t[std::string(d.name)] = parseDeclaration(d.type);
     return t;
 }
 
@@ -257,7 +165,8 @@ std::optional<Declaration> fromWords(const std::vector<std::string_view>& w) {
 std::optional<Declaration> parseDeclaration(std::string_view text) { return fromWords(words(text)); }
 
 Resolved Declarations::resolve(std::string_view token, std::string_view category) const {
-    static const Table standard = makeTable(kStandard), implementation = makeTable(kImplementation);
+    static const Table standard = makeTable(kStandard);
+    static const KnownTypes implementation = implementationTypes();
     Resolved r;
     std::vector<std::string_view> w = words(token);
     if (w.size() > 1) {
@@ -282,8 +191,10 @@ Resolved Declarations::resolve(std::string_view token, std::string_view category
     }
     if (!category.empty()) {
         std::string key = std::string(category) + ":" + r.name;
-        if (auto i = implementation.find(key); i != implementation.end()) r.declaration = i->second;
-        for (const char* k : kByValue) r.byValue = r.byValue || key == k;
+        if (auto i = implementation.find(key); i != implementation.end()) {
+            r.declaration = i->second;
+            r.byValue = !r.declaration;
+        }
         return r;
     }
     if (auto i = standard.find(r.name); i != standard.end()) r.declaration = i->second;

@@ -1,0 +1,197 @@
+// Options, and the parameters of Hider and Display. Attributes have a file of their own.
+#include "scene/knownoptions.h"
+#include <algorithm>
+#include <array>
+
+namespace alpenglow::scene {
+namespace {
+
+constexpr auto Used = Effect::Used;
+constexpr auto Ignored = Effect::Ignored;
+
+constexpr std::string_view kPrman = "PRMan", kDelight = "3Delight", kAqsis = "Aqsis", kBmrt = "BMRT",
+                           kSeveral = "several renderers",
+                           kMemory = "several renderers; --memory-limit is for the whole program here";
+
+constexpr OptionDescription kOptions[] = {
+    {"Hider:depthfilter", "", "", "", Ignored, kAqsis},
+    {"Render:multipass", "", "", "", Ignored, kAqsis},
+    {"bake:maxrecords", "", "", "", Ignored, kPrman},
+    {"bucket:order", "", "", "", Ignored, kPrman},
+    {"caustic:maxpixeldist", "", "", "", Ignored, kBmrt},
+    {"checkpoint:interval", "", "", "", Ignored, "PRMan; --checkpoint is the way here"},
+    {"curve:minwidth", "", "", "", Ignored, kPrman},
+    {"dice:maxhairlength", "", "", "", Ignored, kPrman},
+    {"hider:depthfilter", "string", "\"min\"", "\"midpoint\"", Used,
+     "The same as the hider's parameter depthfilter, which has precedence."},
+    {"hider:jitter", "int", "1", "0", Used, "The same as the hider's parameter jitter, which has precedence."},
+    {"indirect:savefile", "", "", "", Ignored, kBmrt},
+    {"indirect:seedfile", "", "", "", Ignored, kBmrt},
+    {"licenseserver:holdlicense", "", "", "", Ignored, kDelight},
+    {"limits:brickmemory", "int", "", "", Ignored, kMemory},
+    {"limits:bucketsize", "int[2]", "", "", Ignored, kSeveral},
+    {"limits:deepshadowerror", "", "", "", Ignored, kPrman},
+    {"limits:derivmemory", "", "", "", Ignored, kBmrt},
+    {"limits:extremedisplacement", "", "", "", Ignored, kPrman},
+    {"limits:eyesplits", "int", "", "", Ignored, "several renderers; nothing is split at the eye here"},
+    {"limits:geocachememory", "", "", "", Ignored, kMemory},
+    {"limits:gridsize", "int", "", "", Ignored, kSeveral},
+    {"limits:hemispheresamplememory", "", "", "", Ignored, kMemory},
+    {"limits:numthreads", "int", "", "", Ignored, "several renderers; --threads is the way here"},
+    {"limits:octreememory", "", "", "", Ignored, kMemory},
+    {"limits:opacitycachememory", "", "", "", Ignored, kMemory},
+    {"limits:othreshold", "color", "", "", Ignored, kSeveral},
+    {"limits:proceduralmemory", "", "", "", Ignored, kMemory},
+    {"limits:ptexturememory", "", "", "", Ignored, kMemory},
+    {"limits:radiositycachememory", "", "", "", Ignored, kMemory},
+    {"limits:rendermemory", "", "", "", Ignored, kMemory},
+    {"limits:shadermemory", "", "", "", Ignored, kMemory},
+    {"limits:texturememory", "int", "", "", Ignored, kMemory},
+    {"limits:texturesample", "int", "", "", Ignored, kSeveral},
+    {"limits:threads", "", "", "", Ignored, "PRMan; --threads is the way here"},
+    {"limits:vprelativeshadingrate", "", "", "", Ignored, kPrman},
+    {"limits:zthreshold", "color", "", "", Ignored, kSeveral},
+    {"messages:filter", "", "", "", Ignored, kDelight},
+    {"netcache:directory", "string", "", "", Ignored, kDelight},
+    {"netcache:size", "int", "", "", Ignored, kDelight},
+    {"photon:emit", "int", "", "", Ignored, "3Delight, PRMan; the hider path needs no photons"},
+    {"photon:lifetime", "", "", "", Ignored, kPrman},
+    {"radiosity:maxlevel", "", "", "", Ignored, "BMRT; the hider path is the way here"},
+    {"radiosity:minpatchsamples", "", "", "", Ignored, "BMRT; the hider path is the way here"},
+    {"radiosity:steps", "", "", "", Ignored, "BMRT; the hider path is the way here"},
+    {"render:bucketorder", "string", "", "", Ignored, kDelight},
+    {"render:max_raylevel", "", "", "", Ignored, "BMRT; Option \"trace\" \"maxdepth\" is the way here"},
+    {"render:maxsamples", "", "", "", Ignored, kBmrt},
+    {"render:minsamples", "", "", "", Ignored, kBmrt},
+    {"render:minshadowbias", "", "", "", Ignored, kBmrt},
+    {"render:nthreads", "int", "", "", Ignored, "3Delight; --threads is the way here"},
+    {"render:prmanspecular", "", "", "", Ignored, "BMRT; Option \"shade\" \"specular\" is the way here"},
+    {"render:rerenderbake", "", "", "", Ignored, kPrman},
+    {"render:standardatmosphere", "", "", "", Ignored, kDelight},
+    {"render:useprmandspy", "", "", "", Ignored, kBmrt},
+    {"rib:asciistyle", "", "", "", Ignored, kPrman},
+    {"rib:compression", "", "", "", Ignored, kPrman},
+    {"rib:format", "", "", "", Ignored, kPrman},
+    {"rib:indentation", "", "", "", Ignored, kPrman},
+    {"rib:precision", "", "", "", Ignored, kPrman},
+    {"ribparse:varsubst", "string", "\"\"", "\"$\"", Used,
+     "A character begins variables in RIB. They are not substituted here: a value other than \"\" is reported."},
+    {"runtime:verbosity", "", "", "", Ignored, kBmrt},
+    {"searchpath:archive", "string", "\"\"", "\"archives:&\"", Used,
+     "Folders for ReadArchive, separated by ':'. & is the path so far, @ what is searched without it, ~ and $NAME as a shell has "
+     "them."},
+    {"searchpath:dirmap", "", "", "", Ignored, kPrman},
+    {"searchpath:display", "string", "", "", Ignored, "several renderers; there are no display plug-ins here"},
+    {"searchpath:dsolibs", "", "", "", Ignored, kAqsis},
+    {"searchpath:plugin", "", "", "", Ignored, kAqsis},
+    {"searchpath:procedural", "string", "", "", Ignored, kSeveral},
+    {"searchpath:resource", "string", "", "", Ignored, kSeveral},
+    {"searchpath:rixplugin", "", "", "", Ignored, kPrman},
+    {"searchpath:rslplugin", "string", "\"\"", "\"plugins:@\"", Used,
+     "Folders for the plug-ins that shaders name; they are loaded with --allow-exec."},
+    {"searchpath:shader", "string", "\"\"", "\"shaders:&\"", Used,
+     "Folders for shaders and what they #include. After them: --searchpath, ALPENGLOW_SHADERS, the scene's folder, the shipped "
+     "shaders."},
+    {"searchpath:texture", "string", "\"\"", "\"maps:@\"", Used, "Folders for texture, environment and shadow maps."},
+    {"shade:specular", "string", "\"prman\"", "\"rispec\"", Used,
+     "The exponent of specular(): \"prman\" 8/roughness, \"rispec\" 1/roughness, as RISpec prints it and Aqsis and BMRT have "
+     "it."},
+    {"shadow:bias", "float", "", "", Ignored, kSeveral},
+    {"shadow:bias0", "float", "", "", Ignored, kSeveral},
+    {"shadow:bias1", "float", "", "", Ignored, kSeveral},
+    {"shadow:sample", "int", "", "", Ignored, kDelight},
+    {"shutter:clampmotion", "", "", "", Ignored, kPrman},
+    {"shutter:offset", "float", "0", "0.5", Used, "Added to both times of Shutter."},
+    {"shutter:shutteropening", "float[2]", "", "", Ignored, kDelight},
+    {"statistics:displace_ratios", "", "", "", Ignored, kPrman},
+    {"statistics:echoapi", "", "", "", Ignored, kAqsis},
+    {"statistics:endofframe", "int", "", "", Ignored, "several renderers; --stats is the way here"},
+    {"statistics:filename", "string", "", "", Ignored, "several renderers; --stats is the way here"},
+    {"statistics:level", "", "", "", Ignored, "PRMan; --stats is the way here"},
+    {"statistics:progress", "int", "", "", Ignored, "3Delight; --progress is the way here"},
+    {"statistics:renderinfo", "", "", "", Ignored, kAqsis},
+    {"statistics:stylesheet", "", "", "", Ignored, kPrman},
+    {"statistics:xmlfilename", "", "", "", Ignored, "PRMan; --stats is the way here"},
+    {"texture:enable_gaussian", "", "", "", Ignored, kPrman},
+    {"texture:enable_lerp", "", "", "", Ignored, kPrman},
+    {"trace:approximation", "", "", "", Ignored, kDelight},
+    {"trace:continuationby", "", "", "", Ignored, kPrman},
+    {"trace:decimationrate", "", "", "", Ignored, kPrman},
+    {"trace:depth", "", "", "", Ignored, kPrman},
+    {"trace:maxdepth", "int", "32 under path, else 4", "8", Used,
+     "Greatest number of bounces of a ray; 0: no rays are traced. --max-depth overrides it."},
+    {"trace:specularthreshold", "", "", "", Ignored, kSeveral},
+};
+
+constexpr OptionDescription kHiderParameters[] = {
+    {"aperture", "", "", "", Ignored, kPrman},
+    {"composite", "", "", "", Ignored, kDelight},
+    {"depthfilter", "string", "\"min\"", "\"midpoint\"", Used,
+     "hidden and raytrace: the depth of a pixel: min, max, average or midpoint."},
+    {"emit", "int", "", "", Ignored, "3Delight's photon hider"},
+    {"extrememotiondof", "", "", "", Ignored, kPrman},
+    {"jitter", "int", "1", "0", Used,
+     "hidden and raytrace: 1: samples lie at random places of their cells; 0: in the middle of them; 2: all pixels have the same "
+     "pattern."},
+    {"mpcache", "", "", "", Ignored, kPrman},
+    {"samplemotion", "", "", "", Ignored, kSeveral},
+    {"samplepattern", "", "", "", Ignored, kSeveral},
+    {"sigma", "", "", "", Ignored, kPrman},
+    {"sigmablur", "", "", "", Ignored, kPrman},
+    {"subpixel", "", "", "", Ignored, kPrman},
+};
+
+constexpr OptionDescription kDisplayParameters[] = {
+    {"dither", "float", "0.5 for 8 bits", "0", Used, "Random amplitude that is added before rounding to whole codes."},
+    {"exposure", "float[2]", "that of Exposure", "[1 2.2]", Used, "Gain and gamma of this display, for all of its colours."},
+    {"filter", "string", "that of PixelFilter", "\"box\"", Used,
+     "hidden and raytrace: the display's own reconstruction filter, or a depth filter (min, max, average, midpoint)."},
+    {"filterwidth", "float[2]", "that of PixelFilter", "[1 1]", Used,
+     "hidden and raytrace: full widths of the filter in pixels."},
+    {"quantize", "float[4]", "that of Quantize", "[0 255 0 255]", Used,
+     "Codes of 0 and 1, least and greatest code; [0 0 0 0]: floating point, where the format has it."},
+};
+
+constexpr HiderDescription kHiders[] = {
+    {"hidden", "The picture as RISpec defines it: samples are stratified and shared by neighbouring pixels, displays have "
+               "filters of their own, "
+               "shaders see the lights that they ask for. Also without a Hider request."},
+    {"path", "Path-traced global illumination: the same scene and the same shaders, diffuse() specular() and phong() gather the "
+             "indirect light "
+             "of their lobe, point and distant lights cast traced shadows, noise is measured. docs/light.md has the rules."},
+    {"raytrace", "The same as hidden, with the name that ray-traced scenes give."},
+};
+
+template <size_t N> constexpr bool sorted(const OptionDescription (&t)[N]) {
+    for (size_t i = 1; i < N; ++i)
+        if (!(t[i - 1].name < t[i].name)) return false;
+    return true;
+}
+static_assert(sorted(kOptions) && sorted(kHiderParameters) && sorted(kDisplayParameters), "findKnown searches by halves");
+
+} // namespace
+
+std::span<const OptionDescription> knownOptions() { return kOptions; }
+std::span<const OptionDescription> knownHiderParameters() { return kHiderParameters; }
+std::span<const OptionDescription> knownDisplayParameters() { return kDisplayParameters; }
+std::span<const HiderDescription> knownHiders() { return kHiders; }
+
+const OptionDescription* findKnown(std::span<const OptionDescription> table, std::string_view name) {
+    const auto i = std::lower_bound(table.begin(), table.end(), name,
+                                    [](const OptionDescription& d, std::string_view n) { return d.name < n; });
+    return i != table.end() && i->name == name ? &*i : nullptr;
+}
+
+std::vector<std::string> knownNames(std::span<const OptionDescription> table, std::string_view category) {
+    std::vector<std::string> names;
+    for (const OptionDescription& d : table) {
+        const size_t colon = d.name.find(':');
+        const std::string_view of = d.name.substr(0, colon);
+        if (colon == d.name.npos || (!category.empty() && of != category)) continue;
+        const std::string_view n = category.empty() ? of : d.name.substr(colon + 1);
+        if (names.empty() || names.back() != n) names.emplace_back(n);
+    }
+    return names;
+}
+
+} // namespace alpenglow::scene

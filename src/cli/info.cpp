@@ -1,8 +1,10 @@
-// alpenglow info: what a shader is, and the manual of the shadeops.
+// alpenglow info: what a shader is, which shaders there are, and the manuals of shadeops, requests, options and displays.
 #include "base/printable.h"
 #include "cli/command.h"
 #include "cli/manual.h"
+#include "cli/optionmanual.h"
 #include "cli/shaderdescription.h"
+#include "cli/shaderlist.h"
 #include "rsl/compiler.h"
 #include "shadeops/descriptor.h"
 #include <CLI/CLI.hpp>
@@ -41,28 +43,100 @@ int shadeops(const std::string& name, bool json) {
     return kDone;
 }
 
+struct Arguments {
+    std::string file, shadeop, dialect;
+    std::string names[5]; ///< of the topics, by their number
+    std::vector<std::string> searchPaths;
+    bool shaders = false, json = false, markdown = false, allowExec = false;
+};
+
+std::string dumped(const Json& j) { return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+/// Options, attributes, hiders, displays, requests.
+int topic(Topic t, const Arguments& a) {
+    const std::string& name = a.names[size_t(t)];
+    if (a.markdown && name.empty()) {
+        std::fputs(topicPage(t).c_str(), stdout);
+        return kDone;
+    }
+    const std::string text = topicText(t, name);
+    if (text.empty()) {
+        const std::string near = nearestName(name, topicNames(t));
+        std::fprintf(stderr, "alpenglow: there is nothing of the name \"%s\"%s%s%s\n", printable(name).c_str(),
+                     near.empty() ? "" : "; did you mean \"", near.c_str(), near.empty() ? "" : "\"?");
+        return kDoneWithErrors;
+    }
+    std::fputs((a.json ? dumped(topicJson(t, name)) : text).c_str(), stdout);
+    return kDone;
+}
+
+std::vector<std::string> searched(const Arguments& a) {
+    std::vector<std::string> paths{"."};
+    for (std::string& f : folders(a.searchPaths)) paths.push_back(std::move(f));
+    for (std::string& f : environmentShaders()) paths.push_back(std::move(f));
+    if (std::string s = shippedShaders(); !s.empty()) paths.push_back(s);
+    return paths;
+}
+
+int shader(const Arguments& a) {
+    Diagnostics diags(printer());
+    rsl::ShaderCompiler::Settings settings;
+    settings.dialect = a.dialect;
+    const std::vector<std::string> paths = searched(a);
+    settings.allowExec = a.allowExec;
+    settings.pluginPaths = paths;
+    rsl::ShaderCompiler compiler(settings);
+    auto shader = compiler.load(a.file, paths, diags);
+    if (!shader) return kDoneWithErrors;
+    // A file tells about all of its shaders, beginning with the one that its name means; a name about one.
+    std::vector<std::shared_ptr<const rsl::CompiledShader>> wanted{shader};
+    if (a.file.ends_with(".sl"))
+        for (auto& other : rsl::ShaderCompiler::allOfFile(shader))
+            if (other != shader) wanted.push_back(std::move(other));
+    Json first;
+    for (const auto& s : wanted) {
+        const ShaderDescription d = describe(compiler, s, diags);
+        if (!a.json) std::fputs(printable((s == shader ? "" : "\n") + descriptionText(d)).c_str(), stdout);
+        else if (s == shader) first = descriptionJson(d);
+        else first["others"].push_back(descriptionJson(d));
+    }
+    if (a.json) std::fputs(dumped(first).c_str(), stdout);
+    return diags.errors() > 0 ? kDoneWithErrors : kDone;
+}
+
 } // namespace
 
 void addInfo(CLI::App& app, int* status) {
-    struct Arguments {
-        std::string file, shadeop, dialect;
-        std::vector<std::string> searchPaths;
-        bool json = false, markdown = false, allowExec = false;
-    };
     auto a = std::make_shared<Arguments>();
-    CLI::App* c = app.add_subcommand("info", "Tell what a shader is, or how a shadeop works");
+    CLI::App* c = app.add_subcommand("info", "Tell what a shader is, or how shadeops, requests, options and displays work");
     c->add_option("shader", a->file, "RSL file (all of its shaders), or the name of a shader on the search path");
     CLI::Option* ops = c->add_option("--shadeops", a->shadeop, "List the shadeops, or print the manual of one")
                            ->expected(0, 1)
                            ->type_name("[NAME]");
+    c->add_flag("--shaders", a->shaders, "List the shaders that scenes find: here, along the search path, and those that ship");
+    const std::pair<const char*, const char*> topics[] = {
+        {"--options", "List what Option sets, or print one name or category of it"},
+        {"--attributes", "List what Attribute sets, or print one name or category of it"},
+        {"--hiders", "List the hiders and their parameters"},
+        {"--displays", "List the types of Display and their parameters"},
+        {"--requests", "List the RIB requests, or print the manual of one"}};
+    std::vector<CLI::Option*> listed;
+    for (const auto& [name, help] : topics)
+        listed.push_back(c->add_option(name, a->names[listed.size()], help)->expected(0, 1)->type_name("[NAME]"));
     c->add_flag("--json", a->json, "As JSON");
-    c->add_flag("--markdown", a->markdown, "With --shadeops: the whole manual as a Markdown page, docs/shadeops.md");
+    c->add_flag("--markdown", a->markdown,
+                "The whole page: with --shadeops docs/shadeops.md, with --requests docs/rib.md, with the others docs/options.md");
     c->add_option("--searchpath", a->searchPaths, "Folders for shaders and #include, separated by :")
         ->type_name("DIRS")
         ->allow_extra_args(false);
     addDialect(*c, a->dialect);
     c->add_flag("--allow-exec", a->allowExec, "Let the shader load plug-ins");
-    c->callback([a, ops, status] {
+    c->callback([a, ops, listed, status] {
+        for (size_t t = 0; t < listed.size(); ++t)
+            if (listed[t]->count()) {
+                *status = topic(Topic(t), *a);
+                return;
+            }
         if (ops->count()) {
             if (a->markdown && a->shadeop.empty()) {
                 std::fputs(manualPage().c_str(), stdout);
@@ -70,34 +144,16 @@ void addInfo(CLI::App& app, int* status) {
             } else *status = shadeops(a->shadeop, a->json);
             return;
         }
-        if (a->file.empty()) throw CLI::RequiredError("shader or --shadeops");
-        Diagnostics diags(printer());
-        rsl::ShaderCompiler::Settings settings;
-        settings.dialect = a->dialect;
-        std::vector<std::string> paths{"."};
-        for (std::string& f : folders(a->searchPaths)) paths.push_back(std::move(f));
-        for (std::string& f : environmentShaders()) paths.push_back(std::move(f));
-        if (std::string s = shippedShaders(); !s.empty()) paths.push_back(s);
-        settings.allowExec = a->allowExec;
-        settings.pluginPaths = paths;
-        rsl::ShaderCompiler compiler(settings);
-        auto shader = compiler.load(a->file, paths, diags);
-        *status = shader ? kDone : kDoneWithErrors;
-        if (!shader) return;
-        // A file tells about all of its shaders, beginning with the one that its name means; a name about one.
-        std::vector<std::shared_ptr<const rsl::CompiledShader>> wanted{shader};
-        if (a->file.ends_with(".sl"))
-            for (auto& other : rsl::ShaderCompiler::allOfFile(shader))
-                if (other != shader) wanted.push_back(std::move(other));
-        Json first;
-        for (const auto& s : wanted) {
-            const ShaderDescription d = describe(compiler, s, diags);
-            if (!a->json) std::fputs(printable((s == shader ? "" : "\n") + descriptionText(d)).c_str(), stdout);
-            else if (s == shader) first = descriptionJson(d);
-            else first["others"].push_back(descriptionJson(d));
+        if (a->shaders) {
+            const auto list = listShaders(searched(*a));
+            std::fputs(a->json ? dumped(shaderListJson(list)).c_str() : printable(shaderListText(list)).c_str(), stdout);
+            *status = kDone;
+            return;
         }
-        if (a->json) std::printf("%s\n", first.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
-        if (diags.errors() > 0) *status = kDoneWithErrors;
+        if (a->file.empty())
+            throw CLI::RequiredError(
+                "a shader, or --shaders, --shadeops, --options, --attributes, --hiders, --displays or --requests");
+        *status = shader(*a);
     });
 }
 

@@ -43,15 +43,32 @@ private:
     std::string_view text_;
     size_t at_ = 0;
 };
+
+constexpr std::array<std::string_view, 7> kKinds{"surface", "displacement", "light", "volume", "imager", "transformation", "class"};
+bool isKind(std::string_view word) { return std::find(kKinds.begin(), kKinds.end(), word) != kKinds.end(); }
 } // namespace
 
 bool declaresShader(const std::string& text, const std::string& name) {
-    constexpr std::array<std::string_view, 7> kinds{"surface", "displacement", "light", "volume", "imager", "transformation", "class"};
     Words words(text);
     std::string_view before, word = words.next();
     for (; !word.empty(); before = word, word = words.next())
-        if (word == name && std::find(kinds.begin(), kinds.end(), before) != kinds.end() && words.next() == "(") return true;
+        if (word == name && isKind(before) && words.next() == "(") return true;
     return false;
+}
+
+std::vector<DeclaredShader> shadersDeclared(const std::string& text) {
+    std::vector<DeclaredShader> found;
+    Words words(text);
+    int depth = 0; // of braces: methods of a class may be called surface
+    std::string_view kind, before;
+    for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
+        if (word == "(" && depth == 0 && isKind(kind) && !before.empty()) found.push_back({std::string(kind), std::string(before)});
+        if (word == "{") ++depth;
+        if (word == "}" && depth > 0) --depth; // macros may have taken one away
+        kind = before;
+        before = word;
+    }
+    return found;
 }
 
 std::optional<std::string> fileWithShader(const std::string& name, const std::vector<std::string>& directories) {

@@ -13,4 +13,11 @@ std::optional<std::string> fileWithShader(const std::string& name, const std::ve
 /// Whether a text declares a shader or class of that name.
 bool declaresShader(const std::string& text, const std::string& name);
 
+/// A shader or class that a text declares.
+struct DeclaredShader {
+    std::string kind, name; ///< "surface", "class"
+};
+/// All of them, in the order of the text; what includes and macros bring is not among them.
+std::vector<DeclaredShader> shadersDeclared(const std::string& text);
+
 } // namespace alpenglow::rsl

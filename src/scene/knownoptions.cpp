@@ -94,8 +94,7 @@ constexpr OptionDescription kOptions[] = {
      "shaders."},
     {"searchpath:texture", "string", "\"\"", "\"maps:@\"", Used, "Folders for texture, environment and shadow maps."},
     {"shade:specular", "string", "\"prman\"", "\"rispec\"", Used,
-     "The exponent of specular(): \"prman\" 8/roughness, \"rispec\" 1/roughness, as RISpec prints it and Aqsis and BMRT have "
-     "it."},
+     "The exponent of specular(): \"prman\" 8/roughness, \"rispec\" 1/roughness, as RISpec prints it."},
     {"shadow:bias", "float", "", "", Ignored, kSeveral},
     {"shadow:bias0", "float", "", "", Ignored, kSeveral},
     {"shadow:bias1", "float", "", "", Ignored, kSeveral},

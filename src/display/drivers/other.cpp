@@ -22,7 +22,7 @@ const DriverDescriptor otherDriver{{"targa", "tga", "bmp", "bitmap", "jpeg", "jp
                                     "pic", "dspy_s_avs", "texture"},
                                    "Formats that are not written here (Targa, BMP, ...): a picture file under the given name, by "
                                    "its extension (OpenEXR, PNG, else "
-                                   "TIFF), and this is said.",
+                                   "TIFF), with a message.",
                                    []() -> std::unique_ptr<Driver> { return std::make_unique<Other>(); }};
 
 } // namespace alpenglow::display

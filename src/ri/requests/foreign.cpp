@@ -46,17 +46,17 @@ std::vector<Request> foreignRequests() {
     const unsigned any = kAnywhere;
     const Kind k = Kind::Other;
     const char* named = "string name; handle handle; ..";
-    const char* risDoc = "A request of renderers without shading language: said once and left out.";
+    const char* risDoc = "A request of renderers without shading language: reported once and left out.";
     return {
         {"VPAtmosphere", "string name; ..", Kind::Shader, any, true, "Atmosphere under its later name.", "\"fog\"", volumeShader<&A::atmosphere>},
         {"VPInterior", "string name; ..", Kind::Shader, any, true, "Interior under its later name.", "\"fog\"", volumeShader<&A::interior>},
         {"VPSurface", "string name; ..", Kind::Shader, any, true, "The shader at the bound of a volume: not done.", "\"fog\"", notDone},
-        {"ShaderLayer", "string type; string name; string layer; ..", Kind::Shader, any, false, "A layer of a shader network (Aqsis, 3Delight).",
+        {"ShaderLayer", "string type; string name; string layer; ..", Kind::Shader, any, false, "A layer of a shader network (Aqsis, 3Delight): not done.",
          "\"surface\" \"plastic\" \"base\" \"Kd\" .4", layer},
         {"ConnectShaderLayers", "string type; string layer1; string variable1; string layer2; string variable2", Kind::Shader, any, false,
-         "Connects two layers of a shader network (Aqsis, 3Delight).", "\"surface\" \"a\" \"Ci\" \"b\" \"Cs\"", layer},
+         "Connects two layers of a shader network (Aqsis, 3Delight): not done.", "\"surface\" \"a\" \"Ci\" \"b\" \"Cs\"", layer},
         {"Procedural2", "string subdivide; string bound; ..", Kind::Primitive, kWorld | kObject, false,
-         "Content from an archive (\"DelayedReadArchive2\"), a program or a library, by named parameters.",
+         "Content from an archive (\"DelayedReadArchive2\"), by named parameters; programs and libraries are not run.",
          "\"RunProgram2\" \"SimpleBound\" \"float[6] bound\" [-1 1 -1 1 -1 1]", procedural2},
         {"Bxdf", named, Kind::Shader, any, false, risDoc, "\"PxrSurface\" \"s\"", ris},
         {"Pattern", named, Kind::Shader, any, false, risDoc, "\"PxrTexture\" \"t\"", ris},

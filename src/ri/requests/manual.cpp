@@ -25,19 +25,58 @@ std::string cell(std::string_view s) {
     return out;
 }
 
+const char* titleOf(Kind k) {
+    switch (k) {
+    case Kind::Structure:
+        return "Structure";
+    case Kind::Option:
+        return "Camera, display and other options";
+    case Kind::Attribute:
+        return "Attributes";
+    case Kind::Shader:
+        return "Shaders";
+    case Kind::Light:
+        return "Lights";
+    case Kind::Transform:
+        return "Transformations";
+    case Kind::Primitive:
+        return "Primitives";
+    case Kind::Archive:
+        return "Archives";
+    case Kind::Texture:
+        return "Maps";
+    case Kind::Other:
+        break;
+    }
+    return "Other";
+}
+
+std::string example(const Request& r) { return "`" + std::string(r.name) + (r.sample.empty() ? "" : " ") + cell(r.sample) + "`"; }
+
 } // namespace
 
+std::string requestText(const Request& r) {
+    return fmt::format("{} {}\n\n{}\n\nWhere: {}{}.\nExample: {} {}\n", r.name, r.signature, r.doc, scopes(r.scopes),
+                       r.motion ? "; also in motion blocks" : "", r.name, r.sample);
+}
+
 std::string requestManual() {
-    std::string out = "# RIB requests\n\n[n] is a fixed count, [] any number, ? may be left out, .. a parameter list. Brackets "
-                      "around fixed counts are optional.\n";
+    std::string out =
+        "# RIB requests\n\n"
+        "Every request that is read, from the table that the reader itself uses, with what it does here. Made by\n"
+        "`alpenglow info --requests --markdown`; a test holds this page to the table. Names and values of `Option`,\n"
+        "`Attribute`, `Hider` and `Display` are in [options.md](options.md); a first scene is in [tutorial.md](tutorial.md).\n\n"
+        "[n] is a fixed count, [] any number, ? may be left out, .. is a list of parameters: \"type name\" value. Brackets\n"
+        "around fixed counts are optional.\n";
     for (Kind k : {Kind::Structure, Kind::Option, Kind::Attribute, Kind::Shader, Kind::Light, Kind::Transform, Kind::Primitive,
                    Kind::Archive, Kind::Texture, Kind::Other}) {
-        out +=
-            fmt::format("\n## {}\n\n| request | arguments | where | in motion blocks | |\n|---|---|---|---|---|\n", toString(k));
+        out += fmt::format(
+            "\n## {}\n\n| request | arguments | where | in motion blocks | what it does | example |\n|---|---|---|---|---|---|\n",
+            titleOf(k));
         for (const Request& r : requestTable())
             if (r.kind == k)
-                out += fmt::format("| {} | {} | {} | {} | {} |\n", r.name, cell(r.signature), scopes(r.scopes),
-                                   r.motion ? "yes" : "", cell(r.doc));
+                out += fmt::format("| {} | {} | {} | {} | {} | {} |\n", r.name, cell(r.signature), scopes(r.scopes),
+                                   r.motion ? "yes" : "", cell(r.doc), example(r));
     }
     return out;
 }

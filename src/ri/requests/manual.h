@@ -1,10 +1,13 @@
 // The reference page of RIB requests, written from the table.
 #pragma once
+#include "ri/requests/request.h"
 #include <string>
 
 namespace alpenglow::ri {
 
-/// Markdown: one table a kind, with signature, scopes, motion and description of every request.
+/// For one request: arguments, what it does, where it may stand, an example.
+std::string requestText(const Request&);
+/// The page docs/rib.md: one table a kind, with signature, scopes, motion and description of every request.
 std::string requestManual();
 
 } // namespace alpenglow::ri

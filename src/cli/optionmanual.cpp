@@ -1,0 +1,219 @@
+#include "cli/optionmanual.h"
+#include "display/driver.h"
+#include "ri/requests/manual.h"
+#include "scene/knownoptions.h"
+#include <fmt/format.h>
+
+namespace alpenglow::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using scene::Effect;
+using scene::OptionDescription;
+
+std::span<const OptionDescription> tableOf(Topic t) {
+    switch (t) {
+    case Topic::Options:
+        return scene::knownOptions();
+    case Topic::Attributes:
+        return scene::knownAttributes();
+    case Topic::Hiders:
+        return scene::knownHiderParameters();
+    case Topic::Displays:
+        return scene::knownDisplayParameters();
+    case Topic::Requests:
+        break;
+    }
+    return {};
+}
+
+const char* effectName(Effect e) { return e == Effect::Used ? "used" : e == Effect::Asked ? "for shaders" : "ignored"; }
+
+std::string_view lastPart(std::string_view name) { return name.substr(name.find(':') + 1); }
+
+/// "trace:maxdepth", "maxdepth" and "trace" name an entry; "" names all.
+bool wanted(std::string_view entry, const std::string& name) {
+    return name.empty() || entry == name || lastPart(entry) == name || entry.substr(0, entry.find(':')) == name;
+}
+
+/// The request that sets it.
+std::string example(Topic t, const OptionDescription& d) {
+    const std::string type = d.type.empty() ? "" : std::string(d.type) + " ";
+    const std::string parameter = fmt::format("\"{}{}\" {}", type, lastPart(d.name), d.sample);
+    const std::string_view category = d.name.substr(0, d.name.find(':'));
+    switch (t) {
+    case Topic::Options:
+        return fmt::format("Option \"{}\" {}", category, parameter);
+    case Topic::Attributes:
+        return fmt::format("Attribute \"{}\" {}", category, parameter);
+    case Topic::Hiders:
+        return fmt::format("Hider \"hidden\" {}", parameter);
+    case Topic::Displays:
+        return fmt::format("Display \"a.tif\" \"tiff\" \"rgba\" {}", parameter);
+    case Topic::Requests:
+        break;
+    }
+    return "";
+}
+
+std::string typeText(const OptionDescription& d) { return d.type.empty() ? "number or string" : std::string(d.type); }
+std::string standardText(const OptionDescription& d) { return d.standard.empty() ? "none" : std::string(d.standard); }
+
+std::string oneText(Topic t, const OptionDescription& d) {
+    if (d.effect == Effect::Ignored)
+        return fmt::format("{}\n    A name of other renderers; it has no effect here ({}).\n", d.name, d.doc);
+    return fmt::format("{}  ({})\n    {}\n    Default: {}.{}\n    Example: {}\n", d.name, typeText(d), d.doc, standardText(d),
+                       d.effect == Effect::Asked ? " It changes nothing by itself; shaders and RIB's If can ask for it." : "",
+                       example(t, d));
+}
+
+Json oneJson(Topic t, const OptionDescription& d) {
+    Json j{{"name", d.name}, {"type", d.type}, {"effect", effectName(d.effect)}, {"default", d.standard}, {"doc", d.doc}};
+    if (d.effect != Effect::Ignored) j["example"] = example(t, d);
+    return j;
+}
+
+std::string namesOf(const display::DriverDescriptor& d) {
+    std::string names;
+    for (const std::string& n : d.names) names += (names.empty() ? "" : ", ") + n;
+    return names;
+}
+
+bool answersTo(const display::DriverDescriptor& d, const std::string& name) {
+    return name.empty() || std::find(d.names.begin(), d.names.end(), name) != d.names.end();
+}
+
+Json requestJson(const ri::Request& r) {
+    return {{"name", r.name}, {"kind", ri::toString(r.kind)}, {"arguments", r.signature}, {"motion", r.motion},
+            {"doc", r.doc},   {"example", r.sample}};
+}
+
+/// What comes before a topic's parameters: the hiders, the display types, the requests.
+std::string headText(Topic t, const std::string& name) {
+    std::string out;
+    if (t == Topic::Hiders)
+        for (const auto& h : scene::knownHiders())
+            if (name.empty() || h.name == name) out += fmt::format("{}\n    {}\n", h.name, h.doc);
+    if (t == Topic::Displays)
+        for (const auto* d : display::drivers())
+            if (answersTo(*d, name)) out += fmt::format("{}\n    {}\n", namesOf(*d), d->doc);
+    if (t == Topic::Requests)
+        for (const auto& r : ri::requestTable()) {
+            if (name == r.name) return ri::requestText(r);
+            if (name.empty()) out += fmt::format("{:<24} {}\n", r.name, r.doc);
+        }
+    return out;
+}
+
+/// A bar would end a table's cell.
+std::string cell(std::string_view s) {
+    std::string t;
+    for (char c : s) t += c == '|' ? std::string("\\|") : std::string(1, c);
+    return t;
+}
+
+std::string pageTable(Topic t, Effect effect) {
+    std::string out = "| name | type | default | what it does | example |\n|---|---|---|---|---|\n";
+    for (const OptionDescription& d : tableOf(t))
+        if (d.effect == effect)
+            out += fmt::format("| {} | {} | {} | {} | `{}` |\n", d.name, typeText(d), cell(standardText(d)), cell(d.doc),
+                               cell(example(t, d)));
+    return out;
+}
+
+std::string pageIgnored(Topic t) {
+    std::string out = "| name | of |\n|---|---|\n";
+    for (const OptionDescription& d : tableOf(t))
+        if (d.effect == Effect::Ignored) out += fmt::format("| {} | {} |\n", d.name, cell(d.doc));
+    return out;
+}
+
+std::string optionsPage() {
+    std::string out =
+        "# Options, attributes, hiders, displays\n\n"
+        "What can be set by name, with what it does here, from the tables that the reader itself uses. Made by\n"
+        "`alpenglow info --options --markdown`; a test holds this page to the tables. `alpenglow info --options trace`\n"
+        "prints a part of it, and so do `--attributes`, `--hiders` and `--displays`; requests with a name of their own "
+        "(`Format`,\n"
+        "`PixelSamples`, `Exposure` ...) are in [rib.md](rib.md).\n\n"
+        "Shaders read every one of these by `option(\"trace:maxdepth\", x)` and `attribute(\"identifier:name\", s)`, and so do "
+        "RIB's `IfBegin`\n"
+        "and `ElseIf`. The category `user` takes any name: `Attribute \"user\" \"float wet\" 1`.\n";
+    out += "\n## Options\n\n`Option \"category\" \"type name\" value`, before `WorldBegin`.\n\n" +
+           pageTable(Topic::Options, Effect::Used);
+    out += "\n## Attributes\n\n`Attribute \"category\" \"type name\" value`, up to the end of the block.\n\n" +
+           pageTable(Topic::Attributes, Effect::Used);
+    out += "\nThese decide nothing by themselves. Shaders ask for them, and get the default where nothing is set.\n\n" +
+           pageTable(Topic::Attributes, Effect::Asked);
+    out += "\n## Hiders\n\n`Hider \"name\" \"type parameter\" value`; `--hider` overrides it.\n\n| hider | what it does "
+           "|\n|---|---|\n";
+    for (const auto& h : scene::knownHiders()) out += fmt::format("| {} | {} |\n", h.name, cell(h.doc));
+    out += "\n" + pageTable(Topic::Hiders, Effect::Used);
+    out += "\n## Displays\n\n`Display \"file\" \"type\" \"mode\" \"type parameter\" value`. The mode names what is written: "
+           "`rgba`, `rgb`, `a`, `z`, or\n"
+           "variables of shaders, separated by commas (`\"rgba,N,color specular\"`).\n\n| type | what it writes |\n|---|---|\n";
+    for (const auto* d : display::drivers()) out += fmt::format("| {} | {} |\n", namesOf(*d), cell(d->doc));
+    out += "\n" + pageTable(Topic::Displays, Effect::Used);
+    out += "\n## Names of other renderers\n\nAccepted without a message, and without an effect. Options:\n\n" +
+           pageIgnored(Topic::Options);
+    out += "\nAttributes:\n\n" + pageIgnored(Topic::Attributes) + "\nParameters of hiders:\n\n" + pageIgnored(Topic::Hiders);
+    return out;
+}
+
+} // namespace
+
+std::string topicText(Topic t, const std::string& name) {
+    std::string out = headText(t, name), ignored;
+    const auto table = tableOf(t);
+    std::vector<const OptionDescription*> those;
+    for (const OptionDescription& d : table)
+        if (wanted(d.name, name)) those.push_back(&d);
+    if (!name.empty() && (t == Topic::Options || t == Topic::Attributes || out.empty())) {
+        for (const OptionDescription* d : those) out += oneText(t, *d);
+        return out;
+    }
+    if (!name.empty()) return out;
+    if (!those.empty() && !out.empty()) out += "\nParameters\n";
+    for (const OptionDescription* d : those) {
+        if (d->effect == Effect::Ignored) ignored += (ignored.empty() ? "" : ", ") + std::string(d->name);
+        else out += fmt::format("{:<36} {:<17} {:<24} {}\n", d->name, typeText(*d), standardText(*d), d->doc);
+    }
+    if (!ignored.empty()) out += "\nNames of other renderers, without effect here: " + ignored + "\n";
+    return out;
+}
+
+Json topicJson(Topic t, const std::string& name) {
+    Json all = Json::array();
+    if (t == Topic::Hiders)
+        for (const auto& h : scene::knownHiders())
+            if (name.empty() || h.name == name) all.push_back({{"hider", h.name}, {"doc", h.doc}});
+    if (t == Topic::Displays)
+        for (const auto* d : display::drivers())
+            if (answersTo(*d, name)) all.push_back({{"types", d->names}, {"doc", d->doc}, {"writes", d->writes}});
+    if (t == Topic::Requests)
+        for (const auto& r : ri::requestTable())
+            if (name.empty() || name == r.name) all.push_back(requestJson(r));
+    for (const OptionDescription& d : tableOf(t))
+        if (wanted(d.name, name)) all.push_back(oneJson(t, d));
+    return all;
+}
+
+std::string topicPage(Topic t) { return t == Topic::Requests ? ri::requestManual() : optionsPage(); }
+
+std::vector<std::string> topicNames(Topic t) {
+    std::vector<std::string> names;
+    for (const OptionDescription& d : tableOf(t)) {
+        names.emplace_back(d.name);
+        names.emplace_back(lastPart(d.name));
+    }
+    if (t == Topic::Options || t == Topic::Attributes)
+        for (std::string& c : scene::knownNames(tableOf(t), "")) names.push_back(std::move(c));
+    if (t == Topic::Hiders)
+        for (const auto& h : scene::knownHiders()) names.emplace_back(h.name);
+    if (t == Topic::Displays)
+        for (const auto* d : display::drivers()) names.insert(names.end(), d->names.begin(), d->names.end());
+    if (t == Topic::Requests) names = ri::requestNames();
+    return names;
+}
+
+} // namespace alpenglow::cli

@@ -1,4 +1,5 @@
 #include "base/memory.h"
+#include "base/controlgroup.h"
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -24,33 +25,12 @@ size_t numberIn(const std::string& file) {
     return in >> n ? n : 0;
 }
 
-/// The least of the bounds from a control group up to the root.
-size_t alongGroups(const std::string& root, std::string group, const char* file) {
-    size_t least = 0;
-    const auto take = [&](size_t n) {
-        if (n && (!least || n < least)) least = n;
-    };
-    while (!group.empty() && group != "/") {
-        take(numberIn(root + group + "/" + file));
-        group.erase(group.find_last_of('/'));
-    }
-    take(numberIn(root + "/" + file));
-    return least;
-}
-
+/// The least bound of the control groups; 0: none.
 size_t groupMemory() {
     size_t least = 0;
-    std::ifstream in("/proc/self/cgroup");
-    for (std::string line; std::getline(in, line);) { // "0::/path" (version 2) or "4:memory:/path" (version 1)
-        const size_t first = line.find(':'), second = first == std::string::npos ? first : line.find(':', first + 1);
-        if (second == std::string::npos) continue;
-        const std::string controllers = "," + line.substr(first + 1, second - first - 1) + ",", group = line.substr(second + 1);
-        size_t n = 0;
-        if (controllers == ",,") n = alongGroups("/sys/fs/cgroup", group, "memory.max");
-        else if (controllers.find(",memory,") != std::string::npos)
-            n = alongGroups("/sys/fs/cgroup/memory", group, "memory.limit_in_bytes");
-        if (n && (!least || n < least)) least = n;
-    }
+    for (const std::string& folder : controlGroupFolders("memory"))
+        for (const char* file : {"/memory.max", "/memory.limit_in_bytes"}) // of version 2, of version 1
+            if (const size_t n = numberIn(folder + file); n && (!least || n < least)) least = n;
     return least;
 }
 

@@ -1,6 +1,7 @@
 // The program: finds the subcommand, reads its arguments. `alpenglow scene.rib` is `alpenglow render scene.rib`.
 #include "base/memory.h"
 #include "base/printable.h"
+#include "base/processors.h"
 #include "cli/command.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -13,7 +14,6 @@
 #include <iostream>
 #include <new>
 #include <sstream>
-#include <thread>
 #include <unistd.h>
 
 using namespace alpenglow;
@@ -86,7 +86,7 @@ int runProgram(int argc, char** argv) {
     addLsp(app, &status);
     std::vector<std::string> args = normalise(argc, argv, app);
     const bool own = !args.empty() && args.front() == "render"; // has an option for it
-    const MemoryLimit limit(own ? 0 : defaultMemoryLimit(), int(std::thread::hardware_concurrency()));
+    const MemoryLimit limit(own ? 0 : defaultMemoryLimit(), defaultThreads());
     std::reverse(args.begin(), args.end()); // as the parser takes vectors
     try {
         app.parse(args);

@@ -4,6 +4,7 @@
 // camera rays meet it straight on, over and over. So all light counts as it does in pictures: lights sampled, the rest followed.
 // The rays meet a narrow ring around the point, not the point: where something touches the surface just there (a ball on the
 // floor), whatever is a hair above the point lies inside of it.
+#include "base/processors.h"
 #include "base/sampler.h"
 #include "cli/command.h"
 #include "render/rendering.h"
@@ -157,7 +158,7 @@ int probe(const Arguments& a) {
     ray.time = frame->options.shutterOpen;
     std::vector<Color> means(blocks);
     std::atomic<uint32_t> missed{0};
-    const int threads = a.threads > 0 ? a.threads : std::max(1, int(std::thread::hardware_concurrency()));
+    const int threads = a.threads > 0 ? a.threads : defaultThreads();
     render::Team team(std::min(threads, int(blocks)));
     std::vector<std::unique_ptr<render::Tracer>> tracers(size_t(team.threads()));
     StopFlag halt;
@@ -217,7 +218,7 @@ void addProbe(CLI::App& app, int* status) {
     c->add_option("normal", a->normal, "NX,NY,NZ: the side that is lit")->required();
     c->add_option("--spp", a->spp, "Samples")->check(CLI::Range(2u, 1u << 26))->type_name("N")->capture_default_str();
     c->add_option("--seed", a->seed, "Seed of all random numbers")->type_name("N");
-    c->add_option("--threads", a->threads, "Threads; all cores when not given")->check(CLI::Range(1, 1024))->type_name("N");
+    c->add_option("--threads", a->threads, "Threads; as many as the process may use when not given")->check(CLI::Range(1, 1024))->type_name("N");
     c->add_option("--lanes", a->lanes, "Points a shader works on at once")->check(CLI::IsMember({4, 8, 16}))->type_name("N");
     c->add_option("--max-depth", a->maxDepth, "Greatest number of bounces")->check(CLI::Range(0, 10000))->type_name("N");
     c->add_option("--radius", a->radius,

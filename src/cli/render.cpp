@@ -1,6 +1,7 @@
 // alpenglow render: scenes to pictures.
 #include "base/limits.h"
 #include "base/memory.h"
+#include "base/processors.h"
 #include "cli/command.h"
 #include "render/renderer.h"
 #include "ri/reader.h"
@@ -150,7 +151,7 @@ std::vector<int64_t> timesOf(const std::vector<std::string>& files) {
 
 int renderAll(const Arguments& a) {
     const MemoryLimit limit(a.settings.memoryLimit,
-                            a.settings.threads > 0 ? a.settings.threads : int(std::thread::hardware_concurrency()));
+                            a.settings.threads > 0 ? a.settings.threads : defaultThreads());
     const StopFlag* stop = watchInterrupts();
     if (!a.watch) return renderOnce(a, stop);
     while (true) {
@@ -235,7 +236,7 @@ void addRender(CLI::App& app, int* status) {
         ->type_name("NAME")
         ->group("Quality");
 
-    c->add_option("--threads", s.threads, "Threads; all cores when not given. The picture does not depend on it")
+    c->add_option("--threads", s.threads, "Threads; when not given as many processors as the process may use (affinity, control groups, Slurm). The picture does not depend on it")
         ->check(CLI::Range(1, 1024))
         ->type_name("N")
         ->group("Machine");

@@ -1,6 +1,7 @@
 #include "render/renderer.h"
 #include "base/limits.h"
 #include "base/memory.h"
+#include "base/processors.h"
 #include "display/driver.h"
 #include "render/digest.h"
 #include "render/filmpicture.h"
@@ -14,7 +15,6 @@
 #include <filesystem>
 #include <new>
 #include <tbb/global_control.h>
-#include <thread>
 
 namespace alpenglow::render {
 namespace {
@@ -54,7 +54,7 @@ uint32_t pathSamples(const scene::Options& o, const RenderSettings& s) {
 Renderer::Renderer(RenderSettings s, Engine e, Diagnostics& d, Progress& p, Print print)
     : settings_(std::move(s)), engine_(std::move(e)), diagnostics_(d), progress_(p), print_(std::move(print)),
       parseMark_(clockSeconds()) {
-    if (settings_.threads <= 0) settings_.threads = std::max(1, int(std::thread::hardware_concurrency()));
+    if (settings_.threads <= 0) settings_.threads = defaultThreads();
 }
 
 Renderer::~Renderer() = default;

@@ -206,9 +206,12 @@ void addRender(CLI::App& app, int* status) {
         ->check(CLI::Range(1u, limits::kSamplesPerPixel))
         ->type_name("N")
         ->group("Quality");
-    c->add_option("--noise", s.noise, "path: go on until the mean relative error of the pixels is RSE, for example 0.01")
+    c->add_option(
+         "--noise", s.noise,
+         "path: go on until the noise that is printed at the end is at most E, for example 0.01: the mean relative error of "
+         "the light on surfaces")
         ->check(CLI::PositiveNumber)
-        ->type_name("RSE")
+        ->type_name("E")
         ->group("Quality");
     c->add_option("--time", s.seconds, "path: go on for about so long")
         ->check(CLI::PositiveNumber)

@@ -101,6 +101,10 @@ bool Film::add(int x, int y, uint32_t sampleIndex, const FilmSample& s) {
     p.replicaY[sampleIndex % kReplicas] += lum;
     p.replicaCount[sampleIndex % kReplicas]++;
     p.y2 += square(lum);
+    if (s.surface) {
+        p.surfaceY += lum;
+        p.surfaceCount[sampleIndex % kReplicas]++;
+    }
     size_t n = description_.channels.size();
     for (size_t i = 0; i < n; ++i) {
         float v = i < s.aovs.size() ? s.aovs[i] : 0.0f;
@@ -160,9 +164,11 @@ bool Film::merge(const Film& o, Diagnostics& diag, const SourcePlace& place) {
             p.rgb[k] += q.rgb[k];
         p.alpha += q.alpha;
         p.y2 += q.y2;
+        p.surfaceY += q.surfaceY;
         for (uint32_t k = 0; k < kReplicas; ++k) {
             p.replicaY[k] += q.replicaY[k];
             p.replicaCount[k] += q.replicaCount[k];
+            p.surfaceCount[k] += q.surfaceCount[k];
         }
     }
     size_t n = a.channels.size();
@@ -233,6 +239,14 @@ void Film::replica(int x, int y, uint32_t r, double* sum, uint32_t* n) const {
     *n = p.replicaCount[r];
 }
 
+SurfaceSums Film::surface(int x, int y) const {
+    const Pixel& p = pixel(x, y);
+    SurfaceSums s;
+    s.y = fromFixed(p.surfaceY);
+    std::copy(std::begin(p.surfaceCount), std::end(p.surfaceCount), s.count.begin());
+    return s;
+}
+
 std::optional<DroppedSample> Film::firstDropped() const {
     if (firstDropped_[0] == ~0ull)
         return {};
@@ -255,6 +269,9 @@ uint64_t Film::digest() const {
         for (uint64_t v : p.y2.limb)
             mix(v);
         for (uint32_t v : p.replicaCount)
+            mix(v);
+        mix128(p.surfaceY);
+        for (uint32_t v : p.surfaceCount)
             mix(v);
     }
     for (Int128 v : aovs_)

@@ -1,9 +1,10 @@
 // The film of `path`: exact sums per pixel (design decision 10). Everything an image or a noise figure needs derives from them.
 #pragma once
 #include "base/diagnostics.h"
+#include "base/sampler.h"
 #include "base/vec.h"
 #include "render/fixed.h"
-#include "base/sampler.h"
+#include <array>
 #include <map>
 #include <optional>
 #include <span>
@@ -56,6 +57,7 @@ struct FilmSample {
     Color radiance;
     float alpha = 0;
     std::span<const float> aovs; ///< one value per channel; missing ones count as 0
+    bool surface = true;         ///< the camera ray met a surface, whatever its opacity; false: it saw the background alone
 };
 
 /// The first (least sample index, then y, then x) sample that was dropped: its reproducer.
@@ -66,6 +68,12 @@ struct Moments {
     uint32_t n = 0;      ///< samples counted
     double s1 = 0, s2 = 0; ///< sum Y, sum Y^2
     double variance = 0; ///< (s2 - s1^2 / n) / (n - 1), the difference taken exactly; 0 for n < 2
+};
+
+/// The samples of a pixel that met a surface.
+struct SurfaceSums {
+    double y = 0;                            ///< sum of their luminance
+    std::array<uint32_t, kReplicas> count{}; ///< how many, by replica
 };
 
 /// Exact sums over a crop window. Radiance, alpha and luminance are fixed point (fixed.h): values are rounded to 2^-40 one by
@@ -107,6 +115,8 @@ public:
     /// Luminance sum and count of one replica.
     void replica(int x, int y, uint32_t r, double* sum, uint32_t* n) const;
 
+    SurfaceSums surface(int x, int y) const;
+
     uint64_t nonFinite() const { return nonFinite_; }        ///< samples dropped
     uint64_t nonFiniteAovs() const { return nonFiniteAovs_; } ///< AOV values not counted
     uint64_t saturated() const { return saturated_; }        ///< values clamped at 2^60
@@ -127,6 +137,8 @@ private:
         Int128 replicaY[kReplicas] = {}; ///< their sum is the first moment
         UInt256 y2;                      ///< unit 2^-80
         uint32_t replicaCount[kReplicas] = {};
+        Int128 surfaceY = 0; ///< of the samples that met a surface
+        uint32_t surfaceCount[kReplicas] = {};
     };
     size_t index(int x, int y) const { return size_t(y - window().y0) * size_t(window().width()) + size_t(x - window().x0); }
     const Pixel& pixel(int x, int y) const { return pixels_[index(x, y)]; }

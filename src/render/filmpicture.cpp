@@ -43,6 +43,8 @@ bool writeFilm(const Film& film, const OutputPlan& plan, PictureFacts facts, con
     facts.metadata["spp"] = std::to_string(film.samplesPerPixel());
     facts.metadata["samples"] = ranges;
     facts.metadata["seed"] = std::to_string(film.description().seed);
+    if (n.known) facts.metadata["noise"] = number(n.noise);
+    facts.metadata["coverage"] = number(n.coverage);
     facts.metadata["noiseRSE"] = number(n.noiseRSE);
     facts.metadata["noiseQMC"] = number(n.noiseQMC);
     facts.metadata["nonFinite"] = std::to_string(film.nonFinite());

@@ -94,6 +94,37 @@ ReplicaError replicaError(const Film& film, int x, int y) {
 
 double relativeReplicaError(const ReplicaError& e) { return e.replicas < 2 ? 0 : relative(e.se / c4(e.replicas), e.mean); }
 
+SurfaceError surfaceError(const Film& film, int x, int y) {
+    const SurfaceSums met = film.surface(x, y);
+    std::array<double, kReplicas> sums;
+    std::array<uint32_t, kReplicas> counts;
+    double y1 = 0, n = 0, h = 0;
+    for (uint32_t r = 0; r < kReplicas; ++r) {
+        film.replica(x, y, r, &sums[r], &counts[r]);
+        y1 += sums[r];
+        n += counts[r];
+        h += met.count[r];
+    }
+    SurfaceError e;
+    if (h == 0) return e;
+    e.coverage = h / n;
+    e.mean = met.y / h;
+    const double behind = n > h ? (y1 - met.y) / (n - h) : 0;
+    double square = 0, shares = 0;
+    for (uint32_t r = 0; r < kReplicas; ++r) {
+        const double d = sums[r] - e.mean * met.count[r] - behind * (counts[r] - met.count[r]);
+        square += d * d;
+        shares += met.count[r] / h * (met.count[r] / h);
+        e.replicas += met.count[r] > 0;
+    }
+    if (e.replicas >= 2) e.se = std::sqrt(square / (1 - shares)) / h;
+    return e;
+}
+
+double relativeSurfaceError(const SurfaceError& e) {
+    return e.replicas < 2 ? 0 : std::sqrt(e.coverage) * relative(e.se / c4(e.replicas), e.mean);
+}
+
 double studentQuantile(double level, int dof) {
     double hi = 1;
     while (studentWithin(hi, dof) < level && hi < 1e12)
@@ -117,7 +148,7 @@ NoiseFigures noiseFigures(const Film& film) {
     const Window& w = film.window();
     std::vector<double> rse;
     rse.reserve(w.pixels());
-    double relativeSum = 0, square = 0;
+    double relativeSum = 0, square = 0, surfaceSum = 0, area = 0, judged = 0;
     uint32_t most = 0;
     for (int y = w.y0; y < w.y1; ++y)
         for (int x = w.x0; x < w.x1; ++x) {
@@ -127,11 +158,19 @@ NoiseFigures noiseFigures(const Film& film) {
             ReplicaError e = replicaError(film, x, y);
             relativeSum += relativeReplicaError(e);
             square += e.se * e.se;
+            const SurfaceError s = surfaceError(film, x, y);
+            area += s.coverage;
+            if (s.replicas < 2) continue;
+            judged += s.coverage;
+            surfaceSum += s.coverage * relativeSurfaceError(s);
         }
     if (most >= 2)
         summarise(rse, &f.noiseRSE, &f.noiseRSE999);
     f.noiseQMC = relativeSum / double(w.pixels());
     f.imageError = std::sqrt(square / double(w.pixels()));
+    f.coverage = area / double(w.pixels());
+    f.known = judged > 0;
+    if (f.known) f.noise = surfaceSum / judged;
     return f;
 }
 

@@ -17,8 +17,14 @@ double relativeStandardError(const Moments&);
 struct NoiseFigures {
     double noiseRSE = 0;    ///< mean of the pixels' RSE
     double noiseRSE999 = 0; ///< the k-th smallest RSE, k = min(floor(0.999 N), N - 1)
-    double noiseQMC = 0;    ///< mean of the pixels' relative error from replicas; what --noise compares
+    double noiseQMC = 0;    ///< mean of the pixels' relative error from replicas, over the whole picture
     double imageError = 0;  ///< absolute: sqrt of the mean of SE_QMC^2; estimates the image's luminance RMSE
+    double noise = 0; ///< relative error of the light of surfaces, mean over their area in the picture: what is printed, and what
+                      ///< --noise compares. 0 when not known
+    bool known = false;  ///< some pixel's surface was met in two replicas
+    double coverage = 0; ///< share of the samples that met a surface, 0..1
+    /// Nothing is left that more samples would improve: no surface is in the picture, or the figure is small enough.
+    bool reached(double wanted) const { return known ? noise <= wanted : coverage == 0; }
 };
 
 /// noiseRSE and noiseRSE999 of a set of pixels, which is reordered. {0, 0} when empty.
@@ -39,6 +45,23 @@ ReplicaError replicaError(std::span<const double> sums, std::span<const uint32_t
 /// SE / (mean + 1e-3), SE divided by c4(R) = sqrt(2/(R-1)) Gamma(R/2) / Gamma((R-1)/2), since the root of an unbiased variance
 /// is on average too small (c4(8) = 0.9650 for normal replica means). 0 for fewer than 2 replicas.
 double relativeReplicaError(const ReplicaError&);
+
+/// The error of the light of what a pixel shows, apart from how much of the pixel it covers. Of n samples h met a surface, h_r of
+/// replica r; L is the mean luminance of those, B that of the others. What a replica's sum departs from, d_r = Y_r - L h_r - B
+/// (n_r - h_r), is due to light alone, so that an edge between a lit surface and black, both without noise, has error 0. For
+/// light that does not depend on the replica the sum of d_r^2 is var (1 - sum (h_r / h)^2), var that of the sum of the h samples:
+/// SE = sqrt(var) / h.
+struct SurfaceError {
+    double coverage = 0; ///< h / n
+    double mean = 0;     ///< L
+    double se = 0;       ///< of L; 0 when replicas < 2
+    int replicas = 0;    ///< that met the surface
+};
+SurfaceError surfaceError(const Film&, int x, int y);
+/// What the pixel adds to NoiseFigures::noise: SE / (L + 1e-3), unbiased as in relativeReplicaError(), times sqrt(h / n), so that
+/// it is the error of a pixel whose n samples all meet the surface. Where the edge of an object runs then changes the figure no
+/// more than its size in the picture does. 0 for fewer than 2 replicas.
+double relativeSurfaceError(const SurfaceError&);
 
 /// Mean and half width of an interval that covers the true value with the given probability: m +- t SE, t of Student's
 /// distribution with R - 1 degrees of freedom. Half width infinite when fewer than 2 replicas. 0 < level < 1.

@@ -9,9 +9,9 @@ namespace alpenglow::render {
 namespace {
 
 constexpr char kMagic[8] = {'A', 'L', 'P', 'G', 'P', 'A', 'R', 'T'};
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kVersion = 2;             // 1 had no sums of the samples that met a surface
 constexpr size_t kPrefix = 20;               // magic, version, header size, header CRC
-constexpr size_t kPixelBytes = 16 * 4 + 16 * kReplicas + 32 + 4 * kReplicas;
+constexpr size_t kPixelBytes = 16 * 4 + 16 * kReplicas + 32 + 4 * kReplicas + 16 + 4 * kReplicas;
 constexpr size_t kDeflateRatio = 1040;       // deflate cannot pack better than 1032 : 1
 
 struct Writer {
@@ -191,6 +191,8 @@ struct FilmIo {
                 w.number(v);
             for (uint32_t v : p.replicaCount)
                 w.number(v);
+            w.number(UInt128(p.surfaceY));
+            for (uint32_t v : p.surfaceCount) w.number(v);
             for (size_t c = 0; c < n; ++c)
                 w.number(UInt128(f.aovs_[i * n + c]));
         }
@@ -210,6 +212,8 @@ struct FilmIo {
                 v = r.number<uint64_t>();
             for (uint32_t& v : p.replicaCount)
                 v = r.number<uint32_t>();
+            p.surfaceY = Int128(r.number<UInt128>());
+            for (uint32_t& v : p.surfaceCount) v = r.number<uint32_t>();
             for (size_t c = 0; c < n; ++c)
                 f.aovs_[i * n + c] = Int128(r.number<UInt128>());
             uint64_t samples = 0;
@@ -220,8 +224,8 @@ struct FilmIo {
             Int128 most = Int128(samples) << (60 + kFixedBits);
             auto fits = [&](Int128 v) { return v <= most && v >= -most; };
             bool ok = fits(p.rgb[0]) && fits(p.rgb[1]) && fits(p.rgb[2]) && fits(p.alpha);
-            for (uint32_t k = 0; k < kReplicas; ++k)
-                ok = ok && fits(p.replicaY[k]);
+            for (uint32_t k = 0; k < kReplicas; ++k) ok = ok && fits(p.replicaY[k]) && p.surfaceCount[k] <= p.replicaCount[k];
+            ok = ok && fits(p.surfaceY);
             for (size_t c = 0; c < n; ++c)
                 ok = ok && (f.description_.channels[c].rule == ChannelRule::Average ? fits(f.aovs_[i * n + c])
                                                                                    : f.aovs_[i * n + c] == int32_t(f.aovs_[i * n + c]));
@@ -337,7 +341,10 @@ std::unique_ptr<Film> parsePart(std::span<const uint8_t> bytes, const std::strin
     if (!prefix.ok)
         return bad(Rie::BadFile, "the part file is truncated");
     if (version != kVersion)
-        return bad(Rie::Version, "a part file of another version");
+        return bad(Rie::Version, version < kVersion
+                                     ? "a part file of an older version of this program, which kept too little of each "
+                                       "pixel; render that part again"
+                                     : "a part file of a newer version of this program; use that to read it");
     if (size > limits::kPartHeaderBytes || bytes.size() - kPrefix < size_t(size) + 4)
         return bad(Rie::BadFile, "the part file is truncated");
     std::span<const uint8_t> header = bytes.subspan(kPrefix, size), rest = bytes.subspan(kPrefix + size);

@@ -41,7 +41,7 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
     // Large tiles where every thread still gets many.
     const bool large = film.window().pixels() >= size_t(kPathTile) * kPathTile * 8 * size_t(job.team.threads());
     const std::vector<Window> tiles = tilesOf(film.window(), large ? kPathTile : kTile);
-    const size_t stride = 4 + channels.size(); // colour, alpha, the rest
+    const size_t stride = 5 + channels.size(); // colour, alpha, whether a surface was met, the rest
     // Passes: of 8 samples, one per replica, while they fit the memory that holds them back. The first eight come in passes of
     // 1, 1, 2 and 4, so that there is soon something to keep.
     size_t perSample = film.window().pixels() * stride * sizeof(float);
@@ -54,21 +54,23 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
         if (in == film.ranges().end()) break;
         next = in->end;
     }
-    double noise = -1, secondsPerSample = 0;
+    NoiseFigures noise;
+    double secondsPerSample = 0;
     uint32_t nextNoise = 16;
+    bool judged = false;
     uint64_t total = settings.noise > 0 || settings.seconds > 0 ? 0 : wanted.end - wanted.begin;
     auto tell = [&](double inPass, bool last) {
         ProgressState s;
         double done = double(film.samplesPerPixel()) + inPass;
         s.samplesDone = done;
         s.samplesTotal = total;
-        s.noise = noise;
+        s.noise = noise.known ? noise.noise : -1;
         double t = job.elapsed();
         s.raysPerMS = raysPerMS(job.rayTotal, t);
         s.fraction = total ? done / double(total) : -1;
         if (settings.seconds > 0) s.fraction = std::max(s.fraction, std::min(1.0, t / settings.seconds));
-        if (settings.noise > 0 && noise > 0)
-            s.fraction = std::max(s.fraction, std::min(1.0, std::pow(settings.noise / noise, 2)));
+        if (settings.noise > 0 && noise.noise > 0)
+            s.fraction = std::max(s.fraction, std::min(1.0, std::pow(settings.noise / noise.noise, 2)));
         if (last) job.progress.finish(s, job.what);
         else job.progress.update(s, job.what);
     };
@@ -101,7 +103,8 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
                     const transport::SampleResult& r = results[k];
                     float w = weights[k];
                     Color c = clampSample(r.color, settings.sampleClamp) * w;
-                    out.insert(out.end(), {c.x, c.y, c.z, (r.opacity.x + r.opacity.y + r.opacity.z) / 3 * w});
+                    out.insert(out.end(),
+                               {c.x, c.y, c.z, (r.opacity.x + r.opacity.y + r.opacity.z) / 3 * w, r.z < 1e38f ? 1.f : 0.f});
                     size_t at = out.size();
                     if (!channels.empty()) filmValues(job.plan, r.opacity, r.z, r.zSecond, r.aovs, &out);
                     for (size_t j = 0; j < channels.size(); ++j)
@@ -143,7 +146,8 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
                             FilmSample f;
                             f.radiance = {p[0], p[1], p[2]};
                             f.alpha = p[3];
-                            f.aovs = {p + 4, channels.size()};
+                            f.surface = p[4] != 0;
+                            f.aovs = {p + 5, channels.size()};
                             film.add(x, y, s, f);
                         }
             },
@@ -157,11 +161,12 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
         next += count;
         any = true;
         if (film.samplesPerPixel() >= nextNoise && film.samplesPerPixel() % kReplicas == 0) {
-            noise = noiseFigures(film).noiseQMC;
+            noise = noiseFigures(film);
+            judged = true;
             nextNoise = film.samplesPerPixel() + std::max(kReplicas, film.samplesPerPixel() / 8 / kReplicas * kReplicas);
         }
         if (afterPass) afterPass(film);
-        if (settings.noise > 0 && noise >= 0 && noise <= settings.noise) break;
+        if (settings.noise > 0 && judged && noise.reached(settings.noise)) break;
     }
     if (any) tell(0, true);
     else job.progress.clear();

@@ -362,6 +362,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
         nonFinite = dropped.count;
         stats_.renderSec += job.elapsed();
         stats_.spp = spp;
+        stats_.noise = {}; // not known: neighbouring pixels share samples
         outcome_.interrupted |= job.interrupted;
         ++outcome_.rendered;
         if (job.interrupted)

@@ -35,6 +35,8 @@ std::string toJson(const RenderStats& s) {
     j["renderSec"] = finite(s.renderSec);
     j["cpuSec"] = finite(s.cpuSec);
     j["raysPerMS"] = finite(raysPerMS(s.totalRays, s.renderSec));
+    j["noise"] = finite(s.noise.noise);
+    j["coverage"] = finite(s.noise.coverage);
     j["noiseRSE"] = finite(s.noise.noiseRSE);
     j["noiseRSE999"] = finite(s.noise.noiseRSE999);
     j["efficiency"] = finite(efficiency(s.noise.noiseRSE, s.renderSec));
@@ -84,9 +86,8 @@ std::string toTable(const RenderStats& s) {
                                    "{} from the cache",
                                    grouped(s.shading.points), grouped(s.shading.batches), 100 * s.shading.laneOccupancy,
                                    s.shading.kernels, s.shading.affineKernels, s.shading.suspendingKernels, s.shading.cacheHits));
-    row("noise", fmt::format("noiseRSE {:.5f}, noiseRSE999 {:.5f}, noiseQMC {:.5f}", s.noise.noiseRSE, s.noise.noiseRSE999,
-                             s.noise.noiseQMC));
-    row("efficiency", fmt::format("{:.1f}", efficiency(s.noise.noiseRSE, s.renderSec)));
+    if (s.noise.known)
+        row("noise", fmt::format("{:.5f}: the mean relative error of the light on surfaces (docs/noise.md)", s.noise.noise));
     row("memory", bytesText(s.peakMemoryBytes) + " at most");
     if (s.nonFinite)
         row("dropped", fmt::format("{} samples that were not finite", grouped(s.nonFinite)));

@@ -184,9 +184,12 @@ TEST_F(PartFile, WrongFilesAreNamed) {
     EXPECT_FALSE(parsePart({}, "empty", diag));
     ASSERT_TRUE(savePart(makeFilm(0, 1), "a.part", policy, diag));
     auto b = bytes("a.part");
-    b[8] = 2;
-    EXPECT_FALSE(parsePart(b, "future", diag));
-    EXPECT_EQ(diag.all().back().code, Rie::Version);
+    for (const auto& [version, word] : {std::pair{1, "older"}, {99, "newer"}}) {
+        b[8] = uint8_t(version);
+        EXPECT_FALSE(parsePart(b, "other", diag));
+        EXPECT_EQ(diag.all().back().code, Rie::Version);
+        EXPECT_NE(diag.all().back().message.find(word), std::string::npos);
+    }
 }
 
 TEST_F(PartFile, AFullDiskKeepsTheOldFile) {

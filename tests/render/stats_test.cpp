@@ -14,7 +14,7 @@ RenderStats example() {
     s.renderSec = 2;
     s.cpuSec = 3.5;
     s.totalRays = 5'000'000;
-    s.noise = {0.1, 0.4, 0.05, 0.02};
+    s.noise = {0.1, 0.4, 0.05, 0.02, 0.03, true, 0.5};
     s.threads = 2;
     s.peakMemoryBytes = 3u << 20;
     s.nonFinite = 1234;
@@ -57,9 +57,16 @@ TEST(Stats, Table) {
     std::string t = toTable(example());
     EXPECT_NE(t.find("640 x 360, 100 samples per pixel"), std::string::npos) << t;
     EXPECT_NE(t.find("5,000,000, 2500 per ms (camera 23,040,000, volume 5)"), std::string::npos) << t;
-    EXPECT_NE(t.find("noiseRSE 0.10000, noiseRSE999 0.40000, noiseQMC 0.05000"), std::string::npos) << t;
+    EXPECT_NE(t.find("noise        0.03000: "), std::string::npos) << t; // one figure; the others are in the JSON
+    for (const char* other : {"noiseRSE", "noiseQMC", "efficiency"}) EXPECT_EQ(t.find(other), std::string::npos) << t;
     EXPECT_NE(t.find("1,234 samples that were not finite"), std::string::npos) << t;
     EXPECT_EQ(t.back(), '\n');
+}
+
+TEST(Stats, AFigureThatIsNotKnownHasNoLine) { // hidden and raytrace, or one sample a pixel
+    RenderStats s = example();
+    s.noise = {};
+    EXPECT_EQ(toTable(s).find("noise"), std::string::npos);
 }
 
 TEST(Stats, TheProcessHasMemoryAndTime) {

@@ -10,6 +10,7 @@
 #include <fcntl.h>
 #include <filesystem>
 #include <string_view>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -209,8 +210,35 @@ std::optional<std::string> resolveOutputPath(const std::string& name, const Outp
     return path;
 }
 
+std::optional<OutputFile> OutputFile::openStandardOutput(Diagnostics& diags, const SourcePlace& place) {
+    OutputFile f;
+    f.path_ = "-";
+    f.place_ = place;
+    f.standardOutput_ = true;
+    const int fd = memfd_create("alpenglow", MFD_CLOEXEC); // formats seek in what they write; a pipe cannot
+    f.file_ = fd < 0 ? nullptr : fdopen(fd, "w+b");
+    if (f.file_) return f;
+    diags.report(Severity::Error, codeOf(errno), place, std::string("cannot write to standard output: ") + std::strerror(errno));
+    if (fd >= 0) ::close(fd);
+    return {};
+}
+
+void OutputFile::copyOut() {
+    std::rewind(file_);
+    char bytes[1 << 16];
+    while (size_t n = std::fread(bytes, 1, sizeof bytes, file_))
+        for (size_t at = 0; at < n;) {
+            const ssize_t sent = ::write(STDOUT_FILENO, bytes + at, n - at);
+            if (sent < 0 && errno == EINTR) continue;
+            if (sent < 0) return fail(errno);
+            at += size_t(sent);
+        }
+    if (std::ferror(file_)) fail(EIO);
+}
+
 std::optional<OutputFile> OutputFile::open(const std::string& name, const OutputPolicy& policy, Diagnostics& diags,
                                            const SourcePlace& place) {
+    if (policy.allowWrite && name == "-") return openStandardOutput(diags, place);
     auto resolved = resolveOutputPath(name, policy, diags, place);
     if (!resolved) return {};
     OutputFile f;
@@ -251,7 +279,7 @@ std::optional<OutputFile> OutputFile::open(const std::string& name, const Output
 }
 
 OutputFile::OutputFile(OutputFile&& o) noexcept
-    : file_(o.file_), path_(std::move(o.path_)), temporary_(std::move(o.temporary_)), place_(std::move(o.place_)),
+    : file_(o.file_), path_(std::move(o.path_)), temporary_(std::move(o.temporary_)), standardOutput_(o.standardOutput_), place_(std::move(o.place_)),
       failAfter_(o.failAfter_), written_(o.written_), error_(o.error_), lastWasRead_(o.lastWasRead_) {
     o.file_ = nullptr;
     o.temporary_.clear();
@@ -325,18 +353,19 @@ uint64_t OutputFile::size() {
 bool OutputFile::commit(Diagnostics& diags) {
     if (file_) {
         if (!error_ && std::fflush(file_) != 0) fail(errno);
-        if (!error_ && fsync(fileno(file_)) != 0 && errno != EINVAL) fail(errno);
+        if (standardOutput_ && !error_) copyOut();
+        else if (!error_ && fsync(fileno(file_)) != 0 && errno != EINVAL) fail(errno);
         if (std::fclose(file_) != 0) fail(errno);
         file_ = nullptr;
     } else if (!error_) {
         fail(EBADF);
     }
-    if (!error_ && std::rename(temporary_.c_str(), path_.c_str()) != 0) fail(errno);
+    if (!error_ && !standardOutput_ && std::rename(temporary_.c_str(), path_.c_str()) != 0) fail(errno);
     if (!error_) {
         temporary_.clear();
         return true;
     }
-    diags.report(Severity::Error, codeOf(error_), place_, "cannot write \"" + path_ + "\": " + std::strerror(error_));
+    diags.report(Severity::Error, codeOf(error_), place_, "cannot write " + (standardOutput_ ? "to standard output" : "\"" + path_ + "\"") + ": " + std::strerror(error_));
     discard();
     return false;
 }

@@ -13,7 +13,7 @@ namespace alpenglow {
 /// Where files may be written.
 struct OutputPolicy {
     std::string root = ".";      ///< relative names are below it
-    bool allowWrite = false;     ///< --allow-write: absolute names and ".." are taken as they are
+    bool allowWrite = false;     ///< --allow-write: absolute names and ".." are taken as they are, "-" is standard output
     int64_t failAfterBytes = -1; ///< fault injection for tests: the write that passes this many bytes fails as a full disk
 };
 
@@ -28,7 +28,7 @@ std::optional<std::string> resolveOutputPath(const std::string& name, const Outp
 class OutputFile {
 public:
     /// Resolves the name by the policy, makes missing directories below the root, opens. Nothing: an error was reported.
-    /// Temporaries that killed processes left in the folder are removed.
+    /// Temporaries that killed processes left in the folder are removed. "-" under allowWrite is standard output: commit() sends all.
     static std::optional<OutputFile> open(const std::string& name, const OutputPolicy&, Diagnostics&, const SourcePlace& = {});
     OutputFile(OutputFile&&) noexcept;
     OutputFile& operator=(OutputFile&&) = delete;
@@ -50,8 +50,12 @@ private:
     OutputFile() = default;
     void fail(int error);
     void discard();
+    static std::optional<OutputFile> openStandardOutput(Diagnostics&, const SourcePlace&);
+    /// The whole of file_ to standard output.
+    void copyOut();
     std::FILE* file_ = nullptr;
     std::string path_, temporary_;
+    bool standardOutput_ = false; ///< file_ is in memory
     SourcePlace place_;
     int64_t failAfter_ = -1;
     uint64_t written_ = 0;

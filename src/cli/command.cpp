@@ -1,6 +1,7 @@
 #include "cli/command.h"
 #include <CLI/CLI.hpp>
 #include "base/file.h"
+#include "display/imageio.h"
 #include <atomic>
 #include <climits>
 #include <cmath>
@@ -72,6 +73,14 @@ void addDialect(CLI::App& app, std::string& name) {
                    "exponent 1/roughness")
         ->check(CLI::IsMember({"prman", "3delight", "aqsis", "bmrt", "pixie", "entropy", "air", "rispec"}, CLI::ignore_case))
         ->type_name("NAME");
+}
+
+std::string faultOfPictureName(const std::string& name, bool output) {
+    if (output && name == "-")
+        return isatty(STDOUT_FILENO) ? "standard output is a terminal; name a file, or lead it into one or into a program" : "";
+    if (display::formatOfExtension(name)) return "";
+    return "\"" + name + "\" has no extension of a format that is written: " + display::kPictureExtensions +
+           (output ? "; - is standard output" : "");
 }
 
 std::vector<std::string> folders(const std::vector<std::string>& lists) {

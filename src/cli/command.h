@@ -54,6 +54,10 @@ std::vector<std::string> folders(const std::vector<std::string>& lists);
 /// The option --dialect: the name of the renderer whose compiler's macros are predefined goes to `name`, which outlives the parser.
 void addDialect(CLI::App&, std::string& name);
 
+/// For an option that names a picture: what is wrong with the name, or "". Its extension must be of a format that is written;
+/// with `output`, "-" is standard output, as long as that is no terminal.
+std::string faultOfPictureName(const std::string& name, bool output);
+
 /// "640x480".
 std::optional<std::array<int, 2>> parseSize(const std::string&);
 /// Numbers separated by commas; nothing unless there are exactly `count` (0 = any number) and all are finite.

@@ -25,6 +25,8 @@ void addDiff(CLI::App& app, int* status) {
               "5 when the difference cannot be written.");
     c->callback([a, status] {
         Diagnostics diags(printer());
+        if (const std::string fault = a->output.empty() ? "" : faultOfPictureName(a->output, false); !fault.empty())
+            throw CLI::ValidationError("-o", fault);
         auto first = display::readImage(a->a, diags), second = display::readImage(a->b, diags);
         auto result = first && second ? display::compareImages(*first, *second, diags) : std::nullopt;
         if (!result) {
@@ -36,7 +38,7 @@ void addDiff(CLI::App& app, int* status) {
         if (a->output.empty()) return;
         display::WriteOptions w;
         w.format = display::formatOfExtension(a->output).value_or(display::Format::Exr);
-        if (w.format == display::Format::Png) w.sample = display::Sample::UInt8;
+        if (w.format == display::Format::Png || w.format == display::Format::Jpeg) w.sample = display::Sample::UInt8;
         w.policy.allowWrite = true;
         if (!display::writeImage(a->output, result->difference, w, diags)) *status = kOutputFailed;
     });

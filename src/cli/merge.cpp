@@ -24,6 +24,8 @@ void addMerge(CLI::App& app, int* status) {
         ->allow_extra_args(false);
     c->footer("Parts fit when scene, options, seed and crop window are the same and no sample is in two of them.");
     c->callback([a, status] {
+        if (const std::string fault = a->output.empty() ? "" : faultOfPictureName(a->output, true); !fault.empty())
+            throw CLI::ValidationError("-o", fault);
         Diagnostics diags(printer());
         a->settings.shaderPaths = folders(a->searchPaths);
         switch (render::mergePictures(a->parts, a->output, a->settings, diags)) {

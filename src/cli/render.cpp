@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "base/processors.h"
 #include "cli/command.h"
+#include "display/imageio.h"
 #include "render/renderer.h"
 #include "ri/reader.h"
 #include <CLI/CLI.hpp>
@@ -76,6 +77,8 @@ void checkLate(Arguments& a, const CLI::App& app) {
     if (app.count("--gamma")) s.gamma = a.gamma;
     s.direct = !a.noDirect;
     s.indirect = !a.noIndirect;
+    if (const std::string fault = s.output.empty() ? "" : faultOfPictureName(s.output, true); !fault.empty()) wrong("-o", fault);
+    if (s.output == "-" && s.samples) wrong("-o", "with --samples a part file lies beside the picture: name a file");
     if (s.resume && s.checkpoint.empty()) wrong("--resume", "needs --checkpoint FILE");
     if (a.preset == "slproject") {
         if (s.hider.empty()) s.hider = "path";
@@ -150,6 +153,7 @@ std::vector<int64_t> timesOf(const std::vector<std::string>& files) {
 }
 
 int renderAll(const Arguments& a) {
+    if (a.settings.output == "-") stdout = stderr; // what shaders print must not come between the bytes of the picture
     const MemoryLimit limit(a.settings.memoryLimit,
                             a.settings.threads > 0 ? a.settings.threads : defaultThreads());
     const StopFlag* stop = watchInterrupts();
@@ -176,8 +180,10 @@ void addRender(CLI::App& app, int* status) {
     c->add_option("scenes", a->scenes, "RIB files, ASCII, binary or gzipped; - is standard input")->required();
 
     c->add_option("-o", s.output,
-                  "Write one picture FILE instead of the scene's displays; the extension chooses the format (.exr .png "
-                  ".tif). # in the name becomes the frame number")
+                  std::string("Write one picture FILE instead of the scene's displays; the extension chooses the format (") +
+                      display::kPictureExtensions +
+                      "). # in the name becomes the frame number. - is standard output: PNG, or the format of the scene's first "
+                      "display (openexr, tiff, jpeg), frames one after the other")
         ->type_name("FILE")
         ->group("Pictures");
     c->add_option("--display", a->displays, "Add a display, for example png:view.png")

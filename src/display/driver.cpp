@@ -12,8 +12,9 @@ std::string lower(std::string s) {
 } // namespace
 
 const std::vector<const DriverDescriptor*>& drivers() {
-    static const std::vector<const DriverDescriptor*> list{&openexrDriver,     &tiffDriver, &fileDriver,  &pngDriver,
-                                                           &framebufferDriver, &nullDriver, &zfileDriver, &otherDriver};
+    static const std::vector<const DriverDescriptor*> list{&openexrDriver, &tiffDriver,        &fileDriver, &pngDriver,
+                                                           &jpegDriver,    &framebufferDriver, &nullDriver, &zfileDriver,
+                                                           &otherDriver};
     return list;
 }
 

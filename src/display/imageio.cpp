@@ -42,6 +42,30 @@ bool DecodeContext::sizeAllowed(uint64_t width, uint64_t height, uint64_t channe
     return true;
 }
 
+std::vector<int> pictureChannels(const Image& m, bool alpha) {
+    int r = m.channel("r"), g = m.channel("g"), b = m.channel("b"), a = m.channel("a");
+    std::vector<int> index;
+    if (r >= 0 && g >= 0 && b >= 0) index = {r, g, b};
+    else if (m.channelCount() == 3 || (m.channelCount() == 4 && a == 3)) index = {0, 1, 2};
+    else if (m.channelCount() == 1 || (m.channelCount() == 2 && a == 1)) index = {0};
+    else index = m.channelCount() >= 3 ? std::vector<int>{0, 1, 2} : std::vector<int>{0};
+    if (alpha && a >= 0 && std::find(index.begin(), index.end(), a) == index.end()) index.push_back(a);
+    return index;
+}
+
+void sayLeftOut(const char* format, const Image& m, const std::vector<int>& written, const std::string& path,
+                const WriteOptions& o, Diagnostics& diags) {
+    std::string left;
+    for (int c = 0; c < m.channelCount(); ++c)
+        if (std::find(written.begin(), written.end(), c) == written.end())
+            left += (left.empty() ? "" : ", ") + m.channels[size_t(c)];
+    if (left.empty()) return;
+    diags.report(left == "a" ? Severity::Info : Severity::Warning, Rie::Incapable, o.place,
+                 std::string(format) + " holds no more than one picture" + (left == "a" ? " without alpha" : "") +
+                     "; left out of \"" + path + "\": " + left,
+                 left == "a" ? "PNG, TIFF and OpenEXR hold alpha" : "OpenEXR holds any channels");
+}
+
 unsigned toCode(float value, unsigned maximum, bool quantised) {
     float v = quantised ? value : value * float(maximum);
     if (!(v > 0)) return 0; // also NaN
@@ -109,6 +133,9 @@ bool writeImage(const std::string& path, const Image& image, const WriteOptions&
         case Format::Png:
             ok = encodePng(*file, image, options, diags, why);
             break;
+        case Format::Jpeg:
+            ok = encodeJpeg(*file, image, options, diags, why);
+            break;
         }
     } catch (const std::bad_alloc&) { return refuse(Rie::NoMem, "out of memory"); }
     if (!ok && file->ok()) return refuse(Rie::System, why.empty() ? "the encoder failed" : why);
@@ -123,7 +150,22 @@ std::optional<Format> formatOfExtension(const std::string& path) {
     if (e == "exr") return Format::Exr;
     if (e == "png") return Format::Png;
     if (e == "tif" || e == "tiff") return Format::Tiff;
+    if (e == "jpg" || e == "jpeg") return Format::Jpeg;
     return {};
+}
+
+const char* toString(Format f) {
+    switch (f) {
+    case Format::Exr:
+        return "OpenEXR";
+    case Format::Tiff:
+        return "TIFF";
+    case Format::Png:
+        return "PNG";
+    case Format::Jpeg:
+        break;
+    }
+    return "JPEG";
 }
 
 } // namespace alpenglow::display

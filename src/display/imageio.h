@@ -1,4 +1,4 @@
-// Reading and writing pictures: OpenEXR, TIFF, PNG; reading only: JPEG, Radiance, zfiles, Pixar's native textures.
+// Reading and writing pictures: OpenEXR, TIFF, PNG, JPEG; reading only: Radiance, zfiles, Pixar's native textures.
 #pragma once
 #include "base/file.h"
 #include "display/image.h"
@@ -9,7 +9,9 @@
 
 namespace alpenglow::display {
 
-enum class Format { Exr, Tiff, Png };
+enum class Format { Exr, Tiff, Png, Jpeg };
+/// "OpenEXR", "TIFF", "PNG", "JPEG".
+const char* toString(Format);
 enum class Sample { UInt8, UInt16, Half, Float };
 
 struct ReadOptions {
@@ -25,7 +27,7 @@ std::optional<Image> decodeImage(std::span<const uint8_t> bytes, const std::stri
 
 struct WriteOptions {
     Format format = Format::Exr;
-    /// EXR: Half or Float. TIFF: UInt8, UInt16, Float. PNG: UInt8, UInt16. Others fall to the nearest the format has: nothing is
+    /// EXR: Half or Float. TIFF: UInt8, UInt16, Float. PNG: UInt8, UInt16. JPEG: UInt8. Others fall to the nearest the format has: nothing is
     /// lost silently, drivers decide before.
     Sample sample = Sample::Float;
     bool quantised = false; ///< integer formats: data are codes (0..255) already; else [0,1] is scaled, rounded and clamped
@@ -38,7 +40,8 @@ struct WriteOptions {
 /// Writes a picture whole or not at all (base/file.h). False: an error was reported.
 bool writeImage(const std::string& path, const Image&, const WriteOptions&, Diagnostics&);
 
-/// The format of a name's extension (.exr .png .tif .tiff, any case); nothing for others.
+/// The format of a name's extension (kPictureExtensions, any case); nothing for others.
 std::optional<Format> formatOfExtension(const std::string& path);
+inline constexpr const char* kPictureExtensions = ".exr .png .tif .tiff .jpg .jpeg";
 
 } // namespace alpenglow::display

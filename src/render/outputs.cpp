@@ -160,22 +160,30 @@ void OutputPlan::resolve(std::vector<int> widths, Diagnostics& diags) {
         }
 }
 
-OutputSpec singleOutput(const std::string& file, const OutputBasis& basis, Diagnostics& diags) {
-    std::string e = extensionOf(file);
+OutputSpec singleOutput(const std::string& file, const OutputBasis& basis, Diagnostics& diags, display::Format format) {
+    using display::Format;
+    if (file != "-") format = display::formatOfExtension(file).value_or(Format::Tiff);
+    const bool looked = format == Format::Png || format == Format::Jpeg;
     scene::Display d;
     d.name = file;
-    d.type = e == "exr" ? "openexr" : e == "png" ? "png" : "tiff";
-    if (e != "exr" && e != "png" && e != "tif" && e != "tiff" && e != "pic")
-        diags.report(Severity::Info, Rie::NoError, {}, "\"" + file + "\": the name has no known extension; TIFF is written");
-    d.mode = e == "png" ? "rgb" : "rgba";
+    d.type = format == Format::Exr ? "openexr" : format == Format::Png ? "png" : format == Format::Jpeg ? "jpeg" : "tiff";
+    d.mode = looked ? "rgb" : "rgba";
     OutputPlan unused;
     OutputSpec s = specOf(d, {}, basis, unused, diags);
-    if (basis.path && e == "png" && !basis.gammaGiven) s.gamma = 2.2f;
+    if (basis.path && looked && !basis.gammaGiven) s.gamma = 2.2f;
     s.userFile = true;
     return s;
 }
 
 namespace {
+/// What "-o -" writes: the format that the first display's type names, else PNG.
+display::Format formatOf(const std::vector<scene::Display>& displays) {
+    if (displays.empty()) return display::Format::Png;
+    const scene::Display& d = displays.front();
+    const std::string likeAName = d.type == "file" ? d.name : d.type == "openexr" ? ".exr" : "." + d.type;
+    return display::formatOfExtension(likeAName).value_or(display::Format::Png);
+}
+
 /// Leaves one picture for each file. A window has none of its own: where another display writes the file of its name, that is kept.
 void oneForEachFile(std::vector<OutputSpec>& pictures, Diagnostics& diags) {
     auto is = [](const OutputSpec& s, const char* driver) {
@@ -212,7 +220,7 @@ OutputPlan planOutputs(const scene::Options& o, const RenderSettings& settings, 
     b.z = o.quantizeZ;
     b.filter = makePixelFilter(o.filter.name, o.filter.xwidth, o.filter.ywidth, {}, diags);
     b.depth = depthFilterOf(o, diags);
-    if (!file.empty()) plan.pictures.push_back(singleOutput(file, b, diags));
+    if (!file.empty()) plan.pictures.push_back(singleOutput(file, b, diags, formatOf(o.displays)));
     else {
         std::vector<scene::Display> displays = o.displays;
         for (const auto& [type, name] : settings.displays) {

@@ -2,6 +2,7 @@
 // and the last steps of a pixel: exposure, imager, quantiser, driver.
 #pragma once
 #include "base/file.h"
+#include "display/imageio.h"
 #include "display/quantize.h"
 #include "render/film.h"
 #include "render/samplebuffer.h"
@@ -63,8 +64,8 @@ struct OutputPlan {
 
 /// The pictures of a frame. `file` is -o's name ("" = the scene's displays; ri.pic when it has none).
 OutputPlan planOutputs(const scene::Options&, const RenderSettings&, bool path, const std::string& file, Diagnostics&);
-/// The picture of -o: rgba, or rgb for PNG.
-OutputSpec singleOutput(const std::string& file, const OutputBasis&, Diagnostics&);
+/// The picture of -o: rgba, or rgb for PNG and JPEG. The name's extension chooses; else, for "-" (standard output), `format`.
+OutputSpec singleOutput(const std::string& file, const OutputBasis&, Diagnostics&, display::Format format = display::Format::Png);
 
 /// Channels of a film that holds what the plan needs beside colour and alpha.
 std::vector<Channel> filmChannels(const OutputPlan&);

@@ -100,6 +100,7 @@ std::vector<std::string> Renderer::searchPaths(const scene::Options& o, const ch
 }
 
 std::string Renderer::fileFor(const scene::Options& o, uint32_t spp) {
+    if (settings_.output == "-") return "-"; // frame after frame
     if (!settings_.output.empty()) {
         bool numbered = saved_++ > 0 || settings_.output.find('#') != std::string::npos;
         return numbered ? numberedName(settings_.output, o.frameNumber > 0 ? o.frameNumber : saved_) : settings_.output;

@@ -46,6 +46,7 @@ scene::Param Interpreter::bindOne(const Call& call, const RawParam& raw, Use use
                        "class type[n] name, for example \"varying color Cs\"");
         return p;
     }
+    if (use == Use::Option || use == Use::Attribute) sayUnknown(use == Use::Option, category, p);
     bool text = v.kind == Value::Kind::Strings;
     bool guessed = !r.declaration;
     if (r.declaration) {
@@ -66,10 +67,6 @@ scene::Param Interpreter::bindOne(const Call& call, const RawParam& raw, Use use
     } else if (use == Use::Primitive) {
         reporter.once(fmt::format("ri:undeclared:{}", p.name), Severity::Warning, Rie::BadToken, p.place,
                       fmt::format("primitive variable \"{}\" is not declared: its type is guessed from the values", p.name));
-    } else if (use == Use::Option || use == Use::Attribute) {
-        if (category != "user" && !r.byValue)
-            reporter.once(fmt::format("ri:{}:{}:{}", request, category, p.name), Severity::Info, Rie::BadToken, p.place,
-                          fmt::format("{} \"{}\" \"{}\" is not known here", request, category, p.name));
     }
     if (guessed) guess(p, v);
     if (text) {

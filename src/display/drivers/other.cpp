@@ -7,10 +7,9 @@ namespace {
 class Other : public PictureDriver {
     Format format(const DriverSetup& s, Diagnostics& diags) override {
         Format f = formatOfExtension(s.name).value_or(Format::Tiff);
-        const char* name = f == Format::Exr ? "OpenEXR" : f == Format::Png ? "PNG" : "TIFF";
         if (findDriver(s.type)) // of an unknown type it has been said already (makeDriver)
             diags.report(Severity::Warning, Rie::Incapable, s.place,
-                             "display \"" + s.name + "\": type \"" + s.type + "\" is not available; a " + name +
+                             "display \"" + s.name + "\": type \"" + s.type + "\" is not available; " + toString(f) +
                                  " is written under that name");
         return f;
     }
@@ -18,11 +17,11 @@ class Other : public PictureDriver {
 
 } // namespace
 
-const DriverDescriptor otherDriver{{"targa", "tga", "bmp", "bitmap", "jpeg", "jpg", "gif", "sgi", "iff", "alias", "cineon", "avs",
+const DriverDescriptor otherDriver{{"targa", "tga", "bmp", "bitmap", "gif", "sgi", "iff", "alias", "cineon", "avs",
                                     "pic", "dspy_s_avs", "texture"},
                                    "Formats that are not written here (Targa, BMP, ...): a picture file under the given name, by "
-                                   "its extension (OpenEXR, PNG, else "
-                                   "TIFF), with a message.",
+                                   "its extension (OpenEXR, PNG, JPEG, "
+                                   "else TIFF), with a message.",
                                    []() -> std::unique_ptr<Driver> { return std::make_unique<Other>(); }};
 
 } // namespace alpenglow::display

@@ -59,6 +59,11 @@ WriteOptions PictureDriver::chooseSamples(Diagnostics& diags) {
             say(Severity::Info, "OpenEXR holds floating point; quantisation does not apply");
         return o;
     }
+    if (format_ == Format::Jpeg) { // without codes of 8 bits 0 to 1 fills them
+        o.quantised = !setup_.rgba.floating() && !data() && setup_.rgba.min >= 0 && setup_.rgba.max <= 255;
+        o.sample = Sample::UInt8;
+        return o;
+    }
     o.compression = stringParam(setup_, "compression", {"none", "lzw", "packbits", "zip", "deflate"}, "zip", diags);
     // Which quantisers are at work: z has its own, and a file has one kind of sample.
     bool hasZ = false, hasOther = false;

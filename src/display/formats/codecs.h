@@ -31,6 +31,13 @@ std::optional<Image> decodePixar(Bytes, const DecodeContext&);
 bool encodeExr(OutputFile&, const Image&, const WriteOptions&, std::string& why);
 bool encodeTiff(OutputFile&, const Image&, const WriteOptions&, std::string& why);
 bool encodePng(OutputFile&, const Image&, const WriteOptions&, Diagnostics&, std::string& why);
+bool encodeJpeg(OutputFile&, const Image&, const WriteOptions&, Diagnostics&, std::string& why);
+
+/// Indices of the channels that a file of one picture holds: r g b, else the first three or the first one; then a, with `alpha`.
+std::vector<int> pictureChannels(const Image&, bool alpha);
+/// Warns of the channels that are not among `written`; alpha alone is no more than a note.
+void sayLeftOut(const char* format, const Image&, const std::vector<int>& written, const std::string& path, const WriteOptions&,
+                Diagnostics&);
 
 /// A sample as an integer code of 8 or 16 bits: as it is when quantised, else value * maximum; rounded, clamped; NaN is 0.
 unsigned toCode(float value, unsigned maximum, bool quantised);

@@ -1,8 +1,9 @@
-// JPEG by libjpeg, reading only: grey and colour, 8 bits. As in png.cpp, errors jump, so the jumping frame holds no objects.
+// JPEG by libjpeg: grey and colour, 8 bits. As in png.cpp, errors jump, so the jumping frame holds no objects.
 #include "base/limits.h"
 #include "display/formats/codecs.h"
 #include <csetjmp>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <jpeglib.h>
 
@@ -83,7 +84,76 @@ bool decode(Reader& r, Bytes b) {
     return true;
 }
 
+struct Encoding {
+    jpeg_error_mgr errors{};
+    std::jmp_buf jump;
+    jpeg_compress_struct info{};
+    char error[JMSG_LENGTH_MAX] = "";
+    const Image* image = nullptr;
+    std::vector<int> index; ///< channels written
+    bool quantised = false;
+    std::vector<uint8_t> row;
+    unsigned char* bytes = nullptr; ///< of the library, by malloc
+    unsigned long size = 0;
+};
+
+void onEncodingError(j_common_ptr c) {
+    Encoding& e = *static_cast<Encoding*>(c->client_data);
+    c->err->format_message(c, e.error);
+    std::longjmp(e.jump, 1);
+}
+
+constexpr int kQuality = 95;
+
+bool encode(Encoding& e) {
+    if (setjmp(e.jump)) return false;
+    const Image& m = *e.image;
+    jpeg_create_compress(&e.info);
+    e.info.client_data = &e;
+    jpeg_mem_dest(&e.info, &e.bytes, &e.size);
+    e.info.image_width = JDIMENSION(m.width);
+    e.info.image_height = JDIMENSION(m.height);
+    e.info.input_components = int(e.index.size());
+    e.info.in_color_space = e.index.size() == 1 ? JCS_GRAYSCALE : JCS_RGB;
+    jpeg_set_defaults(&e.info);
+    jpeg_set_quality(&e.info, kQuality, TRUE);
+    e.info.dct_method = JDCT_ISLOW;
+    e.info.optimize_coding = TRUE;
+    for (int c = 0; c < e.info.num_components; ++c) // colour as sharp as lightness
+        e.info.comp_info[c].h_samp_factor = e.info.comp_info[c].v_samp_factor = 1;
+    jpeg_start_compress(&e.info, TRUE);
+    while (e.info.next_scanline < e.info.image_height) {
+        const float* from = m.pixel(0, int(e.info.next_scanline));
+        size_t at = 0;
+        for (int x = 0; x < m.width; ++x, from += m.channels.size())
+            for (size_t c = 0; c < e.index.size(); ++c) e.row[at++] = uint8_t(toCode(from[e.index[c]], 255, e.quantised));
+        JSAMPROW row = e.row.data();
+        jpeg_write_scanlines(&e.info, &row, 1);
+    }
+    jpeg_finish_compress(&e.info);
+    return true;
+}
+
 } // namespace
+
+bool encodeJpeg(OutputFile& out, const Image& m, const WriteOptions& o, Diagnostics& diags, std::string& why) {
+    Encoding e;
+    e.image = &m;
+    e.index = pictureChannels(m, false);
+    e.quantised = o.quantised;
+    e.row.resize(size_t(m.width) * e.index.size());
+    sayLeftOut("JPEG", m, e.index, out.path(), o, diags);
+    e.info.err = jpeg_std_error(&e.errors);
+    e.errors.error_exit = onEncodingError;
+    e.errors.output_message = onOutput;
+    e.info.client_data = &e;
+    bool ok = encode(e);
+    jpeg_destroy_compress(&e.info);
+    if (!ok) why = e.error;
+    ok = ok && out.write(e.bytes, e.size);
+    std::free(e.bytes);
+    return ok;
+}
 
 std::optional<Image> decodeJpeg(Bytes b, const DecodeContext& ctx) {
     Reader r;

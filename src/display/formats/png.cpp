@@ -134,18 +134,6 @@ bool encode(Encoding& e, Writer& w, png_structp png, png_infop info) {
     return true;
 }
 
-/// The channels a PNG can hold: r g b (a), else one (a).
-std::vector<int> pngChannels(const Image& m) {
-    int r = m.channel("r"), g = m.channel("g"), b = m.channel("b"), a = m.channel("a");
-    std::vector<int> index;
-    if (r >= 0 && g >= 0 && b >= 0) index = {r, g, b};
-    else if (m.channelCount() == 3 || (m.channelCount() == 4 && a == 3)) index = {0, 1, 2};
-    else if (m.channelCount() == 1 || (m.channelCount() == 2 && a == 1)) index = {0};
-    else index = m.channelCount() >= 3 ? std::vector<int>{0, 1, 2} : std::vector<int>{0};
-    if (a >= 0 && std::find(index.begin(), index.end(), a) == index.end()) index.push_back(a);
-    return index;
-}
-
 } // namespace
 
 std::optional<Image> decodePng(Bytes b, const DecodeContext& ctx) {
@@ -170,19 +158,11 @@ std::optional<Image> decodePng(Bytes b, const DecodeContext& ctx) {
 bool encodePng(OutputFile& out, const Image& m, const WriteOptions& o, Diagnostics& diags, std::string& why) {
     Encoding e;
     e.image = &m;
-    e.index = pngChannels(m);
+    e.index = pictureChannels(m, true);
     e.sixteen = o.sample != Sample::UInt8;
     e.quantised = o.quantised;
     e.row.resize(size_t(m.width) * e.index.size() * (e.sixteen ? 2 : 1));
-    if (e.index.size() < m.channels.size()) {
-        std::string left;
-        for (int c = 0; c < m.channelCount(); ++c)
-            if (std::find(e.index.begin(), e.index.end(), c) == e.index.end())
-                left += (left.empty() ? "" : ", ") + m.channels[size_t(c)];
-        diags.report(Severity::Warning, Rie::Incapable, o.place,
-                     "PNG holds no more than one picture; left out of \"" + out.path() + "\": " + left,
-                     "OpenEXR holds any channels");
-    }
+    sayLeftOut("PNG", m, e.index, out.path(), o, diags);
     for (auto& [key, value] : m.metadata) {
         bool plain =
             !key.empty() && key.size() < 80 && key.front() != ' ' && key.back() != ' ' && key != "gamma" && key != "colorspace";

@@ -1,0 +1,128 @@
+// Names of Option and Attribute that are in no table (scene/knownoptions.h).
+#include "ri/interpreter.h"
+#include "scene/knownoptions.h"
+#include <fmt/format.h>
+
+namespace alpenglow::ri {
+namespace {
+
+/// Classes of PRMan, 3Delight, Aqsis, BMRT, Pixie, Entropy, Air, RenderDotC and their exporters, whose names do nothing here and
+/// change no picture by much: none of them is warned about.
+const std::set<std::string>& otherClasses(bool option) {
+    static const std::set<std::string> options = {
+        "3delight",   "Hider",      "RI",         "Render",        "Ri",         "air",       "aqsis",     "bake",
+        "bmrt",       "bucket",     "cache",      "caustic",       "checkpoint", "curve",     "delight",   "dice",
+        "display",    "dspy",       "dspyplugin", "entropy",       "error",      "exrheader", "exrprefix", "file",
+        "frame",      "fur",        "geometry",   "hair",          "header",     "history",   "houdini",   "indirect",
+        "irradiance", "license",    "licenses",   "licenseserver", "lighting",   "lightpath", "limits",    "lock",
+        "lpe",        "maya",       "message",    "messages",      "netcache",   "occlusion", "osl",       "photon",
+        "pixie",      "plugin",     "prman",      "procedural",    "quicknoise", "radiosity", "rdc",       "render",
+        "rerender",   "ri",         "rib",        "ribparse",      "rslplugin",  "runtime",   "shader",    "shadow",
+        "shutter",    "statistics", "stereo",     "stitch",        "subsurface", "texture",   "threads",   "time",
+        "version",    "vm"};
+    static const std::set<std::string> attributes = {"3delight",
+                                                     "RI",
+                                                     "Ri",
+                                                     "air",
+                                                     "aqsis",
+                                                     "area",
+                                                     "areashadow",
+                                                     "autoshadows",
+                                                     "bake",
+                                                     "blobby",
+                                                     "bmrt",
+                                                     "bound",
+                                                     "bounds",
+                                                     "camera",
+                                                     "caustic",
+                                                     "caustics",
+                                                     "cputime",
+                                                     "cull",
+                                                     "curve",
+                                                     "delight",
+                                                     "derivatives",
+                                                     "dice",
+                                                     "displacement",
+                                                     "divisions",
+                                                     "entropy",
+                                                     "fur",
+                                                     "hair",
+                                                     "houdini",
+                                                     "identifier",
+                                                     "indirect",
+                                                     "irradiance",
+                                                     "lightfilter",
+                                                     "lighting",
+                                                     "lightmap",
+                                                     "lpe",
+                                                     "maya",
+                                                     "mesh",
+                                                     "occlusion",
+                                                     "photon",
+                                                     "pixie",
+                                                     "point",
+                                                     "points",
+                                                     "polygon",
+                                                     "primitive",
+                                                     "procedural",
+                                                     "radiosity",
+                                                     "reflection",
+                                                     "ri",
+                                                     "rib",
+                                                     "shader",
+                                                     "shadow",
+                                                     "shutter",
+                                                     "sides",
+                                                     "spline",
+                                                     "sss",
+                                                     "statistics",
+                                                     "stereo",
+                                                     "stitch",
+                                                     "stochastic",
+                                                     "subdivision",
+                                                     "subdivisionmesh",
+                                                     "subsurface",
+                                                     "texture",
+                                                     "time",
+                                                     "timeline",
+                                                     "toon",
+                                                     "trimcurve",
+                                                     "type",
+                                                     "volume"};
+    return option ? options : attributes;
+}
+
+std::string didYouMean(const std::string& word, const std::vector<std::string>& candidates) {
+    const std::string near = nearestName(word, candidates);
+    return near.empty() || near == word ? "" : "did you mean \"" + near + "\"?";
+}
+
+} // namespace
+
+void Interpreter::sayUnknown(bool option, const std::string& category, const scene::Param& p) {
+    if (category == "user") return;
+    const auto table = option ? scene::knownOptions() : scene::knownAttributes();
+    const char* what = option ? "Option" : "Attribute";
+    const std::string key = category + ":" + p.name;
+    const scene::OptionDescription* known = scene::findKnown(table, key);
+    if (known && known->effect != scene::Effect::Ignored) return;
+    const std::string head = fmt::format("{} \"{}\" \"{}\"", what, category, p.name);
+    if (known || otherClasses(option).count(category)) {
+        reporter.once("ri:" + head, Severity::Info, Rie::BadToken, p.place, head + " does nothing here");
+        return;
+    }
+    std::string hint;
+    const std::vector<std::string> names = scene::knownNames(table, category);
+    if (scene::findKnown(option ? scene::knownAttributes() : scene::knownOptions(), key))
+        hint = option ? "it is an Attribute" : "it is an Option";
+    else if (!names.empty()) hint = didYouMean(p.name, names);
+    else {
+        std::vector<std::string> classes = scene::knownNames(table, "");
+        classes.emplace_back("user");
+        hint = didYouMean(category, classes);
+    }
+    reporter.once("ri:" + head, Severity::Warning, Rie::BadToken, p.place,
+                  head + " is not known: it does nothing, unless a shader asks for it", hint);
+}
+
+} // namespace alpenglow::ri

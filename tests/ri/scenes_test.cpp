@@ -5,7 +5,7 @@
 using namespace alpenglow;
 using namespace alpenglow::ri;
 
-TEST(PublishedScenes, AreReadWithoutAMessage) {
+TEST(PublishedScenes, AreReadWithoutAWarning) {
     const std::string folder = std::string(ALPENGLOW_SOURCE_DIR) + "/../shared/scenes/";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "../shared/scenes is not here";
     // Counted in the files by their request names.
@@ -19,7 +19,7 @@ TEST(PublishedScenes, AreReadWithoutAMessage) {
         Collected c;
         RibReader reader({}, c, c.diagnostics);
         EXPECT_TRUE(reader.readFile(folder + s.name + ".rib")) << s.name;
-        EXPECT_EQ(c.count(), 0u) << s.name << "\n" << c.messages();
+        EXPECT_EQ(c.diagnostics.errors() + c.diagnostics.warnings(), 0) << s.name << "\n" << c.messages(); // notes may be
         EXPECT_EQ(c.frame().primitives.size(), s.primitives) << s.name;
         EXPECT_EQ(c.frame().lights.size(), s.lights) << s.name;
         EXPECT_EQ(c.frame().options.xres, s.xres) << s.name;

@@ -374,7 +374,8 @@ TEST(Frames, OptionsAreAsGiven) {
                   "Hider \"raytrace\" \"int jitter\" 0 RelativeDetail 2 Option \"limits\" \"bucketsize\" [32 16] "
                   "FrameAspectRatio 1.5 ScreenWindow -2 2 -1 1\n"
                   "Option \"searchpath\" \"shader\" \"a:b\" Option \"searchpath\" \"shader\" \"c:&\" WorldBegin WorldEnd");
-    EXPECT_EQ(c->count(), 0u) << c->messages();
+    EXPECT_EQ(c->only().message, "Option \"limits\" \"bucketsize\" does nothing here");
+    EXPECT_EQ(c->only().severity, Severity::Info);
     const scene::Options& o = c->frame().options;
     EXPECT_EQ(o.projection, "perspective");
     EXPECT_EQ(o.fov, 30);

@@ -279,8 +279,9 @@ std::optional<OutputFile> OutputFile::open(const std::string& name, const Output
 }
 
 OutputFile::OutputFile(OutputFile&& o) noexcept
-    : file_(o.file_), path_(std::move(o.path_)), temporary_(std::move(o.temporary_)), standardOutput_(o.standardOutput_), place_(std::move(o.place_)),
-      failAfter_(o.failAfter_), written_(o.written_), error_(o.error_), lastWasRead_(o.lastWasRead_) {
+    : file_(o.file_), path_(std::move(o.path_)), temporary_(std::move(o.temporary_)), standardOutput_(o.standardOutput_),
+      place_(std::move(o.place_)), failAfter_(o.failAfter_), written_(o.written_), error_(o.error_),
+      lastWasRead_(o.lastWasRead_) {
     o.file_ = nullptr;
     o.temporary_.clear();
 }
@@ -365,7 +366,8 @@ bool OutputFile::commit(Diagnostics& diags) {
         temporary_.clear();
         return true;
     }
-    diags.report(Severity::Error, codeOf(error_), place_, "cannot write " + (standardOutput_ ? "to standard output" : "\"" + path_ + "\"") + ": " + std::strerror(error_));
+    diags.report(Severity::Error, codeOf(error_), place_,
+                 "cannot write " + (standardOutput_ ? "to standard output" : "\"" + path_ + "\"") + ": " + std::strerror(error_));
     discard();
     return false;
 }

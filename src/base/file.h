@@ -28,7 +28,8 @@ std::optional<std::string> resolveOutputPath(const std::string& name, const Outp
 class OutputFile {
 public:
     /// Resolves the name by the policy, makes missing directories below the root, opens. Nothing: an error was reported.
-    /// Temporaries that killed processes left in the folder are removed. "-" under allowWrite is standard output: commit() sends all.
+    /// Temporaries that killed processes left in the folder are removed. "-" under allowWrite is standard output: commit()
+    /// sends all.
     static std::optional<OutputFile> open(const std::string& name, const OutputPolicy&, Diagnostics&, const SourcePlace& = {});
     OutputFile(OutputFile&&) noexcept;
     OutputFile& operator=(OutputFile&&) = delete;

@@ -29,7 +29,7 @@ std::string stringParam(const DriverSetup&, const std::string& name, const std::
                         const std::string& fallback, Diagnostics&);
 
 // The descriptors, one per file.
-extern const DriverDescriptor openexrDriver, tiffDriver, fileDriver, pngDriver, jpegDriver, framebufferDriver, nullDriver, zfileDriver,
-    otherDriver;
+extern const DriverDescriptor openexrDriver, tiffDriver, fileDriver, pngDriver, jpegDriver, framebufferDriver, nullDriver,
+    zfileDriver, otherDriver;
 
 } // namespace alpenglow::display

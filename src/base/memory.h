@@ -1,6 +1,7 @@
 // How much memory a run may take (reliability: bounded memory).
 #pragma once
 #include <cstddef>
+#include <new>
 #include <optional>
 #include <string>
 
@@ -9,6 +10,13 @@ namespace alpenglow {
 /// Bytes of memory that this process can have: the machine's, or less where a control group (a container, a batch system) bounds
 /// it. 0: not known.
 size_t machineMemory();
+
+/// One of the renderer's own limits (base/limits.h) was reached, not the end of the machine's memory. Who throws it, or gives up
+/// because of it, has reported what reached it.
+class LimitReached : public std::bad_alloc {
+public:
+    const char* what() const noexcept override { return "a limit was reached"; }
+};
 
 /// "512M", "4G", "1.5G", "300000K" or bytes; powers of 1024. Nothing: no size, or none above zero.
 std::optional<size_t> parseMemorySize(const std::string&);

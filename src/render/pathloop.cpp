@@ -131,7 +131,7 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
                 if (settings.seconds > 0 && any && job.elapsed() > settings.seconds) job.halt = 1;
                 tell(double(count) * double(done) / double(tiles.size()), false);
             });
-        } catch (const std::bad_alloc&) { job.outOfMemory = true; } // the film has whole passes only
+        } catch (const std::bad_alloc&) { job.outOfMemory = std::current_exception(); } // the film has whole passes only
         if (job.world) job.world->flushPrints(whole);
         if (!whole) break;
         StopFlag go{0};

@@ -163,6 +163,10 @@ void Renderer::render(std::shared_ptr<const scene::Frame> frame) {
     stats_.parseSec += now - parseMark_;
     try {
         renderFrame(std::move(frame));
+    } catch (const LimitReached&) {
+        outcome_.outOfMemory = true;
+        ++outcome_.refused;
+        diagnostics_.report(Severity::Severe, Rie::Limit, {}, "a limit was reached; this frame is given up");
     } catch (const std::bad_alloc&) {
         outcome_.outOfMemory = true;
         ++outcome_.refused;
@@ -332,7 +336,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
         outcome_.interrupted |= job.interrupted;
         if (job.outOfMemory) { // the old picture is better than few samples; a checkpoint goes on later
             if (any) keep(*film, true);
-            throw std::bad_alloc();
+            std::rethrow_exception(job.outOfMemory);
         }
         if (!any) {
             ++outcome_.refused;

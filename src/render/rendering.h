@@ -36,7 +36,7 @@ struct Job {
     double startSeconds = 0;                      ///< clock() when rendering began
     StopFlag halt{0};                    ///< what tracers poll
     bool interrupted = false;                     ///< the user's stop was seen
-    bool outOfMemory = false;                     ///< the samples of a pass did not fit; what is whole stays
+    std::exception_ptr outOfMemory;               ///< why the samples of a pass did not fit; what is whole stays
     std::vector<std::unique_ptr<Tracer>> tracers; ///< by worker
     std::vector<uint64_t> rays;                   ///< by worker, as last told
     std::atomic<uint64_t> rayTotal{0};

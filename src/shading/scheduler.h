@@ -131,7 +131,7 @@ public:
                 continue;
             }
             // Near the frame limit only as many rays are taken as one strip can hold, so that depth, not breadth, uses what is left.
-            size_t most = frameBytes_ > frameLimit_ / 2 ? kStripRays : size_t(sliceRays_);
+            size_t most = frameBytes_ > frameLimit_ / 2 ? std::min(kStripRays, size_t(sliceRays_)) : size_t(sliceRays_);
             slice.clear();
             for (auto from = queues_.rbegin(); from != queues_.rend() && slice.size() < most; ++from) {
                 auto& q = *from;

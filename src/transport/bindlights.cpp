@@ -171,6 +171,21 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
     lightMessages_.erase(std::unique(lightMessages_.begin(), lightMessages_.end()), lightMessages_.end());
 }
 
+void WorldImpl::countLightTraces() {
+    const auto sitesOf = [](const BoundKernel& k, auto test) {
+        return double(std::count_if(k.sites.begin(), k.sites.end(), [&](const SiteInfo& s) { return test(s.kind); }));
+    };
+    double traces = 0, uses = 1;
+    for (const BoundLight& l : lights_) traces += sitesOf(l.kernel, [](SiteKind k) { return k == SiteKind::Trace; });
+    traces *= std::min(1.0, double(limits::kLightsSampled) / double(std::max<size_t>(lights_.size(), 1)));
+    for (const SurfaceBinding& b : bindings_)
+        for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV})
+            uses = std::max(uses, sitesOf(*k, [](SiteKind s) {
+                                return s == SiteKind::LightSetup || (s >= SiteKind::Ambient && s <= SiteKind::Trace);
+                            }));
+    lightTraces_ = int(std::ceil(traces * uses));
+}
+
 void WorldImpl::bindSentStrings(Diagnostics& d) {
     std::map<std::string, std::map<std::string, std::string>> sent;
     for (const SurfaceBinding& b : bindings_)

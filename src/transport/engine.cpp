@@ -1,5 +1,6 @@
 // Following a slice of rays: intersect, group by shader, shade, hand on.
 #include "transport/engine.h"
+#include "base/memory.h"
 #include <algorithm>
 #include <limits>
 
@@ -13,11 +14,6 @@ void Counters::operator+=(const Counters& o) {
     depthMax = std::max(depthMax, o.depthMax);
     peakFrameBytes = std::max(peakFrameBytes, o.peakFrameBytes);
 }
-
-namespace {
-// Rays followed at once: enough to fill batches, few enough that their points stay in the cache of a core.
-constexpr int kCacheSlice = limits::kSliceRays / 8;
-} // namespace
 
 void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
     size_t n = slice.size();
@@ -195,8 +191,34 @@ void Engine::giveBack(std::shared_ptr<BatchContext> c) {
 }
 
 bool Engine::trace(std::span<const CameraRay> rays, std::span<SampleResult> out, const StopFlag* stopFlag) {
+    const Counters before = counters;
+    while (true) {
+        beginsAnew_ = raysAtOnce_ > 1;
+        try {
+            const bool done = traceAll(rays, out, stopFlag);
+            beginsAnew_ = false;
+            return done;
+        } catch (const LimitReached&) { // results do not depend on how many points are shaded at a time
+            if (!std::exchange(beginsAnew_, false)) throw;
+        }
+        counters = before;
+        raysAtOnce_ = std::max(1, raysAtOnce_ / 8);
+        forget();
+        inner_.reset();
+        sched_.reset();
+    }
+}
+
+void Engine::forget() {
+    lobes.clear();
+    shadows.clear();
+    traceSums_.clear();
+    litValues_.clear();
+}
+
+bool Engine::traceAll(std::span<const CameraRay> rays, std::span<SampleResult> out, const StopFlag* stopFlag) {
     stop = stopFlag;
-    if (!sched_) sched_ = std::make_unique<Sched>(*this, stopFlag, limits::kFrameBytesPerThread, kCacheSlice);
+    if (!sched_) sched_ = std::make_unique<Sched>(*this, stopFlag, limits::kFrameBytesPerThread, raysAtOnce_);
     Sched& sched = *sched_;
     sched.restart(stopFlag);
     size_t aovs = 0;
@@ -251,10 +273,7 @@ bool Engine::trace(std::span<const CameraRay> rays, std::span<SampleResult> out,
     counters.nonFinite += sched.nonFinite();
     counters.overLimit += sched.overLimit();
     counters.peakFrameBytes = std::max(counters.peakFrameBytes, sched.peakFrameBytes());
-    lobes.clear();
-    shadows.clear();
-    traceSums_.clear();
-    litValues_.clear();
+    forget();
     return done;
 }
 

@@ -173,6 +173,8 @@ public:
     Engine(std::shared_ptr<const WorldImpl> w, Diagnostics& d) : world_(std::move(w)), diagnostics_(d), seed_(world_->settings_.seed) {}
     ~Engine() override { inner_.reset(), sched_.reset(); } // strips of a frame that was given up need their kernels
     bool trace(std::span<const CameraRay>, std::span<SampleResult>, const StopFlag* stop);
+    /// Whether what runs now is done again, with fewer points at a time, when a shader asks for more rays than there is room for.
+    bool beginsAnew() const { return beginsAnew_; }
     void follow(std::span<const Sched::Task> slice, Sched&) override;
     Counters counters;
 
@@ -337,6 +339,12 @@ private:
     std::vector<shading::InstanceView> views_;
     std::vector<uint32_t> viewOf_, occurrence_;
     std::vector<int> slotOf_;                  ///< by binding: its place in views_, else -1
+    bool traceAll(std::span<const CameraRay>, std::span<SampleResult>, const StopFlag* stop);
+    void forget(); ///< what a trace() that has ended, or was given up, leaves behind
+    /// Rays followed at once: enough to fill batches, few enough that their points stay in the cache of a core. Fewer once a
+    /// shader has asked for more rays at the points of a batch than there is room for.
+    int raysAtOnce_ = limits::kSliceRays / 8;
+    bool beginsAnew_ = false;
     std::unique_ptr<Sched> sched_;
     /// The rays of a trace() in a light, by the engine that rayOfLight() keeps for it.
     shading::TargetValue follow(BatchContext&, const SiteInfo&, int point, const std::function<float(int)>& row, uint32_t occurrence);

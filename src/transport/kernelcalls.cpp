@@ -1,4 +1,5 @@
 // What generated code calls back while a kernel runs: services and requests find their engine through KernelCall::user.
+#include "base/memory.h"
 #include "transport/engine.h"
 #include <bit>
 
@@ -23,21 +24,26 @@ void failed(rsl::KernelCall* call) noexcept {
     call->stop = &kEnd;
 }
 
-/// Room for another request of a kernel that does not wait. Throws where there is none.
+/// Room for another request of a kernel that does not wait. Throws LimitReached where there is none: Engine::trace() then begins
+/// anew with fewer points at a time.
 void takeRoom(BatchContext& c, const SiteInfo& s, size_t rows, int lanes, uint64_t mask) {
     const size_t held = c.arena.size() * sizeof(float) + c.emits.size() * sizeof(EmitRecord) + c.emitted * sizeof(LobeVertex);
     c.emitted += size_t(std::popcount(mask));
     if (held + rows * size_t(lanes) * sizeof(float) <= limits::kRequestBytes) return;
-    const auto& files = c.bound->kernel->files();
-    const auto& at = s.site->place;
-    const SourcePlace place{at.file < int(files.size()) ? files[size_t(at.file)] : "", at.line, at.column};
-    if (c.engine)
-        c.engine->diagnostics().reportOnce("requests:" + place.file + std::to_string(place.line),
-                                           {Severity::Error, Rie::Limit, place,
-                                            "a shader asks for more rays at its points than fit into " +
-                                                std::to_string(limits::kRequestBytes >> 20) + " MiB",
-                                            "a loop around such a call needs fewer turns", {}});
-    throw std::bad_alloc();
+    if (c.engine && !c.engine->beginsAnew()) {
+        const auto& files = c.bound->kernel->files();
+        const auto& at = s.site->place;
+        const SourcePlace place{at.file < int(files.size()) ? files[size_t(at.file)] : "", at.line, at.column};
+        c.engine->diagnostics().reportOnce(
+            "requests:" + place.file + std::to_string(place.line),
+            {Severity::Error,
+             Rie::Limit,
+             place,
+             "a shader asks for more rays at one point than fit into " + std::to_string(limits::kRequestBytes >> 20) + " MiB",
+             "a loop around such a call needs fewer turns",
+             {}});
+    }
+    throw LimitReached();
 }
 
 void serve(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {

@@ -25,9 +25,11 @@ shading::TargetValue Engine::rayOfLight(BatchContext& c, const SiteInfo& s, int 
     // An engine of its own follows the ray and all that comes of it, to the end: the lights that it meets may trace as well, one bounce deeper.
     if (!inner_) {
         inner_ = std::make_unique<Engine>(world_, diagnostics_);
-        inner_->sched_ = std::make_unique<Sched>(*inner_, stop, limits::kFrameBytesPerThread, Sched::kStripRays);
+        inner_->raysAtOnce_ = std::min(raysAtOnce_, int(Sched::kStripRays));
+        inner_->sched_ = std::make_unique<Sched>(*inner_, stop, limits::kFrameBytesPerThread, inner_->raysAtOnce_);
     }
     inner_->stop = stop;
+    inner_->beginsAnew_ = beginsAnew_;
     value = inner_->follow(c, s, point, row, occurrence);
     counters += inner_->counters;
     inner_->counters = {};
@@ -54,6 +56,16 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
     LobeVertex l = std::move(lobes.back());
     lobes.clear();
     if (from.bounces + 1 > world_->maxDepth_) return {};
+    uint32_t many = from.asked;
+    float chance = 1;
+    const bool onlyDistance = s.kind == SiteKind::Trace && s.site->resultType.base == rsl::Base::Float && s.resultRows.size() < 2;
+    const Settings& set = world_->settings_;
+    if (set.hider == Hider::Path && set.roulette && !onlyDistance) {
+        many = std::max<uint32_t>(many, uint32_t(world_->lightTraces_) * (occurrence + 1) * uint32_t(std::max(l.samples, 1)));
+        chance = rouletteOfLight(from.bounces, many);
+        const uint32_t vertex = childVertex(from.vertex, kLightPoint + l.site, occurrence * 4096);
+        if (chance < 1 && random(from).one(vertex, kRoulette, 0) >= chance) return {};
+    }
     const Vec3 start = l.elsewhere ? l.from : p.P;
     const bool leaves = p.lit && length(start - p.Ps) <= geometry::roundingError(p.Ps) + 4 * p.lit->pError;
     const bool delta = l.kind->isDelta(l.params);
@@ -67,7 +79,8 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
         PathRay r = from;
         r.weight = f / float(l.samples);
         r.vertex = vertex;
-        r.bounces = int16_t(from.bounces + 1);
+        r.asked = uint16_t(std::min<uint32_t>(many, 0xffff));
+        r.bounces = int16_t(onlyDistance ? world_->maxDepth_ : from.bounces + 1); // nothing goes on behind a distance
         ++(l.type == RayType::Diffuse ? r.diffuseBounces : r.specularBounces);
         r.origin = l.bias >= 0 ? start + w * l.bias : leaves ? geometry::offsetOrigin(*p.lit, w, 0) : start + w * geometry::roundingError(start);
         r.start = 0;
@@ -91,7 +104,10 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
     sched.run();
     litValues_.clear();
     shadows.clear();
-    return sched.value(target);
+    // The chance is not in the rays' weights: what they meet goes on as if they were certain.
+    shading::TargetValue value = sched.value(target);
+    value.radiance = value.radiance / chance;
+    return value;
 }
 
 void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& queries, std::span<LightValue> out, const LightCall& call) {

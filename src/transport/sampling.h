@@ -69,6 +69,11 @@ inline float rouletteWaiting(int bounces, uint32_t many) {
     return bounces < 1 ? 1 : bounces < 3 ? std::min(1.f, 3 / n) : many <= 3 ? std::min(.5f, 1 / n) : .6f / n;
 }
 
+/// The chance that a ray goes on which the shader of a light asks for, at a point that it lights after so many bounces. `many`:
+/// the most such rays known to be asked for at one point. What such a ray meets is lit by all lights again, and its paths go on
+/// besides: so the chances at a point sum up to half, and the tree of rays ends where surfaces reflect no more than half.
+inline float rouletteOfLight(int bounces, uint32_t many) { return bounces < 1 ? 1 : .5f / float(std::max(many, 1u)); }
+
 /// The seed's local roulette (pathtracer.md 5.1): 1 up to depth 3, then the largest channel of the albedo. 0 = stop; the caller divides.
 inline float rouletteLocal(int depth, const Color& albedo, float random) {
     if (depth <= 3) return 1;

@@ -127,6 +127,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     if (w->fades_) w->accel_->setLevels(std::move(levels));
     w->findEye();
     w->bindSentStrings(d);
+    w->countLightTraces();
     w->measureLights(engine, d);
     for (const auto& [shape, binding] : w->hazyEmitters_) {
         w->lights_[size_t(shape->attributes().areaLight)].hazy = true;

@@ -302,6 +302,10 @@ public:
     bool lightsAsk_ = false;                   ///< some light asks about the surface that it lights (BoundLight::asksSurface)
     bool lightsAsk() const { return lightsAsk_; }
     int maxDepth_ = 32;
+    /// The most trace() calls of lights that shading a point brings, about: of limits::kLightsSampled lights, for each loop over
+    /// lights and lighting shadeop of the surface that has most of them.
+    int lightTraces_ = 0;
+    void countLightTraces();
     bool lightChannels_ = false;               ///< lights give AOVs by outputchannel()
     bool footprints_ = false;                  ///< some kernel reads du or dv
     bool allOpaque_ = true;                    ///< no opacity below 1: shadow rays need no shading

@@ -50,10 +50,32 @@ TEST(PathLimits, RaysOfALoopThatDoesNotWait) {
         ASSERT_EQ(scene.world->facts().suspending, 0);
         const CameraRay ray = rayTo({0, 0, -3}, {0, 0, 0});
         EXPECT_THROW(scene.trace({&ray, 1}), std::bad_alloc);
-        EXPECT_NE(scene.messages().find("more rays at its points than fit into " + std::to_string(limits::kRequestBytes >> 20)),
+        EXPECT_NE(scene.messages().find("more rays at one point than fit into " + std::to_string(limits::kRequestBytes >> 20)),
                   std::string::npos)
             << scene.messages();
         EXPECT_NE(scene.messages().find("greedy.sl:1:"), std::string::npos) << scene.messages();
+    }
+}
+
+TEST(PathLimits, RaysThatDoNotFitAtOnce) {
+    // 512 points with 3,000 requests each need more than limits::kRequestBytes; a few points at a time do not.
+    writeShader("white", "surface white() { Oi = 1; Ci = 1; }\n");
+    writeShader("hungry",
+                "surface hungry() { float i; color c = 0; for (i = 0; i < 3000; i += 1) c += trace(P, vector(0, 0, -1)); "
+                "Oi = 1; Ci = c / 3000; }\n");
+    for (const Hider h : {Hider::Hidden, Hider::Path}) {
+        Settings s;
+        s.hider = h;
+        Scene scene("WorldBegin\nSides 2\nSurface \"hungry\"\nPolygon \"P\" [-9 -9 2  9 -9 2  9 9 2  -9 9 2]\n"
+                    "Surface \"white\"\nPolygon \"P\" [-9 -9 -5  9 -9 -5  9 9 -5  -9 9 -5]\nWorldEnd\n",
+                    s);
+        ASSERT_TRUE(scene.world);
+        ASSERT_EQ(scene.world->facts().suspending, 0);
+        const std::vector<CameraRay> rays(size_t(limits::kSliceRays / 8), rayTo({.1f, .2f, 0}, {.1f, .2f, 1}));
+        Counters c;
+        for (const SampleResult& r : scene.trace(rays, &c)) ASSERT_NEAR(r.color.x, 1, 1e-5);
+        EXPECT_EQ(c.camera, rays.size()); // what was begun and done again is not in the figures
+        EXPECT_EQ(scene.messages(), "");
     }
 }
 

@@ -118,4 +118,33 @@ TEST(TraceLights, SkyBehindADistance) {
         }
 }
 
+// A hollow ball of radius 2 that shines with e and is lit by lights, each of which sees what lies opposite: X = e + a X + a k X.
+// Every vertex asks all lights, and what each of them sees asks all again: without roulette some 6^32 rays a sample.
+TEST(TraceLights, LightsThatSeeWhatTheyLight) {
+    const double e = .25, a = .4, k = .6;
+    writeShader("lookout",
+                "light lookout(float part = 1;) {\n    vector n = -normalize(vector(Ps));\n" // the eye is in the middle
+                "    illuminate(Ps + n) Cl = part * trace(Ps, n);\n}\n");
+    writeShader("chooser", "light chooser(float part = 1;) {\n    vector n = -normalize(vector(Ps));\n"
+                           "    illuminate(Ps + n) {\n        color c = trace(Ps, n);\n" // it waits: its sign decides
+                           "        if (comp(c, 0) >= 0) Cl = part * c; else Cl = 0;\n    }\n}\n");
+    writeShader("hollow",
+                "surface hollow(float e = .25, a = .4;) { Oi = 1; Ci = e + a * diffuse(faceforward(normalize(N), I)); }\n");
+    for (const char* light : {"lookout", "chooser"}) {
+        std::string rib = "WorldBegin\n";
+        for (int i = 0; i < 6; ++i)
+            rib += "LightSource \"" + std::string(light) + "\" " + std::to_string(i + 1) + " \"part\" [" + std::to_string(k / 6) +
+                   "]\n";
+        Settings s;
+        s.hider = Hider::Path;
+        Scene scene(rib + "Surface \"hollow\"\nSides 2\nSphere 2 -2 2 360\nWorldEnd\n", s);
+        ASSERT_TRUE(scene.world);
+        Counters c;
+        const int n = 3000;
+        const Moments m = scene.estimate(rayTo({0, 0, 0}, {.1f, .2f, 1}), n, &c);
+        expectMean(m, e / (1 - a - a * k), .05, light);
+        EXPECT_LT(double(c.specular + c.diffuse) / n, 100) << light;
+    }
+}
+
 } // namespace

@@ -1,6 +1,7 @@
 // alpenglow diff: how far two pictures are apart.
 #include "display/diff.h"
 #include "cli/command.h"
+#include "cli/ranges.h"
 #include "display/imageio.h"
 #include <CLI/CLI.hpp>
 #include <memory>
@@ -18,7 +19,7 @@ void addDiff(CLI::App& app, int* status) {
     c->add_option("b", a->b, "Picture of the same size")->required();
     c->add_option("-o", a->output, "Write the absolute difference as a picture")->type_name("FILE");
     c->add_option("--tolerance", a->tolerance, "Largest error that is still equal; 0 when not given")
-        ->check(CLI::NonNegativeNumber)
+        ->check(notNegative())
         ->type_name("X");
     c->footer("Exit status 0 when the largest error is within the tolerance, 1 when it is not, 3 when the pictures cannot be "
               "compared,\n"

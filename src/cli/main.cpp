@@ -1,8 +1,10 @@
 // The program: finds the subcommand, reads its arguments. `alpenglow scene.rib` is `alpenglow render scene.rib`.
+#include "base/diagnostics.h"
 #include "base/memory.h"
 #include "base/printable.h"
 #include "base/processors.h"
 #include "cli/command.h"
+#include "cli/oldflags.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
@@ -21,14 +23,58 @@ using namespace alpenglow::cli;
 
 namespace {
 
-/// Old tools' spellings, made what the parser takes: maketx's -envlatl, numbers like -.5.
-std::vector<std::string> normalise(int argc, char** argv, const CLI::App& app) {
-    std::vector<std::string> args(argv + 1, argv + argc);
-    bool known = false;
+/// A command line as the parser takes it. `error`: not "", then it ends with status 2 and this text.
+struct CommandLine {
+    std::vector<std::string> arguments;
+    std::string error;
+};
+
+std::vector<std::string> commandNames(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::App* s : app.get_subcommands([](const CLI::App*) { return true; })) names.push_back(s->get_name());
+    return names;
+}
+
+/// A word in the place of a command that is neither a command nor a file, but near to a command.
+std::string unknownCommand(const std::string& word, const std::vector<std::string>& commands) {
+    if (word.empty() || word[0] == '-' || word.find_first_of("./") != word.npos || access(word.c_str(), F_OK) == 0) return "";
+    const std::string near = nearestName(word, commands);
+    return near.empty() ? "" : "there is no command and no file \"" + word + "\"; did you mean \"" + near + "\"?";
+}
+
+/// help, help COMMAND.
+CommandLine helpFor(const std::vector<std::string>& args, const std::vector<std::string>& commands) {
+    if (args.size() < 2) return {{"--help"}, ""};
+    if (std::find(commands.begin(), commands.end(), args[1]) != commands.end()) return {{args[1], "--help"}, ""};
+    const std::string near = nearestName(args[1], commands);
+    return {{}, "there is no command \"" + args[1] + "\"" + (near.empty() ? "" : "; did you mean \"" + near + "\"?")};
+}
+
+/// Flags of other renderers, as render takes them; what was replaced is noted under -v.
+void takeOldFlags(CommandLine& line) {
+    std::vector<std::string>& args = line.arguments;
+    TranslatedFlags t = translateOldFlags({args.begin() + 1, args.end()});
+    line.error = t.error;
+    args.resize(1);
+    args.insert(args.end(), t.arguments.begin(), t.arguments.end());
+    const auto has = [&](const char* flag) { return std::find(args.begin(), args.end(), flag) != args.end(); };
+    if (has("--version")) args = {"--version"};
+    if (has("-v") || has("--verbose"))
+        for (const std::string& n : t.notes) std::fprintf(stderr, "note: %s\n", printable(n).c_str());
+}
+
+/// Finds the command, and makes old tools' spellings what the parser takes: prman's -res, maketx's -envlatl, numbers like -.5.
+CommandLine normalise(int argc, char** argv, const CLI::App& app) {
+    CommandLine line{{argv + 1, argv + argc}, ""};
+    std::vector<std::string>& args = line.arguments;
+    const std::vector<std::string> commands = commandNames(app);
     if (!args.empty()) {
-        for (const CLI::App* s : app.get_subcommands([](const CLI::App*) { return true; })) known |= s->get_name() == args[0];
+        if (args[0] == "help") return helpFor(args, commands);
+        const bool known = std::find(commands.begin(), commands.end(), args[0]) != commands.end();
+        if (!known) line.error = unknownCommand(args[0], commands);
         if (!known && args[0] != "-h" && args[0] != "--help" && args[0] != "--version" && args[0] != "--help-all")
             args.insert(args.begin(), "render");
+        if (args[0] == "render" && line.error.empty()) takeOldFlags(line);
     }
     for (size_t i = 1; i < args.size(); ++i) {
         std::string& a = args[i];
@@ -36,7 +82,24 @@ std::vector<std::string> normalise(int argc, char** argv, const CLI::App& app) {
         if (args[0] == "maketx" && a.size() > 2 && a[0] == '-' && std::isalpha(static_cast<unsigned char>(a[1])))
             a.insert(0, "-");
     }
-    return args;
+    return line;
+}
+
+/// What to say about arguments that the command does not have; "" when there are none.
+std::string unknownOptions(const CLI::App& app) {
+    for (const CLI::App* sub : app.get_subcommands()) {
+        std::vector<std::string> names;
+        for (const CLI::Option* o : sub->get_options()) {
+            for (const std::string& n : o->get_lnames()) names.push_back("--" + n);
+            for (const std::string& n : o->get_snames()) names.push_back("-" + n);
+        }
+        for (const std::string& word : sub->remaining()) {
+            if (word.size() < 2 || word[0] != '-') return sub->get_name() + " does not take \"" + word + "\"";
+            const std::string name = word.substr(0, word.find('=')), near = nearestName(name, names);
+            return sub->get_name() + " has no option " + name + (near.empty() ? "" : "; did you mean " + near + "?");
+        }
+    }
+    return "";
 }
 
 /// The end of a process that nothing can catch any more: memory that ran out where no exception may pass (kernels, destructors).
@@ -63,6 +126,12 @@ bool outputArrived() {
     return fine;
 }
 
+/// Status 2, with the reason and where to read on.
+int wrongUse(const std::string& why, const std::string& more) {
+    std::fprintf(stderr, "alpenglow: %s\n%s tells more.\n", printable(why).c_str(), more.c_str());
+    return kWrongUse;
+}
+
 int runProgram(int argc, char** argv) {
     int status = kDone;
     CLI::App app("Alpenglow renders RenderMan scenes: RIB in, shaders in RSL as machine code, path-traced pictures out.",
@@ -71,7 +140,8 @@ int runProgram(int argc, char** argv) {
     app.require_subcommand(1);
     app.get_formatter()->column_width(34);
     app.footer(
-        "alpenglow scene.rib is the same as alpenglow render scene.rib. alpenglow COMMAND --help tells more.\n\n"
+        "alpenglow scene.rib is the same as alpenglow render scene.rib. alpenglow help COMMAND tells more.\n"
+        "Flags of prman, renderdl and aqsis (-t:4, -res 640 480, -progress) are taken, too: docs/options.md lists them.\n\n"
         "Exit status: 0 done; 1 done, but requests failed; 2 wrong use; 3 nothing could be rendered; 4 a limit or memory;\n"
         "5 an output could not be written; 130 interrupted, what was done is saved.");
     addRender(app, &status);
@@ -84,12 +154,16 @@ int runProgram(int argc, char** argv) {
     addDiff(app, &status);
     addMerge(app, &status);
     addLsp(app, &status);
-    std::vector<std::string> args = normalise(argc, argv, app);
+    CommandLine line = normalise(argc, argv, app);
+    if (!line.error.empty()) return wrongUse(line.error, "alpenglow --help");
+    std::vector<std::string>& args = line.arguments;
     const bool own = !args.empty() && args.front() == "render"; // has an option for it
     const MemoryLimit limit(own ? 0 : defaultMemoryLimit(), defaultThreads());
     std::reverse(args.begin(), args.end()); // as the parser takes vectors
     try {
         app.parse(args);
+    } catch (const CLI::ExtrasError&) {
+        return wrongUse(unknownOptions(app), "alpenglow help " + app.get_subcommands().front()->get_name());
     } catch (const CLI::ParseError& e) {
         std::ostringstream out, err; // they name what was given
         const int code = app.exit(e, out, err);

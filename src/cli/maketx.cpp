@@ -1,5 +1,6 @@
 // alpenglow maketx: pictures to tiled MIP-mapped maps.
 #include "cli/command.h"
+#include "cli/ranges.h"
 #include "texture/maketexture.h"
 #include <CLI/CLI.hpp>
 #include <memory>
@@ -30,11 +31,11 @@ void addMaketx(CLI::App& app, int* status) {
     c->add_option("--filter", a->options.filter, "Filter of the reduction, for example box, gaussian, sinc")->type_name("NAME");
     c->add_option("--width", a->width, "Factors on the filter's width in s and t")
         ->expected(1, 2)
-        ->check(CLI::PositiveNumber)
+        ->check(positive())
         ->type_name("S [T]")
         ->allow_extra_args(false);
     c->add_option("--fov", a->fov, "Field of view of the six pictures, degrees")
-        ->check(CLI::Range(1.0, 179.0))
+        ->check(between(1, 179))
         ->type_name("DEGREES");
     c->footer("The options of old tools are taken as well: -envlatl, -envcube, -shadow, -mode, -smode, -tmode, -filter.");
     c->callback([a, status] {

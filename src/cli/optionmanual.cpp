@@ -1,4 +1,5 @@
 #include "cli/optionmanual.h"
+#include "cli/oldflags.h"
 #include "display/driver.h"
 #include "ri/requests/manual.h"
 #include "scene/knownoptions.h"
@@ -157,6 +158,10 @@ std::string optionsPage() {
     out += "\n## Names of other renderers\n\nAccepted without a message, and without an effect. Options:\n\n" +
            pageIgnored(Topic::Options);
     out += "\nAttributes:\n\n" + pageIgnored(Topic::Attributes) + "\nParameters of hiders:\n\n" + pageIgnored(Topic::Hiders);
+    out += "\n## Command lines of other renderers\n\n`alpenglow render` takes these flags of prman, renderdl and aqsis. $1, $2 "
+           "are their values, which may\n"
+           "also stand behind a colon or an equals sign (`-t:4`). `-v` notes what became of each.\n\n" +
+           oldFlagsPage();
     return out;
 }
 

@@ -7,6 +7,7 @@
 #include "base/processors.h"
 #include "base/sampler.h"
 #include "cli/command.h"
+#include "cli/ranges.h"
 #include "render/rendering.h"
 #include "ri/reader.h"
 #include <CLI/CLI.hpp>
@@ -216,14 +217,14 @@ void addProbe(CLI::App& app, int* status) {
     c->add_option("scene", a->scene, "RIB file; - is standard input")->required();
     c->add_option("point", a->point, "X,Y,Z in world space")->required();
     c->add_option("normal", a->normal, "NX,NY,NZ: the side that is lit")->required();
-    c->add_option("--spp", a->spp, "Samples")->check(CLI::Range(2u, 1u << 26))->type_name("N")->capture_default_str();
+    c->add_option("--spp", a->spp, "Samples")->check(wholeBetween(2, 1u << 26))->type_name("N")->capture_default_str();
     c->add_option("--seed", a->seed, "Seed of all random numbers")->type_name("N");
-    c->add_option("--threads", a->threads, "Threads; as many as the process may use when not given")->check(CLI::Range(1, 1024))->type_name("N");
+    c->add_option("--threads", a->threads, "Threads; as many as the process may use when not given")->check(wholeBetween(1, 1024))->type_name("N");
     c->add_option("--lanes", a->lanes, "Points a shader works on at once")->check(CLI::IsMember({4, 8, 16}))->type_name("N");
-    c->add_option("--max-depth", a->maxDepth, "Greatest number of bounces")->check(CLI::Range(0, 10000))->type_name("N");
+    c->add_option("--max-depth", a->maxDepth, "Greatest number of bounces")->check(wholeBetween(0, 10000))->type_name("N");
     c->add_option("--radius", a->radius,
                   "Outer radius of the ring around the point that is looked at; a 400th of the scene when not given")
-        ->check(CLI::PositiveNumber)
+        ->check(positive())
         ->type_name("R");
     addDialect(*c, a->dialect);
     c->add_flag("--allow-exec", a->allowExec, "Let shaders load plug-ins");

@@ -3,14 +3,17 @@
 #include "base/memory.h"
 #include "base/processors.h"
 #include "cli/command.h"
+#include "cli/ranges.h"
 #include "display/imageio.h"
 #include "render/renderer.h"
 #include "ri/reader.h"
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <sys/stat.h>
 #include <thread>
+#include <unistd.h>
 
 namespace alpenglow::cli {
 namespace {
@@ -18,7 +21,7 @@ namespace {
 struct Arguments {
     render::RenderSettings settings;
     std::vector<std::string> scenes, searchPaths, displays, rib;
-    std::string format, crop, samples, frames, pixel, preset, memory, progress = "auto";
+    std::string format, crop, samples, frames, pixel, preset, memory, folder, progress = "auto";
     float gamma = 0;
     bool noDirect = false, noIndirect = false, watch = false, quiet = false, verbose = false;
     std::vector<int> frameList;
@@ -27,6 +30,7 @@ struct Arguments {
 void checkLate(Arguments& a, const CLI::App& app) {
     render::RenderSettings& s = a.settings;
     auto wrong = [](const std::string& option, const std::string& what) { throw CLI::ValidationError(option, what); };
+    if (!a.folder.empty() && chdir(a.folder.c_str()) != 0) wrong("--cwd", "there is no folder \"" + a.folder + "\"");
     if (!a.format.empty()) {
         auto v = parseSize(a.format);
         if (!v) wrong("--format", "takes WIDTHxHEIGHT, for example 640x480");
@@ -69,10 +73,14 @@ void checkLate(Arguments& a, const CLI::App& app) {
         s.memoryLimit = *bytes;
     }
     for (const std::string& d : a.displays) {
-        size_t colon = d.find(':');
-        if (colon == std::string::npos || colon == 0 || colon + 1 == d.size())
-            wrong("--display", "takes TYPE:NAME, for example png:view.png");
-        s.displays.emplace_back(d.substr(0, colon), d.substr(colon + 1));
+        const size_t colon = d.find(':'), second = colon == d.npos ? d.npos : d.find(':', colon + 1);
+        scene::Display added;
+        added.type = d.substr(0, colon);
+        added.name = colon == d.npos ? "" : d.substr(colon + 1, second == d.npos ? d.npos : second - colon - 1);
+        if (second != d.npos) added.mode = d.substr(second + 1);
+        if (added.type.empty() || added.name.empty() || added.mode.empty())
+            wrong("--display", "takes TYPE:NAME or TYPE:NAME:MODE, for example png:view.png or openexr:all.exr:rgba,N,z");
+        s.displays.push_back(std::move(added));
     }
     if (app.count("--gamma")) s.gamma = a.gamma;
     s.direct = !a.noDirect;
@@ -95,6 +103,33 @@ void checkLate(Arguments& a, const CLI::App& app) {
     s.shippedShaders = shippedShaders();
 }
 
+/// "1-24", "3,5-6".
+std::string listOf(std::vector<int> frames) {
+    std::sort(frames.begin(), frames.end());
+    frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+    std::string text;
+    for (size_t i = 0; i < frames.size();) {
+        size_t k = i;
+        while (k + 1 < frames.size() && frames[k + 1] == frames[k] + 1) ++k;
+        text += (text.empty() ? "" : ",") + std::to_string(frames[i]) + (k > i ? "-" + std::to_string(frames[k]) : "");
+        i = k + 1;
+    }
+    return text;
+}
+
+/// Frames that --frames names and the scene does not have. True: there are some.
+bool tellMissingFrames(const std::vector<int>& wanted, const std::vector<int>& seen, bool rendered, Diagnostics& diags) {
+    std::vector<int> missing;
+    for (int f : wanted)
+        if (std::find(seen.begin(), seen.end(), f) == seen.end()) missing.push_back(f);
+    if (missing.empty() || seen.empty()) return false; // a world without a frame is always rendered
+    const std::string has = listOf(seen);
+    diags.report(rendered ? Severity::Warning : Severity::Error, Rie::MissingData, {},
+                 "the scene has " + std::string(has.find_first_of(",-") == has.npos ? "frame " : "frames ") + has + ", not " + listOf(missing),
+                 "--frames names frames by the number of their FrameBegin");
+    return true;
+}
+
 int renderOnce(const Arguments& a, const StopFlag* stop) {
     Diagnostics diags(printer(a.quiet ? Severity::Error : a.verbose ? Severity::Info : Severity::Warning));
     render::RenderSettings settings = a.settings;
@@ -108,6 +143,8 @@ int renderOnce(const Arguments& a, const StopFlag* stop) {
     options.allowRead = settings.allowRead;
     options.stop = stop;
     options.frames = a.frameList;
+    std::vector<int> seen;
+    options.frameSeen = [&](int frame) { seen.push_back(frame); };
     options.overrides = [&](scene::Options& o) { renderer.override(o); };
     bool memory = false;
     try {
@@ -125,7 +162,8 @@ int renderOnce(const Arguments& a, const StopFlag* stop) {
     }
     const auto& outcome = renderer.outcome();
     bool interrupted = outcome.interrupted || *stop;
-    if (outcome.rendered == 0 && outcome.refused == 0 && outcome.textures == 0 && !interrupted && !diags.errors())
+    const bool missing = tellMissingFrames(a.frameList, seen, outcome.rendered > 0, diags);
+    if (!missing && outcome.rendered == 0 && outcome.refused == 0 && outcome.textures == 0 && !interrupted && !diags.errors())
         diags.report(Severity::Error, Rie::MissingData, {},
                      "no world was rendered: there is none between WorldBegin and WorldEnd in what was read");
     renderer.writeStats();
@@ -186,20 +224,20 @@ void addRender(CLI::App& app, int* status) {
                       "display (openexr, tiff, jpeg), frames one after the other")
         ->type_name("FILE")
         ->group("Pictures");
-    c->add_option("--display", a->displays, "Add a display, for example png:view.png")
-        ->type_name("TYPE:NAME")
+    c->add_option("--display", a->displays, "Add a display, for example png:view.png or openexr:all.exr:rgba,N,z")
+        ->type_name("TYPE:NAME[:MODE]")
         ->allow_extra_args(false)
         ->group("Pictures");
     c->add_option("--format", a->format, "Size of the picture in pixels")->type_name("WxH")->group("Pictures");
     c->add_option("--resolution-factor", s.resolutionFactor, "Scale both sides of the picture")
-        ->check(CLI::Range(1e-4, 1e4))
+        ->check(between(1e-4, 1e4))
         ->type_name("F")
         ->group("Pictures");
     c->add_option("--crop", a->crop, "Render only this part, in fractions of the picture from its upper left")
         ->type_name("X0,X1,Y0,Y1")
         ->group("Pictures");
     c->add_option("--gamma", a->gamma, "Display gamma instead of Exposure's")
-        ->check(CLI::Range(0.01, 100.0))
+        ->check(between(0.01, 100))
         ->type_name("G")
         ->group("Pictures");
     c->add_option("--frames", a->frames, "Only these frames, for example 1,4-6")->type_name("LIST")->group("Pictures");
@@ -209,18 +247,18 @@ void addRender(CLI::App& app, int* status) {
         ->type_name("NAME")
         ->group("Quality");
     c->add_option("--spp", s.spp, "Samples per pixel instead of PixelSamples (path without either: 64)")
-        ->check(CLI::Range(1u, limits::kSamplesPerPixel))
+        ->check(wholeBetween(1, limits::kSamplesPerPixel))
         ->type_name("N")
         ->group("Quality");
     c->add_option(
          "--noise", s.noise,
          "path: go on until the noise that is printed at the end is at most E, for example 0.01: the mean relative error of "
          "the light on surfaces")
-        ->check(CLI::PositiveNumber)
+        ->check(positive("0.02 for 2 %"))
         ->type_name("E")
         ->group("Quality");
     c->add_option("--time", s.seconds, "path: go on for about so long")
-        ->check(CLI::PositiveNumber)
+        ->check(positive())
         ->type_name("SECONDS")
         ->group("Quality");
     c->add_option("--samples", a->samples,
@@ -229,11 +267,11 @@ void addRender(CLI::App& app, int* status) {
         ->group("Quality");
     c->add_option("--seed", s.seed, "Seed of all random numbers; same seed, same bits")->type_name("N")->group("Quality");
     c->add_option("--max-depth", s.maxDepth, "Greatest number of bounces")
-        ->check(CLI::Range(0, limits::kPathDepth))
+        ->check(wholeBetween(0, limits::kPathDepth))
         ->type_name("N")
         ->group("Quality");
     c->add_option("--sample-clamp", s.sampleClamp, "Scale samples brighter than X down to it: less noise, but a bias")
-        ->check(CLI::NonNegativeNumber)
+        ->check(notNegative())
         ->type_name("X")
         ->group("Quality");
     c->add_flag("--no-direct", a->noDirect, "Leave direct light out")->group("Quality");
@@ -246,7 +284,7 @@ void addRender(CLI::App& app, int* status) {
         ->group("Quality");
 
     c->add_option("--threads", s.threads, "Threads; when not given as many processors as the process may use (affinity, control groups, Slurm). The picture does not depend on it")
-        ->check(CLI::Range(1, 1024))
+        ->check(wholeBetween(1, 1024))
         ->type_name("N")
         ->group("Machine");
     c->add_option("--lanes", s.lanes, "Points a shader works on at once; the picture does not depend on it")
@@ -271,6 +309,9 @@ void addRender(CLI::App& app, int* status) {
     c->add_flag("--watch", a->watch, "Render again whenever the scene file changes")->group("Machine");
 
     addDialect(*c, a->settings.dialect);
+    c->add_option("--cwd", a->folder, "Work in this folder: names on the command line and in the scene begin there")
+        ->type_name("DIR")
+        ->group("Input");
     c->add_option("--searchpath", a->searchPaths, "Folders for shaders, textures and archives, separated by :")
         ->type_name("DIRS")
         ->allow_extra_args(false)

@@ -1,6 +1,7 @@
 // alpenglow shade: a shader over a unit patch, without a scene; also the stopwatch of the kernels.
 #include "base/limits.h"
 #include "cli/command.h"
+#include "cli/ranges.h"
 #include "display/imageio.h"
 #include "render/imaging.h"
 #include "rsl/compiler.h"
@@ -335,17 +336,17 @@ void addShade(CLI::App& app, int* status) {
     c->add_option("--output", a->outputs, "Variables to write instead of Ci and Oi")->type_name("NAME")->allow_extra_args(false);
     c->add_option("--format", a->format, "Size of the picture")->type_name("WxH")->capture_default_str();
     c->add_option("--spp", a->spp, "Points a pixel, rounded to a square, averaged")
-        ->check(CLI::Range(1, 4096))
+        ->check(wholeBetween(1, 4096))
         ->type_name("N")
         ->capture_default_str();
-    c->add_option("--gamma", a->gamma, "Display gamma of the picture")->check(CLI::Range(0.01, 100.0))->type_name("G");
+    c->add_option("--gamma", a->gamma, "Display gamma of the picture")->check(between(0.01, 100))->type_name("G");
     c->add_option("--iterations", a->iterations,
                   "Time this many runs over 4096 points and print ns a point (one thread, processor time)")
-        ->check(CLI::Range(1, 100000000))
+        ->check(wholeBetween(1, 100000000))
         ->type_name("N");
     c->add_option("--lanes", a->lanes, "Width of the machine code")->check(CLI::IsMember({4, 8, 16}))->type_name("N");
     c->add_option("--vectors", a->vectors, "Vectors in flight; 0 lets the compiler choose")
-        ->check(CLI::Range(0, 4))
+        ->check(wholeBetween(0, 4))
         ->type_name("K");
     c->add_option("--searchpath", a->searchPaths, "Folders for shaders, #include and maps, separated by :")
         ->type_name("DIRS")

@@ -223,12 +223,7 @@ OutputPlan planOutputs(const scene::Options& o, const RenderSettings& settings, 
     if (!file.empty()) plan.pictures.push_back(singleOutput(file, b, diags, formatOf(o.displays)));
     else {
         std::vector<scene::Display> displays = o.displays;
-        for (const auto& [type, name] : settings.displays) {
-            scene::Display d;
-            d.type = type;
-            d.name = name;
-            displays.push_back(std::move(d));
-        }
+        displays.insert(displays.end(), settings.displays.begin(), settings.displays.end());
         if (displays.empty()) displays.push_back({});
         for (scene::Display& d : displays) {
             if (!d.name.empty() && d.name[0] == '+') d.name.erase(0, 1);

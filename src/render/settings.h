@@ -3,6 +3,7 @@
 #include "base/stopflag.h"
 #include "render/film.h"
 #include "render/progress.h"
+#include "scene/scene.h"
 #include <array>
 #include <optional>
 #include <string>
@@ -12,7 +13,7 @@ namespace alpenglow::render {
 
 struct RenderSettings {
     std::string output; ///< -o: one picture instead of the scene's displays; "" = the displays
-    std::vector<std::pair<std::string, std::string>> displays; ///< --display TYPE:NAME, added to the scene's own
+    std::vector<scene::Display> displays; ///< --display TYPE:NAME:MODE, added to the scene's own
     int width = 0, height = 0;                                 ///< --format; 0 = the scene's
     double resolutionFactor = 1;
     std::optional<std::array<float, 4>> crop; ///< x0 x1 y0 y1 in 0..1

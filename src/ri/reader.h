@@ -19,6 +19,8 @@ struct ReaderOptions {
     bool allowRead = true;                ///< archives may lie anywhere; false: below the folders that archive.cpp names
     size_t mostLights = limits::kLights;  ///< of one frame; further ones are reported
     std::vector<int> frames; ///< only these FrameBegin numbers are rendered; empty = all. Worlds outside frames always are
+    /// Called with the number of each FrameBegin, rendered or not.
+    std::function<void(int)> frameSeen;
     /// Called for each frame on its own copy of the options, just before it is handed over: the command line has the last word.
     std::function<void(scene::Options&)> overrides;
     /// Comments of the stream, as ReadArchive's callback gets them: kind "comment" or "structure", text after # or ##.

@@ -25,7 +25,9 @@ void declare(Interpreter& in, const Call& c) {
 }
 
 void frameBegin(Interpreter& in, const Call& c) {
-    if (in.begin(BlockKind::Frame, c)) in.options.frameNumber = c.integer(0);
+    if (!in.begin(BlockKind::Frame, c)) return;
+    in.options.frameNumber = c.integer(0);
+    if (in.settings.frameSeen) in.settings.frameSeen(in.options.frameNumber);
 }
 
 void solidBegin(Interpreter& in, const Call& c) {

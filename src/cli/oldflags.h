@@ -1,0 +1,39 @@
+// Flags of prman, renderdl and aqsis, in one table: what each means here.
+#pragma once
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace alpenglow::cli {
+
+/// One flag of another renderer's command line.
+struct OldFlag {
+    enum class Use {
+        Accepted, ///< becomes `here`
+        Dropped,  ///< read over: nothing here needs it; `here` says why
+        Answered, ///< ends with status 2 and the text `here`, which says what to write instead
+    };
+    std::string_view name;      ///< "-res"
+    int values = 0;             ///< how many follow; a first one may also stand behind ':' or '=' ("-t:4", "-frames=1-3")
+    std::string_view renderers; ///< "prman, renderdl"
+    Use use = Use::Dropped;
+    std::string_view here; ///< "--format $1x$2", or text for people
+};
+
+std::span<const OldFlag> oldFlags();
+
+/// A command line with the flags of other renderers replaced.
+struct TranslatedFlags {
+    std::vector<std::string> arguments;
+    std::vector<std::string> notes; ///< what was replaced or read over, a line each
+    std::string error;              ///< not "": a flag that cannot be taken, and what to write instead
+};
+
+/// `arguments`: those of `render`, without its name. Arguments that are no such flags stay as they are.
+TranslatedFlags translateOldFlags(const std::vector<std::string>& arguments);
+
+/// The table for docs/options.md.
+std::string oldFlagsPage();
+
+} // namespace alpenglow::cli

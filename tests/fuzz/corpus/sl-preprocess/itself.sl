@@ -1,0 +1,3 @@
+#include "itself.sl"
+#include "itself.sl"
+surface itself() { Ci = 1; }

@@ -4,6 +4,11 @@ find_package(CLI11 REQUIRED)
 add_executable(alpenglow ${cli_sources})
 target_link_libraries(alpenglow PRIVATE render ri transport shading texture display rsl_jit shadeops base CLI11::CLI11 nlohmann_json::nlohmann_json)
 target_compile_definitions(alpenglow PRIVATE ALPENGLOW_VERSION="0.1")
+add_custom_target(commit_header
+  COMMAND ${CMAKE_COMMAND} -DSOURCE=${CMAKE_SOURCE_DIR} -DOUT=${CMAKE_BINARY_DIR}/generated/alpenglow_commit.h -P ${CMAKE_SOURCE_DIR}/cmake/commit.cmake
+  BYPRODUCTS ${CMAKE_BINARY_DIR}/generated/alpenglow_commit.h COMMENT "" VERBATIM)
+add_dependencies(alpenglow commit_header)
+target_include_directories(alpenglow PRIVATE ${CMAKE_BINARY_DIR}/generated)
 room_tests(cli DEPS render display transport)
 if(TARGET test_cli)
   target_compile_definitions(test_cli PRIVATE ALPENGLOW_PROGRAM="$<TARGET_FILE:alpenglow>")

@@ -5,6 +5,7 @@
 #include "base/processors.h"
 #include "cli/command.h"
 #include "cli/oldflags.h"
+#include "cli/version.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
@@ -126,6 +127,13 @@ bool outputArrived() {
     return fine;
 }
 
+/// "alpenglow 0.1 (5f06283)": the name as it is typed.
+std::string versionLine() {
+    std::string name = softwareName();
+    name[0] = 'a';
+    return name;
+}
+
 /// Status 2, with the reason and where to read on.
 int wrongUse(const std::string& why, const std::string& more) {
     std::fprintf(stderr, "alpenglow: %s\n%s tells more.\n", printable(why).c_str(), more.c_str());
@@ -136,7 +144,7 @@ int runProgram(int argc, char** argv) {
     int status = kDone;
     CLI::App app("Alpenglow renders RenderMan scenes: RIB in, shaders in RSL as machine code, path-traced pictures out.",
                  "alpenglow");
-    app.set_version_flag("--version", "alpenglow " ALPENGLOW_VERSION);
+    app.set_version_flag("--version", versionLine());
     app.require_subcommand(1);
     app.get_formatter()->column_width(34);
     app.footer(
@@ -144,7 +152,7 @@ int runProgram(int argc, char** argv) {
         "Flags of prman, renderdl and aqsis (-t:4, -res 640 480, -progress) are taken, too: docs/options.md lists them.\n\n"
         "Exit status: 0 done; 1 done, but requests failed; 2 wrong use; 3 nothing could be rendered; 4 a limit or memory;\n"
         "5 an output could not be written; 130 interrupted, what was done is saved.");
-    addRender(app, &status);
+    addRender(app, &status, commandText(argc, argv));
     addEval(app, &status);
     addShade(app, &status);
     addCompile(app, &status);

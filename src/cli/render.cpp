@@ -4,6 +4,7 @@
 #include "base/processors.h"
 #include "cli/command.h"
 #include "cli/ranges.h"
+#include "cli/version.h"
 #include "display/imageio.h"
 #include "render/renderer.h"
 #include "ri/reader.h"
@@ -211,9 +212,11 @@ int renderAll(const Arguments& a) {
 
 } // namespace
 
-void addRender(CLI::App& app, int* status) {
+void addRender(CLI::App& app, int* status, const std::string& command) {
     auto a = std::make_shared<Arguments>();
     render::RenderSettings& s = a->settings;
+    s.software = softwareName();
+    s.command = command;
     CLI::App* c = app.add_subcommand("render", "Render scenes (RIB files; - reads standard input)");
     c->add_option("scenes", a->scenes, "RIB files, ASCII, binary or gzipped; - is standard input")->required();
 
@@ -301,7 +304,10 @@ void addRender(CLI::App& app, int* status) {
         ->type_name("FILE")
         ->group("Machine");
     c->add_flag("--resume", s.resume, "Begin with the samples in the checkpoint")->group("Machine");
-    c->add_option("--stats", s.statsFile, "Write figures of the render as JSON")->type_name("FILE.json")->group("Machine");
+    c->add_option("--stats", s.statsFile, "Write figures of the render and of each frame as JSON (docs/statistics.md)")->type_name("FILE.json")->group("Machine");
+    c->add_flag("--stamp", s.stamp,
+                "Write command, host, date and seconds into the pictures; without it equal pictures are equal files")
+        ->group("Machine");
     c->add_option("--pixel", a->pixel,
                   "Print red, green, blue and coverage of one pixel, or of one of its samples, and write no picture")
         ->type_name("X,Y[,SAMPLE]")

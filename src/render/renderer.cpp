@@ -9,6 +9,7 @@
 #include "render/imaging.h"
 #include "render/levels.h"
 #include "render/partfile.h"
+#include "render/provenance.h"
 #include "render/rendering.h"
 #include "texture/maketexture.h"
 #include <cmath>
@@ -61,6 +62,7 @@ Renderer::~Renderer() = default;
 
 void Renderer::setScene(const std::string& path) {
     settings_.scenePath = path == "-" ? "." : folderOf(path);
+    settings_.sceneFile = path;
     parseMark_ = clockSeconds();
 }
 
@@ -161,8 +163,12 @@ bool Renderer::resume(const std::string& checkpoint, const FilmDescription& want
 void Renderer::render(std::shared_ptr<const scene::Frame> frame) {
     double now = clockSeconds();
     stats_.parseSec += now - parseMark_;
+    stats_.errors = -diagnostics_.errors();
+    stats_.warnings = -diagnostics_.warnings();
+    FrameStats told;
+    const int before = outcome_.rendered;
     try {
-        renderFrame(std::move(frame));
+        renderFrame(std::move(frame), told);
     } catch (const LimitReached&) {
         outcome_.outOfMemory = true;
         ++outcome_.refused;
@@ -179,10 +185,24 @@ void Renderer::render(std::shared_ptr<const scene::Frame> frame) {
         ++outcome_.refused;
         diagnostics_.report(Severity::Severe, Rie::System, {}, std::string("this frame is given up: ") + e.what());
     }
+    if (outcome_.rendered > before) closeFrame(std::move(told));
     parseMark_ = clockSeconds();
 }
 
-void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
+void Renderer::closeFrame(FrameStats told) {
+    stats_.errors += diagnostics_.errors();
+    stats_.warnings += diagnostics_.warnings();
+    stats_.threads = settings_.threads;
+    stats_.peakMemoryBytes = peakMemoryBytes();
+    stats_.settle();
+    told.figures = stats_;
+    told.scene = settings_.sceneFile;
+    frames_.push_back(std::move(told));
+    accumulate(all_, stats_);
+    stats_ = {};
+}
+
+void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats& told) {
     if (settings_.stop && *settings_.stop) {
         outcome_.interrupted = true;
         return;
@@ -288,8 +308,16 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
     picture.worldToCamera = camera.worldToCamera();
     picture.worldToNDC = camera.worldToNDC();
     picture.imager = o.imager != nullptr;
-    picture.metadata["Software"] = "Alpenglow";
-    picture.metadata["hider"] = path ? "path" : hider == Hider::Raytrace ? "raytrace" : "hidden";
+    told.frame = o.frameNumber;
+    told.seed = settings_.seed;
+    told.hider = path ? "path" : hider == Hider::Raytrace ? "raytrace" : "hidden";
+    told.sceneHash = sceneDigest(*frame, "");
+    addProvenance(picture, settings_, *frame, told.hider, told.sceneHash);
+    const auto written = [&](bool fine) { // the pictures, or what was in their way
+        outcome_.outputFailed |= !fine;
+        for (const OutputSpec& s : plan.pictures)
+            if (fine) told.pictures.push_back({s.name, s.type, s.channels()});
+    };
 
     stats_.width = camera.window().width();
     stats_.height = camera.window().height();
@@ -349,7 +377,8 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
             if (film->saturated())
                 diagnostics_.report(Severity::Warning, Rie::Range, {},
                                     std::to_string(film->saturated()) + " values beyond 2^60 were cut there");
-            outcome_.outputFailed |= !writeFilm(*film, plan, picture, imager, settings_.allowWrite, diagnostics_);
+            if (settings_.stamp) addStamp(picture, settings_, renderSec);
+            written(writeFilm(*film, plan, picture, imager, settings_.allowWrite, diagnostics_));
             if (settings_.samples) {
                 const OutputSpec& first = plan.pictures.front();
                 outcome_.outputFailed |=
@@ -383,7 +412,8 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
         auto pixels = [&](const OutputSpec& s) -> const Image& {
             return made.images[made.of[size_t(&s - plan.pictures.data())]];
         };
-        outcome_.outputFailed |= !writeOutputs(plan, picture, pixels, imager, settings_.allowWrite, diagnostics_);
+        if (settings_.stamp) addStamp(picture, settings_, job.elapsed());
+        written(writeOutputs(plan, picture, pixels, imager, settings_.allowWrite, diagnostics_));
     }
     stats_.cpuSec += processCpuSeconds() - cpu;
 
@@ -396,10 +426,10 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame) {
     stats_.rays["shadow"] += c.shadow;
     stats_.shading.points += c.points;
     stats_.shading.batches += c.batches;
-    lanesUsed_ += double(c.lanesUsed);
-    lanesRun_ += double(c.lanesRun);
-    depthSum_ += double(c.depthSum);
-    paths_ += double(c.paths);
+    stats_.lanesUsed += double(c.lanesUsed);
+    stats_.lanesRun += double(c.lanesRun);
+    stats_.depthSum += double(c.depthSum);
+    stats_.paths += double(c.paths);
     stats_.depth.maximum = std::max(stats_.depth.maximum, c.depthMax);
     stats_.nonFinite += nonFinite;
     facts = world->facts(); // kernels may be compiled while rendering
@@ -491,11 +521,12 @@ void Renderer::makeTexture(const std::string& kind, const std::vector<std::strin
 }
 
 RenderStats Renderer::stats() const {
-    RenderStats s = stats_;
+    RenderStats s = all_, rest = stats_; // rest: a frame that was given up, maps made after the last one
+    if (frames_.empty()) s = rest;
+    else s.parseSec += rest.parseSec;
     s.threads = settings_.threads;
     s.peakMemoryBytes = peakMemoryBytes();
-    s.shading.laneOccupancy = lanesRun_ > 0 ? lanesUsed_ / lanesRun_ : 0;
-    s.depth.average = paths_ > 0 ? depthSum_ / paths_ : 0;
+    s.settle();
     s.errors = diagnostics_.errors();
     s.warnings = diagnostics_.warnings();
     return s;
@@ -505,7 +536,7 @@ bool Renderer::writeStats() {
     if (settings_.statsFile.empty()) return true;
     auto out = OutputFile::open(settings_.statsFile, {".", true}, diagnostics_);
     if (!out) return !(outcome_.outputFailed = true);
-    std::string json = toJson(stats());
+    std::string json = statsJson(stats(), frames_, settings_);
     out->write(json.data(), json.size());
     if (out->commit(diagnostics_)) return true;
     outcome_.outputFailed = true;

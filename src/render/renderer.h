@@ -1,6 +1,7 @@
 // The renderer: takes frames as RIB streams finish them, renders them, writes their pictures.
 #pragma once
 #include "render/engine.h"
+#include "render/framestats.h"
 #include "render/progress.h"
 #include "render/settings.h"
 #include "render/stats.h"
@@ -41,7 +42,9 @@ public:
     bool writeStats();
 
 private:
-    void renderFrame(std::shared_ptr<const scene::Frame>);
+    void renderFrame(std::shared_ptr<const scene::Frame>, FrameStats&);
+    /// Takes the figures of the frame just rendered over into those of the run.
+    void closeFrame(FrameStats);
     std::string fileFor(const scene::Options&, uint32_t spp);
     std::vector<std::string> searchPaths(const scene::Options&, const char* kind, const std::vector<std::string>& own,
                                          bool shaders) const;
@@ -61,8 +64,9 @@ private:
     Progress& progress_;
     Print print_;
     Outcome outcome_;
-    RenderStats stats_;
-    double depthSum_ = 0, paths_ = 0, lanesUsed_ = 0, lanesRun_ = 0;
+    RenderStats stats_;                 ///< of the frame being rendered
+    RenderStats all_;                   ///< of the frames before
+    std::vector<FrameStats> frames_;    ///< those that were rendered
     double parseMark_ = 0; ///< since when the reader is at work
     int checkpoints_ = 0;  ///< frames that had one
     int saved_ = 0;        ///< pictures made for -o or the save pattern

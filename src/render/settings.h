@@ -44,6 +44,9 @@ struct RenderSettings {
     size_t memoryLimit = 0; ///< what the process is bound to (base/memory.h), for messages; 0 = nothing
     ProgressMode progress = ProgressMode::Auto;
     bool quiet = false;
+    std::string software = "Alpenglow"; ///< name, version and commit, for pictures and --stats
+    std::string sceneFile, command;     ///< the scene being read and the command line, for the same
+    bool stamp = false;                 ///< --stamp: pictures name command, host, date and seconds
     const StopFlag* stop = nullptr; ///< non-zero: end soon and keep what is whole
 };
 

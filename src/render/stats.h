@@ -30,6 +30,12 @@ struct RenderStats {
         double average = 0;
     } depth;
     int errors = 0, warnings = 0;
+    /// Sums behind shading.laneOccupancy and depth.average, which settle() makes of them; not written.
+    double lanesUsed = 0, lanesRun = 0, depthSum = 0, paths = 0;
+    void settle() {
+        shading.laneOccupancy = lanesRun > 0 ? lanesUsed / lanesRun : 0;
+        depth.average = paths > 0 ? depthSum / paths : 0;
+    }
 };
 
 /// One JSON object, keys as above plus raysPerMS and efficiency, ending with a newline. Numbers that are not finite become 0.

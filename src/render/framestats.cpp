@@ -1,0 +1,49 @@
+#include "render/framestats.h"
+#include "render/provenance.h"
+#include <nlohmann/json.hpp>
+
+namespace alpenglow::render {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json frameJson(const FrameStats& f) {
+    Json j{{"frame", f.frame}, {"scene", f.scene}, {"sceneHash", f.sceneHash}, {"hider", f.hider}, {"seed", f.seed}};
+    j["pictures"] = Json::array();
+    for (const FrameStats::Picture& p : f.pictures)
+        j["pictures"].push_back({{"file", p.file}, {"type", p.type}, {"channels", p.channels}});
+    j.update(Json::parse(toJson(f.figures)));
+    return j;
+}
+
+} // namespace
+
+void accumulate(RenderStats& all, const RenderStats& f) {
+    const RenderStats before = all;
+    all = f;
+    for (auto member :
+         {&RenderStats::renderSec, &RenderStats::cpuSec, &RenderStats::parseSec, &RenderStats::compileSec, &RenderStats::buildSec,
+          &RenderStats::lanesUsed, &RenderStats::lanesRun, &RenderStats::depthSum, &RenderStats::paths})
+        all.*member += before.*member;
+    for (auto member : {&RenderStats::totalRays, &RenderStats::nonFinite, &RenderStats::saturated}) all.*member += before.*member;
+    for (const auto& [type, n] : before.rays) all.rays[type] += n;
+    all.shading.points += before.shading.points;
+    all.shading.batches += before.shading.batches;
+    all.depth.maximum = std::max(all.depth.maximum, before.depth.maximum);
+    all.errors += before.errors;
+    all.warnings += before.warnings;
+}
+
+std::string statsJson(const RenderStats& all, const std::vector<FrameStats>& frames, const RenderSettings& s) {
+    Json j = Json::parse(toJson(all));
+    j["software"] = s.software;
+    j["command"] = s.command;
+    j["options"] = pixelOptions(s);
+    j["host"] = hostName();
+    j["date"] = dateText();
+    j["frames"] = Json::array();
+    for (const FrameStats& f : frames) j["frames"].push_back(frameJson(f));
+    return j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+} // namespace alpenglow::render

@@ -167,46 +167,33 @@ std::optional<std::string> existingIgnoringCase(const std::string& dir, const st
 
 std::optional<std::string> resolveOutputPath(const std::string& name, const OutputPolicy& policy, Diagnostics& diags,
                                              const SourcePlace& place) {
-    if (name.empty() || name.find('\0') != std::string::npos) {
-        diags.report(Severity::Error, Rie::NoFile, place, "cannot write a file without a proper name");
+    auto refuse = [&](const std::string& why, const char* hint = "--allow-write permits it") -> std::optional<std::string> {
+        diags.report(Severity::Error, Rie::NoFile, place, why, hint);
         return {};
-    }
-    fs::path root = policy.root.empty() ? fs::path(".") : fs::path(policy.root);
-    if (policy.allowWrite) {
-        fs::path p = name;
-        return (p.is_absolute() ? p : root / p).string();
-    }
-    std::string below = name;
-    bool outside = isSeparator(name[0]) || hasDrive(name) || climbs(name) || !staysBelow(root, root / name);
-    if (outside) {
-        below = baseName(name);
-        if (below.empty() || below == "." || below == "..") {
-            diags.report(Severity::Error, Rie::NoFile, place, "\"" + name + "\" lies outside the output directory",
-                         "--allow-write permits it");
-            return {};
-        }
-    }
-    std::string path = (policy.root.empty() || policy.root == ".") ? below : (root / below).string();
-    if (hidden(below)) {
-        diags.report(Severity::Error, Rie::NoFile, place, "\"" + name + "\" is a hidden name, which a scene may not write",
-                     "--allow-write permits it");
-        return {};
-    }
-    if (!replaceable(path)) {
-        diags.report(Severity::Error, Rie::NoFile, place,
-                     "\"" + path + "\" is there and is no picture; a scene may not replace it",
-                     "choose another name, or permit it by --allow-write");
-        return {};
-    }
-    if (outside) {
-        Diagnostic d;
-        d.severity = Severity::Warning;
-        d.code = Rie::NoError;
-        d.place = place;
-        d.message = "\"" + name + "\" lies outside the output directory; written as \"" + path + "\"";
-        d.hint = "--allow-write permits any path";
-        diags.reportOnce("output-path:" + name, d);
-    }
+    };
+    if (name.empty() || name.find('\0') != std::string::npos) return refuse("cannot write a file without a proper name", "");
+    const fs::path root = policy.root.empty() ? fs::path(".") : fs::path(policy.root);
+    const bool absolute = fs::path(name).is_absolute();
+    if (policy.allowWrite) return (absolute ? fs::path(name) : root / name).string();
+    const std::string last = baseName(name);
+    if (last.empty() || last == "." || last == "..")
+        return refuse("cannot write \"" + name + "\": it is the name of a folder", "");
+
+    // What lies where is decided on canonical paths: links and ".." may lead out, an absolute name may lead in.
+    std::error_code e;
+    const std::string folder = fs::weakly_canonical(root, e).string();
+    const fs::path given = absolute ? fs::path(name) : root / name;
+    const bool foreign = hasDrive(name) || name[0] == '\\' || (climbs(name) && name.find('\\') != std::string::npos);
+    if (foreign || e || !staysBelow(root, given))
+        return refuse("\"" + name + "\" lies outside the output folder \"" + folder + "\"");
+    const fs::path real = fs::weakly_canonical(given.parent_path(), e) / given.filename();
+    if (hidden(real.lexically_relative(folder).string()) || (!absolute && hidden(name)))
+        return refuse("\"" + name + "\" is a hidden name, which a scene may not write");
+    const bool plain = policy.root.empty() || policy.root == ".";
+    const std::string path = climbs(name) ? real.string() : absolute || plain ? name : given.string();
+    if (!replaceable(path))
+        return refuse("\"" + path + "\" is there and is no picture; a scene may not replace it",
+                      "choose another name, or permit it by --allow-write");
     return path;
 }
 
@@ -236,6 +223,13 @@ void OutputFile::copyOut() {
     if (std::ferror(file_)) fail(EIO);
 }
 
+std::string fileIdentity(const std::string& path) {
+    std::error_code e;
+    const fs::path given = fs::absolute(path, e), folder = given.parent_path();
+    const fs::path real = fs::weakly_canonical(folder, e);
+    return ((e ? folder : real) / given.filename()).string();
+}
+
 std::optional<OutputFile> OutputFile::open(const std::string& name, const OutputPolicy& policy, Diagnostics& diags,
                                            const SourcePlace& place) {
     if (policy.allowWrite && name == "-") return openStandardOutput(diags, place);
@@ -254,7 +248,11 @@ std::optional<OutputFile> OutputFile::open(const std::string& name, const Output
         return {};
     }
     fs::path dir = target.parent_path();
-    if (!dir.empty() && !fs::exists(dir, e)) fs::create_directories(dir, e);
+    if (!dir.empty() && !fs::exists(dir, e) && !fs::create_directories(dir, e) && e) {
+        diags.report(Severity::Error, codeOf(e.value()), place,
+                     "cannot write \"" + f.path_ + "\": its folder cannot be made: " + e.message());
+        return {};
+    }
     removeAbandoned(dir);
     // The name holds the machine and the process, so that two processes never share one; O_EXCL settles threads.
     int fd = -1;
@@ -276,6 +274,17 @@ std::optional<OutputFile> OutputFile::open(const std::string& name, const Output
         f.fail(ENOMEM);
     }
     return f;
+}
+
+bool OutputFile::canBeWritten(const std::string& name, const OutputPolicy& policy, Diagnostics& diags, const SourcePlace& place) {
+    auto file = open(name, policy, diags, place);
+    if (!file) return false;
+    constexpr char kBlock[4096] = {}; // less than any picture's file takes on a disk
+    file->write(kBlock, sizeof kBlock);
+    if (file->file_ && std::fflush(file->file_) != 0) file->fail(errno);
+    if (file->ok()) return true;
+    file->report(diags);
+    return false;
 }
 
 OutputFile::OutputFile(OutputFile&& o) noexcept
@@ -366,10 +375,14 @@ bool OutputFile::commit(Diagnostics& diags) {
         temporary_.clear();
         return true;
     }
-    diags.report(Severity::Error, codeOf(error_), place_,
-                 "cannot write " + (standardOutput_ ? "to standard output" : "\"" + path_ + "\"") + ": " + std::strerror(error_));
+    report(diags);
     discard();
     return false;
+}
+
+void OutputFile::report(Diagnostics& diags) const {
+    diags.report(Severity::Error, codeOf(error_), place_,
+                 "cannot write " + (standardOutput_ ? "to standard output" : "\"" + path_ + "\"") + ": " + std::strerror(error_));
 }
 
 std::optional<std::vector<uint8_t>> readWholeFile(const std::string& path, size_t maxBytes, Diagnostics& diags,

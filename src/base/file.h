@@ -13,15 +13,19 @@ namespace alpenglow {
 /// Where files may be written.
 struct OutputPolicy {
     std::string root = ".";      ///< relative names are below it
-    bool allowWrite = false;     ///< --allow-write: absolute names and ".." are taken as they are, "-" is standard output
+    bool allowWrite = false;     ///< --allow-write: any name is taken as it is, "-" is standard output
     int64_t failAfterBytes = -1; ///< fault injection for tests: the write that passes this many bytes fails as a full disk
 };
 
-/// The path that a file called `name` will be written to. Without allowWrite a name that is absolute (also "C:\x" and
-/// "\\host\x"), has a ".." component, or leads out of the root through a symbolic link, becomes its base name below the root;
-/// the refusal is reported once per name. Hidden names (".bashrc", ".git/config") and files that are there and are no pictures,
-/// maps or part files are refused. Nothing: the name is unusable, and an error was reported.
+/// The path that a file called `name` will be written to. Without allowWrite it must lie below the root, whether the name is
+/// absolute or not and wherever ".." and symbolic links in it lead; names of Windows drives and hosts lie outside. Hidden names
+/// (".bashrc", ".git/config") and files that are there and are no pictures, maps or part files are refused as well. Nothing: an
+/// error was reported.
 std::optional<std::string> resolveOutputPath(const std::string& name, const OutputPolicy&, Diagnostics&, const SourcePlace& = {});
+
+/// The same text for all names of one file that differ in "./", "..", links of folders, or in being absolute. The last part is
+/// taken as it is, because a file that is written replaces a link of its name.
+std::string fileIdentity(const std::string& path);
 
 /// A file under a temporary name in the directory of its target, renamed to it when whole. Until commit() succeeds the old
 /// file stays as it is; the destructor removes the temporary.
@@ -31,6 +35,9 @@ public:
     /// Temporaries that killed processes left in the folder are removed. "-" under allowWrite is standard output: commit()
     /// sends all.
     static std::optional<OutputFile> open(const std::string& name, const OutputPolicy&, Diagnostics&, const SourcePlace& = {});
+    /// Whether such a file can be written now: opens it, writes a block of the disk and leaves no trace but missing directories.
+    /// False: an error was reported.
+    static bool canBeWritten(const std::string& name, const OutputPolicy&, Diagnostics&, const SourcePlace& = {});
     OutputFile(OutputFile&&) noexcept;
     OutputFile& operator=(OutputFile&&) = delete;
     ~OutputFile();
@@ -50,6 +57,7 @@ public:
 private:
     OutputFile() = default;
     void fail(int error);
+    void report(Diagnostics&) const;
     void discard();
     static std::optional<OutputFile> openStandardOutput(Diagnostics&, const SourcePlace&);
     /// The whole of file_ to standard output.

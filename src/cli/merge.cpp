@@ -9,7 +9,7 @@ namespace alpenglow::cli {
 void addMerge(CLI::App& app, int* status) {
     struct Arguments {
         std::vector<std::string> parts;
-        std::string output;
+        std::string output, expect;
         std::vector<std::string> searchPaths;
         render::MergeSettings settings;
     };
@@ -17,15 +17,25 @@ void addMerge(CLI::App& app, int* status) {
     CLI::App* c = app.add_subcommand("merge", "Add parts rendered with --samples; the same bits as one render");
     c->add_option("parts", a->parts, "Pictures with their .part files beside them, or .part files, in any order")->required();
     c->add_option("-o", a->output, "The picture; without it, those that the scene's displays name")->type_name("FILE");
+    c->add_option("--expect", a->expect, "Samples that the parts must hold together: missing or further ones are errors")
+        ->type_name("A:B");
     c->add_flag("--allow-write", a->settings.allowWrite, "Let display names lead outside the current folder");
     c->add_flag("--allow-exec", a->settings.allowExec, "Let the imager load plug-ins");
     c->add_option("--searchpath", a->searchPaths, "Folders for the imager's shaders before those of the render, separated by :")
         ->type_name("DIRS")
         ->allow_extra_args(false);
-    c->footer("Parts fit when scene, options, seed and crop window are the same and no sample is in two of them.");
+    c->footer(
+        "Parts fit when scene, options, seed and crop window are the same and no sample is in two of them. Samples that are\n"
+        "missing between them are warned about; the picture is written all the same, with a part file beside it, so that\n"
+        "the missing part can be merged with it later.");
     c->callback([a, status] {
         if (const std::string fault = a->output.empty() ? "" : faultOfPictureName(a->output, true); !fault.empty())
             throw CLI::ValidationError("-o", fault);
+        if (!a->expect.empty()) {
+            a->settings.expect = render::rangeFromText(a->expect);
+            if (!a->settings.expect)
+                throw CLI::ValidationError("--expect", "takes A:B with A < B: samples A to B-1, for example 0:64");
+        }
         Diagnostics diags(printer());
         a->settings.shaderPaths = folders(a->searchPaths);
         switch (render::mergePictures(a->parts, a->output, a->settings, diags)) {

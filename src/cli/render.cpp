@@ -6,6 +6,7 @@
 #include "cli/ranges.h"
 #include "cli/version.h"
 #include "display/imageio.h"
+#include "render/filmpicture.h"
 #include "render/renderer.h"
 #include "ri/reader.h"
 #include <CLI/CLI.hpp>
@@ -22,7 +23,7 @@ namespace {
 struct Arguments {
     render::RenderSettings settings;
     std::vector<std::string> scenes, searchPaths, displays, rib;
-    std::string format, crop, samples, frames, pixel, preset, memory, folder, progress = "auto";
+    std::string format, crop, samples, part, frames, pixel, preset, memory, folder, progress = "auto";
     float gamma = 0;
     bool noDirect = false, noIndirect = false, watch = false, quiet = false, verbose = false;
     std::vector<int> frameList;
@@ -46,12 +47,16 @@ void checkLate(Arguments& a, const CLI::App& app) {
         s.crop = {float((*v)[0]), float((*v)[1]), float((*v)[2]), float((*v)[3])};
     }
     if (!a.samples.empty()) {
-        unsigned long b = 0, e = 0;
+        s.samples = render::rangeFromText(a.samples);
+        if (!s.samples) wrong("--samples", "takes A:B with A < B: samples A to B-1 of every pixel");
+    }
+    if (!a.part.empty()) {
+        unsigned k = 0, n = 0;
         int end = 0;
-        if (std::sscanf(a.samples.c_str(), "%9lu:%9lu%n", &b, &e, &end) != 2 || size_t(end) != a.samples.size() || e <= b ||
-            e > limits::kSamplesPerPixel)
-            wrong("--samples", "takes A:B with A < B: samples A to B-1 of every pixel");
-        s.samples = render::SampleRange{uint32_t(b), uint32_t(e)};
+        if (std::sscanf(a.part.c_str(), "%9u/%9u%n", &k, &n, &end) != 2 || size_t(end) != a.part.size() || k < 1 || k > n)
+            wrong("--part", "takes K/N, with K from 1 to N: the third of sixteen parts is 3/16");
+        if (s.noise > 0 || s.seconds > 0) wrong("--part", "needs a number of samples: --spp, not --noise or --time");
+        s.part = {k, n};
     }
     if (!a.frames.empty()) {
         auto v = parseFrames(a.frames);
@@ -87,8 +92,10 @@ void checkLate(Arguments& a, const CLI::App& app) {
     s.direct = !a.noDirect;
     s.indirect = !a.noIndirect;
     if (const std::string fault = s.output.empty() ? "" : faultOfPictureName(s.output, true); !fault.empty()) wrong("-o", fault);
-    if (s.output == "-" && s.samples) wrong("-o", "with --samples a part file lies beside the picture: name a file");
+    if (s.output == "-" && (s.samples || s.part))
+        wrong("-o", "with --samples or --part a part file lies beside the picture: name a file");
     if (s.resume && s.checkpoint.empty()) wrong("--resume", "needs --checkpoint FILE");
+    if (s.restart && s.checkpoint.empty()) wrong("--restart", "needs --checkpoint FILE");
     if (a.preset == "slproject") {
         if (s.hider.empty()) s.hider = "path";
         if (!s.gamma) s.gamma = 2.2f;
@@ -153,6 +160,7 @@ int renderOnce(const Arguments& a, const StopFlag* stop) {
         for (const std::string& r : a.rib) reader.readMemory(r, "--rib");
         for (const std::string& s : a.scenes) {
             if (*stop) break;
+            reader.nextScene();
             renderer.setScene(s);
             reader.readFile(s);
         }
@@ -167,6 +175,7 @@ int renderOnce(const Arguments& a, const StopFlag* stop) {
     if (!missing && outcome.rendered == 0 && outcome.refused == 0 && outcome.textures == 0 && !interrupted && !diags.errors())
         diags.report(Severity::Error, Rie::MissingData, {},
                      "no world was rendered: there is none between WorldBegin and WorldEnd in what was read");
+    renderer.finish();
     renderer.writeStats();
     if (!a.quiet && outcome.rendered > 0 && !settings.pixel) std::fputs(toTable(renderer.stats()).c_str(), stderr);
     if (interrupted) return kInterrupted;
@@ -197,9 +206,11 @@ int renderAll(const Arguments& a) {
                             a.settings.threads > 0 ? a.settings.threads : defaultThreads());
     const StopFlag* stop = watchInterrupts();
     if (!a.watch) return renderOnce(a, stop);
+    Arguments again = a;
     while (true) {
         auto before = timesOf(a.scenes);
-        int status = renderOnce(a, stop);
+        int status = renderOnce(again, stop);
+        again.settings.restart = !a.settings.resume; // the checkpoint of the round before is ours
         if (*stop) return status;
         std::fputs("alpenglow: waiting for the scene to change; Ctrl-C ends\n", stderr);
         while (timesOf(a.scenes) == before) {
@@ -218,13 +229,19 @@ void addRender(CLI::App& app, int* status, const std::string& command) {
     s.software = softwareName();
     s.command = command;
     CLI::App* c = app.add_subcommand("render", "Render scenes (RIB files; - reads standard input)");
-    c->add_option("scenes", a->scenes, "RIB files, ASCII, binary or gzipped; - is standard input")->required();
+    c->add_option(
+         "scenes", a->scenes,
+         "RIB files, ASCII, binary or gzipped; - is standard input. Each is a scene of its own, which begins with the defaults; "
+         "a file of options without a world holds for all that follow")
+        ->required();
 
-    c->add_option("-o", s.output,
-                  std::string("Write one picture FILE instead of the scene's displays; the extension chooses the format (") +
-                      display::kPictureExtensions +
-                      "). # in the name becomes the frame number. - is standard output: PNG, or the format of the scene's first "
-                      "display (openexr, tiff, jpeg), frames one after the other")
+    c->add_option(
+         "-o", s.output,
+         std::string("Write one picture FILE instead of the scene's displays; the extension chooses the format (") +
+             display::kPictureExtensions +
+             "). Depth and shadow maps stay. # or %04d in the name becomes the number of the frame; in a scene of frames a "
+             "name without it gets the number before the extension. - is standard output: PNG, or the format of the "
+             "scene's first display (openexr, tiff, jpeg), frames one after the other")
         ->type_name("FILE")
         ->group("Pictures");
     c->add_option("--display", a->displays, "Add a display, for example png:view.png or openexr:all.exr:rgba,N,z")
@@ -268,6 +285,10 @@ void addRender(CLI::App& app, int* status, const std::string& command) {
                   "path: only samples A to B-1 of every pixel; a part file is written beside the picture, for merge")
         ->type_name("A:B")
         ->group("Quality");
+    c->add_option("--part", a->part, "path: only part K of N of the samples, which are shared evenly; else as --samples")
+        ->type_name("K/N")
+        ->excludes("--samples")
+        ->group("Quality");
     c->add_option("--seed", s.seed, "Seed of all random numbers; same seed, same bits")->type_name("N")->group("Quality");
     c->add_option("--max-depth", s.maxDepth, "Greatest number of bounces")
         ->check(wholeBetween(0, limits::kPathDepth))
@@ -303,7 +324,11 @@ void addRender(CLI::App& app, int* status, const std::string& command) {
     c->add_option("--checkpoint", s.checkpoint, "path: keep the samples so far in FILE, every half minute and at the end")
         ->type_name("FILE")
         ->group("Machine");
-    c->add_flag("--resume", s.resume, "Begin with the samples in the checkpoint")->group("Machine");
+    CLI::Option* resume =
+        c->add_flag("--resume", s.resume, "Begin with the samples in the checkpoint; without one, begin anew")->group("Machine");
+    c->add_flag("--restart", s.restart, "Begin anew and replace the checkpoint that is there")
+        ->excludes(resume)
+        ->group("Machine");
     c->add_option("--stats", s.statsFile, "Write figures of the render and of each frame as JSON (docs/statistics.md)")->type_name("FILE.json")->group("Machine");
     c->add_flag("--stamp", s.stamp,
                 "Write command, host, date and seconds into the pictures; without it equal pictures are equal files")

@@ -1,4 +1,5 @@
 #include "render/filmpicture.h"
+#include "base/limits.h"
 #include "render/imagertext.h"
 #include "render/noise.h"
 #include "render/partfile.h"
@@ -27,7 +28,56 @@ std::shared_ptr<const transport::World> imagerWorld(const Film& film, const std:
     return transport::World::build(scene->frame, scene->settings, diags);
 }
 
+std::string rangesText(const std::vector<SampleRange>& ranges) {
+    std::string all;
+    for (const SampleRange& r : ranges) all += (all.empty() ? "" : ",") + rangeText(r);
+    return all;
+}
+
+/// Reports samples that no part has. True: there are such.
+bool reportGaps(const Film& film, const MergeSettings& settings, Diagnostics& diags) {
+    const std::vector<SampleRange>& have = film.ranges();
+    if (have.empty()) return false;
+    SampleRange whole{0, have.back().end};
+    if (const auto text = film.metadata.find(kWholeKey); text != film.metadata.end())
+        if (auto w = rangeFromText(text->second)) whole.end = std::max(whole.end, w->end);
+    whole = settings.expect.value_or(whole);
+    const std::vector<SampleRange> missing = missingSamples(have, whole);
+    if (!missing.empty())
+        diags.report(settings.expect ? Severity::Error : Severity::Warning, Rie::MissingData, {},
+                     "no part has the samples " + rangesText(missing) + " of " + rangeText(whole) +
+                         "; the picture is made without them",
+                     "render them with --samples " + rangeText(missing.front()) + (missing.size() > 1 ? " and so on" : "") +
+                         ", and merge them with this picture");
+    if (settings.expect && (have.front().begin < whole.begin || have.back().end > whole.end))
+        diags.report(Severity::Error, Rie::Consistency, {},
+                     "the parts have the samples " + rangesText(have) + ", which is more than --expect " + rangeText(whole));
+    return !missing.empty();
+}
+
 } // namespace
+
+std::string rangeText(SampleRange r) { return std::to_string(r.begin) + ":" + std::to_string(r.end); }
+
+std::optional<SampleRange> rangeFromText(const std::string& text) {
+    unsigned long begin = 0, end = 0;
+    int read = 0;
+    if (std::sscanf(text.c_str(), "%9lu:%9lu%n", &begin, &end, &read) != 2 || size_t(read) != text.size() || end <= begin ||
+        end > limits::kSamplesPerPixel)
+        return {};
+    return SampleRange{uint32_t(begin), uint32_t(end)};
+}
+
+std::vector<SampleRange> missingSamples(const std::vector<SampleRange>& ranges, SampleRange whole) {
+    std::vector<SampleRange> missing;
+    uint32_t at = whole.begin;
+    for (const SampleRange& r : ranges) {
+        if (r.begin > at && at < whole.end) missing.push_back({at, std::min(r.begin, whole.end)});
+        at = std::max(at, r.end);
+    }
+    if (at < whole.end) missing.push_back({at, whole.end});
+    return missing;
+}
 
 std::string sidecarName(const std::string& picture) { return picture + ".part"; }
 
@@ -36,9 +86,7 @@ bool writeFilm(const Film& film, const OutputPlan& plan, PictureFacts facts, con
     facts.width = film.description().width;
     facts.height = film.description().height;
     facts.window = film.window();
-    std::string ranges;
-    for (SampleRange r : film.ranges())
-        ranges += (ranges.empty() ? "" : ",") + std::to_string(r.begin) + ":" + std::to_string(r.end);
+    const std::string ranges = rangesText(film.ranges());
     NoiseFigures n = noiseFigures(film);
     facts.metadata["spp"] = std::to_string(film.samplesPerPixel());
     facts.metadata["samples"] = ranges;
@@ -73,6 +121,7 @@ MergeResult mergePictures(const std::vector<std::string>& parts, const std::stri
         diags.report(Severity::Error, Rie::BadFile, {files.front()}, "the part file's channels are not those of its pictures");
         return MergeResult::NoInput;
     }
+    const bool gaps = reportGaps(*film, settings, diags);
     if (!output.empty()) {
         plan->first.pictures.assign(1, singleOutput(output, plan->first.basis, diags));
         plan->first.resolve(plan->first.engineWidths, diags);
@@ -87,7 +136,7 @@ MergeResult mergePictures(const std::vector<std::string>& parts, const std::stri
     bool written = writeFilm(*film, plan->first, plan->second, imager, settings.allowWrite, diags);
     // What is not the beginning of a sequence may be merged further.
     const auto& r = film->ranges();
-    if (written && (r.size() != 1 || r.front().begin != 0) && !plan->first.pictures.empty())
+    if (written && (gaps || r.size() != 1 || r.front().begin != 0) && !plan->first.pictures.empty())
         written = savePart(*film, sidecarName(plan->first.pictures.front().name), {".", true}, diags);
     return written ? MergeResult::Done : MergeResult::NoOutput;
 }

@@ -6,6 +6,13 @@ namespace alpenglow::render {
 
 /// The key under which a film keeps what planToText() made.
 inline constexpr const char* kPicturesKey = "alpenglow:pictures";
+/// The key under which a part of --part keeps which samples the whole has, as rangeText().
+inline constexpr const char* kWholeKey = "alpenglow:whole";
+/// "A:B", and back; nothing unless A < B and B is at most limits::kSamplesPerPixel.
+std::string rangeText(SampleRange);
+std::optional<SampleRange> rangeFromText(const std::string&);
+/// What of the whole is in none of the ranges, ascending.
+std::vector<SampleRange> missingSamples(const std::vector<SampleRange>& ranges, SampleRange whole);
 /// The part file that lies beside a picture.
 std::string sidecarName(const std::string& picture);
 
@@ -19,10 +26,13 @@ enum class MergeResult { Done, NoInput, NoOutput };
 struct MergeSettings {
     bool allowWrite = false, allowExec = false;
     std::vector<std::string> shaderPaths;
+    std::optional<SampleRange> expect; ///< the samples that the parts must hold together, no fewer and no more
 };
 /// Adds the films of part files (pictures stand for their sidecars) and writes what one render of all their samples would have
-/// written: `output` (by the rules of -o), or the pictures the parts name when it is empty. The imager is that of the first part; one
-/// that cannot be run (its shader is gone) is an error, and the pictures are written without it.
+/// written: `output` (by the rules of -o), or the pictures the parts name when it is empty. The imager is that of the first part;
+/// one that cannot be run (its shader is gone) is an error, and the pictures are written without it. Samples that are missing are
+/// a warning, and an error when they were expected; the pictures are written with a part file beside them, so that the rest can
+/// be added.
 MergeResult mergePictures(const std::vector<std::string>& parts, const std::string& output, const MergeSettings&, Diagnostics&);
 
 } // namespace alpenglow::render

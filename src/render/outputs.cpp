@@ -2,6 +2,7 @@
 #include "display/driver.h"
 #include "display/mode.h"
 #include "render/imaging.h"
+#include "render/outputnames.h"
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -102,14 +103,6 @@ OutputSpec specOf(const scene::Display& d, const scene::Options& o, const Output
     return s;
 }
 
-std::string extensionOf(const std::string& file) {
-    size_t slash = file.find_last_of('/'), dot = file.find_last_of('.');
-    if (dot == std::string::npos || (slash != std::string::npos && dot < slash)) return "";
-    std::string e = file.substr(dot + 1);
-    for (char& c : e) c = char(std::tolower(static_cast<unsigned char>(c)));
-    return e;
-}
-
 } // namespace
 
 bool OutputSpec::has(Source s) const {
@@ -184,21 +177,20 @@ display::Format formatOf(const std::vector<scene::Display>& displays) {
     return display::formatOfExtension(likeAName).value_or(display::Format::Png);
 }
 
-/// Leaves one picture for each file. A window has none of its own: where another display writes the file of its name, that is kept.
-void oneForEachFile(std::vector<OutputSpec>& pictures, Diagnostics& diags) {
+/// A window has no file of its own: where another display writes the file of its name, that is kept.
+void leaveOutWindows(std::vector<OutputSpec>& pictures) {
     auto is = [](const OutputSpec& s, const char* driver) {
         const display::DriverDescriptor* d = display::findDriver(s.type);
         return d && d->names.front() == driver;
     };
     std::vector<OutputSpec> kept;
     for (OutputSpec& s : pictures) {
-        auto same = std::find_if(kept.begin(), kept.end(), [&](const OutputSpec& k) { return k.name == s.name && !is(k, "null"); });
-        if (same == kept.end() || is(s, "null")) kept.push_back(std::move(s));
-        else if (is(s, "framebuffer")) continue;
-        else if (is(*same, "framebuffer")) *same = std::move(s);
-        else
-            diags.report(Severity::Warning, Rie::BadFile, s.place,
-                         "display \"" + s.name + "\": another display of this frame writes that file; this one is left out");
+        auto same = std::find_if(kept.begin(), kept.end(), [&](const OutputSpec& k) {
+            return (is(k, "framebuffer") || is(s, "framebuffer")) && !is(k, "null") && !is(s, "null") &&
+                   fileIdentity(k.name) == fileIdentity(s.name);
+        });
+        if (same == kept.end()) kept.push_back(std::move(s));
+        else if (!is(s, "framebuffer")) *same = std::move(s);
     }
     pictures = std::move(kept);
 }
@@ -221,19 +213,14 @@ OutputPlan planOutputs(const scene::Options& o, const RenderSettings& settings, 
     b.filter = makePixelFilter(o.filter.name, o.filter.xwidth, o.filter.ywidth, {}, diags);
     b.depth = depthFilterOf(o, diags);
     if (!file.empty()) plan.pictures.push_back(singleOutput(file, b, diags, formatOf(o.displays)));
-    else {
-        std::vector<scene::Display> displays = o.displays;
-        displays.insert(displays.end(), settings.displays.begin(), settings.displays.end());
-        if (displays.empty()) displays.push_back({});
-        for (scene::Display& d : displays) {
-            if (!d.name.empty() && d.name[0] == '+') d.name.erase(0, 1);
-            d.name = withFrame(d.name, o.frameNumber);
-            OutputSpec s = specOf(d, o, b, plan, diags);
-            if (settings.gamma && s.ownExposure) s.gamma = *settings.gamma;
-            if (!s.variables.empty()) plan.pictures.push_back(std::move(s));
-        }
-        oneForEachFile(plan.pictures, diags);
+    for (const NamedDisplay& d : displaysOf(o, settings, file.empty())) {
+        OutputSpec s = specOf(d.display, o, b, plan, diags);
+        if (settings.gamma && s.ownExposure && !isMap(d.display)) s.gamma = *settings.gamma;
+        s.map = isMap(d.display);
+        s.userFile = d.user;
+        if (!s.variables.empty()) plan.pictures.push_back(std::move(s));
     }
+    leaveOutWindows(plan.pictures);
     return plan;
 }
 
@@ -384,34 +371,6 @@ bool writeOutputs(const OutputPlan& plan, const PictureFacts& facts, const std::
         all &= display::writeDisplay(setup, out, diags);
     }
     return all;
-}
-
-std::string withFrame(const std::string& name, int frame) {
-    for (size_t at = name.find('%'); at != std::string::npos; at = name.find('%', at + 1)) {
-        size_t end = at + 1;
-        int width = 0;
-        bool zeros = end < name.size() && name[end] == '0';
-        while (end < name.size() && name[end] >= '0' && name[end] <= '9' && end - at < 4) width = 10 * width + (name[end++] - '0');
-        if (end >= name.size() || name[end] != 'd' || width > 16) continue;
-        char digits[32];
-        std::snprintf(digits, sizeof digits, zeros ? "%0*d" : "%*d", width, frame);
-        return name.substr(0, at) + digits + name.substr(end + 1);
-    }
-    return name;
-}
-
-std::string numberedName(const std::string& name, int number) {
-    char digits[32];
-    size_t a = name.find('#');
-    if (a != std::string::npos) {
-        size_t b = name.find_first_not_of('#', a);
-        if (b == std::string::npos) b = name.size();
-        std::snprintf(digits, sizeof digits, "%0*d", int(std::min(b - a, size_t(16))), number);
-        return name.substr(0, a) + digits + name.substr(b);
-    }
-    std::snprintf(digits, sizeof digits, ".%04d", number);
-    size_t dot = name.size() - (extensionOf(name).empty() ? 0 : extensionOf(name).size() + 1);
-    return name.substr(0, dot) + digits + name.substr(dot);
 }
 
 } // namespace alpenglow::render

@@ -35,7 +35,8 @@ struct OutputSpec {
     DepthFilter depth = DepthFilter::Min;
     display::Quantization rgba, z;
     bool quantizeAsked = false;
-    bool userFile = false; ///< named by -o: written where it says
+    bool userFile = false; ///< named by -o or --display: written where it says
+    bool map = false;      ///< isMap()
     bool has(OutputVariable::Source) const;
     std::vector<std::string> channels() const;
 };
@@ -62,7 +63,8 @@ struct OutputPlan {
     void resolve(std::vector<int> widths, Diagnostics&);
 };
 
-/// The pictures of a frame. `file` is -o's name ("" = the scene's displays; ri.pic when it has none).
+/// The pictures of a frame. `file` is -o's name, which takes the place of the scene's displays but its maps ("" = the scene's
+/// displays; ri.pic when it has none).
 OutputPlan planOutputs(const scene::Options&, const RenderSettings&, bool path, const std::string& file, Diagnostics&);
 /// The picture of -o: rgba, or rgb for PNG and JPEG. The name's extension chooses; else, for "-" (standard output), `format`.
 OutputSpec singleOutput(const std::string& file, const OutputBasis&, Diagnostics&, display::Format format = display::Format::Png);
@@ -97,10 +99,5 @@ bool writeOutputs(const OutputPlan&, const PictureFacts&, const std::function<co
 /// The plan and facts as JSON text for a part file, and back. Nothing: the text is not ours (an error was reported).
 std::string planToText(const OutputPlan&, const PictureFacts&);
 std::optional<std::pair<OutputPlan, PictureFacts>> planFromText(const std::string&, const std::string& file, Diagnostics&);
-
-/// A display's name with %d or %04d in it (any width up to 16): the number of the frame stands there. Others stay as they are.
-std::string withFrame(const std::string& name, int frame);
-/// name.ext becomes name.<number>.ext, number with four digits at least; a run of '#' is replaced instead where there is one.
-std::string numberedName(const std::string& name, int number);
 
 } // namespace alpenglow::render

@@ -16,6 +16,7 @@
 #include <filesystem>
 #include <new>
 #include <tbb/global_control.h>
+#include <utility>
 
 namespace alpenglow::render {
 namespace {
@@ -50,12 +51,21 @@ uint32_t pathSamples(const scene::Options& o, const RenderSettings& s) {
     return uint32_t(std::clamp(n, 1.0, double(limits::kSamplesPerPixel)));
 }
 
+/// The samples that --samples or --part asks for; nothing: all. Parts share the samples evenly, and a later part gets what is
+/// left.
+std::optional<SampleRange> partOf(const RenderSettings& s, uint32_t spp) {
+    if (!s.part) return s.samples;
+    const uint64_t k = (*s.part)[0], n = (*s.part)[1];
+    return SampleRange{uint32_t((k - 1) * spp / n), uint32_t(k * spp / n)};
+}
+
 } // namespace
 
 Renderer::Renderer(RenderSettings s, Engine e, Diagnostics& d, Progress& p, Print print)
     : settings_(std::move(s)), engine_(std::move(e)), diagnostics_(d), progress_(p), print_(std::move(print)),
       parseMark_(clockSeconds()) {
     if (settings_.threads <= 0) settings_.threads = defaultThreads();
+    if (!settings_.statsFile.empty()) names_.take("statistics", settings_.statsFile, false, {}, {}, nullptr);
 }
 
 Renderer::~Renderer() = default;
@@ -67,6 +77,10 @@ void Renderer::setScene(const std::string& path) {
 }
 
 void Renderer::override(scene::Options& o) const {
+    if (isMapPass(o)) {
+        if (o.hider == "path") o.hider = "hidden"; // depth needs no light
+        return;
+    }
     const RenderSettings& s = settings_;
     if (s.width > 0 && s.height > 0) {
         o.xres = s.width;
@@ -104,8 +118,9 @@ std::vector<std::string> Renderer::searchPaths(const scene::Options& o, const ch
 std::string Renderer::fileFor(const scene::Options& o, uint32_t spp) {
     if (settings_.output == "-") return "-"; // frame after frame
     if (!settings_.output.empty()) {
-        bool numbered = saved_++ > 0 || settings_.output.find('#') != std::string::npos;
-        return numbered ? numberedName(settings_.output, o.frameNumber > 0 ? o.frameNumber : saved_) : settings_.output;
+        if (isNumbered(o)) return numberedName(settings_.output, o.frameNumber);
+        const bool numbered = saved_++ > 0 || hasFrameNumber(settings_.output);
+        return numbered ? numberedName(settings_.output, saved_) : settings_.output;
     }
     if (settings_.savePattern.empty()) return "";
     std::string name = settings_.savePattern;
@@ -117,16 +132,46 @@ std::string Renderer::fileFor(const scene::Options& o, uint32_t spp) {
     return name;
 }
 
-std::string Renderer::checkpointFile() {
-    if (settings_.checkpoint.empty() || checkpoints_++ == 0) return settings_.checkpoint;
-    return numberedName(settings_.checkpoint, checkpoints_);
+std::string Renderer::checkpointFile(const scene::Options& o) {
+    const std::string& name = settings_.checkpoint;
+    if (name.empty()) return name;
+    const bool plain = !isNumbered(o) && checkpoints_++ == 0;
+    return names_.take("checkpoint", plain ? name : numberedName(name, isNumbered(o) ? o.frameNumber : checkpoints_), false, o,
+                       {}, &diagnostics_);
 }
 
-bool Renderer::canWrite(const OutputPlan& plan, const std::string& checkpoint) {
+void Renderer::nameOutputs(OutputPlan& plan, const scene::Options& o) {
+    for (OutputSpec& s : plan.pictures) {
+        const display::DriverDescriptor* driver = display::findDriver(s.type);
+        if (!driver || driver->writes) s.name = names_.take("display", s.name, s.map, o, s.place, &diagnostics_);
+    }
+}
+
+void Renderer::passOver(const scene::Options& o) {
+    names_.nextWorld();
+    const bool one = !settings_.output.empty() && !isMapPass(o);
+    if (one) names_.take("display", numberedName(settings_.output, o.frameNumber), false, o, {}, nullptr);
+    for (const NamedDisplay& d : displaysOf(o, isMapPass(o) ? settingsOfMaps(settings_) : settings_, !one))
+        names_.take("display", d.display.name, isMap(d.display), o, d.display.place, nullptr);
+}
+
+void Renderer::passOverTexture(const std::vector<std::string>& files) {
+    for (const std::string& f : files) names_.release(f);
+}
+
+void Renderer::finish() {
+    const std::string given = pictureOptions(settings_);
+    if (maps_ == 0 || pictures_ > 0 || given.empty()) return;
+    diagnostics_.report(Severity::Warning, Rie::NoError, {},
+                        given + ": without effect; the scene makes depth and shadow maps only, and those stay as the scene says",
+                        "a Display of the mode \"rgba\" makes a picture");
+}
+
+bool Renderer::canWrite(const OutputPlan& plan, const std::string& checkpoint, bool part) {
     const OutputPolicy anywhere{".", true};
     bool all = true;
     const auto attempt = [&](const std::string& name, const OutputPolicy& policy, const SourcePlace& place) {
-        all &= OutputFile::open(name, policy, diagnostics_, place).has_value(); // whose destructor leaves no trace
+        all &= OutputFile::canBeWritten(name, policy, diagnostics_, place);
     };
     if (!settings_.statsFile.empty()) attempt(settings_.statsFile, anywhere, {});
     if (!checkpoint.empty()) attempt(checkpoint, anywhere, {});
@@ -136,7 +181,7 @@ bool Renderer::canWrite(const OutputPlan& plan, const std::string& checkpoint) {
         if (driver && !driver->writes) continue;
         const OutputPolicy policy{".", settings_.allowWrite || s.userFile};
         attempt(s.name, policy, s.place);
-        if (settings_.samples && &s == &plan.pictures.front()) attempt(sidecarName(s.name), policy, s.place);
+        if (part && &s == &plan.pictures.front()) attempt(sidecarName(s.name), policy, s.place);
     }
     return all;
 }
@@ -152,11 +197,21 @@ bool Renderer::resume(const std::string& checkpoint, const FilmDescription& want
         diagnostics_.report(
             Severity::Error, Rie::Consistency, {checkpoint},
             "the checkpoint belongs to another picture, scene or seed; it is left as it is, and nothing is rendered",
-            "render what it belongs to, name another file, or leave --resume away to begin anew");
+            "render what it belongs to, name another file, or give --restart instead of --resume to replace it");
     else
         diagnostics_.report(Severity::Warning, Rie::NoError, {checkpoint},
-                            "the checkpoint is left as it is, and nothing is rendered", "leave --resume away to begin anew");
+                            "the checkpoint is left as it is, and nothing is rendered",
+                            "--restart instead of --resume begins anew and replaces it");
     film.reset();
+    return false;
+}
+
+bool Renderer::mayReplace(const std::string& checkpoint) {
+    std::error_code e;
+    if (settings_.resume || settings_.restart || checkpoint.empty() || !std::filesystem::exists(checkpoint, e)) return true;
+    diagnostics_.report(Severity::Error, Rie::BadFile, {checkpoint},
+                        "the checkpoint is there already; it is left as it is, and nothing is rendered",
+                        "--resume goes on with it, --restart begins anew and replaces it");
     return false;
 }
 
@@ -167,6 +222,10 @@ void Renderer::render(std::shared_ptr<const scene::Frame> frame) {
     stats_.warnings = -diagnostics_.warnings();
     FrameStats told;
     const int before = outcome_.rendered;
+    const bool map = isMapPass(frame->options);
+    ++(map ? maps_ : pictures_);
+    RenderSettings all;
+    if (map) all = std::exchange(settings_, settingsOfMaps(settings_));
     try {
         renderFrame(std::move(frame), told);
     } catch (const LimitReached&) {
@@ -186,6 +245,7 @@ void Renderer::render(std::shared_ptr<const scene::Frame> frame) {
         diagnostics_.report(Severity::Severe, Rie::System, {}, std::string("this frame is given up: ") + e.what());
     }
     if (outcome_.rendered > before) closeFrame(std::move(told));
+    if (map) settings_ = std::move(all);
     parseMark_ = clockSeconds();
 }
 
@@ -229,11 +289,20 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
                                     std::string(option) + " needs the hider \"path\"; it is ignored");
         };
         only(settings_.samples.has_value(), "--samples");
+        only(settings_.part.has_value(), "--part");
         only(settings_.noise > 0, "--noise");
         only(settings_.seconds > 0, "--time");
         only(!settings_.checkpoint.empty(), "--checkpoint");
     }
-    SampleRange wanted = path && settings_.samples ? *settings_.samples : SampleRange{0, spp};
+    const std::optional<SampleRange> part = path ? partOf(settings_, spp) : std::nullopt;
+    if (part && part->begin == part->end) {
+        ++outcome_.refused;
+        diagnostics_.report(Severity::Error, Rie::Range, {},
+                            "--part: " + std::to_string(spp) + " samples cannot be split into " +
+                                std::to_string((*settings_.part)[1]) + " parts; this one is empty");
+        return;
+    }
+    const SampleRange wanted = part.value_or(SampleRange{0, spp});
     std::string file = settings_.pixel ? "" : fileFor(o, wanted.end - wanted.begin);
     OutputPlan plan = planOutputs(o, settings_, path, file, diagnostics_);
     if (plan.pictures.empty()) {
@@ -241,10 +310,16 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
         diagnostics_.report(Severity::Error, Rie::MissingData, {}, "no Display of this frame can be made; it is not rendered");
         return;
     }
-    const std::string checkpoint = checkpointFile();
-    if (!canWrite(plan, path ? checkpoint : "")) {
+    names_.nextWorld();
+    const std::string checkpoint = path ? checkpointFile(o) : "";
+    nameOutputs(plan, o);
+    if (!canWrite(plan, checkpoint, part.has_value())) {
         ++outcome_.refused;
         outcome_.outputFailed = true;
+        return;
+    }
+    if (!mayReplace(checkpoint)) {
+        ++outcome_.refused;
         return;
     }
 
@@ -323,7 +398,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
     stats_.height = camera.window().height();
     uint64_t nonFinite = 0;
     if (settings_.pixel) {
-        printPixel(job, o, wanted.end - wanted.begin, path);
+        printPixel(job, o, wanted, path);
         ++outcome_.rendered;
     } else if (path) {
         FilmDescription d;
@@ -332,7 +407,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
         d.window = camera.window();
         d.seed = settings_.seed;
         d.channels = filmChannels(plan);
-        if (settings_.samples || !settings_.checkpoint.empty()) {
+        if (part || !checkpoint.empty()) {
             char how[160];
             std::snprintf(how, sizeof how, "path depth %d clamp %.9g direct %d indirect %d unbiased %d local %d", t.maxDepth,
                           double(t.sampleClamp), t.direct, t.indirect, t.unbiased, t.localRoulette);
@@ -351,6 +426,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
         }
         if (!film) film = std::make_unique<Film>(d);
         film->metadata[kPicturesKey] = planToText(plan, picture);
+        if (settings_.part) film->metadata[kWholeKey] = rangeText({0, spp});
         if (std::string seen = imagerToText(*frame, t); !seen.empty()) film->metadata[kImagerKey] = std::move(seen);
         double saved = clockSeconds();
         auto keep = [&](Film& f, bool now = false) {
@@ -379,7 +455,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
                                     std::to_string(film->saturated()) + " values beyond 2^60 were cut there");
             if (settings_.stamp) addStamp(picture, settings_, renderSec);
             written(writeFilm(*film, plan, picture, imager, settings_.allowWrite, diagnostics_));
-            if (settings_.samples) {
+            if (part) {
                 const OutputSpec& first = plan.pictures.front();
                 outcome_.outputFailed |=
                     !savePart(*film, sidecarName(first.name), {".", settings_.allowWrite || first.userFile}, diagnostics_);
@@ -455,7 +531,7 @@ void Renderer::reportDropped(uint64_t count, int x, int y, int64_t sample) {
             (sample < 0 ? "" : "; the first is made by --pixel " + at + " --seed " + std::to_string(settings_.seed)));
 }
 
-void Renderer::printPixel(Job& job, const scene::Options& o, uint32_t spp, bool path) {
+void Renderer::printPixel(Job& job, const scene::Options& o, SampleRange wanted, bool path) {
     auto [x, y] = *settings_.pixel;
     const Window& w = job.camera.window();
     if (!w.contains(x, y)) {
@@ -464,7 +540,7 @@ void Renderer::printPixel(Job& job, const scene::Options& o, uint32_t spp, bool 
                                 ".." + std::to_string(w.x1 - 1) + ", " + std::to_string(w.y0) + ".." + std::to_string(w.y1 - 1));
         return;
     }
-    uint32_t begin = settings_.samples ? settings_.samples->begin : 0, end = begin + std::min(spp, 1u << 20);
+    uint32_t begin = wanted.begin, end = begin + std::min(wanted.end - wanted.begin, 1u << 20);
     if (settings_.pixelSample) {
         begin = *settings_.pixelSample;
         end = begin + 1;
@@ -504,6 +580,7 @@ void Renderer::makeTexture(const std::string& kind, const std::vector<std::strin
                            const SourcePlace& place) {
     double now = clockSeconds();
     stats_.parseSec += now - parseMark_;
+    passOverTexture(files);
     texture::MakeOptions m;
     m.policy.allowWrite = settings_.allowWrite;
     m.read = readPolicyOf(settings_.scenePath, settings_.allowRead);

@@ -2,6 +2,7 @@
 #pragma once
 #include "render/engine.h"
 #include "render/framestats.h"
+#include "render/outputnames.h"
 #include "render/progress.h"
 #include "render/settings.h"
 #include "render/stats.h"
@@ -26,6 +27,10 @@ public:
     void render(std::shared_ptr<const scene::Frame>) override;
     void makeTexture(const std::string& kind, const std::vector<std::string>& files, const scene::ParamList& args,
                      const SourcePlace&) override;
+    void passOver(const scene::Options&) override;
+    void passOverTexture(const std::vector<std::string>& files) override;
+    /// To be called after the last scene: says so when options about pictures found maps only, which they leave alone.
+    void finish();
 
     struct Outcome {
         int rendered = 0;          ///< frames of which something could be rendered
@@ -50,13 +55,17 @@ private:
                                          bool shaders) const;
     /// Says that samples were left out, and how to make the first of them again. `sample` < 0: it is not known.
     void reportDropped(uint64_t count, int x, int y, int64_t sample);
-    /// --checkpoint; from the second frame on with its number in it, so that each frame can be resumed.
-    std::string checkpointFile();
+    /// --checkpoint; frames have their number in it, and so do further worlds, so that each can be resumed.
+    std::string checkpointFile(const scene::Options&);
+    /// Gives each output of the frame a file that no other of this run has.
+    void nameOutputs(struct OutputPlan&, const scene::Options&);
     /// Whether the files of this frame can be written, as far as can be known before its first ray. Errors were reported.
-    bool canWrite(const struct OutputPlan&, const std::string& checkpoint);
+    bool canWrite(const struct OutputPlan&, const std::string& checkpoint, bool part);
+    /// Whether a checkpoint that is there may be replaced (--resume, --restart). False: an error was reported.
+    bool mayReplace(const std::string& checkpoint);
     /// What the checkpoint holds, if there is one. False: it is of something else or damaged (an error was reported).
     bool resume(const std::string& checkpoint, const FilmDescription& wanted, std::unique_ptr<Film>& film);
-    void printPixel(struct Job&, const scene::Options&, uint32_t spp, bool path);
+    void printPixel(struct Job&, const scene::Options&, SampleRange, bool path);
 
     RenderSettings settings_;
     Engine engine_;
@@ -68,8 +77,10 @@ private:
     RenderStats all_;                   ///< of the frames before
     std::vector<FrameStats> frames_;    ///< those that were rendered
     double parseMark_ = 0; ///< since when the reader is at work
-    int checkpoints_ = 0;  ///< frames that had one
-    int saved_ = 0;        ///< pictures made for -o or the save pattern
+    OutputNames names_;
+    int pictures_ = 0, maps_ = 0; ///< frames of either kind
+    int checkpoints_ = 0;         ///< worlds outside of frames that had one
+    int saved_ = 0;               ///< pictures of worlds outside of frames that were made for -o, or of the save pattern
 };
 
 } // namespace alpenglow::render

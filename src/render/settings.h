@@ -22,6 +22,7 @@ struct RenderSettings {
     double noise = 0;                         ///< stop at this relative error (path); 0 = off
     double seconds = 0;                       ///< stop after this time (path); 0 = off
     std::optional<SampleRange> samples;       ///< only these samples of every pixel (path); writes a part file beside the picture
+    std::optional<std::array<uint32_t, 2>> part; ///< {K, N}, 1 <= K <= N: the K-th of N equal parts of the samples, likewise
     uint64_t seed = 0;
     int threads = 0; ///< 0 = all cores
     int lanes = 16;
@@ -33,6 +34,7 @@ struct RenderSettings {
     std::string statsFile;                   ///< JSON; "" = none
     std::string checkpoint;                  ///< part file, written after passes; "" = none
     bool resume = false;                     ///< begin with what the checkpoint holds
+    bool restart = false;                    ///< replace a checkpoint that is there
     double checkpointSeconds = 30;           ///< least time between two writes
     std::optional<std::array<int, 2>> pixel; ///< --pixel: print radiances of this pixel instead of writing pictures
     std::optional<uint32_t> pixelSample;     ///< only this sample of it

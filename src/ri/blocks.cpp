@@ -198,7 +198,7 @@ void Interpreter::worldEnd(Block& b) {
     handles_ = std::move(b.handles);
     systems_ = std::move(b.systems);
     objectIndex_.clear();
-    if (!frameWanted()) return;
+    if (!frameWanted()) return consumer.passOver(frame->options);
     if (settings.overrides) settings.overrides(frame->options);
     consumer.render(std::move(frame));
 }

@@ -10,6 +10,36 @@ Interpreter::Interpreter(ReaderOptions o, scene::FrameConsumer& c, Diagnostics& 
     : reporter(d), settings(std::move(o)), consumer(c) {
     state.attributes = std::make_shared<scene::Attributes>();
     state.scoped = std::make_shared<NamedSystems>();
+    base_ = lasting();
+}
+
+Interpreter::Lasting Interpreter::lasting() const {
+    return {declarations, options,  state,           nRGB,   lights_,      handles_, systems_,
+            resources_,   objects_, inlineArchives_, abort_, errorsBefore_};
+}
+
+void Interpreter::nextScene() {
+    shared_ = true; // base_ holds the attributes too
+    if (worldSerial_ == baseWorld_) {
+        base_ = lasting();
+        return;
+    }
+    declarations = base_.declarations;
+    options = base_.options;
+    state = base_.state;
+    nRGB = base_.nRGB;
+    lights_ = base_.lights;
+    handles_ = base_.handles;
+    systems_ = base_.systems;
+    resources_ = base_.resources;
+    objects_ = base_.objects;
+    inlineArchives_ = base_.inlineArchives;
+    abort_ = base_.abort;
+    errorsBefore_ = abort_ ? reporter.errors() : 0;
+    archiveReads_ = 0;
+    objectCopies_ = replayedCalls_ = 0;
+    archivesRead_.clear();
+    baseWorld_ = worldSerial_;
 }
 
 scene::Attributes& Interpreter::attributes() {

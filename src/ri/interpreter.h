@@ -50,6 +50,9 @@ public:
     bool stopped() const { return aborted() || (settings.stop && *settings.stop); }
     bool aborted() const { return abort_ && reporter.errors() > errorsBefore_; }
 
+    /// RibReader::nextScene().
+    void nextScene();
+
     // --- for handlers ---
     Reporter reporter;
     ReaderOptions settings;
@@ -117,6 +120,22 @@ private:
         std::map<std::string, GraphicsState> resources; ///< Resource
         ObjectRef object;                               ///< Object
     };
+    /// What outlives a stream.
+    struct Lasting {
+        Declarations declarations;
+        scene::Options options;
+        GraphicsState state;
+        std::vector<double> nRGB;
+        std::vector<scene::Light> lights;
+        std::map<std::string, int> handles;
+        NamedSystems systems;
+        std::map<std::string, GraphicsState> resources;
+        std::map<std::string, ObjectRef> objects;
+        std::map<std::string, std::shared_ptr<std::vector<Call>>> inlineArchives;
+        bool abort = false;
+        int errorsBefore = 0;
+    };
+    Lasting lasting() const;
     struct Motion {
         std::vector<float> times;
         std::vector<Call> calls;
@@ -189,6 +208,8 @@ private:
     size_t objectCopies_ = 0, replayedCalls_ = 0;
     std::set<std::string> archivesRead_;
     bool replaying_ = false; ///< inside an archive that was read before
+    Lasting base_;           ///< what a scene begins with
+    size_t baseWorld_ = 0;   ///< worldSerial_ at that time
 };
 
 /// Checks and completes a primitive's variables (the guarantees in scene/scene.h). False (reported): do not draw it.

@@ -30,4 +30,6 @@ bool RibReader::readFile(const std::string& path) {
 bool RibReader::readMemory(std::string_view text, const std::string& name) { return in_->read(memorySource(text), name); }
 bool RibReader::readStream(std::istream& in, const std::string& name) { return in_->read(streamSource(in), name); }
 
+void RibReader::nextScene() { in_->interpreter.nextScene(); }
+
 } // namespace alpenglow::ri

@@ -39,6 +39,9 @@ public:
     bool readFile(const std::string& path); ///< "-" is standard input
     bool readMemory(std::string_view text, const std::string& name);
     bool readStream(std::istream& in, const std::string& name);
+    /// What is read next is a scene of its own. Where a world was read since the last call, the state goes back to what it was at
+    /// that call; else it stays, because what was read held options only, for all scenes behind it.
+    void nextScene();
 
 private:
     struct Inside;

@@ -185,6 +185,7 @@ struct Options {
     int colorSamples = 3;
     std::map<std::string, Param> values; ///< Option "class" "name", keyed "class:name"
     int frameNumber = 0;
+    bool inFrame = false; ///< between FrameBegin and FrameEnd
     Transform worldToCamera;
     /// Named coordinate systems: name -> matrix from that space to camera.
     std::map<std::string, Transform> cameraSpaces;
@@ -210,6 +211,9 @@ public:
     /// MakeTexture and its kin, in stream order. kind = request name.
     virtual void makeTexture(const std::string& kind, const std::vector<std::string>& files, const ParamList& args,
                              const SourcePlace&) = 0;
+    /// A world, or a Make request, of a frame that is not wanted: nothing is made.
+    virtual void passOver(const Options&) {}
+    virtual void passOverTexture(const std::vector<std::string>& /*files*/) {}
 };
 
 } // namespace alpenglow::scene

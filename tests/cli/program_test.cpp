@@ -146,14 +146,17 @@ TEST_F(Program, Statuses) {
 TEST_F(Program, ForeignPathsNeedPermission) {
     fs::create_directory(dir / "in");
     write("in/s.rib", std::string("Display \"") + (dir / "out.exr").string() + "\" \"openexr\" \"rgba\"\n" + kSphere);
+    write("in/abs.rib", std::string("Display \"") + (dir / "in/sub/abs.exr").string() + "\" \"openexr\" \"rgba\"\n" + kSphere);
     Result r;
     fs::path top = dir;
     dir = top / "in";
     r = run("render -q s.rib");
+    EXPECT_EQ(r.status, 5);
+    EXPECT_NE(read("err").find("--allow-write"), std::string::npos) << read("err");
+    EXPECT_EQ(run("render -q abs.rib").status, 0) << read("err"); // an absolute name below the current folder
     dir = top;
-    EXPECT_FALSE(has("out.exr"));
-    EXPECT_TRUE(has("in/out.exr"));
-    EXPECT_LE(r.status, 1);
+    EXPECT_FALSE(has("out.exr") || has("in/out.exr"));
+    EXPECT_TRUE(has("in/sub/abs.exr"));
     dir = top / "in";
     r = run("render -q --allow-write s.rib");
     dir = top;

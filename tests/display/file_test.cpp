@@ -11,16 +11,55 @@ TEST(OutputPath, StaysBelowTheRoot) {
     OutputPolicy p = s.policy();
     EXPECT_EQ(resolveOutputPath("a.tif", p, d), s / "a.tif");
     EXPECT_EQ(resolveOutputPath("sub/a.tif", p, d), s / "sub/a.tif");
-    EXPECT_EQ(d.warnings(), 0);
-    EXPECT_EQ(resolveOutputPath("/etc/passwd", p, d), s / "passwd");
-    EXPECT_EQ(resolveOutputPath("../../x.exr", p, d), s / "x.exr");
-    EXPECT_EQ(resolveOutputPath("a/../../y.exr", p, d), s / "y.exr");
-    EXPECT_EQ(resolveOutputPath("C:\\pictures\\z.tif", p, d), s / "z.tif");
-    EXPECT_EQ(resolveOutputPath("\\\\host\\share\\w.tif", p, d), s / "w.tif");
-    EXPECT_EQ(d.warnings(), 5);
-    EXPECT_EQ(resolveOutputPath("/etc/passwd", p, d), s / "passwd"); // said once
-    EXPECT_EQ(d.warnings(), 5);
-    EXPECT_EQ(d.errors(), 0);
+    EXPECT_EQ(resolveOutputPath(s / "abs.tif", p, d), s / "abs.tif"); // exporters write absolute names
+    EXPECT_EQ(resolveOutputPath(s / "new/abs.tif", p, d), s / "new/abs.tif");
+    fs::create_directories(s / "sub");
+    EXPECT_EQ(resolveOutputPath("sub/../b.tif", p, d), fs::canonical(s.dir).string() + "/b.tif");
+    EXPECT_TRUE(d.all().empty());
+    int errors = 0;
+    const std::string parent = s.dir.parent_path().string();
+    for (const std::string& outside : {std::string("/etc/passwd"), std::string("../../x.exr"), std::string("a/../../y.exr"),
+                                       std::string("C:\\pictures\\z.tif"), std::string("\\\\host\\share\\w.tif"),
+                                       std::string("..\\v.tif"), s.dir.string() + "x/a.tif", s / "../u.tif", parent + "/t.tif"}) {
+        EXPECT_FALSE(resolveOutputPath(outside, p, d)) << outside;
+        EXPECT_EQ(d.errors(), ++errors) << outside;
+        EXPECT_NE(d.all().back().message.find("outside"), std::string::npos) << d.all().back().message;
+        EXPECT_NE(d.all().back().hint.find("--allow-write"), std::string::npos) << outside;
+    }
+}
+
+TEST(OutputPath, AHiddenFolderThatHoldsTheRootIsNoObstacle) {
+    Scratch s;
+    fs::create_directories(s / ".cache/job");
+    Diagnostics d;
+    const OutputPolicy p{s / ".cache/job", false, -1};
+    EXPECT_EQ(resolveOutputPath(s / ".cache/job/a.tif", p, d), s / ".cache/job/a.tif");
+    EXPECT_FALSE(resolveOutputPath(s / ".cache/job/.a.tif", p, d));
+    EXPECT_EQ(d.errors(), 1);
+}
+
+TEST(OutputPath, NamesOfOneFile) {
+    Scratch s;
+    fs::create_directories(s / "sub");
+    fs::create_directory_symlink(s / "sub", s / "link");
+    for (const char* same : {"sub/a.exr", "./sub/a.exr", "sub/../sub/a.exr", "link/a.exr", "sub//a.exr"})
+        EXPECT_EQ(fileIdentity(s / same), fileIdentity(s / "sub/a.exr")) << same;
+    EXPECT_NE(fileIdentity(s / "sub/b.exr"), fileIdentity(s / "sub/a.exr"));
+    EXPECT_NE(fileIdentity(s / "a.exr"), fileIdentity(s / "sub/a.exr"));
+    EXPECT_EQ(fileIdentity("not-there/a.exr"), fileIdentity(fs::current_path().string() + "/not-there/a.exr"));
+}
+
+TEST(OutputPath, WhetherAFileCanBeWritten) {
+    Scratch s;
+    Diagnostics d;
+    EXPECT_TRUE(OutputFile::canBeWritten("a.tif", s.policy(), d));
+    EXPECT_EQ(s.files(), 0u);
+    OutputPolicy full = s.policy();
+    full.failAfterBytes = 100;
+    EXPECT_FALSE(OutputFile::canBeWritten("a.tif", full, d));
+    ASSERT_EQ(d.errors(), 1);
+    EXPECT_EQ(d.all()[0].code, Rie::DiskFull);
+    EXPECT_EQ(s.files(), 0u);
 }
 
 TEST(OutputPath, RefusesWhatHasNoName) {
@@ -64,8 +103,9 @@ TEST(OutputPath, SymbolicLinksDoNotLeadOut) {
     fs::create_directory_symlink(s / "outside", s / "root/link");
     Diagnostics d;
     OutputPolicy p{s / "root", false, -1};
-    EXPECT_EQ(resolveOutputPath("link/a.tif", p, d), s / "root/a.tif");
-    EXPECT_EQ(d.warnings(), 1);
+    EXPECT_FALSE(resolveOutputPath("link/a.tif", p, d));
+    EXPECT_FALSE(resolveOutputPath(s / "root/link/a.tif", p, d));
+    EXPECT_EQ(d.errors(), 2);
 }
 
 TEST(OutputFileTest, AppearsWholeOrNotAtAll) {

@@ -170,8 +170,9 @@ TEST_F(ProgramLimits, InterruptsWhileDicingAndImaging) {
 TEST_F(ProgramLimits, OutputsAreTriedBeforeTheFirstRay) {
     write("file", "a file, no folder");
     fs::create_directory(dir / "folder");
+    fs::create_directory(dir / "folder.png");
     write("s.rib", balls());
-    for (const char* bad : {"-o file/a.png", "-o folder", "-o a.png --stats file/s.json", "-o a.png --checkpoint file/c.part",
+    for (const char* bad : {"-o file/a.png", "-o folder.png", "-o a.png --stats file/s.json", "-o a.png --checkpoint file/c.part",
                             "-o a.png --samples 0:8 --checkpoint folder"}) {
         render("--hider path --spp 100000000 " + std::string(bad) + " s.rib");
         EXPECT_EQ(status, 5) << bad << ": " << err;
@@ -237,7 +238,7 @@ TEST_F(ProgramLimits, CheckpointsOfSomethingElse) {
         render("--hider path --checkpoint f.part --resume --spp " + std::to_string(spp) + " -o f.png two.rib");
         EXPECT_EQ(status, 0) << err;
     }
-    EXPECT_TRUE(fs::exists(dir / "f.part") && fs::exists(dir / "f.0002.part"));
+    EXPECT_TRUE(fs::exists(dir / "f.0001.part") && fs::exists(dir / "f.0002.part"));
 }
 
 TEST_F(ProgramLimits, TemporariesOfKilledRenders) {

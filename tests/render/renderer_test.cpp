@@ -1,6 +1,7 @@
 // The renderer over a scene of closed forms in the engine's place: an emitter whose colour is the place on the image plane.
 #include "display/imageio.h"
 #include "render/filmpicture.h"
+#include "render/partfile.h"
 #include "render/renderer.h"
 #include "render/team.h"
 #include <cmath>
@@ -347,14 +348,6 @@ TEST(Renderer, StopBeforeAPassWritesNothing) {
 }
 
 TEST(Renderer, NamesOfSeveralFrames) {
-    EXPECT_EQ(numberedName("a.exr", 7), "a.0007.exr");
-    EXPECT_EQ(numberedName("a.##.exr", 7), "a.07.exr");
-    EXPECT_EQ(numberedName("dir.x/a", 12345), "dir.x/a.12345");
-    // Frames of one file in displays of their own.
-    EXPECT_EQ(withFrame("fr%04d.tif", 7), "fr0007.tif");
-    EXPECT_EQ(withFrame("fr%d.tif", 12), "fr12.tif");
-    EXPECT_EQ(withFrame("a%.b%3d", 5), "a%.b  5");
-    for (const char* same : {"plain.tif", "50%", "%s", "%f.exr", "%99d", "%-3d", "a%0"}) EXPECT_EQ(withFrame(same, 5), same);
     Folder dir;
     RenderSettings s;
     s.output = dir / "a.exr";
@@ -364,8 +357,16 @@ TEST(Renderer, NamesOfSeveralFrames) {
         f->options.frameNumber = k;
         run.frame(f);
     }
-    EXPECT_TRUE(fs::exists(dir / "a.exr"));
+    EXPECT_FALSE(fs::exists(dir / "a.exr"));
+    EXPECT_TRUE(fs::exists(dir / "a.0001.exr"));
     EXPECT_TRUE(fs::exists(dir / "a.0002.exr"));
+    // Worlds outside of frames: the first has the name itself.
+    s.output = dir / "b.exr";
+    Session worlds(s);
+    for (int k = 0; k < 2; ++k) worlds.frame(frameOf("hidden", 4, 4));
+    EXPECT_TRUE(fs::exists(dir / "b.exr"));
+    EXPECT_TRUE(fs::exists(dir / "b.0002.exr"));
+    EXPECT_EQ(worlds.diags.all().size(), 0u);
 }
 
 // Published scenes show in a window what they write: Display "a.tif" "file" "rgba", Display "+a.tif" "framebuffer" "rgb".
@@ -386,7 +387,172 @@ TEST(Renderer, OneDisplayForEachFile) {
         EXPECT_EQ(read(dir / "a.tif").channels.size(), 4u) << order;
         EXPECT_EQ(run.diags.warnings(), order == 2) << order;
         EXPECT_EQ(fs::exists(dir / "b.tif"), order == 2);
+        // Two files of one name: neither is lost.
+        EXPECT_EQ(fs::exists(dir / "a.2.tif"), order == 2);
+        if (order == 2) EXPECT_EQ(read(dir / "a.2.tif").channels, std::vector<std::string>{"z"});
     }
+}
+
+// A shadow pass and a picture, as old scenes have them: what the command line says about pictures leaves the map as it is.
+TEST(Renderer, OptionsAboutPicturesLeaveMapsAlone) {
+    for (const char* hider : {"hidden", "path"}) {
+        Folder dir;
+        RenderSettings s;
+        s.allowWrite = true;
+        s.output = dir / "picture.exr";
+        s.width = 12;
+        s.height = 9;
+        s.gamma = 2;
+        s.hider = "path";
+        s.spp = 4;
+        Session run(s);
+        auto pass = frameOf(hider, 24, 16), picture = frameOf("hidden", 24, 16);
+        pass->options.displays = {{dir / "light.z", "zfile", "z", {}, {}}};
+        picture->options.displays = {{dir / "scene.tif", "file", "rgba", {}, {}}, {dir / "depth.exr", "openexr", "z", {}, {}}};
+        run.frame(pass);
+        EXPECT_EQ(run.renderer.stats().spp, 4u) << "PixelSamples 2 2 of the scene";
+        run.frame(picture);
+        run.renderer.finish();
+        EXPECT_EQ(run.diags.all().size(), 0u);
+        const display::Image map = read(dir / "light.z");
+        EXPECT_EQ(map.width, 24);
+        EXPECT_EQ(pass->options.hider, "hidden");
+        EXPECT_EQ(map.channels, std::vector<std::string>{"z"});
+        EXPECT_NEAR(map.pixel(3, 3)[0], 5, 1e-5);
+        EXPECT_EQ(read(dir / "picture.exr").width, 12);
+        EXPECT_EQ(picture->options.hider, "path");
+        EXPECT_EQ(read(dir / "depth.exr").width, 12) << "depth of the same camera";
+        EXPECT_FALSE(fs::exists(dir / "scene.tif"));
+    }
+}
+
+TEST(Renderer, ASceneOfMapsAloneSaysThatOptionsHaveNoEffect) {
+    Folder dir;
+    RenderSettings s;
+    s.allowWrite = true;
+    s.output = dir / "a.png";
+    s.hider = "path";
+    Session run(s);
+    auto f = frameOf("hidden", 4, 4);
+    f->options.displays = {{dir / "light.z", "shadow", "z", {}, {}}};
+    run.frame(f);
+    run.renderer.finish();
+    EXPECT_TRUE(fs::exists(dir / "light.z"));
+    EXPECT_FALSE(fs::exists(dir / "a.png"));
+    ASSERT_EQ(run.diags.all().size(), 1u);
+    EXPECT_EQ(run.diags.all()[0].message.rfind("-o, --hider: without effect", 0), 0u) << run.diags.all()[0].message;
+}
+
+TEST(Renderer, FramesNeverWriteEachOthersPictures) {
+    const auto frame = [](int number, const std::string& name, const char* type, const char* mode) {
+        auto f = frameOf("hidden", 4, 4);
+        f->options.inFrame = true;
+        f->options.frameNumber = number;
+        f->options.displays = {{name, type, mode, {}, {}}};
+        return f;
+    };
+    Folder dir;
+    RenderSettings s;
+    s.allowWrite = true;
+    {
+        Session run(s);
+        for (int k : {1, 2, 3}) run.frame(frame(k, dir / "a.exr", "openexr", "rgba"));
+        EXPECT_EQ(run.diags.warnings(), 2);
+    }
+    for (const char* name : {"a.exr", "a.0002.exr", "a.0003.exr"}) EXPECT_TRUE(fs::exists(dir / name)) << name;
+    // The names do not depend on which frames are wanted.
+    fs::remove_all(dir.path);
+    fs::create_directory(dir.path);
+    {
+        Session run(s);
+        for (int k : {1, 2}) run.renderer.passOver(frame(k, dir / "a.exr", "openexr", "rgba")->options);
+        run.frame(frame(3, dir / "a.exr", "openexr", "rgba"));
+    }
+    EXPECT_TRUE(fs::exists(dir / "a.0003.exr"));
+    EXPECT_FALSE(fs::exists(dir / "a.exr"));
+    // What a Make request reads, and maps, are made anew for each frame under the same name.
+    Session run(s);
+    for (int k : {1, 2}) {
+        run.frame(frame(k, dir / "seen.exr", "openexr", "rgba"));
+        run.renderer.passOverTexture({dir / "seen.exr", dir / "seen.tx"});
+        run.frame(frame(k, dir / "light.z", "zfile", "z"));
+        run.frame(frame(k, dir / "picture.####.exr", "openexr", "rgba"));
+    }
+    EXPECT_EQ(run.diags.all().size(), 0u);
+    for (const char* name : {"seen.exr", "light.z", "picture.0001.exr", "picture.0002.exr"})
+        EXPECT_TRUE(fs::exists(dir / name)) << name;
+    EXPECT_FALSE(fs::exists(dir / "seen.0002.exr") || fs::exists(dir / "light.0002.z"));
+}
+
+TEST(Renderer, PartsOfTheSamplesAreTheWhole) {
+    Folder dir;
+    const auto render = [&](const std::string& name, std::optional<std::array<uint32_t, 2>> part) {
+        RenderSettings s;
+        s.output = dir / name;
+        s.spp = 11;
+        s.part = part;
+        Session run(s);
+        run.frame(frameOf("path"));
+        return run.diags.errors();
+    };
+    EXPECT_EQ(render("whole.exr", {}), 0);
+    std::vector<std::string> parts;
+    for (uint32_t k = 1; k <= 4; ++k) {
+        parts.push_back(dir / ("p" + std::to_string(k) + ".exr"));
+        EXPECT_EQ(render("p" + std::to_string(k) + ".exr", std::array{k, 4u}), 0);
+    }
+    Diagnostics d;
+    EXPECT_EQ(mergePictures(parts, dir / "all.exr", {}, d), MergeResult::Done);
+    EXPECT_TRUE(d.all().empty());
+    EXPECT_TRUE(bytesOf(dir / "all.exr") == bytesOf(dir / "whole.exr"));
+    EXPECT_EQ(render("e.exr", std::array{1u, 12u}), 1) << "an empty part";
+    EXPECT_FALSE(fs::exists(dir / "e.exr"));
+    // A part that is missing: at the end too, because parts know the whole. Later it is added.
+    EXPECT_EQ(mergePictures({parts[0], parts[1], parts[2]}, dir / "three.exr", {}, d), MergeResult::Done);
+    ASSERT_EQ(d.all().size(), 1u);
+    EXPECT_EQ(d.warnings(), 1);
+    EXPECT_NE(d.all()[0].message.find("8:11 of 0:11"), std::string::npos) << d.all()[0].message;
+    Diagnostics late;
+    EXPECT_EQ(mergePictures({dir / "three.exr", parts[3]}, dir / "late.exr", {}, late), MergeResult::Done);
+    EXPECT_TRUE(late.all().empty());
+    EXPECT_TRUE(bytesOf(dir / "late.exr") == bytesOf(dir / "whole.exr"));
+}
+
+TEST(Renderer, MissingSamples) {
+    using Ranges = std::vector<SampleRange>;
+    EXPECT_EQ(missingSamples({{0, 8}}, {0, 8}), Ranges{});
+    EXPECT_EQ(missingSamples({{0, 8}, {12, 16}}, {0, 16}), (Ranges{{8, 12}}));
+    EXPECT_EQ(missingSamples({{2, 4}, {6, 8}}, {0, 10}), (Ranges{{0, 2}, {4, 6}, {8, 10}}));
+    EXPECT_EQ(missingSamples({{2, 20}}, {4, 8}), Ranges{});
+    EXPECT_EQ(missingSamples({{20, 30}}, {4, 8}), (Ranges{{4, 8}}));
+    EXPECT_EQ(rangeFromText("3:64"), (SampleRange{3, 64}));
+    for (const char* bad : {"", "3", "3:", "4:4", "5:4", "0:8x", "-1:4", "0:99999999999"})
+        EXPECT_FALSE(rangeFromText(bad)) << bad;
+}
+
+TEST(Renderer, ACheckpointIsNotReplacedUnasked) {
+    Folder dir;
+    const auto render = [&](uint32_t spp, bool resume, bool restart) {
+        RenderSettings s;
+        s.output = dir / "a.exr";
+        s.checkpoint = dir / "c.part";
+        s.spp = spp;
+        s.resume = resume;
+        s.restart = restart;
+        Session run(s);
+        run.frame(frameOf("path"));
+        return run.diags.errors();
+    };
+    EXPECT_EQ(render(4, false, false), 0);
+    const std::string first = bytesOf(dir / "c.part");
+    EXPECT_EQ(render(2, false, false), 1);
+    EXPECT_TRUE(bytesOf(dir / "c.part") == first);
+    EXPECT_EQ(render(6, true, false), 0);
+    EXPECT_EQ(render(2, false, true), 0);
+    Diagnostics d;
+    auto film = loadPart(dir / "c.part", d);
+    ASSERT_TRUE(film);
+    EXPECT_EQ(film->samplesPerPixel(), 2u);
 }
 
 TEST(Team, EveryTaskOnceAndExceptionsArrive) {

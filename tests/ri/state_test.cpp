@@ -353,6 +353,49 @@ TEST(Frames, OverridesHaveTheLastWord) {
     EXPECT_EQ(c->frames[1]->options.xres, 50); // each frame's own copy
 }
 
+TEST(Frames, TheConsumerHearsOfThoseThatAreNotWanted) {
+    struct Told : Collected {
+        std::vector<int> passed;
+        std::vector<std::string> files;
+        void passOver(const scene::Options& o) override { passed.push_back(o.frameNumber); }
+        void passOverTexture(const std::vector<std::string>& f) override { files.insert(files.end(), f.begin(), f.end()); }
+    } c;
+    ReaderOptions o;
+    o.frames = {2};
+    RibReader reader(o, c, c.diagnostics);
+    reader.readMemory(
+        "FrameBegin 1 WorldBegin WorldEnd MakeShadow \"a\" \"b\" FrameEnd FrameBegin 2 WorldBegin WorldEnd FrameEnd "
+        "FrameBegin 5 FrameEnd WorldBegin WorldEnd",
+        "t.rib");
+    ASSERT_EQ(c.frames.size(), 2u);
+    EXPECT_TRUE(c.frames[0]->options.inFrame);
+    EXPECT_FALSE(c.frames[1]->options.inFrame);
+    EXPECT_EQ(c.passed, std::vector<int>{1});
+    EXPECT_EQ(c.files, (std::vector<std::string>{"a", "b"}));
+}
+
+TEST(Frames, AFileWithAWorldLeavesNothingToTheNextScene) {
+    Collected c;
+    RibReader reader({}, c, c.diagnostics);
+    const auto scene = [&](const char* text) {
+        reader.nextScene();
+        return reader.readMemory(text, "scene.rib");
+    };
+    EXPECT_TRUE(scene("Format 77 88 1 Declare \"k\" \"color\"")); // options only: for all that follow
+    EXPECT_TRUE(scene("Color 1 0 0"));
+    const char* world = "Scale 2 2 2 LightSource \"l\" 1 WorldBegin Surface \"x\" \"k\" [1 2 3] Sphere 1 -1 1 360 WorldEnd";
+    EXPECT_TRUE(scene(("Format 5 5 1 Color 0 1 0 ErrorHandler \"abort\" " + std::string(world)).c_str()));
+    EXPECT_FALSE(scene("Sphere \"wrong\" WorldBegin WorldEnd")); // the abort of the scene before does not hold
+    EXPECT_TRUE(scene(world));
+    ASSERT_EQ(c.frames.size(), 3u) << c.messages();
+    EXPECT_EQ(c.frames[0]->options.xres, 5);
+    const scene::Frame& last = *c.frames[2];
+    EXPECT_EQ(last.options.xres, 77);
+    EXPECT_EQ(last.lights.size(), 1u);
+    EXPECT_EQ(last.options.worldToCamera.first().m[0][0], 2);
+    EXPECT_EQ(last.primitives.at(0)->attributes->color, Color(1, 0, 0));
+}
+
 TEST(Frames, StateStaysBetweenStreams) {
     Collected c;
     RibReader reader({}, c, c.diagnostics);

@@ -27,6 +27,7 @@ void declare(Interpreter& in, const Call& c) {
 void frameBegin(Interpreter& in, const Call& c) {
     if (!in.begin(BlockKind::Frame, c)) return;
     in.options.frameNumber = c.integer(0);
+    in.options.inFrame = true;
     if (in.settings.frameSeen) in.settings.frameSeen(in.options.frameNumber);
 }
 

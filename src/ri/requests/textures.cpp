@@ -6,7 +6,6 @@ namespace {
 
 /// Strings among the arguments go to `files` in order; numbers become parameters under the names of the signature.
 void make(Interpreter& in, const Call& c) {
-    if (!in.frameWanted()) return;
     std::vector<std::string> files;
     scene::ParamList params;
     for (size_t i = 0; i < c.arguments.size(); ++i) {
@@ -22,6 +21,7 @@ void make(Interpreter& in, const Call& c) {
         p.place = c.place;
         params.push_back(std::move(p));
     }
+    if (!in.frameWanted()) return in.consumer.passOverTexture(files);
     for (scene::Param& p : in.bind(c, Use::Other)) params.push_back(std::move(p));
     in.consumer.makeTexture(std::string(c.request->name), files, params, c.place);
 }

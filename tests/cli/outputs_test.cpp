@@ -1,0 +1,154 @@
+// No work and no picture is lost: names of files, several scenes, frames, checkpoints, parts.
+#include "command_folder.h"
+#include <nlohmann/json.hpp>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const char* const kWorld = R"(
+Projection "perspective" "fov" 40
+LightSource "distantlight" 1 "from" [0 0 0] "to" [0 0 1]
+WorldBegin
+Translate 0 0 5
+Surface "matte"
+Sphere 1 -1 1 360
+WorldEnd
+)";
+
+class Outputs : public alpenglow::cli::testing::CommandFolder {
+protected:
+    std::string err;
+    int go(const std::string& arguments) {
+        run(arguments, "2>err");
+        err = read("err");
+        return status;
+    }
+    int render(const std::string& arguments) { return go("render --progress none " + arguments); }
+    bool has(const std::string& name) const { return fs::exists(dir / name); }
+    bool says(const std::string& text) const { return err.find(text) != std::string::npos; }
+    std::string read(const std::string& name) const {
+        std::ifstream in(dir / name, std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+    void scene(const std::string& name, const std::string& options, const std::string& world = kWorld) const {
+        write(name, "Format 16 12 1\n" + options + "\n" + world);
+    }
+};
+
+} // namespace
+
+TEST_F(Outputs, DisplaysOfOneFileAreBothWritten) {
+    scene("s.rib", "Display \"f.exr\" \"openexr\" \"rgba\"\nDisplay \"+./f.exr\" \"openexr\" \"z\"");
+    EXPECT_EQ(render("s.rib"), 0) << err;
+    EXPECT_TRUE(has("f.exr") && has("f.2.exr"));
+    EXPECT_TRUE(says("s.rib:3") && says("s.rib:2")) << err; // both lines
+    EXPECT_FALSE(read("f.exr") == read("f.2.exr"));
+}
+
+TEST_F(Outputs, AbsoluteNamesOutsideAreRefusedBeforeRendering) {
+    scene("s.rib", "Display \"/x/rgb/f.exr\" \"openexr\" \"rgba\"\nDisplay \"+/x/depth/f.exr\" \"openexr\" \"z\"");
+    EXPECT_EQ(render("--hider path --spp 1000000 s.rib"), 5);
+    EXPECT_TRUE(says("s.rib:2") && says("s.rib:3") && says("--allow-write")) << err;
+    EXPECT_FALSE(has("f.exr"));
+}
+
+TEST_F(Outputs, EachFileIsASceneAndOptionsComeBefore) {
+    // Were the state kept, the second scene would see the inside of nothing: its camera would be turned twice.
+    scene("a.rib", "Display \"a.exr\" \"openexr\" \"rgba\"\nRotate 180 0 1 0\nRotate 180 0 1 0\nScale 1 1 1\nTranslate 0 0 3");
+    EXPECT_EQ(render("a.rib a.rib"), 0) << err;
+    ASSERT_TRUE(has("a.exr") && has("a.2.exr"));
+    EXPECT_TRUE(read("a.exr") == read("a.2.exr"));
+    write("options.rib", "Format 20 10 1\nHider \"path\"\nPixelSamples 1 1\n");
+    write("w.rib", kWorld);
+    EXPECT_EQ(render("-o o.exr options.rib w.rib a.rib w.rib"), 0) << err;
+    ASSERT_TRUE(has("o.exr") && has("o.0002.exr") && has("o.0003.exr"));
+    EXPECT_TRUE(read("o.exr") == read("o.0003.exr"));
+    EXPECT_FALSE(read("o.exr") == read("o.0002.exr"));
+    write("w.rib", "Format 20 10 1\nHider \"path\"\nPixelSamples 1 1\n" + std::string(kWorld));
+    EXPECT_EQ(render("-o both.exr w.rib"), 0) << err;
+    EXPECT_TRUE(read("o.exr") == read("both.exr")); // options reach all scenes behind them
+}
+
+TEST_F(Outputs, FramesCarryTheirNumbers) {
+    std::string frames = "Format 16 12 1\n";
+    for (int k : {1, 2, 3, 5}) frames += "FrameBegin " + std::to_string(k) + kWorld + "FrameEnd\n";
+    write("t.rib", frames);
+    EXPECT_EQ(render("-o h.png --frames 3,5 t.rib"), 0) << err;
+    EXPECT_TRUE(has("h.0003.png") && has("h.0005.png") && !has("h.png"));
+    EXPECT_EQ(render("-o p.png --frames 5 t.rib"), 0) << err; // the name does not depend on the list
+    EXPECT_TRUE(has("p.0005.png") && !has("p.png"));
+    EXPECT_EQ(render("-o 'q%02d.png' --frames 5 t.rib"), 0) << err;
+    EXPECT_EQ(render("-o 'q.###.png' --frames 5 t.rib"), 0) << err;
+    EXPECT_TRUE(has("q05.png") && has("q.005.png"));
+    EXPECT_EQ(render("-o r.png --frames 30 t.rib"), 3);
+    EXPECT_TRUE(says("not 30")) << err;
+    EXPECT_EQ(render("-o r.png --frames 5-7 t.rib"), 0);
+    EXPECT_TRUE(says("not 6-7") && has("r.0005.png")) << err;
+    EXPECT_EQ(render("--display png:d.png --frames 2 t.rib"), 0) << err;
+    EXPECT_TRUE(has("d.0002.png"));
+    scene("s.rib", "");
+    EXPECT_EQ(render("-o plain.png s.rib"), 0) << err;
+    EXPECT_TRUE(has("plain.png"));
+}
+
+TEST_F(Outputs, ShadowPassesKeepTheirFiles) {
+    write("v.rib", std::string("Format 16 16 1\nDisplay \"l.z\" \"zfile\" \"z\"\nWorldBegin Translate 0 0 5 Sphere 1 -1 1 360 "
+                               "WorldEnd\nMakeShadow \"l.z\" \"l.shd\"\nDisplay \"v.tif\" \"file\" \"rgb\"\n") +
+                       kWorld);
+    EXPECT_EQ(render("-o v.png --format 30x20 --gamma 2 --hider path --spp 4 v.rib"), 0) << err;
+    EXPECT_TRUE(has("l.z") && has("l.shd") && has("v.png"));
+    EXPECT_FALSE(has("v.tif") || has("v.0002.png"));
+    const std::string map = read("l.z");
+    EXPECT_EQ(render("v.rib"), 0) << err;
+    EXPECT_TRUE(read("l.z") == map); // the same map with and without the options
+    scene("z.rib", "Display \"only.z\" \"zfile\" \"z\"");
+    EXPECT_EQ(render("-o w.png z.rib"), 0);
+    EXPECT_TRUE(says("-o: without effect") && has("only.z") && !has("w.png")) << err;
+}
+
+TEST_F(Outputs, Checkpoints) {
+    scene("s.rib", "");
+    const std::string how = "--hider path --checkpoint c.ckp -o a.exr ";
+    EXPECT_EQ(render(how + "--spp 4 --resume s.rib"), 0) << err; // the line of a job that is started again and again
+    const std::string four = read("c.ckp");
+    EXPECT_EQ(render(how + "--spp 2 s.rib"), 3);
+    EXPECT_TRUE(says("--resume") && says("--restart")) << err;
+    EXPECT_EQ(render(how + "--spp 2 --seed 9 --resume s.rib"), 3);
+    EXPECT_TRUE(read("c.ckp") == four);
+    EXPECT_EQ(render(how + "--spp 8 --resume s.rib"), 0) << err;
+    EXPECT_EQ(render(how + "--spp 4 --restart s.rib"), 0) << err;
+    EXPECT_TRUE(read("c.ckp") == four);
+    EXPECT_EQ(render("--restart s.rib"), 2);
+    EXPECT_EQ(render(how + "--restart --resume s.rib"), 2);
+}
+
+TEST_F(Outputs, PartsAndGaps) {
+    scene("s.rib", "");
+    const std::string how = "--hider path --spp 10 ";
+    EXPECT_EQ(render(how + "-o whole.exr s.rib"), 0) << err;
+    for (int k : {1, 2, 3})
+        EXPECT_EQ(render(how + "--part " + std::to_string(k) + "/3 -o p" + std::to_string(k) + ".exr s.rib"), 0);
+    EXPECT_EQ(render(how + "--samples 3:6 -o r.exr s.rib"), 0) << err;
+    EXPECT_TRUE(read("p2.exr") == read("r.exr"));
+    EXPECT_EQ(go("merge p3.exr p1.exr p2.exr -o m.exr"), 0) << err;
+    EXPECT_EQ(err, "");
+    EXPECT_TRUE(read("m.exr") == read("whole.exr"));
+    EXPECT_EQ(go("merge --expect 0:10 p3.exr p1.exr p2.exr -o m.exr"), 0) << err;
+    EXPECT_EQ(go("merge p1.exr p3.exr -o gap.exr"), 0);
+    EXPECT_TRUE(says("warning") && says("3:6")) << err;
+    EXPECT_EQ(go("merge --expect 0:10 p1.exr p3.exr -o gap.exr"), 1);
+    EXPECT_TRUE(says("error") && says("3:6") && has("gap.exr")) << err;
+    EXPECT_EQ(go("merge --expect 0:12 p1.exr p2.exr p3.exr -o gap.exr"), 1);
+    EXPECT_TRUE(says("10:12")) << err;
+    EXPECT_EQ(go("merge --expect 0:8 p1.exr p2.exr p3.exr -o more.exr"), 1);
+    EXPECT_TRUE(says("more than")) << err;
+    EXPECT_EQ(go("merge p1.exr p3.exr -o gap.exr"), 0);
+    EXPECT_EQ(go("merge gap.exr p2.exr -o late.exr"), 0) << err;
+    EXPECT_TRUE(read("late.exr") == read("whole.exr"));
+    for (const char* bad :
+         {"--part 0/4", "--part 5/4", "--part 2", "--part 1/2x", "--part 1/2 --samples 0:4", "--part 1/2 --noise 0.1"}) {
+        EXPECT_EQ(render(std::string(bad) + " s.rib"), 2) << bad;
+    }
+    EXPECT_EQ(go("merge --expect 8 p1.exr -o m.exr"), 2);
+}

@@ -11,7 +11,7 @@ void addMaketx(CLI::App& app, int* status) {
     struct Arguments {
         std::vector<std::string> files;
         texture::MakeOptions options;
-        std::string mode, smode, tmode;
+        std::string mode, smode, tmode, output;
         float fov = 90;
         std::vector<float> width;
         bool latlong = false, cube = false, shadow = false;
@@ -19,6 +19,7 @@ void addMaketx(CLI::App& app, int* status) {
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("maketx", "Make textures, environment and shadow maps of pictures");
     c->add_option("files", a->files, "Picture and map; with --envcube six pictures (px nx py ny pz nz) and the map")->required();
+    c->add_option("-o", a->output, "The map, instead of naming it last")->type_name("FILE");
     auto* kinds = c->add_option_group("Kind", "What is made; a texture when none is given");
     kinds->add_flag("--envlatl", a->latlong, "A latitude-longitude environment map");
     kinds->add_flag("--envcube", a->cube, "A cube environment map");
@@ -41,6 +42,7 @@ void addMaketx(CLI::App& app, int* status) {
     c->callback([a, status] {
         Diagnostics diags(printer());
         texture::MakeOptions& o = a->options;
+        if (!a->output.empty()) a->files.push_back(a->output);
         size_t wanted = a->cube ? 7 : 2;
         if (a->files.size() != wanted)
             throw CLI::ValidationError("files",

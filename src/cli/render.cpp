@@ -11,6 +11,7 @@
 #include "ri/reader.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <memory>
 #include <sys/stat.h>
@@ -23,7 +24,7 @@ namespace {
 struct Arguments {
     render::RenderSettings settings;
     std::vector<std::string> scenes, searchPaths, displays, rib;
-    std::string format, crop, samples, part, frames, pixel, preset, memory, folder, progress = "auto";
+    std::string format, crop, samples, part, frames, pixel, preset, memory, folder, seed, progress = "auto";
     float gamma = 0;
     bool noDirect = false, noIndirect = false, watch = false, quiet = false, verbose = false;
     std::vector<int> frameList;
@@ -71,6 +72,11 @@ void checkLate(Arguments& a, const CLI::App& app) {
                 wrong("--pixel", "takes whole numbers");
         s.pixel = {int((*v)[0]), int((*v)[1])};
         if (v->size() == 3) s.pixelSample = uint32_t((*v)[2]);
+    }
+    s.seedByFrame = a.seed == "frame";
+    if (!a.seed.empty() && !s.seedByFrame) {
+        const auto [end, fault] = std::from_chars(a.seed.data(), a.seed.data() + a.seed.size(), s.seed);
+        if (fault != std::errc() || end != a.seed.data() + a.seed.size()) wrong("--seed", "takes a whole number or frame, not " + a.seed);
     }
     s.memoryLimit = defaultMemoryLimit();
     if (!a.memory.empty()) {
@@ -289,7 +295,11 @@ void addRender(CLI::App& app, int* status, const std::string& command) {
         ->type_name("K/N")
         ->excludes("--samples")
         ->group("Quality");
-    c->add_option("--seed", s.seed, "Seed of all random numbers; same seed, same bits")->type_name("N")->group("Quality");
+    c->add_option("--seed", a->seed,
+                  "Seed of all random numbers; same seed, same bits. frame: the number of each frame, so that the noise of an "
+                  "animation changes")
+        ->type_name("N|frame")
+        ->group("Quality");
     c->add_option("--max-depth", s.maxDepth, "Greatest number of bounces")
         ->check(wholeBetween(0, limits::kPathDepth))
         ->type_name("N")

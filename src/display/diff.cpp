@@ -7,12 +7,19 @@
 namespace alpenglow::display {
 
 std::optional<DiffResult> compareImages(const Image& a, const Image& b, Diagnostics& diags) {
-    auto size = [](const Image& m) {
-        return std::to_string(m.width) + "x" + std::to_string(m.height) + " with " + std::to_string(m.channels.size()) +
-               " channels";
-    };
-    if (a.width != b.width || a.height != b.height || a.channels.size() != b.channels.size()) {
+    if (a.width != b.width || a.height != b.height) {
+        auto size = [](const Image& m) { return std::to_string(m.width) + " x " + std::to_string(m.height); };
         diags.report(Severity::Error, Rie::Consistency, {}, "the pictures differ in size: " + size(a) + " and " + size(b));
+        return {};
+    }
+    if (a.channels.size() != b.channels.size()) {
+        auto names = [](const Image& m) {
+            std::string all;
+            for (const std::string& c : m.channels) all += (all.empty() ? "" : " ") + c;
+            return all;
+        };
+        diags.report(Severity::Error, Rie::Consistency, {},
+                     "the pictures have different channels: " + names(a) + " in the first, " + names(b) + " in the second");
         return {};
     }
     size_t n = a.channels.size(), pixels = size_t(a.width) * size_t(a.height);

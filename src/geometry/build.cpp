@@ -99,7 +99,7 @@ std::vector<ShapeRef> buildShapes(const scene::Frame& f, Diagnostics& diag, size
     auto sayMotion = [&](const scene::Primitive& p, bool moves) {
         if (moves || !p.motionKeys.empty() || p.toWorld.moves())
             once(diag, "motion", Rie::Unimplement, p.place,
-                 "motion is not yet drawn: moving primitives stand where they are at their first key");
+                 "primitives that move are drawn where they are at their first time: their motion is not drawn yet");
     };
     auto full = [&](const SourcePlace& place) {
         if (out.size() < most) return false;
@@ -113,7 +113,7 @@ std::vector<ShapeRef> buildShapes(const scene::Frame& f, Diagnostics& diag, size
     };
     for (const scene::PrimitiveRef& p : f.primitives) {
         if (!p) continue;
-        sayMotion(*p, f.options.worldToCamera.moves());
+        sayMotion(*p, false); // a moving camera is the renderer's: it moves
         add(p, p->attributes, p->toWorld.first() * camera, -1);
     }
     for (size_t i = 0; i < f.instances.size(); ++i) {

@@ -38,8 +38,8 @@ Hider hiderOf(const scene::Options& o, Diagnostics& diags) {
     if (o.hider == "path") return Hider::Path;
     if (o.hider == "raytrace") return Hider::Raytrace;
     if (o.hider != "hidden" && !o.hider.empty())
-        diags.report(Severity::Error, Rie::Incapable, {}, "Hider \"" + o.hider + "\" is not known; \"hidden\" is used",
-                     nearestName(o.hider, {"hidden", "raytrace", "path"}));
+        diags.report(Severity::Error, Rie::Incapable, o.hiderPlace, "there is no hider \"" + o.hider + "\": \"hidden\" is used",
+                     "the hiders are hidden, path and raytrace");
     return Hider::Hidden;
 }
 
@@ -268,6 +268,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
         return;
     }
     const scene::Options& o = frame->options;
+    if (settings_.seedByFrame) settings_.seed = uint64_t(std::max(0, o.frameNumber));
     const int team = Team::startable(settings_.threads);
     if (team < settings_.threads)
         diagnostics_.reportOnce("threads", {Severity::Warning, Rie::System, {},

@@ -24,6 +24,7 @@ struct RenderSettings {
     std::optional<SampleRange> samples;       ///< only these samples of every pixel (path); writes a part file beside the picture
     std::optional<std::array<uint32_t, 2>> part; ///< {K, N}, 1 <= K <= N: the K-th of N equal parts of the samples, likewise
     uint64_t seed = 0;
+    bool seedByFrame = false; ///< --seed frame: each frame has its number as its seed
     int threads = 0; ///< 0 = all cores
     int lanes = 16;
     int maxDepth = -1;

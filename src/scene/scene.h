@@ -180,6 +180,7 @@ struct Options {
     std::map<std::string, Param> displayChannels;          ///< by name: the declaration, no values
     std::map<std::string, ParamList> displayChannelParams; ///< by name: "quantize", "filter" etc. of that channel
     std::string hider = "hidden";
+    SourcePlace hiderPlace;
     ParamList hiderParams;
     float relativeDetail = 1;
     int colorSamples = 3;

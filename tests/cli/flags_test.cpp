@@ -145,3 +145,42 @@ TEST_F(Flags, ThreadsByDefault) {
     run("render -q --threads 2 --stats t.json -o a.png s.rib");
     EXPECT_EQ(Json::parse(text("t.json"))["threads"], 2);
 }
+
+TEST_F(Flags, SmallTruths) {
+    write("h.rib", std::string("Format 8 8 1\nHider \"pathtrace\"\n") + kScene);
+    run("render -q -o h.png h.rib");
+    EXPECT_TRUE(says("h.rib:2:1: error: there is no hider \"pathtrace\": \"hidden\" is used")) << errors();
+    EXPECT_TRUE(says("the hiders are hidden, path and raytrace")) << errors();
+    const std::string moving = "MotionBegin [0 1]\nTranslate 0 0 5\nTranslate 1 0 5\nMotionEnd\n";
+    write("c.rib", "Format 8 8 1\nShutter 0 1\n" + moving + "WorldBegin\nSphere 1 -1 1 360\nWorldEnd\n");
+    run("render --progress none -o c.png c.rib");
+    EXPECT_FALSE(says("motion")) << "a moving camera is drawn as it moves: " << errors();
+    write("p.rib", "Format 8 8 1\nShutter 0 1\nWorldBegin\n" + moving + "Sphere 1 -1 1 360\nWorldEnd\n");
+    run("render --progress none -o c.png p.rib");
+    EXPECT_TRUE(says("primitives that move are drawn where they are at their first time")) << errors();
+    run("render -q -o a.exr s.rib");
+    run("render -q -o b.png s.rib");
+    run("diff a.exr b.png");
+    EXPECT_TRUE(says("the pictures have different channels: r g b a in the first, r g b in the second")) << errors();
+    run("maketx b.png -o b.tx");
+    EXPECT_EQ(status, 0) << errors();
+    EXPECT_FALSE(text("b.tx").empty());
+}
+
+TEST_F(Flags, SeedOfTheFrame) {
+    std::string frames;
+    for (const char* n : {"5", "6"})
+        frames += std::string("FrameBegin ") + n + "\nDisplay \"f" + n + ".exr\" \"openexr\" \"rgba\"\nHider \"path\"\n" +
+                  kScene + "FrameEnd\n";
+    write("f.rib", frames);
+    run("render -q --spp 4 --seed frame --stats t.json f.rib");
+    const Json j = Json::parse(text("t.json"));
+    EXPECT_EQ(j["frames"][0]["seed"], 5);
+    EXPECT_EQ(j["frames"][1]["seed"], 6);
+    const std::string sixth = text("f6.exr");
+    run("render -q --spp 4 --seed 6 --frames 6 f.rib");
+    EXPECT_TRUE(text("f6.exr") == sixth);
+    run("render --seed x f.rib");
+    EXPECT_EQ(status, 2);
+    EXPECT_TRUE(says("--seed: takes a whole number or frame, not x")) << errors();
+}

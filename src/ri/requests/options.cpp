@@ -139,6 +139,7 @@ void displayChannel(Interpreter& in, const Call& c) {
 
 void hider(Interpreter& in, const Call& c) {
     in.options.hider = c.text(0);
+    in.options.hiderPlace = c.place;
     in.options.hiderParams = in.bind(c, Use::Other);
 }
 

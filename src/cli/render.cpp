@@ -8,12 +8,14 @@
 #include "display/imageio.h"
 #include "render/filmpicture.h"
 #include "render/renderer.h"
+#include "ri/lookahead.h"
 #include "ri/reader.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <memory>
+#include <set>
 #include <sys/stat.h>
 #include <thread>
 #include <unistd.h>
@@ -161,13 +163,16 @@ int renderOnce(const Arguments& a, const StopFlag* stop) {
     options.frameSeen = [&](int frame) { seen.push_back(frame); };
     options.overrides = [&](scene::Options& o) { renderer.override(o); };
     bool memory = false;
+    if (!renderer.canBegin()) return kOutputFailed;
     try {
         ri::RibReader reader(options, renderer, diags);
         for (const std::string& r : a.rib) reader.readMemory(r, "--rib");
         for (const std::string& s : a.scenes) {
             if (*stop) break;
             reader.nextScene();
-            renderer.setScene(s);
+            // Only what the command line says about pictures must tell them from what the scene reads itself.
+            renderer.setScene(s, render::pictureOptions(settings).empty() ? std::set<std::string>{}
+                                                                          : ri::picturesOfMakeRequests(s, options));
             reader.readFile(s);
         }
     } catch (const std::bad_alloc&) {

@@ -69,6 +69,7 @@ std::string extensionOf(const std::string& file) {
 bool isNumbered(const scene::Options& o) { return o.inFrame || o.frameNumber != 0; }
 
 bool isMap(const scene::Display& d) {
+    if (d.read) return true;
     const display::DriverDescriptor* driver = display::findDriver(d.type);
     if (driver == &display::zfileDriver) return true;
     return d.mode == "z" && driver != &display::framebufferDriver && !(driver && !driver->writes);

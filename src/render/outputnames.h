@@ -20,7 +20,8 @@ std::string extensionOf(const std::string& file);
 /// Whether a frame has a number: it is between FrameBegin and FrameEnd.
 bool isNumbered(const scene::Options&);
 
-/// Whether a display is a map for later frames and no picture to look at: of the types zfile, shadow, deepshad, or depth alone.
+/// Whether a display is a map for later frames and no picture to look at: of the types zfile, shadow, deepshad, depth alone, or
+/// read by a Make request.
 bool isMap(const scene::Display&);
 /// Whether all files of a frame are maps. The command line's options about pictures do not concern such a frame.
 bool isMapPass(const scene::Options&);

@@ -70,13 +70,23 @@ Renderer::Renderer(RenderSettings s, Engine e, Diagnostics& d, Progress& p, Prin
 
 Renderer::~Renderer() = default;
 
-void Renderer::setScene(const std::string& path) {
+void Renderer::setScene(const std::string& path, const std::set<std::string>& read) {
+    read_.clear();
+    for (const std::string& name : read) read_.insert(fileIdentity(name));
     settings_.scenePath = path == "-" ? "." : folderOf(path);
     settings_.sceneFile = path;
     parseMark_ = clockSeconds();
 }
 
+void Renderer::markRead(scene::Options& o) const {
+    for (scene::Display& d : o.displays) {
+        const std::string name = d.name.starts_with('+') ? d.name.substr(1) : d.name;
+        d.read = read_.contains(fileIdentity(withFrame(name, o.frameNumber)));
+    }
+}
+
 void Renderer::override(scene::Options& o) const {
+    if (!read_.empty()) markRead(o);
     if (isMapPass(o)) {
         if (o.hider == "path") o.hider = "hidden"; // depth needs no light
         return;
@@ -147,7 +157,9 @@ void Renderer::nameOutputs(OutputPlan& plan, const scene::Options& o) {
     }
 }
 
-void Renderer::passOver(const scene::Options& o) {
+void Renderer::passOver(const scene::Options& given) {
+    scene::Options o = given;
+    if (!read_.empty()) markRead(o);
     names_.nextWorld();
     const bool one = !settings_.output.empty() && !isMapPass(o);
     if (one) names_.take("display", numberedName(settings_.output, o.frameNumber), false, o, {}, nullptr);
@@ -162,9 +174,20 @@ void Renderer::passOverTexture(const std::vector<std::string>& files) {
 void Renderer::finish() {
     const std::string given = pictureOptions(settings_);
     if (maps_ == 0 || pictures_ > 0 || given.empty()) return;
-    diagnostics_.report(Severity::Warning, Rie::NoError, {},
-                        given + ": without effect; the scene makes depth and shadow maps only, and those stay as the scene says",
-                        "a Display of the mode \"rgba\" makes a picture");
+    diagnostics_.report(
+        Severity::Warning, Rie::NoError, {},
+        given + ": without effect; the scene makes maps only (depth, shadow, or what a Make request reads), and those "
+                "stay as the scene says",
+        "a Display of the mode \"rgba\" makes a picture");
+}
+
+bool Renderer::canBegin() {
+    const OutputPolicy anywhere{".", true};
+    bool all = true;
+    for (const std::string& name : {settings_.statsFile, settings_.checkpoint, settings_.pixel ? "" : settings_.output})
+        if (!name.empty() && name != "-") all &= OutputFile::canBeWritten(name, anywhere, diagnostics_);
+    outcome_.outputFailed |= !all;
+    return all;
 }
 
 bool Renderer::canWrite(const OutputPlan& plan, const std::string& checkpoint, bool part) {

@@ -8,6 +8,7 @@
 #include "render/stats.h"
 #include "scene/scene.h"
 #include <functional>
+#include <set>
 
 namespace alpenglow::render {
 
@@ -21,8 +22,12 @@ public:
 
     /// For ri::ReaderOptions::overrides: what the command line says about a frame's options.
     void override(scene::Options&) const;
-    /// The scene file that is read next; its folder is looked into for shaders and textures.
-    void setScene(const std::string& path);
+    /// The scene file that is read next; its folder is looked into for shaders and textures. `read`: pictures that its Make
+    /// requests read, as far as known.
+    void setScene(const std::string& path, const std::set<std::string>& read = {});
+    /// Whether the files that are known before a scene is read (-o, --checkpoint, --stats) can be written. False: an error was
+    /// reported.
+    bool canBegin();
 
     void render(std::shared_ptr<const scene::Frame>) override;
     void makeTexture(const std::string& kind, const std::vector<std::string>& files, const scene::ParamList& args,
@@ -50,6 +55,8 @@ private:
     void renderFrame(std::shared_ptr<const scene::Frame>, FrameStats&);
     /// Takes the figures of the frame just rendered over into those of the run.
     void closeFrame(FrameStats);
+    /// Says of each display whether a Make request reads it.
+    void markRead(scene::Options&) const;
     std::string fileFor(const scene::Options&, uint32_t spp);
     std::vector<std::string> searchPaths(const scene::Options&, const char* kind, const std::vector<std::string>& own,
                                          bool shaders) const;
@@ -72,6 +79,7 @@ private:
     Diagnostics& diagnostics_;
     Progress& progress_;
     Print print_;
+    std::set<std::string> read_; ///< fileIdentity() of setScene()'s pictures
     Outcome outcome_;
     RenderStats stats_;                 ///< of the frame being rendered
     RenderStats all_;                   ///< of the frames before

@@ -152,6 +152,7 @@ struct Display {
     std::string name = "ri.pic", type = "file", mode = "rgba";
     ParamList params;                  ///< "quantize", "exposure", "filter", "filterwidth", "dither" etc.
     SourcePlace place;
+    bool read = false; ///< a Make request of the scene reads its file
 };
 
 /// Frozen at WorldBegin.

@@ -53,6 +53,14 @@ TEST_F(Outputs, AbsoluteNamesOutsideAreRefusedBeforeRendering) {
     EXPECT_FALSE(has("f.exr"));
 }
 
+TEST_F(Outputs, FilesOfTheCommandLineAreTriedBeforeTheSceneIsRead) {
+    write("file", "a file, no folder");
+    for (const char* bad : {"-o file/a.png", "--stats file/s.json", "--checkpoint file/c.part"}) {
+        EXPECT_EQ(render(std::string(bad) + " none.rib"), 5) << bad;
+        EXPECT_TRUE(says("cannot write") && !says("none.rib")) << err;
+    }
+}
+
 TEST_F(Outputs, EachFileIsASceneAndOptionsComeBefore) {
     // Were the state kept, the second scene would see the inside of nothing: its camera would be turned twice.
     scene("a.rib", "Display \"a.exr\" \"openexr\" \"rgba\"\nRotate 180 0 1 0\nRotate 180 0 1 0\nScale 1 1 1\nTranslate 0 0 3");
@@ -99,9 +107,18 @@ TEST_F(Outputs, ShadowPassesKeepTheirFiles) {
     EXPECT_EQ(render("-o v.png --format 30x20 --gamma 2 --hider path --spp 4 v.rib"), 0) << err;
     EXPECT_TRUE(has("l.z") && has("l.shd") && has("v.png"));
     EXPECT_FALSE(has("v.tif") || has("v.0002.png"));
+    EXPECT_EQ(render("--pixel 8,8 v.rib"), 0) << err; // makes the map and no picture
+    EXPECT_FALSE(has("v.tif"));
     const std::string map = read("l.z");
     EXPECT_EQ(render("v.rib"), 0) << err;
     EXPECT_TRUE(read("l.z") == map); // the same map with and without the options
+    // A picture that the scene reads itself is no picture to look at either.
+    write("e.rib", std::string("Format 16 16 1\nDisplay \"e.tif\" \"file\" \"rgb\"\n") + kWorld +
+                       "MakeTexture \"e.tif\" \"e.tx\" \"black\" \"black\" \"box\" 1 1\nDisplay \"ve.tif\" \"file\" \"rgb\"\n" +
+                       kWorld);
+    EXPECT_EQ(render("-o ve.png --hider path --spp 1 e.rib"), 0) << err;
+    EXPECT_TRUE(has("e.tif") && has("e.tx") && has("ve.png"));
+    EXPECT_FALSE(has("ve.tif") || has("ve.0002.png"));
     scene("z.rib", "Display \"only.z\" \"zfile\" \"z\"");
     EXPECT_EQ(render("-o w.png z.rib"), 0);
     EXPECT_TRUE(says("-o: without effect") && has("only.z") && !has("w.png")) << err;

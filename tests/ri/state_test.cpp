@@ -1,6 +1,8 @@
 // Graphics state: stacks, transformations against closed forms, lights, objects, motion, frames (ri.md 1, 4, 5, 9).
 #include "base/limits.h"
 #include "collect.h"
+#include "ri/lookahead.h"
+#include <fstream>
 #include <numbers>
 
 using namespace alpenglow;
@@ -372,6 +374,25 @@ TEST(Frames, TheConsumerHearsOfThoseThatAreNotWanted) {
     EXPECT_FALSE(c.frames[1]->options.inFrame);
     EXPECT_EQ(c.passed, std::vector<int>{1});
     EXPECT_EQ(c.files, (std::vector<std::string>{"a", "b"}));
+}
+
+TEST(Frames, PicturesOfMakeRequestsAreKnownBeforehand) {
+    const std::string file = testing::TempDir() + "alpenglow-lookahead.rib";
+    const auto names = [&](const std::string& text) {
+        std::ofstream(file, std::ios::binary) << text;
+        auto found = picturesOfMakeRequests(file, {});
+        std::remove(file.c_str());
+        return found;
+    };
+    using Names = std::set<std::string>;
+    EXPECT_EQ(names("WorldBegin Sphere 1 -1 1 360 WorldEnd"), Names{});
+    EXPECT_EQ(names("FrameBegin 1 WorldBegin WorldEnd MakeShadow \"l.z\" \"l.shd\" FrameEnd\n# " + std::string(70000, 'x') +
+                    "\nMakeTexture \"a.tif\" \"a.tx\" \"black\" \"black\" \"box\" 1 1\n"
+                    "MakeCubeFaceEnvironment \"1\" \"2\" \"3\" \"4\" \"5\" \"6\" \"7\" 90 \"box\" 1 1"),
+              (Names{"l.z", "a.tif", "1", "2", "3", "4", "5", "6"}));
+    EXPECT_EQ(names(std::string(65534, ' ') + "MakeShadow \"l.z\" \"l.shd\""), Names{"l.z"}); // over the edge of a block
+    EXPECT_EQ(picturesOfMakeRequests("-", {}), Names{});
+    EXPECT_EQ(picturesOfMakeRequests("/not/there.rib", {}), Names{});
 }
 
 TEST(Frames, AFileWithAWorldLeavesNothingToTheNextScene) {

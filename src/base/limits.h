@@ -61,6 +61,7 @@ inline constexpr size_t kServerMessage = 32u << 20;              ///< bytes of o
 inline constexpr size_t kServerDocuments = 1000;                 ///< texts that an editor may have open in the language server
 inline constexpr int kExcerptColumns = 160;                     ///< of a line that a message shows; the rest is dots
 inline constexpr size_t kExcerptLine = 256u << 10;              ///< bytes of such a line that are looked at
+inline constexpr size_t kServerScene = 4u << 20; ///< bytes of a scene that the language server checks while it is edited
 inline constexpr int kServerDiagnostics = 500;                   ///< messages about one text that it is told
 inline constexpr int kFolderEntries = 100'000;                  ///< of a folder in which a file is sought whatever its capitals
 inline constexpr int kFrontErrors = 100;                       ///< errors reported for one RSL file

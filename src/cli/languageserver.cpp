@@ -16,7 +16,8 @@ namespace {
 
 // Of JSON-RPC and of the protocol.
 constexpr int kInvalidRequest = -32600, kMethodNotFound = -32601, kInvalidParams = -32602, kInternalError = -32603,
-              kNotInitialized = -32002;
+              kNotInitialized = -32002,
+              kRequestFailed = -32803;
 
 /// A wrong shape of parameters; becomes an error of the request.
 struct BadParams {};
@@ -110,6 +111,8 @@ std::vector<Json> LanguageServer::handle(const Json& message) {
             if (result.is_discarded()) out.push_back(error(id, kMethodNotFound, "unknown method"));
             else out.push_back({{"jsonrpc", "2.0"}, {"id", id}, {"result", std::move(result)}});
         }
+    } catch (const Refused& r) {
+        if (hasId) out.push_back(error(id, kRequestFailed, r.why));
     } catch (const BadParams&) {
         if (hasId) out.push_back(error(id, kInvalidParams, "the parameters are not as the protocol has them"));
     } catch (const Json::exception&) {
@@ -132,6 +135,12 @@ Json LanguageServer::request(const std::string& method, const Json& params) {
     if (method == "textDocument/documentSymbol") return symbols(params);
     if (method == "textDocument/signatureHelp") return signatureHelp(params);
     if (method == "textDocument/codeAction") return codeActions(params);
+    if (method == "textDocument/references") return references(params);
+    if (method == "textDocument/documentHighlight") return highlights(params);
+    if (method == "textDocument/prepareRename") return prepareRename(params);
+    if (method == "textDocument/rename") return rename(params);
+    if (method == "textDocument/semanticTokens/full") return semanticTokens(params);
+    if (method == "textDocument/formatting") return formatting(params);
     return Json(Json::value_t::discarded);
 }
 
@@ -161,6 +170,11 @@ Json LanguageServer::initialize(const Json& params) {
               {"hoverProvider", true},
               {"definitionProvider", true},
               {"documentSymbolProvider", true},
+              {"referencesProvider", true},
+              {"documentHighlightProvider", true},
+              {"renameProvider", {{"prepareProvider", true}}},
+              {"documentFormattingProvider", true},
+              {"semanticTokensProvider", {{"legend", tokenLegend()}, {"full", true}}},
               {"codeActionProvider", {{"codeActionKinds", {"quickfix"}}}},
               {"signatureHelpProvider", {{"triggerCharacters", {"(", ","}}}}}},
             {"serverInfo", {{"name", "alpenglow"}}}};
@@ -186,6 +200,8 @@ void LanguageServer::notification(const std::string& method, const Json& params)
         const Json& d = member(params, "textDocument");
         const std::string uri = text(d, "uri"), path = pathOf(uri);
         std::string content = text(d, "text");
+        const std::string language =
+            d.contains("languageId") && d["languageId"].is_string() ? d["languageId"].get<std::string>() : "";
         if (!documents_.count(uri) && documents_.size() >= limits::kServerDocuments) {
             pending_.push_back(notice("window/logMessage",
                                       {{"type", 1},
@@ -194,7 +210,7 @@ void LanguageServer::notification(const std::string& method, const Json& params)
             return;
         }
         documents_.erase(uri);
-        const auto at = documents_.emplace(uri, Document(path.empty() ? uri : path, std::move(content))).first;
+        const auto at = documents_.emplace(uri, Document(path.empty() ? uri : path, std::move(content), language == "rib")).first;
         changed(uri);
         includers(at->second.path());
     } else if (method == "textDocument/didChange") {
@@ -239,7 +255,7 @@ void LanguageServer::notification(const std::string& method, const Json& params)
             const auto at = documents_.find(from);
             if (at == documents_.end() || documents_.count(to)) continue;
             const std::string path = pathOf(to), before = at->second.path();
-            Document moved(path.empty() ? to : path, at->second.text());
+            Document moved(path.empty() ? to : path, at->second.text(), at->second.rib());
             documents_.erase(at);
             std::erase(changed_, from);
             documents_.emplace(to, std::move(moved));

@@ -1,6 +1,7 @@
 // The language server: messages of the Language Server Protocol in, messages out. It knows nothing of streams.
 #pragma once
 #include "cli/lspdocument.h"
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -36,6 +37,21 @@ private:
     Json symbols(const Json& params);
     Json signatureHelp(const Json& params);
     Json codeActions(const Json& params);
+    // lspnavigation.cpp
+    Json references(const Json& params);
+    Json highlights(const Json& params);
+    Json prepareRename(const Json& params);
+    Json rename(const Json& params);
+    /// Calls f(uri, text) for a text, the others that are open and what they include; each once, analysed.
+    void eachRelated(Document&, const std::function<void(const std::string& uri, const Document&)>&);
+    Json semanticTokens(const Json& params); // lsptokens.cpp
+    Json formatting(const Json& params);     // lspformat.cpp
+    // lsprib.cpp: the same questions about a scene
+    Json ribCompletion(const Document&, size_t at);
+    Json ribHover(const Document&, size_t at);
+    Json ribDefinition(const Document&, size_t at);
+    Json ribSymbols(const Document&) const;
+    std::vector<std::string> shaderFolders(const Document&) const;
     Json diagnosticsOf(const std::string& uri, Document&);
 
     Document* document(const Json& params); ///< null when it is not open; analysed
@@ -55,6 +71,19 @@ private:
     std::vector<Json> pending_;                 ///< to be sent before the next answer
     bool utf8_ = false, initialized_ = false, shutdown_ = false, ended_ = false;
 };
+
+/// A request that cannot be met, with the reason for the person who asked.
+struct Refused { std::string why; };
+
+/// Kinds and modifiers of semantic tokens, in the order of their numbers.
+nlohmann::json tokenLegend();
+/// Keywords of RSL.
+const std::vector<std::string>& languageKeywords();
+/// Is this a predefined variable of some kind of shader, or PI?
+bool isPredefined(const std::string& name);
+/// The text with every line indented by its depth and without blanks at the ends of lines. What a line says stays as it is.
+/// `tab`: columns of a step; `spaces`: made of spaces, else of tabs.
+std::string formatted(const std::string& text, size_t tab, bool spaces);
 
 /// "file:///a%20b.sl" to "/a b.sl"; other schemes give "".
 std::string pathOf(const std::string& uri);

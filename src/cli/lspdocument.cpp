@@ -77,6 +77,7 @@ void Document::replace(size_t begin, size_t end, const std::string& by) {
 void Document::analyse(const rsl::FrontOptions& options) {
     if (!stale_) return;
     stale_ = false;
+    if (rib_) return analyseScene();
     Diagnostics d;
     rsl::FrontOptions o = options;
     o.lint = true;
@@ -109,7 +110,7 @@ bool Document::includes(const std::string& path) const {
         for (const std::string& f : program_->dependencies)
             if (normalPath(f) == wanted) return true;
     // It may have been missing until now.
-    return text_.find(std::filesystem::path(path).filename().string()) != std::string::npos;
+    return !rib_ && text_.find(std::filesystem::path(path).filename().string()) != std::string::npos;
 }
 
 std::string_view Document::line(size_t n) const {
@@ -235,42 +236,113 @@ Origin Document::origin(const rsl::Place& p) const {
 
 bool Document::isHere(const rsl::Place& p) const { return origin(p).file == path_ && !path_.empty(); }
 
-Document::Use Document::useAt(size_t word) const {
-    Use use;
-    if (!program_) return use;
-    const auto end = wordAt(word);
-    if (!end) return use;
-    const std::string name = text_.substr(word, end->second - word);
-    const size_t n = lineOf(word);
-    const int line = int(n) + 1, column = int(word - startOf(n)) + 1;
-    const auto here = [&](const rsl::Place& p) { return p.line == line && p.column == column && isHere(p); };
+template <class F> void Document::eachUse(F&& f) const {
+    if (!program_) return;
+    const auto tell = [&](const rsl::Place& p, const std::string& name, const Use& use) {
+        if (isHere(p)) f(p.line, p.column, name, use);
+    };
+    const auto symbol = [&](const rsl::Symbol* s) {
+        Use use;
+        use.symbol = s;
+        tell(s->place, s->name, use);
+    };
     const auto expression = [&](const rsl::Expr& e) {
-        if (!here(e.place)) return;
-        if (e.kind == rsl::ExprKind::Variable && e.symbol && e.symbol->name == name) use.symbol = e.symbol;
-        if ((e.kind == rsl::ExprKind::ShadeopCall || e.kind == rsl::ExprKind::FunctionCall) && e.text == name) {
-            if (e.function && !e.shadeop) use.function = e.function;
-            if (e.shadeop) use.shadeop = e.shadeop, use.signature = e.signature;
+        Use use;
+        if (e.kind == rsl::ExprKind::Variable && e.symbol) {
+            use.symbol = e.symbol;
+            tell(e.place, e.symbol->name, use);
         }
+        if (e.kind != rsl::ExprKind::ShadeopCall && e.kind != rsl::ExprKind::FunctionCall) return;
+        if (e.function && !e.shadeop) use.function = e.function;
+        if (e.shadeop) use.shadeop = e.shadeop, use.signature = e.signature;
+        tell(e.place, e.text, use);
     };
     const auto statement = [&](const rsl::Stmt& s) {
         for (const auto& d : s.declarators)
-            if (d.symbol && here(d.symbol->place) && d.symbol->name == name) use.symbol = d.symbol;
+            if (d.symbol) symbol(d.symbol);
     };
     for (const auto& s : program_->shaders) {
-        if (here(s->place)) use.shader = s.get();
+        Use use;
+        use.shader = s.get();
+        tell(s->place, s->name, use);
         for (const auto& p : s->parameters) {
-            if (here(p.symbol->place)) use.symbol = p.symbol;
+            symbol(p.symbol);
             if (p.defaultValue) rsl::front::everyExpr(*p.defaultValue, expression);
         }
         if (s->body) rsl::front::everyStmt(*s->body, statement, expression);
     }
-    rsl::front::everyFunction(*program_, [&](const rsl::Function& f) {
-        if (here(f.place)) use.function = &f;
-        for (const rsl::Symbol* p : f.parameters)
-            if (here(p->place)) use.symbol = p;
-        if (f.body && isHere(f.body->place)) rsl::front::everyStmt(*f.body, statement, expression);
+    rsl::front::everyFunction(*program_, [&](const rsl::Function& g) {
+        Use use;
+        use.function = &g;
+        tell(g.place, g.name, use);
+        for (const rsl::Symbol* p : g.parameters) symbol(p);
+        if (g.body && isHere(g.body->place)) rsl::front::everyStmt(*g.body, statement, expression);
+    });
+}
+
+Document::Use Document::useAt(size_t word) const {
+    Use use;
+    const auto end = wordAt(word);
+    if (!program_ || !end) return use;
+    const std::string name = text_.substr(word, end->second - word);
+    const size_t n = lineOf(word);
+    const int line = int(n) + 1, column = int(word - startOf(n)) + 1;
+    eachUse([&](int l, int c, const std::string& of, const Use& u) {
+        // A function's own name may be "class->name".
+        if (l != line || c != column || (of != name && !u.function && !u.shader)) return;
+        if (u.symbol) use.symbol = u.symbol;
+        if (u.function) use.function = u.function;
+        if (u.shader) use.shader = u.shader;
+        if (u.shadeop) use.shadeop = u.shadeop, use.signature = u.signature;
     });
     return use;
+}
+
+std::map<size_t, Document::Use> Document::uses() const {
+    std::map<size_t, Use> all;
+    eachUse([&](int line, int column, const std::string& of, const Use& u) {
+        const size_t at = offset(size_t(line) - 1, size_t(std::max(column, 1)) - 1);
+        const auto word = wordAt(at);
+        if (word && word->first == at && (u.function || u.shader || text_.compare(at, word->second - at, of) == 0)) all[at] = u;
+    });
+    return all;
+}
+
+std::optional<std::pair<size_t, size_t>> Document::macro(const std::string& name) const {
+    for (size_t n = 0; n < lines(); ++n) {
+        const std::string_view l = line(n);
+        size_t i = l.find_first_not_of(" \t");
+        if (i == std::string_view::npos || l[i] != '#') continue;
+        i = l.find_first_not_of(" \t", i + 1);
+        if (i == std::string_view::npos || l.substr(i, 6) != "define") continue;
+        i = l.find_first_not_of(" \t", i + 6);
+        if (i == std::string_view::npos || l.substr(i, name.size()) != name) continue;
+        const char after = i + name.size() < l.size() ? l[i + name.size()] : ' ';
+        if (!std::isalnum(static_cast<unsigned char>(after)) && after != '_') return std::make_pair(n, i);
+    }
+    return std::nullopt;
+}
+
+std::vector<Document::Word> Document::words() const {
+    std::vector<Word> list;
+    bool directive = false, blank = true;
+    scan(text_, text_.size(), [&](size_t i, Where w) {
+        const char c = text_[i];
+        if (c == '\n') {
+            directive = directive && i > 0 && text_[i - 1] == '\\'; // it goes on
+            blank = true;
+        } else if (w == Where::Code) {
+            if (blank && c == '#') directive = true;
+            if (c != ' ' && c != '\t' && c != '\r') blank = false;
+            if (!isWord(c)) return true;
+            if (!list.empty() && list.back().end == i) ++list.back().end;
+            else list.push_back({i, i + 1, directive});
+        }
+        return true;
+    });
+    std::erase_if(
+        list, [&](const Word& w) { return std::isdigit(static_cast<unsigned char>(text_[w.begin])) || text_[w.begin] == '"'; });
+    return list;
 }
 
 Document::Around Document::around(size_t position) const {

@@ -3,6 +3,7 @@
 #pragma once
 #include "base/diagnostics.h"
 #include "rsl/front/ast.h"
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,7 +27,12 @@ struct CallAround {
 
 class Document {
 public:
-    Document(std::string path, std::string text) : path_(std::move(path)) { set(std::move(text)); }
+    /// A shader; a scene when `rib` is set, or by the end of its name (".rib").
+    Document(std::string path, std::string text, bool rib = false)
+        : path_(std::move(path)), rib_(rib || path_.ends_with(".rib") || path_.ends_with(".RIB")) {
+        set(std::move(text));
+    }
+    bool rib() const { return rib_; }
 
     const std::string& path() const { return path_; }
     const std::string& text() const { return text_; }
@@ -71,6 +77,16 @@ public:
         const rsl::Signature* signature = nullptr;
     };
     Use useAt(size_t word) const;
+    /// All of them, by the positions of their words.
+    std::map<size_t, Use> uses() const;
+    /// A name or keyword of the text outside of comments and strings.
+    struct Word {
+        size_t begin, end;
+        bool directive; ///< in a line that the preprocessor reads
+    };
+    std::vector<Word> words() const;
+    /// The line and column, from 0, of the name in its "#define".
+    std::optional<std::pair<size_t, size_t>> macro(const std::string& name) const;
     /// As useAt(), by the name alone: where the text around it cannot be understood, or a statement with an error in it is gone.
     Use named(size_t word) const;
     /// What stands in front of "->" or "." before a name: "this", "ray", "ray->start"; nothing where there is neither.
@@ -101,7 +117,11 @@ public:
     bool isHere(const rsl::Place&) const;
 
 private:
+    /// f(line, column, name, Use) for what this text declares and uses, columns in bytes; both from 1.
+    template <class F> void eachUse(F&& f) const;
     std::string path_, text_;
+    bool rib_ = false;
+    void analyseScene(); // lsprib.cpp
     std::vector<size_t> starts_;
     bool stale_ = true;
     std::unique_ptr<rsl::Program> program_;

@@ -19,12 +19,6 @@ namespace {
 enum CompletionKind { kMethod = 2, kFunction = 3, kField = 5, kVariable = 6, kProperty = 10, kKeyword = 14, kConstant = 21 };
 enum SymbolKind { kClass = 5, kProperty2 = 7, kFunctionSymbol = 12 };
 
-constexpr const char* kKeywords[] = {
-    "float",   "color",   "point",      "vector",     "normal",  "matrix",     "string", "void",      "uniform",  "varying",
-    "output",  "extern",  "if",         "else",       "while",   "for",        "break",  "continue",  "return",   "surface",
-    "light",   "volume",  "displacement", "imager",   "illuminance", "illuminate", "solar", "gather", "struct",   "class",
-    "public",  "constant", "shader"};
-
 Json markdown(std::string text) { return {{"kind", "markdown"}, {"value", std::move(text)}}; }
 std::string fenced(const std::string& code) { return "```rsl\n" + code + "\n```\n"; }
 
@@ -48,10 +42,23 @@ std::string globalText(const rsl::GlobalVariable& g) {
     return std::string(g.uniform ? "uniform " : "varying ") + rsl::toString(g.type) + " " + g.name;
 }
 
+std::string parameterText(const rsl::ShaderParameter& p) {
+    return declarationOf(*p.symbol) + (p.defaultText.empty() ? "" : " = " + p.defaultText);
+}
+
 std::string shaderText(const rsl::Shader& s) {
     std::string t = std::string(toString(s.kind)) + " " + s.name + "(";
-    for (size_t i = 0; i < s.parameters.size(); ++i) t += (i ? ";\n    " : "\n    ") + declarationOf(*s.parameters[i].symbol);
+    for (size_t i = 0; i < s.parameters.size(); ++i) t += (i ? ";\n    " : "\n    ") + parameterText(s.parameters[i]);
     return t + ")";
+}
+
+/// A parameter of a shader with its default, any other variable by its declaration.
+std::string variableText(const Document& d, const rsl::Symbol& v) {
+    if (d.program() && v.origin == rsl::Symbol::Origin::ShaderParameter)
+        for (const auto& s : d.program()->shaders)
+            for (const auto& p : s->parameters)
+                if (p.symbol == &v) return parameterText(p);
+    return declarationOf(v);
 }
 
 /// What stands here: as the compiler read it, or by its name where it read nothing.
@@ -91,23 +98,18 @@ std::vector<std::pair<size_t, size_t>> parameterRanges(const std::string& signat
     return list;
 }
 
-/// Where "#define NAME" stands in a text: its line from 0 and column from 0.
-std::optional<std::pair<size_t, size_t>> macro(const Document& d, const std::string& name) {
-    for (size_t n = 0; n < d.lines(); ++n) {
-        const std::string_view l = d.line(n);
-        size_t i = l.find_first_not_of(" \t");
-        if (i == std::string_view::npos || l[i] != '#') continue;
-        i = l.find_first_not_of(" \t", i + 1);
-        if (i == std::string_view::npos || l.substr(i, 6) != "define") continue;
-        i = l.find_first_not_of(" \t", i + 6);
-        if (i == std::string_view::npos || l.substr(i, name.size()) != name) continue;
-        const char after = i + name.size() < l.size() ? l[i + name.size()] : ' ';
-        if (!std::isalnum(static_cast<unsigned char>(after)) && after != '_') return std::make_pair(n, i);
-    }
-    return std::nullopt;
+} // namespace
+
+const std::vector<std::string>& languageKeywords() {
+    static const std::vector<std::string> words = {
+        "float",   "color",   "point",      "vector",     "normal",  "matrix",     "string", "void",      "uniform",  "varying",
+        "output",  "extern",  "if",         "else",       "while",   "for",        "break",  "continue",  "return",   "surface",
+        "light",   "volume",  "displacement", "imager",   "illuminance", "illuminate", "solar", "gather", "struct",   "class",
+        "public",  "constant", "shader"};
+    return words;
 }
 
-} // namespace
+bool isPredefined(const std::string& name) { return name == "PI" || globalNamed(name, std::nullopt); }
 
 Json LanguageServer::completion(const Json& params) {
     Json items = Json::array();
@@ -115,6 +117,7 @@ Json LanguageServer::completion(const Json& params) {
     const auto p = params.find("position");
     if (!d || p == params.end()) return items;
     const size_t at = position(*d, *p);
+    if (d->rib()) return ribCompletion(*d, at);
     const Document::Where where = d->where(at);
     if (where == Document::Where::Comment) return items;
     if (where == Document::Where::String) {
@@ -176,7 +179,7 @@ Json LanguageServer::completion(const Json& params) {
         offer(s.name, kFunction, (s.signatures.empty() ? s.name : s.signatures[0].text) + more, markdown(s.doc));
     }
     offer("PI", kConstant, "3.14159265");
-    for (const char* k : kKeywords) offer(k, kKeyword, "");
+    for (const std::string& k : languageKeywords()) offer(k, kKeyword, "");
     return items;
 }
 
@@ -184,6 +187,7 @@ Json LanguageServer::hover(const Json& params) {
     Document* d = document(params);
     const auto p = params.find("position");
     if (!d || p == params.end()) return nullptr;
+    if (d->rib()) return ribHover(*d, position(*d, *p));
     const auto word = d->wordAt(position(*d, *p));
     if (!word || d->where(word->first + 1) == Document::Where::Comment) return nullptr;
     const std::string name = d->text().substr(word->first, word->second - word->first);
@@ -227,7 +231,7 @@ Json LanguageServer::hover(const Json& params) {
             use.symbol->origin == rsl::Symbol::Origin::Global ? globalNamed(name, kind()) : nullptr;
         if (g) global(*g);
         else {
-            text = fenced(declarationOf(*use.symbol));
+            text = fenced(variableText(*d, *use.symbol));
             if (use.symbol->origin == rsl::Symbol::Origin::ShaderParameter) text += "\nparameter of the shader\n";
             else if (use.symbol->origin == rsl::Symbol::Origin::FunctionParameter) text += "\nparameter of the function\n";
         }
@@ -245,7 +249,7 @@ Json LanguageServer::hover(const Json& params) {
         text = manualMarkdown(*op);
     } else if (const auto* g = globalNamed(name, kind())) {
         global(*g);
-    } else if (const auto m = macro(*d, name)) {
+    } else if (const auto m = d->macro(name)) {
         text = fenced(std::string(d->line(m->first)));
     }
     if (text.empty()) return nullptr;
@@ -257,6 +261,7 @@ Json LanguageServer::definition(const Json& params) {
     const auto p = params.find("position");
     if (!d || p == params.end()) return nullptr;
     const size_t at = position(*d, *p);
+    if (d->rib()) return ribDefinition(*d, at);
     // On an #include: the file itself.
     const std::string_view line = d->line(d->lineOf(at));
     if (const size_t i = line.find_first_not_of(" \t"); i != std::string_view::npos && line[i] == '#') {
@@ -288,11 +293,11 @@ Json LanguageServer::definition(const Json& params) {
         for (const rsl::Function* f : list) all.push_back(location(d->origin(f->place), name.size()));
         return all;
     }
-    if (const auto m = macro(*d, name)) return location({d->path(), int(m->first) + 1, int(m->second) + 1}, name.size());
+    if (const auto m = d->macro(name)) return location({d->path(), int(m->first) + 1, int(m->second) + 1}, name.size());
     if (d->program())
         for (const std::string& f : d->program()->dependencies) {
             const Document other(f, textOf(f));
-            if (const auto m = macro(other, name)) return location({f, int(m->first) + 1, int(m->second) + 1}, name.size());
+            if (const auto m = other.macro(name)) return location({f, int(m->first) + 1, int(m->second) + 1}, name.size());
         }
     return nullptr;
 }
@@ -300,6 +305,7 @@ Json LanguageServer::definition(const Json& params) {
 Json LanguageServer::symbols(const Json& params) {
     Json list = Json::array();
     Document* d = document(params);
+    if (d && d->rib()) return ribSymbols(*d);
     if (!d || !d->program()) return list;
     const auto symbol = [&](const std::string& name, int kind, const std::string& detail, const rsl::Place& p, bool body) {
         const size_t at = d->offset(size_t(p.line) - 1, size_t(std::max(1, p.column)) - 1);

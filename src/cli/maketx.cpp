@@ -14,7 +14,7 @@ void addMaketx(CLI::App& app, int* status) {
         std::string mode, smode, tmode, output;
         float fov = 90;
         std::vector<float> width;
-        bool latlong = false, cube = false, shadow = false;
+        bool latlong = false, cube = false, shadow = false, srgb = false, linear = false;
     };
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("maketx", "Make textures, environment and shadow maps of pictures");
@@ -35,6 +35,8 @@ void addMaketx(CLI::App& app, int* status) {
         ->check(positive())
         ->type_name("S [T]")
         ->allow_extra_args(false);
+    auto* srgb = c->add_flag("--srgb", a->srgb, "The pictures are sRGB, whatever they declare: the map holds their light");
+    c->add_flag("--linear", a->linear, "The pictures are light or data, whatever they declare: the map is read as it is")->excludes(srgb);
     c->add_option("--fov", a->fov, "Field of view of the six pictures, degrees")
         ->check(between(1, 179))
         ->type_name("DEGREES");
@@ -54,6 +56,8 @@ void addMaketx(CLI::App& app, int* status) {
             o.swidth = a->width.front();
             o.twidth = a->width.back();
         }
+        using Colours = texture::MakeOptions::Colours;
+        o.colours = a->srgb ? Colours::Srgb : a->linear ? Colours::Light : Colours::Auto;
         o.policy.allowWrite = true;
         std::vector<std::string> in(a->files.begin(), a->files.end() - 1);
         const std::string& out = a->files.back();

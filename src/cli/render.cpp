@@ -27,7 +27,7 @@ struct Arguments {
     render::RenderSettings settings;
     std::vector<std::string> scenes, searchPaths, displays, rib;
     std::string format, crop, samples, part, frames, pixel, preset, memory, folder, seed, progress = "auto";
-    float gamma = 0;
+    std::string gamma;
     bool noDirect = false, noIndirect = false, watch = false, quiet = false, verbose = false;
     std::vector<int> frameList;
 };
@@ -96,7 +96,13 @@ void checkLate(Arguments& a, const CLI::App& app) {
             wrong("--display", "takes TYPE:NAME or TYPE:NAME:MODE, for example png:view.png or openexr:all.exr:rgba,N,z");
         s.displays.push_back(std::move(added));
     }
-    if (app.count("--gamma")) s.gamma = a.gamma;
+    s.srgb = a.gamma == "srgb" || a.gamma == "sRGB";
+    if (!a.gamma.empty() && !s.srgb) {
+        auto v = parseNumbers(a.gamma, 1);
+        if (!v || !(v->front() >= 0.01 && v->front() <= 100))
+            wrong("--gamma", std::string("takes a number from 0.01 to 100") + (v ? "" : ", or srgb") + ", not " + a.gamma);
+        s.gamma = float(v->front());
+    }
     s.direct = !a.noDirect;
     s.indirect = !a.noIndirect;
     if (const std::string fault = s.output.empty() ? "" : faultOfPictureName(s.output, true); !fault.empty()) wrong("-o", fault);
@@ -106,7 +112,7 @@ void checkLate(Arguments& a, const CLI::App& app) {
     if (s.restart && s.checkpoint.empty()) wrong("--restart", "needs --checkpoint FILE");
     if (a.preset == "slproject") {
         if (s.hider.empty()) s.hider = "path";
-        if (!s.gamma) s.gamma = 2.2f;
+        if (!s.gamma && !s.srgb) s.gamma = 2.2f;
         if (!app.count("--sample-clamp")) s.sampleClamp = 3;
         s.localRoulette = true;
         if (s.output.empty() && s.displays.empty()) s.savePattern = "Pathtraced_<spp>_<no>.png";
@@ -267,9 +273,10 @@ void addRender(CLI::App& app, int* status, const std::string& command) {
     c->add_option("--crop", a->crop, "Render only this part, in fractions of the picture from its upper left")
         ->type_name("X0,X1,Y0,Y1")
         ->group("Pictures");
-    c->add_option("--gamma", a->gamma, "Display gamma instead of Exposure's")
-        ->check(between(0.01, 100))
-        ->type_name("G")
+    c->add_option("--gamma", a->gamma,
+                  "Curve of the pictures instead of Exposure's or sRGB: a display gamma, 1 for none, or srgb (PNG, JPEG and TIFF of 8 "
+                  "bits; docs/colour.md)")
+        ->type_name("G|srgb")
         ->group("Pictures");
     c->add_option("--frames", a->frames, "Only these frames, for example 1,4-6")->type_name("LIST")->group("Pictures");
 

@@ -103,6 +103,7 @@ RenderSettings settingsOfMaps(const RenderSettings& s) {
     m.sampleClamp = none.sampleClamp;
     m.localRoulette = false;
     m.gamma.reset();
+    m.srgb = false;
     m.resume = false;
     m.pixel.reset();
     m.pixelSample.reset();
@@ -119,7 +120,7 @@ std::string pictureOptions(const RenderSettings& s) {
     add(s.width > 0, "--format");
     add(s.resolutionFactor != 1, "--resolution-factor");
     add(s.crop.has_value(), "--crop");
-    add(s.gamma.has_value(), "--gamma");
+    add(s.gamma.has_value() || s.srgb, "--gamma");
     add(!s.hider.empty(), "--hider");
     add(s.spp > 0, "--spp");
     add(s.pixel.has_value(), "--pixel");

@@ -1,8 +1,11 @@
 #include "render/outputs.h"
 #include "display/driver.h"
 #include "display/mode.h"
+#include "base/srgb.h"
+#include "render/curve.h"
 #include "render/imaging.h"
 #include "render/outputnames.h"
+#include "scene/numbers.h"
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -163,8 +166,8 @@ OutputSpec singleOutput(const std::string& file, const OutputBasis& basis, Diagn
     d.mode = looked ? "rgb" : "rgba";
     OutputPlan unused;
     OutputSpec s = specOf(d, {}, basis, unused, diags);
-    if (basis.path && looked && !basis.gammaGiven) s.gamma = 2.2f;
     s.userFile = true;
+    chooseCurve(s, basis);
     return s;
 }
 
@@ -203,7 +206,10 @@ OutputPlan planOutputs(const scene::Options& o, const RenderSettings& settings, 
     b.path = path;
     b.gain = std::isfinite(o.gain) ? o.gain : 1;
     b.gamma = settings.gamma ? *settings.gamma : o.gamma;
-    b.gammaGiven = settings.gamma || o.gamma != 1 || o.gain != 1;
+    b.gammaGiven = settings.gamma.has_value();
+    b.srgbAsked = settings.srgb;
+    b.exposureGiven = o.exposureSet || o.gain != 1 || o.gamma != 1;
+    b.ownNumbers = scene::keepsOwnNumbers(o, path);
     if (!(b.gamma > 0) || !std::isfinite(b.gamma)) {
         diags.report(Severity::Error, Rie::Range, {}, "Exposure: gamma must be positive; 1 is used");
         b.gamma = 1;
@@ -218,6 +224,7 @@ OutputPlan planOutputs(const scene::Options& o, const RenderSettings& settings, 
         if (settings.gamma && s.ownExposure && !isMap(d.display)) s.gamma = *settings.gamma;
         s.map = isMap(d.display);
         s.userFile = d.user;
+        if (!s.map) chooseCurve(s, b);
         if (!s.variables.empty()) plan.pictures.push_back(std::move(s));
     }
     leaveOutWindows(plan.pictures);
@@ -322,6 +329,7 @@ bool writeOutputs(const OutputPlan& plan, const PictureFacts& facts, const std::
         setup.z = s.z;
         setup.quantizeAsked = s.quantizeAsked;
         setup.metadata = facts.metadata;
+        if (s.srgb) setup.metadata["colorspace"] = "sRGB";
         setup.worldToCamera = facts.worldToCamera;
         setup.worldToNDC = facts.worldToNDC;
         setup.policy.allowWrite = allowWrite || s.userFile;
@@ -341,6 +349,8 @@ bool writeOutputs(const OutputPlan& plan, const PictureFacts& facts, const std::
                 ry[size_t(x)] = float(facts.window.y0 + y) + 0.5f;
             }
             if (imager && !imager(w, rx.data(), ry.data(), r, g, b, a)) return all;
+            if (s.srgb) // after the imager, which works on light
+                for (int i = 0; i < 3 * w; ++i) r[i] = srgbEncode(r[i]);
             for (int x = 0; x < w; ++x) {
                 const float* p = src + size_t(x) * stride;
                 float* q = out.pixel(x, y);
@@ -361,7 +371,10 @@ bool writeOutputs(const OutputPlan& plan, const PictureFacts& facts, const std::
                         break;
                     case Source::Engine: {
                         const float* e = p + 8 + firstFloat[size_t(v.engine)];
-                        for (size_t k = 0; k < n; ++k) *q++ = s.ownExposure && v.color ? expose(e[k], s.gain, s.gamma) : e[k];
+                        for (size_t k = 0; k < n; ++k) {
+                            const float x1 = s.ownExposure && v.color ? expose(e[k], s.gain, s.gamma) : e[k];
+                            *q++ = s.srgb && v.shown() ? srgbEncode(x1) : x1;
+                        }
                         break;
                     }
                     }

@@ -21,6 +21,8 @@ struct OutputVariable {
     bool typed = true; ///< false: nothing declared its type, so the engine's width decides the channels
     bool color = false;
     std::vector<std::string> channels;
+    /// Whether it is a colour to look at: Ci, and what is declared as a color.
+    bool shown() const { return source == Source::Ci || (source == Source::Engine && typed && color); }
 };
 
 /// One picture.
@@ -31,6 +33,8 @@ struct OutputSpec {
     SourcePlace place;
     float gain = 1, gamma = 1;
     bool ownExposure = false; ///< the display's own "exposure": then it holds for all colours, else for Ci alone
+    bool srgb = false;        ///< colours go through the curve of sRGB, last
+    std::string curve;        ///< for the user: which curve and why; "" where the picture is not made to be looked at
     PixelFilter filter;       ///< hidden and raytrace
     DepthFilter depth = DepthFilter::Min;
     display::Quantization rgba, z;
@@ -44,7 +48,9 @@ struct OutputSpec {
 /// What the whole frame decides about single pictures; kept in part files so that `merge -o` makes what `render -o` would.
 struct OutputBasis {
     float gain = 1, gamma = 1;
-    bool gammaGiven = false; ///< by Exposure or --gamma: PNGs of path then have no gamma of their own
+    bool gammaGiven = false, srgbAsked = false; ///< by --gamma
+    bool exposureGiven = false;                 ///< by Exposure
+    bool ownNumbers = false;                    ///< scene::keepsOwnNumbers()
     bool path = false;
     scene::Quantize rgba{255, 0, 255, 0.5f, false}, z{0, 0, 0, 0, false};
     PixelFilter filter;

@@ -47,7 +47,8 @@ SourcePlace place(const Json& j) { return {j.at(0).get<std::string>(), j.at(1).g
 std::string planToText(const OutputPlan& plan, const PictureFacts& facts) {
     const OutputBasis& b = plan.basis;
     Json j;
-    j["basis"] = {{"gain", b.gain},           {"gamma", b.gamma},   {"gammaGiven", b.gammaGiven}, {"path", b.path},
+    j["basis"] = {{"gain", b.gain},           {"gamma", b.gamma},   {"gammaGiven", b.gammaGiven}, {"srgbAsked", b.srgbAsked},
+                  {"exposureGiven", b.exposureGiven}, {"ownNumbers", b.ownNumbers}, {"path", b.path},
                   {"rgba", quantize(b.rgba)}, {"z", quantize(b.z)}, {"filter", filter(b.filter)}, {"depth", int(b.depth)}};
     j["outputs"] = plan.engineOutputs;
     j["widths"] = plan.engineWidths;
@@ -59,6 +60,8 @@ std::string planToText(const OutputPlan& plan, const PictureFacts& facts) {
                   {"gain", s.gain},
                   {"gamma", s.gamma},
                   {"ownExposure", s.ownExposure},
+                  {"srgb", s.srgb},
+                  {"curve", s.curve},
                   {"filter", filter(s.filter)},
                   {"depth", int(s.depth)},
                   {"rgba", quantization(s.rgba)},
@@ -103,6 +106,9 @@ std::optional<std::pair<OutputPlan, PictureFacts>> planFromText(const std::strin
         plan.basis.gain = b.at("gain").get<float>();
         plan.basis.gamma = b.at("gamma").get<float>();
         plan.basis.gammaGiven = b.at("gammaGiven").get<bool>();
+        plan.basis.srgbAsked = b.at("srgbAsked").get<bool>();
+        plan.basis.exposureGiven = b.at("exposureGiven").get<bool>();
+        plan.basis.ownNumbers = b.at("ownNumbers").get<bool>();
         plan.basis.path = b.at("path").get<bool>();
         plan.basis.rgba = quantize(b.at("rgba"));
         plan.basis.z = quantize(b.at("z"));
@@ -120,6 +126,8 @@ std::optional<std::pair<OutputPlan, PictureFacts>> planFromText(const std::strin
             s.gain = p.at("gain").get<float>();
             s.gamma = p.at("gamma").get<float>();
             s.ownExposure = p.at("ownExposure").get<bool>();
+            s.srgb = p.at("srgb").get<bool>();
+            s.curve = p.at("curve").get<std::string>();
             s.filter = filter(p.at("filter"));
             s.depth = depth(p.at("depth"));
             s.rgba = quantization(p.at("rgba"));

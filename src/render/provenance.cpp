@@ -20,6 +20,7 @@ std::string pixelOptions(const RenderSettings& s) {
     if (s.unbiased) add("--unbiased");
     if (s.localRoulette) add("--preset slproject");
     if (s.gamma) add(fmt::format("--gamma {}", *s.gamma));
+    if (s.srgb) add("--gamma srgb");
     if (!s.dialect.empty()) add("--dialect " + s.dialect);
     return t;
 }

@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "base/processors.h"
 #include "display/driver.h"
+#include "render/curve.h"
 #include "render/digest.h"
 #include "render/filmpicture.h"
 #include "render/imagertext.h"
@@ -418,6 +419,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
             if (fine) told.pictures.push_back({s.name, s.type, s.channels()});
     };
 
+    stats_.curve = curvesOf(plan);
     stats_.width = camera.window().width();
     stats_.height = camera.window().height();
     uint64_t nonFinite = 0;

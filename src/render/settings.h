@@ -31,6 +31,7 @@ struct RenderSettings {
     float sampleClamp = 0; ///< 0 = off
     bool direct = true, indirect = true, unbiased = false, localRoulette = false;
     std::optional<float> gamma;              ///< --gamma
+    bool srgb = false;                       ///< --gamma srgb
     std::string savePattern;                 ///< a name with <spp> and <no> in it, for when -o names none; "" = the displays
     std::string statsFile;                   ///< JSON; "" = none
     std::string checkpoint;                  ///< part file, written after passes; "" = none

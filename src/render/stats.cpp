@@ -42,6 +42,7 @@ std::string toJson(const RenderStats& s) {
     j["efficiency"] = finite(efficiency(s.noise.noiseRSE, s.renderSec));
     j["noiseQMC"] = finite(s.noise.noiseQMC);
     j["imageError"] = finite(s.noise.imageError);
+    j["curve"] = s.curve;
     j["threads"] = s.threads;
     j["peakMemoryBytes"] = s.peakMemoryBytes;
     j["parseSec"] = finite(s.parseSec);
@@ -88,6 +89,7 @@ std::string toTable(const RenderStats& s) {
                                    s.shading.kernels, s.shading.affineKernels, s.shading.suspendingKernels, s.shading.cacheHits));
     if (s.noise.known)
         row("noise", fmt::format("{:.5f}: the mean relative error of the light on surfaces (docs/noise.md)", s.noise.noise));
+    if (!s.curve.empty()) row("curve", s.curve);
     row("memory", bytesText(s.peakMemoryBytes) + " at most");
     if (s.nonFinite)
         row("dropped", fmt::format("{} samples that were not finite", grouped(s.nonFinite)));

@@ -174,6 +174,7 @@ struct Options {
     float pixelVariance = -1;          ///< < 0: unset
     PixelFilter filter;
     float gain = 1, gamma = 1;
+    bool exposureSet = false; ///< Exposure was called, also with 1 1
     ShaderRef imager;
     AttributesRef attributes;          ///< those at WorldBegin: what the imager sees. Null where no stream was read
     Quantize quantizeRgba{255, 0, 255, 0.5f, false}, quantizeZ{0, 0, 0, 0, false};

@@ -28,6 +28,14 @@ std::optional<display::Image> readPicture(const std::string& name, const MakeOpt
     if (image) {
         // A map has no place in a larger picture.
         image->originX = image->originY = image->fullWidth = image->fullHeight = 0;
+        if (o.colours == MakeOptions::Colours::Auto) {
+            if (image->bits == 8 && !image->floating && !image->metadata.contains("colorspace") && !image->metadata.contains("gamma"))
+                image->metadata["colorspace"] = kEightBits;
+        } else {
+            if (o.colours == MakeOptions::Colours::Srgb) toLight(*image);
+            image->metadata.erase("gamma");
+            image->metadata["colorspace"] = kLight;
+        }
     }
     return image;
 }
@@ -128,13 +136,19 @@ bool makeCubeFaceEnvironment(const std::vector<std::string>& pictures, const std
         if (height == 0) height = face->height;
         if (face->width != all.width || face->height != height || face->channels != all.channels)
             return refuse("\"" + name + "\" differs from the first picture in size or channels");
+        for (const char* key : {"colorspace", "gamma"})
+            if (textOf(*face, key) != textOf(all, key))
+                return refuse("\"" + name + "\" declares other colours than the first picture; --srgb or --linear says what they are");
         all.height += face->height;
         all.data.insert(all.data.end(), face->data.begin(), face->data.end());
     }
+    const std::string space = textOf(all, "colorspace"), gamma = textOf(all, "gamma");
     all.metadata = {{"textureformat", cubeFormat},
                     {"wrapmodes", "clamp,clamp"},
                     {"Software", "Alpenglow"},
                     {"fovcot", std::to_string(1 / std::tan(double(fov) * kPi / 360))}};
+    if (!space.empty()) all.metadata["colorspace"] = space;
+    if (!gamma.empty()) all.metadata["gamma"] = gamma;
     return writeMap(texture, all, o, diags);
 }
 
@@ -158,6 +172,7 @@ bool runMakeRequest(const std::string& request, const std::vector<std::string>& 
         string(3, o.twrap);
         string(4, o.filter);
         widths(0);
+        if (request == "MakeBump" && o.colours == MakeOptions::Colours::Auto) o.colours = MakeOptions::Colours::Light; // heights
         return makeTexture(strings[0], strings[1], o, diags);
     }
     if (request == "MakeLatLongEnvironment") {

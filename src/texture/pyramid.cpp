@@ -7,12 +7,6 @@
 namespace alpenglow::texture {
 namespace {
 
-constexpr std::array<float, 256> codeValues = [] {
-    std::array<float, 256> v{};
-    for (int i = 0; i < 256; ++i) v[size_t(i)] = float(i) / 255.0f;
-    return v;
-}();
-
 /// The two texels around a coordinate along one axis, and the weight of the second. -1: outside a black border.
 struct Pair {
     int i0, i1;
@@ -166,7 +160,8 @@ bool isReductionFilter(std::string_view n) {
     return false;
 }
 
-void Level::addBilinear(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* sum) const {
+void Level::addBilinear(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* sum,
+                        bool asLight) const {
     Pair x = texelsAt(s, width, swrap), y = texelsAt(t, height, twrap);
     const float w[4] = {(1 - x.f) * (1 - y.f), x.f * (1 - y.f), (1 - x.f) * y.f, x.f * y.f};
     const int xs[4] = {x.i0, x.i1, x.i0, x.i1}, ys[4] = {y.i0, y.i0, y.i1, y.i1};
@@ -179,7 +174,7 @@ void Level::addBilinear(float s, float t, Wrap swrap, Wrap twrap, int first, int
     }
     for (int c = 0; c < count; ++c) {
         float v[4];
-        for (int i = 0; i < 4; ++i) v[i] = codes.empty() ? values[at[i] + size_t(c)] : codeValues[codes[at[i] + size_t(c)]];
+        for (int i = 0; i < 4; ++i) v[i] = texel(at[i] + size_t(c), first + c, asLight);
         // Only texels that take part: 0 * infinity would spoil a neighbour.
         float r = 0;
         for (int i = 0; i < 4; ++i)
@@ -188,21 +183,21 @@ void Level::addBilinear(float s, float t, Wrap swrap, Wrap twrap, int first, int
     }
 }
 
-void Level::addSlopes(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* ds, float* dt) const {
-    const auto texel = [&](int x, int y, int c) {
+void Level::addSlopes(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* ds, float* dt,
+                      bool asLight) const {
+    const auto valueAt = [&](int x, int y, int c) {
         if (x < 0 || y < 0) return 0.0f;
-        const size_t at = (size_t(y) * size_t(width) + size_t(x)) * size_t(channels) + size_t(first + c);
-        return codes.empty() ? values[at] : codeValues[codes[at]];
+        return texel((size_t(y) * size_t(width) + size_t(x)) * size_t(channels) + size_t(first + c), first + c, asLight);
     };
     const Pair px = texelsAt(s, width, swrap), py = texelsAt(t, height, twrap);
     const Neighbours nx = neighboursAt(s, width, swrap), ny = neighboursAt(t, height, twrap);
     for (int c = 0; c < count; ++c) {
         const auto alongS = [&](int y) {
-            const float v[3] = {texel(nx.i[0], y, c), texel(nx.i[1], y, c), texel(nx.i[2], y, c)};
+            const float v[3] = {valueAt(nx.i[0], y, c), valueAt(nx.i[1], y, c), valueAt(nx.i[2], y, c)};
             return (1 - nx.f) * (v[1] - v[0]) + nx.f * (v[2] - v[1]);
         };
         const auto alongT = [&](int x) {
-            const float v[3] = {texel(x, ny.i[0], c), texel(x, ny.i[1], c), texel(x, ny.i[2], c)};
+            const float v[3] = {valueAt(x, ny.i[0], c), valueAt(x, ny.i[1], c), valueAt(x, ny.i[2], c)};
             return (1 - ny.f) * (v[1] - v[0]) + ny.f * (v[2] - v[1]);
         };
         ds[c] += weight * float(width) * ((1 - py.f) * alongS(py.i0) + py.f * alongS(py.i1));
@@ -210,14 +205,15 @@ void Level::addSlopes(float s, float t, Wrap swrap, Wrap twrap, int first, int c
     }
 }
 
-void Level::addCurves(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* ss, float* st, float* tt) const {
+void Level::addCurves(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* ss, float* st,
+                      float* tt, bool asLight) const {
     const float w = float(width), h = float(height), x = 0.5f / w, y = 0.5f / h;
     for (int c = 0; c < count; ++c) {
         float alongS = 0, across = 0, alongT = 0, other = 0;
-        addSlopes(s + x, t, swrap, twrap, first + c, 1, 1, &alongS, &other);
-        addSlopes(s - x, t, swrap, twrap, first + c, 1, -1, &alongS, &other);
-        addSlopes(s, t + y, swrap, twrap, first + c, 1, 1, &across, &alongT);
-        addSlopes(s, t - y, swrap, twrap, first + c, 1, -1, &across, &alongT);
+        addSlopes(s + x, t, swrap, twrap, first + c, 1, 1, &alongS, &other, asLight);
+        addSlopes(s - x, t, swrap, twrap, first + c, 1, -1, &alongS, &other, asLight);
+        addSlopes(s, t + y, swrap, twrap, first + c, 1, 1, &across, &alongT, asLight);
+        addSlopes(s, t - y, swrap, twrap, first + c, 1, -1, &across, &alongT, asLight);
         ss[c] += weight * w * alongS;
         st[c] += weight * h * across;
         tt[c] += weight * h * alongT;

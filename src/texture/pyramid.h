@@ -1,7 +1,9 @@
 // MIP-map levels: how they are stored, built and read.
 #pragma once
 #include "display/image.h"
+#include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -13,24 +15,44 @@ enum class Wrap { Black, Clamp, Periodic };
 std::optional<Wrap> wrapByName(std::string_view name);
 const char* nameOf(Wrap);
 
+/// A value for each of the 256 codes of a channel.
+using CodeTable = std::array<float, 256>;
+inline constexpr CodeTable kCodeValues = [] {
+    CodeTable v{};
+    for (int i = 0; i < 256; ++i) v[size_t(i)] = float(i) / 255.0f;
+    return v;
+}();
+
 /// One level. 8-bit pictures keep their codes at level 0 (a quarter of the memory; the values k/255 are the same floats);
-/// reduced levels are floats.
+/// reduced levels are floats. A map whose numbers are a curve of light has both readings: the numbers of the file, and light. Each level holds
+/// means of either, since the light of a mean is not the mean of light.
 struct Level {
     int width = 0, height = 0, channels = 0;
     std::vector<float> values;
     std::vector<uint8_t> codes; ///< when not empty, instead of values
-    size_t bytes() const { return values.size() * sizeof(float) + codes.size(); }
+    std::vector<float> light;   ///< the values as light; empty: where there are codes by `table`, else there is no difference
+    std::shared_ptr<const CodeTable> table; ///< the light of codes; null: there is no difference
+    uint32_t colours = 0;                   ///< bit c: `table` holds for channel c
+    size_t bytes() const { return (values.size() + light.size()) * sizeof(float) + codes.size(); }
+    /// Channel c of a texel; `at` counts all channels.
+    float texel(size_t at, int c, bool asLight) const {
+        if (codes.empty()) return asLight && !light.empty() ? light[at] : values[at];
+        return (asLight && table && (colours >> c & 1) ? *table : kCodeValues)[codes[at]];
+    }
 
     /// Adds weight times the bilinearly interpolated channels first, first+1, ... (count, all present) at (s, t) to `sum`. Texel
     /// centres are at ((i + 1/2) / width, (j + 1/2) / height); row 0 is t = 0, the top. s and t may be anything, also not finite.
-    void addBilinear(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* sum) const;
+    void addBilinear(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* sum,
+                     bool asLight = false) const;
     /// Adds weight times the slopes of the same channels by s and by t (change over the whole map) to ds[0..count) and dt[0..count):
     /// what addBilinear would give half a texel further, less what it would give half a texel before. So slopes go on from texel to
     /// texel without a jump; they are exact on ramps, and exactly 0 where the map is flat.
-    void addSlopes(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* ds, float* dt) const;
+    void addSlopes(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* ds, float* dt,
+                   bool asLight = false) const;
     /// Adds weight times the second derivatives by s twice, by s and t, by t twice: of addSlopes() in the same way, half a texel further
     /// less half a texel before. Exact on parabolas.
-    void addCurves(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* ss, float* st, float* tt) const;
+    void addCurves(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* ss, float* st,
+                   float* tt, bool asLight = false) const;
 };
 
 /// Kernel of the reduction, in texels of the level that is made. Widths are full widths and multiply the filter's own:

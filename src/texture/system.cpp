@@ -1,10 +1,12 @@
 // TextureSystem: finding, loading and keeping maps.
 #include "base/file.h"
+#include "base/srgb.h"
 #include "display/imageio.h"
 #include "texture/lookup.h"
 #include "texture/texture.h"
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace alpenglow::texture {
 
@@ -26,28 +28,68 @@ Level levelOf(const display::Image& m, bool codes) {
     return l;
 }
 
-/// Whether some colour value was changed: files that declare a gamma give linear colours; alpha and data stay.
-bool linearise(display::Image& m) {
-    auto find = [&](const char* key) {
-        auto i = m.metadata.find(key);
-        return i == m.metadata.end() ? std::string() : i->second;
-    };
-    bool srgb = find("colorspace") == "sRGB";
-    double gamma = srgb ? 1 : std::atof(find("gamma").c_str());
-    if (!srgb && (!(gamma > 0.01) || gamma > 100 || std::fabs(gamma - 1) < 0.01)) return false;
-    size_t n = m.channels.size();
-    for (size_t c = 0; c < n; ++c) {
-        const std::string& name = m.channels[c];
-        if (name != "r" && name != "g" && name != "b" && name != "y") continue;
-        for (size_t i = c; i < m.data.size(); i += n) {
-            double v = std::max(0.0, double(m.data[i]));
-            m.data[i] = float(srgb ? (v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4)) : std::pow(v, 1 / gamma));
-        }
+/// The curve by which the numbers of a picture are light. Empty: they are light.
+using Decode = std::function<float(float)>;
+
+/// What a file declares, else, when asked for, that of pictures of 8 bits.
+Decode decodeOf(const display::Image& m, bool undeclared) {
+    const std::string space = textOf(m, "colorspace");
+    if (space == "sRGB") return [](float v) { return srgbDecode(std::max(0.0f, v)); };
+    const double gamma = std::atof(textOf(m, "gamma").c_str());
+    if (gamma > 0.01 && gamma <= 100) {
+        if (std::fabs(gamma - 1) < 0.01) return {};
+        return [gamma](float v) { return float(std::pow(std::max(0.0, double(v)), 1 / gamma)); };
     }
-    return true;
+    // Maps of maketx are floats: they say what their picture was.
+    const bool eight = (m.bits == 8 && !m.floating && space.empty()) || space == kEightBits;
+    if (undeclared && eight && textOf(m, "textureformat") != "Shadow") return [](float v) { return srgbDecode(std::max(0.0f, v)); };
+    return {};
+}
+
+/// Channels that hold colours; alpha and data are numbers.
+uint32_t colourChannels(const display::Image& m) {
+    uint32_t bits = 0;
+    for (size_t c = 0; c < std::min<size_t>(m.channels.size(), 32); ++c)
+        for (const char* name : {"r", "g", "b", "y"}) bits |= uint32_t(m.channels[c] == name) << c;
+    return bits;
+}
+
+void decode(display::Image& m, const Decode& curve) {
+    const uint32_t colours = colourChannels(m);
+    const size_t n = m.channels.size();
+    for (size_t i = 0; i < m.data.size(); ++i)
+        if (i % n < 32 && (colours >> (i % n) & 1)) m.data[i] = curve(m.data[i]);
+}
+
+/// Adds to the levels of a texture those of its light.
+void addLight(Texture& tex, const display::Image& picture, const Decode& curve, Wrap swrap, Wrap twrap) {
+    Level& first = tex.levels.front();
+    if (!first.codes.empty()) {
+        CodeTable table;
+        for (size_t k = 0; k < table.size(); ++k) table[k] = curve(float(k) / 255.0f);
+        first.table = std::make_shared<const CodeTable>(table);
+        first.colours = colourChannels(picture);
+    }
+    if (tex.levels.size() == 1 && !first.codes.empty()) return;
+    display::Image light = picture;
+    light.levels.clear();
+    decode(light, curve);
+    if (first.codes.empty()) first.light = light.data;
+    size_t at = 1;
+    for (display::Image& l : reducedLevels(light, {}, swrap, twrap))
+        if (at < tex.levels.size()) tex.levels[at++].light = std::move(l.data);
 }
 
 } // namespace
+
+std::string textOf(const display::Image& m, const char* key) {
+    auto i = m.metadata.find(key);
+    return i == m.metadata.end() ? std::string() : i->second;
+}
+
+void toLight(display::Image& m) {
+    decode(m, [](float v) { return srgbDecode(std::max(0.0f, v)); });
+}
 
 size_t Texture::bytes() const {
     size_t n = 0;
@@ -68,10 +110,7 @@ std::optional<Filter> filterByName(std::string_view n) {
 
 std::shared_ptr<const Texture> makeTextureFrom(const display::Image& image, const TextureSettings& settings) {
     auto tex = std::make_shared<Texture>();
-    auto text = [&](const char* key) {
-        auto i = image.metadata.find(key);
-        return i == image.metadata.end() ? std::string() : i->second;
-    };
+    auto text = [&](const char* key) { return textOf(image, key); };
     tex->channels = image.channels;
     tex->bits = image.bits;
     tex->floating = image.floating;
@@ -92,6 +131,8 @@ std::shared_ptr<const Texture> makeTextureFrom(const display::Image& image, cons
         display::Image face = display::makeImage(image.width, image.height / 6, image.channels);
         face.bits = image.bits;
         face.floating = image.floating;
+        for (const char* key : {"colorspace", "gamma"})
+            if (!text(key).empty()) face.metadata[key] = text(key);
         for (int i = 0; i < 6; ++i) {
             std::copy_n(image.pixel(0, i * face.height), face.data.size(), face.data.data());
             tex->tiles[i] = makeTextureFrom(face, settings);
@@ -103,10 +144,12 @@ std::shared_ptr<const Texture> makeTextureFrom(const display::Image& image, cons
     // The levels that the file has; below the last of them (files may end at 2x1) they are made.
     const size_t stored = storedLevels(image);
     for (size_t i = 0; i < stored; ++i) tex->levels.push_back(levelOf(image.levels[i], false));
-    bool round = tex->kind == Kind::LatLong;
-    for (const display::Image& l : reducedLevels(stored ? image.levels[stored - 1] : image, {},
-                                                 round ? Wrap::Periodic : tex->swrap, round ? Wrap::Clamp : tex->twrap))
+    const bool round = tex->kind == Kind::LatLong;
+    const Wrap swrap = round ? Wrap::Periodic : tex->swrap, twrap = round ? Wrap::Clamp : tex->twrap;
+    for (const display::Image& l : reducedLevels(stored ? image.levels[stored - 1] : image, {}, swrap, twrap))
         tex->levels.push_back(levelOf(l, false));
+    if (settings.light)
+        if (const Decode curve = decodeOf(image, true)) addLight(*tex, image, curve, swrap, twrap);
     return tex;
 }
 
@@ -134,7 +177,8 @@ std::shared_ptr<const Texture> TextureSystem::load(const std::string& path, cons
         auto image = display::readImage(path, diags_, options);
         if (!image) return;
         try {
-            if (settings_.linearise && linearise(*image)) {
+            if (const Decode curve = settings_.linearise && !settings_.light ? decodeOf(*image, false) : Decode()) {
+                decode(*image, curve);
                 image->floating = true; // values are no longer codes
                 image->levels.clear();
             }

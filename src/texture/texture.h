@@ -55,6 +55,7 @@ struct LookupOptions {
     float swidth = 1, twidth = 1; ///< multiply the derivatives
     float sblur = 0, tblur = 0;   ///< as a fraction of the map
     Filter filter = Filter::Gaussian;
+    bool asLight = false; ///< colours of maps whose numbers are a curve of light: as light (TextureSettings::light)
     float fill = 0; ///< value of channels that the map does not have
     float lerp = 0; ///< accepted; levels are always interpolated, a switch would show as an edge
 };
@@ -128,7 +129,10 @@ struct TextureInfo {
 
 struct TextureSettings {
     Wrap plainWrap = Wrap::Clamp; ///< of pictures that state none
-    bool linearise = true;        ///< colours of files that declare a gamma (PNG) become linear on loading
+    bool linearise = true;        ///< colours of files that declare a gamma (PNG) become linear on loading, in every lookup
+    /// Instead of linearise: maps keep their numbers, and lookups that ask for light (LookupOptions::asLight) get it: of files that declare
+    /// sRGB or a gamma by that, of other pictures of 8 bits by sRGB. Alpha and depth are never changed.
+    bool light = false;
     LatLong latLong;
     ReadPolicy read{};            ///< where the names of maps may lead
 };

@@ -120,7 +120,9 @@ Color Engine::mapTowards(const TraceSite& t, const Vec3& w, float spread) const 
     const Vec3 at(transformVector(t.toMap, Vec3d(w)));
     const Basis b(at / length(at));
     float v[3] = {};
-    texture::environment(t.map, world_->textures_->latLong(), 0, 3, at, b.t * spread, b.u * spread, {}, v);
+    texture::LookupOptions colours;
+    colours.asLight = true;
+    texture::environment(t.map, world_->textures_->latLong(), 0, 3, at, b.t * spread, b.u * spread, colours, v);
     return {v[0], v[1], v[2]};
 }
 

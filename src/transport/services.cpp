@@ -26,6 +26,7 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
         const bool dynamic = (d.strings.empty() || d.strings[0].empty()) && !d.argKinds.empty() && d.argKinds[0] == rsl::ir::Kind::String;
         if (!dynamic && !name.empty()) h = world_->textures_->open(name, world_->settings_.texturePaths, place);
         const int count = d.resultKinds.empty() ? 0 : std::min(rsl::ir::components(d.resultKinds[0]), 3);
+        o.asLight = count == 3; // what is read as a float is data: a height, an opacity, a mask
         // rsl/passes/gradients.h; most lookups want none. First derivatives, then second ones.
         const int slopeCount = std::min(s.resultRowCount - count, 27), firsts = count * (s.kind == SiteKind::Texture ? 2 : 3);
         each([&](int lane, const ShadePoint&) {

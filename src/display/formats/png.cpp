@@ -102,7 +102,7 @@ bool decode(Reader& r, png_structp png, png_infop info) {
 struct Encoding {
     const Image* image;
     std::vector<int> index; ///< channels written
-    bool sixteen = false, quantised = false;
+    bool sixteen = false, quantised = false, srgb = false;
     std::vector<uint8_t> row;
     std::vector<png_text> texts;
 };
@@ -115,6 +115,7 @@ bool encode(Encoding& e, Writer& w, png_structp png, png_infop info) {
     png_set_write_fn(png, &w, writeBytes, flushBytes);
     png_set_IHDR(png, info, png_uint_32(m.width), png_uint_32(m.height), e.sixteen ? 16 : 8, types[e.index.size() - 1],
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    if (e.srgb) png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
     if (!e.texts.empty()) png_set_text(png, info, e.texts.data(), int(e.texts.size()));
     png_write_info(png, info);
     size_t n = e.index.size();
@@ -161,6 +162,8 @@ bool encodePng(OutputFile& out, const Image& m, const WriteOptions& o, Diagnosti
     e.index = pictureChannels(m, true);
     e.sixteen = o.sample != Sample::UInt8;
     e.quantised = o.quantised;
+    const auto space = m.metadata.find("colorspace");
+    e.srgb = space != m.metadata.end() && space->second == "sRGB";
     e.row.resize(size_t(m.width) * e.index.size() * (e.sixteen ? 2 : 1));
     sayLeftOut("PNG", m, e.index, out.path(), o, diags);
     for (auto& [key, value] : m.metadata) {

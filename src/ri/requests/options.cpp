@@ -261,6 +261,7 @@ std::vector<Request> optionRequests() {
         {"Exposure", "number gain; number gamma", k, kOptions, false, "Output = (gain * value) ^ (1 / gamma).", "1 2.2",
          [](Interpreter& in, const Call& c) {
              if (!within(in, c, c.number(1) > 0, "gamma must be positive")) return;
+             in.options.exposureSet = true;
              in.options.gain = c.real(0);
              in.options.gamma = c.real(1);
          }},

@@ -4,7 +4,8 @@
 
 namespace alpenglow {
 
-/// From light, 1 = white, to the value that is stored. Monotone and defined for all numbers: a straight line below 0.0031308, also below 0.
+/// From light, 1 = white, to the value that is stored. Monotone and defined for all numbers: a straight line below 0.0031308,
+/// also below 0.
 inline float srgbEncode(float light) {
     return light <= 0.0031308f ? 12.92f * light : float(1.055 * std::pow(double(light), 1 / 2.4) - 0.055);
 }

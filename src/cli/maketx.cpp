@@ -36,7 +36,8 @@ void addMaketx(CLI::App& app, int* status) {
         ->type_name("S [T]")
         ->allow_extra_args(false);
     auto* srgb = c->add_flag("--srgb", a->srgb, "The pictures are sRGB, whatever they declare: the map holds their light");
-    c->add_flag("--linear", a->linear, "The pictures are light or data, whatever they declare: the map is read as it is")->excludes(srgb);
+    c->add_flag("--linear", a->linear, "The pictures are light or data, whatever they declare: the map is read as it is")
+        ->excludes(srgb);
     c->add_option("--fov", a->fov, "Field of view of the six pictures, degrees")
         ->check(between(1, 179))
         ->type_name("DEGREES");

@@ -10,8 +10,8 @@ bool isLookedAt(const OutputSpec&);
 /// Sets srgb and curve of a picture whose exposure and quantiser are set.
 void chooseCurve(OutputSpec&, const OutputBasis&);
 
-/// For the table: the curves of all pictures, "sRGB" or "sRGB (a.png), none, by Exposure (b.tif)"; "none: the numbers are light" where no picture
-/// is looked at.
+/// For the table: the curves of all pictures, "sRGB" or "sRGB (a.png), none, by Exposure (b.tif)"; "none: the numbers are light"
+/// where no picture is looked at.
 std::string curvesOf(const OutputPlan&);
 
 } // namespace alpenglow::render

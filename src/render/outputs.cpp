@@ -1,7 +1,7 @@
 #include "render/outputs.h"
+#include "base/srgb.h"
 #include "display/driver.h"
 #include "display/mode.h"
-#include "base/srgb.h"
 #include "render/curve.h"
 #include "render/imaging.h"
 #include "render/outputnames.h"

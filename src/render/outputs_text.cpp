@@ -47,9 +47,17 @@ SourcePlace place(const Json& j) { return {j.at(0).get<std::string>(), j.at(1).g
 std::string planToText(const OutputPlan& plan, const PictureFacts& facts) {
     const OutputBasis& b = plan.basis;
     Json j;
-    j["basis"] = {{"gain", b.gain},           {"gamma", b.gamma},   {"gammaGiven", b.gammaGiven}, {"srgbAsked", b.srgbAsked},
-                  {"exposureGiven", b.exposureGiven}, {"ownNumbers", b.ownNumbers}, {"path", b.path},
-                  {"rgba", quantize(b.rgba)}, {"z", quantize(b.z)}, {"filter", filter(b.filter)}, {"depth", int(b.depth)}};
+    j["basis"] = {{"gain", b.gain},
+                  {"gamma", b.gamma},
+                  {"gammaGiven", b.gammaGiven},
+                  {"srgbAsked", b.srgbAsked},
+                  {"exposureGiven", b.exposureGiven},
+                  {"ownNumbers", b.ownNumbers},
+                  {"path", b.path},
+                  {"rgba", quantize(b.rgba)},
+                  {"z", quantize(b.z)},
+                  {"filter", filter(b.filter)},
+                  {"depth", int(b.depth)}};
     j["outputs"] = plan.engineOutputs;
     j["widths"] = plan.engineWidths;
     j["pictures"] = Json::array();

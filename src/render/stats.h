@@ -14,7 +14,7 @@ struct RenderStats {
     double renderSec = 0, cpuSec = 0; ///< wall and processor time of rendering
     uint64_t totalRays = 0;         ///< primary, reflected, refracted, internally reflected, sub-sampled and shadow rays
     NoiseFigures noise;
-    std::string curve;              ///< of the pictures (curve.h); "" = not known
+    std::string curve; ///< of the pictures (curve.h); "" = not known
     int threads = 0;
     uint64_t peakMemoryBytes = 0;
     double parseSec = 0, compileSec = 0, buildSec = 0;

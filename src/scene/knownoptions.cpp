@@ -112,7 +112,8 @@ constexpr OptionDescription kOptions[] = {
     {"statistics:stylesheet", "", "", "", Ignored, kPrman},
     {"statistics:xmlfilename", "", "", "", Ignored, "PRMan; --stats is the way here"},
     {"texture:colorspace", "string", "\"auto\"", "\"linear\"", Used,
-     "What colours of 8-bit maps are that declare nothing: srgb, linear, or auto: srgb under path and in scenes that do not keep their own numbers "
+     "What colours of 8-bit maps are that declare nothing: srgb, linear, or auto: srgb under path and in scenes that do not keep "
+     "their own numbers "
      "(colour.md)."},
     {"texture:enable_gaussian", "", "", "", Ignored, kPrman},
     {"texture:enable_lerp", "", "", "", Ignored, kPrman},

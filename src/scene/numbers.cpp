@@ -12,7 +12,8 @@ bool keepsOwnNumbers(const Options& o, bool path) {
     return std::any_of(o.displays.begin(), o.displays.end(), [](const Display& d) {
         std::string name = d.name;
         for (char& c : name) c = char(std::tolower(static_cast<unsigned char>(c)));
-        const bool later = std::any_of(std::begin(kLaterFormats), std::end(kLaterFormats), [&](const char* e) { return name.ends_with(e); });
+        const bool later =
+            std::any_of(std::begin(kLaterFormats), std::end(kLaterFormats), [&](const char* e) { return name.ends_with(e); });
         return (d.type == "file" || d.type == "framebuffer") && !later;
     });
 }

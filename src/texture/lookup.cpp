@@ -114,14 +114,19 @@ void filteredLookup(const Texture& tex, int first, int count, float s, float t, 
     for (int i = 0; i < probes.n; ++i) {
         float ps = s + probes.position[i] * dx, pt = t + probes.position[i] * dy;
         tex.levels[size_t(l)].addBilinear(ps, pt, swrap, twrap, first, count, probes.weight[i] * (1 - f), out, o.asLight);
-        if (f > 0) tex.levels[size_t(l + 1)].addBilinear(ps, pt, swrap, twrap, first, count, probes.weight[i] * f, out, o.asLight);
+        if (f > 0)
+            tex.levels[size_t(l + 1)].addBilinear(ps, pt, swrap, twrap, first, count, probes.weight[i] * f, out, o.asLight);
         if (curves) {
-            tex.levels[size_t(l)].addCurves(ps, pt, swrap, twrap, first, count, probes.weight[i] * (1 - f), dss, dst, dtt, o.asLight);
-            if (f > 0) tex.levels[size_t(l + 1)].addCurves(ps, pt, swrap, twrap, first, count, probes.weight[i] * f, dss, dst, dtt, o.asLight);
+            tex.levels[size_t(l)].addCurves(ps, pt, swrap, twrap, first, count, probes.weight[i] * (1 - f), dss, dst, dtt,
+                                            o.asLight);
+            if (f > 0)
+                tex.levels[size_t(l + 1)].addCurves(ps, pt, swrap, twrap, first, count, probes.weight[i] * f, dss, dst, dtt,
+                                                    o.asLight);
         }
         if (!slopes) continue;
         tex.levels[size_t(l)].addSlopes(ps, pt, swrap, twrap, first, count, probes.weight[i] * (1 - f), ds, dt, o.asLight);
-        if (f > 0) tex.levels[size_t(l + 1)].addSlopes(ps, pt, swrap, twrap, first, count, probes.weight[i] * f, ds, dt, o.asLight);
+        if (f > 0)
+            tex.levels[size_t(l + 1)].addSlopes(ps, pt, swrap, twrap, first, count, probes.weight[i] * f, ds, dt, o.asLight);
     }
     for (int i = 0; slopes && i < count; ++i) { // between infinite texels there is no slope
         ds[i] = finiteOr(ds[i], 0);

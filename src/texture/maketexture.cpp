@@ -29,7 +29,8 @@ std::optional<display::Image> readPicture(const std::string& name, const MakeOpt
         // A map has no place in a larger picture.
         image->originX = image->originY = image->fullWidth = image->fullHeight = 0;
         if (o.colours == MakeOptions::Colours::Auto) {
-            if (image->bits == 8 && !image->floating && !image->metadata.contains("colorspace") && !image->metadata.contains("gamma"))
+            if (image->bits == 8 && !image->floating && !image->metadata.contains("colorspace") &&
+                !image->metadata.contains("gamma"))
                 image->metadata["colorspace"] = kEightBits;
         } else {
             if (o.colours == MakeOptions::Colours::Srgb) toLight(*image);
@@ -138,7 +139,8 @@ bool makeCubeFaceEnvironment(const std::vector<std::string>& pictures, const std
             return refuse("\"" + name + "\" differs from the first picture in size or channels");
         for (const char* key : {"colorspace", "gamma"})
             if (textOf(*face, key) != textOf(all, key))
-                return refuse("\"" + name + "\" declares other colours than the first picture; --srgb or --linear says what they are");
+                return refuse("\"" + name +
+                              "\" declares other colours than the first picture; --srgb or --linear says what they are");
         all.height += face->height;
         all.data.insert(all.data.end(), face->data.begin(), face->data.end());
     }

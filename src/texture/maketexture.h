@@ -10,8 +10,8 @@ struct MakeOptions {
     std::string swrap = "black", twrap = "black"; ///< RISpec's default; lat-long maps: periodic, clamp
     std::string filter = "box";                   ///< of the reduction; widths multiply the filter's own (pyramid.h)
     float swidth = 1, twidth = 1;
-    /// What the numbers of pictures are, whatever they declare. Srgb: the map is made of their light. Auto: what they declare is kept, and that
-    /// they had 8 bits; so the map is read as its picture would be.
+    /// What the numbers of pictures are, whatever they declare. Srgb: the map is made of their light. Auto: what they declare is
+    /// kept, and that they had 8 bits; so the map is read as its picture would be.
     enum class Colours { Auto, Light, Srgb } colours = Colours::Auto;
     std::vector<std::string> searchPath{""}; ///< of the picture
     OutputPolicy policy;

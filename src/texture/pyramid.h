@@ -24,8 +24,8 @@ inline constexpr CodeTable kCodeValues = [] {
 }();
 
 /// One level. 8-bit pictures keep their codes at level 0 (a quarter of the memory; the values k/255 are the same floats);
-/// reduced levels are floats. A map whose numbers are a curve of light has both readings: the numbers of the file, and light. Each level holds
-/// means of either, since the light of a mean is not the mean of light.
+/// reduced levels are floats. A map whose numbers are a curve of light has both readings: the numbers of the file, and light.
+/// Each level holds means of either, since the light of a mean is not the mean of light.
 struct Level {
     int width = 0, height = 0, channels = 0;
     std::vector<float> values;
@@ -51,8 +51,8 @@ struct Level {
                    bool asLight = false) const;
     /// Adds weight times the second derivatives by s twice, by s and t, by t twice: of addSlopes() in the same way, half a texel further
     /// less half a texel before. Exact on parabolas.
-    void addCurves(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* ss, float* st,
-                   float* tt, bool asLight = false) const;
+    void addCurves(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* ss, float* st, float* tt,
+                   bool asLight = false) const;
 };
 
 /// Kernel of the reduction, in texels of the level that is made. Widths are full widths and multiply the filter's own:

@@ -42,7 +42,8 @@ Decode decodeOf(const display::Image& m, bool undeclared) {
     }
     // Maps of maketx are floats: they say what their picture was.
     const bool eight = (m.bits == 8 && !m.floating && space.empty()) || space == kEightBits;
-    if (undeclared && eight && textOf(m, "textureformat") != "Shadow") return [](float v) { return srgbDecode(std::max(0.0f, v)); };
+    if (undeclared && eight && textOf(m, "textureformat") != "Shadow")
+        return [](float v) { return srgbDecode(std::max(0.0f, v)); };
     return {};
 }
 

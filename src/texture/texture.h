@@ -130,8 +130,8 @@ struct TextureInfo {
 struct TextureSettings {
     Wrap plainWrap = Wrap::Clamp; ///< of pictures that state none
     bool linearise = true;        ///< colours of files that declare a gamma (PNG) become linear on loading, in every lookup
-    /// Instead of linearise: maps keep their numbers, and lookups that ask for light (LookupOptions::asLight) get it: of files that declare
-    /// sRGB or a gamma by that, of other pictures of 8 bits by sRGB. Alpha and depth are never changed.
+    /// Instead of linearise: maps keep their numbers, and lookups that ask for light (LookupOptions::asLight) get it: of files
+    /// that declare sRGB or a gamma by that, of other pictures of 8 bits by sRGB. Alpha and depth are never changed.
     bool light = false;
     LatLong latLong;
     ReadPolicy read{};            ///< where the names of maps may lead

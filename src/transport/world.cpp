@@ -88,7 +88,8 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
         w->maxDepth_ = int(std::clamp(double(i->second.numbers[0]), -1.0, double(limits::kPathDepth))); // what no int holds, too
     if (settings.maxDepth >= 0) w->maxDepth_ = settings.maxDepth;
     w->maxDepth_ = std::min(w->maxDepth_, limits::kPathDepth);
-    w->textures_ = std::make_unique<texture::TextureSystem>(d, texture::TextureSettings{.light = scene::readsMapsAsLight(o, path, d), .read = settings.read});
+    w->textures_ = std::make_unique<texture::TextureSystem>(
+        d, texture::TextureSettings{.light = scene::readsMapsAsLight(o, path, d), .read = settings.read});
     rsl::ShaderCompiler::Settings cs;
     cs.cacheDirectory = settings.cacheDirectory;
     cs.dialect = settings.dialect;

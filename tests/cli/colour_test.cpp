@@ -39,12 +39,15 @@ protected:
         o.policy = {dir, true};
         Diagnostics d;
         ASSERT_TRUE(display::writeImage("pic.png", m, o, d));
-        write("show.sl", "surface show(string map = \"\"; float number = 0) { color c = Cs; float f = 0; if (map != \"\") c = texture(map, "
-                         "s, t); if (number > 0) { f = texture(map, s, t); c = f; } Ci = c; Oi = 1; }\n");
+        write("show.sl",
+              "surface show(string map = \"\"; float number = 0) { color c = Cs; float f = 0; if (map != \"\") c = texture(map, "
+              "s, t); if (number > 0) { f = texture(map, s, t); c = f; } Ci = c; Oi = 1; }\n");
     }
     /// A wall that fills the picture.
     static std::string wall(const std::string& before, const std::string& surface) {
-        return before + "\nFormat 8 8 1\nProjection \"perspective\" \"fov\" 40\nWorldBegin\nTranslate 0 0 1\nColor [.5 .18 1]\nSurface \"show\" " +
+        return before +
+               "\nFormat 8 8 1\nProjection \"perspective\" \"fov\" 40\nWorldBegin\nTranslate 0 0 1\nColor [.5 .18 1]\nSurface "
+               "\"show\" " +
                surface + "\nPolygon \"P\" [-2 -2 0 2 -2 0 2 2 0 -2 2 0] \"st\" [0 0 1 0 1 1 0 1]\nWorldEnd\n";
     }
     static constexpr std::array<int, 3> kTexel{141, 60, 220};

@@ -23,7 +23,8 @@ OutputSpec planned(const scene::Options& o, bool path, const RenderSettings& s =
 
 TEST(Curve, PicturesThatAreLookedAtUnderEveryHider) {
     for (bool path : {false, true}) {
-        for (const auto& [name, type] : {std::pair{"a.png", "png"}, {"a.jpg", "jpeg"}, {"a.tif", "tiff"}, {"a.png", "file"}, {"a.png", "framebuffer"}}) {
+        for (const auto& [name, type] :
+             {std::pair{"a.png", "png"}, {"a.jpg", "jpeg"}, {"a.tif", "tiff"}, {"a.png", "file"}, {"a.png", "framebuffer"}}) {
             EXPECT_TRUE(planned(withDisplay(name, type), path).srgb) << type;
             EXPECT_EQ(planned(withDisplay(name, type), path).curve, "sRGB");
         }

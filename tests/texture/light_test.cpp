@@ -52,8 +52,8 @@ TEST(Light, ColoursOf8BitsAreSrgbAndNumbersStay) {
     const auto c = at(light.open(s / "a.png"), 4, true), n = at(light.open(s / "a.png"), 4, false);
     EXPECT_FLOAT_EQ(c[0], srgbDecode(kCode));
     EXPECT_FLOAT_EQ(c[2], srgbDecode(kCode));
-    EXPECT_FLOAT_EQ(c[3], 51 / 255.f); // alpha is a number
-    EXPECT_FLOAT_EQ(n[0], kCode);      // a float lookup: a height, a mask
+    EXPECT_FLOAT_EQ(c[3], 51 / 255.f);                               // alpha is a number
+    EXPECT_FLOAT_EQ(n[0], kCode);                                    // a float lookup: a height, a mask
     EXPECT_FLOAT_EQ(at(plain.open(s / "a.png"), 4, true)[0], kCode); // an old scene
 }
 
@@ -78,9 +78,10 @@ TEST(Light, MeansAreOfLight) {
 }
 
 TEST(Light, WhatAFileDeclaresGoesFirst) {
-    for (const auto& [key, value, expected] :
-         {std::tuple{"colorspace", "sRGB", srgbDecode(kCode)}, {"gamma", "0.5", kCode * kCode}, {"gamma", "1", kCode},
-          {"colorspace", "light", kCode}}) {
+    for (const auto& [key, value, expected] : {std::tuple{"colorspace", "sRGB", srgbDecode(kCode)},
+                                               {"gamma", "0.5", kCode * kCode},
+                                               {"gamma", "1", kCode},
+                                               {"colorspace", "light", kCode}}) {
         Image m = codes(2, 2, 3, kCode);
         m.metadata[key] = value;
         EXPECT_NEAR(at(makeTextureFrom(m, inLight()).get(), 3, true)[0], expected, 1e-6f) << key << " " << value;
@@ -101,9 +102,11 @@ TEST(Light, MapsAreReadAsTheirPictureOrAsToldWhenMade) {
     save(s, "a.png", codes(8, 4, 3, kCode), display::Format::Png);
     save(s, "f.exr", constant(8, 4, kCode), display::Format::Exr, display::Sample::Float);
     for (const char* kind : {"MakeTexture", "MakeLatLongEnvironment", "MakeCubeFaceEnvironment", "MakeBump"})
-        for (const auto& [colours, picture, expected] :
-             {std::tuple{Colours::Auto, "a.png", srgbDecode(kCode)}, {Colours::Srgb, "a.png", srgbDecode(kCode)},
-              {Colours::Light, "a.png", kCode}, {Colours::Auto, "f.exr", kCode}, {Colours::Srgb, "f.exr", srgbDecode(kCode)}}) {
+        for (const auto& [colours, picture, expected] : {std::tuple{Colours::Auto, "a.png", srgbDecode(kCode)},
+                                                         {Colours::Srgb, "a.png", srgbDecode(kCode)},
+                                                         {Colours::Light, "a.png", kCode},
+                                                         {Colours::Auto, "f.exr", kCode},
+                                                         {Colours::Srgb, "f.exr", srgbDecode(kCode)}}) {
             Diagnostics d;
             MakeOptions o;
             o.policy = s.policy();
@@ -123,6 +126,7 @@ TEST(Light, MapsAreReadAsTheirPictureOrAsToldWhenMade) {
             EXPECT_NEAR(v[1], bump ? kCode : expected, 1e-6f) << kind << " " << picture << " " << int(colours);
             lo.asLight = false;
             environment(h, {}, 0, 3, {1, 0.2f, 0.3f}, {}, {}, lo, v);
-            EXPECT_NEAR(v[1], colours == Colours::Srgb ? expected : kCode, 1e-6f) << kind << " " << picture << " " << int(colours);
+            EXPECT_NEAR(v[1], colours == Colours::Srgb ? expected : kCode, 1e-6f)
+                << kind << " " << picture << " " << int(colours);
         }
 }

@@ -1,7 +1,9 @@
 #include "cli/command.h"
 #include <CLI/CLI.hpp>
 #include "base/file.h"
+#include "base/limits.h"
 #include "display/imageio.h"
+#include <algorithm>
 #include <atomic>
 #include <climits>
 #include <cmath>
@@ -9,15 +11,39 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <sys/stat.h>
 #include <unistd.h>
 
 namespace alpenglow::cli {
 
+namespace {
+
+/// The line of a text file that a message is about; "" when the file is none, or is compressed or binary. Lines end as the reader of
+/// RIB has them.
+std::string lineOf(const SourcePlace& p) {
+    struct stat s;
+    if (p.line <= 0 || stat(p.file.c_str(), &s) != 0 || !S_ISREG(s.st_mode)) return "";
+    std::ifstream in(p.file, std::ios::binary);
+    std::string line;
+    int at = 1;
+    for (char c; at <= p.line && in.get(c);) {
+        if (c == '\r' && in.peek() == '\n') in.get(c);
+        if (c == '\n' || c == '\r') ++at;
+        else if (at == p.line && line.size() < limits::kTokenBytes) line += c;
+    }
+    const auto binary = [](char c) { return static_cast<unsigned char>(c) >= 0x80 || (c < ' ' && c != '\t'); };
+    return at < p.line || std::any_of(line.begin(), line.end(), binary) ? "" : line;
+}
+
+} // namespace
+
 Diagnostics::Handler printer(Severity least) {
     bool terminal = isatty(STDERR_FILENO) != 0;
-    return [least, terminal](const Diagnostic& d) {
+    return [least, terminal, lines = limits::kSourceLines](Diagnostic d) mutable {
         if (d.severity < least) return;
+        // Who reports when the scene has been read has its places, and no more its text.
+        if (d.sourceLine.empty() && lines > 0 && !(d.sourceLine = lineOf(d.place)).empty()) --lines;
         std::string text = toString(d);
         if (terminal) text.insert(0, "\r\033[K");
         std::fputs(text.c_str(), stderr);

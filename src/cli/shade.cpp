@@ -1,5 +1,6 @@
-// alpenglow shade: a shader over a unit patch, without a scene; also the stopwatch of the kernels.
+// alpenglow shade: a shader on a lit ball, or over a unit patch without a scene; also the stopwatch of the kernels.
 #include "base/limits.h"
+#include "cli/ball.h"
 #include "cli/command.h"
 #include "cli/ranges.h"
 #include "display/imageio.h"
@@ -21,9 +22,9 @@ namespace {
 struct Arguments {
     std::string shader, output = "out.exr", format = "256x256", kind, dialect;
     std::vector<std::string> params, searchPaths, outputs;
-    int spp = 1, iterations = 0, lanes = 16, vectors = 0;
+    int spp = 0, iterations = 0, lanes = 16, vectors = 0;
     float gamma = 0;
-    bool allowExec = false;
+    bool allowExec = false, patch = false;
 };
 
 /// Value, d/du and d/dv of a predefined variable at a point of the patch; see the footer of the help. False: not known.
@@ -89,11 +90,18 @@ double cpuSeconds() {
     return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 
+/// Of -o on standard output: PNG.
+display::Format pictureFormat(const std::string& name) {
+    return name == "-" ? display::Format::Png : display::formatOfExtension(name).value_or(display::Format::Exr);
+}
+
 int shade(const Arguments& a) {
     auto size = parseSize(a.format);
     if (!size || (*size)[0] > limits::kImageSide || (*size)[1] > limits::kImageSide)
         throw CLI::ValidationError("--format", "takes WIDTHxHEIGHT, for example 256x256");
-    Diagnostics diags(printer());
+    if (const std::string fault = faultOfPictureName(a.output, true); !fault.empty()) throw CLI::ValidationError("-o", fault);
+    const bool patch = a.patch || a.iterations > 0 || a.vectors > 0 || !a.outputs.empty();
+    Diagnostics diags(printer()), quiet; // on a ball the renderer says what there is to say of the shader
     std::vector<std::string> paths{"."};
     for (std::string& f : folders(a.searchPaths)) paths.push_back(std::move(f));
     const std::vector<std::string> texturePaths = paths;
@@ -104,7 +112,9 @@ int shade(const Arguments& a) {
     settings.dialect = a.dialect;
     settings.pluginPaths = paths;
     rsl::ShaderCompiler compiler(settings);
-    auto shader = compiler.load(a.shader, paths, diags);
+    auto shader = compiler.load(a.shader, paths, patch ? diags : quiet);
+    for (const Diagnostic& d : quiet.all())
+        if (!shader) diags.report(d);
     if (!shader) return kNothingRendered;
     if (!a.kind.empty()) {
         // A class can be shaders of several kinds.
@@ -122,7 +132,7 @@ int shade(const Arguments& a) {
         }
         shader = wanted;
     }
-    auto values = compiler.parameterValues(shader, diags);
+    auto values = compiler.parameterValues(shader, patch ? diags : quiet);
     std::vector<rsl::ParameterValue> given;
     rsl::KernelOptions options;
     options.lanes = a.lanes;
@@ -157,6 +167,10 @@ int shade(const Arguments& a) {
         i->numbers.assign(numbers->begin(), numbers->end());
         given.push_back(*i);
     }
+    if (!patch)
+        return shadeBall({a.shader, shader->kind(), given, a.output, (*size)[0], (*size)[1], a.spp, a.lanes, a.gamma,
+                          folders(a.searchPaths), a.dialect, a.allowExec},
+                         diags);
     if (!given.empty()) values = compiler.parameterValues(shader, diags, {}, given); // defaults may read what is given
     std::set<std::string> names;
     for (const auto& v : given) names.insert(v.name);
@@ -166,14 +180,16 @@ int shade(const Arguments& a) {
             options.stringParameters.emplace_back(v.name, v.strings[0]);
     auto kernel = compiler.kernel(shader, options, diags);
     if (!kernel) return kNothingRendered;
-    const bool png = display::formatOfExtension(a.output).value_or(display::Format::Exr) == display::Format::Png;
+    const display::Format format = pictureFormat(a.output);
+    const bool png = format == display::Format::Png || format == display::Format::Jpeg;
     const auto colour = [&](const auto& o) { return o.name == "Ci"; };
     if (kernel->outputs().empty() || (png && std::none_of(kernel->outputs().begin(), kernel->outputs().end(), colour))) {
         std::string writes;
         for (const auto& o : kernel->outputs()) writes += (writes.empty() ? "" : ", ") + o.name;
         diags.report(Severity::Error, Rie::MissingData, {a.shader},
                      "this " + std::string(rsl::toString(shader->kind())) + " shader " +
-                         (writes.empty() ? "writes nothing that could be shown" : "writes no Ci for a PNG picture, only " + writes),
+                         (writes.empty() ? "writes nothing that could be shown"
+                                         : std::string("writes no Ci for a ") + display::toString(format) + " picture, only " + writes),
                      writes.empty() ? "--output names what is to be shown" : "an EXR picture takes any values");
         return kNothingRendered;
     }
@@ -182,7 +198,7 @@ int shade(const Arguments& a) {
         return kNothingRendered;
     }
 
-    const int w = (*size)[0], h = (*size)[1], side = std::max(1, int(std::lround(std::sqrt(double(a.spp)))));
+    const int w = (*size)[0], h = (*size)[1], side = std::max(1, int(std::lround(std::sqrt(double(std::max(1, a.spp))))));
     const float du = 1.f / float(w), dv = 1.f / float(h);
     std::vector<std::string> channels;
     for (const auto& o : kernel->outputs()) {
@@ -308,9 +324,9 @@ int shade(const Arguments& a) {
                     a.iterations, batch, all * 1e9 / batch / a.iterations, kernel->lanes());
     }
     display::WriteOptions o;
-    o.format = display::formatOfExtension(a.output).value_or(display::Format::Exr);
+    o.format = format;
     o.policy.allowWrite = true;
-    if (o.format == display::Format::Png) {
+    if (png) {
         o.sample = display::Sample::UInt8;
         image = display::selectChannels(image, {"r", "g", "b"});
     }
@@ -324,9 +340,11 @@ int shade(const Arguments& a) {
 
 void addShade(CLI::App& app, int* status) {
     auto a = std::make_shared<Arguments>();
-    CLI::App* c = app.add_subcommand("shade", "Run a shader over a unit patch");
+    CLI::App* c = app.add_subcommand("shade", "Show a shader on a lit ball, or over a unit patch");
     c->add_option("shader", a->shader, "RSL file, or the name of a shader on the search path")->required();
-    c->add_option("-o", a->output, "The picture: Ci, Oi, or what --output names")->type_name("FILE")->capture_default_str();
+    c->add_option("-o", a->output, std::string("The picture (") + display::kPictureExtensions + "; - is standard output); of a patch Ci, Oi, or what --output names")
+        ->type_name("FILE")->capture_default_str();
+    c->add_flag("--patch", a->patch, "The unit patch instead of the ball; also what --output, --iterations and --vectors mean");
     c->add_option("--kind", a->kind, "Of a class that is shaders of several kinds: which; else the first of surface, displacement, light, volume, imager")
         ->check(CLI::IsMember({"surface", "displacement", "light", "volume", "imager"}))
         ->type_name("KIND");
@@ -335,10 +353,10 @@ void addShade(CLI::App& app, int* status) {
         ->allow_extra_args(false);
     c->add_option("--output", a->outputs, "Variables to write instead of Ci and Oi")->type_name("NAME")->allow_extra_args(false);
     c->add_option("--format", a->format, "Size of the picture")->type_name("WxH")->capture_default_str();
-    c->add_option("--spp", a->spp, "Points a pixel, rounded to a square, averaged")
+    c->add_option("--spp", a->spp, "Samples a pixel of the ball, 64 when not given; points a pixel of the patch, rounded to a square, averaged, 1 when not "
+                  "given")
         ->check(wholeBetween(1, 4096))
-        ->type_name("N")
-        ->capture_default_str();
+        ->type_name("N");
     c->add_option("--gamma", a->gamma, "Display gamma of the picture")->check(between(0.01, 100))->type_name("G");
     c->add_option("--iterations", a->iterations,
                   "Time this many runs over 4096 points and print ns a point (one thread, processor time)")
@@ -354,9 +372,14 @@ void addShade(CLI::App& app, int* status) {
     addDialect(*c, a->dialect);
     c->add_flag("--allow-exec", a->allowExec, "Let the shader load plug-ins");
     c->footer(
+        "The ball lies on a floor under a lamp and a sky, and is path-traced: a surface is on the ball, a displacement pushes it, a\n"
+        "volume is the air, a light is the lamp, an imager sees the picture.\n"
         "The patch: P = (u, v, 0), u to the right and v downward over the picture, s = u, t = v, N = (0,0,1), seen from the eye "
         "at\n"
-        "(0.5, 0.5, 1), so I = P - E; du and dv are a pixel. Cs = Os = 1. There are no lights and nothing else to be seen.");
+        "(0.5, 0.5, 1), so I = P - E; du and dv are a pixel. Cs = Os = 1. There are no lights and nothing else to be seen.\n\n"
+        "Examples:\n  alpenglow shade examples/shaders/marble.sl -o marble.png\n"
+        "  alpenglow shade plastic --param roughness=0.05 -o plastic.png\n"
+        "  alpenglow shade pattern.sl --patch --output Ci -o pattern.exr");
     c->callback([a, status] { *status = shade(*a); });
 }
 

@@ -8,6 +8,7 @@
 #include "render/filmpicture.h"
 #include "render/imagertext.h"
 #include "render/imaging.h"
+#include "render/lacks.h"
 #include "render/levels.h"
 #include "render/partfile.h"
 #include "render/provenance.h"
@@ -374,6 +375,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
         return;
     }
     plan.resolve(world->outputWidths(), diagnostics_);
+    sayMissingOutputs(plan, *world, diagnostics_);
     transport::World::Facts facts = world->facts();
     stats_.buildSec += facts.buildSec;
     stats_.compileSec += facts.compileSec;
@@ -534,6 +536,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
     stats_.paths += double(c.paths);
     stats_.depth.maximum = std::max(stats_.depth.maximum, c.depthMax);
     stats_.nonFinite += nonFinite;
+    if (!settings_.pixel) sayEmptyPicture(job, *frame, diagnostics_);
     facts = world->facts(); // kernels may be compiled while rendering
     stats_.shading.kernels = facts.kernels;
     stats_.shading.affineKernels = facts.affine;

@@ -16,6 +16,11 @@ bool Job::trace(int worker, std::span<const transport::CameraRay> in, std::span<
     uint64_t now = totalRays(t.counters());
     rayTotal += now - rays[size_t(worker)];
     rays[size_t(worker)] = now;
+    if (whole && !(met && shone))
+        for (const transport::SampleResult& r : out) {
+            if (r.z < 1e38f || luminance(r.opacity) > 0) met = true;
+            if (r.color.x != 0 || r.color.y != 0 || r.color.z != 0) shone = true;
+        }
     return whole;
 }
 

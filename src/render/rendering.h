@@ -40,6 +40,7 @@ struct Job {
     std::vector<std::unique_ptr<Tracer>> tracers; ///< by worker
     std::vector<uint64_t> rays;                   ///< by worker, as last told
     std::atomic<uint64_t> rayTotal{0};
+    std::atomic<bool> met{false}, shone{false}; ///< some camera ray met a surface; brought light
 
     Job(const RenderSettings&, const Camera&, const OutputPlan&, Engine&, std::shared_ptr<const transport::World>, int threads,
         Progress&, Diagnostics&);

@@ -8,6 +8,7 @@
 #include "rsl/jit/identity.h"
 #include "rsl/jit/jit.h"
 #include "rsl/jit/sha256.h"
+#include "rsl/passes/looplimit.h"
 #include "rsl/passes/optimize.h"
 #include "rsl/plugins.h"
 #include "rsl/shadersearch.h"
@@ -143,6 +144,7 @@ ShaderPtr ShaderCompiler::describe(std::shared_ptr<const Program> program, const
         ParameterInfo i{p.symbol->name, p.symbol->type, p.symbol->storage, p.symbol->output, p.defaultValue != nullptr,
                         p.symbol->place};
         i.open = i.type.array < 0 || p.symbol->open;
+        i.handle = p.symbol->handle;
         if (i.type.array < 0)
             i.type.array = p.defaultValue && p.defaultValue->type.array > 0 ? p.defaultValue->type.array
                            : p.defaultValue && p.defaultValue->kind == ExprKind::ArrayList
@@ -312,6 +314,7 @@ KernelPtr ShaderCompiler::kernel(const ShaderPtr& shader, const KernelOptions& o
             file.messages = local.all();
             for (const auto& m : file.messages) diagnostics.report(m);
             error.clear();
+            if (k) ir::limitLoops(*k);
             if (k && local.errors() == 0 && jit::generate(*k, options, file, error)) {
                 result = jit::load(file, false, error, state_->outside);
                 if (result) state_->cache->store(key, file);
@@ -481,6 +484,7 @@ std::vector<ParameterValue> ShaderCompiler::parameterValues(const ShaderPtr& sha
             for (const std::string& s : v.strings) key += '\3' + s;
         }
         key = jit::sha256(key);
+        ir::limitLoops(*k);
         if (auto cached = state_->cache->load(key)) code = jit::load(*cached, true, error, state_->outside);
         if (!code && jit::generate(*k, options, file, error)) {
             code = jit::load(file, false, error, state_->outside);

@@ -21,6 +21,7 @@ struct ParameterInfo {
     bool hasDefault = false;
     Place place;
     bool open = false; ///< an array of open length, `float w[]`: it is as long as what it is given
+    bool handle = false;        ///< of type `shader`
     bool sampleDefault = false; ///< varying, with a default that differs from sample to sample: computed where the shader begins
     std::vector<std::string> defaultReads; ///< parameters before it that its default reads
 };

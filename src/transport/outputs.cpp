@@ -80,16 +80,40 @@ std::vector<int> outputsNamed(const shading::Batch& b, const std::string& name) 
     return elements;
 }
 
-void WorldImpl::measureOutputs() {
-    static const std::set<std::string> kNumbers = {"z", "u", "v", "s", "t", "alpha", "du", "dv", "time"};
-    static const std::set<std::string> kTriples = {"P", "N", "Cs", "Os", "Ng", "I", "dPdu", "dPdv", "Ci", "Oi"};
-    outputWidths_.clear();
+namespace {
+const std::set<std::string> kNumbers = {"z", "u", "v", "s", "t", "alpha", "du", "dv", "time"};
+const std::set<std::string> kTriples = {"P", "N", "Cs", "Os", "Ng", "I", "dPdu", "dPdv", "Ci", "Oi"};
+} // namespace
+
+std::set<const ShaderInstance*> WorldImpl::givers() const {
     std::set<const ShaderInstance*> shaders;
     for (const SurfaceBinding& b : bindings_)
         for (const InstanceRef& i : {b.surface, b.atmosphere.shader, b.interior, b.exterior})
             if (i) shaders.insert(i.get());
     for (const BoundLight& l : lights_)
         if (l.instance) shaders.insert(l.instance.get());
+    return shaders;
+}
+
+std::vector<std::string> WorldImpl::knownOutputs() const {
+    std::set<std::string> names(kNumbers);
+    names.insert(kTriples.begin(), kTriples.end());
+    const auto channels = [&](const rsl::Program& program) {
+        for (const auto& [channel, type] : program.channels)
+            if (channel[0] != kAnyChannel) names.insert(channel);
+    };
+    for (const ShaderInstance* i : givers()) {
+        for (const rsl::ParameterInfo& p : i->program->parameters())
+            if (p.output && p.type.base != rsl::Base::String) names.insert(p.name);
+        channels(i->program->program());
+        for (const rsl::CoShader& c : i->coShaders) channels(*c.program);
+    }
+    return {names.begin(), names.end()};
+}
+
+void WorldImpl::measureOutputs() {
+    outputWidths_.clear();
+    const std::set<const ShaderInstance*> shaders = givers();
     for (size_t k = 0; k < settings_.outputs.size(); ++k) {
         const std::string& name = settings_.outputs[k];
         int width = kNumbers.count(name) ? 1 : kTriples.count(name) ? 3 : 0;
@@ -100,6 +124,7 @@ void WorldImpl::measureOutputs() {
                     if (givesPerhaps(*i, name) == perhaps) found = std::max(found, widthIn(*i, name));
                 if (width == 0) width = found;
             }
+        if (width == 0 && !shapes_.empty()) missingOutputs_.push_back(name);
         if (width == 0 && k < settings_.outputWidths.size()) width = settings_.outputWidths[k]; // nobody gives it: zeros, as the display says
         outputWidths_.push_back(width > 0 ? width : 3);
     }

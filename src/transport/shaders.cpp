@@ -2,8 +2,10 @@
 #include "rsl/ir/build.h"
 #include "base/limits.h"
 #include "rsl/front/visit.h"
+#include "transport/fitparameter.h"
 #include "transport/lightobjects.h"
 #include "transport/world.h"
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <optional>
@@ -135,31 +137,15 @@ InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind k
                           near.empty() ? "" : "did you mean \"" + near + "\"?", {}});
             continue;
         }
-        if (p->type.base == rsl::Base::String) {
-            i->given.insert(given.name);
-            const size_t most = p->open ? std::min(given.strings.size(), size_t(limits::kShaderArray)) : size_t(std::max(1, p->type.array));
-            if (p->open) i->parameters.strings[given.name + "[]"] = std::to_string(most);
-            values.push_back({given.name, p->type, {}, {given.strings.begin(), given.strings.begin() + std::ptrdiff_t(std::min(most, given.strings.size()))}});
-            continue;
-        }
-        std::vector<float> v = given.numbers;
-        const size_t each = size_t(rsl::componentCount(p->type.base));
-        size_t want = each * size_t(std::max(1, p->type.array));
-        if (p->open && v.size() >= each) {
-            want = each * std::min(v.size() / each, size_t(limits::kShaderArray));
-            i->parameters.strings[given.name + "[]"] = std::to_string(want / each);
-        }
-        if (v.size() == 1 && want == 3 && p->type.base == rsl::Base::Color) v.assign(3, v[0]);
-        if (v.size() < want) {
-            d.report(Severity::Warning, Rie::Consistency, given.place.file.empty() ? call.place : given.place,
-                     "parameter \"" + given.name + "\" of shader \"" + call.name + "\" needs " + std::to_string(want) + " numbers, got " + std::to_string(v.size()) +
-                         "; the default is used");
-            continue;
-        }
-        v.resize(want);
-        transformParameter(v, p->type.base, i->toCurrent);
+        auto value = fitParameter(given, *p, call.name, call.place, d);
+        if (!value) continue;
+        if (p->open)
+            i->parameters.strings[given.name + "[]"] =
+                std::to_string(std::max(value->strings.size(), value->numbers.size() / size_t(rsl::componentCount(p->type.base))));
+        transformParameter(value->numbers, p->type.base, i->toCurrent);
         i->given.insert(given.name);
-        values.push_back({given.name, p->type, std::move(v), {}});
+        if (p->handle) i->handlePlaces[given.name] = given.place.file.empty() ? call.place : given.place;
+        values.push_back(std::move(*value));
     }
 
     // Defaults: the shader's own expressions in the instance's spaces, of what was given.
@@ -190,6 +176,27 @@ InstanceRef WorldImpl::builtin(const std::string& name, rsl::ShaderKind kind, Di
     return instance(call, kind, d);
 }
 
+void WorldImpl::dropMissingHandles(const ShaderInstance& of, std::map<std::string, std::string>& texts,
+                                   const std::vector<std::pair<std::string, scene::ShaderRef>>& bound, Diagnostics& d) const {
+    std::vector<std::string> handles;
+    for (const auto& [handle, call] : bound) handles.push_back(handle);
+    for (auto& [key, handle] : texts) {
+        const auto place = of.handlePlaces.find(key.substr(0, key.find('[')));
+        if (place == of.handlePlaces.end() || key.ends_with("[]") || handle.empty()) continue;
+        const auto is = [&](const std::string& known) { return known == handle; };
+        const auto isLight = [&](const scene::Light& l) { return l.handle == handle; };
+        if (std::any_of(handles.begin(), handles.end(), is) || std::any_of(frame_->lights.begin(), frame_->lights.end(), isLight))
+            continue;
+        const std::string near = nearestName(handle, handles);
+        const SourcePlace& at = place->second;
+        d.reportOnce("handle:" + handle + at.file + ":" + std::to_string(at.line) + key,
+                     {Severity::Error, Rie::BadHandle, at,
+                      "there is no co-shader \"" + handle + "\": \"" + key + "\" of shader \"" + of.name + "\" is null",
+                      near.empty() ? "Shader \"name\" \"" + handle + "\" makes one" : "did you mean \"" + near + "\"?", {}});
+        handle.clear();
+    }
+}
+
 InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const std::map<std::string, scene::ShaderRef>& coshaders, Diagnostics& d,
                                      const std::vector<int>& lights) {
     if (!shader || !shader->program->program().handles) return shader;
@@ -200,12 +207,13 @@ InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const std::map<s
             if (light.source && light.source->shader && light.instance && answers(*light.instance->program, names))
                 called.emplace_back(handleOfLight(l, light.handle), light.source->shader);
         }
-    if (called.empty()) return shader;
+    if (called.empty() && shader->handlePlaces.empty()) return shader;
     std::vector<const void*> key{shader.get()};
     for (const auto& [handle, call] : called) key.push_back(call.get());
     InstanceRef& bound = withCoShaders_[key];
     if (bound) return bound;
     auto copy = std::make_shared<ShaderInstance>(*shader);
+    dropMissingHandles(*shader, copy->parameters.strings, called, d);
     for (const auto& [handle, call] : called) {
         auto [i, fresh] = coShaders_.try_emplace(call.get());
         Diagnostics said; // what is to be said of a light was said when it was bound
@@ -217,6 +225,7 @@ InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const std::map<s
         if (!(i->second->toCurrent == shader->toCurrent)) c.space = spaceAt(i->second->toCurrent);
         for (const auto& [name, v] : i->second->parameters.numbers) c.numbers[name] = v;
         for (const auto& [name, v] : i->second->parameters.strings) c.strings[name] = v;
+        dropMissingHandles(*i->second, c.strings, called, d);
         c.computed = i->second->program->computedParameters(i->second->given, {});
         copy->coShaders.push_back(std::move(c));
     }

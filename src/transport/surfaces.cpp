@@ -27,6 +27,25 @@ InstanceRef SurfaceBinder::instanceOf(const scene::ShaderRef& r, rsl::ShaderKind
     return i->second;
 }
 
+/// Under path: a warning, once a shader, where light is asked for and used so that its indirect part cannot be followed.
+static void sayDirectOnly(const ShaderInstance& shader, const rsl::CompiledKernel& kernel, Diagnostics& d) {
+    const std::vector<std::string>& direct = kernel.facts().direct;
+    if (direct.empty()) return;
+    SourcePlace place{shader.program->path(), 0, 0};
+    const rsl::Place& at = kernel.facts().directPlaces[0];
+    const auto& files = kernel.files();
+    if (at.line > 0 && at.file >= 0 && size_t(at.file) < files.size() && !files[size_t(at.file)].starts_with('<'))
+        place = {files[size_t(at.file)], at.line, at.column};
+    const std::string op = direct[0].substr(0, direct[0].find(',')), why = direct[0].substr(direct[0].find(": ") + 2);
+    const size_t more = direct.size() - 1;
+    d.reportOnce("directonly:" + shader.program->path() + ":" + shader.program->name(),
+                 {Severity::Warning, Rie::Incapable, place,
+                  "shader \"" + shader.program->name() + "\" under path: " + op + "() brings direct light only" +
+                      (more ? ", and so do " + std::to_string(more) + " further calls" : "") + ", for it is used non-linearly: " + why,
+                  "use its light in sums and products only, as in Ci = a + b * " + op + "(...), where a and b do not depend on light; "
+                  "`compile -W --path` shows all such places", {}});
+}
+
 bool SurfaceBinder::differences(const geometry::Shape& shape) {
     const scene::Param* p = shape.attributes().value("shade:derivatives");
     if (!p || p->strings.empty()) return !path_;
@@ -319,6 +338,7 @@ bool SurfaceBinder::bindSurface(SurfaceBinding& b, Names varying) {
     Names outputs = outputsOf(b);
     partLightOutputs(b, outputs, varying);
     b.surfaceS = world_.kernel(*b.surface, outputs, varying, false, path_, diagnostics_);
+    if (path_ && b.surfaceS) sayDirectOnly(*b.surface, *b.surfaceS.kernel, diagnostics_);
     if (!b.surfaceS) { // an error was reported: the default surface stands in
         b.surface = fallback_;
         varying.clear();

@@ -136,6 +136,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
         for (int part : w->lights_[size_t(shape->attributes().areaLight)].parts) w->lights_[size_t(part)].hazy = true;
     }
     w->facts_.shapes = w->shapes_.size();
+    for (const auto& shape : w->shapes_) w->facts_.before += !(shape->bounds().hi.z <= 0);
     w->facts_.buildSec = seconds() - begin - w->facts_.compileSec;
     return w;
 }

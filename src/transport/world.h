@@ -105,6 +105,7 @@ struct ShaderInstance {
     std::shared_ptr<const rsl::CompiledShader> program;
     shading::ParameterBlock parameters;
     std::set<std::string> given; ///< parameters that have no default: the scene gave them
+    std::map<std::string, SourcePlace> handlePlaces; ///< of those of type `shader` that the scene gave: where
     std::vector<rsl::CoShader> coShaders; ///< those of the attributes under which the shader was named
     Matrix toCurrent;
     SourcePlace place;
@@ -226,6 +227,8 @@ public:
     const Settings& settings() const override { return settings_; }
     Facts facts() const override { return facts_; }
     std::vector<int> outputWidths() const override { return outputWidths_; }
+    std::vector<std::string> missingOutputs() const override { return missingOutputs_; }
+    std::vector<std::string> knownOutputs() const override;
     void flushPrints(bool keep) const override { keep ? prints_.flush() : prints_.discard(); }
     bool runImager(int, const float*, const float*, float*, float*, float*, float*, Diagnostics&,
                    const StopFlag* stop) const override;
@@ -236,6 +239,9 @@ public:
     InstanceRef instance(const scene::ShaderCall&, rsl::ShaderKind, Diagnostics&, bool anyKind = false);
     /// A shader that uses co-shaders, with those that these attributes have and, of these lights (indices into Frame::lights), the class
     /// lights that have what it calls; any other as it is.
+    /// Handles among these parameters that name neither one of `bound` nor a light: null, and an error with the place.
+    void dropMissingHandles(const ShaderInstance& of, std::map<std::string, std::string>& texts,
+                            const std::vector<std::pair<std::string, scene::ShaderRef>>& bound, Diagnostics&) const;
     InstanceRef withCoShaders(const InstanceRef&, const std::map<std::string, scene::ShaderRef>& coshaders, Diagnostics&,
                               const std::vector<int>& lights = {});
     /// Fills outputWidths_: how many numbers each AOV has in the shaders of the frame.
@@ -291,6 +297,9 @@ public:
     Matrix worldToCamera_, cameraToWorld_;
     Matrix cameraToScreen_, screenToNdc_, ndcToRaster_;
     std::vector<int> outputWidths_;
+    std::vector<std::string> missingOutputs_;
+    /// All shaders that could give an output.
+    std::set<const ShaderInstance*> givers() const;
     std::vector<LightOutputPlace> lightOutputs_;
     std::unique_ptr<texture::TextureSystem> textures_;
     std::shared_ptr<rsl::ShaderCompiler> compiler_;

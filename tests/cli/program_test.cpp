@@ -403,14 +403,14 @@ TEST_F(Program, CompileAndInfo) {
 
 TEST_F(Program, ShadeAPatch) {
     write("g.sl", "surface g(float k = 1; color c = 0;) { Ci = color (u, v, k) + c; Oi = 1; }\n");
-    Result r = run("shade g.sl -o g.exr --format 8x4 --param k=3 --param c=1,0,0 --iterations 3");
+    Result r = run("shade --patch g.sl -o g.exr --format 8x4 --param k=3 --param c=1,0,0 --iterations 3");
     EXPECT_EQ(r.status, 0) << read("err");
     EXPECT_NE(r.out.find("ns a point"), std::string::npos);
     EXPECT_TRUE(has("g.exr"));
-    EXPECT_EQ(run("shade g.sl --param nosuch=3").status, 2);
+    EXPECT_EQ(run("shade --patch g.sl --param nosuch=3").status, 2);
     EXPECT_EQ(run("shade none.sl").status, 3);
-    EXPECT_EQ(run("shade g.sl -o a.exr --format 8x4").status, 0);
-    EXPECT_EQ(run("shade g.sl -o b.exr --format 8x4 --param k=1.25").status, 0);
+    EXPECT_EQ(run("shade --patch g.sl -o a.exr --format 8x4").status, 0);
+    EXPECT_EQ(run("shade --patch g.sl -o b.exr --format 8x4 --param k=1.25").status, 0);
     // Blue differs by 0.25 everywhere, nothing else does: the largest error is that.
     EXPECT_EQ(run("diff a.exr b.exr --tolerance 0.2500001").status, 0);
     EXPECT_EQ(run("diff a.exr b.exr --tolerance 0.2499999").status, 1);

@@ -114,3 +114,194 @@ TEST_F(Said, UnknownOptionsAndAttributes) {
     EXPECT_TRUE(says("note: Option \"limits\" \"gridsise\" does nothing here")) << errors();
     EXPECT_FALSE(says("\"mine\""));
 }
+
+TEST_F(Said, ParametersOfAnotherTypeOrLength) {
+    scene("", "Surface \"plastic\" \"color Kd\" [1 0 0]\nSurface \"plastic\" \"Kd\" [1 2]\nSurface \"plastic\" \"uniform string Kd\" \"hello\"\n"
+              "Surface \"plastic\" \"string roughness\" [\"a\"] \"float specularcolor\" .5\n"
+              "Surface \"plastic\" \"uniform point specularcolor\" [1 1 1] \"specularcolor\" .3\n");
+    // Only the last one is bound: the others are overwritten before there is a primitive.
+    run("render -o a.png a.rib");
+    EXPECT_TRUE(says("parameter \"specularcolor\" of shader \"plastic\" is a color, not a point; its numbers are taken")) << errors();
+    const std::pair<const char*, const char*> cases[] = {
+        {"\"color Kd\" [1 0 0]", "is a float, not a color; its default is used"},
+        {"\"Kd\" [1 2]", "is a float: it takes 1 number, not 2; its default is used"},
+        {"\"Kd\" \"hello\"", "is a float, not a string; its default is used"},
+        {"\"Kd\" []", "is a float: it takes 1 number, not 0; its default is used"},
+        {"\"string roughness\" \"a\"", "is a float, not a string"},
+        {"\"uniform float[2] specularcolor\" [1 1]", "is a color, not a float[2]; its default is used"}};
+    for (const auto& [given, message] : cases) {
+        scene("", std::string("LightSource \"ambientlight\" 1\nSurface \"plastic\" ") + given + "\n");
+        run("render -o a.png a.rib");
+        EXPECT_EQ(status, 1) << given;
+        EXPECT_TRUE(says(message)) << given << errors();
+        EXPECT_TRUE(says("a.rib:6:19: error:")) << errors();
+        EXPECT_TRUE(says("  Surface \"plastic\" \"")) << errors(); // the line, and below it the caret
+        EXPECT_TRUE(says("                    ^")) << errors();
+    }
+    for (const char* fine : {"\"uniform float Kd\" .5", "\"specularcolor\" .5", "\"specularcolor\" [1 1 1]", "\"int Kd\" 1"}) {
+        scene("", std::string("LightSource \"ambientlight\" 1\nSurface \"plastic\" ") + fine + "\n");
+        run("render -o a.png a.rib");
+        EXPECT_EQ(status, 0) << fine;
+        EXPECT_EQ(errors().find("parameter"), std::string::npos) << errors();
+    }
+}
+
+// Zero and null are not the same as missing: the default holds, as if nothing had been given.
+TEST_F(Said, OfAWrongParameterTheDefaultHolds) {
+    write("grey.sl", "surface grey(float k = .25;) { Ci = k; Oi = 1; }\n");
+    scene("", "Scale 4 4 1\nSurface \"grey\" \"color k\" [1 0 0]\n", "wrong.rib");
+    scene("", "Scale 4 4 1\nSurface \"grey\"\n", "plain.rib");
+    run("render -o wrong.exr wrong.rib");
+    run("render -o plain.exr plain.rib");
+    run("diff wrong.exr plain.exr");
+    EXPECT_EQ(status, 0);
+}
+
+TEST_F(Said, MissingCoShaders) {
+    write("layer.sl", "class layer(color c = 1;) { public void getColor(output color to) { to = c; } }\n");
+    write("coat.sl", "class coat(shader layers[2] = {null, null}; shader one = null; output varying float nulls = 0;) {\n"
+                     "    public void surface(output color Ci, Oi) {\n        uniform float i; Ci = 0; Oi = 1;\n"
+                     "        for (i = 0; i < 2; i += 1) { color c = 0;\n"
+                     "            if (layers[i] != null) { layers[i]->getColor(c); Ci += c; } else Ci += color(0, .5, 0); }\n"
+                     "        if (one == null) Ci += color(0, 0, .25);\n    }\n}\n");
+    scene("", "Scale 4 4 1\nShader \"layer\" \"l1\" \"color c\" [.5 0 0]\nSurface \"coat\" \"string[2] layers\" [\"l1\" \"l2\"] \"string one\" \"nobody\"\n");
+    run("render -o a.exr a.rib");
+    EXPECT_EQ(status, 1);
+    EXPECT_TRUE(says("a.rib:7:16: error: there is no co-shader \"l2\": \"layers[1]\" of shader \"coat\" is null")) << errors();
+    EXPECT_TRUE(says("did you mean \"l1\"?"));
+    EXPECT_TRUE(says("there is no co-shader \"nobody\": \"one\" of shader \"coat\" is null"));
+    EXPECT_EQ(times("error:"), 2) << errors();
+    alpenglow::Diagnostics d;
+    const auto image = alpenglow::display::readImage((dir / "a.exr").string(), d);
+    ASSERT_TRUE(image);
+    const float* p = image->pixel(4, 4);
+    EXPECT_NEAR(p[0], .5, 1e-6);
+    EXPECT_NEAR(p[1], .5, 1e-6);
+    EXPECT_NEAR(p[2], .25, 1e-6);
+}
+
+TEST_F(Said, ChannelsThatNobodyWrites) {
+    write("gives.sl", "surface gives(output varying color specAOV = 0;) { specAOV = color(1, .5, 0); Ci = specAOV; Oi = 1; }\n");
+    const std::string head = "Display \"a.exr\" \"openexr\" \"rgba\"\n";
+    scene(head + "Display \"+b.exr\" \"openexr\" \"varying color specAVO,N,z\"\n", "Surface \"gives\"\n");
+    run("render a.rib");
+    EXPECT_EQ(status, 0);
+    EXPECT_TRUE(says("a.rib:4:1: warning: display \"b.exr\": no shader outputs \"specAVO\"; its channels are 0")) << errors();
+    EXPECT_TRUE(says("did you mean \"specAOV\"?"));
+    EXPECT_EQ(times("no shader outputs"), 1);
+    scene(head + "Display \"+b.exr\" \"openexr\" \"varying color specAOV,N\"\n", "Surface \"gives\"\n");
+    run("render a.rib");
+    EXPECT_EQ(errors().find("no shader outputs"), std::string::npos) << errors();
+}
+
+TEST_F(Said, DirectLightOnly) {
+    write("capped.sl", "surface capped(float Kd = 1;)\n{\n    Oi = Os;\n    Ci = min(Cs * Kd * diffuse(normalize(N)), 1);\n}\n");
+    scene("", "LightSource \"pointlight\" 1 \"intensity\" 10 \"from\" [0 0 -3]\nSurface \"capped\"\n");
+    run("render --hider path --spp 8 -o a.exr a.rib");
+    EXPECT_EQ(status, 0) << errors();
+    EXPECT_EQ(times("capped.sl:4:"), 1) << errors();
+    EXPECT_TRUE(says("warning: shader \"capped\" under path: diffuse() brings direct light only, for it is used non-linearly")) << errors();
+    EXPECT_TRUE(says("use its light in sums and products only"));
+    run("render --spp 8 -o a.exr a.rib"); // from the cache
+    run("render --hider path --spp 8 -o a.exr a.rib");
+    EXPECT_EQ(times("direct light only"), 1) << errors();
+    run("render --hider hidden -o a.exr a.rib");
+    EXPECT_EQ(times("direct light only"), 0) << errors();
+    run("compile -W --path capped.sl");
+    EXPECT_TRUE(says("it brings direct light only")) << errors();
+    write("good.sl", "surface good(float Kd = 1;) { Oi = Os; Ci = Oi * Cs * Kd * diffuse(normalize(N)) + .1; }\n");
+    scene("", "LightSource \"pointlight\" 1 \"intensity\" 10 \"from\" [0 0 -3]\nSurface \"good\"\n");
+    run("render --hider path --spp 8 -o a.exr a.rib");
+    EXPECT_EQ(errors().find("warning"), std::string::npos) << errors();
+}
+
+TEST_F(Said, PicturesWithNothingInThem) {
+    const std::string look = "Format 8 8 1\nProjection \"perspective\"\nDisplay \"a.exr\" \"openexr\" \"rgba\"\n",
+                      ball = "Sphere 1 -1 1 360\nWorldEnd\n";
+    const std::string lamp = "LightSource \"pointlight\" 1 \"from\" [0 0 -3]\n";
+    for (const char* hider : {"hidden", "path"}) {
+        const auto render = [&](const std::string& text) {
+            write("e.rib", text);
+            run(std::string("render --hider ") + hider + " --spp 4 e.rib");
+            EXPECT_EQ(status, 0) << errors();
+        };
+        render(look + "Translate 0 0 -5\nWorldBegin\n" + lamp + "Surface \"matte\"\n" + ball);
+        EXPECT_EQ(times("the picture is empty"), 1) << errors();
+        EXPECT_TRUE(says("all of it lies behind the camera")) << errors();
+        render(look + "Translate 50 0 5\nWorldBegin\n" + lamp + ball);
+        EXPECT_TRUE(says("1 shape of 1 lies before it")) << errors();
+        render(look + "WorldBegin\n" + lamp + "WorldEnd\n");
+        EXPECT_TRUE(says("no primitives")) << errors();
+        render(look + "Translate 0 0 5\nWorldBegin\nSurface \"matte\"\n" + ball);
+        EXPECT_TRUE(says("the picture is black: the scene has no lights")) << errors();
+        render(look + "Translate 0 0 5\nWorldBegin\nAttributeBegin\n" + lamp + "AttributeEnd\nSurface \"matte\"\n" + ball);
+        EXPECT_TRUE(says("surfaces are seen, but the light does not show on them")) << errors();
+        render(look + "Translate 0 0 5\nWorldBegin\n" + lamp + "Surface \"matte\"\n" + ball);
+        EXPECT_EQ(times("the picture is"), 0) << errors();
+        render(look + "Translate 0 0 5\nWorldBegin\nSurface \"constant\"\n" + ball);
+        EXPECT_EQ(times("the picture is"), 0) << errors();
+        render(look + "CropWindow 0 .1 0 .1\nTranslate 0 0 5\nWorldBegin\n" + lamp + "Surface \"matte\"\n" + ball);
+        EXPECT_EQ(times("the picture is"), 0) << errors();
+    }
+}
+
+TEST_F(Said, LoopsWithoutEnd) {
+    // Each turn adds 1; floats hold ten million exactly.
+    for (const char* lanes : {"4", "8", "16"}) {
+        EXPECT_EQ(run(std::string("eval --lanes ") + lanes + " --setup 'float n = 0;\nwhile (1 < 2) n += 1;' n"), "1e+07\n");
+        EXPECT_EQ(status, 1);
+        EXPECT_EQ(times("expression:3:"), 1) << errors();
+        EXPECT_TRUE(says("this loop is left after 10000000 turns at one point")) << errors();
+    }
+    EXPECT_EQ(run("eval --setup 'float n = 0; while (n < 9999999) n += 1;' n"), "9999999\n");
+    EXPECT_EQ(status, 0) << errors();
+    // Points that leave keep what they have.
+    write("some.sl", "surface some()\n{\n    float n = 0, x = 0;\n    while (u < .5 || n < 3) { n += 1; x = n; }\n    Ci = x / 1e7; Oi = 1;\n}\n");
+    for (const char* lanes : {"4", "16"}) {
+        run(std::string("shade --patch some.sl -o ") + lanes + ".exr --format 8x2 --lanes " + lanes);
+        EXPECT_EQ(status, 1);
+        EXPECT_EQ(times("some.sl:4:"), 1) << errors();
+    }
+    run("diff 4.exr 16.exr");
+    EXPECT_EQ(status, 0);
+    alpenglow::Diagnostics d;
+    const auto image = alpenglow::display::readImage((dir / "4.exr").string(), d);
+    ASSERT_TRUE(image);
+    EXPECT_EQ(image->pixel(0, 0)[0], 1);
+    EXPECT_EQ(image->pixel(7, 0)[0], 3 / 1e7f);
+}
+
+TEST_F(Said, ABallByDefault) {
+    write("look.sl", "surface look(color tint = 1; string words = \"\";) { normal n = normalize(N); Oi = Os; Ci = tint * diffuse(n); }\n");
+    std::filesystem::create_directory(dir / "sub");
+    std::ofstream(dir / "sub" / "push.sl") << "displacement push(float a = .1;) { P += a * sin(20 * u) * normalize(N); N = calculatenormal(P); }\n";
+    const auto mean = [&](const char* name) {
+        alpenglow::Diagnostics d;
+        const auto image = alpenglow::display::readImage((dir / name).string(), d);
+        EXPECT_TRUE(image) << name;
+        std::array<double, 3> m{};
+        for (size_t i = 0; image && i < image->data.size(); ++i) m[i % size_t(image->channelCount()) % 3] += image->data[i];
+        return m;
+    };
+    run("shade look.sl -o a.png --format 32x32 --spp 4");
+    EXPECT_EQ(status, 0);
+    EXPECT_EQ(errors(), "");
+    const auto white = mean("a.png");
+    EXPECT_GT(white[0], 32 * 32 * .1);
+    run("shade look.sl --param tint=1,0,0 --param 'words=a \"b\" \\c' -o b.png --format 32x32 --spp 4");
+    EXPECT_EQ(errors(), "");
+    EXPECT_LT(mean("b.png")[1], white[1]); // the ball is red: less green
+    EXPECT_NEAR(mean("b.png")[0], white[0], .1 * white[0]);
+    for (const char* s : {"sub/push.sl", "pointlight", "fog", "background", "matte"}) {
+        run(std::string("shade ") + s + " -o c.png --format 16x16 --spp 2");
+        EXPECT_EQ(status, 0) << s << errors();
+        EXPECT_EQ(errors(), "") << s;
+    }
+    EXPECT_EQ(run("shade look.sl -o - --format 8x8 --spp 1").substr(0, 4), kPng);
+    run("shade look.sl --param nosuch=1 -o a.png");
+    EXPECT_EQ(status, 2);
+    write("bad.sl", "surface bad() { Ci = nois(P); }\n");
+    run("shade bad.sl -o a.png");
+    EXPECT_EQ(status, 3);
+    EXPECT_EQ(times("error:"), 1) << errors();
+}

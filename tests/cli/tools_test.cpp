@@ -121,7 +121,7 @@ TEST_F(Tools, TheDialectRispec) {
     // A power of the cosine of 45 degrees, in floats: 2^-1 and 2^-8.
     EXPECT_NEAR(Json::parse(run("info --json --dialect rispec a.sl"))["parameters"][0]["default"][0].get<double>(), .5, 1e-6);
     EXPECT_NEAR(Json::parse(run("info --json a.sl"))["parameters"][0]["default"][0].get<double>(), 1. / 256, 1e-8);
-    run("shade --dialect rispec a.sl -o a.exr");
+    run("shade --patch --dialect rispec a.sl -o a.exr");
     EXPECT_EQ(status, 0) << errors();
     write("a.rib", "Option \"shade\" \"string specular\" \"blinn\"\nFormat 8 8 1\nProjection "
                    "\"perspective\"\nWorldBegin\nTranslate 0 0 3\nSphere 1 -1 1 360\nWorldEnd\n");
@@ -136,7 +136,7 @@ TEST_F(Tools, TheDialectRispec) {
 // eval and shade have maps, what a camera ray knows, and the name of the renderer.
 TEST_F(Tools, MapsAndRaysWithoutAScene) {
     write("grey.sl", "surface grey() { Ci = color(.25, .5, .75); Oi = 1; }\n");
-    run("shade grey.sl --format 8x8 -o map.exr");
+    run("shade --patch grey.sl --format 8x8 -o map.exr");
     ASSERT_EQ(status, 0) << errors();
     EXPECT_EQ(run("eval 'color texture(\"map.exr\", .5, .5)'"), "0.25 0.5 0.75\n") << errors();
     EXPECT_EQ(status, 0) << errors();
@@ -164,11 +164,11 @@ TEST_F(Tools, MapsAndRaysWithoutAScene) {
           "surface mapped(string name = \"map.exr\";) { string t = \"\"; vector d = 0; rayinfo(\"type\", t); "
           "rayinfo(\"direction\", d);\n"
           "    color e = match(\"camera\", t) ? color texture(name) : 0; Ci = e * length(d - normalize(I)) + e; Oi = 1; }\n");
-    run("shade mapped.sl --format 8x8 -o a.exr");
+    run("shade --patch mapped.sl --format 8x8 -o a.exr");
     EXPECT_EQ(status, 0) << errors();
     run("diff map.exr a.exr --tolerance 1e-5");
     EXPECT_EQ(status, 0);
-    run("shade mapped.sl --param name=nosuch.tex --format 8x8 -o a.exr");
+    run("shade --patch mapped.sl --param name=nosuch.tex --format 8x8 -o a.exr");
     EXPECT_EQ(status, 1);
     EXPECT_NE(errors().find("mapped.sl:2:"), std::string::npos) << errors();
 }
@@ -306,14 +306,14 @@ TEST_F(Tools, InfoOfAClassOfSeveralKinds) {
 TEST_F(Tools, ShadeOfAClass) {
     write("c.sl", "class c(float k = 1;) {\n    public void displacement(output point P; output normal N) { P += k * N; }\n"
                   "    public void opacity(output color Oi) { Oi = 0.5; }\n}\n");
-    run("shade c.sl -o a.exr --format 4x4");
+    run("shade --patch c.sl -o a.exr --format 4x4");
     EXPECT_EQ(status, 0) << errors();
-    run("shade c.sl --kind displacement -o b.exr --format 4x4");
+    run("shade --patch c.sl --kind displacement -o b.exr --format 4x4");
     EXPECT_EQ(status, 0) << errors();
-    run("shade c.sl --kind light -o c.exr --format 4x4");
+    run("shade --patch c.sl --kind light -o c.exr --format 4x4");
     EXPECT_EQ(status, 2);
     EXPECT_NE(errors().find("it is: surface, displacement"), std::string::npos) << errors();
-    run("shade c.sl --kind displacement -o d.png --format 4x4");
+    run("shade --patch c.sl --kind displacement -o d.png --format 4x4");
     EXPECT_EQ(status, 3);
     EXPECT_NE(errors().find("writes no Ci for a PNG picture, only"), std::string::npos) << errors();
 }

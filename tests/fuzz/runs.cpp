@@ -65,7 +65,7 @@ Outcome checkShader(const Bytes& b) {
 Outcome shadeShader(const Bytes& b) {
     putMaps();
     putFile("z.sl", b);
-    return outcomeOf(program({"shade", "--format", "6x4", "-o", "o.exr", "z.sl"}));
+    return outcomeOf(program({"shade", "--patch", "--format", "6x4", "-o", "o.exr", "z.sl"}));
 }
 
 /// The widths of the machine code must not show.
@@ -75,7 +75,7 @@ Outcome shadeInWidths(const Bytes& b) {
     std::array<Bytes, 3> pictures;
     int status = 0;
     for (size_t i = 0; i < 3; ++i) {
-        status = program({"shade", "--format", "6x4", "-o", "o.exr", "--lanes", std::to_string(4 << i), "z.sl"});
+        status = program({"shade", "--patch", "--format", "6x4", "-o", "o.exr", "--lanes", std::to_string(4 << i), "z.sl"});
         if (status > 1) break;
         pictures[i] = contentsOf("o.exr");
     }

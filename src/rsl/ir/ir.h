@@ -76,7 +76,7 @@ struct Inst {
     std::vector<Inst*> args;
     std::vector<Region> regions;
     int index = 0;
-    int site = -1;
+    int site = -1;                ///< of Loop: what is called when its turns have no end (passes/looplimit.h)
     std::vector<float> numbers;
     std::string text;             ///< symbol or string constant
     Place place;
@@ -126,6 +126,7 @@ struct KernelFacts {
     bool lightLoops = false;
     std::vector<std::pair<int, std::string>> stuck; ///< sites that no weight can be given to, with the reason (passes/affine.h)
     std::vector<std::string> direct; ///< lobe calls ("specular, line 12") that stay direct under path, with the reason
+    std::vector<Place> directPlaces; ///< where each of them is
     bool ambientLight = false;   ///< light: no illuminate and no solar
     /// Light: "illuminate", "solar" or "solar()" (all directions) for each block, in order; then "outside" when Cl is also set outside
     /// them. Outputs of block k > 0 are L#k Cl#k Ol#k lit#k; of what is outside, Cl#(number of blocks).

@@ -100,6 +100,7 @@ template <class A> void item(A& a, ir::KernelFacts& f) {
     a(f.suspends);
     a(f.lightLoops);
     a(f.direct);
+    a(f.directPlaces);
     a(f.ambientLight);
     a(f.blocks);
     a(f.opacity);

@@ -180,6 +180,9 @@ void Emitter::emitLoop(const Inst* i) {
         define(test.params[k], 0, phi[k]);
         define(body.params[k], 0, phi[k]);
     }
+    // Who is still inside has made every turn, so that one count is that of all lanes.
+    llvm::PHINode* turn = i->site >= 0 ? b_.CreatePHI(i32_, 2, "turn") : nullptr;
+    if (turn) turn->addIncoming(b_.getInt32(0), before);
     if (varying) {
         live->addIncoming(outer, before);
         mask_ = live;
@@ -196,9 +199,18 @@ void Emitter::emitLoop(const Inst* i) {
     BasicBlock* ask = block("goon");
     b_.CreateCondBr(go, ask, exit);
     b_.SetInsertPoint(ask);
-    b_.CreateCondBr(stopped(), exit, inside);
-    b_.SetInsertPoint(inside);
     if (varying) mask_ = running;
+    BasicBlock* allowed = turn ? block("allowed") : inside;
+    b_.CreateCondBr(stopped(), exit, allowed);
+    if (turn) {
+        BasicBlock* endless = block("endless");
+        b_.SetInsertPoint(allowed);
+        b_.CreateCondBr(b_.CreateICmpULT(turn, b_.getInt32(limits::kLoopTurns)), inside, endless);
+        b_.SetInsertPoint(endless);
+        callService(i->site, nullptr, nullptr);
+        b_.CreateBr(exit);
+    }
+    b_.SetInsertPoint(inside);
     region(body);
     std::vector<Val> next(count);
     for (size_t k = 0; k < count; k++) {
@@ -214,6 +226,7 @@ void Emitter::emitLoop(const Inst* i) {
         if (varying && body.yields[k] != body.params[k] && shapes_.used(i, int(k))) next[k] = keepLanes(running, next[k], phi[k]);
     }
     BasicBlock* latch = b_.GetInsertBlock();
+    if (turn) turn->addIncoming(b_.CreateAdd(turn, b_.getInt32(1)), latch);
     b_.CreateBr(head);
     for (size_t k = 0; k < count; k++) addIncoming(phi[k], next[k], latch);
     if (varying) live->addIncoming(running, latch);

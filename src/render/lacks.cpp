@@ -1,0 +1,64 @@
+#include "render/lacks.h"
+#include <algorithm>
+
+namespace alpenglow::render {
+namespace {
+
+using Source = OutputVariable::Source;
+
+void warn(Diagnostics& diags, const SourcePlace& place, std::string message, std::string hint) {
+    diags.report(Severity::Warning, Rie::MissingData, place, std::move(message), std::move(hint));
+}
+
+std::string counted(size_t n, const char* thing) { return std::to_string(n) + " " + thing + (n == 1 ? "" : "s"); }
+
+/// Where to look when the camera sees none of these shapes.
+std::string unseenHint(size_t shapes, size_t before) {
+    if (shapes == 0) return "the world has no primitives that are drawn";
+    const std::string camera = "the camera looks along +z, and requests before WorldBegin place the world before it";
+    if (before == 0)
+        return "all of it lies behind the camera: " + camera + "; Translate 0 0 5, for example, moves it 5 away";
+    return "check the camera: " + camera + "; " + counted(before, "shape") + " of " + std::to_string(shapes) +
+           (before == 1 ? " lies" : " lie") + " before it, outside the picture or hidden from it by Attribute \"visibility\" or Sides 1";
+}
+
+} // namespace
+
+void sayMissingOutputs(const OutputPlan& plan, const transport::World& world, Diagnostics& diags) {
+    const std::vector<std::string> missing = world.missingOutputs();
+    if (missing.empty()) return;
+    const std::vector<std::string> known = world.knownOutputs();
+    std::vector<std::string> said;
+    for (const OutputSpec& s : plan.pictures)
+        for (const OutputVariable& v : s.variables) {
+            if (v.source != Source::Engine || std::find(missing.begin(), missing.end(), v.name) == missing.end() ||
+                std::find(said.begin(), said.end(), v.name) != said.end())
+                continue;
+            said.push_back(v.name);
+            const std::string near = nearestName(v.name, known);
+            warn(diags, s.place, "display \"" + s.name + "\": no shader outputs \"" + v.name + "\"; its channels are 0",
+                 near.empty() ? "" : "did you mean \"" + near + "\"?");
+        }
+}
+
+void sayEmptyPicture(const Job& job, const scene::Frame& frame, Diagnostics& diags) {
+    const Camera& c = job.camera;
+    if (job.interrupted || job.shone || !job.world || !job.plan.needs(Source::Ci) || c.window().width() < c.width() ||
+        c.window().height() < c.height())
+        return;
+    const transport::World::Facts facts = job.world->facts();
+    if (!job.met) {
+        warn(diags, {}, "the picture is empty: the camera sees nothing of the scene", unseenHint(facts.shapes, facts.before));
+        return;
+    }
+    const size_t lights = frame.lights.size();
+    if (lights == 0)
+        warn(diags, {}, "the picture is black: the scene has no lights",
+             "LightSource \"pointlight\" 1 \"from\" [0 0 0] \"intensity\" 10, for example, before the primitives");
+    else
+        warn(diags, {}, "the picture is black: surfaces are seen, but " + (lights == 1 ? "the light does" : "the " + counted(lights, "light") + " do") + " not show on them",
+             "check that the lights are on where the surfaces are made (AttributeEnd ends a light), that they reach them, and "
+             "what the shaders do with their light");
+}
+
+} // namespace alpenglow::render

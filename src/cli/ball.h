@@ -8,7 +8,7 @@
 namespace alpenglow::cli {
 
 struct BallSettings {
-    std::string shader;                     ///< file or name, as the user gave it
+    std::string shader; ///< file or name, as the user gave it
     rsl::ShaderKind kind = rsl::ShaderKind::Surface;
     std::vector<rsl::ParameterValue> given; ///< parameters that the user set
     std::string output;                     ///< picture, or "-"

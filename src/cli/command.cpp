@@ -19,8 +19,8 @@ namespace alpenglow::cli {
 
 namespace {
 
-/// The line of a text file that a message is about; "" when the file is none, or is compressed or binary. Lines end as the reader of
-/// RIB has them.
+/// The line of a text file that a message is about; "" when the file is none, or is compressed or binary. Lines end as the reader
+/// of RIB has them.
 std::string lineOf(const SourcePlace& p) {
     struct stat s;
     if (p.line <= 0 || stat(p.file.c_str(), &s) != 0 || !S_ISREG(s.st_mode)) return "";

@@ -188,8 +188,9 @@ int shade(const Arguments& a) {
         for (const auto& o : kernel->outputs()) writes += (writes.empty() ? "" : ", ") + o.name;
         diags.report(Severity::Error, Rie::MissingData, {a.shader},
                      "this " + std::string(rsl::toString(shader->kind())) + " shader " +
-                         (writes.empty() ? "writes nothing that could be shown"
-                                         : std::string("writes no Ci for a ") + display::toString(format) + " picture, only " + writes),
+                         (writes.empty()
+                              ? "writes nothing that could be shown"
+                              : std::string("writes no Ci for a ") + display::toString(format) + " picture, only " + writes),
                      writes.empty() ? "--output names what is to be shown" : "an EXR picture takes any values");
         return kNothingRendered;
     }
@@ -342,10 +343,15 @@ void addShade(CLI::App& app, int* status) {
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("shade", "Show a shader on a lit ball, or over a unit patch");
     c->add_option("shader", a->shader, "RSL file, or the name of a shader on the search path")->required();
-    c->add_option("-o", a->output, std::string("The picture (") + display::kPictureExtensions + "; - is standard output); of a patch Ci, Oi, or what --output names")
-        ->type_name("FILE")->capture_default_str();
+    c->add_option("-o", a->output,
+                  std::string("The picture (") + display::kPictureExtensions +
+                      "; - is standard output); of a patch Ci, Oi, or what --output names")
+        ->type_name("FILE")
+        ->capture_default_str();
     c->add_flag("--patch", a->patch, "The unit patch instead of the ball; also what --output, --iterations and --vectors mean");
-    c->add_option("--kind", a->kind, "Of a class that is shaders of several kinds: which; else the first of surface, displacement, light, volume, imager")
+    c->add_option(
+         "--kind", a->kind,
+         "Of a class that is shaders of several kinds: which; else the first of surface, displacement, light, volume, imager")
         ->check(CLI::IsMember({"surface", "displacement", "light", "volume", "imager"}))
         ->type_name("KIND");
     c->add_option("--param", a->params, "Set a parameter: Kd=0.5, color=1,0,0, name=text")
@@ -353,8 +359,10 @@ void addShade(CLI::App& app, int* status) {
         ->allow_extra_args(false);
     c->add_option("--output", a->outputs, "Variables to write instead of Ci and Oi")->type_name("NAME")->allow_extra_args(false);
     c->add_option("--format", a->format, "Size of the picture")->type_name("WxH")->capture_default_str();
-    c->add_option("--spp", a->spp, "Samples a pixel of the ball, 64 when not given; points a pixel of the patch, rounded to a square, averaged, 1 when not "
-                  "given")
+    c->add_option(
+         "--spp", a->spp,
+         "Samples a pixel of the ball, 64 when not given; points a pixel of the patch, rounded to a square, averaged, 1 when not "
+         "given")
         ->check(wholeBetween(1, 4096))
         ->type_name("N");
     c->add_option("--gamma", a->gamma, "Display gamma of the picture")->check(between(0.01, 100))->type_name("G");
@@ -372,7 +380,8 @@ void addShade(CLI::App& app, int* status) {
     addDialect(*c, a->dialect);
     c->add_flag("--allow-exec", a->allowExec, "Let the shader load plug-ins");
     c->footer(
-        "The ball lies on a floor under a lamp and a sky, and is path-traced: a surface is on the ball, a displacement pushes it, a\n"
+        "The ball lies on a floor under a lamp and a sky, and is path-traced: a surface is on the ball, a displacement pushes "
+        "it, a\n"
         "volume is the air, a light is the lamp, an imager sees the picture.\n"
         "The patch: P = (u, v, 0), u to the right and v downward over the picture, s = u, t = v, N = (0,0,1), seen from the eye "
         "at\n"

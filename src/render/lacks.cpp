@@ -16,10 +16,10 @@ std::string counted(size_t n, const char* thing) { return std::to_string(n) + " 
 std::string unseenHint(size_t shapes, size_t before) {
     if (shapes == 0) return "the world has no primitives that are drawn";
     const std::string camera = "the camera looks along +z, and requests before WorldBegin place the world before it";
-    if (before == 0)
-        return "all of it lies behind the camera: " + camera + "; Translate 0 0 5, for example, moves it 5 away";
+    if (before == 0) return "all of it lies behind the camera: " + camera + "; Translate 0 0 5, for example, moves it 5 away";
     return "check the camera: " + camera + "; " + counted(before, "shape") + " of " + std::to_string(shapes) +
-           (before == 1 ? " lies" : " lie") + " before it, outside the picture or hidden from it by Attribute \"visibility\" or Sides 1";
+           (before == 1 ? " lies" : " lie") +
+           " before it, outside the picture or hidden from it by Attribute \"visibility\" or Sides 1";
 }
 
 } // namespace
@@ -56,7 +56,9 @@ void sayEmptyPicture(const Job& job, const scene::Frame& frame, Diagnostics& dia
         warn(diags, {}, "the picture is black: the scene has no lights",
              "LightSource \"pointlight\" 1 \"from\" [0 0 0] \"intensity\" 10, for example, before the primitives");
     else
-        warn(diags, {}, "the picture is black: surfaces are seen, but " + (lights == 1 ? "the light does" : "the " + counted(lights, "light") + " do") + " not show on them",
+        warn(diags, {},
+             "the picture is black: surfaces are seen, but " +
+                 (lights == 1 ? "the light does" : "the " + counted(lights, "light") + " do") + " not show on them",
              "check that the lights are on where the surfaces are made (AttributeEnd ends a light), that they reach them, and "
              "what the shaders do with their light");
 }

@@ -7,8 +7,8 @@ namespace alpenglow::render {
 /// A warning for each variable of a display that no shader of the frame and no predefined variable gives: its channels are 0.
 void sayMissingOutputs(const OutputPlan&, const transport::World&, Diagnostics&);
 
-/// A warning when the frame is done: no camera ray met a surface or light, or surfaces were met and all of them are black. Nothing
-/// of pictures without colour, of parts of a picture, and of what was interrupted.
+/// A warning when the frame is done: no camera ray met a surface or light, or surfaces were met and all of them are black.
+/// Nothing of pictures without colour, of parts of a picture, and of what was interrupted.
 void sayEmptyPicture(const Job&, const scene::Frame&, Diagnostics&);
 
 } // namespace alpenglow::render

@@ -104,7 +104,8 @@ scene::Param Interpreter::bindOne(const Call& call, const RawParam& raw, Use use
         return p;
     }
     reporter.error(Rie::Consistency, p.place,
-                   fmt::format("{}: \"{}\" needs {} {}, not {}", request, p.name, want, std::string(text ? "string" : "number") + (want == 1 ? "" : "s"), have));
+                   fmt::format("{}: \"{}\" needs {} {}, not {}", request, p.name, want,
+                               std::string(text ? "string" : "number") + (want == 1 ? "" : "s"), have));
     *keep = false;
     return p;
 }

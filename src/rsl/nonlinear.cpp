@@ -51,8 +51,9 @@ std::vector<Diagnostic> nonlinearUses(const Program& program, const Shader& shad
             d.place = {program.files[size_t(p.file)], p.line, p.column};
         d.message = "under path " + spoken(n.op) + " is used non-linearly: " + without(n.why, p.line);
         d.id = "not-affine";
-        d.hint = number < lobes ? "it brings direct light only then; sums and products with what does not depend on light bring all of it"
-                                : "the shader waits for its rays then; sums and products with what does not depend on light need no waiting";
+        d.hint = number < lobes
+                     ? "it brings direct light only then; sums and products with what does not depend on light bring all of it"
+                     : "the shader waits for its rays then; sums and products with what does not depend on light need no waiting";
         all.push_back(std::move(d));
     }
     std::stable_sort(all.begin(), all.end(), [](const Diagnostic& a, const Diagnostic& b) {

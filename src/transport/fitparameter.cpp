@@ -70,8 +70,9 @@ std::optional<rsl::ParameterValue> fitParameter(const scene::Param& given, const
     const bool tooLong = p.open && have > want && have % each == 0; // its first elements are taken
     if (have != want && !tooLong) {
         const std::string unit = text ? (want == 1 ? " string" : " strings") : want == 1 ? " number" : " numbers";
-        say(Severity::Error, (sameType ? ": it takes " + std::to_string(want) + unit + ", not " + std::to_string(have) : otherType) +
-                                 "; its default is used");
+        say(Severity::Error,
+            (sameType ? ": it takes " + std::to_string(want) + unit + ", not " + std::to_string(have) : otherType) +
+                "; its default is used");
         return std::nullopt;
     }
     if (!sameType) say(Severity::Warning, otherType + "; its numbers are taken");

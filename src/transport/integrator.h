@@ -66,12 +66,16 @@ public:
     virtual ~World() = default;
     virtual const scene::Frame& frame() const = 0;
     virtual const Settings& settings() const = 0;
-    struct Facts { double buildSec = 0, compileSec = 0; int kernels = 0, affine = 0, suspending = 0, cacheHits = 0; size_t shapes = 0; size_t before = 0; }; ///< before: shapes that are not wholly behind the camera
+    struct Facts {
+        double buildSec = 0, compileSec = 0;
+        int kernels = 0, affine = 0, suspending = 0, cacheHits = 0;
+        size_t shapes = 0, before = 0; ///< before: those that are not wholly behind the camera
+    };
     virtual Facts facts() const = 0;
     /// Floats per AOV in Settings::outputs: what the shaders that give it have, arrays with all their elements.
     virtual std::vector<int> outputWidths() const = 0;
-    /// Those of Settings::outputs that no shader of the frame gives and that are no predefined variable: they are 0 everywhere. None
-    /// where the frame has no primitives.
+    /// Those of Settings::outputs that no shader of the frame gives and that are no predefined variable: they are 0 everywhere.
+    /// None where the frame has no primitives.
     virtual std::vector<std::string> missingOutputs() const { return {}; }
     /// What could be named instead: predefined variables and the outputs of the frame's shaders.
     virtual std::vector<std::string> knownOutputs() const { return {}; }

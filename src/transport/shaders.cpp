@@ -140,8 +140,8 @@ InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind k
         auto value = fitParameter(given, *p, call.name, call.place, d);
         if (!value) continue;
         if (p->open)
-            i->parameters.strings[given.name + "[]"] =
-                std::to_string(std::max(value->strings.size(), value->numbers.size() / size_t(rsl::componentCount(p->type.base))));
+            i->parameters.strings[given.name + "[]"] = std::to_string(
+                std::max(value->strings.size(), value->numbers.size() / size_t(rsl::componentCount(p->type.base))));
         transformParameter(value->numbers, p->type.base, i->toCurrent);
         i->given.insert(given.name);
         if (p->handle) i->handlePlaces[given.name] = given.place.file.empty() ? call.place : given.place;

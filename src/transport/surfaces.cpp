@@ -39,11 +39,16 @@ static void sayDirectOnly(const ShaderInstance& shader, const rsl::CompiledKerne
     const std::string op = direct[0].substr(0, direct[0].find(',')), why = direct[0].substr(direct[0].find(": ") + 2);
     const size_t more = direct.size() - 1;
     d.reportOnce("directonly:" + shader.program->path() + ":" + shader.program->name(),
-                 {Severity::Warning, Rie::Incapable, place,
+                 {Severity::Warning,
+                  Rie::Incapable,
+                  place,
                   "shader \"" + shader.program->name() + "\" under path: " + op + "() brings direct light only" +
-                      (more ? ", and so do " + std::to_string(more) + " further calls" : "") + ", for it is used non-linearly: " + why,
-                  "use its light in sums and products only, as in Ci = a + b * " + op + "(...), where a and b do not depend on light; "
-                  "`compile -W --path` shows all such places", {}});
+                      (more ? ", and so do " + std::to_string(more) + " further calls" : "") +
+                      ", for it is used non-linearly: " + why,
+                  "use its light in sums and products only, as in Ci = a + b * " + op +
+                      "(...), where a and b do not depend on light; "
+                      "`compile -W --path` shows all such places",
+                  {}});
 }
 
 bool SurfaceBinder::differences(const geometry::Shape& shape) {

@@ -23,8 +23,8 @@ protected:
     }
     /// A picture of 8 x 8 that shows one sphere, with these requests before and in the world.
     void scene(const std::string& options, const std::string& world, const char* name = "a.rib") const {
-        write(name, "Format 8 8 1\nProjection \"perspective\" \"fov\" [30]\n" + options + "Translate 0 0 5\nWorldBegin\n" + world +
-                        "Sphere 1 -1 1 360\nWorldEnd\n");
+        write(name, "Format 8 8 1\nProjection \"perspective\" \"fov\" [30]\n" + options + "Translate 0 0 5\nWorldBegin\n" +
+                        world + "Sphere 1 -1 1 360\nWorldEnd\n");
     }
 };
 
@@ -96,7 +96,8 @@ TEST_F(Said, StandardOutput) {
 TEST_F(Said, UnknownOptionsAndAttributes) {
     scene("Option \"trace\" \"int maxdpth\" 3\nOption \"trase\" \"int maxdepth\" 3\nOption \"user\" \"int mine\" 3\n"
           "Option \"limits\" \"int gridsise\" 3\nOption \"visibility\" \"int camera\" 1\n",
-          "Attribute \"visibilty\" \"int trace\" 1\nAttribute \"visibility\" \"int tracee\" 1\nAttribute \"visibilty\" \"int trace\" 0\n"
+          "Attribute \"visibilty\" \"int trace\" 1\nAttribute \"visibility\" \"int tracee\" 1\nAttribute \"visibilty\" \"int "
+          "trace\" 0\n"
           "Attribute \"trace\" \"float bias\" .1\nSurface \"constant\"\n");
     run("render -o a.png a.rib");
     EXPECT_EQ(status, 0);
@@ -116,12 +117,14 @@ TEST_F(Said, UnknownOptionsAndAttributes) {
 }
 
 TEST_F(Said, ParametersOfAnotherTypeOrLength) {
-    scene("", "Surface \"plastic\" \"color Kd\" [1 0 0]\nSurface \"plastic\" \"Kd\" [1 2]\nSurface \"plastic\" \"uniform string Kd\" \"hello\"\n"
+    scene("", "Surface \"plastic\" \"color Kd\" [1 0 0]\nSurface \"plastic\" \"Kd\" [1 2]\nSurface \"plastic\" \"uniform string "
+              "Kd\" \"hello\"\n"
               "Surface \"plastic\" \"string roughness\" [\"a\"] \"float specularcolor\" .5\n"
               "Surface \"plastic\" \"uniform point specularcolor\" [1 1 1] \"specularcolor\" .3\n");
     // Only the last one is bound: the others are overwritten before there is a primitive.
     run("render -o a.png a.rib");
-    EXPECT_TRUE(says("parameter \"specularcolor\" of shader \"plastic\" is a color, not a point; its numbers are taken")) << errors();
+    EXPECT_TRUE(says("parameter \"specularcolor\" of shader \"plastic\" is a color, not a point; its numbers are taken"))
+        << errors();
     const std::pair<const char*, const char*> cases[] = {
         {"\"color Kd\" [1 0 0]", "is a float, not a color; its default is used"},
         {"\"Kd\" [1 2]", "is a float: it takes 1 number, not 2; its default is used"},
@@ -164,7 +167,8 @@ TEST_F(Said, MissingCoShaders) {
                      "        for (i = 0; i < 2; i += 1) { color c = 0;\n"
                      "            if (layers[i] != null) { layers[i]->getColor(c); Ci += c; } else Ci += color(0, .5, 0); }\n"
                      "        if (one == null) Ci += color(0, 0, .25);\n    }\n}\n");
-    scene("", "Scale 4 4 1\nShader \"layer\" \"l1\" \"color c\" [.5 0 0]\nSurface \"coat\" \"string[2] layers\" [\"l1\" \"l2\"] \"string one\" \"nobody\"\n");
+    scene("", "Scale 4 4 1\nShader \"layer\" \"l1\" \"color c\" [.5 0 0]\nSurface \"coat\" \"string[2] layers\" [\"l1\" \"l2\"] "
+              "\"string one\" \"nobody\"\n");
     run("render -o a.exr a.rib");
     EXPECT_EQ(status, 1);
     EXPECT_TRUE(says("a.rib:7:16: error: there is no co-shader \"l2\": \"layers[1]\" of shader \"coat\" is null")) << errors();
@@ -200,7 +204,8 @@ TEST_F(Said, DirectLightOnly) {
     run("render --hider path --spp 8 -o a.exr a.rib");
     EXPECT_EQ(status, 0) << errors();
     EXPECT_EQ(times("capped.sl:4:"), 1) << errors();
-    EXPECT_TRUE(says("warning: shader \"capped\" under path: diffuse() brings direct light only, for it is used non-linearly")) << errors();
+    EXPECT_TRUE(says("warning: shader \"capped\" under path: diffuse() brings direct light only, for it is used non-linearly"))
+        << errors();
     EXPECT_TRUE(says("use its light in sums and products only"));
     run("render --spp 8 -o a.exr a.rib"); // from the cache
     run("render --hider path --spp 8 -o a.exr a.rib");
@@ -256,7 +261,8 @@ TEST_F(Said, LoopsWithoutEnd) {
     EXPECT_EQ(run("eval --setup 'float n = 0; while (n < 9999999) n += 1;' n"), "9999999\n");
     EXPECT_EQ(status, 0) << errors();
     // Points that leave keep what they have.
-    write("some.sl", "surface some()\n{\n    float n = 0, x = 0;\n    while (u < .5 || n < 3) { n += 1; x = n; }\n    Ci = x / 1e7; Oi = 1;\n}\n");
+    write("some.sl", "surface some()\n{\n    float n = 0, x = 0;\n    while (u < .5 || n < 3) { n += 1; x = n; }\n    Ci = x / "
+                     "1e7; Oi = 1;\n}\n");
     for (const char* lanes : {"4", "16"}) {
         run(std::string("shade --patch some.sl -o ") + lanes + ".exr --format 8x2 --lanes " + lanes);
         EXPECT_EQ(status, 1);
@@ -272,9 +278,11 @@ TEST_F(Said, LoopsWithoutEnd) {
 }
 
 TEST_F(Said, ABallByDefault) {
-    write("look.sl", "surface look(color tint = 1; string words = \"\";) { normal n = normalize(N); Oi = Os; Ci = tint * diffuse(n); }\n");
+    write("look.sl",
+          "surface look(color tint = 1; string words = \"\";) { normal n = normalize(N); Oi = Os; Ci = tint * diffuse(n); }\n");
     std::filesystem::create_directory(dir / "sub");
-    std::ofstream(dir / "sub" / "push.sl") << "displacement push(float a = .1;) { P += a * sin(20 * u) * normalize(N); N = calculatenormal(P); }\n";
+    std::ofstream(dir / "sub" / "push.sl")
+        << "displacement push(float a = .1;) { P += a * sin(20 * u) * normalize(N); N = calculatenormal(P); }\n";
     const auto mean = [&](const char* name) {
         alpenglow::Diagnostics d;
         const auto image = alpenglow::display::readImage((dir / name).string(), d);

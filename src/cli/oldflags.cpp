@@ -187,7 +187,7 @@ std::string oldFlagsPage() {
     std::sort(sorted.begin(), sorted.end(), [](const OldFlag* a, const OldFlag* b) { return a->name < b->name; });
     for (const OldFlag* f : sorted) {
         const std::string text = f->use == Use::Accepted  ? "`" + std::string(f->here) + "`"
-                                 : f->use == Use::Dropped ? "read over: " + std::string(f->here)
+                                 : f->use == Use::Dropped ? "ignored: " + std::string(f->here)
                                                           : "refused: " + std::string(f->here);
         std::string values;
         for (int k = 1; k <= f->values; ++k) values += " $" + std::to_string(k);

@@ -11,7 +11,7 @@ namespace alpenglow::cli {
 struct OldFlag {
     enum class Use {
         Accepted, ///< becomes `here`
-        Dropped,  ///< read over: nothing here needs it; `here` says why
+        Dropped,  ///< ignored: nothing here needs it; `here` says why
         Answered, ///< ends with status 2 and the text `here`, which says what to write instead
     };
     std::string_view name;      ///< "-res"
@@ -26,7 +26,7 @@ std::span<const OldFlag> oldFlags();
 /// A command line with the flags of other renderers replaced.
 struct TranslatedFlags {
     std::vector<std::string> arguments;
-    std::vector<std::string> notes; ///< what was replaced or read over, a line each
+    std::vector<std::string> notes; ///< what was replaced or ignored, a line each
     std::string error;              ///< not "": a flag that cannot be taken, and what to write instead
 };
 

@@ -1,3 +1,4 @@
+cmake_minimum_required(VERSION 3.25)
 # Writes OUT with the commit of the checkout at SOURCE, or an empty one where there is none; leaves it alone when nothing has changed,
 # so that only a new commit builds anything again.
 find_package(Git QUIET)

@@ -6,7 +6,7 @@ target_link_libraries(alpenglow PRIVATE render ri transport shading texture disp
 target_compile_definitions(alpenglow PRIVATE ALPENGLOW_VERSION="0.1")
 add_custom_target(commit_header
   COMMAND ${CMAKE_COMMAND} -DSOURCE=${CMAKE_SOURCE_DIR} -DOUT=${CMAKE_BINARY_DIR}/generated/alpenglow_commit.h -P ${CMAKE_SOURCE_DIR}/cmake/commit.cmake
-  BYPRODUCTS ${CMAKE_BINARY_DIR}/generated/alpenglow_commit.h COMMENT "" VERBATIM)
+  BYPRODUCTS ${CMAKE_BINARY_DIR}/generated/alpenglow_commit.h COMMENT "The commit, for --version" VERBATIM)
 add_dependencies(alpenglow commit_header)
 target_include_directories(alpenglow PRIVATE ${CMAKE_BINARY_DIR}/generated)
 room_tests(cli DEPS render display transport)

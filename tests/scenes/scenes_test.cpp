@@ -154,7 +154,8 @@ TEST_P(PublishedScene, RendersSilentlyAndLooksAlike) {
     } else {
         reader.readFile(base + ".rib");
     }
-    for (const Diagnostic& d : diags.all()) ADD_FAILURE() << toString(d);
+    for (const Diagnostic& d : diags.all()) // notes are for -v: what of other renderers has no effect here
+        if (d.severity != Severity::Info) ADD_FAILURE() << toString(d);
 
     // A scene with FrameBegin has the number in the name.
     const std::string numbered = folder / "picture.0000.png"; // of val_poly

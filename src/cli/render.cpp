@@ -163,6 +163,7 @@ int renderOnce(const Arguments& a, const StopFlag* stop) {
     options.searchPaths = folders(a.searchPaths);
     options.allowExec = settings.allowExec;
     options.allowRead = settings.allowRead;
+    options.reads = settings.reads;
     options.stop = stop;
     options.frames = a.frameList;
     std::vector<int> seen;
@@ -205,18 +206,6 @@ int renderOnce(const Arguments& a, const StopFlag* stop) {
     return diags.errors() ? kDoneWithErrors : kDone;
 }
 
-/// When the scenes were last changed: any difference is a change.
-std::vector<int64_t> timesOf(const std::vector<std::string>& files) {
-    std::vector<int64_t> t;
-    for (const std::string& f : files) {
-        struct stat s;
-        bool there = stat(f.c_str(), &s) == 0;
-        t.push_back(there ? int64_t(s.st_mtim.tv_sec) * 1000000000 + s.st_mtim.tv_nsec : 0);
-        t.push_back(there ? int64_t(s.st_size) : -1);
-    }
-    return t;
-}
-
 int renderAll(const Arguments& a) {
     if (a.settings.output == "-") stdout = stderr; // what shaders print must not come between the bytes of the picture
     const MemoryLimit limit(a.settings.memoryLimit,
@@ -225,12 +214,12 @@ int renderAll(const Arguments& a) {
     if (!a.watch) return renderOnce(a, stop);
     Arguments again = a;
     while (true) {
-        auto before = timesOf(a.scenes);
+        again.settings.reads = std::make_shared<ReadLog>();
         int status = renderOnce(again, stop);
         again.settings.restart = !a.settings.resume; // the checkpoint of the round before is ours
         if (*stop) return status;
-        std::fputs("alpenglow: waiting for the scene to change; Ctrl-C ends\n", stderr);
-        while (timesOf(a.scenes) == before) {
+        std::fputs("alpenglow: waiting for a file of the scene to change; Ctrl-C ends\n", stderr);
+        while (!again.settings.reads->changed()) {
             if (*stop) return status;
             std::this_thread::sleep_for(std::chrono::milliseconds(200));
         }
@@ -360,7 +349,9 @@ void addRender(CLI::App& app, int* status, const std::string& command) {
                   "Print red, green, blue and coverage of one pixel, or of one of its samples, and write no picture")
         ->type_name("X,Y[,SAMPLE]")
         ->group("Machine");
-    c->add_flag("--watch", a->watch, "Render again whenever the scene file changes")->group("Machine");
+    c->add_flag("--watch", a->watch,
+                "Render again whenever a file changes that the scene uses: shaders, includes, maps, archives")
+        ->group("Machine");
 
     addDialect(*c, a->settings.dialect);
     c->add_option("--cwd", a->folder, "Work in this folder: names on the command line and in the scene begin there")

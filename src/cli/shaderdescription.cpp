@@ -144,7 +144,7 @@ KindDescription describeKind(rsl::ShaderCompiler& compiler, const rsl::CompiledS
     if (!kernel) return k;
     k.compiled = true;
     k.writes = kernel->facts.writes;
-    k.direct = kernel->facts.direct;
+    for (const auto& lobe : kernel->facts.direct) k.direct.push_back(lobe.text());
     k.affine = kernel->facts.affine;
     k.suspends = kernel->facts.suspends;
     k.lightLoops = kernel->facts.lightLoops;

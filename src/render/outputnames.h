@@ -45,8 +45,8 @@ public:
     /// A world begins: what earlier ones wrote is not overwritten, but for maps by maps.
     void nextWorld() { ++world_; }
     /// The name under which an output is written: its own, or where another output of this run has that file, one beside it: with
-    /// the number of the frame when an earlier frame has it, else with .2, .3 ... before the extension. This is said (`diags`
-    /// null: not). kind: "display", "checkpoint" for the message.
+    /// the number of the frame when an earlier frame has it, else with .2, .3 ... before the extension. A change of name is
+    /// reported unless `diags` is null. kind: "display", "checkpoint" for the message.
     std::string take(const std::string& kind, const std::string& name, bool map, const scene::Options&, const SourcePlace&,
                      Diagnostics* diags);
     /// A Make request has read this file; the next frame may use the name again.

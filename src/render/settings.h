@@ -1,10 +1,12 @@
 // What a user may ask of a render beside what the scene says. Defaults mean "as the scene says".
 #pragma once
+#include "base/readlog.h"
 #include "base/stopflag.h"
 #include "render/film.h"
 #include "render/progress.h"
 #include "scene/scene.h"
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,6 +47,7 @@ struct RenderSettings {
     std::string scenePath;                              ///< where the scene lies: the last place but one to look in; "" = nowhere
     std::string shippedShaders;                         ///< the last place to look for shaders in
     bool allowExec = false, allowWrite = false, allowRead = false;
+    std::shared_ptr<ReadLog> reads; ///< gets every shader and map that is read or missed; may be null
     size_t memoryLimit = 0; ///< what the process is bound to (base/memory.h), for messages; 0 = nothing
     ProgressMode progress = ProgressMode::Auto;
     bool quiet = false;

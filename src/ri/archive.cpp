@@ -159,6 +159,7 @@ void Interpreter::readArchive(const std::string& name, const SourcePlace& place)
             if (outside.empty()) outside = path;
             return false;
         });
+        if (settings.reads) file.empty() ? settings.reads->addMissing(name, folders) : settings.reads->add(file);
         if (file.empty() && !outside.empty()) {
             const Diagnostic d = outsideMessage("archive", name, outside, place);
             reporter.error(d.code, place, d.message, d.hint);

@@ -18,6 +18,7 @@ RibReader::~RibReader() = default;
 
 bool RibReader::readFile(const std::string& path) {
     if (path == "-") return in_->read(standardInput(), "standard input");
+    if (const auto& reads = in_->interpreter.settings.reads) reads->add(path);
     std::string why;
     auto source = fileSource(path, &why);
     if (!source) {

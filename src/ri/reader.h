@@ -1,6 +1,7 @@
 // The door to ri/: RIB streams in, frames out.
 #pragma once
 #include "base/limits.h"
+#include "base/readlog.h"
 #include "base/stopflag.h"
 #include "scene/scene.h"
 #include <functional>
@@ -19,6 +20,7 @@ struct ReaderOptions {
     bool allowRead = true;                ///< archives may lie anywhere; false: below the folders that archive.cpp names
     size_t mostLights = limits::kLights;  ///< of one frame; further ones are reported
     std::vector<int> frames; ///< only these FrameBegin numbers are rendered; empty = all. Worlds outside frames always are
+    std::shared_ptr<ReadLog> reads; ///< gets every scene and archive that is read or missed; may be null
     /// Called with the number of each FrameBegin, rendered or not.
     std::function<void(int)> frameSeen;
     /// Called for each frame on its own copy of the options, just before it is handed over: the command line has the last word.

@@ -199,8 +199,15 @@ ShaderPtr ShaderCompiler::find(const std::string& name, const std::vector<std::s
     constexpr const char* kCompiled[] = {".slo", ".sdl", ".sdr", ".slx", ".slc", ".sdw"};
     if (!found && std::none_of(std::begin(kCompiled), std::end(kCompiled), ofOther))
         if (auto shared = fileWithShader(stem, directories)) found = FoundFile{*shared};
+    const auto& reads = state_->settings.reads;
+    if (reads) found ? reads->add(found->path) : reads->addMissing(stem + ".sl", directories);
     if (found) {
         FrontOptions options = state_->front();
+        if (reads)
+            options.openText = [reads](const std::string& path) {
+                reads->add(path); // also where it would have been found
+                return std::nullopt;
+            };
         options.includePaths.push_back(fs::path(found->path).parent_path().string());
         for (const auto& d : directories) options.includePaths.push_back(d);
         auto program = compileFile(found->path, options, diagnostics);

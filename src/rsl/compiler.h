@@ -2,12 +2,13 @@
 // rsl.
 #pragma once
 #include "base/diagnostics.h"
+#include "base/readlog.h"
 #include "rsl/front/ast.h"
 #include "rsl/kernel.h"
 #include <functional>
 #include <memory>
-#include <string>
 #include <set>
+#include <string>
 #include <vector>
 
 namespace alpenglow::rsl {
@@ -71,6 +72,7 @@ public:
         bool lint = false; ///< the warnings for who writes shaders (front/lint.h)
         bool allowExec = false; ///< `plugin "name"` loads code (rsl/plugins.h); else it is an error that says so
         std::vector<std::string> pluginPaths; ///< where plug-ins are looked for, after the folder of the shader
+        std::shared_ptr<ReadLog> reads; ///< gets every source that is read or missed; may be null
     };
     ShaderCompiler();
     explicit ShaderCompiler(Settings);

@@ -201,6 +201,7 @@ std::shared_ptr<const Texture> TextureSystem::loadFile(const std::string& name, 
         diags_.reportOnce("texture:" + name, outsideMessage("texture", name, outside, place));
         return {};
     }
+    if (settings_.reads) found ? settings_.reads->add(found->path) : settings_.reads->addMissing(name, searchPath);
     Diagnostic d;
     d.place = place;
     if (!found) {

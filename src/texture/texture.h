@@ -13,6 +13,7 @@
 #include "base/diagnostics.h"
 #include "base/file.h"
 #include "base/matrix.h"
+#include "base/readlog.h"
 #include "texture/pyramid.h"
 #include <map>
 #include <memory>
@@ -135,6 +136,7 @@ struct TextureSettings {
     bool light = false;
     LatLong latLong;
     ReadPolicy read{};            ///< where the names of maps may lead
+    std::shared_ptr<ReadLog> reads{}; ///< gets every file that is read or missed; may be null
 };
 
 /// The maps of a render. Thread safe.

@@ -3,6 +3,7 @@
 #pragma once
 #include "base/diagnostics.h"
 #include "base/file.h"
+#include "base/readlog.h"
 #include "base/stopflag.h"
 #include "scene/scene.h"
 #include <array>
@@ -38,6 +39,7 @@ struct Settings {
     bool lightOnly = false;         ///< light sampling only: emission met by lobe sampling does not count (tests, T6)
     std::vector<std::string> shaderPaths, texturePaths;
     ReadPolicy read{};              ///< where the names of maps may lead
+    std::shared_ptr<ReadLog> reads; ///< gets every shader and map that is read or missed; may be null
     bool allowExec = false;         ///< shaders may load plug-ins
     std::vector<std::string> pluginPaths; ///< where those are looked for
     std::string dialect;            ///< whose macros the shaders see: rsl::FrontOptions::dialect

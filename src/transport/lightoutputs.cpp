@@ -112,7 +112,7 @@ LightOutput::Kernel SurfaceBinder::lightKernel(const SurfaceBinding& b, const Li
             {Severity::Warning,
              Rie::NoError,
              b.surface->place,
-             "output \"" + o.slot + "\" of shader \"" + b.surface->name + "\" holds only the direct light of " + direct[0],
+             "output \"" + o.slot + "\" of shader \"" + b.surface->name + "\" holds only the direct light of " + direct[0].text(),
              "Ci has all of it; sums and products with what does not depend on light give an output its indirect light, too",
              {}});
     return k;

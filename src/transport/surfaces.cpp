@@ -29,14 +29,13 @@ InstanceRef SurfaceBinder::instanceOf(const scene::ShaderRef& r, rsl::ShaderKind
 
 /// Under path: a warning, once a shader, where light is asked for and used so that its indirect part cannot be followed.
 static void sayDirectOnly(const ShaderInstance& shader, const rsl::CompiledKernel& kernel, Diagnostics& d) {
-    const std::vector<std::string>& direct = kernel.facts().direct;
+    const auto& direct = kernel.facts().direct;
     if (direct.empty()) return;
     SourcePlace place{shader.program->path(), 0, 0};
-    const rsl::Place& at = kernel.facts().directPlaces[0];
+    const auto& [op, why, at] = direct[0];
     const auto& files = kernel.files();
     if (at.line > 0 && at.file >= 0 && size_t(at.file) < files.size() && !files[size_t(at.file)].starts_with('<'))
         place = {files[size_t(at.file)], at.line, at.column};
-    const std::string op = direct[0].substr(0, direct[0].find(',')), why = direct[0].substr(direct[0].find(": ") + 2);
     const size_t more = direct.size() - 1;
     d.reportOnce("directonly:" + shader.program->path() + ":" + shader.program->name(),
                  {Severity::Warning,

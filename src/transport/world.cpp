@@ -89,13 +89,15 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     if (settings.maxDepth >= 0) w->maxDepth_ = settings.maxDepth;
     w->maxDepth_ = std::min(w->maxDepth_, limits::kPathDepth);
     w->textures_ = std::make_unique<texture::TextureSystem>(
-        d, texture::TextureSettings{.light = scene::readsMapsAsLight(o, path, d), .read = settings.read});
+        d,
+        texture::TextureSettings{.light = scene::readsMapsAsLight(o, path, d), .read = settings.read, .reads = settings.reads});
     rsl::ShaderCompiler::Settings cs;
     cs.cacheDirectory = settings.cacheDirectory;
     cs.dialect = settings.dialect;
     cs.rispecSpecular = w->rispecSpecular_ = rispecSpecular(o, settings.dialect, d);
     cs.allowExec = settings.allowExec;
     cs.pluginPaths = settings.pluginPaths;
+    cs.reads = settings.reads;
     w->compiler_ = std::make_shared<rsl::ShaderCompiler>(cs);
     if (const char* e = std::getenv("ALPENGLOW_SHADERS"))
         for (auto& path : splitSearchPath(e)) w->settings_.shaderPaths.push_back(path);

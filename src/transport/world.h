@@ -237,11 +237,11 @@ public:
     bool knowsSpace(const std::string& name) const;
 
     InstanceRef instance(const scene::ShaderCall&, rsl::ShaderKind, Diagnostics&, bool anyKind = false);
-    /// A shader that uses co-shaders, with those that these attributes have and, of these lights (indices into Frame::lights), the class
-    /// lights that have what it calls; any other as it is.
     /// Handles among these parameters that name neither one of `bound` nor a light: null, and an error with the place.
     void dropMissingHandles(const ShaderInstance& of, std::map<std::string, std::string>& texts,
                             const std::vector<std::pair<std::string, scene::ShaderRef>>& bound, Diagnostics&) const;
+    /// A shader that uses co-shaders, with those that these attributes have and, of these lights (indices into Frame::lights),
+    /// the class lights that have what it calls; any other as it is.
     InstanceRef withCoShaders(const InstanceRef&, const std::map<std::string, scene::ShaderRef>& coshaders, Diagnostics&,
                               const std::vector<int>& lights = {});
     /// Fills outputWidths_: how many numbers each AOV has in the shaders of the frame.

@@ -1,4 +1,6 @@
 #include "mutate.h"
+#include <cfloat>
+#include <cmath>
 #include <algorithm>
 #include <bit>
 #include <cctype>
@@ -196,7 +198,8 @@ void binaryNumber(Random& r, Bytes& out, const std::string& text) {
     const auto put = [&](uint64_t bits, int n) {
         for (int i = n - 1; i >= 0; --i) out += char(bits >> 8 * i);
     };
-    if (v == double(int32_t(v)) && r.once(2)) {
+    const bool whole = std::fabs(v) <= INT32_MAX && v == std::trunc(v);
+    if (whole && r.once(2)) {
         out += char(0203);
         put(uint64_t(int64_t(v)), 4);
     } else if (r.once(4) && v > -100 && v < 100) { // two bytes, one of them a fraction
@@ -207,7 +210,7 @@ void binaryNumber(Random& r, Bytes& out, const std::string& text) {
         put(std::bit_cast<uint64_t>(v), 8);
     } else {
         out += char(0244);
-        put(std::bit_cast<uint32_t>(float(v)), 4);
+        put(std::bit_cast<uint32_t>(std::fabs(v) > double(FLT_MAX) ? (v > 0 ? HUGE_VALF : -HUGE_VALF) : float(v)), 4);
     }
 }
 

@@ -119,7 +119,7 @@ TEST(Affine, LobeUsedNonlinearlyStaysDirect) {
         pathOptions());
     ASSERT_NE(c.kernel, nullptr);
     ASSERT_EQ(c.kernel->facts.direct.size(), 1u);
-    EXPECT_NE(c.kernel->facts.direct[0].find("diffuse, line 1"), std::string::npos) << c.kernel->facts.direct[0];
+    EXPECT_NE(c.kernel->facts.direct[0].text().find("diffuse, line 1"), std::string::npos) << c.kernel->facts.direct[0].text();
     EXPECT_EQ(c.count(Op::LightLoop), 1);
     EXPECT_EQ(c.sites(Op::Request, "specular"), 1) << c.text();
 }
@@ -132,7 +132,8 @@ TEST(Affine, CallsBetweenTwoLobesAreNotTakenForThem) {
         const Compiled c = compile(text + "color h = specular(n, -I, 0.1); if (h[0] > 0.5) Ci += sum; }", pathOptions());
         ASSERT_NE(c.kernel, nullptr);
         ASSERT_EQ(c.kernel->facts.direct.size(), 1u) << calls << " calls";
-        EXPECT_EQ(c.kernel->facts.direct[0].rfind("specular", 0), 0u) << calls << " calls: " << c.kernel->facts.direct[0];
+        EXPECT_EQ(c.kernel->facts.direct[0].text().rfind("specular", 0), 0u)
+            << calls << " calls: " << c.kernel->facts.direct[0].text();
     }
 }
 
@@ -143,7 +144,7 @@ TEST(Affine, MoreLobesThanAWordHasBits) {
     const Compiled c = compile(text + "color h = diffuse(n); if (h[0] > 0.5) Ci += 1; }", pathOptions());
     ASSERT_NE(c.kernel, nullptr);
     ASSERT_EQ(c.kernel->facts.direct.size(), 1u);
-    EXPECT_EQ(c.kernel->facts.direct[0].rfind("diffuse", 0), 0u) << c.kernel->facts.direct[0];
+    EXPECT_EQ(c.kernel->facts.direct[0].text().rfind("diffuse", 0), 0u) << c.kernel->facts.direct[0].text();
     EXPECT_EQ(c.sites(Op::Request, "specular") + c.sites(Op::Emit, "specular"), 70);
 }
 

@@ -234,8 +234,6 @@ std::unique_ptr<Kernel> buildKernel(const Program& p, const Shader& s, const Ker
     if (!k || !o.path) return k;
     // Lobe calls whose result is not used affinely are inlined instead; one of them may have hidden another, so again until none
     // is left.
-    std::vector<std::string> notes;
-    std::vector<Place> places;
     std::vector<KernelFacts::NonLinear> nonLinear;
     for (int round = 0; round < 16; ++round) {
         const auto lobe = [](const Inst* i, const Kernel& kernel) {
@@ -256,16 +254,13 @@ std::unique_ptr<Kernel> buildKernel(const Program& p, const Shader& s, const Ker
             if (at.op == "trace" || at.op == "transmission" || at.op == "lightvisibility" || at.op == "ambient") continue;
             if (direct.emplace(at.place.file, at.place.line, at.place.column).second) {
                 nonLinear.push_back({at.op, why, at.place});
-                places.push_back(at.place);
-                notes.push_back(at.op + ", line " + std::to_string(at.place.line) + ": " + why);
             }
         }
         if (direct.size() == before) break;
         Diagnostics quiet;
         k = buildOnce(p, s, o, quiet, direct);
     }
-    k->facts.direct = notes;
-    k->facts.directPlaces = places;
+    k->facts.direct = nonLinear;
     k->facts.nonLinear = std::move(nonLinear);
     return k;
 }

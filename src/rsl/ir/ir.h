@@ -119,14 +119,18 @@ struct Site {
 struct KernelFacts {
     bool affine = true;          ///< every Request was turned into Emit
     std::string whyNot;          ///< the first place that is not affine, in words
-    /// Everything that keeps the kernel from being affine: the call whose result is meant, and why. Not kept in kernel files.
-    struct NonLinear { std::string op, why; Place place; };
-    std::vector<NonLinear> nonLinear;
+    /// Something that keeps the kernel from being affine: the call whose result is meant, and why.
+    struct NonLinear {
+        std::string op, why;
+        Place place;
+        /// For people: "specular, line 12: ...".
+        std::string text() const { return op + ", line " + std::to_string(place.line) + ": " + why; }
+    };
+    std::vector<NonLinear> nonLinear; ///< everything; not kept in kernel files
     bool suspends = false;       ///< Requests are left: the kernel becomes a coroutine
     bool lightLoops = false;
     std::vector<std::pair<int, std::string>> stuck; ///< sites that no weight can be given to, with the reason (passes/affine.h)
-    std::vector<std::string> direct; ///< lobe calls ("specular, line 12") that stay direct under path, with the reason
-    std::vector<Place> directPlaces; ///< where each of them is
+    std::vector<NonLinear> direct; ///< lobe calls that stay direct under path
     bool ambientLight = false;   ///< light: no illuminate and no solar
     /// Light: "illuminate", "solar" or "solar()" (all directions) for each block, in order; then "outside" when Cl is also set outside
     /// them. Outputs of block k > 0 are L#k Cl#k Ol#k lit#k; of what is outside, Cl#(number of blocks).

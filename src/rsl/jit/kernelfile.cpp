@@ -94,13 +94,17 @@ template <class A> void item(A& a, ir::Site& s) {
     a(name);
     if (A::kReads) s.shadeop = name.empty() ? nullptr : findShadeop(name);
 }
+template <class A> void item(A& a, ir::KernelFacts::NonLinear& n) {
+    a(n.op);
+    a(n.why);
+    item(a, n.place);
+}
 template <class A> void item(A& a, ir::KernelFacts& f) {
     a(f.affine);
     a(f.whyNot);
     a(f.suspends);
     a(f.lightLoops);
     a(f.direct);
-    a(f.directPlaces);
     a(f.ambientLight);
     a(f.blocks);
     a(f.opacity);

@@ -1,0 +1,124 @@
+// The files of a run: what they are called, whether they can be written, and what is there already.
+#include "display/driver.h"
+#include "render/filmpicture.h"
+#include "render/outputnames.h"
+#include "render/partfile.h"
+#include "render/renderer.h"
+#include <filesystem>
+
+namespace alpenglow::render {
+
+std::string Renderer::fileFor(const scene::Options& o, uint32_t spp) {
+    if (settings_.output == "-") return "-"; // frame after frame
+    if (!settings_.output.empty()) {
+        if (isNumbered(o)) return numberedName(settings_.output, o.frameNumber);
+        const bool numbered = saved_++ > 0 || hasFrameNumber(settings_.output);
+        return numbered ? numberedName(settings_.output, saved_) : settings_.output;
+    }
+    if (settings_.savePattern.empty()) return "";
+    std::string name = settings_.savePattern;
+    auto put = [&](const std::string& key, const std::string& value) {
+        if (size_t at = name.find(key); at != std::string::npos) name.replace(at, key.size(), value);
+    };
+    put("<spp>", std::to_string(spp));
+    put("<no>", std::to_string(saved_++));
+    return name;
+}
+
+std::string Renderer::checkpointFile(const scene::Options& o) {
+    const std::string& name = settings_.checkpoint;
+    if (name.empty()) return name;
+    const bool plain = !isNumbered(o) && checkpoints_++ == 0;
+    return names_.take("checkpoint", plain ? name : numberedName(name, isNumbered(o) ? o.frameNumber : checkpoints_), false, o,
+                       {}, &diagnostics_);
+}
+
+void Renderer::nameOutputs(OutputPlan& plan, const scene::Options& o) {
+    for (OutputSpec& s : plan.pictures) {
+        const display::DriverDescriptor* driver = display::findDriver(s.type);
+        if (!driver || driver->writes) s.name = names_.take("display", s.name, s.map, o, s.place, &diagnostics_);
+    }
+}
+
+void Renderer::passOver(const scene::Options& given) {
+    scene::Options o = given;
+    if (!read_.empty()) markRead(o);
+    names_.nextWorld();
+    const bool one = !settings_.output.empty() && !isMapPass(o);
+    if (one) names_.take("display", numberedName(settings_.output, o.frameNumber), false, o, {}, nullptr);
+    for (const NamedDisplay& d : displaysOf(o, isMapPass(o) ? settingsOfMaps(settings_) : settings_, !one))
+        names_.take("display", d.display.name, isMap(d.display), o, d.display.place, nullptr);
+}
+
+void Renderer::passOverTexture(const std::vector<std::string>& files) {
+    for (const std::string& f : files) names_.release(f);
+}
+
+void Renderer::finish() {
+    const std::string given = pictureOptions(settings_);
+    if (maps_ == 0 || pictures_ > 0 || given.empty()) return;
+    diagnostics_.report(
+        Severity::Warning, Rie::NoError, {},
+        given + ": without effect; the scene makes maps only (depth, shadow, or what a Make request reads), and those "
+                "stay as the scene says",
+        "a Display of the mode \"rgba\" makes a picture");
+}
+
+bool Renderer::canBegin() {
+    const OutputPolicy anywhere{".", true};
+    bool all = true;
+    for (const std::string& name : {settings_.statsFile, settings_.checkpoint, settings_.pixel ? "" : settings_.output})
+        if (!name.empty() && name != "-") all &= OutputFile::canBeWritten(name, anywhere, diagnostics_);
+    outcome_.outputFailed |= !all;
+    return all;
+}
+
+bool Renderer::canWrite(const OutputPlan& plan, const std::string& checkpoint, bool part) {
+    const OutputPolicy anywhere{".", true};
+    bool all = true;
+    const auto attempt = [&](const std::string& name, const OutputPolicy& policy, const SourcePlace& place) {
+        all &= OutputFile::canBeWritten(name, policy, diagnostics_, place);
+    };
+    if (!settings_.statsFile.empty()) attempt(settings_.statsFile, anywhere, {});
+    if (!checkpoint.empty()) attempt(checkpoint, anywhere, {});
+    if (settings_.pixel) return all; // no picture is written
+    for (const OutputSpec& s : plan.pictures) {
+        const display::DriverDescriptor* driver = display::findDriver(s.type);
+        if (driver && !driver->writes) continue;
+        const OutputPolicy policy{".", settings_.allowWrite || s.userFile};
+        attempt(s.name, policy, s.place);
+        if (part && &s == &plan.pictures.front()) attempt(sidecarName(s.name), policy, s.place);
+    }
+    return all;
+}
+
+bool Renderer::resume(const std::string& checkpoint, const FilmDescription& wanted, std::unique_ptr<Film>& film) {
+    if (std::error_code e; !std::filesystem::exists(checkpoint, e)) {
+        diagnostics_.report(Severity::Warning, Rie::NoError, {checkpoint}, "there is no checkpoint yet; rendering begins anew");
+        return true;
+    }
+    film = loadPart(checkpoint, diagnostics_);
+    if (film && film->description() == wanted) return true;
+    if (film)
+        diagnostics_.report(
+            Severity::Error, Rie::Consistency, {checkpoint},
+            "the checkpoint belongs to another picture, scene or seed; it is left as it is, and nothing is rendered",
+            "render what it belongs to, name another file, or give --restart instead of --resume to replace it");
+    else
+        diagnostics_.report(Severity::Warning, Rie::NoError, {checkpoint},
+                            "the checkpoint is left as it is, and nothing is rendered",
+                            "--restart instead of --resume begins anew and replaces it");
+    film.reset();
+    return false;
+}
+
+bool Renderer::mayReplace(const std::string& checkpoint) {
+    std::error_code e;
+    if (settings_.resume || settings_.restart || checkpoint.empty() || !std::filesystem::exists(checkpoint, e)) return true;
+    diagnostics_.report(Severity::Error, Rie::BadFile, {checkpoint},
+                        "the checkpoint is there already; it is left as it is, and nothing is rendered",
+                        "--resume goes on with it, --restart begins anew and replaces it");
+    return false;
+}
+
+} // namespace alpenglow::render

@@ -42,7 +42,8 @@ inline constexpr int kTreeHeight = 1024;                       ///< of an RSL ex
 inline constexpr int kIncludeDepth = 64;                       ///< of RSL #include
 inline constexpr int kIncludes = 5000;                         ///< #include lines of one RSL program that are followed
 inline constexpr size_t kSourceBytes = size_t(64) << 20; ///< of the texts of one RSL program, each as often as it is included
-inline constexpr size_t kExcerptBytes = 4u << 20;              ///< of source lines that the messages about one RSL program keep
+inline constexpr size_t kExcerptBytes =
+    4u << 20; ///< of lines that messages about an RSL program keep; of files they fetch lines from
 inline constexpr int kMacroDepth = 128;                        ///< macro calls inside arguments of macro calls
 inline constexpr size_t kMacroTokens = 2'000'000;              ///< tokens of one RSL program while macros are expanded
 inline constexpr int kCoShaderDepth = 16;                        ///< methods of co-shaders open at once

@@ -19,11 +19,12 @@ namespace alpenglow::cli {
 
 namespace {
 
-/// The line of a text file that a message is about; "" when the file is none, or is compressed or binary. Lines end as the reader
-/// of RIB has them.
+/// The line of a text file that a message is about; "" when the file is none, is compressed or binary, or is so
+/// large that looking for lines would take long. Lines end as the reader of RIB has them.
 std::string lineOf(const SourcePlace& p) {
     struct stat s;
     if (p.line <= 0 || stat(p.file.c_str(), &s) != 0 || !S_ISREG(s.st_mode)) return "";
+    if (size_t(s.st_size) > limits::kExcerptBytes) return "";
     std::ifstream in(p.file, std::ios::binary);
     std::string line;
     int at = 1;

@@ -252,6 +252,15 @@ TEST_F(Navigation, ScenesAreChecked) {
     EXPECT_TRUE(published(all, "b.rib").empty());
 }
 
+TEST_F(Navigation, LargeScenesAreNotChecked) {
+    begin();
+    open("a.rib", "Spere 1 -1 1 360\n" + std::string(alpenglow::limits::kServerScene, '#'));
+    end();
+    const Json d = published(run(), "a.rib");
+    ASSERT_EQ(d.size(), 1u);
+    EXPECT_EQ(d[0]["severity"], 3);
+}
+
 TEST_F(Navigation, ScenesAreCompletedAndExplained) {
     write("mine.sl", "// Mine.\nsurface mine(float shine = .1;) { Ci = shine; }\n");
     write("other.rib", "# empty\n");

@@ -1,4 +1,5 @@
 // What would be a silent zero or a picture of another kind is said, with the place and what to do.
+#include "base/limits.h"
 #include "command_folder.h"
 #include "display/imageio.h"
 #include <fstream>
@@ -256,7 +257,8 @@ TEST_F(Said, LoopsWithoutEnd) {
         EXPECT_EQ(run(std::string("eval --lanes ") + lanes + " --setup 'float n = 0;\nwhile (1 < 2) n += 1;' n"), "1e+07\n");
         EXPECT_EQ(status, 1);
         EXPECT_EQ(times("expression:3:"), 1) << errors();
-        EXPECT_TRUE(says("this loop is left after 10000000 turns at one point")) << errors();
+        EXPECT_TRUE(says("this loop is left after " + std::to_string(alpenglow::limits::kLoopTurns) + " turns at one point"))
+            << errors();
     }
     EXPECT_EQ(run("eval --setup 'float n = 0; while (n < 9999999) n += 1;' n"), "9999999\n");
     EXPECT_EQ(status, 0) << errors();
@@ -312,4 +314,15 @@ TEST_F(Said, ABallByDefault) {
     run("shade bad.sl -o a.png");
     EXPECT_EQ(status, 3);
     EXPECT_EQ(times("error:"), 1) << errors();
+}
+
+// Messages about what was read long ago fetch their lines again, but not without end.
+TEST_F(Said, LinesOfManyMessages) {
+    const int many = alpenglow::limits::kSourceLines + 20;
+    std::string world;
+    for (int i = 0; i < many; ++i) world += "Surface \"plastic\" \"float q" + std::to_string(i) + "\" [1]\nSphere 1 -1 1 360\n";
+    scene("", world);
+    run("render --spp 1 -o a.png a.rib");
+    EXPECT_EQ(times("has no parameter"), many) << errors().substr(0, 600);
+    EXPECT_EQ(times("^"), alpenglow::limits::kSourceLines);
 }

@@ -17,7 +17,7 @@ TEST_F(Watch, FollowsEveryFileOfTheScene) {
     write("drive.sh",
           "turns() { grep -c 'waiting for a file' log.txt; }\n"
           "reach() { i=0; while [ \"$(turns)\" -lt $1 ] && [ $i -lt 600 ]; do sleep .05; i=$((i + 1)); done; turns; }\n"
-          "\"$1\" render --watch -q -o w.png s.rib 2>log.txt &\npid=$!\nreach 1\n"
+          ": > log.txt; \"$1\" render --watch -q -o w.png s.rib 2>log.txt &\npid=$!\nreach 1\n"
           "sleep .02; echo '#define TINT color(.1, .2, .3)' > tint.h; reach 2\n"
           "sleep .02; echo 'Sphere .5 -.5 .5 360' > part.rib; reach 3\n"
           "sleep .02; cp map.tif new.tif; mv new.tif map.tif; reach 4\n"

@@ -37,7 +37,10 @@ void expectEverywhere(const std::string& rib, Color want, const std::string& wha
             const Color c = s.one(kView);
             for (int k = 0; k < 3; ++k)
                 EXPECT_NEAR(c[k], want[k], 1e-5 * std::max(1.f, want[k])) << what << ", hider " << int(h) << (suspend ? ", suspended" : "") << s.messages();
-            EXPECT_EQ(s.diagnostics.warnings(), 0) << what << s.messages();
+            // A lobe shadeop times what a loop brings is no sum of light: path has its direct part, and says so.
+            const auto calls = [&](const char* shadeop) { return what.find(shadeop) != std::string::npos; };
+            const bool product = calls("diffuse(n") || calls("specular(n") || calls("phong(n");
+            EXPECT_EQ(s.diagnostics.warnings(), h == Hider::Path && product) << what << s.messages();
         }
 }
 

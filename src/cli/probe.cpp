@@ -219,7 +219,9 @@ void addProbe(CLI::App& app, int* status) {
     c->add_option("normal", a->normal, "NX,NY,NZ: the side that is lit")->required();
     c->add_option("--spp", a->spp, "Samples")->check(wholeBetween(2, 1u << 26))->type_name("N")->capture_default_str();
     c->add_option("--seed", a->seed, "Seed of all random numbers")->type_name("N");
-    c->add_option("--threads", a->threads, "Threads; as many as the process may use when not given")->check(wholeBetween(1, 1024))->type_name("N");
+    c->add_option("--threads", a->threads, "Threads; as many as the process may use when not given")
+        ->check(wholeBetween(1, 1024))
+        ->type_name("N");
     c->add_option("--lanes", a->lanes, "Points a shader works on at once")->check(CLI::IsMember({4, 8, 16}))->type_name("N");
     c->add_option("--max-depth", a->maxDepth, "Greatest number of bounces")->check(wholeBetween(0, 10000))->type_name("N");
     c->add_option("--radius", a->radius,

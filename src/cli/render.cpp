@@ -78,7 +78,8 @@ void checkLate(Arguments& a, const CLI::App& app) {
     s.seedByFrame = a.seed == "frame";
     if (!a.seed.empty() && !s.seedByFrame) {
         const auto [end, fault] = std::from_chars(a.seed.data(), a.seed.data() + a.seed.size(), s.seed);
-        if (fault != std::errc() || end != a.seed.data() + a.seed.size()) wrong("--seed", "takes a whole number or frame, not " + a.seed);
+        if (fault != std::errc() || end != a.seed.data() + a.seed.size())
+            wrong("--seed", "takes a whole number or frame, not " + a.seed);
     }
     s.memoryLimit = defaultMemoryLimit();
     if (!a.memory.empty()) {
@@ -147,7 +148,8 @@ bool tellMissingFrames(const std::vector<int>& wanted, const std::vector<int>& s
     if (missing.empty() || seen.empty()) return false; // a world without a frame is always rendered
     const std::string has = listOf(seen);
     diags.report(rendered ? Severity::Warning : Severity::Error, Rie::MissingData, {},
-                 "the scene has " + std::string(has.find_first_of(",-") == has.npos ? "frame " : "frames ") + has + ", not " + listOf(missing),
+                 "the scene has " + std::string(has.find_first_of(",-") == has.npos ? "frame " : "frames ") + has + ", not " +
+                     listOf(missing),
                  "--frames names frames by the number of their FrameBegin");
     return true;
 }
@@ -319,7 +321,9 @@ void addRender(CLI::App& app, int* status, const std::string& command) {
         ->type_name("NAME")
         ->group("Quality");
 
-    c->add_option("--threads", s.threads, "Threads; when not given as many processors as the process may use (affinity, control groups, Slurm). The picture does not depend on it")
+    c->add_option("--threads", s.threads,
+                  "Threads; when not given as many processors as the process may use (affinity, control groups, Slurm). The "
+                  "picture does not depend on it")
         ->check(wholeBetween(1, 1024))
         ->type_name("N")
         ->group("Machine");
@@ -341,7 +345,9 @@ void addRender(CLI::App& app, int* status, const std::string& command) {
     c->add_flag("--restart", s.restart, "Begin anew and replace the checkpoint that is there")
         ->excludes(resume)
         ->group("Machine");
-    c->add_option("--stats", s.statsFile, "Write figures of the render and of each frame as JSON (docs/statistics.md)")->type_name("FILE.json")->group("Machine");
+    c->add_option("--stats", s.statsFile, "Write figures of the render and of each frame as JSON (docs/statistics.md)")
+        ->type_name("FILE.json")
+        ->group("Machine");
     c->add_flag("--stamp", s.stamp,
                 "Write command, host, date and seconds into the pictures; without it equal pictures are equal files")
         ->group("Machine");

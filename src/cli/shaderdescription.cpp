@@ -359,7 +359,11 @@ std::string descriptionText(const ShaderDescription& d) {
         t += head + "writes:";
         for (const std::string& w : k.writes) t += " " + w;
         t += k.writes.empty() ? " nothing\n" : "\n";
-        t += head + (k.affine ? "affine: yes; the light it gathers enters its result linearly, so path follows rays without running it again\n" : "affine: no; " + k.whyNot + "\n");
+        t +=
+            head +
+            (k.affine
+                 ? "affine: yes; the light it gathers enters its result linearly, so path follows rays without running it again\n"
+                 : "affine: no; " + k.whyNot + "\n");
         if (k.suspends) t += head + "suspends: it waits for its rays as a coroutine\n";
         if (k.ambient) t += head + "light: ambient, without illuminate() and solar()\n";
         for (const std::string& direct : k.direct) t += head + "direct light only under path: " + direct + "\n";

@@ -27,8 +27,8 @@ std::optional<Image> decodeImage(std::span<const uint8_t> bytes, const std::stri
 
 struct WriteOptions {
     Format format = Format::Exr;
-    /// EXR: Half or Float. TIFF: UInt8, UInt16, Float. PNG: UInt8, UInt16. JPEG: UInt8. Others fall to the nearest the format has: nothing is
-    /// lost silently, drivers decide before.
+    /// EXR: Half or Float. TIFF: UInt8, UInt16, Float. PNG: UInt8, UInt16. JPEG: UInt8. Others fall to the nearest the format
+    /// has: nothing is lost silently, drivers decide before.
     Sample sample = Sample::Float;
     bool quantised = false; ///< integer formats: data are codes (0..255) already; else [0,1] is scaled, rounded and clamped
     std::string compression = "zip"; ///< EXR: none rle zips zip piz; TIFF: none zip lzw packbits

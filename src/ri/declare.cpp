@@ -75,8 +75,8 @@ template <size_t N> Table makeTable(const Known (&rows)[N]) {
     return t;
 }
 
-/// Types of options and attributes, keyed "class:name"; empty: numbers in one file, strings in another, so the value decides. Names
-/// of other renderers without a type are not here: they are noted at -v.
+/// Types of options and attributes, keyed "class:name"; empty: numbers in one file, strings in another, so the value decides.
+/// Names of other renderers without a type are not here: they are noted at -v.
 using KnownTypes = std::map<std::string, std::optional<Declaration>, std::less<>>;
 
 KnownTypes implementationTypes() {

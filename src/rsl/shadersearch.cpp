@@ -44,7 +44,8 @@ private:
     size_t at_ = 0;
 };
 
-constexpr std::array<std::string_view, 7> kKinds{"surface", "displacement", "light", "volume", "imager", "transformation", "class"};
+constexpr std::array<std::string_view, 7> kKinds{"surface", "displacement",   "light", "volume",
+                                                 "imager",  "transformation", "class"};
 bool isKind(std::string_view word) { return std::find(kKinds.begin(), kKinds.end(), word) != kKinds.end(); }
 } // namespace
 
@@ -62,7 +63,8 @@ std::vector<DeclaredShader> shadersDeclared(const std::string& text) {
     int depth = 0; // of braces: methods of a class may be called surface
     std::string_view kind, before;
     for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
-        if (word == "(" && depth == 0 && isKind(kind) && !before.empty()) found.push_back({std::string(kind), std::string(before)});
+        if (word == "(" && depth == 0 && isKind(kind) && !before.empty())
+            found.push_back({std::string(kind), std::string(before)});
         if (word == "{") ++depth;
         if (word == "}" && depth > 0) --depth; // macros may have taken one away
         kind = before;

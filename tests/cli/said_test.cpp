@@ -48,7 +48,8 @@ TEST_F(Said, ExtensionsThatNobodyWrites) {
 }
 
 TEST_F(Said, Jpeg) {
-    scene("Display \"d.jpg\" \"jpeg\" \"rgba\"\nDisplay \"+f.jpeg\" \"file\" \"rgb\"\nDisplay \"+g.bmp\" \"file\" \"rgb\"\nExposure 1 1\n",
+    scene("Display \"d.jpg\" \"jpeg\" \"rgba\"\nDisplay \"+f.jpeg\" \"file\" \"rgb\"\nDisplay \"+g.bmp\" \"file\" "
+          "\"rgb\"\nExposure 1 1\n",
           "Surface \"constant\"\nColor [1 .5 .25]\nScale 4 4 1\n"); // fills the picture
     run("render a.rib");
     EXPECT_EQ(status, 0) << errors();

@@ -10,10 +10,10 @@ class Jpeg : public PictureDriver {
 
 } // namespace
 
-const DriverDescriptor jpegDriver{
-    {"jpeg", "jpg"},
-    "JPEG. 8 bits, quality 95, colour as sharp as lightness, no alpha: r g b, or one channel. 0 to 1 is written as 0 to 255 where "
-    "Quantize has no codes of 8 bits.",
-    []() -> std::unique_ptr<Driver> { return std::make_unique<Jpeg>(); }};
+const DriverDescriptor jpegDriver{{"jpeg", "jpg"},
+                                  "JPEG. 8 bits, quality 95, colour as sharp as lightness, no alpha: r g b, or one channel. 0 to "
+                                  "1 is written as 0 to 255 where "
+                                  "Quantize has no codes of 8 bits.",
+                                  []() -> std::unique_ptr<Driver> { return std::make_unique<Jpeg>(); }};
 
 } // namespace alpenglow::display

@@ -220,9 +220,12 @@ std::vector<Request> attributeRequests() {
              auto v = c.reals(0);
              std::copy(v.begin(), v.end(), in.attributes().textureCoordinates);
          }},
-        {"ShadingRate", "number size", k, s, false, "Area in pixels of one shading sample: the size of diced facets, and of the footprint that textures and derivatives see.", ".5",
-         [](Interpreter& in, const Call& c) { in.attributes().shadingRate = c.real(0); }},
-        {"ShadingInterpolation", "string type", k, s, false, "\"constant\" or \"smooth\" between shading samples. Without effect: every sample is shaded.", "\"smooth\"",
+        {"ShadingRate", "number size", k, s, false,
+         "Area in pixels of one shading sample: the size of diced facets, and of the footprint that textures and derivatives "
+         "see.",
+         ".5", [](Interpreter& in, const Call& c) { in.attributes().shadingRate = c.real(0); }},
+        {"ShadingInterpolation", "string type", k, s, false,
+         "\"constant\" or \"smooth\" between shading samples. Without effect: every sample is shaded.", "\"smooth\"",
          [](Interpreter& in, const Call& c) {
              if (c.text(0) == "smooth" || c.text(0) == "constant") in.attributes().smoothShading = c.text(0) == "smooth";
              else
@@ -231,7 +234,8 @@ std::vector<Request> attributeRequests() {
          }},
         {"Matte", "int on", k, s, false, "The object hides what is behind it and is itself not seen.", "1",
          [](Interpreter& in, const Call& c) { in.attributes().matte = c.integer(0) != 0; }},
-        {"Bound", "number[6] bound", k, s, true, "Object-space box around what follows. Without effect: shapes know their bounds.", "[-1 1 -1 1 -1 1]",
+        {"Bound", "number[6] bound", k, s, true,
+         "Object-space box around what follows. Without effect: shapes know their bounds.", "[-1 1 -1 1 -1 1]",
          [](Interpreter& in, const Call& c) {
              if (std::vector<float> b; boundOf(in, c, b)) in.attributes().bound = b;
          }},
@@ -251,7 +255,9 @@ std::vector<Request> attributeRequests() {
                  std::copy(v.begin(), v.end(), in.attributes().detailRange);
          }},
         {"GeometricApproximation", "string type; number value", k, s, false,
-         "How closely shapes are followed: \"motionfactor\", \"flatness\" and others. Kept for shaders; shapes are followed by ShadingRate.", "\"motionfactor\" 1", approximation},
+         "How closely shapes are followed: \"motionfactor\", \"flatness\" and others. Kept for shaders; shapes are followed by "
+         "ShadingRate.",
+         "\"motionfactor\" 1", approximation},
         {"GeometricRepresentation", "string type", k, s, false, "Of RISpec 3.0; has no effect.", "\"primitive\"",
          [](Interpreter& in, const Call& c) {
              if (c.text(0) != "primitive") in.incapable(c, "GeometricRepresentation has no effect");
@@ -267,7 +273,9 @@ std::vector<Request> attributeRequests() {
          "\"bezier\" 3 \"b-spline\" 1", basis},
         {"TrimCurve",
          "int[] ncurves; int[] order; number[] knot; number[] min; number[] max; int[] n; number[] u; number[] v; number[] w", k,
-         s, false, "Loops of rational curves in the (u,v) of the next NuPatch; inside them the patch is cut. Not cut yet: the patch is shown whole.",
+         s, false,
+         "Loops of rational curves in the (u,v) of the next NuPatch; inside them the patch is cut. Not cut yet: the patch is "
+         "shown whole.",
          "[1] [2] [0 0 1 2 2] [0] [2] [3] [0 1 0] [0 0 0] [1 1 1]", trimCurve},
         {"Attribute", "string class; ..", k, s, false, "Attributes of this renderer, by class and name (docs/options.md).",
          "\"identifier\" \"name\" \"ball\"", attribute},

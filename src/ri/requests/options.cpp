@@ -228,8 +228,8 @@ std::vector<Request> optionRequests() {
          "[0 .5 .25 1]", cropWindow},
         {"Projection", "string name; ..", k, kOptions, true, "\"perspective\" (\"fov\", degrees) or \"orthographic\".",
          "\"perspective\" \"fov\" [30]", projection},
-        {"Clipping", "number near; number far", k, kOptions, false, "Distances along z between which things are seen. Camera rays begin at near; rays see what lies behind far.",
-         "0.1 1000",
+        {"Clipping", "number near; number far", k, kOptions, false,
+         "Distances along z between which things are seen. Camera rays begin at near; rays see what lies behind far.", "0.1 1000",
          [](Interpreter& in, const Call& c) {
              if (!within(in, c, c.number(0) < c.number(1), "near must be less than far")) return;
              in.options.clipNear = c.real(0);
@@ -245,11 +245,13 @@ std::vector<Request> optionRequests() {
              in.options.shutterOpen = c.real(0);
              in.options.shutterClose = c.real(1);
          }},
-        {"PixelVariance", "number variance", k, kOptions, false, "Variance of pixel values that is good enough. Kept for shaders; --noise is the way here.", ".01",
+        {"PixelVariance", "number variance", k, kOptions, false,
+         "Variance of pixel values that is good enough. Kept for shaders; --noise is the way here.", ".01",
          [](Interpreter& in, const Call& c) {
              if (within(in, c, c.number(0) >= 0, "it must not be negative")) in.options.pixelVariance = c.real(0);
          }},
-        {"PixelSamples", "number x; number y", k, kOptions, false, "Samples a pixel in x and y; under path their product. --spp overrides it.", "4 4",
+        {"PixelSamples", "number x; number y", k, kOptions, false,
+         "Samples a pixel in x and y; under path their product. --spp overrides it.", "4 4",
          [](Interpreter& in, const Call& c) {
              if (!within(in, c, c.number(0) > 0 && c.number(1) > 0, "there must be at least one sample")) return;
              in.options.pixelSamplesX = std::max(c.real(0), 1.f);
@@ -273,12 +275,13 @@ std::vector<Request> optionRequests() {
         {"Quantize", "string type; number one; number min; number max; number dither", k, kOptions, false,
          "How \"rgba\" or \"z\" values become integers; one = 0: they stay floats.", "\"rgba\" 255 0 255 .5", quantize},
         {"Display", "string name; string type; string mode; ..", k, kOptions, false,
-         "Where the picture goes; a name with + adds another one. Types and parameters: docs/options.md.", "\"a.tif\" \"tiff\" \"rgba\" \"quantize\" [0 255 0 255]",
-         display},
+         "Where the picture goes; a name with + adds another one. Types and parameters: docs/options.md.",
+         "\"a.tif\" \"tiff\" \"rgba\" \"quantize\" [0 255 0 255]", display},
         {"DisplayChannel", "string channel; ..", k, kOptions, false, "Declares an output for use in a Display's mode.",
          "\"varying color diffuse\" \"string filter\" \"box\"", displayChannel},
         {"Hider", "string name; ..", k, kOptions, false,
-         "How the picture is made: \"hidden\", \"raytrace\" or \"path\" (docs/options.md). --hider overrides it.", "\"hidden\" \"jitter\" [1]", hider},
+         "How the picture is made: \"hidden\", \"raytrace\" or \"path\" (docs/options.md). --hider overrides it.",
+         "\"hidden\" \"jitter\" [1]", hider},
         {"ColorSamples", "number[] nRGB; number[] RGBn", k, kOptions, false, "Colours of n samples, and how they become RGB.",
          "[1 1 1] [.3 .3 .4]", colorSamples},
         {"RelativeDetail", "number factor", k, kOptions, false, "Scales the size that chooses levels of detail.", "1",

@@ -51,8 +51,8 @@ std::vector<Request> textureRequests() {
          "\"a.z\" \"a.shd\"", make},
         {"MakeBrickMap", "string[] clouds; string brickmap; ..", k, s, false, "Makes a brick map of point clouds: not done.",
          "[\"a.ptc\"] \"a.bkm\"", notMade},
-        {"MakeOcclusion", "string[] pictures; string shadow; ..", k, s, false, "Makes an occlusion map of depth pictures: not done.",
-         "[\"a.z\" \"b.z\"] \"a.shd\"", notMade},
+        {"MakeOcclusion", "string[] pictures; string shadow; ..", k, s, false,
+         "Makes an occlusion map of depth pictures: not done.", "[\"a.z\" \"b.z\"] \"a.shd\"", notMade},
     };
 }
 

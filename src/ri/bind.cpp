@@ -47,6 +47,7 @@ scene::Param Interpreter::bindOne(const Call& call, const RawParam& raw, Use use
         return p;
     }
     if (use == Use::Option || use == Use::Attribute) sayUnknown(use == Use::Option, category, p);
+    if (use == Use::Hider || use == Use::Display) sayUnknownParameter(use == Use::Hider, p);
     bool text = v.kind == Value::Kind::Strings;
     bool guessed = !r.declaration;
     if (r.declaration) {

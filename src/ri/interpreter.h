@@ -19,7 +19,7 @@ const char* beginName(BlockKind);
 const char* endName(BlockKind);
 
 /// What a parameter list is for: decides how strictly its counts are checked and who declares its names.
-enum class Use { Shader, Primitive, Option, Attribute, Other };
+enum class Use { Shader, Primitive, Option, Attribute, Hider, Display, Other };
 
 using NamedSystems = std::map<std::string, scene::Transform>;
 
@@ -69,6 +69,8 @@ public:
     scene::ParamList bind(const Call& call, Use use, const std::string& category = {});
     /// A name of Option or Attribute that nobody knows: a warning, once. Of other renderers: a note.
     void sayUnknown(bool option, const std::string& category, const scene::Param& p);
+    /// The same for a parameter of Hider (true) or Display.
+    void sayUnknownParameter(bool hider, const scene::Param& p);
     /// n numbers of ColorSamples (or 3) to RGB; `numbers` may hold several colours.
     std::vector<float> toRgb(const std::vector<double>& numbers) const;
     scene::ShaderRef shader(const Call& call);

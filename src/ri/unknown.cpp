@@ -1,4 +1,4 @@
-// Names of Option and Attribute that are in no table (scene/knownoptions.h).
+// Names of Option and Attribute, and parameters of Hider and Display, that are in no table (scene/knownoptions.h).
 #include "ri/interpreter.h"
 #include "scene/knownoptions.h"
 #include <fmt/format.h>
@@ -62,6 +62,22 @@ void Interpreter::sayUnknown(bool option, const std::string& category, const sce
     }
     reporter.once("ri:" + head, Severity::Warning, Rie::BadToken, p.place,
                   head + " is not known: it does nothing, unless a shader asks for it", hint);
+}
+
+void Interpreter::sayUnknownParameter(bool hider, const scene::Param& p) {
+    const auto table = hider ? scene::knownHiderParameters() : scene::knownDisplayParameters();
+    const scene::OptionDescription* known = scene::findKnown(table, p.name);
+    if (known && known->effect != scene::Effect::Ignored) return;
+    const std::string head = fmt::format("{} parameter \"{}\"", hider ? "Hider" : "Display", p.name);
+    if (known) {
+        reporter.once("ri:" + head, Severity::Info, Rie::BadToken, p.place, head + " does nothing here");
+        return;
+    }
+    std::vector<std::string> names;
+    for (const scene::OptionDescription& d : table)
+        if (d.effect != scene::Effect::Ignored) names.emplace_back(d.name);
+    reporter.once("ri:" + head, Severity::Warning, Rie::BadToken, p.place, head + " is not known: it does nothing",
+                  didYouMean(p.name, names));
 }
 
 } // namespace alpenglow::ri

@@ -145,14 +145,31 @@ constexpr OptionDescription kHiderParameters[] = {
 };
 
 constexpr OptionDescription kDisplayParameters[] = {
+    {"alphamode", "", "", "", Ignored, kPrman},
+    {"associatealpha", "", "", "", Ignored, kDelight},
+    {"autocrop", "", "", "", Ignored, kSeveral},
+    {"bias", "", "", "", Ignored, "shadow displays of 3Delight"},
+    {"compression", "string", "\"zip\"", "\"lzw\"", Used, "TIFF: none, lzw, packbits, zip or deflate."},
+    {"compressionlevel", "", "", "", Ignored, kSeveral},
     {"dither", "float", "0.5 for 8 bits", "0", Used, "Random amplitude that is added before rounding to whole codes."},
     {"exposure", "float[2]", "that of Exposure", "[1 2.2]", Used, "Gain and gamma of this display, for all of its colours."},
+    {"exrcompression", "string", "\"zip\"", "\"piz\"", Used, "OpenEXR: none, rle, zips, zip or piz."},
+    {"exrpixeltype", "string", "\"float\"", "\"half\"", Used, "OpenEXR: float or half."},
     {"filter", "string", "that of PixelFilter", "\"box\"", Used,
      "hidden and raytrace: the display's own reconstruction filter, or a depth filter (min, max, average, midpoint)."},
     {"filterwidth", "float[2]", "that of PixelFilter", "[1 1]", Used,
      "hidden and raytrace: full widths of the filter in pixels."},
+    {"hostcomputer", "", "", "", Ignored, kPrman},
+    {"merge", "", "", "", Ignored, kAqsis},
+    {"quality", "", "", "", Ignored, kSeveral},
     {"quantize", "float[4]", "that of Quantize", "[0 255 0 255]", Used,
      "Codes of 0 and 1, least and greatest code; [0 0 0 0]: floating point, where the format has it."},
+    {"resolution", "", "", "", Ignored, kPrman},
+    {"resolutionunit", "", "", "", Ignored, kPrman},
+    {"scanlineorder", "", "", "", Ignored, kAqsis},
+    {"software", "", "", "", Ignored, kSeveral},
+    {"storage", "", "", "", Ignored, kPrman},
+    {"type", "", "", "", Ignored, kSeveral},
 };
 
 constexpr HiderDescription kHiders[] = {

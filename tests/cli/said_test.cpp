@@ -95,6 +95,22 @@ TEST_F(Said, StandardOutput) {
     EXPECT_EQ(run("render a.rib"), "");
 }
 
+TEST_F(Said, UnknownParametersOfHiderAndDisplay) {
+    scene("Hider \"hidden\" \"int jiter\" 0 \"int subpixel\" 1\n"
+          "Display \"a.tif\" \"tiff\" \"rgb\" \"string compresion\" \"lzw\" \"string software\" \"x\"\n",
+          "Surface \"constant\"\n");
+    run("render a.rib");
+    EXPECT_EQ(status, 0);
+    EXPECT_TRUE(says("a.rib:3:16: warning: Hider parameter \"jiter\" is not known")) << errors();
+    EXPECT_TRUE(says("did you mean \"jitter\"?"));
+    EXPECT_TRUE(says("warning: Display parameter \"compresion\" is not known"));
+    EXPECT_TRUE(says("did you mean \"compression\"?"));
+    EXPECT_EQ(times("warning:"), 2) << errors();
+    run("render -v a.rib");
+    EXPECT_TRUE(says("note: Hider parameter \"subpixel\" does nothing here")) << errors();
+    EXPECT_TRUE(says("note: Display parameter \"software\" does nothing here")) << errors();
+}
+
 TEST_F(Said, UnknownOptionsAndAttributes) {
     scene("Option \"trace\" \"int maxdpth\" 3\nOption \"trase\" \"int maxdepth\" 3\nOption \"user\" \"int mine\" 3\n"
           "Option \"limits\" \"int gridsise\" 3\nOption \"visibility\" \"int camera\" 1\n",

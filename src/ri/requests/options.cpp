@@ -111,7 +111,7 @@ void display(Interpreter& in, const Call& c) {
     d.name = c.text(0).substr(add ? 1 : 0);
     d.type = c.text(1);
     d.mode = c.text(2);
-    d.params = in.bind(c, Use::Other);
+    d.params = in.bind(c, Use::Display);
     d.place = c.place;
     if (!add) in.options.displays.clear();
     in.options.displays.push_back(std::move(d));
@@ -140,7 +140,7 @@ void displayChannel(Interpreter& in, const Call& c) {
 void hider(Interpreter& in, const Call& c) {
     in.options.hider = c.text(0);
     in.options.hiderPlace = c.place;
-    in.options.hiderParams = in.bind(c, Use::Other);
+    in.options.hiderParams = in.bind(c, Use::Hider);
 }
 
 void colorSamples(Interpreter& in, const Call& c) {

@@ -2,9 +2,11 @@
 #pragma once
 #include "accel/accel.h"
 #include "base/limits.h"
+#include "base/sampler.h"
 #include "geometry/shape.h"
 #include "scene/scene.h"
 #include "shading/scheduler.h"
+#include <algorithm>
 
 namespace alpenglow::shading {
 
@@ -30,50 +32,83 @@ struct Media {
     void push(int medium);
     /// Leaves the innermost volume of that medium; none where the ray is in no such volume.
     void leave(int medium);
+    bool operator==(const Media& o) const { return count == o.count && lost == o.lost && std::equal(in, in + count, o.in); }
 };
 
-/// A ray on its way, with all that its hit needs: who pays for what it finds, which random numbers it may use, how it was made.
+/// What a ray is, beside where it goes: few are different, so each is kept once (Engine::kindOf) and rays point at it.
+struct RayKind {
+    RayType type = RayType::Camera;
+    bool fromTrace = false;           ///< drawn by trace(), not by a lighting shadeop
+    RaySet set;
+    int32_t label = 0;                ///< interned label of the trace() that sent it
+    bool operator==(const RayKind& o) const {
+        return type == o.type && fromTrace == o.fromTrace && set.only == o.set.only && set.sides == o.set.sides &&
+               set.mode == o.set.mode && label == o.label;
+    }
+};
+/// Of camera rays, and of rays that nothing is known of.
+inline constexpr RayKind kCameraKind{};
+
+/// What all rays of one camera sample have in common.
+struct PathSample {
+    int px = 0, py = 0;               ///< pixel and number of the sample: the key of its random numbers (design decision 10)
+    uint32_t sample = 0;
+    int path = -1;                    ///< index in the call of Integrator::trace()
+    float time = 0;
+    float level = 0.5f;               ///< for what fades between levels of detail
+    render::SampleNumbers numbers{render::Sampler(0, 0, 0), 0};
+};
+
+/// What few rays carry. Where a ray has none, it is as here.
+struct RayExtra {
+    Color environment{0};             ///< of trace() with a map: the light where nothing is
+    Color part{0};                    ///< of a target with sums: the share of all rays that were asked for, of those and what goes on behind
+    int32_t share = -1;               ///< Engine::shares_: which outputs have a part of what it adds to its target; -1: none
+    int32_t lit = -1;                 ///< what lights are told about the surface that sent it, where lights ask; -1: nothing
+    bool operator==(const RayExtra&) const = default;
+};
+
+/// A ray on its way, with what its hit needs: who pays for what it finds, which random numbers it may use, how it was made. Small,
+/// since each is written and read several times.
 struct PathRay {
     Vec3 origin, dir;                 ///< dir: unit
     float maxDistance = 1e38f;
     Color weight{1};                  ///< throughput since its target
-    // Key of its random numbers (design decision 10).
-    int px = 0, py = 0;
-    uint32_t sample = 0, vertex = 0;  ///< vertex: hash of the path of call sites that led here; 0 = camera
-    RayType type = RayType::Camera;
+    const PathSample* sample = nullptr;
+    const RayKind* kind = &kCameraKind;
+    const Media* media = nullptr;     ///< where it is; null: in no volume
+    uint32_t vertex = 0;              ///< of its random numbers: hash of the path of call sites that led here; 0 = camera
     int16_t bounces = 0, diffuseBounces = 0, specularBounces = 0;
-    uint16_t asked = 1;      ///< the most rays that a waiting kernel on the way was known to ask for at one point
     int16_t layers = 0;               ///< transparent surfaces passed so far, since the camera; no bounces
-    float time = 0;
+    uint16_t asked = 1;      ///< the most rays that a waiting kernel on the way was known to ask for at one point
+    bool first = true;                ///< one of those that its target asked for: writes distance and transmission
+    bool counts = false;              ///< its hit writes opacity, depth and AOVs of its camera sample
+    bool parted = false;              ///< camera: passed a volume on its way, so that volumes have what lies before `origin`
     /// Density per steradian with which this direction was drawn, times the probability of drawing it at all; < 0: light sampling
     /// cannot have produced this direction, so emission counts in full (pathtracer.md 3).
     float lobePdf = -1;
     Vec3 lobeOrigin;                  ///< the point whose lobe drew dir: lobePdf and the lights' densities are seen from there
     int lobeBinding = -1;             ///< binding of that point, whose list says which lights may light it; -1: every emitter counts
-    bool fromTrace = false;           ///< drawn by trace(), not by a lighting shadeop
-    bool wantsLight = true;           ///< false: emission of area lights is not counted (they are not sampled by this trace())
     float width = 0, spread = 0;      ///< footprint: half width at the origin, and its growth with distance
-    int path = -1;                    ///< index of the camera sample that it comes from, in the call of Integrator::trace()
-    int32_t label = 0;                ///< interned label of the trace() that sent it
-    int cameraSample = -1;            ///< index of the sample whose opacity, depth and AOVs this ray's hit writes; -1: none
-    bool first = true;                ///< one of those that its target asked for: writes distance and transmission
-    Color part{1};                    ///< of a ray that a target asked for, and of what goes on through surfaces: its share of all that were asked
-    int32_t share = -1;               ///< Engine::shares_: which outputs have a part of what it adds to its target; -1: none
-    int lit = -1;                     ///< what lights are told about the surface that sent it, where lights ask; -1: nothing
-    Color environment{0};             ///< of trace() with a map: the light where nothing is
-    RaySet set;
-    float level = 0.5f;               ///< of its camera sample, for what fades between levels of detail
-    Media media;                      ///< where it is
-    bool parted = false;              ///< camera: passed a volume on its way, so that volumes have what lies before `origin`
-    float start = 0;                  ///< camera: the way from the eye to the origin, before the near plane and through what was met
+    int32_t extra = -1;               ///< Engine::extras_; -1: none
+    RayType type() const { return kind->type; }
+    bool camera() const { return kind->type == RayType::Camera; }
+    float time() const { return sample ? sample->time : 0; }
+    /// The volume that it is in, by number; -1: none.
+    int medium() const { return media ? media->top() : -1; }
+    /// Camera: the way from the eye to the origin, before the near plane and through what was met. No lobe has drawn such a ray.
+    float start() const { return camera() ? lobeOrigin.x : 0; }
+    void setStart(float way) { lobeOrigin = Vec3(way, 0, 0); }
     /// Where it began: the eye of a camera ray.
     Vec3 begin() const {
-        const Vec3 e = origin - dir * start;
-        return length(e) <= 1e-6f * start ? Vec3(0, 0, 0) : e;
+        const float s = start();
+        const Vec3 e = origin - dir * s;
+        return length(e) <= 1e-6f * s ? Vec3(0, 0, 0) : e;
     }
     /// Where the way begins that a volume shader is to run over.
     Vec3 volumeBegin() const { return parted ? origin : begin(); }
 };
+static_assert(sizeof(PathRay) <= 120);
 
 using Sched = Scheduler<PathRay>;
 
@@ -91,7 +126,6 @@ struct ShadePoint {
     Vec3 viewI;                       ///< lights: the incident vector at the lit point
     const geometry::SurfacePoint* lit = nullptr; ///< lights: the surface at Ps; null when there is none or it is not known
     const PathRay* ray = nullptr;
-    int task = -1;                    ///< index in the slice
 };
 
 /// Fills du and dv from the ray's footprint at distance t.

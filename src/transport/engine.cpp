@@ -27,20 +27,20 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
         rays[i].dir = r.dir;
         rays[i].tnear = 0;
         rays[i].tfar = r.maxDistance;
-        if (r.type == RayType::Camera)
+        if (r.camera())
             for (const auto& [point, normal] : world_->clippingPlanes_) {
                 double height = dot(normal, Vec3d(r.origin) - point), climb = dot(normal, Vec3d(r.dir)), t = -height / climb;
                 if (climb > 0) rays[i].tfar = std::min(rays[i].tfar, float(std::max(t, 0.0)));
                 else if (climb < 0) rays[i].tnear = std::max(rays[i].tnear, float(std::min(t, 1e37)));
                 else if (height > 0) rays[i].tfar = 0; // along the plane, on its cut side
             }
-        rays[i].time = r.time;
-        rays[i].mask = visibilityBit(r.type);
+        rays[i].time = r.time();
+        rays[i].mask = visibilityBit(r.type());
         rays[i].excludeShape = rays[i].excludePrim = geometry::kNone;
-        rays[i].sides = r.set.sides;
-        rays[i].only = r.set.only;
-        rays[i].level = r.level;
-        ++raysOf(r.type);
+        rays[i].sides = r.kind->set.sides;
+        rays[i].only = r.kind->set.only;
+        rays[i].level = r.sample->level;
+        ++raysOf(r.type());
     }
     world_->accel_->intersect(rays, hits);
 
@@ -49,12 +49,13 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
     const size_t shaded = size_t(world_->groups_);
     std::vector<std::shared_ptr<BatchContext>> groups(shaded * (world_->primitiveHit_ ? 2 : 1));
     std::vector<int> sizes(groups.size());
-    const auto groupOf = [&](const SurfaceBinding& b, const PathRay& r) { return size_t(b.group) + (groups.size() > shaded && b.asPrimitive(r.set.mode, r.type) ? shaded : 0); };
+    const auto groupOf = [&](const SurfaceBinding& b, const PathRay& r) { return size_t(b.group) + (groups.size() > shaded && b.asPrimitive(r.kind->set.mode, r.type()) ? shaded : 0); };
     const std::vector<char> later = putBack(slice, sizes, groupOf, sched);
     for (size_t g = 0; g < groups.size(); ++g) {
         if (!sizes[g]) continue;
         auto& c = groups[g] = takeContext();
         c->engine = this;
+        c->ownsExtras = true;
         c->points.resize(size_t(sizes[g])); // pointers into points and rays stay good
         c->rays.reserve(size_t(sizes[g]));
         c->targets.reserve(size_t(sizes[g]));
@@ -82,23 +83,23 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
         p.P = p.surface.P;
         p.N = p.surface.N;
         p.I = p.P - r.begin(); // RISpec: P - E, though rays start at the near plane, or behind what they passed through
-        p.E = r.type == RayType::Camera ? Vec3(0, 0, 0) : r.origin;
-        p.time = r.time;
-        p.task = int(i);
-        if (world_->footprints_) setFootprint(p, r, length(p.P - r.origin), r.type == RayType::Camera ? b.shadingRate : 1);
-        if (b.areaLight < 0 || !r.wantsLight || (b.matte && r.type == RayType::Camera)) continue;
+        p.E = r.camera() ? Vec3(0, 0, 0) : r.origin;
+        p.time = r.time();
+        if (world_->footprints_) setFootprint(p, r, length(p.P - r.origin), r.camera() ? b.shadingRate : 1);
+        if (b.areaLight < 0 || (b.matte && r.camera())) continue;
         if (world_->settings_.hider != Hider::Path && r.lobePdf < 0) continue;
         if (r.lobeBinding >= 0) { // a lobe that samples lights: those that are off for its surface do not light it by chance either
             const auto& on = world_->bindings_[size_t(r.lobeBinding)].lights;
             if (std::find(on.begin(), on.end(), b.areaLight) == on.end()) continue;
         }
         const BoundLight& light = world_->lights_[size_t(b.areaLight)];
-        if (light.mean || (r.fromTrace && light.strategy == LightStrategy::Illuminance)) continue;
+        if (light.mean || (r.kind->fromTrace && light.strategy == LightStrategy::Illuminance)) continue;
         met.push_back({b.areaLight, slice[i].target, &p});
         for (int part : light.parts)
             if (world_->lights_[size_t(part)].kind == LightKind::Area) met.push_back({part, slice[i].target, &p});
     }
     misses(missed, sched);
+    for (const Sched::Task* t : missed) freeExtra(t->payload);
     std::stable_sort(met.begin(), met.end(), [](const Met& a, const Met& b) { return a.light < b.light; });
     emission(met, sched);
     for (size_t g = 0; g < groups.size(); ++g) {
@@ -110,6 +111,37 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
         shadeGroup(c, sched);
         giveBack(std::move(c));
     }
+}
+
+const RayKind* Engine::kindOf(const RayKind& k) {
+    if (lastKind_ && *lastKind_ == k) return lastKind_;
+    const uint64_t what = uint64_t(uint32_t(k.label)) << 32 | uint64_t(k.type) << 16 | uint64_t(k.fromTrace) << 12 |
+                          uint64_t(k.set.sides) << 8 | uint64_t(k.set.mode);
+    std::deque<RayKind>& known = kinds_[render::mix64(what ^ render::mix64(reinterpret_cast<uintptr_t>(k.set.only)))];
+    auto found = std::find(known.begin(), known.end(), k);
+    if (found == known.end()) found = known.insert(known.end(), k);
+    return lastKind_ = &*found;
+}
+
+int32_t Engine::newExtra(const RayExtra& e) {
+    if (e == noExtra_) return -1;
+    if (freeExtras_.empty()) {
+        extras_.push_back(e);
+        return int32_t(extras_.size()) - 1;
+    }
+    const int32_t at = freeExtras_.back();
+    freeExtras_.pop_back();
+    extras_[size_t(at)] = e;
+    return at;
+}
+
+void Engine::freeExtras(BatchContext& c) {
+    if (!std::exchange(c.ownsExtras, false)) return;
+    for (const PathRay& r : c.rays) freeExtra(r);
+}
+
+BatchContext::~BatchContext() {
+    if (ownsExtras) engine->freeExtras(*this);
 }
 
 uint64_t& Engine::raysOf(RayType t) {
@@ -130,12 +162,12 @@ std::vector<char> Engine::putBack(std::span<const Sched::Task> slice, std::span<
         const PathRay& r = slice[i].payload;
         const SurfaceBinding& b = world_->bindings_[size_t(world_->bindingOf_[hits_[i].shape])];
         const size_t g = groupOf(b, r);
-        const BoundKernel& k = world_->primitiveHit_ && b.asPrimitive(r.set.mode, r.type) ? world_->primitiveHit_ : b.surfaceS;
+        const BoundKernel& k = world_->primitiveHit_ && b.asPrimitive(r.kind->set.mode, r.type()) ? world_->primitiveHit_ : b.surfaceS;
         if (k.kernel->facts().suspends) {
             if (room[g] < 0) room[g] = roomFor(*k.kernel, &k == &b.surfaceS ? b.surfaceV.kernel.get() : nullptr, sched);
             if (sizes[g] >= room[g]) {
                 later[i] = 1;
-                --raysOf(r.type);
+                --raysOf(r.type());
                 sched.spawn(slice[i]);
                 continue;
             }
@@ -166,6 +198,7 @@ void Engine::giveBack(std::shared_ptr<BatchContext> c) {
     if (c->batch.use_count() != 1) c->batch.reset();
     c->bound = nullptr;
     c->binding = nullptr;
+    freeExtras(*c);
     c->rays.clear(); // points stay: follow() writes them again
     c->targets.clear();
     c->bindings.clear();
@@ -203,9 +236,9 @@ bool Engine::trace(std::span<const CameraRay> rays, std::span<SampleResult> out,
         }
         counters = before;
         raysAtOnce_ = std::max(1, raysAtOnce_ / 8);
-        forget();
         inner_.reset();
-        sched_.reset();
+        sched_.reset(); // strips that wait give back what is forgotten then
+        forget();
     }
 }
 
@@ -214,6 +247,8 @@ void Engine::forget() {
     shadows.clear();
     traceSums_.clear();
     litValues_.clear();
+    extras_.clear();
+    freeExtras_.clear();
 }
 
 bool Engine::traceAll(std::span<const CameraRay> rays, std::span<SampleResult> out, const StopFlag* stopFlag) {
@@ -224,6 +259,7 @@ bool Engine::traceAll(std::span<const CameraRay> rays, std::span<SampleResult> o
     size_t aovs = 0;
     for (int w : world_->outputWidths_) aovs += size_t(w);
     results.resize(rays.size());
+    samples_.resize(rays.size());
     std::vector<TargetId> roots(rays.size());
     lightTargets_.clear();
     shares_.clear();
@@ -238,16 +274,15 @@ bool Engine::traceAll(std::span<const CameraRay> rays, std::span<SampleResult> o
         PathRay& r = sched.spawn(0, roots[i]).payload;
         r.origin = c.origin;
         r.dir = c.direction;
-        r.px = c.px;
-        r.py = c.py;
-        r.sample = c.sample;
-        r.time = c.time;
+        PathSample& sample = samples_[i];
+        sample = {c.px, c.py, c.sample, int(i), c.time, 0.5f, render::SampleNumbers(render::Sampler(seed_, c.px, c.py), c.sample)};
+        r.sample = &sample;
         r.width = c.width;
         r.spread = c.spread;
-        r.start = c.start;
-        r.media = world_->eye_;
-        if (world_->fades_) r.level = random(r).one(0, kLevel, 0);
-        r.cameraSample = r.path = int(i);
+        r.setStart(c.start);
+        r.media = world_->eye_.count ? &world_->eye_ : nullptr;
+        if (world_->fades_) sample.level = random(r).one(0, kLevel, 0);
+        r.counts = true;
     }
     counters.paths += rays.size();
     spoiled_.clear();

@@ -13,12 +13,20 @@
 namespace alpenglow::transport {
 
 using shading::PathRay;
+using shading::PathSample;
+using shading::RayExtra;
+using shading::RayKind;
 using shading::Sched;
 using shading::ShadePoint;
 using shading::TargetId;
 
 /// One affine pair group of a strip, as the kernel emitted it: rows of `lanes` floats, the first three the weight.
 struct EmitRecord { int site = 0, first = 0, lanes = 0; uint64_t mask = 0; size_t offset = 0; };
+
+/// Rays that most vertices send.
+inline constexpr RayKind kDiffuseKind{RayType::Diffuse, false, {}, 0}, kSpecularKind{RayType::Specular, false, {}, 0};
+inline constexpr RayKind kShadowKind{
+    RayType::Transmission, false, {nullptr, accel::Sides::Both, shading::HitMode::Default}, 0};
 
 /// A visibility question: adds contribution * transmittance to the target.
 struct ShadowRay {
@@ -29,11 +37,9 @@ struct ShadowRay {
     float time;
     const PathRay* ray = nullptr;
     bool areaLight = false; ///< of a trace() that asks how much area lights give
-    shading::RaySet set{nullptr, accel::Sides::Both, shading::HitMode::Default};
-    RayType type = RayType::Transmission; ///< whose visibility counts
-    int32_t label = 0;
-    shading::Media media{}; ///< where it begins
-    int32_t share = -1;     ///< PathRay::share
+    const RayKind* kind = &kShadowKind;     ///< whose visibility counts
+    const shading::Media* media = nullptr; ///< where it begins
+    int32_t share = -1;     ///< RayExtra::share
 };
 
 /// The way from a to b for a shadow ray; where an end is `at`, a shaded point of the surface `s` (null: none), that surface does not block.
@@ -73,7 +79,7 @@ struct LobeVertex {
     LobeParams params;
     Color weight;          ///< of the request alone, before the ray's throughput
     TargetId target = shading::kNoTarget;
-    RayType type = RayType::Diffuse;
+    const RayKind* rays = &kDiffuseKind;
     bool lights = true;    ///< estimate lights here
     bool deltaLights = true; ///< point, spot and distant ones too (lighting shadeops, not trace())
     bool lobeOfShader = true; ///< a lighting shadeop: counts for the energy rule and may be chosen among
@@ -88,8 +94,6 @@ struct LobeVertex {
     Vec3 from;
     float bias = -1;       ///< < 0: the hit's own error bound
     float base = 0;        ///< "samplebase": rays start on this part of the footprint
-    shading::RaySet set;
-    int32_t label = 0;
     int lit = -1;          ///< of Engine::litValues_
     int32_t share = -1;    ///< Engine::shares_: outputs that hold this request too; -1: none
     Color tint{1};         ///< of the environment map
@@ -130,7 +134,9 @@ bool givenAt(const shading::Batch&, const std::string& name, int point);
 
 /// State of one batch while its kernel runs; KernelCall::user.
 struct BatchContext {
+    ~BatchContext();
     Engine* engine = nullptr;
+    bool ownsExtras = false;                   ///< what its rays carry besides is freed with it
     std::shared_ptr<shading::Batch> batch;
     const BoundKernel* bound = nullptr;
     const SurfaceBinding* binding = nullptr;   ///< of the first point; the light list is the same for all
@@ -170,7 +176,9 @@ struct BatchContext {
 
 class Engine final : public Sched::RayService {
 public:
-    Engine(std::shared_ptr<const WorldImpl> w, Diagnostics& d) : world_(std::move(w)), diagnostics_(d), seed_(world_->settings_.seed) {}
+    Engine(std::shared_ptr<const WorldImpl> w, Diagnostics& d) : world_(std::move(w)), diagnostics_(d), seed_(world_->settings_.seed) {
+        noSample_.numbers = render::SampleNumbers(render::Sampler(seed_, 0, 0), 0);
+    }
     ~Engine() override { inner_.reset(), sched_.reset(); } // strips of a frame that was given up need their kernels
     bool trace(std::span<const CameraRay>, std::span<SampleResult>, const StopFlag* stop);
     /// Whether what runs now is done again, with fewer points at a time, when a shader asks for more rays than there is room for.
@@ -212,10 +220,15 @@ public:
     void hazeOfEmitters(const BoundLight&, std::span<const ShadePoint>, std::span<LightValue>, const std::vector<char>* inMedium);
     // media.cpp
     /// Where a ray from a point of a batch in direction w begins.
-    void tellLost(const shading::Media&, const ShadePoint&) const; ///< says once that a ray was in more volumes than are known
-    shading::Media mediaTowards(const BatchContext&, int point, const Vec3& w) const;
+    void tellLost(const shading::Media*, const ShadePoint&) const; ///< says once that a ray was in more volumes than are known
+    const shading::Media* mediaTowards(const BatchContext&, int point, const Vec3& w);
+    /// SurfaceBinding::beyond().
+    const shading::Media* mediaBeyond(const SurfaceBinding&, const shading::Media* from, const Vec3& n, const Vec3& in,
+                                      const Vec3& to);
+    const shading::Media* kept(const shading::Media&); ///< the same, for good; null where it is none
+    static int mediumOf(const shading::Media* m) { return m ? m->top() : -1; }
     /// Where shadow rays between a and b begin, one of which may be the point `at` of a surface. Those that end there are turned about.
-    void shadowsInMedia(std::span<ShadowRay>, const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint*, const SurfaceBinding*) const;
+    void shadowsInMedia(std::span<ShadowRay>, const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint*, const SurfaceBinding*);
     /// A part of a shadow ray inside a medium.
     struct MediumPart { int medium; size_t ray; Vec3 from, to; };
     /// Takes from `out`, by ray, what the media leave of light.
@@ -282,7 +295,16 @@ public:
     /// Points of surfaces whose shaders move P, once the kernel has its inputs: rays met, and will leave, the facets. displacement.cpp
     static void moveToFacets(BatchContext&);
     void bindCall(rsl::KernelCall&, BatchContext&);
-    Random random(const PathRay& r) const { return Random(seed_, r.px, r.py, r.sample); }
+    Random random(const PathRay& r) const { return Random(r.sample ? r.sample->numbers : noSample_.numbers); }
+    /// The one that stays, of a kind that is made.
+    const RayKind* kindOf(const RayKind&);
+    const RayExtra& extraOf(const PathRay& r) const { return r.extra < 0 ? noExtra_ : extras_[size_t(r.extra)]; }
+    /// For PathRay::extra of one ray, which has it alone: freeExtra() when its points are shaded. -1 where there is nothing in it.
+    int32_t newExtra(const RayExtra&);
+    void freeExtras(BatchContext&);
+    void freeExtra(const PathRay& r) {
+        if (r.extra >= 0) freeExtras_.push_back(r.extra);
+    }
     /// Sums of a target, where its trace() asks for them; else null.
     TraceSums* sumsOf(TargetId t) {
         if (traceSums_.empty()) return nullptr;
@@ -293,19 +315,27 @@ public:
     std::vector<Share> shares_;
     std::vector<TargetId> lightTargets_; ///< by camera sample, WorldImpl::lightOutputs_
     TargetId nowhere_ = shading::kNoTarget; ///< nobody reads it
-    std::vector<int> litBy_;           ///< PathRay::lit of the queries of a light
+    std::vector<int> litBy_;           ///< RayExtra::lit of the queries of a light
     std::vector<LitValues> litValues_; ///< of what runs now; only where lights ask for outputs of surfaces
     std::vector<SampleResult*> results;
-    std::vector<int> spoiled_;         ///< PathRay::path of samples that notFinite() has seen; some twice
+    std::vector<int> spoiled_;         ///< PathSample::path of samples that notFinite() has seen; some twice
     std::vector<LobeVertex> lobes;
     std::vector<ShadowRay> shadows;
     const StopFlag* stop = nullptr;
 
 private:
+    std::vector<PathSample> samples_; ///< of the call of trace()
+    PathSample noSample_;
+    std::vector<RayExtra> extras_;
+    std::vector<int32_t> freeExtras_;
+    const RayExtra noExtra_;
+    std::unordered_map<uint64_t, std::deque<RayKind>> kinds_; ///< by hash
+    const RayKind* lastKind_ = nullptr;
+    std::deque<shading::Media> media_;
     friend class KernelStrip;
     // lightloop.cpp
     void checkCategory(BatchContext&, const rsl::ir::Site&, const std::string& expression);
-    /// For rays that met a light: `of`, by query, is PathRay::lit. It must outlive the result.
+    /// For rays that met a light: `of`, by query, is RayExtra::lit. It must outlive the result.
     LitSurface litBy(std::span<const int> of) const;
     LitSurface litSurface(BatchContext&, const LightLoop&, const std::vector<int>& points, int first, int lanes) const;
     void evaluateForLoop(BatchContext&, const LightLoop&, int light, int first, int lanes, std::vector<ShadePoint>&, const std::vector<int>& laneOf,

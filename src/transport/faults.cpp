@@ -6,7 +6,7 @@ namespace alpenglow::transport {
 
 void Engine::notFinite(const PathRay* ray, const std::string& what, const SourcePlace& place) {
     ++counters.nonFinite;
-    if (ray && ray->path >= 0) spoiled_.push_back(ray->path);
+    if (ray && ray->sample && ray->sample->path >= 0) spoiled_.push_back(ray->sample->path);
     diagnostics_.reportOnce(
         "nonfinite:" + what + place.file + std::to_string(place.line),
         {Severity::Warning, Rie::Math, place, what + " is not a finite number; samples that meet it are left out", {}, {}});
@@ -25,7 +25,7 @@ void Engine::notFinite(const BatchContext& c, const PathRay& ray, uint32_t site)
 }
 
 void Engine::add(Sched& sched, TargetId target, const PathRay& ray, const Color& c, const ShaderInstance* of) {
-    if (isFinite(c)) return deposit(sched, target, ray.share, c);
+    if (isFinite(c)) return deposit(sched, target, extraOf(ray).share, c);
     notFinite(&ray, "light", of);
 }
 

@@ -61,7 +61,7 @@ void Engine::keepOutputs(const shading::Batch& volume, BatchContext& surface, st
 void Engine::hazeOfBatch(BatchContext& c, int first, int count, bool wantSlope) {
     int n = int(c.points.size()), end = std::min(first + count, n), ci = c.batch->plan().Ci, oi = c.batch->plan().Oi;
     c.haze.resize(size_t(n));
-    const auto mediumOf = [&](int k) { return c.rays[size_t(k)].media.top(); };
+    const auto mediumOf = [&](int k) { return c.rays[size_t(k)].medium(); };
     std::vector<ShadePoint> points;
     std::vector<int> of;
     std::vector<Haze> out;

@@ -128,8 +128,8 @@ std::optional<Information> rendererInfoOf(const std::string& name) {
 }
 
 std::optional<Information> rayInfoOf(const std::string& name, const shading::PathRay* r, const shading::ShadePoint& p) {
-    if (name == "type") return words(r ? shading::toString(r->type) : "light");
-    if (name == "label") return words(r ? rsl::internedString(r->label) : "");
+    if (name == "type") return words(r ? shading::toString(r->type()) : "light");
+    if (name == "label") return words(r ? rsl::internedString(r->kind->label) : "");
     if (name == "depth") return number(r ? float(r->bounces) : 0.f);
     if (name == "speculardepth") return number(r ? float(r->specularBounces) : 0.f);
     if (name == "diffusedepth") return number(r ? float(r->diffuseBounces) : 0.f);

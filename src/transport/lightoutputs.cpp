@@ -131,7 +131,7 @@ std::vector<std::shared_ptr<BatchContext>> Engine::asides(const BatchContext& c,
     if (b.lightOutputs.empty() || (c.bound != &b.surfaceS && c.bound != &b.surfaceV)) return all;
     std::vector<size_t> of;
     for (size_t i = 0; i < c.points.size(); ++i)
-        if (c.rays[i].cameraSample >= 0) of.push_back(i);
+        if (c.rays[i].counts) of.push_back(i);
     if (of.empty()) return all;
     if (c.displaced && of.size() < c.points.size()) { // what the displacement wrote is known by the number of the point
         of.clear();
@@ -149,11 +149,12 @@ std::vector<std::shared_ptr<BatchContext>> Engine::asides(const BatchContext& c,
         run->points.resize(of.size());
         run->rays.reserve(of.size());
         for (size_t k = 0; k < of.size(); ++k) {
-            const int sample = c.rays[of[k]].cameraSample;
-            run->rays.push_back(c.rays[of[k]]);
+            PathRay& ray = run->rays.emplace_back(c.rays[of[k]]);
+            ray.extra = -1; // that of the batch, which may be gone before what waits here
             run->bindings.push_back(c.bindings[of[k]]);
-            run->targets.push_back(sample < 0 ? nowhere_
-                                              : lightTargets_[size_t(sample) * world_->lightOutputs_.size() + size_t(o.number)]);
+            const size_t outputs = world_->lightOutputs_.size();
+            run->targets.push_back(
+                ray.counts ? lightTargets_[size_t(ray.sample->path) * outputs + size_t(o.number)] : nowhere_);
             run->points[k] = c.points[of[k]];
             run->points[k].ray = &run->rays.back();
         }
@@ -175,7 +176,7 @@ void Engine::finishAside(BatchContext& c, int first, int lanes, Sched& sched) {
     const bool triple = world_->lightOutputs_[size_t(c.aside->number)].size == 3;
     for (int i = first; output >= 0 && i < std::min(first + lanes, int(c.points.size())); ++i) {
         const PathRay& ray = c.rays[size_t(i)];
-        if (ray.cameraSample < 0) continue;
+        if (!ray.counts) continue;
         sched.add(c.targets[size_t(i)], triple ? ray.weight * c.batch->color(output, i)
                                                : Color(luminance(ray.weight) * c.batch->value(output, 0, i), 0, 0));
     }
@@ -189,7 +190,7 @@ std::vector<Engine::AskedAside> Engine::shareLight(const BatchContext& c, std::s
     for (const AskedLobe& a : asked) lobesOf[size_t(lobes[size_t(a.lobe)].point)].push_back(&a);
     std::vector<int> pointOf; // of the batch: that of a point of a run
     for (size_t i = 0; i < c.points.size(); ++i)
-        if (runs[0]->points.size() == c.points.size() || c.rays[i].cameraSample >= 0) pointOf.push_back(int(i));
+        if (runs[0]->points.size() == c.points.size() || c.rays[i].counts) pointOf.push_back(int(i));
     for (const auto& run : runs) {
         const LightOutput::Kernel& calls = run->bound == &run->aside->V.bound ? run->aside->V : run->aside->S;
         for (size_t r = 0; r < run->emits.size(); ++r) {
@@ -197,7 +198,7 @@ std::vector<Engine::AskedAside> Engine::shareLight(const BatchContext& c, std::s
             const int same = calls.own[size_t(e.site)];
             for (int lane = 0; lane < e.lanes; ++lane) {
                 const int point = e.first + lane;
-                if (!(e.mask >> lane & 1) || point >= int(run->points.size()) || run->rays[size_t(point)].cameraSample < 0)
+                if (!(e.mask >> lane & 1) || point >= int(run->points.size()) || !run->rays[size_t(point)].counts)
                     continue;
                 Color weight = weightOf(*run, e, lane);
                 if (!(std::isfinite(weight.x) && std::isfinite(weight.y) && std::isfinite(weight.z))) {

@@ -81,24 +81,21 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
         r.vertex = vertex;
         r.asked = uint16_t(std::min<uint32_t>(many, 0xffff));
         r.bounces = int16_t(onlyDistance ? world_->maxDepth_ : from.bounces + 1); // nothing goes on behind a distance
-        ++(l.type == RayType::Diffuse ? r.diffuseBounces : r.specularBounces);
+        ++(l.rays->type == RayType::Diffuse ? r.diffuseBounces : r.specularBounces);
         r.origin = l.bias >= 0 ? start + w * l.bias : leaves ? geometry::offsetOrigin(*p.lit, w, 0) : start + w * geometry::roundingError(start);
-        r.start = 0;
         r.parted = false;
-        if (!leaves || (dot(from.dir, p.lit->n) < 0) != (dot(w, p.lit->n) > 0)) r.media = {}; // nobody knows
+        if (!leaves || (dot(from.dir, p.lit->n) < 0) != (dot(w, p.lit->n) > 0)) r.media = nullptr; // nobody knows
         r.dir = w;
         r.maxDistance = l.maxDistance;
-        r.type = l.type;
-        r.label = l.label;
-        r.set = l.set;
-        r.environment = l.trace && l.trace->map ? l.tint * mapTowards(*l.trace, w, from.spread) : Color(0);
-        r.lit = -1;
-        r.part = Color(1.f / float(l.samples));
+        r.kind = l.rays;
+        RayExtra extra;
+        if (l.trace && l.trace->map) extra.environment = l.tint * mapTowards(*l.trace, w, from.spread);
+        r.extra = newExtra(extra);
         r.lobePdf = -1; // no light was sampled: all that shines counts
         r.lobeBinding = -1;
-        r.fromTrace = r.wantsLight = r.first = true;
+        r.first = true;
         r.spread = std::max(from.spread, l.kind->spread(l.params) * 0.5f);
-        r.cameraSample = -1;
+        r.counts = false;
         sched.spawn(r.bounces + r.layers, target, r);
     }
     sched.run();

@@ -44,23 +44,36 @@ Media SurfaceBinding::beyond(const Media& from, const Vec3& n, const Vec3& in, c
     return m;
 }
 
-void Engine::tellLost(const Media& m, const ShadePoint& p) const {
-    if (m.lost)
+void Engine::tellLost(const Media* m, const ShadePoint& p) const {
+    if (m && m->lost)
         diagnostics_.reportOnce("media", {Severity::Warning, Rie::Limit, p.shape ? p.shape->place() : SourcePlace{},
                                 "a ray is inside of more than " + std::to_string(limits::kMedia) + " volumes; the outermost are forgotten",
                                 {}, {}});
 }
 
-Media Engine::mediaTowards(const BatchContext& c, int point, const Vec3& w) const {
-    if (world_->media_.empty() || size_t(point) >= c.bindings.size()) return {};
+const Media* Engine::kept(const Media& m) {
+    if (m.count == 0 && !m.lost) return nullptr;
+    for (const Media& known : media_)
+        if (known == m) return &known;
+    return &media_.emplace_back(m);
+}
+
+const Media* Engine::mediaBeyond(const SurfaceBinding& b, const Media* from, const Vec3& n, const Vec3& in, const Vec3& to) {
+    if (b.inside < 0 && b.outside < 0) return from;
+    return kept(b.beyond(from ? *from : Media(), n, in, to));
+}
+
+const Media* Engine::mediaTowards(const BatchContext& c, int point, const Vec3& w) {
+    if (world_->media_.empty() || size_t(point) >= c.bindings.size()) return nullptr;
     const ShadePoint& p = c.points[size_t(point)];
     const PathRay& ray = c.rays[size_t(point)];
-    const Media m = world_->bindings_[size_t(c.bindings[size_t(point)])].beyond(ray.media, p.surface.n, ray.dir, w);
+    const Media* m = mediaBeyond(world_->bindings_[size_t(c.bindings[size_t(point)])], ray.media, p.surface.n, ray.dir, w);
     tellLost(m, p);
     return m;
 }
 
-void Engine::shadowsInMedia(std::span<ShadowRay> rays, const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint* s, const SurfaceBinding* binding) const {
+void Engine::shadowsInMedia(std::span<ShadowRay> rays, const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint* s,
+                            const SurfaceBinding* binding) {
     if (world_->media_.empty() || !s) return;
     const auto isHere = [&](const Vec3& x) { return length(x - at) <= geometry::roundingError(x) + 4 * s->pError; };
     for (ShadowRay& r : rays) {
@@ -70,7 +83,7 @@ void Engine::shadowsInMedia(std::span<ShadowRay> rays, const Vec3& a, const Vec3
         } else if (!isHere(a)) {
             continue;
         }
-        if (r.ray && binding) r.media = binding->beyond(r.ray->media, s->n, r.ray->dir, r.dir);
+        if (r.ray && binding) r.media = mediaBeyond(*binding, r.ray->media, s->n, r.ray->dir, r.dir);
         else if (r.ray && (dot(r.ray->dir, s->n) < 0) == (dot(r.dir, s->n) > 0)) r.media = r.ray->media; // a light's: back to where it came from
     }
 }

@@ -9,6 +9,7 @@ enum RandomUse : uint32_t { kChooseLobe = 1u << 20, kRoulette, kPassThrough, kCh
 
 class Random {
 public:
+    explicit Random(const render::SampleNumbers& numbers) : numbers_(numbers) {}
     Random(render::SeedKey seed, int px, int py, uint32_t sample) : numbers_(render::Sampler(seed, px, py), sample) {}
     Vec2 pair(uint32_t vertex, uint32_t use, uint32_t occurrence) const { return numbers_.get2(vertex, use, occurrence); }
     float one(uint32_t vertex, uint32_t use, uint32_t occurrence) const { return numbers_.get1(vertex, use, occurrence); }

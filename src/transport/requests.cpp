@@ -40,7 +40,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         const size_t had = shadows.size();
         transmissionRays(s, p, p.P, &p.surface, f, weight, target, uint32_t(s.site - c.bound->kernel->sites().data()), occurrence, shadows);
         if (!owns && p.ray)
-            for (size_t k = had; k < shadows.size(); ++k) shadows[k].share = p.ray->share;
+            for (size_t k = had; k < shadows.size(); ++k) shadows[k].share = extraOf(*p.ray).share;
         shadowsInMedia(std::span(shadows).subspan(had), v(0), v(1), p.P, &p.surface, c.bindings.empty() ? nullptr : &world_->bindings_[size_t(c.bindings[size_t(point)])]);
         return;
     }
@@ -69,7 +69,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     switch (s.kind) {
     case SiteKind::Diffuse:
         l.params.axis = unit(v(0), p.surface.n);
-        l.type = RayType::Diffuse;
+        l.rays = &kDiffuseKind;
         break;
     case SiteKind::Specular:
     case SiteKind::Phong:
@@ -78,7 +78,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         l.params.a = f(s.rows[2]);
         if (s.kind == SiteKind::Specular)
             l.params.a = s.exponent / std::max(l.params.a, 1e-6f);
-        l.type = RayType::Specular;
+        l.rays = &kSpecularKind;
         break;
     case SiteKind::Trace:
         l.params.axis = unit(v(1), p.surface.n);
@@ -91,11 +91,11 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
             l.params.hasHorizon = true;
         }
         if (s.rays->fixed && !(world_->traceSubsets_ && s.rays->subsetText.empty())) { // what most calls are, many times a sample
-            l.set = s.rays->set;
-            l.type = s.rays->rays;
-            l.label = s.label;
+            l.rays = kindOf({s.rays->rays, true, s.rays->set, s.label});
         } else {
-            l.set = raySetOf(*world_, s, f, p.shape, l.type, l.label);
+            RayKind kind{RayType::Diffuse, true, {}, 0};
+            kind.set = raySetOf(*world_, s, f, p.shape, kind.type, kind.label);
+            l.rays = kindOf(kind);
         }
         l.lights = number(s.rowLights, 0) != 0;
         l.bias = number(s.rays->bias, -1);
@@ -152,7 +152,7 @@ float Engine::chooseLobes(const BatchContext& c, size_t pi, std::span<const int>
             l.chosen = 0;
         }
         // A lobe whose ray would go too deep is not followed; light samples then count in full.
-        const bool diffuse = l.type == RayType::Diffuse;
+        const bool diffuse = l.rays->type == RayType::Diffuse;
         const bool deep = from.bounces + 1 > world_->maxDepth_ ||
                           (b.maxDiffuse >= 0 && from.diffuseBounces + diffuse > b.maxDiffuse) ||
                           (b.maxSpecular >= 0 && from.specularBounces + !diffuse > b.maxSpecular);
@@ -234,7 +234,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
 
     // A waiting kernel's result goes to the target of its own that has no shares; what it makes of it has those of its ray.
     auto shareOf = [&](const LobeVertex& l) {
-        return l.ownsTarget ? -1 : l.share >= 0 ? l.share : c.rays[size_t(l.point)].share;
+        return l.ownsTarget ? -1 : l.share >= 0 ? l.share : extraOf(c.rays[size_t(l.point)]).share;
     };
 
     std::vector<float>& indirectScale = room.indirectScale;
@@ -254,9 +254,9 @@ void Engine::gather(BatchContext& c, Sched& sched) {
     // meets.
     auto meets = [&](const LobeVertex& l, const Emitter::Sample& s, const geometry::SurfacePoint& at, const Vec3& w,
                      const Vec3& from, const Vec3& end) {
-        if (l.set.only && !l.set.only[world_->numberOfShape_.at(s.shape)]) return false;
-        if (s.shape->oneSided() && l.set.sides != accel::Sides::Both &&
-            (dot(at.n, w) >= 0) != (l.set.sides == accel::Sides::Back))
+        if (l.rays->set.only && !l.rays->set.only[world_->numberOfShape_.at(s.shape)]) return false;
+        if (s.shape->oneSided() && l.rays->set.sides != accel::Sides::Both &&
+            (dot(at.n, w) >= 0) != (l.rays->set.sides == accel::Sides::Back))
             return false;
         const Vec3 way = end - from;
         return dot(way, w) > 0 && !(length(way) > l.maxDistance);
@@ -314,7 +314,6 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 p.dv = lit.dv;
                 p.time = lit.time;
                 p.ray = lit.ray;
-                p.task = lit.task;
                 if (area) {
                     // Affine lobes of a vertex share its light sample; each suspended request has its own.
                     const PathRay& ray = c.rays[pi];
@@ -375,7 +374,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
             }
             std::vector<char> inMedium;
             if (!world_->media_.empty() && area) {
-                for (size_t k = 0; k < used; ++k) inMedium.push_back(mediaTowards(c, pointOf[k], drawn[k].direction).top() >= 0);
+                for (size_t k = 0; k < used; ++k) inMedium.push_back(mediumOf(mediaTowards(c, pointOf[k], drawn[k].direction)) >= 0);
                 call.inMedium = &inMedium;
             }
             const bool sends = light.sentCl >= 0; // many samples: one of them
@@ -408,13 +407,13 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     if (l.delta || !samples(l, light)) continue;
                     if (!spread.empty() && spread[k] != spreadBehind(c.rays[size_t(l.point)], l.kind->spread(l.params))) continue;
                     // Sides 1: from where rays of this lobe pass through the emitter they cannot meet it, and it sends nothing.
-                    if (area && !light.mean && drawn[k].shape->oneSided() && l.set.sides != accel::Sides::Both &&
-                        (dot(q[k].surface.n, w) >= 0) != (l.set.sides == accel::Sides::Back))
+                    if (area && !light.mean && drawn[k].shape->oneSided() && l.rays->set.sides != accel::Sides::Both &&
+                        (dot(q[k].surface.n, w) >= 0) != (l.rays->set.sides == accel::Sides::Back))
                         continue;
                     float fcos = l.kind->fcos(l.params, w);
                     if (std::isnan(fcos)) notFinite(c, c.rays[size_t(l.point)], l.site);
                     if (!(fcos > 0)) continue;
-                    float kept = l.lobeOfShader ? v.kept(l.type) : 1;
+                    float kept = l.lobeOfShader ? v.kept(l.rays->type) : 1;
                     Vec3 o = l.bias >= 0 ? p.P + w * l.bias : sourcePoint(size_t(l.point), w);
                     if (l.trace && area && !meets(l, drawn[k], q[k].surface, w, o, geometry::offsetOrigin(q[k].surface, -w)))
                         continue;
@@ -426,7 +425,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                         if (TraceSums* of = sumsOf(l.target)) of->add(TraceSums::UnshadowedAreaLight, contribution * (fcos / (drawn[k].pdf * chance[k])));
                     if (area && !light.mean) {
                         float other = 0; // the density with which the lobe's own ray would have come here
-                        if (!set.lightOnly && l.chosen > 0 && (drawn[k].visibility & visibilityBit(l.type)))
+                        if (!set.lightOnly && l.chosen > 0 && (drawn[k].visibility & visibilityBit(l.rays->type)))
                             other = (l.kind->pdf == l.kind->fcos ? fcos : l.kind->pdf(l.params, w)) * l.chosen;
                         float pdf = drawn[k].pdf * chance[k];
                         contribution *= kept * fcos / pdf * misWeight(pdf, other);
@@ -443,7 +442,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     } else {
                         shadows.push_back({o, w, stop < 1e30f ? stop * (1 - 1e-5f) : stop, contribution, l.target, p.time, p.ray});
                     }
-                    if (l.trace) shadows.back().set = l.set;
+                    if (l.trace) shadows.back().kind = kindOf({RayType::Transmission, false, l.rays->set, 0});
                     shadows.back().media = mediaTowards(c, l.point, w);
                     shadows.back().share = shareOf(l);
                 }
@@ -534,37 +533,31 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 r.vertex = vertex;
                 r.asked = asked;
                 r.bounces = int16_t(bounces);
-                if (l.type == RayType::Diffuse) ++r.diffuseBounces;
+                if (l.rays->type == RayType::Diffuse) ++r.diffuseBounces;
                 else ++r.specularBounces;
                 r.origin = l.elsewhere ? l.from : sourcePoint(pi, w);
                 if (l.bias >= 0) r.origin = (l.elsewhere ? l.from : p.P) + w * l.bias;
                 else if (l.elsewhere) r.origin += w * geometry::roundingError(l.from);
                 r.dir = w;
                 r.maxDistance = l.maxDistance;
-                r.type = l.type;
-                r.label = l.label;
-                r.set = l.set;
-                r.start = 0;
+                r.kind = l.rays;
                 r.media = mediaTowards(c, int(pi), w);
                 r.parted = false;
                 if (l.base > 0) { // somewhere on the footprint
                     const Vec2 at = rng.pair(vertex, kSampleBase, 0);
                     r.origin += (p.surface.dPdu * (p.du * (at.x - .5f)) + p.surface.dPdv * (p.dv * (at.y - .5f))) * l.base;
                 }
-                r.environment = environment;
-                r.lit = l.lit;
-                r.share = shareOf(l);
-                r.part = l.ownsTarget ? Color(1.f / float(count)) : Color(0);
+                RayExtra extra{environment, Color(0), shareOf(l), l.lit};
+                if (l.ownsTarget && l.trace && l.trace->sums) extra.part = Color(1.f / float(count));
+                r.extra = newExtra(extra);
                 bool sampled = l.lights && !l.elsewhere && !delta && set.direct && !set.bsdfOnly && path;
                 bool sampledElsewhere = l.lights && !l.elsewhere && !delta && set.direct && !set.bsdfOnly && !path && l.ownsTarget;
                 r.lobePdf = sampled || sampledElsewhere ? pdf * l.chosen : l.lights && !l.elsewhere && !delta && !path && set.direct && !set.bsdfOnly ? pdf : -1;
-                r.wantsLight = true;
-                r.fromTrace = !l.lobeOfShader;
                 r.lobeOrigin = p.P;
                 r.lobeBinding = l.lights && !l.elsewhere && !delta ? c.bindings[pi] : -1;
                 r.width = from.width + from.spread * length(p.P - from.origin);
                 r.spread = spreadBehind(from, l.kind->spread(l.params));
-                r.cameraSample = -1;
+                r.counts = false;
                 r.first = l.ownsTarget;
                 counters.depthMax = std::max(counters.depthMax, bounces);
                 ++counters.depthSum; // over camera rays: the mean number of bounces

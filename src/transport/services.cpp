@@ -187,9 +187,11 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
         const PathRay* r = c.rays.empty() ? p.ray : &c.rays[size_t(first + lane)];
         rsl::PrintKey key;
         if (r) {
-            key.sample = r->sample;
-            key.x = r->px;
-            key.y = r->py;
+            if (r->sample) {
+                key.sample = r->sample->sample;
+                key.x = r->sample->px;
+                key.y = r->sample->py;
+            }
             key.bounces = r->bounces;
             key.vertex = r->vertex;
         }

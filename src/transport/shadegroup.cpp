@@ -132,7 +132,8 @@ Color Engine::clearAt(const BatchContext& c, int i) const {
     const PathRay& ray = c.rays[size_t(i)];
     if (!world_->media_.empty() && !c.haze.empty() && c.haze[size_t(i)].on) {
         const SurfaceBinding& binding = world_->bindings_[size_t(c.bindings[size_t(i)])];
-        if (ray.media.top() >= 0 || binding.beyond(ray.media, c.points[size_t(i)].surface.n, ray.dir, ray.dir).top() >= 0)
+        if (ray.medium() >= 0 ||
+            binding.beyond(ray.media ? *ray.media : shading::Media(), c.points[size_t(i)].surface.n, ray.dir, ray.dir).top() >= 0)
             clear = clear * c.haze[size_t(i)].slope;
     }
     for (int k = 0; k < 3; ++k) clear[k] = clear[k] > 0 ? std::min(clear[k], 1.f) : 0; // not a number: opaque
@@ -154,7 +155,7 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, st
         const PathRay& ray = c.rays[i];
         const SurfaceBinding& binding = world_->bindings_[c.bindings[i]];
         Color color = ci >= 0 ? b.color(ci, i) : Color(0), opacity = oi >= 0 ? b.color(oi, i) : Color(1);
-        if (binding.matte && ray.type == RayType::Camera) {
+        if (binding.matte && ray.camera()) {
             sched.setDistance(c.targets[i], 0);
             color = Color(0);
         }
@@ -162,17 +163,17 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, st
             sched.setNearer(c.targets[i], length(c.points[i].P - ray.origin), c.points[i].N);
             sched.setTransmission(c.targets[i], Color(1) - opacity);
         }
-        if (TraceSums* sums = sumsOf(c.targets[i])) sums->add(TraceSums::Blocked, ray.part * opacity);
+        if (TraceSums* sums = sumsOf(c.targets[i])) sums->add(TraceSums::Blocked, extraOf(ray).part * opacity);
         Color shown = color;
-        if (!c.haze.empty() && c.haze[size_t(i)].on && !(binding.matte && ray.type == RayType::Camera)) { // pairs were scaled in shadeGroup
+        if (!c.haze.empty() && c.haze[size_t(i)].on && !(binding.matte && ray.camera())) { // pairs were scaled in shadeGroup
             shown = c.haze[size_t(i)].shown;
             opacity = c.haze[size_t(i)].opacity;
         }
         if (!isFinite(opacity)) notFinite(&ray, "Oi", binding.surface.get());
         if (isFinite(shown)) add(sched, c.targets[i], ray, ray.weight * shown, binding.surface.get());
         else notFinite(&ray, "Ci", binding.surface.get());
-        if (ray.cameraSample >= 0) {
-            SampleResult& r = *results[ray.cameraSample];
+        if (ray.counts) {
+            SampleResult& r = *results[size_t(ray.sample->path)];
             if (!binding.matte) r.opacity += ray.weight * opacity;
             float z = dot(c.points[i].P, Vec3(0, 0, 1));
             if (r.z >= 1e38f) r.z = z;
@@ -321,13 +322,13 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
                 continue;
             }
             if (weight == Color(0)) continue;
-            if (world_->bindings_[c->bindings[point]].matte && c->rays[point].type == RayType::Camera) continue;
+            if (world_->bindings_[c->bindings[point]].matte && c->rays[point].camera()) continue;
             const float* args = rows + size_t(3) * e.lanes;
             if (s.kind == SiteKind::LightVisibility) {
                 const size_t had = shadows.size();
                 lightVisibility(*c, s, point, args, e.lanes, lane, weight * c->rays[point].weight, c->targets[point],
                                 args[size_t(s.rows[0]) * e.lanes + lane]);
-                if (shadows.size() > had) shadows.back().share = c->rays[point].share;
+                if (shadows.size() > had) shadows.back().share = extraOf(c->rays[size_t(point)]).share;
                 continue;
             }
             if (s.kind == SiteKind::Transmission) weight *= c->rays[point].weight;

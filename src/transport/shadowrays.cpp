@@ -14,10 +14,10 @@ accel::Ray shadowRay(const ShadowRay& s) {
     r.dir = s.dir;
     r.tfar = s.distance;
     r.time = s.time;
-    r.mask = visibilityBit(s.type);
-    r.sides = s.set.sides;
-    r.only = s.set.only;
-    if (s.ray) r.level = s.ray->level;
+    r.mask = visibilityBit(s.kind->type);
+    r.sides = s.kind->set.sides;
+    r.only = s.kind->set.only;
+    if (s.ray && s.ray->sample) r.level = s.ray->sample->level;
     return r;
 }
 Color between0And1(const Color& c) { return {std::clamp(c.x, 0.f, 1.f), std::clamp(c.y, 0.f, 1.f), std::clamp(c.z, 0.f, 1.f)}; }
@@ -60,12 +60,10 @@ void Engine::opacities(std::span<const OpacityQuery> met, std::span<Color> out) 
             r = *m.ray->ray;
             r.width += r.spread * length(m.ray->origin - r.origin);
         }
-        r.type = m.ray->type;
-        r.label = m.ray->label;
-        r.start = 0;
+        r.kind = m.ray->kind;
         r.origin = m.ray->origin;
         r.dir = m.ray->dir;
-        r.cameraSample = -1;
+        r.counts = false;
         c.bindings.push_back(m.binding);
         ShadePoint& p = c.points.emplace_back();
         p.ray = &r;
@@ -107,7 +105,8 @@ void Engine::transmittances(std::span<const ShadowRay> rays, std::span<Color> ou
         for (size_t i = 0; i < rays.size(); ++i) out[i] = blocked_[i] ? Color(0) : Color(1);
         return;
     }
-    struct Going { accel::Ray ray; size_t index; int layers; shading::Media media; Vec3 begin; };
+    struct Going { accel::Ray ray; size_t index; int layers; const shading::Media* media; Vec3 begin; };
+    const auto medium = [](const Going& g) { return g.media ? g.media->top() : -1; };
     std::vector<MediumPart> parts;
     std::vector<Going> now, next;
     std::vector<OpacityQuery> met;
@@ -124,8 +123,8 @@ void Engine::transmittances(std::span<const ShadowRay> rays, std::span<Color> ou
             for (;; ++g.layers) {
                 accel::Hit h;
                 if (!world_->accel_->intersect(g.ray, h)) {
-                    if (const float end = rays[g.index].distance; g.media.top() >= 0 && end < 1e30f)
-                        parts.push_back({g.media.top(), g.index, g.begin, rays[g.index].origin + g.ray.dir * end});
+                    if (const float end = rays[g.index].distance; medium(g) >= 0 && end < 1e30f)
+                        parts.push_back({medium(g), g.index, g.begin, rays[g.index].origin + g.ray.dir * end});
                     break;
                 }
                 if (g.layers >= limits::kShadowLayers) { t = Color(0); ++counters.depthCap; break; }
@@ -135,11 +134,11 @@ void Engine::transmittances(std::span<const ShadowRay> rays, std::span<Color> ou
                 if (media) {
                     const geometry::SurfacePoint at = world_->accel_->point(h);
                     const Vec3 end = at.displaced ? at.displacedP : at.P;
-                    if (g.media.top() >= 0) parts.push_back({g.media.top(), g.index, g.begin, end});
-                    g.media = b.beyond(g.media, at.n, g.ray.dir, g.ray.dir);
+                    if (medium(g) >= 0) parts.push_back({medium(g), g.index, g.begin, end});
+                    g.media = mediaBeyond(b, g.media, at.n, g.ray.dir, g.ray.dir);
                     g.begin = end;
                 }
-                const Opacity& takes = b.opacityFor(rays[g.index].set.mode);
+                const Opacity& takes = b.opacityFor(rays[g.index].kind->set.mode);
                 if (takes.kernel) {
                     ++g.layers;
                     met.push_back({binding, h, &rays[g.index], &takes.kernel});
@@ -154,7 +153,7 @@ void Engine::transmittances(std::span<const ShadowRay> rays, std::span<Color> ou
         // One batch a surface. The order inside a batch does not matter: a kernel's lanes know nothing of each other.
         order.resize(met.size());
         for (size_t i = 0; i < order.size(); ++i) order[i] = i;
-        const auto what = [&](size_t i) { return std::pair(met[i].binding, rays[next[i].index].set.mode); };
+        const auto what = [&](size_t i) { return std::pair(met[i].binding, rays[next[i].index].kind->set.mode); };
         std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return what(a) < what(b); });
         std::vector<OpacityQuery> group;
         std::vector<Color> opacity;
@@ -188,7 +187,9 @@ void Engine::transmissionRays(const SiteInfo& s, const ShadePoint& p, const Vec3
     ray.target = target;
     ray.time = p.time;
     ray.ray = p.ray;
-    ray.set = raySetOf(*world_, s, f, p.shape, ray.type, ray.label);
+    RayKind kind = kShadowKind;
+    kind.set = raySetOf(*world_, s, f, p.shape, kind.type, kind.label);
+    ray.kind = kindOf(kind);
     const float bias = number(r.bias, -1), far = std::min(number(r.maxDistance, 1e38f), number(r.maxHit, 1e38f)), cone = number(r.cone, 0);
     const int count = cone > 0 && p.ray ? int(std::clamp(number(r.samples, 1), 1.f, 4096.f)) : 1; // rays all alike need not be sent twice
     ray.contribution = weight / float(count);

@@ -10,7 +10,7 @@ void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId t
     const Color t = transparency / chance;
     PathRay r = ray;
     r.weight = ray.weight * t;
-    r.part = ray.part * t;
+    float chosen = 1;
     const Settings& set = world_->settings_;
     // What a camera ray shows behind a surface is always followed, so that opacity, depth and AOVs are exact.
     if (set.hider == Hider::Path && set.roulette && ray.bounces > 0) {
@@ -30,32 +30,33 @@ void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId t
         }
         if (!(q > 0)) return;
         r.weight = r.weight / q;
-        r.part = r.part / q;
+        chosen = q;
     }
     const float travelled = length(p.P - ray.origin);
     r.origin = geometry::offsetOrigin(p.surface, ray.dir);
-    if (ray.type == RayType::Camera) r.start = ray.start + dot(r.origin - ray.origin, ray.dir); // the eye has not moved
+    if (ray.camera()) r.setStart(ray.start() + dot(r.origin - ray.origin, ray.dir)); // the eye has not moved
     r.maxDistance = ray.maxDistance - travelled;
     r.width = ray.width + ray.spread * travelled;
     r.first = false;
-    r.media = b.beyond(ray.media, p.surface.n, ray.dir, ray.dir);
+    r.media = mediaBeyond(b, ray.media, p.surface.n, ray.dir, ray.dir);
     tellLost(r.media, p);
-    r.parted |= ray.type == RayType::Camera && (ray.media.top() >= 0 || r.media.top() >= 0);
+    r.parted |= ray.camera() && (ray.medium() >= 0 || r.medium() >= 0);
     r.vertex = childVertex(ray.vertex, 0xfffff, 0);
     ++r.layers;
     if (r.layers > limits::kPathDepth / 32 || !(r.maxDistance > 0)) { ++counters.depthCap; return; }
-    Sched::Task task;
-    task.depth = r.bounces + r.layers;
-    task.target = target;
-    task.payload = r;
-    sched.spawn(std::move(task));
+    if (ray.extra >= 0) {
+        RayExtra extra = extraOf(ray);
+        extra.part = extra.part * t / chosen;
+        r.extra = newExtra(extra);
+    }
+    sched.spawn(r.bounces + r.layers, target, r);
 }
 
 void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
     for (const Sched::Task* t : tasks) // the map of a trace()
-        if (const PathRay& r = t->payload; maxComponent(r.environment) > 0) {
-            add(sched, t->target, r, r.weight * r.environment, nullptr);
-            if (TraceSums* sums = sumsOf(t->target)) sums->add(TraceSums::Environment, r.weight * r.environment);
+        if (const PathRay& r = t->payload; maxComponent(extraOf(r).environment) > 0) {
+            add(sched, t->target, r, r.weight * extraOf(r).environment, nullptr);
+            if (TraceSums* sums = sumsOf(t->target)) sums->add(TraceSums::Environment, r.weight * extraOf(r).environment);
         }
     if (world_->settings_.hider != Hider::Path || tasks.empty()) return;
     std::vector<ShadePoint> q;
@@ -68,15 +69,15 @@ void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
         litBy_.clear();
         for (const Sched::Task* t : tasks) {
             const PathRay& r = t->payload;
-            if (l.kind == LightKind::Ambient ? r.type != RayType::Diffuse : r.fromTrace && l.strategy == LightStrategy::Illuminance) continue;
+            if (l.kind == LightKind::Ambient ? r.type() != RayType::Diffuse : r.kind->fromTrace && l.strategy == LightStrategy::Illuminance) continue;
             ShadePoint& p = q.emplace_back();
             p.Ps = r.origin;
             p.P = r.origin + r.dir;
             p.N = -r.dir;
-            p.time = r.time;
+            p.time = r.time();
             p.ray = &r;
             of.push_back(t);
-            litBy_.push_back(r.lit);
+            litBy_.push_back(extraOf(r).lit);
         }
         value.assign(q.size(), {});
         LitSurface lit;
@@ -85,8 +86,8 @@ void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
         for (size_t i = 0; i < of.size(); ++i)
             if (value[i].lit) {
                 const PathRay& r = of[i]->payload;
-                const bool weighed = l.kind == LightKind::Environment && r.bounces > 0 && !r.fromTrace; // met by a lobe of a lighting shadeop
-                add(sched, of[i]->target, r, r.weight * value[i].Cl * (weighed ? value[i].kept(r.type) : 1.f), l.instance.get());
+                const bool weighed = l.kind == LightKind::Environment && r.bounces > 0 && !r.kind->fromTrace; // met by a lobe of a lighting shadeop
+                add(sched, of[i]->target, r, r.weight * value[i].Cl * (weighed ? value[i].kept(r.type()) : 1.f), l.instance.get());
             }
     }
 }
@@ -105,7 +106,7 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
             p.P = p.surface.displaced ? p.surface.displacedP : p.surface.P;
             p.N = p.surface.n;
             p.Ps = r.lobePdf >= 0 ? r.lobeOrigin : r.origin;
-            litBy_.push_back(r.lit);
+            litBy_.push_back(extraOf(r).lit);
         }
         const BoundLight& light = world_->lights_[size_t(met[first].light)];
         value.assign(q.size(), {});
@@ -113,15 +114,15 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
         if (light.asksSurface) lit = litBy(litBy_);
         std::vector<char> inMedium;
         if (!world_->media_.empty())
-            for (size_t i = first; i < end; ++i) inMedium.push_back(met[i].point->ray->media.top() >= 0);
+            for (size_t i = first; i < end; ++i) inMedium.push_back(met[i].point->ray->medium() >= 0);
         evaluateLight(light, q, value, {.lit = light.asksSurface ? &lit : nullptr, .inMedium = inMedium.empty() ? nullptr : &inMedium});
         for (size_t i = 0; i < inMedium.size(); ++i) {
             if (!inMedium[i] || !value[i].lit) continue;
             const PathRay& r = *met[first + i].point->ray;
-            const MediumPart part{r.media.top(), 0, r.volumeBegin(), met[first + i].point->P};
+            const MediumPart part{r.medium(), 0, r.volumeBegin(), met[first + i].point->P};
             ShadowRay way{};
             way.ray = &r;
-            way.time = r.time;
+            way.time = r.time();
             dim({&part, 1}, {&way, 1}, {&value[i].Cl, 1});
         }
         for (size_t i = first; i < end; ++i) {
@@ -136,9 +137,9 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
                 if (set.hider == Hider::Path && r.lobeBinding >= 0) pdf *= chanceOf(met[i].light, r.lobeBinding, r.lobeOrigin);
                 weight = set.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
             }
-            if (r.bounces > 0 && !r.fromTrace) weight *= v.kept(r.type);
+            if (r.bounces > 0 && !r.kind->fromTrace) weight *= v.kept(r.type());
             add(sched, met[i].target, r, r.weight * v.Cl * weight, light.instance.get());
-            if (TraceSums* sums = sumsOf(met[i].target); sums && maxComponent(r.part) > 0) sums->add(TraceSums::AreaLight, r.weight * v.Cl * weight);
+            if (TraceSums* sums = sumsOf(met[i].target); sums && maxComponent(extraOf(r).part) > 0) sums->add(TraceSums::AreaLight, r.weight * v.Cl * weight);
         }
     }
 }

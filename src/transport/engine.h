@@ -234,10 +234,8 @@ public:
     /// Takes from `out`, by ray, what the media leave of light.
     void dim(std::span<const MediumPart>, std::span<const ShadowRay>, std::span<Color> out);
     // manylights.cpp
-    /// Lights to sample at a point: index in the list, and the probability that it is chosen.
-    void chooseLights(const std::vector<int>& lights, const Vec3& at, float random, std::vector<std::pair<int, float>>& chosen);
-    /// Probability that chooseLights takes this light for a point of the binding at `at`.
-    float chanceOf(int light, int binding, const Vec3& at);
+    /// Probability that a light is among those that are sampled at a point of the binding at `at`.
+    float chanceOf(int light, int binding, const Vec3& at) const;
     // lightloop.cpp
     /// What lightBegin() is to know beyond its rows: a category, sent values, outputs of the surface.
     void lightSetup(BatchContext&, int site, int first, uint64_t mask, int lanes, const float* in);
@@ -389,7 +387,6 @@ private:
     std::shared_ptr<const WorldImpl> world_;
     Diagnostics& diagnostics_;
     render::SeedKey seed_;
-    std::vector<float> chances_;
     std::vector<Color> transmitted_;
     uint64_t& raysOf(RayType); ///< the counter of such rays
     using GroupOf = std::function<size_t(const SurfaceBinding&, const PathRay&)>;

@@ -273,13 +273,14 @@ void Engine::gather(BatchContext& c, Sched& sched) {
         bool many = path && on.size() > size_t(limits::kLightsSampled);
         std::vector<std::vector<std::pair<int, float>>> chosenAt(many ? on.size() : 0);
         if (many) {
-            std::vector<std::pair<int, float>> chosen;
+            LightChooser::Chosen chosen;
+            const LightChooser& chooser = world_->choosers_[size_t(world_->bindings_[size_t(c.bindings[0])].lightList)].chooser;
             for (size_t pi = 0; pi < c.points.size(); ++pi) {
                 auto list = lobesOf(pi);
                 if (list.empty()) continue;
                 const LobeVertex& l0 = lobes[size_t(list[0])];
                 uint32_t vertex = l0.ownsTarget ? childVertex(c.rays[pi].vertex, kLightPoint + l0.site, l0.occurrence) : c.rays[pi].vertex;
-                chooseLights(on, c.points[pi].P, random(c.rays[pi]).one(vertex, kChooseLight, 0), chosen);
+                chooser.choose(c.points[pi].P, random(c.rays[pi]).one(vertex, kChooseLight, 0), chosen);
                 for (auto [i, chance] : chosen) chosenAt[size_t(i)].push_back({int(pi), chance});
             }
         }

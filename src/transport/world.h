@@ -8,6 +8,7 @@
 #include "texture/texture.h"
 #include "transport/arealight.h"
 #include "transport/integrator.h"
+#include "transport/lightchooser.h"
 #include "transport/lobe.h"
 #include <functional>
 #include <mutex>
@@ -273,8 +274,8 @@ public:
     void measureLights(class Engine&, Diagnostics&);
     /// What the shape takes from shadow rays. `mode`: "shader", "primitive", "opaque" or "Os"; "": what the attributes say.
     Opacity opacityOf(const SurfaceBinding&, const geometry::Shape&, std::string mode, const std::vector<std::string>& varying, Engine&, Diagnostics&);
-    /// Probability with which each of the lights (a list of sampledLights_) is sampled at a point.
-    void lightChances(const std::vector<int>& lights, const Vec3& at, std::vector<float>& chance) const;
+    /// Fills choosers_; after measureLights().
+    void makeChoosers();
 
     std::shared_ptr<const scene::Frame> frame_;
     Settings settings_;
@@ -323,6 +324,9 @@ public:
     BoundKernel primitiveHit_;                 ///< shows primitives as they are; only where some ray may want that
     ShapeSubsets subsets_;
     std::vector<std::vector<int>> sampledLights_; ///< by SurfaceBinding::lightList: lights that get samples, in order
+    /// By the same: empty where all of them are sampled at every vertex. numberOf: by light, its place in the list, else -1.
+    struct ChooserOfList { LightChooser chooser; std::vector<int> numberOf; };
+    std::vector<ChooserOfList> choosers_;
     std::unordered_map<const geometry::Shape*, int> hazyEmitters_; ///< emitters in an atmosphere -> their binding
     float clipNear_ = 0, clipFar_ = 1;         ///< of the request Clipping, for depth()
     std::vector<std::pair<Vec3d, Vec3d>> clippingPlanes_; ///< camera space point, normal; camera rays see nothing on the normal's side

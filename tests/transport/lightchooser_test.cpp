@@ -1,0 +1,94 @@
+// transport/lightchooser.h: a light is chosen with exactly the probability that is given with it, and that pmf() tells.
+#include "transport/lightchooser.h"
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numeric>
+#include <random>
+
+using namespace alpenglow;
+using transport::LightBound;
+using transport::LightChooser;
+
+namespace {
+
+constexpr int kWanted = 8;
+
+std::vector<LightBound> lightsOf(int n, unsigned seed, const char* kind) {
+    std::mt19937 rng(seed);
+    std::uniform_real_distribution<float> one(0, 1);
+    const std::string how = kind;
+    std::vector<LightBound> all;
+    for (int i = 0; i < n; ++i) {
+        LightBound l;
+        l.centre = Vec3(one(rng) * 20 - 10, one(rng) * 4, one(rng) * 20 - 10);
+        l.radius = how == "spheres" ? one(rng) : 0;
+        l.power = how == "dark" ? 0 : how == "uneven" ? std::exp(12 * one(rng) - 6) : 1;
+        if (how == "one place") l.centre = Vec3(1, 2, 3);
+        if (how == "line") l.centre = Vec3(float(i), 0, 0);
+        if (how == "some far") l.everywhere = i % 5 == 0;
+        if (how == "broken") l.power = i % 3 ? std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
+        all.push_back(l);
+    }
+    return all;
+}
+
+} // namespace
+
+TEST(LightChooser, FrequenciesAreTheProbabilities) {
+    const int turns = 4096;
+    for (const char* kind : {"plain", "spheres", "dark", "uneven", "one place", "line", "some far", "broken"})
+        for (const int n : {9, 33, 1000}) {
+            const auto lights = lightsOf(n, 5, kind);
+            const LightChooser chooser(lights, kWanted);
+            for (const Vec3& at : {Vec3(0, 0, 0), Vec3(1, 2, 3), lights[3].centre, Vec3(1e4f, 0, 0)}) {
+                std::vector<int> often(size_t(n), 0);
+                LightChooser::Chosen chosen;
+                for (int k = 0; k < turns; ++k) { // the midpoints of equal parts of what u can be
+                    chooser.choose(at, (float(k) + .5f) / turns, chosen);
+                    std::vector<char> seen(size_t(n), 0);
+                    for (auto [light, p] : chosen) {
+                        ASSERT_FALSE(seen[size_t(light)]) << kind << ": twice in one choice";
+                        seen[size_t(light)] = 1;
+                        ++often[size_t(light)];
+                        ASSERT_EQ(p, chooser.pmf(light, at)) << kind << n;
+                    }
+                    ASSERT_GE(chosen.size(), 1u) << kind << n;
+                    ASSERT_LE(chosen.size(), size_t(kWanted) + 1) << kind << n;
+                }
+                // A comb's tooth lies on an interval of length p: at most one midpoint more or less at each of its ends.
+                for (int i = 0; i < n; ++i)
+                    EXPECT_NEAR(often[size_t(i)] / double(turns), chooser.pmf(i, at), 2.0 / turns) << kind << n << " light " << i;
+            }
+        }
+}
+
+TEST(LightChooser, SharesOfPower) {
+    // Lights at equal distances: shares of power, whatever the tree is; kBlind of the choice is equal for all.
+    std::vector<LightBound> ring(64);
+    double total = 0;
+    for (int i = 0; i < 64; ++i) {
+        ring[size_t(i)].centre = Vec3(std::cos(i * .1f) * 3, std::sin(i * .1f) * 3, 0);
+        total += ring[size_t(i)].power = 1 + float(i % 4);
+    }
+    const LightChooser chooser(ring, kWanted);
+    double sum = 0;
+    for (int i = 0; i < 64; ++i) sum += chooser.pmf(i, {0, 0, 0});
+    EXPECT_NEAR(sum, kWanted, 1e-4); // nobody's reaches 1
+    // Opened to single lights only below the cut's size: the mean over a power's sixteen lights is what the share must be, to 10 %.
+    for (int power = 1; power <= 4; ++power) {
+        double mean = 0;
+        for (int i = power - 1; i < 64; i += 4) mean += chooser.pmf(i, {0, 0, 0}) / 16.0;
+        EXPECT_NEAR(mean, kWanted * (.9 * power / total + .1 / 64), .1 * mean) << power;
+    }
+    // One that outshines all others is always there.
+    ring[17].power = 1e6f;
+    EXPECT_EQ(LightChooser(ring, kWanted).pmf(17, {0, 0, 0}), 1);
+}
+
+TEST(LightChooser, NoLights) {
+    LightChooser::Chosen chosen{{1, 1}};
+    LightChooser().choose({0, 0, 0}, .5f, chosen);
+    EXPECT_TRUE(chosen.empty());
+    EXPECT_EQ(LightChooser().pmf(0, {0, 0, 0}), 0);
+    EXPECT_TRUE(LightChooser().empty());
+}

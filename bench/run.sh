@@ -57,6 +57,11 @@ if [ -x "$build/bin/box_bench" ]; then
     echo "  samples per second, ours / oracle on the same sequences: ${ratio:-none} >= 0.6 $mark"
     echo
 fi
+if [ -x "$build/bin/scene_bench" ]; then
+    echo "== Scenes that look like production: where the time goes (no limits)"
+    timeout 900 "$build/bin/scene_bench" --folder "$build/bench_scenes" || misses=$((misses + 1))
+    echo
+fi
 echo "== Start and compilation (best of five)"
 scene=bench/scenes/ten_shaders.rib
 "$program" render $scene -q -o "$work/ten.exr" >"$work/out" 2>&1 || { cat "$work/out"; misses=$((misses + 1)); }

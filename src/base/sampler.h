@@ -6,16 +6,17 @@
 // uniform, so every estimate is unbiased at every sample count. Different pairs walk the sequence in independently shuffled
 // orders (a nested shuffle, which keeps every aligned block of 2^m points a (0,m,2)-net), so they are not correlated.
 //
-// A pixel has kReplicas independently scrambled sequences: sample i is point i / 8 of replica i % 8. So after 8 * 2^m samples
-// each replica holds a complete (0,m,2)-net, every prefix that is a multiple of 8 is well stratified, and the spread of the
-// eight replica means tells the true error of the mean, which the spread of dependent samples does not (testing.md rule 7).
+// A pixel has kReplicas = 2 independently scrambled sequences: sample i is point i / 2 of replica i % 2. So after 2 * 2^m samples
+// each replica holds a complete (0,m,2)-net, and the difference of the two replica means tells the true error of their mean,
+// which the spread of dependent samples does not (testing.md rule 7). Two is the least that tells it, and leaves the most
+// stratification: noise.h pools what two say too vaguely in one pixel.
 #pragma once
 #include "base/vec.h"
 #include "base/hash.h"
 
 namespace alpenglow::render {
 
-inline constexpr uint32_t kReplicas = 8;
+inline constexpr uint32_t kReplicas = 2;
 
 /// A seed, mixed once for all pixels.
 struct SeedKey {

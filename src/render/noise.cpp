@@ -125,7 +125,54 @@ double relativeSurfaceError(const SurfaceError& e) {
     return e.replicas < 2 ? 0 : std::sqrt(e.coverage) * relative(e.se / c4(e.replicas), e.mean);
 }
 
-double studentQuantile(double level, int dof) {
+double noiseBound(double sum, double sumOfSquares, int replicas) {
+    if (!(sumOfSquares > 0)) return 1;
+    const double dof = sum * sum / (2 * (1 - c4(replicas) * c4(replicas)) * sumOfSquares), v = 2 / (9 * dof);
+    const double root = 1 - v - 1.6448536269514722 * std::sqrt(v); // 5 % of the normal distribution lie below -1.645
+    return root > 0 ? std::max(1.0, 1 / std::sqrt(root * root * root)) : std::numeric_limits<double>::infinity();
+}
+
+namespace {
+
+/// Sums of the squared errors of pixels.
+struct Variances {
+    double sum = 0, square = 0, mean = 0;
+    int pixels = 0, degrees = 0;
+    void add(const ReplicaError& e) {
+        if (e.replicas == 0) return;
+        const double v = e.se * e.se;
+        sum += v;
+        square += v * v;
+        mean += e.mean;
+        ++pixels;
+        degrees += e.replicas - 1;
+    }
+    double dof() const {
+        return square > 0 ? std::clamp(3 * sum * sum / square - 2, std::min(1.0, double(degrees)), double(degrees)) : degrees;
+    }
+};
+
+} // namespace
+
+PooledError windowError(const Film& film, const Window& w) {
+    Variances all;
+    for (int y = w.y0; y < w.y1; ++y)
+        for (int x = w.x0; x < w.x1; ++x) all.add(replicaError(film, x, y));
+    if (all.pixels == 0) return {};
+    return {all.mean / all.pixels, std::sqrt(all.sum) / all.pixels, all.dof()};
+}
+
+PooledError pixelError(const Film& film, int x, int y, int radius) {
+    const Window& w = film.window();
+    Variances near;
+    for (int j = std::max(y - radius, w.y0); j < std::min(y + radius + 1, w.y1); ++j)
+        for (int i = std::max(x - radius, w.x0); i < std::min(x + radius + 1, w.x1); ++i) near.add(replicaError(film, i, j));
+    if (near.degrees == 0) return {replicaError(film, x, y).mean, 0, 0};
+    return {replicaError(film, x, y).mean, std::sqrt(near.sum / near.degrees), near.dof()};
+}
+
+namespace {
+double studentOfWhole(double level, int dof) {
     double hi = 1;
     while (studentWithin(hi, dof) < level && hi < 1e12)
         hi *= 2;
@@ -136,11 +183,19 @@ double studentQuantile(double level, int dof) {
     }
     return hi;
 }
+} // namespace
 
-Interval confidenceInterval(const ReplicaError& e, double level) {
-    if (e.replicas < 2)
-        return {e.mean, std::numeric_limits<double>::infinity()};
-    return {e.mean, studentQuantile(level, e.replicas - 1) * e.se};
+double studentQuantile(double level, double dof) {
+    const int whole = int(std::clamp(dof, 1.0, 1e6));
+    const double a = studentOfWhole(level, whole);
+    if (dof == whole || whole == 1'000'000) return a;
+    const double share = (1 / dof - 1.0 / whole) / (1.0 / (whole + 1) - 1.0 / whole);
+    return a * std::pow(studentOfWhole(level, whole + 1) / a, share);
+}
+
+Interval confidenceInterval(const PooledError& e, double level) {
+    if (!(e.dof > 0)) return {e.mean, std::numeric_limits<double>::infinity()};
+    return {e.mean, studentQuantile(level, e.dof) * e.se};
 }
 
 NoiseFigures noiseFigures(const Film& film) {
@@ -148,7 +203,7 @@ NoiseFigures noiseFigures(const Film& film) {
     const Window& w = film.window();
     std::vector<double> rse;
     rse.reserve(w.pixels());
-    double relativeSum = 0, square = 0, surfaceSum = 0, area = 0, judged = 0;
+    double relativeSum = 0, square = 0, surfaceSum = 0, surfaceSquare = 0, area = 0, judged = 0;
     uint32_t most = 0;
     for (int y = w.y0; y < w.y1; ++y)
         for (int x = w.x0; x < w.x1; ++x) {
@@ -162,7 +217,9 @@ NoiseFigures noiseFigures(const Film& film) {
             area += s.coverage;
             if (s.replicas < 2) continue;
             judged += s.coverage;
-            surfaceSum += s.coverage * relativeSurfaceError(s);
+            const double a = s.coverage * relativeSurfaceError(s);
+            surfaceSum += a;
+            surfaceSquare += a * a;
         }
     if (most >= 2)
         summarise(rse, &f.noiseRSE, &f.noiseRSE999);
@@ -171,6 +228,7 @@ NoiseFigures noiseFigures(const Film& film) {
     f.coverage = area / double(w.pixels());
     f.known = judged > 0;
     if (f.known) f.noise = surfaceSum / judged;
+    if (f.known) f.noiseAtMost = f.noise * noiseBound(surfaceSum, surfaceSquare);
     return f;
 }
 

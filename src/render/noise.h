@@ -19,12 +19,14 @@ struct NoiseFigures {
     double noiseRSE999 = 0; ///< the k-th smallest RSE, k = min(floor(0.999 N), N - 1)
     double noiseQMC = 0;    ///< mean of the pixels' relative error from replicas, over the whole picture
     double imageError = 0;  ///< absolute: sqrt of the mean of SE_QMC^2; estimates the image's luminance RMSE
-    double noise = 0; ///< relative error of the light of surfaces, mean over their area in the picture: what is printed, and what
-                      ///< --noise compares. 0 when not known
+    double noise = 0; ///< relative error of the light of surfaces, mean over their area in the picture: what is printed. 0 when
+                      ///< not known
+    double noiseAtMost = 0; ///< the true error is with 95 % certainty not above this: what --noise compares. Near `noise` where many
+                            ///< pixels show a surface, far above it where few do (noiseBound()). 0 when not known
     bool known = false;  ///< some pixel's surface was met in two replicas
     double coverage = 0; ///< share of the samples that met a surface, 0..1
     /// Nothing is left that more samples would improve: no surface is in the picture, or the figure is small enough.
-    bool reached(double wanted) const { return known ? noise <= wanted : coverage == 0; }
+    bool reached(double wanted) const { return known ? noiseAtMost <= wanted : coverage == 0; }
 };
 
 /// noiseRSE and noiseRSE999 of a set of pixels, which is reordered. {0, 0} when empty.
@@ -37,13 +39,14 @@ void summarise(std::vector<double>& rse, double* noiseRSE, double* noiseRSE999);
 struct ReplicaError {
     double mean = 0;
     double se = 0;    ///< 0 when replicas < 2
-    int replicas = 0; ///< that hold samples, at most 8
+    int replicas = 0; ///< that hold samples
 };
 ReplicaError replicaError(const Film&, int x, int y);
 /// The same from sums and counts of each replica.
 ReplicaError replicaError(std::span<const double> sums, std::span<const uint32_t> counts);
 /// SE / (mean + 1e-3), SE divided by c4(R) = sqrt(2/(R-1)) Gamma(R/2) / Gamma((R-1)/2), since the root of an unbiased variance
-/// is on average too small (c4(8) = 0.9650 for normal replica means). 0 for fewer than 2 replicas.
+/// is on average too small (c4(2) = 0.7979 for normal replica means). 0 for fewer than 2 replicas. Of one pixel with two
+/// replicas it is right on average only, with a deviation of 0.76 of itself: use means over many pixels.
 double relativeReplicaError(const ReplicaError&);
 
 /// The error of the light of what a pixel shows, apart from how much of the pixel it covers. Of n samples h met a surface, h_r of
@@ -63,12 +66,34 @@ SurfaceError surfaceError(const Film&, int x, int y);
 /// more than its size in the picture does. 0 for fewer than 2 replicas.
 double relativeSurfaceError(const SurfaceError&);
 
+/// 95 % upper bound of a mean of relative errors a_i (weights included), each from R replicas: the mean's own relative variance,
+/// (1 - c4(R)^2) sum a_i^2 / (sum a_i)^2, is that of a deviation from f = 1 / (2 variance) degrees of freedom, whose bound is
+/// sqrt(f / chi^2) with chi^2 the 5 % quantile (Wilson and Hilferty 1931). Where some pixels have most of the error f is small. Returns the factor,
+/// >= 1: 1.01 for 10,000 like pixels, 13 for one.
+double noiseBound(double sum, double sumOfSquares, int replicas = int(kReplicas));
+
+/// A mean with its error pooled over pixels. One pixel has one degree of freedom, whose intervals are 12.7 SE wide and miss the
+/// truth whenever both replicas of a yes-or-no question happen to agree.
+struct PooledError {
+    double mean = 0;
+    double se = 0;
+    double dof = 0; ///< degrees of freedom of se; 0: not known
+};
+/// The error of the mean luminance over the pixels of a window that hold samples: SE^2 = sum SE_i^2 / N^2, whatever each of them has. Degrees of
+/// freedom by Satterthwaite (1946), unbiased for components of one degree each: 3 (sum v)^2 / sum v^2 - 2, v = SE_i^2, between
+/// 1 and the number of pixels.
+PooledError windowError(const Film&, const Window&);
+/// The error of one pixel's mean, its variance taken from the square of 2 radius + 1 pixels about it, cut off at the film's window. Honest
+/// where these have about the same variance; radius 0 is the pixel alone.
+PooledError pixelError(const Film&, int x, int y, int radius);
+
 /// Mean and half width of an interval that covers the true value with the given probability: m +- t SE, t of Student's
-/// distribution with R - 1 degrees of freedom. Half width infinite when fewer than 2 replicas. 0 < level < 1.
+/// distribution. Half width infinite when the error is not known (fewer than 2 replicas). 0 < level < 1.
 struct Interval { double mean = 0, halfWidth = 0; };
-Interval confidenceInterval(const ReplicaError&, double level = 0.95);
-/// t with P(|T| <= t) = level for Student's distribution with dof >= 1 degrees of freedom.
-double studentQuantile(double level, int dof);
+Interval confidenceInterval(const PooledError&, double level = 0.95);
+/// t with P(|T| <= t) = level for Student's distribution with dof >= 1 degrees of freedom; between whole numbers its logarithm is taken as
+/// linear in 1 / dof (2.5 % too large at 1.5, 0.5 % at 2.5).
+double studentQuantile(double level, double dof);
 
 /// All figures of a film. noiseRSE and noiseRSE999 are 0 below two samples per pixel.
 NoiseFigures noiseFigures(const Film&);

@@ -9,7 +9,7 @@ namespace alpenglow::render {
 namespace {
 
 constexpr char kMagic[8] = {'A', 'L', 'P', 'G', 'P', 'A', 'R', 'T'};
-constexpr uint32_t kVersion = 2;             // 1 had no sums of the samples that met a surface
+constexpr uint32_t kVersion = 3;             // 1 had no sums of the samples that met a surface, 2 had eight replicas a pixel
 constexpr size_t kPrefix = 20;               // magic, version, header size, header CRC
 constexpr size_t kPixelBytes = 16 * 4 + 16 * kReplicas + 32 + 4 * kReplicas + 16 + 4 * kReplicas;
 constexpr size_t kDeflateRatio = 1040;       // deflate cannot pack better than 1032 : 1
@@ -342,7 +342,7 @@ std::unique_ptr<Film> parsePart(std::span<const uint8_t> bytes, const std::strin
         return bad(Rie::BadFile, "the part file is truncated");
     if (version != kVersion)
         return bad(Rie::Version, version < kVersion
-                                     ? "a part file of an older version of this program, which kept too little of each "
+                                     ? "a part file of an older version of this program, which kept other sums of each "
                                        "pixel; render that part again"
                                      : "a part file of a newer version of this program; use that to read it");
     if (size > limits::kPartHeaderBytes || bytes.size() - kPrefix < size_t(size) + 4)

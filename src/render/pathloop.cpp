@@ -13,6 +13,8 @@ namespace {
 
 constexpr size_t kRaysPerCall = 8192; // of one trace(): enough to fill the lanes of rare shaders too, and few ends of calls, when lanes run empty
 constexpr int kPathTile = 32;         // pixels a side: eight samples of each are one call
+constexpr uint32_t kPass = 8;         // samples a pixel; a multiple of kReplicas, so that noise is judged on replicas of equal size
+static_assert(kPass % kReplicas == 0);
 
 } // namespace
 
@@ -42,10 +44,10 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
     const bool large = film.window().pixels() >= size_t(kPathTile) * kPathTile * 8 * size_t(job.team.threads());
     const std::vector<Window> tiles = tilesOf(film.window(), large ? kPathTile : kTile);
     const size_t stride = 5 + channels.size(); // colour, alpha, whether a surface was met, the rest
-    // Passes: of 8 samples, one per replica, while they fit the memory that holds them back. The first eight come in passes of
+    // Passes: of 8 samples while they fit the memory that holds them back. The first eight come in passes of
     // 1, 1, 2 and 4, so that there is soon something to keep.
     size_t perSample = film.window().pixels() * stride * sizeof(float);
-    uint32_t most = uint32_t(std::clamp(kPassBytes / std::max(perSample, size_t(1)), size_t(1), size_t(kReplicas)));
+    uint32_t most = uint32_t(std::clamp(kPassBytes / std::max(perSample, size_t(1)), size_t(1), size_t(kPass)));
     std::vector<std::vector<float>> held(tiles.size());
     uint32_t next = wanted.begin;
     while (next < wanted.end) { // behind what a checkpoint brought
@@ -77,8 +79,8 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
     bool any = film.samplesPerPixel() > 0;
     while (next < wanted.end && !job.pollStop()) {
         uint32_t count = std::min(most, wanted.end - next);
-        if (next % kReplicas != 0) count = std::min(count, kReplicas - next % kReplicas); // so that noise is judged on whole nets
-        if (film.samplesPerPixel() < kReplicas) count = std::min(count, std::max(1u, film.samplesPerPixel()));
+        if (next % kPass != 0) count = std::min(count, kPass - next % kPass); // so that noise is judged on whole nets
+        if (film.samplesPerPixel() < kPass) count = std::min(count, std::max(1u, film.samplesPerPixel()));
         if (settings.seconds > 0 && any) {
             double left = settings.seconds - job.elapsed();
             if (left <= 0) break;
@@ -160,10 +162,10 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
         secondsPerSample = (clockSeconds() - begun) / count;
         next += count;
         any = true;
-        if (film.samplesPerPixel() >= nextNoise && film.samplesPerPixel() % kReplicas == 0) {
+        if (film.samplesPerPixel() >= nextNoise && film.samplesPerPixel() % kPass == 0) {
             noise = noiseFigures(film);
             judged = true;
-            nextNoise = film.samplesPerPixel() + std::max(kReplicas, film.samplesPerPixel() / 8 / kReplicas * kReplicas);
+            nextNoise = film.samplesPerPixel() + std::max(kPass, film.samplesPerPixel() / 8 / kPass * kPass);
         }
         if (afterPass) afterPass(film);
         if (settings.noise > 0 && judged && noise.reached(settings.noise)) break;

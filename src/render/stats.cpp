@@ -36,6 +36,7 @@ std::string toJson(const RenderStats& s) {
     j["cpuSec"] = finite(s.cpuSec);
     j["raysPerMS"] = finite(raysPerMS(s.totalRays, s.renderSec));
     j["noise"] = finite(s.noise.noise);
+    j["noiseAtMost"] = finite(s.noise.noiseAtMost);
     j["coverage"] = finite(s.noise.coverage);
     j["noiseRSE"] = finite(s.noise.noiseRSE);
     j["noiseRSE999"] = finite(s.noise.noiseRSE999);

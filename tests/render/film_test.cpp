@@ -120,9 +120,9 @@ TEST(Film, MomentsByHand) {
     EXPECT_NEAR(m.variance, 14.0 / 3, 1e-9);
     double sum;
     uint32_t n;
-    f.replica(0, 0, 2, &sum, &n);
-    EXPECT_NEAR(sum, 3, 1e-10);
-    EXPECT_EQ(n, 1u);
+    f.replica(0, 0, 1, &sum, &n); // samples 1 and 3
+    EXPECT_NEAR(sum, 8, 1e-10);
+    EXPECT_EQ(n, 2u);
 }
 
 // Every sample is counted and summed, whatever its index: 3,000 samples in three ranges, sums in integers that float holds
@@ -149,7 +149,7 @@ TEST(Film, EverySampleOfThousandsIsCounted) {
             double sum;
             uint32_t n;
             f.replica(x, 0, r, &sum, &n);
-            EXPECT_EQ(n, 375u) << "replica " << r;
+            EXPECT_EQ(n, 3000 / kReplicas) << "replica " << r;
             all += n;
         }
         EXPECT_EQ(all, 3000u);

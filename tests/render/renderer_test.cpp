@@ -162,8 +162,8 @@ TEST(Renderer, PathHasTheSameMeansAndKnowsItsSamples) {
     ASSERT_EQ(i.width, 24);
     for (int y = 0; y < 16; ++y)
         for (int x = 0; x < 24; ++x) {
-            // 8 replicas of 8 stratified points: each axis has at most 1/8 of a pixel (0.125) of error a replica, in the mean far
-            // less.
+            // Two replicas of 32 stratified points: each axis has at most 1/32 of a pixel (0.03) of error a replica, in the mean
+            // far less.
             EXPECT_NEAR(i.pixel(x, y)[0], planeX(x), 0.01);
             EXPECT_NEAR(i.pixel(x, y)[1], planeY(y), 0.01);
             EXPECT_EQ(i.pixel(x, y)[2], x < 12 ? 7 : 0);

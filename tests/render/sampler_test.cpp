@@ -43,7 +43,7 @@ TEST(Sampler, SobolIsTheKnownSequence) {
 
 TEST(Sampler, EveryElementaryIntervalOnce) {
     for (uint64_t seed : {0ull, 1ull, 77ull})
-        for (uint32_t replica : {0u, 3u, 7u})
+        for (uint32_t replica : {0u, 1u})
             for (uint32_t site : {0u, 5u}) {
                 Sampler s(seed, 12 + int(site), -3);
                 for (int m = 0; m <= 12; ++m) {
@@ -60,7 +60,7 @@ TEST(Sampler, EveryAlignedBlockIsANet) {
     for (uint32_t block = 0; block < 64; ++block) {
         std::vector<Vec2> p;
         for (uint32_t i = 0; i < 64; ++i)
-            p.push_back(s.get2(0, 1, 0, (block * 64 + i) * kReplicas + 2));
+            p.push_back(s.get2(0, 1, 0, (block * 64 + i) * kReplicas + 1));
         expectNet(p, 6);
     }
 }
@@ -129,8 +129,8 @@ TEST(Sampler, TenMillionKeysNoCollision) {
         for (int x = -250; x < 250; ++x) {
             Sampler s(1, x, y);
             for (uint32_t r = 0; r < kReplicas; ++r)
-                for (uint32_t vertex = 0; vertex < 2; ++vertex)
-                    for (uint32_t site = 0; site < 5; ++site)
+                for (uint32_t vertex = 0; vertex < 4; ++vertex)
+                    for (uint32_t site = 0; site < 10; ++site)
                         keys.push_back(s.streamKey(r, vertex, site, 0));
         }
     ASSERT_EQ(keys.size(), 10'000'000u);

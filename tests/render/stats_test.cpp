@@ -14,7 +14,7 @@ RenderStats example() {
     s.renderSec = 2;
     s.cpuSec = 3.5;
     s.totalRays = 5'000'000;
-    s.noise = {0.1, 0.4, 0.05, 0.02, 0.03, true, 0.5};
+    s.noise = {0.1, 0.4, 0.05, 0.02, 0.03, 0.031, true, 0.5};
     s.threads = 2;
     s.peakMemoryBytes = 3u << 20;
     s.nonFinite = 1234;

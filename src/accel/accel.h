@@ -74,7 +74,9 @@ public:
     const std::vector<geometry::ShapeRef>& shapes() const;
     /// The point of a hit.
     geometry::SurfacePoint point(const Hit& h) const { return shapes()[h.shape]->evaluateHit(h.prim, h.b1, h.b2); }
-    void point(const Hit& h, geometry::SurfacePoint& out) const { shapes()[h.shape]->evaluateHit(h.prim, h.b1, h.b2, out); }
+    void point(const Hit& h, geometry::SurfacePoint& out, uint32_t needs = geometry::kNeedAll) const {
+        shapes()[h.shape]->evaluateHit(h.prim, h.b1, h.b2, out, needs);
+    }
     /// Encloses everything.
     geometry::Bounds bounds() const;
 

@@ -47,7 +47,7 @@ ShapeRef makePolygonMesh(ShapeSource s, PolygonInput in, Diagnostics& diag) {
     if (thin)
         diag.report(Severity::Warning, Rie::Range, p.place,
                     p.kind + ": " + std::to_string(thin) + " faces have fewer than three corners; they are not drawn");
-    auto mesh = std::make_shared<PolygonMesh>(std::move(s), in, P->numbers, diag);
+    auto mesh = std::make_shared<PolygonMesh>(std::move(s), std::move(in), P->numbers, diag);
     if (mesh->empty()) {
         if (!bad && !thin) diag.report(Severity::Warning, Rie::Range, p.place, p.kind + " has no area; it is not drawn");
         return nullptr;
@@ -55,22 +55,48 @@ ShapeRef makePolygonMesh(ShapeSource s, PolygonInput in, Diagnostics& diag) {
     return mesh;
 }
 
-PolygonMesh::PolygonMesh(ShapeSource s, const PolygonInput& in, const std::vector<float>& P, Diagnostics& diag)
+PolygonMesh::PolygonMesh(ShapeSource s, PolygonInput&& in, const std::vector<float>& P, Diagnostics& diag)
     : Shape(std::move(s)) {
     objectP_ = P.data();
     faceCount_ = int(in.loopsPerFace.size());
-    uint32_t points = uint32_t(P.size() / 3);
-    cameraP_.resize(points);
-    for (uint32_t i = 0; i < points; ++i) cameraP_[i] = Vec3(transformPoint(toCamera(), objectPoint(i)));
-    cornerVertex_.resize(in.vertex.size());
-    for (size_t i = 0; i < in.vertex.size(); ++i) {
-        cornerVertex_[i] = in.vertex[i] < 0 ? 0 : uint32_t(in.vertex[i]);
-        if (in.vertex[i] >= 0) vertexCount_ = std::max(vertexCount_, uint32_t(in.vertex[i]) + 1);
+    cornerCount_ = uint32_t(in.vertex.size());
+    for (int& v : in.vertex)
+        if (v >= 0) vertexCount_ = std::max(vertexCount_, uint32_t(v) + 1);
+    if (!takeTriangles(in)) cutFaces(in, diag);
+    in = {}; // what follows needs memory
+    triangles_ = mesh_.triangles();
+    const uint32_t points = uint32_t(P.size() / 3);
+    mesh_.P.reserve(points + 1);
+    for (uint32_t i = 0; i < points; ++i) mesh_.P.push_back(Vec3(transformPoint(toCamera(), objectPoint(i))));
+    mesh_.finish();
+    takePrimvars(diag);
+    plain_ = varS_ < 0 && varT_ < 0 && varSt_ < 0 && !normal_.param;
+    constexpr size_t kRemember = 256; // triangles; each takes 700 bytes
+    if (triangles_ <= kRemember) remember();
+}
+
+/// Sound triangles and nothing else, the usual large mesh: corners and faces need no lists then.
+bool PolygonMesh::takeTriangles(const PolygonInput& in) {
+    const size_t n = in.loopsPerFace.size();
+    if (in.cornersPerLoop.size() != n || in.vertex.size() != 3 * n) return false;
+    for (size_t f = 0; f < n; ++f) {
+        if (in.loopsPerFace[f] != 1 || in.cornersPerLoop[f] != 3 || in.vertex[3 * f] < 0) return false;
+        const Vec3d a = objectPoint(uint32_t(in.vertex[3 * f])), e1 = objectPoint(uint32_t(in.vertex[3 * f + 1])) - a,
+                    e2 = objectPoint(uint32_t(in.vertex[3 * f + 2])) - a, c = cross(e1, e2);
+        // Far from what triangulate() could doubt or leave out.
+        const double longest = std::max(dot(e1, e1), dot(e2, e2));
+        if (!(dot(c, c) > 1e-12 * longest * longest)) return false;
     }
+    mesh_.index.assign(in.vertex.begin(), in.vertex.end());
+    return true;
+}
+
+void PolygonMesh::cutFaces(const PolygonInput& in, Diagnostics& diag) {
     faceNormal_.resize(size_t(faceCount_));
     size_t loop = 0, corner = 0, forced = 0;
     std::vector<Vec3d> pts;
     std::vector<uint32_t> tris;
+    const auto vertex = [&](size_t c) { return uint32_t(std::max(0, in.vertex[c])); };
     for (int f = 0; f < faceCount_; ++f) {
         size_t loops = size_t(in.loopsPerFace[size_t(f)]), first = corner;
         pts.clear();
@@ -79,7 +105,7 @@ PolygonMesh::PolygonMesh(ShapeSource s, const PolygonInput& in, const std::vecto
         for (size_t l = loop; l < loop + loops; ++l)
             for (int c = 0; c < in.cornersPerLoop[l]; ++c, ++corner) {
                 if (in.vertex[corner] < 0) ok = false;
-                pts.push_back(objectPoint(cornerVertex_[corner]));
+                pts.push_back(objectPoint(vertex(corner)));
             }
         Vec3d n;
         if (ok && loops > 0) {
@@ -95,31 +121,21 @@ PolygonMesh::PolygonMesh(ShapeSource s, const PolygonInput& in, const std::vecto
         diag.report(Severity::Warning, Rie::Consistency, place(),
                     kind() + ": the loops of " + std::to_string(forced) +
                         " faces cross or lie outside each other; they are filled as well as possible");
-    TriMesh m;
-    m.P = cameraP_;
-    m.index.reserve(corner_.size());
-    double total = 0;
-    for (size_t t = 0; t < face_.size(); ++t) {
-        for (int k = 0; k < 3; ++k) m.index.push_back(vertexOf(uint32_t(t), k));
-        Vec3d a = cameraCorner(uint32_t(t), 0), b = cameraCorner(uint32_t(t), 1), c = cameraCorner(uint32_t(t), 2);
-        total += 0.5 * length(cross(b - a, c - a));
-        cumulativeArea_.push_back(total);
-    }
-    m.finish();
-    mesh_ = std::move(m);
-    takePrimvars(diag);
-    plain_ = varS_ < 0 && varT_ < 0 && varSt_ < 0 && !normal_.param;
-    constexpr size_t kRemember = 256; // triangles; a plane takes 600 bytes
-    if (face_.size() <= kRemember) {
-        std::vector<Plane> planes;
-        for (uint32_t t = 0; t < face_.size(); ++t) planes.push_back(makePlane(t));
-        planes_ = std::move(planes);
-    }
+    mesh_.index.reserve(corner_.size());
+    for (uint32_t c : corner_) mesh_.index.push_back(vertex(c));
 }
 
-PolygonMesh::Frame PolygonMesh::frame(int face) const {
-    Vec3d n(faceNormal_[size_t(face)]);
-    if (std::fabs(n.z) >= 1e-4) return {{1, 0, 0}, {0, 1, 0}};
+/// Whether a face with this normal, of any length, has u and v along x and y.
+static bool looksAlongZ(const Vec3d& n) { return n.z * n.z >= 1e-8 * dot(n, n); }
+
+Vec3d PolygonMesh::faceNormal(uint32_t tri) const {
+    if (!faceNormal_.empty()) return Vec3d(faceNormal_[faceOf(tri)]);
+    const Vec3d o = objectPoint(vertexOf(tri, 0));
+    return normalize(cross(objectPoint(vertexOf(tri, 1)) - o, objectPoint(vertexOf(tri, 2)) - o));
+}
+
+PolygonMesh::Frame PolygonMesh::frame(const Vec3d& n) const {
+    if (looksAlongZ(n)) return {{1, 0, 0}, {0, 1, 0}};
     Vec3d a = normalize(Vec3d(-n.y, n.x, 0));
     if (std::fabs(a.x) >= std::fabs(a.y) ? a.x < 0 : a.y < 0) a = -a;
     Vec3d b = normalize(cross(n, a));
@@ -127,76 +143,202 @@ PolygonMesh::Frame PolygonMesh::frame(int face) const {
     return {a, b};
 }
 
-PolygonMesh::Plane PolygonMesh::makePlane(uint32_t tri) const {
+PolygonMesh::Plane PolygonMesh::planeOf(uint32_t tri) const {
     Plane r;
-    for (int k = 0; k < 3; ++k) r.p[k] = objectPoint(vertexOf(tri, k));
-    Vec3d c = cross(r.p[1] - r.p[0], r.p[2] - r.p[0]), fn(faceNormal_[face_[tri]]);
-    r.f = frame(int(face_[tri]));
-    const Frame& f = r.f;
-    double l = length(c);
+    r.o = objectPoint(vertexOf(tri, 0));
+    r.e1 = objectPoint(vertexOf(tri, 1)) - r.o;
+    r.e2 = objectPoint(vertexOf(tri, 2)) - r.o;
+    const Vec3d c = cross(r.e1, r.e2), e3 = r.e2 - r.e1;
+    const double area = dot(c, c), longest = std::max({dot(r.e1, r.e1), dot(r.e2, r.e2), dot(e3, e3)});
     // A sliver's normal is noise, and a bent face may hold a triangle that stands edge-on in its frame: the face's then.
-    double longest = std::max({length(r.p[1] - r.p[0]), length(r.p[2] - r.p[1]), length(r.p[0] - r.p[2])});
-    r.n = l > 1e-12 * longest * longest ? c / l : fn;
-    Vec3d ab = cross(f.a, f.b);
-    if (std::fabs(dot(r.n, ab)) < 1e-5) r.n = fn;
-    double d = dot(r.n, ab);
-    r.Pu = cross(f.b, r.n) / d;
-    r.Pv = cross(r.n, f.a) / d;
-    Vec3d a = cameraCorner(tri, 0), b3 = cameraCorner(tri, 1), c3 = cameraCorner(tri, 2);
-    r.a = a;
-    r.e1 = b3 - a;
-    r.e2 = c3 - a;
-    SurfacePoint& p = r.point;
-    p.face = int(face_[tri]);
-    p.prim = tri;
-    Vec3d Pu = transformVector(toCamera(), r.Pu), Pv = transformVector(toCamera(), r.Pv);
-    p.dPdu = Vec3(Pu);
-    p.dPdv = Vec3(Pv);
-    // Ng = sign * dPdu ^ dPdv must lie where the winding points; the corners' cross product is the winding in camera space.
-    Vec3d g = cross(Pu, Pv), wind = cross(r.e1, r.e2);
-    double along = dot(g, wind);
-    if (along == 0) along = dot(transformNormal(toCamera(), fn), g) * determinant3(toCamera());
-    p.orientation = along < 0 ? -orientation_ : orientation_;
-    p.Ng = Vec3(g * double(p.orientation));
-    // Rays meet the rounded triangle: its own normal, unless it is too thin to have one.
-    double lw = length(wind), longestSide = std::max({length(r.e1), length(c3 - b3), length(r.e2)});
-    p.n = Vec3(lw > 1e-6 * longestSide * longestSide ? wind / lw * double(orientation_) : normalize(g) * double(p.orientation));
-    p.N = p.n;
+    const bool sliver = !(area > 1e-24 * longest * longest);
+    const Vec3d face = faceNormal_.empty() ? c : Vec3d(faceNormal_[faceOf(tri)]);
+    if (!sliver && looksAlongZ(face) && c.z * c.z >= 1e-10 * area) { // the usual case: u and v are x and y
+        const double inverse = 1 / c.z;
+        r.f = {{1, 0, 0}, {0, 1, 0}};
+        r.Pu = {1, 0, -c.x * inverse};
+        r.Pv = {0, 1, -c.y * inverse};
+        r.u1 = r.e2.y * inverse;
+        r.u2 = -r.e1.y * inverse;
+        r.v1 = -r.e2.x * inverse;
+        r.v2 = r.e1.x * inverse;
+        return r;
+    }
+    const Vec3d fn = faceNormal(tri);
+    r.f = frame(fn);
+    const Vec3d ab = cross(r.f.a, r.f.b);
+    Vec3d n = sliver ? fn : c / std::sqrt(area);
+    if (std::fabs(dot(n, ab)) < 1e-5) n = fn;
+    const double d = dot(n, ab);
+    r.Pu = cross(r.f.b, n) / d;
+    r.Pv = cross(n, r.f.a) / d;
+    // Barycentric weights are linear in the plane: their gradients along Pu and Pv.
+    const auto slope = [&](const Vec3d& along, double& d1, double& d2) {
+        d1 = area > 0 ? dot(cross(along, r.e2), c) / area : 0;
+        d2 = area > 0 ? dot(cross(r.e1, along), c) / area : 0;
+    };
+    slope(r.Pu, r.u1, r.u2);
+    slope(r.Pv, r.v1, r.v2);
     return r;
 }
 
-void PolygonMesh::evaluateLocal(uint32_t tri, double b1, double b2, SurfacePoint& p) const {
-    Plane room;
-    const Plane& q = plane(tri, room);
+void PolygonMesh::setPartials(uint32_t tri, const Plane& q, const Vec3d& wind, SurfacePoint& p) const {
+    const Vec3d Pu = transformVector(toCamera(), q.Pu), Pv = transformVector(toCamera(), q.Pv);
+    p.dPdu = Vec3(Pu);
+    p.dPdv = Vec3(Pv);
+    // Ng = sign * dPdu ^ dPdv must lie where the winding points; the corners' cross product is the winding in camera space.
+    const Vec3d g = cross(Pu, Pv);
+    double along = dot(g, wind);
+    if (along == 0) along = dot(transformNormal(toCamera(), faceNormal(tri)), g) * determinant3(toCamera());
+    p.orientation = along < 0 ? -orientation_ : orientation_;
+    p.Ng = Vec3(g * double(p.orientation));
+}
+
+void PolygonMesh::setVariables(SurfacePoint& p, const Plane* q, uint32_t needs) const {
+    Weight w[3] = {{0, 1 - p.b1 - p.b2}, {0, p.b1}, {0, p.b2}};
+    if (q) w[0].du = -q->u1 - q->u2, w[1].du = q->u1, w[2].du = q->u2, w[0].dv = -q->v1 - q->v2, w[1].dv = q->v1, w[2].dv = q->v2;
+    // One component of a variable, and its slopes where the triangle's plane is known.
+    const auto mix = [&](const PrimVar& var, const uint32_t at[3], int width, int component, float& f, float* du, float* dv) {
+        double x = 0, xu = 0, xv = 0;
+        const float* data = var.data() + component;
+        for (int k = 0; k < 3; ++k) {
+            const double value = data[size_t(at[k]) * size_t(width)];
+            x += w[k].w * value;
+            if (q) xu += w[k].du * value, xv += w[k].dv * value;
+        }
+        f = float(x);
+        if (q) *du = float(xu), *dv = float(xv);
+    };
+    uint32_t at[3];
+    const auto places = [&](Class c) {
+        for (int k = 0; k < 3; ++k)
+            at[k] = c == Class::Constant ? 0 : c == Class::Uniform ? uint32_t(p.face) : c == Class::FaceVarying || c == Class::FaceVertex ? cornerOf(p.prim, k) : vertexOf(p.prim, k);
+    };
+    if (needs & (kNeedST | kNeedSTSlopes)) {
+        if (varSt_ >= 0) {
+            const PrimVar& st = primvars_[size_t(varSt_)];
+            places(st.cls);
+            mix(st, at, 2, 0, p.s, &p.dsdu, &p.dsdv);
+            mix(st, at, 2, 1, p.t, &p.dtdu, &p.dtdv);
+        }
+        if (varS_ >= 0) places(primvars_[size_t(varS_)].cls), mix(primvars_[size_t(varS_)], at, 1, 0, p.s, &p.dsdu, &p.dsdv);
+        if (varT_ >= 0) places(primvars_[size_t(varT_)].cls), mix(primvars_[size_t(varT_)], at, 1, 0, p.t, &p.dtdu, &p.dtdv);
+    }
+    if (!normal_.param || !(needs & (kNeedN | kNeedNormalSlopes))) return;
+    Vec3 n, nu, nv;
+    places(normal_.cls);
+    for (int k = 0; k < 3; ++k) mix(normal_, at, 3, k, n[k], &nu[k], &nv[k]);
+    const float l = length(n);
+    if (!(l > 0) || !std::isfinite(l)) return;
+    p.N = n / l;
+    if (!q) return;
+    p.dNdu = (nu - p.N * dot(p.N, nu)) / l;
+    p.dNdv = (nv - p.N * dot(p.N, nv)) / l;
+}
+
+void PolygonMesh::remember() {
+    std::vector<Remembered> all(triangles_);
+    for (uint32_t t = 0; t < triangles_; ++t) {
+        Remembered& r = all[t];
+        r.plane = planeOf(t);
+        r.a = cameraCorner(t, 0);
+        r.e1 = cameraCorner(t, 1) - r.a;
+        r.e2 = cameraCorner(t, 2) - r.a;
+        evaluateLocal(t, 0, 0, r.point, kNeedAll);
+        r.point.N = r.point.n; // of the triangle; the variables come anew for each point
+        r.point.dNdu = r.point.dNdv = Vec3();
+        r.point.dsdu = r.point.dtdv = 1;
+        r.point.dsdv = r.point.dtdu = 0;
+    }
+    remembered_ = std::move(all);
+}
+
+void PolygonMesh::evaluateRemembered(uint32_t tri, double b1, double b2, SurfacePoint& p) const {
+    const Remembered& q = remembered_[tri];
     p = q.point;
     p.b1 = b1;
     p.b2 = b2;
-    Vec3d P = q.a + q.e1 * b1 + q.e2 * b2, O = q.p[0] + (q.p[1] - q.p[0]) * b1 + (q.p[2] - q.p[0]) * b2;
-    p.P = Vec3(P);
-    p.u = float(dot(O, q.f.a));
-    p.v = float(dot(O, q.f.b));
+    const Vec3d O = q.plane.o + q.plane.e1 * b1 + q.plane.e2 * b2;
+    p.P = Vec3(q.a + q.e1 * b1 + q.e2 * b2);
+    p.u = p.s = float(dot(O, q.plane.f.a));
+    p.v = p.t = float(dot(O, q.plane.f.b));
     p.pError = roundingError(p.P);
-    if (plain_) { // what finishPoint does then; N is there
-        p.s = p.u;
-        p.t = p.v;
-    } else finishPoint(p, false);
+    if (!plain_) setVariables(p, &q.plane, kNeedAll);
+}
+
+void PolygonMesh::evaluateLocal(uint32_t tri, double b1, double b2, SurfacePoint& p, uint32_t needs) const {
+    if (!remembered_.empty()) return evaluateRemembered(tri, b1, b2, p);
+    static const SurfacePoint kBlank;
+    p = kBlank; // what is not asked for is the same in every run
+    p.face = int(faceOf(tri));
+    p.prim = tri;
+    p.b1 = b1;
+    p.b2 = b2;
+    const uint32_t* v = &base().index[3 * size_t(tri)];
+    const Vec3* corners = base().P.data();
+    const Vec3d a(corners[v[0]]), e1 = Vec3d(corners[v[1]]) - a, e2 = Vec3d(corners[v[2]]) - a;
+    p.P = Vec3(a + e1 * b1 + e2 * b2);
+    p.pError = roundingError(p.P);
+    // Rays meet the rounded triangle: its own normal, unless it is too thin to have one.
+    const Vec3d wind = cross(e1, e2), e3 = e2 - e1;
+    const double area = dot(wind, wind), longest = std::max({dot(e1, e1), dot(e2, e2), dot(e3, e3)});
+    const bool thin = !(area > 1e-12 * longest * longest);
+    if (!thin) p.n = Vec3(wind * (double(orientation_) / std::sqrt(area)));
+    uint32_t inPlane = kNeedPartials | kNeedUV;
+    if (varSt_ < 0 && (varS_ < 0 || varT_ < 0)) inPlane |= kNeedST;
+    if (!plain_) inPlane |= kNeedSTSlopes | (normal_.param ? kNeedNormalSlopes : 0);
+    if (thin) needs |= kNeedPartials;
+    if (needs & inPlane) {
+        const Plane q = planeOf(tri);
+        const Vec3d O = q.o + q.e1 * b1 + q.e2 * b2;
+        p.u = p.s = float(dot(O, q.f.a));
+        p.v = p.t = float(dot(O, q.f.b));
+        if (needs & kNeedPartials) setPartials(tri, q, wind, p);
+        if (thin) p.n = Vec3(normalize(cross(transformVector(toCamera(), q.Pu), transformVector(toCamera(), q.Pv))) * double(p.orientation));
+        p.N = p.n;
+        if (!plain_) setVariables(p, &q, needs);
+        return;
+    }
+    p.N = p.n;
+    if (!plain_) setVariables(p, nullptr, needs);
+}
+
+void PolygonMesh::localPoints(std::span<const HitRef> hits, uint32_t needs) const {
+    // Far enough ahead that memory has answered: first the indices of a triangle, then what they point at.
+    constexpr size_t kIndices = 12, kCorners = 6;
+    const bool large = remembered_.empty(), object = (needs & (kNeedPartials | kNeedUV)) != 0;
+    const TriMesh& m = base();
+    for (size_t i = 0; i < hits.size(); ++i) {
+        if (large && i + kIndices < hits.size()) __builtin_prefetch(&m.index[3 * size_t(hits[i + kIndices].prim)]);
+        if (large && i + kCorners < hits.size())
+            for (int k = 0; k < 3; ++k) {
+                const uint32_t v = m.index[3 * size_t(hits[i + kCorners].prim) + size_t(k)];
+                __builtin_prefetch(&m.P[v]);
+                if (object) __builtin_prefetch(&objectP_[3 * size_t(v)]);
+            }
+        evaluateLocal(hits[i].prim, hits[i].b1, hits[i].b2, *hits[i].out, needs);
+    }
 }
 
 SurfacePoint PolygonMesh::evaluateLocal(uint32_t tri, double b1, double b2) const {
     SurfacePoint p;
-    evaluateLocal(tri, b1, b2, p);
+    evaluateLocal(tri, b1, b2, p, kNeedAll);
     return p;
 }
 
 SurfacePoint PolygonMesh::evaluate(int face, double u, double v) const {
     // The triangle of the face that holds (u, v), or the one that it misses least.
-    auto range = std::equal_range(face_.begin(), face_.end(), uint32_t(std::max(0, face)));
-    if (range.first == range.second) range = {face_.begin(), face_.begin() + 1};
+    uint32_t first = uint32_t(std::clamp(face, 0, int(triangles_) - 1)), last = first + 1;
+    if (!face_.empty()) {
+        auto range = std::equal_range(face_.begin(), face_.end(), uint32_t(std::max(0, face)));
+        if (range.first == range.second) range = {face_.begin(), face_.begin() + 1};
+        first = uint32_t(range.first - face_.begin());
+        last = uint32_t(range.second - face_.begin());
+    }
     double best = INFINITY, b1 = 0, b2 = 0;
-    uint32_t tri = uint32_t(range.first - face_.begin());
-    for (auto it = range.first; it != range.second; ++it) {
-        uint32_t t = uint32_t(it - face_.begin());
-        Frame f = frame(int(*it));
+    uint32_t tri = first;
+    for (uint32_t t = first; t < last; ++t) {
+        Frame f = frame(faceNormal(t));
         Vec3d p[3];
         for (int k = 0; k < 3; ++k) p[k] = objectPoint(vertexOf(t, k));
         double x1 = dot(p[1] - p[0], f.a), y1 = dot(p[1] - p[0], f.b), x2 = dot(p[2] - p[0], f.a), y2 = dot(p[2] - p[0], f.b);
@@ -210,19 +352,38 @@ SurfacePoint PolygonMesh::evaluate(int face, double u, double v) const {
     return evaluateLocal(tri, b1, b2);
 }
 
-void PolygonMesh::sampleArea(double xi1, double xi2, SurfacePoint& out) const {
-    double target = xi1 * area();
-    size_t t = size_t(std::upper_bound(cumulativeArea_.begin(), cumulativeArea_.end(), target) - cumulativeArea_.begin());
-    t = std::min(t, cumulativeArea_.size() - 1);
+const PolygonMesh::Areas& PolygonMesh::areas() const {
+    std::call_once(areas_.made, [&] {
+        areas_.cumulative.reserve(triangles_);
+        for (uint32_t t = 0; t < triangles_; ++t) {
+            const Vec3d a = cameraCorner(t, 0), b = cameraCorner(t, 1), c = cameraCorner(t, 2);
+            areas_.cumulative.push_back(areas_.sum += 0.5 * length(cross(b - a, c - a)));
+        }
+        areas_.first.reserve(triangles_);
+        for (uint32_t k = 0, t = 0; k < triangles_; ++k) {
+            while (t + 1 < triangles_ && areas_.cumulative[t] <= areas_.sum * k / triangles_) ++t;
+            areas_.first.push_back(t);
+        }
+    });
+    return areas_;
+}
+
+void PolygonMesh::sampleArea(double xi1, double xi2, SurfacePoint& out, uint32_t needs) const {
+    const Areas& all = areas();
+    const double target = xi1 * all.sum;
+    // The first triangle whose cumulative area is beyond the target; the part of the sum that holds it begins near by.
+    size_t t = all.first[std::min(size_t(xi1 * double(triangles_)), size_t(triangles_) - 1)];
+    while (t > 0 && all.cumulative[t - 1] > target) --t;
+    while (t + 1 < triangles_ && all.cumulative[t] <= target) ++t;
     // What is left of the first number is uniform again within the triangle.
-    double lo = t ? cumulativeArea_[t - 1] : 0, size = cumulativeArea_[t] - lo;
+    double lo = t ? all.cumulative[t - 1] : 0, size = all.cumulative[t] - lo;
     double x = size > 0 ? std::clamp((target - lo) / size, 0.0, 1.0) : 0.5, root = std::sqrt(x);
-    evaluateLocal(uint32_t(t), root * (1 - xi2), root * xi2, out);
+    evaluateLocal(uint32_t(t), root * (1 - xi2), root * xi2, out, needs);
 }
 
 SurfacePoint PolygonMesh::sampleArea(double xi1, double xi2) const {
     SurfacePoint p;
-    sampleArea(xi1, xi2, p);
+    sampleArea(xi1, xi2, p, kNeedAll);
     return p;
 }
 
@@ -233,7 +394,7 @@ size_t PolygonMesh::classCount(Class c) const {
     case Class::Constant: return 1;
     case Class::Uniform: return size_t(faceCount_);
     case Class::FaceVarying:
-    case Class::FaceVertex: return cornerVertex_.size();
+    case Class::FaceVertex: return cornerCount_;
     default: return vertexCount_;
     }
 }
@@ -243,23 +404,12 @@ int PolygonMesh::weights(Class c, const SurfacePoint& p, Weight w[16]) const {
         w[0] = {c == Class::Uniform ? size_t(p.face) : 0, 1, 0, 0};
         return 1;
     }
-    Plane room;
-    const Plane& q = plane(p.prim, room);
-    // Barycentric weights are linear in the plane: their gradients along Pu and Pv.
-    Vec3d e1 = q.p[1] - q.p[0], e2 = q.p[2] - q.p[0], n = cross(e1, e2);
-    double l = dot(n, n);
-    auto slope = [&](const Vec3d& d, double& d1, double& d2) {
-        d1 = l > 0 ? dot(cross(d, e2), n) / l : 0;
-        d2 = l > 0 ? dot(cross(e1, d), n) / l : 0;
-    };
-    double u1, u2, v1, v2;
-    slope(q.Pu, u1, u2);
-    slope(q.Pv, v1, v2);
+    const Plane q = remembered_.empty() ? planeOf(p.prim) : remembered_[p.prim].plane;
     bool byCorner = c == Class::FaceVarying || c == Class::FaceVertex;
-    auto index = [&](int k) { return byCorner ? size_t(corner_[3 * size_t(p.prim) + size_t(k)]) : size_t(vertexOf(p.prim, k)); };
-    w[0] = {index(0), 1 - p.b1 - p.b2, -u1 - u2, -v1 - v2};
-    w[1] = {index(1), p.b1, u1, v1};
-    w[2] = {index(2), p.b2, u2, v2};
+    auto index = [&](int k) { return size_t(byCorner ? cornerOf(p.prim, k) : vertexOf(p.prim, k)); };
+    w[0] = {index(0), 1 - p.b1 - p.b2, -q.u1 - q.u2, -q.v1 - q.v2};
+    w[1] = {index(1), p.b1, q.u1, q.v1};
+    w[2] = {index(2), p.b2, q.u2, q.v2};
     return 3;
 }
 
@@ -267,12 +417,12 @@ void PolygonMesh::dice(const DiceOptions& opt, Diagnostics& diag) {
     if (!isDisplaced(*this, opt)) return;
     // Every triangle is cut alike, so that neighbours within the primitive meet without cracks.
     double edge = diceEdge(*source_.attributes), longest = 1;
-    for (uint32_t t = 0; t < face_.size(); ++t)
+    for (uint32_t t = 0; t < triangles_; ++t)
         for (int k = 0; k < 3; ++k) {
             Vec3d a = cameraCorner(t, k), b = cameraCorner(t, (k + 1) % 3);
             longest = std::max(longest, opt.camera.pixels((a + b) * 0.5, b - a) / edge);
         }
-    double cap = std::sqrt(2.0 * double(limits::kDiceQuads) / double(face_.size()));
+    double cap = std::sqrt(2.0 * double(limits::kDiceQuads) / double(triangles_));
     uint32_t n = uint32_t(std::clamp(std::ceil(longest), 1.0, std::clamp(std::floor(cap), 1.0, double(limits::kDiceEdge))));
     if (longest > n)
         diag.report(Severity::Info, Rie::Limit, place(),
@@ -282,7 +432,7 @@ void PolygonMesh::dice(const DiceOptions& opt, Diagnostics& diag) {
     auto row = [&](uint32_t j) { return j * (n + 1) - j * (j - 1) / 2; }; // first vertex of row j, rows shrink by one
     TriMesh m;
     std::vector<Vec2> param;
-    for (uint32_t t = 0; t < face_.size(); ++t) {
+    for (uint32_t t = 0; t < triangles_; ++t) {
         uint32_t base = t * perTri;
         for (uint32_t j = 0; j <= n; ++j)
             for (uint32_t i = 0; i + j <= n; ++i) {
@@ -297,6 +447,7 @@ void PolygonMesh::dice(const DiceOptions& opt, Diagnostics& diag) {
                 if (i + j + 1 < n) m.index.insert(m.index.end(), {a + 1, c + 1, c});
             }
     }
+    undiced_ = mesh_;
     meshParam_ = std::move(param);
     trianglesPerPrim_ = n * n;
     displaced_ = true;
@@ -306,7 +457,7 @@ void PolygonMesh::dice(const DiceOptions& opt, Diagnostics& diag) {
                  [&](uint32_t i) {
                      // A barycentric step turned to u and v: the extent of one micro-triangle.
                      uint32_t t = i / perTri;
-                     Frame f = frame(int(face_[t]));
+                     Frame f = frame(faceNormal(t));
                      Vec3d a = objectPoint(vertexOf(t, 0)), e1 = objectPoint(vertexOf(t, 1)) - a,
                            e2 = objectPoint(vertexOf(t, 2)) - a;
                      auto extent = [&](const Vec3d& d) {

@@ -6,6 +6,7 @@
 #pragma once
 #include "geometry/shape.h"
 #include <mutex>
+#include <span>
 
 namespace alpenglow::geometry {
 
@@ -21,13 +22,14 @@ ShapeRef makePolygonMesh(ShapeSource, PolygonInput, Diagnostics&);
 
 class PolygonMesh final : public Shape {
 public:
-    PolygonMesh(ShapeSource, const PolygonInput&, const std::vector<float>& P, Diagnostics&);
-    bool empty() const { return corner_.empty(); }
+    /// Takes the lists of the input, to give their memory back early.
+    PolygonMesh(ShapeSource, PolygonInput&&, const std::vector<float>& P, Diagnostics&);
+    bool empty() const { return triangles_ == 0; }
     int faces() const override { return faceCount_; }
     SurfacePoint evaluate(int face, double u, double v) const override;
-    double area() const override { return cumulativeArea_.empty() ? 0 : cumulativeArea_.back(); }
+    double area() const override { return areas().sum; }
     SurfacePoint sampleArea(double xi1, double xi2) const override;
-    void sampleArea(double xi1, double xi2, SurfacePoint& out) const override;
+    void sampleArea(double xi1, double xi2, SurfacePoint& out, uint32_t needs) const override;
     double sampleDensity(const SurfacePoint&) const override;
     void dice(const DiceOptions&, Diagnostics&) override;
 
@@ -35,32 +37,55 @@ protected:
     size_t classCount(scene::Class) const override;
     int weights(scene::Class, const SurfacePoint&, Weight w[16]) const override;
     SurfacePoint evaluateLocal(uint32_t prim, double b1, double b2) const override;
-    void evaluateLocal(uint32_t prim, double b1, double b2, SurfacePoint& out) const override;
+    void evaluateLocal(uint32_t prim, double b1, double b2, SurfacePoint& out, uint32_t needs) const override;
+    void localPoints(std::span<const HitRef>, uint32_t needs) const override;
 
 private:
     struct Frame { Vec3d a, b; };  ///< u = P.a, v = P.b (object space)
-    /// What does not depend on the place in a triangle: object and camera space.
-    struct Plane { Vec3d p[3]; Vec3d n; Vec3d Pu, Pv; Frame f; Vec3d a, e1, e2; SurfacePoint point; };
-    Frame frame(int face) const;
-    Plane makePlane(uint32_t prim) const;
-    const Plane& plane(uint32_t prim, Plane& room) const { return planes_.empty() ? room = makePlane(prim) : planes_[prim]; }
+    /// A triangle in object space: its corners, the partials of the point in its plane, and the normal of its face. Slopes of the
+    /// weights of the 2nd and 3rd corner by u and v.
+    struct Plane { Vec3d o, e1, e2, Pu, Pv, fn; Frame f; double u1, u2, v1, v2; };
+    /// What does not depend on the place in a triangle, for small meshes.
+    struct Remembered { Plane plane; Vec3d a, e1, e2; SurfacePoint point; };
+    /// Triangles by area, for emitters: made when first asked for.
+    struct Areas {
+        std::once_flag made;
+        double sum = 0;
+        std::vector<double> cumulative; ///< per triangle, camera space
+        std::vector<uint32_t> first;    ///< by equal parts of the sum: the triangle where it begins
+    };
+    bool takeTriangles(const PolygonInput&);
+    void cutFaces(const PolygonInput&, Diagnostics&);
+    Frame frame(const Vec3d& faceNormal) const;
+    Plane planeOf(uint32_t tri) const;
+    void setPartials(uint32_t tri, const Plane&, const Vec3d& wind, SurfacePoint&) const;
+    void remember();
+    void evaluateRemembered(uint32_t tri, double b1, double b2, SurfacePoint&) const;
+    void setVariables(SurfacePoint&, const Plane*, uint32_t needs) const;
+    const Areas& areas() const;
+    Vec3d faceNormal(uint32_t tri) const;
     Vec3d objectPoint(uint32_t vertex) const {
         return {objectP_[3 * vertex], objectP_[3 * vertex + 1], objectP_[3 * vertex + 2]};
     }
-    uint32_t vertexOf(uint32_t tri, int k) const { return cornerVertex_[corner_[3 * size_t(tri) + size_t(k)]]; }
-    Vec3d cameraCorner(uint32_t tri, int k) const { return Vec3d(cameraP_[vertexOf(tri, k)]); }
+    /// The mesh before it was displaced.
+    const TriMesh& base() const { return meshParam_.empty() ? mesh_ : undiced_; }
+    uint32_t vertexOf(uint32_t tri, int k) const { return base().index[3 * size_t(tri) + size_t(k)]; }
+    uint32_t cornerOf(uint32_t tri, int k) const {
+        return corner_.empty() ? 3 * tri + uint32_t(k) : corner_[3 * size_t(tri) + size_t(k)];
+    }
+    uint32_t faceOf(uint32_t tri) const { return face_.empty() ? tri : face_[tri]; }
+    Vec3d cameraCorner(uint32_t tri, int k) const { return Vec3d(base().P[vertexOf(tri, k)]); }
 
     const float* objectP_ = nullptr;          ///< the request's own P
-    uint32_t vertexCount_ = 0;
+    uint32_t vertexCount_ = 0, cornerCount_ = 0, triangles_ = 0;
     int faceCount_ = 0;
-    std::vector<uint32_t> cornerVertex_;      ///< per corner of the request: its vertex
-    std::vector<uint32_t> corner_;            ///< three per triangle: corners of the request
-    std::vector<uint32_t> face_;              ///< per triangle
-    std::vector<Vec3> faceNormal_;            ///< per face, object space, unit, by winding
-    std::vector<Vec3> cameraP_;               ///< per vertex
+    std::vector<uint32_t> corner_;            ///< three per triangle: corners of the request. Empty: they are counted through
+    std::vector<uint32_t> face_;              ///< per triangle. Empty: every face is one triangle
+    std::vector<Vec3> faceNormal_;            ///< per face, object space, unit, by winding. Empty: the triangle's
+    TriMesh undiced_;                         ///< base() once the mesh was displaced
     bool plain_ = false;                      ///< no variable gives s, t or N
-    std::vector<Plane> planes_;               ///< per triangle of small meshes, which are hit often; else empty
-    std::vector<double> cumulativeArea_;      ///< per triangle, camera space
+    std::vector<Remembered> remembered_;      ///< per triangle of small meshes, which are hit often; else empty
+    mutable Areas areas_;
 };
 
 } // namespace alpenglow::geometry

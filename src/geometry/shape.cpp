@@ -142,6 +142,15 @@ SurfacePoint Shape::evaluateHit(uint32_t prim, double b1, double b2) const {
     return p;
 }
 
+void Shape::points(std::span<const HitRef> hits, uint32_t needs) const {
+    if (meshParam_.empty()) return localPoints(hits, needs);
+    for (const HitRef& h : hits) *h.out = evaluateHit(h.prim, h.b1, h.b2);
+}
+
+void Shape::localPoints(std::span<const HitRef> hits, uint32_t needs) const {
+    for (const HitRef& h : hits) evaluateLocal(h.prim, h.b1, h.b2, *h.out, needs);
+}
+
 Vec3d Shape::hitNormal(uint32_t prim, double b1, double b2) const {
     // Triangles wind as the polygon does, or as (u, v) does: either way orientation() turns their normal to Ng's side.
     if (!exact()) return facetAt(mesh_, prim, b1, b2).n * double(orientation_);

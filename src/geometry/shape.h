@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace alpenglow::geometry {
@@ -36,6 +37,25 @@ struct SurfacePoint {
     Vec3 displacedP, displacedN; ///< the facet that was hit: point, and unit normal on the side of n
     uint32_t prim = 0;          ///< with b1, b2: where interpolate() finds the point again. Triangle of the polygon; else 0
     double b1 = 0, b2 = 0;      ///< barycentric weights of the triangle's 2nd and 3rd corner; parametric surfaces: u and v
+};
+
+/// What of a SurfacePoint is asked for, as bits. P, n, pError, face, prim, b1, b2, `displaced` and what it brings always come; of the rest
+/// what is not asked for may be zero. A shape may give more than it is asked for.
+enum PointNeed : uint32_t {
+    kNeedN = 1,                 ///< N
+    kNeedPartials = 2,          ///< dPdu, dPdv, Puu, Puv, Pvv, Ng, orientation
+    kNeedNormalSlopes = 4,      ///< dNdu, dNdv
+    kNeedUV = 8,                ///< u, v
+    kNeedST = 16,               ///< s, t
+    kNeedSTSlopes = 32,         ///< dsdu, dsdv, dtdu, dtdv
+    kNeedAll = 63
+};
+
+/// Where a ray met a shape, and the place for what is known there.
+struct HitRef {
+    uint32_t prim = 0;
+    double b1 = 0, b2 = 0;
+    SurfacePoint* out = nullptr;
 };
 
 /// Triangles in camera space. P holds one unused point past `vertices` (intersectors read 16 bytes at a time).
@@ -104,10 +124,12 @@ public:
     /// The surface at a hit: (prim, b1, b2) as the intersector gave them; exact shapes: (0, u, v).
     SurfacePoint evaluateHit(uint32_t prim, double b1, double b2) const;
     /// The same, written in place.
-    void evaluateHit(uint32_t prim, double b1, double b2, SurfacePoint& out) const {
-        if (meshParam_.empty()) evaluateLocal(prim, b1, b2, out);
+    void evaluateHit(uint32_t prim, double b1, double b2, SurfacePoint& out, uint32_t needs = kNeedAll) const {
+        if (meshParam_.empty()) evaluateLocal(prim, b1, b2, out, needs);
         else out = evaluateHit(prim, b1, b2);
     }
+    /// The same for many hits; meshes fetch the memory of those that follow while they work. needs: PointNeed.
+    void points(std::span<const HitRef>, uint32_t needs) const;
     /// Normal of the surface a ray meets there, with orientation; not normalised. Cheaper than evaluateHit; for Sides.
     Vec3d hitNormal(uint32_t prim, double b1, double b2) const;
 
@@ -116,7 +138,7 @@ public:
     /// A point for two numbers of [0,1): parametric surfaces uniform over (u, v), polygons uniform over area.
     virtual SurfacePoint sampleArea(double xi1, double xi2) const = 0;
     /// The same, written in place.
-    virtual void sampleArea(double xi1, double xi2, SurfacePoint& out) const { out = sampleArea(xi1, xi2); }
+    virtual void sampleArea(double xi1, double xi2, SurfacePoint& out, uint32_t needs = kNeedAll) const { out = sampleArea(xi1, xi2); }
     /// Density per unit area with which sampleArea gives this point: 1 / |dPdu ^ dPdv|, or 1 / area for polygons;
     /// 0 where the surface is degenerate.
     virtual double sampleDensity(const SurfacePoint&) const = 0;
@@ -145,8 +167,10 @@ protected:
     virtual int weights(scene::Class, const SurfacePoint& at, Weight w[16]) const = 0;
     /// evaluate() by (prim, b1, b2) of the undiced surface.
     virtual SurfacePoint evaluateLocal(uint32_t prim, double b1, double b2) const = 0;
-    /// The same, written in place.
-    virtual void evaluateLocal(uint32_t prim, double b1, double b2, SurfacePoint& out) const { out = evaluateLocal(prim, b1, b2); }
+    /// The same, written in place. needs: PointNeed.
+    virtual void evaluateLocal(uint32_t prim, double b1, double b2, SurfacePoint& out, uint32_t needs) const { out = evaluateLocal(prim, b1, b2); }
+    /// The same for many hits of an undiced surface.
+    virtual void localPoints(std::span<const HitRef>, uint32_t needs) const;
     /// hitNormal() of exact shapes.
     virtual Vec3d localNormal(uint32_t prim, double b1, double b2) const;
     /// Fills s, t and N from the variables (or defaults), and what depends on them; P, u, v, n, partials, dNdu, dNdv are set.

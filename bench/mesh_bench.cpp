@@ -102,10 +102,21 @@ void measurePoints(int repeats) {
         const double hit = nanoseconds(at.size(), repeats, [&] {
             for (size_t i = 0; i < at.size(); ++i) s->evaluateHit(at[i].prim, at[i].b1, at[i].b2, out[i & 511]);
         });
+        std::vector<geometry::HitRef> run(512);
+        const auto inRuns = [&](uint32_t needs) {
+            return nanoseconds(at.size(), repeats, [&] {
+                for (size_t i = 0; i < at.size(); i += run.size()) {
+                    for (size_t k = 0; k < run.size(); ++k) run[k] = {at[i + k].prim, at[i + k].b1, at[i + k].b2, &out[k]};
+                    s->points(run, needs);
+                }
+            });
+        };
+        const double all = inRuns(geometry::kNeedAll), some = inRuns(geometry::kNeedN | geometry::kNeedST), none = inRuns(0);
         const double light = nanoseconds(at.size(), repeats, [&] {
             for (size_t i = 0; i < at.size(); ++i) s->sampleArea(at[i].b1, at[i].b2, out[i & 511]);
         });
-        std::printf("%-34s %6.1f ns a hit  %6.1f ns a sample of the emitter\n", c.name, hit, light);
+        std::printf("%-34s %6.1f ns a hit; in runs %6.1f, N and st only %6.1f, P and n only %6.1f; %6.1f ns a sample of the emitter\n", c.name, hit, all,
+                    some, none, light);
     }
 }
 

@@ -40,6 +40,24 @@ const Variable kVariables[] = {
 };
 #undef AT
 
+/// What of a surface lies at an offset of ShadePoint.
+uint32_t needOf(int16_t offset, uint32_t& lit) {
+    if (offset == kLitNormal) lit |= geometry::kNeedPartials;
+    const auto within = [&](size_t from, size_t size) { return offset >= int(from) && offset < int(from + size); };
+#define OF(member) within(offsetof(ShadePoint, member), sizeof(ShadePoint::member))
+#define OF_SURFACE(member) within(offsetof(ShadePoint, surface.member), sizeof(geometry::SurfacePoint::member))
+    if (OF(N) || OF_SURFACE(N)) return geometry::kNeedN;
+    if (OF(du) || OF(dv) || OF_SURFACE(dPdu) || OF_SURFACE(dPdv) || OF_SURFACE(Puu) || OF_SURFACE(Puv) || OF_SURFACE(Pvv) || OF_SURFACE(Ng))
+        return geometry::kNeedPartials;
+    if (OF_SURFACE(dNdu) || OF_SURFACE(dNdv)) return geometry::kNeedNormalSlopes;
+    if (OF_SURFACE(u) || OF_SURFACE(v)) return geometry::kNeedUV;
+    if (OF_SURFACE(s) || OF_SURFACE(t)) return geometry::kNeedST;
+    if (OF_SURFACE(dsdu) || OF_SURFACE(dsdv) || OF_SURFACE(dtdu) || OF_SURFACE(dtdv)) return geometry::kNeedSTSlopes;
+#undef OF
+#undef OF_SURFACE
+    return 0;
+}
+
 } // namespace
 
 BatchPlan::BatchPlan(const rsl::CompiledKernel& kernel, bool mixed) {
@@ -72,6 +90,7 @@ BatchPlan::BatchPlan(const rsl::CompiledKernel& kernel, bool mixed) {
                     footprint_ |= input.name == "du" || input.name == "dv";
                     s.from = From::Variable;
                     std::copy(v.part, v.part + 6, s.offset);
+                    for (int part = 0; part < s.parts; ++part) needs_ |= needOf(v.part[part], litNeeds_);
                 }
         }
         inputs_.push_back(std::move(s));

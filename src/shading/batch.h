@@ -37,6 +37,9 @@ public:
     int Ci = -1, Oi = -1, P = -1, N = -1;
     /// Whether du or dv is read.
     bool usesFootprint() const { return footprint_; }
+    /// geometry::PointNeed: what of ShadePoint::surface is read, and of ShadePoint::lit.
+    uint32_t needs() const { return needs_; }
+    uint32_t litNeeds() const { return litNeeds_; }
 
 private:
     friend class Batch;
@@ -55,6 +58,7 @@ private:
     std::vector<std::string> outputs_;
     size_t rows_ = 0;
     bool footprint_ = false;
+    uint32_t needs_ = 0, litNeeds_ = 0;
 };
 
 /// Aligned rows for the inputs and outputs of one kernel call. Lives as long as the call, across suspensions.

@@ -68,7 +68,7 @@ const Emitter::Entry& Emitter::entryAt(float choose) const {
     return entries_[i];
 }
 
-bool Emitter::sample(const Vec3& from, Vec2 u, float choose, Sample& out, geometry::SurfacePoint& point) const {
+bool Emitter::sample(const Vec3& from, Vec2 u, float choose, Sample& out, geometry::SurfacePoint& point, uint32_t needs) const {
     if (entries_.empty()) return false;
     const Entry& e = entryAt(choose);
     out.shape = e.shape;
@@ -86,14 +86,14 @@ bool Emitter::sample(const Vec3& from, Vec2 u, float choose, Sample& out, geomet
             int k = 0;
             while (k < n && !(hits[k].t > 0)) ++k;
             if (k == n) return false;
-            point = e.shape->evaluateHit(0, hits[k].u, hits[k].v);
+            e.shape->evaluateHit(0, hits[k].u, hits[k].v, point, needs);
             out.pdf = float(e.share / (2 * kPi * cap));
             out.direction = w;
             out.distance = float(hits[k].t);
             return true;
         }
     }
-    e.shape->sampleArea(u.x, u.y, point);
+    e.shape->sampleArea(u.x, u.y, point, needs);
     Vec3 d = point.P - from;
     out.distance = length(d);
     if (!(out.distance > 0)) return false;
@@ -102,12 +102,12 @@ bool Emitter::sample(const Vec3& from, Vec2 u, float choose, Sample& out, geomet
     return out.pdf > 0 && std::isfinite(out.pdf);
 }
 
-bool Emitter::sampleSurface(const Vec3& from, Vec2 u, float choose, Sample& out, geometry::SurfacePoint& point) const {
+bool Emitter::sampleSurface(const Vec3& from, Vec2 u, float choose, Sample& out, geometry::SurfacePoint& point, uint32_t needs) const {
     if (entries_.empty()) return false;
     const Entry& e = entryAt(choose);
     out.shape = e.shape;
     out.visibility = e.visibility;
-    e.shape->sampleArea(u.x, u.y, point);
+    e.shape->sampleArea(u.x, u.y, point, needs);
     const Vec3 d = point.P - from;
     out.distance = length(d);
     if (!(out.distance > 0)) return false;

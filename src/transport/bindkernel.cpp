@@ -135,6 +135,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
     }
     b.plan = std::make_shared<shading::BatchPlan>(*k, mixed);
     world->footprints_ |= b.plan->usesFootprint();
+    for (const SiteInfo& i : b.sites) world->footprints_ |= i.rays && i.rays->base >= 0; // "samplebase" is a part of it
     b.kernel = std::move(k);
     return b;
 }

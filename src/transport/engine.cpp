@@ -63,6 +63,8 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
     }
     std::vector<Met> met;
     std::vector<const Sched::Task*> missed;
+    std::vector<ShadePoint*>& places = places_; // by hit; null: none that is shaded now
+    places.assign(n, nullptr);
     for (size_t i = 0; i < n; ++i) {
         if (!hits[i].valid()) { missed.push_back(&slice[i]); continue; }
         if (later[i]) continue;
@@ -79,7 +81,14 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
         p.lit = nullptr;
         p.alpha = 0;
         p.shape = world_->shapes_[hits[i].shape].get();
-        world_->accel_->point(hits[i], p.surface);
+        places[i] = &p;
+    }
+    evaluateHits(places);
+    for (size_t i = 0; i < n; ++i) {
+        if (!places[i]) continue;
+        ShadePoint& p = *places[i];
+        const PathRay& r = *p.ray;
+        const SurfaceBinding& b = world_->bindings_[size_t(world_->bindingOf_[hits[i].shape])];
         p.P = p.surface.P;
         p.N = p.surface.N;
         p.I = p.P - r.begin(); // RISpec: P - E, though rays start at the near plane, or behind what they passed through
@@ -142,6 +151,17 @@ void Engine::freeExtras(BatchContext& c) {
 
 BatchContext::~BatchContext() {
     if (ownsExtras) engine->freeExtras(*this);
+}
+
+void Engine::evaluateHits(std::span<ShadePoint* const> places) {
+    std::vector<geometry::HitRef>& run = run_;
+    for (size_t i = 0; i < places.size();) {
+        const uint32_t shape = hits_[i].shape;
+        run.clear();
+        for (; i < places.size() && (!places[i] || hits_[i].shape == shape); ++i)
+            if (places[i]) run.push_back({hits_[i].prim, hits_[i].b1, hits_[i].b2, &places[i]->surface});
+        if (!run.empty()) world_->shapes_[shape]->points(run, world_->bindings_[size_t(world_->bindingOf_[shape])].pointNeeds);
+    }
 }
 
 uint64_t& Engine::raysOf(RayType t) {

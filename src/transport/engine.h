@@ -363,6 +363,9 @@ private:
     GatherRoom gatherRoom_;
     std::vector<accel::Ray> rays_, shadowRays_;
     std::vector<accel::Hit> hits_;
+    std::vector<ShadePoint*> places_;          ///< by hit: its point; null: none is shaded now
+    std::vector<geometry::HitRef> run_;
+    void evaluateHits(std::span<ShadePoint* const> places);
     std::vector<uint8_t> blocked_;
     std::vector<shading::InstanceView> views_;
     std::vector<uint32_t> viewOf_, occurrence_;

@@ -232,8 +232,8 @@ uint64_t Engine::sampleLight(BatchContext& c, const LightLoop& loop, int li, int
             Emitter::Sample s;
             const float choose = light.emitter->chooses() ? rng.one(p.ray->vertex, use, nth) : 0;
             const Vec2 u = rng.pair(p.ray->vertex, use, nth);
-            if (!(light.mean ? light.emitter->sampleSurface(at, u, choose, s, p.surface)
-                             : light.emitter->sample(at, u, choose, s, p.surface)))
+            if (!(light.mean ? light.emitter->sampleSurface(at, u, choose, s, p.surface, light.pointNeeds)
+                             : light.emitter->sample(at, u, choose, s, p.surface, light.pointNeeds)))
                 continue;
             p.shape = s.shape;
             p.P = p.surface.P;

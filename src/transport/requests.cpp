@@ -325,8 +325,8 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     Emitter::Sample& s = drawn.emplace_back();
                     const Vec2 u = rng.pair(vertex, use, 0);
                     const float choose = light.emitter->chooses() ? rng.one(vertex, use, 0) : 0;
-                    if (!(light.mean ? light.emitter->sampleSurface(p.Ps, u, choose, s, p.surface)
-                                     : light.emitter->sample(p.Ps, u, choose, s, p.surface))) {
+                    if (!(light.mean ? light.emitter->sampleSurface(p.Ps, u, choose, s, p.surface, light.pointNeeds)
+                                     : light.emitter->sample(p.Ps, u, choose, s, p.surface, light.pointNeeds))) {
                         drawn.pop_back();
                         continue;
                     }

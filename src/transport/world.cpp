@@ -116,6 +116,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     if (!SurfaceBinder(*w, engine, d).bindAll()) return nullptr;
     w->measureOutputs();
     if (stopped()) return nullptr;
+    w->setPointNeeds();
     w->diceShapes(d); // with displacement, by the same kernels that shade
     if (stopped()) return nullptr;
     std::vector<uint32_t> visibility;

@@ -146,6 +146,7 @@ struct BoundLight {
     float intensityScale = 0;                  ///< > 0: Cl is an intensity over squared distance; radiance is Cl d^2 times this
     bool mean = false; ///< Area: gives the mean of its Cl over its surface, with no other factor, and no ray finds it
     bool hazy = false;                         ///< Area, path: some of its shapes lie in an atmosphere
+    uint32_t pointNeeds = geometry::kNeedAll;  ///< geometry::PointNeed of the points of an emitter
     // For the choice among many lights: brightness at distance 1 (Distant: anywhere; Area: radiance times area / pi).
     float power = 0;
     Vec3 centre;
@@ -219,6 +220,7 @@ struct SurfaceBinding {
     float shadingRate = 1;
     int maxDiffuse = -1, maxSpecular = -1;
     float bias = 0;                            ///< Attribute "trace" "bias"; 0: the hit's own error bound
+    uint32_t pointNeeds = geometry::kNeedAll;  ///< geometry::PointNeed of hits
     scene::AttributesRef attributes;
 };
 
@@ -263,6 +265,8 @@ public:
     BoundKernel movingKernel(const ShaderInstance&, const BoundKernel&, const std::vector<std::string>& varying, Diagnostics&);
     /// Makes the meshes that rays meet.
     void diceShapes(Diagnostics&);
+    /// Says by light and binding what is to be known of points, when all kernels are bound.
+    void setPointNeeds();
     void displaceGrid(const SurfaceBinding&, const geometry::Shape&, geometry::DiceGrid&, Diagnostics&) const;
     /// Fills lights_; visibility: kinds of rays that can meet a shape.
     void bindLights(Diagnostics&, const std::function<uint32_t(const geometry::Shape&)>& visibility);

@@ -1,5 +1,6 @@
 #include "transport/arealight.h"
 #include "transport/sampling.h"
+#include <algorithm>
 
 namespace alpenglow::transport {
 
@@ -46,6 +47,7 @@ Emitter::Emitter(std::vector<const geometry::Shape*> shapes, std::vector<uint32_
     for (auto& e : entries_) {
         e.share /= area_;
         e.cumulative = sum += e.share;
+        entryOf_[e.shape] = int(&e - entries_.data());
     }
 }
 
@@ -63,9 +65,8 @@ float Emitter::areaPdf(const Entry& e, const geometry::SurfacePoint& p, const Ve
 }
 
 const Emitter::Entry& Emitter::entryAt(float choose) const {
-    size_t i = 0;
-    while (i + 1 < entries_.size() && choose >= entries_[i].cumulative) ++i;
-    return entries_[i];
+    const auto above = [](float c, const Entry& e) { return c < e.cumulative; };
+    return *std::upper_bound(entries_.begin(), entries_.end() - 1, choose, above);
 }
 
 bool Emitter::sample(const Vec3& from, Vec2 u, float choose, Sample& out, geometry::SurfacePoint& point, uint32_t needs) const {
@@ -117,15 +118,14 @@ bool Emitter::sampleSurface(const Vec3& from, Vec2 u, float choose, Sample& out,
 }
 
 float Emitter::pdf(const geometry::Shape* shape, const geometry::SurfacePoint& hit, const Vec3& from) const {
-    for (const Entry& e : entries_) {
-        if (e.shape != shape) continue;
-        if (e.sphere) {
-            double dc = length(Vec3d(e.centre) - Vec3d(from));
-            if (dc > e.radius * 1.0001) return float(e.share / (2 * kPi * capOneMinusCos(e.radius, dc)));
-        }
-        return areaPdf(e, hit, from);
+    const auto i = entryOf_.find(shape);
+    if (i == entryOf_.end()) return 0;
+    const Entry& e = entries_[size_t(i->second)];
+    if (e.sphere) {
+        double dc = length(Vec3d(e.centre) - Vec3d(from));
+        if (dc > e.radius * 1.0001) return float(e.share / (2 * kPi * capOneMinusCos(e.radius, dc)));
     }
-    return 0;
+    return areaPdf(e, hit, from);
 }
 
 } // namespace alpenglow::transport

@@ -1,6 +1,7 @@
 // Where on an emitter a light sample lies, and with which density a given hit would have been chosen (design decision 4).
 #pragma once
 #include "geometry/shape.h"
+#include <unordered_map>
 
 namespace alpenglow::transport {
 
@@ -51,6 +52,7 @@ private:
     const Entry& entryAt(float choose) const;
     float areaPdf(const Entry&, const geometry::SurfacePoint&, const Vec3& from) const;
     std::vector<Entry> entries_;
+    std::unordered_map<const geometry::Shape*, int> entryOf_;
     double area_ = 0;
 };
 

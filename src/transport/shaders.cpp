@@ -265,7 +265,10 @@ BoundKernel WorldImpl::kernel(const ShaderInstance& i, const std::vector<std::st
     std::vector<std::string> spaces;
     for (const auto& in : k->inputs())
         if (in.name.rfind("space:", 0) == 0) spaces.push_back(in.name);
-    if (!spaces.empty()) sayUnknownSpaces(*this, i, spaces, d);
+    if (!spaces.empty()) {
+        sayUnknownSpaces(*this, i, spaces, d);
+        keepSpaces(spaces);
+    }
     ++facts_.kernels;
     facts_.cacheHits += k->fromCache();
     (k->facts().suspends ? facts_.suspending : facts_.affine)++;

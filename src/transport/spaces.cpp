@@ -48,7 +48,21 @@ bool WorldImpl::knowsSpace(const std::string& name) const {
     return placeOf(name, m) || kOwn.count(name) || frame_->coordinateSystems.count(name) || frame_->options.cameraSpaces.count(name);
 }
 
+void WorldImpl::keepSpaces(const std::vector<std::string>& inputs) {
+    for (const std::string& input : inputs) {
+        const size_t colon = input.find(':'), arrow = input.find('>');
+        if (colon == std::string::npos || arrow == std::string::npos) continue;
+        const std::string from = input.substr(colon + 1, arrow - colon - 1), to = input.substr(arrow + 1);
+        if (Matrix m; matrix(from, to, m)) spaces_[from].emplace(to, m);
+    }
+}
+
 bool WorldImpl::matrix(const std::string& from, const std::string& to, Matrix& out) const {
+    if (const auto kept = spaces_.find(from); kept != spaces_.end())
+        if (const auto there = kept->second.find(to); there != kept->second.end()) {
+            out = there->second;
+            return true;
+        }
     auto toCurrent = [&](const std::string& name, Matrix& m) {
         if (name == "current" || name == "camera" || name == "eye") { m = Matrix{}; return true; }
         if (placeOf(name, m)) return true;

@@ -236,6 +236,9 @@ public:
     bool runImager(int, const float*, const float*, float*, float*, float*, float*, Diagnostics&,
                    const StopFlag* stop) const override;
     bool matrix(const std::string& from, const std::string& to, Matrix& out) const override;
+    /// Works out the matrices of kernel inputs "space:FROM>TO" once, before the first ray: matrix() then looks them up.
+    void keepSpaces(const std::vector<std::string>& inputs);
+    std::map<std::string, std::map<std::string, Matrix>> spaces_; ///< from, to
     /// Whether a space of this name is predefined or the scene has one.
     bool knowsSpace(const std::string& name) const;
 

@@ -9,12 +9,17 @@ bool WorldImpl::runImager(int count, const float* x, const float* y, float* r, f
     const scene::ShaderRef& imager = frame_->options.imager;
     if (!imager) return false;
     std::lock_guard lock(imagerMutex_);
-    auto* self = const_cast<WorldImpl*>(this); // compiles on first use, under the lock
-    InstanceRef i = self->instance(*imager, rsl::ShaderKind::Imager, d);
-    if (const scene::AttributesRef& a = frame_->options.attributes) i = self->withCoShaders(i, a->coshaders, d);
-    if (!i) return false;
-    BoundKernel k = self->kernel(*i, {}, {}, false, false, d);
-    if (!k || k.kernel->facts().suspends) return false;
+    if (!imager_.bound) { // compiled on first use, under the lock
+        auto* self = const_cast<WorldImpl*>(this);
+        self->imager_.bound = true;
+        InstanceRef shader = self->instance(*imager, rsl::ShaderKind::Imager, d);
+        if (const scene::AttributesRef& a = frame_->options.attributes) shader = self->withCoShaders(shader, a->coshaders, d);
+        if (shader) self->imager_.kernel = self->kernel(*shader, {}, {}, false, false, d);
+        self->imager_.shader = std::move(shader);
+    }
+    const InstanceRef& i = imager_.shader;
+    const BoundKernel& k = imager_.kernel;
+    if (!i || !k || k.kernel->facts().suspends) return false;
     Engine engine(std::shared_ptr<const WorldImpl>(std::shared_ptr<const WorldImpl>{}, this), d);
     engine.stop = stop;
     // alpha is what the shader writes to it; one that only makes its pixels opaque means that, too (methods of classes have no alpha).

@@ -19,7 +19,8 @@ struct LitSurface {
 /// One run of a light's kernel: what differs from the light as it is bound.
 struct LightCall {
     const shading::ParameterBlock* parameters = nullptr; ///< instead of the instance's: with values that a surface has sent
-    const BoundKernel* kernel = nullptr;                 ///< for the strings that it has sent
+    const BoundKernel* kernel = nullptr;                 ///< for the strings that it has sent; of a LightGroup, its own
+    std::span<const BoundLight* const> of;               ///< by query, lights of one LightGroup, equal ones side by side; empty: all are of one
     const LitSurface* lit = nullptr;
     const std::vector<char>* inMedium = nullptr;         ///< by query: a medium lies before the emitter, and not its atmosphere
     std::vector<float>* values = nullptr;                ///< gets BoundLight::values: valueWidth numbers a query

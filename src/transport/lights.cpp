@@ -116,9 +116,15 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
     c->lit = call.lit;
     c->light = &light;
     c->points.swap(queries); // lent; given back below
-    shading::InstanceView view{call.parameters ? call.parameters : &light.instance->parameters, &light.instance->toCurrent};
+    std::vector<shading::InstanceView> views;
+    std::vector<uint32_t> viewOf;
+    for (size_t i = 0; i < call.of.size(); ++i) {
+        if (i == 0 || call.of[i] != call.of[i - 1]) views.push_back({&call.of[i]->instance->parameters, &call.of[i]->instance->toCurrent});
+        viewOf.push_back(uint32_t(views.size() - 1));
+    }
+    if (views.empty()) views.push_back({call.parameters ? call.parameters : &light.instance->parameters, &light.instance->toCurrent});
     if (!c->batch) c->batch = std::make_shared<shading::Batch>();
-    c->batch->assign(bound.kernel, *bound.plan, c->points, {&view, 1}, {}, *world_);
+    c->batch->assign(bound.kernel, *bound.plan, c->points, views, viewOf, *world_);
     bindCall(c->batch->call(), *c);
     const auto& k = *bound.kernel;
     if (k.facts().suspends) {
@@ -188,8 +194,9 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
             out[e.first + lane].Cl += Color(at(0), at(1), at(2)) * light;
         }
     }
-    if (light.intensityScale > 0) // the kernel divided by the squared distance: radiance does not
-        for (size_t i = 0; i < queries.size(); ++i) out[i].Cl *= dot(out[i].L, out[i].L) * light.intensityScale;
+    for (size_t i = 0; i < queries.size(); ++i) // the kernel divided by the squared distance: radiance does not
+        if (const float scale = (call.of.empty() ? light : *call.of[i]).intensityScale; scale > 0)
+            out[i].Cl *= dot(out[i].L, out[i].L) * scale;
     hazeOfEmitters(light, queries, out, call.inMedium);
     giveBack(std::move(c));
 }

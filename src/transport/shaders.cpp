@@ -267,7 +267,7 @@ BoundKernel WorldImpl::kernel(const ShaderInstance& i, const std::vector<std::st
         if (in.name.rfind("space:", 0) == 0) spaces.push_back(in.name);
     if (!spaces.empty()) {
         sayUnknownSpaces(*this, i, spaces, d);
-        keepSpaces(spaces);
+        if (!built_) keepSpaces(spaces);
     }
     ++facts_.kernels;
     facts_.cacheHits += k->fromCache();

@@ -134,13 +134,14 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     w->bindSentStrings(d);
     w->countLightTraces();
     w->measureLights(engine, d);
-    w->makeChoosers();
     for (const auto& [shape, binding] : w->hazyEmitters_) {
         w->lights_[size_t(shape->attributes().areaLight)].hazy = true;
         for (int part : w->lights_[size_t(shape->attributes().areaLight)].parts) w->lights_[size_t(part)].hazy = true;
     }
+    w->makeChoosers(d);
     w->facts_.shapes = w->shapes_.size();
     for (const auto& shape : w->shapes_) w->facts_.before += !(shape->bounds().hi.z <= 0);
+    w->built_ = true;
     w->facts_.buildSec = seconds() - begin - w->facts_.compileSec;
     return w;
 }

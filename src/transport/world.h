@@ -151,6 +151,7 @@ struct BoundLight {
     float power = 0;
     Vec3 centre;
     float radius = 0;
+    int group = -1;                            ///< WorldImpl::lightGroups_; -1: none
 };
 
 /// What a surface takes from shadow rays: the same everywhere, or what a kernel says that gives Oi alone.
@@ -281,8 +282,9 @@ public:
     void measureLights(class Engine&, Diagnostics&);
     /// What the shape takes from shadow rays. `mode`: "shader", "primitive", "opaque" or "Os"; "": what the attributes say.
     Opacity opacityOf(const SurfaceBinding&, const geometry::Shape&, std::string mode, const std::vector<std::string>& varying, Engine&, Diagnostics&);
-    /// Fills choosers_; after measureLights().
-    void makeChoosers();
+    /// Fills choosers_, and lightGroups_ where there are many lights; after measureLights().
+    void makeChoosers(Diagnostics&);
+    void groupLights(Diagnostics&);
 
     std::shared_ptr<const scene::Frame> frame_;
     Settings settings_;
@@ -314,6 +316,9 @@ public:
     Diagnostics* diagnostics_ = nullptr;
     mutable rsl::PrintLog prints_;
     mutable std::mutex imagerMutex_;
+    struct BoundImager { bool bound = false; InstanceRef shader; BoundKernel kernel; };
+    BoundImager imager_;                       ///< by runImager(), under the lock
+    bool built_ = false;                       ///< threads read the world now
     std::vector<std::string> lightMessages_;   ///< parameters of surfaces that lights and atmospheres ask for, sorted
     std::set<std::string> lightDisplacements_; ///< outputs of displacement shaders that lights ask for; "": of names made when they run
     bool lightsAsk_ = false;                   ///< some light asks about the surface that it lights (BoundLight::asksSurface)
@@ -331,6 +336,9 @@ public:
     BoundKernel primitiveHit_;                 ///< shows primitives as they are; only where some ray may want that
     ShapeSubsets subsets_;
     std::vector<std::vector<int>> sampledLights_; ///< by SurfaceBinding::lightList: lights that get samples, in order
+    /// Lights of one program that one kernel call evaluates for points that ask for different ones of them.
+    struct LightGroup { BoundKernel kernel; };
+    std::vector<LightGroup> lightGroups_;
     /// By the same: empty where all of them are sampled at every vertex. numberOf: by light, its place in the list, else -1.
     struct ChooserOfList { LightChooser chooser; std::vector<int> numberOf; };
     std::vector<ChooserOfList> choosers_;

@@ -172,13 +172,16 @@ void Level::addBilinear(float s, float t, Wrap swrap, Wrap twrap, int first, int
         at[i] = outside ? 0 : (size_t(ys[i]) * size_t(width) + size_t(xs[i])) * size_t(channels) + size_t(first);
         k[i] = outside ? 0 : w[i];
     }
+    // Where the values lie is the same for all texels of a channel.
+    const float* numbers = codes.empty() ? (asLight && !light.empty() ? light : values).data() : nullptr;
     for (int c = 0; c < count; ++c) {
-        float v[4];
-        for (int i = 0; i < 4; ++i) v[i] = texel(at[i] + size_t(c), first + c, asLight);
-        // Only texels that take part: 0 * infinity would spoil a neighbour.
+        const CodeTable& ofCode = codes.empty() ? kCodeValues : tableOf(first + c, asLight);
         float r = 0;
-        for (int i = 0; i < 4; ++i)
-            if (k[i] != 0) r += k[i] * v[i];
+        for (int i = 0; i < 4; ++i) {
+            if (k[i] == 0) continue; // 0 * infinity would spoil a neighbour
+            const size_t from = at[i] + size_t(c);
+            r += k[i] * (numbers ? numbers[from] : ofCode[codes[from]]);
+        }
         sum[c] += weight * r;
     }
 }

@@ -23,8 +23,8 @@ inline constexpr CodeTable kCodeValues = [] {
     return v;
 }();
 
-/// One level. 8-bit pictures keep their codes at level 0 (a quarter of the memory; the values k/255 are the same floats);
-/// reduced levels are floats. A map whose numbers are a curve of light has both readings: the numbers of the file, and light.
+/// One level. 8-bit pictures, and maps made of them, keep codes at level 0 (a quarter of the memory; the values k/255 are the
+/// same floats); reduced levels are floats. A map whose numbers are a curve of light has both readings: the numbers of the file, and light.
 /// Each level holds means of either, since the light of a mean is not the mean of light.
 struct Level {
     int width = 0, height = 0, channels = 0;
@@ -37,7 +37,11 @@ struct Level {
     /// Channel c of a texel; `at` counts all channels.
     float texel(size_t at, int c, bool asLight) const {
         if (codes.empty()) return asLight && !light.empty() ? light[at] : values[at];
-        return (asLight && table && (colours >> c & 1) ? *table : kCodeValues)[codes[at]];
+        return tableOf(c, asLight)[codes[at]];
+    }
+    /// The values of the codes of channel c.
+    const CodeTable& tableOf(int c, bool asLight) const {
+        return asLight && table && c < 32 && (colours >> c & 1) ? *table : kCodeValues;
     }
 
     /// Adds weight times the bilinearly interpolated channels first, first+1, ... (count, all present) at (s, t) to `sum`. Texel

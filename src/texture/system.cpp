@@ -62,6 +62,30 @@ void decode(display::Image& m, const Decode& curve) {
         if (i % n < 32 && (colours >> (i % n) & 1)) m.data[i] = curve(m.data[i]);
 }
 
+/// Whether each number is one of the 256 of 8 bits: codes then hold them exactly, in a quarter of the memory. Maps that were
+/// made of such pictures are files of floats.
+bool fitsCodes(const display::Image& m) {
+    for (float v : m.data) {
+        const float code = v * 255.0f + 0.5f;
+        if (!(code >= 0 && code < 256) || kCodeValues[size_t(code)] != v) return false;
+    }
+    return true;
+}
+
+/// The light of a picture's numbers, without its levels.
+display::Image lightOf(const display::Image& picture, const Level& level, const Decode& curve) {
+    display::Image light = display::makeImage(picture.width, picture.height, picture.channels);
+    if (level.codes.empty()) {
+        light.data = picture.data;
+        decode(light, curve);
+        return light;
+    }
+    const auto n = size_t(level.channels);
+    for (size_t i = 0; i < light.data.size(); i += n)
+        for (size_t c = 0; c < n; ++c) light.data[i + c] = level.texel(i + c, int(c), true);
+    return light;
+}
+
 /// Adds to the levels of a texture those of its light.
 void addLight(Texture& tex, const display::Image& picture, const Decode& curve, Wrap swrap, Wrap twrap) {
     Level& first = tex.levels.front();
@@ -72,9 +96,7 @@ void addLight(Texture& tex, const display::Image& picture, const Decode& curve, 
         first.colours = colourChannels(picture);
     }
     if (tex.levels.size() == 1 && !first.codes.empty()) return;
-    display::Image light = picture;
-    light.levels.clear();
-    decode(light, curve);
+    const display::Image light = lightOf(picture, first, curve);
     if (first.codes.empty()) first.light = light.data;
     size_t at = 1;
     for (display::Image& l : reducedLevels(light, {}, swrap, twrap))
@@ -140,7 +162,8 @@ std::shared_ptr<const Texture> makeTextureFrom(const display::Image& image, cons
         }
         return tex;
     }
-    tex->levels.push_back(levelOf(image, image.bits == 8 && !image.floating));
+    const bool codes = (image.bits == 8 && !image.floating) || (text("colorspace") == kEightBits && fitsCodes(image));
+    tex->levels.push_back(levelOf(image, codes));
     if (tex->kind == Kind::Shadow) return tex; // depths have no mean
     // The levels that the file has; below the last of them (files may end at 2x1) they are made.
     const size_t stored = storedLevels(image);

@@ -21,6 +21,11 @@ std::string ServiceCall::name(int lane) const {
     return d.argKinds.empty() || d.argKinds[0] != rsl::ir::Kind::String ? std::string() : rsl::internedString(std::bit_cast<int32_t>(at(0, lane)));
 }
 
+int32_t ServiceCall::nameId(int lane) const {
+    if (s.nameId) return s.nameId;
+    return d.argKinds.empty() || d.argKinds[0] != rsl::ir::Kind::String ? 0 : std::bit_cast<int32_t>(at(0, lane));
+}
+
 SourcePlace ServiceCall::place() const {
     const auto& files = c.bound->kernel->files();
     return {d.place.file < int(files.size()) ? files[size_t(d.place.file)] : "", d.place.line, d.place.column};

@@ -36,6 +36,8 @@ public:
     void putText(int row, int lane, const std::string& s) const { put(row, lane, std::bit_cast<float>(rsl::internString(s))); }
     /// The first string of the call, where each point may have its own.
     std::string name(int lane) const;
+    /// The same, interned.
+    int32_t nameId(int lane) const;
     SourcePlace place() const;
     /// Answers, where that fits the variable that waits for it.
     void answer(int lane, const Told&) const;
@@ -56,6 +58,9 @@ std::optional<Told> toldBy(const ShaderInstance&, const std::string& parameter);
 /// A primitive variable at a point of the shape; nothing when it has none of that name.
 std::optional<Told> primitiveVariable(const geometry::Shape&, const geometry::SurfacePoint&, const std::string& name);
 
+// maps.cpp: texture() and environment(); textureinfo().
+void answerTexture(Engine&, const ServiceCall&);
+void answerTextureInfo(Engine&, const ServiceCall&);
 // messages.cpp: surface() and its kin, lightsource(), attribute(), shadername(), getvar() of the primitive.
 void answerMessage(Engine&, const ServiceCall&);
 void answerLightSource(Engine&, const ServiceCall&);

@@ -60,6 +60,33 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
     return t;
 }
 
+std::shared_ptr<const TextureSite> textureSite(const SiteInfo& i, const rsl::ir::Site& s) {
+    auto t = std::make_shared<TextureSite>();
+    const auto row = [&](const char* name) {
+        const auto f = i.named.find(name);
+        return f == i.named.end() ? -1 : f->second;
+    };
+    t->filter = row("filter");
+    t->channel = row("channel");
+    t->fill = row("fill");
+    t->width = row("width");
+    t->swidth = row("swidth");
+    t->twidth = row("twidth");
+    t->blur = row("blur");
+    t->sblur = row("sblur");
+    t->tblur = row("tblur");
+    if (const auto f = i.text.find("filter"); f != i.text.end())
+        if (const auto known = texture::filterByName(f->second)) t->options.filter = *known;
+    if (!s.strings.empty()) t->name = s.strings[0];
+    t->computed = t->name.empty() && !s.argKinds.empty() && s.argKinds[0] == rsl::ir::Kind::String;
+    t->count = s.resultKinds.empty() ? 0 : std::min(rsl::ir::components(s.resultKinds[0]), 3);
+    t->options.asLight = t->count == 3; // what is read as a float is data: a height, an opacity, a mask
+    t->slopes = std::min(i.resultRowCount - t->count, 27);
+    t->firsts = t->count * (i.kind == SiteKind::Texture ? 2 : 3);
+    t->rows.assign(i.rows.begin() + (t->computed && !i.rows.empty()), i.rows.end());
+    return t;
+}
+
 } // namespace
 
 size_t rowsOf(const SiteInfo& i, int row) {
@@ -101,6 +128,8 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
             out += rsl::ir::components(s.resultKinds[r]);
         }
         i.resultRowCount = out;
+        if (!s.strings.empty() && !s.strings[0].empty()) i.nameId = rsl::internString(s.strings[0]);
+        if (i.kind == SiteKind::Texture || i.kind == SiteKind::Environment) i.map = textureSite(i, s);
         if (i.kind == SiteKind::Diffuse) i.lobe = findLobe("diffuse");
         if (i.kind == SiteKind::Specular) i.lobe = findLobe("specular");
         if (i.kind == SiteKind::Phong) i.lobe = findLobe("phong");

@@ -247,6 +247,20 @@ public:
     int32_t lightBegin(BatchContext&, int site, int first, uint64_t mask, int lanes, const float* rows);
     void lightEnd(BatchContext&, int first, int lanes);
     uint64_t lightFetch(BatchContext&, int light, int first, uint64_t mask, int lanes, float* out);
+    // maps.cpp
+    /// The map of an interned name, found without a lock from the second time on. `place`: gives the SourcePlace that asks.
+    template <class Place> texture::Handle mapOfName(int32_t id, Place&& place) {
+        const auto [at, fresh] = mapsByName_.try_emplace(id, nullptr);
+        if (fresh && id) at->second = world_->textures_->open(rsl::internedString(id), world_->settings_.texturePaths, place());
+        return at->second;
+    }
+    /// What textureinfo() knows of it; nothing: there is no such file, which is no error.
+    template <class Place> const std::optional<texture::TextureInfo>& infoOfName(int32_t id, Place&& place) {
+        const auto [at, fresh] = infosByName_.try_emplace(id);
+        if (fresh && id && world_->textures_->present(rsl::internedString(id), world_->settings_.texturePaths))
+            at->second = world_->textures_->info(mapOfName(id, place));
+        return at->second;
+    }
     // services.cpp
     void service(BatchContext&, int site, int first, uint64_t mask, int lanes, const float* in, float* out);
     void drawRandom(const class ServiceCall&); // draws.cpp
@@ -328,6 +342,8 @@ private:
     std::vector<int32_t> freeExtras_;
     const RayExtra noExtra_;
     std::unordered_map<uint64_t, std::deque<RayKind>> kinds_; ///< by hash
+    std::unordered_map<int32_t, texture::Handle> mapsByName_; ///< by interned name
+    std::unordered_map<int32_t, std::optional<texture::TextureInfo>> infosByName_;
     const RayKind* lastKind_ = nullptr;
     std::deque<shading::Media> media_;
     friend class KernelStrip;

@@ -1,4 +1,4 @@
-// What the renderer answers at once: textures, messages, the state of rays and attributes.
+// What the renderer answers at once: messages, the state of rays and attributes; textures in maps.cpp.
 #include "rsl/services_basic.h"
 #include "transport/answers.h"
 
@@ -11,64 +11,11 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
     const auto each = [&](auto&& body) { call.each(body); };
     const auto at = [&](int row, int lane) { return call.at(row, lane); };
     const auto put = [&](int row, int lane, float v) { call.put(row, lane, v); };
-    const SourcePlace place = call.place();
-    const std::string name = mask ? call.name(std::countr_zero(mask)) : ""; // where it is the same for all
 
     switch (s.kind) {
     case SiteKind::Texture:
-    case SiteKind::Environment: {
-        texture::LookupOptions o;
-        auto number = [&](const char* key, int lane, float fallback) { auto i = s.named.find(key); return i == s.named.end() ? fallback : at(i->second, lane); };
-        if (auto f = s.text.find("filter"); f != s.text.end())
-            if (auto known = texture::filterByName(f->second)) o.filter = *known;
-        texture::Handle h = nullptr;
-        int offset = 0;
-        const bool dynamic = (d.strings.empty() || d.strings[0].empty()) && !d.argKinds.empty() && d.argKinds[0] == rsl::ir::Kind::String;
-        if (!dynamic && !name.empty()) h = world_->textures_->open(name, world_->settings_.texturePaths, place);
-        const int count = d.resultKinds.empty() ? 0 : std::min(rsl::ir::components(d.resultKinds[0]), 3);
-        o.asLight = count == 3; // what is read as a float is data: a height, an opacity, a mask
-        // rsl/passes/gradients.h; most lookups want none. First derivatives, then second ones.
-        const int slopeCount = std::min(s.resultRowCount - count, 27), firsts = count * (s.kind == SiteKind::Texture ? 2 : 3);
-        each([&](int lane, const ShadePoint&) {
-            if (dynamic) {
-                const std::string& n = rsl::internedString(std::bit_cast<int32_t>(at(0, lane)));
-                h = n.empty() ? nullptr : world_->textures_->open(n, world_->settings_.texturePaths, place);
-                offset = 1;
-            }
-            if (auto f = s.named.find("filter"); f != s.named.end())
-                if (auto known = texture::filterByName(rsl::internedString(std::bit_cast<int32_t>(at(f->second, lane))))) o.filter = *known;
-            float width = number("width", lane, 1), blur = number("blur", lane, 0);
-            o.swidth = number("swidth", lane, width);
-            o.twidth = number("twidth", lane, width);
-            o.sblur = number("sblur", lane, blur);
-            o.tblur = number("tblur", lane, blur);
-            o.fill = number("fill", lane, 0);
-            int channel = int(number("channel", lane, 0));
-            float v[3] = {}, slopes[27] = {};
-            float *g = slopeCount > 0 ? slopes : nullptr, *cu = slopeCount > firsts ? slopes + firsts : nullptr;
-            auto row = [&](int k) { return at(s.rows[size_t(offset + k)], lane); };
-            if (s.kind == SiteKind::Texture) {
-                if (int(s.rows.size()) - offset >= 8) {
-                    float ss[4], tt[4];
-                    for (int k = 0; k < 4; ++k) { ss[k] = row(2 * k); tt[k] = row(2 * k + 1); }
-                    texture::lookupQuad(h, channel, count, ss, tt, o, v, g, cu);
-                } else if (int(s.rows.size()) - offset >= 6) {
-                    texture::lookup2D(h, channel, count, row(0), row(1), row(2), row(3), row(4), row(5), o, v, g, cu);
-                }
-            } else {
-                auto vec = [&](int k) { int r = s.rows[size_t(offset + k)]; return Vec3(at(r, lane), at(r + 1, lane), at(r + 2, lane)); };
-                if (int(s.rows.size()) - offset >= 4) {
-                    Vec3 q[4] = {vec(0), vec(1), vec(2), vec(3)};
-                    texture::environmentQuad(h, world_->textures_->latLong(), channel, count, q, o, v, g, cu);
-                } else {
-                    texture::environment(h, world_->textures_->latLong(), channel, count, vec(0), vec(1), vec(2), o, v, g, cu);
-                }
-            }
-            for (int k = 0; k < count; ++k) put(k, lane, v[k]);
-            for (int k = 0; k < slopeCount; ++k) put(count + k, lane, slopes[k]);
-        });
-        return;
-    }
+    case SiteKind::Environment: answerTexture(*this, call); return;
+    case SiteKind::TextureInfo: answerTextureInfo(*this, call); return;
     case SiteKind::Ambient: { // not under path: the sum of the ambient lights that are on
         if (!c.binding) return;
         for (int li : c.binding->lights) {
@@ -119,29 +66,6 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
             int depth = c.rays.empty() ? 0 : c.rays[first + lane].bounces;
             const bool shadow = c.forShadow;
             put(0, lane, d.op == "raylevel" ? float(depth) : d.op == "isindirectray" ? float(depth > 0) : float(shadow));
-        });
-        return;
-    case SiteKind::TextureInfo:
-        each([&](int lane, const ShadePoint&) {
-            std::string asked[2]; // the map and the field; each point may have its own
-            int row = 0;
-            for (size_t k = 0; k < 2; ++k) {
-                if (k < d.strings.size()) asked[k] = d.strings[k];
-                if (asked[k].empty() && row < int(d.argKinds.size()) && d.argKinds[size_t(row)] == rsl::ir::Kind::String) asked[k] = rsl::internedString(std::bit_cast<int32_t>(at(row++, lane)));
-            }
-            const std::string& field = asked[1];
-            // That there is no such file is an answer, and no error.
-            const bool there = !asked[0].empty() && world_->textures_->present(asked[0], world_->settings_.texturePaths);
-            auto info = world_->textures_->info(there ? world_->textures_->open(asked[0], world_->settings_.texturePaths, place) : nullptr);
-            if (field == "exists") { put(0, lane, info ? 1 : 0); return; }
-            if (!info) return;
-            Information i;
-            if (field == "resolution") i.numbers = {float(info->width), float(info->height)};
-            else if (field == "channels") i.numbers = {float(info->channels)};
-            else if (field == "bitsperchannel") i.numbers = {float(info->bits)};
-            else if (field == "type") i = {{}, {info->type}, true};
-            else return;
-            call.answer(lane, Told(i));
         });
         return;
     default: break;

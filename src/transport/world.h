@@ -10,6 +10,7 @@
 #include "transport/integrator.h"
 #include "transport/lightchooser.h"
 #include "transport/lobe.h"
+#include <atomic>
 #include <functional>
 #include <mutex>
 #include <set>
@@ -62,6 +63,23 @@ struct TraceSite {
     bool onlyLights = false;              ///< for nothing but what area lights send
 };
 
+/// What a texture() or environment() asks of a map. Rows of `in`, or -1.
+struct TextureSite {
+    std::string name;                     ///< of the map; "" where `computed`, or there is none
+    bool computed = false;                ///< each point names its map, in row 0
+    texture::LookupOptions options;       ///< what is the same for all points
+    int filter = -1, channel = -1, fill = -1, width = -1, swidth = -1, twidth = -1, blur = -1, sblur = -1, tblur = -1;
+    int count = 0;                        ///< numbers of the result
+    int slopes = 0, firsts = 0;           ///< derivatives that are wanted, the first ones of them (rsl/passes/gradients.h)
+    std::vector<int> rows;                ///< of the coordinates
+    /// The map that is the same for all points, opened when first asked for. `place`: gives the SourcePlace of the call.
+    template <class Place> texture::Handle map(const class WorldImpl&, Place&& place) const;
+
+private:
+    mutable std::atomic<texture::Handle> map_{nullptr};
+    mutable std::atomic<bool> opened_{false};
+};
+
 /// What a call site of a kernel means to the engine, worked out once per kernel.
 enum class SiteKind : uint8_t {
     Unknown, Ambient, Diffuse, Specular, Phong, Trace, Transmission, LightVisibility, ///< requests
@@ -80,6 +98,8 @@ struct SiteInfo {
     int rowWo = -1, rowExponent = -1, rowCone = -1, rowHorizon = -1, rowLights = -1; ///< of `named`
     std::shared_ptr<const struct TraceSite> trace; ///< Trace: what only some calls use
     std::shared_ptr<const RaySite> rays;       ///< Trace, Transmission
+    std::shared_ptr<const TextureSite> map;    ///< Texture, Environment
+    int32_t nameId = 0;                        ///< the first string of the call, interned; 0: none, or known only when it runs
     /// Outputs of the surface that lights ask for: name, row, numbers.
     struct Output { std::string name; int row, size; };
     std::vector<Output> outputs;
@@ -346,5 +366,14 @@ public:
     float clipNear_ = 0, clipFar_ = 1;         ///< of the request Clipping, for depth()
     std::vector<std::pair<Vec3d, Vec3d>> clippingPlanes_; ///< camera space point, normal; camera rays see nothing on the normal's side
 };
+
+// Two threads that come first both open the map: the same one.
+template <class Place> texture::Handle TextureSite::map(const WorldImpl& world, Place&& place) const {
+    if (!opened_.load(std::memory_order_acquire)) {
+        if (!name.empty()) map_.store(world.textures_->open(name, world.settings_.texturePaths, place()), std::memory_order_relaxed);
+        opened_.store(true, std::memory_order_release);
+    }
+    return map_.load(std::memory_order_relaxed);
+}
 
 } // namespace alpenglow::transport

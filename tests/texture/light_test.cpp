@@ -130,3 +130,34 @@ TEST(Light, MapsAreReadAsTheirPictureOrAsToldWhenMade) {
                 << kind << " " << picture << " " << int(colours);
         }
 }
+
+// A map that was made of 8 bits is a file of floats: in memory it takes what its picture takes, and says the same numbers.
+TEST(Light, MapsOf8BitsAreCodesInMemory) {
+    Scratch s;
+    Image m = codes(64, 64, 3, 0);
+    for (size_t i = 0; i < m.data.size(); ++i) m.data[i] = float(i * 7919 % 256) / 255.f;
+    save(s, "a.png", m, display::Format::Png);
+    Diagnostics d;
+    MakeOptions how;
+    how.policy = {s / "", true};
+    ASSERT_TRUE(makeTexture(s / "a.png", s / "a.tx", how, d));
+    TextureSystem system(d, inLight());
+    Handle picture = system.open(s / "a.png"), map = system.open(s / "a.tx");
+    ASSERT_TRUE(picture && map);
+    ASSERT_EQ(map->levels[0].codes.size(), m.data.size());
+    EXPECT_TRUE(map->levels[0].values.empty());
+    EXPECT_TRUE(map->levels[0].light.empty());
+    for (size_t i = 0; i < m.data.size(); ++i) {
+        const int c = int(i % 3);
+        ASSERT_EQ(map->levels[0].texel(i, c, false), m.data[i]);
+        ASSERT_EQ(map->levels[0].texel(i, c, true), srgbDecode(m.data[i]));
+    }
+    // Numbers between the codes are kept as they are.
+    for (float& x : m.data) x += 1e-4f;
+    m.bits = 32;
+    m.floating = true;
+    m.metadata["colorspace"] = kEightBits;
+    auto floats = makeTextureFrom(m, inLight());
+    EXPECT_TRUE(floats->levels[0].codes.empty());
+    EXPECT_EQ(floats->levels[0].values, m.data);
+}

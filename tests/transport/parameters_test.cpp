@@ -219,3 +219,31 @@ TEST(Parameters, AmbientLight) {
 }
 
 } // namespace
+
+// A filter that differs from point to point: where its name means nothing the default holds, whoever shares the strip.
+TEST(Parameters, FiltersOfPointsAreTheirOwn) {
+    const std::string map = writeMap("filtermap.exr", 8, 8, [](int x, int, int) { return x < 4 ? 0.f : 1.f; });
+    writeShader("filtered", R"(surface filtered(string map = "";) {
+    string f = "box";
+    if (s > .3) f = "nothing";
+    if (s > .35) f = "gaussian";
+    Ci = float texture(map, s, t, "filter", f, "blur", .6);
+    Oi = 1;
+})");
+    const auto look = [&](const std::vector<float>& at, int lanes) {
+        Settings set = withShaders(Hider::Hidden);
+        set.lanes = lanes;
+        Scene scene("WorldBegin\nSides 2\nSurface \"filtered\" \"map\" [" + map +
+                        "]\nPolygon \"P\" [0 0 1  1 0 1  1 1 1  0 1 1] \"st\" [0 0  1 0  1 1  0 1]\nWorldEnd\n",
+                    set);
+        std::vector<CameraRay> rays;
+        for (float x : at) rays.push_back(rayTo({x, .5f, 0}, {x, .5f, 1}));
+        std::vector<float> out;
+        for (const SampleResult& r : scene.trace(rays)) out.push_back(r.color.x);
+        return out;
+    };
+    const std::vector<float> together = look({.28f, .29f, .32f, .36f}, 16), alone = look({.32f}, 4);
+    EXPECT_EQ(together[2], alone[0]);
+    EXPECT_GT(std::fabs(together[1] - together[2]), .02f) << together[1]; // a box is not the default
+    EXPECT_LT(std::fabs(together[2] - together[3]), .1f) << together[2];  // which is the gaussian
+}

@@ -1,7 +1,7 @@
 // From a template to the functions of the bitcode: loads and stores of flattened arguments, and the macro that exports a symbol.
 #pragma once
 #include "shadeops/jet.h"
-#ifndef ALPENGLOW_BITCODE
+#if !defined(ALPENGLOW_BITCODE) && !defined(ALPENGLOW_TEMPLATES)
 #include <array>
 #include <string_view>
 #endif
@@ -105,7 +105,9 @@ template <class R, class... A> AL_INLINE void call(R (*f)(A...), const vf* in, v
     callWith(f, in, out, std::index_sequence_for<A...>{});
 }
 
-#ifdef ALPENGLOW_BITCODE
+#ifdef ALPENGLOW_TEMPLATES // who uses the templates alone, for instance a lobe
+#define AL_RUNTIME(symbol, function)
+#elif defined(ALPENGLOW_BITCODE)
 #define AL_RUNTIME(symbol, function)                                                                                             \
     extern "C" __attribute__((always_inline)) void symbol##_0(const vf* in, vf* out) { call(&function<vf>, in, out); }           \
     extern "C" __attribute__((always_inline)) void symbol##_1(const vf* in, vf* out) { call(&function<Jet1>, in, out); }         \

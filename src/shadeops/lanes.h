@@ -1,5 +1,5 @@
-// Numbers over lanes, and the few primitives that shadeops are written in. Compiled three ways: into the program at 4 lanes, to bitcode at
-// 4..64 lanes, and in a test with another type in place of float (ALPENGLOW_REFERENCE names the header that replaces this one).
+// Numbers over lanes, and the few primitives that shadeops are written in. Compiled four ways: into the program at 4 lanes, into its stages
+// at 1 to 16 (transport/lanes), to bitcode at 4..64 lanes, and in a test with another type in place of float (ALPENGLOW_REFERENCE names the header that replaces this one).
 // Lane-wise operations only, in a fixed order, with fused multiply-add where the source says mad(): so every width gives the same bits.
 #pragma once
 #ifdef ALPENGLOW_REFERENCE
@@ -28,7 +28,7 @@ AL_INLINE vf select(vm m, vf a, vf b) { return m ? a : b; }
 AL_INLINE vu select(vm m, vu a, vu b) { return m ? a : b; }
 
 /// a * b + c, rounded once.
-#ifdef ALPENGLOW_BITCODE
+#if defined(ALPENGLOW_BITCODE) || defined(__FMA__)
 AL_INLINE vf mad(vf a, vf b, vf c) { return __builtin_elementwise_fma(a, b, c); }
 #else
 // The program itself is built for machines without the instruction: a call keeps the code small there.

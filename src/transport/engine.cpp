@@ -264,6 +264,7 @@ bool Engine::trace(std::span<const CameraRay> rays, std::span<SampleResult> out,
 
 void Engine::forget() {
     lobes.clear();
+    lobeRows_.clear();
     shadows.clear();
     traceSums_.clear();
     litValues_.clear();

@@ -76,7 +76,7 @@ struct Haze { Color shown, opacity, slope{1}; bool on = false; }; ///< on: a vol
 struct LobeVertex {
     int point = 0;
     const LobeKind* kind = nullptr;
-    LobeParams params;
+    LobeColumns::Place place; ///< in Engine::lobeRows_
     Color weight;          ///< of the request alone, before the ray's throughput
     TargetId target = shading::kNoTarget;
     const RayKind* rays = &kDiffuseKind;
@@ -332,6 +332,7 @@ public:
     std::vector<SampleResult*> results;
     std::vector<int> spoiled_;         ///< PathSample::path of samples that notFinite() has seen; some twice
     std::vector<LobeVertex> lobes;
+    LobeColumns lobeRows_; ///< of `lobes`
     std::vector<ShadowRay> shadows;
     const StopFlag* stop = nullptr;
 
@@ -369,12 +370,28 @@ private:
     void giveBack(std::shared_ptr<BatchContext>); ///< kept when nobody else has it
     std::vector<std::shared_ptr<BatchContext>> pool_;
     /// Memory that gather() keeps between batches.
+    /// A lobe that a light reaches: the light's query, Engine::lobes, and where the light is.
+    struct LitLobe {
+        size_t query;
+        int lobe;
+        Vec3 w;
+    };
+    /// A lobe whose rays are sent: `count` of them, each with its weight times `scale`.
+    struct SentLobe {
+        size_t point;
+        int lobe, count;
+        float scale;
+        bool goes;
+        Vec3 w;
+    };
     struct GatherRoom {
         std::vector<int> begin, order, next, pointOf;
         std::vector<float> indirectScale, chance, passes;
         std::vector<ShadePoint> q;
         std::vector<Emitter::Sample> drawn;
         std::vector<LightValue> value;
+        std::vector<LitLobe> reached;
+        std::vector<SentLobe> sent;
     };
     GatherRoom gatherRoom_;
     std::vector<accel::Ray> rays_, shadowRays_;

@@ -45,6 +45,7 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
     sched.restart(stop);
     traceSums_.clear();
     lobes.clear();
+    lobeRows_.clear();
     const TargetId target = sched.newRoot();
     // request() reads rows of lanes: this is one lane.
     std::vector<float> in;
@@ -68,14 +69,21 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
     }
     const Vec3 start = l.elsewhere ? l.from : p.P;
     const bool leaves = p.lit && length(start - p.Ps) <= geometry::roundingError(p.Ps) + 4 * p.lit->pError;
-    const bool delta = l.kind->isDelta(l.params);
+    lobeRows_.prepare();
+    const LobeColumns::Place place = l.place;
+    const bool delta = lobeRows_.delta(place);
+    const float spread = lobeRows_.spread(place);
     if (delta) l.samples = 1;
     for (int k = 0; k < l.samples; ++k) {
         const uint32_t nth = occurrence * 4096 + uint32_t(k), vertex = childVertex(from.vertex, kLightPoint + l.site, nth);
         Vec3 w;
-        if (!l.kind->sample(l.params, random(from).pair(vertex, l.site, nth), w)) continue;
-        const float pdf = delta ? 0 : l.kind->pdf(l.params, w);
-        const Color f = delta ? Color(l.kind->albedo(l.params)) : pdf > 0 ? lobeValue(*l.kind, l.params, w) / pdf : Color(0);
+        lobeRows_.ask(place, random(from).pair(vertex, l.site, nth));
+        lobeRows_.sample();
+        if (!lobeRows_.drawn(place, w)) continue;
+        lobeRows_.ask(place, w);
+        lobeRows_.evaluate();
+        const LobeValue value = lobeRows_.value(place);
+        const Color f = delta ? Color(lobeRows_.albedo(place)) : value.pdf > 0 ? value.colour / value.pdf : Color(0);
         PathRay r = from;
         r.weight = f / float(l.samples);
         r.vertex = vertex;
@@ -94,10 +102,11 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
         r.lobePdf = -1; // no light was sampled: all that shines counts
         r.lobeBinding = -1;
         r.first = true;
-        r.spread = std::max(from.spread, l.kind->spread(l.params) * 0.5f);
+        r.spread = std::max(from.spread, spread * 0.5f);
         r.counts = false;
         sched.spawn(r.bounces + r.layers, target, r);
     }
+    lobeRows_.clear();
     sched.run();
     litValues_.clear();
     shadows.clear();

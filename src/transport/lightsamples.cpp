@@ -214,7 +214,7 @@ uint64_t Engine::sampleLight(BatchContext& c, const LightLoop& loop, int li, int
     uint64_t lit = 0;
     // A loop has no lobe of its own: it sees an emitter as wide as diffuse() does.
     const bool wide = light.kind == LightKind::Area && usesFootprint(light);
-    const float diffuse = wide ? findLobe("diffuse")->spread({}) : 0;
+    const float diffuse = wide ? findLobe("diffuse")->spread(LobeParams{}) : 0;
     for (int lane = 0; lane < lanes; ++lane) {
         if (!(mask >> lane & 1) || first + lane >= int(c.points.size())) continue;
         ShadePoint p = c.points[size_t(first + lane)];

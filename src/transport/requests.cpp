@@ -13,18 +13,18 @@ Vec3 unit(Vec3 v, Vec3 fallback) {
     return l > 0 && std::isfinite(l) ? v / l : fallback;
 }
 /// Parameters of the distributions of bsdf(), as given or as they are when not (rsl.md 12.4).
-template <class Row> std::shared_ptr<const DistributionParams> distributionOf(const SiteInfo& s, const Row& f) {
+template <class Row> DistributionParams distributionOf(const SiteInfo& s, const Row& f) {
     const TraceSite& t = *s.trace;
-    auto m = std::make_shared<DistributionParams>();
+    DistributionParams m;
     auto triple = [&](int row) { return Color(f(row), f(row + 1), f(row + 2)); };
-    if (t.roughness >= 0) m->roughness = f(t.roughness);
-    m->roughnessv = t.roughnessv >= 0 ? f(t.roughnessv) : m->roughness;
-    if (t.udir >= 0) m->udir = triple(t.udir);
-    if (t.absorption >= 0) m->absorption = triple(t.absorption);
-    m->eta = Color(s.lobe->name == "glass-ggx" ? 1.5f : s.lobe->name == "hair" ? 1.55f : 0.f);
-    for (size_t k = 0; k < t.eta.size() && k < 2; ++k) (k ? m->k : m->eta) = t.eta[k].second == 1 ? Color(f(t.eta[k].first)) : triple(t.eta[k].first);
-    for (int row : t.lobes) m->lobes.push_back(f(row));
-    m->part = t.part;
+    if (t.roughness >= 0) m.roughness = f(t.roughness);
+    m.roughnessv = t.roughnessv >= 0 ? f(t.roughnessv) : m.roughness;
+    if (t.udir >= 0) m.udir = triple(t.udir);
+    if (t.absorption >= 0) m.absorption = triple(t.absorption);
+    m.eta = Color(s.lobe->name == "glass-ggx" ? 1.5f : s.lobe->name == "hair" ? 1.55f : 0.f);
+    for (size_t k = 0; k < t.eta.size() && k < 2; ++k) (k ? m.k : m.eta) = t.eta[k].second == 1 ? Color(f(t.eta[k].first)) : triple(t.eta[k].first);
+    for (int row : t.lobes) m.lobes.push_back(f(row));
+    m.part = t.part;
     return m;
 }
 } // namespace
@@ -48,6 +48,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     if (s.kind != SiteKind::Diffuse && s.kind != SiteKind::Specular && s.kind != SiteKind::Phong && s.kind != SiteKind::Trace) return;
     LobeVertex& l = lobes.emplace_back();
     l.kind = s.lobe;
+    LobeParams params;
     l.point = point;
     l.weight = weight;
     l.target = target;
@@ -65,30 +66,29 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
             for (int r = 0; r < o.size; ++r) of.second.push_back(f(o.row + r));
         }
     }
-    if (s.kind != SiteKind::Diffuse) l.params.wo = unit(-p.I, p.surface.n);
+    if (s.kind != SiteKind::Diffuse) params.wo = unit(-p.I, p.surface.n);
     switch (s.kind) {
     case SiteKind::Diffuse:
-        l.params.axis = unit(v(0), p.surface.n);
+        params.axis = unit(v(0), p.surface.n);
         l.rays = &kDiffuseKind;
         break;
     case SiteKind::Specular:
     case SiteKind::Phong:
-        l.params.axis = unit(v(0), p.surface.n);
-        l.params.wo = unit(v(1), l.params.wo);
-        l.params.a = f(s.rows[2]);
+        params.axis = unit(v(0), p.surface.n);
+        params.wo = unit(v(1), params.wo);
+        params.a = f(s.rows[2]);
         if (s.kind == SiteKind::Specular)
-            l.params.a = s.exponent / std::max(l.params.a, 1e-6f);
+            params.a = s.exponent / std::max(params.a, 1e-6f);
         l.rays = &kSpecularKind;
         break;
     case SiteKind::Trace:
-        l.params.axis = unit(v(1), p.surface.n);
-        l.params.wo = unit(vector(s.rowWo, l.params.wo), l.params.wo);
-        l.params.a = s.lobe->name == "slphong" ? number(s.rowExponent, 1000) : number(s.rowCone, 0);
+        params.axis = unit(v(1), p.surface.n);
+        params.wo = unit(vector(s.rowWo, params.wo), params.wo);
+        params.a = s.lobe->name == "slphong" ? number(s.rowExponent, 1000) : number(s.rowCone, 0);
         l.trace = s.trace.get();
-        if (s.lobe->distribution) l.params.more = distributionOf(s, f);
         if (s.rowHorizon >= 0) {
-            l.params.horizon = unit(vector(s.rowHorizon, p.surface.n), p.surface.n);
-            l.params.hasHorizon = true;
+            params.horizon = unit(vector(s.rowHorizon, p.surface.n), p.surface.n);
+            params.hasHorizon = true;
         }
         if (s.rays->fixed && !(world_->traceSubsets_ && s.rays->subsetText.empty())) { // what most calls are, many times a sample
             l.rays = kindOf({s.rays->rays, true, s.rays->set, s.label});
@@ -113,6 +113,12 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         l.samples = std::clamp(int(std::clamp(number(s.rays->samples, 1), 1.f, 4096.f)), 1, 4096);
         break;
     default: break;
+    }
+    if (l.kind->distribution) {
+        const DistributionParams more = distributionOf(s, f);
+        l.place = lobeRows_.add(*l.kind, params, &more);
+    } else {
+        l.place = lobeRows_.add(*l.kind, params);
     }
 }
 
@@ -143,8 +149,8 @@ float Engine::chooseLobes(const BatchContext& c, size_t pi, std::span<const int>
     for (int i : list) {
         LobeVertex& l = lobes[size_t(i)];
         const Color weight(std::fabs(l.weight.x), std::fabs(l.weight.y), std::fabs(l.weight.z));
-        l.albedo = l.kind->albedo(l.params);
-        l.delta = l.kind->isDelta(l.params);
+        l.albedo = lobeRows_.albedo(l.place);
+        l.delta = lobeRows_.delta(l.place);
         if (l.lobeOfShader) sum += weight * l.albedo;
         l.chosen = std::max(worth(weight) * l.albedo, 0.f);
         if (!std::isfinite(l.chosen)) {
@@ -198,6 +204,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
     const Settings& set = world_->settings_;
     bool path = set.hider == Hider::Path;
     if (lobes.empty()) return;
+    lobeRows_.prepare();
 
     // Lobes by point, in order of emission: of point pi those at order[begin[pi]] to order[begin[pi + 1]].
     GatherRoom room = std::move(gatherRoom_); // taken, so that a gather() inside this one has its own
@@ -348,7 +355,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 for (int i : wide ? lobesOf(pi) : std::span<const int>()) {
                     const LobeVertex& l = lobes[size_t(i)];
                     if (l.delta || !samples(l, light)) continue;
-                    const float s = spreadBehind(c.rays[pi], l.kind->spread(l.params));
+                    const float s = spreadBehind(c.rays[pi], lobeRows_.spread(l.place));
                     if (std::find(spread.begin() + long(first), spread.end(), s) != spread.end()) continue;
                     spread.push_back(s);
                     if (spread.size() > used) {
@@ -393,6 +400,9 @@ void Engine::gather(BatchContext& c, Sched& sched) {
             for (size_t k = 0; k < used && light.channels; ++k)
                 if (k == 0 || pointOf[k] != pointOf[k - 1]) // of several widths the first
                     keepChannels(c, light, pointOf[k], values.data() + long(k) * light.valueWidth);
+            // Which lobes the light reaches; then the values of all of them at once.
+            std::vector<LitLobe>& reached = room.reached;
+            reached.clear();
             for (size_t k = 0; k < used; ++k) {
                 const LightValue& v = value[k];
                 if (v.lit && !isFinite(v.Cl)) {
@@ -400,18 +410,28 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                     continue;
                 }
                 if (!v.lit || !(maxComponent(v.Cl) > 0)) continue;
-                const ShadePoint& p = c.points[pointOf[k]];
                 Vec3 w = area ? drawn[k].direction : unit(-v.L, Vec3(0, 0, 1));
-                float distance = area ? drawn[k].distance : light.kind == LightKind::Distant ? 1e38f : length(v.L);
                 for (int i : lobesOf(size_t(pointOf[k]))) {
-                    LobeVertex& l = lobes[i];
+                    const LobeVertex& l = lobes[size_t(i)];
                     if (l.delta || !samples(l, light)) continue;
-                    if (!spread.empty() && spread[k] != spreadBehind(c.rays[size_t(l.point)], l.kind->spread(l.params))) continue;
+                    if (!spread.empty() && spread[k] != spreadBehind(c.rays[size_t(l.point)], lobeRows_.spread(l.place))) continue;
                     // Sides 1: from where rays of this lobe pass through the emitter they cannot meet it, and it sends nothing.
                     if (area && !light.mean && drawn[k].shape->oneSided() && l.rays->set.sides != accel::Sides::Both &&
                         (dot(q[k].surface.n, w) >= 0) != (l.rays->set.sides == accel::Sides::Back))
                         continue;
-                    float fcos = l.kind->fcos(l.params, w);
+                    lobeRows_.ask(l.place, w);
+                    reached.push_back({k, i, w});
+                }
+            }
+            lobeRows_.evaluate();
+            for (const auto& [k, i, w] : reached) {
+                LobeVertex& l = lobes[size_t(i)];
+                const LightValue& v = value[k];
+                const ShadePoint& p = c.points[size_t(l.point)];
+                const LobeValue f = lobeRows_.value(l.place);
+                const float fcos = f.fcos;
+                const float distance = area ? drawn[k].distance : light.kind == LightKind::Distant ? 1e38f : length(v.L);
+                {
                     if (std::isnan(fcos)) notFinite(c, c.rays[size_t(l.point)], l.site);
                     if (!(fcos > 0)) continue;
                     float kept = l.lobeOfShader ? v.kept(l.rays->type) : 1;
@@ -420,14 +440,14 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                         continue;
                     Color contribution = l.weight * c.rays[l.point].weight * v.Cl;
                     if (l.ownsTarget) contribution = l.weight * v.Cl;
-                    if (l.kind->colour) contribution *= l.kind->colour(l.params, w) / fcos;
+                    contribution *= f.colour / fcos;
                     const bool sums = l.trace && l.trace->sums;
                     if (sums)
                         if (TraceSums* of = sumsOf(l.target)) of->add(TraceSums::UnshadowedAreaLight, contribution * (fcos / (drawn[k].pdf * chance[k])));
                     if (area && !light.mean) {
                         float other = 0; // the density with which the lobe's own ray would have come here
                         if (!set.lightOnly && l.chosen > 0 && (drawn[k].visibility & visibilityBit(l.rays->type)))
-                            other = (l.kind->pdf == l.kind->fcos ? fcos : l.kind->pdf(l.params, w)) * l.chosen;
+                            other = f.pdf * l.chosen;
                         float pdf = drawn[k].pdf * chance[k];
                         contribution *= kept * fcos / pdf * misWeight(pdf, other);
                     } else {
@@ -466,14 +486,15 @@ void Engine::gather(BatchContext& c, Sched& sched) {
     };
 
     // Rays. Under path one of the vertex's lobes is followed; elsewhere all.
+    std::vector<SentLobe>& sent = room.sent;
+    sent.clear();
+    int rounds = 0;
     for (size_t pi = 0; pi < c.points.size(); ++pi) {
         auto list = lobesOf(pi);
         if (list.empty()) continue;
-        const ShadePoint& p = c.points[pi];
         const PathRay& from = c.rays[pi];
-        Random rng = random(from);
         const bool mayPass = passes[pi] < 1; // then lobes have the rest of the chance
-        float pick = path && (list.size() > 1 || mayPass) ? rng.one(from.vertex, kChooseLobe, 0) : 0, sum = 0;
+        float pick = path && (list.size() > 1 || mayPass) ? random(from).one(from.vertex, kChooseLobe, 0) : 0, sum = 0;
         bool taken = false;
         for (int i : list) {
             LobeVertex& l = lobes[i];
@@ -488,16 +509,46 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 count = 1;
             }
             if (l.lobeOfShader) scale *= indirectScale[pi];
-            for (int k = 0; k < count; ++k) {
+            sent.push_back({pi, i, count, scale, true, Vec3()});
+            rounds = std::max(rounds, count);
+        }
+        if (mayPass) c.passes[pi] = taken ? 0 : passes[pi];
+    }
+    // One ray of each lobe at a time, the draws and then the values of all together.
+    for (int k = 0; k < rounds; ++k) {
+        for (const SentLobe& s : sent) {
+            if (s.count <= k) continue;
+            const LobeVertex& l = lobes[size_t(s.lobe)];
+            const PathRay& from = c.rays[s.point];
+            lobeRows_.ask(l.place, random(from).pair(from.vertex, l.site, l.occurrence * 4096 + uint32_t(k)));
+        }
+        lobeRows_.sample();
+        for (SentLobe& s : sent) {
+            if (s.count <= k) continue;
+            const LobeVertex& l = lobes[size_t(s.lobe)];
+            s.goes = lobeRows_.drawn(l.place, s.w);
+            if (s.goes && !l.delta) lobeRows_.ask(l.place, s.w);
+        }
+        lobeRows_.evaluate();
+        for (const SentLobe& s : sent) {
+            if (s.count <= k || !s.goes) continue;
+            {
+                const size_t pi = s.point;
+                const int count = s.count;
+                const float scale = s.scale;
+                LobeVertex& l = lobes[size_t(s.lobe)];
+                const ShadePoint& p = c.points[pi];
+                const PathRay& from = c.rays[pi];
+                Random rng = random(from);
                 uint32_t occurrence = l.occurrence * 4096 + uint32_t(k);
-                Vec3 w;
-                if (!l.kind->sample(l.params, rng.pair(from.vertex, l.site, occurrence), w)) continue;
+                const Vec3 w = s.w;
                 if (l.trace && l.trace->onlyLights && !(l.base > 0) && !meetsEmitter(l, l.elsewhere ? l.from : p.P, w, l.bias)) continue;
                 bool delta = l.delta;
-                float pdf = delta ? 0 : l.kind->pdf(l.params, w);
+                const LobeValue value = delta ? LobeValue{Color(l.albedo), l.albedo, 0} : lobeRows_.value(l.place);
+                const float pdf = value.pdf;
                 Color f(0);
-                if (delta) f = Color(l.albedo);
-                else if (pdf > 0) f = l.kind->pdf == l.kind->fcos ? Color(1) : lobeValue(*l.kind, l.params, w) / pdf;
+                if (delta) f = value.colour;
+                else if (pdf > 0) f = value.colour / pdf;
                 Color through = l.weight * (f * scale / float(count));
                 Color environment(0);
                 if (l.trace && l.trace->map) {
@@ -557,16 +608,16 @@ void Engine::gather(BatchContext& c, Sched& sched) {
                 r.lobeOrigin = p.P;
                 r.lobeBinding = l.lights && !l.elsewhere && !delta ? c.bindings[pi] : -1;
                 r.width = from.width + from.spread * length(p.P - from.origin);
-                r.spread = spreadBehind(from, l.kind->spread(l.params));
+                r.spread = spreadBehind(from, lobeRows_.spread(l.place));
                 r.counts = false;
                 r.first = l.ownsTarget;
                 counters.depthMax = std::max(counters.depthMax, bounces);
                 ++counters.depthSum; // over camera rays: the mean number of bounces
             }
         }
-        if (mayPass) c.passes[pi] = taken ? 0 : passes[pi];
     }
     lobes.clear();
+    lobeRows_.clear();
     gatherRoom_ = std::move(room);
 }
 

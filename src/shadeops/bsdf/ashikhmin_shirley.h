@@ -4,16 +4,24 @@
 
 namespace alpenglow::rsl::AL_NAMESPACE {
 
+/// (n . h)^(eu cos^2 ph + ev sin^2 ph), t the tangents, and the value that it gives; both = (eu + 1)(ev + 1).
+template <class T> AL_INLINE T ashikhminLobe(const Facet<T>& f, const Pair<Triple<T>>& t, const T& eu, const T& ev) {
+    const T hu = dot(f.h, t.a), hv = dot(f.h, t.b);
+    return exponential(mad(eu * hu, hu, ev * hv * hv) * logRatio(f.sine2) * vf(-0.5f));
+}
+template <class T>
+AL_INLINE Triple<T> ashikhminShirley(const Facet<T>& f, const T& both, const T& lobe, const Triple<T>& eta, const Triple<T>& k) {
+    const T scale = root(both) * vf(0.125f / kPi);
+    const T r = divide(scale * lobe * f.nl, f.oh * larger(f.nl, f.no));
+    return select3(f.seen, times(fresnelOrFull3(f.oh, eta, k), r), none3<T>());
+}
 template <class T>
 AL_INLINE Triple<T> opBsdfAshikhminShirley(const Triple<T>& l, const Triple<T>& n, const Triple<T>& o, const Triple<T>& udir, const T& roughness,
                                            const T& roughnessv, const Triple<T>& eta, const Triple<T>& k) {
     const Facet<T> f = facetOf(l, n, o);
     const Pair<Triple<T>> t = tangents(f.n, udir);
-    const T eu = exponentOf(roughness), ev = exponentOf(roughnessv), hu = dot(f.h, t.a), hv = dot(f.h, t.b);
-    const T lobe = exponential(mad(eu * hu, hu, ev * hv * hv) * logRatio(f.sine2) * vf(-0.5f));
-    const T scale = root((eu + vf(1)) * (ev + vf(1))) * vf(0.125f / kPi);
-    const T r = divide(scale * lobe * f.nl, f.oh * larger(f.nl, f.no));
-    return select3(f.seen, times(fresnelOrFull3(f.oh, eta, k), r), none3<T>());
+    const T eu = exponentOf(roughness), ev = exponentOf(roughnessv);
+    return ashikhminShirley(f, (eu + vf(1)) * (ev + vf(1)), ashikhminLobe(f, t, eu, ev), eta, k);
 }
 AL_RUNTIME(al_bsdf_ashikhminshirley, opBsdfAshikhminShirley)
 

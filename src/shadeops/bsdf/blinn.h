@@ -4,13 +4,18 @@
 
 namespace alpenglow::rsl::AL_NAMESPACE {
 
+/// (n . h)^e, e the exponent, and the value that it gives.
+template <class T> AL_INLINE T blinnLobe(const Facet<T>& f, const T& e) { return exponential(e * f.sine2 * logRatio(f.sine2) * vf(-0.5f)); }
+template <class T> AL_INLINE Triple<T> blinn(const Facet<T>& f, const T& e, const T& lobe, const Triple<T>& eta, const Triple<T>& k) {
+    const T d = lobe * (e + vf(2)) * vf(0.5f / kPi);
+    const T r = divide(d * grooves(f), f.no * vf(4));
+    return select3(f.seen, times(fresnelOrFull3(f.oh, eta, k), r), none3<T>());
+}
 template <class T>
 AL_INLINE Triple<T> opBsdfBlinn(const Triple<T>& l, const Triple<T>& n, const Triple<T>& o, const T& roughness, const Triple<T>& eta, const Triple<T>& k) {
     const Facet<T> f = facetOf(l, n, o);
     const T e = exponentOf(roughness);
-    const T d = exponential(e * f.sine2 * logRatio(f.sine2) * vf(-0.5f)) * (e + vf(2)) * vf(0.5f / kPi);
-    const T r = divide(d * grooves(f), f.no * vf(4));
-    return select3(f.seen, times(fresnelOrFull3(f.oh, eta, k), r), none3<T>());
+    return blinn(f, e, blinnLobe(f, e), eta, k);
 }
 AL_RUNTIME(al_bsdf_blinn, opBsdfBlinn)
 

@@ -58,15 +58,19 @@ template <class T> struct Facet {
     T sine2; ///< squared sine between n and h, with digits near 0
     vm seen; ///< light and viewer on the side of n
 };
-template <class T> AL_INLINE Facet<T> facetOf(const Triple<T>& l0, const Triple<T>& n0, const Triple<T>& o0) {
+/// l, n and o are unit.
+template <class T> AL_INLINE Facet<T> facetOfUnit(const Triple<T>& l, const Triple<T>& n, const Triple<T>& o) {
     Facet<T> f;
-    f.l = normalize(l0), f.n = normalize(n0), f.o = normalize(o0);
+    f.l = l, f.n = n, f.o = o;
     f.h = normalize(f.l + f.o);
     f.nl = dot(f.n, f.l), f.no = dot(f.n, f.o), f.nh = positive(dot(f.n, f.h)), f.oh = positive(dot(f.o, f.h));
     const Triple<T> s = cross(f.n, f.h);
     f.sine2 = smaller(dot(s, s), T(vf(1)));
     f.seen = (value(f.nl) > 0) & (value(f.no) > 0);
     return f;
+}
+template <class T> AL_INLINE Facet<T> facetOf(const Triple<T>& l0, const Triple<T>& n0, const Triple<T>& o0) {
+    return facetOfUnit(normalize(l0), normalize(n0), normalize(o0));
 }
 /// Shadowing of V-shaped grooves (Torrance and Sparrow 1967).
 template <class T> AL_INLINE T grooves(const Facet<T>& f) {

@@ -4,14 +4,21 @@
 
 namespace alpenglow::rsl::AL_NAMESPACE {
 
+/// Beckmann's density of slopes, m2 = roughness^2, and the value that it gives.
+template <class T> AL_INLINE T beckmann(const Facet<T>& f, const T& m2) {
+    const T c2 = f.nh * f.nh;
+    return divide(exponential(-divide(f.sine2, c2 * m2)) * vf(1 / kPi), m2 * c2 * c2);
+}
+template <class T> AL_INLINE Triple<T> cookTorrance(const Facet<T>& f, const T& d, const Triple<T>& eta, const Triple<T>& k) {
+    const T r = divide(d * grooves(f), f.no * vf(4));
+    return select3(f.seen, times(fresnelOrFull3(f.oh, eta, k), r), none3<T>());
+}
 template <class T>
 AL_INLINE Triple<T> opBsdfCookTorrance(const Triple<T>& l, const Triple<T>& n, const Triple<T>& o, const T& roughness, const Triple<T>& eta,
                                        const Triple<T>& k) {
     const Facet<T> f = facetOf(l, n, o);
-    const T m = sane(roughness), m2 = m * m, c2 = f.nh * f.nh;
-    const T d = divide(exponential(-divide(f.sine2, c2 * m2)) * vf(1 / kPi), m2 * c2 * c2);
-    const T r = divide(d * grooves(f), f.no * vf(4));
-    return select3(f.seen, times(fresnelOrFull3(f.oh, eta, k), r), none3<T>());
+    const T m = sane(roughness);
+    return cookTorrance(f, beckmann(f, m * m), eta, k);
 }
 AL_RUNTIME(al_bsdf_cooktorrance, opBsdfCookTorrance)
 

@@ -8,22 +8,38 @@ namespace alpenglow::rsl::AL_NAMESPACE {
 /// Smith's shadowing for one direction: a2 = (roughness w_u)^2 + (roughnessv w_v)^2, c its cosine with the normal.
 template <class T> AL_INLINE T smithGgx(const T& a2, const T& c) { return divide(T(vf(2)), root(vf(1) + divide(a2, c * c)) + vf(1)); }
 
-/// First the part reflected, then the part refracted. The viewer may be on either side of n; `eta` is the index behind n over that before it.
+/// A surface of glass as the viewer sees it.
+template <class T> struct GlassSide {
+    Triple<T> o, n;        ///< unit; n on the viewer's side
+    Pair<Triple<T>> t;     ///< tangents
+    T here, there;         ///< indices on the viewer's and the other side
+    T a, b;                ///< roughness along and across
+};
+/// `front` and o are unit; `eta` is the index behind `front` over that before it.
 template <class T>
-AL_INLINE Pair<T> opBsdfGlass(const Triple<T>& l0, const Triple<T>& n0, const Triple<T>& o0, const Triple<T>& udir, const T& roughness,
-                              const T& roughnessv, const T& eta) {
-    const Triple<T> l = normalize(l0), o = normalize(o0), front = normalize(n0);
+AL_INLINE GlassSide<T> glassSide(const Triple<T>& front, const Triple<T>& o, const Triple<T>& udir, const T& roughness, const T& roughnessv, const T& eta) {
     const vm inside = value(dot(front, o)) < 0;
     const Triple<T> n = select3(inside, -front, front);
     const T one = T(vf(1)), index = larger(eta, T(vf(kLeastRoughness)));
-    const T here = select(inside, index, one), there = select(inside, one, index); // indices on the viewer's and the other side
+    const T here = select(inside, index, one), there = select(inside, one, index);
+    return {o, n, tangents(n, udir), here, there, sane(roughness), sane(roughnessv)};
+}
+/// The values, and with what density by solid angle of l a facet is met, as far as the choice between the two leaves it.
+template <class T> struct GlassValue {
+    T reflected, refracted, density;
+    vm reflects;
+};
+/// First the part reflected, then the part refracted. The viewer may be on either side of n. l is unit.
+template <class T> AL_INLINE GlassValue<T> glassValue(const GlassSide<T>& side, const Triple<T>& l) {
+    const Triple<T>&o = side.o, &n = side.n;
+    const T one = T(vf(1)), &here = side.here, &there = side.there;
     const T nl = dot(n, l), no = dot(n, o);
     const vm reflects = value(nl) > 0;
     const Triple<T> bent = mad3(o, here, times(l, there));
     Triple<T> h = normalize(select3(reflects, l + o, bent));
     h = select3(value(dot(n, h)) < 0, -h, h);
-    const Pair<Triple<T>> t = tangents(n, udir);
-    const T a = sane(roughness), b = sane(roughnessv);
+    const Pair<Triple<T>>& t = side.t;
+    const T &a = side.a, &b = side.b;
     const auto slopes = [&](const Triple<T>& w) __attribute__((always_inline)) {
         const T u = dot(w, t.a) * a, v = dot(w, t.b) * b;
         return mad(u, u, v * v);
@@ -32,20 +48,21 @@ AL_INLINE Pair<T> opBsdfGlass(const Triple<T>& l0, const Triple<T>& n0, const Tr
     const T q = mad(hu, hu, mad(hv, hv, nh * nh));
     const T d = divide(T(vf(1 / kPi)), a * b * q * q);
     // A facet seen from behind neither reflects nor refracts.
-    const vm facing = (value(oh) > 0) & (value(no) > 0) & (select(reflects, value(lh), -value(lh)) > 0);
+    const vm met = (value(oh) > 0) & (select(reflects, value(lh), -value(lh)) > 0), facing = met & (value(no) > 0);
     const T g = smithGgx(slopes(o), no) * smithGgx(slopes(l), nl);
     const T f = dielectricReflectance(smaller(oh, one), divide(here, there));
     const T reflected = divide(f * d * g, no * vf(4));
     const T s = mad(here, oh, there * lh);
     const T refracted = divide((vf(1) - f) * d * g * oh * -lh * there * there, no * s * s);
     const T zero = T(vf(0));
-    return {select(facing & reflects, reflected, zero), select(facing & ~reflects & (value(nl) < 0), refracted, zero)};
+    const T density = select(reflects, divide(d * nh, oh * vf(4)), divide(d * nh * -lh * there * there, s * s));
+    return {select(facing & reflects, reflected, zero), select(facing & ~reflects & (value(nl) < 0), refracted, zero), select(met, density, zero), reflects};
 }
 template <class T>
 AL_INLINE void opBsdfGlassParts(const Triple<T>& l, const Triple<T>& n, const Triple<T>& o, const Triple<T>& udir, const T& roughness, const T& roughnessv,
                                 const T& eta, T& reflected, T& refracted) {
-    const Pair<T> r = opBsdfGlass(l, n, o, udir, roughness, roughnessv, eta);
-    reflected = r.a, refracted = r.b;
+    const GlassValue<T> r = glassValue(glassSide(normalize(n), normalize(o), udir, roughness, roughnessv, eta), normalize(l));
+    reflected = r.reflected, refracted = r.refracted;
 }
 AL_RUNTIME(al_bsdf_glassggx, opBsdfGlassParts)
 

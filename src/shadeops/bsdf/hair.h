@@ -53,6 +53,7 @@ template <class T> AL_INLINE T besselScaled(const T& x) {
 /// The bell around the fibre, cut off at +-PI and repeated, as the function whose differences are its integrals.
 template <class T> struct HairBell {
     T perWidth, low, scale; ///< 1 / width; logistic at -PI; 1 over what lies within +-PI
+    HairBell() = default;
     AL_MEMBER explicit HairBell(const T& width) : perWidth(divide(T(vf(1)), width)) {
         low = logistic(perWidth * vf(-kPi));
         scale = divide(T(vf(1)), vf(1) - low * vf(2));
@@ -62,12 +63,8 @@ template <class T> struct HairBell {
         turns = floorLanes((value(x) + vf(kPi)) * vf(0.5f / kPi));
         return x - T(turns * vf(2 * kPi));
     }
-    /// Integral of the bell from x to y, y not below x.
-    AL_MEMBER T between(const T& x, const T& y) const {
-        vf m, n;
-        const T a = wrap(x, m), b = wrap(y, n);
-        return (logistic(b * perWidth) - logistic(a * perWidth)) * scale + T(n - m);
-    }
+    /// The bell's integral up to x, before `scale`, and the whole turns to add: differences of both are integrals.
+    AL_MEMBER T upTo(const T& x, vf& turns) const { return logistic(wrap(x, turns) * perWidth); }
     AL_MEMBER T at(const T& x) const {
         vf n;
         const T e = exponential(-absolute(wrap(x, n)) * perWidth), s = e + vf(1);
@@ -75,72 +72,125 @@ template <class T> struct HairBell {
     }
 };
 
+/// Two directions at a fibre: what all lobes have in common.
+template <class T> struct HairLight {
+    T sl, so, cl, co; ///< sines and cosines of the inclinations toward the light and the viewer
+    T crossing;       ///< the part of the light that crosses the fibre: reciprocal, and never more than all
+    T phi, cd;        ///< angle around the fibre; cosine of half the difference of the inclinations
+    T index, perIndex, way;
+};
+/// l, tip and o are unit; axes: tangents(tip, udir).
 template <class T>
-AL_INLINE Triple<T> opBsdfHair(const Triple<T>& l0, const Triple<T>& tip0, const Triple<T>& o0, const Triple<T>& udir, const T& eta,
-                               const Triple<T>& absorption, const T& lobe, const T& tilt, const T& longitudinal, const T& azimuthal) {
-    const Triple<T> l = normalize(l0), tip = normalize(tip0), o = normalize(o0);
-    const vf p = minLanes(maxLanes(floorLanes(value(lobe)), vf(0)), vf(3));
+AL_INLINE HairLight<T> hairLight(const Triple<T>& l, const Triple<T>& tip, const Triple<T>& o, const Pair<Triple<T>>& axes, const Triple<T>& udir,
+                                 const T& eta) {
+    HairLight<T> g;
     const T one = T(vf(1)), sl = larger(smaller(dot(l, tip), one), -one), so = larger(smaller(dot(o, tip), one), -one);
     const T cl = root(vf(1) - sl * sl), co = root(vf(1) - so * so);
-
-    // Along the fibre. The scales turn lobe p by (2 - 3 p) tilt: 2, -1, -4 times the tilt for R, TT, TRT.
-    const T turn = tilt * (vf(2) - vf(3) * p), st = sine(turn), ct = cosine(turn);
-    const T s2 = so * ct - co * st, c2 = absolute(mad(co, ct, so * st));
-    const T b = larger(smaller(longitudinal, one), T(vf(0.02f))), b2 = b * b, b4 = b2 * b2, b8 = b4 * b4, b20 = b8 * b8 * b4;
-    const T width = mad(b20, vf(3.7f), vf(0)) + b2 * vf(0.812f) + b * vf(0.726f), v = width * width; // Chiang et al. 2016
-    const T along = divide(exponential(divide(mad(c2, cl, -s2 * sl) - vf(1), v)) * besselScaled(divide(c2 * cl, v)),
-                           v * (vf(1) - exponential(divide(T(vf(-2)), v))));
-
-    // The part of the light that crosses the fibre: reciprocal, and never more than all.
-    const T crossing = divide(cl, larger(cl, co));
-
-    // Around it. Half the difference of the two inclinations sets how light bends inside (Bravais).
-    const T cosDifference = mad(cl, co, sl * so), cd2 = positive((cosDifference + vf(1)) * vf(0.5f)), cd = root(cd2);
+    g.sl = sl, g.so = so, g.cl = cl, g.co = co;
+    g.crossing = divide(cl, larger(cl, co));
+    // Half the difference of the two inclinations sets how light bends inside (Bravais).
+    const T cosDifference = mad(cl, co, sl * so), cd2 = positive((cosDifference + vf(1)) * vf(0.5f));
     const T sd2 = positive(vf(1) - cd2);
+    g.cd = root(cd2);
     const Triple<T> lp = normalize(mad3(tip, -sl, l)), op = normalize(mad3(tip, -so, o));
-    const T phi = arcTangent2(dot(cross(op, lp), tip), dot(op, lp));
+    g.phi = arcTangent2(dot(cross(op, lp), tip), dot(op, lp));
     // An elliptic section acts as a round one whose index depends on the direction of the half vector (Marschner et al. 2003, 6).
-    const Pair<Triple<T>> axes = tangents(tip, udir);
     const Triple<T> half = lp + op;
     const T hu = dot(half, axes.a), hv = dot(half, axes.b), hh = mad(hu, hu, hv * hv);
     const T cos2 = divide(mad(hu, hu, -hv * hv), hh);
     const T ratio2 = vf(1) - smaller(dot(udir, udir), T(vf(0.9f)));
     const T bend = eta - vf(1), n1 = bend * ratio2 * vf(2) - bend + vf(1), n2 = divide(bend * vf(2), ratio2) - bend + vf(1);
-    const T index = larger((n1 + n2 + cos2 * (n1 - n2)) * vf(0.5f), T(vf(1.01f)));
-    const T inner = divide(root(index * index - sd2), larger(cd, T(vf(1e-4f))));
-    const T cosInside = root(vf(1) - divide(sd2, index * index));
-    const T a = larger(smaller(azimuthal, one), T(vf(0.02f))), a2 = a * a, a4 = a2 * a2, a8 = a4 * a4, a22 = a8 * a8 * a4 * a2;
-    const HairBell<T> bell((a22 * vf(5.372f) + a2 * vf(1.194f) + a * vf(0.265f)) * vf(0.626657069f)); // sqrt(PI / 8)
+    g.index = larger((n1 + n2 + cos2 * (n1 - n2)) * vf(0.5f), T(vf(1.01f)));
+    const T inner = divide(root(g.index * g.index - sd2), larger(g.cd, T(vf(1e-4f))));
+    const T cosInside = root(vf(1) - divide(sd2, g.index * g.index));
+    g.way = divide(T(vf(-2)), cosInside), g.perIndex = divide(one, inner);
+    return g;
+}
 
-    const T way = divide(T(vf(-2)), cosInside), perIndex = divide(one, inner);
-    const auto leaving = [&](int i) __attribute__((always_inline)) { // angle between in and out for a path at table angle i
-        return arcSine(perIndex * vf(kHair.sine[i])) * (vf(2) * p) + T(vf(kPi) * p - vf(2 * kHair.angle[i]));
+/// Light in one piece of the fibre's width, whatever lobe it is of. `to` and `middle`: angles inside.
+template <class T> struct HairPiece {
+    T to, middle, fresnel;
+    Triple<T> through;
+};
+template <class T> AL_INLINE HairPiece<T> hairPiece(const HairLight<T>& g, const Triple<T>& absorption, int i) {
+    HairPiece<T> x;
+    const T one = T(vf(1)), s = g.perIndex * vf(kHair.sine[2 * i + 1]);
+    x.to = arcSine(g.perIndex * vf(kHair.sine[2 * i + 2])), x.middle = arcSine(s);
+    x.fresnel = dielectricReflectance(smaller(g.cd * vf(kHair.cosine[2 * i + 1]), one), divide(one, g.index));
+    const T path = g.way * root(vf(1) - s * s);
+    x.through = {exponential(path * positive(absorption.x)), exponential(path * positive(absorption.y)), exponential(path * positive(absorption.z))};
+    return x;
+}
+
+/// One lobe, while the pieces are added up.
+template <class T> struct HairLobe {
+    vf p;
+    T along; ///< the part of the light that leaves at the inclination of l
+    HairBell<T> bell;
+    T from;  ///< angle between in and out where the piece begins
+    T plus, minus; ///< the logistic of phi - from and phi + from
+    vf plusTurns, minusTurns;
+    Triple<T> around;
+};
+template <class T> AL_INLINE vf hairNumber(const T& lobe) { return minLanes(maxLanes(floorLanes(value(lobe)), vf(0)), vf(3)); }
+/// Scale of the bell around the fibre for a spread of 0..1.
+template <class T> AL_INLINE T hairBellWidth(const T& azimuthal) {
+    const T a = larger(smaller(azimuthal, T(vf(1))), T(vf(0.02f))), a2 = a * a, a4 = a2 * a2, a8 = a4 * a4, a22 = a8 * a8 * a4 * a2;
+    return (a22 * vf(5.372f) + a2 * vf(1.194f) + a * vf(0.265f)) * vf(0.626657069f); // sqrt(PI / 8)
+}
+/// Variance along the fibre for a spread of 0..1 (Chiang et al. 2016).
+template <class T> AL_INLINE T hairVariance(const T& longitudinal) {
+    const T b = larger(smaller(longitudinal, T(vf(1))), T(vf(0.02f))), b2 = b * b, b4 = b2 * b2, b8 = b4 * b4, b20 = b8 * b8 * b4;
+    const T width = mad(b20, vf(3.7f), vf(0)) + b2 * vf(0.812f) + b * vf(0.726f);
+    return width * width;
+}
+/// turn: (2 - 3 p) tilt, its sine and cosine: the scales turn lobe p by 2, -1, -4 times the tilt for R, TT, TRT.
+template <class T>
+AL_INLINE HairLobe<T> hairLobe(const HairLight<T>& g, vf p, const T& st, const T& ct, const T& v, const HairBell<T>& bell) {
+    HairLobe<T> lobe{p, T(vf(0)), bell, T(vf(kPi) * p - vf(2 * kHair.angle[0])), T(vf(0)), T(vf(0)), vf(0), vf(0), none3<T>()};
+    const T s2 = g.so * ct - g.co * st, c2 = absolute(mad(g.co, ct, g.so * st));
+    lobe.along = divide(exponential(divide(mad(c2, g.cl, -s2 * g.sl) - vf(1), v)) * besselScaled(divide(c2 * g.cl, v)),
+                        v * (vf(1) - exponential(divide(T(vf(-2)), v))));
+    lobe.plus = bell.upTo(g.phi - lobe.from, lobe.plusTurns);
+    lobe.minus = bell.upTo(g.phi + lobe.from, lobe.minusTurns);
+    return lobe;
+}
+template <class T> AL_INLINE void addPiece(HairLobe<T>& lobe, const HairLight<T>& g, const HairPiece<T>& x, int i) {
+    const vf p = lobe.p;
+    const HairBell<T>& bell = lobe.bell;
+    const T to = x.to * (vf(2) * p) + T(vf(kPi) * p - vf(2 * kHair.angle[2 * i + 2]));
+    const T middle = x.middle * (vf(2) * p) + T(vf(kPi) * p - vf(2 * kHair.angle[2 * i + 1]));
+    vf plusTurns, minusTurns;
+    const T plusTo = bell.upTo(g.phi - to, plusTurns), minusTo = bell.upTo(g.phi + to, minusTurns);
+    // Light that is spread over no angle at all counts as the bell itself.
+    const T wide = to - lobe.from;
+    const vm still = absLanes(value(wide)) * value(bell.perWidth) < 0.05f;
+    const vm falling = value(wide) < 0;
+    const T span = absolute(wide);
+    const T over = (lobe.plus - plusTo) * bell.scale + T(lobe.plusTurns - plusTurns), under = (minusTo - lobe.minus) * bell.scale + T(minusTurns - lobe.minusTurns);
+    const T plus = select(still, bell.at(g.phi - middle), divide(select(falling, -over, over), span));
+    const T minus = select(still, bell.at(g.phi + middle), divide(select(falling, -under, under), span));
+    const T share = (plus + minus) * vf(0.5f * (kHair.sine[2 * i + 2] - kHair.sine[2 * i]));
+    const T one = T(vf(1)), entered = vf(1) - x.fresnel;
+    const auto kept = [&](const T& through) __attribute__((always_inline)) {
+        const T again = x.fresnel * through;
+        const T more = select(p > 2.5f, again * again, select(p > 1.5f, again, one));
+        return share * select(p < 0.5f, x.fresnel, entered * entered * through * more);
     };
-    Triple<T> around = none3<T>();
-    T from = leaving(0);
-    for (int i = 0; i < kHairPieces; ++i) {
-        const T to = leaving(2 * i + 2), middle = leaving(2 * i + 1);
-        const T s = perIndex * vf(kHair.sine[2 * i + 1]);
-        const T fresnel = dielectricReflectance(smaller(cd * vf(kHair.cosine[2 * i + 1]), one), divide(one, index));
-        const T path = way * root(vf(1) - s * s);
-        // Light that is spread over no angle at all counts as the bell itself.
-        const T wide = to - from;
-        const vm still = absLanes(value(wide)) * value(bell.perWidth) < 0.05f;
-        const vm falling = value(wide) < 0;
-        const T first = select(falling, to, from), last = select(falling, from, to), span = absolute(wide);
-        const T plus = select(still, bell.at(phi - middle), divide(bell.between(phi - last, phi - first), span));
-        const T minus = select(still, bell.at(phi + middle), divide(bell.between(phi + first, phi + last), span));
-        const T share = (plus + minus) * vf(0.5f * (kHair.sine[2 * i + 2] - kHair.sine[2 * i]));
-        const T entered = vf(1) - fresnel;
-        const auto kept = [&](const T& sigma) __attribute__((always_inline)) {
-            const T through = exponential(path * positive(sigma)), again = fresnel * through;
-            const T more = select(p > 2.5f, again * again, select(p > 1.5f, again, one));
-            return share * select(p < 0.5f, fresnel, entered * entered * through * more);
-        };
-        around = around + Triple<T>{kept(absorption.x), kept(absorption.y), kept(absorption.z)};
-        from = to;
-    }
-    return times(around, along * crossing);
+    lobe.around = lobe.around + Triple<T>{kept(x.through.x), kept(x.through.y), kept(x.through.z)};
+    lobe.from = to, lobe.plus = plusTo, lobe.minus = minusTo, lobe.plusTurns = plusTurns, lobe.minusTurns = minusTurns;
+}
+
+template <class T>
+AL_INLINE Triple<T> opBsdfHair(const Triple<T>& l, const Triple<T>& tip0, const Triple<T>& o, const Triple<T>& udir, const T& eta,
+                               const Triple<T>& absorption, const T& lobe, const T& tilt, const T& longitudinal, const T& azimuthal) {
+    const Triple<T> tip = normalize(tip0);
+    const HairLight<T> g = hairLight(normalize(l), tip, normalize(o), tangents(tip, udir), udir, eta);
+    const vf p = hairNumber(lobe);
+    const T turn = tilt * (vf(2) - vf(3) * p);
+    HairLobe<T> sum = hairLobe(g, p, sine(turn), cosine(turn), hairVariance(longitudinal), HairBell<T>(hairBellWidth(azimuthal)));
+    for (int i = 0; i < kHairPieces; ++i) addPiece(sum, g, hairPiece(g, absorption, i), i);
+    return times(sum.around, sum.along * g.crossing);
 }
 AL_RUNTIME(al_bsdf_hair, opBsdfHair)
 

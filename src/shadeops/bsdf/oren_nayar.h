@@ -4,14 +4,17 @@
 
 namespace alpenglow::rsl::AL_NAMESPACE {
 
-template <class T> AL_INLINE T opBsdfOrenNayar(const Triple<T>& l0, const Triple<T>& n0, const Triple<T>& o0, const T& roughness) {
-    const Triple<T> l = normalize(l0), n = normalize(n0), o = normalize(o0);
+/// l, n and o are unit.
+template <class T> AL_INLINE T orenNayar(const Triple<T>& l, const Triple<T>& n, const Triple<T>& o, const T& roughness) {
     const T nl = dot(n, l), no = dot(n, o), s2 = roughness * roughness;
     const T a = vf(1) - divide(s2 * vf(0.5f), s2 + vf(0.33f)), b = divide(s2 * vf(0.45f), s2 + vf(0.09f));
     // cos(difference of azimuths) sin(alpha) tan(beta): the sines of both angles come out of l . o, one cosine is divided out.
     const T slant = divide(positive(dot(l, o) - nl * no), larger(nl, no));
     const vm seen = (value(nl) > 0) & (value(no) > 0);
     return select(seen, mad(b, slant, a) * nl * vf(1 / kPi), T(vf(0)));
+}
+template <class T> AL_INLINE T opBsdfOrenNayar(const Triple<T>& l, const Triple<T>& n, const Triple<T>& o, const T& roughness) {
+    return orenNayar(normalize(l), normalize(n), normalize(o), roughness);
 }
 AL_RUNTIME(al_bsdf_orennayar, opBsdfOrenNayar)
 

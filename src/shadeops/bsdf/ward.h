@@ -4,14 +4,21 @@
 
 namespace alpenglow::rsl::AL_NAMESPACE {
 
+/// exp(-tan^2 th (cos^2 ph / a^2 + sin^2 ph / b^2)), t the tangents, and the value that it gives.
+template <class T> AL_INLINE T wardLobe(const Facet<T>& f, const Pair<Triple<T>>& t, const T& a, const T& b) {
+    const T hu = divide(dot(f.h, t.a), a), hv = divide(dot(f.h, t.b), b);
+    return exponential(-divide(mad(hu, hu, hv * hv), f.nh * f.nh));
+}
+template <class T> AL_INLINE T ward(const Facet<T>& f, const T& lobe, const T& a, const T& b) {
+    const T r = divide(lobe * vf(0.25f / kPi), a * b) * root(positive(divide(f.nl, f.no)));
+    return select(f.seen, r, T(vf(0)));
+}
 template <class T>
 AL_INLINE T opBsdfWard(const Triple<T>& l, const Triple<T>& n, const Triple<T>& o, const Triple<T>& udir, const T& roughness, const T& roughnessv) {
     const Facet<T> f = facetOf(l, n, o);
     const Pair<Triple<T>> t = tangents(f.n, udir);
-    const T a = sane(roughness), b = sane(roughnessv), hu = divide(dot(f.h, t.a), a), hv = divide(dot(f.h, t.b), b);
-    const T lobe = exponential(-divide(mad(hu, hu, hv * hv), f.nh * f.nh));
-    const T r = divide(lobe * vf(0.25f / kPi), a * b) * root(positive(divide(f.nl, f.no)));
-    return select(f.seen, r, T(vf(0)));
+    const T a = sane(roughness), b = sane(roughnessv);
+    return ward(f, wardLobe(f, t, a, b), a, b);
 }
 AL_RUNTIME(al_bsdf_ward, opBsdfWard)
 

@@ -85,13 +85,22 @@ std::shared_ptr<scene::Primitive> sheet(int side, bool normals, bool st) {
 }
 
 void measurePoints(int repeats) {
-    struct Case { const char* name; int side; bool normals, st; };
-    for (const Case& c : {Case{"12 to 18 triangles, as the box", 3, false, false}, Case{"80,000 triangles", 200, false, false},
-                          Case{"80,000 triangles, N and st", 200, true, true}, Case{"2,000,000 triangles, N and st", 1000, true, true}}) {
+    struct Case {
+        const char* name;
+        int side;
+        bool normals, st;
+    };
+    for (const Case& c :
+         {Case{"12 to 18 triangles, as the box", 3, false, false}, Case{"80,000 triangles", 200, false, false},
+          Case{"80,000 triangles, N and st", 200, true, true}, Case{"2,000,000 triangles, N and st", 1000, true, true}}) {
         Diagnostics diag;
-        geometry::ShapeRef s = geometry::buildShape(sheet(c.side, c.normals, c.st), nullptr, translateMatrix(0.1, 0.2, 1), -1, diag);
+        geometry::ShapeRef s =
+            geometry::buildShape(sheet(c.side, c.normals, c.st), nullptr, translateMatrix(0.1, 0.2, 1), -1, diag);
         if (!s) continue;
-        struct Place { uint32_t prim; double b1, b2; };
+        struct Place {
+            uint32_t prim;
+            double b1, b2;
+        };
         std::mt19937 rng(1);
         std::vector<Place> at(1 << 18);
         for (Place& p : at) {
@@ -115,8 +124,9 @@ void measurePoints(int repeats) {
         const double light = nanoseconds(at.size(), repeats, [&] {
             for (size_t i = 0; i < at.size(); ++i) s->sampleArea(at[i].b1, at[i].b2, out[i & 511]);
         });
-        std::printf("%-34s %6.1f ns a hit; in runs %6.1f, N and st only %6.1f, P and n only %6.1f; %6.1f ns a sample of the emitter\n", c.name, hit, all,
-                    some, none, light);
+        std::printf(
+            "%-34s %6.1f ns a hit; in runs %6.1f, N and st only %6.1f, P and n only %6.1f; %6.1f ns a sample of the emitter\n",
+            c.name, hit, all, some, none, light);
     }
 }
 
@@ -140,8 +150,8 @@ int measureRays(const char* file, int repeats) {
     clock_gettime(CLOCK_MONOTONIC, &end);
     rusage used{};
     getrusage(RUSAGE_SELF, &used);
-    std::printf("built in %.2f s; peak memory %.0f MiB\n", double(end.tv_sec - begin.tv_sec) + 1e-9 * double(end.tv_nsec - begin.tv_nsec),
-                double(used.ru_maxrss) / 1024);
+    std::printf("built in %.2f s; peak memory %.0f MiB\n",
+                double(end.tv_sec - begin.tv_sec) + 1e-9 * double(end.tv_nsec - begin.tv_nsec), double(used.ru_maxrss) / 1024);
     std::mt19937 rng(1);
     std::vector<accel::Ray> rays;
     for (int y = 0; y < camera.height(); ++y)
@@ -160,7 +170,8 @@ int measureRays(const char* file, int repeats) {
             for (size_t i = 0; i < rays.size(); i += 512) of(i, std::min<size_t>(512, rays.size() - i));
         };
         const double nearest = nanoseconds(rays.size(), repeats, [&] {
-            slices([&](size_t i, size_t n) { accel.intersect(std::span<const accel::Ray>(&rays[i], n), std::span(&hits[i], n)); });
+            slices(
+                [&](size_t i, size_t n) { accel.intersect(std::span<const accel::Ray>(&rays[i], n), std::span(&hits[i], n)); });
         });
         const double any = nanoseconds(rays.size(), repeats, [&] {
             slices([&](size_t i, size_t n) { accel.occluded(std::span<const accel::Ray>(&rays[i], n), std::span(&met[i], n)); });
@@ -178,8 +189,9 @@ int measureRays(const char* file, int repeats) {
             for (const accel::Hit& h : hits)
                 if (h.valid()) accel.point(h, p);
         });
-        std::printf("bounce %d: %7.1f ns a ray to the nearest, %7.1f to any, %6.1f ns a hit's point; %zu rays, %zu met, %zu stopped\n", bounce, nearest,
-                    any, point, rays.size(), valid, blocked);
+        std::printf(
+            "bounce %d: %7.1f ns a ray to the nearest, %7.1f to any, %6.1f ns a hit's point; %zu rays, %zu met, %zu stopped\n",
+            bounce, nearest, any, point, rays.size(), valid, blocked);
         std::vector<accel::Ray> next;
         for (size_t i = 0; i < rays.size(); ++i) {
             if (!hits[i].valid()) continue;

@@ -1,3 +1,2 @@
-# The only room that knows Embree: its headers stay private to src/accel/*.cpp.
-room(accel DEPS geometry embree3)
+room(accel DEPS geometry)
 room_tests(accel DEPS accel)

@@ -1,7 +1,13 @@
-// Rays against shapes. The only door to Embree (design decision 9); nothing of it shows here.
+// Rays against shapes.
 //
-// Results do not depend on threads, ray order or who else is asked: Embree only proposes candidates, each candidate's t and
-// parameters are computed anew in double from the shape, and equal distances go to the lower (shape, primitive).
+// Results do not depend on threads, ray order or who else is asked, on the processor or on how the tree was built: the tree (tree.h)
+// only proposes candidates and overlooks none, each candidate's t and parameters are computed in double from the shape, and equal
+// distances go to the lower (shape, primitive).
+//
+// Motion: a ray has its time, and every decision about a candidate is taken with the ray at hand (impl.h: meetOne, meetExact). Shapes
+// that move will bring a mesh a key (or matrices) to both; in the tree the boxes of a child at the first and the last key will be
+// blended by the ray's time in visitNode(), and leaves of moving triangles hold their vertices at both keys. A Hit gets the time for
+// Shape::points(). Nothing else of this interface changes.
 #pragma once
 #include "base/diagnostics.h"
 #include "geometry/shape.h"
@@ -28,7 +34,7 @@ struct Ray {
     Vec3 org, dir;
     float tnear = 0;                 ///< hits have t > tnear ...
     float tfar = 1e38f;              ///< ... and t < tfar
-    float time = 0;                  ///< shutter time; nothing moves yet
+    float time = 0;                  ///< shutter time, 0 to 1; nothing moves yet
     uint32_t mask = kAll;            ///< meets shapes whose visibility shares a bit
     uint32_t excludeShape = kNone, excludePrim = kNone; ///< a surface to pass through: one primitive; prim kNone: the whole shape
     /// Hit::distance of the excluded primitive, for a ray that goes on behind it: of what lies at one distance it has met those that come
@@ -80,8 +86,9 @@ public:
     /// Encloses everything.
     geometry::Bounds bounds() const;
 
+    struct Impl; ///< accel/impl.h
+
 private:
-    struct Impl;
     std::unique_ptr<Impl> impl_;
 };
 

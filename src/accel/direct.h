@@ -11,7 +11,7 @@ struct Ray;
 
 class DirectTriangles {
 public:
-    static constexpr size_t kMost = 24; ///< triangles; beyond them Embree is faster
+    static constexpr size_t kMost = 24; ///< triangles; beyond them the tree is faster
 
     struct Triangle { Vec3 a, b, c; uint32_t shape, prim; };
     void add(const Triangle&);

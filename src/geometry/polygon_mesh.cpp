@@ -212,7 +212,10 @@ void PolygonMesh::setVariables(SurfacePoint& p, const Plane* q, uint32_t needs) 
     uint32_t at[3];
     const auto places = [&](Class c) {
         for (int k = 0; k < 3; ++k)
-            at[k] = c == Class::Constant ? 0 : c == Class::Uniform ? uint32_t(p.face) : c == Class::FaceVarying || c == Class::FaceVertex ? cornerOf(p.prim, k) : vertexOf(p.prim, k);
+            at[k] = c == Class::Constant                                ? 0
+                    : c == Class::Uniform                               ? uint32_t(p.face)
+                    : c == Class::FaceVarying || c == Class::FaceVertex ? cornerOf(p.prim, k)
+                                                                        : vertexOf(p.prim, k);
     };
     if (needs & (kNeedST | kNeedSTSlopes)) {
         if (varSt_ >= 0) {
@@ -294,7 +297,9 @@ void PolygonMesh::evaluateLocal(uint32_t tri, double b1, double b2, SurfacePoint
         p.u = p.s = float(dot(O, q.f.a));
         p.v = p.t = float(dot(O, q.f.b));
         if (needs & kNeedPartials) setPartials(tri, q, wind, p);
-        if (thin) p.n = Vec3(normalize(cross(transformVector(toCamera(), q.Pu), transformVector(toCamera(), q.Pv))) * double(p.orientation));
+        if (thin)
+            p.n = Vec3(normalize(cross(transformVector(toCamera(), q.Pu), transformVector(toCamera(), q.Pv))) *
+                       double(p.orientation));
         p.N = p.n;
         if (!plain_) setVariables(p, &q, needs);
         return;

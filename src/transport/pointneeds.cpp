@@ -29,7 +29,9 @@ void WorldImpl::setPointNeeds() {
     if (primitiveHit_) always |= primitiveHit_.plan->needs();
     for (SurfaceBinding& b : bindings_) {
         b.pointNeeds = geometry::kNeedAll; // for shaders that hand on points, or whole sets of variables
-        if (b.displacement || b.displacementS || b.moveS || b.atmosphere.shader || b.inside >= 0 || b.outside >= 0 || !b.surfaceS || lightsAsk_) continue;
+        if (b.displacement || b.displacementS || b.moveS || b.atmosphere.shader || b.inside >= 0 || b.outside >= 0 ||
+            !b.surfaceS || lightsAsk_)
+            continue;
         b.pointNeeds = always | b.surfaceS.plan->needs();
         if (b.surfaceV) b.pointNeeds |= b.surfaceV.plan->needs();
         for (const LightOutput& o : b.lightOutputs) {

@@ -29,7 +29,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
 
 // Header prefix -> the only folders that may include it.
 const std::map<std::string, std::set<std::string>> kForeign = {
-    {"llvm", {"rsl/jit"}},        {"llvm-c", {"rsl/jit"}}, {"embree3", {"accel"}},  {"OpenImageIO", {"texture"}},
+    {"llvm", {"rsl/jit"}},        {"llvm-c", {"rsl/jit"}}, {"embree3", {}},  {"OpenImageIO", {"texture"}},
     {"opensubdiv", {"geometry"}}, {"OpenEXR", {"display"}}, {"png.h", {"display"}}, {"tiffio.h", {"display"}},
     {"jpeglib.h", {"display"}},   {"CLI", {"cli"}},
 };

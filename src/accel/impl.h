@@ -1,0 +1,160 @@
+// The inside of an Accel: what counts as a hit. Not for other rooms.
+#pragma once
+#include "accel/accel.h"
+#include "accel/direct.h"
+#include "accel/tree.h"
+#include <cmath>
+#include <utility>
+
+namespace alpenglow::accel {
+
+using geometry::Shape;
+using geometry::ShapeRef;
+
+struct Best {
+    double t;
+    uint32_t shape, prim;
+    double b1, b2;
+};
+
+struct Query {
+    const Ray* ray;
+    Best best;
+    bool any; // occlusion
+};
+
+inline bool before(double t, uint32_t shape, uint32_t prim, const Best& b) {
+    if (t != b.t) return t < b.t;
+    if (shape != b.shape) return shape < b.shape;
+    return prim < b.prim;
+}
+
+// Exact shapes of a scene that is looked through directly.
+constexpr size_t kDirectExact = 4;
+// Weights of a triangle may be this far outside of it: twice what double arithmetic makes of a ray through a shared edge, so that
+// none slips between two triangles.
+constexpr double kEdge = 1e-12;
+// Neighbours that a ray meets along their edge are this far apart at most: single precision, in which they were found once.
+constexpr double kSame = 1e-6;
+
+/// Beyond kEdge: what double arithmetic can make of the weights where a triangle is a sliver, or small and far from the origin of
+/// the ray.
+inline double edgeRoom(const Ray& r, const Vec3& fa, const Vec3& fb, const Vec3& fc) {
+    const auto norm = [](const Vec3d& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); };
+    const Vec3d a = Vec3d(fa) - Vec3d(r.org), e1 = Vec3d(fb) - Vec3d(fa), e2 = Vec3d(fc) - Vec3d(fa), d(r.dir);
+    const double den = std::fabs(dot(cross(e1, e2), d));
+    return den > 0 ? kEdge + 0x1p-48 * norm(a) * norm(d) * (norm(e1) + norm(e2)) / den : 0;
+}
+
+inline bool usable(const Ray& r) {
+    // An infinite far end is usual; anything else infinite or NaN would wander through every box.
+    constexpr float kFar = 1e18f;
+    auto near = [](float c) { return std::fabs(c) < kFar; };
+    // Without branches: nearly all rays pass.
+    const bool sound = int(near(r.org.x)) & int(near(r.org.y)) & int(near(r.org.z)) & int(near(r.dir.x)) & int(near(r.dir.y)) &
+                       int(near(r.dir.z)) & int(r.tnear < r.tfar) &
+                       int((std::fabs(r.dir.x) + std::fabs(r.dir.y) + std::fabs(r.dir.z)) > 0);
+    return sound;
+}
+
+struct Accel::Impl {
+    std::vector<ShapeRef> shapes;
+    std::vector<uint32_t> visibility;
+    std::vector<Levels> levels; ///< empty: all are met
+    geometry::Bounds bounds;
+    bool sound = true;
+    Tree tree;
+
+    /// Scenes of few primitives have no tree.
+    struct Ball {
+        uint32_t shape;
+        Vec3d centre;
+        double radius2;
+    }; ///< an exact shape and a sphere around it
+    bool direct = false;
+    DirectTriangles triangles;
+    std::vector<Ball> balls;
+    Ball ballAround(uint32_t shape) const;
+    bool readyDirect();
+    void meetDirect(Query&) const;
+
+    bool visible(const Ray& r, uint32_t s) const {
+        return (visibility[s] & r.mask) != 0 && (!r.only || r.only[s]) &&
+               (levels.empty() || (r.level >= levels[s].from && r.level < levels[s].to));
+    }
+    static bool excluded(const Ray& r, uint32_t s, uint32_t prim) {
+        return r.excludeShape == s && (r.excludePrim == kNone || r.excludePrim == prim);
+    }
+
+    /// A ray that goes on behind a triangle through its edge has met the neighbours as well, those that show it the same side: it
+    /// leaves a small thing far away right behind where it came in.
+    bool sameCrossing(const Ray& r, uint32_t s, double t, const Vec3& a, const Vec3& b, const Vec3& c) const {
+        if (!(t <= r.passed * (1 + kSame)) || r.excludeShape != s || r.excludePrim == kNone) return false;
+        const geometry::TriMesh& m = shapes[s]->mesh();
+        const uint32_t* last = &m.index[3 * size_t(r.excludePrim)];
+        const auto side = [&](const Vec3& p, const Vec3& q, const Vec3& w) {
+            return dot(cross(Vec3d(q) - Vec3d(p), Vec3d(w) - Vec3d(p)), Vec3d(r.dir)) > 0;
+        };
+        if (side(a, b, c) != side(m.P[last[0]], m.P[last[1]], m.P[last[2]])) return false;
+        for (int k = 0; k < 3; ++k) // by place: meshes have a seam where they close
+            if (const Vec3& p = m.P[last[k]]; p == a || p == b || p == c) return true;
+        return false;
+    }
+
+    /// Whether a candidate counts; then q.best is it. t is ours.
+    bool take(Query& q, uint32_t s, uint32_t prim, double t, double b1, double b2) const {
+        const Ray& r = *q.ray;
+        if (!(t > r.tnear && t < r.tfar)) return false;
+        if (t <= r.passed && (t < r.passed || std::pair(s, prim) <= std::pair(r.excludeShape, r.excludePrim))) return false;
+        if (!q.any && !before(t, s, prim, q.best)) return false;
+        const Shape& shape = *shapes[s];
+        if (shape.oneSided() && r.sides != Sides::Both &&
+            (dot(shape.hitNormal(prim, b1, b2), Vec3d(r.dir)) >= 0) != (r.sides == Sides::Back))
+            return false;
+        q.best = {t, s, prim, b1, b2};
+        return true;
+    }
+    /// Whether a candidate triangle is met and counts: then q.best is it.
+    bool meetOne(Query& q, uint32_t s, uint32_t prim, const Vec3& a, const Vec3& b, const Vec3& c) const {
+        const Ray& r = *q.ray;
+        if (!visible(r, s) || excluded(r, s, prim)) return false;
+        double t, b1, b2, outside;
+        if (!meetTriangle(r.org, r.dir, a, b, c, t, b1, b2, outside)) return false;
+        if (outside > kEdge && outside > edgeRoom(r, a, b, c)) return false;
+        return !sameCrossing(r, s, t, a, b, c) && take(q, s, prim, t, b1, b2);
+    }
+
+    /// Points of an exact shape count behind this t. The shape that the ray goes on behind may be met again (a ball twice),
+    /// another that lies at its place and comes after it is yet to be met there.
+    static double exactFrom(const Ray& r, uint32_t s) {
+        const double near = r.tnear;
+        if (r.passed < 0) return near;
+        if (s == r.excludeShape) return std::max(near, double(std::nextafter(float(r.passed), INFINITY)));
+        return std::max(near, s < r.excludeShape ? r.passed : std::nextafter(r.passed, 0.0));
+    }
+    /// Tries all points of one exact shape; true when one was taken.
+    bool meetExact(Query& q, uint32_t s) const {
+        const Ray& r = *q.ray;
+        if (!visible(r, s) || (r.passed < 0 && excluded(r, s, 0))) return false;
+        geometry::ExactHit h[4];
+        const Shape& shape = *shapes[s];
+        const auto wanted = shape.oneSided() && q.ray->sides != Sides::Both ? Shape::Wanted::All
+                            : q.any                                         ? Shape::Wanted::Any
+                                                                            : Shape::Wanted::Nearest;
+        int n = shape.exactHits(Vec3d(r.org), Vec3d(r.dir), exactFrom(r, s), std::min(double(r.tfar), q.best.t), wanted, h);
+        bool taken = false;
+        for (int i = 0; i < n; ++i) {
+            taken |= take(q, s, 0, h[i].t, h[i].u, h[i].v);
+            if (taken && q.any) break;
+        }
+        return taken;
+    }
+
+    bool intersectOne(const Ray&, Hit&) const;
+    bool occludedOne(const Ray&) const;
+    /// plain: with the instructions that every processor has.
+    void walkNearest(std::span<const Ray>, std::span<Hit>, bool plain = false) const;
+    void walkAny(std::span<const Ray>, std::span<uint8_t>) const;
+};
+
+} // namespace alpenglow::accel

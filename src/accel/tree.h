@@ -1,0 +1,79 @@
+// A tree of boxes over all triangles and exact shapes of a scene, eight children a node, up to six triangles a leaf.
+//
+// What a ray meets does not depend on the tree: boxes and the float test of triangles only leave out what cannot be met (their
+// bounds hold whatever float arithmetic does), and what they let pass is met in double by the caller's rule. So the result is the
+// same on every processor and for every way to build the tree.
+//
+// Nodes keep the boxes of their children in eighths of bits of their own box (after Ylitie, Karras and Laine, "Efficient
+// Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017): a node is two cache lines, and so is a leaf. Several
+// rays are followed in turns, so that one waits for memory while the others work.
+#pragma once
+#include "geometry/shape.h"
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace alpenglow::accel {
+
+class Tree {
+public:
+    static constexpr int kWide = 8; ///< children of a node
+    static constexpr int kLeafTriangles = 6, kLeafVertices = 8;
+    static constexpr int kDeepest = 80; ///< nodes above each other
+
+    /// A child: nothing, a node, a leaf of triangles, or one exact shape.
+    using Child = uint32_t;
+    static constexpr Child kLeaf = 0x80000000u, kExact = 0x40000000u, kIndex = 0x3fffffffu, kNothing = 0xffffffffu;
+
+    struct alignas(128) Node {
+        float origin[4]; ///< boxes: origin + scale * q
+        float scale[4];
+        Child child[kWide];
+        uint8_t q[2][3][kWide]; ///< by side (lower, upper) and axis
+        uint8_t spare[16];
+    };
+    struct alignas(128) Leaf {
+        float p[3][kLeafVertices];   ///< by axis
+        uint64_t corners;            ///< nine bits a triangle, from the lowest: three numbers of vertices; from bit 54: how many
+        uint32_t id[kLeafTriangles]; ///< triangles, counted through all shapes
+        uint32_t size() const { return uint32_t(corners >> 54); }
+        uint32_t vertex(uint32_t triangle, int corner) const {
+            return uint32_t(corners >> (9 * triangle + 3 * uint32_t(corner))) & 7;
+        }
+        Vec3 point(uint32_t v) const { return {p[0][v], p[1][v], p[2][v]}; }
+    };
+    static_assert(sizeof(Node) == 128 && sizeof(Leaf) == 128);
+
+    /// Throws std::bad_alloc when memory is short, std::length_error for more than 2^30 leaves.
+    void build(std::span<const geometry::ShapeRef>);
+
+    const Node* nodes() const { return nodes_.data(); }
+    const Leaf* leaves() const { return leaves_.data(); }
+    bool empty() const { return nodes_.empty(); }
+    const geometry::Bounds& bounds() const { return bounds_; }
+    size_t bytes() const { return nodes_.size() * sizeof(Node) + leaves_.size() * sizeof(Leaf); }
+    /// Shape of a child that is exact.
+    uint32_t exactShape(uint32_t index) const { return exact_[index]; }
+    /// Shape of a triangle, and its number there.
+    void find(uint32_t id, uint32_t& shape, uint32_t& prim) const {
+        uint32_t k = first_[id >> kCoarse];
+        while (k + 1 < meshes_.size() && meshes_[k + 1].first <= id) ++k;
+        shape = meshes_[k].shape;
+        prim = id - meshes_[k].first;
+    }
+
+private:
+    struct Builder;
+    struct Mesh {
+        uint32_t first, shape;
+    }; ///< number of its first triangle
+    static constexpr int kCoarse = 4;
+    std::vector<Node> nodes_; ///< the root is the first
+    std::vector<Leaf> leaves_;
+    std::vector<Mesh> meshes_;
+    std::vector<uint32_t> first_; ///< by sixteen triangles: into meshes_
+    std::vector<uint32_t> exact_;
+    geometry::Bounds bounds_;
+};
+
+} // namespace alpenglow::accel

@@ -1,0 +1,368 @@
+// Building: surface area heuristic over sixteen bins of centroids, the largest child first until there are eight.
+#include "accel/tree.h"
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <mutex>
+#include <stdexcept>
+#include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
+
+namespace alpenglow::accel {
+
+namespace {
+
+typedef float Four __attribute__((vector_size(16)));
+
+Four least(Four a, Four b) { return a < b ? a : b; }
+Four most(Four a, Four b) { return a > b ? a : b; }
+constexpr float kHuge = 3e38f;
+
+struct Box {
+    Four lo{kHuge, kHuge, kHuge, kHuge}, hi{-kHuge, -kHuge, -kHuge, -kHuge};
+    void add(Four l, Four h) { lo = least(lo, l), hi = most(hi, h); }
+    void add(const Box& b) { add(b.lo, b.hi); }
+    double halfArea() const {
+        const Four d = hi - lo;
+        return d[0] < 0 ? 0 : double(d[0]) * d[1] + double(d[1]) * d[2] + double(d[2]) * d[0];
+    }
+};
+
+/// A triangle or an exact shape; its number lies in the fourth lane of the lower corner.
+struct Ref {
+    Four lo, hi;
+    uint32_t id() const {
+        const float f = lo[3];
+        uint32_t i;
+        std::memcpy(&i, &f, 4);
+        return i;
+    }
+    void setId(uint32_t i) {
+        float f;
+        std::memcpy(&f, &i, 4);
+        lo[3] = f;
+    }
+    Four twiceCentre() const { return lo + hi; }
+};
+
+struct Range {
+    size_t begin = 0, end = 0;
+    Box box, centres;
+    bool leaf = false;
+    size_t size() const { return end - begin; }
+};
+
+constexpr int kBins = 16;
+constexpr size_t kParallel = 8192; // references below which a task of its own costs more than it brings
+
+} // namespace
+
+struct Tree::Builder {
+    Tree& tree;
+    std::span<const geometry::ShapeRef> shapes;
+    uint32_t triangles = 0; // numbers from here on are exact shapes
+    std::unique_ptr<Ref[]> refs;
+    // Nodes as they come, by any thread: pieces that stay where they are. A leaf's child is the number of its first reference,
+    // and its size lies in `spare` by child.
+    static constexpr size_t kPiece = 1024;
+    std::vector<std::unique_ptr<Node[]>> pieces;
+    std::atomic<size_t> made{0};
+    std::mutex growing;
+
+    Node& node(size_t i) { return pieces[i / kPiece][i % kPiece]; }
+    size_t newNode() {
+        const size_t i = made.fetch_add(1);
+        if (i / kPiece >= pieces.size()) throw std::length_error("nodes"); // never: see room()
+        std::lock_guard lock(growing);
+        if (!pieces[i / kPiece]) pieces[i / kPiece] = std::make_unique<Node[]>(kPiece);
+        return i;
+    }
+
+    void triangle(uint32_t id, Vec3 corner[3]) const {
+        uint32_t shape, prim;
+        tree.find(id, shape, prim);
+        const geometry::TriMesh& m = shapes[shape]->mesh();
+        for (int k = 0; k < 3; ++k) corner[k] = m.P[m.index[3 * size_t(prim) + size_t(k)]];
+    }
+    /// The vertices of a leaf of these references, and its list of corners. False: they do not make one leaf.
+    bool leafOf(const Range& r, Leaf* out) const {
+        if (r.size() == 1 && refs[r.begin].id() >= triangles) return true;
+        if (r.size() > kLeafTriangles) return false;
+        Vec3 vertex[kLeafVertices];
+        size_t n = 0;
+        uint64_t corners = uint64_t(r.size()) << 54;
+        for (size_t i = 0; i < r.size(); ++i) {
+            const uint32_t id = refs[r.begin + i].id();
+            if (id >= triangles) return false;
+            Vec3 corner[3];
+            triangle(id, corner);
+            for (size_t k = 0; k < 3; ++k) {
+                const auto same = [&](const Vec3& v) { return std::memcmp(&v, &corner[k], sizeof v) == 0; };
+                const size_t v = size_t(std::find_if(vertex, vertex + n, same) - vertex);
+                if (v == n) {
+                    if (n == kLeafVertices) return false;
+                    vertex[n++] = corner[k];
+                }
+                corners |= uint64_t(v) << (9 * i + 3 * k);
+            }
+            if (out) out->id[i] = id;
+        }
+        if (!out) return true;
+        out->corners = corners;
+        for (size_t v = 0; v < kLeafVertices; ++v)
+            for (int a = 0; a < 3; ++a) out->p[a][v] = vertex[std::min(v, n - 1)][a];
+        return true;
+    }
+
+    Range measured(size_t begin, size_t end) const {
+        Range r;
+        r.begin = begin;
+        r.end = end;
+        for (size_t i = begin; i < end; ++i) {
+            r.box.add(refs[i].lo, refs[i].hi);
+            const Four c = refs[i].twiceCentre();
+            r.centres.add(c, c);
+        }
+        r.leaf = leafOf(r, nullptr);
+        return r;
+    }
+
+    /// Where to cut: the axis and the bins before it; axis -1: nothing divides the centres.
+    struct Cut {
+        int axis = -1, bin = 0;
+        Four from{}, scale{};
+    };
+    static int binOf(const Cut& c, const Ref& r, int axis) {
+        return std::clamp(int((r.twiceCentre()[axis] - c.from[axis]) * c.scale[axis]), 0, kBins - 1);
+    }
+    Cut bestCut(const Range& r) const {
+        Cut cut;
+        cut.from = r.centres.lo;
+        const Four wide = r.centres.hi - r.centres.lo;
+        bool any = false;
+        for (int a = 0; a < 3; ++a) {
+            cut.scale[a] = wide[a] > 0 ? kBins * 0.99999f / wide[a] : 0;
+            if (!std::isfinite(cut.scale[a])) cut.scale[a] = 0;
+            any |= cut.scale[a] > 0;
+        }
+        if (!any) return cut;
+        struct Bin {
+            Box box;
+            size_t n = 0;
+        } bins[3][kBins];
+        for (size_t i = r.begin; i < r.end; ++i) {
+            const Four at = (refs[i].twiceCentre() - cut.from) * cut.scale;
+            for (int a = 0; a < 3; ++a) {
+                Bin& b = bins[a][std::clamp(int(at[a]), 0, kBins - 1)];
+                b.box.add(refs[i].lo, refs[i].hi);
+                ++b.n;
+            }
+        }
+        // A leaf costs as much for one triangle as for four.
+        const auto leaves = [](size_t n) { return double((n + 3) / 4); };
+        double least = INFINITY;
+        for (int a = 0; a < 3; ++a) {
+            if (!(cut.scale[a] > 0)) continue;
+            double above[kBins] = {};
+            Box box;
+            size_t n = 0;
+            for (int k = kBins - 1; k > 0; --k) {
+                box.add(bins[a][k].box);
+                n += bins[a][k].n;
+                above[k] = n ? box.halfArea() * leaves(n) : INFINITY;
+            }
+            box = Box();
+            n = 0;
+            for (int k = 1; k < kBins; ++k) {
+                box.add(bins[a][k - 1].box);
+                n += bins[a][k - 1].n;
+                const double cost = n ? box.halfArea() * leaves(n) + above[k] : INFINITY;
+                if (cost < least) least = cost, cut.axis = a, cut.bin = k;
+            }
+        }
+        return cut;
+    }
+    void split(const Range& r, bool halves, Range& a, Range& b) {
+        size_t middle = r.begin + r.size() / 2;
+        if (const Cut cut = halves ? Cut() : bestCut(r); cut.axis >= 0) {
+            const auto below = [&](const Ref& ref) { return binOf(cut, ref, cut.axis) < cut.bin; };
+            const size_t m = size_t(std::partition(&refs[r.begin], &refs[r.begin] + r.size(), below) - &refs[0]);
+            if (m > r.begin && m < r.end) middle = m;
+        }
+        if (r.size() <= 4 * kParallel) {
+            a = measured(r.begin, middle);
+            b = measured(middle, r.end);
+            return;
+        }
+        tbb::task_group both;
+        both.run([&] { a = measured(r.begin, middle); });
+        b = measured(middle, r.end);
+        both.wait();
+    }
+
+    size_t makeNode(const Range& all, int depth) {
+        Range child[kWide] = {all};
+        int n = 1;
+        while (n < kWide) {
+            int largest = -1;
+            for (int k = 0; k < n; ++k)
+                if (!child[k].leaf && (largest < 0 || child[k].box.halfArea() > child[largest].box.halfArea())) largest = k;
+            if (largest < 0) break;
+            Range a, b;
+            split(child[largest], depth >= kDeepest / 2, a, b);
+            child[largest] = a;
+            child[n++] = b;
+        }
+        const size_t at = newNode();
+        Node& node = this->node(at);
+        setBoxes(node, all.box, {child, size_t(n)});
+        tbb::task_group below;
+        for (int k = 0; k < n; ++k) {
+            if (child[k].leaf) {
+                node.child[k] = uint32_t(child[k].begin);
+                node.spare[k] = uint8_t(child[k].size());
+            } else if (child[k].size() > kParallel) {
+                below.run([&, k] { node.child[k] = uint32_t(makeNode(child[k], depth + 1)); });
+            } else {
+                node.child[k] = uint32_t(makeNode(child[k], depth + 1));
+            }
+        }
+        below.wait();
+        return at;
+    }
+
+    static void setBoxes(Node& node, const Box& all, std::span<const Range> child) {
+        node = Node{};
+        std::fill_n(node.child, kWide, kNothing);
+        // Wider than a ray along a flat box could leave it by, and than rounding.
+        double most = 1e-30;
+        for (int a = 0; a < 3; ++a) most = std::max({most, std::fabs(double(all.lo[a])), std::fabs(double(all.hi[a]))});
+        const double pad = most * 0x1p-21;
+        for (int a = 0; a < 3; ++a) {
+            const float origin = float(all.lo[a] - 2 * pad);
+            const float scale = float((double(all.hi[a]) + 2 * pad - origin) / 254.9);
+            node.origin[a] = origin;
+            node.scale[a] = scale;
+            for (size_t k = 0; k < child.size(); ++k) {
+                const double lo = (double(child[k].box.lo[a]) - pad - origin) / scale,
+                             hi = (double(child[k].box.hi[a]) + pad - origin) / scale;
+                node.q[0][a][k] = uint8_t(std::clamp(std::floor(lo), 0.0, 255.0));
+                node.q[1][a][k] = uint8_t(std::clamp(std::ceil(hi), 0.0, 255.0));
+            }
+        }
+    }
+
+    /// Depth first, the children of a node side by side: where rays go next is near.
+    void arrange(size_t root) {
+        std::vector<Node> nodes;
+        nodes.reserve(made);
+        struct Leaves {
+            size_t begin, size, at;
+        };
+        std::vector<Leaves> leaves;
+        nodes.push_back(node(root));
+        const auto place = [&](const auto& self, size_t at) -> void {
+            uint32_t inner[kWide];
+            int n = 0;
+            for (int k = 0; k < kWide; ++k) {
+                const uint32_t c = nodes[at].child[k];
+                if (c == kNothing) continue;
+                if (const uint8_t size = nodes[at].spare[k]) {
+                    const uint32_t id = refs[c].id();
+                    if (id >= triangles) {
+                        nodes[at].child[k] = kLeaf | kExact | (id - triangles);
+                        continue;
+                    }
+                    if (leaves.size() >= kIndex) throw std::length_error("leaves");
+                    nodes[at].child[k] = kLeaf | uint32_t(leaves.size());
+                    leaves.push_back({c, size, 0});
+                } else {
+                    inner[n++] = uint32_t(nodes.size());
+                    nodes[at].child[k] = uint32_t(nodes.size());
+                    nodes.push_back(node(c));
+                }
+            }
+            std::memset(nodes[at].spare, 0, sizeof nodes[at].spare);
+            for (int k = 0; k < n; ++k) self(self, inner[k]);
+        };
+        place(place, 0);
+        pieces.clear();
+        tree.leaves_.resize(leaves.size());
+        tbb::parallel_for(size_t(0), leaves.size(), [&](size_t i) {
+            Range r;
+            r.begin = leaves[i].begin;
+            r.end = r.begin + leaves[i].size;
+            leafOf(r, &tree.leaves_[i]);
+        });
+        refs.reset();
+        nodes.shrink_to_fit();
+        tree.nodes_ = std::move(nodes);
+    }
+
+    void run() {
+        size_t count = 0, exact = 0;
+        for (uint32_t s = 0; s < shapes.size(); ++s) {
+            if (shapes[s]->exact()) {
+                ++exact;
+                continue;
+            }
+            if (!shapes[s]->mesh().triangles()) continue;
+            tree.meshes_.push_back({uint32_t(count), s});
+            count += shapes[s]->mesh().triangles();
+            if (count >= kIndex) throw std::length_error("triangles");
+        }
+        triangles = uint32_t(count);
+        tree.first_.resize(count / (1u << kCoarse) + 1);
+        for (size_t i = 0, k = 0; i < tree.first_.size(); ++i) {
+            while (k + 1 < tree.meshes_.size() && tree.meshes_[k + 1].first <= i << kCoarse) ++k;
+            tree.first_[i] = uint32_t(k);
+        }
+        const size_t all = count + exact;
+        if (!all) return;
+        refs.reset(new Ref[all]);
+        tbb::parallel_for(size_t(0), tree.meshes_.size(), [&](size_t k) {
+            const geometry::TriMesh& m = shapes[tree.meshes_[k].shape]->mesh();
+            tbb::parallel_for(uint32_t(0), m.triangles(), [&](uint32_t t) {
+                Ref r;
+                Box b;
+                for (uint32_t c = 0; c < 3; ++c) {
+                    const Vec3& p = m.P[m.index[3 * size_t(t) + c]];
+                    b.add(Four{p.x, p.y, p.z, 0}, Four{p.x, p.y, p.z, 0});
+                }
+                r.lo = b.lo;
+                r.hi = b.hi;
+                r.setId(tree.meshes_[k].first + t);
+                refs[tree.meshes_[k].first + t] = r;
+            });
+        });
+        for (uint32_t s = 0; s < shapes.size(); ++s) {
+            if (!shapes[s]->exact()) continue;
+            const geometry::Bounds b = shapes[s]->bounds();
+            Ref r;
+            const auto sound = [](float f, float otherwise) {
+                return std::isfinite(f) ? std::clamp(f, -kHuge, kHuge) : otherwise;
+            };
+            r.lo = Four{sound(b.lo.x, -kHuge), sound(b.lo.y, -kHuge), sound(b.lo.z, -kHuge), 0};
+            r.hi = Four{sound(b.hi.x, kHuge), sound(b.hi.y, kHuge), sound(b.hi.z, kHuge), 0};
+            r.setId(triangles + uint32_t(tree.exact_.size()));
+            refs[triangles + tree.exact_.size()] = r;
+            tree.exact_.push_back(s);
+        }
+        pieces.resize(all / kPiece + 2); // a node has two children at least
+        const Range root = measured(0, all);
+        for (int a = 0; a < 3; ++a) tree.bounds_.lo[a] = root.box.lo[a], tree.bounds_.hi[a] = root.box.hi[a];
+        arrange(root.leaf ? lone(root) : makeNode(root, 0));
+    }
+    size_t lone(const Range& r) {
+        const size_t at = newNode();
+        setBoxes(node(at), r.box, {&r, 1});
+        node(at).child[0] = uint32_t(r.begin);
+        node(at).spare[0] = uint8_t(r.size());
+        return at;
+    }
+};
+
+void Tree::build(std::span<const geometry::ShapeRef> shapes) { Builder{.tree = *this, .shapes = shapes}.run(); }
+
+} // namespace alpenglow::accel

@@ -1,0 +1,184 @@
+// The tree over large scenes: it overlooks nothing, rays through corners and edges do not slip between triangles, and what it
+// answers depends neither on the processor's instructions nor on which rays are followed together.
+#include "../geometry/make.h"
+#include "accel/accel.h"
+#include "accel/impl.h"
+#include "accel/tree.h"
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+
+using namespace alpenglow;
+using namespace alpenglow::accel;
+using namespace alpenglow::geometry::test;
+using geometry::ShapeRef;
+
+namespace {
+
+using Rng = std::mt19937;
+float uniform(Rng& r, float lo, float hi) { return lo + (hi - lo) * float(r() >> 8) * 0x1p-24f; }
+Vec3 within(Rng& r, float size) { return {uniform(r, -size, size), uniform(r, -size, size), uniform(r, -size, size)}; }
+
+std::shared_ptr<scene::Primitive> trianglesOf(const std::vector<Vec3>& corners, const std::vector<int>& index) {
+    auto p = std::make_shared<scene::Primitive>();
+    p->kind = "PointsPolygons";
+    p->ints.assign(index.size() / 3, 3);
+    p->ints2 = index;
+    std::vector<float> P;
+    for (const Vec3& v : corners) P.insert(P.end(), {v.x, v.y, v.z});
+    p->params = {points(P)};
+    return p;
+}
+
+/// Triangles without order around `centre`: small, large, thin, flat along an axis.
+std::shared_ptr<scene::Primitive> soup(Rng& rng, int n, const Vec3& centre, float size) {
+    std::vector<Vec3> corners;
+    std::vector<int> index;
+    for (int i = 0; i < n; ++i) {
+        const Vec3 a = centre + within(rng, size), e = within(rng, size * (i % 3 ? 0.1f : 1));
+        Vec3 b = a + e, c = a + e * 0.5f + within(rng, size * (i % 5 ? 0.1f : 1e-4f));
+        if (i % 7 == 0) b.y = c.y = a.y;
+        for (const Vec3& v : {a, b, c}) {
+            index.push_back(int(corners.size()));
+            corners.push_back(v);
+        }
+    }
+    return trianglesOf(corners, index);
+}
+
+/// A closed ball of rows * around * 2 triangles, bent by waves.
+std::shared_ptr<scene::Primitive> ball(int rows, int around) {
+    std::vector<Vec3> corners{{0, 0, -1}, {0, 0, 1}};
+    std::vector<int> index;
+    const auto at = [&](int j, int i) { return j == 0 ? 0 : j == rows ? 1 : 2 + (j - 1) * around + i % around; };
+    for (int j = 1; j < rows; ++j)
+        for (int i = 0; i < around; ++i) {
+            const double a = kPi * j / rows, b = 2 * kPi * i / around, r = 1 + 0.1 * std::sin(7 * b) * std::sin(a);
+            corners.push_back(
+                Vec3(float(r * std::sin(a) * std::cos(b)), float(r * std::sin(a) * std::sin(b)), float(-std::cos(a))));
+        }
+    for (int j = 0; j < rows; ++j)
+        for (int i = 0; i < around; ++i) {
+            if (j > 0) index.insert(index.end(), {at(j, i), at(j, i + 1), at(j + 1, i)});
+            if (j + 1 < rows) index.insert(index.end(), {at(j, i + 1), at(j + 1, i + 1), at(j + 1, i)});
+        }
+    return trianglesOf(corners, index);
+}
+
+} // namespace
+
+TEST(Tree, NothingIsOverlooked) {
+    Rng rng(3);
+    size_t met = 0;
+    for (int scene = 0; scene < 24; ++scene) {
+        const float size = std::pow(10.f, uniform(rng, -3, 4)), away = scene % 3 == 0 ? 300 * size : 0;
+        const Vec3 centre = within(rng, away);
+        Diagnostics diag;
+        std::vector<ShapeRef> shapes;
+        for (int k = 0; k < 3; ++k)
+            if (ShapeRef s = build(soup(rng, 1 + int(rng() % 300), centre, size), Matrix(), diag)) shapes.push_back(s);
+        for (int k = 0; k < 5; ++k)
+            if (ShapeRef s = build(quadric("Sphere", {size * 0.1f, -size, size, 360}),
+                                   translateMatrix(centre.x, centre.y, centre.z + size * k), diag))
+                shapes.push_back(s);
+        Accel accel(shapes, {}, diag);
+        Accel::Impl inside; // the same, to be asked in other ways
+        inside.shapes = shapes;
+        inside.visibility.assign(shapes.size(), kAll);
+        inside.tree.build(shapes);
+        std::vector<Ray> rays;
+        for (int k = 0; k < 400; ++k) {
+            const geometry::TriMesh& to = shapes[rng() % 3]->mesh();
+            const uint32_t* t = &to.index[3 * (uint32_t(rng()) % to.triangles())];
+            // Toward a corner, an edge or the inside of a triangle; from anywhere, or along an axis.
+            const float s = k % 3 ? uniform(rng, 0, 1) : 0, u = k % 5 ? uniform(rng, 0, 1 - s) : 0;
+            const Vec3 aim = to.P[t[0]] + (to.P[t[1]] - to.P[t[0]]) * s + (to.P[t[2]] - to.P[t[0]]) * u;
+            Ray r;
+            r.org = k % 11 == 0   ? aim - Vec3(0, 0, 3 * size)
+                    : k % 13 == 0 ? aim + Vec3(size, 0, 0)
+                                  : centre + within(rng, 3 * size);
+            r.dir = (aim - r.org) * (k % 7 ? 1.f : 1e-3f);
+            if (k % 4 == 0) r.tnear = uniform(rng, 0, 1), r.tfar = 1 + uniform(rng, 0, 5);
+            if (length(r.dir) > 0) rays.push_back(r);
+        }
+        std::vector<Hit> hits(rays.size()), plain(rays.size());
+        std::vector<uint8_t> any(rays.size());
+        accel.intersect(rays, hits);
+        accel.occluded(rays, any);
+        inside.walkNearest(rays, plain, true);
+        for (size_t i = 0; i < rays.size(); ++i) {
+            Query q{&rays[i], {INFINITY, kNone, kNone, 0, 0}, false}; // everything, by the same rule
+            for (uint32_t k = 0; k < shapes.size(); ++k) {
+                if (shapes[k]->exact()) {
+                    inside.meetExact(q, k);
+                    continue;
+                }
+                const geometry::TriMesh& m = shapes[k]->mesh();
+                for (uint32_t t = 0; t < m.triangles(); ++t)
+                    inside.meetOne(q, k, t, m.P[m.index[3 * t]], m.P[m.index[3 * t + 1]], m.P[m.index[3 * t + 2]]);
+            }
+            ASSERT_EQ(hits[i].shape, q.best.shape) << "scene " << scene << " ray " << i;
+            ASSERT_EQ(bool(any[i]), q.best.shape != kNone) << "scene " << scene << " ray " << i;
+            ASSERT_EQ(plain[i].shape, hits[i].shape);
+            if (!hits[i].valid()) continue;
+            ++met;
+            ASSERT_EQ(hits[i].prim, q.best.prim) << "scene " << scene << " ray " << i;
+            ASSERT_EQ(hits[i].distance, q.best.t);
+            ASSERT_EQ(plain[i].prim, hits[i].prim);
+            ASSERT_EQ(plain[i].distance, hits[i].distance);
+            Hit alone;
+            ASSERT_TRUE(accel.intersect(rays[i], alone));
+            ASSERT_EQ(alone.prim, hits[i].prim);
+            ASSERT_EQ(alone.distance, hits[i].distance);
+        }
+    }
+    EXPECT_GT(met, 4000u);
+}
+
+TEST(Tree, RaysAtCornersAndEdgesDoNotSlipThrough) {
+    for (double scale : {1e-3, 1.0, 1e5}) {
+        Diagnostics diag;
+        const Matrix m =
+            rotateMatrix(31, 1, 2, 3) * scaleMatrix(scale, scale, scale) * translateMatrix(20 * scale, -3 * scale, 50 * scale);
+        ShapeRef s = build(ball(120, 240), m, diag);
+        ASSERT_TRUE(s);
+        Accel accel({s}, {}, diag);
+        const geometry::TriMesh& mesh = s->mesh();
+        Rng rng(9);
+        std::vector<Ray> rays;
+        const Vec3 middle = Vec3(transformPoint(m, Vec3d(0.1, 0.02, -0.03)));
+        for (uint32_t t = 0; t < mesh.triangles(); ++t)
+            for (int k = 0; k < 3; ++k) {
+                const Vec3 a = mesh.P[mesh.index[3 * size_t(t) + size_t(k)]],
+                           b = mesh.P[mesh.index[3 * size_t(t) + size_t((k + 1) % 3)]];
+                Ray r;
+                r.org = middle + within(rng, float(0.3 * scale));
+                r.dir = a + (b - a) * (k == 0 ? 0.f : uniform(rng, 0, 1)) - r.org;
+                rays.push_back(r);
+            }
+        std::vector<Hit> hits(rays.size());
+        accel.intersect(rays, hits);
+        size_t leaks = 0;
+        for (const Hit& h : hits) leaks += !h.valid();
+        EXPECT_EQ(leaks, 0u) << "scale " << scale;
+    }
+}
+
+TEST(Tree, AlikeShapesInOnePlaceEndInLeaves) {
+    // A thousand equal triangles and spheres: nothing divides them, and the first counts.
+    Diagnostics diag;
+    std::vector<ShapeRef> shapes;
+    for (int k = 0; k < 1000; ++k) {
+        shapes.push_back(build(polygon({-1, -1, 0, -1, 1, 0, 1, 1, 0}), translateMatrix(0, 0, 3), diag));
+        shapes.push_back(build(quadric("Sphere", {1, -1, 1, 360}), translateMatrix(0, 0, 8), diag));
+    }
+    Accel accel(shapes, {}, diag);
+    Ray r;
+    r.dir = Vec3(-0.1f, 0.1f, 1);
+    Hit h;
+    ASSERT_TRUE(accel.intersect(r, h));
+    EXPECT_EQ(h.shape, 0u);
+    r.dir = Vec3(0.05f, -0.05f, 1);
+    ASSERT_TRUE(accel.intersect(r, h));
+    EXPECT_EQ(h.shape, 1u);
+}

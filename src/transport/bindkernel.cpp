@@ -129,6 +129,11 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         }
         i.resultRowCount = out;
         if (!s.strings.empty() && !s.strings[0].empty()) i.nameId = rsl::internString(s.strings[0]);
+        i.setUp = i.text.count("__setup") > 0;
+        i.outside = i.text.count("__outside") > 0;
+        if (const auto cache = i.text.find("lightcache"); cache != i.text.end()) i.refresh = cache->second == "refresh";
+        if (const auto category = i.named.find("category"); category != i.named.end()) i.rowCategory = category->second;
+        if (const std::string sent = sentStrings(i); !sent.empty()) i.sentStrings = std::hash<std::string>{}(sent);
         if (i.kind == SiteKind::Texture || i.kind == SiteKind::Environment) i.map = textureSite(i, s);
         if (i.kind == SiteKind::Diffuse) i.lobe = findLobe("diffuse");
         if (i.kind == SiteKind::Specular) i.lobe = findLobe("specular");

@@ -234,6 +234,8 @@ void Engine::giveBack(std::shared_ptr<BatchContext> c) {
     c->draws.clear();
     c->requestSite = -1;
     for (LightLoop& loop : c->loops) loop.reset(-1);
+    c->ambient.clear();
+    for (LightSheet& sheet : c->sheets) sheet.made = sheet.refused = false;
     c->lit = nullptr;
     c->displaced.reset();
     c->light = nullptr;

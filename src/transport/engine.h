@@ -150,6 +150,8 @@ struct BatchContext {
     std::vector<Color> clear;  ///< by point: what goes on behind it; only while gather() runs for a kernel that does not wait
     std::vector<float> passes; ///< by point: the chance with which its ray goes on, 0: another was taken; empty: it always does
     std::deque<LightLoop> loops;               ///< Engine::lightLoop()
+    std::vector<Color> ambient;                ///< Engine::ambientOf()
+    std::vector<LightSheet> sheets;            ///< by turn of all lights (Engine::sheetNumber()); empty until a loop runs
     const BoundLight* light = nullptr;         ///< whose kernel runs
     const LitSurface* lit = nullptr;           ///< while a light's kernel runs: what it lights
     std::shared_ptr<BatchContext> displaced;   ///< the displacement shader's run at these points, where its outputs are asked for
@@ -236,6 +238,8 @@ public:
     // manylights.cpp
     /// Probability that a light is among those that are sampled at a point of the binding at `at`.
     float chanceOf(int light, int binding, const Vec3& at) const;
+    // messages.cpp
+    const LightParameter& lightParameter(int32_t name, int light);
     // lightloop.cpp
     /// What lightBegin() is to know beyond its rows: a category, sent values, outputs of the surface.
     void lightSetup(BatchContext&, int site, int first, uint64_t mask, int lanes, const float* in);
@@ -247,6 +251,8 @@ public:
     int32_t lightBegin(BatchContext&, int site, int first, uint64_t mask, int lanes, const float* rows);
     void lightEnd(BatchContext&, int first, int lanes);
     uint64_t lightFetch(BatchContext&, int light, int first, uint64_t mask, int lanes, float* out);
+    /// The same by what was kept for the strip, or is kept now.
+    uint64_t fetchKept(BatchContext&, LightLoop&, int light, int turn, int first, uint64_t mask, int lanes, float* out);
     // maps.cpp
     /// The map of an interned name, found without a lock from the second time on. `place`: gives the SourcePlace that asks.
     template <class Place> texture::Handle mapOfName(int32_t id, Place&& place) {
@@ -349,7 +355,8 @@ private:
     std::deque<shading::Media> media_;
     friend class KernelStrip;
     // lightloop.cpp
-    void checkCategory(BatchContext&, const rsl::ir::Site&, const std::string& expression);
+    void checkCategory(BatchContext&, const rsl::ir::Site&, int32_t category);
+    std::set<int32_t> checkedCategories_;
     /// For rays that met a light: `of`, by query, is RayExtra::lit. It must outlive the result.
     LitSurface litBy(std::span<const int> of) const;
     LitSurface litSurface(BatchContext&, const LightLoop&, const std::vector<int>& points, int first, int lanes) const;
@@ -358,13 +365,42 @@ private:
     /// Takes from the values of one light what stands between it and the points that it lights.
     void shadowLoop(const BatchContext&, const BoundLight&, int first, std::span<const ShadePoint>, std::span<const int> laneOf, std::span<LightValue>);
     /// Sample `turn` of `turns` of a light for the points of a mask, into `kept`; gives the points that it lights.
+    /// The point of a shaded batch as a light sees it when it lights `at`, for sample `turn` of `turns`; `axis`, `angle`: the
+    /// loop's cone; nth: drawOf(). *factor multiplies the light. False: it gives nothing there.
+    bool lightQuery(const BatchContext&, int light, int point, const Vec3& at, const Vec3& axis, float angle, int turns,
+                    uint32_t nth, ShadePoint& query, float* factor) const;
+    // lightsheets.cpp
+    /// Which of BatchContext::sheets a sample of a light has; -1: none.
+    int sheetNumber(int light, int turn);
+    /// The sheet of a sample for the turn that runs now; null where it does not hold for all points of the mask.
+    const LightSheet* sheetOf(BatchContext&, const LightLoop&, int light, int turn, int first, uint64_t mask, int lanes);
+    /// By point of a batch, the sum of the ambient lights; they have sheets.
+    const std::vector<Color>& ambientOf(BatchContext&);
+    bool allAmbientHaveSheets(const SurfaceBinding&) const;
+    void fillSheet(BatchContext&, const LightLoop&, int light, int turn, LightSheet&);
+    /// What a sheet gives the points of a mask; those that are lit.
+    uint64_t takeFromSheet(BatchContext&, LightLoop&, const LightSheet&, const BoundLight&, int first, uint64_t mask, int lanes,
+                           float* out);
+    /// The turns of a loop over the lights of a binding that are of a category (interned).
+    const std::vector<std::pair<int, int>>& turnsOf(const SurfaceBinding&, int32_t category);
+    bool isOfCategory(int32_t category, int light);
+    struct TurnsOfList { std::vector<int> lights; std::vector<std::pair<int, int>> turns; };
+    std::unordered_map<uint64_t, TurnsOfList> turnsOf_; ///< by category and list of lights
+    std::unordered_map<uint64_t, bool> ofCategory_;     ///< by category and light
+    std::vector<int> sheetNumbers_;                     ///< by light: of its first sample; -1: it has no sheets
+    int sheets_ = 0;
+    struct SheetRoom { std::vector<ShadePoint> q; std::vector<int> of; std::vector<float> factor, values; std::vector<LightValue> v; } sheetRoom_;
+    std::unordered_map<uint64_t, std::shared_ptr<const LightParameter>> lightParameters_; ///< by name and light
     uint64_t sampleLight(BatchContext&, const LightLoop&, int light, int turn, int turns, int first, uint64_t mask, int lanes, LightLoop::Kept& kept);
     /// Sample `turn` of a light that sends through generateSamples(), by its BoundLight::values at a point.
     static void sentSample(const BoundLight&, int turn, const float* values, LightValue&);
     /// One of those samples, in proportion to what each gives, for the sum of all. `u`: evenly from 0 to 1.
     static void chooseSent(const BoundLight&, float u, const float* values, LightValue&);
-    uint64_t sentKey(const BatchContext&, const LightLoop&) const;
-    int lightOfHandle(const BatchContext&, const std::string& handle) const;
+    /// The light of an interned handle, where it is one of the surface's; else -1. Null: of no surface.
+    int numberOfLight(const SurfaceBinding*, int32_t handle);
+    int32_t handleOf(int light); ///< interned
+    std::unordered_map<int32_t, int> lightOfHandle_;
+    std::unordered_map<int, int32_t> handles_;
     /// Contexts and their memory are used again: a slice makes several, of some hundred kilobytes.
     std::shared_ptr<BatchContext> takeContext();
     void giveBack(std::shared_ptr<BatchContext>); ///< kept when nobody else has it

@@ -8,14 +8,26 @@
 
 namespace alpenglow::transport {
 
-/// -1: no light of this surface. Null: of no surface.
-static int numberOfLight(const SurfaceBinding* surface, const std::string& handle) {
-    if (handle.rfind(kLightHandle, 0) != 0 || !surface) return -1;
+/// The number in a handle; -1: it is that of no light.
+static int numberIn(const std::string& handle) {
+    if (handle.rfind(kLightHandle, 0) != 0) return -1;
     int n = -1;
     const char* digits = handle.c_str() + sizeof kLightHandle - 1;
-    if (std::from_chars(digits, handle.c_str() + handle.size(), n).ec != std::errc()) return -1;
+    return std::from_chars(digits, handle.c_str() + handle.size(), n).ec == std::errc() ? n : -1;
+}
+
+int Engine::numberOfLight(const SurfaceBinding* surface, int32_t handle) {
+    if (!surface) return -1;
+    const auto [known, fresh] = lightOfHandle_.try_emplace(handle, -1);
+    if (fresh) known->second = numberIn(rsl::internedString(handle));
     const auto& on = surface->lights;
-    return std::find(on.begin(), on.end(), n) == on.end() ? -1 : n;
+    return known->second < 0 || std::find(on.begin(), on.end(), known->second) == on.end() ? -1 : known->second;
+}
+
+int32_t Engine::handleOf(int light) {
+    const auto [known, fresh] = handles_.try_emplace(light, 0);
+    if (fresh) known->second = rsl::internString(handleOfLight(light, world_->lights_[size_t(light)].handle));
+    return known->second;
 }
 
 /// A parameter, or one element or component of it: "steps[1]", "lightcolor[0]". The nearest where the index is outside.
@@ -40,16 +52,13 @@ static std::optional<Told> partTold(const ShaderInstance& light, const std::stri
     return t;
 }
 
-int Engine::lightOfHandle(const BatchContext& c, const std::string& handle) const { return numberOfLight(c.binding, handle); }
-
 void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, int lanes, const float* in, float* out) {
     const SiteInfo& s = c.bound->sites[size_t(site)];
     const rsl::ir::Site& d = *s.site;
     const size_t width = size_t(lanes);
     auto put = [&](size_t row, int lane, float v) { out[row * width + size_t(lane)] = v; };
-    auto text = [&](int lane) {
-        return d.argKinds.empty() || d.argKinds[0] != rsl::ir::Kind::String ? d.strings.empty() ? std::string() : d.strings[0]
-                                                                            : rsl::internedString(std::bit_cast<int32_t>(in[lane]));
+    auto text = [&](int lane) { // interned
+        return d.argKinds.empty() || d.argKinds[0] != rsl::ir::Kind::String ? s.nameId : std::bit_cast<int32_t>(in[lane]);
     };
     LightLoop& loop = lightLoop(c, first, lanes);
     auto each = [&](auto&& body) {
@@ -62,31 +71,31 @@ void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, i
     if (d.op == "islightcategory") {
         if (loop.light >= 0)
             each([&](int lane) {
-                const std::string want = text(lane);
+                const int32_t want = text(lane);
                 checkCategory(c, d, want);
-                put(0, lane, inCategory(want, categoriesOf(world_->lights_[size_t(loop.light)])) ? 1 : 0);
+                put(0, lane, isOfCategory(want, loop.light) ? 1 : 0);
             });
         return;
     }
     if (d.op == "currentlight") {
-        if (loop.light >= 0) each([&](int lane) { put(0, lane, std::bit_cast<float>(rsl::internString(handleOfLight(loop.light, world_->lights_[size_t(loop.light)].handle)))); });
+        if (loop.light >= 0) each([&](int lane) { put(0, lane, std::bit_cast<float>(handleOf(loop.light))); });
         return;
     }
     if (d.op == "getlights") { // rows: how many, then the handles
         each([&](int lane) {
-            const std::string want = text(lane);
+            const int32_t want = text(lane);
             checkCategory(c, d, want);
             int n = 0;
             if (const SurfaceBinding* surface = bindingOf(lane))
                 for (int i : surface->lights) {
                     const BoundLight& l = world_->lights_[size_t(i)];
-                    if (!visible(l) || !inCategory(want, categoriesOf(l))) continue;
+                    if (!visible(l) || !isOfCategory(want, i)) continue;
                     if (n == limits::kLightHandles) {
                         diagnostics_.reportOnce("getlights", {Severity::Error, Rie::Limit, {}, "getlights() gives no more than " + std::to_string(limits::kLightHandles) +
                                                               " lights; the others are left out", {}, {}});
                         break;
                     }
-                    put(size_t(++n), lane, std::bit_cast<float>(rsl::internString(handleOfLight(i, world_->lights_[size_t(i)].handle))));
+                    put(size_t(++n), lane, std::bit_cast<float>(handleOf(i)));
                 }
             put(0, lane, float(n));
         });
@@ -94,11 +103,11 @@ void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, i
     }
     if (d.op == "getlight") {
         each([&](int lane) {
-            const std::string want = text(lane);
+            const std::string& want = rsl::internedString(text(lane));
             if (const SurfaceBinding* surface = bindingOf(lane))
                 for (int i : surface->lights)
                     if (visible(world_->lights_[size_t(i)]) && world_->lights_[size_t(i)].handle == want) {
-                        put(0, lane, std::bit_cast<float>(rsl::internString(handleOfLight(i, world_->lights_[size_t(i)].handle))));
+                        put(0, lane, std::bit_cast<float>(handleOf(i)));
                         break;
                     }
         });

@@ -87,33 +87,47 @@ int32_t Engine::lightBegin(BatchContext& c, int site, int first, uint64_t mask, 
     ++loop.depth;
     std::swap(static_cast<LightSetup&>(loop), loop.next);
     loop.next.setup = -1;
-    if (!info.text.count("__setup")) loop.setup = -1; // that of a loop of which nobody wanted the result
+    if (!info.setUp) loop.setup = -1; // that of a loop of which nobody wanted the result
     loop.lights.clear();
     loop.light = -1;
     loop.rows.assign(rows, rows + size_t(7) * size_t(lanes));
-    const auto cache = info.text.find("lightcache");
-    loop.refresh = cache != info.text.end() && cache->second == "refresh";
-    std::vector<std::string> wanted{info.site->strings.empty() ? "" : info.site->strings[0]};
-    if (loop.setup >= 0) { // known only now: each point may have its own
-        const SiteInfo& s = c.bound->sites[size_t(loop.setup)];
-        if (auto row = s.named.find("category"); row != s.named.end()) {
-            wanted.clear();
-            for (int lane = 0; lane < lanes; ++lane)
-                if (mask >> lane & 1) wanted.push_back(rsl::internedString(std::bit_cast<int32_t>(loop.given[size_t(row->second) * size_t(lanes) + size_t(lane)])));
-            std::sort(wanted.begin(), wanted.end());
-            wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-            for (const std::string& w : wanted) checkCategory(c, *info.site, w);
-        }
+    loop.refresh = info.refresh;
+    if (!c.binding) return 0;
+    const int row = loop.setup >= 0 ? c.bound->sites[size_t(loop.setup)].rowCategory : -1;
+    if (row < 0) {
+        loop.lights = turnsOf(*c.binding, info.nameId);
+        return int32_t(loop.lights.size());
     }
-    if (c.binding)
-        for (int i : c.binding->lights) {
-            const BoundLight& l = world_->lights_[size_t(i)];
-            if (!l.kernel || l.kind == LightKind::Ambient || l.strategy == LightStrategy::Trace) continue;
-            const std::string have = categoriesOf(l);
-            if (std::none_of(wanted.begin(), wanted.end(), [&](const std::string& w) { return inCategory(w, have); })) continue;
-            for (int k = 0; k < l.samples; ++k) loop.lights.push_back({i, k});
-        }
+    // Known only now: each point may have its own.
+    std::vector<int32_t> wanted;
+    for (int lane = 0; lane < lanes; ++lane)
+        if (mask >> lane & 1) wanted.push_back(std::bit_cast<int32_t>(loop.given[size_t(row) * size_t(lanes) + size_t(lane)]));
+    std::sort(wanted.begin(), wanted.end());
+    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+    for (int32_t w : wanted) checkCategory(c, *info.site, w);
+    for (const auto& turn : turnsOf(*c.binding, 0))
+        if (std::any_of(wanted.begin(), wanted.end(), [&](int32_t w) { return isOfCategory(w, turn.first); }))
+            loop.lights.push_back(turn);
     return int32_t(loop.lights.size());
+}
+
+bool Engine::isOfCategory(int32_t category, int light) {
+    const auto [known, fresh] = ofCategory_.try_emplace(uint64_t(uint32_t(category)) << 32 | uint32_t(light));
+    if (fresh) known->second = inCategory(rsl::internedString(category), categoriesOf(world_->lights_[size_t(light)]));
+    return known->second;
+}
+
+const std::vector<std::pair<int, int>>& Engine::turnsOf(const SurfaceBinding& b, int32_t category) {
+    TurnsOfList& known = turnsOf_[uint64_t(uint32_t(category)) << 32 | uint32_t(b.lightList)];
+    if (known.lights == b.lights) return known.turns; // numbers of lists are given while the world is made
+    known.lights = b.lights;
+    known.turns.clear();
+    for (int i : b.lights) {
+        const BoundLight& l = world_->lights_[size_t(i)];
+        if (!l.kernel || l.kind == LightKind::Ambient || l.strategy == LightStrategy::Trace || !isOfCategory(category, i)) continue;
+        for (int k = 0; k < l.samples; ++k) known.turns.push_back({i, k});
+    }
+    return known.turns;
 }
 
 void Engine::lightEnd(BatchContext& c, int first, int lanes) {
@@ -124,7 +138,9 @@ void Engine::lightEnd(BatchContext& c, int first, int lanes) {
     c.lightDistance = loop.distance;
 }
 
-void Engine::checkCategory(BatchContext& c, const rsl::ir::Site& site, const std::string& expression) {
+void Engine::checkCategory(BatchContext& c, const rsl::ir::Site& site, int32_t category) {
+    if (!checkedCategories_.insert(category).second) return;
+    const std::string& expression = rsl::internedString(category);
     const std::string error = categoryError(expression);
     if (error.empty()) return;
     const auto& files = c.bound->kernel->files();
@@ -137,18 +153,53 @@ uint64_t Engine::lightFetch(BatchContext& c, int index, int first, uint64_t mask
     LightLoop& loop = lightLoop(c, first, lanes);
     if (size_t(index) >= loop.lights.size()) return 0;
     const auto [li, k] = loop.lights[size_t(index)];
-    const BoundLight& light = world_->lights_[size_t(li)];
     loop.light = li;
-    if (loop.setup >= 0) { // points whose own category leaves this light out
-        const SiteInfo& s = c.bound->sites[size_t(loop.setup)];
-        if (auto row = s.named.find("category"); row != s.named.end()) {
-            const std::string have = categoriesOf(light);
-            for (int lane = 0; lane < lanes; ++lane)
-                if ((mask >> lane & 1) &&
-                    !inCategory(rsl::internedString(std::bit_cast<int32_t>(loop.given[size_t(row->second) * size_t(lanes) + size_t(lane)])), have))
-                    mask &= ~(uint64_t(1) << lane);
-        }
+    const int row = loop.setup >= 0 ? c.bound->sites[size_t(loop.setup)].rowCategory : -1;
+    if (row >= 0) // points whose own category leaves this light out
+        for (int lane = 0; lane < lanes; ++lane)
+            if ((mask >> lane & 1) &&
+                !isOfCategory(std::bit_cast<int32_t>(loop.given[size_t(row) * size_t(lanes) + size_t(lane)]), li))
+                mask &= ~(uint64_t(1) << lane);
+    if (const LightSheet* sheet = sheetOf(c, loop, li, k, first, mask, lanes))
+        return takeFromSheet(c, loop, *sheet, world_->lights_[size_t(li)], first, mask, lanes, out);
+    return fetchKept(c, loop, li, k, first, mask, lanes, out);
+}
+
+namespace {
+/// Whether light from this way comes through the cone of a loop: its axis and half angle.
+bool inCone(const LightLoop& loop, size_t width, size_t lane, const Vec3& toLight) {
+    const float angle = loop.rows[6 * width + lane];
+    if (!(angle < float(kPi))) return true;
+    Vec3 axis(loop.rows[3 * width + lane], loop.rows[4 * width + lane], loop.rows[5 * width + lane]);
+    const float most = std::max({std::fabs(axis.x), std::fabs(axis.y), std::fabs(axis.z)});
+    if (most > 1e15f || (most > 0 && most < 1e-15f)) axis = axis / most; // its square must be a number
+    const float la = length(axis), ll = length(toLight);
+    return !(la > 0 && ll > 0) || dot(axis, toLight) >= la * ll * std::cos(angle);
+}
+} // namespace
+
+uint64_t Engine::takeFromSheet(BatchContext& c, LightLoop& loop, const LightSheet& sheet, const BoundLight& light, int first,
+                               uint64_t mask, int lanes, float* out) {
+    const size_t width = size_t(lanes), size = size_t(sheet.size), values = size_t(light.valueWidth);
+    c.lightDistance.assign(width, 1e38f);
+    loop.values.assign(width * values, 0);
+    uint64_t lit = 0;
+    for (size_t lane = 0; lane < width; ++lane) {
+        const size_t point = size_t(first) + lane;
+        if (!(mask >> lane & 1) || point >= size) continue;
+        std::copy_n(sheet.values.begin() + long(point * values), values, loop.values.begin() + long(lane * values));
+        if (!sheet.lit[point]) continue;
+        const auto at = [&](size_t r) { return sheet.out[r * size + point]; };
+        if (!inCone(loop, width, lane, {at(0), at(1), at(2)})) continue;
+        lit |= uint64_t(1) << lane;
+        c.lightDistance[lane] = sheet.distance[point];
+        for (size_t r = 0; r < 9; ++r) out[r * width + lane] = at(r);
     }
+    return lit;
+}
+
+uint64_t Engine::fetchKept(BatchContext& c, LightLoop& loop, int li, int k, int first, uint64_t mask, int lanes, float* out) {
+    const BoundLight& light = world_->lights_[size_t(li)];
     // Kept: the same light, sample, P, Ns, sent values and outputs of the surface; of a sky also the same cone.
     const uint64_t name = keptName(loop, light, li, k, world_->settings_.hider == Hider::Path);
     LightLoop::Kept passing;
@@ -164,10 +215,11 @@ uint64_t Engine::lightFetch(BatchContext& c, int index, int first, uint64_t mask
     }
     const int same = light.kind == LightKind::Environment ? 7 : 3;
     uint64_t missing = 0;
+    const uint64_t sent = loop.setup < 0 ? 0 : c.bound->sites[size_t(loop.setup)].sentStrings;
     for (int lane = 0; lane < lanes; ++lane) {
         if (!(mask >> lane & 1)) continue;
         const size_t l = size_t(lane);
-        const uint64_t hash = loop.setup < 0 ? 0 : mixed(loop.givenHash[l], sentKey(c, loop));
+        const uint64_t hash = loop.setup < 0 ? 0 : mixed(loop.givenHash[l], sent);
         bool good = !loop.refresh && (kept.have >> lane & 1) && kept.hash[l] == hash;
         for (size_t r = 0; good && r < size_t(same); ++r) good = std::bit_cast<uint32_t>(kept.key[r * width + l]) == std::bit_cast<uint32_t>(loop.rows[r * width + l]);
         if (good) continue;
@@ -185,25 +237,13 @@ uint64_t Engine::lightFetch(BatchContext& c, int index, int first, uint64_t mask
     for (int lane = 0; lane < lanes; ++lane) {
         if (!((mask & kept.lit) >> lane & 1)) continue;
         const size_t l = size_t(lane);
-        const float angle = loop.rows[6 * width + l];
-        if (angle < float(kPi) && light.kind != LightKind::Environment) {
-            Vec3 axis(loop.rows[3 * width + l], loop.rows[4 * width + l], loop.rows[5 * width + l]);
-            const float most = std::max({std::fabs(axis.x), std::fabs(axis.y), std::fabs(axis.z)});
-            if (most > 1e15f || (most > 0 && most < 1e-15f)) axis = axis / most; // its square must be a number
-            const Vec3 toLight(kept.out[l], kept.out[width + l], kept.out[2 * width + l]);
-            const float la = length(axis), ll = length(toLight);
-            if (la > 0 && ll > 0 && !(dot(axis, toLight) >= la * ll * std::cos(angle))) continue;
-        }
+        if (light.kind != LightKind::Environment && !inCone(loop, width, l, {kept.out[l], kept.out[width + l], kept.out[2 * width + l]}))
+            continue;
         lit |= uint64_t(1) << lane;
         c.lightDistance[l] = kept.distance[l];
         for (size_t r = 0; r < 9; ++r) out[r * width + l] = kept.out[r * width + l];
     }
     return lit;
-}
-
-uint64_t Engine::sentKey(const BatchContext& c, const LightLoop& loop) const {
-    const std::string strings = sentStrings(c.bound->sites[size_t(loop.setup)]);
-    return strings.empty() ? 0 : std::hash<std::string>{}(strings);
 }
 
 } // namespace alpenglow::transport

@@ -71,6 +71,19 @@ struct LightLoop : LightTurns {
     }
 };
 
+/// One sample of a light for all points of a batch: what loops find whose P is that of the surface, and that send nothing.
+struct LightSheet {
+    bool made = false, refused = false;
+    int size = 0;                                 ///< points
+    std::vector<float> out;                       ///< L, Cl, Ol: nine rows of `size`
+    std::vector<float> distance;                  ///< by point: BatchContext::lightDistance
+    std::vector<float> values;                    ///< by point: BoundLight::values
+    std::vector<char> lit;                        ///< by point
+};
+
+/// What lightsource() asks of a light: nothing, the value that the light was given, or in parts what its kernel writes.
+struct LightParameter;
+
 /// Lights that are sampled give every depth of loops samples of its own: the product of an outer and of an inner loop has the mean that it
 /// should have.
 bool sampledAnew(const BoundLight&, bool path);
@@ -78,6 +91,9 @@ bool sampledAnew(const BoundLight&, bool path);
 uint32_t drawOf(const LightLoop&, int turn);
 /// The name of what is kept of a turn of a light.
 uint64_t keptName(const LightLoop&, const BoundLight&, int light, int turn, bool path);
+
+/// Whether its samples may be taken for points that do not ask: nothing comes of it but light.
+bool hasSheets(const BoundLight&);
 
 /// The words of a light's __category.
 std::string categoriesOf(const BoundLight&);

@@ -205,6 +205,66 @@ void Engine::chooseSent(const BoundLight& light, float u, const float* values, L
     v.Cl *= float(sum / weight(chosen));
 }
 
+bool Engine::lightQuery(const BatchContext& c, int li, int point, const Vec3& at, const Vec3& axis, float angle, int turns,
+                        uint32_t nth, ShadePoint& p, float* factor) const {
+    const BoundLight& light = world_->lights_[size_t(li)];
+    const ShadePoint& of = c.points[size_t(point)];
+    p = of;
+    p.Ps = at;
+    p.lit = at == of.P ? &of.surface : nullptr;
+    p.Ns = p.N;
+    p.viewI = p.I;
+    p.Ci = Color(0);
+    *factor = 1;
+    const uint32_t use = kLightPoint + uint32_t(li);
+    if (light.kind == LightKind::Area) {
+        if (!light.emitter || !p.ray) return false;
+        Random rng = random(*p.ray);
+        Emitter::Sample s;
+        const float choose = light.emitter->chooses() ? rng.one(p.ray->vertex, use, nth) : 0;
+        const Vec2 u = rng.pair(p.ray->vertex, use, nth);
+        if (!(light.mean ? light.emitter->sampleSurface(at, u, choose, s, p.surface, light.pointNeeds)
+                         : light.emitter->sample(at, u, choose, s, p.surface, light.pointNeeds)))
+            return false;
+        p.shape = s.shape;
+        p.P = p.surface.P;
+        p.N = p.surface.n;
+        // A loop has no lobe of its own: it sees an emitter as wide as diffuse() does.
+        static const LobeKind* const diffuse = findLobe("diffuse");
+        if (usesFootprint(light)) setEmitterFootprint(p, *p.ray, at, spreadBehind(*p.ray, diffuse->spread(LobeParams{})));
+        // cosLight A / (pi d^2 n), design decision 4
+        *factor = light.mean ? 1 / (s.pdf * float(turns)) : 1 / (float(kPi) * s.pdf * float(turns));
+    } else if (light.kind == LightKind::Environment && world_->settings_.hider != Hider::Path) {
+        // One direction, that of the surface: what diffuse() makes of it is what an even sky gives.
+        const Vec3 to = length(axis) > 0 ? axis : dot(p.N, p.I) > 0 ? -p.N : p.N;
+        const Vec3 w = length(to) > 0 ? normalize(to) : Vec3(0, 0, 1);
+        p.shape = nullptr;
+        p.P = at + w;
+        p.N = -w;
+    } else if (light.kind == LightKind::Environment) {
+        // The sky from directions evenly in the cone of the loop.
+        if (!p.ray) return false;
+        const float la = length(axis);
+        const bool all = !(la > 0) || !(angle < float(kPi));
+        const float cap = all ? 2 : 2 * std::pow(std::sin(0.5f * std::max(angle, 0.f)), 2.f); // 1 - cos of the half angle
+        if (!(cap > 0)) return false;
+        Random rng = random(*p.ray);
+        const Vec3 w = Basis(all ? Vec3(0, 0, 1) : axis / la).toWorld(sampleCone(cap, rng.pair(p.ray->vertex, use, nth)));
+        p.shape = nullptr;
+        p.P = at + w;
+        p.N = -w;
+        *factor = 2 * cap / float(turns); // 1 / (pi pdf n)
+    } else {
+        p.shape = nullptr;
+        p.P = Vec3(transformPoint(light.instance->toCurrent, {0, 0, 0}));
+        if (light.cone) {
+            if (p.ray && world_->settings_.hider == Hider::Path) p.Ci = coneNumbers(random(*p.ray).pair(p.ray->vertex, use, nth));
+            *factor = 1 / float(turns);
+        }
+    }
+    return true;
+}
+
 uint64_t Engine::sampleLight(BatchContext& c, const LightLoop& loop, int li, int turn, int turns, int first, uint64_t mask, int lanes, LightLoop::Kept& kept) {
     const BoundLight& light = world_->lights_[size_t(li)];
     auto row = [&](int r, int lane) { return loop.rows[size_t(r) * size_t(lanes) + size_t(lane)]; };
@@ -212,66 +272,15 @@ uint64_t Engine::sampleLight(BatchContext& c, const LightLoop& loop, int li, int
     std::vector<int> laneOf;
     std::vector<float> factor;
     uint64_t lit = 0;
-    // A loop has no lobe of its own: it sees an emitter as wide as diffuse() does.
-    const bool wide = light.kind == LightKind::Area && usesFootprint(light);
-    const float diffuse = wide ? findLobe("diffuse")->spread(LobeParams{}) : 0;
     for (int lane = 0; lane < lanes; ++lane) {
         if (!(mask >> lane & 1) || first + lane >= int(c.points.size())) continue;
-        ShadePoint p = c.points[size_t(first + lane)];
-        const Vec3 at(row(0, lane), row(1, lane), row(2, lane));
-        p.Ps = at;
-        p.lit = at == c.points[size_t(first + lane)].P ? &c.points[size_t(first + lane)].surface : nullptr;
-        p.Ns = p.N;
-        p.viewI = p.I;
-        p.Ci = Color(0);
+        const Vec3 at(row(0, lane), row(1, lane), row(2, lane)), axis(row(3, lane), row(4, lane), row(5, lane));
+        ShadePoint& p = q.emplace_back();
         float f = 1;
-        const uint32_t use = kLightPoint + uint32_t(li), nth = drawOf(loop, turn);
-        if (light.kind == LightKind::Area) {
-            if (!light.emitter || !p.ray) continue;
-            Random rng = random(*p.ray);
-            Emitter::Sample s;
-            const float choose = light.emitter->chooses() ? rng.one(p.ray->vertex, use, nth) : 0;
-            const Vec2 u = rng.pair(p.ray->vertex, use, nth);
-            if (!(light.mean ? light.emitter->sampleSurface(at, u, choose, s, p.surface, light.pointNeeds)
-                             : light.emitter->sample(at, u, choose, s, p.surface, light.pointNeeds)))
-                continue;
-            p.shape = s.shape;
-            p.P = p.surface.P;
-            p.N = p.surface.n;
-            if (wide) setEmitterFootprint(p, *p.ray, at, spreadBehind(*p.ray, diffuse));
-            f = light.mean ? 1 / (s.pdf * float(turns))
-                           : 1 / (float(kPi) * s.pdf * float(turns)); // cosLight A / (pi d^2 n), design decision 4
-        } else if (light.kind == LightKind::Environment && world_->settings_.hider != Hider::Path) {
-            // One direction, that of the surface: what diffuse() makes of it is what an even sky gives.
-            Vec3 axis(row(3, lane), row(4, lane), row(5, lane));
-            if (!(length(axis) > 0)) axis = dot(p.N, p.I) > 0 ? -p.N : p.N;
-            const Vec3 w = length(axis) > 0 ? normalize(axis) : Vec3(0, 0, 1);
-            p.shape = nullptr;
-            p.P = at + w;
-            p.N = -w;
-        } else if (light.kind == LightKind::Environment) {
-            // The sky from directions evenly in the cone of the loop.
-            if (!p.ray) continue;
-            Vec3 axis(row(3, lane), row(4, lane), row(5, lane));
-            float angle = row(6, lane), la = length(axis);
-            bool all = !(la > 0) || !(angle < float(kPi));
-            float cap = all ? 2 : 2 * std::pow(std::sin(0.5f * std::max(angle, 0.f)), 2.f); // 1 - cos of the half angle
-            if (!(cap > 0)) continue;
-            Random rng = random(*p.ray);
-            Vec3 w = Basis(all ? Vec3(0, 0, 1) : axis / la).toWorld(sampleCone(cap, rng.pair(p.ray->vertex, use, nth)));
-            p.shape = nullptr;
-            p.P = at + w;
-            p.N = -w;
-            f = 2 * cap / float(turns); // 1 / (pi pdf n)
-        } else {
-            p.shape = nullptr;
-            p.P = Vec3(transformPoint(light.instance->toCurrent, {0, 0, 0}));
-            if (light.cone) {
-                if (p.ray && world_->settings_.hider == Hider::Path) p.Ci = coneNumbers(random(*p.ray).pair(p.ray->vertex, use, nth));
-                f = 1 / float(turns);
-            }
+        if (!lightQuery(c, li, first + lane, at, axis, row(6, lane), turns, drawOf(loop, turn), p, &f)) {
+            q.pop_back();
+            continue;
         }
-        q.push_back(p);
         laneOf.push_back(lane);
         factor.push_back(f);
     }

@@ -85,43 +85,75 @@ void answerMessage(Engine& engine, const ServiceCall& q) {
     });
 }
 
+/// What lightsource() asks of a light.
+struct LightParameter {
+    std::optional<Told> told; ///< as the light was given it; nothing: it has none of that name
+    struct Part { int from, components; size_t to; };
+    std::vector<Part> written; ///< by its kernel: where they lie in BoundLight::values, and in the answer
+};
+
+const LightParameter& Engine::lightParameter(int32_t id, int light) {
+    auto& known = lightParameters_[uint64_t(uint32_t(id)) << 32 | uint32_t(light)];
+    if (known) return *known;
+    auto made = std::make_shared<LightParameter>();
+    const BoundLight& l = world_->lights_[size_t(light)];
+    const std::string& name = rsl::internedString(id);
+    made->told = toldBy(*l.instance, name);
+    int offset = 0;
+    for (const BoundLight::Value& v : l.values) {
+        const bool element = made->told && made->told->elements > 0 && v.name.rfind(name + "[", 0) == 0;
+        if (made->told && (v.name == name || element)) {
+            const size_t size = made->told->numbers.size() / size_t(std::max(1, made->told->elements));
+            made->written.push_back({offset, v.components, element ? size * size_t(std::atoi(v.name.c_str() + name.size() + 1)) : 0});
+        }
+        offset += v.components;
+    }
+    known = std::move(made);
+    return *known;
+}
+
+namespace {
+
+/// What a surface has sent to a parameter of a light.
+void tellSent(const ServiceCall& q, const LightLoop& loop, const SiteInfo& setup, int lane, const std::string& name, Told& t) {
+    const std::string key = "send:light:" + name;
+    if (t.kind == rsl::ir::Kind::String) {
+        if (const auto text = setup.text.find(key); text != setup.text.end()) t.texts = {text->second};
+        return;
+    }
+    size_t to = 0;
+    const auto sent = [&](int row, int size) {
+        for (int r = 0; r < size && to < t.numbers.size(); ++r)
+            t.numbers[to++] = loop.given[size_t(row + r) * size_t(q.lanes) + size_t(lane)];
+    };
+    const size_t size = t.numbers.size() / size_t(std::max(1, t.elements));
+    if (const auto row = setup.named.find(key); row != setup.named.end()) sent(row->second, int(rowsOf(setup, row->second)));
+    for (int n = 0; t.elements > 0; ++n) { // an array that was sent: what it does not reach stays
+        const auto row = setup.named.find(key + "[" + std::to_string(n) + "]");
+        if (row == setup.named.end() || rowsOf(setup, row->second) != size) break;
+        sent(row->second, int(size));
+    }
+}
+
+} // namespace
+
 void answerLightSource(Engine& engine, const ServiceCall& q) {
     const LightLoop& loop = engine.lightLoop(q.c, q.first, q.lanes);
-    if (loop.light < 0 || q.s.text.count("__outside")) return;
-    const BoundLight& l = engine.world().lights_[size_t(loop.light)];
+    if (loop.light < 0 || q.s.outside) return;
+    const int width = engine.world().lights_[size_t(loop.light)].valueWidth;
     const SiteInfo* setup = loop.setup >= 0 ? &q.c.bound->sites[size_t(loop.setup)] : nullptr;
-    const auto sent = [&](const SiteInfo::Output& from, int lane, std::vector<float>& to, size_t& at) {
-        for (int r = 0; r < from.size && at < to.size(); ++r) to[at++] = loop.given[size_t(from.row + r) * size_t(q.lanes) + size_t(lane)];
-    };
     q.each([&](int lane, const ShadePoint&) {
         // What the light's shader has written; what was sent to it; what it was given.
-        const std::string name = q.name(lane), key = "send:light:" + name;
-        std::optional<Told> t = toldBy(*l.instance, name);
-        if (!t) return;
-        const size_t size = t->numbers.size() / size_t(std::max(1, t->elements));
-        bool written = false;
-        int offset = lane * l.valueWidth;
-        for (const BoundLight::Value& v : l.values) {
-            const bool element = t->elements > 0 && v.name.rfind(name + "[", 0) == 0;
-            if (v.name == name || element) {
-                const size_t at = element ? size * size_t(std::atoi(v.name.c_str() + name.size() + 1)) : 0;
-                for (int r = 0; r < v.components && at + size_t(r) < t->numbers.size(); ++r) t->numbers[at + size_t(r)] = loop.values[size_t(offset + r)];
-                written = true;
-            }
-            offset += v.components;
-        }
-        if (!written && setup && t->kind == rsl::ir::Kind::String) {
-            if (const auto text = setup->text.find(key); text != setup->text.end()) t->texts = {text->second};
-        } else if (!written && setup) {
-            size_t to = 0;
-            if (const auto row = setup->named.find(key); row != setup->named.end()) sent({name, row->second, int(rowsOf(*setup, row->second))}, lane, t->numbers, to);
-            for (int n = 0; t->elements > 0; ++n) { // an array that was sent: what it does not reach stays
-                const auto row = setup->named.find(key + "[" + std::to_string(n) + "]");
-                if (row == setup->named.end() || rowsOf(*setup, row->second) != size) break;
-                sent({name, row->second, int(size)}, lane, t->numbers, to);
-            }
-        }
-        q.answer(lane, *t);
+        const int32_t name = q.nameId(lane);
+        const LightParameter& p = engine.lightParameter(name, loop.light);
+        if (!p.told) return;
+        if (p.written.empty() && !setup) return q.answer(lane, *p.told);
+        Told t = *p.told;
+        for (const LightParameter::Part& part : p.written)
+            for (int r = 0; r < part.components && part.to + size_t(r) < t.numbers.size(); ++r)
+                t.numbers[part.to + size_t(r)] = loop.values[size_t(lane * width + part.from + r)];
+        if (p.written.empty()) tellSent(q, loop, *setup, lane, rsl::internedString(name), t);
+        q.answer(lane, t);
     });
 }
 
@@ -163,7 +195,7 @@ std::optional<Information> ofThePrimitive(const WorldImpl& w, const ShadePoint& 
 void answerAttribute(Engine& engine, const ServiceCall& q) {
     const WorldImpl& w = engine.world();
     const scene::Light* self = q.c.light ? q.c.light->source : nullptr;
-    const int turn = self || q.s.text.count("__outside") ? -1 : engine.lightLoop(q.c, q.first, q.lanes).light;
+    const int turn = self || q.s.outside ? -1 : engine.lightLoop(q.c, q.first, q.lanes).light;
     const scene::Light* other = turn >= 0 ? w.lights_[size_t(turn)].source : nullptr;
     const bool imager = runsImager(q.c);
     q.each([&](int lane, const ShadePoint& p) {
@@ -187,7 +219,7 @@ void answerShaderName(Engine& engine, const ServiceCall& q) {
         InstanceRef of;
         if (own && c.light) of = c.light->instance;
         else if (kind == "lightsource") {
-            const int turn = c.light || q.s.text.count("__outside") ? -1 : engine.lightLoop(c, q.first, q.lanes).light;
+            const int turn = c.light || q.s.outside ? -1 : engine.lightLoop(c, q.first, q.lanes).light;
             of = c.light ? c.light->instance : turn >= 0 ? w.lights_[size_t(turn)].instance : nullptr;
         } else if (b && own) of = c.bound == &b->displacementS ? b->displacement : c.volume ? c.volume->shader : b->surface;
         else if (b) of = shaderOf(*b, asked(kind), p);

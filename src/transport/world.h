@@ -99,6 +99,9 @@ struct SiteInfo {
     std::shared_ptr<const struct TraceSite> trace; ///< Trace: what only some calls use
     std::shared_ptr<const RaySite> rays;       ///< Trace, Transmission
     std::shared_ptr<const TextureSite> map;    ///< Texture, Environment
+    bool setUp = false, refresh = false, outside = false; ///< loops: "__setup", "lightcache" "refresh"; queries: "__outside" of loops
+    int rowCategory = -1;                      ///< LightSetup: of "category", in the setup's arguments
+    uint64_t sentStrings = 0;                  ///< of sentStrings(): its hash, 0 for none
     int32_t nameId = 0;                        ///< the first string of the call, interned; 0: none, or known only when it runs
     /// Outputs of the surface that lights ask for: name, row, numbers.
     struct Output { std::string name; int row, size; };

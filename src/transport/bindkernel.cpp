@@ -128,6 +128,12 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
             out += rsl::ir::components(s.resultKinds[r]);
         }
         i.resultRowCount = out;
+        const auto result = [&](const char* name) {
+            const auto f = i.resultRows.find(name);
+            return f == i.resultRows.end() ? -1 : f->second;
+        };
+        i.results = {result(""), result("dist"), result("transmission"), result("hitnormal"), result("environmentcontribution"),
+                     result("unshadowedenvironment"), result("arealightcontribution"), result("unshadowedarealight")};
         if (!s.strings.empty() && !s.strings[0].empty()) i.nameId = rsl::internString(s.strings[0]);
         i.setUp = i.text.count("__setup") > 0;
         i.outside = i.text.count("__outside") > 0;

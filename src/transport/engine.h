@@ -238,8 +238,17 @@ public:
     // manylights.cpp
     /// Probability that a light is among those that are sampled at a point of the binding at `at`.
     float chanceOf(int light, int binding, const Vec3& at) const;
+    // raysets.cpp
+    /// For one call. f: a row of its arguments; from: the shape whose shader calls, or null, whose Attribute "grouping"
+    /// "tracesubset" holds where no subset is given. Also tells the type and the label of the rays.
+    shading::RaySet raySetOf(const SiteInfo&, const std::function<float(int)>& f, const geometry::Shape* from, RayType& type,
+                             int32_t& label);
+    /// ShapeSubsets::find() without a lock from the second time on; texts are interned. `from`: whose "tracesubset" holds.
+    const uint8_t* shapesOf(int32_t subset, int32_t exclude, const scene::Attributes* from);
+    std::map<std::tuple<int32_t, int32_t, const scene::Attributes*>, const uint8_t*> subsetsKnown_;
     // messages.cpp
-    const LightParameter& lightParameter(int32_t name, int light);
+    /// What has been answered to shaders before, and holds for good.
+    struct AnswerMemo& answers();
     // lightloop.cpp
     /// What lightBegin() is to know beyond its rows: a category, sent values, outputs of the surface.
     void lightSetup(BatchContext&, int site, int first, uint64_t mask, int lanes, const float* in);
@@ -390,7 +399,7 @@ private:
     std::vector<int> sheetNumbers_;                     ///< by light: of its first sample; -1: it has no sheets
     int sheets_ = 0;
     struct SheetRoom { std::vector<ShadePoint> q; std::vector<int> of; std::vector<float> factor, values; std::vector<LightValue> v; } sheetRoom_;
-    std::unordered_map<uint64_t, std::shared_ptr<const LightParameter>> lightParameters_; ///< by name and light
+    std::shared_ptr<struct AnswerMemo> answers_;
     uint64_t sampleLight(BatchContext&, const LightLoop&, int light, int turn, int turns, int first, uint64_t mask, int lanes, LightLoop::Kept& kept);
     /// Sample `turn` of a light that sends through generateSamples(), by its BoundLight::values at a point.
     static void sentSample(const BoundLight&, int turn, const float* values, LightValue&);

@@ -98,6 +98,12 @@ std::optional<Information> attributeOf(const WorldImpl& w, const scene::Attribut
     return unset(name, w.settings().hider == Hider::Path);
 }
 
+bool ofPoint(const std::string& name) {
+    for (const char* n : {"Ri:Transformation", "geometry:backfacing", "geometry:frontfacing", "geometry:geometricnormal", "diffusedepth"})
+        if (name == n) return true;
+    return false;
+}
+
 std::optional<Information> optionOf(const WorldImpl& w, const std::string& name) {
     const scene::Options& o = w.frame().options;
     std::vector<float> v;

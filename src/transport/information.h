@@ -16,6 +16,8 @@ struct Information {
 /// to a point or its shaders is not known. Nothing for a name that nobody has.
 std::optional<Information> attributeOf(const WorldImpl&, const scene::Attributes&, const std::string& name, const shading::ShadePoint* point,
                                        const SurfaceBinding* binding);
+/// Whether an attribute of this name differs from point to point of a primitive.
+bool ofPoint(const std::string& name);
 /// An option of the frame (Table 6.21, "user:..." or "class:name").
 std::optional<Information> optionOf(const WorldImpl&, const std::string& name);
 /// What rendererinfo() knows by that name.

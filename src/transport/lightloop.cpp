@@ -166,35 +166,49 @@ uint64_t Engine::lightFetch(BatchContext& c, int index, int first, uint64_t mask
 }
 
 namespace {
-/// Whether light from this way comes through the cone of a loop: its axis and half angle.
-bool inCone(const LightLoop& loop, size_t width, size_t lane, const Vec3& toLight) {
-    const float angle = loop.rows[6 * width + lane];
-    if (!(angle < float(kPi))) return true;
-    Vec3 axis(loop.rows[3 * width + lane], loop.rows[4 * width + lane], loop.rows[5 * width + lane]);
-    const float most = std::max({std::fabs(axis.x), std::fabs(axis.y), std::fabs(axis.z)});
-    if (most > 1e15f || (most > 0 && most < 1e-15f)) axis = axis / most; // its square must be a number
-    const float la = length(axis), ll = length(toLight);
-    return !(la > 0 && ll > 0) || dot(axis, toLight) >= la * ll * std::cos(angle);
-}
+/// The cone of a loop at its points. Most loops have one angle.
+class LoopCone {
+public:
+    LoopCone(const LightLoop& loop, size_t width) : rows_(loop.rows.data()), width_(width) {}
+    /// Whether light from this way comes through it.
+    bool has(size_t lane, const Vec3& toLight) {
+        const float angle = rows_[6 * width_ + lane];
+        if (!(angle < float(kPi))) return true;
+        Vec3 axis(rows_[3 * width_ + lane], rows_[4 * width_ + lane], rows_[5 * width_ + lane]);
+        const float most = std::max({std::fabs(axis.x), std::fabs(axis.y), std::fabs(axis.z)});
+        if (most > 1e15f || (most > 0 && most < 1e-15f)) axis = axis / most; // its square must be a number
+        const float la = length(axis), ll = length(toLight);
+        if (angle != angle_) cosine_ = std::cos(angle_ = angle);
+        return !(la > 0 && ll > 0) || dot(axis, toLight) >= la * ll * cosine_;
+    }
+
+private:
+    const float* rows_;
+    size_t width_;
+    float angle_ = 0, cosine_ = 1;
+};
 } // namespace
 
 uint64_t Engine::takeFromSheet(BatchContext& c, LightLoop& loop, const LightSheet& sheet, const BoundLight& light, int first,
                                uint64_t mask, int lanes, float* out) {
-    const size_t width = size_t(lanes), size = size_t(sheet.size), values = size_t(light.valueWidth);
-    c.lightDistance.assign(width, 1e38f);
-    loop.values.assign(width * values, 0);
-    uint64_t lit = 0;
-    for (size_t lane = 0; lane < width; ++lane) {
-        const size_t point = size_t(first) + lane;
-        if (!(mask >> lane & 1) || point >= size) continue;
-        std::copy_n(sheet.values.begin() + long(point * values), values, loop.values.begin() + long(lane * values));
-        if (!sheet.lit[point]) continue;
-        const auto at = [&](size_t r) { return sheet.out[r * size + point]; };
-        if (!inCone(loop, width, lane, {at(0), at(1), at(2)})) continue;
-        lit |= uint64_t(1) << lane;
-        c.lightDistance[lane] = sheet.distance[point];
-        for (size_t r = 0; r < 9; ++r) out[r * width + lane] = at(r);
+    const size_t width = size_t(lanes), size = size_t(sheet.size), from = size_t(first);
+    const size_t most = std::min(width, size - std::min(size, from));
+    if (const size_t values = size_t(light.valueWidth)) {
+        loop.values.assign(width * values, 0);
+        std::copy_n(sheet.values.begin() + long(from * values), most * values, loop.values.begin());
     }
+    c.lightDistance.assign(width, 1e38f);
+    LoopCone cone(loop, width);
+    uint64_t lit = 0;
+    for (size_t lane = 0; lane < most; ++lane) {
+        const auto at = [&](size_t r) { return sheet.out[r * size + from + lane]; };
+        if (!(mask >> lane & 1) || !sheet.lit[from + lane] || !cone.has(lane, {at(0), at(1), at(2)})) continue;
+        lit |= uint64_t(1) << lane;
+        c.lightDistance[lane] = sheet.distance[from + lane];
+    }
+    for (size_t r = 0; r < 9; ++r)
+        for (size_t lane = 0; lane < most; ++lane)
+            if (lit >> lane & 1) out[r * width + lane] = sheet.out[r * size + from + lane];
     return lit;
 }
 
@@ -234,10 +248,11 @@ uint64_t Engine::fetchKept(BatchContext& c, LightLoop& loop, int li, int k, int 
     loop.values = kept.values;
     uint64_t lit = 0;
     c.lightDistance.assign(width, 1e38f);
+    LoopCone cone(loop, width);
     for (int lane = 0; lane < lanes; ++lane) {
         if (!((mask & kept.lit) >> lane & 1)) continue;
         const size_t l = size_t(lane);
-        if (light.kind != LightKind::Environment && !inCone(loop, width, l, {kept.out[l], kept.out[width + l], kept.out[2 * width + l]}))
+        if (light.kind != LightKind::Environment && !cone.has(l, {kept.out[l], kept.out[width + l], kept.out[2 * width + l]}))
             continue;
         lit |= uint64_t(1) << lane;
         c.lightDistance[l] = kept.distance[l];

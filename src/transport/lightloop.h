@@ -81,9 +81,6 @@ struct LightSheet {
     std::vector<char> lit;                        ///< by point
 };
 
-/// What lightsource() asks of a light: nothing, the value that the light was given, or in parts what its kernel writes.
-struct LightParameter;
-
 /// Lights that are sampled give every depth of loops samples of its own: the product of an outer and of an inner loop has the mean that it
 /// should have.
 bool sampledAnew(const BoundLight&, bool path);

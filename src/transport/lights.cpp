@@ -149,17 +149,16 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
                 for (int lane = 0; lane < c->requestLanes; ++lane) {
                     if (!(c->requestMask >> lane & 1) || first + lane >= int(c->points.size())) continue;
                     const std::function<float(int)> row = [&](int r) { return c->requestIn[size_t(r) * c->requestLanes + lane]; };
-                    auto put = [&](const char* name, int rows, const Color& v) {
-                        if (auto to = s.resultRows.find(name); to != s.resultRows.end())
-                            for (int r = 0; r < rows; ++r) c->requestOut[size_t(to->second + r) * c->requestLanes + lane] = v[r];
+                    auto put = [&](int row, int rows, const Color& v) {
+                        for (int r = 0; r < rows && row >= 0; ++r) c->requestOut[size_t(row + r) * c->requestLanes + lane] = v[r];
                     };
                     for (int r = 0; r < s.resultRowCount; ++r) c->requestOut[size_t(r) * c->requestLanes + lane] = 0;
                     const shading::TargetValue t = rayOfLight(*c, s, first + lane, row, asked[size_t(c->requestSite) * size_t(c->batch->size()) + size_t(first + lane)]++);
                     const bool distance = s.kind == SiteKind::Trace && s.site->resultType.base == rsl::Base::Float;
-                    put("", distance ? 1 : 3, distance ? Color(t.distance) : t.radiance);
-                    put("dist", 1, Color(t.distance));
-                    put("transmission", 3, t.transmission);
-                    put("hitnormal", 3, t.normal);
+                    put(s.results.value, distance ? 1 : 3, distance ? Color(t.distance) : t.radiance);
+                    put(s.results.distance, 1, Color(t.distance));
+                    put(s.results.transmission, 3, t.transmission);
+                    put(s.results.normal, 3, t.normal);
                 }
                 k.resume(h);
                 c->ran();

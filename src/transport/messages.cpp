@@ -64,9 +64,12 @@ void answerMessage(Engine& engine, const ServiceCall& q) {
         const SurfaceBinding* b = q.binding(engine.world(), lane);
         if (!b) return;
         const InstanceRef& shader = shaderOf(*b, who, p);
-        const std::string name = q.name(lane);
-        std::optional<Told> t = shader ? toldBy(*shader, name) : std::nullopt;
-        if (!t) return;
+        if (!shader) return;
+        const auto [known, fresh] = engine.answers().ofShaders.try_emplace({q.nameId(lane), shader.get()});
+        if (fresh) known->second = toldBy(*shader, rsl::internedString(q.nameId(lane)));
+        if (!known->second) return;
+        std::optional<Told> t = known->second;
+        const std::string& name = rsl::internedString(q.nameId(lane));
         const int point = q.first + lane;
         if (c.lit) { // a light asks: its point is not that of the surface
             if (std::vector<float> now; who == Asks::Surface && c.lit->output(point, name, now)) t->numbers = now;
@@ -85,18 +88,18 @@ void answerMessage(Engine& engine, const ServiceCall& q) {
     });
 }
 
-/// What lightsource() asks of a light.
-struct LightParameter {
-    std::optional<Told> told; ///< as the light was given it; nothing: it has none of that name
-    struct Part { int from, components; size_t to; };
-    std::vector<Part> written; ///< by its kernel: where they lie in BoundLight::values, and in the answer
-};
+AnswerMemo& Engine::answers() {
+    if (!answers_) answers_ = std::make_shared<AnswerMemo>();
+    return *answers_;
+}
 
-const LightParameter& Engine::lightParameter(int32_t id, int light) {
-    auto& known = lightParameters_[uint64_t(uint32_t(id)) << 32 | uint32_t(light)];
-    if (known) return *known;
-    auto made = std::make_shared<LightParameter>();
-    const BoundLight& l = world_->lights_[size_t(light)];
+namespace {
+
+const LightParameter& lightParameter(Engine& engine, int32_t id, int light) {
+    const auto [known, fresh] = engine.answers().ofLights.try_emplace({id, light});
+    if (!fresh) return known->second;
+    LightParameter* made = &known->second;
+    const BoundLight& l = engine.world().lights_[size_t(light)];
     const std::string& name = rsl::internedString(id);
     made->told = toldBy(*l.instance, name);
     int offset = 0;
@@ -108,11 +111,8 @@ const LightParameter& Engine::lightParameter(int32_t id, int light) {
         }
         offset += v.components;
     }
-    known = std::move(made);
-    return *known;
+    return *made;
 }
-
-namespace {
 
 /// What a surface has sent to a parameter of a light.
 void tellSent(const ServiceCall& q, const LightLoop& loop, const SiteInfo& setup, int lane, const std::string& name, Told& t) {
@@ -142,10 +142,12 @@ void answerLightSource(Engine& engine, const ServiceCall& q) {
     if (loop.light < 0 || q.s.outside) return;
     const int width = engine.world().lights_[size_t(loop.light)].valueWidth;
     const SiteInfo* setup = loop.setup >= 0 ? &q.c.bound->sites[size_t(loop.setup)] : nullptr;
+    const LightParameter* same = q.s.nameId ? &lightParameter(engine, q.s.nameId, loop.light) : nullptr;
+    if (same && !same->told) return;
     q.each([&](int lane, const ShadePoint&) {
         // What the light's shader has written; what was sent to it; what it was given.
         const int32_t name = q.nameId(lane);
-        const LightParameter& p = engine.lightParameter(name, loop.light);
+        const LightParameter& p = same ? *same : lightParameter(engine, name, loop.light);
         if (!p.told) return;
         if (p.written.empty() && !setup) return q.answer(lane, *p.told);
         Told t = *p.told;
@@ -192,14 +194,35 @@ std::optional<Information> ofThePrimitive(const WorldImpl& w, const ShadePoint& 
 
 } // namespace
 
+constexpr size_t kMostAttributes = 1 << 14; // answers that are kept: scenes have attributes by the million
+
 void answerAttribute(Engine& engine, const ServiceCall& q) {
     const WorldImpl& w = engine.world();
     const scene::Light* self = q.c.light ? q.c.light->source : nullptr;
     const int turn = self || q.s.outside ? -1 : engine.lightLoop(q.c, q.first, q.lanes).light;
     const scene::Light* other = turn >= 0 ? w.lights_[size_t(turn)].source : nullptr;
     const bool imager = runsImager(q.c);
+    AnswerMemo& memo = engine.answers();
+    const auto samePoints = [&](int32_t id) {
+        const auto [known, fresh] = memo.pointAttributes.try_emplace(id);
+        if (fresh) known->second = ofPoint(rsl::internedString(id));
+        return !known->second;
+    };
     q.each([&](int lane, const ShadePoint& p) {
-        const std::string name = q.name(lane);
+        const int32_t id = q.nameId(lane);
+        const std::string& name = rsl::internedString(id);
+        if (!self && !imager && w.built_ && p.shape && samePoints(id)) {
+            const SurfaceBinding* b = q.binding(w, lane);
+            if (memo.attributes.size() > kMostAttributes) memo.attributes.clear();
+            const auto [known, fresh] = memo.attributes.try_emplace({id, turn, &p.shape->attributes(), b});
+            if (fresh) {
+                std::optional<Information> i = other ? ofTheLightOfTheTurn(w, *other, name) : std::nullopt;
+                if (!i) i = ofThePrimitive(w, p, name, b);
+                if (i) known->second = Told(*i);
+            }
+            if (known->second) q.answer(lane, *known->second);
+            return;
+        }
         std::optional<Information> i;
         if (self) i = ofTheLightItself(w, *self, name);
         else if (other) i = ofTheLightOfTheTurn(w, *other, name);

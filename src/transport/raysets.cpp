@@ -1,6 +1,7 @@
 // Whom rays may meet: "subset", "excludesubset", "hitsides" and "hitmode" of the shadeops that trace, and the groups of objects that
 // Attribute "grouping" "membership" makes (rsl.md, table 6.10; ri.md 15.2).
 #include "transport/raysets.h"
+#include "transport/engine.h"
 #include <bit>
 #include <set>
 #include <sstream>
@@ -108,6 +109,8 @@ std::shared_ptr<const RaySite> raySite(const SiteInfo& i, WorldImpl& world, cons
     r->type = row("type") >= 0 ? row("type") : row("raytype");
     r->subsetText = text("subset");
     r->excludeText = text("excludesubset");
+    r->subsetId = rsl::internString(r->subsetText);
+    r->excludeId = rsl::internString(r->excludeText);
     const bool distance = i.kind == SiteKind::Trace && i.site->resultType.base == rsl::Base::Float; // float trace(): rsl.md 12.1
     const std::string type = !text("type").empty() ? text("type") : text("raytype");
     if (!type.empty() && type != "specular" && type != "diffuse" && type != "transmission") unknown("type", type, "specular, diffuse, transmission");
@@ -127,14 +130,25 @@ std::shared_ptr<const RaySite> raySite(const SiteInfo& i, WorldImpl& world, cons
     return r;
 }
 
-RaySet raySetOf(const WorldImpl& world, const SiteInfo& s, const std::function<float(int)>& f, const geometry::Shape* from, RayType& type, int32_t& label) {
+const uint8_t* Engine::shapesOf(int32_t subset, int32_t exclude, const scene::Attributes* from) {
+    // What the shape of the point says counts where the call names no subset.
+    const auto [known, fresh] = subsetsKnown_.try_emplace({subset, exclude, from}, nullptr);
+    if (!fresh) return known->second;
+    std::string wanted = rsl::internedString(subset);
+    if (wanted.empty() && from) wanted = attributeText(*from, "grouping:tracesubset");
+    return known->second = world_->subsets_.find(*world_, wanted, rsl::internedString(exclude));
+}
+
+RaySet Engine::raySetOf(const SiteInfo& s, const std::function<float(int)>& f, const geometry::Shape* from, RayType& type,
+                        int32_t& label) {
     const RaySite& r = *s.rays;
     RaySet set = r.set;
-    const auto word = [&](int row) { return std::string(rsl::internedString(std::bit_cast<int32_t>(f(row)))); };
+    const auto id = [&](int row) { return std::bit_cast<int32_t>(f(row)); };
+    const auto word = [&](int row) -> const std::string& { return rsl::internedString(id(row)); };
     type = r.rays;
-    label = r.label >= 0 ? std::bit_cast<int32_t>(f(r.label)) : s.label;
+    label = r.label >= 0 ? id(r.label) : s.label;
     if (r.type >= 0)
-        if (const std::string t = word(r.type); !t.empty()) {
+        if (const std::string& t = word(r.type); !t.empty()) {
             type = rayTypeOf(t);
             set.sides = type == RayType::Transmission ? accel::Sides::Both : accel::Sides::Front;
         }
@@ -142,11 +156,9 @@ RaySet raySetOf(const WorldImpl& world, const SiteInfo& s, const std::function<f
         if (const auto sides = sidesOf(word(r.sides))) set.sides = *sides;
     if (r.mode >= 0)
         if (const auto mode = modeOf(word(r.mode))) set.mode = *mode;
-    std::string subset = r.subset >= 0 ? word(r.subset) : r.subsetText;
-    bool anew = r.subset >= 0 || r.exclude >= 0;
-    if (subset.empty() && from)
-        if (subset = attributeText(from->attributes(), "grouping:tracesubset"); !subset.empty()) anew = true;
-    if (anew) set.only = world.subsets_.find(world, subset, r.exclude >= 0 ? word(r.exclude) : r.excludeText);
+    const int32_t subset = r.subset >= 0 ? id(r.subset) : r.subsetId, exclude = r.exclude >= 0 ? id(r.exclude) : r.excludeId;
+    const bool ofShape = subset == 0 && from && world_->traceSubsets_;
+    if (r.subset >= 0 || r.exclude >= 0 || ofShape) set.only = shapesOf(subset, exclude, ofShape ? &from->attributes() : nullptr);
     return set;
 }
 

@@ -94,7 +94,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
             l.rays = kindOf({s.rays->rays, true, s.rays->set, s.label});
         } else {
             RayKind kind{RayType::Diffuse, true, {}, 0};
-            kind.set = raySetOf(*world_, s, f, p.shape, kind.type, kind.label);
+            kind.set = raySetOf(s, f, p.shape, kind.type, kind.label);
             l.rays = kindOf(kind);
         }
         l.lights = number(s.rowLights, 0) != 0;

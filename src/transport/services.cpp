@@ -55,7 +55,12 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
     case SiteKind::PrimitiveVariable: answerPrimitiveVariable(call); return;
     case SiteKind::Option:
         each([&](int lane, const ShadePoint&) {
-            if (const auto i = optionOf(*world_, call.name(lane))) call.answer(lane, Told(*i));
+            const auto [known, fresh] = answers().options.try_emplace(call.nameId(lane));
+            if (fresh || !world_->built_) {
+                const auto i = optionOf(*world_, rsl::internedString(call.nameId(lane)));
+                known->second = i ? std::optional<Told>(Told(*i)) : std::nullopt;
+            }
+            if (known->second) call.answer(lane, *known->second);
         });
         return;
     case SiteKind::RendererInfo:

@@ -19,22 +19,21 @@ public:
         const SiteInfo& site = c_->bound->sites[site_];
         for (size_t k = 0; k < results.size(); ++k) {
             int lane = laneOf_[k];
-            auto put = [&](const char* name, int rows, const Color& v) {
-                auto i = site.resultRows.find(name);
-                if (i == site.resultRows.end()) return;
-                for (int r = 0; r < rows; ++r) out_[size_t(i->second + r) * lanes_ + lane] = v[r];
+            auto put = [&](int row, int rows, const Color& v) {
+                for (int r = 0; r < rows && row >= 0; ++r) out_[size_t(row + r) * lanes_ + lane] = v[r];
             };
-            if (site.site->resultType.base == rsl::Base::Float) put("", 1, Color(results[k].distance));
-            else put("", 3, results[k].radiance);
-            put("dist", 1, Color(results[k].distance));
-            put("transmission", 3, results[k].transmission);
-            put("hitnormal", 3, results[k].normal);
+            const SiteInfo::Results& to = site.results;
+            if (site.site->resultType.base == rsl::Base::Float) put(to.value, 1, Color(results[k].distance));
+            else put(to.value, 3, results[k].radiance);
+            put(to.distance, 1, Color(results[k].distance));
+            put(to.transmission, 3, results[k].transmission);
+            put(to.normal, 3, results[k].normal);
             if (const TraceSums* sums = ids_.empty() ? nullptr : c_->engine->sumsOf(ids_[k])) {
-                put("transmission", 3, Color(1) - sums->value(TraceSums::Blocked));
-                put("environmentcontribution", 3, sums->value(TraceSums::Environment));
-                put("unshadowedenvironment", 3, sums->value(TraceSums::UnshadowedEnvironment));
-                put("arealightcontribution", 3, sums->value(TraceSums::AreaLight));
-                put("unshadowedarealight", 3, sums->value(TraceSums::UnshadowedAreaLight));
+                put(to.transmission, 3, Color(1) - sums->value(TraceSums::Blocked));
+                put(to.environment, 3, sums->value(TraceSums::Environment));
+                put(to.unshadowedEnvironment, 3, sums->value(TraceSums::UnshadowedEnvironment));
+                put(to.areaLight, 3, sums->value(TraceSums::AreaLight));
+                put(to.unshadowedAreaLight, 3, sums->value(TraceSums::UnshadowedAreaLight));
             }
         }
         for (TargetId id : ids_) c_->engine->traceSums_.erase(id);

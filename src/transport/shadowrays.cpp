@@ -188,7 +188,7 @@ void Engine::transmissionRays(const SiteInfo& s, const ShadePoint& p, const Vec3
     ray.time = p.time;
     ray.ray = p.ray;
     RayKind kind = kShadowKind;
-    kind.set = raySetOf(*world_, s, f, p.shape, kind.type, kind.label);
+    kind.set = raySetOf(s, f, p.shape, kind.type, kind.label);
     ray.kind = kindOf(kind);
     const float bias = number(r.bias, -1), far = std::min(number(r.maxDistance, 1e38f), number(r.maxHit, 1e38f)), cone = number(r.cone, 0);
     const int count = cone > 0 && p.ray ? int(std::clamp(number(r.samples, 1), 1.f, 4096.f)) : 1; // rays all alike need not be sent twice

@@ -35,6 +35,7 @@ struct RaySite {
     int bias = -1, maxDistance = -1, maxHit = -1, cone = -1, samples = -1, base = -1;
     int subset = -1, exclude = -1, sides = -1, mode = -1, label = -1, type = -1; ///< strings that are known only when the shader runs
     std::string subsetText, excludeText;
+    int32_t subsetId = 0, excludeId = 0;  ///< the same, interned
     shading::RaySet set;                  ///< what is known beforehand
     RayType rays = RayType::Specular;
     bool fixed = false;                   ///< nothing of the set, the label and the type is known only when the shader runs
@@ -93,6 +94,11 @@ struct SiteInfo {
     std::map<std::string, std::string> text;   ///< constant string pairs
     std::map<std::string, int> resultRows;     ///< "" and output names -> first row of `out`
     int resultRowCount = 0;
+    /// Of `resultRows`, for those that rays answer; -1: nobody asked.
+    struct Results {
+        int value = -1, distance = -1, transmission = -1, normal = -1;
+        int environment = -1, unshadowedEnvironment = -1, areaLight = -1, unshadowedAreaLight = -1;
+    } results;
     const LobeKind* lobe = nullptr;            ///< Trace: the distribution; the lobe of a lighting shadeop
     float exponent = 1;                        ///< Specular: this over the roughness (shadeops/specular.h)
     int rowWo = -1, rowExponent = -1, rowCone = -1, rowHorizon = -1, rowLights = -1; ///< of `named`

@@ -1,4 +1,5 @@
 #include "base/matrix.h"
+#include "base/exact.h"
 #include <cstring>
 
 namespace alpenglow {
@@ -86,7 +87,7 @@ Matrix scaleMatrix(double x, double y, double z) {
 
 Matrix rotateMatrix(double degrees, double x, double y, double z) {
     Vec3d a = normalize(Vec3d(x, y, z));
-    double t = degrees * kPi / 180, c = std::cos(t), s = std::sin(t);
+    const auto [s, c] = exact::sinCos(degrees * kPi / 180);
     Matrix r;
     double k = 1 - c;
     double rows[3][3] = {{a.x * a.x * k + c, a.x * a.y * k + a.z * s, a.x * a.z * k - a.y * s},
@@ -105,8 +106,8 @@ Matrix skewMatrix(double degrees, Vec3d d1, Vec3d d2) {
     double s = length(w);
     if (!(s > 0)) return {};
     w = w / s;
-    double th = std::atan2(s, c), de = degrees * kPi / 180;
-    double f = 1 / std::tan(th - de) - 1 / std::tan(th);
+    double th = exact::atan2(s, c), de = degrees * kPi / 180;
+    double f = 1 / exact::tan(th - de) - 1 / exact::tan(th);
     Matrix r;
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) r.m[i][j] += w[i] * f * d2[j];
@@ -114,7 +115,7 @@ Matrix skewMatrix(double degrees, Vec3d d1, Vec3d d2) {
 }
 
 Matrix perspectiveMatrix(double fovDegrees) {
-    double t = std::tan(fovDegrees * kPi / 360);
+    double t = exact::tan(fovDegrees * kPi / 360);
     Matrix r;
     r.m[2][2] = t; r.m[2][3] = t; r.m[3][2] = -t; r.m[3][3] = 0;
     return r;

@@ -1,4 +1,5 @@
 // Cone height radius thetamax.
+#include "base/exact.h"
 #include "geometry/factories.h"
 #include "geometry/quadric.h"
 #include <cmath>
@@ -20,7 +21,7 @@ private:
         double k = r_ * r_ / h_;       // x^2 + y^2 = r^2 (1 - z/h)^2
         return {false, 0, -k / h_, 2 * k, -r_ * r_};
     }
-    double vOf(const Vec3d& p) const override { return h_ == 0 ? 1 - std::hypot(p.x, p.y) / std::fabs(r_) : p.z / h_; }
+    double vOf(const Vec3d& p) const override { return h_ == 0 ? 1 - exact::hypot(p.x, p.y) / std::fabs(r_) : p.z / h_; }
     double h_, r_;
 };
 

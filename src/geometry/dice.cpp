@@ -1,4 +1,5 @@
 #include "geometry/dice.h"
+#include "base/exact.h"
 #include "base/limits.h"
 #include <algorithm>
 #include <cmath>
@@ -27,7 +28,7 @@ DiceCamera DiceCamera::from(const scene::Options& o) {
     double x = std::fabs(o.xres / (right - left)), y = std::fabs(o.yres / (top - bottom));
     c.pixelsPerUnit = std::max(std::isfinite(x) ? x : 1, std::isfinite(y) ? y : 1);
     c.perspective = o.projection == "perspective";
-    if (c.perspective) c.pixelsPerUnit /= std::max(1e-6, std::tan(std::clamp(double(o.fov), 1e-3, 179.9) * kPi / 360));
+    if (c.perspective) c.pixelsPerUnit /= std::max(1e-6, exact::tan(std::clamp(double(o.fov), 1e-3, 179.9) * kPi / 360));
     return c;
 }
 

@@ -1,4 +1,5 @@
 // Disk height radius thetamax.
+#include "base/exact.h"
 #include "geometry/factories.h"
 #include "geometry/quadric.h"
 #include <cmath>
@@ -16,7 +17,7 @@ public:
 private:
     Profile profile(double v) const override { return {{r_ * (1 - v), 0, h_}, {-r_, 0, 0}, {}}; }
     Implicit implicit() const override { return {true, h_}; }
-    double vOf(const Vec3d& p) const override { return 1 - std::hypot(p.x, p.y) / std::fabs(r_); }
+    double vOf(const Vec3d& p) const override { return 1 - exact::hypot(p.x, p.y) / std::fabs(r_); }
     double h_, r_;
 };
 

@@ -1,4 +1,5 @@
 #include "geometry/quadric.h"
+#include "base/exact.h"
 #include "geometry/solve.h"
 #include <algorithm>
 #include <cmath>
@@ -49,7 +50,7 @@ void Quadric::finish(Diagnostics& diag) {
     zHi_ = -INFINITY;
     for (int i = 0; i <= kSteps; ++i) {
         Profile p = profile(double(i) / kSteps);
-        radius_ = std::max(radius_, std::hypot(p.p.x, p.p.y));
+        radius_ = std::max(radius_, exact::hypot(p.p.x, p.p.y));
         zLo_ = std::min(zLo_, p.p.z);
         zHi_ = std::max(zHi_, p.p.z);
         if (p.p.y != 0) offAxis_ = true;
@@ -80,13 +81,14 @@ Bounds Quadric::bounds() const {
 
 Vec3d Quadric::cameraPosition(double u, double v) const {
     Vec3d p = profile(v).p;
-    double c = std::cos(u * thetaMax_), s = std::sin(u * thetaMax_);
+    const auto [s, c] = exact::sinCos(u * thetaMax_);
     return transformPoint(toCamera(), Vec3d(p.x * c - p.y * s, p.x * s + p.y * c, p.z));
 }
 
 LocalPoint Quadric::cameraPoint(double u, double v) const {
     Profile q = profile(v);
-    double th = u * thetaMax_, c = std::cos(th), s = std::sin(th), k = thetaMax_;
+    const double k = thetaMax_;
+    const auto [s, c] = exact::sinCos(u * k);
     auto turn = [&](const Vec3d& p) { return Vec3d(p.x * c - p.y * s, p.x * s + p.y * c, p.z); };
     auto quarter = [](const Vec3d& p) { return Vec3d(-p.y, p.x, 0); };
     const Matrix& m = toCamera();
@@ -151,7 +153,7 @@ bool Quadric::accept(const Vec3d& p, double v, ExactHit& hit) const {
     Vec3d q = side ? Vec3d(side, 0, 0) : profile(hit.v).p;
     double theta = 0;
     if ((q.x != 0 || q.y != 0) && (p.x != 0 || p.y != 0))
-        theta = std::atan2(q.x * p.y - q.y * p.x, q.x * p.x + q.y * p.y); // from the profile to the point
+        theta = exact::atan2(q.x * p.y - q.y * p.x, q.x * p.x + q.y * p.y); // from the profile to the point
     double turn = thetaMax_ < 0 ? -2 * kPi : 2 * kPi;
     double u = theta / thetaMax_;
     if (u < -kEdge) u = (theta + turn) / thetaMax_;

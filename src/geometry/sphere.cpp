@@ -1,4 +1,5 @@
 // Sphere radius zmin zmax thetamax.
+#include "base/exact.h"
 #include "geometry/factories.h"
 #include "geometry/quadric.h"
 #include <algorithm>
@@ -11,22 +12,23 @@ class Sphere final : public Quadric {
 public:
     Sphere(ShapeSource s, double r, double zmin, double zmax, double sweep, Diagnostics& d)
         : Quadric(std::move(s), sweep, d), r_(r) {
-        phi0_ = std::asin(std::clamp(zmin / r, -1.0, 1.0));
-        phi1_ = std::asin(std::clamp(zmax / r, -1.0, 1.0));
+        phi0_ = exact::asin(std::clamp(zmin / r, -1.0, 1.0));
+        phi1_ = exact::asin(std::clamp(zmax / r, -1.0, 1.0));
         finish(d);
     }
     bool empty() const { return phi0_ == phi1_; }
 
 private:
     Profile profile(double v) const override {
-        double k = phi1_ - phi0_, phi = phi0_ + v * k, c = std::cos(phi), s = std::sin(phi);
+        const double k = phi1_ - phi0_;
+        const auto [s, c] = exact::sinCos(phi0_ + v * k);
         return {{r_ * c, 0, r_ * s}, {-r_ * k * s, 0, r_ * k * c}, {-r_ * k * k * c, 0, -r_ * k * k * s}};
     }
     int profileSide() const override { return r_ > 0 ? 1 : -1; } // the cosine of an arcsine
     Implicit implicit() const override { return {false, 0, 1, 0, -r_ * r_}; }
     bool wholeProfile() const override { return std::min(phi0_, phi1_) <= -kPi / 2 && std::max(phi0_, phi1_) >= kPi / 2; }
     double vOf(const Vec3d& p) const override {
-        double phi = std::atan2(r_ < 0 ? -p.z : p.z, std::sqrt(p.x * p.x + p.y * p.y));
+        double phi = exact::atan2(r_ < 0 ? -p.z : p.z, std::sqrt(p.x * p.x + p.y * p.y));
         return (phi - phi0_) / (phi1_ - phi0_);
     }
     double r_, phi0_, phi1_;

@@ -1,4 +1,5 @@
 // Torus majorrad minorrad phimin phimax thetamax.
+#include "base/exact.h"
 #include "geometry/factories.h"
 #include "geometry/quadric.h"
 #include "geometry/solve.h"
@@ -15,7 +16,8 @@ public:
 
 private:
     Profile profile(double v) const override {
-        double k = phi1_ - phi0_, phi = phi0_ + v * k, c = std::cos(phi), s = std::sin(phi);
+        const double k = phi1_ - phi0_;
+        const auto [s, c] = exact::sinCos(phi0_ + v * k);
         return {{R_ + r_ * c, 0, r_ * s}, {-r_ * k * s, 0, r_ * k * c}, {-r_ * k * k * c, 0, -r_ * k * k * s}};
     }
     Implicit implicit() const override { return {}; }
@@ -23,9 +25,9 @@ private:
 
     // Signed distance from the tube, well conditioned however thin it is.
     double distance(const Vec3d& p) const {
-        double rho = std::hypot(p.x, p.y), near = std::hypot(rho - R_, p.z) - std::fabs(r_);
+        double rho = exact::hypot(p.x, p.y), near = exact::hypot(rho - R_, p.z) - std::fabs(r_);
         // Self-crossing tori have an inner sheet, where the circle is on the other side of the axis.
-        double far = std::hypot(rho + R_, p.z) - std::fabs(r_);
+        double far = exact::hypot(rho + R_, p.z) - std::fabs(r_);
         return std::fabs(far) < std::fabs(near) ? far : near;
     }
 
@@ -60,11 +62,11 @@ private:
         return n;
     }
     double vOf(const Vec3d& p) const override {
-        double rho = std::hypot(p.x, p.y);
-        double near = std::fabs(std::hypot(rho - R_, p.z) - std::fabs(r_)),
-               far = std::fabs(std::hypot(-rho - R_, p.z) - std::fabs(r_));
+        double rho = exact::hypot(p.x, p.y);
+        double near = std::fabs(exact::hypot(rho - R_, p.z) - std::fabs(r_)),
+               far = std::fabs(exact::hypot(-rho - R_, p.z) - std::fabs(r_));
         if (far < near) rho = -rho;
-        double phi = std::atan2(r_ < 0 ? -p.z : p.z, r_ < 0 ? R_ - rho : rho - R_);
+        double phi = exact::atan2(r_ < 0 ? -p.z : p.z, r_ < 0 ? R_ - rho : rho - R_);
         double k = phi1_ - phi0_, turn = 2 * kPi / k;
         // phi is known up to whole turns: the one nearest inside the range.
         double v = (phi - phi0_) / k;

@@ -1,4 +1,5 @@
 #include "geometry/triangulate.h"
+#include "base/exact.h"
 #include "base/limits.h"
 #include <algorithm>
 #include <cmath>
@@ -181,7 +182,7 @@ TriangulationResult triangulate(std::span<const Vec3d> points, std::span<const i
         for (size_t i = 0; i < n && convex; ++i) {
             const P2 &a = p[ring[i]], &b = p[ring[(i + 1) % n]], &c = p[ring[(i + 2) % n]];
             if (turn(a, b, c) <= 0) convex = false; // flat corners too: a fan could pass over one
-            sumTurns += std::atan2(turn(a, b, c), (b.x - a.x) * (c.x - b.x) + (b.y - a.y) * (c.y - b.y));
+            sumTurns += exact::atan2(turn(a, b, c), (b.x - a.x) * (c.x - b.x) + (b.y - a.y) * (c.y - b.y));
         }
         if (convex && std::fabs(sumTurns - 2 * kPi) < 0.1) { // once around: a pentagram is locally convex too
             for (size_t i = 1; i + 1 < n; ++i)

@@ -1,4 +1,5 @@
 #include "render/camera.h"
+#include "base/exact.h"
 #include "base/limits.h"
 #include <algorithm>
 #include <cmath>
@@ -22,7 +23,8 @@ Vec2 toDisc(Vec2 u) {
         r = b;
         phi = kPi / 2 - kPi / 4 * (a / b);
     }
-    return {float(r * std::cos(phi)), float(r * std::sin(phi))};
+    const auto [s, c] = exact::sinCos(phi);
+    return {float(r * c), float(r * s)};
 }
 
 Matrix at(const scene::Transform& t, double time) {
@@ -101,7 +103,7 @@ Camera::Camera(const scene::Options& o, Diagnostics& diags) {
         bad("Projection \"perspective\": fov must lie between 0 and 180 degrees; 90 is used");
         fov_ = 90;
     }
-    tangent_ = std::tan(fov_ * kPi / 360);
+    tangent_ = exact::tan(fov_ * kPi / 360);
     near_ = o.clipNear > 0 && std::isfinite(o.clipNear) ? o.clipNear : 0;
     if (near_ <= 1e-9) near_ = 0; // RI_EPSILON: no plane was asked for
     if (o.clipFar < o.clipNear) bad("Clipping: far lies in front of near");

@@ -1,4 +1,5 @@
 #include "render/filtersampler.h"
+#include "base/exact.h"
 #include <algorithm>
 #include <cmath>
 
@@ -153,8 +154,9 @@ FilterSample FilterSampler::sample(Vec2 u) const {
         y = (u.y - 0.5) * filter_.yw;
     } else if (filter_.kind == FilterKind::Disk) {
         double r = 0.5 * std::sqrt(double(u.x)), a = 2 * kPi * u.y;
-        x = filter_.xw * r * std::cos(a);
-        y = filter_.yw * r * std::sin(a);
+        const auto [sine, cosine] = exact::sinCos(a);
+        x = filter_.xw * r * cosine;
+        y = filter_.yw * r * sine;
     } else if (filter_.separable()) {
         // The four products of signed parts, those with a positive product first.
         static constexpr int order[4][2] = {{0, 0}, {1, 1}, {0, 1}, {1, 0}};

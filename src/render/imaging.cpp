@@ -1,4 +1,5 @@
 #include "render/imaging.h"
+#include "base/exact.h"
 #include "base/hash.h"
 #include <algorithm>
 #include <cmath>
@@ -9,7 +10,7 @@ float expose(float v, float gain, float gamma) {
     v *= gain;
     if (gamma == 1 || !(gamma > 0))
         return v;
-    return std::copysign(float(std::pow(double(std::fabs(v)), 1.0 / double(gamma))), v);
+    return std::copysign(float(exact::pow(double(std::fabs(v)), 1.0 / double(gamma))), v);
 }
 
 Color expose(Color c, float gain, float gamma) { return {expose(c.x, gain, gamma), expose(c.y, gain, gamma), expose(c.z, gain, gamma)}; }

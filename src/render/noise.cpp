@@ -1,4 +1,5 @@
 #include "render/noise.h"
+#include "base/exact.h"
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,7 +12,8 @@ double relative(double se, double mean) { return se / (std::max(mean, 0.0) + kNo
 
 // P(|T| <= t), Abramowitz and Stegun 26.7.3 and 26.7.4: finite sums for whole degrees of freedom.
 double studentWithin(double t, int dof) {
-    double theta = std::atan(t / std::sqrt(double(dof))), s = std::sin(theta), c = std::cos(theta);
+    const double theta = exact::atan(t / std::sqrt(double(dof)));
+    const auto [s, c] = exact::sinCos(theta);
     if (dof % 2) {
         double term = c, sum = 0;
         for (int k = 1; k <= dof - 2; k += 2) {
@@ -190,7 +192,7 @@ double studentQuantile(double level, double dof) {
     const double a = studentOfWhole(level, whole);
     if (dof == whole || whole == 1'000'000) return a;
     const double share = (1 / dof - 1.0 / whole) / (1.0 / (whole + 1) - 1.0 / whole);
-    return a * std::pow(studentOfWhole(level, whole + 1) / a, share);
+    return a * exact::pow(studentOfWhole(level, whole + 1) / a, share);
 }
 
 Interval confidenceInterval(const PooledError& e, double level) {

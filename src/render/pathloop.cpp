@@ -72,7 +72,7 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
         s.fraction = total ? done / double(total) : -1;
         if (settings.seconds > 0) s.fraction = std::max(s.fraction, std::min(1.0, t / settings.seconds));
         if (settings.noise > 0 && noise.noise > 0)
-            s.fraction = std::max(s.fraction, std::min(1.0, std::pow(settings.noise / noise.noise, 2)));
+            s.fraction = std::max(s.fraction, std::min(1.0, settings.noise / noise.noise * (settings.noise / noise.noise)));
         if (last) job.progress.finish(s, job.what);
         else job.progress.update(s, job.what);
     };

@@ -1,4 +1,5 @@
 #include "render/pixelfilter.h"
+#include "base/exact.h"
 #include "base/limits.h"
 #include "base/vec.h"
 #include <cmath>
@@ -24,7 +25,7 @@ double cubicBC(double t, double B, double C) {
 double sinc(double x) {
     // Below 1e-4 the series is exact to double precision and the quotient is not.
     double p = kPi * x;
-    return std::fabs(p) < 1e-4 ? 1 - p * p / 6 : std::sin(p) / p;
+    return std::fabs(p) < 1e-4 ? 1 - p * p / 6 : exact::sin(p) / p;
 }
 
 // Bessel function of the first kind, order 1, from its integral (1/pi) int_0^pi cos(t - x sin t) dt: the integrand is even and
@@ -32,10 +33,10 @@ double sinc(double x) {
 // some C++ libraries lack it.)
 double besselJ1(double x) {
     int n = 24 + int(std::fabs(x));
-    double sum = 0.5 * (1 + std::cos(kPi));
+    double sum = 0.5 * (1 + exact::cos(kPi));
     for (int i = 1; i < n; ++i) {
         double t = kPi * i / n;
-        sum += std::cos(t - x * std::sin(t));
+        sum += exact::cos(t - x * exact::sin(t));
     }
     return sum / n;
 }
@@ -63,12 +64,12 @@ double PixelFilter::axis(double t, double w) const {
     case FilterKind::Triangle: return 1 - t / (w / 2);
     case FilterKind::SeparableCatmullRom: return cubicBC(t, 0, 0.5);
     case FilterKind::BSpline: return cubicBC(4 * t / w, 1, 0); // support 2 mapped to the half width, as for mitchell
-    case FilterKind::Gaussian: return std::exp(-8 * t * t / (w * w));
-    case FilterKind::Sinc: return sinc(t) * std::cos(kPi * t / (2 * w));
+    case FilterKind::Gaussian: return exact::exp(-8 * t * t / (w * w));
+    case FilterKind::Sinc: return sinc(t) * exact::cos(kPi * t / (2 * w));
     case FilterKind::Mitchell: return cubicBC(4 * t / w, 1.0 / 3, 1.0 / 3);
     case FilterKind::BlackmanHarris: {
         double a = 2 * kPi * (t / w + 0.5);
-        return 0.35875 - 0.48829 * std::cos(a) + 0.14128 * std::cos(2 * a) - 0.01168 * std::cos(3 * a);
+        return 0.35875 - 0.48829 * exact::cos(a) + 0.14128 * exact::cos(2 * a) - 0.01168 * exact::cos(3 * a);
     }
     case FilterKind::Lanczos: return sinc(t) * sinc(2 * t / w);
     default: return 1;
@@ -87,7 +88,7 @@ double PixelFilter::operator()(double x, double y) const {
         return 0;
     if (kind == FilterKind::Disk)
         return 1;
-    return r < 1e-8 ? kPi : std::cos(kPi / 2 * std::sqrt(q)) * 2 * besselJ1(kPi * r) / r;
+    return r < 1e-8 ? kPi : exact::cos(kPi / 2 * std::sqrt(q)) * 2 * besselJ1(kPi * r) / r;
 }
 
 PixelFilter makePixelFilter(std::string_view name, double xw, double yw, const SourcePlace& place, Diagnostics& diag) {

@@ -1,5 +1,6 @@
 // Environment maps: latitude-longitude and cube faces. Known limit: reduced levels weigh texels by area on the map, not by solid
 // angle, so very wide blurs give the poles too much weight. A footprint stays on one cube face.
+#include "base/exact.h"
 #include "texture/lookup.h"
 #include <algorithm>
 #include <cmath>
@@ -188,8 +189,8 @@ void LatLong::differentiate(const Vec3& d, const Vec3& change, float& ds, float&
 
 Vec3 LatLong::direction(float s, float t) const {
     double phi = 2 * kPi * double(s), theta = kPi * double(t);
-    Vec3d d = Vec3d(zero) * (std::cos(phi) * std::sin(theta)) + Vec3d(quarter) * (std::sin(phi) * std::sin(theta)) +
-              Vec3d(pole) * std::cos(theta);
+    const exact::SinCos round = exact::sinCos(phi), down = exact::sinCos(theta);
+    Vec3d d = Vec3d(zero) * (round.cos * down.sin) + Vec3d(quarter) * (round.sin * down.sin) + Vec3d(pole) * down.cos;
     return Vec3(d);
 }
 

@@ -1,4 +1,5 @@
 #include "texture/maketexture.h"
+#include "base/exact.h"
 #include "display/imageio.h"
 #include "texture/lookup.h"
 #include <cmath>
@@ -148,7 +149,7 @@ bool makeCubeFaceEnvironment(const std::vector<std::string>& pictures, const std
     all.metadata = {{"textureformat", cubeFormat},
                     {"wrapmodes", "clamp,clamp"},
                     {"Software", "Alpenglow"},
-                    {"fovcot", std::to_string(1 / std::tan(double(fov) * kPi / 360))}};
+                    {"fovcot", std::to_string(1 / exact::tan(double(fov) * kPi / 360))}};
     if (!space.empty()) all.metadata["colorspace"] = space;
     if (!gamma.empty()) all.metadata["gamma"] = gamma;
     return writeMap(texture, all, o, diags);

@@ -1,4 +1,5 @@
 #include "texture/pyramid.h"
+#include "base/exact.h"
 #include "base/vec.h"
 #include <algorithm>
 #include <array>
@@ -81,7 +82,7 @@ double weightAt(Kernel::Kind kind, double x, double w) {
     case Kernel::Triangle:
         return 1 - x / (w / 2);
     case Kernel::Gaussian:
-        return std::exp(-8 * x * x / (w * w));
+        return exact::exp(-8 * x * x / (w * w));
     case Kernel::CatmullRom:
         return t < 1 ? (3 * t * t * t - 5 * t * t + 2) / 2 : (-t * t * t + 5 * t * t - 8 * t + 4) / 2;
     case Kernel::Mitchell: {
@@ -90,7 +91,7 @@ double weightAt(Kernel::Kind kind, double x, double w) {
                      : ((-B - 6 * C) * t * t * t + (6 * B + 30 * C) * t * t + (-12 * B - 48 * C) * t + (8 * B + 24 * C)) / 6;
     }
     case Kernel::Lanczos: {
-        auto sinc = [](double v) { return v == 0 ? 1.0 : std::sin(kPi * v) / (kPi * v); };
+        auto sinc = [](double v) { return v == 0 ? 1.0 : exact::sin(kPi * v) / (kPi * v); };
         return sinc(t) * sinc(t / 2);
     }
     }

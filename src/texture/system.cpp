@@ -1,4 +1,5 @@
 // TextureSystem: finding, loading and keeping maps.
+#include "base/exact.h"
 #include "base/file.h"
 #include "base/srgb.h"
 #include "display/imageio.h"
@@ -38,7 +39,7 @@ Decode decodeOf(const display::Image& m, bool undeclared) {
     const double gamma = std::atof(textOf(m, "gamma").c_str());
     if (gamma > 0.01 && gamma <= 100) {
         if (std::fabs(gamma - 1) < 0.01) return {};
-        return [gamma](float v) { return float(std::pow(std::max(0.0, double(v)), 1 / gamma)); };
+        return [gamma](float v) { return float(exact::pow(std::max(0.0, double(v)), 1 / gamma)); };
     }
     // Maps of maketx are floats: they say what their picture was.
     const bool eight = (m.bits == 8 && !m.floating && space.empty()) || space == kEightBits;

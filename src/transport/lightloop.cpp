@@ -1,6 +1,7 @@
 // illuminance loops: which lights take their turns, and what was kept of them.
 #include "transport/lightloop.h"
 #include "base/category.h"
+#include "base/exact.h"
 #include "transport/engine.h"
 #include <bit>
 
@@ -178,7 +179,7 @@ public:
         const float most = std::max({std::fabs(axis.x), std::fabs(axis.y), std::fabs(axis.z)});
         if (most > 1e15f || (most > 0 && most < 1e-15f)) axis = axis / most; // its square must be a number
         const float la = length(axis), ll = length(toLight);
-        if (angle != angle_) cosine_ = std::cos(angle_ = angle);
+        if (angle != angle_) cosine_ = float(exact::cos(angle_ = angle));
         return !(la > 0 && ll > 0) || dot(axis, toLight) >= la * ll * cosine_;
     }
 

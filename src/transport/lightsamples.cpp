@@ -1,4 +1,5 @@
 // Samples of lights for the points of a loop: where they lie, the light's kernel with what the surface sends, what stands in between.
+#include "base/exact.h"
 #include "transport/engine.h"
 #include "transport/emitterfootprint.h"
 #include "transport/lightloop.h"
@@ -246,7 +247,7 @@ bool Engine::lightQuery(const BatchContext& c, int li, int point, const Vec3& at
         if (!p.ray) return false;
         const float la = length(axis);
         const bool all = !(la > 0) || !(angle < float(kPi));
-        const float cap = all ? 2 : 2 * std::pow(std::sin(0.5f * std::max(angle, 0.f)), 2.f); // 1 - cos of the half angle
+        const float half = float(exact::sin(0.5 * std::max(angle, 0.f))), cap = all ? 2 : 2 * half * half; // 1 - cos of the half angle
         if (!(cap > 0)) return false;
         Random rng = random(*p.ray);
         const Vec3 w = Basis(all ? Vec3(0, 0, 1) : axis / la).toWorld(sampleCone(cap, rng.pair(p.ray->vertex, use, nth)));

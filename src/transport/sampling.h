@@ -35,14 +35,6 @@ inline Vec3 sampleCosine(Vec2 e) {
     return {r * d.x, r * d.y, std::sqrt(e.x)};
 }
 
-/// Phong lobe of exponent n about +z; density (n+1)/(2 pi) cos^n.
-inline Vec3 samplePhong(float n, Vec2 e) {
-    float c = std::pow(e.x, 1 / (n + 1)), s = std::sqrt(std::max(0.f, 1 - c * c));
-    Vec2 d = unitCircle(e.y);
-    return {s * d.x, s * d.y, c};
-}
-inline float phongPdf(float n, float cosine) { return cosine > 0 ? (n + 1) / (2 * float(kPi)) * std::pow(cosine, n) : 0; }
-
 /// Uniform direction in a cone about +z with the given cosine of its half angle; density 1 / (2 pi (1 - cosMax)).
 /// oneMinusCos is passed beside it because small cones lose it in the subtraction.
 inline Vec3 sampleCone(float oneMinusCos, Vec2 e) {

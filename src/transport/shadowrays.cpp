@@ -1,5 +1,6 @@
 // Shadow rays: what lies on the way takes the share that its shader's Oi says. Where Oi is Os or a constant that was known when the
 // world was built no shader runs; elsewhere the kernel that gives Oi alone runs for all rays that met it, wave by wave.
+#include "base/exact.h"
 #include "transport/engine.h"
 #include "transport/raysets.h"
 #include "transport/sampling.h"
@@ -196,7 +197,7 @@ void Engine::transmissionRays(const SiteInfo& s, const ShadePoint& p, const Vec3
     for (int k = 0; k < count; ++k) {
         Vec3 end = b;
         if (cone > 0 && p.ray && length(b - a) > 0) { // evenly in a cone about the way; as far as b
-            const float cap = 2 * std::pow(std::sin(0.5f * std::min(cone, float(kPi))), 2.f);
+            const float half = float(exact::sin(0.5 * std::min(cone, float(kPi)))), cap = 2 * half * half;
             end = a + Basis((b - a) / length(b - a)).toWorld(sampleCone(cap, random(*p.ray).pair(p.ray->vertex, site, occurrence * 4096 + uint32_t(k)))) * length(b - a);
         }
         const Way way = wayBetween(a, end, at, surface);

@@ -1,4 +1,5 @@
 // Coordinate systems: the camera's own, named ones, and the matrices between them.
+#include "base/exact.h"
 #include "transport/lightobjects.h"
 #include "transport/world.h"
 #include <set>
@@ -28,7 +29,7 @@ void WorldImpl::setCamera(const scene::Options& o) {
     screenWindow(o, sw);
     double near = o.clipNear, far = std::min(double(o.clipFar), 1e30);
     if (o.projection == "perspective") {
-        double k = 1 / std::tan(o.fov * kPi / 360);
+        double k = 1 / exact::tan(o.fov * kPi / 360);
         Matrix m;
         m.m[0][0] = m.m[1][1] = k;
         m.m[2][2] = far / (far - near);

@@ -11,12 +11,12 @@ const char* toString(RayType t) {
     }
 }
 
-void setFootprint(ShadePoint& p, const PathRay& ray, float distance, float shadingRate) {
+void setFootprint(ShadePoint& p, const Footprint& footprint, const Vec3& dir, float distance, float shadingRate) {
     // Two steps across the ray, as long as the footprint is wide, are projected along the ray onto the tangent plane and expressed
     // in dPdu, dPdv by least squares; the larger of the two steps counts.
-    float w = 2 * (ray.width + ray.spread * distance);
+    float w = 2 * footprint.at(distance);
     const Vec3 &a = p.surface.dPdu, &b = p.surface.dPdv;
-    Vec3 n = p.surface.n, d = ray.dir;
+    Vec3 n = p.surface.n, d = dir;
     Vec3 ex = normalize(std::fabs(d.x) > 0.6f ? cross(d, Vec3(0, 1, 0)) : cross(d, Vec3(1, 0, 0))), ey = cross(d, ex);
     float dn = dot(d, n);
     if (std::fabs(dn) < 0.05f) dn = dn < 0 ? -0.05f : 0.05f; // a grazing footprint has no useful limit

@@ -68,6 +68,14 @@ struct RayExtra {
     bool operator==(const RayExtra&) const = default;
 };
 
+/// How wide a ray is, as a cone (design decision 7).
+struct Footprint {
+    float width = 0, spread = 0;      ///< half width, and its growth with distance
+    float at(float way) const { return width + spread * way; }
+    /// The same, seen from so far on.
+    Footprint after(float way) const { return {at(way), spread}; }
+};
+
 /// A ray on its way, with what its hit needs: who pays for what it finds, which random numbers it may use, how it was made. Small,
 /// since each is written and read several times.
 struct PathRay {
@@ -89,7 +97,7 @@ struct PathRay {
     float lobePdf = -1;
     Vec3 lobeOrigin;                  ///< the point whose lobe drew dir: lobePdf and the lights' densities are seen from there
     int lobeBinding = -1;             ///< binding of that point, whose list says which lights may light it; -1: every emitter counts
-    float width = 0, spread = 0;      ///< footprint: half width at the origin, and its growth with distance
+    Footprint footprint;              ///< at the origin
     int32_t extra = -1;               ///< Engine::extras_; -1: none
     RayType type() const { return kind->type; }
     bool camera() const { return kind->type == RayType::Camera; }
@@ -128,7 +136,7 @@ struct ShadePoint {
     const PathRay* ray = nullptr;
 };
 
-/// Fills du and dv from the ray's footprint at distance t.
-void setFootprint(ShadePoint&, const PathRay&, float distance, float shadingRate);
+/// Fills du and dv from the footprint of a ray that comes from `distance` away in direction `dir`, unit.
+void setFootprint(ShadePoint&, const Footprint&, const Vec3& dir, float distance, float shadingRate);
 
 } // namespace alpenglow::shading

@@ -6,7 +6,7 @@
 namespace alpenglow::transport {
 
 /// The half angle in radians that the rays of a lobe widen by: half of the lobe's own, never below that of the ray before.
-inline float spreadBehind(const shading::PathRay& ray, float lobeSpread) { return std::max(ray.spread, lobeSpread * 0.5f); }
+inline float spreadBehind(const shading::PathRay& ray, float lobeSpread) { return std::max(ray.footprint.spread, lobeSpread * 0.5f); }
 
 /// Whether a kernel of the light reads du or dv: those of its points matter.
 inline bool usesFootprint(const BoundLight& l) {
@@ -21,11 +21,8 @@ inline bool usesFootprint(const BoundLight& l) {
 inline void setEmitterFootprint(shading::ShadePoint& p, const shading::PathRay& ray, const Vec3& from, float spread) {
     const Vec3 way = p.surface.P - from;
     const float distance = length(way);
-    shading::PathRay r;
-    r.dir = distance > 0 ? way / distance : ray.dir;
-    r.width = ray.width + ray.spread * length(from - ray.origin);
-    r.spread = spread;
-    shading::setFootprint(p, r, distance, 1);
+    const shading::Footprint footprint{ray.footprint.at(length(from - ray.origin)), spread};
+    shading::setFootprint(p, footprint, distance > 0 ? way / distance : ray.dir, distance, 1);
 }
 
 } // namespace alpenglow::transport

@@ -1,5 +1,5 @@
 // Following a slice of rays: intersect, group by shader, shade, hand on.
-#include "transport/engine.h"
+#include "transport/gather.h"
 #include "base/memory.h"
 #include <algorithm>
 #include <limits>
@@ -13,6 +13,16 @@ void Counters::operator+=(const Counters& o) {
     depthSum += o.depthSum; paths += o.paths;
     depthMax = std::max(depthMax, o.depthMax);
     peakFrameBytes = std::max(peakFrameBytes, o.peakFrameBytes);
+}
+
+Engine::Engine(std::shared_ptr<const WorldImpl> w, Diagnostics& d)
+    : world_(std::move(w)), diagnostics_(d), seed_(world_->settings_.seed), rules_(world_->settings_) {
+    noSample_.numbers = render::SampleNumbers(render::Sampler(seed_, 0, 0), 0);
+}
+
+Engine::~Engine() { // strips of a frame that was given up need their kernels
+    inner_.reset();
+    sched_.reset();
 }
 
 void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
@@ -94,9 +104,9 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
         p.I = p.P - r.begin(); // RISpec: P - E, though rays start at the near plane, or behind what they passed through
         p.E = r.camera() ? Vec3(0, 0, 0) : r.origin;
         p.time = r.time();
-        if (world_->footprints_) setFootprint(p, r, length(p.P - r.origin), r.camera() ? b.shadingRate : 1);
+        if (world_->footprints_) shading::setFootprint(p, r.footprint, r.dir, length(p.P - r.origin), r.camera() ? b.shadingRate : 1);
         if (b.areaLight < 0 || (b.matte && r.camera())) continue;
-        if (world_->settings_.hider != Hider::Path && r.lobePdf < 0) continue;
+        if (!rules_.emissionCounts && r.lobePdf < 0) continue;
         if (r.lobeBinding >= 0) { // a lobe that samples lights: those that are off for its surface do not light it by chance either
             const auto& on = world_->bindings_[size_t(r.lobeBinding)].lights;
             if (std::find(on.begin(), on.end(), b.areaLight) == on.end()) continue;
@@ -300,8 +310,7 @@ bool Engine::traceAll(std::span<const CameraRay> rays, std::span<SampleResult> o
         PathSample& sample = samples_[i];
         sample = {c.px, c.py, c.sample, int(i), c.time, 0.5f, render::SampleNumbers(render::Sampler(seed_, c.px, c.py), c.sample)};
         r.sample = &sample;
-        r.width = c.width;
-        r.spread = c.spread;
+        r.footprint = {c.width, c.spread};
         r.setStart(c.start);
         r.media = world_->eye_.count ? &world_->eye_ : nullptr;
         if (world_->fades_) sample.level = random(r).one(0, kLevel, 0);

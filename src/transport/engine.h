@@ -117,6 +117,17 @@ Color coneNumbers(Vec2 random);
 /// A part of what is added to a target that an output has as well, and the next one of the same light.
 struct Share { TargetId target; Color ratio; int32_t next; };
 
+/// How the hider follows light.
+struct Rules {
+    bool pickOne = false;          ///< path: one ray goes on from a vertex, chosen by chance; else all do
+    bool roulette = false;         ///< rays end by chance
+    bool lightsAtRequests = false; ///< lobes sample lights
+    bool emissionCounts = false;   ///< what shines is seen by rays whose lobes sample no lights, too
+    explicit Rules(const Settings& s)
+        : pickOne(s.hider == Hider::Path), roulette(pickOne && s.roulette), lightsAtRequests(s.direct && !s.bsdfOnly),
+          emissionCounts(pickOne) {}
+};
+
 class Engine;
 
 inline bool isFinite(const Color& c) { return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z); }
@@ -178,10 +189,8 @@ struct BatchContext {
 
 class Engine final : public Sched::RayService {
 public:
-    Engine(std::shared_ptr<const WorldImpl> w, Diagnostics& d) : world_(std::move(w)), diagnostics_(d), seed_(world_->settings_.seed) {
-        noSample_.numbers = render::SampleNumbers(render::Sampler(seed_, 0, 0), 0);
-    }
-    ~Engine() override { inner_.reset(), sched_.reset(); } // strips of a frame that was given up need their kernels
+    Engine(std::shared_ptr<const WorldImpl>, Diagnostics&);
+    ~Engine() override;
     bool trace(std::span<const CameraRay>, std::span<SampleResult>, const StopFlag* stop);
     /// Whether what runs now is done again, with fewer points at a time, when a shader asks for more rays than there is room for.
     bool beginsAnew() const { return beginsAnew_; }
@@ -302,6 +311,7 @@ public:
     void request(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId, bool owns,
                  uint32_t occurrence);
     void lightVisibility(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId, float distance);
+    /// Gathers light over `lobes` (gather.h).
     void gather(BatchContext&, Sched&);
     /// The environment map of a trace() in direction w (unit, current space).
     Color mapTowards(const TraceSite&, const Vec3& w, float spread) const;
@@ -310,11 +320,8 @@ public:
     void finishStrip(BatchContext&, int first, int lanes, Sched&, std::span<const uint32_t> asked = {});
     /// The share of the light from behind a shaded point that comes through, 0 to 1.
     Color clearAt(const BatchContext&, int point) const;
-    /// Energy rule of one point under path and what of its lobes and what is behind will be followed: fills LobeVertex::albedo,
-    /// delta, followed and chosen. Returns the factor of its lighting shadeops' rays. `passes`: the chance that the ray goes on
-    /// instead.
-    float chooseLobes(const BatchContext&, size_t point, std::span<const int> list, float& passes);
     const WorldImpl& world() const { return *world_; }
+    const Rules& rules() const { return rules_; }
     Diagnostics& diagnostics() { return diagnostics_; }
     void shadeGroup(std::shared_ptr<BatchContext>, Sched&);
     /// Runs the displacement shader at the points of a batch (all of one binding); null where it waits for rays. displacement.cpp
@@ -363,6 +370,7 @@ private:
     const RayKind* lastKind_ = nullptr;
     std::deque<shading::Media> media_;
     friend class KernelStrip;
+    friend class Gather;
     // lightloop.cpp
     void checkCategory(BatchContext&, const rsl::ir::Site&, int32_t category);
     std::set<int32_t> checkedCategories_;
@@ -414,31 +422,7 @@ private:
     std::shared_ptr<BatchContext> takeContext();
     void giveBack(std::shared_ptr<BatchContext>); ///< kept when nobody else has it
     std::vector<std::shared_ptr<BatchContext>> pool_;
-    /// Memory that gather() keeps between batches.
-    /// A lobe that a light reaches: the light's query, Engine::lobes, and where the light is.
-    struct LitLobe {
-        size_t query;
-        int lobe;
-        Vec3 w;
-    };
-    /// A lobe whose rays are sent: `count` of them, each with its weight times `scale`.
-    struct SentLobe {
-        size_t point;
-        int lobe, count;
-        float scale;
-        bool goes;
-        Vec3 w;
-    };
-    struct GatherRoom {
-        std::vector<int> begin, order, next, pointOf;
-        std::vector<float> indirectScale, chance, passes;
-        std::vector<ShadePoint> q;
-        std::vector<Emitter::Sample> drawn;
-        std::vector<LightValue> value;
-        std::vector<LitLobe> reached;
-        std::vector<SentLobe> sent;
-    };
-    GatherRoom gatherRoom_;
+    std::unique_ptr<class Gather> gather_; ///< its memory is used again
     std::vector<accel::Ray> rays_, shadowRays_;
     std::vector<accel::Hit> hits_;
     std::vector<ShadePoint*> places_;          ///< by hit: its point; null: none is shaded now
@@ -468,6 +452,7 @@ private:
     std::shared_ptr<const WorldImpl> world_;
     Diagnostics& diagnostics_;
     render::SeedKey seed_;
+    Rules rules_;
     std::vector<Color> transmitted_;
     uint64_t& raysOf(RayType); ///< the counter of such rays
     using GroupOf = std::function<size_t(const SurfaceBinding&, const PathRay&)>;

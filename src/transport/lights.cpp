@@ -60,8 +60,7 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
     uint32_t many = from.asked;
     float chance = 1;
     const bool onlyDistance = s.kind == SiteKind::Trace && s.site->resultType.base == rsl::Base::Float && s.resultRows.size() < 2;
-    const Settings& set = world_->settings_;
-    if (set.hider == Hider::Path && set.roulette && !onlyDistance) {
+    if (rules_.roulette && !onlyDistance) {
         many = std::max<uint32_t>(many, uint32_t(world_->lightTraces_) * (occurrence + 1) * uint32_t(std::max(l.samples, 1)));
         chance = rouletteOfLight(from.bounces, many);
         const uint32_t vertex = childVertex(from.vertex, kLightPoint + l.site, occurrence * 4096);
@@ -97,12 +96,12 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
         r.maxDistance = l.maxDistance;
         r.kind = l.rays;
         RayExtra extra;
-        if (l.trace && l.trace->map) extra.environment = l.tint * mapTowards(*l.trace, w, from.spread);
+        if (l.trace && l.trace->map) extra.environment = l.tint * mapTowards(*l.trace, w, from.footprint.spread);
         r.extra = newExtra(extra);
         r.lobePdf = -1; // no light was sampled: all that shines counts
         r.lobeBinding = -1;
         r.first = true;
-        r.spread = std::max(from.spread, spread * 0.5f);
+        r.footprint.spread = std::max(from.footprint.spread, spread * 0.5f);
         r.counts = false;
         sched.spawn(r.bounces + r.layers, target, r);
     }

@@ -59,7 +59,7 @@ void Engine::opacities(std::span<const OpacityQuery> met, std::span<Color> out) 
         PathRay& r = c.rays.emplace_back();
         if (m.ray->ray) {
             r = *m.ray->ray;
-            r.width += r.spread * length(m.ray->origin - r.origin);
+            r.footprint = r.footprint.after(length(m.ray->origin - r.origin));
         }
         r.kind = m.ray->kind;
         r.origin = m.ray->origin;
@@ -75,7 +75,7 @@ void Engine::opacities(std::span<const OpacityQuery> met, std::span<Color> out) 
         p.I = p.P - r.origin;
         p.E = r.origin;
         p.time = m.ray->time;
-        setFootprint(p, r, length(p.I), 1);
+        shading::setFootprint(p, r.footprint, r.dir, length(p.I), 1);
     }
     std::vector<shading::InstanceView> views(met.size(), {&b.surface->parameters, &b.surface->toCurrent});
     c.batch = std::make_shared<shading::Batch>(c.bound->kernel, *c.bound->plan, c.points, views, *world_);

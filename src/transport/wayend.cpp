@@ -13,7 +13,7 @@ void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId t
     float chosen = 1;
     const Settings& set = world_->settings_;
     // What a camera ray shows behind a surface is always followed, so that opacity, depth and AOVs are exact.
-    if (set.hider == Hider::Path && set.roulette && ray.bounces > 0) {
+    if (rules_.roulette && ray.bounces > 0) {
         const int depth = ray.bounces + ray.layers + 1;
         auto dice = [&] { return random(ray).one(ray.vertex, kPassThrough, 0); };
         float q = 1;
@@ -36,7 +36,7 @@ void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId t
     r.origin = geometry::offsetOrigin(p.surface, ray.dir);
     if (ray.camera()) r.setStart(ray.start() + dot(r.origin - ray.origin, ray.dir)); // the eye has not moved
     r.maxDistance = ray.maxDistance - travelled;
-    r.width = ray.width + ray.spread * travelled;
+    r.footprint = ray.footprint.after(travelled);
     r.first = false;
     r.media = mediaBeyond(b, ray.media, p.surface.n, ray.dir, ray.dir);
     tellLost(r.media, p);
@@ -58,7 +58,7 @@ void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
             add(sched, t->target, r, r.weight * extraOf(r).environment, nullptr);
             if (TraceSums* sums = sumsOf(t->target)) sums->add(TraceSums::Environment, r.weight * extraOf(r).environment);
         }
-    if (world_->settings_.hider != Hider::Path || tasks.empty()) return;
+    if (!rules_.emissionCounts || tasks.empty()) return;
     std::vector<ShadePoint> q;
     std::vector<const Sched::Task*> of;
     std::vector<LightValue> value;
@@ -134,7 +134,7 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
             float weight = 1;
             if (r.lobePdf >= 0 && light.emitter) {
                 float pdf = light.emitter->pdf(p.shape, p.surface, r.lobeOrigin);
-                if (set.hider == Hider::Path && r.lobeBinding >= 0) pdf *= chanceOf(met[i].light, r.lobeBinding, r.lobeOrigin);
+                if (rules_.pickOne && r.lobeBinding >= 0) pdf *= chanceOf(met[i].light, r.lobeBinding, r.lobeOrigin);
                 weight = set.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
             }
             if (r.bounces > 0 && !r.kind->fromTrace) weight *= v.kept(r.type());

@@ -60,6 +60,8 @@ public:
         virtual ~RayService() = default;
         /// Follows every task of the slice: adds to targets, spawns children, starts strips. The deepest tasks come first.
         virtual void follow(std::span<const Task> slice, Scheduler&) = 0;
+        /// All strips that were ready at a depth have gone on: what they ask for now may be followed together.
+        virtual void followStrips(Scheduler&) {}
     };
 
     /// `stop`: polled between slices; when it is set run() gives up what is left. May be null.
@@ -128,6 +130,7 @@ public:
             if (!ready_.empty() && ready_.rbegin()->first >= rayDepth) {
                 // All that are ready at this depth go on together, so that what they ask for next is one stream again.
                 for (size_t n = ready_.rbegin()->second.size(); n > 0; --n) resumeOne();
+                service_.followStrips(*this);
                 continue;
             }
             // Near the frame limit only as many rays are taken as one strip can hold, so that depth, not breadth, uses what is left.

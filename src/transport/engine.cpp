@@ -280,6 +280,7 @@ void Engine::forget() {
     shadows.clear();
     traceSums_.clear();
     litValues_.clear();
+    waiting_.clear();
     extras_.clear();
     freeExtras_.clear();
 }
@@ -318,6 +319,7 @@ bool Engine::traceAll(std::span<const CameraRay> rays, std::span<SampleResult> o
     }
     counters.paths += rays.size();
     spoiled_.clear();
+    waiting_.clear();
     bool done = sched.run();
     float clampAt = world_->settings_.sampleClamp;
     for (size_t i = 0; i < rays.size(); ++i) {

@@ -306,7 +306,9 @@ public:
     /// Adds the outputs of points that are done.
     void finishAside(BatchContext&, int first, int lanes, Sched&);
     /// Starts the strips of a kernel that waits for rays.
-    void startStrips(const std::shared_ptr<BatchContext>&, Sched&);
+    void startStrips(const std::shared_ptr<BatchContext>&, Sched&); // strips.cpp
+    /// Follows what strips have asked for since the last call: those of a batch together.
+    void followStrips(Sched&) override;
     // requests.cpp
     void request(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId, bool owns,
                  uint32_t occurrence);
@@ -359,6 +361,7 @@ public:
     const StopFlag* stop = nullptr;
 
 private:
+    std::vector<class KernelStrip*> waiting_; ///< whose requests nobody has followed yet
     std::vector<PathSample> samples_; ///< of the call of trace()
     PathSample noSample_;
     std::vector<RayExtra> extras_;

@@ -46,6 +46,12 @@ void takeRoom(BatchContext& c, const SiteInfo& s, size_t rows, int lanes, uint64
     throw LimitReached();
 }
 
+/// The row of the light's index is replaced by the distance, which only the loop knows.
+void takeDistances(const BatchContext& c, const SiteInfo& s, float* arguments, int lanes) {
+    const size_t have = std::min(size_t(lanes), c.lightDistance.size());
+    std::copy_n(c.lightDistance.begin(), have, arguments + size_t(s.rows[0]) * size_t(lanes));
+}
+
 void serve(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
     BatchContext& c = contextOf(call);
     if (c.failure) return;
@@ -75,15 +81,14 @@ void serve(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask, in
             c.requestLanes = lanes;
             c.requestMask = mask;
             c.requestIn.assign(in, in + rows * lanes);
+            if (s.kind == SiteKind::LightVisibility) takeDistances(c, s, c.requestIn.data(), lanes);
             c.requestOut = out;
             return;
         }
         takeRoom(c, s, rows + 3, lanes, mask);
         EmitRecord e{site, first, lanes, mask, c.arena.size()};
         c.arena.insert(c.arena.end(), in, in + (rows + 3) * lanes);
-        if (s.kind == SiteKind::LightVisibility) // the row of the light's index is replaced by the distance, which only the loop knows
-            for (int i = 0; i < lanes && i < int(c.lightDistance.size()); ++i)
-                c.arena[e.offset + size_t(3 + s.rows[0]) * lanes + i] = c.lightDistance[i];
+        if (s.kind == SiteKind::LightVisibility) takeDistances(c, s, c.arena.data() + e.offset + size_t(3) * size_t(lanes), lanes);
         c.emits.push_back(e);
         return;
     }

@@ -1,5 +1,5 @@
 // Lights: their kernels run in batches for the points they light.
-#include "transport/engine.h"
+#include "transport/strips.h"
 #include "transport/sampling.h"
 
 namespace alpenglow::transport {
@@ -43,6 +43,7 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
     const PathRay& from = *p.ray;
     Sched& sched = *sched_;
     sched.restart(stop);
+    waiting_.clear();
     traceSums_.clear();
     lobes.clear();
     lobeRows_.clear();
@@ -59,7 +60,7 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
     if (from.bounces + 1 > world_->maxDepth_) return {};
     uint32_t many = from.asked;
     float chance = 1;
-    const bool onlyDistance = s.kind == SiteKind::Trace && s.site->resultType.base == rsl::Base::Float && s.resultRows.size() < 2;
+    const bool onlyDistance = s.givesDistance() && s.resultRows.size() < 2;
     if (rules_.roulette && !onlyDistance) {
         many = std::max<uint32_t>(many, uint32_t(world_->lightTraces_) * (occurrence + 1) * uint32_t(std::max(l.samples, 1)));
         chance = rouletteOfLight(from.bounces, many);
@@ -148,16 +149,9 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
                 for (int lane = 0; lane < c->requestLanes; ++lane) {
                     if (!(c->requestMask >> lane & 1) || first + lane >= int(c->points.size())) continue;
                     const std::function<float(int)> row = [&](int r) { return c->requestIn[size_t(r) * c->requestLanes + lane]; };
-                    auto put = [&](int row, int rows, const Color& v) {
-                        for (int r = 0; r < rows && row >= 0; ++r) c->requestOut[size_t(row + r) * c->requestLanes + lane] = v[r];
-                    };
                     for (int r = 0; r < s.resultRowCount; ++r) c->requestOut[size_t(r) * c->requestLanes + lane] = 0;
                     const shading::TargetValue t = rayOfLight(*c, s, first + lane, row, asked[size_t(c->requestSite) * size_t(c->batch->size()) + size_t(first + lane)]++);
-                    const bool distance = s.kind == SiteKind::Trace && s.site->resultType.base == rsl::Base::Float;
-                    put(s.results.value, distance ? 1 : 3, distance ? Color(t.distance) : t.radiance);
-                    put(s.results.distance, 1, Color(t.distance));
-                    put(s.results.transmission, 3, t.transmission);
-                    put(s.results.normal, 3, t.normal);
+                    putResult(s, t, nullptr, c->requestOut, c->requestLanes, lane);
                 }
                 k.resume(h);
                 c->ran();

@@ -1,113 +1,9 @@
-// Running a surface's kernel over a batch of points: to its end, or strip by strip where it waits for rays; then what it asked for.
+// Running a surface's kernel over a batch of points: to its end, or strip by strip where it waits for rays (strips.h); then what it
+// asked for.
 #include "transport/engine.h"
 #include <algorithm>
-#include <array>
 
 namespace alpenglow::transport {
-
-/// A strip of a suspending kernel while it waits.
-class KernelStrip final : public Sched::Strip {
-public:
-    KernelStrip(std::shared_ptr<BatchContext> c, void* handle, int first, int depth)
-        : c_(std::move(c)), handle_(handle), first_(first), depth_(depth), bytes_(c_->frame) {}
-    ~KernelStrip() override { if (handle_) c_->bound->kernel->destroy(handle_); }
-    int depth() const override { return depth_; }
-    /// Its frame, and about what its points take.
-    size_t frameBytes() const override { return bytes_ + 4096 + size_t(c_->bound->kernel->lanes()) * 256; }
-
-    bool resume(Sched& s, std::span<const shading::TargetValue> results) override {
-        const SiteInfo& site = c_->bound->sites[site_];
-        for (size_t k = 0; k < results.size(); ++k) {
-            int lane = laneOf_[k];
-            auto put = [&](int row, int rows, const Color& v) {
-                for (int r = 0; r < rows && row >= 0; ++r) out_[size_t(row + r) * lanes_ + lane] = v[r];
-            };
-            const SiteInfo::Results& to = site.results;
-            if (site.site->resultType.base == rsl::Base::Float) put(to.value, 1, Color(results[k].distance));
-            else put(to.value, 3, results[k].radiance);
-            put(to.distance, 1, Color(results[k].distance));
-            put(to.transmission, 3, results[k].transmission);
-            put(to.normal, 3, results[k].normal);
-            if (const TraceSums* sums = ids_.empty() ? nullptr : c_->engine->sumsOf(ids_[k])) {
-                put(to.transmission, 3, Color(1) - sums->value(TraceSums::Blocked));
-                put(to.environment, 3, sums->value(TraceSums::Environment));
-                put(to.unshadowedEnvironment, 3, sums->value(TraceSums::UnshadowedEnvironment));
-                put(to.areaLight, 3, sums->value(TraceSums::AreaLight));
-                put(to.unshadowedAreaLight, 3, sums->value(TraceSums::UnshadowedAreaLight));
-            }
-        }
-        for (TargetId id : ids_) c_->engine->traceSums_.erase(id);
-        ids_.clear();
-        c_->bound->kernel->resume(handle_);
-        c_->ran();
-        return advance(s, s.takeResuming());
-    }
-
-    /// After start or resume: ends, or waits for the request that was noted in the context.
-    bool advance(Sched& s, std::unique_ptr<Sched::Strip> self) {
-        Engine& e = *c_->engine;
-        const auto& kernel = *c_->bound->kernel;
-        if (kernel.finished(handle_)) {
-            e.finishStrip(*c_, first_, kernel.lanes(), s, asked_);
-            for (int i = first_; i < std::min(first_ + kernel.lanes(), int(c_->points.size())); ++i) s.release(c_->targets[i]);
-            return true;
-        }
-        site_ = c_->requestSite;
-        lanes_ = c_->requestLanes;
-        out_ = c_->requestOut;
-        laneOf_.clear();
-        for (int lane = 0; lane < lanes_; ++lane)
-            if ((c_->requestMask >> lane & 1) && first_ + lane < int(c_->points.size())) laneOf_.push_back(lane);
-        std::vector<TargetId> ids(laneOf_.size());
-        auto context = c_; // the strip may be resumed and gone when its last target is released
-        auto lanesOf = laneOf_;
-        int site = site_, lanes = lanes_, first = first_;
-        std::vector<float> in = c_->requestIn;
-        // Counted by site and lane: what other lanes of the strip ask for must not change this one's random numbers.
-        size_t sites = c_->bound->sites.size();
-        if (occurrences_.empty()) occurrences_.resize(sites * 64);
-        std::vector<uint32_t> occurrence;
-        for (int lane : laneOf_) occurrence.push_back(occurrences_[size_t(site_) * 64 + size_t(lane)]++);
-        s.wait(std::move(self), int(laneOf_.size()), [&](int i, TargetId id) {
-            ids[i] = id;
-            s.hold(id);
-        });
-        const SiteInfo& info = context->bound->sites[site];
-        if (info.trace && info.trace->sums) {
-            ids_ = ids;
-            for (TargetId id : ids) e.traceSums_[id] = {};
-        }
-        for (size_t k = 0; k < lanesOf.size(); ++k) {
-            if (info.kind == SiteKind::LightVisibility) {
-                e.lightVisibility(*context, info, first + lanesOf[k], in.data(), lanes, lanesOf[k], Color(1), ids[k],
-                                  context->lightDistance[lanesOf[k]]);
-                continue;
-            }
-            const size_t had = e.lobes.size();
-            e.request(*context, info, first + lanesOf[k], in.data(), lanes, lanesOf[k], Color(1), ids[k], true, occurrence[k]);
-            if (e.lobes.size() == had) continue;
-            uint32_t& asked = asked_[size_t(lanesOf[k])];
-            e.lobes.back().before = asked;
-            asked += uint32_t(e.lobes.back().samples);
-        }
-        e.gather(*context, s);
-        e.flushShadows(s);
-        for (TargetId id : ids) s.release(id);
-        return false;
-    }
-
-private:
-    std::shared_ptr<BatchContext> c_;
-    void* handle_;
-    int first_, depth_;
-    size_t bytes_;
-    int site_ = 0, lanes_ = 0;
-    std::vector<uint32_t> occurrences_;
-    std::array<uint32_t, 64> asked_{}; ///< rays that a lane has asked for so far
-    float* out_ = nullptr;
-    std::vector<int> laneOf_;
-    std::vector<TargetId> ids_;              ///< of the request that it waits for, when that asks for sums
-};
 
 void Engine::lightVisibility(BatchContext& c, const SiteInfo& s, int point, const float* in, int lanes, int lane, Color weight, TargetId target,
                              float distance) {
@@ -208,25 +104,6 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, st
         if (maxComponent(clear) > 0)
             passThrough(binding, ray, c.targets[i], c.points[i], clear, chance, asked.empty() ? 0 : asked[size_t(i - first)],
                         sched);
-    }
-}
-
-void Engine::startStrips(const std::shared_ptr<BatchContext>& c, Sched& sched) {
-    const auto& kernel = *c->bound->kernel;
-    const int n = int(c->points.size());
-    for (int first = 0; first < n; first += kernel.lanes()) {
-        for (int i = first; i < std::min(first + kernel.lanes(), n); ++i) sched.hold(c->targets[i]);
-        void* h = kernel.start(&c->batch->call(), first);
-        if (!h) {
-            ++counters.overLimit;
-            for (int i = first; i < std::min(first + kernel.lanes(), n); ++i) sched.release(c->targets[i]);
-            continue;
-        }
-        frameOf_[&kernel] = std::max<size_t>(c->frame, 1);
-        auto strip = std::make_unique<KernelStrip>(c, h, first, c->rays[first].bounces + c->rays[first].layers);
-        c->ran();
-        KernelStrip* s = strip.get();
-        s->advance(sched, std::move(strip));
     }
 }
 

@@ -94,11 +94,12 @@ struct SiteInfo {
     std::map<std::string, std::string> text;   ///< constant string pairs
     std::map<std::string, int> resultRows;     ///< "" and output names -> first row of `out`
     int resultRowCount = 0;
-    /// Of `resultRows`, for those that rays answer; -1: nobody asked.
+    /// Of `resultRows`, those of requests; -1: not asked for.
     struct Results {
         int value = -1, distance = -1, transmission = -1, normal = -1;
         int environment = -1, unshadowedEnvironment = -1, areaLight = -1, unshadowedAreaLight = -1;
     } results;
+    bool givesDistance() const { return kind == SiteKind::Trace && site->resultType.base == rsl::Base::Float; }
     const LobeKind* lobe = nullptr;            ///< Trace: the distribution; the lobe of a lighting shadeop
     float exponent = 1;                        ///< Specular: this over the roughness (shadeops/specular.h)
     int rowWo = -1, rowExponent = -1, rowCone = -1, rowHorizon = -1, rowLights = -1; ///< of `named`

@@ -62,6 +62,8 @@ public:
         virtual void follow(std::span<const Task> slice, Scheduler&) = 0;
         /// All strips that were ready at a depth have gone on: what they ask for now may be followed together.
         virtual void followStrips(Scheduler&) {}
+        /// No task and no strip is left: goes on with what follow() has held back, whose targets it holds. False: there is none.
+        virtual bool settle(Scheduler&) { return false; }
     };
 
     /// `stop`: polled between slices; when it is set run() gives up what is left. May be null.
@@ -124,7 +126,8 @@ public:
     /// Works until everything is done or stop is set. Returns false when it was stopped.
     bool run() {
         std::vector<Task> slice;
-        while (queued_ > 0 || !ready_.empty()) {
+        while (queued_ > 0 || !ready_.empty() || service_.settle(*this)) {
+            if (queued_ == 0 && ready_.empty()) continue;
             if (stop_ && *stop_) { abandon(); return false; }
             int rayDepth = queued_ > 0 ? deepestQueue() : -1;
             if (!ready_.empty() && ready_.rbegin()->first >= rayDepth) {

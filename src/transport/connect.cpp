@@ -1,5 +1,5 @@
-// Stage connect: what lobes give back of the light that lights send them. Lobes of a vertex share the sample of a light, and so the way to it:
-// one shadow ray carries the sum of all that have one target.
+// Stage connect: what lobes give back of the light that lights send them. Lobes of a vertex share the sample of a light, and so
+// the way to it: one shadow ray carries what all of them give.
 #include "transport/emitterfootprint.h"
 #include "transport/gather.h"
 #include "transport/sampling.h"
@@ -93,23 +93,22 @@ void Gather::send(const Reached& r) {
     // The light's own surface must not block: stop short of it by both error bounds.
     const Vec3 end = area ? geometry::offsetOrigin(queries_.at[k].surface, -r.w) : Vec3();
     if (l.trace && area && !meets(l, r.query, r.w, from, end)) return;
-    const Color light1 = contribution(r);
+    const Color given = contribution(r);
     const int32_t share = shareOf(l);
     const RayKind* kind = l.trace ? e_.kindOf({RayType::Transmission, false, l.rays->set, 0}) : &kShadowKind;
-    if (r.query == lastQuery_ && !sums) {
-        ShadowRay& last = e_.shadows.back();
-        if (last.target == l.target && last.share == share && last.kind == kind && last.origin == from && !last.areaLight) {
-            last.contribution += light1;
+    if (r.query == lastQuery_)
+        if (ShadowRay& last = e_.shadows.back(); last.kind == kind && last.origin == from) {
+            e_.moreLight_.push_back({given, l.target, share, sums, last.more});
+            last.more = int32_t(e_.moreLight_.size()) - 1;
             return;
         }
-    }
     lastQuery_ = r.query;
     const ShadePoint& p = c_->points[size_t(l.point)];
     if (area) {
-        e_.shadows.push_back({from, unit(end - from, r.w), length(end - from) * (1 - 1e-6f), light1, l.target, p.time, p.ray, sums});
+        e_.shadows.push_back({from, unit(end - from, r.w), length(end - from) * (1 - 1e-6f), given, l.target, p.time, p.ray, sums});
     } else {
         const float far = light.kind == LightKind::Distant ? 1e38f : length(queries_.value[k].L);
-        e_.shadows.push_back({from, r.w, far < 1e30f ? far * (1 - 1e-5f) : far, light1, l.target, p.time, p.ray, false});
+        e_.shadows.push_back({from, r.w, far < 1e30f ? far * (1 - 1e-5f) : far, given, l.target, p.time, p.ray, false});
     }
     ShadowRay& shadow = e_.shadows.back();
     shadow.kind = kind;

@@ -40,11 +40,33 @@ struct ShadowRay {
     const RayKind* kind = &kShadowKind;     ///< whose visibility counts
     const shading::Media* media = nullptr; ///< where it begins
     int32_t share = -1;     ///< RayExtra::share
+    int32_t more = -1;      ///< Engine::moreLight_: what else goes the same way; -1: nothing
+};
+
+/// Where light that reaches a target comes from: with the ray that brings it, what a path was at its end.
+enum class LightEvent : uint8_t {
+    Surface, ///< what a shader gives by itself (Ci)
+    Output,  ///< the same of an output
+    Sampled, ///< a light, sampled at a vertex
+    Met,     ///< an emitter that the ray met
+    Sky,     ///< a sky, or ambient light, behind everything
+    Map      ///< the environment map of a trace()
+};
+struct Deposit {
+    TargetId target = shading::kNoTarget;
+    Color light;
+    LightEvent event = LightEvent::Surface;
+    const PathRay* path = nullptr;        ///< that brings it, up to its last vertex; may be null
+    int32_t share = -1;                   ///< Engine::shares_
+    const ShaderInstance* of = nullptr;   ///< that made it; null: not known
 };
 
 /// The way from a to b for a shadow ray; where an end is `at`, a shaded point of the surface `s` (null: none), that surface does not block.
 struct Way { Vec3 origin, dir; float distance = 0; };
 Way wayBetween(const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint* s);
+
+/// Light beside that of a ShadowRay, and the next of the same.
+struct MoreLight { Color contribution; TargetId target; int32_t share; bool areaLight; int32_t more; };
 
 /// What lights are told about a surface that they light: because it samples them or because one of its rays meets them.
 struct LitValues {
@@ -194,7 +216,8 @@ public:
     bool trace(std::span<const CameraRay>, std::span<SampleResult>, const StopFlag* stop);
     /// Whether what runs now is done again, with fewer points at a time, when a shader asks for more rays than there is room for.
     bool beginsAnew() const { return beginsAnew_; }
-    void follow(std::span<const Sched::Task> slice, Sched&) override;
+    void follow(std::span<const Sched::Task> slice, Sched&) override; // hits.cpp
+    bool settle(Sched&) override;
     Counters counters;
 
     // faults.cpp
@@ -203,8 +226,8 @@ public:
     void notFinite(const PathRay*, const std::string& what, const SourcePlace& place);
     void notFinite(const PathRay* ray, const char* what, const ShaderInstance* of);
     void notFinite(const BatchContext&, const PathRay&, uint32_t site); ///< what a call site gives
-    /// Adds light that a ray brings to its target.
-    void add(Sched&, TargetId, const PathRay&, const Color&, const ShaderInstance* of);
+    /// The only way that light is added to targets: to that one, and their parts to the outputs that share it. deposit.cpp
+    void deposit(Sched&, const Deposit&);
     // lights.cpp
     /// Light arriving at queries from one light; for area lights `samples[i]` is the point on the emitter.
     void evaluateLight(const BoundLight&, std::vector<ShadePoint>& queries, std::span<LightValue> out, const LightCall& = {});
@@ -219,6 +242,9 @@ public:
                           uint32_t site, uint32_t occurrence, std::vector<ShadowRay>& out);
     /// Oi at hits of one binding.
     void opacities(std::span<const OpacityQuery>, std::span<Color> out);
+    /// Whether surfaces that block all light are looked for first and by themselves, the others only where a ray may meet them.
+    bool meetsOpaqueAlone(const ShadowRay&) const;
+    void blockedByOpaque(std::span<const ShadowRay>, std::span<Color> out);
     // haze.cpp
     /// Runs a volume shader over points with Ci, Oi, I, P set. The points' Ci is void afterwards. The binding is that of what was met.
     /// `surface`, `of`: the run of the surface shader, and the points' numbers there; may be missing.
@@ -289,8 +315,6 @@ public:
     void service(BatchContext&, int site, int first, uint64_t mask, int lanes, const float* in, float* out);
     void drawRandom(const class ServiceCall&); // draws.cpp
     // lightoutputs.cpp
-    /// Adds light to a target, and their parts of it to the outputs that share it.
-    void deposit(Sched&, TargetId, int32_t share, const Color&);
     /// For the camera's points of a batch that is filled: runs for the outputs that light reaches. `fill` fills one.
     std::vector<std::shared_ptr<BatchContext>> asides(const BatchContext&, Sched&,
                                                       const std::function<void(BatchContext&)>& fill);
@@ -358,9 +382,26 @@ public:
     std::vector<LobeVertex> lobes;
     LobeColumns lobeRows_; ///< of `lobes`
     std::vector<ShadowRay> shadows;
+    std::vector<MoreLight> moreLight_; ///< of `shadows`
     const StopFlag* stop = nullptr;
 
 private:
+    /// Hits of a group that wait to be shaded together. They hold their targets.
+    struct HitQueue {
+        std::vector<accel::Hit> hits;
+        std::vector<Sched::Task> rays;
+        bool waits = false;                    ///< its kernel waits for rays; then
+        size_t room = 0;                       ///< so many of its points may be shaded now
+    };
+    std::vector<HitQueue> hitQueues_;          ///< by SurfaceBinding::group, then for rays that take primitives as they are
+    HitQueue freeQueue_;                       ///< memory
+    std::vector<size_t> groupsWithHits_;
+    size_t hitsWaiting_ = 0;
+    void cast(std::span<const Sched::Task>);
+    void queueHit(const Sched::Task&, const accel::Hit&, Sched&);
+    void shadeHits(size_t group, Sched&);
+    void placePoints(const HitQueue&, BatchContext&);
+    void shine(const BatchContext&, Sched&);
     std::vector<class KernelStrip*> waiting_; ///< whose requests nobody has followed yet
     std::vector<PathSample> samples_; ///< of the call of trace()
     PathSample noSample_;
@@ -428,9 +469,7 @@ private:
     std::unique_ptr<class Gather> gather_; ///< its memory is used again
     std::vector<accel::Ray> rays_, shadowRays_;
     std::vector<accel::Hit> hits_;
-    std::vector<ShadePoint*> places_;          ///< by hit: its point; null: none is shaded now
     std::vector<geometry::HitRef> run_;
-    void evaluateHits(std::span<ShadePoint* const> places);
     std::vector<uint8_t> blocked_;
     std::vector<shading::InstanceView> views_;
     std::vector<uint32_t> viewOf_, occurrence_;
@@ -439,7 +478,8 @@ private:
     void forget(); ///< what a trace() that has ended, or was given up, leaves behind
     /// Rays followed at once: enough to fill batches, few enough that their points stay in the cache of a core. Fewer once a
     /// shader has asked for more rays at the points of a batch than there is room for.
-    int raysAtOnce_ = limits::kSliceRays / 8;
+    static constexpr int kSliceOfPath = limits::kSliceRays / 8;
+    int raysAtOnce_ = kSliceOfPath;
     bool beginsAnew_ = false;
     std::unique_ptr<Sched> sched_;
     /// The rays of a trace() in a light, by the engine that rayOfLight() keeps for it.
@@ -458,11 +498,6 @@ private:
     Rules rules_;
     std::vector<Color> transmitted_;
     uint64_t& raysOf(RayType); ///< the counter of such rays
-    using GroupOf = std::function<size_t(const SurfaceBinding&, const PathRay&)>;
-    /// Of a kernel that waits no more points are shaded than its frames have room for: the other rays of the slice are followed
-    /// again, later. Writes how many points of each group are shaded now; 1 for each ray that was put back. hits_ are those of
-    /// the slice.
-    std::vector<char> putBack(std::span<const Sched::Task> slice, std::span<int> sizes, const GroupOf&, Sched&);
     /// Points of a waiting kernel that may be shaded now, so that its frames stay within a quarter of the limit; at least one
     /// strip. `other`: the same shader for points of several surfaces, or null; which of the two runs is not known yet.
     int roomFor(const rsl::CompiledKernel&, const rsl::CompiledKernel* other, const Sched&) const;

@@ -24,9 +24,4 @@ void Engine::notFinite(const BatchContext& c, const PathRay& ray, uint32_t site)
               {s.place.file < int(files.size()) ? files[size_t(s.place.file)] : "", s.place.line, s.place.column});
 }
 
-void Engine::add(Sched& sched, TargetId target, const PathRay& ray, const Color& c, const ShaderInstance* of) {
-    if (isFinite(c)) return deposit(sched, target, extraOf(ray).share, c);
-    notFinite(&ray, "light", of);
-}
-
 } // namespace alpenglow::transport

@@ -118,12 +118,6 @@ LightOutput::Kernel SurfaceBinder::lightKernel(const SurfaceBinding& b, const Li
     return k;
 }
 
-void Engine::deposit(Sched& sched, TargetId target, int32_t share, const Color& light) {
-    sched.add(target, light);
-    for (; share >= 0; share = shares_[size_t(share)].next)
-        sched.add(shares_[size_t(share)].target, light * shares_[size_t(share)].ratio);
-}
-
 std::vector<std::shared_ptr<BatchContext>> Engine::asides(const BatchContext& c, Sched& sched,
                                                           const std::function<void(BatchContext&)>& fill) {
     std::vector<std::shared_ptr<BatchContext>> all;
@@ -177,8 +171,9 @@ void Engine::finishAside(BatchContext& c, int first, int lanes, Sched& sched) {
     for (int i = first; output >= 0 && i < std::min(first + lanes, int(c.points.size())); ++i) {
         const PathRay& ray = c.rays[size_t(i)];
         if (!ray.counts) continue;
-        sched.add(c.targets[size_t(i)], triple ? ray.weight * c.batch->color(output, i)
-                                               : Color(luminance(ray.weight) * c.batch->value(output, 0, i), 0, 0));
+        const Color light = triple ? ray.weight * c.batch->color(output, i)
+                                   : Color(luminance(ray.weight) * c.batch->value(output, 0, i), 0, 0);
+        deposit(sched, {c.targets[size_t(i)], light, LightEvent::Output, &ray});
     }
 }
 

@@ -65,7 +65,8 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, st
             opacity = c.haze[size_t(i)].opacity;
         }
         if (!isFinite(opacity)) notFinite(&ray, "Oi", binding.surface.get());
-        if (isFinite(shown)) add(sched, c.targets[i], ray, ray.weight * shown, binding.surface.get());
+        if (isFinite(shown)) 
+            deposit(sched, {c.targets[i], ray.weight * shown, LightEvent::Surface, &ray, extraOf(ray).share, binding.surface.get()});
         else notFinite(&ray, "Ci", binding.surface.get());
         if (ray.counts) {
             SampleResult& r = *results[size_t(ray.sample->path)];

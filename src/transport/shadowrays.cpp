@@ -21,6 +21,21 @@ accel::Ray shadowRay(const ShadowRay& s) {
     if (s.ray && s.ray->sample) r.level = s.ray->sample->level;
     return r;
 }
+/// Whether a ray may meet something in a box: false only where it passes beside it.
+bool passes(const geometry::Bounds& b, const ShadowRay& r) {
+    const float error = geometry::roundingError(b.lo) + geometry::roundingError(b.hi) + geometry::roundingError(r.origin);
+    double from = 0, to = r.distance;
+    for (int k = 0; k < 3; ++k) {
+        const double lo = double(b.lo[k]) - error - r.origin[k], hi = double(b.hi[k]) + error - r.origin[k], d = r.dir[k];
+        if (std::fabs(d) < 1e-12) {
+            if (lo > 0 || hi < 0) return false;
+            continue;
+        }
+        from = std::max(from, std::min(lo / d, hi / d) * (1 - 1e-6));
+        to = std::min(to, std::max(lo / d, hi / d) * (1 + 1e-6));
+    }
+    return from <= to;
+}
 Color between0And1(const Color& c) { return {std::clamp(c.x, 0.f, 1.f), std::clamp(c.y, 0.f, 1.f), std::clamp(c.z, 0.f, 1.f)}; }
 } // namespace
 
@@ -95,6 +110,37 @@ void Engine::opacities(std::span<const OpacityQuery> met, std::span<Color> out) 
     }
 }
 
+void WorldImpl::sortByOpacity() {
+    if (allOpaque_) return;
+    for (size_t i = 0; i < shapes_.size(); ++i) {
+        const bool opaque = bindings_[size_t(bindingOf_[i])].opacity.opaque();
+        byOpacity_.opaque.push_back(opaque);
+        byOpacity_.clear.push_back(!opaque);
+        if (!opaque) byOpacity_.clearBounds.add(shapes_[i]->bounds());
+    }
+}
+
+bool Engine::meetsOpaqueAlone(const ShadowRay& r) const {
+    return world_->media_.empty() && !r.kind->set.only && r.kind->set.mode == shading::HitMode::Default;
+}
+
+/// 0 for rays that a surface blocks which needs no shader for that, 1 for the others.
+void Engine::blockedByOpaque(std::span<const ShadowRay> rays, std::span<Color> out) {
+    shadowRays_.clear();
+    std::vector<size_t> of;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        out[i] = Color(1);
+        if (!meetsOpaqueAlone(rays[i])) continue;
+        shadowRays_.push_back(shadowRay(rays[i]));
+        shadowRays_.back().only = world_->byOpacity_.opaque.data();
+        of.push_back(i);
+    }
+    blocked_.resize(of.size());
+    world_->accel_->occluded(shadowRays_, blocked_);
+    for (size_t k = 0; k < of.size(); ++k)
+        if (blocked_[k]) out[of[k]] = Color(0);
+}
+
 void Engine::transmittances(std::span<const ShadowRay> rays, std::span<Color> out) {
     counters.shadow += rays.size();
     const bool media = !world_->media_.empty();
@@ -112,9 +158,14 @@ void Engine::transmittances(std::span<const ShadowRay> rays, std::span<Color> ou
     std::vector<Going> now, next;
     std::vector<OpacityQuery> met;
     std::vector<size_t> order;
+    blockedByOpaque(rays, out);
     for (size_t i = 0; i < rays.size(); ++i) {
-        out[i] = Color(1);
-        now.push_back({shadowRay(rays[i]), i, 0, rays[i].media, rays[i].origin});
+        if (!meetsOpaqueAlone(rays[i])) {
+            now.push_back({shadowRay(rays[i]), i, 0, rays[i].media, rays[i].origin});
+        } else if (out[i] != Color(0) && passes(world_->byOpacity_.clearBounds, rays[i])) {
+            now.push_back({shadowRay(rays[i]), i, 0, rays[i].media, rays[i].origin});
+            now.back().ray.only = world_->byOpacity_.clear.data();
+        }
     }
     while (!now.empty()) {
         next.clear();
@@ -214,13 +265,20 @@ void Engine::flushShadows(Sched& s) {
     transmitted_.resize(shadows.size());
     transmittances(shadows, transmitted_);
     for (size_t i = 0; i < shadows.size(); ++i) {
-        const Color c = shadows[i].contribution * transmitted_[i];
-        if (isFinite(c)) deposit(s, shadows[i].target, shadows[i].share, c);
-        else notFinite(shadows[i].ray, "light that is sampled", nullptr);
-        if (shadows[i].areaLight)
-            if (TraceSums* sums = sumsOf(shadows[i].target)) sums->add(TraceSums::AreaLight, shadows[i].contribution * transmitted_[i]);
+        const ShadowRay& r = shadows[i];
+        const auto arrives = [&](const Color& contribution, TargetId target, int32_t share, bool areaLight) {
+            const Color light = contribution * transmitted_[i];
+            deposit(s, {target, light, LightEvent::Sampled, r.ray, share});
+            if (TraceSums* sums = areaLight ? sumsOf(target) : nullptr) sums->add(TraceSums::AreaLight, light);
+        };
+        arrives(r.contribution, r.target, r.share, r.areaLight);
+        for (int32_t k = r.more; k >= 0; k = moreLight_[size_t(k)].more) {
+            const MoreLight& m = moreLight_[size_t(k)];
+            arrives(m.contribution, m.target, m.share, m.areaLight);
+        }
     }
     shadows.clear();
+    moreLight_.clear();
 }
 
 } // namespace alpenglow::transport

@@ -55,7 +55,7 @@ void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId t
 void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
     for (const Sched::Task* t : tasks) // the map of a trace()
         if (const PathRay& r = t->payload; maxComponent(extraOf(r).environment) > 0) {
-            add(sched, t->target, r, r.weight * extraOf(r).environment, nullptr);
+            deposit(sched, {t->target, r.weight * extraOf(r).environment, LightEvent::Map, &r, extraOf(r).share});
             if (TraceSums* sums = sumsOf(t->target)) sums->add(TraceSums::Environment, r.weight * extraOf(r).environment);
         }
     if (!rules_.emissionCounts || tasks.empty()) return;
@@ -87,7 +87,8 @@ void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
             if (value[i].lit) {
                 const PathRay& r = of[i]->payload;
                 const bool weighed = l.kind == LightKind::Environment && r.bounces > 0 && !r.kind->fromTrace; // met by a lobe of a lighting shadeop
-                add(sched, of[i]->target, r, r.weight * value[i].Cl * (weighed ? value[i].kept(r.type()) : 1.f), l.instance.get());
+                const Color light = r.weight * value[i].Cl * (weighed ? value[i].kept(r.type()) : 1.f);
+                deposit(sched, {of[i]->target, light, LightEvent::Sky, &r, extraOf(r).share, l.instance.get()});
             }
     }
 }
@@ -138,7 +139,7 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
                 weight = set.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
             }
             if (r.bounces > 0 && !r.kind->fromTrace) weight *= v.kept(r.type());
-            add(sched, met[i].target, r, r.weight * v.Cl * weight, light.instance.get());
+            deposit(sched, {met[i].target, r.weight * v.Cl * weight, LightEvent::Met, &r, extraOf(r).share, light.instance.get()});
             if (TraceSums* sums = sumsOf(met[i].target); sums && maxComponent(extraOf(r).part) > 0) sums->add(TraceSums::AreaLight, r.weight * v.Cl * weight);
         }
     }

@@ -130,6 +130,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
             w->fades_ = true;
         }
     if (w->fades_) w->accel_->setLevels(std::move(levels));
+    w->sortByOpacity();
     w->findEye();
     w->bindSentStrings(d);
     w->countLightTraces();

@@ -361,6 +361,13 @@ public:
     bool lightChannels_ = false;               ///< lights give AOVs by outputchannel()
     bool footprints_ = false;                  ///< some kernel reads du or dv
     bool allOpaque_ = true;                    ///< no opacity below 1: shadow rays need no shading
+    /// Where that is not so, by shape, what rays without a "hitmode" may be asked to meet alone: shapes that block all light, and the
+    /// others; and a box about those.
+    struct ByOpacity {
+        std::vector<uint8_t> opaque, clear;
+        geometry::Bounds clearBounds;
+    } byOpacity_;
+    void sortByOpacity();
     bool fades_ = false;                       ///< some shape is between levels of detail
     bool hitModes_ = false;                    ///< some call has a "hitmode"
     BoundKernel primitiveHit_;                 ///< shows primitives as they are; only where some ray may want that

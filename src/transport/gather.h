@@ -74,7 +74,7 @@ private:
     void queriesOf(const BoundLight&, std::span<const std::pair<int, float>> chosen);
     bool place(ShadePoint&, Emitter::Sample&, size_t point, const BoundLight&) const;
     void queriesByWidth(size_t point, const BoundLight&);
-    void askLight(const BoundLight&);
+    void askLights(const BoundKernel* shared);
 
     // connect.cpp
     void connect();
@@ -100,6 +100,7 @@ private:
     std::vector<float> indirectScale_; ///< by point: of the rays of lighting shadeops
     std::vector<float> passes_;        ///< by point: the chance that its ray goes on behind it
     std::vector<std::vector<std::pair<int, float>>> chosenAt_; ///< many lights: by light of the list, points and chances
+    std::vector<std::vector<int>> ofGroup_; ///< many lights: by group, places in the list
     LightQueries queries_;
     std::vector<Reached> reached_;
     int lastQuery_ = -1; ///< that of the shadow ray sent last, which other lobes of its point may share

@@ -1,5 +1,5 @@
 // Stage light: every light for every point with lobes that want it, a kernel call a light. Of many lights some are chosen at each
-// point (manylights.cpp).
+// point (manylights.cpp), and those of one program share a call.
 #include "transport/emitterfootprint.h"
 #include "transport/gather.h"
 
@@ -49,13 +49,31 @@ void Gather::light() {
         for (size_t point = 0; point < c_->points.size(); ++point)
             if (begin_[point] != begin_[point + 1]) chosenAt_[0].push_back({int(point), 1.f});
     }
+    // Lights of one program that share a kernel call come together (WorldImpl::lightGroups_), the others one by one.
+    std::vector<std::vector<int>>& grouped = ofGroup_; // places in the list
+    grouped.resize(world_.lightGroups_.size());
     for (size_t k = 0; k < on.size(); ++k) {
+        const auto& at = chosenAt_[many ? k : 0];
+        if (at.empty()) continue;
         const BoundLight& light = world_.lights_[size_t(on[k])];
+        if (many && light.group >= 0) {
+            grouped[size_t(light.group)].push_back(int(k));
+            continue;
+        }
         queries_.clear();
-        queriesOf(light, chosenAt_[many ? k : 0]);
+        queriesOf(light, at);
+        askLights(nullptr);
+        connect();
         if (many) chosenAt_[k].clear();
-        if (queries_.count == 0) continue;
-        askLight(light);
+    }
+    for (size_t g = 0; many && g < grouped.size(); ++g) {
+        queries_.clear();
+        for (int k : grouped[g]) {
+            queriesOf(world_.lights_[size_t(on[size_t(k)])], chosenAt_[size_t(k)]);
+            chosenAt_[size_t(k)].clear();
+        }
+        grouped[g].clear();
+        askLights(&world_.lightGroups_[g].kernel);
         connect();
     }
     if (!many) chosenAt_[0].clear();
@@ -138,12 +156,19 @@ void Gather::queriesByWidth(size_t point, const BoundLight& light) {
     }
 }
 
-/// Runs the light's kernel for the queries.
-void Gather::askLight(const BoundLight& light) {
+/// Runs the kernel of the queries' lights, which are one, or of the group that `shared` is of.
+void Gather::askLights(const BoundKernel* shared) {
     LightQueries& q = queries_;
+    if (q.count == 0) return;
+    const BoundLight& light = *q.light[0];
     q.at.resize(q.count);
     q.value.assign(q.count, {});
     LightCall call;
+    if (shared) {
+        call.kernel = shared;
+        call.of = q.light;
+        return e_.evaluateLight(light, q.at, q.value, call);
+    }
     LitSurface lit;
     const auto told = [&](int k) -> const LitValues& {
         return e_.litValues_[size_t(e_.lobes[size_t(lobesOf(size_t(q.point[size_t(k)]))[0])].lit)];

@@ -79,7 +79,9 @@ public:
         ++targets_[target].pending;
         if (size_t(depth) >= queues_.size()) queues_.resize(size_t(depth) + 1);
         ++queued_;
-        return queues_[size_t(depth)].emplace_back(depth, target, from);
+        auto& chunks = queues_[size_t(depth)];
+        if (chunks.empty() || chunks.back().size() >= size_t(sliceRays_)) chunks.push_back(newChunk());
+        return chunks.back().emplace_back(depth, target, from);
     }
     /// Adds light to a target. Order does not matter: the sum is exact. Non-finite values are counted and dropped.
     void add(TargetId id, const Color& c) {
@@ -138,19 +140,7 @@ public:
             }
             // Near the frame limit only as many rays are taken as one strip can hold, so that depth, not breadth, uses what is left.
             size_t most = frameBytes_ > frameLimit_ / 2 ? std::min(kStripRays, size_t(sliceRays_)) : size_t(sliceRays_);
-            slice.clear();
-            for (auto from = queues_.rbegin(); from != queues_.rend() && slice.size() < most; ++from) {
-                auto& q = *from;
-                if (q.empty()) continue;
-                if (!slice.empty() && frameBytes_ > 0) break;
-                size_t take = std::min(q.size(), most - slice.size());
-                if (slice.empty() && take == q.size()) slice.swap(q);
-                else { // from the end: order does not matter, moving the rest would cost
-                    if constexpr (std::is_trivially_copyable_v<Task>) slice.insert(slice.end(), q.end() - ptrdiff_t(take), q.end());
-                    else slice.insert(slice.end(), std::make_move_iterator(q.end() - ptrdiff_t(take)), std::make_move_iterator(q.end()));
-                    q.resize(q.size() - take);
-                }
-            }
+            takeSlice(slice, most);
             size_t n = slice.size();
             queued_ -= n;
             if (frameBytes_ > frameLimit_) {
@@ -181,12 +171,10 @@ public:
         freeStrips_.clear();
         ready_.clear();
         resuming_.reset();
-        for (auto& queue : queues_) queue.clear();
+        dropTasks();
         queued_ = frameBytes_ = peakFrameBytes_ = largestSlice_ = 0;
         suspensions_ = overLimit_ = nonFinite_ = slices_ = 0;
     }
-    /// Forgets all targets; only when nothing is pending.
-    void reset() { targets_.clear(); freeTargets_.clear(); strips_.clear(); freeStrips_.clear(); queues_.clear(); queued_ = 0; ready_.clear(); frameBytes_ = 0; }
 
     size_t frameBytes() const { return frameBytes_; } ///< that wait now
     size_t frameLimit() const { return frameLimit_; }
@@ -242,6 +230,42 @@ private:
         Waiting& w = strips_[slot];
         if (--w.open == 0) ready_[w.strip->depth()].push_back(slot);
     }
+    std::vector<Task> newChunk() {
+        std::vector<Task> chunk;
+        if (!freeChunks_.empty()) {
+            chunk.swap(freeChunks_.back());
+            freeChunks_.pop_back();
+        }
+        return chunk;
+    }
+    void freeChunk(std::vector<Task>&& chunk) {
+        chunk.clear();
+        freeChunks_.push_back(std::move(chunk));
+    }
+    /// The deepest tasks. Where no strip waits, a slice that would not be half full gets less deep ones, too.
+    void takeSlice(std::vector<Task>& slice, size_t most) {
+        slice.clear();
+        for (auto from = queues_.rbegin(); from != queues_.rend() && slice.size() * 2 < most; ++from) {
+            auto& chunks = *from;
+            if (!slice.empty() && frameBytes_ > 0) break;
+            if (slice.empty() && chunks.size() > 1 && chunks[chunks.size() - 2].size() <= most) // all but the last are full
+                std::swap(chunks[chunks.size() - 2], chunks.back());
+            while (!chunks.empty() && slice.size() < most) {
+                std::vector<Task>& q = chunks.back();
+                if (slice.empty() && q.size() <= most) { // no task is moved
+                    slice.swap(q);
+                } else {
+                    const size_t take = std::min(q.size(), most - slice.size());
+                    slice.insert(slice.end(), std::make_move_iterator(q.end() - ptrdiff_t(take)), std::make_move_iterator(q.end()));
+                    q.resize(q.size() - take);
+                }
+                if (!q.empty()) break;
+                freeChunk(std::move(q));
+                chunks.pop_back();
+                if (slice.size() * 2 >= most) break;
+            }
+        }
+    }
     int deepestQueue() const {
         for (size_t depth = queues_.size(); depth-- > 0;)
             if (!queues_[depth].empty()) return int(depth);
@@ -266,9 +290,15 @@ private:
         resuming_ = std::move(w.strip);
         if (s->resume(*this, results)) resuming_.reset();
     }
-    void abandon() {
-        queues_.clear();
+    void dropTasks() {
+        for (auto& chunks : queues_) {
+            for (auto& chunk : chunks) freeChunk(std::move(chunk));
+            chunks.clear();
+        }
         queued_ = 0;
+    }
+    void abandon() {
+        dropTasks();
         ready_.clear();
         strips_.clear();
         frameBytes_ = 0;
@@ -290,7 +320,8 @@ private:
     std::vector<TargetId> freeTargets_;
     std::deque<Waiting> strips_;
     std::vector<int> freeStrips_;
-    std::vector<std::vector<Task>> queues_; ///< by depth
+    std::vector<std::vector<std::vector<Task>>> queues_; ///< by depth, in chunks of a slice
+    std::vector<std::vector<Task>> freeChunks_;
     size_t queued_ = 0;
     std::map<int, std::deque<int>> ready_;
     std::unique_ptr<Strip> resuming_;

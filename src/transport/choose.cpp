@@ -36,8 +36,8 @@ void Gather::choosePoint(size_t point) {
     for (int i : lobesOf(point)) {
         LobeVertex& l = e_.lobes[size_t(i)];
         const Color weight = absolute(l.weight);
-        l.albedo = l.kind->albedo(l.params);
-        l.delta = l.kind->isDelta(l.params);
+        l.albedo = e_.lobeRows_.albedo(l.place);
+        l.delta = e_.lobeRows_.delta(l.place);
         if (l.lobeOfShader) sum += weight * l.albedo;
         l.chosen = std::max(worth(weight) * l.albedo, 0.f);
         if (!std::isfinite(l.chosen)) {

@@ -21,11 +21,25 @@ void Gather::connect() {
         if (v.lit && !isFinite(v.Cl)) e_.notFinite(&c_->rays[size_t(queries_.point[k])], "Cl", queries_.light[k]->instance.get());
         else if (v.lit && maxComponent(v.Cl) > 0) reach(int(k));
     }
-    for (Reached& r : reached_) {
-        const BoundLight& light = *queries_.light[size_t(r.query)];
-        r.value = value(e_.lobes[size_t(r.lobe)], r.w, light.kind == LightKind::Area && !light.mean);
-    }
+    evaluate();
     for (const Reached& r : reached_) send(r);
+}
+
+/// The values of the lobes for the light that reaches them: in turns, in which each lobe is asked once.
+void Gather::evaluate() {
+    turns_.assign(e_.lobes.size(), 0);
+    int turns = 0;
+    for (Reached& r : reached_) {
+        r.turn = turns_[size_t(r.lobe)]++;
+        turns = std::max(turns, r.turn + 1);
+    }
+    for (int turn = 0; turn < turns; ++turn) {
+        for (const Reached& r : reached_)
+            if (r.turn == turn) e_.lobeRows_.ask(e_.lobes[size_t(r.lobe)].place, r.w);
+        e_.lobeRows_.evaluate();
+        for (Reached& r : reached_)
+            if (r.turn == turn) r.value = e_.lobeRows_.value(e_.lobes[size_t(r.lobe)].place);
+    }
 }
 
 /// Notes the lobes that the light of a query reaches.
@@ -38,13 +52,13 @@ void Gather::reach(int query) {
     for (int i : lobesOf(size_t(q.point[k]))) {
         const LobeVertex& l = e_.lobes[size_t(i)];
         if (!samples(l, light)) continue;
-        if (q.spread[k] >= 0 && q.spread[k] != spreadBehind(rayOf(l), l.kind->spread(l.params))) continue;
+        if (q.spread[k] >= 0 && q.spread[k] != spreadBehind(rayOf(l), e_.lobeRows_.spread(l.place))) continue;
         // Sides 1: from where rays of this lobe pass through the emitter they cannot meet it, and it sends nothing.
         const accel::Sides sides = l.rays->set.sides;
         if (area && !light.mean && q.drawn[k].shape->oneSided() && sides != accel::Sides::Both &&
             (dot(q.at[k].surface.n, w) >= 0) != (sides == accel::Sides::Back))
             continue;
-        reached_.push_back({query, i, w, {}});
+        reached_.push_back({query, i, 0, w, {}});
     }
 }
 
@@ -70,7 +84,7 @@ Color Gather::contribution(const Reached& r) {
     const float fcos = r.value.fcos, drawn = queries_.drawn[k].pdf, chance = queries_.chance[k];
     const float kept = l.lobeOfShader ? v.kept(l.rays->type) : 1;
     Color c = l.ownsTarget ? l.weight * v.Cl : l.weight * rayOf(l).weight * v.Cl;
-    if (l.kind->colour) c *= r.value.colour / fcos;
+    c *= r.value.colour / fcos;
     if (l.trace && l.trace->sums)
         if (TraceSums* of = e_.sumsOf(l.target)) of->add(TraceSums::UnshadowedAreaLight, c * (fcos / (drawn * chance)));
     if (!area || light.mean) return c * (kept * float(kPi) * fcos / (chance * (area ? drawn : 1))); // Cl is irradiance / pi

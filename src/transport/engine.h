@@ -389,18 +389,18 @@ private:
     /// Hits of a group that wait to be shaded together. They hold their targets.
     struct HitQueue {
         std::vector<accel::Hit> hits;
-        std::vector<Sched::Task> rays;
+        std::vector<PathRay> rays;
+        std::vector<TargetId> targets;
         bool waits = false;                    ///< its kernel waits for rays; then
         size_t room = 0;                       ///< so many of its points may be shaded now
     };
     std::vector<HitQueue> hitQueues_;          ///< by SurfaceBinding::group, then for rays that take primitives as they are
-    HitQueue freeQueue_;                       ///< memory
     std::vector<size_t> groupsWithHits_;
     size_t hitsWaiting_ = 0;
     void cast(std::span<const Sched::Task>);
     void queueHit(const Sched::Task&, const accel::Hit&, Sched&);
     void shadeHits(size_t group, Sched&);
-    void placePoints(const HitQueue&, BatchContext&);
+    void placePoints(HitQueue&, BatchContext&);
     void shine(const BatchContext&, Sched&);
     std::vector<class KernelStrip*> waiting_; ///< whose requests nobody has followed yet
     std::vector<PathSample> samples_; ///< of the call of trace()

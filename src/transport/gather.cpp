@@ -8,10 +8,12 @@ void Gather::run(BatchContext& c, Sched& sched) {
     c_ = &c;
     sortByPoint();
     if (world_.lightsAsk()) tellLights();
+    e_.lobeRows_.prepare();
     choose();
     if (rules_.lightsAtRequests) light();
     scatter(sched);
     e_.lobes.clear();
+    e_.lobeRows_.clear();
 }
 
 void Gather::sortByPoint() {
@@ -53,14 +55,6 @@ Vec3 Gather::origin(const LobeVertex& l, const Vec3& w) const {
     const Vec3& at = l.elsewhere ? l.from : c_->points[size_t(l.point)].P;
     if (l.bias >= 0) return at + w * l.bias;
     return l.elsewhere ? at + w * geometry::roundingError(at) : origin(size_t(l.point), w);
-}
-
-LobeValue Gather::value(const LobeVertex& l, const Vec3& w, bool density) const {
-    LobeValue v;
-    v.fcos = l.kind->fcos(l.params, w);
-    v.colour = v.fcos > 0 && l.kind->colour ? l.kind->colour(l.params, w) : Color(v.fcos);
-    if (density) v.pdf = l.kind->pdf == l.kind->fcos ? v.fcos : l.kind->pdf(l.params, w);
-    return v;
 }
 
 } // namespace alpenglow::transport

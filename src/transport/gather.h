@@ -10,13 +10,6 @@
 
 namespace alpenglow::transport {
 
-/// A lobe for light that arrives from one direction.
-struct LobeValue {
-    Color colour{0}; ///< f cos by channel; per steradian
-    float fcos = 0;  ///< the largest channel
-    float pdf = 0;   ///< density with which the lobe draws the direction, per solid angle
-};
-
 class Gather {
 public:
     explicit Gather(Engine& e) : e_(e), world_(e.world()), rules_(e.rules()) {}
@@ -24,10 +17,10 @@ public:
     void run(BatchContext&, Sched&);
 
 private:
-    /// A lobe that light of a query reaches from direction w.
-    struct Reached { int query, lobe; Vec3 w; LobeValue value; };
+    /// A lobe that light of a query reaches from direction w. `turn`: how many queries have reached it before.
+    struct Reached { int query, lobe, turn; Vec3 w; LobeValue value; };
     /// A lobe whose rays are sent: `count` of them, each with `scale` times its weight. `goes`, `w`: the ray of this turn.
-    struct Sent { int point, lobe, count; float scale; bool goes; Vec3 w; };
+    struct Sent { int point, lobe, count; float scale; bool goes; Vec3 w; LobeValue value; };
     /// What lights are asked for at points of the batch, one kernel call; row by row a query.
     struct LightQueries {
         std::vector<ShadePoint> at;          ///< the light's point; the first `count` are used
@@ -59,7 +52,6 @@ private:
     int32_t shareOf(const LobeVertex& l) const {
         return l.ownsTarget ? -1 : l.share >= 0 ? l.share : e_.extraOf(rayOf(l)).share;
     }
-    LobeValue value(const LobeVertex&, const Vec3& w, bool density) const;
 
     // choose.cpp
     void choose();
@@ -79,6 +71,7 @@ private:
     // connect.cpp
     void connect();
     void reach(int query);
+    void evaluate();
     bool meets(const LobeVertex&, int query, const Vec3& w, const Vec3& from, const Vec3& end) const;
     void send(const Reached&);
     Color contribution(const Reached&);
@@ -103,6 +96,7 @@ private:
     std::vector<std::vector<int>> ofGroup_; ///< many lights: by group, places in the list
     LightQueries queries_;
     std::vector<Reached> reached_;
+    std::vector<int> turns_;   ///< by lobe: queries that have reached it
     int lastQuery_ = -1; ///< that of the shadow ray sent last, which other lobes of its point may share
     std::vector<Sent> sent_;
 };

@@ -83,7 +83,8 @@ void Engine::queueHit(const Sched::Task& task, const accel::Hit& hit, Sched& sch
         return;
     }
     q.hits.push_back(hit);
-    q.rays.push_back(task);
+    q.rays.push_back(r);
+    q.targets.push_back(task.target);
     sched.hold(task.target);
     ++hitsWaiting_;
 }
@@ -98,14 +99,12 @@ int Engine::roomFor(const rsl::CompiledKernel& k, const rsl::CompiledKernel* oth
 }
 
 void Engine::shadeHits(size_t group, Sched& sched) {
-    HitQueue q = std::move(freeQueue_);
-    std::swap(q, hitQueues_[group]);
     std::erase(groupsWithHits_, group);
-    hitsWaiting_ -= q.hits.size();
+    hitsWaiting_ -= hitQueues_[group].hits.size();
     auto c = takeContext();
     c->engine = this;
     c->ownsExtras = true;
-    placePoints(q, *c);
+    placePoints(hitQueues_[group], *c);
     shine(*c, sched);
     const bool same = std::all_of(c->bindings.begin(), c->bindings.end(), [&](int b) { return b == c->bindings[0]; });
     c->binding = &world_->bindings_[size_t(c->bindings[0])];
@@ -113,23 +112,17 @@ void Engine::shadeHits(size_t group, Sched& sched) {
                : same && !c->binding->usesObjectSpace ? &c->binding->surfaceS
                                                       : &c->binding->surfaceV;
     shadeGroup(c, sched);
+    for (TargetId t : c->targets) sched.release(t);
     giveBack(std::move(c));
-    for (const Sched::Task& t : q.rays) sched.release(t.target);
-    q.hits.clear();
-    q.rays.clear();
-    freeQueue_ = std::move(q);
 }
 
-/// Fills a context with the points of hits.
-void Engine::placePoints(const HitQueue& q, BatchContext& c) {
+/// Fills a context with the points of hits, which the queue then has no more.
+void Engine::placePoints(HitQueue& q, BatchContext& c) {
     const size_t n = q.hits.size();
     c.points.resize(n); // pointers into points and rays stay good
-    c.rays.reserve(n);
-    for (size_t i = 0; i < n; ++i) {
-        c.rays.push_back(q.rays[i].payload);
-        c.targets.push_back(q.rays[i].target);
-        c.bindings.push_back(world_->bindingOf_[q.hits[i].shape]);
-    }
+    c.rays.swap(q.rays);
+    c.targets.swap(q.targets);
+    for (const accel::Hit& h : q.hits) c.bindings.push_back(world_->bindingOf_[h.shape]);
     std::vector<geometry::HitRef>& run = run_; // of one shape
     for (size_t i = 0; i < n;) {
         const uint32_t shape = q.hits[i].shape;
@@ -154,6 +147,7 @@ void Engine::placePoints(const HitQueue& q, BatchContext& c) {
         const float rate = r.camera() ? world_->bindings_[size_t(c.bindings[i])].shadingRate : 1;
         shading::setFootprint(p, r.footprint, r.dir, length(p.P - r.origin), rate);
     }
+    q.hits.clear();
 }
 
 /// Light of the emitters among the points.

@@ -143,7 +143,7 @@ void Gather::queriesByWidth(size_t point, const BoundLight& light) {
     for (int i : lobesOf(point)) {
         const LobeVertex& l = e_.lobes[size_t(i)];
         if (!samples(l, light)) continue;
-        const float s = spreadBehind(c_->rays[point], l.kind->spread(l.params));
+        const float s = spreadBehind(c_->rays[point], e_.lobeRows_.spread(l.place));
         if (used && std::find(q.spread.begin() + long(first), q.spread.end(), s) != q.spread.end()) continue;
         if (std::exchange(used, true)) {
             const Emitter::Sample drawn = q.drawn.back();

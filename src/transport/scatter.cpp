@@ -38,19 +38,33 @@ void Gather::pick(size_t point) {
             count = 1;
         }
         if (l.lobeOfShader) scale *= indirectScale_[point];
-        sent_.push_back({int(point), i, count, scale, true, Vec3()});
+        sent_.push_back({int(point), i, count, scale, true, Vec3(), {}});
     }
     if (mayPass) c_->passes[point] = taken ? 0 : passes_[point];
 }
 
-/// Directions of the rays of one turn.
+/// Directions of the rays of one turn, and what their lobes give back from there.
 void Gather::draw(int turn) {
+    LobeColumns& rows = e_.lobeRows_;
     for (Sent& s : sent_) {
         s.goes = turn < s.count;
         if (!s.goes) continue;
         const LobeVertex& l = e_.lobes[size_t(s.lobe)];
         const PathRay& from = c_->rays[size_t(s.point)];
-        s.goes = l.kind->sample(l.params, e_.random(from).pair(from.vertex, l.site, l.occurrence * 4096 + uint32_t(turn)), s.w);
+        rows.ask(l.place, e_.random(from).pair(from.vertex, l.site, l.occurrence * 4096 + uint32_t(turn)));
+    }
+    rows.sample();
+    for (Sent& s : sent_) {
+        if (!s.goes) continue;
+        const LobeVertex& l = e_.lobes[size_t(s.lobe)];
+        s.goes = rows.drawn(l.place, s.w);
+        if (s.goes && !l.delta) rows.ask(l.place, s.w);
+    }
+    rows.evaluate();
+    for (Sent& s : sent_) {
+        if (!s.goes) continue;
+        const LobeVertex& l = e_.lobes[size_t(s.lobe)];
+        s.value = l.delta ? LobeValue{Color(l.albedo), l.albedo, 0} : rows.value(l.place);
     }
 }
 
@@ -94,10 +108,8 @@ void Gather::sendRay(const Sent& s, int turn, Sched& sched) {
     const PathRay& from = c_->rays[size_t(s.point)];
     const Vec3& w = s.w;
     if (l.trace && l.trace->onlyLights && !(l.base > 0) && !meetsEmitter(l, w)) return;
-    const float pdf = l.delta ? 0 : l.kind->pdf(l.params, w);
-    Color f(0);
-    if (l.delta) f = Color(l.albedo);
-    else if (pdf > 0) f = l.kind->pdf == l.kind->fcos ? Color(1) : lobeValue(*l.kind, l.params, w) / pdf;
+    const float pdf = s.value.pdf;
+    const Color f = l.delta ? s.value.colour : pdf > 0 ? s.value.colour / pdf : Color(0);
     const Color through = l.weight * (f * s.scale / float(s.count));
     RayExtra extra;
     if (l.trace && l.trace->map) {
@@ -138,7 +150,7 @@ void Gather::sendRay(const Sent& s, int turn, Sched& sched) {
     r.lobeOrigin = p.P;
     r.lobeBinding = sampled ? c_->bindings[size_t(s.point)] : -1;
     r.footprint = from.footprint.after(length(p.P - from.origin));
-    r.footprint.spread = spreadBehind(from, l.kind->spread(l.params));
+    r.footprint.spread = spreadBehind(from, e_.lobeRows_.spread(l.place));
     r.counts = false;
     r.first = l.ownsTarget;
     e_.counters.depthMax = std::max(e_.counters.depthMax, bounces);

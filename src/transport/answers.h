@@ -25,17 +25,20 @@ struct Told {
 /// What lightsource() asks of a light.
 struct LightParameter {
     std::optional<Told> told; ///< as the light was given it; nothing: it has none of that name
-    struct Part { int from, components; size_t to; };
+    struct Part {
+        int from, components;
+        size_t to;
+    };
     std::vector<Part> written; ///< by its kernel: where they lie in BoundLight::values, and in the answer
 };
 
 /// Answers that do not depend on the point, so that no name is compared twice. Names are interned. One an engine: no lock.
 struct AnswerMemo {
-    std::map<std::pair<int32_t, int>, LightParameter> ofLights;                            ///< by name and light
-    std::map<std::pair<int32_t, const ShaderInstance*>, std::optional<Told>> ofShaders;    ///< toldBy()
+    std::map<std::pair<int32_t, int>, LightParameter> ofLights;                         ///< by name and light
+    std::map<std::pair<int32_t, const ShaderInstance*>, std::optional<Told>> ofShaders; ///< toldBy()
     std::map<std::tuple<int32_t, int, const scene::Attributes*, const SurfaceBinding*>, std::optional<Told>> attributes;
     std::unordered_map<int32_t, std::optional<Told>> options;
-    std::unordered_map<int32_t, bool> pointAttributes;                                     ///< ofPoint() of a name
+    std::unordered_map<int32_t, bool> pointAttributes; ///< ofPoint() of a name
 };
 
 /// Rows are floats, one a lane. Those of the results begin at zero. A query has 1 or 0, whether the answer came and fits, in row 0; then

@@ -450,7 +450,12 @@ private:
     std::unordered_map<uint64_t, bool> ofCategory_;     ///< by category and light
     std::vector<int> sheetNumbers_;                     ///< by light: of its first sample; -1: it has no sheets
     int sheets_ = 0;
-    struct SheetRoom { std::vector<ShadePoint> q; std::vector<int> of; std::vector<float> factor, values; std::vector<LightValue> v; } sheetRoom_;
+    struct SheetRoom {
+        std::vector<ShadePoint> q;
+        std::vector<int> of;
+        std::vector<float> factor, values;
+        std::vector<LightValue> v;
+    } sheetRoom_;
     std::shared_ptr<struct AnswerMemo> answers_;
     uint64_t sampleLight(BatchContext&, const LightLoop&, int light, int turn, int turns, int first, uint64_t mask, int lanes, LightLoop::Kept& kept);
     /// Sample `turn` of a light that sends through generateSamples(), by its BoundLight::values at a point.

@@ -125,7 +125,8 @@ const std::vector<std::pair<int, int>>& Engine::turnsOf(const SurfaceBinding& b,
     known.turns.clear();
     for (int i : b.lights) {
         const BoundLight& l = world_->lights_[size_t(i)];
-        if (!l.kernel || l.kind == LightKind::Ambient || l.strategy == LightStrategy::Trace || !isOfCategory(category, i)) continue;
+        if (!l.kernel || l.kind == LightKind::Ambient || l.strategy == LightStrategy::Trace || !isOfCategory(category, i))
+            continue;
         for (int k = 0; k < l.samples; ++k) known.turns.push_back({i, k});
     }
     return known.turns;

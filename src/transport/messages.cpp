@@ -107,7 +107,8 @@ const LightParameter& lightParameter(Engine& engine, int32_t id, int light) {
         const bool element = made->told && made->told->elements > 0 && v.name.rfind(name + "[", 0) == 0;
         if (made->told && (v.name == name || element)) {
             const size_t size = made->told->numbers.size() / size_t(std::max(1, made->told->elements));
-            made->written.push_back({offset, v.components, element ? size * size_t(std::atoi(v.name.c_str() + name.size() + 1)) : 0});
+            made->written.push_back(
+                {offset, v.components, element ? size * size_t(std::atoi(v.name.c_str() + name.size() + 1)) : 0});
         }
         offset += v.components;
     }

@@ -18,7 +18,8 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
     case SiteKind::TextureInfo: answerTextureInfo(*this, call); return;
     case SiteKind::Ambient: { // not under path: the sum of the ambient lights that are on
         if (!c.binding) return;
-        if (!c.light && !c.volume && 2 * std::popcount(mask) >= std::min(lanes, int(c.points.size()) - first) && allAmbientHaveSheets(*c.binding)) {
+        if (!c.light && !c.volume && 2 * std::popcount(mask) >= std::min(lanes, int(c.points.size()) - first) &&
+            allAmbientHaveSheets(*c.binding)) {
             const std::vector<Color>& sum = ambientOf(c);
             each([&](int lane, const ShadePoint&) {
                 for (int k = 0; k < 3; ++k) put(k, lane, sum[size_t(first + lane)][k]);

@@ -1,5 +1,5 @@
-// Loops over lights find what a light gives all points of a batch at once, where they begin at P. Who shares the batch, and which loops
-// ask before, changes no bit; and what they find is what the light gives.
+// Loops over lights find what a light gives all points of a batch at once, where they begin at P. Who shares the batch, and which
+// loops ask before, changes no bit; and what they find is what the light gives.
 #include "transport/floorscene.h"
 #include <cmath>
 
@@ -48,13 +48,14 @@ TEST(LightSheets, NoBitDependsOnWhoSharesTheBatch) {
     writeShader("oddlight", R"(light oddlight(float intensity = 1; string __category = "odd"; output varying float seen = 0;) {
     illuminate(point "shader" (0, 0, 0)) { seen = length(L); Cl = intensity * random() / (L . L); }
 })");
-    const std::string lights = "LightSource \"ambientlight\" 1 \"intensity\" .1\nLightSource \"distantlight\" 2 \"from\" [1 2 0] \"to\" [0 0 0]\n"
-                               "Attribute \"light\" \"shadows\" \"on\"\nLightSource \"pointlight\" 3 \"from\" [.2 1.5 .1]\n"
-                               "Attribute \"light\" \"shadows\" \"off\"\n"
-                               "LightSource \"spotlight\" 4 \"from\" [0 2 0] \"to\" [.3 0 0] \"coneangle\" .4 \"intensity\" 3\n"
-                               "TransformBegin\nTranslate .4 1.2 -.3\nLightSource \"oddlight\" 5\nTransformEnd\n"
-                               "AttributeBegin\nAttribute \"light\" \"samples\" 3\nAreaLightSource \"arealight\" 6 \"intensity\" 2\n"
-                               "Polygon \"P\" [-.3 1.8 -.3  .3 1.8 -.3  .3 1.8 .3  -.3 1.8 .3]\nAttributeEnd\nIlluminate 6 1\n";
+    const std::string lights =
+        "LightSource \"ambientlight\" 1 \"intensity\" .1\nLightSource \"distantlight\" 2 \"from\" [1 2 0] \"to\" [0 0 0]\n"
+        "Attribute \"light\" \"shadows\" \"on\"\nLightSource \"pointlight\" 3 \"from\" [.2 1.5 .1]\n"
+        "Attribute \"light\" \"shadows\" \"off\"\n"
+        "LightSource \"spotlight\" 4 \"from\" [0 2 0] \"to\" [.3 0 0] \"coneangle\" .4 \"intensity\" 3\n"
+        "TransformBegin\nTranslate .4 1.2 -.3\nLightSource \"oddlight\" 5\nTransformEnd\n"
+        "AttributeBegin\nAttribute \"light\" \"samples\" 3\nAreaLightSource \"arealight\" 6 \"intensity\" 2\n"
+        "Polygon \"P\" [-.3 1.8 -.3  .3 1.8 -.3  .3 1.8 .3  -.3 1.8 .3]\nAttributeEnd\nIlluminate 6 1\n";
     const std::vector<CameraRay> rays = raysToFloor(20);
     for (Hider hider : {Hider::Hidden, Hider::Path}) {
         const auto look = [&](int lanes, size_t together) {
@@ -65,7 +66,8 @@ TEST(LightSheets, NoBitDependsOnWhoSharesTheBatch) {
                     set);
             std::vector<Color> out;
             for (size_t i = 0; i < rays.size(); i += together)
-                for (const SampleResult& r : s.trace({rays.data() + i, std::min(together, rays.size() - i)})) out.push_back(r.color);
+                for (const SampleResult& r : s.trace({rays.data() + i, std::min(together, rays.size() - i)}))
+                    out.push_back(r.color);
             EXPECT_EQ(s.diagnostics.warnings(), 0) << s.messages();
             return out;
         };
@@ -87,9 +89,10 @@ TEST(LightSheets, ClosedForm) {
     Ci = c + 0 * away;
     Oi = 1;
 })");
-    Scene s("WorldBegin\nSides 2\nLightSource \"pointlight\" 1 \"from\" [.25 .75 -.5] \"intensity\" 2\nSurface \"sheetlambert\"\n" +
-                std::string(kSquare) + "WorldEnd\n",
-            withShaders(Hider::Hidden));
+    Scene s(
+        "WorldBegin\nSides 2\nLightSource \"pointlight\" 1 \"from\" [.25 .75 -.5] \"intensity\" 2\nSurface \"sheetlambert\"\n" +
+            std::string(kSquare) + "WorldEnd\n",
+        withShaders(Hider::Hidden));
     const std::vector<CameraRay> rays = raysToFloor(20);
     const std::vector<SampleResult> got = s.trace(rays);
     for (size_t i = 0; i < rays.size(); ++i) {

@@ -15,7 +15,8 @@ const char* const cubeFormat = "CubeFace Environment";
 
 namespace {
 
-Level levelOf(const display::Image& m, bool codes) {
+/// A level of the picture's numbers, which it takes along.
+Level levelOf(display::Image& m, bool codes) {
     Level l;
     l.width = m.width;
     l.height = m.height;
@@ -23,8 +24,9 @@ Level levelOf(const display::Image& m, bool codes) {
     if (codes) {
         l.codes.resize(m.data.size());
         for (size_t i = 0; i < m.data.size(); ++i) l.codes[i] = uint8_t(std::lround(std::clamp(m.data[i], 0.0f, 1.0f) * 255.0f));
+        m.data = {};
     } else {
-        l.values = m.data;
+        l.values = std::move(m.data);
     }
     return l;
 }
@@ -73,11 +75,11 @@ bool fitsCodes(const display::Image& m) {
     return true;
 }
 
-/// The light of a picture's numbers, without its levels.
+/// The light of the numbers of a picture, which are in the level.
 display::Image lightOf(const display::Image& picture, const Level& level, const Decode& curve) {
     display::Image light = display::makeImage(picture.width, picture.height, picture.channels);
     if (level.codes.empty()) {
-        light.data = picture.data;
+        light.data = level.values;
         decode(light, curve);
         return light;
     }
@@ -97,11 +99,11 @@ void addLight(Texture& tex, const display::Image& picture, const Decode& curve, 
         first.colours = colourChannels(picture);
     }
     if (tex.levels.size() == 1 && !first.codes.empty()) return;
-    const display::Image light = lightOf(picture, first, curve);
-    if (first.codes.empty()) first.light = light.data;
+    display::Image light = lightOf(picture, first, curve);
     size_t at = 1;
     for (display::Image& l : reducedLevels(light, {}, swrap, twrap))
         if (at < tex.levels.size()) tex.levels[at++].light = std::move(l.data);
+    if (first.codes.empty()) first.light = std::move(light.data);
 }
 
 } // namespace
@@ -132,7 +134,7 @@ std::optional<Filter> filterByName(std::string_view n) {
     return {};
 }
 
-std::shared_ptr<const Texture> makeTextureFrom(const display::Image& image, const TextureSettings& settings) {
+std::shared_ptr<const Texture> makeTextureFrom(display::Image image, const TextureSettings& settings) {
     auto tex = std::make_shared<Texture>();
     auto text = [&](const char* key) { return textOf(image, key); };
     tex->channels = image.channels;
@@ -164,15 +166,18 @@ std::shared_ptr<const Texture> makeTextureFrom(const display::Image& image, cons
         return tex;
     }
     const bool codes = (image.bits == 8 && !image.floating) || (text("colorspace") == kEightBits && fitsCodes(image));
-    tex->levels.push_back(levelOf(image, codes));
-    if (tex->kind == Kind::Shadow) return tex; // depths have no mean
+    if (tex->kind == Kind::Shadow) { // depths have no mean
+        tex->levels.push_back(levelOf(image, codes));
+        return tex;
+    }
     // The levels that the file has; below the last of them (files may end at 2x1) they are made.
     const size_t stored = storedLevels(image);
-    for (size_t i = 0; i < stored; ++i) tex->levels.push_back(levelOf(image.levels[i], false));
     const bool round = tex->kind == Kind::LatLong;
     const Wrap swrap = round ? Wrap::Periodic : tex->swrap, twrap = round ? Wrap::Clamp : tex->twrap;
-    for (const display::Image& l : reducedLevels(stored ? image.levels[stored - 1] : image, {}, swrap, twrap))
-        tex->levels.push_back(levelOf(l, false));
+    std::vector<display::Image> below = reducedLevels(stored ? image.levels[stored - 1] : image, {}, swrap, twrap);
+    tex->levels.push_back(levelOf(image, codes));
+    for (size_t i = 0; i < stored; ++i) tex->levels.push_back(levelOf(image.levels[i], false));
+    for (display::Image& l : below) tex->levels.push_back(levelOf(l, false));
     if (settings.light)
         if (const Decode curve = decodeOf(image, true)) addLight(*tex, image, curve, swrap, twrap);
     return tex;
@@ -207,7 +212,7 @@ std::shared_ptr<const Texture> TextureSystem::load(const std::string& path, cons
                 image->floating = true; // values are no longer codes
                 image->levels.clear();
             }
-            auto tex = std::const_pointer_cast<Texture>(makeTextureFrom(*image, settings_));
+            auto tex = std::const_pointer_cast<Texture>(makeTextureFrom(std::move(*image), settings_));
             tex->path = path;
             entry->texture = tex;
         } catch (const std::bad_alloc&) {

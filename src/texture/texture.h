@@ -174,6 +174,6 @@ private:
 };
 
 /// A texture from a picture already in memory (its levels are used when complete, else built).
-std::shared_ptr<const Texture> makeTextureFrom(const display::Image&, const TextureSettings& = {});
+std::shared_ptr<const Texture> makeTextureFrom(display::Image, const TextureSettings& = {});
 
 } // namespace alpenglow::texture

@@ -368,3 +368,62 @@ TEST(ExactSum, HugeTermsAreClampedAndNeverOverflow) {
 }
 
 } // namespace
+
+namespace {
+
+// Follows rays in twos: one that is alone is held back until nothing else is left.
+class PairingService : public S::RayService {
+public:
+    int lone = 0;
+    void follow(std::span<const S::Task> slice, S& s) override {
+        for (const S::Task& t : slice) {
+            s.hold(t.target);
+            held_.push_back(t);
+            if (held_.size() == 2) shade(s);
+        }
+    }
+    bool settle(S& s) override {
+        if (held_.empty()) return false;
+        ++lone;
+        shade(s);
+        return true;
+    }
+
+private:
+    void shade(S& s) {
+        std::vector<S::Task> now;
+        now.swap(held_);
+        for (const S::Task& t : now) {
+            s.add(t.target, Color(t.payload.value));
+            if (t.payload.levels > 0) {
+                S::Task child = t;
+                ++child.depth;
+                --child.payload.levels;
+                s.spawn(child);
+            }
+            s.release(t.target);
+        }
+    }
+    std::vector<S::Task> held_;
+};
+
+} // namespace
+
+TEST(Scheduler, WhatIsHeldBackIsFollowedInTheEnd) {
+    for (int slice : {1, 3, 8, 4096}) {
+        PairingService service;
+        S s(service, nullptr, limits::kFrameBytesPerThread, slice);
+        std::vector<TargetId> roots;
+        for (int i = 0; i < 101; ++i) { // ray i: 1 + i % 4 values of i
+            roots.push_back(s.newRoot());
+            S::Task t;
+            t.target = roots.back();
+            t.payload.value = float(i);
+            t.payload.levels = i % 4;
+            s.spawn(t);
+        }
+        ASSERT_TRUE(s.run());
+        EXPECT_GE(service.lone, 1);
+        for (int i = 0; i < 101; ++i) EXPECT_EQ(s.value(roots[size_t(i)]).radiance.x, float(i * (1 + i % 4))) << slice << " " << i;
+    }
+}

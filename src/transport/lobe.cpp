@@ -3,26 +3,31 @@
 namespace alpenglow::transport {
 
 namespace {
-/// Writes the rows that are given to a lobe, `stride` floats apart.
-void give(float* rows, size_t stride, const LobeKind& kind, const LobeParams& p, const DistributionParams* more) {
+/// Writes the rows that a kind needs, `stride` floats apart.
+void give(float* rows, size_t stride, int needs, const LobeParams& p, const DistributionParams* more) {
     const auto set = [&](int row, float x) { rows[size_t(row) * stride] = x; };
     const auto triple = [&](int row, const Vec3& v) { set(row, v.x), set(row + 1, v.y), set(row + 2, v.z); };
     triple(kRowAxis, p.axis);
-    triple(kRowWo, p.wo);
-    triple(kRowHorizon, p.horizon);
-    set(kRowHasHorizon, p.hasHorizon ? 1 : 0);
-    set(kRowA, p.a);
-    if (!kind.distribution) return;
-    set(kRowRoughness, more->roughness);
-    set(kRowRoughnessV, more->roughnessv);
-    triple(kRowUdir, more->udir);
-    triple(kRowEta, more->eta);
-    triple(kRowK, more->k);
-    triple(kRowAbsorption, more->absorption);
-    set(kRowPart, float(more->part));
-    const int count = std::min(int(more->lobes.size()), kMostLobeNumbers);
-    set(kRowCount, float(count));
-    for (int i = 0; i < kMostLobeNumbers; ++i) set(kRowLobes + i, i < count ? more->lobes[size_t(i)] : 0);
+    if (needs & kNeedsWo) triple(kRowWo, p.wo);
+    if (needs & kNeedsHorizon) {
+        triple(kRowHorizon, p.horizon);
+        set(kRowHasHorizon, p.hasHorizon ? 1 : 0);
+    }
+    if (needs & kNeedsA) set(kRowA, p.a);
+    if (needs & kNeedsSurface) {
+        set(kRowRoughness, more->roughness);
+        set(kRowRoughnessV, more->roughnessv);
+        triple(kRowUdir, more->udir);
+        triple(kRowEta, more->eta);
+        triple(kRowK, more->k);
+        triple(kRowAbsorption, more->absorption);
+        set(kRowPart, float(more->part));
+    }
+    if (needs & kNeedsNumbers) {
+        const int count = std::min(int(more->lobes.size()), kMostLobeNumbers);
+        set(kRowCount, float(count));
+        for (int i = 0; i < kMostLobeNumbers; ++i) set(kRowLobes + i, i < count ? more->lobes[size_t(i)] : 0);
+    }
 }
 const LobeLanesList& one() {
     static const LobeLanesList list = lobeLanes(1);
@@ -31,7 +36,7 @@ const LobeLanesList& one() {
 } // namespace
 
 OneLobe::OneLobe(const LobeKind& kind, const LobeParams& p) : lanes_(&one().lobes[kind.index]) {
-    give(rows_, 1, kind, p, p.more.get());
+    give(rows_, 1, lanes_->needs, p, p.more.get());
     lanes_->prepare(rows_, 1);
 }
 LobeValue OneLobe::value(const Vec3& w) const {
@@ -69,7 +74,7 @@ LobeColumns::Place LobeColumns::add(const LobeKind& kind, const LobeParams& p, c
     Kind& k = kinds_[size_t(kind.index)];
     const Place place{kind.index, k.count++};
     if (size_t(place.at / kLobeBlock) == k.blocks.size()) k.blocks.emplace_back();
-    give(&block(place).rows[0][lane(place)], kLobeBlock, kind, p, more ? more : p.more.get());
+    give(&block(place).rows[0][lane(place)], kLobeBlock, lanes_.lobes[kind.index].needs, p, more ? more : p.more.get());
     return place;
 }
 

@@ -33,6 +33,15 @@ enum LobeRow : int {
 };
 inline constexpr int kMostLobeNumbers = kRowAlbedo - kRowLobes;
 
+/// Which rows a kind reads besides the axis.
+enum LobeNeed : int {
+    kNeedsWo = 1,
+    kNeedsHorizon = 2, ///< kRowHorizon and kRowHasHorizon
+    kNeedsA = 4,
+    kNeedsSurface = 8, ///< from kRowRoughness to kRowPart
+    kNeedsNumbers = 16 ///< kRowCount and kRowLobes
+};
+
 /// Rows of a value.
 enum ValueRow : int { kRowColour = 0, kRowFcos = 3, kRowPdf = 4, kValueRows = 5 };
 /// Rows of a drawn direction.
@@ -43,7 +52,8 @@ enum DrawnRow : int { kRowDirection = 0, kRowDrawn = 3, kDrawnRows = 4 };
 struct LobeLanes {
     const char* name;
     const char* doc;
-    bool distribution; ///< reads the rows from kRowRoughness on
+    bool distribution; ///< one of those that trace() has in common with bsdf()
+    int needs;         ///< LobeNeed; other rows may hold anything
     /// Fills the rows from kRowAlbedo on; before all else.
     void (*prepare)(float* block, uint32_t lanes);
     /// f cos and density for light from w (3 rows, unit), into `value` (kValueRows).

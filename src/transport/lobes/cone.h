@@ -7,6 +7,7 @@ namespace alpenglow::transport::AL_NAMESPACE {
 /// What both have: the cone, the plane of the horizon.
 struct Cone {
     static constexpr bool distribution = false;
+    static constexpr int needs = kNeedsHorizon | kNeedsA;
     static AL_MEMBER void prepareCone(const Rows& p, vf perWeight) {
         const vf a = p.number(kRowA), s = sinLanes(minLanes(a, vf(kPi)) * vf(0.5f));
         p.common(vf(1), minLanes(a * vf(0.5f), vf(0.7f)), select(a > 1e-6f, vf(0), vf(1)));

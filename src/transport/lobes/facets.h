@@ -32,6 +32,7 @@ template <class Facets> struct FacetLobe {
     static constexpr const char* name = Facets::name;
     static constexpr const char* doc = Facets::doc;
     static constexpr bool distribution = true;
+    static constexpr int needs = kNeedsWo | kNeedsHorizon | kNeedsSurface;
     static AL_MEMBER Pair<Direction> tangentsOf(const Given& p) { return {p.ownTriple(0), p.ownTriple(3)}; }
     static AL_MEMBER void prepare(const Rows& p) {
         p.common(vf(1), spreadOfRoughness(p), vf(0));

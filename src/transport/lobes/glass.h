@@ -11,6 +11,7 @@ struct Glass {
     static constexpr const char* name = "glass-ggx";
     static constexpr const char* doc = "Reflection and refraction at facets with the distribution of Trowbridge and Reitz.";
     static constexpr bool distribution = true;
+    static constexpr int needs = kNeedsWo | kNeedsHorizon | kNeedsSurface | kNeedsNumbers;
     // Own rows: the normal on the viewer's side, both tangents, indices here and there, roughness along and across, the share
     // that is drawn as reflection, the weights of both parts.
     enum : int { kSide = 0, kAlong = 3, kAcross = 6, kHere = 9, kThere, kRoughA, kRoughB, kReflect, kFirst, kSecond };

@@ -1,6 +1,7 @@
 // What the files of this folder share: rows of a block as numbers over lanes, and the functions of LobeLanes made from a kind.
 //
 // A kind is a struct with `name`, `doc`, `distribution`, and
+//     needs                                                     LobeNeed of the rows that it reads
 //     static void prepare(Rows)                                 fills kRowAlbedo, kRowSpread, kRowDelta and its own rows
 //     static Value evaluate(const Given&, const Direction& w)   f cos by channel, and the density of sample() per solid angle
 //     static vm sample(const Given&, const Pair<vf>& u, Direction& w)
@@ -83,7 +84,7 @@ template <class Kind> static void sampleBlock(const float* block, uint32_t lanes
     }
 }
 template <class Kind> constexpr LobeLanes lanesOf() {
-    return {Kind::name, Kind::doc, Kind::distribution, prepareBlock<Kind>, evaluateBlock<Kind>, sampleBlock<Kind>};
+    return {Kind::name, Kind::doc, Kind::distribution, Kind::needs, prepareBlock<Kind>, evaluateBlock<Kind>, sampleBlock<Kind>};
 }
 
 } // namespace alpenglow::transport::AL_NAMESPACE

@@ -2,7 +2,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <initializer_list>
 #include <limits>
 
 namespace alpenglow::exact {
@@ -125,10 +124,12 @@ double exp(double x) {
     if (x < -745.2) return 0;
     const double k = std::nearbyint(x * (1 / (kLn2 + kLn2Lo)));
     const double r = (x - k * kLn2) - k * kLn2Lo;
-    double p = 1 / 6227020800.;
-    for (double c : {1 / 479001600., 1 / 39916800., 1 / 3628800., 1 / 362880., 1 / 40320., 1 / 5040., 1 / 720., 1 / 120., 1 / 24.,
-                     1 / 6., 0.5})
-        p = p * r + c;
+    // Of the series from r^2 / 2 on, four chains side by side.
+    const double q = r * r, w = q * q, v = w * w;
+    const double a = (0.5 + r * (1 / 6.)) + q * (1 / 24. + r * (1 / 120.)),
+                 b = (1 / 720. + r * (1 / 5040.)) + q * (1 / 40320. + r * (1 / 362880.));
+    const double c = (1 / 3628800. + r * (1 / 39916800.)) + q * (1 / 479001600. + r * (1 / 6227020800.));
+    const double p = a + (w * b + v * c);
     return scaled(1 + (r + r * r * p), int(k));
 }
 
@@ -143,8 +144,10 @@ double log(double x) {
     e += step;
     const double f = std::bit_cast<double>(bits - (uint64_t(step) << 52)) - 1;
     const double s = f / (2 + f), q = s * s;
-    double series = 2 / 21.;
-    for (double c : {2 / 19., 2 / 17., 2 / 15., 2 / 13., 2 / 11., 2 / 9., 2 / 7., 2 / 5., 2 / 3.}) series = series * q + c;
+    const double w = q * q, v = w * w;
+    const double low = (2 / 3. + q * (2 / 5.)) + w * (2 / 7. + q * (2 / 9.)),
+                 high = (2 / 11. + q * (2 / 13.)) + w * (2 / 15. + q * (2 / 17.));
+    const double series = low + v * (high + v * (2 / 19. + q * (2 / 21.)));
     return e * kLn2 - ((s * (f - series * q) - e * kLn2Lo) - f);
 }
 

@@ -31,9 +31,10 @@ void Gather::choosePoint(size_t point) {
     const bool competes = rules_.pickOne && from.bounces > 0 && maxComponent(clear) > 0;
     const Color left = absolute(from.weight);
     const auto worth = [&](const Color& share) { return competes ? dot(share, left) / 3 : luminance(share); };
+    const auto list = lobesOf(point);
     Color sum(0);
     bool cut = false; // by the depth of the render, not by a depth that a primitive asks for
-    for (int i : lobesOf(point)) {
+    for (int i : list) {
         LobeVertex& l = e_.lobes[size_t(i)];
         const Color weight = absolute(l.weight);
         l.albedo = e_.lobeRows_.albedo(l.place);
@@ -50,15 +51,21 @@ void Gather::choosePoint(size_t point) {
         l.followed = l.chosen > 0 || (l.ownsTarget && !stays);
     }
     e_.counters.depthCap += cut;
-    const float scale = indirectScale_[point] = energyScale(point, sum, clear);
+    const bool most = sum.x + clear.x > 1 || sum.y + clear.y > 1 || sum.z + clear.z > 1;
+    const float scale = indirectScale_[point] = most ? energyScale(point, sum, clear) : 1;
     const float behind = competes ? worth(clear) : 0;
+    if (list.size() == 1 && behind == 0) { // what most vertices are
+        LobeVertex& l = e_.lobes[size_t(list[0])];
+        l.chosen = l.ownsTarget || !rules_.pickOne ? l.followed : l.chosen > 0;
+        return;
+    }
     double total = behind;
-    for (int i : lobesOf(point))
+    for (int i : list)
         if (LobeVertex& l = e_.lobes[size_t(i)]; !l.ownsTarget) {
             if (behind > 0 && l.lobeOfShader) l.chosen *= scale;
             total += l.chosen;
         }
-    for (int i : lobesOf(point)) {
+    for (int i : list) {
         LobeVertex& l = e_.lobes[size_t(i)];
         if (l.ownsTarget || !rules_.pickOne) l.chosen = l.followed ? 1 : 0;
         else l.chosen = total > 0 ? (total == l.chosen ? 1 : float(l.chosen / total)) : 0;

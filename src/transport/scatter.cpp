@@ -22,6 +22,14 @@ void Gather::pick(size_t point) {
     const auto list = lobesOf(point);
     const PathRay& from = c_->rays[point];
     const bool mayPass = passes_[point] < 1; // then lobes have the rest of the chance
+    if (list.size() == 1 && !mayPass) { // what most vertices are
+        const LobeVertex& l = e_.lobes[size_t(list[0])];
+        if (!(l.chosen > 0)) return;
+        const bool one = rules_.pickOne && !l.ownsTarget;
+        const float scale = (one ? 1 / l.chosen : 1) * (l.lobeOfShader ? indirectScale_[point] : 1);
+        sent_.push_back({int(point), list[0], one ? 1 : l.samples, scale, true, Vec3(), {}});
+        return;
+    }
     const float pick = rules_.pickOne && (list.size() > 1 || mayPass) ? e_.random(from).one(from.vertex, kChooseLobe, 0) : 0;
     float sum = 0;
     bool taken = false;

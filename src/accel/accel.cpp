@@ -56,7 +56,7 @@ bool Accel::Impl::readyDirect() {
 void Accel::Impl::meetDirect(Query& q) const {
     const Ray& r = *q.ray;
     const Vec3d o(r.org), d(r.dir);
-    alignas(32) DirectTriangles::Near near;
+    alignas(64) DirectTriangles::Near near;
     for (uint32_t left = triangles.candidates(r, near); left; left &= left - 1) {
         size_t i = size_t(std::countr_zero(left));
         if (double(near[i]) > q.best.t) continue;

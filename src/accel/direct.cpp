@@ -45,32 +45,48 @@ template <int Lanes> struct DirectTriangles::Search {
     // Inlined into functions for the instructions of one width: elsewhere its types have no registers.
     [[gnu::always_inline]] static inline uint32_t find(const DirectTriangles& all, const Ray& r, Near& near) {
         const float slack = slackOf(all.extent_, r.org), length = norm1(r.dir);
+        // Copies: `near` could be the ray's memory, for all that a compiler knows, and would have it read anew.
+        const float dx = r.dir.x, dy = r.dir.y, dz = r.dir.z, ox = r.org.x, oy = r.org.y, oz = r.org.z, from = r.tnear,
+                    to = r.tfar;
+        const size_t size = all.size_;
         const Rows& f = all.rows_;
         uint32_t found = 0;
-        for (size_t k = 0; k < all.size_; k += Lanes) {
-            const Floats inverse = 1.f / (lanes(f.n[0] + k) * r.dir.x + lanes(f.n[1] + k) * r.dir.y + lanes(f.n[2] + k) * r.dir.z);
-            const Floats t = (lanes(f.d + k) - (lanes(f.n[0] + k) * r.org.x + lanes(f.n[1] + k) * r.org.y + lanes(f.n[2] + k) * r.org.z)) * inverse;
+        for (size_t k = 0; k < size; k += Lanes) {
+            const Floats inverse = 1.f / (lanes(f.n[0] + k) * dx + lanes(f.n[1] + k) * dy + lanes(f.n[2] + k) * dz);
+            const Floats height = lanes(f.n[0] + k) * ox + lanes(f.n[1] + k) * oy + lanes(f.n[2] + k) * oz;
+            const Floats t = (lanes(f.d + k) - height) * inverse;
             // How far off t is, in lengths of dir; the point is off by as many lengths.
             const Floats off = reinterpret_cast<Floats>(reinterpret_cast<Ints>(inverse) & 0x7fffffff) * slack, nearest = t - off;
             *reinterpret_cast<Floats*>(near + k) = nearest;
-            const Floats px = r.org.x + t * r.dir.x, py = r.org.y + t * r.dir.y, pz = r.org.z + t * r.dir.z;
+            const Floats px = ox + t * dx, py = oy + t * dy, pz = oz + t * dz;
             const Floats u = lanes(f.u[0] + k) * px + lanes(f.u[1] + k) * py + lanes(f.u[2] + k) * pz + lanes(f.u0 + k);
             const Floats v = lanes(f.v[0] + k) * px + lanes(f.v[1] + k) * py + lanes(f.v[2] + k) * pz + lanes(f.v0 + k);
             const Floats room = off * length * lanes(f.slope + k);
             // "Not outside", so that what is not a number counts as a candidate: a ray in the plane, an overflow.
-            const Ints outside = (t + off < r.tnear) | (nearest > r.tfar) | (u < -room) | (v < -room) | (u + v > 1.f + (room + room));
+            const Ints outside = (t + off < from) | (nearest > to) | (u < -room) | (v < -room) | (u + v > 1.f + (room + room));
             const Bools mask = __builtin_convertvector(outside, Bools);
-            uint8_t bits;
-            std::memcpy(&bits, &mask, 1);
+            std::conditional_t<Lanes == 16, uint16_t, uint8_t> bits;
+            std::memcpy(&bits, &mask, sizeof bits);
             found |= (~uint32_t(bits) & kAll) << k;
         }
-        return found & ((1u << all.size_) - 1);
+        return found & ((1u << size) - 1);
     }
 };
 
 uint32_t DirectTriangles::findFour(const DirectTriangles& all, const Ray& r, Near& near) { return Search<4>::find(all, r, near); }
-[[gnu::target("avx2")]] uint32_t DirectTriangles::findEight(const DirectTriangles& all, const Ray& r, Near& near) { return Search<8>::find(all, r, near); }
+[[gnu::target("avx2")]] uint32_t DirectTriangles::findEight(const DirectTriangles& all, const Ray& r, Near& near) {
+    return Search<8>::find(all, r, near);
+}
 
-DirectTriangles::Find DirectTriangles::choose() { return __builtin_cpu_supports("avx2") ? findEight : findFour; }
+[[gnu::target("avx512f,avx512dq,avx512vl,avx512bw")]] uint32_t DirectTriangles::findSixteen(const DirectTriangles& all,
+                                                                                            const Ray& r, Near& near) {
+    return Search<16>::find(all, r, near);
+}
+
+DirectTriangles::Find DirectTriangles::choose() {
+    const bool wide = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                      __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
+    return wide ? findSixteen : __builtin_cpu_supports("avx2") ? findEight : findFour;
+}
 
 } // namespace alpenglow::accel

@@ -19,7 +19,7 @@ public:
     const Triangle& operator[](size_t i) const { return triangles_[i]; }
 
     /// Below where the ray meets triangle i, in its lengths of dir; for those in `candidates`.
-    static constexpr size_t kWidest = 8, kRoom = (kMost + kWidest - 1) / kWidest * kWidest;
+    static constexpr size_t kWidest = 16, kRoom = (kMost + kWidest - 1) / kWidest * kWidest;
     using Near = float[kRoom];
     /// Bit i: the ray may meet triangle i between its tnear and tfar. Never clear for a triangle that it meets: the bounds are widened
     /// by more than float arithmetic can be off.
@@ -36,13 +36,14 @@ public:
 
 private:
     /// Plane n.p = d, and the two barycentric weights as linear functions of the point, with their slopes. By component, then triangle.
-    struct alignas(32) Rows { float n[3][kRoom], d[kRoom], u[3][kRoom], u0[kRoom], v[3][kRoom], v0[kRoom], slope[kRoom]; };
+    struct alignas(64) Rows { float n[3][kRoom], d[kRoom], u[3][kRoom], u0[kRoom], v[3][kRoom], v0[kRoom], slope[kRoom]; };
     Rows rows_{};
-    /// The same by four and by eight lanes, the latter where the processor has them. The bits of all that is computed agree.
+    /// The same by four, eight and sixteen lanes, where the processor has them. The bits of all that is computed agree.
     using Find = uint32_t (*)(const DirectTriangles&, const Ray&, Near&);
     template <int Lanes> struct Search;
     static uint32_t findFour(const DirectTriangles&, const Ray&, Near&);
     static uint32_t findEight(const DirectTriangles&, const Ray&, Near&);
+    static uint32_t findSixteen(const DirectTriangles&, const Ray&, Near&);
     Find find_ = choose();
     static Find choose();
     struct Plane { Vec3d n; double d; };

@@ -37,7 +37,7 @@ TEST(DirectTriangles, NoneIsOverlooked) {
             float s = k % 3 ? uniform(rng, 0, 1) : 0, t = k % 5 ? uniform(rng, 0, 1 - s) : 0;
             r.dir = (to.a + (to.b - to.a) * s + (to.c - to.a) * t - r.org) * (k % 7 ? 1.f : 1e-3f);
             if (!(length(r.dir) > 0)) continue;
-            alignas(32) DirectTriangles::Near near;
+            alignas(64) DirectTriangles::Near near;
             uint32_t found = triangles.candidates(r, near);
             for (size_t i = 0; i < n; ++i) {
                 double at, b1, b2, outside;

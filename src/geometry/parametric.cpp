@@ -166,13 +166,13 @@ void Parametric::dice(const DiceOptions& opt, Diagnostics& diag) {
             else if (lines.closedV && j + 1 == nv) m.P[at] = m.P[i];
             else m.P[at] = Vec3(cameraPosition(lines.u[i], lines.v[j]));
         }
-    m.index.reserve(6 * size_t(nu - 1) * (nv - 1));
+    m.made.reserve(6 * size_t(nu - 1) * (nv - 1));
     auto length2 = [&](uint32_t a, uint32_t b) { Vec3 d = m.P[a] - m.P[b]; return dot(d, d); };
     for (uint32_t j = 0; j + 1 < nv; ++j)
         for (uint32_t i = 0; i + 1 < nu; ++i) {
             uint32_t a = j * nu + i, b = a + 1, c = a + nu, d = c + 1;
-            if (length2(a, d) <= length2(b, c)) m.index.insert(m.index.end(), {a, b, d, a, d, c});
-            else m.index.insert(m.index.end(), {a, b, c, b, d, c});
+            if (length2(a, d) <= length2(b, c)) m.made.insert(m.made.end(), {a, b, d, a, d, c});
+            else m.made.insert(m.made.end(), {a, b, c, b, d, c});
         }
     meshParam_ = std::move(param);
     if (displaced_)

@@ -22,6 +22,7 @@ ShapeRef makePointsPolygons(ShapeSource s, Diagnostics& diag) {
     in.loopsPerFace.assign(p.ints.size(), 1);
     in.cornersPerLoop = p.ints;
     in.vertex.assign(p.ints2.begin(), p.ints2.begin() + ptrdiff_t(sum));
+    in.kept = p.ints2;
     return makePolygonMesh(std::move(s), std::move(in), diag);
 }
 

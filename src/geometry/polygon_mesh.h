@@ -15,6 +15,7 @@ struct PolygonInput {
     std::vector<int> loopsPerFace;   ///< per face
     std::vector<int> cornersPerLoop; ///< per loop
     std::vector<int> vertex;         ///< per corner
+    std::span<const int> kept;       ///< empty, or the list that `vertex` was copied from, which lives as long as the primitive
 };
 
 /// Checks the input against "P", reports what is wrong, drops faulty faces; null when nothing is left.
@@ -68,7 +69,7 @@ private:
         return {objectP_[3 * vertex], objectP_[3 * vertex + 1], objectP_[3 * vertex + 2]};
     }
     /// The mesh before it was displaced.
-    const TriMesh& base() const { return meshParam_.empty() ? mesh_ : undiced_; }
+    const TriMesh& base() const { return undiced_.vertices ? undiced_ : mesh_; }
     uint32_t vertexOf(uint32_t tri, int k) const { return base().index[3 * size_t(tri) + size_t(k)]; }
     uint32_t cornerOf(uint32_t tri, int k) const {
         return corner_.empty() ? 3 * tri + uint32_t(k) : corner_[3 * size_t(tri) + size_t(k)];

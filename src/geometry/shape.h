@@ -61,10 +61,18 @@ struct HitRef {
 /// Triangles in camera space. P holds one unused point past `vertices` (intersectors read 16 bytes at a time).
 struct TriMesh {
     std::vector<Vec3> P;
-    std::vector<uint32_t> index; ///< three a triangle
+    std::span<const uint32_t> index; ///< three a triangle: `made`, or a list that the primitive keeps
+    std::vector<uint32_t> made;
     uint32_t vertices = 0;
     uint32_t triangles() const { return uint32_t(index.size() / 3); }
-    void finish() { vertices = uint32_t(P.size()); P.push_back(Vec3(0.f)); }
+    void finish() {
+        vertices = uint32_t(P.size());
+        P.push_back(Vec3(0.f));
+        if (!made.empty()) index = made;
+    }
+    TriMesh() = default;
+    TriMesh(TriMesh&&) = default; // a span of `made` stays good; of a copy it would not
+    TriMesh& operator=(TriMesh&&) = default;
 };
 
 /// A point where a ray meets an exactly intersected shape.

@@ -179,7 +179,7 @@ TEST(SelfHit, RaysLeavingConvexShapesOutwardMeetNothing) {
         }
 }
 
-TEST(Agreement, EmbreeAndTheLoopOverEverythingGiveTheSameHit) {
+TEST(Agreement, TheTreeAndTheLoopOverEverythingGiveTheSameHit) {
     std::vector<std::shared_ptr<scene::Primitive>> all;
     for (auto& set : closedSets()) all.insert(all.end(), set.begin(), set.end());
     all.push_back(quadric("Torus", {1, 0.3f, 30, 300, 250}));

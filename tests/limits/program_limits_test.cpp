@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Sixteen balls: more than a scene without Embree's tree has.
+/// Sixteen balls: more than a scene without a tree has.
 std::string balls(const std::string& first = "") {
     std::string s = "Format 16 12 1\n" + first +
                     "Projection \"perspective\" \"fov\" 60\nLightSource \"distantlight\" 1\nWorldBegin\n"

@@ -1,10 +1,11 @@
 // The numbers of a sample (design decision 10): Owen-scrambled (0,2)-sequence pairs, padded by hash.
 //
-// Each pair of numbers is the first two dimensions of the Sobol sequence under a nested uniform scramble: the flip of bit k of
-// a coordinate is a random bit that depends on the stream and on the k bits above it, and on nothing else. Such a scramble
+// Each pair of numbers is the first two dimensions of the Sobol sequence under a nested uniform scramble: the flip of digit k of
+// a coordinate is a random bit that depends on the stream and on the k digits above it, and on nothing else. Such a scramble
 // keeps every elementary interval filled as it was (Owen, "Randomly permuted (t,m,s)-nets", 1995), and each single point is
 // uniform, so every estimate is unbiased at every sample count. Different pairs walk the sequence in independently shuffled
-// orders (a nested shuffle, which keeps every aligned block of 2^m points a (0,m,2)-net), so they are not correlated.
+// orders (a nested shuffle, which keeps every aligned block of 2^m points a (0,m,2)-net), so they are not correlated. The
+// scrambles are hashes (owen.h): a pair takes the same few operations whatever the index.
 //
 // A pixel has kReplicas = 2 independently scrambled sequences: sample i is point i / 2 of replica i % 2. So after 2 * 2^m samples
 // each replica holds a complete (0,m,2)-net, and the difference of the two replica means tells the true error of their mean,
@@ -13,6 +14,7 @@
 #pragma once
 #include "base/vec.h"
 #include "base/hash.h"
+#include "base/owen.h"
 
 namespace alpenglow::render {
 
@@ -34,8 +36,8 @@ public:
     Sampler(SeedKey seed, int x, int y)
         : seed_(seed.key), pixel_(uint64_t(uint32_t(x + (1 << 29)) & 0x3fffffffu) << 34 | uint64_t(uint32_t(y + (1 << 29)) & 0x3fffffffu) << 4) {}
 
-    /// Two numbers in [0,1). vertex: path vertex, 0 = camera; site: call site; occurrence: how often that site has asked
-    /// already at this vertex. sampleIndex counts the samples of the pixel from 0.
+    /// Two numbers in [0,1). vertex: path vertex, 0 = camera; site: call site, below 2^31; occurrence: how often that site has
+    /// asked already at this vertex. sampleIndex counts the samples of the pixel from 0.
     Vec2 get2(uint32_t vertex, uint32_t site, uint32_t occurrence, uint32_t sampleIndex) const;
     /// One number in [0,1), stratified by itself and independent of get2 with the same arguments.
     float get1(uint32_t vertex, uint32_t site, uint32_t occurrence, uint32_t sampleIndex) const;
@@ -51,25 +53,41 @@ private:
 /// The numbers of one sample of a pixel: what Sampler gives for that sampleIndex, with what they have in common worked out once.
 class SampleNumbers {
 public:
-    SampleNumbers(const Sampler& s, uint32_t sampleIndex)
-        : key_(mix64(s.seed_ ^ (s.pixel_ | sampleIndex % kReplicas))), index_(sampleIndex / kReplicas) {}
-    Vec2 get2(uint32_t vertex, uint32_t site, uint32_t occurrence) const;
-    float get1(uint32_t vertex, uint32_t site, uint32_t occurrence) const;
+    SampleNumbers(const Sampler& s, uint32_t sampleIndex) : index_(sampleIndex / kReplicas) {
+        const uint64_t key = mix64(s.seed_ ^ (s.pixel_ | sampleIndex % kReplicas));
+        low_ = uint32_t(key);
+        high_ = uint32_t(key >> 32);
+    }
+    Vec2 get2(uint32_t vertex, uint32_t site, uint32_t occurrence) const {
+        const Scrambles<uint32_t> s(streamWords<uint32_t>(low_, high_, vertex, site << 1, occurrence));
+        const uint32_t i = s.shuffledIndex(reverseBits<uint32_t>(index_));
+        return {unitFloat(s.first(i)), unitFloat(s.second(i))};
+    }
+    float get1(uint32_t vertex, uint32_t site, uint32_t occurrence) const {
+        // Words of its own: the order of get1's points must not be that of get2's.
+        const Scrambles<uint32_t> s(streamWords<uint32_t>(low_, high_, vertex, site << 1 | kSingle, occurrence));
+        return unitFloat(s.first(s.shuffledIndex(reverseBits<uint32_t>(index_))));
+    }
+
+    /// The numbers of draw k of n that this sample makes alike (light samples, rays of one request): draw k of sample i is point
+    /// i n + k of streams of their own, so the n draws of one sample are as well spread as those of n samples, and all together
+    /// too. k < n. n = 1: these numbers. Other n have other streams, so n may vary from sample to sample.
+    SampleNumbers draw(uint32_t k, uint32_t n) const {
+        SampleNumbers r = *this;
+        if (n <= 1) return r;
+        r.high_ += n * 0x7feb352du;
+        r.index_ = index_ * n + k;
+        return r;
+    }
 
 private:
-    uint64_t key_;
+    static constexpr uint32_t kSingle = 1;
+    uint32_t low_, high_;
     uint32_t index_; ///< of the sample in its replica
 };
 
-/// Nested uniform scramble of v, most significant bit first: each node of the binary tree has its own random bit, drawn from
-/// (key, domain). domain < 4 separates scrambles that share a key.
-uint32_t nestedScramble(uint32_t v, uint64_t key, uint32_t domain);
-/// Like nestedScramble, but 0 stays 0; then v keeps its bit width, so the first 2^m indices are permuted among themselves.
-/// Fixing the flips on the path of 0 costs no randomness: they would be an XOR of all indices by one constant, which moves the
-/// points by a digital shift, and the scramble of the coordinates contains every digital shift.
-uint32_t nestedShuffle(uint32_t v, uint64_t key, uint32_t domain);
 /// Point i of the first (van der Corput) and second Sobol dimension, as 32-bit binary fractions.
-uint32_t sobol0(uint32_t i);
-uint32_t sobol1(uint32_t i);
+inline uint32_t sobol0(uint32_t i) { return reverseBits<uint32_t>(i); }
+inline uint32_t sobol1(uint32_t i) { return reverseBits<uint32_t>(sobol1Reversed<uint32_t>(i)); }
 
 } // namespace alpenglow::render

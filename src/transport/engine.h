@@ -428,7 +428,7 @@ private:
     /// Sample `turn` of `turns` of a light for the points of a mask, into `kept`; gives the points that it lights.
     /// The point of a shaded batch as a light sees it when it lights `at`, for sample `turn` of `turns`; `axis`, `angle`: the
     /// loop's cone; nth: drawOf(). *factor multiplies the light. False: it gives nothing there.
-    bool lightQuery(const BatchContext&, int light, int point, const Vec3& at, const Vec3& axis, float angle, int turns,
+    bool lightQuery(const BatchContext&, int light, int point, const Vec3& at, const Vec3& axis, float angle, int turn, int turns,
                     uint32_t nth, ShadePoint& query, float* factor) const;
     // lightsheets.cpp
     /// Which of BatchContext::sheets a sample of a light has; -1: none.

@@ -36,9 +36,7 @@ bool sampledAnew(const BoundLight& l, bool path) {
 // Room for limits::kLightTurns turns and more.
 static constexpr int kTurnBits = 12;
 
-uint32_t drawOf(const LightLoop& loop, int turn) {
-    return uint32_t(turn) + 1 + (uint32_t(std::max(loop.depth - 1, 0)) << kTurnBits); // 0 is gather()'s
-}
+uint32_t drawOf(const LightLoop& loop) { return 1 + (uint32_t(std::max(loop.depth - 1, 0)) << kTurnBits); } // 0 is gather()'s
 
 uint64_t keptName(const LightLoop& loop, const BoundLight& l, int light, int turn, bool path) {
     const uint64_t name = uint64_t(light) << kTurnBits | uint64_t(turn);

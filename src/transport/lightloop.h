@@ -85,7 +85,7 @@ struct LightSheet {
 /// should have.
 bool sampledAnew(const BoundLight&, bool path);
 /// The occurrence of random numbers for a turn of a light.
-uint32_t drawOf(const LightLoop&, int turn);
+uint32_t drawOf(const LightLoop&);
 /// The name of what is kept of a turn of a light.
 uint64_t keptName(const LightLoop&, const BoundLight&, int light, int turn, bool path);
 

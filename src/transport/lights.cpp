@@ -74,10 +74,11 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
     const bool delta = lobeRows_.delta(place);
     const float spread = lobeRows_.spread(place);
     if (delta) l.samples = 1;
+    const uint32_t drawn = childVertex(from.vertex, kLightPoint + l.site, occurrence * 4096);
     for (int k = 0; k < l.samples; ++k) {
         const uint32_t nth = occurrence * 4096 + uint32_t(k), vertex = childVertex(from.vertex, kLightPoint + l.site, nth);
         Vec3 w;
-        lobeRows_.ask(place, random(from).pair(vertex, l.site, nth));
+        lobeRows_.ask(place, random(from).draw(uint32_t(k), uint32_t(l.samples)).pair(drawn, l.site, occurrence));
         lobeRows_.sample();
         if (!lobeRows_.drawn(place, w)) continue;
         lobeRows_.ask(place, w);

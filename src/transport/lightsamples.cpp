@@ -206,7 +206,7 @@ void Engine::chooseSent(const BoundLight& light, float u, const float* values, L
     v.Cl *= float(sum / weight(chosen));
 }
 
-bool Engine::lightQuery(const BatchContext& c, int li, int point, const Vec3& at, const Vec3& axis, float angle, int turns,
+bool Engine::lightQuery(const BatchContext& c, int li, int point, const Vec3& at, const Vec3& axis, float angle, int turn, int turns,
                         uint32_t nth, ShadePoint& p, float* factor) const {
     const BoundLight& light = world_->lights_[size_t(li)];
     const ShadePoint& of = c.points[size_t(point)];
@@ -220,7 +220,7 @@ bool Engine::lightQuery(const BatchContext& c, int li, int point, const Vec3& at
     const uint32_t use = kLightPoint + uint32_t(li);
     if (light.kind == LightKind::Area) {
         if (!light.emitter || !p.ray) return false;
-        Random rng = random(*p.ray);
+        const Random rng = random(*p.ray).draw(uint32_t(turn), uint32_t(turns));
         Emitter::Sample s;
         const float choose = light.emitter->chooses() ? rng.one(p.ray->vertex, use, nth) : 0;
         const Vec2 u = rng.pair(p.ray->vertex, use, nth);
@@ -249,7 +249,7 @@ bool Engine::lightQuery(const BatchContext& c, int li, int point, const Vec3& at
         const bool all = !(la > 0) || !(angle < float(kPi));
         const float half = float(exact::sin(0.5 * std::max(angle, 0.f))), cap = all ? 2 : 2 * half * half; // 1 - cos of the half angle
         if (!(cap > 0)) return false;
-        Random rng = random(*p.ray);
+        const Random rng = random(*p.ray).draw(uint32_t(turn), uint32_t(turns));
         const Vec3 w = Basis(all ? Vec3(0, 0, 1) : axis / la).toWorld(sampleCone(cap, rng.pair(p.ray->vertex, use, nth)));
         p.shape = nullptr;
         p.P = at + w;
@@ -259,7 +259,8 @@ bool Engine::lightQuery(const BatchContext& c, int li, int point, const Vec3& at
         p.shape = nullptr;
         p.P = Vec3(transformPoint(light.instance->toCurrent, {0, 0, 0}));
         if (light.cone) {
-            if (p.ray && world_->settings_.hider == Hider::Path) p.Ci = coneNumbers(random(*p.ray).pair(p.ray->vertex, use, nth));
+            if (p.ray && world_->settings_.hider == Hider::Path)
+                p.Ci = coneNumbers(random(*p.ray).draw(uint32_t(turn), uint32_t(turns)).pair(p.ray->vertex, use, nth));
             *factor = 1 / float(turns);
         }
     }
@@ -278,7 +279,7 @@ uint64_t Engine::sampleLight(BatchContext& c, const LightLoop& loop, int li, int
         const Vec3 at(row(0, lane), row(1, lane), row(2, lane)), axis(row(3, lane), row(4, lane), row(5, lane));
         ShadePoint& p = q.emplace_back();
         float f = 1;
-        if (!lightQuery(c, li, first + lane, at, axis, row(6, lane), turns, drawOf(loop, turn), p, &f)) {
+        if (!lightQuery(c, li, first + lane, at, axis, row(6, lane), turn, turns, drawOf(loop), p, &f)) {
             q.pop_back();
             continue;
         }

@@ -72,7 +72,7 @@ void Engine::fillSheet(BatchContext& c, const LightLoop& loop, int li, int turn,
     for (size_t i = 0; i < n; ++i) {
         float f = 1;
         ShadePoint& p = q.emplace_back();
-        if (!lightQuery(c, li, int(i), c.points[i].P, {}, float(kPi), light.samples, drawOf(loop, turn), p, &f)) {
+        if (!lightQuery(c, li, int(i), c.points[i].P, {}, float(kPi), turn, light.samples, drawOf(loop), p, &f)) {
             q.pop_back();
             continue;
         }

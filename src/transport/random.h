@@ -14,6 +14,9 @@ public:
     Vec2 pair(uint32_t vertex, uint32_t use, uint32_t occurrence) const { return numbers_.get2(vertex, use, occurrence); }
     float one(uint32_t vertex, uint32_t use, uint32_t occurrence) const { return numbers_.get1(vertex, use, occurrence); }
 
+    /// The numbers of draw k of n that are made alike: spread over the draws as over samples (SampleNumbers::draw).
+    Random draw(uint32_t k, uint32_t n) const { return Random(numbers_.draw(k, n)); }
+
 private:
     render::SampleNumbers numbers_;
 };

@@ -66,6 +66,15 @@ inline float rouletteWaiting(int bounces, uint32_t many) {
 /// besides: so the chances at a point sum up to half, and the tree of rays ends where surfaces reflect no more than half.
 inline float rouletteOfLight(int bounces, uint32_t many) { return bounces < 1 ? 1 : .5f / float(std::max(many, 1u)); }
 
+/// The chance that a path goes on behind its third bounce, whose throughput would be `weight`; 0 = it stops, and the caller divides by
+/// it. Half again the root of the largest channel: the throughput itself stops paths whose light is missed more than their time
+/// (docs/noise.md has the figures). `dice` draws a number, if one is needed.
+template <class Dice> float rouletteOfPath(const Color& weight, const Dice& dice) {
+    const float m = maxComponent(Color(std::fabs(weight.x), std::fabs(weight.y), std::fabs(weight.z)));
+    const float q = std::min(1.f, 1.5f * std::sqrt(m));
+    return q >= 1 ? 1 : q > 0 && dice() < q ? q : 0;
+}
+
 /// The seed's local roulette (pathtracer.md 5.1): 1 up to depth 3, then the largest channel of the albedo. 0 = stop; the caller divides.
 inline float rouletteLocal(int depth, const Color& albedo, float random) {
     if (depth <= 3) return 1;

@@ -59,7 +59,7 @@ void Gather::draw(int turn) {
         if (!s.goes) continue;
         const LobeVertex& l = e_.lobes[size_t(s.lobe)];
         const PathRay& from = c_->rays[size_t(s.point)];
-        rows.ask(l.place, e_.random(from).pair(from.vertex, l.site, l.occurrence * 4096 + uint32_t(turn)));
+        rows.ask(l.place, e_.random(from).draw(uint32_t(turn), uint32_t(s.count)).pair(from.vertex, l.site, l.occurrence * 4096));
     }
     rows.sample();
     for (Sent& s : sent_) {
@@ -102,8 +102,7 @@ bool Gather::roulette(const LobeVertex& l, int turn, uint32_t vertex, uint16_t& 
     } else if (world_.settings_.localRoulette) {
         q = rouletteLocal(from.bounces + 1, l.weight, from.bounces + 1 > 3 ? dice() : 0);
     } else if (from.bounces + 1 > 3) {
-        const float m = std::min(1.f, maxComponent(Color(std::fabs(weight.x), std::fabs(weight.y), std::fabs(weight.z))));
-        q = m <= 0 ? 0 : m >= 1 ? 1 : dice() < m ? m : 0;
+        q = rouletteOfPath(weight, dice);
     }
     if (q <= 0) return false;
     weight = weight / q;

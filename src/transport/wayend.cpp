@@ -24,9 +24,7 @@ void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId t
         } else if (set.localRoulette) {
             q = rouletteLocal(depth, t, depth > 3 ? dice() : 0);
         } else if (depth > 3) {
-            const float m =
-                std::min(1.f, maxComponent(Color(std::fabs(r.weight.x), std::fabs(r.weight.y), std::fabs(r.weight.z))));
-            q = m >= 1 ? 1 : m > 0 && dice() < m ? m : 0;
+            q = rouletteOfPath(r.weight, dice);
         }
         if (!(q > 0)) return;
         r.weight = r.weight / q;

@@ -2,6 +2,7 @@
 #include "base/sampler.h"
 #include "../statistics/chisquare.h"
 #include <algorithm>
+#include <bit>
 #include <gtest/gtest.h>
 
 using namespace alpenglow;
@@ -83,33 +84,132 @@ TEST(Sampler, BelowOne) {
 // A nested scramble: values that agree in their first k bits agree there after it, and differ in the next bit as before.
 TEST(Sampler, ScrambleIsNested) {
     for (uint32_t t = 0; t < 20000; ++t) {
-        uint32_t a = uint32_t(mix64(t)), b = uint32_t(mix64(t + 1000000));
-        uint32_t k = t % 32;
+        const uint32_t a = uint32_t(mix64(t)), k = t % 32;
+        uint32_t b = uint32_t(mix64(t + 1000000));
         b = k ? (a & ~(~0u >> k)) | (b & (~0u >> k)) : b;
-        uint32_t diff = a ^ b, flipped = nestedScramble(a, 5, 1) ^ nestedScramble(b, 5, 1);
+        const uint64_t words = mix64(t / 100);
+        auto scrambled = [&](uint32_t v) {
+            const uint32_t low = uint32_t(words), high = uint32_t(words >> 32), r = reverseBits<uint32_t>(v);
+            return reverseBits<uint32_t>(t % 2 ? owenReversed<uint32_t>(r, low, high) : scrambleReversed<uint32_t>(r, low, high, ~low));
+        };
+        const uint32_t diff = a ^ b, flipped = scrambled(a) ^ scrambled(b);
         if (diff)
             EXPECT_EQ(__builtin_clz(diff), __builtin_clz(flipped)) << a << " " << b;
         else
             EXPECT_EQ(flipped, 0u);
-        uint32_t shuffled = nestedShuffle(a >> k, 5, 2);
-        EXPECT_EQ(a >> k ? __builtin_clz(a >> k) : 32, shuffled ? __builtin_clz(shuffled) : 32) << "the bit width must stay";
     }
 }
 
+// A one-to-one map of 128 bits: each step undone.
+TEST(Sampler, WordsAreMixedOneToOne) {
+    for (uint64_t t = 0; t < 1000; ++t) {
+        const Words4<uint32_t> in{uint32_t(mix64(t)), uint32_t(t), uint32_t(mix64(t) >> 32), uint32_t(t * t)};
+        Words4<uint32_t> v = mixWords(in);
+        auto back = [&] { v.w -= v.y * v.z, v.z -= v.x * v.y, v.y -= v.z * v.x, v.x -= v.y * v.w; };
+        back();
+        v = {v.x ^ v.x >> 16, v.y ^ v.y >> 16, v.z ^ v.z >> 16, v.w ^ v.w >> 16};
+        back();
+        v = {v.x ^ v.x >> 16, v.y ^ v.y >> 16, v.z ^ v.z >> 16, v.w ^ v.w >> 16};
+        back();
+        const uint32_t inverse = 4276115653u; // of 1664525 modulo 2^32
+        static_assert(1664525u * 4276115653u == 1u);
+        EXPECT_EQ((v.x - 1013904223u) * inverse, in.x);
+        EXPECT_EQ((v.y - 1013904223u) * inverse, in.y);
+        EXPECT_EQ((v.z - 1013904223u) * inverse, in.z);
+        EXPECT_EQ((v.w - 1013904223u) * inverse, in.w);
+    }
+}
+
+// Each bit of the inputs changes each bit of the words in half of the cases: of 4,000 within 5 deviations of a fair coin's 2,000.
+TEST(Sampler, EveryInputBitChangesEveryWord) {
+    for (int bit = 0; bit < 160; ++bit) {
+        if (bit == 127) continue; // the highest of the site, which is not used
+        int changed[32 * 4] = {};
+        for (uint64_t t = 0; t < 4000; ++t) {
+            uint32_t in[5] = {uint32_t(mix64(t)), uint32_t(mix64(t) >> 32), uint32_t(t % 20), uint32_t(t / 20 % 20), uint32_t(t / 400)};
+            const auto a = streamWords(in[0], in[1], in[2], in[3], in[4]);
+            in[bit / 32] ^= 1u << bit % 32;
+            const auto b = streamWords(in[0], in[1], in[2], in[3], in[4]);
+            const uint32_t d[4] = {a.x ^ b.x, a.y ^ b.y, a.z ^ b.z, a.w ^ b.w};
+            for (int k = 0; k < 128; ++k) changed[k] += d[k / 32] >> k % 32 & 1;
+        }
+        for (int k = 0; k < 128; ++k) EXPECT_NEAR(changed[k], 2000, 5 * 32) << "input bit " << bit << ", output bit " << k;
+    }
+}
+
+// The flips along one path, and the flips of eight sibling nodes at one depth, are each eight fair independent coins: of both
+// coordinates and of the order, deep down too (nodes at depth 12 of an order are those that the first million samples part at), and
+// the first flips of a coordinate against those of the order.
 TEST(Sampler, OwenBitsUniform) {
     const int n = 1'000'000;
-    // The flips along one path, and the flips of eight sibling nodes at one depth, are each eight fair independent coins.
-    std::vector<double> path(256, 0), siblings(256, 0), expected(256, n / 256.0);
+    std::vector<double> expected(256, n / 256.0);
+    std::vector<std::vector<double>> hits(12, std::vector<double>(256, 0));
     for (int i = 0; i < n; ++i) {
-        uint64_t key = mix64(uint64_t(i));
-        path[(nestedScramble(0xa5000000u, key, 0) ^ 0xa5000000u) >> 24]++;
-        uint32_t bits = 0;
-        for (uint32_t k = 0; k < 8; ++k)
-            bits = bits << 1 | (((nestedScramble(k << 29, key, 1) ^ (k << 29)) >> 28) & 1);
-        siblings[bits]++;
+        const uint64_t key = mix64(uint64_t(i / 1000));
+        const Scrambles<uint32_t> s(streamWords<uint32_t>(uint32_t(key), uint32_t(key >> 32), 1, uint32_t(i % 1000), 0));
+        auto first = [&](uint32_t v) { return s.first(reverseBits<uint32_t>(v)) ^ v; };
+        auto second = [&](uint32_t v) { return s.second(sobol1Reversed<uint32_t>(reverseBits<uint32_t>(v))) ^ v; }; // its own inverse
+        auto order = [&](uint32_t v) { return s.shuffledIndex(reverseBits<uint32_t>(v)) ^ v; };
+        auto siblings = [&](auto flips, int depth, uint32_t path) { // of eight nodes that part three digits above `depth`
+            uint32_t bits = 0;
+            for (uint32_t k = 0; k < 8; ++k)
+                bits = bits << 1 | ((flips(path | k << (32 - depth)) >> (31 - depth)) & 1);
+            return bits;
+        };
+        hits[0][first(0xa5000000u) >> 24]++;
+        hits[1][second(0x3c000000u) >> 24]++;
+        hits[2][(order(0x000a5000u) >> 12) & 255]++;
+        hits[3][siblings(first, 3, 0)]++;
+        hits[4][siblings(second, 3, 0)]++;
+        hits[5][siblings(order, 31, 0)]++;
+        hits[6][siblings(first, 12, 0x5a000000u)]++;
+        hits[7][siblings(order, 20, 0)]++;
+        hits[8][(first(0) >> 28) << 4 | (second(0) >> 28)]++;
+        hits[10][(first(0) >> 23) & 255]++; // from the fifth digit, a coin, to hashed ones
+        hits[11][(second(0x60000000u) >> 22 & 15) << 4 | (second(0x64000000u) >> 22 & 15)]++; // behind the sixth, where they part
+        hits[9][(siblings(first, 4, 0x80000000u) & 15) << 4 | (siblings(order, 31, 0) & 15)]++;
     }
-    EXPECT_GE(chiSquareP(path, expected), kAlpha);
-    EXPECT_GE(chiSquareP(siblings, expected), kAlpha);
+    for (size_t k = 0; k < hits.size(); ++k) EXPECT_GE(chiSquareP(hits[k], expected), kAlpha) << "series " << k;
+}
+
+// Whatever the index: blocks that begin near 2^16, 2^20 and 2^30 samples are nets, and their numbers are not those of the first.
+TEST(Sampler, LateSamplesAreNetsToo) {
+    Sampler s(3, 5, 6);
+    for (uint32_t begin : {1u << 16, (1u << 20) - 256, 1u << 20, (1u << 30) - 256}) {
+        std::vector<Vec2> p;
+        int same = 0;
+        for (uint32_t i = 0; i < 256; ++i) {
+            p.push_back(s.get2(1, 2, 3, (begin + i) * kReplicas));
+            same += p.back().x == s.get2(1, 2, 3, i * kReplicas).x;
+        }
+        expectNet(p, 8);
+        EXPECT_EQ(same, 0);
+    }
+}
+
+// The n draws that one sample makes alike are as well spread as n samples are; so are those of several samples together.
+TEST(Sampler, DrawsOfOneSampleAreANet) {
+    Sampler s(9, 1, 2);
+    for (uint32_t n : {4u, 16u, 64u})
+        for (uint32_t sample : {0u, 1u, 6u, 100001u}) {
+            std::vector<Vec2> p;
+            std::vector<int> line(n, 0);
+            for (uint32_t k = 0; k < n; ++k) {
+                p.push_back(SampleNumbers(s, sample).draw(k, n).get2(1, 2, 3));
+                line[size_t(SampleNumbers(s, sample).draw(k, n).get1(1, 2, 3) * float(n))]++;
+            }
+            expectNet(p, std::countr_zero(n));
+            EXPECT_EQ(std::count(line.begin(), line.end(), 1), n);
+        }
+    // Eight draws of each of 32 samples of one replica: 256 points; and three draws, whose 256 first points are spread as well.
+    for (uint32_t n : {8u, 3u}) {
+        std::vector<Vec2> p;
+        for (uint32_t i = 0; p.size() < 256; ++i)
+            for (uint32_t k = 0; k < n && p.size() < 256; ++k) p.push_back(SampleNumbers(s, i * kReplicas + 1).draw(k, n).get2(1, 2, 3));
+        expectNet(p, 8);
+    }
+    EXPECT_EQ(SampleNumbers(s, 7).draw(0, 1).get2(1, 2, 3).x, s.get2(1, 2, 3, 7).x);
+    EXPECT_NE(SampleNumbers(s, 0).draw(0, 2).get2(1, 2, 3).x, SampleNumbers(s, 0).draw(0, 4).get2(1, 2, 3).x);
 }
 
 TEST(Sampler, EachPointIsUniform) {

@@ -102,7 +102,9 @@ bool Gather::roulette(const LobeVertex& l, int turn, uint32_t vertex, uint16_t& 
     } else if (world_.settings_.localRoulette) {
         q = rouletteLocal(from.bounces + 1, l.weight, from.bounces + 1 > 3 ? dice() : 0);
     } else if (from.bounces + 1 > 3) {
-        q = rouletteOfPath(weight, dice);
+        // A light that traces sends rays at every vertex: the tree of them ends by the throughput itself.
+        const Color left(std::fabs(weight.x), std::fabs(weight.y), std::fabs(weight.z));
+        q = world_.lightTraces_ > 0 ? rouletteLocal(from.bounces + 1, left, dice()) : rouletteOfPath(weight, dice);
     }
     if (q <= 0) return false;
     weight = weight / q;

@@ -24,7 +24,8 @@ void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId t
         } else if (set.localRoulette) {
             q = rouletteLocal(depth, t, depth > 3 ? dice() : 0);
         } else if (depth > 3) {
-            q = rouletteOfPath(r.weight, dice);
+            const Color left(std::fabs(r.weight.x), std::fabs(r.weight.y), std::fabs(r.weight.z));
+            q = world_->lightTraces_ > 0 ? rouletteLocal(depth, left, dice()) : rouletteOfPath(r.weight, dice);
         }
         if (!(q > 0)) return;
         r.weight = r.weight / q;

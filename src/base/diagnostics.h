@@ -45,6 +45,7 @@ struct Diagnostic {
     int length = 0;         ///< bytes of the line, from the column on, that the message is about; 0 = unknown
     std::vector<std::string> notes{}; ///< candidates and why they were rejected, one a line
     std::vector<FixIt> fixes{};
+    bool always = false; ///< a note that users see without asking for notes (-v)
 };
 
 /// "file:line:column: error: message [id]", then the line, a caret and its range, then "  note: ..." and "  hint: ...", as far as

@@ -42,7 +42,7 @@ std::string lineOf(const SourcePlace& p) {
 Diagnostics::Handler printer(Severity least) {
     bool terminal = isatty(STDERR_FILENO) != 0;
     return [least, terminal, lines = limits::kSourceLines](Diagnostic d) mutable {
-        if (d.severity < least) return;
+        if (d.severity < least && !(d.always && least <= Severity::Warning)) return;
         // Who reports when the scene has been read has its places, and no more its text.
         if (d.sourceLine.empty() && lines > 0 && !(d.sourceLine = lineOf(d.place)).empty()) --lines;
         std::string text = toString(d);

@@ -75,7 +75,10 @@ TEST(Lights, SamplesOfAnAreaLight) {
         Moments p = path.estimate(rayTo({.3f, .8f, -.4f}, {.2f, 0, .5f}), samples(8000));
         EXPECT_LE(std::fabs(m.mean() - p.mean()), kZ * std::sqrt(m.se() * m.se() + p.se() * p.se()));
     }
-    EXPECT_NEAR(noise[1] / noise[0], .25, .05); // independent samples: 1 / sqrt(16)
+    // Sixteen independent samples would give 1 / sqrt(16); these are one net of sixteen points, which has at most half of that
+    // error where the light varies smoothly.
+    EXPECT_LE(noise[1] / noise[0], .125);
+    EXPECT_GT(noise[1] / noise[0], 0);
 }
 TEST(Lights, Categories) {
     writeShader(

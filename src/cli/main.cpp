@@ -192,8 +192,8 @@ int main(int argc, char** argv) {
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
 #ifdef __GLIBC__
-    // Long lists come and go while a scene is made. In pages of their own they go back to the system at once; the C library would keep
-    // what lies between others, up to 32 MB at a time.
+    // Long lists come and go while a scene is made. In pages of their own they go back to the system at once; the C library would
+    // keep what lies between others, up to 32 MB at a time.
     mallopt(M_MMAP_THRESHOLD, 4 << 20);
 #endif
     int status = kDone;

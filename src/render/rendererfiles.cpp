@@ -94,7 +94,8 @@ bool Renderer::canWrite(const OutputPlan& plan, const std::string& checkpoint, b
 
 bool Renderer::resume(const std::string& checkpoint, const FilmDescription& wanted, std::unique_ptr<Film>& film) {
     if (std::error_code e; !std::filesystem::exists(checkpoint, e)) {
-        Diagnostic begins{Severity::Info, Rie::NoError, {checkpoint}, "there is no checkpoint yet; rendering begins anew", {}, {}};
+        Diagnostic begins{
+            Severity::Info, Rie::NoError, {checkpoint}, "there is no checkpoint yet; rendering begins anew", {}, {}};
         begins.always = true;
         diagnostics_.report(std::move(begins));
         return true;

@@ -47,7 +47,8 @@ uint32_t needOf(int16_t offset, uint32_t& lit) {
 #define OF(member) within(offsetof(ShadePoint, member), sizeof(ShadePoint::member))
 #define OF_SURFACE(member) within(offsetof(ShadePoint, surface.member), sizeof(geometry::SurfacePoint::member))
     if (OF(N) || OF_SURFACE(N)) return geometry::kNeedN;
-    if (OF(du) || OF(dv) || OF_SURFACE(dPdu) || OF_SURFACE(dPdv) || OF_SURFACE(Puu) || OF_SURFACE(Puv) || OF_SURFACE(Pvv) || OF_SURFACE(Ng))
+    if (OF(du) || OF(dv) || OF_SURFACE(dPdu) || OF_SURFACE(dPdv) || OF_SURFACE(Puu) || OF_SURFACE(Puv) || OF_SURFACE(Pvv) ||
+        OF_SURFACE(Ng))
         return geometry::kNeedPartials;
     if (OF_SURFACE(dNdu) || OF_SURFACE(dNdv)) return geometry::kNeedNormalSlopes;
     if (OF_SURFACE(u) || OF_SURFACE(v)) return geometry::kNeedUV;

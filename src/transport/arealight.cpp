@@ -103,7 +103,8 @@ bool Emitter::sample(const Vec3& from, Vec2 u, float choose, Sample& out, geomet
     return out.pdf > 0 && std::isfinite(out.pdf);
 }
 
-bool Emitter::sampleSurface(const Vec3& from, Vec2 u, float choose, Sample& out, geometry::SurfacePoint& point, uint32_t needs) const {
+bool Emitter::sampleSurface(const Vec3& from, Vec2 u, float choose, Sample& out, geometry::SurfacePoint& point,
+                            uint32_t needs) const {
     if (entries_.empty()) return false;
     const Entry& e = entryAt(choose);
     out.shape = e.shape;

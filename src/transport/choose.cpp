@@ -80,7 +80,8 @@ float Gather::energyScale(size_t point, const Color& reflected, const Color& cle
         if (reflected[k] + clear[k] > 1 && reflected[k] > 0) scale = std::min(scale, (1 - clear[k]) / reflected[k]);
     const bool more = maxComponent(reflected) > 1; // by itself: else a highlight on what is clear, say, which is common
     const SurfaceBinding& b = world_.bindings_[size_t(c_->bindings[point])];
-    if (scale < 0.999f && (more ? e_.tamed_ : e_.tamedClear_).insert(b.surface.get()).second) // beyond rounding; said once a shader
+    if (scale < 0.999f &&
+        (more ? e_.tamed_ : e_.tamedClear_).insert(b.surface.get()).second) // beyond rounding; said once a shader
         e_.diagnostics().reportOnce((more ? "energy:" : "energyclear:") + b.surface->name,
                                     {more ? Severity::Warning : Severity::Info,
                                      Rie::NoError,

@@ -62,7 +62,8 @@ void Gather::reach(int query) {
     }
 }
 
-/// A light sample of trace() finds what a ray of it could meet there: within its distance, of its set, from the sides that it meets.
+/// A light sample of trace() finds what a ray of it could meet there: within its distance, of its set, from the sides that it
+/// meets.
 bool Gather::meets(const LobeVertex& l, int query, const Vec3& w, const Vec3& from, const Vec3& end) const {
     const geometry::Shape& shape = *queries_.drawn[size_t(query)].shape;
     const shading::RaySet& set = l.rays->set;
@@ -119,7 +120,8 @@ void Gather::send(const Reached& r) {
     lastQuery_ = r.query;
     const ShadePoint& p = c_->points[size_t(l.point)];
     if (area) {
-        e_.shadows.push_back({from, unit(end - from, r.w), length(end - from) * (1 - 1e-6f), given, l.target, p.time, p.ray, sums});
+        e_.shadows.push_back(
+            {from, unit(end - from, r.w), length(end - from) * (1 - 1e-6f), given, l.target, p.time, p.ray, sums});
     } else {
         const float far = light.kind == LightKind::Distant ? 1e38f : length(queries_.value[k].L);
         e_.shadows.push_back({from, r.w, far < 1e30f ? far * (1 - 1e-5f) : far, given, l.target, p.time, p.ray, false});

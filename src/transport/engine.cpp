@@ -162,7 +162,8 @@ bool Engine::traceAll(std::span<const CameraRay> rays, std::span<SampleResult> o
         r.origin = c.origin;
         r.dir = c.direction;
         PathSample& sample = samples_[i];
-        sample = {c.px, c.py, c.sample, int(i), c.time, 0.5f, render::SampleNumbers(render::Sampler(seed_, c.px, c.py), c.sample)};
+        sample = {
+            c.px, c.py, c.sample, int(i), c.time, 0.5f, render::SampleNumbers(render::Sampler(seed_, c.px, c.py), c.sample)};
         r.sample = &sample;
         r.footprint = {c.width, c.spread};
         r.setStart(c.start);

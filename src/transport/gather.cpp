@@ -25,7 +25,8 @@ void Gather::sortByPoint() {
     for (size_t i = 0; i < e_.lobes.size(); ++i) order_[size_t(next_[size_t(e_.lobes[i].point)]++)] = int(i);
 }
 
-/// A vertex has one answer for lights that ask. Where its requests are summed up, its kernel is done: its outputs as they are now.
+/// A vertex has one answer for lights that ask. Where its requests are summed up, its kernel is done: its outputs as they are
+/// now.
 void Gather::tellLights() {
     for (size_t point = 0; point < c_->points.size(); ++point) {
         const auto list = lobesOf(point);

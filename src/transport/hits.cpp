@@ -1,5 +1,5 @@
-// Stages meet and settle: a slice of rays meets surfaces; hits wait by group (same program and lights) until enough of them are there to
-// fill the lanes of its kernel; then their points are worked out, emitters among them shine, and the kernel runs.
+// Stages meet and settle: a slice of rays meets surfaces; hits wait by group (same program and lights) until enough of them are
+// there to fill the lanes of its kernel; then their points are worked out, emitters among them shine, and the kernel runs.
 #include "transport/engine.h"
 #include <algorithm>
 
@@ -127,7 +127,8 @@ void Engine::placePoints(HitQueue& q, BatchContext& c) {
     for (size_t i = 0; i < n;) {
         const uint32_t shape = q.hits[i].shape;
         run.clear();
-        for (; i < n && q.hits[i].shape == shape; ++i) run.push_back({q.hits[i].prim, q.hits[i].b1, q.hits[i].b2, &c.points[i].surface});
+        for (; i < n && q.hits[i].shape == shape; ++i)
+            run.push_back({q.hits[i].prim, q.hits[i].b1, q.hits[i].b2, &c.points[i].surface});
         world_->shapes_[shape]->points(run, world_->bindings_[size_t(world_->bindingOf_[shape])].pointNeeds);
     }
     for (size_t i = 0; i < n; ++i) {
@@ -158,7 +159,8 @@ void Engine::shine(const BatchContext& c, Sched& sched) {
         const PathRay& r = c.rays[i];
         if (b.areaLight < 0 || (b.matte && r.camera())) continue;
         if (!rules_.emissionCounts && r.lobePdf < 0) continue;
-        if (r.lobeBinding >= 0) { // a lobe that samples lights: those that are off for its surface do not light it by chance either
+        if (r.lobeBinding >=
+            0) { // a lobe that samples lights: those that are off for its surface do not light it by chance either
             const auto& on = world_->bindings_[size_t(r.lobeBinding)].lights;
             if (std::find(on.begin(), on.end(), b.areaLight) == on.end()) continue;
         }

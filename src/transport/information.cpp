@@ -99,7 +99,8 @@ std::optional<Information> attributeOf(const WorldImpl& w, const scene::Attribut
 }
 
 bool ofPoint(const std::string& name) {
-    for (const char* n : {"Ri:Transformation", "geometry:backfacing", "geometry:frontfacing", "geometry:geometricnormal", "diffusedepth"})
+    for (const char* n :
+         {"Ri:Transformation", "geometry:backfacing", "geometry:frontfacing", "geometry:geometricnormal", "diffusedepth"})
         if (name == n) return true;
     return false;
 }

@@ -88,7 +88,8 @@ void serve(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask, in
         takeRoom(c, s, rows + 3, lanes, mask);
         EmitRecord e{site, first, lanes, mask, c.arena.size()};
         c.arena.insert(c.arena.end(), in, in + (rows + 3) * lanes);
-        if (s.kind == SiteKind::LightVisibility) takeDistances(c, s, c.arena.data() + e.offset + size_t(3) * size_t(lanes), lanes);
+        if (s.kind == SiteKind::LightVisibility)
+            takeDistances(c, s, c.arena.data() + e.offset + size_t(3) * size_t(lanes), lanes);
         c.emits.push_back(e);
         return;
     }

@@ -129,10 +129,12 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
     std::vector<shading::InstanceView> views;
     std::vector<uint32_t> viewOf;
     for (size_t i = 0; i < call.of.size(); ++i) {
-        if (i == 0 || call.of[i] != call.of[i - 1]) views.push_back({&call.of[i]->instance->parameters, &call.of[i]->instance->toCurrent});
+        if (i == 0 || call.of[i] != call.of[i - 1])
+            views.push_back({&call.of[i]->instance->parameters, &call.of[i]->instance->toCurrent});
         viewOf.push_back(uint32_t(views.size() - 1));
     }
-    if (views.empty()) views.push_back({call.parameters ? call.parameters : &light.instance->parameters, &light.instance->toCurrent});
+    if (views.empty())
+        views.push_back({call.parameters ? call.parameters : &light.instance->parameters, &light.instance->toCurrent});
     if (!c->batch) c->batch = std::make_shared<shading::Batch>();
     c->batch->assign(bound.kernel, *bound.plan, c->points, views, viewOf, *world_);
     bindCall(c->batch->call(), *c);

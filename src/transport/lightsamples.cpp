@@ -206,8 +206,8 @@ void Engine::chooseSent(const BoundLight& light, float u, const float* values, L
     v.Cl *= float(sum / weight(chosen));
 }
 
-bool Engine::lightQuery(const BatchContext& c, int li, int point, const Vec3& at, const Vec3& axis, float angle, int turn, int turns,
-                        uint32_t nth, ShadePoint& p, float* factor) const {
+bool Engine::lightQuery(const BatchContext& c, int li, int point, const Vec3& at, const Vec3& axis, float angle, int turn,
+                        int turns, uint32_t nth, ShadePoint& p, float* factor) const {
     const BoundLight& light = world_->lights_[size_t(li)];
     const ShadePoint& of = c.points[size_t(point)];
     p = of;
@@ -247,7 +247,8 @@ bool Engine::lightQuery(const BatchContext& c, int li, int point, const Vec3& at
         if (!p.ray) return false;
         const float la = length(axis);
         const bool all = !(la > 0) || !(angle < float(kPi));
-        const float half = float(exact::sin(0.5 * std::max(angle, 0.f))), cap = all ? 2 : 2 * half * half; // 1 - cos of the half angle
+        const float half = float(exact::sin(0.5 * std::max(angle, 0.f))),
+                    cap = all ? 2 : 2 * half * half; // 1 - cos of the half angle
         if (!(cap > 0)) return false;
         const Random rng = random(*p.ray).draw(uint32_t(turn), uint32_t(turns));
         const Vec3 w = Basis(all ? Vec3(0, 0, 1) : axis / la).toWorld(sampleCone(cap, rng.pair(p.ray->vertex, use, nth)));

@@ -1,5 +1,5 @@
-// Which lights get a sample at a vertex. With few, each does; with more than limits::kLightsSampled about that many, by LightChooser.
-// What a chosen light gives is divided by the probability of the choice: the mean stays the same.
+// Which lights get a sample at a vertex. With few, each does; with more than limits::kLightsSampled about that many, by
+// LightChooser. What a chosen light gives is divided by the probability of the choice: the mean stays the same.
 #include "transport/engine.h"
 
 namespace alpenglow::transport {
@@ -18,7 +18,8 @@ bool sharesCalls(const BoundLight& l, bool media) {
 void WorldImpl::groupLights(Diagnostics& d) {
     std::map<std::tuple<const rsl::CompiledKernel*, int, LightKind>, std::vector<int>> like; // one block of one program
     for (size_t i = 0; i < lights_.size(); ++i)
-        if (const BoundLight& l = lights_[i]; sharesCalls(l, !media_.empty())) like[{l.kernel.kernel.get(), l.outCl, l.kind}].push_back(int(i));
+        if (const BoundLight& l = lights_[i]; sharesCalls(l, !media_.empty()))
+            like[{l.kernel.kernel.get(), l.outCl, l.kind}].push_back(int(i));
     for (const auto& [key, lights] : like) {
         if (lights.size() < 2) continue;
         const BoundLight& first = lights_[size_t(lights[0])];

@@ -72,8 +72,8 @@ const Media* Engine::mediaTowards(const BatchContext& c, int point, const Vec3& 
     return m;
 }
 
-void Engine::shadowsInMedia(std::span<ShadowRay> rays, const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint* s,
-                            const SurfaceBinding* binding) {
+void Engine::shadowsInMedia(std::span<ShadowRay> rays, const Vec3& a, const Vec3& b, const Vec3& at,
+                            const geometry::SurfacePoint* s, const SurfaceBinding* binding) {
     if (world_->media_.empty() || !s) return;
     const auto isHere = [&](const Vec3& x) { return length(x - at) <= geometry::roundingError(x) + 4 * s->pError; };
     for (ShadowRay& r : rays) {

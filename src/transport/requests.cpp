@@ -21,7 +21,8 @@ template <class Row> DistributionParams distributionOf(const SiteInfo& s, const 
     if (t.udir >= 0) m.udir = triple(t.udir);
     if (t.absorption >= 0) m.absorption = triple(t.absorption);
     m.eta = Color(s.lobe->name == "glass-ggx" ? 1.5f : s.lobe->name == "hair" ? 1.55f : 0.f);
-    for (size_t k = 0; k < t.eta.size() && k < 2; ++k) (k ? m.k : m.eta) = t.eta[k].second == 1 ? Color(f(t.eta[k].first)) : triple(t.eta[k].first);
+    for (size_t k = 0; k < t.eta.size() && k < 2; ++k)
+        (k ? m.k : m.eta) = t.eta[k].second == 1 ? Color(f(t.eta[k].first)) : triple(t.eta[k].first);
     for (int row : t.lobes) m.lobes.push_back(f(row));
     m.part = t.part;
     return m;

@@ -1,4 +1,5 @@
-// Stage scatter: rays of lobes. Where one ray goes on from a vertex (Rules::pickOne) one of its lobes is followed; elsewhere all are.
+// Stage scatter: rays of lobes. Where one ray goes on from a vertex (Rules::pickOne) one of its lobes is followed; elsewhere all
+// are.
 #include "transport/emitterfootprint.h"
 #include "transport/gather.h"
 #include "transport/sampling.h"

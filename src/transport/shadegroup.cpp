@@ -1,5 +1,5 @@
-// Running a surface's kernel over a batch of points: to its end, or strip by strip where it waits for rays (strips.h); then what it
-// asked for.
+// Running a surface's kernel over a batch of points: to its end, or strip by strip where it waits for rays (strips.h); then what
+// it asked for.
 #include "transport/engine.h"
 #include <algorithm>
 
@@ -65,8 +65,9 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, st
             opacity = c.haze[size_t(i)].opacity;
         }
         if (!isFinite(opacity)) notFinite(&ray, "Oi", binding.surface.get());
-        if (isFinite(shown)) 
-            deposit(sched, {c.targets[i], ray.weight * shown, LightEvent::Surface, &ray, extraOf(ray).share, binding.surface.get()});
+        if (isFinite(shown))
+            deposit(sched,
+                    {c.targets[i], ray.weight * shown, LightEvent::Surface, &ray, extraOf(ray).share, binding.surface.get()});
         else notFinite(&ray, "Ci", binding.surface.get());
         if (ray.counts) {
             SampleResult& r = *results[size_t(ray.sample->path)];

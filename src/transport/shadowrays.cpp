@@ -249,7 +249,12 @@ void Engine::transmissionRays(const SiteInfo& s, const ShadePoint& p, const Vec3
         Vec3 end = b;
         if (cone > 0 && p.ray && length(b - a) > 0) { // evenly in a cone about the way; as far as b
             const float half = float(exact::sin(0.5 * std::min(cone, float(kPi)))), cap = 2 * half * half;
-            end = a + Basis((b - a) / length(b - a)).toWorld(sampleCone(cap, random(*p.ray).draw(uint32_t(k), uint32_t(count)).pair(p.ray->vertex, site, occurrence * 4096))) * length(b - a);
+            end =
+                a + Basis((b - a) / length(b - a))
+                            .toWorld(sampleCone(
+                                cap,
+                                random(*p.ray).draw(uint32_t(k), uint32_t(count)).pair(p.ray->vertex, site, occurrence * 4096))) *
+                        length(b - a);
         }
         const Way way = wayBetween(a, end, at, surface);
         ray.origin = bias >= 0 ? a + way.dir * bias : way.origin;

@@ -94,8 +94,10 @@ TEST(Noise, SurfacesAreJudgedByTheirLightWhateverTheyCover) {
     const auto whole = [](int) { return 2.0; };
     const auto edges = [](int x) { return x % 4 / 4.0; }; // none, a quarter, a half, three quarters
     const auto few = [](int x) { return x == 3 ? 2.0 : 0.0; };
-    const NoiseFigures a = noiseFigures(halfCovered(160, 160, 64, 0, whole, 1)), b = noiseFigures(halfCovered(160, 160, 64, 0, edges, 2)),
-                       c = noiseFigures(halfCovered(120, 1200, 64, 0, few, 3)), d = noiseFigures(halfCovered(160, 160, 64, 5, edges, 4));
+    const NoiseFigures a = noiseFigures(halfCovered(160, 160, 64, 0, whole, 1)),
+                       b = noiseFigures(halfCovered(160, 160, 64, 0, edges, 2)),
+                       c = noiseFigures(halfCovered(120, 1200, 64, 0, few, 3)),
+                       d = noiseFigures(halfCovered(160, 160, 64, 5, edges, 4));
     // A pixel's figure has a relative deviation of .76 (2 replicas) and that of its mean: 0.5 % of 25,600, 2.2 % of 1,200 pixels.
     // Four deviations; skewed light and the division by a mean that is estimated too make it about 2 % too small at few samples.
     EXPECT_NEAR(a.noise / expected, 1, 0.035);
@@ -145,8 +147,8 @@ TEST(Noise, WhatMayStop) {
     EXPECT_FALSE(n.reached(n.noiseAtMost * 0.999));
 }
 
-// What --noise compares is above the true error in 95 of 100 pictures, of few pixels or of many, and near it where there are many.
-// Two replicas a pixel, errors normal, the true relative error 0.1 (or spread over a factor of nine): 2,000 pictures each.
+// What --noise compares is above the true error in 95 of 100 pictures, of few pixels or of many, and near it where there are
+// many. Two replicas a pixel, errors normal, the true relative error 0.1 (or spread over a factor of nine): 2,000 pictures each.
 TEST(Noise, TheBoundHolds) {
     std::mt19937_64 g(17);
     for (bool spread : {false, true})
@@ -181,8 +183,8 @@ TEST(Noise, TheBoundHolds) {
 }
 
 TEST(Noise, ErrorsPooledByHand) {
-    // Two pixels of two samples: means 2 and 4, differences 2 and 4, so SE^2 = 1 and 4. Of the window: mean 3, SE^2 = 5 / 4, degrees
-    // 3 * 25 / 17 - 2 = 2.41, at most 2. Of a pixel: SE^2 = 5 / 2 with the same.
+    // Two pixels of two samples: means 2 and 4, differences 2 and 4, so SE^2 = 1 and 4. Of the window: mean 3, SE^2 = 5 / 4,
+    // degrees 3 * 25 / 17 - 2 = 2.41, at most 2. Of a pixel: SE^2 = 5 / 2 with the same.
     Film f = makeFilm(2, 1);
     const float v[2][2] = {{1, 3}, {2, 6}};
     for (int x = 0; x < 2; ++x)

@@ -90,7 +90,8 @@ TEST(Sampler, ScrambleIsNested) {
         const uint64_t words = mix64(t / 100);
         auto scrambled = [&](uint32_t v) {
             const uint32_t low = uint32_t(words), high = uint32_t(words >> 32), r = reverseBits<uint32_t>(v);
-            return reverseBits<uint32_t>(t % 2 ? owenReversed<uint32_t>(r, low, high) : scrambleReversed<uint32_t>(r, low, high, ~low));
+            return reverseBits<uint32_t>(t % 2 ? owenReversed<uint32_t>(r, low, high)
+                                               : scrambleReversed<uint32_t>(r, low, high, ~low));
         };
         const uint32_t diff = a ^ b, flipped = scrambled(a) ^ scrambled(b);
         if (diff)
@@ -126,7 +127,8 @@ TEST(Sampler, EveryInputBitChangesEveryWord) {
         if (bit == 127) continue; // the highest of the site, which is not used
         int changed[32 * 4] = {};
         for (uint64_t t = 0; t < 4000; ++t) {
-            uint32_t in[5] = {uint32_t(mix64(t)), uint32_t(mix64(t) >> 32), uint32_t(t % 20), uint32_t(t / 20 % 20), uint32_t(t / 400)};
+            uint32_t in[5] = {uint32_t(mix64(t)), uint32_t(mix64(t) >> 32), uint32_t(t % 20), uint32_t(t / 20 % 20),
+                              uint32_t(t / 400)};
             const auto a = streamWords(in[0], in[1], in[2], in[3], in[4]);
             in[bit / 32] ^= 1u << bit % 32;
             const auto b = streamWords(in[0], in[1], in[2], in[3], in[4]);
@@ -138,8 +140,8 @@ TEST(Sampler, EveryInputBitChangesEveryWord) {
 }
 
 // The flips along one path, and the flips of eight sibling nodes at one depth, are each eight fair independent coins: of both
-// coordinates and of the order, deep down too (nodes at depth 12 of an order are those that the first million samples part at), and
-// the first flips of a coordinate against those of the order.
+// coordinates and of the order, deep down too (nodes at depth 12 of an order are those that the first million samples part at),
+// and the first flips of a coordinate against those of the order.
 TEST(Sampler, OwenBitsUniform) {
     const int n = 1'000'000;
     std::vector<double> expected(256, n / 256.0);
@@ -148,7 +150,9 @@ TEST(Sampler, OwenBitsUniform) {
         const uint64_t key = mix64(uint64_t(i / 1000));
         const Scrambles<uint32_t> s(streamWords<uint32_t>(uint32_t(key), uint32_t(key >> 32), 1, uint32_t(i % 1000), 0));
         auto first = [&](uint32_t v) { return s.first(reverseBits<uint32_t>(v)) ^ v; };
-        auto second = [&](uint32_t v) { return s.second(sobol1Reversed<uint32_t>(reverseBits<uint32_t>(v))) ^ v; }; // its own inverse
+        auto second = [&](uint32_t v) {
+            return s.second(sobol1Reversed<uint32_t>(reverseBits<uint32_t>(v))) ^ v;
+        }; // its own inverse
         auto order = [&](uint32_t v) { return s.shuffledIndex(reverseBits<uint32_t>(v)) ^ v; };
         auto siblings = [&](auto flips, int depth, uint32_t path) { // of eight nodes that part three digits above `depth`
             uint32_t bits = 0;
@@ -205,7 +209,8 @@ TEST(Sampler, DrawsOfOneSampleAreANet) {
     for (uint32_t n : {8u, 3u}) {
         std::vector<Vec2> p;
         for (uint32_t i = 0; p.size() < 256; ++i)
-            for (uint32_t k = 0; k < n && p.size() < 256; ++k) p.push_back(SampleNumbers(s, i * kReplicas + 1).draw(k, n).get2(1, 2, 3));
+            for (uint32_t k = 0; k < n && p.size() < 256; ++k)
+                p.push_back(SampleNumbers(s, i * kReplicas + 1).draw(k, n).get2(1, 2, 3));
         expectNet(p, 8);
     }
     EXPECT_EQ(SampleNumbers(s, 7).draw(0, 1).get2(1, 2, 3).x, s.get2(1, 2, 3, 7).x);

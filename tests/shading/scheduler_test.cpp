@@ -424,6 +424,7 @@ TEST(Scheduler, WhatIsHeldBackIsFollowedInTheEnd) {
         }
         ASSERT_TRUE(s.run());
         EXPECT_GE(service.lone, 1);
-        for (int i = 0; i < 101; ++i) EXPECT_EQ(s.value(roots[size_t(i)]).radiance.x, float(i * (1 + i % 4))) << slice << " " << i;
+        for (int i = 0; i < 101; ++i)
+            EXPECT_EQ(s.value(roots[size_t(i)]).radiance.x, float(i * (1 + i % 4))) << slice << " " << i;
     }
 }

@@ -36,7 +36,8 @@ Film renderKnown(uint64_t seed, uint32_t spp, int only = -1) {
     d.seed = seed;
     Film film(d);
     for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < (only < 0 ? kWidth - 1 : kHeight); ++x) { // the last integrand has infinite variance: for the mean only
+        for (int x = 0; x < (only < 0 ? kWidth - 1 : kHeight);
+             ++x) { // the last integrand has infinite variance: for the mean only
             Sampler s(seed, x, y);
             for (uint32_t i = 0; i < spp; ++i)
                 film.add(x, y, i, {Color(float(kPixels[only < 0 ? x : only].f(s.get2(0, 0, 0, i), s.get2(1, 0, 0, i)))), 1, {}});
@@ -75,7 +76,8 @@ TEST(HonestNoise, NinetyFivePercentIntervalsCoverTheTruth) {
     }
 }
 
-// Of a window's mean, to which pixels with quite different errors add up. 5,000 renders: 1 % is three deviations of a share of 95 %.
+// Of a window's mean, to which pixels with quite different errors add up. 5,000 renders: 1 % is three deviations of a share of 95
+// %.
 TEST(HonestNoise, IntervalsOfWindowsCoverTheTruth) {
     double truth = 0;
     for (int x = 0; x < kWidth - 1; ++x) truth += kPixels[x].truth / (kWidth - 1);

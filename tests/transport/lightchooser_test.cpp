@@ -74,7 +74,8 @@ TEST(LightChooser, SharesOfPower) {
     double sum = 0;
     for (int i = 0; i < 64; ++i) sum += chooser.pmf(i, {0, 0, 0});
     EXPECT_NEAR(sum, kWanted, 1e-4); // nobody's reaches 1
-    // Opened to single lights only below the cut's size: the mean over a power's sixteen lights is what the share must be, to 10 %.
+    // Opened to single lights only below the cut's size: the mean over a power's sixteen lights is what the share must be, to 10
+    // %.
     for (int power = 1; power <= 4; ++power) {
         double mean = 0;
         for (int i = power - 1; i < 64; i += 4) mean += chooser.pmf(i, {0, 0, 0}) / 16.0;

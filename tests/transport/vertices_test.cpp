@@ -75,8 +75,9 @@ TEST(Vertices, RareShaders) {
     std::string rib = "WorldBegin\nLightSource \"pointlight\" 1 \"from\" [0 3 4]\nSurface \"plastic\"\n" + kFloor;
     for (int i = 0; i < 24; ++i) {
         const std::string name = "rare" + std::to_string(i);
-        writeShader(name, "surface " + name + "() { Oi = Os; Ci = Cs * (" + std::to_string(0.02 * (i + 1)) +
-                              " * diffuse(faceforward(normalize(N), I)) + .1 * trace(P, reflect(normalize(I), normalize(N)))); }");
+        writeShader(name,
+                    "surface " + name + "() { Oi = Os; Ci = Cs * (" + std::to_string(0.02 * (i + 1)) +
+                        " * diffuse(faceforward(normalize(N), I)) + .1 * trace(P, reflect(normalize(I), normalize(N)))); }");
         rib += "AttributeBegin\nSurface \"" + name + "\"\nTranslate " + std::to_string(i % 6 - 2.5) + " " +
                std::to_string(i / 6 * .5 - .7) + " " + std::to_string(4 + i / 6) + "\nSphere .3 -.3 .3 360\nAttributeEnd\n";
     }
@@ -85,7 +86,8 @@ TEST(Vertices, RareShaders) {
     const auto together = s.trace(rays);
     std::vector<SampleResult> parts;
     for (size_t first = 0; first < rays.size(); first += 70)
-        for (const SampleResult& r : s.trace(std::span(rays).subspan(first, std::min<size_t>(70, rays.size() - first)))) parts.push_back(r);
+        for (const SampleResult& r : s.trace(std::span(rays).subspan(first, std::min<size_t>(70, rays.size() - first))))
+            parts.push_back(r);
     EXPECT_EQ(differ(together, parts), 0);
 }
 

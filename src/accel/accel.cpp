@@ -32,9 +32,9 @@ Accel::Impl::Ball Accel::Impl::ballAround(uint32_t s) const {
 bool Accel::Impl::readyDirect() {
     size_t count = 0, exact = 0;
     for (const ShapeRef& s : shapes) {
-        if (s->exact()) ++exact;
+        if (s->exact()) exact += s->exactPrims();
         else count += s->mesh().triangles();
-        if (count > DirectTriangles::kMost || exact > kDirectExact) return false;
+        if (count > DirectTriangles::kMost || exact > kDirectExact || (s->exact() && s->exactPrims() != 1)) return false;
     }
     for (uint32_t s = 0; s < shapes.size(); ++s) {
         const Shape& shape = *shapes[s];
@@ -73,7 +73,7 @@ void Accel::Impl::meetDirect(Query& q) const {
         Vec3d to = b.centre - o;
         double along = dot(to, d), gap = dot(to, to) - b.radius2;
         if (gap > 0 && (along < 0 || along * along < gap * dd * (1 - 1e-9))) continue; // begins outside, and looks away or passes by
-        if (meetExact(q, b.shape) && q.any) return;
+        if (meetExact(q, b.shape, 0) && q.any) return;
     }
 }
 
@@ -92,7 +92,7 @@ Accel::Accel(std::vector<ShapeRef> shapes, std::vector<uint32_t> visibility, Dia
     } catch (const std::length_error&) { // a scene without its tree would be a black picture
         impl_->sound = false;
         impl_->tree = Tree();
-        diag.report(Severity::Severe, Rie::Limit, {}, "the frame has more than a thousand million triangles");
+        diag.report(Severity::Severe, Rie::Limit, {}, "the frame has more than a thousand million triangles, curve segments and points");
     }
 }
 

@@ -124,27 +124,27 @@ struct Accel::Impl {
         return !sameCrossing(r, s, t, a, b, c) && take(q, s, prim, t, b1, b2);
     }
 
-    /// Points of an exact shape count behind this t. The shape that the ray goes on behind may be met again (a ball twice),
+    /// Points of an exact primitive count behind this t. The one that the ray goes on behind may be met again (a ball twice),
     /// another that lies at its place and comes after it is yet to be met there.
-    static double exactFrom(const Ray& r, uint32_t s) {
+    static double exactFrom(const Ray& r, uint32_t s, uint32_t prim) {
         const double near = r.tnear;
         if (r.passed < 0) return near;
-        if (s == r.excludeShape) return std::max(near, double(std::nextafter(float(r.passed), INFINITY)));
-        return std::max(near, s < r.excludeShape ? r.passed : std::nextafter(r.passed, 0.0));
+        if (s == r.excludeShape && prim == r.excludePrim) return std::max(near, double(std::nextafter(float(r.passed), INFINITY)));
+        return std::max(near, std::pair(s, prim) < std::pair(r.excludeShape, r.excludePrim) ? r.passed : std::nextafter(r.passed, 0.0));
     }
-    /// Tries all points of one exact shape; true when one was taken.
-    bool meetExact(Query& q, uint32_t s) const {
+    /// Tries all points of one primitive of an exact shape; true when one was taken.
+    bool meetExact(Query& q, uint32_t s, uint32_t prim) const {
         const Ray& r = *q.ray;
-        if (!visible(r, s) || (r.passed < 0 && excluded(r, s, 0))) return false;
+        if (!visible(r, s) || (r.passed < 0 && excluded(r, s, prim))) return false;
         geometry::ExactHit h[4];
         const Shape& shape = *shapes[s];
         const auto wanted = shape.oneSided() && q.ray->sides != Sides::Both ? Shape::Wanted::All
                             : q.any                                         ? Shape::Wanted::Any
                                                                             : Shape::Wanted::Nearest;
-        int n = shape.exactHits(Vec3d(r.org), Vec3d(r.dir), exactFrom(r, s), std::min(double(r.tfar), q.best.t), wanted, h);
+        int n = shape.exactHits(prim, Vec3d(r.org), Vec3d(r.dir), exactFrom(r, s, prim), std::min(double(r.tfar), q.best.t), wanted, h);
         bool taken = false;
         for (int i = 0; i < n; ++i) {
-            taken |= take(q, s, 0, h[i].t, h[i].u, h[i].v);
+            taken |= take(q, s, prim, h[i].t, h[i].u, h[i].v);
             if (taken && q.any) break;
         }
         return taken;

@@ -1,4 +1,4 @@
-// A tree of boxes over all triangles and exact shapes of a scene, eight children a node, up to six triangles a leaf.
+// A tree of boxes over all triangles and primitives of exact shapes of a scene, eight children a node, up to six triangles a leaf.
 //
 // What a ray meets does not depend on the tree: boxes and the float test of triangles only leave out what cannot be met (their
 // bounds hold whatever float arithmetic does), and what they let pass is met in double by the caller's rule. So the result is the
@@ -21,7 +21,7 @@ public:
     static constexpr int kLeafTriangles = 6, kLeafVertices = 8;
     static constexpr int kDeepest = 80; ///< nodes above each other
 
-    /// A child: nothing, a node, a leaf of triangles, or one exact shape.
+    /// A child: nothing, a node, a leaf of triangles, or one primitive of an exact shape.
     using Child = uint32_t;
     static constexpr Child kLeaf = 0x80000000u, kExact = 0x40000000u, kIndex = 0x3fffffffu, kNothing = 0xffffffffu;
 
@@ -51,9 +51,12 @@ public:
     const Leaf* leaves() const { return leaves_.data(); }
     bool empty() const { return nodes_.empty(); }
     const geometry::Bounds& bounds() const { return bounds_; }
-    size_t bytes() const { return nodes_.size() * sizeof(Node) + leaves_.size() * sizeof(Leaf); }
-    /// Shape of a child that is exact.
-    uint32_t exactShape(uint32_t index) const { return exact_[index]; }
+    size_t bytes() const { return nodes_.size() * sizeof(Node) + leaves_.size() * sizeof(Leaf) + exact_.size() * sizeof(Exact); }
+    /// A child that is exact.
+    struct Exact {
+        uint32_t shape, prim;
+    };
+    const Exact& exact(uint32_t index) const { return exact_[index]; }
     /// Shape of a triangle, and its number there.
     void find(uint32_t id, uint32_t& shape, uint32_t& prim) const {
         uint32_t k = first_[id >> kCoarse];
@@ -72,7 +75,7 @@ private:
     std::vector<Leaf> leaves_;
     std::vector<Mesh> meshes_;
     std::vector<uint32_t> first_; ///< by sixteen triangles: into meshes_
-    std::vector<uint32_t> exact_;
+    std::vector<Exact> exact_; ///< in the order of the leaves
     geometry::Bounds bounds_;
 };
 

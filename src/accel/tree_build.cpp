@@ -29,7 +29,7 @@ struct Box {
     }
 };
 
-/// A triangle or an exact shape; its number lies in the fourth lane of the lower corner.
+/// A triangle or a primitive of an exact shape; its number lies in the fourth lane of the lower corner.
 struct Ref {
     Four lo, hi;
     uint32_t id() const {
@@ -61,7 +61,8 @@ constexpr size_t kParallel = 8192; // references below which a task of its own c
 struct Tree::Builder {
     Tree& tree;
     std::span<const geometry::ShapeRef> shapes;
-    uint32_t triangles = 0; // numbers from here on are exact shapes
+    uint32_t triangles = 0; // numbers from here on are primitives of exact shapes: exact[number - triangles]
+    std::vector<Exact> exact;
     std::unique_ptr<Ref[]> refs;
     // Nodes as they come, by any thread: pieces that stay where they are. A leaf's child is the number of its first reference,
     // and its size lies in `spare` by child.
@@ -271,7 +272,8 @@ struct Tree::Builder {
                 if (const uint8_t size = nodes[at].spare[k]) {
                     const uint32_t id = refs[c].id();
                     if (id >= triangles) {
-                        nodes[at].child[k] = kLeaf | kExact | (id - triangles);
+                        nodes[at].child[k] = kLeaf | kExact | uint32_t(tree.exact_.size());
+                        tree.exact_.push_back(exact[id - triangles]);
                         continue;
                     }
                     if (leaves.size() >= kIndex) throw std::length_error("leaves");
@@ -296,17 +298,34 @@ struct Tree::Builder {
             leafOf(r, &tree.leaves_[i]);
         });
         refs.reset();
+        exact = {};
         nodes.shrink_to_fit();
         tree.nodes_ = std::move(nodes);
     }
 
+    /// All primitives of exact shapes.
+    void listExact() {
+        size_t n = 0;
+        for (const geometry::ShapeRef& s : shapes)
+            if (s->exact()) n += s->exactPrims();
+        if (triangles + n >= kIndex) throw std::length_error("exact primitives");
+        exact.reserve(n);
+        for (uint32_t s = 0; s < shapes.size(); ++s)
+            for (uint32_t p = 0, many = shapes[s]->exact() ? shapes[s]->exactPrims() : 0; p < many; ++p) exact.push_back({s, p});
+    }
+    Ref exactRef(uint32_t number, const geometry::Bounds& b) const {
+        const auto sound = [](float f, float otherwise) { return std::isfinite(f) ? std::clamp(f, -kHuge, kHuge) : otherwise; };
+        Ref r;
+        r.lo = Four{sound(b.lo.x, -kHuge), sound(b.lo.y, -kHuge), sound(b.lo.z, -kHuge), 0};
+        r.hi = Four{sound(b.hi.x, kHuge), sound(b.hi.y, kHuge), sound(b.hi.z, kHuge), 0};
+        r.setId(triangles + number);
+        return r;
+    }
+
     void run() {
-        size_t count = 0, exact = 0;
+        size_t count = 0;
         for (uint32_t s = 0; s < shapes.size(); ++s) {
-            if (shapes[s]->exact()) {
-                ++exact;
-                continue;
-            }
+            if (shapes[s]->exact()) continue;
             if (!shapes[s]->mesh().triangles()) continue;
             tree.meshes_.push_back({uint32_t(count), s});
             count += shapes[s]->mesh().triangles();
@@ -318,7 +337,8 @@ struct Tree::Builder {
             while (k + 1 < tree.meshes_.size() && tree.meshes_[k + 1].first <= i << kCoarse) ++k;
             tree.first_[i] = uint32_t(k);
         }
-        const size_t all = count + exact;
+        listExact();
+        const size_t all = count + exact.size();
         if (!all) return;
         refs.reset(new Ref[all]);
         tbb::parallel_for(size_t(0), tree.meshes_.size(), [&](size_t k) {
@@ -336,19 +356,10 @@ struct Tree::Builder {
                 refs[tree.meshes_[k].first + t] = r;
             });
         });
-        for (uint32_t s = 0; s < shapes.size(); ++s) {
-            if (!shapes[s]->exact()) continue;
-            const geometry::Bounds b = shapes[s]->bounds();
-            Ref r;
-            const auto sound = [](float f, float otherwise) {
-                return std::isfinite(f) ? std::clamp(f, -kHuge, kHuge) : otherwise;
-            };
-            r.lo = Four{sound(b.lo.x, -kHuge), sound(b.lo.y, -kHuge), sound(b.lo.z, -kHuge), 0};
-            r.hi = Four{sound(b.hi.x, kHuge), sound(b.hi.y, kHuge), sound(b.hi.z, kHuge), 0};
-            r.setId(triangles + uint32_t(tree.exact_.size()));
-            refs[triangles + tree.exact_.size()] = r;
-            tree.exact_.push_back(s);
-        }
+        tree.exact_.reserve(exact.size());
+        tbb::parallel_for(size_t(0), exact.size(), [&](size_t i) {
+            refs[triangles + i] = exactRef(uint32_t(i), shapes[exact[i].shape]->exactBounds(exact[i].prim));
+        });
         pieces.resize(all / kPiece + 2); // a node has two children at least
         const Range root = measured(0, all);
         for (int a = 0; a < 3; ++a) tree.bounds_.lo[a] = root.box.lo[a], tree.bounds_.hi[a] = root.box.hi[a];

@@ -162,7 +162,7 @@ bool Quadric::accept(const Vec3d& p, double v, ExactHit& hit) const {
     return true;
 }
 
-int Quadric::exactHits(const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted wanted, ExactHit out[4]) const {
+int Quadric::exactHits(uint32_t, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted wanted, ExactHit out[4]) const {
     Vec3d o = affine_ ? turned(toObject_, org) + Vec3d(toObject_.m[3][0], toObject_.m[3][1], toObject_.m[3][2]) : transformPoint(toObject_, org);
     Vec3d d = turned(toObject_, dir);
     double dd = dot(d, d);

@@ -20,7 +20,7 @@ class Quadric : public Parametric {
 public:
     Quadric(ShapeSource, double thetaMaxDegrees, Diagnostics&);
     using Shape::exactHits;
-    int exactHits(const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted, ExactHit out[4]) const override;
+    int exactHits(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted, ExactHit out[4]) const override;
     Bounds bounds() const override;
 
 protected:

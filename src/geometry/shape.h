@@ -115,11 +115,17 @@ public:
     /// True: rays meet exactHits(). False: rays meet mesh(), hits are (triangle, b1, b2).
     bool exact() const { return mesh_.vertices == 0; }
     const TriMesh& mesh() const { return mesh_; }
-    /// All points of the line org + t dir on the surface, by increasing t, at most 4; any sign of t. Thread safe.
-    int exactHits(const Vec3d& org, const Vec3d& dir, ExactHit out[4]) const { return exactHits(org, dir, -INFINITY, INFINITY, Wanted::All, out); }
+    /// Exact shapes: primitives that rays meet one by one, each in its own box (curves and points have many). A hit's prim.
+    virtual uint32_t exactPrims() const { return 1; }
+    /// Encloses all that a ray can hit of one of them.
+    virtual Bounds exactBounds(uint32_t /*prim*/) const { return bounds(); }
+    /// All points of the line org + t dir on the first primitive, by increasing t, at most 4; any sign of t. Thread safe.
+    int exactHits(const Vec3d& org, const Vec3d& dir, ExactHit out[4]) const { return exactHits(0, org, dir, -INFINITY, INFINITY, Wanted::All, out); }
     enum class Wanted { All, Nearest, Any };
-    /// Those with lo < t <= hi only, which is cheaper. Nearest: one is enough; Any: whether there is one, u and v may stay unset.
-    virtual int exactHits(const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted, ExactHit out[4]) const { return 0; }
+    /// Those of one primitive with lo < t <= hi only, which is cheaper. Nearest: one is enough; Any: whether there is one, u and v may stay
+    /// unset.
+    virtual int exactHits(uint32_t /*prim*/, const Vec3d& /*org*/, const Vec3d& /*dir*/, double /*lo*/, double /*hi*/, Wanted,
+                          ExactHit[4]) const { return 0; }
     /// Encloses everything a ray can hit.
     virtual Bounds bounds() const;
 
@@ -129,7 +135,7 @@ public:
     /// The surface at (u, v). Parametric surfaces take 0..1 over the whole primitive and ignore `face`; for polygons (u, v)
     /// are object x and y (or the fallback frame), and a point outside the face goes to the plane of its nearest triangle.
     virtual SurfacePoint evaluate(int face, double u, double v) const = 0;
-    /// The surface at a hit: (prim, b1, b2) as the intersector gave them; exact shapes: (0, u, v).
+    /// The surface at a hit: (prim, b1, b2) as the intersector gave them; exact shapes: (prim, ExactHit::u, v).
     SurfacePoint evaluateHit(uint32_t prim, double b1, double b2) const;
     /// The same, written in place.
     void evaluateHit(uint32_t prim, double b1, double b2, SurfacePoint& out, uint32_t needs = kNeedAll) const {

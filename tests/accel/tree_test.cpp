@@ -110,7 +110,7 @@ TEST(Tree, NothingIsOverlooked) {
             Query q{&rays[i], {INFINITY, kNone, kNone, 0, 0}, false}; // everything, by the same rule
             for (uint32_t k = 0; k < shapes.size(); ++k) {
                 if (shapes[k]->exact()) {
-                    inside.meetExact(q, k);
+                    inside.meetExact(q, k, 0);
                     continue;
                 }
                 const geometry::TriMesh& m = shapes[k]->mesh();

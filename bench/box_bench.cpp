@@ -6,8 +6,8 @@
 #include "bench/profile.h"
 #include "render/rendering.h"
 #include "ri/reader.h"
-#include "transport/sampling.h"
-#include "transport/world.h"
+#include "lobes/sampling.h"
+#include "world/world.h"
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

@@ -1,7 +1,7 @@
 // What lobes cost: nanoseconds a lobe of each kind to prepare it, for a value with its density, and for a draw; one by one
 // (OneLobe, as nobody does in a loop), in full blocks at each width, and in blocks by way of LobeColumns as the engine asks. The
 // best of several runs.
-#include "transport/lobe.h"
+#include "lobes/lobe.h"
 #include <chrono>
 #include <cstdio>
 #include <cstring>

@@ -6,7 +6,7 @@
 #include "geometry/dice.h"
 #include "render/camera.h"
 #include "ri/reader.h"
-#include "transport/sampling.h"
+#include "lobes/sampling.h"
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

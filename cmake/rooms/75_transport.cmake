@@ -1,14 +1,6 @@
-room(transport DEPS shading)
+# Rooms of transport: src/world < src/answers < src/wave < src/transport (docs/architecture.md).
+file(GLOB_RECURSE transport_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/world/*.cpp ${CMAKE_SOURCE_DIR}/src/answers/*.cpp
+  ${CMAKE_SOURCE_DIR}/src/wave/*.cpp ${CMAKE_SOURCE_DIR}/src/transport/*.cpp)
+add_library(transport STATIC ${transport_sources})
+target_link_libraries(transport PUBLIC lobes shading)
 target_compile_definitions(transport PRIVATE ALPENGLOW_SHADER_DIR="${CMAKE_SOURCE_DIR}/shaders")
-# The stages in lanes, once for each width and the processors that have it; transport/lobelanes.cpp chooses. Nothing in them is
-# vectorised beyond what the source says.
-foreach(way "1 v2" "1 v3" "4 v2" "8 v3" "16 v4")
-  separate_arguments(way)
-  list(GET way 0 lanes)
-  list(GET way 1 level)
-  set(file ${CMAKE_BINARY_DIR}/lanes/stages${lanes}${level}.cpp)
-  file(CONFIGURE OUTPUT ${file} CONTENT "#define ALPENGLOW_LANES ${lanes}\n#define ALPENGLOW_STAGES ${lanes}${level}\n#include \"transport/lanes/stages.inc\"\n")
-  set_source_files_properties(${file} PROPERTIES COMPILE_OPTIONS
-    "-march=x86-64-${level};-mprefer-vector-width=512;-fno-vectorize;-fno-slp-vectorize;-fno-builtin")
-  target_sources(transport PRIVATE ${file})
-endforeach()

@@ -2,7 +2,7 @@
 #include "base/printable.h"
 #include "cli/command.h"
 #include "rsl/evaluate.h"
-#include "transport/withoutscene.h"
+#include "answers/withoutscene.h"
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <unistd.h>

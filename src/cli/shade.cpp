@@ -8,7 +8,7 @@
 #include "rsl/compiler.h"
 #include "rsl/printlog.h"
 #include "rsl/services_basic.h"
-#include "transport/withoutscene.h"
+#include "answers/withoutscene.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>

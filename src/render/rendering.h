@@ -14,7 +14,7 @@
 
 namespace alpenglow::render {
 
-/// Dimensions of a camera sample, above all call sites and uses of transport/ (transport/random.h).
+/// Dimensions of a camera sample, above all call sites and uses of transport/ (answers/random.h).
 enum CameraUse : uint32_t { kUseFilter = 1u << 24, kUseLens, kUseTime };
 
 /// Pixels a side of the squares that threads take.

@@ -22,9 +22,14 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
     {"texture", {"base", "display"}},
     {"display", {"base", "scene"}},
     {"shading", {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture"}},
-    {"transport", {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading"}},
+    {"lobes", {"base", "shadeops"}},
+    {"world", {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "lobes", "answers", "wave", "transport"}},
+    {"answers", {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "lobes", "world", "wave"}},
+    {"wave", {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "lobes", "world", "answers"}},
+    {"transport", {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "lobes", "world", "answers", "wave"}},
     {"render", {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "transport", "display"}},
-    {"cli", {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "transport", "display", "render", "ri"}},
+    {"cli", {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "lobes", "world", "answers", "wave", "transport", "display",
+             "render", "ri"}},
 };
 
 // Header prefix -> the only folders that may include it.

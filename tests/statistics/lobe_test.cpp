@@ -3,8 +3,8 @@
 // runs; nightly on 5,202 cells and 1e6 draws +-6 % (noncentrality N delta^2 against 7.1 sqrt(2 k), sum of delta^2 e = N delta^2).
 // Distributions have 4e5 draws on 200 cells: finds 2.3 % (root of the mean square over what is drawn) in 99 of 100 runs.
 #include "statistics/agreement.h"
-#include "transport/lobe.h"
-#include "transport/sampling.h"
+#include "lobes/lobe.h"
+#include "lobes/sampling.h"
 #include <gtest/gtest.h>
 #include <random>
 #include <set>

@@ -2,8 +2,8 @@
 // integrals.
 #include "shadeops/descriptor.h"
 #include "transport/harness.h"
-#include "transport/lobe.h"
-#include "transport/sampling.h"
+#include "lobes/lobe.h"
+#include "lobes/sampling.h"
 #include "transport/maps.h"
 #include <random>
 

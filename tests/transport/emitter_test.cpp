@@ -9,8 +9,8 @@
 #include "accel/accel.h"
 #include "geometry/make.h"
 #include "statistics/agreement.h"
-#include "transport/arealight.h"
-#include "transport/sampling.h"
+#include "world/arealight.h"
+#include "lobes/sampling.h"
 #include <gtest/gtest.h>
 #include <random>
 

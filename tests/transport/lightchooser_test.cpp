@@ -1,5 +1,5 @@
-// transport/lightchooser.h: a light is chosen with exactly the probability that is given with it, and that pmf() tells.
-#include "transport/lightchooser.h"
+// world/lightchooser.h: a light is chosen with exactly the probability that is given with it, and that pmf() tells.
+#include "world/lightchooser.h"
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numeric>

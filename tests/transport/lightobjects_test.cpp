@@ -1,6 +1,6 @@
 // Class lights as shader objects: surfaces call their public methods and read their public members by the handles of getlights(). The
 // floor y = 0 is seen at the origin; a light that stands at height h has its own origin there.
-#include "transport/lightobjects.h"
+#include "world/lightobjects.h"
 #include "transport/floorscene.h"
 
 using namespace alpenglow;

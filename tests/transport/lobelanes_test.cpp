@@ -1,5 +1,5 @@
-// Lobes in lanes (transport/lobelanes.h): every width gives the bits of one lobe alone, whoever shares its block.
-#include "transport/lobe.h"
+// Lobes in lanes (lobes/lobelanes.h): every width gives the bits of one lobe alone, whoever shares its block.
+#include "lobes/lobe.h"
 #include <cmath>
 #include <cstring>
 #include <gtest/gtest.h>

@@ -419,7 +419,7 @@ void Checker::written(const Expr& variable) {
     case Symbol::Origin::Local: break;
     case Symbol::Origin::Global:
         if (s->writable || (foreignLight_ && (s->name == "Cl" || s->name == "Ol"))) break;
-        // Old surfaces move P, as PRMan let them: the renderer displaces the primitive (transport/displacement.cpp).
+        // Old surfaces move P, as PRMan let them: the renderer displaces the primitive (world/displacement.cpp).
         if (kind_ == ShaderKind::Surface && s->name == "P") break;
         if (s->storage == Storage::Uniform)
             sources_.error(variable.place, name + " cannot be written");

@@ -229,7 +229,7 @@ Inst* Builder::service(const Expr& e, Op kind, int part) {
         s.names.push_back("__part");
         s.pairStrings.push_back(std::to_string(part));
     }
-    // A uniform variable takes no varying parameter of another shader (transport/services.cpp).
+    // A uniform variable takes no varying parameter of another shader (answers/services.cpp).
     const auto isUniform = [](const Expr* l) {
         while (l->kind == ExprKind::Index && !l->args.empty()) l = l->args[0].get();
         return l->symbol && l->symbol->storage == Storage::Uniform;

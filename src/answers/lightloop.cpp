@@ -1,0 +1,264 @@
+// illuminance loops: which lights take their turns, and what was kept of them.
+#include "answers/lightloop.h"
+#include "base/category.h"
+#include "base/exact.h"
+#include "wave/engine.h"
+#include <bit>
+
+namespace alpenglow::transport {
+
+namespace {
+
+uint64_t mixed(uint64_t h, uint64_t v) {
+    h ^= v + 0x9e3779b97f4a7c15ull + (h << 6) + (h >> 2);
+    return h * 0xff51afd7ed558ccdull ^ h >> 29;
+}
+
+} // namespace
+
+std::string categoriesOf(const BoundLight& l) {
+    if (!l.instance) return "";
+    auto i = l.instance->parameters.strings.find("__category");
+    return i == l.instance->parameters.strings.end() ? "" : i->second;
+}
+
+std::string sentStrings(const SiteInfo& s) {
+    std::string key;
+    for (const auto& [name, value] : s.text)
+        if (name.rfind("send:light:", 0) == 0) key += name.substr(11) + '\1' + value + '\2';
+    return key;
+}
+
+bool sampledAnew(const BoundLight& l, bool path) {
+    return l.kind == LightKind::Area || l.sentCl >= 0 || (path && (l.cone || l.kind == LightKind::Environment));
+}
+
+// Room for limits::kLightTurns turns and more.
+static constexpr int kTurnBits = 12;
+
+uint32_t drawOf(const LightLoop& loop) { return 1 + (uint32_t(std::max(loop.depth - 1, 0)) << kTurnBits); } // 0 is gather()'s
+
+uint64_t keptName(const LightLoop& loop, const BoundLight& l, int light, int turn, bool path) {
+    const uint64_t name = uint64_t(light) << kTurnBits | uint64_t(turn);
+    return sampledAnew(l, path) && loop.depth > 1 ? name | uint64_t(loop.depth - 1) << 48 : name;
+}
+
+LightLoop& Engine::lightLoop(BatchContext& c, int first, int lanes) {
+    // Strips that never wait run one after the other: they share one.
+    const size_t at = c.bound->kernel->facts().suspends ? size_t(first / std::max(lanes, 1)) : 0;
+    while (c.loops.size() <= at) c.loops.emplace_back();
+    LightLoop& loop = c.loops[at];
+    if (loop.first != first) loop.reset(first);
+    return loop;
+}
+
+void Engine::lightSetup(BatchContext& c, int site, int first, uint64_t mask, int lanes, const float* in) {
+    LightLoop& loop = lightLoop(c, first, lanes);
+    const SiteInfo& s = c.bound->sites[size_t(site)];
+    size_t rows = 0;
+    for (rsl::ir::Kind k : s.site->argKinds) rows += size_t(rsl::ir::components(k));
+    LightSetup& next = loop.next;
+    next.setup = site;
+    next.given.assign(in, in + rows * size_t(lanes));
+    // The category is no matter of the lights: what was kept stays good under another.
+    next.givenHash.assign(size_t(lanes), 0);
+    for (const auto& [name, row] : s.named) {
+        if (name == "category") continue;
+        const auto following = std::min_element(s.named.begin(), s.named.end(), [row = row](const auto& a, const auto& b) {
+            return (a.second > row ? a.second : INT32_MAX) < (b.second > row ? b.second : INT32_MAX);
+        });
+        const size_t end = following->second > row ? size_t(following->second) : rows;
+        const uint64_t salt = std::hash<std::string>{}(name);
+        for (int lane = 0; lane < lanes; ++lane)
+            for (size_t r = size_t(row); r < end; ++r)
+                next.givenHash[size_t(lane)] = mixed(next.givenHash[size_t(lane)] ^ salt, std::bit_cast<uint32_t>(in[r * size_t(lanes) + size_t(lane)]));
+    }
+    (void)mask;
+}
+
+int32_t Engine::lightBegin(BatchContext& c, int site, int first, uint64_t mask, int lanes, const float* rows) {
+    LightLoop& loop = lightLoop(c, first, lanes);
+    const SiteInfo& info = c.bound->sites[size_t(site)];
+    // The loop around waits; when this one ends it is as it was.
+    if (loop.around.size() <= size_t(loop.depth)) loop.around.emplace_back();
+    loop.distance = c.lightDistance;
+    std::swap(static_cast<LightTurns&>(loop), loop.around[size_t(loop.depth)]);
+    ++loop.depth;
+    std::swap(static_cast<LightSetup&>(loop), loop.next);
+    loop.next.setup = -1;
+    if (!info.setUp) loop.setup = -1; // that of a loop of which nobody wanted the result
+    loop.lights.clear();
+    loop.light = -1;
+    loop.rows.assign(rows, rows + size_t(7) * size_t(lanes));
+    loop.refresh = info.refresh;
+    if (!c.binding) return 0;
+    const int row = loop.setup >= 0 ? c.bound->sites[size_t(loop.setup)].rowCategory : -1;
+    if (row < 0) {
+        loop.lights = turnsOf(*c.binding, info.nameId);
+        return int32_t(loop.lights.size());
+    }
+    // Known only now: each point may have its own.
+    std::vector<int32_t> wanted;
+    for (int lane = 0; lane < lanes; ++lane)
+        if (mask >> lane & 1) wanted.push_back(std::bit_cast<int32_t>(loop.given[size_t(row) * size_t(lanes) + size_t(lane)]));
+    std::sort(wanted.begin(), wanted.end());
+    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+    for (int32_t w : wanted) checkCategory(c, *info.site, w);
+    for (const auto& turn : turnsOf(*c.binding, 0))
+        if (std::any_of(wanted.begin(), wanted.end(), [&](int32_t w) { return isOfCategory(w, turn.first); }))
+            loop.lights.push_back(turn);
+    return int32_t(loop.lights.size());
+}
+
+bool Engine::isOfCategory(int32_t category, int light) {
+    const auto [known, fresh] = ofCategory_.try_emplace(uint64_t(uint32_t(category)) << 32 | uint32_t(light));
+    if (fresh) known->second = inCategory(rsl::internedString(category), categoriesOf(world_->lights_[size_t(light)]));
+    return known->second;
+}
+
+const std::vector<std::pair<int, int>>& Engine::turnsOf(const SurfaceBinding& b, int32_t category) {
+    TurnsOfList& known = turnsOf_[uint64_t(uint32_t(category)) << 32 | uint32_t(b.lightList)];
+    if (known.lights == b.lights) return known.turns; // numbers of lists are given while the world is made
+    known.lights = b.lights;
+    known.turns.clear();
+    for (int i : b.lights) {
+        const BoundLight& l = world_->lights_[size_t(i)];
+        if (!l.kernel || l.kind == LightKind::Ambient || l.strategy == LightStrategy::Trace || !isOfCategory(category, i))
+            continue;
+        for (int k = 0; k < l.samples; ++k) known.turns.push_back({i, k});
+    }
+    return known.turns;
+}
+
+void Engine::lightEnd(BatchContext& c, int first, int lanes) {
+    LightLoop& loop = lightLoop(c, first, lanes);
+    if (loop.depth == 0) return;
+    --loop.depth;
+    std::swap(static_cast<LightTurns&>(loop), loop.around[size_t(loop.depth)]);
+    c.lightDistance = loop.distance;
+}
+
+void Engine::checkCategory(BatchContext& c, const rsl::ir::Site& site, int32_t category) {
+    if (!checkedCategories_.insert(category).second) return;
+    const std::string& expression = rsl::internedString(category);
+    const std::string error = categoryError(expression);
+    if (error.empty()) return;
+    const auto& files = c.bound->kernel->files();
+    SourcePlace place{site.place.file < int(files.size()) ? files[size_t(site.place.file)] : "", site.place.line, site.place.column};
+    diagnostics_.reportOnce("category:" + expression, {Severity::Warning, Rie::Syntax, place,
+                            "the category \"" + expression + "\" cannot be read: " + error + "; all lights are taken", {}, {}});
+}
+
+uint64_t Engine::lightFetch(BatchContext& c, int index, int first, uint64_t mask, int lanes, float* out) {
+    LightLoop& loop = lightLoop(c, first, lanes);
+    if (size_t(index) >= loop.lights.size()) return 0;
+    const auto [li, k] = loop.lights[size_t(index)];
+    loop.light = li;
+    const int row = loop.setup >= 0 ? c.bound->sites[size_t(loop.setup)].rowCategory : -1;
+    if (row >= 0) // points whose own category leaves this light out
+        for (int lane = 0; lane < lanes; ++lane)
+            if ((mask >> lane & 1) &&
+                !isOfCategory(std::bit_cast<int32_t>(loop.given[size_t(row) * size_t(lanes) + size_t(lane)]), li))
+                mask &= ~(uint64_t(1) << lane);
+    if (const LightSheet* sheet = sheetOf(c, loop, li, k, first, mask, lanes))
+        return takeFromSheet(c, loop, *sheet, world_->lights_[size_t(li)], first, mask, lanes, out);
+    return fetchKept(c, loop, li, k, first, mask, lanes, out);
+}
+
+namespace {
+/// The cone of a loop at its points. Most loops have one angle.
+class LoopCone {
+public:
+    LoopCone(const LightLoop& loop, size_t width) : rows_(loop.rows.data()), width_(width) {}
+    /// Whether light from this way comes through it.
+    bool has(size_t lane, const Vec3& toLight) {
+        const float angle = rows_[6 * width_ + lane];
+        if (!(angle < float(kPi))) return true;
+        Vec3 axis(rows_[3 * width_ + lane], rows_[4 * width_ + lane], rows_[5 * width_ + lane]);
+        const float most = std::max({std::fabs(axis.x), std::fabs(axis.y), std::fabs(axis.z)});
+        if (most > 1e15f || (most > 0 && most < 1e-15f)) axis = axis / most; // its square must be a number
+        const float la = length(axis), ll = length(toLight);
+        if (angle != angle_) cosine_ = float(exact::cos(angle_ = angle));
+        return !(la > 0 && ll > 0) || dot(axis, toLight) >= la * ll * cosine_;
+    }
+
+private:
+    const float* rows_;
+    size_t width_;
+    float angle_ = 0, cosine_ = 1;
+};
+} // namespace
+
+uint64_t Engine::takeFromSheet(BatchContext& c, LightLoop& loop, const LightSheet& sheet, const BoundLight& light, int first,
+                               uint64_t mask, int lanes, float* out) {
+    const size_t width = size_t(lanes), size = size_t(sheet.size), from = size_t(first);
+    const size_t most = std::min(width, size - std::min(size, from));
+    if (const size_t values = size_t(light.valueWidth)) {
+        loop.values.assign(width * values, 0);
+        std::copy_n(sheet.values.begin() + long(from * values), most * values, loop.values.begin());
+    }
+    c.lightDistance.assign(width, 1e38f);
+    LoopCone cone(loop, width);
+    uint64_t lit = 0;
+    for (size_t lane = 0; lane < most; ++lane) {
+        const auto at = [&](size_t r) { return sheet.out[r * size + from + lane]; };
+        if (!(mask >> lane & 1) || !sheet.lit[from + lane] || !cone.has(lane, {at(0), at(1), at(2)})) continue;
+        lit |= uint64_t(1) << lane;
+        c.lightDistance[lane] = sheet.distance[from + lane];
+    }
+    for (size_t r = 0; r < 9; ++r)
+        for (size_t lane = 0; lane < most; ++lane)
+            if (lit >> lane & 1) out[r * width + lane] = sheet.out[r * size + from + lane];
+    return lit;
+}
+
+uint64_t Engine::fetchKept(BatchContext& c, LightLoop& loop, int li, int k, int first, uint64_t mask, int lanes, float* out) {
+    const BoundLight& light = world_->lights_[size_t(li)];
+    // Kept: the same light, sample, P, Ns, sent values and outputs of the surface; of a sky also the same cone.
+    const uint64_t name = keptName(loop, light, li, k, world_->settings_.hider == Hider::Path);
+    LightLoop::Kept passing;
+    const bool room = loop.kept.size() < limits::kLightCache || loop.kept.count(name);
+    LightLoop::Kept& kept = room ? loop.kept[name] : passing;
+    const size_t width = size_t(lanes);
+    if (kept.key.empty()) {
+        kept.key.assign(7 * width, 0);
+        kept.hash.assign(width, 0);
+        kept.out.assign(9 * width, 0);
+        kept.distance.assign(width, 1e38f);
+        kept.values.assign(width * size_t(light.valueWidth), 0);
+    }
+    const int same = light.kind == LightKind::Environment ? 7 : 3;
+    uint64_t missing = 0;
+    const uint64_t sent = loop.setup < 0 ? 0 : c.bound->sites[size_t(loop.setup)].sentStrings;
+    for (int lane = 0; lane < lanes; ++lane) {
+        if (!(mask >> lane & 1)) continue;
+        const size_t l = size_t(lane);
+        const uint64_t hash = loop.setup < 0 ? 0 : mixed(loop.givenHash[l], sent);
+        bool good = !loop.refresh && (kept.have >> lane & 1) && kept.hash[l] == hash;
+        for (size_t r = 0; good && r < size_t(same); ++r) good = std::bit_cast<uint32_t>(kept.key[r * width + l]) == std::bit_cast<uint32_t>(loop.rows[r * width + l]);
+        if (good) continue;
+        missing |= uint64_t(1) << lane;
+        kept.hash[l] = hash;
+        for (size_t r = 0; r < 7; ++r) kept.key[r * width + l] = loop.rows[r * width + l];
+    }
+    if (missing) {
+        kept.have |= missing;
+        kept.lit = (kept.lit & ~missing) | sampleLight(c, loop, li, k, light.samples, first, missing, lanes, kept);
+    }
+    loop.values = kept.values;
+    uint64_t lit = 0;
+    c.lightDistance.assign(width, 1e38f);
+    LoopCone cone(loop, width);
+    for (int lane = 0; lane < lanes; ++lane) {
+        if (!((mask & kept.lit) >> lane & 1)) continue;
+        const size_t l = size_t(lane);
+        if (light.kind != LightKind::Environment && !cone.has(l, {kept.out[l], kept.out[width + l], kept.out[2 * width + l]}))
+            continue;
+        lit |= uint64_t(1) << lane;
+        c.lightDistance[l] = kept.distance[l];
+        for (size_t r = 0; r < 9; ++r) out[r * width + l] = kept.out[r * width + l];
+    }
+    return lit;
+}
+
+} // namespace alpenglow::transport

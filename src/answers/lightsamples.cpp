@@ -1,0 +1,327 @@
+// Samples of lights for the points of a loop: where they lie, the light's kernel with what the surface sends, what stands in between.
+#include "base/exact.h"
+#include "wave/engine.h"
+#include "world/emitterfootprint.h"
+#include "answers/lightloop.h"
+#include "lobes/sampling.h"
+#include <bit>
+#include <cstdlib>
+
+namespace alpenglow::transport {
+
+bool LitValues::output(const std::string& name, std::vector<float>& v) const {
+    for (const auto& [known, numbers] : outputs)
+        if (known == name) {
+            v = numbers;
+            return true;
+        }
+    return false;
+}
+
+LitSurface Engine::litBy(std::span<const int> of) const {
+    LitSurface lit;
+    lit.binding = [this, of](int q) -> const SurfaceBinding* {
+        const int b = of[size_t(q)] < 0 ? -1 : litValues_[size_t(of[size_t(q)])].binding;
+        return b < 0 ? nullptr : &world_->bindings_[size_t(b)];
+    };
+    lit.output = [this, of](int q, const std::string& name, std::vector<float>& v) {
+        return of[size_t(q)] >= 0 && litValues_[size_t(of[size_t(q)])].output(name, v);
+    };
+    lit.displaced = [this, of](int q, int& point) -> const BatchContext* {
+        if (of[size_t(q)] < 0) return nullptr;
+        point = litValues_[size_t(of[size_t(q)])].point;
+        return litValues_[size_t(of[size_t(q)])].displaced.get();
+    };
+    return lit;
+}
+
+LitSurface Engine::litSurface(BatchContext& c, const LightLoop& loop, const std::vector<int>& points, int first, int lanes) const {
+    LitSurface lit;
+    lit.binding = [this, &c, &points](int q) -> const SurfaceBinding* {
+        const size_t point = size_t(points[size_t(q)]);
+        return point < c.bindings.size() ? &world_->bindings_[size_t(c.bindings[point])] : c.binding;
+    };
+    lit.displaced = [&c, &points](int q, int& point) {
+        point = points[size_t(q)];
+        return c.displaced.get();
+    };
+    lit.output = [&c, &loop, &points, first, lanes](int q, const std::string& name, std::vector<float>& v) {
+        if (loop.setup < 0) return false;
+        const SiteInfo& s = c.bound->sites[size_t(loop.setup)];
+        size_t argument = 0; // the arguments are in the order of the names without texts
+        for (size_t n = 0; n < s.site->names.size(); ++n) {
+            if (!s.site->pairStrings[n].empty()) continue;
+            if (s.site->names[n] == "surface:" + name) {
+                const int row = s.named.at(s.site->names[n]);
+                for (int r = 0; r < rsl::ir::components(s.site->argKinds[argument]); ++r)
+                    v.push_back(loop.given[size_t(row + r) * size_t(lanes) + size_t(points[size_t(q)] - first)]);
+                return true;
+            }
+            ++argument;
+        }
+        return false;
+    };
+    return lit;
+}
+
+void Engine::evaluateForLoop(BatchContext& c, const LightLoop& loop, int li, int first, int lanes, std::vector<ShadePoint>& q,
+                             const std::vector<int>& laneOf, std::vector<LightValue>& out, std::vector<float>& values) {
+    const BoundLight& light = world_->lights_[size_t(li)];
+    out.assign(q.size(), {});
+    values.assign(q.size() * size_t(light.valueWidth), 0);
+    std::vector<int> points;
+    for (int lane : laneOf) points.push_back(first + lane);
+    LightCall call;
+    LitSurface lit;
+    call.values = &values;
+    if (loop.setup < 0) {
+        if (light.asksSurface) lit = litSurface(c, loop, points, first, lanes), call.lit = &lit;
+        evaluateLight(light, q, out, call);
+        return;
+    }
+    // Sent values: one run for all points that send the same. Elements of an array go to an array of the same class.
+    const SiteInfo& s = c.bound->sites[size_t(loop.setup)];
+    if (const std::string strings = sentStrings(s); !strings.empty())
+        if (auto v = light.variants.find(strings); v != light.variants.end()) call.kernel = &v->second;
+    struct Sent { std::string parameter; int row, size, at; }; ///< at: where its numbers begin, of an array's element
+    std::vector<Sent> sent;
+    size_t argument = 0;
+    for (size_t n = 0; n < s.site->names.size(); ++n) {
+        if (!s.site->pairStrings[n].empty()) continue;
+        const std::string& name = s.site->names[n];
+        const int size = rsl::ir::components(s.site->argKinds[argument++]);
+        if (name.rfind("send:light:", 0) != 0) continue;
+        const size_t bracket = name.find('[');
+        const std::string parameter = name.substr(11, bracket == std::string::npos ? bracket : bracket - 11);
+        const int element = bracket == std::string::npos ? 0 : std::atoi(name.c_str() + bracket + 1);
+        auto have = light.instance->parameters.numbers.find(parameter);
+        if (have == light.instance->parameters.numbers.end()) continue;
+        const int all = int(have->second.size());
+        if (bracket == std::string::npos ? all == size : (element + 1) * size <= all && elementsOf(light, parameter) * size == all) sent.push_back({parameter, s.named.at(name), size, element * size});
+    }
+    auto normal = s.named.find("N");
+    auto given = [&](int row, int lane) { return loop.given[size_t(row) * size_t(lanes) + size_t(lane)]; };
+    if (normal != s.named.end())
+        for (size_t i = 0; i < q.size(); ++i)
+            q[i].Ns = Vec3(given(normal->second, laneOf[i]), given(normal->second + 1, laneOf[i]), given(normal->second + 2, laneOf[i]));
+    std::map<std::vector<uint32_t>, std::vector<int>> groups;
+    for (size_t i = 0; i < q.size(); ++i) {
+        std::vector<uint32_t> key;
+        for (const Sent& v : sent)
+            for (int r = 0; r < v.size; ++r) key.push_back(std::bit_cast<uint32_t>(given(v.row + r, laneOf[i])));
+        groups[std::move(key)].push_back(int(i));
+    }
+    for (const auto& [key, members] : groups) {
+        shading::ParameterBlock block;
+        if (!sent.empty()) {
+            block = light.instance->parameters;
+            size_t at = 0;
+            for (const Sent& v : sent)
+                for (int r = 0; r < v.size; ++r) block.numbers[v.parameter][size_t(v.at + r)] = std::bit_cast<float>(key[at++]);
+            call.parameters = &block;
+        }
+        std::vector<ShadePoint> some;
+        std::vector<int> where;
+        for (int i : members) some.push_back(q[size_t(i)]), where.push_back(points[size_t(i)]);
+        std::vector<LightValue> result(some.size());
+        std::vector<float> resultValues(some.size() * size_t(light.valueWidth));
+        call.values = &resultValues;
+        if (light.asksSurface) lit = litSurface(c, loop, where, first, lanes), call.lit = &lit;
+        evaluateLight(light, some, result, call);
+        for (size_t k = 0; k < members.size(); ++k) {
+            out[size_t(members[k])] = result[k];
+            std::copy_n(resultValues.begin() + long(k) * light.valueWidth, light.valueWidth, values.begin() + long(members[k]) * light.valueWidth);
+        }
+    }
+}
+
+void Engine::shadowLoop(const BatchContext& c, const BoundLight& light, int first, std::span<const ShadePoint> q, std::span<const int> laneOf,
+                        std::span<LightValue> v) {
+    std::vector<ShadowRay> rays;
+    std::vector<size_t> of;
+    for (size_t i = 0; i < q.size(); ++i) {
+        if (!v[i].lit || !(maxComponent(v[i].Cl) > 0)) continue;
+        const ShadePoint& lit = c.points[size_t(first + laneOf[i])];
+        const Vec3 to = -v[i].L;
+        const float far = length(to);
+        if (!(far > 0)) continue;
+        const Vec3 w = to / far;
+        const Vec3 o = geometry::offsetOrigin(lit.surface, w, length(q[i].Ps - lit.surface.P));
+        const float distance = light.kind == LightKind::Distant ? 1e38f : light.kind == LightKind::Area ? far * (1 - 1e-4f) : far * (1 - 1e-5f);
+        rays.push_back({o, w, distance, Color(1), shading::kNoTarget, lit.time, lit.ray});
+        rays.back().media = mediaTowards(c, first + laneOf[i], w);
+        of.push_back(i);
+    }
+    std::vector<Color> left(rays.size());
+    transmittances(rays, left);
+    for (size_t k = 0; k < of.size(); ++k) v[of[k]].Cl *= left[k];
+}
+
+int elementsOf(const BoundLight& light, const std::string& parameter) {
+    for (const rsl::ParameterInfo& p : light.instance->program->parameters())
+        if (p.name == parameter) return p.type.base == rsl::Base::String ? 0 : std::max(p.type.array, 0);
+    return 0;
+}
+
+void Engine::keepChannels(BatchContext& c, const BoundLight& light, int point, const float* values) {
+    size_t width = 0;
+    for (int w : world_->outputWidths_) width += size_t(w);
+    c.lightChannels.resize(c.points.size() * width);
+    std::vector<std::string_view> missing; // what it might have given, and did not
+    const auto given = [&](const std::string& name) {
+        return std::none_of(missing.begin(), missing.end(), [&](std::string_view m) { return name.compare(0, name.find('['), m) == 0; });
+    };
+    for (const BoundLight::Value& v : light.values) {
+        if (v.name.rfind(kGiven, 0) == 0 && *values == 0) missing.push_back(std::string_view(v.name).substr(sizeof kGiven - 1));
+        if (v.aov >= 0 && given(v.name))
+            for (int r = 0; r < v.components && size_t(v.aov + r) < width; ++r) c.lightChannels[size_t(point) * width + size_t(v.aov + r)] = values[r];
+        values += v.components;
+    }
+}
+
+void Engine::sentSample(const BoundLight& light, int turn, const float* values, LightValue& v) {
+    const float* way = values + light.sentL + 3 * turn;
+    const float* sent = values + light.sentCl + 3 * turn;
+    v.L = {way[0], way[1], way[2]};
+    v.Cl = {sent[0], sent[1], sent[2]};
+    v.lit &= (v.Cl.x != 0 || v.Cl.y != 0 || v.Cl.z != 0) && length(v.L) > 0;
+}
+
+void Engine::chooseSent(const BoundLight& light, float u, const float* values, LightValue& v) {
+    const auto weight = [&](int k) {
+        const float* sent = values + light.sentCl + 3 * k;
+        const float w = luminance(Color(sent[0], sent[1], sent[2]));
+        return std::isfinite(w) ? std::max(w, 0.f) : 0.f;
+    };
+    double sum = 0, before = 0;
+    for (int k = 0; k < limits::kLightTurns; ++k) sum += weight(k);
+    int chosen = -1;
+    for (int k = 0; k < limits::kLightTurns && before <= u * sum; ++k)
+        if (const float w = weight(k); w > 0) chosen = k, before += w;
+    if (chosen < 0) {
+        v.lit = false;
+        return;
+    }
+    sentSample(light, chosen, values, v);
+    v.Cl *= float(sum / weight(chosen));
+}
+
+bool Engine::lightQuery(const BatchContext& c, int li, int point, const Vec3& at, const Vec3& axis, float angle, int turn,
+                        int turns, uint32_t nth, ShadePoint& p, float* factor) const {
+    const BoundLight& light = world_->lights_[size_t(li)];
+    const ShadePoint& of = c.points[size_t(point)];
+    p = of;
+    p.Ps = at;
+    p.lit = at == of.P ? &of.surface : nullptr;
+    p.Ns = p.N;
+    p.viewI = p.I;
+    p.Ci = Color(0);
+    *factor = 1;
+    const uint32_t use = kLightPoint + uint32_t(li);
+    if (light.kind == LightKind::Area) {
+        if (!light.emitter || !p.ray) return false;
+        const Random rng = random(*p.ray).draw(uint32_t(turn), uint32_t(turns));
+        Emitter::Sample s;
+        const float choose = light.emitter->chooses() ? rng.one(p.ray->vertex, use, nth) : 0;
+        const Vec2 u = rng.pair(p.ray->vertex, use, nth);
+        if (!(light.mean ? light.emitter->sampleSurface(at, u, choose, s, p.surface, light.pointNeeds)
+                         : light.emitter->sample(at, u, choose, s, p.surface, light.pointNeeds)))
+            return false;
+        p.shape = s.shape;
+        p.P = p.surface.P;
+        p.N = p.surface.n;
+        // A loop has no lobe of its own: it sees an emitter as wide as diffuse() does.
+        static const LobeKind* const diffuse = findLobe("diffuse");
+        if (usesFootprint(light)) setEmitterFootprint(p, *p.ray, at, spreadBehind(*p.ray, diffuse->spread(LobeParams{})));
+        // cosLight A / (pi d^2 n), design decision 4
+        *factor = light.mean ? 1 / (s.pdf * float(turns)) : 1 / (float(kPi) * s.pdf * float(turns));
+    } else if (light.kind == LightKind::Environment && world_->settings_.hider != Hider::Path) {
+        // One direction, that of the surface: what diffuse() makes of it is what an even sky gives.
+        const Vec3 to = length(axis) > 0 ? axis : dot(p.N, p.I) > 0 ? -p.N : p.N;
+        const Vec3 w = length(to) > 0 ? normalize(to) : Vec3(0, 0, 1);
+        p.shape = nullptr;
+        p.P = at + w;
+        p.N = -w;
+    } else if (light.kind == LightKind::Environment) {
+        // The sky from directions evenly in the cone of the loop.
+        if (!p.ray) return false;
+        const float la = length(axis);
+        const bool all = !(la > 0) || !(angle < float(kPi));
+        const float half = float(exact::sin(0.5 * std::max(angle, 0.f))),
+                    cap = all ? 2 : 2 * half * half; // 1 - cos of the half angle
+        if (!(cap > 0)) return false;
+        const Random rng = random(*p.ray).draw(uint32_t(turn), uint32_t(turns));
+        const Vec3 w = Basis(all ? Vec3(0, 0, 1) : axis / la).toWorld(sampleCone(cap, rng.pair(p.ray->vertex, use, nth)));
+        p.shape = nullptr;
+        p.P = at + w;
+        p.N = -w;
+        *factor = 2 * cap / float(turns); // 1 / (pi pdf n)
+    } else {
+        p.shape = nullptr;
+        p.P = Vec3(transformPoint(light.instance->toCurrent, {0, 0, 0}));
+        if (light.cone) {
+            if (p.ray && world_->settings_.hider == Hider::Path)
+                p.Ci = coneNumbers(random(*p.ray).draw(uint32_t(turn), uint32_t(turns)).pair(p.ray->vertex, use, nth));
+            *factor = 1 / float(turns);
+        }
+    }
+    return true;
+}
+
+uint64_t Engine::sampleLight(BatchContext& c, const LightLoop& loop, int li, int turn, int turns, int first, uint64_t mask, int lanes, LightLoop::Kept& kept) {
+    const BoundLight& light = world_->lights_[size_t(li)];
+    auto row = [&](int r, int lane) { return loop.rows[size_t(r) * size_t(lanes) + size_t(lane)]; };
+    std::vector<ShadePoint> q;
+    std::vector<int> laneOf;
+    std::vector<float> factor;
+    uint64_t lit = 0;
+    for (int lane = 0; lane < lanes; ++lane) {
+        if (!(mask >> lane & 1) || first + lane >= int(c.points.size())) continue;
+        const Vec3 at(row(0, lane), row(1, lane), row(2, lane)), axis(row(3, lane), row(4, lane), row(5, lane));
+        ShadePoint& p = q.emplace_back();
+        float f = 1;
+        if (!lightQuery(c, li, first + lane, at, axis, row(6, lane), turn, turns, drawOf(loop), p, &f)) {
+            q.pop_back();
+            continue;
+        }
+        laneOf.push_back(lane);
+        factor.push_back(f);
+    }
+    std::vector<LightValue> v;
+    std::vector<float> values;
+    const size_t width = size_t(light.valueWidth);
+    // A light that sends many samples gives all of them when it runs for the first.
+    const auto ran = light.sentCl >= 0 && turn > 0 ? loop.kept.find(keptName(loop, light, li, 0, world_->settings_.hider == Hider::Path)) : loop.kept.end();
+    if (ran != loop.kept.end() && (ran->second.have & mask) == mask) {
+        v.assign(q.size(), {});
+        for (size_t i = 0; i < q.size(); ++i) {
+            v[i].lit = ran->second.ran >> laneOf[i] & 1;
+            const auto from = ran->second.values.begin() + laneOf[i] * light.valueWidth;
+            values.insert(values.end(), from, from + light.valueWidth);
+        }
+    } else {
+        evaluateForLoop(c, loop, li, first, lanes, q, laneOf, v, values);
+    }
+    kept.ran &= ~mask;
+    if (light.sentCl >= 0)
+        for (size_t i = 0; i < q.size(); ++i) {
+            kept.ran |= uint64_t(v[i].lit) << laneOf[i];
+            sentSample(light, turn, values.data() + i * width, v[i]);
+        }
+    if (light.shadows) shadowLoop(c, light, first, q, laneOf, v);
+    for (size_t i = 0; i < q.size(); ++i) {
+        const size_t lane = size_t(laneOf[i]);
+        std::copy_n(values.begin() + long(i) * light.valueWidth, light.valueWidth, kept.values.begin() + long(lane) * light.valueWidth);
+        if (light.channels) keepChannels(c, light, first + laneOf[i], kept.values.data() + long(lane) * light.valueWidth);
+        if (!v[i].lit) continue;
+        const bool sky = light.kind == LightKind::Environment;
+        const Vec3 toLight = sky ? q[i].P - q[i].Ps : -v[i].L;
+        const float rows[9] = {toLight.x, toLight.y, toLight.z, v[i].Cl.x * factor[i], v[i].Cl.y * factor[i], v[i].Cl.z * factor[i], v[i].Ol.x, v[i].Ol.y, v[i].Ol.z};
+        for (size_t r = 0; r < 9; ++r) kept.out[r * size_t(lanes) + lane] = rows[r];
+        kept.distance[lane] = sky || light.kind == LightKind::Distant ? 1e38f : length(toLight);
+        lit |= uint64_t(1) << lane;
+    }
+    return lit;
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,103 @@
+// texture() and environment() of kernels, and textureinfo(). What a call says about the lookup is known beforehand (TextureSite);
+// per point only the numbers are read.
+#include "answers/answers.h"
+
+namespace alpenglow::transport {
+
+namespace {
+
+/// The options of a lookup at one point.
+void readOptions(const TextureSite& t, const ServiceCall& call, int lane, texture::LookupOptions& o) {
+    const auto number = [&](int row, float fallback) { return row < 0 ? fallback : call.at(row, lane); };
+    if (t.filter >= 0) {
+        const auto known = texture::filterByName(rsl::internedString(std::bit_cast<int32_t>(call.at(t.filter, lane))));
+        o.filter = known ? *known : t.options.filter;
+    }
+    const float width = number(t.width, 1), blur = number(t.blur, 0);
+    o.swidth = number(t.swidth, width);
+    o.twidth = number(t.twidth, width);
+    o.sblur = number(t.sblur, blur);
+    o.tblur = number(t.tblur, blur);
+    o.fill = number(t.fill, 0);
+}
+
+/// texture(): with one point and its footprint, or with four.
+void lookupTexture(const TextureSite& t, const ServiceCall& call, int lane, texture::Handle map, int channel,
+                   const texture::LookupOptions& o, float* v, float* g, float* cu) {
+    const auto row = [&](size_t k) { return call.at(t.rows[k], lane); };
+    if (t.rows.size() >= 8) {
+        float ss[4], tt[4];
+        for (size_t k = 0; k < 4; ++k) {
+            ss[k] = row(2 * k);
+            tt[k] = row(2 * k + 1);
+        }
+        texture::lookupQuad(map, channel, t.count, ss, tt, o, v, g, cu);
+    } else if (t.rows.size() >= 6) {
+        texture::lookup2D(map, channel, t.count, row(0), row(1), row(2), row(3), row(4), row(5), o, v, g, cu);
+    }
+}
+
+/// environment(): likewise with directions.
+void lookupEnvironment(const TextureSite& t, const ServiceCall& call, int lane, texture::Handle map,
+                       const texture::LatLong& latLong, int channel, const texture::LookupOptions& o, float* v, float* g,
+                       float* cu) {
+    const auto vec = [&](size_t k) {
+        const int r = t.rows[k];
+        return Vec3(call.at(r, lane), call.at(r + 1, lane), call.at(r + 2, lane));
+    };
+    if (t.rows.size() >= 4) {
+        const Vec3 q[4] = {vec(0), vec(1), vec(2), vec(3)};
+        texture::environmentQuad(map, latLong, channel, t.count, q, o, v, g, cu);
+    } else {
+        texture::environment(map, latLong, channel, t.count, vec(0), vec(1), vec(2), o, v, g, cu);
+    }
+}
+
+} // namespace
+
+void answerTexture(Engine& engine, const ServiceCall& call) {
+    const TextureSite& t = *call.s.map;
+    const WorldImpl& world = engine.world();
+    const auto place = [&] { return call.place(); };
+    texture::LookupOptions o = t.options;
+    texture::Handle map = t.computed ? nullptr : t.map(world, place);
+    call.each([&](int lane, const ShadePoint&) {
+        if (t.computed) map = engine.mapOfName(std::bit_cast<int32_t>(call.at(0, lane)), place);
+        readOptions(t, call, lane, o);
+        const int channel = t.channel < 0 ? 0 : int(call.at(t.channel, lane));
+        float v[3] = {}, slopes[27] = {};
+        float *g = t.slopes > 0 ? slopes : nullptr, *cu = t.slopes > t.firsts ? slopes + t.firsts : nullptr;
+        if (call.s.kind == SiteKind::Texture) lookupTexture(t, call, lane, map, channel, o, v, g, cu);
+        else lookupEnvironment(t, call, lane, map, world.textures_->latLong(), channel, o, v, g, cu);
+        for (int k = 0; k < t.count; ++k) call.put(k, lane, v[k]);
+        for (int k = 0; k < t.slopes; ++k) call.put(t.count + k, lane, slopes[k]);
+    });
+}
+
+void answerTextureInfo(Engine& engine, const ServiceCall& call) {
+    const auto place = [&] { return call.place(); };
+    const rsl::ir::Site& d = call.d;
+    call.each([&](int lane, const ShadePoint&) {
+        int32_t asked[2] = {0, 0}; // the map and the field; each point may have its own
+        const std::string* known[2] = {nullptr, nullptr};
+        int row = 0;
+        for (size_t k = 0; k < 2; ++k) {
+            if (k < d.strings.size() && !d.strings[k].empty()) known[k] = &d.strings[k];
+            else if (row < int(d.argKinds.size()) && d.argKinds[size_t(row)] == rsl::ir::Kind::String)
+                asked[k] = std::bit_cast<int32_t>(call.at(row++, lane));
+        }
+        const auto& info = engine.infoOfName(known[0] ? call.s.nameId : asked[0], place);
+        const std::string& field = known[1] ? *known[1] : rsl::internedString(asked[1]);
+        if (field == "exists") return call.put(0, lane, info ? 1 : 0);
+        if (!info) return;
+        Information i;
+        if (field == "resolution") i.numbers = {float(info->width), float(info->height)};
+        else if (field == "channels") i.numbers = {float(info->channels)};
+        else if (field == "bitsperchannel") i.numbers = {float(info->bits)};
+        else if (field == "type") i = {{}, {info->type}, true};
+        else return;
+        call.answer(lane, Told(i));
+    });
+}
+
+} // namespace alpenglow::transport

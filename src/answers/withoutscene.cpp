@@ -1,0 +1,61 @@
+#include "answers/withoutscene.h"
+#include "wave/engine.h"
+
+namespace alpenglow::transport {
+
+struct WithoutScene::State {
+    std::shared_ptr<WorldImpl> world;
+    std::unique_ptr<Engine> engine;
+    const rsl::CompiledKernel* kernel = nullptr; ///< that `bound` is of
+    BoundKernel bound;
+    BatchContext context;
+};
+
+WithoutScene::WithoutScene(std::vector<std::string> texturePaths, Diagnostics& d) : state_(std::make_unique<State>()) {
+    auto world = std::make_shared<WorldImpl>();
+    world->frame_ = std::make_shared<scene::Frame>();
+    world->settings_.texturePaths = std::move(texturePaths);
+    world->diagnostics_ = &d;
+    world->textures_ = std::make_unique<texture::TextureSystem>(d);
+    state_->world = world;
+    state_->engine = std::make_unique<Engine>(world, d);
+}
+
+WithoutScene::~WithoutScene() = default;
+
+void WithoutScene::setPoints(const Vec3& eye, std::span<const Vec3> points) {
+    BatchContext& c = state_->context;
+    c.points.assign(points.size(), {});
+    c.rays.assign(points.size(), {});
+    for (size_t i = 0; i < points.size(); ++i) {
+        ShadePoint& p = c.points[i];
+        p.P = points[i];
+        p.E = eye;
+        p.I = p.P - eye;
+        c.rays[i].origin = eye;
+        c.rays[i].dir = normalize(p.I);
+    }
+}
+
+bool WithoutScene::answer(const rsl::CompiledKernel& k, int32_t site, int32_t first, uint64_t mask, int32_t lanes,
+                          const float* in, float* out) {
+    if (site < 0) return false;
+    const std::string& op = k.sites()[size_t(site)].op;
+    bool asks = false;
+    for (const char* name :
+         {"texture", "environment", "textureinfo", "rayinfo", "rendererinfo", "raylevel", "isindirectray", "isshadowray"})
+        asks |= op == name;
+    if (!asks) return false;
+    State& s = *state_;
+    if (s.kernel != &k) {
+        s.bound = bindKernel(std::shared_ptr<const rsl::CompiledKernel>(std::shared_ptr<const rsl::CompiledKernel>{}, &k), false,
+                             false, s.world.get());
+        s.kernel = &k;
+        s.context.engine = s.engine.get();
+        s.context.bound = &s.bound;
+    }
+    s.engine->service(s.context, site, first, mask, lanes, in, out);
+    return true;
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,97 @@
+// Stage choose: how much a lobe gives back, the energy rule, and the chance with which its ray is followed (design decision 4).
+#include "wave/gather.h"
+
+namespace alpenglow::transport {
+
+namespace {
+Color absolute(const Color& c) { return {std::fabs(c.x), std::fabs(c.y), std::fabs(c.z)}; }
+} // namespace
+
+void Gather::choose() {
+    indirectScale_.assign(c_->points.size(), 1.f);
+    passes_.assign(c_->points.size(), 1.f);
+    for (size_t point = 0; point < c_->points.size(); ++point)
+        if (begin_[point] != begin_[point + 1]) choosePoint(point);
+}
+
+/// A lobe whose ray would go too deep is not followed; light samples then count in full.
+bool Gather::tooDeep(const LobeVertex& l, const PathRay& from, const SurfaceBinding& b) const {
+    const bool diffuse = l.rays->type == RayType::Diffuse;
+    return from.bounces + 1 > world_.maxDepth_ || (b.maxDiffuse >= 0 && from.diffuseBounces + diffuse > b.maxDiffuse) ||
+           (b.maxSpecular >= 0 && from.specularBounces + !diffuse > b.maxSpecular);
+}
+
+void Gather::choosePoint(size_t point) {
+    const PathRay& from = c_->rays[point];
+    const SurfaceBinding& b = world_.bindings_[size_t(c_->bindings[point])];
+    const Color clear = c_->clear.empty() ? Color(0) : c_->clear[point];
+    // Under path one ray goes on from a vertex: along one of the lobes, or behind the surface where that lets light through.
+    // Those two may have quite different colours: what the way here has left of each decides, else a channel could grow without
+    // end. A camera ray goes on besides.
+    const bool competes = rules_.pickOne && from.bounces > 0 && maxComponent(clear) > 0;
+    const Color left = absolute(from.weight);
+    const auto worth = [&](const Color& share) { return competes ? dot(share, left) / 3 : luminance(share); };
+    const auto list = lobesOf(point);
+    Color sum(0);
+    bool cut = false; // by the depth of the render, not by a depth that a primitive asks for
+    for (int i : list) {
+        LobeVertex& l = e_.lobes[size_t(i)];
+        const Color weight = absolute(l.weight);
+        l.albedo = e_.lobeRows_.albedo(l.place);
+        l.delta = e_.lobeRows_.delta(l.place);
+        if (l.lobeOfShader) sum += weight * l.albedo;
+        l.chosen = std::max(worth(weight) * l.albedo, 0.f);
+        if (!std::isfinite(l.chosen)) {
+            e_.notFinite(*c_, from, l.site);
+            l.chosen = 0;
+        }
+        cut |= from.bounces + 1 > world_.maxDepth_ && l.chosen > 0;
+        const bool stays = tooDeep(l, from, b) || (l.rays->type == RayType::Diffuse && !world_.settings_.indirect);
+        if (stays) l.chosen = 0;
+        l.followed = l.chosen > 0 || (l.ownsTarget && !stays);
+    }
+    e_.counters.depthCap += cut;
+    const bool most = sum.x + clear.x > 1 || sum.y + clear.y > 1 || sum.z + clear.z > 1;
+    const float scale = indirectScale_[point] = most ? energyScale(point, sum, clear) : 1;
+    const float behind = competes ? worth(clear) : 0;
+    if (list.size() == 1 && behind == 0) { // what most vertices are
+        LobeVertex& l = e_.lobes[size_t(list[0])];
+        l.chosen = l.ownsTarget || !rules_.pickOne ? l.followed : l.chosen > 0;
+        return;
+    }
+    double total = behind;
+    for (int i : list)
+        if (LobeVertex& l = e_.lobes[size_t(i)]; !l.ownsTarget) {
+            if (behind > 0 && l.lobeOfShader) l.chosen *= scale;
+            total += l.chosen;
+        }
+    for (int i : list) {
+        LobeVertex& l = e_.lobes[size_t(i)];
+        if (l.ownsTarget || !rules_.pickOne) l.chosen = l.followed ? 1 : 0;
+        else l.chosen = total > 0 ? (total == l.chosen ? 1 : float(l.chosen / total)) : 0;
+    }
+    passes_[point] = behind > 0 && total > behind ? float(behind / total) : 1;
+}
+
+/// What is reflected and what comes through is at most what arrives.
+float Gather::energyScale(size_t point, const Color& reflected, const Color& clear) {
+    float scale = 1;
+    for (int k = 0; k < 3 && !world_.settings_.unbiased && !c_->aside; ++k) // what an output adds up is nobody's energy
+        if (reflected[k] + clear[k] > 1 && reflected[k] > 0) scale = std::min(scale, (1 - clear[k]) / reflected[k]);
+    const bool more = maxComponent(reflected) > 1; // by itself: else a highlight on what is clear, say, which is common
+    const SurfaceBinding& b = world_.bindings_[size_t(c_->bindings[point])];
+    if (scale < 0.999f &&
+        (more ? e_.tamed_ : e_.tamedClear_).insert(b.surface.get()).second) // beyond rounding; said once a shader
+        e_.diagnostics().reportOnce((more ? "energy:" : "energyclear:") + b.surface->name,
+                                    {more ? Severity::Warning : Severity::Info,
+                                     Rie::NoError,
+                                     b.surface->place,
+                                     "shader \"" + b.surface->name + "\" reflects" +
+                                         (more ? "" : ", together with what comes through it,") +
+                                         " more light than it receives; its indirect light is scaled down to what it receives",
+                                     "--unbiased leaves it as it is",
+                                     {}});
+    return scale;
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,135 @@
+// Stage connect: what lobes give back of the light that lights send them. Lobes of a vertex share the sample of a light, and so
+// the way to it: one shadow ray carries what all of them give.
+#include "world/emitterfootprint.h"
+#include "wave/gather.h"
+#include "lobes/sampling.h"
+
+namespace alpenglow::transport {
+
+namespace {
+Vec3 unit(Vec3 v, Vec3 fallback) {
+    const float l = length(v);
+    return l > 0 && std::isfinite(l) ? v / l : fallback;
+}
+} // namespace
+
+void Gather::connect() {
+    reached_.clear();
+    lastQuery_ = -1;
+    for (size_t k = 0; k < queries_.count; ++k) {
+        const LightValue& v = queries_.value[k];
+        if (v.lit && !isFinite(v.Cl)) e_.notFinite(&c_->rays[size_t(queries_.point[k])], "Cl", queries_.light[k]->instance.get());
+        else if (v.lit && maxComponent(v.Cl) > 0) reach(int(k));
+    }
+    evaluate();
+    for (const Reached& r : reached_) send(r);
+}
+
+/// The values of the lobes for the light that reaches them: in turns, in which each lobe is asked once.
+void Gather::evaluate() {
+    turns_.assign(e_.lobes.size(), 0);
+    int turns = 0;
+    for (Reached& r : reached_) {
+        r.turn = turns_[size_t(r.lobe)]++;
+        turns = std::max(turns, r.turn + 1);
+    }
+    for (int turn = 0; turn < turns; ++turn) {
+        for (const Reached& r : reached_)
+            if (r.turn == turn) e_.lobeRows_.ask(e_.lobes[size_t(r.lobe)].place, r.w);
+        e_.lobeRows_.evaluate();
+        for (Reached& r : reached_)
+            if (r.turn == turn) r.value = e_.lobeRows_.value(e_.lobes[size_t(r.lobe)].place);
+    }
+}
+
+/// Notes the lobes that the light of a query reaches.
+void Gather::reach(int query) {
+    const LightQueries& q = queries_;
+    const size_t k = size_t(query);
+    const BoundLight& light = *q.light[k];
+    const bool area = light.kind == LightKind::Area;
+    const Vec3 w = area ? q.drawn[k].direction : unit(-q.value[k].L, Vec3(0, 0, 1));
+    for (int i : lobesOf(size_t(q.point[k]))) {
+        const LobeVertex& l = e_.lobes[size_t(i)];
+        if (!samples(l, light)) continue;
+        if (q.spread[k] >= 0 && q.spread[k] != spreadBehind(rayOf(l), e_.lobeRows_.spread(l.place))) continue;
+        // Sides 1: from where rays of this lobe pass through the emitter they cannot meet it, and it sends nothing.
+        const accel::Sides sides = l.rays->set.sides;
+        if (area && !light.mean && q.drawn[k].shape->oneSided() && sides != accel::Sides::Both &&
+            (dot(q.at[k].surface.n, w) >= 0) != (sides == accel::Sides::Back))
+            continue;
+        reached_.push_back({query, i, 0, w, {}});
+    }
+}
+
+/// A light sample of trace() finds what a ray of it could meet there: within its distance, of its set, from the sides that it
+/// meets.
+bool Gather::meets(const LobeVertex& l, int query, const Vec3& w, const Vec3& from, const Vec3& end) const {
+    const geometry::Shape& shape = *queries_.drawn[size_t(query)].shape;
+    const shading::RaySet& set = l.rays->set;
+    if (set.only && !set.only[world_.numberOfShape_.at(&shape)]) return false;
+    if (shape.oneSided() && set.sides != accel::Sides::Both &&
+        (dot(queries_.at[size_t(query)].surface.n, w) >= 0) != (set.sides == accel::Sides::Back))
+        return false;
+    const Vec3 way = end - from;
+    return dot(way, w) > 0 && !(length(way) > l.maxDistance);
+}
+
+/// What a lobe gives back of the light, before what stands between.
+Color Gather::contribution(const Reached& r) {
+    const LobeVertex& l = e_.lobes[size_t(r.lobe)];
+    const size_t k = size_t(r.query);
+    const BoundLight& light = *queries_.light[k];
+    const LightValue& v = queries_.value[k];
+    const bool area = light.kind == LightKind::Area;
+    const float fcos = r.value.fcos, drawn = queries_.drawn[k].pdf, chance = queries_.chance[k];
+    const float kept = l.lobeOfShader ? v.kept(l.rays->type) : 1;
+    Color c = l.ownsTarget ? l.weight * v.Cl : l.weight * rayOf(l).weight * v.Cl;
+    c *= r.value.colour / fcos;
+    if (l.trace && l.trace->sums)
+        if (TraceSums* of = e_.sumsOf(l.target)) of->add(TraceSums::UnshadowedAreaLight, c * (fcos / (drawn * chance)));
+    if (!area || light.mean) return c * (kept * float(kPi) * fcos / (chance * (area ? drawn : 1))); // Cl is irradiance / pi
+    float other = 0; // the density with which the lobe's own ray would have come here
+    if (!world_.settings_.lightOnly && l.chosen > 0 && (queries_.drawn[k].visibility & visibilityBit(l.rays->type)))
+        other = r.value.pdf * l.chosen;
+    const float pdf = drawn * chance;
+    return c * (kept * fcos / pdf * misWeight(pdf, other));
+}
+
+void Gather::send(const Reached& r) {
+    const LobeVertex& l = e_.lobes[size_t(r.lobe)];
+    const PathRay& ray = rayOf(l);
+    if (std::isnan(r.value.fcos)) e_.notFinite(*c_, ray, l.site);
+    if (!(r.value.fcos > 0)) return;
+    const size_t k = size_t(r.query);
+    const BoundLight& light = *queries_.light[k];
+    const bool area = light.kind == LightKind::Area, sums = l.trace && l.trace->sums;
+    const Vec3 from = origin(l, r.w);
+    // The light's own surface must not block: stop short of it by both error bounds.
+    const Vec3 end = area ? geometry::offsetOrigin(queries_.at[k].surface, -r.w) : Vec3();
+    if (l.trace && area && !meets(l, r.query, r.w, from, end)) return;
+    const Color given = contribution(r);
+    const int32_t share = shareOf(l);
+    const RayKind* kind = l.trace ? e_.kindOf({RayType::Transmission, false, l.rays->set, 0}) : &kShadowKind;
+    if (r.query == lastQuery_)
+        if (ShadowRay& last = e_.shadows.back(); last.kind == kind && last.origin == from) {
+            e_.moreLight_.push_back({given, l.target, share, sums, last.more});
+            last.more = int32_t(e_.moreLight_.size()) - 1;
+            return;
+        }
+    lastQuery_ = r.query;
+    const ShadePoint& p = c_->points[size_t(l.point)];
+    if (area) {
+        e_.shadows.push_back(
+            {from, unit(end - from, r.w), length(end - from) * (1 - 1e-6f), given, l.target, p.time, p.ray, sums});
+    } else {
+        const float far = light.kind == LightKind::Distant ? 1e38f : length(queries_.value[k].L);
+        e_.shadows.push_back({from, r.w, far < 1e30f ? far * (1 - 1e-5f) : far, given, l.target, p.time, p.ray, false});
+    }
+    ShadowRay& shadow = e_.shadows.back();
+    shadow.kind = kind;
+    shadow.media = e_.mediaTowards(*c_, l.point, r.w);
+    shadow.share = share;
+}
+
+} // namespace alpenglow::transport

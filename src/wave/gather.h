@@ -1,0 +1,104 @@
+// What becomes of the lobes that a batch asks light for (Engine::lobes), stage by stage, each in a file of its own:
+//   choose   how much each lobe gives back, and the chance that its ray is followed (choose.cpp)
+//   light    points of lights for the points of the batch, and what the lights' kernels send from there (lightpoints.cpp)
+//   connect  lobes with those points: contributions, with one shadow ray for all lobes of a vertex that can share it (connect.cpp)
+//   scatter  directions of the lobes whose rays are followed, and the rays (scatter.cpp)
+// A stage reads what the ones before it wrote and changes nothing else; none looks at two points at a time, so results do not depend
+// on who shares the batch.
+#pragma once
+#include "wave/engine.h"
+
+namespace alpenglow::transport {
+
+class Gather {
+public:
+    explicit Gather(Engine& e) : e_(e), world_(e.world()), rules_(e.rules()) {}
+    /// Gathers light over Engine::lobes, all of points of this batch, and takes them. Shadow rays are left in Engine::shadows.
+    void run(BatchContext&, Sched&);
+
+private:
+    /// A lobe that light of a query reaches from direction w. `turn`: how many queries have reached it before.
+    struct Reached { int query, lobe, turn; Vec3 w; LobeValue value; };
+    /// A lobe whose rays are sent: `count` of them, each with `scale` times its weight. `goes`, `w`: the ray of this turn.
+    struct Sent { int point, lobe, count; float scale; bool goes; Vec3 w; LobeValue value; };
+    /// What lights are asked for at points of the batch, one kernel call; row by row a query.
+    struct LightQueries {
+        std::vector<ShadePoint> at;          ///< the light's point; the first `count` are used
+        std::vector<int> point;              ///< of the batch
+        std::vector<const BoundLight*> light;
+        std::vector<float> chance;           ///< that the light is sampled there
+        std::vector<float> spread;           ///< of the lobes that it is for; < 0: for all of its point
+        std::vector<Emitter::Sample> drawn;
+        std::vector<LightValue> value;
+        size_t count = 0;
+        ShadePoint& add(int point, const BoundLight&, float chance);
+        void clear();
+    };
+
+    // gather.cpp
+    void sortByPoint();
+    void tellLights();
+    std::span<const int> lobesOf(size_t point) const {
+        return std::span<const int>(order_).subspan(size_t(begin_[point]), size_t(begin_[point + 1] - begin_[point]));
+    }
+    const PathRay& rayOf(const LobeVertex& l) const { return c_->rays[size_t(l.point)]; }
+    /// The key of a point's light samples: affine lobes of a vertex share them, each suspended request has its own.
+    uint32_t lightVertex(size_t point) const;
+    /// Where a ray from a point in direction w starts.
+    Vec3 origin(size_t point, const Vec3& w) const;
+    /// Where a ray of a lobe starts.
+    Vec3 origin(const LobeVertex&, const Vec3& w) const;
+    /// A waiting kernel's result goes to the target of its own that has no shares; what it makes of it has those of its ray.
+    int32_t shareOf(const LobeVertex& l) const {
+        return l.ownsTarget ? -1 : l.share >= 0 ? l.share : e_.extraOf(rayOf(l)).share;
+    }
+
+    // choose.cpp
+    void choose();
+    void choosePoint(size_t point);
+    bool tooDeep(const LobeVertex&, const PathRay&, const SurfaceBinding&) const;
+    float energyScale(size_t point, const Color& reflected, const Color& clear);
+
+    // lightpoints.cpp
+    void light();
+    void chooseLights(const std::vector<int>& lights);
+    bool samples(const LobeVertex&, const BoundLight&) const;
+    void queriesOf(const BoundLight&, std::span<const std::pair<int, float>> chosen);
+    bool place(ShadePoint&, Emitter::Sample&, size_t point, const BoundLight&) const;
+    void queriesByWidth(size_t point, const BoundLight&);
+    void askLights(const BoundKernel* shared);
+
+    // connect.cpp
+    void connect();
+    void reach(int query);
+    void evaluate();
+    bool meets(const LobeVertex&, int query, const Vec3& w, const Vec3& from, const Vec3& end) const;
+    void send(const Reached&);
+    Color contribution(const Reached&);
+
+    // scatter.cpp
+    void scatter(Sched&);
+    void pick(size_t point);
+    void draw(int turn);
+    void sendRay(const Sent&, int turn, Sched&);
+    bool meetsEmitter(const LobeVertex&, const Vec3& w) const;
+    /// Divides the weight by the chance that the ray goes on; false: it does not.
+    bool roulette(const LobeVertex&, int turn, uint32_t vertex, uint16_t& asked, Color& weight) const;
+
+    Engine& e_;
+    const WorldImpl& world_;
+    const Rules& rules_;
+    BatchContext* c_ = nullptr;
+    std::vector<int> begin_, order_, next_; ///< of point p the lobes order_[begin_[p]] to order_[begin_[p + 1]], as they were asked for
+    std::vector<float> indirectScale_; ///< by point: of the rays of lighting shadeops
+    std::vector<float> passes_;        ///< by point: the chance that its ray goes on behind it
+    std::vector<std::vector<std::pair<int, float>>> chosenAt_; ///< many lights: by light of the list, points and chances
+    std::vector<std::vector<int>> ofGroup_; ///< many lights: by group, places in the list
+    LightQueries queries_;
+    std::vector<Reached> reached_;
+    std::vector<int> turns_;   ///< by lobe: queries that have reached it
+    int lastQuery_ = -1; ///< that of the shadow ray sent last, which other lobes of its point may share
+    std::vector<Sent> sent_;
+};
+
+} // namespace alpenglow::transport

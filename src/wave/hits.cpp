@@ -1,0 +1,177 @@
+// Stages meet and settle: a slice of rays meets surfaces; hits wait by group (same program and lights) until enough of them are
+// there to fill the lanes of its kernel; then their points are worked out, emitters among them shine, and the kernel runs.
+#include "wave/engine.h"
+#include <algorithm>
+
+namespace alpenglow::transport {
+
+namespace {
+constexpr size_t kBatchPoints = 256; ///< hits of a group that are shaded without waiting for more
+constexpr size_t kWaitingHits = 4096; ///< of all groups, at most: their memory stays in the cache of a core
+} // namespace
+
+void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
+    cast(slice);
+    std::vector<const Sched::Task*> missed;
+    if (hitQueues_.empty()) hitQueues_.resize(size_t(world_->groups_) * (world_->primitiveHit_ ? 2 : 1));
+    for (size_t i = 0; i < slice.size(); ++i) {
+        if (!hits_[i].valid()) missed.push_back(&slice[i]);
+        else queueHit(slice[i], hits_[i], sched);
+    }
+    misses(missed, sched);
+    for (const Sched::Task* t : missed) freeExtra(t->payload);
+    // While kernels wait for rays nothing is held back: depth before breadth keeps their frames few.
+    const bool all = sched.frameBytes() > 0 || raysAtOnce_ < kSliceOfPath;
+    const std::vector<size_t> groups = groupsWithHits_;
+    for (size_t g : groups)
+        if (all || hitQueues_[g].waits || hitQueues_[g].hits.size() >= kBatchPoints) shadeHits(g, sched);
+    while (hitsWaiting_ > kWaitingHits) settle(sched);
+}
+
+bool Engine::settle(Sched& sched) {
+    if (groupsWithHits_.empty()) return false;
+    const auto fewer = [&](size_t a, size_t b) { return hitQueues_[a].hits.size() < hitQueues_[b].hits.size(); };
+    shadeHits(*std::max_element(groupsWithHits_.begin(), groupsWithHits_.end(), fewer), sched);
+    return true;
+}
+
+/// What the rays of a slice meet: hits_.
+void Engine::cast(std::span<const Sched::Task> slice) {
+    rays_.resize(slice.size()); // each is written whole
+    hits_.resize(slice.size());
+    for (size_t i = 0; i < slice.size(); ++i) {
+        const PathRay& r = slice[i].payload;
+        accel::Ray& ray = rays_[i];
+        ray.org = r.origin;
+        ray.dir = r.dir;
+        ray.tnear = 0;
+        ray.tfar = r.maxDistance;
+        if (r.camera())
+            for (const auto& [point, normal] : world_->clippingPlanes_) {
+                double height = dot(normal, Vec3d(r.origin) - point), climb = dot(normal, Vec3d(r.dir)), t = -height / climb;
+                if (climb > 0) ray.tfar = std::min(ray.tfar, float(std::max(t, 0.0)));
+                else if (climb < 0) ray.tnear = std::max(ray.tnear, float(std::min(t, 1e37)));
+                else if (height > 0) ray.tfar = 0; // along the plane, on its cut side
+            }
+        ray.time = r.time();
+        ray.mask = visibilityBit(r.type());
+        ray.excludeShape = ray.excludePrim = geometry::kNone;
+        ray.sides = r.kind->set.sides;
+        ray.only = r.kind->set.only;
+        ray.level = r.sample->level;
+        ++raysOf(r.type());
+    }
+    world_->accel_->intersect(rays_, hits_);
+}
+
+/// Points by program and light list. Those of rays that take primitives as they are have groups behind the others.
+void Engine::queueHit(const Sched::Task& task, const accel::Hit& hit, Sched& sched) {
+    const PathRay& r = task.payload;
+    const SurfaceBinding& b = world_->bindings_[size_t(world_->bindingOf_[hit.shape])];
+    const bool primitive = world_->primitiveHit_ && b.asPrimitive(r.kind->set.mode, r.type());
+    const size_t g = size_t(b.group) + (primitive ? size_t(world_->groups_) : 0);
+    HitQueue& q = hitQueues_[g];
+    if (q.hits.empty()) {
+        const rsl::CompiledKernel& k = *(primitive ? world_->primitiveHit_ : b.surfaceS).kernel;
+        q.waits = k.facts().suspends;
+        if (q.waits) q.room = size_t(roomFor(k, primitive ? nullptr : b.surfaceV.kernel.get(), sched));
+        groupsWithHits_.push_back(g);
+    } else if (q.waits && q.hits.size() >= q.room) {
+        // Of a kernel that waits no more points are shaded than its frames have room for: the others are followed again, later.
+        --raysOf(r.type());
+        sched.spawn(task);
+        return;
+    }
+    q.hits.push_back(hit);
+    q.rays.push_back(r);
+    q.targets.push_back(task.target);
+    sched.hold(task.target);
+    ++hitsWaiting_;
+}
+
+int Engine::roomFor(const rsl::CompiledKernel& k, const rsl::CompiledKernel* other, const Sched& sched) const {
+    size_t frame = 0;
+    for (const rsl::CompiledKernel* one : {&k, other})
+        if (const auto known = frameOf_.find(one); known != frameOf_.end()) frame = std::max(frame, known->second);
+    if (frame == 0) return k.lanes(); // the first strip tells
+    const size_t most = sched.frameLimit() / 4, left = most - std::min(most, sched.frameBytes());
+    return int(std::clamp<size_t>(left / frame, 1, size_t(limits::kSliceRays))) * k.lanes();
+}
+
+void Engine::shadeHits(size_t group, Sched& sched) {
+    std::erase(groupsWithHits_, group);
+    hitsWaiting_ -= hitQueues_[group].hits.size();
+    auto c = takeContext();
+    c->engine = this;
+    c->ownsExtras = true;
+    placePoints(hitQueues_[group], *c);
+    shine(*c, sched);
+    const bool same = std::all_of(c->bindings.begin(), c->bindings.end(), [&](int b) { return b == c->bindings[0]; });
+    c->binding = &world_->bindings_[size_t(c->bindings[0])];
+    c->bound = group >= size_t(world_->groups_)           ? &world_->primitiveHit_
+               : same && !c->binding->usesObjectSpace ? &c->binding->surfaceS
+                                                      : &c->binding->surfaceV;
+    shadeGroup(c, sched);
+    for (TargetId t : c->targets) sched.release(t);
+    giveBack(std::move(c));
+}
+
+/// Fills a context with the points of hits, which the queue then has no more.
+void Engine::placePoints(HitQueue& q, BatchContext& c) {
+    const size_t n = q.hits.size();
+    c.points.resize(n); // pointers into points and rays stay good
+    c.rays.swap(q.rays);
+    c.targets.swap(q.targets);
+    for (const accel::Hit& h : q.hits) c.bindings.push_back(world_->bindingOf_[h.shape]);
+    std::vector<geometry::HitRef>& run = run_; // of one shape
+    for (size_t i = 0; i < n;) {
+        const uint32_t shape = q.hits[i].shape;
+        run.clear();
+        for (; i < n && q.hits[i].shape == shape; ++i)
+            run.push_back({q.hits[i].prim, q.hits[i].b1, q.hits[i].b2, &c.points[i].surface});
+        world_->shapes_[shape]->points(run, world_->bindings_[size_t(world_->bindingOf_[shape])].pointNeeds);
+    }
+    for (size_t i = 0; i < n; ++i) {
+        const PathRay& r = c.rays[i];
+        ShadePoint& p = c.points[i]; // may hold another point's numbers: all of it is written
+        p.ray = &r;
+        p.Ci = p.Oi = p.Ps = p.Ns = p.viewI = Vec3();
+        p.lit = nullptr;
+        p.alpha = 0;
+        p.shape = world_->shapes_[q.hits[i].shape].get();
+        p.P = p.surface.P;
+        p.N = p.surface.N;
+        p.I = p.P - r.begin(); // RISpec: P - E, though rays start at the near plane, or behind what they passed through
+        p.E = r.camera() ? Vec3(0, 0, 0) : r.origin;
+        p.time = r.time();
+        if (!world_->footprints_) continue;
+        const float rate = r.camera() ? world_->bindings_[size_t(c.bindings[i])].shadingRate : 1;
+        shading::setFootprint(p, r.footprint, r.dir, length(p.P - r.origin), rate);
+    }
+    q.hits.clear();
+}
+
+/// Light of the emitters among the points.
+void Engine::shine(const BatchContext& c, Sched& sched) {
+    std::vector<Met> met;
+    for (size_t i = 0; i < c.points.size(); ++i) {
+        const SurfaceBinding& b = world_->bindings_[size_t(c.bindings[i])];
+        const PathRay& r = c.rays[i];
+        if (b.areaLight < 0 || (b.matte && r.camera())) continue;
+        if (!rules_.emissionCounts && r.lobePdf < 0) continue;
+        if (r.lobeBinding >=
+            0) { // a lobe that samples lights: those that are off for its surface do not light it by chance either
+            const auto& on = world_->bindings_[size_t(r.lobeBinding)].lights;
+            if (std::find(on.begin(), on.end(), b.areaLight) == on.end()) continue;
+        }
+        const BoundLight& light = world_->lights_[size_t(b.areaLight)];
+        if (light.mean || (r.kind->fromTrace && light.strategy == LightStrategy::Illuminance)) continue;
+        met.push_back({b.areaLight, c.targets[i], &c.points[i]});
+        for (int part : light.parts)
+            if (world_->lights_[size_t(part)].kind == LightKind::Area) met.push_back({part, c.targets[i], &c.points[i]});
+    }
+    std::stable_sort(met.begin(), met.end(), [](const Met& a, const Met& b) { return a.light < b.light; });
+    emission(met, sched);
+}
+
+} // namespace alpenglow::transport

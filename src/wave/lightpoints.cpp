@@ -1,0 +1,203 @@
+// Stage light: every light for every point with lobes that want it, a kernel call a light. Of many lights some are chosen at each
+// point (manylights.cpp), and those of one program share a call.
+#include "world/emitterfootprint.h"
+#include "wave/gather.h"
+
+namespace alpenglow::transport {
+
+ShadePoint& Gather::LightQueries::add(int of, const BoundLight& l, float c) {
+    if (count == at.size()) at.emplace_back(); // else written again, not made anew
+    point.push_back(of);
+    light.push_back(&l);
+    chance.push_back(c);
+    spread.push_back(-1);
+    drawn.emplace_back();
+    return at[count++];
+}
+
+void Gather::LightQueries::clear() {
+    count = 0;
+    point.clear();
+    light.clear();
+    chance.clear();
+    spread.clear();
+    drawn.clear();
+}
+
+/// Whether a lobe asks this light for samples. trace() knows emitters only, and not those that are illuminance's.
+bool Gather::samples(const LobeVertex& l, const BoundLight& light) const {
+    return l.lights && !l.elsewhere && !l.delta && (light.kind == LightKind::Area || l.deltaLights) &&
+           (l.lobeOfShader || light.strategy != LightStrategy::Illuminance);
+}
+
+void Gather::light() {
+    const int list = world_.bindings_[size_t(c_->bindings[0])].lightList; // the batch shares it
+    const std::vector<int>& on = world_.sampledLights_[size_t(list)];
+    const LightChooser& chooser = world_.choosers_[size_t(list)].chooser;
+    const bool many = rules_.pickOne && !chooser.empty();
+    if (many) {
+        chosenAt_.resize(std::max(chosenAt_.size(), on.size()));
+        LightChooser::Chosen chosen;
+        for (size_t point = 0; point < c_->points.size(); ++point) {
+            if (begin_[point] == begin_[point + 1]) continue;
+            const float u = e_.random(c_->rays[point]).one(lightVertex(point), kChooseLight, 0);
+            chooser.choose(c_->points[point].P, u, chosen);
+            for (auto [i, chance] : chosen) chosenAt_[size_t(i)].push_back({int(point), chance});
+        }
+    } else {
+        chosenAt_.resize(std::max<size_t>(chosenAt_.size(), 1));
+        for (size_t point = 0; point < c_->points.size(); ++point)
+            if (begin_[point] != begin_[point + 1]) chosenAt_[0].push_back({int(point), 1.f});
+    }
+    // Lights of one program that share a kernel call come together (WorldImpl::lightGroups_), the others one by one.
+    std::vector<std::vector<int>>& grouped = ofGroup_; // places in the list
+    grouped.resize(world_.lightGroups_.size());
+    for (size_t k = 0; k < on.size(); ++k) {
+        const auto& at = chosenAt_[many ? k : 0];
+        if (at.empty()) continue;
+        const BoundLight& light = world_.lights_[size_t(on[k])];
+        if (many && light.group >= 0) {
+            grouped[size_t(light.group)].push_back(int(k));
+            continue;
+        }
+        queries_.clear();
+        queriesOf(light, at);
+        askLights(nullptr);
+        connect();
+        if (many) chosenAt_[k].clear();
+    }
+    for (size_t g = 0; many && g < grouped.size(); ++g) {
+        queries_.clear();
+        for (int k : grouped[g]) {
+            queriesOf(world_.lights_[size_t(on[size_t(k)])], chosenAt_[size_t(k)]);
+            chosenAt_[size_t(k)].clear();
+        }
+        grouped[g].clear();
+        askLights(&world_.lightGroups_[g].kernel);
+        connect();
+    }
+    if (!many) chosenAt_[0].clear();
+}
+
+void Gather::queriesOf(const BoundLight& light, std::span<const std::pair<int, float>> chosen) {
+    // A light that filters over its surface is asked once for every width of the lobes at a point, at the same sample.
+    const bool wide = light.kind == LightKind::Area && usesFootprint(light);
+    for (const auto& [point, chance] : chosen) {
+        bool wanted = false;
+        for (int i : lobesOf(size_t(point))) wanted |= samples(e_.lobes[size_t(i)], light);
+        if (!wanted) continue;
+        const ShadePoint& lit = c_->points[size_t(point)];
+        ShadePoint& p = queries_.add(point, light, chance);
+        p.Ps = lit.P;
+        p.lit = &lit.surface;
+        p.Ns = lit.N;
+        p.viewI = p.I = lit.I;
+        p.E = lit.E;
+        p.du = lit.du;
+        p.dv = lit.dv;
+        p.time = lit.time;
+        p.ray = lit.ray;
+        if (!place(p, queries_.drawn.back(), size_t(point), light)) {
+            --queries_.count;
+            queries_.point.pop_back();
+            queries_.light.pop_back();
+            queries_.chance.pop_back();
+            queries_.spread.pop_back();
+            queries_.drawn.pop_back();
+        } else if (wide) {
+            queriesByWidth(size_t(point), light);
+        }
+    }
+}
+
+/// The point of the light; false: this draw brings nothing.
+bool Gather::place(ShadePoint& p, Emitter::Sample& s, size_t point, const BoundLight& light) const {
+    const PathRay& ray = c_->rays[point];
+    const uint32_t use = kLightPoint + uint32_t(&light - world_.lights_.data());
+    if (light.kind == LightKind::Area) {
+        const Random numbers = e_.random(ray);
+        const uint32_t vertex = lightVertex(point);
+        const Vec2 u = numbers.pair(vertex, use, 0);
+        const float choose = light.emitter->chooses() ? numbers.one(vertex, use, 0) : 0;
+        if (!(light.mean ? light.emitter->sampleSurface(p.Ps, u, choose, s, p.surface, light.pointNeeds)
+                         : light.emitter->sample(p.Ps, u, choose, s, p.surface, light.pointNeeds)))
+            return false;
+        p.shape = s.shape;
+        p.P = p.surface.P;
+        p.N = p.surface.n;
+        return true;
+    }
+    p.shape = nullptr;
+    p.surface = c_->points[point].surface;
+    p.N = Vec3();
+    p.P = Vec3(transformPoint(light.instance->toCurrent, {0, 0, 0}));
+    p.Ci = light.cone && rules_.pickOne ? coneNumbers(e_.random(ray).pair(ray.vertex, use, 0)) : Color(0);
+    return true;
+}
+
+/// Makes of the query that was added last one for each width that lobes of its point see the emitter with.
+void Gather::queriesByWidth(size_t point, const BoundLight& light) {
+    LightQueries& q = queries_;
+    const size_t first = q.count - 1;
+    bool used = false;
+    for (int i : lobesOf(point)) {
+        const LobeVertex& l = e_.lobes[size_t(i)];
+        if (!samples(l, light)) continue;
+        const float s = spreadBehind(c_->rays[point], e_.lobeRows_.spread(l.place));
+        if (used && std::find(q.spread.begin() + long(first), q.spread.end(), s) != q.spread.end()) continue;
+        if (std::exchange(used, true)) {
+            const Emitter::Sample drawn = q.drawn.back();
+            const ShadePoint same = q.at[q.count - 1];
+            q.add(int(point), light, q.chance.back()) = same;
+            q.drawn.back() = drawn;
+        }
+        q.spread.back() = s;
+        setEmitterFootprint(q.at[q.count - 1], c_->rays[point], c_->points[point].P, s);
+    }
+}
+
+/// Runs the kernel of the queries' lights, which are one, or of the group that `shared` is of.
+void Gather::askLights(const BoundKernel* shared) {
+    LightQueries& q = queries_;
+    if (q.count == 0) return;
+    const BoundLight& light = *q.light[0];
+    q.at.resize(q.count);
+    q.value.assign(q.count, {});
+    LightCall call;
+    if (shared) {
+        call.kernel = shared;
+        call.of = q.light;
+        return e_.evaluateLight(light, q.at, q.value, call);
+    }
+    LitSurface lit;
+    const auto told = [&](int k) -> const LitValues& {
+        return e_.litValues_[size_t(e_.lobes[size_t(lobesOf(size_t(q.point[size_t(k)]))[0])].lit)];
+    };
+    if (light.asksSurface) {
+        lit.binding = [&](int k) { return told(k).binding < 0 ? nullptr : &world_.bindings_[size_t(told(k).binding)]; };
+        lit.output = [&](int k, const std::string& name, std::vector<float>& now) { return told(k).output(name, now); };
+        lit.displaced = [&](int k, int& point) { return point = told(k).point, told(k).displaced.get(); };
+        call.lit = &lit;
+    }
+    std::vector<char> inMedium;
+    if (!world_.media_.empty() && light.kind == LightKind::Area) {
+        for (size_t k = 0; k < q.count; ++k)
+            inMedium.push_back(Engine::mediumOf(e_.mediaTowards(*c_, q.point[k], q.drawn[k].direction)) >= 0);
+        call.inMedium = &inMedium;
+    }
+    const bool sends = light.sentCl >= 0; // many samples: one of them
+    const size_t width = size_t(light.valueWidth);
+    std::vector<float> values(light.channels || sends ? q.count * width : 0);
+    if (light.channels || sends) call.values = &values;
+    e_.evaluateLight(light, q.at, q.value, call);
+    for (size_t k = 0; k < q.count && sends; ++k) {
+        const uint32_t use = kLightPoint + uint32_t(&light - world_.lights_.data());
+        const float u = e_.random(c_->rays[size_t(q.point[k])]).one(lightVertex(size_t(q.point[k])), use, 0);
+        Engine::chooseSent(light, u, values.data() + k * width, q.value[k]);
+    }
+    for (size_t k = 0; k < q.count && light.channels; ++k)
+        if (k == 0 || q.point[k] != q.point[k - 1]) // of several widths the first
+            e_.keepChannels(*c_, light, q.point[k], values.data() + k * width);
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,208 @@
+// Lights: their kernels run in batches for the points they light.
+#include "wave/strips.h"
+#include "lobes/sampling.h"
+
+namespace alpenglow::transport {
+
+Color coneNumbers(Vec2 random) {
+    Vec2 d = unitCircle(random.y);
+    return {random.x, d.x, d.y};
+}
+
+shading::TargetValue Engine::rayOfLight(BatchContext& c, const SiteInfo& s, int point, const std::function<float(int)>& row, uint32_t occurrence) {
+    const ShadePoint& p = c.points[size_t(point)];
+    shading::TargetValue value;
+    const uint32_t site = uint32_t(s.site - c.bound->kernel->sites().data());
+    if (s.kind == SiteKind::Transmission) {
+        std::vector<ShadowRay> rays;
+        transmissionRays(s, p, p.Ps, p.lit, row, Color(1), shading::kNoTarget, site, occurrence, rays);
+        const auto point3 = [&](size_t arg) { return Vec3(row(s.rows[arg]), row(s.rows[arg] + 1), row(s.rows[arg] + 2)); };
+        shadowsInMedia(rays, point3(0), point3(1), p.Ps, p.lit, c.lit ? c.lit->binding(point) : nullptr);
+        for (const ShadowRay& r : rays) value.radiance += r.contribution * (r.distance > 0 ? transmittance(r) : Color(1));
+        return value;
+    }
+    if (s.kind != SiteKind::Trace || !p.ray || !world_->accel_) return value; // lights that are measured see nothing
+    // An engine of its own follows the ray and all that comes of it, to the end: the lights that it meets may trace as well, one bounce deeper.
+    if (!inner_) {
+        inner_ = std::make_unique<Engine>(world_, diagnostics_);
+        inner_->raysAtOnce_ = std::min(raysAtOnce_, int(Sched::kStripRays));
+        inner_->sched_ = std::make_unique<Sched>(*inner_, stop, limits::kFrameBytesPerThread, inner_->raysAtOnce_);
+    }
+    inner_->stop = stop;
+    inner_->beginsAnew_ = beginsAnew_;
+    value = inner_->follow(c, s, point, row, occurrence);
+    counters += inner_->counters;
+    inner_->counters = {};
+    spoiled_.insert(spoiled_.end(), inner_->spoiled_.begin(), inner_->spoiled_.end());
+    inner_->spoiled_.clear();
+    return value;
+}
+
+shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int point, const std::function<float(int)>& row, uint32_t occurrence) {
+    const ShadePoint& p = c.points[size_t(point)];
+    const PathRay& from = *p.ray;
+    Sched& sched = *sched_;
+    sched.restart(stop);
+    waiting_.clear();
+    traceSums_.clear();
+    lobes.clear();
+    lobeRows_.clear();
+    const TargetId target = sched.newRoot();
+    // request() reads rows of lanes: this is one lane.
+    std::vector<float> in;
+    int rows = 0;
+    for (rsl::ir::Kind k : s.site->argKinds) rows += rsl::ir::components(k);
+    for (int r = 0; r < rows; ++r) in.push_back(row(r));
+    request(c, s, point, in.data(), 1, 0, Color(1), target, true, occurrence);
+    if (lobes.empty()) return {};
+    LobeVertex l = std::move(lobes.back());
+    lobes.clear();
+    if (from.bounces + 1 > world_->maxDepth_) return {};
+    uint32_t many = from.asked;
+    float chance = 1;
+    const bool onlyDistance = s.givesDistance() && s.resultRows.size() < 2;
+    if (rules_.roulette && !onlyDistance) {
+        many = std::max<uint32_t>(many, uint32_t(world_->lightTraces_) * (occurrence + 1) * uint32_t(std::max(l.samples, 1)));
+        chance = rouletteOfLight(from.bounces, many);
+        const uint32_t vertex = childVertex(from.vertex, kLightPoint + l.site, occurrence * 4096);
+        if (chance < 1 && random(from).one(vertex, kRoulette, 0) >= chance) return {};
+    }
+    const Vec3 start = l.elsewhere ? l.from : p.P;
+    const bool leaves = p.lit && length(start - p.Ps) <= geometry::roundingError(p.Ps) + 4 * p.lit->pError;
+    lobeRows_.prepare();
+    const LobeColumns::Place place = l.place;
+    const bool delta = lobeRows_.delta(place);
+    const float spread = lobeRows_.spread(place);
+    if (delta) l.samples = 1;
+    const uint32_t drawn = childVertex(from.vertex, kLightPoint + l.site, occurrence * 4096);
+    for (int k = 0; k < l.samples; ++k) {
+        const uint32_t nth = occurrence * 4096 + uint32_t(k), vertex = childVertex(from.vertex, kLightPoint + l.site, nth);
+        Vec3 w;
+        lobeRows_.ask(place, random(from).draw(uint32_t(k), uint32_t(l.samples)).pair(drawn, l.site, occurrence));
+        lobeRows_.sample();
+        if (!lobeRows_.drawn(place, w)) continue;
+        lobeRows_.ask(place, w);
+        lobeRows_.evaluate();
+        const LobeValue value = lobeRows_.value(place);
+        const Color f = delta ? Color(lobeRows_.albedo(place)) : value.pdf > 0 ? value.colour / value.pdf : Color(0);
+        PathRay r = from;
+        r.weight = f / float(l.samples);
+        r.vertex = vertex;
+        r.asked = uint16_t(std::min<uint32_t>(many, 0xffff));
+        r.bounces = int16_t(onlyDistance ? world_->maxDepth_ : from.bounces + 1); // nothing goes on behind a distance
+        ++(l.rays->type == RayType::Diffuse ? r.diffuseBounces : r.specularBounces);
+        r.origin = l.bias >= 0 ? start + w * l.bias : leaves ? geometry::offsetOrigin(*p.lit, w, 0) : start + w * geometry::roundingError(start);
+        r.parted = false;
+        if (!leaves || (dot(from.dir, p.lit->n) < 0) != (dot(w, p.lit->n) > 0)) r.media = nullptr; // nobody knows
+        r.dir = w;
+        r.maxDistance = l.maxDistance;
+        r.kind = l.rays;
+        RayExtra extra;
+        if (l.trace && l.trace->map) extra.environment = l.tint * mapTowards(*l.trace, w, from.footprint.spread);
+        r.extra = newExtra(extra);
+        r.lobePdf = -1; // no light was sampled: all that shines counts
+        r.lobeBinding = -1;
+        r.first = true;
+        r.footprint.spread = std::max(from.footprint.spread, spread * 0.5f);
+        r.counts = false;
+        sched.spawn(r.bounces + r.layers, target, r);
+    }
+    lobeRows_.clear();
+    sched.run();
+    litValues_.clear();
+    shadows.clear();
+    // The chance is not in the rays' weights: what they meet goes on as if they were certain.
+    shading::TargetValue value = sched.value(target);
+    value.radiance = value.radiance / chance;
+    return value;
+}
+
+void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& queries, std::span<LightValue> out, const LightCall& call) {
+    if (queries.empty()) return;
+    const BoundKernel& bound = call.kernel ? *call.kernel : light.kernel;
+    auto c = takeContext();
+    c->engine = this;
+    c->bound = &bound;
+    c->lit = call.lit;
+    c->light = &light;
+    c->points.swap(queries); // lent; given back below
+    std::vector<shading::InstanceView> views;
+    std::vector<uint32_t> viewOf;
+    for (size_t i = 0; i < call.of.size(); ++i) {
+        if (i == 0 || call.of[i] != call.of[i - 1])
+            views.push_back({&call.of[i]->instance->parameters, &call.of[i]->instance->toCurrent});
+        viewOf.push_back(uint32_t(views.size() - 1));
+    }
+    if (views.empty())
+        views.push_back({call.parameters ? call.parameters : &light.instance->parameters, &light.instance->toCurrent});
+    if (!c->batch) c->batch = std::make_shared<shading::Batch>();
+    c->batch->assign(bound.kernel, *bound.plan, c->points, views, viewOf, *world_);
+    bindCall(c->batch->call(), *c);
+    const auto& k = *bound.kernel;
+    if (k.facts().suspends) {
+        // A light that decides on traced light: its few requests are answered in place, strip by strip.
+        std::vector<uint32_t> asked(bound.sites.size() * size_t(c->batch->size()));
+        for (int first = 0; first < c->batch->size(); first += k.lanes()) {
+            void* h = k.start(&c->batch->call(), first);
+            if (!h) throw std::bad_alloc();
+            const std::unique_ptr<void, std::function<void(void*)>> frame(h, [&](void* f) { k.destroy(f); });
+            c->ran();
+            while (!k.finished(h)) {
+                const SiteInfo& s = bound.sites[c->requestSite];
+                for (int lane = 0; lane < c->requestLanes; ++lane) {
+                    if (!(c->requestMask >> lane & 1) || first + lane >= int(c->points.size())) continue;
+                    const std::function<float(int)> row = [&](int r) { return c->requestIn[size_t(r) * c->requestLanes + lane]; };
+                    for (int r = 0; r < s.resultRowCount; ++r) c->requestOut[size_t(r) * c->requestLanes + lane] = 0;
+                    const shading::TargetValue t = rayOfLight(*c, s, first + lane, row, asked[size_t(c->requestSite) * size_t(c->batch->size()) + size_t(first + lane)]++);
+                    putResult(s, t, nullptr, c->requestOut, c->requestLanes, lane);
+                }
+                k.resume(h);
+                c->ran();
+            }
+        }
+    } else {
+        k.run(&c->batch->call());
+        c->ran();
+    }
+    const auto& b = *c->batch;
+    queries.swap(c->points);
+    for (size_t i = 0; i < queries.size(); ++i) {
+        LightValue& v = out[i];
+        if (light.outL >= 0) v.L = b.color(light.outL, int(i));
+        v.Cl = b.color(light.outCl, int(i));
+        if (light.outOl >= 0) v.Ol = b.color(light.outOl, int(i));
+        v.lit = light.outLit < 0 || b.value(light.outLit, 0, int(i)) != 0;
+        if (light.nonDiffuse >= 0) v.nonDiffuse = b.value(light.nonDiffuse, 0, int(i));
+        if (light.nonSpecular >= 0) v.nonSpecular = b.value(light.nonSpecular, 0, int(i));
+        if (call.values) {
+            float* to = call.values->data() + i * size_t(light.valueWidth);
+            for (const BoundLight::Value& value : light.values)
+                for (int r = 0; r < value.components; ++r) *to++ = b.value(value.output, r, int(i));
+        }
+    }
+    // Affine requests of the light itself: shadows that it asks for. Counted by site and point: no random number depends on the
+    // batch.
+    std::vector<uint32_t> asked(c->emits.empty() ? 0 : bound.sites.size() * queries.size());
+    for (const EmitRecord& e : c->emits) {
+        const SiteInfo& s = bound.sites[e.site];
+        if (s.kind != SiteKind::Transmission && s.kind != SiteKind::Trace) continue;
+        for (int lane = 0; lane < e.lanes; ++lane) {
+            if (!(e.mask >> lane & 1) || e.first + lane >= int(queries.size())) continue;
+            auto at = [&](int row) { return c->arena[e.offset + size_t(row) * e.lanes + lane]; };
+            c->points.swap(queries); // the rays start from them
+            const Color light = rayOfLight(
+                                    *c, s, e.first + lane, [&](int row) { return at(row + 3); },
+                                    asked[size_t(e.site) * queries.size() + size_t(e.first + lane)]++)
+                                    .radiance;
+            c->points.swap(queries);
+            out[e.first + lane].Cl += Color(at(0), at(1), at(2)) * light;
+        }
+    }
+    for (size_t i = 0; i < queries.size(); ++i) // the kernel divided by the squared distance: radiance does not
+        if (const float scale = (call.of.empty() ? light : *call.of[i]).intensityScale; scale > 0)
+            out[i].Cl *= dot(out[i].L, out[i].L) * scale;
+    hazeOfEmitters(light, queries, out, call.inMedium);
+    giveBack(std::move(c));
+}
+
+} // namespace alpenglow::transport

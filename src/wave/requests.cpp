@@ -1,0 +1,142 @@
+// Requests of kernels: what a call asks for at a point (design decisions 2 and 3). What becomes of lobes is in gather.h.
+#include "wave/gather.h"
+#include "texture/lookup.h"
+#include "world/raysets.h"
+#include "lobes/sampling.h"
+
+namespace alpenglow::transport {
+
+namespace {
+Vec3 unit(Vec3 v, Vec3 fallback) {
+    float l = length(v);
+    return l > 0 && std::isfinite(l) ? v / l : fallback;
+}
+/// Parameters of the distributions of bsdf(), as given or as they are when not (rsl.md 12.4).
+template <class Row> DistributionParams distributionOf(const SiteInfo& s, const Row& f) {
+    const TraceSite& t = *s.trace;
+    DistributionParams m;
+    auto triple = [&](int row) { return Color(f(row), f(row + 1), f(row + 2)); };
+    if (t.roughness >= 0) m.roughness = f(t.roughness);
+    m.roughnessv = t.roughnessv >= 0 ? f(t.roughnessv) : m.roughness;
+    if (t.udir >= 0) m.udir = triple(t.udir);
+    if (t.absorption >= 0) m.absorption = triple(t.absorption);
+    m.eta = Color(s.lobe->name == "glass-ggx" ? 1.5f : s.lobe->name == "hair" ? 1.55f : 0.f);
+    for (size_t k = 0; k < t.eta.size() && k < 2; ++k)
+        (k ? m.k : m.eta) = t.eta[k].second == 1 ? Color(f(t.eta[k].first)) : triple(t.eta[k].first);
+    for (int row : t.lobes) m.lobes.push_back(f(row));
+    m.part = t.part;
+    return m;
+}
+} // namespace
+
+void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float* in, int lanes, int lane, Color weight, TargetId target, bool owns,
+                     uint32_t occurrence) {
+    const ShadePoint& p = c.points[point];
+    auto f = [&](int row) { return in[size_t(row) * lanes + lane]; };
+    auto v = [&](int arg) { return Vec3(f(s.rows[arg]), f(s.rows[arg] + 1), f(s.rows[arg] + 2)); };
+    auto number = [&](int row, float fallback) { return row < 0 ? fallback : f(row); };
+    auto vector = [&](int row, Vec3 fallback) { return row < 0 ? fallback : Vec3(f(row), f(row + 1), f(row + 2)); };
+    if (s.kind == SiteKind::Transmission) {
+        const size_t had = shadows.size();
+        transmissionRays(s, p, p.P, &p.surface, f, weight, target, uint32_t(s.site - c.bound->kernel->sites().data()), occurrence, shadows);
+        if (!owns && p.ray)
+            for (size_t k = had; k < shadows.size(); ++k) shadows[k].share = extraOf(*p.ray).share;
+        shadowsInMedia(std::span(shadows).subspan(had), v(0), v(1), p.P, &p.surface, c.bindings.empty() ? nullptr : &world_->bindings_[size_t(c.bindings[size_t(point)])]);
+        return;
+    }
+    // Under path ambient light is what escaping diffuse rays see.
+    if (s.kind != SiteKind::Diffuse && s.kind != SiteKind::Specular && s.kind != SiteKind::Phong && s.kind != SiteKind::Trace) return;
+    LobeVertex& l = lobes.emplace_back();
+    l.kind = s.lobe;
+    LobeParams params;
+    l.point = point;
+    l.weight = weight;
+    l.target = target;
+    l.ownsTarget = owns;
+    l.site = uint32_t(s.site - c.bound->kernel->sites().data());
+    l.occurrence = occurrence;
+    if (world_->lightsAsk()) {
+        l.lit = int(litValues_.size());
+        LitValues& told = litValues_.emplace_back();
+        told.binding = size_t(point) < c.bindings.size() ? c.bindings[size_t(point)] : -1; // a light's own ray: none
+        told.displaced = c.displaced;
+        told.point = point;
+        for (const SiteInfo::Output& o : s.outputs) {
+            auto& of = told.outputs.emplace_back(o.name, std::vector<float>());
+            for (int r = 0; r < o.size; ++r) of.second.push_back(f(o.row + r));
+        }
+    }
+    if (s.kind != SiteKind::Diffuse) params.wo = unit(-p.I, p.surface.n);
+    switch (s.kind) {
+    case SiteKind::Diffuse:
+        params.axis = unit(v(0), p.surface.n);
+        l.rays = &kDiffuseKind;
+        break;
+    case SiteKind::Specular:
+    case SiteKind::Phong:
+        params.axis = unit(v(0), p.surface.n);
+        params.wo = unit(v(1), params.wo);
+        params.a = f(s.rows[2]);
+        if (s.kind == SiteKind::Specular)
+            params.a = s.exponent / std::max(params.a, 1e-6f);
+        l.rays = &kSpecularKind;
+        break;
+    case SiteKind::Trace:
+        params.axis = unit(v(1), p.surface.n);
+        params.wo = unit(vector(s.rowWo, params.wo), params.wo);
+        params.a = s.lobe->name == "slphong" ? number(s.rowExponent, 1000) : number(s.rowCone, 0);
+        l.trace = s.trace.get();
+        if (s.rowHorizon >= 0) {
+            params.horizon = unit(vector(s.rowHorizon, p.surface.n), p.surface.n);
+            params.hasHorizon = true;
+        }
+        if (s.rays->fixed && !(world_->traceSubsets_ && s.rays->subsetText.empty())) { // what most calls are, many times a sample
+            l.rays = kindOf({s.rays->rays, true, s.rays->set, s.label});
+        } else {
+            RayKind kind{RayType::Diffuse, true, {}, 0};
+            kind.set = raySetOf(s, f, p.shape, kind.type, kind.label);
+            l.rays = kindOf(kind);
+        }
+        l.lights = number(s.rowLights, 0) != 0;
+        l.bias = number(s.rays->bias, -1);
+        l.base = number(s.rays->base, 0);
+        if (s.trace->map) l.tint = vector(s.trace->tint, Color(1));
+        // From a point that is not the surface's no light is sampled: rays that meet an emitter count in full.
+        if (const Vec3 from = v(0), away = from - p.P; !p.surface.displaced && length(away) > geometry::roundingError(p.P) + 4 * p.surface.pError) {
+            l.elsewhere = true;
+            l.from = from;
+        }
+        l.deltaLights = false;
+        l.lobeOfShader = false;
+        l.maxDistance = std::min(number(s.rays->maxDistance, 1e38f), number(s.rays->maxHit, 1e38f));
+        if (l.maxDistance < 0) l.maxDistance = 1e38f; // PRMan: none
+        l.samples = std::clamp(int(std::clamp(number(s.rays->samples, 1), 1.f, 4096.f)), 1, 4096);
+        break;
+    default: break;
+    }
+    if (l.kind->distribution) {
+        const DistributionParams more = distributionOf(s, f);
+        l.place = lobeRows_.add(*l.kind, params, &more);
+    } else {
+        l.place = lobeRows_.add(*l.kind, params);
+    }
+}
+
+Color Engine::mapTowards(const TraceSite& t, const Vec3& w, float spread) const {
+    const Vec3 at(transformVector(t.toMap, Vec3d(w)));
+    const Basis b(at / length(at));
+    float v[3] = {};
+    texture::LookupOptions colours;
+    colours.asLight = true;
+    texture::environment(t.map, world_->textures_->latLong(), 0, 3, at, b.t * spread, b.u * spread, colours, v);
+    return {v[0], v[1], v[2]};
+}
+
+void Engine::gather(BatchContext& c, Sched& sched) {
+    std::unique_ptr<Gather> g = std::move(gather_); // taken, so that one inside of this has its own
+    if (!g) g = std::make_unique<Gather>(*this);
+    g->run(c, sched);
+    gather_ = std::move(g);
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,170 @@
+// Stage scatter: rays of lobes. Where one ray goes on from a vertex (Rules::pickOne) one of its lobes is followed; elsewhere all
+// are.
+#include "world/emitterfootprint.h"
+#include "wave/gather.h"
+#include "lobes/sampling.h"
+
+namespace alpenglow::transport {
+
+void Gather::scatter(Sched& sched) {
+    sent_.clear();
+    for (size_t point = 0; point < c_->points.size(); ++point)
+        if (begin_[point] != begin_[point + 1]) pick(point);
+    int turns = 0;
+    for (const Sent& s : sent_) turns = std::max(turns, s.count);
+    for (int turn = 0; turn < turns; ++turn) { // of each lobe a ray
+        draw(turn);
+        for (const Sent& s : sent_)
+            if (s.goes) sendRay(s, turn, sched);
+    }
+}
+
+void Gather::pick(size_t point) {
+    const auto list = lobesOf(point);
+    const PathRay& from = c_->rays[point];
+    const bool mayPass = passes_[point] < 1; // then lobes have the rest of the chance
+    if (list.size() == 1 && !mayPass) { // what most vertices are
+        const LobeVertex& l = e_.lobes[size_t(list[0])];
+        if (!(l.chosen > 0)) return;
+        const bool one = rules_.pickOne && !l.ownsTarget;
+        const float scale = (one ? 1 / l.chosen : 1) * (l.lobeOfShader ? indirectScale_[point] : 1);
+        sent_.push_back({int(point), list[0], one ? 1 : l.samples, scale, true, Vec3(), {}});
+        return;
+    }
+    const float pick = rules_.pickOne && (list.size() > 1 || mayPass) ? e_.random(from).one(from.vertex, kChooseLobe, 0) : 0;
+    float sum = 0;
+    bool taken = false;
+    for (int i : list) {
+        const LobeVertex& l = e_.lobes[size_t(i)];
+        if (!(l.chosen > 0)) continue;
+        float scale = 1;
+        int count = l.samples;
+        if (rules_.pickOne && !l.ownsTarget) {
+            sum += l.chosen;
+            if (taken || (pick >= sum && (mayPass || i != list.back()))) continue;
+            taken = true;
+            scale = 1 / l.chosen;
+            count = 1;
+        }
+        if (l.lobeOfShader) scale *= indirectScale_[point];
+        sent_.push_back({int(point), i, count, scale, true, Vec3(), {}});
+    }
+    if (mayPass) c_->passes[point] = taken ? 0 : passes_[point];
+}
+
+/// Directions of the rays of one turn, and what their lobes give back from there.
+void Gather::draw(int turn) {
+    LobeColumns& rows = e_.lobeRows_;
+    for (Sent& s : sent_) {
+        s.goes = turn < s.count;
+        if (!s.goes) continue;
+        const LobeVertex& l = e_.lobes[size_t(s.lobe)];
+        const PathRay& from = c_->rays[size_t(s.point)];
+        rows.ask(l.place, e_.random(from).draw(uint32_t(turn), uint32_t(s.count)).pair(from.vertex, l.site, l.occurrence * 4096));
+    }
+    rows.sample();
+    for (Sent& s : sent_) {
+        if (!s.goes) continue;
+        const LobeVertex& l = e_.lobes[size_t(s.lobe)];
+        s.goes = rows.drawn(l.place, s.w);
+        if (s.goes && !l.delta) rows.ask(l.place, s.w);
+    }
+    rows.evaluate();
+    for (Sent& s : sent_) {
+        if (!s.goes) continue;
+        const LobeVertex& l = e_.lobes[size_t(s.lobe)];
+        s.value = l.delta ? LobeValue{Color(l.albedo), l.albedo, 0} : rows.value(l.place);
+    }
+}
+
+/// A ray that is to bring nothing but the light of emitters, and goes past the balls about all of them, brings none.
+bool Gather::meetsEmitter(const LobeVertex& l, const Vec3& w) const {
+    if (!l.lights) return false;
+    const Vec3& from = l.elsewhere ? l.from : c_->points[size_t(l.point)].P;
+    const float error = 1e-3f * (1 + length(from)) + std::fabs(l.bias);
+    for (const BoundLight& light : world_.lights_) {
+        if (light.kind != LightKind::Area || !light.emitter || light.emitter->empty()) continue;
+        const Vec3 to = light.centre - from;
+        const float along = std::max(dot(to, w), 0.f), reach = light.radius * 1.001f + error;
+        const Vec3 beside = to - w * along;
+        if (!(dot(beside, beside) > reach * reach)) return true;
+    }
+    return false;
+}
+
+bool Gather::roulette(const LobeVertex& l, int turn, uint32_t vertex, uint16_t& asked, Color& weight) const {
+    const PathRay& from = rayOf(l);
+    const auto dice = [&] { return e_.random(from).one(vertex, kRoulette, 0); };
+    float q = 1;
+    if (l.ownsTarget) {
+        asked = uint16_t(std::min<uint32_t>(std::max<uint32_t>(from.asked, l.before + uint32_t(turn) + 1), 0xffff));
+        q = rouletteWaiting(from.bounces, asked);
+        if (q < 1 && dice() >= q) q = 0;
+    } else if (world_.settings_.localRoulette) {
+        q = rouletteLocal(from.bounces + 1, l.weight, from.bounces + 1 > 3 ? dice() : 0);
+    } else if (from.bounces + 1 > 3) {
+        // A light that traces sends rays at every vertex: the tree of them ends by the throughput itself.
+        const Color left(std::fabs(weight.x), std::fabs(weight.y), std::fabs(weight.z));
+        q = world_.lightTraces_ > 0 ? rouletteLocal(from.bounces + 1, left, dice()) : rouletteOfPath(weight, dice);
+    }
+    if (q <= 0) return false;
+    weight = weight / q;
+    return true;
+}
+
+void Gather::sendRay(const Sent& s, int turn, Sched& sched) {
+    const LobeVertex& l = e_.lobes[size_t(s.lobe)];
+    const ShadePoint& p = c_->points[size_t(s.point)];
+    const PathRay& from = c_->rays[size_t(s.point)];
+    const Vec3& w = s.w;
+    if (l.trace && l.trace->onlyLights && !(l.base > 0) && !meetsEmitter(l, w)) return;
+    const float pdf = s.value.pdf;
+    const Color f = l.delta ? s.value.colour : pdf > 0 ? s.value.colour / pdf : Color(0);
+    const Color through = l.weight * (f * s.scale / float(s.count));
+    RayExtra extra;
+    if (l.trace && l.trace->map) {
+        extra.environment = l.tint * e_.mapTowards(*l.trace, w, from.footprint.spread);
+        if (TraceSums* of = l.trace->sums ? e_.sumsOf(l.target) : nullptr)
+            of->add(TraceSums::UnshadowedEnvironment, through * extra.environment);
+    }
+    Color weight = l.ownsTarget ? through : from.weight * through;
+    if (!isFinite(weight)) return e_.notFinite(*c_, from, l.site);
+    if (weight == Color(0) && !l.ownsTarget) return;
+    const uint32_t vertex = childVertex(from.vertex, l.site, l.occurrence * 4096 + uint32_t(turn));
+    uint16_t asked = from.asked;
+    if (rules_.roulette && !roulette(l, turn, vertex, asked, weight)) return;
+    const int bounces = from.bounces + 1;
+    PathRay& r = sched.spawn(bounces + from.layers, l.target, from).payload;
+    r.weight = weight;
+    r.vertex = vertex;
+    r.asked = asked;
+    r.bounces = int16_t(bounces);
+    ++(l.rays->type == RayType::Diffuse ? r.diffuseBounces : r.specularBounces);
+    r.origin = origin(l, w);
+    if (l.base > 0) { // somewhere on the footprint
+        const Vec2 at = e_.random(from).pair(vertex, kSampleBase, 0);
+        r.origin += (p.surface.dPdu * (p.du * (at.x - .5f)) + p.surface.dPdv * (p.dv * (at.y - .5f))) * l.base;
+    }
+    r.dir = w;
+    r.maxDistance = l.maxDistance;
+    r.kind = l.rays;
+    r.media = e_.mediaTowards(*c_, s.point, w);
+    r.parted = false;
+    extra.lit = l.lit;
+    extra.share = shareOf(l);
+    if (l.ownsTarget && l.trace && l.trace->sums) extra.part = Color(1.f / float(s.count));
+    r.extra = e_.newExtra(extra);
+    // Whether its lobe samples lights: then an emitter that it meets counts with the weight of both.
+    const bool sampled = l.lights && !l.elsewhere && !l.delta;
+    r.lobePdf = sampled && rules_.lightsAtRequests ? (rules_.pickOne || l.ownsTarget ? pdf * l.chosen : pdf) : -1;
+    r.lobeOrigin = p.P;
+    r.lobeBinding = sampled ? c_->bindings[size_t(s.point)] : -1;
+    r.footprint = from.footprint.after(length(p.P - from.origin));
+    r.footprint.spread = spreadBehind(from, e_.lobeRows_.spread(l.place));
+    r.counts = false;
+    r.first = l.ownsTarget;
+    e_.counters.depthMax = std::max(e_.counters.depthMax, bounces);
+    ++e_.counters.depthSum; // over camera rays: the mean number of bounces
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,230 @@
+// Running a surface's kernel over a batch of points: to its end, or strip by strip where it waits for rays (strips.h); then what
+// it asked for.
+#include "wave/engine.h"
+#include <algorithm>
+
+namespace alpenglow::transport {
+
+void Engine::lightVisibility(BatchContext& c, const SiteInfo& s, int point, const float* in, int lanes, int lane, Color weight, TargetId target,
+                             float distance) {
+    auto f = [&](int row) { return in[size_t(row) * lanes + lane]; };
+    Vec3 l(f(s.rows[1]), f(s.rows[1] + 1), f(s.rows[1] + 2));
+    float length_ = length(l);
+    if (!(length_ > 0)) return;
+    const ShadePoint& p = c.points[point];
+    Vec3 w = l / length_;
+    Vec3 o = geometry::offsetOrigin(p.surface, w, length(p.P - p.surface.P));
+    shadows.push_back({o, w, distance < 1e30f ? distance * (1 - 1e-4f) : 1e38f, weight, target, p.time, p.ray});
+    shadows.back().media = mediaTowards(c, point, w);
+}
+
+Color Engine::clearAt(const BatchContext& c, int i) const {
+    const shading::Batch& b = *c.batch;
+    const int oi = b.plan().Oi;
+    if (oi < 0) return Color(0);
+    Color clear = Color(1) - b.color(oi, i);
+    // An atmosphere goes on behind what is not opaque, as if nothing were there. A medium ends, and another begins.
+    const PathRay& ray = c.rays[size_t(i)];
+    if (!world_->media_.empty() && !c.haze.empty() && c.haze[size_t(i)].on) {
+        const SurfaceBinding& binding = world_->bindings_[size_t(c.bindings[size_t(i)])];
+        if (ray.medium() >= 0 ||
+            binding.beyond(ray.media ? *ray.media : shading::Media(), c.points[size_t(i)].surface.n, ray.dir, ray.dir).top() >= 0)
+            clear = clear * c.haze[size_t(i)].slope;
+    }
+    for (int k = 0; k < 3; ++k) clear[k] = clear[k] > 0 ? std::min(clear[k], 1.f) : 0; // not a number: opaque
+    return clear;
+}
+
+void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, std::span<const uint32_t> asked) {
+    if (c.aside) return finishAside(c, first, lanes, sched);
+    shading::Batch& b = *c.batch;
+    int ci = b.plan().Ci, oi = b.plan().Oi;
+    const auto& wanted = world_->settings_.outputs;
+    std::vector<std::vector<int>> wantedAt; // by AOV: the kernel's outputs, for arrays one an element
+    for (const std::string& name : wanted) wantedAt.push_back(outputsNamed(b, name));
+    std::vector<char> perhaps; // by AOV: a surface that makes the names of its outputs when it runs gives it at some points, and zero at others
+    bool suspended = b.kernel().facts().suspends; // then nobody has asked for the atmosphere yet
+    const bool media = !world_->media_.empty();
+    if (suspended) hazeOfBatch(c, first, lanes, media);
+    for (int i = first; i < std::min(first + lanes, int(c.points.size())); ++i) {
+        const PathRay& ray = c.rays[i];
+        const SurfaceBinding& binding = world_->bindings_[c.bindings[i]];
+        Color color = ci >= 0 ? b.color(ci, i) : Color(0), opacity = oi >= 0 ? b.color(oi, i) : Color(1);
+        if (binding.matte && ray.camera()) {
+            sched.setDistance(c.targets[i], 0);
+            color = Color(0);
+        }
+        if (ray.first) {
+            sched.setNearer(c.targets[i], length(c.points[i].P - ray.origin), c.points[i].N);
+            sched.setTransmission(c.targets[i], Color(1) - opacity);
+        }
+        if (TraceSums* sums = sumsOf(c.targets[i])) sums->add(TraceSums::Blocked, extraOf(ray).part * opacity);
+        Color shown = color;
+        if (!c.haze.empty() && c.haze[size_t(i)].on && !(binding.matte && ray.camera())) { // pairs were scaled in shadeGroup
+            shown = c.haze[size_t(i)].shown;
+            opacity = c.haze[size_t(i)].opacity;
+        }
+        if (!isFinite(opacity)) notFinite(&ray, "Oi", binding.surface.get());
+        if (isFinite(shown))
+            deposit(sched,
+                    {c.targets[i], ray.weight * shown, LightEvent::Surface, &ray, extraOf(ray).share, binding.surface.get()});
+        else notFinite(&ray, "Ci", binding.surface.get());
+        if (ray.counts) {
+            SampleResult& r = *results[size_t(ray.sample->path)];
+            if (!binding.matte) r.opacity += ray.weight * opacity;
+            float z = dot(c.points[i].P, Vec3(0, 0, 1));
+            if (r.z >= 1e38f) r.z = z;
+            else if (r.zSecond >= 1e38f) r.zSecond = z;
+            size_t at = 0;
+            for (size_t k = 0; k < wanted.size(); ++k) {
+                const int width = world_->outputWidths_[k];
+                int to = 0;
+                if (!binding.aside.empty() && binding.aside[k]) { // asides() give it
+                    at += size_t(width);
+                    continue;
+                }
+                bool others = wantedAt[k].empty(); // what lights and the atmosphere give
+                if (!others && !c.lightChannels.empty()) {
+                    if (perhaps.empty())
+                        for (const std::string& name : wanted) perhaps.push_back(c.binding && givesPerhaps(*c.binding->surface, name));
+                    others = perhaps[k] && !givenAt(b, wanted[k], i);
+                }
+                for (int o : wantedAt[k]) {
+                    if (others) break;
+                    const int size = rsl::ir::components(b.kernel().outputs()[size_t(o)].kind);
+                    for (int w = 0; w < size && to < width; ++w, ++to) r.aovs[at + size_t(to)] += (size == 3 ? ray.weight[w] : luminance(ray.weight)) * b.value(o, w, i);
+                }
+                if (others && !c.lightChannels.empty())
+                    for (int w = 0; w < width; ++w)
+                        r.aovs[at + size_t(w)] += (width % 3 == 0 ? ray.weight[w % 3] : luminance(ray.weight)) *
+                                                  c.lightChannels[size_t(i) * (c.lightChannels.size() / c.points.size()) + at + size_t(w)];
+                at += size_t(width);
+            }
+        }
+        const float chance = c.passes.empty() ? 1 : c.passes[size_t(i)];
+        const Color clear = chance > 0 ? c.clear.empty() ? clearAt(c, i) : c.clear[size_t(i)] : Color(0);
+        if (maxComponent(clear) > 0)
+            passThrough(binding, ray, c.targets[i], c.points[i], clear, chance, asked.empty() ? 0 : asked[size_t(i - first)],
+                        sched);
+    }
+}
+
+void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
+    // Fills the batch; its points' instances are few.
+    auto fill = [&](BatchContext& to, InstanceRef SurfaceBinding::*which) {
+        views_.clear();
+        viewOf_.clear();
+        slotOf_.resize(world_->bindings_.size(), -1);
+        for (int b : to.bindings) {
+            int& slot = slotOf_[size_t(b)];
+            if (slot < 0) {
+                const InstanceRef& i = world_->bindings_[size_t(b)].*which;
+                slot = int(views_.size());
+                views_.push_back({&i->parameters, &i->toCurrent});
+            }
+            viewOf_.push_back(uint32_t(slot));
+        }
+        for (int b : to.bindings) slotOf_[size_t(b)] = -1;
+        if (!to.batch) to.batch = std::make_shared<shading::Batch>();
+        to.batch->assign(to.bound->kernel, *to.bound->plan, to.points, views_, viewOf_, *world_);
+        bindCall(to.batch->call(), to);
+    };
+    // Displacement again at the hit, for P, N (design decision 9). All points of a group with displacement share its binding.
+    if (c->binding->displacement) {
+        if (const auto d = displace(*c)) {
+            int po = d->batch->output("P"), no = d->batch->output("N");
+            int dpu = d->batch->output("Du:P"), dpv = d->batch->output("Dv:P"), dnu = d->batch->output("Du:N"), dnv = d->batch->output("Dv:N");
+            for (size_t k = 0; k < c->points.size(); ++k) {
+                ShadePoint& p = c->points[k];
+                if (po >= 0) { p.P = d->batch->color(po, int(k)); p.I = p.P - c->rays[k].begin(); }
+                if (no >= 0) p.N = d->batch->color(no, int(k));
+                // The surface shader's derivatives are those of the displaced surface. Its second partials stay those of the plain one.
+                if (po >= 0 && dpu >= 0 && dpv >= 0) {
+                    p.surface.dPdu = d->batch->color(dpu, int(k));
+                    p.surface.dPdv = d->batch->color(dpv, int(k));
+                    p.surface.Ng = cross(p.surface.dPdu, p.surface.dPdv) * p.surface.orientation;
+                }
+                if (no >= 0 && dnu >= 0 && dnv >= 0) {
+                    p.surface.dNdu = d->batch->color(dnu, int(k));
+                    p.surface.dNdv = d->batch->color(dnv, int(k));
+                }
+                if (p.surface.displaced) { // rays left and met the facet; shading offsets start there
+                    p.surface.P = p.surface.displacedP;
+                    p.surface.n = p.surface.displacedN;
+                    p.P = p.surface.displacedP;
+                }
+            }
+            if (c->binding->displacementTells) c->displaced = d;
+        }
+    }
+    const auto& kernel = *c->bound->kernel;
+    fill(*c, &SurfaceBinding::surface);
+    if (c->displaced) c->batch->tell(*c->displaced->batch);
+    auto aside = asides(*c, sched, [&](BatchContext& to) { fill(to, &SurfaceBinding::surface); });
+    if (c->binding->moveS) moveToFacets(*c); // the kernel moves P itself: it begins with the surface as it was
+    int n = int(c->points.size());
+    counters.points += uint64_t(n);
+    ++counters.batches;
+    counters.lanesUsed += uint64_t(n);
+    counters.lanesRun += uint64_t((n + kernel.lanes() - 1) / kernel.lanes() * kernel.lanes());
+
+    if (kernel.facts().suspends) {
+        startStrips(c, sched);
+        followAsides(shareLight(*c, {}, aside, sched), aside, sched);
+        return;
+    }
+    kernel.run(&c->batch->call());
+    c->ran();
+
+    // Affine pairs by point, in order of emission. Atmosphere scales them.
+    const bool media = !world_->media_.empty();
+    bool hazy = media || std::any_of(c->bindings.begin(), c->bindings.end(), [&](int b) { return world_->bindings_[size_t(b)].atmosphere.shader != nullptr; });
+    std::vector<Color> slope(n, Color(1));
+    if (hazy) {
+        hazeOfBatch(*c, 0, n, media || !c->emits.empty());
+        for (int i = 0; i < n; ++i)
+            if (c->haze[size_t(i)].on) slope[size_t(i)] = c->haze[size_t(i)].slope;
+    }
+    std::vector<uint32_t>& occurrence = occurrence_;
+    occurrence.assign(c->emits.empty() ? 0 : c->bound->sites.size() * size_t(n), 0);
+    std::vector<AskedLobe> asked; // only where outputs share lobes
+    for (const EmitRecord& e : c->emits) {
+        const SiteInfo& s = c->bound->sites[e.site];
+        const float* rows = c->arena.data() + e.offset;
+        for (int lane = 0; lane < e.lanes; ++lane) {
+            int point = e.first + lane;
+            if (!(e.mask >> lane & 1) || point >= n) continue;
+            Color weight = Color(rows[lane], rows[e.lanes + lane], rows[2 * e.lanes + lane]) * slope[point];
+            if (!isFinite(weight)) {
+                notFinite(*c, c->rays[size_t(point)], uint32_t(e.site));
+                continue;
+            }
+            if (weight == Color(0)) continue;
+            if (world_->bindings_[c->bindings[point]].matte && c->rays[point].camera()) continue;
+            const float* args = rows + size_t(3) * e.lanes;
+            if (s.kind == SiteKind::LightVisibility) {
+                const size_t had = shadows.size();
+                lightVisibility(*c, s, point, args, e.lanes, lane, weight * c->rays[point].weight, c->targets[point],
+                                args[size_t(s.rows[0]) * e.lanes + lane]);
+                if (shadows.size() > had) shadows.back().share = extraOf(c->rays[size_t(point)]).share;
+                continue;
+            }
+            if (s.kind == SiteKind::Transmission) weight *= c->rays[point].weight;
+            const size_t had = lobes.size();
+            request(*c, s, point, args, e.lanes, lane, weight, c->targets[point], false, occurrence[size_t(e.site) * size_t(n) + size_t(point)]++);
+            if (!aside.empty() && lobes.size() > had) asked.push_back({int(had), int(&e - c->emits.data()), lane});
+        }
+    }
+    if (world_->settings_.hider == Hider::Path) {
+        c->clear.resize(size_t(n));
+        for (int i = 0; i < n; ++i) c->clear[size_t(i)] = clearAt(*c, i);
+        c->passes.assign(size_t(n), 1.f);
+    }
+    const auto rest = shareLight(*c, asked, aside, sched);
+    gather(*c, sched);
+    flushShadows(sched);
+    finishStrip(*c, 0, n, sched);
+    followAsides(rest, aside, sched);
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,132 @@
+#include "world/arealight.h"
+#include "lobes/sampling.h"
+#include <algorithm>
+
+namespace alpenglow::transport {
+
+namespace {
+// A whole sphere whose transform keeps it one: rows of the upper 3x3 of equal length and orthogonal.
+bool wholeSphere(const geometry::Shape& s, Vec3& centre, float& radius) {
+    const auto& p = *s.source().primitive;
+    if (p.kind != "Sphere" || p.numbers.size() < 4 || !s.exact()) return false;
+    double r = std::fabs(p.numbers[0]);
+    double lo = std::min(p.numbers[1], p.numbers[2]), hi = std::max(p.numbers[1], p.numbers[2]);
+    if (lo > -r || hi < r || std::fabs(p.numbers[3]) < 360) return false;
+    const auto& m = s.toCamera().m;
+    Vec3d rows[3];
+    for (int i = 0; i < 3; ++i) rows[i] = {m[i][0], m[i][1], m[i][2]};
+    double l = dot(rows[0], rows[0]);
+    for (int i = 0; i < 3; ++i) {
+        if (std::fabs(dot(rows[i], rows[i]) - l) > 1e-6 * l) return false;
+        if (std::fabs(dot(rows[i], rows[(i + 1) % 3])) > 1e-6 * l) return false;
+    }
+    centre = Vec3(Vec3d(m[3][0], m[3][1], m[3][2]));
+    radius = float(r * std::sqrt(l));
+    return true;
+}
+
+// 1 - cos of the half angle under which the sphere is seen from outside, without cancellation.
+double capOneMinusCos(double radius, double distance) {
+    double s2 = radius * radius / (distance * distance);
+    return s2 / (1 + std::sqrt(std::max(0.0, 1 - s2)));
+}
+} // namespace
+
+Emitter::Emitter(std::vector<const geometry::Shape*> shapes, std::vector<uint32_t> visibility) {
+    for (size_t i = 0; i < shapes.size(); ++i) {
+        const geometry::Shape* s = shapes[i];
+        double a = s->area();
+        if (!(a > 0) || !std::isfinite(a)) continue;
+        Entry e{s, a, 0};
+        if (i < visibility.size()) e.visibility = visibility[i];
+        e.sphere = wholeSphere(*s, e.centre, e.radius);
+        entries_.push_back(e);
+        area_ += a;
+    }
+    double sum = 0;
+    for (auto& e : entries_) {
+        e.share /= area_;
+        e.cumulative = sum += e.share;
+        entryOf_[e.shape] = int(&e - entries_.data());
+    }
+}
+
+geometry::Bounds Emitter::bounds() const {
+    geometry::Bounds b;
+    for (const Entry& e : entries_) b.add(e.shape->bounds());
+    return b;
+}
+
+float Emitter::areaPdf(const Entry& e, const geometry::SurfacePoint& p, const Vec3& from) const {
+    Vec3 d = p.P - from;
+    float d2 = dot(d, d), cosine = std::fabs(dot(d, p.n)) / std::sqrt(d2);
+    if (!(d2 > 0) || !(cosine > 1e-7f)) return 0;
+    return float(e.share * e.shape->sampleDensity(p) * d2 / cosine);
+}
+
+const Emitter::Entry& Emitter::entryAt(float choose) const {
+    const auto above = [](float c, const Entry& e) { return c < e.cumulative; };
+    return *std::upper_bound(entries_.begin(), entries_.end() - 1, choose, above);
+}
+
+bool Emitter::sample(const Vec3& from, Vec2 u, float choose, Sample& out, geometry::SurfacePoint& point, uint32_t needs) const {
+    if (entries_.empty()) return false;
+    const Entry& e = entryAt(choose);
+    out.shape = e.shape;
+    out.visibility = e.visibility;
+    if (e.sphere) {
+        Vec3 axis = e.centre - from;
+        double dc = length(Vec3d(axis));
+        if (dc > e.radius * 1.0001) {
+            double cap = capOneMinusCos(e.radius, dc);
+            Vec3 w = Basis(normalize(axis)).toWorld(sampleCone(float(cap), u));
+            geometry::ExactHit hits[4];
+            Vec3d far = Vec3d(from);
+            int n = e.shape->exactHits(far, Vec3d(w), hits);
+            // The line grazes the rim in rounding: then this draw is lost, with a probability of the order of float epsilon.
+            int k = 0;
+            while (k < n && !(hits[k].t > 0)) ++k;
+            if (k == n) return false;
+            e.shape->evaluateHit(0, hits[k].u, hits[k].v, point, needs);
+            out.pdf = float(e.share / (2 * kPi * cap));
+            out.direction = w;
+            out.distance = float(hits[k].t);
+            return true;
+        }
+    }
+    e.shape->sampleArea(u.x, u.y, point, needs);
+    Vec3 d = point.P - from;
+    out.distance = length(d);
+    if (!(out.distance > 0)) return false;
+    out.direction = d / out.distance;
+    out.pdf = areaPdf(e, point, from);
+    return out.pdf > 0 && std::isfinite(out.pdf);
+}
+
+bool Emitter::sampleSurface(const Vec3& from, Vec2 u, float choose, Sample& out, geometry::SurfacePoint& point,
+                            uint32_t needs) const {
+    if (entries_.empty()) return false;
+    const Entry& e = entryAt(choose);
+    out.shape = e.shape;
+    out.visibility = e.visibility;
+    e.shape->sampleArea(u.x, u.y, point, needs);
+    const Vec3 d = point.P - from;
+    out.distance = length(d);
+    if (!(out.distance > 0)) return false;
+    out.direction = d / out.distance;
+    out.pdf = float(e.shape->sampleDensity(point) * e.share * area_); // the share of a shape is its part of the area
+    return out.pdf > 0 && std::isfinite(out.pdf);
+}
+
+float Emitter::pdf(const geometry::Shape* shape, const geometry::SurfacePoint& hit, const Vec3& from) const {
+    const auto i = entryOf_.find(shape);
+    if (i == entryOf_.end()) return 0;
+    const Entry& e = entries_[size_t(i->second)];
+    if (e.sphere) {
+        double dc = length(Vec3d(e.centre) - Vec3d(from));
+        if (dc > e.radius * 1.0001) return float(e.share / (2 * kPi * capOneMinusCos(e.radius, dc)));
+    }
+    return areaPdf(e, hit, from);
+}
+
+} // namespace alpenglow::transport

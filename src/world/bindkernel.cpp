@@ -1,0 +1,183 @@
+// What the call sites of a kernel mean to the engine, worked out once per kernel.
+#include "shadeops/specular.h"
+#include "wave/engine.h"
+#include "world/raysets.h"
+
+namespace alpenglow::transport {
+
+namespace {
+
+SiteKind kindOf(const std::string& op) {
+    static const std::map<std::string, SiteKind> kinds = {
+        {"ambient", SiteKind::Ambient}, {"diffuse", SiteKind::Diffuse}, {"specular", SiteKind::Specular}, {"specularstd", SiteKind::Specular},
+        {"phong", SiteKind::Phong}, {"trace", SiteKind::Trace}, {"transmission", SiteKind::Transmission},
+        {"lightvisibility", SiteKind::LightVisibility}, {"illuminance", SiteKind::Illuminance}, {"texture", SiteKind::Texture},
+        {"environment", SiteKind::Environment}, {"surface", SiteKind::Message}, {"displacement", SiteKind::Message},
+        {"atmosphere", SiteKind::Message}, {"incident", SiteKind::Message}, {"opposite", SiteKind::Message}, {"lightsource", SiteKind::LightSource}, {"attribute", SiteKind::Attribute},
+        {"option", SiteKind::Option}, {"rendererinfo", SiteKind::RendererInfo}, {"rayinfo", SiteKind::RayInfo},
+        {"raylevel", SiteKind::RayLevel}, {"isindirectray", SiteKind::RayLevel}, {"isshadowray", SiteKind::RayLevel},
+        {"textureinfo", SiteKind::TextureInfo}, {"lightsetup", SiteKind::LightSetup}, {"getlight", SiteKind::LightHandles}, {"getvar", SiteKind::PrimitiveVariable}, {"shadername", SiteKind::ShaderName},
+        {"getlights", SiteKind::LightHandles}, {"islightcategory", SiteKind::LightHandles}, {"currentlight", SiteKind::LightHandles}, {"lightcall", SiteKind::LightHandles},
+        {"lightparameter", SiteKind::LightHandles}};
+    auto i = kinds.find(op);
+    return i == kinds.end() ? SiteKind::Other : i->second;
+}
+
+/// The parameters of a trace() beyond the common ones. What is not followed is said once.
+std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKernel& k, WorldImpl& world) {
+    auto t = std::make_shared<TraceSite>();
+    const SourcePlace place{s.place.file < int(k.files().size()) ? k.files()[size_t(s.place.file)] : "", s.place.line, s.place.column};
+    auto row = [&](const char* name) { auto f = i.named.find(name); return f == i.named.end() ? -1 : f->second; };
+    auto text = [&](const char* name) { auto f = i.text.find(name); return f == i.text.end() ? std::string() : f->second; };
+    auto said = [&](const std::string& what, const std::string& message) {
+        world.diagnostics_->reportOnce("trace:" + what + place.file + std::to_string(place.line), {Severity::Warning, Rie::Unimplement, place, "trace(): " + message, {}, {}});
+    };
+    t->udir = row("udir");
+    t->roughness = row("roughness");
+    t->roughnessv = row("roughnessv");
+    t->absorption = row("absorption");
+    t->tint = row("environmenttint");
+    const std::string part = text("__part");
+    if (!part.empty()) t->part = part[0] - '0';
+    std::map<int, int> ends; // by row: where the value ends
+    int at = 0;
+    for (auto kind : s.argKinds) {
+        const int begin = at;
+        ends[begin] = at += rsl::ir::components(kind);
+    }
+    for (const char* name : {"eta", "eta[0]", "eta[1]"})
+        if (const int r = row(name); r >= 0) t->eta.push_back({r, std::min(3, ends[r] - r)});
+    for (int n = 0; row(("lobeparameters[" + std::to_string(n) + "]").c_str()) >= 0; ++n) t->lobes.push_back(row(("lobeparameters[" + std::to_string(n) + "]").c_str()));
+    for (const char* name : {"distribution", "bsdf", "environmentmap", "environmentspace"})
+        if (row(name) >= 0) said(name, "\"" + std::string(name) + "\" must be known when the shader is compiled; it is taken as not given");
+    if (const std::string map = text("environmentmap"); !map.empty()) {
+        t->map = world.textures_->open(map, world.settings_.texturePaths, place);
+        if (const std::string space = text("environmentspace"); !space.empty()) world.matrix("current", space, t->toMap);
+    }
+    for (const char* name : {"transmission", "environmentcontribution", "unshadowedenvironment", "arealightcontribution", "unshadowedarealight"})
+        t->sums |= i.resultRows.count(name) > 0;
+    t->onlyLights = !i.resultRows.empty() && i.resultRows.count("arealightcontribution") + i.resultRows.count("unshadowedarealight") == i.resultRows.size();
+    return t;
+}
+
+std::shared_ptr<const TextureSite> textureSite(const SiteInfo& i, const rsl::ir::Site& s) {
+    auto t = std::make_shared<TextureSite>();
+    const auto row = [&](const char* name) {
+        const auto f = i.named.find(name);
+        return f == i.named.end() ? -1 : f->second;
+    };
+    t->filter = row("filter");
+    t->channel = row("channel");
+    t->fill = row("fill");
+    t->width = row("width");
+    t->swidth = row("swidth");
+    t->twidth = row("twidth");
+    t->blur = row("blur");
+    t->sblur = row("sblur");
+    t->tblur = row("tblur");
+    if (const auto f = i.text.find("filter"); f != i.text.end())
+        if (const auto known = texture::filterByName(f->second)) t->options.filter = *known;
+    if (!s.strings.empty()) t->name = s.strings[0];
+    t->computed = t->name.empty() && !s.argKinds.empty() && s.argKinds[0] == rsl::ir::Kind::String;
+    t->count = s.resultKinds.empty() ? 0 : std::min(rsl::ir::components(s.resultKinds[0]), 3);
+    t->options.asLight = t->count == 3; // what is read as a float is data: a height, an opacity, a mask
+    t->slopes = std::min(i.resultRowCount - t->count, 27);
+    t->firsts = t->count * (i.kind == SiteKind::Texture ? 2 : 3);
+    t->rows.assign(i.rows.begin() + (t->computed && !i.rows.empty()), i.rows.end());
+    return t;
+}
+
+} // namespace
+
+size_t rowsOf(const SiteInfo& i, int row) {
+    int at = 0;
+    for (auto kind : i.site->argKinds) {
+        if (at == row) return size_t(rsl::ir::components(kind));
+        at += rsl::ir::components(kind);
+    }
+    return 0;
+}
+
+BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed, bool path, WorldImpl* world) {
+    BoundKernel b;
+    b.path = path;
+    b.mixed = mixed;
+    if (!k) return b;
+    for (const auto& s : k->sites()) {
+        SiteInfo i;
+        i.kind = kindOf(s.op);
+        i.site = &s;
+        int row = 0;
+        std::vector<int> starts;
+        for (auto kind : s.argKinds) {
+            starts.push_back(row);
+            row += rsl::ir::components(kind);
+        }
+        size_t numericPairs = 0;
+        for (const auto& text : s.pairStrings) numericPairs += text.empty();
+        size_t positional = starts.size() - std::min(starts.size(), numericPairs), next = positional;
+        i.rows.assign(starts.begin(), starts.begin() + long(positional));
+        for (size_t p = 0; p < s.names.size(); ++p) {
+            if (!s.pairStrings[p].empty()) i.text[s.names[p]] = s.pairStrings[p];
+            else if (next < starts.size()) i.named[s.names[p]] = starts[next++];
+        }
+        int out = 0;
+        for (size_t r = 0; r < s.resultKinds.size(); ++r) {
+            std::string name = r < s.resultNames.size() ? s.resultNames[r] : "";
+            i.resultRows[name] = out;
+            out += rsl::ir::components(s.resultKinds[r]);
+        }
+        i.resultRowCount = out;
+        const auto result = [&](const char* name) {
+            const auto f = i.resultRows.find(name);
+            return f == i.resultRows.end() ? -1 : f->second;
+        };
+        i.results = {result(""), result("dist"), result("transmission"), result("hitnormal"), result("environmentcontribution"),
+                     result("unshadowedenvironment"), result("arealightcontribution"), result("unshadowedarealight")};
+        if (!s.strings.empty() && !s.strings[0].empty()) i.nameId = rsl::internString(s.strings[0]);
+        i.setUp = i.text.count("__setup") > 0;
+        i.outside = i.text.count("__outside") > 0;
+        if (const auto cache = i.text.find("lightcache"); cache != i.text.end()) i.refresh = cache->second == "refresh";
+        if (const auto category = i.named.find("category"); category != i.named.end()) i.rowCategory = category->second;
+        if (const std::string sent = sentStrings(i); !sent.empty()) i.sentStrings = std::hash<std::string>{}(sent);
+        if (i.kind == SiteKind::Texture || i.kind == SiteKind::Environment) i.map = textureSite(i, s);
+        if (i.kind == SiteKind::Diffuse) i.lobe = findLobe("diffuse");
+        if (i.kind == SiteKind::Specular) i.lobe = findLobe("specular");
+        if (i.kind == SiteKind::Phong) i.lobe = findLobe("phong");
+        i.exponent = s.op == "specularstd" || world->rispecSpecular_ ? kRispecExponent : kSpecularExponent;
+        auto rowOf = [&](const char* name) { auto f = i.named.find(name); return f == i.named.end() ? -1 : f->second; };
+        static const std::string kOutput = "surface:";
+        for (const auto& [name, at] : i.named)
+            if (name.rfind(kOutput, 0) == 0 && i.kind != SiteKind::LightSetup) i.outputs.push_back({name.substr(kOutput.size()), at, int(rowsOf(i, at))});
+        i.rowWo = rowOf("wo");
+        i.rowExponent = rowOf("exponent");
+        i.rowCone = rowOf("samplecone");
+        i.rowHorizon = rowOf("horizon");
+        i.rowLights = rowOf("samplearealights");
+        if (i.kind == SiteKind::Trace || i.kind == SiteKind::Transmission) {
+            auto text = [&](const char* name) { auto f = i.text.find(name); return f == i.text.end() ? std::string() : f->second; };
+            i.label = rsl::internString(!text("label").empty() ? text("label") : text("raylabel"));
+            i.rays = raySite(i, *world, {s.place.file < int(k->files().size()) ? k->files()[size_t(s.place.file)] : "", s.place.line, s.place.column});
+        }
+        if (i.kind == SiteKind::Trace) {
+            auto text = [&](const char* name, const char* fallback) { auto f = i.text.find(name); return f == i.text.end() ? std::string(fallback) : f->second; };
+            std::string distribution = text("distribution", text("bsdf", "uniform").c_str());
+            i.lobe = findLobe(distribution);
+            if (!i.lobe) {
+                i.lobe = findLobe("uniform");
+                world->diagnostics_->reportOnce("distribution:" + distribution,
+                    {Severity::Warning, Rie::Unimplement, {k->files().empty() ? "" : k->files()[s.place.file], s.place.line, s.place.column},
+                     "trace(): distribution \"" + distribution + "\" is not yet available; one ray along R is traced", {}, {}});
+            }
+            i.trace = traceSite(i, s, *k, *world);
+        }
+        b.sites.push_back(std::move(i));
+    }
+    b.plan = std::make_shared<shading::BatchPlan>(*k, mixed);
+    world->footprints_ |= b.plan->usesFootprint();
+    for (const SiteInfo& i : b.sites) world->footprints_ |= i.rays && i.rays->base >= 0; // "samplebase" is a part of it
+    b.kernel = std::move(k);
+    return b;
+}
+
+} // namespace alpenglow::transport

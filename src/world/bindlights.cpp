@@ -1,0 +1,293 @@
+// Lights of a frame bound to their kernels. A shader with several illuminate or solar statements becomes several lights: the first
+// keeps the frame's index, the others are its parts, numbered behind all of the frame's.
+#include "world/surfaces.h"
+
+namespace alpenglow::transport {
+
+namespace {
+
+// The power-over-distance bound needs an idea of how bright a light is: its kernel is asked from these directions.
+constexpr int kProbes = 26;
+
+std::vector<std::string> outputsOf(const rsl::ir::KernelFacts& f, const std::vector<std::string>& extra) {
+    std::vector<std::string> names;
+    for (size_t k = 0; k < f.blocks.size(); ++k) {
+        std::string tail = k ? "#" + std::to_string(k) : "";
+        if (f.blocks[k] == "outside") names.push_back("Cl" + tail);
+        else for (const char* n : {"L", "Cl", "Ol", "lit"}) names.push_back(n + tail);
+    }
+    if (f.blocks.empty()) names = {"Cl", "Ol"};
+    names.insert(names.end(), extra.begin(), extra.end());
+    return names;
+}
+
+float numberOf(const scene::AttributesRef& a, const char* key, float fallback) {
+    const scene::Param* p = a ? a->value(key) : nullptr;
+    return p && !p->numbers.empty() ? p->numbers[0] : fallback;
+}
+
+/// Whether an area light gives the mean of its Cl over samples of its geometry, as BMRT and 3Delight had it, and not radiance.
+bool givesMean(const scene::Light& source, const std::string& shader, bool path, Diagnostics& d) {
+    static const std::set<std::string> kRadiance = {"slrect", "slpoint", "slspot", "sldirect"}; // as they ship
+    const scene::Param* p = source.attributes ? source.attributes->value("light:units") : nullptr;
+    const std::string units = p && !p->strings.empty() ? p->strings[0] : "";
+    if (units == "samples") return true;
+    if (!units.empty() && units != "radiance")
+        d.reportOnce("lightunits:" + units, {Severity::Warning,
+                                             Rie::BadToken,
+                                             p->place,
+                                             "unknown units of light \"" + units + "\"",
+                                             "\"radiance\" and \"samples\" are known",
+                                             {}});
+    return units != "radiance" && !path && !kRadiance.count(shader);
+}
+
+} // namespace
+
+void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const geometry::Shape&)>& visibility) {
+    const bool path = settings_.hider == Hider::Path;
+    const auto aovsOf = [&](const std::string& name) { // by number; measureOutputs() makes the place of its first number of them
+        std::vector<int> all; // "list[1]" is also one of "list"
+        for (size_t i = 0; i < settings_.outputs.size(); ++i)
+            if (settings_.outputs[i] == name || settings_.outputs[i] == name.substr(0, name.find('['))) all.push_back(int(i));
+        return all;
+    };
+    std::map<int, std::vector<const geometry::Shape*>> emitters;
+    for (const auto& s : shapes_)
+        if (s->attributes().areaLight >= 0) emitters[s->attributes().areaLight].push_back(s.get());
+    size_t own = frame_->lights.size();
+    lights_.resize(own);
+    for (size_t li = 0; li < own; ++li) {
+        const scene::Light& source = frame_->lights[li];
+        BoundLight l;
+        l.source = &source;
+        l.handle = source.handle;
+        l.kind = LightKind::Ambient;
+        l.samples = 0;
+        l.instance = source.shader ? instance(*source.shader, rsl::ShaderKind::Light, d) : nullptr;
+        if (source.attributes) l.instance = withCoShaders(l.instance, source.attributes->coshaders, d);
+        if (l.instance) {
+            std::vector<std::string> extra, outputs;
+            for (const char* name : {"__nondiffuse", "__nonspecular"})
+                for (const auto& p : l.instance->program->parameters())
+                    if (p.name == name) extra.push_back(std::string("param:") + name);
+            for (const auto& p : l.instance->program->parameters())
+                if (const std::string name = "param:" + p.name; p.output && p.type.base != rsl::Base::String &&
+                                                                std::find(extra.begin(), extra.end(), name) == extra.end())
+                    extra.push_back(name);
+            // What it gives to the outputs of the surface by outputchannel(), where a display asks for it.
+            for (const std::string& name : settings_.outputs)
+                if (givesChannel(*l.instance, name)) addOutput(*l.instance, name, extra);
+            if (!extra.empty()) {
+                outputs = {"L", "Cl", "Ol", "lit"};
+                outputs.insert(outputs.end(), extra.begin(), extra.end());
+            }
+            l.kernel = kernel(*l.instance, outputs, {}, false, false, d);
+            if (l.kernel && !extra.empty() && l.kernel.kernel->facts().blocks.size() != 1) // more outputs than was thought
+                l.kernel = kernel(*l.instance, outputsOf(l.kernel.kernel->facts(), extra), {}, false, false, d);
+        }
+        if (!l.kernel) {
+            lights_[li] = std::move(l);
+            continue;
+        }
+        for (const SiteInfo& s : l.kernel.sites)
+            if (s.kind == SiteKind::Message || s.kind == SiteKind::LightHandles) {
+                l.asksSurface = lightsAsk_ = true;
+                if (s.site->op == "surface" && !s.site->strings.empty()) lightMessages_.push_back(s.site->strings[0]);
+                if (s.site->op == "displacement") lightDisplacements_.insert(s.site->strings.empty() ? "" : s.site->strings[0]);
+            }
+        std::vector<std::string> blocks = l.kernel.kernel->facts().blocks;
+        if (blocks.empty()) blocks = {"outside"};
+        bool area = source.area && emitters.count(int(li));
+        if (area) {
+            std::vector<uint32_t> seen;
+            for (const geometry::Shape* s : emitters[int(li)]) seen.push_back(visibility(*s));
+            l.emitter = std::make_shared<Emitter>(emitters[int(li)], std::move(seen));
+        }
+        l.samples = std::clamp(int(numberOf(source.attributes, "light:samples", numberOf(source.attributes, "light:nsamples", 1))), 1, 1024);
+        if (const scene::Param* p = source.attributes ? source.attributes->value("light:shadows") : nullptr; p && !path)
+            l.shadows = !p->strings.empty() ? p->strings[0] == "on" : !p->numbers.empty() && p->numbers[0] != 0;
+        if (const scene::Param* p = source.attributes ? source.attributes->value("light:samplingstrategy") : nullptr; p && !p->strings.empty()) {
+            if (p->strings[0] == "trace") l.strategy = LightStrategy::Trace;
+            else if (p->strings[0] == "illuminance") l.strategy = LightStrategy::Illuminance;
+            else d.reportOnce("samplingstrategy:" + p->strings[0], {Severity::Warning, Rie::BadToken, p->place,
+                              "unknown sampling strategy \"" + p->strings[0] + "\"", "\"illuminance\" and \"trace\" are known", {}});
+        }
+        for (size_t k = 0; k < blocks.size(); ++k) {
+            BoundLight part = l;
+            std::string tail = k ? "#" + std::to_string(k) : "";
+            const auto& outputs = l.kernel.kernel->outputs();
+            std::set<std::string> channels; // "list[1]" may be there twice: of "list", and by itself
+            for (size_t i = 0; i < outputs.size(); ++i) {
+                const std::string& n = outputs[i].name;
+                if (n == "L" + tail) part.outL = int(i);
+                else if (n == "Cl" + tail) part.outCl = int(i);
+                else if (n == "lit" + tail) part.outLit = int(i);
+                else if (n == "Ol" + tail) part.outOl = int(i);
+                else if (n == "param:__nondiffuse") part.nonDiffuse = int(i);
+                else if (n == "param:__nonspecular") part.nonSpecular = int(i);
+                if (n.rfind("param:", 0) == 0) {
+                    if (n == "param:__sentL[0]") part.sentL = part.valueWidth;
+                    if (n == "param:__sentCl[0]") part.sentCl = part.valueWidth;
+                    part.values.push_back({n.substr(6), int(i), rsl::ir::components(outputs[i].kind)});
+                    part.valueWidth += part.values.back().components;
+                } else if (n.rfind(kGiven, 0) == 0) {
+                    part.values.push_back({n, int(i), 1});
+                    part.valueWidth += 1;
+                } else if (givesChannel(*l.instance, n) && channels.insert(n).second) {
+                    for (const int aov : aovsOf(n)) {
+                        part.values.push_back({n, int(i), rsl::ir::components(outputs[i].kind), aov});
+                        part.valueWidth += part.values.back().components;
+                        part.channels = lightChannels_ = true;
+                    }
+                }
+            }
+            if (part.outCl < 0) continue;
+            bool solar = blocks[k].rfind("solar", 0) == 0;
+            if (blocks[k] == "outside") part.kind = LightKind::Ambient;
+            else if (blocks[k] == "solar()" || l.instance->name == "envlight") part.kind = LightKind::Environment;
+            else if (solar) part.kind = LightKind::Distant;
+            else part.kind = area && part.sentCl < 0 ? LightKind::Area : LightKind::Point; // samples need no geometry
+            part.cone = blocks[k] == "solar cone";
+            if (part.kind != LightKind::Area && !((part.kind == LightKind::Environment || part.cone) && path)) part.samples = 1;
+            if (part.sentCl >= 0) { // its samples: each has a turn
+                part.samples = limits::kLightTurns;
+                part.shadows |= !path && l.instance->parameters.numbers.count("__sentShadows") > 0;
+            }
+            if (part.kind == LightKind::Area && givesMean(source, l.instance->name, path, d)) {
+                part.mean = true;
+                part.strategy = LightStrategy::Illuminance; // it has no radiance that trace() could find
+            }
+            if (part.kind != LightKind::Area) part.emitter = nullptr;
+            if (k == 0) {
+                lights_[li] = std::move(part);
+            } else {
+                lights_[li].parts.push_back(int(lights_.size()));
+                lights_.push_back(std::move(part));
+            }
+        }
+    }
+    std::sort(lightMessages_.begin(), lightMessages_.end());
+    lightMessages_.erase(std::unique(lightMessages_.begin(), lightMessages_.end()), lightMessages_.end());
+}
+
+void WorldImpl::countLightTraces() {
+    const auto sitesOf = [](const BoundKernel& k, auto test) {
+        return double(std::count_if(k.sites.begin(), k.sites.end(), [&](const SiteInfo& s) { return test(s.kind); }));
+    };
+    double traces = 0, uses = 1;
+    for (const BoundLight& l : lights_) traces += sitesOf(l.kernel, [](SiteKind k) { return k == SiteKind::Trace; });
+    traces *= std::min(1.0, double(limits::kLightsSampled) / double(std::max<size_t>(lights_.size(), 1)));
+    for (const SurfaceBinding& b : bindings_)
+        for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV})
+            uses = std::max(uses, sitesOf(*k, [](SiteKind s) {
+                                return s == SiteKind::LightSetup || (s >= SiteKind::Ambient && s <= SiteKind::Trace);
+                            }));
+    lightTraces_ = int(std::ceil(traces * uses));
+}
+
+void WorldImpl::bindSentStrings(Diagnostics& d) {
+    std::map<std::string, std::map<std::string, std::string>> sent;
+    for (const SurfaceBinding& b : bindings_)
+        for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV, &b.atmosphere.kernel})
+            for (const SiteInfo& s : k->sites)
+                if (const std::string key = sentStrings(s); s.kind == SiteKind::LightSetup && !key.empty())
+                    for (const auto& [name, value] : s.text)
+                        if (name.rfind("send:light:", 0) == 0) sent[key][name.substr(11)] = value;
+    for (BoundLight& l : lights_)
+        for (const auto& [key, values] : sent) {
+            if (!l.kernel) continue;
+            ShaderInstance other = *l.instance;
+            bool differs = false;
+            for (const auto& [name, value] : values)
+                if (auto have = other.parameters.strings.find(name); have != other.parameters.strings.end() && have->second != value) {
+                    have->second = value;
+                    differs = true;
+                }
+            std::vector<std::string> outputs;
+            for (const auto& o : l.kernel.kernel->outputs()) outputs.push_back(o.name);
+            if (!differs) continue;
+            BoundKernel k = kernel(other, outputs, {}, false, false, d);
+            if (k && k.kernel->outputs().size() == outputs.size()) l.variants[key] = std::move(k);
+        }
+}
+
+std::vector<int> WorldImpl::withParts(const std::vector<int>& lights) const {
+    std::vector<int> all;
+    for (int l : lights) {
+        all.push_back(l);
+        all.insert(all.end(), lights_[size_t(l)].parts.begin(), lights_[size_t(l)].parts.end());
+    }
+    return all;
+}
+
+void WorldImpl::measureLights(Engine& engine, Diagnostics& d) {
+    bool many = std::any_of(sampledLights_.begin(), sampledLights_.end(), [](const auto& list) { return list.size() > size_t(limits::kLightsSampled); });
+    for (BoundLight& l : lights_) {
+        if (!l.kernel || (l.kind == LightKind::Area && (!l.emitter || l.emitter->empty()))) continue;
+        auto brightness = [&](std::vector<ShadePoint> q) {
+            std::vector<LightValue> v(q.size());
+            engine.evaluateLight(l, q, v);
+            std::vector<float> b;
+            for (const LightValue& x : v) b.push_back(x.lit && std::isfinite(luminance(x.Cl)) ? luminance(x.Cl) : 0);
+            return b;
+        };
+        auto towards = [](const Vec3& p, const Vec3& n, const Vec3& lit) {
+            ShadePoint q;
+            q.P = p;
+            q.N = n;
+            q.Ps = lit;
+            q.Ns = normalize(p - lit);
+            return q;
+        };
+        if (l.kind == LightKind::Area) {
+            geometry::Bounds box = l.emitter->bounds();
+            l.centre = (box.lo + box.hi) * 0.5f;
+            l.radius = length(box.hi - box.lo) * 0.5f;
+            // Radiance does not change along a ray. A kernel whose Cl falls off with the square of the distance along the normal divides by
+            // it itself: what it means is an intensity.
+            float step = std::max(std::sqrt(float(l.emitter->area())), 1e-6f), mean = 0;
+            int square = 0, seen = 0;
+            for (int k = 0; k < 4; ++k) {
+                const geometry::Shape* shape = nullptr;
+                geometry::SurfacePoint p = l.emitter->point({0.3f + 0.2f * float(k & 1), 0.35f + 0.15f * float(k >> 1)}, shape);
+                std::vector<ShadePoint> q;
+                for (float t : {1.f, 2.f, 4.f}) {
+                    ShadePoint s = towards(p.P, p.n, p.P + p.n * (step * t));
+                    s.shape = shape;
+                    s.surface = p;
+                    q.push_back(s);
+                }
+                std::vector<float> b = brightness(q);
+                mean += b[0] / 4;
+                if (!(b[0] > 0)) continue;
+                ++seen;
+                square += std::fabs(b[1] * 4 / b[0] - 1) < 1e-3f && std::fabs(b[2] * 16 / b[0] - 1) < 1e-3f;
+            }
+            if (l.mean) {
+                l.power = mean * step * step;
+                continue;
+            }
+            if (seen > 0 && square == seen) {
+                l.intensityScale = float(kPi) / float(l.emitter->area());
+                mean *= l.intensityScale * step * step;
+                d.reportOnce("intensity:" + l.instance->name, {Severity::Info, Rie::NoError, l.instance->place,
+                             "area light \"" + l.instance->name + "\" divides by the distance itself; its Cl is read as intensity, spread over its surface",
+                             "the Cl of an area light is the radiance that leaves it: without the division it needs no guess", {}});
+            }
+            l.power = mean * float(l.emitter->area()) / float(kPi);
+        } else if (many && (l.kind == LightKind::Point || l.kind == LightKind::Distant)) {
+            l.centre = Vec3(transformPoint(l.instance->toCurrent, {0, 0, 0}));
+            std::vector<ShadePoint> q;
+            for (int k = 0; k < kProbes; ++k) {
+                int c = k < 13 ? k : k + 1; // the 26 neighbours in a cube of 27
+                Vec3 dir = normalize(Vec3(float(c % 3 - 1), float(c / 3 % 3 - 1), float(c / 9 - 1)));
+                q.push_back(towards(l.centre, dir, l.centre + dir));
+            }
+            std::vector<float> b = brightness(q);
+            l.power = *std::max_element(b.begin(), b.end());
+        }
+    }
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,140 @@
+// Displacement when shapes are diced: by displacement shaders, by classes that are both, and by surface shaders that move P.
+#include "rsl/ir/edit.h"
+#include "wave/engine.h"
+#include "geometry/dice.h"
+
+namespace alpenglow::transport {
+
+namespace {
+
+/// What in a kernel that gives P alone cannot be known when shapes are diced; "" when nothing. `moves`: P is not what it was.
+std::string undiceable(const rsl::ir::Kernel& k, bool& moves) {
+    using rsl::ir::Op;
+    std::string why;
+    rsl::ir::forEach(k.body, [&](const rsl::ir::Inst* i) {
+        const auto op = [&]() -> const std::string& { return k.sites[size_t(i->site)].op; };
+        if (i->op == Op::Output) {
+            const rsl::ir::Inst* v = i->args[0];
+            moves |= !(v->op == Op::Input && k.inputs[size_t(v->index)].name == "P");
+        } else if (i->op == Op::LightLoop) {
+            why = "light";
+        } else if (i->op == Op::Request || i->op == Op::Emit) {
+            why = op() + "()";
+        } else if (i->op == Op::Service && (op() == "ambient" || op() == "lightsource" || op() == "getlights" || op() == "lightcall")) {
+            why = "light";
+        }
+    });
+    return why;
+}
+
+} // namespace
+
+BoundKernel WorldImpl::movingKernel(const ShaderInstance& surface, const BoundKernel& bound, const std::vector<std::string>& varying, Diagnostics& d) {
+    const auto& writes = bound.kernel->facts().writes;
+    if (std::find(writes.begin(), writes.end(), "P") == writes.end()) return {};
+    Diagnostics quiet; // all of it was said when the surface was compiled
+    auto k = compiler_->analyse(*surface.program, kernelOptions(surface, {"P"}, varying, false, false), quiet);
+    if (!k) return {};
+    bool moves = false;
+    const std::string why = undiceable(*k, moves);
+    if (!moves) return {};
+    if (!why.empty()) {
+        d.reportOnce("moves:" + surface.name, {Severity::Warning, Rie::Unimplement, surface.place,
+                     "surface shader \"" + surface.name + "\" moves P by " + why + ", which is not known when the primitive is diced; it stays where it is",
+                     "a displacement shader moves primitives", {}});
+        return {};
+    }
+    d.reportOnce("moves:" + surface.name, {Severity::Info, Rie::NoError, surface.place,
+                 "surface shader \"" + surface.name + "\" moves P: it displaces its primitives",
+                 "Attribute \"displacementbound\" says how far for other renderers; a displacement shader is the place for it", {}});
+    return kernel(surface, {"P"}, varying, false, false, quiet);
+}
+
+void WorldImpl::displaceGrid(const SurfaceBinding& b, const geometry::Shape& shape, geometry::DiceGrid& grid, Diagnostics& d) const {
+    const BoundKernel& bound = b.displacement ? b.displacementS : b.moveS;
+    if (!bound || bound.kernel->facts().suspends) return;
+    const ShaderInstance& shader = b.displacement ? *b.displacement : *b.surface;
+    Engine engine(std::shared_ptr<const WorldImpl>(std::shared_ptr<const WorldImpl>{}, this), d);
+    engine.stop = settings_.stop;
+    BatchContext c;
+    c.engine = &engine;
+    c.bound = &bound;
+    c.binding = &b;
+    for (size_t i = 0; i < grid.points.size(); ++i) {
+        ShadePoint p;
+        p.shape = &shape;
+        p.surface = grid.points[i];
+        p.P = p.surface.P;
+        p.N = p.surface.N;
+        p.I = frame_->options.projection == "perspective" ? p.P : Vec3(0, 0, p.P.z); // as the camera sees it
+        p.du = grid.du[i];
+        p.dv = grid.dv[i];
+        c.points.push_back(p);
+    }
+    std::vector<shading::InstanceView> views(c.points.size(), {&shader.parameters, &shader.toCurrent});
+    c.batch = std::make_shared<shading::Batch>(bound.kernel, *bound.plan, c.points, views, *this);
+    engine.bindCall(c.batch->call(), c);
+    bound.kernel->run(&c.batch->call());
+    c.ran();
+    int out = c.batch->output("P");
+    for (size_t i = 0; out >= 0 && i < grid.P.size(); ++i) grid.P[i] = c.batch->color(out, int(i));
+}
+
+std::shared_ptr<BatchContext> Engine::displace(const BatchContext& c) {
+    const BoundKernel& bound = c.binding->displacementS;
+    if (!bound || bound.kernel->facts().suspends) return nullptr;
+    auto d = std::make_shared<BatchContext>();
+    d->engine = this;
+    d->bound = &bound;
+    d->binding = c.binding;
+    d->points = c.points;
+    d->rays = c.rays;
+    d->bindings = c.bindings;
+    for (size_t k = 0; k < d->rays.size(); ++k) d->points[k].ray = &d->rays[k];
+    const ShaderInstance& shader = *c.binding->displacement;
+    const shading::InstanceView view{&shader.parameters, &shader.toCurrent};
+    d->batch = std::make_shared<shading::Batch>();
+    d->batch->assign(bound.kernel, *bound.plan, d->points, {&view, 1}, {}, *world_);
+    bindCall(d->batch->call(), *d);
+    bound.kernel->run(&d->batch->call());
+    d->ran();
+    return d;
+}
+
+void Engine::moveToFacets(BatchContext& c) {
+    for (size_t k = 0; k < c.rays.size(); ++k) {
+        ShadePoint& p = c.points[k];
+        if (!p.surface.displaced) continue;
+        p.P = p.surface.P = p.surface.displacedP;
+        p.surface.n = p.surface.displacedN;
+        p.I = p.P - c.rays[k].begin();
+    }
+}
+
+void WorldImpl::diceShapes(Diagnostics& d) {
+    geometry::DiceOptions dice;
+    dice.camera = geometry::DiceCamera::from(frame_->options);
+    dice.stop = settings_.stop;
+    const auto bindingOf = [&](const geometry::Shape& s) -> const SurfaceBinding& {
+        return bindings_[size_t(bindingOf_[numberOfShape_.at(&s)])];
+    };
+    dice.displaces = [&](const geometry::Shape& shape) { return bindingOf(shape).displacement || bindingOf(shape).moveS; };
+    dice.displace = [&](const geometry::Shape& shape, geometry::DiceGrid& grid) { displaceGrid(bindingOf(shape), shape, grid, d); };
+    dice.declaredBound = [&](const geometry::Shape& shape) {
+        geometry::DiceOptions::DeclaredBound bound;
+        const SurfaceBinding& b = bindingOf(shape);
+        const InstanceRef both[] = {b.displacement, b.surface == b.displacement ? nullptr : b.surface};
+        for (const InstanceRef& i : both) {
+            if (!i || (!b.displacement && !b.moveS) || (i == b.surface && b.displacement && !shape.attributes().displacement)) continue; // one class is both
+            const auto number = i->parameters.numbers.find("__displacementbound_sphere");
+            if (number == i->parameters.numbers.end() || number->second.empty()) continue;
+            bound.radius += std::max(0.0, double(number->second[0]));
+            const auto space = i->parameters.strings.find("__displacementbound_coordinatesystem");
+            if (bound.space.empty() && space != i->parameters.strings.end()) bound.space = space->second;
+        }
+        return bound;
+    };
+    geometry::diceShapes(shapes_, dice, d);
+}
+
+} // namespace alpenglow::transport

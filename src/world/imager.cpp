@@ -1,0 +1,77 @@
+// The imager of a frame, run over finished pixels.
+#include "wave/engine.h"
+#include <algorithm>
+
+namespace alpenglow::transport {
+
+bool WorldImpl::runImager(int count, const float* x, const float* y, float* r, float* g, float* b, float* alpha, Diagnostics& d,
+                          const StopFlag* stop) const {
+    const scene::ShaderRef& imager = frame_->options.imager;
+    if (!imager) return false;
+    std::lock_guard lock(imagerMutex_);
+    if (!imager_.bound) { // compiled on first use, under the lock
+        auto* self = const_cast<WorldImpl*>(this);
+        self->imager_.bound = true;
+        InstanceRef shader = self->instance(*imager, rsl::ShaderKind::Imager, d);
+        if (const scene::AttributesRef& a = frame_->options.attributes) shader = self->withCoShaders(shader, a->coshaders, d);
+        if (shader) self->imager_.kernel = self->kernel(*shader, {}, {}, false, false, d);
+        self->imager_.shader = std::move(shader);
+    }
+    const InstanceRef& i = imager_.shader;
+    const BoundKernel& k = imager_.kernel;
+    if (!i || !k || k.kernel->facts().suspends) return false;
+    Engine engine(std::shared_ptr<const WorldImpl>(std::shared_ptr<const WorldImpl>{}, this), d);
+    engine.stop = stop;
+    // alpha is what the shader writes to it; one that only makes its pixels opaque means that, too (methods of classes have no alpha).
+    const auto& writes = k.kernel->facts().writes;
+    const auto written = [&](const char* name) { return std::find(writes.begin(), writes.end(), name) != writes.end(); };
+    const bool opacityOnly = written("Oi") && !written("alpha");
+    constexpr int kChunk = 4096;
+    for (int begin = 0; begin < count; begin += kChunk) {
+        int n = std::min(kChunk, count - begin);
+        BatchContext c;
+        c.engine = &engine;
+        c.bound = &k;
+        c.points.resize(size_t(n));
+        for (int p = 0; p < n; ++p) {
+            ShadePoint& s = c.points[size_t(p)];
+            int at = begin + p;
+            const auto width = float(std::max(1, frame_->options.xres)), height = float(std::max(1, frame_->options.yres));
+            s.P = {x[at], y[at], 0};
+            s.surface.u = s.surface.s = x[at] / width; // not in RISpec; imagers of Aqsis have them
+            s.surface.v = s.surface.t = y[at] / height;
+            // The picture is the surface and a pixel the footprint.
+            s.surface.dPdu = {width, 0, 0};
+            s.surface.dPdv = {0, height, 0};
+            s.surface.dsdu = s.surface.dtdv = 1;
+            s.surface.dtdu = s.surface.dsdv = 0;
+            s.du = 1 / width;
+            s.dv = 1 / height;
+            s.Ci = {r[at], g[at], b[at]};
+            s.Oi = Color(alpha[at]);
+            s.alpha = alpha[at];
+        }
+        std::vector<shading::InstanceView> views(size_t(n), {&i->parameters, &i->toCurrent});
+        c.batch = std::make_shared<shading::Batch>(k.kernel, *k.plan, c.points, views, *this);
+        engine.bindCall(c.batch->call(), c);
+        k.kernel->run(&c.batch->call());
+        c.ran();
+        const int ci = c.batch->output("Ci"), ai = c.batch->output("alpha"), oi = c.batch->output("Oi");
+        for (int p = 0; p < n; ++p) {
+            int at = begin + p;
+            if (ci >= 0) {
+                Color v = c.batch->color(ci, p);
+                r[at] = v.x; g[at] = v.y; b[at] = v.z;
+            }
+            if (opacityOnly && oi >= 0) {
+                const Color v = c.batch->color(oi, p);
+                alpha[at] = (v.x + v.y + v.z) / 3;
+            } else if (ai >= 0) {
+                alpha[at] = c.batch->value(ai, 0, p);
+            }
+        }
+    }
+    return true;
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,164 @@
+#include "world/information.h"
+#include <algorithm>
+
+namespace alpenglow::transport {
+
+namespace {
+
+Information number(float f) { return {{f}, {}, false}; }
+Information words(const std::string& s) { return {{}, {s}, true}; }
+
+std::optional<Information> given(const scene::Param* p) {
+    if (!p) return std::nullopt;
+    if (!p->strings.empty()) return Information{{}, p->strings, true};
+    return Information{p->numbers, {}, false};
+}
+
+Information matrixOf(const Matrix& m) {
+    Information i;
+    for (int r = 0; r < 4; ++r)
+        for (int c = 0; c < 4; ++c) i.numbers.push_back(float(m.m[r][c]));
+    return i;
+}
+
+/// What attributes are that no request has set (ri.md 15.2).
+std::optional<Information> unset(const std::string& name, bool path) {
+    static const std::map<std::string, float> numbers = {
+        {"GeometricApproximation:motionfactor", 1.f}, {"displacementbound:sphere", 0.f}, {"trace:bias", -1.f}, {"trace:displacements", 0.f},
+        {"trace:samplemotion", 0.f}, {"sides:doubleshaded", 0.f}, {"visibility:camera", 1.f}, {"visibility:trace", 0.f},
+        {"visibility:transmission", 0.f}, {"visibility:photon", 0.f}, {"photon:estimator", 100.f}, {"dice:hair", 0.f}, {"dice:rasterorient", 1.f},
+        {"cull:backfacing", 1.f}, {"cull:hidden", 1.f}, {"derivatives:smooth", 1.f}, {"derivatives:centered", 1.f}, {"subsurface:scale", 1.f},
+        {"subsurface:refractionindex", 1.3f}, {"subsurface:shadingrate", 1.f}, {"light:samples", 1.f}, {"light:emitphotons", 0.f},
+        {"irradiance:shadingrate", 1.f}, {"irradiance:nsamples", 64.f}, {"hider:composite", 1.f}};
+    static const std::map<std::string, std::string> texts = {
+        {"displacementbound:coordinatesystem", "current"}, {"grouping:membership", ""}, {"identifier:name", ""}, {"photon:shadingmodel", "matte"},
+        {"photon:causticmap", ""}, {"photon:globalmap", ""}, {"subsurface:groupname", ""}, {"light:samplingstrategy", "illuminance"}};
+    if (name == "visibility:diffuse" || name == "visibility:specular") return number(path ? 1.f : 0.f);
+    if (name == "trace:maxdiffusedepth") return number(path ? 32.f : 1.f);
+    if (name == "trace:maxspeculardepth") return number(path ? 32.f : 2.f);
+    if (const auto n = numbers.find(name); n != numbers.end()) return number(n->second);
+    if (const auto t = texts.find(name); t != texts.end()) return words(t->second);
+    return std::nullopt;
+}
+
+/// What the shaders say about displacement: sizes add up, the displacement shader names the space (seed).
+std::optional<Information> shaderBound(const SurfaceBinding& b, bool space) {
+    const std::string name = space ? "__displacementbound_coordinatesystem" : "__displacementbound_sphere";
+    float sum = 0;
+    bool found = false;
+    for (const InstanceRef& i : {b.displacement, b.surface}) {
+        if (!i || (i == b.surface && found && b.surface == b.displacement)) continue;
+        if (space) {
+            if (const auto t = i->parameters.strings.find(name); t != i->parameters.strings.end()) return words(t->second);
+        } else if (const auto n = i->parameters.numbers.find(name); n != i->parameters.numbers.end() && !n->second.empty()) {
+            sum += n->second[0];
+            found = true;
+        }
+    }
+    if (!found) return std::nullopt;
+    return number(sum);
+}
+
+std::optional<Information> coordinateSystem(const WorldImpl& w, const std::string& name) {
+    const auto i = w.frame().coordinateSystems.find(name);
+    if (i == w.frame().coordinateSystems.end()) return std::nullopt;
+    return matrixOf(i->second.first());
+}
+
+} // namespace
+
+std::optional<Information> attributeOf(const WorldImpl& w, const scene::Attributes& a, const std::string& key, const shading::ShadePoint* p,
+                                       const SurfaceBinding* b) {
+    static const std::string kCoordinate = "Ri:CoordinateSystem:", kOfLight = "attribute:light:";
+    const std::string name = key.rfind(kOfLight, 0) == 0 ? key.substr(std::string("attribute:").size()) : key;
+    if (name == "Ri:ShadingRate" || name == "ShadingRate") return number(a.shadingRate);
+    if (name == "Ri:Sides" || name == "Sides") return number(float(a.sides));
+    if (name == "Ri:Matte" || name == "Matte") return number(float(a.matte));
+    if (name == "Ri:Color" || name == "Color") return Information{{a.color.x, a.color.y, a.color.z}, {}, false};
+    if (name == "Ri:Opacity" || name == "Opacity") return Information{{a.opacity.x, a.opacity.y, a.opacity.z}, {}, false};
+    if (name == "Ri:Orientation") return words(a.inside ? "inside" : "outside");
+    if (name == "Ri:TextureCoordinates") return Information{{a.textureCoordinates, a.textureCoordinates + 8}, {}, false};
+    if (name == "Ri:DetailRange") return Information{{a.detailRange, a.detailRange + 4}, {}, false};
+    if (name.rfind(kCoordinate, 0) == 0) return coordinateSystem(w, name.substr(kCoordinate.size()));
+    if (p && p->shape) {
+        if (name == "Ri:Transformation") return matrixOf(p->shape->toCamera() * w.cameraToWorld_);
+        const bool back = dot(p->surface.n, p->I) > 0;
+        if (name == "geometry:backfacing") return number(back);
+        if (name == "geometry:frontfacing") return number(!back);
+        if (name == "geometry:geometricnormal") return Information{{p->surface.n.x, p->surface.n.y, p->surface.n.z}, {}, false};
+        if (name == "diffusedepth") return number(p->ray ? float(p->ray->diffuseBounces) : 0.f);
+    }
+    if (b && name == "shaderdisplacementbound:sphere") return shaderBound(*b, false);
+    if (b && name == "shaderdisplacementbound:coordinatesystem") return shaderBound(*b, true);
+    if (const scene::Param* set = a.value(name)) return given(set);
+    if (name == "light:units") { // what an area light gives that has not said it
+        const bool emits = a.areaLight >= 0 && size_t(a.areaLight) < w.lights_.size();
+        return words((emits ? w.lights_[size_t(a.areaLight)].mean : w.settings().hider != Hider::Path) ? "samples" : "radiance");
+    }
+    return unset(name, w.settings().hider == Hider::Path);
+}
+
+bool ofPoint(const std::string& name) {
+    for (const char* n :
+         {"Ri:Transformation", "geometry:backfacing", "geometry:frontfacing", "geometry:geometricnormal", "diffusedepth"})
+        if (name == n) return true;
+    return false;
+}
+
+std::optional<Information> optionOf(const WorldImpl& w, const std::string& name) {
+    const scene::Options& o = w.frame().options;
+    std::vector<float> v;
+    const float aspect = o.frameAspect.value_or(o.xres > 0 && o.yres > 0 && o.pixelAspect != 0 ? float(o.xres) * std::fabs(o.pixelAspect) / float(o.yres) : 1.f);
+    if (name == "Ri:Frame" || name == "Frame") v = {float(o.frameNumber)};
+    else if (name == "Ri:Format" || name == "Format") v = {float(o.xres), float(o.yres), o.pixelAspect};
+    else if (name == "Ri:PixelSamples" || name == "PixelSamples") v = {o.pixelSamplesX, o.pixelSamplesY};
+    else if (name == "Ri:Shutter" || name == "Shutter") v = {o.shutterOpen, o.shutterClose};
+    else if (name == "Ri:Clipping" || name == "Clipping") v = {o.clipNear, o.clipFar};
+    else if (name == "Ri:CropWindow" || name == "CropWindow") v.assign(o.crop, o.crop + 4);
+    else if (name == "Ri:FrameAspectRatio" || name == "FrameAspectRatio") v = {aspect};
+    else if ((name == "Ri:PixelVariance" || name == "PixelVariance") && o.pixelVariance >= 0) v = {o.pixelVariance};
+    else if (name == "Ri:ScreenWindow" || name == "ScreenWindow") v = o.screenWindow.value_or(aspect >= 1 ? std::vector<float>{-aspect, aspect, -1, 1} : std::vector<float>{-1, 1, -1 / aspect, 1 / aspect});
+    else if (name == "Ri:DepthOfField" || name == "DepthOfField") v = {o.fstop, o.focalLength, o.focalDistance};
+    else if (name == "Ri:Hider" || name == "Hider") return words(w.settings().hider == Hider::Path ? "path" : w.settings().hider == Hider::Raytrace ? "raytrace" : "hidden"); // the one that runs
+    else if (name == "Ri:Display" || name == "Display") return words(o.displays.empty() ? "ri.pic" : o.displays[0].name);
+    else if (name == "trace:maxdepth") v = {float(w.maxDepth_)};
+    else if (const auto i = o.values.find(name); i != o.values.end()) return given(&i->second);
+    else return std::nullopt;
+    return Information{v, {}, false};
+}
+
+std::optional<Information> rendererInfoOf(const std::string& name) {
+    if (name == "renderer") return words("Alpenglow");
+    if (name == "versionstring") return words("0.1");
+    if (name == "version") return Information{{0, 1, 0, 0}, {}, false};
+    return std::nullopt;
+}
+
+std::optional<Information> rayInfoOf(const std::string& name, const shading::PathRay* r, const shading::ShadePoint& p) {
+    if (name == "type") return words(r ? shading::toString(r->type()) : "light");
+    if (name == "label") return words(r ? rsl::internedString(r->kind->label) : "");
+    if (name == "depth") return number(r ? float(r->bounces) : 0.f);
+    if (name == "speculardepth") return number(r ? float(r->specularBounces) : 0.f);
+    if (name == "diffusedepth") return number(r ? float(r->diffuseBounces) : 0.f);
+    if (name == "origin" && r) return Information{{r->begin().x, r->begin().y, r->begin().z}, {}, false};
+    if (name == "direction" && r) return Information{{r->dir.x, r->dir.y, r->dir.z}, {}, false};
+    if (name == "length") return number(length(p.I));
+    return std::nullopt;
+}
+
+Matrix spaceAt(const WorldImpl& w, const std::string& from, const std::string& to, const shading::ShadePoint& p, const SurfaceBinding* b) {
+    const auto own = [&](const std::string& space, Matrix& toCurrent) {
+        if (space == "object" && p.shape) return toCurrent = p.shape->toCamera(), true;
+        if (space == "shader" && b && b->surface) return toCurrent = b->surface->toCurrent, true;
+        return false;
+    };
+    Matrix in, out;
+    if (from != "current" && !own(from, in)) w.matrix(from, "current", in);
+    if (to != "current") {
+        if (own(to, out)) out = inverse(out);
+        else w.matrix("current", to, out);
+    }
+    return in * out;
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,203 @@
+#include "world/lightchooser.h"
+#include "geometry/bounds.h"
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace alpenglow::transport {
+
+namespace {
+constexpr int kBins = 12; // places where a node may be split, by axis
+
+float area(const geometry::Bounds& b) {
+    const Vec3 d = b.hi - b.lo;
+    return d.x * d.y + d.y * d.z + d.z * d.x;
+}
+
+geometry::Bounds boundsOf(const LightBound& l) {
+    geometry::Bounds b;
+    b.add(l.centre - Vec3(l.radius));
+    b.add(l.centre + Vec3(l.radius));
+    return b;
+}
+} // namespace
+
+LightChooser::LightChooser(std::span<const LightBound> lights, int wanted) : wanted_(std::max(wanted, 1)) {
+    leafOf_.assign(lights.size(), -1);
+    nodes_.reserve(lights.size() * 2);
+    std::vector<int> order(lights.size());
+    std::iota(order.begin(), order.end(), 0);
+    const auto placed = std::stable_partition(order.begin(), order.end(), [&](int i) { return !lights[size_t(i)].everywhere; });
+    for (auto [first, last] : {std::pair(order.begin(), placed), std::pair(placed, order.end())}) {
+        if (first == last) continue;
+        roots_.push_back(int(nodes_.size()));
+        nodes_.emplace_back();
+        build(roots_.back(), {first, last}, lights);
+    }
+}
+
+// Where to part the lights of a node in two: powers times the areas of their boxes become least, else half and half.
+size_t LightChooser::split(std::span<int> order, std::span<const LightBound> lights) const {
+    geometry::Bounds centres;
+    for (int i : order) centres.add(lights[size_t(i)].centre);
+    const Vec3 extent = centres.hi - centres.lo;
+    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    const auto middle = [&] {
+        std::stable_sort(order.begin(), order.end(),
+                         [&](int a, int b) { return lights[size_t(a)].centre[axis] < lights[size_t(b)].centre[axis]; });
+        return order.size() / 2;
+    };
+    if (!(extent[axis] > 0) || !std::isfinite(extent[axis]) || order.size() <= 4) return middle();
+    struct Bin { geometry::Bounds box; double power = 0; size_t count = 0; };
+    std::array<Bin, kBins> bins;
+    const auto binOf = [&](int i) {
+        return std::clamp(int((lights[size_t(i)].centre[axis] - centres.lo[axis]) / extent[axis] * kBins), 0, kBins - 1);
+    };
+    for (int i : order) {
+        Bin& b = bins[size_t(binOf(i))];
+        b.box.add(boundsOf(lights[size_t(i)]));
+        b.power += lights[size_t(i)].power;
+        ++b.count;
+    }
+    double least = std::numeric_limits<double>::infinity();
+    int at = -1;
+    for (int cut = 1; cut < kBins; ++cut) {
+        Bin side[2];
+        for (int k = 0; k < kBins; ++k) {
+            Bin& s = side[k >= cut];
+            if (!bins[size_t(k)].count) continue;
+            s.box.add(bins[size_t(k)].box);
+            s.power += bins[size_t(k)].power;
+            s.count += bins[size_t(k)].count;
+        }
+        if (!side[0].count || !side[1].count) continue;
+        const double cost = side[0].power * area(side[0].box) + side[1].power * area(side[1].box);
+        if (cost < least) least = cost, at = cut;
+    }
+    if (at < 0 || !(least > 0)) return middle();
+    const auto part = std::stable_partition(order.begin(), order.end(), [&](int i) { return binOf(i) < at; });
+    return size_t(part - order.begin());
+}
+
+void LightChooser::build(int node, std::span<int> order, std::span<const LightBound> lights) {
+    geometry::Bounds box;
+    double power = 0;
+    for (int i : order) {
+        box.add(boundsOf(lights[size_t(i)]));
+        power += std::isfinite(lights[size_t(i)].power) ? std::max(lights[size_t(i)].power, 0.f) : 0;
+    }
+    Node& n = nodes_[size_t(node)];
+    n.everywhere = lights[size_t(order[0])].everywhere;
+    n.power = power;
+    n.count = int(order.size());
+    n.centre = (box.lo + box.hi) * .5f;
+    n.radius = length(box.hi - box.lo) * .5f;
+    if (order.size() == 1) {
+        n.centre = lights[size_t(order[0])].centre;
+        n.radius = lights[size_t(order[0])].radius;
+        n.light = order[0];
+        leafOf_[size_t(order[0])] = node;
+        return;
+    }
+    const size_t half = split(order, lights);
+    const int left = int(nodes_.size());
+    n.left = left; // the reference ends here: the children may move the nodes
+    nodes_.resize(nodes_.size() + 2);
+    nodes_[size_t(left)].parent = nodes_[size_t(left) + 1].parent = node;
+    build(left, order.first(half), lights);
+    build(left + 1, order.subspan(half), lights);
+}
+
+double LightChooser::importance(const Node& n, const Vec3& at) const {
+    if (n.everywhere) return n.power;
+    const Vec3 to = n.centre - at;
+    const double d2 = std::max({double(dot(to, to)), double(n.radius) * n.radius, 1e-12});
+    const double share = n.power / d2;
+    return std::isfinite(share) ? share : 0;
+}
+
+LightChooser::Cut LightChooser::cutAt(const Vec3& at) const {
+    Cut c;
+    for (int r : roots_) c.part[c.size++] = {r, 0};
+    // Nodes that are wide as seen from here are opened, in the order of the tree, while there is room.
+    for (int k = 0; k < c.size && c.size < kCut;) {
+        const Node& n = nodes_[size_t(c.part[k].node)];
+        const Vec3 to = n.centre - at;
+        if (n.left < 0 || n.everywhere || !(4 * double(n.radius) * n.radius > dot(to, to))) {
+            ++k;
+            continue;
+        }
+        c.part[k].node = n.left;
+        c.part[c.size++].node = n.left + 1;
+    }
+    for (int k = 0; k < c.size; ++k) c.total += c.part[k].importance = importance(nodes_[size_t(c.part[k].node)], at);
+    return c;
+}
+
+double LightChooser::probability(double share, int count) const {
+    return wanted_ * ((1 - kBlind) * share + kBlind * count / double(leafOf_.size()));
+}
+
+std::pair<double, double> LightChooser::divide(const Node& n, const Vec3& at) const {
+    const double l = importance(nodes_[size_t(n.left)], at), r = importance(nodes_[size_t(n.left) + 1], at);
+    const double left = l + r > 0 ? l / (l + r) : nodes_[size_t(n.left)].count / double(n.count);
+    return {left, 1 - left};
+}
+
+struct LightChooser::Comb {
+    double u, sum = 0;
+    Chosen& chosen;
+    /// Whether a tooth lies in the next `width` of the sum.
+    bool tooth(double width) const { return std::ceil(sum + width - u) > std::ceil(sum - u); }
+};
+
+void LightChooser::descend(int node, double share, const Vec3& at, Comb& comb) const {
+    const Node& n = nodes_[size_t(node)];
+    const double p = probability(share, n.count);
+    if (n.left < 0) {
+        if (p >= 1 || comb.tooth(p)) comb.chosen.emplace_back(n.light, float(std::min(p, 1.0)));
+        comb.sum += p;
+        return;
+    }
+    if (p < 1 && !comb.tooth(p)) { // no leaf of it can have one, nor be certain
+        comb.sum += p;
+        return;
+    }
+    const double end = comb.sum + p;
+    const auto [left, right] = divide(n, at);
+    descend(n.left, share * left, at, comb);
+    descend(n.left + 1, share * right, at, comb);
+    comb.sum = end; // as where the node was not entered: roundings must not depend on the random number
+}
+
+void LightChooser::choose(const Vec3& at, float u, Chosen& chosen) const {
+    chosen.clear();
+    const Cut c = cutAt(at);
+    Comb comb{double(u), 0, chosen};
+    for (int k = 0; k < c.size; ++k) {
+        const Node& n = nodes_[size_t(c.part[k].node)];
+        descend(c.part[k].node, c.total > 0 ? c.part[k].importance / c.total : n.count / double(leafOf_.size()), at, comb);
+    }
+}
+
+float LightChooser::pmf(int light, const Vec3& at) const {
+    if (light < 0 || size_t(light) >= leafOf_.size()) return 0;
+    const Cut c = cutAt(at);
+    // Up to the node of the cut, then down again: the path is as deep as the tree.
+    int node = leafOf_[size_t(light)];
+    double share = 1;
+    for (;;) {
+        for (int k = 0; k < c.size; ++k)
+            if (c.part[k].node == node) {
+                share *= c.total > 0 ? c.part[k].importance / c.total : nodes_[size_t(node)].count / double(leafOf_.size());
+                return float(std::min(1.0, probability(share, 1)));
+            }
+        const Node& parent = nodes_[size_t(nodes_[size_t(node)].parent)];
+        const auto [left, right] = divide(parent, at);
+        share *= node == parent.left ? left : right;
+        node = nodes_[size_t(node)].parent;
+    }
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,58 @@
+// Which lights get a sample at a vertex. With few, each does; with more than limits::kLightsSampled about that many, by
+// LightChooser. What a chosen light gives is divided by the probability of the choice: the mean stays the same.
+#include "wave/engine.h"
+
+namespace alpenglow::transport {
+
+namespace {
+/// Whether the light's kernel needs nothing but its parameters and the point: then lights may share a call.
+bool sharesCalls(const BoundLight& l, bool media) {
+    if (!l.kernel || l.kernel.kernel->facts().suspends || l.asksSurface || l.channels || l.sentCl >= 0) return false;
+    if (l.kind == LightKind::Area && (l.hazy || media)) return false;
+    return std::all_of(l.kernel.sites.begin(), l.kernel.sites.end(), [](const SiteInfo& s) {
+        return s.kind == SiteKind::Texture || s.kind == SiteKind::Environment || s.kind == SiteKind::TextureInfo;
+    });
+}
+} // namespace
+
+void WorldImpl::groupLights(Diagnostics& d) {
+    std::map<std::tuple<const rsl::CompiledKernel*, int, LightKind>, std::vector<int>> like; // one block of one program
+    for (size_t i = 0; i < lights_.size(); ++i)
+        if (const BoundLight& l = lights_[i]; sharesCalls(l, !media_.empty()))
+            like[{l.kernel.kernel.get(), l.outCl, l.kind}].push_back(int(i));
+    for (const auto& [key, lights] : like) {
+        if (lights.size() < 2) continue;
+        const BoundLight& first = lights_[size_t(lights[0])];
+        std::vector<std::string> outputs;
+        for (const auto& o : first.kernel.kernel->outputs()) outputs.push_back(o.name);
+        BoundKernel k = kernel(*first.instance, outputs, {}, true, false, d);
+        if (!k || k.kernel->outputs().size() != outputs.size()) continue;
+        for (int i : lights) lights_[size_t(i)].group = int(lightGroups_.size());
+        lightGroups_.push_back({std::move(k)});
+    }
+}
+
+void WorldImpl::makeChoosers(Diagnostics& d) {
+    choosers_.resize(sampledLights_.size());
+    for (size_t list = 0; list < sampledLights_.size(); ++list) {
+        const std::vector<int>& lights = sampledLights_[list];
+        if (lights.size() <= size_t(limits::kLightsSampled)) continue;
+        std::vector<LightBound> bounds;
+        for (int i : lights) {
+            const BoundLight& l = lights_[size_t(i)];
+            bounds.push_back({l.centre, l.radius, l.power, l.kind == LightKind::Distant});
+        }
+        choosers_[list].chooser = LightChooser(bounds, limits::kLightsSampled);
+        choosers_[list].numberOf.assign(lights_.size(), -1);
+        for (size_t i = 0; i < lights.size(); ++i) choosers_[list].numberOf[size_t(lights[i])] = int(i);
+    }
+    const bool many = std::any_of(choosers_.begin(), choosers_.end(), [](const ChooserOfList& c) { return !c.chooser.empty(); });
+    if (many && settings_.hider == Hider::Path) groupLights(d);
+}
+
+float Engine::chanceOf(int light, int binding, const Vec3& at) const {
+    const WorldImpl::ChooserOfList& of = world_->choosers_[size_t(world_->bindings_[size_t(binding)].lightList)];
+    return of.chooser.empty() ? 1 : of.chooser.pmf(of.numberOf[size_t(light)], at);
+}
+
+} // namespace alpenglow::transport

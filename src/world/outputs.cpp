@@ -1,0 +1,147 @@
+// Outputs of shaders as displays ask for them: which there are, and how many numbers each has.
+#include "world/surfaces.h"
+
+namespace alpenglow::transport {
+
+namespace {
+
+/// Of "list[3]": "list".
+std::string withoutIndex(const std::string& name) { return name.substr(0, name.find('[')); }
+
+/// Channels that get their names when the shader runs have keys that begin so (front/calls_bind.cpp).
+constexpr char kAnyChannel = '?';
+
+/// Of a channel that outputchannel() makes; 0 when no call does.
+int channelWidth(const ShaderInstance& shader, const std::string& name) {
+    const std::string base = withoutIndex(name);
+    const bool element = base != name;
+    int most = 0;
+    const auto look = [&](const rsl::Program& program) {
+        const auto width = [&](const rsl::Type& type) { return rsl::componentCount(type.base) * (element ? 1 : std::max(1, type.array)); };
+        for (const auto& [channel, type] : program.channels)
+            if (channel[0] == kAnyChannel) most = std::max(most, width(type));
+        if (const auto exact = program.channels.find(base); exact != program.channels.end()) most = width(exact->second);
+    };
+    for (const rsl::CoShader& co : shader.coShaders) look(*co.program);
+    look(shader.program->program());
+    return most;
+}
+
+/// Numbers of an output of the shader; 0 when it has none of that name.
+int widthIn(const ShaderInstance& shader, const std::string& name) {
+    const std::string base = withoutIndex(name);
+    const bool element = base != name;
+    for (const rsl::ParameterInfo& p : shader.program->parameters()) {
+        if (p.name != base || !p.output || p.type.base == rsl::Base::String) continue;
+        int length = std::max(1, p.type.array);
+        const auto given = shader.parameters.strings.find(p.name + "[]");
+        if (p.open && given != shader.parameters.strings.end()) length = std::max(1, std::atoi(given->second.c_str()));
+        return rsl::componentCount(p.type.base) * (element || !p.type.array ? 1 : length);
+    }
+    return channelWidth(shader, name);
+}
+
+} // namespace
+
+bool gives(const ShaderInstance& shader, const std::string& output) { return widthIn(shader, output) > 0; }
+
+bool givesChannel(const ShaderInstance& shader, const std::string& output) { return channelWidth(shader, output) > 0; }
+
+bool givesPerhaps(const ShaderInstance& shader, const std::string& output) {
+    const std::string base = withoutIndex(output);
+    for (const rsl::ParameterInfo& p : shader.program->parameters())
+        if (p.name == base && p.output) return false;
+    const auto says = [&](const rsl::Program& program) { return program.channels.count(base) > 0; };
+    for (const rsl::CoShader& co : shader.coShaders)
+        if (says(*co.program)) return false;
+    return !says(shader.program->program()) && channelWidth(shader, output) > 0;
+}
+
+void addOutput(const ShaderInstance& shader, const std::string& name, std::vector<std::string>& outputs) {
+    const std::string base = withoutIndex(name);
+    const auto declares = [&](const rsl::ParameterInfo& p) { return p.output && p.name == base; };
+    const auto& parameters = shader.program->parameters();
+    const rsl::ShaderKind kind = shader.program->kind();
+    const bool oneOfMany = kind == rsl::ShaderKind::Light || kind == rsl::ShaderKind::Volume; // what others gave stays where it does not give
+    const bool channel = std::none_of(parameters.begin(), parameters.end(), declares) && channelWidth(shader, name) > 0;
+    if (givesPerhaps(shader, name) || (oneOfMany && channel)) outputs.push_back(kGiven + withoutIndex(name));
+    outputs.push_back(name);
+}
+
+bool givenAt(const shading::Batch& b, const std::string& name, int point) {
+    const int given = b.output(kGiven + withoutIndex(name));
+    return given < 0 || b.value(given, 0, point) != 0;
+}
+
+std::vector<int> outputsNamed(const shading::Batch& b, const std::string& name) {
+    if (const int whole = b.output(name); whole >= 0) return {whole};
+    std::vector<int> elements;
+    for (int o; (o = b.output(name + "[" + std::to_string(elements.size()) + "]")) >= 0;) elements.push_back(o);
+    return elements;
+}
+
+namespace {
+const std::set<std::string> kNumbers = {"z", "u", "v", "s", "t", "alpha", "du", "dv", "time"};
+const std::set<std::string> kTriples = {"P", "N", "Cs", "Os", "Ng", "I", "dPdu", "dPdv", "Ci", "Oi"};
+} // namespace
+
+std::set<const ShaderInstance*> WorldImpl::givers() const {
+    std::set<const ShaderInstance*> shaders;
+    for (const SurfaceBinding& b : bindings_)
+        for (const InstanceRef& i : {b.surface, b.atmosphere.shader, b.interior, b.exterior})
+            if (i) shaders.insert(i.get());
+    for (const BoundLight& l : lights_)
+        if (l.instance) shaders.insert(l.instance.get());
+    return shaders;
+}
+
+std::vector<std::string> WorldImpl::knownOutputs() const {
+    std::set<std::string> names(kNumbers);
+    names.insert(kTriples.begin(), kTriples.end());
+    const auto channels = [&](const rsl::Program& program) {
+        for (const auto& [channel, type] : program.channels)
+            if (channel[0] != kAnyChannel) names.insert(channel);
+    };
+    for (const ShaderInstance* i : givers()) {
+        for (const rsl::ParameterInfo& p : i->program->parameters())
+            if (p.output && p.type.base != rsl::Base::String) names.insert(p.name);
+        channels(i->program->program());
+        for (const rsl::CoShader& c : i->coShaders) channels(*c.program);
+    }
+    return {names.begin(), names.end()};
+}
+
+void WorldImpl::measureOutputs() {
+    outputWidths_.clear();
+    const std::set<const ShaderInstance*> shaders = givers();
+    for (size_t k = 0; k < settings_.outputs.size(); ++k) {
+        const std::string& name = settings_.outputs[k];
+        int width = kNumbers.count(name) ? 1 : kTriples.count(name) ? 3 : 0;
+        if (width == 0)
+            for (const bool perhaps : {false, true}) { // who may give it at some points counts where nobody gives it for certain
+                int found = 0;
+                for (const ShaderInstance* i : shaders)
+                    if (givesPerhaps(*i, name) == perhaps) found = std::max(found, widthIn(*i, name));
+                if (width == 0) width = found;
+            }
+        if (width == 0 && !shapes_.empty()) missingOutputs_.push_back(name);
+        if (width == 0 && k < settings_.outputWidths.size()) width = settings_.outputWidths[k]; // nobody gives it: zeros, as the display says
+        outputWidths_.push_back(width > 0 ? width : 3);
+    }
+    for (LightOutputPlace& p : lightOutputs_) {
+        if (p.component + p.size > outputWidths_[size_t(p.aov)]) continue;
+        p.first = p.component;
+        for (int k = 0; k < p.aov; ++k) p.first += outputWidths_[size_t(k)];
+    }
+    for (BoundLight& l : lights_)
+        for (BoundLight::Value& v : l.values) {
+            if (v.aov < 0) continue;
+            int first = 0;
+            for (int k = 0; k < v.aov; ++k) first += outputWidths_[size_t(k)];
+            const std::string& output = settings_.outputs[size_t(v.aov)];
+            if (v.name.size() > output.size()) first += v.components * std::atoi(v.name.c_str() + output.size() + 1); // "list[2]" of "list"
+            v.aov = first;
+        }
+}
+
+} // namespace alpenglow::transport

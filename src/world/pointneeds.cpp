@@ -1,0 +1,47 @@
+// What is to be known of the points of hits and emitters: what kernels read, and what the engine does.
+#include "world/emitterfootprint.h"
+
+namespace alpenglow::transport {
+
+namespace {
+
+uint32_t needsOf(const BoundLight& l) {
+    if (!l.kernel || l.hazy) return geometry::kNeedAll; // a volume shader runs there too
+    uint32_t needs = l.kernel.plan->needs();
+    for (const auto& [strings, k] : l.variants) needs |= k.plan->needs();
+    return needs | (usesFootprint(l) ? uint32_t(geometry::kNeedPartials) : 0);
+}
+
+} // namespace
+
+void WorldImpl::setPointNeeds() {
+    // Lights may ask about the surface that they light, and footprints are taken by partial derivatives.
+    uint32_t always = footprints_ ? geometry::kNeedPartials : 0;
+    for (const BoundLight& l : lights_) {
+        if (!l.kernel) continue;
+        always |= l.kernel.plan->litNeeds();
+        for (const auto& [strings, k] : l.variants) always |= k.plan->litNeeds();
+    }
+    for (BoundLight& l : lights_) {
+        l.pointNeeds = needsOf(l) | always;
+        for (int part : l.parts) l.pointNeeds |= needsOf(lights_[size_t(part)]);
+    }
+    if (primitiveHit_) always |= primitiveHit_.plan->needs();
+    for (SurfaceBinding& b : bindings_) {
+        b.pointNeeds = geometry::kNeedAll; // for shaders that hand on points, or whole sets of variables
+        if (b.displacement || b.displacementS || b.moveS || b.atmosphere.shader || b.inside >= 0 || b.outside >= 0 ||
+            !b.surfaceS || lightsAsk_)
+            continue;
+        b.pointNeeds = always | b.surfaceS.plan->needs();
+        if (b.surfaceV) b.pointNeeds |= b.surfaceV.plan->needs();
+        for (const LightOutput& o : b.lightOutputs) {
+            if (o.S.bound) b.pointNeeds |= o.S.bound.plan->needs();
+            if (o.V.bound) b.pointNeeds |= o.V.bound.plan->needs();
+        }
+        if (b.areaLight < 0) continue;
+        const BoundLight& light = lights_[size_t(b.areaLight)];
+        b.pointNeeds |= light.pointNeeds;
+    }
+}
+
+} // namespace alpenglow::transport

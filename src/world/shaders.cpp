@@ -1,0 +1,278 @@
+// Shader calls of the scene made into programs with values, and those into kernels.
+#include "rsl/ir/build.h"
+#include "base/limits.h"
+#include "rsl/front/visit.h"
+#include "world/fitparameter.h"
+#include "world/lightobjects.h"
+#include "world/world.h"
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <set>
+
+namespace alpenglow::transport {
+
+namespace {
+
+double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+// "did you mean ..." among the shader sources on the search path; or empty.
+std::string nearShader(const std::string& name, const std::vector<std::string>& directories) {
+    std::vector<std::string> names;
+    std::error_code e;
+    for (const auto& directory : directories)
+        for (const auto& f : std::filesystem::directory_iterator(directory.empty() ? "." : directory, e))
+            if (f.path().extension() == ".sl" && names.size() < 10000) names.push_back(f.path().stem().string());
+    std::string near = nearestName(name, names);
+    return near.empty() ? "" : "did you mean \"" + near + "\"?";
+}
+
+void transformParameter(std::vector<float>& v, rsl::Base base, const Matrix& m) {
+    for (size_t i = 0; i + 2 < v.size() && base != rsl::Base::Matrix; i += 3) {
+        Vec3d p(v[i], v[i + 1], v[i + 2]);
+        switch (base) {
+        case rsl::Base::Point: p = transformPoint(m, p); break;
+        case rsl::Base::Vector: p = transformVector(m, p); break;
+        case rsl::Base::Normal: p = transformNormal(m, p); break;
+        default: return;
+        }
+        v[i] = float(p.x); v[i + 1] = float(p.y); v[i + 2] = float(p.z);
+    }
+    if (base == rsl::Base::Matrix) // given relative to shader space
+        for (size_t i = 0; i + 15 < v.size(); i += 16) {
+            Matrix a;
+            for (int k = 0; k < 16; ++k) a.m[k / 4][k % 4] = v[i + size_t(k)];
+            a = a * m;
+            for (int k = 0; k < 16; ++k) v[i + size_t(k)] = float(a.m[k / 4][k % 4]);
+        }
+}
+
+} // namespace
+
+/// Says of spaces that neither the renderer nor the scene knows where the shader names them. `which`: names of inputs, "space:A>B".
+static void sayUnknownSpaces(const WorldImpl& world, const ShaderInstance& i, const std::vector<std::string>& which, Diagnostics& d) {
+    std::set<std::string> unknown;
+    for (const std::string& input : which) {
+        const size_t colon = input.find(':'), arrow = input.find('>');
+        if (colon == std::string::npos || arrow == std::string::npos) continue;
+        for (const std::string& name : {input.substr(colon + 1, arrow - colon - 1), input.substr(arrow + 1)})
+            if (!world.knowsSpace(name)) unknown.insert(name);
+    }
+    for (const std::string& name : unknown) {
+        const rsl::Program& program = i.program->program();
+        std::optional<rsl::Place> at;
+        const auto look = [&](const rsl::Expr& e) {
+            if (e.kind == rsl::ExprKind::String && e.text == name && !at) at = e.place;
+        };
+        const auto body = [&](const rsl::StmtPtr& b) {
+            if (b) rsl::front::everyStmt(*b, [](const rsl::Stmt&) {}, look);
+        };
+        for (const auto& s : program.shaders) {
+            for (const auto& p : s->parameters)
+                if (p.defaultValue) rsl::front::everyExpr(*p.defaultValue, look);
+            body(s->body);
+        }
+        rsl::front::everyFunction(program, [&](const rsl::Function& f) { body(f.body); });
+        SourcePlace place = i.place;
+        if (at && at->file >= 0 && size_t(at->file) < program.files.size()) place = {program.files[size_t(at->file)], at->line, at->column};
+        d.reportOnce("space:" + name, {Severity::Warning, Rie::BadHandle, place, "unknown coordinate system \"" + name + "\"; taken as \"current\"", {}, {}});
+    }
+}
+
+/// VTK and its kin give the standard imager "background" its colour as "color", which no shader of ours can name so: it is a word of
+/// the language.
+static scene::Param asDeclared(scene::Param given, const rsl::CompiledShader& shader) {
+    if (given.name == "color" && shader.kind() == rsl::ShaderKind::Imager && shader.name() == "background") given.name = "background";
+    return given;
+}
+
+InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind kind, Diagnostics& d, bool anyKind) {
+    double begin = seconds();
+    Diagnostics said; // the compiler knows no scene: messages without a place get the call's
+    auto program = compiler_->load(call.name, settings_.shaderPaths, said);
+    for (Diagnostic m : said.all()) {
+        if (m.place.file.empty()) {
+            m.place = call.place;
+            if (m.hint.empty()) m.hint = nearShader(call.name, settings_.shaderPaths);
+        }
+        d.report(std::move(m));
+    }
+    facts_.compileSec += seconds() - begin;
+    if (!program) return nullptr;
+    if (auto same = rsl::ShaderCompiler::variant(program, kind)) program = same; // a class can be several kinds of shader
+    else if (auto other = anyKind ? nullptr : rsl::ShaderCompiler::ofKind(program, kind, std::filesystem::path(call.name).stem().string())) program = other;
+    if (program->kind() != kind && !anyKind) {
+        d.reportOnce("kind:" + call.name + ":" + rsl::toString(kind),
+                     {Severity::Error,
+                      Rie::NoShader,
+                      call.place,
+                      "shader \"" + call.name + "\" is a " + rsl::toString(program->kind()) + " shader, not a " +
+                          rsl::toString(kind) + " shader",
+                      {},
+                      {}});
+        return nullptr;
+    }
+    auto i = std::make_shared<ShaderInstance>();
+    i->name = call.name;
+    i->program = program;
+    i->toCurrent = call.toWorld.first() * worldToCamera_;
+    i->place = call.place;
+
+    std::vector<rsl::ParameterValue> values;
+    for (const scene::Param& written : call.params) {
+        const scene::Param renamed = asDeclared(written, *program);
+        const scene::Param& given = renamed;
+        const rsl::ParameterInfo* p = nullptr;
+        std::vector<std::string> names;
+        for (const auto& q : program->parameters()) {
+            names.push_back(q.name);
+            if (q.name == given.name) p = &q;
+        }
+        if (!p) {
+            std::string near = nearestName(given.name, names);
+            d.reportOnce("parameter:" + call.name + ":" + given.name,
+                         {Severity::Warning, Rie::BadToken, given.place.file.empty() ? call.place : given.place,
+                          "shader \"" + call.name + "\" has no parameter \"" + given.name + "\"; it is ignored",
+                          near.empty() ? "" : "did you mean \"" + near + "\"?", {}});
+            continue;
+        }
+        auto value = fitParameter(given, *p, call.name, call.place, d);
+        if (!value) continue;
+        if (p->open)
+            i->parameters.strings[given.name + "[]"] = std::to_string(
+                std::max(value->strings.size(), value->numbers.size() / size_t(rsl::componentCount(p->type.base))));
+        transformParameter(value->numbers, p->type.base, i->toCurrent);
+        i->given.insert(given.name);
+        if (p->handle) i->handlePlaces[given.name] = given.place.file.empty() ? call.place : given.place;
+        values.push_back(std::move(*value));
+    }
+
+    // Defaults: the shader's own expressions in the instance's spaces, of what was given.
+    auto spaces = [&](const std::string& from, const std::string& to, float out[16]) {
+        sayUnknownSpaces(*this, *i, {"space:" + from + ">" + to}, d);
+        Matrix m;
+        bool known = true;
+        if (from == to) m = Matrix{};
+        // "object" of the shader call itself; a surface's default that names it is computed again for each primitive.
+        else if ((from == "shader" || from == "object") && to == "current") m = i->toCurrent;
+        else if (from == "current" && (to == "shader" || to == "object")) m = inverse(i->toCurrent);
+        else known = matrix(from, to, m);
+        for (int k = 0; k < 16; ++k) out[k] = float(m.m[k / 4][k % 4]);
+        return known;
+    };
+    for (auto& v : compiler_->parameterValues(program, d, spaces, values)) {
+        if (v.type.base == rsl::Base::String && v.type.array != 0) { // elements have names of their own: "maps[1]"
+            for (size_t e = 0; e < v.strings.size(); ++e) i->parameters.strings[v.name + "[" + std::to_string(e) + "]"] = v.strings[e];
+        } else if (v.type.base == rsl::Base::String) i->parameters.strings[v.name] = v.strings.empty() ? "" : v.strings[0];
+        else i->parameters.numbers[v.name] = std::move(v.numbers);
+    }
+    return i;
+}
+
+InstanceRef WorldImpl::builtin(const std::string& name, rsl::ShaderKind kind, Diagnostics& d) {
+    scene::ShaderCall call;
+    call.name = name;
+    return instance(call, kind, d);
+}
+
+void WorldImpl::dropMissingHandles(const ShaderInstance& of, std::map<std::string, std::string>& texts,
+                                   const std::vector<std::pair<std::string, scene::ShaderRef>>& bound, Diagnostics& d) const {
+    std::vector<std::string> handles;
+    for (const auto& [handle, call] : bound) handles.push_back(handle);
+    for (auto& [key, handle] : texts) {
+        const auto place = of.handlePlaces.find(key.substr(0, key.find('[')));
+        if (place == of.handlePlaces.end() || key.ends_with("[]") || handle.empty()) continue;
+        const auto is = [&](const std::string& known) { return known == handle; };
+        const auto isLight = [&](const scene::Light& l) { return l.handle == handle; };
+        if (std::any_of(handles.begin(), handles.end(), is) || std::any_of(frame_->lights.begin(), frame_->lights.end(), isLight))
+            continue;
+        const std::string near = nearestName(handle, handles);
+        const SourcePlace& at = place->second;
+        d.reportOnce("handle:" + handle + at.file + ":" + std::to_string(at.line) + key,
+                     {Severity::Error, Rie::BadHandle, at,
+                      "there is no co-shader \"" + handle + "\": \"" + key + "\" of shader \"" + of.name + "\" is null",
+                      near.empty() ? "Shader \"name\" \"" + handle + "\" makes one" : "did you mean \"" + near + "\"?", {}});
+        handle.clear();
+    }
+}
+
+InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const std::map<std::string, scene::ShaderRef>& coshaders, Diagnostics& d,
+                                     const std::vector<int>& lights) {
+    if (!shader || !shader->program->program().handles) return shader;
+    std::vector<std::pair<std::string, scene::ShaderRef>> called(coshaders.begin(), coshaders.end());
+    if (const std::set<std::string> names = lights.empty() ? std::set<std::string>{} : calledOfLights(shader->program->program()); !names.empty())
+        for (int l : lights) {
+            const BoundLight& light = lights_[size_t(l)];
+            if (light.source && light.source->shader && light.instance && answers(*light.instance->program, names))
+                called.emplace_back(handleOfLight(l, light.handle), light.source->shader);
+        }
+    if (called.empty() && shader->handlePlaces.empty()) return shader;
+    std::vector<const void*> key{shader.get()};
+    for (const auto& [handle, call] : called) key.push_back(call.get());
+    InstanceRef& bound = withCoShaders_[key];
+    if (bound) return bound;
+    auto copy = std::make_shared<ShaderInstance>(*shader);
+    dropMissingHandles(*shader, copy->parameters.strings, called, d);
+    for (const auto& [handle, call] : called) {
+        auto [i, fresh] = coShaders_.try_emplace(call.get());
+        Diagnostics said; // what is to be said of a light was said when it was bound
+        const bool light = !coshaders.count(handle);
+        if (fresh) i->second = instance(*call, rsl::ShaderKind::Surface, light ? said : d, true);
+        if (!i->second) continue;
+        rsl::CoShader c = rsl::ShaderCompiler::coShader(i->second->program, handle);
+        c.light = light;
+        if (!(i->second->toCurrent == shader->toCurrent)) c.space = spaceAt(i->second->toCurrent);
+        for (const auto& [name, v] : i->second->parameters.numbers) c.numbers[name] = v;
+        for (const auto& [name, v] : i->second->parameters.strings) c.strings[name] = v;
+        dropMissingHandles(*i->second, c.strings, called, d);
+        c.computed = i->second->program->computedParameters(i->second->given, {});
+        copy->coShaders.push_back(std::move(c));
+    }
+    return bound = copy;
+}
+
+rsl::KernelOptions WorldImpl::kernelOptions(const ShaderInstance& i, const std::vector<std::string>& outputs, const std::vector<std::string>& varying,
+                                            bool mixed, bool path) const {
+    rsl::KernelOptions o;
+    o.lanes = settings_.lanes;
+    o.mixed = mixed;
+    o.path = path;
+    o.differences = i.differences;
+    o.suspend = settings_.suspend && i.program->kind() == rsl::ShaderKind::Surface;
+    o.outputs = outputs;
+    for (const auto& [k, v] : i.parameters.strings) o.stringParameters.push_back({k, v});
+    o.coShaders = i.coShaders;
+    o.varyingParameters = varying;
+    o.computedParameters = i.program->computedParameters(i.given, varying);
+    if (i.program->kind() == rsl::ShaderKind::Surface || i.program->kind() == rsl::ShaderKind::Volume) o.messages = lightMessages_;
+    return o;
+}
+
+std::vector<rsl::ir::OutputLight> WorldImpl::lightOfOutputs(const ShaderInstance& i, const std::vector<std::string>& outputs,
+                                                            const std::vector<std::string>& varying, bool path) const {
+    return rsl::lightOfOutputs(i.program->program(), i.program->shader(), kernelOptions(i, outputs, varying, false, path));
+}
+
+BoundKernel WorldImpl::kernel(const ShaderInstance& i, const std::vector<std::string>& outputs, const std::vector<std::string>& varying, bool mixed, bool path,
+                              Diagnostics& d, const std::string& light) {
+    rsl::KernelOptions o = kernelOptions(i, outputs, varying, mixed, path);
+    o.light = light;
+    double begin = seconds();
+    auto k = compiler_->kernel(i.program, o, d);
+    facts_.compileSec += seconds() - begin;
+    if (!k) return {};
+    std::vector<std::string> spaces;
+    for (const auto& in : k->inputs())
+        if (in.name.rfind("space:", 0) == 0) spaces.push_back(in.name);
+    if (!spaces.empty()) {
+        sayUnknownSpaces(*this, i, spaces, d);
+        if (!built_) keepSpaces(spaces);
+    }
+    ++facts_.kernels;
+    facts_.cacheHits += k->fromCache();
+    (k->facts().suspends ? facts_.suspending : facts_.affine)++;
+    return bindKernel(std::move(k), mixed, path, this);
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,548 @@
+#include "world/surfaces.h"
+#include "rsl/front/leftmembers.h"
+#include "answers/answers.h"
+#include <limits>
+#include <set>
+
+namespace alpenglow::transport {
+
+float attributeNumber(const scene::Attributes& a, const std::string& key, float fallback) {
+    const scene::Param* p = a.value(key);
+    return p && !p->numbers.empty() ? p->numbers[0] : fallback;
+}
+
+InstanceRef SurfaceBinder::instanceOf(const scene::ShaderRef& r, rsl::ShaderKind kind, bool differences) {
+    if (!r) return nullptr;
+    auto [i, fresh] = instances_.try_emplace({r.get(), int(kind), differences});
+    if (!fresh) return i->second;
+    if (differences) {
+        if (const InstanceRef exact = instanceOf(r, kind)) {
+            auto same = std::make_shared<ShaderInstance>(*exact);
+            same->differences = true;
+            i->second = same;
+        }
+    } else if (!(r->name == "null" && kind != rsl::ShaderKind::Surface)) {
+        i->second = world_.instance(*r, kind, diagnostics_);
+    }
+    return i->second;
+}
+
+/// Under path: a warning, once a shader, where light is asked for and used so that its indirect part cannot be followed.
+static void sayDirectOnly(const ShaderInstance& shader, const rsl::CompiledKernel& kernel, Diagnostics& d) {
+    const auto& direct = kernel.facts().direct;
+    if (direct.empty()) return;
+    SourcePlace place{shader.program->path(), 0, 0};
+    const auto& [op, why, at] = direct[0];
+    const auto& files = kernel.files();
+    if (at.line > 0 && at.file >= 0 && size_t(at.file) < files.size() && !files[size_t(at.file)].starts_with('<'))
+        place = {files[size_t(at.file)], at.line, at.column};
+    const size_t more = direct.size() - 1;
+    d.reportOnce("directonly:" + shader.program->path() + ":" + shader.program->name(),
+                 {Severity::Warning,
+                  Rie::Incapable,
+                  place,
+                  "shader \"" + shader.program->name() + "\" under path: " + op + "() brings direct light only" +
+                      (more ? ", and so do " + std::to_string(more) + " further calls" : "") +
+                      ", for it is used non-linearly: " + why,
+                  "use its light in sums and products only, as in Ci = a + b * " + op +
+                      "(...), where a and b do not depend on light; "
+                      "`compile -W --path` shows all such places",
+                  {}});
+}
+
+bool SurfaceBinder::differences(const geometry::Shape& shape) {
+    const scene::Param* p = shape.attributes().value("shade:derivatives");
+    if (!p || p->strings.empty()) return !path_;
+    const std::string& how = p->strings[0];
+    if (how != "exact" && how != "differences")
+        diagnostics_.reportOnce("derivatives:" + how,
+                                {Severity::Warning,
+                                 Rie::Range,
+                                 p->place,
+                                 "Attribute \"shade\" \"derivatives\" cannot be \"" + how + "\"; the default is used",
+                                 "it can be \"exact\" or \"differences\"",
+                                 {}});
+    return how == "differences" || (how != "exact" && !path_);
+}
+
+/// Whether a variable of a primitive holds what a parameter is: one text, as many numbers, or elements of the same kind.
+static bool overrides(const geometry::PrimVar& v, const rsl::ParameterInfo& p) {
+    if (p.type.base == rsl::Base::String || v.type == scene::Type::String)
+        return p.type.base == rsl::Base::String && v.type == scene::Type::String && !p.type.array && !p.open && !v.arrayLength;
+    const int each = rsl::componentCount(p.type.base);
+    return p.open ? v.arrayLength > 0 && v.outWidth() == each * v.elements() : v.outWidth() == each * std::max(1, p.type.array);
+}
+
+SurfaceBinder::Names SurfaceBinder::varyingOf(const geometry::Shape& shape, const ShaderInstance& shader) {
+    Names varying;
+    for (const auto& v : shape.primvars())
+        for (const auto& p : shader.program->parameters()) {
+            if (p.name != v.name) continue;
+            if (overrides(v, p)) varying.push_back(p.name);
+            else
+                diagnostics_.reportOnce("override:" + shader.name + ":" + p.name,
+                                        {Severity::Warning, Rie::Consistency, v.param->place,
+                                         "the variable \"" + p.name + "\" of the primitive does not fit the parameter of shader \"" + shader.name +
+                                             "\", which is a " + rsl::toString(p.type) + ": the parameter keeps its value",
+                                         {}, {}});
+        }
+    // What a shader and its co-shaders ask about the primitive, with the type that the first of them wants.
+    std::map<std::string, rsl::Type> all = shader.program->program().primitiveVariables;
+    for (const rsl::CoShader& c : shader.coShaders) all.insert(c.program->primitiveVariables.begin(), c.program->primitiveVariables.end());
+    for (const auto& [name, type] : all) {
+        const int v = shape.findPrimvar(name);
+        const int width = type.base == rsl::Base::Void ? 0 : rsl::componentCount(type.base) * std::max(1, type.array);
+        const bool text = v >= 0 && shape.primvars()[size_t(v)].type == scene::Type::String;
+        if (v >= 0 && (width == 0 || (width == shape.primvars()[size_t(v)].outWidth() && text == (type.base == rsl::Base::String))) && std::find(varying.begin(), varying.end(), name) == varying.end())
+            varying.push_back(name);
+    }
+    std::sort(varying.begin(), varying.end());
+    return varying;
+}
+
+bool SurfaceBinder::bindAll() {
+    path_ = world_.settings_.hider == Hider::Path;
+    fallback_ = world_.builtin(path_ ? "matte" : "defaultsurface", rsl::ShaderKind::Surface, diagnostics_);
+    if (!fallback_) {
+        diagnostics_.report(Severity::Severe, Rie::NoShader, {}, "the shaders that ship with the program were not found",
+                            "set ALPENGLOW_SHADERS to the folder that holds matte.sl");
+        return false;
+    }
+    for (const auto& shape : world_.shapes_) {
+        const int b = bind(shape);
+        if (b < 0) return false;
+        world_.bindingOf_.push_back(b);
+        if (path_ && world_.bindings_[size_t(b)].atmosphere.shader && shape->attributes().areaLight >= 0) world_.hazyEmitters_[shape.get()] = b;
+    }
+    return bindMixed() && bindHitModes();
+}
+
+bool SurfaceBinder::bindHitModes() {
+    if (!world_.hitModes_) return true;
+    const InstanceRef plain = world_.builtin("constant", rsl::ShaderKind::Surface, diagnostics_);
+    if (plain) world_.primitiveHit_ = world_.kernel(*plain, {"Ci", "Oi"}, {}, true, path_, diagnostics_);
+    if (!world_.primitiveHit_) return false;
+    for (size_t i = 0; i < world_.bindings_.size(); ++i) {
+        SurfaceBinding& b = world_.bindings_[i];
+        b.shaderOpacity = world_.opacityOf(b, *asked_[i].shape, "shader", asked_[i].varying, engine_, diagnostics_);
+        b.primitiveOpacity.constant = b.attributes->opacity;
+        if (asked_[i].shape->findPrimvar("Os") >= 0) b.primitiveOpacity.kernel = world_.kernel(*plain, {"Oi"}, {}, false, false, diagnostics_);
+        world_.allOpaque_ &= b.shaderOpacity.opaque() && b.primitiveOpacity.opaque();
+    }
+    return true;
+}
+
+/// Whether what a shape's variables are called and hold is the same, so that equal attributes mean equal bindings. Interiors take
+/// values of variables, too.
+static bool sameVariables(const geometry::Shape& a, const geometry::Shape& b) {
+    const auto &p = a.primvars(), &q = b.primvars();
+    if (!p.empty() && (a.attributes().interior || a.attributes().exterior)) return false;
+    return std::equal(p.begin(), p.end(), q.begin(), q.end(), [](const geometry::PrimVar& x, const geometry::PrimVar& y) {
+        return x.name == y.name && x.cls == y.cls && x.type == y.type && x.arrayLength == y.arrayLength;
+    });
+}
+
+int SurfaceBinder::bind(const geometry::ShapeRef& shape) {
+    auto& [like, known] = bindingOfAttributes_[&shape->attributes()];
+    if (like && sameVariables(*like, *shape)) return known;
+    const int b = bindAnew(shape);
+    if (b >= 0) bindingOfAttributes_[&shape->attributes()] = {shape, b};
+    return b;
+}
+
+int SurfaceBinder::bindAnew(const geometry::ShapeRef& shape) {
+    const scene::Attributes& a = shape->attributes();
+    SurfaceBinding b;
+    const bool grid = differences(*shape);
+    b.surface = world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Surface, grid), a.coshaders, diagnostics_, a.lights);
+    b.explicitSurface = b.surface != nullptr;
+    if (!b.surface) b.surface = fallback_;
+    b.displacement =
+        world_.withCoShaders(instanceOf(a.displacement, rsl::ShaderKind::Displacement, grid), a.coshaders, diagnostics_);
+    // A class with surface and displacement is both.
+    const bool both = !a.displacement && b.explicitSurface && rsl::ShaderCompiler::variant(b.surface->program, rsl::ShaderKind::Displacement);
+    if (both)
+        b.displacement =
+            quiet(world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Displacement, grid), a.coshaders, diagnostics_));
+    b.atmosphere.shader = world_.withCoShaders(instanceOf(a.atmosphere, rsl::ShaderKind::Volume), a.coshaders, diagnostics_);
+    const Names varying = varyingOf(*shape, *b.surface);
+    const Names displacementVarying = b.displacement ? varyingOf(*shape, *b.displacement) : Names{};
+    const Names atmosphereVarying = b.atmosphere.shader ? varyingOf(*shape, *b.atmosphere.shader) : Names{};
+    b.interior = volumeOf(a.interior, *shape);
+    b.exterior = volumeOf(a.exterior, *shape);
+    std::string key;
+    auto add = [&](auto v) { key.append(reinterpret_cast<const char*>(&v), sizeof v); };
+    add(b.surface.get());
+    add(a.displacement.get());
+    add(grid);
+    add(a.atmosphere.get());
+    add(b.interior.get());
+    add(b.exterior.get());
+    for (const auto& [handle, call] : a.coshaders) add(call.get());
+    for (int l : a.lights) add(l);
+    add(-1);
+    add(a.areaLight);
+    add(a.opacity.x); add(a.opacity.y); add(a.opacity.z);
+    add(a.matte);
+    add(a.shadingRate);
+    add(attributeNumber(a, "trace:maxdiffusedepth", -1));
+    add(attributeNumber(a, "trace:maxspeculardepth", -1));
+    add(attributeNumber(a, "trace:bias", 0));
+    for (const Names* names : {&varying, &displacementVarying, &atmosphereVarying}) {
+        for (const auto& v : *names) key += v + ";";
+        key += "|";
+    }
+    key += shape->findPrimvar("Os") >= 0 ? "Os;" : "";
+    for (const char* name : {"shade:transmissionhitmode", "visibility:transmission", "shade:diffusehitmode", "shade:specularhitmode", "render:casts_shadows"})
+        if (const scene::Param* p = a.value(name); p && !p->strings.empty()) key += name + p->strings[0] + ";";
+    auto [it, fresh] = bindingByKey_.try_emplace(key, int(world_.bindings_.size()));
+    if (!fresh) return it->second;
+
+    b.inside = mediumOf(b.interior, *shape);
+    b.outside = mediumOf(b.exterior, *shape);
+    // Who asks comes before who is asked: an atmosphere asks for outputs of the surface, both for those of the displacement.
+    const Names left = both ? leftBy(b) : Names{};
+    bindDisplacement(b, displacementVarying, left);
+    if (!left.empty()) hearMembers(b);
+    bindAtmosphere(b, atmosphereVarying);
+    if (!bindSurface(b, varying)) return -1;
+    hearDisplacement(b, varying, displacementVarying, left);
+    if (!b.displacement) b.moveS = world_.movingKernel(*b.surface, b.surfaceS, asked_.back().varying, diagnostics_);
+    bindLights(b, a);
+    // A light without a kernel (its shader is missing, does not compile or is no light) was reported; its geometry is an ordinary
+    // surface.
+    b.areaLight = a.areaLight >= 0 && world_.lights_[size_t(a.areaLight)].kernel ? a.areaLight : -1;
+    b.matte = a.matte;
+    b.shadingRate = a.shadingRate;
+    b.maxDiffuse = int(attributeNumber(a, "trace:maxdiffusedepth", path_ ? -1 : 1));
+    b.maxSpecular = int(attributeNumber(a, "trace:maxspeculardepth", path_ ? -1 : 2));
+    b.bias = std::max(0.f, attributeNumber(a, "trace:bias", 0));
+    for (const auto& [name, bit] : {std::pair{"shade:diffusehitmode", uint32_t(accel::kDiffuse)}, {"shade:specularhitmode", uint32_t(accel::kSpecular)}})
+        if (const scene::Param* p = a.value(name); p && !p->strings.empty() && p->strings[0] == "primitive") b.primitiveFor |= bit;
+    world_.hitModes_ |= b.primitiveFor != 0;
+    b.attributes = shape->attributesRef();
+    // Displaced shapes and different kernels never share a batch. Equal builds S mean equal builds V.
+    b.program = programs_.try_emplace({b.surfaceS.kernel.get(), b.displacement.get(), b.displacementS.kernel.get()}, int(programs_.size())).first->second;
+    auto [group, firstOfGroup] = groups_.try_emplace({b.program, b.lightList}, world_.groups_);
+    world_.groups_ += firstOfGroup;
+    b.group = group->second;
+    b.opacity = world_.opacityOf(b, *shape, "", asked_.back().varying, engine_, diagnostics_);
+    world_.allOpaque_ &= b.opacity.opaque();
+    asked_.back().shape = shape;
+    world_.bindings_.push_back(std::move(b));
+    return it->second;
+}
+
+SurfaceBinder::Names SurfaceBinder::outputsOf(const SurfaceBinding& b) const {
+    static const char* const kVariables[] = {"P", "N", "Cs", "Os", "u", "v", "s", "t", "Ng", "I", "dPdu", "dPdv"};
+    Names outputs{"Ci", "Oi"};
+    for (const auto& n : world_.settings_.outputs)
+        if (n != "Ci" && n != "Oi" && (std::find(std::begin(kVariables), std::end(kVariables), n) != std::end(kVariables) || gives(*b.surface, n))) addOutput(*b.surface, n, outputs);
+    std::set<std::string> asked;
+    if (path_) asked.insert(world_.lightMessages_.begin(), world_.lightMessages_.end()); // lighting shadeops: lights run when the surface's kernel is done
+    const bool all = b.atmosphere.shader && questions(b.atmosphere.kernel, "surface", asked);
+    for (const auto& p : b.surface->program->parameters())
+        if (p.output && (all || asked.count(p.name))) outputs.push_back("param:" + p.name);
+    return outputs;
+}
+
+bool SurfaceBinder::questions(const BoundKernel& k, const char* op, std::set<std::string>& names) {
+    bool any = false;
+    for (const SiteInfo& s : k.sites) {
+        if (s.site->op != op) continue;
+        const std::string name = s.site->strings.empty() ? "" : s.site->strings[0];
+        if (name.empty()) any = true; // made when the shader runs
+        else names.insert(name);
+    }
+    return any;
+}
+
+InstanceRef SurfaceBinder::quiet(const InstanceRef& displacement) {
+    if (!displacement) return nullptr;
+    InstanceRef& known = quiet_[displacement.get()];
+    if (!known) {
+        auto same = std::make_shared<ShaderInstance>(*displacement);
+        same->parameters.strings["begin()"] = "quiet";
+        known = same;
+        kept_.push_back(displacement);
+    }
+    return known;
+}
+
+SurfaceBinder::Names SurfaceBinder::leftBy(const SurfaceBinding& b) {
+    Names outputs;
+    if (!b.displacement) return outputs;
+    for (const std::string& name : rsl::membersLeft(b.displacement->program->shader(), b.surface->program->shader())) {
+        outputs.push_back("param:this->" + name);
+        const rsl::Type type = rsl::ownMember(b.displacement->program->shader(), name)->type;
+        if (type.array) outputs.push_back("param:this->" + name + "#");
+        else if (type.base != rsl::Base::String && type.base != rsl::Base::Matrix)
+            outputs.insert(outputs.end(), {"Du:param:this->" + name, "Dv:param:this->" + name});
+    }
+    return outputs;
+}
+
+void SurfaceBinder::hearMembers(SurfaceBinding& b) {
+    if (!b.displacement) return;
+    if (b.displacementS.kernel->facts().suspends) {
+        diagnostics_.reportOnce("left:" + b.displacement->name, {Severity::Warning, Rie::Unimplement, b.displacement->place,
+                                "displacement() of \"" + b.displacement->name + "\" waits for rays (" + b.displacementS.kernel->facts().whyNot +
+                                    "): the surface does not see what it writes to members", {}, {}});
+        return;
+    }
+    auto told = std::make_shared<ShaderInstance>(*b.surface);
+    const std::string head = "param:this->";
+    for (const auto& o : b.displacementS.kernel->outputs()) {
+        if (o.name.rfind(head, 0) != 0) continue;
+        const std::string name = o.name.substr(head.size());
+        std::string& what = told->parameters.strings["displacement:this->" + name.substr(0, name.find_first_of("[#"))];
+        if (name.back() == '#') what += " length";
+        else if (const size_t bracket = name.find('['); bracket == std::string::npos) what = "0";
+        else if (const int count = std::atoi(name.c_str() + bracket + 1) + 1; count > std::atoi(what.c_str())) what = std::to_string(count);
+    }
+    InstanceRef& known = told_[{b.surface.get(), b.displacement.get()}];
+    if (!known) kept_.push_back(b.surface), known = told;
+    b.surface = known;
+    b.displacementTells = true;
+}
+
+void SurfaceBinder::hearDisplacement(SurfaceBinding& b, const Names& varying, const Names& displacementVarying, const Names& left) {
+    if (!b.displacement || b.displacementS.kernel->facts().suspends) return;
+    std::set<std::string> asked;
+    asked = world_.lightDisplacements_;
+    bool all = asked.erase("") > 0;
+    all |= questions(b.surfaceS, "displacement", asked);
+    all |= b.atmosphere.shader && questions(b.atmosphere.kernel, "displacement", asked);
+    Names outputs = left;
+    auto told = std::make_shared<ShaderInstance>(*b.surface);
+    for (const auto& p : b.displacement->program->parameters()) {
+        if (!p.output || (!all && !asked.count(p.name))) continue;
+        outputs.push_back("param:" + p.name);
+        if (p.type.array == 0 && p.type.base != rsl::Base::String && p.type.base != rsl::Base::Matrix)
+            outputs.insert(outputs.end(), {"Du:param:" + p.name, "Dv:param:" + p.name});
+        // Kind of an element, how many, and whether points differ: the surface's kernel takes it as an input, with its derivatives.
+        int length = p.type.array ? std::max(1, p.type.array) : 0;
+        const auto& given = b.displacement->parameters.strings;
+        if (const auto open = given.find(p.name + "[]"); p.open && open != given.end()) length = std::atoi(open->second.c_str());
+        told->parameters.strings["displacement:" + p.name] = std::to_string(int(Told::kindOf(p.type.base))) + " " + std::to_string(length) + " " +
+                                                             std::to_string(int(p.storage == rsl::Storage::Varying));
+    }
+    if (outputs.size() == left.size()) return;
+    bindDisplacement(b, displacementVarying, outputs);
+    b.displacementTells = b.displacement != nullptr;
+    if (!b.displacementTells) return;
+    InstanceRef& known = told_[{b.surface.get(), b.displacement.get()}];
+    if (!known) known = told;
+    b.surface = known;
+    asked_.pop_back();
+    bindSurface(b, varying);
+}
+
+bool SurfaceBinder::bindSurface(SurfaceBinding& b, Names varying) {
+    Names outputs = outputsOf(b);
+    partLightOutputs(b, outputs, varying);
+    b.surfaceS = world_.kernel(*b.surface, outputs, varying, false, path_, diagnostics_);
+    if (path_ && b.surfaceS) sayDirectOnly(*b.surface, *b.surfaceS.kernel, diagnostics_);
+    if (!b.surfaceS) { // an error was reported: the default surface stands in
+        b.surface = fallback_;
+        varying.clear();
+        outputs.clear();
+        b.lightOutputs.clear();
+        b.aside.clear();
+        b.surfaceS = world_.kernel(*fallback_, outputs, varying, false, path_, diagnostics_);
+    }
+    if (!b.surfaceS) return false;
+    std::vector<const BoundKernel*> kernels{&b.surfaceS};
+    for (LightOutput& o : b.lightOutputs) {
+        o.S = lightKernel(b, o, varying, false);
+        if (o.S.bound) kernels.push_back(&o.S.bound);
+    }
+    for (const BoundKernel* k : kernels)
+        for (const auto& in : k->kernel->inputs())
+            b.usesObjectSpace |= in.name.find("object") != std::string::npos && in.name.rfind("space:", 0) == 0;
+    asked_.push_back({std::move(outputs), std::move(varying), {}});
+    return true;
+}
+
+bool SurfaceBinder::bindMixed() {
+    std::vector<int> sharing(size_t(world_.groups_), 0);
+    for (const SurfaceBinding& b : world_.bindings_) ++sharing[size_t(b.group)];
+    for (size_t i = 0; i < world_.bindings_.size(); ++i) {
+        SurfaceBinding& b = world_.bindings_[i];
+        const bool always = world_.settings_.mixedOnly;
+        if (!always && !b.usesObjectSpace && sharing[size_t(b.group)] == 1) continue;
+        b.surfaceV = world_.kernel(*b.surface, asked_[i].outputs, asked_[i].varying, true, path_, diagnostics_);
+        if (!b.surfaceV) return false;
+        for (LightOutput& o : b.lightOutputs) o.V = lightKernel(b, o, asked_[i].varying, true);
+        if (always)
+            for (LightOutput& o : b.lightOutputs) o.S = o.V;
+        if (always) b.surfaceS = b.surfaceV;
+    }
+    return true;
+}
+
+void SurfaceBinder::bindAtmosphere(SurfaceBinding& b, const Names& varying) { b.atmosphere = bindVolume(b.atmosphere.shader, varying); }
+
+Medium SurfaceBinder::bindVolume(const InstanceRef& shader, const Names& varying) {
+    if (!shader) return {};
+    Names outputs{"Ci", "Oi", "slope:Ci"};
+    for (const auto& n : world_.settings_.outputs)
+        if (n != "Ci" && n != "Oi" && gives(*shader, n)) addOutput(*shader, n, outputs);
+    Medium m;
+    m.kernel = world_.kernel(*shader, outputs, varying, false, false, diagnostics_);
+    if (!m.kernel) return {};
+    const std::string name = "\"" + shader->name + "\"";
+    if (m.kernel.kernel->facts().suspends) {
+        diagnostics_.reportOnce("atmosphere:" + shader->name, {Severity::Warning, Rie::Unimplement, shader->place,
+                                "volume shader " + name + " waits for rays (" + m.kernel.kernel->facts().whyNot + "); it is left out", {}, {}});
+        return {};
+    }
+    if (m.kernel.plan->output("slope:Ci") < 0)
+        diagnostics_.reportOnce("atmosphere:" + shader->name, {Severity::Info, Rie::NoError, shader->place,
+                                "volume shader " + name + " is not affine in Ci as written; what light loses in it is measured between Ci = 0 and 1", {}, {}});
+    m.shader = shader;
+    return m;
+}
+
+InstanceRef SurfaceBinder::volumeOf(const scene::ShaderRef& call, const geometry::Shape& shape) {
+    const InstanceRef plain = instanceOf(call, rsl::ShaderKind::Volume);
+    const InstanceRef shader = world_.withCoShaders(plain, shape.attributes().coshaders, diagnostics_);
+    if (!shader) return nullptr;
+    shading::ParameterBlock own = shader->parameters;
+    std::string key;
+    for (const rsl::ParameterInfo& p : shader->program->parameters()) {
+        const int v = shape.findPrimvar(p.name);
+        if (v < 0) continue;
+        const geometry::PrimVar& variable = shape.primvars()[size_t(v)];
+        if (variable.cls != scene::Class::Constant) {
+            diagnostics_.reportOnce("medium:" + shader->name + ":" + p.name,
+                                    {Severity::Warning, Rie::Unimplement, shape.place(),
+                                     "\"" + p.name + "\" is not the same everywhere on the primitive: it does not override the parameter of the " +
+                                         "volume shader \"" + shader->name + "\", which runs inside of it",
+                                     "a constant variable does", {}});
+            continue;
+        }
+        const std::optional<Told> value = primitiveVariable(shape, {}, p.name);
+        const auto number = own.numbers.find(p.name);
+        const auto text = own.strings.find(p.name);
+        if (value->kind == rsl::ir::Kind::String && !value->elements && text != own.strings.end()) text->second = value->texts[0];
+        else if (value->kind != Told::kindOf(p.type.base) || number == own.numbers.end()) continue;
+        else if (number->second.size() != value->numbers.size()) continue;
+        else number->second = value->numbers;
+        key += p.name + '\1' + (value->texts.empty() ? "" : value->texts[0]);
+        key.append(reinterpret_cast<const char*>(value->numbers.data()), value->numbers.size() * sizeof(float));
+    }
+    if (key.empty()) return shader;
+    InstanceRef& known = volumes_[{shader.get(), key}];
+    if (!known) {
+        auto with = std::make_shared<ShaderInstance>(*shader);
+        with->parameters = std::move(own);
+        known = with;
+    }
+    return known;
+}
+
+int SurfaceBinder::mediumOf(const InstanceRef& shader, const geometry::Shape& shape) {
+    if (!shader) return -1;
+    for (size_t i = 0; i < world_.media_.size(); ++i)
+        if (world_.media_[i].shader == shader) return int(i);
+    constexpr size_t kMost = std::numeric_limits<int16_t>::max(); // shading::Media numbers them
+    if (world_.media_.size() >= kMost) {
+        diagnostics_.reportOnce("media:count", {Severity::Error, Rie::Limit, shape.place(),
+                                "a frame has no more than " + std::to_string(kMost) + " different interiors and exteriors; the others are empty", {}, {}});
+        return -1;
+    }
+    Medium m = bindVolume(shader, {});
+    if (!m.shader) return -1;
+    m.shape = &shape;
+    m.binding = int(world_.bindings_.size()); // that is bound now
+    world_.media_.push_back(std::move(m));
+    return int(world_.media_.size()) - 1;
+}
+
+void SurfaceBinder::bindDisplacement(SurfaceBinding& b, const Names& varying, const Names& more) {
+    if (!b.displacement) return;
+    // The derivatives are for the surface shader: bumps on top of the displacement.
+    Names outputs{"P", "N", "Du:P", "Dv:P", "Du:N", "Dv:N"};
+    outputs.insert(outputs.end(), more.begin(), more.end());
+    b.displacementS = world_.kernel(*b.displacement, outputs, varying, false, false, diagnostics_);
+    bool object = false;
+    if (b.displacementS)
+        for (const auto& in : b.displacementS.kernel->inputs()) object |= in.name.find("object") != std::string::npos && in.name.rfind("space:", 0) == 0;
+    if (object) b.displacementS = world_.kernel(*b.displacement, outputs, varying, true, false, diagnostics_); // shapes of one batch have their own
+    if (!b.displacementS) b.displacement = nullptr;
+}
+
+void SurfaceBinder::bindLights(SurfaceBinding& b, const scene::Attributes& a) {
+    b.lights = world_.withParts(a.lights);
+    b.lightList = lightLists_.try_emplace(b.lights, int(lightLists_.size())).first->second;
+    if (size_t(b.lightList) != world_.sampledLights_.size()) return;
+    auto& sampled = world_.sampledLights_.emplace_back();
+    for (int l : b.lights) {
+        const BoundLight& light = world_.lights_[size_t(l)];
+        bool point = light.kind == LightKind::Point || light.kind == LightKind::Distant;
+        if (light.kernel && (point || (light.kind == LightKind::Area && !light.emitter->empty()))) sampled.push_back(l);
+    }
+    std::sort(sampled.begin(), sampled.end());
+    sampled.erase(std::unique(sampled.begin(), sampled.end()), sampled.end());
+}
+
+Opacity WorldImpl::opacityOf(const SurfaceBinding& b, const geometry::Shape& shape, std::string mode, const std::vector<std::string>& varying, Engine& engine, Diagnostics& d) {
+    const scene::Attributes& a = shape.attributes();
+    const bool asked = !mode.empty();
+    if (!asked) mode = "shader";
+    for (const char* name : {"render:casts_shadows", "shade:transmissionhitmode", "visibility:transmission"}) // BMRT's, PRMan's, the older ones
+        if (const scene::Param* p = a.value(name); p && !asked && !p->strings.empty()) mode = p->strings[0];
+    InstanceRef surface = b.surface;
+    std::string what = b.surfaceS.kernel->facts().opacity;
+    BoundKernel k;
+    const rsl::Shader& text = surface->program->shader();
+    if (text.object && std::any_of(text.nested.begin(), text.nested.end(), [](const auto& f) { return f->name == "opacity"; })) {
+        // What the method opacity() gives stops rays, whatever the methods behind it make of Oi.
+        auto alone = std::make_shared<ShaderInstance>(*surface);
+        alone->parameters.strings["opacity()"] = "1";
+        surface = alone;
+        k = kernel(*surface, {"Oi"}, varying, false, false, d);
+        if (k) what = k.kernel->facts().opacity;
+    }
+    bool varies = shape.findPrimvar("Os") >= 0;
+    Opacity result;
+    result.constant = mode == "opaque" ? Color(1) : a.opacity;
+    if (mode == "opaque" || mode == "primitive" || (mode == "Os" && !varies) || (what == "Os" && !varies)) return result;
+    if (what == "1") {
+        result.constant = Color(1);
+        return result;
+    }
+    if (!k) k = kernel(*surface, {"Oi"}, varying, false, false, d);
+    if (!k || k.plan->Oi < 0) return result;
+    if (k.kernel->facts().suspends) {
+        d.reportOnce("opacity:" + b.surface->name, {Severity::Warning, Rie::NoError, b.surface->place,
+                     "the opacity of shader \"" + b.surface->name + "\" depends on traced rays; its shadow has the primitive's Opacity", {}, {}});
+        return result;
+    }
+    bool constant = !varies && k.kernel->sites().empty();
+    for (const auto& in : k.kernel->inputs()) {
+        bool parameter = in.name.rfind("param:", 0) == 0 && std::find(varying.begin(), varying.end(), in.name.substr(6)) == varying.end();
+        constant &= parameter || in.name == "Os" || (in.name == "Cs" && shape.findPrimvar("Cs") < 0);
+    }
+    if (!constant) {
+        result.kernel = std::move(k);
+        return result;
+    }
+    std::vector<ShadePoint> point(1);
+    point[0].shape = &shape;
+    shading::InstanceView view{&b.surface->parameters, &b.surface->toCurrent};
+    BatchContext c;
+    c.engine = &engine;
+    c.bound = &k;
+    c.points.swap(point);
+    c.batch = std::make_shared<shading::Batch>(k.kernel, *k.plan, c.points, std::span(&view, 1), *this);
+    engine.bindCall(c.batch->call(), c);
+    k.kernel->run(&c.batch->call());
+    c.ran();
+    Color o = c.batch->color(k.plan->Oi, 0);
+    for (int i = 0; i < 3; ++i) result.constant[i] = std::isfinite(o[i]) ? std::clamp(o[i], 0.f, 1.f) : 1;
+    return result;
+}
+
+} // namespace alpenglow::transport

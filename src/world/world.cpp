@@ -1,0 +1,150 @@
+// From a frame's description to something that can be traced.
+#include "base/file.h"
+#include "geometry/build.h"
+#include "rsl/front/headers.h"
+#include "scene/numbers.h"
+#include "world/surfaces.h"
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+
+namespace alpenglow::transport {
+
+namespace {
+
+double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+// The shaders that ship: beside the program's build tree, else where it was built from.
+std::string shippedShaders() {
+    std::error_code e;
+    std::filesystem::path exe = std::filesystem::read_symlink("/proc/self/exe", e);
+    for (std::filesystem::path p = exe.parent_path(); !p.empty() && p != p.root_path(); p = p.parent_path())
+        if (std::filesystem::exists(p / "shaders" / "matte.sl", e)) return (p / "shaders").string();
+    return ALPENGLOW_SHADER_DIR;
+}
+
+// Whether the scene says who is visible to traced rays. BMRT's scenes never do, and their shaders trace.
+bool saysVisibility(const std::vector<geometry::ShapeRef>& shapes) {
+    const scene::Attributes* last = nullptr; // of a row of shapes with the same attributes
+    for (const geometry::ShapeRef& s : shapes) {
+        if (&s->attributes() == last) continue;
+        last = &s->attributes();
+        for (const char* name : {"visibility:trace", "visibility:diffuse", "visibility:specular"})
+            if (last->value(name)) return true;
+    }
+    return false;
+}
+
+// Visibility bits. Unset: everything sees everything under path and where no one is told apart (all); elsewhere only camera and
+// shadow rays of the file's own asking.
+uint32_t visibilityOf(const scene::Attributes& a, bool all) {
+    auto on = [&](const char* name, bool fallback) {
+        const scene::Param* p = a.value(std::string("visibility:") + name);
+        if (!p) return fallback;
+        if (!p->strings.empty()) return p->strings[0] != "transparent";
+        return !p->numbers.empty() && p->numbers[0] != 0;
+    };
+    // BMRT's word: 1 for camera rays, 2 for reflections, 4 for shadows. Visibilities of their own have the last word.
+    const scene::Param* old = a.value("render:visibility");
+    const int of = old && !old->numbers.empty() ? int(std::clamp(double(old->numbers[0]), 0., 7.)) : -1;
+    bool traced = on("trace", of < 0 ? all : (of & 2) != 0);
+    uint32_t bits = 0;
+    if (on("camera", of < 0 || (of & 1) != 0)) bits |= accel::kCamera;
+    if (on("diffuse", traced)) bits |= accel::kDiffuse;
+    if (on("specular", traced)) bits |= accel::kSpecular;
+    // Under path shadow rays are the renderer's own; elsewhere they are traced only when asked for, and old files that ask
+    // (transmission(), trace()) without saying who may be seen mean everything.
+    const scene::Param* casts = a.value("render:casts_shadows"); // BMRT's word
+    if (on("transmission", of < 0 || (of & 4) != 0) && !(casts && !casts->strings.empty() && casts->strings[0] == "none")) bits |= accel::kTransmission;
+    return bits;
+}
+
+/// Whether specular() has RISpec's exponent: Option "shade" "specular" "rispec" (or "prman", which is what it is without), or the
+/// dialect.
+bool rispecSpecular(const scene::Options& o, const std::string& dialect, Diagnostics& d) {
+    const auto i = o.values.find("shade:specular");
+    if (i == o.values.end()) return rsl::front::dialectRispecSpecular(dialect);
+    const std::string value = i->second.strings.empty() ? "" : i->second.strings[0];
+    if (value != "rispec" && value != "prman")
+        d.report(Severity::Error, Rie::BadToken, i->second.place,
+                 "Option \"shade\" \"specular\" cannot be \"" + value + "\"; it is \"prman\"",
+                 "\"rispec\": exponent 1/roughness; \"prman\": 8/roughness");
+    return value == "rispec" || rsl::front::dialectRispecSpecular(dialect);
+}
+
+} // namespace
+
+std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> frame, const Settings& settings, Diagnostics& d) {
+    double begin = seconds();
+    auto w = std::make_shared<WorldImpl>();
+    w->frame_ = frame;
+    w->settings_ = settings;
+    w->diagnostics_ = &d;
+    const scene::Options& o = frame->options;
+    bool path = settings.hider == Hider::Path;
+    w->setCamera(o);
+    w->maxDepth_ = path ? 32 : 4;
+    if (auto i = o.values.find("trace:maxdepth"); i != o.values.end() && !i->second.numbers.empty())
+        w->maxDepth_ = int(std::clamp(double(i->second.numbers[0]), -1.0, double(limits::kPathDepth))); // what no int holds, too
+    if (settings.maxDepth >= 0) w->maxDepth_ = settings.maxDepth;
+    w->maxDepth_ = std::min(w->maxDepth_, limits::kPathDepth);
+    w->textures_ = std::make_unique<texture::TextureSystem>(
+        d,
+        texture::TextureSettings{.light = scene::readsMapsAsLight(o, path, d), .read = settings.read, .reads = settings.reads});
+    rsl::ShaderCompiler::Settings cs;
+    cs.cacheDirectory = settings.cacheDirectory;
+    cs.dialect = settings.dialect;
+    cs.rispecSpecular = w->rispecSpecular_ = rispecSpecular(o, settings.dialect, d);
+    cs.allowExec = settings.allowExec;
+    cs.pluginPaths = settings.pluginPaths;
+    cs.reads = settings.reads;
+    w->compiler_ = std::make_shared<rsl::ShaderCompiler>(cs);
+    if (const char* e = std::getenv("ALPENGLOW_SHADERS"))
+        for (auto& path : splitSearchPath(e)) w->settings_.shaderPaths.push_back(path);
+    w->settings_.shaderPaths.push_back(shippedShaders());
+    w->shapes_ = geometry::buildShapes(*frame, d);
+    for (const auto& shape : w->shapes_) w->numberOfShape_.emplace(shape.get(), uint32_t(w->numberOfShape_.size()));
+    for (const auto& shape : w->shapes_) w->traceSubsets_ |= shape->attributes().value("grouping:tracesubset") != nullptr;
+    w->clippingPlanes_ = o.clippingPlanes;
+    w->clipNear_ = o.clipNear;
+    w->clipFar_ = o.clipFar;
+    const bool all = path || !saysVisibility(w->shapes_);
+    w->bindLights(d, [all](const geometry::Shape& s) { return visibilityOf(s.attributes(), all); });
+    Engine engine(std::shared_ptr<const WorldImpl>(std::shared_ptr<const WorldImpl>{}, w.get()), d); // runs kernels while the world is made
+    engine.stop = settings.stop;
+    const auto stopped = [&settings] { return settings.stop && *settings.stop; };
+    if (!SurfaceBinder(*w, engine, d).bindAll()) return nullptr;
+    w->measureOutputs();
+    if (stopped()) return nullptr;
+    w->setPointNeeds();
+    w->diceShapes(d); // with displacement, by the same kernels that shade
+    if (stopped()) return nullptr;
+    std::vector<uint32_t> visibility;
+    for (const auto& shape : w->shapes_) visibility.push_back(visibilityOf(shape->attributes(), all));
+    w->accel_ = std::make_unique<accel::Accel>(w->shapes_, visibility, d);
+    if (!w->accel_->sound()) return nullptr;
+    std::vector<accel::Accel::Levels> levels(w->shapes_.size());
+    for (size_t i = 0; i < levels.size(); ++i)
+        if (const scene::Param* p = w->shapes_[i]->attributes().value(kLevelAttribute); p && p->numbers.size() == 2) {
+            levels[i] = {p->numbers[0], p->numbers[1]};
+            w->fades_ = true;
+        }
+    if (w->fades_) w->accel_->setLevels(std::move(levels));
+    w->sortByOpacity();
+    w->findEye();
+    w->bindSentStrings(d);
+    w->countLightTraces();
+    w->measureLights(engine, d);
+    for (const auto& [shape, binding] : w->hazyEmitters_) {
+        w->lights_[size_t(shape->attributes().areaLight)].hazy = true;
+        for (int part : w->lights_[size_t(shape->attributes().areaLight)].parts) w->lights_[size_t(part)].hazy = true;
+    }
+    w->makeChoosers(d);
+    w->facts_.shapes = w->shapes_.size();
+    for (const auto& shape : w->shapes_) w->facts_.before += !(shape->bounds().hi.z <= 0);
+    w->built_ = true;
+    w->facts_.buildSec = seconds() - begin - w->facts_.compileSec;
+    return w;
+}
+
+} // namespace alpenglow::transport

@@ -79,6 +79,30 @@ TEST_P(LobeProperty, WhatIsDrawnHasADensityAndAValue) {
     rc::detail::printResultMessage(result, said);
     EXPECT_TRUE(result.is<rc::detail::SuccessResult>()) << said.str();
 }
+
+// The numbers at the ends of [0, 1): a cosine of 0 about a lobe's mirror direction is one that rounding may make negative.
+TEST(LobeEdges, APhongDrawAtNinetyDegreesHasADensityOrIsRefused) {
+    for (const LobeKind* kind : lobeKinds()) {
+        const LobeKind& k = *kind;
+        if (k.name != "phong" && k.name != "slphong") continue;
+        int drawn = 0;
+        for (int i = 0; i < 400; ++i) {
+            const float z = -1 + (float(i) + .5f) / 200, s = std::sqrt(1 - z * z), phi = 2.399963f * float(i);
+            LobeParams p;
+            p.axis = Vec3(s * std::cos(phi), s * std::sin(phi), z);
+            p.wo = normalize(p.axis + Vec3(.4f, -.2f, .3f));
+            p.a = 1;
+            for (int j = 0; j < 32; ++j) {
+                Vec3 w;
+                if (!k.sample(p, {0, float(j) / 32}, w)) continue;
+                ++drawn;
+                EXPECT_GT(k.pdf(p, w), 0) << k.name << " " << i << " " << j;
+            }
+        }
+        EXPECT_GT(drawn, 50) << k.name;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Kinds, LobeProperty, ::testing::ValuesIn(lobeKinds().begin(), lobeKinds().end()), [](const auto& i) {
     std::string name(i.param->name);
     std::replace(name.begin(), name.end(), '-', '_');

@@ -34,7 +34,7 @@ struct PhongTrace {
     static AL_MEMBER vm sample(const Given& p, const Pair<vf>& u, Direction& w) {
         const vm delta = p.number(kRowDelta) != 0;
         w = select3(delta, p.axis(), toWorld(basisAbout(p.axis()), samplePhong(p.own(0), u)));
-        return delta | sameSide(p, w);
+        return delta | ((dot(p.axis(), w) > 0) & sameSide(p, w)); // rounding can lose the first at 90 degrees
     }
 };
 

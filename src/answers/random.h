@@ -1,6 +1,6 @@
 // The random numbers of one sample, by path vertex, call site and occurrence (design decision 10).
 #pragma once
-#include "base/sampler.h"
+#include "base/numberlanes.h"
 
 namespace alpenglow::transport {
 
@@ -13,6 +13,9 @@ public:
     Random(render::SeedKey seed, int px, int py, uint32_t sample) : numbers_(render::Sampler(seed, px, py), sample) {}
     Vec2 pair(uint32_t vertex, uint32_t use, uint32_t occurrence) const { return numbers_.get2(vertex, use, occurrence); }
     float one(uint32_t vertex, uint32_t use, uint32_t occurrence) const { return numbers_.get1(vertex, use, occurrence); }
+
+    /// For asking for many at a time (render::NumberRows).
+    const render::SampleNumbers& numbers() const { return numbers_; }
 
     /// The numbers of draw k of n that are made alike: spread over the draws as over samples (SampleNumbers::draw).
     Random draw(uint32_t k, uint32_t n) const { return Random(numbers_.draw(k, n)); }

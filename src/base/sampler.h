@@ -27,6 +27,7 @@ struct SeedKey {
 };
 
 class SampleNumbers;
+class NumberRows;
 
 /// The stratified numbers of one pixel. Stateless: a number depends on (seed, pixel, sample, vertex, site, occurrence) only.
 class Sampler {
@@ -81,6 +82,7 @@ public:
     }
 
 private:
+    friend class NumberRows; // numberlanes.h
     static constexpr uint32_t kSingle = 1;
     uint32_t low_, high_;
     uint32_t index_; ///< of the sample in its replica

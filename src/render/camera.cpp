@@ -78,6 +78,7 @@ Camera::Camera(const scene::Options& o, Diagnostics& diags) {
             top_ = w[3];
         } else bad("ScreenWindow: it has no area; the default is used");
     }
+    pixel_ = std::max(std::fabs(right_ - left_) / width_, std::fabs(top_ - bottom_) / height_);
 
     // In float, as the numbers were given: 640 * 0.1 is 64 there, and more than 64 in double.
     float c[4];
@@ -133,7 +134,7 @@ Matrix Camera::cameraToFirst(double time) const { return inverse(at(transform_, 
 
 transport::CameraRay Camera::ray(double rx, double ry, Vec2 lens, float time01) const {
     double xs = left_ + (right_ - left_) * rx / width_, ys = top_ - (top_ - bottom_) * ry / height_;
-    double px = std::fabs(right_ - left_) / width_, py = std::fabs(top_ - bottom_) / height_, pixel = std::max(px, py);
+    double pixel = pixel_;
     Vec3d origin, direction;
     if (perspective_) {
         direction = {xs * tangent_, ys * tangent_, 1};

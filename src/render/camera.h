@@ -43,6 +43,7 @@ private:
     Window window_;
     bool perspective_ = false;
     double left_ = -1, right_ = 1, bottom_ = -1, top_ = 1;
+    double pixel_ = 1; ///< the larger side of a pixel on the screen
     double fov_ = 90, tangent_ = 1; ///< degrees; tan(fov / 2)
     double near_ = 0;
     double lensRadius_ = 0, focus_ = 1;

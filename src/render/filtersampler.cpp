@@ -6,7 +6,7 @@
 namespace alpenglow::render {
 namespace {
 
-constexpr int kPieces = 1024; // straight pieces per axis: the error of the density is below 2e-6 of its peak
+constexpr int kPieces = 1024; // straight pieces per axis: the error of the density is below 2e-6 of its peak. A power of two
 constexpr int kCells = 256;   // cells per axis of a filter that is no product
 constexpr double kBelowOne = 1 - 0x1p-53;
 
@@ -70,13 +70,17 @@ void FilterSampler::Axis::build(const PixelFilter& f, double w) {
         for (double& c : p.cdf)
             c /= p.mass > 0 ? p.mass : 1;
         p.mass /= absolute;
+        for (int k = 0; k < kPieces && !p.piece.empty(); ++k)
+            p.guide.push_back(find(p.cdf, 0, p.cdf.size(), double(k) / kPieces));
     }
     if (part[1].piece.empty())
         part[0].mass = 1; // exactly
 }
 
 double FilterSampler::Axis::invert(double u, const Part& p) const {
-    int k = find(p.cdf, 0, p.cdf.size(), u), i = p.piece[size_t(k)];
+    int k = p.guide[size_t(u * kPieces)]; // find(), a step away on average
+    while (k + 2 < int(p.cdf.size()) && p.cdf[size_t(k) + 1] <= u) ++k;
+    int i = p.piece[size_t(k)];
     double m = p.cdf[k + 1] - p.cdf[k];
     return node[i] + (node[i + 1] - node[i]) * invertLinear(value[i], value[i + 1], m > 0 ? (u - p.cdf[k]) / m : 0);
 }

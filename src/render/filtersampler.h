@@ -30,10 +30,12 @@ public:
     const PixelFilter& filter() const { return filter_; }
 
 private:
-    /// The part of an axis where the filter has one sign: its pieces and their cumulated masses, 0 .. 1.
+    /// The part of an axis where the filter has one sign: its pieces and their cumulated masses, 0 .. 1. `guide`: by share of 0 .. 1, the
+    /// last mass that is not above where the share begins.
     struct Part {
         std::vector<int> piece;
         std::vector<double> cdf{0};
+        std::vector<int> guide;
         double mass = 0;
     };
     /// One axis of a separable filter: |f| as straight pieces between nodes, pieces cut at the zeros of f, masses by quadrature.

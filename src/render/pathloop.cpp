@@ -1,6 +1,6 @@
 // `path`: whole passes of samples over all pixels, into a film of exact sums.
 #include "base/limits.h"
-#include "base/sampler.h"
+#include "base/numberlanes.h"
 #include "render/imaging.h"
 #include "render/noise.h"
 #include "render/rendering.h"
@@ -20,17 +20,40 @@ static_assert(kPass % kReplicas == 0);
 
 transport::CameraRay pathRay(const Camera& camera, const FilterSampler& filter, uint64_t seed, int x, int y, uint32_t sample,
                              float* weight) {
-    Sampler numbers(seed, x, y);
-    FilterSample f = filter.sample(numbers.get2(0, kUseFilter, 0, sample));
-    *weight = f.weight;
-    Vec2 lens{0.5f, 0.5f};
-    if (camera.hasLens()) lens = numbers.get2(0, kUseLens, 0, sample);
-    float time = camera.shutterClose() > camera.shutterOpen() ? numbers.get1(0, kUseTime, 0, sample) : 0;
-    transport::CameraRay r = camera.ray(x + 0.5 + f.dx, y + 0.5 + f.dy, lens, time);
-    r.px = x;
-    r.py = y;
-    r.sample = sample;
-    return r;
+    const PixelSample one{x, y, sample};
+    NumberRows numbers;
+    std::vector<transport::CameraRay> rays;
+    std::vector<float> weights;
+    pathRays(camera, filter, seed, {&one, 1}, numbers, rays, weights);
+    *weight = weights[0];
+    return rays[0];
+}
+
+void pathRays(const Camera& camera, const FilterSampler& filter, uint64_t seed, std::span<const PixelSample> samples,
+              NumberRows& numbers, std::vector<transport::CameraRay>& rays, std::vector<float>& weights) {
+    const bool moves = camera.shutterClose() > camera.shutterOpen();
+    const SeedKey key(seed);
+    numbers.clear();
+    for (const PixelSample& p : samples) {
+        const SampleNumbers own(Sampler(key, p.x, p.y), p.sample);
+        numbers.askPair(own, 0, kUseFilter, 0);
+        if (camera.hasLens()) numbers.askPair(own, 0, kUseLens, 0);
+        if (moves) numbers.askOne(own, 0, kUseTime, 0);
+    }
+    numbers.draw();
+    size_t next = 0;
+    rays.clear();
+    weights.clear();
+    for (const PixelSample& p : samples) {
+        const FilterSample f = filter.sample(numbers.pair(next++));
+        const Vec2 lens = camera.hasLens() ? numbers.pair(next++) : Vec2{0.5f, 0.5f};
+        const float time = moves ? numbers.one(next++) : 0;
+        transport::CameraRay& r = rays.emplace_back(camera.ray(p.x + 0.5 + f.dx, p.y + 0.5 + f.dy, lens, time));
+        r.px = p.x;
+        r.py = p.y;
+        r.sample = p.sample;
+        weights.push_back(f.weight);
+    }
 }
 
 bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const std::function<void(Film&)>& afterPass) {
@@ -95,10 +118,13 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
             std::vector<float>& out = held[i];
             out.clear();
             out.reserve(t.pixels() * count * stride);
+            std::vector<PixelSample> samples;
+            NumberRows numbers;
             std::vector<transport::CameraRay> rays;
             std::vector<transport::SampleResult> results;
             std::vector<float> weights;
             auto flush = [&] {
+                pathRays(job.camera, filter, seed, samples, numbers, rays, weights);
                 results.resize(rays.size());
                 if (!job.trace(worker, rays, results)) return false;
                 for (size_t k = 0; k < rays.size(); ++k) {
@@ -112,19 +138,16 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
                     for (size_t j = 0; j < channels.size(); ++j)
                         if (channels[j].rule == ChannelRule::Average) out[at + j] *= w;
                 }
-                rays.clear();
-                weights.clear();
+                samples.clear();
                 return true;
             };
             for (int y = t.y0; y < t.y1; ++y)
                 for (int x = t.x0; x < t.x1; ++x)
                     for (uint32_t s = next; s < next + count; ++s) {
-                        float w;
-                        rays.push_back(pathRay(job.camera, filter, seed, x, y, s, &w));
-                        weights.push_back(w);
-                        if (rays.size() == kRaysPerCall && !flush()) return;
+                        samples.push_back({x, y, s});
+                        if (samples.size() == kRaysPerCall && !flush()) return;
                     }
-            if (!rays.empty()) flush();
+            if (!samples.empty()) flush();
         };
         bool whole = false;
         try {

@@ -1,5 +1,6 @@
 // The two loops that turn camera rays into pixels, and what they share. Inside render/.
 #pragma once
+#include "base/numberlanes.h"
 #include "render/camera.h"
 #include "render/engine.h"
 #include "render/filtersampler.h"
@@ -60,6 +61,10 @@ std::vector<Window> tilesOf(const Window&, int side = kTile);
 
 /// The camera ray of a sample of `path`: its place is drawn from the filter. *weight multiplies what comes along it.
 transport::CameraRay pathRay(const Camera&, const FilterSampler&, uint64_t seed, int x, int y, uint32_t sample, float* weight);
+/// The same for many samples at a time.
+struct PixelSample { int x, y; uint32_t sample; };
+void pathRays(const Camera&, const FilterSampler&, uint64_t seed, std::span<const PixelSample>, NumberRows&,
+              std::vector<transport::CameraRay>& rays, std::vector<float>& weights);
 /// Adds samples to the film in whole passes until the range is done, the noise or time asked for is reached, or the user stops.
 /// spp: samples `first` .. `first + spp` of every pixel; fewer may be added. Returns false when not one whole pass could be
 /// added.

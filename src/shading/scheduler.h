@@ -76,7 +76,7 @@ public:
     void spawn(Task t) { spawn(t.depth, t.target, t.payload); }
     /// The same for a payload that is made from another and changed in place: good until the next task is spawned.
     Task& spawn(int depth, TargetId target, const Payload& from = {}) {
-        ++targets_[target].pending;
+        ++open_[size_t(target)].pending;
         if (size_t(depth) >= queues_.size()) queues_.resize(size_t(depth) + 1);
         ++queued_;
         auto& chunks = queues_[size_t(depth)];
@@ -120,7 +120,7 @@ public:
         strips_[slot].open = count + 1; // one for this loop, so that nothing becomes ready while it runs
         for (int i = 0; i < count; ++i) {
             make(i, ids[i]);
-            if (targets_[ids[i]].pending == 0) closeChild(slot);
+            if (open_[size_t(ids[i])].pending == 0) closeChild(slot);
         }
         closeChild(slot);
     }
@@ -166,6 +166,7 @@ public:
     void restart(const StopFlag* stop) {
         stop_ = stop;
         targets_.clear();
+        open_.clear();
         freeTargets_.clear();
         strips_.clear();
         freeStrips_.clear();
@@ -190,6 +191,9 @@ private:
     struct Target {
         ExactSum sum[3];
         TargetValue value;
+    };
+    /// What a target waits for: by itself, since it is asked for at every ray, and the rest only where there is light.
+    struct Open {
         int pending = 0;
         int strip = -1; ///< -1: a root
     };
@@ -205,12 +209,13 @@ private:
         if (freeTargets_.empty()) {
             id = TargetId(targets_.size());
             targets_.emplace_back();
+            open_.emplace_back();
         } else {
             id = freeTargets_.back();
             freeTargets_.pop_back();
             targets_[id] = Target{};
         }
-        targets_[id].strip = strip;
+        open_[size_t(id)] = {0, strip};
         return id;
     }
     int newStrip() {
@@ -223,7 +228,7 @@ private:
         return int(strips_.size()) - 1;
     }
     void complete(TargetId id) {
-        Target& t = targets_[id];
+        Open& t = open_[size_t(id)];
         if (--t.pending == 0 && t.strip >= 0) closeChild(t.strip);
     }
     void closeChild(int slot) {
@@ -308,7 +313,7 @@ public:
     /// For Strip::resume: takes ownership of the strip that is being resumed, to hand it to wait() again.
     std::unique_ptr<Strip> takeResuming() { return std::move(resuming_); }
     /// A strip that holds a task's target open until it ends: the task's own count is closed by run(), so the strip adds one more.
-    void hold(TargetId id) { ++targets_[id].pending; }
+    void hold(TargetId id) { ++open_[size_t(id)].pending; }
     void release(TargetId id) { complete(id); }
 
 private:
@@ -317,6 +322,7 @@ private:
     size_t frameLimit_;
     int sliceRays_;
     std::vector<Target> targets_;
+    std::vector<Open> open_; ///< of targets_
     std::vector<TargetId> freeTargets_;
     std::deque<Waiting> strips_;
     std::vector<int> freeStrips_;

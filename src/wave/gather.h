@@ -20,7 +20,8 @@ private:
     /// A lobe that light of a query reaches from direction w. `turn`: how many queries have reached it before.
     struct Reached { int query, lobe, turn; Vec3 w; LobeValue value; };
     /// A lobe whose rays are sent: `count` of them, each with `scale` times its weight. `goes`, `w`: the ray of this turn.
-    struct Sent { int point, lobe, count; float scale; bool goes; Vec3 w; LobeValue value; };
+    /// `vertex`: of that ray; `dice`: the number of its roulette.
+    struct Sent { int point, lobe, count; float scale; bool goes; Vec3 w; LobeValue value; uint32_t vertex = 0; float dice = 0; };
     /// What lights are asked for at points of the batch, one kernel call; row by row a query.
     struct LightQueries {
         std::vector<ShadePoint> at;          ///< the light's point; the first `count` are used
@@ -64,7 +65,7 @@ private:
     void chooseLights(const std::vector<int>& lights);
     bool samples(const LobeVertex&, const BoundLight&) const;
     void queriesOf(const BoundLight&, std::span<const std::pair<int, float>> chosen);
-    bool place(ShadePoint&, Emitter::Sample&, size_t point, const BoundLight&) const;
+    bool place(ShadePoint&, Emitter::Sample&, size_t point, const BoundLight&, size_t& number) const;
     void queriesByWidth(size_t point, const BoundLight&);
     void askLights(const BoundKernel* shared);
 
@@ -78,12 +79,14 @@ private:
 
     // scatter.cpp
     void scatter(Sched&);
-    void pick(size_t point);
+    bool picks(size_t point) const;
+    void pick(size_t point, float number);
     void draw(int turn);
+    void throwDice(int turn);
     void sendRay(const Sent&, int turn, Sched&);
     bool meetsEmitter(const LobeVertex&, const Vec3& w) const;
     /// Divides the weight by the chance that the ray goes on; false: it does not.
-    bool roulette(const LobeVertex&, int turn, uint32_t vertex, uint16_t& asked, Color& weight) const;
+    bool roulette(const LobeVertex&, const Sent&, int turn, uint16_t& asked, Color& weight) const;
 
     Engine& e_;
     const WorldImpl& world_;
@@ -95,6 +98,8 @@ private:
     std::vector<std::vector<std::pair<int, float>>> chosenAt_; ///< many lights: by light of the list, points and chances
     std::vector<std::vector<int>> ofGroup_; ///< many lights: by group, places in the list
     LightQueries queries_;
+    render::NumberRows numbers_;
+    std::vector<std::pair<int, float>> wanted_; ///< points of a light that ask for it, and chances
     std::vector<Reached> reached_;
     std::vector<int> turns_;   ///< by lobe: queries that have reached it
     int lastQuery_ = -1; ///< that of the shadow ray sent last, which other lobes of its point may share

@@ -82,10 +82,26 @@ void Gather::light() {
 void Gather::queriesOf(const BoundLight& light, std::span<const std::pair<int, float>> chosen) {
     // A light that filters over its surface is asked once for every width of the lobes at a point, at the same sample.
     const bool wide = light.kind == LightKind::Area && usesFootprint(light);
+    const uint32_t use = kLightPoint + uint32_t(&light - world_.lights_.data());
+    numbers_.clear();
+    wanted_.clear();
     for (const auto& [point, chance] : chosen) {
         bool wanted = false;
         for (int i : lobesOf(size_t(point))) wanted |= samples(e_.lobes[size_t(i)], light);
         if (!wanted) continue;
+        wanted_.push_back({point, chance});
+        const PathRay& ray = c_->rays[size_t(point)];
+        if (light.kind == LightKind::Area) {
+            const uint32_t vertex = lightVertex(size_t(point));
+            numbers_.askPair(e_.random(ray).numbers(), vertex, use, 0);
+            if (light.emitter->chooses()) numbers_.askOne(e_.random(ray).numbers(), vertex, use, 0);
+        } else if (light.cone && rules_.pickOne) {
+            numbers_.askPair(e_.random(ray).numbers(), ray.vertex, use, 0);
+        }
+    }
+    numbers_.draw();
+    size_t number = 0;
+    for (const auto& [point, chance] : wanted_) {
         const ShadePoint& lit = c_->points[size_t(point)];
         ShadePoint& p = queries_.add(point, light, chance);
         p.Ps = lit.P;
@@ -97,7 +113,7 @@ void Gather::queriesOf(const BoundLight& light, std::span<const std::pair<int, f
         p.dv = lit.dv;
         p.time = lit.time;
         p.ray = lit.ray;
-        if (!place(p, queries_.drawn.back(), size_t(point), light)) {
+        if (!place(p, queries_.drawn.back(), size_t(point), light, number)) {
             --queries_.count;
             queries_.point.pop_back();
             queries_.light.pop_back();
@@ -110,15 +126,11 @@ void Gather::queriesOf(const BoundLight& light, std::span<const std::pair<int, f
     }
 }
 
-/// The point of the light; false: this draw brings nothing.
-bool Gather::place(ShadePoint& p, Emitter::Sample& s, size_t point, const BoundLight& light) const {
-    const PathRay& ray = c_->rays[point];
-    const uint32_t use = kLightPoint + uint32_t(&light - world_.lights_.data());
+/// The point of the light; false: this draw brings nothing. `number`: the next of numbers_.
+bool Gather::place(ShadePoint& p, Emitter::Sample& s, size_t point, const BoundLight& light, size_t& number) const {
     if (light.kind == LightKind::Area) {
-        const Random numbers = e_.random(ray);
-        const uint32_t vertex = lightVertex(point);
-        const Vec2 u = numbers.pair(vertex, use, 0);
-        const float choose = light.emitter->chooses() ? numbers.one(vertex, use, 0) : 0;
+        const Vec2 u = numbers_.pair(number++);
+        const float choose = light.emitter->chooses() ? numbers_.one(number++) : 0;
         if (!(light.mean ? light.emitter->sampleSurface(p.Ps, u, choose, s, p.surface, light.pointNeeds)
                          : light.emitter->sample(p.Ps, u, choose, s, p.surface, light.pointNeeds)))
             return false;
@@ -131,7 +143,7 @@ bool Gather::place(ShadePoint& p, Emitter::Sample& s, size_t point, const BoundL
     p.surface = c_->points[point].surface;
     p.N = Vec3();
     p.P = Vec3(transformPoint(light.instance->toCurrent, {0, 0, 0}));
-    p.Ci = light.cone && rules_.pickOne ? coneNumbers(e_.random(ray).pair(ray.vertex, use, 0)) : Color(0);
+    p.Ci = light.cone && rules_.pickOne ? coneNumbers(numbers_.pair(number++)) : Color(0);
     return true;
 }
 

@@ -8,20 +8,32 @@ namespace alpenglow::transport {
 
 void Gather::scatter(Sched& sched) {
     sent_.clear();
+    numbers_.clear();
     for (size_t point = 0; point < c_->points.size(); ++point)
-        if (begin_[point] != begin_[point + 1]) pick(point);
+        if (picks(point)) numbers_.askOne(e_.random(c_->rays[point]).numbers(), c_->rays[point].vertex, kChooseLobe, 0);
+    numbers_.draw();
+    size_t number = 0;
+    for (size_t point = 0; point < c_->points.size(); ++point)
+        if (begin_[point] != begin_[point + 1]) pick(point, picks(point) ? numbers_.one(number++) : 0);
     int turns = 0;
     for (const Sent& s : sent_) turns = std::max(turns, s.count);
     for (int turn = 0; turn < turns; ++turn) { // of each lobe a ray
         draw(turn);
+        throwDice(turn);
         for (const Sent& s : sent_)
             if (s.goes) sendRay(s, turn, sched);
     }
 }
 
-void Gather::pick(size_t point) {
+/// Whether chance decides what goes on from a point.
+bool Gather::picks(size_t point) const {
+    const int lobes = begin_[point + 1] - begin_[point];
+    return rules_.pickOne && lobes > 0 && (lobes > 1 || passes_[point] < 1);
+}
+
+/// `number`: what decides, where picks().
+void Gather::pick(size_t point, float number) {
     const auto list = lobesOf(point);
-    const PathRay& from = c_->rays[point];
     const bool mayPass = passes_[point] < 1; // then lobes have the rest of the chance
     if (list.size() == 1 && !mayPass) { // what most vertices are
         const LobeVertex& l = e_.lobes[size_t(list[0])];
@@ -31,7 +43,6 @@ void Gather::pick(size_t point) {
         sent_.push_back({int(point), list[0], one ? 1 : l.samples, scale, true, Vec3(), {}});
         return;
     }
-    const float pick = rules_.pickOne && (list.size() > 1 || mayPass) ? e_.random(from).one(from.vertex, kChooseLobe, 0) : 0;
     float sum = 0;
     bool taken = false;
     for (int i : list) {
@@ -41,7 +52,7 @@ void Gather::pick(size_t point) {
         int count = l.samples;
         if (rules_.pickOne && !l.ownsTarget) {
             sum += l.chosen;
-            if (taken || (pick >= sum && (mayPass || i != list.back()))) continue;
+            if (taken || (number >= sum && (mayPass || i != list.back()))) continue;
             taken = true;
             scale = 1 / l.chosen;
             count = 1;
@@ -55,13 +66,18 @@ void Gather::pick(size_t point) {
 /// Directions of the rays of one turn, and what their lobes give back from there.
 void Gather::draw(int turn) {
     LobeColumns& rows = e_.lobeRows_;
+    numbers_.clear();
     for (Sent& s : sent_) {
         s.goes = turn < s.count;
         if (!s.goes) continue;
         const LobeVertex& l = e_.lobes[size_t(s.lobe)];
         const PathRay& from = c_->rays[size_t(s.point)];
-        rows.ask(l.place, e_.random(from).draw(uint32_t(turn), uint32_t(s.count)).pair(from.vertex, l.site, l.occurrence * 4096));
+        numbers_.askPair(e_.random(from).draw(uint32_t(turn), uint32_t(s.count)).numbers(), from.vertex, l.site, l.occurrence * 4096);
     }
+    numbers_.draw();
+    size_t number = 0;
+    for (const Sent& s : sent_)
+        if (s.goes) rows.ask(e_.lobes[size_t(s.lobe)].place, numbers_.pair(number++));
     rows.sample();
     for (Sent& s : sent_) {
         if (!s.goes) continue;
@@ -75,6 +91,23 @@ void Gather::draw(int turn) {
         const LobeVertex& l = e_.lobes[size_t(s.lobe)];
         s.value = l.delta ? LobeValue{Color(l.albedo), l.albedo, 0} : rows.value(l.place);
     }
+}
+
+/// What the rays of a turn are known by, and the numbers that decide whether they go on.
+void Gather::throwDice(int turn) {
+    numbers_.clear();
+    for (Sent& s : sent_) {
+        if (!s.goes) continue;
+        const LobeVertex& l = e_.lobes[size_t(s.lobe)];
+        const PathRay& from = rayOf(l);
+        s.vertex = childVertex(from.vertex, l.site, l.occurrence * 4096 + uint32_t(turn));
+        if (rules_.roulette && (l.ownsTarget || from.bounces + 1 > 3)) numbers_.askOne(e_.random(from).numbers(), s.vertex, kRoulette, 0);
+    }
+    numbers_.draw();
+    size_t number = 0;
+    for (Sent& s : sent_)
+        if (const LobeVertex& l = e_.lobes[size_t(s.lobe)]; s.goes && rules_.roulette && (l.ownsTarget || rayOf(l).bounces + 1 > 3))
+            s.dice = numbers_.one(number++);
 }
 
 /// A ray that is to bring nothing but the light of emitters, and goes past the balls about all of them, brings none.
@@ -92,9 +125,9 @@ bool Gather::meetsEmitter(const LobeVertex& l, const Vec3& w) const {
     return false;
 }
 
-bool Gather::roulette(const LobeVertex& l, int turn, uint32_t vertex, uint16_t& asked, Color& weight) const {
+bool Gather::roulette(const LobeVertex& l, const Sent& s, int turn, uint16_t& asked, Color& weight) const {
     const PathRay& from = rayOf(l);
-    const auto dice = [&] { return e_.random(from).one(vertex, kRoulette, 0); };
+    const auto dice = [&] { return s.dice; };
     float q = 1;
     if (l.ownsTarget) {
         asked = uint16_t(std::min<uint32_t>(std::max<uint32_t>(from.asked, l.before + uint32_t(turn) + 1), 0xffff));
@@ -130,19 +163,18 @@ void Gather::sendRay(const Sent& s, int turn, Sched& sched) {
     Color weight = l.ownsTarget ? through : from.weight * through;
     if (!isFinite(weight)) return e_.notFinite(*c_, from, l.site);
     if (weight == Color(0) && !l.ownsTarget) return;
-    const uint32_t vertex = childVertex(from.vertex, l.site, l.occurrence * 4096 + uint32_t(turn));
     uint16_t asked = from.asked;
-    if (rules_.roulette && !roulette(l, turn, vertex, asked, weight)) return;
+    if (rules_.roulette && !roulette(l, s, turn, asked, weight)) return;
     const int bounces = from.bounces + 1;
     PathRay& r = sched.spawn(bounces + from.layers, l.target, from).payload;
     r.weight = weight;
-    r.vertex = vertex;
+    r.vertex = s.vertex;
     r.asked = asked;
     r.bounces = int16_t(bounces);
     ++(l.rays->type == RayType::Diffuse ? r.diffuseBounces : r.specularBounces);
     r.origin = origin(l, w);
     if (l.base > 0) { // somewhere on the footprint
-        const Vec2 at = e_.random(from).pair(vertex, kSampleBase, 0);
+        const Vec2 at = e_.random(from).pair(s.vertex, kSampleBase, 0);
         r.origin += (p.surface.dPdu * (p.du * (at.x - .5f)) + p.surface.dPdv * (p.dv * (at.y - .5f))) * l.base;
     }
     r.dir = w;

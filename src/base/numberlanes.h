@@ -1,0 +1,38 @@
+// The numbers of many samples at a time: what SampleNumbers gives one by one, with the same bits, from one call over lanes. Compiled at 4,
+// 8 and 16 lanes and chosen once by the processor.
+#pragma once
+#include "base/numberblock.h"
+#include "base/sampler.h"
+#include <vector>
+
+namespace alpenglow::render {
+
+/// Requests for numbers. First all are asked for, then draw() makes them, then they are read; clear() begins anew in the same memory.
+class NumberRows {
+public:
+    /// Asks for what s.get2(vertex, site, occurrence) gives: pair(i) for the i-th request since clear().
+    void askPair(const SampleNumbers& s, uint32_t vertex, uint32_t site, uint32_t occurrence) { ask(s, vertex, site << 1, occurrence); }
+    /// Asks for what s.get1(vertex, site, occurrence) gives: one(i).
+    void askOne(const SampleNumbers& s, uint32_t vertex, uint32_t site, uint32_t occurrence) {
+        ask(s, vertex, site << 1 | SampleNumbers::kSingle, occurrence);
+    }
+    void draw();
+    Vec2 pair(size_t i) const { return {blocks_[i / kSize].x[i % kSize], blocks_[i / kSize].y[i % kSize]}; }
+    float one(size_t i) const { return blocks_[i / kSize].x[i % kSize]; }
+    size_t size() const { return count_; }
+    void clear() { count_ = 0; }
+
+private:
+    static constexpr size_t kSize = NumberBlock::kSize;
+    void ask(const SampleNumbers& s, uint32_t vertex, uint32_t stream, uint32_t occurrence) {
+        if (count_ == blocks_.size() * kSize) blocks_.emplace_back();
+        NumberBlock& b = blocks_[count_ / kSize];
+        const size_t lane = count_++ % kSize;
+        b.low[lane] = s.low_, b.high[lane] = s.high_, b.index[lane] = s.index_;
+        b.vertex[lane] = vertex, b.stream[lane] = stream, b.occurrence[lane] = occurrence;
+    }
+    std::vector<NumberBlock> blocks_;
+    size_t count_ = 0;
+};
+
+} // namespace alpenglow::render

@@ -7,7 +7,8 @@
 #include "render/rendering.h"
 #include "ri/reader.h"
 #include "lobes/sampling.h"
-#include "world/world.h"
+#include "transport/integrator.h"
+#include "world/impl.h"
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -64,7 +65,7 @@ struct Box {
         t.lanes = lanes;
         t.outputs = plan.engineOutputs;
         t.shaderPaths = {ALPENGLOW_SOURCE_DIR "/shaders"};
-        world = transport::World::build(frame, t, diagnostics);
+        world = transport::buildWorld(frame, t, diagnostics);
         if (world) plan.resolve(world->outputWidths(), diagnostics);
         return world != nullptr;
     }

@@ -2,15 +2,30 @@
 
 namespace alpenglow::transport {
 
-Told::Told(const Information& i) : numbers(i.numbers), texts(i.texts) {}
+Answers::Answers(const WorldImpl& world, Diagnostics& d, Tracer* tracer)
+    : world_(&world), diagnostics_(d), tracer_(tracer), seed_(world.settings_.seed), noSample_(render::Sampler(seed_, 0, 0), 0) {}
 
-rsl::ir::Kind Told::kindOf(rsl::Base b) {
-    using rsl::ir::Kind;
-    return b == rsl::Base::String ? Kind::String : b == rsl::Base::Matrix ? Kind::Matrix : b == rsl::Base::Float ? Kind::Float : Kind::Triple;
+void KernelRun::forget() {
+    bound = nullptr;
+    binding = nullptr;
+    rays.clear();
+    bindings.clear();
+    light = nullptr;
+    lit = nullptr;
+    volume = nullptr;
+    aside = nullptr;
+    displaced.reset();
+    for (LightLoop& loop : loops) loop.reset(-1);
+    ambient.clear();
+    for (LightSheet& sheet : sheets) sheet.made = sheet.refused = false;
+    draws.clear();
+    lightChannels.clear();
+    lightDistance.clear();
 }
 
-ServiceCall::ServiceCall(BatchContext& context, int number, int firstPoint, uint64_t points, int width, const float* arguments, float* results)
-    : c(context), s(context.bound->sites[size_t(number)]), d(*s.site), site(number), first(firstPoint), lanes(width), mask(points), in(arguments), out(results) {
+ServiceCall::ServiceCall(KernelRun& context, Diagnostics& said, int number, int firstPoint, uint64_t points, int width, const float* arguments, float* results)
+    
+    : c(context), diagnostics(said), s(context.bound->sites[size_t(number)]), d(*s.site), site(number), first(firstPoint), lanes(width), mask(points), in(arguments), out(results) {
     for (int r = 0; r < s.resultRowCount; ++r)
         for (int lane = 0; lane < lanes; ++lane)
             if (mask >> lane & 1) put(r, lane, 0);
@@ -50,13 +65,11 @@ void ServiceCall::answer(int lane, const Told& t) const {
     const Kind wanted = d.resultKinds[before];
     if (t.kind && (*t.kind != wanted || (t.elements > 0) != array)) return;
     if (t.varying && wanted != Kind::String && s.text.count("__uniform")) {
-        if (c.engine) {
-            const SourcePlace at = place();
-            c.engine->diagnostics().reportOnce("uniform:" + at.file + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ":" + name(lane),
-                                               {Severity::Warning, Rie::Consistency, at,
-                                                d.op + "(): \"" + name(lane) + "\" is varying and the variable that takes it is uniform: it stays as it is, and the result is 0",
-                                                "a varying variable takes it", {}});
-        }
+        const SourcePlace at = place();
+        diagnostics.reportOnce("uniform:" + at.file + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ":" + name(lane),
+                               {Severity::Warning, Rie::Consistency, at,
+                                d.op + "(): \"" + name(lane) + "\" is varying and the variable that takes it is uniform: it stays as it is, and the result is 0",
+                                "a varying variable takes it", {}});
         return;
     }
     const size_t size = size_t(rsl::ir::components(wanted)), rows = size_t(s.resultRowCount) - before;
@@ -69,68 +82,6 @@ void ServiceCall::answer(int lane, const Told& t) const {
         else put(int(before + r), lane, t.numbers[r]);
     }
     put(0, lane, 1);
-}
-
-std::optional<Told> toldBy(const ShaderInstance& shader, const std::string& parameter) {
-    for (const rsl::ParameterInfo& p : shader.program->parameters()) {
-        if (p.name != parameter) continue;
-        const auto& texts = shader.parameters.strings;
-        int length = std::max(1, p.type.array);
-        if (p.open)
-            if (const auto given = texts.find(p.name + "[]"); given != texts.end()) length = std::atoi(given->second.c_str());
-        Told t(p.type, length);
-        t.varying = p.storage == rsl::Storage::Varying;
-        if (p.type.base == rsl::Base::String) {
-            for (int e = 0; e < length; ++e) {
-                const auto text = texts.find(p.type.array ? p.name + "[" + std::to_string(e) + "]" : p.name);
-                t.texts.push_back(text == texts.end() ? "" : text->second);
-            }
-        } else if (const auto n = shader.parameters.numbers.find(p.name); n != shader.parameters.numbers.end()) {
-            t.numbers = n->second;
-        }
-        return t;
-    }
-    return std::nullopt;
-}
-
-std::optional<Told> primitiveVariable(const geometry::Shape& shape, const geometry::SurfacePoint& at, const std::string& name) {
-    using rsl::ir::Kind;
-    Told t;
-    if (const int v = shape.findPrimvar(name); v >= 0) {
-        const geometry::PrimVar& variable = shape.primvars()[size_t(v)];
-        t.varying = variable.cls != scene::Class::Constant && variable.cls != scene::Class::Uniform;
-        t.elements = variable.arrayLength;
-        if (variable.type == scene::Type::String) {
-            t.kind = Kind::String;
-            t.texts = {shape.stringValue(v, at)};
-            return t;
-        }
-        t.kind = variable.type == scene::Type::Matrix ? Kind::Matrix
-                 : variable.type == scene::Type::Float || variable.type == scene::Type::Integer ? Kind::Float
-                                                                                                 : Kind::Triple;
-        t.numbers.resize(size_t(variable.outWidth()));
-        shape.interpolate(v, at, t.numbers.data(), nullptr, nullptr);
-        return t;
-    }
-    // What every primitive has.
-    const scene::Attributes& a = shape.attributes();
-    const auto triple = [&](const Vec3& v, bool varying) {
-        t.kind = Kind::Triple;
-        t.varying = varying;
-        t.numbers = {v.x, v.y, v.z};
-        return t;
-    };
-    if (name == "P") return triple(at.displaced ? shape.evaluate(at.face, at.u, at.v).P : at.P, true);
-    if (name == "N") return triple(at.N, true);
-    if (name == "Cs") return triple({a.color.x, a.color.y, a.color.z}, false);
-    if (name == "Os") return triple({a.opacity.x, a.opacity.y, a.opacity.z}, false);
-    if (name != "s" && name != "t" && name != "st") return std::nullopt;
-    t.kind = Kind::Float;
-    t.varying = true;
-    t.elements = name == "st" ? 2 : 0;
-    if (name != "t") t.numbers.push_back(at.s);
-    if (name != "s") t.numbers.push_back(at.t);
-    return t;
 }
 
 } // namespace alpenglow::transport

@@ -1,25 +1,21 @@
-// One call of a service while a kernel runs: which points ask, what they give, and where their answers go.
+// What kernels are answered while they run. What a call site means is known beforehand (world/sites.h); what does not depend on the
+// point is kept by interned name. One a thread: no lock.
 #pragma once
-#include "wave/engine.h"
-#include "world/information.h"
-#include <bit>
-#include <optional>
+#include "answers/random.h"
+#include "answers/servicecall.h"
+#include <set>
 
 namespace alpenglow::transport {
 
-/// What somebody is told: the value of a parameter, of a primitive variable, of an attribute.
-struct Told {
-    /// Of an element; none: as many numbers or texts as there are, for a variable of that size.
-    std::optional<rsl::ir::Kind> kind;
-    int elements = 0;                  ///< 0: no array. Not used where the kind is not known
-    bool varying = false;              ///< does not fit a uniform variable
-    std::vector<float> numbers;
-    std::vector<std::string> texts;
-    Told() = default;
-    explicit Told(const Information&);
-    /// Of a type of the shading language, still without a value.
-    explicit Told(const rsl::Type& type, int length) : kind(kindOf(type.base)), elements(type.array ? length : 0) {}
-    static rsl::ir::Kind kindOf(rsl::Base);
+/// Who follows light, as far as answers ask.
+class Tracer {
+public:
+    virtual ~Tracer() = default;
+    /// Light arriving at queries (ShadePoint::Ps) from one light. Area lights: P is the point on the emitter.
+    virtual void evaluateLight(const BoundLight&, std::vector<ShadePoint>& queries, std::span<LightValue>, const LightCall&) = 0;
+    /// Takes from the values of one light what stands between it and the points that it lights: point `first` + laneOf[i] of a run.
+    virtual void shadowLight(const KernelRun&, const BoundLight&, int first, std::span<const ShadePoint>, std::span<const int> laneOf,
+                             std::span<LightValue>) = 0;
 };
 
 /// What lightsource() asks of a light.
@@ -41,50 +37,115 @@ struct AnswerMemo {
     std::unordered_map<int32_t, bool> pointAttributes; ///< ofPoint() of a name
 };
 
-/// Rows are floats, one a lane. Those of the results begin at zero. A query has 1 or 0, whether the answer came and fits, in row 0; then
-/// the answer, component by component, element by element. For an array that can change its length that stands before it.
-class ServiceCall {
+class Answers {
 public:
-    ServiceCall(BatchContext&, int site, int first, uint64_t mask, int lanes, const float* in, float* out);
-    template <class Body> void each(Body&& body) const {
-        for (int lane = 0; lane < lanes; ++lane)
-            if ((mask >> lane & 1) && first + lane < int(c.points.size())) body(lane, c.points[size_t(first + lane)]);
-    }
-    float at(int row, int lane) const { return in[size_t(row) * lanes + lane]; }
-    void put(int row, int lane, float v) const { out[size_t(row) * lanes + lane] = v; }
-    void putText(int row, int lane, const std::string& s) const { put(row, lane, std::bit_cast<float>(rsl::internString(s))); }
-    /// The first string of the call, where each point may have its own.
-    std::string name(int lane) const;
-    /// The same, interned.
-    int32_t nameId(int lane) const;
-    SourcePlace place() const;
-    /// Answers, where that fits the variable that waits for it.
-    void answer(int lane, const Told&) const;
-    /// What the point of a lane is bound to; for a light's kernel the surface that it lights. Null where there is no primitive.
-    const SurfaceBinding* binding(const WorldImpl&, int lane) const;
+    /// `tracer`: null where there are no lights.
+    Answers(const WorldImpl&, Diagnostics&, Tracer* tracer);
+    /// Answers a call of any kind but requests for light. Rows are those of rsl::ServiceFn.
+    void service(KernelRun&, int site, int first, uint64_t mask, int lanes, const float* in, float* out);
+    // illuminance loops, as rsl::KernelCall has them. lightloop.cpp
+    int32_t lightBegin(KernelRun&, int site, int first, uint64_t mask, int lanes, const float* rows);
+    void lightEnd(KernelRun&, int first, int lanes);
+    uint64_t lightFetch(KernelRun&, int light, int first, uint64_t mask, int lanes, float* out);
+    /// Keeps what a light that ran for a point gives to the AOVs; `values`: BoundLight::values. lightsamples.cpp
+    void keepChannels(KernelRun&, const BoundLight&, int point, const float* values);
+    /// Of a light that sends through generateSamples(), one sample, in proportion to what each gives, for the sum of all. `u`: evenly
+    /// from 0 to 1; `values`: BoundLight::values at a point.
+    static void chooseSent(const BoundLight&, float u, const float* values, LightValue&);
 
-    BatchContext& c;
-    const SiteInfo& s;
-    const rsl::ir::Site& d;
-    const int site, first, lanes;
-    const uint64_t mask;
-    const float* const in;
-    float* const out;
+    // What answers in files of their own share.
+    const WorldImpl& world() const { return *world_; }
+    AnswerMemo& memo() { return memo_; }
+    LightLoop& lightLoop(KernelRun&, int first, int lanes);
+    /// The map of an interned name, found without a lock from the second time on. `place`: gives the SourcePlace that asks.
+    template <class Place> texture::Handle mapOfName(int32_t id, Place&& place) {
+        const auto [at, fresh] = mapsByName_.try_emplace(id, nullptr);
+        if (fresh && id) at->second = world_->textures_->open(rsl::internedString(id), world_->settings_.texturePaths, place());
+        return at->second;
+    }
+    /// What textureinfo() knows of it; nothing: there is no such file, which is no error.
+    template <class Place> const std::optional<texture::TextureInfo>& infoOfName(int32_t id, Place&& place) {
+        const auto [at, fresh] = infosByName_.try_emplace(id);
+        if (fresh && id && world_->textures_->present(rsl::internedString(id), world_->settings_.texturePaths))
+            at->second = world_->textures_->info(mapOfName(id, place));
+        return at->second;
+    }
+
+private:
+    Random random(const shading::PathRay& r) const { return Random(r.sample ? r.sample->numbers : noSample_); }
+    void drawRandom(const ServiceCall&); // draws.cpp
+    void transformBetween(const ServiceCall&);
+    // lightloop.cpp
+    /// What lightBegin() is to know beyond its rows: a category, sent values, outputs of the surface.
+    void lightSetup(KernelRun&, int site, int first, uint64_t mask, int lanes, const float* in);
+    /// lightFetch() by what was kept for the strip, or is kept now.
+    uint64_t fetchKept(KernelRun&, LightLoop&, int light, int turn, int first, uint64_t mask, int lanes, float* out);
+    // lighthandles.cpp
+    /// Shadeops about lights and their handles: getlight, getlights, islightcategory, and what is called through a handle.
+    void lightHandles(KernelRun&, int site, int first, uint64_t mask, int lanes, const float* in, float* out);
+    void checkCategory(KernelRun&, const rsl::ir::Site&, int32_t category);
+    std::set<int32_t> checkedCategories_;
+    LitSurface litSurface(KernelRun&, const LightLoop&, const std::vector<int>& points, int first, int lanes) const;
+    void evaluateForLoop(KernelRun&, const LightLoop&, int light, int first, int lanes, std::vector<ShadePoint>&, const std::vector<int>& laneOf,
+                         std::vector<LightValue>&, std::vector<float>& values);
+    /// The point of a shaded batch as a light sees it when it lights `at`, for sample `turn` of `turns`; `axis`, `angle`: the
+    /// loop's cone; nth: drawOf(). *factor multiplies the light. False: it gives nothing there.
+    bool lightQuery(const KernelRun&, int light, int point, const Vec3& at, const Vec3& axis, float angle, int turn, int turns,
+                    uint32_t nth, ShadePoint& query, float* factor) const;
+    // lightsheets.cpp
+    /// Which of KernelRun::sheets a sample of a light has; -1: none.
+    int sheetNumber(int light, int turn);
+    /// The sheet of a sample for the turn that runs now; null where it does not hold for all points of the mask.
+    const LightSheet* sheetOf(KernelRun&, const LightLoop&, int light, int turn, int first, uint64_t mask, int lanes);
+    /// By point of a batch, the sum of the ambient lights; they have sheets.
+    const std::vector<Color>& ambientOf(KernelRun&);
+    bool allAmbientHaveSheets(const SurfaceBinding&) const;
+    void fillSheet(KernelRun&, const LightLoop&, int light, int turn, LightSheet&);
+    /// What a sheet gives the points of a mask; those that are lit.
+    uint64_t takeFromSheet(KernelRun&, LightLoop&, const LightSheet&, const BoundLight&, int first, uint64_t mask, int lanes,
+                           float* out);
+    /// The turns of a loop over the lights of a binding that are of a category (interned).
+    const std::vector<std::pair<int, int>>& turnsOf(const SurfaceBinding&, int32_t category);
+    bool isOfCategory(int32_t category, int light);
+    struct TurnsOfList { std::vector<int> lights; std::vector<std::pair<int, int>> turns; };
+    std::unordered_map<uint64_t, TurnsOfList> turnsOf_; ///< by category and list of lights
+    std::unordered_map<uint64_t, bool> ofCategory_;     ///< by category and light
+    std::vector<int> sheetNumbers_;                     ///< by light: of its first sample; -1: it has no sheets
+    int sheets_ = 0;
+    struct SheetRoom {
+        std::vector<ShadePoint> q;
+        std::vector<int> of;
+        std::vector<float> factor, values;
+        std::vector<LightValue> v;
+    } sheetRoom_;
+    /// Sample `turn` of `turns` of a light for the points of a mask, into `kept`; gives the points that it lights.
+    uint64_t sampleLight(KernelRun&, const LightLoop&, int light, int turn, int turns, int first, uint64_t mask, int lanes, LightLoop::Kept& kept);
+    /// Sample `turn` of a light that sends through generateSamples(), by its BoundLight::values at a point.
+    static void sentSample(const BoundLight&, int turn, const float* values, LightValue&);
+    /// The light of an interned handle, where it is one of the surface's; else -1. Null: of no surface.
+    int numberOfLight(const SurfaceBinding*, int32_t handle);
+    int32_t handleOf(int light); ///< interned
+    std::unordered_map<int32_t, int> lightOfHandle_;
+    std::unordered_map<int, int32_t> handles_;
+
+    const WorldImpl* world_;
+    Diagnostics& diagnostics_;
+    Tracer* tracer_;
+    render::SeedKey seed_;
+    render::SampleNumbers noSample_; ///< of points that no camera sample has found
+    AnswerMemo memo_;
+    std::unordered_map<int32_t, texture::Handle> mapsByName_;                          ///< by interned name
+    std::unordered_map<int32_t, std::optional<texture::TextureInfo>> infosByName_;
 };
 
-/// A parameter of a shader as the scene gave it; nothing when it has none of that name.
-std::optional<Told> toldBy(const ShaderInstance&, const std::string& parameter);
-/// A primitive variable at a point of the shape; nothing when it has none of that name.
-std::optional<Told> primitiveVariable(const geometry::Shape&, const geometry::SurfacePoint&, const std::string& name);
-
 // maps.cpp: texture() and environment(); textureinfo().
-void answerTexture(Engine&, const ServiceCall&);
-void answerTextureInfo(Engine&, const ServiceCall&);
+void answerTexture(Answers&, const ServiceCall&);
+void answerTextureInfo(Answers&, const ServiceCall&);
 // messages.cpp: surface() and its kin, lightsource(), attribute(), shadername(), getvar() of the primitive.
-void answerMessage(Engine&, const ServiceCall&);
-void answerLightSource(Engine&, const ServiceCall&);
-void answerAttribute(Engine&, const ServiceCall&);
-void answerShaderName(Engine&, const ServiceCall&);
+void answerMessage(Answers&, const ServiceCall&);
+void answerLightSource(Answers&, const ServiceCall&);
+void answerAttribute(Answers&, const ServiceCall&);
+void answerShaderName(Answers&, const ServiceCall&);
 void answerPrimitiveVariable(const ServiceCall&);
 
 } // namespace alpenglow::transport

@@ -1,14 +1,13 @@
 // random() of shaders.
 #include "answers/answers.h"
-#include "wave/engine.h"
 
 namespace alpenglow::transport {
 
 // Keyed by sample, path vertex, call site and how often the point came by: nothing depends on who shares the batch. What a uniform
 // variable gets is keyed by the primitive instead. Lights have keys of their own: their sites count from 0 as those of surfaces do.
-void Engine::drawRandom(const ServiceCall& call) {
+void Answers::drawRandom(const ServiceCall& call) {
     const SiteInfo& s = call.s;
-    BatchContext& c = call.c;
+    KernelRun& c = call.c;
     const bool uniform = !call.d.strings.empty() && call.d.strings[0] == "uniform";
     const size_t sites = c.bound->sites.size(), points = c.points.size(), site = size_t(call.site);
     if (c.draws.size() != sites * points) c.draws.assign(sites * points, 0);
@@ -16,7 +15,7 @@ void Engine::drawRandom(const ServiceCall& call) {
     call.each([&](int lane, const ShadePoint& p) {
         const size_t at = size_t(call.first + lane);
         const uint32_t turn = c.draws[site * points + at]++;
-        const PathRay* r = c.rays.empty() ? p.ray : &c.rays[at];
+        const shading::PathRay* r = c.rays.empty() ? p.ray : &c.rays[at];
         uint32_t vertex = 0;
         if (uniform) {
             const auto shape = world_->numberOfShape_.find(p.shape);

@@ -16,7 +16,7 @@ static int numberIn(const std::string& handle) {
     return std::from_chars(digits, handle.c_str() + handle.size(), n).ec == std::errc() ? n : -1;
 }
 
-int Engine::numberOfLight(const SurfaceBinding* surface, int32_t handle) {
+int Answers::numberOfLight(const SurfaceBinding* surface, int32_t handle) {
     if (!surface) return -1;
     const auto [known, fresh] = lightOfHandle_.try_emplace(handle, -1);
     if (fresh) known->second = numberIn(rsl::internedString(handle));
@@ -24,7 +24,7 @@ int Engine::numberOfLight(const SurfaceBinding* surface, int32_t handle) {
     return known->second < 0 || std::find(on.begin(), on.end(), known->second) == on.end() ? -1 : known->second;
 }
 
-int32_t Engine::handleOf(int light) {
+int32_t Answers::handleOf(int light) {
     const auto [known, fresh] = handles_.try_emplace(light, 0);
     if (fresh) known->second = rsl::internString(handleOfLight(light, world_->lights_[size_t(light)].handle));
     return known->second;
@@ -52,7 +52,7 @@ static std::optional<Told> partTold(const ShaderInstance& light, const std::stri
     return t;
 }
 
-void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, int lanes, const float* in, float* out) {
+void Answers::lightHandles(KernelRun& c, int site, int first, uint64_t mask, int lanes, const float* in, float* out) {
     const SiteInfo& s = c.bound->sites[size_t(site)];
     const rsl::ir::Site& d = *s.site;
     const size_t width = size_t(lanes);
@@ -118,7 +118,7 @@ void Engine::lightHandles(BatchContext& c, int site, int first, uint64_t mask, i
         if (int l = numberOfLight(bindingOf(lane), text(lane)); l >= 0) asked[l] |= uint64_t(1) << lane;
     });
     if (d.op == "lightparameter") { // rows: found, value
-        const ServiceCall call(c, site, first, mask, lanes, in, out);
+        const ServiceCall call(c, diagnostics_, site, first, mask, lanes, in, out);
         for (auto [li, of] : asked) {
             const auto tell = [&](const std::string& name, uint64_t points) {
                 std::optional<Told> t = partTold(*world_->lights_[size_t(li)].instance, name);

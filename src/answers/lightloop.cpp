@@ -1,8 +1,7 @@
 // illuminance loops: which lights take their turns, and what was kept of them.
-#include "answers/lightloop.h"
+#include "answers/answers.h"
 #include "base/category.h"
 #include "base/exact.h"
-#include "wave/engine.h"
 #include <bit>
 
 namespace alpenglow::transport {
@@ -22,13 +21,6 @@ std::string categoriesOf(const BoundLight& l) {
     return i == l.instance->parameters.strings.end() ? "" : i->second;
 }
 
-std::string sentStrings(const SiteInfo& s) {
-    std::string key;
-    for (const auto& [name, value] : s.text)
-        if (name.rfind("send:light:", 0) == 0) key += name.substr(11) + '\1' + value + '\2';
-    return key;
-}
-
 bool sampledAnew(const BoundLight& l, bool path) {
     return l.kind == LightKind::Area || l.sentCl >= 0 || (path && (l.cone || l.kind == LightKind::Environment));
 }
@@ -43,7 +35,7 @@ uint64_t keptName(const LightLoop& loop, const BoundLight& l, int light, int tur
     return sampledAnew(l, path) && loop.depth > 1 ? name | uint64_t(loop.depth - 1) << 48 : name;
 }
 
-LightLoop& Engine::lightLoop(BatchContext& c, int first, int lanes) {
+LightLoop& Answers::lightLoop(KernelRun& c, int first, int lanes) {
     // Strips that never wait run one after the other: they share one.
     const size_t at = c.bound->kernel->facts().suspends ? size_t(first / std::max(lanes, 1)) : 0;
     while (c.loops.size() <= at) c.loops.emplace_back();
@@ -52,7 +44,7 @@ LightLoop& Engine::lightLoop(BatchContext& c, int first, int lanes) {
     return loop;
 }
 
-void Engine::lightSetup(BatchContext& c, int site, int first, uint64_t mask, int lanes, const float* in) {
+void Answers::lightSetup(KernelRun& c, int site, int first, uint64_t mask, int lanes, const float* in) {
     LightLoop& loop = lightLoop(c, first, lanes);
     const SiteInfo& s = c.bound->sites[size_t(site)];
     size_t rows = 0;
@@ -76,7 +68,7 @@ void Engine::lightSetup(BatchContext& c, int site, int first, uint64_t mask, int
     (void)mask;
 }
 
-int32_t Engine::lightBegin(BatchContext& c, int site, int first, uint64_t mask, int lanes, const float* rows) {
+int32_t Answers::lightBegin(KernelRun& c, int site, int first, uint64_t mask, int lanes, const float* rows) {
     LightLoop& loop = lightLoop(c, first, lanes);
     const SiteInfo& info = c.bound->sites[size_t(site)];
     // The loop around waits; when this one ends it is as it was.
@@ -110,13 +102,13 @@ int32_t Engine::lightBegin(BatchContext& c, int site, int first, uint64_t mask, 
     return int32_t(loop.lights.size());
 }
 
-bool Engine::isOfCategory(int32_t category, int light) {
+bool Answers::isOfCategory(int32_t category, int light) {
     const auto [known, fresh] = ofCategory_.try_emplace(uint64_t(uint32_t(category)) << 32 | uint32_t(light));
     if (fresh) known->second = inCategory(rsl::internedString(category), categoriesOf(world_->lights_[size_t(light)]));
     return known->second;
 }
 
-const std::vector<std::pair<int, int>>& Engine::turnsOf(const SurfaceBinding& b, int32_t category) {
+const std::vector<std::pair<int, int>>& Answers::turnsOf(const SurfaceBinding& b, int32_t category) {
     TurnsOfList& known = turnsOf_[uint64_t(uint32_t(category)) << 32 | uint32_t(b.lightList)];
     if (known.lights == b.lights) return known.turns; // numbers of lists are given while the world is made
     known.lights = b.lights;
@@ -130,7 +122,7 @@ const std::vector<std::pair<int, int>>& Engine::turnsOf(const SurfaceBinding& b,
     return known.turns;
 }
 
-void Engine::lightEnd(BatchContext& c, int first, int lanes) {
+void Answers::lightEnd(KernelRun& c, int first, int lanes) {
     LightLoop& loop = lightLoop(c, first, lanes);
     if (loop.depth == 0) return;
     --loop.depth;
@@ -138,7 +130,7 @@ void Engine::lightEnd(BatchContext& c, int first, int lanes) {
     c.lightDistance = loop.distance;
 }
 
-void Engine::checkCategory(BatchContext& c, const rsl::ir::Site& site, int32_t category) {
+void Answers::checkCategory(KernelRun& c, const rsl::ir::Site& site, int32_t category) {
     if (!checkedCategories_.insert(category).second) return;
     const std::string& expression = rsl::internedString(category);
     const std::string error = categoryError(expression);
@@ -149,7 +141,7 @@ void Engine::checkCategory(BatchContext& c, const rsl::ir::Site& site, int32_t c
                             "the category \"" + expression + "\" cannot be read: " + error + "; all lights are taken", {}, {}});
 }
 
-uint64_t Engine::lightFetch(BatchContext& c, int index, int first, uint64_t mask, int lanes, float* out) {
+uint64_t Answers::lightFetch(KernelRun& c, int index, int first, uint64_t mask, int lanes, float* out) {
     LightLoop& loop = lightLoop(c, first, lanes);
     if (size_t(index) >= loop.lights.size()) return 0;
     const auto [li, k] = loop.lights[size_t(index)];
@@ -189,7 +181,7 @@ private:
 };
 } // namespace
 
-uint64_t Engine::takeFromSheet(BatchContext& c, LightLoop& loop, const LightSheet& sheet, const BoundLight& light, int first,
+uint64_t Answers::takeFromSheet(KernelRun& c, LightLoop& loop, const LightSheet& sheet, const BoundLight& light, int first,
                                uint64_t mask, int lanes, float* out) {
     const size_t width = size_t(lanes), size = size_t(sheet.size), from = size_t(first);
     const size_t most = std::min(width, size - std::min(size, from));
@@ -212,7 +204,7 @@ uint64_t Engine::takeFromSheet(BatchContext& c, LightLoop& loop, const LightShee
     return lit;
 }
 
-uint64_t Engine::fetchKept(BatchContext& c, LightLoop& loop, int li, int k, int first, uint64_t mask, int lanes, float* out) {
+uint64_t Answers::fetchKept(KernelRun& c, LightLoop& loop, int li, int k, int first, uint64_t mask, int lanes, float* out) {
     const BoundLight& light = world_->lights_[size_t(li)];
     // Kept: the same light, sample, P, Ns, sent values and outputs of the surface; of a sky also the same cone.
     const uint64_t name = keptName(loop, light, li, k, world_->settings_.hider == Hider::Path);

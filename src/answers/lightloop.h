@@ -1,6 +1,6 @@
 // illuminance: what a loop over lights remembers between its turns, and what is kept for the next loop of the same points.
 #pragma once
-#include "world/world.h"
+#include "world/impl.h"
 #include <deque>
 #include <functional>
 #include <unordered_map>
@@ -13,7 +13,7 @@ struct LitSurface {
     /// Value of an output parameter as it is now; false: ask the instance.
     std::function<bool(int query, const std::string& name, std::vector<float>&)> output;
     /// The run of its displacement shader and the point there; null: ask the instance.
-    std::function<const struct BatchContext*(int query, int& point)> displaced;
+    std::function<const struct KernelRun*(int query, int& point)> displaced;
 };
 
 /// One run of a light's kernel: what differs from the light as it is bound.
@@ -41,7 +41,7 @@ struct LightTurns : LightSetup {
     // The turn that runs now.
     int light = -1;                               ///< -1: no loop runs
     std::vector<float> values;                    ///< by lane, the light's BoundLight::values
-    std::vector<float> distance;                  ///< by lane: BatchContext::lightDistance
+    std::vector<float> distance;                  ///< by lane: KernelRun::lightDistance
 };
 
 /// State of the loops of one strip: of the innermost that runs. A strip that waits for rays in the middle of its loop keeps it while others
@@ -76,7 +76,7 @@ struct LightSheet {
     bool made = false, refused = false;
     int size = 0;                                 ///< points
     std::vector<float> out;                       ///< L, Cl, Ol: nine rows of `size`
-    std::vector<float> distance;                  ///< by point: BatchContext::lightDistance
+    std::vector<float> distance;                  ///< by point: KernelRun::lightDistance
     std::vector<float> values;                    ///< by point: BoundLight::values
     std::vector<char> lit;                        ///< by point
 };
@@ -98,7 +98,7 @@ std::string categoriesOf(const BoundLight&);
 /// The length of a parameter of the light that is an array of numbers; 0 when there is none.
 int elementsOf(const BoundLight&, const std::string& parameter);
 
-/// The strings that a loop sends, as one key of BoundLight::variants: "name\1value\2" of each; "" for none.
-std::string sentStrings(const SiteInfo&);
+/// The numbers that a solar() with an angle makes a direction of: how far from its axis (0: along it), and the turn about it.
+Color coneNumbers(Vec2 random);
 
 } // namespace alpenglow::transport

@@ -1,41 +1,20 @@
 // Samples of lights for the points of a loop: where they lie, the light's kernel with what the surface sends, what stands in between.
 #include "base/exact.h"
-#include "wave/engine.h"
 #include "world/emitterfootprint.h"
-#include "answers/lightloop.h"
+#include "answers/answers.h"
 #include "lobes/sampling.h"
+#include "world/outputs.h"
 #include <bit>
 #include <cstdlib>
 
 namespace alpenglow::transport {
 
-bool LitValues::output(const std::string& name, std::vector<float>& v) const {
-    for (const auto& [known, numbers] : outputs)
-        if (known == name) {
-            v = numbers;
-            return true;
-        }
-    return false;
+Color coneNumbers(Vec2 random) {
+    Vec2 d = unitCircle(random.y);
+    return {random.x, d.x, d.y};
 }
 
-LitSurface Engine::litBy(std::span<const int> of) const {
-    LitSurface lit;
-    lit.binding = [this, of](int q) -> const SurfaceBinding* {
-        const int b = of[size_t(q)] < 0 ? -1 : litValues_[size_t(of[size_t(q)])].binding;
-        return b < 0 ? nullptr : &world_->bindings_[size_t(b)];
-    };
-    lit.output = [this, of](int q, const std::string& name, std::vector<float>& v) {
-        return of[size_t(q)] >= 0 && litValues_[size_t(of[size_t(q)])].output(name, v);
-    };
-    lit.displaced = [this, of](int q, int& point) -> const BatchContext* {
-        if (of[size_t(q)] < 0) return nullptr;
-        point = litValues_[size_t(of[size_t(q)])].point;
-        return litValues_[size_t(of[size_t(q)])].displaced.get();
-    };
-    return lit;
-}
-
-LitSurface Engine::litSurface(BatchContext& c, const LightLoop& loop, const std::vector<int>& points, int first, int lanes) const {
+LitSurface Answers::litSurface(KernelRun& c, const LightLoop& loop, const std::vector<int>& points, int first, int lanes) const {
     LitSurface lit;
     lit.binding = [this, &c, &points](int q) -> const SurfaceBinding* {
         const size_t point = size_t(points[size_t(q)]);
@@ -64,7 +43,7 @@ LitSurface Engine::litSurface(BatchContext& c, const LightLoop& loop, const std:
     return lit;
 }
 
-void Engine::evaluateForLoop(BatchContext& c, const LightLoop& loop, int li, int first, int lanes, std::vector<ShadePoint>& q,
+void Answers::evaluateForLoop(KernelRun& c, const LightLoop& loop, int li, int first, int lanes, std::vector<ShadePoint>& q,
                              const std::vector<int>& laneOf, std::vector<LightValue>& out, std::vector<float>& values) {
     const BoundLight& light = world_->lights_[size_t(li)];
     out.assign(q.size(), {});
@@ -76,7 +55,7 @@ void Engine::evaluateForLoop(BatchContext& c, const LightLoop& loop, int li, int
     call.values = &values;
     if (loop.setup < 0) {
         if (light.asksSurface) lit = litSurface(c, loop, points, first, lanes), call.lit = &lit;
-        evaluateLight(light, q, out, call);
+        tracer_->evaluateLight(light, q, out, call);
         return;
     }
     // Sent values: one run for all points that send the same. Elements of an array go to an array of the same class.
@@ -127,34 +106,12 @@ void Engine::evaluateForLoop(BatchContext& c, const LightLoop& loop, int li, int
         std::vector<float> resultValues(some.size() * size_t(light.valueWidth));
         call.values = &resultValues;
         if (light.asksSurface) lit = litSurface(c, loop, where, first, lanes), call.lit = &lit;
-        evaluateLight(light, some, result, call);
+        tracer_->evaluateLight(light, some, result, call);
         for (size_t k = 0; k < members.size(); ++k) {
             out[size_t(members[k])] = result[k];
             std::copy_n(resultValues.begin() + long(k) * light.valueWidth, light.valueWidth, values.begin() + long(members[k]) * light.valueWidth);
         }
     }
-}
-
-void Engine::shadowLoop(const BatchContext& c, const BoundLight& light, int first, std::span<const ShadePoint> q, std::span<const int> laneOf,
-                        std::span<LightValue> v) {
-    std::vector<ShadowRay> rays;
-    std::vector<size_t> of;
-    for (size_t i = 0; i < q.size(); ++i) {
-        if (!v[i].lit || !(maxComponent(v[i].Cl) > 0)) continue;
-        const ShadePoint& lit = c.points[size_t(first + laneOf[i])];
-        const Vec3 to = -v[i].L;
-        const float far = length(to);
-        if (!(far > 0)) continue;
-        const Vec3 w = to / far;
-        const Vec3 o = geometry::offsetOrigin(lit.surface, w, length(q[i].Ps - lit.surface.P));
-        const float distance = light.kind == LightKind::Distant ? 1e38f : light.kind == LightKind::Area ? far * (1 - 1e-4f) : far * (1 - 1e-5f);
-        rays.push_back({o, w, distance, Color(1), shading::kNoTarget, lit.time, lit.ray});
-        rays.back().media = mediaTowards(c, first + laneOf[i], w);
-        of.push_back(i);
-    }
-    std::vector<Color> left(rays.size());
-    transmittances(rays, left);
-    for (size_t k = 0; k < of.size(); ++k) v[of[k]].Cl *= left[k];
 }
 
 int elementsOf(const BoundLight& light, const std::string& parameter) {
@@ -163,7 +120,7 @@ int elementsOf(const BoundLight& light, const std::string& parameter) {
     return 0;
 }
 
-void Engine::keepChannels(BatchContext& c, const BoundLight& light, int point, const float* values) {
+void Answers::keepChannels(KernelRun& c, const BoundLight& light, int point, const float* values) {
     size_t width = 0;
     for (int w : world_->outputWidths_) width += size_t(w);
     c.lightChannels.resize(c.points.size() * width);
@@ -179,7 +136,7 @@ void Engine::keepChannels(BatchContext& c, const BoundLight& light, int point, c
     }
 }
 
-void Engine::sentSample(const BoundLight& light, int turn, const float* values, LightValue& v) {
+void Answers::sentSample(const BoundLight& light, int turn, const float* values, LightValue& v) {
     const float* way = values + light.sentL + 3 * turn;
     const float* sent = values + light.sentCl + 3 * turn;
     v.L = {way[0], way[1], way[2]};
@@ -187,7 +144,7 @@ void Engine::sentSample(const BoundLight& light, int turn, const float* values, 
     v.lit &= (v.Cl.x != 0 || v.Cl.y != 0 || v.Cl.z != 0) && length(v.L) > 0;
 }
 
-void Engine::chooseSent(const BoundLight& light, float u, const float* values, LightValue& v) {
+void Answers::chooseSent(const BoundLight& light, float u, const float* values, LightValue& v) {
     const auto weight = [&](int k) {
         const float* sent = values + light.sentCl + 3 * k;
         const float w = luminance(Color(sent[0], sent[1], sent[2]));
@@ -206,7 +163,7 @@ void Engine::chooseSent(const BoundLight& light, float u, const float* values, L
     v.Cl *= float(sum / weight(chosen));
 }
 
-bool Engine::lightQuery(const BatchContext& c, int li, int point, const Vec3& at, const Vec3& axis, float angle, int turn,
+bool Answers::lightQuery(const KernelRun& c, int li, int point, const Vec3& at, const Vec3& axis, float angle, int turn,
                         int turns, uint32_t nth, ShadePoint& p, float* factor) const {
     const BoundLight& light = world_->lights_[size_t(li)];
     const ShadePoint& of = c.points[size_t(point)];
@@ -268,7 +225,7 @@ bool Engine::lightQuery(const BatchContext& c, int li, int point, const Vec3& at
     return true;
 }
 
-uint64_t Engine::sampleLight(BatchContext& c, const LightLoop& loop, int li, int turn, int turns, int first, uint64_t mask, int lanes, LightLoop::Kept& kept) {
+uint64_t Answers::sampleLight(KernelRun& c, const LightLoop& loop, int li, int turn, int turns, int first, uint64_t mask, int lanes, LightLoop::Kept& kept) {
     const BoundLight& light = world_->lights_[size_t(li)];
     auto row = [&](int r, int lane) { return loop.rows[size_t(r) * size_t(lanes) + size_t(lane)]; };
     std::vector<ShadePoint> q;
@@ -308,7 +265,7 @@ uint64_t Engine::sampleLight(BatchContext& c, const LightLoop& loop, int li, int
             kept.ran |= uint64_t(v[i].lit) << laneOf[i];
             sentSample(light, turn, values.data() + i * width, v[i]);
         }
-    if (light.shadows) shadowLoop(c, light, first, q, laneOf, v);
+    if (light.shadows) tracer_->shadowLight(c, light, first, q, laneOf, v);
     for (size_t i = 0; i < q.size(); ++i) {
         const size_t lane = size_t(laneOf[i]);
         std::copy_n(values.begin() + long(i) * light.valueWidth, light.valueWidth, kept.values.begin() + long(lane) * light.valueWidth);

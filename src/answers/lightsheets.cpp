@@ -1,7 +1,7 @@
 // Light sheets: what a sample of a light gives all points of a batch, found at once when the first strip asks for it. The loops
 // that most shaders write begin at P of the surface and send nothing: what their lights find does not depend on the loop. Strips
 // then only look up their points. The numbers are those that the strips would find one by one.
-#include "wave/engine.h"
+#include "answers/answers.h"
 #include <bit>
 
 namespace alpenglow::transport {
@@ -15,7 +15,7 @@ bool hasSheets(const BoundLight& l) {
     });
 }
 
-int Engine::sheetNumber(int light, int turn) {
+int Answers::sheetNumber(int light, int turn) {
     if (sheetNumbers_.size() != world_->lights_.size()) {
         sheetNumbers_.assign(world_->lights_.size(), -1);
         for (size_t i = 0; i < sheetNumbers_.size(); ++i) {
@@ -29,7 +29,7 @@ int Engine::sheetNumber(int light, int turn) {
     return number < 0 ? -1 : number + turn;
 }
 
-const LightSheet* Engine::sheetOf(BatchContext& c, const LightLoop& loop, int li, int turn, int first, uint64_t mask, int lanes) {
+const LightSheet* Answers::sheetOf(KernelRun& c, const LightLoop& loop, int li, int turn, int first, uint64_t mask, int lanes) {
     if (loop.setup >= 0 || loop.refresh || c.light || c.volume) return nullptr;
     const int number = sheetNumber(li, turn);
     if (number < 0) return nullptr;
@@ -54,7 +54,7 @@ const LightSheet* Engine::sheetOf(BatchContext& c, const LightLoop& loop, int li
     return &sheet;
 }
 
-void Engine::fillSheet(BatchContext& c, const LightLoop& loop, int li, int turn, LightSheet& sheet) {
+void Answers::fillSheet(KernelRun& c, const LightLoop& loop, int li, int turn, LightSheet& sheet) {
     const BoundLight& light = world_->lights_[size_t(li)];
     const size_t n = c.points.size(), width = size_t(light.valueWidth);
     sheet.made = true;
@@ -87,8 +87,8 @@ void Engine::fillSheet(BatchContext& c, const LightLoop& loop, int li, int turn,
     LitSurface lit;
     call.values = &values;
     if (light.asksSurface) lit = litSurface(c, loop, of, 0, int(n)), call.lit = &lit;
-    evaluateLight(light, q, v, call);
-    if (light.shadows) shadowLoop(c, light, 0, q, of, v);
+    tracer_->evaluateLight(light, q, v, call);
+    if (light.shadows) tracer_->shadowLight(c, light, 0, q, of, v);
     for (size_t k = 0; k < q.size(); ++k) {
         const size_t i = size_t(of[k]);
         std::copy_n(values.begin() + long(k * width), width, sheet.values.begin() + long(i * width));
@@ -105,7 +105,7 @@ void Engine::fillSheet(BatchContext& c, const LightLoop& loop, int li, int turn,
     }
 }
 
-const std::vector<Color>& Engine::ambientOf(BatchContext& c) {
+const std::vector<Color>& Answers::ambientOf(KernelRun& c) {
     if (!c.ambient.empty() || c.points.empty()) return c.ambient;
     c.ambient.assign(c.points.size(), Color(0));
     std::vector<ShadePoint>& q = sheetRoom_.q;
@@ -121,13 +121,13 @@ const std::vector<Color>& Engine::ambientOf(BatchContext& c) {
             q[i].shape = nullptr;
         }
         v.assign(q.size(), {});
-        evaluateLight(l, q, v);
+        tracer_->evaluateLight(l, q, v, {});
         for (size_t i = 0; i < q.size(); ++i) c.ambient[i] += v[i].Cl;
     }
     return c.ambient;
 }
 
-bool Engine::allAmbientHaveSheets(const SurfaceBinding& b) const {
+bool Answers::allAmbientHaveSheets(const SurfaceBinding& b) const {
     return std::all_of(b.lights.begin(), b.lights.end(), [&](int li) {
         const BoundLight& l = world_->lights_[size_t(li)];
         return l.kind != LightKind::Ambient || !l.kernel || hasSheets(l);

@@ -55,14 +55,14 @@ void lookupEnvironment(const TextureSite& t, const ServiceCall& call, int lane, 
 
 } // namespace
 
-void answerTexture(Engine& engine, const ServiceCall& call) {
+void answerTexture(Answers& answers, const ServiceCall& call) {
     const TextureSite& t = *call.s.map;
-    const WorldImpl& world = engine.world();
+    const WorldImpl& world = answers.world();
     const auto place = [&] { return call.place(); };
     texture::LookupOptions o = t.options;
     texture::Handle map = t.computed ? nullptr : t.map(world, place);
     call.each([&](int lane, const ShadePoint&) {
-        if (t.computed) map = engine.mapOfName(std::bit_cast<int32_t>(call.at(0, lane)), place);
+        if (t.computed) map = answers.mapOfName(std::bit_cast<int32_t>(call.at(0, lane)), place);
         readOptions(t, call, lane, o);
         const int channel = t.channel < 0 ? 0 : int(call.at(t.channel, lane));
         float v[3] = {}, slopes[27] = {};
@@ -74,7 +74,7 @@ void answerTexture(Engine& engine, const ServiceCall& call) {
     });
 }
 
-void answerTextureInfo(Engine& engine, const ServiceCall& call) {
+void answerTextureInfo(Answers& answers, const ServiceCall& call) {
     const auto place = [&] { return call.place(); };
     const rsl::ir::Site& d = call.d;
     call.each([&](int lane, const ShadePoint&) {
@@ -86,7 +86,7 @@ void answerTextureInfo(Engine& engine, const ServiceCall& call) {
             else if (row < int(d.argKinds.size()) && d.argKinds[size_t(row)] == rsl::ir::Kind::String)
                 asked[k] = std::bit_cast<int32_t>(call.at(row++, lane));
         }
-        const auto& info = engine.infoOfName(known[0] ? call.s.nameId : asked[0], place);
+        const auto& info = answers.infoOfName(known[0] ? call.s.nameId : asked[0], place);
         const std::string& field = known[1] ? *known[1] : rsl::internedString(asked[1]);
         if (field == "exists") return call.put(0, lane, info ? 1 : 0);
         if (!info) return;

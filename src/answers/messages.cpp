@@ -57,15 +57,15 @@ const InstanceRef& shaderOf(const SurfaceBinding& b, Asks who, const ShadePoint&
 
 } // namespace
 
-void answerMessage(Engine& engine, const ServiceCall& q) {
+void answerMessage(Answers& answers, const ServiceCall& q) {
     const Asks who = asked(q.d.op);
-    const BatchContext& c = q.c;
+    const KernelRun& c = q.c;
     q.each([&](int lane, const ShadePoint& p) {
-        const SurfaceBinding* b = q.binding(engine.world(), lane);
+        const SurfaceBinding* b = q.binding(answers.world(), lane);
         if (!b) return;
         const InstanceRef& shader = shaderOf(*b, who, p);
         if (!shader) return;
-        const auto [known, fresh] = engine.answers().ofShaders.try_emplace({q.nameId(lane), shader.get()});
+        const auto [known, fresh] = answers.memo().ofShaders.try_emplace({q.nameId(lane), shader.get()});
         if (fresh) known->second = toldBy(*shader, rsl::internedString(q.nameId(lane)));
         if (!known->second) return;
         std::optional<Told> t = known->second;
@@ -74,13 +74,13 @@ void answerMessage(Engine& engine, const ServiceCall& q) {
         if (c.lit) { // a light asks: its point is not that of the surface
             if (std::vector<float> now; who == Asks::Surface && c.lit->output(point, name, now)) t->numbers = now;
             int there = -1;
-            const BatchContext* displaced = who == Asks::Displacement ? c.lit->displaced(point, there) : nullptr;
+            const KernelRun* displaced = who == Asks::Displacement ? c.lit->displaced(point, there) : nullptr;
             if (displaced) writtenBy(*displaced->batch, there, name, *t);
             return q.answer(lane, *t);
         }
         if (who == Asks::Surface || who == Asks::Displacement || who == Asks::Atmosphere) overridden(p, name, *t);
         // An atmosphere comes when the surface has run; the displacement has run before both.
-        const BatchContext& run = c.surface ? *c.surface : c;
+        const KernelRun& run = c.surface ? *c.surface : c;
         const int there = c.surface ? c.surfacePoint[size_t(point)] : point;
         if (who == Asks::Surface && c.surface && run.batch) writtenBy(*run.batch, there, name, *t);
         if (who == Asks::Displacement && run.displaced) writtenBy(*run.displaced->batch, there, name, *t);
@@ -88,18 +88,13 @@ void answerMessage(Engine& engine, const ServiceCall& q) {
     });
 }
 
-AnswerMemo& Engine::answers() {
-    if (!answers_) answers_ = std::make_shared<AnswerMemo>();
-    return *answers_;
-}
-
 namespace {
 
-const LightParameter& lightParameter(Engine& engine, int32_t id, int light) {
-    const auto [known, fresh] = engine.answers().ofLights.try_emplace({id, light});
+const LightParameter& lightParameter(Answers& answers, int32_t id, int light) {
+    const auto [known, fresh] = answers.memo().ofLights.try_emplace({id, light});
     if (!fresh) return known->second;
     LightParameter* made = &known->second;
-    const BoundLight& l = engine.world().lights_[size_t(light)];
+    const BoundLight& l = answers.world().lights_[size_t(light)];
     const std::string& name = rsl::internedString(id);
     made->told = toldBy(*l.instance, name);
     int offset = 0;
@@ -138,17 +133,17 @@ void tellSent(const ServiceCall& q, const LightLoop& loop, const SiteInfo& setup
 
 } // namespace
 
-void answerLightSource(Engine& engine, const ServiceCall& q) {
-    const LightLoop& loop = engine.lightLoop(q.c, q.first, q.lanes);
+void answerLightSource(Answers& answers, const ServiceCall& q) {
+    const LightLoop& loop = answers.lightLoop(q.c, q.first, q.lanes);
     if (loop.light < 0 || q.s.outside) return;
-    const int width = engine.world().lights_[size_t(loop.light)].valueWidth;
+    const int width = answers.world().lights_[size_t(loop.light)].valueWidth;
     const SiteInfo* setup = loop.setup >= 0 ? &q.c.bound->sites[size_t(loop.setup)] : nullptr;
-    const LightParameter* same = q.s.nameId ? &lightParameter(engine, q.s.nameId, loop.light) : nullptr;
+    const LightParameter* same = q.s.nameId ? &lightParameter(answers, q.s.nameId, loop.light) : nullptr;
     if (same && !same->told) return;
     q.each([&](int lane, const ShadePoint&) {
         // What the light's shader has written; what was sent to it; what it was given.
         const int32_t name = q.nameId(lane);
-        const LightParameter& p = same ? *same : lightParameter(engine, name, loop.light);
+        const LightParameter& p = same ? *same : lightParameter(answers, name, loop.light);
         if (!p.told) return;
         if (p.written.empty() && !setup) return q.answer(lane, *p.told);
         Told t = *p.told;
@@ -181,7 +176,7 @@ std::optional<Information> ofTheLightOfTheTurn(const WorldImpl& w, const scene::
 }
 
 /// Only imagers run without a primitive and without a light.
-bool runsImager(const BatchContext& c) { return !c.light && !c.binding && c.bindings.empty(); }
+bool runsImager(const KernelRun& c) { return !c.light && !c.binding && c.bindings.empty(); }
 
 /// An imager sees what held when the world began (RISpec 3.2, section 4).
 std::optional<Information> ofTheFrame(const WorldImpl& w, const std::string& name) {
@@ -197,13 +192,13 @@ std::optional<Information> ofThePrimitive(const WorldImpl& w, const ShadePoint& 
 
 constexpr size_t kMostAttributes = 1 << 14; // answers that are kept: scenes have attributes by the million
 
-void answerAttribute(Engine& engine, const ServiceCall& q) {
-    const WorldImpl& w = engine.world();
+void answerAttribute(Answers& answers, const ServiceCall& q) {
+    const WorldImpl& w = answers.world();
     const scene::Light* self = q.c.light ? q.c.light->source : nullptr;
-    const int turn = self || q.s.outside ? -1 : engine.lightLoop(q.c, q.first, q.lanes).light;
+    const int turn = self || q.s.outside ? -1 : answers.lightLoop(q.c, q.first, q.lanes).light;
     const scene::Light* other = turn >= 0 ? w.lights_[size_t(turn)].source : nullptr;
     const bool imager = runsImager(q.c);
-    AnswerMemo& memo = engine.answers();
+    AnswerMemo& memo = answers.memo();
     const auto samePoints = [&](int32_t id) {
         const auto [known, fresh] = memo.pointAttributes.try_emplace(id);
         if (fresh) known->second = ofPoint(rsl::internedString(id));
@@ -233,9 +228,9 @@ void answerAttribute(Engine& engine, const ServiceCall& q) {
     });
 }
 
-void answerShaderName(Engine& engine, const ServiceCall& q) {
-    const WorldImpl& w = engine.world();
-    BatchContext& c = q.c;
+void answerShaderName(Answers& answers, const ServiceCall& q) {
+    const WorldImpl& w = answers.world();
+    KernelRun& c = q.c;
     const bool own = q.d.strings.empty() && q.d.argKinds.empty(); // of the shader that asks
     q.each([&](int lane, const ShadePoint& p) {
         const SurfaceBinding* b = c.light && own ? nullptr : q.binding(w, lane);
@@ -243,7 +238,7 @@ void answerShaderName(Engine& engine, const ServiceCall& q) {
         InstanceRef of;
         if (own && c.light) of = c.light->instance;
         else if (kind == "lightsource") {
-            const int turn = c.light || q.s.outside ? -1 : engine.lightLoop(c, q.first, q.lanes).light;
+            const int turn = c.light || q.s.outside ? -1 : answers.lightLoop(c, q.first, q.lanes).light;
             of = c.light ? c.light->instance : turn >= 0 ? w.lights_[size_t(turn)].instance : nullptr;
         } else if (b && own) of = c.bound == &b->displacementS ? b->displacement : c.volume ? c.volume->shader : b->surface;
         else if (b) of = shaderOf(*b, asked(kind), p);

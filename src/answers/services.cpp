@@ -4,8 +4,8 @@
 
 namespace alpenglow::transport {
 
-void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int lanes, const float* in, float* out) {
-    const ServiceCall call(c, site, first, mask, lanes, in, out);
+void Answers::service(KernelRun& c, int site, int first, uint64_t mask, int lanes, const float* in, float* out) {
+    const ServiceCall call(c, diagnostics_, site, first, mask, lanes, in, out);
     const SiteInfo& s = call.s;
     const rsl::ir::Site& d = call.d;
     const auto each = [&](auto&& body) { call.each(body); };
@@ -41,7 +41,7 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
                 laneOf.push_back(lane);
             });
             std::vector<LightValue> v(q.size());
-            evaluateLight(l, q, v);
+            tracer_->evaluateLight(l, q, v, {});
             for (size_t i = 0; i < q.size(); ++i)
                 for (int k = 0; k < 3; ++k) out[size_t(k) * lanes + laneOf[i]] += v[i].Cl[k];
         }
@@ -56,7 +56,7 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
     case SiteKind::PrimitiveVariable: answerPrimitiveVariable(call); return;
     case SiteKind::Option:
         each([&](int lane, const ShadePoint&) {
-            const auto [known, fresh] = answers().options.try_emplace(call.nameId(lane));
+            const auto [known, fresh] = memo_.options.try_emplace(call.nameId(lane));
             if (fresh || !world_->built_) {
                 const auto i = optionOf(*world_, rsl::internedString(call.nameId(lane)));
                 known->second = i ? std::optional<Told>(Told(*i)) : std::nullopt;
@@ -121,7 +121,7 @@ void Engine::service(BatchContext& c, int site, int first, uint64_t mask, int la
         if (first + lane >= int(c.points.size())) return;
         if (c.aside || (c.binding && c.bound == &c.binding->moveS)) return; // the surface shader says it when it shades
         const ShadePoint& p = c.points[size_t(first + lane)];
-        const PathRay* r = c.rays.empty() ? p.ray : &c.rays[size_t(first + lane)];
+        const shading::PathRay* r = c.rays.empty() ? p.ray : &c.rays[size_t(first + lane)];
         rsl::PrintKey key;
         if (r) {
             if (r->sample) {

@@ -1,14 +1,14 @@
 #include "answers/withoutscene.h"
-#include "wave/engine.h"
+#include "answers/answers.h"
 
 namespace alpenglow::transport {
 
 struct WithoutScene::State {
     std::shared_ptr<WorldImpl> world;
-    std::unique_ptr<Engine> engine;
+    std::unique_ptr<Answers> answers;
     const rsl::CompiledKernel* kernel = nullptr; ///< that `bound` is of
     BoundKernel bound;
-    BatchContext context;
+    KernelRun context;
 };
 
 WithoutScene::WithoutScene(std::vector<std::string> texturePaths, Diagnostics& d) : state_(std::make_unique<State>()) {
@@ -18,13 +18,13 @@ WithoutScene::WithoutScene(std::vector<std::string> texturePaths, Diagnostics& d
     world->diagnostics_ = &d;
     world->textures_ = std::make_unique<texture::TextureSystem>(d);
     state_->world = world;
-    state_->engine = std::make_unique<Engine>(world, d);
+    state_->answers = std::make_unique<Answers>(*world, d, nullptr);
 }
 
 WithoutScene::~WithoutScene() = default;
 
 void WithoutScene::setPoints(const Vec3& eye, std::span<const Vec3> points) {
-    BatchContext& c = state_->context;
+    KernelRun& c = state_->context;
     c.points.assign(points.size(), {});
     c.rays.assign(points.size(), {});
     for (size_t i = 0; i < points.size(); ++i) {
@@ -51,10 +51,9 @@ bool WithoutScene::answer(const rsl::CompiledKernel& k, int32_t site, int32_t fi
         s.bound = bindKernel(std::shared_ptr<const rsl::CompiledKernel>(std::shared_ptr<const rsl::CompiledKernel>{}, &k), false,
                              false, s.world.get());
         s.kernel = &k;
-        s.context.engine = s.engine.get();
         s.context.bound = &s.bound;
     }
-    s.engine->service(s.context, site, first, mask, lanes, in, out);
+    s.answers->service(s.context, site, first, mask, lanes, in, out);
     return true;
 }
 

@@ -20,7 +20,7 @@ private:
 
 Engine transportEngine() {
     return {[](std::shared_ptr<const scene::Frame> f, const transport::Settings& s, Diagnostics& d) {
-                return transport::World::build(std::move(f), s, d);
+                return transport::buildWorld(std::move(f), s, d);
             },
             [](std::shared_ptr<const transport::World> w, Diagnostics& d) -> std::unique_ptr<Tracer> {
                 return std::make_unique<IntegratorTracer>(std::move(w), d);

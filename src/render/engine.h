@@ -24,7 +24,7 @@ struct Engine {
     std::function<std::unique_ptr<Tracer>(std::shared_ptr<const transport::World>, Diagnostics&)> tracer;
 };
 
-/// The renderer's own: World::build and Integrator.
+/// The renderer's own: buildWorld() and Integrator.
 Engine transportEngine();
 
 } // namespace alpenglow::render

@@ -25,7 +25,7 @@ std::shared_ptr<const transport::World> imagerWorld(const Film& film, const std:
     auto& paths = scene->settings.shaderPaths;
     paths.insert(paths.begin(), settings.shaderPaths.begin(), settings.shaderPaths.end());
     scene->settings.allowExec = settings.allowExec;
-    return transport::World::build(scene->frame, scene->settings, diags);
+    return transport::buildWorld(scene->frame, scene->settings, diags);
 }
 
 std::string rangesText(const std::vector<SampleRange>& ranges) {

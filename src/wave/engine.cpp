@@ -16,7 +16,7 @@ void Counters::operator+=(const Counters& o) {
 }
 
 Engine::Engine(std::shared_ptr<const WorldImpl> w, Diagnostics& d)
-    : world_(std::move(w)), diagnostics_(d), seed_(world_->settings_.seed), rules_(world_->settings_) {
+    : world_(std::move(w)), diagnostics_(d), seed_(world_->settings_.seed), rules_(world_->settings_), answers_(*world_, d, this) {
     noSample_.numbers = render::SampleNumbers(render::Sampler(seed_, 0, 0), 0);
 }
 
@@ -75,12 +75,9 @@ std::shared_ptr<BatchContext> Engine::takeContext() {
 void Engine::giveBack(std::shared_ptr<BatchContext> c) {
     if (c.use_count() != 1) return; // a strip waits in it
     if (c->batch.use_count() != 1) c->batch.reset();
-    c->bound = nullptr;
-    c->binding = nullptr;
     freeExtras(*c);
-    c->rays.clear(); // points stay: follow() writes them again
+    c->forget(); // points stay: follow() writes them again
     c->targets.clear();
-    c->bindings.clear();
     c->emits.clear();
     c->emitted = 0;
     c->failure = nullptr;
@@ -88,19 +85,7 @@ void Engine::giveBack(std::shared_ptr<BatchContext> c) {
     c->haze.clear();
     c->clear.clear();
     c->passes.clear();
-    c->lightDistance.clear();
-    c->lightChannels.clear();
-    c->draws.clear();
     c->requestSite = -1;
-    for (LightLoop& loop : c->loops) loop.reset(-1);
-    c->ambient.clear();
-    for (LightSheet& sheet : c->sheets) sheet.made = sheet.refused = false;
-    c->lit = nullptr;
-    c->displaced.reset();
-    c->light = nullptr;
-    c->aside = nullptr;
-    c->volume = nullptr;
-    c->lightVisibilityDistance = 0;
     pool_.push_back(std::move(c));
 }
 
@@ -202,17 +187,5 @@ bool Engine::traceAll(std::span<const CameraRay> rays, std::span<SampleResult> o
     forget();
     return done;
 }
-
-struct Integrator::Impl {
-    Engine engine;
-    Impl(std::shared_ptr<const WorldImpl> w, Diagnostics& d) : engine(std::move(w), d) {}
-};
-Integrator::Integrator(std::shared_ptr<const World> w, Diagnostics& d)
-    : impl_(std::make_unique<Impl>(std::static_pointer_cast<const WorldImpl>(std::move(w)), d)) {}
-Integrator::~Integrator() = default;
-bool Integrator::trace(std::span<const CameraRay> r, std::span<SampleResult> out, const StopFlag* stop) {
-    return impl_->engine.trace(r, out, stop);
-}
-const Counters& Integrator::counters() const { return impl_->engine.counters; }
 
 } // namespace alpenglow::transport

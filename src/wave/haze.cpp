@@ -1,6 +1,7 @@
 // Atmospheres and media: volume shaders run over what a ray met. They are affine in the light that comes in (Ci = a + slope Ci), which the
 // compiler proves where it can; the slope scales what is added later: requests, and the light of an emitter.
 #include "wave/engine.h"
+#include "world/outputs.h"
 
 namespace alpenglow::transport {
 

@@ -93,7 +93,7 @@ void serve(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask, in
         c.emits.push_back(e);
         return;
     }
-    c.engine->service(c, site, first, mask, lanes, in, out);
+    c.engine->answers().service(c, site, first, mask, lanes, in, out);
 }
 void onService(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
     try {
@@ -103,21 +103,21 @@ void onService(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask
 int32_t onLightBegin(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* rows) {
     BatchContext& c = contextOf(call);
     try {
-        if (!c.failure) return c.engine->lightBegin(c, site, first, mask, lanes, rows);
+        if (!c.failure) return c.engine->answers().lightBegin(c, site, first, mask, lanes, rows);
     } catch (...) { failed(call); }
     return 0;
 }
 uint64_t onLightFetch(rsl::KernelCall* call, int32_t, int32_t light, int32_t first, uint64_t mask, int32_t lanes, float* out) {
     BatchContext& c = contextOf(call);
     try {
-        if (!c.failure) return c.engine->lightFetch(c, light, first, mask, lanes, out);
+        if (!c.failure) return c.engine->answers().lightFetch(c, light, first, mask, lanes, out);
     } catch (...) { failed(call); }
     return 0;
 }
 void onLightEnd(rsl::KernelCall* call, int32_t, int32_t first, int32_t lanes) {
     BatchContext& c = contextOf(call);
     try {
-        if (!c.failure) c.engine->lightEnd(c, first, lanes);
+        if (!c.failure) c.engine->answers().lightEnd(c, first, lanes);
     } catch (...) { failed(call); }
 }
 void* onAlloc(rsl::KernelCall* call, uint64_t bytes) {

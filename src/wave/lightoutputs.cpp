@@ -2,7 +2,7 @@
 // own, run at the camera's points alone. Where that asks for the very light that Ci asks for, it has a part of what the lobe of
 // Ci finds: the ratio of the two weights. The parts of Ci that a shader gives away so add up to Ci in every sample. The rest is
 // followed by itself.
-#include "world/surfaces.h"
+#include "wave/engine.h"
 #include <algorithm>
 #include <cstring>
 #include <map>
@@ -15,20 +15,6 @@ namespace {
 /// An output that is more than this much of Ci has rays of its own: those of Ci are too rarely sent where so little of it depends
 /// on them.
 constexpr float kMostShare = 16;
-
-/// What makes two sites ask for the same, wherever they are in the text. Arguments are compared by value when it runs.
-auto callOf(const rsl::ir::Site& s) { return std::tie(s.op, s.strings, s.names, s.pairStrings, s.argKinds); }
-
-/// By site of `of`, the first site of `in` that is the same call; -1: none.
-std::vector<int> sameCalls(const BoundKernel& of, const BoundKernel& in) {
-    std::vector<int> same;
-    for (const SiteInfo& s : of.sites) {
-        const auto found =
-            std::find_if(in.sites.begin(), in.sites.end(), [&](const SiteInfo& t) { return callOf(*s.site) == callOf(*t.site); });
-        same.push_back(found == in.sites.end() ? -1 : int(found - in.sites.begin()));
-    }
-    return same;
-}
 
 /// Whether two pairs ask for the same thing.
 bool sameArguments(const BatchContext& a, const EmitRecord& ra, int laneA, const BatchContext& b, const EmitRecord& rb,
@@ -48,75 +34,6 @@ Color weightOf(const BatchContext& c, const EmitRecord& e, int lane) {
 }
 
 } // namespace
-
-void SurfaceBinder::partLightOutputs(SurfaceBinding& b, Names& outputs, const Names& varying) {
-    b.lightOutputs.clear();
-    b.aside.clear();
-    const std::vector<std::string>& wanted = world_.settings_.outputs;
-    const auto asked = [&](const std::string& name) { return std::find(wanted.begin(), wanted.end(), name) != wanted.end(); };
-    if (std::none_of(outputs.begin() + 2, outputs.end(), asked)) return; // Ci and Oi are the first
-    const auto slots = world_.lightOfOutputs(*b.surface, outputs, varying, path_);
-    Names plain = outputs, beside{};
-    for (const std::string& name : outputs)
-        if (name.rfind("param:", 0) == 0) beside.push_back(name); // what lights ask for
-    std::vector<char> aside(wanted.size(), 0);
-    for (size_t k = 0; k < wanted.size(); ++k) {
-        bool light = false, good = true;
-        int component = 0;
-        std::vector<LightOutput> found;
-        std::vector<LightOutputPlace> places;
-        for (const auto& [output, lit] : slots) {
-            if (output.name != wanted[k] && output.name.rfind(wanted[k] + "[", 0) != 0) continue;
-            const int size = rsl::ir::components(output.kind);
-            light |= lit;
-            good &= output.kind == rsl::ir::Kind::Float || output.kind == rsl::ir::Kind::Triple;
-            LightOutput& o = found.emplace_back();
-            o.slot = output.name;
-            o.outputs = beside;
-            o.outputs.insert(o.outputs.begin(), output.name);
-            places.push_back({output.name, int(k), component, size});
-            component += size;
-        }
-        if (!light || !good || wanted[k] == "Ci" || wanted[k] == "Oi") continue;
-        aside[k] = 1;
-        std::erase(plain, wanted[k]);
-        for (size_t i = 0; i < found.size(); ++i) {
-            const auto same = [&](const LightOutputPlace& p) {
-                return p.aov == places[i].aov && p.component == places[i].component && p.size == places[i].size;
-            };
-            const auto known = std::find_if(world_.lightOutputs_.begin(), world_.lightOutputs_.end(), same);
-            found[i].number = int(known - world_.lightOutputs_.begin());
-            if (known == world_.lightOutputs_.end()) world_.lightOutputs_.push_back(places[i]);
-            b.lightOutputs.push_back(std::move(found[i]));
-        }
-    }
-    if (b.lightOutputs.empty()) return;
-    if (!path_) { // a kernel that waits anyway gives all of them at once, and follows the same rays
-        const BoundKernel alone = world_.kernel(*b.surface, plain, varying, false, path_, diagnostics_);
-        if (alone && alone.kernel->facts().suspends) return b.lightOutputs.clear();
-    }
-    b.aside = std::move(aside);
-    outputs = std::move(plain);
-}
-
-LightOutput::Kernel SurfaceBinder::lightKernel(const SurfaceBinding& b, const LightOutput& o, const Names& varying, bool mixed) {
-    LightOutput::Kernel k;
-    k.bound = world_.kernel(*b.surface, o.outputs, varying, mixed, path_, diagnostics_, o.slot);
-    if (!k.bound) return k;
-    const BoundKernel& main = mixed ? b.surfaceV : b.surfaceS;
-    k.main = sameCalls(main, main);
-    k.own = sameCalls(k.bound, main);
-    if (const auto& direct = k.bound.kernel->facts().direct; !direct.empty())
-        diagnostics_.reportOnce(
-            "direct:" + b.surface->name + ":" + o.slot,
-            {Severity::Warning,
-             Rie::NoError,
-             b.surface->place,
-             "output \"" + o.slot + "\" of shader \"" + b.surface->name + "\" holds only the direct light of " + direct[0].text(),
-             "Ci has all of it; sums and products with what does not depend on light give an output its indirect light, too",
-             {}});
-    return k;
-}
 
 std::vector<std::shared_ptr<BatchContext>> Engine::asides(const BatchContext& c, Sched& sched,
                                                           const std::function<void(BatchContext&)>& fill) {

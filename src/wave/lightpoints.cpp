@@ -205,11 +205,16 @@ void Gather::askLights(const BoundKernel* shared) {
     for (size_t k = 0; k < q.count && sends; ++k) {
         const uint32_t use = kLightPoint + uint32_t(&light - world_.lights_.data());
         const float u = e_.random(c_->rays[size_t(q.point[k])]).one(lightVertex(size_t(q.point[k])), use, 0);
-        Engine::chooseSent(light, u, values.data() + k * width, q.value[k]);
+        Answers::chooseSent(light, u, values.data() + k * width, q.value[k]);
     }
     for (size_t k = 0; k < q.count && light.channels; ++k)
         if (k == 0 || q.point[k] != q.point[k - 1]) // of several widths the first
-            e_.keepChannels(*c_, light, q.point[k], values.data() + k * width);
+            e_.answers().keepChannels(*c_, light, q.point[k], values.data() + k * width);
+}
+
+float Engine::chanceOf(int light, int binding, const Vec3& at) const {
+    const WorldImpl::ChooserOfList& of = world_->choosers_[size_t(world_->bindings_[size_t(binding)].lightList)];
+    return of.chooser.empty() ? 1 : of.chooser.pmf(of.numberOf[size_t(light)], at);
 }
 
 } // namespace alpenglow::transport

@@ -4,11 +4,6 @@
 
 namespace alpenglow::transport {
 
-Color coneNumbers(Vec2 random) {
-    Vec2 d = unitCircle(random.y);
-    return {random.x, d.x, d.y};
-}
-
 shading::TargetValue Engine::rayOfLight(BatchContext& c, const SiteInfo& s, int point, const std::function<float(int)>& row, uint32_t occurrence) {
     const ShadePoint& p = c.points[size_t(point)];
     shading::TargetValue value;
@@ -203,6 +198,54 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
             out[i].Cl *= dot(out[i].L, out[i].L) * scale;
     hazeOfEmitters(light, queries, out, call.inMedium);
     giveBack(std::move(c));
+}
+
+bool LitValues::output(const std::string& name, std::vector<float>& v) const {
+    for (const auto& [known, numbers] : outputs)
+        if (known == name) {
+            v = numbers;
+            return true;
+        }
+    return false;
+}
+
+LitSurface Engine::litBy(std::span<const int> of) const {
+    LitSurface lit;
+    lit.binding = [this, of](int q) -> const SurfaceBinding* {
+        const int b = of[size_t(q)] < 0 ? -1 : litValues_[size_t(of[size_t(q)])].binding;
+        return b < 0 ? nullptr : &world_->bindings_[size_t(b)];
+    };
+    lit.output = [this, of](int q, const std::string& name, std::vector<float>& v) {
+        return of[size_t(q)] >= 0 && litValues_[size_t(of[size_t(q)])].output(name, v);
+    };
+    lit.displaced = [this, of](int q, int& point) -> const KernelRun* {
+        if (of[size_t(q)] < 0) return nullptr;
+        point = litValues_[size_t(of[size_t(q)])].point;
+        return litValues_[size_t(of[size_t(q)])].displaced.get();
+    };
+    return lit;
+}
+
+void Engine::shadowLight(const KernelRun& c, const BoundLight& light, int first, std::span<const ShadePoint> q, std::span<const int> laneOf,
+                        std::span<LightValue> v) {
+    std::vector<ShadowRay> rays;
+    std::vector<size_t> of;
+    for (size_t i = 0; i < q.size(); ++i) {
+        if (!v[i].lit || !(maxComponent(v[i].Cl) > 0)) continue;
+        const ShadePoint& lit = c.points[size_t(first + laneOf[i])];
+        const Vec3 to = -v[i].L;
+        const float far = length(to);
+        if (!(far > 0)) continue;
+        const Vec3 w = to / far;
+        const Vec3 o = geometry::offsetOrigin(lit.surface, w, length(q[i].Ps - lit.surface.P));
+        const float distance = light.kind == LightKind::Distant ? 1e38f : light.kind == LightKind::Area ? far * (1 - 1e-4f) : far * (1 - 1e-5f);
+        rays.push_back({o, w, distance, Color(1), shading::kNoTarget, lit.time, lit.ray});
+        rays.back().media = mediaTowards(c, first + laneOf[i], w);
+        of.push_back(i);
+    }
+    std::vector<Color> left(rays.size());
+    transmittances(rays, left);
+    for (size_t k = 0; k < of.size(); ++k) v[of[k]].Cl *= left[k];
 }
 
 } // namespace alpenglow::transport

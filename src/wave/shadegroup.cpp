@@ -1,6 +1,7 @@
 // Running a surface's kernel over a batch of points: to its end, or strip by strip where it waits for rays (strips.h); then what
 // it asked for.
 #include "wave/engine.h"
+#include "world/outputs.h"
 #include <algorithm>
 
 namespace alpenglow::transport {

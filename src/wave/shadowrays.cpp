@@ -54,13 +54,6 @@ Way wayBetween(const Vec3& a, const Vec3& b, const Vec3& at, const geometry::Sur
     return dot(left, d) > 0 ? Way{from, left / l, l} : Way{from, d, 0};
 }
 
-void WorldImpl::goOn(accel::Ray& ray, const accel::Hit& h) const {
-    ray.tnear = std::nextafter(h.t, 0.f); // other surfaces may lie just there
-    ray.passed = h.distance;
-    ray.excludeShape = h.shape;
-    ray.excludePrim = h.prim;
-}
-
 void Engine::opacities(std::span<const OpacityQuery> met, std::span<Color> out) {
     BatchContext c;
     c.engine = this;
@@ -107,16 +100,6 @@ void Engine::opacities(std::span<const OpacityQuery> met, std::span<Color> out) 
             o = Color(1);
         }
         out[i] = between0And1(o);
-    }
-}
-
-void WorldImpl::sortByOpacity() {
-    if (allOpaque_) return;
-    for (size_t i = 0; i < shapes_.size(); ++i) {
-        const bool opaque = bindings_[size_t(bindingOf_[i])].opacity.opaque();
-        byOpacity_.opaque.push_back(opaque);
-        byOpacity_.clear.push_back(!opaque);
-        if (!opaque) byOpacity_.clearBounds.add(shapes_[i]->bounds());
     }
 }
 

@@ -1,6 +1,5 @@
 // What the call sites of a kernel mean to the engine, worked out once per kernel.
 #include "shadeops/specular.h"
-#include "wave/engine.h"
 #include "world/raysets.h"
 
 namespace alpenglow::transport {
@@ -96,6 +95,13 @@ size_t rowsOf(const SiteInfo& i, int row) {
         at += rsl::ir::components(kind);
     }
     return 0;
+}
+
+std::string sentStrings(const SiteInfo& s) {
+    std::string key;
+    for (const auto& [name, value] : s.text)
+        if (name.rfind("send:light:", 0) == 0) key += name.substr(11) + '\1' + value + '\2';
+    return key;
 }
 
 BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed, bool path, WorldImpl* world) {

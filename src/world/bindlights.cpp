@@ -1,6 +1,7 @@
 // Lights of a frame bound to their kernels. A shader with several illuminate or solar statements becomes several lights: the first
 // keeps the frame's index, the others are its parts, numbered behind all of the frame's.
-#include "world/surfaces.h"
+#include "world/impl.h"
+#include "world/outputs.h"
 
 namespace alpenglow::transport {
 
@@ -221,13 +222,13 @@ std::vector<int> WorldImpl::withParts(const std::vector<int>& lights) const {
     return all;
 }
 
-void WorldImpl::measureLights(Engine& engine, Diagnostics& d) {
+void WorldImpl::measureLights(Evaluator& evaluator, Diagnostics& d) {
     bool many = std::any_of(sampledLights_.begin(), sampledLights_.end(), [](const auto& list) { return list.size() > size_t(limits::kLightsSampled); });
     for (BoundLight& l : lights_) {
         if (!l.kernel || (l.kind == LightKind::Area && (!l.emitter || l.emitter->empty()))) continue;
         auto brightness = [&](std::vector<ShadePoint> q) {
             std::vector<LightValue> v(q.size());
-            engine.evaluateLight(l, q, v);
+            evaluator.light(l, q, v);
             std::vector<float> b;
             for (const LightValue& x : v) b.push_back(x.lit && std::isfinite(luminance(x.Cl)) ? luminance(x.Cl) : 0);
             return b;

@@ -1,7 +1,7 @@
 // Displacement when shapes are diced: by displacement shaders, by classes that are both, and by surface shaders that move P.
 #include "rsl/ir/edit.h"
-#include "wave/engine.h"
 #include "geometry/dice.h"
+#include "world/impl.h"
 
 namespace alpenglow::transport {
 
@@ -54,12 +54,7 @@ void WorldImpl::displaceGrid(const SurfaceBinding& b, const geometry::Shape& sha
     const BoundKernel& bound = b.displacement ? b.displacementS : b.moveS;
     if (!bound || bound.kernel->facts().suspends) return;
     const ShaderInstance& shader = b.displacement ? *b.displacement : *b.surface;
-    Engine engine(std::shared_ptr<const WorldImpl>(std::shared_ptr<const WorldImpl>{}, this), d);
-    engine.stop = settings_.stop;
-    BatchContext c;
-    c.engine = &engine;
-    c.bound = &bound;
-    c.binding = &b;
+    std::vector<ShadePoint> points;
     for (size_t i = 0; i < grid.points.size(); ++i) {
         ShadePoint p;
         p.shape = &shape;
@@ -69,46 +64,12 @@ void WorldImpl::displaceGrid(const SurfaceBinding& b, const geometry::Shape& sha
         p.I = frame_->options.projection == "perspective" ? p.P : Vec3(0, 0, p.P.z); // as the camera sees it
         p.du = grid.du[i];
         p.dv = grid.dv[i];
-        c.points.push_back(p);
+        points.push_back(p);
     }
-    std::vector<shading::InstanceView> views(c.points.size(), {&shader.parameters, &shader.toCurrent});
-    c.batch = std::make_shared<shading::Batch>(bound.kernel, *bound.plan, c.points, views, *this);
-    engine.bindCall(c.batch->call(), c);
-    bound.kernel->run(&c.batch->call());
-    c.ran();
-    int out = c.batch->output("P");
-    for (size_t i = 0; out >= 0 && i < grid.P.size(); ++i) grid.P[i] = c.batch->color(out, int(i));
-}
-
-std::shared_ptr<BatchContext> Engine::displace(const BatchContext& c) {
-    const BoundKernel& bound = c.binding->displacementS;
-    if (!bound || bound.kernel->facts().suspends) return nullptr;
-    auto d = std::make_shared<BatchContext>();
-    d->engine = this;
-    d->bound = &bound;
-    d->binding = c.binding;
-    d->points = c.points;
-    d->rays = c.rays;
-    d->bindings = c.bindings;
-    for (size_t k = 0; k < d->rays.size(); ++k) d->points[k].ray = &d->rays[k];
-    const ShaderInstance& shader = *c.binding->displacement;
-    const shading::InstanceView view{&shader.parameters, &shader.toCurrent};
-    d->batch = std::make_shared<shading::Batch>();
-    d->batch->assign(bound.kernel, *bound.plan, d->points, {&view, 1}, {}, *world_);
-    bindCall(d->batch->call(), *d);
-    bound.kernel->run(&d->batch->call());
-    d->ran();
-    return d;
-}
-
-void Engine::moveToFacets(BatchContext& c) {
-    for (size_t k = 0; k < c.rays.size(); ++k) {
-        ShadePoint& p = c.points[k];
-        if (!p.surface.displaced) continue;
-        p.P = p.surface.P = p.surface.displacedP;
-        p.surface.n = p.surface.displacedN;
-        p.I = p.P - c.rays[k].begin();
-    }
+    evaluators_(*this, d, settings_.stop)->run(bound, &b, points, {&shader.parameters, &shader.toCurrent}, [&](const shading::Batch& batch) {
+        const int out = batch.output("P");
+        for (size_t i = 0; out >= 0 && i < grid.P.size(); ++i) grid.P[i] = batch.color(out, int(i));
+    });
 }
 
 void WorldImpl::diceShapes(Diagnostics& d) {

@@ -1,7 +1,7 @@
 // How wide a light sample sees an emitter: as wide as the ray of a lobe that meets it, so that both estimate the same light.
 #pragma once
 #include "lobes/lobe.h"
-#include "world/world.h"
+#include "world/impl.h"
 
 namespace alpenglow::transport {
 

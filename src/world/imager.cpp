@@ -1,5 +1,5 @@
 // The imager of a frame, run over finished pixels.
-#include "wave/engine.h"
+#include "world/impl.h"
 #include <algorithm>
 
 namespace alpenglow::transport {
@@ -20,8 +20,7 @@ bool WorldImpl::runImager(int count, const float* x, const float* y, float* r, f
     const InstanceRef& i = imager_.shader;
     const BoundKernel& k = imager_.kernel;
     if (!i || !k || k.kernel->facts().suspends) return false;
-    Engine engine(std::shared_ptr<const WorldImpl>(std::shared_ptr<const WorldImpl>{}, this), d);
-    engine.stop = stop;
+    const std::unique_ptr<Evaluator> evaluator = evaluators_(*this, d, stop);
     // alpha is what the shader writes to it; one that only makes its pixels opaque means that, too (methods of classes have no alpha).
     const auto& writes = k.kernel->facts().writes;
     const auto written = [&](const char* name) { return std::find(writes.begin(), writes.end(), name) != writes.end(); };
@@ -29,12 +28,9 @@ bool WorldImpl::runImager(int count, const float* x, const float* y, float* r, f
     constexpr int kChunk = 4096;
     for (int begin = 0; begin < count; begin += kChunk) {
         int n = std::min(kChunk, count - begin);
-        BatchContext c;
-        c.engine = &engine;
-        c.bound = &k;
-        c.points.resize(size_t(n));
+        std::vector<ShadePoint> points(size_t(n), ShadePoint{});
         for (int p = 0; p < n; ++p) {
-            ShadePoint& s = c.points[size_t(p)];
+            ShadePoint& s = points[size_t(p)];
             int at = begin + p;
             const auto width = float(std::max(1, frame_->options.xres)), height = float(std::max(1, frame_->options.yres));
             s.P = {x[at], y[at], 0};
@@ -51,25 +47,22 @@ bool WorldImpl::runImager(int count, const float* x, const float* y, float* r, f
             s.Oi = Color(alpha[at]);
             s.alpha = alpha[at];
         }
-        std::vector<shading::InstanceView> views(size_t(n), {&i->parameters, &i->toCurrent});
-        c.batch = std::make_shared<shading::Batch>(k.kernel, *k.plan, c.points, views, *this);
-        engine.bindCall(c.batch->call(), c);
-        k.kernel->run(&c.batch->call());
-        c.ran();
-        const int ci = c.batch->output("Ci"), ai = c.batch->output("alpha"), oi = c.batch->output("Oi");
-        for (int p = 0; p < n; ++p) {
-            int at = begin + p;
-            if (ci >= 0) {
-                Color v = c.batch->color(ci, p);
-                r[at] = v.x; g[at] = v.y; b[at] = v.z;
+        evaluator->run(k, nullptr, points, {&i->parameters, &i->toCurrent}, [&](const shading::Batch& batch) {
+            const int ci = batch.output("Ci"), ai = batch.output("alpha"), oi = batch.output("Oi");
+            for (int p = 0; p < n; ++p) {
+                int at = begin + p;
+                if (ci >= 0) {
+                    Color v = batch.color(ci, p);
+                    r[at] = v.x; g[at] = v.y; b[at] = v.z;
+                }
+                if (opacityOnly && oi >= 0) {
+                    const Color v = batch.color(oi, p);
+                    alpha[at] = (v.x + v.y + v.z) / 3;
+                } else if (ai >= 0) {
+                    alpha[at] = batch.value(ai, 0, p);
+                }
             }
-            if (opacityOnly && oi >= 0) {
-                const Color v = c.batch->color(oi, p);
-                alpha[at] = (v.x + v.y + v.z) / 3;
-            } else if (ai >= 0) {
-                alpha[at] = c.batch->value(ai, 0, p);
-            }
-        }
+        });
     }
     return true;
 }

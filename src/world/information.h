@@ -1,6 +1,6 @@
 // Names that shaders ask for: attribute() and option() (rsl.md 11.4), and the values they have when the scene does not say.
 #pragma once
-#include "world/world.h"
+#include "world/impl.h"
 #include <optional>
 
 namespace alpenglow::transport {

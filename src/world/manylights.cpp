@@ -1,6 +1,6 @@
 // Which lights get a sample at a vertex. With few, each does; with more than limits::kLightsSampled about that many, by
 // LightChooser. What a chosen light gives is divided by the probability of the choice: the mean stays the same.
-#include "wave/engine.h"
+#include "world/impl.h"
 
 namespace alpenglow::transport {
 
@@ -48,11 +48,6 @@ void WorldImpl::makeChoosers(Diagnostics& d) {
     }
     const bool many = std::any_of(choosers_.begin(), choosers_.end(), [](const ChooserOfList& c) { return !c.chooser.empty(); });
     if (many && settings_.hider == Hider::Path) groupLights(d);
-}
-
-float Engine::chanceOf(int light, int binding, const Vec3& at) const {
-    const WorldImpl::ChooserOfList& of = world_->choosers_[size_t(world_->bindings_[size_t(binding)].lightList)];
-    return of.chooser.empty() ? 1 : of.chooser.pmf(of.numberOf[size_t(light)], at);
 }
 
 } // namespace alpenglow::transport

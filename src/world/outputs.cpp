@@ -1,5 +1,6 @@
 // Outputs of shaders as displays ask for them: which there are, and how many numbers each has.
-#include "world/surfaces.h"
+#include "world/impl.h"
+#include "world/outputs.h"
 
 namespace alpenglow::transport {
 

@@ -1,7 +1,6 @@
 // Whom rays may meet: "subset", "excludesubset", "hitsides" and "hitmode" of the shadeops that trace, and the groups of objects that
 // Attribute "grouping" "membership" makes (rsl.md, table 6.10; ri.md 15.2).
 #include "world/raysets.h"
-#include "wave/engine.h"
 #include <bit>
 #include <set>
 #include <sstream>
@@ -23,6 +22,8 @@ std::vector<std::string> namesIn(const std::string& text) {
     return names;
 }
 
+} // namespace
+
 std::string attributeText(const scene::Attributes& a, const char* key) {
     const scene::Param* p = a.value(key);
     return p && !p->strings.empty() ? p->strings[0] : "";
@@ -40,8 +41,6 @@ std::optional<HitMode> modeOf(const std::string& word) {
     if (word == "default") return HitMode::Default;
     return {};
 }
-
-} // namespace
 
 RayType rayTypeOf(const std::string& word) {
     return word == "diffuse" ? RayType::Diffuse : word == "transmission" ? RayType::Transmission : RayType::Specular;
@@ -128,38 +127,6 @@ std::shared_ptr<const RaySite> raySite(const SiteInfo& i, WorldImpl& world, cons
     r->set.only = world.subsets_.find(world, r->subsetText, r->excludeText);
     r->fixed = r->subset < 0 && r->exclude < 0 && r->sides < 0 && r->mode < 0 && r->label < 0 && r->type < 0;
     return r;
-}
-
-const uint8_t* Engine::shapesOf(int32_t subset, int32_t exclude, const scene::Attributes* from) {
-    // What the shape of the point says counts where the call names no subset.
-    const auto [known, fresh] = subsetsKnown_.try_emplace({subset, exclude, from}, nullptr);
-    if (!fresh) return known->second;
-    std::string wanted = rsl::internedString(subset);
-    if (wanted.empty() && from) wanted = attributeText(*from, "grouping:tracesubset");
-    return known->second = world_->subsets_.find(*world_, wanted, rsl::internedString(exclude));
-}
-
-RaySet Engine::raySetOf(const SiteInfo& s, const std::function<float(int)>& f, const geometry::Shape* from, RayType& type,
-                        int32_t& label) {
-    const RaySite& r = *s.rays;
-    RaySet set = r.set;
-    const auto id = [&](int row) { return std::bit_cast<int32_t>(f(row)); };
-    const auto word = [&](int row) -> const std::string& { return rsl::internedString(id(row)); };
-    type = r.rays;
-    label = r.label >= 0 ? id(r.label) : s.label;
-    if (r.type >= 0)
-        if (const std::string& t = word(r.type); !t.empty()) {
-            type = rayTypeOf(t);
-            set.sides = type == RayType::Transmission ? accel::Sides::Both : accel::Sides::Front;
-        }
-    if (r.sides >= 0)
-        if (const auto sides = sidesOf(word(r.sides))) set.sides = *sides;
-    if (r.mode >= 0)
-        if (const auto mode = modeOf(word(r.mode))) set.mode = *mode;
-    const int32_t subset = r.subset >= 0 ? id(r.subset) : r.subsetId, exclude = r.exclude >= 0 ? id(r.exclude) : r.excludeId;
-    const bool ofShape = subset == 0 && from && world_->traceSubsets_;
-    if (r.subset >= 0 || r.exclude >= 0 || ofShape) set.only = shapesOf(subset, exclude, ofShape ? &from->attributes() : nullptr);
-    return set;
 }
 
 } // namespace alpenglow::transport

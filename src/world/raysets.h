@@ -1,9 +1,15 @@
 // What trace(), transmission() and their kin say about the rays they send.
 #pragma once
-#include "world/world.h"
+#include "world/impl.h"
+#include <optional>
 
 namespace alpenglow::transport {
 
+/// The first text of an attribute; "" where it is not set.
+std::string attributeText(const scene::Attributes&, const char* key);
+/// "front", "back" ("reversed"), "both"; "primitive", "shader", "default". Nothing for other words.
+std::optional<accel::Sides> sidesOf(const std::string& word);
+std::optional<shading::HitMode> modeOf(const std::string& word);
 /// "specular" (and what is not known), "diffuse", "transmission".
 RayType rayTypeOf(const std::string& word);
 

@@ -4,7 +4,7 @@
 #include "rsl/front/visit.h"
 #include "world/fitparameter.h"
 #include "world/lightobjects.h"
-#include "world/world.h"
+#include "world/impl.h"
 #include <algorithm>
 #include <chrono>
 #include <filesystem>

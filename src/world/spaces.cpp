@@ -1,7 +1,7 @@
 // Coordinate systems: the camera's own, named ones, and the matrices between them.
 #include "base/exact.h"
 #include "world/lightobjects.h"
-#include "world/world.h"
+#include "world/impl.h"
 #include <set>
 
 namespace alpenglow::transport {

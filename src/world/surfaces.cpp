@@ -1,6 +1,6 @@
 #include "world/surfaces.h"
 #include "rsl/front/leftmembers.h"
-#include "answers/answers.h"
+#include "world/told.h"
 #include <limits>
 #include <set>
 
@@ -124,7 +124,7 @@ bool SurfaceBinder::bindHitModes() {
     if (!world_.primitiveHit_) return false;
     for (size_t i = 0; i < world_.bindings_.size(); ++i) {
         SurfaceBinding& b = world_.bindings_[i];
-        b.shaderOpacity = world_.opacityOf(b, *asked_[i].shape, "shader", asked_[i].varying, engine_, diagnostics_);
+        b.shaderOpacity = world_.opacityOf(b, *asked_[i].shape, "shader", asked_[i].varying, evaluator_, diagnostics_);
         b.primitiveOpacity.constant = b.attributes->opacity;
         if (asked_[i].shape->findPrimvar("Os") >= 0) b.primitiveOpacity.kernel = world_.kernel(*plain, {"Oi"}, {}, false, false, diagnostics_);
         world_.allOpaque_ &= b.shaderOpacity.opaque() && b.primitiveOpacity.opaque();
@@ -226,7 +226,7 @@ int SurfaceBinder::bindAnew(const geometry::ShapeRef& shape) {
     auto [group, firstOfGroup] = groups_.try_emplace({b.program, b.lightList}, world_.groups_);
     world_.groups_ += firstOfGroup;
     b.group = group->second;
-    b.opacity = world_.opacityOf(b, *shape, "", asked_.back().varying, engine_, diagnostics_);
+    b.opacity = world_.opacityOf(b, *shape, "", asked_.back().varying, evaluator_, diagnostics_);
     world_.allOpaque_ &= b.opacity.opaque();
     asked_.back().shape = shape;
     world_.bindings_.push_back(std::move(b));
@@ -485,64 +485,6 @@ void SurfaceBinder::bindLights(SurfaceBinding& b, const scene::Attributes& a) {
     }
     std::sort(sampled.begin(), sampled.end());
     sampled.erase(std::unique(sampled.begin(), sampled.end()), sampled.end());
-}
-
-Opacity WorldImpl::opacityOf(const SurfaceBinding& b, const geometry::Shape& shape, std::string mode, const std::vector<std::string>& varying, Engine& engine, Diagnostics& d) {
-    const scene::Attributes& a = shape.attributes();
-    const bool asked = !mode.empty();
-    if (!asked) mode = "shader";
-    for (const char* name : {"render:casts_shadows", "shade:transmissionhitmode", "visibility:transmission"}) // BMRT's, PRMan's, the older ones
-        if (const scene::Param* p = a.value(name); p && !asked && !p->strings.empty()) mode = p->strings[0];
-    InstanceRef surface = b.surface;
-    std::string what = b.surfaceS.kernel->facts().opacity;
-    BoundKernel k;
-    const rsl::Shader& text = surface->program->shader();
-    if (text.object && std::any_of(text.nested.begin(), text.nested.end(), [](const auto& f) { return f->name == "opacity"; })) {
-        // What the method opacity() gives stops rays, whatever the methods behind it make of Oi.
-        auto alone = std::make_shared<ShaderInstance>(*surface);
-        alone->parameters.strings["opacity()"] = "1";
-        surface = alone;
-        k = kernel(*surface, {"Oi"}, varying, false, false, d);
-        if (k) what = k.kernel->facts().opacity;
-    }
-    bool varies = shape.findPrimvar("Os") >= 0;
-    Opacity result;
-    result.constant = mode == "opaque" ? Color(1) : a.opacity;
-    if (mode == "opaque" || mode == "primitive" || (mode == "Os" && !varies) || (what == "Os" && !varies)) return result;
-    if (what == "1") {
-        result.constant = Color(1);
-        return result;
-    }
-    if (!k) k = kernel(*surface, {"Oi"}, varying, false, false, d);
-    if (!k || k.plan->Oi < 0) return result;
-    if (k.kernel->facts().suspends) {
-        d.reportOnce("opacity:" + b.surface->name, {Severity::Warning, Rie::NoError, b.surface->place,
-                     "the opacity of shader \"" + b.surface->name + "\" depends on traced rays; its shadow has the primitive's Opacity", {}, {}});
-        return result;
-    }
-    bool constant = !varies && k.kernel->sites().empty();
-    for (const auto& in : k.kernel->inputs()) {
-        bool parameter = in.name.rfind("param:", 0) == 0 && std::find(varying.begin(), varying.end(), in.name.substr(6)) == varying.end();
-        constant &= parameter || in.name == "Os" || (in.name == "Cs" && shape.findPrimvar("Cs") < 0);
-    }
-    if (!constant) {
-        result.kernel = std::move(k);
-        return result;
-    }
-    std::vector<ShadePoint> point(1);
-    point[0].shape = &shape;
-    shading::InstanceView view{&b.surface->parameters, &b.surface->toCurrent};
-    BatchContext c;
-    c.engine = &engine;
-    c.bound = &k;
-    c.points.swap(point);
-    c.batch = std::make_shared<shading::Batch>(k.kernel, *k.plan, c.points, std::span(&view, 1), *this);
-    engine.bindCall(c.batch->call(), c);
-    k.kernel->run(&c.batch->call());
-    c.ran();
-    Color o = c.batch->color(k.plan->Oi, 0);
-    for (int i = 0; i < 3; ++i) result.constant[i] = std::isfinite(o[i]) ? std::clamp(o[i], 0.f, 1.f) : 1;
-    return result;
 }
 
 } // namespace alpenglow::transport

@@ -1,21 +1,18 @@
 // Shapes bound to what shades them: shaders, kernels, lights. What may be shaded together shares a binding.
 #pragma once
-#include "wave/engine.h"
-#include <unordered_map>
+#include "world/impl.h"
+#include "world/outputs.h"
+#include <map>
 
 namespace alpenglow::transport {
 
-/// Whether a shader or its co-shaders give an output of that name ("list[1]" is an element of "list").
-bool gives(const ShaderInstance&, const std::string& output);
-/// The same of outputchannel() alone.
-bool givesChannel(const ShaderInstance&, const std::string& output);
 /// The first number of an attribute, or `fallback` where it is not set.
 float attributeNumber(const scene::Attributes&, const std::string& key, float fallback);
 
 /// Fills bindings_, bindingOf_ and what belongs to them, for the shapes of a world whose lights are bound.
 class SurfaceBinder {
 public:
-    SurfaceBinder(WorldImpl& world, Engine& engine, Diagnostics& d) : world_(world), engine_(engine), diagnostics_(d) {}
+    SurfaceBinder(WorldImpl& world, Evaluator& e, Diagnostics& d) : world_(world), evaluator_(e), diagnostics_(d) {}
     /// False when nothing can be rendered; that was reported.
     bool bindAll();
 
@@ -62,7 +59,7 @@ private:
     bool bindHitModes();
 
     WorldImpl& world_;
-    Engine& engine_;
+    Evaluator& evaluator_;
     Diagnostics& diagnostics_;
     bool path_ = false;
     InstanceRef fallback_;

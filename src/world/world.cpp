@@ -74,7 +74,7 @@ bool rispecSpecular(const scene::Options& o, const std::string& dialect, Diagnos
 
 } // namespace
 
-std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> frame, const Settings& settings, Diagnostics& d) {
+std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> frame, const Settings& settings, MakeEvaluator evaluators, Diagnostics& d) {
     double begin = seconds();
     auto w = std::make_shared<WorldImpl>();
     w->frame_ = frame;
@@ -110,10 +110,10 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     w->clipFar_ = o.clipFar;
     const bool all = path || !saysVisibility(w->shapes_);
     w->bindLights(d, [all](const geometry::Shape& s) { return visibilityOf(s.attributes(), all); });
-    Engine engine(std::shared_ptr<const WorldImpl>(std::shared_ptr<const WorldImpl>{}, w.get()), d); // runs kernels while the world is made
-    engine.stop = settings.stop;
+    w->evaluators_ = std::move(evaluators);
+    const std::unique_ptr<Evaluator> evaluator = w->evaluators_(*w, d, settings.stop);
     const auto stopped = [&settings] { return settings.stop && *settings.stop; };
-    if (!SurfaceBinder(*w, engine, d).bindAll()) return nullptr;
+    if (!SurfaceBinder(*w, *evaluator, d).bindAll()) return nullptr;
     w->measureOutputs();
     if (stopped()) return nullptr;
     w->setPointNeeds();
@@ -134,7 +134,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     w->findEye();
     w->bindSentStrings(d);
     w->countLightTraces();
-    w->measureLights(engine, d);
+    w->measureLights(*evaluator, d);
     for (const auto& [shape, binding] : w->hazyEmitters_) {
         w->lights_[size_t(shape->attributes().areaLight)].hazy = true;
         for (int part : w->lights_[size_t(shape->attributes().areaLight)].parts) w->lights_[size_t(part)].hazy = true;

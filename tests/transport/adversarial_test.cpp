@@ -28,7 +28,7 @@ Shown shown(const std::string& rib, Hider h) {
     reader.readMemory(rib, "test.rib");
     Settings settings = withShaders(h);
     settings.shaderPaths.push_back(shaderFolder());
-    if (const auto built = keeper.frame ? World::build(keeper.frame, settings, d) : nullptr) {
+    if (const auto built = keeper.frame ? buildWorld(keeper.frame, settings, d) : nullptr) {
         std::vector<SampleResult> out(1);
         Integrator i(built, d);
         const CameraRay ray = rayTo({.3f, .4f, -.4f}, {0, 0, 0});

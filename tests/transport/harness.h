@@ -67,7 +67,7 @@ struct Scene final : scene::FrameConsumer {
         reader.readMemory(rib, "test.rib");
         settings.shaderPaths.push_back(shaderFolder());
         settings.seed += seedBase();
-        if (frame) world = World::build(frame, settings, diagnostics);
+        if (frame) world = buildWorld(frame, settings, diagnostics);
         EXPECT_NE(world, nullptr) << messages();
         EXPECT_EQ(diagnostics.errors(), errors) << messages() << rib;
     }

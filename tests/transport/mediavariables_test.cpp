@@ -93,7 +93,7 @@ TEST(ShaderLists, CategoriesMadeWhenTheShaderRuns) {
         settings.shaderPaths.push_back(shaderFolder());
         ri::RibReader reader({}, keeper, d);
         reader.readMemory(world(parts + "Surface \"" + name + "\" " + kFloor), "test.rib");
-        const auto built = World::build(keeper.frame, settings, d);
+        const auto built = buildWorld(keeper.frame, settings, d);
         std::vector<SampleResult> out(1);
         Integrator i(built, d);
         EXPECT_TRUE(i.trace({&kView, 1}, out, nullptr));

@@ -27,7 +27,7 @@ std::shared_ptr<const World> built(const std::string& rib, Diagnostics& d) {
     reader.readMemory(rib, "test.rib");
     Settings settings;
     settings.shaderPaths.push_back(shaderFolder());
-    return World::build(kept.frame, settings, d);
+    return buildWorld(kept.frame, settings, d);
 }
 
 TEST(Overrides, OnlyWhatFits) {

@@ -1,0 +1,2 @@
+room(world DEPS lobes shading)
+target_compile_definitions(world PRIVATE ALPENGLOW_SHADER_DIR="${CMAKE_SOURCE_DIR}/shaders")

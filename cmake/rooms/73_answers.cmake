@@ -1,0 +1,1 @@
+room(answers DEPS world)

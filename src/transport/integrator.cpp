@@ -1,0 +1,24 @@
+// The top of the engine: a world that the engine's own kernels help to build, and the engine that follows its rays.
+#include "transport/integrator.h"
+#include "wave/engine.h"
+#include "wave/kernelevaluator.h"
+
+namespace alpenglow::transport {
+
+std::shared_ptr<const World> buildWorld(std::shared_ptr<const scene::Frame> frame, const Settings& settings, Diagnostics& d) {
+    return World::build(std::move(frame), settings, makeKernelEvaluator, d);
+}
+
+struct Integrator::Impl {
+    Engine engine;
+    Impl(std::shared_ptr<const WorldImpl> w, Diagnostics& d) : engine(std::move(w), d) {}
+};
+Integrator::Integrator(std::shared_ptr<const World> w, Diagnostics& d)
+    : impl_(std::make_unique<Impl>(std::static_pointer_cast<const WorldImpl>(std::move(w)), d)) {}
+Integrator::~Integrator() = default;
+bool Integrator::trace(std::span<const CameraRay> r, std::span<SampleResult> out, const StopFlag* stop) {
+    return impl_->engine.trace(r, out, stop);
+}
+const Counters& Integrator::counters() const { return impl_->engine.counters; }
+
+} // namespace alpenglow::transport

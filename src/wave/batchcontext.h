@@ -1,0 +1,41 @@
+// A batch of points that the wave shades.
+#pragma once
+#include "answers/kernelrun.h"
+#include "wave/rays.h"
+#include <exception>
+#include <utility>
+
+namespace alpenglow::transport {
+
+class Engine;
+
+/// One affine pair group of a strip, as the kernel emitted it: rows of `lanes` floats, the first three the weight.
+struct EmitRecord { int site = 0, first = 0, lanes = 0; uint64_t mask = 0; size_t offset = 0; };
+
+/// What an atmosphere makes of the light that a ray met: Ci and Oi as seen, and the coefficient of the light met.
+struct Haze { Color shown, opacity, slope{1}; bool on = false; }; ///< on: a volume shader has run
+
+/// State of one batch while its kernel runs; KernelCall::user.
+struct BatchContext : KernelRun {
+    ~BatchContext();
+    Engine* engine = nullptr;
+    bool ownsExtras = false;                   ///< what its rays carry besides is freed with it
+    std::vector<TargetId> targets;             ///< by point; of an `aside` its own
+    std::vector<EmitRecord> emits;
+    std::vector<float> arena;
+    std::vector<Haze> haze;                    ///< by point; only where a volume lies before some point
+    std::vector<Color> clear;  ///< by point: what goes on behind it; only while gather() runs for a kernel that does not wait
+    std::vector<float> passes; ///< by point: the chance with which its ray goes on, 0: another was taken; empty: it always does
+    std::exception_ptr failure;                ///< of a callback while the kernel ran: exceptions cannot pass generated code
+    /// After each run of the kernel: throws what a callback threw.
+    void ran() { if (failure) std::rethrow_exception(std::exchange(failure, nullptr)); }
+    size_t emitted = 0;                        ///< requests of all points so far
+    size_t frame = 0;                          ///< bytes of the frame of the strip that was started last
+    // suspended request of the strip that runs now
+    int requestSite = -1, requestFirst = 0, requestLanes = 0;
+    uint64_t requestMask = 0;
+    std::vector<float> requestIn;
+    float* requestOut = nullptr;
+};
+
+} // namespace alpenglow::transport

@@ -1,0 +1,38 @@
+// What is followed from the camera, and what comes of it.
+#pragma once
+#include "base/vec.h"
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace alpenglow::transport {
+
+/// Counts of one integrator thread; added up by the renderer.
+struct Counters {
+    uint64_t camera = 0, diffuse = 0, specular = 0, transmission = 0, shadow = 0;
+    uint64_t points = 0, batches = 0, lanesUsed = 0, lanesRun = 0;
+    uint64_t nonFinite = 0, overLimit = 0, depthCap = 0;
+    uint64_t depthSum = 0, paths = 0;
+    int depthMax = 0;
+    size_t peakFrameBytes = 0; ///< suspended kernel frames at one time, the largest of all threads
+    void operator+=(const Counters&);
+};
+
+/// One camera ray: a position on the raster and its sample number. Camera space.
+struct CameraRay {
+    Vec3 origin, direction;      ///< direction unit
+    float width = 0, spread = 0; ///< half width of a pixel's footprint at the origin, and its growth per unit of distance
+    float time = 0;
+    float cosine = 1;            ///< direction.z: depth = distance * cosine
+    float start = 0;             ///< the way from the eye to the origin, where that is the near plane
+    int px = 0, py = 0;          ///< pixel, and
+    uint32_t sample = 0;         ///< sample number: the key of all random numbers
+};
+
+struct SampleResult {
+    Color color{0}, opacity{0};  ///< premultiplied; color includes light seen through
+    float z = 1e38f, zSecond = 1e38f; ///< camera depth of the first and second surface; 1e38 = none
+    std::vector<float> aovs;     ///< flattened in the order of Settings::outputs
+};
+
+} // namespace alpenglow::transport

@@ -1,0 +1,164 @@
+// The inside of World, for the rooms of transport only: what hits, shaders and lights are bound to.
+#pragma once
+#include "rsl/passes/optimize.h"
+#include "rsl/printlog.h"
+#include "world/bound.h"
+#include "world/evaluator.h"
+#include "world/lightchooser.h"
+#include "world/world.h"
+#include <functional>
+#include <unordered_map>
+
+namespace alpenglow::transport {
+
+/// The subsets of a world's shapes that rays were restricted to.
+class ShapeSubsets {
+public:
+    /// By shape, whether rays of this "subset" and "excludesubset" consider it; null: all. Good as long as the world. Thread safe.
+    const uint8_t* find(const class WorldImpl&, const std::string& wanted, const std::string& unwanted) const;
+
+private:
+    mutable std::mutex mutex_;
+    mutable std::map<std::string, std::vector<uint8_t>> kept_;
+};
+
+class WorldImpl final : public World, public shading::SpaceResolver {
+public:
+    const scene::Frame& frame() const override { return *frame_; }
+    const Settings& settings() const override { return settings_; }
+    Facts facts() const override { return facts_; }
+    std::vector<int> outputWidths() const override { return outputWidths_; }
+    std::vector<std::string> missingOutputs() const override { return missingOutputs_; }
+    std::vector<std::string> knownOutputs() const override;
+    void flushPrints(bool keep) const override { keep ? prints_.flush() : prints_.discard(); }
+    bool runImager(int, const float*, const float*, float*, float*, float*, float*, Diagnostics&,
+                   const StopFlag* stop) const override;
+    bool matrix(const std::string& from, const std::string& to, Matrix& out) const override;
+    /// Works out the matrices of kernel inputs "space:FROM>TO" once, before the first ray: matrix() then looks them up.
+    void keepSpaces(const std::vector<std::string>& inputs);
+    std::map<std::string, std::map<std::string, Matrix>> spaces_; ///< from, to
+    /// Whether a space of this name is predefined or the scene has one.
+    bool knowsSpace(const std::string& name) const;
+
+    InstanceRef instance(const scene::ShaderCall&, rsl::ShaderKind, Diagnostics&, bool anyKind = false);
+    /// Handles among these parameters that name neither one of `bound` nor a light: null, and an error with the place.
+    void dropMissingHandles(const ShaderInstance& of, std::map<std::string, std::string>& texts,
+                            const std::vector<std::pair<std::string, scene::ShaderRef>>& bound, Diagnostics&) const;
+    /// A shader that uses co-shaders, with those that these attributes have and, of these lights (indices into Frame::lights),
+    /// the class lights that have what it calls; any other as it is.
+    InstanceRef withCoShaders(const InstanceRef&, const std::map<std::string, scene::ShaderRef>& coshaders, Diagnostics&,
+                              const std::vector<int>& lights = {});
+    /// Fills outputWidths_: how many numbers each AOV has in the shaders of the frame.
+    void measureOutputs();
+    InstanceRef builtin(const std::string& name, rsl::ShaderKind, Diagnostics&);
+    rsl::KernelOptions kernelOptions(const ShaderInstance&, const std::vector<std::string>& outputs, const std::vector<std::string>& varying, bool mixed,
+                                     bool path) const;
+    BoundKernel kernel(const ShaderInstance&, const std::vector<std::string>& outputs, const std::vector<std::string>& varying, bool mixed,
+                       bool path, Diagnostics&, const std::string& light = "Ci");
+    /// The outputs of the kernel() of an instance, and whether light that it asks for reaches them.
+    std::vector<rsl::ir::OutputLight> lightOfOutputs(const ShaderInstance&, const std::vector<std::string>& outputs,
+                                                     const std::vector<std::string>& varying, bool path) const;
+
+    /// Matrices of the camera, from the frame's options.
+    void setCamera(const scene::Options&);
+    /// Of a surface shader (as it is bound) that assigns P: the kernel that gives P alone, run when shapes are diced. None where the shader leaves
+    /// P as it is, and where light or rays decide, which is reported.
+    BoundKernel movingKernel(const ShaderInstance&, const BoundKernel&, const std::vector<std::string>& varying, Diagnostics&);
+    /// Makes the meshes that rays meet.
+    void diceShapes(Diagnostics&);
+    /// Says by light and binding what is to be known of points, when all kernels are bound.
+    void setPointNeeds();
+    void displaceGrid(const SurfaceBinding&, const geometry::Shape&, geometry::DiceGrid&, Diagnostics&) const;
+    /// Fills lights_; visibility: kinds of rays that can meet a shape.
+    void bindLights(Diagnostics&, const std::function<uint32_t(const geometry::Shape&)>& visibility);
+    /// The lights of a list and the further blocks of their shaders.
+    std::vector<int> withParts(const std::vector<int>& lights) const;
+    /// Light kernels for the strings that the surfaces' loops send. After all surfaces are bound.
+    void bindSentStrings(Diagnostics&);
+    /// How bright the lights are; which area lights mean an intensity. After everything else is built.
+    void measureLights(Evaluator&, Diagnostics&);
+    /// What the shape takes from shadow rays. `mode`: "shader", "primitive", "opaque" or "Os"; "": what the attributes say.
+    Opacity opacityOf(const SurfaceBinding&, const geometry::Shape&, std::string mode, const std::vector<std::string>& varying, Evaluator&, Diagnostics&);
+    /// Fills choosers_, and lightGroups_ where there are many lights; after measureLights().
+    void makeChoosers(Diagnostics&);
+    void groupLights(Diagnostics&);
+
+    std::shared_ptr<const scene::Frame> frame_;
+    MakeEvaluator evaluators_;                 ///< kept for the imager
+    Settings settings_;
+    bool rispecSpecular_ = false;              ///< specular() has RISpec's exponent (shadeops/specular.h)
+    std::map<const scene::ShaderCall*, InstanceRef> coShaders_;              ///< instances, one a request
+    std::map<std::vector<const void*>, InstanceRef> withCoShaders_;          ///< by shader, then the requests of its co-shaders
+    Facts facts_;
+    std::vector<geometry::ShapeRef> shapes_;
+    std::unordered_map<const geometry::Shape*, uint32_t> numberOfShape_; ///< index into shapes_
+    bool traceSubsets_ = false;                ///< some shape has Attribute "grouping" "tracesubset"
+    std::vector<int> bindingOf_;               ///< by shape
+    std::vector<SurfaceBinding> bindings_;
+    std::vector<Medium> media_;                ///< of Interior and Exterior
+    shading::Media eye_;                       ///< where camera rays begin
+    void findEye();                            ///< fills eye_; once rays can be sent
+    void goOn(accel::Ray&, const accel::Hit&) const; ///< behind what it met
+    int groups_ = 0;                           ///< number of different SurfaceBinding::group
+    std::vector<BoundLight> lights_;
+    std::unique_ptr<accel::Accel> accel_;
+    Matrix worldToCamera_, cameraToWorld_;
+    Matrix cameraToScreen_, screenToNdc_, ndcToRaster_;
+    std::vector<int> outputWidths_;
+    std::vector<std::string> missingOutputs_;
+    /// All shaders that could give an output.
+    std::set<const ShaderInstance*> givers() const;
+    std::vector<LightOutputPlace> lightOutputs_;
+    std::unique_ptr<texture::TextureSystem> textures_;
+    std::shared_ptr<rsl::ShaderCompiler> compiler_;
+    Diagnostics* diagnostics_ = nullptr;
+    mutable rsl::PrintLog prints_;
+    mutable std::mutex imagerMutex_;
+    struct BoundImager { bool bound = false; InstanceRef shader; BoundKernel kernel; };
+    BoundImager imager_;                       ///< by runImager(), under the lock
+    bool built_ = false;                       ///< threads read the world now
+    std::vector<std::string> lightMessages_;   ///< parameters of surfaces that lights and atmospheres ask for, sorted
+    std::set<std::string> lightDisplacements_; ///< outputs of displacement shaders that lights ask for; "": of names made when they run
+    bool lightsAsk_ = false;                   ///< some light asks about the surface that it lights (BoundLight::asksSurface)
+    bool lightsAsk() const { return lightsAsk_; }
+    int maxDepth_ = 32;
+    /// The most trace() calls of lights that shading a point brings, about: of limits::kLightsSampled lights, for each loop over
+    /// lights and lighting shadeop of the surface that has most of them.
+    int lightTraces_ = 0;
+    void countLightTraces();
+    bool lightChannels_ = false;               ///< lights give AOVs by outputchannel()
+    bool footprints_ = false;                  ///< some kernel reads du or dv
+    bool allOpaque_ = true;                    ///< no opacity below 1: shadow rays need no shading
+    /// Where that is not so, by shape, what rays without a "hitmode" may be asked to meet alone: shapes that block all light, and the
+    /// others; and a box about those.
+    struct ByOpacity {
+        std::vector<uint8_t> opaque, clear;
+        geometry::Bounds clearBounds;
+    } byOpacity_;
+    void sortByOpacity();
+    bool fades_ = false;                       ///< some shape is between levels of detail
+    bool hitModes_ = false;                    ///< some call has a "hitmode"
+    BoundKernel primitiveHit_;                 ///< shows primitives as they are; only where some ray may want that
+    ShapeSubsets subsets_;
+    std::vector<std::vector<int>> sampledLights_; ///< by SurfaceBinding::lightList: lights that get samples, in order
+    /// Lights of one program that one kernel call evaluates for points that ask for different ones of them.
+    struct LightGroup { BoundKernel kernel; };
+    std::vector<LightGroup> lightGroups_;
+    /// By the same: empty where all of them are sampled at every vertex. numberOf: by light, its place in the list, else -1.
+    struct ChooserOfList { LightChooser chooser; std::vector<int> numberOf; };
+    std::vector<ChooserOfList> choosers_;
+    std::unordered_map<const geometry::Shape*, int> hazyEmitters_; ///< emitters in an atmosphere -> their binding
+    float clipNear_ = 0, clipFar_ = 1;         ///< of the request Clipping, for depth()
+    std::vector<std::pair<Vec3d, Vec3d>> clippingPlanes_; ///< camera space point, normal; camera rays see nothing on the normal's side
+};
+
+// Two threads that come first both open the map: the same one.
+template <class Place> texture::Handle TextureSite::map(const WorldImpl& world, Place&& place) const {
+    if (!opened_.load(std::memory_order_acquire)) {
+        if (!name.empty()) map_.store(world.textures_->open(name, world.settings_.texturePaths, place()), std::memory_order_relaxed);
+        opened_.store(true, std::memory_order_release);
+    }
+    return map_.load(std::memory_order_relaxed);
+}
+
+} // namespace alpenglow::transport

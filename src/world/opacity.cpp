@@ -1,0 +1,74 @@
+// What surfaces take from shadow rays: a number where it is known beforehand, else the kernel that tells it.
+#include "world/impl.h"
+
+namespace alpenglow::transport {
+
+void WorldImpl::sortByOpacity() {
+    if (allOpaque_) return;
+    for (size_t i = 0; i < shapes_.size(); ++i) {
+        const bool opaque = bindings_[size_t(bindingOf_[i])].opacity.opaque();
+        byOpacity_.opaque.push_back(opaque);
+        byOpacity_.clear.push_back(!opaque);
+        if (!opaque) byOpacity_.clearBounds.add(shapes_[i]->bounds());
+    }
+}
+
+void WorldImpl::goOn(accel::Ray& ray, const accel::Hit& h) const {
+    ray.tnear = std::nextafter(h.t, 0.f); // other surfaces may lie just there
+    ray.passed = h.distance;
+    ray.excludeShape = h.shape;
+    ray.excludePrim = h.prim;
+}
+
+Opacity WorldImpl::opacityOf(const SurfaceBinding& b, const geometry::Shape& shape, std::string mode, const std::vector<std::string>& varying, Evaluator& evaluator, Diagnostics& d) {
+    const scene::Attributes& a = shape.attributes();
+    const bool asked = !mode.empty();
+    if (!asked) mode = "shader";
+    for (const char* name : {"render:casts_shadows", "shade:transmissionhitmode", "visibility:transmission"}) // BMRT's, PRMan's, the older ones
+        if (const scene::Param* p = a.value(name); p && !asked && !p->strings.empty()) mode = p->strings[0];
+    InstanceRef surface = b.surface;
+    std::string what = b.surfaceS.kernel->facts().opacity;
+    BoundKernel k;
+    const rsl::Shader& text = surface->program->shader();
+    if (text.object && std::any_of(text.nested.begin(), text.nested.end(), [](const auto& f) { return f->name == "opacity"; })) {
+        // What the method opacity() gives stops rays, whatever the methods behind it make of Oi.
+        auto alone = std::make_shared<ShaderInstance>(*surface);
+        alone->parameters.strings["opacity()"] = "1";
+        surface = alone;
+        k = kernel(*surface, {"Oi"}, varying, false, false, d);
+        if (k) what = k.kernel->facts().opacity;
+    }
+    bool varies = shape.findPrimvar("Os") >= 0;
+    Opacity result;
+    result.constant = mode == "opaque" ? Color(1) : a.opacity;
+    if (mode == "opaque" || mode == "primitive" || (mode == "Os" && !varies) || (what == "Os" && !varies)) return result;
+    if (what == "1") {
+        result.constant = Color(1);
+        return result;
+    }
+    if (!k) k = kernel(*surface, {"Oi"}, varying, false, false, d);
+    if (!k || k.plan->Oi < 0) return result;
+    if (k.kernel->facts().suspends) {
+        d.reportOnce("opacity:" + b.surface->name, {Severity::Warning, Rie::NoError, b.surface->place,
+                     "the opacity of shader \"" + b.surface->name + "\" depends on traced rays; its shadow has the primitive's Opacity", {}, {}});
+        return result;
+    }
+    bool constant = !varies && k.kernel->sites().empty();
+    for (const auto& in : k.kernel->inputs()) {
+        bool parameter = in.name.rfind("param:", 0) == 0 && std::find(varying.begin(), varying.end(), in.name.substr(6)) == varying.end();
+        constant &= parameter || in.name == "Os" || (in.name == "Cs" && shape.findPrimvar("Cs") < 0);
+    }
+    if (!constant) {
+        result.kernel = std::move(k);
+        return result;
+    }
+    std::vector<ShadePoint> point(1);
+    point[0].shape = &shape;
+    Color o;
+    evaluator.run(k, nullptr, point, {&b.surface->parameters, &b.surface->toCurrent},
+                  [&](const shading::Batch& batch) { o = batch.color(k.plan->Oi, 0); });
+    for (int i = 0; i < 3; ++i) result.constant[i] = std::isfinite(o[i]) ? std::clamp(o[i], 0.f, 1.f) : 1;
+    return result;
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,120 @@
+// What the call sites of a kernel mean, worked out when the kernel is bound, so that no name is compared while it runs.
+#pragma once
+#include "accel/accel.h"
+#include "lobes/lobe.h"
+#include "rsl/compiler.h"
+#include "shading/batch.h"
+#include "texture/texture.h"
+#include <atomic>
+#include <mutex>
+
+namespace alpenglow::transport {
+
+using shading::RayType;
+using shading::ShadePoint;
+class WorldImpl;
+
+/// The kind of a ray as visibility masks know it.
+inline uint32_t visibilityBit(RayType t) {
+    switch (t) {
+    case RayType::Camera: return accel::kCamera;
+    case RayType::Diffuse: return accel::kDiffuse;
+    case RayType::Specular: return accel::kSpecular;
+    default: return accel::kTransmission;
+    }
+}
+
+/// What a call that sends rays says of them (rsl.md, table 6.10). Rows of arguments, or -1.
+struct RaySite {
+    int bias = -1, maxDistance = -1, maxHit = -1, cone = -1, samples = -1, base = -1;
+    int subset = -1, exclude = -1, sides = -1, mode = -1, label = -1, type = -1; ///< strings that are known only when the shader runs
+    std::string subsetText, excludeText;
+    int32_t subsetId = 0, excludeId = 0;  ///< the same, interned
+    shading::RaySet set;                  ///< what is known beforehand
+    RayType rays = RayType::Specular;
+    bool fixed = false;                   ///< nothing of the set, the label and the type is known only when the shader runs
+};
+
+
+/// Where the rarer parameters of a trace() lie.
+struct TraceSite {
+    int udir = -1, roughness = -1, roughnessv = -1, absorption = -1, tint = -1; ///< rows, or -1
+    std::vector<std::pair<int, int>> eta; ///< row, components
+    std::vector<int> lobes;               ///< rows of the elements of "lobeparameters"
+    int part = -1;                        ///< of the form that gives an array
+    texture::Handle map = nullptr;        ///< "environmentmap"
+    Matrix toMap;                         ///< current to "environmentspace"
+    bool sums = false;                    ///< it asks for transmission or for parts of the result
+    bool onlyLights = false;              ///< for nothing but what area lights send
+};
+
+/// What a texture() or environment() asks of a map. Rows of `in`, or -1.
+struct TextureSite {
+    std::string name;                     ///< of the map; "" where `computed`, or there is none
+    bool computed = false;                ///< each point names its map, in row 0
+    texture::LookupOptions options;       ///< what is the same for all points
+    int filter = -1, channel = -1, fill = -1, width = -1, swidth = -1, twidth = -1, blur = -1, sblur = -1, tblur = -1;
+    int count = 0;                        ///< numbers of the result
+    int slopes = 0, firsts = 0;           ///< derivatives that are wanted, the first ones of them (rsl/passes/gradients.h)
+    std::vector<int> rows;                ///< of the coordinates
+    /// The map that is the same for all points, opened when first asked for. `place`: gives the SourcePlace of the call.
+    template <class Place> texture::Handle map(const class WorldImpl&, Place&& place) const;
+
+private:
+    mutable std::atomic<texture::Handle> map_{nullptr};
+    mutable std::atomic<bool> opened_{false};
+};
+
+/// What a call site of a kernel means to the engine, worked out once per kernel.
+enum class SiteKind : uint8_t {
+    Unknown, Ambient, Diffuse, Specular, Phong, Trace, Transmission, LightVisibility, ///< requests
+    Illuminance, Texture, Environment, Printf, Message, LightSource, Attribute, Option, RendererInfo, RayInfo, RayLevel, TextureInfo, LightSetup, LightHandles, PrimitiveVariable, ShaderName, Text, Other
+};
+struct SiteInfo {
+    SiteKind kind = SiteKind::Unknown;
+    const rsl::ir::Site* site = nullptr;
+    std::vector<int> rows;                     ///< first row of each argument in `in` (after the weight for Emit)
+    std::map<std::string, int> named;          ///< row of an optional pair's value
+    std::map<std::string, std::string> text;   ///< constant string pairs
+    std::map<std::string, int> resultRows;     ///< "" and output names -> first row of `out`
+    int resultRowCount = 0;
+    /// Of `resultRows`, those of requests; -1: not asked for.
+    struct Results {
+        int value = -1, distance = -1, transmission = -1, normal = -1;
+        int environment = -1, unshadowedEnvironment = -1, areaLight = -1, unshadowedAreaLight = -1;
+    } results;
+    bool givesDistance() const { return kind == SiteKind::Trace && site->resultType.base == rsl::Base::Float; }
+    const LobeKind* lobe = nullptr;            ///< Trace: the distribution; the lobe of a lighting shadeop
+    float exponent = 1;                        ///< Specular: this over the roughness (shadeops/specular.h)
+    int rowWo = -1, rowExponent = -1, rowCone = -1, rowHorizon = -1, rowLights = -1; ///< of `named`
+    std::shared_ptr<const struct TraceSite> trace; ///< Trace: what only some calls use
+    std::shared_ptr<const RaySite> rays;       ///< Trace, Transmission
+    std::shared_ptr<const TextureSite> map;    ///< Texture, Environment
+    bool setUp = false, refresh = false, outside = false; ///< loops: "__setup", "lightcache" "refresh"; queries: "__outside" of loops
+    int rowCategory = -1;                      ///< LightSetup: of "category", in the setup's arguments
+    uint64_t sentStrings = 0;                  ///< of sentStrings(): its hash, 0 for none
+    int32_t nameId = 0;                        ///< the first string of the call, interned; 0: none, or known only when it runs
+    /// Outputs of the surface that lights ask for: name, row, numbers.
+    struct Output { std::string name; int row, size; };
+    std::vector<Output> outputs;
+    int32_t label = 0;                         ///< of its rays: interned, for rayinfo()
+};
+
+/// How many rows the argument of a call has that begins at `row`.
+size_t rowsOf(const SiteInfo&, int row);
+
+/// A kernel and the meaning of its sites.
+struct BoundKernel {
+    std::shared_ptr<const rsl::CompiledKernel> kernel;
+    std::shared_ptr<const shading::BatchPlan> plan;
+    std::vector<SiteInfo> sites;
+    bool mixed = false;
+    bool path = false;                         ///< lobe shadeops are requests; else they are answered at once
+    explicit operator bool() const { return kernel != nullptr; }
+};
+BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel>, bool mixed, bool path, WorldImpl*);
+
+/// The strings that a loop sends, as one key of BoundLight::variants: "name\1value\2" of each; "" for none.
+std::string sentStrings(const SiteInfo&);
+
+} // namespace alpenglow::transport

@@ -1,2 +1,2 @@
 room(geometry DEPS scene base)
-room_tests(geometry DEPS geometry)
+room_tests(geometry DEPS accel geometry)

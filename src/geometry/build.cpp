@@ -24,6 +24,8 @@ constexpr Entry kTable[] = {
     {"Patch", makePatch},
     {"PatchMesh", makePatchMesh},
     {"NuPatch", makeNuPatch},
+    {"Curves", makeCurves},
+    {"Points", makePoints},
 };
 
 void once(Diagnostics& diag, const std::string& key, Rie code, const SourcePlace& place, const std::string& message) {
@@ -53,7 +55,7 @@ void fillBasis(scene::Basis& b) {
 } // namespace
 
 ShapeRef buildShape(const scene::PrimitiveRef& prim, const scene::AttributesRef& given, const Matrix& toCamera, int instance,
-                    Diagnostics& diag) {
+                    Diagnostics& diag, Facing facing) {
     const Entry* entry = nullptr;
     for (const Entry& e : kTable)
         if (prim->kind == e.kind) entry = &e;
@@ -82,8 +84,9 @@ ShapeRef buildShape(const scene::PrimitiveRef& prim, const scene::AttributesRef&
     s.primitive = prim;
     s.toCamera = toCamera;
     s.instance = instance;
+    s.facing = facing;
     s.attributes = given;
-    const bool patch = prim->kind == "Patch" || prim->kind == "PatchMesh";
+    const bool patch = prim->kind == "Patch" || prim->kind == "PatchMesh" || prim->kind == "Curves";
     if (!given || (patch && (unset(given->ubasis) || unset(given->vbasis)))) {
         auto a = given ? std::make_shared<scene::Attributes>(*given) : std::make_shared<scene::Attributes>();
         fillBasis(a->ubasis);
@@ -96,6 +99,8 @@ ShapeRef buildShape(const scene::PrimitiveRef& prim, const scene::AttributesRef&
 std::vector<ShapeRef> buildShapes(const scene::Frame& f, Diagnostics& diag, size_t most) {
     std::vector<ShapeRef> out;
     const Matrix& camera = f.options.worldToCamera.first();
+    // REYES turned them to the eye once; where rays come from everywhere they turn to each.
+    const Facing facing = f.options.hider != "hidden" ? Facing::Ray : f.options.projection == "perspective" ? Facing::Eye : Facing::Picture;
     auto sayMotion = [&](const scene::Primitive& p, bool moves) {
         if (moves || !p.motionKeys.empty() || p.toWorld.moves())
             once(diag, "motion", Rie::Unimplement, p.place,
@@ -109,7 +114,7 @@ std::vector<ShapeRef> buildShapes(const scene::Frame& f, Diagnostics& diag, size
     };
     auto add = [&](const scene::PrimitiveRef& p, const scene::AttributesRef& a, const Matrix& m, int instance) {
         if (full(p->place)) return;
-        if (ShapeRef s = buildShape(p, a, m, instance, diag)) out.push_back(std::move(s));
+        if (ShapeRef s = buildShape(p, a, m, instance, diag, facing)) out.push_back(std::move(s));
     };
     for (const scene::PrimitiveRef& p : f.primitives) {
         if (!p) continue;

@@ -5,9 +5,10 @@
 
 namespace alpenglow::geometry {
 
-/// Makes a shape of one primitive; null when it was reported as faulty or not yet drawn. attributes may be null (defaults).
+/// Makes a shape of one primitive; null when it was reported as faulty or not yet drawn. attributes may be null (defaults). facing: what
+/// curves and points turn to.
 ShapeRef buildShape(const scene::PrimitiveRef&, const scene::AttributesRef& attributes, const Matrix& toCamera, int instance,
-                    Diagnostics&);
+                    Diagnostics&, Facing facing = Facing::Ray);
 
 /// All shapes of a frame: its primitives in order, then its instances expanded in order (their primitives' transforms
 /// composed; the instance's attributes). Moving transforms and primitives stand at their first key, said once. What is beyond

@@ -18,5 +18,7 @@ ShapeRef makePointsGeneralPolygons(ShapeSource, Diagnostics&);
 ShapeRef makePatch(ShapeSource, Diagnostics&);
 ShapeRef makePatchMesh(ShapeSource, Diagnostics&);
 ShapeRef makeNuPatch(ShapeSource, Diagnostics&);
+ShapeRef makeCurves(ShapeSource, Diagnostics&);
+ShapeRef makePoints(ShapeSource, Diagnostics&);
 
 } // namespace alpenglow::geometry

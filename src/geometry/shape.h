@@ -81,12 +81,17 @@ struct ExactHit { double t, u, v; };
 struct DiceOptions;
 struct DiceGrid;
 
+/// What shapes without a side of their own (curves and points without "N") turn to: whatever ray comes, the eye in the origin, or the
+/// plane of the picture, when the eye is far.
+enum class Facing { Ray, Eye, Picture };
+
 /// From where a shape came.
 struct ShapeSource {
     scene::PrimitiveRef primitive;
     scene::AttributesRef attributes; ///< never null; those of the instance for instanced primitives (RISpec 3.2)
     Matrix toCamera;                 ///< object to camera
     int instance = -1;               ///< index into Frame::instances
+    Facing facing = Facing::Ray;
 };
 
 /// Sign of Ng relative to dPdu ^ dPdv (ri.md 4.1). "outside" follows the handedness of the transform, so that what a primitive
@@ -153,6 +158,10 @@ public:
     virtual SurfacePoint sampleArea(double xi1, double xi2) const = 0;
     /// The same, written in place.
     virtual void sampleArea(double xi1, double xi2, SurfacePoint& out, uint32_t needs = kNeedAll) const { out = sampleArea(xi1, xi2); }
+    /// The same for a point that is lit: what faces rays is where rays from there would meet it.
+    virtual void sampleFrom(const Vec3& /*from*/, double xi1, double xi2, SurfacePoint& out, uint32_t needs = kNeedAll) const {
+        sampleArea(xi1, xi2, out, needs);
+    }
     /// Density per unit area with which sampleArea gives this point: 1 / |dPdu ^ dPdv|, or 1 / area for polygons;
     /// 0 where the surface is degenerate.
     virtual double sampleDensity(const SurfacePoint&) const = 0;

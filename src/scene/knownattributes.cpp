@@ -31,6 +31,7 @@ constexpr OptionDescription kAttributes[] = {
     {"dice:minlength", "float", "", "", Ignored, kSeveral},
     {"dice:rasterorient", "int", "1", "0", Asked, "Shapes are diced by their size on the screen."},
     {"dice:referencecamera", "string", "", "", Ignored, kSeveral},
+    {"dice:roundcurve", "int", "0", "1", Used, "Curves without \"N\" are tubes instead of ribbons that face the ray (PRMan)."},
     {"dice:strategy", "string", "", "", Ignored, kSeveral},
     {"displacementbound:coordinatesystem", "string", "\"object\"", "\"shader\"", Used,
      "The space of displacementbound:sphere: object and shader are scaled as they are, all others are taken as camera space."},

@@ -94,7 +94,7 @@ bool Emitter::sample(const Vec3& from, Vec2 u, float choose, Sample& out, geomet
             return true;
         }
     }
-    e.shape->sampleArea(u.x, u.y, point, needs);
+    e.shape->sampleFrom(from, u.x, u.y, point, needs);
     Vec3 d = point.P - from;
     out.distance = length(d);
     if (!(out.distance > 0)) return false;
@@ -109,7 +109,7 @@ bool Emitter::sampleSurface(const Vec3& from, Vec2 u, float choose, Sample& out,
     const Entry& e = entryAt(choose);
     out.shape = e.shape;
     out.visibility = e.visibility;
-    e.shape->sampleArea(u.x, u.y, point, needs);
+    e.shape->sampleFrom(from, u.x, u.y, point, needs);
     const Vec3 d = point.P - from;
     out.distance = length(d);
     if (!(out.distance > 0)) return false;

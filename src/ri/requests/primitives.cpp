@@ -195,8 +195,8 @@ std::vector<Request> primitiveRequests() {
          "string scheme; int[] nverts; int[] verts; string[] tags?; int[] nargs?; int[] intargs?; number[] floatargs?; string[] "
          "stringargs?; ..",
          k, s, true, "A subdivision surface with edits. Not drawn yet.", hierarchical, subdivision},
-        {"Points", "..", k, s, true, "Particles. Not drawn yet.", "\"P\" [0 0 0 1 0 0] \"constantwidth\" [.1]", polygon},
-        {"Curves", "string type; int[] nvertices; string wrap; ..", k, s, true, "Thin ribbons. Not drawn yet.",
+        {"Points", "..", k, s, true, "Particles: discs that face the eye, or by \"type\" spheres and squares.", "\"P\" [0 0 0 1 0 0] \"constantwidth\" [.1]", polygon},
+        {"Curves", "string type; int[] nvertices; string wrap; ..", k, s, true, "Thin ribbons, flat by \"N\", or tubes (Attribute \"dice\" \"roundcurve\" 1).",
          "\"cubic\" [4] \"nonperiodic\" \"P\" [0 0 0 1 0 0 2 0 0 3 0 0] \"width\" [.1 .2]", curves},
         {"Blobby", "int nleaf; int[] code; number[] floats; string[] strings?; ..", k, s, true,
          "An implicit surface of blobs. Not drawn yet.", "1 [1001 0] [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1] [\"\"]", blobby},

@@ -1,0 +1,318 @@
+// Curves type nvertices wrap: flat ribbons with "N", ribbons that face the eye or the ray without, or round (Attribute "dice" "roundcurve").
+#include "geometry/curves.h"
+#include "base/exact.h"
+#include "geometry/dice.h"
+#include "geometry/factories.h"
+#include "geometry/parametric.h"
+#include <algorithm>
+#include <cmath>
+
+namespace alpenglow::geometry {
+namespace {
+
+/// Hits of ribbons that face the ray say how the ribbon was turned: ExactHit::u is 2 * turn + u, turn counting these parts of a circle.
+constexpr double kTurns = 1 << 24;
+
+class Curves final : public Shape {
+public:
+    Curves(ShapeSource s, CurveSet set, Diagnostics&);
+
+    uint32_t exactPrims() const override { return set_.segments() * parts_; }
+    Bounds exactBounds(uint32_t prim) const override;
+    Bounds bounds() const override { return bounds_; }
+    using Shape::exactHits;
+    int exactHits(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted, ExactHit out[4]) const override;
+
+    int faces() const override { return int(source_.primitive->ints.size()); }
+    SurfacePoint evaluate(int face, double u, double v) const override {
+        double f;
+        const uint32_t segment = set_.segmentAt(face, v, f);
+        return pointOf(segment, u, f, Vec3d(0.0));
+    }
+    double area() const override { return areas().empty() ? 0 : areas().back(); }
+    SurfacePoint sampleArea(double xi1, double xi2) const override { return samplePoint(xi1, xi2, Vec3d(0.0)); }
+    void sampleFrom(const Vec3& from, double xi1, double xi2, SurfacePoint& out, uint32_t) const override {
+        out = samplePoint(xi1, xi2, Vec3d(from));
+    }
+    double sampleDensity(const SurfacePoint&) const override;
+    void dice(const DiceOptions&, Diagnostics&) override;
+
+protected:
+    size_t classCount(scene::Class c) const override { return set_.classCount(c); }
+    int weights(scene::Class c, const SurfacePoint& p, Weight w[16]) const override {
+        return set_.weights(c, p.prim / parts_, std::clamp(p.b2, 0.0, 1.0), w);
+    }
+    SurfacePoint evaluateLocal(uint32_t prim, double b1, double b2) const override;
+
+private:
+    /// The part of a segment that a primitive is.
+    void part(uint32_t prim, double& from, double& to) const {
+        from = double(prim % parts_) / parts_;
+        to = double(prim % parts_ + 1) / parts_;
+    }
+    void choosePartsAndBounds();
+    Vec3d toObject(const Vec3d& p) const { return transformPoint(toObject_, p); }
+    SurfacePoint pointOf(uint32_t segment, double u, double f, const Vec3d& from) const;
+    SurfacePoint samplePoint(double xi1, double xi2, const Vec3d& from) const;
+    LocalPoint local(const CurveSegment&, const CurveFacing&, double u, double f) const;
+    double turnOf(const CurveSegment&, double f, const Vec3d& across) const;
+    const std::vector<double>& areas() const;
+
+    CurveSet set_;
+    CurveFacing facing_;
+    bool fromRay_ = false;
+    uint32_t parts_ = 1; ///< primitives of a segment
+    Matrix toObject_;
+    double side_ = 1;        ///< +1, -1: of Ng along dPdu ^ dPdv of object space
+    double reach_[3];    ///< half the extent of a unit ball of object space along camera axes
+    Bounds bounds_;
+    mutable std::once_flag made_;
+    mutable std::vector<double> areas_; ///< summed up by segment
+};
+
+Curves::Curves(ShapeSource s, CurveSet set, Diagnostics& diag) : Shape(std::move(s)), set_(std::move(set)) {
+    toObject_ = inverse(toCamera());
+    const bool mirrored = determinant3(toCamera()) < 0;
+    side_ = (mirrored ? -1 : 1) * double(orientation_);
+    const auto& m = toCamera().m;
+    for (int k = 0; k < 3; ++k) reach_[k] = std::sqrt(m[0][k] * m[0][k] + m[1][k] * m[1][k] + m[2][k] * m[2][k]);
+    const scene::Param* round = attributes().value("dice:roundcurve");
+    if (set_.hasNormals()) facing_.kind = CurveFacing::Given;
+    else {
+        // These look at who sees them whatever the orientation: with sides 1 they would vanish.
+        facing_.side = side_;
+        if (round && !round->numbers.empty() && round->numbers[0] != 0) facing_.kind = CurveFacing::Round;
+        else if (source_.facing == Facing::Eye) facing_.kind = CurveFacing::Point, facing_.at = toObject(Vec3d(0.0));
+        else if (source_.facing == Facing::Picture) facing_.at = transformVector(toObject_, Vec3d(0, 0, -1));
+        else fromRay_ = true;
+    }
+    takePrimvars(diag);
+    choosePartsAndBounds();
+}
+
+void Curves::choosePartsAndBounds() {
+    // Boxes around long thin pieces hold mostly air: short pieces have smaller ones. Beyond some millions memory counts more.
+    constexpr uint32_t kProbes = 512;
+    constexpr size_t kMost = 6'000'000;
+    const uint32_t n = set_.segments(), step = std::max(1u, n / kProbes);
+    double longs = 0, wides = 0;
+    for (uint32_t i = 0; i < n; i += step) {
+        CurveSegment g;
+        set_.load(i, g);
+        longs += length(g.linear ? g.p[2] - g.p[1] : g.p[3] - g.p[0]);
+        wides += 2 * g.widest();
+    }
+    if (facing_.kind != CurveFacing::Round || !set_.linear())
+        while (parts_ < 8 && longs > 4 * parts_ * wides && 2 * size_t(n) * parts_ <= kMost) parts_ *= 2;
+    for (uint32_t i = 0; i < n * parts_; ++i) bounds_.add(exactBounds(i));
+}
+
+Bounds Curves::exactBounds(uint32_t prim) const {
+    CurveSegment g;
+    set_.load(prim / parts_, g);
+    double from, to, wide = g.widest();
+    part(prim, from, to);
+    Vec3d p[4];
+    int n = 4;
+    if (g.linear) {
+        n = 2;
+        p[0] = g.p[1] + (g.p[2] - g.p[1]) * from;
+        p[1] = g.p[1] + (g.p[2] - g.p[1]) * to;
+        wide *= 2; // mitres
+    } else {
+        std::copy(g.p, g.p + 4, p);
+        bernsteinPart<3>(p, from, to);
+    }
+    Bounds b;
+    for (int i = 0; i < n; ++i) {
+        const Vec3d c = transformPoint(toCamera(), p[i]);
+        const double slack = 1e-6 * (std::fabs(c.x) + std::fabs(c.y) + std::fabs(c.z)) + 1e-30;
+        const Vec3d r(reach_[0] * wide * 1.000001 + slack, reach_[1] * wide * 1.000001 + slack, reach_[2] * wide * 1.000001 + slack);
+        b.add(Vec3(c - r));
+        b.add(Vec3(c + r));
+    }
+    return b;
+}
+
+double Curves::turnOf(const CurveSegment& g, double f, const Vec3d& across) const {
+    Vec3d a, b;
+    acrossFrame(curveAt(g, f).d, a, b);
+    double turn = exact::atan2(dot(across, b), dot(across, a)) / (2 * kPi);
+    if (turn < 0) turn += 1;
+    return std::min(std::floor(turn * kTurns), kTurns - 1);
+}
+
+int Curves::exactHits(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted wanted, ExactHit out[4]) const {
+    CurveSegment g;
+    set_.load(prim / parts_, g);
+    const Vec3d o = toObject(org), d = transformVector(toObject_, dir);
+    const double dd = dot(d, d);
+    if (!(dd > 0) || !std::isfinite(dd)) return 0;
+    double from, to;
+    part(prim, from, to);
+    const CurveRay ray(o, d, (g.p[1] + g.p[2]) * 0.5, lo, hi);
+    CurveFacing facing = facing_;
+    if (fromRay_) facing.at = -d;
+    CurveHit hits[4];
+    const bool round = facing_.kind == CurveFacing::Round;
+    int n = round ? meetTube(g, from, to, ray, hits) : meetRibbon(g, from, to, facing, fromRay_, ray, hits);
+    std::sort(hits, hits + n, [](const CurveHit& a, const CurveHit& b) { return a.t < b.t; });
+    if (wanted != Wanted::All) n = std::min(n, 1);
+    for (int i = 0; i < n; ++i) {
+        const CurveHit& h = hits[i];
+        out[i] = {h.t, 0.5 + 0.5 * h.s, h.f};
+        if (wanted == Wanted::Any) break;
+        if (fromRay_) out[i].u += 2 * turnOf(g, h.f, h.across);
+        if (!round) continue;
+        Jet a, b;
+        ScalarJet radius;
+        tubeFrame(g, h.f, a, b, radius);
+        const Vec3d w = o + d * h.t - curveAt(g, h.f).f;
+        const double u = exact::atan2(dot(w, b.f), dot(w, a.f)) / (2 * kPi);
+        out[i].u = u < 0 ? u + 1 : u;
+    }
+    return n;
+}
+
+LocalPoint Curves::local(const CurveSegment& g, const CurveFacing& facing, double u, double f) const {
+    LocalPoint p;
+    const Jet c = curveAt(g, f);
+    if (facing.kind == CurveFacing::Round) {
+        Jet a, b;
+        ScalarJet r;
+        tubeFrame(g, f, a, b, r);
+        // Outward, and counterclockwise as seen from where the curve goes to.
+        const auto [s, k] = exact::sinCos(2 * kPi * u);
+        const Jet out = r * (ScalarJet{k} * a + ScalarJet{s} * b), round = r * (ScalarJet{-2 * kPi * s} * a + ScalarJet{2 * kPi * k} * b);
+        p = {c.f + out.f, round.f, c.d + out.d, out.f * (-4 * kPi * kPi), round.d, c.dd + out.dd};
+        p.n = a.f * k + b.f * s;
+    } else {
+        const double s = 2 * u - 1;
+        const Jet w = sideAt(g, facing, f);
+        p = {c.f + w.f * s, w.f * 2.0, c.d + w.d * s, Vec3d(0.0), w.d * 2.0, c.dd + w.dd * s};
+        p.n = facing.kind == CurveFacing::Point ? facing.at - c.f : facing.at; // where the product vanishes
+        // Where a bend is narrower than the ribbon its inner side lies folded: what faces the ray goes on doing so.
+        if (facing.kind != CurveFacing::Given && dot(cross(p.Pu, p.Pv), p.n) * facing.side <= 0) p.Pv = c.d, p.Puv = p.Pvv = Vec3d(0.0);
+    }
+    return p;
+}
+
+SurfacePoint Curves::evaluateLocal(uint32_t prim, double b1, double b2) const {
+    const uint32_t segment = prim / parts_;
+    CurveSegment g;
+    set_.load(segment, g);
+    const CurveSet::Place place = set_.place(segment);
+    CurveFacing facing = facing_;
+    double u = b1, n = place.count;
+    if (fromRay_) {
+        const double turn = std::floor(0.5 * b1);
+        u = b1 - 2 * turn;
+        Vec3d a, b;
+        const Vec3d along = curveAt(g, b2).d;
+        acrossFrame(along, a, b);
+        const auto [s, c] = exact::sinCos(2 * kPi * (turn + 0.5) / kTurns);
+        facing.at = cross(a * c + b * s, along) * facing.side;
+    }
+    LocalPoint o = local(g, facing, u, b2);
+    LocalPoint c;
+    const Matrix& m = toCamera();
+    c.P = transformPoint(m, o.P);
+    c.Pu = transformVector(m, o.Pu);
+    c.Pv = transformVector(m, o.Pv * n);
+    c.Puu = transformVector(m, o.Puu);
+    c.Puv = transformVector(m, o.Puv * n);
+    c.Pvv = transformVector(m, o.Pvv * (n * n));
+    const Vec3d across = cross(c.Pu, c.Pv) * double(orientation_);
+    const double l = length(across);
+    c.n = l > 0 ? across / l : normalize(transformNormal(m, o.n) * (facing_.kind == CurveFacing::Round ? side_ : 1));
+    normalDerivatives(c);
+    SurfacePoint p;
+    p.P = Vec3(c.P);
+    p.dPdu = Vec3(c.Pu), p.dPdv = Vec3(c.Pv);
+    p.Puu = Vec3(c.Puu), p.Puv = Vec3(c.Puv), p.Pvv = Vec3(c.Pvv);
+    p.n = Vec3(c.n);
+    p.dNdu = Vec3(c.nu), p.dNdv = Vec3(c.nv);
+    p.Ng = l > 0 ? Vec3(across) : p.n;
+    p.u = float(u);
+    p.v = float((place.local + std::clamp(b2, 0.0, 1.0)) / n);
+    p.orientation = orientation_;
+    p.face = int(place.face);
+    p.prim = prim;
+    p.b1 = u;
+    p.b2 = b2;
+    // What leaves a ribbon that faces the ray must not meet the same ribbon, now turned elsewhere: it begins half a width away.
+    p.pError = 2 * roundingError(p.P) + (fromRay_ ? 0.26f * length(p.dPdu) : 0);
+    finishPoint(p, true);
+    return p;
+}
+
+/// A point of a segment as it is seen from `from` (camera space).
+SurfacePoint Curves::pointOf(uint32_t segment, double u, double f, const Vec3d& from) const {
+    double b1 = u;
+    if (fromRay_) {
+        CurveSegment g;
+        set_.load(segment, g);
+        CurveFacing facing = facing_;
+        facing.at = toObject(from) - curveAt(g, f).f;
+        b1 += 2 * turnOf(g, f, sideAt(g, facing, f).f);
+    }
+    return evaluateLocal(segment * parts_, b1, f);
+}
+
+const std::vector<double>& Curves::areas() const {
+    std::call_once(made_, [&] {
+        // Gauss, four points a segment, eight around a tube.
+        static constexpr double x[4] = {0.0694318442029737, 0.3300094782075719, 0.6699905217924281, 0.9305681557970263};
+        static constexpr double w[4] = {0.1739274225687269, 0.3260725774312731, 0.3260725774312731, 0.1739274225687269};
+        const int around = facing_.kind == CurveFacing::Round ? 8 : 1;
+        double sum = 0;
+        areas_.reserve(set_.segments());
+        for (uint32_t i = 0; i < set_.segments(); ++i) {
+            const double n = set_.place(i).count;
+            for (int k = 0; k < 4; ++k)
+                for (int a = 0; a < around; ++a) {
+                    const SurfacePoint p = pointOf(i, (a + 0.5) / around, x[k], Vec3d(0.0));
+                    sum += w[k] * length(cross(Vec3d(p.dPdu), Vec3d(p.dPdv))) / (n * around);
+                }
+            areas_.push_back(sum);
+        }
+    });
+    return areas_;
+}
+
+SurfacePoint Curves::samplePoint(double xi1, double xi2, const Vec3d& from) const {
+    const std::vector<double>& sums = areas();
+    const double target = xi1 * sums.back();
+    const size_t i = std::min(size_t(std::upper_bound(sums.begin(), sums.end(), target) - sums.begin()), sums.size() - 1);
+    // What is left of the first number is uniform again within the segment.
+    const double lo = i ? sums[i - 1] : 0, size = sums[i] - lo;
+    return pointOf(uint32_t(i), xi2, size > 0 ? std::clamp((target - lo) / size, 0.0, 1.0) : 0.5, from);
+}
+
+double Curves::sampleDensity(const SurfacePoint& p) const {
+    const std::vector<double>& sums = areas();
+    const size_t i = p.prim / parts_;
+    const double share = (sums[i] - (i ? sums[i - 1] : 0)) / sums.back();
+    const double l = length(cross(Vec3d(p.dPdu), Vec3d(p.dPdv))) / set_.place(uint32_t(i)).count;
+    return l > 0 ? share / l : 0;
+}
+
+void Curves::dice(const DiceOptions& o, Diagnostics& diag) {
+    if (!isDisplaced(*this, o)) return;
+    Diagnostic d;
+    d.severity = Severity::Warning;
+    d.code = Rie::Incapable;
+    d.place = place();
+    d.message = "Curves are not displaced: their displacement shader moves normals only";
+    diag.reportOnce("geometry:displaced curves", d);
+}
+
+} // namespace
+
+ShapeRef makeCurves(ShapeSource s, Diagnostics& diag) {
+    CurveSet set;
+    if (!set.take(s, diag)) return nullptr;
+    return std::make_shared<Curves>(std::move(s), std::move(set), diag);
+}
+
+} // namespace alpenglow::geometry

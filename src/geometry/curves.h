@@ -1,0 +1,131 @@
+// Curves (ri.md 8.4): what their shape, its bounds and its two kinds of surface share. Object space, double.
+//
+// A ribbon is C(v) + (2u - 1) h(v) B(v) with the half width h and B across the curve: along dC/dv ^ N, N being the variable "N" or what the
+// ribbon faces. A tube is swept by circles of radius h across the curve. v runs along a curve, within a segment it is called f.
+#pragma once
+#include "geometry/bernstein.h"
+#include "geometry/shape.h"
+#include <mutex>
+#include <optional>
+
+namespace alpenglow::geometry {
+
+/// A value along a curve and its first two derivatives by f.
+struct Jet {
+    Vec3d f, d, dd;
+};
+struct ScalarJet {
+    double f = 0, d = 0, dd = 0;
+};
+Jet cross(const Jet&, const Jet&);
+Jet operator*(const ScalarJet&, const Jet&);
+Jet operator+(const Jet&, const Jet&);
+/// Unit vectors; of a vanishing one zero.
+Jet unit(const Jet&);
+
+/// One segment, ready to be met or evaluated.
+struct CurveSegment {
+    bool linear = false;
+    Vec3d p[4];    ///< cubic: Bezier points. Linear: the point before it, its ends, the point behind it (an end again where there is none)
+    double h[4];   ///< half widths: cubic in Bernstein form; linear: at the ends, [0] and [1]. Not negative
+    Vec3d n[4];    ///< the same of the variable "N", where it counts
+    Vec3d axis;    ///< tubes: where u is 0, turned from this axis
+    double widest() const;
+};
+
+/// What the flat side looks to.
+struct CurveFacing {
+    enum Kind {
+        Along,  ///< everywhere along `at`
+        Point,  ///< toward `at`
+        Given,  ///< CurveSegment::n
+        Round   ///< a tube
+    } kind = Along;
+    Vec3d at;
+    double side = 1; ///< sign of B along dC/df ^ N
+};
+
+/// The position along a segment.
+Jet curveAt(const CurveSegment&, double f);
+/// (half width) * B of a ribbon.
+Jet sideAt(const CurveSegment&, const CurveFacing&, double f);
+/// Two unit vectors across a tube, the first where u is 0, and its radius.
+void tubeFrame(const CurveSegment&, double f, Jet& first, Jet& second, ScalarJet& radius);
+/// Two unit vectors across `along`, for what is turned about it. along need not be unit.
+void acrossFrame(const Vec3d& along, Vec3d& a, Vec3d& b);
+
+/// A ray, its direction being the third axis of a frame around the segment.
+struct CurveRay {
+    Vec3d e1, e2, e3; ///< unit
+    Vec3d org;
+    double length, shift; ///< of the direction; t of org
+    double lo, hi;        ///< t
+    CurveRay(const Vec3d& o, const Vec3d& d, const Vec3d& near, double lo, double hi);
+    Vec3d turned(const Vec3d& v) const { return {dot(v, e1), dot(v, e2), dot(v, e3)}; }
+    Vec3d placed(const Vec3d& p) const { return turned(p - org); }
+    double t(double z) const { return shift + z / length; }
+};
+struct CurveHit {
+    double t, s, f; ///< s: ribbons -1..1 across; tubes u
+    Vec3d across;   ///< ribbons: B
+};
+/// Hits with lo < t <= hi of the part from..to of a segment, at most 4, in no order. fromRay: the ribbon faces the ray, facing.at is its
+/// direction reversed.
+int meetRibbon(const CurveSegment&, double from, double to, const CurveFacing&, bool fromRay, const CurveRay&, CurveHit out[4]);
+/// Tubes have no ends. Subdivided until a cone is within a fiftieth of its radius of the part (or 1/1024 of the segment is left), then
+/// Newton's iteration on the swept circle itself, to the last bits.
+int meetTube(const CurveSegment&, double from, double to, const CurveRay&, CurveHit out[4]);
+
+/// How curves lie in the arrays of their request.
+class CurveSet {
+public:
+    /// What is wrong is reported; false: nothing is left to draw.
+    bool take(const ShapeSource&, Diagnostics&);
+    uint32_t segments() const { return uint32_t(curveOf_.size()); }
+    struct Place {
+        uint32_t face; ///< curve of the request
+        uint32_t local, count; ///< segment of its curve, and how many it has
+    };
+    Place place(uint32_t segment) const {
+        const Row& r = rows_[curveOf_[segment]];
+        return {r.face, segment - r.segment, (&r)[1].segment - r.segment};
+    }
+    /// The segment that holds v of a curve, and where; curves that are not drawn give way to the next.
+    uint32_t segmentAt(int face, double v, double& f) const;
+    void load(uint32_t segment, CurveSegment& out) const;
+    size_t classCount(scene::Class) const;
+    /// Weights at f of a segment; `dv` by v of the whole curve.
+    int weights(scene::Class, uint32_t segment, double f, Weight w[16]) const;
+    bool linear() const { return linear_; }
+    bool hasNormals() const { return normal_ != nullptr; }
+
+private:
+    struct Row {
+        uint32_t vertex, corner, segment, face;
+    };
+    struct Widths {
+        const float* values = nullptr;
+        scene::Class cls = scene::Class::Constant;
+    };
+    bool layOut(const ShapeSource&, Diagnostics&);
+    void takeWidths(const ShapeSource&, Diagnostics&);
+    uint32_t vertexOf(const Row&, uint32_t local, uint32_t k) const;
+    uint32_t cornerOf(const Row&, uint32_t local, uint32_t k) const;
+    uint32_t corners(uint32_t segments) const { return periodic_ ? segments : segments + 1; }
+    Vec3d point(uint32_t vertex) const;
+    const std::vector<int>* counts_ = nullptr;
+    std::vector<float> divided_; ///< points of "Pw"
+    const float* P_ = nullptr;
+    const float* normal_ = nullptr;
+    scene::Class normalClass_ = scene::Class::Varying;
+    Widths width_;
+    bool linear_ = false, periodic_ = false, bezier_ = false;
+    uint32_t step_ = 1;
+    double basis_[4][4];    ///< value = (t^3 t^2 t 1) basis_ P
+    double toBezier_[4][4];
+    size_t vertices_ = 0, varying_ = 0;
+    std::vector<Row> rows_; ///< of curves that are drawn; and one behind the last
+    std::vector<uint32_t> curveOf_; ///< row by segment
+};
+
+} // namespace alpenglow::geometry

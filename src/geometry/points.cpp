@@ -1,0 +1,368 @@
+// Points: discs that face the ray or the eye, or lie across "N"; by "type" spheres and squares as well (ri.md 8.5, PRMan's names).
+#include "base/exact.h"
+#include "geometry/curves.h"
+#include "geometry/dice.h"
+#include "geometry/factories.h"
+#include "geometry/parametric.h"
+#include "geometry/solve.h"
+#include <algorithm>
+#include <cmath>
+
+namespace alpenglow::geometry {
+namespace {
+
+using scene::Class;
+
+/// A direction toward a ray is kept in ExactHit: u is 2 * x + (u of the point), v 2 * y + (v of the point), x and y counting steps of an
+/// octahedron's unfolded face.
+constexpr double kSteps = 1 << 24;
+
+double signOf(double x) { return x < 0 ? -1 : 1; }
+
+void packDirection(const Vec3d& d, double& x, double& y) {
+    const double l = std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z);
+    double a = d.x / l, b = d.y / l;
+    if (d.z < 0) {
+        const double p = (1 - std::fabs(b)) * signOf(a);
+        b = (1 - std::fabs(a)) * signOf(b);
+        a = p;
+    }
+    const auto step = [](double s) { return std::clamp(std::floor((0.5 + 0.5 * s) * kSteps), 0.0, kSteps - 1); };
+    x = step(a);
+    y = step(b);
+}
+Vec3d unpackDirection(double x, double y) {
+    double a = 2 * (x + 0.5) / kSteps - 1, b = 2 * (y + 0.5) / kSteps - 1;
+    const double z = 1 - std::fabs(a) - std::fabs(b);
+    if (z < 0) {
+        const double p = (1 - std::fabs(b)) * signOf(a);
+        b = (1 - std::fabs(a)) * signOf(b);
+        a = p;
+    }
+    return normalize(Vec3d(a, b, z));
+}
+
+enum class Kind { Disc, Ball, Square };
+
+class Points final : public Shape {
+public:
+    Points(ShapeSource s, Kind kind) : Shape(std::move(s)), kind_(kind) {}
+    bool take(Diagnostics&);
+
+    uint32_t exactPrims() const override { return kept_.empty() ? count_ : uint32_t(kept_.size()); }
+    Bounds exactBounds(uint32_t prim) const override;
+    Bounds bounds() const override { return bounds_; }
+    using Shape::exactHits;
+    int exactHits(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted, ExactHit out[4]) const override;
+    /// face: the point.
+    SurfacePoint evaluate(int face, double u, double v) const override {
+        return pointAt(uint32_t(std::clamp(face, 0, int(exactPrims()) - 1)), u, v, Vec3d(0.0));
+    }
+    double area() const override { return areas().back() * spread_ * (kind_ == Kind::Disc ? kPi : kind_ == Kind::Ball ? 4 * kPi : 4 * aspect_); }
+    SurfacePoint sampleArea(double xi1, double xi2) const override { return samplePoint(xi1, xi2, Vec3d(0.0)); }
+    void sampleFrom(const Vec3& from, double xi1, double xi2, SurfacePoint& out, uint32_t) const override {
+        out = samplePoint(xi1, xi2, Vec3d(from));
+    }
+    double sampleDensity(const SurfacePoint&) const override;
+    void dice(const DiceOptions&, Diagnostics&) override;
+
+protected:
+    size_t classCount(Class c) const override { return c == Class::Constant || c == Class::Uniform ? 1 : count_; }
+    int weights(Class c, const SurfacePoint& p, Weight w[16]) const override {
+        w[0] = {c == Class::Constant || c == Class::Uniform ? 0 : numberOf(p.prim), 1, 0, 0};
+        return 1;
+    }
+    SurfacePoint evaluateLocal(uint32_t prim, double b1, double b2) const override;
+
+private:
+    uint32_t numberOf(uint32_t prim) const { return kept_.empty() ? prim : kept_[prim]; }
+    Vec3d centre(uint32_t prim) const {
+        const float* p = P_ + 3 * size_t(numberOf(prim));
+        return {p[0], p[1], p[2]};
+    }
+    double radius(uint32_t prim) const { return 0.5 * width_[widthStep_ * numberOf(prim)]; }
+    Vec3d facing(uint32_t prim, const Vec3d& centre, const Vec3d& against) const;
+    void sides(const Vec3d& n, Vec3d& a, Vec3d& b) const;
+    SurfacePoint pointAt(uint32_t prim, double u, double v, const Vec3d& from) const;
+    SurfacePoint samplePoint(double xi1, double xi2, const Vec3d& from) const;
+    const std::vector<double>& areas() const;
+    bool fromRay() const { return kind_ != Kind::Ball && !normal_ && source_.facing == Facing::Ray; }
+
+    Kind kind_;
+    uint32_t count_ = 0;
+    std::vector<uint32_t> kept_; ///< of the request's; empty: all
+    const float *P_ = nullptr, *width_ = nullptr, *normal_ = nullptr;
+    std::vector<float> divided_;
+    size_t widthStep_ = 0, normalStep_ = 0;
+    double aspect_ = 1, turnSin_ = 0, turnCos_ = 1; ///< of squares
+    Matrix toObject_;
+    Vec3d eye_, backward_, up_;
+    double side_ = 1, reach_[3], spread_ = 1;
+    Bounds bounds_;
+    mutable std::once_flag made_;
+    mutable std::vector<double> areas_; ///< squares of radii, summed up
+};
+
+bool Points::take(Diagnostics& diag) {
+    const scene::Primitive& p = *source_.primitive;
+    toObject_ = inverse(toCamera());
+    eye_ = transformPoint(toObject_, Vec3d(0.0));
+    backward_ = transformVector(toObject_, Vec3d(0, 0, -1));
+    up_ = transformVector(toObject_, Vec3d(0, 1, 0));
+    const auto& m = toCamera().m;
+    for (int k = 0; k < 3; ++k) reach_[k] = std::sqrt(m[0][k] * m[0][k] + m[1][k] * m[1][k] + m[2][k] * m[2][k]);
+    const Vec3d r0(m[0][0], m[0][1], m[0][2]), r1(m[1][0], m[1][1], m[1][2]), r2(m[2][0], m[2][1], m[2][2]);
+    const double det = dot(cross(r0, r1), r2);
+    side_ = (det < 0 ? -1 : 1) * double(orientation_);
+    spread_ = exact::pow(std::fabs(det), 2. / 3);
+    if (const scene::Param* P = lastParam(p.params, "P")) P_ = P->numbers.data(), count_ = uint32_t(P->numbers.size() / 3);
+    else if (const scene::Param* Pw = lastParam(p.params, "Pw")) {
+        count_ = uint32_t(Pw->numbers.size() / 4);
+        for (size_t i = 0; i < count_; ++i)
+            for (size_t k = 0; k < 3; ++k) divided_.push_back(Pw->numbers[4 * i + k] / Pw->numbers[4 * i + 3]);
+        P_ = divided_.data();
+    }
+    if (!count_) {
+        diag.report(Severity::Warning, Rie::MissingData, p.place, "Points without points; nothing is drawn");
+        return false;
+    }
+    static constexpr float kOne = 1; // RISpec
+    width_ = &kOne;
+    const auto values = [&](const char* name, size_t width, const float*& to, size_t& step) {
+        const scene::Param* q = lastParam(p.params, name);
+        if (!q || q->type == scene::Type::String) return;
+        const bool one = q->cls == Class::Constant || q->cls == Class::Uniform;
+        if (q->numbers.size() < width * (one ? 1 : count_)) {
+            diag.report(Severity::Error, Rie::MissingData, q->place,
+                        "Points \"" + q->name + "\": " + std::to_string(q->numbers.size()) + " values given, " +
+                            std::to_string(width * count_) + " needed; the variable is ignored");
+            return;
+        }
+        to = q->numbers.data();
+        step = one ? 0 : width;
+    };
+    values("constantwidth", 1, width_, widthStep_);
+    values("width", 1, width_, widthStep_);
+    if (kind_ == Kind::Disc) values("N", 3, normal_, normalStep_);
+    const float *aspect = nullptr, *angle = nullptr;
+    size_t none = 0;
+    values("patchaspectratio", 1, aspect, none); // of squares alike: the first value
+    values("patchangle", 1, angle, none);
+    if (aspect && *aspect > 0 && std::isfinite(*aspect)) aspect_ = 1 / double(*aspect);
+    if (angle && std::isfinite(*angle)) {
+        const auto turn = exact::sinCos(double(*angle) * kPi / 180);
+        turnSin_ = turn.sin, turnCos_ = turn.cos;
+    }
+    size_t notFinite = 0, thin = 0;
+    std::vector<uint32_t> kept;
+    for (uint32_t i = 0; i < count_; ++i) {
+        const float *q = P_ + 3 * size_t(i), w = width_[widthStep_ * i], *n = normal_ ? normal_ + normalStep_ * i : q;
+        if (!std::isfinite(q[0]) || !std::isfinite(q[1]) || !std::isfinite(q[2]) || !std::isfinite(w) || !std::isfinite(n[0] + n[1] + n[2])) ++notFinite;
+        else if (!(w > 0)) ++thin;
+        else kept.push_back(i);
+    }
+    if (notFinite)
+        diag.report(Severity::Error, Rie::Range, p.place, "Points: " + std::to_string(notFinite) + " with a number that is not finite; not drawn");
+    if (thin) diag.report(Severity::Warning, Rie::Range, p.place, "Points: " + std::to_string(thin) + " without a width; not drawn");
+    if (kept.empty()) return false;
+    if (kept.size() < count_) kept_ = std::move(kept);
+    for (uint32_t i = 0; i < exactPrims(); ++i) bounds_.add(exactBounds(i));
+    takePrimvars(diag);
+    return true;
+}
+
+Bounds Points::exactBounds(uint32_t prim) const {
+    const Vec3d c = transformPoint(toCamera(), centre(prim));
+    const double r = radius(prim) * (kind_ == Kind::Square ? std::sqrt(1 + aspect_ * aspect_) : 1) * 1.000001;
+    const double slack = 1e-6 * (std::fabs(c.x) + std::fabs(c.y) + std::fabs(c.z)) + 1e-30;
+    const Vec3d to(reach_[0] * r + slack, reach_[1] * r + slack, reach_[2] * r + slack);
+    Bounds b;
+    b.add(Vec3(c - to));
+    b.add(Vec3(c + to));
+    return b;
+}
+
+/// What a disc looks to, not unit; `against` is what a ray comes from.
+Vec3d Points::facing(uint32_t prim, const Vec3d& centre, const Vec3d& against) const {
+    if (normal_) {
+        const float* n = normal_ + normalStep_ * numberOf(prim);
+        return Vec3d(n[0], n[1], n[2]) * (side_ * orientation_ < 0 ? -1.0 : 1.0);
+    }
+    return source_.facing == Facing::Ray ? against : source_.facing == Facing::Eye ? eye_ - centre : backward_;
+}
+
+/// Unit vectors along u and v: a ^ b looks along n (side_ tells in which hand).
+void Points::sides(const Vec3d& n, Vec3d& a, Vec3d& b) const {
+    acrossFrame(n, a, b);
+    if (kind_ == Kind::Square) { // v upward in the picture
+        const Vec3d right = cross(up_, n);
+        if (dot(right, right) > 1e-20 * dot(up_, up_) * dot(n, n)) a = normalize(right), b = normalize(cross(n, a));
+        const Vec3d x = a * turnCos_ + b * turnSin_;
+        b = b * turnCos_ - a * turnSin_;
+        a = x;
+    }
+    if (side_ < 0) a = -a;
+}
+
+int Points::exactHits(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted wanted, ExactHit out[4]) const {
+    const Vec3d o = transformPoint(toObject_, org), d = transformVector(toObject_, dir), c = centre(prim);
+    const double r = radius(prim), dd = dot(d, d), shift = dot(c - o, d) / dd;
+    const Vec3d near = o + d * shift - c; // from the point nearest the centre
+    if (kind_ == Kind::Ball) {
+        double t[2];
+        const int roots = solveQuadratic(dd, dot(near, d), dot(near, near) - r * r, t);
+        int n = 0;
+        for (int i = 0; i < roots; ++i) {
+            const double at = shift + t[i];
+            if (!(at > lo && at <= hi)) continue;
+            const Vec3d w = near + d * t[i];
+            const double u = exact::atan2(w.y, w.x) / (2 * kPi), v = exact::asin(std::clamp(w.z / r, -1.0, 1.0)) / kPi + 0.5;
+            out[n++] = {at, u < 0 ? u + 1 : u, v};
+            if (wanted != Wanted::All) break;
+        }
+        return n;
+    }
+    Vec3d n = facing(prim, c, -d);
+    const double along = dot(d, n);
+    if (along == 0) return 0;
+    const double step = -dot(near, n) / along, t = shift + step;
+    if (!(t > lo && t <= hi)) return 0;
+    const Vec3d w = near + d * step;
+    if (kind_ == Kind::Disc && !(dot(w, w) <= r * r)) return 0;
+    double x = 0, y = 0;
+    if (fromRay()) {
+        packDirection(n, x, y);
+        n = unpackDirection(x, y);
+    }
+    Vec3d a, b;
+    sides(n, a, b);
+    const double u = dot(w, a) / r, v = dot(w, b) / r;
+    if (kind_ == Kind::Square && !(std::fabs(u) <= 1 && std::fabs(v) <= aspect_)) return 0;
+    out[0] = {t, 2 * x + std::clamp(0.5 + 0.5 * u, 0.0, 1.0), 2 * y + std::clamp(0.5 + 0.5 * v / aspect_, 0.0, 1.0)};
+    return 1;
+}
+
+SurfacePoint Points::evaluateLocal(uint32_t prim, double b1, double b2) const {
+    const Vec3d c = centre(prim);
+    const double r = radius(prim), x = fromRay() ? std::floor(0.5 * b1) : 0, y = fromRay() ? std::floor(0.5 * b2) : 0, u = b1 - 2 * x,
+                 v = b2 - 2 * y;
+    LocalPoint o;
+    double side = orientation_;
+    if (kind_ == Kind::Ball) {
+        const auto [su, cu] = exact::sinCos(2 * kPi * u);
+        const auto [sv, cv] = exact::sinCos(kPi * (v - 0.5));
+        const Vec3d out(cu * cv, su * cv, sv);
+        o.P = c + out * r;
+        o.Pu = Vec3d(-su * cv, cu * cv, 0) * (2 * kPi * r);
+        o.Pv = Vec3d(-cu * sv, -su * sv, cv) * (kPi * r);
+        o.Puu = Vec3d(-cu * cv, -su * cv, 0) * (4 * kPi * kPi * r);
+        o.Puv = Vec3d(su * sv, -cu * sv, 0) * (2 * kPi * kPi * r);
+        o.Pvv = out * (-kPi * kPi * r);
+        o.n = out * side_;
+    } else {
+        const Vec3d n = fromRay() ? unpackDirection(x, y) : facing(prim, c, backward_);
+        Vec3d a, b;
+        sides(n, a, b);
+        o.Pu = a * (2 * r);
+        o.Pv = b * (2 * r * aspect_);
+        o.P = c + o.Pu * (u - 0.5) + o.Pv * (v - 0.5);
+        o.n = n;
+    }
+    const Matrix& m = toCamera();
+    LocalPoint q{transformPoint(m, o.P), transformVector(m, o.Pu), transformVector(m, o.Pv), transformVector(m, o.Puu), transformVector(m, o.Puv), transformVector(m, o.Pvv), {}, {}, {}};
+    const Vec3d across = cross(q.Pu, q.Pv) * side;
+    const double l = length(across);
+    // At a ball's poles the product is rounding only.
+    q.n = l > 1e-6 * dot(q.Pv, q.Pv) ? across / l : normalize(transformNormal(m, o.n));
+    normalDerivatives(q);
+    SurfacePoint p;
+    p.P = Vec3(q.P);
+    p.dPdu = Vec3(q.Pu), p.dPdv = Vec3(q.Pv);
+    p.Puu = Vec3(q.Puu), p.Puv = Vec3(q.Puv), p.Pvv = Vec3(q.Pvv);
+    p.n = Vec3(q.n);
+    p.dNdu = Vec3(q.nu), p.dNdv = Vec3(q.nv);
+    p.Ng = l > 0 ? Vec3(across) : p.n;
+    if (kind_ == Kind::Square) p.u = float(u), p.v = float(v); // of others they are 0 (ri.md 8.5)
+    p.orientation = orientation_;
+    p.prim = prim;
+    p.b1 = u;
+    p.b2 = v;
+    // What leaves a disc that faces the ray must not meet the same disc, now turned elsewhere.
+    p.pError = 2 * roundingError(p.P) + (fromRay() ? 0.26f * std::max(length(p.dPdu), length(p.dPdv)) : 0);
+    finishPoint(p, true);
+    if (kind_ != Kind::Square) p.dsdu = p.dsdv = p.dtdu = p.dtdv = 0;
+    if (kind_ == Kind::Ball) p.N = p.n;
+    return p;
+}
+
+SurfacePoint Points::pointAt(uint32_t prim, double u, double v, const Vec3d& from) const {
+    double x = 0, y = 0;
+    if (fromRay()) packDirection(transformPoint(toObject_, from) - centre(prim), x, y);
+    return evaluateLocal(prim, 2 * x + u, 2 * y + v);
+}
+
+const std::vector<double>& Points::areas() const {
+    std::call_once(made_, [&] {
+        double sum = 0;
+        areas_.reserve(exactPrims());
+        for (uint32_t i = 0; i < exactPrims(); ++i) areas_.push_back(sum += radius(i) * radius(i));
+    });
+    return areas_;
+}
+
+SurfacePoint Points::samplePoint(double xi1, double xi2, const Vec3d& from) const {
+    const std::vector<double>& sums = areas();
+    const double target = xi1 * sums.back();
+    const size_t i = std::min(size_t(std::upper_bound(sums.begin(), sums.end(), target) - sums.begin()), sums.size() - 1);
+    const double lo = i ? sums[i - 1] : 0, x = std::clamp((target - lo) / (sums[i] - lo), 0.0, 1.0);
+    if (kind_ == Kind::Square) return pointAt(uint32_t(i), x, xi2, from);
+    if (kind_ == Kind::Ball) return pointAt(uint32_t(i), xi2, exact::asin(std::clamp(2 * x - 1, -1.0, 1.0)) / kPi + 0.5, from);
+    const auto [s, c] = exact::sinCos(2 * kPi * xi2);
+    const double r = 0.5 * std::sqrt(x);
+    return pointAt(uint32_t(i), 0.5 + r * c, 0.5 + r * s, from);
+}
+
+double Points::sampleDensity(const SurfacePoint& p) const {
+    const double r = radius(p.prim), share = r * r / areas().back(), l = length(cross(Vec3d(p.dPdu), Vec3d(p.dPdv)));
+    if (kind_ == Kind::Ball) { // even over the ball of object space, which the transformation stretches
+        const double cosine = exact::cos(kPi * (p.b2 - 0.5));
+        return l > 0 ? share * 2 * kPi * kPi * cosine / (4 * kPi * l) : share / (4 * kPi * r * r * spread_);
+    }
+    return l > 0 ? share / (kind_ == Kind::Disc ? 0.25 * kPi * l : l) : 0;
+}
+
+void Points::dice(const DiceOptions& o, Diagnostics& diag) {
+    if (!isDisplaced(*this, o)) return;
+    Diagnostic d;
+    d.severity = Severity::Warning;
+    d.code = Rie::Incapable;
+    d.place = place();
+    d.message = "Points are not displaced: their displacement shader moves normals only";
+    diag.reportOnce("geometry:displaced points", d);
+}
+
+} // namespace
+
+ShapeRef makePoints(ShapeSource s, Diagnostics& diag) {
+    const scene::Primitive& p = *s.primitive;
+    Kind kind = Kind::Disc;
+    if (const scene::Param* type = lastParam(p.params, "type"); type && !type->strings.empty()) {
+        const std::string& t = type->strings[0];
+        if (t == "sphere") kind = Kind::Ball;
+        else if (t == "patch") kind = Kind::Square;
+        else if (t != "particle" && t != "disk" && t != "disc") {
+            if (t == "blobby") kind = Kind::Ball;
+            Diagnostic d;
+            d.severity = Severity::Warning;
+            d.code = t == "blobby" ? Rie::Incapable : Rie::BadToken;
+            d.place = type->place;
+            d.message = t == "blobby" ? "Points of type \"blobby\" are drawn as spheres, which do not melt together"
+                                      : "Points of type \"" + t + "\" are drawn as particles; known are particle, disk, sphere, patch and blobby";
+            diag.reportOnce("geometry:points:" + t, d);
+        }
+    }
+    auto shape = std::make_shared<Points>(std::move(s), kind);
+    return shape->take(diag) ? shape : nullptr;
+}
+
+} // namespace alpenglow::geometry

@@ -78,6 +78,8 @@ inline constexpr size_t kAffineInlining = 100'000;             ///< IR of a kern
 inline constexpr size_t kKernelCacheBytes = size_t(512) << 20; ///< compiled kernels on disk; the least recently used go first
 
 inline constexpr size_t kDiceQuads = 4'000'000;                ///< micro-quads dicing makes of one primitive (geometry/)
+inline constexpr size_t kLimitPatternBytes = size_t(256) << 20; ///< weights of a subdivision surface's neighbourhoods; beyond: coarser ones
+inline constexpr size_t kEditedFaces = 1'000'000;            ///< corners of a mesh that is refined once more for its edits
 inline constexpr int kDiceEdge = 4096;                         ///< steps along one edge of a patch
 inline constexpr size_t kTriangulationTests = 400'000'000;     ///< vertex tests for one concave polygon; then it is fanned
 inline constexpr size_t kShapes = 50'000'000;                  ///< shapes of a frame, instances expanded

@@ -26,6 +26,8 @@ constexpr Entry kTable[] = {
     {"NuPatch", makeNuPatch},
     {"Curves", makeCurves},
     {"Points", makePoints},
+    {"SubdivisionMesh", makeSubdivisionMesh},
+    {"HierarchicalSubdivisionMesh", makeSubdivisionMesh},
 };
 
 void once(Diagnostics& diag, const std::string& key, Rie code, const SourcePlace& place, const std::string& message) {

@@ -20,5 +20,6 @@ ShapeRef makePatchMesh(ShapeSource, Diagnostics&);
 ShapeRef makeNuPatch(ShapeSource, Diagnostics&);
 ShapeRef makeCurves(ShapeSource, Diagnostics&);
 ShapeRef makePoints(ShapeSource, Diagnostics&);
+ShapeRef makeSubdivisionMesh(ShapeSource, Diagnostics&);
 
 } // namespace alpenglow::geometry

@@ -31,6 +31,7 @@ void Shape::takePrimvars(Diagnostics& diag) {
     normal_.param = nullptr;
     for (const scene::Param& p : source_.primitive->params) {
         if (p.name == "P" || p.name == "Pw" || p.name == "Pz" || p.name == "uknot" || p.name == "vknot") continue;
+        if (p.name == "intargs" || p.name == "floatargs" || p.name == "stringargs") continue; // of tags
         bool isNormal = (p.name == "N" || p.name == "Np") && scene::componentCount(p.type) == 3 && p.arrayLength == 0;
         PrimVar var;
         if (isNormal) {
@@ -58,8 +59,11 @@ void Shape::takePrimvars(Diagnostics& diag) {
 }
 
 void Shape::interpolate(int var, const SurfacePoint& at, float* out, float* du, float* dv) const {
+    interpolateVariable(primvars_[size_t(var)], at, out, du, dv);
+}
+
+void Shape::interpolateVariable(const PrimVar& p, const SurfacePoint& at, float* out, float* du, float* dv) const {
     Weight w[16];
-    const PrimVar& p = primvars_[size_t(var)];
     int n = weights(p.cls, at, w);
     interpolatePrimVar(p, w, n, out, du, dv);
 }
@@ -98,9 +102,8 @@ void Shape::finishPoint(SurfacePoint& p, bool parametric) const {
     if (varT_ >= 0) interpolate(varT_, p, &p.t, &p.dtdu, &p.dtdv);
     p.N = p.n;
     if (normal_.param) {
-        Weight w[16];
         float v[3], du[3], dv[3];
-        interpolatePrimVar(normal_, w, weights(normal_.cls, p, w), v, du, dv);
+        interpolateVariable(normal_, p, v, du, dv);
         Vec3 q(v[0], v[1], v[2]);
         float l = length(q);
         if (l > 0 && std::isfinite(l)) {
@@ -123,12 +126,18 @@ Facet facetAt(const TriMesh& m, uint32_t prim, double b1, double b2) {
 } // namespace
 
 SurfacePoint Shape::evaluateHit(uint32_t prim, double b1, double b2) const {
-    if (meshParam_.empty()) return evaluateLocal(prim, b1, b2);
+    SurfacePoint p;
+    evaluateHit(prim, b1, b2, p, kNeedAll);
+    return p;
+}
+
+void Shape::evaluateHit(uint32_t prim, double b1, double b2, SurfacePoint& p, uint32_t needs) const {
+    if (meshParam_.empty()) return evaluateLocal(prim, b1, b2, p, needs);
     const uint32_t* i = &mesh_.index[3 * size_t(prim)];
     Vec2 p0 = meshParam_[i[0]], p1 = meshParam_[i[1]], p2 = meshParam_[i[2]];
     double b0 = 1 - b1 - b2;
-    SurfacePoint p = evaluateLocal(trianglesPerPrim_ ? prim / trianglesPerPrim_ : 0, b0 * p0.x + b1 * p1.x + b2 * p2.x,
-                                   b0 * p0.y + b1 * p1.y + b2 * p2.y);
+    const uint32_t local = !meshPrim_.empty() ? meshPrim_[i[0]] : trianglesPerPrim_ ? prim / trianglesPerPrim_ : 0;
+    evaluateLocal(local, b0 * p0.x + b1 * p1.x + b2 * p2.x, b0 * p0.y + b1 * p1.y + b2 * p2.y, p, needs);
     Facet f = facetAt(mesh_, prim, b1, b2);
     Vec3d fn = normalize(f.n) * double(orientation_);
     if (displaced_) {
@@ -139,12 +148,11 @@ SurfacePoint Shape::evaluateHit(uint32_t prim, double b1, double b2) const {
     } else {
         p.pError += float(1.01 * length(Vec3d(p.P) - f.P));
     }
-    return p;
 }
 
 void Shape::points(std::span<const HitRef> hits, uint32_t needs) const {
     if (meshParam_.empty()) return localPoints(hits, needs);
-    for (const HitRef& h : hits) *h.out = evaluateHit(h.prim, h.b1, h.b2);
+    for (const HitRef& h : hits) evaluateHit(h.prim, h.b1, h.b2, *h.out, needs);
 }
 
 void Shape::localPoints(std::span<const HitRef> hits, uint32_t needs) const {

@@ -143,10 +143,7 @@ public:
     /// The surface at a hit: (prim, b1, b2) as the intersector gave them; exact shapes: (prim, ExactHit::u, v).
     SurfacePoint evaluateHit(uint32_t prim, double b1, double b2) const;
     /// The same, written in place.
-    void evaluateHit(uint32_t prim, double b1, double b2, SurfacePoint& out, uint32_t needs = kNeedAll) const {
-        if (meshParam_.empty()) evaluateLocal(prim, b1, b2, out, needs);
-        else out = evaluateHit(prim, b1, b2);
-    }
+    void evaluateHit(uint32_t prim, double b1, double b2, SurfacePoint& out, uint32_t needs = kNeedAll) const;
     /// The same for many hits; meshes fetch the memory of those that follow while they work. needs: PointNeed.
     void points(std::span<const HitRef>, uint32_t needs) const;
     /// Normal of the surface a ray meets there, with orientation; not normalised. Cheaper than evaluateHit; for Sides.
@@ -188,6 +185,8 @@ protected:
     virtual size_t classCount(scene::Class) const = 0;
     /// Weights of the values of a class at a point, with derivatives by u and v. Returns how many, at most 16.
     virtual int weights(scene::Class, const SurfacePoint& at, Weight w[16]) const = 0;
+    /// interpolate() of a variable: by weights(), unless a surface has rules of its own or more weights.
+    virtual void interpolateVariable(const PrimVar&, const SurfacePoint& at, float* out, float* du, float* dv) const;
     /// evaluate() by (prim, b1, b2) of the undiced surface.
     virtual SurfacePoint evaluateLocal(uint32_t prim, double b1, double b2) const = 0;
     /// The same, written in place. needs: PointNeed.
@@ -207,6 +206,7 @@ protected:
     TriMesh mesh_;
     std::vector<Vec2> meshParam_;          ///< diced: (b1, b2) of each vertex on its undiced surface; empty: mesh is the surface
     uint32_t trianglesPerPrim_ = 0;        ///< diced polygons: triangles made from each triangle; 0: all of prim 0
+    std::vector<uint32_t> meshPrim_;       ///< diced, and not empty: prim of each vertex; a triangle's vertices are of one
     bool displaced_ = false;
 };
 using ShapeRef = std::shared_ptr<Shape>;

@@ -1,0 +1,123 @@
+// The limit surface of a subdivision cage, as weights of its control points.
+//
+// A face of the cage is one piece, or, where the scheme splits it (a face of catmull-clark without four corners), one piece a corner.
+// A piece has u and v of its own, both 0 to 1: quadrilaterals have their corners at (0,0) (1,0) (1,1) (0,1), by winding; triangles of
+// loop at (0,0) (1,0) (0,1), with u + v <= 1; the piece of a corner begins there, its u along the edge to the next corner and its v along
+// the edge from the previous one, and ends in the middle of the face.
+//
+// Exact, that is the limit itself in double: faces that are regular, and others up to 2^-10 of a face from an extraordinary vertex.
+// Nearer, OpenSubdiv's Gregory patches stand for it: position and normal meet the limit at the vertex and at the patch's border; the
+// partials are finite there, where those of the limit by these u and v vanish or grow without bound.
+#pragma once
+#include "base/diagnostics.h"
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace alpenglow::geometry {
+
+enum class SubdivisionScheme { CatmullClark, Loop, Bilinear };
+
+/// What is subdivided. Indices are checked by who makes it; a face has no vertex twice. With Loop every face has three corners.
+struct SubdivisionCage {
+    SubdivisionScheme scheme = SubdivisionScheme::CatmullClark;
+    enum class Boundary { None, EdgeAndCorner, EdgeOnly } boundary = Boundary::None;
+    /// Rule of smooth face-varying values: what stays sharp where they end.
+    enum class FaceVarying { EdgeOnly, EdgeAndCorner, EdgeAndCornerPropagate, AlwaysSharp } faceVarying = FaceVarying::EdgeAndCorner;
+    bool chaikin = false;               ///< sharpness of a crease is averaged along it
+    bool smoothTriangles = false;       ///< triangles of catmull-clark have weights of their own
+    int vertices = 0;
+    std::span<const int> corners;       ///< per face: how many
+    std::span<const int> vertex;        ///< per corner
+    std::vector<int> creaseEnds;        ///< two vertices a crease
+    std::vector<float> creaseSharpness; ///< one a crease; 10 and more are infinite
+    std::vector<int> cornerVertex;
+    std::vector<float> cornerSharpness;
+    std::vector<int> holes;             ///< faces
+};
+
+/// Weights of control values at a point: values by (`index`), then their slopes by u, v, uu, uv, vv as far as asked for.
+class LimitWeights {
+public:
+    int count = 0;
+    const int* index = nullptr;
+    const double* weights(int derivative) const { return data() + size_t(derivative) * size_t(count); }
+    double* make(int n, int sets);
+
+private:
+    const double* data() const { return large_.empty() ? small_.data() : large_.data(); }
+    std::array<double, 6 * 32> small_;
+    std::vector<double> large_;
+};
+
+class LimitSurface {
+public:
+    /// Face-varying values that are smoothed: per corner an index; corners of one vertex with equal indices are joined.
+    using Channel = std::vector<int>;
+    /// `why` says what OpenSubdiv could not take; valid() is then false.
+    LimitSurface(const SubdivisionCage&, const std::vector<Channel>&, std::string& why);
+    ~LimitSurface();
+    bool valid() const { return valid_; }
+
+    uint32_t faces() const { return uint32_t(faceCount_); }
+    uint32_t pieces() const { return pieceCount_; }
+    bool triangles() const { return scheme_ == SubdivisionScheme::Loop; }
+    /// The face of a piece, and which of its corners (0 where a face is one piece).
+    struct PieceOf { uint32_t face = 0; int corner = 0; };
+    PieceOf pieceOf(uint32_t piece) const;
+    uint32_t firstPiece(uint32_t face) const { return firstPiece_.empty() ? face : firstPiece_[face]; }
+    uint32_t piecesOf(uint32_t face) const { return firstPiece_.empty() ? 1 : firstPiece_[face + 1] - firstPiece_[face]; }
+    /// Whether the face has a surface: holes, and faces at a border that is not interpolated, have none.
+    bool drawn(uint32_t face) const { return vertexData_.pattern[face] != kNothing; }
+
+    /// Weights of the vertices. derivatives: 0 value, 1 and slopes by u and v, 2 and their slopes. Thread safe.
+    void weights(uint32_t piece, double u, double v, int derivatives, LimitWeights& out) const { evaluate(vertexData_, piece, u, v, derivatives, out); }
+    /// The same of the values of a channel.
+    void weights(int channel, uint32_t piece, double u, double v, int derivatives, LimitWeights& out) const {
+        evaluate(channels_[size_t(channel)], piece, u, v, derivatives, out);
+    }
+
+    /// Edges of the cage, until forgetTopology(). Sheets that meet along an edge share its number, as they share vertices.
+    uint32_t edges() const;
+    int corners(uint32_t face) const;
+    int vertexAt(uint32_t face, int corner) const;
+    int edgeAt(uint32_t face, int corner) const; ///< runs on to the next corner
+    int edgeStart(int edge) const;               ///< the vertex that an edge is said to run from
+    void forgetTopology();
+
+    /// Faces at which more edges meet than can be evaluated: they are flat. For a message.
+    uint32_t flattened() const { return flattened_; }
+    /// Whether patterns were made coarser than stated above, because there are too many.
+    bool coarser() const { return coarser_; }
+
+private:
+    static constexpr uint32_t kNothing = 0xffffffffu;
+    /// What one kind of data (vertices, or a channel) has a face: a pattern, and the values that it weighs.
+    struct Data {
+        std::vector<uint32_t> pattern;
+        std::vector<size_t> first;
+        std::vector<int> index;
+    };
+    struct Patterns;
+    struct Topology;
+    void joinEdges();
+    void fill(Data&, int channel, const SubdivisionCage&);
+    void evaluate(const Data&, uint32_t piece, double u, double v, int derivatives, LimitWeights&) const;
+
+    bool valid_ = false, coarser_ = false;
+    SubdivisionScheme scheme_;
+    int faceCount_ = 0;
+    uint32_t pieceCount_ = 0, flattened_ = 0;
+    std::vector<uint32_t> firstPiece_, faceOfPiece_; ///< empty: a piece is a face
+    std::vector<int> original_, sameEdge_;           ///< of meshes that were taken apart: per vertex and edge the one that counts
+    Data vertexData_;
+    std::vector<Data> channels_;
+    std::unique_ptr<Patterns> patterns_;
+    std::unique_ptr<Topology> topology_;
+};
+
+} // namespace alpenglow::geometry

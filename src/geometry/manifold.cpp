@@ -30,6 +30,11 @@ public:
         nameVertices(out);
         sharpenBorders(out);
         moveTags(out);
+        for (std::vector<float>* list : {&out.cage.creaseSharpness, &out.cage.cornerSharpness})
+            for (float& s : *list) {
+                out.rounded |= s > 0 && s < 10;
+                s = s < 2 ? 0 : 10;
+            }
         out.cage.vertices = int(out.original.size());
         out.cage.vertex = out.vertex;
         return out;

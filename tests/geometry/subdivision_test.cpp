@@ -476,7 +476,7 @@ TEST(Subdivision, AnyTopologyIsDrawnWithoutFault) {
     // Faces over few points: non-manifold edges and vertices, faces twice, turned faces, isolated points, fans, creases anywhere.
     std::mt19937 random(11);
     const auto number = [&](int n) { return int(random() % unsigned(n)); };
-    for (int turn = 0; turn < 400; ++turn) {
+    for (int turn = 0; turn < 250; ++turn) {
         Cage c;
         const int points = 4 + number(8), faces = 1 + number(14);
         for (int i = 0; i < 3 * points; ++i) c.P.push_back(float(number(100)) / 50 - 1);
@@ -501,7 +501,6 @@ TEST(Subdivision, AnyTopologyIsDrawnWithoutFault) {
         std::vector<float> corner;
         for (size_t i = 0; i < c.verts.size(); ++i) corner.push_back(float(number(3)));
         c.more = {param("s", scene::Class::FaceVarying, scene::Type::Float, corner)};
-        if (getenv("DUMP")) { for (float f : corner) printf("%g,", f);  printf("%d %s:", turn, c.scheme.c_str()); size_t a=0; for (int n : c.nverts) { for (int i=0;i<n;++i) printf(" %d", c.verts[a++]); printf(","); } for (auto& t : c.tags) { printf(" %s", t.name.c_str()); for (float f : t.ints) printf(" %g", f); printf("/"); for (float f : t.floats) printf(" %g", f);} printf("\n"); fflush(stdout); }
         Diagnostics diag;
         ShapeRef s = build(c.primitive(), translateMatrix(0, 0, 4), diag);
         if (!s) continue;

@@ -15,7 +15,7 @@ Accel::Impl::Ball Accel::Impl::ballAround(uint32_t s) const {
     // A sphere whose transform keeps it one is its own ball; bounds are a box around it.
     const auto& numbers = shape.source().primitive->numbers;
     const auto& m = shape.toCamera().m;
-    if (shape.kind() == "Sphere" && !numbers.empty()) {
+    if (shape.kind() == "Sphere" && !numbers.empty() && !shape.placed()) {
         Vec3d row[3];
         for (int i = 0; i < 3; ++i) row[i] = {m[i][0], m[i][1], m[i][2]};
         double l = dot(row[0], row[0]);
@@ -82,6 +82,12 @@ Accel::Accel(std::vector<ShapeRef> shapes, std::vector<uint32_t> visibility, Dia
     impl_->shapes = std::move(shapes);
     impl_->visibility = std::move(visibility);
     impl_->visibility.resize(impl_->shapes.size(), kAll);
+    try {
+        impl_->readyPlaced();
+    } catch (const std::length_error&) {
+        impl_->refuse(diag);
+        return;
+    }
     if (impl_->readyDirect()) return;
     impl_->bounds = {};
     for (const ShapeRef& s : impl_->shapes)
@@ -89,11 +95,17 @@ Accel::Accel(std::vector<ShapeRef> shapes, std::vector<uint32_t> visibility, Dia
     try {
         impl_->tree.build(impl_->shapes);
         impl_->bounds.add(impl_->tree.bounds());
-    } catch (const std::length_error&) { // a scene without its tree would be a black picture
-        impl_->sound = false;
-        impl_->tree = Tree();
-        diag.report(Severity::Severe, Rie::Limit, {}, "the frame has more than a thousand million triangles, curve segments and points");
+    } catch (const std::length_error&) {
+        impl_->refuse(diag);
     }
+}
+
+void Accel::Impl::refuse(Diagnostics& diag) { // a scene without its tree would be a black picture
+    sound = false;
+    tree = Tree();
+    shapes.clear();
+    geometryOf.clear();
+    diag.report(Severity::Severe, Rie::Limit, {}, "the frame has more than a thousand million triangles, curve segments and points");
 }
 
 Accel::~Accel() = default;
@@ -118,7 +130,7 @@ bool Accel::Impl::intersectOne(const Ray& r, Hit& hit) const {
     Query q{&r, {INFINITY, kNone, kNone, 0, 0}, false};
     meetDirect(q);
     if (q.best.shape == kNone) return false;
-    hit = {float(q.best.t), q.best.shape, q.best.prim, q.best.b1, q.best.b2, q.best.t};
+    hit = {float(q.best.t), q.best.shape, q.best.prim, r.time, q.best.b1, q.best.b2, q.best.t};
     return true;
 }
 

@@ -4,10 +4,9 @@
 // only proposes candidates and overlooks none, each candidate's t and parameters are computed in double from the shape, and equal
 // distances go to the lower (shape, primitive).
 //
-// Motion: a ray has its time, and every decision about a candidate is taken with the ray at hand (impl.h: meetOne, meetExact). Shapes
-// that move will bring a mesh a key (or matrices) to both; in the tree the boxes of a child at the first and the last key will be
-// blended by the ray's time in visitNode(), and leaves of moving triangles hold their vertices at both keys. A Hit gets the time for
-// Shape::points(). Nothing else of this interface changes.
+// Two levels: a shape that is geometry::Placed is a leaf of the tree of all, and has a tree of its own in the space of its geometry,
+// one for all places of that geometry. A ray that comes to it is taken there in double, by the place at the ray's time; t stays what
+// it is. What deforms has leaves whose triangles stand where they are at the ray's time.
 #pragma once
 #include "base/diagnostics.h"
 #include "geometry/shape.h"
@@ -34,7 +33,7 @@ struct Ray {
     Vec3 org, dir;
     float tnear = 0;                 ///< hits have t > tnear ...
     float tfar = 1e38f;              ///< ... and t < tfar
-    float time = 0;                  ///< shutter time, 0 to 1; nothing moves yet
+    float time = 0;                  ///< of the shutter, 0 to 1
     uint32_t mask = kAll;            ///< meets shapes whose visibility shares a bit
     uint32_t excludeShape = kNone, excludePrim = kNone; ///< a surface to pass through: one primitive; prim kNone: the whole shape
     /// Hit::distance of the excluded primitive, for a ray that goes on behind it: of what lies at one distance it has met those that come
@@ -48,8 +47,9 @@ struct Ray {
 /// What evaluateHit of the shape needs. shape == kNone: nothing was met.
 struct Hit {
     float t = 0;
-    uint32_t shape = kNone;          ///< index into the vector the Accel was built from
+    uint32_t shape = kNone;          ///< index into the vector the Accel was built from: the placement
     uint32_t prim = 0;
+    float time = 0;                  ///< the ray's
     double b1 = 0, b2 = 0;
     double distance = 0;             ///< t before it was rounded
     bool valid() const { return shape != kNone; }
@@ -78,10 +78,15 @@ public:
     void occluded(std::span<const Ray>, std::span<uint8_t>) const;
 
     const std::vector<geometry::ShapeRef>& shapes() const;
-    /// The point of a hit.
-    geometry::SurfacePoint point(const Hit& h) const { return shapes()[h.shape]->evaluateHit(h.prim, h.b1, h.b2); }
+    /// The point of a hit, where it is at the hit's time.
+    geometry::SurfacePoint point(const Hit& h) const {
+        geometry::SurfacePoint p;
+        point(h, p);
+        return p;
+    }
     void point(const Hit& h, geometry::SurfacePoint& out, uint32_t needs = geometry::kNeedAll) const {
-        shapes()[h.shape]->evaluateHit(h.prim, h.b1, h.b2, out, needs);
+        const geometry::HitRef at{h.prim, h.b1, h.b2, &out, h.time};
+        shapes()[h.shape]->points({&at, 1}, needs);
     }
     /// Encloses everything.
     geometry::Bounds bounds() const;
@@ -94,10 +99,10 @@ private:
 
 /// Meeting a triangle in double: false when the line is parallel to it or the triangle has no area. b1, b2 are clamped to the
 /// triangle, for candidates that are known to be hits; `outside` says by how much they had to be.
-inline bool meetTriangle(const Vec3& org, const Vec3& dir, const Vec3& fa, const Vec3& fb, const Vec3& fc, double& t, double& b1,
-                  double& b2, double& outside) {
+inline bool meetTriangle(const Vec3d& org, const Vec3d& d, const Vec3d& fa, const Vec3d& fb, const Vec3d& fc, double& t, double& b1,
+                         double& b2, double& outside) {
     // Float coordinates subtract exactly or nearly so in double: the plane test keeps the side of an origin one float step away.
-    Vec3d a = Vec3d(fa) - Vec3d(org), b = Vec3d(fb) - Vec3d(org), c = Vec3d(fc) - Vec3d(org), d(dir);
+    Vec3d a = fa - org, b = fb - org, c = fc - org;
     Vec3d e1 = b - a, e2 = c - a, n = cross(e1, e2);
     double den = dot(n, d);
     if (!(std::fabs(den) > 0)) return false;
@@ -116,6 +121,10 @@ inline bool meetTriangle(const Vec3& org, const Vec3& dir, const Vec3& fa, const
         b2 /= s;
     }
     return true;
+}
+inline bool meetTriangle(const Vec3& org, const Vec3& dir, const Vec3& a, const Vec3& b, const Vec3& c, double& t, double& b1, double& b2,
+                         double& outside) {
+    return meetTriangle(Vec3d(org), Vec3d(dir), Vec3d(a), Vec3d(b), Vec3d(c), t, b1, b2, outside);
 }
 
 } // namespace alpenglow::accel

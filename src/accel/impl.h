@@ -3,6 +3,7 @@
 #include "accel/accel.h"
 #include "accel/direct.h"
 #include "accel/tree.h"
+#include "geometry/placed.h"
 #include <cmath>
 #include <utility>
 
@@ -39,9 +40,9 @@ constexpr double kSame = 1e-6;
 
 /// Beyond kEdge: what double arithmetic can make of the weights where a triangle is a sliver, or small and far from the origin of
 /// the ray.
-inline double edgeRoom(const Ray& r, const Vec3& fa, const Vec3& fb, const Vec3& fc) {
+inline double edgeRoom(const Vec3d& org, const Vec3d& d, const Vec3d& fa, const Vec3d& fb, const Vec3d& fc) {
     const auto norm = [](const Vec3d& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); };
-    const Vec3d a = Vec3d(fa) - Vec3d(r.org), e1 = Vec3d(fb) - Vec3d(fa), e2 = Vec3d(fc) - Vec3d(fa), d(r.dir);
+    const Vec3d a = fa - org, e1 = fb - fa, e2 = fc - fa;
     const double den = std::fabs(dot(cross(e1, e2), d));
     return den > 0 ? kEdge + 0x1p-48 * norm(a) * norm(d) * (norm(e1) + norm(e2)) / den : 0;
 }
@@ -76,6 +77,7 @@ struct Accel::Impl {
     std::vector<Ball> balls;
     Ball ballAround(uint32_t shape) const;
     bool readyDirect();
+    void refuse(Diagnostics&);
     void meetDirect(Query&) const;
 
     bool visible(const Ray& r, uint32_t s) const {
@@ -101,18 +103,18 @@ struct Accel::Impl {
         return false;
     }
 
-    /// Whether a candidate counts; then q.best is it. t is ours.
-    bool take(Query& q, uint32_t s, uint32_t prim, double t, double b1, double b2) const {
+    /// Whether a candidate counts; then q.best is it. t is ours. away(): how far its normal points along the ray, for one-sided shapes.
+    template <class Away> bool take(Query& q, uint32_t s, uint32_t prim, double t, double b1, double b2, Away away) const {
         const Ray& r = *q.ray;
         if (!(t > r.tnear && t < r.tfar)) return false;
         if (t <= r.passed && (t < r.passed || std::pair(s, prim) <= std::pair(r.excludeShape, r.excludePrim))) return false;
         if (!q.any && !before(t, s, prim, q.best)) return false;
-        const Shape& shape = *shapes[s];
-        if (shape.oneSided() && r.sides != Sides::Both &&
-            (dot(shape.hitNormal(prim, b1, b2), Vec3d(r.dir)) >= 0) != (r.sides == Sides::Back))
-            return false;
+        if (shapes[s]->oneSided() && r.sides != Sides::Both && (away() >= 0) != (r.sides == Sides::Back)) return false;
         q.best = {t, s, prim, b1, b2};
         return true;
+    }
+    bool take(Query& q, uint32_t s, uint32_t prim, double t, double b1, double b2) const {
+        return take(q, s, prim, t, b1, b2, [&] { return dot(shapes[s]->hitNormal(prim, b1, b2), Vec3d(q.ray->dir)); });
     }
     /// Whether a candidate triangle is met and counts: then q.best is it.
     bool meetOne(Query& q, uint32_t s, uint32_t prim, const Vec3& a, const Vec3& b, const Vec3& c) const {
@@ -120,7 +122,7 @@ struct Accel::Impl {
         if (!visible(r, s) || excluded(r, s, prim)) return false;
         double t, b1, b2, outside;
         if (!meetTriangle(r.org, r.dir, a, b, c, t, b1, b2, outside)) return false;
-        if (outside > kEdge && outside > edgeRoom(r, a, b, c)) return false;
+        if (outside > kEdge && outside > edgeRoom(Vec3d(r.org), Vec3d(r.dir), Vec3d(a), Vec3d(b), Vec3d(c))) return false;
         return !sameCrossing(r, s, t, a, b, c) && take(q, s, prim, t, b1, b2);
     }
 
@@ -132,16 +134,20 @@ struct Accel::Impl {
         if (s == r.excludeShape && prim == r.excludePrim) return std::max(near, double(std::nextafter(float(r.passed), INFINITY)));
         return std::max(near, std::pair(s, prim) < std::pair(r.excludeShape, r.excludePrim) ? r.passed : std::nextafter(r.passed, 0.0));
     }
-    /// Tries all points of one primitive of an exact shape; true when one was taken.
+    static Shape::Wanted wantedOf(const Query& q, const Shape& shape) {
+        return shape.oneSided() && q.ray->sides != Sides::Both ? Shape::Wanted::All
+               : q.any                                         ? Shape::Wanted::Any
+                                                               : Shape::Wanted::Nearest;
+    }
+    /// Tries all points of one primitive of an exact shape, or of a shape that is placed; true when one was taken.
     bool meetExact(Query& q, uint32_t s, uint32_t prim) const {
         const Ray& r = *q.ray;
-        if (!visible(r, s) || (r.passed < 0 && excluded(r, s, prim))) return false;
+        if (!visible(r, s)) return false;
+        if (!geometryOf.empty() && geometryOf[s] != kNone) return meetPlaced(q, s);
+        if (r.passed < 0 && excluded(r, s, prim)) return false;
         geometry::ExactHit h[4];
         const Shape& shape = *shapes[s];
-        const auto wanted = shape.oneSided() && q.ray->sides != Sides::Both ? Shape::Wanted::All
-                            : q.any                                         ? Shape::Wanted::Any
-                                                                            : Shape::Wanted::Nearest;
-        int n = shape.exactHits(prim, Vec3d(r.org), Vec3d(r.dir), exactFrom(r, s, prim), std::min(double(r.tfar), q.best.t), wanted, h);
+        int n = shape.exactHits(prim, Vec3d(r.org), Vec3d(r.dir), exactFrom(r, s, prim), std::min(double(r.tfar), q.best.t), wantedOf(q, shape), h);
         bool taken = false;
         for (int i = 0; i < n; ++i) {
             taken |= take(q, s, prim, h[i].t, h[i].u, h[i].v);
@@ -149,6 +155,27 @@ struct Accel::Impl {
         }
         return taken;
     }
+
+    /// A geometry, in its own space, for all its places.
+    struct Geometry {
+        ShapeRef shape;
+        Tree tree; ///< empty: one exact primitive
+    };
+    std::vector<std::unique_ptr<Geometry>> geometries;
+    std::vector<uint32_t> geometryOf; ///< by shape: into geometries, or kNone; empty: nothing is placed
+    void readyPlaced();
+    /// A ray in the space of a placed geometry.
+    struct Inside {
+        const Geometry* geometry;
+        const geometry::Placed* place;
+        uint32_t shape;
+        Vec3d org, dir;
+    };
+    bool meetPlaced(Query&, uint32_t s) const;
+    bool meetInside(Query&, const Inside&, uint32_t prim, const Vec3d& a, const Vec3d& b, const Vec3d& c) const;
+    bool meetInside(Query&, const Inside&, uint32_t prim) const; ///< one primitive of an exact geometry
+    bool sameCrossing(const Query&, const Inside&, double t, const Vec3d corner[3]) const;
+    bool walkInside(Query&, const Inside&) const;
 
     bool intersectOne(const Ray&, Hit&) const;
     bool occludedOne(const Ray&) const;

@@ -44,8 +44,9 @@ public:
     };
     static_assert(sizeof(Node) == 128 && sizeof(Leaf) == 128);
 
-    /// Throws std::bad_alloc when memory is short, std::length_error for more than 2^30 leaves.
-    void build(std::span<const geometry::ShapeRef>);
+    /// Throws std::bad_alloc when memory is short, std::length_error for more than 2^30 leaves. keys: of the only shape, what it is at
+    /// several times; boxes then hold it at all of them, and the vertices of leaves are those of the first.
+    void build(std::span<const geometry::ShapeRef>, std::span<const geometry::ShapeRef> keys = {});
 
     const Node* nodes() const { return nodes_.data(); }
     const Leaf* leaves() const { return leaves_.data(); }

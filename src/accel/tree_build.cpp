@@ -60,7 +60,7 @@ constexpr size_t kParallel = 8192; // references below which a task of its own c
 
 struct Tree::Builder {
     Tree& tree;
-    std::span<const geometry::ShapeRef> shapes;
+    std::span<const geometry::ShapeRef> shapes, keys;
     uint32_t triangles = 0; // numbers from here on are primitives of exact shapes: exact[number - triangles]
     std::vector<Exact> exact;
     std::unique_ptr<Ref[]> refs;
@@ -347,8 +347,10 @@ struct Tree::Builder {
                 Ref r;
                 Box b;
                 for (uint32_t c = 0; c < 3; ++c) {
-                    const Vec3& p = m.P[m.index[3 * size_t(t) + c]];
-                    b.add(Four{p.x, p.y, p.z, 0}, Four{p.x, p.y, p.z, 0});
+                    const uint32_t v = m.index[3 * size_t(t) + c];
+                    const auto add = [&](const Vec3& p) { b.add(Four{p.x, p.y, p.z, 0}, Four{p.x, p.y, p.z, 0}); };
+                    add(m.P[v]);
+                    for (const geometry::ShapeRef& key : keys) add(key->mesh().P[v]);
                 }
                 r.lo = b.lo;
                 r.hi = b.hi;
@@ -374,6 +376,8 @@ struct Tree::Builder {
     }
 };
 
-void Tree::build(std::span<const geometry::ShapeRef> shapes) { Builder{.tree = *this, .shapes = shapes}.run(); }
+void Tree::build(std::span<const geometry::ShapeRef> shapes, std::span<const geometry::ShapeRef> keys) {
+    Builder{.tree = *this, .shapes = shapes, .keys = keys}.run();
+}
 
 } // namespace alpenglow::accel

@@ -2,8 +2,11 @@
 #include "base/limits.h"
 #include "geometry/factories.h"
 #include "geometry/instance_attributes.h"
+#include "geometry/placed.h"
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
 
 namespace alpenglow::geometry {
 namespace {
@@ -57,7 +60,7 @@ void fillBasis(scene::Basis& b) {
 } // namespace
 
 ShapeRef buildShape(const scene::PrimitiveRef& prim, const scene::AttributesRef& given, const Matrix& toCamera, int instance,
-                    Diagnostics& diag, Facing facing) {
+                    Diagnostics& diag, Facing facing, const Shape* like) {
     const Entry* entry = nullptr;
     for (const Entry& e : kTable)
         if (prim->kind == e.kind) entry = &e;
@@ -88,6 +91,7 @@ ShapeRef buildShape(const scene::PrimitiveRef& prim, const scene::AttributesRef&
     s.instance = instance;
     s.facing = facing;
     s.attributes = given;
+    s.like = like;
     const bool patch = prim->kind == "Patch" || prim->kind == "PatchMesh" || prim->kind == "Curves";
     if (!given || (patch && (unset(given->ubasis) || unset(given->vbasis)))) {
         auto a = given ? std::make_shared<scene::Attributes>(*given) : std::make_shared<scene::Attributes>();
@@ -98,50 +102,210 @@ ShapeRef buildShape(const scene::PrimitiveRef& prim, const scene::AttributesRef&
     return entry->make(std::move(s), diag);
 }
 
-std::vector<ShapeRef> buildShapes(const scene::Frame& f, Diagnostics& diag, size_t most) {
-    std::vector<ShapeRef> out;
-    const Matrix& camera = f.options.worldToCamera.first();
-    // REYES turned them to the eye once; where rays come from everywhere they turn to each.
-    const Facing facing = f.options.hider != "hidden" ? Facing::Ray : f.options.projection == "perspective" ? Facing::Eye : Facing::Picture;
-    auto sayMotion = [&](const scene::Primitive& p, bool moves) {
-        if (moves || !p.motionKeys.empty() || p.toWorld.moves())
-            once(diag, "motion", Rie::Unimplement, p.place,
-                 "primitives that move are drawn where they are at their first time: their motion is not drawn yet");
-    };
-    auto full = [&](const SourcePlace& place) {
-        if (out.size() < most) return false;
-        once(diag, "limit", Rie::Limit, place,
-             "the frame has more than " + std::to_string(most) + " primitives; the rest is not drawn");
-        return true;
-    };
-    auto add = [&](const scene::PrimitiveRef& p, const scene::AttributesRef& a, const Matrix& m, int instance) {
-        if (full(p->place)) return;
-        if (ShapeRef s = buildShape(p, a, m, instance, diag, facing)) out.push_back(std::move(s));
-    };
-    for (const scene::PrimitiveRef& p : f.primitives) {
-        if (!p) continue;
-        sayMotion(*p, false); // a moving camera is the renderer's: it moves
-        add(p, p->attributes, p->toWorld.first() * camera, -1);
+namespace {
+
+using scene::PrimitiveRef;
+using scene::Transform;
+
+bool affine(const Matrix& m) {
+    constexpr double noise = 1e-7;
+    return std::fabs(m.m[0][3]) < noise && std::fabs(m.m[1][3]) < noise && std::fabs(m.m[2][3]) < noise &&
+           std::fabs(m.m[3][3] - 1) < noise;
+}
+bool invertible(const Matrix& m) {
+    bool singular = false;
+    inverse(m, &singular);
+    return !singular && determinant3(m) != 0;
+}
+
+/// Makes the shapes of one frame.
+class FrameBuilder {
+public:
+    FrameBuilder(const scene::Frame& f, Diagnostics& d, const BuildOptions& o)
+        : frame_(f), diag_(d), options_(o), shutter_(f.options), camera_(scene::at(f.options.worldToCamera, shutter_.open)),
+          // REYES turned them to the eye once; where rays come from everywhere they turn to each.
+          facing_(f.options.hider != "hidden"               ? Facing::Ray
+                  : f.options.projection == "perspective" ? Facing::Eye
+                                                          : Facing::Picture) {}
+    std::vector<ShapeRef> run();
+
+private:
+    struct Shared { ShapeRef geometry; Matrix from; }; ///< from: its space to object space
+    struct Usage { std::vector<const scene::Instance*> by; };
+
+    bool full(const SourcePlace&);
+    /// place: object to camera, over the shutter.
+    void add(const PrimitiveRef&, const scene::AttributesRef&, Transform place, int instance);
+    void addShared(const PrimitiveRef&, const scene::AttributesRef&, const Transform& place, const scene::Instance&, int instance);
+    ShapeRef geometryOf(const PrimitiveRef&, const scene::AttributesRef&, const Matrix& toCamera, int instance);
+    bool shares(const scene::Primitive&, const scene::Attributes*, size_t instances) const;
+    const Matrix& nearest(const scene::Instance&, const scene::Primitive&);
+    Transform overShutter(const Transform& toWorld) const;
+
+    const scene::Frame& frame_;
+    Diagnostics& diag_;
+    const BuildOptions& options_;
+    scene::Shutter shutter_;
+    Matrix camera_;
+    Facing facing_;
+    std::vector<ShapeRef> out_;
+    std::vector<Usage> usage_;                                                     ///< by object
+    std::map<std::pair<const scene::Primitive*, const void*>, Shared> shared_;     ///< by primitive and what of the attributes it depends on
+    std::map<const scene::Primitive*, Matrix> nearest_;
+};
+
+bool FrameBuilder::full(const SourcePlace& place) {
+    if (out_.size() < options_.most) return false;
+    once(diag_, "limit", Rie::Limit, place,
+         "the frame has more than " + std::to_string(options_.most) + " primitives; the rest is not drawn");
+    return true;
+}
+
+/// Object to camera, over the shutter.
+Transform FrameBuilder::overShutter(const Transform& toWorld) const {
+    Transform t = scene::overShutter(toWorld, shutter_);
+    for (Matrix& m : t.keys) m = m * camera_;
+    return t;
+}
+
+/// The primitive at one or several times of the shutter, in the space that toCamera leads to. Null: reported.
+ShapeRef FrameBuilder::geometryOf(const PrimitiveRef& p, const scene::AttributesRef& a, const Matrix& toCamera, int instance) {
+    std::vector<float> times = scene::keysOverShutter(*p, shutter_);
+    if (times.size() > 1) {
+        // The numbers of a quadric are what moves linearly, not its points: keys between follow them.
+        const PrimitiveRef last = scene::primitiveAt(p, shutter_.close);
+        if (!p->numbers.empty() && p->kind != "NuPatch" && p->numbers != last->numbers) {
+            std::vector<float> more;
+            for (size_t i = 0; i + 1 < times.size(); ++i)
+                for (int k = 0; k < 8; ++k) more.push_back(times[i] + (times[i + 1] - times[i]) * float(k) / 8);
+            more.push_back(1);
+            times = std::move(more);
+        }
     }
-    for (size_t i = 0; i < f.instances.size(); ++i) {
-        const scene::Instance& inst = f.instances[i];
-        if (inst.object < 0 || size_t(inst.object) >= f.objects.size()) {
-            diag.report(Severity::Error, Rie::BadHandle, inst.place, "ObjectInstance of an object that does not exist");
+    std::vector<ShapeRef> keys;
+    for (float t : times) {
+        ShapeRef k = buildShape(scene::primitiveAt(p, shutter_.at(t)), a, toCamera, instance, diag_, facing_, keys.empty() ? nullptr : keys[0].get());
+        if (!k) return nullptr;
+        keys.push_back(std::move(k));
+    }
+    if (keys.size() == 1) return keys[0];
+    ShapeSource s = keys[0]->source();
+    return std::make_shared<Deforming>(std::move(s), std::move(keys), std::move(times));
+}
+
+void FrameBuilder::add(const PrimitiveRef& p, const scene::AttributesRef& a, Transform place, int instance) {
+    if (full(p->place)) return;
+    if (place.moves() && !std::all_of(place.keys.begin(), place.keys.end(), affine)) {
+        once(diag_, "movingprojective", Rie::Incapable, p->place,
+             "a moving transformation of this " + p->kind + " holds a perspective: it stands where it is when the shutter opens");
+        place = Transform(place.first());
+    }
+    const Matrix open = place.first();
+    const bool deforms = scene::keysOverShutter(*p, shutter_).size() > 1;
+    if (!place.moves() && !deforms) {
+        if (ShapeRef s = buildShape(scene::primitiveAt(p, shutter_.open), a, open, instance, diag_, facing_)) out_.push_back(std::move(s));
+        return;
+    }
+    // The geometry lives where the shutter opens, so that what does not move has the numbers that it has in a still picture.
+    Matrix home = open;
+    if (!invertible(home))
+        for (const Matrix& m : place.keys)
+            if (invertible(m)) home = m;
+    const ShapeRef geometry = geometryOf(p, a, home, instance);
+    if (!geometry) return;
+    const Matrix back = inverse(home);
+    for (Matrix& m : place.keys) m = m == home ? Matrix() : back * m;
+    ShapeSource s = geometry->source();
+    s.toCamera = open;
+    out_.push_back(std::make_shared<Placed>(std::move(s), geometry, place));
+}
+
+/// Whether the instances of a primitive should share it: it is large enough to matter, and what depends on the place (the grid of what
+/// is displaced, the area of an emitter) does not make it different in each.
+bool FrameBuilder::shares(const scene::Primitive& p, const scene::Attributes* a, size_t instances) const {
+    if (instances < 2 || !a || a->displacement || a->areaLight >= 0) return false;
+    if (facing_ != Facing::Ray && (p.kind == "Curves" || p.kind == "Points")) return false; // each turns to the eye
+    size_t numbers = 0;
+    for (const scene::Param& v : p.params)
+        if (v.name == "P" || v.name == "Pw" || v.name == "Pz") numbers += v.numbers.size();
+    return numbers > 0 && instances * numbers > options_.shareFrom;
+}
+
+/// Of the instances of a primitive, the one that is seen largest: what is diced finely enough there is so everywhere.
+const Matrix& FrameBuilder::nearest(const scene::Instance& inst, const scene::Primitive& p) {
+    const auto [at, fresh] = nearest_.try_emplace(&p);
+    if (!fresh) return at->second;
+    Bounds b;
+    if (const scene::Param* P = scene::find(p.params, "P"))
+        for (size_t i = 0; i + 2 < P->numbers.size(); i += 3) b.add(Vec3(P->numbers[i], P->numbers[i + 1], P->numbers[i + 2]));
+    if (b.empty()) b.add(Vec3(0.f));
+    const Vec3d centre = Vec3d(b.lo) * 0.5 + Vec3d(b.hi) * 0.5;
+    double largest = -1;
+    for (const scene::Instance* i : usage_[size_t(inst.object)].by) {
+        const Matrix m = scene::at(p.toWorld, shutter_.open) * scene::at(i->toWorld, shutter_.open) * camera_;
+        if (!invertible(m) || !affine(m)) continue;
+        const double size = std::cbrt(std::fabs(determinant3(m))) / std::max(length(transformPoint(m, centre)), 1e-30);
+        if (size > largest) largest = size, at->second = m;
+    }
+    return at->second;
+}
+
+void FrameBuilder::addShared(const PrimitiveRef& p, const scene::AttributesRef& a, const Transform& place, const scene::Instance& inst,
+                             int instance) {
+    if (full(p->place)) return;
+    const bool polygons = p->kind.find("Polygon") != std::string::npos;
+    auto [at, fresh] = shared_.try_emplace({p.get(), polygons ? nullptr : a.get()});
+    Shared& shared = at->second;
+    if (fresh) {
+        const Matrix& home = nearest(inst, *p);
+        shared.geometry = geometryOf(p, a, home, instance);
+        shared.from = inverse(home);
+    }
+    if (!shared.geometry) return;
+    for (const Matrix& m : place.keys)
+        if (!affine(m) || (&m == &place.keys[0] && !invertible(m))) return add(p, a, place, instance);
+    ShapeSource s = shared.geometry->source();
+    s.attributes = a;
+    s.toCamera = place.first();
+    s.instance = instance;
+    Transform from = place;
+    for (Matrix& m : from.keys) m = shared.from * m;
+    out_.push_back(std::make_shared<Placed>(std::move(s), shared.geometry, from));
+}
+
+std::vector<ShapeRef> FrameBuilder::run() {
+    usage_.resize(frame_.objects.size());
+    for (const scene::Instance& i : frame_.instances)
+        if (i.object >= 0 && size_t(i.object) < usage_.size()) usage_[size_t(i.object)].by.push_back(&i);
+    for (const PrimitiveRef& p : frame_.primitives)
+        if (p) add(p, p->attributes, overShutter(p->toWorld), -1);
+    for (size_t i = 0; i < frame_.instances.size(); ++i) {
+        const scene::Instance& inst = frame_.instances[i];
+        if (inst.object < 0 || size_t(inst.object) >= frame_.objects.size()) {
+            diag_.report(Severity::Error, Rie::BadHandle, inst.place, "ObjectInstance of an object that does not exist");
             continue;
         }
         if (full(inst.place)) break;
+        const Transform toCamera = overShutter(inst.toWorld);
         const scene::Primitive* last = nullptr; // of a row of primitives with the same attributes
         scene::AttributesRef attributes;
-        for (const scene::PrimitiveRef& p : f.objects[size_t(inst.object)].primitives) {
+        for (const PrimitiveRef& p : frame_.objects[size_t(inst.object)].primitives) {
             if (!p) continue;
-            sayMotion(*p, inst.toWorld.moves());
             if (!last || last->attributes != p->attributes || last->attributesBefore != p->attributesBefore)
                 attributes = instanceAttributes(*p, inst);
             last = p.get();
-            add(p, attributes, p->toWorld.first() * (inst.toWorld.first() * camera), int(i));
+            Transform place = scene::compose(scene::overShutter(p->toWorld, shutter_), toCamera);
+            if (shares(*p, attributes.get(), usage_[size_t(inst.object)].by.size())) addShared(p, attributes, place, inst, int(i));
+            else add(p, attributes, std::move(place), int(i));
         }
     }
-    return out;
+    return std::move(out_);
+}
+
+} // namespace
+
+std::vector<ShapeRef> buildShapes(const scene::Frame& f, Diagnostics& diag, const BuildOptions& options) {
+    return FrameBuilder(f, diag, options).run();
 }
 
 } // namespace alpenglow::geometry

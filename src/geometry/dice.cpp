@@ -1,9 +1,11 @@
 #include "geometry/dice.h"
 #include "base/exact.h"
 #include "base/limits.h"
+#include "geometry/placed.h"
 #include <algorithm>
 #include <cmath>
 #include <tbb/parallel_for.h>
+#include <unordered_set>
 
 namespace alpenglow::geometry {
 
@@ -111,7 +113,15 @@ void displaceMesh(const Shape& shape, const DiceOptions& opt, Diagnostics& diag,
                         ", beyond its displacementbound of " + std::to_string(bound) + " (camera units); it is drawn whole");
 }
 
-void diceShapes(const std::vector<ShapeRef>& shapes, const DiceOptions& opt, Diagnostics& diag) {
+void diceShapes(const std::vector<ShapeRef>& all, const DiceOptions& opt, Diagnostics& diag) {
+    // A geometry once for all its places.
+    std::vector<ShapeRef> shapes;
+    std::unordered_set<const Shape*> known;
+    for (const ShapeRef& s : all) {
+        const Placed* p = s->placed();
+        if (!p) shapes.push_back(s);
+        else if (known.insert(p->geometry().get()).second) shapes.push_back(p->geometry());
+    }
     // Messages are kept by shape and passed on in order, so that they do not depend on threads.
     std::vector<std::vector<Diagnostic>> said(shapes.size());
     tbb::parallel_for(size_t(0), shapes.size(), [&](size_t i) {

@@ -25,7 +25,7 @@ struct DiceGrid {
 };
 
 struct DiceOptions {
-    DiceCamera camera;
+    DiceCamera camera = {};
     const StopFlag* stop = nullptr; ///< set: shapes not yet diced stay as they are, and what is diced is void; null: never
     /// Whether displace is to run for a shape; null: for those with a displacement shader (attributes().displacement).
     std::function<bool(const Shape&)> displaces;
@@ -38,6 +38,9 @@ struct DiceOptions {
         std::string space;
     };
     std::function<DeclaredBound(const Shape&)> declaredBound; ///< null: none says anything
+    /// The shape to be diced and what it is at other times: all of them are diced alike, each finely enough for all, and also those
+    /// that rays could meet exactly. Empty: a still shape.
+    std::span<const ShapeRef> keys;
 };
 
 /// Edge of a micropolygon in pixels: sqrt(ShadingRate), within limits.

@@ -97,26 +97,32 @@ DiceLines Parametric::diceLines(const DiceOptions& opt, bool displaced, Diagnost
     int pu = patchesU(), pv = patchesV();
     std::vector<double> need[2] = {std::vector<double>(size_t(pu), 1.0), std::vector<double>(size_t(pv), 1.0)};
     constexpr int kProbe = 5;
-    for (int j = 0; j < pv; ++j)
-        for (int i = 0; i < pu; ++i)
-            for (int b = 0; b < kProbe; ++b)
-                for (int a = 0; a < kProbe; ++a) {
-                    // Strictly inside the patch, so that knots do not mix neighbours' second derivatives.
-                    double u = (i + (a + 0.5) / kProbe) / pu, v = (j + (b + 0.5) / kProbe) / pv;
-                    LocalPoint p = cameraPoint(u, v);
-                    double lu = opt.camera.pixels(p.P, p.Pu) / pu / edge, lv = opt.camera.pixels(p.P, p.Pv) / pv / edge;
-                    if (!displaced) {
-                        double tol = kDeviation * edge;
-                        double cu = std::sqrt(opt.camera.pixels(p.P, p.Puu) / (8 * tol)) / pu;
-                        double cv = std::sqrt(opt.camera.pixels(p.P, p.Pvv) / (8 * tol)) / pv;
-                        double twist = std::sqrt(opt.camera.pixels(p.P, p.Puv) / (4 * tol)) / std::sqrt(double(pu) * pv);
-                        // 1.5: the probes miss the peak of what they sample.
-                        lu = std::min(lu, 1.5 * std::max(cu, twist));
-                        lv = std::min(lv, 1.5 * std::max(cv, twist));
-                    }
-                    need[0][size_t(i)] = std::max(need[0][size_t(i)], lu);
-                    need[1][size_t(j)] = std::max(need[1][size_t(j)], lv);
+    const auto probe = [&](const Parametric& shape, int i, int j) {
+        for (int b = 0; b < kProbe; ++b)
+            for (int a = 0; a < kProbe; ++a) {
+                // Strictly inside the patch, so that knots do not mix neighbours' second derivatives.
+                double u = (i + (a + 0.5) / kProbe) / pu, v = (j + (b + 0.5) / kProbe) / pv;
+                LocalPoint p = shape.cameraPoint(u, v);
+                double lu = opt.camera.pixels(p.P, p.Pu) / pu / edge, lv = opt.camera.pixels(p.P, p.Pv) / pv / edge;
+                if (!displaced) {
+                    double tol = kDeviation * edge;
+                    double cu = std::sqrt(opt.camera.pixels(p.P, p.Puu) / (8 * tol)) / pu;
+                    double cv = std::sqrt(opt.camera.pixels(p.P, p.Pvv) / (8 * tol)) / pv;
+                    double twist = std::sqrt(opt.camera.pixels(p.P, p.Puv) / (4 * tol)) / std::sqrt(double(pu) * pv);
+                    // 1.5: the probes miss the peak of what they sample.
+                    lu = std::min(lu, 1.5 * std::max(cu, twist));
+                    lv = std::min(lv, 1.5 * std::max(cv, twist));
                 }
+                need[0][size_t(i)] = std::max(need[0][size_t(i)], lu);
+                need[1][size_t(j)] = std::max(need[1][size_t(j)], lv);
+            }
+    };
+    for (int j = 0; j < pv; ++j)
+        for (int i = 0; i < pu; ++i) {
+            if (opt.keys.empty()) probe(*this, i, j);
+            for (const ShapeRef& key : opt.keys)
+                if (const auto* k = dynamic_cast<const Parametric*>(key.get()); k && k->patchesU() == pu && k->patchesV() == pv) probe(*k, i, j);
+        }
     auto total = [](const std::vector<double>& n, double scale) {
         double s = 0;
         for (double x : n) s += std::clamp(std::ceil(x * scale), 1.0, double(limits::kDiceEdge));
@@ -151,7 +157,7 @@ DiceLines Parametric::diceLines(const DiceOptions& opt, bool displaced, Diagnost
 
 void Parametric::dice(const DiceOptions& opt, Diagnostics& diag) {
     displaced_ = isDisplaced(*this, opt);
-    if (!displaced_ && !needsDicing()) return;
+    if (!displaced_ && !needsDicing() && opt.keys.empty()) return;
     DiceLines lines = diceLines(opt, displaced_, diag);
     uint32_t nu = uint32_t(lines.u.size()), nv = uint32_t(lines.v.size());
     TriMesh m;
@@ -171,7 +177,7 @@ void Parametric::dice(const DiceOptions& opt, Diagnostics& diag) {
     for (uint32_t j = 0; j + 1 < nv; ++j)
         for (uint32_t i = 0; i + 1 < nu; ++i) {
             uint32_t a = j * nu + i, b = a + 1, c = a + nu, d = c + 1;
-            if (length2(a, d) <= length2(b, c)) m.made.insert(m.made.end(), {a, b, d, a, d, c});
+            if (!opt.keys.empty() || length2(a, d) <= length2(b, c)) m.made.insert(m.made.end(), {a, b, d, a, d, c});
             else m.made.insert(m.made.end(), {a, b, c, b, d, c});
         }
     meshParam_ = std::move(param);

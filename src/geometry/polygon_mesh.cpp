@@ -62,7 +62,10 @@ PolygonMesh::PolygonMesh(ShapeSource s, PolygonInput&& in, const std::vector<flo
     cornerCount_ = uint32_t(in.vertex.size());
     for (int& v : in.vertex)
         if (v >= 0) vertexCount_ = std::max(vertexCount_, uint32_t(v) + 1);
-    if (!takeTriangles(in)) cutFaces(in, diag);
+    const auto* like = dynamic_cast<const PolygonMesh*>(source_.like);
+    source_.like = nullptr;
+    if (like) cutAlike(*like, in);
+    else if (!takeTriangles(in)) cutFaces(in, diag);
     in = {}; // what follows needs memory
     triangles_ = mesh_.triangles();
     const uint32_t points = uint32_t(P.size() / 3);
@@ -126,6 +129,26 @@ void PolygonMesh::cutFaces(const PolygonInput& in, Diagnostics& diag) {
     mesh_.made.reserve(corner_.size());
     for (uint32_t c : corner_) mesh_.made.push_back(vertex(c));
     mesh_.index = mesh_.made;
+}
+
+void PolygonMesh::cutAlike(const PolygonMesh& like, const PolygonInput& in) {
+    mesh_.made.assign(like.base().index.begin(), like.base().index.end());
+    mesh_.index = mesh_.made;
+    corner_ = like.corner_;
+    face_ = like.face_;
+    if (like.faceNormal_.empty()) return;
+    faceNormal_.resize(size_t(faceCount_));
+    size_t loop = 0, corner = 0;
+    for (int f = 0; f < faceCount_; ++f) {
+        // Twice the area of the outer loop, as a vector (Newell).
+        Vec3d n;
+        const size_t first = corner;
+        for (int l = 0; l < in.loopsPerFace[size_t(f)]; ++l, ++loop) corner += size_t(in.cornersPerLoop[loop]);
+        const size_t outer = in.loopsPerFace[size_t(f)] > 0 ? size_t(in.cornersPerLoop[loop - size_t(in.loopsPerFace[size_t(f)])]) : 0;
+        const auto at = [&](size_t c) { return objectPoint(uint32_t(std::max(0, in.vertex[first + c % outer]))); };
+        for (size_t c = 0; c < outer; ++c) n += cross(at(c) - at(0), at(c + 1) - at(0));
+        faceNormal_[size_t(f)] = dot(n, n) > 0 ? Vec3(normalize(n)) : like.faceNormal_[size_t(f)];
+    }
 }
 
 /// Whether a face with this normal, of any length, has u and v along x and y.
@@ -276,11 +299,16 @@ void PolygonMesh::dice(const DiceOptions& opt, Diagnostics& diag) {
     if (!isDisplaced(*this, opt)) return;
     // Every triangle is cut alike, so that neighbours within the primitive meet without cracks.
     double edge = diceEdge(*source_.attributes), longest = 1;
-    for (uint32_t t = 0; t < triangles_; ++t)
-        for (int k = 0; k < 3; ++k) {
-            Vec3d a = cameraCorner(t, k), b = cameraCorner(t, (k + 1) % 3);
-            longest = std::max(longest, opt.camera.pixels((a + b) * 0.5, b - a) / edge);
-        }
+    const auto measure = [&](const PolygonMesh& mesh) {
+        for (uint32_t t = 0; t < mesh.triangles_; ++t)
+            for (int k = 0; k < 3; ++k) {
+                Vec3d a = mesh.cameraCorner(t, k), b = mesh.cameraCorner(t, (k + 1) % 3);
+                longest = std::max(longest, opt.camera.pixels((a + b) * 0.5, b - a) / edge);
+            }
+    };
+    if (opt.keys.empty()) measure(*this);
+    for (const ShapeRef& key : opt.keys)
+        if (const auto* mesh = dynamic_cast<const PolygonMesh*>(key.get())) measure(*mesh);
     double cap = std::sqrt(2.0 * double(limits::kDiceQuads) / double(triangles_));
     uint32_t n = uint32_t(std::clamp(std::ceil(longest), 1.0, std::clamp(std::floor(cap), 1.0, double(limits::kDiceEdge))));
     if (longest > n)

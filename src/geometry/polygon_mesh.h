@@ -57,6 +57,8 @@ private:
     };
     bool takeTriangles(const PolygonInput&);
     void cutFaces(const PolygonInput&, Diagnostics&);
+    /// As that mesh of the same faces was cut, whose points lay elsewhere.
+    void cutAlike(const PolygonMesh&, const PolygonInput&);
     Frame frame(const Vec3d& faceNormal) const;
     Plane planeOf(uint32_t tri) const;
     void setPartials(uint32_t tri, const Plane&, const Vec3d& wind, SurfacePoint&) const;

@@ -22,8 +22,9 @@ Bounds Shape::bounds() const {
 }
 
 int Shape::findPrimvar(std::string_view name) const {
-    for (size_t i = 0; i < primvars_.size(); ++i)
-        if (primvars_[i].name == name) return int(i);
+    const std::vector<PrimVar>& all = *variables_;
+    for (size_t i = 0; i < all.size(); ++i)
+        if (all[i].name == name) return int(i);
     return -1;
 }
 

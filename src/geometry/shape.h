@@ -36,6 +36,7 @@ struct SurfacePoint {
     bool displaced = false;     ///< the surface was displaced when it was diced; then all above is the undisplaced surface and:
     Vec3 displacedP, displacedN; ///< the facet that was hit: point, and unit normal on the side of n
     uint32_t prim = 0;          ///< with b1, b2: where interpolate() finds the point again. Triangle of the polygon; else 0
+    float time = 0;             ///< of the shutter, 0 to 1: when the surface is there
     double b1 = 0, b2 = 0;      ///< barycentric weights of the triangle's 2nd and 3rd corner; parametric surfaces: u and v
 };
 
@@ -56,6 +57,7 @@ struct HitRef {
     uint32_t prim = 0;
     double b1 = 0, b2 = 0;
     SurfacePoint* out = nullptr;
+    float time = 0; ///< of the shutter, 0 to 1
 };
 
 /// Triangles in camera space. P holds one unused point past `vertices` (intersectors read 16 bytes at a time).
@@ -80,6 +82,7 @@ struct ExactHit { double t, u, v; };
 
 struct DiceOptions;
 struct DiceGrid;
+class Placed;
 
 /// What shapes without a side of their own (curves and points without "N") turn to: whatever ray comes, the eye in the origin, or the
 /// plane of the picture, when the eye is far.
@@ -92,6 +95,7 @@ struct ShapeSource {
     Matrix toCamera;                 ///< object to camera
     int instance = -1;               ///< index into Frame::instances
     Facing facing = Facing::Ray;
+    const class Shape* like = nullptr; ///< while it is made: the same shape at an earlier time, which is cut into the same triangles
 };
 
 /// Sign of Ng relative to dPdu ^ dPdv (ri.md 4.1). "outside" follows the handedness of the transform, so that what a primitive
@@ -148,6 +152,20 @@ public:
     void points(std::span<const HitRef>, uint32_t needs) const;
     /// Normal of the surface a ray meets there, with orientation; not normalised. Cheaper than evaluateHit; for Sides.
     Vec3d hitNormal(uint32_t prim, double b1, double b2) const;
+    /// Rays meet points of an undiced surface, or of none with facets of its own: the surface is the mesh.
+    bool diced() const { return !meshParam_.empty(); }
+
+    // ---- motion and sharing (geometry/placed.h) -----------------------------------------------------------------------------
+    /// A shape that stands or moves where another geometry is placed; null: this is its own geometry.
+    virtual const Placed* placed() const { return nullptr; }
+    /// Object to camera at a time of the shutter.
+    virtual Matrix toCameraAt(float /*time*/) const { return source_.toCamera; }
+    /// Change of the point of the surface over the whole shutter, camera space, at its time: dPdtime times the shutter.
+    virtual Vec3 velocity(const SurfacePoint&) const { return Vec3(0.f); }
+    /// sampleArea() at a time of the shutter.
+    virtual void sampleAreaAt(double xi1, double xi2, float /*time*/, SurfacePoint& out, uint32_t needs) const {
+        sampleArea(xi1, xi2, out, needs);
+    }
 
     // ---- area, and sampling as a light (design decision 4) ------------------------------------------------------------------
     virtual double area() const = 0;
@@ -165,13 +183,15 @@ public:
 
     // ---- primitive variables ------------------------------------------------------------------------------------------------
     /// All variables but P, Pz, Pw and N; points, vectors and normals in camera space.
-    const std::vector<PrimVar>& primvars() const { return primvars_; }
+    const std::vector<PrimVar>& primvars() const { return *variables_; }
     /// Index of a variable by name, or -1.
     int findPrimvar(std::string_view name) const;
     /// Value and derivatives by u and v: PrimVar::outWidth() floats each; du and dv may be null.
-    void interpolate(int var, const SurfacePoint& at, float* out, float* du, float* dv) const;
+    virtual void interpolate(int var, const SurfacePoint& at, float* out, float* du, float* dv) const;
     /// Value of a string variable (not interpolated: constant and uniform by face, others the first corner's).
-    const std::string& stringValue(int var, const SurfacePoint& at) const;
+    virtual const std::string& stringValue(int var, const SurfacePoint& at) const;
+    /// A variable gives N.
+    bool givesNormals() const { return normal_.param != nullptr; }
 
     // ---- dicing -------------------------------------------------------------------------------------------------------------
     /// Makes the mesh that rays meet (and displaces it). Called once, before the shape is intersected. Not thread safe for one
@@ -201,6 +221,7 @@ protected:
     ShapeSource source_;
     float orientation_ = 1;
     std::vector<PrimVar> primvars_;
+    const std::vector<PrimVar>* variables_ = &primvars_; ///< those of primvars()
     int varN_ = -1, varS_ = -1, varT_ = -1, varSt_ = -1;
     PrimVar normal_;                       ///< "N" or "Np", camera space
     TriMesh mesh_;

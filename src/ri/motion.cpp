@@ -4,31 +4,6 @@
 
 namespace alpenglow::ri {
 
-Matrix at(const scene::Transform& m, double t) {
-    if (!m.moves() || t <= m.times.front()) return m.keys.front();
-    if (t >= m.times.back()) return m.keys.back();
-    size_t i = 1;
-    while (m.times[i] < t) ++i;
-    double a = m.times[i - 1], b = m.times[i], w = (t - a) / (b - a);
-    Matrix r;
-    for (int y = 0; y < 4; ++y)
-        for (int x = 0; x < 4; ++x) r.m[y][x] = (1 - w) * m.keys[i - 1].m[y][x] + w * m.keys[i].m[y][x];
-    return r;
-}
-
-scene::Transform compose(const scene::Transform& a, const scene::Transform& b) {
-    if (!a.moves() && !b.moves()) return scene::Transform(a.first() * b.first());
-    scene::Transform r;
-    r.times.clear();
-    r.keys.clear();
-    if (a.moves()) r.times = a.times;
-    if (b.moves()) r.times.insert(r.times.end(), b.times.begin(), b.times.end());
-    std::sort(r.times.begin(), r.times.end());
-    r.times.erase(std::unique(r.times.begin(), r.times.end()), r.times.end());
-    for (float t : r.times) r.keys.push_back(at(a, double(t)) * at(b, double(t)));
-    return r;
-}
-
 scene::Transform inverse(const scene::Transform& m, bool* singular) {
     scene::Transform r = m;
     if (singular) *singular = false;

@@ -1,13 +1,11 @@
 // Arithmetic of moving transforms.
 #pragma once
-#include "scene/scene.h"
+#include "scene/motion.h"
 
 namespace alpenglow::ri {
 
-/// m at time t: linear between keys, element by element; the end keys outside.
-Matrix at(const scene::Transform& m, double t);
-/// a, then b (row vectors: a * b), with a key wherever either has one.
-scene::Transform compose(const scene::Transform& a, const scene::Transform& b);
+using scene::at;
+using scene::compose;
 /// Key by key; *singular as for the matrix (any key).
 scene::Transform inverse(const scene::Transform& m, bool* singular = nullptr);
 bool finite(const Matrix& m);

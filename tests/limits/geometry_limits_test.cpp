@@ -90,11 +90,11 @@ TEST(GeometryLimits, Shapes) {
     for (int i = 0; i < 40; ++i) f.instances.push_back({0, {}, std::make_shared<scene::Attributes>(), {}});
     for (size_t most : {size_t(99), size_t(100)}) { // at the end of an instance, and within one
         Diagnostics d;
-        EXPECT_EQ(buildShapes(f, d, most).size(), most);
+        EXPECT_EQ(buildShapes(f, d, {.most = most}).size(), most);
         EXPECT_EQ(limitsSaid(d), 1);
     }
     Diagnostics enough;
-    EXPECT_EQ(buildShapes(f, enough, 120).size(), 120u);
+    EXPECT_EQ(buildShapes(f, enough, {.most = 120}).size(), 120u);
     EXPECT_EQ(limitsSaid(enough), 0);
 }
 

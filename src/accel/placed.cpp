@@ -1,0 +1,80 @@
+// Shapes that are placed: the tree of their geometry, and a ray's way into its space.
+#include "accel/impl.h"
+#include <unordered_map>
+
+namespace alpenglow::accel {
+
+void Accel::Impl::readyPlaced() {
+    std::unordered_map<const Shape*, uint32_t> known;
+    for (uint32_t s = 0; s < shapes.size(); ++s) {
+        const geometry::Placed* p = shapes[s]->placed();
+        if (!p) continue;
+        if (geometryOf.empty()) geometryOf.assign(shapes.size(), kNone);
+        const auto [at, fresh] = known.try_emplace(p->geometry().get(), uint32_t(geometries.size()));
+        geometryOf[s] = at->second;
+        if (!fresh) continue;
+        auto g = std::make_unique<Geometry>();
+        g->shape = p->geometry();
+        if (const geometry::Deforming* d = p->deforming()) g->tree.build({&d->keys()[0], 1}, d->keys());
+        else if (!g->shape->exact() || g->shape->exactPrims() > 1) g->tree.build({&g->shape, 1});
+        geometries.push_back(std::move(g));
+    }
+}
+
+bool Accel::Impl::meetPlaced(Query& q, uint32_t s) const {
+    const Ray& r = *q.ray;
+    if (r.passed < 0 && r.excludeShape == s && r.excludePrim == kNone) return false;
+    const Geometry& g = *geometries[geometryOf[s]];
+    const auto* place = static_cast<const geometry::Placed*>(shapes[s].get());
+    geometry::Affine in;
+    if (!place->toGeometry(r.time, in)) return false;
+    const Inside at{&g, place, s, in.point(Vec3d(r.org)), in.vector(Vec3d(r.dir))};
+    if (!g.tree.empty()) return walkInside(q, at);
+    return !place->deforming() && meetInside(q, at, 0);
+}
+
+bool Accel::Impl::meetInside(Query& q, const Inside& at, uint32_t prim) const {
+    const Ray& r = *q.ray;
+    if (r.passed < 0 && excluded(r, at.shape, prim)) return false;
+    geometry::ExactHit h[4];
+    const Shape& shape = *at.geometry->shape;
+    const int n = shape.exactHits(prim, at.org, at.dir, exactFrom(r, at.shape, prim), std::min(double(r.tfar), q.best.t), wantedOf(q, *at.place), h);
+    bool taken = false;
+    for (int i = 0; i < n && !(taken && q.any); ++i)
+        taken |= take(q, at.shape, prim, h[i].t, h[i].u, h[i].v, [&] { return at.place->side() * dot(shape.hitNormal(prim, h[i].u, h[i].v), at.dir); });
+    return taken;
+}
+
+/// As of what is not placed: the neighbours of a triangle that the ray goes on behind.
+bool Accel::Impl::sameCrossing(const Query& q, const Inside& at, double t, const Vec3d corner[3]) const {
+    const Ray& r = *q.ray;
+    if (!(t <= r.passed * (1 + kSame)) || r.excludeShape != at.shape || r.excludePrim == kNone) return false;
+    Vec3d last[3];
+    if (const geometry::Deforming* d = at.place->deforming()) {
+        d->corners(r.excludePrim, r.time, last);
+    } else {
+        const geometry::TriMesh& m = at.geometry->shape->mesh();
+        for (size_t k = 0; k < 3; ++k) last[k] = Vec3d(m.P[m.index[3 * size_t(r.excludePrim) + k]]);
+    }
+    const auto side = [&](const Vec3d p[3]) { return dot(cross(p[1] - p[0], p[2] - p[0]), at.dir) > 0; };
+    if (side(corner) != side(last)) return false;
+    const auto same = [](const Vec3d& a, const Vec3d& b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
+    for (int k = 0; k < 3; ++k)
+        if (same(last[k], corner[0]) || same(last[k], corner[1]) || same(last[k], corner[2])) return true;
+    return false;
+}
+
+bool Accel::Impl::meetInside(Query& q, const Inside& at, uint32_t prim, const Vec3d& a, const Vec3d& b, const Vec3d& c) const {
+    const Ray& r = *q.ray;
+    if (excluded(r, at.shape, prim)) return false;
+    double t, b1, b2, outside;
+    if (!meetTriangle(at.org, at.dir, a, b, c, t, b1, b2, outside)) return false;
+    if (outside > kEdge && outside > edgeRoom(at.org, at.dir, a, b, c)) return false;
+    const Vec3d corner[3] = {a, b, c};
+    if (sameCrossing(q, at, t, corner)) return false;
+    return take(q, at.shape, prim, t, b1, b2, [&] {
+        return at.place->side() * double(at.geometry->shape->orientation()) * dot(cross(b - a, c - a), at.dir);
+    });
+}
+
+} // namespace alpenglow::accel

@@ -1,0 +1,104 @@
+// Geometry that is shared or moves: a Placed shape puts a geometry, a shape in a space of its own, to a place that may move over the
+// shutter; a Deforming geometry is one at several times. Both are shapes, so the rest of the renderer need not know; rays come into
+// the space of the geometry (accel/).
+//
+// Times are parts of the shutter, 0 to 1. Between keys matrices and points are linear, element by element (ri.md 9.3); ri/ gives
+// rotations keys so close that this is exact enough.
+#pragma once
+#include "geometry/affine.h"
+#include "geometry/shape.h"
+#include "scene/motion.h"
+
+namespace alpenglow::geometry {
+
+/// The same primitive at several times: shapes whose meshes have the same triangles once they are diced.
+class Deforming final : public Shape {
+public:
+    /// keys, at least two, all of one kind; times: as many, 0 the first and 1 the last.
+    Deforming(ShapeSource, std::vector<ShapeRef> keys, std::vector<float> times);
+    const std::vector<ShapeRef>& keys() const { return keys_; }
+    const std::vector<float>& times() const { return times_; }
+    /// The key at or before a time, and the way to the next one, 0 to 1.
+    size_t keyAt(float time, double& way) const;
+    /// A triangle that rays meet at a time.
+    void corners(uint32_t prim, float time, Vec3d out[3]) const;
+
+    Bounds bounds() const override;
+    int faces() const override { return keys_[0]->faces(); }
+    SurfacePoint evaluate(int face, double u, double v) const override { return keys_[0]->evaluate(face, u, v); }
+    double area() const override { return keys_[0]->area(); }
+    using Shape::sampleArea;
+    SurfacePoint sampleArea(double xi1, double xi2) const override { return keys_[0]->sampleArea(xi1, xi2); }
+    void sampleAreaAt(double xi1, double xi2, float time, SurfacePoint& out, uint32_t needs) const override;
+    double sampleDensity(const SurfacePoint&) const override;
+    void interpolate(int var, const SurfacePoint& at, float* out, float* du, float* dv) const override;
+    const std::string& stringValue(int var, const SurfacePoint& at) const override { return keys_[0]->stringValue(var, at); }
+    Vec3 velocity(const SurfacePoint&) const override;
+    void dice(const DiceOptions&, Diagnostics&) override;
+
+protected:
+    size_t classCount(scene::Class) const override { return 0; }
+    int weights(scene::Class, const SurfacePoint&, Weight*) const override { return 0; }
+    SurfacePoint evaluateLocal(uint32_t prim, double b1, double b2) const override { return keys_[0]->evaluateHit(prim, b1, b2); }
+    void localPoints(std::span<const HitRef>, uint32_t needs) const override;
+
+private:
+    SurfacePoint between(const SurfacePoint&, const SurfacePoint&, double way) const;
+    void facet(SurfacePoint&, uint32_t prim, size_t key, double way, uint32_t needs) const;
+    std::vector<ShapeRef> keys_;
+    std::vector<float> times_;
+};
+
+/// A geometry at a place.
+class Placed final : public Shape {
+public:
+    /// toCamera of the source: at shutter open. place: from the space of the geometry to camera space; affine, and the same
+    /// handedness throughout.
+    Placed(ShapeSource, ShapeRef geometry, const scene::Transform& place);
+    const ShapeRef& geometry() const { return geometry_; }
+    /// Null where the geometry is the same at all times.
+    const Deforming* deforming() const { return deforming_; }
+    bool moves() const { return moving_ || deforming_; }
+    /// From camera space at a time. False: there is no way back then, and nothing to be met.
+    bool toGeometry(float time, Affine& out) const;
+    Affine fromGeometry(float time) const;
+    /// 1 or -1: the side of a normal of the geometry that is the placed one's.
+    double side() const { return side_; }
+
+    const Placed* placed() const override { return this; }
+    Matrix toCameraAt(float time) const override;
+    Vec3 velocity(const SurfacePoint&) const override;
+    Bounds bounds() const override;
+    int faces() const override { return geometry_->faces(); }
+    SurfacePoint evaluate(int face, double u, double v) const override;
+    double area() const override;
+    using Shape::sampleArea;
+    SurfacePoint sampleArea(double xi1, double xi2) const override;
+    void sampleAreaAt(double xi1, double xi2, float time, SurfacePoint& out, uint32_t needs) const override;
+    double sampleDensity(const SurfacePoint&) const override;
+    void interpolate(int var, const SurfacePoint& at, float* out, float* du, float* dv) const override;
+    const std::string& stringValue(int var, const SurfacePoint& at) const override { return geometry_->stringValue(var, at); }
+    /// The geometry is diced by diceShapes(), once for all its places.
+    void dice(const DiceOptions&, Diagnostics&) override {}
+
+protected:
+    size_t classCount(scene::Class) const override { return 0; }
+    int weights(scene::Class, const SurfacePoint&, Weight*) const override { return 0; }
+    SurfacePoint evaluateLocal(uint32_t prim, double b1, double b2) const override;
+    void localPoints(std::span<const HitRef>, uint32_t needs) const override;
+
+private:
+    struct Moving { std::vector<float> times; std::vector<Affine> keys; };
+    struct Pose { Affine out, in; double flip; };
+    Pose poseAt(float time) const;
+    void place(SurfacePoint&, const Pose&, float time) const;
+    size_t keyAt(float time, double& way) const;
+
+    ShapeRef geometry_;
+    const Deforming* deforming_ = nullptr;
+    std::unique_ptr<const Moving> moving_; ///< null: stands still
+    Affine out_, in_;                      ///< at shutter open
+    double side_ = 1;
+};
+
+} // namespace alpenglow::geometry

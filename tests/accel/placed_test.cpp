@@ -1,0 +1,312 @@
+// Shapes that are placed: instances that share a geometry against copies of it, and motion against closed forms.
+#include "accel/accel.h"
+#include "geometry/build.h"
+#include "geometry/dice.h"
+#include "geometry/placed.h"
+#include <gtest/gtest.h>
+#include <random>
+
+using namespace alpenglow;
+using namespace alpenglow::geometry;
+using accel::Accel;
+using accel::Hit;
+using accel::Ray;
+
+namespace {
+
+scene::Param variable(const char* name, scene::Class c, scene::Type t, std::vector<float> v) {
+    scene::Param p;
+    p.name = name;
+    p.cls = c;
+    p.type = t;
+    p.numbers = std::move(v);
+    return p;
+}
+
+/// A bumpy ball of quadrilaterals, with variables of all types that turn.
+std::shared_ptr<scene::Primitive> ball(int n) {
+    auto p = std::make_shared<scene::Primitive>();
+    p->kind = "PointsPolygons";
+    std::vector<float> P, V;
+    std::mt19937 rng(7);
+    std::uniform_real_distribution<float> bump(0.9f, 1.1f);
+    for (int j = 0; j <= n; ++j)
+        for (int i = 0; i < 2 * n; ++i) {
+            const double theta = kPi * j / n, phi = kPi * i / n, r = bump(rng);
+            P.insert(P.end(), {float(r * std::sin(theta) * std::cos(phi)), float(r * std::sin(theta) * std::sin(phi)), float(r * std::cos(theta))});
+            V.insert(V.end(), {bump(rng), bump(rng), bump(rng)});
+        }
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < 2 * n; ++i) {
+            const int k = (i + 1) % (2 * n);
+            p->ints.push_back(4);
+            p->ints2.insert(p->ints2.end(), {j * 2 * n + i, j * 2 * n + k, (j + 1) * 2 * n + k, (j + 1) * 2 * n + i});
+        }
+    using scene::Class;
+    using scene::Type;
+    p->params = {variable("P", Class::Vertex, Type::Point, P), variable("N", Class::Vertex, Type::Normal, V),
+                 variable("way", Class::Varying, Type::Vector, V), variable("spot", Class::Varying, Type::Point, V),
+                 variable("facing", Class::Varying, Type::Normal, V)};
+    p->attributes = std::make_shared<scene::Attributes>();
+    return p;
+}
+
+struct World {
+    std::vector<ShapeRef> shapes;
+    std::unique_ptr<Accel> accel;
+    Diagnostics diag;
+    World(const scene::Frame& f, size_t shareFrom) {
+        shapes = buildShapes(f, diag, {.shareFrom = shareFrom});
+        diceShapes(shapes, DiceOptions{.camera = DiceCamera::from(f.options)}, diag);
+        accel = std::make_unique<Accel>(shapes, std::vector<uint32_t>{}, diag);
+    }
+};
+
+scene::Frame manyBalls(int sides) {
+    scene::Frame f;
+    f.objects.push_back({"ball", {ball(12)}});
+    std::mt19937 rng(3);
+    std::uniform_real_distribution<double> u(-1, 1);
+    auto a = std::make_shared<scene::Attributes>();
+    a->sides = sides;
+    for (int i = 0; i < 40; ++i) {
+        scene::Instance inst;
+        inst.object = 0;
+        inst.attributes = a;
+        const Matrix m = scaleMatrix(1 + 0.5 * u(rng), i % 3 == 0 ? -1 : 1, 1) * rotateMatrix(180 * u(rng), u(rng), u(rng), 1) *
+                         translateMatrix(6 * u(rng), 6 * u(rng), 20 + 6 * u(rng));
+        inst.toWorld = scene::Transform(m);
+        f.instances.push_back(inst);
+    }
+    return f;
+}
+
+std::vector<Ray> rays(int n, float time = 0) {
+    std::mt19937 rng(11);
+    std::uniform_real_distribution<float> u(-1, 1);
+    std::vector<Ray> r(static_cast<size_t>(n));
+    for (Ray& x : r) {
+        x.org = Vec3(8 * u(rng), 8 * u(rng), 20 + 8 * u(rng));
+        x.dir = Vec3(u(rng), u(rng), u(rng));
+        x.time = time;
+    }
+    return r;
+}
+
+void expectNear(const Vec3& a, const Vec3& b, float room, const char* what) {
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(a[k], b[k], room) << what;
+}
+
+} // namespace
+
+// The vertices of copies are rounded once in camera space, those of instances once in the space that they share: coordinates up to 30
+// and sizes of about 1 make that 30 * 2^-24 * 2, and a facet of size 0.2 turns by ten times that.
+TEST(Placed, InstancesAreCopies) {
+    for (int sides : {2, 1}) {
+        const scene::Frame f = manyBalls(sides);
+        World copies(f, SIZE_MAX), shared(f, 0);
+        ASSERT_EQ(copies.shapes.size(), 40u);
+        ASSERT_EQ(shared.shapes.size(), 40u);
+        ASSERT_NE(shared.shapes[1]->placed(), nullptr);
+        EXPECT_EQ(copies.shapes[1]->placed(), nullptr);
+        EXPECT_EQ(shared.shapes[0]->placed()->geometry(), shared.shapes[39]->placed()->geometry());
+        const auto r = rays(20000);
+        std::vector<Hit> a(r.size()), b(r.size());
+        copies.accel->intersect(r, a);
+        shared.accel->intersect(r, b);
+        std::vector<uint8_t> met(r.size());
+        shared.accel->occluded(r, met);
+        size_t differ = 0, hits = 0;
+        for (size_t i = 0; i < r.size(); ++i) {
+            EXPECT_EQ(met[i] != 0, b[i].valid());
+            if (a[i].valid() != b[i].valid() || a[i].shape != b[i].shape || a[i].prim != b[i].prim) {
+                ++differ;
+                continue;
+            }
+            if (!a[i].valid()) continue;
+            ++hits;
+            const SurfacePoint p = copies.accel->point(a[i]), q = shared.accel->point(b[i]);
+            expectNear(p.P, q.P, 1e-4f, "P");
+            expectNear(p.n, q.n, 1e-3f, "n");
+            expectNear(p.N, q.N, 1e-4f, "N");
+            EXPECT_EQ(p.orientation, q.orientation);
+            EXPECT_NEAR(p.u, q.u, 1e-4f);
+            expectNear(normalize(p.Ng), normalize(q.Ng), 1e-3f, "Ng");
+            const float size = 1 + length(p.dPdu) + length(p.dPdv);
+            if (size < 30) {
+                expectNear(p.dPdu, q.dPdu, 2e-3f * size * size, "dPdu");
+                expectNear(p.dPdv, q.dPdv, 2e-3f * size * size, "dPdv");
+            }
+            for (const char* name : {"way", "spot", "facing"}) {
+                float x[3], y[3];
+                const ShapeRef &s = copies.shapes[a[i].shape], &t = shared.shapes[b[i].shape];
+                s->interpolate(s->findPrimvar(name), p, x, nullptr, nullptr);
+                t->interpolate(t->findPrimvar(name), q, y, nullptr, nullptr);
+                expectNear(Vec3(x[0], x[1], x[2]), Vec3(y[0], y[1], y[2]), 2e-4f, name);
+            }
+        }
+        EXPECT_GT(hits, 3000u);
+        EXPECT_LE(differ, r.size() / 1000); // rays through edges
+    }
+}
+
+// A quadric that moves: where it is at the time of the ray, met exactly.
+TEST(Placed, MovingSphere) {
+    scene::Frame f;
+    f.options.shutterOpen = 1;
+    f.options.shutterClose = 3;
+    auto p = std::make_shared<scene::Primitive>();
+    p->kind = "Sphere";
+    p->numbers = {1, -1, 1, 360};
+    p->attributes = std::make_shared<scene::Attributes>();
+    p->toWorld.times = {0, 2, 4}; // at 1: x = 1; at 2: 2; at 3: 2 and y = 1
+    p->toWorld.keys = {translateMatrix(0, 0, 5), translateMatrix(2, 0, 5), translateMatrix(2, 2, 5)};
+    f.primitives = {p};
+    World w(f, 0);
+    ASSERT_EQ(w.shapes.size(), 1u);
+    for (float t : {0.f, .25f, .5f, .75f, 1.f}) {
+        const double x = t < .5f ? 1 + 2 * t : 2, y = t < .5f ? 0 : 2 * t - 1;
+        Ray r;
+        r.org = Vec3(float(x + 0.3), float(y - 0.2), 0);
+        r.dir = Vec3(0, 0, 1);
+        r.time = t;
+        Hit h;
+        ASSERT_TRUE(w.accel->intersect(r, h));
+        EXPECT_NEAR(h.distance, 5 - std::sqrt(1 - 0.09 - 0.04), 1e-6);
+        EXPECT_EQ(h.time, t);
+        const SurfacePoint at = w.accel->point(h);
+        expectNear(at.P, Vec3(float(x + 0.3), float(y - 0.2), float(h.distance)), 1e-6f, "P");
+        expectNear(at.n, Vec3(0.3f, -0.2f, float(h.distance - 5)), 1e-5f, "n");
+        expectNear(w.shapes[0]->velocity(at), t < .5f ? Vec3(2, 0, 0) : Vec3(0, 2, 0), 1e-5f, "velocity");
+        r.org = Vec3(float(x + 1.01), float(y), 0); // beside it
+        EXPECT_FALSE(w.accel->intersect(r, h));
+        EXPECT_FALSE(w.accel->occluded(r));
+    }
+}
+
+// At a key, and before and behind all keys, what moves is what stands there: to the bit at the opening, where it lives.
+TEST(Placed, MovingMeshStandsStillAtItsKeys) {
+    for (double open : {0., 1.}) {
+        scene::Frame moving, still;
+        auto p = ball(8), q = ball(8);
+        p->toWorld.times = {0, 1};
+        p->toWorld.keys = {translateMatrix(1, 2, 20), rotateMatrix(30, 1, 2, 3) * translateMatrix(-2, 1, 18)};
+        moving.options.shutterOpen = float(open);
+        moving.options.shutterClose = 2;
+        moving.primitives = {p};
+        q->toWorld = scene::Transform(p->toWorld.keys[open == 0 ? 0 : 1]);
+        still.primitives = {q};
+        World a(moving, 0), b(still, 0);
+        const auto r = rays(20000);
+        size_t hits = 0;
+        for (const Ray& x : r) {
+            Hit h, g;
+            EXPECT_EQ(a.accel->intersect(x, h), b.accel->intersect(x, g));
+            EXPECT_EQ(h.distance, g.distance);
+            EXPECT_EQ(h.prim, g.prim);
+            hits += h.valid();
+        }
+        EXPECT_GT(hits, 100u);
+    }
+}
+
+// A mesh whose points move linearly: at each time it is the mesh of the points between, whatever way its quadrilaterals bend.
+TEST(Placed, DeformingMesh) {
+    scene::Frame f;
+    f.options.shutterClose = 1;
+    auto first = ball(8), last = ball(8);
+    std::vector<float>& to = last->params[0].numbers;
+    for (size_t i = 0; i < to.size(); i += 3) to[i] = to[i] * 2 + 1, to[i + 1] = to[i + 1] * 0.5f + to[i + 2];
+    first->motionKeys = {last};
+    first->motionTimes = {0, 1};
+    first->toWorld = scene::Transform(translateMatrix(0, 0, 20));
+    f.primitives = {first};
+    World w(f, 0);
+    ASSERT_TRUE(w.diag.all().empty()) << w.diag.all()[0].message;
+    for (float t : {0.f, .3f, 1.f}) {
+        scene::Frame g;
+        auto p = ball(8);
+        for (size_t i = 0; i < to.size(); ++i) p->params[0].numbers[i] = float((1 - double(t)) * p->params[0].numbers[i] + double(t) * to[i]);
+        p->toWorld = first->toWorld;
+        g.primitives = {p};
+        World still(g, 0);
+        size_t hits = 0, differ = 0;
+        for (const Ray& x : rays(20000, t)) {
+            Hit a, b;
+            w.accel->intersect(x, a);
+            still.accel->intersect(x, b);
+            if (a.valid() != b.valid()) { ++differ; continue; }
+            if (!a.valid()) continue;
+            ++hits;
+            if (std::fabs(a.distance - b.distance) > 1e-4) { ++differ; continue; } // another cut of a bent quadrilateral: only at t = 0 the same
+            const SurfacePoint p = w.accel->point(a), q = still.accel->point(b);
+            expectNear(p.P, q.P, 2e-4f, "P");
+            if (a.prim != b.prim) continue;
+            expectNear(p.n, q.n, 2e-3f, "n");
+            EXPECT_NEAR(p.u, q.u, 1e-3f);
+            const float size = 1 + length(q.dPdu) + length(q.dPdv);
+            if (size < 10) expectNear(p.dPdu, q.dPdu, 2e-3f * size * size, "dPdu");
+        }
+        EXPECT_GT(hits, 100u);
+        EXPECT_LE(differ, t == 0 ? 0u : 40u) << t;
+    }
+}
+
+// A radius moves as the number that it is.
+TEST(Placed, GrowingSphere) {
+    scene::Frame f;
+    f.options.shutterClose = 1;
+    f.options.projection = "perspective";
+    auto p = std::make_shared<scene::Primitive>();
+    p->kind = "Sphere";
+    p->numbers = {1, -1, 1, 360};
+    p->attributes = std::make_shared<scene::Attributes>();
+    auto q = std::make_shared<scene::Primitive>(*p);
+    q->numbers = {2, -2, 2, 360};
+    p->motionKeys = {q};
+    p->motionTimes = {0, 1};
+    p->toWorld = scene::Transform(translateMatrix(0, 0, 5));
+    f.primitives = {p};
+    World w(f, 0);
+    for (float t : {0.f, .2f, .5f, .9f, 1.f}) {
+        Ray r;
+        r.org = Vec3(0.3f, 0.2f, 0);
+        r.dir = Vec3(0, 0, 1);
+        r.time = t;
+        Hit h;
+        ASSERT_TRUE(w.accel->intersect(r, h)) << t;
+        const double radius = 1 + t, z = std::sqrt(radius * radius - 0.13);
+        EXPECT_NEAR(h.distance, 5 - z, 1e-3); // facets stray by a twentieth of a pixel: 3e-4 here
+        expectNear(w.accel->point(h).n, Vec3(float(0.3 / radius), float(0.2 / radius), float(-z / radius)), 1e-3f, "n");
+    }
+}
+
+// Closed bodies that move leak no ray: from inside each ray meets the skin, at its own time.
+TEST(Placed, NothingLeaks) {
+    for (bool deforms : {false, true}) {
+        scene::Frame f;
+        f.options.shutterClose = 1;
+        auto p = ball(16);
+        if (deforms) {
+            auto q = ball(16);
+            for (float& x : q->params[0].numbers) x *= 1.5f;
+            p->motionKeys = {q};
+            p->motionTimes = {0, 1};
+        }
+        p->toWorld.times = {0, .3f, 1};
+        p->toWorld.keys = {translateMatrix(1000, 2, 20), rotateMatrix(70, 1, 2, 3) * translateMatrix(1000, 3, 22),
+                           rotateMatrix(100, 1, 2, 3) * scaleMatrix(2, 1, .5) * translateMatrix(1002, 3, 22)};
+        f.primitives = {p};
+        World w(f, 0);
+        std::mt19937 rng(5);
+        std::uniform_real_distribution<float> u(-1, 1), time(0, 1);
+        for (int i = 0; i < 200000; ++i) {
+            Ray r;
+            r.time = time(rng);
+            const Vec3d at = w.shapes[0]->placed()->fromGeometry(r.time).point(transformPoint(w.shapes[0]->toCamera(), Vec3d(0.0)));
+            r.org = Vec3(at);
+            r.dir = Vec3(u(rng), u(rng), u(rng));
+            ASSERT_TRUE(w.accel->occluded(r)) << i << " " << deforms;
+        }
+    }
+}

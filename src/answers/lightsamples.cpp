@@ -181,8 +181,8 @@ bool Answers::lightQuery(const KernelRun& c, int li, int point, const Vec3& at, 
         Emitter::Sample s;
         const float choose = light.emitter->chooses() ? rng.one(p.ray->vertex, use, nth) : 0;
         const Vec2 u = rng.pair(p.ray->vertex, use, nth);
-        if (!(light.mean ? light.emitter->sampleSurface(at, u, choose, s, p.surface, light.pointNeeds)
-                         : light.emitter->sample(at, u, choose, s, p.surface, light.pointNeeds)))
+        if (!(light.mean ? light.emitter->sampleSurface(at, u, choose, of.shutter, s, p.surface, light.pointNeeds)
+                         : light.emitter->sample(at, u, choose, of.shutter, s, p.surface, light.pointNeeds)))
             return false;
         p.shape = s.shape;
         p.P = p.surface.P;
@@ -215,7 +215,7 @@ bool Answers::lightQuery(const KernelRun& c, int li, int point, const Vec3& at, 
         *factor = 2 * cap / float(turns); // 1 / (pi pdf n)
     } else {
         p.shape = nullptr;
-        p.P = Vec3(transformPoint(light.instance->toCurrent, {0, 0, 0}));
+        p.P = Vec3(transformPoint(light.instance->toCurrentAt(of.shutter), {0, 0, 0}));
         if (light.cone) {
             if (p.ray && world_->settings_.hider == Hider::Path)
                 p.Ci = coneNumbers(random(*p.ray).draw(uint32_t(turn), uint32_t(turns)).pair(p.ray->vertex, use, nth));

@@ -1,5 +1,6 @@
 #include "geometry/build.h"
 #include "base/limits.h"
+#include "geometry/dice.h"
 #include "geometry/factories.h"
 #include "geometry/instance_attributes.h"
 #include "geometry/placed.h"
@@ -118,6 +119,15 @@ bool invertible(const Matrix& m) {
     return !singular && determinant3(m) != 0;
 }
 
+/// The middle of the points of a primitive, object space; of a quadric, its origin.
+Vec3d centreOf(const scene::Primitive& p) {
+    Bounds b;
+    if (const scene::Param* P = scene::find(p.params, "P"))
+        for (size_t i = 0; i + 2 < P->numbers.size(); i += 3) b.add(Vec3(P->numbers[i], P->numbers[i + 1], P->numbers[i + 2]));
+    if (b.empty()) b.add(Vec3(0.f));
+    return Vec3d(b.lo) * 0.5 + Vec3d(b.hi) * 0.5;
+}
+
 /// Makes the shapes of one frame.
 class FrameBuilder {
 public:
@@ -138,6 +148,7 @@ private:
     void add(const PrimitiveRef&, const scene::AttributesRef&, Transform place, int instance);
     void addShared(const PrimitiveRef&, const scene::AttributesRef&, const Transform& place, const scene::Instance&, int instance);
     ShapeRef geometryOf(const PrimitiveRef&, const scene::AttributesRef&, const Matrix& toCamera, int instance);
+    scene::AttributesRef coarser(const scene::AttributesRef&, const scene::Primitive&, const Transform& place) const;
     bool shares(const scene::Primitive&, const scene::Attributes*, size_t instances) const;
     const Matrix& nearest(const scene::Instance&, const scene::Primitive&);
     Transform overShutter(const Transform& toWorld) const;
@@ -211,13 +222,29 @@ void FrameBuilder::add(const PrimitiveRef& p, const scene::AttributesRef& a, Tra
     if (!invertible(home))
         for (const Matrix& m : place.keys)
             if (invertible(m)) home = m;
-    const ShapeRef geometry = geometryOf(p, a, home, instance);
+    const ShapeRef geometry = geometryOf(p, coarser(a, *p, place), home, instance);
     if (!geometry) return;
     const Matrix back = inverse(home);
     for (Matrix& m : place.keys) m = m == home ? Matrix() : back * m;
     ShapeSource s = geometry->source();
     s.toCamera = open;
     out_.push_back(std::make_shared<Placed>(std::move(s), geometry, place));
+}
+
+/// GeometricApproximation "motionfactor": what moves far needs fewer micropolygons. ShadingRate times the factor times a sixteenth of the
+/// pixels that the primitive moves, as 3Delight has it.
+scene::AttributesRef FrameBuilder::coarser(const scene::AttributesRef& a, const scene::Primitive& p, const Transform& place) const {
+    const scene::Param* f = a ? a->value("GeometricApproximation:motionfactor") : nullptr;
+    if (!f || f->numbers.empty() || !(f->numbers[0] > 0) || !place.moves()) return a;
+    const DiceCamera camera = DiceCamera::from(frame_.options);
+    const Vec3d centre = centreOf(p), from = transformPoint(place.first(), centre);
+    double pixels = 0;
+    for (const Matrix& m : place.keys) pixels = std::max(pixels, camera.pixels(from, transformPoint(m, centre) - from));
+    const double rate = double(f->numbers[0]) / 16 * pixels;
+    if (!(rate > 1)) return a;
+    auto out = std::make_shared<scene::Attributes>(*a);
+    out->shadingRate = float(std::min(double(a->shadingRate) * rate, 1e4));
+    return out;
 }
 
 /// Whether the instances of a primitive should share it: it is large enough to matter, and what depends on the place (the grid of what
@@ -235,11 +262,7 @@ bool FrameBuilder::shares(const scene::Primitive& p, const scene::Attributes* a,
 const Matrix& FrameBuilder::nearest(const scene::Instance& inst, const scene::Primitive& p) {
     const auto [at, fresh] = nearest_.try_emplace(&p);
     if (!fresh) return at->second;
-    Bounds b;
-    if (const scene::Param* P = scene::find(p.params, "P"))
-        for (size_t i = 0; i + 2 < P->numbers.size(); i += 3) b.add(Vec3(P->numbers[i], P->numbers[i + 1], P->numbers[i + 2]));
-    if (b.empty()) b.add(Vec3(0.f));
-    const Vec3d centre = Vec3d(b.lo) * 0.5 + Vec3d(b.hi) * 0.5;
+    const Vec3d centre = centreOf(p);
     double largest = -1;
     for (const scene::Instance* i : usage_[size_t(inst.object)].by) {
         const Matrix m = scene::at(p.toWorld, shutter_.open) * scene::at(i->toWorld, shutter_.open) * camera_;

@@ -1,4 +1,5 @@
 #include "geometry/instance_attributes.h"
+#include "scene/motion.h"
 #include <cstring>
 
 namespace alpenglow::geometry {
@@ -21,7 +22,7 @@ void takeShader(scene::ShaderRef& to, const scene::ShaderRef& inside, const scen
         return;
     }
     auto moved = std::make_shared<scene::ShaderCall>(*inside);
-    moved->toWorld = scene::Transform(inside->toWorld.first() * toWorld.first());
+    moved->toWorld = scene::compose(inside->toWorld, toWorld);
     to = std::move(moved);
 }
 bool same(const scene::Param* a, const scene::Param* b) {

@@ -27,18 +27,6 @@ Vec2 toDisc(Vec2 u) {
     return {float(r * c), float(r * s)};
 }
 
-Matrix at(const scene::Transform& t, double time) {
-    if (!t.moves() || time <= t.times.front()) return t.keys.front();
-    if (time >= t.times.back()) return t.keys.back();
-    size_t i = size_t(std::upper_bound(t.times.begin(), t.times.end(), float(time)) - t.times.begin());
-    i = std::clamp(i, size_t(1), t.keys.size() - 1);
-    double span = double(t.times[i]) - t.times[i - 1], f = span > 0 ? (time - t.times[i - 1]) / span : 0;
-    Matrix m;
-    for (int r = 0; r < 4; ++r)
-        for (int c = 0; c < 4; ++c) m.m[r][c] = t.keys[i - 1].m[r][c] * (1 - f) + t.keys[i].m[r][c] * f;
-    return m;
-}
-
 } // namespace
 
 void imageSize(const scene::Options& o, int* width, int* height) {
@@ -117,20 +105,14 @@ Camera::Camera(const scene::Options& o, Diagnostics& diags) {
             focus_ = o.focalDistance;
         } else bad("DepthOfField: focal length and distance must be positive; everything is in focus");
     }
-    double offset = 0;
-    if (auto i = o.values.find("shutter:offset"); i != o.values.end() && !i->second.numbers.empty())
-        offset = i->second.numbers[0];
-    open_ = o.shutterOpen + offset;
-    close_ = o.shutterClose + offset;
-    if (close_ < open_) {
-        bad("Shutter: it closes before it opens; there is no motion blur");
-        close_ = open_;
-    }
+    if (o.shutterClose < o.shutterOpen) bad("Shutter: it closes before it opens; there is no motion blur");
+    shutter_ = scene::Shutter(o);
+    opening_ = ShutterOpening(o, diags);
     transform_ = o.worldToCamera;
-    worldToCamera_ = transform_.first();
+    worldToCamera_ = scene::at(transform_, shutter_.open);
 }
 
-Matrix Camera::cameraToFirst(double time) const { return inverse(at(transform_, time)) * worldToCamera_; }
+Matrix Camera::cameraToFirst(double time) const { return inverse(scene::at(transform_, time)) * worldToCamera_; }
 
 transport::CameraRay Camera::ray(double rx, double ry, Vec2 lens, float time01) const {
     double xs = left_ + (right_ - left_) * rx / width_, ys = top_ - (top_ - bottom_) * ry / height_;
@@ -154,12 +136,14 @@ transport::CameraRay Camera::ray(double rx, double ry, Vec2 lens, float time01) 
     direction /= l;
 
     transport::CameraRay r;
-    r.time = float(open_ + (close_ - open_) * time01);
+    const double part = opening_.at(double(time01));
+    r.shutter = float(part);
+    r.time = float(shutter_.at(part));
     // A pixel's side grows with depth, and depth with the cosine times the way.
     r.spread = perspective_ ? float(0.5 * pixel * cosine) : 0;
     r.width = perspective_ ? float(0.5 * pixel * near_) : float(0.5 * pixel);
     if (transform_.moves()) {
-        Matrix m = cameraToFirst(open_ + (close_ - open_) * time01);
+        Matrix m = cameraToFirst(shutter_.at(part));
         origin = transformPoint(m, origin);
         direction = transformVector(m, direction);
         double stretch = length(direction);

@@ -5,7 +5,8 @@
 #pragma once
 #include "base/diagnostics.h"
 #include "render/film.h"
-#include "scene/scene.h"
+#include "render/shutter.h"
+#include "scene/motion.h"
 #include "transport/integrator.h"
 
 namespace alpenglow::render {
@@ -22,16 +23,16 @@ public:
     /// The pixels of CropWindow.
     const Window& window() const { return window_; }
     bool hasLens() const { return lensRadius_ > 0; }
-    double shutterOpen() const { return open_; }
-    double shutterClose() const { return close_; }
+    double shutterOpen() const { return shutter_.open; }
+    double shutterClose() const { return shutter_.close; }
 
     /// The ray through a raster position. lens: two numbers of [0,1) for the point on the lens; time01: one for the shutter.
-    /// The ray starts at the near plane. Origin and direction are in camera space at the first key of the world's
-    /// transformation, where the scene is kept; `cosine` belongs to the camera at the ray's own time. width and spread describe
+    /// The ray starts at the near plane. Origin and direction are in camera space when the shutter
+    /// opens, where the scene is kept; `cosine` belongs to the camera at the ray's own time. width and spread describe
     /// half the larger side of a pixel.
     transport::CameraRay ray(double rx, double ry, Vec2 lens, float time01) const;
 
-    const Matrix& worldToCamera() const { return worldToCamera_; } ///< at the first key
+    const Matrix& worldToCamera() const { return worldToCamera_; } ///< when the shutter opens
     /// World to NDC: (0,0) upper left, (1,1) lower right of the whole picture; z as RiPerspective leaves it.
     Matrix worldToNDC() const;
 
@@ -47,7 +48,8 @@ private:
     double fov_ = 90, tangent_ = 1; ///< degrees; tan(fov / 2)
     double near_ = 0;
     double lensRadius_ = 0, focus_ = 1;
-    double open_ = 0, close_ = 0;
+    scene::Shutter shutter_;
+    ShutterOpening opening_;
     scene::Transform transform_;
     Matrix worldToCamera_;
 };

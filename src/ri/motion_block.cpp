@@ -72,6 +72,7 @@ void Interpreter::moveTransform(const Motion& m) {
     t.times.clear();
     t.keys.clear();
     bool rotation = r->name == "Rotate";
+    const bool whole = r->name == "ConcatTransform" || r->name == "Transform"; // matrices of any making
     for (const Call& c : m.calls)
         for (size_t k = 1; rotation && k < 4; ++k) rotation = c.number(0, k) == m.calls[0].number(0, k);
     for (size_t i = 0; i < m.calls.size(); ++i) {
@@ -80,6 +81,12 @@ void Interpreter::moveTransform(const Motion& m) {
         if (rotation && i > 0) {
             const auto &a = m.calls[i - 1].numbers(0), &b = m.calls[i].numbers(0);
             addRotationKeys(t, m.times[i - 1], a[0], m.times[i], b[0], b[1], b[2], b[3]);
+            continue;
+        }
+        if (whole && !t.keys.empty()) {
+            const Matrix last = t.keys.back();
+            const double since = t.times.back();
+            addMatrixKeys(t, since, last, m.times[i], *matrix);
             continue;
         }
         t.times.push_back(m.times[i]);

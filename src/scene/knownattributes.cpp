@@ -139,7 +139,7 @@ constexpr OptionDescription kAttributes[] = {
      "Diffuse bounces after which these surfaces send no more diffuse rays."},
     {"trace:maxspeculardepth", "int", "32 under path, else 2", "5", Used,
      "Specular bounces after which these surfaces send no more specular rays."},
-    {"trace:samplemotion", "int", "0", "1", Asked, "Rays are traced at the time of their sample."},
+    {"trace:samplemotion", "int", "0", "1", Asked, "hidden: on any surface, shading and rays are those of the time of the sample, not of when the shutter opens."},
     {"trace:samplepattern", "", "", "", Ignored, kPrman},
     {"trimcurve:sense", "string", "", "", Ignored, kSeveral},
     {"visibility:camera", "int", "1", "0", Used, "Seen by the camera."},

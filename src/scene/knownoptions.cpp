@@ -101,7 +101,7 @@ constexpr OptionDescription kOptions[] = {
     {"shadow:sample", "int", "", "", Ignored, kDelight},
     {"shutter:clampmotion", "", "", "", Ignored, kPrman},
     {"shutter:offset", "float", "0", "0.5", Used, "Added to both times of Shutter."},
-    {"shutter:shutteropening", "float[2]", "", "", Ignored, kDelight},
+    {"shutter:shutteropening", "float[2]", "0 1", "0.25 0.75", Used, "Parts of the shutter's time when it is wide open and when it begins to close; both go linearly."},
     {"statistics:displace_ratios", "", "", "", Ignored, kPrman},
     {"statistics:echoapi", "", "", "", Ignored, kAqsis},
     {"statistics:endofframe", "int", "", "", Ignored, "several renderers; --stats is the way here"},
@@ -137,7 +137,7 @@ constexpr OptionDescription kHiderParameters[] = {
      "hidden and raytrace: 1: samples lie at random places of their cells; 0: in the middle of them; 2: all pixels have the same "
      "pattern."},
     {"mpcache", "", "", "", Ignored, kPrman},
-    {"samplemotion", "", "", "", Ignored, kSeveral},
+    {"samplemotion", "int", "0", "1", Used, "hidden: surfaces are shaded at the time of each sample, not when the shutter opens."},
     {"samplepattern", "", "", "", Ignored, kSeveral},
     {"sigma", "", "", "", Ignored, kPrman},
     {"sigmablur", "", "", "", Ignored, kPrman},

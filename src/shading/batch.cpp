@@ -37,6 +37,7 @@ const Variable kVariables[] = {
     {"Ngs", {kLitNormal, kZero, kZero, kZero, kZero, kZero}},
     {"ncomps", {kThree, kZero, kZero, kZero, kZero, kZero}},
     {"time", {AT(time), kZero, kZero, kZero, kZero, kZero}},
+    {"dPdtime", {AT(dPdtime), kZero, kZero, kZero, kZero, kZero}},
 };
 #undef AT
 
@@ -60,6 +61,36 @@ uint32_t needOf(int16_t offset, uint32_t& lit) {
 }
 
 } // namespace
+
+size_t MovingSpace::keyAt(float time, float& way) const {
+    way = 0;
+    if (times.size() < 2 || !(time > times.front())) return 0;
+    if (time >= times.back()) return way = 1, times.size() - 2;
+    const size_t k = size_t(std::upper_bound(times.begin(), times.end(), time) - times.begin()) - 1;
+    way = (time - times[k]) / (times[k + 1] - times[k]);
+    return k;
+}
+
+Matrix MovingSpace::at(float time) const {
+    float way;
+    const size_t k = keyAt(time, way);
+    Matrix m = toCurrent[k];
+    if (way > 0)
+        for (int y = 0; y < 4; ++y)
+            for (int x = 0; x < 4; ++x) m.m[y][x] += double(way) * (toCurrent[k + 1].m[y][x] - m.m[y][x]);
+    return m;
+}
+
+float MovingSpace::change(const std::string& parameter, size_t component, float time) const {
+    float way;
+    const size_t k = keyAt(time, way);
+    const auto value = [&](size_t key) {
+        const auto i = parameters[key].numbers.find(parameter);
+        return i != parameters[key].numbers.end() && component < i->second.size() ? i->second[component] : 0.f;
+    };
+    const float there = value(k);
+    return there - value(0) + (way > 0 ? way * (value(k + 1) - there) : 0.f);
+}
 
 BatchPlan::BatchPlan(const rsl::CompiledKernel& kernel, bool mixed) {
     for (const rsl::ir::Input& input : kernel.inputs()) {
@@ -276,14 +307,18 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
     }
     case From::Space:
         for (int i = 0; i < count; ++i) {
-            if (i > 0 && points[i].shape == points[i - 1].shape && views.index(i) == views.index(i - 1)) {
+            if (i > 0 && points[i].shape == points[i - 1].shape && views.index(i) == views.index(i - 1) &&
+                points[i].shutter == points[i - 1].shutter) {
                 for (int c = 0; c < 16; ++c) at(c, 0, i) = at(c, 0, i - 1);
                 continue;
             }
             Matrix m;
             auto own = [&](const std::string& space, Matrix& toCurrent) {
-                if (space == "object" && points[i].shape) { toCurrent = points[i].shape->toCamera(); return true; }
-                if (space == "shader" && views[i].shaderToCurrent) { toCurrent = *views[i].shaderToCurrent; return true; }
+                if (space == "object" && points[i].shape) { toCurrent = points[i].shape->toCameraAt(points[i].shutter); return true; }
+                if (space == "shader" && views[i].shaderToCurrent) {
+                    toCurrent = views[i].moving ? views[i].moving->at(points[i].shutter) : *views[i].shaderToCurrent;
+                    return true;
+                }
                 return false;
             };
             if (!(s.toSpace == "current" && own(s.space, m))) {
@@ -314,6 +349,8 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
                 const bool same = std::all_of(valueOf_.begin(), valueOf_.end(), [&](float v) { return std::memcmp(&v, valueOf_.data(), sizeof v) == 0; });
                 if (same) std::fill_n(to, count, valueOf_[0]);
                 else for (int i = 0; i < count; ++i) to[i] = valueOf_[views.index(i)];
+                for (int i = 0; i < count; ++i)
+                    if (views[i].moving) to[i] += views[i].moving->change(s.name, size_t(c), points[i].shutter);
                 if (!s.scalar)
                     for (int p = 1; p < np; ++p) std::fill_n(&at(c, p, 0), n, 0.f);
             }
@@ -340,7 +377,10 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
             }
             const std::vector<float>* numbers = numbers_[views.index(i)];
             if (!numbers) continue;
-            for (int c = 0, most = std::min(comps * s.elements, int(numbers->size())); c < most; ++c) at(c, 0, i) = (*numbers)[size_t(c)];
+            for (int c = 0, most = std::min(comps * s.elements, int(numbers->size())); c < most; ++c) {
+                at(c, 0, i) = (*numbers)[size_t(c)];
+                if (views[i].moving) at(c, 0, i) += views[i].moving->change(s.name, size_t(c), points[i].shutter);
+            }
         }
         return;
     }

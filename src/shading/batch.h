@@ -22,10 +22,23 @@ public:
     virtual bool matrix(const std::string& from, const std::string& to, Matrix& out) const = 0;
 };
 
+/// Shader space that moves: its matrices, and the parameters that were given in it, at times of the shutter (0 to 1); between them
+/// both are linear.
+struct MovingSpace {
+    std::vector<float> times;
+    std::vector<Matrix> toCurrent;
+    std::vector<ParameterBlock> parameters;
+    size_t keyAt(float time, float& way) const;
+    Matrix at(float time) const;
+    /// What a number of a parameter is more at a time than at the first.
+    float change(const std::string& parameter, size_t component, float time) const;
+};
+
 /// What the points of a batch may differ in beyond their ShadePoint: one an instance.
 struct InstanceView {
     const ParameterBlock* parameters = nullptr;
     const Matrix* shaderToCurrent = nullptr;
+    const MovingSpace* moving = nullptr; ///< null: both are the same at all times
 };
 
 /// Where the inputs of a kernel come from and where its rows lie: worked out once per kernel.

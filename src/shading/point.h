@@ -54,7 +54,8 @@ struct PathSample {
     int px = 0, py = 0;               ///< pixel and number of the sample: the key of its random numbers (design decision 10)
     uint32_t sample = 0;
     int path = -1;                    ///< index in the call of Integrator::trace()
-    float time = 0;
+    float time = 0;                   ///< as the shader sees it
+    float shutter = 0;                ///< the same as part of the time that the shutter is open
     float level = 0.5f;               ///< for what fades between levels of detail
     render::SampleNumbers numbers{render::Sampler(0, 0, 0), 0};
 };
@@ -102,6 +103,7 @@ struct PathRay {
     RayType type() const { return kind->type; }
     bool camera() const { return kind->type == RayType::Camera; }
     float time() const { return sample ? sample->time : 0; }
+    float shutter() const { return sample ? sample->shutter : 0; }
     /// The volume that it is in, by number; -1: none.
     int medium() const { return media ? media->top() : -1; }
     /// Camera: the way from the eye to the origin, before the near plane and through what was met. No lobe has drawn such a ray.
@@ -128,6 +130,8 @@ struct ShadePoint {
     Vec3 I, E;                        ///< incident vector with its length, and the ray's origin
     float du = 1, dv = 1;             ///< largest footprint over x and y (design decision 7)
     float time = 0;
+    float shutter = 0;                ///< 0 to 1: where all that moves stands
+    Vec3 dPdtime{0.f};
     Color Ci{0}, Oi{0};               ///< volumes and imagers: on entry
     float alpha = 0;
     Vec3 Ps, Ns;                      ///< lights: the point being lit and its normal

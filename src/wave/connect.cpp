@@ -121,10 +121,10 @@ void Gather::send(const Reached& r) {
     const ShadePoint& p = c_->points[size_t(l.point)];
     if (area) {
         e_.shadows.push_back(
-            {from, unit(end - from, r.w), length(end - from) * (1 - 1e-6f), given, l.target, p.time, p.ray, sums});
+            {from, unit(end - from, r.w), length(end - from) * (1 - 1e-6f), given, l.target, p.shutter, p.ray, sums});
     } else {
         const float far = light.kind == LightKind::Distant ? 1e38f : length(queries_.value[k].L);
-        e_.shadows.push_back({from, r.w, far < 1e30f ? far * (1 - 1e-5f) : far, given, l.target, p.time, p.ray, false});
+        e_.shadows.push_back({from, r.w, far < 1e30f ? far * (1 - 1e-5f) : far, given, l.target, p.shutter, p.ray, false});
     }
     ShadowRay& shadow = e_.shadows.back();
     shadow.kind = kind;

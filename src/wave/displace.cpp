@@ -15,7 +15,7 @@ std::shared_ptr<BatchContext> Engine::displace(const BatchContext& c) {
     d->bindings = c.bindings;
     for (size_t k = 0; k < d->rays.size(); ++k) d->points[k].ray = &d->rays[k];
     const ShaderInstance& shader = *c.binding->displacement;
-    const shading::InstanceView view{&shader.parameters, &shader.toCurrent};
+    const shading::InstanceView view = shader.view();
     d->batch = std::make_shared<shading::Batch>();
     d->batch->assign(bound.kernel, *bound.plan, d->points, {&view, 1}, {}, *world_);
     bindCall(d->batch->call(), *d);

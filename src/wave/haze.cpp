@@ -19,7 +19,7 @@ void Engine::haze(const Medium& medium, const SurfaceBinding& binding, std::vect
         c.surface = surface;
         c.surfacePoint.assign(of.begin(), of.end());
         c.points.swap(points); // lent
-        std::vector<shading::InstanceView> views(c.points.size(), {&medium.shader->parameters, &medium.shader->toCurrent});
+        std::vector<shading::InstanceView> views(c.points.size(), medium.shader->view());
         c.batch = std::make_shared<shading::Batch>(kernel, *medium.kernel.plan, c.points, views, *world_);
         bindCall(c.batch->call(), c);
         kernel->run(&c.batch->call());

@@ -53,7 +53,7 @@ void Engine::cast(std::span<const Sched::Task> slice) {
                 else if (climb < 0) ray.tnear = std::max(ray.tnear, float(std::min(t, 1e37)));
                 else if (height > 0) ray.tfar = 0; // along the plane, on its cut side
             }
-        ray.time = r.time();
+        ray.time = world_->shutterOf(r);
         ray.mask = visibilityBit(r.type());
         ray.excludeShape = ray.excludePrim = geometry::kNone;
         ray.sides = r.kind->set.sides;
@@ -128,7 +128,7 @@ void Engine::placePoints(HitQueue& q, BatchContext& c) {
         const uint32_t shape = q.hits[i].shape;
         run.clear();
         for (; i < n && q.hits[i].shape == shape; ++i)
-            run.push_back({q.hits[i].prim, q.hits[i].b1, q.hits[i].b2, &c.points[i].surface});
+            run.push_back({q.hits[i].prim, q.hits[i].b1, q.hits[i].b2, &c.points[i].surface, world_->shadesAtOpen_ ? 0 : q.hits[i].time});
         world_->shapes_[shape]->points(run, world_->bindings_[size_t(world_->bindingOf_[shape])].pointNeeds);
     }
     for (size_t i = 0; i < n; ++i) {
@@ -143,7 +143,9 @@ void Engine::placePoints(HitQueue& q, BatchContext& c) {
         p.N = p.surface.N;
         p.I = p.P - r.begin(); // RISpec: P - E, though rays start at the near plane, or behind what they passed through
         p.E = r.camera() ? Vec3(0, 0, 0) : r.origin;
-        p.time = r.time();
+        p.shutter = p.surface.time = world_->shadesAtOpen_ ? 0 : r.shutter();
+        p.time = world_->timeAt(p.shutter);
+        p.dPdtime = world_->moves_ ? world_->pointsVelocity(*p.shape, p.surface) : Vec3(0.f);
         if (!world_->footprints_) continue;
         const float rate = r.camera() ? world_->bindings_[size_t(c.bindings[i])].shadingRate : 1;
         shading::setFootprint(p, r.footprint, r.dir, length(p.P - r.origin), rate);

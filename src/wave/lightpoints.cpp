@@ -112,6 +112,7 @@ void Gather::queriesOf(const BoundLight& light, std::span<const std::pair<int, f
         p.du = lit.du;
         p.dv = lit.dv;
         p.time = lit.time;
+        p.shutter = lit.shutter;
         p.ray = lit.ray;
         if (!place(p, queries_.drawn.back(), size_t(point), light, number)) {
             --queries_.count;
@@ -131,8 +132,8 @@ bool Gather::place(ShadePoint& p, Emitter::Sample& s, size_t point, const BoundL
     if (light.kind == LightKind::Area) {
         const Vec2 u = numbers_.pair(number++);
         const float choose = light.emitter->chooses() ? numbers_.one(number++) : 0;
-        if (!(light.mean ? light.emitter->sampleSurface(p.Ps, u, choose, s, p.surface, light.pointNeeds)
-                         : light.emitter->sample(p.Ps, u, choose, s, p.surface, light.pointNeeds)))
+        if (!(light.mean ? light.emitter->sampleSurface(p.Ps, u, choose, p.shutter, s, p.surface, light.pointNeeds)
+                         : light.emitter->sample(p.Ps, u, choose, p.shutter, s, p.surface, light.pointNeeds)))
             return false;
         p.shape = s.shape;
         p.P = p.surface.P;
@@ -142,7 +143,7 @@ bool Gather::place(ShadePoint& p, Emitter::Sample& s, size_t point, const BoundL
     p.shape = nullptr;
     p.surface = c_->points[point].surface;
     p.N = Vec3();
-    p.P = Vec3(transformPoint(light.instance->toCurrent, {0, 0, 0}));
+    p.P = Vec3(transformPoint(light.instance->toCurrentAt(p.shutter), {0, 0, 0}));
     p.Ci = light.cone && rules_.pickOne ? coneNumbers(numbers_.pair(number++)) : Color(0);
     return true;
 }

@@ -125,11 +125,11 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
     std::vector<uint32_t> viewOf;
     for (size_t i = 0; i < call.of.size(); ++i) {
         if (i == 0 || call.of[i] != call.of[i - 1])
-            views.push_back({&call.of[i]->instance->parameters, &call.of[i]->instance->toCurrent});
+            views.push_back(call.of[i]->instance->view());
         viewOf.push_back(uint32_t(views.size() - 1));
     }
     if (views.empty())
-        views.push_back({call.parameters ? call.parameters : &light.instance->parameters, &light.instance->toCurrent});
+        views.push_back({call.parameters ? call.parameters : &light.instance->parameters, &light.instance->toCurrent, light.instance->moving.get()});
     if (!c->batch) c->batch = std::make_shared<shading::Batch>();
     c->batch->assign(bound.kernel, *bound.plan, c->points, views, viewOf, *world_);
     bindCall(c->batch->call(), *c);
@@ -239,7 +239,7 @@ void Engine::shadowLight(const KernelRun& c, const BoundLight& light, int first,
         const Vec3 w = to / far;
         const Vec3 o = geometry::offsetOrigin(lit.surface, w, length(q[i].Ps - lit.surface.P));
         const float distance = light.kind == LightKind::Distant ? 1e38f : light.kind == LightKind::Area ? far * (1 - 1e-4f) : far * (1 - 1e-5f);
-        rays.push_back({o, w, distance, Color(1), shading::kNoTarget, lit.time, lit.ray});
+        rays.push_back({o, w, distance, Color(1), shading::kNoTarget, lit.shutter, lit.ray});
         rays.back().media = mediaTowards(c, first + laneOf[i], w);
         of.push_back(i);
     }

@@ -72,7 +72,8 @@ void Engine::dim(std::span<const MediumPart> parts, std::span<const ShadowRay> r
             p.N = p.surface.n = p.surface.N = p.surface.Ng = length(p.I) > 0 ? -normalize(p.I) : Vec3(0, 0, 1);
             p.Ci = p.Oi = Color(1);
             p.ray = rays[part.ray].ray;
-            p.time = rays[part.ray].time;
+            p.shutter = rays[part.ray].time;
+            p.time = world_->timeAt(p.shutter);
         }
         hazes.assign(points.size(), {});
         haze(m, world_->bindings_[size_t(m.binding)], points, hazes, true);

@@ -22,7 +22,7 @@ struct Counters {
 struct CameraRay {
     Vec3 origin, direction;      ///< direction unit
     float width = 0, spread = 0; ///< half width of a pixel's footprint at the origin, and its growth per unit of distance
-    float time = 0;
+    float time = 0, shutter = 0; ///< in the units of Shutter, and as part of the time that it is open
     float cosine = 1;            ///< direction.z: depth = distance * cosine
     float start = 0;             ///< the way from the eye to the origin, where that is the near plane
     int px = 0, py = 0;          ///< pixel, and

@@ -15,7 +15,7 @@ void Engine::lightVisibility(BatchContext& c, const SiteInfo& s, int point, cons
     const ShadePoint& p = c.points[point];
     Vec3 w = l / length_;
     Vec3 o = geometry::offsetOrigin(p.surface, w, length(p.P - p.surface.P));
-    shadows.push_back({o, w, distance < 1e30f ? distance * (1 - 1e-4f) : 1e38f, weight, target, p.time, p.ray});
+    shadows.push_back({o, w, distance < 1e30f ? distance * (1 - 1e-4f) : 1e38f, weight, target, p.shutter, p.ray});
     shadows.back().media = mediaTowards(c, point, w);
 }
 
@@ -121,7 +121,7 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
             if (slot < 0) {
                 const InstanceRef& i = world_->bindings_[size_t(b)].*which;
                 slot = int(views_.size());
-                views_.push_back({&i->parameters, &i->toCurrent});
+                views_.push_back(i->view());
             }
             viewOf_.push_back(uint32_t(slot));
         }

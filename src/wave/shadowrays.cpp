@@ -82,10 +82,11 @@ void Engine::opacities(std::span<const OpacityQuery> met, std::span<Color> out) 
         p.N = p.surface.N;
         p.I = p.P - r.origin;
         p.E = r.origin;
-        p.time = m.ray->time;
+        p.shutter = m.ray->time;
+        p.time = world_->timeAt(p.shutter);
         shading::setFootprint(p, r.footprint, r.dir, length(p.I), 1);
     }
-    std::vector<shading::InstanceView> views(met.size(), {&b.surface->parameters, &b.surface->toCurrent});
+    std::vector<shading::InstanceView> views(met.size(), b.surface->view());
     c.batch = std::make_shared<shading::Batch>(c.bound->kernel, *c.bound->plan, c.points, views, *world_);
     if (b.displacementTells && (c.displaced = displace(c))) c.batch->tell(*c.displaced->batch);
     bindCall(c.batch->call(), c);
@@ -220,7 +221,7 @@ void Engine::transmissionRays(const SiteInfo& s, const ShadePoint& p, const Vec3
     const Vec3 a = point(0), b = point(1);
     ShadowRay ray{};
     ray.target = target;
-    ray.time = p.time;
+    ray.time = p.shutter;
     ray.ray = p.ray;
     RayKind kind = kShadowKind;
     kind.set = raySetOf(s, f, p.shape, kind.type, kind.label);

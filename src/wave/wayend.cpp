@@ -73,7 +73,8 @@ void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
             p.Ps = r.origin;
             p.P = r.origin + r.dir;
             p.N = -r.dir;
-            p.time = r.time();
+            p.shutter = world_->shadesAtOpen_ ? 0 : r.shutter();
+            p.time = world_->timeAt(p.shutter);
             p.ray = &r;
             of.push_back(t);
             litBy_.push_back(extraOf(r).lit);
@@ -122,7 +123,7 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
             const MediumPart part{r.medium(), 0, r.volumeBegin(), met[first + i].point->P};
             ShadowRay way{};
             way.ray = &r;
-            way.time = r.time();
+            way.time = world_->shutterOf(r);
             dim({&part, 1}, {&way, 1}, {&value[i].Cl, 1});
         }
         for (size_t i = first; i < end; ++i) {

@@ -8,7 +8,7 @@ namespace {
 // A whole sphere whose transform keeps it one: rows of the upper 3x3 of equal length and orthogonal.
 bool wholeSphere(const geometry::Shape& s, Vec3& centre, float& radius) {
     const auto& p = *s.source().primitive;
-    if (p.kind != "Sphere" || p.numbers.size() < 4 || !s.exact()) return false;
+    if (p.kind != "Sphere" || p.numbers.size() < 4 || !s.exact() || s.placed()) return false;
     double r = std::fabs(p.numbers[0]);
     double lo = std::min(p.numbers[1], p.numbers[2]), hi = std::max(p.numbers[1], p.numbers[2]);
     if (lo > -r || hi < r || std::fabs(p.numbers[3]) < 360) return false;
@@ -69,7 +69,7 @@ const Emitter::Entry& Emitter::entryAt(float choose) const {
     return *std::upper_bound(entries_.begin(), entries_.end() - 1, choose, above);
 }
 
-bool Emitter::sample(const Vec3& from, Vec2 u, float choose, Sample& out, geometry::SurfacePoint& point, uint32_t needs) const {
+bool Emitter::sample(const Vec3& from, Vec2 u, float choose, float time, Sample& out, geometry::SurfacePoint& point, uint32_t needs) const {
     if (entries_.empty()) return false;
     const Entry& e = entryAt(choose);
     out.shape = e.shape;
@@ -94,7 +94,8 @@ bool Emitter::sample(const Vec3& from, Vec2 u, float choose, Sample& out, geomet
             return true;
         }
     }
-    e.shape->sampleFrom(from, u.x, u.y, point, needs);
+    if (e.shape->placed()) e.shape->sampleAreaAt(u.x, u.y, time, point, needs);
+    else e.shape->sampleFrom(from, u.x, u.y, point, needs);
     Vec3 d = point.P - from;
     out.distance = length(d);
     if (!(out.distance > 0)) return false;
@@ -103,13 +104,14 @@ bool Emitter::sample(const Vec3& from, Vec2 u, float choose, Sample& out, geomet
     return out.pdf > 0 && std::isfinite(out.pdf);
 }
 
-bool Emitter::sampleSurface(const Vec3& from, Vec2 u, float choose, Sample& out, geometry::SurfacePoint& point,
+bool Emitter::sampleSurface(const Vec3& from, Vec2 u, float choose, float time, Sample& out, geometry::SurfacePoint& point,
                             uint32_t needs) const {
     if (entries_.empty()) return false;
     const Entry& e = entryAt(choose);
     out.shape = e.shape;
     out.visibility = e.visibility;
-    e.shape->sampleFrom(from, u.x, u.y, point, needs);
+    if (e.shape->placed()) e.shape->sampleAreaAt(u.x, u.y, time, point, needs);
+    else e.shape->sampleFrom(from, u.x, u.y, point, needs);
     const Vec3 d = point.P - from;
     out.distance = length(d);
     if (!(out.distance > 0)) return false;

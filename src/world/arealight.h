@@ -31,10 +31,11 @@ public:
     };
     /// A point of the light for the lit point at `from`. False when the draw faces edge-on or coincides with `from`.
     /// needs: geometry::PointNeed of `point`.
-    bool sample(const Vec3& from, Vec2 u, float choose, Sample& out, geometry::SurfacePoint& point, uint32_t needs = geometry::kNeedAll) const;
+    /// time: of the shutter, 0 to 1.
+    bool sample(const Vec3& from, Vec2 u, float choose, float time, Sample& out, geometry::SurfacePoint& point, uint32_t needs = geometry::kNeedAll) const;
     /// A point of the surface for a mean over it: `pdf` is its density in units of the even one. Back sides count. False as
     /// above.
-    bool sampleSurface(const Vec3& from, Vec2 u, float choose, Sample& out, geometry::SurfacePoint& point,
+    bool sampleSurface(const Vec3& from, Vec2 u, float choose, float time, Sample& out, geometry::SurfacePoint& point,
                        uint32_t needs = geometry::kNeedAll) const;
     /// Density per steradian with which sample() gives this hit as seen from `from`; 0 for shapes of other lights.
     float pdf(const geometry::Shape* shape, const geometry::SurfacePoint& hit, const Vec3& from) const;

@@ -14,7 +14,10 @@ struct ShaderInstance {
     std::set<std::string> given; ///< parameters that have no default: the scene gave them
     std::map<std::string, SourcePlace> handlePlaces; ///< of those of type `shader` that the scene gave: where
     std::vector<rsl::CoShader> coShaders; ///< those of the attributes under which the shader was named
-    Matrix toCurrent;
+    Matrix toCurrent;                                   ///< when the shutter opens
+    std::shared_ptr<const shading::MovingSpace> moving; ///< null: shader space stands still
+    shading::InstanceView view() const { return {&parameters, &toCurrent, moving.get()}; }
+    Matrix toCurrentAt(float shutter) const { return moving ? moving->at(shutter) : toCurrent; }
     SourcePlace place;
     bool differences = false; ///< how its kernels take derivatives (rsl/kernel.h)
 };

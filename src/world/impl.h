@@ -2,6 +2,7 @@
 #pragma once
 #include "rsl/passes/optimize.h"
 #include "rsl/printlog.h"
+#include "scene/motion.h"
 #include "world/bound.h"
 #include "world/evaluator.h"
 #include "world/lightchooser.h"
@@ -41,6 +42,7 @@ public:
     bool knowsSpace(const std::string& name) const;
 
     InstanceRef instance(const scene::ShaderCall&, rsl::ShaderKind, Diagnostics&, bool anyKind = false);
+    void setParameters(ShaderInstance&, const scene::ShaderCall&, Diagnostics&);
     /// Handles among these parameters that name neither one of `bound` nor a light: null, and an error with the place.
     void dropMissingHandles(const ShaderInstance& of, std::map<std::string, std::string>& texts,
                             const std::vector<std::pair<std::string, scene::ShaderRef>>& bound, Diagnostics&) const;
@@ -91,7 +93,17 @@ public:
     std::map<std::vector<const void*>, InstanceRef> withCoShaders_;          ///< by shader, then the requests of its co-shaders
     Facts facts_;
     std::vector<geometry::ShapeRef> shapes_;
-    std::unordered_map<const geometry::Shape*, uint32_t> numberOfShape_; ///< index into shapes_
+    std::unordered_map<const geometry::Shape*, uint32_t> numberOfShape_; ///< index into shapes_; of a placed geometry, its first place
+    scene::Shutter shutter_;
+    bool moves_ = false;                       ///< some shape does
+    bool shadesAtOpen_ = false;                ///< surfaces are shaded where they are when the shutter opens, and send their rays then
+    float timeAt(float shutter) const { return float(shutter_.at(double(shutter))); }
+    /// When a ray goes, as part of the time that the shutter is open.
+    float shutterOf(const shading::PathRay& r) const { return shadesAtOpen_ && !r.camera() ? 0 : r.shutter(); }
+    /// dPdtime of a point of a shape.
+    Vec3 pointsVelocity(const geometry::Shape& s, const geometry::SurfacePoint& p) const {
+        return shutter_.opens() ? s.velocity(p) / float(shutter_.close - shutter_.open) : Vec3(0.f);
+    }
     bool traceSubsets_ = false;                ///< some shape has Attribute "grouping" "tracesubset"
     std::vector<int> bindingOf_;               ///< by shape
     std::vector<SurfaceBinding> bindings_;

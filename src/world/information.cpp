@@ -62,7 +62,7 @@ std::optional<Information> shaderBound(const SurfaceBinding& b, bool space) {
 std::optional<Information> coordinateSystem(const WorldImpl& w, const std::string& name) {
     const auto i = w.frame().coordinateSystems.find(name);
     if (i == w.frame().coordinateSystems.end()) return std::nullopt;
-    return matrixOf(i->second.first());
+    return matrixOf(scene::at(i->second, w.shutter_.open));
 }
 
 } // namespace
@@ -81,7 +81,7 @@ std::optional<Information> attributeOf(const WorldImpl& w, const scene::Attribut
     if (name == "Ri:DetailRange") return Information{{a.detailRange, a.detailRange + 4}, {}, false};
     if (name.rfind(kCoordinate, 0) == 0) return coordinateSystem(w, name.substr(kCoordinate.size()));
     if (p && p->shape) {
-        if (name == "Ri:Transformation") return matrixOf(p->shape->toCamera() * w.cameraToWorld_);
+        if (name == "Ri:Transformation") return matrixOf(p->shape->toCameraAt(p->shutter) * w.cameraToWorld_);
         const bool back = dot(p->surface.n, p->I) > 0;
         if (name == "geometry:backfacing") return number(back);
         if (name == "geometry:frontfacing") return number(!back);
@@ -148,8 +148,8 @@ std::optional<Information> rayInfoOf(const std::string& name, const shading::Pat
 
 Matrix spaceAt(const WorldImpl& w, const std::string& from, const std::string& to, const shading::ShadePoint& p, const SurfaceBinding* b) {
     const auto own = [&](const std::string& space, Matrix& toCurrent) {
-        if (space == "object" && p.shape) return toCurrent = p.shape->toCamera(), true;
-        if (space == "shader" && b && b->surface) return toCurrent = b->surface->toCurrent, true;
+        if (space == "object" && p.shape) return toCurrent = p.shape->toCameraAt(p.shutter), true;
+        if (space == "shader" && b && b->surface) return toCurrent = b->surface->toCurrentAt(p.shutter), true;
         return false;
     };
     Matrix in, out;

@@ -116,9 +116,31 @@ InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind k
     auto i = std::make_shared<ShaderInstance>();
     i->name = call.name;
     i->program = program;
-    i->toCurrent = call.toWorld.first() * worldToCamera_;
     i->place = call.place;
+    scene::Transform toWorld = scene::overShutter(call.toWorld, shutter_);
+    if (!toWorld.moves()) toWorld = scene::Transform(scene::at(call.toWorld, shutter_.open));
+    i->toCurrent = toWorld.first() * worldToCamera_;
+    setParameters(*i, call, d);
+    if (!toWorld.moves()) return i;
+    auto moving = std::make_shared<shading::MovingSpace>();
+    moving->times = toWorld.times;
+    for (const Matrix& m : toWorld.keys) {
+        ShaderInstance then = *i;
+        then.parameters = {};
+        then.toCurrent = m * worldToCamera_;
+        Diagnostics quiet; // said above
+        setParameters(then, call, quiet);
+        moving->toCurrent.push_back(then.toCurrent);
+        moving->parameters.push_back(std::move(then.parameters));
+    }
+    i->moving = std::move(moving);
+    return i;
+}
 
+/// The values of its parameters, in current space by its toCurrent.
+void WorldImpl::setParameters(ShaderInstance& instance, const scene::ShaderCall& call, Diagnostics& d) {
+    ShaderInstance* const i = &instance;
+    const auto& program = i->program;
     std::vector<rsl::ParameterValue> values;
     for (const scene::Param& written : call.params) {
         const scene::Param renamed = asDeclared(written, *program);
@@ -167,7 +189,6 @@ InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind k
         } else if (v.type.base == rsl::Base::String) i->parameters.strings[v.name] = v.strings.empty() ? "" : v.strings[0];
         else i->parameters.numbers[v.name] = std::move(v.numbers);
     }
-    return i;
 }
 
 InstanceRef WorldImpl::builtin(const std::string& name, rsl::ShaderKind kind, Diagnostics& d) {
@@ -256,6 +277,7 @@ std::vector<rsl::ir::OutputLight> WorldImpl::lightOfOutputs(const ShaderInstance
 
 BoundKernel WorldImpl::kernel(const ShaderInstance& i, const std::vector<std::string>& outputs, const std::vector<std::string>& varying, bool mixed, bool path,
                               Diagnostics& d, const std::string& light) {
+    mixed |= i.moving != nullptr; // points at different times have different matrices and parameters
     rsl::KernelOptions o = kernelOptions(i, outputs, varying, mixed, path);
     o.light = light;
     double begin = seconds();

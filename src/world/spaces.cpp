@@ -23,7 +23,8 @@ void screenWindow(const scene::Options& o, double w[4]) {
 } // namespace
 
 void WorldImpl::setCamera(const scene::Options& o) {
-    worldToCamera_ = o.worldToCamera.first();
+    shutter_ = scene::Shutter(o);
+    worldToCamera_ = scene::at(o.worldToCamera, shutter_.open);
     cameraToWorld_ = inverse(worldToCamera_);
     double sw[4];
     screenWindow(o, sw);
@@ -71,8 +72,8 @@ bool WorldImpl::matrix(const std::string& from, const std::string& to, Matrix& o
         if (name == "screen") { m = inverse(cameraToScreen_); return true; }
         if (name == "NDC") { m = inverse(screenToNdc_) * inverse(cameraToScreen_); return true; }
         if (name == "raster") { m = inverse(ndcToRaster_) * inverse(screenToNdc_) * inverse(cameraToScreen_); return true; }
-        if (auto i = frame_->coordinateSystems.find(name); i != frame_->coordinateSystems.end()) { m = i->second.first() * worldToCamera_; return true; }
-        if (auto i = frame_->options.cameraSpaces.find(name); i != frame_->options.cameraSpaces.end()) { m = i->second.first(); return true; }
+        if (auto i = frame_->coordinateSystems.find(name); i != frame_->coordinateSystems.end()) { m = scene::at(i->second, shutter_.open) * worldToCamera_; return true; }
+        if (auto i = frame_->options.cameraSpaces.find(name); i != frame_->options.cameraSpaces.end()) { m = scene::at(i->second, shutter_.open); return true; }
         if (name == "object" || name == "shader") { m = worldToCamera_; return true; } // no object here (imagers, lights): world
         return false;
     };

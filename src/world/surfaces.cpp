@@ -370,6 +370,7 @@ bool SurfaceBinder::bindMixed() {
     for (size_t i = 0; i < world_.bindings_.size(); ++i) {
         SurfaceBinding& b = world_.bindings_[i];
         const bool always = world_.settings_.mixedOnly;
+        b.usesObjectSpace |= b.surface->moving != nullptr; // points at different times
         if (!always && !b.usesObjectSpace && sharing[size_t(b.group)] == 1) continue;
         b.surfaceV = world_.kernel(*b.surface, asked_[i].outputs, asked_[i].varying, true, path_, diagnostics_);
         if (!b.surfaceV) return false;

@@ -1,6 +1,7 @@
 // From a frame's description to something that can be traced.
 #include "base/file.h"
 #include "geometry/build.h"
+#include "geometry/placed.h"
 #include "rsl/front/headers.h"
 #include "scene/numbers.h"
 #include "world/surfaces.h"
@@ -21,6 +22,15 @@ std::string shippedShaders() {
     for (std::filesystem::path p = exe.parent_path(); !p.empty() && p != p.root_path(); p = p.parent_path())
         if (std::filesystem::exists(p / "shaders" / "matte.sl", e)) return (p / "shaders").string();
     return ALPENGLOW_SHADER_DIR;
+}
+
+// REYES shades its grids once, when the shutter opens, and moves what came of it. The hidden hider does so too, unless some surface or
+// the hider asks for the time of the sample (Attribute "trace" "samplemotion", Hider "hidden" "samplemotion").
+bool shadesAtOpen(const scene::Frame& f, const Settings& settings, const std::vector<geometry::ShapeRef>& shapes) {
+    if (settings.hider != Hider::Hidden) return false;
+    const auto on = [](const scene::Param* p) { return p && !p->numbers.empty() && p->numbers[0] != 0; };
+    if (on(scene::find(f.options.hiderParams, "samplemotion"))) return false;
+    return std::none_of(shapes.begin(), shapes.end(), [&](const auto& s) { return on(s->attributes().value("trace:samplemotion")); });
 }
 
 // Whether the scene says who is visible to traced rays. BMRT's scenes never do, and their shaders trace.
@@ -103,7 +113,16 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
         for (auto& path : splitSearchPath(e)) w->settings_.shaderPaths.push_back(path);
     w->settings_.shaderPaths.push_back(shippedShaders());
     w->shapes_ = geometry::buildShapes(*frame, d);
-    for (const auto& shape : w->shapes_) w->numberOfShape_.emplace(shape.get(), uint32_t(w->numberOfShape_.size()));
+    for (uint32_t i = 0; i < w->shapes_.size(); ++i) {
+        w->numberOfShape_.emplace(w->shapes_[i].get(), i);
+        const geometry::Placed* p = w->shapes_[i]->placed();
+        if (!p) continue;
+        w->moves_ |= p->moves();
+        w->numberOfShape_.emplace(p->geometry().get(), i); // who dices it asks for a binding
+        if (p->deforming())
+            for (const auto& key : p->deforming()->keys()) w->numberOfShape_.emplace(key.get(), i);
+    }
+    w->shadesAtOpen_ = shadesAtOpen(*frame, settings, w->shapes_);
     for (const auto& shape : w->shapes_) w->traceSubsets_ |= shape->attributes().value("grouping:tracesubset") != nullptr;
     w->clippingPlanes_ = o.clippingPlanes;
     w->clipNear_ = o.clipNear;

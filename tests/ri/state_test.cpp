@@ -290,6 +290,30 @@ TEST(Motion, RotationFollowsTheArc) {
     EXPECT_EQ(t.times.back(), 1);
 }
 
+// Matrices of exporters: the rotation in them turns, stretch and translation go linearly.
+TEST(Motion, MatricesTurn) {
+    const Matrix a = scaleMatrix(2, 1, 1) * rotateMatrix(20, 1, 2, 3) * translateMatrix(1, 0, 0),
+                 b = scaleMatrix(4, 1, 1) * rotateMatrix(120, 1, 2, 3) * translateMatrix(3, 0, 0);
+    const auto text = [](const Matrix& m) {
+        std::string s = "ConcatTransform [";
+        for (auto& row : m.m)
+            for (double x : row) s += std::to_string(x) + " ";
+        return s + "]\n";
+    };
+    auto c = world("MotionBegin [0 1]\n" + text(a) + text(b) + "MotionEnd Sphere 1 -1 1 360");
+    const auto& t = c->primitive().toWorld;
+    ASSERT_GE(t.keys.size(), 40u);
+    for (size_t i = 0; i < t.keys.size(); ++i) {
+        const double w = t.times[i];
+        const Matrix want = scaleMatrix(2 + 2 * w, 1, 1) * rotateMatrix(20 + 100 * w, 1, 2, 3) * translateMatrix(1 + 2 * w, 0, 0);
+        for (int y = 0; y < 4; ++y)
+            for (int x = 0; x < 3; ++x) EXPECT_NEAR(t.keys[i].m[y][x], want.m[y][x], 1e-5) << i; // six decimals
+    }
+    // Mirrored from key to key, and half a turn: as they are.
+    EXPECT_EQ(world("MotionBegin [0 1]\n" + text(a) + text(scaleMatrix(-1, 1, 1)) + "MotionEnd Sphere 1 -1 1 360")->primitive().toWorld.keys.size(), 2u);
+    EXPECT_EQ(world("MotionBegin [0 1]\n" + text(scaleMatrix(1, 1, 1)) + text(rotateMatrix(180, 0, 0, 1)) + "MotionEnd Sphere 1 -1 1 360")->primitive().toWorld.keys.size(), 2u);
+}
+
 TEST(Motion, OfPrimitives) {
     auto c = world("MotionBegin [0 1] Sphere 1 -1 1 360 Sphere 2 -2 2 360 MotionEnd");
     EXPECT_TRUE(c->ok) << c->messages();

@@ -108,15 +108,8 @@ struct Made {
     }
 };
 
-/// A sample with its point, which sample() returns by itself or inside the sample.
 template <class E, class S> bool draw(const E& e, const Vec3& from, Vec2 u, float choose, S& s, geometry::SurfacePoint& p) {
-    if constexpr (requires { e.sample(from, u, choose, s, p); }) {
-        return e.sample(from, u, choose, s, p);
-    } else {
-        bool ok = e.sample(from, u, choose, s);
-        p = s.point;
-        return ok;
-    }
+    return e.sample(from, u, choose, 0, s, p);
 }
 
 /// Places to be lit: far, near, behind, inside. Not so near that 1/pdf, which grows with 1/d^2, has a heavy tail.

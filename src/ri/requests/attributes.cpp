@@ -255,8 +255,8 @@ std::vector<Request> attributeRequests() {
                  std::copy(v.begin(), v.end(), in.attributes().detailRange);
          }},
         {"GeometricApproximation", "string type; number value", k, s, false,
-         "How closely shapes are followed: \"motionfactor\", \"flatness\" and others. Kept for shaders; shapes are followed by "
-         "ShadingRate.",
+         "How closely shapes are followed. \"motionfactor\": what moves is diced by ShadingRate times this times a 16th of the pixels that "
+         "it moves. Others are kept for shaders.",
          "\"motionfactor\" 1", approximation},
         {"GeometricRepresentation", "string type", k, s, false, "Of RISpec 3.0; has no effect.", "\"primitive\"",
          [](Interpreter& in, const Call& c) {

@@ -80,8 +80,8 @@ std::vector<Request> structureRequests() {
          "1", [](Interpreter& in, const Call& c) { in.objectBegin(c); }},
         {"ObjectEnd", "", Kind::Structure, all, false, "Ends the object.", "", endBlock<B::Object>},
         {"MotionBegin", "number[] times", Kind::Structure, all, false,
-         "The next calls of one request are samples of it at these times. A moving camera moves; moving primitives are drawn at "
-         "their first time yet.",
+         "The next calls of one request are samples of it at these times. Transforms, primitives, "
+         "lights and the camera move.",
          "[0 1]", [](Interpreter& in, const Call& c) { in.beginMotion(c); }},
         {"MotionEnd", "", Kind::Structure, all, false, "Ends the motion block.", "",
          [](Interpreter& in, const Call& c) { in.endMotion(c); }},

@@ -109,6 +109,7 @@ struct Accel::Impl {
         if (!(t > r.tnear && t < r.tfar)) return false;
         if (t <= r.passed && (t < r.passed || std::pair(s, prim) <= std::pair(r.excludeShape, r.excludePrim))) return false;
         if (!q.any && !before(t, s, prim, q.best)) return false;
+        if (shapes[s]->trimmed() && !shapes[s]->keepsHit(prim, b1, b2)) return false;
         if (shapes[s]->oneSided() && r.sides != Sides::Both && (away() >= 0) != (r.sides == Sides::Back)) return false;
         q.best = {t, s, prim, b1, b2};
         return true;

@@ -88,6 +88,7 @@ Accel::Accel(std::vector<ShapeRef> shapes, std::vector<uint32_t> visibility, Dia
         impl_->refuse(diag);
         return;
     }
+    impl_->readyTrimmed();
     if (impl_->readyDirect()) return;
     impl_->bounds = {};
     for (const ShapeRef& s : impl_->shapes)

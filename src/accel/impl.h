@@ -109,7 +109,7 @@ struct Accel::Impl {
         if (!(t > r.tnear && t < r.tfar)) return false;
         if (t <= r.passed && (t < r.passed || std::pair(s, prim) <= std::pair(r.excludeShape, r.excludePrim))) return false;
         if (!q.any && !before(t, s, prim, q.best)) return false;
-        if (shapes[s]->trimmed() && !shapes[s]->keepsHit(prim, b1, b2)) return false;
+        if (!trimmed.empty() && trimmed[s] && !trimmed[s]->keepsHit(prim, b1, b2)) return false;
         if (shapes[s]->oneSided() && r.sides != Sides::Both && (away() >= 0) != (r.sides == Sides::Back)) return false;
         q.best = {t, s, prim, b1, b2};
         return true;
@@ -165,6 +165,8 @@ struct Accel::Impl {
     std::vector<std::unique_ptr<Geometry>> geometries;
     std::vector<uint32_t> geometryOf; ///< by shape: into geometries, or kNone; empty: nothing is placed
     void readyPlaced();
+    std::vector<const Shape*> trimmed; ///< by shape: who knows what of it is cut away, or null; empty: nothing is
+    void readyTrimmed();
     /// A ray in the space of a placed geometry.
     struct Inside {
         const Geometry* geometry;

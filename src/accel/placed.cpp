@@ -21,6 +21,16 @@ void Accel::Impl::readyPlaced() {
     }
 }
 
+void Accel::Impl::readyTrimmed() {
+    for (uint32_t s = 0; s < shapes.size(); ++s) {
+        const Shape* shape = shapes[s].get();
+        if (const geometry::Placed* p = shape->placed()) shape = p->deforming() ? p->deforming()->keys()[0].get() : p->geometry().get();
+        if (!shape->trimmed()) continue;
+        trimmed.resize(shapes.size());
+        trimmed[s] = shape;
+    }
+}
+
 bool Accel::Impl::meetPlaced(Query& q, uint32_t s) const {
     const Ray& r = *q.ray;
     if (r.passed < 0 && r.excludeShape == s && r.excludePrim == kNone) return false;

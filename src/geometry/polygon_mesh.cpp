@@ -241,6 +241,7 @@ const PolygonMesh::Areas& PolygonMesh::areas() const {
             const Vec3d a = cameraCorner(t, 0), b = cameraCorner(t, 1), c = cameraCorner(t, 2);
             areas_.cumulative.push_back(areas_.sum += 0.5 * length(cross(b - a, c - a)));
         }
+        areas_.perSum = areas_.sum > 0 ? 1 / areas_.sum : 0;
         areas_.first.reserve(triangles_);
         for (uint32_t k = 0, t = 0; k < triangles_; ++k) {
             while (t + 1 < triangles_ && areas_.cumulative[t] <= areas_.sum * k / triangles_) ++t;
@@ -253,10 +254,15 @@ const PolygonMesh::Areas& PolygonMesh::areas() const {
 void PolygonMesh::sampleArea(double xi1, double xi2, SurfacePoint& out, uint32_t needs) const {
     const Areas& all = areas();
     const double target = xi1 * all.sum;
-    // The first triangle whose cumulative area is beyond the target; the part of the sum that holds it begins near by.
-    size_t t = all.first[std::min(size_t(xi1 * double(triangles_)), size_t(triangles_) - 1)];
-    while (t > 0 && all.cumulative[t - 1] > target) --t;
-    while (t + 1 < triangles_ && all.cumulative[t] <= target) ++t;
+    // The first triangle whose cumulative area is beyond the target.
+    size_t t = 0;
+    if (constexpr uint32_t kFew = 4; triangles_ <= kFew) { // which it is is chance: no branch
+        for (uint32_t k = 0; k + 1 < triangles_; ++k) t += all.cumulative[k] <= target;
+    } else { // the part of the sum that holds it begins near by
+        t = all.first[std::min(size_t(xi1 * double(triangles_)), size_t(triangles_) - 1)];
+        while (t > 0 && all.cumulative[t - 1] > target) --t;
+        while (t + 1 < triangles_ && all.cumulative[t] <= target) ++t;
+    }
     // What is left of the first number is uniform again within the triangle.
     double lo = t ? all.cumulative[t - 1] : 0, size = all.cumulative[t] - lo;
     double x = size > 0 ? std::clamp((target - lo) / size, 0.0, 1.0) : 0.5, root = std::sqrt(x);
@@ -269,7 +275,7 @@ SurfacePoint PolygonMesh::sampleArea(double xi1, double xi2) const {
     return p;
 }
 
-double PolygonMesh::sampleDensity(const SurfacePoint&) const { return area() > 0 ? 1 / area() : 0; }
+double PolygonMesh::sampleDensity(const SurfacePoint&) const { return areas().perSum; }
 
 size_t PolygonMesh::classCount(Class c) const {
     switch (c) {

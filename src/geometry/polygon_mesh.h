@@ -51,7 +51,7 @@ private:
     /// Triangles by area, for emitters: made when first asked for.
     struct Areas {
         std::once_flag made;
-        double sum = 0;
+        double sum = 0, perSum = 0;     ///< of the areas, and 1 over it; 0 where there is none
         std::vector<double> cumulative; ///< per triangle, camera space
         std::vector<uint32_t> first;    ///< by equal parts of the sum: the triangle where it begins
     };
@@ -63,7 +63,7 @@ private:
     Plane planeOf(uint32_t tri) const;
     void setPartials(uint32_t tri, const Plane&, const Vec3d& wind, SurfacePoint&) const;
     void remember();
-    void evaluateRemembered(uint32_t tri, double b1, double b2, SurfacePoint&) const;
+    void evaluateRemembered(uint32_t tri, double b1, double b2, SurfacePoint&, uint32_t needs) const;
     void setVariables(SurfacePoint&, const Plane*, uint32_t needs) const;
     const Areas& areas() const;
     Vec3d faceNormal(uint32_t tri) const;

@@ -81,21 +81,22 @@ void PolygonMesh::remember() {
     remembered_ = std::move(all);
 }
 
-void PolygonMesh::evaluateRemembered(uint32_t tri, double b1, double b2, SurfacePoint& p) const {
+void PolygonMesh::evaluateRemembered(uint32_t tri, double b1, double b2, SurfacePoint& p, uint32_t needs) const {
     const Remembered& q = remembered_[tri];
     p = q.point;
     p.b1 = b1;
     p.b2 = b2;
-    const Vec3d O = q.plane.o + q.plane.e1 * b1 + q.plane.e2 * b2;
     p.P = Vec3(q.a + q.e1 * b1 + q.e2 * b2);
+    p.pError = roundingError(p.P);
+    if (plain_ && !(needs & (kNeedUV | kNeedST))) return;
+    const Vec3d O = q.plane.o + q.plane.e1 * b1 + q.plane.e2 * b2;
     p.u = p.s = float(dot(O, q.plane.f.a));
     p.v = p.t = float(dot(O, q.plane.f.b));
-    p.pError = roundingError(p.P);
     if (!plain_) setVariables(p, &q.plane, kNeedAll);
 }
 
 void PolygonMesh::evaluateLocal(uint32_t tri, double b1, double b2, SurfacePoint& p, uint32_t needs) const {
-    if (!remembered_.empty()) return evaluateRemembered(tri, b1, b2, p);
+    if (!remembered_.empty()) return evaluateRemembered(tri, b1, b2, p, needs);
     static const SurfacePoint kBlank;
     p = kBlank; // what is not asked for is the same in every run
     p.face = int(faceOf(tri));

@@ -64,7 +64,8 @@ private:
     void light();
     void chooseLights(const std::vector<int>& lights);
     bool samples(const LobeVertex&, const BoundLight&) const;
-    void queriesOf(const BoundLight&, std::span<const std::pair<int, float>> chosen);
+    void want(const BoundLight&, std::span<const std::pair<int, float>> chosen);
+    void placeWanted();
     bool place(ShadePoint&, Emitter::Sample&, size_t point, const BoundLight&, size_t& number) const;
     void queriesByWidth(size_t point, const BoundLight&);
     void askLights(const BoundKernel* shared);
@@ -99,7 +100,8 @@ private:
     std::vector<std::vector<int>> ofGroup_; ///< many lights: by group, places in the list
     LightQueries queries_;
     render::NumberRows numbers_;
-    std::vector<std::pair<int, float>> wanted_; ///< points of a light that ask for it, and chances
+    struct Wanted { const BoundLight* light; int point; float chance; };
+    std::vector<Wanted> wanted_; ///< points that ask for a light, and the chance that it was chosen there
     std::vector<Reached> reached_;
     std::vector<int> turns_;   ///< by lobe: queries that have reached it
     int lastQuery_ = -1; ///< that of the shadow ray sent last, which other lobes of its point may share

@@ -61,7 +61,8 @@ void Gather::light() {
             continue;
         }
         queries_.clear();
-        queriesOf(light, at);
+        want(light, at);
+        placeWanted();
         askLights(nullptr);
         connect();
         if (many) chosenAt_[k].clear();
@@ -69,9 +70,10 @@ void Gather::light() {
     for (size_t g = 0; many && g < grouped.size(); ++g) {
         queries_.clear();
         for (int k : grouped[g]) {
-            queriesOf(world_.lights_[size_t(on[size_t(k)])], chosenAt_[size_t(k)]);
+            want(world_.lights_[size_t(on[size_t(k)])], chosenAt_[size_t(k)]);
             chosenAt_[size_t(k)].clear();
         }
+        placeWanted();
         grouped[g].clear();
         askLights(&world_.lightGroups_[g].kernel);
         connect();
@@ -79,17 +81,15 @@ void Gather::light() {
     if (!many) chosenAt_[0].clear();
 }
 
-void Gather::queriesOf(const BoundLight& light, std::span<const std::pair<int, float>> chosen) {
-    // A light that filters over its surface is asked once for every width of the lobes at a point, at the same sample.
-    const bool wide = light.kind == LightKind::Area && usesFootprint(light);
+/// Notes the points of a light that ask for it, and the numbers that its points are made of.
+void Gather::want(const BoundLight& light, std::span<const std::pair<int, float>> chosen) {
+    if (wanted_.empty()) numbers_.clear();
     const uint32_t use = kLightPoint + uint32_t(&light - world_.lights_.data());
-    numbers_.clear();
-    wanted_.clear();
     for (const auto& [point, chance] : chosen) {
         bool wanted = false;
         for (int i : lobesOf(size_t(point))) wanted |= samples(e_.lobes[size_t(i)], light);
         if (!wanted) continue;
-        wanted_.push_back({point, chance});
+        wanted_.push_back({&light, point, chance});
         const PathRay& ray = c_->rays[size_t(point)];
         if (light.kind == LightKind::Area) {
             const uint32_t vertex = lightVertex(size_t(point));
@@ -99,9 +99,17 @@ void Gather::queriesOf(const BoundLight& light, std::span<const std::pair<int, f
             numbers_.askPair(e_.random(ray).numbers(), ray.vertex, use, 0);
         }
     }
+}
+
+/// Makes queries of what is wanted.
+void Gather::placeWanted() {
     numbers_.draw();
     size_t number = 0;
-    for (const auto& [point, chance] : wanted_) {
+    const BoundLight* last = nullptr;
+    bool wide = false; // a light that filters over its surface is asked once for every width of the lobes at a point, at the same sample
+    for (const auto& [of, point, chance] : wanted_) {
+        const BoundLight& light = *of;
+        if (of != std::exchange(last, of)) wide = light.kind == LightKind::Area && usesFootprint(light);
         const ShadePoint& lit = c_->points[size_t(point)];
         ShadePoint& p = queries_.add(point, light, chance);
         p.Ps = lit.P;
@@ -125,6 +133,7 @@ void Gather::queriesOf(const BoundLight& light, std::span<const std::pair<int, f
             queriesByWidth(size_t(point), light);
         }
     }
+    wanted_.clear();
 }
 
 /// The point of the light; false: this draw brings nothing. `number`: the next of numbers_.
@@ -143,7 +152,10 @@ bool Gather::place(ShadePoint& p, Emitter::Sample& s, size_t point, const BoundL
     p.shape = nullptr;
     p.surface = c_->points[point].surface;
     p.N = Vec3();
-    p.P = Vec3(transformPoint(light.instance->toCurrentAt(p.shutter), {0, 0, 0}));
+    const Matrix toCurrent = light.instance->toCurrentAt(p.shutter);
+    const auto& m = toCurrent.m; // transformPoint() of the origin
+    const Vec3d at(m[3][0], m[3][1], m[3][2]);
+    p.P = Vec3(m[3][3] == 1 || m[3][3] == 0 ? at : at / m[3][3]);
     p.Ci = light.cone && rules_.pickOne ? coneNumbers(numbers_.pair(number++)) : Color(0);
     return true;
 }

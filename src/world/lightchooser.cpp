@@ -15,6 +15,12 @@ float area(const geometry::Bounds& b) {
     return d.x * d.y + d.y * d.z + d.z * d.x;
 }
 
+/// Squared distance of a ball, never below its radius.
+double distance2(const Vec3& centre, float radius, const Vec3& at) {
+    const Vec3 to = centre - at;
+    return std::max({double(dot(to, to)), double(radius) * radius, 1e-12});
+}
+
 geometry::Bounds boundsOf(const LightBound& l) {
     geometry::Bounds b;
     b.add(l.centre - Vec3(l.radius));
@@ -111,9 +117,7 @@ void LightChooser::build(int node, std::span<int> order, std::span<const LightBo
 
 double LightChooser::importance(const Node& n, const Vec3& at) const {
     if (n.everywhere) return n.power;
-    const Vec3 to = n.centre - at;
-    const double d2 = std::max({double(dot(to, to)), double(n.radius) * n.radius, 1e-12});
-    const double share = n.power / d2;
+    const double share = n.power / distance2(n.centre, n.radius, at);
     return std::isfinite(share) ? share : 0;
 }
 
@@ -140,8 +144,11 @@ double LightChooser::probability(double share, int count) const {
 }
 
 std::pair<double, double> LightChooser::divide(const Node& n, const Vec3& at) const {
-    const double l = importance(nodes_[size_t(n.left)], at), r = importance(nodes_[size_t(n.left) + 1], at);
-    const double left = l + r > 0 ? l / (l + r) : nodes_[size_t(n.left)].count / double(n.count);
+    // Of the children's importances only the ratio matters: each is taken times both squared distances, for one division.
+    const Node &a = nodes_[size_t(n.left)], &b = nodes_[size_t(n.left) + 1];
+    const double l = n.everywhere ? a.power : a.power * distance2(b.centre, b.radius, at);
+    const double r = n.everywhere ? b.power : b.power * distance2(a.centre, a.radius, at);
+    const double left = l + r > 0 && std::isfinite(l + r) ? l / (l + r) : nodes_[size_t(n.left)].count / double(n.count);
     return {left, 1 - left};
 }
 

@@ -23,9 +23,11 @@ void KernelRun::forget() {
     lightDistance.clear();
 }
 
-ServiceCall::ServiceCall(KernelRun& context, Diagnostics& said, int number, int firstPoint, uint64_t points, int width, const float* arguments, float* results)
-    
-    : c(context), diagnostics(said), s(context.bound->sites[size_t(number)]), d(*s.site), site(number), first(firstPoint), lanes(width), mask(points), in(arguments), out(results) {
+ServiceCall::ServiceCall(KernelRun& context, Diagnostics& said, int number, int firstPoint, uint64_t points, int width,
+                         const float* arguments, float* results)
+
+    : c(context), diagnostics(said), s(context.bound->sites[size_t(number)]), d(*s.site), site(number), first(firstPoint),
+      lanes(width), mask(points), in(arguments), out(results) {
     for (int r = 0; r < s.resultRowCount; ++r)
         for (int lane = 0; lane < lanes; ++lane)
             if (mask >> lane & 1) put(r, lane, 0);
@@ -33,7 +35,9 @@ ServiceCall::ServiceCall(KernelRun& context, Diagnostics& said, int number, int 
 
 std::string ServiceCall::name(int lane) const {
     if (!d.strings.empty() && !d.strings[0].empty()) return d.strings[0];
-    return d.argKinds.empty() || d.argKinds[0] != rsl::ir::Kind::String ? std::string() : rsl::internedString(std::bit_cast<int32_t>(at(0, lane)));
+    return d.argKinds.empty() || d.argKinds[0] != rsl::ir::Kind::String
+               ? std::string()
+               : rsl::internedString(std::bit_cast<int32_t>(at(0, lane)));
 }
 
 int32_t ServiceCall::nameId(int lane) const {
@@ -54,8 +58,7 @@ const SurfaceBinding* ServiceCall::binding(const WorldImpl& world, int lane) con
 void ServiceCall::answer(int lane, const Told& t) const {
     using rsl::ir::Kind;
     if (d.resultKinds.size() < 2) return; // whether there is one was all that was asked
-    const std::string& variable = d.resultNames[1];
-    const bool open = variable.rfind("length ", 0) == 0, array = open || (!variable.empty() && variable.back() == ']');
+    const bool open = s.open, array = s.array;
     const size_t before = open ? 2 : 1; // rows
     if (open && d.resultKinds.size() == before && t.elements > 0) { // how long it is was all that was asked
         put(1, lane, float(t.elements));
@@ -64,12 +67,17 @@ void ServiceCall::answer(int lane, const Told& t) const {
     if (d.resultKinds.size() <= before) return;
     const Kind wanted = d.resultKinds[before];
     if (t.kind && (*t.kind != wanted || (t.elements > 0) != array)) return;
-    if (t.varying && wanted != Kind::String && s.text.count("__uniform")) {
+    if (t.varying && wanted != Kind::String && s.uniform) {
         const SourcePlace at = place();
-        diagnostics.reportOnce("uniform:" + at.file + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ":" + name(lane),
-                               {Severity::Warning, Rie::Consistency, at,
-                                d.op + "(): \"" + name(lane) + "\" is varying and the variable that takes it is uniform: it stays as it is, and the result is 0",
-                                "a varying variable takes it", {}});
+        diagnostics.reportOnce(
+            "uniform:" + at.file + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ":" + name(lane),
+            {Severity::Warning,
+             Rie::Consistency,
+             at,
+             d.op + "(): \"" + name(lane) +
+                 "\" is varying and the variable that takes it is uniform: it stays as it is, and the result is 0",
+             "a varying variable takes it",
+             {}});
         return;
     }
     const size_t size = size_t(rsl::ir::components(wanted)), rows = size_t(s.resultRowCount) - before;

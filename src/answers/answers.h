@@ -1,5 +1,5 @@
-// What kernels are answered while they run. What a call site means is known beforehand (world/sites.h); what does not depend on the
-// point is kept by interned name. One a thread: no lock.
+// What kernels are answered while they run. What a call site means is known beforehand (world/sites.h); what does not depend on
+// the point is kept by interned name. One a thread: no lock.
 #pragma once
 #include "answers/random.h"
 #include "answers/servicecall.h"
@@ -13,9 +13,10 @@ public:
     virtual ~Tracer() = default;
     /// Light arriving at queries (ShadePoint::Ps) from one light. Area lights: P is the point on the emitter.
     virtual void evaluateLight(const BoundLight&, std::vector<ShadePoint>& queries, std::span<LightValue>, const LightCall&) = 0;
-    /// Takes from the values of one light what stands between it and the points that it lights: point `first` + laneOf[i] of a run.
-    virtual void shadowLight(const KernelRun&, const BoundLight&, int first, std::span<const ShadePoint>, std::span<const int> laneOf,
-                             std::span<LightValue>) = 0;
+    /// Takes from the values of one light what stands between it and the points that it lights: point `first` + laneOf[i] of a
+    /// run.
+    virtual void shadowLight(const KernelRun&, const BoundLight&, int first, std::span<const ShadePoint>,
+                             std::span<const int> laneOf, std::span<LightValue>) = 0;
 };
 
 /// What lightsource() asks of a light.
@@ -49,8 +50,8 @@ public:
     uint64_t lightFetch(KernelRun&, int light, int first, uint64_t mask, int lanes, float* out);
     /// Keeps what a light that ran for a point gives to the AOVs; `values`: BoundLight::values. lightsamples.cpp
     void keepChannels(KernelRun&, const BoundLight&, int point, const float* values);
-    /// Of a light that sends through generateSamples(), one sample, in proportion to what each gives, for the sum of all. `u`: evenly
-    /// from 0 to 1; `values`: BoundLight::values at a point.
+    /// Of a light that sends through generateSamples(), one sample, in proportion to what each gives, for the sum of all. `u`:
+    /// evenly from 0 to 1; `values`: BoundLight::values at a point.
     static void chooseSent(const BoundLight&, float u, const float* values, LightValue&);
 
     // What answers in files of their own share.
@@ -72,22 +73,34 @@ public:
     }
 
 private:
+    using LightsAsked = std::map<int, uint64_t>; ///< by light, the lanes that ask it
     Random random(const shading::PathRay& r) const { return Random(r.sample ? r.sample->numbers : noSample_); }
     void drawRandom(const ServiceCall&); // draws.cpp
+    // services.cpp
+    void sumAmbient(const ServiceCall&);
+    void answerDepth(const ServiceCall&);
     void transformBetween(const ServiceCall&);
+    void print(const ServiceCall&, int lane, const std::string& text);
     // lightloop.cpp
     /// What lightBegin() is to know beyond its rows: a category, sent values, outputs of the surface.
-    void lightSetup(KernelRun&, int site, int first, uint64_t mask, int lanes, const float* in);
+    void lightSetup(KernelRun&, int site, int first, int lanes, const float* in);
     /// lightFetch() by what was kept for the strip, or is kept now.
     uint64_t fetchKept(KernelRun&, LightLoop&, int light, int turn, int first, uint64_t mask, int lanes, float* out);
     // lighthandles.cpp
     /// Shadeops about lights and their handles: getlight, getlights, islightcategory, and what is called through a handle.
-    void lightHandles(KernelRun&, int site, int first, uint64_t mask, int lanes, const float* in, float* out);
+    void lightHandles(const ServiceCall&);
+    void getLights(const ServiceCall&);
+    void lightParameters(const ServiceCall&, const LightsAsked&);
+    /// handle->light(): a loop of its own, over the lights that are asked.
+    void callLights(const ServiceCall&, const LightsAsked&);
+    /// All samples of a light for the points `of`, one of them for the sum of all: nine rows, and the distance. Those that it
+    /// lights.
+    uint64_t callLight(const ServiceCall&, LightLoop& turn, int light, uint64_t of, LightLoop::Kept& kept);
     void checkCategory(KernelRun&, const rsl::ir::Site&, int32_t category);
     std::set<int32_t> checkedCategories_;
     LitSurface litSurface(KernelRun&, const LightLoop&, const std::vector<int>& points, int first, int lanes) const;
-    void evaluateForLoop(KernelRun&, const LightLoop&, int light, int first, int lanes, std::vector<ShadePoint>&, const std::vector<int>& laneOf,
-                         std::vector<LightValue>&, std::vector<float>& values);
+    void evaluateForLoop(KernelRun&, const LightLoop&, int light, int first, int lanes, std::vector<ShadePoint>&,
+                         const std::vector<int>& laneOf, std::vector<LightValue>&, std::vector<float>& values);
     /// The point of a shaded batch as a light sees it when it lights `at`, for sample `turn` of `turns`; `axis`, `angle`: the
     /// loop's cone; nth: drawOf(). *factor multiplies the light. False: it gives nothing there.
     bool lightQuery(const KernelRun&, int light, int point, const Vec3& at, const Vec3& axis, float angle, int turn, int turns,
@@ -119,7 +132,8 @@ private:
         std::vector<LightValue> v;
     } sheetRoom_;
     /// Sample `turn` of `turns` of a light for the points of a mask, into `kept`; gives the points that it lights.
-    uint64_t sampleLight(KernelRun&, const LightLoop&, int light, int turn, int turns, int first, uint64_t mask, int lanes, LightLoop::Kept& kept);
+    uint64_t sampleLight(KernelRun&, const LightLoop&, int light, int turn, int turns, int first, uint64_t mask, int lanes,
+                         LightLoop::Kept& kept);
     /// Sample `turn` of a light that sends through generateSamples(), by its BoundLight::values at a point.
     static void sentSample(const BoundLight&, int turn, const float* values, LightValue&);
     /// The light of an interned handle, where it is one of the surface's; else -1. Null: of no surface.
@@ -138,6 +152,9 @@ private:
     std::unordered_map<int32_t, std::optional<texture::TextureInfo>> infosByName_;
 };
 
+// services.cpp: option(); rayinfo(), rendererinfo() and raylevel().
+void answerOption(Answers&, const ServiceCall&);
+void answerRay(const ServiceCall&);
 // maps.cpp: texture() and environment(); textureinfo().
 void answerTexture(Answers&, const ServiceCall&);
 void answerTextureInfo(Answers&, const ServiceCall&);

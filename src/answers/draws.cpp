@@ -3,8 +3,9 @@
 
 namespace alpenglow::transport {
 
-// Keyed by sample, path vertex, call site and how often the point came by: nothing depends on who shares the batch. What a uniform
-// variable gets is keyed by the primitive instead. Lights have keys of their own: their sites count from 0 as those of surfaces do.
+// Keyed by sample, path vertex, call site and how often the point came by: nothing depends on who shares the batch. What a
+// uniform variable gets is keyed by the primitive instead. Lights have keys of their own: their sites count from 0 as those of
+// surfaces do.
 void Answers::drawRandom(const ServiceCall& call) {
     const SiteInfo& s = call.s;
     KernelRun& c = call.c;

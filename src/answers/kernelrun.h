@@ -17,7 +17,8 @@ struct KernelRun {
     const Medium* volume = nullptr;            ///< while a volume's kernel runs
     const LightOutput* aside = nullptr;        ///< the run gives this output and nothing else
     bool forShadow = false;                    ///< the kernel tells its opacity to shadow rays
-    std::shared_ptr<const KernelRun> displaced; ///< the displacement shader's run at these points, where its outputs are asked for
+    std::shared_ptr<const KernelRun>
+        displaced;                             ///< the displacement shader's run at these points, where its outputs are asked for
     const KernelRun* surface = nullptr;        ///< while an atmosphere's kernel runs: the surface's run that it dims
     std::vector<int> surfacePoint;             ///< by point: its number in that run
     // What answers keep with it.
@@ -25,7 +26,8 @@ struct KernelRun {
     std::vector<Color> ambient;                ///< by point: the sum of the ambient lights; empty until it is asked for
     std::vector<LightSheet> sheets;            ///< by turn of all lights; empty until a loop runs
     std::vector<uint32_t> draws;               ///< by site and point: how often random() was called there; empty until it is
-    std::vector<float> lightChannels;          ///< by point, all AOVs: what lights gave by outputchannel(), and atmospheres; empty when none did
+    std::vector<float>
+        lightChannels; ///< by point, all AOVs: what lights gave by outputchannel(), and atmospheres; empty when none did
     std::vector<float> lightDistance;          ///< by lane: to the light sample; 1e38 for distant lights
     /// As new, in the memory that is there; of `points` and `batch` the caller decides.
     void forget();

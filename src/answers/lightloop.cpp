@@ -17,7 +17,7 @@ uint64_t mixed(uint64_t h, uint64_t v) {
 
 std::string categoriesOf(const BoundLight& l) {
     if (!l.instance) return "";
-    auto i = l.instance->parameters.strings.find("__category");
+    auto i = l.instance->parameters.strings.find(rsl::kCategory);
     return i == l.instance->parameters.strings.end() ? "" : i->second;
 }
 
@@ -44,7 +44,7 @@ LightLoop& Answers::lightLoop(KernelRun& c, int first, int lanes) {
     return loop;
 }
 
-void Answers::lightSetup(KernelRun& c, int site, int first, uint64_t mask, int lanes, const float* in) {
+void Answers::lightSetup(KernelRun& c, int site, int first, int lanes, const float* in) {
     LightLoop& loop = lightLoop(c, first, lanes);
     const SiteInfo& s = c.bound->sites[size_t(site)];
     size_t rows = 0;
@@ -52,20 +52,12 @@ void Answers::lightSetup(KernelRun& c, int site, int first, uint64_t mask, int l
     LightSetup& next = loop.next;
     next.setup = site;
     next.given.assign(in, in + rows * size_t(lanes));
-    // The category is no matter of the lights: what was kept stays good under another.
     next.givenHash.assign(size_t(lanes), 0);
-    for (const auto& [name, row] : s.named) {
-        if (name == "category") continue;
-        const auto following = std::min_element(s.named.begin(), s.named.end(), [row = row](const auto& a, const auto& b) {
-            return (a.second > row ? a.second : INT32_MAX) < (b.second > row ? b.second : INT32_MAX);
-        });
-        const size_t end = following->second > row ? size_t(following->second) : rows;
-        const uint64_t salt = std::hash<std::string>{}(name);
+    for (const SiteInfo::Shown& shown : s.shown)
         for (int lane = 0; lane < lanes; ++lane)
-            for (size_t r = size_t(row); r < end; ++r)
-                next.givenHash[size_t(lane)] = mixed(next.givenHash[size_t(lane)] ^ salt, std::bit_cast<uint32_t>(in[r * size_t(lanes) + size_t(lane)]));
-    }
-    (void)mask;
+            for (size_t r = size_t(shown.first); r < size_t(shown.end); ++r)
+                next.givenHash[size_t(lane)] = mixed(next.givenHash[size_t(lane)] ^ shown.salt,
+                                                     std::bit_cast<uint32_t>(in[r * size_t(lanes) + size_t(lane)]));
 }
 
 int32_t Answers::lightBegin(KernelRun& c, int site, int first, uint64_t mask, int lanes, const float* rows) {
@@ -136,7 +128,8 @@ void Answers::checkCategory(KernelRun& c, const rsl::ir::Site& site, int32_t cat
     const std::string error = categoryError(expression);
     if (error.empty()) return;
     const auto& files = c.bound->kernel->files();
-    SourcePlace place{site.place.file < int(files.size()) ? files[size_t(site.place.file)] : "", site.place.line, site.place.column};
+    SourcePlace place{site.place.file < int(files.size()) ? files[size_t(site.place.file)] : "", site.place.line,
+                      site.place.column};
     diagnostics_.reportOnce("category:" + expression, {Severity::Warning, Rie::Syntax, place,
                             "the category \"" + expression + "\" cannot be read: " + error + "; all lights are taken", {}, {}});
 }
@@ -221,13 +214,14 @@ uint64_t Answers::fetchKept(KernelRun& c, LightLoop& loop, int li, int k, int fi
     }
     const int same = light.kind == LightKind::Environment ? 7 : 3;
     uint64_t missing = 0;
-    const uint64_t sent = loop.setup < 0 ? 0 : c.bound->sites[size_t(loop.setup)].sentStrings;
+    const uint64_t sent = loop.setup < 0 ? 0 : c.bound->sites[size_t(loop.setup)].sentHash;
     for (int lane = 0; lane < lanes; ++lane) {
         if (!(mask >> lane & 1)) continue;
         const size_t l = size_t(lane);
         const uint64_t hash = loop.setup < 0 ? 0 : mixed(loop.givenHash[l], sent);
         bool good = !loop.refresh && (kept.have >> lane & 1) && kept.hash[l] == hash;
-        for (size_t r = 0; good && r < size_t(same); ++r) good = std::bit_cast<uint32_t>(kept.key[r * width + l]) == std::bit_cast<uint32_t>(loop.rows[r * width + l]);
+        for (size_t r = 0; good && r < size_t(same); ++r)
+            good = std::bit_cast<uint32_t>(kept.key[r * width + l]) == std::bit_cast<uint32_t>(loop.rows[r * width + l]);
         if (good) continue;
         missing |= uint64_t(1) << lane;
         kept.hash[l] = hash;

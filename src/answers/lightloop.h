@@ -20,7 +20,7 @@ struct LitSurface {
 struct LightCall {
     const shading::ParameterBlock* parameters = nullptr; ///< instead of the instance's: with values that a surface has sent
     const BoundKernel* kernel = nullptr;                 ///< for the strings that it has sent; of a LightGroup, its own
-    std::span<const BoundLight* const> of;               ///< by query, lights of one LightGroup, equal ones side by side; empty: all are of one
+    std::span<const BoundLight* const> of; ///< by query, lights of one LightGroup, equal ones side by side; empty: all are of one
     const LitSurface* lit = nullptr;
     const std::vector<char>* inMedium = nullptr;         ///< by query: a medium lies before the emitter, and not its atmosphere
     std::vector<float>* values = nullptr;                ///< gets BoundLight::values: valueWidth numbers a query
@@ -44,8 +44,8 @@ struct LightTurns : LightSetup {
     std::vector<float> distance;                  ///< by lane: KernelRun::lightDistance
 };
 
-/// State of the loops of one strip: of the innermost that runs. A strip that waits for rays in the middle of its loop keeps it while others
-/// run theirs.
+/// State of the loops of one strip: of the innermost that runs. A strip that waits for rays in the middle of its loop keeps it
+/// while others run theirs.
 struct LightLoop : LightTurns {
     int first = -1;                               ///< the strip's first point; -1: unused
     int depth = 0;                                ///< how many loops run, one in the block of the other
@@ -81,8 +81,8 @@ struct LightSheet {
     std::vector<char> lit;                        ///< by point
 };
 
-/// Lights that are sampled give every depth of loops samples of its own: the product of an outer and of an inner loop has the mean that it
-/// should have.
+/// Lights that are sampled give every depth of loops samples of its own: the product of an outer and of an inner loop has the
+/// mean that it should have.
 bool sampledAnew(const BoundLight&, bool path);
 /// The occurrence of random numbers for a turn of a light.
 uint32_t drawOf(const LightLoop&);

@@ -1,4 +1,5 @@
-// Samples of lights for the points of a loop: where they lie, the light's kernel with what the surface sends, what stands in between.
+// Samples of lights for the points of a loop: where they lie, the light's kernel with what the surface sends, what stands in
+// between.
 #include "base/exact.h"
 #include "world/emitterfootprint.h"
 #include "answers/answers.h"
@@ -27,16 +28,11 @@ LitSurface Answers::litSurface(KernelRun& c, const LightLoop& loop, const std::v
     lit.output = [&c, &loop, &points, first, lanes](int q, const std::string& name, std::vector<float>& v) {
         if (loop.setup < 0) return false;
         const SiteInfo& s = c.bound->sites[size_t(loop.setup)];
-        size_t argument = 0; // the arguments are in the order of the names without texts
-        for (size_t n = 0; n < s.site->names.size(); ++n) {
-            if (!s.site->pairStrings[n].empty()) continue;
-            if (s.site->names[n] == "surface:" + name) {
-                const int row = s.named.at(s.site->names[n]);
-                for (int r = 0; r < rsl::ir::components(s.site->argKinds[argument]); ++r)
-                    v.push_back(loop.given[size_t(row + r) * size_t(lanes) + size_t(points[size_t(q)] - first)]);
-                return true;
-            }
-            ++argument;
+        for (const SiteInfo::Output& o : s.outputs) {
+            if (o.name.name != name) continue;
+            for (int r = 0; r < o.size; ++r)
+                v.push_back(loop.given[size_t(o.row + r) * size_t(lanes) + size_t(points[size_t(q)] - first)]);
+            return true;
         }
         return false;
     };
@@ -60,29 +56,21 @@ void Answers::evaluateForLoop(KernelRun& c, const LightLoop& loop, int li, int f
     }
     // Sent values: one run for all points that send the same. Elements of an array go to an array of the same class.
     const SiteInfo& s = c.bound->sites[size_t(loop.setup)];
-    if (const std::string strings = sentStrings(s); !strings.empty())
-        if (auto v = light.variants.find(strings); v != light.variants.end()) call.kernel = &v->second;
+    if (!s.sentKey.empty())
+        if (auto v = light.variants.find(s.sentKey); v != light.variants.end()) call.kernel = &v->second;
     struct Sent { std::string parameter; int row, size, at; }; ///< at: where its numbers begin, of an array's element
     std::vector<Sent> sent;
-    size_t argument = 0;
-    for (size_t n = 0; n < s.site->names.size(); ++n) {
-        if (!s.site->pairStrings[n].empty()) continue;
-        const std::string& name = s.site->names[n];
-        const int size = rsl::ir::components(s.site->argKinds[argument++]);
-        if (name.rfind("send:light:", 0) != 0) continue;
-        const size_t bracket = name.find('[');
-        const std::string parameter = name.substr(11, bracket == std::string::npos ? bracket : bracket - 11);
-        const int element = bracket == std::string::npos ? 0 : std::atoi(name.c_str() + bracket + 1);
-        auto have = light.instance->parameters.numbers.find(parameter);
+    for (const SiteInfo::Sent& v : s.sent) {
+        const auto have = light.instance->parameters.numbers.find(v.parameter);
         if (have == light.instance->parameters.numbers.end()) continue;
-        const int all = int(have->second.size());
-        if (bracket == std::string::npos ? all == size : (element + 1) * size <= all && elementsOf(light, parameter) * size == all) sent.push_back({parameter, s.named.at(name), size, element * size});
+        const int all = int(have->second.size()), at = std::max(v.element, 0) * v.size;
+        const bool fits = v.element < 0 ? all == v.size : at + v.size <= all && elementsOf(light, v.parameter) * v.size == all;
+        if (fits) sent.push_back({v.parameter, v.row, v.size, at});
     }
-    auto normal = s.named.find("N");
     auto given = [&](int row, int lane) { return loop.given[size_t(row) * size_t(lanes) + size_t(lane)]; };
-    if (normal != s.named.end())
+    if (s.rowN >= 0)
         for (size_t i = 0; i < q.size(); ++i)
-            q[i].Ns = Vec3(given(normal->second, laneOf[i]), given(normal->second + 1, laneOf[i]), given(normal->second + 2, laneOf[i]));
+            q[i].Ns = Vec3(given(s.rowN, laneOf[i]), given(s.rowN + 1, laneOf[i]), given(s.rowN + 2, laneOf[i]));
     std::map<std::vector<uint32_t>, std::vector<int>> groups;
     for (size_t i = 0; i < q.size(); ++i) {
         std::vector<uint32_t> key;
@@ -109,7 +97,8 @@ void Answers::evaluateForLoop(KernelRun& c, const LightLoop& loop, int li, int f
         tracer_->evaluateLight(light, some, result, call);
         for (size_t k = 0; k < members.size(); ++k) {
             out[size_t(members[k])] = result[k];
-            std::copy_n(resultValues.begin() + long(k) * light.valueWidth, light.valueWidth, values.begin() + long(members[k]) * light.valueWidth);
+            std::copy_n(resultValues.begin() + long(k) * light.valueWidth, light.valueWidth,
+                        values.begin() + long(members[k]) * light.valueWidth);
         }
     }
 }
@@ -124,14 +113,15 @@ void Answers::keepChannels(KernelRun& c, const BoundLight& light, int point, con
     size_t width = 0;
     for (int w : world_->outputWidths_) width += size_t(w);
     c.lightChannels.resize(c.points.size() * width);
-    std::vector<std::string_view> missing; // what it might have given, and did not
-    const auto given = [&](const std::string& name) {
-        return std::none_of(missing.begin(), missing.end(), [&](std::string_view m) { return name.compare(0, name.find('['), m) == 0; });
+    std::vector<const std::string*> missing; // what it might have given, and did not
+    const auto given = [&](const rsl::OutputName& name) {
+        return std::none_of(missing.begin(), missing.end(), [&](const std::string* m) { return *m == name.name; });
     };
     for (const BoundLight::Value& v : light.values) {
-        if (v.name.rfind(kGiven, 0) == 0 && *values == 0) missing.push_back(std::string_view(v.name).substr(sizeof kGiven - 1));
+        if (v.name.what == rsl::OutputName::What::Given && *values == 0) missing.push_back(&v.name.name);
         if (v.aov >= 0 && given(v.name))
-            for (int r = 0; r < v.components && size_t(v.aov + r) < width; ++r) c.lightChannels[size_t(point) * width + size_t(v.aov + r)] = values[r];
+            for (int r = 0; r < v.components && size_t(v.aov + r) < width; ++r)
+                c.lightChannels[size_t(point) * width + size_t(v.aov + r)] = values[r];
         values += v.components;
     }
 }
@@ -225,7 +215,8 @@ bool Answers::lightQuery(const KernelRun& c, int li, int point, const Vec3& at, 
     return true;
 }
 
-uint64_t Answers::sampleLight(KernelRun& c, const LightLoop& loop, int li, int turn, int turns, int first, uint64_t mask, int lanes, LightLoop::Kept& kept) {
+uint64_t Answers::sampleLight(KernelRun& c, const LightLoop& loop, int li, int turn, int turns, int first, uint64_t mask,
+                              int lanes, LightLoop::Kept& kept) {
     const BoundLight& light = world_->lights_[size_t(li)];
     auto row = [&](int r, int lane) { return loop.rows[size_t(r) * size_t(lanes) + size_t(lane)]; };
     std::vector<ShadePoint> q;
@@ -248,7 +239,9 @@ uint64_t Answers::sampleLight(KernelRun& c, const LightLoop& loop, int li, int t
     std::vector<float> values;
     const size_t width = size_t(light.valueWidth);
     // A light that sends many samples gives all of them when it runs for the first.
-    const auto ran = light.sentCl >= 0 && turn > 0 ? loop.kept.find(keptName(loop, light, li, 0, world_->settings_.hider == Hider::Path)) : loop.kept.end();
+    const auto ran = light.sentCl >= 0 && turn > 0
+                         ? loop.kept.find(keptName(loop, light, li, 0, world_->settings_.hider == Hider::Path))
+                         : loop.kept.end();
     if (ran != loop.kept.end() && (ran->second.have & mask) == mask) {
         v.assign(q.size(), {});
         for (size_t i = 0; i < q.size(); ++i) {
@@ -268,12 +261,15 @@ uint64_t Answers::sampleLight(KernelRun& c, const LightLoop& loop, int li, int t
     if (light.shadows) tracer_->shadowLight(c, light, first, q, laneOf, v);
     for (size_t i = 0; i < q.size(); ++i) {
         const size_t lane = size_t(laneOf[i]);
-        std::copy_n(values.begin() + long(i) * light.valueWidth, light.valueWidth, kept.values.begin() + long(lane) * light.valueWidth);
+        std::copy_n(values.begin() + long(i) * light.valueWidth, light.valueWidth,
+                    kept.values.begin() + long(lane) * light.valueWidth);
         if (light.channels) keepChannels(c, light, first + laneOf[i], kept.values.data() + long(lane) * light.valueWidth);
         if (!v[i].lit) continue;
         const bool sky = light.kind == LightKind::Environment;
         const Vec3 toLight = sky ? q[i].P - q[i].Ps : -v[i].L;
-        const float rows[9] = {toLight.x, toLight.y, toLight.z, v[i].Cl.x * factor[i], v[i].Cl.y * factor[i], v[i].Cl.z * factor[i], v[i].Ol.x, v[i].Ol.y, v[i].Ol.z};
+        const float rows[9] = {
+            toLight.x, toLight.y, toLight.z, v[i].Cl.x * factor[i], v[i].Cl.y * factor[i], v[i].Cl.z * factor[i],
+            v[i].Ol.x, v[i].Ol.y, v[i].Ol.z};
         for (size_t r = 0; r < 9; ++r) kept.out[r * size_t(lanes) + lane] = rows[r];
         kept.distance[lane] = sky || light.kind == LightKind::Distant ? 1e38f : length(toLight);
         lit |= uint64_t(1) << lane;

@@ -7,11 +7,12 @@ namespace {
 
 /// What the shader has put into one of its outputs, in a run that is over. `t`: of the parameter's type.
 bool writtenBy(const shading::Batch& run, int point, const std::string& parameter, Told& t) {
-    const std::string plain = "param:" + parameter;
+    rsl::OutputName name = rsl::OutputName::parameterOf(parameter);
     const auto& outputs = run.kernel().outputs();
     std::vector<float> numbers;
     for (int e = 0; e < std::max(1, t.elements); ++e) {
-        const int o = run.output(t.elements ? plain + "[" + std::to_string(e) + "]" : plain);
+        if (t.elements) name.element = e;
+        const int o = run.output(name);
         if (o < 0) return false;
         for (int k = 0; k < rsl::ir::components(outputs[size_t(o)].kind); ++k) numbers.push_back(run.value(o, k, point));
     }
@@ -35,8 +36,11 @@ void overridden(const ShadePoint& p, const std::string& parameter, Told& t) {
 enum class Asks { Surface, Displacement, Atmosphere, Incident, Opposite, Nobody };
 
 Asks asked(const std::string& op) {
-    static const std::map<std::string, Asks> names = {{"surface", Asks::Surface}, {"displacement", Asks::Displacement}, {"atmosphere", Asks::Atmosphere},
-                                                      {"incident", Asks::Incident}, {"opposite", Asks::Opposite}};
+    static const std::map<std::string, Asks> names = {{"surface", Asks::Surface},
+                                                      {"displacement", Asks::Displacement},
+                                                      {"atmosphere", Asks::Atmosphere},
+                                                      {"incident", Asks::Incident},
+                                                      {"opposite", Asks::Opposite}};
     const auto i = names.find(op);
     return i == names.end() ? Asks::Nobody : i->second;
 }
@@ -99,11 +103,12 @@ const LightParameter& lightParameter(Answers& answers, int32_t id, int light) {
     made->told = toldBy(*l.instance, name);
     int offset = 0;
     for (const BoundLight::Value& v : l.values) {
-        const bool element = made->told && made->told->elements > 0 && v.name.rfind(name + "[", 0) == 0;
-        if (made->told && (v.name == name || element)) {
+        const bool written = made->told && v.name.what == rsl::OutputName::What::Value && v.name.name == name;
+        const bool element = written && made->told->elements > 0 && v.name.element >= 0;
+        if (written && (v.name.element < 0 || element)) {
             const size_t size = made->told->numbers.size() / size_t(std::max(1, made->told->elements));
             made->written.push_back(
-                {offset, v.components, element ? size * size_t(std::atoi(v.name.c_str() + name.size() + 1)) : 0});
+                {offset, v.components, element ? size * size_t(v.name.element) : 0});
         }
         offset += v.components;
     }
@@ -112,9 +117,9 @@ const LightParameter& lightParameter(Answers& answers, int32_t id, int light) {
 
 /// What a surface has sent to a parameter of a light.
 void tellSent(const ServiceCall& q, const LightLoop& loop, const SiteInfo& setup, int lane, const std::string& name, Told& t) {
-    const std::string key = "send:light:" + name;
     if (t.kind == rsl::ir::Kind::String) {
-        if (const auto text = setup.text.find(key); text != setup.text.end()) t.texts = {text->second};
+        for (const auto& [parameter, text] : setup.sentStrings)
+            if (parameter == name) t.texts = {text};
         return;
     }
     size_t to = 0;
@@ -123,11 +128,15 @@ void tellSent(const ServiceCall& q, const LightLoop& loop, const SiteInfo& setup
             t.numbers[to++] = loop.given[size_t(row + r) * size_t(q.lanes) + size_t(lane)];
     };
     const size_t size = t.numbers.size() / size_t(std::max(1, t.elements));
-    if (const auto row = setup.named.find(key); row != setup.named.end()) sent(row->second, int(rowsOf(setup, row->second)));
+    const auto find = [&](int element) {
+        return std::find_if(setup.sent.begin(), setup.sent.end(),
+                            [&](const SiteInfo::Sent& v) { return v.element == element && v.parameter == name; });
+    };
+    if (const auto whole = find(-1); whole != setup.sent.end()) sent(whole->row, whole->size);
     for (int n = 0; t.elements > 0; ++n) { // an array that was sent: what it does not reach stays
-        const auto row = setup.named.find(key + "[" + std::to_string(n) + "]");
-        if (row == setup.named.end() || rowsOf(setup, row->second) != size) break;
-        sent(row->second, int(size));
+        const auto element = find(n);
+        if (element == setup.sent.end() || size_t(element->size) != size) break;
+        sent(element->row, int(size));
     }
 }
 
@@ -167,7 +176,8 @@ std::optional<Information> ofTheLightItself(const WorldImpl& w, const scene::Lig
     return i;
 }
 
-/// In a loop over lights names with "light:" in front are about the light of the turn; others, and what it does not have, are not.
+/// In a loop over lights names with "light:" in front are about the light of the turn; others, and what it does not have, are
+/// not.
 std::optional<Information> ofTheLightOfTheTurn(const WorldImpl& w, const scene::Light& light, const std::string& name) {
     if (!light.attributes) return std::nullopt;
     if (name.rfind(kLight, 0) == 0) return attributeOf(w, *light.attributes, name.substr(sizeof kLight - 1), nullptr, nullptr);
@@ -184,7 +194,8 @@ std::optional<Information> ofTheFrame(const WorldImpl& w, const std::string& nam
     return a ? attributeOf(w, *a, name, nullptr, nullptr) : std::nullopt;
 }
 
-std::optional<Information> ofThePrimitive(const WorldImpl& w, const ShadePoint& p, const std::string& name, const SurfaceBinding* b) {
+std::optional<Information> ofThePrimitive(const WorldImpl& w, const ShadePoint& p, const std::string& name,
+                                          const SurfaceBinding* b) {
     return p.shape ? attributeOf(w, p.shape->attributes(), name, &p, b) : std::nullopt;
 }
 

@@ -5,7 +5,15 @@
 namespace alpenglow::transport {
 
 /// Dimensions that are not call sites of a shader. Sites of shaders are below 2^20.
-enum RandomUse : uint32_t { kChooseLobe = 1u << 20, kRoulette, kPassThrough, kChooseLight, kSampleBase, kLevel, kLightPoint = 1u << 21 };
+enum RandomUse : uint32_t {
+    kChooseLobe = 1u << 20,
+    kRoulette,
+    kPassThrough,
+    kChooseLight,
+    kSampleBase,
+    kLevel,
+    kLightPoint = 1u << 21
+};
 
 class Random {
 public:

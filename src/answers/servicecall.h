@@ -6,8 +6,8 @@
 
 namespace alpenglow::transport {
 
-/// Rows are floats, one a lane. Those of the results begin at zero. A query has 1 or 0, whether the answer came and fits, in row 0; then
-/// the answer, component by component, element by element. For an array that can change its length that stands before it.
+/// Rows are floats, one a lane. Those of the results begin at zero. A query has 1 or 0, whether the answer came and fits, in row
+/// 0; then the answer, component by component, element by element. For an array that can change its length that stands before it.
 class ServiceCall {
 public:
     ServiceCall(KernelRun&, Diagnostics&, int site, int first, uint64_t mask, int lanes, const float* in, float* out);

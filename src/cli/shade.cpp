@@ -5,6 +5,7 @@
 #include "cli/ranges.h"
 #include "display/imageio.h"
 #include "render/imaging.h"
+#include "rsl/front/protocol.h"
 #include "rsl/compiler.h"
 #include "rsl/printlog.h"
 #include "rsl/services_basic.h"
@@ -259,8 +260,9 @@ int shade(const Arguments& a) {
             const auto& i = kernel->inputs()[k];
             float* rows = in[k].data.get();
             int parts = rsl::inputParts(i), n = rsl::ir::components(i.kind);
+            const rsl::InputName name = rsl::InputName::parse(i.name);
             auto value = std::find_if(values.begin(), values.end(),
-                                      [&](const rsl::ParameterValue& v) { return "param:" + v.name == i.name; });
+                                      [&](const rsl::ParameterValue& v) { return name == rsl::InputName::parameter(v.name); });
             for (int e = 0; e < std::max(1, i.array); ++e)
                 for (int c = 0; c < n; ++c)
                     for (int part = 0; part < parts; ++part) {

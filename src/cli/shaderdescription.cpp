@@ -1,5 +1,6 @@
 #include "cli/shaderdescription.h"
 #include "cli/lspdocument.h"
+#include "rsl/front/protocol.h"
 #include "rsl/evaluate.h"
 #include "rsl/ir/build.h"
 #include "rsl/passes/optimize.h"
@@ -55,11 +56,9 @@ std::set<std::string> computedDefaults(const rsl::CompiledShader& s) {
     const auto k = rsl::buildDefaults(s.program(), s.shader(), quiet);
     if (!k) return names;
     rsl::ir::optimize(*k, {}, quiet);
-    constexpr size_t kHead = 6; // "param:"
     for (const rsl::ir::Inst* i : k->body.body) {
         if (i->op != rsl::ir::Op::Output || i->index < 0 || size_t(i->index) >= k->outputs.size() || known(i->args[0])) continue;
-        const std::string& n = k->outputs[size_t(i->index)].name;
-        names.insert(n.substr(kHead, n.find('[') == n.npos ? n.npos : n.find('[') - kHead));
+        names.insert(rsl::OutputName::parse(k->outputs[size_t(i->index)].name).name);
     }
     return names;
 }
@@ -220,7 +219,7 @@ ShaderDescription describe(rsl::ShaderCompiler& compiler, const std::shared_ptr<
         p.array = info.type.array;
         if (i < values.size())
             p.byDefault = describeDefault(s.parameters[i], info, std::move(values[i]), computed.count(info.name) > 0);
-        if (p.name == "__category" && p.byDefault.there)
+        if (p.name == rsl::kCategory && p.byDefault.there)
             for (const std::string& list : p.byDefault.value.strings)
                 for (size_t at = 0; at < list.size();) {
                     const size_t end = std::min(list.find_first_of(", ", at), list.size());

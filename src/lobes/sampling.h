@@ -16,8 +16,8 @@ struct Basis {
     Vec3 toWorld(Vec3 v) const { return t * v.x + u * v.y + n * v.z; }
 };
 
-/// Cosine and sine of so many turns, 0 to 1. The series of both functions within an eighth of a turn, as exact as float is: a library's
-/// differ from one version to the next.
+/// Cosine and sine of so many turns, 0 to 1. The series of both functions within an eighth of a turn, as exact as float is: a
+/// library's differ from one version to the next.
 inline Vec2 unitCircle(float turns) {
     float quarters = float(int(4 * turns + 0.5f));
     float x = (turns - 0.25f * quarters) * float(2 * kPi), q = x * x;
@@ -50,12 +50,12 @@ inline float misWeight(float a, float b) {
     return 1 / (1 + r * r);
 }
 
-/// The chance that a ray goes on which a waiting kernel asks for: of its result's use nothing is known, and a kernel may ask any number
-/// of times. `bounces` of the point that asks; `many`: the most rays known to be asked for at one point, by this one so far or by those that
-/// the path has met. At the camera's hit every ray goes. Behind the third bounce the chances at a point sum up to at most 1 once the path
-/// has met a point that asks as often (to .6 above three rays, where that takes longer to learn), so that the tree of rays ends; all rays of
-/// a point have about the same chance, which keeps their variance finite where kernels lose light. Unbiased: what is known depends only on
-/// rays asked for before.
+/// The chance that a ray goes on which a waiting kernel asks for: of its result's use nothing is known, and a kernel may ask any
+/// number of times. `bounces` of the point that asks; `many`: the most rays known to be asked for at one point, by this one so
+/// far or by those that the path has met. At the camera's hit every ray goes. Behind the third bounce the chances at a point sum
+/// up to at most 1 once the path has met a point that asks as often (to .6 above three rays, where that takes longer to learn),
+/// so that the tree of rays ends; all rays of a point have about the same chance, which keeps their variance finite where kernels
+/// lose light. Unbiased: what is known depends only on rays asked for before.
 inline float rouletteWaiting(int bounces, uint32_t many) {
     float n = float(many);
     return bounces < 1 ? 1 : bounces < 3 ? std::min(1.f, 3 / n) : many <= 3 ? std::min(.5f, 1 / n) : .6f / n;
@@ -66,16 +66,17 @@ inline float rouletteWaiting(int bounces, uint32_t many) {
 /// besides: so the chances at a point sum up to half, and the tree of rays ends where surfaces reflect no more than half.
 inline float rouletteOfLight(int bounces, uint32_t many) { return bounces < 1 ? 1 : .5f / float(std::max(many, 1u)); }
 
-/// The chance that a path goes on behind its third bounce, whose throughput would be `weight`; 0 = it stops, and the caller divides by
-/// it. Half again the root of the largest channel: the throughput itself stops paths whose light is missed more than their time
-/// (docs/noise.md has the figures). `dice` draws a number, if one is needed.
+/// The chance that a path goes on behind its third bounce, whose throughput would be `weight`; 0 = it stops, and the caller
+/// divides by it. Half again the root of the largest channel: the throughput itself stops paths whose light is missed more than
+/// their time (docs/noise.md has the figures). `dice` draws a number, if one is needed.
 template <class Dice> float rouletteOfPath(const Color& weight, const Dice& dice) {
     const float m = maxComponent(Color(std::fabs(weight.x), std::fabs(weight.y), std::fabs(weight.z)));
     const float q = std::min(1.f, 1.5f * std::sqrt(m));
     return q >= 1 ? 1 : q > 0 && dice() < q ? q : 0;
 }
 
-/// The seed's local roulette (pathtracer.md 5.1): 1 up to depth 3, then the largest channel of the albedo. 0 = stop; the caller divides.
+/// The seed's local roulette (pathtracer.md 5.1): 1 up to depth 3, then the largest channel of the albedo. 0 = stop; the caller
+/// divides.
 inline float rouletteLocal(int depth, const Color& albedo, float random) {
     if (depth <= 3) return 1;
     float q = std::min(maxComponent(albedo), 1.f);

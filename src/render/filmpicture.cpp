@@ -14,10 +14,12 @@ std::string number(double v) {
 }
 
 /// The world that runs the imager of a merged film. Null: there is none, or it cannot be made (reported).
-std::shared_ptr<const transport::World> imagerWorld(const Film& film, const std::string& file, const MergeSettings& settings, Diagnostics& diags) {
+std::shared_ptr<const transport::World> imagerWorld(const Film& film, const std::string& file, const MergeSettings& settings,
+                                                    Diagnostics& diags) {
     const auto text = film.metadata.find(kImagerKey);
     if (text == film.metadata.end()) {
-        diags.report(Severity::Error, Rie::Incapable, {file}, "the scene has an imager shader, of which the part file says nothing; it is not run");
+        diags.report(Severity::Error, Rie::Incapable, {file},
+                     "the scene has an imager shader, of which the part file says nothing; it is not run");
         return nullptr;
     }
     auto scene = imagerFromText(text->second, file, diags);
@@ -105,7 +107,8 @@ bool writeFilm(const Film& film, const OutputPlan& plan, PictureFacts facts, con
     return writeOutputs(plan, facts, pixels, imager, allowWrite, diags);
 }
 
-MergeResult mergePictures(const std::vector<std::string>& parts, const std::string& output, const MergeSettings& settings, Diagnostics& diags) {
+MergeResult mergePictures(const std::vector<std::string>& parts, const std::string& output, const MergeSettings& settings,
+                          Diagnostics& diags) {
     std::vector<std::string> files;
     for (const std::string& p : parts) files.push_back(p.size() > 5 && p.ends_with(".part") ? p : sidecarName(p));
     std::unique_ptr<Film> film = mergeParts(files, diags);

@@ -16,8 +16,8 @@ struct ImagerScene {
     transport::Settings settings;
 };
 
-/// "" where the frame has no imager, or where it would fill a part file's header. Folders become absolute: parts are merged anywhere
-/// on the machine. Whether plug-ins may be loaded is not kept: each program is asked anew.
+/// "" where the frame has no imager, or where it would fill a part file's header. Folders become absolute: parts are merged
+/// anywhere on the machine. Whether plug-ins may be loaded is not kept: each program is asked anew.
 std::string imagerToText(const scene::Frame&, const transport::Settings&);
 /// Nothing: the text is not ours (an error was reported).
 std::optional<ImagerScene> imagerFromText(const std::string&, const std::string& file, Diagnostics&);

@@ -13,7 +13,9 @@ float expose(float v, float gain, float gamma) {
     return std::copysign(float(exact::pow(double(std::fabs(v)), 1.0 / double(gamma))), v);
 }
 
-Color expose(Color c, float gain, float gamma) { return {expose(c.x, gain, gamma), expose(c.y, gain, gamma), expose(c.z, gain, gamma)}; }
+Color expose(Color c, float gain, float gamma) {
+    return {expose(c.x, gain, gamma), expose(c.y, gain, gamma), expose(c.z, gain, gamma)};
+}
 
 double ditherValue(uint64_t seed, int x, int y, int channel) {
     uint64_t h = mix64(mix64(seed ^ (uint64_t(uint32_t(x)) << 32 | uint32_t(y))) + uint64_t(uint32_t(channel)));

@@ -50,11 +50,15 @@ public:
         auto [known, fresh] = known_.try_emplace(a.get());
         if (fresh) {
             kept_.push_back(a); // else another's may come to lie at its address
-            const double size = a->detail ? detailSize(*a->detail, a->detailSpace, camera_) * double(frame_.options.relativeDetail) : kInfinite;
+            const double size =
+                a->detail ? detailSize(*a->detail, a->detailSpace, camera_) * double(frame_.options.relativeDetail) : kInfinite;
             const float* r = a->detailRange;
             const bool unlimited = r[3] >= kUnlimited;
-            // Every sample has a number from 0 to 1 and sees what it lies within: in a transition one level ends where the other begins.
-            const auto within = [&](double from, double to) { return to > from ? std::clamp((size - from) / (to - from), 0., 1.) : size >= from ? 1. : 0.; };
+            // Every sample has a number from 0 to 1 and sees what it lies within: in a transition one level ends where the other
+            // begins.
+            const auto within = [&](double from, double to) {
+                return to > from ? std::clamp((size - from) / (to - from), 0., 1.) : size >= from ? 1. : 0.;
+            };
             const double begin = 1 - within(r[0], r[1]), end = unlimited ? 1 : 1 - within(r[2], r[3]);
             if (begin <= 0 && end >= 1) {
                 known->second = a;

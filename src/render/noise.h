@@ -21,8 +21,8 @@ struct NoiseFigures {
     double imageError = 0;  ///< absolute: sqrt of the mean of SE_QMC^2; estimates the image's luminance RMSE
     double noise = 0; ///< relative error of the light of surfaces, mean over their area in the picture: what is printed. 0 when
                       ///< not known
-    double noiseAtMost = 0; ///< the true error is with 95 % certainty not above this: what --noise compares. Near `noise` where many
-                            ///< pixels show a surface, far above it where few do (noiseBound()). 0 when not known
+    double noiseAtMost = 0; ///< the true error is with 95 % certainty not above this: what --noise compares. Near `noise` where
+                            ///< many pixels show a surface, far above it where few do (noiseBound()). 0 when not known
     bool known = false;  ///< some pixel's surface was met in two replicas
     double coverage = 0; ///< share of the samples that met a surface, 0..1
     /// Nothing is left that more samples would improve: no surface is in the picture, or the figure is small enough.
@@ -68,7 +68,8 @@ double relativeSurfaceError(const SurfaceError&);
 
 /// 95 % upper bound of a mean of relative errors a_i (weights included), each from R replicas: the mean's own relative variance,
 /// (1 - c4(R)^2) sum a_i^2 / (sum a_i)^2, is that of a deviation from f = 1 / (2 variance) degrees of freedom, whose bound is
-/// sqrt(f / chi^2) with chi^2 the 5 % quantile (Wilson and Hilferty 1931). Where some pixels have most of the error f is small. Returns the factor,
+/// sqrt(f / chi^2) with chi^2 the 5 % quantile (Wilson and Hilferty 1931). Where some pixels have most of the error f is small.
+/// Returns the factor,
 /// >= 1: 1.01 for 10,000 like pixels, 13 for one.
 double noiseBound(double sum, double sumOfSquares, int replicas = int(kReplicas));
 
@@ -79,20 +80,20 @@ struct PooledError {
     double se = 0;
     double dof = 0; ///< degrees of freedom of se; 0: not known
 };
-/// The error of the mean luminance over the pixels of a window that hold samples: SE^2 = sum SE_i^2 / N^2, whatever each of them has. Degrees of
-/// freedom by Satterthwaite (1946), unbiased for components of one degree each: 3 (sum v)^2 / sum v^2 - 2, v = SE_i^2, between
-/// 1 and the number of pixels.
+/// The error of the mean luminance over the pixels of a window that hold samples: SE^2 = sum SE_i^2 / N^2, whatever each of them
+/// has. Degrees of freedom by Satterthwaite (1946), unbiased for components of one degree each: 3 (sum v)^2 / sum v^2 - 2, v =
+/// SE_i^2, between 1 and the number of pixels.
 PooledError windowError(const Film&, const Window&);
-/// The error of one pixel's mean, its variance taken from the square of 2 radius + 1 pixels about it, cut off at the film's window. Honest
-/// where these have about the same variance; radius 0 is the pixel alone.
+/// The error of one pixel's mean, its variance taken from the square of 2 radius + 1 pixels about it, cut off at the film's
+/// window. Honest where these have about the same variance; radius 0 is the pixel alone.
 PooledError pixelError(const Film&, int x, int y, int radius);
 
 /// Mean and half width of an interval that covers the true value with the given probability: m +- t SE, t of Student's
 /// distribution. Half width infinite when the error is not known (fewer than 2 replicas). 0 < level < 1.
 struct Interval { double mean = 0, halfWidth = 0; };
 Interval confidenceInterval(const PooledError&, double level = 0.95);
-/// t with P(|T| <= t) = level for Student's distribution with dof >= 1 degrees of freedom; between whole numbers its logarithm is taken as
-/// linear in 1 / dof (2.5 % too large at 1.5, 0.5 % at 2.5).
+/// t with P(|T| <= t) = level for Student's distribution with dof >= 1 degrees of freedom; between whole numbers its logarithm is
+/// taken as linear in 1 / dof (2.5 % too large at 1.5, 0.5 % at 2.5).
 double studentQuantile(double level, double dof);
 
 /// All figures of a film. noiseRSE and noiseRSE999 are 0 below two samples per pixel.

@@ -61,7 +61,7 @@ struct OutputPlan {
     OutputBasis basis;
     std::vector<OutputSpec> pictures;
     std::vector<std::string> engineOutputs; ///< transport::Settings::outputs
-    std::vector<int> engineWidths;          ///< floats of each: what displays declare (0: nothing), then by resolve() what shaders have
+    std::vector<int> engineWidths; ///< floats of each: what displays declare (0: nothing), then by resolve() what shaders have
     int engineFloats() const;
     bool needs(OutputVariable::Source) const;
     bool needsDepth(DepthFilter) const;

@@ -227,8 +227,9 @@ struct FilmIo {
             for (uint32_t k = 0; k < kReplicas; ++k) ok = ok && fits(p.replicaY[k]) && p.surfaceCount[k] <= p.replicaCount[k];
             ok = ok && fits(p.surfaceY);
             for (size_t c = 0; c < n; ++c)
-                ok = ok && (f.description_.channels[c].rule == ChannelRule::Average ? fits(f.aovs_[i * n + c])
-                                                                                   : f.aovs_[i * n + c] == int32_t(f.aovs_[i * n + c]));
+                ok = ok && (f.description_.channels[c].rule == ChannelRule::Average
+                                ? fits(f.aovs_[i * n + c])
+                                : f.aovs_[i * n + c] == int32_t(f.aovs_[i * n + c]));
             if (!ok)
                 return false;
         }
@@ -293,13 +294,15 @@ struct FilmIo {
     }
 };
 
-bool savePart(const Film& film, const std::string& path, const OutputPolicy& policy, Diagnostics& diag, const SourcePlace& place) {
+bool savePart(const Film& film, const std::string& path, const OutputPolicy& policy, Diagnostics& diag,
+              const SourcePlace& place) {
     auto file = OutputFile::open(path, policy, diag, place);
     if (!file)
         return false;
     std::vector<uint8_t> header = FilmIo::header(film);
     if (header.size() > limits::kPartHeaderBytes) {
-        diag.report(Severity::Error, Rie::Limit, place, "the header of a part file would be " + std::to_string(header.size()) + " bytes");
+        diag.report(Severity::Error, Rie::Limit, place,
+                    "the header of a part file would be " + std::to_string(header.size()) + " bytes");
         return false;
     }
     Writer prefix;

@@ -11,7 +11,8 @@
 namespace alpenglow::render {
 namespace {
 
-constexpr size_t kRaysPerCall = 8192; // of one trace(): enough to fill the lanes of rare shaders too, and few ends of calls, when lanes run empty
+constexpr size_t kRaysPerCall =
+    8192; // of one trace(): enough to fill the lanes of rare shaders too, and few ends of calls, when lanes run empty
 constexpr int kPathTile = 32;         // pixels a side: eight samples of each are one call
 constexpr uint32_t kPass = 8; // samples a pixel; a multiple of kReplicas, so that noise is judged on replicas of equal size
 static_assert(kPass % kReplicas == 0);

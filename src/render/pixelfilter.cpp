@@ -104,8 +104,9 @@ PixelFilter makePixelFilter(std::string_view name, double xw, double yw, const S
         if (w > 0 && w <= limits::kFilterWidth)
             return w;
         double use = w > 0 ? limits::kFilterWidth : 1;
-        diag.report(Severity::Error, Rie::Range, place, std::string("pixel filter ") + which + " width " + std::to_string(w) +
-                    " is outside (0, " + std::to_string(int(limits::kFilterWidth)) + "]; " + std::to_string(int(use)) + " is used");
+        diag.report(Severity::Error, Rie::Range, place,
+                    std::string("pixel filter ") + which + " width " + std::to_string(w) + " is outside (0, " +
+                        std::to_string(int(limits::kFilterWidth)) + "]; " + std::to_string(int(use)) + " is used");
         return use;
     };
     f.xw = width(xw, "x");

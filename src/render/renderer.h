@@ -52,7 +52,20 @@ public:
     bool writeStats();
 
 private:
+    // renderframe.cpp
     void renderFrame(std::shared_ptr<const scene::Frame>, FrameStats&);
+    struct FrameWork;
+    bool planFrame(FrameWork&);
+    bool buildFrame(FrameWork&);
+    transport::Settings engineSettings(const FrameWork&) const;
+    std::function<bool(int, const float*, const float*, float*, float*, float*, float*)> imagerOf(FrameWork&);
+    void describeFrame(FrameWork&);
+    void writtenPictures(FrameWork&, bool fine);
+    FilmDescription filmOf(const FrameWork&) const;
+    bool renderSamples(FrameWork&, struct Job&);
+    void writeFrameFilm(FrameWork&, Film&, double renderSec);
+    void renderGrid(FrameWork&, struct Job&);
+    void takeFigures(const FrameWork&, struct Job&);
     /// Takes the figures of the frame just rendered over into those of the run.
     void closeFrame(FrameStats);
     /// Says of each display whether a Make request reads it.

@@ -1,3 +1,4 @@
+#include "rsl/front/protocol.h"
 #include "rsl/compiler.h"
 #include "base/file.h"
 #include "base/limits.h"
@@ -397,9 +398,8 @@ void runOnce(const CompiledKernel& k, const SpaceFn& spaces, std::vector<std::ve
         float* p = blocks.back().p;
         if (i.kind == ir::Kind::Matrix) {
             float m[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-            const size_t colon = i.name.find(':'), arrow = i.name.find('>');
-            if (spaces && colon != std::string::npos && arrow != std::string::npos)
-                spaces(i.name.substr(colon + 1, arrow - colon - 1), i.name.substr(arrow + 1), m);
+            if (const InputName name = InputName::parse(i.name); spaces && name.kind == InputName::Kind::Space)
+                spaces(name.from, name.to, m);
             for (int c = 0; c < 16; c++)
                 for (int n = 0; n < (i.uniform ? 1 : kStride); n++) p[i.uniform ? c : c * kStride + n] = m[c];
         }
@@ -505,12 +505,9 @@ std::vector<ParameterValue> ShaderCompiler::parameterValues(const ShaderPtr& sha
         runOnce(*code, spaces, numbers);
     }
     for (size_t o = 0; o < numbers.size(); o++) {
-        std::string name = k->outputs[o].name.substr(std::strlen("param:"));
-        size_t element = 0;
-        if (auto bracket = name.find('['); bracket != std::string::npos) {
-            element = size_t(std::atoi(name.c_str() + bracket + 1));
-            name.resize(bracket);
-        }
+        const OutputName output = OutputName::parse(k->outputs[o].name);
+        const std::string& name = output.name;
+        const size_t element = size_t(std::max(output.element, 0));
         for (auto& v : values) {
             if (v.name != name) continue;
             if (v.type.base == Base::String) {

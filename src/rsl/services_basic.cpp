@@ -2,7 +2,7 @@
 #include "base/printable.h"
 #include "base/category.h"
 #include "base/limits.h"
-#include "rsl/handlename.h"
+#include "rsl/front/protocol.h"
 #include "rsl/pattern.h"
 #include <algorithm>
 #include <bit>

@@ -103,17 +103,23 @@ BatchPlan::BatchPlan(const rsl::CompiledKernel& kernel, bool mixed) {
         s.firstRow = rows_;
         s.rows = size_t(s.components) * s.elements * s.parts;
         rows_ += s.rows;
-        if (input.name.rfind("space:", 0) == 0) {
-            size_t arrow = input.name.find('>');
+        s.name = rsl::InputName::parse(input.name);
+        if (s.name.kind == rsl::InputName::Kind::Space) {
             s.from = From::Space;
-            s.space = input.name.substr(6, arrow - 6);
-            s.toSpace = input.name.substr(arrow + 1);
-        } else if (input.name.rfind("param:", 0) == 0) {
+        } else if (s.name.kind == rsl::InputName::Kind::Parameter) {
             s.from = From::Parameter;
-            s.name = input.name.substr(6);
-        } else if (input.name.rfind("displacement:", 0) == 0) {
+        } else if (s.name.kind == rsl::InputName::Kind::Displacement) {
             s.from = From::Told;
-            s.name = input.name.substr(13);
+            using rsl::OutputName;
+            const auto hear = [&](int element, int part, OutputName::What what) {
+                s.heard.push_back({s.name.member ? OutputName::left(s.name.name, s.name.length, what)
+                                                 : OutputName::parameterOf(s.name.name, -1, what),
+                                   std::max(element, 0), part});
+                s.heard.back().output.element = element;
+            };
+            hear(-1, 0, OutputName::What::Value);
+            for (int e = 0; e < s.elements; ++e) hear(e, 0, OutputName::What::Value);
+            if (s.parts > 1) hear(-1, 1, OutputName::What::Du), hear(-1, 2, OutputName::What::Dv);
         } else if (input.name == "Cs" || input.name == "Os") {
             s.from = input.name == "Cs" ? From::Cs : From::Os;
         } else {
@@ -129,7 +135,7 @@ BatchPlan::BatchPlan(const rsl::CompiledKernel& kernel, bool mixed) {
     }
     for (const rsl::ir::OutputSlot& o : kernel.outputs()) {
         outputRow_.push_back(rows_);
-        outputs_.push_back(o.name);
+        outputs_.push_back(rsl::OutputName::parse(o.name));
         rows_ += size_t(rsl::ir::components(o.kind));
     }
     Ci = output("Ci");
@@ -138,9 +144,16 @@ BatchPlan::BatchPlan(const rsl::CompiledKernel& kernel, bool mixed) {
     N = output("N");
 }
 
+int BatchPlan::output(const rsl::OutputName& name) const {
+    const auto at = std::find(outputs_.begin(), outputs_.end(), name);
+    return at == outputs_.end() ? -1 : int(at - outputs_.begin());
+}
+
 int BatchPlan::output(std::string_view name) const {
-    for (size_t i = 0; i < outputs_.size(); ++i)
-        if (outputs_[i] == name) return int(i);
+    for (size_t i = 0; i < outputs_.size(); ++i) {
+        const rsl::OutputName& o = outputs_[i];
+        if (o.what == rsl::OutputName::What::Value && !o.parameter && o.element < 0 && o.block == 0 && o.name == name) return int(i);
+    }
     return -1;
 }
 
@@ -213,15 +226,12 @@ void Batch::tell(const Batch& displaced) {
     for (const BatchPlan::Source& s : plan_->inputs_) {
         if (s.from != BatchPlan::From::Told) continue;
         float* row = storage_.get() + s.firstRow * stride;
-        const auto take = [&](const std::string& name, int element, int part) {
-            const int o = displaced.output(name);
+        for (const BatchPlan::Source::Heard& h : s.heard) {
+            const int o = displaced.output(h.output);
             for (int c = 0; o >= 0 && c < s.components; ++c)
-                std::memcpy(row + size_t((element * s.components + c) * s.parts + part) * stride, displaced.out_[size_t(o)] + size_t(c) * size_t(displaced.call_.stride),
-                            size_t(call_.n) * sizeof(float));
-        };
-        take("param:" + s.name, 0, 0);
-        for (int e = 0; e < s.elements; ++e) take("param:" + s.name + "[" + std::to_string(e) + "]", e, 0);
-        if (s.parts > 1) take("Du:param:" + s.name, 0, 1), take("Dv:param:" + s.name, 0, 2);
+                std::memcpy(row + size_t((h.element * s.components + c) * s.parts + h.part) * stride,
+                            displaced.out_[size_t(o)] + size_t(c) * size_t(displaced.call_.stride), size_t(call_.n) * sizeof(float));
+        }
         pad(s, row);
     }
 }
@@ -321,9 +331,9 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
                 }
                 return false;
             };
-            if (!(s.toSpace == "current" && own(s.space, m))) {
-                if (s.space == "current" && own(s.toSpace, m)) m = inverse(m);
-                else spaces.matrix(s.space, s.toSpace, m);
+            if (!(s.name.to == "current" && own(s.name.from, m))) {
+                if (s.name.from == "current" && own(s.name.to, m)) m = inverse(m);
+                else spaces.matrix(s.name.from, s.name.to, m);
             }
             for (int c = 0; c < 16; ++c) at(c, 0, i) = float(m.m[c / 4][c % 4]);
         }
@@ -331,7 +341,7 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
     case From::Parameter: {
         numbers_.clear();
         for (const InstanceView& v : views.views) {
-            auto found = v.parameters ? v.parameters->numbers.find(s.name) : std::map<std::string, std::vector<float>>::const_iterator{};
+            auto found = v.parameters ? v.parameters->numbers.find(s.name.name) : std::map<std::string, std::vector<float>>::const_iterator{};
             numbers_.push_back(v.parameters && found != v.parameters->numbers.end() ? &found->second : nullptr);
         }
         bool overridden = false; // by a primitive variable of some shape
@@ -339,7 +349,7 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
         for (int i = 0; s.varying && primvars_ && !overridden && i < count; ++i)
             if (points[i].shape && points[i].shape != last) {
                 last = points[i].shape;
-                overridden = !last->primvars().empty() && last->findPrimvar(s.name) >= 0;
+                overridden = !last->primvars().empty() && last->findPrimvar(s.name.name) >= 0;
             }
         if (!overridden) { // component by component: a value for each instance, then a row
             for (int c = 0; c < comps * s.elements; ++c) {
@@ -361,7 +371,7 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
         std::vector<float> interpolated; // value, du, dv
         for (int i = 0; i < count; ++i) {
             if (points[i].shape) {
-                const int v = points[i].shape->findPrimvar(s.name);
+                const int v = points[i].shape->findPrimvar(s.name.name);
                 const geometry::PrimVar* variable = v >= 0 ? &points[i].shape->primvars()[size_t(v)] : nullptr;
                 if (variable && fits(*variable, comps, s.elements)) {
                     const size_t width = size_t(variable->outWidth());

@@ -1,5 +1,6 @@
 // A batch: points that one kernel shades together, laid out as the kernel reads them (rsl/kernel.h), and what came out.
 #pragma once
+#include "rsl/front/protocol.h"
 #include "rsl/kernel.h"
 #include "shading/point.h"
 #include <functional>
@@ -14,7 +15,7 @@ struct ParameterBlock {
     std::map<std::string, std::string> strings;
 };
 
-/// Resolves "space:FROM>TO" inputs: one of both is "current".
+/// Resolves inputs of the kind rsl::InputName::Kind::Space: one of both is "current".
 class SpaceResolver {
 public:
     virtual ~SpaceResolver() = default;
@@ -46,6 +47,8 @@ class BatchPlan {
 public:
     explicit BatchPlan(const rsl::CompiledKernel&, bool mixed);
     /// Index of an output, -1 when the kernel has none of that name.
+    int output(const rsl::OutputName&) const;
+    /// The same of a variable or a whole output parameter.
     int output(std::string_view name) const;
     int Ci = -1, Oi = -1, P = -1, N = -1;
     /// Whether du or dv is read.
@@ -64,11 +67,14 @@ private:
         int components = 1, parts = 1, elements = 1;
         size_t rows = 0, firstRow = 0;         ///< rows of `stride` floats
         int16_t offset[6] = {-1, -1, -1, -1, -1, -1}; ///< Variable: bytes into ShadePoint of each part; -1: zero, -2: one, -3: three, -4: Ngs
-        std::string name, space, toSpace;
+        rsl::InputName name;
+        /// Told: outputs of the displacement shader's run that fill it, by element and part.
+        struct Heard { rsl::OutputName output; int element, part; };
+        std::vector<Heard> heard;
     };
     std::vector<Source> inputs_;
     std::vector<size_t> outputRow_;
-    std::vector<std::string> outputs_;
+    std::vector<rsl::OutputName> outputs_;
     size_t rows_ = 0;
     bool footprint_ = false;
     uint32_t needs_ = 0, litNeeds_ = 0;
@@ -88,7 +94,7 @@ public:
     void assign(std::shared_ptr<const rsl::CompiledKernel>, const BatchPlan&, std::span<const ShadePoint> points,
                 std::span<const InstanceView> views, std::span<const uint32_t> viewOf, const SpaceResolver&);
 
-    /// Fills the inputs "displacement:NAME" from the outputs of the displacement shader's run at the same points, derivatives too.
+    /// Fills the inputs that the displacement shader gives from the outputs of its run at the same points, derivatives too.
     void tell(const Batch& displaced);
 
     rsl::KernelCall& call() { return call_; }
@@ -96,6 +102,7 @@ public:
     int size() const { return call_.n; }
     const BatchPlan& plan() const { return *plan_; }
     int output(std::string_view name) const { return plan_->output(name); }
+    int output(const rsl::OutputName& name) const { return plan_->output(name); }
     float value(int output, int component, int point) const { return out_[output][size_t(component) * call_.stride + point]; }
     Color color(int output, int point) const { return {value(output, 0, point), value(output, 1, point), value(output, 2, point)}; }
 

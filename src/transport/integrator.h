@@ -17,8 +17,8 @@ class Integrator {
 public:
     explicit Integrator(std::shared_ptr<const World>, Diagnostics&);
     ~Integrator();
-    /// Follows all rays to the end. Results do not depend on which rays share a call. False when `stop` was set meanwhile: then the
-    /// results are void. One Integrator per thread.
+    /// Follows all rays to the end. Results do not depend on which rays share a call. False when `stop` was set meanwhile: then
+    /// the results are void. One Integrator per thread.
     bool trace(std::span<const CameraRay>, std::span<SampleResult>, const StopFlag* stop);
     const Counters& counters() const;
 

@@ -24,6 +24,37 @@ std::shared_ptr<BatchContext> Engine::displace(const BatchContext& c) {
     return d;
 }
 
+/// Displacement again at the hit, for P, N (design decision 9). All points of a group with displacement share its binding.
+void Engine::takeDisplacement(BatchContext& c) {
+    const auto d = displace(c);
+    if (!d) return;
+    int po = d->batch->output("P"), no = d->batch->output("N");
+    using rsl::OutputName;
+    const int dpu = d->batch->output(OutputName::du("P")), dpv = d->batch->output(OutputName::dv("P"));
+    const int dnu = d->batch->output(OutputName::du("N")), dnv = d->batch->output(OutputName::dv("N"));
+    for (size_t k = 0; k < c.points.size(); ++k) {
+        ShadePoint& p = c.points[k];
+        if (po >= 0) { p.P = d->batch->color(po, int(k)); p.I = p.P - c.rays[k].begin(); }
+        if (no >= 0) p.N = d->batch->color(no, int(k));
+        // The surface shader's derivatives are those of the displaced surface. Its second partials stay those of the plain one.
+        if (po >= 0 && dpu >= 0 && dpv >= 0) {
+            p.surface.dPdu = d->batch->color(dpu, int(k));
+            p.surface.dPdv = d->batch->color(dpv, int(k));
+            p.surface.Ng = cross(p.surface.dPdu, p.surface.dPdv) * p.surface.orientation;
+        }
+        if (no >= 0 && dnu >= 0 && dnv >= 0) {
+            p.surface.dNdu = d->batch->color(dnu, int(k));
+            p.surface.dNdv = d->batch->color(dnv, int(k));
+        }
+        if (p.surface.displaced) { // rays left and met the facet; shading offsets start there
+            p.surface.P = p.surface.displacedP;
+            p.surface.n = p.surface.displacedN;
+            p.P = p.surface.displacedP;
+        }
+    }
+    if (c.binding->displacementTells) c.displaced = d;
+}
+
 void Engine::moveToFacets(BatchContext& c) {
     for (size_t k = 0; k < c.rays.size(); ++k) {
         ShadePoint& p = c.points[k];

@@ -16,7 +16,8 @@ void Counters::operator+=(const Counters& o) {
 }
 
 Engine::Engine(std::shared_ptr<const WorldImpl> w, Diagnostics& d)
-    : world_(std::move(w)), diagnostics_(d), seed_(world_->settings_.seed), rules_(world_->settings_), answers_(*world_, d, this) {
+    : world_(std::move(w)), diagnostics_(d), seed_(world_->settings_.seed), rules_(world_->settings_),
+      answers_(*world_, d, this) {
     noSample_.numbers = render::SampleNumbers(render::Sampler(seed_, 0, 0), 0);
 }
 

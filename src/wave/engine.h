@@ -1,5 +1,5 @@
-// The inside of Integrator, for the rooms of transport only: following a slice of rays, shading what they hit, and what becomes of
-// requests.
+// The inside of Integrator, for the rooms of transport only: following a slice of rays, shading what they hit, and what becomes
+// of requests.
 #pragma once
 #include "answers/answers.h"
 #include "wave/batchcontext.h"
@@ -44,9 +44,15 @@ public:
     void deposit(Sched&, const Deposit&);
     // lights.cpp
     /// Light arriving at queries from one light; for area lights `samples[i]` is the point on the emitter.
-    void evaluateLight(const BoundLight&, std::vector<ShadePoint>& queries, std::span<LightValue> out, const LightCall& = {}) override;
+    void evaluateLight(const BoundLight&, std::vector<ShadePoint>& queries, std::span<LightValue> out,
+                       const LightCall& = {}) override;
+    /// Runs a light's kernel that waits for rays, strip by strip.
+    void runWaitingLight(BatchContext&);
+    /// Adds what a light's kernel asks for beside its Cl: shadows. The queries are not in the batch.
+    void addLightPairs(BatchContext&, std::vector<ShadePoint>& queries, std::span<LightValue>);
     /// What a transmission() or trace() of a light's kernel gives at a point that it lights, followed to the end at once.
-    shading::TargetValue rayOfLight(BatchContext&, const SiteInfo&, int point, const std::function<float(int)>& row, uint32_t occurrence);
+    shading::TargetValue rayOfLight(BatchContext&, const SiteInfo&, int point, const std::function<float(int)>& row,
+                                    uint32_t occurrence);
     void shadowLight(const KernelRun&, const BoundLight&, int first, std::span<const ShadePoint>, std::span<const int> laneOf,
                      std::span<LightValue>) override;
     // shadowrays.cpp
@@ -54,17 +60,20 @@ public:
     void transmittances(std::span<const ShadowRay>, std::span<Color> out);
     Color transmittance(const ShadowRay&);
     /// The rays of a transmission() from a to b, for `out`: as many as it asks for, each with its share of `weight`.
-    void transmissionRays(const SiteInfo&, const ShadePoint&, const Vec3& at, const geometry::SurfacePoint*, const std::function<float(int)>& row, const Color& weight, TargetId,
-                          uint32_t site, uint32_t occurrence, std::vector<ShadowRay>& out);
+    void transmissionRays(const SiteInfo&, const ShadePoint&, const Vec3& at, const geometry::SurfacePoint*,
+                          const std::function<float(int)>& row, const Color& weight, TargetId, uint32_t site, uint32_t occurrence,
+                          std::vector<ShadowRay>& out);
     /// Oi at hits of one binding.
     void opacities(std::span<const OpacityQuery>, std::span<Color> out);
+    void takeOpacities(std::span<const OpacityQuery> met, const std::function<size_t(size_t)>& rayOf, std::span<Color> out);
     /// Whether surfaces that block all light are looked for first and by themselves, the others only where a ray may meet them.
     bool meetsOpaqueAlone(const ShadowRay&) const;
     void blockedByOpaque(std::span<const ShadowRay>, std::span<Color> out);
     // haze.cpp
-    /// Runs a volume shader over points with Ci, Oi, I, P set. The points' Ci is void afterwards. The binding is that of what was met.
-    /// `surface`, `of`: the run of the surface shader, and the points' numbers there; may be missing.
-    void haze(const Medium&, const SurfaceBinding&, std::vector<ShadePoint>&, std::span<Haze> out, bool wantSlope, BatchContext* surface = nullptr, std::span<const int> of = {});
+    /// Runs a volume shader over points with Ci, Oi, I, P set. The points' Ci is void afterwards. The binding is that of what was
+    /// met. `surface`, `of`: the run of the surface shader, and the points' numbers there; may be missing.
+    void haze(const Medium&, const SurfaceBinding&, std::vector<ShadePoint>&, std::span<Haze> out, bool wantSlope,
+              BatchContext* surface = nullptr, std::span<const int> of = {});
     void keepOutputs(const shading::Batch& volume, BatchContext& surface, std::span<const int> of);
     /// Fills c.haze for points first to first + count - 1 of a shaded batch.
     void hazeOfBatch(BatchContext&, int first, int count, bool wantSlope);
@@ -80,8 +89,10 @@ public:
                                       const Vec3& to);
     const shading::Media* kept(const shading::Media&); ///< the same, for good; null where it is none
     static int mediumOf(const shading::Media* m) { return m ? m->top() : -1; }
-    /// Where shadow rays between a and b begin, one of which may be the point `at` of a surface. Those that end there are turned about.
-    void shadowsInMedia(std::span<ShadowRay>, const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint*, const SurfaceBinding*);
+    /// Where shadow rays between a and b begin, one of which may be the point `at` of a surface. Those that end there are turned
+    /// about.
+    void shadowsInMedia(std::span<ShadowRay>, const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint*,
+                        const SurfaceBinding*);
     /// A part of a shadow ray inside a medium.
     struct MediumPart { int medium; size_t ray; Vec3 from, to; };
     /// Takes from `out`, by ray, what the media leave of light.
@@ -99,11 +110,11 @@ public:
     std::map<std::tuple<int32_t, int32_t, const scene::Attributes*>, const uint8_t*> subsetsKnown_;
     Answers& answers() { return answers_; }
     // lightoutputs.cpp
-    /// For the camera's points of a batch that is filled: runs for the outputs that light reaches. `fill` fills one.
-    std::vector<std::shared_ptr<BatchContext>> asides(const BatchContext&, Sched&,
-                                                      const std::function<void(BatchContext&)>& fill);
+    /// For the camera's points of a batch that is filled: runs for the outputs that light reaches.
+    std::vector<std::shared_ptr<BatchContext>> asides(const BatchContext&, Sched&);
     /// A lobe of a batch, and the pair that it came from.
     struct AskedLobe { int lobe, record, lane; };
+    void requestPairs(BatchContext&, std::span<const Color> slope, std::vector<AskedLobe>* asked); // shadegroup.cpp
     /// A pair of an output that shares no lobe of Ci, or not in all components.
     struct AskedAside { BatchContext* run; int record, lane; Color weight; };
     /// Gives the lobes of a batch their shares; what is left is returned. The asides have run.
@@ -118,9 +129,10 @@ public:
     /// Follows what strips have asked for since the last call: those of a batch together.
     void followStrips(Sched&) override;
     // requests.cpp
-    void request(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId, bool owns,
-                 uint32_t occurrence);
-    void lightVisibility(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId, float distance);
+    void request(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId,
+                 bool owns, uint32_t occurrence);
+    void lightVisibility(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId,
+                         float distance);
     /// Gathers light over `lobes` (gather.h).
     void gather(BatchContext&, Sched&);
     /// The environment map of a trace() in direction w (unit, current space).
@@ -133,17 +145,21 @@ public:
     const WorldImpl& world() const { return *world_; }
     const Rules& rules() const { return rules_; }
     Diagnostics& diagnostics() { return diagnostics_; }
+    void fillBatch(BatchContext&); // shadegroup.cpp
     void shadeGroup(std::shared_ptr<BatchContext>, Sched&);
+    void takeDisplacement(BatchContext&); // displace.cpp
     /// Runs the displacement shader at the points of a batch (all of one binding); null where it waits for rays. displacement.cpp
     std::shared_ptr<BatchContext> displace(const BatchContext&);
-    /// Points of surfaces whose shaders move P, once the kernel has its inputs: rays met, and will leave, the facets. displacement.cpp
+    /// Points of surfaces whose shaders move P, once the kernel has its inputs: rays met, and will leave, the facets.
+    /// displacement.cpp
     static void moveToFacets(BatchContext&);
     void bindCall(rsl::KernelCall&, BatchContext&);
     Random random(const PathRay& r) const { return Random(r.sample ? r.sample->numbers : noSample_.numbers); }
     /// The one that stays, of a kind that is made.
     const RayKind* kindOf(const RayKind&);
     const RayExtra& extraOf(const PathRay& r) const { return r.extra < 0 ? noExtra_ : extras_[size_t(r.extra)]; }
-    /// For PathRay::extra of one ray, which has it alone: freeExtra() when its points are shaded. -1 where there is nothing in it.
+    /// For PathRay::extra of one ray, which has it alone: freeExtra() when its points are shaded. -1 where there is nothing in
+    /// it.
     int32_t newExtra(const RayExtra&);
     void freeExtras(BatchContext&);
     void freeExtra(const PathRay& r) {
@@ -220,7 +236,8 @@ private:
     bool beginsAnew_ = false;
     std::unique_ptr<Sched> sched_;
     /// The rays of a trace() in a light, by the engine that rayOfLight() keeps for it.
-    shading::TargetValue follow(BatchContext&, const SiteInfo&, int point, const std::function<float(int)>& row, uint32_t occurrence);
+    shading::TargetValue follow(BatchContext&, const SiteInfo&, int point, const std::function<float(int)>& row,
+                                uint32_t occurrence);
     std::unique_ptr<Engine> inner_;
     void misses(std::span<const Sched::Task* const>, Sched&);
     struct Met { int light; TargetId target; const ShadePoint* point; };

@@ -32,8 +32,8 @@ void Gather::tellLights() {
         const auto list = lobesOf(point);
         if (list.empty()) continue;
         const int first = e_.lobes[size_t(list[0])].lit;
-        for (auto& [name, v] : e_.litValues_[size_t(first)].outputs) {
-            const int o = c_->bound->kernel->facts().suspends ? -1 : c_->batch->output("param:" + name);
+        for (auto& [output, v] : e_.litValues_[size_t(first)].outputs) {
+            const int o = c_->bound->kernel->facts().suspends ? -1 : c_->batch->output(output->name);
             for (size_t r = 0; o >= 0 && r < v.size(); ++r) v[r] = c_->batch->value(o, int(r), int(point));
         }
         for (int i : list) e_.lobes[size_t(i)].lit = first;

@@ -1,10 +1,10 @@
 // What becomes of the lobes that a batch asks light for (Engine::lobes), stage by stage, each in a file of its own:
 //   choose   how much each lobe gives back, and the chance that its ray is followed (choose.cpp)
 //   light    points of lights for the points of the batch, and what the lights' kernels send from there (lightpoints.cpp)
-//   connect  lobes with those points: contributions, with one shadow ray for all lobes of a vertex that can share it (connect.cpp)
-//   scatter  directions of the lobes whose rays are followed, and the rays (scatter.cpp)
-// A stage reads what the ones before it wrote and changes nothing else; none looks at two points at a time, so results do not depend
-// on who shares the batch.
+//   connect  lobes with those points: contributions, with one shadow ray for all lobes of a vertex that can share it
+//   (connect.cpp) scatter  directions of the lobes whose rays are followed, and the rays (scatter.cpp)
+// A stage reads what the ones before it wrote and changes nothing else; none looks at two points at a time, so results do not
+// depend on who shares the batch.
 #pragma once
 #include "wave/engine.h"
 
@@ -93,7 +93,8 @@ private:
     const WorldImpl& world_;
     const Rules& rules_;
     BatchContext* c_ = nullptr;
-    std::vector<int> begin_, order_, next_; ///< of point p the lobes order_[begin_[p]] to order_[begin_[p + 1]], as they were asked for
+    std::vector<int> begin_, order_,
+        next_; ///< of point p the lobes order_[begin_[p]] to order_[begin_[p + 1]], as they were asked for
     std::vector<float> indirectScale_; ///< by point: of the rays of lighting shadeops
     std::vector<float> passes_;        ///< by point: the chance that its ray goes on behind it
     std::vector<std::vector<std::pair<int, float>>> chosenAt_; ///< many lights: by light of the list, points and chances

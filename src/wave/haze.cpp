@@ -1,14 +1,14 @@
-// Atmospheres and media: volume shaders run over what a ray met. They are affine in the light that comes in (Ci = a + slope Ci), which the
-// compiler proves where it can; the slope scales what is added later: requests, and the light of an emitter.
+// Atmospheres and media: volume shaders run over what a ray met. They are affine in the light that comes in (Ci = a + slope Ci),
+// which the compiler proves where it can; the slope scales what is added later: requests, and the light of an emitter.
 #include "wave/engine.h"
 #include "world/outputs.h"
 
 namespace alpenglow::transport {
 
-void Engine::haze(const Medium& medium, const SurfaceBinding& binding, std::vector<ShadePoint>& points, std::span<Haze> out, bool wantSlope, BatchContext* surface,
-                  std::span<const int> of) {
+void Engine::haze(const Medium& medium, const SurfaceBinding& binding, std::vector<ShadePoint>& points, std::span<Haze> out,
+                  bool wantSlope, BatchContext* surface, std::span<const int> of) {
     const auto& kernel = medium.kernel.kernel;
-    int slopeAt = medium.kernel.plan->output("slope:Ci");
+    int slopeAt = medium.kernel.plan->output(rsl::OutputName::slope("Ci"));
     bool first = true;
     auto run = [&](auto&& take) {
         BatchContext c;
@@ -43,18 +43,21 @@ void Engine::haze(const Medium& medium, const SurfaceBinding& binding, std::vect
 
 /// Outputs that displays ask for and that the surface does not have, or may not have.
 void Engine::keepOutputs(const shading::Batch& volume, BatchContext& surface, std::span<const int> of) {
-    const auto& wanted = world_->settings_.outputs;
+    const auto& wanted = world_->wanted_;
     size_t all = 0, at = 0;
     for (int w : world_->outputWidths_) all += size_t(w);
     for (size_t k = 0; k < wanted.size(); at += size_t(world_->outputWidths_[k++])) {
-        if (!outputsNamed(*surface.batch, wanted[k]).empty() && !(surface.binding && givesPerhaps(*surface.binding->surface, wanted[k]))) continue;
+        if (!outputsNamed(*surface.batch, wanted[k]).empty() &&
+            !(surface.binding && givesPerhaps(*surface.binding->surface, wanted[k])))
+            continue;
         size_t to = at;
         const size_t end = at + size_t(world_->outputWidths_[k]);
         for (int o : outputsNamed(volume, wanted[k])) {
             if (surface.lightChannels.empty()) surface.lightChannels.assign(surface.points.size() * all, 0);
             for (int r = 0; r < rsl::ir::components(volume.kernel().outputs()[size_t(o)].kind) && to < end; ++r, ++to)
                 for (size_t i = 0; i < of.size(); ++i)
-                    if (givenAt(volume, wanted[k], int(i))) surface.lightChannels[size_t(of[i]) * all + to] = volume.value(o, r, int(i));
+                    if (givenAt(volume, wanted[k], int(i)))
+                        surface.lightChannels[size_t(of[i]) * all + to] = volume.value(o, r, int(i));
         }
     }
 }
@@ -89,7 +92,8 @@ void Engine::hazeOfBatch(BatchContext& c, int first, int count, bool wantSlope) 
     }
 }
 
-void Engine::hazeOfEmitters(const BoundLight& light, std::span<const ShadePoint> queries, std::span<LightValue> values, const std::vector<char>* inMedium) {
+void Engine::hazeOfEmitters(const BoundLight& light, std::span<const ShadePoint> queries, std::span<LightValue> values,
+                            const std::vector<char>* inMedium) {
     if (!light.hazy) return;
     std::vector<ShadePoint> one(1);
     for (size_t i = 0; i < queries.size(); ++i) {

@@ -9,7 +9,8 @@ namespace {
 
 // trace() and transmission() always ask for rays; the lobe shadeops only where the engine estimates them.
 bool isRequest(SiteKind k, bool path) {
-    return k == SiteKind::Trace || k == SiteKind::Transmission || (path && k >= SiteKind::Ambient && k <= SiteKind::LightVisibility);
+    return k == SiteKind::Trace || k == SiteKind::Transmission ||
+           (path && k >= SiteKind::Ambient && k <= SiteKind::LightVisibility);
 }
 
 // The callbacks of generated code: C functions that find their engine through KernelCall::user.

@@ -35,8 +35,7 @@ Color weightOf(const BatchContext& c, const EmitRecord& e, int lane) {
 
 } // namespace
 
-std::vector<std::shared_ptr<BatchContext>> Engine::asides(const BatchContext& c, Sched& sched,
-                                                          const std::function<void(BatchContext&)>& fill) {
+std::vector<std::shared_ptr<BatchContext>> Engine::asides(const BatchContext& c, Sched& sched) {
     std::vector<std::shared_ptr<BatchContext>> all;
     const SurfaceBinding& b = *c.binding;
     if (b.lightOutputs.empty() || (c.bound != &b.surfaceS && c.bound != &b.surfaceV)) return all;
@@ -69,7 +68,7 @@ std::vector<std::shared_ptr<BatchContext>> Engine::asides(const BatchContext& c,
             run->points[k] = c.points[of[k]];
             run->points[k].ray = &run->rays.back();
         }
-        fill(*run);
+        fillBatch(*run);
         if (run->displaced) run->batch->tell(*run->displaced->batch);
         if (b.moveS) moveToFacets(*run);
         if (!bound.kernel->facts().suspends) {

@@ -4,7 +4,8 @@
 
 namespace alpenglow::transport {
 
-shading::TargetValue Engine::rayOfLight(BatchContext& c, const SiteInfo& s, int point, const std::function<float(int)>& row, uint32_t occurrence) {
+shading::TargetValue Engine::rayOfLight(BatchContext& c, const SiteInfo& s, int point, const std::function<float(int)>& row,
+                                        uint32_t occurrence) {
     const ShadePoint& p = c.points[size_t(point)];
     shading::TargetValue value;
     const uint32_t site = uint32_t(s.site - c.bound->kernel->sites().data());
@@ -17,7 +18,8 @@ shading::TargetValue Engine::rayOfLight(BatchContext& c, const SiteInfo& s, int 
         return value;
     }
     if (s.kind != SiteKind::Trace || !p.ray || !world_->accel_) return value; // lights that are measured see nothing
-    // An engine of its own follows the ray and all that comes of it, to the end: the lights that it meets may trace as well, one bounce deeper.
+    // An engine of its own follows the ray and all that comes of it, to the end: the lights that it meets may trace as well, one
+    // bounce deeper.
     if (!inner_) {
         inner_ = std::make_unique<Engine>(world_, diagnostics_);
         inner_->raysAtOnce_ = std::min(raysAtOnce_, int(Sched::kStripRays));
@@ -33,7 +35,8 @@ shading::TargetValue Engine::rayOfLight(BatchContext& c, const SiteInfo& s, int 
     return value;
 }
 
-shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int point, const std::function<float(int)>& row, uint32_t occurrence) {
+shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int point, const std::function<float(int)>& row,
+                                    uint32_t occurrence) {
     const ShadePoint& p = c.points[size_t(point)];
     const PathRay& from = *p.ray;
     Sched& sched = *sched_;
@@ -86,7 +89,9 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
         r.asked = uint16_t(std::min<uint32_t>(many, 0xffff));
         r.bounces = int16_t(onlyDistance ? world_->maxDepth_ : from.bounces + 1); // nothing goes on behind a distance
         ++(l.rays->type == RayType::Diffuse ? r.diffuseBounces : r.specularBounces);
-        r.origin = l.bias >= 0 ? start + w * l.bias : leaves ? geometry::offsetOrigin(*p.lit, w, 0) : start + w * geometry::roundingError(start);
+        r.origin = l.bias >= 0 ? start + w * l.bias
+                   : leaves    ? geometry::offsetOrigin(*p.lit, w, 0)
+                               : start + w * geometry::roundingError(start);
         r.parted = false;
         if (!leaves || (dot(from.dir, p.lit->n) < 0) != (dot(w, p.lit->n) > 0)) r.media = nullptr; // nobody knows
         r.dir = w;
@@ -112,7 +117,58 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
     return value;
 }
 
-void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& queries, std::span<LightValue> out, const LightCall& call) {
+void Engine::runWaitingLight(BatchContext& context) {
+    BatchContext* c = &context;
+    const BoundKernel& bound = *c->bound;
+    const auto& k = *bound.kernel;
+    // A light that decides on traced light: its few requests are answered in place, strip by strip.
+    std::vector<uint32_t> asked(bound.sites.size() * size_t(c->batch->size()));
+    for (int first = 0; first < c->batch->size(); first += k.lanes()) {
+        void* h = k.start(&c->batch->call(), first);
+        if (!h) throw std::bad_alloc();
+        const std::unique_ptr<void, std::function<void(void*)>> frame(h, [&](void* f) { k.destroy(f); });
+        c->ran();
+        while (!k.finished(h)) {
+            const SiteInfo& s = bound.sites[c->requestSite];
+            for (int lane = 0; lane < c->requestLanes; ++lane) {
+                if (!(c->requestMask >> lane & 1) || first + lane >= int(c->points.size())) continue;
+                const std::function<float(int)> row = [&](int r) { return c->requestIn[size_t(r) * c->requestLanes + lane]; };
+                for (int r = 0; r < s.resultRowCount; ++r) c->requestOut[size_t(r) * c->requestLanes + lane] = 0;
+                const shading::TargetValue t = rayOfLight(
+                    *c, s, first + lane, row, asked[size_t(c->requestSite) * size_t(c->batch->size()) + size_t(first + lane)]++);
+                putResult(s, t, nullptr, c->requestOut, c->requestLanes, lane);
+            }
+            k.resume(h);
+            c->ran();
+        }
+    }
+}
+
+void Engine::addLightPairs(BatchContext& context, std::vector<ShadePoint>& queries, std::span<LightValue> out) {
+    BatchContext* c = &context;
+    const BoundKernel& bound = *c->bound;
+    // Affine requests of the light itself: shadows that it asks for. Counted by site and point: no random number depends on the
+    // batch.
+    std::vector<uint32_t> asked(c->emits.empty() ? 0 : bound.sites.size() * queries.size());
+    for (const EmitRecord& e : c->emits) {
+        const SiteInfo& s = bound.sites[e.site];
+        if (s.kind != SiteKind::Transmission && s.kind != SiteKind::Trace) continue;
+        for (int lane = 0; lane < e.lanes; ++lane) {
+            if (!(e.mask >> lane & 1) || e.first + lane >= int(queries.size())) continue;
+            auto at = [&](int row) { return c->arena[e.offset + size_t(row) * e.lanes + lane]; };
+            c->points.swap(queries); // the rays start from them
+            const Color light = rayOfLight(
+                                    *c, s, e.first + lane, [&](int row) { return at(row + 3); },
+                                    asked[size_t(e.site) * queries.size() + size_t(e.first + lane)]++)
+                                    .radiance;
+            c->points.swap(queries);
+            out[e.first + lane].Cl += Color(at(0), at(1), at(2)) * light;
+        }
+    }
+}
+
+void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& queries, std::span<LightValue> out,
+                           const LightCall& call) {
     if (queries.empty()) return;
     const BoundKernel& bound = call.kernel ? *call.kernel : light.kernel;
     auto c = takeContext();
@@ -135,26 +191,7 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
     bindCall(c->batch->call(), *c);
     const auto& k = *bound.kernel;
     if (k.facts().suspends) {
-        // A light that decides on traced light: its few requests are answered in place, strip by strip.
-        std::vector<uint32_t> asked(bound.sites.size() * size_t(c->batch->size()));
-        for (int first = 0; first < c->batch->size(); first += k.lanes()) {
-            void* h = k.start(&c->batch->call(), first);
-            if (!h) throw std::bad_alloc();
-            const std::unique_ptr<void, std::function<void(void*)>> frame(h, [&](void* f) { k.destroy(f); });
-            c->ran();
-            while (!k.finished(h)) {
-                const SiteInfo& s = bound.sites[c->requestSite];
-                for (int lane = 0; lane < c->requestLanes; ++lane) {
-                    if (!(c->requestMask >> lane & 1) || first + lane >= int(c->points.size())) continue;
-                    const std::function<float(int)> row = [&](int r) { return c->requestIn[size_t(r) * c->requestLanes + lane]; };
-                    for (int r = 0; r < s.resultRowCount; ++r) c->requestOut[size_t(r) * c->requestLanes + lane] = 0;
-                    const shading::TargetValue t = rayOfLight(*c, s, first + lane, row, asked[size_t(c->requestSite) * size_t(c->batch->size()) + size_t(first + lane)]++);
-                    putResult(s, t, nullptr, c->requestOut, c->requestLanes, lane);
-                }
-                k.resume(h);
-                c->ran();
-            }
-        }
+        runWaitingLight(*c);
     } else {
         k.run(&c->batch->call());
         c->ran();
@@ -175,24 +212,7 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
                 for (int r = 0; r < value.components; ++r) *to++ = b.value(value.output, r, int(i));
         }
     }
-    // Affine requests of the light itself: shadows that it asks for. Counted by site and point: no random number depends on the
-    // batch.
-    std::vector<uint32_t> asked(c->emits.empty() ? 0 : bound.sites.size() * queries.size());
-    for (const EmitRecord& e : c->emits) {
-        const SiteInfo& s = bound.sites[e.site];
-        if (s.kind != SiteKind::Transmission && s.kind != SiteKind::Trace) continue;
-        for (int lane = 0; lane < e.lanes; ++lane) {
-            if (!(e.mask >> lane & 1) || e.first + lane >= int(queries.size())) continue;
-            auto at = [&](int row) { return c->arena[e.offset + size_t(row) * e.lanes + lane]; };
-            c->points.swap(queries); // the rays start from them
-            const Color light = rayOfLight(
-                                    *c, s, e.first + lane, [&](int row) { return at(row + 3); },
-                                    asked[size_t(e.site) * queries.size() + size_t(e.first + lane)]++)
-                                    .radiance;
-            c->points.swap(queries);
-            out[e.first + lane].Cl += Color(at(0), at(1), at(2)) * light;
-        }
-    }
+    addLightPairs(*c, queries, out);
     for (size_t i = 0; i < queries.size(); ++i) // the kernel divided by the squared distance: radiance does not
         if (const float scale = (call.of.empty() ? light : *call.of[i]).intensityScale; scale > 0)
             out[i].Cl *= dot(out[i].L, out[i].L) * scale;
@@ -202,7 +222,7 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
 
 bool LitValues::output(const std::string& name, std::vector<float>& v) const {
     for (const auto& [known, numbers] : outputs)
-        if (known == name) {
+        if (known->name.name == name) {
             v = numbers;
             return true;
         }
@@ -226,8 +246,8 @@ LitSurface Engine::litBy(std::span<const int> of) const {
     return lit;
 }
 
-void Engine::shadowLight(const KernelRun& c, const BoundLight& light, int first, std::span<const ShadePoint> q, std::span<const int> laneOf,
-                        std::span<LightValue> v) {
+void Engine::shadowLight(const KernelRun& c, const BoundLight& light, int first, std::span<const ShadePoint> q,
+                         std::span<const int> laneOf, std::span<LightValue> v) {
     std::vector<ShadowRay> rays;
     std::vector<size_t> of;
     for (size_t i = 0; i < q.size(); ++i) {
@@ -238,7 +258,9 @@ void Engine::shadowLight(const KernelRun& c, const BoundLight& light, int first,
         if (!(far > 0)) continue;
         const Vec3 w = to / far;
         const Vec3 o = geometry::offsetOrigin(lit.surface, w, length(q[i].Ps - lit.surface.P));
-        const float distance = light.kind == LightKind::Distant ? 1e38f : light.kind == LightKind::Area ? far * (1 - 1e-4f) : far * (1 - 1e-5f);
+        const bool anywhere = light.kind == LightKind::Distant;
+        const float distance =
+            anywhere ? 1e38f : light.kind == LightKind::Area ? far * (1 - 1e-4f) : far * (1 - 1e-5f);
         rays.push_back({o, w, distance, Color(1), shading::kNoTarget, lit.shutter, lit.ray});
         rays.back().media = mediaTowards(c, first + laneOf[i], w);
         of.push_back(i);

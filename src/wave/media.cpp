@@ -1,5 +1,6 @@
-// Interior and Exterior (RISpec 3.2): which volume a ray is in. A ray that goes on behind a surface, to the side that its N points away
-// from, is in the Interior of the primitive; on the other side in its Exterior. A surface with neither bounds nothing.
+// Interior and Exterior (RISpec 3.2): which volume a ray is in. A ray that goes on behind a surface, to the side that its N
+// points away from, is in the Interior of the primitive; on the other side in its Exterior. A surface with neither bounds
+// nothing.
 #include "wave/engine.h"
 #include <algorithm>
 #include <tuple>
@@ -10,9 +11,13 @@ using shading::Media;
 
 void Engine::tellLost(const Media* m, const ShadePoint& p) const {
     if (m && m->lost)
-        diagnostics_.reportOnce("media", {Severity::Warning, Rie::Limit, p.shape ? p.shape->place() : SourcePlace{},
-                                "a ray is inside of more than " + std::to_string(limits::kMedia) + " volumes; the outermost are forgotten",
-                                {}, {}});
+        diagnostics_.reportOnce(
+            "media", {Severity::Warning,
+                      Rie::Limit,
+                      p.shape ? p.shape->place() : SourcePlace{},
+                      "a ray is inside of more than " + std::to_string(limits::kMedia) + " volumes; the outermost are forgotten",
+                      {},
+                      {}});
 }
 
 const Media* Engine::kept(const Media& m) {
@@ -48,7 +53,8 @@ void Engine::shadowsInMedia(std::span<ShadowRay> rays, const Vec3& a, const Vec3
             continue;
         }
         if (r.ray && binding) r.media = mediaBeyond(*binding, r.ray->media, s->n, r.ray->dir, r.dir);
-        else if (r.ray && (dot(r.ray->dir, s->n) < 0) == (dot(r.dir, s->n) > 0)) r.media = r.ray->media; // a light's: back to where it came from
+        else if (r.ray && (dot(r.ray->dir, s->n) < 0) == (dot(r.dir, s->n) > 0))
+            r.media = r.ray->media; // a light's: back to where it came from
     }
 }
 
@@ -56,7 +62,9 @@ void Engine::dim(std::span<const MediumPart> parts, std::span<const ShadowRay> r
     std::vector<const MediumPart*> order;
     for (const MediumPart& p : parts)
         if (maxComponent(out[p.ray]) > 0) order.push_back(&p);
-    std::stable_sort(order.begin(), order.end(), [](const MediumPart* a, const MediumPart* b) { return std::tie(a->medium, a->ray) < std::tie(b->medium, b->ray); });
+    std::stable_sort(order.begin(), order.end(), [](const MediumPart* a, const MediumPart* b) {
+        return std::tie(a->medium, a->ray) < std::tie(b->medium, b->ray);
+    });
     std::vector<ShadePoint> points;
     std::vector<Haze> hazes;
     for (size_t first = 0, end; first < order.size(); first = end) {

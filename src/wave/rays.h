@@ -53,7 +53,8 @@ struct Deposit {
     const ShaderInstance* of = nullptr;   ///< that made it; null: not known
 };
 
-/// The way from a to b for a shadow ray; where an end is `at`, a shaded point of the surface `s` (null: none), that surface does not block.
+/// The way from a to b for a shadow ray; where an end is `at`, a shaded point of the surface `s` (null: none), that surface does
+/// not block.
 struct Way { Vec3 origin, dir; float distance = 0; };
 Way wayBetween(const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint* s);
 

@@ -29,8 +29,8 @@ template <class Row> DistributionParams distributionOf(const SiteInfo& s, const 
 }
 } // namespace
 
-void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float* in, int lanes, int lane, Color weight, TargetId target, bool owns,
-                     uint32_t occurrence) {
+void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float* in, int lanes, int lane, Color weight,
+                     TargetId target, bool owns, uint32_t occurrence) {
     const ShadePoint& p = c.points[point];
     auto f = [&](int row) { return in[size_t(row) * lanes + lane]; };
     auto v = [&](int arg) { return Vec3(f(s.rows[arg]), f(s.rows[arg] + 1), f(s.rows[arg] + 2)); };
@@ -38,14 +38,17 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     auto vector = [&](int row, Vec3 fallback) { return row < 0 ? fallback : Vec3(f(row), f(row + 1), f(row + 2)); };
     if (s.kind == SiteKind::Transmission) {
         const size_t had = shadows.size();
-        transmissionRays(s, p, p.P, &p.surface, f, weight, target, uint32_t(s.site - c.bound->kernel->sites().data()), occurrence, shadows);
+        transmissionRays(s, p, p.P, &p.surface, f, weight, target, uint32_t(s.site - c.bound->kernel->sites().data()), occurrence,
+                         shadows);
         if (!owns && p.ray)
             for (size_t k = had; k < shadows.size(); ++k) shadows[k].share = extraOf(*p.ray).share;
-        shadowsInMedia(std::span(shadows).subspan(had), v(0), v(1), p.P, &p.surface, c.bindings.empty() ? nullptr : &world_->bindings_[size_t(c.bindings[size_t(point)])]);
+        shadowsInMedia(std::span(shadows).subspan(had), v(0), v(1), p.P, &p.surface,
+                       c.bindings.empty() ? nullptr : &world_->bindings_[size_t(c.bindings[size_t(point)])]);
         return;
     }
     // Under path ambient light is what escaping diffuse rays see.
-    if (s.kind != SiteKind::Diffuse && s.kind != SiteKind::Specular && s.kind != SiteKind::Phong && s.kind != SiteKind::Trace) return;
+    if (s.kind != SiteKind::Diffuse && s.kind != SiteKind::Specular && s.kind != SiteKind::Phong && s.kind != SiteKind::Trace)
+        return;
     LobeVertex& l = lobes.emplace_back();
     l.kind = s.lobe;
     LobeParams params;
@@ -62,7 +65,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         told.displaced = c.displaced;
         told.point = point;
         for (const SiteInfo::Output& o : s.outputs) {
-            auto& of = told.outputs.emplace_back(o.name, std::vector<float>());
+            auto& of = told.outputs.emplace_back(&o, std::vector<float>());
             for (int r = 0; r < o.size; ++r) of.second.push_back(f(o.row + r));
         }
     }
@@ -102,7 +105,8 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         l.base = number(s.rays->base, 0);
         if (s.trace->map) l.tint = vector(s.trace->tint, Color(1));
         // From a point that is not the surface's no light is sampled: rays that meet an emitter count in full.
-        if (const Vec3 from = v(0), away = from - p.P; !p.surface.displaced && length(away) > geometry::roundingError(p.P) + 4 * p.surface.pError) {
+        if (const Vec3 from = v(0), away = from - p.P;
+            !p.surface.displaced && length(away) > geometry::roundingError(p.P) + 4 * p.surface.pError) {
             l.elsewhere = true;
             l.from = from;
         }

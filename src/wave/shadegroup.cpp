@@ -6,8 +6,8 @@
 
 namespace alpenglow::transport {
 
-void Engine::lightVisibility(BatchContext& c, const SiteInfo& s, int point, const float* in, int lanes, int lane, Color weight, TargetId target,
-                             float distance) {
+void Engine::lightVisibility(BatchContext& c, const SiteInfo& s, int point, const float* in, int lanes, int lane, Color weight,
+                             TargetId target, float distance) {
     auto f = [&](int row) { return in[size_t(row) * lanes + lane]; };
     Vec3 l(f(s.rows[1]), f(s.rows[1] + 1), f(s.rows[1] + 2));
     float length_ = length(l);
@@ -40,10 +40,11 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, st
     if (c.aside) return finishAside(c, first, lanes, sched);
     shading::Batch& b = *c.batch;
     int ci = b.plan().Ci, oi = b.plan().Oi;
-    const auto& wanted = world_->settings_.outputs;
+    const auto& wanted = world_->wanted_;
     std::vector<std::vector<int>> wantedAt; // by AOV: the kernel's outputs, for arrays one an element
-    for (const std::string& name : wanted) wantedAt.push_back(outputsNamed(b, name));
-    std::vector<char> perhaps; // by AOV: a surface that makes the names of its outputs when it runs gives it at some points, and zero at others
+    for (const rsl::OutputName& name : wanted) wantedAt.push_back(outputsNamed(b, name));
+    std::vector<char>
+        perhaps; // by AOV: a surface that makes the names of its outputs when it runs gives it at some points, and zero at others
     bool suspended = b.kernel().facts().suspends; // then nobody has asked for the atmosphere yet
     const bool media = !world_->media_.empty();
     if (suspended) hazeOfBatch(c, first, lanes, media);
@@ -87,18 +88,21 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, st
                 bool others = wantedAt[k].empty(); // what lights and the atmosphere give
                 if (!others && !c.lightChannels.empty()) {
                     if (perhaps.empty())
-                        for (const std::string& name : wanted) perhaps.push_back(c.binding && givesPerhaps(*c.binding->surface, name));
+                        for (const rsl::OutputName& name : wanted)
+                            perhaps.push_back(c.binding && givesPerhaps(*c.binding->surface, name));
                     others = perhaps[k] && !givenAt(b, wanted[k], i);
                 }
                 for (int o : wantedAt[k]) {
                     if (others) break;
                     const int size = rsl::ir::components(b.kernel().outputs()[size_t(o)].kind);
-                    for (int w = 0; w < size && to < width; ++w, ++to) r.aovs[at + size_t(to)] += (size == 3 ? ray.weight[w] : luminance(ray.weight)) * b.value(o, w, i);
+                    for (int w = 0; w < size && to < width; ++w, ++to)
+                        r.aovs[at + size_t(to)] += (size == 3 ? ray.weight[w] : luminance(ray.weight)) * b.value(o, w, i);
                 }
                 if (others && !c.lightChannels.empty())
                     for (int w = 0; w < width; ++w)
-                        r.aovs[at + size_t(w)] += (width % 3 == 0 ? ray.weight[w % 3] : luminance(ray.weight)) *
-                                                  c.lightChannels[size_t(i) * (c.lightChannels.size() / c.points.size()) + at + size_t(w)];
+                        r.aovs[at + size_t(w)] +=
+                            (width % 3 == 0 ? ray.weight[w % 3] : luminance(ray.weight)) *
+                            c.lightChannels[size_t(i) * (c.lightChannels.size() / c.points.size()) + at + size_t(w)];
                 at += size_t(width);
             }
         }
@@ -110,58 +114,32 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, st
     }
 }
 
-void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
-    // Fills the batch; its points' instances are few.
-    auto fill = [&](BatchContext& to, InstanceRef SurfaceBinding::*which) {
-        views_.clear();
-        viewOf_.clear();
-        slotOf_.resize(world_->bindings_.size(), -1);
-        for (int b : to.bindings) {
-            int& slot = slotOf_[size_t(b)];
-            if (slot < 0) {
-                const InstanceRef& i = world_->bindings_[size_t(b)].*which;
-                slot = int(views_.size());
-                views_.push_back(i->view());
-            }
-            viewOf_.push_back(uint32_t(slot));
+/// The inputs of a batch from its points; their instances are few.
+void Engine::fillBatch(BatchContext& c) {
+    views_.clear();
+    viewOf_.clear();
+    slotOf_.resize(world_->bindings_.size(), -1);
+    for (int b : c.bindings) {
+        int& slot = slotOf_[size_t(b)];
+        if (slot < 0) {
+            const InstanceRef& i = world_->bindings_[size_t(b)].surface;
+            slot = int(views_.size());
+            views_.push_back(i->view());
         }
-        for (int b : to.bindings) slotOf_[size_t(b)] = -1;
-        if (!to.batch) to.batch = std::make_shared<shading::Batch>();
-        to.batch->assign(to.bound->kernel, *to.bound->plan, to.points, views_, viewOf_, *world_);
-        bindCall(to.batch->call(), to);
-    };
-    // Displacement again at the hit, for P, N (design decision 9). All points of a group with displacement share its binding.
-    if (c->binding->displacement) {
-        if (const auto d = displace(*c)) {
-            int po = d->batch->output("P"), no = d->batch->output("N");
-            int dpu = d->batch->output("Du:P"), dpv = d->batch->output("Dv:P"), dnu = d->batch->output("Du:N"), dnv = d->batch->output("Dv:N");
-            for (size_t k = 0; k < c->points.size(); ++k) {
-                ShadePoint& p = c->points[k];
-                if (po >= 0) { p.P = d->batch->color(po, int(k)); p.I = p.P - c->rays[k].begin(); }
-                if (no >= 0) p.N = d->batch->color(no, int(k));
-                // The surface shader's derivatives are those of the displaced surface. Its second partials stay those of the plain one.
-                if (po >= 0 && dpu >= 0 && dpv >= 0) {
-                    p.surface.dPdu = d->batch->color(dpu, int(k));
-                    p.surface.dPdv = d->batch->color(dpv, int(k));
-                    p.surface.Ng = cross(p.surface.dPdu, p.surface.dPdv) * p.surface.orientation;
-                }
-                if (no >= 0 && dnu >= 0 && dnv >= 0) {
-                    p.surface.dNdu = d->batch->color(dnu, int(k));
-                    p.surface.dNdv = d->batch->color(dnv, int(k));
-                }
-                if (p.surface.displaced) { // rays left and met the facet; shading offsets start there
-                    p.surface.P = p.surface.displacedP;
-                    p.surface.n = p.surface.displacedN;
-                    p.P = p.surface.displacedP;
-                }
-            }
-            if (c->binding->displacementTells) c->displaced = d;
-        }
+        viewOf_.push_back(uint32_t(slot));
     }
+    for (int b : c.bindings) slotOf_[size_t(b)] = -1;
+    if (!c.batch) c.batch = std::make_shared<shading::Batch>();
+    c.batch->assign(c.bound->kernel, *c.bound->plan, c.points, views_, viewOf_, *world_);
+    bindCall(c.batch->call(), c);
+}
+
+void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
+    if (c->binding->displacement) takeDisplacement(*c);
     const auto& kernel = *c->bound->kernel;
-    fill(*c, &SurfaceBinding::surface);
+    fillBatch(*c);
     if (c->displaced) c->batch->tell(*c->displaced->batch);
-    auto aside = asides(*c, sched, [&](BatchContext& to) { fill(to, &SurfaceBinding::surface); });
+    auto aside = asides(*c, sched);
     if (c->binding->moveS) moveToFacets(*c); // the kernel moves P itself: it begins with the surface as it was
     int n = int(c->points.size());
     counters.points += uint64_t(n);
@@ -179,43 +157,16 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
 
     // Affine pairs by point, in order of emission. Atmosphere scales them.
     const bool media = !world_->media_.empty();
-    bool hazy = media || std::any_of(c->bindings.begin(), c->bindings.end(), [&](int b) { return world_->bindings_[size_t(b)].atmosphere.shader != nullptr; });
+    bool hazy = media || std::any_of(c->bindings.begin(), c->bindings.end(),
+                                     [&](int b) { return world_->bindings_[size_t(b)].atmosphere.shader != nullptr; });
     std::vector<Color> slope(n, Color(1));
     if (hazy) {
         hazeOfBatch(*c, 0, n, media || !c->emits.empty());
         for (int i = 0; i < n; ++i)
             if (c->haze[size_t(i)].on) slope[size_t(i)] = c->haze[size_t(i)].slope;
     }
-    std::vector<uint32_t>& occurrence = occurrence_;
-    occurrence.assign(c->emits.empty() ? 0 : c->bound->sites.size() * size_t(n), 0);
     std::vector<AskedLobe> asked; // only where outputs share lobes
-    for (const EmitRecord& e : c->emits) {
-        const SiteInfo& s = c->bound->sites[e.site];
-        const float* rows = c->arena.data() + e.offset;
-        for (int lane = 0; lane < e.lanes; ++lane) {
-            int point = e.first + lane;
-            if (!(e.mask >> lane & 1) || point >= n) continue;
-            Color weight = Color(rows[lane], rows[e.lanes + lane], rows[2 * e.lanes + lane]) * slope[point];
-            if (!isFinite(weight)) {
-                notFinite(*c, c->rays[size_t(point)], uint32_t(e.site));
-                continue;
-            }
-            if (weight == Color(0)) continue;
-            if (world_->bindings_[c->bindings[point]].matte && c->rays[point].camera()) continue;
-            const float* args = rows + size_t(3) * e.lanes;
-            if (s.kind == SiteKind::LightVisibility) {
-                const size_t had = shadows.size();
-                lightVisibility(*c, s, point, args, e.lanes, lane, weight * c->rays[point].weight, c->targets[point],
-                                args[size_t(s.rows[0]) * e.lanes + lane]);
-                if (shadows.size() > had) shadows.back().share = extraOf(c->rays[size_t(point)]).share;
-                continue;
-            }
-            if (s.kind == SiteKind::Transmission) weight *= c->rays[point].weight;
-            const size_t had = lobes.size();
-            request(*c, s, point, args, e.lanes, lane, weight, c->targets[point], false, occurrence[size_t(e.site) * size_t(n) + size_t(point)]++);
-            if (!aside.empty() && lobes.size() > had) asked.push_back({int(had), int(&e - c->emits.data()), lane});
-        }
-    }
+    requestPairs(*c, slope, aside.empty() ? nullptr : &asked);
     if (world_->settings_.hider == Hider::Path) {
         c->clear.resize(size_t(n));
         for (int i = 0; i < n; ++i) c->clear[size_t(i)] = clearAt(*c, i);
@@ -226,6 +177,41 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
     flushShadows(sched);
     finishStrip(*c, 0, n, sched);
     followAsides(rest, aside, sched);
+}
+
+/// What the pairs of a kernel that did not wait ask for. `slope`: by point. `asked`: gets the lobes; may be null.
+void Engine::requestPairs(BatchContext& c, std::span<const Color> slope, std::vector<AskedLobe>* asked) {
+    const int n = int(c.points.size());
+    std::vector<uint32_t>& occurrence = occurrence_;
+    occurrence.assign(c.emits.empty() ? 0 : c.bound->sites.size() * size_t(n), 0);
+    for (const EmitRecord& e : c.emits) {
+        const SiteInfo& s = c.bound->sites[e.site];
+        const float* rows = c.arena.data() + e.offset;
+        for (int lane = 0; lane < e.lanes; ++lane) {
+            int point = e.first + lane;
+            if (!(e.mask >> lane & 1) || point >= n) continue;
+            Color weight = Color(rows[lane], rows[e.lanes + lane], rows[2 * e.lanes + lane]) * slope[point];
+            if (!isFinite(weight)) {
+                notFinite(c, c.rays[size_t(point)], uint32_t(e.site));
+                continue;
+            }
+            if (weight == Color(0)) continue;
+            if (world_->bindings_[c.bindings[point]].matte && c.rays[point].camera()) continue;
+            const float* args = rows + size_t(3) * e.lanes;
+            if (s.kind == SiteKind::LightVisibility) {
+                const size_t had = shadows.size();
+                lightVisibility(c, s, point, args, e.lanes, lane, weight * c.rays[point].weight, c.targets[point],
+                                args[size_t(s.rows[0]) * e.lanes + lane]);
+                if (shadows.size() > had) shadows.back().share = extraOf(c.rays[size_t(point)]).share;
+                continue;
+            }
+            if (s.kind == SiteKind::Transmission) weight *= c.rays[point].weight;
+            const size_t had = lobes.size();
+            request(c, s, point, args, e.lanes, lane, weight, c.targets[point], false,
+                    occurrence[size_t(e.site) * size_t(n) + size_t(point)]++);
+            if (asked && lobes.size() > had) asked->push_back({int(had), int(&e - c.emits.data()), lane});
+        }
+    }
 }
 
 } // namespace alpenglow::transport

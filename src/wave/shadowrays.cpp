@@ -1,5 +1,5 @@
-// Shadow rays: what lies on the way takes the share that its shader's Oi says. Where Oi is Os or a constant that was known when the
-// world was built no shader runs; elsewhere the kernel that gives Oi alone runs for all rays that met it, wave by wave.
+// Shadow rays: what lies on the way takes the share that its shader's Oi says. Where Oi is Os or a constant that was known when
+// the world was built no shader runs; elsewhere the kernel that gives Oi alone runs for all rays that met it, wave by wave.
 #include "base/exact.h"
 #include "wave/engine.h"
 #include "world/raysets.h"
@@ -46,7 +46,8 @@ Way wayBetween(const Vec3& a, const Vec3& b, const Vec3& at, const geometry::Sur
     const Vec3 d = all / distance;
     const auto end = [&](const Vec3& x, const Vec3& away) {
         const float near = geometry::roundingError(x);
-        if (s && length(x - at) <= near + 4 * s->pError) return geometry::offsetOrigin(*s, away, length(at - s->P) + length(x - at));
+        if (s && length(x - at) <= near + 4 * s->pError)
+            return geometry::offsetOrigin(*s, away, length(at - s->P) + length(x - at));
         return x + away * near;
     };
     const Vec3 from = end(a, d), to = end(b, -d), left = to - from;
@@ -125,6 +126,24 @@ void Engine::blockedByOpaque(std::span<const ShadowRay> rays, std::span<Color> o
         if (blocked_[k]) out[of[k]] = Color(0);
 }
 
+/// One batch a surface. The order inside a batch does not matter: a kernel's lanes know nothing of each other. `rayOf`: the place
+/// in `out` of what was met.
+void Engine::takeOpacities(std::span<const OpacityQuery> met, const std::function<size_t(size_t)>& rayOf, std::span<Color> out) {
+    std::vector<size_t> order(met.size());
+    for (size_t i = 0; i < order.size(); ++i) order[i] = i;
+    const auto what = [&](size_t i) { return std::pair(met[i].binding, met[i].ray->kind->set.mode); };
+    std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return what(a) < what(b); });
+    std::vector<OpacityQuery> group;
+    std::vector<Color> opacity;
+    for (size_t first = 0, end; first < order.size(); first = end) {
+        group.clear();
+        for (end = first; end < order.size() && what(order[end]) == what(order[first]); ++end) group.push_back(met[order[end]]);
+        opacity.resize(group.size());
+        opacities(group, opacity);
+        for (size_t k = first; k < end; ++k) out[rayOf(order[k])] *= Color(1) - opacity[k - first];
+    }
+}
+
 void Engine::transmittances(std::span<const ShadowRay> rays, std::span<Color> out) {
     counters.shadow += rays.size();
     const bool media = !world_->media_.empty();
@@ -141,7 +160,6 @@ void Engine::transmittances(std::span<const ShadowRay> rays, std::span<Color> ou
     std::vector<MediumPart> parts;
     std::vector<Going> now, next;
     std::vector<OpacityQuery> met;
-    std::vector<size_t> order;
     blockedByOpaque(rays, out);
     for (size_t i = 0; i < rays.size(); ++i) {
         if (!meetsOpaqueAlone(rays[i])) {
@@ -186,20 +204,7 @@ void Engine::transmittances(std::span<const ShadowRay> rays, std::span<Color> ou
             }
         }
         if (next.empty()) break;
-        // One batch a surface. The order inside a batch does not matter: a kernel's lanes know nothing of each other.
-        order.resize(met.size());
-        for (size_t i = 0; i < order.size(); ++i) order[i] = i;
-        const auto what = [&](size_t i) { return std::pair(met[i].binding, rays[next[i].index].kind->set.mode); };
-        std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return what(a) < what(b); });
-        std::vector<OpacityQuery> group;
-        std::vector<Color> opacity;
-        for (size_t first = 0, end; first < order.size(); first = end) {
-            group.clear();
-            for (end = first; end < order.size() && what(order[end]) == what(order[first]); ++end) group.push_back(met[order[end]]);
-            opacity.resize(group.size());
-            opacities(group, opacity);
-            for (size_t k = first; k < end; ++k) out[next[order[k]].index] *= Color(1) - opacity[k - first];
-        }
+        takeOpacities(met, [&](size_t k) { return next[k].index; }, out);
         std::erase_if(next, [&](const Going& g) { return !(maxComponent(out[g.index]) > 0); });
         now.swap(next);
         if (stop && *stop) break; // the result is void
@@ -213,8 +218,9 @@ Color Engine::transmittance(const ShadowRay& s) {
     return t;
 }
 
-void Engine::transmissionRays(const SiteInfo& s, const ShadePoint& p, const Vec3& at, const geometry::SurfacePoint* surface, const std::function<float(int)>& f,
-                              const Color& weight, TargetId target, uint32_t site, uint32_t occurrence, std::vector<ShadowRay>& out) {
+void Engine::transmissionRays(const SiteInfo& s, const ShadePoint& p, const Vec3& at, const geometry::SurfacePoint* surface,
+                              const std::function<float(int)>& f, const Color& weight, TargetId target, uint32_t site,
+                              uint32_t occurrence, std::vector<ShadowRay>& out) {
     const RaySite& r = *s.rays;
     auto point = [&](size_t arg) { return Vec3(f(s.rows[arg]), f(s.rows[arg] + 1), f(s.rows[arg] + 2)); };
     auto number = [&](int row, float fallback) { return row < 0 ? fallback : f(row); };
@@ -226,8 +232,10 @@ void Engine::transmissionRays(const SiteInfo& s, const ShadePoint& p, const Vec3
     RayKind kind = kShadowKind;
     kind.set = raySetOf(s, f, p.shape, kind.type, kind.label);
     ray.kind = kindOf(kind);
-    const float bias = number(r.bias, -1), far = std::min(number(r.maxDistance, 1e38f), number(r.maxHit, 1e38f)), cone = number(r.cone, 0);
-    const int count = cone > 0 && p.ray ? int(std::clamp(number(r.samples, 1), 1.f, 4096.f)) : 1; // rays all alike need not be sent twice
+    const float bias = number(r.bias, -1), far = std::min(number(r.maxDistance, 1e38f), number(r.maxHit, 1e38f)),
+                cone = number(r.cone, 0);
+    const int count =
+        cone > 0 && p.ray ? int(std::clamp(number(r.samples, 1), 1.f, 4096.f)) : 1; // rays all alike need not be sent twice
     ray.contribution = weight / float(count);
     for (int k = 0; k < count; ++k) {
         Vec3 end = b;

@@ -8,8 +8,8 @@ namespace alpenglow::transport {
 /// What a request came back with, where its call takes it. Results are rows of `lanes` floats; `sums` may be null.
 void putResult(const SiteInfo&, const shading::TargetValue&, const TraceSums* sums, float* out, int lanes, int lane);
 
-/// A strip of a suspending kernel while it waits. What it asks for is followed together with what other strips of its batch ask for
-/// (Engine::followStrips).
+/// A strip of a suspending kernel while it waits. What it asks for is followed together with what other strips of its batch ask
+/// for (Engine::followStrips).
 class KernelStrip final : public Sched::Strip {
 public:
     KernelStrip(std::shared_ptr<BatchContext> c, void* handle, int first, int depth)

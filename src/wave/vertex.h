@@ -1,4 +1,5 @@
-// A shaded point as the stages of gather.h see it: lobes that light shall be gathered over, and what lights are told about the point.
+// A shaded point as the stages of gather.h see it: lobes that light shall be gathered over, and what lights are told about the
+// point.
 #pragma once
 #include "answers/kernelrun.h"
 #include "wave/rays.h"
@@ -8,7 +9,8 @@ namespace alpenglow::transport {
 /// What lights are told about a surface that they light: because it samples them or because one of its rays meets them.
 struct LitValues {
     int binding = -1;
-    std::vector<std::pair<std::string, std::vector<float>>> outputs; ///< those that are not here are as the surface was given them
+    std::vector<std::pair<const SiteInfo::Output*, std::vector<float>>>
+        outputs;                                       ///< those that are not here are as the surface was given them
     std::shared_ptr<const struct KernelRun> displaced; ///< KernelRun::displaced of the surface, and the point there
     int point = -1;
     bool output(const std::string& name, std::vector<float>& v) const;

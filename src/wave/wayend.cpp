@@ -62,13 +62,15 @@ void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
     std::vector<const Sched::Task*> of;
     std::vector<LightValue> value;
     for (const BoundLight& l : world_->lights_) {
-        if ((l.kind != LightKind::Environment && l.kind != LightKind::Ambient) || !l.kernel) continue; // a light whose shader was not found gives nothing
+        if ((l.kind != LightKind::Environment && l.kind != LightKind::Ambient) || !l.kernel)
+            continue; // a light whose shader was not found gives nothing
         q.clear();
         of.clear();
         litBy_.clear();
         for (const Sched::Task* t : tasks) {
             const PathRay& r = t->payload;
-            if (l.kind == LightKind::Ambient ? r.type() != RayType::Diffuse : r.kind->fromTrace && l.strategy == LightStrategy::Illuminance) continue;
+            const bool ambient = l.kind == LightKind::Ambient;
+            if (ambient ? r.type() != RayType::Diffuse : r.kind->fromTrace && l.strategy == LightStrategy::Illuminance) continue;
             ShadePoint& p = q.emplace_back();
             p.Ps = r.origin;
             p.P = r.origin + r.dir;
@@ -86,7 +88,8 @@ void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
         for (size_t i = 0; i < of.size(); ++i)
             if (value[i].lit) {
                 const PathRay& r = of[i]->payload;
-                const bool weighed = l.kind == LightKind::Environment && r.bounces > 0 && !r.kind->fromTrace; // met by a lobe of a lighting shadeop
+                const bool weighed = l.kind == LightKind::Environment && r.bounces > 0 &&
+                                     !r.kind->fromTrace; // met by a lobe of a lighting shadeop
                 const Color light = r.weight * value[i].Cl * (weighed ? value[i].kept(r.type()) : 1.f);
                 deposit(sched, {of[i]->target, light, LightEvent::Sky, &r, extraOf(r).share, l.instance.get()});
             }
@@ -116,7 +119,8 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
         std::vector<char> inMedium;
         if (!world_->media_.empty())
             for (size_t i = first; i < end; ++i) inMedium.push_back(met[i].point->ray->medium() >= 0);
-        evaluateLight(light, q, value, {.lit = light.asksSurface ? &lit : nullptr, .inMedium = inMedium.empty() ? nullptr : &inMedium});
+        evaluateLight(light, q, value,
+                      {.lit = light.asksSurface ? &lit : nullptr, .inMedium = inMedium.empty() ? nullptr : &inMedium});
         for (size_t i = 0; i < inMedium.size(); ++i) {
             if (!inMedium[i] || !value[i].lit) continue;
             const PathRay& r = *met[first + i].point->ray;
@@ -139,8 +143,10 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
                 weight = set.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
             }
             if (r.bounces > 0 && !r.kind->fromTrace) weight *= v.kept(r.type());
-            deposit(sched, {met[i].target, r.weight * v.Cl * weight, LightEvent::Met, &r, extraOf(r).share, light.instance.get()});
-            if (TraceSums* sums = sumsOf(met[i].target); sums && maxComponent(extraOf(r).part) > 0) sums->add(TraceSums::AreaLight, r.weight * v.Cl * weight);
+            deposit(sched,
+                    {met[i].target, r.weight * v.Cl * weight, LightEvent::Met, &r, extraOf(r).share, light.instance.get()});
+            if (TraceSums* sums = sumsOf(met[i].target); sums && maxComponent(extraOf(r).part) > 0)
+                sums->add(TraceSums::AreaLight, r.weight * v.Cl * weight);
         }
     }
 }

@@ -32,7 +32,8 @@ public:
     /// A point of the light for the lit point at `from`. False when the draw faces edge-on or coincides with `from`.
     /// needs: geometry::PointNeed of `point`.
     /// time: of the shutter, 0 to 1.
-    bool sample(const Vec3& from, Vec2 u, float choose, float time, Sample& out, geometry::SurfacePoint& point, uint32_t needs = geometry::kNeedAll) const;
+    bool sample(const Vec3& from, Vec2 u, float choose, float time, Sample& out, geometry::SurfacePoint& point,
+                uint32_t needs = geometry::kNeedAll) const;
     /// A point of the surface for a mean over it: `pdf` is its density in units of the even one. Back sides count. False as
     /// above.
     bool sampleSurface(const Vec3& from, Vec2 u, float choose, float time, Sample& out, geometry::SurfacePoint& point,

@@ -7,36 +7,68 @@ namespace alpenglow::transport {
 namespace {
 
 SiteKind kindOf(const std::string& op) {
-    static const std::map<std::string, SiteKind> kinds = {
-        {"ambient", SiteKind::Ambient}, {"diffuse", SiteKind::Diffuse}, {"specular", SiteKind::Specular}, {"specularstd", SiteKind::Specular},
-        {"phong", SiteKind::Phong}, {"trace", SiteKind::Trace}, {"transmission", SiteKind::Transmission},
-        {"lightvisibility", SiteKind::LightVisibility}, {"illuminance", SiteKind::Illuminance}, {"texture", SiteKind::Texture},
-        {"environment", SiteKind::Environment}, {"surface", SiteKind::Message}, {"displacement", SiteKind::Message},
-        {"atmosphere", SiteKind::Message}, {"incident", SiteKind::Message}, {"opposite", SiteKind::Message}, {"lightsource", SiteKind::LightSource}, {"attribute", SiteKind::Attribute},
-        {"option", SiteKind::Option}, {"rendererinfo", SiteKind::RendererInfo}, {"rayinfo", SiteKind::RayInfo},
-        {"raylevel", SiteKind::RayLevel}, {"isindirectray", SiteKind::RayLevel}, {"isshadowray", SiteKind::RayLevel},
-        {"textureinfo", SiteKind::TextureInfo}, {"lightsetup", SiteKind::LightSetup}, {"getlight", SiteKind::LightHandles}, {"getvar", SiteKind::PrimitiveVariable}, {"shadername", SiteKind::ShaderName},
-        {"getlights", SiteKind::LightHandles}, {"islightcategory", SiteKind::LightHandles}, {"currentlight", SiteKind::LightHandles}, {"lightcall", SiteKind::LightHandles},
-        {"lightparameter", SiteKind::LightHandles}};
+    static const std::map<std::string, SiteKind> kinds = {{"ambient", SiteKind::Ambient},
+                                                          {"diffuse", SiteKind::Diffuse},
+                                                          {"specular", SiteKind::Specular},
+                                                          {"specularstd", SiteKind::Specular},
+                                                          {"phong", SiteKind::Phong},
+                                                          {"trace", SiteKind::Trace},
+                                                          {"transmission", SiteKind::Transmission},
+                                                          {"lightvisibility", SiteKind::LightVisibility},
+                                                          {"illuminance", SiteKind::Illuminance},
+                                                          {"texture", SiteKind::Texture},
+                                                          {"environment", SiteKind::Environment},
+                                                          {"surface", SiteKind::Message},
+                                                          {"displacement", SiteKind::Message},
+                                                          {"atmosphere", SiteKind::Message},
+                                                          {"incident", SiteKind::Message},
+                                                          {"opposite", SiteKind::Message},
+                                                          {"lightsource", SiteKind::LightSource},
+                                                          {"attribute", SiteKind::Attribute},
+                                                          {"option", SiteKind::Option},
+                                                          {"rendererinfo", SiteKind::RendererInfo},
+                                                          {"rayinfo", SiteKind::RayInfo},
+                                                          {"raylevel", SiteKind::RayLevel},
+                                                          {"isindirectray", SiteKind::RayLevel},
+                                                          {"isshadowray", SiteKind::RayLevel},
+                                                          {"textureinfo", SiteKind::TextureInfo},
+                                                          {"lightsetup", SiteKind::LightSetup},
+                                                          {"getlight", SiteKind::LightHandles},
+                                                          {"getvar", SiteKind::PrimitiveVariable},
+                                                          {"shadername", SiteKind::ShaderName},
+                                                          {"getlights", SiteKind::LightHandles},
+                                                          {"islightcategory", SiteKind::LightHandles},
+                                                          {"currentlight", SiteKind::LightHandles},
+                                                          {"lightcall", SiteKind::LightHandles},
+                                                          {"lightparameter", SiteKind::LightHandles},
+                                                          {"depth", SiteKind::Depth},
+                                                          {"random", SiteKind::Random},
+                                                          {"transform", SiteKind::Transform},
+                                                          {"vtransform", SiteKind::Transform},
+                                                          {"ntransform", SiteKind::Transform},
+                                                          {"mtransform", SiteKind::Transform}};
     auto i = kinds.find(op);
     return i == kinds.end() ? SiteKind::Other : i->second;
 }
 
 /// The parameters of a trace() beyond the common ones. What is not followed is said once.
-std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKernel& k, WorldImpl& world) {
+std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKernel& k,
+                                           WorldImpl& world) {
     auto t = std::make_shared<TraceSite>();
-    const SourcePlace place{s.place.file < int(k.files().size()) ? k.files()[size_t(s.place.file)] : "", s.place.line, s.place.column};
+    const SourcePlace place{s.place.file < int(k.files().size()) ? k.files()[size_t(s.place.file)] : "", s.place.line,
+                            s.place.column};
     auto row = [&](const char* name) { auto f = i.named.find(name); return f == i.named.end() ? -1 : f->second; };
     auto text = [&](const char* name) { auto f = i.text.find(name); return f == i.text.end() ? std::string() : f->second; };
     auto said = [&](const std::string& what, const std::string& message) {
-        world.diagnostics_->reportOnce("trace:" + what + place.file + std::to_string(place.line), {Severity::Warning, Rie::Unimplement, place, "trace(): " + message, {}, {}});
+        world.diagnostics_->reportOnce("trace:" + what + place.file + std::to_string(place.line),
+                                       {Severity::Warning, Rie::Unimplement, place, "trace(): " + message, {}, {}});
     };
     t->udir = row("udir");
     t->roughness = row("roughness");
     t->roughnessv = row("roughnessv");
     t->absorption = row("absorption");
     t->tint = row("environmenttint");
-    const std::string part = text("__part");
+    const std::string part = text(rsl::kPairPart);
     if (!part.empty()) t->part = part[0] - '0';
     std::map<int, int> ends; // by row: where the value ends
     int at = 0;
@@ -46,16 +78,21 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
     }
     for (const char* name : {"eta", "eta[0]", "eta[1]"})
         if (const int r = row(name); r >= 0) t->eta.push_back({r, std::min(3, ends[r] - r)});
-    for (int n = 0; row(("lobeparameters[" + std::to_string(n) + "]").c_str()) >= 0; ++n) t->lobes.push_back(row(("lobeparameters[" + std::to_string(n) + "]").c_str()));
+    for (int n = 0; row(("lobeparameters[" + std::to_string(n) + "]").c_str()) >= 0; ++n)
+        t->lobes.push_back(row(("lobeparameters[" + std::to_string(n) + "]").c_str()));
     for (const char* name : {"distribution", "bsdf", "environmentmap", "environmentspace"})
-        if (row(name) >= 0) said(name, "\"" + std::string(name) + "\" must be known when the shader is compiled; it is taken as not given");
+        if (row(name) >= 0)
+            said(name, "\"" + std::string(name) + "\" must be known when the shader is compiled; it is taken as not given");
     if (const std::string map = text("environmentmap"); !map.empty()) {
         t->map = world.textures_->open(map, world.settings_.texturePaths, place);
         if (const std::string space = text("environmentspace"); !space.empty()) world.matrix("current", space, t->toMap);
     }
-    for (const char* name : {"transmission", "environmentcontribution", "unshadowedenvironment", "arealightcontribution", "unshadowedarealight"})
+    for (const char* name :
+         {"transmission", "environmentcontribution", "unshadowedenvironment", "arealightcontribution", "unshadowedarealight"})
         t->sums |= i.resultRows.count(name) > 0;
-    t->onlyLights = !i.resultRows.empty() && i.resultRows.count("arealightcontribution") + i.resultRows.count("unshadowedarealight") == i.resultRows.size();
+    t->onlyLights =
+        !i.resultRows.empty() &&
+        i.resultRows.count("arealightcontribution") + i.resultRows.count("unshadowedarealight") == i.resultRows.size();
     return t;
 }
 
@@ -97,11 +134,58 @@ size_t rowsOf(const SiteInfo& i, int row) {
     return 0;
 }
 
-std::string sentStrings(const SiteInfo& s) {
-    std::string key;
-    for (const auto& [name, value] : s.text)
-        if (name.rfind("send:light:", 0) == 0) key += name.substr(11) + '\1' + value + '\2';
-    return key;
+/// What a site says of the values that surfaces tell lights.
+static void bindSent(SiteInfo& i) {
+    using rsl::PairName;
+    for (const std::string& pair : i.site->names) {
+        const PairName name = PairName::parse(pair);
+        const auto at = i.named.find(pair);
+        if (at == i.named.end()) continue;
+        const int size = int(rowsOf(i, at->second));
+        if (name.kind == PairName::Kind::Surface)
+            i.outputs.push_back({rsl::OutputName::parameterOf(name.name), at->second, size});
+        if (name.kind == PairName::Kind::Send) i.sent.push_back({name.name, name.element, at->second, size});
+    }
+    for (const auto& [pair, value] : i.text) {
+        const PairName name = PairName::parse(pair);
+        if (name.kind != PairName::Kind::Send) continue;
+        i.sentStrings.emplace_back(name.name, value);
+        i.sentKey += name.name + '\1' + value + '\2';
+    }
+    if (!i.sentKey.empty()) i.sentHash = std::hash<std::string>{}(i.sentKey);
+    if (i.kind != SiteKind::LightSetup) return;
+    int rows = 0;
+    for (rsl::ir::Kind k : i.site->argKinds) rows += rsl::ir::components(k);
+    for (const auto& [name, row] : i.named) {
+        if (name == "N") i.rowN = row;
+        if (name == "category") continue; // no matter of the lights: what was kept stays good under another
+        int end = rows;
+        for (const auto& [other, following] : i.named)
+            if (following > row) end = std::min(end, following);
+        i.shown.push_back({row, end, std::hash<std::string>{}(name)});
+    }
+}
+
+/// The distribution of a trace(), and what only some calls use.
+static void bindTrace(SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKernel& k, WorldImpl& world) {
+    auto text = [&](const char* name, const char* fallback) {
+        auto f = i.text.find(name);
+        return f == i.text.end() ? std::string(fallback) : f->second;
+    };
+    std::string distribution = text("distribution", text("bsdf", "uniform").c_str());
+    i.lobe = findLobe(distribution);
+    if (!i.lobe) {
+        i.lobe = findLobe("uniform");
+        world.diagnostics_->reportOnce(
+            "distribution:" + distribution,
+            {Severity::Warning,
+             Rie::Unimplement,
+             {k.files().empty() ? "" : k.files()[s.place.file], s.place.line, s.place.column},
+             "trace(): distribution \"" + distribution + "\" is not yet available; one ray along R is traced",
+             {},
+             {}});
+    }
+    i.trace = traceSite(i, s, k, world);
 }
 
 BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed, bool path, WorldImpl* world) {
@@ -141,42 +225,39 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         i.results = {result(""), result("dist"), result("transmission"), result("hitnormal"), result("environmentcontribution"),
                      result("unshadowedenvironment"), result("arealightcontribution"), result("unshadowedarealight")};
         if (!s.strings.empty() && !s.strings[0].empty()) i.nameId = rsl::internString(s.strings[0]);
-        i.setUp = i.text.count("__setup") > 0;
-        i.outside = i.text.count("__outside") > 0;
+        i.setUp = i.text.count(rsl::kPairSetUp) > 0;
+        i.outside = i.text.count(rsl::kPairOutside) > 0;
+        i.once = i.text.count(rsl::kPairOnce) > 0;
+        i.uniform = i.text.count(rsl::kPairUniform) > 0;
+        if (s.resultNames.size() > 1) {
+            i.open = rsl::isLengthResult(s.resultNames[1]);
+            i.array = i.open || rsl::isElementResult(s.resultNames[1]);
+        }
         if (const auto cache = i.text.find("lightcache"); cache != i.text.end()) i.refresh = cache->second == "refresh";
         if (const auto category = i.named.find("category"); category != i.named.end()) i.rowCategory = category->second;
-        if (const std::string sent = sentStrings(i); !sent.empty()) i.sentStrings = std::hash<std::string>{}(sent);
+        bindSent(i);
         if (i.kind == SiteKind::Texture || i.kind == SiteKind::Environment) i.map = textureSite(i, s);
         if (i.kind == SiteKind::Diffuse) i.lobe = findLobe("diffuse");
         if (i.kind == SiteKind::Specular) i.lobe = findLobe("specular");
         if (i.kind == SiteKind::Phong) i.lobe = findLobe("phong");
         i.exponent = s.op == "specularstd" || world->rispecSpecular_ ? kRispecExponent : kSpecularExponent;
         auto rowOf = [&](const char* name) { auto f = i.named.find(name); return f == i.named.end() ? -1 : f->second; };
-        static const std::string kOutput = "surface:";
-        for (const auto& [name, at] : i.named)
-            if (name.rfind(kOutput, 0) == 0 && i.kind != SiteKind::LightSetup) i.outputs.push_back({name.substr(kOutput.size()), at, int(rowsOf(i, at))});
         i.rowWo = rowOf("wo");
         i.rowExponent = rowOf("exponent");
         i.rowCone = rowOf("samplecone");
         i.rowHorizon = rowOf("horizon");
         i.rowLights = rowOf("samplearealights");
         if (i.kind == SiteKind::Trace || i.kind == SiteKind::Transmission) {
-            auto text = [&](const char* name) { auto f = i.text.find(name); return f == i.text.end() ? std::string() : f->second; };
+            auto text = [&](const char* name) {
+                auto f = i.text.find(name);
+                return f == i.text.end() ? std::string() : f->second;
+            };
             i.label = rsl::internString(!text("label").empty() ? text("label") : text("raylabel"));
-            i.rays = raySite(i, *world, {s.place.file < int(k->files().size()) ? k->files()[size_t(s.place.file)] : "", s.place.line, s.place.column});
+            i.rays = raySite(
+                i, *world,
+                {s.place.file < int(k->files().size()) ? k->files()[size_t(s.place.file)] : "", s.place.line, s.place.column});
         }
-        if (i.kind == SiteKind::Trace) {
-            auto text = [&](const char* name, const char* fallback) { auto f = i.text.find(name); return f == i.text.end() ? std::string(fallback) : f->second; };
-            std::string distribution = text("distribution", text("bsdf", "uniform").c_str());
-            i.lobe = findLobe(distribution);
-            if (!i.lobe) {
-                i.lobe = findLobe("uniform");
-                world->diagnostics_->reportOnce("distribution:" + distribution,
-                    {Severity::Warning, Rie::Unimplement, {k->files().empty() ? "" : k->files()[s.place.file], s.place.line, s.place.column},
-                     "trace(): distribution \"" + distribution + "\" is not yet available; one ray along R is traced", {}, {}});
-            }
-            i.trace = traceSite(i, s, *k, *world);
-        }
+        if (i.kind == SiteKind::Trace) bindTrace(i, s, *k, *world);
         b.sites.push_back(std::move(i));
     }
     b.plan = std::make_shared<shading::BatchPlan>(*k, mixed);

@@ -1,9 +1,11 @@
-// Lights of a frame bound to their kernels. A shader with several illuminate or solar statements becomes several lights: the first
-// keeps the frame's index, the others are its parts, numbered behind all of the frame's.
+// Lights of a frame bound to their kernels. A shader with several illuminate or solar statements becomes several lights: the
+// first keeps the frame's index, the others are its parts, numbered behind all of the frame's.
 #include "world/impl.h"
 #include "world/outputs.h"
 
 namespace alpenglow::transport {
+
+using rsl::OutputName;
 
 namespace {
 
@@ -13,9 +15,9 @@ constexpr int kProbes = 26;
 std::vector<std::string> outputsOf(const rsl::ir::KernelFacts& f, const std::vector<std::string>& extra) {
     std::vector<std::string> names;
     for (size_t k = 0; k < f.blocks.size(); ++k) {
-        std::string tail = k ? "#" + std::to_string(k) : "";
-        if (f.blocks[k] == "outside") names.push_back("Cl" + tail);
-        else for (const char* n : {"L", "Cl", "Ol", "lit"}) names.push_back(n + tail);
+        const auto add = [&](const char* name) { names.push_back(OutputName::ofBlock(name, int(k)).text()); };
+        if (f.blocks[k] == rsl::kBlockOutside) add("Cl");
+        else for (const char* n : {"L", "Cl", "Ol", "lit"}) add(n);
     }
     if (f.blocks.empty()) names = {"Cl", "Ol"};
     names.insert(names.end(), extra.begin(), extra.end());
@@ -43,16 +45,106 @@ bool givesMean(const scene::Light& source, const std::string& shader, bool path,
     return units != "radiance" && !path && !kRadiance.count(shader);
 }
 
+/// What Attribute "light" says of a light whose kernel is known.
+void readLightAttributes(BoundLight& l, bool path, Diagnostics& d) {
+    l.samples = std::clamp(
+        int(numberOf(l.source->attributes, "light:samples", numberOf(l.source->attributes, "light:nsamples", 1))), 1, 1024);
+    if (const scene::Param* p = l.source->attributes ? l.source->attributes->value("light:shadows") : nullptr; p && !path)
+        l.shadows = !p->strings.empty() ? p->strings[0] == "on" : !p->numbers.empty() && p->numbers[0] != 0;
+    if (const scene::Param* p = l.source->attributes ? l.source->attributes->value("light:samplingstrategy") : nullptr;
+        p && !p->strings.empty()) {
+        if (p->strings[0] == "trace") l.strategy = LightStrategy::Trace;
+        else if (p->strings[0] == "illuminance") l.strategy = LightStrategy::Illuminance;
+        else d.reportOnce("samplingstrategy:" + p->strings[0], {Severity::Warning, Rie::BadToken, p->place,
+                          "unknown sampling strategy \"" + p->strings[0] + "\"", "\"illuminance\" and \"trace\" are known", {}});
+    }
+}
+
+/// What the statement that a light comes from makes of it.
+void setLightKind(BoundLight& part, const std::string& block, bool area, bool path, Diagnostics& d) {
+    bool solar = block.starts_with(rsl::kBlockSolar);
+    if (block == rsl::kBlockOutside) part.kind = LightKind::Ambient;
+    else if (block == rsl::kBlockSky || part.instance->name == "envlight") part.kind = LightKind::Environment;
+    else if (solar) part.kind = LightKind::Distant;
+    else part.kind = area && part.sentCl < 0 ? LightKind::Area : LightKind::Point; // samples need no geometry
+    part.cone = block == rsl::kBlockCone;
+    if (part.kind != LightKind::Area && !((part.kind == LightKind::Environment || part.cone) && path)) part.samples = 1;
+    if (part.sentCl >= 0) { // its samples: each has a turn
+        part.samples = limits::kLightTurns;
+        part.shadows |= !path && part.instance->parameters.numbers.count(rsl::kSentShadows) > 0;
+    }
+    if (part.kind == LightKind::Area && givesMean(*part.source, part.instance->name, path, d)) {
+        part.mean = true;
+        part.strategy = LightStrategy::Illuminance; // it has no radiance that trace() could find
+    }
+    if (part.kind != LightKind::Area) part.emitter = nullptr;
+}
+
 } // namespace
+
+/// The kernel of a light, with its output parameters and what it gives to the outputs of surfaces.
+BoundKernel WorldImpl::lightKernel(const ShaderInstance& light, Diagnostics& d) {
+    BoundKernel k;
+    std::vector<std::string> extra, outputs;
+    for (const char* name : {rsl::kNonDiffuse, rsl::kNonSpecular})
+        for (const auto& p : light.program->parameters())
+            if (p.name == name) extra.push_back(OutputName::parameterOf(name).text());
+    for (const auto& p : light.program->parameters())
+        if (const std::string name = OutputName::parameterOf(p.name).text(); p.output && p.type.base != rsl::Base::String &&
+                                                        std::find(extra.begin(), extra.end(), name) == extra.end())
+            extra.push_back(name);
+    // What it gives to the outputs of the surface by outputchannel(), where a display asks for it.
+    for (const OutputName& name : wanted_)
+        if (givesChannel(light, name)) addOutput(light, name, extra);
+    if (!extra.empty()) {
+        outputs = {"L", "Cl", "Ol", "lit"};
+        outputs.insert(outputs.end(), extra.begin(), extra.end());
+    }
+    k = kernel(light, outputs, {}, false, false, d);
+    if (k && !extra.empty() && k.kernel->facts().blocks.size() != 1) // more outputs than was thought
+        k = kernel(light, outputsOf(k.kernel->facts(), extra), {}, false, false, d);
+    return k;
+}
+
+/// Where the outputs of one statement of a light lie, and its values.
+void WorldImpl::bindLightOutputs(BoundLight& part, int block) {
+    const auto aovsOf = [&](const OutputName& name) { // by number; measureOutputs() makes the place of its first number of them
+        std::vector<int> all; // "list[1]" is also one of "list"
+        for (size_t i = 0; i < wanted_.size(); ++i)
+            if (wanted_[i] == name || wanted_[i] == OutputName::of(name.name)) all.push_back(int(i));
+        return all;
+    };
+    const auto& outputs = part.kernel.kernel->outputs();
+    std::set<std::string> channels; // "list[1]" may be there twice: of "list", and by itself
+    for (size_t i = 0; i < outputs.size(); ++i) {
+        const OutputName n = OutputName::parse(outputs[i].name);
+        const auto ofBlock = [&](const char* name) { return n == OutputName::ofBlock(name, block); };
+        if (ofBlock("L")) part.outL = int(i);
+        else if (ofBlock("Cl")) part.outCl = int(i);
+        else if (ofBlock("lit")) part.outLit = int(i);
+        else if (ofBlock("Ol")) part.outOl = int(i);
+        else if (n == OutputName::parameterOf(rsl::kNonDiffuse)) part.nonDiffuse = int(i);
+        else if (n == OutputName::parameterOf(rsl::kNonSpecular)) part.nonSpecular = int(i);
+        if (n.parameter) {
+            if (n == OutputName::parameterOf(rsl::kSentL, 0)) part.sentL = part.valueWidth;
+            if (n == OutputName::parameterOf(rsl::kSentCl, 0)) part.sentCl = part.valueWidth;
+            part.values.push_back({n, int(i), rsl::ir::components(outputs[i].kind)});
+            part.valueWidth += part.values.back().components;
+        } else if (n.what == OutputName::What::Given) {
+            part.values.push_back({n, int(i), 1});
+            part.valueWidth += 1;
+        } else if (givesChannel(*part.instance, n) && channels.insert(outputs[i].name).second) {
+            for (const int aov : aovsOf(n)) {
+                part.values.push_back({n, int(i), rsl::ir::components(outputs[i].kind), aov});
+                part.valueWidth += part.values.back().components;
+                part.channels = lightChannels_ = true;
+            }
+        }
+    }
+}
 
 void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const geometry::Shape&)>& visibility) {
     const bool path = settings_.hider == Hider::Path;
-    const auto aovsOf = [&](const std::string& name) { // by number; measureOutputs() makes the place of its first number of them
-        std::vector<int> all; // "list[1]" is also one of "list"
-        for (size_t i = 0; i < settings_.outputs.size(); ++i)
-            if (settings_.outputs[i] == name || settings_.outputs[i] == name.substr(0, name.find('['))) all.push_back(int(i));
-        return all;
-    };
     std::map<int, std::vector<const geometry::Shape*>> emitters;
     for (const auto& s : shapes_)
         if (s->attributes().areaLight >= 0) emitters[s->attributes().areaLight].push_back(s.get());
@@ -67,26 +159,7 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
         l.samples = 0;
         l.instance = source.shader ? instance(*source.shader, rsl::ShaderKind::Light, d) : nullptr;
         if (source.attributes) l.instance = withCoShaders(l.instance, source.attributes->coshaders, d);
-        if (l.instance) {
-            std::vector<std::string> extra, outputs;
-            for (const char* name : {"__nondiffuse", "__nonspecular"})
-                for (const auto& p : l.instance->program->parameters())
-                    if (p.name == name) extra.push_back(std::string("param:") + name);
-            for (const auto& p : l.instance->program->parameters())
-                if (const std::string name = "param:" + p.name; p.output && p.type.base != rsl::Base::String &&
-                                                                std::find(extra.begin(), extra.end(), name) == extra.end())
-                    extra.push_back(name);
-            // What it gives to the outputs of the surface by outputchannel(), where a display asks for it.
-            for (const std::string& name : settings_.outputs)
-                if (givesChannel(*l.instance, name)) addOutput(*l.instance, name, extra);
-            if (!extra.empty()) {
-                outputs = {"L", "Cl", "Ol", "lit"};
-                outputs.insert(outputs.end(), extra.begin(), extra.end());
-            }
-            l.kernel = kernel(*l.instance, outputs, {}, false, false, d);
-            if (l.kernel && !extra.empty() && l.kernel.kernel->facts().blocks.size() != 1) // more outputs than was thought
-                l.kernel = kernel(*l.instance, outputsOf(l.kernel.kernel->facts(), extra), {}, false, false, d);
-        }
+        if (l.instance) l.kernel = lightKernel(*l.instance, d);
         if (!l.kernel) {
             lights_[li] = std::move(l);
             continue;
@@ -98,68 +171,19 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
                 if (s.site->op == "displacement") lightDisplacements_.insert(s.site->strings.empty() ? "" : s.site->strings[0]);
             }
         std::vector<std::string> blocks = l.kernel.kernel->facts().blocks;
-        if (blocks.empty()) blocks = {"outside"};
+        if (blocks.empty()) blocks = {rsl::kBlockOutside};
         bool area = source.area && emitters.count(int(li));
         if (area) {
             std::vector<uint32_t> seen;
             for (const geometry::Shape* s : emitters[int(li)]) seen.push_back(visibility(*s));
             l.emitter = std::make_shared<Emitter>(emitters[int(li)], std::move(seen));
         }
-        l.samples = std::clamp(int(numberOf(source.attributes, "light:samples", numberOf(source.attributes, "light:nsamples", 1))), 1, 1024);
-        if (const scene::Param* p = source.attributes ? source.attributes->value("light:shadows") : nullptr; p && !path)
-            l.shadows = !p->strings.empty() ? p->strings[0] == "on" : !p->numbers.empty() && p->numbers[0] != 0;
-        if (const scene::Param* p = source.attributes ? source.attributes->value("light:samplingstrategy") : nullptr; p && !p->strings.empty()) {
-            if (p->strings[0] == "trace") l.strategy = LightStrategy::Trace;
-            else if (p->strings[0] == "illuminance") l.strategy = LightStrategy::Illuminance;
-            else d.reportOnce("samplingstrategy:" + p->strings[0], {Severity::Warning, Rie::BadToken, p->place,
-                              "unknown sampling strategy \"" + p->strings[0] + "\"", "\"illuminance\" and \"trace\" are known", {}});
-        }
+        readLightAttributes(l, path, d);
         for (size_t k = 0; k < blocks.size(); ++k) {
             BoundLight part = l;
-            std::string tail = k ? "#" + std::to_string(k) : "";
-            const auto& outputs = l.kernel.kernel->outputs();
-            std::set<std::string> channels; // "list[1]" may be there twice: of "list", and by itself
-            for (size_t i = 0; i < outputs.size(); ++i) {
-                const std::string& n = outputs[i].name;
-                if (n == "L" + tail) part.outL = int(i);
-                else if (n == "Cl" + tail) part.outCl = int(i);
-                else if (n == "lit" + tail) part.outLit = int(i);
-                else if (n == "Ol" + tail) part.outOl = int(i);
-                else if (n == "param:__nondiffuse") part.nonDiffuse = int(i);
-                else if (n == "param:__nonspecular") part.nonSpecular = int(i);
-                if (n.rfind("param:", 0) == 0) {
-                    if (n == "param:__sentL[0]") part.sentL = part.valueWidth;
-                    if (n == "param:__sentCl[0]") part.sentCl = part.valueWidth;
-                    part.values.push_back({n.substr(6), int(i), rsl::ir::components(outputs[i].kind)});
-                    part.valueWidth += part.values.back().components;
-                } else if (n.rfind(kGiven, 0) == 0) {
-                    part.values.push_back({n, int(i), 1});
-                    part.valueWidth += 1;
-                } else if (givesChannel(*l.instance, n) && channels.insert(n).second) {
-                    for (const int aov : aovsOf(n)) {
-                        part.values.push_back({n, int(i), rsl::ir::components(outputs[i].kind), aov});
-                        part.valueWidth += part.values.back().components;
-                        part.channels = lightChannels_ = true;
-                    }
-                }
-            }
+            bindLightOutputs(part, int(k));
             if (part.outCl < 0) continue;
-            bool solar = blocks[k].rfind("solar", 0) == 0;
-            if (blocks[k] == "outside") part.kind = LightKind::Ambient;
-            else if (blocks[k] == "solar()" || l.instance->name == "envlight") part.kind = LightKind::Environment;
-            else if (solar) part.kind = LightKind::Distant;
-            else part.kind = area && part.sentCl < 0 ? LightKind::Area : LightKind::Point; // samples need no geometry
-            part.cone = blocks[k] == "solar cone";
-            if (part.kind != LightKind::Area && !((part.kind == LightKind::Environment || part.cone) && path)) part.samples = 1;
-            if (part.sentCl >= 0) { // its samples: each has a turn
-                part.samples = limits::kLightTurns;
-                part.shadows |= !path && l.instance->parameters.numbers.count("__sentShadows") > 0;
-            }
-            if (part.kind == LightKind::Area && givesMean(source, l.instance->name, path, d)) {
-                part.mean = true;
-                part.strategy = LightStrategy::Illuminance; // it has no radiance that trace() could find
-            }
-            if (part.kind != LightKind::Area) part.emitter = nullptr;
+            setLightKind(part, blocks[k], area, path, d);
             if (k == 0) {
                 lights_[li] = std::move(part);
             } else {
@@ -192,16 +216,16 @@ void WorldImpl::bindSentStrings(Diagnostics& d) {
     for (const SurfaceBinding& b : bindings_)
         for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV, &b.atmosphere.kernel})
             for (const SiteInfo& s : k->sites)
-                if (const std::string key = sentStrings(s); s.kind == SiteKind::LightSetup && !key.empty())
-                    for (const auto& [name, value] : s.text)
-                        if (name.rfind("send:light:", 0) == 0) sent[key][name.substr(11)] = value;
+                if (s.kind == SiteKind::LightSetup)
+                    for (const auto& [name, value] : s.sentStrings) sent[s.sentKey][name] = value;
     for (BoundLight& l : lights_)
         for (const auto& [key, values] : sent) {
             if (!l.kernel) continue;
             ShaderInstance other = *l.instance;
             bool differs = false;
             for (const auto& [name, value] : values)
-                if (auto have = other.parameters.strings.find(name); have != other.parameters.strings.end() && have->second != value) {
+                if (auto have = other.parameters.strings.find(name);
+                    have != other.parameters.strings.end() && have->second != value) {
                     have->second = value;
                     differs = true;
                 }
@@ -223,7 +247,8 @@ std::vector<int> WorldImpl::withParts(const std::vector<int>& lights) const {
 }
 
 void WorldImpl::measureLights(Evaluator& evaluator, Diagnostics& d) {
-    bool many = std::any_of(sampledLights_.begin(), sampledLights_.end(), [](const auto& list) { return list.size() > size_t(limits::kLightsSampled); });
+    bool many = std::any_of(sampledLights_.begin(), sampledLights_.end(),
+                            [](const auto& list) { return list.size() > size_t(limits::kLightsSampled); });
     for (BoundLight& l : lights_) {
         if (!l.kernel || (l.kind == LightKind::Area && (!l.emitter || l.emitter->empty()))) continue;
         auto brightness = [&](std::vector<ShadePoint> q) {
@@ -245,8 +270,8 @@ void WorldImpl::measureLights(Evaluator& evaluator, Diagnostics& d) {
             geometry::Bounds box = l.emitter->bounds();
             l.centre = (box.lo + box.hi) * 0.5f;
             l.radius = length(box.hi - box.lo) * 0.5f;
-            // Radiance does not change along a ray. A kernel whose Cl falls off with the square of the distance along the normal divides by
-            // it itself: what it means is an intensity.
+            // Radiance does not change along a ray. A kernel whose Cl falls off with the square of the distance along the normal
+            // divides by it itself: what it means is an intensity.
             float step = std::max(std::sqrt(float(l.emitter->area())), 1e-6f), mean = 0;
             int square = 0, seen = 0;
             for (int k = 0; k < 4; ++k) {
@@ -272,9 +297,14 @@ void WorldImpl::measureLights(Evaluator& evaluator, Diagnostics& d) {
             if (seen > 0 && square == seen) {
                 l.intensityScale = float(kPi) / float(l.emitter->area());
                 mean *= l.intensityScale * step * step;
-                d.reportOnce("intensity:" + l.instance->name, {Severity::Info, Rie::NoError, l.instance->place,
-                             "area light \"" + l.instance->name + "\" divides by the distance itself; its Cl is read as intensity, spread over its surface",
-                             "the Cl of an area light is the radiance that leaves it: without the division it needs no guess", {}});
+                d.reportOnce("intensity:" + l.instance->name,
+                             {Severity::Info,
+                              Rie::NoError,
+                              l.instance->place,
+                              "area light \"" + l.instance->name +
+                                  "\" divides by the distance itself; its Cl is read as intensity, spread over its surface",
+                              "the Cl of an area light is the radiance that leaves it: without the division it needs no guess",
+                              {}});
             }
             l.power = mean * float(l.emitter->area()) / float(kPi);
         } else if (many && (l.kind == LightKind::Point || l.kind == LightKind::Distant)) {

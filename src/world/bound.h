@@ -25,7 +25,8 @@ using InstanceRef = std::shared_ptr<const ShaderInstance>;
 
 enum class LightKind : uint8_t { Ambient, Point, Distant, Environment, Area };
 
-/// Attribute "light" "samplingstrategy": who sees an area light or a sky, illuminance loops or trace(). The lighting shadeops see all.
+/// Attribute "light" "samplingstrategy": who sees an area light or a sky, illuminance loops or trace(). The lighting shadeops see
+/// all.
 enum class LightStrategy : uint8_t { Both, Illuminance, Trace };
 
 struct BoundLight {
@@ -35,16 +36,20 @@ struct BoundLight {
     std::shared_ptr<Emitter> emitter;          ///< Area
     int outL = -1, outCl = -1, outOl = -1, outLit = -1;
     /// Output parameters, whose values the kernel gives: name, output, components; then what all of them take.
-    struct Value { std::string name; int output, components, aov = -1; }; ///< aov: where an outputchannel() lies among the AOVs
+    struct Value {
+        rsl::OutputName name;
+        int output, components, aov = -1;
+    }; ///< aov: where an outputchannel() lies among the AOVs
     std::vector<Value> values;
     int valueWidth = 0;
     bool asksSurface = false;                  ///< its kernel asks for parameters of the surface that it lights
     bool channels = false;                     ///< some of `values` are AOVs
     bool cone = false;                         ///< Distant: solar() with an angle, which path samples
-    /// Of a light that sends through generateSamples(): where in `values` the ways and the light of its samples begin; -1: another light.
+    /// Of a light that sends through generateSamples(): where in `values` the ways and the light of its samples begin; -1:
+    /// another light.
     int sentL = -1, sentCl = -1;
     bool shadows = false;                      ///< outside of path: its light is traced (Attribute "light" "shadows" "on")
-    /// Kernels for strings that a surface sends: by sentStrings() of the loop.
+    /// Kernels for strings that a surface sends: by SiteInfo::sentKey of the loop.
     std::map<std::string, BoundKernel> variants;
     int nonDiffuse = -1, nonSpecular = -1;     ///< outputs, or -1
     std::string handle;
@@ -84,7 +89,8 @@ struct Opacity {
 struct Medium {
     InstanceRef shader;
     BoundKernel kernel;
-    const geometry::Shape* shape = nullptr;    ///< inside and outside: the first primitive, and its binding, for rays that meet nothing
+    const geometry::Shape* shape =
+        nullptr; ///< inside and outside: the first primitive, and its binding, for rays that meet nothing
     int binding = -1;
 };
 
@@ -95,13 +101,13 @@ struct LightOutput {
     /// none.
     struct Kernel { BoundKernel bound; std::vector<int> own, main; };
     int number = 0;                            ///< WorldImpl::lightOutputs_
-    std::string slot;                          ///< as kernels call it: "d", of an array "list[1]"
+    rsl::OutputName slot;                      ///< as kernels call it: "d", of an array "list[1]"
     std::vector<std::string> outputs;
     Kernel S, V;                               ///< as SurfaceBinding::surfaceS, surfaceV
 };
 /// Where it lies among the AOVs.
 struct LightOutputPlace {
-    std::string slot;
+    rsl::OutputName slot;
     int aov = 0, component = 0, size = 3;      ///< which AOV; numbers of it before this output; 1 or 3
     int first = -1;                            ///< of all numbers of a sample; -1: beyond the width of the AOV
 };
@@ -116,8 +122,8 @@ struct SurfaceBinding {
     int inside = -1, outside = -1;             ///< WorldImpl::media_ of Interior and Exterior; -1: none
     /// Where a ray is that comes from `from` and leaves a point with normal n in direction `to`; it arrived in direction `in`.
     shading::Media beyond(const shading::Media& from, const Vec3& n, const Vec3& in, const Vec3& to) const;
-    bool displacementTells = false;            ///< displacementS gives the outputs of its shader, for those who ask by displacement()
-    BoundKernel moveS;                         ///< P as the surface shader leaves it, where that displaces the primitive (no displacement shader)
+    bool displacementTells = false; ///< displacementS gives the outputs of its shader, for those who ask by displacement()
+    BoundKernel moveS; ///< P as the surface shader leaves it, where that displaces the primitive (no displacement shader)
     std::vector<LightOutput> lightOutputs;
     std::vector<char> aside;                   ///< by AOV: `lightOutputs` give it; empty: none
     std::vector<int> lights;                   ///< indices into lights

@@ -20,7 +20,8 @@ std::string undiceable(const rsl::ir::Kernel& k, bool& moves) {
             why = "light";
         } else if (i->op == Op::Request || i->op == Op::Emit) {
             why = op() + "()";
-        } else if (i->op == Op::Service && (op() == "ambient" || op() == "lightsource" || op() == "getlights" || op() == "lightcall")) {
+        } else if (i->op == Op::Service &&
+                   (op() == "ambient" || op() == "lightsource" || op() == "getlights" || op() == "lightcall")) {
             why = "light";
         }
     });
@@ -29,7 +30,8 @@ std::string undiceable(const rsl::ir::Kernel& k, bool& moves) {
 
 } // namespace
 
-BoundKernel WorldImpl::movingKernel(const ShaderInstance& surface, const BoundKernel& bound, const std::vector<std::string>& varying, Diagnostics& d) {
+BoundKernel WorldImpl::movingKernel(const ShaderInstance& surface, const BoundKernel& bound,
+                                    const std::vector<std::string>& varying, Diagnostics& d) {
     const auto& writes = bound.kernel->facts().writes;
     if (std::find(writes.begin(), writes.end(), "P") == writes.end()) return {};
     Diagnostics quiet; // all of it was said when the surface was compiled
@@ -39,18 +41,27 @@ BoundKernel WorldImpl::movingKernel(const ShaderInstance& surface, const BoundKe
     const std::string why = undiceable(*k, moves);
     if (!moves) return {};
     if (!why.empty()) {
-        d.reportOnce("moves:" + surface.name, {Severity::Warning, Rie::Unimplement, surface.place,
-                     "surface shader \"" + surface.name + "\" moves P by " + why + ", which is not known when the primitive is diced; it stays where it is",
-                     "a displacement shader moves primitives", {}});
+        d.reportOnce("moves:" + surface.name, {Severity::Warning,
+                                               Rie::Unimplement,
+                                               surface.place,
+                                               "surface shader \"" + surface.name + "\" moves P by " + why +
+                                                   ", which is not known when the primitive is diced; it stays where it is",
+                                               "a displacement shader moves primitives",
+                                               {}});
         return {};
     }
-    d.reportOnce("moves:" + surface.name, {Severity::Info, Rie::NoError, surface.place,
-                 "surface shader \"" + surface.name + "\" moves P: it displaces its primitives",
-                 "Attribute \"displacementbound\" says how far for other renderers; a displacement shader is the place for it", {}});
+    d.reportOnce("moves:" + surface.name,
+                 {Severity::Info,
+                  Rie::NoError,
+                  surface.place,
+                  "surface shader \"" + surface.name + "\" moves P: it displaces its primitives",
+                  "Attribute \"displacementbound\" says how far for other renderers; a displacement shader is the place for it",
+                  {}});
     return kernel(surface, {"P"}, varying, false, false, quiet);
 }
 
-void WorldImpl::displaceGrid(const SurfaceBinding& b, const geometry::Shape& shape, geometry::DiceGrid& grid, Diagnostics& d) const {
+void WorldImpl::displaceGrid(const SurfaceBinding& b, const geometry::Shape& shape, geometry::DiceGrid& grid,
+                             Diagnostics& d) const {
     const BoundKernel& bound = b.displacement ? b.displacementS : b.moveS;
     if (!bound || bound.kernel->facts().suspends) return;
     const ShaderInstance& shader = b.displacement ? *b.displacement : *b.surface;
@@ -80,17 +91,20 @@ void WorldImpl::diceShapes(Diagnostics& d) {
         return bindings_[size_t(bindingOf_[numberOfShape_.at(&s)])];
     };
     dice.displaces = [&](const geometry::Shape& shape) { return bindingOf(shape).displacement || bindingOf(shape).moveS; };
-    dice.displace = [&](const geometry::Shape& shape, geometry::DiceGrid& grid) { displaceGrid(bindingOf(shape), shape, grid, d); };
+    dice.displace = [&](const geometry::Shape& shape, geometry::DiceGrid& grid) {
+        displaceGrid(bindingOf(shape), shape, grid, d);
+    };
     dice.declaredBound = [&](const geometry::Shape& shape) {
         geometry::DiceOptions::DeclaredBound bound;
         const SurfaceBinding& b = bindingOf(shape);
         const InstanceRef both[] = {b.displacement, b.surface == b.displacement ? nullptr : b.surface};
         for (const InstanceRef& i : both) {
-            if (!i || (!b.displacement && !b.moveS) || (i == b.surface && b.displacement && !shape.attributes().displacement)) continue; // one class is both
-            const auto number = i->parameters.numbers.find("__displacementbound_sphere");
+            if (!i || (!b.displacement && !b.moveS) || (i == b.surface && b.displacement && !shape.attributes().displacement))
+                continue; // one class is both
+            const auto number = i->parameters.numbers.find(rsl::kBoundSize);
             if (number == i->parameters.numbers.end() || number->second.empty()) continue;
             bound.radius += std::max(0.0, double(number->second[0]));
-            const auto space = i->parameters.strings.find("__displacementbound_coordinatesystem");
+            const auto space = i->parameters.strings.find(rsl::kBoundSpace);
             if (bound.space.empty() && space != i->parameters.strings.end()) bound.space = space->second;
         }
         return bound;

@@ -6,7 +6,9 @@
 namespace alpenglow::transport {
 
 /// The half angle in radians that the rays of a lobe widen by: half of the lobe's own, never below that of the ray before.
-inline float spreadBehind(const shading::PathRay& ray, float lobeSpread) { return std::max(ray.footprint.spread, lobeSpread * 0.5f); }
+inline float spreadBehind(const shading::PathRay& ray, float lobeSpread) {
+    return std::max(ray.footprint.spread, lobeSpread * 0.5f);
+}
 
 /// Whether a kernel of the light reads du or dv: those of its points matter.
 inline bool usesFootprint(const BoundLight& l) {

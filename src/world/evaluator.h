@@ -10,8 +10,8 @@ namespace alpenglow::transport {
 class Evaluator {
 public:
     virtual ~Evaluator() = default;
-    /// Runs a kernel that does not wait over points that no ray has met, all with the values of one shader. `of`: the surface that they
-    /// belong to, null: none. `take` sees the outputs; the points are as they were.
+    /// Runs a kernel that does not wait over points that no ray has met, all with the values of one shader. `of`: the surface
+    /// that they belong to, null: none. `take` sees the outputs; the points are as they were.
     virtual void run(const BoundKernel&, const SurfaceBinding* of, std::vector<ShadePoint>& points, const shading::InstanceView&,
                      const std::function<void(const shading::Batch&)>& take) = 0;
     /// Light arriving at points (ShadePoint::Ps) from one light.

@@ -21,7 +21,8 @@ bool WorldImpl::runImager(int count, const float* x, const float* y, float* r, f
     const BoundKernel& k = imager_.kernel;
     if (!i || !k || k.kernel->facts().suspends) return false;
     const std::unique_ptr<Evaluator> evaluator = evaluators_(*this, d, stop);
-    // alpha is what the shader writes to it; one that only makes its pixels opaque means that, too (methods of classes have no alpha).
+    // alpha is what the shader writes to it; one that only makes its pixels opaque means that, too (methods of classes have no
+    // alpha).
     const auto& writes = k.kernel->facts().writes;
     const auto written = [&](const char* name) { return std::find(writes.begin(), writes.end(), name) != writes.end(); };
     const bool opacityOnly = written("Oi") && !written("alpha");

@@ -15,7 +15,8 @@ namespace alpenglow::transport {
 /// The subsets of a world's shapes that rays were restricted to.
 class ShapeSubsets {
 public:
-    /// By shape, whether rays of this "subset" and "excludesubset" consider it; null: all. Good as long as the world. Thread safe.
+    /// By shape, whether rays of this "subset" and "excludesubset" consider it; null: all. Good as long as the world. Thread
+    /// safe.
     const uint8_t* find(const class WorldImpl&, const std::string& wanted, const std::string& unwanted) const;
 
 private:
@@ -35,14 +36,15 @@ public:
     bool runImager(int, const float*, const float*, float*, float*, float*, float*, Diagnostics&,
                    const StopFlag* stop) const override;
     bool matrix(const std::string& from, const std::string& to, Matrix& out) const override;
-    /// Works out the matrices of kernel inputs "space:FROM>TO" once, before the first ray: matrix() then looks them up.
-    void keepSpaces(const std::vector<std::string>& inputs);
+    /// Works out the matrices of a kernel's spaces once, before the first ray: matrix() then looks them up.
+    void keepSpaces(std::span<const rsl::InputName> spaces);
     std::map<std::string, std::map<std::string, Matrix>> spaces_; ///< from, to
     /// Whether a space of this name is predefined or the scene has one.
     bool knowsSpace(const std::string& name) const;
 
     InstanceRef instance(const scene::ShaderCall&, rsl::ShaderKind, Diagnostics&, bool anyKind = false);
     void setParameters(ShaderInstance&, const scene::ShaderCall&, Diagnostics&);
+    void takeValues(ShaderInstance&, const std::vector<rsl::ParameterValue>& given, Diagnostics&);
     /// Handles among these parameters that name neither one of `bound` nor a light: null, and an error with the place.
     void dropMissingHandles(const ShaderInstance& of, std::map<std::string, std::string>& texts,
                             const std::vector<std::pair<std::string, scene::ShaderRef>>& bound, Diagnostics&) const;
@@ -53,24 +55,26 @@ public:
     /// Fills outputWidths_: how many numbers each AOV has in the shaders of the frame.
     void measureOutputs();
     InstanceRef builtin(const std::string& name, rsl::ShaderKind, Diagnostics&);
-    rsl::KernelOptions kernelOptions(const ShaderInstance&, const std::vector<std::string>& outputs, const std::vector<std::string>& varying, bool mixed,
-                                     bool path) const;
-    BoundKernel kernel(const ShaderInstance&, const std::vector<std::string>& outputs, const std::vector<std::string>& varying, bool mixed,
-                       bool path, Diagnostics&, const std::string& light = "Ci");
+    rsl::KernelOptions kernelOptions(const ShaderInstance&, const std::vector<std::string>& outputs,
+                                     const std::vector<std::string>& varying, bool mixed, bool path) const;
+    BoundKernel kernel(const ShaderInstance&, const std::vector<std::string>& outputs, const std::vector<std::string>& varying,
+                       bool mixed, bool path, Diagnostics&, const std::string& light = "Ci");
     /// The outputs of the kernel() of an instance, and whether light that it asks for reaches them.
     std::vector<rsl::ir::OutputLight> lightOfOutputs(const ShaderInstance&, const std::vector<std::string>& outputs,
                                                      const std::vector<std::string>& varying, bool path) const;
 
     /// Matrices of the camera, from the frame's options.
     void setCamera(const scene::Options&);
-    /// Of a surface shader (as it is bound) that assigns P: the kernel that gives P alone, run when shapes are diced. None where the shader leaves
-    /// P as it is, and where light or rays decide, which is reported.
+    /// Of a surface shader (as it is bound) that assigns P: the kernel that gives P alone, run when shapes are diced. None where
+    /// the shader leaves P as it is, and where light or rays decide, which is reported.
     BoundKernel movingKernel(const ShaderInstance&, const BoundKernel&, const std::vector<std::string>& varying, Diagnostics&);
     /// Makes the meshes that rays meet.
     void diceShapes(Diagnostics&);
     /// Says by light and binding what is to be known of points, when all kernels are bound.
     void setPointNeeds();
     void displaceGrid(const SurfaceBinding&, const geometry::Shape&, geometry::DiceGrid&, Diagnostics&) const;
+    BoundKernel lightKernel(const ShaderInstance&, Diagnostics&);
+    void bindLightOutputs(BoundLight&, int block);
     /// Fills lights_; visibility: kinds of rays that can meet a shape.
     void bindLights(Diagnostics&, const std::function<uint32_t(const geometry::Shape&)>& visibility);
     /// The lights of a list and the further blocks of their shaders.
@@ -80,7 +84,8 @@ public:
     /// How bright the lights are; which area lights mean an intensity. After everything else is built.
     void measureLights(Evaluator&, Diagnostics&);
     /// What the shape takes from shadow rays. `mode`: "shader", "primitive", "opaque" or "Os"; "": what the attributes say.
-    Opacity opacityOf(const SurfaceBinding&, const geometry::Shape&, std::string mode, const std::vector<std::string>& varying, Evaluator&, Diagnostics&);
+    Opacity opacityOf(const SurfaceBinding&, const geometry::Shape&, std::string mode, const std::vector<std::string>& varying,
+                      Evaluator&, Diagnostics&);
     /// Fills choosers_, and lightGroups_ where there are many lights; after measureLights().
     void makeChoosers(Diagnostics&);
     void groupLights(Diagnostics&);
@@ -116,6 +121,7 @@ public:
     std::unique_ptr<accel::Accel> accel_;
     Matrix worldToCamera_, cameraToWorld_;
     Matrix cameraToScreen_, screenToNdc_, ndcToRaster_;
+    std::vector<rsl::OutputName> wanted_;      ///< Settings::outputs
     std::vector<int> outputWidths_;
     std::vector<std::string> missingOutputs_;
     /// All shaders that could give an output.
@@ -130,7 +136,8 @@ public:
     BoundImager imager_;                       ///< by runImager(), under the lock
     bool built_ = false;                       ///< threads read the world now
     std::vector<std::string> lightMessages_;   ///< parameters of surfaces that lights and atmospheres ask for, sorted
-    std::set<std::string> lightDisplacements_; ///< outputs of displacement shaders that lights ask for; "": of names made when they run
+    std::set<std::string>
+        lightDisplacements_; ///< outputs of displacement shaders that lights ask for; "": of names made when they run
     bool lightsAsk_ = false;                   ///< some light asks about the surface that it lights (BoundLight::asksSurface)
     bool lightsAsk() const { return lightsAsk_; }
     int maxDepth_ = 32;
@@ -141,8 +148,8 @@ public:
     bool lightChannels_ = false;               ///< lights give AOVs by outputchannel()
     bool footprints_ = false;                  ///< some kernel reads du or dv
     bool allOpaque_ = true;                    ///< no opacity below 1: shadow rays need no shading
-    /// Where that is not so, by shape, what rays without a "hitmode" may be asked to meet alone: shapes that block all light, and the
-    /// others; and a box about those.
+    /// Where that is not so, by shape, what rays without a "hitmode" may be asked to meet alone: shapes that block all light, and
+    /// the others; and a box about those.
     struct ByOpacity {
         std::vector<uint8_t> opaque, clear;
         geometry::Bounds clearBounds;
@@ -161,13 +168,15 @@ public:
     std::vector<ChooserOfList> choosers_;
     std::unordered_map<const geometry::Shape*, int> hazyEmitters_; ///< emitters in an atmosphere -> their binding
     float clipNear_ = 0, clipFar_ = 1;         ///< of the request Clipping, for depth()
-    std::vector<std::pair<Vec3d, Vec3d>> clippingPlanes_; ///< camera space point, normal; camera rays see nothing on the normal's side
+    std::vector<std::pair<Vec3d, Vec3d>>
+        clippingPlanes_; ///< camera space point, normal; camera rays see nothing on the normal's side
 };
 
 // Two threads that come first both open the map: the same one.
 template <class Place> texture::Handle TextureSite::map(const WorldImpl& world, Place&& place) const {
     if (!opened_.load(std::memory_order_acquire)) {
-        if (!name.empty()) map_.store(world.textures_->open(name, world.settings_.texturePaths, place()), std::memory_order_relaxed);
+        if (!name.empty())
+            map_.store(world.textures_->open(name, world.settings_.texturePaths, place()), std::memory_order_relaxed);
         opened_.store(true, std::memory_order_release);
     }
     return map_.load(std::memory_order_relaxed);

@@ -23,16 +23,39 @@ Information matrixOf(const Matrix& m) {
 
 /// What attributes are that no request has set (ri.md 15.2).
 std::optional<Information> unset(const std::string& name, bool path) {
-    static const std::map<std::string, float> numbers = {
-        {"GeometricApproximation:motionfactor", 1.f}, {"displacementbound:sphere", 0.f}, {"trace:bias", -1.f}, {"trace:displacements", 0.f},
-        {"trace:samplemotion", 0.f}, {"sides:doubleshaded", 0.f}, {"visibility:camera", 1.f}, {"visibility:trace", 0.f},
-        {"visibility:transmission", 0.f}, {"visibility:photon", 0.f}, {"photon:estimator", 100.f}, {"dice:hair", 0.f}, {"dice:rasterorient", 1.f},
-        {"cull:backfacing", 1.f}, {"cull:hidden", 1.f}, {"derivatives:smooth", 1.f}, {"derivatives:centered", 1.f}, {"subsurface:scale", 1.f},
-        {"subsurface:refractionindex", 1.3f}, {"subsurface:shadingrate", 1.f}, {"light:samples", 1.f}, {"light:emitphotons", 0.f},
-        {"irradiance:shadingrate", 1.f}, {"irradiance:nsamples", 64.f}, {"hider:composite", 1.f}};
-    static const std::map<std::string, std::string> texts = {
-        {"displacementbound:coordinatesystem", "current"}, {"grouping:membership", ""}, {"identifier:name", ""}, {"photon:shadingmodel", "matte"},
-        {"photon:causticmap", ""}, {"photon:globalmap", ""}, {"subsurface:groupname", ""}, {"light:samplingstrategy", "illuminance"}};
+    static const std::map<std::string, float> numbers = {{"GeometricApproximation:motionfactor", 1.f},
+                                                         {"displacementbound:sphere", 0.f},
+                                                         {"trace:bias", -1.f},
+                                                         {"trace:displacements", 0.f},
+                                                         {"trace:samplemotion", 0.f},
+                                                         {"sides:doubleshaded", 0.f},
+                                                         {"visibility:camera", 1.f},
+                                                         {"visibility:trace", 0.f},
+                                                         {"visibility:transmission", 0.f},
+                                                         {"visibility:photon", 0.f},
+                                                         {"photon:estimator", 100.f},
+                                                         {"dice:hair", 0.f},
+                                                         {"dice:rasterorient", 1.f},
+                                                         {"cull:backfacing", 1.f},
+                                                         {"cull:hidden", 1.f},
+                                                         {"derivatives:smooth", 1.f},
+                                                         {"derivatives:centered", 1.f},
+                                                         {"subsurface:scale", 1.f},
+                                                         {"subsurface:refractionindex", 1.3f},
+                                                         {"subsurface:shadingrate", 1.f},
+                                                         {"light:samples", 1.f},
+                                                         {"light:emitphotons", 0.f},
+                                                         {"irradiance:shadingrate", 1.f},
+                                                         {"irradiance:nsamples", 64.f},
+                                                         {"hider:composite", 1.f}};
+    static const std::map<std::string, std::string> texts = {{"displacementbound:coordinatesystem", "current"},
+                                                             {"grouping:membership", ""},
+                                                             {"identifier:name", ""},
+                                                             {"photon:shadingmodel", "matte"},
+                                                             {"photon:causticmap", ""},
+                                                             {"photon:globalmap", ""},
+                                                             {"subsurface:groupname", ""},
+                                                             {"light:samplingstrategy", "illuminance"}};
     if (name == "visibility:diffuse" || name == "visibility:specular") return number(path ? 1.f : 0.f);
     if (name == "trace:maxdiffusedepth") return number(path ? 32.f : 1.f);
     if (name == "trace:maxspeculardepth") return number(path ? 32.f : 2.f);
@@ -43,7 +66,7 @@ std::optional<Information> unset(const std::string& name, bool path) {
 
 /// What the shaders say about displacement: sizes add up, the displacement shader names the space (seed).
 std::optional<Information> shaderBound(const SurfaceBinding& b, bool space) {
-    const std::string name = space ? "__displacementbound_coordinatesystem" : "__displacementbound_sphere";
+    const std::string name = space ? rsl::kBoundSpace : rsl::kBoundSize;
     float sum = 0;
     bool found = false;
     for (const InstanceRef& i : {b.displacement, b.surface}) {
@@ -67,8 +90,8 @@ std::optional<Information> coordinateSystem(const WorldImpl& w, const std::strin
 
 } // namespace
 
-std::optional<Information> attributeOf(const WorldImpl& w, const scene::Attributes& a, const std::string& key, const shading::ShadePoint* p,
-                                       const SurfaceBinding* b) {
+std::optional<Information> attributeOf(const WorldImpl& w, const scene::Attributes& a, const std::string& key,
+                                       const shading::ShadePoint* p, const SurfaceBinding* b) {
     static const std::string kCoordinate = "Ri:CoordinateSystem:", kOfLight = "attribute:light:";
     const std::string name = key.rfind(kOfLight, 0) == 0 ? key.substr(std::string("attribute:").size()) : key;
     if (name == "Ri:ShadingRate" || name == "ShadingRate") return number(a.shadingRate);
@@ -108,7 +131,8 @@ bool ofPoint(const std::string& name) {
 std::optional<Information> optionOf(const WorldImpl& w, const std::string& name) {
     const scene::Options& o = w.frame().options;
     std::vector<float> v;
-    const float aspect = o.frameAspect.value_or(o.xres > 0 && o.yres > 0 && o.pixelAspect != 0 ? float(o.xres) * std::fabs(o.pixelAspect) / float(o.yres) : 1.f);
+    const float aspect = o.frameAspect.value_or(
+        o.xres > 0 && o.yres > 0 && o.pixelAspect != 0 ? float(o.xres) * std::fabs(o.pixelAspect) / float(o.yres) : 1.f);
     if (name == "Ri:Frame" || name == "Frame") v = {float(o.frameNumber)};
     else if (name == "Ri:Format" || name == "Format") v = {float(o.xres), float(o.yres), o.pixelAspect};
     else if (name == "Ri:PixelSamples" || name == "PixelSamples") v = {o.pixelSamplesX, o.pixelSamplesY};
@@ -117,9 +141,14 @@ std::optional<Information> optionOf(const WorldImpl& w, const std::string& name)
     else if (name == "Ri:CropWindow" || name == "CropWindow") v.assign(o.crop, o.crop + 4);
     else if (name == "Ri:FrameAspectRatio" || name == "FrameAspectRatio") v = {aspect};
     else if ((name == "Ri:PixelVariance" || name == "PixelVariance") && o.pixelVariance >= 0) v = {o.pixelVariance};
-    else if (name == "Ri:ScreenWindow" || name == "ScreenWindow") v = o.screenWindow.value_or(aspect >= 1 ? std::vector<float>{-aspect, aspect, -1, 1} : std::vector<float>{-1, 1, -1 / aspect, 1 / aspect});
+    else if (name == "Ri:ScreenWindow" || name == "ScreenWindow")
+        v = o.screenWindow.value_or(aspect >= 1 ? std::vector<float>{-aspect, aspect, -1, 1}
+                                                : std::vector<float>{-1, 1, -1 / aspect, 1 / aspect});
     else if (name == "Ri:DepthOfField" || name == "DepthOfField") v = {o.fstop, o.focalLength, o.focalDistance};
-    else if (name == "Ri:Hider" || name == "Hider") return words(w.settings().hider == Hider::Path ? "path" : w.settings().hider == Hider::Raytrace ? "raytrace" : "hidden"); // the one that runs
+    else if (name == "Ri:Hider" || name == "Hider")
+        return words(w.settings().hider == Hider::Path       ? "path"
+                     : w.settings().hider == Hider::Raytrace ? "raytrace"
+                                                             : "hidden"); // the one that runs
     else if (name == "Ri:Display" || name == "Display") return words(o.displays.empty() ? "ri.pic" : o.displays[0].name);
     else if (name == "trace:maxdepth") v = {float(w.maxDepth_)};
     else if (const auto i = o.values.find(name); i != o.values.end()) return given(&i->second);
@@ -146,7 +175,8 @@ std::optional<Information> rayInfoOf(const std::string& name, const shading::Pat
     return std::nullopt;
 }
 
-Matrix spaceAt(const WorldImpl& w, const std::string& from, const std::string& to, const shading::ShadePoint& p, const SurfaceBinding* b) {
+Matrix spaceAt(const WorldImpl& w, const std::string& from, const std::string& to, const shading::ShadePoint& p,
+               const SurfaceBinding* b) {
     const auto own = [&](const std::string& space, Matrix& toCurrent) {
         if (space == "object" && p.shape) return toCurrent = p.shape->toCameraAt(p.shutter), true;
         if (space == "shader" && b && b->surface) return toCurrent = b->surface->toCurrentAt(p.shutter), true;

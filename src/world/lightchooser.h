@@ -1,5 +1,5 @@
-// Choosing among many lights: about limits::kLightsSampled of a list get a sample at a vertex, in time that grows with the logarithm
-// of their number.
+// Choosing among many lights: about limits::kLightsSampled of a list get a sample at a vertex, in time that grows with the
+// logarithm of their number.
 #pragma once
 #include "base/vec.h"
 #include <cstdint>
@@ -18,14 +18,15 @@ struct LightBound {
     bool everywhere = false; ///< its light does not fall off
 };
 
-/// A tree over the lights of one list. The probability of a light is about `wanted` times its share of power over squared distance;
-/// a part of it, kBlind, is the same for all lights, so that one whose power was not seen (a spot between the probes) is found too.
+/// A tree over the lights of one list. The probability of a light is about `wanted` times its share of power over squared
+/// distance; a part of it, kBlind, is the same for all lights, so that one whose power was not seen (a spot between the probes)
+/// is found too.
 ///
-/// A point far from a node sees it as one light; near ones are opened first (the cut), and their shares are of all nodes of the cut.
-/// Below the cut a node's probability is split between its two children by the same measure. One random number chooses: a comb with
-/// teeth one apart over the running sum of the probabilities of the leaves (systematic sampling), so that a light is in the choice
-/// with exactly its probability, which divides what it gives. After Conty Estevez and Kulla, Importance Sampling of Many Lights with
-/// Adaptive Tree Splitting (2018); the comb makes the number of lights the same at all points.
+/// A point far from a node sees it as one light; near ones are opened first (the cut), and their shares are of all nodes of the
+/// cut. Below the cut a node's probability is split between its two children by the same measure. One random number chooses: a
+/// comb with teeth one apart over the running sum of the probabilities of the leaves (systematic sampling), so that a light is in
+/// the choice with exactly its probability, which divides what it gives. After Conty Estevez and Kulla, Importance Sampling of
+/// Many Lights with Adaptive Tree Splitting (2018); the comb makes the number of lights the same at all points.
 class LightChooser {
 public:
     /// A tenth of the choice does not look at power.

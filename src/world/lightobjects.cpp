@@ -15,7 +15,8 @@ std::set<std::string> calledOfLights(const rsl::Program& program) {
     std::set<std::string> names;
     bool lights = false;
     const auto look = [&](const rsl::Expr& e) {
-        lights |= e.kind == rsl::ExprKind::ShadeopCall && e.shadeop && (e.shadeop->name == "getlights" || e.shadeop->name == "getlight");
+        lights |= e.kind == rsl::ExprKind::ShadeopCall && e.shadeop &&
+                  (e.shadeop->name == "getlights" || e.shadeop->name == "getlight");
         lights |= e.kind == rsl::ExprKind::String && e.handle && e.text == "(light)";
         const bool member = e.kind == rsl::ExprKind::Member, method = e.kind == rsl::ExprKind::Method;
         const bool plain = e.text == "light" && (e.args.size() == 3 || (e.args.size() == 4 && e.args[3]->type == kColor));
@@ -36,7 +37,8 @@ bool answers(const rsl::CompiledShader& light, const std::set<std::string>& name
         if (!names.count(name)) return false;
         if (name != "light") return true;
         return std::any_of(s.nested.begin(), s.nested.end(), [](const auto& f) {
-            return f->name == "light" && (f->parameters.size() > 3 || (f->parameters.size() == 3 && f->parameters[2]->type != kColor));
+            return f->name == "light" &&
+                   (f->parameters.size() > 3 || (f->parameters.size() == 3 && f->parameters[2]->type != kColor));
         });
     });
 }

@@ -2,22 +2,17 @@
 #pragma once
 #include "base/matrix.h"
 #include "rsl/compiler.h"
-#include "rsl/handlename.h"
 #include <set>
 #include <string>
 
 namespace alpenglow::transport {
 
-using rsl::kLightHandle;
-
-/// The handle that getlights() gives of a light: its number among those of the world, and what its declaration called it.
-inline std::string handleOfLight(int light, const std::string& declared) { return kLightHandle + std::to_string(light) + ":" + declared; }
-
-/// Names of methods and members that a shader asks of handles which getlights() or getlight() gave, as far as its text shows. light(L, Cl)
-/// and light(L, Cl, Ol) are not among them: the renderer answers those.
+/// Names of methods and members that a shader asks of handles which getlights() or getlight() gave, as far as its text shows.
+/// light(L, Cl) and light(L, Cl, Ol) are not among them: the renderer answers those.
 std::set<std::string> calledOfLights(const rsl::Program&);
 
-/// Whether the light is a class with a public method or member of one of these names; a method light() counts with more parameters only.
+/// Whether the light is a class with a public method or member of one of these names; a method light() counts with more
+/// parameters only.
 bool answers(const rsl::CompiledShader& light, const std::set<std::string>& names);
 
 /// A name for the space that this matrix takes to "current".

@@ -16,11 +16,15 @@ bool sharesCalls(const BoundLight& l, bool media) {
 } // namespace
 
 void WorldImpl::groupLights(Diagnostics& d) {
-    std::map<std::tuple<const rsl::CompiledKernel*, int, LightKind>, std::vector<int>> like; // one block of one program
+    std::map<std::tuple<const rsl::CompiledKernel*, int, LightKind>, size_t> known; // one block of one program
+    std::vector<std::vector<int>> like; // in the order of their first lights: that of pointers differs from run to run
     for (size_t i = 0; i < lights_.size(); ++i)
-        if (const BoundLight& l = lights_[i]; sharesCalls(l, !media_.empty()))
-            like[{l.kernel.kernel.get(), l.outCl, l.kind}].push_back(int(i));
-    for (const auto& [key, lights] : like) {
+        if (const BoundLight& l = lights_[i]; sharesCalls(l, !media_.empty())) {
+            const auto [at, fresh] = known.try_emplace({l.kernel.kernel.get(), l.outCl, l.kind}, like.size());
+            if (fresh) like.emplace_back();
+            like[at->second].push_back(int(i));
+        }
+    for (const std::vector<int>& lights : like) {
         if (lights.size() < 2) continue;
         const BoundLight& first = lights_[size_t(lights[0])];
         std::vector<std::string> outputs;

@@ -1,5 +1,6 @@
-// Interior and Exterior (RISpec 3.2): which volume a ray is in. A ray that goes on behind a surface, to the side that its N points away
-// from, is in the Interior of the primitive; on the other side in its Exterior. A surface with neither bounds nothing.
+// Interior and Exterior (RISpec 3.2): which volume a ray is in. A ray that goes on behind a surface, to the side that its N
+// points away from, is in the Interior of the primitive; on the other side in its Exterior. A surface with neither bounds
+// nothing.
 #include "world/impl.h"
 #include <algorithm>
 
@@ -25,8 +26,8 @@ Media SurfaceBinding::beyond(const Media& from, const Vec3& n, const Vec3& in, c
 
 void WorldImpl::findEye() {
     if (media_.empty()) return;
-    // The eye is inside of what rays to both sides leave without having entered it. Two opposite ways tell a closed surface from one
-    // that is seen from behind; no axis, so that it is rarely along an edge.
+    // The eye is inside of what rays to both sides leave without having entered it. Two opposite ways tell a closed surface from
+    // one that is seen from behind; no axis, so that it is rarely along an edge.
     std::vector<int> left[2]; // bindings, the innermost first
     for (int side = 0; side < 2; ++side) {
         accel::Ray ray;
@@ -41,7 +42,8 @@ void WorldImpl::findEye() {
             const int medium = bindings_[size_t(binding)].inside;
             if (medium < 0) continue;
             if (dot(accel_->point(h).n, ray.dir) < 0) entered.push_back(medium);
-            else if (const auto i = std::find(entered.rbegin(), entered.rend(), medium); i != entered.rend()) entered.erase(std::next(i).base());
+            else if (const auto i = std::find(entered.rbegin(), entered.rend(), medium); i != entered.rend())
+                entered.erase(std::next(i).base());
             else left[side].push_back(medium);
         }
     }

@@ -20,11 +20,13 @@ void WorldImpl::goOn(accel::Ray& ray, const accel::Hit& h) const {
     ray.excludePrim = h.prim;
 }
 
-Opacity WorldImpl::opacityOf(const SurfaceBinding& b, const geometry::Shape& shape, std::string mode, const std::vector<std::string>& varying, Evaluator& evaluator, Diagnostics& d) {
+Opacity WorldImpl::opacityOf(const SurfaceBinding& b, const geometry::Shape& shape, std::string mode,
+                             const std::vector<std::string>& varying, Evaluator& evaluator, Diagnostics& d) {
     const scene::Attributes& a = shape.attributes();
     const bool asked = !mode.empty();
     if (!asked) mode = "shader";
-    for (const char* name : {"render:casts_shadows", "shade:transmissionhitmode", "visibility:transmission"}) // BMRT's, PRMan's, the older ones
+    for (const char* name :
+         {"render:casts_shadows", "shade:transmissionhitmode", "visibility:transmission"}) // BMRT's, PRMan's, the older ones
         if (const scene::Param* p = a.value(name); p && !asked && !p->strings.empty()) mode = p->strings[0];
     InstanceRef surface = b.surface;
     std::string what = b.surfaceS.kernel->facts().opacity;
@@ -33,7 +35,7 @@ Opacity WorldImpl::opacityOf(const SurfaceBinding& b, const geometry::Shape& sha
     if (text.object && std::any_of(text.nested.begin(), text.nested.end(), [](const auto& f) { return f->name == "opacity"; })) {
         // What the method opacity() gives stops rays, whatever the methods behind it make of Oi.
         auto alone = std::make_shared<ShaderInstance>(*surface);
-        alone->parameters.strings["opacity()"] = "1";
+        alone->parameters.strings[rsl::kOpacityAlone] = "1";
         surface = alone;
         k = kernel(*surface, {"Oi"}, varying, false, false, d);
         if (k) what = k.kernel->facts().opacity;
@@ -49,13 +51,20 @@ Opacity WorldImpl::opacityOf(const SurfaceBinding& b, const geometry::Shape& sha
     if (!k) k = kernel(*surface, {"Oi"}, varying, false, false, d);
     if (!k || k.plan->Oi < 0) return result;
     if (k.kernel->facts().suspends) {
-        d.reportOnce("opacity:" + b.surface->name, {Severity::Warning, Rie::NoError, b.surface->place,
-                     "the opacity of shader \"" + b.surface->name + "\" depends on traced rays; its shadow has the primitive's Opacity", {}, {}});
+        d.reportOnce("opacity:" + b.surface->name, {Severity::Warning,
+                                                    Rie::NoError,
+                                                    b.surface->place,
+                                                    "the opacity of shader \"" + b.surface->name +
+                                                        "\" depends on traced rays; its shadow has the primitive's Opacity",
+                                                    {},
+                                                    {}});
         return result;
     }
     bool constant = !varies && k.kernel->sites().empty();
     for (const auto& in : k.kernel->inputs()) {
-        bool parameter = in.name.rfind("param:", 0) == 0 && std::find(varying.begin(), varying.end(), in.name.substr(6)) == varying.end();
+        const rsl::InputName name = rsl::InputName::parse(in.name);
+        const bool parameter =
+            name.kind == rsl::InputName::Kind::Parameter && std::find(varying.begin(), varying.end(), name.name) == varying.end();
         constant &= parameter || in.name == "Os" || (in.name == "Cs" && shape.findPrimvar("Cs") < 0);
     }
     if (!constant) {

@@ -6,21 +6,17 @@ namespace alpenglow::transport {
 
 namespace {
 
-/// Of "list[3]": "list".
-std::string withoutIndex(const std::string& name) { return name.substr(0, name.find('[')); }
-
-/// Channels that get their names when the shader runs have keys that begin so (front/calls_bind.cpp).
-constexpr char kAnyChannel = '?';
-
 /// Of a channel that outputchannel() makes; 0 when no call does.
-int channelWidth(const ShaderInstance& shader, const std::string& name) {
-    const std::string base = withoutIndex(name);
-    const bool element = base != name;
+int channelWidth(const ShaderInstance& shader, const rsl::OutputName& name) {
+    const std::string& base = name.name;
+    const bool element = name.element >= 0;
     int most = 0;
     const auto look = [&](const rsl::Program& program) {
-        const auto width = [&](const rsl::Type& type) { return rsl::componentCount(type.base) * (element ? 1 : std::max(1, type.array)); };
+        const auto width = [&](const rsl::Type& type) {
+            return rsl::componentCount(type.base) * (element ? 1 : std::max(1, type.array));
+        };
         for (const auto& [channel, type] : program.channels)
-            if (channel[0] == kAnyChannel) most = std::max(most, width(type));
+            if (channel[0] == rsl::kAnyChannel) most = std::max(most, width(type));
         if (const auto exact = program.channels.find(base); exact != program.channels.end()) most = width(exact->second);
     };
     for (const rsl::CoShader& co : shader.coShaders) look(*co.program);
@@ -29,13 +25,13 @@ int channelWidth(const ShaderInstance& shader, const std::string& name) {
 }
 
 /// Numbers of an output of the shader; 0 when it has none of that name.
-int widthIn(const ShaderInstance& shader, const std::string& name) {
-    const std::string base = withoutIndex(name);
-    const bool element = base != name;
+int widthIn(const ShaderInstance& shader, const rsl::OutputName& name) {
+    const std::string& base = name.name;
+    const bool element = name.element >= 0;
     for (const rsl::ParameterInfo& p : shader.program->parameters()) {
         if (p.name != base || !p.output || p.type.base == rsl::Base::String) continue;
         int length = std::max(1, p.type.array);
-        const auto given = shader.parameters.strings.find(p.name + "[]");
+        const auto given = shader.parameters.strings.find(rsl::lengthParameter(p.name));
         if (p.open && given != shader.parameters.strings.end()) length = std::max(1, std::atoi(given->second.c_str()));
         return rsl::componentCount(p.type.base) * (element || !p.type.array ? 1 : length);
     }
@@ -44,12 +40,12 @@ int widthIn(const ShaderInstance& shader, const std::string& name) {
 
 } // namespace
 
-bool gives(const ShaderInstance& shader, const std::string& output) { return widthIn(shader, output) > 0; }
+bool gives(const ShaderInstance& shader, const rsl::OutputName& output) { return widthIn(shader, output) > 0; }
 
-bool givesChannel(const ShaderInstance& shader, const std::string& output) { return channelWidth(shader, output) > 0; }
+bool givesChannel(const ShaderInstance& shader, const rsl::OutputName& output) { return channelWidth(shader, output) > 0; }
 
-bool givesPerhaps(const ShaderInstance& shader, const std::string& output) {
-    const std::string base = withoutIndex(output);
+bool givesPerhaps(const ShaderInstance& shader, const rsl::OutputName& output) {
+    const std::string& base = output.name;
     for (const rsl::ParameterInfo& p : shader.program->parameters())
         if (p.name == base && p.output) return false;
     const auto says = [&](const rsl::Program& program) { return program.channels.count(base) > 0; };
@@ -58,26 +54,29 @@ bool givesPerhaps(const ShaderInstance& shader, const std::string& output) {
     return !says(shader.program->program()) && channelWidth(shader, output) > 0;
 }
 
-void addOutput(const ShaderInstance& shader, const std::string& name, std::vector<std::string>& outputs) {
-    const std::string base = withoutIndex(name);
+void addOutput(const ShaderInstance& shader, const rsl::OutputName& name, std::vector<std::string>& outputs) {
+    const std::string& base = name.name;
     const auto declares = [&](const rsl::ParameterInfo& p) { return p.output && p.name == base; };
     const auto& parameters = shader.program->parameters();
     const rsl::ShaderKind kind = shader.program->kind();
-    const bool oneOfMany = kind == rsl::ShaderKind::Light || kind == rsl::ShaderKind::Volume; // what others gave stays where it does not give
+    const bool oneOfMany =
+        kind == rsl::ShaderKind::Light || kind == rsl::ShaderKind::Volume; // what others gave stays where it does not give
     const bool channel = std::none_of(parameters.begin(), parameters.end(), declares) && channelWidth(shader, name) > 0;
-    if (givesPerhaps(shader, name) || (oneOfMany && channel)) outputs.push_back(kGiven + withoutIndex(name));
-    outputs.push_back(name);
+    if (givesPerhaps(shader, name) || (oneOfMany && channel)) outputs.push_back(rsl::OutputName::given(base).text());
+    outputs.push_back(name.text());
 }
 
-bool givenAt(const shading::Batch& b, const std::string& name, int point) {
-    const int given = b.output(kGiven + withoutIndex(name));
+bool givenAt(const shading::Batch& b, const rsl::OutputName& name, int point) {
+    const int given = b.output(rsl::OutputName::given(name.name));
     return given < 0 || b.value(given, 0, point) != 0;
 }
 
-std::vector<int> outputsNamed(const shading::Batch& b, const std::string& name) {
+std::vector<int> outputsNamed(const shading::Batch& b, const rsl::OutputName& name) {
     if (const int whole = b.output(name); whole >= 0) return {whole};
     std::vector<int> elements;
-    for (int o; (o = b.output(name + "[" + std::to_string(elements.size()) + "]")) >= 0;) elements.push_back(o);
+    if (name.element >= 0) return elements;
+    rsl::OutputName element = name;
+    for (int o; element.element = int(elements.size()), (o = b.output(element)) >= 0;) elements.push_back(o);
     return elements;
 }
 
@@ -101,7 +100,7 @@ std::vector<std::string> WorldImpl::knownOutputs() const {
     names.insert(kTriples.begin(), kTriples.end());
     const auto channels = [&](const rsl::Program& program) {
         for (const auto& [channel, type] : program.channels)
-            if (channel[0] != kAnyChannel) names.insert(channel);
+            if (channel[0] != rsl::kAnyChannel) names.insert(channel);
     };
     for (const ShaderInstance* i : givers()) {
         for (const rsl::ParameterInfo& p : i->program->parameters())
@@ -115,9 +114,10 @@ std::vector<std::string> WorldImpl::knownOutputs() const {
 void WorldImpl::measureOutputs() {
     outputWidths_.clear();
     const std::set<const ShaderInstance*> shaders = givers();
-    for (size_t k = 0; k < settings_.outputs.size(); ++k) {
-        const std::string& name = settings_.outputs[k];
-        int width = kNumbers.count(name) ? 1 : kTriples.count(name) ? 3 : 0;
+    for (size_t k = 0; k < wanted_.size(); ++k) {
+        const rsl::OutputName& name = wanted_[k];
+        const std::string& text = settings_.outputs[k];
+        int width = kNumbers.count(text) ? 1 : kTriples.count(text) ? 3 : 0;
         if (width == 0)
             for (const bool perhaps : {false, true}) { // who may give it at some points counts where nobody gives it for certain
                 int found = 0;
@@ -125,8 +125,9 @@ void WorldImpl::measureOutputs() {
                     if (givesPerhaps(*i, name) == perhaps) found = std::max(found, widthIn(*i, name));
                 if (width == 0) width = found;
             }
-        if (width == 0 && !shapes_.empty()) missingOutputs_.push_back(name);
-        if (width == 0 && k < settings_.outputWidths.size()) width = settings_.outputWidths[k]; // nobody gives it: zeros, as the display says
+        if (width == 0 && !shapes_.empty()) missingOutputs_.push_back(text);
+        if (width == 0 && k < settings_.outputWidths.size())
+            width = settings_.outputWidths[k]; // nobody gives it: zeros, as the display says
         outputWidths_.push_back(width > 0 ? width : 3);
     }
     for (LightOutputPlace& p : lightOutputs_) {
@@ -139,8 +140,8 @@ void WorldImpl::measureOutputs() {
             if (v.aov < 0) continue;
             int first = 0;
             for (int k = 0; k < v.aov; ++k) first += outputWidths_[size_t(k)];
-            const std::string& output = settings_.outputs[size_t(v.aov)];
-            if (v.name.size() > output.size()) first += v.components * std::atoi(v.name.c_str() + output.size() + 1); // "list[2]" of "list"
+            if (v.name.element >= 0 && wanted_[size_t(v.aov)].element < 0)
+                first += v.components * v.name.element; // "list[2]" of "list"
             v.aov = first;
         }
 }

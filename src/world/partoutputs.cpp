@@ -26,13 +26,15 @@ std::vector<int> sameCalls(const BoundKernel& of, const BoundKernel& in) {
 void SurfaceBinder::partLightOutputs(SurfaceBinding& b, Names& outputs, const Names& varying) {
     b.lightOutputs.clear();
     b.aside.clear();
-    const std::vector<std::string>& wanted = world_.settings_.outputs;
-    const auto asked = [&](const std::string& name) { return std::find(wanted.begin(), wanted.end(), name) != wanted.end(); };
+    const std::vector<rsl::OutputName>& wanted = world_.wanted_;
+    const auto asked = [&](const std::string& name) {
+        return std::find(wanted.begin(), wanted.end(), rsl::OutputName::parse(name)) != wanted.end();
+    };
     if (std::none_of(outputs.begin() + 2, outputs.end(), asked)) return; // Ci and Oi are the first
     const auto slots = world_.lightOfOutputs(*b.surface, outputs, varying, path_);
     Names plain = outputs, beside{};
     for (const std::string& name : outputs)
-        if (name.rfind("param:", 0) == 0) beside.push_back(name); // what lights ask for
+        if (rsl::OutputName::parse(name).parameter) beside.push_back(name); // what lights ask for
     std::vector<char> aside(wanted.size(), 0);
     for (size_t k = 0; k < wanted.size(); ++k) {
         bool light = false, good = true;
@@ -40,20 +42,23 @@ void SurfaceBinder::partLightOutputs(SurfaceBinding& b, Names& outputs, const Na
         std::vector<LightOutput> found;
         std::vector<LightOutputPlace> places;
         for (const auto& [output, lit] : slots) {
-            if (output.name != wanted[k] && output.name.rfind(wanted[k] + "[", 0) != 0) continue;
+            const rsl::OutputName name = rsl::OutputName::parse(output.name);
+            const bool element = wanted[k].element < 0 && name.element >= 0 &&
+                                 name == rsl::OutputName{wanted[k].what, false, false, false, wanted[k].name, name.element, 0};
+            if (name != wanted[k] && !element) continue;
             const int size = rsl::ir::components(output.kind);
             light |= lit;
             good &= output.kind == rsl::ir::Kind::Float || output.kind == rsl::ir::Kind::Triple;
             LightOutput& o = found.emplace_back();
-            o.slot = output.name;
+            o.slot = name;
             o.outputs = beside;
             o.outputs.insert(o.outputs.begin(), output.name);
-            places.push_back({output.name, int(k), component, size});
+            places.push_back({name, int(k), component, size});
             component += size;
         }
-        if (!light || !good || wanted[k] == "Ci" || wanted[k] == "Oi") continue;
+        if (!light || !good || wanted[k] == rsl::OutputName::of("Ci") || wanted[k] == rsl::OutputName::of("Oi")) continue;
         aside[k] = 1;
-        std::erase(plain, wanted[k]);
+        std::erase(plain, wanted[k].text());
         for (size_t i = 0; i < found.size(); ++i) {
             const auto same = [&](const LightOutputPlace& p) {
                 return p.aov == places[i].aov && p.component == places[i].component && p.size == places[i].size;
@@ -75,18 +80,19 @@ void SurfaceBinder::partLightOutputs(SurfaceBinding& b, Names& outputs, const Na
 
 LightOutput::Kernel SurfaceBinder::lightKernel(const SurfaceBinding& b, const LightOutput& o, const Names& varying, bool mixed) {
     LightOutput::Kernel k;
-    k.bound = world_.kernel(*b.surface, o.outputs, varying, mixed, path_, diagnostics_, o.slot);
+    k.bound = world_.kernel(*b.surface, o.outputs, varying, mixed, path_, diagnostics_, o.slot.text());
     if (!k.bound) return k;
     const BoundKernel& main = mixed ? b.surfaceV : b.surfaceS;
     k.main = sameCalls(main, main);
     k.own = sameCalls(k.bound, main);
     if (const auto& direct = k.bound.kernel->facts().direct; !direct.empty())
         diagnostics_.reportOnce(
-            "direct:" + b.surface->name + ":" + o.slot,
+            "direct:" + b.surface->name + ":" + o.slot.text(),
             {Severity::Warning,
              Rie::NoError,
              b.surface->place,
-             "output \"" + o.slot + "\" of shader \"" + b.surface->name + "\" holds only the direct light of " + direct[0].text(),
+             "output \"" + o.slot.text() + "\" of shader \"" + b.surface->name + "\" holds only the direct light of " +
+                 direct[0].text(),
              "Ci has all of it; sums and products with what does not depend on light give an output its indirect light, too",
              {}});
     return k;

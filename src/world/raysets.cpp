@@ -1,5 +1,5 @@
-// Whom rays may meet: "subset", "excludesubset", "hitsides" and "hitmode" of the shadeops that trace, and the groups of objects that
-// Attribute "grouping" "membership" makes (rsl.md, table 6.10; ri.md 15.2).
+// Whom rays may meet: "subset", "excludesubset", "hitsides" and "hitmode" of the shadeops that trace, and the groups of objects
+// that Attribute "grouping" "membership" makes (rsl.md, table 6.10; ri.md 15.2).
 #include "world/raysets.h"
 #include <bit>
 #include <set>
@@ -92,7 +92,12 @@ std::shared_ptr<const RaySite> raySite(const SiteInfo& i, WorldImpl& world, cons
     auto text = [&](const char* name) { auto f = i.text.find(name); return f == i.text.end() ? std::string() : f->second; };
     auto unknown = [&](const char* name, const std::string& word, const char* known) {
         world.diagnostics_->reportOnce("rays:" + std::string(name) + word + place.file + std::to_string(place.line),
-                                       {Severity::Warning, Rie::BadToken, place, op + "(): \"" + name + "\" \"" + word + "\" is not known; it is taken as not given", known, {}});
+                                       {Severity::Warning,
+                                        Rie::BadToken,
+                                        place,
+                                        op + "(): \"" + name + "\" \"" + word + "\" is not known; it is taken as not given",
+                                        known,
+                                        {}});
     };
     r->bias = row("bias");
     r->maxDistance = row("maxdist");
@@ -112,8 +117,10 @@ std::shared_ptr<const RaySite> raySite(const SiteInfo& i, WorldImpl& world, cons
     r->excludeId = rsl::internString(r->excludeText);
     const bool distance = i.kind == SiteKind::Trace && i.site->resultType.base == rsl::Base::Float; // float trace(): rsl.md 12.1
     const std::string type = !text("type").empty() ? text("type") : text("raytype");
-    if (!type.empty() && type != "specular" && type != "diffuse" && type != "transmission") unknown("type", type, "specular, diffuse, transmission");
-    r->rays = type.empty() ? i.kind == SiteKind::Transmission || distance ? RayType::Transmission : RayType::Specular : rayTypeOf(type);
+    if (!type.empty() && type != "specular" && type != "diffuse" && type != "transmission")
+        unknown("type", type, "specular, diffuse, transmission");
+    r->rays =
+        type.empty() ? i.kind == SiteKind::Transmission || distance ? RayType::Transmission : RayType::Specular : rayTypeOf(type);
     r->set.sides = r->rays == RayType::Transmission ? accel::Sides::Both : accel::Sides::Front;
     if (const std::string word = text("hitsides"); !word.empty()) {
         if (const auto s = sidesOf(word)) r->set.sides = *s;

@@ -10,8 +10,8 @@
 
 namespace alpenglow::transport {
 
-/// Attribute of a primitive that fades between levels of detail: two numbers. Only samples see it whose own number, from 0 to 1, is at
-/// least the first and below the second.
+/// Attribute of a primitive that fades between levels of detail: two numbers. Only samples see it whose own number, from 0 to 1,
+/// is at least the first and below the second.
 inline constexpr const char* kLevelAttribute = "detail:__level";
 
 enum class Hider { Hidden, Raytrace, Path };
@@ -37,7 +37,8 @@ struct Settings {
     std::vector<std::string> pluginPaths; ///< where those are looked for
     std::string dialect;            ///< whose macros the shaders see: rsl::FrontOptions::dialect
     std::string cacheDirectory;     ///< "" = default
-    std::vector<std::string> outputs; ///< AOVs: names of output shader parameters ("list[1]": an element) or predefined variables, in order
+    std::vector<std::string>
+        outputs; ///< AOVs: names of output shader parameters ("list[1]": an element) or predefined variables, in order
     const StopFlag* stop = nullptr; ///< polled while the world is made (dicing, displacement); set: build() gives up. May be null
     std::vector<int> outputWidths; ///< floats of each where a display declares it; 0 or missing: the shaders decide
 };

@@ -50,15 +50,13 @@ void transformParameter(std::vector<float>& v, rsl::Base base, const Matrix& m) 
 
 } // namespace
 
-/// Says of spaces that neither the renderer nor the scene knows where the shader names them. `which`: names of inputs, "space:A>B".
-static void sayUnknownSpaces(const WorldImpl& world, const ShaderInstance& i, const std::vector<std::string>& which, Diagnostics& d) {
+/// Says of spaces that neither the renderer nor the scene knows where the shader names them.
+static void sayUnknownSpaces(const WorldImpl& world, const ShaderInstance& i, std::span<const rsl::InputName> which,
+                             Diagnostics& d) {
     std::set<std::string> unknown;
-    for (const std::string& input : which) {
-        const size_t colon = input.find(':'), arrow = input.find('>');
-        if (colon == std::string::npos || arrow == std::string::npos) continue;
-        for (const std::string& name : {input.substr(colon + 1, arrow - colon - 1), input.substr(arrow + 1)})
+    for (const rsl::InputName& input : which)
+        for (const std::string& name : {input.from, input.to})
             if (!world.knowsSpace(name)) unknown.insert(name);
-    }
     for (const std::string& name : unknown) {
         const rsl::Program& program = i.program->program();
         std::optional<rsl::Place> at;
@@ -75,16 +73,49 @@ static void sayUnknownSpaces(const WorldImpl& world, const ShaderInstance& i, co
         }
         rsl::front::everyFunction(program, [&](const rsl::Function& f) { body(f.body); });
         SourcePlace place = i.place;
-        if (at && at->file >= 0 && size_t(at->file) < program.files.size()) place = {program.files[size_t(at->file)], at->line, at->column};
-        d.reportOnce("space:" + name, {Severity::Warning, Rie::BadHandle, place, "unknown coordinate system \"" + name + "\"; taken as \"current\"", {}, {}});
+        if (at && at->file >= 0 && size_t(at->file) < program.files.size())
+            place = {program.files[size_t(at->file)], at->line, at->column};
+        d.reportOnce("unknown space " + name, {Severity::Warning,
+                                               Rie::BadHandle,
+                                               place,
+                                               "unknown coordinate system \"" + name + "\"; taken as \"current\"",
+                                               {},
+                                               {}});
     }
 }
 
-/// VTK and its kin give the standard imager "background" its colour as "color", which no shader of ours can name so: it is a word of
-/// the language.
+/// VTK and its kin give the standard imager "background" its colour as "color", which no shader of ours can name so: it is a word
+/// of the language.
 static scene::Param asDeclared(scene::Param given, const rsl::CompiledShader& shader) {
-    if (given.name == "color" && shader.kind() == rsl::ShaderKind::Imager && shader.name() == "background") given.name = "background";
+    if (given.name == "color" && shader.kind() == rsl::ShaderKind::Imager && shader.name() == "background")
+        given.name = "background";
     return given;
+}
+
+/// Values of all parameters: those that the scene gave, else the defaults.
+void WorldImpl::takeValues(ShaderInstance& of, const std::vector<rsl::ParameterValue>& values, Diagnostics& d) {
+    ShaderInstance* i = &of;
+    // Defaults: the shader's own expressions in the instance's spaces, of what was given.
+    auto spaces = [&](const std::string& from, const std::string& to, float out[16]) {
+        const rsl::InputName asked = rsl::InputName::space(from, to);
+        sayUnknownSpaces(*this, *i, {&asked, 1}, d);
+        Matrix m;
+        bool known = true;
+        if (from == to) m = Matrix{};
+        // "object" of the shader call itself; a surface's default that names it is computed again for each primitive.
+        else if ((from == "shader" || from == "object") && to == "current") m = i->toCurrent;
+        else if (from == "current" && (to == "shader" || to == "object")) m = inverse(i->toCurrent);
+        else known = matrix(from, to, m);
+        for (int k = 0; k < 16; ++k) out[k] = float(m.m[k / 4][k % 4]);
+        return known;
+    };
+    for (auto& v : compiler_->parameterValues(i->program, d, spaces, values)) {
+        if (v.type.base == rsl::Base::String && v.type.array != 0) { // elements have names of their own: "maps[1]"
+            for (size_t e = 0; e < v.strings.size(); ++e)
+                i->parameters.strings[v.name + "[" + std::to_string(e) + "]"] = v.strings[e];
+        } else if (v.type.base == rsl::Base::String) i->parameters.strings[v.name] = v.strings.empty() ? "" : v.strings[0];
+        else i->parameters.numbers[v.name] = std::move(v.numbers);
+    }
 }
 
 InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind kind, Diagnostics& d, bool anyKind) {
@@ -101,7 +132,9 @@ InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind k
     facts_.compileSec += seconds() - begin;
     if (!program) return nullptr;
     if (auto same = rsl::ShaderCompiler::variant(program, kind)) program = same; // a class can be several kinds of shader
-    else if (auto other = anyKind ? nullptr : rsl::ShaderCompiler::ofKind(program, kind, std::filesystem::path(call.name).stem().string())) program = other;
+    else if (auto other =
+                 anyKind ? nullptr : rsl::ShaderCompiler::ofKind(program, kind, std::filesystem::path(call.name).stem().string()))
+        program = other;
     if (program->kind() != kind && !anyKind) {
         d.reportOnce("kind:" + call.name + ":" + rsl::toString(kind),
                      {Severity::Error,
@@ -162,7 +195,7 @@ void WorldImpl::setParameters(ShaderInstance& instance, const scene::ShaderCall&
         auto value = fitParameter(given, *p, call.name, call.place, d);
         if (!value) continue;
         if (p->open)
-            i->parameters.strings[given.name + "[]"] = std::to_string(
+            i->parameters.strings[rsl::lengthParameter(given.name)] = std::to_string(
                 std::max(value->strings.size(), value->numbers.size() / size_t(rsl::componentCount(p->type.base))));
         transformParameter(value->numbers, p->type.base, i->toCurrent);
         i->given.insert(given.name);
@@ -170,25 +203,7 @@ void WorldImpl::setParameters(ShaderInstance& instance, const scene::ShaderCall&
         values.push_back(std::move(*value));
     }
 
-    // Defaults: the shader's own expressions in the instance's spaces, of what was given.
-    auto spaces = [&](const std::string& from, const std::string& to, float out[16]) {
-        sayUnknownSpaces(*this, *i, {"space:" + from + ">" + to}, d);
-        Matrix m;
-        bool known = true;
-        if (from == to) m = Matrix{};
-        // "object" of the shader call itself; a surface's default that names it is computed again for each primitive.
-        else if ((from == "shader" || from == "object") && to == "current") m = i->toCurrent;
-        else if (from == "current" && (to == "shader" || to == "object")) m = inverse(i->toCurrent);
-        else known = matrix(from, to, m);
-        for (int k = 0; k < 16; ++k) out[k] = float(m.m[k / 4][k % 4]);
-        return known;
-    };
-    for (auto& v : compiler_->parameterValues(program, d, spaces, values)) {
-        if (v.type.base == rsl::Base::String && v.type.array != 0) { // elements have names of their own: "maps[1]"
-            for (size_t e = 0; e < v.strings.size(); ++e) i->parameters.strings[v.name + "[" + std::to_string(e) + "]"] = v.strings[e];
-        } else if (v.type.base == rsl::Base::String) i->parameters.strings[v.name] = v.strings.empty() ? "" : v.strings[0];
-        else i->parameters.numbers[v.name] = std::move(v.numbers);
-    }
+    takeValues(*i, values, d);
 }
 
 InstanceRef WorldImpl::builtin(const std::string& name, rsl::ShaderKind kind, Diagnostics& d) {
@@ -203,7 +218,7 @@ void WorldImpl::dropMissingHandles(const ShaderInstance& of, std::map<std::strin
     for (const auto& [handle, call] : bound) handles.push_back(handle);
     for (auto& [key, handle] : texts) {
         const auto place = of.handlePlaces.find(key.substr(0, key.find('[')));
-        if (place == of.handlePlaces.end() || key.ends_with("[]") || handle.empty()) continue;
+        if (place == of.handlePlaces.end() || rsl::isLengthParameter(key) || handle.empty()) continue;
         const auto is = [&](const std::string& known) { return known == handle; };
         const auto isLight = [&](const scene::Light& l) { return l.handle == handle; };
         if (std::any_of(handles.begin(), handles.end(), is) || std::any_of(frame_->lights.begin(), frame_->lights.end(), isLight))
@@ -218,15 +233,16 @@ void WorldImpl::dropMissingHandles(const ShaderInstance& of, std::map<std::strin
     }
 }
 
-InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const std::map<std::string, scene::ShaderRef>& coshaders, Diagnostics& d,
-                                     const std::vector<int>& lights) {
+InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const std::map<std::string, scene::ShaderRef>& coshaders,
+                                     Diagnostics& d, const std::vector<int>& lights) {
     if (!shader || !shader->program->program().handles) return shader;
     std::vector<std::pair<std::string, scene::ShaderRef>> called(coshaders.begin(), coshaders.end());
-    if (const std::set<std::string> names = lights.empty() ? std::set<std::string>{} : calledOfLights(shader->program->program()); !names.empty())
+    if (const std::set<std::string> names = lights.empty() ? std::set<std::string>{} : calledOfLights(shader->program->program());
+        !names.empty())
         for (int l : lights) {
             const BoundLight& light = lights_[size_t(l)];
             if (light.source && light.source->shader && light.instance && answers(*light.instance->program, names))
-                called.emplace_back(handleOfLight(l, light.handle), light.source->shader);
+                called.emplace_back(rsl::LightHandle{l, light.handle}.text(), light.source->shader);
         }
     if (called.empty() && shader->handlePlaces.empty()) return shader;
     std::vector<const void*> key{shader.get()};
@@ -253,8 +269,8 @@ InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const std::map<s
     return bound = copy;
 }
 
-rsl::KernelOptions WorldImpl::kernelOptions(const ShaderInstance& i, const std::vector<std::string>& outputs, const std::vector<std::string>& varying,
-                                            bool mixed, bool path) const {
+rsl::KernelOptions WorldImpl::kernelOptions(const ShaderInstance& i, const std::vector<std::string>& outputs,
+                                            const std::vector<std::string>& varying, bool mixed, bool path) const {
     rsl::KernelOptions o;
     o.lanes = settings_.lanes;
     o.mixed = mixed;
@@ -266,7 +282,8 @@ rsl::KernelOptions WorldImpl::kernelOptions(const ShaderInstance& i, const std::
     o.coShaders = i.coShaders;
     o.varyingParameters = varying;
     o.computedParameters = i.program->computedParameters(i.given, varying);
-    if (i.program->kind() == rsl::ShaderKind::Surface || i.program->kind() == rsl::ShaderKind::Volume) o.messages = lightMessages_;
+    if (i.program->kind() == rsl::ShaderKind::Surface || i.program->kind() == rsl::ShaderKind::Volume)
+        o.messages = lightMessages_;
     return o;
 }
 
@@ -275,8 +292,9 @@ std::vector<rsl::ir::OutputLight> WorldImpl::lightOfOutputs(const ShaderInstance
     return rsl::lightOfOutputs(i.program->program(), i.program->shader(), kernelOptions(i, outputs, varying, false, path));
 }
 
-BoundKernel WorldImpl::kernel(const ShaderInstance& i, const std::vector<std::string>& outputs, const std::vector<std::string>& varying, bool mixed, bool path,
-                              Diagnostics& d, const std::string& light) {
+BoundKernel WorldImpl::kernel(const ShaderInstance& i, const std::vector<std::string>& outputs,
+                              const std::vector<std::string>& varying, bool mixed, bool path, Diagnostics& d,
+                              const std::string& light) {
     mixed |= i.moving != nullptr; // points at different times have different matrices and parameters
     rsl::KernelOptions o = kernelOptions(i, outputs, varying, mixed, path);
     o.light = light;
@@ -284,9 +302,10 @@ BoundKernel WorldImpl::kernel(const ShaderInstance& i, const std::vector<std::st
     auto k = compiler_->kernel(i.program, o, d);
     facts_.compileSec += seconds() - begin;
     if (!k) return {};
-    std::vector<std::string> spaces;
+    std::vector<rsl::InputName> spaces;
     for (const auto& in : k->inputs())
-        if (in.name.rfind("space:", 0) == 0) spaces.push_back(in.name);
+        if (rsl::InputName name = rsl::InputName::parse(in.name); name.kind == rsl::InputName::Kind::Space)
+            spaces.push_back(std::move(name));
     if (!spaces.empty()) {
         sayUnknownSpaces(*this, i, spaces, d);
         if (!built_) keepSpaces(spaces);

@@ -3,6 +3,7 @@
 #include "accel/accel.h"
 #include "lobes/lobe.h"
 #include "rsl/compiler.h"
+#include "rsl/front/protocol.h"
 #include "shading/batch.h"
 #include "texture/texture.h"
 #include <atomic>
@@ -27,7 +28,8 @@ inline uint32_t visibilityBit(RayType t) {
 /// What a call that sends rays says of them (rsl.md, table 6.10). Rows of arguments, or -1.
 struct RaySite {
     int bias = -1, maxDistance = -1, maxHit = -1, cone = -1, samples = -1, base = -1;
-    int subset = -1, exclude = -1, sides = -1, mode = -1, label = -1, type = -1; ///< strings that are known only when the shader runs
+    int subset = -1, exclude = -1, sides = -1, mode = -1, label = -1,
+        type = -1; ///< strings that are known only when the shader runs
     std::string subsetText, excludeText;
     int32_t subsetId = 0, excludeId = 0;  ///< the same, interned
     shading::RaySet set;                  ///< what is known beforehand
@@ -67,8 +69,35 @@ private:
 
 /// What a call site of a kernel means to the engine, worked out once per kernel.
 enum class SiteKind : uint8_t {
-    Unknown, Ambient, Diffuse, Specular, Phong, Trace, Transmission, LightVisibility, ///< requests
-    Illuminance, Texture, Environment, Printf, Message, LightSource, Attribute, Option, RendererInfo, RayInfo, RayLevel, TextureInfo, LightSetup, LightHandles, PrimitiveVariable, ShaderName, Text, Other
+    Unknown,
+    Ambient,
+    Diffuse,
+    Specular,
+    Phong,
+    Trace,
+    Transmission,
+    LightVisibility, ///< requests
+    Illuminance,
+    Texture,
+    Environment,
+    Printf,
+    Message,
+    LightSource,
+    Attribute,
+    Option,
+    RendererInfo,
+    RayInfo,
+    RayLevel,
+    TextureInfo,
+    LightSetup,
+    LightHandles,
+    PrimitiveVariable,
+    ShaderName,
+    Depth,
+    Transform,
+    Random,
+    Text,
+    Other
 };
 struct SiteInfo {
     SiteKind kind = SiteKind::Unknown;
@@ -90,12 +119,27 @@ struct SiteInfo {
     std::shared_ptr<const struct TraceSite> trace; ///< Trace: what only some calls use
     std::shared_ptr<const RaySite> rays;       ///< Trace, Transmission
     std::shared_ptr<const TextureSite> map;    ///< Texture, Environment
-    bool setUp = false, refresh = false, outside = false; ///< loops: "__setup", "lightcache" "refresh"; queries: "__outside" of loops
+    bool setUp = false, refresh = false;       ///< loops: they have a setup; "lightcache" "refresh"
+    bool outside = false;                      ///< queries: outside of loops over lights
+    bool once = false;                         ///< printf: in construct()
+    bool uniform = false;                      ///< queries: the variable that takes the answer is uniform
+    bool open = false, array = false;          ///< and it is an array of a length that can change; an array
     int rowCategory = -1;                      ///< LightSetup: of "category", in the setup's arguments
-    uint64_t sentStrings = 0;                  ///< of sentStrings(): its hash, 0 for none
+    /// LightSetup: values for parameters of the lights, rows of its arguments; element: of an array that is sent, else -1.
+    struct Sent { std::string parameter; int element, row, size; };
+    std::vector<Sent> sent;
+    /// The same of strings, and all of them as one key of BoundLight::variants, with its hash: "name\1value\2" of each; "" and 0:
+    /// none.
+    std::vector<std::pair<std::string, std::string>> sentStrings;
+    std::string sentKey;
+    uint64_t sentHash = 0;
+    /// LightSetup: its arguments that lights can see: rows from `first` to `end`, and what tells them apart.
+    struct Shown { int first, end; uint64_t salt; };
+    std::vector<Shown> shown;
+    int rowN = -1;                             ///< LightSetup: of "N"
     int32_t nameId = 0;                        ///< the first string of the call, interned; 0: none, or known only when it runs
-    /// Outputs of the surface that lights ask for: name, row, numbers.
-    struct Output { std::string name; int row, size; };
+    /// Outputs of the surface that lights ask for: row, numbers.
+    struct Output { rsl::OutputName name; int row, size; };
     std::vector<Output> outputs;
     int32_t label = 0;                         ///< of its rays: interned, for rayinfo()
 };
@@ -113,8 +157,5 @@ struct BoundKernel {
     explicit operator bool() const { return kernel != nullptr; }
 };
 BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel>, bool mixed, bool path, WorldImpl*);
-
-/// The strings that a loop sends, as one key of BoundLight::variants: "name\1value\2" of each; "" for none.
-std::string sentStrings(const SiteInfo&);
 
 } // namespace alpenglow::transport

@@ -45,18 +45,16 @@ void WorldImpl::setCamera(const scene::Options& o) {
     ndcToRaster_ = scaleMatrix(o.xres, o.yres, 1);
 }
 bool WorldImpl::knowsSpace(const std::string& name) const {
-    static const std::set<std::string> kOwn = {"current", "camera", "eye", "world", "screen", "NDC", "raster", "object", "shader"};
+    static const std::set<std::string> kOwn = {"current", "camera", "eye",    "world", "screen",
+                                               "NDC",     "raster", "object", "shader"};
     Matrix m;
-    return placeOf(name, m) || kOwn.count(name) || frame_->coordinateSystems.count(name) || frame_->options.cameraSpaces.count(name);
+    return placeOf(name, m) || kOwn.count(name) || frame_->coordinateSystems.count(name) ||
+           frame_->options.cameraSpaces.count(name);
 }
 
-void WorldImpl::keepSpaces(const std::vector<std::string>& inputs) {
-    for (const std::string& input : inputs) {
-        const size_t colon = input.find(':'), arrow = input.find('>');
-        if (colon == std::string::npos || arrow == std::string::npos) continue;
-        const std::string from = input.substr(colon + 1, arrow - colon - 1), to = input.substr(arrow + 1);
-        if (Matrix m; matrix(from, to, m)) spaces_[from].emplace(to, m);
-    }
+void WorldImpl::keepSpaces(std::span<const rsl::InputName> spaces) {
+    for (const rsl::InputName& s : spaces)
+        if (Matrix m; matrix(s.from, s.to, m)) spaces_[s.from].emplace(s.to, m);
 }
 
 bool WorldImpl::matrix(const std::string& from, const std::string& to, Matrix& out) const {
@@ -72,8 +70,14 @@ bool WorldImpl::matrix(const std::string& from, const std::string& to, Matrix& o
         if (name == "screen") { m = inverse(cameraToScreen_); return true; }
         if (name == "NDC") { m = inverse(screenToNdc_) * inverse(cameraToScreen_); return true; }
         if (name == "raster") { m = inverse(ndcToRaster_) * inverse(screenToNdc_) * inverse(cameraToScreen_); return true; }
-        if (auto i = frame_->coordinateSystems.find(name); i != frame_->coordinateSystems.end()) { m = scene::at(i->second, shutter_.open) * worldToCamera_; return true; }
-        if (auto i = frame_->options.cameraSpaces.find(name); i != frame_->options.cameraSpaces.end()) { m = scene::at(i->second, shutter_.open); return true; }
+        if (auto i = frame_->coordinateSystems.find(name); i != frame_->coordinateSystems.end()) {
+            m = scene::at(i->second, shutter_.open) * worldToCamera_;
+            return true;
+        }
+        if (auto i = frame_->options.cameraSpaces.find(name); i != frame_->options.cameraSpaces.end()) {
+            m = scene::at(i->second, shutter_.open);
+            return true;
+        }
         if (name == "object" || name == "shader") { m = worldToCamera_; return true; } // no object here (imagers, lights): world
         return false;
     };
@@ -81,8 +85,13 @@ bool WorldImpl::matrix(const std::string& from, const std::string& to, Matrix& o
     bool known = toCurrent(from, a);
     bool knownTo = toCurrent(to, b);
     if (!known || !knownTo) {
-        diagnostics_->reportOnce("space:" + (known ? to : from),
-                                 {Severity::Warning, Rie::BadHandle, {}, "unknown coordinate system \"" + (known ? to : from) + "\"; taken as \"current\"", {}, {}});
+        diagnostics_->reportOnce("unknown space " + (known ? to : from),
+                                 {Severity::Warning,
+                                  Rie::BadHandle,
+                                  {},
+                                  "unknown coordinate system \"" + (known ? to : from) + "\"; taken as \"current\"",
+                                  {},
+                                  {}});
     }
     if (to == "screen") b = Matrix{}, out = a * cameraToScreen_;
     else if (to == "NDC") out = a * cameraToScreen_ * screenToNdc_;

@@ -6,6 +6,8 @@
 
 namespace alpenglow::transport {
 
+using rsl::OutputName;
+
 float attributeNumber(const scene::Attributes& a, const std::string& key, float fallback) {
     const scene::Param* p = a.value(key);
     return p && !p->numbers.empty() ? p->numbers[0] : fallback;
@@ -81,19 +83,26 @@ SurfaceBinder::Names SurfaceBinder::varyingOf(const geometry::Shape& shape, cons
             if (overrides(v, p)) varying.push_back(p.name);
             else
                 diagnostics_.reportOnce("override:" + shader.name + ":" + p.name,
-                                        {Severity::Warning, Rie::Consistency, v.param->place,
-                                         "the variable \"" + p.name + "\" of the primitive does not fit the parameter of shader \"" + shader.name +
+                                        {Severity::Warning,
+                                         Rie::Consistency,
+                                         v.param->place,
+                                         "the variable \"" + p.name +
+                                             "\" of the primitive does not fit the parameter of shader \"" + shader.name +
                                              "\", which is a " + rsl::toString(p.type) + ": the parameter keeps its value",
-                                         {}, {}});
+                                         {},
+                                         {}});
         }
     // What a shader and its co-shaders ask about the primitive, with the type that the first of them wants.
     std::map<std::string, rsl::Type> all = shader.program->program().primitiveVariables;
-    for (const rsl::CoShader& c : shader.coShaders) all.insert(c.program->primitiveVariables.begin(), c.program->primitiveVariables.end());
+    for (const rsl::CoShader& c : shader.coShaders)
+        all.insert(c.program->primitiveVariables.begin(), c.program->primitiveVariables.end());
     for (const auto& [name, type] : all) {
         const int v = shape.findPrimvar(name);
         const int width = type.base == rsl::Base::Void ? 0 : rsl::componentCount(type.base) * std::max(1, type.array);
         const bool text = v >= 0 && shape.primvars()[size_t(v)].type == scene::Type::String;
-        if (v >= 0 && (width == 0 || (width == shape.primvars()[size_t(v)].outWidth() && text == (type.base == rsl::Base::String))) && std::find(varying.begin(), varying.end(), name) == varying.end())
+        if (v >= 0 &&
+            (width == 0 || (width == shape.primvars()[size_t(v)].outWidth() && text == (type.base == rsl::Base::String))) &&
+            std::find(varying.begin(), varying.end(), name) == varying.end())
             varying.push_back(name);
     }
     std::sort(varying.begin(), varying.end());
@@ -112,7 +121,8 @@ bool SurfaceBinder::bindAll() {
         const int b = bind(shape);
         if (b < 0) return false;
         world_.bindingOf_.push_back(b);
-        if (path_ && world_.bindings_[size_t(b)].atmosphere.shader && shape->attributes().areaLight >= 0) world_.hazyEmitters_[shape.get()] = b;
+        if (path_ && world_.bindings_[size_t(b)].atmosphere.shader && shape->attributes().areaLight >= 0)
+            world_.hazyEmitters_[shape.get()] = b;
     }
     return bindMixed() && bindHitModes();
 }
@@ -126,7 +136,8 @@ bool SurfaceBinder::bindHitModes() {
         SurfaceBinding& b = world_.bindings_[i];
         b.shaderOpacity = world_.opacityOf(b, *asked_[i].shape, "shader", asked_[i].varying, evaluator_, diagnostics_);
         b.primitiveOpacity.constant = b.attributes->opacity;
-        if (asked_[i].shape->findPrimvar("Os") >= 0) b.primitiveOpacity.kernel = world_.kernel(*plain, {"Oi"}, {}, false, false, diagnostics_);
+        if (asked_[i].shape->findPrimvar("Os") >= 0)
+            b.primitiveOpacity.kernel = world_.kernel(*plain, {"Oi"}, {}, false, false, diagnostics_);
         world_.allOpaque_ &= b.shaderOpacity.opaque() && b.primitiveOpacity.opaque();
     }
     return true;
@@ -150,26 +161,10 @@ int SurfaceBinder::bind(const geometry::ShapeRef& shape) {
     return b;
 }
 
-int SurfaceBinder::bindAnew(const geometry::ShapeRef& shape) {
-    const scene::Attributes& a = shape->attributes();
-    SurfaceBinding b;
-    const bool grid = differences(*shape);
-    b.surface = world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Surface, grid), a.coshaders, diagnostics_, a.lights);
-    b.explicitSurface = b.surface != nullptr;
-    if (!b.surface) b.surface = fallback_;
-    b.displacement =
-        world_.withCoShaders(instanceOf(a.displacement, rsl::ShaderKind::Displacement, grid), a.coshaders, diagnostics_);
-    // A class with surface and displacement is both.
-    const bool both = !a.displacement && b.explicitSurface && rsl::ShaderCompiler::variant(b.surface->program, rsl::ShaderKind::Displacement);
-    if (both)
-        b.displacement =
-            quiet(world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Displacement, grid), a.coshaders, diagnostics_));
-    b.atmosphere.shader = world_.withCoShaders(instanceOf(a.atmosphere, rsl::ShaderKind::Volume), a.coshaders, diagnostics_);
-    const Names varying = varyingOf(*shape, *b.surface);
-    const Names displacementVarying = b.displacement ? varyingOf(*shape, *b.displacement) : Names{};
-    const Names atmosphereVarying = b.atmosphere.shader ? varyingOf(*shape, *b.atmosphere.shader) : Names{};
-    b.interior = volumeOf(a.interior, *shape);
-    b.exterior = volumeOf(a.exterior, *shape);
+/// What makes bindings different.
+std::string SurfaceBinder::keyOf(const SurfaceBinding& b, const geometry::Shape& shape, bool grid,
+                                 std::initializer_list<const Names*> varying) {
+    const scene::Attributes& a = shape.attributes();
     std::string key;
     auto add = [&](auto v) { key.append(reinterpret_cast<const char*>(&v), sizeof v); };
     add(b.surface.get());
@@ -188,13 +183,39 @@ int SurfaceBinder::bindAnew(const geometry::ShapeRef& shape) {
     add(attributeNumber(a, "trace:maxdiffusedepth", -1));
     add(attributeNumber(a, "trace:maxspeculardepth", -1));
     add(attributeNumber(a, "trace:bias", 0));
-    for (const Names* names : {&varying, &displacementVarying, &atmosphereVarying}) {
+    for (const Names* names : varying) {
         for (const auto& v : *names) key += v + ";";
         key += "|";
     }
-    key += shape->findPrimvar("Os") >= 0 ? "Os;" : "";
-    for (const char* name : {"shade:transmissionhitmode", "visibility:transmission", "shade:diffusehitmode", "shade:specularhitmode", "render:casts_shadows"})
+    key += shape.findPrimvar("Os") >= 0 ? "Os;" : "";
+    for (const char* name : {"shade:transmissionhitmode", "visibility:transmission", "shade:diffusehitmode",
+                             "shade:specularhitmode", "render:casts_shadows"})
         if (const scene::Param* p = a.value(name); p && !p->strings.empty()) key += name + p->strings[0] + ";";
+    return key;
+}
+
+int SurfaceBinder::bindAnew(const geometry::ShapeRef& shape) {
+    const scene::Attributes& a = shape->attributes();
+    SurfaceBinding b;
+    const bool grid = differences(*shape);
+    b.surface = world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Surface, grid), a.coshaders, diagnostics_, a.lights);
+    b.explicitSurface = b.surface != nullptr;
+    if (!b.surface) b.surface = fallback_;
+    b.displacement =
+        world_.withCoShaders(instanceOf(a.displacement, rsl::ShaderKind::Displacement, grid), a.coshaders, diagnostics_);
+    // A class with surface and displacement is both.
+    const bool both =
+        !a.displacement && b.explicitSurface && rsl::ShaderCompiler::variant(b.surface->program, rsl::ShaderKind::Displacement);
+    if (both)
+        b.displacement =
+            quiet(world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Displacement, grid), a.coshaders, diagnostics_));
+    b.atmosphere.shader = world_.withCoShaders(instanceOf(a.atmosphere, rsl::ShaderKind::Volume), a.coshaders, diagnostics_);
+    const Names varying = varyingOf(*shape, *b.surface);
+    const Names displacementVarying = b.displacement ? varyingOf(*shape, *b.displacement) : Names{};
+    const Names atmosphereVarying = b.atmosphere.shader ? varyingOf(*shape, *b.atmosphere.shader) : Names{};
+    b.interior = volumeOf(a.interior, *shape);
+    b.exterior = volumeOf(a.exterior, *shape);
+    const std::string key = keyOf(b, *shape, grid, {&varying, &displacementVarying, &atmosphereVarying});
     auto [it, fresh] = bindingByKey_.try_emplace(key, int(world_.bindings_.size()));
     if (!fresh) return it->second;
 
@@ -217,12 +238,17 @@ int SurfaceBinder::bindAnew(const geometry::ShapeRef& shape) {
     b.maxDiffuse = int(attributeNumber(a, "trace:maxdiffusedepth", path_ ? -1 : 1));
     b.maxSpecular = int(attributeNumber(a, "trace:maxspeculardepth", path_ ? -1 : 2));
     b.bias = std::max(0.f, attributeNumber(a, "trace:bias", 0));
-    for (const auto& [name, bit] : {std::pair{"shade:diffusehitmode", uint32_t(accel::kDiffuse)}, {"shade:specularhitmode", uint32_t(accel::kSpecular)}})
-        if (const scene::Param* p = a.value(name); p && !p->strings.empty() && p->strings[0] == "primitive") b.primitiveFor |= bit;
+    for (const auto& [name, bit] :
+         {std::pair{"shade:diffusehitmode", uint32_t(accel::kDiffuse)}, {"shade:specularhitmode", uint32_t(accel::kSpecular)}})
+        if (const scene::Param* p = a.value(name); p && !p->strings.empty() && p->strings[0] == "primitive")
+            b.primitiveFor |= bit;
     world_.hitModes_ |= b.primitiveFor != 0;
     b.attributes = shape->attributesRef();
     // Displaced shapes and different kernels never share a batch. Equal builds S mean equal builds V.
-    b.program = programs_.try_emplace({b.surfaceS.kernel.get(), b.displacement.get(), b.displacementS.kernel.get()}, int(programs_.size())).first->second;
+    b.program =
+        programs_
+            .try_emplace({b.surfaceS.kernel.get(), b.displacement.get(), b.displacementS.kernel.get()}, int(programs_.size()))
+            .first->second;
     auto [group, firstOfGroup] = groups_.try_emplace({b.program, b.lightList}, world_.groups_);
     world_.groups_ += firstOfGroup;
     b.group = group->second;
@@ -236,13 +262,18 @@ int SurfaceBinder::bindAnew(const geometry::ShapeRef& shape) {
 SurfaceBinder::Names SurfaceBinder::outputsOf(const SurfaceBinding& b) const {
     static const char* const kVariables[] = {"P", "N", "Cs", "Os", "u", "v", "s", "t", "Ng", "I", "dPdu", "dPdv"};
     Names outputs{"Ci", "Oi"};
-    for (const auto& n : world_.settings_.outputs)
-        if (n != "Ci" && n != "Oi" && (std::find(std::begin(kVariables), std::end(kVariables), n) != std::end(kVariables) || gives(*b.surface, n))) addOutput(*b.surface, n, outputs);
+    for (const OutputName& n : world_.wanted_) {
+        const auto is = [&](const char* variable) { return n == OutputName::of(variable); };
+        if (!is("Ci") && !is("Oi") && (std::any_of(std::begin(kVariables), std::end(kVariables), is) || gives(*b.surface, n)))
+            addOutput(*b.surface, n, outputs);
+    }
     std::set<std::string> asked;
-    if (path_) asked.insert(world_.lightMessages_.begin(), world_.lightMessages_.end()); // lighting shadeops: lights run when the surface's kernel is done
+    if (path_)
+        asked.insert(world_.lightMessages_.begin(),
+                     world_.lightMessages_.end()); // lighting shadeops: lights run when the surface's kernel is done
     const bool all = b.atmosphere.shader && questions(b.atmosphere.kernel, "surface", asked);
     for (const auto& p : b.surface->program->parameters())
-        if (p.output && (all || asked.count(p.name))) outputs.push_back("param:" + p.name);
+        if (p.output && (all || asked.count(p.name))) outputs.push_back(OutputName::parameterOf(p.name).text());
     return outputs;
 }
 
@@ -262,7 +293,7 @@ InstanceRef SurfaceBinder::quiet(const InstanceRef& displacement) {
     InstanceRef& known = quiet_[displacement.get()];
     if (!known) {
         auto same = std::make_shared<ShaderInstance>(*displacement);
-        same->parameters.strings["begin()"] = "quiet";
+        same->parameters.strings[rsl::kBeginQuiet] = "quiet";
         known = same;
         kept_.push_back(displacement);
     }
@@ -273,11 +304,14 @@ SurfaceBinder::Names SurfaceBinder::leftBy(const SurfaceBinding& b) {
     Names outputs;
     if (!b.displacement) return outputs;
     for (const std::string& name : rsl::membersLeft(b.displacement->program->shader(), b.surface->program->shader())) {
-        outputs.push_back("param:this->" + name);
+        const auto add = [&](bool length, OutputName::What what) {
+            outputs.push_back(OutputName::left(name, length, what).text());
+        };
+        add(false, OutputName::What::Value);
         const rsl::Type type = rsl::ownMember(b.displacement->program->shader(), name)->type;
-        if (type.array) outputs.push_back("param:this->" + name + "#");
+        if (type.array) add(true, OutputName::What::Value);
         else if (type.base != rsl::Base::String && type.base != rsl::Base::Matrix)
-            outputs.insert(outputs.end(), {"Du:param:this->" + name, "Dv:param:this->" + name});
+            add(false, OutputName::What::Du), add(false, OutputName::What::Dv);
     }
     return outputs;
 }
@@ -285,28 +319,35 @@ SurfaceBinder::Names SurfaceBinder::leftBy(const SurfaceBinding& b) {
 void SurfaceBinder::hearMembers(SurfaceBinding& b) {
     if (!b.displacement) return;
     if (b.displacementS.kernel->facts().suspends) {
-        diagnostics_.reportOnce("left:" + b.displacement->name, {Severity::Warning, Rie::Unimplement, b.displacement->place,
-                                "displacement() of \"" + b.displacement->name + "\" waits for rays (" + b.displacementS.kernel->facts().whyNot +
-                                    "): the surface does not see what it writes to members", {}, {}});
+        diagnostics_.reportOnce("left:" + b.displacement->name,
+                                {Severity::Warning,
+                                 Rie::Unimplement,
+                                 b.displacement->place,
+                                 "displacement() of \"" + b.displacement->name + "\" waits for rays (" +
+                                     b.displacementS.kernel->facts().whyNot +
+                                     "): the surface does not see what it writes to members",
+                                 {},
+                                 {}});
         return;
     }
     auto told = std::make_shared<ShaderInstance>(*b.surface);
-    const std::string head = "param:this->";
+    std::map<std::string, rsl::HeardMember> members;
     for (const auto& o : b.displacementS.kernel->outputs()) {
-        if (o.name.rfind(head, 0) != 0) continue;
-        const std::string name = o.name.substr(head.size());
-        std::string& what = told->parameters.strings["displacement:this->" + name.substr(0, name.find_first_of("[#"))];
-        if (name.back() == '#') what += " length";
-        else if (const size_t bracket = name.find('['); bracket == std::string::npos) what = "0";
-        else if (const int count = std::atoi(name.c_str() + bracket + 1) + 1; count > std::atoi(what.c_str())) what = std::to_string(count);
+        const OutputName name = OutputName::parse(o.name);
+        if (!name.member || name.what != OutputName::What::Value) continue;
+        rsl::HeardMember& what = members[name.name];
+        what.length |= name.length;
+        what.count = std::max(what.count, name.element + 1);
     }
+    for (const auto& [name, what] : members) told->parameters.strings[rsl::InputName::left(name).text()] = what.text();
     InstanceRef& known = told_[{b.surface.get(), b.displacement.get()}];
     if (!known) kept_.push_back(b.surface), known = told;
     b.surface = known;
     b.displacementTells = true;
 }
 
-void SurfaceBinder::hearDisplacement(SurfaceBinding& b, const Names& varying, const Names& displacementVarying, const Names& left) {
+void SurfaceBinder::hearDisplacement(SurfaceBinding& b, const Names& varying, const Names& displacementVarying,
+                                     const Names& left) {
     if (!b.displacement || b.displacementS.kernel->facts().suspends) return;
     std::set<std::string> asked;
     asked = world_.lightDisplacements_;
@@ -317,15 +358,18 @@ void SurfaceBinder::hearDisplacement(SurfaceBinding& b, const Names& varying, co
     auto told = std::make_shared<ShaderInstance>(*b.surface);
     for (const auto& p : b.displacement->program->parameters()) {
         if (!p.output || (!all && !asked.count(p.name))) continue;
-        outputs.push_back("param:" + p.name);
+        const auto add = [&](OutputName::What what) { outputs.push_back(OutputName::parameterOf(p.name, -1, what).text()); };
+        add(OutputName::What::Value);
         if (p.type.array == 0 && p.type.base != rsl::Base::String && p.type.base != rsl::Base::Matrix)
-            outputs.insert(outputs.end(), {"Du:param:" + p.name, "Dv:param:" + p.name});
-        // Kind of an element, how many, and whether points differ: the surface's kernel takes it as an input, with its derivatives.
+            add(OutputName::What::Du), add(OutputName::What::Dv);
+        // Kind of an element, how many, and whether points differ: the surface's kernel takes it as an input, with its
+        // derivatives.
         int length = p.type.array ? std::max(1, p.type.array) : 0;
         const auto& given = b.displacement->parameters.strings;
-        if (const auto open = given.find(p.name + "[]"); p.open && open != given.end()) length = std::atoi(open->second.c_str());
-        told->parameters.strings["displacement:" + p.name] = std::to_string(int(Told::kindOf(p.type.base))) + " " + std::to_string(length) + " " +
-                                                             std::to_string(int(p.storage == rsl::Storage::Varying));
+        if (const auto open = given.find(rsl::lengthParameter(p.name)); p.open && open != given.end())
+            length = std::atoi(open->second.c_str());
+        told->parameters.strings[rsl::InputName::displacement(p.name).text()] =
+            rsl::HeardOutput{int(Told::kindOf(p.type.base)), length, p.storage == rsl::Storage::Varying}.text();
     }
     if (outputs.size() == left.size()) return;
     bindDisplacement(b, displacementVarying, outputs);
@@ -336,6 +380,13 @@ void SurfaceBinder::hearDisplacement(SurfaceBinding& b, const Names& varying, co
     b.surface = known;
     asked_.pop_back();
     bindSurface(b, varying);
+}
+
+/// Whether an input is a matrix that differs from one primitive to the next.
+static bool isObjectSpace(const rsl::ir::Input& input) {
+    const rsl::InputName n = rsl::InputName::parse(input.name);
+    const auto has = [](const std::string& space) { return space.find("object") != std::string::npos; };
+    return n.kind == rsl::InputName::Kind::Space && (has(n.from) || has(n.to));
 }
 
 bool SurfaceBinder::bindSurface(SurfaceBinding& b, Names varying) {
@@ -359,7 +410,7 @@ bool SurfaceBinder::bindSurface(SurfaceBinding& b, Names varying) {
     }
     for (const BoundKernel* k : kernels)
         for (const auto& in : k->kernel->inputs())
-            b.usesObjectSpace |= in.name.find("object") != std::string::npos && in.name.rfind("space:", 0) == 0;
+            b.usesObjectSpace |= isObjectSpace(in);
     asked_.push_back({std::move(outputs), std::move(varying), {}});
     return true;
 }
@@ -382,25 +433,38 @@ bool SurfaceBinder::bindMixed() {
     return true;
 }
 
-void SurfaceBinder::bindAtmosphere(SurfaceBinding& b, const Names& varying) { b.atmosphere = bindVolume(b.atmosphere.shader, varying); }
+void SurfaceBinder::bindAtmosphere(SurfaceBinding& b, const Names& varying) {
+    b.atmosphere = bindVolume(b.atmosphere.shader, varying);
+}
 
 Medium SurfaceBinder::bindVolume(const InstanceRef& shader, const Names& varying) {
     if (!shader) return {};
-    Names outputs{"Ci", "Oi", "slope:Ci"};
-    for (const auto& n : world_.settings_.outputs)
-        if (n != "Ci" && n != "Oi" && gives(*shader, n)) addOutput(*shader, n, outputs);
+    Names outputs{"Ci", "Oi", OutputName::slope("Ci").text()};
+    for (const OutputName& n : world_.wanted_)
+        if (n != OutputName::of("Ci") && n != OutputName::of("Oi") && gives(*shader, n)) addOutput(*shader, n, outputs);
     Medium m;
     m.kernel = world_.kernel(*shader, outputs, varying, false, false, diagnostics_);
     if (!m.kernel) return {};
     const std::string name = "\"" + shader->name + "\"";
     if (m.kernel.kernel->facts().suspends) {
-        diagnostics_.reportOnce("atmosphere:" + shader->name, {Severity::Warning, Rie::Unimplement, shader->place,
-                                "volume shader " + name + " waits for rays (" + m.kernel.kernel->facts().whyNot + "); it is left out", {}, {}});
+        diagnostics_.reportOnce("atmosphere:" + shader->name, {Severity::Warning,
+                                                               Rie::Unimplement,
+                                                               shader->place,
+                                                               "volume shader " + name + " waits for rays (" +
+                                                                   m.kernel.kernel->facts().whyNot + "); it is left out",
+                                                               {},
+                                                               {}});
         return {};
     }
-    if (m.kernel.plan->output("slope:Ci") < 0)
-        diagnostics_.reportOnce("atmosphere:" + shader->name, {Severity::Info, Rie::NoError, shader->place,
-                                "volume shader " + name + " is not affine in Ci as written; what light loses in it is measured between Ci = 0 and 1", {}, {}});
+    if (m.kernel.plan->output(OutputName::slope("Ci")) < 0)
+        diagnostics_.reportOnce(
+            "atmosphere:" + shader->name,
+            {Severity::Info,
+             Rie::NoError,
+             shader->place,
+             "volume shader " + name + " is not affine in Ci as written; what light loses in it is measured between Ci = 0 and 1",
+             {},
+             {}});
     m.shader = shader;
     return m;
 }
@@ -416,11 +480,15 @@ InstanceRef SurfaceBinder::volumeOf(const scene::ShaderRef& call, const geometry
         if (v < 0) continue;
         const geometry::PrimVar& variable = shape.primvars()[size_t(v)];
         if (variable.cls != scene::Class::Constant) {
-            diagnostics_.reportOnce("medium:" + shader->name + ":" + p.name,
-                                    {Severity::Warning, Rie::Unimplement, shape.place(),
-                                     "\"" + p.name + "\" is not the same everywhere on the primitive: it does not override the parameter of the " +
-                                         "volume shader \"" + shader->name + "\", which runs inside of it",
-                                     "a constant variable does", {}});
+            diagnostics_.reportOnce(
+                "medium:" + shader->name + ":" + p.name,
+                {Severity::Warning,
+                 Rie::Unimplement,
+                 shape.place(),
+                 "\"" + p.name + "\" is not the same everywhere on the primitive: it does not override the parameter of the " +
+                     "volume shader \"" + shader->name + "\", which runs inside of it",
+                 "a constant variable does",
+                 {}});
             continue;
         }
         const std::optional<Told> value = primitiveVariable(shape, {}, p.name);
@@ -449,8 +517,13 @@ int SurfaceBinder::mediumOf(const InstanceRef& shader, const geometry::Shape& sh
         if (world_.media_[i].shader == shader) return int(i);
     constexpr size_t kMost = std::numeric_limits<int16_t>::max(); // shading::Media numbers them
     if (world_.media_.size() >= kMost) {
-        diagnostics_.reportOnce("media:count", {Severity::Error, Rie::Limit, shape.place(),
-                                "a frame has no more than " + std::to_string(kMost) + " different interiors and exteriors; the others are empty", {}, {}});
+        diagnostics_.reportOnce("media:count", {Severity::Error,
+                                                Rie::Limit,
+                                                shape.place(),
+                                                "a frame has no more than " + std::to_string(kMost) +
+                                                    " different interiors and exteriors; the others are empty",
+                                                {},
+                                                {}});
         return -1;
     }
     Medium m = bindVolume(shader, {});
@@ -464,13 +537,16 @@ int SurfaceBinder::mediumOf(const InstanceRef& shader, const geometry::Shape& sh
 void SurfaceBinder::bindDisplacement(SurfaceBinding& b, const Names& varying, const Names& more) {
     if (!b.displacement) return;
     // The derivatives are for the surface shader: bumps on top of the displacement.
-    Names outputs{"P", "N", "Du:P", "Dv:P", "Du:N", "Dv:N"};
+    Names outputs{"P", "N"};
+    for (const char* of : {"P", "N"}) outputs.insert(outputs.end(), {OutputName::du(of).text(), OutputName::dv(of).text()});
     outputs.insert(outputs.end(), more.begin(), more.end());
     b.displacementS = world_.kernel(*b.displacement, outputs, varying, false, false, diagnostics_);
     bool object = false;
     if (b.displacementS)
-        for (const auto& in : b.displacementS.kernel->inputs()) object |= in.name.find("object") != std::string::npos && in.name.rfind("space:", 0) == 0;
-    if (object) b.displacementS = world_.kernel(*b.displacement, outputs, varying, true, false, diagnostics_); // shapes of one batch have their own
+        for (const auto& in : b.displacementS.kernel->inputs()) object |= isObjectSpace(in);
+    if (object)
+        b.displacementS =
+            world_.kernel(*b.displacement, outputs, varying, true, false, diagnostics_); // shapes of one batch have their own
     if (!b.displacementS) b.displacement = nullptr;
 }
 

@@ -27,6 +27,8 @@ private:
     /// The binding of a shape: that of one with the same attributes and variables where there is one.
     int bind(const geometry::ShapeRef&);
     int bindAnew(const geometry::ShapeRef&);
+    static std::string keyOf(const SurfaceBinding&, const geometry::Shape&, bool grid,
+                             std::initializer_list<const Names*> varying);
     Names outputsOf(const SurfaceBinding&) const;
     /// Adds the names that a kernel asks for by `op` ("surface", "displacement"). True when some are made only when it runs.
     static bool questions(const BoundKernel&, const char* op, std::set<std::string>& names);
@@ -34,7 +36,8 @@ private:
     void hearDisplacement(SurfaceBinding&, const Names& varying, const Names& displacementVarying, const Names& left);
     /// The same displacement, whose begin() prints nothing: the class prints when it shades.
     InstanceRef quiet(const InstanceRef& displacement);
-    /// The outputs by which the displacement() of a class tells its other methods what it wrote to members (rsl/front/leftmembers.h).
+    /// The outputs by which the displacement() of a class tells its other methods what it wrote to members
+    /// (rsl/front/leftmembers.h).
     static Names leftBy(const SurfaceBinding&);
     /// The surface takes them.
     void hearMembers(SurfaceBinding&);
@@ -65,10 +68,12 @@ private:
     InstanceRef fallback_;
     std::map<std::tuple<const scene::ShaderCall*, int, bool>, InstanceRef>
         instances_;                                                   ///< by kind, and by how derivatives are taken
-    std::map<std::pair<const void*, const void*>, InstanceRef> told_; ///< surfaces that know the outputs of a displacement; by both
+    std::map<std::pair<const void*, const void*>, InstanceRef>
+        told_;                                 ///< surfaces that know the outputs of a displacement; by both
     std::map<const void*, InstanceRef> quiet_; ///< by the displacement that is not
     std::vector<InstanceRef> kept_;            ///< their addresses are keys
-    std::map<std::pair<const void*, std::string>, InstanceRef> volumes_; ///< by the shader as the scene gave it and what overrides it
+    std::map<std::pair<const void*, std::string>, InstanceRef>
+        volumes_; ///< by the shader as the scene gave it and what overrides it
     std::map<std::string, int> bindingByKey_;
     std::unordered_map<const scene::Attributes*, std::pair<geometry::ShapeRef, int>>
         bindingOfAttributes_; ///< of the last shape that had them

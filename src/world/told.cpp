@@ -7,7 +7,10 @@ Told::Told(const Information& i) : numbers(i.numbers), texts(i.texts) {}
 
 rsl::ir::Kind Told::kindOf(rsl::Base b) {
     using rsl::ir::Kind;
-    return b == rsl::Base::String ? Kind::String : b == rsl::Base::Matrix ? Kind::Matrix : b == rsl::Base::Float ? Kind::Float : Kind::Triple;
+    return b == rsl::Base::String   ? Kind::String
+           : b == rsl::Base::Matrix ? Kind::Matrix
+           : b == rsl::Base::Float  ? Kind::Float
+                                    : Kind::Triple;
 }
 
 std::optional<Told> toldBy(const ShaderInstance& shader, const std::string& parameter) {
@@ -16,7 +19,8 @@ std::optional<Told> toldBy(const ShaderInstance& shader, const std::string& para
         const auto& texts = shader.parameters.strings;
         int length = std::max(1, p.type.array);
         if (p.open)
-            if (const auto given = texts.find(p.name + "[]"); given != texts.end()) length = std::atoi(given->second.c_str());
+            if (const auto given = texts.find(rsl::lengthParameter(p.name)); given != texts.end())
+                length = std::atoi(given->second.c_str());
         Told t(p.type, length);
         t.varying = p.storage == rsl::Storage::Varying;
         if (p.type.base == rsl::Base::String) {

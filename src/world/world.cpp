@@ -65,7 +65,8 @@ uint32_t visibilityOf(const scene::Attributes& a, bool all) {
     // Under path shadow rays are the renderer's own; elsewhere they are traced only when asked for, and old files that ask
     // (transmission(), trace()) without saying who may be seen mean everything.
     const scene::Param* casts = a.value("render:casts_shadows"); // BMRT's word
-    if (on("transmission", of < 0 || (of & 4) != 0) && !(casts && !casts->strings.empty() && casts->strings[0] == "none")) bits |= accel::kTransmission;
+    if (on("transmission", of < 0 || (of & 4) != 0) && !(casts && !casts->strings.empty() && casts->strings[0] == "none"))
+        bits |= accel::kTransmission;
     return bits;
 }
 
@@ -84,11 +85,13 @@ bool rispecSpecular(const scene::Options& o, const std::string& dialect, Diagnos
 
 } // namespace
 
-std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> frame, const Settings& settings, MakeEvaluator evaluators, Diagnostics& d) {
+std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> frame, const Settings& settings,
+                                          MakeEvaluator evaluators, Diagnostics& d) {
     double begin = seconds();
     auto w = std::make_shared<WorldImpl>();
     w->frame_ = frame;
     w->settings_ = settings;
+    for (const std::string& name : settings.outputs) w->wanted_.push_back(rsl::OutputName::parse(name));
     w->diagnostics_ = &d;
     const scene::Options& o = frame->options;
     bool path = settings.hider == Hider::Path;

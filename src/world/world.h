@@ -35,8 +35,8 @@ public:
     virtual std::vector<std::string> knownOutputs() const { return {}; }
     /// Writes what shaders have printed since the last call, in the order of the samples; or forgets it. Between passes.
     virtual void flushPrints(bool keep) const = 0;
-    /// Runs the frame's imager over finished pixels, in place. rgb: linear colour, alpha: coverage, P: raster position. True when there is one.
-    /// Once *stop is set its loops end early, and the pixels are void; null: never.
+    /// Runs the frame's imager over finished pixels, in place. rgb: linear colour, alpha: coverage, P: raster position. True when
+    /// there is one. Once *stop is set its loops end early, and the pixels are void; null: never.
     virtual bool runImager(int count, const float* rasterX, const float* rasterY, float* r, float* g, float* b, float* alpha,
                            Diagnostics&, const StopFlag* stop = nullptr) const = 0;
 };

@@ -1,4 +1,5 @@
 // What a call means once it is known which shadeop it is: the arguments become what its parameters are, tokens are looked up.
+#include "rsl/front/protocol.h"
 #include "base/limits.h"
 #include "rsl/front/checker.h"
 #include <algorithm>
@@ -35,8 +36,7 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
     if (op.name == "outputchannel" || op.name == "writeaov") {
         const Type type = e.args[1]->type;
         const bool written = e.args[0]->kind == ExprKind::String; // else it is any name that displays ask for
-        std::string name = written ? e.args[0]->text : "?" + toString(type);
-        if (name.rfind("light:", 0) == 0 || name.rfind("local:", 0) == 0) name.erase(0, 6);
+        const std::string name = written ? ChannelName::parse(e.args[0]->text).name : kAnyChannel + toString(type);
         const bool parameter = written && shaderParameters_.count(name) > 0;
         if (type.array < 0 && !parameter) {
             sources_.warning(e.args[1]->place, "an array of open length is no output: displays would not know how many numbers it has",

@@ -1,4 +1,5 @@
 // Instructions, variables, and the rounds in which a kernel is built.
+#include "rsl/front/protocol.h"
 #include "rsl/ir/build.h"
 #include "base/limits.h"
 #include "rsl/ir/builder.h"
@@ -80,7 +81,7 @@ Inst* Builder::input(const std::string& name, Type type, bool uniform) {
 }
 
 Inst* Builder::space(const std::string& from, const std::string& to) {
-    return input("space:" + ownSpace(leaves_.string(from))->text + ">" + ownSpace(leaves_.string(to))->text, {Base::Matrix, 0}, true);
+    return input(InputName::space(ownSpace(leaves_.string(from))->text, ownSpace(leaves_.string(to))->text).text(), {Base::Matrix, 0}, true);
 }
 
 std::vector<Inst*> Builder::runtime(const std::string& symbol, std::vector<Inst*> args, std::vector<Kind> results) {

@@ -2,22 +2,16 @@
 // A name that is made when the shader runs means one of those that displays ask for: each point may have its own. Whether a point has it
 // is an output, too ("given:NAME"), as a zero that was given hides what others give and one that was not does not. Lights and volumes tell it
 // of all their names: where a condition keeps them from the call, what others gave to the surface stays.
+#include "rsl/front/protocol.h"
 #include "rsl/ir/builder.h"
 
 namespace alpenglow::rsl::ir {
 
 namespace {
 
-constexpr char kAnyName = '?'; ///< before the type of calls whose names are not written in them (front/calls_bind.cpp)
-
-constexpr char kGiven[] = "given:"; ///< before the key of a channel: 1 where a call has given it a value
-bool isFlag(const std::string& key) { return key.rfind(kGiven, 0) == 0; }
-
-/// The name without "light:" or "local:"; `kept` tells of such a prefix.
-std::string bareName(const std::string& name, bool& kept) {
-    kept = name.rfind("light:", 0) == 0 || name.rfind("local:", 0) == 0;
-    return kept ? name.substr(6) : name;
-}
+/// Beside the key of a channel: 1 where a call has given it a value.
+std::string flagOf(const std::string& key) { return OutputName::given(key).text(); }
+bool isFlag(const std::string& key) { return !OutputName::givenName(key).empty(); }
 
 bool alike(Type a, Type b) { return kindOf(a.element()) == kindOf(b.element()) && (a.array != 0) == (b.array != 0); }
 
@@ -26,9 +20,9 @@ bool alike(Type a, Type b) { return kindOf(a.element()) == kindOf(b.element()) &
 void Builder::beginChannels() {
     const auto make = [&](std::string name, Type type, bool flag) {
         if (type.array < 0) return; // of open length: displays would not know how many
-        if (channels_.count(name)) name += kAnyName + toString(type); // the same name for several types: channelValue() decides
+        if (channels_.count(name)) name += kAnyChannel + toString(type); // the same name for several types: channelValue() decides
         if (channels_.count(name)) return;
-        if (flag) channels_[kGiven + name] = {newSlot(constant(0)), {Base::Float, 0}};
+        if (flag) channels_[flagOf(name)] = {newSlot(constant(0)), {Base::Float, 0}};
         if (!type.array) {
             channels_[name] = {newSlot(zero(kindOf(type))), type};
             return;
@@ -45,10 +39,10 @@ void Builder::beginChannels() {
     };
     for (const Program* p : programs)
         for (const auto& [name, type] : p->channels)
-            if (name[0] != kAnyName && !channels_.count(name)) make(name, type, oneOfMany && !isParameter(name));
+            if (name[0] != kAnyChannel && !channels_.count(name)) make(name, type, oneOfMany && !isParameter(name));
     for (const Program* p : programs)
         for (const auto& [key, type] : p->channels) {
-            if (key[0] != kAnyName) continue;
+            if (key[0] != kAnyChannel) continue;
             for (const std::string& output : options_.outputs) {
                 const std::string name = output.substr(0, output.find('['));
                 const bool declared = std::any_of(shader_.parameters.begin(), shader_.parameters.end(), [&](const ShaderParameter& q) { return q.symbol->name == name; });
@@ -64,7 +58,7 @@ std::vector<std::pair<std::string, int>> Builder::channelsFor(Type type) {
     for (const ShaderParameter& p : shader_.parameters)
         if (p.symbol->output && alike(p.symbol->type, type)) all.emplace_back(p.symbol->name, slot(p.symbol));
     for (const auto& [name, c] : channels_)
-        if (!isFlag(name) && alike(c.second, type) && !hasGlobal(name.c_str())) all.emplace_back(name.substr(0, name.find(kAnyName)), c.first);
+        if (!isFlag(name) && alike(c.second, type) && !hasGlobal(name.c_str())) all.emplace_back(name.substr(0, name.find(kAnyChannel)), c.first);
     return all;
 }
 
@@ -72,7 +66,7 @@ std::vector<std::pair<std::string, int>> Builder::channelsFor(Type type) {
 const std::pair<int, Type>* Builder::channelNamed(const std::string& name) {
     const std::pair<int, Type>* found = nullptr;
     for (auto c = channels_.lower_bound(name); c != channels_.end() && c->first.rfind(name, 0) == 0; ++c)
-        if ((c->first == name || c->first[name.size()] == kAnyName) && (!found || isConst(get(found->first)))) found = &c->second;
+        if ((c->first == name || c->first[name.size()] == kAnyChannel) && (!found || isConst(get(found->first)))) found = &c->second;
     return found;
 }
 
@@ -84,14 +78,14 @@ Inst* Builder::channelValue(const std::string& name, Type& type) {
     const std::pair<int, Type>*triple = nullptr, *grey = nullptr;
     std::string tripleKey, greyKey;
     for (const auto& [key, of] : channels_) {
-        if (key.substr(0, key.find(kAnyName)) != name || of.second.array || !channels_.count(kGiven + key)) continue;
+        if (key.substr(0, key.find(kAnyChannel)) != name || of.second.array || !channels_.count(flagOf(key))) continue;
         const bool isTriple = kindOf(of.second) == Kind::Triple;
         if (!isTriple && kindOf(of.second) != Kind::Float) continue;
         (isTriple ? triple : grey) = &of;
         (isTriple ? tripleKey : greyKey) = key;
     }
     if (!triple || !grey || type.array) return get(c->first);
-    const auto given = [&](const std::string& key) { return emit(Op::NotEqual, Kind::Bool, {get(channels_.at(kGiven + key).first), constant(0)}); };
+    const auto given = [&](const std::string& key) { return emit(Op::NotEqual, Kind::Bool, {get(channels_.at(flagOf(key)).first), constant(0)}); };
     type = triple->second;
     Inst* floats = emit(Op::Select, Kind::Triple, {given(greyKey), coerce(get(grey->first), Kind::Triple), zero(Kind::Triple)});
     return emit(Op::Select, Kind::Triple, {given(tripleKey), get(triple->first), floats});
@@ -100,9 +94,10 @@ Inst* Builder::channelValue(const std::string& name, Type& type) {
 /// "given:NAME": 1 where a call has given that output a value; null for other names, and where its name is no matter of running.
 Inst* Builder::channelGiven(const std::string& text) {
     Inst* all = nullptr;
-    const std::string name = isFlag(text) ? text.substr(sizeof kGiven - 1) : "";
+    const std::string_view name = OutputName::givenName(text);
     for (const auto& [key, flag] : channels_) {
-        if (name.empty() || !isFlag(key) || key.substr(sizeof kGiven - 1, key.find(kAnyName) - (sizeof kGiven - 1)) != name) continue;
+        const std::string_view of = OutputName::givenName(key);
+        if (name.empty() || of.empty() || of.substr(0, of.find(kAnyChannel)) != name) continue;
         Inst* one = get(flag.first);
         all = all ? emit(Op::Select, Kind::Float, {emit(Op::NotEqual, Kind::Bool, {one, constant(0)}), one, all}) : one;
     }
@@ -111,8 +106,7 @@ Inst* Builder::channelGiven(const std::string& text) {
 
 /// The slot that a call assigns: of a parameter of the main shader, or of a channel. -1: nothing is assigned.
 int Builder::channelSlot(const std::string& text, Type type) {
-    bool kept = false;
-    const std::string name = bareName(text, kept);
+    const auto [name, kept] = ChannelName::parse(text);
     if (kept && (handleDepth_ > 0 || shader_.kind == ShaderKind::Light)) return -1; // it stays with the co-shader or the light
     for (const auto& [known, n] : channelsFor(type))
         if (known == name) return n;
@@ -122,7 +116,7 @@ int Builder::channelSlot(const std::string& text, Type type) {
 /// The value goes to the output `n`, where `condition` (null: everywhere).
 void Builder::giveChannel(int n, const Expr& value, Inst* whole, Inst* condition) {
     for (const auto& [key, channel] : channels_)
-        if (const auto flag = channels_.find(kGiven + key); channel.first == n && flag != channels_.end()) {
+        if (const auto flag = channels_.find(flagOf(key)); channel.first == n && flag != channels_.end()) {
             const int at = flag->second.first;
             set(at, condition ? emit(Op::Select, Kind::Float, {condition, constant(1), get(at)}) : constant(1));
         }
@@ -154,8 +148,8 @@ Inst* Builder::outputChannel(const Expr& e) {
     const bool keeps = handleDepth_ > 0 || shader_.kind == ShaderKind::Light; // what "light:" and "local:" say
     for (const auto& [known, n] : channelsFor(given.type)) {
         Inst* is = emit(Op::Equal, Kind::Bool, {name, leaves_.string(known)});
-        for (const char* prefix : {"light:", "local:"})
-            if (!keeps) is = emit(Op::Or, Kind::Bool, {is, emit(Op::Equal, Kind::Bool, {name, leaves_.string(prefix + known)})});
+        for (const std::string_view prefix : kKeptChannels)
+            if (!keeps) is = emit(Op::Or, Kind::Bool, {is, emit(Op::Equal, Kind::Bool, {name, leaves_.string(std::string(prefix) + known)})});
         giveChannel(n, given, value, is);
     }
     return constant(0);

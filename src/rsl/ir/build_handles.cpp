@@ -3,7 +3,7 @@
 #include "base/category.h"
 #include "base/limits.h"
 #include "rsl/front/visit.h"
-#include "rsl/handlename.h"
+#include "rsl/front/protocol.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
 

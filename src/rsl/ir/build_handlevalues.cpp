@@ -1,6 +1,7 @@
 // Which shader a handle can be, and the calls that give handles: getshader(), getshaders(), arrays of handles.
 #include "base/category.h"
 #include "base/limits.h"
+#include "rsl/front/protocol.h"
 #include "rsl/front/visit.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
@@ -100,7 +101,7 @@ std::vector<Inst*> Builder::handlesOf(const Expr& e, std::vector<Inst*>* when) {
     for (const Instance& i : instances_) {
         if (i.binding == &selfBinding_) continue;
         const auto& strings = i.binding->strings;
-        const auto own = strings.find("__category");
+        const auto own = strings.find(kCategory);
         const std::string category = own == strings.end() ? std::string() : own->second;
         if (!inCategory(wanted, category)) continue;
         all.push_back(leaves_.string(i.binding->handle));

@@ -2,56 +2,47 @@
 // inputs "displacement:this->NAME" of the other. "#" behind the name: the length of an array that changes it.
 #include "rsl/ir/builder.h"
 #include "rsl/front/leftmembers.h"
+#include "rsl/front/protocol.h"
 #include <algorithm>
 
 namespace alpenglow::rsl::ir {
 
-namespace {
-constexpr const char* kOwn = "this->";
-constexpr size_t kOwnLength = 6;
-} // namespace
-
-/// The value that an output "this->NAME" asks for; null where `name` is no such output.
+/// The value that an output OutputName::left() asks for; null where `name` is no such output.
 Inst* Builder::leftBehind(const std::string& name, Type& type) {
-    const size_t own = name.find(kOwn);
-    if (own == std::string::npos) return nullptr;
-    const std::string head = name.substr(0, own);
-    std::string member = name.substr(own + kOwnLength);
-    const bool length = !member.empty() && member.back() == '#';
-    if (length) member.pop_back();
-    const Symbol* s = ownMember(shader_, member);
+    const OutputName o = OutputName::parse(name);
+    const Symbol* s = o.member ? ownMember(shader_, o.name) : nullptr;
     if (!s) return nullptr;
     Inst* v = get(slot(s));
     type = s->type;
-    if (length) {
+    if (o.length) {
         type = {Base::Float, 0};
         return lengths(v) ? get(lengths(v)->length) : nullptr;
     }
-    if (head == "param:") return v;
+    if (o.what == OutputName::What::Value) return v;
     if (v->kind != Kind::Float && v->kind != Kind::Triple) return nullptr;
-    return head == "Du:param:" ? emit(Op::Du, v->kind, {v}) : head == "Dv:param:" ? emit(Op::Dv, v->kind, {v}) : nullptr;
+    return emit(o.what == OutputName::What::Du ? Op::Du : Op::Dv, v->kind, {v});
 }
 
 /// KernelOptions::stringParameters, "displacement:this->NAME": the elements of an array, "length" behind them where their number is an
 /// input too; else 0.
 void Builder::hearMembers() {
     for (const auto& [key, text] : options_.stringParameters) {
-        const std::string head = std::string("displacement:") + kOwn;
-        if (key.rfind(head, 0) != 0) continue;
-        const Symbol* s = ownMember(shader_, key.substr(head.size()));
+        const InputName told = InputName::parse(key);
+        const Symbol* s = told.member ? ownMember(shader_, told.name) : nullptr;
         if (!s) continue;
         if (!s->type.array) {
             set(slot(s), input(key, s->type, false));
             continue;
         }
-        const int count = std::atoi(text.c_str());
+        const HeardMember heard = HeardMember::parse(text);
+        const int count = heard.count;
         Inst* a = get(slot(s));
         if (count < 1 || a->op != Op::ArrayNew) continue;
         Inst* from = input(key, {s->type.base, count}, false);
         if (const Lengths* known = lengths(a)) {
             const Lengths l = *known;
-            const bool told = text.find("length") != std::string::npos;
-            Inst* n = limitLength(a, told ? input(key + "#", {Base::Float, 0}, false) : constant(static_cast<float>(count)));
+            Inst* n = limitLength(a, heard.length ? input(InputName::left(told.name, true).text(), {Base::Float, 0}, false)
+                                                  : constant(static_cast<float>(count)));
             set(l.length, n);
             set(l.reserved, runtime1("al_max_f", {get(l.reserved), n}, Kind::Float));
         }
@@ -74,7 +65,7 @@ void Builder::objectBody(bool opacityOnly) {
         if (n == first) hearMembers();
         // Who displaces and shades says what it has to say when it shades.
         const auto quiet = std::find_if(options_.stringParameters.begin(), options_.stringParameters.end(),
-                                        [](const auto& p) { return p.first == "begin()"; }) != options_.stringParameters.end();
+                                        [](const auto& p) { return p.first == kBeginQuiet; }) != options_.stringParameters.end();
         quiet_ += quiet && n < first;
         statement(*all[n]);
         quiet_ -= quiet && n < first;

@@ -1,6 +1,7 @@
 // illuminance in surfaces and volumes; illuminate and solar in lights.
 #include "base/category.h"
 #include "base/limits.h"
+#include "rsl/front/protocol.h"
 #include "rsl/front/visit.h"
 #include "rsl/ir/builder.h"
 #include <functional>
@@ -41,7 +42,7 @@ void Builder::illuminance(const Stmt& s) {
             continue;
         }
         if (!p.value) continue;
-        if (p.name.rfind("send:light:", 0) == 0) {
+        if (const PairName pair = PairName::parse(p.name); pair.kind == PairName::Kind::Send) {
             if (p.value->type.array) {
                 if (p.value->type.base == Base::String) {
                     warn(p.place, "\"" + p.name + "\" sends an array of strings; it is not sent");
@@ -49,7 +50,7 @@ void Builder::illuminance(const Stmt& s) {
                 }
                 Inst* a = array(*p.value);
                 for (int n = 0; n < arrayLength(a); ++n)
-                    give(p.name + "[" + std::to_string(n) + "]", emit(Op::ArrayLoad, a->element, {a, constant(static_cast<float>(n))}), p.value->type.element());
+                    give(PairName::send(pair.name, n).text(), emit(Op::ArrayLoad, a->element, {a, constant(static_cast<float>(n))}), p.value->type.element());
                 continue;
             }
             Inst* v = expr(*p.value);
@@ -71,7 +72,7 @@ void Builder::illuminance(const Stmt& s) {
     }
     // Outputs of the shader that lights of the scene ask for, as they are now.
     for (const auto& [name, parameter] : messageSlots_)
-        give("surface:" + name, get(parameter.first), parameter.second);
+        give(PairName::surface(name).text(), get(parameter.first), parameter.second);
     if (const auto n = globals_.find("N"); n != globals_.end() && writes_.count("N"))
         give("N", get(n->second), {Base::Normal, 0});
     Inst* inst = k_.make(Op::LightLoop, Kind::None);
@@ -82,7 +83,7 @@ void Builder::illuminance(const Stmt& s) {
     inst->args.push_back(s.exprs.size() > 2 ? expr(*s.exprs[2], Kind::Float) : constant(3.14159274f));
 
     if (!setup.names.empty()) {
-        site.names.push_back("__setup");
+        site.names.push_back(kPairSetUp);
         site.pairStrings.push_back("1");
         place_ = s.place;
         call(Op::Service, std::move(setup), std::move(given));

@@ -1,5 +1,5 @@
 // Members of co-shaders and variables of the primitive: a->x, a->list[i], getvar(), readprimvar(), hasmethod().
-#include "rsl/handlename.h"
+#include "rsl/front/protocol.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
 
@@ -122,7 +122,7 @@ Inst* Builder::primitiveVariable(const std::string& name, const Expr* to) {
     const Type* first = asked(program_);
     for (size_t i = 0; i < instances_.size() && !first; ++i) first = asked(*instances_[i].binding->program);
     if (first && *first != wanted) return constant(0);
-    assign(*to, input("param:" + name, wanted, false));
+    assign(*to, input(InputName::parameter(name).text(), wanted, false));
     return constant(1);
 }
 
@@ -216,7 +216,7 @@ Inst* Builder::memberArray(const Expr& e) {
         s.place = place_;
         s.strings = {e.text};
         s.resultKinds = {Kind::Float, Kind::Float};
-        s.resultNames = {"", "length value"};
+        s.resultNames = {"", lengthResult("value")};
         s.resultType = {Base::Float, 0};
         for (int n = 0; n < a->index; ++n) {
             s.resultKinds.push_back(a->element);
@@ -251,7 +251,7 @@ Inst* Builder::memberLength(const Expr& e) {
         s.place = place_;
         s.strings = {e.text};
         s.resultKinds = {Kind::Float, Kind::Float};
-        s.resultNames = {"", "length value"};
+        s.resultNames = {"", lengthResult("value")};
         s.resultType = {Base::Float, 0};
         std::vector<Inst*> args;
         addArgument(s, args, handle, {Base::String, 0});

@@ -1,5 +1,6 @@
 // Answers of the renderer on their way into variables; outputs of the displacement shader; variables of the primitive by any name.
 #include "base/limits.h"
+#include "rsl/front/protocol.h"
 #include "rsl/ir/builder.h"
 #include <cstdio>
 
@@ -19,7 +20,7 @@ Builder::Receiver Builder::receiver(Site& s, const Expr& to, const std::string& 
     }
     Inst* a = array(to);
     const bool open = lengths(a) != nullptr;
-    if (open) add(Kind::Float, "length " + name);
+    if (open) add(Kind::Float, lengthResult(name));
     for (int n = 0; n < (open ? a->index : arrayLength(a)); ++n) add(a->element, name + "[" + std::to_string(n) + "]");
     return r;
 }
@@ -48,14 +49,15 @@ void Builder::receive(const Receiver& r, std::span<Inst* const> values, Inst* fo
 }
 
 /// displacement() of an output that the displacement shader of the primitive has: KernelOptions::stringParameters says so, as
-/// "displacement:NAME", with the kind of an element, the length of an array (else 0), and 1 where points differ. It is an input of the
+/// HeardOutput. It is an input of the
 /// kernel then, so that it has derivatives. False: the renderer is asked.
 bool Builder::heardDisplacement(const Expr& call, const std::string& name, Inst*& found) {
-    const std::string key = "displacement:" + name;
+    const std::string key = InputName::displacement(name).text();
     for (const auto& [given, text] : options_.stringParameters) {
         if (given != key) continue;
-        int kind = 0, length = 0, varying = 0;
-        if (std::sscanf(text.c_str(), "%d %d %d", &kind, &length, &varying) != 3) return false;
+        const std::optional<HeardOutput> heard = HeardOutput::parse(text);
+        if (!heard) return false;
+        const int length = heard->length;
         const Expr& to = *call.args[1];
         const Expr* root = &to;
         while (root->kind == ExprKind::Index && !root->args.empty()) root = root->args[0].get();
@@ -63,8 +65,8 @@ bool Builder::heardDisplacement(const Expr& call, const std::string& name, Inst*
         Inst* a = to.type.array ? array(to) : nullptr;
         const bool open = a && lengths(a);
         found = constant(0);
-        if (static_cast<int>(kindOf(to.type.element())) != kind || (length > 0) != (a != nullptr)) return true;
-        if (uniform && varying) return false; // there is no answer either, and a message why
+        if (static_cast<int>(kindOf(to.type.element())) != heard->kind || (length > 0) != (a != nullptr)) return true;
+        if (uniform && heard->varying) return false; // there is no answer either, and a message why
         if (a && (a->op != Op::ArrayNew || (!open && arrayLength(a) > length))) return true;
         found = constant(1);
         if (!a) {
@@ -104,7 +106,7 @@ Inst* Builder::askPrimitive(Inst* name, const Expr* to) {
     if (to) {
         r = receiver(s, *to, "value");
         if (to->symbol && to->symbol->storage == Storage::Uniform) {
-            s.names.push_back("__uniform");
+            s.names.push_back(kPairUniform);
             s.pairStrings.push_back("1");
         }
     }

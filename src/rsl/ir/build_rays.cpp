@@ -1,5 +1,6 @@
 // The map "raytrace" of environment() and shadow(): rays are sent instead of a lookup (rsl.md 12.3), by the requests of trace() and
 // transmission(), with their optional parameters.
+#include "rsl/front/protocol.h"
 #include "rsl/ir/builder.h"
 #include <set>
 
@@ -45,7 +46,7 @@ Inst* Builder::rays(const Expr& e, const char* name, const std::vector<std::pair
     if (cone && !coned) give("samplecone", cone, real);
     if ((cone || coned) && !samples) give("samples", constant(4), real); // what a map takes
     for (const auto& [output, parameter] : messageSlots_)
-        if (op.name == "trace") give("surface:" + output, get(parameter.first), parameter.second);
+        if (op.name == "trace") give(PairName::surface(output).text(), get(parameter.first), parameter.second);
     place_ = e.place;
     return call(Op::Request, std::move(s), std::move(args))[0];
 }

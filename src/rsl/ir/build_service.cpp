@@ -1,4 +1,5 @@
 // Calls that the renderer answers: what goes along with them, and what comes back.
+#include "rsl/front/protocol.h"
 #include "rsl/ir/builder.h"
 #include "base/limits.h"
 #include <algorithm>
@@ -216,17 +217,17 @@ Inst* Builder::service(const Expr& e, Op kind, int part) {
     if (kind == Op::Request && kLit.count(op.name))
         for (const auto& [name, parameter] : messageSlots_) {
             Inst* v = get(parameter.first);
-            s.names.push_back("surface:" + name);
+            s.names.push_back(PairName::surface(name).text());
             s.pairStrings.push_back("");
             addArgument(s, args, v, parameter.second);
         }
     if (quiet_ > 0 && (op.name == "printf" || op.name == "print")) return constant(0);
     if (constructing_ > 0 && (op.name == "printf" || op.name == "print")) { // once for the shader (printlog.h)
-        s.names.push_back("__once");
+        s.names.push_back(kPairOnce);
         s.pairStrings.push_back("1");
     }
     if (part >= 0) {
-        s.names.push_back("__part");
+        s.names.push_back(kPairPart);
         s.pairStrings.push_back(std::to_string(part));
     }
     // A uniform variable takes no varying parameter of another shader (answers/services.cpp).
@@ -236,14 +237,14 @@ Inst* Builder::service(const Expr& e, Op kind, int part) {
     };
     static const std::set<std::string> kShaders = {"surface", "displacement", "atmosphere", "incident", "opposite", "lightsource"};
     if (kShaders.count(op.name) && !received.empty() && isUniform(received[0].first.to)) {
-        s.names.push_back("__uniform");
+        s.names.push_back(kPairUniform);
         s.pairStrings.push_back("1");
     }
     static const std::set<std::string> kOfTheTurn = {"lightsource", "attribute", "shadername"};
     if (lightDepth_ == 0 && kOfTheTurn.count(op.name)) { // there is no light to ask about
         if (op.name == "lightsource" && shader_.kind != ShaderKind::Light)
             warn(e.place, "lightsource() asks about the light of an illuminance loop; there is none here, and it gives 0");
-        s.names.push_back("__outside");
+        s.names.push_back(kPairOutside);
         s.pairStrings.push_back("1");
     }
     place_ = e.place;

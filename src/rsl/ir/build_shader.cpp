@@ -1,5 +1,6 @@
 // The frame of a kernel: parameters in, outputs out.
 #include "base/limits.h"
+#include "rsl/front/protocol.h"
 #include "rsl/ir/build.h"
 #include "rsl/ir/builder.h"
 #include "rsl/front/leftmembers.h"
@@ -46,7 +47,7 @@ Inst* Builder::constantTexts(const std::string& name, int length, std::span<cons
 int Builder::parameterLength(const ShaderParameter& p, std::span<const std::pair<std::string, std::string>> given) const {
     if (p.symbol->type.array >= 0 && !p.symbol->open) return p.symbol->type.array;
     for (const auto& [name, value] : given)
-        if (name == p.symbol->name + "[]") return std::clamp(std::atoi(value.c_str()), 0, limits::kShaderArray);
+        if (name == lengthParameter(p.symbol->name)) return std::clamp(std::atoi(value.c_str()), 0, limits::kShaderArray);
     if (!p.defaultValue) return 0;
     if (p.defaultValue->kind == ExprKind::ArrayList) return p.defaultValue->text == "{}" ? 0 : static_cast<int>(p.defaultValue->args.size());
     return std::max(1, p.defaultValue->type.array);
@@ -84,7 +85,7 @@ Inst* Builder::parameterValue(const ShaderParameter& p) {
     if (std::find(computed.begin(), computed.end(), s.name) != computed.end()) return defaultValue(p, length);
     const auto& v = options_.varyingParameters;
     const bool varying = s.storage == Storage::Varying || std::find(v.begin(), v.end(), s.name) != v.end();
-    return input("param:" + s.name, type, !varying);
+    return input(InputName::parameter(s.name).text(), type, !varying);
 }
 
 /// A value that is known from outside as a constant.
@@ -133,8 +134,7 @@ bool Builder::buildDefaults(const std::vector<ParameterValue>& given) {
         const int n = v->kind == Kind::Array ? arrayLength(v) : 1;
         for (int e = 0; e < n; ++e) {
             Inst* value = v->kind == Kind::Array ? emit(Op::ArrayLoad, v->element, {v, constant(static_cast<float>(e))}) : v;
-            k_.outputs.push_back({"param:" + s->name + (v->kind == Kind::Array ? "[" + std::to_string(e) + "]" : ""), value->kind,
-                                  s->type.element()});
+            k_.outputs.push_back({OutputName::parameterOf(s->name, v->kind == Kind::Array ? e : -1).text(), value->kind, s->type.element()});
             emit(Op::Output, Kind::None, {value}, static_cast<int>(k_.outputs.size()) - 1);
         }
     }
@@ -154,8 +154,8 @@ bool Builder::buildShader() {
     if (shader_.body) scanAssigned(*shader_.body, assigned, seen);
     assignedAnywhere_ = assigned;
     for (const auto& heard : options_.stringParameters)
-        if (heard.first.rfind("displacement:this->", 0) == 0)
-            if (const Symbol* s = ownMember(shader_, heard.first.substr(19))) assigned.insert(slot(s));
+        if (const InputName told = InputName::parse(heard.first); told.member)
+            if (const Symbol* s = ownMember(shader_, told.name)) assigned.insert(slot(s));
     for (const ShaderParameter& p : shader_.parameters) {
         place_ = p.symbol->place;
         const int n = slot(p.symbol);
@@ -187,7 +187,7 @@ bool Builder::buildShader() {
     lightBlocks_.clear();
     blockRan_ = newSlot(boolean(false));
     if (shader_.kind == ShaderKind::Light && shader_.body) findBlocks(*shader_.body);
-    const bool opacityOnly = std::any_of(options_.stringParameters.begin(), options_.stringParameters.end(), [](const auto& p) { return p.first == "opacity()"; });
+    const bool opacityOnly = std::any_of(options_.stringParameters.begin(), options_.stringParameters.end(), [](const auto& p) { return p.first == kOpacityAlone; });
     if (shader_.body && shader_.object) objectBody(opacityOnly);
     else if (shader_.body) statement(*shader_.body);
     place_ = shader_.place;
@@ -211,12 +211,12 @@ bool Builder::buildShader() {
     if (light) {
         k_.facts.ambientLight = lightBlocks_.empty();
         for (const LightBlock& b : lightBlocks_)
-            k_.facts.blocks.push_back(!b.solar ? "illuminate" : b.stmt->exprs.empty() ? "solar()" : b.cone ? "solar cone" : "solar");
+            k_.facts.blocks.push_back(!b.solar ? "illuminate" : b.stmt->exprs.empty() ? kBlockSky : b.cone ? kBlockCone : kBlockSolar);
         // Where no block has run, Cl is ambient light.
         const auto cl = globals_.find("Cl");
         const Inst* ran = get(blockRan_);
         const bool always = isConst(ran) && ran->numbers[0] != 0;
-        if (!lightBlocks_.empty() && !always && cl != globals_.end() && !isZero(get(cl->second))) k_.facts.blocks.push_back("outside");
+        if (!lightBlocks_.empty() && !always && cl != globals_.end() && !isZero(get(cl->second))) k_.facts.blocks.push_back(kBlockOutside);
     }
     if (wanted.empty()) {
         switch (shader_.kind) {
@@ -233,25 +233,27 @@ bool Builder::buildShader() {
             if (lightBlocks_.empty()) wanted = {"Cl", "Ol"};
             for (size_t b = 0; b < lightBlocks_.size(); ++b)
                 for (const char* n : {"L", "Cl", "Ol", "lit"})
-                    wanted.push_back(n + (b ? "#" + std::to_string(b) : std::string()));
-            if (!k_.facts.blocks.empty() && k_.facts.blocks.back() == "outside") wanted.push_back("Cl#" + std::to_string(lightBlocks_.size()));
+                    wanted.push_back(OutputName::ofBlock(n, static_cast<int>(b)).text());
+            if (!k_.facts.blocks.empty() && k_.facts.blocks.back() == kBlockOutside)
+                wanted.push_back(OutputName::ofBlock("Cl", static_cast<int>(lightBlocks_.size())).text());
             break;
         default:
             wanted = {"Ci", "Oi"};
         }
     }
     for (const std::string& name : wanted) {
+        const OutputName asked = OutputName::parse(name);
         if (light && !lightBlocks_.empty()) {
             bool found = false;
             for (size_t b = 0; b < lightBlocks_.size(); ++b) {
-                const std::string tail = b ? "#" + std::to_string(b) : std::string();
                 const LightBlock& l = lightBlocks_[b];
-                if (name == "L" + tail) output(name, get(l.L), vector), found = true;
-                if (name == "Cl" + tail) output(name, get(l.only ? globals_.at("Cl") : l.Cl), color), found = true;
-                if (name == "Ol" + tail) output(name, get(l.only ? globals_.at("Ol") : l.Ol), color), found = true;
-                if (name == "lit" + tail) output(name, get(l.lit), real), found = true;
+                if (asked != OutputName::ofBlock(asked.name, static_cast<int>(b))) continue;
+                if (asked.name == "L") output(name, get(l.L), vector), found = true;
+                if (asked.name == "Cl") output(name, get(l.only ? globals_.at("Cl") : l.Cl), color), found = true;
+                if (asked.name == "Ol") output(name, get(l.only ? globals_.at("Ol") : l.Ol), color), found = true;
+                if (asked.name == "lit") output(name, get(l.lit), real), found = true;
             }
-            if (name == "Cl#" + std::to_string(lightBlocks_.size()) && k_.facts.blocks.back() == "outside") {
+            if (asked == OutputName::ofBlock("Cl", static_cast<int>(lightBlocks_.size())) && k_.facts.blocks.back() == kBlockOutside) {
                 output(name, emit(Op::Select, Kind::Triple, {get(blockRan_), zero(Kind::Triple), get(globals_.at("Cl"))}), color);
                 continue;
             }
@@ -262,23 +264,22 @@ bool Builder::buildShader() {
             continue;
         }
         bool found = false;
-        // "list[1]", "param:list[1]": an element. "Du:param:x", "Dv:param:x": how a parameter changes with u and v.
         if (name.back() == ']') {
-            const std::string whole = name.substr(0, name.find('[')), plain = whole.rfind("param:", 0) == 0 ? whole.substr(6) : whole;
+            const std::string& plain = asked.name;
             Inst* list = nullptr;
             for (const ShaderParameter& p : shader_.parameters)
-                if (p.symbol->name == plain && p.symbol->type.array && (p.symbol->output || plain != whole)) list = get(slot(p.symbol));
+                if (p.symbol->name == plain && p.symbol->type.array && (p.symbol->output || asked.parameter)) list = get(slot(p.symbol));
             if (const auto* c = channelNamed(plain); !list && c && c->second.array) list = get(c->first);
-            const int at = std::atoi(name.c_str() + whole.size() + 1), length = !list ? 0 : lengths(list) ? list->index : arrayLength(list);
+            const int at = asked.element, length = !list ? 0 : lengths(list) ? list->index : arrayLength(list);
             if (at >= 0 && at < length) output(name, emit(Op::ArrayLoad, list->element, {list, constant(static_cast<float>(at))}), {Base::Float, 0});
             continue;
         }
         for (const ShaderParameter& p : shader_.parameters)
             for (const Op d : {Op::Du, Op::Dv})
-                if (name == (d == Op::Du ? "Du:param:" : "Dv:param:") + p.symbol->name)
+                if (asked == OutputName::parameterOf(p.symbol->name, -1, d == Op::Du ? OutputName::What::Du : OutputName::What::Dv))
                     if (Inst* v = get(slot(p.symbol)); v->kind == Kind::Float || v->kind == Kind::Triple) output(name, emit(d, v->kind, {v}), p.symbol->type), found = true;
         for (const ShaderParameter& p : shader_.parameters)
-            if (name == "param:" + p.symbol->name || (p.symbol->output && name == p.symbol->name)) {
+            if (asked == OutputName::parameterOf(p.symbol->name) || (p.symbol->output && name == p.symbol->name)) {
                 output(name, get(slot(p.symbol)), p.symbol->type);
                 found = true;
                 break;
@@ -297,10 +298,10 @@ bool Builder::buildShader() {
                 const auto it = globals_.find(name);
                 output(name, it == globals_.end() ? initialGlobal(name, g.type) : get(it->second), g.type);
                 break;
-            } else if (name == "Du:" + std::string(g.name) || name == "Dv:" + std::string(g.name)) { // d/du and d/dv of it at the end
+            } else if (asked == OutputName::du(g.name) || asked == OutputName::dv(g.name)) { // how it changes, at the end
                 const auto it = globals_.find(g.name);
                 Inst* value = it == globals_.end() ? initialGlobal(g.name, g.type) : get(it->second);
-                output(name, emit(name[1] == 'u' ? Op::Du : Op::Dv, value->kind, {value}), g.type);
+                output(name, emit(asked.what == OutputName::What::Du ? Op::Du : Op::Dv, value->kind, {value}), g.type);
                 break;
             }
     }

@@ -1,3 +1,4 @@
+#include "rsl/front/protocol.h"
 #include "rsl/passes/gradients.h"
 #include "rsl/ir/edit.h"
 #include <algorithm>
@@ -41,7 +42,7 @@ struct Gradients {
         if (fresh) {
             Site s = k.sites[static_cast<size_t>(site)];
             s.resultKinds.insert(s.resultKinds.end(), count, s.resultKinds[0]);
-            for (size_t n = 0; n < count; ++n) s.resultNames.push_back(kSlopeResult + std::to_string(n));
+            for (size_t n = 0; n < count; ++n) s.resultNames.push_back(OutputName::slope(std::to_string(n)).text());
             k.sites.push_back(std::move(s));
         }
         return it->second;

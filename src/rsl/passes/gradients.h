@@ -5,9 +5,6 @@
 
 namespace alpenglow::rsl::ir {
 
-/// Names of the results that a Service gives besides its value: the derivative of it by each of its coordinates begins with this.
-inline constexpr const char* kSlopeResult = "slope:";
-
 /// Which arguments of a lookup are its coordinates, in order: s and t, or a direction; four of each where corners are given. The
 /// others say how wide the filter is, and what else.
 std::vector<size_t> lookupCoordinates(const Kernel&, const Inst* service);

@@ -1,3 +1,4 @@
+#include "rsl/front/protocol.h"
 #include "rsl/passes/optimize.h"
 #include "rsl/ir/edit.h"
 #include "rsl/ir/verify.h"
@@ -96,7 +97,7 @@ void optimize(Kernel& k, const KernelOptions& options, Diagnostics& diagnostics)
         addGradients(k);
         check(k, "gradients");
     }
-    if (k.kind == ShaderKind::Volume && std::find(options.outputs.begin(), options.outputs.end(), kSlopeOutput) != options.outputs.end()) {
+    if (k.kind == ShaderKind::Volume && std::find(options.outputs.begin(), options.outputs.end(), OutputName::slope("Ci").text()) != options.outputs.end()) {
         addSlope(k);
         check(k, "slope");
         if (options.optimize > 0) clean(k);

@@ -1,3 +1,4 @@
+#include "rsl/front/protocol.h"
 #include "rsl/passes/slope.h"
 #include "rsl/ir/edit.h"
 #include "rsl/passes/affine_analysis.h"
@@ -51,7 +52,7 @@ void addSlope(Kernel& k) {
         k.body = original;
         return;
     }
-    k.outputs.push_back({kSlopeOutput, Kind::Triple, {Base::Color, 0}});
+    k.outputs.push_back({OutputName::slope("Ci").text(), Kind::Triple, {Base::Color, 0}});
 }
 
 } // namespace alpenglow::rsl::ir

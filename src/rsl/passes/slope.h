@@ -4,10 +4,7 @@
 
 namespace alpenglow::rsl::ir {
 
-/// The name of the output that addSlope adds.
-inline constexpr const char* kSlopeOutput = "slope:Ci";
-
-/// For volume shaders: when the output Ci is affine in the incoming Ci, component by component, adds the output "slope:Ci", its
+/// For volume shaders: when the output Ci is affine in the incoming Ci, component by component, adds the output OutputName::slope("Ci"), its
 /// coefficient. Else leaves the kernel as it is. Long form; kernels with Requests are left alone.
 void addSlope(Kernel&);
 

@@ -1,0 +1,378 @@
+// One frame on its way through the renderer: what it needs, its rays, its pictures and its figures.
+#include "base/limits.h"
+#include "base/processors.h"
+#include "render/curve.h"
+#include "render/digest.h"
+#include "render/filmpicture.h"
+#include "render/imagertext.h"
+#include "render/imaging.h"
+#include "render/lacks.h"
+#include "render/levels.h"
+#include "render/partfile.h"
+#include "render/provenance.h"
+#include "render/renderer.h"
+#include "render/rendering.h"
+#include <cmath>
+#include <tbb/global_control.h>
+
+namespace alpenglow::render {
+namespace {
+
+using transport::Hider;
+
+Hider hiderOf(const scene::Options& o, Diagnostics& diags) {
+    if (o.hider == "path") return Hider::Path;
+    if (o.hider == "raytrace") return Hider::Raytrace;
+    if (o.hider != "hidden" && !o.hider.empty())
+        diags.report(Severity::Error, Rie::Incapable, o.hiderPlace, "there is no hider \"" + o.hider + "\": \"hidden\" is used",
+                     "the hiders are hidden, path and raytrace");
+    return Hider::Hidden;
+}
+
+uint32_t pathSamples(const scene::Options& o, const RenderSettings& s) {
+    if (s.spp > 0) return std::min(s.spp, limits::kSamplesPerPixel);
+    if (s.noise > 0 || s.seconds > 0) return limits::kSamplesPerPixel;
+    if (!o.pixelSamplesSet) return 64;
+    double n = std::round(double(std::max(1.f, o.pixelSamplesX)) * double(std::max(1.f, o.pixelSamplesY)));
+    return uint32_t(std::clamp(n, 1.0, double(limits::kSamplesPerPixel)));
+}
+
+/// The samples that --samples or --part asks for; nothing: all. Parts share the samples evenly, and a later part gets what is
+/// left.
+std::optional<SampleRange> partOf(const RenderSettings& s, uint32_t spp) {
+    if (!s.part) return s.samples;
+    const uint64_t k = (*s.part)[0], n = (*s.part)[1];
+    return SampleRange{uint32_t((k - 1) * spp / n), uint32_t(k * spp / n)};
+}
+
+} // namespace
+
+struct Renderer::FrameWork {
+    std::shared_ptr<const scene::Frame> frame;
+    FrameStats& told;
+    const scene::Options& o;
+    Hider hider;
+    bool path;
+    Camera camera;
+    uint32_t spp = 0;       ///< samples of a pixel
+    int nx = 1, ny = 1;     ///< the same as a grid; not under path
+    std::optional<SampleRange> part;
+    SampleRange wanted{};
+    OutputPlan plan;
+    std::string checkpoint; ///< "": none
+    transport::Settings settings;
+    std::shared_ptr<const transport::World> world;
+    PictureFacts picture;
+    Imager imager;
+    uint64_t nonFinite = 0; ///< samples that were left out
+
+    FrameWork(std::shared_ptr<const scene::Frame> of, FrameStats& stats, Diagnostics& d)
+        : frame(std::move(of)), told(stats), o(frame->options), hider(hiderOf(o, d)), path(hider == Hider::Path), camera(o, d) {}
+};
+
+void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats& told) {
+    if (settings_.stop && *settings_.stop) {
+        outcome_.interrupted = true;
+        return;
+    }
+    if (settings_.seedByFrame) settings_.seed = uint64_t(std::max(0, frame->options.frameNumber));
+    const int team = Team::startable(settings_.threads);
+    if (team < settings_.threads)
+        diagnostics_.reportOnce("threads", {Severity::Warning, Rie::System, {},
+                                            "only " + std::to_string(team) + " of " + std::to_string(settings_.threads) +
+                                                " threads can be started; the picture is the same, later", {}, {}});
+    tbb::global_control threads(tbb::global_control::max_allowed_parallelism, size_t(team));
+
+    FrameWork f(std::move(frame), told, diagnostics_);
+    if (!planFrame(f) || !buildFrame(f)) return;
+    double cpu = processCpuSeconds();
+    Job job(settings_, f.camera, f.plan, engine_, f.world, team, progress_, diagnostics_);
+    job.what = f.plan.pictures.front().name;
+    if (f.o.frameNumber > 0) job.what += " (frame " + std::to_string(f.o.frameNumber) + ")";
+    if (f.o.imager) f.imager = imagerOf(f);
+    describeFrame(f);
+    if (settings_.pixel) {
+        printPixel(job, f.o, f.wanted, f.path);
+        ++outcome_.rendered;
+    } else if (!f.path) {
+        renderGrid(f, job);
+    } else if (!renderSamples(f, job)) {
+        return;
+    }
+    stats_.cpuSec += processCpuSeconds() - cpu;
+    takeFigures(f, job);
+}
+
+/// What is to be rendered, and into which files. False: nothing, which was reported.
+bool Renderer::planFrame(FrameWork& f) {
+    f.spp = f.path ? pathSamples(f.o, settings_) : 0;
+    if (!f.path) {
+        gridOf(f.o, settings_, &f.nx, &f.ny);
+        f.spp = uint32_t(f.nx) * uint32_t(f.ny);
+        auto only = [&](bool asked, const char* option) {
+            if (asked)
+                diagnostics_.report(Severity::Warning, Rie::Incapable, {},
+                                    std::string(option) + " needs the hider \"path\"; it is ignored");
+        };
+        only(settings_.samples.has_value(), "--samples");
+        only(settings_.part.has_value(), "--part");
+        only(settings_.noise > 0, "--noise");
+        only(settings_.seconds > 0, "--time");
+        only(!settings_.checkpoint.empty(), "--checkpoint");
+    }
+    f.part = f.path ? partOf(settings_, f.spp) : std::nullopt;
+    if (f.part && f.part->begin == f.part->end) {
+        ++outcome_.refused;
+        diagnostics_.report(Severity::Error, Rie::Range, {},
+                            "--part: " + std::to_string(f.spp) + " samples cannot be split into " +
+                                std::to_string((*settings_.part)[1]) + " parts; this one is empty");
+        return false;
+    }
+    f.wanted = f.part.value_or(SampleRange{0, f.spp});
+    std::string file = settings_.pixel ? "" : fileFor(f.o, f.wanted.end - f.wanted.begin);
+    f.plan = planOutputs(f.o, settings_, f.path, file, diagnostics_);
+    if (f.plan.pictures.empty()) {
+        ++outcome_.refused;
+        diagnostics_.report(Severity::Error, Rie::MissingData, {}, "no Display of this frame can be made; it is not rendered");
+        return false;
+    }
+    names_.nextWorld();
+    f.checkpoint = f.path ? checkpointFile(f.o) : "";
+    nameOutputs(f.plan, f.o);
+    if (!canWrite(f.plan, f.checkpoint, f.part.has_value())) {
+        ++outcome_.refused;
+        outcome_.outputFailed = true;
+        return false;
+    }
+    if (!mayReplace(f.checkpoint)) {
+        ++outcome_.refused;
+        return false;
+    }
+    return true;
+}
+
+transport::Settings Renderer::engineSettings(const FrameWork& f) const {
+    transport::Settings t;
+    t.hider = f.hider;
+    t.seed = settings_.seed;
+    t.lanes = settings_.lanes;
+    t.maxDepth = settings_.maxDepth;
+    t.sampleClamp = settings_.sampleClamp;
+    t.direct = settings_.direct;
+    t.indirect = settings_.indirect;
+    t.unbiased = settings_.unbiased;
+    t.localRoulette = settings_.localRoulette;
+    t.dialect = settings_.dialect;
+    t.allowExec = settings_.allowExec;
+    t.read = readPolicyOf(settings_.scenePath, settings_.allowRead);
+    t.reads = settings_.reads;
+    t.pluginPaths = searchPaths(f.o, "rslplugin", settings_.shaderPaths, true);
+    t.shaderPaths = searchPaths(f.o, "shader", settings_.shaderPaths, true);
+    t.texturePaths = searchPaths(f.o, "texture", settings_.texturePaths, false);
+    t.outputs = f.plan.engineOutputs;
+    t.outputWidths = f.plan.engineWidths;
+    t.stop = settings_.stop;
+    return t;
+}
+
+bool Renderer::buildFrame(FrameWork& f) {
+    f.settings = engineSettings(f);
+    f.world = engine_.build(drawnLevels(f.frame, f.camera), f.settings, diagnostics_);
+    if (!f.world) {
+        if (settings_.stop && *settings_.stop) outcome_.interrupted = true;
+        ++outcome_.refused;
+        return false;
+    }
+    f.plan.resolve(f.world->outputWidths(), diagnostics_);
+    sayMissingOutputs(f.plan, *f.world, diagnostics_);
+    transport::World::Facts facts = f.world->facts();
+    stats_.buildSec += facts.buildSec;
+    stats_.compileSec += facts.compileSec;
+    return true;
+}
+
+/// Runs the imager of the frame; false: it was stopped.
+std::function<bool(int, const float*, const float*, float*, float*, float*, float*)> Renderer::imagerOf(FrameWork& f) {
+    return [&f, this, poll = static_cast<const StopFlag*>(nullptr), begun = false](
+                 int n, const float* x, const float* y, float* r, float* g, float* b, float* a) mutable {
+        // A stop that was asked for while rendering is obeyed by now: it must not end the imager's loops.
+        if (!begun) poll = settings_.stop && !*settings_.stop ? settings_.stop : nullptr;
+        begun = true;
+        f.world->runImager(n, x, y, r, g, b, a, diagnostics_, poll);
+        if (!poll || !*poll) return true;
+        outcome_.interrupted = true;
+        diagnostics_.reportOnce("imager:stopped", {Severity::Warning,
+                                                   Rie::NoError,
+                                                   f.o.imager->place,
+                                                   "interrupted while the imager was running; the picture is not written",
+                                                   {},
+                                                   {}});
+        return false;
+    };
+}
+
+void Renderer::describeFrame(FrameWork& f) {
+    f.picture.width = f.camera.width();
+    f.picture.height = f.camera.height();
+    f.picture.window = f.camera.window();
+    f.picture.pixelAspect = f.camera.pixelAspect();
+    f.picture.worldToCamera = f.camera.worldToCamera();
+    f.picture.worldToNDC = f.camera.worldToNDC();
+    f.picture.imager = f.o.imager != nullptr;
+    f.told.frame = f.o.frameNumber;
+    f.told.seed = settings_.seed;
+    f.told.hider = f.path ? "path" : f.hider == Hider::Raytrace ? "raytrace" : "hidden";
+    f.told.sceneHash = sceneDigest(*f.frame, "");
+    addProvenance(f.picture, settings_, *f.frame, f.told.hider, f.told.sceneHash);
+    stats_.curve = curvesOf(f.plan);
+    stats_.width = f.camera.window().width();
+    stats_.height = f.camera.window().height();
+}
+
+/// Tells of the pictures, or of what was in their way.
+void Renderer::writtenPictures(FrameWork& f, bool fine) {
+    outcome_.outputFailed |= !fine;
+    for (const OutputSpec& s : f.plan.pictures)
+        if (fine) f.told.pictures.push_back({s.name, s.type, s.channels()});
+}
+
+FilmDescription Renderer::filmOf(const FrameWork& f) const {
+    FilmDescription d;
+    d.width = f.camera.width();
+    d.height = f.camera.height();
+    d.window = f.camera.window();
+    d.seed = settings_.seed;
+    d.channels = filmChannels(f.plan);
+    if (f.part || !f.checkpoint.empty()) {
+        char how[160];
+        std::snprintf(how, sizeof how, "path depth %d clamp %.9g direct %d indirect %d unbiased %d local %d", f.settings.maxDepth,
+                      double(f.settings.sampleClamp), f.settings.direct, f.settings.indirect, f.settings.unbiased,
+                      f.settings.localRoulette);
+        d.scene = sceneDigest(*f.frame, how + (f.settings.dialect.empty() ? "" : " dialect " + f.settings.dialect));
+    }
+    return d;
+}
+
+/// The hider path. False: nothing could be rendered, which was reported.
+bool Renderer::renderSamples(FrameWork& f, Job& job) {
+    const FilmDescription d = filmOf(f);
+    if (!Film::check(d, diagnostics_)) {
+        ++outcome_.refused;
+        outcome_.outOfMemory = true;
+        return false;
+    }
+    std::unique_ptr<Film> film;
+    const OutputPolicy anywhere{".", true};
+    if (settings_.resume && !resume(f.checkpoint, d, film)) {
+        ++outcome_.refused;
+        return false;
+    }
+    if (!film) film = std::make_unique<Film>(d);
+    film->metadata[kPicturesKey] = planToText(f.plan, f.picture);
+    if (settings_.part) film->metadata[kWholeKey] = rangeText({0, f.spp});
+    if (std::string seen = imagerToText(*f.frame, f.settings); !seen.empty()) film->metadata[kImagerKey] = std::move(seen);
+    double saved = clockSeconds();
+    auto keep = [&](Film& kept, bool now = false) {
+        if (f.checkpoint.empty() || (!now && clockSeconds() - saved < settings_.checkpointSeconds)) return;
+        outcome_.outputFailed |= !savePart(kept, f.checkpoint, anywhere, diagnostics_);
+        saved = clockSeconds();
+    };
+    bool any = renderPath(job, *film, f.wanted, settings_.seed, keep);
+    double renderSec = job.elapsed();
+    stats_.renderSec += renderSec;
+    outcome_.interrupted |= job.interrupted;
+    if (job.outOfMemory) { // the old picture is better than few samples; a checkpoint goes on later
+        if (any) keep(*film, true);
+        std::rethrow_exception(job.outOfMemory);
+    }
+    if (!any) {
+        ++outcome_.refused;
+        if (job.interrupted)
+            diagnostics_.report(Severity::Warning, Rie::NoError, {},
+                                "interrupted before the first pass was whole; nothing is written");
+    } else {
+        writeFrameFilm(f, *film, renderSec);
+    }
+    stats_.spp = film->samplesPerPixel();
+    stats_.noise = noiseFigures(*film);
+    stats_.saturated += film->saturated();
+    f.nonFinite = film->nonFinite();
+    return true;
+}
+
+/// The picture of a film in which some pass is whole, and its part files.
+void Renderer::writeFrameFilm(FrameWork& f, Film& film, double renderSec) {
+    ++outcome_.rendered;
+    if (auto first = film.firstDropped()) reportDropped(film.nonFinite(), first->x, first->y, first->sample);
+    if (film.saturated())
+        diagnostics_.report(Severity::Warning, Rie::Range, {},
+                            std::to_string(film.saturated()) + " values beyond 2^60 were cut there");
+    if (settings_.stamp) addStamp(f.picture, settings_, renderSec);
+    writtenPictures(f, writeFilm(film, f.plan, f.picture, f.imager, settings_.allowWrite, diagnostics_));
+    if (f.part) {
+        const OutputSpec& first = f.plan.pictures.front();
+        outcome_.outputFailed |=
+            !savePart(film, sidecarName(first.name), {".", settings_.allowWrite || first.userFile}, diagnostics_);
+    }
+    if (!f.checkpoint.empty()) outcome_.outputFailed |= !savePart(film, f.checkpoint, OutputPolicy{".", true}, diagnostics_);
+}
+
+/// The hiders hidden and raytrace.
+void Renderer::renderGrid(FrameWork& f, Job& job) {
+    DroppedSamples dropped;
+    Reconstructions made = renderImages(job, f.nx, f.ny, jitterOf(f.o, diagnostics_), settings_.seed, &dropped);
+    f.nonFinite = dropped.count;
+    stats_.renderSec += job.elapsed();
+    stats_.spp = f.spp;
+    stats_.noise = {}; // not known: neighbouring pixels share samples
+    outcome_.interrupted |= job.interrupted;
+    ++outcome_.rendered;
+    if (job.interrupted)
+        diagnostics_.report(Severity::Warning, Rie::NoError, {},
+                            "interrupted: what was not reached stays black in the picture");
+    if (f.nonFinite) {
+        const auto at = dropped.first.value_or(std::array{-1, -1, -1});
+        reportDropped(f.nonFinite, at[2], at[1], at[0]);
+    }
+    f.picture.metadata["nonFinite"] = std::to_string(f.nonFinite);
+    f.picture.metadata["spp"] = std::to_string(f.spp);
+    f.picture.metadata["seed"] = std::to_string(settings_.seed);
+    auto pixels = [&](const OutputSpec& s) -> const Image& {
+        return made.images[made.of[size_t(&s - f.plan.pictures.data())]];
+    };
+    if (settings_.stamp) addStamp(f.picture, settings_, job.elapsed());
+    writtenPictures(f, writeOutputs(f.plan, f.picture, pixels, f.imager, settings_.allowWrite, diagnostics_));
+}
+
+void Renderer::takeFigures(const FrameWork& f, Job& job) {
+    transport::Counters c = job.counters();
+    stats_.totalRays += totalRays(c);
+    stats_.rays["camera"] += c.camera;
+    stats_.rays["diffuse"] += c.diffuse;
+    stats_.rays["specular"] += c.specular;
+    stats_.rays["transmission"] += c.transmission;
+    stats_.rays["shadow"] += c.shadow;
+    stats_.shading.points += c.points;
+    stats_.shading.batches += c.batches;
+    stats_.lanesUsed += double(c.lanesUsed);
+    stats_.lanesRun += double(c.lanesRun);
+    stats_.depthSum += double(c.depthSum);
+    stats_.paths += double(c.paths);
+    stats_.depth.maximum = std::max(stats_.depth.maximum, c.depthMax);
+    stats_.nonFinite += f.nonFinite;
+    if (!settings_.pixel) sayEmptyPicture(job, *f.frame, diagnostics_);
+    const transport::World::Facts facts = f.world->facts(); // kernels may be compiled while rendering
+    stats_.shading.kernels = facts.kernels;
+    stats_.shading.affineKernels = facts.affine;
+    stats_.shading.suspendingKernels = facts.suspending;
+    stats_.shading.cacheHits = facts.cacheHits;
+    if (c.overLimit)
+        diagnostics_.report(Severity::Error, Rie::Limit, {},
+                            std::to_string(c.overLimit) +
+                                " ray calls were beyond the memory for waiting shaders and brought nothing");
+    if (c.depthCap && f.path)
+        diagnostics_.report(Severity::Info, Rie::NoError, {},
+                            std::to_string(c.depthCap) + " paths were cut at the greatest depth, which is a bias (--max-depth)");
+}
+
+} // namespace alpenglow::render

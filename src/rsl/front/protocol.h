@@ -1,0 +1,175 @@
+// Names that the compiler and those who run its kernels have agreed on: of inputs, outputs, pairs of call sites, hidden
+// parameters and handles. A name is made from a record here and taken apart here, when a kernel is built or bound; nobody else
+// prints or parses one (tests/base/protocol_test.cpp reads the sources), and nobody does while rendering.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace alpenglow::rsl {
+
+/// ir::Input::name: what fills an input.
+struct InputName {
+    enum class Kind : uint8_t {
+        Variable,     ///< a predefined variable: "P"
+        Parameter,    ///< a parameter of the shader: "param:Kd"
+        Displacement, ///< an output of the displacement shader of the primitive: "displacement:height"
+        Space         ///< the matrix between two spaces: "space:object>current"
+    };
+    Kind kind = Kind::Variable;
+    std::string name;     ///< of the variable or parameter; of a member of a class without "this->"
+    bool member = false;  ///< Displacement: what the displacement() of a class left in a member, "displacement:this->NAME"
+    bool length = false;  ///< of that the number of elements: "displacement:this->NAME#"
+    std::string from, to; ///< Space
+
+    static InputName parse(std::string_view);
+    static InputName parameter(std::string_view name) { return {Kind::Parameter, std::string(name), false, false, {}, {}}; }
+    static InputName space(std::string_view from, std::string_view to) {
+        return {Kind::Space, {}, false, false, std::string(from), std::string(to)};
+    }
+    /// Under it the caller of the compiler says what there is, too: KernelOptions::stringParameters (HeardOutput, HeardMember).
+    static InputName displacement(std::string_view name) { return {Kind::Displacement, std::string(name), false, false, {}, {}}; }
+    static InputName left(std::string_view member, bool length = false) {
+        return {Kind::Displacement, std::string(member), true, length, {}, {}};
+    }
+    std::string text() const;
+    bool operator==(const InputName&) const = default;
+};
+
+/// KernelOptions::outputs, ir::OutputSlot::name.
+struct OutputName {
+    enum class What : uint8_t {
+        Value, ///< "Ci", "list[1]", "param:Kd"
+        Du,    ///< its derivative by u: "Du:P", "Du:param:height"
+        Dv,
+        Given, ///< of an output that outputchannel() makes when the shader runs: 1 where it was made, "given:NAME"
+        Slope  ///< how much of a variable comes through a volume shader: "slope:Ci"
+    };
+    What what = What::Value;
+    bool parameter = false; ///< "param:": any parameter; else a variable, an output parameter or a channel
+    bool member =
+        false; ///< with `parameter`: a member of a class that displacement() leaves to its other methods, "param:this->NAME"
+    bool length = false;    ///< of that the number of elements, "param:this->NAME#"
+    std::string name;       ///< without all of that
+    int element = -1;       ///< of an array: "list[1]"; -1: the whole
+    int block = 0;          ///< of a light: the number of its illuminate or solar statement, from the second on "Cl#1"
+
+    static OutputName parse(std::string_view);
+    /// A variable or an output as displays name it.
+    static OutputName of(std::string_view name) { return plain(What::Value, name); }
+    static OutputName du(std::string_view name) { return plain(What::Du, name); }
+    static OutputName dv(std::string_view name) { return plain(What::Dv, name); }
+    static OutputName given(std::string_view name) { return plain(What::Given, name); }
+    /// Of such a name the output's; empty for any other.
+    static std::string_view givenName(std::string_view);
+    static OutputName slope(std::string_view name) { return plain(What::Slope, name); }
+    /// Any parameter, and how it changes.
+    static OutputName parameterOf(std::string_view name, int element = -1, What what = What::Value) {
+        return {what, true, false, false, std::string(name), element, 0};
+    }
+    static OutputName left(std::string_view member, bool length = false, What what = What::Value) {
+        return {what, true, true, length, std::string(member), -1, 0};
+    }
+    /// Of a light: "L", "Cl", "Ol" or "lit" of one of its statements.
+    static OutputName ofBlock(std::string_view name, int block) {
+        return {What::Value, false, false, false, std::string(name), -1, block};
+    }
+    std::string text() const;
+    bool operator==(const OutputName&) const = default;
+
+private:
+    static OutputName plain(What what, std::string_view name) { return {what, false, false, false, std::string(name), -1, 0}; }
+
+public:
+    /// Of "list[3]": "list".
+    static std::string withoutElement(std::string_view name) { return std::string(name.substr(0, name.find('['))); }
+};
+
+/// What a surface's kernel is told of an output of the displacement shader that it may ask for: the value of the string parameter
+/// InputName::displacement(NAME).
+struct HeardOutput {
+    int kind = 0;         ///< ir::Kind of an element
+    int length = 0;       ///< of an array; 0: none
+    bool varying = false; ///< points differ
+    static std::optional<HeardOutput> parse(const std::string&);
+    std::string text() const;
+};
+/// The same of a member that displacement() leaves: InputName::left(NAME).
+struct HeardMember {
+    int count = 0;       ///< elements of an array; 0: none
+    bool length = false; ///< their number is an input, too
+    static HeardMember parse(const std::string&);
+    std::string text() const;
+};
+
+// Further string parameters that say how a kernel is to be built.
+inline constexpr char kBeginQuiet[] = "begin()";    ///< begin() of the class prints nothing
+inline constexpr char kOpacityAlone[] = "opacity()"; ///< what the method opacity() gives is Oi
+/// Under it the number of elements that the scene gave an array of open length.
+std::string lengthParameter(std::string_view array);
+/// Whether a string parameter is such a number.
+bool isLengthParameter(std::string_view name);
+
+/// A pair of a call site: ir::Site::names.
+struct PairName {
+    enum class Kind : uint8_t {
+        Plain,
+        Send,   ///< a value for a parameter of the lights of a loop: "send:light:NAME"
+        Surface ///< the value of an output of the surface, for lights that ask: "surface:NAME"
+    };
+    Kind kind = Kind::Plain;
+    std::string name;
+    int element = -1; ///< Send: of an array that is sent element by element
+    static PairName parse(std::string_view);
+    static PairName send(std::string_view name, int element = -1) { return {Kind::Send, std::string(name), element}; }
+    static PairName surface(std::string_view name) { return {Kind::Surface, std::string(name), -1}; }
+    std::string text() const;
+};
+// Pairs that nobody has written: what the compiler says of a call.
+inline constexpr char kPairSetUp[] = "__setup";     ///< a loop over lights has a setup
+inline constexpr char kPairOutside[] = "__outside"; ///< outside of loops over lights
+inline constexpr char kPairPart[] = "__part";       ///< of the form of trace() that gives an array: which element
+inline constexpr char kPairOnce[] = "__once";       ///< in construct(): once for the shader
+inline constexpr char kPairUniform[] = "__uniform"; ///< the variable that takes the answer is uniform
+
+/// ir::Site::resultNames of a query: its answer, and before that of an array of open length how long it is.
+std::string lengthResult(std::string_view name);
+bool isLengthResult(std::string_view name);
+/// Whether a result is an element of an array.
+bool isElementResult(std::string_view name);
+
+// Parameters that mean something to the renderer whoever declares them.
+inline constexpr char kNonDiffuse[] = "__nondiffuse", kNonSpecular[] = "__nonspecular", kCategory[] = "__category";
+inline constexpr char kBoundSize[] = "__displacementbound_sphere", kBoundSpace[] = "__displacementbound_coordinatesystem";
+/// Of a light that sends through generateSamples(): ways and light of its samples, and whether their light is traced.
+inline constexpr char kSentL[] = "__sentL", kSentCl[] = "__sentCl", kSentShadows[] = "__sentShadows";
+
+// What gives light where, ir::KernelFacts::blocks.
+inline constexpr char kBlockOutside[] = "outside"; ///< outside of illuminate and solar statements
+inline constexpr char kBlockSky[] = "solar()", kBlockCone[] = "solar cone", kBlockSolar[] = "solar";
+
+/// Channels that get their names when the shader runs have keys that begin so (front/calls_bind.cpp); of channels of one name and
+/// several types the type stands behind it.
+inline constexpr char kAnyChannel = '?';
+/// A name as outputchannel() has it: without "light:" or "local:", which keep the channel where it is made.
+inline constexpr std::string_view kKeptChannels[] = {"light:", "local:"};
+struct ChannelName {
+    std::string name;
+    bool kept = false;
+    static ChannelName parse(std::string_view);
+};
+
+/// Handles that getlights() gives: the number of a light among those of the frame, and what its declaration called it.
+struct LightHandle {
+    int light = -1;
+    std::string declared;
+    /// Nothing for any other handle.
+    static std::optional<LightHandle> parse(std::string_view);
+    std::string text() const;
+};
+/// What "%h" and messages call a handle: lights and co-shaders by the handle of their declaration, no shader "<null>" (seed,
+/// format()).
+std::string shownHandle(const std::string& handle);
+
+} // namespace alpenglow::rsl

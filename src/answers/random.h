@@ -12,6 +12,7 @@ enum RandomUse : uint32_t {
     kChooseLight,
     kSampleBase,
     kLevel,
+    kFlight,
     kLightPoint = 1u << 21
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 #include "answers/answers.h"
 #include "wave/batchcontext.h"
+#include "wave/flight.h"
 #include "wave/samples.h"
 #include "wave/vertex.h"
 #include <deque>
@@ -32,6 +33,10 @@ public:
     bool beginsAnew() const { return beginsAnew_; }
     void follow(std::span<const Sched::Task> slice, Sched&) override; // hits.cpp
     bool settle(Sched&) override;
+    /// From now on this may happen on the way of rays; before the first trace(). It must outlive the engine.
+    void happens(FlightEvent& e) { events_.push_back(&e); }
+    /// For events: the flight is over, and its ray goes on as `next`, a copy of it with what has changed (at least the vertex). flight.cpp
+    void divert(Flight&, PathRay next, Sched&);
     Counters counters;
 
     // faults.cpp
@@ -59,6 +64,7 @@ public:
     /// What is left of light along each ray. `ray`: for the random numbers and footprint of shaders on the way; may be null.
     void transmittances(std::span<const ShadowRay>, std::span<Color> out);
     Color transmittance(const ShadowRay&);
+    void passSurfaces(std::span<const ShadowRay>, std::span<Color> out); ///< what surfaces and media leave
     /// The rays of a transmission() from a to b, for `out`: as many as it asks for, each with its share of `weight`.
     void transmissionRays(const SiteInfo&, const ShadePoint&, const Vec3& at, const geometry::SurfacePoint*,
                           const std::function<float(int)>& row, const Color& weight, TargetId, uint32_t site, uint32_t occurrence,
@@ -201,6 +207,11 @@ private:
     void queueHit(const Sched::Task&, const accel::Hit&, Sched&);
     void shadeHits(size_t group, Sched&);
     void placePoints(HitQueue&, BatchContext&);
+    // flight.cpp: what happens on the way. Flights that are over leave the batch, or the list.
+    void fly(BatchContext&, Sched&);
+    void fly(std::vector<const Sched::Task*>& missed, Sched&);
+    std::vector<FlightEvent*> events_;
+    std::vector<Flight> flights_;
     void shine(const BatchContext&, Sched&);
     std::vector<class KernelStrip*> waiting_; ///< whose requests nobody has followed yet
     std::vector<PathSample> samples_; ///< of the call of trace()

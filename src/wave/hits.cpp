@@ -18,6 +18,7 @@ void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
         if (!hits_[i].valid()) missed.push_back(&slice[i]);
         else queueHit(slice[i], hits_[i], sched);
     }
+    fly(missed, sched);
     misses(missed, sched);
     for (const Sched::Task* t : missed) freeExtra(t->payload);
     // While kernels wait for rays nothing is held back: depth before breadth keeps their frames few.
@@ -105,6 +106,8 @@ void Engine::shadeHits(size_t group, Sched& sched) {
     c->engine = this;
     c->ownsExtras = true;
     placePoints(hitQueues_[group], *c);
+    fly(*c, sched);
+    if (c->rays.empty()) return giveBack(std::move(c));
     shine(*c, sched);
     const bool same = std::all_of(c->bindings.begin(), c->bindings.end(), [&](int b) { return b == c->bindings[0]; });
     c->binding = &world_->bindings_[size_t(c->bindings[0])];

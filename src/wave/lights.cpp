@@ -22,6 +22,7 @@ shading::TargetValue Engine::rayOfLight(BatchContext& c, const SiteInfo& s, int 
     // bounce deeper.
     if (!inner_) {
         inner_ = std::make_unique<Engine>(world_, diagnostics_);
+        inner_->events_ = events_;
         inner_->raysAtOnce_ = std::min(raysAtOnce_, int(Sched::kStripRays));
         inner_->sched_ = std::make_unique<Sched>(*inner_, stop, limits::kFrameBytesPerThread, inner_->raysAtOnce_);
     }

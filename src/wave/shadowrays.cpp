@@ -146,6 +146,11 @@ void Engine::takeOpacities(std::span<const OpacityQuery> met, const std::functio
 
 void Engine::transmittances(std::span<const ShadowRay> rays, std::span<Color> out) {
     counters.shadow += rays.size();
+    passSurfaces(rays, out);
+    for (FlightEvent* e : events_) e->dim(*this, rays, out);
+}
+
+void Engine::passSurfaces(std::span<const ShadowRay> rays, std::span<Color> out) {
     const bool media = !world_->media_.empty();
     if (world_->allOpaque_ && !media) {
         shadowRays_.clear();

@@ -1,0 +1,57 @@
+// Stage fly. Where nothing can happen it costs nothing.
+#include "wave/flight.h"
+#include "wave/engine.h"
+
+namespace alpenglow::transport {
+
+void Engine::fly(BatchContext& c, Sched& sched) {
+    if (events_.empty()) return;
+    flights_.clear();
+    for (size_t i = 0; i < c.rays.size(); ++i) {
+        const ShadePoint& p = c.points[i];
+        const Vec3& at = p.surface.displaced ? p.surface.displacedP : p.surface.P; // rays meet facets
+        flights_.push_back({&c.rays[i], c.targets[i], length(at - c.rays[i].origin), &p, c.bindings[i]});
+    }
+    for (FlightEvent* e : events_) e->happen(*this, flights_, sched);
+    size_t kept = 0;
+    for (size_t i = 0; i < flights_.size(); ++i) {
+        if (flights_[i].over) {
+            freeExtra(c.rays[i]);
+            sched.release(c.targets[i]);
+            continue;
+        }
+        if (kept != i) {
+            c.points[kept] = c.points[i];
+            c.rays[kept] = c.rays[i];
+            c.targets[kept] = c.targets[i];
+            c.bindings[kept] = c.bindings[i];
+            c.points[kept].ray = &c.rays[kept];
+        }
+        ++kept;
+    }
+    c.points.resize(kept);
+    c.rays.resize(kept);
+    c.targets.resize(kept);
+    c.bindings.resize(kept);
+}
+
+void Engine::fly(std::vector<const Sched::Task*>& missed, Sched& sched) {
+    if (events_.empty() || missed.empty()) return;
+    flights_.clear();
+    for (const Sched::Task* t : missed) flights_.push_back({&t->payload, t->target, t->payload.maxDistance});
+    for (FlightEvent* e : events_) e->happen(*this, flights_, sched);
+    size_t kept = 0;
+    for (size_t i = 0; i < missed.size(); ++i) {
+        if (flights_[i].over) freeExtra(missed[i]->payload);
+        else missed[kept++] = missed[i];
+    }
+    missed.resize(kept);
+}
+
+void Engine::divert(Flight& f, PathRay next, Sched& sched) {
+    next.extra = newExtra(extraOf(*f.ray)); // each ray has its own
+    sched.spawn(next.bounces + next.layers, f.target, next);
+    f.over = true;
+}
+
+} // namespace alpenglow::transport

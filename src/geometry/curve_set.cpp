@@ -106,6 +106,7 @@ bool CurveSet::take(const ShapeSource& s, Diagnostics& diag) {
             say(diag, p, Severity::Warning, "\"Pw\" with weights that differ: its points are divided by them, the curves are not rational");
     }
     if (!points) return fail(Rie::MissingData, "\"P\" is missing");
+    if (p.ints.empty()) return fail(Rie::MissingData, "no number of points of any curve is given");
     for (int n : p.ints) {
         if (n < 0) return fail(Rie::Range, "a curve has " + std::to_string(n) + " points");
         vertices_ += size_t(n);

@@ -360,7 +360,7 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
                 if (same) std::fill_n(to, count, valueOf_[0]);
                 else for (int i = 0; i < count; ++i) to[i] = valueOf_[views.index(i)];
                 for (int i = 0; i < count; ++i)
-                    if (views[i].moving) to[i] += views[i].moving->change(s.name, size_t(c), points[i].shutter);
+                    if (views[i].moving) to[i] += views[i].moving->change(s.name.name, size_t(c), points[i].shutter);
                 if (!s.scalar)
                     for (int p = 1; p < np; ++p) std::fill_n(&at(c, p, 0), n, 0.f);
             }
@@ -389,7 +389,7 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
             if (!numbers) continue;
             for (int c = 0, most = std::min(comps * s.elements, int(numbers->size())); c < most; ++c) {
                 at(c, 0, i) = (*numbers)[size_t(c)];
-                if (views[i].moving) at(c, 0, i) += views[i].moving->change(s.name, size_t(c), points[i].shutter);
+                if (views[i].moving) at(c, 0, i) += views[i].moving->change(s.name.name, size_t(c), points[i].shutter);
             }
         }
         return;

@@ -108,6 +108,7 @@ struct Accel::Impl {
         if (t <= r.passed && (t < r.passed || std::pair(s, prim) <= std::pair(r.excludeShape, r.excludePrim))) return false;
         if (!q.any && !before(t, s, prim, q.best)) return false;
         const Shape& shape = *shapes[s];
+        if (shape.trimmed() && !shape.keepsHit(prim, b1, b2)) return false;
         if (shape.oneSided() && r.sides != Sides::Both &&
             (dot(shape.hitNormal(prim, b1, b2), Vec3d(r.dir)) >= 0) != (r.sides == Sides::Back))
             return false;

@@ -39,14 +39,52 @@ NetDirection NetDirection::nurbs(int n, int order, std::vector<double> knots, do
     return d;
 }
 
+int NetDirection::spanOf(double t) const {
+    const auto first = knots_.begin() + order_ - 1, last = knots_.begin() + n_;
+    int span = int(std::upper_bound(first + 1, last, t) - knots_.begin()) - 1;
+    while (span > order_ - 1 && knots_[size_t(span)] == knots_[size_t(span) + 1]) --span; // the end of the last real interval
+    return span;
+}
+
+std::vector<double> NetDirection::borders() const {
+    std::vector<double> b{0};
+    if (order_ == 0) {
+        for (int i = 1; i < patches_; ++i) b.push_back(double(i) / patches_);
+    } else {
+        for (int i = order_; i < n_; ++i) {
+            const double x = (knots_[size_t(i)] - lo_) / (hi_ - lo_);
+            if (x > b.back() && x < 1) b.push_back(x);
+        }
+    }
+    b.push_back(1);
+    return b;
+}
+
+bool NetDirection::torn(double border) const {
+    if (order_ == 0) return false;
+    int times = 0;
+    for (int i = order_; i < n_; ++i) times += (knots_[size_t(i)] - lo_) / (hi_ - lo_) == border;
+    return times >= order_;
+}
+
+NetDirection::Cell NetDirection::cell(double x) const {
+    x = std::clamp(x, 0.0, 1.0);
+    if (order_ == 0) {
+        const int i = std::clamp(int(x * patches_), 0, patches_ - 1);
+        return {i, x * patches_ - i, double(patches_)};
+    }
+    const double t = lo_ + x * (hi_ - lo_);
+    const int span = spanOf(t);
+    const double first = knots_[size_t(span)], length = knots_[size_t(span) + 1] - first;
+    return {span - (order_ - 1), length > 0 ? std::clamp((t - first) / length, 0.0, 1.0) : 0, length > 0 ? (hi_ - lo_) / length : 0};
+}
+
 BasisSpan NetDirection::at(double x) const {
     BasisSpan s;
     x = std::clamp(x, 0.0, 1.0);
     if (order_ > 0) {
         double t = lo_ + x * (hi_ - lo_);
-        int k = order_ - 1, span = k;
-        while (span < n_ - 1 && t >= knots_[size_t(span) + 1]) ++span;
-        while (span > k && knots_[size_t(span)] == knots_[size_t(span) + 1]) --span; // the end of the last real interval
+        const int k = order_ - 1, span = spanOf(t);
         // Cox-de Boor, degree by degree; derivatives by the difference rule from one and two degrees lower.
         auto K = [&](int i) { return knots_[size_t(i)]; };
         auto basis = [&](int degree, double* b) { // b[0..degree]: functions span-degree .. span
@@ -71,10 +109,11 @@ BasisSpan NetDirection::at(double x) const {
                 out[r] = degree * (a - c);
             }
         };
-        double b[8], b1[8], b2[8], d1[8], e[8], dd[8];
+        constexpr int kMost = limits::kNurbsOrder;
+        double b[kMost], b1[kMost], b2[kMost], d1[kMost], e[kMost], dd[kMost];
         basis(k, b);
-        std::fill(d1, d1 + 8, 0.0);
-        std::fill(dd, dd + 8, 0.0);
+        std::fill(d1, d1 + order_, 0.0);
+        std::fill(dd, dd + order_, 0.0);
         if (k >= 1) basis(k - 1, b1), derive(k, b1, d1);
         if (k >= 2) basis(k - 2, b2), derive(k - 1, b2, e), derive(k, e, dd);
         double scale = hi_ - lo_;
@@ -108,8 +147,9 @@ BasisSpan NetDirection::at(double x) const {
 }
 
 ControlNet::ControlNet(ShapeSource s, NetDirection u, NetDirection v, std::vector<std::array<double, 4>> points,
-                       Diagnostics& diag)
-    : Parametric(std::move(s)), u_(std::move(u)), v_(std::move(v)), points_(std::move(points)) {
+                       Diagnostics& diag, std::shared_ptr<const TrimRegion> trim)
+    : Parametric(std::move(s)), u_(std::move(u)), v_(std::move(v)), points_(std::move(points)), trim_(std::move(trim)) {
+    mostWeights_ = std::max(mostWeights_, u_.width() * v_.width());
     for (auto& p : points_) {
         if (p[3] != 1) rational_ = true;
         for (size_t k = 0; k < 3; ++k) pointScale_ = std::max(pointScale_, std::fabs(p[k] / p[3]));
@@ -191,6 +231,52 @@ LocalPoint ControlNet::cameraPoint(double u, double v) const {
     return r;
 }
 
+int ControlNet::faceAt(double u, double v) const { return v_.cell(v).patch * u_.patches() + u_.cell(u).patch; }
+
+void ControlNet::trim(TriMesh& m) {
+    if (!trim_) return;
+    std::vector<uint32_t> kept;
+    edge_.clear();
+    for (size_t t = 0; t + 3 <= m.made.size(); t += 3) {
+        const Vec2 a = meshParam_[m.made[t]], b = meshParam_[m.made[t + 1]], c = meshParam_[m.made[t + 2]];
+        const auto cover = trim_->cover(std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::max({a.x, b.x, c.x}),
+                                        std::max({a.y, b.y, c.y}));
+        if (cover == TrimRegion::Cover::None) continue;
+        kept.insert(kept.end(), {m.made[t], m.made[t + 1], m.made[t + 2]});
+        edge_.push_back(cover == TrimRegion::Cover::Some);
+    }
+    m.made = std::move(kept);
+    trimmed_ = true;
+}
+
+bool ControlNet::keepsHit(uint32_t prim, double b1, double b2) const {
+    if (prim >= edge_.size() || !edge_[prim]) return true;
+    const uint32_t* i = &mesh_.index[3 * size_t(prim)];
+    const Vec2 p0 = meshParam_[i[0]], p1 = meshParam_[i[1]], p2 = meshParam_[i[2]];
+    const double b0 = 1 - b1 - b2;
+    return trim_->keeps(b0 * p0.x + b1 * p1.x + b2 * p2.x, b0 * p0.y + b1 * p1.y + b2 * p2.y);
+}
+
+double ControlNet::area() const {
+    if (!trim_) return Parametric::area();
+    double sum = 0;
+    for (const TrimRegion::Node& n : trim_->nodes()) {
+        const LocalPoint p = cameraPoint(n.u, n.v);
+        sum += n.weight * length(cross(p.Pu, p.Pv));
+    }
+    return sum;
+}
+
+SurfacePoint ControlNet::sampleArea(double xi1, double xi2) const {
+    double u = xi1, v = xi2;
+    if (trim_) trim_->sample(xi1, xi2, u, v); // where it finds nothing the density is 0
+    return evaluateLocal(0, u, v);
+}
+
+double ControlNet::sampleDensity(const SurfacePoint& p) const {
+    return trim_ ? Parametric::sampleDensity(p) * trim_->density(p.b1, p.b2) : Parametric::sampleDensity(p);
+}
+
 size_t ControlNet::classCount(Class c) const {
     switch (c) {
     case Class::Constant: return 1;
@@ -205,7 +291,16 @@ int ControlNet::weights(Class c, const SurfacePoint& p, Weight w[16]) const {
         w[0] = {c == Class::Uniform ? size_t(p.face) : 0, 1, 0, 0};
         return 1;
     }
-    if (c != Class::Vertex) return bilinearWeights(p.b1, p.b2, u_.varyings(), v_.varyings(), u_.wrap(), v_.wrap(), w);
+    if (c != Class::Vertex) {
+        const NetDirection::Cell i = u_.cell(p.b1), j = v_.cell(p.b2);
+        const int nu = u_.varyings(), i1 = (i.patch + 1) % nu, j1 = (j.patch + 1) % v_.varyings();
+        auto at = [&](int a, int b) { return size_t(b) * size_t(nu) + size_t(a); };
+        w[0] = {at(i.patch, j.patch), (1 - i.at) * (1 - j.at), -i.slope * (1 - j.at), -j.slope * (1 - i.at)};
+        w[1] = {at(i1, j.patch), i.at * (1 - j.at), i.slope * (1 - j.at), -j.slope * i.at};
+        w[2] = {at(i.patch, j1), (1 - i.at) * j.at, -i.slope * j.at, j.slope * (1 - i.at)};
+        w[3] = {at(i1, j1), i.at * j.at, i.slope * j.at, j.slope * i.at};
+        return 4;
+    }
     BasisSpan a = u_.at(p.b1), b = v_.at(p.b2);
     int n = 0;
     for (int j = 0; j < b.count; ++j)

@@ -1,6 +1,8 @@
 // Patches over a rectangular net of control points: bilinear and bicubic, single and meshes, plain and rational.
 #pragma once
+#include "base/limits.h"
 #include "geometry/parametric.h"
+#include "geometry/trim.h"
 #include <array>
 
 namespace alpenglow::geometry {
@@ -8,8 +10,8 @@ namespace alpenglow::geometry {
 /// Weights of the control points that act at one parameter value along one direction, with derivatives by the parameter.
 struct BasisSpan {
     int count = 0;
-    int index[8];             ///< control index along the direction, wrapped
-    double w[8], d[8], dd[8];
+    int index[limits::kNurbsOrder]; ///< control index along the direction, wrapped
+    double w[limits::kNurbsOrder], d[limits::kNurbsOrder], dd[limits::kNurbsOrder];
 };
 
 /// One direction of a net: how many control points, and which basis joins them.
@@ -19,7 +21,7 @@ public:
     static NetDirection linear(int n, bool wrap);
     /// Cubic by a basis matrix (ri.md 8.3) and step.
     static NetDirection cubic(int n, bool wrap, const scene::Basis&);
-    /// B-spline of any order up to 8 over the knots, [lo, hi] mapped to 0..1 (ri.md 8.6).
+    /// B-spline of any order up to limits::kNurbsOrder over the knots, [lo, hi] mapped to 0..1 (ri.md 8.6).
     static NetDirection nurbs(int n, int order, std::vector<double> knots, double lo, double hi);
 
     int points() const { return n_; }
@@ -29,9 +31,19 @@ public:
     /// Count of varying values: one a patch border.
     int varyings() const { return wrap_ ? patches_ : patches_ + 1; }
     BasisSpan at(double x) const;
+    /// Control points that act at one place.
+    int width() const { return order_ > 0 ? order_ : width_; }
+    /// Where patches meet, from 0 to 1: knots of NURBS (each once), evenly spaced otherwise.
+    std::vector<double> borders() const;
+    /// Whether a knot is there so often that the two sides have no point in common.
+    bool torn(double border) const;
+    /// The patch at x, how far x lies in it (0..1), and how fast that grows. NURBS: between knots.
+    struct Cell { int patch; double at, slope; };
+    Cell cell(double x) const;
 
 private:
     int n_ = 0, patches_ = 0, step_ = 1, width_ = 2;
+    int spanOf(double t) const;
     bool wrap_ = false;
     std::array<std::array<double, 4>, 4> m_{}; ///< rows by power 3..0
     std::vector<double> knots_;
@@ -42,14 +54,24 @@ private:
 class ControlNet final : public Parametric {
 public:
     /// points: camera space, four coordinates each (weight last), u fastest.
-    ControlNet(ShapeSource, NetDirection u, NetDirection v, std::vector<std::array<double, 4>> points, Diagnostics&);
+    /// trim: the part that is kept, null for all.
+    ControlNet(ShapeSource, NetDirection u, NetDirection v, std::vector<std::array<double, 4>> points, Diagnostics&,
+               std::shared_ptr<const TrimRegion> trim = nullptr);
     int faces() const override { return u_.patches() * v_.patches(); }
+    bool keepsHit(uint32_t prim, double b1, double b2) const override;
+    double area() const override;
+    SurfacePoint sampleArea(double xi1, double xi2) const override;
+    double sampleDensity(const SurfacePoint&) const override;
 
 protected:
     LocalPoint cameraPoint(double u, double v) const override;
     Vec3d cameraPosition(double u, double v) const override;
     int patchesU() const override { return u_.patches(); }
     int patchesV() const override { return v_.patches(); }
+    std::vector<double> borders(int direction) const override { return (direction == 0 ? u_ : v_).borders(); }
+    bool torn(int direction, double border) const override { return (direction == 0 ? u_ : v_).torn(border); }
+    int faceAt(double u, double v) const override;
+    void trim(TriMesh&) override;
     bool closedU() const override { return closedU_; }
     bool closedV() const override { return closedV_; }
     bool needsDicing() const override { return true; }
@@ -61,6 +83,8 @@ private:
     bool sameEdge(bool alongV) const;
     NetDirection u_, v_;
     std::vector<std::array<double, 4>> points_;
+    std::shared_ptr<const TrimRegion> trim_;
+    std::vector<bool> edge_; ///< by triangle: the edge of what is kept may go through it
     bool rational_ = false, closedU_ = false, closedV_ = false;
 };
 

@@ -36,13 +36,22 @@ SurfacePoint Parametric::evaluateLocal(uint32_t, double u, double v) const {
     p.b1 = u;
     p.b2 = v;
     p.pError = roundingError(p.P) + float(4e-15 * pointScale_);
-    int pu = patchesU(), pv = patchesV();
-    if (pu * pv > 1) {
-        int i = std::clamp(int(u * pu), 0, pu - 1), j = std::clamp(int(v * pv), 0, pv - 1);
-        p.face = j * pu + i;
-    }
+    p.face = faceAt(u, v);
     finishPoint(p, true);
     return p;
+}
+
+int Parametric::faceAt(double u, double v) const {
+    const int pu = patchesU(), pv = patchesV();
+    if (pu * pv <= 1) return 0;
+    return std::clamp(int(v * pv), 0, pv - 1) * pu + std::clamp(int(u * pu), 0, pu - 1);
+}
+
+std::vector<double> Parametric::borders(int direction) const {
+    const int n = direction == 0 ? patchesU() : patchesV();
+    std::vector<double> b;
+    for (int i = 0; i <= n; ++i) b.push_back(double(i) / n);
+    return b;
 }
 
 double Parametric::sampleDensity(const SurfacePoint& p) const {
@@ -54,19 +63,23 @@ double Parametric::area() const {
     // Gauss-Legendre, 8 points a cell: the integrand is analytic inside a patch; 4 cells a patch tame poles.
     static constexpr double x[4] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
     static constexpr double w[4] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
-    int nu = patchesU(), nv = patchesV();
-    int cu = nu > 64 ? nu : nu * 4, cv = nv > 64 ? nv : nv * 4;
+    const std::vector<double> bu = borders(0), bv = borders(1);
+    const int nu = int(bu.size()) - 1, nv = int(bv.size()) - 1, su = nu > 64 ? 1 : 4, sv = nv > 64 ? 1 : 4;
     double sum = 0;
-    for (int j = 0; j < cv; ++j)
-        for (int i = 0; i < cu; ++i)
+    for (int j = 0; j < nv * sv; ++j)
+        for (int i = 0; i < nu * su; ++i) {
+            const double hu = (bu[size_t(i / su) + 1] - bu[size_t(i / su)]) / su, hv = (bv[size_t(j / sv) + 1] - bv[size_t(j / sv)]) / sv;
+            const double u0 = bu[size_t(i / su)] + hu * (i % su), v0 = bv[size_t(j / sv)] + hv * (j % sv);
+            double cell = 0;
             for (int b = 0; b < 8; ++b)
                 for (int a = 0; a < 8; ++a) {
-                    double u = (i + 0.5 + 0.5 * (a < 4 ? x[a] : -x[a - 4])) / cu,
-                           v = (j + 0.5 + 0.5 * (b < 4 ? x[b] : -x[b - 4])) / cv;
-                    LocalPoint p = cameraPoint(u, v);
-                    sum += w[a & 3] * w[b & 3] * length(cross(p.Pu, p.Pv));
+                    LocalPoint p = cameraPoint(u0 + hu * (0.5 + 0.5 * (a < 4 ? x[a] : -x[a - 4])),
+                                               v0 + hv * (0.5 + 0.5 * (b < 4 ? x[b] : -x[b - 4])));
+                    cell += w[a & 3] * w[b & 3] * length(cross(p.Pu, p.Pv));
                 }
-    return sum * 0.25 / (double(cu) * cv);
+            sum += cell * hu * hv;
+        }
+    return sum * 0.25;
 }
 
 int Parametric::bilinearWeights(double u, double v, int nu, int nv, bool wrapU, bool wrapV, Weight w[16]) {
@@ -94,22 +107,24 @@ DiceLines Parametric::diceLines(const DiceOptions& opt, bool displaced, Diagnost
     // Facets may stray from the surface by this many pixels; displacement needs whole micropolygons instead.
     constexpr double kDeviation = 0.05;
     double edge = diceEdge(*source_.attributes);
-    int pu = patchesU(), pv = patchesV();
+    const std::vector<double> borderU = borders(0), borderV = borders(1);
+    const int pu = int(borderU.size()) - 1, pv = int(borderV.size()) - 1;
     std::vector<double> need[2] = {std::vector<double>(size_t(pu), 1.0), std::vector<double>(size_t(pv), 1.0)};
     constexpr int kProbe = 5;
     for (int j = 0; j < pv; ++j)
         for (int i = 0; i < pu; ++i)
             for (int b = 0; b < kProbe; ++b)
                 for (int a = 0; a < kProbe; ++a) {
+                    const double wu = borderU[size_t(i) + 1] - borderU[size_t(i)], wv = borderV[size_t(j) + 1] - borderV[size_t(j)];
                     // Strictly inside the patch, so that knots do not mix neighbours' second derivatives.
-                    double u = (i + (a + 0.5) / kProbe) / pu, v = (j + (b + 0.5) / kProbe) / pv;
+                    const double u = borderU[size_t(i)] + wu * (a + 0.5) / kProbe, v = borderV[size_t(j)] + wv * (b + 0.5) / kProbe;
                     LocalPoint p = cameraPoint(u, v);
-                    double lu = opt.camera.pixels(p.P, p.Pu) / pu / edge, lv = opt.camera.pixels(p.P, p.Pv) / pv / edge;
+                    double lu = opt.camera.pixels(p.P, p.Pu) * wu / edge, lv = opt.camera.pixels(p.P, p.Pv) * wv / edge;
                     if (!displaced) {
                         double tol = kDeviation * edge;
-                        double cu = std::sqrt(opt.camera.pixels(p.P, p.Puu) / (8 * tol)) / pu;
-                        double cv = std::sqrt(opt.camera.pixels(p.P, p.Pvv) / (8 * tol)) / pv;
-                        double twist = std::sqrt(opt.camera.pixels(p.P, p.Puv) / (4 * tol)) / std::sqrt(double(pu) * pv);
+                        double cu = std::sqrt(opt.camera.pixels(p.P, p.Puu) / (8 * tol)) * wu;
+                        double cv = std::sqrt(opt.camera.pixels(p.P, p.Pvv) / (8 * tol)) * wv;
+                        double twist = std::sqrt(opt.camera.pixels(p.P, p.Puv) / (4 * tol)) * std::sqrt(wu * wv);
                         // 1.5: the probes miss the peak of what they sample.
                         lu = std::min(lu, 1.5 * std::max(cu, twist));
                         lv = std::min(lv, 1.5 * std::max(cv, twist));
@@ -132,20 +147,31 @@ DiceLines Parametric::diceLines(const DiceOptions& opt, bool displaced, Diagnost
     DiceLines lines;
     for (int k = 0; k < 2; ++k) {
         std::vector<float>& out = k == 0 ? lines.u : lines.v;
+        std::vector<bool>& gap = k == 0 ? lines.gapU : lines.gapV;
+        const std::vector<double>& at = k == 0 ? borderU : borderV;
         size_t n = need[k].size();
         for (size_t i = 0; i < n; ++i) {
+            if (i && torn(k, at[i])) { // both sides have a line of their own
+                out.push_back(std::nextafter(float(at[i]), 0.f));
+                gap.resize(out.size());
+                gap.back() = true;
+            }
             int m = int(std::clamp(std::ceil(need[k][i] * scale), 1.0, double(limits::kDiceEdge)));
-            for (int q = 0; q < m; ++q) out.push_back(float((double(i) + double(q) / m) / double(n)));
+            for (int q = 0; q < m; ++q) out.push_back(float(at[i] + (at[i + 1] - at[i]) * q / m));
         }
         out.push_back(1.f);
+        gap.resize(out.size());
     }
-    auto isClosed = [](bool closed, std::vector<float>& l) {
+    auto isClosed = [](bool closed, std::vector<float>& l, std::vector<bool>& gap) {
         // A closed line needs three distinct points, or its two facets would coincide.
-        if (closed && l.size() < 4) l = {0.f, 0.33333334f, 0.6666667f, 1.f};
+        if (closed && l.size() < 4) {
+            l = {0.f, 0.33333334f, 0.6666667f, 1.f};
+            gap.assign(l.size(), false);
+        }
         return closed;
     };
-    lines.closedU = isClosed(closedU(), lines.u);
-    lines.closedV = isClosed(closedV(), lines.v);
+    lines.closedU = isClosed(closedU(), lines.u, lines.gapU);
+    lines.closedV = isClosed(closedV(), lines.v, lines.gapV);
     return lines;
 }
 
@@ -170,11 +196,13 @@ void Parametric::dice(const DiceOptions& opt, Diagnostics& diag) {
     auto length2 = [&](uint32_t a, uint32_t b) { Vec3 d = m.P[a] - m.P[b]; return dot(d, d); };
     for (uint32_t j = 0; j + 1 < nv; ++j)
         for (uint32_t i = 0; i + 1 < nu; ++i) {
+            if (lines.gapU[i] || lines.gapV[j]) continue;
             uint32_t a = j * nu + i, b = a + 1, c = a + nu, d = c + 1;
             if (length2(a, d) <= length2(b, c)) m.made.insert(m.made.end(), {a, b, d, a, d, c});
             else m.made.insert(m.made.end(), {a, b, c, b, d, c});
         }
     meshParam_ = std::move(param);
+    trim(m);
     if (displaced_)
         displaceMesh(
             *this, opt, diag, [&](uint32_t i) { return evaluateLocal(0, meshParam_[i].x, meshParam_[i].y); },

@@ -13,6 +13,7 @@ struct LocalPoint {
 /// Parameter lines along which a surface is cut into quadrilaterals, both increasing from 0 to 1.
 struct DiceLines {
     std::vector<float> u, v;
+    std::vector<bool> gapU, gapV;          ///< by line: nothing lies between it and the next one
     bool closedU = false, closedV = false; ///< the last line is the first again: its points are made equal to the bit
 };
 
@@ -34,6 +35,14 @@ protected:
     /// Patches along u and v: dicing lines never cross their borders.
     virtual int patchesU() const { return 1; }
     virtual int patchesV() const { return 1; }
+    /// Where those borders lie along u (0) or v (1), from 0 to 1.
+    virtual std::vector<double> borders(int direction) const;
+    /// Whether the surface is torn at such a border.
+    virtual bool torn(int direction, double border) const { return false; }
+    /// Index of the uniform value at a point.
+    virtual int faceAt(double u, double v) const;
+    /// Takes away triangles of the mesh that rays are to meet; meshParam_ is set.
+    virtual void trim(TriMesh&) {}
     virtual bool closedU() const { return false; }
     virtual bool closedV() const { return false; }
     /// Whether rays meet the mesh even when nothing displaces it.

@@ -58,18 +58,34 @@ void Shape::takePrimvars(Diagnostics& diag) {
     varSt_ = floatVar("st", 2);
 }
 
+namespace {
+/// Room for the weights of one value: nearly always on the stack.
+class Weights {
+public:
+    explicit Weights(int most) {
+        if (most > 16) many_.resize(size_t(most));
+    }
+    operator Weight*() { return many_.empty() ? few_ : many_.data(); }
+    Weight& operator[](int i) { return many_.empty() ? few_[i] : many_[size_t(i)]; }
+
+private:
+    Weight few_[16];
+    std::vector<Weight> many_;
+};
+} // namespace
+
 void Shape::interpolate(int var, const SurfacePoint& at, float* out, float* du, float* dv) const {
     interpolateVariable(primvars_[size_t(var)], at, out, du, dv);
 }
 
 void Shape::interpolateVariable(const PrimVar& p, const SurfacePoint& at, float* out, float* du, float* dv) const {
-    Weight w[16];
+    Weights w(mostWeights_);
     int n = weights(p.cls, at, w);
     interpolatePrimVar(p, w, n, out, du, dv);
 }
 
 const std::string& Shape::stringValue(int var, const SurfacePoint& at) const {
-    Weight w[16];
+    Weights w(mostWeights_);
     const PrimVar& p = primvars_[size_t(var)];
     weights(p.cls, at, w);
     return p.param->strings[w[0].index * size_t(p.elements())];

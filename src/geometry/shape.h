@@ -131,6 +131,9 @@ public:
     /// unset.
     virtual int exactHits(uint32_t /*prim*/, const Vec3d& /*org*/, const Vec3d& /*dir*/, double /*lo*/, double /*hi*/, Wanted,
                           ExactHit[4]) const { return 0; }
+    /// Of some triangles a part is cut away: keepsHit() says which points are there. Thread safe.
+    bool trimmed() const { return trimmed_; }
+    virtual bool keepsHit(uint32_t /*prim*/, double /*b1*/, double /*b2*/) const { return true; }
     /// Encloses everything a ray can hit.
     virtual Bounds bounds() const;
 
@@ -183,7 +186,7 @@ protected:
     void takePrimvars(Diagnostics&);
     /// How many values a variable of a class must have.
     virtual size_t classCount(scene::Class) const = 0;
-    /// Weights of the values of a class at a point, with derivatives by u and v. Returns how many, at most 16.
+    /// Weights of the values of a class at a point, with derivatives by u and v. Returns how many, at most mostWeights_.
     virtual int weights(scene::Class, const SurfacePoint& at, Weight w[16]) const = 0;
     /// interpolate() of a variable: by weights(), unless a surface has rules of its own or more weights.
     virtual void interpolateVariable(const PrimVar&, const SurfacePoint& at, float* out, float* du, float* dv) const;
@@ -207,7 +210,8 @@ protected:
     std::vector<Vec2> meshParam_;          ///< diced: (b1, b2) of each vertex on its undiced surface; empty: mesh is the surface
     uint32_t trianglesPerPrim_ = 0;        ///< diced polygons: triangles made from each triangle; 0: all of prim 0
     std::vector<uint32_t> meshPrim_;       ///< diced, and not empty: prim of each vertex; a triangle's vertices are of one
-    bool displaced_ = false;
+    bool displaced_ = false, trimmed_ = false;
+    int mostWeights_ = 16;                 ///< room that weights() gets
 };
 using ShapeRef = std::shared_ptr<Shape>;
 

@@ -274,8 +274,8 @@ std::vector<Request> attributeRequests() {
         {"TrimCurve",
          "int[] ncurves; int[] order; number[] knot; number[] min; number[] max; int[] n; number[] u; number[] v; number[] w", k,
          s, false,
-         "Loops of rational curves in the (u,v) of the next NuPatch; inside them the patch is cut. Not cut yet: the patch is "
-         "shown whole.",
+         "Loops of rational curves in the (u,v) of the next NuPatch; inside them the patch is cut away, or "
+         "outside with Attribute \"trimcurve\" \"sense\" \"outside\".",
          "[1] [2] [0 0 1 2 2] [0] [2] [3] [0 1 0] [0 0 0] [1 1 1]", trimCurve},
         {"Attribute", "string class; ..", k, s, false, "Attributes of this renderer, by class and name (docs/options.md).",
          "\"identifier\" \"name\" \"ball\"", attribute},

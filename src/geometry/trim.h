@@ -1,0 +1,68 @@
+// Trim curves: which part of a NURBS patch is there (ri.md 8.7).
+//
+// Nothing is made of polygons: a curve is cut into rational Bezier pieces that rise or fall in v, and whether a point lies left or right
+// of a piece is found on the piece itself, in double. Inside is what a line to infinity leaves through an odd number of pieces.
+#pragma once
+#include "base/diagnostics.h"
+#include "scene/scene.h"
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace alpenglow::geometry {
+
+/// The part of the unit square that loops of curves keep.
+class TrimRegion {
+public:
+    /// Parameters of the patch that become 0 and 1.
+    struct Domain { double lo[2], hi[2]; };
+    /// curves: the nine arrays of TrimCurve (scene::Attributes::trimCurve), u, v, w homogeneous. keepInside: what is outside goes.
+    /// A loop that does not close is closed by a line (a warning where the gap can be seen). Null with a message in `why` where the
+    /// curves are none.
+    static std::shared_ptr<const TrimRegion> make(const scene::ParamList& curves, const Domain&, bool keepInside, std::string& why,
+                                                  double& widestGap);
+
+    /// Whether the point is kept. Of points on the curve one side is.
+    bool keeps(double u, double v) const;
+    enum class Cover { None, Some, All };
+    /// How much of a rectangle is kept; Some may stand where it is None or All, never the other way round.
+    Cover cover(double u0, double v0, double u1, double v1) const;
+    /// The intervals of u that are kept at v, pairs of ends by increasing u.
+    void intervals(double v, std::vector<double>& ends) const;
+    /// The part of the unit square that is kept, as a number of 0 to 1. Quadrature, to about 1e-9 for smooth curves.
+    double area() const { return area_; }
+    /// A kept point for two numbers of [0,1), with density(): false where there is none at the v that it came to.
+    bool sample(double xi1, double xi2, double& u, double& v) const;
+    /// Density by du dv with which sample() gives this point; it is about 1 / area(). 0 where nothing is kept.
+    double density(double u, double v) const;
+    /// Nodes and weights for integrals over what is kept, by du dv.
+    struct Node { double u, v, weight; };
+    std::vector<Node> nodes() const;
+
+private:
+    struct Piece {
+        std::vector<double> x, y, w; ///< Bezier points, homogeneous
+        double u0, v0, u1, v1;       ///< its ends: those of its neighbours to the bit
+        double left, right;          ///< bounds of u
+        double crossing(double v) const;
+    };
+    struct Strip {
+        double lo = 0, hi = 0;
+        uint32_t first = 0, count = 0; ///< into active_
+        double share = 0, cumulative = 0;
+    };
+    class Maker;
+    TrimRegion() = default;
+    void makeStrips();
+    void weighStrips();
+    const Strip& stripOf(double v) const;
+    double keptLength(double v) const;
+
+    std::vector<Piece> pieces_;
+    std::vector<Strip> strips_; ///< of v, from 0 to 1
+    std::vector<uint32_t> active_;
+    bool keepInside_ = false;
+    double area_ = 0;
+};
+
+} // namespace alpenglow::geometry

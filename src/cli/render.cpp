@@ -3,12 +3,14 @@
 #include "base/memory.h"
 #include "base/processors.h"
 #include "cli/command.h"
+#include "cli/modelscene.h"
 #include "cli/ranges.h"
 #include "cli/version.h"
 #include "display/imageio.h"
 #include "render/filmpicture.h"
 #include "render/renderer.h"
 #include "ri/lookahead.h"
+#include "ri/models/model.h"
 #include "ri/reader.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -179,6 +181,11 @@ int renderOnce(const Arguments& a, const StopFlag* stop) {
         for (const std::string& s : a.scenes) {
             if (*stop) break;
             reader.nextScene();
+            if (ri::namedAsModel(s) && ::access(s.c_str(), R_OK) == 0) {
+                renderer.setScene(s, {});
+                reader.readMemory(modelScene(s), s);
+                continue;
+            }
             // Only what the command line says about pictures must tell them from what the scene reads itself.
             renderer.setScene(s, render::pictureOptions(settings).empty() ? std::set<std::string>{}
                                                                           : ri::picturesOfMakeRequests(s, options));
@@ -236,10 +243,10 @@ void addRender(CLI::App& app, int* status, const std::string& command) {
     render::RenderSettings& s = a->settings;
     s.software = softwareName();
     s.command = command;
-    CLI::App* c = app.add_subcommand("render", "Render scenes (RIB files; - reads standard input)");
+    CLI::App* c = app.add_subcommand("render", "Render scenes (RIB files; - reads standard input) or models (.ply, .obj)");
     c->add_option(
          "scenes", a->scenes,
-         "RIB files, ASCII, binary or gzipped; - is standard input. Each is a scene of its own, which begins with the defaults; "
+         "RIB files, ASCII, binary or gzipped; - is standard input. A model (.ply, .obj) is shown whole under a sky. Each is a scene of its own, which begins with the defaults; "
          "a file of options without a world holds for all that follow")
         ->required();
 

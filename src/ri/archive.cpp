@@ -118,6 +118,48 @@ bool Interpreter::mayReplay(const Call& call) {
     return false;
 }
 
+std::string Interpreter::locate(const char* what, const std::string& name, const SourcePlace& place, bool (*named)(const std::string&)) {
+    std::vector<std::string> folders;
+    if (auto o = options.values.find("searchpath:archive"); o != options.values.end() && !o->second.strings.empty())
+        for (const std::string& f : splitSearchPath(o->second.strings[0])) {
+            if (f == "@") continue; // the standard places are looked through below
+            folders.push_back(f);
+            // Old scenes name folders from where they lie, whatever the folder the renderer is started in.
+            if (fs::path(f).is_relative() && !sceneFolder_.empty() && sceneFolder_ != ".")
+                folders.push_back((fs::path(sceneFolder_) / f).string());
+        }
+    folders.insert(folders.end(), settings.searchPaths.begin(), settings.searchPaths.end());
+    std::string beside = fs::path(place.file).parent_path().string();
+    folders.push_back(beside.empty() ? "." : beside);
+    folders.push_back(".");
+    std::string fallback, outside;
+    std::vector<std::string> own = settings.searchPaths; // below them everything is read
+    own.insert(own.end(), {sceneFolder_.empty() ? "." : sceneFolder_, "."});
+    const ReadPolicy policy = readPolicyOf(sceneFolder_, settings.allowRead);
+    const std::string file = findFile(name, folders, &fallback, [&](const std::string& path) {
+        if (policy.anywhere || liesBelow(path, own)) return true;
+        if (named(path) && (liesBelow(path, folders) || liesBelow(path, policy.folders))) return true;
+        if (outside.empty()) outside = path;
+        return false;
+    });
+    if (settings.reads) file.empty() ? settings.reads->addMissing(name, folders) : settings.reads->add(file);
+    if (file.empty() && !outside.empty()) {
+        const Diagnostic d = outsideMessage(what, name, outside, place);
+        reporter.error(d.code, place, d.message, d.hint);
+        return {};
+    }
+    if (file.empty()) {
+        std::string looked;
+        for (const std::string& f : folders) looked += (looked.empty() ? "" : ", ") + f;
+        reporter.error(Rie::NoFile, place, fmt::format("{} \"{}\" was not found", what, name), "looked in " + looked);
+        return {};
+    }
+    if (!fallback.empty())
+        reporter.once("ri:found:" + name, Severity::Warning, Rie::NoFile, place,
+                      fmt::format("{} \"{}\" was found {}: {}", what, name, fallback, file));
+    return file;
+}
+
 void Interpreter::readArchive(const std::string& name, const SourcePlace& place) {
     if (openArchives_.size() >= size_t(limits::kArchiveDepth)) {
         reporter.error(Rie::Limit, place, fmt::format("archives are nested deeper than {}", limits::kArchiveDepth));
@@ -130,50 +172,14 @@ void Interpreter::readArchive(const std::string& name, const SourcePlace& place)
     }
     std::shared_ptr<std::vector<Call>> calls;
     std::unique_ptr<ByteSource> source;
-    std::string key, file;
+    std::string key, file, why;
     if (auto i = inlineArchives_.find(name); i != inlineArchives_.end()) {
         calls = i->second;
         key = "inline:" + name;
         file = place.file;
     } else {
-        std::vector<std::string> folders;
-        if (auto o = options.values.find("searchpath:archive"); o != options.values.end() && !o->second.strings.empty())
-            for (const std::string& f : splitSearchPath(o->second.strings[0])) {
-                if (f == "@") continue; // the standard places are looked through below
-                folders.push_back(f);
-                // Old scenes name folders from where they lie, whatever the folder the renderer is started in.
-                if (fs::path(f).is_relative() && !sceneFolder_.empty() && sceneFolder_ != ".")
-                    folders.push_back((fs::path(sceneFolder_) / f).string());
-            }
-        folders.insert(folders.end(), settings.searchPaths.begin(), settings.searchPaths.end());
-        std::string beside = fs::path(place.file).parent_path().string();
-        folders.push_back(beside.empty() ? "." : beside);
-        folders.push_back(".");
-        std::string fallback, why, outside;
-        std::vector<std::string> own = settings.searchPaths; // below them everything is read
-        own.insert(own.end(), {sceneFolder_.empty() ? "." : sceneFolder_, "."});
-        const ReadPolicy policy = readPolicyOf(sceneFolder_, settings.allowRead);
-        file = findFile(name, folders, &fallback, [&](const std::string& path) {
-            if (policy.anywhere || liesBelow(path, own)) return true;
-            if (namedAsRib(path) && (liesBelow(path, folders) || liesBelow(path, policy.folders))) return true;
-            if (outside.empty()) outside = path;
-            return false;
-        });
-        if (settings.reads) file.empty() ? settings.reads->addMissing(name, folders) : settings.reads->add(file);
-        if (file.empty() && !outside.empty()) {
-            const Diagnostic d = outsideMessage("archive", name, outside, place);
-            reporter.error(d.code, place, d.message, d.hint);
-            return;
-        }
-        if (file.empty()) {
-            std::string looked;
-            for (const std::string& f : folders) looked += (looked.empty() ? "" : ", ") + f;
-            reporter.error(Rie::NoFile, place, fmt::format("archive \"{}\" was not found", name), "looked in " + looked);
-            return;
-        }
-        if (!fallback.empty())
-            reporter.once("ri:found:" + name, Severity::Warning, Rie::NoFile, place,
-                          fmt::format("archive \"{}\" was found {}: {}", name, fallback, file));
+        file = locate("archive", name, place, namedAsRib);
+        if (file.empty()) return;
         source = fileSource(file, &why);
         if (!source) {
             reporter.error(Rie::NoFile, place, fmt::format("archive \"{}\" cannot be read: {}", file, why));

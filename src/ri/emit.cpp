@@ -100,7 +100,7 @@ void Interpreter::emit(scene::Primitive p, const Call& call) {
                       fmt::format("{} outside WorldBegin and WorldEnd is not drawn", call.request->name));
         return;
     }
-    p.kind = std::string(call.request->name);
+    if (p.kind.empty()) p.kind = std::string(call.request->name); // a file or a shape that stands for others names their kind
     p.place = call.place;
     p.attributes = snapshot();
     p.toWorld = state.ctm;

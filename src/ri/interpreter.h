@@ -94,6 +94,8 @@ public:
     void emit(scene::Primitive primitive, const Call& call);
     void instance(const Call& call);
 
+    /// The polygons of a file as primitives of this place, with these constants beside the file's own variables.
+    void drawModel(const std::string& name, const Call& call, const scene::ParamList& constants);
     void readArchive(const std::string& name, const SourcePlace& place);
     /// Executes requests of our own as if they stood at the place of `call`. Their primitives get the variables `everywhere`, too.
     void expand(const std::string& requests, const Call& call, scene::ParamList everywhere = {});
@@ -138,6 +140,10 @@ private:
         int errorsBefore = 0;
     };
     Lasting lasting() const;
+    struct Model {
+        std::string file;
+        std::vector<scene::Primitive> parts;
+    };
     struct Motion {
         std::vector<float> times;
         std::vector<Call> calls;
@@ -159,6 +165,9 @@ private:
 
     /// False when an archive that is read again has used up its calls.
     bool mayReplay(const Call& call);
+    /// Path of a file along the search paths of archives; "" when there is none or it may not be read: reported. named: whether a
+    /// name says that it is of this kind, others are read from the scene's own folders only.
+    std::string locate(const char* what, const std::string& name, const SourcePlace& place, bool (*named)(const std::string&));
     void run(class Parser& parser);
     void dispatch(const Call& call);
     bool conditional(const Call& call);
@@ -209,6 +218,7 @@ private:
     int archiveReads_ = 0;
     size_t objectCopies_ = 0, replayedCalls_ = 0;
     std::set<std::string> archivesRead_;
+    std::shared_ptr<const Model> lastModel_;
     bool replaying_ = false; ///< inside an archive that was read before
     Lasting base_;           ///< what a scene begins with
     size_t baseWorld_ = 0;   ///< worldSerial_ at that time

@@ -1,5 +1,6 @@
 // Polygons, patches, meshes, points, curves and the rest (ri.md 7).
 #include "ri/interpreter.h"
+#include "ri/models/model.h"
 #include "ri/teapot.h"
 #include <fmt/format.h>
 #include <map>
@@ -116,19 +117,31 @@ void blobby(Interpreter& in, const Call& c) {
 
 void geometry(Interpreter& in, const Call& c) {
     static const std::map<std::string, const std::string& (*)()> kShapes = {{"teapot", teapotRequests}, {"cube", cubeRequests}, {"sphere", sphereRequests}};
-    if (const auto shape = kShapes.find(c.text(0)); shape != kShapes.end() && !in.gatheringMotion()) {
+    const std::string& name = c.text(0);
+    const auto shape = kShapes.find(name);
+    const bool file = name == "ply" || name == "obj" || namedAsModel(name);
+    if (file || (shape != kShapes.end() && !in.gatheringMotion())) {
         scene::ParamList everywhere;
+        std::string filename = name;
+        if (!namedAsModel(name)) filename.clear();
         for (scene::Param& p : in.bind(c, Use::Primitive)) {
+            if (file && p.name == "filename" && !p.strings.empty()) {
+                filename = p.strings[0];
+                continue;
+            }
             const bool one = p.cls == scene::Class::Constant || p.cls == scene::Class::Uniform;
             if (one) p.cls = scene::Class::Constant; // the shape is one thing to who names it
             if (one) everywhere.push_back(std::move(p));
-            else in.incapable(c, "Geometry \"" + c.text(0) + "\" has no variables but constant and uniform ones");
+            else in.incapable(c, "Geometry \"" + name + "\" has no variables but constant and uniform ones");
         }
-        in.expand(shape->second(), c, std::move(everywhere));
+        if (!file) return in.expand(shape->second(), c, std::move(everywhere));
+        if (filename.empty())
+            in.reporter.error(Rie::MissingData, c.place, fmt::format("Geometry \"{}\" needs \"string filename\"", name));
+        else in.drawModel(filename, c, everywhere);
         return;
     }
     scene::Primitive p = start(in, c);
-    p.strings = {c.text(0)};
+    p.strings = {name};
     in.emit(std::move(p), c);
 }
 
@@ -200,7 +213,7 @@ std::vector<Request> primitiveRequests() {
          "\"cubic\" [4] \"nonperiodic\" \"P\" [0 0 0 1 0 0 2 0 0 3 0 0] \"width\" [.1 .2]", curves},
         {"Blobby", "int nleaf; int[] code; number[] floats; string[] strings?; ..", k, s, true,
          "An implicit surface of blobs. Not drawn yet.", "1 [1001 0] [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1] [\"\"]", blobby},
-        {"Geometry", "string name; ..", k, s, true, "A shape the renderer knows: \"teapot\", \"cube\", \"sphere\".", "\"teapot\"",
+        {"Geometry", "string name; ..", k, s, true, "A shape the renderer knows: \"teapot\", \"cube\", \"sphere\"; or the polygons of a file of .ply or .obj.", "\"teapot\"",
          geometry},
         {"Volume", "string type; number[6] bound; int[] dimensions; ..", k, s, true,
          "A region filled by a volume shader. Not drawn yet.", "\"box\" [-1 1 -1 1 -1 1] [0 0 0]", volume},

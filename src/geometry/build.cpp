@@ -28,6 +28,7 @@ constexpr Entry kTable[] = {
     {"Points", makePoints},
     {"SubdivisionMesh", makeSubdivisionMesh},
     {"HierarchicalSubdivisionMesh", makeSubdivisionMesh},
+    {"Blobby", makeBlobby},
 };
 
 void once(Diagnostics& diag, const std::string& key, Rie code, const SourcePlace& place, const std::string& message) {

@@ -21,5 +21,6 @@ ShapeRef makeNuPatch(ShapeSource, Diagnostics&);
 ShapeRef makeCurves(ShapeSource, Diagnostics&);
 ShapeRef makePoints(ShapeSource, Diagnostics&);
 ShapeRef makeSubdivisionMesh(ShapeSource, Diagnostics&);
+ShapeRef makeBlobby(ShapeSource, Diagnostics&);
 
 } // namespace alpenglow::geometry

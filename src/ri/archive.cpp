@@ -193,6 +193,11 @@ void Interpreter::readArchive(const std::string& name, const SourcePlace& place)
         reporter.error(Rie::Nesting, place, fmt::format("archive \"{}\" reads itself", name));
         return;
     }
+    readOpened(key, file, calls, std::move(source), place);
+}
+
+void Interpreter::readOpened(const std::string& key, const std::string& file, const std::shared_ptr<std::vector<Call>>& calls,
+                             std::unique_ptr<ByteSource> source, const SourcePlace& place) {
     bool wasReplaying = replaying_;
     if (!archivesRead_.insert(key).second) replaying_ = true;
     openArchives_.push_back(key);

@@ -4,6 +4,7 @@
 #pragma once
 #include "ri/call.h"
 #include "ri/declare.h"
+#include "ri/program.h"
 #include "ri/reader.h"
 #include "ri/reporter.h"
 #include "ri/requests/request.h"
@@ -97,6 +98,8 @@ public:
     /// The polygons of a file as primitives of this place, with these constants beside the file's own variables.
     void drawModel(const std::string& name, const Call& call, const scene::ParamList& constants);
     void readArchive(const std::string& name, const SourcePlace& place);
+    /// "DelayedReadArchive", "RunProgram" or "DynamicLoad". bound: six numbers, or none.
+    void procedural(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound, const Call& call);
     /// Executes requests of our own as if they stood at the place of `call`. Their primitives get the variables `everywhere`, too.
     void expand(const std::string& requests, const Call& call, scene::ParamList everywhere = {});
     void beginRecording(const Call& call);
@@ -165,6 +168,13 @@ private:
 
     /// False when an archive that is read again has used up its calls.
     bool mayReplay(const Call& call);
+    /// Reads what was found: recorded calls, or a stream that messages call `file`. key tells it from other open ones.
+    void readOpened(const std::string& key, const std::string& file, const std::shared_ptr<std::vector<Call>>& calls,
+                    std::unique_ptr<ByteSource> source, const SourcePlace& place);
+    double detailOf(const std::vector<float>& bound) const;
+    std::string findProgram(const std::string& name, std::string& looked) const;
+    Program* programOf(const std::string& command, const SourcePlace& place);
+    void runProgram(const std::string& command, const std::string& data, const std::vector<float>& bound, const Call& call);
     /// Path of a file along the search paths of archives; "" when there is none or it may not be read: reported. named: whether a
     /// name says that it is of this kind, others are read from the scene's own folders only.
     std::string locate(const char* what, const std::string& name, const SourcePlace& place, bool (*named)(const std::string&));
@@ -219,6 +229,8 @@ private:
     size_t objectCopies_ = 0, replayedCalls_ = 0;
     std::set<std::string> archivesRead_;
     std::shared_ptr<const Model> lastModel_;
+    std::map<std::string, std::unique_ptr<Program>> programs_; ///< by command; null: it is not asked again
+    int programCalls_ = 0, programSerial_ = 0;
     bool replaying_ = false; ///< inside an archive that was read before
     Lasting base_;           ///< what a scene begins with
     size_t baseWorld_ = 0;   ///< worldSerial_ at that time

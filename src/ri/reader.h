@@ -16,6 +16,7 @@ namespace alpenglow::ri {
 struct ReaderOptions {
     std::vector<std::string> searchPaths; ///< folders for archives, after those of Option "searchpath" "archive"
     bool allowExec = false;               ///< RunProgram, DynamicLoad, System were asked for by the user
+    double programSeconds = limits::kProgramSeconds; ///< that a program may take for one answer
     const StopFlag* stop = nullptr;       ///< set: the rest is not read; may be null
     bool allowRead = true;                ///< archives may lie anywhere; false: below the folders that archive.cpp names
     size_t mostLights = limits::kLights;  ///< of one frame; further ones are reported

@@ -141,7 +141,7 @@ constexpr OptionDescription kAttributes[] = {
      "Specular bounces after which these surfaces send no more specular rays."},
     {"trace:samplemotion", "int", "0", "1", Asked, "Rays are traced at the time of their sample."},
     {"trace:samplepattern", "", "", "", Ignored, kPrman},
-    {"trimcurve:sense", "string", "inside", "outside", Used, "Which side of a TrimCurve is cut away."},
+    {"trimcurve:sense", "string", "\"inside\"", "\"outside\"", Used, "Which side of a TrimCurve is cut away."},
     {"visibility:camera", "int", "1", "0", Used, "Seen by the camera."},
     {"visibility:diffuse", "int", "as visibility:trace", "1", Used, "Seen by diffuse rays."},
     {"visibility:indirect", "", "", "", Ignored, kPrman},

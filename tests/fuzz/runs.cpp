@@ -1,6 +1,7 @@
 // What is run with an input.
 #include "display/imageio.h"
 #include "program.h"
+#include "ri/models/model.h"
 #include "ri/reader.h"
 #include "rsl/front/ast.h"
 #include "targets.h"
@@ -42,6 +43,25 @@ Outcome readRib(const Bytes& b) {
     ri::RibReader reader({}, consumer, d);
     const bool good = reader.readMemory(b, "s.rib");
     return good ? Outcome::Ok : d.errors() ? Outcome::Refused : Outcome::Mute;
+}
+
+Outcome readModelFile(const Bytes& b) {
+    int said = 0;
+    bool fits = true;
+    {
+        ri::ModelLog log([&](Severity, Rie, const SourcePlace&, std::string) { ++said; });
+        const std::string name = b.empty() || b[0] == 'p' ? "m.ply" : "m.obj";
+        for (const scene::Primitive& p : ri::readModel(name, b, [&](const std::string&) { return std::optional<std::string>(b); }, log)) {
+            const scene::Param* P = scene::find(p.params, "P");
+            size_t corners = 0;
+            for (int n : p.ints) corners += size_t(n);
+            fits = fits && P && (p.kind == "Points" || corners == p.ints2.size());
+            for (int i : p.ints2) fits = fits && i >= 0 && size_t(i) < P->numbers.size() / 3;
+            for (const scene::Param& v : p.params)
+                for (float f : v.numbers) fits = fits && std::isfinite(f);
+        }
+    }
+    return !fits ? Outcome::Differs : said ? Outcome::Refused : Outcome::Ok;
 }
 
 Outcome renderRib(const Bytes& b) {

@@ -127,6 +127,31 @@ Bytes mendedBytes(Random& r, const Seeds& seeds) {
     return r.once(5) ? b : repaired(std::move(b));
 }
 
+/// A small model of each form, and what may stand in their texts.
+Seeds models() {
+    Bytes vertices;
+    for (const float f : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 1.f, 1.f, 0.f, 0.f, 1.f, 0.f}) vertices.append(reinterpret_cast<const char*>(&f), 4);
+    const Bytes header = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+                         "property list uchar int vertex_indices\nend_header\n";
+    const char face[] = {4, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3, 0, 0, 0};
+    return {"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\n"
+            "property uchar blue\nproperty float nx\nproperty float ny\nproperty float nz\nproperty float s\nproperty float t\nelement face 1\n"
+            "property list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n0 0 0 255 0 0 0 0 1 0 0\n1 0 0 0 9 0 0 0 1 1 0\n"
+            "0 1 0 1 2 3 0 0 1 0 1\n3 0 1 2 6 0 0 1 0 0 1\n",
+            "ply\nformat binary_little_endian 1.0\n" + header + vertices + Bytes(face, sizeof face),
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\n"
+            "property list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n4 0 1 2 -1\n",
+            "mtllib m.mtl\nv 0 0 0\nv 1 0 0 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 1\nvn 0 0 1\ns 1\nusemtl a b\nf 1/1/1 2/2/1 3/1/1\ns off\nusemtl c\n"
+            "f -1//-1 -2 \\\n -3/2\nnewmtl c\nKd 1 0 0\nd .5\nmap_Kd a.tx\n"};
+}
+
+std::vector<std::string> modelWords() {
+    return {"ply", "format", "ascii", "binary_big_endian", "binary_little_endian", "1.0", "element", "vertex", "face", "tristrips", "property", "list", "uchar",
+            "int", "float", "double", "int64", "x", "y", "z", "nx", "red", "alpha", "s", "t", "radius", "vertex_indices", "texcoord", "end_header", "comment",
+            "1000000000", "999999999999999", "-1", "nan", "inf", "1e39", "0", "4", "v", "vt", "vn", "f", "usemtl", "mtllib", "m.mtl", "s", "off", "g", "o",
+            "-9", "2147483648", "1/1/1", "1//1", "/", "newmtl", "Kd", "d", "Tr", "map_Kd", "\n", "\\\n", "#", "p", "l", "curv"};
+}
+
 Bytes anyBinaryRib(Random& r, const Seeds& seeds) {
     const Bytes b = binaryRib(r, r.once(2) ? generateRib(r) : r.of(seeds));
     return r.once(4) ? b : mutateBytes(r, b, {b});
@@ -297,6 +322,7 @@ std::vector<Target> allTargets() {
             {"rib-gzip", "the RIB reader: compressed streams", ".rib", 1, false, scenes, anyGzip, readRib},
             {"rib-generated", "the RIB reader: random requests", ".rib", 1, false, scenes,
              [](Random& r, const Seeds&) { return generateRib(r); }, readRib},
+            {"models", "the readers of .ply and .obj", ".ply", 1, false, models, text(modelWords), readModelFile},
             {"rib-render", "tiny renders of damaged scenes", ".rib", 4, true, scenes, rib, renderRib, true},
             {"rib-requests", "tiny renders of random requests", ".rib", 4, true, none,
              [](Random& r, const Seeds&) { return generateRib(r); }, renderRib, true},

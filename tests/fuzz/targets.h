@@ -17,6 +17,7 @@ extern const char* const partScene;
 
 // What is run. Each reads the input as its name says.
 Outcome readRib(const Bytes&);       ///< without rendering
+Outcome readModelFile(const Bytes&); ///< .ply or .obj, by its first byte; what comes out must fit together
 Outcome renderRib(const Bytes&);     ///< 8 x 6 pixels
 Outcome checkShader(const Bytes&);   ///< as far as the checker
 Outcome shadeShader(const Bytes&);   ///< over a patch

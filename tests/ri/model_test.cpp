@@ -308,8 +308,8 @@ protected:
     }
     void TearDown() override { std::filesystem::remove_all(dir); }
     void write(const std::string& name, const std::string& text) { std::ofstream(dir / name, std::ios::binary) << text; }
-    std::unique_ptr<Collected> readHere(const std::string& text) {
-        write("main.rib", "WorldBegin\n" + text + "\nWorldEnd\n");
+    std::unique_ptr<Collected> readHere(const std::string& text, const std::string& before = "") {
+        write("main.rib", before + "WorldBegin\n" + text + "\nWorldEnd\n");
         auto c = std::make_unique<Collected>();
         RibReader reader({}, *c, c->diagnostics);
         c->ok = reader.readFile((dir / "main.rib").string());
@@ -325,7 +325,7 @@ TEST_F(ModelFiles, AreDrawnByGeometry) {
     c = readHere("Geometry \"ply\" \"string filename\" \"things/m.ply\" \"constant color Cs\" [1 0 0]");
     EXPECT_EQ(c->messages(), "");
     EXPECT_EQ(var(c->primitive(), "Cs").numbers, (std::vector<float>{1, 0, 0})); // the request's word counts
-    c = readHere("Option \"searchpath\" \"archive\" \"things\" Geometry \"m.obj\" Geometry \"m.obj\"");
+    c = readHere("Geometry \"m.obj\" Geometry \"m.obj\"", "Option \"searchpath\" \"archive\" \"things\"\n");
     EXPECT_EQ(c->messages(), "");
     ASSERT_EQ(c->frame().primitives.size(), 4u);
     EXPECT_EQ(var(c->primitive(), "texturename").strings[0], (dir / "things/a.png").string());

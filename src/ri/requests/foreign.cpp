@@ -23,20 +23,29 @@ void layer(Interpreter& in, const Call& c) {
     in.incapable(c, "layers of shaders that the scene connects are not done by this version; co-shaders (Shader) are");
 }
 
-/// "DelayedReadArchive2" reads its "filename"; the others run foreign code.
+/// The procedurals by named parameters: "DelayedReadArchive2" and its kin.
 void procedural2(Interpreter& in, const Call& c) {
-    if (c.text(0) != "DelayedReadArchive2") {
-        in.incapable(c, fmt::format("Procedural2 \"{}\" is not run by this version and is left out", c.text(0)));
+    std::string kind = c.text(0);
+    if (kind.size() > 1 && kind.back() == '2') kind.pop_back();
+    if (kind != "DelayedReadArchive" && kind != "RunProgram" && kind != "DynamicLoad") {
+        in.reporter.error(Rie::BadToken, c.place, fmt::format("Procedural2: \"{}\" is not known", c.text(0)),
+                          "DelayedReadArchive2, RunProgram2 or DynamicLoad2");
         return;
     }
-    for (const scene::Param& p : in.bind(c, Use::Other))
-        if (p.name == "filename" && !p.strings.empty()) {
-            if (!in.begin(BlockKind::Attribute, c)) return;
-            in.readArchive(p.strings[0], c.place);
-            in.end(BlockKind::Attribute, c);
-            return;
-        }
-    in.reporter.error(Rie::MissingData, c.place, "Procedural2: the archive has no \"string filename\"");
+    std::string name, data;
+    std::vector<float> bound;
+    for (const scene::Param& p : in.bind(c, Use::Other)) {
+        const bool text = !p.strings.empty();
+        if (text && (p.name == "filename" || p.name == "command" || p.name == "program" || p.name == "programname" || p.name == "dsoname")) name = p.strings[0];
+        else if (text && (p.name == "data" || p.name == "params" || p.name == "string")) data = p.strings[0];
+        else if ((p.name == "bound" || p.name == "__bound") && p.numbers.size() == 6) bound = p.numbers;
+    }
+    if (name.empty() && (kind == "DelayedReadArchive" || in.settings.allowExec)) {
+        in.reporter.error(Rie::MissingData, c.place,
+                          kind == "DelayedReadArchive" ? "Procedural2: the archive has no \"string filename\"" : "Procedural2: there is no \"string command\"");
+        return;
+    }
+    in.procedural(kind, {name, data}, bound, c);
 }
 
 } // namespace
@@ -60,7 +69,7 @@ std::vector<Request> foreignRequests() {
          any, false, "Connects two layers of a shader network (Aqsis, 3Delight): not done.",
          "\"surface\" \"a\" \"Ci\" \"b\" \"Cs\"", layer},
         {"Procedural2", "string subdivide; string bound; ..", Kind::Primitive, kWorld | kObject, false,
-         "Content from an archive (\"DelayedReadArchive2\"), by named parameters; programs and libraries are not run.",
+         "Content from an archive (\"DelayedReadArchive2\"), by named parameters, or with --allow-exec from a program (\"RunProgram2\": \"string command\", \"string data\").",
          "\"RunProgram2\" \"SimpleBound\" \"float[6] bound\" [-1 1 -1 1 -1 1]", procedural2},
         {"Bxdf", named, Kind::Shader, any, false, risDoc, "\"PxrSurface\" \"s\"", ris},
         {"Pattern", named, Kind::Shader, any, false, risDoc, "\"PxrTexture\" \"t\"", ris},

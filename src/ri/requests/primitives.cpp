@@ -155,26 +155,12 @@ void volume(Interpreter& in, const Call& c) {
 
 void procedural(Interpreter& in, const Call& c) {
     const std::string& kind = c.text(0);
-    const auto& args = c.strings(1);
-    if (kind == "DelayedReadArchive") {
-        if (args.empty()) {
-            in.reporter.error(Rie::MissingData, c.place, "Procedural: the archive has no name");
-            return;
-        }
-        // Read at once, under the attributes of this place.
-        if (!in.begin(BlockKind::Attribute, c)) return;
-        in.readArchive(args[0], c.place);
-        in.end(BlockKind::Attribute, c);
-        return;
-    }
-    if (kind != "RunProgram" && kind != "DynamicLoad") {
+    if (kind != "DelayedReadArchive" && kind != "RunProgram" && kind != "DynamicLoad") {
         in.reporter.error(Rie::BadToken, c.place, fmt::format("Procedural: \"{}\" is not known", kind),
                           "DelayedReadArchive, RunProgram or DynamicLoad");
         return;
     }
-    if (!in.settings.allowExec)
-        in.incapable(c, fmt::format("Procedural \"{}\" runs foreign code: it needs --allow-exec and is left out", kind));
-    else in.incapable(c, fmt::format("Procedural \"{}\" is not run by this version and is left out", kind));
+    in.procedural(kind, c.strings(1), c.reals(2), c);
 }
 
 } // namespace
@@ -218,7 +204,7 @@ std::vector<Request> primitiveRequests() {
         {"Volume", "string type; number[6] bound; int[] dimensions; ..", k, s, true,
          "A region filled by a volume shader. Not drawn yet.", "\"box\" [-1 1 -1 1 -1 1] [0 0 0]", volume},
         {"Procedural", "string kind; string[] arguments; number[6] bound; ..", k, s, false,
-         "Content from an archive (\"DelayedReadArchive\"); programs and libraries are not run.",
+         "Content from an archive (\"DelayedReadArchive\"), or with --allow-exec from a program (\"RunProgram\").",
          "\"RunProgram\" [\"maker\" \"data\"] [-1 1 -1 1 -1 1]", procedural},
         {"ObjectInstance", "handle object; ..", Kind::Other, s, false, "Draws a stored object.", "1",
          [](Interpreter& in, const Call& c) { in.instance(c); }},

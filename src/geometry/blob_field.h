@@ -1,0 +1,97 @@
+// The field of a Blobby (ri.md 8.9; RISpec 3.2 5.6; Pixar's application note 31): leaves, joined by operators.
+//
+// A field is a tape: a list of operations, each on results of earlier ones, the last being the field. Over a box or along a part of a ray it is
+// bounded by intervals, and what the bounds decide (a leaf that is 0 there, the smaller side of a maximum) is left out of the tape of that
+// box. So a thousand blobs cost a ray what the few near it cost, and no root is overlooked, however thin the part.
+#pragma once
+#include "base/diagnostics.h"
+#include "base/matrix.h"
+#include "base/vec.h"
+#include "scene/scene.h"
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace alpenglow::geometry {
+
+/// The surface lies where the field is this: 0.75 cubed, so that a lone unit ellipsoid has radius 1/2.
+inline constexpr double kBlobThreshold = 0.421875;
+
+struct Interval {
+    double lo = 0, hi = 0;
+    bool has(double x) const { return lo <= x && x <= hi; }
+};
+
+/// A value with its gradient and second derivatives, xx yy zz xy xz yz.
+struct BlobJet {
+    double f = 0;
+    Vec3d g{0.0};
+    double h[6] = {};
+};
+
+/// A depth map under a repelling plane.
+struct BlobGround {
+    int width = 0, height = 0;
+    std::vector<float> depth;
+    Matrix toCamera, toScreen; ///< from object space; screen is -1 to 1
+    float least = 0, most = 0;
+    double a = 0, b = 0, c = 0, d = 0; ///< height where it ends, sharpness, height and strength of the bulge
+    /// How far above the ground a point is, along its depth; INFINITY beside the map.
+    double above(const Vec3d& p) const;
+};
+
+struct BlobLeaf {
+    enum class Kind { Ellipsoid, Segment, Ground } kind = Kind::Ellipsoid;
+    double m[3][4] = {}; ///< from object space to that of the unit sphere, or of the segment over its radius
+    Vec3d from, along;   ///< segment: its begin and direction there
+    double length = 0;
+    uint32_t number = 0; ///< among all leaves of the request: of its vertex values
+    double thin = 0;     ///< its smallest half axis, object space
+    Vec3d lo, hi;        ///< it is 0 outside, object space
+    std::shared_ptr<const BlobGround> ground;
+    Vec3d inside(const Vec3d& p) const;
+};
+
+struct BlobOp {
+    enum class Kind : uint8_t { Constant, Leaf, Add, Multiply, Maximum, Minimum, Subtract, Divide, Negate } kind = Kind::Constant;
+    uint32_t a = 0, b = 0; ///< earlier operations; Leaf: a is the leaf
+    double c = 0;
+};
+using BlobTape = std::vector<BlobOp>;
+
+/// A ray in the spaces of the leaves of a tape.
+struct BlobRay;
+
+class BlobField {
+public:
+    /// code, numbers, strings: those of the request. objectToWorld: depth maps are in world space. False after an error.
+    bool read(int leaves, const std::vector<int>& code, const std::vector<float>& numbers, const std::vector<std::string>& strings,
+              const Matrix& objectToWorld, const SourcePlace&, Diagnostics&);
+    const BlobTape& whole() const { return tape_; }
+    const std::vector<BlobLeaf>& leaves() const { return leaves_; }
+
+    double value(const BlobTape&, const Vec3d&) const;
+    BlobJet jet(const BlobTape&, const Vec3d&) const;
+    /// Bounds over a box. values: of every operation.
+    Interval bounds(const BlobTape&, const Vec3d& lo, const Vec3d& hi, std::vector<Interval>& values) const;
+    /// The tape without what these bounds decide.
+    static BlobTape simplified(const BlobTape&, const std::vector<Interval>& values);
+    /// Leaves that colour a point, with their weights (which sum to 1) and the gradients of these.
+    struct Share { uint32_t number; double w; Vec3d g; };
+    void shares(const BlobTape&, const Vec3d&, std::vector<Share>& out) const;
+
+    /// Where the field passes the threshold between t0 and t1, by increasing t: all, each once. Stops after `most`.
+    int crossings(const BlobTape&, const Vec3d& org, const Vec3d& dir, double t0, double t1, int most, double* out) const;
+
+private:
+    struct Reader;
+    Interval leafBounds(const BlobLeaf&, const Vec3d& lo, const Vec3d& hi) const;
+    BlobTape tape_;
+    std::vector<BlobLeaf> leaves_;
+};
+
+/// The leaf's field in its own space, with gradient and second derivatives where asked for.
+double blobLeafField(const BlobLeaf&, const Vec3d& q, Vec3d* gradient, double* hessian);
+
+} // namespace alpenglow::geometry

@@ -1,0 +1,130 @@
+// Procedurals: content from archives and programs, expanded where they stand, in the order of the file.
+#include "base/exact.h"
+#include "base/limits.h"
+#include "ri/interpreter.h"
+#include "ri/program.h"
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace alpenglow::ri {
+
+namespace fs = std::filesystem;
+
+/// Area in pixels of the bound's rectangle in the picture, as programs are told it; infinite where it reaches behind the eye.
+double Interpreter::detailOf(const std::vector<float>& bound) const {
+    if (bound.size() != 6 || !inWorld()) return INFINITY;
+    const scene::Options& o = options;
+    const double aspect = o.frameAspect ? double(*o.frameAspect) : double(o.xres) * o.pixelAspect / std::max(1, o.yres);
+    const double wide = std::max(1.0, aspect), high = wide / aspect; // half the default screen window
+    const bool perspective = o.projection == "perspective";
+    const double scale = perspective ? exact::tan(std::clamp(double(o.fov), 1e-3, 179.9) * kPi / 360) : 1;
+    double lo[2] = {INFINITY, INFINITY}, hi[2] = {-INFINITY, -INFINITY};
+    const Matrix m = state.ctm.first() * worldToCamera_.first();
+    for (int k = 0; k < 8; ++k) {
+        const Vec3d p = transformPoint(m, Vec3d(bound[k & 1 ? 1 : 0], bound[k & 2 ? 3 : 2], bound[k & 4 ? 5 : 4]));
+        const double w = perspective ? p.z * scale : 1;
+        if (!(w > 1e-9)) return INFINITY;
+        const double at[2] = {p.x / w / wide * 0.5 * o.xres, p.y / w / high * 0.5 * o.yres};
+        for (int i = 0; i < 2; ++i) lo[i] = std::min(lo[i], at[i]), hi[i] = std::max(hi[i], at[i]);
+    }
+    const double area = (hi[0] - lo[0]) * (hi[1] - lo[1]);
+    return std::isfinite(area) ? area : INFINITY;
+}
+
+/// Where programs are looked for: Option "searchpath" "procedural", --searchpath, beside the scene. Not where the shell looks.
+std::string Interpreter::findProgram(const std::string& name, std::string& looked) const {
+    std::vector<std::string> folders;
+    if (name.find('/') != name.npos && fs::path(name).is_absolute()) folders.push_back("");
+    else {
+        if (auto o = options.values.find("searchpath:procedural"); o != options.values.end() && !o->second.strings.empty())
+            for (const std::string& f : splitSearchPath(o->second.strings[0])) {
+                if (f == "@" || f == "&") continue;
+                folders.push_back(f);
+                if (fs::path(f).is_relative() && !sceneFolder_.empty()) folders.push_back((fs::path(sceneFolder_) / f).string());
+            }
+        folders.insert(folders.end(), settings.searchPaths.begin(), settings.searchPaths.end());
+        folders.push_back(sceneFolder_.empty() ? "." : sceneFolder_);
+    }
+    for (const std::string& f : folders) {
+        const std::string path = f.empty() ? name : (fs::path(f) / name).string();
+        std::error_code ec;
+        if (fs::is_regular_file(path, ec) && ::access(path.c_str(), X_OK) == 0) return fs::absolute(path, ec).string();
+        looked += (looked.empty() ? "" : ", ") + (f.empty() ? std::string("/") : f);
+    }
+    return {};
+}
+
+/// The process of a command, started when it is first asked for. Null when there is none: said once.
+Program* Interpreter::programOf(const std::string& command, const SourcePlace& place) {
+    const auto [slot, fresh] = programs_.try_emplace(command);
+    if (!fresh) return slot->second.get();
+    std::vector<std::string> words = commandWords(command);
+    std::string looked, why;
+    if (words.empty()) {
+        reporter.error(Rie::MissingData, place, "RunProgram: the program has no name");
+        return nullptr;
+    }
+    const std::string path = findProgram(words[0], looked);
+    if (path.empty()) {
+        reporter.error(Rie::NoFile, place, fmt::format("program \"{}\" was not found", words[0]),
+                       "looked in " + looked + "; Option \"searchpath\" \"procedural\" names folders");
+        return nullptr;
+    }
+    words[0] = path;
+    slot->second = Program::start(words, why);
+    if (!slot->second) reporter.error(Rie::System, place, fmt::format("program \"{}\" cannot be started: {}", path, why));
+    return slot->second.get();
+}
+
+void Interpreter::runProgram(const std::string& command, const std::string& data, const std::vector<float>& bound, const Call& call) {
+    if (++programCalls_ > limits::kProgramCalls) {
+        reporter.once("ri:programcalls", Severity::Error, Rie::Limit, call.place, fmt::format("more than {} procedurals are run", limits::kProgramCalls));
+        return;
+    }
+    if (openArchives_.size() >= size_t(limits::kArchiveDepth)) {
+        reporter.once("ri:programdepth", Severity::Error, Rie::Limit, call.place,
+                      fmt::format("procedurals and archives are nested deeper than {}", limits::kArchiveDepth));
+        return;
+    }
+    if (!frameWanted()) return;
+    Program* program = programOf(command, call.place);
+    if (!program) return;
+    const double detail = detailOf(bound);
+    std::string answer, why;
+    std::string line = std::isfinite(detail) ? fmt::format("{:.6g} ", detail) : "inf ";
+    for (const char c : data) line += c == '\n' ? ' ' : c; // a line is a question
+    const bool whole = program->ask(line + "\n", settings.programSeconds, settings.stop, answer, why);
+    if (!whole) {
+        programs_[command] = nullptr;
+        reporter.error(Rie::System, call.place, fmt::format("program \"{}\": {}; it is not asked again, and what it said is drawn", command, why));
+    }
+    if (!begin(BlockKind::Attribute, call)) return;
+    readOpened(fmt::format("program:{}", ++programSerial_), commandWords(command)[0], nullptr, memorySource(answer), call.place);
+    end(BlockKind::Attribute, call);
+}
+
+void Interpreter::procedural(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound, const Call& call) {
+    const auto needs = [&](const char* what) {
+        reporter.error(Rie::MissingData, call.place, fmt::format("{}: the {} has no name", call.request->name, what));
+    };
+    if (kind == "DelayedReadArchive") {
+        if (arguments.empty()) return needs("archive");
+        if (!begin(BlockKind::Attribute, call)) return;
+        readArchive(arguments[0], call.place);
+        end(BlockKind::Attribute, call);
+        return;
+    }
+    if (!settings.allowExec)
+        return incapable(call, fmt::format("{} \"{}\" runs foreign code: it needs --allow-exec and is left out", call.request->name, kind));
+    if (kind == "DynamicLoad") {
+        incapable(call, "libraries of procedurals (DynamicLoad) call RenderMan's C binding, which this renderer does not have; RunProgram does the same");
+        return;
+    }
+    if (arguments.empty()) return needs("program");
+    runProgram(arguments[0], arguments.size() > 1 ? arguments[1] : "", bound, call);
+}
+
+} // namespace alpenglow::ri

@@ -41,9 +41,15 @@ double blobLeafField(const BlobLeaf& l, const Vec3d& q, Vec3d* g, double* h) {
     const double reach = std::sqrt(k), lo = std::max(-s, -reach), hi = std::min(l.length - s, reach);
     if (lo >= hi) return 0;
     const auto between = [&](auto f) { return kWhole * (f(hi) - f(lo)); };
-    const double value = between([&](double u) { const double v = u * u; return u * (k * k * k - v * (k * k - v * (0.6 * k - v / 7))); });
+    const double value = between([&](double u) {
+        const double v = u * u;
+        return u * (k * k * k - v * (k * k - v * (0.6 * k - v / 7)));
+    });
     if (!g) return value;
-    const double byK = between([&](double u) { const double v = u * u; return u * (3 * k * k - v * (2 * k - 0.6 * v)); });
+    const double byK = between([&](double u) {
+        const double v = u * u;
+        return u * (3 * k * k - v * (2 * k - 0.6 * v));
+    });
     const double begin = std::max(0.0, k - s * s), end = std::max(0.0, k - (l.length - s) * (l.length - s));
     const double byS = kWhole * (cube(begin) - cube(end));
     *g = side * (-2 * byK) + l.along * byS;
@@ -59,16 +65,19 @@ double blobLeafField(const BlobLeaf& l, const Vec3d& q, Vec3d* g, double* h) {
     return value;
 }
 
-// ---- the ground -----------------------------------------------------------------------------------------------------------------
+// ---- the ground
+// -----------------------------------------------------------------------------------------------------------------
 
 double BlobGround::above(const Vec3d& p) const {
     const auto& s = toScreen.m;
     const double w = p.x * s[0][3] + p.y * s[1][3] + p.z * s[2][3] + s[3][3];
     if (!(w > 0)) return INFINITY;
-    const double x = (p.x * s[0][0] + p.y * s[1][0] + p.z * s[2][0] + s[3][0]) / w, y = (p.x * s[0][1] + p.y * s[1][1] + p.z * s[2][1] + s[3][1]) / w;
+    const double x = (p.x * s[0][0] + p.y * s[1][0] + p.z * s[2][0] + s[3][0]) / w,
+                 y = (p.x * s[0][1] + p.y * s[1][1] + p.z * s[2][1] + s[3][1]) / w;
     const double i = (0.5 + 0.5 * x) * width - 0.5, j = (0.5 - 0.5 * y) * height - 0.5;
     if (!(i >= -0.5 && i <= width - 0.5 && j >= -0.5 && j <= height - 0.5)) return INFINITY;
-    const int i0 = std::clamp(int(std::floor(i)), 0, std::max(0, width - 2)), j0 = std::clamp(int(std::floor(j)), 0, std::max(0, height - 2));
+    const int i0 = std::clamp(int(std::floor(i)), 0, std::max(0, width - 2)),
+              j0 = std::clamp(int(std::floor(j)), 0, std::max(0, height - 2));
     const int i1 = std::min(i0 + 1, width - 1), j1 = std::min(j0 + 1, height - 1);
     const double a = std::clamp(i - i0, 0.0, 1.0), b = std::clamp(j - j0, 0.0, 1.0);
     const auto at = [&](int x0, int y0) { return double(depth[size_t(y0) * size_t(width) + size_t(x0)]); };
@@ -120,7 +129,8 @@ Interval groundBounds(const BlobGround& g, const Vec3d& lo, const Vec3d& hi) {
 
 } // namespace
 
-// ---- values ---------------------------------------------------------------------------------------------------------------------
+// ---- values
+// ---------------------------------------------------------------------------------------------------------------------
 
 namespace {
 
@@ -187,19 +197,35 @@ double BlobField::value(const BlobTape& tape, const Vec3d& p) const {
     for (size_t i = 0; i < tape.size(); ++i) {
         const BlobOp& o = tape[i];
         switch (o.kind) {
-        case Kind::Constant: v[i] = o.c; break;
+        case Kind::Constant:
+            v[i] = o.c;
+            break;
         case Kind::Leaf: {
             const BlobLeaf& l = leaves_[o.a];
             v[i] = l.kind == BlobLeaf::Kind::Ground ? groundField(*l.ground, p) : blobLeafField(l, l.inside(p), nullptr, nullptr);
             break;
         }
-        case Kind::Add: v[i] = v[o.a] + v[o.b]; break;
-        case Kind::Multiply: v[i] = v[o.a] * v[o.b]; break;
-        case Kind::Maximum: v[i] = std::max(v[o.a], v[o.b]); break;
-        case Kind::Minimum: v[i] = std::min(v[o.a], v[o.b]); break;
-        case Kind::Subtract: v[i] = v[o.a] - v[o.b]; break;
-        case Kind::Divide: v[i] = v[o.b] != 0 ? v[o.a] / v[o.b] : 0; break;
-        case Kind::Negate: v[i] = -v[o.a]; break;
+        case Kind::Add:
+            v[i] = v[o.a] + v[o.b];
+            break;
+        case Kind::Multiply:
+            v[i] = v[o.a] * v[o.b];
+            break;
+        case Kind::Maximum:
+            v[i] = std::max(v[o.a], v[o.b]);
+            break;
+        case Kind::Minimum:
+            v[i] = std::min(v[o.a], v[o.b]);
+            break;
+        case Kind::Subtract:
+            v[i] = v[o.a] - v[o.b];
+            break;
+        case Kind::Divide:
+            v[i] = v[o.b] != 0 ? v[o.a] / v[o.b] : 0;
+            break;
+        case Kind::Negate:
+            v[i] = -v[o.a];
+            break;
         }
     }
     return v[tape.size() - 1];
@@ -210,15 +236,33 @@ BlobJet BlobField::jet(const BlobTape& tape, const Vec3d& p) const {
     for (size_t i = 0; i < tape.size(); ++i) {
         const BlobOp& o = tape[i];
         switch (o.kind) {
-        case Kind::Constant: v[i] = {o.c, Vec3d(0.0), {}}; break;
-        case Kind::Leaf: v[i] = leafJet(leaves_[o.a], p); break;
-        case Kind::Add: v[i] = v[o.a] + v[o.b]; break;
-        case Kind::Multiply: v[i] = product(v[o.a], v[o.b]); break;
-        case Kind::Maximum: v[i] = v[o.a].f >= v[o.b].f ? v[o.a] : v[o.b]; break;
-        case Kind::Minimum: v[i] = v[o.a].f <= v[o.b].f ? v[o.a] : v[o.b]; break;
-        case Kind::Subtract: v[i] = v[o.a] + v[o.b] * -1.0; break;
-        case Kind::Divide: v[i] = product(v[o.a], inverse(v[o.b])); break;
-        case Kind::Negate: v[i] = v[o.a] * -1.0; break;
+        case Kind::Constant:
+            v[i] = {o.c, Vec3d(0.0), {}};
+            break;
+        case Kind::Leaf:
+            v[i] = leafJet(leaves_[o.a], p);
+            break;
+        case Kind::Add:
+            v[i] = v[o.a] + v[o.b];
+            break;
+        case Kind::Multiply:
+            v[i] = product(v[o.a], v[o.b]);
+            break;
+        case Kind::Maximum:
+            v[i] = v[o.a].f >= v[o.b].f ? v[o.a] : v[o.b];
+            break;
+        case Kind::Minimum:
+            v[i] = v[o.a].f <= v[o.b].f ? v[o.a] : v[o.b];
+            break;
+        case Kind::Subtract:
+            v[i] = v[o.a] + v[o.b] * -1.0;
+            break;
+        case Kind::Divide:
+            v[i] = product(v[o.a], inverse(v[o.b]));
+            break;
+        case Kind::Negate:
+            v[i] = v[o.a] * -1.0;
+            break;
         }
     }
     return v[tape.size() - 1];
@@ -232,15 +276,33 @@ void BlobField::shares(const BlobTape& tape, const Vec3d& p, std::vector<Share>&
     for (size_t i = 0; i < tape.size(); ++i) {
         const BlobOp& o = tape[i];
         switch (o.kind) {
-        case Kind::Constant: v[i] = o.c; break;
-        case Kind::Leaf: v[i] = leafJet(leaves_[o.a], p).f; break;
-        case Kind::Add: v[i] = v[o.a] + v[o.b]; break;
-        case Kind::Multiply: v[i] = v[o.a] * v[o.b]; break;
-        case Kind::Maximum: v[i] = std::max(v[o.a], v[o.b]); break;
-        case Kind::Minimum: v[i] = std::min(v[o.a], v[o.b]); break;
-        case Kind::Subtract: v[i] = v[o.a] - v[o.b]; break;
-        case Kind::Divide: v[i] = v[o.b] != 0 ? v[o.a] / v[o.b] : 0; break;
-        case Kind::Negate: v[i] = -v[o.a]; break;
+        case Kind::Constant:
+            v[i] = o.c;
+            break;
+        case Kind::Leaf:
+            v[i] = leafJet(leaves_[o.a], p).f;
+            break;
+        case Kind::Add:
+            v[i] = v[o.a] + v[o.b];
+            break;
+        case Kind::Multiply:
+            v[i] = v[o.a] * v[o.b];
+            break;
+        case Kind::Maximum:
+            v[i] = std::max(v[o.a], v[o.b]);
+            break;
+        case Kind::Minimum:
+            v[i] = std::min(v[o.a], v[o.b]);
+            break;
+        case Kind::Subtract:
+            v[i] = v[o.a] - v[o.b];
+            break;
+        case Kind::Divide:
+            v[i] = v[o.b] != 0 ? v[o.a] / v[o.b] : 0;
+            break;
+        case Kind::Negate:
+            v[i] = -v[o.a];
+            break;
         }
     }
     shown[tape.size() - 1] = true;
@@ -250,7 +312,8 @@ void BlobField::shares(const BlobTape& tape, const Vec3d& p, std::vector<Share>&
         if (!shown[i]) continue;
         const BlobOp& o = tape[i];
         switch (o.kind) {
-        case Kind::Constant: break;
+        case Kind::Constant:
+            break;
         case Kind::Leaf:
             if (leaves_[o.a].kind == BlobLeaf::Kind::Ground) break;
             if (const BlobJet j = leafJet(leaves_[o.a], p); j.f > 0) {
@@ -259,12 +322,19 @@ void BlobField::shares(const BlobTape& tape, const Vec3d& p, std::vector<Share>&
                 slope = slope + j.g;
             }
             break;
-        case Kind::Maximum: shown[v[o.a] >= v[o.b] ? o.a : o.b] = true; break;
-        case Kind::Minimum: shown[v[o.a] <= v[o.b] ? o.a : o.b] = true; break;
+        case Kind::Maximum:
+            shown[v[o.a] >= v[o.b] ? o.a : o.b] = true;
+            break;
+        case Kind::Minimum:
+            shown[v[o.a] <= v[o.b] ? o.a : o.b] = true;
+            break;
         case Kind::Subtract:
         case Kind::Divide:
-        case Kind::Negate: shown[o.a] = true; break;
-        default: shown[o.a] = shown[o.b] = true;
+        case Kind::Negate:
+            shown[o.a] = true;
+            break;
+        default:
+            shown[o.a] = shown[o.b] = true;
         }
     }
     for (Share& s : out) {
@@ -274,7 +344,8 @@ void BlobField::shares(const BlobTape& tape, const Vec3d& p, std::vector<Share>&
     std::sort(out.begin(), out.end(), [](const Share& a, const Share& b) { return a.number < b.number; });
 }
 
-// ---- bounds over a box ----------------------------------------------------------------------------------------------------------
+// ---- bounds over a box
+// ----------------------------------------------------------------------------------------------------------
 
 namespace {
 
@@ -296,14 +367,22 @@ Interval divide(const Interval& a, const Interval& b) {
 
 Interval combined(const BlobOp& o, const Interval& a, const Interval& b) {
     switch (o.kind) {
-    case Kind::Add: return {a.lo + b.lo, a.hi + b.hi};
-    case Kind::Multiply: return multiply(a, b);
-    case Kind::Maximum: return {std::max(a.lo, b.lo), std::max(a.hi, b.hi)};
-    case Kind::Minimum: return {std::min(a.lo, b.lo), std::min(a.hi, b.hi)};
-    case Kind::Subtract: return {a.lo - b.hi, a.hi - b.lo};
-    case Kind::Divide: return divide(a, b);
-    case Kind::Negate: return {-a.hi, -a.lo};
-    default: return {o.c, o.c};
+    case Kind::Add:
+        return {a.lo + b.lo, a.hi + b.hi};
+    case Kind::Multiply:
+        return multiply(a, b);
+    case Kind::Maximum:
+        return {std::max(a.lo, b.lo), std::max(a.hi, b.hi)};
+    case Kind::Minimum:
+        return {std::min(a.lo, b.lo), std::min(a.hi, b.hi)};
+    case Kind::Subtract:
+        return {a.lo - b.hi, a.hi - b.lo};
+    case Kind::Divide:
+        return divide(a, b);
+    case Kind::Negate:
+        return {-a.hi, -a.lo};
+    default:
+        return {o.c, o.c};
     }
 }
 
@@ -318,7 +397,8 @@ Interval BlobField::leafBounds(const BlobLeaf& l, const Vec3d& lo, const Vec3d& 
     const Vec3d q = l.inside((lo + hi) * 0.5), half = (hi - lo) * 0.5;
     double near = 0, far = 0, reach = 0;
     for (int i = 0; i < 3; ++i) {
-        const double e = std::fabs(l.m[i][0]) * half.x + std::fabs(l.m[i][1]) * half.y + std::fabs(l.m[i][2]) * half.z + 1e-14 * (1 + std::fabs(q[i]));
+        const double e = std::fabs(l.m[i][0]) * half.x + std::fabs(l.m[i][1]) * half.y + std::fabs(l.m[i][2]) * half.z +
+                         1e-14 * (1 + std::fabs(q[i]));
         const double a = std::fabs(q[i]), b = std::max(0.0, a - e);
         near += b * b;
         far += (a + e) * (a + e);
@@ -377,22 +457,26 @@ BlobTape BlobField::simplified(const BlobTape& tape, const std::vector<Interval>
         if (!needed[i]) continue;
         BlobOp o = tape[i];
         if (fixed(i)) o = {Kind::Constant, 0, 0, v[i].lo};
-        else if (o.kind != Kind::Leaf && o.kind != Kind::Constant) o.a = at[same[o.a]], o.b = o.kind == Kind::Negate ? 0 : at[same[o.b]];
+        else if (o.kind != Kind::Leaf && o.kind != Kind::Constant)
+            o.a = at[same[o.a]], o.b = o.kind == Kind::Negate ? 0 : at[same[o.b]];
         at[i] = uint32_t(out.size());
         out.push_back(o);
     }
     return out;
 }
 
-// ---- along a ray ----------------------------------------------------------------------------------------------------------------
+// ---- along a ray
+// ----------------------------------------------------------------------------------------------------------------
 
 namespace {
 
 /// Bounds of a value and of its derivative by t.
-struct Course { Interval f, d; };
+struct Course {
+    Interval f, d;
+};
 
 struct RayLeaf {
-    Vec3d o, d; ///< in the leaf's space
+    Vec3d o, d;                 ///< in the leaf's space
     double a = 0, b = 0, c = 0; ///< ellipsoid: r^2 = a t^2 + 2 b t + c
 };
 
@@ -413,16 +497,23 @@ Course segmentCourse(const BlobLeaf& l, const RayLeaf& r, double t0, double t1) 
     const Vec3d e = r.o + r.d * middle - l.from;
     if (length(e - l.along * std::clamp(dot(e, l.along), 0.0, l.length)) - half >= 1) return {{0, 0}, {0, 0}};
     const double by = std::min(kSegmentSlope * half, (std::fabs(d) + bend) * 0.5 * (t1 - t0));
-    return {{std::max(0.0, f - by), std::min(1.0, f + by)}, {std::max(d - bend, -kSegmentSlope * speed), std::min(d + bend, kSegmentSlope * speed)}};
+    return {{std::max(0.0, f - by), std::min(1.0, f + by)},
+            {std::max(d - bend, -kSegmentSlope * speed), std::min(d + bend, kSegmentSlope * speed)}};
 }
 
 Course combinedCourse(const BlobOp& o, const Course& a, const Course& b) {
     Course r;
     r.f = combined(o, a.f, b.f);
     switch (o.kind) {
-    case Kind::Add: r.d = {a.d.lo + b.d.lo, a.d.hi + b.d.hi}; break;
-    case Kind::Subtract: r.d = {a.d.lo - b.d.hi, a.d.hi - b.d.lo}; break;
-    case Kind::Negate: r.d = {-a.d.hi, -a.d.lo}; break;
+    case Kind::Add:
+        r.d = {a.d.lo + b.d.lo, a.d.hi + b.d.hi};
+        break;
+    case Kind::Subtract:
+        r.d = {a.d.lo - b.d.hi, a.d.hi - b.d.lo};
+        break;
+    case Kind::Negate:
+        r.d = {-a.d.hi, -a.d.lo};
+        break;
     case Kind::Multiply: {
         const Interval x = multiply(a.d, b.f), y = multiply(a.f, b.d);
         r.d = {x.lo + y.lo, x.hi + y.hi};
@@ -440,7 +531,8 @@ Course combinedCourse(const BlobOp& o, const Course& a, const Course& b) {
     case Kind::Minimum:
         r.d = a.f.hi <= b.f.lo ? a.d : b.f.hi <= a.f.lo ? b.d : Interval{std::min(a.d.lo, b.d.lo), std::max(a.d.hi, b.d.hi)};
         break;
-    default: r.d = {0, 0};
+    default:
+        r.d = {0, 0};
     }
     return r;
 }
@@ -461,7 +553,8 @@ public:
             RayLeaf& r = rays_[i];
             r.o = l.inside(org);
             r.d = l.inside(org + dir) - r.o;
-            r.d = Vec3d(l.m[0][0] * dir.x + l.m[0][1] * dir.y + l.m[0][2] * dir.z, l.m[1][0] * dir.x + l.m[1][1] * dir.y + l.m[1][2] * dir.z,
+            r.d = Vec3d(l.m[0][0] * dir.x + l.m[0][1] * dir.y + l.m[0][2] * dir.z,
+                        l.m[1][0] * dir.x + l.m[1][1] * dir.y + l.m[1][2] * dir.z,
                         l.m[2][0] * dir.x + l.m[2][1] * dir.y + l.m[2][2] * dir.z);
             r.a = dot(r.d, r.d), r.b = dot(r.o, r.d), r.c = dot(r.o, r.o);
         }
@@ -482,7 +575,8 @@ public:
         }
         constexpr int kDeepest = 46;
         const double middle = 0.5 * (t0 + t1);
-        if (depth >= kDeepest || !(middle > t0 && middle < t1)) { // it touches, or there is no slope to trust: a change of sign counts
+        if (depth >= kDeepest ||
+            !(middle > t0 && middle < t1)) { // it touches, or there is no slope to trust: a change of sign counts
             if (crosses) out_[found++] = middle;
             return;
         }
@@ -547,7 +641,8 @@ private:
 
 } // namespace
 
-int BlobField::crossings(const BlobTape& tape, const Vec3d& org, const Vec3d& dir, double t0, double t1, int most, double* out) const {
+int BlobField::crossings(const BlobTape& tape, const Vec3d& org, const Vec3d& dir, double t0, double t1, int most,
+                         double* out) const {
     if (!(t0 < t1)) return 0;
     Search s(*this, tape, org, dir, most, out);
     s.between(t0, s.at(t0), t1, s.at(t1), 0);

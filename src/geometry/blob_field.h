@@ -1,8 +1,9 @@
 // The field of a Blobby (ri.md 8.9; RISpec 3.2 5.6; Pixar's application note 31): leaves, joined by operators.
 //
-// A field is a tape: a list of operations, each on results of earlier ones, the last being the field. Over a box or along a part of a ray it is
-// bounded by intervals, and what the bounds decide (a leaf that is 0 there, the smaller side of a maximum) is left out of the tape of that
-// box. So a thousand blobs cost a ray what the few near it cost, and no root is overlooked, however thin the part.
+// A field is a tape: a list of operations, each on results of earlier ones, the last being the field. Over a box or along a part
+// of a ray it is bounded by intervals, and what the bounds decide (a leaf that is 0 there, the smaller side of a maximum) is left
+// out of the tape of that box. So a thousand blobs cost a ray what the few near it cost, and no root is overlooked, however thin
+// the part.
 #pragma once
 #include "base/diagnostics.h"
 #include "base/matrix.h"
@@ -66,8 +67,8 @@ struct BlobRay;
 class BlobField {
 public:
     /// code, numbers, strings: those of the request. objectToWorld: depth maps are in world space. False after an error.
-    bool read(int leaves, const std::vector<int>& code, const std::vector<float>& numbers, const std::vector<std::string>& strings,
-              const Matrix& objectToWorld, const SourcePlace&, Diagnostics&);
+    bool read(int leaves, const std::vector<int>& code, const std::vector<float>& numbers,
+              const std::vector<std::string>& strings, const Matrix& objectToWorld, const SourcePlace&, Diagnostics&);
     const BlobTape& whole() const { return tape_; }
     const std::vector<BlobLeaf>& leaves() const { return leaves_; }
 
@@ -78,7 +79,11 @@ public:
     /// The tape without what these bounds decide.
     static BlobTape simplified(const BlobTape&, const std::vector<Interval>& values);
     /// Leaves that colour a point, with their weights (which sum to 1) and the gradients of these.
-    struct Share { uint32_t number; double w; Vec3d g; };
+    struct Share {
+        uint32_t number;
+        double w;
+        Vec3d g;
+    };
     void shares(const BlobTape&, const Vec3d&, std::vector<Share>& out) const;
 
     /// Where the field passes the threshold between t0 and t1, by increasing t: all, each once. Stops after `most`.

@@ -23,7 +23,8 @@ struct BlobField::Reader {
     size_t at = 0, singular = 0;
 
     bool fail(Rie c, const std::string& why) {
-        diag.report(Severity::Error, c, place, "Blobby: instruction " + std::to_string(results.size()) + ": " + why + "; it is not drawn");
+        diag.report(Severity::Error, c, place,
+                    "Blobby: instruction " + std::to_string(results.size()) + ": " + why + "; it is not drawn");
         return false;
     }
     uint32_t add(BlobOp o) {
@@ -48,7 +49,8 @@ struct BlobField::Reader {
         int i;
         if (!operand(i)) return false;
         if (i < 0 || size_t(i) + size_t(n) > numbers.size())
-            return fail(Rie::Range, "floats " + std::to_string(i) + " and on are beyond the " + std::to_string(numbers.size()) + " given");
+            return fail(Rie::Range,
+                        "floats " + std::to_string(i) + " and on are beyond the " + std::to_string(numbers.size()) + " given");
         out = &numbers[size_t(i)];
         return true;
     }
@@ -166,12 +168,14 @@ bool BlobField::Reader::ground() {
     std::string why;
     auto g = readGround(strings[size_t(name)], objectToWorld, why);
     if (!g) { // the rest is drawn
-        diag.report(Severity::Error, Rie::NoFile, place, "Blobby: the depth map \"" + strings[size_t(name)] + "\" of a repelling plane: " + why + "; nothing repels");
+        diag.report(Severity::Error, Rie::NoFile, place,
+                    "Blobby: the depth map \"" + strings[size_t(name)] + "\" of a repelling plane: " + why + "; nothing repels");
         results.push_back(add({Kind::Constant, 0, 0, 0}));
         return true;
     }
     g->a = f[0], g->b = f[1], g->c = f[2], g->d = f[3];
-    if (!(g->a > 0) || g->c == 0) return fail(Rie::Range, "a repelling plane needs a height above 0 and a bulge at a height that is not 0");
+    if (!(g->a > 0) || g->c == 0)
+        return fail(Rie::Range, "a repelling plane needs a height above 0 and a bulge at a height that is not 0");
     BlobLeaf l;
     l.kind = BlobLeaf::Kind::Ground;
     l.number = leaves;
@@ -195,7 +199,8 @@ bool BlobField::Reader::leaf(int op) {
     } else if (op == 1003) {
         good = ground();
     } else {
-        return fail(Rie::Unimplement, op == 1004 ? "fields of plug-ins (1004) are not known" : "opcode " + std::to_string(op) + " is not known");
+        return fail(Rie::Unimplement,
+                    op == 1004 ? "fields of plug-ins (1004) are not known" : "opcode " + std::to_string(op) + " is not known");
     }
     ++leaves;
     return good;
@@ -234,7 +239,8 @@ bool BlobField::Reader::instruction(int op) {
         if (!result(a)) return false;
         results.push_back(a);
         return true;
-    default: return fail(Rie::Range, "opcode " + std::to_string(op) + " is not known");
+    default:
+        return fail(Rie::Range, "opcode " + std::to_string(op) + " is not known");
     }
 }
 
@@ -251,19 +257,23 @@ bool BlobField::Reader::run() {
         if (field.tape_[i].kind == Kind::Constant) open[i] = {field.tape_[i].c, field.tape_[i].c};
     field.tape_ = simplified(field.tape_, open);
     if (singular)
-        diag.report(Severity::Warning, Rie::Math, place, "Blobby: " + std::to_string(singular) + " leaves have a matrix without inverse or no radius; they have no field");
+        diag.report(Severity::Warning, Rie::Math, place,
+                    "Blobby: " + std::to_string(singular) +
+                        " leaves have a matrix without inverse or no radius; they have no field");
     return true;
 }
 
-bool BlobField::read(int count, const std::vector<int>& code, const std::vector<float>& numbers, const std::vector<std::string>& strings,
-                     const Matrix& objectToWorld, const SourcePlace& place, Diagnostics& diag) {
+bool BlobField::read(int count, const std::vector<int>& code, const std::vector<float>& numbers,
+                     const std::vector<std::string>& strings, const Matrix& objectToWorld, const SourcePlace& place,
+                     Diagnostics& diag) {
     tape_.clear();
     leaves_.clear();
     Reader r{*this, code, numbers, strings, objectToWorld, place, diag, {}};
     if (!r.run()) return false;
     if (int(r.leaves) != count) {
         diag.report(Severity::Error, Rie::Consistency, place,
-                    "Blobby: its code has " + std::to_string(r.leaves) + " leaves, not " + std::to_string(count) + "; it is not drawn");
+                    "Blobby: its code has " + std::to_string(r.leaves) + " leaves, not " + std::to_string(count) +
+                        "; it is not drawn");
         return false;
     }
     return true;

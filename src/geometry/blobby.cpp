@@ -1,12 +1,13 @@
 // Blobby nleaf code floats strings: the surface where the field of its blobs is 0.421875 (blob_field.h).
 //
-// Rays meet the surface itself. Space is cut into boxes until each is small against the blobs in it, boxes that the surface provably misses are
-// dropped, and each that is left is an exact primitive with the part of the field that matters there. Polygons would need to be as small
-// as the thinnest part of the thinnest blob; boxes may be larger, because roots along a ray are isolated by bounds and none is lost.
+// Rays meet the surface itself. Space is cut into boxes until each is small against the blobs in it, boxes that the surface
+// provably misses are dropped, and each that is left is an exact primitive with the part of the field that matters there.
+// Polygons would need to be as small as the thinnest part of the thinnest blob; boxes may be larger, because roots along a ray
+// are isolated by bounds and none is lost.
 //
-// A point has u and v like a polygon's: the two coordinates of object space across the axis that its normal is nearest to. What an
-// exact hit gives (two numbers) are those coordinates within its box, with the third, coarse, in their last bits: from there Newton finds the
-// surface again.
+// A point has u and v like a polygon's: the two coordinates of object space across the axis that its normal is nearest to. What
+// an exact hit gives (two numbers) are those coordinates within its box, with the third, coarse, in their last bits: from there
+// Newton finds the surface again.
 #include "base/limits.h"
 #include "geometry/blob_field.h"
 #include "geometry/dice.h"
@@ -34,14 +35,16 @@ public:
     uint32_t exactPrims() const override { return uint32_t(boxes_.size()); }
     Bounds exactBounds(uint32_t prim) const override { return boundsOf(boxes_[prim].lo, boxes_[prim].hi); }
     Bounds bounds() const override { return all_; }
-    int exactHits(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted, ExactHit out[4]) const override;
+    int exactHits(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted,
+                  ExactHit out[4]) const override;
     SurfacePoint evaluate(int face, double u, double v) const override;
     double area() const override { return areas().sum; }
     SurfacePoint sampleArea(double xi1, double xi2) const override;
     double sampleDensity(const SurfacePoint&) const override;
     void dice(const DiceOptions& opt, Diagnostics& diag) override {
         if (isDisplaced(*this, opt))
-            diag.report(Severity::Warning, Rie::Incapable, place(), "a Blobby is not displaced: its normals are, its silhouette stays");
+            diag.report(Severity::Warning, Rie::Incapable, place(),
+                        "a Blobby is not displaced: its normals are, its silhouette stays");
     }
 
 protected:
@@ -81,7 +84,8 @@ int largest(const Vec3d& v) {
     return x >= y && x >= z ? 0 : y >= z ? 1 : 2;
 }
 
-Blobby::Blobby(ShapeSource s, BlobField field, int leaves, Diagnostics& diag) : Shape(std::move(s)), field_(std::move(field)), leaves_(leaves) {
+Blobby::Blobby(ShapeSource s, BlobField field, int leaves, Diagnostics& diag)
+    : Shape(std::move(s)), field_(std::move(field)), leaves_(leaves) {
     toObject_ = inverse(toCamera());
     cut(diag);
     for (const Box& b : boxes_) all_.add(boundsOf(b.lo, b.hi));
@@ -111,7 +115,8 @@ void Blobby::cut(Diagnostics& diag) {
     while (!now.empty()) {
         const bool full = boxes_.size() + 2 * now.size() > limits::kBlobBoxes;
         if (full) {
-            diag.report(Severity::Info, Rie::Limit, place(), "Blobby: its boxes are larger than would be fast, for there would be too many");
+            diag.report(Severity::Info, Rie::Limit, place(),
+                        "Blobby: its boxes are larger than would be fast, for there would be too many");
             boxes_.insert(boxes_.end(), now.begin(), now.end());
             break;
         }
@@ -160,9 +165,11 @@ Bounds Blobby::boundsOf(const Vec3d& lo, const Vec3d& hi) const {
     return b;
 }
 
-// ---- hits -----------------------------------------------------------------------------------------------------------------------
+// ---- hits
+// -----------------------------------------------------------------------------------------------------------------------
 
-// The lowest bits of the two numbers: of the first the axis and the upper half of the third coordinate, of the second its lower half.
+// The lowest bits of the two numbers: of the first the axis and the upper half of the third coordinate, of the second its lower
+// half.
 constexpr int kHalfBits = 12;
 
 void Blobby::encode(uint32_t prim, const Vec3d& p, const Vec3d& gradient, double& b1, double& b2) const {
@@ -186,7 +193,8 @@ Vec3d Blobby::decoded(uint32_t prim, double b1, double b2) const {
     Vec3d p;
     p[a] = box.lo[a] + (box.hi[a] - box.lo[a]) * rest(first, kHalfBits + 2);
     p[b] = box.lo[b] + (box.hi[b] - box.lo[b]) * rest(second, kHalfBits);
-    const double size = box.hi[c] - box.lo[c], guess = (double((first & low) << kHalfBits | (second & low)) + 0.5) / double(1 << (2 * kHalfBits));
+    const double size = box.hi[c] - box.lo[c],
+                 guess = (double((first & low) << kHalfBits | (second & low)) + 0.5) / double(1 << (2 * kHalfBits));
     p[c] = box.lo[c] + size * guess;
     const double begin = p[c];
     for (int i = 0; i < 6; ++i) { // Newton from 6e-8 of the box
@@ -199,7 +207,8 @@ Vec3d Blobby::decoded(uint32_t prim, double b1, double b2) const {
     return p;
 }
 
-int Blobby::exactHits(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted wanted, ExactHit out[4]) const {
+int Blobby::exactHits(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted wanted,
+                      ExactHit out[4]) const {
     const Box& box = boxes_[prim];
     Vec3d o = transformPoint(toObject_, org), d = transformVector(toObject_, dir);
     if (!(dot(d, d) > 0) || !std::isfinite(dot(o, o) + dot(d, d))) return 0;
@@ -256,7 +265,8 @@ SurfacePoint Blobby::evaluateLocal(uint32_t prim, double b1, double b2) const {
     if (g[c] < 0) std::swap(a, b); // dPdu x dPdv leaves the blob
     const double full[3][3] = {{j.h[0], j.h[3], j.h[4]}, {j.h[3], j.h[1], j.h[5]}, {j.h[4], j.h[5], j.h[2]}};
     const auto bent = [&](const Vec3d& x) {
-        return Vec3d(full[0][0] * x.x + full[0][1] * x.y + full[0][2] * x.z, full[1][0] * x.x + full[1][1] * x.y + full[1][2] * x.z,
+        return Vec3d(full[0][0] * x.x + full[0][1] * x.y + full[0][2] * x.z,
+                     full[1][0] * x.x + full[1][1] * x.y + full[1][2] * x.z,
                      full[2][0] * x.x + full[2][1] * x.y + full[2][2] * x.z);
     };
     Vec3d pu(0.0), pv(0.0);
@@ -311,7 +321,8 @@ int Blobby::weights(Class c, const SurfacePoint& p, Weight w[16]) const {
     return std::max(n, 1);
 }
 
-// ---- as a light -----------------------------------------------------------------------------------------------------------------
+// ---- as a light
+// -----------------------------------------------------------------------------------------------------------------
 
 int Blobby::alongAxis(const Box& box, int axis, const Vec3d& through, double* out) const {
     Vec3d o = through, d(0.0);
@@ -331,23 +342,27 @@ double Blobby::stretch(const Vec3d& n) const {
 /// Lines along the axes through a box meet the surface; what each root stands for is shared by the three directions.
 const Blobby::Areas& Blobby::areas() const {
     std::call_once(areas_.made, [&] {
-        constexpr int kLines = 4;
+        // By side of a box; few boxes get many, for lines at the edge of what they see count for much.
+        const int lines = std::clamp(int(std::sqrt(2e5 / (3.0 * double(boxes_.size())))), 4, 32);
         areas_.cumulative.reserve(boxes_.size());
         double chances = 0;
         for (const Box& b : boxes_) {
             const Vec3d size = b.hi - b.lo;
             double area = 0;
+            // Boxes lie in rows: lines at the same places of each would see a ball as the same few circles.
+            const double turn = double(areas_.cumulative.size()) * 0.7548776662466927, shiftA = turn - std::floor(turn);
+            const double other = double(areas_.cumulative.size()) * 0.5698402909980532, shiftB = other - std::floor(other);
             for (int axis = 0; axis < 3; ++axis)
-                for (int k = 0; k < kLines * kLines; ++k) {
+                for (int k = 0; k < lines * lines; ++k) {
                     Vec3d p = b.lo;
-                    p[(axis + 1) % 3] += size[(axis + 1) % 3] * (k % kLines + 0.5) / kLines;
-                    p[(axis + 2) % 3] += size[(axis + 2) % 3] * (k / kLines + 0.5) / kLines;
+                    p[(axis + 1) % 3] += size[(axis + 1) % 3] * (k % lines + shiftA) / lines;
+                    p[(axis + 2) % 3] += size[(axis + 2) % 3] * (k / lines + shiftB) / lines;
                     double roots[2 * kMost];
                     for (int n = alongAxis(b, axis, p, roots), i = 0; i < n; ++i) {
                         p[axis] = roots[i];
                         const Vec3d g = normalize(field_.jet(tapeOf(b), p).g);
                         // A third of them by the square of its part of the normal: nothing at the edges that a direction sees.
-                        area += size[(axis + 1) % 3] * size[(axis + 2) % 3] / (kLines * kLines) * std::fabs(g[axis]) * stretch(g);
+                        area += size[(axis + 1) % 3] * size[(axis + 2) % 3] / (lines * lines) * std::fabs(g[axis]) * stretch(g);
                     }
                 }
             areas_.sum += area;
@@ -377,8 +392,9 @@ double Blobby::densityObject(uint32_t prim, const Vec3d& p, const Vec3d& normal)
 
 SurfacePoint Blobby::sampleArea(double xi1, double xi2) const {
     const Areas& all = areas();
-    const size_t prim = size_t(std::min(std::upper_bound(all.cumulative.begin(), all.cumulative.end(), xi1) - all.cumulative.begin(),
-                                        ptrdiff_t(boxes_.size() - 1)));
+    const size_t prim =
+        size_t(std::min(std::upper_bound(all.cumulative.begin(), all.cumulative.end(), xi1) - all.cumulative.begin(),
+                        ptrdiff_t(boxes_.size() - 1)));
     const double before = prim ? all.cumulative[prim - 1] : 0, share = all.cumulative[prim] - before;
     // What is left of the numbers chooses the axis, the line, and one of its roots.
     double x = share > 0 ? std::clamp((xi1 - before) / share, 0.0, 0x1.fffffffffffffp-1) : 0.5, y = xi2;
@@ -420,7 +436,8 @@ ShapeRef makeBlobby(ShapeSource s, Diagnostics& diag) {
     if (!field.read(leaves, p.ints2, p.numbers, p.strings, p.toWorld.first(), p.place, diag)) return nullptr;
     auto shape = std::make_shared<Blobby>(std::move(s), std::move(field), leaves, diag);
     if (!shape->empty()) return shape;
-    diag.report(Severity::Warning, Rie::Range, p.place, "Blobby: its field never reaches the threshold; there is nothing to draw");
+    diag.report(Severity::Warning, Rie::Range, p.place,
+                "Blobby: its field never reaches the threshold; there is nothing to draw");
     return nullptr;
 }
 

@@ -11,7 +11,9 @@ namespace {
 constexpr double kNode[4] = {0.0694318442029737, 0.3300094782075719, 0.6699905217924281, 0.9305681557970263};
 constexpr double kWeight[4] = {0.1739274225687269, 0.3260725774312731, 0.3260725774312731, 0.1739274225687269};
 
-struct Quadrature { double at, weight; };
+struct Quadrature {
+    double at, weight;
+};
 // On [0, 1], with room for square roots at both ends: curves have level tangents where strips end.
 Quadrature smoothed(int panel, int panels, int k) {
     const double s = (panel + kNode[k]) / panels;
@@ -73,7 +75,8 @@ double TrimRegion::Piece::crossing(double v) const {
     return along(x, t) / along(w, t);
 }
 
-// ---- from the request to pieces -------------------------------------------------------------------------------------------------
+// ---- from the request to pieces
+// -------------------------------------------------------------------------------------------------
 
 class TrimRegion::Maker {
 public:
@@ -86,9 +89,12 @@ public:
     bool tooMany() const { return region_.pieces_.size() > limits::kTrimPieces; }
 
 private:
-    struct Point { double u, v; };
+    struct Point {
+        double u, v;
+    };
     void bezier(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& w);
-    static void extremes(const std::vector<double>& y, const std::vector<double>& w, double t0, double t1, std::vector<double>& out);
+    static void extremes(const std::vector<double>& y, const std::vector<double>& w, double t0, double t1,
+                         std::vector<double>& out);
     void add(std::vector<double> x, std::vector<double> y, std::vector<double> w);
     void lineTo(Point);
 
@@ -148,8 +154,8 @@ bool TrimRegion::Maker::curve(int order, const float* knot, double min, double m
     return true;
 }
 
-/// Where v = y / w turns round: the quotients of its control points rise or fall only where the curve does (it crosses a line at most
-/// as often as they do).
+/// Where v = y / w turns round: the quotients of its control points rise or fall only where the curve does (it crosses a line at
+/// most as often as they do).
 void TrimRegion::Maker::extremes(const std::vector<double>& y, const std::vector<double>& w, double t0, double t1,
                                  std::vector<double>& out) {
     bool up = false, down = false;
@@ -207,7 +213,8 @@ void TrimRegion::Maker::add(std::vector<double> x, std::vector<double> y, std::v
 }
 
 void TrimRegion::Maker::lineTo(Point to) {
-    region_.pieces_.push_back({{at_.u, to.u}, {at_.v, to.v}, {1, 1}, at_.u, at_.v, to.u, to.v, std::min(at_.u, to.u), std::max(at_.u, to.u)});
+    region_.pieces_.push_back(
+        {{at_.u, to.u}, {at_.v, to.v}, {1, 1}, at_.u, at_.v, to.u, to.v, std::min(at_.u, to.u), std::max(at_.u, to.u)});
     at_ = to;
 }
 
@@ -233,11 +240,13 @@ std::shared_ptr<const TrimRegion> TrimRegion::make(const scene::ParamList& curve
     size_t c = 0, points = 0, knots = 0;
     for (float loop : ncurves) {
         for (int k = 0; k < int(loop); ++k, ++c) {
-            if (c >= order.size() || c >= n.size() || c >= min.size() || c >= max.size()) return why = "arrays are too short", nullptr;
+            if (c >= order.size() || c >= n.size() || c >= min.size() || c >= max.size())
+                return why = "arrays are too short", nullptr;
             const int o = int(order[c]), count = int(n[c]);
             if (o < 2 || o > limits::kNurbsOrder || count < o)
                 return why = "orders are 2 to " + std::to_string(limits::kNurbsOrder) + ", with as many points at least", nullptr;
-            if (knots + size_t(o) + size_t(count) > knot.size() || points + size_t(count) > std::min({u.size(), v.size(), w.size()}))
+            if (knots + size_t(o) + size_t(count) > knot.size() ||
+                points + size_t(count) > std::min({u.size(), v.size(), w.size()}))
                 return why = "arrays are too short", nullptr;
             std::string fault;
             if (!maker.curve(o, &knot[knots], min[c], max[c], count, &u[points], &v[points], &w[points], fault))
@@ -249,13 +258,15 @@ std::shared_ptr<const TrimRegion> TrimRegion::make(const scene::ParamList& curve
     }
     widestGap = maker.widestGap;
     // What lies beside the square or is level in v is never crossed there.
-    std::erase_if(region->pieces_, [](const Piece& p) { return p.v0 == p.v1 || std::max(p.v0, p.v1) < 0 || std::min(p.v0, p.v1) > 1; });
+    std::erase_if(region->pieces_,
+                  [](const Piece& p) { return p.v0 == p.v1 || std::max(p.v0, p.v1) < 0 || std::min(p.v0, p.v1) > 1; });
     region->makeStrips();
     region->weighStrips();
     return region;
 }
 
-// ---- strips of v ----------------------------------------------------------------------------------------------------------------
+// ---- strips of v
+// ----------------------------------------------------------------------------------------------------------------
 
 void TrimRegion::makeStrips() {
     constexpr size_t kEvenly = 32, kMost = 1u << 15, kEntries = 1u << 23;
@@ -276,7 +287,8 @@ void TrimRegion::makeStrips() {
         auto each = [&](auto&& f) {
             for (uint32_t k = 0; k < pieces_.size(); ++k) {
                 const double lo = std::min(pieces_[k].v0, pieces_[k].v1), hi = std::max(pieces_[k].v0, pieces_[k].v1);
-                for (size_t s = size_t(&stripOf(std::clamp(lo, 0.0, 1.0)) - strips_.data()); s < strips_.size() && strips_[s].lo <= hi; ++s)
+                for (size_t s = size_t(&stripOf(std::clamp(lo, 0.0, 1.0)) - strips_.data());
+                     s < strips_.size() && strips_[s].lo <= hi; ++s)
                     f(strips_[s], k);
             }
         };

@@ -1,7 +1,8 @@
 // Trim curves: which part of a NURBS patch is there (ri.md 8.7).
 //
-// Nothing is made of polygons: a curve is cut into rational Bezier pieces that rise or fall in v, and whether a point lies left or right
-// of a piece is found on the piece itself, in double. Inside is what a line to infinity leaves through an odd number of pieces.
+// Nothing is made of polygons: a curve is cut into rational Bezier pieces that rise or fall in v, and whether a point lies left
+// or right of a piece is found on the piece itself, in double. Inside is what a line to infinity leaves through an odd number of
+// pieces.
 #pragma once
 #include "base/diagnostics.h"
 #include "scene/scene.h"
@@ -15,12 +16,14 @@ namespace alpenglow::geometry {
 class TrimRegion {
 public:
     /// Parameters of the patch that become 0 and 1.
-    struct Domain { double lo[2], hi[2]; };
-    /// curves: the nine arrays of TrimCurve (scene::Attributes::trimCurve), u, v, w homogeneous. keepInside: what is outside goes.
-    /// A loop that does not close is closed by a line (a warning where the gap can be seen). Null with a message in `why` where the
-    /// curves are none.
-    static std::shared_ptr<const TrimRegion> make(const scene::ParamList& curves, const Domain&, bool keepInside, std::string& why,
-                                                  double& widestGap);
+    struct Domain {
+        double lo[2], hi[2];
+    };
+    /// curves: the nine arrays of TrimCurve (scene::Attributes::trimCurve), u, v, w homogeneous. keepInside: what is outside
+    /// goes. A loop that does not close is closed by a line (a warning where the gap can be seen). Null with a message in `why`
+    /// where the curves are none.
+    static std::shared_ptr<const TrimRegion> make(const scene::ParamList& curves, const Domain&, bool keepInside,
+                                                  std::string& why, double& widestGap);
 
     /// Whether the point is kept. Of points on the curve one side is.
     bool keeps(double u, double v) const;
@@ -36,7 +39,9 @@ public:
     /// Density by du dv with which sample() gives this point; it is about 1 / area(). 0 where nothing is kept.
     double density(double u, double v) const;
     /// Nodes and weights for integrals over what is kept, by du dv.
-    struct Node { double u, v, weight; };
+    struct Node {
+        double u, v, weight;
+    };
     std::vector<Node> nodes() const;
 
 private:

@@ -79,9 +79,11 @@ Program* Interpreter::programOf(const std::string& command, const SourcePlace& p
     return slot->second.get();
 }
 
-void Interpreter::runProgram(const std::string& command, const std::string& data, const std::vector<float>& bound, const Call& call) {
+void Interpreter::runProgram(const std::string& command, const std::string& data, const std::vector<float>& bound,
+                             const Call& call) {
     if (++programCalls_ > limits::kProgramCalls) {
-        reporter.once("ri:programcalls", Severity::Error, Rie::Limit, call.place, fmt::format("more than {} procedurals are run", limits::kProgramCalls));
+        reporter.once("ri:programcalls", Severity::Error, Rie::Limit, call.place,
+                      fmt::format("more than {} procedurals are run", limits::kProgramCalls));
         return;
     }
     if (openArchives_.size() >= size_t(limits::kArchiveDepth)) {
@@ -99,14 +101,16 @@ void Interpreter::runProgram(const std::string& command, const std::string& data
     const bool whole = program->ask(line + "\n", settings.programSeconds, settings.stop, answer, why);
     if (!whole) {
         programs_[command] = nullptr;
-        reporter.error(Rie::System, call.place, fmt::format("program \"{}\": {}; it is not asked again, and what it said is drawn", command, why));
+        reporter.error(Rie::System, call.place,
+                       fmt::format("program \"{}\": {}; it is not asked again, and what it said is drawn", command, why));
     }
     if (!begin(BlockKind::Attribute, call)) return;
     readOpened(fmt::format("program:{}", ++programSerial_), commandWords(command)[0], nullptr, memorySource(answer), call.place);
     end(BlockKind::Attribute, call);
 }
 
-void Interpreter::procedural(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound, const Call& call) {
+void Interpreter::procedural(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound,
+                             const Call& call) {
     const auto needs = [&](const char* what) {
         reporter.error(Rie::MissingData, call.place, fmt::format("{}: the {} has no name", call.request->name, what));
     };
@@ -118,9 +122,11 @@ void Interpreter::procedural(const std::string& kind, const std::vector<std::str
         return;
     }
     if (!settings.allowExec)
-        return incapable(call, fmt::format("{} \"{}\" runs foreign code: it needs --allow-exec and is left out", call.request->name, kind));
+        return incapable(
+            call, fmt::format("{} \"{}\" runs foreign code: it needs --allow-exec and is left out", call.request->name, kind));
     if (kind == "DynamicLoad") {
-        incapable(call, "libraries of procedurals (DynamicLoad) call RenderMan's C binding, which this renderer does not have; RunProgram does the same");
+        incapable(call, "libraries of procedurals (DynamicLoad) call RenderMan's C binding, which this renderer does not have; "
+                        "RunProgram does the same");
         return;
     }
     if (arguments.empty()) return needs("program");

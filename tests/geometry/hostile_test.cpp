@@ -55,7 +55,7 @@ TEST(Hostile, SingularTransformsAndUnknownKinds) {
     Diagnostics diag;
     EXPECT_FALSE(build(quadric("Sphere", {1, -1, 1, 360}), scaleMatrix(1, 0, 1), diag));
     EXPECT_EQ(diag.warnings(), 1);
-    for (int i = 0; i < 3; ++i) EXPECT_FALSE(build(quadric("Blobby", {}), Matrix(), diag));
+    for (int i = 0; i < 3; ++i) EXPECT_FALSE(build(quadric("Volume", {}), Matrix(), diag));
     EXPECT_EQ(diag.warnings(), 2); // once a kind
 }
 

@@ -1,6 +1,6 @@
 // Trim curves and NURBS of high order against closed forms and against slow, independent evaluation.
-#include "geometry/trim.h"
 #include "base/limits.h"
+#include "geometry/trim.h"
 #include "make.h"
 #include <cmath>
 #include <gtest/gtest.h>
@@ -16,7 +16,10 @@ using scene::Class;
 using scene::Type;
 
 /// One loop of TrimCurve, homogeneous.
-struct Curve { int order; std::vector<float> knot, u, v, w; };
+struct Curve {
+    int order;
+    std::vector<float> knot, u, v, w;
+};
 
 scene::ParamList trimList(const std::vector<std::vector<Curve>>& loops) {
     std::vector<float> ncurves, order, knot, min, max, n, u, v, w;
@@ -34,10 +37,19 @@ scene::ParamList trimList(const std::vector<std::vector<Curve>>& loops) {
         }
     }
     auto p = [](const char* name, std::vector<float> x) { return param(name, Class::Constant, Type::Float, std::move(x)); };
-    return {p("ncurves", ncurves), p("order", order), p("knot", knot), p("min", min), p("max", max), p("n", n), p("u", u), p("v", v), p("w", w)};
+    return {p("ncurves", ncurves),
+            p("order", order),
+            p("knot", knot),
+            p("min", min),
+            p("max", max),
+            p("n", n),
+            p("u", u),
+            p("v", v),
+            p("w", w)};
 }
 
-/// A circle as four rational quadratics. Of sqrt(1/2) only its float is known to the curve; radius() knows by how much that moves it.
+/// A circle as four rational quadratics. Of sqrt(1/2) only its float is known to the curve; radius() knows by how much that moves
+/// it.
 Curve circle(double cu, double cv, double r) {
     Curve c{3, {0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4}, {}, {}, {}};
     const double x[9] = {1, 1, 0, -1, -1, -1, 0, 1, 1}, y[9] = {0, 1, 1, 1, 0, -1, -1, -1, 0};
@@ -60,7 +72,8 @@ Curve lines(std::vector<float> u, std::vector<float> v) {
 
 constexpr TrimRegion::Domain kUnit{{0, 0}, {1, 1}};
 
-std::shared_ptr<const TrimRegion> region(const std::vector<std::vector<Curve>>& loops, bool keepInside, TrimRegion::Domain d = kUnit) {
+std::shared_ptr<const TrimRegion> region(const std::vector<std::vector<Curve>>& loops, bool keepInside,
+                                         TrimRegion::Domain d = kUnit) {
     std::string why;
     double gap;
     auto r = TrimRegion::make(trimList(loops), d, keepInside, why, gap);
@@ -87,8 +100,8 @@ std::shared_ptr<scene::Primitive> sheet(float size) { // u, v over [0, 1] on a s
     p->ints = {2, 2, 2, 2};
     p->numbers = {0, 1, 0, 1};
     const float a = size / 2;
-    p->params = {param("uknot", Class::Constant, Type::Float, {0, 0, 1, 1}), param("vknot", Class::Constant, Type::Float, {0, 0, 1, 1}),
-                 points({-a, -a, 5, a, -a, 5, -a, a, 5, a, a, 5})};
+    p->params = {param("uknot", Class::Constant, Type::Float, {0, 0, 1, 1}),
+                 param("vknot", Class::Constant, Type::Float, {0, 0, 1, 1}), points({-a, -a, 5, a, -a, 5, -a, a, 5, a, a, 5})};
     return p;
 }
 
@@ -133,20 +146,24 @@ TEST(Trim, InsideIsWhatIsLeftThroughAnOddNumberOfCurves) {
     EXPECT_NEAR(r->area(), kPi * (0.16 - 0.04 + 0.01), 2 * kPi * 0.7 * kFloat);
     auto removed = region({{circle(0.5, 0.5, 0.4)}, {back}, {circle(0.5, 0.5, 0.1)}}, false);
     EXPECT_NEAR(removed->area() + r->area(), 1, 1e-12);
-    auto two = region({{lines({.1f, .6f, .6f, .1f, .1f}, {.1f, .1f, .6f, .6f, .1f})}, {lines({.4f, .9f, .9f, .4f, .4f}, {.4f, .4f, .9f, .9f, .4f})}}, true);
+    auto two = region({{lines({.1f, .6f, .6f, .1f, .1f}, {.1f, .1f, .6f, .6f, .1f})},
+                       {lines({.4f, .9f, .9f, .4f, .4f}, {.4f, .4f, .9f, .9f, .4f})}},
+                      true);
     EXPECT_FALSE(two->keeps(0.5, 0.5));
     EXPECT_NEAR(two->area(), 2 * 0.25 - 2 * 0.04, 1e-6);
 }
 
 TEST(Trim, CurvesAreThoseOfTheirDefinition) {
-    // Loops of any order over uneven and repeated knots, partly outside of the patch, against a polygon of 4,000 points of the recursion.
+    // Loops of any order over uneven and repeated knots, partly outside of the patch, against a polygon of 4,000 points of the
+    // recursion.
     std::mt19937 rng(11);
     auto random = [&] { return double(rng()) / 4294967296.0; };
     for (int scene = 0; scene < 12; ++scene) {
         const int order = 2 + scene % 6, n = order + 1 + int(rng() % 6);
         Curve c{order, {}, {}, {}, {}};
         float t = 0;
-        for (int i = 0; i < n + order; ++i) c.knot.push_back(t += (i < order || i >= n) ? (i == n ? 1.f : 0.f) : float(rng() % 3 == 0 ? 0 : 0.2 + random()));
+        for (int i = 0; i < n + order; ++i)
+            c.knot.push_back(t += (i < order || i >= n) ? (i == n ? 1.f : 0.f) : float(rng() % 3 == 0 ? 0 : 0.2 + random()));
         for (int i = 0; i < n; ++i) {
             const float w = float(0.3 + random());
             c.u.push_back(float(1.6 * random() - 0.3) * w);
@@ -292,11 +309,13 @@ TEST(NuPatch, AnyOrderAndAnyKnots) {
         auto p = std::make_shared<scene::Primitive>();
         p->kind = "NuPatch";
         p->ints = {n[0], order[0], n[1], order[1]};
-        const double lo[2] = {knots[0][size_t(order[0]) - 1], knots[1][size_t(order[1]) - 1]}, hi[2] = {knots[0][size_t(n[0])], knots[1][size_t(n[1])]};
+        const double lo[2] = {knots[0][size_t(order[0]) - 1], knots[1][size_t(order[1]) - 1]},
+                     hi[2] = {knots[0][size_t(n[0])], knots[1][size_t(n[1])]};
         if (!(lo[0] < hi[0] && lo[1] < hi[1])) continue;
         p->numbers = {float(lo[0]), float(hi[0]), float(lo[1]), float(hi[1])};
-        p->params = {param("uknot", Class::Constant, Type::Float, knots[0]), param("vknot", Class::Constant, Type::Float, knots[1]),
-                     param("Pw", Class::Vertex, Type::HPoint, Pw), param("f", Class::Vertex, Type::Float, f)};
+        p->params = {param("uknot", Class::Constant, Type::Float, knots[0]),
+                     param("vknot", Class::Constant, Type::Float, knots[1]), param("Pw", Class::Vertex, Type::HPoint, Pw),
+                     param("f", Class::Vertex, Type::Float, f)};
         Diagnostics diag;
         ShapeRef s = build(p, Matrix(), diag);
         ASSERT_TRUE(s);
@@ -333,8 +352,9 @@ TEST(NuPatch, UniformAndVaryingValuesLieBetweenKnots) {
     std::vector<float> P;
     for (float y : {-1.f, 1.f})
         for (float x : {0.f, 1.f, 3.f, 4.f}) P.insert(P.end(), {x, y, 5});
-    p->params = {param("uknot", Class::Constant, Type::Float, {0, 0, 1, 3, 4, 4}), param("vknot", Class::Constant, Type::Float, {0, 0, 1, 1}),
-                 points(P), param("f", Class::Uniform, Type::Float, {1, 2, 3}),
+    p->params = {param("uknot", Class::Constant, Type::Float, {0, 0, 1, 3, 4, 4}),
+                 param("vknot", Class::Constant, Type::Float, {0, 0, 1, 1}), points(P),
+                 param("f", Class::Uniform, Type::Float, {1, 2, 3}),
                  param("g", Class::Varying, Type::Float, {0, 10, 30, 40, 0, 10, 30, 40})};
     Diagnostics diag;
     ShapeRef s = build(p, Matrix(), diag);
@@ -356,7 +376,8 @@ TEST(NuPatch, AKnotThatTearsTheSurfaceLeavesAGap) {
     auto p = sheet(2);
     p->ints = {4, 2, 2, 2};
     p->numbers = {0, 2, 0, 1};
-    p->params = {param("uknot", Class::Constant, Type::Float, {0, 0, 1, 1, 2, 2}), param("vknot", Class::Constant, Type::Float, {0, 0, 1, 1}),
+    p->params = {param("uknot", Class::Constant, Type::Float, {0, 0, 1, 1, 2, 2}),
+                 param("vknot", Class::Constant, Type::Float, {0, 0, 1, 1}),
                  points({0, 0, 5, 1, 0, 5, 2, 0, 5, 3, 0, 5, 0, 1, 5, 1, 1, 5, 2, 1, 5, 3, 1, 5})};
     Diagnostics diag;
     ShapeRef s = build(p, Matrix(), diag);

@@ -1,7 +1,7 @@
 // Files of polygons: what is in them is drawn, and what is wrong with them is told and costs no more than the file.
-#include "ri/models/model.h"
 #include "base/srgb.h"
 #include "collect.h"
+#include "ri/models/model.h"
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -32,7 +32,8 @@ std::vector<scene::Primitive> ply(std::string_view text, Said& said) {
 }
 std::vector<scene::Primitive> obj(std::string_view text, Said& said, const std::string& mtl = "") {
     ModelLog log(said.sink());
-    return readObj("m.obj", text, [&](const std::string& name) { return name == "m.mtl" ? std::optional(mtl) : std::nullopt; }, log);
+    return readObj(
+        "m.obj", text, [&](const std::string& name) { return name == "m.mtl" ? std::optional(mtl) : std::nullopt; }, log);
 }
 const scene::Param& var(const scene::Primitive& p, const std::string& name) {
     static const scene::Param none;
@@ -47,14 +48,19 @@ bool has(const scene::Primitive& p, const std::string& name) {
 
 /// Four corners, a quad and a triangle; properties in an order of their own, with lists and types between that nobody needs.
 struct Sample {
-    double v[4][9] = {// red, junk list 0..2 values below, z, y, x, nx, ny, nz, quality, t
-                      {255, 3, 2, 1, 0, 0, 1, .5, 0}, {0, 3, 2, 4, 0, 0, 1, .25, 1}, {128, 3, 5, 4, 0, 0, 1, 0, 1}, {51, 3, 5, 1, 0, 0, 1, 1, 0}};
+    double v[4][9] = { // red, junk list 0..2 values below, z, y, x, nx, ny, nz, quality, t
+        {255, 3, 2, 1, 0, 0, 1, .5, 0},
+        {0, 3, 2, 4, 0, 0, 1, .25, 1},
+        {128, 3, 5, 4, 0, 0, 1, 0, 1},
+        {51, 3, 5, 1, 0, 0, 1, 1, 0}};
     std::vector<std::vector<int>> faces{{0, 1, 2, 3}, {0, 2, 3}};
     static std::string header(const std::string& format) {
-        return "ply\nformat " + format + " 1.0\ncomment made by hand\nelement vertex 4\nproperty uchar red\nproperty list uchar short junk\n"
+        return "ply\nformat " + format +
+               " 1.0\ncomment made by hand\nelement vertex 4\nproperty uchar red\nproperty list uchar short junk\n"
                "property float z\nproperty double y\nproperty float x\nproperty float nx\nproperty float ny\nproperty float nz\n"
                "property uchar green\nproperty uint8 blue\nproperty float quality\nproperty float s\nproperty float t\n"
-               "element face 2\nproperty uchar kind\nproperty list uchar int vertex_indices\nelement rest 2\nproperty list ushort int8 x\nend_header\n";
+               "element face 2\nproperty uchar kind\nproperty list uchar int vertex_indices\nelement rest 2\nproperty list "
+               "ushort int8 x\nend_header\n";
     }
     std::string ascii() const {
         std::string s = header("ascii");
@@ -174,15 +180,18 @@ TEST(Ply, FaultsHaveTheirLine) {
     EXPECT_EQ(first("ply\nformat morse 1.0\n"), "m.ply:2: format \"morse\" is not known");
     EXPECT_EQ(first("ply\nelement v 1\nproperty quad x\nend_header\n"), "m.ply:3: the type of property \"x\" is not known");
     EXPECT_EQ(first("ply\nproperty float x\n"), "m.ply:2: a property without an element");
-    EXPECT_EQ(first("ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n4 five 6\n"),
+    EXPECT_EQ(first("ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float "
+                    "z\nend_header\n1 2 3\n4 five 6\n"),
               "m.ply:9: \"five\" is no number");
 }
 
 TEST(Ply, BadVerticesTakeTheirFacesWithThem) {
     Said said;
-    auto parts = ply("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 5\n"
-                     "property list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\nnan 1 0\n0 1 0\n3 0 1 3\n3 0 1 2\n3 0 1 4\n3 0 -1 1\n2 0 1\n",
-                     said);
+    auto parts =
+        ply("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 5\n"
+            "property list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\nnan 1 0\n0 1 0\n3 0 1 3\n3 0 1 2\n3 0 1 4\n3 0 -1 "
+            "1\n2 0 1\n",
+            said);
     ASSERT_EQ(parts.size(), 1u);
     EXPECT_EQ(parts[0].ints, std::vector<int>{3});
     EXPECT_EQ(said.errors, 2) << said.text;
@@ -192,12 +201,14 @@ TEST(Ply, BadVerticesTakeTheirFacesWithThem) {
 
 TEST(Ply, StripsAndClouds) {
     Said said;
-    auto parts = ply("ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\n"
-                     "property list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n9 0 1 2 3 -1 2 3 4 -1\n",
-                     said);
+    auto parts =
+        ply("ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\n"
+            "property list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n9 0 1 2 3 -1 2 3 4 -1\n",
+            said);
     ASSERT_EQ(parts.size(), 1u);
     EXPECT_EQ(parts[0].ints2, (std::vector<int>{0, 1, 2, 1, 3, 2, 2, 3, 4})); // all turn the same way
-    parts = ply("ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nproperty float radius\nend_header\n"
+    parts = ply("ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nproperty float "
+                "radius\nend_header\n"
                 "0 0 0 1\n1 0 0 2\n",
                 said);
     ASSERT_EQ(parts.size(), 1u);
@@ -208,7 +219,8 @@ TEST(Ply, StripsAndClouds) {
 
 TEST(Obj, IndicesOfBothSignsAndAllForms) {
     Said said;
-    auto parts = obj("# a square, four ways\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 .25\nvn 0 0 1\nf 1 2 3 4\nf -4/-2 -3/-1 -2/1 -1/2\n"
+    auto parts = obj("# a square, four ways\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 .25\nvn 0 0 1\nf 1 2 3 4\nf -4/-2 "
+                     "-3/-1 -2/1 -1/2\n"
                      "f 1//1 2//-1 \\\n 3//1\nf 1/1/1 2/2/1 3/1/1 4/2/1\ng a group\no thing\n",
                      said);
     EXPECT_EQ(said.text, "");
@@ -228,8 +240,9 @@ TEST(Obj, IndicesOfBothSignsAndAllForms) {
 
 TEST(Obj, MaterialsBecomeParts) {
     Said said;
-    auto parts = obj("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl red one\nf 1 2 3\nusemtl glass\nf 1 3 4\nusemtl red one\nf 2 3 4\nusemtl none\nf 1 2 4\n", said,
-                     "newmtl red one\nKd 1 .5 .25\nmap_Kd -s 1 1 1 a.png\nNs 10\nnewmtl glass\nd .25\nKd .5\n");
+    auto parts = obj("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl red one\nf 1 2 3\nusemtl glass\nf 1 3 4\nusemtl "
+                     "red one\nf 2 3 4\nusemtl none\nf 1 2 4\n",
+                     said, "newmtl red one\nKd 1 .5 .25\nmap_Kd -s 1 1 1 a.png\nNs 10\nnewmtl glass\nd .25\nKd .5\n");
     EXPECT_EQ(said.text, "");
     ASSERT_EQ(parts.size(), 3u);
     EXPECT_EQ(parts[0].ints, (std::vector<int>{3, 3}));
@@ -255,11 +268,14 @@ TEST(Obj, SmoothingGroupsMakeNormals) {
 
 TEST(Obj, FaultsHaveTheirLineAndTheRestIsDrawn) {
     Said said;
-    auto parts = obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 1 x 0\nv inf 0 0\nf 1 2 3\nf 1 2 4\nf 1 2 9\nf 1 2 0\nf 1 2 -9\nf 1 2\nvn 1\ncurv 0 1\nf 1 2 99999999999999999999\n", said);
+    auto parts = obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 1 x 0\nv inf 0 0\nf 1 2 3\nf 1 2 4\nf 1 2 9\nf 1 2 0\nf 1 2 -9\nf 1 2\nvn "
+                     "1\ncurv 0 1\nf 1 2 99999999999999999999\n",
+                     said);
     ASSERT_EQ(parts.size(), 1u);
     EXPECT_EQ(parts[0].ints, std::vector<int>{3});
-    for (const char* line : {"m.obj:4: \"x\" is no number", "m.obj:5: a vertex is not finite", "m.obj:9: \"0\" is no index", "m.obj:10: index -9",
-                             "m.obj:12: vn needs 3", "m.obj:13: \"curv\"", "m.obj:14: ", "2 faces use vertices", "1 faces have fewer"})
+    for (const char* line :
+         {"m.obj:4: \"x\" is no number", "m.obj:5: a vertex is not finite", "m.obj:9: \"0\" is no index", "m.obj:10: index -9",
+          "m.obj:12: vn needs 3", "m.obj:13: \"curv\"", "m.obj:14: ", "2 faces use vertices", "1 faces have fewer"})
         EXPECT_NE(said.text.find(line), std::string::npos) << line << "\n" << said.text;
     Said empty;
     EXPECT_TRUE(obj("", empty).empty());
@@ -268,23 +284,32 @@ TEST(Obj, FaultsHaveTheirLineAndTheRestIsDrawn) {
 
 TEST(Model, DamagedFilesNeitherCrashNorGrow) {
     std::mt19937 rng(1);
-    const std::string seeds[] = {Sample().ascii(), Sample().binary(false), Sample().binary(true),
-                                 "mtllib m.mtl\nv 0 0 0\nv 1 0 0 1 0 0\nv 1 1 0\nvt 0 0\nvn 0 0 1\ns 1\nusemtl a\nf 1/1/1 2/1/1 3/1/1\nf -1 -2 -3\n"};
+    const std::string seeds[] = {
+        Sample().ascii(), Sample().binary(false), Sample().binary(true),
+        "mtllib m.mtl\nv 0 0 0\nv 1 0 0 1 0 0\nv 1 1 0\nvt 0 0\nvn 0 0 1\ns 1\nusemtl a\nf 1/1/1 2/1/1 3/1/1\nf -1 -2 -3\n"};
     for (int k = 0; k < 4000; ++k) {
         std::string text = seeds[rng() % 4];
         for (int i = 0, n = 1 + int(rng() % 6); i < n; ++i) {
             const size_t at = rng() % text.size();
             switch (rng() % 4) {
-            case 0: text[at] = char(rng()); break;
-            case 1: text.erase(at, 1 + rng() % 8); break;
-            case 2: text.insert(at, text.substr(rng() % text.size(), rng() % 20)); break;
-            default: text[at] = "0123456789-./ \n"[rng() % 15];
+            case 0:
+                text[at] = char(rng());
+                break;
+            case 1:
+                text.erase(at, 1 + rng() % 8);
+                break;
+            case 2:
+                text.insert(at, text.substr(rng() % text.size(), rng() % 20));
+                break;
+            default:
+                text[at] = "0123456789-./ \n"[rng() % 15];
             }
             if (text.empty()) text = " ";
         }
         Said said;
         ModelLog log(said.sink());
-        for (auto& p : readModel(k % 2 ? "m.ply" : "m.obj", text, [&](const std::string&) { return std::optional(text); }, log)) {
+        for (auto& p : readModel(
+                 k % 2 ? "m.ply" : "m.obj", text, [&](const std::string&) { return std::optional(text); }, log)) {
             const size_t points = var(p, "P").numbers.size() / 3;
             size_t corners = 0;
             for (int n : p.ints) corners += size_t(n);

@@ -42,13 +42,16 @@ const std::string bound = " [-1 1 -1 1 -1 1] ";
 
 TEST_F(Procedurals, ArePartsOfTheSceneAtTheirPlace) {
     // The number of the process is the radius: one process answers both, and remembers.
-    program("maker", "n=0; while read detail data; do n=$((n+1)); echo \"Translate $data $n 0 Sphere $$ -1 1 360\"; printf '\\377'; done");
+    program("maker",
+            "n=0; while read detail data; do n=$((n+1)); echo \"Translate $data $n 0 Sphere $$ -1 1 360\"; printf '\\377'; done");
     auto c = readHere("WorldBegin Color [1 0 0] Translate 0 0 5 Procedural \"RunProgram\" [\"maker\" \"7\"]" + bound +
-                      "Sphere 1 -1 1 360 Procedural2 \"RunProgram2\" \"SimpleBound\" \"string command\" \"maker\" \"string data\" \"8\" WorldEnd");
+                      "Sphere 1 -1 1 360 Procedural2 \"RunProgram2\" \"SimpleBound\" \"string command\" \"maker\" \"string "
+                      "data\" \"8\" WorldEnd");
     EXPECT_EQ(c->messages(), "");
     ASSERT_EQ(c->frame().primitives.size(), 3u); // in the order of the file
     expectMatrix(c->primitive(0).toWorld.first(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 7, 1, 5, 1});
-    expectMatrix(c->primitive(1).toWorld.first(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 5, 1}); // what the program did to the state is gone
+    expectMatrix(c->primitive(1).toWorld.first(),
+                 {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 5, 1}); // what the program did to the state is gone
     expectMatrix(c->primitive(2).toWorld.first(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 8, 2, 5, 1});
     EXPECT_EQ(c->primitive(0).numbers[0], c->primitive(2).numbers[0]);
     EXPECT_EQ(c->primitive(0).attributes->color.y, 0);
@@ -63,16 +66,20 @@ TEST_F(Procedurals, NeedToBeAllowed) {
 
 TEST_F(Procedurals, AreFoundAlongTheirPathAndTakeArguments) {
     program("tools/args", "while read detail data; do echo \"Sphere $# -1 1 360 # $1 $2\"; printf '\\377'; done");
-    auto c = readHere("Option \"searchpath\" \"procedural\" \"tools\" WorldBegin Procedural \"RunProgram\" [\"args 'a b' c;d\" \"\"]" + bound + "WorldEnd");
+    auto c =
+        readHere("Option \"searchpath\" \"procedural\" \"tools\" WorldBegin Procedural \"RunProgram\" [\"args 'a b' c;d\" \"\"]" +
+                 bound + "WorldEnd");
     EXPECT_EQ(c->messages(), "");
     EXPECT_EQ(c->primitive().numbers[0], 2);
-    c = readHere("WorldBegin Procedural \"RunProgram\" [\"sh\" \"\"]" + bound + "WorldEnd"); // the shell's own path is not looked through
+    c = readHere("WorldBegin Procedural \"RunProgram\" [\"sh\" \"\"]" + bound +
+                 "WorldEnd"); // the shell's own path is not looked through
     EXPECT_EQ(c->only().code, Rie::NoFile);
     EXPECT_EQ(commandWords("a  \"b c\"'d' \"\""), (std::vector<std::string>{"a", "b cd", ""}));
 }
 
 TEST_F(Procedurals, AreToldHowLargeTheyAre) {
-    // A square of side 1 at distance 4 under a field of 90 degrees: 1/4 of 100 pixels for half the width; 25 * 25 / 4... the near face counts.
+    // A square of side 1 at distance 4 under a field of 90 degrees: 1/4 of 100 pixels for half the width; 25 * 25 / 4... the near
+    // face counts.
     program("maker", "while read detail data; do echo \"Sphere 1 -1 1 $detail\"; printf '\\377'; done");
     auto c = readHere("Format 200 200 1 Projection \"perspective\" \"fov\" 90 Translate 0 0 4 WorldBegin "
                       "Procedural \"RunProgram\" [\"maker\" \"\"] [-.5 .5 -.5 .5 0 0] WorldEnd");
@@ -85,21 +92,24 @@ TEST_F(Procedurals, ThatHangOrFailAreToldAndNotAskedAgain) {
     program("ends", "read line; echo 'Sphere 2 -1 1 360'");
     program("deaf", "sleep 1000 < /dev/null");
     const auto begun = std::chrono::steady_clock::now();
-    auto c = readHere("WorldBegin Procedural \"RunProgram\" [\"hangs\" \"\"]" + bound + "Procedural \"RunProgram\" [\"hangs\" \"\"]" + bound +
-                          "Procedural \"RunProgram\" [\"ends\" \"\"]" + bound + "Procedural \"RunProgram\" [\"none\" \"\"]" + bound +
-                          "Procedural \"RunProgram\" [\"deaf\" \"\"]" + bound + "Procedural \"RunProgram\" [\"\" \"\"]" + bound + "Sphere 3 -1 1 360 WorldEnd",
-                      true, 0.5);
+    auto c =
+        readHere("WorldBegin Procedural \"RunProgram\" [\"hangs\" \"\"]" + bound + "Procedural \"RunProgram\" [\"hangs\" \"\"]" +
+                     bound + "Procedural \"RunProgram\" [\"ends\" \"\"]" + bound + "Procedural \"RunProgram\" [\"none\" \"\"]" +
+                     bound + "Procedural \"RunProgram\" [\"deaf\" \"\"]" + bound + "Procedural \"RunProgram\" [\"\" \"\"]" +
+                     bound + "Sphere 3 -1 1 360 WorldEnd",
+                 true, 0.5);
     EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count(), 15);
     ASSERT_EQ(c->frame().primitives.size(), 3u); // what they said is drawn
     const std::string said = c->messages();
     EXPECT_EQ(c->count(), 5u) << said;
-    for (const char* what : {"\"hangs\": it took too long", "\"ends\": it ended before the end of its answer", "\"none\" was not found",
-                             "\"deaf\": it took too long", "the program has no name"})
+    for (const char* what : {"\"hangs\": it took too long", "\"ends\": it ended before the end of its answer",
+                             "\"none\" was not found", "\"deaf\": it took too long", "the program has no name"})
         EXPECT_NE(said.find(what), std::string::npos) << what << "\n" << said;
 }
 
 TEST_F(Procedurals, NestToALimit) {
-    program("again", "while read detail data; do echo \"Sphere 1 -1 1 360 Procedural \\\"RunProgram\\\" [\\\"again\\\" \\\"x\\\"] [-1 1 -1 1 -1 1]\"; printf '\\377'; done");
+    program("again", "while read detail data; do echo \"Sphere 1 -1 1 360 Procedural \\\"RunProgram\\\" [\\\"again\\\" "
+                     "\\\"x\\\"] [-1 1 -1 1 -1 1]\"; printf '\\377'; done");
     auto c = readHere("WorldBegin Procedural \"RunProgram\" [\"again\" \"\"]" + bound + "WorldEnd");
     EXPECT_EQ(c->only().code, Rie::Limit);
     EXPECT_EQ(c->frame().primitives.size(), size_t(limits::kArchiveDepth));

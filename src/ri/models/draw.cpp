@@ -36,7 +36,8 @@ std::optional<std::string> textOf(const std::string& path, const ModelLog::Sink&
 
 } // namespace
 
-std::vector<scene::Primitive> readModelFile(const std::string& file, const ModelLog::Sink& sink, const std::shared_ptr<ReadLog>& reads) {
+std::vector<scene::Primitive> readModelFile(const std::string& file, const ModelLog::Sink& sink,
+                                            const std::shared_ptr<ReadLog>& reads) {
     ModelLog log(sink);
     const auto text = textOf(file, sink);
     if (!text) return {};
@@ -56,14 +57,17 @@ std::vector<scene::Primitive> readModelFile(const std::string& file, const Model
 
 void Interpreter::drawModel(const std::string& name, const Call& call, const scene::ParamList& constants) {
     if (++archiveReads_ > limits::kArchiveReads) {
-        reporter.once("ri:archivereads", Severity::Error, Rie::Limit, call.place, fmt::format("more than {} archives are read", limits::kArchiveReads));
+        reporter.once("ri:archivereads", Severity::Error, Rie::Limit, call.place,
+                      fmt::format("more than {} archives are read", limits::kArchiveReads));
         return;
     }
     const std::string file = locate("model", name, call.place, namedAsModel);
     if (file.empty()) return;
     if (!lastModel_ || lastModel_->file != file) {
         lastModel_.reset();
-        auto said = [&](Severity s, Rie code, const SourcePlace& place, std::string message) { reporter.report(s, code, place, std::move(message)); };
+        auto said = [&](Severity s, Rie code, const SourcePlace& place, std::string message) {
+            reporter.report(s, code, place, std::move(message));
+        };
         auto model = std::make_shared<Model>(Model{file, readModelFile(file, said, settings.reads)});
         lastModel_ = std::move(model);
     }

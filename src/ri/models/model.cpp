@@ -9,7 +9,8 @@ namespace alpenglow::ri {
 
 ModelLog::~ModelLog() {
     if (said_ > size_t(limits::kModelMessages))
-        sink_(Severity::Warning, Rie::Limit, {last_.file, 0, 0}, fmt::format("{} more faults of this file", said_ - size_t(limits::kModelMessages)));
+        sink_(Severity::Warning, Rie::Limit, {last_.file, 0, 0},
+              fmt::format("{} more faults of this file", said_ - size_t(limits::kModelMessages)));
 }
 
 void ModelLog::say(Severity s, Rie code, const SourcePlace& place, std::string message) {
@@ -37,7 +38,8 @@ static std::string ending(const std::string& path) {
 
 bool namedAsModel(const std::string& path) { return ending(path) == ".ply" || ending(path) == ".obj"; }
 
-std::vector<scene::Primitive> readModel(const std::string& path, std::string_view bytes, const ReadLibrary& library, ModelLog& log) {
+std::vector<scene::Primitive> readModel(const std::string& path, std::string_view bytes, const ReadLibrary& library,
+                                        ModelLog& log) {
     return ending(path) == ".obj" ? readObj(path, bytes, library, log) : readPly(path, bytes, log);
 }
 

@@ -87,8 +87,13 @@ public:
     std::vector<scene::Primitive> read(std::string_view text);
 
 private:
-    struct Corner { int v, t, n; };
-    struct Face { uint32_t first, count; int material, group; };
+    struct Corner {
+        int v, t, n;
+    };
+    struct Face {
+        uint32_t first, count;
+        int material, group;
+    };
     SourcePlace here() const { return {path_, line_, 0}; }
     bool numbers(const std::vector<std::string_view>& w, size_t least, size_t most, double* out);
     void vertex(const std::vector<std::string_view>&);
@@ -220,7 +225,8 @@ void ObjReader::materials(std::string_view text, const std::string& name) {
             return true;
         };
         if (w[0] == "Kd" && w[1] != "spectral" && w[1] != "xyz") {
-            if (read(w.size() < 4 ? 1 : 3)) m->color = w.size() < 4 ? Color(float(x[0])) : Color(float(x[0]), float(x[1]), float(x[2]));
+            if (read(w.size() < 4 ? 1 : 3))
+                m->color = w.size() < 4 ? Color(float(x[0])) : Color(float(x[0]), float(x[1]), float(x[2]));
         } else if (w[0] == "d" && w[1] != "-halo") {
             if (read(1)) m->opacity = Color(float(std::clamp(x[0], 0.0, 1.0)));
         } else if (w[0] == "Tr") {
@@ -246,7 +252,9 @@ void ObjReader::library(const std::string& names) {
         ++words;
         if (auto text = library_(one)) materials(*text, one), any = true;
     }
-    if (!any) log_.warning(Rie::NoFile, here(), fmt::format("material library \"{}\" was not found: its materials are left out", names.substr(0, 200)));
+    if (!any)
+        log_.warning(Rie::NoFile, here(),
+                     fmt::format("material library \"{}\" was not found: its materials are left out", names.substr(0, 200)));
 }
 
 void ObjReader::use(const std::string& name) {
@@ -297,8 +305,10 @@ void ObjReader::dropMissing() {
         if (!bad) faces_[kept++] = f;
     }
     faces_.resize(kept);
-    if (lost) log_.error(Rie::Range, {path_, 0, 0}, fmt::format("{} faces use vertices that are not there; they are left out", lost));
-    if (thin_) log_.warning(Rie::Range, {path_, 0, 0}, fmt::format("{} faces have fewer than three corners; they are left out", thin_));
+    if (lost)
+        log_.error(Rie::Range, {path_, 0, 0}, fmt::format("{} faces use vertices that are not there; they are left out", lost));
+    if (thin_)
+        log_.warning(Rie::Range, {path_, 0, 0}, fmt::format("{} faces have fewer than three corners; they are left out", thin_));
 }
 
 Vec3d ObjReader::cornerNormal(const Face& f, uint32_t k, const Vec3d& flat) const {
@@ -368,8 +378,10 @@ scene::Primitive ObjReader::part(int material, const std::vector<const Face*>& f
         p.params.push_back(std::move(t));
     };
     const bool painted = std::any_of(p.params.begin(), p.params.end(), [](const scene::Param& v) { return v.name == "Cs"; });
-    if (m.color && !painted) p.params.push_back(variable("Cs", Class::Constant, Type::Color, {m.color->x, m.color->y, m.color->z}));
-    if (m.opacity && m.opacity->x < 1) p.params.push_back(variable("Os", Class::Constant, Type::Color, std::vector<float>(3, m.opacity->x)));
+    if (m.color && !painted)
+        p.params.push_back(variable("Cs", Class::Constant, Type::Color, {m.color->x, m.color->y, m.color->z}));
+    if (m.opacity && m.opacity->x < 1)
+        p.params.push_back(variable("Os", Class::Constant, Type::Color, std::vector<float>(3, m.opacity->x)));
     text("material", m.name);
     if (!m.texture.empty()) text("texturename", m.texture);
     return p;
@@ -420,7 +432,8 @@ std::vector<scene::Primitive> ObjReader::read(std::string_view text) {
 
 } // namespace
 
-std::vector<scene::Primitive> readObj(const std::string& path, std::string_view bytes, const ReadLibrary& library, ModelLog& log) {
+std::vector<scene::Primitive> readObj(const std::string& path, std::string_view bytes, const ReadLibrary& library,
+                                      ModelLog& log) {
     return ObjReader(path, library, log).read(bytes);
 }
 

@@ -21,10 +21,11 @@ constexpr double kWhite[] = {127, 255, 32767, 65535, 2147483647.0, 4294967295.0,
 
 std::optional<Number> numberType(std::string_view name) {
     static const std::map<std::string_view, Number> known = {
-        {"char", Number::I8},    {"int8", Number::I8},    {"uchar", Number::U8},    {"uint8", Number::U8},    {"short", Number::I16},
-        {"int16", Number::I16},  {"ushort", Number::U16}, {"uint16", Number::U16},  {"int", Number::I32},     {"int32", Number::I32},
-        {"uint", Number::U32},   {"uint32", Number::U32}, {"int64", Number::I64},   {"uint64", Number::U64},  {"float", Number::F32},
-        {"float32", Number::F32}, {"double", Number::F64}, {"float64", Number::F64}};
+        {"char", Number::I8},    {"int8", Number::I8},    {"uchar", Number::U8},   {"uint8", Number::U8},
+        {"short", Number::I16},  {"int16", Number::I16},  {"ushort", Number::U16}, {"uint16", Number::U16},
+        {"int", Number::I32},    {"int32", Number::I32},  {"uint", Number::U32},   {"uint32", Number::U32},
+        {"int64", Number::I64},  {"uint64", Number::U64}, {"float", Number::F32},  {"float32", Number::F32},
+        {"double", Number::F64}, {"float64", Number::F64}};
     const auto i = known.find(name);
     return i == known.end() ? std::nullopt : std::optional(i->second);
 }
@@ -94,7 +95,10 @@ private:
     std::vector<std::vector<float>> faceColumns_;
     std::vector<float> faceSt_;
     bool faceHasSt_ = true;
-    struct Drawn { size_t lost = 0, thin = 0; SourcePlace first; } faults_;
+    struct Drawn {
+        size_t lost = 0, thin = 0;
+        SourcePlace first;
+    } faults_;
 };
 
 std::string_view PlyReader::line() {
@@ -132,7 +136,8 @@ bool PlyReader::headerLine(const std::vector<std::string_view>& w) {
     if (is("element", 3)) {
         Element e{std::string(w[1].substr(0, 80)), 0, {}};
         const auto [end, fault] = std::from_chars(w[2].data(), w[2].data() + w[2].size(), e.count);
-        if (fault != std::errc() || end != w[2].data() + w[2].size() || !(e.count >= 0) || e.count != std::floor(e.count) || e.count > 1e15)
+        if (fault != std::errc() || end != w[2].data() + w[2].size() || !(e.count >= 0) || e.count != std::floor(e.count) ||
+            e.count > 1e15)
             return fail(Rie::Syntax, fmt::format("\"{}\" is no count of elements", w[2].substr(0, 40)));
         if (elements_.size() >= size_t(limits::kModelProperties)) return fail(Rie::Limit, "there are too many elements");
         elements_.push_back(std::move(e));
@@ -147,9 +152,11 @@ bool PlyReader::headerLine(const std::vector<std::string_view>& w) {
         p.name = std::string(w[list ? 4 : 2].substr(0, 80));
         const auto type = numberType(w[list ? 3 : 1]);
         if (list) p.count = numberType(w[2]);
-        if (!type || (list && !p.count)) return fail(Rie::Syntax, fmt::format("the type of property \"{}\" is not known", p.name));
+        if (!type || (list && !p.count))
+            return fail(Rie::Syntax, fmt::format("the type of property \"{}\" is not known", p.name));
         p.type = *type;
-        if (e.properties.size() >= size_t(limits::kModelProperties)) return fail(Rie::Limit, "an element has too many properties");
+        if (e.properties.size() >= size_t(limits::kModelProperties))
+            return fail(Rie::Limit, "an element has too many properties");
         e.properties.push_back(std::move(p));
         return true;
     }
@@ -198,13 +205,26 @@ bool PlyReader::number(Number type, double& v) {
         bits |= uint64_t(uint8_t(bytes_[at_ + i])) << (8 * (format_ == Format::Little ? i : n - 1 - i));
     at_ += n;
     switch (type) {
-    case Number::I8: v = int8_t(bits); break;
-    case Number::I16: v = int16_t(bits); break;
-    case Number::I32: v = int32_t(bits); break;
-    case Number::I64: v = double(int64_t(bits)); break;
-    case Number::F32: v = std::bit_cast<float>(uint32_t(bits)); break;
-    case Number::F64: v = std::bit_cast<double>(bits); break;
-    default: v = double(bits);
+    case Number::I8:
+        v = int8_t(bits);
+        break;
+    case Number::I16:
+        v = int16_t(bits);
+        break;
+    case Number::I32:
+        v = int32_t(bits);
+        break;
+    case Number::I64:
+        v = double(int64_t(bits));
+        break;
+    case Number::F32:
+        v = std::bit_cast<float>(uint32_t(bits));
+        break;
+    case Number::F64:
+        v = std::bit_cast<double>(bits);
+        break;
+    default:
+        v = double(bits);
     }
     return true;
 }
@@ -296,7 +316,8 @@ void PlyReader::takeFace(const Element& e, const Row& r, bool strips) {
 }
 
 bool PlyReader::elements(const Element& e) {
-    const bool vertex = e.name == "vertex" && !vertex_, face = e.name == "face" && !face_, strips = e.name == "tristrips" && !face_;
+    const bool vertex = e.name == "vertex" && !vertex_, face = e.name == "face" && !face_,
+               strips = e.name == "tristrips" && !face_;
     if (vertex) {
         vertex_ = &e;
         columns_.resize(e.properties.size());
@@ -309,7 +330,8 @@ bool PlyReader::elements(const Element& e) {
     Row r;
     for (double k = 0; k < e.count; ++k) {
         if (!row(e, r)) {
-            log_.error(Rie::MissingData, here(), fmt::format("{} of {} elements \"{}\" could be read; what was is drawn", k, e.count, e.name));
+            log_.error(Rie::MissingData, here(),
+                       fmt::format("{} of {} elements \"{}\" could be read; what was is drawn", k, e.count, e.name));
             return false;
         }
         if (vertex) takeVertex(e, r);
@@ -319,8 +341,8 @@ bool PlyReader::elements(const Element& e) {
 }
 
 /// Three columns as one variable of threes, by any of some sets of names.
-std::optional<std::vector<float>> joined(const Element& e, const std::vector<std::vector<float>>& columns, std::initializer_list<std::array<const char*, 3>> names,
-                                         size_t width, bool color) {
+std::optional<std::vector<float>> joined(const Element& e, const std::vector<std::vector<float>>& columns,
+                                         std::initializer_list<std::array<const char*, 3>> names, size_t width, bool color) {
     for (const auto& set : names) {
         int at[3] = {-1, -1, -1};
         bool all = true;
@@ -364,9 +386,48 @@ std::optional<std::vector<float>> opacities(const Element& e, const std::vector<
 
 /// Numbers that have no meaning of their own here: shaders may ask for them by name.
 void others(const Element& e, const std::vector<std::vector<float>>& columns, Class cls, scene::Primitive& out) {
-    static const char* const taken[] = {"x", "y", "z", "nx", "ny", "nz", "red", "green", "blue", "r", "g", "b", "alpha", "a", "s", "t", "u", "v",
-                                        "texture_u", "texture_v", "texture_s", "texture_t", "diffuse_red", "diffuse_green", "diffuse_blue",
-                                        "radius", "width", "P", "N", "I", "E", "L", "Cs", "Os", "Ci", "Oi", "Cl", "Ol", "Ng", "Pw", "Pz", "st"};
+    static const char* const taken[] = {"x",
+                                        "y",
+                                        "z",
+                                        "nx",
+                                        "ny",
+                                        "nz",
+                                        "red",
+                                        "green",
+                                        "blue",
+                                        "r",
+                                        "g",
+                                        "b",
+                                        "alpha",
+                                        "a",
+                                        "s",
+                                        "t",
+                                        "u",
+                                        "v",
+                                        "texture_u",
+                                        "texture_v",
+                                        "texture_s",
+                                        "texture_t",
+                                        "diffuse_red",
+                                        "diffuse_green",
+                                        "diffuse_blue",
+                                        "radius",
+                                        "width",
+                                        "P",
+                                        "N",
+                                        "I",
+                                        "E",
+                                        "L",
+                                        "Cs",
+                                        "Os",
+                                        "Ci",
+                                        "Oi",
+                                        "Cl",
+                                        "Ol",
+                                        "Ng",
+                                        "Pw",
+                                        "Pz",
+                                        "st"};
     for (size_t i = 0; i < e.properties.size(); ++i) {
         const std::string& name = e.properties[i].name;
         const bool word = !name.empty() && !std::isdigit(static_cast<unsigned char>(name[0])) &&
@@ -380,8 +441,10 @@ void others(const Element& e, const std::vector<std::vector<float>>& columns, Cl
 void PlyReader::vertexVariables(scene::Primitive& p) {
     const Element& e = *vertex_;
     p.params.push_back(variable("P", Class::Vertex, Type::Point, *joined(e, columns_, {{"x", "y", "z"}}, 3, false)));
-    if (auto n = joined(e, columns_, {{"nx", "ny", "nz"}}, 3, false)) p.params.push_back(variable("N", Class::Vertex, Type::Normal, std::move(*n)));
-    if (auto c = joined(e, columns_, kColors, 3, true)) p.params.push_back(variable("Cs", Class::Vertex, Type::Color, std::move(*c)));
+    if (auto n = joined(e, columns_, {{"nx", "ny", "nz"}}, 3, false))
+        p.params.push_back(variable("N", Class::Vertex, Type::Normal, std::move(*n)));
+    if (auto c = joined(e, columns_, kColors, 3, true))
+        p.params.push_back(variable("Cs", Class::Vertex, Type::Color, std::move(*c)));
     if (auto o = opacities(e, columns_)) p.params.push_back(variable("Os", Class::Vertex, Type::Color, std::move(*o)));
     if (auto st = joined(e, columns_, kCoordinates, 2, false); st && faceSt_.empty()) {
         for (size_t i = 1; i < st->size(); i += 2) (*st)[i] = 1 - (*st)[i];
@@ -396,9 +459,11 @@ void PlyReader::faceVariables(scene::Primitive& p) {
         return std::any_of(p.params.begin(), p.params.end(), [&](const scene::Param& v) { return v.name == name; });
     };
     if (!has("Cs"))
-        if (auto c = joined(*face_, faceColumns_, kColors, 3, true)) p.params.push_back(variable("Cs", Class::Uniform, Type::Color, std::move(*c)));
+        if (auto c = joined(*face_, faceColumns_, kColors, 3, true))
+            p.params.push_back(variable("Cs", Class::Uniform, Type::Color, std::move(*c)));
     if (!has("Os"))
-        if (auto o = opacities(*face_, faceColumns_)) p.params.push_back(variable("Os", Class::Uniform, Type::Color, std::move(*o)));
+        if (auto o = opacities(*face_, faceColumns_))
+            p.params.push_back(variable("Os", Class::Uniform, Type::Color, std::move(*o)));
     if (faceHasSt_ && !faceSt_.empty()) {
         p.params.push_back(variable("st", Class::FaceVarying, Type::Float, std::move(faceSt_)));
         p.params.back().arrayLength = 2;
@@ -438,7 +503,8 @@ scene::Primitive PlyReader::cloud() {
             hi[k] = std::max(hi[k], double(P[i + size_t(k)]));
         }
     const double size = P.empty() ? 0 : length(hi - lo);
-    p.params.push_back(variable("constantwidth", Class::Constant, Type::Float, {float(size > 0 ? size / std::sqrt(double(vertices_)) : 1)}));
+    p.params.push_back(
+        variable("constantwidth", Class::Constant, Type::Float, {float(size > 0 ? size / std::sqrt(double(vertices_)) : 1)}));
     return p;
 }
 
@@ -455,13 +521,14 @@ std::vector<scene::Primitive> PlyReader::read() {
         return {};
     }
     if (faults_.lost)
-        log_.error(Rie::Range, faults_.first, fmt::format("{} faces use vertices that are not there; they are left out", faults_.lost));
+        log_.error(Rie::Range, faults_.first,
+                   fmt::format("{} faces use vertices that are not there; they are left out", faults_.lost));
     if (faults_.thin)
-        log_.warning(Rie::Range, {path_, 0, 0}, fmt::format("{} faces have fewer than three corners; they are left out", faults_.thin));
+        log_.warning(Rie::Range, {path_, 0, 0},
+                     fmt::format("{} faces have fewer than three corners; they are left out", faults_.thin));
     std::vector<scene::Primitive> out;
-    const bool faces = std::any_of(elements_.begin(), elements_.end(), [](const Element& e) {
-        return (e.name == "face" || e.name == "tristrips") && e.count > 0;
-    });
+    const bool faces = std::any_of(elements_.begin(), elements_.end(),
+                                   [](const Element& e) { return (e.name == "face" || e.name == "tristrips") && e.count > 0; });
     if (!faces) {
         out.push_back(cloud());
     } else if (!counts_.empty()) {

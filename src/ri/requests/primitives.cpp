@@ -198,7 +198,7 @@ std::vector<Request> primitiveRequests() {
         {"Curves", "string type; int[] nvertices; string wrap; ..", k, s, true, "Thin ribbons, flat by \"N\", or tubes (Attribute \"dice\" \"roundcurve\" 1).",
          "\"cubic\" [4] \"nonperiodic\" \"P\" [0 0 0 1 0 0 2 0 0 3 0 0] \"width\" [.1 .2]", curves},
         {"Blobby", "int nleaf; int[] code; number[] floats; string[] strings?; ..", k, s, true,
-         "An implicit surface of blobs. Not drawn yet.", "1 [1001 0] [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1] [\"\"]", blobby},
+         "An implicit surface of blobs: constants, ellipsoids, segments, repelling planes and all operators.", "1 [1001 0] [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1] [\"\"]", blobby},
         {"Geometry", "string name; ..", k, s, true, "A shape the renderer knows: \"teapot\", \"cube\", \"sphere\"; or the polygons of a file of .ply or .obj.", "\"teapot\"",
          geometry},
         {"Volume", "string type; number[6] bound; int[] dimensions; ..", k, s, true,

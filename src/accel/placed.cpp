@@ -15,7 +15,8 @@ void Accel::Impl::readyPlaced() {
         if (!fresh) continue;
         auto g = std::make_unique<Geometry>();
         g->shape = p->geometry();
-        if (const geometry::Deforming* d = p->deforming()) g->tree.build({&d->keys()[0], 1}, d->keys());
+        if (const geometry::Deforming* d = p->deforming(); d && d->keys().size() == 1) g->shape = d->keys()[0]; // its keys did not fit
+        if (const geometry::Deforming* d = p->deforming()) g->tree.build({&d->keys()[0], 1}, d->keys(), d->times());
         else if (!g->shape->exact() || g->shape->exactPrims() > 1) g->tree.build({&g->shape, 1});
         geometries.push_back(std::move(g));
     }

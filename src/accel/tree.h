@@ -44,9 +44,22 @@ public:
     };
     static_assert(sizeof(Node) == 128 && sizeof(Leaf) == 128);
 
-    /// Throws std::bad_alloc when memory is short, std::length_error for more than 2^30 leaves. keys: of the only shape, what it is at
-    /// several times; boxes then hold it at all of them, and the vertices of leaves are those of the first.
-    void build(std::span<const geometry::ShapeRef>, std::span<const geometry::ShapeRef> keys = {});
+    /// Throws std::bad_alloc when memory is short, std::length_error for more than 2^30 leaves. keys, times: of the only shape, what it is
+    /// at several times from 0 to 1; its points go linearly between them.
+    void build(std::span<const geometry::ShapeRef>, std::span<const geometry::ShapeRef> keys = {}, std::span<const float> times = {});
+
+    // ---- of a shape with keys
+    /// The nodes with their boxes at time 1; those of nodes() are then the ones at time 0, and boxes between lie between. Else null.
+    const Node* lastNodes() const { return last_.empty() ? nullptr : last_.data(); }
+    struct Vertices {
+        alignas(32) float p[3][kLeafVertices];
+    };
+    /// Those of a leaf at a key.
+    const Vertices& vertices(uint32_t leaf, size_t key) const { return moved_[leaf * keys_ + key]; }
+    /// Vertices of this leaf lie at one place at first, and then do not: vertices() does not hold all of them.
+    bool loose(uint32_t leaf) const { return loose_[leaf] != 0; }
+    /// The largest coordinate at any time.
+    float extent() const { return extent_; }
 
     const Node* nodes() const { return nodes_.data(); }
     const Leaf* leaves() const { return leaves_.data(); }
@@ -78,6 +91,11 @@ private:
     std::vector<uint32_t> first_; ///< by sixteen triangles: into meshes_
     std::vector<Exact> exact_; ///< in the order of the leaves
     geometry::Bounds bounds_;
+    std::vector<Node> last_;
+    std::vector<Vertices> moved_;
+    std::vector<uint8_t> loose_;
+    size_t keys_ = 0;
+    float extent_ = 0;
 };
 
 } // namespace alpenglow::accel

@@ -367,6 +367,74 @@ struct Tree::Builder {
         for (int a = 0; a < 3; ++a) tree.bounds_.lo[a] = root.box.lo[a], tree.bounds_.hi[a] = root.box.hi[a];
         arrange(root.leaf ? lone(root) : makeNode(root, 0));
     }
+    /// The vertices of a leaf at all keys, and its boxes at both ends of the shutter: their blend holds it at each time between.
+    void followLeaf(size_t leaf, std::span<const float> times, Box& first, Box& last) {
+        const Leaf& f = tree.leaves_[leaf];
+        const geometry::TriMesh& mesh = keys[0]->mesh();
+        uint32_t which[kLeafVertices] = {};
+        bool known[kLeafVertices] = {}, loose = false;
+        const auto place = [&](size_t key, uint32_t v) -> const Vec3& { return keys[key]->mesh().P[v]; };
+        for (uint32_t t = 0; t < f.size(); ++t)
+            for (int c = 0; c < 3; ++c) {
+                const uint32_t v = f.vertex(t, c), at = mesh.index[3 * size_t(f.id[t]) + size_t(c)];
+                if (!known[v]) known[v] = true, which[v] = at;
+                for (size_t k = 0; k < keys.size() && at != which[v]; ++k) loose |= !(place(k, at) == place(k, which[v]));
+            }
+        for (uint32_t v = 0; v < kLeafVertices; ++v)
+            if (!known[v]) which[v] = which[0];
+        tree.loose_[leaf] = loose;
+        std::vector<Box> box(keys.size());
+        for (size_t k = 0; k < keys.size(); ++k) {
+            for (uint32_t v = 0; v < kLeafVertices; ++v)
+                for (int a = 0; a < 3; ++a) tree.moved_[leaf * keys.size() + k].p[a][v] = place(k, which[v])[a];
+            for (uint32_t t = 0; t < f.size(); ++t)
+                for (size_t c = 0; c < 3; ++c) {
+                    const Vec3& p = place(k, mesh.index[3 * size_t(f.id[t]) + c]);
+                    box[k].add(Four{p.x, p.y, p.z, 0}, Four{p.x, p.y, p.z, 0});
+                }
+        }
+        first = box.front();
+        last = box.back();
+        const Four none{};
+        for (size_t k = 1; k + 1 < keys.size(); ++k) {
+            const float w = times[k];
+            const Four below = most(first.lo * (1 - w) + last.lo * w - box[k].lo, none), above = most(box[k].hi - first.hi * (1 - w) - last.hi * w, none);
+            first.lo -= below, last.lo -= below;
+            first.hi += above, last.hi += above;
+        }
+    }
+    void followKeys(std::span<const float> times) {
+        const size_t n = tree.leaves_.size();
+        tree.keys_ = keys.size();
+        tree.moved_.resize(n * keys.size());
+        tree.loose_.resize(n);
+        struct Ends {
+            Box first, last;
+        };
+        std::vector<Ends> leaf(n), node(tree.nodes_.size());
+        tbb::parallel_for(size_t(0), n, [&](size_t i) { followLeaf(i, times, leaf[i].first, leaf[i].last); });
+        tree.last_.resize(tree.nodes_.size());
+        for (size_t i = tree.nodes_.size(); i-- > 0;) { // children come after their parents
+            Range first[kWide], last[kWide];
+            int count = 0;
+            for (; count < kWide && tree.nodes_[i].child[count] != kNothing; ++count) {
+                const Child c = tree.nodes_[i].child[count];
+                const Ends& e = c & kLeaf ? leaf[c & kIndex] : node[c];
+                first[count].box = e.first;
+                last[count].box = e.last;
+                node[i].first.add(e.first);
+                node[i].last.add(e.last);
+            }
+            Node at = tree.nodes_[i];
+            for (int side = 0; side < 2; ++side) {
+                Node& out = side ? tree.last_[i] : tree.nodes_[i];
+                setBoxes(out, side ? node[i].last : node[i].first, {side ? last : first, size_t(count)});
+                std::copy_n(at.child, kWide, out.child);
+            }
+        }
+        for (const geometry::ShapeRef& k : keys)
+            for (const Vec3& p : k->mesh().P) tree.extent_ = std::max({tree.extent_, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+    }
     size_t lone(const Range& r) {
         const size_t at = newNode();
         setBoxes(node(at), r.box, {&r, 1});
@@ -376,8 +444,10 @@ struct Tree::Builder {
     }
 };
 
-void Tree::build(std::span<const geometry::ShapeRef> shapes, std::span<const geometry::ShapeRef> keys) {
-    Builder{.tree = *this, .shapes = shapes, .keys = keys}.run();
+void Tree::build(std::span<const geometry::ShapeRef> shapes, std::span<const geometry::ShapeRef> keys, std::span<const float> times) {
+    Builder b{.tree = *this, .shapes = shapes, .keys = keys};
+    b.run();
+    if (keys.size() > 1 && !nodes_.empty()) b.followKeys(times);
 }
 
 } // namespace alpenglow::accel

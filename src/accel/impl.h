@@ -103,7 +103,7 @@ struct Accel::Impl {
         return false;
     }
 
-    /// Whether a candidate counts; then q.best is it. t is ours. away(): how far its normal points along the ray, for one-sided shapes.
+    /// Whether a candidate counts; then q.best is it. t is ours. away(): how far its normal points along the ray, if one-sided.
     template <class Away> bool take(Query& q, uint32_t s, uint32_t prim, double t, double b1, double b2, Away away) const {
         const Ray& r = *q.ray;
         if (!(t > r.tnear && t < r.tfar)) return false;
@@ -148,7 +148,8 @@ struct Accel::Impl {
         if (r.passed < 0 && excluded(r, s, prim)) return false;
         geometry::ExactHit h[4];
         const Shape& shape = *shapes[s];
-        int n = shape.exactHits(prim, Vec3d(r.org), Vec3d(r.dir), exactFrom(r, s, prim), std::min(double(r.tfar), q.best.t), wantedOf(q, shape), h);
+        const double from = exactFrom(r, s, prim), to = std::min(double(r.tfar), q.best.t);
+        int n = shape.exactHits(prim, Vec3d(r.org), Vec3d(r.dir), from, to, wantedOf(q, shape), h);
         bool taken = false;
         for (int i = 0; i < n; ++i) {
             taken |= take(q, s, prim, h[i].t, h[i].u, h[i].v);

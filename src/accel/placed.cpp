@@ -15,7 +15,7 @@ void Accel::Impl::readyPlaced() {
         if (!fresh) continue;
         auto g = std::make_unique<Geometry>();
         g->shape = p->geometry();
-        if (const geometry::Deforming* d = p->deforming(); d && d->keys().size() == 1) g->shape = d->keys()[0]; // its keys did not fit
+        if (p->deforming() && p->deforming()->keys().size() == 1) g->shape = p->deforming()->keys()[0]; // they did not fit
         if (const geometry::Deforming* d = p->deforming()) g->tree.build({&d->keys()[0], 1}, d->keys(), d->times());
         else if (!g->shape->exact() || g->shape->exactPrims() > 1) g->tree.build({&g->shape, 1});
         geometries.push_back(std::move(g));
@@ -49,10 +49,12 @@ bool Accel::Impl::meetInside(Query& q, const Inside& at, uint32_t prim) const {
     if (r.passed < 0 && excluded(r, at.shape, prim)) return false;
     geometry::ExactHit h[4];
     const Shape& shape = *at.geometry->shape;
-    const int n = shape.exactHits(prim, at.org, at.dir, exactFrom(r, at.shape, prim), std::min(double(r.tfar), q.best.t), wantedOf(q, *at.place), h);
+    const double from = exactFrom(r, at.shape, prim), to = std::min(double(r.tfar), q.best.t);
+    const int n = shape.exactHits(prim, at.org, at.dir, from, to, wantedOf(q, *at.place), h);
     bool taken = false;
     for (int i = 0; i < n && !(taken && q.any); ++i)
-        taken |= take(q, at.shape, prim, h[i].t, h[i].u, h[i].v, [&] { return at.place->side() * dot(shape.hitNormal(prim, h[i].u, h[i].v), at.dir); });
+        taken |= take(q, at.shape, prim, h[i].t, h[i].u, h[i].v,
+                      [&] { return at.place->side() * dot(shape.hitNormal(prim, h[i].u, h[i].v), at.dir); });
     return taken;
 }
 

@@ -398,7 +398,8 @@ struct Tree::Builder {
         const Four none{};
         for (size_t k = 1; k + 1 < keys.size(); ++k) {
             const float w = times[k];
-            const Four below = most(first.lo * (1 - w) + last.lo * w - box[k].lo, none), above = most(box[k].hi - first.hi * (1 - w) - last.hi * w, none);
+            const Four below = most(first.lo * (1 - w) + last.lo * w - box[k].lo, none),
+                       above = most(box[k].hi - first.hi * (1 - w) - last.hi * w, none);
             first.lo -= below, last.lo -= below;
             first.hi += above, last.hi += above;
         }
@@ -433,7 +434,8 @@ struct Tree::Builder {
             }
         }
         for (const geometry::ShapeRef& k : keys)
-            for (const Vec3& p : k->mesh().P) tree.extent_ = std::max({tree.extent_, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+            for (const Vec3& p : k->mesh().P)
+                tree.extent_ = std::max({tree.extent_, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
     }
     size_t lone(const Range& r) {
         const size_t at = newNode();
@@ -444,7 +446,8 @@ struct Tree::Builder {
     }
 };
 
-void Tree::build(std::span<const geometry::ShapeRef> shapes, std::span<const geometry::ShapeRef> keys, std::span<const float> times) {
+void Tree::build(std::span<const geometry::ShapeRef> shapes, std::span<const geometry::ShapeRef> keys,
+                 std::span<const float> times) {
     Builder b{.tree = *this, .shapes = shapes, .keys = keys};
     b.run();
     if (keys.size() > 1 && !nodes_.empty()) b.followKeys(times);

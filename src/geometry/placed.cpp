@@ -199,7 +199,8 @@ Vec3 Placed::velocity(const SurfacePoint& p) const {
     if (moving_) {
         double way;
         const size_t k = keyAt(p.time, way);
-        v = (moving_->keys[k + 1].point(here) - moving_->keys[k].point(here)) / (double(moving_->times[k + 1]) - moving_->times[k]);
+        const double span = double(moving_->times[k + 1]) - moving_->times[k];
+        v = (moving_->keys[k + 1].point(here) - moving_->keys[k].point(here)) / span;
     }
     if (deforming_) v += m.out.vector(Vec3d(deforming_->velocity(p)));
     return Vec3(v);

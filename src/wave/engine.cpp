@@ -149,7 +149,8 @@ bool Engine::traceAll(std::span<const CameraRay> rays, std::span<SampleResult> o
         r.dir = c.direction;
         PathSample& sample = samples_[i];
         sample = {
-            c.px, c.py, c.sample, int(i), c.time, c.shutter, 0.5f, render::SampleNumbers(render::Sampler(seed_, c.px, c.py), c.sample)};
+            c.px, c.py, c.sample, int(i), c.time, c.shutter, 0.5f,
+            render::SampleNumbers(render::Sampler(seed_, c.px, c.py), c.sample)};
         r.sample = &sample;
         r.footprint = {c.width, c.spread};
         r.setStart(c.start);

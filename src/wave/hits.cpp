@@ -131,7 +131,8 @@ void Engine::placePoints(HitQueue& q, BatchContext& c) {
         const uint32_t shape = q.hits[i].shape;
         run.clear();
         for (; i < n && q.hits[i].shape == shape; ++i)
-            run.push_back({q.hits[i].prim, q.hits[i].b1, q.hits[i].b2, &c.points[i].surface, world_->shadesAtOpen_ ? 0 : q.hits[i].time});
+            run.push_back({q.hits[i].prim, q.hits[i].b1, q.hits[i].b2, &c.points[i].surface,
+                           world_->shadesAtOpen_ ? 0 : q.hits[i].time});
         world_->shapes_[shape]->points(run, world_->bindings_[size_t(world_->bindingOf_[shape])].pointNeeds);
     }
     for (size_t i = 0; i < n; ++i) {

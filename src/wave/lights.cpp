@@ -186,7 +186,8 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
         viewOf.push_back(uint32_t(views.size() - 1));
     }
     if (views.empty())
-        views.push_back({call.parameters ? call.parameters : &light.instance->parameters, &light.instance->toCurrent, light.instance->moving.get()});
+        views.push_back({call.parameters ? call.parameters : &light.instance->parameters, &light.instance->toCurrent,
+                         light.instance->moving.get()});
     if (!c->batch) c->batch = std::make_shared<shading::Batch>();
     c->batch->assign(bound.kernel, *bound.plan, c->points, views, viewOf, *world_);
     bindCall(c->batch->call(), *c);

@@ -69,7 +69,8 @@ const Emitter::Entry& Emitter::entryAt(float choose) const {
     return *std::upper_bound(entries_.begin(), entries_.end() - 1, choose, above);
 }
 
-bool Emitter::sample(const Vec3& from, Vec2 u, float choose, float time, Sample& out, geometry::SurfacePoint& point, uint32_t needs) const {
+bool Emitter::sample(const Vec3& from, Vec2 u, float choose, float time, Sample& out, geometry::SurfacePoint& point,
+                     uint32_t needs) const {
     if (entries_.empty()) return false;
     const Entry& e = entryAt(choose);
     out.shape = e.shape;

@@ -98,10 +98,11 @@ public:
     std::map<std::vector<const void*>, InstanceRef> withCoShaders_;          ///< by shader, then the requests of its co-shaders
     Facts facts_;
     std::vector<geometry::ShapeRef> shapes_;
-    std::unordered_map<const geometry::Shape*, uint32_t> numberOfShape_; ///< index into shapes_; of a placed geometry, its first place
+    /// Index into shapes_; of a placed geometry, its first place.
+    std::unordered_map<const geometry::Shape*, uint32_t> numberOfShape_;
     scene::Shutter shutter_;
     bool moves_ = false;                       ///< some shape does
-    bool shadesAtOpen_ = false;                ///< surfaces are shaded where they are when the shutter opens, and send their rays then
+    bool shadesAtOpen_ = false;                ///< surfaces are shaded where they are when the shutter opens, and send rays then
     float timeAt(float shutter) const { return float(shutter_.at(double(shutter))); }
     /// When a ray goes, as part of the time that the shutter is open.
     float shutterOf(const shading::PathRay& r) const { return shadesAtOpen_ && !r.camera() ? 0 : r.shutter(); }

@@ -24,13 +24,14 @@ std::string shippedShaders() {
     return ALPENGLOW_SHADER_DIR;
 }
 
-// REYES shades its grids once, when the shutter opens, and moves what came of it. The hidden hider does so too, unless some surface or
-// the hider asks for the time of the sample (Attribute "trace" "samplemotion", Hider "hidden" "samplemotion").
+// REYES shades its grids once, when the shutter opens, and moves what came of it. The hidden hider does so too, unless some surface
+// or the hider asks for the time of the sample (Attribute "trace" "samplemotion", Hider "hidden" "samplemotion").
 bool shadesAtOpen(const scene::Frame& f, const Settings& settings, const std::vector<geometry::ShapeRef>& shapes) {
     if (settings.hider != Hider::Hidden) return false;
     const auto on = [](const scene::Param* p) { return p && !p->numbers.empty() && p->numbers[0] != 0; };
     if (on(scene::find(f.options.hiderParams, "samplemotion"))) return false;
-    return std::none_of(shapes.begin(), shapes.end(), [&](const auto& s) { return on(s->attributes().value("trace:samplemotion")); });
+    const auto asks = [&](const geometry::ShapeRef& s) { return on(s->attributes().value("trace:samplemotion")); };
+    return std::none_of(shapes.begin(), shapes.end(), asks);
 }
 
 // Whether the scene says who is visible to traced rays. BMRT's scenes never do, and their shaders trace.

@@ -35,7 +35,8 @@ public:
     bool settle(Sched&) override;
     /// From now on this may happen on the way of rays; before the first trace(). It must outlive the engine.
     void happens(FlightEvent& e) { events_.push_back(&e); }
-    /// For events: the flight is over, and its ray goes on as `next`, a copy of it with what has changed (at least the vertex). flight.cpp
+    /// For events: the flight is over, and its ray goes on as `next`, a copy of it with what has changed (at least the vertex).
+    /// flight.cpp
     void divert(Flight&, PathRay next, Sched&);
     Counters counters;
 

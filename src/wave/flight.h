@@ -16,10 +16,11 @@ struct Flight {
     bool over = false;                    ///< an event has ended it: what it met is not shaded and gives it no light
 };
 
-/// What can happen on the way: scattering in a medium, by a distance that is drawn; a walk inside of the surface that was met, which
-/// comes out elsewhere. An event that ends a flight pays for what it takes: a ray that goes on instead is sent by Engine::divert(),
-/// light goes to the flight's target by Engine::deposit(). A flight tells what it needs of others: events see one flight at a time, draw
-/// by Engine::random() of its ray, its vertex and kFlight, and so change no bit of whoever shares the batch.
+/// What can happen on the way: scattering in a medium, by a distance that is drawn; a walk inside of the surface that was met,
+/// which comes out elsewhere. An event that ends a flight pays for what it takes: a ray that goes on instead is sent by
+/// Engine::divert(), light goes to the flight's target by Engine::deposit(). A flight tells what it needs of others: events see
+/// one flight at a time, draw by Engine::random() of its ray, its vertex and kFlight, and so change no bit of whoever shares the
+/// batch.
 class FlightEvent {
 public:
     virtual ~FlightEvent() = default;

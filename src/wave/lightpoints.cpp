@@ -106,7 +106,8 @@ void Gather::placeWanted() {
     numbers_.draw();
     size_t number = 0;
     const BoundLight* last = nullptr;
-    bool wide = false; // a light that filters over its surface is asked once for every width of the lobes at a point, at the same sample
+    bool wide =
+        false; // a light that filters over its surface is asked once for every width of the lobes at a point, at the same sample
     for (const auto& [of, point, chance] : wanted_) {
         const BoundLight& light = *of;
         if (of != std::exchange(last, of)) wide = light.kind == LightKind::Area && usesFootprint(light);

@@ -27,12 +27,25 @@ template <class Row> DistributionParams distributionOf(const SiteInfo& s, const 
     m.part = t.part;
     return m;
 }
+
+/// What lights may ask about a point that asks for light.
+template <class Row> LitValues litValues(const BatchContext& c, const SiteInfo& s, int point, const Row& f) {
+    LitValues told;
+    told.binding = size_t(point) < c.bindings.size() ? c.bindings[size_t(point)] : -1; // a light's own ray: none
+    told.displaced = c.displaced;
+    told.point = point;
+    for (const SiteInfo::Output& o : s.outputs) {
+        auto& of = told.outputs.emplace_back(&o, std::vector<float>());
+        for (int r = 0; r < o.size; ++r) of.second.push_back(f(o.row + r));
+    }
+    return told;
+}
 } // namespace
 
 void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float* in, int lanes, int lane, Color weight,
                      TargetId target, bool owns, uint32_t occurrence) {
     const ShadePoint& p = c.points[point];
-    auto f = [&](int row) { return in[size_t(row) * lanes + lane]; };
+    const auto f = [&](int row) { return in[size_t(row) * lanes + lane]; };
     auto v = [&](int arg) { return Vec3(f(s.rows[arg]), f(s.rows[arg] + 1), f(s.rows[arg] + 2)); };
     auto number = [&](int row, float fallback) { return row < 0 ? fallback : f(row); };
     auto vector = [&](int row, Vec3 fallback) { return row < 0 ? fallback : Vec3(f(row), f(row + 1), f(row + 2)); };
@@ -46,9 +59,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
                        c.bindings.empty() ? nullptr : &world_->bindings_[size_t(c.bindings[size_t(point)])]);
         return;
     }
-    // Under path ambient light is what escaping diffuse rays see.
-    if (s.kind != SiteKind::Diffuse && s.kind != SiteKind::Specular && s.kind != SiteKind::Phong && s.kind != SiteKind::Trace)
-        return;
+    if (!s.lobe) return; // under path ambient light is what escaping diffuse rays see
     LobeVertex& l = lobes.emplace_back();
     l.kind = s.lobe;
     LobeParams params;
@@ -60,14 +71,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     l.occurrence = occurrence;
     if (world_->lightsAsk()) {
         l.lit = int(litValues_.size());
-        LitValues& told = litValues_.emplace_back();
-        told.binding = size_t(point) < c.bindings.size() ? c.bindings[size_t(point)] : -1; // a light's own ray: none
-        told.displaced = c.displaced;
-        told.point = point;
-        for (const SiteInfo::Output& o : s.outputs) {
-            auto& of = told.outputs.emplace_back(&o, std::vector<float>());
-            for (int r = 0; r < o.size; ++r) of.second.push_back(f(o.row + r));
-        }
+        litValues_.push_back(litValues(c, s, point, f));
     }
     if (s.kind != SiteKind::Diffuse) params.wo = unit(-p.I, p.surface.n);
     switch (s.kind) {
@@ -80,8 +84,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         params.axis = unit(v(0), p.surface.n);
         params.wo = unit(v(1), params.wo);
         params.a = f(s.rows[2]);
-        if (s.kind == SiteKind::Specular)
-            params.a = s.exponent / std::max(params.a, 1e-6f);
+        if (s.kind == SiteKind::Specular) params.a = s.exponent / std::max(params.a, 1e-6f);
         l.rays = &kSpecularKind;
         break;
     case SiteKind::Trace:
@@ -110,20 +113,15 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
             l.elsewhere = true;
             l.from = from;
         }
-        l.deltaLights = false;
-        l.lobeOfShader = false;
+        l.deltaLights = l.lobeOfShader = false;
         l.maxDistance = std::min(number(s.rays->maxDistance, 1e38f), number(s.rays->maxHit, 1e38f));
         if (l.maxDistance < 0) l.maxDistance = 1e38f; // PRMan: none
         l.samples = std::clamp(int(std::clamp(number(s.rays->samples, 1), 1.f, 4096.f)), 1, 4096);
         break;
     default: break;
     }
-    if (l.kind->distribution) {
-        const DistributionParams more = distributionOf(s, f);
-        l.place = lobeRows_.add(*l.kind, params, &more);
-    } else {
-        l.place = lobeRows_.add(*l.kind, params);
-    }
+    const DistributionParams more = l.kind->distribution ? distributionOf(s, f) : DistributionParams();
+    l.place = lobeRows_.add(*l.kind, params, l.kind->distribution ? &more : nullptr);
 }
 
 Color Engine::mapTowards(const TraceSite& t, const Vec3& w, float spread) const {

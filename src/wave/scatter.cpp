@@ -72,7 +72,8 @@ void Gather::draw(int turn) {
         if (!s.goes) continue;
         const LobeVertex& l = e_.lobes[size_t(s.lobe)];
         const PathRay& from = c_->rays[size_t(s.point)];
-        numbers_.askPair(e_.random(from).draw(uint32_t(turn), uint32_t(s.count)).numbers(), from.vertex, l.site, l.occurrence * 4096);
+        numbers_.askPair(e_.random(from).draw(uint32_t(turn), uint32_t(s.count)).numbers(), from.vertex, l.site,
+                         l.occurrence * 4096);
     }
     numbers_.draw();
     size_t number = 0;
@@ -101,12 +102,14 @@ void Gather::throwDice(int turn) {
         const LobeVertex& l = e_.lobes[size_t(s.lobe)];
         const PathRay& from = rayOf(l);
         s.vertex = childVertex(from.vertex, l.site, l.occurrence * 4096 + uint32_t(turn));
-        if (rules_.roulette && (l.ownsTarget || from.bounces + 1 > 3)) numbers_.askOne(e_.random(from).numbers(), s.vertex, kRoulette, 0);
+        if (rules_.roulette && (l.ownsTarget || from.bounces + 1 > 3))
+            numbers_.askOne(e_.random(from).numbers(), s.vertex, kRoulette, 0);
     }
     numbers_.draw();
     size_t number = 0;
     for (Sent& s : sent_)
-        if (const LobeVertex& l = e_.lobes[size_t(s.lobe)]; s.goes && rules_.roulette && (l.ownsTarget || rayOf(l).bounces + 1 > 3))
+        if (const LobeVertex& l = e_.lobes[size_t(s.lobe)];
+            s.goes && rules_.roulette && (l.ownsTarget || rayOf(l).bounces + 1 > 3))
             s.dice = numbers_.one(number++);
 }
 

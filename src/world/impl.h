@@ -68,6 +68,8 @@ public:
     /// Of a surface shader (as it is bound) that assigns P: the kernel that gives P alone, run when shapes are diced. None where
     /// the shader leaves P as it is, and where light or rays decide, which is reported.
     BoundKernel movingKernel(const ShaderInstance&, const BoundKernel&, const std::vector<std::string>& varying, Diagnostics&);
+    /// Fills numberOfShape_ and moves_.
+    void numberShapes();
     /// Makes the meshes that rays meet.
     void diceShapes(Diagnostics&);
     /// Says by light and binding what is to be known of points, when all kernels are bound.

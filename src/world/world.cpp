@@ -24,8 +24,8 @@ std::string shippedShaders() {
     return ALPENGLOW_SHADER_DIR;
 }
 
-// REYES shades its grids once, when the shutter opens, and moves what came of it. The hidden hider does so too, unless some surface
-// or the hider asks for the time of the sample (Attribute "trace" "samplemotion", Hider "hidden" "samplemotion").
+// REYES shades its grids once, when the shutter opens, and moves what came of it. The hidden hider does so too, unless some
+// surface or the hider asks for the time of the sample (Attribute "trace" "samplemotion", Hider "hidden" "samplemotion").
 bool shadesAtOpen(const scene::Frame& f, const Settings& settings, const std::vector<geometry::ShapeRef>& shapes) {
     if (settings.hider != Hider::Hidden) return false;
     const auto on = [](const scene::Param* p) { return p && !p->numbers.empty() && p->numbers[0] != 0; };
@@ -86,6 +86,18 @@ bool rispecSpecular(const scene::Options& o, const std::string& dialect, Diagnos
 
 } // namespace
 
+void WorldImpl::numberShapes() {
+    for (uint32_t i = 0; i < shapes_.size(); ++i) {
+        numberOfShape_.emplace(shapes_[i].get(), i);
+        const geometry::Placed* p = shapes_[i]->placed();
+        if (!p) continue;
+        moves_ |= p->moves();
+        numberOfShape_.emplace(p->geometry().get(), i); // who dices it asks for a binding
+        if (p->deforming())
+            for (const auto& key : p->deforming()->keys()) numberOfShape_.emplace(key.get(), i);
+    }
+}
+
 std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> frame, const Settings& settings,
                                           MakeEvaluator evaluators, Diagnostics& d) {
     double begin = seconds();
@@ -117,15 +129,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
         for (auto& path : splitSearchPath(e)) w->settings_.shaderPaths.push_back(path);
     w->settings_.shaderPaths.push_back(shippedShaders());
     w->shapes_ = geometry::buildShapes(*frame, d);
-    for (uint32_t i = 0; i < w->shapes_.size(); ++i) {
-        w->numberOfShape_.emplace(w->shapes_[i].get(), i);
-        const geometry::Placed* p = w->shapes_[i]->placed();
-        if (!p) continue;
-        w->moves_ |= p->moves();
-        w->numberOfShape_.emplace(p->geometry().get(), i); // who dices it asks for a binding
-        if (p->deforming())
-            for (const auto& key : p->deforming()->keys()) w->numberOfShape_.emplace(key.get(), i);
-    }
+    w->numberShapes();
     w->shadesAtOpen_ = shadesAtOpen(*frame, settings, w->shapes_);
     for (const auto& shape : w->shapes_) w->traceSubsets_ |= shape->attributes().value("grouping:tracesubset") != nullptr;
     w->clippingPlanes_ = o.clippingPlanes;

@@ -1,4 +1,5 @@
 #include "geometry/build.h"
+#include "base/exact.h"
 #include "base/limits.h"
 #include "geometry/dice.h"
 #include "geometry/factories.h"
@@ -268,7 +269,7 @@ const Matrix& FrameBuilder::nearest(const scene::Instance& inst, const scene::Pr
     for (const scene::Instance* i : usage_[size_t(inst.object)].by) {
         const Matrix m = scene::at(p.toWorld, shutter_.open) * scene::at(i->toWorld, shutter_.open) * camera_;
         if (!invertible(m) || !affine(m)) continue;
-        const double size = std::cbrt(std::fabs(determinant3(m))) / std::max(length(transformPoint(m, centre)), 1e-30);
+        const double size = exact::pow(std::fabs(determinant3(m)), 1. / 3) / std::max(length(transformPoint(m, centre)), 1e-30);
         if (size > largest) largest = size, at->second = m;
     }
     return at->second;

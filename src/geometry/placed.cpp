@@ -1,4 +1,5 @@
 #include "geometry/placed.h"
+#include "base/exact.h"
 #include <algorithm>
 
 namespace alpenglow::geometry {
@@ -147,7 +148,7 @@ Bounds Placed::bounds() const {
 
 double Placed::area() const {
     // Exact where the place keeps angles; else the mean of what a plane's area becomes, which only weights choices among shapes.
-    return geometry_->area() * std::cbrt(out_.determinant() * out_.determinant());
+    return geometry_->area() * exact::pow(std::fabs(out_.determinant()), 2. / 3);
 }
 
 SurfacePoint Placed::sampleArea(double xi1, double xi2) const {

@@ -38,7 +38,7 @@ std::optional<std::string> textOf(const std::string& path, const ModelLog::Sink&
 
 std::vector<scene::Primitive> readModelFile(const std::string& file, const ModelLog::Sink& sink,
                                             const std::shared_ptr<ReadLog>& reads) {
-    ModelLog log(sink);
+    ModelLog said(sink);
     const auto text = textOf(file, sink);
     if (!text) return {};
     const ReadLibrary library = [&](const std::string& name) -> std::optional<std::string> {
@@ -47,7 +47,7 @@ std::vector<scene::Primitive> readModelFile(const std::string& file, const Model
         if (reads) reads->add(path);
         return textOf(path, sink);
     };
-    std::vector<scene::Primitive> parts = readModel(file, *text, library, log);
+    std::vector<scene::Primitive> parts = readModel(file, *text, library, said);
     for (scene::Primitive& p : parts)
         for (scene::Param& v : p.params)
             if (v.name == "texturename" && !v.strings.empty())

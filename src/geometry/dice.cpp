@@ -68,6 +68,15 @@ double displacementBound(const Shape& s, const DiceOptions& opt) {
     return bound;
 }
 
+/// Rounded up to two digits behind the point, so that the product is enough.
+std::string factor(double f) {
+    const double hundredths = std::ceil(f * 100);
+    if (!(hundredths < 1e15)) return std::to_string(f);
+    const std::string s = std::to_string(int64_t(hundredths));
+    const std::string padded = s.size() < 3 ? std::string(3 - s.size(), '0') + s : s;
+    return padded.substr(0, padded.size() - 2) + "." + padded.substr(padded.size() - 2);
+}
+
 } // namespace
 
 void displaceMesh(const Shape& shape, const DiceOptions& opt, Diagnostics& diag,
@@ -110,7 +119,8 @@ void displaceMesh(const Shape& shape, const DiceOptions& opt, Diagnostics& diag,
     if (bound >= 0 && farthest > bound * 1.001)
         diag.report(Severity::Warning, Rie::Range, shape.place(),
                     "displacement of this " + shape.kind() + " reaches " + std::to_string(farthest) +
-                        ", beyond its displacementbound of " + std::to_string(bound) + " (camera units); it is drawn whole");
+                        ", beyond its displacementbound of " + std::to_string(bound) + " (camera units); it is drawn whole",
+                    bound > 0 ? "other renderers need the bound times " + factor(farthest / bound) : "other renderers need a bound that is not 0");
 }
 
 void diceShapes(const std::vector<ShapeRef>& all, const DiceOptions& opt, Diagnostics& diag) {

@@ -135,7 +135,7 @@ LimitSurface::LimitSurface(const SubdivisionCage& c, const std::vector<Channel>&
         }
         topology_->refiner = makeRefiner(apart.cage, own);
         original_ = std::move(apart.original);
-        rounded_ = apart.rounded;
+        blunted_ = apart.blunted;
     }
     if (!topology_->refiner || !isManifold(topology_->base())) {
         why = "OpenSubdiv cannot take the topology of its faces";

@@ -93,8 +93,8 @@ public:
     uint32_t flattened() const { return flattened_; }
     /// Whether patterns were made coarser than stated above, because there are too many.
     bool coarser() const { return coarser_; }
-    /// Whether the mesh had to be taken apart, and semi-sharp creases lost their degree by that.
-    bool rounded() const { return rounded_; }
+    /// Whether the mesh had to be taken apart, and lost its creases and corners by that.
+    bool blunted() const { return blunted_; }
 
 private:
     static constexpr uint32_t kNothing = 0xffffffffu;
@@ -110,7 +110,7 @@ private:
     void fill(Data&, int channel, const SubdivisionCage&);
     void evaluate(const Data&, uint32_t piece, double u, double v, int derivatives, LimitWeights&) const;
 
-    bool valid_ = false, coarser_ = false, rounded_ = false;
+    bool valid_ = false, coarser_ = false, blunted_ = false;
     SubdivisionScheme scheme_;
     int faceCount_ = 0;
     uint32_t pieceCount_ = 0, flattened_ = 0;

@@ -1,7 +1,7 @@
 #include "geometry/manifold.h"
 #include <algorithm>
-#include <map>
 #include <numeric>
+#include <tuple>
 
 namespace alpenglow::geometry {
 
@@ -28,13 +28,12 @@ public:
         ManifoldCage out;
         out.cage = in_;
         nameVertices(out);
-        sharpenBorders(out);
-        moveTags(out);
-        for (std::vector<float>* list : {&out.cage.creaseSharpness, &out.cage.cornerSharpness})
-            for (float& s : *list) {
-                out.rounded |= s > 0 && s < 10;
-                s = s < 2 ? 0 : 10;
-            }
+        keepBorders(out);
+        out.blunted = !in_.creaseSharpness.empty() || !in_.cornerSharpness.empty();
+        out.cage.creaseEnds.clear();
+        out.cage.creaseSharpness.clear();
+        out.cage.cornerVertex.clear();
+        out.cage.cornerSharpness.clear();
         out.cage.vertices = int(out.original.size());
         out.cage.vertex = out.vertex;
         return out;
@@ -83,60 +82,21 @@ private:
             out.vertex.push_back(of);
         }
     }
-    void sharpenBorders(ManifoldCage& out) {
-        for (int c : torn_) {
-            out.cage.creaseEnds.insert(out.cage.creaseEnds.end(), {out.vertex[size_t(c)], out.vertex[size_t(next_[size_t(c)])]});
-            out.cage.creaseSharpness.push_back(10);
+    /// Where borders are not interpolated, faces at them have no limit. Those of the sheets do.
+    void keepBorders(ManifoldCage& out) {
+        if (in_.boundary != SubdivisionCage::Boundary::None) return;
+        out.cage.boundary = SubdivisionCage::Boundary::EdgeOnly;
+        std::vector<uint8_t> torn(n_, 0), border(size_t(in_.vertices), 0);
+        for (int c : torn_) torn[size_t(c)] = 1;
+        for (size_t c = 0; c < n_; ++c)
+            if (pair_[c] < 0 && !torn[c]) border[size_t(in_.vertex[c])] = border[size_t(end(int(c)))] = 1;
+        size_t first = 0;
+        for (size_t f = 0; f < in_.corners.size(); ++f) {
+            bool at = false;
+            for (int k = 0; k < in_.corners[f]; ++k) at |= border[size_t(in_.vertex[first + size_t(k)])] != 0;
+            if (at) out.cage.holes.push_back(int(f));
+            first += size_t(in_.corners[f]);
         }
-        // Sheets that share both ends of their borders share the curve between; all others meet in a point, which must not move.
-        std::vector<uint8_t> several(size_t(in_.vertices), 0);
-        for (size_t k = size_t(in_.vertices); k < out.original.size(); ++k) several[size_t(out.original[k])] = 1;
-        std::map<int, std::vector<int>> ends; // by vertex of the sheets
-        for (size_t c = 0; c < n_; ++c) {
-            if (!several[size_t(in_.vertex[c])]) continue;
-            auto& list = ends[out.vertex[c]];
-            if (pair_[c] < 0) list.push_back(end(int(c)));
-            if (pair_[size_t(previous_[c])] < 0) list.push_back(in_.vertex[size_t(previous_[c])]);
-        }
-        std::map<int, std::vector<int>> first; // by original vertex
-        std::map<int, bool> alike;
-        for (auto& [v, list] : ends) {
-            std::sort(list.begin(), list.end());
-            const int o = out.original[size_t(v)];
-            const auto [at, isNew] = first.try_emplace(o, list);
-            alike.try_emplace(o, true).first->second &= list.size() == 2 && at->second == list;
-        }
-        for (auto& [v, list] : ends)
-            if (!alike[out.original[size_t(v)]]) {
-                out.cage.cornerVertex.push_back(v);
-                out.cage.cornerSharpness.push_back(10);
-            }
-    }
-    /// Creases and corners of the request hold in every sheet.
-    void moveTags(ManifoldCage& out) {
-        const size_t creases = in_.creaseSharpness.size(), corners = in_.cornerVertex.size();
-        auto& ends = out.cage.creaseEnds;
-        std::vector<int> added;
-        std::vector<float> sharp;
-        for (size_t k = 0; k < creases; ++k) {
-            const int low = std::min(ends[2 * k], ends[2 * k + 1]), high = std::max(ends[2 * k], ends[2 * k + 1]);
-            auto s = std::lower_bound(sides_.begin(), sides_.end(), std::pair(low, high), [](const Side& a, const std::pair<int, int>& b) { return std::pair(a.low, a.high) < b; });
-            for (bool isFirst = true; s != sides_.end() && s->low == low && s->high == high; ++s, isFirst = false) {
-                const int a = out.vertex[size_t(s->corner)], b = out.vertex[size_t(next_[size_t(s->corner)])];
-                if (isFirst) ends[2 * k] = a, ends[2 * k + 1] = b;
-                else added.insert(added.end(), {a, b}), sharp.push_back(out.cage.creaseSharpness[k]);
-            }
-        }
-        // First, so that what is torn stays sharp.
-        ends.insert(ends.begin(), added.begin(), added.end());
-        out.cage.creaseSharpness.insert(out.cage.creaseSharpness.begin(), sharp.begin(), sharp.end());
-        std::vector<int> copies;
-        std::vector<float> copied;
-        for (size_t v = size_t(in_.vertices); v < out.original.size(); ++v)
-            for (size_t k = 0; k < corners; ++k)
-                if (out.original[v] == in_.cornerVertex[k]) copies.push_back(int(v)), copied.push_back(in_.cornerSharpness[k]);
-        out.cage.cornerVertex.insert(out.cage.cornerVertex.begin(), copies.begin(), copies.end());
-        out.cage.cornerSharpness.insert(out.cage.cornerSharpness.begin(), copied.begin(), copied.end());
     }
 
     const SubdivisionCage& in_;

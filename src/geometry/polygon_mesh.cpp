@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 namespace alpenglow::geometry {
 
@@ -301,6 +302,44 @@ int PolygonMesh::weights(Class c, const SurfacePoint& p, Weight w[16]) const {
     return 3;
 }
 
+/// A point of the grid of n steps over a triangle. Points of an edge depend on nothing but where its ends lie, so that neighbours, also
+/// those with vertices of their own, have the same to the bit.
+Vec3 PolygonMesh::pointOnGrid(uint32_t tri, int n, int i, int j) const {
+    const int share[3] = {n - i - j, i, j};
+    const auto before = [](const Vec3d& a, const Vec3d& b) { return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z; };
+    for (int k = 0; k < 3; ++k) {
+        if (share[k] != 0) continue;
+        int first = (k + 1) % 3, second = (k + 2) % 3;
+        Vec3d a = cameraCorner(tri, first), b = cameraCorner(tri, second);
+        if (before(b, a)) std::swap(a, b), std::swap(first, second);
+        if (share[first] == 0) return Vec3(b);
+        if (share[second] == 0) return Vec3(a);
+        return Vec3((a * double(share[first]) + b * double(share[second])) / double(n));
+    }
+    const Vec3d a = cameraCorner(tri, 0), b = cameraCorner(tri, 1), c = cameraCorner(tri, 2);
+    return Vec3((a * double(share[0]) + b * double(share[1]) + c * double(share[2])) / double(n));
+}
+
+/// Points that were one before they were displaced are one after it: in the middle of where their faces, whose normals and variables may
+/// differ there, have moved them.
+static void closeCracks(const std::vector<Vec3>& flat, std::vector<Vec3>& moved) {
+    std::vector<uint32_t> order(flat.size());
+    std::iota(order.begin(), order.end(), 0u);
+    const auto key = [&](uint32_t i) { return std::tie(flat[i].x, flat[i].y, flat[i].z); };
+    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
+    for (size_t i = 0, j; i < order.size(); i = j) {
+        Vec3d sum(moved[order[i]]);
+        bool same = true;
+        for (j = i + 1; j < order.size() && key(order[j]) == key(order[i]); ++j) {
+            sum = sum + Vec3d(moved[order[j]]);
+            same &= moved[order[j]] == moved[order[i]];
+        }
+        if (same) continue;
+        const Vec3 middle(sum / double(j - i));
+        for (size_t k = i; k < j; ++k) moved[order[k]] = middle;
+    }
+}
+
 void PolygonMesh::dice(const DiceOptions& opt, Diagnostics& diag) {
     if (!isDisplaced(*this, opt)) return;
     // Every triangle is cut alike, so that neighbours within the primitive meet without cracks.
@@ -330,8 +369,7 @@ void PolygonMesh::dice(const DiceOptions& opt, Diagnostics& diag) {
         for (uint32_t j = 0; j <= n; ++j)
             for (uint32_t i = 0; i + j <= n; ++i) {
                 param.push_back({float(double(i) / n), float(double(j) / n)});
-                Vec3d a = cameraCorner(t, 0), b = cameraCorner(t, 1), c = cameraCorner(t, 2);
-                m.P.push_back(Vec3((a * double(n - i - j) + b * double(i) + c * double(j)) / double(n)));
+                m.P.push_back(pointOnGrid(t, int(n), int(i), int(j)));
             }
         for (uint32_t j = 0; j < n; ++j)
             for (uint32_t i = 0; i + j < n; ++i) {
@@ -344,6 +382,7 @@ void PolygonMesh::dice(const DiceOptions& opt, Diagnostics& diag) {
     meshParam_ = std::move(param);
     trianglesPerPrim_ = n * n;
     displaced_ = true;
+    const std::vector<Vec3> flat = m.P;
     float step = float(1.0 / n);
     displaceMesh(*this, opt, diag,
                  [&](uint32_t i) { return evaluateLocal(i / perTri, meshParam_[i].x, meshParam_[i].y); },
@@ -358,6 +397,7 @@ void PolygonMesh::dice(const DiceOptions& opt, Diagnostics& diag) {
                      };
                      return Vec2{extent(f.a) * step, extent(f.b) * step};
                  }, m);
+    closeCracks(flat, m.P);
     m.finish();
     mesh_ = std::move(m);
 }

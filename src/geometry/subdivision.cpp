@@ -31,9 +31,9 @@ Subdivision::Subdivision(ShapeSource s, CageInput&& in, std::vector<FaceDomain> 
     if (limit_->flattened())
         diag.report(Severity::Warning, Rie::Limit, place(),
                     kind() + ": " + std::to_string(limit_->flattened()) + " faces have more neighbours than their limit can be evaluated for; they are drawn flat");
-    if (limit_->rounded())
+    if (limit_->blunted())
         diag.report(Severity::Warning, Rie::Incapable, place(),
-                    kind() + ": faces share edges or vertices in more than one sheet; its semi-sharp creases and corners are taken as smooth below 2, else as sharp");
+                    kind() + ": faces share edges or vertices in more than one sheet; its creases and corners are left out");
     if (limit_->coarser())
         diag.report(Severity::Info, Rie::Limit, place(), kind() + " has very many different neighbourhoods of faces; some are evaluated less exactly");
     if (empty())

@@ -121,3 +121,64 @@ TEST(GeometryLimits, ConcavePolygonsEndInTime) {
         for (uint32_t i : out) ASSERT_LT(i, p.size());
     }
 }
+
+namespace {
+
+std::shared_ptr<scene::Primitive> subdivision(int n, const std::string& kind, const std::vector<std::string>& tags) {
+    // n x n quadrilaterals over the unit square.
+    auto p = std::make_shared<scene::Primitive>();
+    p->kind = kind;
+    p->strings = {"catmull-clark"};
+    p->strings.insert(p->strings.end(), tags.begin(), tags.end());
+    std::vector<float> P;
+    for (int j = 0; j <= n; ++j)
+        for (int i = 0; i <= n; ++i) P.insert(P.end(), {float(i) / float(n), float(j) / float(n), 0});
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) {
+            const int a = j * (n + 1) + i;
+            p->ints.push_back(4);
+            p->ints2.insert(p->ints2.end(), {a, a + 1, a + n + 2, a + n + 1});
+        }
+    p->params = {points(P)};
+    return p;
+}
+
+} // namespace
+
+TEST(GeometryLimits, EditsOfSubdivisionSurfaces) {
+    // Ten levels of 16 faces would be 16 million: kEditedFaces corners stop it, the surface is drawn.
+    static_assert(16ull * 4 << 20 > limits::kEditedFaces);
+    Diagnostics d;
+    auto p = subdivision(4, "HierarchicalSubdivisionMesh", {"interpolateboundary", "vertexedit"});
+    p->ints3 = {0, 0, 0, 13, 3, 3};
+    p->params.push_back(param("intargs", scene::Class::Constant, scene::Type::Integer, {12, 5, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2}));
+    p->params.push_back(param("floatargs", scene::Class::Constant, scene::Type::Float, {0, 0, 1}));
+    scene::Param strings = param("stringargs", scene::Class::Constant, scene::Type::String, {});
+    strings.strings = {"add", "P", "value"};
+    p->params.push_back(strings);
+    ShapeRef s = build(p, Matrix(), d);
+    ASSERT_TRUE(s);
+    EXPECT_EQ(limitsSaid(d), 1);
+    EXPECT_LE(size_t(s->faces()), limits::kEditedFaces);
+}
+
+TEST(GeometryLimits, PatternsOfSubdivisionSurfaces) {
+    // Creases of many degrees give nearly every face a neighbourhood of its own, some of 1 MiB: kLimitPatternBytes ends that, and says so.
+    Diagnostics d;
+    auto p = subdivision(40, "SubdivisionMesh", {"interpolateboundary"});
+    p->ints3 = {0, 0};
+    std::vector<float> ends, sharp;
+    for (int k = 0; k < 700; ++k) {
+        const int a = (k / 18 + 1) * 41 + 2 * (k % 18) + 2;
+        p->strings.push_back("crease");
+        p->ints3.insert(p->ints3.end(), {2, 1});
+        ends.insert(ends.end(), {float(a), float(a + 1)});
+        sharp.push_back(7 + float(k) / 300);
+    }
+    p->params.push_back(param("intargs", scene::Class::Constant, scene::Type::Integer, ends));
+    p->params.push_back(param("floatargs", scene::Class::Constant, scene::Type::Float, sharp));
+    ShapeRef s = build(p, Matrix(), d);
+    ASSERT_TRUE(s);
+    EXPECT_EQ(limitsSaid(d), 1);
+    EXPECT_GT(limits::kLimitPatternBytes, size_t(1) << 20);
+}

@@ -189,11 +189,11 @@ std::vector<Request> primitiveRequests() {
          k, s, true, "A NURBS surface.", "2 2 [0 0 1 1] 0 1 2 2 [0 0 1 1] 0 1 \"P\" [0 0 0 1 0 0 0 1 0 1 1 0]", nuPatch},
         {"SubdivisionMesh",
          "string scheme; int[] nverts; int[] verts; string[] tags?; int[] nargs?; int[] intargs?; number[] floatargs?; ..", k, s,
-         true, "A subdivision surface. Not drawn yet.", mesh, subdivision},
+         true, "A subdivision surface.", mesh, subdivision},
         {"HierarchicalSubdivisionMesh",
          "string scheme; int[] nverts; int[] verts; string[] tags?; int[] nargs?; int[] intargs?; number[] floatargs?; string[] "
          "stringargs?; ..",
-         k, s, true, "A subdivision surface with edits. Not drawn yet.", hierarchical, subdivision},
+         k, s, true, "A subdivision surface with edits at any level.", hierarchical, subdivision},
         {"Points", "..", k, s, true, "Particles: discs that face the eye, or by \"type\" spheres and squares.", "\"P\" [0 0 0 1 0 0] \"constantwidth\" [.1]", polygon},
         {"Curves", "string type; int[] nvertices; string wrap; ..", k, s, true, "Thin ribbons, flat by \"N\", or tubes (Attribute \"dice\" \"roundcurve\" 1).",
          "\"cubic\" [4] \"nonperiodic\" \"P\" [0 0 0 1 0 0 2 0 0 3 0 0] \"width\" [.1 .2]", curves},

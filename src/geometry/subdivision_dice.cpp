@@ -26,7 +26,7 @@ struct Subdivision::Dicing {
     std::vector<Point> points;
     std::vector<uint32_t> cornerPoint, edgePoint, middlePoint, spokePoint; ///< first of its points; kNone: none yet
 
-    void measure(uint32_t piece);
+    void measure(const Subdivision& at, uint32_t piece);
     void rates(double scale);
     double quads() const;
     void sharedPoints();
@@ -38,16 +38,14 @@ struct Subdivision::Dicing {
 };
 
 /// How many segments a piece wants along u and v: as surfaces over one square do (parametric.cpp).
-void Subdivision::Dicing::measure(uint32_t piece) {
-    const LimitSurface::PieceOf at = limit.pieceOf(piece);
-    need[piece] = {1, 1};
-    if (!limit.drawn(at.face)) return;
+void Subdivision::Dicing::measure(const Subdivision& of, uint32_t piece) {
+    if (!limit.drawn(limit.pieceOf(piece).face)) return;
     constexpr double kDeviation = 0.05; // pixels that facets may stray from the surface
     const double edge = diceEdge(s.attributes()), tol = kDeviation * edge;
     const bool three = limit.triangles();
     double lu = 0, lv = 0;
     const auto probe = [&](double u, double v) {
-        const LocalPoint p = s.cameraPoint(piece, u, v, displaced ? 1 : 2);
+        const LocalPoint p = of.cameraPoint(piece, u, v, displaced ? 1 : 2);
         double a = opt.camera.pixels(p.P, p.Pu) / edge, b = opt.camera.pixels(p.P, p.Pv) / edge;
         if (three) a = b = std::max({a, b, opt.camera.pixels(p.P, p.Pu - p.Pv) / edge});
         if (!displaced) {
@@ -71,7 +69,7 @@ void Subdivision::Dicing::measure(uint32_t piece) {
                 for (double u : {0.1, 0.5, 0.9})
                     if (u != 0.5 || v != 0.5) probe(u, v);
     }
-    need[piece] = {float(lu), float(lv)};
+    need[piece] = {std::max(need[piece][0], float(lu)), std::max(need[piece][1], float(lv))};
 }
 
 void Subdivision::Dicing::rates(double scale) {
@@ -206,7 +204,12 @@ void Subdivision::dice(const DiceOptions& opt, Diagnostics& diag) {
     displaced_ = isDisplaced(*this, opt);
     Dicing d{*this, *limit_, opt, displaced_, {}, {}, {}, {}, {}, {}, {}, {}, {}};
     d.need.resize(limit_->pieces());
-    tbb::parallel_for(uint32_t(0), limit_->pieces(), [&](uint32_t k) { d.measure(k); });
+    tbb::parallel_for(uint32_t(0), limit_->pieces(), [&](uint32_t k) {
+        d.need[k] = {1, 1};
+        d.measure(*this, k);
+        for (const ShapeRef& key : opt.keys) // finely enough for every time of a moving one
+            if (const auto* other = dynamic_cast<const Subdivision*>(key.get()); other && other != this && other->limit_->pieces() == limit_->pieces()) d.measure(*other, k);
+    });
     double scale = 1;
     d.rates(scale);
     const double most = std::max(double(limits::kDiceQuads), 2.0 * limit_->pieces());

@@ -118,6 +118,19 @@ void Accel::setLevels(std::vector<Levels> levels) {
     impl_->levels = std::move(levels);
 }
 
+void Accel::makeSolids(Diagnostics& diag) { impl_->solids = Solids::of(impl_->shapes, diag); }
+
+bool Accel::hasSolids() const { return impl_->solids != nullptr; }
+
+bool Accel::keeps(uint32_t shape, const Vec3& point, const Vec3& normal, float time) const {
+    if (!impl_->solids || !impl_->solids->in(shape)) return true;
+    Ray r;
+    r.org = point - normal; // straight through: a grazing ray would miss a rounded point by far
+    r.dir = normal;
+    r.time = time;
+    return impl_->solids->keeps(r, shape, 1);
+}
+
 const std::vector<ShapeRef>& Accel::shapes() const { return impl_->shapes; }
 geometry::Bounds Accel::bounds() const { return impl_->bounds; }
 

@@ -69,6 +69,12 @@ public:
     struct Levels { float from = 0, to = 1; };
     void setLevels(std::vector<Levels>);
 
+    /// Of shapes that are parts of solids (scene/solids.h) rays meet from now on only what bounds the whole. Before any ray is sent.
+    void makeSolids(Diagnostics&);
+    bool hasSolids() const;
+    /// False: at this point of its surface (camera space) a shape bounds no whole, but lies inside of one or was taken away.
+    bool keeps(uint32_t shape, const Vec3& point, const Vec3& normal, float time) const;
+
     /// Nearest hit. False, and hit.shape == kNone, when there is none or the ray is not finite. Thread safe.
     bool intersect(const Ray&, Hit& hit) const;
     /// Whether anything is met. Thread safe.

@@ -2,6 +2,7 @@
 #pragma once
 #include "accel/accel.h"
 #include "accel/direct.h"
+#include "accel/solids.h"
 #include "accel/tree.h"
 #include "geometry/placed.h"
 #include <cmath>
@@ -65,6 +66,8 @@ struct Accel::Impl {
     geometry::Bounds bounds;
     bool sound = true;
     Tree tree;
+    std::unique_ptr<Solids> solids; ///< null: there are none
+    bool ofSolid(uint32_t s) const { return solids && solids->in(s); }
 
     /// Scenes of few primitives have no tree.
     struct Ball {
@@ -111,6 +114,7 @@ struct Accel::Impl {
         if (!q.any && !before(t, s, prim, q.best)) return false;
         if (!trimmed.empty() && trimmed[s] && !trimmed[s]->keepsHit(prim, b1, b2)) return false;
         if (shapes[s]->oneSided() && r.sides != Sides::Both && (away() >= 0) != (r.sides == Sides::Back)) return false;
+        if (ofSolid(s) && !solids->keeps(r, s, t)) return false;
         q.best = {t, s, prim, b1, b2};
         return true;
     }
@@ -135,10 +139,10 @@ struct Accel::Impl {
         if (s == r.excludeShape && prim == r.excludePrim) return std::max(near, double(std::nextafter(float(r.passed), INFINITY)));
         return std::max(near, std::pair(s, prim) < std::pair(r.excludeShape, r.excludePrim) ? r.passed : std::nextafter(r.passed, 0.0));
     }
-    static Shape::Wanted wantedOf(const Query& q, const Shape& shape) {
-        return shape.oneSided() && q.ray->sides != Sides::Both ? Shape::Wanted::All
-               : q.any                                         ? Shape::Wanted::Any
-                                                               : Shape::Wanted::Nearest;
+    Shape::Wanted wantedOf(const Query& q, uint32_t s, const Shape& shape) const {
+        return (shape.oneSided() && q.ray->sides != Sides::Both) || ofSolid(s) ? Shape::Wanted::All
+               : q.any                                                         ? Shape::Wanted::Any
+                                                                               : Shape::Wanted::Nearest;
     }
     /// Tries all points of one primitive of an exact shape, or of a shape that is placed; true when one was taken.
     bool meetExact(Query& q, uint32_t s, uint32_t prim) const {
@@ -149,7 +153,7 @@ struct Accel::Impl {
         geometry::ExactHit h[4];
         const Shape& shape = *shapes[s];
         const double from = exactFrom(r, s, prim), to = std::min(double(r.tfar), q.best.t);
-        int n = shape.exactHits(prim, Vec3d(r.org), Vec3d(r.dir), from, to, wantedOf(q, shape), h);
+        int n = shape.exactHits(prim, Vec3d(r.org), Vec3d(r.dir), from, to, wantedOf(q, s, shape), h);
         bool taken = false;
         for (int i = 0; i < n; ++i) {
             taken |= take(q, s, prim, h[i].t, h[i].u, h[i].v);

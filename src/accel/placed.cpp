@@ -50,7 +50,7 @@ bool Accel::Impl::meetInside(Query& q, const Inside& at, uint32_t prim) const {
     geometry::ExactHit h[4];
     const Shape& shape = *at.geometry->shape;
     const double from = exactFrom(r, at.shape, prim), to = std::min(double(r.tfar), q.best.t);
-    const int n = shape.exactHits(prim, at.org, at.dir, from, to, wantedOf(q, *at.place), h);
+    const int n = shape.exactHits(prim, at.org, at.dir, from, to, wantedOf(q, at.shape, *at.place), h);
     bool taken = false;
     for (int i = 0; i < n && !(taken && q.any); ++i)
         taken |= take(q, at.shape, prim, h[i].t, h[i].u, h[i].v,

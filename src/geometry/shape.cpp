@@ -1,4 +1,5 @@
 #include "geometry/shape.h"
+#include "scene/solids.h"
 #include <cmath>
 
 namespace alpenglow::geometry {
@@ -8,6 +9,7 @@ using scene::Class;
 float orientationSign(const scene::Attributes& a, const Matrix& toCamera) {
     if (a.absoluteHandedness) return a.rightHanded ? -1.f : 1.f;
     bool flip = (determinant3(toCamera) < 0) != a.inside;
+    if (scene::solidTakenAway(a)) flip = !flip; // the surface of a hole looks into it
     return flip ? -1.f : 1.f;
 }
 

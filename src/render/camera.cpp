@@ -27,7 +27,53 @@ Vec2 toDisc(Vec2 u) {
     return {float(r * c), float(r * s)};
 }
 
+constexpr size_t kRimSteps = 512;
+
 } // namespace
+
+Aperture::Aperture(int sides, double degrees, double roundness, double density)
+    : sides_(sides < 3 ? 0 : sides), turn_(degrees * kPi / 180), roundness_(roundness), density_(density) {
+    if (!sides_) return;
+    double sum = 0;
+    cumulative_.push_back(0);
+    for (size_t i = 0; i < kRimSteps; ++i) {
+        const double r = rim((double(i) + 0.5) / kRimSteps * kPi / sides_);
+        cumulative_.push_back(sum += r * r);
+    }
+}
+
+double Aperture::rim(double angle) const {
+    const double straight = exact::cos(kPi / sides_) / exact::cos(angle);
+    return straight + (1 - straight) * roundness_;
+}
+
+Vec2 Aperture::sample(Vec2 u) const {
+    if (!sides_ && density_ == 0) return toDisc(u);
+    // Angle and the part of the way to the rim. As light grows linearly, what comes through up to x is a cubic of x.
+    double x = std::sqrt(double(u.y));
+    if (density_ != 0) {
+        const double square = (1 - density_) / 2, cube = 2 * density_ / 3, target = u.y * (square + cube);
+        double lo = 0, hi = 1;
+        for (int i = 0; i < 60; ++i) {
+            const double f = x * x * (square + cube * x) - target, slope = x * (2 * square + 3 * cube * x);
+            (f < 0 ? lo : hi) = x;
+            const double next = slope > 0 ? x - f / slope : lo;
+            x = next > lo && next < hi ? next : 0.5 * (lo + hi);
+        }
+    }
+    double angle = 2 * kPi * u.x, reach = 1;
+    if (sides_) {
+        const double at = u.x * 2 * sides_, side = std::floor(at), target = (at - side) * cumulative_.back();
+        const size_t k = std::min(size_t(std::upper_bound(cumulative_.begin(), cumulative_.end(), target) - cumulative_.begin()), kRimSteps);
+        const double step = (double(k - 1) + (target - cumulative_[k - 1]) / (cumulative_[k] - cumulative_[k - 1])) / kRimSteps;
+        const double off = step * kPi / sides_;
+        reach = rim(off);
+        // Half sides in turn: from the middle of a side back, then on.
+        angle = kPi * (2 * std::floor(side / 2) + 1) / sides_ + (side - 2 * std::floor(side / 2) < 0.5 ? -off : off);
+    }
+    const auto [s, c] = exact::sinCos(angle + turn_);
+    return {float(x * reach * c), float(x * reach * s)};
+}
 
 void imageSize(const scene::Options& o, int* width, int* height) {
     *width = o.xres > 0 ? o.xres : 640;
@@ -82,6 +128,23 @@ Camera::Camera(const scene::Options& o, Diagnostics& diags) {
     if (window_.x1 <= window_.x0) window_.x1 = window_.x0 + 1; // narrower than a pixel: the pixel it lies in
     if (window_.y1 <= window_.y0) window_.y1 = window_.y0 + 1;
 
+    setProjection(o, diags);
+    near_ = o.clipNear > 0 && std::isfinite(o.clipNear) ? o.clipNear : 0;
+    if (near_ <= 1e-9) near_ = 0; // RI_EPSILON: no plane was asked for
+    if (o.clipFar < o.clipNear) bad("Clipping: far lies in front of near");
+    else if (o.clipFar < 1e30f)
+        diags.report(Severity::Info, Rie::NoError, {}, "Clipping: rays see what lies behind the far plane too");
+
+    setLens(o, diags);
+    if (o.shutterClose < o.shutterOpen) bad("Shutter: it closes before it opens; there is no motion blur");
+    shutter_ = scene::Shutter(o);
+    opening_ = ShutterOpening(o, diags);
+    transform_ = o.worldToCamera;
+    worldToCamera_ = scene::at(transform_, shutter_.open);
+}
+
+void Camera::setProjection(const scene::Options& o, Diagnostics& diags) {
+    auto bad = [&](const std::string& what) { diags.report(Severity::Error, Rie::Range, {}, what); };
     perspective_ = o.projection == "perspective";
     if (!perspective_ && o.projection != "orthographic" && !o.projection.empty())
         diags.report(Severity::Error, Rie::Incapable, {},
@@ -93,28 +156,69 @@ Camera::Camera(const scene::Options& o, Diagnostics& diags) {
         fov_ = 90;
     }
     tangent_ = exact::tan(fov_ * kPi / 360);
-    near_ = o.clipNear > 0 && std::isfinite(o.clipNear) ? o.clipNear : 0;
-    if (near_ <= 1e-9) near_ = 0; // RI_EPSILON: no plane was asked for
-    if (o.clipFar < o.clipNear) bad("Clipping: far lies in front of near");
-    else if (o.clipFar < 1e30f)
-        diags.report(Severity::Info, Rie::NoError, {}, "Clipping: rays see what lies behind the far plane too");
+    const scene::Param* stereo = scene::find(o.projectionParams, "stereo");
+    if (!stereo || stereo->strings.empty() || stereo->strings[0].empty()) return;
+    static constexpr std::pair<std::string_view, Stereo> kKinds[] = {
+        {"sidebyside", Stereo::SideBySide}, {"topbottom", Stereo::TopBottom}, {"left", Stereo::Left}, {"right", Stereo::Right}};
+    for (const auto& [name, kind] : kKinds)
+        if (stereo->strings[0] == name) stereo_ = kind;
+    if (stereo_ == Stereo::None)
+        return bad("Projection \"stereo\": \"" + stereo->strings[0] + "\" is not known: sidebyside, topbottom, left or right");
+    const auto number = [&](const char* name, double otherwise) {
+        const scene::Param* p = scene::find(o.projectionParams, name);
+        if (!p || p->numbers.empty()) return otherwise;
+        if (p->numbers[0] > 0 && std::isfinite(p->numbers[0])) return double(p->numbers[0]);
+        bad(std::string("Projection \"") + name + "\" must be positive");
+        return otherwise;
+    };
+    convergence_ = number("focaldistance", o.focalDistance > 0 && std::isfinite(o.focalDistance) ? o.focalDistance : 10);
+    eyes_ = number("eyeseparation", convergence_ / 30); // what photographers take
+    if (!perspective_) bad("Projection: a stereo pair needs \"perspective\""), stereo_ = Stereo::None;
+}
 
+void Camera::setLens(const scene::Options& o, Diagnostics& diags) {
+    auto bad = [&](const std::string& what) { diags.report(Severity::Error, Rie::Range, {}, what); };
     if (o.fstop > 0 && o.fstop < 1e30f) {
         if (o.focalLength > 0 && o.focalDistance > 0 && std::isfinite(o.focalLength) && std::isfinite(o.focalDistance)) {
             lensRadius_ = 0.5 * o.focalLength / o.fstop;
             focus_ = o.focalDistance;
         } else bad("DepthOfField: focal length and distance must be positive; everything is in focus");
     }
-    if (o.shutterClose < o.shutterOpen) bad("Shutter: it closes before it opens; there is no motion blur");
-    shutter_ = scene::Shutter(o);
-    opening_ = ShutterOpening(o, diags);
-    transform_ = o.worldToCamera;
-    worldToCamera_ = scene::at(transform_, shutter_.open);
+    const scene::Param* a = scene::find(o.hiderParams, "aperture");
+    if (!a)
+        if (auto i = o.values.find("hider:aperture"); i != o.values.end()) a = &i->second;
+    if (!a || a->numbers.empty()) return;
+    double n[4] = {};
+    for (size_t i = 0; i < std::min<size_t>(4, a->numbers.size()); ++i) n[i] = a->numbers[i];
+    const bool good = std::isfinite(n[0] + n[1] + n[2] + n[3]) && n[0] >= 0 && n[0] <= 1000 && n[2] >= 0 && n[2] <= 1 && std::fabs(n[3]) <= 1;
+    if (!good) return bad("Hider \"aperture\": sides 0 to 1000, degrees, roundness 0 to 1, density -1 to 1; the lens is round");
+    aperture_ = Aperture(int(n[0]), n[1], n[2], n[3]);
+}
+
+double Camera::eyeOf(double& rx, double& ry) const {
+    const double half = 0.5 * eyes_;
+    switch (stereo_) {
+    case Stereo::None: return 0;
+    case Stereo::Left: return -half;
+    case Stereo::Right: return half;
+    case Stereo::SideBySide: {
+        const bool right = 2 * rx >= width_;
+        rx = 2 * rx - (right ? width_ : 0);
+        return right ? half : -half;
+    }
+    case Stereo::TopBottom: {
+        const bool right = 2 * ry >= height_;
+        ry = 2 * ry - (right ? height_ : 0);
+        return right ? half : -half;
+    }
+    }
+    return 0;
 }
 
 Matrix Camera::cameraToFirst(double time) const { return inverse(scene::at(transform_, time)) * worldToCamera_; }
 
 transport::CameraRay Camera::ray(double rx, double ry, Vec2 lens, float time01) const {
+    const double eye = stereo_ == Stereo::None ? 0 : eyeOf(rx, ry);
     double xs = left_ + (right_ - left_) * rx / width_, ys = top_ - (top_ - bottom_) * ry / height_;
     double pixel = pixel_;
     Vec3d origin, direction;
@@ -125,9 +229,13 @@ transport::CameraRay Camera::ray(double rx, double ry, Vec2 lens, float time01) 
         origin = {xs, ys, 0};
         direction = {0, 0, 1};
     }
+    if (eye != 0) { // off the axis: the eyes look in parallel
+        origin.x += eye;
+        direction.x -= eye / convergence_;
+    }
     if (lensRadius_ > 0) {
         Vec3d inFocus = origin + direction * focus_;
-        Vec2 d = toDisc(lens);
+        Vec2 d = aperture_.sample(lens);
         origin += Vec3d(d.x * lensRadius_, d.y * lensRadius_, 0);
         direction = (inFocus - origin) / focus_; // z stays 1
     }

@@ -8,13 +8,32 @@
 #include "render/shutter.h"
 #include "scene/motion.h"
 #include "transport/integrator.h"
+#include <vector>
 
 namespace alpenglow::render {
+
+/// The opening of a lens of radius 1, by the four numbers of Hider "aperture" (PRMan): sides, below 3 a circle; degrees by which it is
+/// turned; roundness, 0 straight blades to 1 a circle; density, how the light through it grows from the middle to the rim: 0 even, 1 from
+/// nothing, -1 to nothing, linearly.
+class Aperture {
+public:
+    Aperture() = default;
+    Aperture(int sides, double degrees, double roundness, double density);
+    /// A point for two numbers of [0,1), as dense as light comes through.
+    Vec2 sample(Vec2) const;
+
+private:
+    double rim(double angle) const; ///< angle from the middle of a side
+    int sides_ = 0;
+    double turn_ = 0, roundness_ = 0, density_ = 0;
+    std::vector<double> cumulative_; ///< of the area from the middle of a side to a corner, even steps of the angle
+};
 
 class Camera {
 public:
     /// Impossible values (sizes, windows, angles that are not positive) are reported and replaced by RI's defaults. Projections
-    /// other than "perspective" and "orthographic" are reported and treated as orthographic.
+    /// other than "perspective" and "orthographic" are reported and treated as orthographic. "perspective" has a stereo pair by "stereo"
+    /// ("sidebyside", "topbottom", "left", "right"), "eyeseparation" and "focaldistance", where the eyes' pictures coincide.
     Camera(const scene::Options&, Diagnostics&);
 
     int width() const { return width_; } ///< of the whole picture, pixels
@@ -38,6 +57,10 @@ public:
 
 private:
     Matrix cameraToFirst(double time) const;
+    void setProjection(const scene::Options&, Diagnostics&);
+    void setLens(const scene::Options&, Diagnostics&);
+    /// The eye that a raster position is seen by: its x; the position becomes that in the picture of both.
+    double eyeOf(double& rx, double& ry) const;
 
     int width_ = 640, height_ = 480;
     float pixelAspect_ = 1;
@@ -50,6 +73,9 @@ private:
     double lensRadius_ = 0, focus_ = 1;
     scene::Shutter shutter_;
     ShutterOpening opening_;
+    Aperture aperture_;
+    enum class Stereo { None, Left, Right, SideBySide, TopBottom } stereo_ = Stereo::None;
+    double eyes_ = 0, convergence_ = 1; ///< distance of the eyes; where both see the same
     scene::Transform transform_;
     Matrix worldToCamera_;
 };

@@ -2,6 +2,7 @@
 #include "base/limits.h"
 #include "ri/interpreter.h"
 #include "ri/motion.h"
+#include "ri/userprojection.h"
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -163,6 +164,7 @@ void Interpreter::worldBegin(const Call& call) {
         state.ctm = cameraToWorld = scene::Transform();
     }
     worldToCamera_ = state.ctm;
+    const bool projected = takeProjection(worldToCamera_, options);
     frame_ = std::make_shared<scene::Frame>();
     ++worldSerial_;
     objectIndex_.clear();
@@ -174,6 +176,8 @@ void Interpreter::worldBegin(const Call& call) {
         frame_->lights.push_back(std::move(moved));
     }
     worldCameraSystems_ = systems_;
+    if (projected) // they led to the screen
+        for (auto& [name, t] : worldCameraSystems_) t = compose(compose(t, cameraToWorld), worldToCamera_);
     for (auto& [name, t] : systems_) t = compose(t, cameraToWorld);
     if (!state.scoped->empty()) {
         auto scoped = std::make_shared<NamedSystems>(*state.scoped);
@@ -212,6 +216,34 @@ void Interpreter::objectBegin(const Call& call) {
     b.object->world = inWorld() ? worldSerial_ : 0;
     b.object->lights = lights_.size();
     state.ctm = scene::Transform(); // an object has a space of its own
+}
+
+/// Goes a block of a solid down in the path that primitives keep.
+void Interpreter::stepInto(scene::SolidOperation operation) {
+    scene::Param& path = attributes().values[scene::kSolidAttribute];
+    path.name = "__path";
+    path.cls = scene::Class::Constant;
+    const float child = path.numbers.empty() ? 0 : path.numbers.back();
+    if (!path.numbers.empty()) path.numbers.pop_back();
+    path.numbers.insert(path.numbers.end(), {float(++solidSerial_ & 0xffffff), float(operation), child, 0});
+    path.arrayLength = int(path.numbers.size());
+}
+
+void Interpreter::beginSolid(scene::SolidOperation operation, const Call& call) {
+    const scene::Param* outer = state.attributes->value(scene::kSolidAttribute);
+    const bool inPart = outer && !outer->numbers.empty() && scene::solidPath(*state.attributes).back().operation == scene::SolidOperation::Part;
+    if (inPart) {
+        reporter.error(Rie::BadSolid, call.place, "SolidBegin inside a \"primitive\": what it holds belongs to that part");
+        begin(BlockKind::Solid, call);
+        return;
+    }
+    if (!begin(BlockKind::Solid, call)) return;
+    stepInto(operation);
+    // The block around it remembers that it has one child more.
+    if (!outer) return;
+    GraphicsState& saved = blocks_.back().saved;
+    saved.attributes = std::make_shared<scene::Attributes>(*saved.attributes);
+    saved.attributes->values[scene::kSolidAttribute].numbers.back() += 1;
 }
 
 scene::Object* Interpreter::openObject() {

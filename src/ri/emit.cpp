@@ -94,6 +94,22 @@ bool holdsNothing(const scene::Primitive& p) {
 }
 } // namespace
 
+/// The attributes of a primitive that is made now: in a solid, but in none of its parts, it is a part of its own.
+scene::AttributesRef Interpreter::solidPart(const Call& call) {
+    const scene::Param* path = state.attributes->value(scene::kSolidAttribute);
+    if (!path || scene::solidPath(*state.attributes).back().operation == scene::SolidOperation::Part) return snapshot();
+    reporter.once("ri:solidpart", Severity::Warning, Rie::BadSolid, call.place,
+                  fmt::format("{} stands in a solid outside of SolidBegin \"primitive\": it counts as a part of its own", call.request->name));
+    const GraphicsState outer = state;
+    shared_ = true;
+    stepInto(scene::SolidOperation::Part);
+    scene::AttributesRef part = snapshot();
+    state = outer;
+    shared_ = true;
+    attributes().values[scene::kSolidAttribute].numbers.back() += 1;
+    return part;
+}
+
 void Interpreter::emit(scene::Primitive p, const Call& call) {
     if (!inWorld() && !openObject()) {
         reporter.once("ri:noworld", Severity::Error, Rie::NotPrims, call.place,
@@ -102,7 +118,7 @@ void Interpreter::emit(scene::Primitive p, const Call& call) {
     }
     if (p.kind.empty()) p.kind = std::string(call.request->name); // a file or a shape that stands for others names their kind
     p.place = call.place;
-    p.attributes = snapshot();
+    p.attributes = solidPart(call);
     p.toWorld = state.ctm;
     if (holdsNothing(p)) {
         reporter.once("ri:nothing:" + p.kind, Severity::Warning, Rie::Consistency, call.place, p.kind + " is empty: there is nothing to draw");

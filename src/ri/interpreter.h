@@ -9,6 +9,7 @@
 #include "ri/reporter.h"
 #include "ri/requests/request.h"
 #include "ri/source.h"
+#include "scene/solids.h"
 #include <functional>
 #include <map>
 #include <set>
@@ -81,6 +82,7 @@ public:
     void end(BlockKind kind, const Call& call);
     void worldBegin(const Call& call);
     void objectBegin(const Call& call);
+    void beginSolid(scene::SolidOperation operation, const Call& call);
     void beginMotion(const Call& call);
     void endMotion(const Call& call);
 
@@ -227,6 +229,9 @@ private:
     std::vector<size_t> barriers_; ///< block depth at each open archive's start
     int archiveReads_ = 0;
     size_t objectCopies_ = 0, replayedCalls_ = 0;
+    uint32_t solidSerial_ = 0; ///< of solid blocks
+    void stepInto(scene::SolidOperation operation);
+    scene::AttributesRef solidPart(const Call& call);
     std::set<std::string> archivesRead_;
     std::shared_ptr<const Model> lastModel_;
     std::map<std::string, std::unique_ptr<Program>> programs_; ///< by command; null: it is not asked again

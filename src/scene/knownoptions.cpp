@@ -128,7 +128,9 @@ constexpr OptionDescription kOptions[] = {
 };
 
 constexpr OptionDescription kHiderParameters[] = {
-    {"aperture", "", "", "", Ignored, kPrman},
+    {"aperture", "float[4]", "[0 0 0 0]", "[6 15 0.2 0]", Used,
+     "The opening of the lens of DepthOfField: sides (0: a circle), degrees by which it is turned, roundness of the sides (0 to 1), and "
+     "whether light grows toward the rim (1) or the middle (-1)."},
     {"composite", "", "", "", Ignored, kDelight},
     {"depthfilter", "string", "\"min\"", "\"midpoint\"", Used,
      "hidden and raytrace: the depth of a pixel: min, max, average or midpoint."},

@@ -150,6 +150,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     for (const auto& shape : w->shapes_) visibility.push_back(visibilityOf(shape->attributes(), all));
     w->accel_ = std::make_unique<accel::Accel>(w->shapes_, visibility, d);
     if (!w->accel_->sound()) return nullptr;
+    w->accel_->makeSolids(d);
     std::vector<accel::Accel::Levels> levels(w->shapes_.size());
     for (size_t i = 0; i < levels.size(); ++i)
         if (const scene::Param* p = w->shapes_[i]->attributes().value(kLevelAttribute); p && p->numbers.size() == 2) {

@@ -199,3 +199,124 @@ TEST(Camera, NonsenseIsReportedAndReplaced) {
     EXPECT_EQ(e.errors(), 1);
     EXPECT_EQ(f.ray(1, 1, kMiddle, 0).direction, Vec3(0, 0, 1));
 }
+
+TEST(Camera, CirclesOfConfusion) {
+    // ri.md 6: in perspective the blur of a point at depth z has the diameter A |1/z - 1/D| k xres / (right - left) in the raster; in
+    // orthographic views A |z/D - 1| xres / (right - left).
+    Diagnostics d;
+    for (bool perspectively : {true, false})
+        for (double z : {2.0, 5.0, 8.0, 20.0, 100.0}) {
+            scene::Options o = perspective(40, 600, 400);
+            if (!perspectively) o.projection = "orthographic";
+            o.fstop = 4;
+            o.focalLength = 2; // diameter 0.5
+            o.focalDistance = 8;
+            Camera c(o, d);
+            // The raster positions that see a point through the rim of the lens: rays are linear in it.
+            const auto xAt = [&](double rx, Vec2 lens) {
+                auto r = c.ray(rx, 200, lens, 0);
+                Vec3d p = Vec3d(r.origin) + Vec3d(r.direction) * ((z - r.origin.z) / r.direction.z);
+                return p.x;
+            };
+            const auto seenFrom = [&](Vec2 lens) { // where x is 0.3
+                const double a = xAt(200, lens), b = xAt(400, lens);
+                return 200 + 200 * (0.3 - a) / (b - a);
+            };
+            const double blur = std::fabs(seenFrom({1, 0.5f}) - seenFrom({0, 0.5f}));
+            const double k = 1 / std::tan(20 * kPi / 180), screen = 600 / 3.0;
+            EXPECT_NEAR(blur, perspectively ? 0.5 * std::fabs(1 / z - 1 / 8.0) * k * screen : 0.5 * std::fabs(z / 8 - 1) * screen, 1e-3 * (1 + blur));
+        }
+}
+
+TEST(Camera, BladesOfTheAperture) {
+    const auto moments = [](const Aperture& a, double& x2, double& y2, double& most) {
+        const int n = 400;
+        x2 = y2 = most = 0;
+        double x = 0, y = 0;
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n; ++j) {
+                const Vec2 p = a.sample({(float(i) + 0.5f) / n, (float(j) + 0.5f) / n});
+                x += p.x, y += p.y;
+                x2 += double(p.x) * p.x, y2 += double(p.y) * p.y;
+                most = std::max(most, std::sqrt(double(p.x) * p.x + double(p.y) * p.y));
+            }
+        x2 /= n * n, y2 /= n * n;
+        EXPECT_NEAR(x / (n * n), 0, 2e-3);
+        EXPECT_NEAR(y / (n * n), 0, 2e-3);
+    };
+    double x2, y2, most;
+    // A regular polygon of n sides in the unit circle: mean of x^2 = (2 + cos(2 pi / n)) / 12.
+    for (int sides : {3, 4, 5, 6, 8}) {
+        moments(Aperture(sides, 17, 0, 0), x2, y2, most);
+        EXPECT_NEAR(x2, (2 + std::cos(2 * kPi / sides)) / 12, 2e-3) << sides;
+        EXPECT_NEAR(y2, (2 + std::cos(2 * kPi / sides)) / 12, 2e-3) << sides;
+        EXPECT_LE(most, 1 + 1e-6);
+        EXPECT_GT(most, 0.98);
+        // All inside of the sides.
+        const Aperture a(sides, 0, 0, 0);
+        for (int i = 0; i < 2000; ++i) {
+            const Vec2 p = a.sample({float(std::fmod(i * 0.618034, 1.0)), float(i) / 2000});
+            for (int k = 0; k < sides; ++k) {
+                const double middle = kPi * (2 * k + 1) / sides;
+                EXPECT_LE(p.x * std::cos(middle) + p.y * std::sin(middle), std::cos(kPi / sides) + 1e-5);
+            }
+        }
+    }
+    moments(Aperture(5, 0, 1, 0), x2, y2, most); // quite round
+    EXPECT_NEAR(x2, 0.25, 1e-3);
+    // Density: mean of r^2 with weight 1 - d + 2 d r over the disc: ((1 - d) / 4 + 2 d / 5) / ((1 - d) / 2 + 2 d / 3).
+    for (double density : {-1.0, -0.4, 0.5, 1.0}) {
+        moments(Aperture(0, 0, 0, density), x2, y2, most);
+        EXPECT_NEAR(x2 + y2, ((1 - density) / 4 + 2 * density / 5) / ((1 - density) / 2 + 2 * density / 3), 1e-3) << density;
+    }
+}
+
+TEST(Camera, ApertureIsAHiderParameter) {
+    Diagnostics d;
+    scene::Options o = perspective(40);
+    o.fstop = 1, o.focalLength = 2, o.focalDistance = 5; // radius 1
+    scene::Param p;
+    p.name = "aperture";
+    p.numbers = {4, 0, 0, 0};
+    o.hiderParams = {p};
+    double most = 0;
+    for (int i = 0; i < 1000; ++i) {
+        auto r = Camera(o, d).ray(320, 240, {float(i) / 1000, 0.9999f}, 0);
+        most = std::max(most, double(std::fabs(r.origin.x) + std::fabs(r.origin.y)));
+    }
+    EXPECT_NEAR(most, 1, 1e-3); // a square on its corner
+    EXPECT_EQ(d.errors(), 0);
+    o.hiderParams[0].numbers = {4, 0, 7, 0};
+    Camera bad(o, d);
+    EXPECT_EQ(d.errors(), 1);
+}
+
+TEST(Camera, StereoPairsMeetInTheFocalPlane) {
+    Diagnostics d;
+    scene::Options o = perspective(40, 600, 300);
+    o.projectionParams.resize(3);
+    o.projectionParams[0].name = "stereo";
+    o.projectionParams[0].strings = {"sidebyside"};
+    o.projectionParams[1].name = "eyeseparation";
+    o.projectionParams[1].numbers = {0.2f};
+    o.projectionParams[2].name = "focaldistance";
+    o.projectionParams[2].numbers = {4};
+    Camera c(o, d);
+    for (double x : {10.0, 150.0, 290.0}) {
+        auto l = c.ray(x, 100, kMiddle, 0), r = c.ray(x + 300, 100, kMiddle, 0);
+        EXPECT_FLOAT_EQ(l.origin.x, -0.1f);
+        EXPECT_FLOAT_EQ(r.origin.x, 0.1f);
+        Vec3 a = l.origin + l.direction * (4 / l.direction.z), b = r.origin + r.direction * (4 / r.direction.z);
+        EXPECT_NEAR(length(a - b), 0, 1e-5);
+        // Both see the whole picture of one eye between them.
+        o.projectionParams[0].strings[0] = "left";
+        Camera left(o, d);
+        auto whole = left.ray(2 * x, 100, kMiddle, 0);
+        EXPECT_NEAR(length(whole.direction - l.direction), 0, 1e-6);
+        o.projectionParams[0].strings[0] = "sidebyside";
+    }
+    EXPECT_EQ(d.errors(), 0);
+    o.projectionParams[0].strings[0] = "upside";
+    Camera bad(o, d);
+    EXPECT_EQ(d.errors(), 1);
+}

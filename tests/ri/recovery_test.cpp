@@ -1,6 +1,7 @@
 // Scopes, crossed and forgotten blocks, conditions, foreign code: what is mended and what is said.
 #include "base/limits.h"
 #include "collect.h"
+#include "scene/solids.h"
 
 using namespace alpenglow;
 using namespace alpenglow::ri;
@@ -77,13 +78,58 @@ TEST(Nesting, DepthIsBounded) {
     EXPECT_FALSE(read(objects)->ok);
 }
 
-TEST(Solids, AreDrawnAsTheirUnion) {
-    auto c = world("SolidBegin \"difference\" SolidBegin \"primitive\" Color 1 0 0 Sphere 1 -1 1 360 SolidEnd SolidBegin "
-                   "\"primitive\" Sphere 1 -1 1 360 SolidEnd SolidEnd");
-    EXPECT_EQ(c->only().code, Rie::Incapable);
-    EXPECT_EQ(c->frame().primitives.size(), 2u);
-    EXPECT_EQ(c->primitive(1).attributes->color, Color(1, 1, 1)); // a solid is an attribute block
+TEST(Solids, PartsKeepTheWayToThem) {
+    using Op = scene::SolidOperation;
+    auto c = world("SolidBegin \"difference\"\n SolidBegin \"primitive\" Color 1 0 0 Sphere 1 -1 1 360 AttributeBegin Disk 1 1 360 AttributeEnd SolidEnd\n"
+                   "SolidBegin \"union\" SolidBegin \"primitive\" Sphere 2 -1 1 360 SolidEnd SolidBegin \"primitive\" Sphere 3 -1 1 360 SolidEnd SolidEnd\n"
+                   "SolidBegin \"primitive\" Sphere 4 -1 1 360 SolidEnd SolidEnd\nSphere 5 -1 1 360");
+    EXPECT_EQ(c->count(), 0u) << c->messages();
+    ASSERT_EQ(c->frame().primitives.size(), 6u);
+    const auto path = [&](size_t i) { return scene::solidPath(*c->primitive(i).attributes); };
+    EXPECT_EQ(c->primitive(2).attributes->color, Color(1, 1, 1)); // a solid is an attribute block
+    ASSERT_EQ(path(0).size(), 2u);
+    EXPECT_EQ(path(0)[0].operation, Op::Difference);
+    EXPECT_EQ(path(0)[1].operation, Op::Part);
+    EXPECT_EQ(path(0)[1].child, 0);
+    EXPECT_EQ(path(1)[1].id, path(0)[1].id); // two surfaces of one part
+    for (size_t i : {2u, 3u}) {
+        ASSERT_EQ(path(i).size(), 3u);
+        EXPECT_EQ(path(i)[0].id, path(0)[0].id);
+        EXPECT_EQ(path(i)[1].operation, Op::Union);
+        EXPECT_EQ(path(i)[1].child, 1);
+        EXPECT_EQ(path(i)[2].child, int(i) - 2);
+        EXPECT_TRUE(scene::solidTakenAway(*c->primitive(i).attributes));
+    }
+    EXPECT_EQ(path(4)[1].child, 2);
+    EXPECT_FALSE(scene::solidTakenAway(*c->primitive(0).attributes));
+    EXPECT_TRUE(path(5).empty());
     EXPECT_EQ(world("SolidBegin \"xor\" SolidEnd")->only().code, Rie::BadSolid);
+}
+
+TEST(Solids, WhatStandsBesidePartsIsOne) {
+    auto c = world("SolidBegin \"intersection\" Sphere 1 -1 1 360 Sphere 2 -1 1 360 SolidBegin \"primitive\" Sphere 3 -1 1 360 SolidEnd SolidEnd");
+    EXPECT_EQ(c->only().code, Rie::BadSolid);
+    ASSERT_EQ(c->frame().primitives.size(), 3u);
+    for (int i = 0; i < 3; ++i) {
+        const auto path = scene::solidPath(*c->primitive(size_t(i)).attributes);
+        ASSERT_EQ(path.size(), 2u);
+        EXPECT_EQ(path[1].child, i);
+        EXPECT_EQ(path[1].operation, scene::SolidOperation::Part);
+    }
+    // A block inside a part belongs to it.
+    c = world("SolidBegin \"union\" SolidBegin \"primitive\" SolidBegin \"union\" Sphere 1 -1 1 360 SolidEnd SolidEnd SolidEnd");
+    EXPECT_EQ(c->only().code, Rie::BadSolid);
+    EXPECT_EQ(scene::solidPath(*c->primitive().attributes).size(), 2u);
+}
+
+TEST(Solids, InstancesKeepThePathOfTheirObject) {
+    auto c = world("ObjectBegin 1 SolidBegin \"difference\" SolidBegin \"primitive\" Sphere 1 -1 1 360 SolidEnd SolidBegin \"primitive\" Sphere .5 -1 1 360 "
+                   "SolidEnd SolidEnd ObjectEnd ObjectInstance 1 ObjectInstance 1");
+    EXPECT_EQ(c->count(), 0u) << c->messages();
+    for (const scene::PrimitiveRef& p : c->frame().objects[0].primitives) {
+        EXPECT_TRUE(p->attributesInside); // so that instances take what differs
+        EXPECT_EQ(scene::solidPath(*p->attributes).size(), 2u);
+    }
 }
 
 TEST(ForeignCode, IsNotRun) {

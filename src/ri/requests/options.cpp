@@ -37,16 +37,24 @@ void format(Interpreter& in, const Call& c) {
 void projection(Interpreter& in, const Call& c) {
     scene::ParamList params = in.bind(c, Use::Other);
     const std::string& name = c.text(0);
-    if (name != "perspective" && name != "orthographic" && name != "null" && !name.empty()) {
+    if (name != "perspective" && name != "orthographic" && name != "stereo" && name != "null" && !name.empty()) {
         in.reporter.error(Rie::Incapable, c.place, fmt::format("projection \"{}\" is not known: the one before stays", name),
-                          "perspective or orthographic");
+                          "perspective, stereo or orthographic");
         return;
     }
-    in.options.projection = name == "perspective" ? name : "orthographic";
+    const bool perspective = name == "perspective" || name == "stereo";
+    in.options.projection = perspective ? "perspective" : "orthographic";
     in.options.fov = 90;
-    if (const scene::Param* fov = scene::find(params, "fov"); fov && !fov->numbers.empty() && name == "perspective")
+    if (const scene::Param* fov = scene::find(params, "fov"); fov && !fov->numbers.empty() && perspective)
         if (within(in, c, fov->numbers[0] > 0 && fov->numbers[0] < 180, "the field of view must lie between 0 and 180 degrees"))
             in.options.fov = fov->numbers[0];
+    if (name == "stereo" && !scene::find(params, "stereo")) { // a pair by its name
+        scene::Param& p = params.emplace_back();
+        p.name = "stereo";
+        p.type = scene::Type::String;
+        p.strings = {"sidebyside"};
+        p.place = c.place;
+    }
     in.options.projectionParams = std::move(params);
 }
 
@@ -226,7 +234,7 @@ std::vector<Request> optionRequests() {
          "-1 1 -1 1", screenWindow},
         {"CropWindow", "number[4] window", k, kOptions, false, "xmin xmax ymin ymax of the part that is rendered, 0 to 1.",
          "[0 .5 .25 1]", cropWindow},
-        {"Projection", "string name; ..", k, kOptions, true, "\"perspective\" (\"fov\", degrees) or \"orthographic\".",
+        {"Projection", "string name; ..", k, kOptions, true, "\"perspective\" (\"fov\", degrees), \"stereo\" (also \"eyeseparation\", \"focaldistance\"; \"stereo\" sidebyside, topbottom, left, right) or \"orthographic\".",
          "\"perspective\" \"fov\" [30]", projection},
         {"Clipping", "number near; number far", k, kOptions, false,
          "Distances along z between which things are seen. Camera rays begin at near; rays see what lies behind far.", "0.1 1000",

@@ -1,5 +1,6 @@
 // Blocks, motion, conditions, version, declarations, error handling (ri.md 1.1, 10.3, 12).
 #include "ri/interpreter.h"
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace alpenglow::ri {
@@ -32,13 +33,12 @@ void frameBegin(Interpreter& in, const Call& c) {
 }
 
 void solidBegin(Interpreter& in, const Call& c) {
-    const std::string& op = c.text(0);
-    if (op != "primitive" && op != "union" && op != "intersection" && op != "difference")
-        in.reporter.error(Rie::BadSolid, c.place, fmt::format("SolidBegin: \"{}\" is not a solid operation", op),
+    static constexpr std::string_view kOperations[] = {"primitive", "union", "intersection", "difference"}; // as scene::SolidOperation
+    const auto op = std::find(std::begin(kOperations), std::end(kOperations), c.text(0));
+    if (op == std::end(kOperations))
+        in.reporter.error(Rie::BadSolid, c.place, fmt::format("SolidBegin: \"{}\" is not a solid operation; a union is made", c.text(0)),
                           "primitive, union, intersection or difference");
-    else if (op == "intersection" || op == "difference")
-        in.incapable(c, "solids are not computed: their primitives are all drawn, as a union");
-    in.begin(BlockKind::Solid, c);
+    in.beginSolid(op == std::end(kOperations) ? scene::SolidOperation::Union : scene::SolidOperation(op - std::begin(kOperations)), c);
 }
 
 void errorHandler(Interpreter& in, const Call& c) {
@@ -74,7 +74,7 @@ std::vector<Request> structureRequests() {
         {"TransformBegin", "", Kind::Structure, all, false, "Saves the current transformation.", "", beginBlock<B::Transform>},
         {"TransformEnd", "", Kind::Structure, all, false, "Restores what TransformBegin saved.", "", endBlock<B::Transform>},
         {"SolidBegin", "string operation", Kind::Structure, kWorld | kObject, false,
-         "Starts a solid: primitive, union, intersection or difference. Solids are drawn as unions.", "\"union\"", solidBegin},
+         "Starts a solid: primitive (a closed part), union, intersection or difference (the first less the others) of the solids in it.", "\"union\"", solidBegin},
         {"SolidEnd", "", Kind::Structure, all, false, "Ends a solid.", "", endBlock<B::Solid>},
         {"ObjectBegin", "handle object", Kind::Structure, all, false, "Stores the primitives up to ObjectEnd under a handle.",
          "1", [](Interpreter& in, const Call& c) { in.objectBegin(c); }},

@@ -11,8 +11,9 @@ using scene::Primitive;
 
 namespace {
 
-/// One change of one thing. Tags hold: per path its length, a face, parts of parts of it, and a vertex or edge (not for faces); strings in
-/// threes: "set", "add" or "subtract", a variable, and "value" or "sharpness"; floats per path in the order of the strings.
+/// One change of one thing. Tags hold: per path its length, a face, parts of parts of it, and a vertex or edge (not for faces);
+/// strings in threes: "set", "add" or "subtract", a variable, and "value" or "sharpness"; floats per path in the order of the
+/// strings.
 struct Edit {
     enum What { Value, VertexSharpness, EdgeSharpness, Hole } what = Value;
     enum How { Set, Add, Subtract } how = Set;
@@ -24,7 +25,8 @@ struct Edit {
 
 class EditReader {
 public:
-    EditReader(const Primitive& p, const std::vector<scene::Param>& values, Diagnostics& diag) : p_(p), values_(values), diag_(diag) {}
+    EditReader(const Primitive& p, const std::vector<scene::Param>& values, Diagnostics& diag)
+        : p_(p), values_(values), diag_(diag) {}
 
     void read(const SubdivisionTag& t, std::vector<Edit>& out) {
         const bool faces = t.name == "faceedit";
@@ -38,7 +40,8 @@ public:
             const int length = indexFrom(t.ints[at], t.ints.size() + 1);
             if (length < (faces ? 1 : 2) || at + 1 + size_t(length) > t.ints.size())
                 return say(t, "the length of a path does not fit the integers; the rest is ignored");
-            if (floats + stride > t.floats.size()) return say(t, "there are fewer numbers than its paths need; the rest is ignored");
+            if (floats + stride > t.floats.size())
+                return say(t, "there are fewer numbers than its paths need; the rest is ignored");
             size_t from = floats;
             for (size_t k = 0; k < ops.size(); ++k) {
                 Edit e = ops[k];
@@ -56,7 +59,8 @@ public:
         }
     }
     void say(const SubdivisionTag& t, const std::string& what) {
-        diag_.reportOnce("geometry:edit:" + t.name + what, {Severity::Warning, Rie::Consistency, p_.place, p_.kind + " tag \"" + t.name + "\": " + what, {}, {}});
+        diag_.reportOnce("geometry:edit:" + t.name + what,
+                         {Severity::Warning, Rie::Consistency, p_.place, p_.kind + " tag \"" + t.name + "\": " + what, {}, {}});
     }
 
 private:
@@ -70,7 +74,8 @@ private:
                 ++k;
                 continue;
             }
-            if (k + 3 > t.strings.size()) return say(t, "its strings are not in threes (how, variable, what); it is ignored"), false;
+            if (k + 3 > t.strings.size())
+                return say(t, "its strings are not in threes (how, variable, what); it is ignored"), false;
             const std::string &how = t.strings[k], &what = t.strings[k + 2];
             e.variable = t.strings[k + 1];
             if (how == "set") e.how = Edit::Set;
@@ -81,8 +86,11 @@ private:
             if (what == "sharpness" && t.name != "faceedit") {
                 e.what = t.name == "edgeedit" ? Edit::EdgeSharpness : Edit::VertexSharpness;
             } else if (what == "value" && t.name != "edgeedit") {
-                const auto v = std::find_if(values_.begin(), values_.end(), [&](const scene::Param& q) { return q.name == e.variable; });
-                if (v == values_.end()) return say(t, "there is no variable \"" + e.variable + "\" whose values could be edited; it is ignored"), false;
+                const auto v =
+                    std::find_if(values_.begin(), values_.end(), [&](const scene::Param& q) { return q.name == e.variable; });
+                if (v == values_.end())
+                    return say(t, "there is no variable \"" + e.variable + "\" whose values could be edited; it is ignored"),
+                           false;
                 width = size_t(scene::componentCount(v->type)) * size_t(std::max(1, v->arrayLength));
             } else {
                 return say(t, "\"" + what + "\" is not a thing that it edits; it is ignored"), false;
@@ -102,7 +110,8 @@ private:
 
 float changed(Edit::How how, float old, float by) { return how == Edit::Set ? by : how == Edit::Add ? old + by : old - by; }
 
-/// Makes an edit on a face of the cage of its level. False: it names a corner that the face does not have, or a value that it cannot.
+/// Makes an edit on a face of the cage of its level. False: it names a corner that the face does not have, or a value that it
+/// cannot.
 bool make(const Edit& e, int face, const std::vector<size_t>& first, RefinedCage& r) {
     const size_t f = size_t(face), n = size_t(r.corners[f]);
     if (e.what != Edit::Hole && e.corner < 0 && e.what != Edit::Value) return false;
@@ -182,7 +191,8 @@ RefinedCage firstLevel(const Primitive& p, const CageInput& in) {
         else if (byCorner) gather(in.cornerOf, r.vertex.size());
         else v.numbers.resize(size_t(in.cage.vertices) * width, 0); // points that no face uses
         r.values.push_back(std::move(v));
-        r.smooth.push_back(byCorner && in.cage.scheme != SubdivisionScheme::Bilinear && (q.cls == Class::FaceVertex || !in.faceVaryingLinear));
+        r.smooth.push_back(byCorner && in.cage.scheme != SubdivisionScheme::Bilinear &&
+                           (q.cls == Class::FaceVertex || !in.faceVaryingLinear));
     }
     return r;
 }
@@ -197,11 +207,13 @@ std::shared_ptr<Primitive> refinedPrimitive(const Primitive& p, RefinedCage&& r,
     scene::ParamList kept;
     for (scene::Param& q : out->params) {
         if (q.name == "intargs" || q.name == "floatargs" || q.name == "stringargs") continue;
-        const auto v = std::find_if(r.values.begin(), r.values.end(), [&](const scene::Param& x) { return x.name == q.name && x.cls == q.cls; });
+        const auto v = std::find_if(r.values.begin(), r.values.end(),
+                                    [&](const scene::Param& x) { return x.name == q.name && x.cls == q.cls; });
         if (v != r.values.end()) kept.push_back(std::move(*v));
         else if (q.cls == Class::Constant) kept.push_back(std::move(q));
         else if (q.type == scene::Type::String)
-            diag.report(Severity::Warning, Rie::Incapable, q.place, p.kind + " \"" + q.name + "\": strings that are not constant are lost where a mesh is edited");
+            diag.report(Severity::Warning, Rie::Incapable, q.place,
+                        p.kind + " \"" + q.name + "\": strings that are not constant are lost where a mesh is edited");
         else kept.push_back(std::move(q)); // reported where variables are checked
     }
     out->params = std::move(kept);
@@ -228,7 +240,9 @@ EditedCage applyEdits(const Primitive& p, const CageInput& in, Diagnostics& diag
     for (size_t i = 0; i < edits.size(); ++i) {
         const int f = edits[i].path[0];
         if (in.faceOf.empty()) at[i] = f < int(r.corners.size()) ? f : -1;
-        else if (const auto k = std::lower_bound(in.faceOf.begin(), in.faceOf.end(), uint32_t(f)); f >= 0 && k != in.faceOf.end() && *k == uint32_t(f)) at[i] = int(k - in.faceOf.begin());
+        else if (const auto k = std::lower_bound(in.faceOf.begin(), in.faceOf.end(), uint32_t(f));
+                 f >= 0 && k != in.faceOf.end() && *k == uint32_t(f))
+            at[i] = int(k - in.faceOf.begin());
         if (at[i] < 0) ++lost;
     }
     for (size_t level = 0;; ++level) {
@@ -249,9 +263,13 @@ EditedCage applyEdits(const Primitive& p, const CageInput& in, Diagnostics& diag
         }
     }
     if (lost)
-        diag.report(Severity::Warning, Rie::Range, p.place, p.kind + ": " + std::to_string(lost) + " edits name a face, vertex or edge that does not exist; they are left out");
+        diag.report(Severity::Warning, Rie::Range, p.place,
+                    p.kind + ": " + std::to_string(lost) +
+                        " edits name a face, vertex or edge that does not exist; they are left out");
     if (tooDeep)
-        diag.report(Severity::Warning, Rie::Limit, p.place, p.kind + ": " + std::to_string(tooDeep) + " edits are so deep that the mesh would have too many faces; they are left out");
+        diag.report(Severity::Warning, Rie::Limit, p.place,
+                    p.kind + ": " + std::to_string(tooDeep) +
+                        " edits are so deep that the mesh would have too many faces; they are left out");
     EditedCage out;
     out.in.faceVaryingLinear = in.faceVaryingLinear;
     for (size_t f = 0; f < r.corners.size(); ++f) out.domains.push_back({r.origin[f], r.along[f], r.across[f]});

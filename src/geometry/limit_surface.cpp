@@ -60,7 +60,9 @@ int levelFor(int points, size_t used) {
     return level;
 }
 
-std::span<const int> spanOf(const Osd::Far::ConstIndexArray& a) { return a.size() ? std::span<const int>(&a[0], size_t(a.size())) : std::span<const int>(); }
+std::span<const int> spanOf(const Osd::Far::ConstIndexArray& a) {
+    return a.size() ? std::span<const int>(&a[0], size_t(a.size())) : std::span<const int>();
+}
 
 } // namespace
 
@@ -131,7 +133,8 @@ LimitSurface::LimitSurface(const SubdivisionCage& c, const std::vector<Channel>&
         std::vector<Channel> own = channels;
         for (Channel& channel : own) {
             std::map<std::pair<int, int>, int> first;
-            for (size_t k = 0; k < channel.size(); ++k) channel[k] = first.try_emplace({apart.vertex[k], channel[k]}, int(k)).first->second;
+            for (size_t k = 0; k < channel.size(); ++k)
+                channel[k] = first.try_emplace({apart.vertex[k], channel[k]}, int(k)).first->second;
         }
         topology_->refiner = makeRefiner(apart.cage, own);
         original_ = std::move(apart.original);
@@ -220,8 +223,8 @@ LimitSurface::PieceOf LimitSurface::pieceOf(uint32_t piece) const {
     return {f, int(piece - firstPiece_[f])};
 }
 
-/// OpenSubdiv 3.5 gives the second derivatives of irregular triangles the wrong sign in those parts that lie the other way round (the
-/// middle one of four). Whether it did here: by a difference of first ones.
+/// OpenSubdiv 3.5 gives the second derivatives of irregular triangles the wrong sign in those parts that lie the other way round
+/// (the middle one of four). Whether it did here: by a difference of first ones.
 static bool turnedOver(const Surface& s, const double uv[2], const double* du, const double* duu, int n) {
     const double step = uv[0] > 1 / 3.0 ? -1e-6 : 1e-6, there[2] = {uv[0] + step, uv[1]};
     LimitWeights room;

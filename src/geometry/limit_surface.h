@@ -1,13 +1,13 @@
 // The limit surface of a subdivision cage, as weights of its control points.
 //
-// A face of the cage is one piece, or, where the scheme splits it (a face of catmull-clark without four corners), one piece a corner.
-// A piece has u and v of its own, both 0 to 1: quadrilaterals have their corners at (0,0) (1,0) (1,1) (0,1), by winding; triangles of
-// loop at (0,0) (1,0) (0,1), with u + v <= 1; the piece of a corner begins there, its u along the edge to the next corner and its v along
-// the edge from the previous one, and ends in the middle of the face.
+// A face of the cage is one piece, or, where the scheme splits it (a face of catmull-clark without four corners), one piece a
+// corner. A piece has u and v of its own, both 0 to 1: quadrilaterals have their corners at (0,0) (1,0) (1,1) (0,1), by winding;
+// triangles of loop at (0,0) (1,0) (0,1), with u + v <= 1; the piece of a corner begins there, its u along the edge to the next
+// corner and its v along the edge from the previous one, and ends in the middle of the face.
 //
-// Exact, that is the limit itself in double: faces that are regular, and others up to 2^-10 of a face from an extraordinary vertex.
-// Nearer, OpenSubdiv's Gregory patches stand for it: position and normal meet the limit at the vertex and at the patch's border; the
-// partials are finite there, where those of the limit by these u and v vanish or grow without bound.
+// Exact, that is the limit itself in double: faces that are regular, and others up to 2^-10 of a face from an extraordinary
+// vertex. Nearer, OpenSubdiv's Gregory patches stand for it: position and normal meet the limit at the vertex and at the patch's
+// border; the partials are finite there, where those of the limit by these u and v vanish or grow without bound.
 #pragma once
 #include "base/diagnostics.h"
 #include <array>
@@ -27,9 +27,14 @@ struct SubdivisionCage {
     SubdivisionScheme scheme = SubdivisionScheme::CatmullClark;
     enum class Boundary { None, EdgeAndCorner, EdgeOnly } boundary = Boundary::None;
     /// Rule of smooth face-varying values: what stays sharp where they end.
-    enum class FaceVarying { EdgeOnly, EdgeAndCorner, EdgeAndCornerPropagate, AlwaysSharp } faceVarying = FaceVarying::EdgeAndCorner;
-    bool chaikin = false;               ///< sharpness of a crease is averaged along it
-    bool smoothTriangles = false;       ///< triangles of catmull-clark have weights of their own
+    enum class FaceVarying {
+        EdgeOnly,
+        EdgeAndCorner,
+        EdgeAndCornerPropagate,
+        AlwaysSharp
+    } faceVarying = FaceVarying::EdgeAndCorner;
+    bool chaikin = false;         ///< sharpness of a crease is averaged along it
+    bool smoothTriangles = false; ///< triangles of catmull-clark have weights of their own
     int vertices = 0;
     std::span<const int> corners;       ///< per face: how many
     std::span<const int> vertex;        ///< per corner
@@ -37,7 +42,7 @@ struct SubdivisionCage {
     std::vector<float> creaseSharpness; ///< one a crease; 10 and more are infinite
     std::vector<int> cornerVertex;
     std::vector<float> cornerSharpness;
-    std::vector<int> holes;             ///< faces
+    std::vector<int> holes; ///< faces
 };
 
 /// Weights of control values at a point: values by (`index`), then their slopes by u, v, uu, uv, vv as far as asked for.
@@ -67,7 +72,10 @@ public:
     uint32_t pieces() const { return pieceCount_; }
     bool triangles() const { return scheme_ == SubdivisionScheme::Loop; }
     /// The face of a piece, and which of its corners (0 where a face is one piece).
-    struct PieceOf { uint32_t face = 0; int corner = 0; };
+    struct PieceOf {
+        uint32_t face = 0;
+        int corner = 0;
+    };
     PieceOf pieceOf(uint32_t piece) const;
     uint32_t firstPiece(uint32_t face) const { return firstPiece_.empty() ? face : firstPiece_[face]; }
     uint32_t piecesOf(uint32_t face) const { return firstPiece_.empty() ? 1 : firstPiece_[face + 1] - firstPiece_[face]; }
@@ -75,7 +83,9 @@ public:
     bool drawn(uint32_t face) const { return vertexData_.pattern[face] != kNothing; }
 
     /// Weights of the vertices. derivatives: 0 value, 1 and slopes by u and v, 2 and their slopes. Thread safe.
-    void weights(uint32_t piece, double u, double v, int derivatives, LimitWeights& out) const { evaluate(vertexData_, piece, u, v, derivatives, out); }
+    void weights(uint32_t piece, double u, double v, int derivatives, LimitWeights& out) const {
+        evaluate(vertexData_, piece, u, v, derivatives, out);
+    }
     /// The same of the values of a channel.
     void weights(int channel, uint32_t piece, double u, double v, int derivatives, LimitWeights& out) const {
         evaluate(channels_[size_t(channel)], piece, u, v, derivatives, out);

@@ -40,7 +40,10 @@ public:
     }
 
 private:
-    struct Side { int low, high, corner; bool forward; };
+    struct Side {
+        int low, high, corner;
+        bool forward;
+    };
 
     int end(int c) const { return in_.vertex[size_t(next_[size_t(c)])]; }
     int root(int c) {
@@ -57,7 +60,9 @@ private:
             const int a = in_.vertex[c], b = end(int(c));
             sides_.push_back({std::min(a, b), std::max(a, b), int(c), a < b});
         }
-        std::sort(sides_.begin(), sides_.end(), [](const Side& a, const Side& b) { return std::tie(a.low, a.high, a.corner) < std::tie(b.low, b.high, b.corner); });
+        std::sort(sides_.begin(), sides_.end(), [](const Side& a, const Side& b) {
+            return std::tie(a.low, a.high, a.corner) < std::tie(b.low, b.high, b.corner);
+        });
         for (size_t i = 0, j; i < n_; i = j) {
             for (j = i + 1; j < n_ && sides_[j].low == sides_[i].low && sides_[j].high == sides_[i].high;) ++j;
             if (j - i == 2 && sides_[i].forward != sides_[i + 1].forward) {
@@ -103,7 +108,7 @@ private:
     size_t n_;
     std::vector<int> next_, previous_, pair_, set_; ///< per corner; pair: the same side in the neighbour, or -1
     std::vector<Side> sides_;
-    std::vector<int> torn_;                         ///< sides of edges that cannot be paired
+    std::vector<int> torn_; ///< sides of edges that cannot be paired
 };
 
 } // namespace

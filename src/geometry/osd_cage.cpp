@@ -12,9 +12,12 @@ namespace {
 
 Osd::Sdc::SchemeType schemeOf(SubdivisionScheme s) {
     switch (s) {
-    case SubdivisionScheme::Loop: return Osd::Sdc::SCHEME_LOOP;
-    case SubdivisionScheme::Bilinear: return Osd::Sdc::SCHEME_BILINEAR;
-    default: return Osd::Sdc::SCHEME_CATMARK;
+    case SubdivisionScheme::Loop:
+        return Osd::Sdc::SCHEME_LOOP;
+    case SubdivisionScheme::Bilinear:
+        return Osd::Sdc::SCHEME_BILINEAR;
+    default:
+        return Osd::Sdc::SCHEME_CATMARK;
     }
 }
 
@@ -36,7 +39,8 @@ Osd::Sdc::Options optionsOf(const SubdivisionCage& c) {
 
 } // namespace
 
-std::unique_ptr<Osd::Far::TopologyRefiner> makeRefiner(const SubdivisionCage& c, const std::vector<LimitSurface::Channel>& channels) {
+std::unique_ptr<Osd::Far::TopologyRefiner> makeRefiner(const SubdivisionCage& c,
+                                                       const std::vector<LimitSurface::Channel>& channels) {
     static std::once_flag quiet;
     std::call_once(quiet, [] { // what it cannot take is reported by who calls
         Osd::Far::SetErrorCallback([](Osd::Far::ErrorType, const char*) {});

@@ -7,7 +7,8 @@
 namespace alpenglow::geometry {
 
 struct PieceGrid {
-    std::vector<Vec2> param;     ///< the border first, from corner 0 by winding: corner, points of the edge, corner ..; then the inside
+    std::vector<Vec2>
+        param; ///< the border first, from corner 0 by winding: corner, points of the edge, corner ..; then the inside
     int border = 0;
     std::vector<uint32_t> facet; ///< three a triangle, wound as the piece
 

@@ -30,17 +30,22 @@ Subdivision::Subdivision(ShapeSource s, CageInput&& in, std::vector<FaceDomain> 
         if (limit_->drawn(f)) drawn_ += limit_->piecesOf(f);
     if (limit_->flattened())
         diag.report(Severity::Warning, Rie::Limit, place(),
-                    kind() + ": " + std::to_string(limit_->flattened()) + " faces have more neighbours than their limit can be evaluated for; they are drawn flat");
+                    kind() + ": " + std::to_string(limit_->flattened()) +
+                        " faces have more neighbours than their limit can be evaluated for; they are drawn flat");
     if (limit_->blunted())
         diag.report(Severity::Warning, Rie::Incapable, place(),
                     kind() + ": faces share edges or vertices in more than one sheet; its creases and corners are left out");
     if (limit_->coarser())
-        diag.report(Severity::Info, Rie::Limit, place(), kind() + " has very many different neighbourhoods of faces; some are evaluated less exactly");
+        diag.report(Severity::Info, Rie::Limit, place(),
+                    kind() + " has very many different neighbourhoods of faces; some are evaluated less exactly");
     if (empty())
         diag.report(Severity::Warning, Rie::Range, place(), kind() + " has no face with a limit surface; it is not drawn",
-                    input_.cage.boundary == SubdivisionCage::Boundary::None ? "faces at a border need the tag \"interpolateboundary\"" : "");
+                    input_.cage.boundary == SubdivisionCage::Boundary::None
+                        ? "faces at a border need the tag \"interpolateboundary\""
+                        : "");
     for (int v = 0; v < input_.cage.vertices; ++v) {
-        const Vec3d q = transformPoint(toCamera(), Vec3d(objectP_[3 * size_t(v)], objectP_[3 * size_t(v) + 1], objectP_[3 * size_t(v) + 2]));
+        const Vec3d q =
+            transformPoint(toCamera(), Vec3d(objectP_[3 * size_t(v)], objectP_[3 * size_t(v) + 1], objectP_[3 * size_t(v) + 2]));
         pointScale_ = std::max(pointScale_, std::fabs(q.x) + std::fabs(q.y) + std::fabs(q.z));
     }
 }
@@ -51,7 +56,8 @@ void Subdivision::makeChannels(std::vector<LimitSurface::Channel>& out) {
         if (!smooth || !var.param || var.type == scene::Type::String || input_.cage.scheme == SubdivisionScheme::Bilinear) return;
         const size_t width = size_t(var.width());
         const float* data = var.param->numbers.data();
-        LimitSurface::Channel channel = weld(input_.cage.vertex, input_.cage.vertices, [&](size_t k) { return data + requestCorner(k) * width; }, width);
+        LimitSurface::Channel channel = weld(
+            input_.cage.vertex, input_.cage.vertices, [&](size_t k) { return data + requestCorner(k) * width; }, width);
         smooth_.push_back(var.param);
         out.push_back(std::move(channel));
     };
@@ -137,7 +143,8 @@ void Subdivision::evaluateLocal(uint32_t piece, double u, double v, SurfacePoint
         p.u = float(d.origin.x + u * d.along.x + v * d.across.x);
         p.v = float(d.origin.y + u * d.along.y + v * d.across.y);
         const double det = double(d.along.x) * d.across.y - double(d.along.y) * d.across.x;
-        const double a = d.across.y / det, b = -d.along.y / det, e = -d.across.x / det, f = d.along.x / det; // du'/du, dv'/du, du'/dv, dv'/dv
+        const double a = d.across.y / det, b = -d.along.y / det, e = -d.across.x / det,
+                     f = d.along.x / det; // du'/du, dv'/du, du'/dv, dv'/dv
         c.Pu = Pu * a + Pv * b;
         c.Pv = Pu * e + Pv * f;
         c.nu = nu * a + nv * b;
@@ -184,10 +191,13 @@ SurfacePoint Subdivision::evaluate(int face, double u, double v) const {
 
 size_t Subdivision::classCount(Class c) const {
     switch (c) {
-    case Class::Constant: return 1;
-    case Class::Uniform: return input_.requestFaces;
+    case Class::Constant:
+        return 1;
+    case Class::Uniform:
+        return input_.requestFaces;
     case Class::FaceVarying:
-    case Class::FaceVertex: return input_.requestCorners;
+    case Class::FaceVertex:
+        return input_.requestCorners;
     default: {
         // One a vertex that a face uses (ri.md 7.1).
         int most = -1;
@@ -215,7 +225,8 @@ int Subdivision::cornerWeights(uint32_t piece, double u, double v, std::vector<W
         add(2, 1, v, 0, 1);
         return n;
     }
-    const double f[4] = {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v}, fu[4] = {v - 1, 1 - v, v, -v}, fv[4] = {u - 1, -u, u, 1 - u};
+    const double f[4] = {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v}, fu[4] = {v - 1, 1 - v, v, -v},
+                 fv[4] = {u - 1, -u, u, 1 - u};
     if (limit_->piecesOf(at.face) == 1) {
         for (int k = 0; k < 4; ++k) add(k, 1, f[k], fu[k], fv[k]);
         return n;

@@ -48,7 +48,9 @@ private:
     void setNormal(uint32_t piece, double u, double v, LocalPoint&) const;
     int channelOf(const PrimVar&) const;
     int corners(uint32_t face) const { return input_.cage.corners[face]; }
-    size_t firstCorner(uint32_t face) const { return firstCorner_.empty() ? size_t(face) * size_t(evenCorners_) : firstCorner_[face]; }
+    size_t firstCorner(uint32_t face) const {
+        return firstCorner_.empty() ? size_t(face) * size_t(evenCorners_) : firstCorner_[face];
+    }
     int vertexAt(size_t corner) const { return input_.cage.vertex[corner]; }
     size_t requestCorner(size_t corner) const { return input_.cornerOf.empty() ? corner : input_.cornerOf[corner]; }
     /// Weights of the corners of a face, for values that are linear. Returns how many: all corners of the face.
@@ -58,7 +60,7 @@ private:
     CageInput input_;
     std::unique_ptr<LimitSurface> limit_;
     std::vector<FaceDomain> domains_;
-    std::vector<size_t> firstCorner_;         ///< per face; empty: all have evenCorners_
+    std::vector<size_t> firstCorner_; ///< per face; empty: all have evenCorners_
     int evenCorners_ = 0;
     const float* objectP_ = nullptr;          ///< the request's own
     std::vector<const scene::Param*> smooth_; ///< face-varying variables by channel

@@ -7,7 +7,9 @@ namespace alpenglow::geometry {
 
 using scene::Primitive;
 
-int indexFrom(float number, size_t count) { return number >= 0 && double(number) < double(count) && number < 2147483520.f ? int(number) : -1; }
+int indexFrom(float number, size_t count) {
+    return number >= 0 && double(number) < double(count) && number < 2147483520.f ? int(number) : -1;
+}
 
 bool subdivisionTags(const Primitive& p, Diagnostics& diag, std::vector<SubdivisionTag>& out) {
     const size_t count = p.strings.empty() ? 0 : p.strings.size() - 1, per = p.kind == "SubdivisionMesh" ? 2 : 3;
@@ -15,13 +17,15 @@ bool subdivisionTags(const Primitive& p, Diagnostics& diag, std::vector<Subdivis
     const scene::Param* floats = lastParam(p.params, "floatargs");
     const scene::Param* strings = lastParam(p.params, "stringargs");
     const auto fail = [&] {
-        diag.report(Severity::Error, Rie::Consistency, p.place, p.kind + ": the counts of the tags' arguments do not fit the arguments; the tags are ignored");
+        diag.report(Severity::Error, Rie::Consistency, p.place,
+                    p.kind + ": the counts of the tags' arguments do not fit the arguments; the tags are ignored");
         out.clear();
         return false;
     };
     if (p.ints3.size() < per * count) return fail();
     size_t used[3] = {0, 0, 0};
-    const size_t have[3] = {ints ? ints->numbers.size() : 0, floats ? floats->numbers.size() : 0, strings ? strings->strings.size() : 0};
+    const size_t have[3] = {ints ? ints->numbers.size() : 0, floats ? floats->numbers.size() : 0,
+                            strings ? strings->strings.size() : 0};
     for (size_t i = 0; i < count; ++i) {
         size_t n[3] = {0, 0, 0};
         for (size_t k = 0; k < per; ++k) {
@@ -44,7 +48,8 @@ namespace {
 
 class TagReader {
 public:
-    TagReader(const Primitive& p, size_t points, CageInput& in, Diagnostics& diag) : p_(p), points_(points), in_(in), diag_(diag) {}
+    TagReader(const Primitive& p, size_t points, CageInput& in, Diagnostics& diag)
+        : p_(p), points_(points), in_(in), diag_(diag) {}
 
     void read(const SubdivisionTag& t) {
         if (t.name == "crease") crease(t);
@@ -71,29 +76,38 @@ public:
 
 private:
     void say(const SubdivisionTag& t, const std::string& what) {
-        diag_.reportOnce("geometry:tag:" + t.name + what, {Severity::Warning, Rie::BadToken, p_.place, p_.kind + " tag \"" + t.name + "\": " + what, {}, {}});
+        diag_.reportOnce("geometry:tag:" + t.name + what,
+                         {Severity::Warning, Rie::BadToken, p_.place, p_.kind + " tag \"" + t.name + "\": " + what, {}, {}});
     }
     int vertex(float number) const { return indexFrom(number, points_); }
     static float sharp(float s) { return s > 0 ? std::min(s, 10.f) : 0; }
 
     void crease(const SubdivisionTag& t) {
         const size_t edges = t.ints.size() < 2 ? 0 : t.ints.size() - 1;
-        if (!edges || (t.floats.size() != 1 && t.floats.size() != edges)) return say(t, "needs two vertices or more, and one sharpness or one an edge; it is ignored");
+        if (!edges || (t.floats.size() != 1 && t.floats.size() != edges))
+            return say(t, "needs two vertices or more, and one sharpness or one an edge; it is ignored");
         bool bad = false;
         for (size_t k = 0; k < edges; ++k) {
             const int a = vertex(t.ints[k]), b = vertex(t.ints[k + 1]);
-            if (a < 0 || b < 0 || a == b) { bad = true; continue; }
+            if (a < 0 || b < 0 || a == b) {
+                bad = true;
+                continue;
+            }
             in_.cage.creaseEnds.insert(in_.cage.creaseEnds.end(), {a, b});
             in_.cage.creaseSharpness.push_back(sharp(t.floats[t.floats.size() == 1 ? 0 : k]));
         }
         if (bad) say(t, "names a vertex that does not exist; that edge is ignored");
     }
     void corner(const SubdivisionTag& t) {
-        if (t.ints.empty() || (t.floats.size() != 1 && t.floats.size() != t.ints.size())) return say(t, "needs vertices, and one sharpness or one a vertex; it is ignored");
+        if (t.ints.empty() || (t.floats.size() != 1 && t.floats.size() != t.ints.size()))
+            return say(t, "needs vertices, and one sharpness or one a vertex; it is ignored");
         bool bad = false;
         for (size_t k = 0; k < t.ints.size(); ++k) {
             const int a = vertex(t.ints[k]);
-            if (a < 0) { bad = true; continue; }
+            if (a < 0) {
+                bad = true;
+                continue;
+            }
             in_.cage.cornerVertex.push_back(a);
             in_.cage.cornerSharpness.push_back(sharp(t.floats[t.floats.size() == 1 ? 0 : k]));
         }
@@ -229,7 +243,8 @@ bool readCage(const Primitive& p, Diagnostics& diag, CageInput& in) {
         if (!std::isfinite(f)) return fail(Rie::Range, "\"P\" holds a number that is not finite");
     size_t corners = 0;
     for (int n : p.ints) {
-        if (n < 0 || size_t(n) > p.ints2.size() - corners) return fail(Rie::Consistency, "nverts and verts do not fit each other");
+        if (n < 0 || size_t(n) > p.ints2.size() - corners)
+            return fail(Rie::Consistency, "nverts and verts do not fit each other");
         corners += size_t(n);
     }
     if (points > size_t(INT32_MAX) || corners > size_t(INT32_MAX) / 2) return fail(Rie::Limit, "too many points");
@@ -245,10 +260,12 @@ bool readCage(const Primitive& p, Diagnostics& diag, CageInput& in) {
     const Sound sound = soundFaces(p, points);
     if (sound.beyond)
         diag.report(Severity::Error, Rie::Range, P->place,
-                    p.kind + ": " + std::to_string(sound.beyond) + " faces use points beyond the " + std::to_string(points) + " given; they are not drawn");
+                    p.kind + ": " + std::to_string(sound.beyond) + " faces use points beyond the " + std::to_string(points) +
+                        " given; they are not drawn");
     if (sound.thin)
         diag.report(Severity::Warning, Rie::Range, p.place,
-                    p.kind + ": " + std::to_string(sound.thin) + " faces have fewer than three corners or more than 4096; they are not drawn");
+                    p.kind + ": " + std::to_string(sound.thin) +
+                        " faces have fewer than three corners or more than 4096; they are not drawn");
     if (sound.twice)
         diag.report(Severity::Warning, Rie::Range, p.place,
                     p.kind + ": " + std::to_string(sound.twice) + " faces meet one of their points twice; they are not drawn");

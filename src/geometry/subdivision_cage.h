@@ -6,14 +6,15 @@
 
 namespace alpenglow::geometry {
 
-/// A cage with what it keeps of the request. Faces that cannot be subdivided are left out; what is left keeps its place among the values.
+/// A cage with what it keeps of the request. Faces that cannot be subdivided are left out; what is left keeps its place among the
+/// values.
 struct CageInput {
     SubdivisionCage cage;
-    std::vector<int> corners, vertex;  ///< what the cage looks at, where faces were left out; else the request's own lists
-    std::vector<uint32_t> faceOf;      ///< per face its place in the request; empty: the same
-    std::vector<uint32_t> cornerOf;    ///< per corner the same
+    std::vector<int> corners, vertex; ///< what the cage looks at, where faces were left out; else the request's own lists
+    std::vector<uint32_t> faceOf;     ///< per face its place in the request; empty: the same
+    std::vector<uint32_t> cornerOf;   ///< per corner the same
     size_t requestFaces = 0, requestCorners = 0;
-    bool faceVaryingLinear = true;     ///< facevarying variables; facevertex ones are always smooth
+    bool faceVaryingLinear = true; ///< facevarying variables; facevertex ones are always smooth
 };
 
 /// One tag of the request with its arguments.

@@ -1,5 +1,5 @@
-// Facets of subdivision surfaces. Every edge of the cage has one rate and its points are made once, so neighbours meet to the bit, whether
-// displaced or not.
+// Facets of subdivision surfaces. Every edge of the cage has one rate and its points are made once, so neighbours meet to the
+// bit, whether displaced or not.
 #include "base/limits.h"
 #include "geometry/dice.h"
 #include "geometry/piece_grid.h"
@@ -19,7 +19,10 @@ struct Subdivision::Dicing {
     bool displaced;
 
     /// A point of the mesh, shared by all pieces that meet there: where it is evaluated.
-    struct Point { uint32_t piece; float u, v; };
+    struct Point {
+        uint32_t piece;
+        float u, v;
+    };
     std::vector<std::array<float, 2>> need; ///< per piece: segments along u and v, before they are made whole
     std::vector<int> edgeRate, spokeRate;   ///< per edge of the cage; per piece of split faces: middle of its edge to the face's
     std::vector<uint8_t> even;              ///< per edge: it borders a split face, so its middle is a point
@@ -49,7 +52,8 @@ void Subdivision::Dicing::measure(const Subdivision& of, uint32_t piece) {
         double a = opt.camera.pixels(p.P, p.Pu) / edge, b = opt.camera.pixels(p.P, p.Pv) / edge;
         if (three) a = b = std::max({a, b, opt.camera.pixels(p.P, p.Pu - p.Pv) / edge});
         if (!displaced) {
-            double cu = std::sqrt(opt.camera.pixels(p.P, p.Puu) / (8 * tol)), cv = std::sqrt(opt.camera.pixels(p.P, p.Pvv) / (8 * tol));
+            double cu = std::sqrt(opt.camera.pixels(p.P, p.Puu) / (8 * tol)),
+                   cv = std::sqrt(opt.camera.pixels(p.P, p.Pvv) / (8 * tol));
             const double twist = std::sqrt(opt.camera.pixels(p.P, p.Puv) / (4 * tol));
             if (three) cu = cv = std::max({cu, cv, std::sqrt(opt.camera.pixels(p.P, p.Puu - p.Puv * 2 + p.Pvv) / (8 * tol))});
             a = std::min(a, 1.5 * std::max(cu, twist)); // 1.5: the probes miss the peak of what they sample
@@ -61,7 +65,8 @@ void Subdivision::Dicing::measure(const Subdivision& of, uint32_t piece) {
     if (three) {
         probe(1 / 3.0, 1 / 3.0);
         if (lu > 1)
-            for (const auto& q : {std::array{0.1, 0.1}, {0.8, 0.1}, {0.1, 0.8}, {0.45, 0.1}, {0.1, 0.45}, {0.45, 0.45}}) probe(q[0], q[1]);
+            for (const auto& q : {std::array{0.1, 0.1}, {0.8, 0.1}, {0.1, 0.8}, {0.45, 0.1}, {0.1, 0.45}, {0.45, 0.45}})
+                probe(q[0], q[1]);
     } else {
         probe(0.5, 0.5);
         if (std::max(lu, lv) > 1)
@@ -80,7 +85,10 @@ void Subdivision::Dicing::rates(double scale) {
     for (uint32_t f = 0; f < limit.faces(); ++f) {
         if (!limit.drawn(f)) continue;
         const uint32_t first = limit.firstPiece(f), n = uint32_t(limit.corners(f));
-        const auto raise = [&](uint32_t k, int rate) { int& r = edgeRate[edge(f, k % n)]; r = std::max(r, rate); };
+        const auto raise = [&](uint32_t k, int rate) {
+            int& r = edgeRate[edge(f, k % n)];
+            r = std::max(r, rate);
+        };
         if (!split(f)) {
             for (uint32_t k = 0; k < n; ++k) raise(k, whole(need[first][k & 1]));
             continue;
@@ -119,7 +127,8 @@ double Subdivision::Dicing::quads() const {
         if (!limit.drawn(limit.pieceOf(k).face)) continue;
         int r[4] = {1, 1, 1, 1};
         pieceRates(k, r);
-        sum += limit.triangles() ? 0.5 * std::max({r[0], r[1], r[2]}) * std::max({r[0], r[1], r[2]}) : double(std::max(r[0], r[2])) * std::max(r[1], r[3]);
+        sum += limit.triangles() ? 0.5 * std::max({r[0], r[1], r[2]}) * std::max({r[0], r[1], r[2]})
+                                 : double(std::max(r[0], r[2])) * std::max(r[1], r[3]);
     }
     return sum;
 }
@@ -129,7 +138,8 @@ void Subdivision::Dicing::sharedPoints() {
     cornerPoint.assign(size_t(s.input_.cage.vertices), kNone);
     edgePoint.assign(limit.edges(), kNone);
     if (!spokeRate.empty()) middlePoint.assign(limit.faces(), kNone), spokePoint.assign(limit.pieces(), kNone);
-    static constexpr float corner4[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}}, corner3[4][2] = {{0, 0}, {1, 0}, {0, 1}, {0, 0}};
+    static constexpr float corner4[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}},
+                           corner3[4][2] = {{0, 0}, {1, 0}, {0, 1}, {0, 0}};
     for (uint32_t f = 0; f < limit.faces(); ++f) {
         if (!limit.drawn(f)) continue;
         const uint32_t first = limit.firstPiece(f), n = uint32_t(limit.corners(f));
@@ -208,7 +218,9 @@ void Subdivision::dice(const DiceOptions& opt, Diagnostics& diag) {
         d.need[k] = {1, 1};
         d.measure(*this, k);
         for (const ShapeRef& key : opt.keys) // finely enough for every time of a moving one
-            if (const auto* other = dynamic_cast<const Subdivision*>(key.get()); other && other != this && other->limit_->pieces() == limit_->pieces()) d.measure(*other, k);
+            if (const auto* other = dynamic_cast<const Subdivision*>(key.get());
+                other && other != this && other->limit_->pieces() == limit_->pieces())
+                d.measure(*other, k);
     });
     double scale = 1;
     d.rates(scale);
@@ -216,7 +228,8 @@ void Subdivision::dice(const DiceOptions& opt, Diagnostics& diag) {
     while (d.quads() > most && scale > 1e-9) d.rates(scale *= 0.7);
     if (scale < 1)
         diag.report(Severity::Info, Rie::Limit, place(),
-                    kind() + " would need more than " + std::to_string(limits::kDiceQuads) + " micropolygons; it is diced more coarsely");
+                    kind() + " would need more than " + std::to_string(limits::kDiceQuads) +
+                        " micropolygons; it is diced more coarsely");
     d.sharedPoints();
     // The same rates come again and again.
     std::map<std::array<int, 4>, PieceGrid> grids;

@@ -1,5 +1,5 @@
-// Subdivision surfaces the slow way: the whole mesh is refined in double by the rules of Catmull and Clark, Loop, and DeRose et al.
-// (creases), and limits are read off at its vertices with the masks of Halstead et al. Shares no code with the renderer.
+// Subdivision surfaces the slow way: the whole mesh is refined in double by the rules of Catmull and Clark, Loop, and DeRose et
+// al. (creases), and limits are read off at its vertices with the masks of Halstead et al. Shares no code with the renderer.
 #pragma once
 #include "base/vec.h"
 #include <array>
@@ -11,18 +11,29 @@
 namespace alpenglow::geometry::test {
 
 struct SlowMesh {
-    struct Corner { int vertex; double u, v; };
-    struct Face { std::vector<Corner> c; int base, piece; };
+    struct Corner {
+        int vertex;
+        double u, v;
+    };
+    struct Face {
+        std::vector<Corner> c;
+        int base, piece;
+    };
     std::vector<Vec3d> P;
     std::vector<Face> faces;
-    std::map<std::pair<int, int>, double> sharp;   ///< edges by ascending vertices
+    std::map<std::pair<int, int>, double> sharp; ///< edges by ascending vertices
     std::map<int, double> corner;
     bool loop = false, boundaryCorners = true;
     int level = 0;
 
     static std::pair<int, int> key(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
-    struct Edge { std::vector<int> faces; int a, b; double s; int index; };
+    struct Edge {
+        std::vector<int> faces;
+        int a, b;
+        double s;
+        int index;
+    };
     struct Links {
         std::map<std::pair<int, int>, Edge> edges;
         std::vector<std::vector<int>> vertexFaces;
@@ -86,7 +97,8 @@ struct SlowMesh {
         if (creases.size() < 2) return smooth;
         const double t = std::min(least, 1.0);
         Vec3d hard = P[size_t(v)];
-        if (creases.size() == 2) hard = P[size_t(v)] * 0.75 + (P[size_t(other(creases[0], v))] + P[size_t(other(creases[1], v))]) * 0.125;
+        if (creases.size() == 2)
+            hard = P[size_t(v)] * 0.75 + (P[size_t(other(creases[0], v))] + P[size_t(other(creases[1], v))]) * 0.125;
         return hard * t + smooth * (1 - t);
     }
     Vec3d newEdge(const Edge& e) const {
@@ -100,7 +112,8 @@ struct SlowMesh {
                     if (c.vertex != e.a && c.vertex != e.b) far = far + P[size_t(c.vertex)];
             smooth = (P[size_t(e.a)] + P[size_t(e.b)]) * 0.375 + far * 0.125;
         } else {
-            smooth = (P[size_t(e.a)] + P[size_t(e.b)] + middle(faces[size_t(e.faces[0])]) + middle(faces[size_t(e.faces[1])])) * 0.25;
+            smooth =
+                (P[size_t(e.a)] + P[size_t(e.b)] + middle(faces[size_t(e.faces[0])]) + middle(faces[size_t(e.faces[1])])) * 0.25;
         }
         return half * e.s + smooth * (1 - e.s);
     }
@@ -137,13 +150,19 @@ struct SlowMesh {
                 for (size_t k = 0; k < 4; ++k) r.faces.push_back({{face.c[k], mid(k), m, mid(k + 3)}, face.base, face.piece});
             } else {
                 for (size_t k = 0; k < n; ++k)
-                    r.faces.push_back({{{face.c[k].vertex, 0, 0}, {mid(k).vertex, 1, 0}, {centre, 1, 1}, {mid(k + n - 1).vertex, 0, 1}}, face.base, int(k)});
+                    r.faces.push_back(
+                        {{{face.c[k].vertex, 0, 0}, {mid(k).vertex, 1, 0}, {centre, 1, 1}, {mid(k + n - 1).vertex, 0, 1}},
+                         face.base,
+                         int(k)});
             }
         }
         return r;
     }
 
-    struct Limit { Vec3d P, du, dv; bool slopes = false, known = true; };
+    struct Limit {
+        Vec3d P, du, dv;
+        bool slopes = false, known = true;
+    };
     /// At corner k of a face; slopes where the vertex is smooth and regular. Semi-sharp creases must have become smooth by now.
     Limit limit(const Links& l, int f, int k) const {
         const Face& face = faces[size_t(f)];
@@ -154,14 +173,24 @@ struct SlowMesh {
         for (auto e : es)
             if (l.edges.at(e).s > 0) sharpEnds.push_back(other(e, v));
         const bool single = boundaryCorners && l.vertexFaces[size_t(v)].size() == 1;
-        if (corner.count(v) || single || sharpEnds.size() > 2) { r.P = P[size_t(v)]; return r; }
-        if (sharpEnds.size() == 2) { r.P = (P[size_t(v)] * 4 + P[size_t(sharpEnds[0])] + P[size_t(sharpEnds[1])]) / 6; return r; }
-        if (sharpEnds.size() == 1) { r.known = false; return r; } // the end of a crease has a mask of its own
+        if (corner.count(v) || single || sharpEnds.size() > 2) {
+            r.P = P[size_t(v)];
+            return r;
+        }
+        if (sharpEnds.size() == 2) {
+            r.P = (P[size_t(v)] * 4 + P[size_t(sharpEnds[0])] + P[size_t(sharpEnds[1])]) / 6;
+            return r;
+        }
+        if (sharpEnds.size() == 1) {
+            r.known = false;
+            return r;
+        } // the end of a crease has a mask of its own
         const double m = double(es.size());
         Vec3d e(0.0), q(0.0);
         for (auto x : es) e = e + P[size_t(other(x, v))];
         if (loop) {
-            const double c = 3.0 / 8 + std::cos(2 * std::numbers::pi / m) / 4, beta = (5.0 / 8 - c * c) / m, w = 1 / (m + 3 / (8 * beta));
+            const double c = 3.0 / 8 + std::cos(2 * std::numbers::pi / m) / 4, beta = (5.0 / 8 - c * c) / m,
+                         w = 1 / (m + 3 / (8 * beta));
             r.P = P[size_t(v)] * (1 - m * w) + e * w;
             return r;
         }

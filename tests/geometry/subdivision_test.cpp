@@ -1,4 +1,5 @@
-// Subdivision surfaces against a slow evaluation that shares no code (subdivision_slow.h), closed forms, and what a file may hold.
+// Subdivision surfaces against a slow evaluation that shares no code (subdivision_slow.h), closed forms, and what a file may
+// hold.
 #include "accel/accel.h"
 #include "geometry/subdivision.h"
 #include "make.h"
@@ -16,7 +17,11 @@ struct Cage {
     std::string name, scheme = "catmull-clark";
     std::vector<float> P;
     std::vector<int> nverts, verts;
-    struct Tag { std::string name; std::vector<float> ints, floats; std::vector<std::string> strings; };
+    struct Tag {
+        std::string name;
+        std::vector<float> ints, floats;
+        std::vector<std::string> strings;
+    };
     std::vector<Tag> tags;
     scene::ParamList more;
 
@@ -26,7 +31,8 @@ struct Cage {
         p->strings = {scheme};
         p->ints = nverts;
         p->ints2 = verts;
-        scene::Param ints = param("intargs", scene::Class::Constant, scene::Type::Integer, {}), floats = param("floatargs", scene::Class::Constant, scene::Type::Float, {});
+        scene::Param ints = param("intargs", scene::Class::Constant, scene::Type::Integer, {}),
+                     floats = param("floatargs", scene::Class::Constant, scene::Type::Float, {});
         scene::Param strings = param("stringargs", scene::Class::Constant, scene::Type::String, {});
         for (const Tag& t : tags) {
             p->strings.push_back(t.name);
@@ -57,7 +63,8 @@ struct Cage {
         }
         for (const Tag& t : tags) {
             if (t.name == "crease")
-                for (size_t k = 0; k + 1 < t.ints.size(); ++k) m.sharp[SlowMesh::key(int(t.ints[k]), int(t.ints[k + 1]))] = t.floats[0] >= 10 ? 1000 : t.floats[0];
+                for (size_t k = 0; k + 1 < t.ints.size(); ++k)
+                    m.sharp[SlowMesh::key(int(t.ints[k]), int(t.ints[k + 1]))] = t.floats[0] >= 10 ? 1000 : t.floats[0];
             if (t.name == "corner")
                 for (float v : t.ints) m.corner[int(v)] = t.floats[0] >= 10 ? 1000 : t.floats[0];
             if (t.name == "interpolateboundary") m.boundaryCorners = t.ints.empty() || t.ints[0] == 1;
@@ -137,13 +144,27 @@ std::vector<Cage> cages() {
     tetra.nverts.assign(4, 3);
     tetra.verts = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
     const std::vector<float> top{4, 5, 6, 7, 4};
-    return {cube(), grid(3), edgeOnly, tetra, prism(5), prism(6), octahedron(), grid(2, true),
-            with(cube(), " creased", {{"crease", top, {10}, {}}}), with(cube(), " creased 2", {{"crease", top, {2}, {}}}),
-            with(cube(), " creased 1.5", {{"crease", top, {1.5f}, {}}}), with(cube(), " creased 3", {{"crease", top, {3}, {}}}),
-            with(cube(), " dart", {{"crease", {4, 5}, {10}, {}}}), with(cube(), " dart 2", {{"crease", {4, 5}, {2}, {}}}),
-            with(cube(), " corner", {{"corner", {6}, {10}, {}}}), with(cube(), " corner 2", {{"corner", {6}, {2}, {}}}),
+    return {cube(),
+            grid(3),
+            edgeOnly,
+            tetra,
+            prism(5),
+            prism(6),
+            octahedron(),
+            grid(2, true),
+            with(cube(), " creased", {{"crease", top, {10}, {}}}),
+            with(cube(), " creased 2", {{"crease", top, {2}, {}}}),
+            with(cube(), " creased 1.5", {{"crease", top, {1.5f}, {}}}),
+            with(cube(), " creased 3", {{"crease", top, {3}, {}}}),
+            with(cube(), " dart", {{"crease", {4, 5}, {10}, {}}}),
+            with(cube(), " dart 2", {{"crease", {4, 5}, {2}, {}}}),
+            with(cube(), " corner", {{"corner", {6}, {10}, {}}}),
+            with(cube(), " corner 2", {{"corner", {6}, {2}, {}}}),
             with(prism(5), " creased", {{"crease", {5, 6, 7, 8, 9, 5}, {10}, {}}, {"crease", {2, 7}, {3}, {}}}),
-            looped(octahedron()), looped(grid(3, true)), looped(tetra), looped(with(octahedron(), " creased", {{"crease", {0, 2, 1, 3, 0}, {10}, {}}})),
+            looped(octahedron()),
+            looped(grid(3, true)),
+            looped(tetra),
+            looped(with(octahedron(), " creased", {{"crease", {0, 2, 1, 3, 0}, {10}, {}}})),
             looped(with(octahedron(), " creased 2", {{"crease", {0, 2, 1, 3, 0}, {2}, {}}}))};
 }
 SurfacePoint at(const Shape& s, const SlowMesh::Face& f, const SlowMesh::Corner& c, bool split) {
@@ -196,7 +217,8 @@ TEST(Subdivision, PartialsAreTheSlopesOfThePositions) {
                         const SurfacePoint p = e(u, v), a = e(u + h, v), b = e(u - h, v), c = e(u, v + h), d = e(u, v - h);
                         const double scale = 1 + length(p.dPdu) + length(p.dPdv) + length(p.Puu) + length(p.Pvv);
                         const auto near = [&](const Vec3& x, const Vec3& hi, const Vec3& lo, double wide, const char* what) {
-                            EXPECT_LT(length(Vec3d(x) - (Vec3d(hi) - Vec3d(lo)) / (2 * h)), 1e-3 * scale * wide) << cage.name << " " << what << " " << f << " " << u << " " << v;
+                            EXPECT_LT(length(Vec3d(x) - (Vec3d(hi) - Vec3d(lo)) / (2 * h)), 1e-3 * scale * wide)
+                                << cage.name << " " << what << " " << f << " " << u << " " << v;
                         };
                         near(p.dPdu, a.P, b.P, 1, "dPdu");
                         near(p.dPdv, c.P, d.P, 1, "dPdv");
@@ -205,7 +227,8 @@ TEST(Subdivision, PartialsAreTheSlopesOfThePositions) {
                         near(p.Pvv, c.dPdv, d.dPdv, 20, "Pvv");
                         near(p.dNdu, a.N, b.N, 20, "dNdu");
                         near(p.dNdv, c.N, d.N, 20, "dNdv");
-                        EXPECT_LT(length(Vec3d(p.n) - normalize(cross(Vec3d(p.dPdu), Vec3d(p.dPdv))) * double(p.orientation)), 1e-5);
+                        EXPECT_LT(length(Vec3d(p.n) - normalize(cross(Vec3d(p.dPdu), Vec3d(p.dPdv))) * double(p.orientation)),
+                                  1e-5);
                     }
         }
 }
@@ -264,25 +287,28 @@ TEST(Subdivision, FacetsMeetToTheBitAndLieOnTheLimit) {
             double far = 0;
             for (uint32_t t = 0; t < m.triangles(); ++t) {
                 const SurfacePoint p = s->evaluateHit(t, 1 / 3.0, 1 / 3.0);
-                const Vec3d c = (Vec3d(m.P[m.index[3 * t]]) + Vec3d(m.P[m.index[3 * t + 1]]) + Vec3d(m.P[m.index[3 * t + 2]])) / 3.0;
+                const Vec3d c =
+                    (Vec3d(m.P[m.index[3 * t]]) + Vec3d(m.P[m.index[3 * t + 1]]) + Vec3d(m.P[m.index[3 * t + 2]])) / 3.0;
                 far = std::max(far, o.camera.pixels(c, Vec3d(p.n) * dot(Vec3d(p.n), Vec3d(p.P) - c)));
                 EXPECT_LE(length(Vec3d(p.P) - c), double(p.pError) * 1.001);
             }
-            // A tenth of a pixel: the aim is 1/20, and probes miss some of the peaks. Forms a few pixels wide have facets of a pixel, whose
-            // chord is up to 1/8 off.
+            // A tenth of a pixel: the aim is 1/20, and probes miss some of the peaks. Forms a few pixels wide have facets of a
+            // pixel, whose chord is up to 1/8 off.
             if (pixels > 1) EXPECT_LT(far, pixels > 10 ? 0.1 : 0.16) << cage.name << " at " << pixels;
         }
     }
 }
 
 TEST(Subdivision, DisplacedFacetsMeetToTheBit) {
-    for (const Cage& cage : {cube(), prism(5), octahedron(), looped(octahedron()), with(cube(), " creased", {{"crease", {4, 5, 6, 7, 4}, {10}, {}}})}) {
+    for (const Cage& cage : {cube(), prism(5), octahedron(), looped(octahedron()),
+                             with(cube(), " creased", {{"crease", {4, 5, 6, 7, 4}, {10}, {}}})}) {
         Diagnostics diag;
         DiceOptions o = camera(60);
         o.camera.perspective = true;
         o.displaces = [](const Shape&) { return true; };
         o.displace = [](const Shape&, DiceGrid& g) {
-            for (size_t i = 0; i < g.points.size(); ++i) g.P[i] = g.P[i] + g.points[i].n * (0.1f * (g.points[i].s + std::sin(9 * g.points[i].P.x)));
+            for (size_t i = 0; i < g.points.size(); ++i)
+                g.P[i] = g.P[i] + g.points[i].n * (0.1f * (g.points[i].s + std::sin(9 * g.points[i].P.x)));
         };
         ShapeRef s = build(cage.primitive(), translateMatrix(0, 0.3, 3), diag);
         s->dice(o, diag);
@@ -334,8 +360,11 @@ TEST(Subdivision, VariablesOfAllClasses) {
         for (size_t i = 0; i < points; ++i) x.push_back(cage.P[3 * i]);
         for (size_t f = 0; f < cage.nverts.size(); ++f) uniform.push_back(float(f));
         for (int v : cage.verts) corner.push_back(cage.P[3 * size_t(v)]);
-        cage.more = {param("smooth", Class::Vertex, Type::Float, x), param("linear", Class::Varying, Type::Float, x), param("one", Class::Constant, Type::Float, {5}),
-                     param("face", Class::Uniform, Type::Float, uniform), param("corner", Class::FaceVarying, Type::Float, corner),
+        cage.more = {param("smooth", Class::Vertex, Type::Float, x),
+                     param("linear", Class::Varying, Type::Float, x),
+                     param("one", Class::Constant, Type::Float, {5}),
+                     param("face", Class::Uniform, Type::Float, uniform),
+                     param("corner", Class::FaceVarying, Type::Float, corner),
                      param("cornersmooth", Class::FaceVertex, Type::Float, corner)};
         Diagnostics diag;
         ShapeRef s = build(cage.primitive(), Matrix(), diag);
@@ -349,7 +378,8 @@ TEST(Subdivision, VariablesOfAllClasses) {
                     EXPECT_NEAR(value(*s, "smooth", p, &du, &dv), p.P.x, 2e-6) << cage.name;
                     EXPECT_NEAR(du, p.dPdu.x, 1e-5);
                     EXPECT_NEAR(dv, p.dPdv.x, 1e-5);
-                    EXPECT_NEAR(value(*s, "cornersmooth", p, &du, &dv), p.P.x, 2e-6) << cage.name; // without a seam it is the same
+                    EXPECT_NEAR(value(*s, "cornersmooth", p, &du, &dv), p.P.x, 2e-6)
+                        << cage.name; // without a seam it is the same
                     EXPECT_NEAR(du, p.dPdu.x, 1e-5);
                     EXPECT_EQ(value(*s, "one", p), 5);
                     EXPECT_EQ(value(*s, "face", p), float(f));
@@ -365,7 +395,8 @@ TEST(Subdivision, VariablesOfAllClasses) {
                     else {
                         double all = 0;
                         for (int k = 0; k < n; ++k) all += c(k) / n;
-                        expect = (c(0) * (1 - u) + (c(0) + c(1)) / 2 * u) * (1 - v) + ((c(0) + c(-1)) / 2 * (1 - u) + all * u) * v;
+                        expect =
+                            (c(0) * (1 - u) + (c(0) + c(1)) / 2 * u) * (1 - v) + ((c(0) + c(-1)) / 2 * (1 - u) + all * u) * v;
                     }
                     EXPECT_NEAR(value(*s, "linear", p), expect, 1e-6) << cage.name;
                     EXPECT_NEAR(value(*s, "corner", p), expect, 1e-6) << cage.name;
@@ -374,7 +405,8 @@ TEST(Subdivision, VariablesOfAllClasses) {
 }
 
 TEST(Subdivision, FaceVaryingBordersFollowTheTag) {
-    // s runs over each face of a row of three by itself: seams everywhere. A value that is continuous is smooth, one with seams ends at them.
+    // s runs over each face of a row of three by itself: seams everywhere. A value that is continuous is smooth, one with seams
+    // ends at them.
     Cage c = grid(3);
     std::vector<float> seamless, seamed;
     for (size_t k = 0; k < c.verts.size(); ++k) {
@@ -382,7 +414,8 @@ TEST(Subdivision, FaceVaryingBordersFollowTheTag) {
         static constexpr float own[4] = {0, 1, 1, 0};
         seamed.push_back(own[k % 4]);
     }
-    c.more = {param("a", scene::Class::FaceVarying, scene::Type::Float, seamless), param("b", scene::Class::FaceVarying, scene::Type::Float, seamed)};
+    c.more = {param("a", scene::Class::FaceVarying, scene::Type::Float, seamless),
+              param("b", scene::Class::FaceVarying, scene::Type::Float, seamed)};
     for (int rule : {0, 1, 2, 3}) {
         Cage t = c;
         t.tags.push_back({"facevaryinginterpolateboundary", {float(rule)}, {}, {}});
@@ -393,7 +426,8 @@ TEST(Subdivision, FaceVaryingBordersFollowTheTag) {
         EXPECT_NEAR(value(*s, "a", p), rule == 0 ? 2.5 : 2.25 + 1 / 3.0, 1e-5) << rule;
         // A face of its own runs from 0 to 1 whatever the rule, along its middle.
         EXPECT_NEAR(value(*s, "b", p), 0.5, 1e-5) << rule;
-        // A column of faces is one island, which ends at face 1: a corner there, or (0 + 4 0 + 1) / 6 of a border that runs round.
+        // A column of faces is one island, which ends at face 1: a corner there, or (0 + 4 0 + 1) / 6 of a border that runs
+        // round.
         EXPECT_NEAR(value(*s, "b", s->evaluate(1, 0, 0)), rule == 2 ? 1 / 6.0 : 0, 1e-6) << rule;
     }
 }
@@ -423,8 +457,8 @@ TEST(Subdivision, HolesAndBorders) {
 }
 
 TEST(Displacement, FacesOfAPolygonMeshMeetToTheBit) {
-    // A cube whose faces have no normals but their own: each corner and edge moves to the middle of where its faces take it. Once with
-    // shared points, once with points of its own for every face.
+    // A cube whose faces have no normals but their own: each corner and edge moves to the middle of where its faces take it. Once
+    // with shared points, once with points of its own for every face.
     for (bool own : {false, true}) {
         Cage c = cube();
         if (own) {
@@ -441,7 +475,8 @@ TEST(Displacement, FacesOfAPolygonMeshMeetToTheBit) {
         DiceOptions o = camera(20);
         o.displaces = [](const Shape&) { return true; };
         o.displace = [](const Shape&, DiceGrid& g) {
-            for (size_t i = 0; i < g.points.size(); ++i) g.P[i] = g.P[i] + g.points[i].n * (0.2f * std::sin(5 * g.points[i].P.x + 3 * g.points[i].P.y));
+            for (size_t i = 0; i < g.points.size(); ++i)
+                g.P[i] = g.P[i] + g.points[i].n * (0.2f * std::sin(5 * g.points[i].P.x + 3 * g.points[i].P.y));
         };
         ShapeRef s = build(p, rotateMatrix(20, 1, 2, 3) * translateMatrix(0, 0.3, 3), diag);
         s->dice(o, diag);
@@ -468,14 +503,16 @@ TEST(Displacement, NoRayLeavesAClosedForm) {
     std::mt19937 random(3);
     const auto uniform = [&] { return double(random()) / 4294967296.0; };
     size_t rays = 0;
-    for (const Cage& cage : {cube(), prism(5), octahedron(), looped(octahedron()), with(cube(), " creased", {{"crease", {4, 5, 6, 7, 4}, {10}, {}}})})
+    for (const Cage& cage : {cube(), prism(5), octahedron(), looped(octahedron()),
+                             with(cube(), " creased", {{"crease", {4, 5, 6, 7, 4}, {10}, {}}})})
         for (int kind : {0, 1, 2}) { // as it is, displaced, the cage as displaced polygons
             Diagnostics diag;
             DiceOptions o = camera(25);
             o.camera.perspective = true;
             o.displaces = [&](const Shape&) { return kind > 0; };
             o.displace = [](const Shape&, DiceGrid& g) {
-                for (size_t i = 0; i < g.points.size(); ++i) g.P[i] = g.P[i] + g.points[i].n * (0.05f * std::sin(11 * g.points[i].P.x) + 0.02f * g.points[i].s);
+                for (size_t i = 0; i < g.points.size(); ++i)
+                    g.P[i] = g.P[i] + g.points[i].n * (0.05f * std::sin(11 * g.points[i].P.x) + 0.02f * g.points[i].s);
             };
             auto p = cage.primitive();
             if (kind == 2) {
@@ -492,7 +529,8 @@ TEST(Displacement, NoRayLeavesAClosedForm) {
                 accel::Ray r;
                 r.org = Vec3(centre + Vec3d(uniform() - 0.5, uniform() - 0.5, uniform() - 0.5) * 0.2);
                 // Half of them at a vertex of the mesh, where facets meet.
-                const Vec3d at = k % 2 ? Vec3d(s->mesh().P[random() % s->mesh().vertices]) : centre + Vec3d(uniform() - 0.5, uniform() - 0.5, uniform() - 0.5);
+                const Vec3d at = k % 2 ? Vec3d(s->mesh().P[random() % s->mesh().vertices])
+                                       : centre + Vec3d(uniform() - 0.5, uniform() - 0.5, uniform() - 0.5);
                 r.dir = Vec3(at - Vec3d(r.org));
                 r.sides = accel::Sides::Both;
                 lost += !tree.occluded(r);
@@ -502,21 +540,37 @@ TEST(Displacement, NoRayLeavesAClosedForm) {
     EXPECT_GE(rays, 1000000u);
 }
 
-// ---- what a file may hold ------------------------------------------------------------------------------------------------------
+// ---- what a file may hold
+// ------------------------------------------------------------------------------------------------------
 
 TEST(Subdivision, FaultyCagesAreReportedAndTheRestDrawn) {
-    struct Case { const char* name; std::function<void(scene::Primitive&)> spoil; bool drawn; };
+    struct Case {
+        const char* name;
+        std::function<void(scene::Primitive&)> spoil;
+        bool drawn;
+    };
     const Case cases[] = {
         {"no P", [](auto& p) { p.params.erase(p.params.begin()); }, false},
         {"NaN", [](auto& p) { p.params[0].numbers[4] = NAN; }, false},
         {"infinite", [](auto& p) { p.params[0].numbers[4] = INFINITY; }, false},
         {"count beyond", [](auto& p) { p.ints[2] = 2000000000; }, false},
         {"negative count", [](auto& p) { p.ints[2] = -4; }, false},
-        {"no faces", [](auto& p) { p.ints.clear(); p.ints2.clear(); }, false},
+        {"no faces",
+         [](auto& p) {
+             p.ints.clear();
+             p.ints2.clear();
+         },
+         false},
         {"index beyond", [](auto& p) { p.ints2[1] = 99; }, true},
         {"index negative", [](auto& p) { p.ints2[1] = -1; }, true},
         {"a vertex twice", [](auto& p) { p.ints2[1] = p.ints2[0]; }, true},
-        {"thin", [](auto& p) { p.ints[0] = 2; p.ints.push_back(2); std::rotate(p.ints2.begin() + 2, p.ints2.begin() + 4, p.ints2.end()); }, true},
+        {"thin",
+         [](auto& p) {
+             p.ints[0] = 2;
+             p.ints.push_back(2);
+             std::rotate(p.ints2.begin() + 2, p.ints2.begin() + 4, p.ints2.end());
+         },
+         true},
         {"loop of quadrilaterals", [](auto& p) { p.strings[0] = "loop"; }, true},
         {"scheme", [](auto& p) { p.strings[0] = "butterfly"; }, true},
     };
@@ -535,9 +589,11 @@ TEST(Subdivision, FaultyCagesAreReportedAndTheRestDrawn) {
 
 TEST(Subdivision, FaultyTagsAreReported) {
     const std::vector<Cage::Tag> faulty = {
-        {"crease", {4}, {10}, {}},       {"crease", {4, 5}, {}, {}},  {"crease", {4, 99}, {2}, {}},     {"crease", {4, 4}, {2}, {}}, {"crease", {4, 5, 6}, {1, 2, 3}, {}},
-        {"corner", {77}, {10}, {}},      {"corner", {}, {1}, {}},     {"corner", {1, 2, 3}, {1, 2}, {}}, {"hole", {6}, {}, {}},       {"hole", {-1}, {}, {}},
-        {"interpolateboundary", {7}, {}, {}}, {"facevaryinginterpolateboundary", {-1}, {}, {}}, {"smoothtriangles", {5}, {}, {}}, {"creasemethod", {4}, {}, {}}, {"cream", {}, {}, {}},
+        {"crease", {4}, {10}, {}},        {"crease", {4, 5}, {}, {}},           {"crease", {4, 99}, {2}, {}},
+        {"crease", {4, 4}, {2}, {}},      {"crease", {4, 5, 6}, {1, 2, 3}, {}}, {"corner", {77}, {10}, {}},
+        {"corner", {}, {1}, {}},          {"corner", {1, 2, 3}, {1, 2}, {}},    {"hole", {6}, {}, {}},
+        {"hole", {-1}, {}, {}},           {"interpolateboundary", {7}, {}, {}}, {"facevaryinginterpolateboundary", {-1}, {}, {}},
+        {"smoothtriangles", {5}, {}, {}}, {"creasemethod", {4}, {}, {}},        {"cream", {}, {}, {}},
         {"crease", {NAN, 1}, {1}, {}},
     };
     for (const Cage::Tag& t : faulty) {
@@ -572,7 +628,8 @@ TEST(Subdivision, AnyTopologyIsDrawnWithoutFault) {
             c.nverts.push_back(n);
             c.verts.insert(c.verts.end(), v.begin(), v.begin() + n);
         }
-        for (int k = 0; k < 4; ++k) c.tags.push_back({"crease", {float(number(points)), float(number(points))}, {float(number(120)) / 10}, {}});
+        for (int k = 0; k < 4; ++k)
+            c.tags.push_back({"crease", {float(number(points)), float(number(points))}, {float(number(120)) / 10}, {}});
         c.tags.push_back({"corner", {float(number(points))}, {float(number(120)) / 10}, {}});
         if (number(3)) c.tags.push_back({"interpolateboundary", {float(number(3))}, {}, {}});
         c.tags.push_back({"facevaryinginterpolateboundary", {float(number(4))}, {}, {}});
@@ -615,19 +672,24 @@ TEST(Subdivision, AFanOfManyFacesTakesLittle) {
     }
 }
 
-// ---- edits of the hierarchical form --------------------------------------------------------------------------------------------
+// ---- edits of the hierarchical form
+// --------------------------------------------------------------------------------------------
 
 TEST(HierarchicalSubdivision, WithoutEffectTheSurfaceIsTheSame) {
-    for (Cage cage : {cube(), prism(5), looped(octahedron()), with(cube(), " creased 1.5", {{"crease", {4, 5, 6, 7, 4}, {1.5f}, {}}})}) {
+    for (Cage cage :
+         {cube(), prism(5), looped(octahedron()), with(cube(), " creased 1.5", {{"crease", {4, 5, 6, 7, 4}, {1.5f}, {}}})}) {
         std::vector<float> x, corner;
         for (size_t i = 0; i < cage.P.size(); i += 3) x.push_back(cage.P[i]);
         for (int v : cage.verts) corner.push_back(x[size_t(v)]);
-        cage.more = {param("smooth", scene::Class::Vertex, scene::Type::Float, x), param("corner", scene::Class::FaceVarying, scene::Type::Float, corner),
-                     param("cornersmooth", scene::Class::FaceVertex, scene::Type::Float, corner), param("s", scene::Class::Varying, scene::Type::Float, x)};
+        cage.more = {param("smooth", scene::Class::Vertex, scene::Type::Float, x),
+                     param("corner", scene::Class::FaceVarying, scene::Type::Float, corner),
+                     param("cornersmooth", scene::Class::FaceVertex, scene::Type::Float, corner),
+                     param("s", scene::Class::Varying, scene::Type::Float, x)};
         Cage edited = cage;
         edited.tags.push_back({"vertexedit", {4, 1, 0, 2, 1}, {0, 0, 0}, {"add", "P", "value"}});
         Diagnostics diag;
-        ShapeRef a = build(cage.primitive(), skewed(), diag), b = build(edited.primitive("HierarchicalSubdivisionMesh"), skewed(), diag);
+        ShapeRef a = build(cage.primitive(), skewed(), diag),
+                 b = build(edited.primitive("HierarchicalSubdivisionMesh"), skewed(), diag);
         ASSERT_TRUE(a && b) << cage.name;
         EXPECT_EQ(diag.errors() + diag.warnings(), 0) << cage.name;
         EXPECT_GT(b->faces(), a->faces() * 15);
@@ -651,7 +713,8 @@ TEST(HierarchicalSubdivision, WithoutEffectTheSurfaceIsTheSame) {
                 }
             }
         }
-        EXPECT_NEAR(a->area(), b->area(), 6e-3 * a->area()); // of 4 points a direction and face, where there are corners and creases
+        EXPECT_NEAR(a->area(), b->area(),
+                    6e-3 * a->area()); // of 4 points a direction and face, where there are corners and creases
         double sum = 0;
         for (int i = 0; i < 64 * 64; ++i) sum += 1 / b->sampleDensity(b->sampleArea((i % 64 + 0.5) / 64, (i / 64 + 0.5) / 64));
         EXPECT_NEAR(sum / (64 * 64), b->area(), 1e-2 * b->area());
@@ -677,16 +740,19 @@ TEST(HierarchicalSubdivision, ValuesSharpnessAndHolesAreEdited) {
                 }
         return z;
     };
-    // Corner 2 of part 0 of the middle face is that face's middle, raised by 1: 16/36 of it is the limit there (16/36 v + 4/36 e + 1/36 f).
+    // Corner 2 of part 0 of the middle face is that face's middle, raised by 1: 16/36 of it is the limit there (16/36 v + 4/36 e
+    // + 1/36 f).
     const Cage::Tag raise{"vertexedit", {3, 4, 0, 2}, {0, 0, 1}, {"add", "P", "value"}};
     EXPECT_NEAR(height({raise}, 1.5, 1.5), 16 / 36.0, 1e-6);
     EXPECT_NEAR(height({{"vertexedit", {3, 4, 0, 2}, {1.5f, 1.5f, 1}, {"set", "P", "value"}}}, 1.5, 1.5), 16 / 36.0, 1e-6);
     // A sharp vertex is met.
-    EXPECT_NEAR(height({{"vertexedit", {3, 4, 0, 2}, {0, 0, 1, 10}, {"add", "P", "value", "set", "P", "sharpness"}}}, 1.5, 1.5), 1, 1e-6);
+    EXPECT_NEAR(height({{"vertexedit", {3, 4, 0, 2}, {0, 0, 1, 10}, {"add", "P", "value", "set", "P", "sharpness"}}}, 1.5, 1.5),
+                1, 1e-6);
     // A vertex of the cage itself.
     EXPECT_NEAR(height({{"vertexedit", {2, 4, 0}, {0, 0, 1}, {"add", "P", "value"}}}, 1, 1), 16 / 36.0, 1e-6);
     // A crease through the raised vertex along x: (1 + 4 + 1)/6 with neighbours 0.
-    EXPECT_NEAR(height({raise, {"edgeedit", {3, 4, 0, 2, 3, 4, 1, 3}, {10, 10}, {"set", "P", "sharpness"}}}, 1.5, 1.5), 4 / 6.0, 1e-6);
+    EXPECT_NEAR(height({raise, {"edgeedit", {3, 4, 0, 2, 3, 4, 1, 3}, {10, 10}, {"set", "P", "sharpness"}}}, 1.5, 1.5), 4 / 6.0,
+                1e-6);
     Cage holes = c;
     holes.tags.push_back({"faceedit", {2, 4, 1}, {}, {"hole"}});
     Diagnostics diag;
@@ -705,11 +771,16 @@ TEST(HierarchicalSubdivision, ValuesSharpnessAndHolesAreEdited) {
 
 TEST(HierarchicalSubdivision, FaultyEditsAreReported) {
     const std::vector<Cage::Tag> faulty = {
-        {"vertexedit", {2, 99, 0}, {0, 0, 1}, {"add", "P", "value"}},   {"vertexedit", {2, 0, 7}, {0, 0, 1}, {"add", "P", "value"}},
-        {"vertexedit", {9, 0, 1}, {0, 0, 1}, {"add", "P", "value"}},    {"vertexedit", {2, 0, 1}, {0, 1}, {"add", "P", "value"}},
-        {"vertexedit", {2, 0, 1}, {0, 0, 1}, {"add", "Q", "value"}},    {"vertexedit", {2, 0, 1}, {0, 0, 1}, {"mul", "P", "value"}},
-        {"edgeedit", {2, 0, 1}, {0, 0, 1}, {"add", "P", "value"}},      {"faceedit", {2, 0, 9}, {}, {"hole"}},
-        {"vertexedit", {NAN, 0, 1}, {0, 0, 1}, {"add", "P", "value"}},  {"faceedit", {1, 0}, {}, {}},
+        {"vertexedit", {2, 99, 0}, {0, 0, 1}, {"add", "P", "value"}},
+        {"vertexedit", {2, 0, 7}, {0, 0, 1}, {"add", "P", "value"}},
+        {"vertexedit", {9, 0, 1}, {0, 0, 1}, {"add", "P", "value"}},
+        {"vertexedit", {2, 0, 1}, {0, 1}, {"add", "P", "value"}},
+        {"vertexedit", {2, 0, 1}, {0, 0, 1}, {"add", "Q", "value"}},
+        {"vertexedit", {2, 0, 1}, {0, 0, 1}, {"mul", "P", "value"}},
+        {"edgeedit", {2, 0, 1}, {0, 0, 1}, {"add", "P", "value"}},
+        {"faceedit", {2, 0, 9}, {}, {"hole"}},
+        {"vertexedit", {NAN, 0, 1}, {0, 0, 1}, {"add", "P", "value"}},
+        {"faceedit", {1, 0}, {}, {}},
         {"vertexedit", {14, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1}, {0, 0, 1}, {"add", "P", "value"}},
     };
     for (const Cage::Tag& t : faulty) {

@@ -174,7 +174,8 @@ bool Answers::lightQuery(const KernelRun& c, int li, int point, const Vec3& at, 
         if (!(light.mean ? light.emitter->sampleSurface(at, u, choose, of.shutter, s, p.surface, light.pointNeeds)
                          : light.emitter->sample(at, u, choose, of.shutter, s, p.surface, light.pointNeeds)))
             return false;
-        if (world_->accel_->hasSolids() && !world_->accel_->keeps(world_->numberOfShape_.at(s.shape), p.surface.P, p.surface.n, p.time))
+        if (world_->accel_->hasSolids() &&
+            !world_->accel_->keeps(world_->numberOfShape_.at(s.shape), p.surface.P, p.surface.n, p.time))
             return false; // what a solid leaves of a lamp
         p.shape = s.shape;
         p.P = p.surface.P;

@@ -145,7 +145,8 @@ bool Gather::place(ShadePoint& p, Emitter::Sample& s, size_t point, const BoundL
         if (!(light.mean ? light.emitter->sampleSurface(p.Ps, u, choose, p.shutter, s, p.surface, light.pointNeeds)
                          : light.emitter->sample(p.Ps, u, choose, p.shutter, s, p.surface, light.pointNeeds)))
             return false;
-        if (world_.accel_->hasSolids() && !world_.accel_->keeps(world_.numberOfShape_.at(s.shape), p.surface.P, p.surface.n, p.time))
+        if (world_.accel_->hasSolids() &&
+            !world_.accel_->keeps(world_.numberOfShape_.at(s.shape), p.surface.P, p.surface.n, p.time))
             return false; // what a solid leaves of a lamp
         p.shape = s.shape;
         p.P = p.surface.P;

@@ -21,6 +21,7 @@ void KernelRun::forget() {
     draws.clear();
     lightChannels.clear();
     lightDistance.clear();
+    gathers.clear();
 }
 
 ServiceCall::ServiceCall(KernelRun& context, Diagnostics& said, int number, int firstPoint, uint64_t points, int width,

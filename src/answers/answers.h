@@ -72,6 +72,12 @@ public:
         return at->second;
     }
 
+    const texture::IrradianceTable& irradianceOf(texture::Handle map) { // without a lock from the second time on
+        const texture::IrradianceTable*& t = irradianceOf_[map];
+        if (!t) t = &world_->irradiance_.of(map, world_->textures_->latLong());
+        return *t;
+    }
+
 private:
     using LightsAsked = std::map<int, uint64_t>; ///< by light, the lanes that ask it
     Random random(const shading::PathRay& r) const { return Random(r.sample ? r.sample->numbers : noSample_); }
@@ -148,6 +154,7 @@ private:
     render::SeedKey seed_;
     render::SampleNumbers noSample_; ///< of points that no camera sample has found
     AnswerMemo memo_;
+    std::unordered_map<texture::Handle, const texture::IrradianceTable*> irradianceOf_;
     std::unordered_map<int32_t, texture::Handle> mapsByName_;                          ///< by interned name
     std::unordered_map<int32_t, std::optional<texture::TextureInfo>> infosByName_;
 };
@@ -158,11 +165,17 @@ void answerRay(const ServiceCall&);
 // maps.cpp: texture() and environment(); textureinfo().
 void answerTexture(Answers&, const ServiceCall&);
 void answerTextureInfo(Answers&, const ServiceCall&);
+// indirectdiffuse() of a map and a direction.
+void answerIrradiance(Answers&, const ServiceCall&);
 // messages.cpp: surface() and its kin, lightsource(), attribute(), shadername(), getvar() of the primitive.
 void answerMessage(Answers&, const ServiceCall&);
 void answerLightSource(Answers&, const ServiceCall&);
 void answerAttribute(Answers&, const ServiceCall&);
 void answerShaderName(Answers&, const ServiceCall&);
 void answerPrimitiveVariable(const ServiceCall&);
+/// A parameter or output of a shader of the primitive at a point that was hit; `run`: of that shader, with the point's number there, or null.
+std::optional<Told> toldAtHit(Answers&, const ShadePoint&, const InstanceRef& shader, int32_t name, const shading::Batch* run, int point);
+// gatherrows.cpp: a turn of a gather.
+void answerGatherTurn(const ServiceCall&);
 
 } // namespace alpenglow::transport

@@ -1,5 +1,6 @@
 // A kernel that runs over points, as far as what answers it is concerned.
 #pragma once
+#include "answers/gatherrows.h"
 #include "answers/lightloop.h"
 #include <deque>
 
@@ -29,6 +30,8 @@ struct KernelRun {
     std::vector<float>
         lightChannels; ///< by point, all AOVs: what lights gave by outputchannel(), and atmospheres; empty when none did
     std::vector<float> lightDistance;          ///< by lane: to the light sample; 1e38 for distant lights
+    /// By number of the statement and first point of a strip: what its gather loops hold now.
+    std::map<std::pair<int, int>, GatherRows> gathers;
     /// As new, in the memory that is there; of `points` and `batch` the caller decides.
     void forget();
 };

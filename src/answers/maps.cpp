@@ -100,4 +100,23 @@ void answerTextureInfo(Answers& answers, const ServiceCall& call) {
     });
 }
 
+void answerIrradiance(Answers& answers, const ServiceCall& call) {
+    const WorldImpl& world = answers.world();
+    const bool computed = call.d.strings.empty() || call.d.strings[0].empty();
+    const int row = computed ? 1 : 0;
+    std::string space;
+    if (const auto s = call.s.text.find("environmentspace"); s != call.s.text.end()) space = s->second;
+    Matrix toMap;
+    if (!space.empty()) world.matrix("current", space, toMap);
+    call.each([&](int lane, const ShadePoint&) {
+        const int32_t name = computed ? std::bit_cast<int32_t>(call.at(0, lane)) : call.s.nameId;
+        const texture::Handle map = answers.mapOfName(name, [&] { return call.place(); });
+        Vec3 n(call.at(row, lane), call.at(row + 1, lane), call.at(row + 2, lane));
+        if (!space.empty()) n = Vec3(transformVector(toMap, Vec3d(n)));
+        const float l = length(n);
+        const Color c = map && l > 0 && std::isfinite(l) ? answers.irradianceOf(map).about(n / l) : Color(0);
+        for (int k = 0; k < 3; ++k) call.put(k, lane, c[k]);
+    });
+}
+
 } // namespace alpenglow::transport

@@ -26,32 +26,44 @@ std::vector<OptionalParameter> rayParameters() {
             {kF, "maxhitdist", false, "1e38", "another name of maxdist"}};
 }
 
-/// Table 6.11.
-std::vector<OptionalParameter> hemisphereParameters() {
+/// Table 6.11. What only saves time elsewhere is ignored: every ray is traced, and nothing is interpolated.
+std::vector<OptionalParameter> hemisphereParameters(const char* falloff) {
+    constexpr const char* kExact = "accepted and ignored: the result is exact for its rays";
+    constexpr const char* kClouds = "of point clouds, which are not yet read; ignored";
     return {{kF, "coneangle", false, "PI/2", "half angle of the cone of directions, radians"},
-            {kV, "axis", false, "0", "only directions toward the axis"},
-            {kF, "samplebase", false, "0", "jitter of the ray's start over the footprint"},
-            {kF, "adaptive", false, "1", "adaptive sampling"},
-            {kF, "minsamples", false, "samples / 4", "lower bound of adaptive sampling"},
-            {kS, "distribution", false, "\"cosine\"", "uniform or cosine"},
-            {kF, "falloffmode", false, "0", "0 exponential, 1 polynomial"},
-            {kF, "falloff", false, "0", "strength of the falloff"},
-            {kF, "maxvariation", false, "0", "accepted and ignored"},
-            {kF, "maxerror", false, "0", "accepted and ignored"},
-            {kF, "maxpixeldist", false, "0", "accepted and ignored"},
-            {kF, "brightnesswarp", false, "0", "accepted and ignored"},
+            {kV, "axis", false, "0", "only directions toward the axis: a sky that is half a ball; none: all"},
+            {kF, "adaptive", false, "1", kExact},
+            {kS, "distribution", false, "\"cosine\"", "of the directions: uniform or cosine"},
+            {kF, "falloffmode", false, "0", falloff},
+            {kF, "falloff", false, "0", falloff},
+            {kF, "maxvariation", false, "0", kExact},
+            {kF, "maxerror", false, "0", kExact},
+            {kF, "maxpixeldist", false, "0", kExact},
+            {kF, "brightnesswarp", false, "0", kExact},
             {kS, "environmentmap", false, "\"\"", "light of directions that hit nothing"},
             {kS, "environmentspace", false, "\"current\"", "space of the map"},
-            {kC, "environmentcolor", true, "", "environment light of unoccluded rays"},
-            {kV, "environmentdir", true, "", "mean unoccluded direction"},
-            {kF, "occlusion", true, "", "occlusion, computed at the same time"},
-            {kF, "pointbased", false, "0", "1 uses point clouds"},
-            {kS, "filename", false, "\"\"", "point cloud"},
-            {{Base::String, -1}, "filenames", false, "{}", "point clouds"},
-            {kF, "maxsolidangle", false, "0.1", "opening criterion of clusters"},
-            {kF, "clamp", false, "1", "clamp to 1"},
-            {kF, "sortbleeding", false, "0", "bleeding in order of distance"},
-            {kS, "coordsystem", false, "\"world\"", "space of the point cloud"}};
+            {kC, "environmentcolor", true, "", "the map's part: mean over the directions, 0 where they are blocked"},
+            {kV, "environmentdir", true, "", "mean unoccluded direction, length 1; 0 where all is blocked"},
+            {kF, "occlusion", true, "", "occlusion by the same rays"},
+            {kF, "pointbased", false, "0", "1 uses point clouds, which are not yet read: rays are traced instead"},
+            {kS, "filename", false, "\"\"", kClouds},
+            {{Base::String, -1}, "filenames", false, "{}", kClouds},
+            {kF, "maxsolidangle", false, "0.1", kClouds},
+            {kF, "clamp", false, "1", kClouds},
+            {kF, "sortbleeding", false, "0", kClouds},
+            {kS, "coordsystem", false, "\"world\"", kClouds}};
+}
+
+/// Those that occlusion() and indirectdiffuse() have of table 6.10: "samples" and "samplecone" are other names there.
+std::vector<OptionalParameter> commonOfHemispheres() {
+    std::vector<OptionalParameter> all = rayParameters();
+    for (OptionalParameter& p : all) {
+        if (p.name == "samples") p.defaultText = "attribute irradiance:nsamples", p.doc = "number of rays, 4096 at most; the argument comes first";
+        if (p.name == "samplecone") p.defaultText = "coneangle", p.doc = "another name of coneangle";
+        if (p.name == "minsamples") p.doc = "accepted and ignored: the result is exact for its rays";
+        if (p.name == "samplebase") p.doc = "part of the footprint over which rays start";
+    }
+    return all;
 }
 
 std::vector<OptionalParameter> subsurfaceParameters() {
@@ -130,18 +142,29 @@ std::vector<Shadeop> raytracingShadeops() {
     Shadeop& occlusion = add("occlusion", sigs({{"float occlusion(point p; vector r; pairs)"}, {"float occlusion(point p; vector r; float samples; pairs)"},
                                   {"float occlusion(string map; point p; vector r; float samples; pairs)"},
                                   {"color occlusion(point p; vector r; float angle; output vector bent; pairs)"}}),
-                             Lowering::Unavailable,
-                             "Part of the hemisphere about r that is blocked. The form with a half angle and a variable for the mean free direction is AIR's.");
-    list.back().examples = {{"occlusion(P, N, 16)", "0"}};
-    occlusion.optional = occlusion.optional + hemisphereParameters();
+                             Lowering::Request,
+                             "Part of the hemisphere about r, or of a cone, that is blocked by what is visible to transmission: 0 open, 1 closed, "
+                             "weighted by the cosine to r. What is translucent counts by its opacity, and shaders run only where that must be known. "
+                             "No samples, or 0: attribute irradiance:nsamples. The form with a half angle and a variable for the mean free "
+                             "direction is AIR's; that with a map traces rays.");
+    list.back().examples = {{"occlusion(P, N, 16)", "0", "", kNothing}};
+    occlusion.optional = commonOfHemispheres() + hemisphereParameters("a hit at distance d blocks by: mode 0 exp(-falloff d), mode 1 (1 - d / maxdist)^falloff");
+    for (OptionalParameter& p : occlusion.optional)
+        if (p.name == "type" || p.name == "raytype") p.defaultText = "\"transmission\"";
     Shadeop& indirect = add("indirectdiffuse",
                             sigs({{"color indirectdiffuse(point p; vector r; pairs)"},
                                   {"color indirectdiffuse(point p; vector r; float samples; pairs)"},
                                   {"color indirectdiffuse(string map; point p; vector r; float samples; pairs)"},
                                   {"color indirectdiffuse(string envmap; vector dir)"}}),
-                            Lowering::Unavailable, "Diffuse light that arrives by way of other surfaces, or from an environment map.");
-    list.back().examples = {{"indirectdiffuse(P, N, 16)", "0 0 0"}};
-    indirect.optional = indirect.optional + hemisphereParameters();
+                            Lowering::Request,
+                            "Light that arrives from the hemisphere about r by way of surfaces visible to diffuse rays, and of an environment map where "
+                            "they meet nothing: irradiance / PI, which is 1 where everything shows 1. The same as trace() with distribution "
+                            "\"cosine\" and samplecone PI/2. The form with a map and a direction alone is the same of the map, with nothing before it, "
+                            "integrated without noise; its directions are those of environment(). No samples, or 0: attribute irradiance:nsamples.");
+    list.back().examples = {{"indirectdiffuse(P, N, 16)", "1 1 1", "", kWhite}, {"indirectdiffuse(\"sky.env\", N)", "0.5 0.7 1", "", "the map has this colour everywhere"}};
+    indirect.optional = commonOfHemispheres() + hemisphereParameters("of occlusion(); ignored");
+    for (OptionalParameter& p : indirect.optional)
+        if (p.name == "type" || p.name == "raytype") p.defaultText = "\"diffuse\"";
     Shadeop& subsurface = add("subsurface", sigs({{"color subsurface(point p; pairs)"},
                                                   {"color subsurface(point p; normal n; pairs)"},
                                                   {"color subsurface(string type; point p; normal n; pairs)"}}),
@@ -165,9 +188,23 @@ std::vector<Shadeop> raytracingShadeops() {
     caustic.bias = Bias::Biased;
     caustic.biasReason = "density estimate over a disc";
     caustic.optional.clear();
-    add("gather", sigs({{"float gather(string category; point p; vector dir; float angle, float samples; pairs)"}}), Lowering::Unavailable,
-        "A statement of the language: its body runs for every ray that hits, its else for every miss.");
-    list.back().examples = {{"misses", "1", "float misses = 0; gather(\"illuminance\", P, N, 0.5, 4) { } else misses += 1;"}};
+    Shadeop& gather = add("gather", sigs({{"float gather(string category; point p; vector dir; float angle, float samples; pairs)"}}), Lowering::Request,
+        "A statement of the language: gather(category, P, dir, angle, samples, pairs) body else other. Its body runs for each ray that hits "
+        "something, what stands behind else for each that misses. Rays are spread over the cone of half angle `angle` about dir, each "
+        "standing for the same part of it; 4096 at most. Categories: \"illuminance\" and \"\" cast rays; \"samplepattern\" casts none, and all "
+        "count as misses; \"environment:MAP\" draws directions in proportion to the light of a map, from all around, and all count as hits. "
+        "Pairs with a prefix name variables that the turn fills; what is not there leaves them as they were: surface:x displacement:x volume:x "
+        "(outputs and parameters of shaders at the hit; surface:Ci is what trace() would bring, surface:Oi its opacity), primitive:x (variables "
+        "of the primitive), attribute:x, ray:origin ray:direction ray:length (of misses too; 1e38), environment:color environment:direction "
+        "environment:solidangle (that of one sample: the sum of color times solidangle is the integral of the map). Shaders run at a hit only "
+        "where a pair asks for what they give.");
+    gather.examples = {{"misses", "4", "float misses = 0; gather(\"illuminance\", P, N, 0.5, 4) { } else misses += 1;", kNothing}};
+    std::erase_if(gather.optional, [](const OptionalParameter& p) {
+        return p.name == "samplecone" || p.name == "samples" || p.name == "weight" || p.name == "minsamples";
+    });
+    gather.optional = gather.optional +
+                      std::vector<OptionalParameter>{{kS, "distribution", false, "\"uniform\"", "of the rays in the cone: uniform or cosine"},
+                                                     {kC, "othreshold", false, "0", "surfaces are passed until their opacity adds up to this"}};
     return list;
 }
 

@@ -114,9 +114,11 @@ void Engine::forget() {
     lobeRows_.clear();
     shadows.clear();
     traceSums_.clear();
+    gathered_.clear();
     litValues_.clear();
     waiting_.clear();
     moreLight_.clear();
+    hemispheres_.clear();
     hitQueues_.clear();
     groupsWithHits_.clear();
     hitsWaiting_ = 0;

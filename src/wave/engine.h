@@ -39,6 +39,7 @@ public:
     /// flight.cpp
     void divert(Flight&, PathRay next, Sched&);
     Counters counters;
+    uint64_t& raysOf(RayType); ///< the counter of such rays
 
     // faults.cpp
     /// A value on the way of a ray is not a finite number: the whole camera sample is left out. `what` made it, at `place`: said
@@ -58,9 +59,28 @@ public:
     void addLightPairs(BatchContext&, std::vector<ShadePoint>& queries, std::span<LightValue>);
     /// What a transmission() or trace() of a light's kernel gives at a point that it lights, followed to the end at once.
     shading::TargetValue rayOfLight(BatchContext&, const SiteInfo&, int point, const std::function<float(int)>& row,
-                                    uint32_t occurrence);
+                                    uint32_t occurrence, TraceSums* sums = nullptr);
     void shadowLight(const KernelRun&, const BoundLight&, int first, std::span<const ShadePoint>, std::span<const int> laneOf,
                      std::span<LightValue>) override;
+    // hemisphere.cpp
+    /// The rays of an occlusion() at p, for `out`: together they bring `weight` where nothing is met.
+    void hemisphereRays(const BatchContext&, const SiteInfo&, const ShadePoint& p, const Vec3& at, const geometry::SurfacePoint*,
+                        const std::function<float(int)>& row, const Color& weight, TargetId, uint32_t site, uint32_t occurrence,
+                        std::vector<ShadowRay>& out);
+    /// What one of them brings of which so much came through, 0 to 1; what it tells besides goes to `sums`, which may be null.
+    Color openLight(const ShadowRay&, const Color& transmitted, TraceSums* sums) const;
+    /// How many samples a call sends, whose shader says `asked`: Attribute "irradiance" "nsamples" of the shape where that is
+    /// nothing, 4096 at most. Beyond it is said once.
+    int samplesOf(float asked, const geometry::Shape*, const SiteInfo&, const BatchContext&);
+    std::vector<HemisphereRays> hemispheres_; ///< of `shadows`
+    /// What the attributes of a shape say: samples, and the bias, < 0 where there is none.
+    struct OfShape { int samples; float bias; };
+    const OfShape& ofShape(const geometry::Shape*);
+    std::unordered_map<const scene::Attributes*, OfShape> ofShapes_;
+    // gatherloop.cpp
+    /// What the shaders at a hit give to the gather whose ray met it; `point` of a batch that has run.
+    void tellGather(const BatchContext&, int point, struct GatherSent&);
+    std::unordered_map<TargetId, GatherSent*> gathered_; ///< rays of gathers that ask shaders, by target
     // shadowrays.cpp
     /// What is left of light along each ray. `ray`: for the random numbers and footprint of shaders on the way; may be null.
     void transmittances(std::span<const ShadowRay>, std::span<Color> out);
@@ -72,7 +92,7 @@ public:
                           std::vector<ShadowRay>& out);
     /// Oi at hits of one binding.
     void opacities(std::span<const OpacityQuery>, std::span<Color> out);
-    void takeOpacities(std::span<const OpacityQuery> met, const std::function<size_t(size_t)>& rayOf, std::span<Color> out);
+    void takeOpacities(std::span<const OpacityQuery> met, const std::function<void(size_t, const Color&)>& take);
     /// Whether surfaces that block all light are looked for first and by themselves, the others only where a ray may meet them.
     bool meetsOpaqueAlone(const ShadowRay&) const;
     void blockedByOpaque(std::span<const ShadowRay>, std::span<Color> out);
@@ -121,7 +141,7 @@ public:
     std::vector<std::shared_ptr<BatchContext>> asides(const BatchContext&, Sched&);
     /// A lobe of a batch, and the pair that it came from.
     struct AskedLobe { int lobe, record, lane; };
-    void requestPairs(BatchContext&, std::span<const Color> slope, std::vector<AskedLobe>* asked); // shadegroup.cpp
+    void requestPairs(BatchContext&, std::span<const Color> slope, std::vector<AskedLobe>* asked, Sched&); // shadegroup.cpp
     /// A pair of an output that shares no lobe of Ci, or not in all components.
     struct AskedAside { BatchContext* run; int record, lane; Color weight; };
     /// Gives the lobes of a batch their shares; what is left is returned. The asides have run.
@@ -264,7 +284,6 @@ private:
     Rules rules_;
     Answers answers_;
     std::vector<Color> transmitted_;
-    uint64_t& raysOf(RayType); ///< the counter of such rays
     /// Points of a waiting kernel that may be shaded now, so that its frames stay within a quarter of the limit; at least one
     /// strip. `other`: the same shader for points of several surfaces, or null; which of the two runs is not known yet.
     int roomFor(const rsl::CompiledKernel&, const rsl::CompiledKernel* other, const Sched&) const;

@@ -1,11 +1,12 @@
 // Lights: their kernels run in batches for the points they light.
 #include "wave/strips.h"
+#include "wave/gatherloop.h"
 #include "lobes/sampling.h"
 
 namespace alpenglow::transport {
 
 shading::TargetValue Engine::rayOfLight(BatchContext& c, const SiteInfo& s, int point, const std::function<float(int)>& row,
-                                        uint32_t occurrence) {
+                                        uint32_t occurrence, TraceSums* sums) {
     const ShadePoint& p = c.points[size_t(point)];
     shading::TargetValue value;
     const uint32_t site = uint32_t(s.site - c.bound->kernel->sites().data());
@@ -15,6 +16,17 @@ shading::TargetValue Engine::rayOfLight(BatchContext& c, const SiteInfo& s, int 
         const auto point3 = [&](size_t arg) { return Vec3(row(s.rows[arg]), row(s.rows[arg] + 1), row(s.rows[arg] + 2)); };
         shadowsInMedia(rays, point3(0), point3(1), p.Ps, p.lit, c.lit ? c.lit->binding(point) : nullptr);
         for (const ShadowRay& r : rays) value.radiance += r.contribution * (r.distance > 0 ? transmittance(r) : Color(1));
+        return value;
+    }
+    if (s.kind == SiteKind::Occlusion) {
+        std::vector<ShadowRay> rays;
+        const size_t had = hemispheres_.size();
+        if (world_->accel_) hemisphereRays(c, s, p, p.Ps, p.lit, row, Color(1), shading::kNoTarget, site, occurrence, rays);
+        else value.radiance = Color(1);
+        std::vector<Color> left(rays.size());
+        transmittances(rays, left);
+        for (size_t i = 0; i < rays.size(); ++i) value.radiance += openLight(rays[i], left[i], sums);
+        hemispheres_.resize(had);
         return value;
     }
     if (s.kind != SiteKind::Trace || !p.ray || !world_->accel_) return value; // lights that are measured see nothing
@@ -118,6 +130,28 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
     return value;
 }
 
+/// A gather in a light's kernel: rays and what they meet. What shaders there give is not followed from here.
+static void gatherOfLight(Engine& e, BatchContext& c, const SiteInfo& s, int first, std::span<uint32_t> asked) {
+    const int lanes = c.requestLanes;
+    const size_t points = asked.size() / c.bound->sites.size();
+    std::vector<uint32_t> occurrence(size_t(lanes), 0), rays(size_t(lanes), 0);
+    for (int lane = 0; lane < lanes; ++lane) {
+        if (!(c.requestMask >> lane & 1) || first + lane >= int(c.points.size())) continue;
+        uint32_t& turn = asked[size_t(c.requestSite) * points + size_t(first + lane)];
+        if (c.requestIn[size_t(s.rows[4]) * size_t(lanes) + size_t(lane)] < 0.5f) ++turn;
+        occurrence[size_t(lane)] = turn;
+    }
+    std::vector<GatherSent> sent;
+    const GatherRows& g = castGather(e, c, s, first, c.requestMask, lanes, c.requestIn.data(), occurrence, rays, sent);
+    if (!sent.empty())
+        e.diagnostics().reportOnce("gatheroflight:" + c.light->instance->name,
+                                   {Severity::Warning, Rie::Unimplement, c.light->instance->place,
+                                    "gather in light \"" + c.light->instance->name +
+                                        "\" asks for outputs of the shaders that its rays meet; they are not run from a light",
+                                    "trace() brings the light of what it meets", {}});
+    for (int lane = 0; lane < lanes; ++lane) c.requestOut[lane] = float(g.counts[size_t(lane)]);
+}
+
 void Engine::runWaitingLight(BatchContext& context) {
     BatchContext* c = &context;
     const BoundKernel& bound = *c->bound;
@@ -131,13 +165,20 @@ void Engine::runWaitingLight(BatchContext& context) {
         c->ran();
         while (!k.finished(h)) {
             const SiteInfo& s = bound.sites[c->requestSite];
+            if (s.kind == SiteKind::Gather) {
+                gatherOfLight(*this, *c, s, first, asked);
+                k.resume(h);
+                c->ran();
+                continue;
+            }
             for (int lane = 0; lane < c->requestLanes; ++lane) {
                 if (!(c->requestMask >> lane & 1) || first + lane >= int(c->points.size())) continue;
                 const std::function<float(int)> row = [&](int r) { return c->requestIn[size_t(r) * c->requestLanes + lane]; };
                 for (int r = 0; r < s.resultRowCount; ++r) c->requestOut[size_t(r) * c->requestLanes + lane] = 0;
+                TraceSums sums;
                 const shading::TargetValue t = rayOfLight(
-                    *c, s, first + lane, row, asked[size_t(c->requestSite) * size_t(c->batch->size()) + size_t(first + lane)]++);
-                putResult(s, t, nullptr, c->requestOut, c->requestLanes, lane);
+                    *c, s, first + lane, row, asked[size_t(c->requestSite) * size_t(c->batch->size()) + size_t(first + lane)]++, &sums);
+                putResult(s, t, s.kind == SiteKind::Occlusion ? &sums : nullptr, c->requestOut, c->requestLanes, lane);
             }
             k.resume(h);
             c->ran();
@@ -153,7 +194,7 @@ void Engine::addLightPairs(BatchContext& context, std::vector<ShadePoint>& queri
     std::vector<uint32_t> asked(c->emits.empty() ? 0 : bound.sites.size() * queries.size());
     for (const EmitRecord& e : c->emits) {
         const SiteInfo& s = bound.sites[e.site];
-        if (s.kind != SiteKind::Transmission && s.kind != SiteKind::Trace) continue;
+        if (s.kind != SiteKind::Transmission && s.kind != SiteKind::Trace && s.kind != SiteKind::Occlusion) continue;
         for (int lane = 0; lane < e.lanes; ++lane) {
             if (!(e.mask >> lane & 1) || e.first + lane >= int(queries.size())) continue;
             auto at = [&](int row) { return c->arena[e.offset + size_t(row) * e.lanes + lane]; };

@@ -33,6 +33,7 @@ struct ShadowRay {
     const shading::Media* media = nullptr; ///< where it begins
     int32_t share = -1;     ///< RayExtra::share
     int32_t more = -1;      ///< Engine::moreLight_: what else goes the same way; -1: nothing
+    int32_t hemisphere = -1; ///< Engine::hemispheres_: of an occlusion(), which takes the mean of the channels; -1: another
 };
 
 /// Where light that reaches a target comes from: with the ray that brings it, what a path was at its end.
@@ -53,6 +54,17 @@ struct Deposit {
     const ShaderInstance* of = nullptr;   ///< that made it; null: not known
 };
 
+/// An occlusion() whose rays are among the shadow rays.
+struct HemisphereRays {
+    const TraceSite* site = nullptr;
+    float share = 1;        ///< of one of its rays
+    float falloff = 0, reach = 1e38f;
+    bool polynomial = false;
+    float spread = 0;       ///< of the rays, for the map
+    /// How much a surface blocks that a ray meets so far away.
+    float blocks(double distance) const;
+};
+
 /// The way from a to b for a shadow ray; where an end is `at`, a shaded point of the surface `s` (null: none), that surface does
 /// not block.
 struct Way { Vec3 origin, dir; float distance = 0; };
@@ -63,7 +75,7 @@ struct MoreLight { Color contribution; TargetId target; int32_t share; bool area
 
 /// What a trace() that asks for it is told beside its result. Sums are exact: order does not matter.
 struct TraceSums {
-    enum Part { Blocked, Environment, UnshadowedEnvironment, AreaLight, UnshadowedAreaLight, Count };
+    enum Part { Blocked, Open, Environment, UnshadowedEnvironment, AreaLight, UnshadowedAreaLight, Count }; // Open: directions
     ExactSum sum[Count][3];
     void add(Part p, const Color& c) {
         for (int k = 0; k < 3; ++k)
@@ -78,6 +90,10 @@ struct OpacityQuery { int binding; accel::Hit hit; const ShadowRay* ray; const B
 /// A part of what is added to a target that an output has as well, and the next one of the same light.
 struct Share { TargetId target; Color ratio; int32_t next; };
 
+/// Shadow rays that are followed together, about: what many samples of many points ask for does not fit into memory at once.
+inline constexpr size_t kShadowsAtOnce = size_t(1) << 16;
+
+inline float mean(const Color& c) { return (c.x + c.y + c.z) / 3; }
 inline bool isFinite(const Color& c) { return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z); }
 
 } // namespace alpenglow::transport

@@ -59,6 +59,14 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
                        c.bindings.empty() ? nullptr : &world_->bindings_[size_t(c.bindings[size_t(point)])]);
         return;
     }
+    if (s.kind == SiteKind::Occlusion) {
+        const size_t had = shadows.size();
+        hemisphereRays(c, s, p, p.P, &p.surface, f, weight, target, uint32_t(s.site - c.bound->kernel->sites().data()), occurrence, shadows);
+        if (!owns && p.ray)
+            for (size_t k = had; k < shadows.size(); ++k) shadows[k].share = extraOf(*p.ray).share;
+        for (size_t k = had; k < shadows.size(); ++k) shadows[k].media = mediaTowards(c, point, shadows[k].dir);
+        return;
+    }
     if (!s.lobe) return; // under path ambient light is what escaping diffuse rays see
     LobeVertex& l = lobes.emplace_back();
     l.kind = s.lobe;
@@ -116,7 +124,8 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         l.deltaLights = l.lobeOfShader = false;
         l.maxDistance = std::min(number(s.rays->maxDistance, 1e38f), number(s.rays->maxHit, 1e38f));
         if (l.maxDistance < 0) l.maxDistance = 1e38f; // PRMan: none
-        l.samples = std::clamp(int(std::clamp(number(s.rays->samples, 1), 1.f, 4096.f)), 1, 4096);
+        if (s.trace->hemisphere) l.samples = samplesOf(number(s.rays->samples, 0), p.shape, s, c);
+        else l.samples = std::clamp(int(std::clamp(number(s.rays->samples, 1), 1.f, 4096.f)), 1, 4096);
         break;
     default: break;
     }

@@ -187,7 +187,10 @@ void Gather::sendRay(const Sent& s, int turn, Sched& sched) {
     r.parted = false;
     extra.lit = l.lit;
     extra.share = shareOf(l);
-    if (l.ownsTarget && l.trace && l.trace->sums) extra.part = Color(1.f / float(s.count));
+    if (l.ownsTarget && l.trace && l.trace->sums) {
+        extra.part = Color(1.f / float(s.count));
+        if (TraceSums* of = e_.sumsOf(l.target)) of->add(TraceSums::Open, w * mean(extra.part));
+    }
     r.extra = e_.newExtra(extra);
     // Whether its lobe samples lights: then an emitter that it meets counts with the weight of both.
     const bool sampled = l.lights && !l.elsewhere && !l.delta;

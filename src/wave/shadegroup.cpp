@@ -60,7 +60,13 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, st
             sched.setNearer(c.targets[i], length(c.points[i].P - ray.origin), c.points[i].N);
             sched.setTransmission(c.targets[i], Color(1) - opacity);
         }
-        if (TraceSums* sums = sumsOf(c.targets[i])) sums->add(TraceSums::Blocked, extraOf(ray).part * opacity);
+        if (!gathered_.empty())
+            if (const auto asks = gathered_.find(c.targets[i]); asks != gathered_.end()) tellGather(c, i, *asks->second);
+        if (TraceSums* sums = sumsOf(c.targets[i])) {
+            const Color blocked = extraOf(ray).part * opacity;
+            sums->add(TraceSums::Blocked, blocked);
+            sums->add(TraceSums::Open, ray.dir * -mean(blocked));
+        }
         Color shown = color;
         if (!c.haze.empty() && c.haze[size_t(i)].on && !(binding.matte && ray.camera())) { // pairs were scaled in shadeGroup
             shown = c.haze[size_t(i)].shown;
@@ -166,7 +172,7 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
             if (c->haze[size_t(i)].on) slope[size_t(i)] = c->haze[size_t(i)].slope;
     }
     std::vector<AskedLobe> asked; // only where outputs share lobes
-    requestPairs(*c, slope, aside.empty() ? nullptr : &asked);
+    requestPairs(*c, slope, aside.empty() ? nullptr : &asked, sched);
     if (world_->settings_.hider == Hider::Path) {
         c->clear.resize(size_t(n));
         for (int i = 0; i < n; ++i) c->clear[size_t(i)] = clearAt(*c, i);
@@ -180,7 +186,7 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
 }
 
 /// What the pairs of a kernel that did not wait ask for. `slope`: by point. `asked`: gets the lobes; may be null.
-void Engine::requestPairs(BatchContext& c, std::span<const Color> slope, std::vector<AskedLobe>* asked) {
+void Engine::requestPairs(BatchContext& c, std::span<const Color> slope, std::vector<AskedLobe>* asked, Sched& sched) {
     const int n = int(c.points.size());
     std::vector<uint32_t>& occurrence = occurrence_;
     occurrence.assign(c.emits.empty() ? 0 : c.bound->sites.size() * size_t(n), 0);
@@ -205,8 +211,9 @@ void Engine::requestPairs(BatchContext& c, std::span<const Color> slope, std::ve
                 if (shadows.size() > had) shadows.back().share = extraOf(c.rays[size_t(point)]).share;
                 continue;
             }
-            if (s.kind == SiteKind::Transmission) weight *= c.rays[point].weight;
+            if (s.kind == SiteKind::Transmission || s.kind == SiteKind::Occlusion) weight *= c.rays[point].weight;
             const size_t had = lobes.size();
+            if (shadows.size() > kShadowsAtOnce) flushShadows(sched);
             request(c, s, point, args, e.lanes, lane, weight, c.targets[point], false,
                     occurrence[size_t(e.site) * size_t(n) + size_t(point)]++);
             if (asked && lobes.size() > had) asked->push_back({int(had), int(&e - c.emits.data()), lane});

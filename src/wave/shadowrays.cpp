@@ -106,6 +106,7 @@ void Engine::opacities(std::span<const OpacityQuery> met, std::span<Color> out) 
 }
 
 bool Engine::meetsOpaqueAlone(const ShadowRay& r) const {
+    if (r.hemisphere >= 0 && hemispheres_[size_t(r.hemisphere)].falloff > 0) return false; // it matters how far away they are
     return world_->media_.empty() && !r.kind->set.only && r.kind->set.mode == shading::HitMode::Default;
 }
 
@@ -126,9 +127,9 @@ void Engine::blockedByOpaque(std::span<const ShadowRay> rays, std::span<Color> o
         if (blocked_[k]) out[of[k]] = Color(0);
 }
 
-/// One batch a surface. The order inside a batch does not matter: a kernel's lanes know nothing of each other. `rayOf`: the place
-/// in `out` of what was met.
-void Engine::takeOpacities(std::span<const OpacityQuery> met, const std::function<size_t(size_t)>& rayOf, std::span<Color> out) {
+/// One batch a surface. The order inside a batch does not matter: a kernel's lanes know nothing of each other. `take` is told the
+/// number and the opacity of what was met.
+void Engine::takeOpacities(std::span<const OpacityQuery> met, const std::function<void(size_t, const Color&)>& take) {
     std::vector<size_t> order(met.size());
     for (size_t i = 0; i < order.size(); ++i) order[i] = i;
     const auto what = [&](size_t i) { return std::pair(met[i].binding, met[i].ray->kind->set.mode); };
@@ -140,7 +141,7 @@ void Engine::takeOpacities(std::span<const OpacityQuery> met, const std::functio
         for (end = first; end < order.size() && what(order[end]) == what(order[first]); ++end) group.push_back(met[order[end]]);
         opacity.resize(group.size());
         opacities(group, opacity);
-        for (size_t k = first; k < end; ++k) out[rayOf(order[k])] *= Color(1) - opacity[k - first];
+        for (size_t k = first; k < end; ++k) take(order[k], opacity[k - first]);
     }
 }
 
@@ -152,7 +153,14 @@ void Engine::transmittances(std::span<const ShadowRay> rays, std::span<Color> ou
 
 void Engine::passSurfaces(std::span<const ShadowRay> rays, std::span<Color> out) {
     const bool media = !world_->media_.empty();
-    if (world_->allOpaque_ && !media) {
+    const auto fades = [&](const ShadowRay& r) { return r.hemisphere >= 0 && hemispheres_[size_t(r.hemisphere)].falloff > 0; };
+    const bool fading = std::any_of(rays.begin(), rays.end(), fades);
+    std::vector<Color> taken(fading ? rays.size() : 0, Color(0)); // what surfaces far away block in part
+    const auto takes = [&](size_t i, const Color& opacity, double distance) {
+        if (fading && fades(rays[i])) taken[i] += out[i] * opacity * hemispheres_[size_t(rays[i].hemisphere)].blocks(distance);
+        out[i] *= Color(1) - opacity;
+    };
+    if (world_->allOpaque_ && !media && !fading) {
         shadowRays_.clear();
         for (const ShadowRay& r : rays) shadowRays_.push_back(shadowRay(r));
         blocked_.resize(rays.size());
@@ -197,23 +205,25 @@ void Engine::passSurfaces(std::span<const ShadowRay> rays, std::span<Color> out)
                     g.media = mediaBeyond(b, g.media, at.n, g.ray.dir, g.ray.dir);
                     g.begin = end;
                 }
-                const Opacity& takes = b.opacityFor(rays[g.index].kind->set.mode);
-                if (takes.kernel) {
+                const Opacity& opacity = b.opacityFor(rays[g.index].kind->set.mode);
+                if (opacity.kernel) {
                     ++g.layers;
-                    met.push_back({binding, h, &rays[g.index], &takes.kernel});
+                    met.push_back({binding, h, &rays[g.index], &opacity.kernel});
                     next.push_back(g);
                     break;
                 }
-                t *= Color(1) - takes.constant;
+                takes(g.index, opacity.constant, h.distance);
                 if (!(maxComponent(t) > 0)) break;
             }
         }
         if (next.empty()) break;
-        takeOpacities(met, [&](size_t k) { return next[k].index; }, out);
+        takeOpacities(met, [&](size_t k, const Color& opacity) { takes(next[k].index, opacity, met[k].hit.distance); });
         std::erase_if(next, [&](const Going& g) { return !(maxComponent(out[g.index]) > 0); });
         now.swap(next);
         if (stop && *stop) break; // the result is void
     }
+    for (size_t i = 0; i < taken.size(); ++i)
+        if (fades(rays[i])) out[i] = Color(1) - taken[i];
     dim(parts, rays, out);
 }
 
@@ -273,6 +283,10 @@ void Engine::flushShadows(Sched& s) {
             deposit(s, {target, light, LightEvent::Sampled, r.ray, share});
             if (TraceSums* sums = areaLight ? sumsOf(target) : nullptr) sums->add(TraceSums::AreaLight, light);
         };
+        if (r.hemisphere >= 0) { // only these, and nothing else goes their way
+            deposit(s, {r.target, openLight(r, transmitted_[i], sumsOf(r.target)), LightEvent::Sampled, r.ray, r.share});
+            continue;
+        }
         arrives(r.contribution, r.target, r.share, r.areaLight);
         for (int32_t k = r.more; k >= 0; k = moreLight_[size_t(k)].more) {
             const MoreLight& m = moreLight_[size_t(k)];
@@ -281,6 +295,7 @@ void Engine::flushShadows(Sched& s) {
     }
     shadows.clear();
     moreLight_.clear();
+    hemispheres_.clear();
 }
 
 } // namespace alpenglow::transport

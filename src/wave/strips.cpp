@@ -10,11 +10,13 @@ void putResult(const SiteInfo& site, const shading::TargetValue& value, const Tr
     };
     const SiteInfo::Results& rows = site.results;
     if (site.givesDistance()) put(rows.value, 1, Color(value.distance));
+    else if (site.kind == SiteKind::Occlusion) put(rows.value, 1, value.radiance);
     else put(rows.value, 3, value.radiance);
     put(rows.distance, 1, Color(value.distance));
     put(rows.transmission, 3, sums ? Color(1) - sums->value(TraceSums::Blocked) : value.transmission);
     put(rows.normal, 3, value.normal);
     if (!sums) return;
+    put(rows.open, 3, sums->value(TraceSums::Open));
     put(rows.environment, 3, sums->value(TraceSums::Environment));
     put(rows.unshadowedEnvironment, 3, sums->value(TraceSums::UnshadowedEnvironment));
     put(rows.areaLight, 3, sums->value(TraceSums::AreaLight));
@@ -23,6 +25,17 @@ void putResult(const SiteInfo& site, const shading::TargetValue& value, const Tr
 
 bool KernelStrip::resume(Sched& s, std::span<const shading::TargetValue> results) {
     const SiteInfo& site = c_->bound->sites[size_t(site_)];
+    if (gather_) {
+        for (size_t k = 0; k < results.size(); ++k) {
+            c_->engine->gathered_.erase(ids_[k]);
+            endGatherRay(*sent_[k].site, results[k], sent_[k].row);
+        }
+        for (int lane : laneOf_) out_[lane] = float(gather_->counts[size_t(lane)]);
+        gather_ = nullptr;
+        c_->bound->kernel->resume(handle_);
+        c_->ran();
+        return advance(s, s.takeResuming());
+    }
     const bool sums = site.trace && site.trace->sums;
     for (size_t k = 0; k < results.size(); ++k) {
         putResult(site, results[k], sums ? c_->engine->sumsOf(ids_[k]) : nullptr, out_, lanes_, laneOf_[k]);
@@ -37,6 +50,7 @@ bool KernelStrip::advance(Sched& s, std::unique_ptr<Sched::Strip> self) {
     Engine& e = *c_->engine;
     const auto& kernel = *c_->bound->kernel;
     if (kernel.finished(handle_)) {
+        std::erase_if(c_->gathers, [&](const auto& g) { return g.first.second == first_; });
         e.finishStrip(*c_, first_, kernel.lanes(), s, asked_);
         for (int i = first_; i < points(); ++i) s.release(c_->targets[size_t(i)]);
         return true;
@@ -48,9 +62,10 @@ bool KernelStrip::advance(Sched& s, std::unique_ptr<Sched::Strip> self) {
     laneOf_.clear();
     for (int lane = 0; lane < lanes_; ++lane)
         if ((c_->requestMask >> lane & 1) && first_ + lane < int(c_->points.size())) laneOf_.push_back(lane);
-    ids_.resize(laneOf_.size());
     if (occurrences_.empty()) occurrences_.resize(c_->bound->sites.size() * 64);
-    s.wait(std::move(self), int(laneOf_.size()), [&](int i, TargetId id) {
+    if (c_->bound->sites[size_t(site_)].kind == SiteKind::Gather) askGather();
+    ids_.resize(gather_ ? sent_.size() : laneOf_.size());
+    s.wait(std::move(self), int(ids_.size()), [&](int i, TargetId id) {
         ids_[size_t(i)] = id;
         s.hold(id);
     });
@@ -62,7 +77,33 @@ bool KernelStrip::advance(Sched& s, std::unique_ptr<Sched::Strip> self) {
     return false;
 }
 
-void KernelStrip::ask() {
+/// Finds what the rays of a gather meet. Those whose hits must be shaded are what the strip waits for.
+void KernelStrip::askGather() {
+    const SiteInfo& site = c_->bound->sites[size_t(site_)];
+    const std::span<uint32_t> occurrences(occurrences_.data() + size_t(site_) * 64, 64);
+    uint64_t mask = 0;
+    for (int lane : laneOf_) {
+        mask |= uint64_t(1) << lane;
+        // The statement begins anew with its first handful of rays.
+        if (in_[size_t(site.rows[4]) * size_t(lanes_) + size_t(lane)] < 0.5f) ++occurrences[size_t(lane)];
+    }
+    gather_ = &castGather(*c_->engine, *c_, site, first_, mask, lanes_, in_.data(), occurrences, asked_, sent_);
+    gatherBytes_ = sent_.size() * sizeof(GatherSent);
+    for (const auto& [key, g] : c_->gathers)
+        if (key.second == first_) gatherBytes_ += g.rows.size() * sizeof(float);
+}
+
+void KernelStrip::ask(Sched& s) {
+    if (gather_) {
+        Engine& e = *c_->engine;
+        for (size_t k = 0; k < ids_.size(); ++k) {
+            const PathRay& r = sent_[k].ray;
+            e.gathered_[ids_[k]] = &sent_[k];
+            s.spawn(r.bounces + r.layers, ids_[k], r);
+            e.counters.depthMax = std::max(e.counters.depthMax, int(r.bounces));
+        }
+        return;
+    }
     Engine& e = *c_->engine;
     const SiteInfo& site = c_->bound->sites[size_t(site_)];
     for (size_t k = 0; k < ids_.size(); ++k) {
@@ -74,6 +115,7 @@ void KernelStrip::ask() {
             continue;
         }
         const size_t had = e.lobes.size();
+        if (e.shadows.size() > kShadowsAtOnce) e.flushShadows(s);
         e.request(*c_, site, point, in_.data(), lanes_, lane, Color(1), ids_[k], true, occurrence);
         if (e.lobes.size() == had) continue;
         uint32_t& asked = asked_[size_t(lane)];
@@ -112,7 +154,7 @@ void Engine::followStrips(Sched& sched) {
     strips.swap(waiting_);
     for (size_t first = 0, end; first < strips.size(); first = end) {
         const std::shared_ptr<BatchContext> c = strips[first]->context();
-        for (end = first; end < strips.size() && strips[end]->context() == c; ++end) strips[end]->ask();
+        for (end = first; end < strips.size() && strips[end]->context() == c; ++end) strips[end]->ask(sched);
         gather(*c, sched);
         flushShadows(sched);
         for (size_t k = first; k < end; ++k) strips[k]->asked(sched);

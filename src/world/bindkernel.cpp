@@ -1,5 +1,6 @@
 // What the call sites of a kernel mean to the engine, worked out once per kernel.
 #include "shadeops/specular.h"
+#include "world/gathersite.h"
 #include "world/raysets.h"
 
 namespace alpenglow::transport {
@@ -14,6 +15,10 @@ SiteKind kindOf(const std::string& op) {
                                                           {"phong", SiteKind::Phong},
                                                           {"trace", SiteKind::Trace},
                                                           {"transmission", SiteKind::Transmission},
+                                                          {"occlusion", SiteKind::Occlusion},
+                                                          {"indirectdiffuse", SiteKind::Irradiance},
+                                                          {"gather", SiteKind::Gather},
+                                                          {"gatherturn", SiteKind::GatherTurn},
                                                           {"lightvisibility", SiteKind::LightVisibility},
                                                           {"illuminance", SiteKind::Illuminance},
                                                           {"texture", SiteKind::Texture},
@@ -61,7 +66,7 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
     auto text = [&](const char* name) { auto f = i.text.find(name); return f == i.text.end() ? std::string() : f->second; };
     auto said = [&](const std::string& what, const std::string& message) {
         world.diagnostics_->reportOnce("trace:" + what + place.file + std::to_string(place.line),
-                                       {Severity::Warning, Rie::Unimplement, place, "trace(): " + message, {}, {}});
+                                       {Severity::Warning, Rie::Unimplement, place, s.op + "(): " + message, {}, {}});
     };
     t->udir = row("udir");
     t->roughness = row("roughness");
@@ -88,12 +93,26 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
         if (const std::string space = text("environmentspace"); !space.empty()) world.matrix("current", space, t->toMap);
     }
     for (const char* name :
-         {"transmission", "environmentcontribution", "unshadowedenvironment", "arealightcontribution", "unshadowedarealight"})
+         {"transmission", "environmentcontribution", "unshadowedenvironment", "arealightcontribution", "unshadowedarealight",
+          "environmentdir"})
         t->sums |= i.resultRows.count(name) > 0;
     t->onlyLights =
         !i.resultRows.empty() &&
         i.resultRows.count("arealightcontribution") + i.resultRows.count("unshadowedarealight") == i.resultRows.size();
+    t->hemisphere = i.text.count("__hemisphere") > 0;
     return t;
+}
+
+std::shared_ptr<const OcclusionSite> occlusionSite(const SiteInfo& i) {
+    auto o = std::make_shared<OcclusionSite>();
+    auto row = [&](const char* name) { auto f = i.named.find(name); return f == i.named.end() ? -1 : f->second; };
+    o->cone = row("coneangle");
+    o->axis = row("axis");
+    o->falloff = row("falloff");
+    o->mode = row("falloffmode");
+    const auto word = i.text.find("distribution");
+    o->uniform = word != i.text.end() && word->second == "uniform";
+    return o;
 }
 
 std::shared_ptr<const TextureSite> textureSite(const SiteInfo& i, const rsl::ir::Site& s) {
@@ -222,7 +241,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
             const auto f = i.resultRows.find(name);
             return f == i.resultRows.end() ? -1 : f->second;
         };
-        i.results = {result(""), result("dist"), result("transmission"), result("hitnormal"), result("environmentcontribution"),
+        i.results = {result(""), result("dist"), result("transmission"), result("hitnormal"), result("environmentdir"), result("environmentcontribution"),
                      result("unshadowedenvironment"), result("arealightcontribution"), result("unshadowedarealight")};
         if (!s.strings.empty() && !s.strings[0].empty()) i.nameId = rsl::internString(s.strings[0]);
         i.setUp = i.text.count(rsl::kPairSetUp) > 0;
@@ -247,7 +266,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         i.rowCone = rowOf("samplecone");
         i.rowHorizon = rowOf("horizon");
         i.rowLights = rowOf("samplearealights");
-        if (i.kind == SiteKind::Trace || i.kind == SiteKind::Transmission) {
+        if (i.kind == SiteKind::Trace || i.kind == SiteKind::Transmission || i.kind == SiteKind::Occlusion || i.kind == SiteKind::Gather) {
             auto text = [&](const char* name) {
                 auto f = i.text.find(name);
                 return f == i.text.end() ? std::string() : f->second;
@@ -258,8 +277,13 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
                 {s.place.file < int(k->files().size()) ? k->files()[size_t(s.place.file)] : "", s.place.line, s.place.column});
         }
         if (i.kind == SiteKind::Trace) bindTrace(i, s, *k, *world);
+        if (i.kind == SiteKind::Occlusion) {
+            i.occlusion = occlusionSite(i);
+            i.trace = traceSite(i, s, *k, *world);
+        }
         b.sites.push_back(std::move(i));
     }
+    linkGathers(b, *k, *world);
     b.plan = std::make_shared<shading::BatchPlan>(*k, mixed);
     world->footprints_ |= b.plan->usesFootprint();
     for (const SiteInfo& i : b.sites) world->footprints_ |= i.rays && i.rays->base >= 0; // "samplebase" is a part of it

@@ -1,5 +1,6 @@
 // The inside of World, for the rooms of transport only: what hits, shaders and lights are bound to.
 #pragma once
+#include "texture/irradiance.h"
 #include "rsl/passes/optimize.h"
 #include "rsl/printlog.h"
 #include "scene/motion.h"
@@ -134,6 +135,7 @@ public:
     std::shared_ptr<rsl::ShaderCompiler> compiler_;
     Diagnostics* diagnostics_ = nullptr;
     mutable rsl::PrintLog prints_;
+    texture::IrradianceTables irradiance_;
     mutable std::mutex imagerMutex_;
     struct BoundImager { bool bound = false; InstanceRef shader; BoundKernel kernel; };
     BoundImager imager_;                       ///< by runImager(), under the lock

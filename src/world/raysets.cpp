@@ -120,7 +120,8 @@ std::shared_ptr<const RaySite> raySite(const SiteInfo& i, WorldImpl& world, cons
     if (!type.empty() && type != "specular" && type != "diffuse" && type != "transmission")
         unknown("type", type, "specular, diffuse, transmission");
     r->rays =
-        type.empty() ? i.kind == SiteKind::Transmission || distance ? RayType::Transmission : RayType::Specular : rayTypeOf(type);
+        !type.empty() ? rayTypeOf(type)
+        : i.kind == SiteKind::Transmission || i.kind == SiteKind::Occlusion || distance ? RayType::Transmission : RayType::Specular;
     r->set.sides = r->rays == RayType::Transmission ? accel::Sides::Both : accel::Sides::Front;
     if (const std::string word = text("hitsides"); !word.empty()) {
         if (const auto s = sidesOf(word)) r->set.sides = *s;

@@ -48,7 +48,15 @@ struct TraceSite {
     Matrix toMap;                         ///< current to "environmentspace"
     bool sums = false;                    ///< it asks for transmission or for parts of the result
     bool onlyLights = false;              ///< for nothing but what area lights send
+    bool hemisphere = false;              ///< of indirectdiffuse(): no "samples" is Attribute "irradiance" "nsamples"
 };
+
+/// What occlusion() asks beyond TraceSite. Rows, or -1.
+struct OcclusionSite {
+    int cone = -1, axis = -1, falloff = -1, mode = -1;
+    bool uniform = false;                 ///< "distribution" "uniform"
+};
+struct GatherSite; // world/gathersite.h
 
 /// What a texture() or environment() asks of a map. Rows of `in`, or -1.
 struct TextureSite {
@@ -76,10 +84,13 @@ enum class SiteKind : uint8_t {
     Phong,
     Trace,
     Transmission,
-    LightVisibility, ///< requests
+    LightVisibility,
+    Occlusion,
+    Gather, ///< requests
     Illuminance,
     Texture,
     Environment,
+    Irradiance,
     Printf,
     Message,
     LightSource,
@@ -97,6 +108,7 @@ enum class SiteKind : uint8_t {
     Transform,
     Random,
     Text,
+    GatherTurn,
     Other
 };
 struct SiteInfo {
@@ -110,6 +122,7 @@ struct SiteInfo {
     /// Of `resultRows`, those of requests; -1: not asked for.
     struct Results {
         int value = -1, distance = -1, transmission = -1, normal = -1;
+        int open = -1; ///< "environmentdir", before it gets length 1
         int environment = -1, unshadowedEnvironment = -1, areaLight = -1, unshadowedAreaLight = -1;
     } results;
     bool givesDistance() const { return kind == SiteKind::Trace && site->resultType.base == rsl::Base::Float; }
@@ -117,7 +130,9 @@ struct SiteInfo {
     float exponent = 1;                        ///< Specular: this over the roughness (shadeops/specular.h)
     int rowWo = -1, rowExponent = -1, rowCone = -1, rowHorizon = -1, rowLights = -1; ///< of `named`
     std::shared_ptr<const struct TraceSite> trace; ///< Trace: what only some calls use
-    std::shared_ptr<const RaySite> rays;       ///< Trace, Transmission
+    std::shared_ptr<const OcclusionSite> occlusion; ///< Occlusion, which has `trace` for its map, too
+    std::shared_ptr<const GatherSite> gather;  ///< Gather, GatherTurn
+    std::shared_ptr<const RaySite> rays;       ///< Trace, Transmission, Occlusion, Gather
     std::shared_ptr<const TextureSite> map;    ///< Texture, Environment
     bool setUp = false, refresh = false;       ///< loops: they have a setup; "lightcache" "refresh"
     bool outside = false;                      ///< queries: outside of loops over lights

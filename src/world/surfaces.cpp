@@ -1,4 +1,5 @@
 #include "world/surfaces.h"
+#include "world/gathersite.h"
 #include "rsl/front/leftmembers.h"
 #include "world/told.h"
 #include <limits>
@@ -117,6 +118,7 @@ bool SurfaceBinder::bindAll() {
                             "set ALPENGLOW_SHADERS to the folder that holds matte.sl");
         return false;
     }
+    findGathers();
     for (const auto& shape : world_.shapes_) {
         const int b = bind(shape);
         if (b < 0) return false;
@@ -125,6 +127,24 @@ bool SurfaceBinder::bindAll() {
             world_.hazyEmitters_[shape.get()] = b;
     }
     return bindMixed() && bindHitModes();
+}
+
+void SurfaceBinder::findGathers() {
+    std::set<const rsl::Program*> seen;
+    const auto look = [&](const InstanceRef& i) {
+        if (!i || !i->program) return;
+        if (seen.insert(&i->program->program()).second) gatheredNames(i->program->program(), gathered_);
+        for (const rsl::CoShader& c : i->coShaders)
+            if (c.program && seen.insert(c.program).second) gatheredNames(*c.program, gathered_);
+    };
+    const scene::Attributes* last = nullptr;
+    for (const auto& shape : world_.shapes_) {
+        const scene::Attributes& a = shape->attributes();
+        if (&a == last) continue;
+        last = &a;
+        look(instanceOf(a.surface, rsl::ShaderKind::Surface));
+    }
+    for (const BoundLight& l : world_.lights_) look(l.instance);
 }
 
 bool SurfaceBinder::bindHitModes() {
@@ -271,6 +291,7 @@ SurfaceBinder::Names SurfaceBinder::outputsOf(const SurfaceBinding& b) const {
     if (path_)
         asked.insert(world_.lightMessages_.begin(),
                      world_.lightMessages_.end()); // lighting shadeops: lights run when the surface's kernel is done
+    asked.insert(gathered_.begin(), gathered_.end()); // gathers run when the surface's kernel is done, too
     const bool all = b.atmosphere.shader && questions(b.atmosphere.kernel, "surface", asked);
     for (const auto& p : b.surface->program->parameters())
         if (p.output && (all || asked.count(p.name))) outputs.push_back(OutputName::parameterOf(p.name).text());

@@ -30,6 +30,8 @@ private:
     static std::string keyOf(const SurfaceBinding&, const geometry::Shape&, bool grid,
                              std::initializer_list<const Names*> varying);
     Names outputsOf(const SurfaceBinding&) const;
+    /// What gathers of the scene's surfaces ask other surfaces for.
+    void findGathers();
     /// Adds the names that a kernel asks for by `op` ("surface", "displacement"). True when some are made only when it runs.
     static bool questions(const BoundKernel&, const char* op, std::set<std::string>& names);
     /// Where the surface or the atmosphere asks for outputs of the displacement shader: kernels that give and take them.
@@ -75,6 +77,7 @@ private:
     std::map<std::pair<const void*, std::string>, InstanceRef>
         volumes_; ///< by the shader as the scene gave it and what overrides it
     std::map<std::string, int> bindingByKey_;
+    std::set<std::string> gathered_; ///< names of outputs
     std::unordered_map<const scene::Attributes*, std::pair<geometry::ShapeRef, int>>
         bindingOfAttributes_; ///< of the last shape that had them
     std::map<std::vector<const void*>, int> programs_;

@@ -98,7 +98,6 @@ const Case kWarnings[] = {
     {"c = texture(\"a\", \"blurr\", 1);",
      "2:18: warning: 'texture' has no parameter \"blurr\"; it is ignored (did you mean \"blur\"?)"},
     {"c = photonmap(\"a\", p, n);", "2:5: warning: 'photonmap' is not yet available; its value is 0"},
-    {"gather(\"illuminance\", P, N, 1, 4, \"surface:Ci\", c) f = 1;", "2:1: warning: 'gather' is not yet available"},
     {"f = pow(f; 2);", "2:10: warning: arguments are separated by ',', not ';'"},
 };
 

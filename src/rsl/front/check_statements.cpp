@@ -234,7 +234,6 @@ void Checker::checkLight(Stmt& s) {
     const std::string name = word;
     const bool foreign = kind_ && !(contexts & contextOf(*kind_));
     if (foreign) sources_.error(s.place, "'" + name + "' cannot be used in a " + toString(*kind_) + " shader");
-    const int errors = sources_.errors();
     std::vector<ExprPtr> given = std::move(s.exprs);
     s.exprs.clear();
     size_t next = 0;
@@ -313,8 +312,6 @@ void Checker::checkLight(Stmt& s) {
         s.pairs.push_back(std::move(pair));
     }
     infos_.clear();
-    if (s.kind == StmtKind::Gather && sources_.errors() == errors)
-        sources_.warning(s.place, "'gather' is not yet available: no ray hits anything, the else statement runs once");
     const bool outerForeign = std::exchange(foreignLight_, foreignLight_ || foreign);
     scopes_.emplace_back();
     if (s.kind == StmtKind::Illuminance || s.kind == StmtKind::Gather) checkLoopBody(s);
@@ -326,7 +323,10 @@ void Checker::checkLight(Stmt& s) {
     }
     scopes_.pop_back();
     foreignLight_ = outerForeign;
-    if (s.elseBody) check(s.elseBody);
+    if (!s.elseBody) return;
+    ++loops_; // it is a turn of the loop, too
+    check(s.elseBody);
+    --loops_;
 }
 
 bool Checker::endsInReturn(const Stmt& s) {

@@ -215,8 +215,9 @@ void lintCondition(const Expr& e, SourceSet& sources) {
 
 void lintPairs(const Stmt& s, SourceSet& sources) {
     if (s.kind != StmtKind::Gather) return;
-    static const Names names = {"bias", "maxdist", "samplebase", "samplecone", "distribution", "label", "subset", "hitmode", "uniformdist", "othreshold"};
-    static const Names sends = {"surface", "displacement", "volume", "ray", "primitive", "attribute", "light", "send", "effects"};
+    static const Names names = {"bias",     "maxdist", "samplebase", "distribution", "label",         "subset",    "hitmode",
+                                "hitsides", "type",    "raytype",    "raylabel",     "excludesubset", "maxhitdist", "othreshold"};
+    static const Names sends = {"surface", "displacement", "volume", "ray", "primitive", "attribute", "environment"};
     for (const NamedArg& p : s.pairs) {
         const size_t colon = p.name.find(':');
         const std::string head = p.name.substr(0, colon);

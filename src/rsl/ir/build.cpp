@@ -7,6 +7,7 @@
 #include "rsl/passes/fold.h"
 #include "rsl/passes/optimize.h"
 #include <algorithm>
+#include <string_view>
 
 namespace alpenglow::rsl::ir {
 
@@ -229,6 +230,9 @@ static std::unique_ptr<Kernel> buildOnce(const Program& p, const Shader& s, cons
     return k;
 }
 
+/// Requests that there is no other form of.
+static const std::set<std::string_view> kNoLobes = {"trace", "transmission", "occlusion", "gather", "lightvisibility", "ambient"};
+
 std::unique_ptr<Kernel> buildKernel(const Program& p, const Shader& s, const KernelOptions& o, Diagnostics& d) {
     DirectSet direct;
     auto k = buildOnce(p, s, o, d, direct);
@@ -239,7 +243,7 @@ std::unique_ptr<Kernel> buildKernel(const Program& p, const Shader& s, const Ker
     for (int round = 0; round < 16; ++round) {
         const auto lobe = [](const Inst* i, const Kernel& kernel) {
             const std::string& op = kernel.sites[static_cast<size_t>(i->site)].op;
-            return i->op == Op::Request && op != "trace" && op != "transmission" && op != "lightvisibility" && op != "ambient";
+            return i->op == Op::Request && !kNoLobes.count(op);
         };
         bool any = false;
         forEach(k->body, [&](Inst* i) { any = any || (i->site >= 0 && lobe(i, *k)); });
@@ -252,7 +256,7 @@ std::unique_ptr<Kernel> buildKernel(const Program& p, const Shader& s, const Ker
         const size_t before = direct.size();
         for (const auto& [site, why] : nonAffineSites(*trial)) {
             const Site& at = trial->sites[static_cast<size_t>(site)];
-            if (at.op == "trace" || at.op == "transmission" || at.op == "lightvisibility" || at.op == "ambient") continue;
+            if (kNoLobes.count(at.op)) continue;
             if (direct.emplace(at.place.file, at.place.line, at.place.column).second) {
                 nonLinear.push_back({at.op, why, at.place});
             }

@@ -143,6 +143,7 @@ Inst* Builder::shadeopCall(const Expr& e) {
     }
     if (op.name == "shadername" && e.args.empty()) return leaves_.string(shader_.name);
     if (Inst* traced = tracedMap(e)) return traced;
+    if (Inst* light = hemisphere(e)) return light;
     switch (op.lowering) {
     case Lowering::Runtime:
         return runtimeCall(e);

@@ -193,8 +193,8 @@ void Builder::statement(const Stmt& s) {
     case StmtKind::Solar:
         lightBlock(s);
         return;
-    case StmtKind::Gather: // no ray hits anything: said by the checker
-        if (s.elseBody) statement(*s.elseBody);
+    case StmtKind::Gather:
+        gather(s);
         return;
     }
 }
@@ -221,8 +221,28 @@ void Builder::loop(const Expr* cond, const Expr* step, const Stmt* body, const P
         simple = !hasEffects(*cond);
         scanAssigned(*cond, assigned, seen);
     }
+    Turns t;
+    // Without a value of its own it lives in the branch around this loop only: what is first set here is no change to merge there.
+    const int go = simple ? -1 : newSlot(nullptr);
+    t.begin = [&] {
+        if (go >= 0) set(go, condition(*cond)), assigned.insert(go);
+    };
+    t.goesOn = [&] { return go >= 0 ? get(go) : cond ? condition(*cond) : boolean(true); };
+    t.turn = [&] {
+        if (body) statement(*body);
+    };
+    if (step || go >= 0)
+        t.next = [&] {
+            if (step) expr(*step);
+            if (go >= 0) set(go, condition(*cond));
+        };
+    turns(assigned, body && mayJump(*body), t, place);
+}
+
+bool Builder::jumps(const Stmt& s) { return mayJump(s); }
+
+void Builder::turns(std::set<int>& assigned, bool jumps, const Turns& t, const Place& place) {
     Frame& f = frames_.back();
-    const bool jumps = body && mayJump(*body);
     addLengths(assigned);
     if (jumps) { // flags of loops around, too: break 2, return
         for (const LoopFrame& l : f.loops) {
@@ -233,11 +253,8 @@ void Builder::loop(const Expr* cond, const Expr* step, const Stmt* body, const P
         if (f.result >= 0) assigned.insert(f.result);
     }
     const LoopFrame flags{newSlot(boolean(false)), newSlot(boolean(false))};
-    // Without a value of its own it lives in the branch around this loop only: what is first set here is no change to merge there.
-    const int go = simple ? -1 : newSlot(nullptr);
-    if (go >= 0) set(go, condition(*cond));
+    if (t.begin) t.begin();
     if (jumps) assigned.insert(flags.broken);
-    if (go >= 0) assigned.insert(go);
 
     std::vector<int> carried;
     Inst* inst = k_.make(Op::Loop, Kind::None);
@@ -271,7 +288,7 @@ void Builder::loop(const Expr* cond, const Expr* step, const Stmt* body, const P
     };
     Region* saved = region_;
     enter(inst->regions[0]);
-    Inst* test = go >= 0 ? get(go) : cond ? condition(*cond) : boolean(true);
+    Inst* test = t.goesOn();
     test = emit(Op::And, Kind::Bool, {emit(Op::Not, Kind::Bool, {get(flags.broken)}), test});
     inst->regions[0].yields.push_back(test);
     leave(saved);
@@ -279,14 +296,13 @@ void Builder::loop(const Expr* cond, const Expr* step, const Stmt* body, const P
     enter(inst->regions[1]);
     frames_.back().loops.push_back(flags);
     set(flags.continued, boolean(false));
-    if (body) statement(*body);
+    t.turn();
     frames_.back().loops.pop_back();
     const auto next = [&] {
-        if (step) expr(*step);
-        if (go >= 0) set(go, condition(*cond));
+        t.next();
         return std::vector<Inst*>{};
     };
-    if (step || go >= 0) branch(emit(Op::Not, Kind::Bool, {get(flags.broken)}), next, [] { return std::vector<Inst*>{}; });
+    if (t.next) branch(emit(Op::Not, Kind::Bool, {get(flags.broken)}), next, [] { return std::vector<Inst*>{}; });
     for (int n : carried) inst->regions[1].yields.push_back(get(n));
     leave(saved);
     region_->body.push_back(inst);

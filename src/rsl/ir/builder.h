@@ -70,6 +70,19 @@ private:
     void statement(const Stmt&);
     void declare(const Stmt&);
     void loop(const Expr* condition, const Expr* step, const Stmt* body, const Place&);
+    /// A loop as it is built. Any but goesOn and turn may be missing; begin comes when the loop's own flags are there.
+    struct Turns {
+        std::function<void()> begin, turn, next;
+        std::function<Inst*()> goesOn;
+    };
+    /// `assigned`: slots that a turn may change; `jumps`: whether one may break, continue or return.
+    void turns(std::set<int>& assigned, bool jumps, const Turns&, const Place&);
+    static bool jumps(const Stmt&);
+    void gather(const Stmt&); // build_gather.cpp
+    std::set<int> assignedByGather(const Stmt&);
+    int gathers_ = 0; ///< built so far
+    struct GatherCall;
+    GatherCall gatherCall(const Stmt&);
     void illuminance(const Stmt&);
     void lightBlock(const Stmt&);
     Inst* inCone(Inst* axis, Inst* angle);
@@ -300,6 +313,10 @@ private:
     // build_rays.cpp
     Inst* rays(const Expr&, const char* name, const std::vector<std::pair<Inst*, Type>>& positional, Inst* cone);
     Inst* tracedMap(const Expr&);
+    // build_hemisphere.cpp
+    struct Hemisphere;
+    void hemispherePairs(const Expr&, Inst* normal, bool occlusion, Hemisphere&);
+    Inst* hemisphere(const Expr&);
     Inst* random(const Expr&);
     bool hasGlobal(const char* name) const;
     Inst* global(const char* name, Base);

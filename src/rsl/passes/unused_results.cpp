@@ -7,7 +7,9 @@ namespace alpenglow::rsl::ir {
 void removeUnusedResults(Kernel& k) {
     std::map<int, std::vector<char>> read; // by site
     forEach(k.body, [&](Inst* i) {
-        if (i->op == Op::Request && k.sites[static_cast<size_t>(i->site)].op == "trace") read[i->site].resize(i->results.size());
+        if (i->op != Op::Request) return;
+        const std::string& op = k.sites[static_cast<size_t>(i->site)].op;
+        if (op == "trace" || op == "occlusion") read[i->site].resize(i->results.size());
     });
     forEach(k.body, [&](Inst* i) {
         if (i->op != Op::Result || i->args[0]->op != Op::Request) return;

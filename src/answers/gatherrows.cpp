@@ -1,0 +1,20 @@
+#include "answers/gatherrows.h"
+#include "answers/answers.h"
+#include "world/gathersite.h"
+#include <algorithm>
+
+namespace alpenglow::transport {
+
+void answerGatherTurn(const ServiceCall& call) {
+    const auto of = call.c.gathers.find({call.s.gather->number, call.first});
+    if (of == call.c.gathers.end()) return;
+    GatherRows& g = of->second;
+    call.each([&](int lane, const ShadePoint&) {
+        const int ray = int(call.at(0, lane)) - g.begins[size_t(lane)];
+        if (ray < 0 || ray >= rsl::kGatherRays) return;
+        const float* row = g.of(lane, ray);
+        for (int r = 0; r < std::min(g.width, call.s.resultRowCount); ++r) call.put(r, lane, row[r]);
+    });
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,152 @@
+// gather: rays by the handful, then a loop over what they found. A turn that has no rays left asks for the next handful (Request
+// "gather"), so that what they bring takes bounded memory; each turn then reads its own ray (Service "gatherturn").
+#include "rsl/gatherrays.h"
+#include "rsl/ir/builder.h"
+#include <algorithm>
+#include <string_view>
+
+namespace alpenglow::rsl::ir {
+
+namespace {
+
+/// Pairs that a gather takes. Outputs have a colon.
+bool isInput(const std::string& name) {
+    static const std::set<std::string_view> kNames = {"label",         "subset",     "bias",         "hitmode",   "hitsides",
+                                                      "maxdist",       "samplebase", "type",         "raytype",   "raylabel",
+                                                      "excludesubset", "maxhitdist", "distribution", "othreshold"};
+    return kNames.count(name) > 0;
+}
+
+} // namespace
+
+/// What a gather asks for with every handful of rays, and the variables that its turns fill.
+struct Builder::GatherCall {
+    Site site, turn;
+    std::vector<Inst*> args;
+    std::vector<std::pair<Receiver, size_t>> outputs; ///< with the number of the flag that says whether the value came
+};
+
+Builder::GatherCall Builder::gatherCall(const Stmt& s) {
+    GatherCall g;
+    g.site.op = "gather";
+    g.turn.op = "gatherturn";
+    const Type real{Base::Float, 0}, point{Base::Point, 0}, vector{Base::Vector, 0};
+    g.site.place = g.turn.place = s.place;
+    g.site.resultType = g.turn.resultType = real;
+    g.site.shadeop = g.turn.shadeop = findShadeop("gather");
+    const std::string number = std::to_string(gathers_++);
+    const auto constantPair = [](Site& site, const std::string& name, const std::string& text) {
+        site.names.push_back(name);
+        site.pairStrings.push_back(text);
+    };
+    g.site.strings.push_back("");
+    if (s.category) {
+        const Inst* c = expr(*s.category);
+        if (c->op == Op::ConstString) g.site.strings[0] = c->text;
+        else warn(s.place, "the category of gather must be known when the shader is compiled; \"illuminance\" is taken");
+    }
+    const Kind kinds[] = {Kind::Triple, Kind::Triple, Kind::Float, Kind::Float};
+    const Type types[] = {point, vector, real, real};
+    for (size_t i = 0; i < 4; ++i)
+        addArgument(g.site, g.args, i < s.exprs.size() ? expr(*s.exprs[i], kinds[i]) : zero(kinds[i]), types[i]);
+    constantPair(g.site, "__gather", number);
+    constantPair(g.turn, "__gather", number);
+    g.turn.resultKinds = {Kind::Float};
+    g.turn.resultNames = {""};
+    for (const NamedArg& p : s.pairs) {
+        if (!p.value) continue;
+        if (p.output) {
+            const size_t flag = g.turn.resultKinds.size();
+            g.turn.resultKinds.push_back(Kind::Float);
+            g.turn.resultNames.push_back("?" + p.name);
+            g.outputs.push_back({receiver(g.turn, *p.value, p.name), flag});
+            continue;
+        }
+        if (p.name.rfind("send:", 0) == 0) {
+            warn(p.place, "gather sends nothing to what it meets: \"" + p.name + "\" is ignored");
+            continue;
+        }
+        if (!isInput(p.name) || p.value->type.array) continue; // front/lint_calls.cpp says it
+        Inst* v = expr(*p.value);
+        const bool text = v->kind == Kind::String,
+                   wantsText = !(p.name == "bias" || p.name == "maxdist" || p.name == "samplebase" || p.name == "maxhitdist" ||
+                                 p.name == "othreshold");
+        if (text != wantsText) {
+            warn(p.place, "\"" + p.name + "\" of gather is a " + (wantsText ? "string" : "number") + "; this one is ignored");
+            continue;
+        }
+        if (!text) v = coerce(v, p.name == "othreshold" ? Kind::Triple : Kind::Float);
+        if (v->op == Op::ConstString && v->text.empty()) continue;
+        constantPair(g.site, p.name, v->op == Op::ConstString ? v->text : "");
+        if (v->op != Op::ConstString)
+            addArgument(g.site, g.args, v, {wantsText ? Base::String : v->kind == Kind::Triple ? Base::Color : Base::Float, 0});
+    }
+    g.site.resultKinds = {Kind::Float};
+    g.site.resultNames = {""};
+    return g;
+}
+
+std::set<int> Builder::assignedByGather(const Stmt& s) {
+    std::set<int> assigned;
+    std::set<const Function*> seen;
+    scanAssigned(s, assigned, seen);
+    return assigned;
+}
+
+void Builder::gather(const Stmt& s) {
+    GatherCall g = gatherCall(s);
+    std::set<int> assigned = assignedByGather(s);
+    const int turn = newSlot(constant(0)), end = newSlot(constant(1)), left = newSlot(constant(0));
+    assigned.insert({turn, end, left});
+    const auto less = [&](Inst* a, Inst* b) { return emit(Op::Less, Kind::Bool, {a, b}); };
+    const auto nothing = [] { return std::vector<Inst*>{}; };
+    // The arguments of the request: P, dir, angle, samples, then the number of the turn, then pairs.
+    g.site.argKinds.insert(g.site.argKinds.begin() + 4, Kind::Float);
+    g.site.argTypes.insert(g.site.argTypes.begin() + 4, Type{Base::Float, 0});
+    Turns t;
+    t.goesOn = [&] { return less(get(turn), get(end)); };
+    t.turn = [&] {
+        branch(
+            less(get(left), constant(0.5f)),
+            [&] {
+                std::vector<Inst*> args = g.args;
+                args.insert(args.begin() + 4, get(turn));
+                place_ = s.place;
+                set(end, call(Op::Request, std::move(g.site), std::move(args))[0]);
+                set(left, constant(static_cast<float>(kGatherRays)));
+                return std::vector<Inst*>{};
+            },
+            nothing);
+        Inst* now = get(turn);
+        set(turn, emit(Op::Add, Kind::Float, {now, constant(1)}));
+        set(left, emit(Op::Sub, Kind::Float, {get(left), constant(1)}));
+        branch(
+            less(now, get(end)),
+            [&] {
+                std::vector<Inst*> args;
+                addArgument(g.turn, args, now, {Base::Float, 0});
+                place_ = s.place;
+                const std::vector<Inst*> r = call(Op::Service, std::move(g.turn), std::move(args));
+                for (const auto& [receiver, flag] : g.outputs)
+                    receive(receiver, std::span(r).subspan(flag + 1, static_cast<size_t>(receiver.rows)),
+                            emit(Op::NotEqual, Kind::Bool, {r[flag], constant(0)}));
+                branch(
+                    emit(Op::NotEqual, Kind::Bool, {r[0], constant(0)}),
+                    [&] {
+                        statements(s.body, 0);
+                        return std::vector<Inst*>{};
+                    },
+                    [&] {
+                        if (s.elseBody) statement(*s.elseBody);
+                        return std::vector<Inst*>{};
+                    });
+                return std::vector<Inst*>{};
+            },
+            nothing);
+    };
+    const bool jump = std::any_of(s.body.begin(), s.body.end(), [](const StmtPtr& b) { return b && jumps(*b); }) ||
+                      (s.elseBody && jumps(*s.elseBody));
+    turns(assigned, jump, t, s.place);
+}
+
+} // namespace alpenglow::rsl::ir

@@ -1,0 +1,38 @@
+// Irradiance of environment maps (indirectdiffuse(map, direction)).
+#pragma once
+#include "base/vec.h"
+#include "texture/texture.h"
+#include <map>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+namespace alpenglow::texture {
+
+/// What a map sends to a plane, by the plane's normal. Noiseless; where light lies right at the horizon it is off by what a cell
+/// of some degrees makes of the cosine there.
+class IrradianceTable {
+public:
+    /// Null: black. `axes`: of maps that are no cubes.
+    IrradianceTable(Handle, const LatLong& axes);
+    /// Irradiance / pi of a plane with normal n, unit, in the map's space.
+    Color about(const Vec3& n) const;
+
+private:
+    struct Cell {
+        Vec3 light[3];
+    }; ///< by channel: directions times light, over pi
+    std::vector<Cell> cells_;
+};
+
+/// Those of a world, made when first asked for. Thread safe.
+class IrradianceTables {
+public:
+    const IrradianceTable& of(Handle, const LatLong& axes) const;
+
+private:
+    mutable std::mutex mutex_;
+    mutable std::map<Handle, std::unique_ptr<const IrradianceTable>> tables_;
+};
+
+} // namespace alpenglow::texture

@@ -1,0 +1,141 @@
+// occlusion(): how much of a hemisphere, or of a cone, is open. Its rays are shadow rays: surfaces on the way take their share of
+// what one brings, and no shader runs but where an opacity is not known beforehand.
+#include "base/exact.h"
+#include "geometry/shape.h"
+#include "lobes/sampling.h"
+#include "wave/engine.h"
+#include "world/raysets.h"
+
+namespace alpenglow::transport {
+
+namespace {
+
+/// Directions beyond the plane of "axis" are drawn again so often; then the ray is left out.
+constexpr int kTries = 64;
+
+/// The directions of a call.
+struct Directions {
+    Basis about;
+    bool uniform = false;
+    float cap = 1, sine2 = 1; ///< 1 - cos of the half angle; its sine, squared
+    Directions(const Vec3& axis, float half, bool evenly) : about(axis), uniform(evenly) {
+        const double a = std::clamp(double(half), 0.0, evenly ? kPi : kPi / 2);
+        const float s = float(exact::sin(0.5 * a)), s2 = float(exact::sin(a));
+        cap = 2 * s * s;
+        sine2 = s2 * s2;
+    }
+    Vec3 at(const Vec2& e) const {
+        if (uniform) return about.toWorld(sampleCone(cap, e));
+        const float r2 = e.x * sine2, r = std::sqrt(r2); // cosine-weighted
+        const Vec2 d = unitCircle(e.y);
+        return about.toWorld({r * d.x, r * d.y, std::sqrt(std::max(0.f, 1 - r2))});
+    }
+};
+
+} // namespace
+
+float HemisphereRays::blocks(double distance) const {
+    if (!polynomial) return float(exact::exp(-double(falloff) * distance));
+    const double left = reach < 1e30f ? std::clamp(1 - distance / reach, 0.0, 1.0) : 1;
+    return left > 0 ? float(exact::exp(double(falloff) * exact::log(left))) : 0;
+}
+
+const Engine::OfShape& Engine::ofShape(const geometry::Shape* shape) {
+    const scene::Attributes* const a = shape ? &shape->attributes() : nullptr;
+    const auto [at, fresh] = ofShapes_.try_emplace(a, OfShape{64, -1});
+    if (!fresh || !a) return at->second;
+    const auto number = [&](const char* key, float fallback) {
+        const scene::Param* p = a->value(key);
+        return p && !p->numbers.empty() ? p->numbers[0] : fallback;
+    };
+    const float samples = number("irradiance:nsamples", 64);
+    at->second.samples = samples >= 1 ? int(std::min(samples, 4096.f)) : 1;
+    if (const float bias = number("trace:bias", -1); bias > 0) at->second.bias = bias;
+    return at->second;
+}
+
+int Engine::samplesOf(float asked, const geometry::Shape* shape, const SiteInfo& s, const BatchContext& c) {
+    if (!(asked >= 1)) return asked > 0 ? 1 : ofShape(shape).samples;
+    if (asked > 4096) {
+        const auto& files = c.bound->kernel->files();
+        const auto& at = s.site->place;
+        const SourcePlace place{at.file < int(files.size()) ? files[size_t(at.file)] : "", at.line, at.column};
+        diagnostics_.reportOnce("samples:" + place.file + std::to_string(place.line),
+                                {Severity::Warning,
+                                 Rie::Limit,
+                                 place,
+                                 "a call sends 4096 rays at most; it asks for more samples",
+                                 "more samples a pixel give the same mean",
+                                 {}});
+    }
+    return int(std::min(asked, 4096.f));
+}
+
+void Engine::hemisphereRays(const BatchContext& c, const SiteInfo& s, const ShadePoint& p, const Vec3& at,
+                            const geometry::SurfacePoint* surface, const std::function<float(int)>& f, const Color& weight,
+                            TargetId target, uint32_t site, uint32_t occurrence, std::vector<ShadowRay>& out) {
+    const RaySite& r = *s.rays;
+    const OcclusionSite& o = *s.occlusion;
+    const auto number = [&](int row, float fallback) { return row < 0 ? fallback : f(row); };
+    const auto triple = [&](int row) { return Vec3(f(row), f(row + 1), f(row + 2)); };
+    const Vec3 from = triple(s.rows[0]);
+    Vec3 normal = triple(s.rows[1]);
+    const float l = length(normal);
+    normal = l > 0 && std::isfinite(l) ? normal / l : surface ? surface->n : Vec3(0, 0, 1);
+    const Vec3 towards = o.axis >= 0 ? triple(o.axis) : Vec3();
+    const float half = number(o.cone, float(kPi / 2));
+    const Directions directions(normal, half > 0 ? half : 0, o.uniform);
+    const int count = half > 0 && p.ray ? samplesOf(number(r.samples, 0), p.shape, s, c) : 1;
+    ShadowRay ray{};
+    ray.target = target;
+    ray.time = p.shutter;
+    ray.ray = p.ray;
+    RayKind kind = kShadowKind;
+    kind.set = raySetOf(s, f, p.shape, kind.type, kind.label);
+    ray.kind = kindOf(kind);
+    const float far = std::min(number(r.maxDistance, 1e38f), number(r.maxHit, 1e38f));
+    ray.distance = far >= 0 ? far : 1e38f;
+    float bias = number(r.bias, -1);
+    if (bias < 0) bias = ofShape(p.shape).bias;
+    HemisphereRays h;
+    h.site = s.trace.get();
+    h.share = 1 / float(count);
+    h.falloff = std::max(0.f, number(o.falloff, 0));
+    h.polynomial = number(o.mode, 0) != 0;
+    h.reach = ray.distance;
+    h.spread = p.ray ? p.ray->footprint.spread : 0;
+    ray.hemisphere = int32_t(hemispheres_.size());
+    hemispheres_.push_back(h);
+    ray.contribution = weight * h.share;
+    const float base = number(r.base, 0);
+    const bool here = surface && length(from - at) <= geometry::roundingError(from) + 4 * surface->pError;
+    for (int k = 0; k < count; ++k) {
+        const Random numbers = p.ray ? random(*p.ray).draw(uint32_t(k), uint32_t(count)) : Random(noSample_.numbers);
+        const uint32_t vertex = p.ray ? p.ray->vertex : 0;
+        int tries = 0;
+        do ray.dir = directions.at(half > 0 ? numbers.pair(vertex, site, occurrence * 4096 + uint32_t(tries)) : Vec2(0, 0));
+        while (o.axis >= 0 && !(dot(ray.dir, towards) > 0) && dot(towards, towards) > 0 && ++tries < kTries);
+        if (tries == kTries) ray.contribution = Color(0); // none is there, nearly
+        else ray.contribution = weight * h.share;
+        ray.origin = bias >= 0 ? from + ray.dir * bias
+                     : here    ? geometry::offsetOrigin(*surface, ray.dir, length(at - surface->P) + length(from - at))
+                               : from + ray.dir * geometry::roundingError(from);
+        if (base > 0 && surface && p.ray) {
+            const Vec2 e = numbers.pair(childVertex(vertex, site, occurrence), kSampleBase, 0);
+            ray.origin += (surface->dPdu * (p.du * (e.x - .5f)) + surface->dPdv * (p.dv * (e.y - .5f))) * base;
+        }
+        out.push_back(ray);
+    }
+}
+
+Color Engine::openLight(const ShadowRay& r, const Color& transmitted, TraceSums* sums) const {
+    const float open = mean(transmitted);
+    if (sums) {
+        const HemisphereRays& h = hemispheres_[size_t(r.hemisphere)];
+        sums->add(TraceSums::Open, r.dir * (open * h.share));
+        if (h.site->map) sums->add(TraceSums::Environment, mapTowards(*h.site, r.dir, h.spread) * transmitted * h.share);
+    }
+    return r.contribution * open;
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,67 @@
+// What a gather statement asks for, worked out when its kernel is bound.
+#pragma once
+#include "world/impl.h"
+
+namespace alpenglow::transport {
+
+/// Directions in proportion to the light of an environment map, seen from anywhere.
+class SkyDirections {
+public:
+    SkyDirections(texture::Handle, const texture::LatLong&);
+    struct Direction {
+        Vec3 w;
+        float density;
+        Color light;
+    }; ///< density per steradian, > 0; light there
+    Direction at(Vec2 random) const;
+
+private:
+    texture::Handle map_;
+    texture::LatLong axes_;
+    std::vector<float> sums_; ///< by cell, of its light and all before
+};
+
+struct GatherSite {
+    enum class Category : uint8_t { Rays, Directions, Sky };
+    /// Whose value an output is.
+    enum class Of : uint8_t {
+        Surface,
+        Displacement,
+        Volume, ///< parameters and outputs of the shaders at the hit
+        Light,
+        Opacity, ///< surface:Ci and surface:Oi
+        Primitive,
+        Attribute, ///< of what was hit
+        Origin,
+        Direction,
+        Length, ///< of the ray
+        SkyColor,
+        SkyDirection,
+        SkySolidAngle ///< of a sample of an environment map
+    };
+    /// A row that says whether there is a value, then the value: `rows` of them; of an open array its length stands first.
+    struct Output {
+        Of of;
+        int32_t id = 0;                     ///< its name without the prefix, interned
+        int at = 0, rows = 1, elements = 0; ///< elements: 0 of what is no array
+        bool open = false;
+        rsl::ir::Kind kind = rsl::ir::Kind::Float;
+    };
+    int number = 0; ///< of the statement in its kernel
+    Category category = Category::Rays;
+    bool cosine = false; ///< "distribution"; else uniform
+    int threshold = -1;  ///< row of "othreshold"
+    std::vector<Output> outputs;
+    int width = 1;       ///< rows of a ray: whether it hit, then the outputs
+    bool shades = false; ///< shaders must run where a ray hits
+    bool light = false;  ///< and what arrives from there counts
+    std::shared_ptr<const SkyDirections> sky;
+};
+
+/// Fills SiteInfo::gather of the sites of a kernel.
+void linkGathers(BoundKernel&, const rsl::CompiledKernel&, WorldImpl&);
+
+/// Names that the gathers of a file of shaders ask surfaces for ("x" of "surface:x").
+void gatheredNames(const rsl::Program&, std::set<std::string>& names);
+
+} // namespace alpenglow::transport

@@ -124,7 +124,8 @@ Program::~Program() {
     kill();
 }
 
-bool Program::ask(const std::string& line, double seconds, const StopFlag* stop, std::string& answer, std::string& why) {
+bool Program::ask(const std::string& line, double seconds, const StopFlag* stop, std::string& answer, std::string& why,
+                  size_t most) {
     answer.clear();
     const auto fail = [&](const char* reason) {
         why = reason;
@@ -148,7 +149,7 @@ bool Program::ask(const std::string& line, double seconds, const StopFlag* stop,
             return true;
         }
         looked = answer.size();
-        if (looked > limits::kProgramBytes) return fail("its answer is too long");
+        if (looked > most) return fail("its answer is too long");
         if (!waitFor(from_, POLLIN, end, stop)) return fail(stop && *stop ? "the render was stopped" : "it took too long");
         char buffer[65536];
         const ssize_t n = ::read(from_, buffer, sizeof buffer);

@@ -1,5 +1,6 @@
 // Programs that a scene has make RIB (Procedural "RunProgram"): one process a command, asked again and again.
 #pragma once
+#include "base/limits.h"
 #include "base/stopflag.h"
 #include <map>
 #include <memory>
@@ -20,8 +21,9 @@ public:
     Program& operator=(const Program&) = delete;
 
     /// Sends a line and waits for the answer, at most `seconds`. False with a reason when it ended, took too long, said too much
-    /// (limits::kProgramBytes) or the user stopped the render; then it is killed, and `answer` holds what came.
-    bool ask(const std::string& line, double seconds, const StopFlag* stop, std::string& answer, std::string& why);
+    /// (more bytes than `most`) or the user stopped the render; then it is killed, and `answer` holds what came.
+    bool ask(const std::string& line, double seconds, const StopFlag* stop, std::string& answer, std::string& why,
+             size_t most = limits::kProgramBytes);
 
 private:
     Program() = default;

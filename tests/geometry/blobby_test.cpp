@@ -1,5 +1,6 @@
 // Blobbies against closed forms: the ball, the capsule, fields by quadrature and by differences, volumes and areas by chords and
 // samples.
+#include "base/limits.h"
 #include "geometry/blob_field.h"
 #include "make.h"
 #include <cmath>
@@ -370,4 +371,16 @@ TEST(Blobby, FaultyCodeIsSaid) {
     Diagnostics missing; // a depth map that is not there: told, and the rest is drawn
     EXPECT_TRUE(build(blobby(2, {1001, 0, 1003, 0, 16, 0, 2, 0, 1}, {b, {1, 1, 1, 1}}, {"/none.z"}), Matrix(), missing));
     EXPECT_EQ(missing.errors(), 1);
+}
+
+TEST(Blobby, CodeAndBoxesHaveTheirLimits) {
+    Diagnostics diag;
+    auto p = blobby(1, std::vector<int>(size_t(limits::kBlobInstructions) + 1, 1001), {ball(0, 0, 5, 1)});
+    EXPECT_EQ(build(p, Matrix{}, diag), nullptr);
+    EXPECT_GE(diag.errors(), 1);
+    // A needle a million times as long as it is thick, tilted, asks for boxes all along.
+    Diagnostics quiet;
+    auto needle = blobby(1, {1002, 0}, {{-100, -100, 3, 100, 100, 50, 1e-4f}});
+    for (float f : matrixNumbers(Matrix{})) needle->numbers.push_back(f);
+    if (const auto s = build(needle, Matrix{}, quiet)) EXPECT_LE(s->exactPrims(), limits::kBlobBoxes);
 }

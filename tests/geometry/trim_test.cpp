@@ -392,3 +392,13 @@ TEST(NuPatch, AKnotThatTearsTheSurfaceLeavesAGap) {
     }
     EXPECT_NEAR(area, 2, 1e-6);
 }
+
+TEST(Trim, AreOfSoManyPiecesAtMost) {
+    std::vector<float> u, v;
+    for (size_t i = 0; i < limits::kTrimPieces + 3; ++i) u.push_back(i % 2 ? .25f : .75f), v.push_back(.5f);
+    const scene::ParamList curves = trimList({{lines(std::move(u), std::move(v))}});
+    std::string why;
+    double gap;
+    EXPECT_FALSE(TrimRegion::make(curves, kUnit, true, why, gap));
+    EXPECT_NE(why.find(std::to_string(limits::kTrimPieces)), std::string::npos) << why;
+}

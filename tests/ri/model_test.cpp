@@ -1,4 +1,5 @@
 // Files of polygons: what is in them is drawn, and what is wrong with them is told and costs no more than the file.
+#include "base/limits.h"
 #include "base/srgb.h"
 #include "collect.h"
 #include "ri/models/model.h"
@@ -357,4 +358,30 @@ TEST_F(ModelFiles, AreDrawnByGeometry) {
     EXPECT_EQ(var(c->primitive(1), "texturename").strings[0], "../../secret.png"); // as it was: the map's own rules hold
     EXPECT_EQ(readHere("Geometry \"none.ply\"")->only().code, Rie::NoFile);
     EXPECT_EQ(readHere("Geometry \"obj\"")->only().code, Rie::MissingData);
+}
+
+TEST(Model, FilesHaveTheirLimits) {
+    Said said;
+    std::string header = "ply\nformat ascii 1.0\nelement vertex 1\n";
+    for (int i = 0; i <= limits::kModelProperties; ++i) header += "property float p" + std::to_string(i) + "\n";
+    EXPECT_TRUE(ply(header + "end_header\n0\n", said).empty());
+    EXPECT_EQ(said.errors, 1) << said.text;
+
+    Said many;
+    std::string faulty;
+    for (int i = 0; i < limits::kModelMessages + 5; ++i) faulty += "f 1 2 3\n";
+    obj(faulty, many);
+    EXPECT_EQ(many.errors + many.warnings, limits::kModelMessages + 1) << many.text; // the last counts the others
+    EXPECT_NE(many.text.find("5 more faults"), std::string::npos) << many.text;
+}
+
+TEST_F(ModelFiles, AreSoLargeAtMost) {
+    const std::string path = (dir / "large.ply").string();
+    std::ofstream(path) << "ply\n";
+    std::error_code full;
+    std::filesystem::resize_file(path, limits::kModelBytes + 1, full); // a hole
+    if (full) GTEST_SKIP() << "the disk has no files of this size";
+    Said said;
+    EXPECT_TRUE(readModelFile(path, said.sink(), nullptr).empty());
+    EXPECT_EQ(said.errors, 1) << said.text;
 }

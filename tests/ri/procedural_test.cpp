@@ -1,4 +1,5 @@
 // Programs that make parts of scenes: run only when asked for, one process a command, bounded in time, depth and breadth.
+#include "base/limits.h"
 #include "collect.h"
 #include "ri/program.h"
 #include <chrono>
@@ -113,4 +114,20 @@ TEST_F(Procedurals, NestToALimit) {
     auto c = readHere("WorldBegin Procedural \"RunProgram\" [\"again\" \"\"]" + bound + "WorldEnd");
     EXPECT_EQ(c->only().code, Rie::Limit);
     EXPECT_EQ(c->frame().primitives.size(), size_t(limits::kArchiveDepth));
+}
+
+TEST_F(Procedurals, HaveTheirLimits) {
+    EXPECT_EQ(ReaderOptions().programSeconds, limits::kProgramSeconds);
+    std::string calls = "WorldBegin\n";
+    for (int i = 0; i <= limits::kProgramCalls; ++i) calls += "Procedural \"RunProgram\" [\"missing\" \"\"]" + bound + "\n";
+    const auto c = readHere(calls + "WorldEnd");
+    EXPECT_NE(c->messages().find("more than " + std::to_string(limits::kProgramCalls)), std::string::npos);
+
+    program("talks", "while read line; do i=0; while [ $i -lt 1000 ]; do echo \"# said before\"; i=$((i+1)); done; done");
+    std::string why, answer;
+    const auto talks = Program::start({(dir / "talks").string()}, why);
+    ASSERT_NE(talks, nullptr) << why;
+    EXPECT_FALSE(talks->ask("1\n", 20, nullptr, answer, why, 4096));
+    EXPECT_EQ(why, "its answer is too long");
+    EXPECT_GT(limits::kProgramBytes, size_t(1) << 30); // what ask() takes by itself
 }

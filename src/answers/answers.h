@@ -173,8 +173,10 @@ void answerLightSource(Answers&, const ServiceCall&);
 void answerAttribute(Answers&, const ServiceCall&);
 void answerShaderName(Answers&, const ServiceCall&);
 void answerPrimitiveVariable(const ServiceCall&);
-/// A parameter or output of a shader of the primitive at a point that was hit; `run`: of that shader, with the point's number there, or null.
-std::optional<Told> toldAtHit(Answers&, const ShadePoint&, const InstanceRef& shader, int32_t name, const shading::Batch* run, int point);
+/// A parameter or output of a shader of the primitive at a point that was hit; `run`: of that shader, with the point's number
+/// there, or null.
+std::optional<Told> toldAtHit(Answers&, const ShadePoint&, const InstanceRef& shader, int32_t name, const shading::Batch* run,
+                              int point);
 // gatherrows.cpp: a turn of a gather.
 void answerGatherTurn(const ServiceCall&);
 

@@ -11,7 +11,8 @@ bool hasSheets(const BoundLight& l) {
     if (!l.kernel || l.kind == LightKind::Environment || l.sentCl >= 0 || l.channels || l.kernel.kernel->facts().suspends)
         return false;
     return std::none_of(l.kernel.sites.begin(), l.kernel.sites.end(), [](const SiteInfo& s) {
-        return s.kind == SiteKind::Trace || s.kind == SiteKind::Transmission || s.kind == SiteKind::Occlusion || s.kind == SiteKind::Gather || s.site->op == "printf";
+        return s.kind == SiteKind::Trace || s.kind == SiteKind::Transmission || s.kind == SiteKind::Occlusion ||
+               s.kind == SiteKind::Gather || s.site->op == "printf";
     });
 }
 

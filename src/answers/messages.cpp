@@ -92,7 +92,8 @@ void answerMessage(Answers& answers, const ServiceCall& q) {
     });
 }
 
-std::optional<Told> toldAtHit(Answers& answers, const ShadePoint& p, const InstanceRef& shader, int32_t id, const shading::Batch* run, int point) {
+std::optional<Told> toldAtHit(Answers& answers, const ShadePoint& p, const InstanceRef& shader, int32_t id,
+                              const shading::Batch* run, int point) {
     const std::string& name = rsl::internedString(id);
     if (shader) {
         const auto [known, fresh] = answers.memo().ofShaders.try_emplace({id, shader.get()});
@@ -104,7 +105,8 @@ std::optional<Told> toldAtHit(Answers& answers, const ShadePoint& p, const Insta
         }
     }
     // What the shader sees of the primitive. The rest of a point is not known unless a kernel reads it.
-    if (!p.shape || !run || (name != "P" && name != "N" && name != "Cs" && name != "Os" && p.shape->findPrimvar(name) < 0)) return {};
+    if (!p.shape || !run || (name != "P" && name != "N" && name != "Cs" && name != "Os" && p.shape->findPrimvar(name) < 0))
+        return {};
     std::optional<Told> t = primitiveVariable(*p.shape, p.surface, name);
     if (t && name == "P") t->numbers = {p.P.x, p.P.y, p.P.z};
     if (t && name == "N") t->numbers = {p.N.x, p.N.y, p.N.z};

@@ -156,6 +156,9 @@ public:
     /// Follows what strips have asked for since the last call: those of a batch together.
     void followStrips(Sched&) override;
     // requests.cpp
+    void requestShadows(BatchContext&, const SiteInfo&, int point, const std::function<float(int)>& row, const Color& weight,
+                        TargetId, bool owns, uint32_t occurrence);
+    template <class Row> const RayKind* raysOfTrace(const SiteInfo&, const Row&, const ShadePoint&);
     void request(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId,
                  bool owns, uint32_t occurrence);
     void lightVisibility(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId,

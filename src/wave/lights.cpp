@@ -176,8 +176,9 @@ void Engine::runWaitingLight(BatchContext& context) {
                 const std::function<float(int)> row = [&](int r) { return c->requestIn[size_t(r) * c->requestLanes + lane]; };
                 for (int r = 0; r < s.resultRowCount; ++r) c->requestOut[size_t(r) * c->requestLanes + lane] = 0;
                 TraceSums sums;
-                const shading::TargetValue t = rayOfLight(
-                    *c, s, first + lane, row, asked[size_t(c->requestSite) * size_t(c->batch->size()) + size_t(first + lane)]++, &sums);
+                const shading::TargetValue t =
+                    rayOfLight(*c, s, first + lane, row,
+                               asked[size_t(c->requestSite) * size_t(c->batch->size()) + size_t(first + lane)]++, &sums);
                 putResult(s, t, s.kind == SiteKind::Occlusion ? &sums : nullptr, c->requestOut, c->requestLanes, lane);
             }
             k.resume(h);

@@ -42,6 +42,36 @@ template <class Row> LitValues litValues(const BatchContext& c, const SiteInfo& 
 }
 } // namespace
 
+/// Questions that shadow rays answer.
+void Engine::requestShadows(BatchContext& c, const SiteInfo& s, int point, const std::function<float(int)>& f,
+                            const Color& weight, TargetId target, bool owns, uint32_t occurrence) {
+    const ShadePoint& p = c.points[size_t(point)];
+    const uint32_t site = uint32_t(s.site - c.bound->kernel->sites().data());
+    const size_t had = shadows.size();
+    if (s.kind == SiteKind::Transmission) {
+        transmissionRays(s, p, p.P, &p.surface, f, weight, target, site, occurrence, shadows);
+        const auto v = [&](int arg) {
+            return Vec3(f(s.rows[size_t(arg)]), f(s.rows[size_t(arg)] + 1), f(s.rows[size_t(arg)] + 2));
+        };
+        shadowsInMedia(std::span(shadows).subspan(had), v(0), v(1), p.P, &p.surface,
+                       c.bindings.empty() ? nullptr : &world_->bindings_[size_t(c.bindings[size_t(point)])]);
+    } else {
+        hemisphereRays(c, s, p, p.P, &p.surface, f, weight, target, site, occurrence, shadows);
+        for (size_t k = had; k < shadows.size(); ++k) shadows[k].media = mediaTowards(c, point, shadows[k].dir);
+    }
+    if (!owns && p.ray)
+        for (size_t k = had; k < shadows.size(); ++k) shadows[k].share = extraOf(*p.ray).share;
+}
+
+/// Which surfaces rays of a trace() meet.
+template <class Row> const RayKind* Engine::raysOfTrace(const SiteInfo& s, const Row& f, const ShadePoint& p) {
+    if (s.rays->fixed && !(world_->traceSubsets_ && s.rays->subsetText.empty())) // what most calls are, many times a sample
+        return kindOf({s.rays->rays, true, s.rays->set, s.label});
+    RayKind kind{RayType::Diffuse, true, {}, 0};
+    kind.set = raySetOf(s, f, p.shape, kind.type, kind.label);
+    return kindOf(kind);
+}
+
 void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float* in, int lanes, int lane, Color weight,
                      TargetId target, bool owns, uint32_t occurrence) {
     const ShadePoint& p = c.points[point];
@@ -49,22 +79,8 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     auto v = [&](int arg) { return Vec3(f(s.rows[arg]), f(s.rows[arg] + 1), f(s.rows[arg] + 2)); };
     auto number = [&](int row, float fallback) { return row < 0 ? fallback : f(row); };
     auto vector = [&](int row, Vec3 fallback) { return row < 0 ? fallback : Vec3(f(row), f(row + 1), f(row + 2)); };
-    if (s.kind == SiteKind::Transmission) {
-        const size_t had = shadows.size();
-        transmissionRays(s, p, p.P, &p.surface, f, weight, target, uint32_t(s.site - c.bound->kernel->sites().data()), occurrence,
-                         shadows);
-        if (!owns && p.ray)
-            for (size_t k = had; k < shadows.size(); ++k) shadows[k].share = extraOf(*p.ray).share;
-        shadowsInMedia(std::span(shadows).subspan(had), v(0), v(1), p.P, &p.surface,
-                       c.bindings.empty() ? nullptr : &world_->bindings_[size_t(c.bindings[size_t(point)])]);
-        return;
-    }
-    if (s.kind == SiteKind::Occlusion) {
-        const size_t had = shadows.size();
-        hemisphereRays(c, s, p, p.P, &p.surface, f, weight, target, uint32_t(s.site - c.bound->kernel->sites().data()), occurrence, shadows);
-        if (!owns && p.ray)
-            for (size_t k = had; k < shadows.size(); ++k) shadows[k].share = extraOf(*p.ray).share;
-        for (size_t k = had; k < shadows.size(); ++k) shadows[k].media = mediaTowards(c, point, shadows[k].dir);
+    if (s.kind == SiteKind::Transmission || s.kind == SiteKind::Occlusion) {
+        requestShadows(c, s, point, f, weight, target, owns, occurrence);
         return;
     }
     if (!s.lobe) return; // under path ambient light is what escaping diffuse rays see
@@ -104,13 +120,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
             params.horizon = unit(vector(s.rowHorizon, p.surface.n), p.surface.n);
             params.hasHorizon = true;
         }
-        if (s.rays->fixed && !(world_->traceSubsets_ && s.rays->subsetText.empty())) { // what most calls are, many times a sample
-            l.rays = kindOf({s.rays->rays, true, s.rays->set, s.label});
-        } else {
-            RayKind kind{RayType::Diffuse, true, {}, 0};
-            kind.set = raySetOf(s, f, p.shape, kind.type, kind.label);
-            l.rays = kindOf(kind);
-        }
+        l.rays = raysOfTrace(s, f, p);
         l.lights = number(s.rowLights, 0) != 0;
         l.bias = number(s.rays->bias, -1);
         l.base = number(s.rays->base, 0);

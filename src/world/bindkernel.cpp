@@ -207,6 +207,44 @@ static void bindTrace(SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKe
     i.trace = traceSite(i, s, k, world);
 }
 
+/// Where the arguments and results of a call lie.
+static void bindRows(SiteInfo& i, const rsl::ir::Site& s) {
+    int row = 0;
+    std::vector<int> starts;
+    for (auto kind : s.argKinds) {
+        starts.push_back(row);
+        row += rsl::ir::components(kind);
+    }
+    size_t numericPairs = 0;
+    for (const auto& text : s.pairStrings) numericPairs += text.empty();
+    size_t positional = starts.size() - std::min(starts.size(), numericPairs), next = positional;
+    i.rows.assign(starts.begin(), starts.begin() + long(positional));
+    for (size_t p = 0; p < s.names.size(); ++p) {
+        if (!s.pairStrings[p].empty()) i.text[s.names[p]] = s.pairStrings[p];
+        else if (next < starts.size()) i.named[s.names[p]] = starts[next++];
+    }
+    int out = 0;
+    for (size_t r = 0; r < s.resultKinds.size(); ++r) {
+        std::string name = r < s.resultNames.size() ? s.resultNames[r] : "";
+        i.resultRows[name] = out;
+        out += rsl::ir::components(s.resultKinds[r]);
+    }
+    i.resultRowCount = out;
+    const auto result = [&](const char* name) {
+        const auto f = i.resultRows.find(name);
+        return f == i.resultRows.end() ? -1 : f->second;
+    };
+    i.results = {result(""),
+                 result("dist"),
+                 result("transmission"),
+                 result("hitnormal"),
+                 result("environmentdir"),
+                 result("environmentcontribution"),
+                 result("unshadowedenvironment"),
+                 result("arealightcontribution"),
+                 result("unshadowedarealight")};
+}
+
 BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed, bool path, WorldImpl* world) {
     BoundKernel b;
     b.path = path;
@@ -216,33 +254,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         SiteInfo i;
         i.kind = kindOf(s.op);
         i.site = &s;
-        int row = 0;
-        std::vector<int> starts;
-        for (auto kind : s.argKinds) {
-            starts.push_back(row);
-            row += rsl::ir::components(kind);
-        }
-        size_t numericPairs = 0;
-        for (const auto& text : s.pairStrings) numericPairs += text.empty();
-        size_t positional = starts.size() - std::min(starts.size(), numericPairs), next = positional;
-        i.rows.assign(starts.begin(), starts.begin() + long(positional));
-        for (size_t p = 0; p < s.names.size(); ++p) {
-            if (!s.pairStrings[p].empty()) i.text[s.names[p]] = s.pairStrings[p];
-            else if (next < starts.size()) i.named[s.names[p]] = starts[next++];
-        }
-        int out = 0;
-        for (size_t r = 0; r < s.resultKinds.size(); ++r) {
-            std::string name = r < s.resultNames.size() ? s.resultNames[r] : "";
-            i.resultRows[name] = out;
-            out += rsl::ir::components(s.resultKinds[r]);
-        }
-        i.resultRowCount = out;
-        const auto result = [&](const char* name) {
-            const auto f = i.resultRows.find(name);
-            return f == i.resultRows.end() ? -1 : f->second;
-        };
-        i.results = {result(""), result("dist"), result("transmission"), result("hitnormal"), result("environmentdir"), result("environmentcontribution"),
-                     result("unshadowedenvironment"), result("arealightcontribution"), result("unshadowedarealight")};
+        bindRows(i, s);
         if (!s.strings.empty() && !s.strings[0].empty()) i.nameId = rsl::internString(s.strings[0]);
         i.setUp = i.text.count(rsl::kPairSetUp) > 0;
         i.outside = i.text.count(rsl::kPairOutside) > 0;
@@ -266,7 +278,8 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         i.rowCone = rowOf("samplecone");
         i.rowHorizon = rowOf("horizon");
         i.rowLights = rowOf("samplearealights");
-        if (i.kind == SiteKind::Trace || i.kind == SiteKind::Transmission || i.kind == SiteKind::Occlusion || i.kind == SiteKind::Gather) {
+        if (i.kind == SiteKind::Trace || i.kind == SiteKind::Transmission || i.kind == SiteKind::Occlusion ||
+            i.kind == SiteKind::Gather) {
             auto text = [&](const char* name) {
                 auto f = i.text.find(name);
                 return f == i.text.end() ? std::string() : f->second;

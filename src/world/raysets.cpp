@@ -119,9 +119,9 @@ std::shared_ptr<const RaySite> raySite(const SiteInfo& i, WorldImpl& world, cons
     const std::string type = !text("type").empty() ? text("type") : text("raytype");
     if (!type.empty() && type != "specular" && type != "diffuse" && type != "transmission")
         unknown("type", type, "specular, diffuse, transmission");
-    r->rays =
-        !type.empty() ? rayTypeOf(type)
-        : i.kind == SiteKind::Transmission || i.kind == SiteKind::Occlusion || distance ? RayType::Transmission : RayType::Specular;
+    r->rays = !type.empty()                                                                   ? rayTypeOf(type)
+              : i.kind == SiteKind::Transmission || i.kind == SiteKind::Occlusion || distance ? RayType::Transmission
+                                                                                              : RayType::Specular;
     r->set.sides = r->rays == RayType::Transmission ? accel::Sides::Both : accel::Sides::Front;
     if (const std::string word = text("hitsides"); !word.empty()) {
         if (const auto s = sidesOf(word)) r->set.sides = *s;

@@ -22,6 +22,8 @@ constexpr OptionDescription kOptions[] = {
     {"checkpoint:interval", "", "", "", Ignored, "PRMan; --checkpoint is the way here"},
     {"curve:minwidth", "", "", "", Ignored, kPrman},
     {"dice:maxhairlength", "", "", "", Ignored, kPrman},
+    {"hider:aperture", "float[4]", "[0 0 0 0]", "[6 15 0.2 0]", Used,
+     "The same as the hider's parameter aperture, which has precedence."},
     {"hider:depthfilter", "string", "\"min\"", "\"midpoint\"", Used,
      "The same as the hider's parameter depthfilter, which has precedence."},
     {"hider:jitter", "int", "1", "0", Used, "The same as the hider's parameter jitter, which has precedence."},

@@ -1,5 +1,6 @@
 #include "world/gathersite.h"
 #include "base/exact.h"
+#include "rsl/front/protocol.h"
 #include "rsl/front/visit.h"
 #include <cstdlib>
 
@@ -27,24 +28,26 @@ Color lightAt(texture::Handle map, const texture::LatLong& axes, const Vec3& w, 
 
 /// What a name with its prefix means; nothing: it is not known.
 std::optional<std::pair<Of, std::string>> meaning(const std::string& name) {
-    static const std::map<std::string, Of> whole = {{"surface:Ci", Of::Light},
-                                                    {"surface:Oi", Of::Opacity},
-                                                    {"ray:origin", Of::Origin},
-                                                    {"ray:direction", Of::Direction},
-                                                    {"ray:length", Of::Length},
-                                                    {"environment:color", Of::SkyColor},
-                                                    {"environment:direction", Of::SkyDirection},
-                                                    {"environment:solidangle", Of::SkySolidAngle}};
+    static const std::map<std::pair<std::string, std::string>, Of> whole = {{{"surface", "Ci"}, Of::Light},
+                                                                            {{"surface", "Oi"}, Of::Opacity},
+                                                                            {{"ray", "origin"}, Of::Origin},
+                                                                            {{"ray", "direction"}, Of::Direction},
+                                                                            {{"ray", "length"}, Of::Length},
+                                                                            {{"environment", "color"}, Of::SkyColor},
+                                                                            {{"environment", "direction"}, Of::SkyDirection},
+                                                                            {{"environment", "solidangle"}, Of::SkySolidAngle}};
     static const std::map<std::string, Of> prefixes = {{"surface", Of::Surface},
                                                        {"displacement", Of::Displacement},
                                                        {"volume", Of::Volume},
                                                        {"primitive", Of::Primitive},
                                                        {"attribute", Of::Attribute}};
-    if (const auto i = whole.find(name); i != whole.end()) return std::pair(i->second, std::string());
     const size_t colon = name.find(':');
-    const auto i = prefixes.find(name.substr(0, colon));
-    if (i == prefixes.end() || colon == std::string::npos) return {};
-    return std::pair(i->second, name.substr(colon + 1));
+    if (colon == std::string::npos) return {};
+    const std::string prefix = name.substr(0, colon), rest = name.substr(colon + 1);
+    if (const auto i = whole.find({prefix, rest}); i != whole.end()) return std::pair(i->second, std::string());
+    const auto i = prefixes.find(prefix);
+    if (i == prefixes.end()) return {};
+    return std::pair(i->second, rest);
 }
 
 /// The outputs of a turn: flags are results that begin with '?', values follow them.
@@ -66,7 +69,7 @@ void readOutputs(const rsl::ir::Site& turn, GatherSite& g, const std::function<v
                 unknown(name.substr(1));
             }
         } else if (open) {
-            if (name.rfind("length ", 0) == 0) open->open = true;
+            if (rsl::isLengthResult(name)) open->open = true;
             else {
                 open->kind = turn.resultKinds[r];
                 open->elements += name.back() == ']';
@@ -131,7 +134,7 @@ void linkGathers(BoundKernel& b, const rsl::CompiledKernel& k, WorldImpl& world)
             g->outputs.clear();
             readOutputs(*i.site, *g, [&](const std::string& name) {
                 told(i, "\"" + name + "\" is not known; the variable stays as it is",
-                     "surface: displacement: volume: primitive: attribute: ray: environment:");
+                     "names begin with surface: displacement: volume: primitive: attribute: ray: environment:");
             });
             for (const GatherSite::Output& o : g->outputs) {
                 g->light |= o.of == Of::Light;
@@ -172,7 +175,7 @@ void gatheredNames(const rsl::Program& p, std::set<std::string>& names) {
             [&](const rsl::Stmt& s) {
                 if (s.kind != rsl::StmtKind::Gather) return;
                 for (const rsl::NamedArg& a : s.pairs)
-                    if (a.name.rfind("surface:", 0) == 0) names.insert(a.name.substr(8));
+                    if (const auto pair = rsl::PairName::parse(a.name); pair.kind == rsl::PairName::Kind::Surface) names.insert(pair.name);
             },
             [](const rsl::Expr&) {});
     };

@@ -368,8 +368,8 @@ TEST(Model, FilesHaveTheirLimits) {
     EXPECT_EQ(said.errors, 1) << said.text;
 
     Said many;
-    std::string faulty;
-    for (int i = 0; i < limits::kModelMessages + 5; ++i) faulty += "f 1 2 3\n";
+    std::string faulty = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    for (int i = 0; i < limits::kModelMessages + 5; ++i) faulty += "f 1 2 99\n";
     obj(faulty, many);
     EXPECT_EQ(many.errors + many.warnings, limits::kModelMessages + 1) << many.text; // the last counts the others
     EXPECT_NE(many.text.find("5 more faults"), std::string::npos) << many.text;

@@ -1,5 +1,6 @@
 // occlusion() and indirectdiffuse() (rsl.md 12.2). The first asks the renderer how much of a hemisphere is open, a number, so
 // that shaders stay affine in it; the second is trace() with the cosine distribution.
+#include "rsl/front/protocol.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
 #include <set>
@@ -79,7 +80,7 @@ void Builder::hemispherePairs(const Expr& e, Inst* normal, bool occlusion, Hemis
     if (!h.given.count("raytype")) give("type", leaves_.string("diffuse"), {Base::String, 0});
     give("samplecone", constant(1.57079633f), real);
     give("__hemisphere", leaves_.string("1"), {Base::String, 0});
-    for (const auto& [output, parameter] : messageSlots_) give("surface:" + output, get(parameter.first), parameter.second);
+    for (const auto& [output, parameter] : messageSlots_) give(PairName::surface(output).text(), get(parameter.first), parameter.second);
 }
 
 /// Null where the call is another, or has a form that is no request.

@@ -168,6 +168,7 @@ public:
     /// The environment map of a trace() in direction w (unit, current space).
     Color mapTowards(const TraceSite&, const Vec3& w, float spread) const;
     void flushShadows(Sched&);
+    void tellAsker(const BatchContext&, int point, const Color& opacity, Sched&);
     /// `asked`: by lane, the rays that a waiting kernel has asked for there.
     void finishStrip(BatchContext&, int first, int lanes, Sched&, std::span<const uint32_t> asked = {});
     /// The share of the light from behind a shaded point that comes through, 0 to 1.

@@ -36,6 +36,23 @@ Color Engine::clearAt(const BatchContext& c, int i) const {
     return clear;
 }
 
+/// What a call whose ray has met a point is told besides light.
+void Engine::tellAsker(const BatchContext& c, int i, const Color& opacity, Sched& sched) {
+    const PathRay& ray = c.rays[size_t(i)];
+    const TargetId target = c.targets[size_t(i)];
+    if (ray.first) {
+        sched.setNearer(target, length(c.points[size_t(i)].P - ray.origin), c.points[size_t(i)].N);
+        sched.setTransmission(target, Color(1) - opacity);
+    }
+    if (!gathered_.empty())
+        if (const auto asks = gathered_.find(target); asks != gathered_.end()) tellGather(c, i, *asks->second);
+    if (TraceSums* sums = sumsOf(target)) {
+        const Color blocked = extraOf(ray).part * opacity;
+        sums->add(TraceSums::Blocked, blocked);
+        sums->add(TraceSums::Open, ray.dir * -mean(blocked));
+    }
+}
+
 void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, std::span<const uint32_t> asked) {
     if (c.aside) return finishAside(c, first, lanes, sched);
     shading::Batch& b = *c.batch;
@@ -56,17 +73,7 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, st
             sched.setDistance(c.targets[i], 0);
             color = Color(0);
         }
-        if (ray.first) {
-            sched.setNearer(c.targets[i], length(c.points[i].P - ray.origin), c.points[i].N);
-            sched.setTransmission(c.targets[i], Color(1) - opacity);
-        }
-        if (!gathered_.empty())
-            if (const auto asks = gathered_.find(c.targets[i]); asks != gathered_.end()) tellGather(c, i, *asks->second);
-        if (TraceSums* sums = sumsOf(c.targets[i])) {
-            const Color blocked = extraOf(ray).part * opacity;
-            sums->add(TraceSums::Blocked, blocked);
-            sums->add(TraceSums::Open, ray.dir * -mean(blocked));
-        }
+        tellAsker(c, i, opacity, sched);
         Color shown = color;
         if (!c.haze.empty() && c.haze[size_t(i)].on && !(binding.matte && ray.camera())) { // pairs were scaled in shadeGroup
             shown = c.haze[size_t(i)].shown;

@@ -175,7 +175,8 @@ void gatheredNames(const rsl::Program& p, std::set<std::string>& names) {
             [&](const rsl::Stmt& s) {
                 if (s.kind != rsl::StmtKind::Gather) return;
                 for (const rsl::NamedArg& a : s.pairs)
-                    if (const auto pair = rsl::PairName::parse(a.name); pair.kind == rsl::PairName::Kind::Surface) names.insert(pair.name);
+                    if (const auto pair = rsl::PairName::parse(a.name); pair.kind == rsl::PairName::Kind::Surface)
+                        names.insert(pair.name);
             },
             [](const rsl::Expr&) {});
     };

@@ -369,7 +369,7 @@ TEST(Model, FilesHaveTheirLimits) {
 
     Said many;
     std::string faulty = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-    for (int i = 0; i < limits::kModelMessages + 5; ++i) faulty += "f 1 2 99\n";
+    for (int i = 0; i < limits::kModelMessages + 5; ++i) faulty += "f 1 a 3\n";
     obj(faulty, many);
     EXPECT_EQ(many.errors + many.warnings, limits::kModelMessages + 1) << many.text; // the last counts the others
     EXPECT_NE(many.text.find("5 more faults"), std::string::npos) << many.text;

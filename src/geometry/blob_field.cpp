@@ -192,19 +192,17 @@ private:
 
 } // namespace
 
-double BlobField::value(const BlobTape& tape, const Vec3d& p) const {
-    Results<double> v(tape.size());
+/// The value of every step of a tape; ofLeaf: the field of a leaf, by its number.
+template <class OfLeaf> static void stepValues(const BlobTape& tape, Results<double>& v, OfLeaf ofLeaf) {
     for (size_t i = 0; i < tape.size(); ++i) {
         const BlobOp& o = tape[i];
         switch (o.kind) {
         case Kind::Constant:
             v[i] = o.c;
             break;
-        case Kind::Leaf: {
-            const BlobLeaf& l = leaves_[o.a];
-            v[i] = l.kind == BlobLeaf::Kind::Ground ? groundField(*l.ground, p) : blobLeafField(l, l.inside(p), nullptr, nullptr);
+        case Kind::Leaf:
+            v[i] = ofLeaf(o.a);
             break;
-        }
         case Kind::Add:
             v[i] = v[o.a] + v[o.b];
             break;
@@ -228,6 +226,14 @@ double BlobField::value(const BlobTape& tape, const Vec3d& p) const {
             break;
         }
     }
+}
+
+double BlobField::value(const BlobTape& tape, const Vec3d& p) const {
+    Results<double> v(tape.size());
+    stepValues(tape, v, [&](uint32_t leaf) {
+        const BlobLeaf& l = leaves_[leaf];
+        return l.kind == BlobLeaf::Kind::Ground ? groundField(*l.ground, p) : blobLeafField(l, l.inside(p), nullptr, nullptr);
+    });
     return v[tape.size() - 1];
 }
 
@@ -273,38 +279,7 @@ void BlobField::shares(const BlobTape& tape, const Vec3d& p, std::vector<Share>&
     // A maximum shows its greater side, a difference or quotient its first: what is taken away colours nothing.
     Results<double> v(tape.size());
     std::vector<bool> shown(tape.size());
-    for (size_t i = 0; i < tape.size(); ++i) {
-        const BlobOp& o = tape[i];
-        switch (o.kind) {
-        case Kind::Constant:
-            v[i] = o.c;
-            break;
-        case Kind::Leaf:
-            v[i] = leafJet(leaves_[o.a], p).f;
-            break;
-        case Kind::Add:
-            v[i] = v[o.a] + v[o.b];
-            break;
-        case Kind::Multiply:
-            v[i] = v[o.a] * v[o.b];
-            break;
-        case Kind::Maximum:
-            v[i] = std::max(v[o.a], v[o.b]);
-            break;
-        case Kind::Minimum:
-            v[i] = std::min(v[o.a], v[o.b]);
-            break;
-        case Kind::Subtract:
-            v[i] = v[o.a] - v[o.b];
-            break;
-        case Kind::Divide:
-            v[i] = v[o.b] != 0 ? v[o.a] / v[o.b] : 0;
-            break;
-        case Kind::Negate:
-            v[i] = -v[o.a];
-            break;
-        }
-    }
+    stepValues(tape, v, [&](uint32_t leaf) { return leafJet(leaves_[leaf], p).f; });
     shown[tape.size() - 1] = true;
     double sum = 0;
     Vec3d slope(0.0);

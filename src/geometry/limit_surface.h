@@ -96,7 +96,7 @@ public:
     int corners(uint32_t face) const;
     int vertexAt(uint32_t face, int corner) const;
     int edgeAt(uint32_t face, int corner) const; ///< runs on to the next corner
-    int edgeStart(int edge) const;               ///< the vertex that an edge is said to run from
+    int edgeStart(int edge) const;               ///< first vertex of an edge
     void forgetTopology();
 
     /// Faces at which more edges meet than can be evaluated: they are flat. For a message.

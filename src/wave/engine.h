@@ -70,7 +70,7 @@ public:
     /// What one of them brings of which so much came through, 0 to 1; what it tells besides goes to `sums`, which may be null.
     Color openLight(const ShadowRay&, const Color& transmitted, TraceSums* sums) const;
     /// How many samples a call sends, whose shader says `asked`: Attribute "irradiance" "nsamples" of the shape where that is
-    /// nothing, 4096 at most. Beyond it is said once.
+    /// nothing, 4096 at most; more are reported once.
     int samplesOf(float asked, const geometry::Shape*, const SiteInfo&, const BatchContext&);
     std::vector<HemisphereRays> hemispheres_; ///< of `shadows`
     /// What the attributes of a shape say: samples, and the bias, < 0 where there is none.

@@ -56,7 +56,7 @@ SiteKind kindOf(const std::string& op) {
     return i == kinds.end() ? SiteKind::Other : i->second;
 }
 
-/// The parameters of a trace() beyond the common ones. What is not followed is said once.
+/// The parameters of a trace() beyond the common ones. Parameters that are ignored are reported once each.
 std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKernel& k,
                                            WorldImpl& world) {
     auto t = std::make_shared<TraceSite>();

@@ -382,5 +382,8 @@ TEST(Blobby, CodeAndBoxesHaveTheirLimits) {
     Diagnostics quiet;
     auto needle = blobby(1, {1002, 0}, {{-100, -100, 3, 100, 100, 50, 1e-4f}});
     for (float f : matrixNumbers(Matrix{})) needle->numbers.push_back(f);
-    if (const auto s = build(needle, Matrix{}, quiet)) EXPECT_LE(s->exactPrims(), limits::kBlobBoxes);
+    const auto s = build(needle, Matrix{}, quiet);
+    ASSERT_NE(s, nullptr);
+    EXPECT_GT(s->exactPrims(), 1u);
+    EXPECT_LE(s->exactPrims(), limits::kBlobBoxes);
 }

@@ -380,7 +380,7 @@ TEST_F(ModelFiles, AreSoLargeAtMost) {
     std::ofstream(path) << "ply\n";
     std::error_code full;
     std::filesystem::resize_file(path, limits::kModelBytes + 1, full); // a hole
-    if (full) GTEST_SKIP() << "the disk has no files of this size";
+    if (full) GTEST_SKIP() << "this file system has no files of 16 GiB, not even with a hole";
     Said said;
     EXPECT_TRUE(readModelFile(path, said.sink(), nullptr).empty());
     EXPECT_EQ(said.errors, 1) << said.text;

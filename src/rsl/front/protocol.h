@@ -86,7 +86,7 @@ public:
     static std::string withoutElement(std::string_view name) { return std::string(name.substr(0, name.find('['))); }
 };
 
-/// What a surface's kernel is told of an output of the displacement shader that it may ask for: the value of the string parameter
+/// Describes an output of the displacement shader to the surface's kernel, which may query it: the value of the string parameter
 /// InputName::displacement(NAME).
 struct HeardOutput {
     int kind = 0;         ///< ir::Kind of an element

@@ -41,11 +41,7 @@ public:
     double area() const override { return areas().sum; }
     SurfacePoint sampleArea(double xi1, double xi2) const override;
     double sampleDensity(const SurfacePoint&) const override;
-    void dice(const DiceOptions& opt, Diagnostics& diag) override {
-        if (isDisplaced(*this, opt))
-            diag.report(Severity::Warning, Rie::Incapable, place(),
-                        "a Blobby is not displaced: its normals are, its silhouette stays");
-    }
+    void dice(const DiceOptions& opt, Diagnostics& diag) override { reportNotDisplaced(*this, opt, diag); }
 
 protected:
     size_t classCount(Class c) const override { return c == Class::Constant || c == Class::Uniform ? 1 : size_t(leaves_); }

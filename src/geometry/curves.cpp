@@ -297,15 +297,7 @@ double Curves::sampleDensity(const SurfacePoint& p) const {
     return l > 0 ? share / l : 0;
 }
 
-void Curves::dice(const DiceOptions& o, Diagnostics& diag) {
-    if (!isDisplaced(*this, o)) return;
-    Diagnostic d;
-    d.severity = Severity::Warning;
-    d.code = Rie::Incapable;
-    d.place = place();
-    d.message = "Curves are not displaced: their displacement shader moves normals only";
-    diag.reportOnce("geometry:displaced curves", d);
-}
+void Curves::dice(const DiceOptions& o, Diagnostics& diag) { reportNotDisplaced(*this, o, diag); }
 
 } // namespace
 

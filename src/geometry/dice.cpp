@@ -39,7 +39,19 @@ double diceEdge(const scene::Attributes& a) {
     return std::isfinite(r) ? std::sqrt(std::clamp(r, 0.01, 1e4)) : 1;
 }
 
-bool isDisplaced(const Shape& s, const DiceOptions& o) { return o.displace && (o.displaces ? o.displaces(s) : s.attributes().displacement != nullptr); }
+bool isDisplaced(const Shape& s, const DiceOptions& o) {
+    return o.displace && (o.displaces ? o.displaces(s) : s.attributes().displacement != nullptr);
+}
+
+void reportNotDisplaced(const Shape& s, const DiceOptions& o, Diagnostics& diag) {
+    if (!isDisplaced(s, o)) return;
+    Diagnostic d;
+    d.severity = Severity::Warning;
+    d.code = Rie::Incapable;
+    d.place = s.place();
+    d.message = s.kind() + (s.kind() == "Blobby" ? " is" : " are") + " not displaced: the displacement shader moves normals only";
+    diag.reportOnce("geometry:displaced " + s.kind(), d);
+}
 
 namespace {
 

@@ -47,6 +47,8 @@ struct DiceOptions {
 double diceEdge(const scene::Attributes&);
 /// Whether dicing must displace this shape.
 bool isDisplaced(const Shape&, const DiceOptions&);
+/// For shapes that are met exactly and have no mesh to displace: a warning, once a kind, where a displacement shader wants to.
+void reportNotDisplaced(const Shape&, const DiceOptions&, Diagnostics&);
 /// Runs the hook over all vertices (params: (b1, b2) of each, prim of each by primOf) and writes the displaced positions to
 /// mesh.P. Non-finite results stay undisplaced, and what exceeds Attribute "displacementbound" is reported, once a shape.
 void displaceMesh(const Shape&, const DiceOptions&, Diagnostics&, const std::function<SurfacePoint(uint32_t)>& pointOf,

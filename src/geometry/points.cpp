@@ -331,15 +331,7 @@ double Points::sampleDensity(const SurfacePoint& p) const {
     return l > 0 ? share / (kind_ == Kind::Disc ? 0.25 * kPi * l : l) : 0;
 }
 
-void Points::dice(const DiceOptions& o, Diagnostics& diag) {
-    if (!isDisplaced(*this, o)) return;
-    Diagnostic d;
-    d.severity = Severity::Warning;
-    d.code = Rie::Incapable;
-    d.place = place();
-    d.message = "Points are not displaced: their displacement shader moves normals only";
-    diag.reportOnce("geometry:displaced points", d);
-}
+void Points::dice(const DiceOptions& o, Diagnostics& diag) { reportNotDisplaced(*this, o, diag); }
 
 } // namespace
 

@@ -30,6 +30,8 @@ Accel::Impl::Ball Accel::Impl::ballAround(uint32_t s) const {
 }
 
 bool Accel::Impl::readyDirect() {
+    for (const auto& g : geometries)
+        if (!g->tree.empty()) return false;
     size_t count = 0, exact = 0;
     for (const ShapeRef& s : shapes) {
         if (s->exact()) exact += s->exactPrims();

@@ -148,7 +148,7 @@ struct Accel::Impl {
     bool meetExact(Query& q, uint32_t s, uint32_t prim) const {
         const Ray& r = *q.ray;
         if (!visible(r, s)) return false;
-        if (!geometryOf.empty() && geometryOf[s] != kNone) return meetPlaced(q, s);
+        if (isPlaced(s)) return meetPlaced(q, s);
         if (r.passed < 0 && excluded(r, s, prim)) return false;
         geometry::ExactHit h[4];
         const Shape& shape = *shapes[s];
@@ -169,6 +169,8 @@ struct Accel::Impl {
     };
     std::vector<std::unique_ptr<Geometry>> geometries;
     std::vector<uint32_t> geometryOf; ///< by shape: into geometries, or kNone; empty: nothing is placed
+    bool isPlaced(uint32_t s) const { return !geometryOf.empty() && geometryOf[s] != kNone; }
+    const Geometry& geometryAt(uint32_t s) const { return *geometries[geometryOf[s]]; } ///< of a shape that is placed
     void readyPlaced();
     std::vector<const Shape*> trimmed; ///< by shape: who knows what of it is cut away, or null; empty: nothing is
     void readyTrimmed();
@@ -179,11 +181,11 @@ struct Accel::Impl {
         uint32_t shape;
         Vec3d org, dir;
     };
+    /// A placed geometry that has no tree; others are walked into (tree_walk.inc).
     bool meetPlaced(Query&, uint32_t s) const;
     bool meetInside(Query&, const Inside&, uint32_t prim, const Vec3d& a, const Vec3d& b, const Vec3d& c) const;
     bool meetInside(Query&, const Inside&, uint32_t prim) const; ///< one primitive of an exact geometry
     bool sameCrossing(const Query&, const Inside&, double t, const Vec3d corner[3]) const;
-    bool walkInside(Query&, const Inside&) const;
 
     bool intersectOne(const Ray&, Hit&) const;
     bool occludedOne(const Ray&) const;

@@ -35,12 +35,11 @@ void Accel::Impl::readyTrimmed() {
 bool Accel::Impl::meetPlaced(Query& q, uint32_t s) const {
     const Ray& r = *q.ray;
     if (r.passed < 0 && r.excludeShape == s && r.excludePrim == kNone) return false;
-    const Geometry& g = *geometries[geometryOf[s]];
+    const Geometry& g = geometryAt(s);
     const auto* place = static_cast<const geometry::Placed*>(shapes[s].get());
     geometry::Affine in;
     if (!place->toGeometry(r.time, in)) return false;
     const Inside at{&g, place, s, in.point(Vec3d(r.org)), in.vector(Vec3d(r.dir))};
-    if (!g.tree.empty()) return walkInside(q, at);
     return !place->deforming() && meetInside(q, at, 0);
 }
 

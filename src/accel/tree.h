@@ -53,6 +53,7 @@ public:
     const Node* lastNodes() const { return last_.empty() ? nullptr : last_.data(); }
     struct Vertices {
         alignas(32) float p[3][kLeafVertices];
+        Vec3 point(uint32_t v) const { return {p[0][v], p[1][v], p[2][v]}; }
     };
     /// Those of a leaf at a key.
     const Vertices& vertices(uint32_t leaf, size_t key) const { return moved_[leaf * keys_ + key]; }

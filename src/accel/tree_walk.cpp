@@ -35,8 +35,4 @@ void Accel::Impl::walkAny(std::span<const Ray> rays, std::span<uint8_t> met) con
     else (hasAvx2() ? avx2::any : common::any)(*this, rays, met);
 }
 
-bool Accel::Impl::walkInside(Query& q, const Inside& at) const {
-    return (hasAvx2() ? avx2::inside : common::inside)(*this, q, at);
-}
-
 } // namespace alpenglow::accel

@@ -31,7 +31,7 @@ void Deforming::corners(uint32_t prim, float time, Vec3d out[3]) const {
     const TriMesh &a = keys_[k]->mesh(), &b = keys_[std::min(k + 1, keys_.size() - 1)]->mesh();
     for (size_t c = 0; c < 3; ++c) {
         const uint32_t i = a.index[3 * size_t(prim) + c];
-        out[c] = Vec3d(a.P[i]) * (1 - way) + Vec3d(b.P[i]) * way;
+        out[c] = between(a.P[i], b.P[i], way);
     }
 }
 

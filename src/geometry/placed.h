@@ -22,6 +22,8 @@ public:
     size_t keyAt(float time, double& way) const;
     /// A triangle that rays meet at a time.
     void corners(uint32_t prim, float time, Vec3d out[3]) const;
+    /// A corner between two keys.
+    static Vec3d between(const Vec3& a, const Vec3& b, double way) { return Vec3d(a) * (1 - way) + Vec3d(b) * way; }
 
     Bounds bounds() const override;
     int faces() const override { return keys_[0]->faces(); }

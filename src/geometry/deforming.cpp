@@ -1,5 +1,6 @@
 #include "geometry/dice.h"
 #include "geometry/placed.h"
+#include "geometry/polygon_mesh.h"
 #include <algorithm>
 
 namespace alpenglow::geometry {
@@ -66,15 +67,11 @@ SurfacePoint Deforming::between(const SurfacePoint& a, const SurfacePoint& b, do
 /// for polygons are object x and y and so change with it. All of them follow from what the facet's corners have.
 void Deforming::facet(SurfacePoint& p, uint32_t prim, size_t key, double way, uint32_t needs) const {
     const ShapeRef &first = keys_[key], &last = keys_[std::min(key + 1, keys_.size() - 1)];
-    SurfacePoint c[3];
-    const double b[3][2] = {{0, 0}, {1, 0}, {0, 1}};
     Vec3d P[3];
-    for (int i = 0; i < 3; ++i) {
-        SurfacePoint x, y;
-        first->evaluateHit(prim, b[i][0], b[i][1], x, needs | kNeedUV | kNeedST);
-        last->evaluateHit(prim, b[i][0], b[i][1], y, needs | kNeedUV | kNeedST);
-        P[i] = Vec3d(x.P) * (1 - way) + Vec3d(y.P) * way;
-        for (auto f : {&SurfacePoint::u, &SurfacePoint::v, &SurfacePoint::s, &SurfacePoint::t}) c[i].*f = mix(x.*f, y.*f, way);
+    const TriMesh &from = first->mesh(), &to = last->mesh();
+    for (size_t i = 0; i < 3; ++i) {
+        const uint32_t v = from.index[3 * size_t(prim) + i];
+        P[i] = between(from.P[v], to.P[v], way);
     }
     const Vec3d e1 = P[1] - P[0], e2 = P[2] - P[0], wind = cross(e1, e2) * double(keys_[0]->orientation());
     if (dot(wind, wind) > 0) {
@@ -82,6 +79,12 @@ void Deforming::facet(SurfacePoint& p, uint32_t prim, size_t key, double way, ui
         p.n = Vec3(normalize(wind));
         if (own) p.N = p.n;
     }
+    if (!(needs & (kNeedPartials | kNeedSTSlopes))) return;
+    SurfacePoint c[3], x[3], y[3];
+    static_cast<const PolygonMesh&>(*first).cornerParameters(prim, x);
+    static_cast<const PolygonMesh&>(*last).cornerParameters(prim, y);
+    for (int i = 0; i < 3; ++i)
+        for (auto f : {&SurfacePoint::u, &SurfacePoint::v, &SurfacePoint::s, &SurfacePoint::t}) c[i].*f = mix(x[i].*f, y[i].*f, way);
     const auto step = [&](float SurfacePoint::* f, int i) { return double(c[i].*f) - double(c[0].*f); };
     const double u1 = step(&SurfacePoint::u, 1), u2 = step(&SurfacePoint::u, 2), v1 = step(&SurfacePoint::v, 1),
                  v2 = step(&SurfacePoint::v, 2), det = u1 * v2 - u2 * v1;
@@ -108,10 +111,12 @@ void Deforming::localPoints(std::span<const HitRef> hits, uint32_t needs) const 
             keys_[way == 0 ? k : k + 1]->evaluateHit(h.prim, h.b1, h.b2, *h.out, needs);
         } else {
             SurfacePoint a, b;
-            keys_[k]->evaluateHit(h.prim, h.b1, h.b2, a, needs | kNeedPartials);
-            keys_[k + 1]->evaluateHit(h.prim, h.b1, h.b2, b, needs | kNeedPartials);
+            const bool facets = !keys_[0]->diced(); // of a PolygonMesh, whose normal is not a product of partials
+            const uint32_t read = facets ? needs : needs | kNeedPartials;
+            keys_[k]->evaluateHit(h.prim, h.b1, h.b2, a, read);
+            keys_[k + 1]->evaluateHit(h.prim, h.b1, h.b2, b, read);
             *h.out = between(a, b, way);
-            if (!keys_[0]->diced()) facet(*h.out, h.prim, k, way, needs);
+            if (facets) facet(*h.out, h.prim, k, way, needs);
         }
         h.out->time = h.time;
     }

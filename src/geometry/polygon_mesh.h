@@ -33,6 +33,8 @@ public:
     void sampleArea(double xi1, double xi2, SurfacePoint& out, uint32_t needs) const override;
     double sampleDensity(const SurfacePoint&) const override;
     void dice(const DiceOptions&, Diagnostics&) override;
+    /// u, v, s and t at the corners of a triangle that rays meet, before it is diced: evaluateHit() there.
+    void cornerParameters(uint32_t tri, SurfacePoint out[3]) const;
 
 protected:
     size_t classCount(scene::Class) const override;

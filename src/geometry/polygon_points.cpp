@@ -134,6 +134,21 @@ void PolygonMesh::evaluateLocal(uint32_t tri, double b1, double b2, SurfacePoint
     if (!plain_) setVariables(p, nullptr, needs);
 }
 
+void PolygonMesh::cornerParameters(uint32_t tri, SurfacePoint out[3]) const {
+    const Plane q = remembered_.empty() ? planeOf(tri) : remembered_[tri].plane;
+    for (int k = 0; k < 3; ++k) {
+        SurfacePoint& p = out[k];
+        p.face = int(faceOf(tri));
+        p.prim = tri;
+        p.b1 = k == 1;
+        p.b2 = k == 2;
+        const Vec3d O = q.o + q.e1 * p.b1 + q.e2 * p.b2;
+        p.u = p.s = float(dot(O, q.f.a));
+        p.v = p.t = float(dot(O, q.f.b));
+        if (!plain_) setVariables(p, &q, kNeedST);
+    }
+}
+
 void PolygonMesh::localPoints(std::span<const HitRef> hits, uint32_t needs) const {
     // Far enough ahead that memory has answered: first the indices of a triangle, then what they point at.
     constexpr size_t kIndices = 12, kCorners = 6;

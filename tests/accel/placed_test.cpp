@@ -1,5 +1,6 @@
 // Shapes that are placed: instances that share a geometry against copies of it, and motion against closed forms.
 #include "accel/accel.h"
+#include "accel/impl.h"
 #include "geometry/build.h"
 #include "geometry/dice.h"
 #include "geometry/placed.h"
@@ -309,4 +310,82 @@ TEST(Placed, NothingLeaks) {
             ASSERT_TRUE(w.accel->occluded(r)) << i << " " << deforms;
         }
     }
+}
+
+namespace {
+/// Every triangle of every place, by the same rule as the walk.
+Hit slowly(const Accel::Impl& in, const Ray& r) {
+    accel::Query q{&r, {INFINITY, accel::kNone, accel::kNone, 0, 0}, false};
+    for (uint32_t s = 0; accel::usable(r) && s < in.shapes.size(); ++s) {
+        const geometry::Placed* p = in.shapes[s]->placed();
+        const Deforming* d = p ? p->deforming() : nullptr;
+        const TriMesh* mesh = &(d ? d->keys()[0] : p ? p->geometry() : in.shapes[s])->mesh();
+        Affine to;
+        if (p) EXPECT_TRUE(p->toGeometry(r.time, to));
+        const Accel::Impl::Inside at{p ? &in.geometryAt(s) : nullptr, p, s, to.point(Vec3d(r.org)), to.vector(Vec3d(r.dir))};
+        for (uint32_t t = 0; t < mesh->triangles(); ++t) {
+            Vec3d c[3];
+            for (size_t k = 0; k < 3; ++k) c[k] = Vec3d(mesh->P[mesh->index[3 * size_t(t) + k]]);
+            if (d) d->corners(t, r.time, c);
+            if (p) in.meetInside(q, at, t, c[0], c[1], c[2]);
+            else in.meetOne(q, s, t, Vec3(c[0]), Vec3(c[1]), Vec3(c[2]));
+        }
+    }
+    return {float(q.best.t), q.best.shape, q.best.prim, r.time, q.best.b1, q.best.b2, q.best.t};
+}
+} // namespace
+
+// What a ray meets depends on nothing but itself: one by one, all together, in another order, on an older processor, mixed with rays that
+// end at once; and it is what looking at every triangle finds. Shadow rays meet something where nearest hits are.
+TEST(Placed, CompanyChangesNoBit) {
+    scene::Frame f = manyBalls(2);
+    f.options.shutterClose = 1;
+    auto still = ball(6), bent = ball(10), to = ball(10);
+    still->toWorld = scene::Transform(translateMatrix(0, -4, 20));
+    for (size_t i = 0; i < to->params[0].numbers.size(); i += 3) to->params[0].numbers[i] *= 2;
+    bent->motionKeys = {to};
+    bent->motionTimes = {0, 1};
+    bent->toWorld.times = {0, 1};
+    bent->toWorld.keys = {scaleMatrix(3, 3, 3) * translateMatrix(3, 0, 20), scaleMatrix(3, 4, 3) * rotateMatrix(50, 1, 1, 0) * translateMatrix(0, 3, 20)};
+    f.primitives = {still, bent};
+    World w(f, 0);
+    auto r = rays(3000);
+    for (size_t i = 0; i < r.size(); ++i) {
+        r[i].time = float(i % 17) / 16;
+        if (i % 5 == 0) r[i].tfar = 0.01f;
+        if (i % 11 == 0) r[i].dir = Vec3(NAN, 0, 0);
+    }
+    std::vector<Hit> together(r.size()), turned(r.size());
+    std::vector<uint8_t> met(r.size());
+    w.accel->intersect(r, together);
+    w.accel->occluded(r, met);
+    std::vector<Ray> backwards(r.rbegin(), r.rend());
+    w.accel->intersect(backwards, turned);
+    std::vector<Hit> plain(r.size());
+    Accel::Impl in;
+    in.shapes = w.shapes;
+    in.visibility.assign(w.shapes.size(), accel::kAll);
+    in.readyPlaced();
+    in.tree.build(w.shapes);
+    in.walkNearest(r, plain, true);
+    size_t hits = 0, placed = 0;
+    for (size_t i = 0; i < r.size(); ++i) {
+        Hit one;
+        w.accel->intersect(r[i], one);
+        const Hit& other = turned[r.size() - 1 - i];
+        const Hit slow = i % 8 ? one : slowly(in, r[i]);
+        for (const Hit* h : std::initializer_list<const Hit*>{&together[i], &other, &plain[i], &slow}) {
+            EXPECT_EQ(one.shape, h->shape);
+            if (!one.valid()) continue;
+            EXPECT_EQ(one.prim, h->prim);
+            EXPECT_EQ(one.distance, h->distance);
+            EXPECT_EQ(one.b1, h->b1);
+            EXPECT_EQ(one.b2, h->b2);
+        }
+        EXPECT_EQ(met[i] != 0, one.valid());
+        hits += one.valid();
+        placed += one.valid() && w.shapes[one.shape]->placed() && w.shapes[one.shape]->placed()->deforming();
+    }
+    EXPECT_GT(hits, 500u);
+    EXPECT_GT(placed, 100u);
 }

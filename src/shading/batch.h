@@ -40,6 +40,7 @@ struct InstanceView {
     const ParameterBlock* parameters = nullptr;
     const Matrix* shaderToCurrent = nullptr;
     const MovingSpace* moving = nullptr; ///< null: both are the same at all times
+    const class ParameterRows* rows = nullptr; ///< the parameters again as the batch's kernel reads them; null: looked up by name
 };
 
 /// Where the inputs of a kernel come from and where its rows lie: worked out once per kernel.
@@ -59,6 +60,7 @@ public:
 
 private:
     friend class Batch;
+    friend class ParameterRows;
     enum class From : uint8_t { Variable, Cs, Os, Parameter, Space, Told, Nothing };
     struct Source {
         From from = From::Nothing;
@@ -66,6 +68,7 @@ private:
         bool varying = false;                  ///< a parameter that primitive variables may override
         int components = 1, parts = 1, elements = 1;
         size_t rows = 0, firstRow = 0;         ///< rows of `stride` floats
+        size_t firstNumber = 0;                ///< Parameter: of ParameterRows
         int16_t offset[6] = {-1, -1, -1, -1, -1, -1}; ///< Variable: bytes into ShadePoint of each part; -1: zero, -2: one, -3: three, -4: Ngs
         rsl::InputName name;
         /// Told: outputs of the displacement shader's run that fill it, by element and part.
@@ -75,9 +78,21 @@ private:
     std::vector<Source> inputs_;
     std::vector<size_t> outputRow_;
     std::vector<rsl::OutputName> outputs_;
-    size_t rows_ = 0;
+    size_t rows_ = 0, numbers_ = 0; ///< of ParameterRows
     bool footprint_ = false;
     uint32_t needs_ = 0, litNeeds_ = 0;
+};
+
+/// A ParameterBlock as one kernel reads it: numbers in the order of its plan, so that none is looked for by name while rendering. Only
+/// for batches of that plan, which must outlive it.
+class ParameterRows {
+public:
+    ParameterRows(const BatchPlan&, const ParameterBlock&);
+
+private:
+    friend class Batch;
+    const BatchPlan* plan_;
+    std::vector<float> numbers_; ///< of all parameters, flattened; absent ones are zero
 };
 
 /// Aligned rows for the inputs and outputs of one kernel call. Lives as long as the call, across suspensions.
@@ -114,6 +129,9 @@ private:
         const InstanceView& operator[](int point) const { return views[index(point)]; }
     };
     void fill(const BatchPlan::Source&, float* row, std::span<const ShadePoint>, const Views&, const SpaceResolver&);
+    void findParameter(const BatchPlan::Source&, const Views&);
+    void fillParameter(const BatchPlan::Source&, float* row, std::span<const ShadePoint>, const Views&);
+    void fillOverridden(const BatchPlan::Source&, float* row, std::span<const ShadePoint>, const Views&);
     void fillVariables(std::span<const ShadePoint>);
     void pad(const BatchPlan::Source&, float* row);
     struct Free { void operator()(float* p) const { ::operator delete[](p, std::align_val_t(64)); } };
@@ -124,7 +142,8 @@ private:
     bool primvars_ = false; ///< some shape of the points has primitive variables
     size_t padded_ = 0;   ///< points rounded up to whole strips of the kernel
     std::vector<float> valueOf_;                     ///< by view: one component of it
-    std::vector<const std::vector<float>*> numbers_; ///< by view: the parameter that is filled in
+    std::vector<const float*> numbers_; ///< by view: the parameter that is filled in
+    std::vector<float> found_;          ///< what numbers_ points to where it was looked up
     std::vector<const float*> in_;
     std::vector<float*> out_;
     rsl::KernelCall call_{};

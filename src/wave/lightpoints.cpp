@@ -5,6 +5,11 @@
 
 namespace alpenglow::transport {
 
+namespace {
+/// Queries of lights that share a call are answered some at a time: those of all points of a batch do not fit into a core's cache.
+constexpr size_t kQueriesAtOnce = 512;
+} // namespace
+
 ShadePoint& Gather::LightQueries::add(int of, const BoundLight& l, float c) {
     if (count == at.size()) at.emplace_back(); // else written again, not made anew
     point.push_back(of);
@@ -68,15 +73,19 @@ void Gather::light() {
         if (many) chosenAt_[k].clear();
     }
     for (size_t g = 0; many && g < grouped.size(); ++g) {
-        queries_.clear();
+        const auto ask = [&] {
+            queries_.clear();
+            placeWanted();
+            askLights(&world_.lightGroups_[g].kernel);
+            connect();
+        };
         for (int k : grouped[g]) {
             want(world_.lights_[size_t(on[size_t(k)])], chosenAt_[size_t(k)]);
             chosenAt_[size_t(k)].clear();
+            if (wanted_.size() >= kQueriesAtOnce) ask();
         }
-        placeWanted();
+        ask();
         grouped[g].clear();
-        askLights(&world_.lightGroups_[g].kernel);
-        connect();
     }
     if (!many) chosenAt_[0].clear();
 }
@@ -156,8 +165,9 @@ bool Gather::place(ShadePoint& p, Emitter::Sample& s, size_t point, const BoundL
     p.shape = nullptr;
     p.surface = c_->points[point].surface;
     p.N = Vec3();
-    const Matrix toCurrent = light.instance->toCurrentAt(p.shutter);
-    const auto& m = toCurrent.m; // transformPoint() of the origin
+    const ShaderInstance& of = *light.instance;
+    Matrix moved;
+    const auto& m = of.moving ? (moved = of.toCurrentAt(p.shutter)).m : of.toCurrent.m; // transformPoint() of the origin
     const Vec3d at(m[3][0], m[3][1], m[3][2]);
     p.P = Vec3(m[3][3] == 1 || m[3][3] == 0 ? at : at / m[3][3]);
     p.Ci = light.cone && rules_.pickOne ? coneNumbers(numbers_.pair(number++)) : Color(0);

@@ -223,8 +223,10 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
     std::vector<shading::InstanceView> views;
     std::vector<uint32_t> viewOf;
     for (size_t i = 0; i < call.of.size(); ++i) {
-        if (i == 0 || call.of[i] != call.of[i - 1])
+        if (i == 0 || call.of[i] != call.of[i - 1]) {
             views.push_back(call.of[i]->instance->view());
+            views.back().rows = call.of[i]->rows.get();
+        }
         viewOf.push_back(uint32_t(views.size() - 1));
     }
     if (views.empty())

@@ -66,6 +66,7 @@ struct BoundLight {
     Vec3 centre;
     float radius = 0;
     int group = -1;                            ///< WorldImpl::lightGroups_; -1: none
+    std::shared_ptr<const shading::ParameterRows> rows; ///< for the kernel of its group
 };
 
 /// What a light gives at a point.

@@ -168,7 +168,7 @@ public:
     /// Lights of one program that one kernel call evaluates for points that ask for different ones of them.
     struct LightGroup { BoundKernel kernel; };
     std::vector<LightGroup> lightGroups_;
-    /// By the same: empty where all of them are sampled at every vertex. numberOf: by light, its place in the list, else -1.
+    /// By the same: empty where all of them are sampled at every vertex, or no lobe asks. numberOf: by light, its place in the list, else -1.
     struct ChooserOfList { LightChooser chooser; std::vector<int> numberOf; };
     std::vector<ChooserOfList> choosers_;
     std::unordered_map<const geometry::Shape*, int> hazyEmitters_; ///< emitters in an atmosphere -> their binding

@@ -15,10 +15,10 @@ float area(const geometry::Bounds& b) {
     return d.x * d.y + d.y * d.z + d.z * d.x;
 }
 
-/// Squared distance of a ball, never below its radius.
-double distance2(const Vec3& centre, float radius, const Vec3& at) {
+/// Squared distance of a ball, never below the square of its radius.
+double distance2(const Vec3& centre, double radius2, const Vec3& at) {
     const Vec3 to = centre - at;
-    return std::max({double(dot(to, to)), double(radius) * radius, 1e-12});
+    return std::max(double(dot(to, to)), radius2);
 }
 
 geometry::Bounds boundsOf(const LightBound& l) {
@@ -29,7 +29,7 @@ geometry::Bounds boundsOf(const LightBound& l) {
 }
 } // namespace
 
-LightChooser::LightChooser(std::span<const LightBound> lights, int wanted) : wanted_(std::max(wanted, 1)) {
+LightChooser::LightChooser(std::span<const LightBound> lights, int wanted) : wanted_(std::clamp(wanted, 1, kMost)) {
     leafOf_.assign(lights.size(), -1);
     nodes_.reserve(lights.size() * 2);
     std::vector<int> order(lights.size());
@@ -40,6 +40,10 @@ LightChooser::LightChooser(std::span<const LightBound> lights, int wanted) : wan
         roots_.push_back(int(nodes_.size()));
         nodes_.emplace_back();
         build(roots_.back(), {first, last}, lights);
+    }
+    for (Node& n : nodes_) {
+        n.radius2 = std::max(double(n.radius) * n.radius, 1e-12);
+        n.blind = kBlind * n.count / double(leafOf_.size());
     }
 }
 
@@ -117,7 +121,7 @@ void LightChooser::build(int node, std::span<int> order, std::span<const LightBo
 
 double LightChooser::importance(const Node& n, const Vec3& at) const {
     if (n.everywhere) return n.power;
-    const double share = n.power / distance2(n.centre, n.radius, at);
+    const double share = n.power / distance2(n.centre, n.radius2, at);
     return std::isfinite(share) ? share : 0;
 }
 
@@ -139,53 +143,66 @@ LightChooser::Cut LightChooser::cutAt(const Vec3& at) const {
     return c;
 }
 
-double LightChooser::probability(double share, int count) const {
-    return wanted_ * ((1 - kBlind) * share + kBlind * count / double(leafOf_.size()));
+double LightChooser::probability(double share, const Node& n) const {
+    return wanted_ * ((1 - kBlind) * share + n.blind);
 }
 
-std::pair<double, double> LightChooser::divide(const Node& n, const Vec3& at) const {
+inline std::pair<double, double> LightChooser::divide(const Node& n, const Vec3& at) const {
     // Of the children's importances only the ratio matters: each is taken times both squared distances, for one division.
     const Node &a = nodes_[size_t(n.left)], &b = nodes_[size_t(n.left) + 1];
-    const double l = n.everywhere ? a.power : a.power * distance2(b.centre, b.radius, at);
-    const double r = n.everywhere ? b.power : b.power * distance2(a.centre, a.radius, at);
+    const double l = n.everywhere ? a.power : a.power * distance2(b.centre, b.radius2, at);
+    const double r = n.everywhere ? b.power : b.power * distance2(a.centre, a.radius2, at);
     const double left = l + r > 0 && std::isfinite(l + r) ? l / (l + r) : nodes_[size_t(n.left)].count / double(n.count);
     return {left, 1 - left};
-}
-
-struct LightChooser::Comb {
-    double u, sum = 0;
-    Chosen& chosen;
-    /// Whether a tooth lies in the next `width` of the sum.
-    bool tooth(double width) const { return std::ceil(sum + width - u) > std::ceil(sum - u); }
-};
-
-void LightChooser::descend(int node, double share, const Vec3& at, Comb& comb) const {
-    const Node& n = nodes_[size_t(node)];
-    const double p = probability(share, n.count);
-    if (n.left < 0) {
-        if (p >= 1 || comb.tooth(p)) comb.chosen.emplace_back(n.light, float(std::min(p, 1.0)));
-        comb.sum += p;
-        return;
-    }
-    if (p < 1 && !comb.tooth(p)) { // no leaf of it can have one, nor be certain
-        comb.sum += p;
-        return;
-    }
-    const double end = comb.sum + p;
-    const auto [left, right] = divide(n, at);
-    descend(n.left, share * left, at, comb);
-    descend(n.left + 1, share * right, at, comb);
-    comb.sum = end; // as where the node was not entered: roundings must not depend on the random number
 }
 
 void LightChooser::choose(const Vec3& at, float u, Chosen& chosen) const {
     chosen.clear();
     const Cut c = cutAt(at);
-    Comb comb{double(u), 0, chosen};
+    // Nodes in which a tooth of the comb lies, or which are certain: where they begin in the running sum, and the teeth before it.
+    // One without a tooth can have no leaf with one; a certain one is certain in its leaves. All go down together, a level a turn:
+    // the work on one does not wait for another's.
+    struct Entered { int node; double share, begin, teeth; };
+    Entered entered[kMost + kCut + 4];
+    int size = 0;
+    const double random = double(u);
+    const auto teethBelow = [&](double sum) { return std::ceil(sum - random); };
+    double sum = 0, teeth = teethBelow(0);
     for (int k = 0; k < c.size; ++k) {
         const Node& n = nodes_[size_t(c.part[k].node)];
-        descend(c.part[k].node, c.total > 0 ? c.part[k].importance / c.total : n.count / double(leafOf_.size()), at, comb);
+        const double share = c.total > 0 ? c.part[k].importance / c.total : n.count / double(leafOf_.size());
+        const double p = probability(share, n), end = teethBelow(sum + p);
+        if (p >= 1 || end > teeth) entered[size++] = {c.part[k].node, share, sum, teeth};
+        sum += p;
+        teeth = end;
     }
+    while (size > 0)
+        for (int k = 0; k < size;) {
+            Entered& e = entered[k];
+            const Node& n = nodes_[size_t(e.node)];
+            if (n.left < 0) {
+                chosen.emplace_back(n.light, float(std::min(probability(e.share, n), 1.0)));
+                e = entered[--size];
+                continue;
+            }
+            const auto [left, right] = divide(n, at);
+            const Node &a = nodes_[size_t(n.left)], &b = nodes_[size_t(n.left) + 1];
+            const double shareA = e.share * left, shareB = e.share * right;
+            const double pa = probability(shareA, a), pb = probability(shareB, b), middle = e.begin + pa;
+            const double below = teethBelow(middle), end = teethBelow(middle + pb);
+            // Which of both is chance: no branch but where it is rare.
+            const bool inA = (pa >= 1) | (below > e.teeth), inB = (pb >= 1) | (end > below);
+            if (!(inA | inB)) { // roundings took its tooth
+                e = entered[--size];
+                continue;
+            }
+            if (inA & inB) entered[size++] = {n.left + 1, shareB, middle, below};
+            e.node = n.left + !inA;
+            e.share = inA ? shareA : shareB;
+            e.begin = inA ? e.begin : middle;
+            e.teeth = inA ? e.teeth : below;
+            ++k;
+        }
 }
 
 float LightChooser::pmf(int light, const Vec3& at) const {
@@ -198,7 +215,7 @@ float LightChooser::pmf(int light, const Vec3& at) const {
         for (int k = 0; k < c.size; ++k)
             if (c.part[k].node == node) {
                 share *= c.total > 0 ? c.part[k].importance / c.total : nodes_[size_t(node)].count / double(leafOf_.size());
-                return float(std::min(1.0, probability(share, 1)));
+                return float(std::min(1.0, probability(share, nodes_[size_t(leafOf_[size_t(light)])])));
             }
         const Node& parent = nodes_[size_t(nodes_[size_t(node)].parent)];
         const auto [left, right] = divide(parent, at);

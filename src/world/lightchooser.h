@@ -31,25 +31,29 @@ class LightChooser {
 public:
     /// A tenth of the choice does not look at power.
     static constexpr double kBlind = 0.1;
+    /// The most that may be `wanted`.
+    static constexpr int kMost = 64;
 
     LightChooser() = default;
-    /// Lights are numbered as they come here. `wanted`: how many of them a choice has, about; at least 1.
+    /// Lights are numbered as they come here. `wanted`: how many of them a choice has, about; 1 to kMost.
     LightChooser(std::span<const LightBound> lights, int wanted);
     bool empty() const { return leafOf_.empty(); }
 
     using Chosen = std::vector<std::pair<int, float>>;
-    /// Lights for a point, with their probabilities (0 to 1], in the tree's order. `u`: a random number, 0 <= u < 1.
+    /// Lights for a point, with their probabilities (0 to 1], each once, in any order. `u`: a random number, 0 <= u < 1.
     void choose(const Vec3& at, float u, Chosen& chosen) const;
     /// The probability that choose() takes this light.
     float pmf(int light, const Vec3& at) const;
 
 private:
-    struct Node {
+    struct alignas(64) Node {
         Vec3 centre;
-        float radius = 0;
-        double power = 0;
-        int count = 1;         ///< lights below it
         int left = -1;         ///< its children: left, left + 1; -1: a leaf
+        double power = 0;
+        double radius2 = 0;    ///< squared, and not zero
+        double blind = 0;      ///< kBlind times its part of all lights
+        float radius = 0;
+        int count = 1;         ///< lights below it
         int light = -1;        ///< of a leaf
         int parent = -1;
         bool everywhere = false;
@@ -63,12 +67,9 @@ private:
     size_t split(std::span<int> order, std::span<const LightBound> lights) const;
     double importance(const Node&, const Vec3& at) const;
     Cut cutAt(const Vec3& at) const;
-    double probability(double share, int count) const;
+    double probability(double share, const Node&) const;
     /// Shares of the children in that of their parent.
     std::pair<double, double> divide(const Node&, const Vec3& at) const;
-
-    struct Comb;
-    void descend(int node, double share, const Vec3& at, Comb&) const;
 
     std::vector<Node> nodes_;
     std::vector<int> leafOf_; ///< by light

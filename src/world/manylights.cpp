@@ -13,6 +13,17 @@ bool sharesCalls(const BoundLight& l, bool media) {
         return s.kind == SiteKind::Texture || s.kind == SiteKind::Environment || s.kind == SiteKind::TextureInfo;
     });
 }
+
+/// Whether a kernel asks for light over lobes, which sample lights.
+bool hasLobes(const BoundKernel& k) {
+    return std::any_of(k.sites.begin(), k.sites.end(), [](const SiteInfo& s) { return s.lobe != nullptr; });
+}
+
+bool hasLobes(const SurfaceBinding& b) {
+    const auto ofOutput = [](const LightOutput& o) { return hasLobes(o.S.bound) || hasLobes(o.V.bound); };
+    return hasLobes(b.surfaceS) || hasLobes(b.surfaceV) || hasLobes(b.displacementS) || hasLobes(b.moveS) ||
+           hasLobes(b.atmosphere.kernel) || std::any_of(b.lightOutputs.begin(), b.lightOutputs.end(), ofOutput);
+}
 } // namespace
 
 void WorldImpl::groupLights(Diagnostics& d) {
@@ -31,16 +42,24 @@ void WorldImpl::groupLights(Diagnostics& d) {
         for (const auto& o : first.kernel.kernel->outputs()) outputs.push_back(o.name);
         BoundKernel k = kernel(*first.instance, outputs, {}, true, false, d);
         if (!k || k.kernel->outputs().size() != outputs.size()) continue;
-        for (int i : lights) lights_[size_t(i)].group = int(lightGroups_.size());
+        for (int i : lights) {
+            BoundLight& l = lights_[size_t(i)];
+            l.group = int(lightGroups_.size());
+            l.rows = std::make_shared<shading::ParameterRows>(*k.plan, l.instance->parameters);
+        }
         lightGroups_.push_back({std::move(k)});
     }
 }
 
 void WorldImpl::makeChoosers(Diagnostics& d) {
     choosers_.resize(sampledLights_.size());
+    // Every emitter of a scene may have a list of its own, with all lights that came before it: a tree is made where lobes ask.
+    std::vector<char> asks(sampledLights_.size(), hasLobes(primitiveHit_));
+    for (const SurfaceBinding& b : bindings_)
+        if (hasLobes(b)) asks[size_t(b.lightList)] = 1;
     for (size_t list = 0; list < sampledLights_.size(); ++list) {
         const std::vector<int>& lights = sampledLights_[list];
-        if (lights.size() <= size_t(limits::kLightsSampled)) continue;
+        if (!asks[list] || lights.size() <= size_t(limits::kLightsSampled)) continue;
         std::vector<LightBound> bounds;
         for (int i : lights) {
             const BoundLight& l = lights_[size_t(i)];

@@ -1,0 +1,3 @@
+find_package(ZLIB REQUIRED)
+room(photons DEPS base ZLIB::ZLIB)
+room_tests(photons DEPS photons)

@@ -1,0 +1,49 @@
+// A photon map: photons of one emission, and the light that they are found to be at a point. A tree of k dimensions without
+// pointers, as in Jensen, "Realistic Image Synthesis Using Photon Mapping" (2001). The same photons give the same tree and the
+// same sums, bit by bit.
+#pragma once
+#include "photons/photon.h"
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace alpenglow::photons {
+
+class PhotonMap {
+public:
+    PhotonMap() = default;
+    /// The photons in the order in which they were emitted.
+    explicit PhotonMap(std::vector<Photon> photons);
+    size_t size() const { return photons_.size(); }
+    std::span<const Photon> photons() const { return photons_; } ///< in the tree's order
+    /// Sum of what all carry.
+    Color power() const;
+
+    struct Lookup {
+        Vec3 P, N;          ///< N: unit; light counts that arrives on its side
+        int estimator = 50; ///< photons that are asked for, 1 to kMostAsked
+        int minBounces = 0; ///< photons with fewer are passed over
+    };
+    static constexpr int kMostAsked = 4096;
+    /// Power of the nearest photons over the area of the disc that they fill: irradiance, in radiance times steradians. The
+    /// nearest `estimator` of them count, and the disc reaches to the one after: so the estimate is right in the mean where
+    /// photons lie evenly. Of fewer the farthest bounds the disc. Biased where light changes within the disc.
+    Color irradiance(const Lookup&) const;
+    /// What the surface gives back of it as diffuse light: the reflection that the photons there have met.
+    Color radiance(const Lookup&) const;
+
+private:
+    struct Found { float distance2; uint32_t at; };
+    struct Estimate { Color power, given; float area = 0; };
+    Estimate estimate(const Lookup&) const;
+    void build(std::vector<Photon>& from, std::vector<uint32_t>& order, size_t begin, size_t end);
+    void nearest(const Lookup&, std::vector<Found>& heap) const;
+    std::vector<Photon> photons_;
+    std::vector<uint8_t> axis_; ///< by photon: along which its node divides
+};
+
+/// The distance to the n-th nearest other photon, of a photon in the middle of `asked` that are picked evenly: how dense photons
+/// are where they are dense. 0 where there are too few.
+float typicalDistance(const PhotonMap&, int n, int asked);
+
+} // namespace alpenglow::photons

@@ -72,6 +72,13 @@ public:
         return at->second;
     }
 
+    /// The photon map of an interned name, found without a lock from the second time on. Null: none.
+    const photons::PhotonMap* photonsOf(int32_t id, const ServiceCall& call) {
+        const auto [at, fresh] = photonMaps_.try_emplace(id, nullptr);
+        if (fresh && id) at->second = world_->photons_->find(rsl::internedString(id), call.place());
+        return at->second;
+    }
+
     const texture::IrradianceTable& irradianceOf(texture::Handle map) { // without a lock from the second time on
         const texture::IrradianceTable*& t = irradianceOf_[map];
         if (!t) t = &world_->irradiance_.of(map, world_->textures_->latLong());
@@ -155,6 +162,7 @@ private:
     render::SampleNumbers noSample_; ///< of points that no camera sample has found
     AnswerMemo memo_;
     std::unordered_map<texture::Handle, const texture::IrradianceTable*> irradianceOf_;
+    std::unordered_map<int32_t, const photons::PhotonMap*> photonMaps_; ///< by interned name
     std::unordered_map<int32_t, texture::Handle> mapsByName_;                          ///< by interned name
     std::unordered_map<int32_t, std::optional<texture::TextureInfo>> infosByName_;
 };
@@ -167,6 +175,7 @@ void answerTexture(Answers&, const ServiceCall&);
 void answerTextureInfo(Answers&, const ServiceCall&);
 // indirectdiffuse() of a map and a direction.
 void answerIrradiance(Answers&, const ServiceCall&);
+void answerPhotons(Answers&, const ServiceCall&); // photons.cpp
 // messages.cpp: surface() and its kin, lightsource(), attribute(), shadername(), getvar() of the primitive.
 void answerMessage(Answers&, const ServiceCall&);
 void answerLightSource(Answers&, const ServiceCall&);

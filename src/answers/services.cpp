@@ -10,6 +10,7 @@ void Answers::service(KernelRun& c, int site, int first, uint64_t mask, int lane
     case SiteKind::Texture:
     case SiteKind::Environment: return answerTexture(*this, call);
     case SiteKind::TextureInfo: return answerTextureInfo(*this, call);
+    case SiteKind::Photons: return answerPhotons(*this, call);
     case SiteKind::Irradiance: return answerIrradiance(*this, call);
     case SiteKind::GatherTurn: return answerGatherTurn(call);
     case SiteKind::Ambient: return sumAmbient(call);

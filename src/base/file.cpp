@@ -76,7 +76,7 @@ bool replaceable(const fs::path& p) {
         "\x76\x2f\x31\x01"sv, "\x89PNG"sv, "\xff\xd8\xff"sv, "#?"sv, // OpenEXR, PNG, JPEG, Radiance
         "\x2f\x08\x67\xab"sv, "\xab\x67\x08\x2f"sv,   // zfile
         "\xfa\xce"sv, "\xce\xfa"sv,                     // Pixar's maps
-        "ALPGPART"sv};
+        "ALPGPART"sv, "ALPGPHOT"sv};
     if (!isRegular(p)) return true; // nothing, or what open() has a message for
     int fd = ::open(p.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (fd < 0) return errno == ENOENT;

@@ -279,8 +279,8 @@ void addRender(CLI::App& app, int* status, const std::string& command) {
         ->group("Pictures");
     c->add_option("--frames", a->frames, "Only these frames, for example 1,4-6")->type_name("LIST")->group("Pictures");
 
-    c->add_option("--hider", s.hider, "hidden, raytrace or path, instead of the scene's Hider")
-        ->check(CLI::IsMember({"hidden", "raytrace", "path"}))
+    c->add_option("--hider", s.hider, "hidden, raytrace, path or photon, instead of the scene's Hider")
+        ->check(CLI::IsMember({"hidden", "raytrace", "path", "photon"}))
         ->type_name("NAME")
         ->group("Quality");
     c->add_option("--spp", s.spp, "Samples per pixel instead of PixelSamples (path without either: 64)")

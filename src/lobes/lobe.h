@@ -97,6 +97,9 @@ public:
     float albedo(Place p) const { return block(p).rows[kRowAlbedo][lane(p)]; }
     float spread(Place p) const { return block(p).rows[kRowSpread][lane(p)]; }
     bool delta(Place p) const { return block(p).rows[kRowDelta][lane(p)] != 0; }
+    /// A row of a lobe (LobeRow), and three of them; only those that its kind needs hold anything.
+    float row(Place p, int r) const { return block(p).rows[r][lane(p)]; }
+    Vec3 triple(Place p, int r) const { return {row(p, r), row(p, r + 1), row(p, r + 2)}; }
     /// Asks for the value for light from w, unit; evaluate() answers all that were asked.
     void ask(Place p, const Vec3& w) {
         Block& b = block(p);

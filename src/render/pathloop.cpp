@@ -3,6 +3,7 @@
 #include "base/numberlanes.h"
 #include "render/imaging.h"
 #include "render/noise.h"
+#include "render/photonpass.h"
 #include "render/rendering.h"
 #include <algorithm>
 #include <cmath>
@@ -73,6 +74,7 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
     size_t perSample = film.window().pixels() * stride * sizeof(float);
     uint32_t most = uint32_t(std::clamp(kPassBytes / std::max(perSample, size_t(1)), size_t(1), size_t(kPass)));
     std::vector<std::vector<float>> held(tiles.size());
+    CausticPasses caustics(job);
     uint32_t next = wanted.begin;
     while (next < wanted.end) { // behind what a checkpoint brought
         auto in = std::find_if(film.ranges().begin(), film.ranges().end(),
@@ -152,7 +154,7 @@ bool renderPath(Job& job, Film& film, SampleRange wanted, uint64_t seed, const s
         };
         bool whole = false;
         try {
-            whole = job.team.run(tiles.size(), &job.halt, traceTile, [&](size_t done) {
+            whole = caustics.ready(next, count) && job.team.run(tiles.size(), &job.halt, traceTile, [&](size_t done) {
                 job.pollStop();
                 if (settings.seconds > 0 && any && job.elapsed() > settings.seconds) job.halt = 1;
                 tell(double(count) * double(done) / double(tiles.size()), false);

@@ -12,6 +12,7 @@
 #include "render/levels.h"
 #include "render/partfile.h"
 #include "render/provenance.h"
+#include "render/photonpass.h"
 #include "render/rendering.h"
 #include "texture/maketexture.h"
 #include <cmath>
@@ -181,7 +182,9 @@ void Renderer::printPixel(Job& job, const scene::Options& o, SampleRange wanted,
         return;
     }
     double sum[4] = {0, 0, 0, 0};
+    CausticPasses caustics(job);
     for (uint32_t s = begin; s < end && !job.pollStop(); ++s) {
+        if (path && !caustics.ready(s, 1)) break;
         float weight = 1;
         transport::CameraRay ray;
         if (path) ray = pathRay(job.camera, filter, settings_.seed, x, y, s, &weight);

@@ -65,6 +65,10 @@ private:
     bool renderSamples(FrameWork&, struct Job&);
     void writeFrameFilm(FrameWork&, Film&, double renderSec);
     void renderGrid(FrameWork&, struct Job&);
+    /// Hider "photon": writes the photon maps that the frame names. renderphotons.cpp
+    void renderPhotons(FrameWork&, int threads);
+    /// Makes the maps that shaders ask for and that are not there, where lights emit photons.
+    void makePhotonMaps(FrameWork&, struct Job&);
     void takeFigures(const FrameWork&, struct Job&);
     /// Takes the figures of the frame just rendered over into those of the run.
     void closeFrame(FrameStats);

@@ -10,7 +10,7 @@
 #include "render/levels.h"
 #include "render/partfile.h"
 #include "render/provenance.h"
-#include "render/renderer.h"
+#include "render/framework.h"
 #include "render/rendering.h"
 #include <cmath>
 #include <tbb/global_control.h>
@@ -19,15 +19,6 @@ namespace alpenglow::render {
 namespace {
 
 using transport::Hider;
-
-Hider hiderOf(const scene::Options& o, Diagnostics& diags) {
-    if (o.hider == "path") return Hider::Path;
-    if (o.hider == "raytrace") return Hider::Raytrace;
-    if (o.hider != "hidden" && !o.hider.empty())
-        diags.report(Severity::Error, Rie::Incapable, o.hiderPlace, "there is no hider \"" + o.hider + "\": \"hidden\" is used",
-                     "the hiders are hidden, path and raytrace");
-    return Hider::Hidden;
-}
 
 uint32_t pathSamples(const scene::Options& o, const RenderSettings& s) {
     if (s.spp > 0) return std::min(s.spp, limits::kSamplesPerPixel);
@@ -47,28 +38,14 @@ std::optional<SampleRange> partOf(const RenderSettings& s, uint32_t spp) {
 
 } // namespace
 
-struct Renderer::FrameWork {
-    std::shared_ptr<const scene::Frame> frame;
-    FrameStats& told;
-    const scene::Options& o;
-    Hider hider;
-    bool path;
-    Camera camera;
-    uint32_t spp = 0;       ///< samples of a pixel
-    int nx = 1, ny = 1;     ///< the same as a grid; not under path
-    std::optional<SampleRange> part;
-    SampleRange wanted{};
-    OutputPlan plan;
-    std::string checkpoint; ///< "": none
-    transport::Settings settings;
-    std::shared_ptr<const transport::World> world;
-    PictureFacts picture;
-    Imager imager;
-    uint64_t nonFinite = 0; ///< samples that were left out
-
-    FrameWork(std::shared_ptr<const scene::Frame> of, FrameStats& stats, Diagnostics& d)
-        : frame(std::move(of)), told(stats), o(frame->options), hider(hiderOf(o, d)), path(hider == Hider::Path), camera(o, d) {}
-};
+Hider hiderOf(const scene::Options& o, Diagnostics& diags) {
+    if (o.hider == "path" || o.hider == "photon") return Hider::Path;
+    if (o.hider == "raytrace") return Hider::Raytrace;
+    if (o.hider != "hidden" && !o.hider.empty())
+        diags.report(Severity::Error, Rie::Incapable, o.hiderPlace, "there is no hider \"" + o.hider + "\": \"hidden\" is used",
+                     "the hiders are hidden, path, photon and raytrace");
+    return Hider::Hidden;
+}
 
 void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats& told) {
     if (settings_.stop && *settings_.stop) {
@@ -84,6 +61,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
     tbb::global_control threads(tbb::global_control::max_allowed_parallelism, size_t(team));
 
     FrameWork f(std::move(frame), told, diagnostics_);
+    if (f.o.hider == "photon") return renderPhotons(f, team);
     if (!planFrame(f) || !buildFrame(f)) return;
     double cpu = processCpuSeconds();
     Job job(settings_, f.camera, f.plan, engine_, f.world, team, progress_, diagnostics_);
@@ -91,6 +69,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
     if (f.o.frameNumber > 0) job.what += " (frame " + std::to_string(f.o.frameNumber) + ")";
     if (f.o.imager) f.imager = imagerOf(f);
     describeFrame(f);
+    makePhotonMaps(f, job);
     if (settings_.pixel) {
         printPixel(job, f.o, f.wanted, f.path);
         ++outcome_.rendered;

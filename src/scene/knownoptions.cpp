@@ -56,7 +56,7 @@ constexpr OptionDescription kOptions[] = {
     {"messages:filter", "", "", "", Ignored, kDelight},
     {"netcache:directory", "string", "", "", Ignored, kDelight},
     {"netcache:size", "int", "", "", Ignored, kDelight},
-    {"photon:emit", "int", "", "", Ignored, "3Delight, PRMan; the hider path needs no photons"},
+    {"photon:emit", "int", "200000", "1000000", Used, "Photons that are emitted for the photon maps of a frame."},
     {"photon:lifetime", "", "", "", Ignored, kPrman},
     {"radiosity:maxlevel", "", "", "", Ignored, "BMRT; the hider path is the way here"},
     {"radiosity:minpatchsamples", "", "", "", Ignored, "BMRT; the hider path is the way here"},
@@ -133,10 +133,14 @@ constexpr OptionDescription kHiderParameters[] = {
     {"aperture", "float[4]", "[0 0 0 0]", "[6 15 0.2 0]", Used,
      "The opening of the lens of DepthOfField: sides (0: a circle), degrees by which it is turned, roundness of the sides (0 to 1), and "
      "whether light grows toward the rim (1) or the middle (-1)."},
+    {"caustics", "int", "0", "1", Used,
+     "path: 1: light that reaches surfaces by way of mirrors and glass is brought by photons, new ones for each sample; their bias "
+     "vanishes with the number of samples."},
     {"composite", "", "", "", Ignored, kDelight},
     {"depthfilter", "string", "\"min\"", "\"midpoint\"", Used,
      "hidden and raytrace: the depth of a pixel: min, max, average or midpoint."},
-    {"emit", "int", "", "", Ignored, "3Delight's photon hider"},
+    {"emit", "int", "200000", "1000000", Used,
+     "photon: photons that are emitted. path with caustics: those of one sample of all pixels; one a pixel, if it is not said."},
     {"extrememotiondof", "", "", "", Ignored, kPrman},
     {"jitter", "int", "1", "0", Used,
      "hidden and raytrace: 1: samples lie at random places of their cells; 0: in the middle of them; 2: all pixels have the same "
@@ -184,6 +188,8 @@ constexpr HiderDescription kHiders[] = {
     {"path", "Path-traced global illumination: the same scene and the same shaders, diffuse() specular() and phong() gather the "
              "indirect light "
              "of their lobe, point and distant lights cast traced shadows, noise is measured. docs/light.md has the rules."},
+    {"photon", "No picture: photons are emitted and the photon maps written that surfaces (Attribute \"photon\") and shaders name. "
+               "docs/light.md has the rules."},
     {"raytrace", "The same as hidden, with the name that ray-traced scenes give."},
 };
 

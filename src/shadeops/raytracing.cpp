@@ -175,15 +175,20 @@ std::vector<Shadeop> raytracingShadeops() {
     subsurface.optional = subsurface.optional + subsurfaceParameters();
     subsurface.contexts = kSurface | kLight; // classes that are both
     Shadeop& photonmap = add("photonmap", sigs({{"color photonmap(string name; point p; vector n; pairs)"}, {"float photonmap(string name; point p; vector n; pairs)"}}),
-                             Lowering::Unavailable, "Irradiance or radiance from a photon map.");
+                             Lowering::Service,
+                             "Light from a photon map at p on the side of n: irradiance / PI, which is 1 where light of radiance 1 arrives from everywhere, "
+                             "as of indirectdiffuse(); or radiance, what the surface there gives back of it as diffuse light. The power of the nearest photons "
+                             "is divided by the area of the disc that reaches to the one after them. Hider \"photon\" writes maps; where there is no file of "
+                             "the name and a light has attribute light:emitphotons 1, the map is made before the picture begins. The float form is the luminance.");
     list.back().examples = {{"photonmap(\"none.map\", P, N)", "0"}};
     photonmap.bias = Bias::Biased;
     photonmap.biasReason = "density estimate over a disc";
-    photonmap.optional = {{kF, "estimator", false, "50", "number of photons"},
+    photonmap.optional = {{kF, "estimator", false, "50", "number of photons, 1 to 4096"},
                           {kS, "lookuptype", false, "\"irradiance\"", "irradiance or radiance"},
-                          {kF, "mindepth", false, "0", "smallest number of bounces"}};
-    Shadeop& caustic = add("caustic", sigs({{"color caustic(point p; vector n)"}, {"float caustic(point p; vector n)"}}), Lowering::Unavailable,
-                           "photonmap() of the attributes photon:causticmap and photon:estimator.");
+                          {kF, "mindepth", false, "0", "smallest number of bounces: 1 leaves out what comes from the lights themselves"}};
+    Shadeop& caustic = add("caustic", sigs({{"color caustic(point p; vector n)"}, {"float caustic(point p; vector n)"}}), Lowering::Service,
+                           "photonmap() of the map and the number of photons in the attributes photon:causticmap and photon:estimator of the surface (in a light: of "
+                           "the surface that it lights); 0 where it has no such map.");
     list.back().examples = {{"color caustic(P, N)", "0 0 0"}};
     caustic.bias = Bias::Biased;
     caustic.biasReason = "density estimate over a disc";

@@ -41,9 +41,10 @@ struct RayKind {
     bool fromTrace = false;           ///< drawn by trace(), not by a lighting shadeop
     RaySet set;
     int32_t label = 0;                ///< interned label of the trace() that sent it
+    bool gathersPhotons = false;      ///< of indirectdiffuse(): what it meets gives what its photon map says, where it has one
     bool operator==(const RayKind& o) const {
-        return type == o.type && fromTrace == o.fromTrace && set.only == o.set.only && set.sides == o.set.sides &&
-               set.mode == o.set.mode && label == o.label;
+        return type == o.type && fromTrace == o.fromTrace && gathersPhotons == o.gathersPhotons && set.only == o.set.only &&
+               set.sides == o.set.sides && set.mode == o.set.mode && label == o.label;
     }
 };
 /// Of camera rays, and of rays that nothing is known of.
@@ -77,6 +78,12 @@ struct Footprint {
     Footprint after(float way) const { return {at(way), spread}; }
 };
 
+/// What a path has gone through, as far as photons are concerned (PathRay::trail).
+enum Trail : uint8_t {
+    kTrailSpread = 1,  ///< a lobe that spreads light, at whose point photons are gathered or come to rest
+    kTrailMirrored = 2 ///< behind the last of these: single directions alone, which photons can come along
+};
+
 /// A ray on its way, with what its hit needs: who pays for what it finds, which random numbers it may use, how it was made. Small,
 /// since each is written and read several times.
 struct PathRay {
@@ -93,6 +100,7 @@ struct PathRay {
     bool first = true;                ///< one of those that its target asked for: writes distance and transmission
     bool counts = false;              ///< its hit writes opacity, depth and AOVs of its camera sample
     bool parted = false;              ///< camera: passed a volume on its way, so that volumes have what lies before `origin`
+    uint8_t trail = 0;                ///< Trail, as bits
     /// Density per steradian with which this direction was drawn, times the probability of drawing it at all; < 0: light sampling
     /// cannot have produced this direction, so emission counts in full (pathtracer.md 3).
     float lobePdf = -1;

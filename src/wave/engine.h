@@ -4,6 +4,7 @@
 #include "answers/answers.h"
 #include "wave/batchcontext.h"
 #include "wave/flight.h"
+#include "wave/photons.h"
 #include "wave/samples.h"
 #include "wave/vertex.h"
 #include <deque>
@@ -49,6 +50,20 @@ public:
     void notFinite(const BatchContext&, const PathRay&, uint32_t site); ///< what a call site gives
     /// The only way that light is added to targets: to that one, and their parts to the outputs that share it. deposit.cpp
     void deposit(Sched&, const Deposit&);
+    // photons.cpp
+    /// Emits photons by number and follows them to the end: what comes to rest goes to `out`, in an order that depends on nothing
+    /// else. This engine then follows photons only. False: `stop` was set, and `out` is void.
+    bool emit(const PhotonJob&, uint32_t first, uint32_t count, std::vector<StoredPhoton>& out, const StopFlag* stop);
+    /// Not null: photons are followed, not what a camera sees.
+    PhotonTrace* photonTrace() const { return photonTrace_.get(); }
+    /// The photons of a ray's sample; null: none.
+    const photons::PhotonGrid* passOf(const PathRay& r) const {
+        return r.sample && !photonTrace_ ? world_->photons_->pass(r.sample->sample) : nullptr;
+    }
+    /// Whether light of this emitter that a ray has met is among the photons of its sample.
+    bool bringsPhotons(const PathRay& r, int light) const {
+        return (r.trail & shading::kTrailMirrored) && passOf(r) && world_->photons_->lightsOfPasses[size_t(light)];
+    }
     // lights.cpp
     /// Light arriving at queries from one light; for area lights `samples[i]` is the point on the emitter.
     void evaluateLight(const BoundLight&, std::vector<ShadePoint>& queries, std::span<LightValue> out,
@@ -238,6 +253,18 @@ private:
     std::vector<FlightEvent*> events_;
     std::vector<Flight> flights_;
     void shine(const BatchContext&, Sched&);
+    /// Of rays that gather photons, those whose surface has a map: they get what that says, and leave the batch. photonmodels.cpp
+    void takeGlobalMaps(BatchContext&, Sched&);
+    const photons::PhotonMap* globalMapOf(int binding);
+    std::unordered_map<int, const photons::PhotonMap*> globalMaps_; ///< by binding
+    bool emitAll(const PhotonJob&, uint32_t first, uint32_t count);
+    void tiltPhotons(BatchContext&); ///< photonscatter.cpp
+    // photonmodels.cpp
+    /// Photons at points whose surfaces scatter them by a model, or whose kernel waits for rays.
+    void photonsByModel(BatchContext&, Sched&);
+    /// Lobes of the models of a batch's points in the place of those that its kernel asked for; `all`: of every point.
+    void takeModels(BatchContext&, bool all);
+    std::unique_ptr<PhotonTrace> photonTrace_;
     std::vector<class KernelStrip*> waiting_; ///< whose requests nobody has followed yet
     std::vector<PathSample> samples_; ///< of the call of trace()
     PathSample noSample_;

@@ -49,6 +49,7 @@ void Engine::fly(std::vector<const Sched::Task*>& missed, Sched& sched) {
 }
 
 void Engine::divert(Flight& f, PathRay next, Sched& sched) {
+    next.trail = photonTrace_ ? shading::kTrailSpread : 0; // photons do not come this way
     next.extra = newExtra(extraOf(*f.ray)); // each ray has its own
     sched.spawn(next.bounces + next.layers, f.target, next);
     f.over = true;

@@ -7,10 +7,12 @@ void Gather::run(BatchContext& c, Sched& sched) {
     if (e_.lobes.empty()) return;
     c_ = &c;
     sortByPoint();
-    if (world_.lightsAsk()) tellLights();
+    if (world_.lightsAsk() && !e_.photonTrace()) tellLights();
     e_.lobeRows_.prepare();
     choose();
     if (rules_.lightsAtRequests) light();
+    if (e_.photonTrace()) restPhotons();
+    else if (rules_.pickOne) takePhotons(sched);
     scatter(sched);
     e_.lobes.clear();
     e_.lobeRows_.clear();

@@ -89,6 +89,17 @@ private:
     /// Divides the weight by the chance that the ray goes on; false: it does not.
     bool roulette(const LobeVertex&, const Sent&, int turn, uint16_t& asked, Color& weight) const;
 
+    // photonscatter.cpp
+    bool spreads(const LobeVertex&) const;
+    bool mirrors(const LobeVertex&) const;
+    bool seesAll(const LobeVertex&) const;
+    uint8_t trailBehind(const LobeVertex&) const; ///< PathRay::trail
+    void restPhotons();
+    float photonWay(const LobeVertex&, Vec3& w) const;
+    /// Gives lobes what they send on of the photons about their points.
+    void takePhotons(Sched&);
+    Color givenBack(const LobeVertex&);
+
     Engine& e_;
     const WorldImpl& world_;
     const Rules& rules_;
@@ -107,6 +118,8 @@ private:
     std::vector<int> turns_;   ///< by lobe: queries that have reached it
     int lastQuery_ = -1; ///< that of the shadow ray sent last, which other lobes of its point may share
     std::vector<Sent> sent_;
+    struct Near { Vec3 from; Color light; }; ///< radiance times steradians
+    std::vector<Near> near_; ///< photons about a point
 };
 
 } // namespace alpenglow::transport

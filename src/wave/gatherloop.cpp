@@ -99,6 +99,7 @@ struct Asking {
     PathRay ray(const Vec3& w, const Vec3& begin, float reach, const RayKind* kind, int k, int count) const {
         const ShadePoint& p = point();
         PathRay r = *p.ray;
+        r.trail = 0;
         r.weight = Color(s.gather->light ? 1.f : 0.f);
         r.vertex = childVertex(p.ray->vertex, site(), occurrence * 4096 + uint32_t(k));
         ++r.bounces;

@@ -109,6 +109,9 @@ void Engine::shadeHits(size_t group, Sched& sched) {
     fly(*c, sched);
     if (c->rays.empty()) return giveBack(std::move(c));
     shine(*c, sched);
+    if (world_->globalMaps_) takeGlobalMaps(*c, sched);
+    if (c->rays.empty()) return giveBack(std::move(c));
+    if (photonTrace_) tiltPhotons(*c);
     const bool same = std::all_of(c->bindings.begin(), c->bindings.end(), [&](int b) { return b == c->bindings[0]; });
     c->binding = &world_->bindings_[size_t(c->bindings[0])];
     c->bound = group >= size_t(world_->groups_)           ? &world_->primitiveHit_

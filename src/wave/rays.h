@@ -43,7 +43,8 @@ enum class LightEvent : uint8_t {
     Sampled, ///< a light, sampled at a vertex
     Met,     ///< an emitter that the ray met
     Sky,     ///< a sky, or ambient light, behind everything
-    Map      ///< the environment map of a trace()
+    Map,     ///< the environment map of a trace()
+    Photons  ///< photons, which came from lights by way of mirrors and glass
 };
 struct Deposit {
     TargetId target = shading::kNoTarget;

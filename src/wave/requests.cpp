@@ -66,8 +66,8 @@ void Engine::requestShadows(BatchContext& c, const SiteInfo& s, int point, const
 /// Which surfaces rays of a trace() meet.
 template <class Row> const RayKind* Engine::raysOfTrace(const SiteInfo& s, const Row& f, const ShadePoint& p) {
     if (s.rays->fixed && !(world_->traceSubsets_ && s.rays->subsetText.empty())) // what most calls are, many times a sample
-        return kindOf({s.rays->rays, true, s.rays->set, s.label});
-    RayKind kind{RayType::Diffuse, true, {}, 0};
+        return kindOf({s.rays->rays, true, s.rays->set, s.label, s.trace->hemisphere && world_->globalMaps_});
+    RayKind kind{RayType::Diffuse, true, {}, 0, s.trace->hemisphere && world_->globalMaps_};
     kind.set = raySetOf(s, f, p.shape, kind.type, kind.label);
     return kindOf(kind);
 }

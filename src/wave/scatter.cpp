@@ -152,18 +152,20 @@ void Gather::sendRay(const Sent& s, int turn, Sched& sched) {
     const LobeVertex& l = e_.lobes[size_t(s.lobe)];
     const ShadePoint& p = c_->points[size_t(s.point)];
     const PathRay& from = c_->rays[size_t(s.point)];
-    const Vec3& w = s.w;
-    if (l.trace && l.trace->onlyLights && !(l.base > 0) && !meetsEmitter(l, w)) return;
+    Vec3 w = s.w;
+    const PhotonTrace* photon = e_.photonTrace();
+    if (!photon && l.trace && l.trace->onlyLights && !(l.base > 0) && !meetsEmitter(l, w)) return;
     const float pdf = s.value.pdf;
     const Color f = l.delta ? s.value.colour : pdf > 0 ? s.value.colour / pdf : Color(0);
     const Color through = l.weight * (f * s.scale / float(s.count));
     RayExtra extra;
-    if (l.trace && l.trace->map) {
+    if (!photon && l.trace && l.trace->map) {
         extra.environment = l.tint * e_.mapTowards(*l.trace, w, from.footprint.spread);
         if (TraceSums* of = l.trace->sums ? e_.sumsOf(l.target) : nullptr)
             of->add(TraceSums::UnshadowedEnvironment, through * extra.environment);
     }
     Color weight = l.ownsTarget ? through : from.weight * through;
+    if (photon) weight *= photonWay(l, w);
     if (!isFinite(weight)) return e_.notFinite(*c_, from, l.site);
     if (weight == Color(0) && !l.ownsTarget) return;
     uint16_t asked = from.asked;
@@ -182,7 +184,8 @@ void Gather::sendRay(const Sent& s, int turn, Sched& sched) {
     }
     r.dir = w;
     r.maxDistance = l.maxDistance;
-    r.kind = l.rays;
+    r.kind = !photon ? l.rays : e_.kindOf(l.rays->type == RayType::Diffuse ? photon->diffuse : photon->specular);
+    r.trail = trailBehind(l);
     r.media = e_.mediaTowards(*c_, s.point, w);
     r.parted = false;
     extra.lit = l.lit;

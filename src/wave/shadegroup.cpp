@@ -20,6 +20,9 @@ void Engine::lightVisibility(BatchContext& c, const SiteInfo& s, int point, cons
 }
 
 Color Engine::clearAt(const BatchContext& c, int i) const {
+    if (photonTrace_ && photonTrace_->job->models)
+        if (const PhotonModel m = world_->bindings_[size_t(c.bindings[size_t(i)])].photons.model; m != PhotonModel::Shader)
+            return Color(m == PhotonModel::Transparent);
     const shading::Batch& b = *c.batch;
     const int oi = b.plan().Oi;
     if (oi < 0) return Color(0);
@@ -150,6 +153,7 @@ void Engine::fillBatch(BatchContext& c) {
 void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
     if (c->binding->displacement) takeDisplacement(*c);
     const auto& kernel = *c->bound->kernel;
+    if (photonTrace_ && kernel.facts().suspends) return photonsByModel(*c, sched);
     fillBatch(*c);
     if (c->displaced) c->batch->tell(*c->displaced->batch);
     auto aside = asides(*c, sched);
@@ -180,6 +184,7 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
     }
     std::vector<AskedLobe> asked; // only where outputs share lobes
     requestPairs(*c, slope, aside.empty() ? nullptr : &asked, sched);
+    if (photonTrace_) takeModels(*c, false);
     if (world_->settings_.hider == Hider::Path) {
         c->clear.resize(size_t(n));
         for (int i = 0; i < n; ++i) c->clear[size_t(i)] = clearAt(*c, i);

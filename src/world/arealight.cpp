@@ -121,6 +121,15 @@ bool Emitter::sampleSurface(const Vec3& from, Vec2 u, float choose, float time, 
     return out.pdf > 0 && std::isfinite(out.pdf);
 }
 
+const geometry::Shape* Emitter::samplePoint(Vec2 u, float choose, float time, geometry::SurfacePoint& point,
+                                            float& perArea) const {
+    const Entry& e = entryAt(choose);
+    if (e.shape->placed()) e.shape->sampleAreaAt(u.x, u.y, time, point, geometry::kNeedAll);
+    else e.shape->sampleArea(u.x, u.y, point, geometry::kNeedAll);
+    perArea = float(e.share * e.shape->sampleDensity(point));
+    return e.shape;
+}
+
 float Emitter::pdf(const geometry::Shape* shape, const geometry::SurfacePoint& hit, const Vec3& from) const {
     const auto i = entryOf_.find(shape);
     if (i == entryOf_.end()) return 0;

@@ -1,5 +1,6 @@
 // What the call sites of a kernel mean to the engine, worked out once per kernel.
 #include "shadeops/specular.h"
+#include "world/photonattributes.h"
 #include "world/gathersite.h"
 #include "world/raysets.h"
 
@@ -37,6 +38,8 @@ SiteKind kindOf(const std::string& op) {
                                                           {"isindirectray", SiteKind::RayLevel},
                                                           {"isshadowray", SiteKind::RayLevel},
                                                           {"textureinfo", SiteKind::TextureInfo},
+                                                          {"photonmap", SiteKind::Photons},
+                                                          {"caustic", SiteKind::Photons},
                                                           {"lightsetup", SiteKind::LightSetup},
                                                           {"getlight", SiteKind::LightHandles},
                                                           {"getvar", SiteKind::PrimitiveVariable},
@@ -268,6 +271,8 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         if (const auto category = i.named.find("category"); category != i.named.end()) i.rowCategory = category->second;
         bindSent(i);
         if (i.kind == SiteKind::Texture || i.kind == SiteKind::Environment) i.map = textureSite(i, s);
+        if (i.kind == SiteKind::Photons) i.photons = photonSite(i, *k, *world);
+        if (i.kind == SiteKind::Trace && i.text.count("__hemisphere")) world->photons_->asksGlobal = true;
         if (i.kind == SiteKind::Diffuse) i.lobe = findLobe("diffuse");
         if (i.kind == SiteKind::Specular) i.lobe = findLobe("specular");
         if (i.kind == SiteKind::Phong) i.lobe = findLobe("phong");

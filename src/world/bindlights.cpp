@@ -165,7 +165,7 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
             continue;
         }
         for (const SiteInfo& s : l.kernel.sites)
-            if (s.kind == SiteKind::Message || s.kind == SiteKind::LightHandles) {
+            if (s.kind == SiteKind::Message || s.kind == SiteKind::LightHandles || (s.photons && s.photons->caustic)) {
                 l.asksSurface = lightsAsk_ = true;
                 if (s.site->op == "surface" && !s.site->strings.empty()) lightMessages_.push_back(s.site->strings[0]);
                 if (s.site->op == "displacement") lightDisplacements_.insert(s.site->strings.empty() ? "" : s.site->strings[0]);

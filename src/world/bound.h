@@ -113,6 +113,18 @@ struct LightOutputPlace {
     int first = -1;                            ///< of all numbers of a sample; -1: beyond the width of the AOV
 };
 
+/// What surfaces do to photons: what their shaders' lobes do to light, or what Attribute "photon" "shadingmodel" names.
+enum class PhotonModel : uint8_t { Shader, Matte, Plastic, Glass, Water, Chrome, Transparent };
+
+/// What the attributes of a surface say of photons.
+struct PhotonBinding {
+    std::string globalMap, causticMap; ///< Attribute "photon"; "": none
+    int estimator = 50;                ///< photons of a lookup
+    PhotonModel model = PhotonModel::Shader;
+    bool meets = true;                 ///< Attribute "visibility" "photon"; unset: met by diffuse or by specular rays
+    bool meetsBoth = true;             ///< met by both, so that photons can go wherever rays of lobes come from
+};
+
 /// Shapes with the same surface, atmosphere and light list are shaded together.
 struct SurfaceBinding {
     InstanceRef surface, displacement, interior, exterior; ///< the last two are asked by messages
@@ -149,6 +161,7 @@ struct SurfaceBinding {
     float bias = 0;                            ///< Attribute "trace" "bias"; 0: the hit's own error bound
     uint32_t pointNeeds = geometry::kNeedAll;  ///< geometry::PointNeed of hits
     scene::AttributesRef attributes;
+    PhotonBinding photons;
 };
 
 } // namespace alpenglow::transport

@@ -7,6 +7,7 @@
 #include "world/bound.h"
 #include "world/evaluator.h"
 #include "world/lightchooser.h"
+#include "world/photonstore.h"
 #include "world/world.h"
 #include <functional>
 #include <unordered_map>
@@ -30,6 +31,7 @@ public:
     const scene::Frame& frame() const override { return *frame_; }
     const Settings& settings() const override { return settings_; }
     Facts facts() const override { return facts_; }
+    PhotonStore* photons() const override { return photons_.get(); }
     std::vector<int> outputWidths() const override { return outputWidths_; }
     std::vector<std::string> missingOutputs() const override { return missingOutputs_; }
     std::vector<std::string> knownOutputs() const override;
@@ -136,6 +138,8 @@ public:
     Diagnostics* diagnostics_ = nullptr;
     mutable rsl::PrintLog prints_;
     texture::IrradianceTables irradiance_;
+    std::shared_ptr<PhotonStore> photons_;     ///< changes between passes only, when nobody follows rays
+    bool globalMaps_ = false;                  ///< some surface has a global photon map, and some indirectdiffuse() may meet it
     mutable std::mutex imagerMutex_;
     struct BoundImager { bool bound = false; InstanceRef shader; BoundKernel kernel; };
     BoundImager imager_;                       ///< by runImager(), under the lock
@@ -160,6 +164,8 @@ public:
         geometry::Bounds clearBounds;
     } byOpacity_;
     void sortByOpacity();
+    /// What surfaces are to photons that are visible to rays as `visibility` says, by shape. photonattributes.cpp
+    void bindPhotons(std::span<const uint32_t> visibility);
     bool fades_ = false;                       ///< some shape is between levels of detail
     bool hitModes_ = false;                    ///< some call has a "hitmode"
     BoundKernel primitiveHit_;                 ///< shows primitives as they are; only where some ray may want that

@@ -33,7 +33,7 @@ std::optional<Information> unset(const std::string& name, bool path) {
                                                          {"visibility:trace", 0.f},
                                                          {"visibility:transmission", 0.f},
                                                          {"visibility:photon", 0.f},
-                                                         {"photon:estimator", 100.f},
+                                                         {"photon:estimator", 50.f},
                                                          {"dice:hair", 0.f},
                                                          {"dice:rasterorient", 1.f},
                                                          {"cull:backfacing", 1.f},

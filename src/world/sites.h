@@ -58,6 +58,15 @@ struct OcclusionSite {
 };
 struct GatherSite; // world/gathersite.h
 
+/// What a photonmap() or caustic() asks. Rows, or -1.
+struct PhotonSite {
+    std::string name;            ///< of the map; "" where `computed`, or there is none
+    bool computed = false;       ///< each point names its map, in row 0
+    bool caustic = false;        ///< that of the surface's attributes
+    bool radiance = false;
+    int point = -1, normal = -1, estimator = -1, minBounces = -1, lookup = -1;
+};
+
 /// What a texture() or environment() asks of a map. Rows of `in`, or -1.
 struct TextureSite {
     std::string name;                     ///< of the map; "" where `computed`, or there is none
@@ -109,6 +118,7 @@ enum class SiteKind : uint8_t {
     Random,
     Text,
     GatherTurn,
+    Photons,
     Other
 };
 struct SiteInfo {
@@ -134,6 +144,7 @@ struct SiteInfo {
     std::shared_ptr<const GatherSite> gather;  ///< Gather, GatherTurn
     std::shared_ptr<const RaySite> rays;       ///< Trace, Transmission, Occlusion, Gather
     std::shared_ptr<const TextureSite> map;    ///< Texture, Environment
+    std::shared_ptr<const PhotonSite> photons; ///< Photons
     bool setUp = false, refresh = false;       ///< loops: they have a setup; "lightcache" "refresh"
     bool outside = false;                      ///< queries: outside of loops over lights
     bool once = false;                         ///< printf: in construct()

@@ -1,4 +1,5 @@
 #include "world/surfaces.h"
+#include "world/photonattributes.h"
 #include "world/gathersite.h"
 #include "rsl/front/leftmembers.h"
 #include "world/told.h"
@@ -211,7 +212,7 @@ std::string SurfaceBinder::keyOf(const SurfaceBinding& b, const geometry::Shape&
     for (const char* name : {"shade:transmissionhitmode", "visibility:transmission", "shade:diffusehitmode",
                              "shade:specularhitmode", "render:casts_shadows"})
         if (const scene::Param* p = a.value(name); p && !p->strings.empty()) key += name + p->strings[0] + ";";
-    return key;
+    return key + photonKey(a);
 }
 
 int SurfaceBinder::bindAnew(const geometry::ShapeRef& shape) {
@@ -264,6 +265,7 @@ int SurfaceBinder::bindAnew(const geometry::ShapeRef& shape) {
             b.primitiveFor |= bit;
     world_.hitModes_ |= b.primitiveFor != 0;
     b.attributes = shape->attributesRef();
+    b.photons = photonsOf(a, diagnostics_);
     // Displaced shapes and different kernels never share a batch. Equal builds S mean equal builds V.
     b.program =
         programs_

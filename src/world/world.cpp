@@ -128,6 +128,8 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     if (const char* e = std::getenv("ALPENGLOW_SHADERS"))
         for (auto& path : splitSearchPath(e)) w->settings_.shaderPaths.push_back(path);
     w->settings_.shaderPaths.push_back(shippedShaders());
+    w->photons_ = std::make_shared<PhotonStore>(
+        PhotonStore::Files{settings.texturePaths, settings.read, w->worldToCamera_}, d);
     w->shapes_ = geometry::buildShapes(*frame, d);
     w->numberShapes();
     w->shadesAtOpen_ = shadesAtOpen(*frame, settings, w->shapes_);
@@ -148,6 +150,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     if (stopped()) return nullptr;
     std::vector<uint32_t> visibility;
     for (const auto& shape : w->shapes_) visibility.push_back(visibilityOf(shape->attributes(), all));
+    w->bindPhotons(visibility);
     w->accel_ = std::make_unique<accel::Accel>(w->shapes_, visibility, d);
     if (!w->accel_->sound()) return nullptr;
     w->accel_->makeSolids(d);

@@ -9,6 +9,7 @@ namespace alpenglow::transport {
 
 class WorldImpl;
 class Evaluator;
+class PhotonStore;
 /// Gives who runs kernels of a world before rays are followed (evaluator.h). Several may work at a time; the world outlives them.
 using MakeEvaluator = std::function<std::unique_ptr<Evaluator>(const WorldImpl&, Diagnostics&, const StopFlag* stop)>;
 
@@ -31,6 +32,8 @@ public:
     /// Those of Settings::outputs that no shader of the frame gives and that are no predefined variable: they are 0 everywhere.
     /// None where the frame has no primitives.
     virtual std::vector<std::string> missingOutputs() const { return {}; }
+    /// The photon maps of the frame (photonstore.h).
+    virtual PhotonStore* photons() const { return nullptr; }
     /// What could be named instead: predefined variables and the outputs of the frame's shaders.
     virtual std::vector<std::string> knownOutputs() const { return {}; }
     /// Writes what shaders have printed since the last call, in the order of the samples; or forgets it. Between passes.

@@ -1,0 +1,47 @@
+// Photon passes of a frame: maps that are written or made for its shaders, and the caustics of the hider path. Inside render/.
+#pragma once
+#include "render/rendering.h"
+#include "transport/photons.h"
+
+namespace alpenglow::render {
+
+/// Emits photons on the threads of a job, with progress.
+class PhotonPasses {
+public:
+    PhotonPasses(Job&, std::shared_ptr<const transport::World>, const transport::PhotonUse&);
+    transport::PhotonEmission& emission() { return emission_; }
+    /// All photons that come to rest of `count` of a pass. False: stopped, or more than limits::kPhotons came to rest, which was
+    /// reported; then *emitted is how many were emitted of which these are.
+    bool emit(uint32_t pass, uint64_t count, std::vector<transport::StoredPhoton>& stored, const std::string& what, uint64_t* emitted);
+    /// The same of several passes, first to first + passes - 1, each by itself. False: stopped.
+    bool emit(uint32_t first, uint32_t passes, uint32_t count, std::vector<std::vector<transport::StoredPhoton>>& stored);
+
+private:
+    transport::PhotonEmission::Thread& thread(int worker);
+    Job& job_;
+    transport::PhotonEmission emission_;
+    std::vector<std::unique_ptr<transport::PhotonEmission::Thread>> threads_; ///< by worker
+};
+
+/// Photons that Hider or Option "photon" "emit" asks for, at most limits::kPhotonsEmitted; more are reported.
+uint64_t photonsToEmit(const scene::Options&, Diagnostics&);
+
+/// Caustics of the hider path: for each sample of all pixels photons of their own (design: docs/light.md).
+class CausticPasses {
+public:
+    explicit CausticPasses(Job&);
+    /// Whether Hider "path" "caustics" asks for them.
+    static bool asked(const scene::Options&);
+    /// Before samples first to first + count - 1 of any pixel are traced. False: stopped.
+    bool ready(uint32_t first, uint32_t count);
+
+private:
+    bool begin();
+    Job& job_;
+    std::unique_ptr<PhotonPasses> passes_; ///< null: there are no caustics, or nobody asks for them
+    bool begun_ = false;
+    uint32_t count_ = 0; ///< photons of a pass
+    float radius_ = 0;   ///< of the first pass
+};
+
+} // namespace alpenglow::render

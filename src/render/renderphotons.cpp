@@ -1,0 +1,74 @@
+// Photon maps: those that Hider "photon" writes, and those that a frame's shaders ask for.
+#include "render/framework.h"
+#include "render/levels.h"
+#include "render/photonpass.h"
+
+namespace alpenglow::render {
+
+void Renderer::renderPhotons(FrameWork& f, int threads) {
+    f.settings = engineSettings(f);
+    const auto refuse = [&](const std::string& why, const std::string& hint) {
+        ++outcome_.refused;
+        diagnostics_.report(Severity::Error, Rie::MissingData, f.o.hiderPlace, why, hint);
+    };
+    f.world = engine_.build(drawnLevels(f.frame, f.camera), f.settings, diagnostics_);
+    if (!f.world || !f.world->photons()) {
+        outcome_.interrupted |= settings_.stop && *settings_.stop;
+        ++outcome_.refused;
+        return;
+    }
+    const std::vector<std::string> maps = transport::photonMapsOf(*f.world, true);
+    if (maps.empty())
+        return refuse("Hider \"photon\": no surface and no shader of the frame names a photon map",
+                      "Attribute \"photon\" \"string globalmap\" \"room.photons\"");
+    const double cpu = processCpuSeconds();
+    Job job(settings_, f.camera, f.plan, engine_, f.world, threads, progress_, diagnostics_);
+    PhotonPasses passes(job, f.world, {});
+    if (!passes.emission().lights())
+        return refuse("Hider \"photon\": no light of the frame emits photons", "ambient lights do not, nor do lights without a place");
+    std::vector<transport::StoredPhoton> stored;
+    uint64_t emitted = 0;
+    const bool whole = passes.emit(0, photonsToEmit(f.o, diagnostics_), stored, maps.front(), &emitted);
+    outcome_.interrupted |= job.interrupted;
+    stats_.renderSec += job.elapsed();
+    stats_.cpuSec += processCpuSeconds() - cpu;
+    if (!whole) {
+        ++outcome_.refused;
+        diagnostics_.report(Severity::Warning, Rie::NoError, {}, "interrupted while photons were emitted; no photon map is written");
+        return;
+    }
+    ++outcome_.rendered;
+    for (const auto& [name, photons] : transport::photonsByMap(*f.world, maps, stored)) {
+        if (photons.empty())
+            diagnostics_.report(Severity::Warning, Rie::NoError, {}, "photon map \"" + name + "\" is empty: no photon came to rest on its surfaces");
+        const bool saved = transport::savePhotonMap(*f.world, name, photons, emitted, settings_.allowWrite, diagnostics_);
+        outcome_.outputFailed |= !saved;
+        if (saved)
+            diagnostics_.report(Severity::Info, Rie::NoError, {},
+                                "photon map \"" + name + "\": " + std::to_string(photons.size()) + " photons, " + std::to_string(emitted) + " emitted");
+    }
+}
+
+void Renderer::makePhotonMaps(FrameWork& f, Job& job) {
+    if (!f.world->photons()) return;
+    const std::vector<std::string> maps = transport::photonMapsOf(*f.world, false);
+    if (maps.empty()) return;
+    // Lobes are what shaders ask for under path; elsewhere they look at lights themselves.
+    Diagnostics silent; // what it says was said when the frame was made
+    std::shared_ptr<const transport::World> world = f.world;
+    if (!f.path) {
+        transport::Settings settings = f.settings;
+        settings.hider = Hider::Path;
+        world = engine_.build(drawnLevels(f.frame, f.camera), settings, silent);
+        if (!world || !world->photons()) return;
+    }
+    PhotonPasses passes(job, world, {.all = false});
+    if (!passes.emission().lights()) return; // who looks a map up is told
+    std::vector<transport::StoredPhoton> stored;
+    uint64_t emitted = 0;
+    if (!passes.emit(0, photonsToEmit(f.path ? scene::Options(f.o) : f.o, diagnostics_), stored, "photons", &emitted)) return;
+    for (auto& [name, photons] : transport::photonsByMap(*world, maps, stored))
+        transport::setPhotonMap(*f.world, name, std::move(photons));
+}
+
+} // namespace alpenglow::render

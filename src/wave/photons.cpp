@@ -1,0 +1,128 @@
+// Emitting a block of photons: they start at their lights, and are followed as rays of a path are, through the same stages.
+#include "base/memory.h"
+#include "wave/emission.h"
+#include <algorithm>
+#include <tuple>
+
+namespace alpenglow::transport {
+
+namespace {
+
+/// Photons of a block by light, and what they carry: light by light, since a kernel call is of one light.
+std::vector<EmissionStart> startBlock(Engine& e, const PhotonJob& job, uint32_t first, uint32_t count, std::vector<Color>& power) {
+    const EmissionPlan& plan = *job.plan;
+    const WorldImpl& world = e.world();
+    std::vector<EmissionStart> all(count);
+    std::vector<std::vector<uint32_t>> of(plan.lights().size());
+    for (uint32_t i = 0; i < count; ++i) {
+        all[i].drawn = plan.draw(job.numbers(first + i));
+        if (all[i].drawn.light >= 0) of[size_t(all[i].drawn.light)].push_back(i);
+    }
+    power.assign(count, Color(0));
+    std::vector<EmissionStart> some;
+    for (size_t l = 0; l < of.size(); ++l) {
+        if (of[l].empty()) continue;
+        some.clear();
+        for (uint32_t i : of[l]) some.push_back(all[i]);
+        startPhotons(e, plan, plan.lights()[l], some);
+        for (EmissionStart& s : some) { // what it meets first
+            if (s.dir == Vec3(0.f)) continue;
+            accel::Ray ray;
+            ray.org = s.origin;
+            ray.dir = s.dir;
+            ray.time = world.shadesAtOpen_ ? 0 : s.drawn.time;
+            ray.only = job.met;
+            accel::Hit hit;
+            s.length = world.accel_->intersect(ray, hit) ? hit.t : 0;
+        }
+        const std::vector<Color> brings = emittedPower(e, plan.lights()[l], some);
+        for (size_t k = 0; k < of[l].size(); ++k) {
+            all[of[l][k]] = some[k];
+            power[of[l][k]] = brings[k];
+        }
+    }
+    return all;
+}
+
+} // namespace
+
+bool Engine::emit(const PhotonJob& job, uint32_t first, uint32_t count, std::vector<StoredPhoton>& out, const StopFlag* stopFlag) {
+    if (!photonTrace_) {
+        photonTrace_ = std::make_unique<PhotonTrace>();
+        rules_.pickOne = rules_.roulette = true;
+        rules_.lightsAtRequests = rules_.emissionCounts = false;
+    }
+    PhotonTrace& t = *photonTrace_;
+    stop = stopFlag;
+    const size_t before = out.size();
+    t.job = &job;
+    t.first = first;
+    t.out = &out;
+    t.diffuse = {RayType::Diffuse, false, {job.met, accel::Sides::Front, shading::HitMode::Default}, 0};
+    t.specular = t.diffuse;
+    t.specular.type = RayType::Specular;
+    bool done = true;
+    while (true) {
+        beginsAnew_ = raysAtOnce_ > 1;
+        try {
+            done = emitAll(job, first, count);
+            break;
+        } catch (const LimitReached&) { // as in trace(): what is stored does not depend on how many points are shaded at a time
+            if (!std::exchange(beginsAnew_, false)) throw;
+        }
+        out.resize(before);
+        raysAtOnce_ = std::max(1, raysAtOnce_ / 8);
+        inner_.reset();
+        sched_.reset();
+        forget();
+    }
+    beginsAnew_ = false;
+    const auto key = [](const StoredPhoton& p) {
+        return std::tuple(p.number, p.photon.bounces, p.photon.P.x, p.photon.P.y, p.photon.P.z);
+    };
+    std::sort(out.begin() + long(before), out.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
+    return done;
+}
+
+bool Engine::emitAll(const PhotonJob& job, uint32_t first, uint32_t count) {
+    PhotonTrace& t = *photonTrace_;
+    if (!sched_) sched_ = std::make_unique<Sched>(*this, stop, limits::kFrameBytesPerThread, raysAtOnce_);
+    Sched& sched = *sched_;
+    sched.restart(stop);
+    const std::vector<EmissionStart> starts = startBlock(*this, job, first, count, t.power);
+    samples_.resize(count);
+    results.clear();
+    lightTargets_.clear();
+    shares_.clear();
+    const TargetId root = nowhere_ = sched.newRoot(); // nobody asks what photons see
+    for (uint32_t i = 0; i < count; ++i) {
+        const EmissionStart& s = starts[i];
+        const float most = maxComponent(t.power[i]);
+        if (!(most > 0) || !std::isfinite(most)) continue;
+        PathSample& sample = samples_[i];
+        sample = {int(job.pass >> 24), int(job.pass & 0xffffffu), first + i,   int(i), world_->timeAt(s.drawn.time),
+                  s.drawn.time,        0.5f,                      job.numbers(first + i)};
+        PathRay& r = sched.spawn(0, root).payload;
+        r.origin = s.origin;
+        r.dir = s.dir;
+        r.weight = t.power[i] / most; // so that roulette looks at what is left of it
+        t.power[i] = Color(most);
+        r.sample = &sample;
+        r.kind = kindOf(t.specular);
+        r.media = world_->eye_.count ? &world_->eye_ : nullptr;
+        if (world_->fades_) sample.level = random(r).one(0, kLevel, 0);
+    }
+    spoiled_.clear();
+    waiting_.clear();
+    hitQueues_.clear();
+    groupsWithHits_.clear();
+    hitsWaiting_ = 0;
+    const bool done = sched.run();
+    counters.nonFinite += sched.nonFinite();
+    counters.overLimit += sched.overLimit();
+    counters.peakFrameBytes = std::max(counters.peakFrameBytes, sched.peakFrameBytes());
+    forget();
+    return done;
+}
+
+} // namespace alpenglow::transport

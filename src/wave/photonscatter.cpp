@@ -1,0 +1,169 @@
+// What becomes of photons at a vertex: they come to rest where light is spread, and go on along a lobe. And what rays of a camera
+// gather of them there.
+//
+// A photon that goes on along a lobe has the power that the other way round light would have: from a light to the eye and back
+// again must be the same. A lobe gives the radiance K that leaves along one way for radiance 1 from another; a photon's power is
+// K times the cosine of the way on over that of the way here, both with the normal of the geometry, over the density of the draw
+// (Veach, "Robust Monte Carlo Methods for Light Transport Simulation" (1997), 5.3). Refraction in shaders takes energy for
+// radiance, without the factor for the change of solid angle: the way round has its inverse.
+#include "wave/gather.h"
+#include "wave/photons.h"
+#include "lobes/sampling.h"
+
+namespace alpenglow::transport {
+
+namespace {
+/// Kinds whose value has the cosine of the light's direction with their axis as a factor.
+bool hasCosine(const LobeKind& k) { return k.name == "diffuse" || (k.distribution && k.name != "hair"); }
+
+float sine(const Vec3& w, const Vec3& n) { return length(cross(w, n)); }
+float least(float x) { return std::max(std::fabs(x), 1e-4f); }
+} // namespace
+
+float photonFactor(const LobeColumns& rows, LobeColumns::Place place, const LobeKind& kind, bool delta, const Vec3& from,
+                   const Vec3& to, const Vec3& n, const Vec3& N) {
+    const float here = least(dot(from, n)), there = least(dot(to, n)), ways = there / here;
+    const bool through = (dot(from, n) > 0) != (dot(to, n) > 0);
+    if (delta) {
+        if (!through) return ways;
+        // Refraction about the shading normal, where the two ways and that lie in a plane.
+        const Vec3 across = cross(from, to);
+        const float si = sine(from, N), so = sine(to, N);
+        if (!(si > 1e-5f) || std::fabs(dot(across, N)) > 1e-3f * length(across) + 1e-6f) return ways;
+        const float index = so / si;
+        return index * index * (least(dot(from, N)) / least(dot(to, N))) * ways;
+    }
+    if (hasCosine(kind) || (kind.name == "slphong" && rows.row(place, kRowHasHorizon) != 0)) {
+        const Vec3 axis = rows.triple(place, kind.name == "slphong" ? kRowHorizon : kRowAxis);
+        float index = 1;
+        if (through && kind.name == "glass-ggx") {
+            const float eta = std::max(rows.row(place, kRowEta), 1e-3f);
+            index = dot(axis, from) < 0 ? eta : 1 / eta; // of where it came from over where it goes
+        }
+        return index * index * least(dot(from, axis)) / least(dot(to, axis)) * ways;
+    }
+    return ways;
+}
+
+/// Light of all around comes to a lobe's point as it comes to the point: so photons may be gathered for it.
+bool Gather::spreads(const LobeVertex& l) const { return !l.delta && seesAll(l); }
+bool Gather::mirrors(const LobeVertex& l) const { return l.delta && !l.ownsTarget && seesAll(l); }
+bool Gather::seesAll(const LobeVertex& l) const {
+    const shading::RaySet& set = l.rays->set;
+    return !l.elsewhere && !set.only && !(l.maxDistance < 1e37f) && set.mode == shading::HitMode::Default &&
+           set.sides == accel::Sides::Front && world_.bindings_[size_t(c_->bindings[size_t(l.point)])].photons.meetsBoth;
+}
+
+uint8_t Gather::trailBehind(const LobeVertex& l) const {
+    const uint8_t trail = rayOf(l).trail;
+    if (e_.photonTrace()) return mirrors(l) ? trail : uint8_t(shading::kTrailSpread);
+    if (spreads(l)) return shading::kTrailSpread;
+    return mirrors(l) && (trail & shading::kTrailSpread) ? shading::kTrailSpread | shading::kTrailMirrored : 0;
+}
+
+void Gather::restPhotons() {
+    const PhotonTrace& t = *e_.photonTrace();
+    for (size_t point = 0; point < c_->points.size(); ++point) {
+        if (begin_[point] == begin_[point + 1]) continue;
+        const ShadePoint& p = c_->points[point];
+        const PathRay& from = c_->rays[point];
+        Color given(0);
+        bool spread = false;
+        for (int i : lobesOf(point)) {
+            LobeVertex& l = e_.lobes[size_t(i)];
+            if (!l.delta) {
+                spread = true;
+                given += l.weight * l.albedo;
+            }
+            if (t.job->caustics && !mirrors(l)) l.chosen = 0;
+        }
+        const bool caustic = from.bounces > 0 && !(from.trail & shading::kTrailSpread);
+        const Color power = t.power[size_t(from.sample->path)] * from.weight * float(t.job->scale);
+        if (!spread || (t.job->caustics && !caustic) || !isFinite(power) || !(maxComponent(power) > 0)) continue;
+        StoredPhoton s;
+        const Vec3& n = p.surface.displaced ? p.surface.displacedN : p.surface.n;
+        s.photon.P = p.surface.displaced ? p.surface.displacedP : p.surface.P;
+        s.photon.power = {std::max(power.x, 0.f), std::max(power.y, 0.f), std::max(power.z, 0.f)};
+        s.photon.from = photons::packUnit(-from.dir);
+        s.photon.normal = photons::packUnit(dot(n, from.dir) > 0 ? -n : n);
+        for (int k = 0; k < 3; ++k) s.photon.reflected[k] = uint8_t(std::clamp(given[k], 0.f, 1.f) * 255 + .5f);
+        s.photon.bounces = uint8_t(std::min<int>(from.bounces, 255));
+        s.number = t.first + uint32_t(from.sample->path);
+        s.binding = c_->bindings[point];
+        s.caustic = caustic;
+        t.out->push_back(s);
+    }
+}
+
+/// The way on of a photon, and by how much its power changes beside the lobe's own weight. A photon that comes along the normal
+/// says nothing of the index of refraction: its shader sees it come from slightly aside (Engine::tiltPhotons), and its way on is
+/// put right here.
+float Gather::photonWay(const LobeVertex& l, Vec3& w) const {
+    const ShadePoint& p = c_->points[size_t(l.point)];
+    const PathRay& from = rayOf(l);
+    const Vec3 n = p.surface.displaced ? p.surface.displacedN : p.surface.n, N = normalize(p.N);
+    const Vec3 in = normalize(p.I), tilt = in - from.dir;
+    const float factor = photonFactor(e_.lobeRows_, l.place, *l.kind, l.delta, -in, w, n, N);
+    if (l.delta && length(tilt) > kLeastTilt / 4) {
+        const Vec3 aside = tilt - N * dot(tilt, N);
+        const float si = sine(in, N), index = si > 0 ? sine(w, N) / si : 1;
+        w = normalize(w - aside * index);
+    }
+    return factor;
+}
+
+void Engine::tiltPhotons(BatchContext& c) {
+    for (size_t i = 0; i < c.points.size(); ++i) {
+        ShadePoint& p = c.points[i];
+        const Vec3 N = normalize(p.N);
+        if (!(sine(c.rays[i].dir, N) < kLeastTilt / 10)) continue;
+        const Basis b(N);
+        p.I = normalize(c.rays[i].dir + b.t * kLeastTilt) * length(p.I);
+    }
+}
+
+void Gather::takePhotons(Sched& sched) {
+    for (size_t point = 0; point < c_->points.size(); ++point) {
+        if (begin_[point] == begin_[point + 1]) continue;
+        const PathRay& ray = c_->rays[point];
+        const photons::PhotonGrid* grid = e_.passOf(ray);
+        if (!grid || grid->size() == 0) continue;
+        const ShadePoint& p = c_->points[point];
+        const Vec3& n = p.surface.displaced ? p.surface.displacedN : p.surface.n;
+        const Vec3& at = p.surface.displaced ? p.surface.displacedP : p.surface.P;
+        const float perArea = 1 / (float(kPi) * grid->radius() * grid->radius());
+        near_.clear();
+        grid->within(at, [&](const photons::Photon& photon) {
+            if (!(std::fabs(dot(photons::unpackUnit(photon.normal), n)) > 0.7f)) return;
+            const Vec3 w = photon.direction();
+            near_.push_back({w, photon.power * (perArea / least(dot(w, n)))});
+        });
+        if (near_.empty()) continue;
+        for (int i : lobesOf(point)) {
+            const LobeVertex& l = e_.lobes[size_t(i)];
+            if (!l.followed || !spreads(l)) continue;
+            const Color weight = l.lobeOfShader ? l.weight * indirectScale_[point] : l.weight;
+            const Color light = (l.ownsTarget ? weight : weight * ray.weight) * givenBack(l);
+            e_.deposit(sched, {l.target, light, LightEvent::Photons, &ray, shareOf(l)});
+        }
+    }
+}
+
+/// What a lobe gives back of near_.
+Color Gather::givenBack(const LobeVertex& l) {
+    LobeColumns& rows = e_.lobeRows_;
+    Color sum(0);
+    if (l.kind->name == "diffuse") { // what most are
+        const Vec3 axis = rows.triple(l.place, kRowAxis);
+        for (const Near& photon : near_) sum += photon.light * std::max(dot(axis, photon.from), 0.f);
+        return sum * float(1 / kPi);
+    }
+    for (const Near& photon : near_) {
+        rows.ask(l.place, photon.from);
+        rows.evaluate();
+        sum += photon.light * rows.value(l.place).colour;
+    }
+    return sum;
+}
+
+} // namespace alpenglow::transport

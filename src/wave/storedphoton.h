@@ -1,0 +1,15 @@
+// What an emission of photons gives.
+#pragma once
+#include "photons/photon.h"
+
+namespace alpenglow::transport {
+
+/// A photon at rest.
+struct StoredPhoton {
+    photons::Photon photon;
+    uint32_t number = 0;  ///< of the emission
+    int32_t binding = 0;  ///< of the surface
+    bool caustic = false; ///< came by way of single directions alone (mirrors, glass), at least one
+};
+
+} // namespace alpenglow::transport

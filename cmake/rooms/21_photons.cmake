@@ -1,3 +1,2 @@
 find_package(ZLIB REQUIRED)
 room(photons DEPS base ZLIB::ZLIB)
-room_tests(photons DEPS photons)

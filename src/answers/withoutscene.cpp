@@ -17,6 +17,7 @@ WithoutScene::WithoutScene(std::vector<std::string> texturePaths, Diagnostics& d
     world->settings_.texturePaths = std::move(texturePaths);
     world->diagnostics_ = &d;
     world->textures_ = std::make_unique<texture::TextureSystem>(d);
+    world->photons_ = std::make_shared<PhotonStore>(PhotonStore::Files{}, d);
     state_->world = world;
     state_->answers = std::make_unique<Answers>(*world, d, nullptr);
 }

@@ -98,9 +98,6 @@ inline constexpr double kFilterWidth = 64;                     ///< pixels, full
 inline constexpr unsigned kSamplesPerPixel = 1u << 27;         ///< of one film: beyond it the exact sums could overflow
 inline constexpr int kFilmChannels = 1024;                     ///< AOV channels of one film
 inline constexpr size_t kPartFileBytes = size_t(64) << 30;     ///< of one part file or checkpoint on disk
-inline constexpr size_t kPhotons = 50'000'000;                 ///< of one photon map
-inline constexpr size_t kPhotonsEmitted = 200'000'000;         ///< by one Hider "photon"
-inline constexpr size_t kPhotonsOfPass = 4'000'000;            ///< emitted for one sample of every pixel (Hider "path" "caustics")
 inline constexpr size_t kPartHeaderBytes = size_t(16) << 20;   ///< of its header: names, metadata, ranges
 
 inline constexpr int kShaderFilesLooked = 2000;                ///< .sl files searched for a shader that has no file of its own name

@@ -1,7 +1,7 @@
 #include "photons/photonfile.h"
 #include "base/exact.h"
 #include "base/file.h"
-#include "base/limits.h"
+#include "photons/limits.h"
 #include <bit>
 #include <cstring>
 #include <zlib.h>

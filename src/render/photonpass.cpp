@@ -1,5 +1,5 @@
 #include "render/photonpass.h"
-#include "base/limits.h"
+#include "photons/limits.h"
 #include "photons/photonmap.h"
 #include <algorithm>
 

@@ -1,0 +1,145 @@
+// Hider "path" "caustics": photons bring what comes by way of mirrors and glass, paths bring the rest. Both together are the light
+// that paths alone find, and closed forms where there are some.
+#include "photons/photonmap.h"
+#include "transport/floorscene.h"
+#include "transport/photons.h"
+
+using namespace alpenglow;
+using namespace alpenglow::transport;
+using namespace alpenglow::transport::testing;
+
+namespace {
+
+Settings path() { return withShaders(Hider::Path); }
+
+/// Sets photons for samples 0 to passes - 1. Of learning, as the renderer does it.
+void passes(Scene& s, uint32_t passes, uint32_t count, float radius, bool learn = true) {
+    PhotonEmission emission(s.world, {.all = true, .sky = false, .caustics = true}, s.diagnostics);
+    PhotonEmission::Thread thread(emission, s.diagnostics);
+    std::vector<StoredPhoton> found;
+    if (learn) {
+        ASSERT_TRUE(thread.emit(0xffffffffu, 0, 20000, 20000, found, nullptr));
+        emission.learn(found, 0xffffffffu, 20000);
+    }
+    emission.tellLights();
+    std::vector<std::unique_ptr<photons::PhotonGrid>> grids;
+    for (uint32_t pass = 0; pass < passes; ++pass) {
+        found.clear();
+        ASSERT_TRUE(thread.emit(pass, 0, count, count, found, nullptr));
+        std::vector<photons::Photon> all;
+        for (const StoredPhoton& p : found) all.push_back(p.photon);
+        grids.push_back(std::make_unique<photons::PhotonGrid>(std::move(all), radius));
+    }
+    setPhotonPasses(*s.world, 0, std::move(grids));
+}
+/// Samples of one ray, some in each pass: the mean of each pass is one sample of the estimate.
+Moments estimate(Scene& s, CameraRay ray, uint32_t passes, int each) {
+    Moments m;
+    for (uint32_t pass = 0; pass < passes; ++pass) {
+        std::vector<CameraRay> rays;
+        for (int i = 0; i < each; ++i) {
+            ray.px = i;
+            ray.py = int(pass);
+            ray.sample = pass;
+            rays.push_back(ray);
+        }
+        Color sum(0);
+        for (const SampleResult& r : s.trace(rays)) sum += r.color;
+        m.add(sum / float(each));
+    }
+    return m;
+}
+void expectSame(const Moments& a, const Moments& b, double precision, const std::string& what) {
+    for (int k = 0; k < 3; ++k) {
+        const double se = std::sqrt(a.se(k) * a.se(k) + b.se(k) * b.se(k));
+        EXPECT_NEAR(a.mean(k), b.mean(k), kZ * se + .01 * std::fabs(b.mean(k))) << what << ", channel " << k;
+        EXPECT_LT(se, precision * std::fabs(b.mean(k))) << what << ": not precise enough to decide";
+    }
+}
+
+const std::string kMirror = "Surface \"slmaterial\" \"color diffusecolor\" [0 0 0] \"color specularcolor\" [1 1 1]\n";
+const std::string kGlass = "Surface \"slmaterial\" \"color diffusecolor\" [0 0 0] \"color transmissive\" [1 1 1] \"float kn\" 1.5 \"string fresnel\" \"exact\"\n";
+const std::string kMatte = "Surface \"slmaterial\" \"color diffusecolor\" [.8 .6 .4]\n";
+std::string lamp(double y, double half, double radiance) {
+    char text[400];
+    std::snprintf(text, sizeof text, "AttributeBegin Sides 1 AreaLightSource \"slrect\" 1 \"float intensity\" %g Surface \"constant\" Color 0 0 0 "
+                                     "Polygon \"P\" [%g %g %g  %g %g %g  %g %g %g  %g %g %g] AttributeEnd\nIlluminate 1 1\n",
+                  radiance, -half, y, -half, half, y, -half, half, y, half, -half, y, half);
+    return text;
+}
+
+// A point light and a mirror: the light's image shines as well as the light does. No path finds it.
+TEST(Caustics, MirrorImageOfAPointLight) {
+    Scene s(world("LightSource \"pointlight\" 1 \"float intensity\" 4 \"point from\" [0 1 0]\nAttributeBegin " + kMirror +
+                  "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" + kMatte + "Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n"),
+            path());
+    const CameraRay ray = rayTo({.1f, 1.2f, 0}, {0, 2, 0});
+    const double direct = .8 * 4, image = .8 * 4 / 9;
+    Moments m = estimate(s, ray, 8, 16);
+    // The ceiling's own light comes back from the mirror by paths; they do not see the point light in it.
+    const double paths = m.mean();
+    passes(s, 64, 20000, .1f);
+    m = estimate(s, ray, 64, 16);
+    EXPECT_GT(paths, direct);
+    EXPECT_NEAR(m.mean() - paths, image, 4.5 * m.se() + .1 * image) << direct; // and what the ceiling sends on of the image
+    EXPECT_LT(m.se(), .03 * image);
+}
+
+// An area light: paths find its image in the mirror too. With photons these are left out, and the sum stays.
+TEST(Caustics, TogetherAsPathsAlone) {
+    struct Case { std::string name, scene; CameraRay ray; double precision; };
+    const std::string floor = kMatte + "Polygon \"P\" [-3 0 -3  -3 0 3  3 0 3  3 0 -3]\n";
+    const Case cases[] = {
+        {"mirror", lamp(1, .5, 5) + "AttributeBegin " + kMirror + "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" + kMatte + "Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n",
+         rayTo({1.1f, 1.2f, 0}, {1, 2, 0}), .02},
+        {"glass ball", lamp(3, .8, 5) + "AttributeBegin " + kGlass + "Translate 0 1 0 Sphere .6 -.6 .6 360 AttributeEnd\n" + floor, rayTo({.3f, .6f, 1.4f}, {.1f, 0, .1f}), .02},
+        // A floor below water that light comes through: refraction takes energy for radiance.
+        {"water", lamp(3, .8, 5) + "AttributeBegin " + kGlass + "Polygon \"P\" [-9 1 -9  -9 1 9  9 1 9  9 1 -9] AttributeEnd\n" + floor, rayTo({.3f, .6f, .4f}, {.1f, 0, .1f}), .02},
+        // Lobes other than diffuse() gather, too.
+        {"glossy floor", lamp(3, .8, 5) + "AttributeBegin " + kGlass + "Translate 0 1 0 Sphere .6 -.6 .6 360 AttributeEnd\n" +
+                             "Surface \"slmaterial\" \"color diffusecolor\" [0 0 0] \"color specularcolor\" [.8 .6 .4] \"float shininess\" 3\nPolygon \"P\" [-3 0 -3  -3 0 3  3 0 3  3 0 -3]\n",
+         rayTo({.3f, .6f, 1.4f}, {.1f, 0, .1f}), .03}};
+    for (const Case& c : cases) {
+        Scene s(world(c.scene), path());
+        const Moments plain = s.estimate(c.ray, samples(200000));
+        passes(s, 100, 20000, .03f);
+        expectSame(estimate(s, c.ray, 100, 100), plain, c.precision, c.name);
+    }
+}
+
+// Without photons of its sample a path is what it was, bit by bit.
+TEST(Caustics, NothingWithoutPasses) {
+    const std::string scene = world(lamp(3, .8, 5) + "AttributeBegin " + kGlass + "Translate 0 1 0 Sphere .6 -.6 .6 360 AttributeEnd\n" + kMatte + "Polygon \"P\" [-3 0 -3  -3 0 3  3 0 3  3 0 -3]\n");
+    Scene a(scene, path()), b(scene, path());
+    passes(b, 1, 5000, .05f);
+    CameraRay ray = rayTo({.3f, .6f, 1.4f}, {.1f, 0, .1f});
+    bool differs = false;
+    for (uint32_t sample = 0; sample < 64; ++sample) {
+        ray.sample = sample;
+        const Color x = a.one(ray), y = b.one(ray);
+        if (sample > 0) EXPECT_EQ(x, y);
+        else differs = !(x == y);
+    }
+    EXPECT_TRUE(differs);
+}
+
+// Narrower circles have less bias: at the edge of a shadow that a mirror throws.
+TEST(Caustics, BiasShrinksWithTheRadius) {
+    // Half of the mirror is missing: to the one side of the middle of the ceiling there is no image.
+    Scene s(world("LightSource \"pointlight\" 1 \"float intensity\" 4 \"point from\" [0 1 0]\nAttributeBegin " + kMirror +
+                  "Polygon \"P\" [0 0 -2  0 0 2  2 0 2  2 0 -2] AttributeEnd\nSurface \"slmaterial\" \"color diffusecolor\" [.01 .01 .01]\nPolygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n"),
+            path());
+    const CameraRay ray = rayTo({.13f, 1.2f, 0}, {.03f, 2, 0}); // .03 within the light
+    const double d2 = 9 + .03 * .03, image = .01 * 4 / d2 * 3 / std::sqrt(d2);
+    const double paths = estimate(s, ray, 4, 4).mean();
+    double before = 1;
+    for (const float radius : {.3f, .1f, .02f}) {
+        passes(s, 200, 20000, radius);
+        const double bias = std::fabs(estimate(s, ray, 200, 1).mean() - paths - image) / image;
+        EXPECT_LT(bias, before) << radius;
+        before = bias;
+    }
+    EXPECT_LT(before, .06);
+}
+
+} // namespace

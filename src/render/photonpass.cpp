@@ -11,7 +11,6 @@ constexpr uint32_t kBlock = 8192;        ///< photons of a task
 constexpr uint64_t kBlocksAtOnce = 256;  ///< of an emission, before what came to rest is counted
 constexpr uint64_t kDefaultEmit = 200000;
 constexpr uint32_t kPilot = 0xffffffffu; ///< pass by which caustics are found
-constexpr uint32_t kPilotPhotons = 1u << 17;
 constexpr int kTypical = 12;             ///< photons within the first radius, about, where they are dense
 
 const scene::Param* hiderParam(const scene::Options& o, const char* name) {
@@ -122,9 +121,9 @@ bool CausticPasses::begin() {
     const scene::Options& o = job_.world->frame().options;
     begun_ = true;
     if (!asked(o) || !job_.world->photons()) return true;
-    // One photon a pixel, of the whole picture: a crop shows what the picture shows.
+    // One photon for four pixels, of the whole picture: a crop shows what the picture shows.
     const double pixels = double(std::max(o.xres, 1)) * double(std::max(o.yres, 1));
-    count_ = uint32_t(std::clamp(pixels, double(1u << 14), double(1u << 19)));
+    count_ = uint32_t(std::clamp(pixels / 4, double(1u << 12), double(1u << 18)));
     if (const scene::Param* p = hiderParam(o, "emit")) {
         if (!(p->numbers[0] >= 1) || p->numbers[0] > float(limits::kPhotonsOfPass))
             job_.diagnostics.report(Severity::Error, Rie::Range, p->place,
@@ -134,9 +133,10 @@ bool CausticPasses::begin() {
     auto passes = std::make_unique<PhotonPasses>(job_, job_.world, transport::PhotonUse{true, false, true});
     if (!passes->emission().lights()) return true;
     std::vector<std::vector<transport::StoredPhoton>> found;
-    if (!passes->emit(kPilot, 1, kPilotPhotons, found)) return false;
+    const uint32_t pilot = std::clamp(count_ * 4, 1u << 14, 1u << 17);
+    if (!passes->emit(kPilot, 1, pilot, found)) return false;
     if (found[0].empty()) return true; // then paths find what there is
-    passes->emission().learn(found[0], kPilot, kPilotPhotons);
+    passes->emission().learn(found[0], kPilot, pilot);
     if (!passes->emit(0, 1, count_, found)) return false;
     std::vector<photons::Photon> some;
     for (const transport::StoredPhoton& s : found[0]) some.push_back(s.photon);

@@ -140,7 +140,7 @@ constexpr OptionDescription kHiderParameters[] = {
     {"depthfilter", "string", "\"min\"", "\"midpoint\"", Used,
      "hidden and raytrace: the depth of a pixel: min, max, average or midpoint."},
     {"emit", "int", "200000", "1000000", Used,
-     "photon: photons that are emitted. path with caustics: those of one sample of all pixels; one a pixel, if it is not said."},
+     "photon: photons that are emitted. path with caustics: those of one sample of all pixels; one for four pixels, if it is not said."},
     {"extrememotiondof", "", "", "", Ignored, kPrman},
     {"jitter", "int", "1", "0", Used,
      "hidden and raytrace: 1: samples lie at random places of their cells; 0: in the middle of them; 2: all pixels have the same "

@@ -230,6 +230,18 @@ public:
     std::vector<ShadowRay> shadows;
     std::vector<MoreLight> moreLight_; ///< of `shadows`
     const StopFlag* stop = nullptr;
+    /// Of rays that gather photons, those whose surface has a map: they get what that says, and leave the batch. photonmodels.cpp
+    void takeGlobalMaps(BatchContext&, Sched&);
+    const photons::PhotonMap* globalMapOf(int binding);
+    std::unordered_map<int, const photons::PhotonMap*> globalMaps_; ///< by binding
+    bool emitAll(const PhotonJob&, uint32_t first, uint32_t count);
+    void tiltPhotons(BatchContext&); ///< photonscatter.cpp
+    // photonmodels.cpp
+    /// Photons at points whose surfaces scatter them by a model, or whose kernel waits for rays.
+    void photonsByModel(BatchContext&, Sched&);
+    /// Lobes of the models of a batch's points in the place of those that its kernel asked for; `all`: of every point.
+    void takeModels(BatchContext&, bool all);
+    std::unique_ptr<PhotonTrace> photonTrace_;
 
 private:
     /// Hits of a group that wait to be shaded together. They hold their targets.
@@ -253,18 +265,6 @@ private:
     std::vector<FlightEvent*> events_;
     std::vector<Flight> flights_;
     void shine(const BatchContext&, Sched&);
-    /// Of rays that gather photons, those whose surface has a map: they get what that says, and leave the batch. photonmodels.cpp
-    void takeGlobalMaps(BatchContext&, Sched&);
-    const photons::PhotonMap* globalMapOf(int binding);
-    std::unordered_map<int, const photons::PhotonMap*> globalMaps_; ///< by binding
-    bool emitAll(const PhotonJob&, uint32_t first, uint32_t count);
-    void tiltPhotons(BatchContext&); ///< photonscatter.cpp
-    // photonmodels.cpp
-    /// Photons at points whose surfaces scatter them by a model, or whose kernel waits for rays.
-    void photonsByModel(BatchContext&, Sched&);
-    /// Lobes of the models of a batch's points in the place of those that its kernel asked for; `all`: of every point.
-    void takeModels(BatchContext&, bool all);
-    std::unique_ptr<PhotonTrace> photonTrace_;
     std::vector<class KernelStrip*> waiting_; ///< whose requests nobody has followed yet
     std::vector<PathSample> samples_; ///< of the call of trace()
     PathSample noSample_;

@@ -14,7 +14,8 @@ constexpr uint32_t kModelSite = 0xfff00; ///< no shader has so many call sites
 float reflectance(float cosine, float index, Vec3 in, Vec3 n, Vec3& refracted) {
     const float k = 1 - index * index * (1 - cosine * cosine);
     if (!(k > 0)) return 1;
-    const float ct = std::sqrt(k), s = (index * cosine - ct) / (index * cosine + ct), p = (cosine - index * ct) / (cosine + index * ct);
+    const float ct = std::sqrt(k);
+    const float s = (index * cosine - ct) / (index * cosine + ct), p = (cosine - index * ct) / (cosine + index * ct);
     refracted = normalize(in * index + n * (index * cosine - ct));
     return (s * s + p * p) / 2;
 }
@@ -76,7 +77,8 @@ void Engine::photonsByModel(BatchContext& c, Sched& sched) {
         if (b.photons.model == PhotonModel::Shader || !photonTrace_->job->models)
             diagnostics_.reportOnce("photonwaits:" + b.surface->name,
                                     {Severity::Info, Rie::NoError, b.surface->place,
-                                     "surface \"" + b.surface->name + "\" decides on what its rays bring: photons come off it as off a matte surface",
+                                     "surface \"" + b.surface->name +
+                                         "\" decides on what its rays bring: photons come off it as off a matte surface",
                                      "Attribute \"photon\" \"string shadingmodel\" says what it is", {}});
     }
     takeModels(c, true);
@@ -92,8 +94,8 @@ void Engine::photonsByModel(BatchContext& c, Sched& sched) {
     gather(c, sched);
     for (size_t i = 0; i < n; ++i)
         if (maxComponent(c.clear[i]) > 0 && c.passes[i] > 0)
-            passThrough(world_->bindings_[size_t(c.bindings[i])], c.rays[i], c.targets[i], c.points[i], c.clear[i], c.passes[i], 0,
-                        sched);
+            passThrough(world_->bindings_[size_t(c.bindings[i])], c.rays[i], c.targets[i], c.points[i], c.clear[i],
+                        c.passes[i], 0, sched);
 }
 
 const photons::PhotonMap* Engine::globalMapOf(int binding) {

@@ -9,7 +9,8 @@ namespace alpenglow::transport {
 namespace {
 
 /// Photons of a block by light, and what they carry: light by light, since a kernel call is of one light.
-std::vector<EmissionStart> startBlock(Engine& e, const PhotonJob& job, uint32_t first, uint32_t count, std::vector<Color>& power) {
+std::vector<EmissionStart> startBlock(Engine& e, const PhotonJob& job, uint32_t first, uint32_t count,
+                                      std::vector<Color>& power) {
     const EmissionPlan& plan = *job.plan;
     const WorldImpl& world = e.world();
     std::vector<EmissionStart> all(count);
@@ -46,7 +47,8 @@ std::vector<EmissionStart> startBlock(Engine& e, const PhotonJob& job, uint32_t 
 
 } // namespace
 
-bool Engine::emit(const PhotonJob& job, uint32_t first, uint32_t count, std::vector<StoredPhoton>& out, const StopFlag* stopFlag) {
+bool Engine::emit(const PhotonJob& job, uint32_t first, uint32_t count, std::vector<StoredPhoton>& out,
+                  const StopFlag* stopFlag) {
     if (!photonTrace_) {
         photonTrace_ = std::make_unique<PhotonTrace>();
         rules_.pickOne = rules_.roulette = true;

@@ -5,7 +5,7 @@
 
 namespace alpenglow::limits {
 
-inline constexpr size_t kPhotons = 50'000'000;           ///< of one photon map
+inline constexpr size_t kPhotons = 20'000'000;           ///< of one photon map
 inline constexpr uint64_t kPhotonsEmitted = 200'000'000; ///< by one Hider "photon"
 inline constexpr uint32_t kPhotonsOfPass = 4'000'000;    ///< emitted for one sample of every pixel (Hider "path" "caustics")
 

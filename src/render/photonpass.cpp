@@ -8,7 +8,7 @@ namespace alpenglow::render {
 namespace {
 
 constexpr uint32_t kBlock = 8192;        ///< photons of a task
-constexpr uint64_t kBlocksAtOnce = 256;  ///< of an emission, before what came to rest is counted
+constexpr uint64_t kBlocksAtOnce = 16;   ///< of an emission, before what came to rest is counted
 constexpr uint64_t kDefaultEmit = 200000;
 constexpr uint32_t kPilot = 0xffffffffu; ///< pass by which caustics are found
 constexpr int kTypical = 12;             ///< photons within the first radius, about, where they are dense

@@ -1,0 +1,81 @@
+// Photons as a user has them: maps written, read, damaged, made on demand; more than there is room for; the same bits over threads.
+#include "cli/command_folder.h"
+#include "photons/limits.h"
+
+namespace {
+
+using namespace alpenglow;
+
+class PhotonHider : public cli::testing::CommandFolder {
+protected:
+    const std::string room = "LightSource \"pointlight\" 1 \"float intensity\" 4 \"point from\" [0 0 1]\n"
+                             "Attribute \"photon\" \"string globalmap\" \"room.photons\" \"string causticmap\" \"room.photons\"\n";
+    const std::string ball = "Sides 2\nSphere 5 -5 5 360\nWorldEnd\n";
+    const std::string use = "Display \"use.tif\" \"tiff\" \"rgb\"\nFormat 16 16 1\nWorldBegin\n";
+    void writeEmission(const std::string& count) {
+        write("emit.rib", "Hider \"photon\" \"int emit\" " + count + "\nWorldBegin\n" + room + "Surface \"matte\" \"float Kd\" .5\n" + ball);
+    }
+};
+
+TEST_F(PhotonHider, WritesMapsThatShadersRead) {
+    writeEmission("20000");
+    run("render emit.rib", "2>&1");
+    EXPECT_EQ(status, 0);
+    ASSERT_TRUE(std::filesystem::exists(dir / "room.photons"));
+    run("render emit.rib", "2>&1"); // over the one that is there
+    EXPECT_EQ(status, 0);
+    write("use.rib", use + room + "LightSource \"causticlight\" 2\nSurface \"matte\"\n" + ball);
+    EXPECT_EQ(run("render use.rib", "2>&1").find("error: "), std::string::npos);
+    EXPECT_EQ(status, 0);
+    std::filesystem::resize_file(dir / "room.photons", 5000);
+    EXPECT_NE(run("render use.rib", "2>&1").find("room.photons\" cannot be read: it is cut short"), std::string::npos);
+    std::filesystem::remove(dir / "room.photons");
+    EXPECT_NE(run("render use.rib", "2>&1").find("there is no photon map \"room.photons\""), std::string::npos);
+    write("use.rib", use + "Attribute \"light\" \"int emitphotons\" 1\n" + room + "LightSource \"causticlight\" 2\nSurface \"matte\" \"float Kd\" .5\n" + ball);
+    EXPECT_EQ(run("render use.rib", "2>&1").find("there is no photon map"), std::string::npos); // made for the picture
+    EXPECT_EQ(status, 0);
+}
+
+TEST_F(PhotonHider, NothingToDo) {
+    write("none.rib", "Hider \"photon\"\nWorldBegin\nLightSource \"pointlight\" 1\n" + ball);
+    EXPECT_NE(run("render none.rib", "2>&1").find("names a photon map"), std::string::npos);
+    EXPECT_NE(status, 0);
+    write("dark.rib", "Hider \"photon\"\nWorldBegin\nAttribute \"photon\" \"string globalmap\" \"a.photons\"\nLightSource \"ambientlight\" 1\n" + ball);
+    EXPECT_NE(run("render dark.rib", "2>&1").find("no light of the frame emits photons"), std::string::npos);
+    EXPECT_NE(status, 0);
+}
+
+TEST_F(PhotonHider, TooManyAreToldAndAnInterruptEndsThem) {
+    writeEmission("1000000000");
+    const std::string said = run("render emit.rib", "2>&1 & p=$!; sleep 1; kill -INT $p; wait $p");
+    EXPECT_NE(said.find("no more than " + std::to_string(limits::kPhotonsEmitted)), std::string::npos) << said;
+    EXPECT_NE(said.find("interrupted while photons were emitted"), std::string::npos) << said;
+    EXPECT_EQ(status, 130);
+    EXPECT_FALSE(std::filesystem::exists(dir / "room.photons"));
+    write("pass.rib", "Hider \"path\" \"int caustics\" 1 \"int emit\" -1\nPixelSamples 1 1\n" + use + room + "Surface \"matte\" \"float Kd\" .5\n" + ball);
+    EXPECT_NE(run("render pass.rib", "2>&1").find("1 to " + std::to_string(limits::kPhotonsOfPass)), std::string::npos);
+    EXPECT_GE(limits::kPhotons, limits::kPhotonsOfPass); // a map holds a pass
+}
+
+TEST_F(PhotonHider, SameCausticsOverThreadsAndParts) {
+    const std::string scene = "Format 24 24 1\nHider \"path\" \"int caustics\" 1\nPixelSamples 2 2\nProjection \"perspective\"\nTranslate 0 0 3\nWorldBegin\n"
+                              "LightSource \"pointlight\" 1 \"float intensity\" 9 \"point from\" [.5 3 .2]\nSides 2\nAttributeBegin Surface \"slmaterial\" "
+                              "\"color diffusecolor\" [0 0 0] \"color transmissive\" [1 1 1] \"float kn\" 1.5\nSphere .6 -.6 .6 360 AttributeEnd\n"
+                              "Surface \"matte\"\nPolygon \"P\" [-3 -1 -3  -3 -1 3  3 -1 3  3 -1 -3]\nWorldEnd\n";
+    for (const char* threads : {"1", "3"}) {
+        write("a.rib", std::string("Display \"a") + threads + ".exr\" \"openexr\" \"rgba\"\n" + scene);
+        run(std::string("render a.rib -t ") + threads, "2>&1");
+        EXPECT_EQ(status, 0);
+    }
+    run("diff a1.exr a3.exr", "2>&1");
+    EXPECT_EQ(status, 0);
+    write("a.rib", "Display \"p.exr\" \"openexr\" \"rgba\"\n" + scene);
+    std::string without = scene;
+    without.replace(without.find("\"int caustics\" 1"), 16, "");
+    write("b.rib", "Display \"b.exr\" \"openexr\" \"rgba\"\n" + without);
+    run("render b.rib", "2>&1");
+    run("diff a1.exr b.exr", "2>&1"); // photons find what paths cannot
+    EXPECT_EQ(status, 1);
+}
+
+} // namespace

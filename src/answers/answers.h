@@ -133,7 +133,7 @@ private:
     /// The turns of a loop over the lights of a binding that are of a category (interned).
     const std::vector<std::pair<int, int>>& turnsOf(const SurfaceBinding&, int32_t category);
     bool isOfCategory(int32_t category, int light);
-    struct TurnsOfList { std::vector<int> lights; std::vector<std::pair<int, int>> turns; };
+    struct TurnsOfList { scene::LightSet lights; std::vector<std::pair<int, int>> turns; };
     std::unordered_map<uint64_t, TurnsOfList> turnsOf_; ///< by category and list of lights
     std::unordered_map<uint64_t, bool> ofCategory_;     ///< by category and light
     std::vector<int> sheetNumbers_;                     ///< by light: of its first sample; -1: it has no sheets

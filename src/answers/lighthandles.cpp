@@ -13,8 +13,7 @@ int Answers::numberOfLight(const SurfaceBinding* surface, int32_t handle) {
     const auto [known, fresh] = lightOfHandle_.try_emplace(handle, -1);
     if (fresh)
         if (const auto light = rsl::LightHandle::parse(rsl::internedString(handle))) known->second = light->light;
-    const auto& on = surface->lights;
-    return known->second < 0 || std::find(on.begin(), on.end(), known->second) == on.end() ? -1 : known->second;
+    return known->second >= 0 && surface->lights.contains(known->second) ? known->second : -1;
 }
 
 int32_t Answers::handleOf(int light) {
@@ -78,9 +77,12 @@ void Answers::lightHandles(const ServiceCall& call) {
             const std::string& want = rsl::internedString(textOf(call, lane));
             const SurfaceBinding* surface = litBinding(call, lane);
             if (!surface) return;
-            for (int i : surface->lights)
-                if (const BoundLight& l = world_->lights_[size_t(i)]; l.kernel && l.handle == want)
-                    return call.put(0, lane, std::bit_cast<float>(handleOf(i)));
+            world_->eachLight(surface->lights, [&](int i) {
+                const BoundLight& l = world_->lights_[size_t(i)];
+                const bool is = l.kernel && l.handle == want;
+                if (is) call.put(0, lane, std::bit_cast<float>(handleOf(i)));
+                return is;
+            });
         });
         return;
     }
@@ -100,8 +102,8 @@ void Answers::getLights(const ServiceCall& call) {
         checkCategory(call.c, call.d, want);
         int n = 0;
         if (const SurfaceBinding* surface = litBinding(call, lane))
-            for (int i : surface->lights) {
-                if (!world_->lights_[size_t(i)].kernel || !isOfCategory(want, i)) continue;
+            world_->eachLight(surface->lights, [&](int i) {
+                if (!world_->lights_[size_t(i)].kernel || !isOfCategory(want, i)) return false;
                 if (n == limits::kLightHandles) {
                     diagnostics_.reportOnce("getlights",
                                             {Severity::Error,
@@ -111,10 +113,11 @@ void Answers::getLights(const ServiceCall& call) {
                                                  " lights; the others are left out",
                                              {},
                                              {}});
-                    break;
+                    return true;
                 }
                 call.put(++n, lane, std::bit_cast<float>(handleOf(i)));
-            }
+                return false;
+            });
         call.put(0, lane, float(n));
     });
 }

@@ -105,12 +105,12 @@ const std::vector<std::pair<int, int>>& Answers::turnsOf(const SurfaceBinding& b
     if (known.lights == b.lights) return known.turns; // numbers of lists are given while the world is made
     known.lights = b.lights;
     known.turns.clear();
-    for (int i : b.lights) {
+    world_->eachLight(b.lights, [&](int i) {
         const BoundLight& l = world_->lights_[size_t(i)];
-        if (!l.kernel || l.kind == LightKind::Ambient || l.strategy == LightStrategy::Trace || !isOfCategory(category, i))
-            continue;
-        for (int k = 0; k < l.samples; ++k) known.turns.push_back({i, k});
-    }
+        if (l.kernel && l.kind != LightKind::Ambient && l.strategy != LightStrategy::Trace && isOfCategory(category, i))
+            for (int k = 0; k < l.samples; ++k) known.turns.push_back({i, k});
+        return false;
+    });
     return known.turns;
 }
 

@@ -5,6 +5,7 @@
 #include "answers/answers.h"
 #include "lobes/sampling.h"
 #include "world/outputs.h"
+#include "world/skytable.h"
 #include <bit>
 #include <cstdlib>
 
@@ -175,10 +176,10 @@ bool Answers::lightQuery(const KernelRun& c, int li, int point, const Vec3& at, 
                          : light.emitter->sample(at, u, choose, of.shutter, s, p.surface, light.pointNeeds)))
             return false;
         if (world_->accel_->hasSolids() &&
-            !world_->accel_->keeps(world_->numberOfShape_.at(s.shape), p.surface.P, p.surface.n, p.time))
+            !world_->accel_->keeps(world_->numberOfShape_.at(s.shape), meetsAt(p.surface), meetsNormal(p.surface), p.time))
             return false; // what a solid leaves of a lamp
         p.shape = s.shape;
-        p.P = p.surface.P;
+        p.P = meetsAt(p.surface);
         p.N = p.surface.n;
         // A loop has no lobe of its own: it sees an emitter as wide as diffuse() does.
         static const LobeKind* const diffuse = findLobe("diffuse");
@@ -193,7 +194,7 @@ bool Answers::lightQuery(const KernelRun& c, int li, int point, const Vec3& at, 
         p.P = at + w;
         p.N = -w;
     } else if (light.kind == LightKind::Environment) {
-        // The sky from directions evenly in the cone of the loop.
+        // The sky from directions evenly in the cone of the loop, of an uneven sky half of them from where it is bright.
         if (!p.ray) return false;
         const float la = length(axis);
         const bool all = !(la > 0) || !(angle < float(kPi));
@@ -201,11 +202,19 @@ bool Answers::lightQuery(const KernelRun& c, int li, int point, const Vec3& at, 
                     cap = all ? 2 : 2 * half * half; // 1 - cos of the half angle
         if (!(cap > 0)) return false;
         const Random rng = random(*p.ray).draw(uint32_t(turn), uint32_t(turns));
-        const Vec3 w = Basis(all ? Vec3(0, 0, 1) : axis / la).toWorld(sampleCone(cap, rng.pair(p.ray->vertex, use, nth)));
+        const Vec3 middle = all ? Vec3(0, 0, 1) : axis / la;
+        Vec2 u = rng.pair(p.ray->vertex, use, nth);
+        Vec3 w;
+        float density = 0; // of the table, for a half of the directions
+        const bool byTable = light.sky && u.x < .5f;
+        if (light.sky) u.x = byTable ? 2 * u.x : 2 * u.x - 1;
+        if (!byTable) w = Basis(middle).toWorld(sampleCone(cap, u));
+        else if (!light.sky->sample(u, w, density) || (!all && !(dot(w, middle) > 1 - cap))) return false;
         p.shape = nullptr;
         p.P = at + w;
         p.N = -w;
         *factor = 2 * cap / float(turns); // 1 / (pi pdf n)
+        if (light.sky) *factor = 2 / (float(turns) * (1 / (2 * cap) + float(kPi) * light.sky->pdf(w)));
     } else {
         p.shape = nullptr;
         p.P = Vec3(transformPoint(light.instance->toCurrentAt(of.shutter), {0, 0, 0}));

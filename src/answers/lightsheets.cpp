@@ -111,9 +111,9 @@ const std::vector<Color>& Answers::ambientOf(KernelRun& c) {
     c.ambient.assign(c.points.size(), Color(0));
     std::vector<ShadePoint>& q = sheetRoom_.q;
     std::vector<LightValue>& v = sheetRoom_.v;
-    for (int li : c.binding->lights) {
+    for (int li : world_->skies_) {
         const BoundLight& l = world_->lights_[size_t(li)];
-        if (l.kind != LightKind::Ambient || !l.kernel) continue;
+        if (l.kind != LightKind::Ambient || !c.binding->lights.contains(li)) continue;
         q = c.points;
         for (size_t i = 0; i < q.size(); ++i) {
             q[i].Ps = c.points[i].P;
@@ -129,9 +129,9 @@ const std::vector<Color>& Answers::ambientOf(KernelRun& c) {
 }
 
 bool Answers::allAmbientHaveSheets(const SurfaceBinding& b) const {
-    return std::all_of(b.lights.begin(), b.lights.end(), [&](int li) {
+    return std::all_of(world_->skies_.begin(), world_->skies_.end(), [&](int li) {
         const BoundLight& l = world_->lights_[size_t(li)];
-        return l.kind != LightKind::Ambient || !l.kernel || hasSheets(l);
+        return l.kind != LightKind::Ambient || !b.lights.contains(li) || hasSheets(l);
     });
 }
 

@@ -47,9 +47,9 @@ void Answers::sumAmbient(const ServiceCall& call) {
         });
         return;
     }
-    for (int li : c.binding->lights) {
+    for (int li : world_->skies_) {
         const BoundLight& l = world_->lights_[size_t(li)];
-        if (l.kind != LightKind::Ambient || !l.kernel) continue;
+        if (l.kind != LightKind::Ambient || !c.binding->lights.contains(li)) continue;
         std::vector<ShadePoint> q;
         std::vector<int> laneOf;
         call.each([&](int lane, const ShadePoint& p) {

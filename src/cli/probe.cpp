@@ -92,7 +92,7 @@ int probe(const Arguments& a) {
     for (const auto& q : frame->primitives) lights.insert(q->attributes->lights.begin(), q->attributes->lights.end());
     for (const auto& i : frame->instances)
         if (i.attributes) lights.insert(i.attributes->lights.begin(), i.attributes->lights.end());
-    attributes->lights.assign(lights.begin(), lights.end());
+    attributes->lights = scene::LightSet(std::vector<int>(lights.begin(), lights.end()));
     auto shader = std::make_shared<scene::ShaderCall>();
     shader->name = "matte";
     scene::Param kd, ka;

@@ -25,6 +25,7 @@ public:
         for (const T& e : v) add(e);
     }
     void add(const std::vector<float>& v) { bytes(v.data(), v.size() * sizeof(float)); }
+    void add(const scene::LightSet& s) { add(s.runs()); }
     void add(const std::vector<int>& v) { bytes(v.data(), v.size() * sizeof(int)); }
     template <class T> void add(const std::optional<T>& v) {
         bits(v.has_value());

@@ -27,6 +27,9 @@ void accumulate(RenderStats& all, const RenderStats& f) {
         all.*member += before.*member;
     for (auto member : {&RenderStats::totalRays, &RenderStats::nonFinite, &RenderStats::saturated}) all.*member += before.*member;
     for (const auto& [type, n] : before.rays) all.rays[type] += n;
+    for (auto member : {&RenderStats::Classic::primary, &RenderStats::Classic::reflected, &RenderStats::Classic::refracted,
+                        &RenderStats::Classic::subsampledPixels, &RenderStats::Classic::subsampledRays})
+        all.classic.*member += before.classic.*member;
     all.shading.points += before.shading.points;
     all.shading.batches += before.shading.batches;
     all.depth.maximum = std::max(all.depth.maximum, before.depth.maximum);

@@ -47,122 +47,265 @@ transport::CameraRay imageRay(const Camera& camera, Vec2 position, uint64_t seed
     return r;
 }
 
-Reconstructions renderImages(Job& job, int nx, int ny, Jitter jitter, uint64_t seed, DroppedSamples* dropped) {
-    const OutputPlan& plan = job.plan;
-    const Window window = job.camera.window();
-    std::vector<Channel> aovs;
-    for (size_t i = 0; i < plan.engineOutputs.size(); ++i)
-        for (int k = 0; k < plan.engineWidths[i]; ++k) aovs.push_back({plan.engineOutputs[i] + "." + std::to_string(k)});
-    double xw = 1, yw = 1;
-    for (const OutputSpec& p : plan.pictures) {
-        xw = std::max(xw, p.filter.xw);
-        yw = std::max(yw, p.filter.yw);
+Refinement refinementOf(const scene::Options& o, const Camera& camera, Diagnostics& diags) {
+    Refinement r;
+    const scene::Param* samples = scene::find(o.hiderParams, "aaSamples");
+    const scene::Param* threshold = scene::find(o.hiderParams, "aaThreshold");
+    const scene::Param* first = samples ? samples : threshold;
+    if (!first || (samples && samples->numbers.empty())) return r;
+    if (o.hider != "raytrace") {
+        diags.report(Severity::Warning, Rie::Incapable, first->place, "\"" + first->name + "\" is for the hider raytrace; it is ignored");
+        return r;
     }
-    // One for all pictures with the same filters: a frame may have hundreds.
-    Reconstructions result;
-    std::vector<const OutputSpec*> filtered;
+    r.side = !samples ? 3 : std::isnan(samples->numbers[0]) ? 0 : int(std::clamp(samples->numbers[0], 0.f, 100.f));
+    if (r.side != 1 && (r.side < 3 || r.side > 9 || r.side % 2 == 0)) {
+        const int near = std::clamp(r.side | 1, 1, 9);
+        diags.report(Severity::Error, Rie::Range, first->place,
+                     "hider parameter \"aaSamples\" is 1 (off), 3, 5, 7 or 9; " + std::to_string(near) + " is used");
+        r.side = near;
+    }
+    if (threshold && !threshold->numbers.empty()) r.threshold = threshold->numbers[0];
+    if (!(r.threshold >= 0)) {
+        diags.report(Severity::Error, Rie::Range, threshold->place, "hider parameter \"aaThreshold\" is at least 0; 0.3 is used");
+        r.threshold = 0.3f;
+    }
+    if (r.on() && (camera.hasLens() || camera.shutterClose() > camera.shutterOpen())) {
+        diags.report(Severity::Warning, Rie::Incapable, first->place,
+                     "\"aaSamples\" is ignored: a lens or an open shutter takes the rays of PixelSamples in every pixel");
+        r.side = 1;
+    }
+    return r;
+}
+
+namespace {
+
+struct Wanted { int x, y, k; };
+
+/// What the bands of a picture have in common.
+class ImageLoop {
+public:
+    ImageLoop(Job&, int nx, int ny, Jitter, const Refinement&, uint64_t seed, DroppedSamples&, Reconstructions&);
+    void run();
+
+private:
+    using Done = std::function<void(size_t)>;
+    void plan();
+    void band(int b);
+    void tell(double fraction, bool last);
+    Done told(int b, double begin, size_t tasks);
+    void trace(SampleBuffer&, size_t tasks, const std::function<void(size_t, std::vector<Wanted>&)>& list, const Done&);
+    bool traceSlice(SampleBuffer&, int worker, std::span<const Wanted>);
+    void refine(SampleBuffer&, const Window& part, int b);
+    std::vector<Wanted> differing(const SampleBuffer&, const Window& part) const;
+    void reconstruct(const SampleBuffer&, const Window& part);
+
+    Job& job_;
+    int nx_, ny_;
+    Jitter jitter_;
+    Refinement refinement_;
+    uint64_t seed_;
+    DroppedSamples& dropped_;
+    Reconstructions& result_;
+    const Window window_;
+    std::vector<Channel> aovs_;
+    std::vector<const OutputSpec*> filtered_; ///< displays that share a reconstruction stand for each other: a frame may have hundreds
+    double xw_ = 1, yw_ = 1;
+    int rows_ = 0, bands_ = 0;
+    double reached_ = 0;
+    std::mutex mutex_;
+};
+
+ImageLoop::ImageLoop(Job& job, int nx, int ny, Jitter jitter, const Refinement& refinement, uint64_t seed, DroppedSamples& dropped,
+                     Reconstructions& result)
+    : job_(job), nx_(nx), ny_(ny), jitter_(jitter), refinement_(refinement), seed_(seed), dropped_(dropped), result_(result),
+      window_(job.camera.window()) {
+    if (refinement.on()) {
+        nx_ = ny_ = refinement.side;
+        jitter_ = Jitter::Grid;
+    }
+    plan();
+}
+
+void ImageLoop::plan() {
+    const OutputPlan& plan = job_.plan;
+    for (size_t i = 0; i < plan.engineOutputs.size(); ++i)
+        for (int k = 0; k < plan.engineWidths[i]; ++k) aovs_.push_back({plan.engineOutputs[i] + "." + std::to_string(k)});
     for (const OutputSpec& p : plan.pictures) {
-        const auto same = std::find_if(filtered.begin(), filtered.end(), [&](const OutputSpec* s) {
+        xw_ = std::max(xw_, p.filter.xw);
+        yw_ = std::max(yw_, p.filter.yw);
+        const auto same = std::find_if(filtered_.begin(), filtered_.end(), [&](const OutputSpec* s) {
             return s->depth == p.depth && s->filter.kind == p.filter.kind && s->filter.xw == p.filter.xw &&
                    s->filter.yw == p.filter.yw;
         });
-        result.of.push_back(size_t(same - filtered.begin()));
-        if (same == filtered.end()) filtered.push_back(&p);
+        result_.of.push_back(size_t(same - filtered_.begin()));
+        if (same == filtered_.end()) filtered_.push_back(&p);
     }
-    std::vector<Image>& images = result.images;
-    images.resize(filtered.size());
-    for (Image& i : images) {
-        i.window = window;
+    if (refinement_.on()) xw_ = yw_ = 3; // one pixel around, to compare with
+    result_.images.resize(filtered_.size());
+    for (Image& i : result_.images) {
+        i.window = window_;
         i.channels = {"r", "g", "b", "a", "Or", "Og", "Ob", "z"};
-        for (const Channel& c : aovs) i.channels.push_back(c.name);
-        i.data.assign(window.pixels() * i.channels.size(), 0.f);
+        for (const Channel& c : aovs_) i.channels.push_back(c.name);
+        i.data.assign(window_.pixels() * i.channels.size(), 0.f);
     }
-    const int spp = nx * ny;
     // Bands of rows, so that the samples in memory stay bounded. The samples of a band's border are made again by the next band,
     // with the same bits, so bands cannot be seen.
-    size_t perRow = size_t(window.width() + 2 * int(std::ceil(xw / 2))) * size_t(spp) * (10 + aovs.size()) * sizeof(float);
-    int border = 2 * int(std::ceil(yw / 2));
-    int band = int(std::clamp(kPassBytes / std::max(perRow, size_t(1)), size_t(1), size_t(limits::kImageSide))) - border;
-    band = std::max({band, 2 * border, kTile});
-    const int bands = (window.height() + band - 1) / band;
-    *dropped = {};
-    std::mutex droppedMutex;
-    const auto drop = [&](const transport::CameraRay& r) { // the same whatever thread meets it first
-        std::lock_guard lock(droppedMutex);
-        const std::array<int, 3> at{int(r.sample), r.py, r.px};
-        if (const bool seen = window.contains(r.px, r.py); seen && (!dropped->first || at < *dropped->first)) dropped->first = at;
+    const size_t perRow =
+        size_t(window_.width() + 2 * int(std::ceil(xw_ / 2))) * size_t(nx_ * ny_) * (10 + aovs_.size()) * sizeof(float);
+    const int border = 2 * int(std::ceil(yw_ / 2));
+    rows_ = int(std::clamp(kPassBytes / std::max(perRow, size_t(1)), size_t(1), size_t(limits::kImageSide))) - border;
+    rows_ = std::max({rows_, 2 * border, kTile});
+    bands_ = (window_.height() + rows_ - 1) / rows_;
+}
+
+void ImageLoop::run() {
+    for (int b = 0; b < bands_ && !job_.pollStop(); ++b) band(b);
+    if (job_.world) job_.world->flushPrints(true);
+    tell(job_.interrupted ? reached_ : 1, true);
+    job_.halt = 0;
+}
+
+void ImageLoop::band(int b) {
+    const Window part{window_.x0, window_.y0 + b * rows_, window_.x1, std::min(window_.y0 + (b + 1) * rows_, window_.y1)};
+    SampleBuffer buffer(part, xw_, yw_, nx_, ny_, aovs_, seed_, jitter_);
+    const std::vector<Window> tiles = tilesOf(buffer.sampled());
+    const int first = refinement_.on() ? nx_ * ny_ / 2 : 0, last = refinement_.on() ? first + 1 : nx_ * ny_;
+    trace(
+        buffer, tiles.size(),
+        [&](size_t i, std::vector<Wanted>& wanted) {
+            const Window& t = tiles[i];
+            for (int y = t.y0; y < t.y1; ++y)
+                for (int x = t.x0; x < t.x1; ++x)
+                    for (int k = first; k < last; ++k) wanted.push_back({x, y, k});
+        },
+        told(b, 0, tiles.size()));
+    if (refinement_.on() && !job_.pollStop()) refine(buffer, part, b);
+    dropped_.count += buffer.nonFinite();
+    reconstruct(buffer, part);
+}
+
+void ImageLoop::tell(double fraction, bool last) {
+    ProgressState s;
+    s.fraction = fraction;
+    s.samplesDone = fraction * nx_ * ny_;
+    s.samplesTotal = uint64_t(nx_ * ny_);
+    s.raysPerMS = raysPerMS(job_.rayTotal, job_.elapsed());
+    if (last) job_.progress.finish(s, job_.what);
+    else job_.progress.update(s, job_.what);
+}
+
+/// What hears how many tasks of a band are over; `begin`: 0, of the tasks that refine 1.
+ImageLoop::Done ImageLoop::told(int b, double begin, size_t tasks) {
+    return [this, b, begin, tasks](size_t done) {
+        job_.pollStop();
+        const double steps = refinement_.on() ? 2 : 1;
+        reached_ = (b + (begin + double(done) / double(std::max<size_t>(tasks, 1))) / steps) / bands_;
+        tell(reached_, false);
     };
-    auto tell = [&](double fraction, bool last) {
-        ProgressState s;
-        s.fraction = fraction;
-        s.samplesDone = fraction * spp;
-        s.samplesTotal = uint64_t(spp);
-        s.raysPerMS = raysPerMS(job.rayTotal, job.elapsed());
-        if (last) job.progress.finish(s, job.what);
-        else job.progress.update(s, job.what);
-    };
-    double reached = 0;
-    for (int b = 0; b < bands && !job.pollStop(); ++b) {
-        Window part{window.x0, window.y0 + b * band, window.x1, std::min(window.y0 + (b + 1) * band, window.y1)};
-        SampleBuffer buffer(part, xw, yw, nx, ny, aovs, seed, jitter);
-        const std::vector<Window> tiles = tilesOf(buffer.sampled());
-        // A pixel with thousands of samples is traced in slices, so that one call stays small.
-        const int slice = 2048;
-        job.team.run(
-            tiles.size(), &job.halt,
-            [&](int worker, size_t i) {
-                const Window& t = tiles[i];
-                std::vector<transport::CameraRay> rays;
-                std::vector<transport::SampleResult> results;
-                auto flush = [&] {
-                    results.assign(rays.size(), {});
-                    if (!job.trace(worker, rays, results)) return false;
-                    for (size_t k = 0; k < rays.size(); ++k) {
-                        transport::SampleResult& r = results[k];
-                        r.aovs.resize(aovs.size());
-                        ImageSample s;
-                        s.color = clampSample(r.color, job.settings.sampleClamp);
-                        s.opacity = r.opacity;
-                        if (r.z < 1e38f) s.z = r.z;
-                        if (r.zSecond < 1e38f) s.zSecond = r.zSecond;
-                        s.aovs = r.aovs;
-                        if (!buffer.set(rays[k].px, rays[k].py, int(rays[k].sample), s)) drop(rays[k]);
-                    }
-                    rays.clear();
-                    return true;
-                };
-                for (int y = t.y0; y < t.y1; ++y)
-                    for (int x = t.x0; x < t.x1; ++x)
-                        for (int k = 0; k < spp; ++k) {
-                            rays.push_back(imageRay(job.camera, buffer.position(x, y, k), seed, x, y, uint32_t(k)));
-                            if (int(rays.size()) >= slice && !flush()) return;
-                        }
-                if (!rays.empty()) flush();
-            },
-            [&](size_t done) {
-                job.pollStop();
-                reached = (b + double(done) / double(tiles.size())) / bands;
-                tell(reached, false);
-            });
-        dropped->count += buffer.nonFinite();
-        for (size_t p = 0; p < images.size(); ++p) {
-            const OutputSpec& s = *filtered[p];
-            const size_t rowFloats = size_t(window.width()) * images[p].channels.size();
-            float* to = images[p].data.data() + size_t(part.y0 - window.y0) * rowFloats;
-            StopFlag go{0};
-            job.team.run(
-                size_t(part.height()), &go,
-                [&](int, size_t row) {
-                    int y = part.y0 + int(row);
-                    Image r = buffer.reconstruct(s.filter, s.depth, {part.x0, y, part.x1, y + 1});
-                    std::copy(r.data.begin(), r.data.end(), to + row * rowFloats);
-                },
-                [](size_t) {});
-        }
+}
+
+/// Traces samples of a buffer: those that `list` names of task i.
+void ImageLoop::trace(SampleBuffer& buffer, size_t tasks, const std::function<void(size_t, std::vector<Wanted>&)>& list,
+                      const Done& done) {
+    job_.team.run(
+        tasks, &job_.halt,
+        [&](int worker, size_t i) {
+            std::vector<Wanted> wanted;
+            list(i, wanted);
+            // A pixel with thousands of samples is traced in slices, so that one call stays small.
+            constexpr size_t slice = 2048;
+            for (size_t from = 0; from < wanted.size(); from += slice)
+                if (!traceSlice(buffer, worker, std::span(wanted).subspan(from, std::min(slice, wanted.size() - from)))) return;
+        },
+        done);
+}
+
+bool ImageLoop::traceSlice(SampleBuffer& buffer, int worker, std::span<const Wanted> wanted) {
+    std::vector<transport::CameraRay> rays;
+    for (const Wanted& w : wanted)
+        rays.push_back(imageRay(job_.camera, buffer.position(w.x, w.y, w.k), seed_, w.x, w.y, uint32_t(w.k)));
+    std::vector<transport::SampleResult> results(rays.size());
+    if (!job_.trace(worker, rays, results)) return false;
+    for (size_t k = 0; k < rays.size(); ++k) {
+        transport::SampleResult& r = results[k];
+        r.aovs.resize(aovs_.size());
+        ImageSample s;
+        s.color = clampSample(r.color, job_.settings.sampleClamp);
+        s.opacity = r.opacity;
+        if (r.z < 1e38f) s.z = r.z;
+        if (r.zSecond < 1e38f) s.zSecond = r.zSecond;
+        s.aovs = r.aovs;
+        if (buffer.set(rays[k].px, rays[k].py, int(rays[k].sample), s)) continue;
+        std::lock_guard lock(mutex_); // told is the same whatever thread meets it first
+        const std::array<int, 3> at{int(rays[k].sample), rays[k].py, rays[k].px};
+        if (window_.contains(at[2], at[1]) && (!dropped_.first || at < *dropped_.first)) dropped_.first = at;
     }
-    if (job.world) job.world->flushPrints(true);
-    tell(job.interrupted ? reached : 1, true);
-    job.halt = 0;
+    return true;
+}
+
+void ImageLoop::refine(SampleBuffer& buffer, const Window& part, int b) {
+    const std::vector<Wanted> pixels = differing(buffer, part);
+    constexpr size_t kPixels = 64; // a task
+    const size_t tasks = (pixels.size() + kPixels - 1) / kPixels;
+    trace(
+        buffer, tasks,
+        [&](size_t i, std::vector<Wanted>& wanted) {
+            for (size_t p = i * kPixels; p < std::min((i + 1) * kPixels, pixels.size()); ++p)
+                for (int k = 0; k < nx_ * ny_; ++k)
+                    if (k != pixels[p].k) wanted.push_back({pixels[p].x, pixels[p].y, k});
+        },
+        told(b, 1, tasks));
+    result_.refined.pixels += pixels.size();
+    result_.refined.rays += pixels.size() * size_t(nx_ * ny_ - 1);
+}
+
+/// The pixels that differ from a neighbour, in reading order, with their samples that are there. The buffer has one more pixel on all
+/// sides, so that neither bands nor crop windows show.
+std::vector<Wanted> ImageLoop::differing(const SampleBuffer& buffer, const Window& part) const {
+    const int middle = nx_ * ny_ / 2;
+    const auto colour = [&](int x, int y) {
+        const Color c = buffer.color(x, y, middle);
+        return Color(std::clamp(c.x, 0.f, 1.f), std::clamp(c.y, 0.f, 1.f), std::clamp(c.z, 0.f, 1.f));
+    };
+    std::vector<Wanted> found;
+    for (int y = part.y0; y < part.y1; ++y)
+        for (int x = part.x0; x < part.x1; ++x) {
+            const Color c = colour(x, y);
+            for (const auto& [dx, dy] : {std::pair{-1, 0}, {0, -1}, {1, 0}, {0, 1}}) {
+                const Color d = colour(x + dx, y + dy) - c;
+                if (!(std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z) > refinement_.threshold)) continue;
+                found.push_back({x, y, middle});
+                break;
+            }
+        }
+    return found;
+}
+
+void ImageLoop::reconstruct(const SampleBuffer& buffer, const Window& part) {
+    for (size_t p = 0; p < filtered_.size(); ++p) {
+        Image& image = result_.images[p];
+        const PixelFilter filter = refinement_.on() ? PixelFilter{FilterKind::Box, 1, 1} : filtered_[p]->filter;
+        const size_t rowFloats = size_t(window_.width()) * image.channels.size();
+        float* to = image.data.data() + size_t(part.y0 - window_.y0) * rowFloats;
+        StopFlag go{0};
+        job_.team.run(
+            size_t(part.height()), &go,
+            [&](int, size_t row) {
+                int y = part.y0 + int(row);
+                Image r = buffer.reconstruct(filter, filtered_[p]->depth, {part.x0, y, part.x1, y + 1});
+                std::copy(r.data.begin(), r.data.end(), to + row * rowFloats);
+            },
+            [](size_t) {});
+    }
+}
+
+} // namespace
+
+Reconstructions renderImages(Job& job, int nx, int ny, Jitter jitter, const Refinement& refinement, uint64_t seed,
+                             DroppedSamples* dropped) {
+    *dropped = {};
+    Reconstructions result;
+    ImageLoop(job, nx, ny, jitter, refinement, seed, *dropped, result).run();
     return result;
 }
 

@@ -299,7 +299,10 @@ void Renderer::writeFrameFilm(FrameWork& f, Film& film, double renderSec) {
 /// The hiders hidden and raytrace.
 void Renderer::renderGrid(FrameWork& f, Job& job) {
     DroppedSamples dropped;
-    Reconstructions made = renderImages(job, f.nx, f.ny, jitterOf(f.o, diagnostics_), settings_.seed, &dropped);
+    Reconstructions made = renderImages(job, f.nx, f.ny, jitterOf(f.o, diagnostics_), refinementOf(f.o, job.camera, diagnostics_),
+                                        settings_.seed, &dropped);
+    stats_.classic.subsampledPixels += made.refined.pixels;
+    stats_.classic.subsampledRays += made.refined.rays;
     f.nonFinite = dropped.count;
     stats_.renderSec += job.elapsed();
     stats_.spp = f.spp;
@@ -331,6 +334,9 @@ void Renderer::takeFigures(const FrameWork& f, Job& job) {
     stats_.rays["specular"] += c.specular;
     stats_.rays["transmission"] += c.transmission;
     stats_.rays["shadow"] += c.shadow;
+    stats_.classic.primary += c.camera - std::min(c.camera, stats_.classic.subsampledRays);
+    stats_.classic.reflected += c.reflected;
+    stats_.classic.refracted += c.refracted;
     stats_.shading.points += c.points;
     stats_.shading.batches += c.batches;
     stats_.lanesUsed += double(c.lanesUsed);

@@ -73,6 +73,17 @@ bool renderPath(Job&, Film&, SampleRange wanted, uint64_t seed, const std::funct
 /// The samples nx x ny of a pixel under hidden and raytrace.
 void gridOf(const scene::Options&, const RenderSettings&, int* nx, int* ny);
 Jitter jitterOf(const scene::Options&, Diagnostics&);
+/// Anti-aliasing by difference of colours, of the hider raytrace: a ray through the middle of each pixel; where two pixels side by side or one
+/// above the other differ, both get side x side of them, evenly spaced. A pixel is the mean of its own rays.
+struct Refinement {
+    int side = 1;           ///< 3, 5, 7 or 9; 1: none
+    float threshold = 0.3f; ///< sum of the differences of red, green and blue, each cut to 0 .. 1, above which pixels differ
+    bool on() const { return side > 1; }
+};
+/// What the hider's parameters aaSamples and aaThreshold say; none where a lens or motion needs more rays, which is reported.
+Refinement refinementOf(const scene::Options&, const Camera&, Diagnostics&);
+/// How many pixels were refined, and the rays for it.
+struct Refined { uint64_t pixels = 0, rays = 0; };
 transport::CameraRay imageRay(const Camera&, Vec2 position, uint64_t seed, int x, int y, uint32_t sample);
 /// Samples that are not finite numbers: how many, and sample, y and x of the first in the picture.
 struct DroppedSamples { uint64_t count = 0; std::optional<std::array<int, 3>> first; };
@@ -80,8 +91,9 @@ struct DroppedSamples { uint64_t count = 0; std::optional<std::array<int, 3>> fi
 struct Reconstructions {
     std::vector<Image> images;
     std::vector<size_t> of;
+    Refined refined;
 };
 /// When the user stops, pixels not reached stay black.
-Reconstructions renderImages(Job&, int nx, int ny, Jitter, uint64_t seed, DroppedSamples*);
+Reconstructions renderImages(Job&, int nx, int ny, Jitter, const Refinement&, uint64_t seed, DroppedSamples*);
 
 } // namespace alpenglow::render

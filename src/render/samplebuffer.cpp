@@ -89,6 +89,11 @@ bool SampleBuffer::set(int x, int y, int k, const ImageSample& s) {
     return true;
 }
 
+Color SampleBuffer::color(int x, int y, int k) const {
+    const float* d = &data_[base(x, y, k)];
+    return d[0] < 0 ? Color(0) : Color(d[kColor], d[kColor + 1], d[kColor + 2]);
+}
+
 void SampleBuffer::pixel(const PixelFilter& f, DepthFilter depth, int x, int y, float* out) const {
     const int spp = nx_ * ny_, bx = border(f.xw), by = border(f.yw);
     const size_t naov = aovs_.size(), nsum = 6 + naov;

@@ -56,6 +56,8 @@ public:
     /// Stores sample k of a pixel of sampled(). One pixel by one thread at a time. A sample whose colour or opacity is not
     /// finite is dropped and counted, false; a NaN in an AOV or depth makes that value 0 or "none", counted.
     bool set(int x, int y, int k, const ImageSample&);
+    /// Colour of a sample; black where there is none.
+    Color color(int x, int y, int k) const;
     uint64_t nonFinite() const { return nonFinite_; }
 
     /// The pixels of `out`, which must lie inside the constructor's window. Colours, opacities and averaged AOVs: weighted by

@@ -57,6 +57,11 @@ std::string toJson(const RenderStats& s) {
         rays[t] = 0;
     for (const auto& [type, n] : s.rays)
         rays[type] = n;
+    j["classic"] = {{"primary", s.classic.primary},
+                    {"reflected", s.classic.reflected},
+                    {"refracted", s.classic.refracted},
+                    {"subsampledPixels", s.classic.subsampledPixels},
+                    {"subsampledRays", s.classic.subsampledRays}};
     j["shading"] = {{"points", s.shading.points},
                     {"batches", s.shading.batches},
                     {"laneOccupancy", finite(s.shading.laneOccupancy)},
@@ -81,6 +86,10 @@ std::string toTable(const RenderStats& s) {
             types += fmt::format("{}{} {}", types.empty() ? "" : ", ", type, grouped(n));
     row("rays", fmt::format("{}, {:.0f} per ms{}", grouped(s.totalRays), raysPerMS(s.totalRays, s.renderSec),
                             types.empty() ? "" : " (" + types + ")"));
+    if (s.classic.reflected || s.classic.refracted)
+        row("specular", fmt::format("{} reflected, {} refracted", grouped(s.classic.reflected), grouped(s.classic.refracted)));
+    if (s.classic.subsampledPixels)
+        row("refined", fmt::format("{} pixels, by {} rays", grouped(s.classic.subsampledPixels), grouped(s.classic.subsampledRays)));
     if (s.depth.maximum)
         row("depth", fmt::format("{} at most, {:.2f} on average", s.depth.maximum, s.depth.average));
     if (s.shading.points)

@@ -21,6 +21,11 @@ struct RenderStats {
     uint64_t nonFinite = 0;         ///< samples dropped
     uint64_t saturated = 0;         ///< values clamped by the exact sums
     std::map<std::string, uint64_t> rays; ///< by type; camera, diffuse, specular, transmission, shadow are written even when 0
+    /// What a classic ray tracer counts. primary: camera rays but subsampledRays; reflected, refracted: of the specular rays those that
+    /// stay on their side of a surface, and the others.
+    struct Classic {
+        uint64_t primary = 0, reflected = 0, refracted = 0, subsampledPixels = 0, subsampledRays = 0;
+    } classic;
     struct Shading {
         uint64_t points = 0, batches = 0;
         double laneOccupancy = 0; ///< active lanes / lanes, 0..1

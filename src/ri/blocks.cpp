@@ -331,7 +331,7 @@ void Interpreter::resource(const Call& call) {
     if (part("transform")) state.ctm = i->second.ctm;
     if (all) to = from;
     // Saved in a world that is over: its lights are gone.
-    std::erase_if(to.lights, [&](int l) { return size_t(l) >= lights().size(); });
+    to.lights.keepBelow(int(lights().size()));
     if (to.areaLight >= int(lights().size())) to.areaLight = -1;
     if (!known) reporter.error(Rie::BadToken, call.place, fmt::format("Resource: unknown subset \"{}\"", subset));
 }

@@ -54,6 +54,8 @@ constexpr Known kStandard[] = {
     {"to", "point"},
     // Display, Hider and archive parameters
     {"jitter", "int"},
+    {"aaSamples", "int"},
+    {"aaThreshold", "float"},
     {"depthfilter", "string"},
     {"quantize", "float[4]"},
     {"dither", "float"},

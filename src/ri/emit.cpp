@@ -62,7 +62,7 @@ void Interpreter::light(const Call& call, bool area) {
     int index = int(lights().size());
     lights().push_back(std::move(l));
     if (!call.text(1).empty()) handles_[call.text(1)] = index;
-    attributes().lights.push_back(index); // declared last: the list stays sorted
+    attributes().lights.insert(index);
     if (area) attributes().areaLight = index;
 }
 
@@ -76,11 +76,10 @@ void Interpreter::illuminate(const Call& call) {
                        near.empty() ? "" : "did you mean " + near + "?");
         return;
     }
-    std::vector<int>& on = attributes().lights;
-    auto at = std::lower_bound(on.begin(), on.end(), i->second);
-    bool is = at != on.end() && *at == i->second;
-    if (call.integer(1) != 0 && !is) on.insert(at, i->second);
-    if (call.integer(1) == 0 && is) on.erase(at);
+    const bool on = call.integer(1) != 0;
+    if (on == state.attributes->lights.contains(i->second)) return; // attributes stay shared
+    if (on) attributes().lights.insert(i->second);
+    else attributes().lights.erase(i->second);
 }
 
 namespace {
@@ -143,10 +142,10 @@ void Interpreter::store(std::shared_ptr<scene::Primitive> p) {
 }
 
 scene::AttributesRef Interpreter::withoutLights(const scene::AttributesRef& a, size_t stable) {
-    bool stale = a->areaLight >= int(stable) || (!a->lights.empty() && size_t(a->lights.back()) >= stable); // the list is sorted
+    bool stale = a->areaLight >= int(stable) || (!a->lights.empty() && size_t(a->lights.last()) >= stable);
     if (!stale) return a;
     auto copy = std::make_shared<scene::Attributes>(*a);
-    std::erase_if(copy->lights, [&](int l) { return size_t(l) >= stable; });
+    copy->lights.keepBelow(int(stable));
     if (copy->areaLight >= int(stable)) copy->areaLight = -1;
     return copy;
 }

@@ -130,6 +130,11 @@ constexpr OptionDescription kOptions[] = {
 };
 
 constexpr OptionDescription kHiderParameters[] = {
+    {"aaSamples", "int", "1", "3", Used,
+     "raytrace: anti-aliasing by colours. A ray goes through the middle of each pixel; pixels that differ from one beside, above or below get "
+     "this many by this many rays: 3, 5, 7 or 9; 1: off. A pixel is the mean of its own rays; PixelSamples and filters have no say."},
+    {"aaThreshold", "float", "0.3", "0.1", Used,
+     "raytrace, with aaSamples: sum of the differences of red, green and blue (each from 0 to 1) above which pixels differ."},
     {"aperture", "float[4]", "[0 0 0 0]", "[6 15 0.2 0]", Used,
      "The opening of the lens of DepthOfField: sides (0: a circle), degrees by which it is turned, roundness of the sides (0 to 1), and "
      "whether light grows toward the rim (1) or the middle (-1)."},

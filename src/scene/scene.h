@@ -4,6 +4,7 @@
 #pragma once
 #include "base/diagnostics.h"
 #include "base/matrix.h"
+#include "scene/lightset.h"
 #include <map>
 #include <memory>
 #include <optional>
@@ -63,7 +64,7 @@ struct Basis {
 struct Attributes {
     Color color{1}, opacity{1};
     ShaderRef surface, displacement, atmosphere, interior, exterior; ///< null = none (surface: the default surface)
-    std::vector<int> lights;           ///< indices into Frame::lights that are on, in order of declaration
+    LightSet lights;                   ///< indices into Frame::lights that are on, in order of declaration
     int areaLight = -1;                ///< index into Frame::lights when primitives made now are its geometry
     float shadingRate = 1;
     bool smoothShading = false;        ///< ShadingInterpolation "smooth"

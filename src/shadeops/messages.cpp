@@ -55,7 +55,8 @@ std::vector<Shadeop> messageShadeops() {
     list.back().examples = {{"name", "Alpenglow", "string name = \"\"; rendererinfo(\"renderer\", name);", "a frame is rendered"}};
     message("rayinfo", Lowering::Service, kNoImager,
             "About the ray that hit the point: \"type\" string (camera, specular, diffuse, transmission, light, subsurface), \"depth\", \"speculardepth\", "
-            "\"diffusedepth\" float, \"label\" string, \"origin\" point, \"direction\" vector, \"length\" float.");
+            "\"diffusedepth\" float, \"label\" string, \"origin\" point, \"direction\" vector, \"length\" float, \"weight\" float: the largest "
+            "components of the weights that trace() was given on its way, multiplied.");
     list.back().examples = {{"rayinfo(\"depth\", x) + x", "1", "float x = 0;", "the camera sees the point"}};
     Shadeop& textureinfo = add("textureinfo", query("textureinfo", "string texture, string field"), Lowering::Service, kAnyContext,
                                "About a texture: \"resolution\" float[2], \"type\" string, \"channels\" float, \"viewingmatrix\" and \"projectionmatrix\" matrix; "

@@ -17,7 +17,7 @@ std::vector<OptionalParameter> rayParameters() {
             {kF, "samplecone", false, "0", "half angle of the cone of directions, radians"},
             {kF, "samples", false, "1", "number of samples"},
             {kS, "type", false, "\"specular\"", "specular, diffuse or transmission: which visibility counts"},
-            {kC, "weight", false, "1", "importance of the ray; accepted, the renderer has its own"},
+            {kC, "weight", false, "1", "importance of the ray: rayinfo(\"weight\") where it arrives gives the product of those on its way; no ray is left out for it"},
             {kF, "minsamples", false, "samples", "accepted and ignored"},
             {kF, "samplebase", false, "0", "part of the footprint over which trace() starts its rays"},
             {kS, "excludesubset", false, "\"\"", "groups of objects left out"},

@@ -108,6 +108,7 @@ struct PathRay {
     int lobeBinding = -1;             ///< binding of that point, whose list says which lights may light it; -1: every emitter counts
     Footprint footprint;              ///< at the origin
     int32_t extra = -1;               ///< Engine::extras_; -1: none
+    float importance = 1;             ///< product of the weights that shaders gave to the calls on its way; for rayinfo("weight")
     RayType type() const { return kind->type; }
     bool camera() const { return kind->type == RayType::Camera; }
     float time() const { return sample ? sample->time : 0; }

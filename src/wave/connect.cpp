@@ -48,7 +48,7 @@ void Gather::reach(int query) {
     const size_t k = size_t(query);
     const BoundLight& light = *q.light[k];
     const bool area = light.kind == LightKind::Area;
-    const Vec3 w = area ? q.drawn[k].direction : unit(-q.value[k].L, Vec3(0, 0, 1));
+    const Vec3 w = area || light.sky ? q.drawn[k].direction : unit(-q.value[k].L, Vec3(0, 0, 1));
     for (int i : lobesOf(size_t(q.point[k]))) {
         const LobeVertex& l = e_.lobes[size_t(i)];
         if (!samples(l, light)) continue;
@@ -56,7 +56,7 @@ void Gather::reach(int query) {
         // Sides 1: from where rays of this lobe pass through the emitter they cannot meet it, and it sends nothing.
         const accel::Sides sides = l.rays->set.sides;
         if (area && !light.mean && q.drawn[k].shape->oneSided() && sides != accel::Sides::Both &&
-            (dot(q.at[k].surface.n, w) >= 0) != (sides == accel::Sides::Back))
+            (dot(meetsNormal(q.at[k].surface), w) >= 0) != (sides == accel::Sides::Back))
             continue;
         reached_.push_back({query, i, 0, w, {}});
     }
@@ -69,7 +69,7 @@ bool Gather::meets(const LobeVertex& l, int query, const Vec3& w, const Vec3& fr
     const shading::RaySet& set = l.rays->set;
     if (set.only && !set.only[world_.numberOfShape_.at(&shape)]) return false;
     if (shape.oneSided() && set.sides != accel::Sides::Both &&
-        (dot(queries_.at[size_t(query)].surface.n, w) >= 0) != (set.sides == accel::Sides::Back))
+        (dot(meetsNormal(queries_.at[size_t(query)].surface), w) >= 0) != (set.sides == accel::Sides::Back))
         return false;
     const Vec3 way = end - from;
     return dot(way, w) > 0 && !(length(way) > l.maxDistance);
@@ -86,9 +86,9 @@ Color Gather::contribution(const Reached& r) {
     const float kept = l.lobeOfShader ? v.kept(l.rays->type) : 1;
     Color c = l.ownsTarget ? l.weight * v.Cl : l.weight * rayOf(l).weight * v.Cl;
     c *= r.value.colour / fcos;
-    if (l.trace && l.trace->sums)
+    if (area && l.trace && l.trace->sums)
         if (TraceSums* of = e_.sumsOf(l.target)) of->add(TraceSums::UnshadowedAreaLight, c * (fcos / (drawn * chance)));
-    if (!area || light.mean) return c * (kept * float(kPi) * fcos / (chance * (area ? drawn : 1))); // Cl is irradiance / pi
+    if (!light.hasDensity()) return c * (kept * float(kPi) * fcos / (chance * (area ? drawn : 1))); // Cl is irradiance / pi
     float other = 0; // the density with which the lobe's own ray would have come here
     if (!world_.settings_.lightOnly && l.chosen > 0 && (queries_.drawn[k].visibility & visibilityBit(l.rays->type)))
         other = r.value.pdf * l.chosen;
@@ -106,7 +106,15 @@ void Gather::send(const Reached& r) {
     const bool area = light.kind == LightKind::Area, sums = l.trace && l.trace->sums;
     const Vec3 from = origin(l, r.w);
     // The light's own surface must not block: stop short of it by both error bounds.
-    const Vec3 end = area ? geometry::offsetOrigin(queries_.at[k].surface, -r.w) : Vec3();
+    Vec3 end;
+    if (const geometry::SurfacePoint& on = queries_.at[k].surface; area && on.displaced) {
+        geometry::SurfacePoint facet = on;
+        facet.P = on.displacedP;
+        facet.n = on.displacedN;
+        end = geometry::offsetOrigin(facet, -r.w);
+    } else if (area) {
+        end = geometry::offsetOrigin(on, -r.w);
+    }
     if (l.trace && area && !meets(l, r.query, r.w, from, end)) return;
     const Color given = contribution(r);
     const int32_t share = shareOf(l);
@@ -123,8 +131,10 @@ void Gather::send(const Reached& r) {
         e_.shadows.push_back(
             {from, unit(end - from, r.w), length(end - from) * (1 - 1e-6f), given, l.target, p.shutter, p.ray, sums});
     } else {
-        const float far = light.kind == LightKind::Distant ? 1e38f : length(queries_.value[k].L);
-        e_.shadows.push_back({from, r.w, far < 1e30f ? far * (1 - 1e-5f) : far, given, l.target, p.shutter, p.ray, false});
+        // A ray of trace() sees the sky behind what lies beyond its distance, too.
+        const float far = light.sky ? l.maxDistance : light.kind == LightKind::Distant ? 1e38f : length(queries_.value[k].L);
+        e_.shadows.push_back(
+            {from, r.w, far < 1e30f && !light.sky ? far * (1 - 1e-5f) : far, given, l.target, p.shutter, p.ray, false});
     }
     ShadowRay& shadow = e_.shadows.back();
     shadow.kind = kind;

@@ -7,6 +7,8 @@
 namespace alpenglow::transport {
 
 void Counters::operator+=(const Counters& o) {
+    reflected += o.reflected;
+    refracted += o.refracted;
     camera += o.camera; diffuse += o.diffuse; specular += o.specular; transmission += o.transmission; shadow += o.shadow;
     points += o.points; batches += o.batches; lanesUsed += o.lanesUsed; lanesRun += o.lanesRun;
     nonFinite += o.nonFinite; overLimit += o.overLimit; depthCap += o.depthCap;

@@ -109,6 +109,7 @@ private:
     std::vector<float> indirectScale_; ///< by point: of the rays of lighting shadeops
     std::vector<float> passes_;        ///< by point: the chance that its ray goes on behind it
     std::vector<std::vector<std::pair<int, float>>> chosenAt_; ///< many lights: by light of the list, points and chances
+    std::vector<int> chosen_;               ///< places in the list that have some
     std::vector<std::vector<int>> ofGroup_; ///< many lights: by group, places in the list
     LightQueries queries_;
     render::NumberRows numbers_;

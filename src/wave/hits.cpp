@@ -170,8 +170,7 @@ void Engine::shine(const BatchContext& c, Sched& sched) {
         if (!rules_.emissionCounts && r.lobePdf < 0) continue;
         if (r.lobeBinding >=
             0) { // a lobe that samples lights: those that are off for its surface do not light it by chance either
-            const auto& on = world_->bindings_[size_t(r.lobeBinding)].lights;
-            if (std::find(on.begin(), on.end(), b.areaLight) == on.end()) continue;
+            if (!world_->bindings_[size_t(r.lobeBinding)].lights.contains(b.areaLight)) continue;
         }
         const BoundLight& light = world_->lights_[size_t(b.areaLight)];
         if (light.mean || (r.kind->fromTrace && light.strategy == LightStrategy::Illuminance)) continue;

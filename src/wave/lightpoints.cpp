@@ -1,6 +1,7 @@
 // Stage light: every light for every point with lobes that want it, a kernel call a light. Of many lights some are chosen at each
 // point (manylights.cpp), and those of one program share a call.
 #include "world/emitterfootprint.h"
+#include "world/skytable.h"
 #include "wave/gather.h"
 
 namespace alpenglow::transport {
@@ -31,15 +32,18 @@ void Gather::LightQueries::clear() {
 
 /// Whether a lobe asks this light for samples. trace() knows emitters only, and not those that are illuminance's.
 bool Gather::samples(const LobeVertex& l, const BoundLight& light) const {
-    return l.lights && !l.elsewhere && !l.delta && (light.kind == LightKind::Area || l.deltaLights) &&
+    if (!light.importance && (l.trace || rules_.emissionCounts)) return false; // rays alone find it
+    return l.lights && !l.elsewhere && !l.delta && (light.kind == LightKind::Area || light.sky || l.deltaLights) &&
            (l.lobeOfShader || light.strategy != LightStrategy::Illuminance);
 }
 
 void Gather::light() {
-    const int list = world_.bindings_[size_t(c_->bindings[0])].lightList; // the batch shares it
-    const std::vector<int>& on = world_.sampledLights_[size_t(list)];
-    const LightChooser& chooser = world_.choosers_[size_t(list)].chooser;
+    const WorldImpl::LightList& list = world_.lightLists_[size_t(world_.bindings_[size_t(c_->bindings[0])].lightList)]; // the batch's
+    const std::vector<int>& on = world_.sampledOf(list);
+    const LightChooser& chooser = world_.chooserOf(list);
     const bool many = rules_.pickOne && !chooser.empty();
+    std::vector<int>& touched = chosen_; // places in the list, of lights that some point asks for
+    touched.clear();
     if (many) {
         chosenAt_.resize(std::max(chosenAt_.size(), on.size()));
         LightChooser::Chosen chosen;
@@ -47,22 +51,28 @@ void Gather::light() {
             if (begin_[point] == begin_[point + 1]) continue;
             const float u = e_.random(c_->rays[point]).one(lightVertex(point), kChooseLight, 0);
             chooser.choose(c_->points[point].P, u, chosen);
-            for (auto [i, chance] : chosen) chosenAt_[size_t(i)].push_back({int(point), chance});
+            for (auto [i, chance] : chosen) {
+                if (list.ofAll && !list.lights.contains(on[size_t(i)])) continue;
+                if (chosenAt_[size_t(i)].empty()) touched.push_back(i);
+                chosenAt_[size_t(i)].push_back({int(point), chance});
+            }
         }
+        std::sort(touched.begin(), touched.end());
     } else {
         chosenAt_.resize(std::max<size_t>(chosenAt_.size(), 1));
         for (size_t point = 0; point < c_->points.size(); ++point)
             if (begin_[point] != begin_[point + 1]) chosenAt_[0].push_back({int(point), 1.f});
+        for (size_t k = 0; k < on.size() && !chosenAt_[0].empty(); ++k)
+            if (!list.ofAll || list.lights.contains(on[k])) touched.push_back(int(k));
     }
     // Lights of one program that share a kernel call come together (WorldImpl::lightGroups_), the others one by one.
     std::vector<std::vector<int>>& grouped = ofGroup_; // places in the list
     grouped.resize(world_.lightGroups_.size());
-    for (size_t k = 0; k < on.size(); ++k) {
-        const auto& at = chosenAt_[many ? k : 0];
-        if (at.empty()) continue;
-        const BoundLight& light = world_.lights_[size_t(on[k])];
+    for (const int k : touched) {
+        const auto& at = chosenAt_[many ? size_t(k) : 0];
+        const BoundLight& light = world_.lights_[size_t(on[size_t(k)])];
         if (many && light.group >= 0) {
-            grouped[size_t(light.group)].push_back(int(k));
+            grouped[size_t(light.group)].push_back(k);
             continue;
         }
         queries_.clear();
@@ -70,7 +80,7 @@ void Gather::light() {
         placeWanted();
         askLights(nullptr);
         connect();
-        if (many) chosenAt_[k].clear();
+        if (many) chosenAt_[size_t(k)].clear();
     }
     for (size_t g = 0; many && g < grouped.size(); ++g) {
         const auto ask = [&] {
@@ -104,6 +114,8 @@ void Gather::want(const BoundLight& light, std::span<const std::pair<int, float>
             const uint32_t vertex = lightVertex(size_t(point));
             numbers_.askPair(e_.random(ray).numbers(), vertex, use, 0);
             if (light.emitter->chooses()) numbers_.askOne(e_.random(ray).numbers(), vertex, use, 0);
+        } else if (light.sky) {
+            numbers_.askPair(e_.random(ray).numbers(), lightVertex(size_t(point)), use, 0);
         } else if (light.cone && rules_.pickOne) {
             numbers_.askPair(e_.random(ray).numbers(), ray.vertex, use, 0);
         }
@@ -155,15 +167,24 @@ bool Gather::place(ShadePoint& p, Emitter::Sample& s, size_t point, const BoundL
                          : light.emitter->sample(p.Ps, u, choose, p.shutter, s, p.surface, light.pointNeeds)))
             return false;
         if (world_.accel_->hasSolids() &&
-            !world_.accel_->keeps(world_.numberOfShape_.at(s.shape), p.surface.P, p.surface.n, p.time))
+            !world_.accel_->keeps(world_.numberOfShape_.at(s.shape), meetsAt(p.surface), meetsNormal(p.surface), p.time))
             return false; // what a solid leaves of a lamp
         p.shape = s.shape;
-        p.P = p.surface.P;
+        p.P = meetsAt(p.surface);
         p.N = p.surface.n;
         return true;
     }
     p.shape = nullptr;
     p.surface = c_->points[point].surface;
+    if (light.sky) {
+        if (!light.sky->sample(numbers_.pair(number++), s.direction, s.pdf)) return false;
+        s.shape = nullptr;
+        s.visibility = ~0u;
+        p.P = p.Ps + s.direction;
+        p.N = -s.direction;
+        p.Ci = Color(0);
+        return true;
+    }
     p.N = Vec3();
     const ShaderInstance& of = *light.instance;
     Matrix moved;
@@ -239,9 +260,13 @@ void Gather::askLights(const BoundKernel* shared) {
             e_.answers().keepChannels(*c_, light, q.point[k], values.data() + k * width);
 }
 
-float Engine::chanceOf(int light, int binding, const Vec3& at) const {
-    const WorldImpl::ChooserOfList& of = world_->choosers_[size_t(world_->bindings_[size_t(binding)].lightList)];
-    return of.chooser.empty() ? 1 : of.chooser.pmf(of.numberOf[size_t(light)], at);
+float Engine::chanceOf(int light, int binding, const Vec3& from) const {
+    const WorldImpl::LightList& list = world_->lightLists_[size_t(world_->bindings_[size_t(binding)].lightList)];
+    const LightChooser& chooser = world_->chooserOf(list);
+    if (chooser.empty()) return 1;
+    const std::vector<int>& on = world_->sampledOf(list);
+    const auto at = std::lower_bound(on.begin(), on.end(), light);
+    return at != on.end() && *at == light ? chooser.pmf(int(at - on.begin()), from) : 0;
 }
 
 } // namespace alpenglow::transport

@@ -124,6 +124,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         l.lights = number(s.rowLights, 0) != 0;
         l.bias = number(s.rays->bias, -1);
         l.base = number(s.rays->base, 0);
+        if (s.trace->weight >= 0) l.importance = std::max(0.f, maxComponent(vector(s.trace->weight, Color(1))));
         if (s.trace->map) l.tint = vector(s.trace->tint, Color(1));
         // From a point that is not the surface's no light is sampled: rays that meet an emitter count in full.
         if (const Vec3 from = v(0), away = from - p.P;

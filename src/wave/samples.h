@@ -10,6 +10,7 @@ namespace alpenglow::transport {
 /// Counts of one integrator thread; added up by the renderer.
 struct Counters {
     uint64_t camera = 0, diffuse = 0, specular = 0, transmission = 0, shadow = 0;
+    uint64_t reflected = 0, refracted = 0; ///< of specular rays, those that stay on their side of a surface, and the others
     uint64_t points = 0, batches = 0, lanesUsed = 0, lanesRun = 0;
     uint64_t nonFinite = 0, overLimit = 0, depthCap = 0;
     uint64_t depthSum = 0, paths = 0;

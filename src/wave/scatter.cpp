@@ -118,6 +118,7 @@ bool Gather::meetsEmitter(const LobeVertex& l, const Vec3& w) const {
     if (!l.lights) return false;
     const Vec3& from = l.elsewhere ? l.from : c_->points[size_t(l.point)].P;
     const float error = 1e-3f * (1 + length(from)) + std::fabs(l.bias);
+    if (world_.lights_.size() > 64) return true; // to send the ray costs less than to look at all of them
     for (const BoundLight& light : world_.lights_) {
         if (light.kind != LightKind::Area || !light.emitter || light.emitter->empty()) continue;
         const Vec3 to = light.centre - from;
@@ -188,6 +189,9 @@ void Gather::sendRay(const Sent& s, int turn, Sched& sched) {
     r.trail = trailBehind(l);
     r.media = e_.mediaTowards(*c_, s.point, w);
     r.parted = false;
+    r.importance *= l.importance;
+    if (l.rays->type == RayType::Specular)
+        ++(dot(w, p.surface.n) * dot(from.dir, p.surface.n) > 0 ? e_.counters.refracted : e_.counters.reflected);
     extra.lit = l.lit;
     extra.share = shareOf(l);
     if (l.ownsTarget && l.trace && l.trace->sums) {

@@ -40,6 +40,7 @@ struct LobeVertex {
     float base = 0;        ///< "samplebase": rays start on this part of the footprint
     int lit = -1;          ///< of Engine::litValues_
     int32_t share = -1;    ///< Engine::shares_: outputs that hold this request too; -1: none
+    float importance = 1;  ///< its "weight", for rayinfo()
     Color tint{1};         ///< of the environment map
     const TraceSite* trace = nullptr;
     float albedo = 0;      ///< kind->albedo(params)

@@ -1,5 +1,6 @@
 // Where a ray ends without a shader of its own: light of emitters and sky, and what goes on through surfaces.
 #include "wave/engine.h"
+#include "world/skytable.h"
 #include "lobes/sampling.h"
 #include <algorithm>
 
@@ -61,9 +62,8 @@ void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
     std::vector<ShadePoint> q;
     std::vector<const Sched::Task*> of;
     std::vector<LightValue> value;
-    for (const BoundLight& l : world_->lights_) {
-        if ((l.kind != LightKind::Environment && l.kind != LightKind::Ambient) || !l.kernel)
-            continue; // a light whose shader was not found gives nothing
+    for (const int number : world_->skies_) {
+        const BoundLight& l = world_->lights_[size_t(number)];
         q.clear();
         of.clear();
         litBy_.clear();
@@ -71,6 +71,8 @@ void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
             const PathRay& r = t->payload;
             const bool ambient = l.kind == LightKind::Ambient;
             if (ambient ? r.type() != RayType::Diffuse : r.kind->fromTrace && l.strategy == LightStrategy::Illuminance) continue;
+            // A lobe that samples lights: those that are off for its surface do not light it by chance either.
+            if (r.lobeBinding >= 0 && !world_->bindings_[size_t(r.lobeBinding)].lights.contains(number)) continue;
             ShadePoint& p = q.emplace_back();
             p.Ps = r.origin;
             p.P = r.origin + r.dir;
@@ -90,7 +92,13 @@ void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
                 const PathRay& r = of[i]->payload;
                 const bool weighed = l.kind == LightKind::Environment && r.bounces > 0 &&
                                      !r.kind->fromTrace; // met by a lobe of a lighting shadeop
-                const Color light = r.weight * value[i].Cl * (weighed ? value[i].kept(r.type()) : 1.f);
+                float weight = weighed ? value[i].kept(r.type()) : 1.f;
+                if (l.sky && r.lobePdf >= 0) { // its lobe has sampled this sky
+                    float pdf = l.sky->pdf(r.dir);
+                    if (rules_.pickOne && r.lobeBinding >= 0) pdf *= chanceOf(number, r.lobeBinding, r.lobeOrigin);
+                    weight *= world_->settings_.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
+                }
+                const Color light = r.weight * value[i].Cl * weight;
                 deposit(sched, {of[i]->target, light, LightEvent::Sky, &r, extraOf(r).share, l.instance.get()});
             }
     }
@@ -137,7 +145,7 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
             if (v.lit && !isFinite(v.Cl)) notFinite(&r, "Cl", light.instance.get());
             if (!v.lit || !(maxComponent(v.Cl) > 0) || !isFinite(v.Cl) || bringsPhotons(r, met[i].light)) continue;
             float weight = 1;
-            if (r.lobePdf >= 0 && light.emitter) {
+            if (r.lobePdf >= 0 && light.emitter && light.importance) {
                 float pdf = light.emitter->pdf(p.shape, p.surface, r.lobeOrigin);
                 if (rules_.pickOne && r.lobeBinding >= 0) pdf *= chanceOf(met[i].light, r.lobeBinding, r.lobeOrigin);
                 weight = set.lightOnly ? 0 : misWeight(r.lobePdf, pdf);

@@ -1,4 +1,6 @@
 #include "world/arealight.h"
+#include "base/limits.h"
+#include "geometry/placed.h"
 #include "lobes/sampling.h"
 #include <algorithm>
 
@@ -49,6 +51,59 @@ Emitter::Emitter(std::vector<const geometry::Shape*> shapes, std::vector<uint32_
         e.cumulative = sum += e.share;
         entryOf_[e.shape] = int(&e - entries_.data());
     }
+    if (entries_.size() <= size_t(limits::kLightsSampled)) return;
+    std::vector<LightBound> bounds;
+    for (const Entry& e : entries_) {
+        const geometry::Bounds b = e.shape->bounds();
+        bounds.push_back({(b.lo + b.hi) * .5f, length(b.hi - b.lo) * .5f, float(e.share), false});
+    }
+    chooser_ = LightChooser(bounds, 1);
+}
+
+bool Emitter::findDisplaced() {
+    bool all = true;
+    for (Entry& e : entries_) {
+        const geometry::Shape& geometry = e.shape->placed() ? *e.shape->placed()->geometry() : *e.shape;
+        const geometry::TriMesh& m = geometry.mesh();
+        if (e.facets >= 0 || m.triangles() == 0 || !geometry.evaluateHit(0, 1 / 3., 1 / 3.).displaced) continue;
+        e.sphere = false;
+        if (e.shape->placed()) {
+            all = false;
+            continue;
+        }
+        Facets f;
+        double sum = 0;
+        for (uint32_t t = 0; t < m.triangles(); ++t) {
+            const Vec3d a(m.P[m.index[3 * t]]), b(m.P[m.index[3 * t + 1]]), c(m.P[m.index[3 * t + 2]]);
+            f.cumulative.push_back(sum += .5 * length(cross(b - a, c - a)));
+        }
+        if (!(sum > 0) || !std::isfinite(sum)) {
+            all = false;
+            continue;
+        }
+        e.facets = int(facets_.size());
+        facets_.push_back(std::move(f));
+    }
+    return all;
+}
+
+void Emitter::place(const Entry& e, const Vec3& from, Vec2 u, float time, geometry::SurfacePoint& point, uint32_t needs) const {
+    if (e.facets < 0) {
+        if (e.shape->placed()) e.shape->sampleAreaAt(u.x, u.y, time, point, needs);
+        else e.shape->sampleFrom(from, u.x, u.y, point, needs);
+        return;
+    }
+    const std::vector<double>& sums = facets_[size_t(e.facets)].cumulative;
+    const double at = double(u.x) * sums.back();
+    const size_t t = size_t(std::upper_bound(sums.begin(), sums.end() - 1, at) - sums.begin());
+    const double before = t ? sums[t - 1] : 0, width = sums[t] - before;
+    // What is left of the number says where on the facet: even over a triangle, as its corner is cut off by the root.
+    const double side = std::sqrt(width > 0 ? std::clamp((at - before) / width, 0.0, 1.0) : 0.5);
+    e.shape->evaluateHit(uint32_t(t), side * (1 - double(u.y)), side * double(u.y), point, needs);
+}
+
+double Emitter::density(const Entry& e, const geometry::SurfacePoint& p) const {
+    return e.facets < 0 ? e.shape->sampleDensity(p) : 1 / facets_[size_t(e.facets)].cumulative.back();
 }
 
 geometry::Bounds Emitter::bounds() const {
@@ -57,11 +112,11 @@ geometry::Bounds Emitter::bounds() const {
     return b;
 }
 
-float Emitter::areaPdf(const Entry& e, const geometry::SurfacePoint& p, const Vec3& from) const {
-    Vec3 d = p.P - from;
-    float d2 = dot(d, d), cosine = std::fabs(dot(d, p.n)) / std::sqrt(d2);
+float Emitter::areaPdf(const Entry& e, double share, const geometry::SurfacePoint& p, const Vec3& from) const {
+    Vec3 d = meetsAt(p) - from;
+    float d2 = dot(d, d), cosine = std::fabs(dot(d, meetsNormal(p))) / std::sqrt(d2);
     if (!(d2 > 0) || !(cosine > 1e-7f)) return 0;
-    return float(e.share * e.shape->sampleDensity(p) * d2 / cosine);
+    return float(share * density(e, p) * d2 / cosine);
 }
 
 const Emitter::Entry& Emitter::entryAt(float choose) const {
@@ -69,10 +124,23 @@ const Emitter::Entry& Emitter::entryAt(float choose) const {
     return *std::upper_bound(entries_.begin(), entries_.end() - 1, choose, above);
 }
 
+const Emitter::Entry& Emitter::entryFrom(const Vec3& from, float choose, double& share) const {
+    if (chooser_.empty()) {
+        const Entry& e = entryAt(choose);
+        share = e.share;
+        return e;
+    }
+    float chance;
+    const int i = chooser_.pick(from, choose, chance);
+    share = chance;
+    return entries_[size_t(i)];
+}
+
 bool Emitter::sample(const Vec3& from, Vec2 u, float choose, float time, Sample& out, geometry::SurfacePoint& point,
                      uint32_t needs) const {
     if (entries_.empty()) return false;
-    const Entry& e = entryAt(choose);
+    double share;
+    const Entry& e = entryFrom(from, choose, share);
     out.shape = e.shape;
     out.visibility = e.visibility;
     if (e.sphere) {
@@ -89,19 +157,18 @@ bool Emitter::sample(const Vec3& from, Vec2 u, float choose, float time, Sample&
             while (k < n && !(hits[k].t > 0)) ++k;
             if (k == n) return false;
             e.shape->evaluateHit(0, hits[k].u, hits[k].v, point, needs);
-            out.pdf = float(e.share / (2 * kPi * cap));
+            out.pdf = float(share / (2 * kPi * cap));
             out.direction = w;
             out.distance = float(hits[k].t);
             return true;
         }
     }
-    if (e.shape->placed()) e.shape->sampleAreaAt(u.x, u.y, time, point, needs);
-    else e.shape->sampleFrom(from, u.x, u.y, point, needs);
-    Vec3 d = point.P - from;
+    place(e, from, u, time, point, needs);
+    Vec3 d = meetsAt(point) - from;
     out.distance = length(d);
     if (!(out.distance > 0)) return false;
     out.direction = d / out.distance;
-    out.pdf = areaPdf(e, point, from);
+    out.pdf = areaPdf(e, share, point, from);
     return out.pdf > 0 && std::isfinite(out.pdf);
 }
 
@@ -111,13 +178,12 @@ bool Emitter::sampleSurface(const Vec3& from, Vec2 u, float choose, float time, 
     const Entry& e = entryAt(choose);
     out.shape = e.shape;
     out.visibility = e.visibility;
-    if (e.shape->placed()) e.shape->sampleAreaAt(u.x, u.y, time, point, needs);
-    else e.shape->sampleFrom(from, u.x, u.y, point, needs);
-    const Vec3 d = point.P - from;
+    place(e, from, u, time, point, needs);
+    const Vec3 d = meetsAt(point) - from;
     out.distance = length(d);
     if (!(out.distance > 0)) return false;
     out.direction = d / out.distance;
-    out.pdf = float(e.shape->sampleDensity(point) * e.share * area_); // the share of a shape is its part of the area
+    out.pdf = float(density(e, point) * e.share * area_); // the share of a shape is its part of the area
     return out.pdf > 0 && std::isfinite(out.pdf);
 }
 
@@ -134,11 +200,12 @@ float Emitter::pdf(const geometry::Shape* shape, const geometry::SurfacePoint& h
     const auto i = entryOf_.find(shape);
     if (i == entryOf_.end()) return 0;
     const Entry& e = entries_[size_t(i->second)];
+    const double share = chooser_.empty() ? e.share : double(chooser_.pmf(i->second, from));
     if (e.sphere) {
         double dc = length(Vec3d(e.centre) - Vec3d(from));
-        if (dc > e.radius * 1.0001) return float(e.share / (2 * kPi * capOneMinusCos(e.radius, dc)));
+        if (dc > e.radius * 1.0001) return float(share / (2 * kPi * capOneMinusCos(e.radius, dc)));
     }
-    return areaPdf(e, hit, from);
+    return areaPdf(e, share, hit, from);
 }
 
 } // namespace alpenglow::transport

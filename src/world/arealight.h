@@ -1,16 +1,25 @@
 // Where on an emitter a light sample lies, and with which density a given hit would have been chosen (design decision 4).
 #pragma once
 #include "geometry/shape.h"
+#include "world/lightchooser.h"
 #include <unordered_map>
 
 namespace alpenglow::transport {
 
-/// The geometry of one area light: its shapes, chosen in proportion to area. Full spheres that are still spheres in camera space
-/// are sampled by the solid angle they fill; everything else over its area.
+/// Where rays meet a point of an emitter, and the normal there: of a displaced surface on its facet.
+inline const Vec3& meetsAt(const geometry::SurfacePoint& p) { return p.displaced ? p.displacedP : p.P; }
+inline const Vec3& meetsNormal(const geometry::SurfacePoint& p) { return p.displaced ? p.displacedN : p.n; }
+
+/// The geometry of one area light: its shapes, chosen in proportion to area, of more than limits::kLightsSampled in proportion to area
+/// over squared distance (LightChooser). Full spheres that are still spheres in camera space
+/// are sampled by the solid angle they fill; what is displaced over the
+/// area of its facets; everything else over its area.
 class Emitter {
 public:
     /// visibility: kinds of rays (accel::Visibility) that can meet each shape; empty: all.
     explicit Emitter(std::vector<const geometry::Shape*> shapes, std::vector<uint32_t> visibility = {});
+    /// When shapes are diced: notes which of them are displaced. False: a displaced one moves, and sample() does not know its surface.
+    bool findDisplaced();
     bool empty() const { return entries_.empty(); }
     double area() const { return area_; }
     geometry::Bounds bounds() const;
@@ -51,13 +60,23 @@ private:
         Vec3 centre;
         float radius = 0;
         uint32_t visibility = ~0u;
+        int facets = -1; ///< facets_, of one that is displaced
     };
-    /// The shape that a number in [0, 1) chooses, by their shares. There is at least one.
+    struct Facets { std::vector<double> cumulative; }; ///< areas
+    /// A point for a lit one.
+    void place(const Entry&, const Vec3& from, Vec2 u, float time, geometry::SurfacePoint&, uint32_t needs) const;
+    /// Density per area of place().
+    double density(const Entry&, const geometry::SurfacePoint&) const;
+    /// The shape that a number in [0, 1) chooses, by their shares of the area. There is at least one.
     const Entry& entryAt(float choose) const;
-    float areaPdf(const Entry&, const geometry::SurfacePoint&, const Vec3& from) const;
+    /// That which it chooses as seen from a point, and with which probability.
+    const Entry& entryFrom(const Vec3& from, float choose, double& share) const;
+    float areaPdf(const Entry&, double share, const geometry::SurfacePoint&, const Vec3& from) const;
     std::vector<Entry> entries_;
+    std::vector<Facets> facets_;
     std::unordered_map<const geometry::Shape*, int> entryOf_;
     double area_ = 0;
+    LightChooser chooser_; ///< over entries_; empty where there are few
 };
 
 } // namespace alpenglow::transport

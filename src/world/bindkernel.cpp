@@ -76,6 +76,7 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
     t->roughnessv = row("roughnessv");
     t->absorption = row("absorption");
     t->tint = row("environmenttint");
+    t->weight = row("weight");
     const std::string part = text(rsl::kPairPart);
     if (!part.empty()) t->part = part[0] - '0';
     std::map<int, int> ends; // by row: where the value ends

@@ -78,6 +78,8 @@ void setLightKind(BoundLight& part, const std::string& block, bool area, bool pa
         part.strategy = LightStrategy::Illuminance; // it has no radiance that trace() could find
     }
     if (part.kind != LightKind::Area) part.emitter = nullptr;
+    if (const auto i = part.instance->parameters.numbers.find(rsl::kImportanceSample); i != part.instance->parameters.numbers.end())
+        part.importance = i->second.empty() || i->second[0] != 0;
 }
 
 } // namespace
@@ -192,6 +194,9 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
             }
         }
     }
+    for (size_t i = 0; i < lights_.size(); ++i)
+        if (const BoundLight& l = lights_[i]; l.kernel && (l.kind == LightKind::Environment || l.kind == LightKind::Ambient))
+            skies_.push_back(int(i));
     std::sort(lightMessages_.begin(), lightMessages_.end());
     lightMessages_.erase(std::unique(lightMessages_.begin(), lightMessages_.end()), lightMessages_.end());
 }
@@ -237,18 +242,17 @@ void WorldImpl::bindSentStrings(Diagnostics& d) {
         }
 }
 
-std::vector<int> WorldImpl::withParts(const std::vector<int>& lights) const {
-    std::vector<int> all;
-    for (int l : lights) {
-        all.push_back(l);
-        all.insert(all.end(), lights_[size_t(l)].parts.begin(), lights_[size_t(l)].parts.end());
-    }
+scene::LightSet WorldImpl::withParts(const scene::LightSet& lights) const {
+    scene::LightSet all = lights;
+    if (lights_.size() > frame_->lights.size())
+        for (int l : lights)
+            for (int part : lights_[size_t(l)].parts) all.insert(part);
     return all;
 }
 
 void WorldImpl::measureLights(Evaluator& evaluator, Diagnostics& d) {
-    bool many = std::any_of(sampledLights_.begin(), sampledLights_.end(),
-                            [](const auto& list) { return list.size() > size_t(limits::kLightsSampled); });
+    const bool many = std::any_of(lightLists_.begin(), lightLists_.end(),
+                                  [&](const LightList& l) { return sampledOf(l).size() > size_t(limits::kLightsSampled); });
     for (BoundLight& l : lights_) {
         if (!l.kernel || (l.kind == LightKind::Area && (!l.emitter || l.emitter->empty()))) continue;
         auto brightness = [&](std::vector<ShadePoint> q) {

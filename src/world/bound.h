@@ -34,6 +34,10 @@ struct BoundLight {
     InstanceRef instance;
     BoundKernel kernel;
     std::shared_ptr<Emitter> emitter;          ///< Area
+    std::shared_ptr<const class SkyTable> sky; ///< Environment, path: where it is bright; null: rays of lobes find it as well
+    bool importance = true;                    ///< false: no point of it is sampled where rays find it (__importancesample 0)
+    /// Lobes may sample it by direction: an emitter that rays meet, or a sky.
+    bool hasDensity() const { return (kind == LightKind::Area && !mean) || sky; }
     int outL = -1, outCl = -1, outOl = -1, outLit = -1;
     /// Output parameters, whose values the kernel gives: name, output, components; then what all of them take.
     struct Value {
@@ -139,10 +143,10 @@ struct SurfaceBinding {
     BoundKernel moveS; ///< P as the surface shader leaves it, where that displaces the primitive (no displacement shader)
     std::vector<LightOutput> lightOutputs;
     std::vector<char> aside;                   ///< by AOV: `lightOutputs` give it; empty: none
-    std::vector<int> lights;                   ///< indices into lights
+    scene::LightSet lights;                    ///< that are on, with the parts of their shaders: WorldImpl::eachLight()
     int group = 0;                             ///< equal: same program and light list, so that points are shaded in one batch
     int program = 0;                           ///< equal: the same kernel, so that points may share a V batch
-    int lightList = 0;                         ///< equal: the same list of lights
+    int lightList = 0;                         ///< equal: the same lights; WorldImpl::lightLists_
     bool usesObjectSpace = false;              ///< the kernel reads "object" or "shader" matrices that differ inside the binding
     int areaLight = -1;                        ///< the light whose geometry this is
     bool explicitSurface = true;

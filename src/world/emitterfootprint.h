@@ -21,7 +21,7 @@ inline bool usesFootprint(const BoundLight& l) {
 /// Fills du and dv of a point of an emitter, whose surface is known, as a ray would have them that starts at `from` and grows by
 /// `spread` per unit of length (spreadBehind()). `ray`: the one that found `from`.
 inline void setEmitterFootprint(shading::ShadePoint& p, const shading::PathRay& ray, const Vec3& from, float spread) {
-    const Vec3 way = p.surface.P - from;
+    const Vec3 way = meetsAt(p.surface) - from;
     const float distance = length(way);
     const shading::Footprint footprint{ray.footprint.at(length(from - ray.origin)), spread};
     shading::setFootprint(p, footprint, distance > 0 ? way / distance : ray.dir, distance, 1);

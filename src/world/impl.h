@@ -54,7 +54,7 @@ public:
     /// A shader that uses co-shaders, with those that these attributes have and, of these lights (indices into Frame::lights),
     /// the class lights that have what it calls; any other as it is.
     InstanceRef withCoShaders(const InstanceRef&, const std::map<std::string, scene::ShaderRef>& coshaders, Diagnostics&,
-                              const std::vector<int>& lights = {});
+                              const scene::LightSet& lights = {});
     /// Fills outputWidths_: how many numbers each AOV has in the shaders of the frame.
     void measureOutputs();
     InstanceRef builtin(const std::string& name, rsl::ShaderKind, Diagnostics&);
@@ -82,8 +82,17 @@ public:
     void bindLightOutputs(BoundLight&, int block);
     /// Fills lights_; visibility: kinds of rays that can meet a shape.
     void bindLights(Diagnostics&, const std::function<uint32_t(const geometry::Shape&)>& visibility);
-    /// The lights of a list and the further blocks of their shaders.
-    std::vector<int> withParts(const std::vector<int>& lights) const;
+    /// The lights of a list of the scene's, and the further blocks of their shaders.
+    scene::LightSet withParts(const scene::LightSet& lights) const;
+    /// Calls f for the lights of such a list: of a shader with several blocks one behind the other. Until f says true.
+    template <class F> void eachLight(const scene::LightSet& lights, F&& f) const {
+        for (const int l : lights) {
+            if (size_t(l) >= frame_->lights.size()) return; // parts: their shader's turn has been
+            if (f(l)) return;
+            for (const int part : lights_[size_t(l)].parts)
+                if (f(part)) return;
+        }
+    }
     /// Light kernels for the strings that the surfaces' loops send. After all surfaces are bound.
     void bindSentStrings(Diagnostics&);
     /// How bright the lights are; which area lights mean an intensity. After everything else is built.
@@ -170,13 +179,28 @@ public:
     bool hitModes_ = false;                    ///< some call has a "hitmode"
     BoundKernel primitiveHit_;                 ///< shows primitives as they are; only where some ray may want that
     ShapeSubsets subsets_;
-    std::vector<std::vector<int>> sampledLights_; ///< by SurfaceBinding::lightList: lights that get samples, in order
+    /// Lights that surfaces have in common.
+    struct LightList {
+        scene::LightSet lights;
+        /// Those that get samples, in order. With `ofAll`: not listed, they are those of allSampled_ that are in `lights`.
+        std::vector<int> sampled;
+        LightChooser chooser;                  ///< over `sampled`; empty where each of them is sampled at every vertex
+        bool ofAll = false;
+    };
+    std::vector<LightList> lightLists_;        ///< by SurfaceBinding::lightList
+    /// Where lists would take too much room together, the later ones share one list and its chooser.
+    std::vector<int> allSampled_;
+    LightChooser allChooser_;
+    size_t listed_ = 0;                        ///< numbers in LightList::sampled of all lists
+    bool getsSamples(const BoundLight&) const;
+    const std::vector<int>& sampledOf(const LightList& l) const { return l.ofAll ? allSampled_ : l.sampled; }
+    const LightChooser& chooserOf(const LightList& l) const { return l.ofAll ? allChooser_ : l.chooser; }
+    std::vector<int> skies_;                   ///< what rays see that meet nothing: lights of kind Environment and Ambient
+    /// Finds where skies are bright (BoundLight::sky). Before surfaces are bound.
+    void tabulateSkies(Evaluator&);
     /// Lights of one program that one kernel call evaluates for points that ask for different ones of them.
     struct LightGroup { BoundKernel kernel; };
     std::vector<LightGroup> lightGroups_;
-    /// By the same: empty where all of them are sampled at every vertex, or no lobe asks. numberOf: by light, its place in the list, else -1.
-    struct ChooserOfList { LightChooser chooser; std::vector<int> numberOf; };
-    std::vector<ChooserOfList> choosers_;
     std::unordered_map<const geometry::Shape*, int> hazyEmitters_; ///< emitters in an atmosphere -> their binding
     float clipNear_ = 0, clipFar_ = 1;         ///< of the request Clipping, for depth()
     std::vector<std::pair<Vec3d, Vec3d>>

@@ -171,6 +171,7 @@ std::optional<Information> rayInfoOf(const std::string& name, const shading::Pat
     if (name == "diffusedepth") return number(r ? float(r->diffuseBounces) : 0.f);
     if (name == "origin" && r) return Information{{r->begin().x, r->begin().y, r->begin().z}, {}, false};
     if (name == "direction" && r) return Information{{r->dir.x, r->dir.y, r->dir.z}, {}, false};
+    if (name == "weight") return number(r ? r->importance : 1.f);
     if (name == "length") return number(length(p.I));
     return std::nullopt;
 }

@@ -205,6 +205,30 @@ void LightChooser::choose(const Vec3& at, float u, Chosen& chosen) const {
         }
 }
 
+int LightChooser::pick(const Vec3& at, float u, float& p) const {
+    const Cut c = cutAt(at);
+    // The part of the cut whose range holds u, then the side of each node on the way down.
+    double left = u, share = 0;
+    int node = -1;
+    for (int k = 0; k < c.size; ++k) {
+        const Node& n = nodes_[size_t(c.part[k].node)];
+        const double s = c.total > 0 ? c.part[k].importance / c.total : n.count / double(leafOf_.size()), range = probability(s, n);
+        node = c.part[k].node; // the last one takes what rounding leaves
+        share = s;
+        if (left < range) break;
+        if (k + 1 < c.size) left -= range;
+    }
+    for (const Node* n = &nodes_[size_t(node)]; n->left >= 0; n = &nodes_[size_t(node)]) {
+        const double first = divide(*n, at).first, range = probability(share * first, nodes_[size_t(n->left)]);
+        const bool second = !(left < range);
+        if (second) left -= range;
+        node = n->left + second;
+        share *= second ? 1 - first : first;
+    }
+    p = pmf(nodes_[size_t(node)].light, at);
+    return nodes_[size_t(node)].light;
+}
+
 float LightChooser::pmf(int light, const Vec3& at) const {
     if (light < 0 || size_t(light) >= leafOf_.size()) return 0;
     const Cut c = cutAt(at);

@@ -51,25 +51,36 @@ void WorldImpl::groupLights(Diagnostics& d) {
     }
 }
 
+bool WorldImpl::getsSamples(const BoundLight& l) const {
+    if (!l.kernel) return false;
+    return l.kind == LightKind::Point || l.kind == LightKind::Distant || l.sky ||
+           (l.kind == LightKind::Area && !l.emitter->empty());
+}
+
 void WorldImpl::makeChoosers(Diagnostics& d) {
-    choosers_.resize(sampledLights_.size());
     // Every emitter of a scene may have a list of its own, with all lights that came before it: a tree is made where lobes ask.
-    std::vector<char> asks(sampledLights_.size(), hasLobes(primitiveHit_));
+    std::vector<char> asks(lightLists_.size(), hasLobes(primitiveHit_));
     for (const SurfaceBinding& b : bindings_)
         if (hasLobes(b)) asks[size_t(b.lightList)] = 1;
-    for (size_t list = 0; list < sampledLights_.size(); ++list) {
-        const std::vector<int>& lights = sampledLights_[list];
-        if (!asks[list] || lights.size() <= size_t(limits::kLightsSampled)) continue;
+    const auto chooserOver = [&](const std::vector<int>& lights) {
         std::vector<LightBound> bounds;
         for (int i : lights) {
             const BoundLight& l = lights_[size_t(i)];
-            bounds.push_back({l.centre, l.radius, l.power, l.kind == LightKind::Distant});
+            bounds.push_back({l.centre, l.radius, settings_.evenLights ? 0 : l.power,
+                              l.kind == LightKind::Distant || l.kind == LightKind::Environment});
         }
-        choosers_[list].chooser = LightChooser(bounds, limits::kLightsSampled);
-        choosers_[list].numberOf.assign(lights_.size(), -1);
-        for (size_t i = 0; i < lights.size(); ++i) choosers_[list].numberOf[size_t(lights[i])] = int(i);
+        return LightChooser(bounds, limits::kLightsSampled);
+    };
+    bool many = false;
+    for (size_t i = 0; i < lightLists_.size(); ++i)
+        if (LightList& list = lightLists_[i]; asks[i] && !list.ofAll && list.sampled.size() > size_t(limits::kLightsSampled)) {
+            list.chooser = chooserOver(list.sampled);
+            many = true;
+        }
+    if (allSampled_.size() > size_t(limits::kLightsSampled)) {
+        allChooser_ = chooserOver(allSampled_);
+        many = true;
     }
-    const bool many = std::any_of(choosers_.begin(), choosers_.end(), [](const ChooserOfList& c) { return !c.chooser.empty(); });
     if (many && settings_.hider == Hider::Path) groupLights(d);
 }
 

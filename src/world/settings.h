@@ -30,6 +30,7 @@ struct Settings {
     bool mixedOnly = false;         ///< build V everywhere (tests: it has the same bits as S)
     bool bsdfOnly = false;          ///< no light sampling, emission counts in full (tests, T6)
     bool lightOnly = false;         ///< light sampling only: emission met by lobe sampling does not count (tests, T6)
+    bool evenLights = false;        ///< many lights: each is as likely to be sampled as any other (tests, measurements)
     std::vector<std::string> shaderPaths, texturePaths;
     ReadPolicy read{};              ///< where the names of maps may lead
     std::shared_ptr<ReadLog> reads; ///< gets every shader and map that is read or missed; may be null

@@ -234,7 +234,7 @@ void WorldImpl::dropMissingHandles(const ShaderInstance& of, std::map<std::strin
 }
 
 InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const std::map<std::string, scene::ShaderRef>& coshaders,
-                                     Diagnostics& d, const std::vector<int>& lights) {
+                                     Diagnostics& d, const scene::LightSet& lights) {
     if (!shader || !shader->program->program().handles) return shader;
     std::vector<std::pair<std::string, scene::ShaderRef>> called(coshaders.begin(), coshaders.end());
     if (const std::set<std::string> names = lights.empty() ? std::set<std::string>{} : calledOfLights(shader->program->program());

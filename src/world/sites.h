@@ -40,7 +40,7 @@ struct RaySite {
 
 /// Where the rarer parameters of a trace() lie.
 struct TraceSite {
-    int udir = -1, roughness = -1, roughnessv = -1, absorption = -1, tint = -1; ///< rows, or -1
+    int udir = -1, roughness = -1, roughnessv = -1, absorption = -1, tint = -1, weight = -1; ///< rows, or -1
     std::vector<std::pair<int, int>> eta; ///< row, components
     std::vector<int> lobes;               ///< rows of the elements of "lobeparameters"
     int part = -1;                        ///< of the form that gives an array

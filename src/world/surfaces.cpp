@@ -10,6 +10,9 @@ namespace alpenglow::transport {
 
 using rsl::OutputName;
 
+/// Lights in lists of their own, of all surfaces; what comes then shares one list (WorldImpl::allSampled_).
+static constexpr size_t kListedLights = 4'000'000;
+
 float attributeNumber(const scene::Attributes& a, const std::string& key, float fallback) {
     const scene::Param* p = a.value(key);
     return p && !p->numbers.empty() ? p->numbers[0] : fallback;
@@ -195,7 +198,7 @@ std::string SurfaceBinder::keyOf(const SurfaceBinding& b, const geometry::Shape&
     add(b.interior.get());
     add(b.exterior.get());
     for (const auto& [handle, call] : a.coshaders) add(call.get());
-    for (int l : a.lights) add(l);
+    for (const auto& [first, last] : a.lights.runs()) add(first), add(last);
     add(-1);
     add(a.areaLight);
     add(a.opacity.x); add(a.opacity.y); add(a.opacity.z);
@@ -573,18 +576,50 @@ void SurfaceBinder::bindDisplacement(SurfaceBinding& b, const Names& varying, co
     if (!b.displacementS) b.displacement = nullptr;
 }
 
+/// Whether a kernel may ask for light, or for lights.
+static bool asksForLight(const BoundKernel& k) {
+    return std::any_of(k.sites.begin(), k.sites.end(), [](const SiteInfo& s) {
+        switch (s.kind) {
+        case SiteKind::Texture:
+        case SiteKind::Environment:
+        case SiteKind::TextureInfo:
+        case SiteKind::Irradiance:
+        case SiteKind::Printf:
+        case SiteKind::Attribute:
+        case SiteKind::Option:
+        case SiteKind::RendererInfo:
+        case SiteKind::RayInfo:
+        case SiteKind::RayLevel:
+        case SiteKind::PrimitiveVariable:
+        case SiteKind::ShaderName:
+        case SiteKind::Depth:
+        case SiteKind::Transform:
+        case SiteKind::Random:
+        case SiteKind::Text: return false;
+        default: return true;
+        }
+    });
+}
+
 void SurfaceBinder::bindLights(SurfaceBinding& b, const scene::Attributes& a) {
-    b.lights = world_.withParts(a.lights);
+    // Lamps that only shine need no list: each has attributes of its own, and so its own lights.
+    const bool asks = !a.coshaders.empty() || b.atmosphere.shader || b.inside >= 0 || b.outside >= 0 || b.moveS ||
+                      !b.lightOutputs.empty() || asksForLight(b.surfaceS) || asksForLight(b.displacementS);
+    if (asks) b.lights = world_.withParts(a.lights);
     b.lightList = lightLists_.try_emplace(b.lights, int(lightLists_.size())).first->second;
-    if (size_t(b.lightList) != world_.sampledLights_.size()) return;
-    auto& sampled = world_.sampledLights_.emplace_back();
-    for (int l : b.lights) {
-        const BoundLight& light = world_.lights_[size_t(l)];
-        bool point = light.kind == LightKind::Point || light.kind == LightKind::Distant;
-        if (light.kernel && (point || (light.kind == LightKind::Area && !light.emitter->empty()))) sampled.push_back(l);
+    if (size_t(b.lightList) != world_.lightLists_.size()) return;
+    WorldImpl::LightList& list = world_.lightLists_.emplace_back();
+    list.lights = b.lights;
+    list.ofAll = world_.listed_ + b.lights.size() > kListedLights;
+    if (list.ofAll) {
+        if (world_.allSampled_.empty())
+            for (size_t l = 0; l < world_.lights_.size(); ++l)
+                if (world_.getsSamples(world_.lights_[l])) world_.allSampled_.push_back(int(l));
+        return;
     }
-    std::sort(sampled.begin(), sampled.end());
-    sampled.erase(std::unique(sampled.begin(), sampled.end()), sampled.end());
+    for (int l : b.lights)
+        if (world_.getsSamples(world_.lights_[size_t(l)])) list.sampled.push_back(l);
+    world_.listed_ += list.sampled.size();
 }
 
 } // namespace alpenglow::transport

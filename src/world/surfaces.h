@@ -81,7 +81,7 @@ private:
     std::unordered_map<const scene::Attributes*, std::pair<geometry::ShapeRef, int>>
         bindingOfAttributes_; ///< of the last shape that had them
     std::map<std::vector<const void*>, int> programs_;
-    std::map<std::vector<int>, int> lightLists_;
+    std::map<scene::LightSet, int> lightLists_;
     std::map<std::pair<int, int>, int> groups_;
     /// What the kernels of a binding were asked for, by binding.
     struct Asked {

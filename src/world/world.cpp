@@ -141,6 +141,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     w->bindLights(d, [all](const geometry::Shape& s) { return visibilityOf(s.attributes(), all); });
     w->evaluators_ = std::move(evaluators);
     const std::unique_ptr<Evaluator> evaluator = w->evaluators_(*w, d, settings.stop);
+    if (path) w->tabulateSkies(*evaluator);
     const auto stopped = [&settings] { return settings.stop && *settings.stop; };
     if (!SurfaceBinder(*w, *evaluator, d).bindAll()) return nullptr;
     w->measureOutputs();
@@ -148,6 +149,8 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     w->setPointNeeds();
     w->diceShapes(d); // with displacement, by the same kernels that shade
     if (stopped()) return nullptr;
+    for (BoundLight& l : w->lights_)
+        if (l.emitter && !l.emitter->findDisplaced()) l.importance = false; // rays find it
     std::vector<uint32_t> visibility;
     for (const auto& shape : w->shapes_) visibility.push_back(visibilityOf(shape->attributes(), all));
     w->bindPhotons(visibility);

@@ -149,6 +149,60 @@ TEST(Renderer, HiddenReconstructsALinearFunctionExactly) {
         }
 }
 
+// Blue is 7 left of the middle and 0 right of it, red and green change by an eighth a pixel: of 25 columns the middle one is cut in two. It and the one
+// before differ by more than .3 from the other; sub-samples lie at thirds, fifths ... of a pixel, that in the middle on the right side.
+TEST(Renderer, PixelsThatDifferAreRefined) {
+    const auto number = [](const char* name, float value) {
+        scene::Param p;
+        p.name = name;
+        p.numbers = {value};
+        return p;
+    };
+    for (const int side : {3, 5, 7, 9})
+        for (const int threads : {1, 3}) {
+            Folder dir;
+            RenderSettings s;
+            s.output = dir / "a.exr";
+            s.threads = threads;
+            Session run(s);
+            auto f = frameOf("raytrace", 25, 16);
+            f->options.hiderParams = {number("aaSamples", float(side))};
+            run.frame(f);
+            EXPECT_EQ(run.diags.errors() + run.diags.warnings(), 0);
+            const RenderStats::Classic& c = run.renderer.stats().classic;
+            EXPECT_EQ(c.subsampledPixels, 2u * 16);
+            EXPECT_EQ(c.subsampledRays, 2u * 16 * unsigned(side * side - 1));
+            EXPECT_EQ(c.primary, 27u * 18); // a pixel more on all sides, to compare with
+            display::Image i = read(s.output);
+            for (int y = 0; y < 16; ++y)
+                for (int x = 0; x < 25; ++x) {
+                    EXPECT_NEAR(i.pixel(x, y)[0], (x - 12) * .125, 1e-6) << x; // means of both grids are the value in the middle
+                    EXPECT_NEAR(i.pixel(x, y)[1], (7.5 - y) * .125, 1e-6);
+                    EXPECT_NEAR(i.pixel(x, y)[2], x < 12 ? 7 : x > 12 ? 0 : 7. * (side / 2) / side, 1e-6) << x;
+                }
+        }
+    const struct { std::vector<scene::Param> params; const char* hider; unsigned pixels; bool said; } cases[] = {
+        {{number("aaSamples", 3), number("aaThreshold", 2)}, "raytrace", 0, false},
+        {{number("aaThreshold", .3f)}, "raytrace", 2 * 16, false}, // 3 x 3
+        {{number("aaSamples", 1)}, "raytrace", 0, false},
+        {{number("aaSamples", 4)}, "raytrace", 2 * 16, true},
+        {{number("aaSamples", 1e9f)}, "raytrace", 2 * 16, true},
+        {{number("aaSamples", NAN)}, "raytrace", 0, true},
+        {{number("aaSamples", 3), number("aaThreshold", NAN)}, "raytrace", 2 * 16, true},
+        {{number("aaSamples", 3)}, "hidden", 0, true}};
+    for (const auto& c : cases) {
+        Folder dir;
+        RenderSettings s;
+        s.output = dir / "a.exr";
+        Session run(s);
+        auto f = frameOf(c.hider, 25, 16);
+        f->options.hiderParams = c.params;
+        run.frame(f);
+        EXPECT_EQ(run.renderer.stats().classic.subsampledPixels, c.pixels);
+        EXPECT_EQ(run.diags.errors() + run.diags.warnings() > 0, c.said);
+    }
+}
+
 TEST(Renderer, PathHasTheSameMeansAndKnowsItsSamples) {
     Folder dir;
     RenderSettings s;

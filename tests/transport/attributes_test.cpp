@@ -197,6 +197,7 @@ TEST(RayInfo, EveryKeyword) {
         {"float v = 7; float f = rayinfo(\"depth\", v); Ci = color(f, v, 0);", {1, 1, 0}, {1, 1, 0}, {1, 0, 0}},
         {"float v = 7; float f = rayinfo(\"speculardepth\", v); Ci = color(f, v, 0);", {1, 1, 0}, {1, 0, 0}, {1, 0, 0}},
         {"float v = 7; float f = rayinfo(\"diffusedepth\", v); Ci = color(f, v, 0);", {1, 0, 0}, {1, 1, 0}, {1, 0, 0}},
+        {"float v = 7; float f = rayinfo(\"weight\", v); Ci = color(f, v, 0);", {1, 1, 0}, {1, 1, 0}, {1, 1, 0}},
         {"float v = 7; float f = rayinfo(\"length\", v); Ci = color(f, v, 0);", {1, 1, 0}, {1, 1, 0}, {1, 2, 0}},
         {"point v = 7; float f = rayinfo(\"origin\", v); Ci = color(f, ycomp(v), xcomp(v));", {1, 0, 0}, {1, 0, 0}, {1, 3, 0}},
         {"vector v = 7; float f = rayinfo(\"direction\", v); Ci = color(f, ycomp(v), xcomp(v));", {1, 1, 0}, {1, 1, 0}, {1, -1, 0}},

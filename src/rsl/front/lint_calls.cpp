@@ -29,7 +29,7 @@ struct NamedArgument {
 const std::vector<NamedArgument>& namedArguments() {
     static const Names spaces = {"current", "world", "camera", "object", "shader", "screen", "raster", "NDC", "eye"};
     static const std::vector<NamedArgument> all = {
-        {"rayinfo", 0, 2, true, "rayinfo", {"type", "label", "depth", "speculardepth", "diffusedepth", "origin", "direction", "length"}},
+        {"rayinfo", 0, 2, true, "rayinfo", {"type", "label", "depth", "speculardepth", "diffusedepth", "origin", "direction", "length", "weight"}},
         {"textureinfo", 1, 3, true, "textureinfo",
          {"resolution", "type", "channels", "viewingmatrix", "projectionmatrix", "exists", "bitsperchannel", "min", "max"}},
         {"rendererinfo", 0, 2, true, "rendererinfo", {"renderer", "version", "versionstring"}},

@@ -141,6 +141,7 @@ bool isElementResult(std::string_view name);
 
 // Parameters that mean something to the renderer whoever declares them.
 inline constexpr char kNonDiffuse[] = "__nondiffuse", kNonSpecular[] = "__nonspecular", kCategory[] = "__category";
+inline constexpr char kImportanceSample[] = "__importancesample";
 inline constexpr char kBoundSize[] = "__displacementbound_sphere", kBoundSpace[] = "__displacementbound_coordinatesystem";
 /// Of a light that sends through generateSamples(): ways and light of its samples, and whether their light is traced.
 inline constexpr char kSentL[] = "__sentL", kSentCl[] = "__sentCl", kSentShadows[] = "__sentShadows";

@@ -1,0 +1,144 @@
+// What shines and is not plain: lamps with a texture, displaced, cut out of solids, of many shapes; as many lamps as there are. A large white floor
+// seen at the origin; lamps whose light is found by light samples, by rays, and by both.
+#include "base/limits.h"
+#include "transport/floorscene.h"
+#include "transport/maps.h"
+
+using namespace alpenglow;
+using namespace alpenglow::transport;
+using namespace alpenglow::transport::testing;
+
+namespace {
+
+const char* const kLambert = "Surface \"matte\" \"float Ka\" 0 \"float Kd\" 1\n";
+
+Settings of(int mode) {
+    Settings s = withShaders(Hider::Path);
+    s.bsdfOnly = mode == 1;
+    s.lightOnly = mode == 2;
+    return s;
+}
+std::string lamp(const std::string& light, const std::string& shapes) {
+    return "AttributeBegin\nSurface \"constant\"\nColor 0 0 0\nAttribute \"light\" \"string units\" \"radiance\"\nAreaLightSource " + light + "\n" + shapes +
+           "AttributeEnd\nIlluminate 1 1\n";
+}
+std::string scene(const std::string& lights) { return world(lights + kLambert + kFloor); }
+
+/// All three ways agree with a value that is known to `known` of it.
+void expectAll(const std::string& rib, double want, double known, const std::string& what) {
+    for (const int mode : {0, 1, 2}) {
+        Scene s(rib, of(mode));
+        const Moments m = s.estimate(kView, samples(mode == 1 ? 200'000 : 40'000));
+        EXPECT_LE(std::fabs(m.mean() - want), kZ * m.se() + known * want) << what << ", mode " << mode << ": " << m.mean() << " +- " << m.se() << ", " << want;
+        EXPECT_LE(m.se(), .02 * want) << what << ", mode " << mode << ": not precise enough to decide";
+    }
+}
+
+/// diffuse() under a square lamp of side 2 at height 2 whose radiance is f(u, v), u along x and v along z from -1 to 1; the midpoint rule.
+template <class F> double underSquare(F&& f) {
+    double sum = 0;
+    constexpr int n = 1000;
+    for (int i = 0; i < n; ++i)
+        for (int k = 0; k < n; ++k) {
+            const double u = (i + .5) / n, v = (k + .5) / n, x = 2 * u - 1, z = 2 * v - 1, d2 = x * x + z * z + 4;
+            sum += f(u, v) * 4 / (d2 * d2) * 4 / n / n; // cosines 2 / d at both ends
+        }
+    return sum / kPi;
+}
+const char* const kSquare = "Patch \"bilinear\" \"P\" [-1 2 -1  1 2 -1  -1 2 1  1 2 1]\n";
+
+} // namespace
+
+TEST(Emitters, Textured) {
+    writeShader("ramplamp", "light ramplamp() { illuminate(P, N, PI) Cl = 9 * u * u; }\n");
+    expectAll(scene(lamp("\"ramplamp\" 1", kSquare)), underSquare([](double u, double) { return 9 * u * u; }), 1e-4, "ramp");
+    // A map of two by two texels between whose middles it is interpolated, and clamped beyond.
+    const std::string map = writeMap("lampmap.exr", 2, 2, [](int x, int y, int) { return x == 1 && y == 0 ? 20.f : 1.f; });
+    writeShader("maplamp", "light maplamp(string map = \"\";) { illuminate(P, N, PI) Cl = color texture(map, u, v, \"width\", 0); }\n");
+    const auto blend = [](double t) { return std::clamp(2 * t - .5, 0.0, 1.0); };
+    expectAll(scene(lamp("\"maplamp\" 1 \"string map\" " + map, kSquare)),
+              underSquare([&](double u, double v) { return 1 + 19 * blend(u) * (1 - blend(v)); }), 1e-3, "map");
+}
+
+// A ball of radius 1 that a displacement makes one of radius 1.5: L (R / d)^2. Light samples lie where rays meet it.
+TEST(Emitters, Displaced) {
+    writeShader("swell", "displacement swell() { P += .5 * normalize(N); N = calculatenormal(P); }\n");
+    writeShader("white5", "light white5() { illuminate(P, N, PI / 2) Cl = 5; }\n");
+    const std::string ball = "Attribute \"displacementbound\" \"float sphere\" 1\nDisplacement \"swell\"\nTranslate 0 5 0\nSphere 1 -1 1 360\n";
+    // Facets lie within the ball: at the default rate they are some hundredths of a radius long.
+    expectAll(scene(lamp("\"white5\" 1", ball)), 5 * 2.25 / 25, 4e-3, "displaced ball");
+    // A square that a displacement lifts by 1, from height 1 to 2, and one that moves, which rays alone find.
+    writeShader("lift", "displacement lift() { P += vector \"world\" (0, 1, 0); }\n");
+    const std::string low = "Patch \"bilinear\" \"P\" [-1 1 -1  1 1 -1  -1 1 1  1 1 1]\n", up = "Attribute \"displacementbound\" \"float sphere\" 2\nDisplacement \"lift\"\n";
+    writeShader("both5", "light both5() { illuminate(P, N, PI) Cl = 5; }\n");
+    const double want = underSquare([](double, double) { return 5.; });
+    expectAll(scene(lamp("\"both5\" 1", up + low)), want, 1e-3, "displaced square");
+    const std::string moving = "MotionBegin [0 1]\nTranslate 0 0 0\nTranslate 1e-6 0 0\nMotionEnd\n";
+    Scene s("Shutter 0 1\n" + scene(lamp("\"both5\" 1", up + moving + low)), of(0));
+    const Moments m = s.estimate(kView, samples(200'000));
+    EXPECT_LE(std::fabs(m.mean() - want), kZ * m.se() + 1e-3 * want) << "moving: " << m.mean() << " +- " << m.se() << ", " << want;
+}
+
+// Half of a ball, cut by a box whose face stands on edge as seen from the origin: half of L (R / d)^2.
+TEST(Emitters, CutOutOfASolid) {
+    writeShader("white5", "light white5() { illuminate(P, N, PI / 2) Cl = 5; }\n");
+    const std::string box = "PointsPolygons [4 4 4 4 4 4] [0 1 3 2  4 6 7 5  0 4 5 1  2 3 7 6  0 2 6 4  1 5 7 3] \"P\" "
+                            "[0 2 -3  3 2 -3  0 8 -3  3 8 -3  0 2 3  3 2 3  0 8 3  3 8 3]\n";
+    const std::string cut = "SolidBegin \"difference\"\nSolidBegin \"primitive\"\nTransformBegin\nTranslate 0 5 0\nSphere 1 -1 1 360\nTransformEnd\nSolidEnd\n"
+                            "SolidBegin \"primitive\"\nAreaLightSource \"null\" \"none\"\n" + box + "SolidEnd\nSolidEnd\n";
+    expectAll(scene(lamp("\"white5\" 1", cut)), 5. / 25 / 2, 1e-3, "half a ball");
+}
+
+// One light of many shapes: samples go where they bring most.
+TEST(Emitters, ManyShapes) {
+    std::string balls;
+    double want = 0;
+    for (int i = 0; i < 300; ++i) {
+        const double x = std::sin(i * 1.7) * (.2 + i % 7), z = std::cos(i * 2.3) * (.2 + i % 5), y = .3 + .21 * (i % 9), r = .02 + .01 * (i % 3);
+        const double d2 = x * x + y * y + z * z;
+        balls += "TransformBegin\nTranslate " + std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + "\nSphere " + std::to_string(r) + " " +
+                 std::to_string(-r) + " " + std::to_string(r) + " 360\nTransformEnd\n";
+        want += 40 * r * r / d2 * y / std::sqrt(d2);
+    }
+    // Balls hide parts of each other, which the sum does not know: lamps that let light through hide nothing.
+    const std::string light = "Opacity 0 0 0\nAttribute \"visibility\" \"transmission\" \"transparent\"\n";
+    for (const int mode : {0, 2}) {
+        Scene s(scene(lamp("\"slrect\" 1 \"float intensity\" 40", light + balls)), of(mode));
+        Counters c;
+        const int n = samples(100'000);
+        const Moments m = s.estimate(kView, n, &c);
+        expectMean(m, want, .02, "mode " + std::to_string(mode));
+        EXPECT_LE(double(c.shadow) / n, 1.01); // one sample a vertex
+    }
+}
+
+// Ten thousand lamps, each with attributes and a list of lights of its own: what is kept grows with their number, and not with its square.
+TEST(Emitters, TenThousandLamps) {
+    std::string lights;
+    double want = 0;
+    const int n = 10'000;
+    for (int i = 0; i < n; ++i) {
+        const double x = std::sin(i * 1.7) * (1 + i % 17), z = std::cos(i * 2.3) * (1 + i % 13), y = 1 + .037 * (i % 40), r = .001;
+        const double d2 = x * x + y * y + z * z;
+        const std::string name = std::to_string(i + 1);
+        lights += "AttributeBegin\nSurface \"constant\"\nAreaLightSource \"slrect\" " + name + " \"float intensity\" 400\nTranslate " + std::to_string(x) + " " +
+                  std::to_string(y) + " " + std::to_string(z) + "\nSphere .001 -.001 .001 360\nAttributeEnd\nIlluminate " + name + " 1\n";
+        want += 400 * r * r / d2 * y / std::sqrt(d2);
+    }
+    const auto resident = [] { // bytes
+        std::ifstream f("/proc/self/statm");
+        size_t all = 0, here = 0;
+        f >> all >> here;
+        return double(here) * double(sysconf(_SC_PAGESIZE));
+    };
+    const double before = resident();
+    Scene s(scene(lights), of(2));
+    // 8 KB a lamp with its shape, shaders and attributes; the lists alone took 400 KB each when they were lists.
+    EXPECT_LT(resident() - before, n * 20e3);
+    Counters c;
+    const int count = samples(20'000);
+    expectMean(s.estimate(kView, count, &c), want, .02, "sum of all");
+    EXPECT_LE(double(c.shadow) / count, limits::kLightsSampled + 1.5);
+    std::vector<CameraRay> rays{kView};
+    EXPECT_EQ(s.one(kView), s.one(kView));
+}

@@ -1,0 +1,125 @@
+// world/skytable.h: densities add up to one, directions come with the frequency that the density says, and what is known of a sky is
+// what integrals say.
+#include "base/exact.h"
+#include "statistics/chisquare.h"
+#include "statistics/nightly.h"
+#include "world/skytable.h"
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+
+using namespace alpenglow;
+using transport::SkyTable;
+
+namespace {
+
+struct Sky { const char* name; int width, height; std::vector<float> weights; };
+
+std::vector<Sky> skies() {
+    std::mt19937 rng(3);
+    std::uniform_real_distribution<float> one(0, 1);
+    const auto of = [](const char* name, int w, int h, auto&& value) {
+        Sky s{name, w, h, {}};
+        for (int y = 0; y < h; ++y)
+            for (int x = 0; x < w; ++x) s.weights.push_back(value(x, y));
+        return s;
+    };
+    return {of("even", 16, 8, [](int, int) { return 2.f; }),
+            of("noise", 16, 8, [&](int, int) { return std::exp(8 * one(rng)); }),
+            of("a sun", 64, 32, [](int x, int y) { return x == 40 && y == 9 ? 1e5f : .1f; }),
+            of("a sun alone at the pole", 32, 16, [](int, int y) { return y == 0 ? 5.f : 0.f; }),
+            of("black rows and columns", 16, 8, [](int x, int y) { return x % 3 && y % 2 ? 1.f : 0.f; }),
+            of("no numbers among them", 16, 8, [](int x, int y) { return x == 2 ? NAN : x == 3 ? INFINITY : x == 5 ? -1.f : float(y); })};
+}
+
+/// Solid angle of a cell, in a way of its own.
+double cellOf(const Sky& s, int row) {
+    return 2 * kPi / s.width * (std::cos(kPi * row / s.height) - std::cos(kPi * (row + 1) / s.height));
+}
+
+} // namespace
+
+TEST(SkyTable, DensitiesOfCells) {
+    for (const Sky& s : skies()) {
+        const SkyTable table(s.width, s.height, s.weights);
+        double total = 0, square = 0, area = 0, sum = 0;
+        const auto weight = [&](int x, int y) {
+            const float w = s.weights[size_t(y * s.width + x)];
+            return std::isfinite(w) && w > 0 ? double(w) : 0;
+        };
+        for (int y = 0; y < s.height; ++y)
+            for (int x = 0; x < s.width; ++x) {
+                total += weight(x, y) * cellOf(s, y);
+                square += weight(x, y) * weight(x, y) * cellOf(s, y);
+                area += cellOf(s, y);
+            }
+        EXPECT_NEAR(table.integral(), total, 1e-6 * total) << s.name;
+        EXPECT_NEAR(table.concentration(), square / area / std::pow(total / area, 2), 1e-6 * table.concentration()) << s.name;
+        for (int y = 0; y < s.height; ++y)
+            for (int x = 0; x < s.width; ++x) {
+                const float pdf = table.pdf(SkyTable::direction(x, y, s.width, s.height, .5f, .5f));
+                // Sums of floats from 0 to 1: a cell's share is good to 2^-24 or so.
+                EXPECT_NEAR(pdf * cellOf(s, y), weight(x, y) * cellOf(s, y) / total, 3e-7) << s.name << " " << x << " " << y;
+                if (weight(x, y) == 0) EXPECT_EQ(pdf, 0) << s.name;
+                sum += pdf * cellOf(s, y);
+            }
+        EXPECT_NEAR(sum, 1, 1e-5) << s.name;
+    }
+}
+
+TEST(SkyTable, FrequenciesAreTheDensities) {
+    const int n = teststat::samples(200'000, 2'000'000);
+    for (const Sky& s : skies()) {
+        const SkyTable table(s.width, s.height, s.weights);
+        std::mt19937 rng(unsigned(teststat::seedBase()) + 11);
+        std::uniform_real_distribution<float> one(0, 0x1.fffffep-1f);
+        // Cells of an evenly cut sphere that are no cells of the table, by z and turn.
+        constexpr int kZ = 12, kTurn = 10;
+        std::vector<double> seen(kZ * kTurn), expected(kZ * kTurn);
+        const auto cell = [&](const Vec3& w) {
+            const double turn = std::atan2(double(w.y), double(w.x)) / (2 * kPi);
+            return size_t(std::clamp(int((w.z + 1) / 2 * kZ), 0, kZ - 1) * kTurn + std::clamp(int((turn < 0 ? turn + 1 : turn) * kTurn), 0, kTurn - 1));
+        };
+        for (int i = 0; i < n; ++i) {
+            Vec3 w;
+            float pdf;
+            ASSERT_TRUE(table.sample({one(rng), one(rng)}, w, pdf)) << s.name;
+            ASSERT_NEAR(length(w), 1, 1e-6) << s.name;
+            ASSERT_EQ(pdf, table.pdf(w)) << s.name;
+            ASSERT_GT(pdf, 0) << s.name;
+            seen[cell(w)]++;
+        }
+        constexpr int kFine = 1500; // the midpoint rule over z and turn, which are even on the sphere
+        for (int i = 0; i < kFine; ++i)
+            for (int k = 0; k < kFine; ++k) {
+                const double z = -1 + 2 * (i + .5) / kFine, away = std::sqrt(1 - z * z), turn = 2 * kPi * (k + .5) / kFine;
+                const Vec3 w(float(away * std::cos(turn)), float(away * std::sin(turn)), float(z));
+                expected[cell(w)] += n * double(table.pdf(w)) * 4 * kPi / kFine / kFine;
+            }
+        std::vector<double> a, b; // cells that hold enough, and what the quadrature's steps at the edges of bright cells do not decide
+        double restA = 0, restB = 0;
+        for (size_t i = 0; i < seen.size(); ++i)
+            if (expected[i] > 50) a.push_back(seen[i]), b.push_back(expected[i]);
+            else restA += seen[i], restB += expected[i];
+        for (size_t i = 0; i < a.size(); ++i) // 1 in 1500 of a cell's width is the rule's error there; 1 % is far above it
+            EXPECT_NEAR(a[i], b[i], 6 * std::sqrt(b[i]) + .01 * b[i]) << s.name << " cell " << i;
+        EXPECT_NEAR(restA, restB, 6 * std::sqrt(restB) + 10) << s.name;
+    }
+}
+
+TEST(SkyTable, BlackSkiesAndEnds) {
+    const SkyTable black(8, 4, std::vector<float>(32, 0));
+    Vec3 w;
+    float pdf;
+    EXPECT_FALSE(black.sample({.5f, .5f}, w, pdf));
+    EXPECT_EQ(black.pdf({0, 0, 1}), 0);
+    for (const Sky& s : skies()) {
+        const SkyTable table(s.width, s.height, s.weights);
+        for (const float u : {0.f, 0x1p-24f, .5f, 0x1.fffffep-1f})
+            for (const float v : {0.f, .5f, 0x1.fffffep-1f}) {
+                ASSERT_TRUE(table.sample({u, v}, w, pdf)) << s.name;
+                EXPECT_EQ(pdf, table.pdf(w)) << s.name << u << v;
+                EXPECT_NEAR(length(w), 1, 1e-6) << s.name;
+            }
+    }
+}

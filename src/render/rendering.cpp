@@ -41,6 +41,8 @@ transport::Counters Job::counters() const {
         all.specular += c.specular;
         all.transmission += c.transmission;
         all.shadow += c.shadow;
+        all.reflected += c.reflected;
+        all.refracted += c.refracted;
         all.points += c.points;
         all.batches += c.batches;
         all.lanesUsed += c.lanesUsed;

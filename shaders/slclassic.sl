@@ -7,7 +7,7 @@
      mincontribution  rays that contribute no more than this to the picture send no others: the product of kr and kt along their way
      gain             on the light of lamps: PI undoes the division by it in slpoint, slspot and sldirect
    Shadows: Attribute "light" "shadows" "on" before the lamp; soft ones from an area light with "samples". Depth: Option "trace" "maxdepth" and
-   Attribute "trace" "maxspeculardepth". Ball: Surface "slclassic" "color diffusecolor" [.1 .2 .5] "color specularcolor" .8 "float shininess" 60 "float kr" .3 */
+   Attribute "trace" "maxspeculardepth". Ball: Surface "slclassic" "color diffusecolor" [.1 .2 .5] "color specularcolor" [.8 .8 .8] "float shininess" 60 "float kr" .3 */
 surface slclassic(color ambientcolor = .2, globalambient = 0, diffusecolor = .8, specularcolor = .5, emissive = 0;
                   float shininess = 100, kr = 0, kt = 0, kn = 1, fresnel = 1, mincontribution = 1 / 256, gain = PI;
                   string texturename = "";) {

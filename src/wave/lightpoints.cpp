@@ -7,7 +7,8 @@
 namespace alpenglow::transport {
 
 namespace {
-/// Queries of lights that share a call are answered some at a time: those of all points of a batch do not fit into a core's cache.
+/// Queries of lights that share a call are answered some at a time: those of all points of a batch do not fit into a core's
+/// cache.
 constexpr size_t kQueriesAtOnce = 512;
 } // namespace
 
@@ -38,7 +39,8 @@ bool Gather::samples(const LobeVertex& l, const BoundLight& light) const {
 }
 
 void Gather::light() {
-    const WorldImpl::LightList& list = world_.lightLists_[size_t(world_.bindings_[size_t(c_->bindings[0])].lightList)]; // the batch's
+    const SurfaceBinding& binding = world_.bindings_[size_t(c_->bindings[0])]; // the batch shares its list
+    const WorldImpl::LightList& list = world_.lightLists_[size_t(binding.lightList)];
     const std::vector<int>& on = world_.sampledOf(list);
     const LightChooser& chooser = world_.chooserOf(list);
     const bool many = rules_.pickOne && !chooser.empty();

@@ -10,7 +10,8 @@ namespace alpenglow::transport {
 inline const Vec3& meetsAt(const geometry::SurfacePoint& p) { return p.displaced ? p.displacedP : p.P; }
 inline const Vec3& meetsNormal(const geometry::SurfacePoint& p) { return p.displaced ? p.displacedN : p.n; }
 
-/// The geometry of one area light: its shapes, chosen in proportion to area, of more than limits::kLightsSampled in proportion to area
+/// The geometry of one area light: its shapes, chosen in proportion to area, of more than limits::kLightsSampled in proportion
+/// to area
 /// over squared distance (LightChooser). Full spheres that are still spheres in camera space
 /// are sampled by the solid angle they fill; what is displaced over the
 /// area of its facets; everything else over its area.
@@ -18,7 +19,8 @@ class Emitter {
 public:
     /// visibility: kinds of rays (accel::Visibility) that can meet each shape; empty: all.
     explicit Emitter(std::vector<const geometry::Shape*> shapes, std::vector<uint32_t> visibility = {});
-    /// When shapes are diced: notes which of them are displaced. False: a displaced one moves, and sample() does not know its surface.
+    /// When shapes are diced: notes which of them are displaced. False: a displaced one moves, and sample() does not know its
+    /// surface.
     bool findDisplaced();
     bool empty() const { return entries_.empty(); }
     double area() const { return area_; }

@@ -159,8 +159,10 @@ inline std::pair<double, double> LightChooser::divide(const Node& n, const Vec3&
 void LightChooser::choose(const Vec3& at, float u, Chosen& chosen) const {
     chosen.clear();
     const Cut c = cutAt(at);
-    // Nodes in which a tooth of the comb lies, or which are certain: where they begin in the running sum, and the teeth before it.
-    // One without a tooth can have no leaf with one; a certain one is certain in its leaves. All go down together, a level a turn:
+    // Nodes in which a tooth of the comb lies, or which are certain: where they begin in the running sum, and the teeth before
+    // it.
+    // One without a tooth can have no leaf with one; a certain one is certain in its leaves. All go down together, a level a
+    // turn:
     // the work on one does not wait for another's.
     struct Entered { int node; double share, begin, teeth; };
     Entered entered[kMost + kCut + 4];
@@ -212,7 +214,8 @@ int LightChooser::pick(const Vec3& at, float u, float& p) const {
     int node = -1;
     for (int k = 0; k < c.size; ++k) {
         const Node& n = nodes_[size_t(c.part[k].node)];
-        const double s = c.total > 0 ? c.part[k].importance / c.total : n.count / double(leafOf_.size()), range = probability(s, n);
+        const double s = c.total > 0 ? c.part[k].importance / c.total : n.count / double(leafOf_.size());
+        const double range = probability(s, n);
         node = c.part[k].node; // the last one takes what rounding leaves
         share = s;
         if (left < range) break;

@@ -42,7 +42,8 @@ public:
     using Chosen = std::vector<std::pair<int, float>>;
     /// Lights for a point, with their probabilities (0 to 1], each once, in any order. `u`: a random number, 0 <= u < 1.
     void choose(const Vec3& at, float u, Chosen& chosen) const;
-    /// Of a chooser that wants one: a single light, and its probability, which is pmf(). Not where it is empty. A number that lies evenly
+    /// Of a chooser that wants one: a single light, and its probability, which is pmf(). Not where it is empty. A number that
+    /// lies evenly
     /// in the range that chose the light is lost.
     int pick(const Vec3& at, float u, float& p) const;
     /// The probability that choose(), or pick(), takes this light.

@@ -32,7 +32,8 @@ template <class Weight> double accumulate(size_t n, Weight&& weight, float* out)
 }
 } // namespace
 
-SkyTable::SkyTable(int width, int height, std::vector<float> weights) : width_(width), height_(height), density_(std::move(weights)) {
+SkyTable::SkyTable(int width, int height, std::vector<float> weights)
+    : width_(width), height_(height), density_(std::move(weights)) {
     const size_t w = size_t(width), h = size_t(height);
     for (float& v : density_)
         if (!(v > 0) || !std::isfinite(v)) v = 0;
@@ -62,7 +63,8 @@ SkyTable::SkyTable(int width, int height, std::vector<float> weights) : width_(w
 }
 
 Vec3 SkyTable::direction(int column, int row, int width, int height, float s, float t) {
-    const double top = row == 0 ? 1 : exact::cos(kPi * row / height), end = row + 1 == height ? -1 : exact::cos(kPi * (row + 1) / height);
+    const double top = row == 0 ? 1 : exact::cos(kPi * row / height);
+    const double end = row + 1 == height ? -1 : exact::cos(kPi * (row + 1) / height);
     const double z = top + (end - top) * double(t), away = std::sqrt(std::max(0.0, 1 - z * z));
     const exact::SinCos round = exact::sinCos(2 * kPi * (column + double(s)) / width);
     return Vec3(float(away * round.cos), float(away * round.sin), float(z));
@@ -93,9 +95,11 @@ float SkyTable::pdf(const Vec3& w) const {
 
 namespace {
 
-/// Cells of tables and points of each by side. Maps with finer detail than the points show are drawn from less well, and no less rightly.
+/// Cells of tables and points of each by side. Maps with finer detail than the points show are drawn from less well, and no less
+/// rightly.
 constexpr int kColumns = 512, kRows = 256, kMostColumns = 1024, kPointsOfCell = 2, kCoarse = 32;
-/// A sky is sampled as a light where lobes alone would find it badly: the light of a clear sky's half, or of a sky that darkens toward the
+/// A sky is sampled as a light where lobes alone would find it badly: the light of a clear sky's half, or of a sky that darkens
+/// toward the
 /// horizon, they find well, with fewer rays.
 constexpr double kConcentrated = 4;
 
@@ -146,7 +150,8 @@ int widestMap(const BoundKernel& k, const WorldImpl& world) {
 void WorldImpl::tabulateSkies(Evaluator& evaluator) {
     for (const int i : skies_) {
         BoundLight& l = lights_[size_t(i)];
-        if (l.kind != LightKind::Environment || !l.importance || l.asksSurface || l.sentCl >= 0 || l.kernel.kernel->facts().suspends)
+        if (l.kind != LightKind::Environment || !l.importance || l.asksSurface || l.sentCl >= 0) continue;
+        if (l.kernel.kernel->facts().suspends)
             continue;
         const int widest = widestMap(l.kernel, *this);
         if (widest == 0) { // nothing but arithmetic: most such skies are even

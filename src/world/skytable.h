@@ -1,4 +1,5 @@
-// Where a sky is bright: a table over directions, from which light samples are drawn in proportion to what the sky's shader gives,
+// Where a sky is bright: a table over directions, from which light samples are drawn in proportion to what the sky's shader
+// gives,
 // whatever it makes that of: maps of any form, or arithmetic.
 #pragma once
 #include "texture/texture.h"
@@ -6,16 +7,19 @@
 
 namespace alpenglow::transport {
 
-/// Directions in cells of latitude and longitude (poles along z of current space). A cell is drawn in proportion to its weight times its
+/// Directions in cells of latitude and longitude (poles along z of current space). A cell is drawn in proportion to its weight
+/// times its
 /// solid angle, a direction in it evenly by solid angle. Draws keep the strata of their numbers.
 class SkyTable {
 public:
-    /// weights: radiance of the cells as luminance, rows from the pole down, `width` numbers each. Such as are negative or no numbers count
+    /// weights: radiance of the cells as luminance, rows from the pole down, `width` numbers each. Such as are negative or no
+    /// numbers count
     /// as 0.
     SkyTable(int width, int height, std::vector<float> weights);
     /// Integral of the weights over the sphere; 0: nothing can be drawn.
     double integral() const { return integral_; }
-    /// Mean square over the square of the mean: 1 for an even sky, about 1 / part for one that is bright in that part of it alone.
+    /// Mean square over the square of the mean: 1 for an even sky, about 1 / part for one that is bright in that part of it
+    /// alone.
     double concentration() const { return concentration_; }
     /// A direction of length 1 and its density per steradian, which is pdf(w) exactly; false: none.
     bool sample(Vec2 u, Vec3& w, float& density) const;

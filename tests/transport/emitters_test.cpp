@@ -22,7 +22,7 @@ std::string lamp(const std::string& light, const std::string& shapes) {
     return "AttributeBegin\nSurface \"constant\"\nColor 0 0 0\nAttribute \"light\" \"string units\" \"radiance\"\nAreaLightSource " + light + "\n" + shapes +
            "AttributeEnd\nIlluminate 1 1\n";
 }
-std::string scene(const std::string& lights) { return world(lights + kLambert + kFloor); }
+std::string lit(const std::string& lights) { return world(lights + kLambert + kFloor); }
 
 /// All three ways agree with a value that is known to `known` of it.
 void expectAll(const std::string& rib, double want, double known, const std::string& what) {
@@ -51,12 +51,12 @@ const char* const kSquare = "Patch \"bilinear\" \"P\" [-1 2 -1  1 2 -1  -1 2 1  
 
 TEST(Emitters, Textured) {
     writeShader("ramplamp", "light ramplamp() { illuminate(P, N, PI) Cl = 9 * u * u; }\n");
-    expectAll(scene(lamp("\"ramplamp\" 1", kSquare)), underSquare([](double u, double) { return 9 * u * u; }), 1e-4, "ramp");
+    expectAll(lit(lamp("\"ramplamp\" 1", kSquare)), underSquare([](double u, double) { return 9 * u * u; }), 1e-4, "ramp");
     // A map of two by two texels between whose middles it is interpolated, and clamped beyond.
     const std::string map = writeMap("lampmap.exr", 2, 2, [](int x, int y, int) { return x == 1 && y == 0 ? 20.f : 1.f; });
     writeShader("maplamp", "light maplamp(string map = \"\";) { illuminate(P, N, PI) Cl = color texture(map, u, v, \"width\", 0); }\n");
     const auto blend = [](double t) { return std::clamp(2 * t - .5, 0.0, 1.0); };
-    expectAll(scene(lamp("\"maplamp\" 1 \"string map\" " + map, kSquare)),
+    expectAll(lit(lamp("\"maplamp\" 1 \"string map\" " + map, kSquare)),
               underSquare([&](double u, double v) { return 1 + 19 * blend(u) * (1 - blend(v)); }), 1e-3, "map");
 }
 
@@ -66,15 +66,15 @@ TEST(Emitters, Displaced) {
     writeShader("white5", "light white5() { illuminate(P, N, PI / 2) Cl = 5; }\n");
     const std::string ball = "Attribute \"displacementbound\" \"float sphere\" 1\nDisplacement \"swell\"\nTranslate 0 5 0\nSphere 1 -1 1 360\n";
     // Facets lie within the ball: at the default rate they are some hundredths of a radius long.
-    expectAll(scene(lamp("\"white5\" 1", ball)), 5 * 2.25 / 25, 4e-3, "displaced ball");
+    expectAll(lit(lamp("\"white5\" 1", ball)), 5 * 2.25 / 25, 4e-3, "displaced ball");
     // A square that a displacement lifts by 1, from height 1 to 2, and one that moves, which rays alone find.
     writeShader("lift", "displacement lift() { P += vector \"world\" (0, 1, 0); }\n");
     const std::string low = "Patch \"bilinear\" \"P\" [-1 1 -1  1 1 -1  -1 1 1  1 1 1]\n", up = "Attribute \"displacementbound\" \"float sphere\" 2\nDisplacement \"lift\"\n";
     writeShader("both5", "light both5() { illuminate(P, N, PI) Cl = 5; }\n");
     const double want = underSquare([](double, double) { return 5.; });
-    expectAll(scene(lamp("\"both5\" 1", up + low)), want, 1e-3, "displaced square");
+    expectAll(lit(lamp("\"both5\" 1", up + low)), want, 1e-3, "displaced square");
     const std::string moving = "MotionBegin [0 1]\nTranslate 0 0 0\nTranslate 1e-6 0 0\nMotionEnd\n";
-    Scene s("Shutter 0 1\n" + scene(lamp("\"both5\" 1", up + moving + low)), of(0));
+    Scene s("Shutter 0 1\n" + lit(lamp("\"both5\" 1", up + moving + low)), of(0));
     const Moments m = s.estimate(kView, samples(200'000));
     EXPECT_LE(std::fabs(m.mean() - want), kZ * m.se() + 1e-3 * want) << "moving: " << m.mean() << " +- " << m.se() << ", " << want;
 }
@@ -86,7 +86,7 @@ TEST(Emitters, CutOutOfASolid) {
                             "[0 2 -3  3 2 -3  0 8 -3  3 8 -3  0 2 3  3 2 3  0 8 3  3 8 3]\n";
     const std::string cut = "SolidBegin \"difference\"\nSolidBegin \"primitive\"\nTransformBegin\nTranslate 0 5 0\nSphere 1 -1 1 360\nTransformEnd\nSolidEnd\n"
                             "SolidBegin \"primitive\"\nAreaLightSource \"null\" \"none\"\n" + box + "SolidEnd\nSolidEnd\n";
-    expectAll(scene(lamp("\"white5\" 1", cut)), 5. / 25 / 2, 1e-3, "half a ball");
+    expectAll(lit(lamp("\"white5\" 1", cut)), 5. / 25 / 2, 1e-3, "half a ball");
 }
 
 // One light of many shapes: samples go where they bring most.
@@ -103,7 +103,7 @@ TEST(Emitters, ManyShapes) {
     // Balls hide parts of each other, which the sum does not know: lamps that let light through hide nothing.
     const std::string light = "Opacity 0 0 0\nAttribute \"visibility\" \"transmission\" \"transparent\"\n";
     for (const int mode : {0, 2}) {
-        Scene s(scene(lamp("\"slrect\" 1 \"float intensity\" 40", light + balls)), of(mode));
+        Scene s(lit(lamp("\"slrect\" 1 \"float intensity\" 40", light + balls)), of(mode));
         Counters c;
         const int n = samples(100'000);
         const Moments m = s.estimate(kView, n, &c);
@@ -132,7 +132,7 @@ TEST(Emitters, TenThousandLamps) {
         return double(here) * double(sysconf(_SC_PAGESIZE));
     };
     const double before = resident();
-    Scene s(scene(lights), of(2));
+    Scene s(lit(lights), of(2));
     // 8 KB a lamp with its shape, shaders and attributes; the lists alone took 400 KB each when they were lists.
     EXPECT_LT(resident() - before, n * 20e3);
     Counters c;
@@ -155,7 +155,7 @@ TEST(Emitters, TheTreeAgainstEvenChoice) {
     }
     Settings even = of(0);
     even.evenLights = true;
-    Scene tree(scene(lights), of(0)), uniform(scene(lights), even);
+    Scene tree(lit(lights), of(0)), uniform(lit(lights), even);
     double a = 0, b = 0, timeA = 0, timeB = 0;
     for (int k = 0; k < 12; ++k) {
         const CameraRay view = rayTo({float(k) * 2 - 11 + .3f, .4f, float(k % 5) * 3 - 6}, {float(k) * 2 - 11, 0, float(k % 5) * 3 - 6});

@@ -36,19 +36,19 @@ TEST(SlClassic, LightAndItsHighlight) {
     for (const double exponent : {1., 10., 60., 700.})
         for (const Hider h : {Hider::Raytrace, Hider::Hidden}) {
             Scene s(world(lamp + floor("\"color diffusecolor\" [.2 .4 .6] \"color specularcolor\" [.3 .2 .1] \"color ambientcolor\" [.1 .2 .3] "
-                                       "\"color globalambient\" .5 \"color emissive\" [.01 .02 .03] \"float shininess\" " + std::to_string(exponent))),
+                                       "\"color globalambient\" [.5 .5 .5] \"color emissive\" [.01 .02 .03] \"float shininess\" " + std::to_string(exponent))),
                     withShaders(h));
             const double diff = 2 / d2 * L.y, spec = 2 / d2 * std::pow(H.y, exponent);
             expectColour(s.one(kView), Vec3d(.01 + .05 + .2 * diff + .3 * spec, .02 + .1 + .4 * diff + .2 * spec, .03 + .15 + .6 * diff + .1 * spec),
                          "exponent " + std::to_string(exponent));
         }
     // Ambient lights; a light below the horizon; more than white is white.
-    Scene ambient(world("LightSource \"ambientlight\" 1 \"float intensity\" .25\n" + floor("\"color ambientcolor\" [.4 .8 1] \"color diffusecolor\" 0")),
+    Scene ambient(world("LightSource \"ambientlight\" 1 \"float intensity\" .25\n" + floor("\"color ambientcolor\" [.4 .8 1] \"color diffusecolor\" [0 0 0]")),
                   withShaders(Hider::Raytrace));
     expectColour(ambient.one(kView), {.1, .2, .25}, "ambient");
     Scene below(world("LightSource \"slpoint\" 1 \"point from\" [0 -1 0]\n" + floor("\"float shininess\" 1")), withShaders(Hider::Raytrace));
     expectColour(below.one(kView), {0, 0, 0}, "below");
-    Scene bright(world(lamp + floor("\"color diffusecolor\" 90")), withShaders(Hider::Raytrace));
+    Scene bright(world(lamp + floor("\"color diffusecolor\" [90 90 90]")), withShaders(Hider::Raytrace));
     expectColour(bright.one(kView), {1, 1, 1}, "cut at 1");
 }
 
@@ -56,7 +56,7 @@ TEST(SlClassic, Shadows) {
     const std::string wall = "AttributeBegin\nSurface \"constant\"\nPolygon \"P\" [-9 1 -9 -9 1 9 9 1 9 9 1 -9]\nAttributeEnd\n";
     const std::string lamp = "Attribute \"light\" \"string shadows\" \"on\"\nLightSource \"slpoint\" 1 \"float intensity\" .5 \"point from\" [0 2 0]\n";
     for (const bool blocked : {false, true}) {
-        Scene s(world(lamp + (blocked ? wall : "") + floor("\"color specularcolor\" 0 \"color diffusecolor\" 1")), withShaders(Hider::Raytrace));
+        Scene s(world(lamp + (blocked ? wall : "") + floor("\"color specularcolor\" [0 0 0] \"color diffusecolor\" [1 1 1]")), withShaders(Hider::Raytrace));
         Counters c;
         const Moments m = s.estimate(rayTo({.3f, .5f, -.4f}, {0, 0, 0}), 4, &c);
         EXPECT_NEAR(m.mean(), blocked ? 0 : .5, 1e-5);
@@ -68,7 +68,7 @@ TEST(SlClassic, Mirrors) {
     writePlaces();
     const Vec3d v = toEye(), mirrored(-v.x / v.y, 1, -v.z / v.y); // meets y = 3 at three times that
     for (const char* fresnel : {"0", "1"}) { // Schlick's formula is for what lets light through
-        Scene s(kRays + world(card(3) + floor("\"color diffusecolor\" 0 \"color ambientcolor\" 0 \"float kr\" .4 \"float fresnel\" " + std::string(fresnel))),
+        Scene s(kRays + world(card(3) + floor("\"color diffusecolor\" [0 0 0] \"color ambientcolor\" [0 0 0] \"float kr\" .4 \"float fresnel\" " + std::string(fresnel))),
                 withShaders(Hider::Raytrace));
         Counters c;
         const Moments m = s.estimate(kView, 8, &c);
@@ -86,7 +86,7 @@ TEST(SlClassic, GlassBySnellAndSchlick) {
     const double cosine = v.y, sine = std::sqrt(1 - cosine * cosine), kn = 1.5, kr = .1, kt = .7;
     const double sineT = sine / kn, tangentT = sineT / std::sqrt(1 - sineT * sineT);
     const Vec3d side(-v.x / sine, 0, -v.z / sine); // the way that the ray goes, along the floor
-    const std::string glass = "\"color diffusecolor\" 0 \"color ambientcolor\" 0 \"float kn\" 1.5 \"float kr\" .1 \"float kt\" .7 \"float fresnel\" ";
+    const std::string glass = "\"color diffusecolor\" [0 0 0] \"color ambientcolor\" [0 0 0] \"float kn\" 1.5 \"float kr\" .1 \"float kt\" .7 \"float fresnel\" ";
     for (const bool fresnel : {false, true}) {
         Scene s(kRays + world(card(3) + card(-2) + floor(glass + (fresnel ? "1" : "0"))), withShaders(Hider::Raytrace));
         Counters c;
@@ -101,7 +101,7 @@ TEST(SlClassic, GlassBySnellAndSchlick) {
         EXPECT_EQ(c.refracted, 8u);
     }
     // From inside: out below the critical angle, all back beyond it.
-    const std::string inside = "\"color diffusecolor\" 0 \"color ambientcolor\" 0 \"float kn\" 1.5 \"float kr\" 0 \"float kt\" 1 \"float fresnel\" 0";
+    const std::string inside = "\"color diffusecolor\" [0 0 0] \"color ambientcolor\" [0 0 0] \"float kn\" 1.5 \"float kr\" 0 \"float kt\" 1 \"float fresnel\" 0";
     Scene s(kRays + world(card(3) + card(-2) + floor(inside)), withShaders(Hider::Raytrace));
     for (const double x : {.3, .85, .95, 3.}) { // the critical tangent is 1 / sqrt(1.25) = .894
         const double sin1 = x / std::sqrt(1 + x * x), sin2 = 1.5 * sin1;
@@ -112,7 +112,7 @@ TEST(SlClassic, GlassBySnellAndSchlick) {
 
 // Two mirrors that face each other: each sends a quarter on, and where a 256th or less would arrive nothing is sent: four reflections.
 TEST(SlClassic, ContributionIsCut) {
-    const std::string upper = "Polygon \"P\" [-60 1 -60  60 1 -60  60 1 60  -60 1 60]\n", looks = "\"color diffusecolor\" 0 \"color ambientcolor\" 0 \"color emissive\" .5 \"float kr\" .25";
+    const std::string upper = "Polygon \"P\" [-60 1 -60  60 1 -60  60 1 60  -60 1 60]\n", looks = "\"color diffusecolor\" [0 0 0] \"color ambientcolor\" [0 0 0] \"color emissive\" [.5 .5 .5] \"float kr\" .25";
     const struct { const char* more; int rays; } cases[] = {{"", 4}, {" \"float mincontribution\" .01", 4}, {" \"float mincontribution\" .02", 3}, {" \"float mincontribution\" .9", 1},
                                                             {" \"float mincontribution\" 1", 0}, {" \"float mincontribution\" 0", 20}};
     for (const auto& c : cases) {

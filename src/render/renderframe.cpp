@@ -70,6 +70,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
     if (f.o.imager) f.imager = imagerOf(f);
     describeFrame(f);
     makePhotonMaps(f, job);
+    findRecords(job);
     if (settings_.pixel) {
         printPixel(job, f.o, f.wanted, f.path);
         ++outcome_.rendered;

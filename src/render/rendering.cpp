@@ -52,6 +52,8 @@ transport::Counters Job::counters() const {
         all.depthCap += c.depthCap;
         all.depthSum += c.depthSum;
         all.paths += c.paths;
+        all.records += c.records;
+        all.interpolated += c.interpolated;
         all.depthMax = std::max(all.depthMax, c.depthMax);
     }
     return all;

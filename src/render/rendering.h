@@ -70,6 +70,9 @@ void pathRays(const Camera&, const FilterSampler&, uint64_t seed, std::span<cons
 /// added.
 bool renderPath(Job&, Film&, SampleRange wanted, uint64_t seed, const std::function<void(Film&)>& afterPass);
 
+/// Lets the world find what it interpolates between (World::interpolates()). Before anything else is traced. False: halted.
+bool findRecords(Job&);
+
 /// The samples nx x ny of a pixel under hidden and raytrace.
 void gridOf(const scene::Options&, const RenderSettings&, int* nx, int* ny);
 Jitter jitterOf(const scene::Options&, Diagnostics&);

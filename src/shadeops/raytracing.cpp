@@ -26,19 +26,20 @@ std::vector<OptionalParameter> rayParameters() {
             {kF, "maxhitdist", false, "1e38", "another name of maxdist"}};
 }
 
-/// Table 6.11. What only saves time elsewhere is ignored: every ray is traced, and nothing is interpolated.
-std::vector<OptionalParameter> hemisphereParameters(const char* falloff) {
+/// Table 6.11. Every ray is traced, and nothing is interpolated, but where a call asks for that.
+std::vector<OptionalParameter> hemisphereParameters(const char* falloff, const char* adaptive) {
     constexpr const char* kExact = "accepted and ignored: the result is exact for its rays";
+    constexpr const char* kRecords = "above 0 light is interpolated between records, about this relative error: biased. Whole hemispheres without outputs; others are exact";
     constexpr const char* kClouds = "of point clouds, which are not yet read; ignored";
     return {{kF, "coneangle", false, "PI/2", "half angle of the cone of directions, radians"},
             {kV, "axis", false, "0", "only directions toward the axis: a sky that is half a ball; none: all"},
-            {kF, "adaptive", false, "1", kExact},
+            {kF, "adaptive", false, "0", adaptive},
             {kS, "distribution", false, "\"cosine\"", "of the directions: uniform or cosine"},
             {kF, "falloffmode", false, "0", falloff},
             {kF, "falloff", false, "0", falloff},
-            {kF, "maxvariation", false, "0", kExact},
+            {kF, "maxvariation", false, "0", kRecords},
             {kF, "maxerror", false, "0", kExact},
-            {kF, "maxpixeldist", false, "0", kExact},
+            {kF, "maxpixeldist", false, "20", "with \"maxvariation\": pixels that a record reaches at most"},
             {kF, "brightnesswarp", false, "0", kExact},
             {kS, "environmentmap", false, "\"\"", "light of directions that hit nothing"},
             {kS, "environmentspace", false, "\"current\"", "space of the map"},
@@ -148,9 +149,11 @@ std::vector<Shadeop> raytracingShadeops() {
                              "No samples, or 0: attribute irradiance:nsamples. The form with a half angle and a variable for the mean free "
                              "direction is AIR's; that with a map traces rays.");
     list.back().examples = {{"occlusion(P, N, 16)", "0", "", kNothing}};
-    occlusion.optional = commonOfHemispheres() + hemisphereParameters("a hit at distance d blocks by: mode 0 exp(-falloff d), mode 1 (1 - d / maxdist)^falloff");
+    occlusion.optional = commonOfHemispheres() + hemisphereParameters("a hit at distance d blocks by: mode 0 exp(-falloff d), mode 1 (1 - d / maxdist)^falloff",
+                                                                               "above 0: \"minsamples\" rays are sent first, and the others only where those disagree: biased");
     for (OptionalParameter& p : occlusion.optional)
-        if (p.name == "type" || p.name == "raytype") p.defaultText = "\"transmission\"";
+        if (p.name == "minsamples") p.defaultText = "a quarter of samples", p.doc = "rays that are sent first where \"adaptive\" is above 0, or this is given without it";
+        else if (p.name == "type" || p.name == "raytype") p.defaultText = "\"transmission\"";
     Shadeop& indirect = add("indirectdiffuse",
                             sigs({{"color indirectdiffuse(point p; vector r; pairs)"},
                                   {"color indirectdiffuse(point p; vector r; float samples; pairs)"},
@@ -162,7 +165,8 @@ std::vector<Shadeop> raytracingShadeops() {
                             "\"cosine\" and samplecone PI/2. The form with a map and a direction alone is the same of the map, with nothing before it, "
                             "integrated without noise; its directions are those of environment(). No samples, or 0: attribute irradiance:nsamples.");
     list.back().examples = {{"indirectdiffuse(P, N, 16)", "1 1 1", "", kWhite}, {"indirectdiffuse(\"sky.env\", N)", "0.5 0.7 1", "", "the map has this colour everywhere"}};
-    indirect.optional = commonOfHemispheres() + hemisphereParameters("of occlusion(); ignored");
+    indirect.optional = commonOfHemispheres() + hemisphereParameters("a hit at distance d counts by: mode 0 exp(-falloff d), mode 1 (1 - d / maxdist)^falloff; the rest shows the environment map",
+                                                                             "accepted and ignored: the result is exact for its rays");
     for (OptionalParameter& p : indirect.optional)
         if (p.name == "type" || p.name == "raytype") p.defaultText = "\"diffuse\"";
     Shadeop& subsurface = add("subsurface", sigs({{"color subsurface(point p; pairs)"},

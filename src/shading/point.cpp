@@ -1,4 +1,6 @@
 #include "shading/point.h"
+#include "base/exact.h"
+#include <algorithm>
 
 namespace alpenglow::shading {
 
@@ -9,6 +11,12 @@ const char* toString(RayType t) {
     case RayType::Specular: return "specular";
     default: return "transmission";
     }
+}
+
+float Fade::at(double distance) const {
+    if (!polynomial) return float(exact::exp(-double(strength) * distance));
+    const double left = reach < 1e30f ? std::clamp(1 - distance / reach, 0.0, 1.0) : 1;
+    return left > 0 ? float(exact::exp(double(strength) * exact::log(left))) : 0;
 }
 
 void setFootprint(ShadePoint& p, const Footprint& footprint, const Vec3& dir, float distance, float shadingRate) {

@@ -58,11 +58,26 @@ struct PathSample {
     float time = 0;                   ///< as the shader sees it
     float shutter = 0;                ///< the same as part of the time that the shutter is open
     float level = 0.5f;               ///< for what fades between levels of detail
+    bool records = false;             ///< of a pass that finds the light that others interpolate (CameraRay::records)
     render::SampleNumbers numbers{render::Sampler(0, 0, 0), 0};
+};
+
+/// How much of a surface counts that a ray meets far away ("falloff", rsl.md table 6.11).
+struct Fade {
+    float strength = 0, reach = 1e38f; ///< per unit of distance, or an exponent; the "maxdist" of that
+    bool polynomial = false;
+    bool fades() const { return strength > 0; }
+    /// 1 at the point itself, down to 0.
+    float at(double distance) const;
+    bool operator==(const Fade&) const = default;
 };
 
 /// What few rays carry. Where a ray has none, it is as here.
 struct RayExtra {
+    Fade fade;
+    float way = 0;                    ///< of what fades: how far the ray has come before, behind surfaces
+    float kept = 1;                   ///< and what its weight has of `whole`
+    Color whole{0};
     Color environment{0};             ///< of trace() with a map: the light where nothing is
     Color part{0};                    ///< of a target with sums: the share of all rays that were asked for, of those and what goes on behind
     int32_t share = -1;               ///< Engine::shares_: which outputs have a part of what it adds to its target; -1: none
@@ -99,6 +114,7 @@ struct PathRay {
     uint16_t asked = 1;      ///< the most rays that a waiting kernel on the way was known to ask for at one point
     bool first = true;                ///< one of those that its target asked for: writes distance and transmission
     bool counts = false;              ///< its hit writes opacity, depth and AOVs of its camera sample
+    bool quiet = false;               ///< of a gather that wants no light of it: only shaders run that its hit's outputs need
     bool parted = false;              ///< camera: passed a volume on its way, so that volumes have what lies before `origin`
     uint8_t trail = 0;                ///< Trail, as bits
     /// Density per steradian with which this direction was drawn, times the probability of drawing it at all; < 0: light sampling

@@ -13,6 +13,7 @@ void Counters::operator+=(const Counters& o) {
     points += o.points; batches += o.batches; lanesUsed += o.lanesUsed; lanesRun += o.lanesRun;
     nonFinite += o.nonFinite; overLimit += o.overLimit; depthCap += o.depthCap;
     depthSum += o.depthSum; paths += o.paths;
+    records += o.records; interpolated += o.interpolated;
     depthMax = std::max(depthMax, o.depthMax);
     peakFrameBytes = std::max(peakFrameBytes, o.peakFrameBytes);
 }
@@ -121,6 +122,7 @@ void Engine::forget() {
     waiting_.clear();
     moreLight_.clear();
     hemispheres_.clear();
+    forgetRecordings();
     hitQueues_.clear();
     groupsWithHits_.clear();
     hitsWaiting_ = 0;
@@ -153,7 +155,7 @@ bool Engine::traceAll(std::span<const CameraRay> rays, std::span<SampleResult> o
         r.dir = c.direction;
         PathSample& sample = samples_[i];
         sample = {
-            c.px, c.py, c.sample, int(i), c.time, c.shutter, 0.5f,
+            c.px, c.py, c.sample, int(i), c.time, c.shutter, 0.5f, c.records,
             render::SampleNumbers(render::Sampler(seed_, c.px, c.py), c.sample)};
         r.sample = &sample;
         r.footprint = {c.width, c.spread};
@@ -169,6 +171,7 @@ bool Engine::traceAll(std::span<const CameraRay> rays, std::span<SampleResult> o
     groupsWithHits_.clear();
     hitsWaiting_ = 0;
     bool done = sched.run();
+    if (done) keepRecordings(sched);
     float clampAt = world_->settings_.sampleClamp;
     for (size_t i = 0; i < rays.size(); ++i) {
         Color c = sched.value(roots[i]).radiance;

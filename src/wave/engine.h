@@ -5,10 +5,12 @@
 #include "wave/batchcontext.h"
 #include "wave/flight.h"
 #include "wave/photons.h"
+#include "wave/recordings.h"
 #include "wave/samples.h"
 #include "wave/vertex.h"
 #include <deque>
 #include <functional>
+#include <optional>
 #include <set>
 
 namespace alpenglow::transport {
@@ -82,12 +84,27 @@ public:
     void hemisphereRays(const BatchContext&, const SiteInfo&, const ShadePoint& p, const Vec3& at, const geometry::SurfacePoint*,
                         const std::function<float(int)>& row, const Color& weight, TargetId, uint32_t site, uint32_t occurrence,
                         std::vector<ShadowRay>& out);
+    int fewer(const OcclusionSite&, const std::function<float(int)>& row, int count, const BatchContext&) const;
+    bool agree(std::vector<ShadowRay>&, size_t begin, HemisphereRays&, const Color& weight);
     /// What one of them brings of which so much came through, 0 to 1; what it tells besides goes to `sums`, which may be null.
     Color openLight(const ShadowRay&, const Color& transmitted, TraceSums* sums) const;
     /// How many samples a call sends, whose shader says `asked`: Attribute "irradiance" "nsamples" of the shape where that is
     /// nothing, 4096 at most; more are reported once.
     int samplesOf(float asked, const geometry::Shape*, const SiteInfo&, const BatchContext&);
     std::vector<HemisphereRays> hemispheres_; ///< of `shadows`
+    std::vector<Deposit> settled_;            ///< of calls that no ray is sent for any more; taken with the shadow rays
+    // recordings.cpp
+    /// What records say of the hemisphere that a call asks for at a point of a batch. Nothing: it is to be found exactly. In a pass
+    /// that finds records one may be begun there; then it is anything. `kind`: of the call's rays.
+    std::optional<Color> recorded(const BatchContext&, const SiteInfo&, int point, const std::function<float(int)>& row,
+                                  const RayKind* kind, uint32_t occurrence);
+    void sendRecord(const BatchContext&, int point, uint32_t call, uint32_t occurrence, Recording&);
+    void followRecords(Sched&);         ///< sends the rays of those that were begun
+    void blockedRecord(Recording&);
+    void keepRecordings(const Sched&);  ///< once all rays are followed
+    void forgetRecordings();
+    std::vector<Recording> recordings_;
+    size_t recordsSent_ = 0;
     /// What the attributes of a shape say: samples, and the bias, < 0 where there is none.
     struct OfShape { int samples; float bias; };
     const OfShape& ofShape(const geometry::Shape*);
@@ -259,6 +276,7 @@ private:
     void queueHit(const Sched::Task&, const accel::Hit&, Sched&);
     void shadeHits(size_t group, Sched&);
     void placePoints(HitQueue&, BatchContext&);
+    void fade(PathRay&, float way);
     // flight.cpp: what happens on the way. Flights that are over leave the batch, or the list.
     void fly(BatchContext&, Sched&);
     void fly(std::vector<const Sched::Task*>& missed, Sched&);
@@ -302,6 +320,10 @@ private:
     shading::TargetValue follow(BatchContext&, const SiteInfo&, int point, const std::function<float(int)>& row,
                                 uint32_t occurrence);
     std::unique_ptr<Engine> inner_;
+    Engine& inner(); ///< with nothing in it
+    void takeInner(); ///< what it has counted
+    void gatherOfLight(BatchContext&, const SiteInfo&, int first, std::span<uint32_t> asked);
+    void followGather(std::span<struct GatherSent>);
     void misses(std::span<const Sched::Task* const>, Sched&);
     struct Met { int light; TargetId target; const ShadePoint* point; };
     /// Light that emitters send along the rays that met them; sorted by light.

@@ -184,6 +184,38 @@ void skySamples(const Asking& a, GatherRows& rows, int begin, int end, int count
     }
 }
 
+/// Oi of what a ray met whose shaders are not run for light.
+Color opacityAt(const Asking& a, const accel::Hit& hit, const Vec3& from, const Vec3& w, const RayKind* kind) {
+    const WorldImpl& world = a.e.world();
+    const int binding = world.bindingOf_[hit.shape];
+    const Opacity& o = world.bindings_[size_t(binding)].opacityFor(kind->set.mode);
+    Color c = o.constant;
+    if (!o.kernel) return c;
+    ShadowRay as{};
+    as.origin = from;
+    as.dir = w;
+    as.distance = float(hit.distance);
+    as.time = a.point().shutter;
+    as.ray = a.point().ray;
+    as.kind = kind;
+    const OpacityQuery q{binding, hit, &as, &o.kernel};
+    a.e.opacities({&q, 1}, {&c, 1});
+    return c;
+}
+
+/// Behind the camera's hit light is not followed of all rays that met something; the others bring what those would have. What else
+/// a gather is told does not depend on it: all its rays are cast, and the shaders run that give its outputs.
+bool goesOn(const Asking& a, PathRay& sent, int count, uint32_t asked) {
+    if (!a.e.rules().roulette) return true;
+    const PathRay& from = *a.point().ray;
+    const uint32_t many = a.c.light ? uint32_t(count) : asked;
+    sent.asked = uint16_t(std::min<uint32_t>(std::max<uint32_t>(from.asked, many), 0xffff));
+    const float q = a.c.light ? rouletteOfLight(from.bounces, sent.asked) : rouletteWaiting(from.bounces, sent.asked);
+    if (q < 1 && !(a.e.random(from).one(sent.vertex, kRoulette, 0) < q)) return false;
+    sent.weight = sent.weight / q;
+    return true;
+}
+
 /// Rays of one lane that are cast.
 void castRays(const Asking& a, GatherRows& rows, int begin, int end, int count, uint32_t& asked, std::vector<GatherSent>& out) {
     Engine& e = a.e;
@@ -234,17 +266,13 @@ void castRays(const Asking& a, GatherRows& rows, int begin, int end, int count, 
         tellHit(e.world(), g, row, hit);
         if (!g.shades) continue;
         PathRay sent = a.ray(w, from, reach, kept, k, count);
-        // Behind the camera's hit not all go on that could; the others bring what those would have.
-        if (e.rules().roulette) {
-            sent.asked = uint16_t(std::min<uint32_t>(std::max<uint32_t>(p.ray->asked, ++asked), 0xffff));
-            const float q = rouletteWaiting(p.ray->bounces, sent.asked);
-            if (q < 1 && !(e.random(*p.ray).one(sent.vertex, kRoulette, 0) < q)) {
-                endGatherRay(g, {}, row);
-                continue;
-            }
-            sent.weight = sent.weight / q;
+        if (p.ray->quiet || !goesOn(a, sent, count, ++asked)) {
+            endGatherRay(g, {Color(0), g.opacity ? Color(1) - opacityAt(a, hit, from, w, kept) : Color(1)}, row);
+            if (p.ray->quiet || !g.asks) continue;
+            sent.weight = Color(0);
+            sent.quiet = true;
         }
-        out.push_back({sent, row, e.world().shapes_[hit.shape].get(), &g, false});
+        out.push_back({sent, row, e.world().shapes_[hit.shape].get(), &g, sent.quiet, false});
     }
 }
 

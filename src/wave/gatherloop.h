@@ -12,7 +12,8 @@ struct GatherSent {
     float* row = nullptr; ///< of GatherRows
     const geometry::Shape* met = nullptr;
     const GatherSite* site = nullptr;
-    bool told = false; ///< the shaders at the hit have run
+    bool quiet = false; ///< its light and opacity are told already
+    bool told = false;  ///< the shaders at the hit have run
 };
 
 /// Makes the rays of one request of a gather and finds what they meet; those whose hits must be shaded go to `sent`. `in`: rows

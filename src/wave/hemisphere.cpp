@@ -12,6 +12,8 @@ namespace {
 
 /// Directions beyond the plane of "axis" are drawn again so often; then the ray is left out.
 constexpr int kTries = 64;
+/// Rays that differ by less than this say the same.
+constexpr float kAgree = 1e-3f;
 
 /// The directions of a call.
 struct Directions {
@@ -33,12 +35,6 @@ struct Directions {
 };
 
 } // namespace
-
-float HemisphereRays::blocks(double distance) const {
-    if (!polynomial) return float(exact::exp(-double(falloff) * distance));
-    const double left = reach < 1e30f ? std::clamp(1 - distance / reach, 0.0, 1.0) : 1;
-    return left > 0 ? float(exact::exp(double(falloff) * exact::log(left))) : 0;
-}
 
 const Engine::OfShape& Engine::ofShape(const geometry::Shape* shape) {
     const scene::Attributes* const a = shape ? &shape->attributes() : nullptr;
@@ -100,15 +96,15 @@ void Engine::hemisphereRays(const BatchContext& c, const SiteInfo& s, const Shad
     HemisphereRays h;
     h.site = s.trace.get();
     h.share = 1 / float(count);
-    h.falloff = std::max(0.f, number(o.falloff, 0));
-    h.polynomial = number(o.mode, 0) != 0;
-    h.reach = ray.distance;
+    h.fade = {std::max(0.f, number(o.fade.strength, 0)), ray.distance, number(o.fade.mode, 0) != 0};
     h.spread = p.ray ? p.ray->footprint.spread : 0;
     ray.hemisphere = int32_t(hemispheres_.size());
     hemispheres_.push_back(h);
     ray.contribution = weight * h.share;
     const float base = number(r.base, 0);
     const bool here = surface && length(from - at) <= geometry::roundingError(from) + 4 * surface->pError;
+    const size_t begin = out.size();
+    const int few = fewer(o, f, count, c);
     for (int k = 0; k < count; ++k) {
         const Random numbers = p.ray ? random(*p.ray).draw(uint32_t(k), uint32_t(count)) : Random(noSample_.numbers);
         const uint32_t vertex = p.ray ? p.ray->vertex : 0;
@@ -125,7 +121,33 @@ void Engine::hemisphereRays(const BatchContext& c, const SiteInfo& s, const Shad
             ray.origin += (surface->dPdu * (p.du * (e.x - .5f)) + surface->dPdv * (p.dv * (e.y - .5f))) * base;
         }
         out.push_back(ray);
+        if (k + 1 == few && few < count && agree(out, begin, hemispheres_.back(), weight)) return;
     }
+}
+
+/// How many rays are sent before the others of so many: all where the call does not ask for fewer.
+int Engine::fewer(const OcclusionSite& o, const std::function<float(int)>& f, int count, const BatchContext& c) const {
+    const bool given = o.least >= 0 && f(o.least) >= 1;
+    if (c.light || !world_->media_.empty() || (o.adaptive >= 0 ? !(f(o.adaptive) > 0) : !given)) return count;
+    return std::clamp(given ? int(std::min(f(o.least), 4096.f)) : count / 4, 1, count);
+}
+
+/// Follows the rays behind `begin`, which are the first of a call's. Whether they say all the same: then the others are left out,
+/// which is a bias. What they bring is settled either way.
+bool Engine::agree(std::vector<ShadowRay>& rays, size_t begin, HemisphereRays& of, const Color& weight) {
+    const std::span<ShadowRay> first = std::span(rays).subspan(begin);
+    std::vector<Color> left(first.size());
+    transmittances(first, left);
+    const auto [least, most] = std::minmax_element(left.begin(), left.end(), [](const Color& a, const Color& b) { return mean(a) < mean(b); });
+    const bool same = mean(*most) - mean(*least) < kAgree;
+    if (same) {
+        of.share = 1 / float(first.size());
+        for (ShadowRay& r : first) r.contribution = r.contribution == Color(0) ? Color(0) : weight * of.share;
+    }
+    for (size_t k = 0; k < first.size(); ++k)
+        settled_.push_back({first[k].target, openLight(first[k], left[k], sumsOf(first[k].target)), LightEvent::Sampled, first[k].ray});
+    rays.resize(begin);
+    return same;
 }
 
 Color Engine::openLight(const ShadowRay& r, const Color& transmitted, TraceSums* sums) const {

@@ -153,11 +153,21 @@ void Engine::placePoints(HitQueue& q, BatchContext& c) {
         p.shutter = p.surface.time = world_->shadesAtOpen_ ? 0 : r.shutter();
         p.time = world_->timeAt(p.shutter);
         p.dPdtime = world_->moves_ ? world_->pointsVelocity(*p.shape, p.surface) : Vec3(0.f);
+        if (r.extra >= 0) fade(c.rays[i], length(p.P - r.origin));
         if (!world_->footprints_) continue;
         const float rate = r.camera() ? world_->bindings_[size_t(c.bindings[i])].shadingRate : 1;
         shading::setFootprint(p, r.footprint, r.dir, length(p.P - r.origin), rate);
     }
     q.hits.clear();
+}
+
+/// What a ray meets counts less far away, where its call says so.
+void Engine::fade(PathRay& r, float way) {
+    RayExtra& x = extras_[size_t(r.extra)];
+    if (!x.fade.fades()) return;
+    x.whole = r.weight;
+    x.kept = x.fade.at(double(x.way) + way);
+    r.weight *= x.kept;
 }
 
 /// Light of the emitters among the points.

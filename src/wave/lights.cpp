@@ -30,8 +30,14 @@ shading::TargetValue Engine::rayOfLight(BatchContext& c, const SiteInfo& s, int 
         return value;
     }
     if (s.kind != SiteKind::Trace || !p.ray || !world_->accel_) return value; // lights that are measured see nothing
-    // An engine of its own follows the ray and all that comes of it, to the end: the lights that it meets may trace as well, one
-    // bounce deeper.
+    value = inner().follow(c, s, point, row, occurrence);
+    takeInner();
+    return value;
+}
+
+/// An engine of its own follows rays of lights and all that comes of them, to the end: the lights that they meet may trace as well,
+/// one bounce deeper.
+Engine& Engine::inner() {
     if (!inner_) {
         inner_ = std::make_unique<Engine>(world_, diagnostics_);
         inner_->events_ = events_;
@@ -40,12 +46,20 @@ shading::TargetValue Engine::rayOfLight(BatchContext& c, const SiteInfo& s, int 
     }
     inner_->stop = stop;
     inner_->beginsAnew_ = beginsAnew_;
-    value = inner_->follow(c, s, point, row, occurrence);
+    inner_->sched_->restart(stop);
+    inner_->waiting_.clear();
+    inner_->traceSums_.clear();
+    inner_->gathered_.clear();
+    inner_->lobes.clear();
+    inner_->lobeRows_.clear();
+    return *inner_;
+}
+
+void Engine::takeInner() {
     counters += inner_->counters;
     inner_->counters = {};
     spoiled_.insert(spoiled_.end(), inner_->spoiled_.begin(), inner_->spoiled_.end());
     inner_->spoiled_.clear();
-    return value;
 }
 
 shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int point, const std::function<float(int)>& row,
@@ -53,11 +67,6 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
     const ShadePoint& p = c.points[size_t(point)];
     const PathRay& from = *p.ray;
     Sched& sched = *sched_;
-    sched.restart(stop);
-    waiting_.clear();
-    traceSums_.clear();
-    lobes.clear();
-    lobeRows_.clear();
     const TargetId target = sched.newRoot();
     // request() reads rows of lanes: this is one lane.
     std::vector<float> in;
@@ -130,8 +139,23 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
     return value;
 }
 
-/// A gather in a light's kernel: rays and what they meet. What shaders there give is not followed from here.
-static void gatherOfLight(Engine& e, BatchContext& c, const SiteInfo& s, int first, std::span<uint32_t> asked) {
+void Engine::followGather(std::span<GatherSent> sent) {
+    std::vector<TargetId> targets;
+    for (GatherSent& g : sent) {
+        targets.push_back(sched_->newRoot());
+        gathered_[targets.back()] = &g;
+        sched_->spawn(g.ray.bounces + g.ray.layers, targets.back(), g.ray);
+    }
+    sched_->run();
+    for (size_t k = 0; k < sent.size(); ++k)
+        if (!sent[k].quiet) endGatherRay(*sent[k].site, sched_->value(targets[k]), sent[k].row);
+    gathered_.clear();
+    litValues_.clear();
+    shadows.clear();
+}
+
+/// A gather in a light's kernel.
+void Engine::gatherOfLight(BatchContext& c, const SiteInfo& s, int first, std::span<uint32_t> asked) {
     const int lanes = c.requestLanes;
     const size_t points = asked.size() / c.bound->sites.size();
     std::vector<uint32_t> occurrence(size_t(lanes), 0), rays(size_t(lanes), 0);
@@ -142,13 +166,11 @@ static void gatherOfLight(Engine& e, BatchContext& c, const SiteInfo& s, int fir
         occurrence[size_t(lane)] = turn;
     }
     std::vector<GatherSent> sent;
-    const GatherRows& g = castGather(e, c, s, first, c.requestMask, lanes, c.requestIn.data(), occurrence, rays, sent);
-    if (!sent.empty())
-        e.diagnostics().reportOnce("gatheroflight:" + c.light->instance->name,
-                                   {Severity::Warning, Rie::Unimplement, c.light->instance->place,
-                                    "gather in light \"" + c.light->instance->name +
-                                        "\" asks for outputs of the shaders that its rays meet; they are not run from a light",
-                                    "trace() brings the light of what it meets", {}});
+    const GatherRows& g = castGather(*this, c, s, first, c.requestMask, lanes, c.requestIn.data(), occurrence, rays, sent);
+    if (!sent.empty()) {
+        inner().followGather(sent);
+        takeInner();
+    }
     for (int lane = 0; lane < lanes; ++lane) c.requestOut[lane] = float(g.counts[size_t(lane)]);
 }
 
@@ -166,7 +188,7 @@ void Engine::runWaitingLight(BatchContext& context) {
         while (!k.finished(h)) {
             const SiteInfo& s = bound.sites[c->requestSite];
             if (s.kind == SiteKind::Gather) {
-                gatherOfLight(*this, *c, s, first, asked);
+                gatherOfLight(*c, s, first, asked);
                 k.resume(h);
                 c->ran();
                 continue;

@@ -59,11 +59,8 @@ struct Deposit {
 struct HemisphereRays {
     const TraceSite* site = nullptr;
     float share = 1;        ///< of one of its rays
-    float falloff = 0, reach = 1e38f;
-    bool polynomial = false;
+    shading::Fade fade;     ///< how much a surface blocks that a ray meets far away
     float spread = 0;       ///< of the rays, for the map
-    /// How much a surface blocks that a ray meets so far away.
-    float blocks(double distance) const;
 };
 
 /// The way from a to b for a shadow ray; where an end is `at`, a shaded point of the surface `s` (null: none), that surface does

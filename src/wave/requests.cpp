@@ -47,7 +47,7 @@ void Engine::requestShadows(BatchContext& c, const SiteInfo& s, int point, const
                             const Color& weight, TargetId target, bool owns, uint32_t occurrence) {
     const ShadePoint& p = c.points[size_t(point)];
     const uint32_t site = uint32_t(s.site - c.bound->kernel->sites().data());
-    const size_t had = shadows.size();
+    const size_t had = shadows.size(), settled = settled_.size();
     if (s.kind == SiteKind::Transmission) {
         transmissionRays(s, p, p.P, &p.surface, f, weight, target, site, occurrence, shadows);
         const auto v = [&](int arg) {
@@ -56,11 +56,20 @@ void Engine::requestShadows(BatchContext& c, const SiteInfo& s, int point, const
         shadowsInMedia(std::span(shadows).subspan(had), v(0), v(1), p.P, &p.surface,
                        c.bindings.empty() ? nullptr : &world_->bindings_[size_t(c.bindings[size_t(point)])]);
     } else {
+        if (s.occlusion->records.call) {
+            RayKind kind = kShadowKind;
+            kind.set = raySetOf(s, f, p.shape, kind.type, kind.label);
+            if (const auto open = recorded(c, s, point, f, kindOf(kind), occurrence)) {
+                settled_.push_back({target, weight * *open, LightEvent::Sampled, p.ray, owns || !p.ray ? -1 : extraOf(*p.ray).share});
+                return;
+            }
+        }
         hemisphereRays(c, s, p, p.P, &p.surface, f, weight, target, site, occurrence, shadows);
         for (size_t k = had; k < shadows.size(); ++k) shadows[k].media = mediaTowards(c, point, shadows[k].dir);
     }
-    if (!owns && p.ray)
-        for (size_t k = had; k < shadows.size(); ++k) shadows[k].share = extraOf(*p.ray).share;
+    if (owns || !p.ray) return;
+    for (size_t k = had; k < shadows.size(); ++k) shadows[k].share = extraOf(*p.ray).share;
+    for (size_t k = settled; k < settled_.size(); ++k) settled_[k].share = extraOf(*p.ray).share;
 }
 
 /// Which surfaces rays of a trace() meet.
@@ -84,6 +93,13 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         return;
     }
     if (!s.lobe) return; // under path ambient light is what escaping diffuse rays see
+    if (s.kind == SiteKind::Trace && s.trace->records.call) {
+        if (const auto light = recorded(c, s, point, f, raysOfTrace(s, f, p), occurrence)) {
+            settled_.push_back({target, weight * *light * (owns ? Color(1) : p.ray->weight), LightEvent::Sampled, p.ray,
+                                owns ? -1 : extraOf(*p.ray).share});
+            return;
+        }
+    }
     LobeVertex& l = lobes.emplace_back();
     l.kind = s.lobe;
     LobeParams params;
@@ -135,6 +151,8 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         l.deltaLights = l.lobeOfShader = false;
         l.maxDistance = std::min(number(s.rays->maxDistance, 1e38f), number(s.rays->maxHit, 1e38f));
         if (l.maxDistance < 0) l.maxDistance = 1e38f; // PRMan: none
+        if (const FadeSite& fade = s.trace->fade; fade.strength >= 0)
+            l.fade = {std::max(0.f, f(fade.strength)), l.maxDistance, number(fade.mode, 0) != 0};
         if (s.trace->hemisphere) l.samples = samplesOf(number(s.rays->samples, 0), p.shape, s, c);
         else l.samples = std::clamp(int(std::clamp(number(s.rays->samples, 1), 1.f, 4096.f)), 1, 4096);
         break;

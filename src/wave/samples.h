@@ -14,6 +14,7 @@ struct Counters {
     uint64_t points = 0, batches = 0, lanesUsed = 0, lanesRun = 0;
     uint64_t nonFinite = 0, overLimit = 0, depthCap = 0;
     uint64_t depthSum = 0, paths = 0;
+    uint64_t records = 0, interpolated = 0; ///< light of hemispheres: found for records, and read from those
     int depthMax = 0;
     size_t peakFrameBytes = 0; ///< suspended kernel frames at one time, the largest of all threads
     void operator+=(const Counters&);
@@ -28,6 +29,8 @@ struct CameraRay {
     float start = 0;             ///< the way from the eye to the origin, where that is the near plane
     int px = 0, py = 0;          ///< pixel, and
     uint32_t sample = 0;         ///< sample number: the key of all random numbers
+    /// Not for the picture: hemispheres that shaders want interpolated are measured at what it meets. See World::interpolates().
+    bool records = false;
 };
 
 struct SampleResult {

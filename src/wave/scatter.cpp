@@ -193,6 +193,7 @@ void Gather::sendRay(const Sent& s, int turn, Sched& sched) {
     if (l.rays->type == RayType::Specular)
         ++(dot(w, p.surface.n) * dot(from.dir, p.surface.n) > 0 ? e_.counters.refracted : e_.counters.reflected);
     extra.lit = l.lit;
+    extra.fade = l.fade;
     extra.share = shareOf(l);
     if (l.ownsTarget && l.trace && l.trace->sums) {
         extra.part = Color(1.f / float(s.count));

@@ -49,8 +49,14 @@ void Engine::tellAsker(const BatchContext& c, int i, const Color& opacity, Sched
     }
     if (!gathered_.empty())
         if (const auto asks = gathered_.find(target); asks != gathered_.end()) tellGather(c, i, *asks->second);
+    const RayExtra& extra = extraOf(ray);
+    if (extra.fade.fades() && maxComponent(extra.environment) > 0) { // what does not block shows the sky
+        const Color light = extra.whole * extra.environment * opacity * (1 - extra.kept);
+        deposit(sched, {target, light, LightEvent::Map, &ray, extra.share});
+        if (TraceSums* sums = sumsOf(target)) sums->add(TraceSums::Environment, light);
+    }
     if (TraceSums* sums = sumsOf(target)) {
-        const Color blocked = extraOf(ray).part * opacity;
+        const Color blocked = extra.part * opacity * extra.kept;
         sums->add(TraceSums::Blocked, blocked);
         sums->add(TraceSums::Open, ray.dir * -mean(blocked));
     }
@@ -213,7 +219,7 @@ void Engine::requestPairs(BatchContext& c, std::span<const Color> slope, std::ve
                 notFinite(c, c.rays[size_t(point)], uint32_t(e.site));
                 continue;
             }
-            if (weight == Color(0)) continue;
+            if (weight == Color(0) || c.rays[size_t(point)].quiet) continue;
             if (world_->bindings_[c.bindings[point]].matte && c.rays[point].camera()) continue;
             const float* args = rows + size_t(3) * e.lanes;
             if (s.kind == SiteKind::LightVisibility) {

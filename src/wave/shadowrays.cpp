@@ -106,7 +106,7 @@ void Engine::opacities(std::span<const OpacityQuery> met, std::span<Color> out) 
 }
 
 bool Engine::meetsOpaqueAlone(const ShadowRay& r) const {
-    if (r.hemisphere >= 0 && hemispheres_[size_t(r.hemisphere)].falloff > 0) return false; // it matters how far away they are
+    if (r.hemisphere >= 0 && hemispheres_[size_t(r.hemisphere)].fade.fades()) return false; // it matters how far away they are
     return world_->media_.empty() && !r.kind->set.only && r.kind->set.mode == shading::HitMode::Default;
 }
 
@@ -153,11 +153,11 @@ void Engine::transmittances(std::span<const ShadowRay> rays, std::span<Color> ou
 
 void Engine::passSurfaces(std::span<const ShadowRay> rays, std::span<Color> out) {
     const bool media = !world_->media_.empty();
-    const auto fades = [&](const ShadowRay& r) { return r.hemisphere >= 0 && hemispheres_[size_t(r.hemisphere)].falloff > 0; };
+    const auto fades = [&](const ShadowRay& r) { return r.hemisphere >= 0 && hemispheres_[size_t(r.hemisphere)].fade.fades(); };
     const bool fading = std::any_of(rays.begin(), rays.end(), fades);
     std::vector<Color> taken(fading ? rays.size() : 0, Color(0)); // what surfaces far away block in part
     const auto takes = [&](size_t i, const Color& opacity, double distance) {
-        if (fading && fades(rays[i])) taken[i] += out[i] * opacity * hemispheres_[size_t(rays[i].hemisphere)].blocks(distance);
+        if (fading && fades(rays[i])) taken[i] += out[i] * opacity * hemispheres_[size_t(rays[i].hemisphere)].fade.at(distance);
         out[i] *= Color(1) - opacity;
     };
     if (world_->allOpaque_ && !media && !fading) {
@@ -273,6 +273,9 @@ void Engine::transmissionRays(const SiteInfo& s, const ShadePoint& p, const Vec3
 }
 
 void Engine::flushShadows(Sched& s) {
+    for (const Deposit& d : settled_) deposit(s, d);
+    settled_.clear();
+    followRecords(s);
     if (shadows.empty()) return;
     transmitted_.resize(shadows.size());
     transmittances(shadows, transmitted_);

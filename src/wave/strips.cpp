@@ -28,7 +28,7 @@ bool KernelStrip::resume(Sched& s, std::span<const shading::TargetValue> results
     if (gather_) {
         for (size_t k = 0; k < results.size(); ++k) {
             c_->engine->gathered_.erase(ids_[k]);
-            endGatherRay(*sent_[k].site, results[k], sent_[k].row);
+            if (!sent_[k].quiet) endGatherRay(*sent_[k].site, results[k], sent_[k].row);
         }
         for (int lane : laneOf_) out_[lane] = float(gather_->counts[size_t(lane)]);
         gather_ = nullptr;
@@ -114,6 +114,7 @@ void KernelStrip::ask(Sched& s) {
                               in_[size_t(site.rows[0]) * size_t(lanes_) + size_t(lane)]);
             continue;
         }
+        if (c_->rays[size_t(point)].quiet && site.lobe) continue; // nobody hears of light
         const size_t had = e.lobes.size();
         if (e.shadows.size() > kShadowsAtOnce) e.flushShadows(s);
         e.request(*c_, site, point, in_.data(), lanes_, lane, Color(1), ids_[k], true, occurrence);

@@ -43,6 +43,7 @@ struct LobeVertex {
     float importance = 1;  ///< its "weight", for rayinfo()
     Color tint{1};         ///< of the environment map
     const TraceSite* trace = nullptr;
+    shading::Fade fade;    ///< of what its rays meet
     float albedo = 0;      ///< kind->albedo(params)
     float chosen = 1;      ///< probability that the indirect ray of this lobe is followed
 };

@@ -8,9 +8,11 @@ namespace alpenglow::transport {
 
 void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId target, const ShadePoint& p,
                          const Color& transparency, float chance, uint32_t asked, Sched& sched) {
+    if (ray.quiet) return;
     const Color t = transparency / chance;
     PathRay r = ray;
-    r.weight = ray.weight * t;
+    const RayExtra& had = extraOf(ray);
+    r.weight = (had.fade.fades() ? had.whole : ray.weight) * t;
     float chosen = 1;
     const Settings& set = world_->settings_;
     // What a camera ray shows behind a surface is always followed, so that opacity, depth and AOVs are exact.
@@ -47,6 +49,7 @@ void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId t
     if (ray.extra >= 0) {
         RayExtra extra = extraOf(ray);
         extra.part = extra.part * t / chosen;
+        extra.way += travelled;
         r.extra = newExtra(extra);
     }
     sched.spawn(r.bounces + r.layers, target, r);

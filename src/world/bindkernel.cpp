@@ -59,6 +59,18 @@ SiteKind kindOf(const std::string& op) {
     return i == kinds.end() ? SiteKind::Other : i->second;
 }
 
+/// Records hold the light of whole hemispheres about a normal, nothing else: a call with other outputs or directions has none.
+RecordSite recordSite(const SiteInfo& i, const rsl::ir::Site& s, WorldImpl& world) {
+    const auto row = [&](const char* name) { auto f = i.named.find(name); return f == i.named.end() ? -1 : f->second; };
+    RecordSite r{row("maxvariation"), row("maxpixeldist")};
+    if (r.variation < 0 || i.resultRows.size() > 1 || row("horizon") >= 0 || row("axis") >= 0) return r;
+    world.interpolates_ = true;
+    r.call = std::max<uint64_t>(
+        1, std::hash<std::string>{}(s.op + ":" + std::to_string(s.place.file) + ":" + std::to_string(s.place.line) + ":" +
+                                    std::to_string(s.place.column)));
+    return r;
+}
+
 /// The parameters of a trace() beyond the common ones. Parameters that are ignored are reported once each.
 std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKernel& k,
                                            WorldImpl& world) {
@@ -104,18 +116,22 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
         !i.resultRows.empty() &&
         i.resultRows.count("arealightcontribution") + i.resultRows.count("unshadowedarealight") == i.resultRows.size();
     t->hemisphere = i.text.count("__hemisphere") > 0;
+    t->fade = {row("falloff"), row("falloffmode")};
+    if (t->hemisphere) t->records = recordSite(i, s, world);
     return t;
 }
 
-std::shared_ptr<const OcclusionSite> occlusionSite(const SiteInfo& i) {
+std::shared_ptr<const OcclusionSite> occlusionSite(const SiteInfo& i, const rsl::ir::Site& s, WorldImpl& world) {
     auto o = std::make_shared<OcclusionSite>();
     auto row = [&](const char* name) { auto f = i.named.find(name); return f == i.named.end() ? -1 : f->second; };
     o->cone = row("coneangle");
     o->axis = row("axis");
-    o->falloff = row("falloff");
-    o->mode = row("falloffmode");
+    o->fade = {row("falloff"), row("falloffmode")};
+    o->adaptive = row("adaptive");
+    o->least = row("minsamples");
     const auto word = i.text.find("distribution");
     o->uniform = word != i.text.end() && word->second == "uniform";
+    if (!o->uniform) o->records = recordSite(i, s, world);
     return o;
 }
 
@@ -297,7 +313,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         }
         if (i.kind == SiteKind::Trace) bindTrace(i, s, *k, *world);
         if (i.kind == SiteKind::Occlusion) {
-            i.occlusion = occlusionSite(i);
+            i.occlusion = occlusionSite(i, s, *world);
             i.trace = traceSite(i, s, *k, *world);
         }
         b.sites.push_back(std::move(i));

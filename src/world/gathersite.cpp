@@ -138,8 +138,9 @@ void linkGathers(BoundKernel& b, const rsl::CompiledKernel& k, WorldImpl& world)
             });
             for (const GatherSite::Output& o : g->outputs) {
                 g->light |= o.of == Of::Light;
-                g->shades |= o.of == Of::Light || o.of == Of::Opacity || o.of == Of::Surface || o.of == Of::Displacement ||
-                             o.of == Of::Volume;
+                g->opacity |= o.of == Of::Opacity;
+                g->asks |= o.of == Of::Surface || o.of == Of::Displacement || o.of == Of::Volume;
+                g->shades |= g->light || g->opacity || g->asks;
             }
             continue;
         }

@@ -55,6 +55,7 @@ struct GatherSite {
     int width = 1;       ///< rows of a ray: whether it hit, then the outputs
     bool shades = false; ///< shaders must run where a ray hits
     bool light = false;  ///< and what arrives from there counts
+    bool opacity = false, asks = false; ///< surface:Oi; parameters and outputs of shaders
     std::shared_ptr<const SkyDirections> sky;
 };
 

@@ -8,6 +8,7 @@
 #include "world/evaluator.h"
 #include "world/lightchooser.h"
 #include "world/photonstore.h"
+#include "world/records.h"
 #include "world/world.h"
 #include <functional>
 #include <unordered_map>
@@ -36,6 +37,8 @@ public:
     std::vector<std::string> missingOutputs() const override { return missingOutputs_; }
     std::vector<std::string> knownOutputs() const override;
     void flushPrints(bool keep) const override { keep ? prints_.flush() : prints_.discard(); }
+    bool interpolates() const override { return interpolates_; }
+    size_t keepRecords() const override { return records_.keep(); }
     bool runImager(int, const float*, const float*, float*, float*, float*, float*, Diagnostics&,
                    const StopFlag* stop) const override;
     bool matrix(const std::string& from, const std::string& to, Matrix& out) const override;
@@ -149,6 +152,8 @@ public:
     texture::IrradianceTables irradiance_;
     std::shared_ptr<PhotonStore> photons_;     ///< changes between passes only, when nobody follows rays
     bool globalMaps_ = false;                  ///< some surface has a global photon map, and some indirectdiffuse() may meet it
+    mutable LightRecords records_;
+    bool interpolates_ = false;                ///< some call may want records
     mutable std::mutex imagerMutex_;
     struct BoundImager { bool bound = false; InstanceRef shader; BoundKernel kernel; };
     BoundImager imager_;                       ///< by runImager(), under the lock

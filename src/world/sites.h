@@ -38,6 +38,15 @@ struct RaySite {
 };
 
 
+/// "falloff" and "falloffmode" of a hemisphere: rows, or -1.
+struct FadeSite { int strength = -1, mode = -1; };
+
+/// Whether light of a hemisphere may be interpolated between records (world/records.h). Rows, or -1.
+struct RecordSite {
+    int variation = -1, pixels = -1; ///< "maxvariation", "maxpixeldist"
+    uint64_t call = 0;               ///< what tells this call from others; 0: it asks for what is not kept in records
+};
+
 /// Where the rarer parameters of a trace() lie.
 struct TraceSite {
     int udir = -1, roughness = -1, roughnessv = -1, absorption = -1, tint = -1, weight = -1; ///< rows, or -1
@@ -49,11 +58,15 @@ struct TraceSite {
     bool sums = false;                    ///< it asks for transmission or for parts of the result
     bool onlyLights = false;              ///< for nothing but what area lights send
     bool hemisphere = false;              ///< of indirectdiffuse(): no "samples" is Attribute "irradiance" "nsamples"
+    FadeSite fade;
+    RecordSite records;
 };
 
 /// What occlusion() asks beyond TraceSite. Rows, or -1.
 struct OcclusionSite {
-    int cone = -1, axis = -1, falloff = -1, mode = -1;
+    int cone = -1, axis = -1, adaptive = -1, least = -1; ///< least: "minsamples"
+    FadeSite fade;
+    RecordSite records;
     bool uniform = false;                 ///< "distribution" "uniform"
 };
 struct GatherSite; // world/gathersite.h

@@ -36,6 +36,11 @@ public:
     virtual PhotonStore* photons() const { return nullptr; }
     /// What could be named instead: predefined variables and the outputs of the frame's shaders.
     virtual std::vector<std::string> knownOutputs() const { return {}; }
+    /// Some shader wants light interpolated: before pictures are traced passes of rays with CameraRay::records are to be, coarse
+    /// to fine, each followed by keepRecords(). What a pass finds the next ones read, so that its order changes nothing.
+    virtual bool interpolates() const { return false; }
+    /// Ends such a pass: no thread may trace meanwhile. Returns how many records there are now.
+    virtual size_t keepRecords() const { return 0; }
     /// Writes what shaders have printed since the last call, in the order of the samples; or forgets it. Between passes.
     virtual void flushPrints(bool keep) const = 0;
     /// Runs the frame's imager over finished pixels, in place. rgb: linear colour, alpha: coverage, P: raster position. True when

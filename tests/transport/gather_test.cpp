@@ -101,6 +101,32 @@ TEST(Gather, RunsShadersOnlyWhereAsked) {
     }
 }
 
+// One bounce on few of 64 rays are followed under path, but what the hits tell, and how many there are, is as it is.
+TEST(Gather, TellsAllOfHitsWhoseLightIsNotFollowed) {
+    writeShader("gsends", "surface gsends() { Ci = trace(P, vector \"world\" (0, 1, 0)); Oi = 1; }\n");
+    writeShader("gdeeper", "surface gdeeper(float given = 4; output varying float own = 0) { color c = 0, o = 0, sum = 0; float f = 0, g = 0, hits = 0; own = 5 * v;"
+                           "gather(\"\", P, -P, .5, 64, \"surface:given\", f, \"surface:own\", g, \"primitive:v\", c, \"surface:Oi\", o) { hits += f / 64; sum += o / 64; }"
+                           "Ci = color(hits, comp(sum, 0), 0); Oi = 1; }\n");
+    const std::string shell = "AttributeBegin Surface \"gdeeper\" Sphere 2 -2 2 360 AttributeEnd\n";
+    Scene told(world(kSeen + "Surface \"gsends\"\n" + kSmall + shell), withShaders(Hider::Path)); // elsewhere 64 to the depth are followed
+    const Moments n = told.estimate(kNear, 20);
+    EXPECT_NEAR(n.mean(0), 4, 1e-4);
+    EXPECT_NEAR(n.mean(1), 1, 1e-5);
+    EXPECT_LT(n.se(0), 1e-5);
+    // Light is followed by chance, and right in the mean.
+    writeShader("glit", "surface glit() { color c = 0, sum = 0; float lit = .25; rayinfo(\"depth\", lit); gather(\"\", P, -P, .5, 64, \"surface:Ci\", c) sum += c / 64; Ci = (lit < 2) ? sum : color(.25); Oi = 1; }\n");
+    Scene s(world(kSeen + "Surface \"gsends\"\n" + kSmall + "AttributeBegin Surface \"glit\" Sphere 2 -2 2 360 AttributeEnd\n"), withShaders(Hider::Path));
+    expectMean(s.estimate(kNear, 4000), .25, .02, "light behind the second hit");
+}
+
+// Rays of one statement are spread among each other: the part that a wall takes is met far better than by as many drawn freely.
+TEST(Gather, SpreadsItsRays) {
+    const double p = ofWall(.5, 1);
+    const Moments m = of(runs("gspread", "gather(\"\", P, up, PI / 2, 64, \"distribution\", \"cosine\") hits += 1 / 64;", "color(hits)"), kFloor + wall(1), Hider::Raytrace, 1000);
+    expectMean(m, p, .01, "wall");
+    EXPECT_LT(m.se() * m.se() * m.n, p * (1 - p) / 64 / 4);
+}
+
 TEST(Gather, Jumps) {
     const std::string scene = kSmall + ball(2, "");
     EXPECT_EQ(of(runs("gbreak", "gather(\"\", P, up, 1, 200) { hits += 1; if (hits == 70) break; }", "color(hits)"), scene).mean(), 70);
@@ -172,6 +198,22 @@ TEST(Gather, InALight) {
     direct.indirect = false;
     Scene s(world(kSeen + "LightSource \"glightopen\" 1\nSurface \"matte\" \"Ka\" 0\n" + kFloor + wall(1)), direct);
     EXPECT_NEAR(s.estimate(kNear, 50).mean(), 1 - ofWall(.5, 1), .01);
+}
+
+TEST(Gather, AsksShadersFromALight) {
+    writeShader("gtold", "surface gtold(float given = 2; output varying float own = 0) { own = given + 1; Ci = Cs; Oi = Os; }\n");
+    writeShader("glightasks", "light glightasks() { vector up = vector \"world\" (0, 1, 0); color c = 0, sum = 0; float f = 0, g = 0;"
+                              "gather(\"\", Ps, up, .5, 16, \"surface:Ci\", c, \"surface:given\", f, \"surface:own\", g) sum += color(comp(c, 0), f, g) / 16; solar(-up, 0) { Cl = sum; } }\n");
+    const std::string shell = "AttributeBegin Attribute \"visibility\" \"integer transmission\" 0 Surface \"gtold\" \"given\" 4 Color .25 1 1 Sphere 2 -2 2 360 AttributeEnd\n";
+    for (const Hider h : kAll) {
+        Settings direct = withShaders(h);
+        direct.indirect = false;
+        Scene s(world(kSeen + "LightSource \"glightasks\" 1\nSurface \"matte\" \"Ka\" 0\n" + kSmall + shell), direct);
+        const Moments m = s.estimate(kNear, 4);
+        EXPECT_NEAR(m.mean(0), .25, 1e-4) << int(h) << s.messages();
+        EXPECT_NEAR(m.mean(1), 4, 1e-3);
+        EXPECT_NEAR(m.mean(2), 5, 1e-3);
+    }
 }
 
 TEST(Gather, WhatIsNotKnownIsSaid) {

@@ -174,6 +174,51 @@ TEST(IndirectDiffuse, OfAMapAlone) {
     EXPECT_EQ(of(shows("indzero", "indirectdiffuse(\"" + dir + "/indwhite.exr\", vector(0))"), kFloor, Hider::Hidden, 1).mean(), 0);
 }
 
+// Inside of a ball of radius 2 that shows .5, under a sky that would show .25, .5 and .75.
+TEST(IndirectDiffuse, FallsOff) {
+    writeMap("fallsky.exr", 16, 8, Color(.25f, .5f, .75f));
+    struct Case { const char* pairs; double kept; };
+    for (const Case& c : {Case{"\"falloff\", .7", std::exp(-.7 * 2)}, Case{"\"falloff\", 3, \"falloffmode\", 1, \"maxdist\", 8", std::pow(.75, 3)}, Case{"\"falloff\", 0", 1}})
+        for (const double opacity : {1., .5})
+            for (const Hider h : kAll) {
+                const std::string call = std::string("indirectdiffuse(P, up, 4, ") + c.pairs;
+                const std::string shell = ball(2, opacity < 1 ? "Opacity .5 .5 .5 Color .5 .5 .5" : "Color .5 .5 .5");
+                EXPECT_NEAR(of(shows("indfall", call + ")"), kSmall + shell, h, 16).mean(), .5 * opacity * c.kept, 2e-3) << c.pairs;
+                const std::string map = ", \"environmentmap\", \"" + shaderFolder() + "/fallsky.exr\", \"environmentcolor\", ec, \"occlusion\", oc)";
+                const Moments all = of(shows("indfallmap", call + map), kSmall + shell, h, 16);
+                const double open = 1 - opacity * c.kept;
+                for (int k = 0; k < 3; ++k) EXPECT_NEAR(all.mean(k), .5 * opacity * c.kept + .25 * (k + 1) * open, 4e-3) << c.pairs << int(h);
+                const Moments parts = of(shows("indfallparts", "ec + oc", call + map + ";"), kSmall + shell, h, 16);
+                EXPECT_NEAR(parts.mean(), .25 * open + 1 - open, 4e-3) << c.pairs << int(h);
+            }
+}
+
+TEST(Occlusion, SendsFewerRaysWhereTheyAgree) {
+    const auto rays = [](const std::string& scene, const std::string& pairs, double want) {
+        Scene s(world(kSeen + shows("occadapt", "color occlusion(P, up, 64" + pairs + ")") + scene), withShaders(Hider::Path));
+        Counters n;
+        const CameraRay ray = kNear;
+        const float got = s.trace({&ray, 1}, &n)[0].color.x;
+        if (want >= 0) EXPECT_NEAR(got, want, 1e-6) << pairs;
+        return n.shadow;
+    };
+    const std::string shell = kSmall + ball(2, "");
+    EXPECT_EQ(rays(shell, "", 1), 64u);
+    EXPECT_EQ(rays(shell, ", \"adaptive\", 0, \"minsamples\", 8", 1), 64u);
+    EXPECT_EQ(rays(shell, ", \"adaptive\", 1", 1), 16u);
+    EXPECT_EQ(rays(shell, ", \"adaptive\", 1, \"minsamples\", 8", 1), 8u);
+    EXPECT_EQ(rays(shell, ", \"minsamples\", 8", 1), 8u);
+    EXPECT_EQ(rays(kSmall, ", \"minsamples\", 8", 0), 8u);
+    EXPECT_EQ(rays(kSmall + ball(2, "Opacity .5 .5 .5"), ", \"minsamples\", 8", .5), 8u);
+    EXPECT_EQ(rays(shell, ", \"minsamples\", 1e9", 1), 64u);
+    EXPECT_EQ(rays(shell, ", \"minsamples\", -1", 1), 64u);
+    EXPECT_EQ(rays(kFloor + wall(1), ", \"minsamples\", 32", -1), 64u); // some meet the wall
+    // Where the first disagree nothing is left out: the mean is right. Its other outputs, too.
+    for (const Hider h : kAll)
+        expectMean(of(shows("occadapt2", "color occlusion(P, up, 64, \"minsamples\", 48)"), kFloor + wall(1), h), ofWall(.5, 1), .01, "adaptive");
+    EXPECT_NEAR(of(shows("occadapt3", "color(ed . up, oc, 0)", "oc = occlusion(P, up, 1024, \"minsamples\", 512, \"environmentdir\", ed);"), kSmall, Hider::Path, 4).mean(), 1, .01);
+}
+
 TEST(Occlusion, EveryParameter) {
     // Inside of a ball of radius 2 that shows .5: all rays that are let go so far are blocked there.
     writeShader("occparams", R"(surface occparams() {

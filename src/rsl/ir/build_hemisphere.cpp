@@ -23,7 +23,8 @@ std::string nameInTrace(const std::string& name) {
     static const std::set<std::string_view> kSame = {"label",   "subset",     "bias",          "hitmode",          "hitsides",
                                                      "maxdist", "samplebase", "type",          "excludesubset",    "raytype",
                                                      "samples", "raylabel",   "maxhitdist",    "environmentspace", "distribution",
-                                                     "weight",  "samplecone", "environmentmap"};
+                                                     "weight",  "samplecone", "environmentmap",
+                                                     "falloff", "falloffmode", "maxvariation", "maxpixeldist"};
     return kSame.count(name) ? name : "";
 }
 

@@ -1,0 +1,46 @@
+// Passes before the picture: where shaders want light of hemispheres interpolated, it is measured on grids of pixels, coarse to fine.
+#include "render/rendering.h"
+
+namespace alpenglow::render {
+
+namespace {
+constexpr int kCoarse = 32, kFine = 2; ///< pixels between the points of the first and of the last grid
+constexpr size_t kRays = 32;           ///< of one trace(): each may send thousands, whose ends all wait in memory
+constexpr int kSide = 64;              ///< of the squares that threads take
+} // namespace
+
+bool findRecords(Job& job) {
+    if (!job.world || !job.world->interpolates()) return true;
+    // The whole frame, whatever part of it is wanted: a pixel does not depend on that.
+    const std::vector<Window> tiles = tilesOf({0, 0, job.camera.width(), job.camera.height()}, kSide);
+    for (int step = kCoarse; step >= kFine; step /= 2) {
+        const auto work = [&](int worker, size_t i) {
+            const Window& t = tiles[i];
+            std::vector<transport::CameraRay> rays;
+            std::vector<transport::SampleResult> results;
+            const auto flush = [&] {
+                results.assign(rays.size(), {});
+                const bool whole = job.trace(worker, rays, results);
+                rays.clear();
+                return whole;
+            };
+            for (int y = t.y0 + step / 2; y < t.y1; y += step)
+                for (int x = t.x0 + step / 2; x < t.x1; x += step) {
+                    transport::CameraRay& r = rays.emplace_back(job.camera.ray(x + 0.5, y + 0.5, {0.5f, 0.5f}, 0));
+                    r.px = x;
+                    r.py = y;
+                    r.sample = uint32_t(step);
+                    r.records = true;
+                    if (rays.size() == kRays && !flush()) return;
+                }
+            if (!rays.empty()) flush();
+        };
+        const bool whole = job.team.run(tiles.size(), &job.halt, work, [&](size_t) { job.pollStop(); });
+        job.world->flushPrints(false);
+        job.world->keepRecords();
+        if (!whole) return false;
+    }
+    return true;
+}
+
+} // namespace alpenglow::render

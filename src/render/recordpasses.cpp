@@ -1,4 +1,5 @@
-// Passes before the picture: where shaders want light of hemispheres interpolated, it is measured on grids of pixels, coarse to fine.
+// Passes before the picture: where shaders want light of hemispheres interpolated, it is measured on grids of pixels, coarse to
+// fine.
 #include "render/rendering.h"
 
 namespace alpenglow::render {

@@ -203,8 +203,8 @@ Color opacityAt(const Asking& a, const accel::Hit& hit, const Vec3& from, const 
     return c;
 }
 
-/// Behind the camera's hit light is not followed of all rays that met something; the others bring what those would have. What else
-/// a gather is told does not depend on it: all its rays are cast, and the shaders run that give its outputs.
+/// Behind the camera's hit light is not followed of all rays that met something; the others bring what those would have. What
+/// else a gather is told does not depend on it: all its rays are cast, and the shaders run that give its outputs.
 bool goesOn(const Asking& a, PathRay& sent, int count, uint32_t asked) {
     if (!a.e.rules().roulette) return true;
     const PathRay& from = *a.point().ray;

@@ -132,20 +132,22 @@ int Engine::fewer(const OcclusionSite& o, const std::function<float(int)>& f, in
     return std::clamp(given ? int(std::min(f(o.least), 4096.f)) : count / 4, 1, count);
 }
 
-/// Follows the rays behind `begin`, which are the first of a call's. Whether they say all the same: then the others are left out,
-/// which is a bias. What they bring is settled either way.
+/// Follows the rays behind `begin`, which are the first of a call's. Whether they say all the same: then the others are left
+/// out, which is a bias. What they bring is settled either way.
 bool Engine::agree(std::vector<ShadowRay>& rays, size_t begin, HemisphereRays& of, const Color& weight) {
     const std::span<ShadowRay> first = std::span(rays).subspan(begin);
     std::vector<Color> left(first.size());
     transmittances(first, left);
-    const auto [least, most] = std::minmax_element(left.begin(), left.end(), [](const Color& a, const Color& b) { return mean(a) < mean(b); });
+    const auto [least, most] =
+        std::minmax_element(left.begin(), left.end(), [](const Color& a, const Color& b) { return mean(a) < mean(b); });
     const bool same = mean(*most) - mean(*least) < kAgree;
     if (same) {
         of.share = 1 / float(first.size());
         for (ShadowRay& r : first) r.contribution = r.contribution == Color(0) ? Color(0) : weight * of.share;
     }
     for (size_t k = 0; k < first.size(); ++k)
-        settled_.push_back({first[k].target, openLight(first[k], left[k], sumsOf(first[k].target)), LightEvent::Sampled, first[k].ray});
+        settled_.push_back({first[k].target, openLight(first[k], left[k], sumsOf(first[k].target)), LightEvent::Sampled,
+                            first[k].ray});
     rays.resize(begin);
     return same;
 }

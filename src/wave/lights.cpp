@@ -35,8 +35,8 @@ shading::TargetValue Engine::rayOfLight(BatchContext& c, const SiteInfo& s, int 
     return value;
 }
 
-/// An engine of its own follows rays of lights and all that comes of them, to the end: the lights that they meet may trace as well,
-/// one bounce deeper.
+/// An engine of its own follows rays of lights and all that comes of them, to the end: the lights that they meet may trace as
+/// well, one bounce deeper.
 Engine& Engine::inner() {
     if (!inner_) {
         inner_ = std::make_unique<Engine>(world_, diagnostics_);

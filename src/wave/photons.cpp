@@ -103,7 +103,7 @@ bool Engine::emitAll(const PhotonJob& job, uint32_t first, uint32_t count) {
         if (!(most > 0) || !std::isfinite(most)) continue;
         PathSample& sample = samples_[i];
         sample = {int(job.pass >> 24), int(job.pass & 0xffffffu), first + i,   int(i), world_->timeAt(s.drawn.time),
-                  s.drawn.time,        0.5f,                      job.numbers(first + i)};
+                  s.drawn.time,        0.5f,                      false,         job.numbers(first + i)};
         PathRay& r = sched.spawn(0, root).payload;
         r.origin = s.origin;
         r.dir = s.dir;

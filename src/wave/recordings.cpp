@@ -1,4 +1,5 @@
-// Hemispheres that are interpolated (world/records.h): calls that read records, and in passes that find them the rays of new ones.
+// Hemispheres that are interpolated (world/records.h): calls that read records, and in passes that find them the rays of new
+// ones.
 #include "wave/recordings.h"
 #include "lobes/sampling.h"
 #include "wave/engine.h"
@@ -39,7 +40,8 @@ std::optional<Color> Engine::recorded(const BatchContext& c, const SiteInfo& s, 
     record.N = record.N / l;
     const float far = std::min(number(r.maxDistance, 1e38f), number(r.maxHit, 1e38f)), reach = far >= 0 ? far : 1e38f;
     n.fade = {std::max(0.f, number(fade.strength, 0)), reach, number(fade.mode, 0) != 0};
-    record.call = mixed(mixed(mixed(render::mix64(site.call + uint64_t(b.group)), reach), n.fade.strength), float(n.fade.polynomial));
+    record.call = mixed(mixed(render::mix64(site.call + uint64_t(b.group)), reach), n.fade.strength);
+    record.call = mixed(record.call, float(n.fade.polynomial));
     record.call = mixed(record.call, float(kind->set.sides == accel::Sides::Front));
     Color light;
     if (world_->records_.find(record.call, record.P, record.N, light)) {
@@ -81,7 +83,6 @@ void Engine::sendRecord(const BatchContext& c, int point, uint32_t call, uint32_
     const Basis about(n.record.N);
     n.axes = {about.t, about.u, n.record.N};
     const bool here = length(at - p.P) <= geometry::roundingError(at) + 4 * p.surface.pError;
-    std::vector<ShadowRay> shadowed;
     for (int i = 0; i < n.rings * n.turns; ++i) {
         const Vec2 e = random(from).pair(from.vertex, call, occurrence * 4096 + uint32_t(i));
         const float r2 = (float(i / n.turns) + e.x) / float(n.rings), r = std::sqrt(r2);

@@ -60,7 +60,8 @@ void Engine::requestShadows(BatchContext& c, const SiteInfo& s, int point, const
             RayKind kind = kShadowKind;
             kind.set = raySetOf(s, f, p.shape, kind.type, kind.label);
             if (const auto open = recorded(c, s, point, f, kindOf(kind), occurrence)) {
-                settled_.push_back({target, weight * *open, LightEvent::Sampled, p.ray, owns || !p.ray ? -1 : extraOf(*p.ray).share});
+                settled_.push_back({target, weight * *open, LightEvent::Sampled, p.ray,
+                                    owns || !p.ray ? -1 : extraOf(*p.ray).share});
                 return;
             }
         }

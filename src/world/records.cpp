@@ -24,7 +24,10 @@ void LightRecord::take(const std::array<Vec3, 3>& axes, int rings, int turns, co
     light = Color(0);
     turned = moved = {};
     double nearness = 0;
-    for (size_t i = 0; i < seen.size(); ++i) light += seen[i], nearness += way[i] < 1e37f ? 1 / double(std::max(way[i], 1e-30f)) : 0;
+    for (size_t i = 0; i < seen.size(); ++i) {
+        light += seen[i];
+        if (way[i] < 1e37f) nearness += 1 / double(std::max(way[i], 1e-30f));
+    }
     light = light / float(seen.size());
     const auto around = [&](float part, bool along) { // a direction in the plane, or the one a quarter of a turn further
         const Vec2 c = unitCircle(part);
@@ -39,7 +42,8 @@ void LightRecord::take(const std::array<Vec3, 3>& axes, int rings, int turns, co
         const Vec3 u = around((float(k) + .5f) / float(turns), true), v = around((float(k) + .5f) / float(turns), false),
                    edge = around(float(k) / float(turns), false);
         for (int j = 0; j < rings; ++j) {
-            const float inner = float(j) / float(rings), middle = (float(j) + .5f) / float(rings), outer = float(j + 1) / float(rings);
+            const float inner = float(j) / float(rings), outer = float(j + 1) / float(rings);
+            const float middle = (float(j) + .5f) / float(rings);
             const float tangent = std::sqrt(middle / (1 - middle));
             for (int c = 0; c < 3; ++c) turned[size_t(c)] += v * (tangent * seen[at(j, k)][c] / float(seen.size()));
             if (j > 0) differs(u, at(j, k), at(j - 1, k), 2 / float(turns) * std::sqrt(inner) * (1 - inner));

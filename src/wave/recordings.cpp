@@ -43,15 +43,19 @@ std::optional<Color> Engine::recorded(const BatchContext& c, const SiteInfo& s, 
     record.call = mixed(mixed(render::mix64(site.call + uint64_t(b.group)), reach), n.fade.strength);
     record.call = mixed(record.call, float(n.fade.polynomial));
     record.call = mixed(record.call, float(kind->set.sides == accel::Sides::Front));
+    // Where an exact call's rays would go too deep it brings nothing, and so do records.
+    const PathRay& from = *p.ray;
+    const bool diffuse = kind->type == RayType::Diffuse;
+    const int most = diffuse ? b.maxDiffuse : b.maxSpecular;
+    if (!s.occlusion && (from.bounces + 1 > world_->maxDepth_ || (diffuse && !world_->settings_.indirect) ||
+                         (most >= 0 && (diffuse ? from.diffuseBounces : from.specularBounces) + 1 > most)))
+        return {};
     Color light;
     if (world_->records_.find(record.call, record.P, record.N, light)) {
         ++counters.interpolated;
         return light;
     }
-    const PathRay& from = *p.ray;
-    const bool diffuse = kind->type == RayType::Diffuse;
-    if (!from.sample->records || from.bounces > 0 || world_->maxDepth_ < 1) return {};
-    if (!s.occlusion && ((diffuse ? b.maxDiffuse : b.maxSpecular) == 0 || (diffuse && !world_->settings_.indirect))) return {};
+    if (!from.sample->records || from.bounces > 0) return {};
     record.change = std::sqrt(std::min(variation, 1.f));
     n.most = std::clamp(number(site.pixels, kPixels), 1.f, 1e6f);
     const float way = length(p.P - from.origin);

@@ -29,6 +29,7 @@ struct KernelRun {
     std::vector<uint32_t> draws;               ///< by site and point: how often random() was called there; empty until it is
     std::vector<float>
         lightChannels; ///< by point, all AOVs: what lights gave by outputchannel(), and atmospheres; empty when none did
+    int lightNow = -1;                         ///< whose light it is that the loop over lights has; -1: not known
     std::vector<float> lightDistance;          ///< by lane: to the light sample; 1e38 for distant lights
     /// By number of the statement and first point of a strip: what its gather loops hold now.
     std::map<std::pair<int, int>, GatherRows> gathers;

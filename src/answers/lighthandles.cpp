@@ -159,6 +159,7 @@ void Answers::callLights(const ServiceCall& call, const LightsAsked& asked) {
     KernelRun& c = call.c;
     const size_t width = size_t(call.lanes);
     c.lightDistance.assign(width, 1e38f);
+    c.lightNow = asked.size() == 1 ? int(asked.begin()->first) : -1;
     LightLoop turn;
     turn.depth = lightLoop(c, call.first, call.lanes).depth + 1; // a call is a loop of its own
     turn.rows.assign(7 * width, 0);

@@ -120,6 +120,7 @@ void Answers::lightEnd(KernelRun& c, int first, int lanes) {
     --loop.depth;
     std::swap(static_cast<LightTurns&>(loop), loop.around[size_t(loop.depth)]);
     c.lightDistance = loop.distance;
+    c.lightNow = loop.light;
 }
 
 void Answers::checkCategory(KernelRun& c, const rsl::ir::Site& site, int32_t category) {
@@ -183,6 +184,7 @@ uint64_t Answers::takeFromSheet(KernelRun& c, LightLoop& loop, const LightSheet&
         std::copy_n(sheet.values.begin() + long(from * values), most * values, loop.values.begin());
     }
     c.lightDistance.assign(width, 1e38f);
+    c.lightNow = int(&light - world_.lights_.data());
     LoopCone cone(loop, width);
     uint64_t lit = 0;
     for (size_t lane = 0; lane < most; ++lane) {
@@ -234,6 +236,7 @@ uint64_t Answers::fetchKept(KernelRun& c, LightLoop& loop, int li, int k, int fi
     loop.values = kept.values;
     uint64_t lit = 0;
     c.lightDistance.assign(width, 1e38f);
+    c.lightNow = li;
     LoopCone cone(loop, width);
     for (int lane = 0; lane < lanes; ++lane) {
         if (!((mask & kept.lit) >> lane & 1)) continue;

@@ -64,7 +64,8 @@ Vec2 Aperture::sample(Vec2 u) const {
     double angle = 2 * kPi * u.x, reach = 1;
     if (sides_) {
         const double at = u.x * 2 * sides_, side = std::floor(at), target = (at - side) * cumulative_.back();
-        const size_t k = std::min(size_t(std::upper_bound(cumulative_.begin(), cumulative_.end(), target) - cumulative_.begin()), kRimSteps);
+        const auto above = std::upper_bound(cumulative_.begin(), cumulative_.end(), target);
+        const size_t k = std::min(size_t(above - cumulative_.begin()), kRimSteps);
         const double step = (double(k - 1) + (target - cumulative_[k - 1]) / (cumulative_[k] - cumulative_[k - 1])) / kRimSteps;
         const double off = step * kPi / sides_;
         reach = rim(off);
@@ -190,7 +191,8 @@ void Camera::setLens(const scene::Options& o, Diagnostics& diags) {
     if (!a || a->numbers.empty()) return;
     double n[4] = {};
     for (size_t i = 0; i < std::min<size_t>(4, a->numbers.size()); ++i) n[i] = a->numbers[i];
-    const bool good = std::isfinite(n[0] + n[1] + n[2] + n[3]) && n[0] >= 0 && n[0] <= 1000 && n[2] >= 0 && n[2] <= 1 && std::fabs(n[3]) <= 1;
+    const bool good = std::isfinite(n[0] + n[1] + n[2] + n[3]) && n[0] >= 0 && n[0] <= 1000 && n[2] >= 0 && n[2] <= 1 &&
+                      std::fabs(n[3]) <= 1;
     if (!good) return bad("Hider \"aperture\": sides 0 to 1000, degrees, roundness 0 to 1, density -1 to 1; the lens is round");
     aperture_ = Aperture(int(n[0]), n[1], n[2], n[3]);
 }

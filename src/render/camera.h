@@ -12,9 +12,9 @@
 
 namespace alpenglow::render {
 
-/// The opening of a lens of radius 1, by the four numbers of Hider "aperture" (PRMan): sides, below 3 a circle; degrees by which it is
-/// turned; roundness, 0 straight blades to 1 a circle; density, how the light through it grows from the middle to the rim: 0 even, 1 from
-/// nothing, -1 to nothing, linearly.
+/// The opening of a lens of radius 1, by the four numbers of Hider "aperture" (PRMan): sides, below 3 a circle; degrees by which
+/// it is turned; roundness, 0 straight blades to 1 a circle; density, how the light through it grows from the middle to the rim:
+/// 0 even, 1 from nothing, -1 to nothing, linearly.
 class Aperture {
 public:
     Aperture() = default;
@@ -32,8 +32,9 @@ private:
 class Camera {
 public:
     /// Impossible values (sizes, windows, angles that are not positive) are reported and replaced by RI's defaults. Projections
-    /// other than "perspective" and "orthographic" are reported and treated as orthographic. "perspective" has a stereo pair by "stereo"
-    /// ("sidebyside", "topbottom", "left", "right"), "eyeseparation" and "focaldistance", where the eyes' pictures coincide.
+    /// other than "perspective" and "orthographic" are reported and treated as orthographic. "perspective" has a stereo pair by
+    /// "stereo" ("sidebyside", "topbottom", "left", "right"), "eyeseparation" and "focaldistance", where the eyes' pictures
+    /// coincide.
     Camera(const scene::Options&, Diagnostics&);
 
     int width() const { return width_; } ///< of the whole picture, pixels

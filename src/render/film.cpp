@@ -18,7 +18,7 @@ float fromKey(int32_t k) { return std::bit_cast<float>(k < 0 ? int32_t(k ^ 0x7ff
 
 Int128 emptyValue(ChannelRule r) {
     constexpr float inf = std::numeric_limits<float>::infinity();
-    return r == ChannelRule::Average ? 0 : orderKey(r == ChannelRule::Min ? inf : -inf);
+    return isSum(r) ? 0 : orderKey(r == ChannelRule::Min ? inf : -inf);
 }
 
 void tally(uint64_t& counter) { std::atomic_ref<uint64_t>(counter).fetch_add(1, std::memory_order_relaxed); }
@@ -73,6 +73,28 @@ Film::Film(FilmDescription d) : description_(std::move(d)) {
     aovs_.resize(pixels_.size() * n);
     for (size_t i = 0; i < aovs_.size(); ++i)
         aovs_[i] = emptyValue(description_.channels[i % n].rule);
+    for (size_t i = 0; i < n; ++i)
+        if (const int c = int(description_.channels[i].rule) - int(ChannelRule::PartOfRed); c >= 0 && c < 3)
+            parts_[c].push_back(int(i));
+}
+
+void Film::addParts(size_t at, const FilmSample& s, const Int128 (&rgb)[3], bool* saturated) {
+    const size_t n = description_.channels.size();
+    for (int c = 0; c < 3; ++c) {
+        if (parts_[c].empty()) continue;
+        Int128 left = rgb[c], most = -1;
+        size_t largest = 0;
+        for (int i : parts_[c]) {
+            const float v = size_t(i) < s.aovs.size() ? s.aovs[size_t(i)] : 0.0f;
+            const bool good = std::isfinite(v);
+            if (!good) tally(nonFiniteAovs_);
+            const Int128 part = good ? toFixed(v, saturated) : Int128(0), size = part < 0 ? -part : part;
+            aovs_[at * n + size_t(i)] += part;
+            left -= part;
+            if (size > most) most = size, largest = size_t(i);
+        }
+        aovs_[at * n + largest] += left;
+    }
 }
 
 bool Film::add(int x, int y, uint32_t sampleIndex, const FilmSample& s) {
@@ -92,9 +114,8 @@ bool Film::add(int x, int y, uint32_t sampleIndex, const FilmSample& s) {
     size_t at = index(x, y);
     Pixel& p = pixels_[at];
     bool saturated = false;
-    p.rgb[0] += toFixed(c.x, &saturated);
-    p.rgb[1] += toFixed(c.y, &saturated);
-    p.rgb[2] += toFixed(c.z, &saturated);
+    const Int128 rgb[3] = {toFixed(c.x, &saturated), toFixed(c.y, &saturated), toFixed(c.z, &saturated)};
+    for (int k = 0; k < 3; ++k) p.rgb[k] += rgb[k];
     p.alpha += toFixed(s.alpha, &saturated);
     // The square is taken of the rounded luminance, so that the variance of equal samples is exactly 0.
     Int128 lum = toFixed(luminance(Vec3d(c)), &saturated);
@@ -110,6 +131,7 @@ bool Film::add(int x, int y, uint32_t sampleIndex, const FilmSample& s) {
         float v = i < s.aovs.size() ? s.aovs[i] : 0.0f;
         Int128& sum = aovs_[at * n + i];
         ChannelRule rule = description_.channels[i].rule;
+        if (rule >= ChannelRule::PartOfRed) continue;
         if (std::isnan(v) || (rule == ChannelRule::Average && std::isinf(v)))
             tally(nonFiniteAovs_);
         else if (rule == ChannelRule::Average)
@@ -119,6 +141,7 @@ bool Film::add(int x, int y, uint32_t sampleIndex, const FilmSample& s) {
         else
             sum = std::max<Int128>(sum, orderKey(v));
     }
+    addParts(at, s, rgb, &saturated);
     if (saturated)
         tally(saturated_);
     return true;
@@ -174,7 +197,7 @@ bool Film::merge(const Film& o, Diagnostics& diag, const SourcePlace& place) {
     size_t n = a.channels.size();
     for (size_t i = 0; i < aovs_.size(); ++i) {
         ChannelRule rule = a.channels[i % n].rule;
-        if (rule == ChannelRule::Average)
+        if (isSum(rule))
             aovs_[i] += o.aovs_[i];
         else
             aovs_[i] = rule == ChannelRule::Min ? std::min(aovs_[i], o.aovs_[i]) : std::max(aovs_[i], o.aovs_[i]);
@@ -208,9 +231,16 @@ float Film::alpha(int x, int y) const {
 
 float Film::aov(int x, int y, int channel) const {
     const Int128& v = aovs_[index(x, y) * description_.channels.size() + size_t(channel)];
-    if (description_.channels[size_t(channel)].rule != ChannelRule::Average)
+    if (!isSum(description_.channels[size_t(channel)].rule))
         return fromKey(int32_t(v));
     uint32_t n = count(x, y);
+    return n ? float(fromFixed(v) / n) : 0;
+}
+
+float Film::aov(int x, int y, std::span<const int> channels) const {
+    Int128 v = 0;
+    for (int channel : channels) v += fixedAov(x, y, channel);
+    const uint32_t n = count(x, y);
     return n ? float(fromFixed(v) / n) : 0;
 }
 

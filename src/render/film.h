@@ -27,8 +27,13 @@ struct Window {
 enum class ChannelRule : uint8_t {
     Average, ///< mean over the samples, like Ci
     Min,     ///< least value (depth filter "min"); +infinity when no sample gave a finite one
-    Max      ///< greatest value; -infinity likewise
+    Max,     ///< greatest value; -infinity likewise
+    PartOfRed,   ///< mean, like Ci, of which it is a part: those of a component add up to it exactly, sample by sample. What rounding
+    PartOfGreen, ///< leaves goes to the largest
+    PartOfBlue
 };
+/// Whether the samples of a channel are added up.
+inline bool isSum(ChannelRule r) { return r != ChannelRule::Min && r != ChannelRule::Max; }
 
 struct Channel {
     std::string name;
@@ -111,6 +116,11 @@ public:
     Color mean(int x, int y) const;  ///< 0 where nothing was counted
     float alpha(int x, int y) const; ///< mean alpha
     float aov(int x, int y, int channel) const;
+    /// Mean of the sum of such channels, all isSum(); 0 of none.
+    float aov(int x, int y, std::span<const int> channels) const;
+    /// The integer sum of one, in units of 2^-40; of a component of Ci.
+    Int128 fixedAov(int x, int y, int channel) const { return aovs_[index(x, y) * description_.channels.size() + size_t(channel)]; }
+    Int128 fixed(int x, int y, int component) const { return pixel(x, y).rgb[component]; }
     Moments moments(int x, int y) const;
     /// Luminance sum and count of one replica.
     void replica(int x, int y, uint32_t r, double* sum, uint32_t* n) const;
@@ -142,9 +152,11 @@ private:
     };
     size_t index(int x, int y) const { return size_t(y - window().y0) * size_t(window().width()) + size_t(x - window().x0); }
     const Pixel& pixel(int x, int y) const { return pixels_[index(x, y)]; }
+    void addParts(size_t pixel, const FilmSample&, const Int128 (&rgb)[3], bool* saturated);
 
     FilmDescription description_;
     std::vector<Pixel> pixels_;
+    std::vector<int> parts_[3];     ///< channels that are parts, by component
     std::vector<Int128> aovs_;      ///< pixels x channels; Min and Max hold the key of the value (film.cpp)
     std::vector<SampleRange> ranges_;
     uint64_t nonFinite_ = 0, nonFiniteAovs_ = 0, saturated_ = 0;

@@ -30,8 +30,8 @@ public:
     const PixelFilter& filter() const { return filter_; }
 
 private:
-    /// The part of an axis where the filter has one sign: its pieces and their cumulated masses, 0 .. 1. `guide`: by share of 0 .. 1, the
-    /// last mass that is not above where the share begins.
+    /// The part of an axis where the filter has one sign: its pieces and their cumulated masses, 0 .. 1. `guide`: by share of 0
+    /// .. 1, the last mass that is not above where the share begins.
     struct Part {
         std::vector<int> piece;
         std::vector<double> cdf{0};

@@ -89,13 +89,14 @@ OutputSpec specOf(const scene::Display& d, const scene::Options& o, const Output
         else if (v.name == "alpha") out.source = Source::Alpha;
         else if (v.name == "z") out.source = Source::Z;
         else if (v.name == "Oi") out.source = Source::Oi;
-        else {
-            out.source = Source::Engine;
+        else setSource(out, o, plan, d.place, diags);
+        if (out.source == Source::Engine) {
             auto& names = plan.engineOutputs;
-            auto i = std::find(names.begin(), names.end(), v.name);
+            const std::string& name = out.asked.empty() ? out.name : out.asked;
+            auto i = std::find(names.begin(), names.end(), name);
             out.engine = int(i - names.begin());
             if (i == names.end()) {
-                names.push_back(v.name);
+                names.push_back(name);
                 plan.engineWidths.push_back(0);
             }
             int& width = plan.engineWidths[size_t(out.engine)];
@@ -132,11 +133,14 @@ bool OutputPlan::needsDepth(DepthFilter d) const {
     return std::any_of(pictures.begin(), pictures.end(), [&](const OutputSpec& p) { return p.has(Source::Z) && p.depth == d; });
 }
 
-void OutputPlan::resolve(std::vector<int> widths, Diagnostics& diags) {
+void OutputPlan::resolve(std::vector<int> widths, Diagnostics& diags, const std::vector<std::string>& missing) {
     engineWidths = std::move(widths);
     engineWidths.resize(engineOutputs.size(), 1);
     for (OutputSpec& p : pictures)
         for (OutputVariable& v : p.variables) {
+            if (v.source == Source::Engine && v.instead != Source::Engine &&
+                std::find(missing.begin(), missing.end(), v.name) != missing.end())
+                v.source = v.instead;
             if (v.source != Source::Engine || int(v.channels.size()) == engineWidths[size_t(v.engine)]) continue;
             int w = engineWidths[size_t(v.engine)];
             if (v.typed)
@@ -228,6 +232,7 @@ OutputPlan planOutputs(const scene::Options& o, const RenderSettings& settings, 
         if (!s.variables.empty()) plan.pictures.push_back(std::move(s));
     }
     leaveOutWindows(plan.pictures);
+    if (path) joinLightPaths(plan, diags);
     return plan;
 }
 
@@ -245,12 +250,13 @@ std::vector<Channel> filmChannels(const OutputPlan& plan) {
     for (size_t i = 0; i < plan.engineOutputs.size(); ++i)
         for (int k = 0; k < plan.engineWidths[i]; ++k)
             c.push_back({"aov." + plan.engineOutputs[i] + "." + std::to_string(k), ChannelRule::Average});
+    addLightChannels(plan, c);
     return c;
 }
 
-void filmValues(const OutputPlan& plan, const Color& opacity, float z, float zSecond, std::span<const float> aovs,
-                std::vector<float>* out) {
+void filmValues(const OutputPlan& plan, const transport::SampleResult& sample, std::vector<float>* out) {
     constexpr float inf = std::numeric_limits<float>::infinity();
+    const auto& [opacity, z, zSecond, aovs] = std::tie(sample.opacity, sample.z, sample.zSecond, sample.aovs);
     bool hit = z < kFarAway;
     if (plan.needs(Source::Oi)) out->insert(out->end(), {opacity.x, opacity.y, opacity.z});
     if (plan.needsDepth(DepthFilter::Min)) out->push_back(hit ? z : inf);
@@ -259,6 +265,7 @@ void filmValues(const OutputPlan& plan, const Color& opacity, float z, float zSe
     if (plan.needsDepth(DepthFilter::Midpoint)) out->push_back(hit && zSecond < kFarAway ? 0.5f * (z + zSecond) : inf);
     size_t n = size_t(plan.engineFloats());
     for (size_t i = 0; i < n; ++i) out->push_back(i < aovs.size() ? aovs[i] : 0);
+    addLightValues(plan, sample, out);
 }
 
 Image filmImage(const Film& film, const OutputPlan& plan, DepthFilter depth) {
@@ -282,6 +289,8 @@ Image filmImage(const Film& film, const OutputPlan& plan, DepthFilter depth) {
             aovs.push_back(int(i));
             image.channels.push_back(channels[i].name.substr(4));
         }
+    const size_t lights = image.channels.size();
+    for (size_t i = 0; i < lightFloats(plan); ++i) image.channels.push_back("light." + std::to_string(i));
     size_t stride = image.channels.size();
     image.data.resize(image.window.pixels() * stride);
     float* p = image.data.data();
@@ -300,6 +309,7 @@ Image filmImage(const Film& film, const OutputPlan& plan, DepthFilter depth) {
                 p[7] = h > 0 ? p[7] / h : kFarAway;
             }
             for (size_t k = 0; k < aovs.size(); ++k) p[8 + k] = film.aov(x, y, aovs[k]);
+            addLightPixels(plan, film, x, y, p + lights);
         }
     return image;
 }
@@ -311,6 +321,7 @@ bool writeOutputs(const OutputPlan& plan, const PictureFacts& facts, const std::
     for (size_t i = 0, n = 0; i < firstFloat.size(); n += size_t(plan.engineWidths[i++])) firstFloat[i] = int(n);
     int w = facts.window.width(), h = facts.window.height();
     std::vector<float> rx(size_t(w), 0.f), ry(size_t(w), 0.f), row(size_t(w) * 4);
+    const float zeros[16] = {}; // hidden and raytrace have no light by path
     for (const OutputSpec& s : plan.pictures) {
         const Image& in = pixels(s);
         display::DriverSetup setup;
@@ -369,8 +380,10 @@ bool writeOutputs(const OutputPlan& plan, const PictureFacts& facts, const std::
                     case Source::Oi:
                         for (size_t k = 0; k < n; ++k) *q++ = p[4 + std::min(k, size_t(2))];
                         break;
-                    case Source::Engine: {
-                        const float* e = p + 8 + firstFloat[size_t(v.engine)];
+                    default: {
+                        const size_t at = v.source == Source::Engine ? size_t(firstFloat[size_t(v.engine)])
+                                                                     : size_t(plan.engineFloats()) + lightFloat(plan, v);
+                        const float* e = 8 + at + n <= stride ? p + 8 + at : zeros;
                         for (size_t k = 0; k < n; ++k) {
                             const float x1 = s.ownExposure && v.color ? expose(e[k], s.gain, s.gamma) : e[k];
                             *q++ = s.srgb && v.shown() ? srgbEncode(x1) : x1;

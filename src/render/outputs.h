@@ -7,22 +7,28 @@
 #include "render/film.h"
 #include "render/samplebuffer.h"
 #include "render/settings.h"
+#include "scene/lightpaths.h"
 #include "scene/scene.h"
+#include "transport/integrator.h"
 #include <functional>
 
 namespace alpenglow::render {
 
 /// One variable of a display.
 struct OutputVariable {
-    enum class Source { Ci, Alpha, Z, Oi, Engine };
+    /// Light: by light path. Albedo, Normal: of what the camera sees first. Variance, Samples: of a pixel of Ci. These under path.
+    enum class Source { Ci, Alpha, Z, Oi, Engine, Light, Albedo, Normal, Variance, Samples };
     Source source = Source::Ci;
+    Source instead = Source::Engine; ///< of a name that no shader may have: what it is then; Engine: nothing
     std::string name;
+    std::string asked; ///< Source::Engine: the output in the shaders; "": `name`
     int engine = -1;   ///< Source::Engine: index into OutputPlan::engineOutputs
+    int light = -1;    ///< Source::Light, or `instead` is: index into OutputPlan::lights
     bool typed = true; ///< false: nothing declared its type, so the engine's width decides the channels
     bool color = false;
     std::vector<std::string> channels;
     /// Whether it is a colour to look at: Ci, and what is declared as a color.
-    bool shown() const { return source == Source::Ci || (source == Source::Engine && typed && color); }
+    bool shown() const { return source == Source::Ci || (source != Source::Alpha && source != Source::Z && typed && color); }
 };
 
 /// One picture.
@@ -62,11 +68,17 @@ struct OutputPlan {
     std::vector<OutputSpec> pictures;
     std::vector<std::string> engineOutputs; ///< transport::Settings::outputs
     std::vector<int> engineWidths; ///< floats of each: what displays declare (0: nothing), then by resolve() what shaders have
+    std::vector<scene::LightPaths::Source> lights; ///< light path expressions
+    std::shared_ptr<const scene::LightPaths> lightPaths; ///< of these; null: none. Not in part files
+    std::vector<std::vector<int>> lightParts; ///< by expression, the parts of Ci's light that it shows
+    int parts = 0;                            ///< how many there are
     int engineFloats() const;
+    /// Whether SampleResult::albedo and normal are asked for, or may be.
+    bool needsFirstSeen() const;
     bool needs(OutputVariable::Source) const;
     bool needsDepth(DepthFilter) const;
-    /// Takes the widths the engine found and names the channels of what nobody had declared.
-    void resolve(std::vector<int> widths, Diagnostics&);
+    /// Takes the widths the engine found and names the channels of what nobody had declared. `missing`: outputs that no shader has.
+    void resolve(std::vector<int> widths, Diagnostics&, const std::vector<std::string>& missing = {});
 };
 
 /// The pictures of a frame. `file` is -o's name, which takes the place of the scene's displays but its maps ("" = the scene's
@@ -78,8 +90,20 @@ OutputSpec singleOutput(const std::string& file, const OutputBasis&, Diagnostics
 /// Channels of a film that holds what the plan needs beside colour and alpha.
 std::vector<Channel> filmChannels(const OutputPlan&);
 /// The values of filmChannels() of one sample, appended.
-void filmValues(const OutputPlan&, const Color& opacity, float z, float zSecond, std::span<const float> aovs,
-                std::vector<float>* out);
+void filmValues(const OutputPlan&, const transport::SampleResult&, std::vector<float>* out);
+
+// lightchannels.cpp: what is not an output of shaders.
+/// What a variable shows by "source" of its DisplayChannel, or by a name of ours.
+void setSource(OutputVariable&, const scene::Options&, OutputPlan&, const SourcePlace&, Diagnostics&);
+/// Makes OutputPlan::lightPaths.
+void joinLightPaths(OutputPlan&, Diagnostics&);
+/// Film channels and their values, appended; and what images have behind the engine's floats.
+void addLightChannels(const OutputPlan&, std::vector<Channel>&);
+void addLightValues(const OutputPlan&, const transport::SampleResult&, std::vector<float>*);
+/// Where such a variable stands behind the engine's floats, and how many there are of all.
+size_t lightFloat(const OutputPlan&, const OutputVariable&);
+size_t lightFloats(const OutputPlan&);
+void addLightPixels(const OutputPlan&, const Film&, int x, int y, float* to);
 /// The finished pixels of a film, channels as SampleBuffer::reconstruct has them, depth by this filter.
 Image filmImage(const Film&, const OutputPlan&, DepthFilter);
 

@@ -60,6 +60,8 @@ std::string planToText(const OutputPlan& plan, const PictureFacts& facts) {
                   {"depth", int(b.depth)}};
     j["outputs"] = plan.engineOutputs;
     j["widths"] = plan.engineWidths;
+    j["lightParts"] = plan.lightParts;
+    j["parts"] = plan.parts;
     j["pictures"] = Json::array();
     for (const OutputSpec& s : plan.pictures) {
         Json p = {{"name", s.name},
@@ -81,6 +83,7 @@ std::string planToText(const OutputPlan& plan, const PictureFacts& facts) {
             p["variables"].push_back({{"source", int(v.source)},
                                       {"name", v.name},
                                       {"engine", v.engine},
+                                      {"light", v.light},
                                       {"typed", v.typed},
                                       {"color", v.color},
                                       {"channels", v.channels}});
@@ -126,6 +129,9 @@ std::optional<std::pair<OutputPlan, PictureFacts>> planFromText(const std::strin
         plan.engineWidths = j.at("widths").get<std::vector<int>>();
         plan.engineWidths.resize(plan.engineOutputs.size(), 1);
         for (int& w : plan.engineWidths) w = std::clamp(w, 1, 16);
+        plan.parts = std::clamp(j.at("parts").get<int>(), 0, int(scene::LightPaths::kMostParts));
+        plan.lightParts = j.at("lightParts").get<std::vector<std::vector<int>>>();
+        for (std::vector<int>& parts : plan.lightParts) std::erase_if(parts, [&](int p) { return p < 0 || p >= plan.parts; });
         for (const Json& p : j.at("pictures")) {
             OutputSpec s;
             s.name = p.at("name").get<std::string>();
@@ -143,9 +149,10 @@ std::optional<std::pair<OutputPlan, PictureFacts>> planFromText(const std::strin
             s.quantizeAsked = p.at("quantizeAsked").get<bool>();
             for (const Json& q : p.at("variables")) {
                 OutputVariable v;
-                v.source = OutputVariable::Source(std::clamp(q.at("source").get<int>(), 0, int(OutputVariable::Source::Engine)));
+                v.source = OutputVariable::Source(std::clamp(q.at("source").get<int>(), 0, int(OutputVariable::Source::Samples)));
                 v.name = q.at("name").get<std::string>();
                 v.engine = q.at("engine").get<int>();
+                v.light = q.at("light").get<int>();
                 v.typed = q.at("typed").get<bool>();
                 v.color = q.at("color").get<bool>();
                 v.channels = q.at("channels").get<std::vector<std::string>>();
@@ -154,6 +161,7 @@ std::optional<std::pair<OutputPlan, PictureFacts>> planFromText(const std::strin
                     if (v.engine < 0 || size_t(v.engine) >= plan.engineOutputs.size()) continue;
                     most = size_t(plan.engineWidths[size_t(v.engine)]);
                 } else if (v.source == OutputVariable::Source::Alpha || v.source == OutputVariable::Source::Z) most = 1;
+                if (v.source == OutputVariable::Source::Light && (v.light < 0 || size_t(v.light) >= plan.lightParts.size())) continue;
                 if (v.channels.empty() || v.channels.size() > most) continue;
                 s.variables.push_back(std::move(v));
             }

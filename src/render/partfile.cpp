@@ -227,7 +227,7 @@ struct FilmIo {
             for (uint32_t k = 0; k < kReplicas; ++k) ok = ok && fits(p.replicaY[k]) && p.surfaceCount[k] <= p.replicaCount[k];
             ok = ok && fits(p.surfaceY);
             for (size_t c = 0; c < n; ++c)
-                ok = ok && (f.description_.channels[c].rule == ChannelRule::Average
+                ok = ok && (isSum(f.description_.channels[c].rule)
                                 ? fits(f.aovs_[i * n + c])
                                 : f.aovs_[i * n + c] == int32_t(f.aovs_[i * n + c]));
             if (!ok)
@@ -246,7 +246,7 @@ struct FilmIo {
         uint32_t channels = r.number<uint32_t>();
         for (uint32_t i = 0; r.ok && i < channels; ++i) {
             uint8_t rule = r.number<uint8_t>();
-            r.ok = r.ok && rule <= uint8_t(ChannelRule::Max);
+            r.ok = r.ok && rule <= uint8_t(ChannelRule::PartOfBlue);
             d.channels.push_back({r.text(), ChannelRule(rule)});
         }
         std::vector<SampleRange> ranges;

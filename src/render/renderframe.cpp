@@ -151,6 +151,8 @@ transport::Settings Renderer::engineSettings(const FrameWork& f) const {
     t.texturePaths = searchPaths(f.o, "texture", settings_.texturePaths, false);
     t.outputs = f.plan.engineOutputs;
     t.outputWidths = f.plan.engineWidths;
+    t.lightPaths = f.plan.lightPaths;
+    t.firstSeen = f.path && f.plan.needsFirstSeen();
     t.stop = settings_.stop;
     return t;
 }
@@ -163,7 +165,7 @@ bool Renderer::buildFrame(FrameWork& f) {
         ++outcome_.refused;
         return false;
     }
-    f.plan.resolve(f.world->outputWidths(), diagnostics_);
+    f.plan.resolve(f.world->outputWidths(), diagnostics_, f.world->missingOutputs());
     sayMissingOutputs(f.plan, *f.world, diagnostics_);
     transport::World::Facts facts = f.world->facts();
     stats_.buildSec += facts.buildSec;
@@ -228,7 +230,9 @@ FilmDescription Renderer::filmOf(const FrameWork& f) const {
         std::snprintf(how, sizeof how, "path depth %d clamp %.9g direct %d indirect %d unbiased %d local %d", f.settings.maxDepth,
                       double(f.settings.sampleClamp), f.settings.direct, f.settings.indirect, f.settings.unbiased,
                       f.settings.localRoulette);
-        d.scene = sceneDigest(*f.frame, how + (f.settings.dialect.empty() ? "" : " dialect " + f.settings.dialect));
+        std::string all = how + (f.settings.dialect.empty() ? "" : " dialect " + f.settings.dialect);
+        for (const scene::LightPaths::Source& l : f.plan.lights) all += " light " + l.expression;
+        d.scene = sceneDigest(*f.frame, all);
     }
     return d;
 }

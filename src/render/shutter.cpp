@@ -14,7 +14,8 @@ ShutterOpening::ShutterOpening(const scene::Options& o, Diagnostics& diag) {
         return;
     }
     diag.report(Severity::Error, Rie::Range, given->second.place,
-                "Option \"shutter\" \"shutteropening\" needs two numbers, 0 <= a <= b <= 1; the shutter opens and closes at once");
+                "Option \"shutter\" \"shutteropening\" needs two numbers, 0 <= a <= b <= 1; the shutter opens and closes at "
+                "once");
 }
 
 double ShutterOpening::at(double u) const {

@@ -5,8 +5,8 @@
 
 namespace alpenglow::render {
 
-/// Option "shutter" "float[2] shutteropening" [a b]: it is wide open from the part a of its time to the part b; before and after, it
-/// opens and closes linearly.
+/// Option "shutter" "float[2] shutteropening" [a b]: it is wide open from the part a of its time to the part b; before and after,
+/// it opens and closes linearly.
 struct ShutterOpening {
     double wide = 0, closing = 1;
     ShutterOpening() = default;

@@ -64,6 +64,7 @@ constexpr OptionDescription kAttributes[] = {
     {"light:emitphotons", "int", "0", "1", Used,
      "1: the light emits photons; 0: it does not. Where no light says 1, all do for Hider \"photon\" and for the caustics of path, "
      "and no photon map is made that has no file."},
+    {"light:group", "string", "\"\"", "\"key\"", Used, "The label of a light in light path expressions, beside its handle (docs/lightpaths.md)."},
     {"light:nsamples", "", "1", "16", Used, "BMRT's name of light:samples."},
     {"light:samples", "int", "1", "16", Used, "Samples of an area light in an illuminance loop, 1 to 1024."},
     {"light:samplingstrategy", "string", "\"illuminance\"", "\"trace\"", Used,

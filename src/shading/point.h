@@ -111,6 +111,7 @@ struct PathRay {
     uint32_t vertex = 0;              ///< of its random numbers: hash of the path of call sites that led here; 0 = camera
     int16_t bounces = 0, diffuseBounces = 0, specularBounces = 0;
     int16_t layers = 0;               ///< transparent surfaces passed so far, since the camera; no bounces
+    uint16_t path = 0;       ///< scene::LightPaths::State up to here; 0: what it brings is in no output by light path
     uint16_t asked = 1;      ///< the most rays that a waiting kernel on the way was known to ask for at one point
     bool first = true;                ///< one of those that its target asked for: writes distance and transmission
     bool counts = false;              ///< its hit writes opacity, depth and AOVs of its camera sample

@@ -9,8 +9,9 @@ namespace alpenglow::transport {
 
 class Engine;
 
-/// One affine pair group of a strip, as the kernel emitted it: rows of `lanes` floats, the first three the weight.
-struct EmitRecord { int site = 0, first = 0, lanes = 0; uint64_t mask = 0; size_t offset = 0; };
+/// One affine pair group of a strip, as the kernel emitted it: rows of `lanes` floats, the first three the weight. light:
+/// whose light a loop weighs; -1: of none, or not known.
+struct EmitRecord { int site = 0, first = 0, lanes = 0; uint64_t mask = 0; size_t offset = 0; int light = -1; };
 
 /// What an atmosphere makes of the light that a ray met: Ci and Oi as seen, and the coefficient of the light met.
 struct Haze { Color shown, opacity, slope{1}; bool on = false; }; ///< on: a volume shader has run

@@ -32,7 +32,7 @@ void Gather::choosePoint(size_t point) {
     const Color left = absolute(from.weight);
     const auto worth = [&](const Color& share) { return competes ? dot(share, left) / 3 : luminance(share); };
     const auto list = lobesOf(point);
-    Color sum(0);
+    Color sum(0), seen(0);
     bool cut = false; // by the depth of the render, not by a depth that a primitive asks for
     for (int i : list) {
         LobeVertex& l = e_.lobes[size_t(i)];
@@ -40,6 +40,7 @@ void Gather::choosePoint(size_t point) {
         l.albedo = e_.lobeRows_.albedo(l.place);
         l.delta = e_.lobeRows_.delta(l.place);
         if (l.lobeOfShader) sum += weight * l.albedo;
+        if (!l.ownsTarget) seen += l.weight * l.albedo;
         l.chosen = std::max(worth(weight) * l.albedo, 0.f);
         if (!std::isfinite(l.chosen)) {
             e_.notFinite(*c_, from, l.site);
@@ -51,6 +52,8 @@ void Gather::choosePoint(size_t point) {
         l.followed = l.chosen > 0 || (l.ownsTarget && !stays);
     }
     e_.counters.depthCap += cut;
+    if (from.counts && world_.settings_.firstSeen && !c_->aside)
+        e_.results[size_t(from.sample->path)]->albedo += from.weight * seen;
     const bool most = sum.x + clear.x > 1 || sum.y + clear.y > 1 || sum.z + clear.z > 1;
     const float scale = indirectScale_[point] = most ? energyScale(point, sum, clear) : 1;
     const float behind = competes ? worth(clear) : 0;

@@ -118,10 +118,11 @@ void Gather::send(const Reached& r) {
     if (l.trace && area && !meets(l, r.query, r.w, from, end)) return;
     const Color given = contribution(r);
     const int32_t share = shareOf(l);
+    const uint16_t path = e_.atLobe(l, c_->points[size_t(l.point)], ray, r.w);
     const RayKind* kind = l.trace ? e_.kindOf({RayType::Transmission, false, l.rays->set, 0}) : &kShadowKind;
     if (r.query == lastQuery_)
         if (ShadowRay& last = e_.shadows.back(); last.kind == kind && last.origin == from) {
-            e_.moreLight_.push_back({given, l.target, share, sums, last.more});
+            e_.moreLight_.push_back({given, l.target, share, sums, path, last.more});
             last.more = int32_t(e_.moreLight_.size()) - 1;
             return;
         }
@@ -140,6 +141,8 @@ void Gather::send(const Reached& r) {
     shadow.kind = kind;
     shadow.media = e_.mediaTowards(*c_, l.point, r.w);
     shadow.share = share;
+    shadow.path = path;
+    if (path) shadow.light = e_.lightSymbols_[size_t(&light - world_.lights_.data())];
 }
 
 } // namespace alpenglow::transport

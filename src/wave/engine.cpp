@@ -22,6 +22,7 @@ Engine::Engine(std::shared_ptr<const WorldImpl> w, Diagnostics& d)
     : world_(std::move(w)), diagnostics_(d), seed_(world_->settings_.seed), rules_(world_->settings_),
       answers_(*world_, d, this) {
     noSample_.numbers = render::SampleNumbers(render::Sampler(seed_, 0, 0), 0);
+    prepareLightPaths();
 }
 
 Engine::~Engine() { // strips of a frame that was given up need their kernels
@@ -141,6 +142,7 @@ bool Engine::traceAll(std::span<const CameraRay> rays, std::span<SampleResult> o
     samples_.resize(rays.size());
     std::vector<TargetId> roots(rays.size());
     lightTargets_.clear();
+    partTargets_.clear();
     shares_.clear();
     nowhere_ = world_->lightOutputs_.empty() ? shading::kNoTarget : sched.newRoot();
     for (size_t i = 0; i < rays.size(); ++i) {
@@ -150,6 +152,7 @@ bool Engine::traceAll(std::span<const CameraRay> rays, std::span<SampleResult> o
         results[i] = &out[i];
         roots[i] = sched.newRoot();
         for (size_t k = 0; k < world_->lightOutputs_.size(); ++k) lightTargets_.push_back(sched.newRoot());
+        for (int k = 0; lightPaths_ && k < lightPaths_->parts(); ++k) partTargets_.push_back(sched.newRoot());
         PathRay& r = sched.spawn(0, roots[i]).payload;
         r.origin = c.origin;
         r.dir = c.direction;
@@ -163,6 +166,7 @@ bool Engine::traceAll(std::span<const CameraRay> rays, std::span<SampleResult> o
         r.media = world_->eye_.count ? &world_->eye_ : nullptr;
         if (world_->fades_) sample.level = random(r).one(0, kLevel, 0);
         r.counts = true;
+        if (lightPaths_) r.path = lightPaths_->begin();
     }
     counters.paths += rays.size();
     spoiled_.clear();
@@ -178,6 +182,10 @@ bool Engine::traceAll(std::span<const CameraRay> rays, std::span<SampleResult> o
         float m = maxComponent(c);
         if (clampAt > 0 && m > clampAt) c *= clampAt / m; // pathtracer.md 6
         out[i].color = c;
+        for (int k = 0; lightPaths_ && k < lightPaths_->parts(); ++k) {
+            const Color part = sched.value(partTargets_[i * size_t(lightPaths_->parts()) + size_t(k)]).radiance;
+            out[i].parts.push_back(clampAt > 0 && m > clampAt ? part * (clampAt / m) : part);
+        }
         for (size_t k = 0; k < world_->lightOutputs_.size(); ++k) {
             const LightOutputPlace& to = world_->lightOutputs_[k];
             if (to.first < 0) continue;

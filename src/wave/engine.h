@@ -66,6 +66,27 @@ public:
     bool bringsPhotons(const PathRay& r, int light) const {
         return (r.trail & shading::kTrailMirrored) && passOf(r) && world_->photons_->lightsOfPasses[size_t(light)];
     }
+    /// The same to the part of the outputs by light path alone.
+    void depositPart(Sched&, const PathRay*, uint16_t end, const Color& light);
+    // lightevents.cpp: PathRay::path from event to event. All keep 0.
+    uint16_t atLoop(const ShadePoint&, const PathRay&, const Vec3& w) const; ///< the same by a loop over lights
+    uint16_t atLobe(const LobeVertex&, const ShadePoint&, const PathRay&, const Vec3& w) const; ///< scattered towards w, unit
+    uint16_t atLight(uint16_t path, const BoundLight& l) const {
+        return path ? lightPaths_->next(path, lightSymbols_[size_t(&l - world_->lights_.data())]) : 0;
+    }
+    /// Photons are known by where they rest: as if a mirror had sent them there from a light without a label.
+    uint16_t atPhotons(uint16_t path) const { return pathEvent(pathEvent(path, mirror_), loopLight_); }
+    uint16_t pathEvent(uint16_t path, int32_t symbol) const { return path ? lightPaths_->next(path, symbol) : 0; }
+    int labelOf(const std::string&) const;
+    void prepareLightPaths();
+    const scene::LightPaths* lightPaths_ = nullptr; ///< Settings::lightPaths, under path
+    std::vector<int32_t> lightSymbols_; ///< by light
+    int32_t straight_ = 0, volume_ = 0, object_ = 0, map_ = 0, loopLight_ = 0, mirror_ = 0; ///< events without labels
+    int loopLabel_ = -1;
+    mutable std::unordered_map<int32_t, int> labelOfRays_; ///< by interned text
+    mutable std::unordered_map<const LobeKind*, int> labelOfLobe_;
+    std::vector<TargetId> partTargets_; ///< by camera sample and part
+    std::vector<uint16_t> straights_; ///< by shadow ray, surfaces that it went straight through; where somebody asks
     // lights.cpp
     /// Light arriving at queries from one light; for area lights `samples[i]` is the point on the emitter.
     void evaluateLight(const BoundLight&, std::vector<ShadePoint>& queries, std::span<LightValue> out,

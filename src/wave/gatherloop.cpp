@@ -100,6 +100,7 @@ struct Asking {
         const ShadePoint& p = point();
         PathRay r = *p.ray;
         r.trail = 0;
+        r.path = 0; // what it brings is the loop's
         r.weight = Color(s.gather->light ? 1.f : 0.f);
         r.vertex = childVertex(p.ray->vertex, site(), occurrence * 4096 + uint32_t(k));
         ++r.bounces;

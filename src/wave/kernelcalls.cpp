@@ -87,7 +87,7 @@ void serve(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask, in
             return;
         }
         takeRoom(c, s, rows + 3, lanes, mask);
-        EmitRecord e{site, first, lanes, mask, c.arena.size()};
+        EmitRecord e{site, first, lanes, mask, c.arena.size(), s.kind == SiteKind::LightVisibility ? c.lightNow : -1};
         c.arena.insert(c.arena.end(), in, in + (rows + 3) * lanes);
         if (s.kind == SiteKind::LightVisibility)
             takeDistances(c, s, c.arena.data() + e.offset + size_t(3) * size_t(lanes), lanes);

@@ -60,6 +60,7 @@ std::vector<std::shared_ptr<BatchContext>> Engine::asides(const BatchContext& c,
         run->rays.reserve(of.size());
         for (size_t k = 0; k < of.size(); ++k) {
             PathRay& ray = run->rays.emplace_back(c.rays[of[k]]);
+            ray.path = 0;   // Ci's light is told apart, not that of outputs
             ray.extra = -1; // that of the batch, which may be gone before what waits here
             run->bindings.push_back(c.bindings[of[k]]);
             const size_t outputs = world_->lightOutputs_.size();

@@ -106,6 +106,7 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
         const LobeValue value = lobeRows_.value(place);
         const Color f = delta ? Color(lobeRows_.albedo(place)) : value.pdf > 0 ? value.colour / value.pdf : Color(0);
         PathRay r = from;
+        r.path = 0; // what it brings is the light's
         r.weight = f / float(l.samples);
         r.vertex = vertex;
         r.asked = uint16_t(std::min<uint32_t>(many, 0xffff));

@@ -144,7 +144,8 @@ void Gather::takePhotons(Sched& sched) {
             if (!l.followed || !spreads(l)) continue;
             const Color weight = l.lobeOfShader ? l.weight * indirectScale_[point] : l.weight;
             const Color light = (l.ownsTarget ? weight : weight * ray.weight) * givenBack(l);
-            e_.deposit(sched, {l.target, light, LightEvent::Photons, &ray, shareOf(l)});
+            e_.deposit(sched, {l.target, light, LightEvent::Photons, &ray, shareOf(l), nullptr,
+                               e_.atPhotons(e_.atLobe(l, p, ray, near_[0].from))});
         }
     }
 }

@@ -33,6 +33,8 @@ struct ShadowRay {
     const shading::Media* media = nullptr; ///< where it begins
     int32_t share = -1;     ///< RayExtra::share
     int32_t more = -1;      ///< Engine::moreLight_: what else goes the same way; -1: nothing
+    uint16_t path = 0;      ///< PathRay::path behind its vertex
+    int32_t light = 0;      ///< and the event at its other end (Engine::LightEvents)
     int32_t hemisphere = -1; ///< Engine::hemispheres_: of an occlusion(), which takes the mean of the channels; -1: another
 };
 
@@ -53,6 +55,7 @@ struct Deposit {
     const PathRay* path = nullptr;        ///< that brings it, up to its last vertex; may be null
     int32_t share = -1;                   ///< Engine::shares_
     const ShaderInstance* of = nullptr;   ///< that made it; null: not known
+    uint16_t end = 0;                     ///< PathRay::path behind the light: which outputs by light path have it; 0: none
 };
 
 /// An occlusion() whose rays are among the shadow rays.
@@ -69,7 +72,7 @@ struct Way { Vec3 origin, dir; float distance = 0; };
 Way wayBetween(const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint* s);
 
 /// Light beside that of a ShadowRay, and the next of the same.
-struct MoreLight { Color contribution; TargetId target; int32_t share; bool areaLight; int32_t more; };
+struct MoreLight { Color contribution; TargetId target; int32_t share; bool areaLight; uint16_t path; int32_t more; };
 
 /// What a trace() that asks for it is told beside its result. Sums are exact: order does not matter.
 struct TraceSums {

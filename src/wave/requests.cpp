@@ -69,7 +69,11 @@ void Engine::requestShadows(BatchContext& c, const SiteInfo& s, int point, const
         for (size_t k = had; k < shadows.size(); ++k) shadows[k].media = mediaTowards(c, point, shadows[k].dir);
     }
     if (owns || !p.ray) return;
-    for (size_t k = had; k < shadows.size(); ++k) shadows[k].share = extraOf(*p.ray).share;
+    for (size_t k = had; k < shadows.size(); ++k) { // what it weighs is the shader's own
+        shadows[k].share = extraOf(*p.ray).share;
+        shadows[k].path = p.ray->path;
+        shadows[k].light = object_;
+    }
     for (size_t k = settled; k < settled_.size(); ++k) settled_[k].share = extraOf(*p.ray).share;
 }
 

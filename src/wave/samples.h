@@ -37,6 +37,9 @@ struct SampleResult {
     Color color{0}, opacity{0};  ///< premultiplied; color includes light seen through
     float z = 1e38f, zSecond = 1e38f; ///< camera depth of the first and second surface; 1e38 = none
     std::vector<float> aovs;     ///< flattened in the order of Settings::outputs
+    std::vector<Color> parts;    ///< of `color`, by Settings::lightPaths; empty: none are asked for
+    Color albedo{0};             ///< with Settings::firstSeen: what the lobes of the surfaces seen give back of even light
+    Vec3 normal{0.f};            ///< and their unit normals, camera space, by coverage
 };
 
 } // namespace alpenglow::transport

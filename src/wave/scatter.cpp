@@ -184,6 +184,7 @@ void Gather::sendRay(const Sent& s, int turn, Sched& sched) {
         r.origin += (p.surface.dPdu * (p.du * (at.x - .5f)) + p.surface.dPdv * (p.dv * (at.y - .5f))) * l.base;
     }
     r.dir = w;
+    r.path = e_.atLobe(l, p, from, w);
     r.maxDistance = l.maxDistance;
     r.kind = !photon ? l.rays : e_.kindOf(l.rays->type == RayType::Diffuse ? photon->diffuse : photon->specular);
     r.trail = trailBehind(l);

@@ -73,7 +73,7 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, st
         perhaps; // by AOV: a surface that makes the names of its outputs when it runs gives it at some points, and zero at others
     bool suspended = b.kernel().facts().suspends; // then nobody has asked for the atmosphere yet
     const bool media = !world_->media_.empty();
-    if (suspended) hazeOfBatch(c, first, lanes, media);
+    if (suspended) hazeOfBatch(c, first, lanes, media || lightPaths_);
     for (int i = first; i < std::min(first + lanes, int(c.points.size())); ++i) {
         const PathRay& ray = c.rays[i];
         const SurfaceBinding& binding = world_->bindings_[c.bindings[i]];
@@ -89,12 +89,21 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, st
             opacity = c.haze[size_t(i)].opacity;
         }
         if (!isFinite(opacity)) notFinite(&ray, "Oi", binding.surface.get());
+        const bool hazed = !c.haze.empty() && c.haze[size_t(i)].on; // then what it gives and what the volume adds are told apart
         if (isFinite(shown))
             deposit(sched,
-                    {c.targets[i], ray.weight * shown, LightEvent::Surface, &ray, extraOf(ray).share, binding.surface.get()});
+                    {c.targets[i], ray.weight * shown, LightEvent::Surface, &ray, extraOf(ray).share, binding.surface.get(),
+                     hazed ? uint16_t(0) : pathEvent(ray.path, object_)});
         else notFinite(&ray, "Ci", binding.surface.get());
+        if (hazed && ray.path && isFinite(shown)) {
+            const Color met = binding.matte && ray.camera() ? shown : c.haze[size_t(i)].slope * color;
+            depositPart(sched, &ray, pathEvent(ray.path, object_), ray.weight * met);
+            depositPart(sched, &ray, pathEvent(pathEvent(ray.path, volume_), object_), ray.weight * (shown - met));
+        }
         if (ray.counts) {
             SampleResult& r = *results[size_t(ray.sample->path)];
+            if (const Vec3 n = c.points[size_t(i)].N; world_->settings_.firstSeen && length(n) > 0 && std::isfinite(length(n)))
+                r.normal += n / length(n) * luminance(ray.weight * opacity);
             if (!binding.matte) r.opacity += ray.weight * opacity;
             float z = dot(c.points[i].P, Vec3(0, 0, 1));
             if (r.z >= 1e38f) r.z = z;
@@ -184,7 +193,7 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
                                      [&](int b) { return world_->bindings_[size_t(b)].atmosphere.shader != nullptr; });
     std::vector<Color> slope(n, Color(1));
     if (hazy) {
-        hazeOfBatch(*c, 0, n, media || !c->emits.empty());
+        hazeOfBatch(*c, 0, n, media || !c->emits.empty() || lightPaths_);
         for (int i = 0; i < n; ++i)
             if (c->haze[size_t(i)].on) slope[size_t(i)] = c->haze[size_t(i)].slope;
     }
@@ -226,7 +235,12 @@ void Engine::requestPairs(BatchContext& c, std::span<const Color> slope, std::ve
                 const size_t had = shadows.size();
                 lightVisibility(c, s, point, args, e.lanes, lane, weight * c.rays[point].weight, c.targets[point],
                                 args[size_t(s.rows[0]) * e.lanes + lane]);
-                if (shadows.size() > had) shadows.back().share = extraOf(c.rays[size_t(point)]).share;
+                if (shadows.size() > had) {
+                    const PathRay& ray = c.rays[size_t(point)];
+                    shadows.back().share = extraOf(ray).share;
+                    shadows.back().path = atLoop(c.points[size_t(point)], ray, shadows.back().dir);
+                    shadows.back().light = e.light >= 0 && !lightSymbols_.empty() ? lightSymbols_[size_t(e.light)] : loopLight_;
+                }
                 continue;
             }
             if (s.kind == SiteKind::Transmission || s.kind == SiteKind::Occlusion) weight *= c.rays[point].weight;

@@ -156,7 +156,11 @@ void Engine::passSurfaces(std::span<const ShadowRay> rays, std::span<Color> out)
     const auto fades = [&](const ShadowRay& r) { return r.hemisphere >= 0 && hemispheres_[size_t(r.hemisphere)].fade.fades(); };
     const bool fading = std::any_of(rays.begin(), rays.end(), fades);
     std::vector<Color> taken(fading ? rays.size() : 0, Color(0)); // what surfaces far away block in part
+    const bool counts = lightPaths_ && lightPaths_->countsStraight();
+    std::vector<uint16_t> straights(counts ? rays.size() : 0, 0); // what runs on the way may send rays, too
+    straights_.clear();
     const auto takes = [&](size_t i, const Color& opacity, double distance) {
+        if (counts) ++straights[i];
         if (fading && fades(rays[i])) taken[i] += out[i] * opacity * hemispheres_[size_t(rays[i].hemisphere)].fade.at(distance);
         out[i] *= Color(1) - opacity;
     };
@@ -225,6 +229,7 @@ void Engine::passSurfaces(std::span<const ShadowRay> rays, std::span<Color> out)
     for (size_t i = 0; i < taken.size(); ++i)
         if (fades(rays[i])) out[i] = Color(1) - taken[i];
     dim(parts, rays, out);
+    straights_ = std::move(straights);
 }
 
 Color Engine::transmittance(const ShadowRay& s) {
@@ -281,19 +286,21 @@ void Engine::flushShadows(Sched& s) {
     transmittances(shadows, transmitted_);
     for (size_t i = 0; i < shadows.size(); ++i) {
         const ShadowRay& r = shadows[i];
-        const auto arrives = [&](const Color& contribution, TargetId target, int32_t share, bool areaLight) {
+        const auto arrives = [&](const Color& contribution, TargetId target, int32_t share, bool areaLight, uint16_t path) {
             const Color light = contribution * transmitted_[i];
-            deposit(s, {target, light, LightEvent::Sampled, r.ray, share});
+            for (int k = path && !straights_.empty() ? straights_[i] : 0; k > 0; --k) path = pathEvent(path, straight_);
+            deposit(s, {target, light, LightEvent::Sampled, r.ray, share, nullptr, pathEvent(path, r.light)});
             if (TraceSums* sums = areaLight ? sumsOf(target) : nullptr) sums->add(TraceSums::AreaLight, light);
         };
         if (r.hemisphere >= 0) { // only these, and nothing else goes their way
-            deposit(s, {r.target, openLight(r, transmitted_[i], sumsOf(r.target)), LightEvent::Sampled, r.ray, r.share});
+            deposit(s, {r.target, openLight(r, transmitted_[i], sumsOf(r.target)), LightEvent::Sampled, r.ray, r.share, nullptr,
+                        pathEvent(r.path, r.light)});
             continue;
         }
-        arrives(r.contribution, r.target, r.share, r.areaLight);
+        arrives(r.contribution, r.target, r.share, r.areaLight, r.path);
         for (int32_t k = r.more; k >= 0; k = moreLight_[size_t(k)].more) {
             const MoreLight& m = moreLight_[size_t(k)];
-            arrives(m.contribution, m.target, m.share, m.areaLight);
+            arrives(m.contribution, m.target, m.share, m.areaLight, m.path);
         }
     }
     shadows.clear();

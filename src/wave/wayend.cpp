@@ -40,6 +40,7 @@ void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId t
     r.maxDistance = ray.maxDistance - travelled;
     r.footprint = ray.footprint.after(travelled);
     r.first = false;
+    r.path = pathEvent(ray.path, straight_);
     r.media = mediaBeyond(b, ray.media, p.surface.n, ray.dir, ray.dir);
     tellLost(r.media, p);
     r.parted |= ray.camera() && (ray.medium() >= 0 || r.medium() >= 0);
@@ -58,7 +59,8 @@ void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId t
 void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
     for (const Sched::Task* t : tasks) // the map of a trace()
         if (const PathRay& r = t->payload; maxComponent(extraOf(r).environment) > 0) {
-            deposit(sched, {t->target, r.weight * extraOf(r).environment, LightEvent::Map, &r, extraOf(r).share});
+            deposit(sched, {t->target, r.weight * extraOf(r).environment, LightEvent::Map, &r, extraOf(r).share, nullptr,
+                            pathEvent(r.path, map_)});
             if (TraceSums* sums = sumsOf(t->target)) sums->add(TraceSums::Environment, r.weight * extraOf(r).environment);
         }
     if (!rules_.emissionCounts || tasks.empty()) return;
@@ -102,7 +104,8 @@ void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
                     weight *= world_->settings_.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
                 }
                 const Color light = r.weight * value[i].Cl * weight;
-                deposit(sched, {of[i]->target, light, LightEvent::Sky, &r, extraOf(r).share, l.instance.get()});
+                deposit(sched, {of[i]->target, light, LightEvent::Sky, &r, extraOf(r).share, l.instance.get(),
+                                atLight(r.path, l)});
             }
     }
 }
@@ -155,7 +158,8 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
             }
             if (r.bounces > 0 && !r.kind->fromTrace) weight *= v.kept(r.type());
             deposit(sched,
-                    {met[i].target, r.weight * v.Cl * weight, LightEvent::Met, &r, extraOf(r).share, light.instance.get()});
+                    {met[i].target, r.weight * v.Cl * weight, LightEvent::Met, &r, extraOf(r).share, light.instance.get(),
+                     atLight(r.path, light)});
             if (TraceSums* sums = sumsOf(met[i].target); sums && maxComponent(extraOf(r).part) > 0)
                 sums->add(TraceSums::AreaLight, r.weight * v.Cl * weight);
         }

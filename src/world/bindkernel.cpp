@@ -115,7 +115,7 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
     t->onlyLights =
         !i.resultRows.empty() &&
         i.resultRows.count("arealightcontribution") + i.resultRows.count("unshadowedarealight") == i.resultRows.size();
-    t->hemisphere = i.text.count("__hemisphere") > 0;
+    t->hemisphere = i.text.count(rsl::kPairHemisphere) > 0;
     t->fade = {row("falloff"), row("falloffmode")};
     if (t->hemisphere) t->records = recordSite(i, s, world);
     return t;

@@ -114,7 +114,7 @@ SkyDirections::Direction SkyDirections::at(Vec2 e) const {
 void linkGathers(BoundKernel& b, const rsl::CompiledKernel& k, WorldImpl& world) {
     std::map<std::string, std::shared_ptr<GatherSite>> known;
     const auto numberOf = [](const SiteInfo& i) {
-        const auto n = i.text.find("__gather");
+        const auto n = i.text.find(rsl::kPairGather);
         return n == i.text.end() ? std::string() : n->second;
     };
     const auto told = [&](const SiteInfo& i, const std::string& what, const std::string& hint) {

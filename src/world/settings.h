@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/readlog.h"
 #include "base/stopflag.h"
+#include "scene/lightpaths.h"
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -41,6 +42,8 @@ struct Settings {
     std::vector<std::string>
         outputs; ///< AOVs: names of output shader parameters ("list[1]": an element) or predefined variables, in order
     const StopFlag* stop = nullptr; ///< polled while the world is made (dicing, displacement); set: build() gives up. May be null
+    std::shared_ptr<const scene::LightPaths> lightPaths; ///< outputs by light path, under path; null: none
+    bool firstSeen = false;         ///< SampleResult::albedo and normal are asked for, under path
     std::vector<int> outputWidths; ///< floats of each where a display declares it; 0 or missing: the shaders decide
 };
 

@@ -14,7 +14,7 @@ namespace {
 std::vector<std::string> namesIn(const std::string& source) {
     static const std::regex comment(R"(//[^\n]*)"), literal(R"re("((?:[^"\\\n]|\\.)*)")re"),
         name(R"(^(param:|Du:|Dv:|given:|slope:|space:|displacement:|send:light:|surface:|light#|length |begin\(\)|opacity\(\)).*)"
-             R"(|^.*this->.*|^__(setup|outside|part|once|uniform|nondiffuse|nonspecular|category|sentL|sentCl|sentShadows)$)"
+             R"(|^.*this->.*|^__(setup|outside|part|once|uniform|gather|hemisphere|nondiffuse|nonspecular|category|group|sentL|sentCl|sentShadows)$)"
              R"(|^__displacementbound_(sphere|coordinatesystem)$)");
     std::vector<std::string> found;
     const std::string code = std::regex_replace(source, comment, "");

@@ -131,6 +131,8 @@ inline constexpr char kPairSetUp[] = "__setup";     ///< a loop over lights has 
 inline constexpr char kPairOutside[] = "__outside"; ///< outside of loops over lights
 inline constexpr char kPairPart[] = "__part";       ///< of the form of trace() that gives an array: which element
 inline constexpr char kPairOnce[] = "__once";       ///< in construct(): once for the shader
+inline constexpr char kPairGather[] = "__gather";   ///< of the two sites of a gather, its rays and a turn: its number in the shader
+inline constexpr char kPairHemisphere[] = "__hemisphere"; ///< a trace() that is an indirectdiffuse(): over the hemisphere
 inline constexpr char kPairUniform[] = "__uniform"; ///< the variable that takes the answer is uniform
 
 /// ir::Site::resultNames of a query: its answer, and before that of an array of open length how long it is.
@@ -142,6 +144,7 @@ bool isElementResult(std::string_view name);
 // Parameters that mean something to the renderer whoever declares them.
 inline constexpr char kNonDiffuse[] = "__nondiffuse", kNonSpecular[] = "__nonspecular", kCategory[] = "__category";
 inline constexpr char kImportanceSample[] = "__importancesample";
+inline constexpr char kGroup[] = "__group"; ///< of a light: the name of its group in light path expressions
 inline constexpr char kBoundSize[] = "__displacementbound_sphere", kBoundSpace[] = "__displacementbound_coordinatesystem";
 /// Of a light that sends through generateSamples(): ways and light of its samples, and whether their light is traced.
 inline constexpr char kSentL[] = "__sentL", kSentCl[] = "__sentCl", kSentShadows[] = "__sentShadows";

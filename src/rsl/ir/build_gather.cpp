@@ -1,6 +1,7 @@
 // gather: rays by the handful, then a loop over what they found. A turn that has no rays left asks for the next handful (Request
 // "gather"), so that what they bring takes bounded memory; each turn then reads its own ray (Service "gatherturn").
 #include "rsl/gatherrays.h"
+#include "rsl/front/protocol.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
 #include <string_view>
@@ -49,8 +50,8 @@ Builder::GatherCall Builder::gatherCall(const Stmt& s) {
     const Type types[] = {point, vector, real, real};
     for (size_t i = 0; i < 4; ++i)
         addArgument(g.site, g.args, i < s.exprs.size() ? expr(*s.exprs[i], kinds[i]) : zero(kinds[i]), types[i]);
-    constantPair(g.site, "__gather", number);
-    constantPair(g.turn, "__gather", number);
+    constantPair(g.site, kPairGather, number);
+    constantPair(g.turn, kPairGather, number);
     g.turn.resultKinds = {Kind::Float};
     g.turn.resultNames = {""};
     for (const NamedArg& p : s.pairs) {

@@ -80,7 +80,7 @@ void Builder::hemispherePairs(const Expr& e, Inst* normal, bool occlusion, Hemis
     give("distribution", leaves_.string("cosine"), {Base::String, 0});
     if (!h.given.count("raytype")) give("type", leaves_.string("diffuse"), {Base::String, 0});
     give("samplecone", constant(1.57079633f), real);
-    give("__hemisphere", leaves_.string("1"), {Base::String, 0});
+    give(kPairHemisphere, leaves_.string("1"), {Base::String, 0});
     for (const auto& [output, parameter] : messageSlots_) give(PairName::surface(output).text(), get(parameter.first), parameter.second);
 }
 

@@ -1,0 +1,36 @@
+// A light path expression, read: the places where an event may stand, and what may follow what.
+#pragma once
+#include "scene/lightpaths.h"
+#include <bitset>
+
+namespace alpenglow::scene {
+
+/// A set of events: all whose letters are among these. Bits are those of PathEvent and PathScattering.
+struct PathEvents {
+    uint8_t events = 0xff, scatterings = 0xff;
+    std::vector<std::string> labels; ///< one of them; empty: any event
+    bool notLabels = false;          ///< none of them
+    bool has(PathEvent, PathScattering, std::span<const std::string> carried) const;
+};
+
+/// Where one event of the path stands.
+struct PathPosition {
+    std::vector<PathEvents> any; ///< it is in one of these
+    bool negated = false;        ///< or in none
+    bool has(PathEvent, PathScattering, std::span<const std::string> carried) const;
+};
+
+using PathPositions = std::bitset<LightPaths::kMostPositions>;
+
+struct LightPathText {
+    std::vector<PathPosition> positions;
+    PathPositions first, last;          ///< where a path may begin and end
+    std::vector<PathPositions> follow;  ///< by position
+    bool empty = false;                 ///< the path without events is one
+    bool straight = false;              ///< it names s; else straight passages are as if they were not there
+};
+
+/// Reads an expression. `room`: positions that it may have. Nothing: it is wrong, which was reported.
+std::optional<LightPathText> readLightPath(const std::string& text, size_t room, const SourcePlace&, Diagnostics&);
+
+} // namespace alpenglow::scene

@@ -184,7 +184,7 @@ uint64_t Answers::takeFromSheet(KernelRun& c, LightLoop& loop, const LightSheet&
         std::copy_n(sheet.values.begin() + long(from * values), most * values, loop.values.begin());
     }
     c.lightDistance.assign(width, 1e38f);
-    c.lightNow = int(&light - world_.lights_.data());
+    c.lightNow = int(&light - world_->lights_.data());
     LoopCone cone(loop, width);
     uint64_t lit = 0;
     for (size_t lane = 0; lane < most; ++lane) {

@@ -28,8 +28,8 @@ enum class ChannelRule : uint8_t {
     Average, ///< mean over the samples, like Ci
     Min,     ///< least value (depth filter "min"); +infinity when no sample gave a finite one
     Max,     ///< greatest value; -infinity likewise
-    PartOfRed,   ///< mean, like Ci, of which it is a part: those of a component add up to it exactly, sample by sample. What rounding
-    PartOfGreen, ///< leaves goes to the largest
+    PartOfRed,   ///< mean, like Ci, of which it is a part: those of a component add up to it exactly, sample by sample. What
+    PartOfGreen, ///< rounding leaves goes to the largest
     PartOfBlue
 };
 /// Whether the samples of a channel are added up.
@@ -119,7 +119,9 @@ public:
     /// Mean of the sum of such channels, all isSum(); 0 of none.
     float aov(int x, int y, std::span<const int> channels) const;
     /// The integer sum of one, in units of 2^-40; of a component of Ci.
-    Int128 fixedAov(int x, int y, int channel) const { return aovs_[index(x, y) * description_.channels.size() + size_t(channel)]; }
+    Int128 fixedAov(int x, int y, int channel) const {
+        return aovs_[index(x, y) * description_.channels.size() + size_t(channel)];
+    }
     Int128 fixed(int x, int y, int component) const { return pixel(x, y).rgb[component]; }
     Moments moments(int x, int y) const;
     /// Luminance sum and count of one replica.

@@ -17,7 +17,8 @@ size_t widthOf(Source s) { return s == Source::Variance || s == Source::Samples 
 
 /// The number of an expression in the plan.
 int lightOf(OutputPlan& plan, const std::string& expression, const SourcePlace& place) {
-    const auto i = std::find_if(plan.lights.begin(), plan.lights.end(), [&](const auto& l) { return l.expression == expression; });
+    const auto same = [&](const auto& l) { return l.expression == expression; };
+    const auto i = std::find_if(plan.lights.begin(), plan.lights.end(), same);
     if (i == plan.lights.end()) plan.lights.push_back({expression, place});
     return int(i == plan.lights.end() ? plan.lights.size() - 1 : size_t(i - plan.lights.begin()));
 }
@@ -39,7 +40,8 @@ void setSource(OutputVariable& v, const scene::Options& o, OutputPlan& plan, con
     const auto only = [&](Source s) { // under path alone, and as wide as it is
         if (!plan.basis.path)
             diags.report(Severity::Error, Rie::Incapable, place,
-                         "\"" + v.name + "\": outputs by light path, albedo, normal, variance and samples need Hider \"path\"; it is 0");
+                         "\"" + v.name + "\": outputs by light path, albedo, normal, variance and samples need Hider \"path\"; "
+                         "it is 0");
         if (v.channels.size() == widthOf(s)) return true;
         if (v.typed)
             diags.report(Severity::Error, Rie::Consistency, place,

@@ -314,12 +314,20 @@ Image filmImage(const Film& film, const OutputPlan& plan, DepthFilter depth) {
     return image;
 }
 
+namespace {
+/// Where a variable of the engine, or by light path, stands behind the first eight floats of a pixel.
+size_t floatOf(const OutputPlan& plan, const OutputVariable& v, const std::vector<int>& firstFloat) {
+    if (v.source == Source::Engine) return size_t(firstFloat[size_t(v.engine)]);
+    return size_t(plan.engineFloats()) + lightFloat(plan, v);
+}
+} // namespace
+
 bool writeOutputs(const OutputPlan& plan, const PictureFacts& facts, const std::function<const Image&(const OutputSpec&)>& pixels,
                   const Imager& imager, bool allowWrite, Diagnostics& diags) {
     bool all = true;
     std::vector<int> firstFloat(plan.engineOutputs.size());
     for (size_t i = 0, n = 0; i < firstFloat.size(); n += size_t(plan.engineWidths[i++])) firstFloat[i] = int(n);
-    int w = facts.window.width(), h = facts.window.height();
+    const int w = facts.window.width(), h = facts.window.height();
     std::vector<float> rx(size_t(w), 0.f), ry(size_t(w), 0.f), row(size_t(w) * 4);
     const float zeros[16] = {}; // hidden and raytrace have no light by path
     for (const OutputSpec& s : plan.pictures) {
@@ -371,19 +379,14 @@ bool writeOutputs(const OutputPlan& plan, const PictureFacts& facts, const std::
                     case Source::Ci:
                         for (size_t k = 0; k < n; ++k) *q++ = k == 0 ? r[x] : k == 1 ? g[x] : b[x];
                         break;
-                    case Source::Alpha:
-                        *q++ = a[x];
-                        break;
-                    case Source::Z:
-                        *q++ = std::isfinite(p[7]) ? p[7] : kFarAway;
-                        break;
+                    case Source::Alpha: *q++ = a[x]; break;
+                    case Source::Z: *q++ = std::isfinite(p[7]) ? p[7] : kFarAway; break;
                     case Source::Oi:
                         for (size_t k = 0; k < n; ++k) *q++ = p[4 + std::min(k, size_t(2))];
                         break;
                     default: {
-                        const size_t at = v.source == Source::Engine ? size_t(firstFloat[size_t(v.engine)])
-                                                                     : size_t(plan.engineFloats()) + lightFloat(plan, v);
-                        const float* e = 8 + at + n <= stride ? p + 8 + at : zeros;
+                        const size_t at = 8 + floatOf(plan, v, firstFloat);
+                        const float* e = at + n <= stride ? p + at : zeros;
                         for (size_t k = 0; k < n; ++k) {
                             const float x1 = s.ownExposure && v.color ? expose(e[k], s.gain, s.gamma) : e[k];
                             *q++ = s.srgb && v.shown() ? srgbEncode(x1) : x1;

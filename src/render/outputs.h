@@ -16,7 +16,7 @@ namespace alpenglow::render {
 
 /// One variable of a display.
 struct OutputVariable {
-    /// Light: by light path. Albedo, Normal: of what the camera sees first. Variance, Samples: of a pixel of Ci. These under path.
+    /// Light: by light path. Albedo, Normal: of what the camera sees first. Variance, Samples: of a pixel of Ci. Under path.
     enum class Source { Ci, Alpha, Z, Oi, Engine, Light, Albedo, Normal, Variance, Samples };
     Source source = Source::Ci;
     Source instead = Source::Engine; ///< of a name that no shader may have: what it is then; Engine: nothing
@@ -77,7 +77,8 @@ struct OutputPlan {
     bool needsFirstSeen() const;
     bool needs(OutputVariable::Source) const;
     bool needsDepth(DepthFilter) const;
-    /// Takes the widths the engine found and names the channels of what nobody had declared. `missing`: outputs that no shader has.
+    /// Takes the widths the engine found and names the channels of what nobody had declared. `missing`: outputs that no shader
+    /// has.
     void resolve(std::vector<int> widths, Diagnostics&, const std::vector<std::string>& missing = {});
 };
 

@@ -42,6 +42,19 @@ DepthFilter depth(const Json& j) {
 Json place(const SourcePlace& p) { return {p.file, p.line, p.column}; }
 SourcePlace place(const Json& j) { return {j.at(0).get<std::string>(), j.at(1).get<int>(), j.at(2).get<int>()}; }
 
+
+bool soundLight(const OutputVariable& v, const OutputPlan& plan) {
+    return v.source != OutputVariable::Source::Light || (v.light >= 0 && size_t(v.light) < plan.lightParts.size());
+}
+
+void takeWidths(const Json& j, OutputPlan& plan) {
+    plan.engineWidths.resize(plan.engineOutputs.size(), 1);
+    for (int& w : plan.engineWidths) w = std::clamp(w, 1, 16);
+    plan.parts = std::clamp(j.at("parts").get<int>(), 0, int(scene::LightPaths::kMostParts));
+    plan.lightParts = j.at("lightParts").get<std::vector<std::vector<int>>>();
+    for (std::vector<int>& parts : plan.lightParts) std::erase_if(parts, [&](int p) { return p < 0 || p >= plan.parts; });
+}
+
 } // namespace
 
 std::string planToText(const OutputPlan& plan, const PictureFacts& facts) {
@@ -127,11 +140,7 @@ std::optional<std::pair<OutputPlan, PictureFacts>> planFromText(const std::strin
         plan.basis.depth = depth(b.at("depth"));
         plan.engineOutputs = j.at("outputs").get<std::vector<std::string>>();
         plan.engineWidths = j.at("widths").get<std::vector<int>>();
-        plan.engineWidths.resize(plan.engineOutputs.size(), 1);
-        for (int& w : plan.engineWidths) w = std::clamp(w, 1, 16);
-        plan.parts = std::clamp(j.at("parts").get<int>(), 0, int(scene::LightPaths::kMostParts));
-        plan.lightParts = j.at("lightParts").get<std::vector<std::vector<int>>>();
-        for (std::vector<int>& parts : plan.lightParts) std::erase_if(parts, [&](int p) { return p < 0 || p >= plan.parts; });
+        takeWidths(j, plan);
         for (const Json& p : j.at("pictures")) {
             OutputSpec s;
             s.name = p.at("name").get<std::string>();
@@ -161,8 +170,7 @@ std::optional<std::pair<OutputPlan, PictureFacts>> planFromText(const std::strin
                     if (v.engine < 0 || size_t(v.engine) >= plan.engineOutputs.size()) continue;
                     most = size_t(plan.engineWidths[size_t(v.engine)]);
                 } else if (v.source == OutputVariable::Source::Alpha || v.source == OutputVariable::Source::Z) most = 1;
-                if (v.source == OutputVariable::Source::Light && (v.light < 0 || size_t(v.light) >= plan.lightParts.size())) continue;
-                if (v.channels.empty() || v.channels.size() > most) continue;
+                if (!soundLight(v, plan) || v.channels.empty() || v.channels.size() > most) continue;
                 s.variables.push_back(std::move(v));
             }
             for (const Json& q : p.at("params")) {

@@ -145,8 +145,8 @@ void PathLoop::tell(double inPass, bool last) {
     else job_.progress.update(s, job_.what);
 }
 
-/// Passes are of 8 samples while they fit the memory that holds them back. The first eight come in passes of 1, 1, 2 and 4, so that
-/// there is soon something to keep. 0: the time is over.
+/// Passes are of 8 samples while they fit the memory that holds them back. The first eight come in passes of 1, 1, 2 and 4, so
+/// that there is soon something to keep. 0: the time is over.
 uint32_t PathLoop::samplesOfPass() const {
     const size_t perSample = film_.window().pixels() * stride_ * sizeof(float);
     const uint32_t most = uint32_t(std::clamp(kPassBytes / std::max(perSample, size_t(1)), size_t(1), size_t(kPass)));

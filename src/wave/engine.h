@@ -68,6 +68,7 @@ public:
     }
     /// The same to the part of the outputs by light path alone.
     void depositPart(Sched&, const PathRay*, uint16_t end, const Color& light);
+    void depositThroughVolume(Sched&, const PathRay&, const Color& met, const Color& shown); // shadegroup.cpp
     // lightevents.cpp: PathRay::path from event to event. All keep 0.
     uint16_t atLoop(const ShadePoint&, const PathRay&, const Vec3& w) const; ///< the same by a loop over lights
     uint16_t atLobe(const LobeVertex&, const ShadePoint&, const PathRay&, const Vec3& w) const; ///< scattered towards w, unit

@@ -1,4 +1,5 @@
-// Events of light paths: what a path has met from the camera on, for the outputs that show some of the light (scene/lightpaths.h).
+// Events of light paths: what a path has met from the camera on, for the outputs that show some of the light
+// (scene/lightpaths.h).
 #include "wave/engine.h"
 
 namespace alpenglow::transport {
@@ -13,8 +14,8 @@ std::string groupOf(const BoundLight& l) {
     return i == l.instance->parameters.strings.end() ? std::string() : i->second;
 }
 
-/// Whether w leaves a surface on the side that the ray comes from. The sides of w are those of the shading normal, about which lobes
-/// lie.
+/// Whether w leaves a surface on the side that the ray comes from. The sides of w are those of the shading normal, about which
+/// lobes lie.
 bool reflects(const PathRay& ray, const ShadePoint& p, const Vec3& w) {
     const float side = dot(w, p.N) * (dot(p.N, p.surface.n) < 0 ? -1.f : 1.f);
     return (dot(ray.dir, p.surface.n) < 0) == (side > 0);

@@ -106,7 +106,6 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
         const LobeValue value = lobeRows_.value(place);
         const Color f = delta ? Color(lobeRows_.albedo(place)) : value.pdf > 0 ? value.colour / value.pdf : Color(0);
         PathRay r = from;
-        r.path = 0; // what it brings is the light's
         r.weight = f / float(l.samples);
         r.vertex = vertex;
         r.asked = uint16_t(std::min<uint32_t>(many, 0xffff));
@@ -115,7 +114,7 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
         r.origin = l.bias >= 0 ? start + w * l.bias
                    : leaves    ? geometry::offsetOrigin(*p.lit, w, 0)
                                : start + w * geometry::roundingError(start);
-        r.parted = false, r.trail = 0;
+        r.parted = false, r.trail = 0, r.path = 0; // what it brings is the light's
         if (!leaves || (dot(from.dir, p.lit->n) < 0) != (dot(w, p.lit->n) > 0)) r.media = nullptr; // nobody knows
         r.dir = w;
         r.maxDistance = l.maxDistance;

@@ -74,7 +74,10 @@ void Engine::requestShadows(BatchContext& c, const SiteInfo& s, int point, const
         shadows[k].path = p.ray->path;
         shadows[k].light = object_;
     }
-    for (size_t k = settled; k < settled_.size(); ++k) settled_[k].share = extraOf(*p.ray).share;
+    for (size_t k = settled; k < settled_.size(); ++k) {
+        settled_[k].share = extraOf(*p.ray).share;
+        settled_[k].end = pathEvent(p.ray->path, object_);
+    }
 }
 
 /// Which surfaces rays of a trace() meet.

@@ -62,6 +62,12 @@ void Engine::tellAsker(const BatchContext& c, int i, const Color& opacity, Sched
     }
 }
 
+/// The parts of what a volume shader shows: what the surface gives by itself, `met` of it, and what the volume adds.
+void Engine::depositThroughVolume(Sched& sched, const PathRay& ray, const Color& met, const Color& shown) {
+    depositPart(sched, &ray, pathEvent(ray.path, object_), ray.weight * met);
+    depositPart(sched, &ray, pathEvent(pathEvent(ray.path, volume_), object_), ray.weight * (shown - met));
+}
+
 void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, std::span<const uint32_t> asked) {
     if (c.aside) return finishAside(c, first, lanes, sched);
     shading::Batch& b = *c.batch;
@@ -95,11 +101,8 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, st
                     {c.targets[i], ray.weight * shown, LightEvent::Surface, &ray, extraOf(ray).share, binding.surface.get(),
                      hazed ? uint16_t(0) : pathEvent(ray.path, object_)});
         else notFinite(&ray, "Ci", binding.surface.get());
-        if (hazed && ray.path && isFinite(shown)) {
-            const Color met = binding.matte && ray.camera() ? shown : c.haze[size_t(i)].slope * color;
-            depositPart(sched, &ray, pathEvent(ray.path, object_), ray.weight * met);
-            depositPart(sched, &ray, pathEvent(pathEvent(ray.path, volume_), object_), ray.weight * (shown - met));
-        }
+        if (hazed && ray.path && isFinite(shown))
+            depositThroughVolume(sched, ray, binding.matte && ray.camera() ? shown : c.haze[size_t(i)].slope * color, shown);
         if (ray.counts) {
             SampleResult& r = *results[size_t(ray.sample->path)];
             if (const Vec3 n = c.points[size_t(i)].N; world_->settings_.firstSeen && length(n) > 0 && std::isfinite(length(n)))

@@ -117,7 +117,8 @@ void Engine::takeGlobalMaps(BatchContext& c, Sched& sched) {
                                                dot(n, r.dir) > 0 ? -n : n,
                                                world_->bindings_[size_t(c.bindings[i])].photons.estimator, 0});
             tellAsker(c, int(i), Color(1), sched);
-            deposit(sched, {c.targets[i], r.weight * light, LightEvent::Photons, &r, extraOf(r).share, nullptr, atPhotons(r.path)});
+            deposit(sched, {c.targets[i], r.weight * light, LightEvent::Photons, &r, extraOf(r).share, nullptr,
+                            atPhotons(r.path)});
             freeExtra(r);
             sched.release(c.targets[i]);
             continue;

@@ -289,7 +289,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         bindSent(i);
         if (i.kind == SiteKind::Texture || i.kind == SiteKind::Environment) i.map = textureSite(i, s);
         if (i.kind == SiteKind::Photons) i.photons = photonSite(i, *k, *world);
-        if (i.kind == SiteKind::Trace && i.text.count("__hemisphere")) world->photons_->asksGlobal = true;
+        if (i.kind == SiteKind::Trace && i.text.count(rsl::kPairHemisphere)) world->photons_->asksGlobal = true;
         if (i.kind == SiteKind::Diffuse) i.lobe = findLobe("diffuse");
         if (i.kind == SiteKind::Specular) i.lobe = findLobe("specular");
         if (i.kind == SiteKind::Phong) i.lobe = findLobe("phong");

@@ -113,10 +113,10 @@ struct PathRay {
     int16_t layers = 0;               ///< transparent surfaces passed so far, since the camera; no bounces
     uint16_t path = 0;       ///< scene::LightPaths::State up to here; 0: what it brings is in no output by light path
     uint16_t asked = 1;      ///< the most rays that a waiting kernel on the way was known to ask for at one point
-    bool first = true;                ///< one of those that its target asked for: writes distance and transmission
-    bool counts = false;              ///< its hit writes opacity, depth and AOVs of its camera sample
-    bool quiet = false;               ///< of a gather that wants no light of it: only shaders run that its hit's outputs need
-    bool parted = false;              ///< camera: passed a volume on its way, so that volumes have what lies before `origin`
+    bool first : 1 = true;            ///< one of those that its target asked for: writes distance and transmission
+    bool counts : 1 = false;          ///< its hit writes opacity, depth and AOVs of its camera sample
+    bool quiet : 1 = false;           ///< of a gather that wants no light of it: only shaders run that its hit's outputs need
+    bool parted : 1 = false;          ///< camera: passed a volume on its way, so that volumes have what lies before `origin`
     uint8_t trail = 0;                ///< Trail, as bits
     /// Density per steradian with which this direction was drawn, times the probability of drawing it at all; < 0: light sampling
     /// cannot have produced this direction, so emission counts in full (pathtracer.md 3).

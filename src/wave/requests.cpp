@@ -105,6 +105,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         if (const auto light = recorded(c, s, point, f, raysOfTrace(s, f, p), occurrence)) {
             settled_.push_back({target, weight * *light * (owns ? Color(1) : p.ray->weight), LightEvent::Sampled, p.ray,
                                 owns ? -1 : extraOf(*p.ray).share});
+            if (!owns) settled_.back().end = pathEvent(p.ray->path, object_);
             return;
         }
     }

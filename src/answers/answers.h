@@ -36,6 +36,7 @@ struct AnswerMemo {
     std::map<std::tuple<int32_t, int, const scene::Attributes*, const SurfaceBinding*>, std::optional<Told>> attributes;
     std::unordered_map<int32_t, std::optional<Told>> options;
     std::unordered_map<int32_t, bool> pointAttributes; ///< ofPoint() of a name
+    std::unordered_map<const scene::Attributes*, std::pair<float, float>> shadowBias; ///< Attribute "shadow": bias0, bias1
 };
 
 class Answers {
@@ -172,6 +173,7 @@ void answerOption(Answers&, const ServiceCall&);
 void answerRay(const ServiceCall&);
 // maps.cpp: texture() and environment(); textureinfo().
 void answerTexture(Answers&, const ServiceCall&);
+void answerShadow(Answers&, const ServiceCall&);
 void answerTextureInfo(Answers&, const ServiceCall&);
 // indirectdiffuse() of a map and a direction.
 void answerIrradiance(Answers&, const ServiceCall&);

@@ -1,6 +1,7 @@
-// texture() and environment() of kernels, and textureinfo(). What a call says about the lookup is known beforehand (TextureSite);
+// texture(), environment() and shadow() of kernels, and textureinfo(). What a call says about the lookup is known beforehand (TextureSite);
 // per point only the numbers are read.
 #include "answers/answers.h"
+#include "texture/shadow.h"
 
 namespace alpenglow::transport {
 
@@ -71,6 +72,87 @@ void answerTexture(Answers& answers, const ServiceCall& call) {
         else lookupEnvironment(t, call, lane, map, world.textures_->latLong(), channel, o, v, g, cu);
         for (int k = 0; k < t.count; ++k) call.put(k, lane, v[k]);
         for (int k = 0; k < t.slopes; ++k) call.put(t.count + k, lane, slopes[k]);
+    });
+}
+
+/// Attribute "shadow" of a primitive: its two ends of the bias; negative where it says nothing.
+static std::pair<float, float> biasOf(AnswerMemo& memo, const scene::Attributes* a) {
+    if (!a) return {-1.f, -1.f};
+    const auto [at, fresh] = memo.shadowBias.try_emplace(a, -1.f, -1.f);
+    if (fresh) {
+        const auto number = [&](const char* name, float otherwise) {
+            const scene::Param* p = a->value(name);
+            return p && !p->numbers.empty() ? p->numbers[0] : otherwise;
+        };
+        const float bias = number("shadow:bias", -1);
+        at->second = {number("shadow:bias0", bias), number("shadow:bias1", bias)};
+    }
+    return at->second;
+}
+
+/// The options of shadow() at one point.
+static texture::ShadowOptions shadowOptions(const TextureSite& t, const ServiceCall& call, int lane, std::pair<float, float> ofPrimitive, const Matrix& toWorld) {
+    const auto number = [&](int row, float otherwise) {
+        const float x = row < 0 ? otherwise : call.at(row, lane);
+        return std::isfinite(x) ? x : otherwise;
+    };
+    const auto first = [](std::initializer_list<float> list) {
+        for (const float x : list)
+            if (x >= 0) return x;
+        return 0.f;
+    };
+    texture::ShadowOptions o;
+    const float width = number(t.width, 1), blur = number(t.blur, 0), bias = number(t.bias, -1);
+    o.swidth = number(t.swidth, width);
+    o.twidth = number(t.twidth, width);
+    o.sblur = number(t.sblur, blur);
+    o.tblur = number(t.tblur, blur);
+    o.samples = number(t.samples, t.shadowSamples);
+    o.bias0 = first({number(t.bias0, -1), bias, ofPrimitive.first, t.shadowBias0});
+    o.bias1 = std::max(o.bias0, first({number(t.bias1, -1), bias, ofPrimitive.second, ofPrimitive.first, t.shadowBias1}));
+    o.gapbias = number(t.gapbias, 0);
+    if (std::all_of(std::begin(t.source), std::end(t.source), [](int r) { return r >= 0; })) {
+        o.source.emplace();
+        for (size_t k = 0; k < 4; ++k) {
+            const int r = t.source[k];
+            (*o.source)[k] = transformPoint(toWorld, Vec3d(call.at(r, lane), call.at(r + 1, lane), call.at(r + 2, lane)));
+        }
+    }
+    return o;
+}
+
+void answerShadow(Answers& answers, const ServiceCall& call) {
+    const TextureSite& t = *call.s.map;
+    const WorldImpl& world = answers.world();
+    const auto place = [&] { return call.place(); };
+    if (call.c.light && world.settings_.hider == Hider::Path) { // what rays tell exactly
+        if (t.computed || !t.name.empty())
+            call.diagnostics.reportOnce("shadowmaps", {Severity::Info, Rie::NoError, call.place(), "shadow maps of light shaders are not read under the hider path",
+                                                       "lights trace their shadows there", {}});
+        return call.each([&](int lane, const ShadePoint&) {
+            for (int k = 0; k < t.count; ++k) call.put(k, lane, 0);
+        });
+    }
+    texture::Handle map = t.computed ? nullptr : t.map(world, place);
+    call.each([&](int lane, const ShadePoint&) {
+        if (t.computed) map = answers.mapOfName(std::bit_cast<int32_t>(call.at(0, lane)), place);
+        const SurfaceBinding* binding = call.binding(world, lane);
+        const texture::ShadowOptions o =
+            shadowOptions(t, call, lane, biasOf(answers.memo(), binding ? binding->attributes.get() : nullptr), world.cameraToWorld_);
+        const auto vec = [&](size_t k) {
+            const int r = t.rows[k];
+            return Vec3d(call.at(r, lane), call.at(r + 1, lane), call.at(r + 2, lane));
+        };
+        float v = 0;
+        if (t.rows.size() >= 4) {
+            const Vec3d q[4] = {transformPoint(world.cameraToWorld_, vec(0)), transformPoint(world.cameraToWorld_, vec(1)),
+                                transformPoint(world.cameraToWorld_, vec(2)), transformPoint(world.cameraToWorld_, vec(3))};
+            v = texture::shadowLookupQuad(map, q, o);
+        } else if (t.rows.size() >= 3) {
+            v = texture::shadowLookup(map, transformPoint(world.cameraToWorld_, vec(0)), transformVector(world.cameraToWorld_, vec(1)),
+                                      transformVector(world.cameraToWorld_, vec(2)), o);
+        }
+        for (int k = 0; k < t.count; ++k) call.put(k, lane, v);
     });
 }
 

@@ -9,6 +9,7 @@ void Answers::service(KernelRun& c, int site, int first, uint64_t mask, int lane
     switch (call.s.kind) {
     case SiteKind::Texture:
     case SiteKind::Environment: return answerTexture(*this, call);
+    case SiteKind::Shadow: return answerShadow(*this, call);
     case SiteKind::TextureInfo: return answerTextureInfo(*this, call);
     case SiteKind::Photons: return answerPhotons(*this, call);
     case SiteKind::Irradiance: return answerIrradiance(*this, call);

@@ -16,8 +16,8 @@ std::vector<OptionalParameter> filterParameters() {
             {kF, "tblur", false, "0", "as blur, in t"},
             {kF, "fill", false, "0", "value of channels that the file does not have"},
             {kF, "lerp", false, "0", "1 interpolates between map levels"},
-            {kF, "samples", false, "4", "number of samples (shadow)"},
-            {kF, "bias", false, "-1", "depth bias (shadow); negative: the option's"},
+            {kF, "samples", false, "4", "of rays: how many (\"raytrace\")"},
+            {kF, "bias", false, "-1", "of rays: as for trace(); negative: the attribute's"},
             {kF, "ignoreabove", false, "1e38", "accepted and ignored"},
             {kF, "minwidth", false, "0", "accepted and ignored"},
             {kF, "expand", false, "0", "accepted and ignored"},
@@ -31,13 +31,20 @@ std::vector<OptionalParameter> filterParameters() {
             {kS, "hitsides", false, "\"both\"", "of rays: front, back, both or reversed (\"raytrace\"), as for trace()"}};
 }
 
-/// A source of light that is no point: PRMan wrote four points behind "source"; the checker names each.
+/// What maps of depth take beyond the filters. A source of light that is no point: PRMan wrote four points behind "source"; the
+/// checker names each.
 std::vector<OptionalParameter> shadowParameters() {
     std::vector<OptionalParameter> list = filterParameters();
+    for (OptionalParameter& o : list) {
+        if (o.name == "samples") o.defaultText = "Option \"shadow\" \"sample\", else 16", o.doc = "comparisons with the map, a square number of them, at most 1024; of rays: how many, 4 where it is missing";
+        if (o.name == "bias") o.doc = "how far before the map's surfaces a point is lit, world units; negative: Attribute or Option \"shadow\" \"bias\", else 0.225";
+    }
+    list.push_back({kF, "bias0", false, "-1", "with bias1: the comparisons spread their bias between the two; negative: those of the attribute or option"});
+    list.push_back({kF, "bias1", false, "-1", "see bias0"});
     for (const char* name : {"source", "source2", "source3", "source4"})
-        list.push_back({kP, name, false, "none", "shadow of an area light: its corners, four points behind \"source\"; accepted and ignored"});
-    for (const char* name : {"gapbias", "resbias", "bias0", "bias1", "noiserobust"})
-        list.push_back({kF, name, false, "0", "accepted and ignored"});
+        list.push_back({kP, name, false, "none", "shadow of an area light about the eye of the map: its corners, four points behind \"source\", in order around it"});
+    list.push_back({kF, "gapbias", false, "0", "of a source: how thick the map's surfaces are at least, world units"});
+    for (const char* name : {"resbias", "noiserobust"}) list.push_back({kF, name, false, "0", "accepted and ignored"});
     return list;
 }
 
@@ -82,8 +89,9 @@ std::vector<Shadeop> textureShadeops() {
     Shadeop& shadow = add("shadow",
         each("float color", "$ shadow(string name; point p; pairs)") +
             each("float color", "$ shadow(string name; point p1, point p2, point p3, point p4; pairs)"),
-        Lowering::Unavailable, "Occlusion in 0..1 from a shadow map, a deep shadow map, or rays. \"raytrace\" sends those of transmission() from p to the light: where L comes from, in a "
-        "light's own shader or in illuminance(); far away in solar(). The float form is the mean of the channels. Maps are not yet available.");
+        Lowering::Service, "The part of p's surroundings, 0 to 1, that a depth map puts in shadow: its comparisons with the map, not its depths, are filtered over the footprint of p, or over that "
+        "of four points. 0 where the map does not look. In light shaders under path maps are not read: lights trace their shadows there. \"raytrace\" sends the rays of transmission() from p to the light: "
+        "where L comes from, in a light's own shader or in illuminance(); far away in solar(). The float form of it is the mean of the channels.");
     list.back().examples = {{"shadow(\"light.shd\", P)", "0"}};
     shadow.contexts = kSurface | kVolume | kLight;
     shadow.optional = shadowParameters();

@@ -14,8 +14,8 @@ bool project(const Matrix& m, const Vec3d& p, double& x, double& y) {
     return std::isfinite(x) && std::isfinite(y);
 }
 
-/// Bilinear part of the four texels around (s, t) that shadow depth z; texels outside do not.
-double shadowed(const Level& map, double s, double t, double z) {
+/// Bilinear part of the four texels around (s, t) whose depth passes the test; texels outside do not.
+template <class Test> double part(const Level& map, double s, double t, Test&& test) {
     double x = std::clamp(s * map.width - 0.5, -2.0, map.width + 1.0),
            y = std::clamp(t * map.height - 0.5, -2.0, map.height + 1.0);
     int x0 = int(std::floor(x)), y0 = int(std::floor(y));
@@ -26,16 +26,88 @@ double shadowed(const Level& map, double s, double t, double z) {
             if (px < 0 || py < 0 || px >= map.width || py >= map.height) continue;
             size_t at = (size_t(py) * size_t(map.width) + size_t(px)) * size_t(map.channels);
             double depth = map.codes.empty() ? double(map.values[at]) : double(map.codes[at]) / 255;
-            if (z > depth) sum += (i ? fx : 1 - fx) * (j ? fy : 1 - fy);
+            if (test(depth)) sum += (i ? fx : 1 - fx) * (j ? fy : 1 - fy);
         }
     return sum;
 }
 
+/// How many comparisons there are along one side of their grid.
+int gridOf(const ShadowOptions& o) {
+    return int(std::ceil(std::sqrt(std::clamp(std::isfinite(o.samples) ? double(o.samples) : 1.0, 1.0, 1024.0))));
+}
+
+/// Evenly spread numbers between 0 and 1 that have nothing to do with a place in the grid (the golden ratio's multiples).
+double spread(int i) {
+    const double g = 0.6180339887498949 * (i + 0.5);
+    return g - std::floor(g);
+}
+
+/// A regular grid over a box of NDC: bilinear comparison makes it continuous, and the same everywhere.
+double overBox(const Level& map, double s, double t, double ws, double wt, double z, const ShadowOptions& o) {
+    ws = std::isfinite(ws) ? std::clamp(ws, 0.0, 1.0) : 0;
+    wt = std::isfinite(wt) ? std::clamp(wt, 0.0, 1.0) : 0;
+    int k = gridOf(o);
+    if (ws * map.width < 0.5 && wt * map.height < 0.5 && o.bias0 == o.bias1) k = 1;
+    double sum = 0;
+    for (int j = 0; j < k; ++j)
+        for (int i = 0; i < k; ++i) {
+            const double at = z - o.bias0 - (double(o.bias1) - o.bias0) * spread(j * k + i);
+            sum += part(map, s + ((i + 0.5) / k - 0.5) * ws, t + ((j + 0.5) / k - 0.5) * wt, [&](double depth) { return at > depth; });
+        }
+    return sum / (double(k) * k);
+}
+
+/// The part of an area light that a point does not see. Between the point and each of k x k places on the source the map is asked
+/// at even steps: a surface is met where the way is behind it by no more than a step is deep, or than surfaces are thick.
+double overSource(const Texture& h, const Vec3d& p, const std::array<Vec3d, 4>& source, const ShadowOptions& o) {
+    constexpr int kSteps = 64;
+    const int k = gridOf(o);
+    double sum = 0;
+    for (int n = 0; n < k * k; ++n) {
+        const double u = (n % k + 0.5) / k, v = (n / k + 0.5) / k;
+        const Vec3d q = (source[0] * (1 - u) + source[1] * u) * (1 - v) + (source[3] * (1 - u) + source[2] * u) * v;
+        const double bias = o.bias0 + (double(o.bias1) - o.bias0) * spread(n);
+        // A way that passes a surface is behind it by at most this at one of its steps.
+        const double deep = std::fabs(transformPoint(*h.worldToCamera, q).z - transformPoint(*h.worldToCamera, p).z) / kSteps;
+        const double gap = std::max(double(o.gapbias), deep * (1 + 1e-9));
+        double blocked = 0;
+        for (int i = 0; i < kSteps && blocked < 1; ++i) {
+            const Vec3d at = p + (q - p) * ((i + 0.5) / kSteps);
+            double s, t;
+            if (!project(*h.worldToNDC, at, s, t)) break;
+            const double z = transformPoint(*h.worldToCamera, at).z;
+            blocked = std::max(blocked, part(h.levels[0], s, t, [&](double d) { return z - bias > d && z - bias - d <= gap; }));
+        }
+        sum += blocked;
+    }
+    return sum / (double(k) * k);
+}
+
+/// Of a map with faces, the one in whose middle the point lies most; the map itself where it has none. Null: no face sees it.
+const Texture* faceOf(Handle h, const Vec3d& p) {
+    if (!h) return nullptr;
+    const auto usable = [](const Texture& t) { return !t.levels.empty() && t.worldToCamera && t.worldToNDC; };
+    if (h->tiles.empty()) return usable(*h) ? h : nullptr;
+    const Texture* best = nullptr;
+    double nearest = 0.5 + 1e-9, s, t;
+    for (const auto& [number, face] : h->tiles)
+        if (usable(*face) && project(*face->worldToNDC, p, s, t))
+            if (const double off = std::max(std::fabs(s - 0.5), std::fabs(t - 0.5)); off < nearest) {
+                nearest = off;
+                best = face.get();
+            }
+    return best;
+}
+
+bool finite(const Vec3d& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
 } // namespace
 
-float shadowLookup(Handle h, const Vec3d& p, const Vec3d& ddx, const Vec3d& ddy, const ShadowOptions& o) {
+float shadowLookup(Handle map, const Vec3d& p, const Vec3d& ddx, const Vec3d& ddy, const ShadowOptions& o) {
+    const Texture* h = faceOf(map, p);
     double s, t, xs, xt, ys, yt;
-    if (!h || h->levels.empty() || !h->worldToCamera || !h->worldToNDC || !project(*h->worldToNDC, p, s, t)) return 0;
+    if (!h || !project(*h->worldToNDC, p, s, t)) return 0;
+    if (o.source) return float(overSource(*h, p, *o.source, o));
     if (!project(*h->worldToNDC, p + ddx, xs, xt)) {
         xs = s;
         xt = t;
@@ -44,19 +116,26 @@ float shadowLookup(Handle h, const Vec3d& p, const Vec3d& ddx, const Vec3d& ddy,
         ys = s;
         yt = t;
     }
-    double z = transformPoint(*h->worldToCamera, p).z - double(o.bias);
-    double ws = std::min(1.0, (std::fabs(xs - s) + std::fabs(ys - s)) * double(o.swidth) + double(o.sblur));
-    double wt = std::min(1.0, (std::fabs(xt - t) + std::fabs(yt - t)) * double(o.twidth) + double(o.tblur));
-    if (!(ws >= 0)) ws = 0;
-    if (!(wt >= 0)) wt = 0;
-    // A regular grid over the footprint: bilinear comparison makes it continuous, and the same everywhere.
-    int k = int(std::ceil(std::sqrt(std::clamp(std::isfinite(o.samples) ? double(o.samples) : 1.0, 1.0, 1024.0))));
-    if (ws * h->width() < 0.5 && wt * h->height() < 0.5) k = 1;
-    double sum = 0;
-    for (int j = 0; j < k; ++j)
-        for (int i = 0; i < k; ++i)
-            sum += shadowed(h->levels[0], s + ((i + 0.5) / k - 0.5) * ws, t + ((j + 0.5) / k - 0.5) * wt, z);
-    return float(sum / (double(k) * k));
+    const double ws = (std::fabs(xs - s) + std::fabs(ys - s)) * double(o.swidth) + double(o.sblur);
+    const double wt = (std::fabs(xt - t) + std::fabs(yt - t)) * double(o.twidth) + double(o.tblur);
+    return float(overBox(h->levels[0], s, t, ws, wt, transformPoint(*h->worldToCamera, p).z, o));
+}
+
+float shadowLookupQuad(Handle map, const Vec3d world[4], const ShadowOptions& o) {
+    const Vec3d middle = (world[0] + world[1] + world[2] + world[3]) * 0.25;
+    const Texture* h = faceOf(map, middle);
+    if (!h || !finite(middle)) return 0;
+    if (o.source) return float(overSource(*h, middle, *o.source, o));
+    double s0 = 1e300, s1 = -1e300, t0 = 1e300, t1 = -1e300, z = 0;
+    for (int i = 0; i < 4; ++i) {
+        double s, t;
+        if (!project(*h->worldToNDC, world[i], s, t)) return 0;
+        s0 = std::min(s0, s), s1 = std::max(s1, s);
+        t0 = std::min(t0, t), t1 = std::max(t1, t);
+        z += transformPoint(*h->worldToCamera, world[i]).z / 4;
+    }
+    return float(overBox(h->levels[0], (s0 + s1) / 2, (t0 + t1) / 2, (s1 - s0) * double(o.swidth) + double(o.sblur),
+                         (t1 - t0) * double(o.twidth) + double(o.tblur), z, o));
 }
 
 } // namespace alpenglow::texture

@@ -1,17 +1,27 @@
-// shadow(): depth maps by percentage-closer filtering (the comparison is filtered, not the depth).
+// shadow(): depth maps by percentage-closer filtering (the comparison is filtered, not the depth; Reeves, Salesin, Cook 1987).
 #pragma once
 #include "texture/texture.h"
+#include <array>
 
 namespace alpenglow::texture {
 
 struct ShadowOptions {
     float swidth = 1, twidth = 1, sblur = 0, tblur = 0; ///< as LookupOptions
-    float samples = 16;                                 ///< comparisons spread over the footprint, at most 1024
-    float bias = 0; ///< world units; a point is lit when its depth - bias is not behind the map
+    float samples = 16;                                 ///< comparisons spread over the footprint or the source, at most 1024
+    /// World units: a point is lit when its depth - bias is not behind the map. The comparisons of a lookup spread theirs evenly
+    /// between the two.
+    float bias0 = 0, bias1 = 0;
+    /// Corners of an area light about the eye of the map, in world space and in order around it: its points are looked at one by
+    /// one, through the surfaces that the map shows.
+    std::optional<std::array<Vec3d, 4>> source;
+    float gapbias = 0; ///< of source: surfaces of the map are at least this thick, world units
 };
 
 /// The part of the footprint that is in shadow, 0..1, of a point in world space with its changes per pixel. 0 where the map does
-/// not look, behind its camera, and without a map or its matrices. The map's depth is camera-space z (ri.md 3.2).
+/// not look, behind its camera, and without a map or its matrices. The map's depth is camera-space z (ri.md 3.2). Of a map with
+/// faces, the face that has the point nearest to its middle.
 float shadowLookup(Handle, const Vec3d& world, const Vec3d& ddx, const Vec3d& ddy, const ShadowOptions&);
+/// The same over the box that four points, in any order, span on the map, at the mean of their depths.
+float shadowLookupQuad(Handle, const Vec3d world[4], const ShadowOptions&);
 
 } // namespace alpenglow::texture

@@ -24,6 +24,7 @@ SiteKind kindOf(const std::string& op) {
                                                           {"illuminance", SiteKind::Illuminance},
                                                           {"texture", SiteKind::Texture},
                                                           {"environment", SiteKind::Environment},
+                                                          {"shadow", SiteKind::Shadow},
                                                           {"surface", SiteKind::Message},
                                                           {"displacement", SiteKind::Message},
                                                           {"atmosphere", SiteKind::Message},
@@ -135,7 +136,30 @@ std::shared_ptr<const OcclusionSite> occlusionSite(const SiteInfo& i, const rsl:
     return o;
 }
 
-std::shared_ptr<const TextureSite> textureSite(const SiteInfo& i, const rsl::ir::Site& s) {
+/// What shadow() takes beyond texture(): numbers of the call, else of Option "shadow".
+void shadowSite(TextureSite& t, const SiteInfo& i, const scene::Options& options) {
+    const auto row = [&](const char* name) {
+        const auto f = i.named.find(name);
+        return f == i.named.end() ? -1 : f->second;
+    };
+    t.samples = row("samples");
+    t.bias = row("bias");
+    t.bias0 = row("bias0");
+    t.bias1 = row("bias1");
+    t.gapbias = row("gapbias");
+    int n = 0;
+    for (const char* name : {"source", "source2", "source3", "source4"}) t.source[n++] = row(name);
+    const auto number = [&](const char* name, float otherwise) {
+        const auto f = options.values.find(name);
+        return f == options.values.end() || f->second.numbers.empty() ? otherwise : f->second.numbers[0];
+    };
+    t.shadowSamples = number("shadow:sample", 16);
+    const float bias = number("shadow:bias", .225f);
+    t.shadowBias0 = number("shadow:bias0", bias);
+    t.shadowBias1 = std::max(t.shadowBias0, number("shadow:bias1", std::max(bias, t.shadowBias0)));
+}
+
+std::shared_ptr<const TextureSite> textureSite(const SiteInfo& i, const rsl::ir::Site& s, const scene::Options& options) {
     auto t = std::make_shared<TextureSite>();
     const auto row = [&](const char* name) {
         const auto f = i.named.find(name);
@@ -158,6 +182,10 @@ std::shared_ptr<const TextureSite> textureSite(const SiteInfo& i, const rsl::ir:
     t->options.asLight = t->count == 3; // what is read as a float is data: a height, an opacity, a mask
     t->slopes = std::min(i.resultRowCount - t->count, 27);
     t->firsts = t->count * (i.kind == SiteKind::Texture ? 2 : 3);
+    if (i.kind == SiteKind::Shadow) {
+        t->slopes = 0;
+        shadowSite(*t, i, options);
+    }
     t->rows.assign(i.rows.begin() + (t->computed && !i.rows.empty()), i.rows.end());
     return t;
 }
@@ -287,7 +315,8 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         if (const auto cache = i.text.find("lightcache"); cache != i.text.end()) i.refresh = cache->second == "refresh";
         if (const auto category = i.named.find("category"); category != i.named.end()) i.rowCategory = category->second;
         bindSent(i);
-        if (i.kind == SiteKind::Texture || i.kind == SiteKind::Environment) i.map = textureSite(i, s);
+        if (i.kind == SiteKind::Texture || i.kind == SiteKind::Environment || i.kind == SiteKind::Shadow)
+            i.map = textureSite(i, s, world->frame_->options);
         if (i.kind == SiteKind::Photons) i.photons = photonSite(i, *k, *world);
         if (i.kind == SiteKind::Trace && i.text.count(rsl::kPairHemisphere)) world->photons_->asksGlobal = true;
         if (i.kind == SiteKind::Diffuse) i.lobe = findLobe("diffuse");

@@ -86,6 +86,9 @@ struct TextureSite {
     bool computed = false;                ///< each point names its map, in row 0
     texture::LookupOptions options;       ///< what is the same for all points
     int filter = -1, channel = -1, fill = -1, width = -1, swidth = -1, twidth = -1, blur = -1, sblur = -1, tblur = -1;
+    /// shadow(): -1 where the call does not say, then the options of the frame hold; `source`: corners of an area light.
+    int samples = -1, bias = -1, bias0 = -1, bias1 = -1, gapbias = -1, source[4] = {-1, -1, -1, -1};
+    float shadowSamples = 16, shadowBias0 = .225f, shadowBias1 = .225f;
     int count = 0;                        ///< numbers of the result
     int slopes = 0, firsts = 0;           ///< derivatives that are wanted, the first ones of them (rsl/passes/gradients.h)
     std::vector<int> rows;                ///< of the coordinates
@@ -112,6 +115,7 @@ enum class SiteKind : uint8_t {
     Illuminance,
     Texture,
     Environment,
+    Shadow,
     Irradiance,
     Printf,
     Message,

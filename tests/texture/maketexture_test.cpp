@@ -95,7 +95,7 @@ TEST(MakeTexture, LatLongAndShadow) {
     EXPECT_NEAR(shadowLookup(h, {0, 0, 3}, {}, {}, so), 0.5, 1e-6); // the edge, between two texels
     so.sblur = so.tblur = 0.2f;
     EXPECT_NEAR(shadowLookup(h, {0, 0, 3}, {}, {}, so), 0.5, 1e-6);
-    so.bias = 2;
+    so.bias0 = so.bias1 = 2;
     EXPECT_EQ(shadowLookup(h, {-0.5, 0, 3}, {}, {}, so), 0);
     EXPECT_EQ(shadowLookup(nullptr, {0, 0, 3}, {}, {}, so), 0);
     EXPECT_TRUE(d.all().empty()) << messages(d);

@@ -175,7 +175,7 @@ Inst* Builder::service(const Expr& e, Op kind, int part) {
         for (int d = 0; d < 2; ++d)
             for (Inst* c : st) addArgument(s, args, footprint(c, d == 0 ? "du" : "dv", d == 0 ? Op::Du : Op::Dv), real);
     }
-    if (op.name == "environment" && all.size() == 2) {
+    if ((op.name == "environment" || op.name == "shadow") && all.size() == 2) {
         addArgument(s, args, footprint(all[1], "du", Op::Du), vector);
         addArgument(s, args, footprint(all[1], "dv", Op::Dv), vector);
     }

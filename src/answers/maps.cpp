@@ -1,5 +1,5 @@
-// texture(), environment() and shadow() of kernels, and textureinfo(). What a call says about the lookup is known beforehand (TextureSite);
-// per point only the numbers are read.
+// texture(), environment() and shadow() of kernels, and textureinfo(). What a call says about the lookup is known beforehand
+// (TextureSite); per point only the numbers are read.
 #include "answers/answers.h"
 #include "texture/shadow.h"
 
@@ -91,7 +91,8 @@ static std::pair<float, float> biasOf(AnswerMemo& memo, const scene::Attributes*
 }
 
 /// The options of shadow() at one point.
-static texture::ShadowOptions shadowOptions(const TextureSite& t, const ServiceCall& call, int lane, std::pair<float, float> ofPrimitive, const Matrix& toWorld) {
+static texture::ShadowOptions shadowOptions(const TextureSite& t, const ServiceCall& call, int lane,
+                                            std::pair<float, float> ofPrimitive, const Matrix& toWorld) {
     const auto number = [&](int row, float otherwise) {
         const float x = row < 0 ? otherwise : call.at(row, lane);
         return std::isfinite(x) ? x : otherwise;
@@ -127,7 +128,8 @@ void answerShadow(Answers& answers, const ServiceCall& call) {
     const auto place = [&] { return call.place(); };
     if (call.c.light && world.settings_.hider == Hider::Path) { // what rays tell exactly
         if (t.computed || !t.name.empty())
-            call.diagnostics.reportOnce("shadowmaps", {Severity::Info, Rie::NoError, call.place(), "shadow maps of light shaders are not read under the hider path",
+            call.diagnostics.reportOnce("shadowmaps", {Severity::Info, Rie::NoError, call.place(),
+                                                       "shadow maps of light shaders are not read under the hider path",
                                                        "lights trace their shadows there", {}});
         return call.each([&](int lane, const ShadePoint&) {
             for (int k = 0; k < t.count; ++k) call.put(k, lane, 0);
@@ -137,20 +139,21 @@ void answerShadow(Answers& answers, const ServiceCall& call) {
     call.each([&](int lane, const ShadePoint&) {
         if (t.computed) map = answers.mapOfName(std::bit_cast<int32_t>(call.at(0, lane)), place);
         const SurfaceBinding* binding = call.binding(world, lane);
-        const texture::ShadowOptions o =
-            shadowOptions(t, call, lane, biasOf(answers.memo(), binding ? binding->attributes.get() : nullptr), world.cameraToWorld_);
+        const auto bias = biasOf(answers.memo(), binding ? binding->attributes.get() : nullptr);
+        const Matrix& toWorld = world.cameraToWorld_;
+        const texture::ShadowOptions o = shadowOptions(t, call, lane, bias, toWorld);
         const auto vec = [&](size_t k) {
             const int r = t.rows[k];
             return Vec3d(call.at(r, lane), call.at(r + 1, lane), call.at(r + 2, lane));
         };
         float v = 0;
         if (t.rows.size() >= 4) {
-            const Vec3d q[4] = {transformPoint(world.cameraToWorld_, vec(0)), transformPoint(world.cameraToWorld_, vec(1)),
-                                transformPoint(world.cameraToWorld_, vec(2)), transformPoint(world.cameraToWorld_, vec(3))};
+            Vec3d q[4];
+            for (size_t k = 0; k < 4; ++k) q[k] = transformPoint(toWorld, vec(k));
             v = texture::shadowLookupQuad(map, q, o);
         } else if (t.rows.size() >= 3) {
-            v = texture::shadowLookup(map, transformPoint(world.cameraToWorld_, vec(0)), transformVector(world.cameraToWorld_, vec(1)),
-                                      transformVector(world.cameraToWorld_, vec(2)), o);
+            v = texture::shadowLookup(map, transformPoint(toWorld, vec(0)), transformVector(toWorld, vec(1)),
+                                      transformVector(toWorld, vec(2)), o);
         }
         for (int k = 0; k < t.count; ++k) call.put(k, lane, v);
     });

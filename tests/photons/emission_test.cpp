@@ -188,12 +188,6 @@ TEST(Emission, Stops) {
     EXPECT_FALSE(thread.emit(0, 0, 4096, 4096, all, &stop));
 }
 
-/// Puts the photons of an emission into the maps that the frame names.
-void makeMaps(Scene& s, uint32_t count) {
-    const auto names = photonMapsOf(*s.world, true);
-    const auto stored = emitted(s, count);
-    for (auto& [name, photons] : photonsByMap(*s.world, names, stored)) setPhotonMap(*s.world, name, std::move(photons));
-}
 void showing(const std::string& name, const std::string& value) {
     writeShader(name, "surface " + name + "(string map = \"all.photons\";) { normal n = faceforward(normalize(N), I); Oi = 1; "
                       "Ci = 0 * diffuse(n) + " + value + "; }\n");

@@ -17,10 +17,10 @@ size_t widthOf(Source s) { return s == Source::Variance || s == Source::Samples 
 
 /// The number of an expression in the plan.
 int lightOf(OutputPlan& plan, const std::string& expression, const SourcePlace& place) {
-    const auto same = [&](const auto& l) { return l.expression == expression; };
-    const auto i = std::find_if(plan.lights.begin(), plan.lights.end(), same);
-    if (i == plan.lights.end()) plan.lights.push_back({expression, place});
-    return int(i == plan.lights.end() ? plan.lights.size() - 1 : size_t(i - plan.lights.begin()));
+    for (size_t i = 0; i < plan.lights.size(); ++i)
+        if (plan.lights[i].expression == expression) return int(i);
+    plan.lights.push_back({expression, place});
+    return int(plan.lights.size()) - 1;
 }
 
 /// What stands behind a type ("color direct").

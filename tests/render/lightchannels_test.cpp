@@ -71,7 +71,11 @@ TEST(LightChannels, PixelsOfAFilm) {
     f.window = {0, 0, 1, 1};
     f.channels = filmChannels(plan);
     Film film(f);
-    const int key = plan.lightParts[0].at(0);
+    ASSERT_EQ(d.all().size(), 0u) << d.all()[0].message;
+    ASSERT_EQ(plan.lightParts.size(), 2u);
+    ASSERT_EQ(plan.pictures[0].variables.size(), 6u);
+    ASSERT_FALSE(plan.lightParts[0].empty());
+    const int key = plan.lightParts[0][0];
     for (uint32_t s = 0; s < 4; ++s) { // luminance 1 in one scramble, 3 in the other
         transport::SampleResult r;
         r.color = Color(s % 2 ? 3 : 1);

@@ -44,7 +44,8 @@ bool WithoutScene::answer(const rsl::CompiledKernel& k, int32_t site, int32_t fi
     const std::string& op = k.sites()[size_t(site)].op;
     bool asks = false;
     for (const char* name :
-         {"texture", "environment", "shadow", "textureinfo", "rayinfo", "rendererinfo", "raylevel", "isindirectray", "isshadowray"})
+         {"texture", "environment", "shadow", "textureinfo", "rayinfo", "rendererinfo", "raylevel", "isindirectray",
+          "isshadowray"})
         asks |= op == name;
     if (!asks) return false;
     State& s = *state_;

@@ -116,8 +116,8 @@ public:
     std::vector<HemisphereRays> hemispheres_; ///< of `shadows`
     std::vector<Deposit> settled_;            ///< of calls that no ray is sent for any more; taken with the shadow rays
     // recordings.cpp
-    /// What records say of the hemisphere that a call asks for at a point of a batch. Nothing: it is to be found exactly. In a pass
-    /// that finds records one may be begun there; then it is anything. `kind`: of the call's rays.
+    /// What records say of the hemisphere that a call asks for at a point of a batch. Nothing: it is to be found exactly. In a
+    /// pass that finds records one may be begun there; then it is anything. `kind`: of the call's rays.
     std::optional<Color> recorded(const BatchContext&, const SiteInfo&, int point, const std::function<float(int)>& row,
                                   const RayKind* kind, uint32_t occurrence);
     void sendRecord(const BatchContext&, int point, uint32_t call, uint32_t occurrence, Recording&);
@@ -302,14 +302,12 @@ private:
     // flight.cpp: what happens on the way. Flights that are over leave the batch, or the list.
     void fly(BatchContext&, Sched&);
     void fly(std::vector<const Sched::Task*>& missed, Sched&);
-    std::vector<FlightEvent*> events_;
-    std::vector<Flight> flights_;
+    std::vector<FlightEvent*> events_; std::vector<Flight> flights_;
     void shine(const BatchContext&, Sched&);
     std::vector<class KernelStrip*> waiting_; ///< whose requests nobody has followed yet
     std::vector<PathSample> samples_; ///< of the call of trace()
     PathSample noSample_;
-    std::vector<RayExtra> extras_;
-    std::vector<int32_t> freeExtras_;
+    std::vector<RayExtra> extras_; std::vector<int32_t> freeExtras_;
     const RayExtra noExtra_;
     std::unordered_map<uint64_t, std::deque<RayKind>> kinds_; ///< by hash
     const RayKind* lastKind_ = nullptr;
@@ -341,8 +339,8 @@ private:
     /// The rays of a trace() in a light, by the engine that rayOfLight() keeps for it.
     shading::TargetValue follow(BatchContext&, const SiteInfo&, int point, const std::function<float(int)>& row,
                                 uint32_t occurrence);
-    std::unique_ptr<Engine> inner_;
-    Engine& inner(); ///< with nothing in it
+    std::unique_ptr<Engine> inner_; ///< inner(): with nothing in it
+    Engine& inner();
     void takeInner(); ///< what it has counted
     void gatherOfLight(BatchContext&, const SiteInfo&, int first, std::span<uint32_t> asked);
     void followGather(std::span<struct GatherSent>);
@@ -366,6 +364,5 @@ private:
     std::set<const void*> tamed_,
         tamedClear_; ///< shaders that were named because they reflect more than they receive; with what comes through
 };
-
 
 } // namespace alpenglow::transport

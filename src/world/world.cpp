@@ -98,6 +98,17 @@ void WorldImpl::numberShapes() {
     }
 }
 
+/// Which samples see a shape that fades between levels of detail.
+static void findLevels(WorldImpl& w) {
+    std::vector<accel::Accel::Levels> levels(w.shapes_.size());
+    for (size_t i = 0; i < levels.size(); ++i)
+        if (const scene::Param* p = w.shapes_[i]->attributes().value(kLevelAttribute); p && p->numbers.size() == 2) {
+            levels[i] = {p->numbers[0], p->numbers[1]};
+            w.fades_ = true;
+        }
+    if (w.fades_) w.accel_->setLevels(std::move(levels));
+}
+
 std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> frame, const Settings& settings,
                                           MakeEvaluator evaluators, Diagnostics& d) {
     double begin = seconds();
@@ -157,13 +168,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     w->accel_ = std::make_unique<accel::Accel>(w->shapes_, visibility, d);
     if (!w->accel_->sound()) return nullptr;
     w->accel_->makeSolids(d);
-    std::vector<accel::Accel::Levels> levels(w->shapes_.size());
-    for (size_t i = 0; i < levels.size(); ++i)
-        if (const scene::Param* p = w->shapes_[i]->attributes().value(kLevelAttribute); p && p->numbers.size() == 2) {
-            levels[i] = {p->numbers[0], p->numbers[1]};
-            w->fades_ = true;
-        }
-    if (w->fades_) w->accel_->setLevels(std::move(levels));
+    findLevels(*w);
     w->sortByOpacity();
     w->findEye();
     w->bindSentStrings(d);

@@ -79,8 +79,9 @@ TEST(ShadowMaps, BlurIsAPartOfTheMap) {
 }
 
 TEST(ShadowMaps, FourPointsSpanTheFilter) {
-    Scene s = floorOf("four", "vector a = vector \"world\" (1, 0, 0), b = vector \"world\" (0, 0, 1);"
-                              " Ci = shadow(map, P - a - b, P + a - b, P - a + b, P + a + b, \"bias\", .01, \"samples\", 1024);");
+    writeShader("four", "surface four(string map = \"\") { vector a = vector \"world\" (1, 0, 0), b = vector \"world\" (0, 0, 1); Oi = 1;"
+                        " float f = shadow(map, P - a - b, P + a - b, P - a + b, P + a + b, \"bias\", .01, \"samples\", 1024); Ci = f; }\n");
+    Scene s(world("Surface \"four\" \"string map\" " + lampMap("lamp.shd") + " " + kFloor), withShaders(Hider::Hidden));
     for (float x = .9f; x < 3.2f; x += .1f) EXPECT_NEAR(s.one(at(x)).x, std::clamp((3 - x) / 2, 0.f, 1.f), 1 / 32. + 1e-3) << x;
 }
 

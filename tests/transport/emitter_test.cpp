@@ -52,11 +52,10 @@ std::vector<Case> cases() {
     std::vector<float> concave = {-1, -1, 0, 1, -1, 0, 1, 1, 0, 0, -.2f, 0, -1, 1, 0};
     Primitives many; // more than are chosen by area alone
     for (int i = 0; i < 12; ++i) {
-        const float x = -1 + .18f * float(i), y = .8f * std::sin(float(i) * 2.1f), z = .5f * std::cos(float(i) * 1.7f), r = .02f + .015f * float(i);
+        const float x = -1 + .18f * float(i), y = .8f * std::sin(float(i) * 2.1f), z = .5f * std::cos(float(i) * 1.7f), r = .1f + .03f * float(i);
         many.push_back(polygon({x, y, z, x + r, y, z + r, x + r, y + r, z, x, y + r, z}));
     }
     return {
-        {"twelve polygons", many, skew},
         {"sphere", {quadric("Sphere", {1, -1, 1, 360})}, rigid, true},
         {"mirrored sphere", {quadric("Sphere", {1, -1, 1, 360})}, scaleMatrix(-1, 1, 1) * rigid, true},
         {"part of a sphere", {quadric("Sphere", {1, -.6f, .8f, 250})}, rigid},
@@ -77,6 +76,7 @@ std::vector<Case> cases() {
         {"sphere, disk and polygon",
          {quadric("Sphere", {.5f, -.5f, .5f, 360}), quadric("Disk", {1.2f, .9f, 360}), polygon(concave)},
          skew},
+        {"twelve polygons", many, skew}
     };
 }
 

@@ -1,7 +1,6 @@
 #include "geometry/dice.h"
 #include "geometry/placed.h"
 #include "geometry/polygon_mesh.h"
-#include "geometry/seams.h"
 #include <algorithm>
 
 namespace alpenglow::geometry {
@@ -172,19 +171,12 @@ Vec3 Deforming::velocity(const SurfacePoint& at) const {
 void Deforming::dice(const DiceOptions& options, Diagnostics& diag) {
     DiceOptions alike = options;
     alike.keys = keys_;
-    for (size_t k = 0; k < keys_.size(); ++k) { // what meets does so at every key
-        alike.seamWith = options.seamWith;
-        alike.seamWith.push_back(double(k));
-        for (float t : times_) alike.seamWith.push_back(double(t));
-        keys_[k]->dice(alike, diag);
-    }
+    for (const ShapeRef& k : keys_) k->dice(alike, diag);
     const TriMesh& first = keys_[0]->mesh();
     for (const ShapeRef& k : keys_)
         if (k->exact() || k->mesh().vertices != first.vertices || !std::equal(first.index.begin(), first.index.end(), k->mesh().index.begin(), k->mesh().index.end())) {
             diag.report(Severity::Warning, Rie::Incapable, place(),
                         "the keys of this moving " + kind() + " are not made of the same pieces: it is drawn where it is at its first time");
-            for (const ShapeRef& other : keys_)
-                if (options.seams && other != keys_[0]) options.seams->drop(other->mesh());
             keys_.resize(1);
             times_.resize(1);
             return;

@@ -1,4 +1,6 @@
 #include "geometry/parametric.h"
+#include "base/limits.h"
+#include "geometry/dice.h"
 #include <algorithm>
 #include <cmath>
 
@@ -99,6 +101,126 @@ int Parametric::bilinearWeights(double u, double v, int nu, int nv, bool wrapU, 
     w[2] = {at(i0, j1), (1 - a) * b, -cu * b, cv * (1 - a)};
     w[3] = {at(i1, j1), a * b, cu * b, cv * a};
     return 4;
+}
+
+DiceLines Parametric::diceLines(const DiceOptions& opt, bool displaced, Diagnostics& diag) const {
+    // Facets may stray from the surface by this many pixels; displacement needs whole micropolygons instead.
+    constexpr double kDeviation = 0.05;
+    double edge = diceEdge(*source_.attributes);
+    const std::vector<double> borderU = borders(0), borderV = borders(1);
+    const int pu = int(borderU.size()) - 1, pv = int(borderV.size()) - 1;
+    std::vector<double> need[2] = {std::vector<double>(size_t(pu), 1.0), std::vector<double>(size_t(pv), 1.0)};
+    constexpr int kProbe = 5;
+    const auto probe = [&](const Parametric& shape, int i, int j) {
+        const double wu = borderU[size_t(i) + 1] - borderU[size_t(i)], wv = borderV[size_t(j) + 1] - borderV[size_t(j)];
+        for (int b = 0; b < kProbe; ++b)
+            for (int a = 0; a < kProbe; ++a) {
+                // Strictly inside the patch, so that knots do not mix neighbours' second derivatives.
+                const double u = borderU[size_t(i)] + wu * (a + 0.5) / kProbe, v = borderV[size_t(j)] + wv * (b + 0.5) / kProbe;
+                LocalPoint p = shape.cameraPoint(u, v);
+                double lu = opt.camera.pixels(p.P, p.Pu) * wu / edge, lv = opt.camera.pixels(p.P, p.Pv) * wv / edge;
+                if (!displaced) {
+                    double tol = kDeviation * edge;
+                    double cu = std::sqrt(opt.camera.pixels(p.P, p.Puu) / (8 * tol)) * wu;
+                    double cv = std::sqrt(opt.camera.pixels(p.P, p.Pvv) / (8 * tol)) * wv;
+                    double twist = std::sqrt(opt.camera.pixels(p.P, p.Puv) / (4 * tol)) * std::sqrt(wu * wv);
+                    // 1.5: the probes miss the peak of what they sample.
+                    lu = std::min(lu, 1.5 * std::max(cu, twist));
+                    lv = std::min(lv, 1.5 * std::max(cv, twist));
+                }
+                need[0][size_t(i)] = std::max(need[0][size_t(i)], lu);
+                need[1][size_t(j)] = std::max(need[1][size_t(j)], lv);
+            }
+    };
+    for (int j = 0; j < pv; ++j)
+        for (int i = 0; i < pu; ++i) {
+            if (opt.keys.empty()) probe(*this, i, j);
+            for (const ShapeRef& key : opt.keys)
+                if (const auto* k = dynamic_cast<const Parametric*>(key.get()); k && k->patchesU() == pu && k->patchesV() == pv) probe(*k, i, j);
+        }
+    auto total = [](const std::vector<double>& n, double scale) {
+        double s = 0;
+        for (double x : n) s += std::clamp(std::ceil(x * scale), 1.0, double(limits::kDiceEdge));
+        return s;
+    };
+    double scale = 1;
+    while (total(need[0], scale) * total(need[1], scale) > double(limits::kDiceQuads) && scale > 1e-9) scale *= 0.7;
+    if (scale < 1) {
+        diag.report(Severity::Info, Rie::Limit, place(),
+                    kind() + " would need more than " + std::to_string(limits::kDiceQuads) +
+                        " micropolygons; it is diced more coarsely");
+    }
+    DiceLines lines;
+    for (int k = 0; k < 2; ++k) {
+        std::vector<float>& out = k == 0 ? lines.u : lines.v;
+        std::vector<bool>& gap = k == 0 ? lines.gapU : lines.gapV;
+        const std::vector<double>& at = k == 0 ? borderU : borderV;
+        size_t n = need[k].size();
+        for (size_t i = 0; i < n; ++i) {
+            if (i && torn(k, at[i])) { // both sides have a line of their own
+                out.push_back(std::nextafter(float(at[i]), 0.f));
+                gap.resize(out.size());
+                gap.back() = true;
+            }
+            int m = int(std::clamp(std::ceil(need[k][i] * scale), 1.0, double(limits::kDiceEdge)));
+            for (int q = 0; q < m; ++q) out.push_back(float(at[i] + (at[i + 1] - at[i]) * q / m));
+        }
+        out.push_back(1.f);
+        gap.resize(out.size());
+    }
+    auto isClosed = [](bool closed, std::vector<float>& l, std::vector<bool>& gap) {
+        // A closed line needs three distinct points, or its two facets would coincide.
+        if (closed && l.size() < 4) {
+            l = {0.f, 0.33333334f, 0.6666667f, 1.f};
+            gap.assign(l.size(), false);
+        }
+        return closed;
+    };
+    lines.closedU = isClosed(closedU(), lines.u, lines.gapU);
+    lines.closedV = isClosed(closedV(), lines.v, lines.gapV);
+    return lines;
+}
+
+void Parametric::dice(const DiceOptions& opt, Diagnostics& diag) {
+    displaced_ = isDisplaced(*this, opt);
+    if (!displaced_ && !needsDicing() && opt.keys.empty()) return;
+    DiceLines lines = diceLines(opt, displaced_, diag);
+    uint32_t nu = uint32_t(lines.u.size()), nv = uint32_t(lines.v.size());
+    TriMesh m;
+    m.P.resize(size_t(nu) * nv);
+    std::vector<Vec2> param(size_t(nu) * nv);
+    for (uint32_t j = 0; j < nv; ++j)
+        for (uint32_t i = 0; i < nu; ++i) {
+            size_t at = size_t(j) * nu + i;
+            param[at] = {lines.u[i], lines.v[j]};
+            // A closed surface meets itself to the bit, or rays would leak through the seam.
+            if (lines.closedU && i + 1 == nu) m.P[at] = m.P[size_t(j) * nu];
+            else if (lines.closedV && j + 1 == nv) m.P[at] = m.P[i];
+            else m.P[at] = Vec3(cameraPosition(lines.u[i], lines.v[j]));
+        }
+    m.made.reserve(6 * size_t(nu - 1) * (nv - 1));
+    auto length2 = [&](uint32_t a, uint32_t b) { Vec3 d = m.P[a] - m.P[b]; return dot(d, d); };
+    for (uint32_t j = 0; j + 1 < nv; ++j)
+        for (uint32_t i = 0; i + 1 < nu; ++i) {
+            if (lines.gapU[i] || lines.gapV[j]) continue;
+            uint32_t a = j * nu + i, b = a + 1, c = a + nu, d = c + 1;
+            if (!opt.keys.empty() || length2(a, d) <= length2(b, c)) m.made.insert(m.made.end(), {a, b, d, a, d, c});
+            else m.made.insert(m.made.end(), {a, b, c, b, d, c});
+        }
+    meshParam_ = std::move(param);
+    trim(m);
+    if (displaced_)
+        displaceMesh(
+            *this, opt, diag, [&](uint32_t i) { return evaluateLocal(0, meshParam_[i].x, meshParam_[i].y); },
+            [&](uint32_t i) {
+                auto step = [](const std::vector<float>& l, uint32_t k) {
+                    return k + 1 < l.size() ? l[k + 1] - l[k] : l[k] - l[k - 1];
+                };
+                return Vec2{step(lines.u, i % nu), step(lines.v, i / nu)};
+            },
+            m);
+    m.finish();
+    mesh_ = std::move(m);
 }
 
 } // namespace alpenglow::geometry

@@ -61,9 +61,6 @@ public:
     /// Null where the geometry is the same at all times.
     const Deforming* deforming() const { return deforming_; }
     bool moves() const { return moving_ || deforming_; }
-    bool placeMoves() const { return moving_ != nullptr; }
-    /// Where it is placed at times of the shutter, for one that is placeMoves().
-    std::vector<std::pair<float, Affine>> placeKeys() const;
     /// From camera space at a time. False: there is no way back then, and nothing to be met.
     bool toGeometry(float time, Affine& out) const;
     Affine fromGeometry(float time) const;

@@ -14,6 +14,7 @@ void KernelRun::forget() {
     lit = nullptr;
     volume = nullptr;
     aside = nullptr;
+    below = between = false;
     displaced.reset();
     for (LightLoop& loop : loops) loop.reset(-1);
     ambient.clear();

@@ -68,18 +68,22 @@ std::vector<OptionalParameter> commonOfHemispheres() {
 }
 
 std::vector<OptionalParameter> subsurfaceParameters() {
-    return {{kS, "type", false, "\"pointcloud\"", "raytrace or pointcloud"},
-            {kF, "samples", false, "attribute subsurface:samples", "rays"},
-            {kS, "model", false, "\"jensen\"", "jensen or grosjean"},
-            {kC, "irradiance", false, "from the first pass", "light entering here"},
-            {kC, "scattering", false, "attribute", "coefficient"},
-            {kC, "absorption", false, "attribute", "coefficient"},
-            {kC, "meanfreepath", false, "attribute", "alternative specification"},
-            {kC, "reflectance", false, "attribute", "alternative specification"},
-            {kF, "ior", false, "1.3", "index of refraction"},
-            {kF, "refractionindex", false, "1.3", "index of refraction"},
-            {kF, "scale", false, "1", "scene unit"},
-            {kS, "groupname", false, "attribute", "primitives that share light"}};
+    return {{kS, "type", false, "\"raytrace\"", "raytrace; pointcloud traces rays, too"},
+            {kF, "samples", false, "attribute subsurface:samples; else 1 under path, 16 elsewhere", "walks of a call, 4096 at most"},
+            {kS, "model", false, "\"walk\"", "walk: light is followed as it scatters; jensen: dipole (2001, 2002), grosjean: better dipole (d'Eon 2012), both biased where the surface is no half space"},
+            {kC, "irradiance", false, "", "accepted and ignored: what enters elsewhere is found there"},
+            {kC, "scattering", false, "attribute subsurface:scattering", "coefficient, 1/mm"},
+            {kC, "absorption", false, "attribute subsurface:absorption", "coefficient, 1/mm"},
+            {kC, "meanfreepath", false, "attribute subsurface:meanfreepath", "with reflectance: 1 / (scattering + absorption), mm"},
+            {kC, "reflectance", false, "attribute subsurface:reflectance", "what a half space gives back of diffuse light; decides the single-scattering albedo"},
+            {kF, "ior", false, "1.3", "index of refraction inside, relative to outside: what leaves is reflected in part (Fresnel); 1: nothing is"},
+            {kF, "refractionindex", false, "1.3", "another name of ior; not given: attribute subsurface:refractionindex"},
+            {kF, "scale", false, "attribute subsurface:scale, 1", "millimetres in a unit of current space"},
+            {kS, "groupname", false, "attribute subsurface:groupname", "primitives of a group bound one inside; no group: those with the same attributes"},
+            {kC, "albedo", false, "", "another name of reflectance (PRMan)"},
+            {kC, "diffusemeanfreepath", false, "", "in place of meanfreepath (PRMan): 1 / sqrt(3 absorption extinction), mm"},
+            {kF, "unitlength", false, "1", "another name of scale (PRMan)"},
+            {kF, "anisotropy", false, "0", "ours: mean cosine of Henyey and Greenstein; of walks"}};
 }
 
 } // namespace
@@ -172,11 +176,16 @@ std::vector<Shadeop> raytracingShadeops() {
     Shadeop& subsurface = add("subsurface", sigs({{"color subsurface(point p; pairs)"},
                                                   {"color subsurface(point p; normal n; pairs)"},
                                                   {"color subsurface(string type; point p; normal n; pairs)"}}),
-                              Lowering::Unavailable,
-                              "Light that leaves at p after scattering below the surface. The form that begins with the type (\"raytrace\", \"raytraced\", "
-                              "\"pointcloud\") is that of PRMan 16.");
-    list.back().examples = {{"subsurface(P)", "0 0 0"}};
-    subsurface.optional = subsurface.optional + subsurfaceParameters();
+                              Lowering::Request,
+                              "Light that leaves at p after scattering below the surface: 1 where radiance 1 comes from everywhere and nothing is absorbed. Light enters the "
+                              "closed surface (primitives of one group) evenly from all sides, is followed from event to event, and leaves evenly "
+                              "to all sides; where it enters it is that of lights and of diffuse rays, as diffuse() has it. What the boundary reflects outside is left to "
+                              "other lobes. It begins at the shaded point and about the normal of its geometry, whatever p and n are. The form "
+                              "that begins with the type is that of PRMan 16.");
+    list.back().examples = {{"subsurface(P)", "0 0 0", "", kNothing}};
+    std::erase_if(subsurface.optional, [](const OptionalParameter& p) { return p.name == "type" || p.name == "samples"; });
+    for (OptionalParameter& p : subsurface.optional) p.doc = "accepted and ignored";
+    subsurface.optional = subsurfaceParameters() + subsurface.optional;
     subsurface.contexts = kSurface | kLight; // classes that are both
     Shadeop& photonmap = add("photonmap", sigs({{"color photonmap(string name; point p; vector n; pairs)"}, {"float photonmap(string name; point p; vector n; pairs)"}}),
                              Lowering::Service,

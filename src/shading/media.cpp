@@ -3,19 +3,36 @@
 #include "shading/point.h"
 #include <algorithm>
 
+#include "base/exact.h"
+
 namespace alpenglow::shading {
 
-void Media::push(int medium) {
+double FreeFlight::density(float at) const {
+    double sum = 0;
+    for (int k = 0; k < 3; ++k)
+        if (chance[k] > 0) sum += chance[k] * exact::exp(-double(extinction[k]) * at);
+    return sum;
+}
+
+void Media::push(int medium, float rank) {
     if (count == limits::kMedia) {
+        std::copy(priority + 1, priority + count, priority);
         std::copy(in + 1, in + count--, in);
         lost = true;
     }
-    in[count++] = int16_t(medium);
+    int at = count++;
+    for (; at > 0 && priority[at - 1] > rank; --at) {
+        in[at] = in[at - 1];
+        priority[at] = priority[at - 1];
+    }
+    in[at] = int16_t(medium);
+    priority[at] = rank;
 }
 
 void Media::leave(int medium) {
     for (int i = count; i-- > 0;)
         if (in[i] == medium) {
+            std::copy(priority + i + 1, priority + count, priority + i);
             std::copy(in + i + 1, in + count--, in + i);
             return;
         }

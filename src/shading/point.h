@@ -23,13 +23,17 @@ struct RaySet {
     HitMode mode = HitMode::Default;
 };
 
-/// The volumes that a ray is inside of, the innermost last: numbers of the media of the world, -1 for one where nothing is.
+/// The volumes that a ray is inside of: numbers of the media of the world, -1 for one where nothing is. The last one counts: of
+/// those of the highest priority the one that was entered last.
 struct Media {
     int16_t in[limits::kMedia] = {};
+    float priority[limits::kMedia] = {}; ///< ascending
     int8_t count = 0;
     bool lost = false;                ///< one more was entered than are known
     int top() const { return count ? in[count - 1] : -1; }
-    void push(int medium);
+    float topPriority() const { return count ? priority[count - 1] : 0; }
+    bool has(int medium) const { return std::find(in, in + count, medium) != in + count; }
+    void push(int medium, float priority = 0);
     /// Leaves the innermost volume of that medium; none where the ray is in no such volume.
     void leave(int medium);
     bool operator==(const Media& o) const { return count == o.count && lost == o.lost && std::equal(in, in + count, o.in); }
@@ -72,6 +76,18 @@ struct Fade {
     bool operator==(const Fade&) const = default;
 };
 
+/// The way of a ray through a medium that scatters, and the point that was chosen on it.
+struct FreeFlight {
+    Vec3 origin, dir;
+    float length = 0, t = 0;
+    int medium = -1;                  ///< of the world; -1: there is no such way
+    Color extinction{0};
+    double chance[3] = {};            ///< of the densities of the channels, with what makes them densities
+    /// With which points are chosen, a unit of length.
+    double density(float t) const;
+    bool operator==(const FreeFlight&) const = default;
+};
+
 /// What few rays carry. Where a ray has none, it is as here.
 struct RayExtra {
     Fade fade;
@@ -82,6 +98,7 @@ struct RayExtra {
     Color part{0};                    ///< of a target with sums: the share of all rays that were asked for, of those and what goes on behind
     int32_t share = -1;               ///< Engine::shares_: which outputs have a part of what it adds to its target; -1: none
     int32_t lit = -1;                 ///< what lights are told about the surface that sent it, where lights ask; -1: nothing
+    FreeFlight flown;                 ///< on which it was scattered, where it begins
     bool operator==(const RayExtra&) const = default;
 };
 
@@ -112,6 +129,7 @@ struct PathRay {
     int16_t bounces = 0, diffuseBounces = 0, specularBounces = 0;
     int16_t layers = 0;               ///< transparent surfaces passed so far, since the camera; no bounces
     uint16_t path = 0;       ///< scene::LightPaths::State up to here; 0: what it brings is in no output by light path
+    int16_t scattered = 0;            ///< of `bounces`, and of `diffuseBounces`, those that were in a medium
     uint16_t asked = 1;      ///< the most rays that a waiting kernel on the way was known to ask for at one point
     bool first : 1 = true;            ///< one of those that its target asked for: writes distance and transmission
     bool counts : 1 = false;          ///< its hit writes opacity, depth and AOVs of its camera sample

@@ -24,6 +24,7 @@ struct BatchContext : KernelRun {
     std::vector<TargetId> targets;             ///< by point; of an `aside` its own
     std::vector<EmitRecord> emits;
     std::vector<float> arena;
+    std::vector<shading::FreeFlight> flown;             ///< by point, where they lie inside of a medium (`between`)
     std::vector<Haze> haze;                    ///< by point; only where a volume lies before some point
     std::vector<Color> clear;  ///< by point: what goes on behind it; only while gather() runs for a kernel that does not wait
     std::vector<float> passes; ///< by point: the chance with which its ray goes on, 0: another was taken; empty: it always does

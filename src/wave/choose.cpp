@@ -17,7 +17,10 @@ void Gather::choose() {
 /// A lobe whose ray would go too deep is not followed; light samples then count in full.
 bool Gather::tooDeep(const LobeVertex& l, const PathRay& from, const SurfaceBinding& b) const {
     const bool diffuse = l.rays->type == RayType::Diffuse;
-    return from.bounces + 1 > world_.maxDepth_ || (b.maxDiffuse >= 0 && from.diffuseBounces + diffuse > b.maxDiffuse) ||
+    if (from.scattered >= limits::kPathDepth) return true;
+    const int scattered = from.scattered + c_->between; // inside of media ways are as long as they are
+    return from.bounces + 1 - scattered > world_.maxDepth_ ||
+           (b.maxDiffuse >= 0 && from.diffuseBounces + diffuse - scattered > b.maxDiffuse) ||
            (b.maxSpecular >= 0 && from.specularBounces + !diffuse > b.maxSpecular);
 }
 
@@ -46,8 +49,9 @@ void Gather::choosePoint(size_t point) {
             e_.notFinite(*c_, from, l.site);
             l.chosen = 0;
         }
-        cut |= from.bounces + 1 > world_.maxDepth_ && l.chosen > 0;
-        const bool stays = tooDeep(l, from, b) || (l.rays->type == RayType::Diffuse && !world_.settings_.indirect);
+        cut |= from.bounces + 1 - from.scattered - c_->between > world_.maxDepth_ && l.chosen > 0;
+        const bool noIndirect = l.rays->type == RayType::Diffuse && !world_.settings_.indirect;
+        const bool stays = l.directOnly || (l.below < 0 && (tooDeep(l, from, b) || noIndirect)); // walks end in light, not in a ray
         if (stays) l.chosen = 0;
         l.followed = l.chosen > 0 || (l.ownsTarget && !stays);
     }

@@ -2,6 +2,7 @@
 // the way to it: one shadow ray carries what all of them give.
 #include "world/emitterfootprint.h"
 #include "wave/gather.h"
+#include "wave/medium.h"
 #include "lobes/sampling.h"
 
 namespace alpenglow::transport {
@@ -88,6 +89,7 @@ Color Gather::contribution(const Reached& r) {
     c *= r.value.colour / fcos;
     if (area && l.trace && l.trace->sums)
         if (TraceSums* of = e_.sumsOf(l.target)) of->add(TraceSums::UnshadowedAreaLight, c * (fcos / (drawn * chance)));
+    if (c_->between) c *= MediumFlights::shareOfDistance(e_, c_->flown[size_t(l.point)], light);
     if (!light.hasDensity()) return c * (kept * float(kPi) * fcos / (chance * (area ? drawn : 1))); // Cl is irradiance / pi
     float other = 0; // the density with which the lobe's own ray would have come here
     if (!world_.settings_.lightOnly && l.chosen > 0 && (queries_.drawn[k].visibility & visibilityBit(l.rays->type)))
@@ -143,6 +145,7 @@ void Gather::send(const Reached& r) {
     shadow.share = share;
     shadow.path = path;
     if (path) shadow.light = e_.lightSymbols_[size_t(&light - world_.lights_.data())];
+    if (c_->below && !rules_.pickOne && !light.shadows) shadow.distance = 0; // as in light loops there: nothing is in the way
 }
 
 } // namespace alpenglow::transport

@@ -1,5 +1,6 @@
 // The engine of a thread: calls of trace(), and what rays and batches share.
 #include "wave/gather.h"
+#include "wave/medium.h"
 #include "base/memory.h"
 #include <algorithm>
 #include <limits>
@@ -23,6 +24,11 @@ Engine::Engine(std::shared_ptr<const WorldImpl> w, Diagnostics& d)
       answers_(*world_, d, this) {
     noSample_.numbers = render::SampleNumbers(render::Sampler(seed_, 0, 0), 0);
     prepareLightPaths();
+    const auto event = [](const Medium& m) { return m.homogeneous || m.priority != 0; };
+    if (std::any_of(world_->media_.begin(), world_->media_.end(), event)) {
+        flightsInMedia_ = std::make_unique<MediumFlights>();
+        happens(*flightsInMedia_);
+    }
 }
 
 Engine::~Engine() { // strips of a frame that was given up need their kernels
@@ -88,6 +94,7 @@ void Engine::giveBack(std::shared_ptr<BatchContext> c) {
     c->failure = nullptr;
     c->arena.clear();
     c->haze.clear();
+    c->flown.clear();
     c->clear.clear();
     c->passes.clear();
     c->requestSite = -1;
@@ -119,6 +126,8 @@ void Engine::forget() {
     shadows.clear();
     traceSums_.clear();
     gathered_.clear();
+    walks_.clear();
+    below_.clear();
     litValues_.clear();
     waiting_.clear();
     moreLight_.clear();

@@ -10,6 +10,7 @@
 #include "wave/vertex.h"
 #include <deque>
 #include <functional>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -262,7 +263,24 @@ public:
     TargetId nowhere_ = shading::kNoTarget; ///< nobody reads it
     std::vector<int> litBy_;           ///< RayExtra::lit of the queries of a light
     std::vector<LitValues> litValues_; ///< of what runs now; only where lights ask for outputs of surfaces
-    std::vector<SampleResult*> results;
+    std::vector<SampleResult*> results; ///< of the call of trace()
+    // subsurface.cpp
+    /// The lobe of a subsurface(): its rays walk below the surface.
+    void requestSubsurface(BatchContext&, const SiteInfo&, const ShadePoint&, const std::function<float(int)>& row, LobeVertex&);
+    /// What Attribute "subsurface" says of a shape.
+    struct SubsurfaceOfShape;
+    const SubsurfaceOfShape& subsurfaceOf(const scene::Attributes&);
+    /// Shapes with the same group bound one inside: those of a name, or of the same attributes.
+    int groupNamed(const std::string&);
+    std::map<const scene::Attributes*, std::shared_ptr<const SubsurfaceOfShape>> subsurfaces_;
+    std::map<std::string, int> groups_;
+    std::map<int, std::shared_ptr<const class HalfSpace>> halfSpaces_; ///< by the index of refraction, in 32nds
+    const HalfSpace& halfSpace(float index);
+    double albedoOf(const Below&, double reflectance); ///< dipole.cpp
+    std::vector<Below> below_; ///< of `lobes`
+    std::vector<WalkAsked> walks_; ///< that the lobes of a batch have asked for; taken where these are done
+    /// Follows the walks below surfaces that a batch has asked for. subsurface.cpp
+    void walk(BatchContext&, Sched&);
     std::vector<int> spoiled_;         ///< PathSample::path of samples that notFinite() has seen; some twice
     std::vector<LobeVertex> lobes;
     LobeColumns lobeRows_; ///< of `lobes`
@@ -314,6 +332,10 @@ private:
     std::deque<shading::Media> media_;
     friend class KernelStrip;
     friend class Gather;
+    friend class MediumFlights;
+    friend class Walks;
+    std::unique_ptr<FlightEvent> flightsInMedia_; ///< where the world has media that scatter, or priorities
+    int leaks_ = 0; ///< rays that left the scene inside of such a medium
     /// For rays that met a light: `of`, by query, is RayExtra::lit. It must outlive the result.
     LitSurface litBy(std::span<const int> of) const;
     /// Contexts and their memory are used again: a slice makes several, of some hundred kilobytes.

@@ -18,6 +18,7 @@ void Engine::notFinite(const PathRay* ray, const char* what, const ShaderInstanc
 }
 
 void Engine::notFinite(const BatchContext& c, const PathRay& ray, uint32_t site) {
+    if (site >= c.bound->sites.size()) return notFinite(&ray, "light that is scattered in a medium", nullptr); // no call's
     const rsl::ir::Site& s = *c.bound->sites[site].site;
     const auto& files = c.bound->kernel->files();
     notFinite(&ray, "light of " + s.op + "(), or its weight,",

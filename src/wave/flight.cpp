@@ -20,6 +20,7 @@ void Engine::fly(BatchContext& c, Sched& sched) {
             sched.release(c.targets[i]);
             continue;
         }
+        c.rays[i].weight *= flights_[i].left;
         if (kept != i) {
             c.points[kept] = c.points[i];
             c.rays[kept] = c.rays[i];

@@ -13,6 +13,7 @@ struct Flight {
     float length = 0;                     ///< of the way from PathRay::origin; PathRay::maxDistance where it met nothing
     const ShadePoint* point = nullptr;    ///< that it met; null: nothing
     int binding = -1;                     ///< of the surface there; -1: none
+    Color left{1};                        ///< what events leave of the light of what it met; nothing where it met nothing
     bool over = false;                    ///< an event has ended it: what it met is not shaded and gives it no light
 };
 

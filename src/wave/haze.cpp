@@ -73,7 +73,7 @@ void Engine::hazeOfBatch(BatchContext& c, int first, int count, bool wantSlope) 
     for (int i = first; i < end; ++i) {
         const SurfaceBinding& b = world_->bindings_[size_t(c.bindings[size_t(i)])];
         const Medium* medium = mediumOf(i) >= 0 ? &world_->media_[size_t(mediumOf(i))] : &b.atmosphere;
-        if (!medium->shader || done[size_t(i - first)]) continue;
+        if (!medium->shader || medium->homogeneous || done[size_t(i - first)]) continue; // a flight has gone through the latter
         points.clear();
         of.clear();
         for (int k = i; k < end; ++k) {

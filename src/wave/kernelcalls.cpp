@@ -9,7 +9,8 @@ namespace {
 
 // trace() and transmission() always ask for rays; the lobe shadeops only where the engine estimates them.
 bool isRequest(SiteKind k, bool path) {
-    return k == SiteKind::Trace || k == SiteKind::Transmission || k == SiteKind::Occlusion || k == SiteKind::Gather ||
+    return k == SiteKind::Trace || k == SiteKind::Transmission || k == SiteKind::Occlusion || k == SiteKind::Subsurface ||
+           k == SiteKind::Gather ||
            (path && k >= SiteKind::Ambient && k <= SiteKind::LightVisibility);
 }
 

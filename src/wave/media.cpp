@@ -36,6 +36,7 @@ const Media* Engine::mediaTowards(const KernelRun& c, int point, const Vec3& w) 
     if (world_->media_.empty() || size_t(point) >= c.bindings.size()) return nullptr;
     const ShadePoint& p = c.points[size_t(point)];
     const PathRay& ray = c.rays[size_t(point)];
+    if (c.between) return ray.media;
     const Media* m = mediaBeyond(world_->bindings_[size_t(c.bindings[size_t(point)])], ray.media, p.surface.n, ray.dir, w);
     tellLost(m, p);
     return m;
@@ -72,6 +73,10 @@ void Engine::dim(std::span<const MediumPart> parts, std::span<const ShadowRay> r
         points.clear();
         for (end = first; end < order.size() && order[end]->medium == order[first]->medium; ++end) {
             const MediumPart& part = *order[end];
+            if (m.homogeneous) {
+                out[part.ray] *= m.homogeneous->left(length(part.to - part.from));
+                continue;
+            }
             ShadePoint& p = points.emplace_back();
             p.shape = m.shape;
             p.P = p.surface.P = part.to;
@@ -83,6 +88,7 @@ void Engine::dim(std::span<const MediumPart> parts, std::span<const ShadowRay> r
             p.shutter = rays[part.ray].time;
             p.time = world_->timeAt(p.shutter);
         }
+        if (points.empty()) continue;
         hazes.assign(points.size(), {});
         haze(m, world_->bindings_[size_t(m.binding)], points, hazes, true);
         for (size_t k = first; k < end; ++k) {

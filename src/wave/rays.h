@@ -7,6 +7,7 @@
 namespace alpenglow::transport {
 
 
+using shading::FreeFlight;
 using shading::PathRay;
 using shading::PathSample;
 using shading::RayExtra;

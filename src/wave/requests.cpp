@@ -122,6 +122,11 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         l.lit = int(litValues_.size());
         litValues_.push_back(litValues(c, s, point, f));
     }
+    if (s.kind == SiteKind::Subsurface) {
+        requestSubsurface(c, s, p, f, l);
+        l.place = lobeRows_.add(*l.kind, {p.surface.n, params.wo, {}, 0});
+        return;
+    }
     if (s.kind != SiteKind::Diffuse) params.wo = unit(-p.I, p.surface.n);
     switch (s.kind) {
     case SiteKind::Diffuse:
@@ -186,6 +191,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
     if (!g) g = std::make_unique<Gather>(*this);
     g->run(c, sched);
     gather_ = std::move(g);
+    if (!below_.empty()) walk(c, sched);
 }
 
 } // namespace alpenglow::transport

@@ -39,7 +39,7 @@ void Gather::pick(size_t point, float number) {
         const LobeVertex& l = e_.lobes[size_t(list[0])];
         if (!(l.chosen > 0)) return;
         const bool one = rules_.pickOne && !l.ownsTarget;
-        const float scale = (one ? 1 / l.chosen : 1) * (l.lobeOfShader ? indirectScale_[point] : 1);
+        const float scale = (one ? 1 / l.chosen : 1) * (l.lobeOfShader && l.below < 0 ? indirectScale_[point] : 1) * l.indirect;
         sent_.push_back({int(point), list[0], one ? 1 : l.samples, scale, true, Vec3(), {}});
         return;
     }
@@ -57,7 +57,8 @@ void Gather::pick(size_t point, float number) {
             scale = 1 / l.chosen;
             count = 1;
         }
-        if (l.lobeOfShader) scale *= indirectScale_[point];
+        if (l.lobeOfShader && l.below < 0) scale *= indirectScale_[point];
+        scale *= l.indirect;
         sent_.push_back({int(point), i, count, scale, true, Vec3(), {}});
     }
     if (mayPass) c_->passes[point] = taken ? 0 : passes_[point];
@@ -171,12 +172,18 @@ void Gather::sendRay(const Sent& s, int turn, Sched& sched) {
     if (weight == Color(0) && !l.ownsTarget) return;
     uint16_t asked = from.asked;
     if (rules_.roulette && !roulette(l, s, turn, asked, weight)) return;
+    if (l.below >= 0) {
+        const float indirect = l.lobeOfShader ? indirectScale_[size_t(s.point)] : 1;
+        e_.walks_.push_back({s.point, l.below, weight, l.target, s.vertex, shareOf(l), indirect});
+        return;
+    }
     const int bounces = from.bounces + 1;
     PathRay& r = sched.spawn(bounces + from.layers, l.target, from).payload;
     r.weight = weight;
     r.vertex = s.vertex;
     r.asked = asked;
     r.bounces = int16_t(bounces);
+    r.scattered = int16_t(from.scattered + c_->between);
     ++(l.rays->type == RayType::Diffuse ? r.diffuseBounces : r.specularBounces);
     r.origin = origin(l, w);
     if (l.base > 0) { // somewhere on the footprint
@@ -195,6 +202,7 @@ void Gather::sendRay(const Sent& s, int turn, Sched& sched) {
         ++(dot(w, p.surface.n) * dot(from.dir, p.surface.n) > 0 ? e_.counters.refracted : e_.counters.reflected);
     extra.lit = l.lit;
     extra.fade = l.fade;
+    if (c_->between && world_.scatters_) extra.flown = c_->flown[size_t(l.point)];
     extra.share = shareOf(l);
     if (l.ownsTarget && l.trace && l.trace->sums) {
         extra.part = Color(1.f / float(s.count));

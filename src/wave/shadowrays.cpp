@@ -206,8 +206,10 @@ void Engine::passSurfaces(std::span<const ShadowRay> rays, std::span<Color> out)
                     const geometry::SurfacePoint at = world_->accel_->point(h);
                     const Vec3 end = at.displaced ? at.displacedP : at.P;
                     if (medium(g) >= 0) parts.push_back({medium(g), g.index, g.begin, end});
+                    const bool overruled = b.overruled(g.media);
                     g.media = mediaBeyond(b, g.media, at.n, g.ray.dir, g.ray.dir);
                     g.begin = end;
+                    if (overruled) continue;
                 }
                 const Opacity& opacity = b.opacityFor(rays[g.index].kind->set.mode);
                 if (opacity.kernel) {

@@ -16,6 +16,24 @@ struct LitValues {
     bool output(const std::string& name, std::vector<float>& v) const;
 };
 
+/// What lies below a surface, for a subsurface(): coefficients a unit of length of current space.
+struct Below {
+    Color absorption{0}, scattering{0}, extinction{0};
+    float anisotropy = 0, index = 1; ///< index: of refraction, relative to outside
+    SubsurfaceSite::Model model = SubsurfaceSite::Model::Walk;
+    int group = 0;                   ///< Engine::groupOf(): of the shapes that bound it
+};
+/// A walk that chance has chosen: from `point` of the batch, with what it would bring to the target.
+struct WalkAsked {
+    int point = 0;
+    int32_t below = -1;
+    Color weight;
+    TargetId target = shading::kNoTarget;
+    uint32_t vertex = 0;    ///< of its random numbers
+    int32_t share = -1;     ///< Engine::shares_
+    float indirect = 1;     ///< LobeVertex::indirect where it comes out
+};
+
 /// A lobe at a point that light shall be gathered over.
 struct LobeVertex {
     int point = 0;
@@ -44,6 +62,9 @@ struct LobeVertex {
     Color tint{1};         ///< of the environment map
     const TraceSite* trace = nullptr;
     shading::Fade fade;    ///< of what its rays meet
+    int32_t below = -1;    ///< Engine::below_: of a subsurface(), whose rays walk there; -1: another
+    bool directOnly = false; ///< light is sampled, no ray is sent
+    float indirect = 1;    ///< factor of its rays
     float albedo = 0;      ///< kind->albedo(params)
     float chosen = 1;      ///< probability that the indirect ray of this lobe is followed
 };

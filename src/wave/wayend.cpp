@@ -1,5 +1,5 @@
 // Where a ray ends without a shader of its own: light of emitters and sky, and what goes on through surfaces.
-#include "wave/engine.h"
+#include "wave/medium.h"
 #include "world/skytable.h"
 #include "lobes/sampling.h"
 #include <algorithm>
@@ -138,6 +138,7 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
         for (size_t i = 0; i < inMedium.size(); ++i) {
             if (!inMedium[i] || !value[i].lit) continue;
             const PathRay& r = *met[first + i].point->ray;
+            if (world_->media_[size_t(r.medium())].homogeneous) continue; // its flight has gone through it
             const MediumPart part{r.medium(), 0, r.volumeBegin(), met[first + i].point->P};
             ShadowRay way{};
             way.ray = &r;
@@ -156,6 +157,8 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
                 if (rules_.pickOne && r.lobeBinding >= 0) pdf *= chanceOf(met[i].light, r.lobeBinding, r.lobeOrigin);
                 weight = set.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
             }
+            if (const FreeFlight& flown = extraOf(r).flown; flown.medium >= 0 && r.lobeBinding >= 0)
+                weight *= MediumFlights::shareOfDistance(*this, flown, light);
             if (r.bounces > 0 && !r.kind->fromTrace) weight *= v.kept(r.type());
             deposit(sched,
                     {met[i].target, r.weight * v.Cl * weight, LightEvent::Met, &r, extraOf(r).share, light.instance.get(),

@@ -17,6 +17,7 @@ SiteKind kindOf(const std::string& op) {
                                                           {"trace", SiteKind::Trace},
                                                           {"transmission", SiteKind::Transmission},
                                                           {"occlusion", SiteKind::Occlusion},
+                                                          {"subsurface", SiteKind::Subsurface},
                                                           {"indirectdiffuse", SiteKind::Irradiance},
                                                           {"gather", SiteKind::Gather},
                                                           {"gatherturn", SiteKind::GatherTurn},
@@ -157,6 +158,46 @@ void shadowSite(TextureSite& t, const SiteInfo& i, const scene::Options& options
     const float bias = number("shadow:bias", .225f);
     t.shadowBias0 = number("shadow:bias0", bias);
     t.shadowBias1 = std::max(t.shadowBias0, number("shadow:bias1", std::max(bias, t.shadowBias0)));
+}
+
+std::shared_ptr<const SubsurfaceSite> subsurfaceSite(const SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKernel& k,
+                                                     WorldImpl& world) {
+    auto b = std::make_shared<SubsurfaceSite>();
+    const SourcePlace place{s.place.file < int(k.files().size()) ? k.files()[size_t(s.place.file)] : "", s.place.line,
+                            s.place.column};
+    const auto row = [&](std::initializer_list<const char*> names) {
+        for (const char* name : names)
+            if (const auto f = i.named.find(name); f != i.named.end()) return f->second;
+        return -1;
+    };
+    const auto text = [&](const char* name) { const auto f = i.text.find(name); return f == i.text.end() ? std::string() : f->second; };
+    const auto said = [&](const std::string& what, const std::string& message, const std::string& hint = {}) {
+        world.diagnostics_->reportOnce("subsurface:" + what + place.file + std::to_string(place.line),
+                                       {Severity::Warning, Rie::Unimplement, place, "subsurface(): " + message, hint, {}});
+    };
+    b->samples = row({"samples"});
+    b->scattering = row({"scattering"});
+    b->absorption = row({"absorption"});
+    b->path = row({"meanfreepath"});
+    b->diffusePath = row({"diffusemeanfreepath"});
+    b->reflectance = row({"reflectance", "albedo"});
+    b->index = row({"ior", "refractionindex"});
+    b->scale = row({"scale", "unitlength"});
+    b->anisotropy = row({"anisotropy"});
+    b->group = text("groupname");
+    for (const char* name : {"model", "groupname"})
+        if (row({name}) >= 0) said(name, "\"" + std::string(name) + "\" must be known when the shader is compiled; it is taken as not given");
+    if (row({"irradiance"}) >= 0)
+        said("irradiance", "\"irradiance\" is not used: what enters elsewhere on the surface is found there, from the lights");
+    const std::string type = !text("type").empty() ? text("type") : s.strings.empty() ? "" : s.strings[0];
+    if (type == "pointcloud") said("type", "point clouds are not yet read; rays are traced, which gives what they stand for");
+    const std::string model = text("model");
+    if (model == "jensen") b->model = SubsurfaceSite::Model::Dipole;
+    else if (model == "grosjean") b->model = SubsurfaceSite::Model::BetterDipole;
+    else if (!model.empty() && model != "walk")
+        said("model " + model, "there is no model \"" + model + "\"; light is followed as it walks below the surface",
+             "models are walk, jensen and grosjean");
+    return b;
 }
 
 std::shared_ptr<const TextureSite> textureSite(const SiteInfo& i, const rsl::ir::Site& s, const scene::Options& options) {
@@ -341,6 +382,10 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
                 {s.place.file < int(k->files().size()) ? k->files()[size_t(s.place.file)] : "", s.place.line, s.place.column});
         }
         if (i.kind == SiteKind::Trace) bindTrace(i, s, *k, *world);
+        if (i.kind == SiteKind::Subsurface) {
+            i.lobe = findLobe("uniform"); // of no width: its rays walk
+            i.subsurface = subsurfaceSite(i, s, *k, *world);
+        }
         if (i.kind == SiteKind::Occlusion) {
             i.occlusion = occlusionSite(i, s, *world);
             i.trace = traceSite(i, s, *k, *world);

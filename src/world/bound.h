@@ -65,6 +65,9 @@ struct BoundLight {
     bool mean = false; ///< Area: gives the mean of its Cl over its surface, with no other factor, and no ray finds it
     bool hazy = false;                         ///< Area, path: some of its shapes lie in an atmosphere
     uint32_t pointNeeds = geometry::kNeedAll;  ///< geometry::PointNeed of the points of an emitter
+    bool placed = false;                       ///< Point, Area: `place` is where it stands; `extent`: half its size
+    Vec3 place;
+    float extent = 0;
     // For the choice among many lights: brightness at distance 1 (Distant: anywhere; Area: radiance times area / pi).
     float power = 0;
     Vec3 centre;
@@ -90,10 +93,23 @@ struct Opacity {
     bool opaque() const { return !kernel && constant == Color(1); }
 };
 
+/// What a volume shader says of the medium that it stands for by outputs of these names and types: color __absorption and
+/// __scattering, coefficients a unit of length of current space; color __emission, radiance that a unit of length adds; float
+/// __anisotropy, the mean cosine of Henyey and Greenstein, -1 to 1. All >= 0 and the same everywhere.
+struct Homogeneous {
+    Color absorption{0}, scattering{0}, emission{0};
+    float anisotropy = 0;
+    Color extinction() const { return absorption + scattering; }
+    /// What is left of light after so long a way, channel by channel.
+    Color left(float way) const;
+};
+
 /// A volume shader as it runs: of an atmosphere, or of the inside or outside of primitives.
 struct Medium {
     InstanceRef shader;
     BoundKernel kernel;
+    std::shared_ptr<const Homogeneous> homogeneous; ///< path: light is scattered in it in closed form, and no shader runs
+    float priority = 0;                        ///< output float __priority: where media overlap the highest counts
     const geometry::Shape* shape =
         nullptr; ///< inside and outside: the first primitive, and its binding, for rays that meet nothing
     int binding = -1;
@@ -137,6 +153,11 @@ struct SurfaceBinding {
     BoundKernel displacementS;
     Medium atmosphere;                         ///< no shader: none
     int inside = -1, outside = -1;             ///< WorldImpl::media_ of Interior and Exterior; -1: none
+    float insidePriority = 0, outsidePriority = 0;
+    /// Whether the surface bounds nothing where a ray is: a medium that counts for more than its inside is on both sides of it.
+    bool overruled(const shading::Media* at) const {
+        return inside >= 0 && at && at->count && at->top() != inside && at->topPriority() > insidePriority;
+    }
     /// Where a ray is that comes from `from` and leaves a point with normal n in direction `to`; it arrived in direction `in`.
     shading::Media beyond(const shading::Media& from, const Vec3& n, const Vec3& in, const Vec3& to) const;
     bool displacementTells = false; ///< displacementS gives the outputs of its shader, for those who ask by displacement()

@@ -132,7 +132,11 @@ public:
     std::vector<SurfaceBinding> bindings_;
     std::vector<Medium> media_;                ///< of Interior and Exterior
     shading::Media eye_;                       ///< where camera rays begin
+    bool scatters_ = false;                    ///< some of media_ do
     void findEye();                            ///< fills eye_; once rays can be sent
+    /// Fills what a medium's shader says of it by its outputs.
+    void bindHomogeneous(Medium&, Evaluator&, Diagnostics&);
+    void placeLights(Evaluator&);              ///< finds where lights stand that scattering media may be near; after all is bound
     void goOn(accel::Ray&, const accel::Hit&) const; ///< behind what it met
     int groups_ = 0;                           ///< number of different SurfaceBinding::group
     std::vector<BoundLight> lights_;

@@ -63,6 +63,8 @@ void WorldImpl::makeChoosers(Diagnostics& d) {
     std::vector<char> asks(lightLists_.size(), hasLobes(primitiveHit_));
     for (const SurfaceBinding& b : bindings_)
         if (hasLobes(b)) asks[size_t(b.lightList)] = 1;
+    for (const Medium& m : media_)
+        if (m.homogeneous) asks[size_t(bindings_[size_t(m.binding)].lightList)] = 1;
     const auto chooserOver = [&](const std::vector<int>& lights) {
         std::vector<LightBound> bounds;
         for (int i : lights) {

@@ -13,14 +13,15 @@ Media SurfaceBinding::beyond(const Media& from, const Vec3& n, const Vec3& in, c
     if (inside < 0 && outside < 0) return m;
     const bool fromInside = dot(in, n) > 0, toInside = dot(to, n) < 0;
     if (toInside) {
-        if (!fromInside) m.push(inside);
-        else if (inside >= 0 && m.top() != inside) m.push(inside); // began in here where nobody knew of it
+        const bool below = m.topPriority() > insidePriority && m.has(inside); // what counts there is another
+        if (!fromInside) m.push(inside, insidePriority);
+        else if (inside >= 0 && m.top() != inside && !below) m.push(inside, insidePriority); // began in here where nobody knew of it
         return m;
     }
     if (fromInside) m.leave(inside);
     if (outside < 0 || m.top() == outside) return m;
     if (m.count) --m.count; // it takes the place of what was known to be there
-    m.push(outside);
+    m.push(outside, outsidePriority);
     return m;
 }
 
@@ -48,7 +49,8 @@ void WorldImpl::findEye() {
         }
     }
     for (size_t i = left[0].size(); i-- > 0;)
-        if (std::find(left[1].begin(), left[1].end(), left[0][i]) != left[1].end()) eye_.push(left[0][i]);
+        if (std::find(left[1].begin(), left[1].end(), left[0][i]) != left[1].end()) 
+            eye_.push(left[0][i], media_[size_t(left[0][i])].priority);
 }
 
 } // namespace alpenglow::transport

@@ -17,6 +17,9 @@ inline constexpr const char* kLevelAttribute = "detail:__level";
 
 enum class Hider { Hidden, Raytrace, Path };
 
+/// How points are chosen on the way of a ray through a medium where lights with a place light it (tests: all have the same mean).
+enum class MediumSampling : uint8_t { Both, Distance, Equiangular };
+
 struct Settings {
     Hider hider = Hider::Hidden;
     uint64_t seed = 0;
@@ -32,6 +35,7 @@ struct Settings {
     bool bsdfOnly = false;          ///< no light sampling, emission counts in full (tests, T6)
     bool lightOnly = false;         ///< light sampling only: emission met by lobe sampling does not count (tests, T6)
     bool evenLights = false;        ///< many lights: each is as likely to be sampled as any other (tests, measurements)
+    MediumSampling mediumSampling = MediumSampling::Both;
     std::vector<std::string> shaderPaths, texturePaths;
     ReadPolicy read{};              ///< where the names of maps may lead
     std::shared_ptr<ReadLog> reads; ///< gets every shader and map that is read or missed; may be null

@@ -69,6 +69,13 @@ struct OcclusionSite {
     RecordSite records;
     bool uniform = false;                 ///< "distribution" "uniform"
 };
+/// What subsurface() says of what lies below. Rows, or -1: Attribute "subsurface" says it.
+struct SubsurfaceSite {
+    int samples = -1, scattering = -1, absorption = -1, path = -1, diffusePath = -1, reflectance = -1, index = -1, scale = -1,
+        anisotropy = -1;
+    enum class Model : uint8_t { Walk, Dipole, BetterDipole } model = Model::Walk;
+    std::string group;                    ///< "": the attribute's
+};
 struct GatherSite; // world/gathersite.h
 
 /// What a photonmap() or caustic() asks. Rows, or -1.
@@ -111,6 +118,7 @@ enum class SiteKind : uint8_t {
     Transmission,
     LightVisibility,
     Occlusion,
+    Subsurface,
     Gather, ///< requests
     Illuminance,
     Texture,
@@ -158,6 +166,7 @@ struct SiteInfo {
     int rowWo = -1, rowExponent = -1, rowCone = -1, rowHorizon = -1, rowLights = -1; ///< of `named`
     std::shared_ptr<const struct TraceSite> trace; ///< Trace: what only some calls use
     std::shared_ptr<const OcclusionSite> occlusion; ///< Occlusion, which has `trace` for its map, too
+    std::shared_ptr<const SubsurfaceSite> subsurface; ///< Subsurface
     std::shared_ptr<const GatherSite> gather;  ///< Gather, GatherTurn
     std::shared_ptr<const RaySite> rays;       ///< Trace, Transmission, Occlusion, Gather
     std::shared_ptr<const TextureSite> map;    ///< Texture, Environment

@@ -245,6 +245,8 @@ int SurfaceBinder::bindAnew(const geometry::ShapeRef& shape) {
 
     b.inside = mediumOf(b.interior, *shape);
     b.outside = mediumOf(b.exterior, *shape);
+    if (b.inside >= 0) b.insidePriority = world_.media_[size_t(b.inside)].priority;
+    if (b.outside >= 0) b.outsidePriority = world_.media_[size_t(b.outside)].priority;
     // Who asks comes before who is asked: an atmosphere asks for outputs of the surface, both for those of the displacement.
     const Names left = both ? leftBy(b) : Names{};
     bindDisplacement(b, displacementVarying, left);
@@ -556,6 +558,7 @@ int SurfaceBinder::mediumOf(const InstanceRef& shader, const geometry::Shape& sh
     if (!m.shader) return -1;
     m.shape = &shape;
     m.binding = int(world_.bindings_.size()); // that is bound now
+    world_.bindHomogeneous(m, evaluator_, diagnostics_);
     world_.media_.push_back(std::move(m));
     return int(world_.media_.size()) - 1;
 }

@@ -174,6 +174,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     w->bindSentStrings(d);
     w->countLightTraces();
     w->measureLights(*evaluator, d);
+    w->placeLights(*evaluator);
     for (const auto& [shape, binding] : w->hazyEmitters_) {
         w->lights_[size_t(shape->attributes().areaLight)].hazy = true;
         for (int part : w->lights_[size_t(shape->attributes().areaLight)].parts) w->lights_[size_t(part)].hazy = true;

@@ -6,6 +6,7 @@
 #include "lobes/kinds/glass.h"
 #include "lobes/kinds/hair.h"
 #include "lobes/kinds/orennayar.h"
+#include "lobes/kinds/phase.h"
 #include "lobes/kinds/phong.h"
 #include "lobes/kinds/phonglobe.h"
 #include "lobes/kinds/specular.h"
@@ -15,5 +16,5 @@ namespace alpenglow::transport::AL_NAMESPACE {
 static constexpr LobeLanes kLobes[] = {
     lanesOf<Diffuse>(),    lanesOf<Specular>(),  lanesOf<Phong>(), lanesOf<UniformCone>(),      lanesOf<CosineCone>(),
     lanesOf<PhongTrace>(), lanesOf<OrenNayar>(), lanesOf<Blinn>(), lanesOf<AshikhminShirley>(), lanesOf<CookTorrance>(),
-    lanesOf<Ward>(),       lanesOf<Glass>(),     lanesOf<Hair>()};
+    lanesOf<Ward>(),       lanesOf<Glass>(),     lanesOf<Hair>(), lanesOf<HenyeyGreenstein>()};
 } // namespace alpenglow::transport::AL_NAMESPACE

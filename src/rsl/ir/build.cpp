@@ -231,7 +231,7 @@ static std::unique_ptr<Kernel> buildOnce(const Program& p, const Shader& s, cons
 }
 
 /// Requests that there is no other form of.
-static const std::set<std::string_view> kNoLobes = {"trace", "transmission", "occlusion", "gather", "lightvisibility", "ambient"};
+static const std::set<std::string_view> kNoLobes = {"trace", "transmission", "occlusion", "subsurface", "gather", "lightvisibility", "ambient"};
 
 std::unique_ptr<Kernel> buildKernel(const Program& p, const Shader& s, const KernelOptions& o, Diagnostics& d) {
     DirectSet direct;

@@ -1,0 +1,133 @@
+// The diffusion models of subsurface(), on demand: exact for a half space of high albedo, elsewhere an estimate with a bias.
+#include "base/exact.h"
+#include "wave/subsurface.h"
+#include "lobes/sampling.h"
+
+namespace alpenglow::transport {
+
+Dipole::Dipole(const HalfSpace& boundary, bool better, double absorption, double scattering) {
+    const double sigma = absorption + scattering;
+    albedo_ = scattering / sigma;
+    depth_ = 1 / sigma;
+    if (better) { // d'Eon, A Better Dipole (2012): Grosjean's diffusion, boundary by both moments of the reflection
+        spread_ = (2 * absorption + scattering) / (3 * sigma * sigma);
+        const double c1 = boundary.first(), c2 = boundary.second(); // 2 C1 and 3 C2
+        const double edge = 2 * spread_ * (1 + c2) / (1 - c1);
+        image_ = depth_ + 2 * edge;
+        fluence_ = (1 - c1) / 4;
+        flux_ = (1 - c2) / 2;
+    } else { // Jensen and others, A Practical Model for Subsurface Light Transport (2001)
+        spread_ = 1 / (3 * sigma);
+        const double n = boundary.index();
+        const double fdr = n >= 1 ? -1.440 / (n * n) + 0.710 / n + 0.668 + 0.0636 * n
+                                  : -0.4399 + 0.7099 / n - 0.3319 / (n * n) + 0.0636 / (n * n * n);
+        const double a = n == 1 ? 1 : (1 + fdr) / (1 - fdr);
+        image_ = depth_ + 4 * a * spread_;
+        flux_ = 1;
+    }
+    fall_ = std::sqrt(absorption / spread_);
+}
+
+double Dipole::at(double r) const {
+    const auto part = [&](double z, double& fluence) {
+        const double d = std::sqrt(r * r + z * z), e = exact::exp(-fall_ * d);
+        fluence = e / d;
+        return z * (1 + fall_ * d) * e / (d * d * d);
+    };
+    double below, above;
+    const double flux = part(depth_, below) + part(image_, above);
+    return albedo_ / (4 * kPi) * (flux_ * flux + fluence_ / spread_ * (below - above));
+}
+
+double Dipole::total() const {
+    const double below = exact::exp(-fall_ * depth_), above = exact::exp(-fall_ * image_);
+    const double fluence = fall_ > 1e-9 ? (below - above) / fall_ : image_ - depth_;
+    return albedo_ / 2 * (flux_ * (below + above) + fluence_ / spread_ * fluence);
+}
+
+// Half by the exponential far away, half by the distance that the source below is seen from.
+double Dipole::choose(float which, float u) const {
+    if (which < 0.5f && fall_ > 0) return -exact::log(1 - std::min(double(u), 1 - 0x1p-24)) / fall_;
+    const double c = 1 - std::min(double(u), 1 - 0x1p-24);
+    return depth_ * std::sqrt(1 / (c * c) - 1);
+}
+
+double Dipole::density(double r) const {
+    const double d2 = r * r + depth_ * depth_, near = depth_ / (2 * kPi * d2 * std::sqrt(d2));
+    if (!(fall_ > 0)) return near;
+    return 0.5 * near + 0.5 * fall_ * exact::exp(-fall_ * r) / (2 * kPi * std::max(r, 1e-30));
+}
+
+double Engine::albedoOf(const Below& b, double reflectance) {
+    const HalfSpace& h = halfSpace(b.index);
+    if (b.model == SubsurfaceSite::Model::Walk) return h.albedo(reflectance);
+    double lo = 0, hi = 1;
+    for (int i = 0; i < 40; ++i) {
+        const double mid = 0.5 * (lo + hi);
+        (Dipole(h, b.model == SubsurfaceSite::Model::BetterDipole, 1 - mid, mid).total() < reflectance ? lo : hi) = mid;
+    }
+    return lo;
+}
+
+/// Points of the surface about the shaded one, met by lines along one of three axes, chosen by chance; all that a line meets
+/// count (King and others, BSSRDF Importance Sampling, 2013).
+void Walks::probe(int asked) {
+    const WorldImpl& world = e_.world();
+    const WalkAsked& a = asked_[size_t(asked)];
+    const Below& b = below_[size_t(a.below)];
+    const ShadePoint& p = c_.points[size_t(a.point)];
+    const PathRay& ray = c_.rays[size_t(a.point)];
+    const bool turned = dot(p.surface.n, ray.dir) > 0;
+    const Basis about(turned ? -p.surface.n : p.surface.n);
+    const Color part(std::fabs(a.weight.x), std::fabs(a.weight.y), std::fabs(a.weight.z));
+    const double sum = double(part.x) + part.y + part.z;
+    if (!(sum > 0)) return;
+    std::vector<Dipole> dipoles;
+    double share[3];
+    for (int k = 0; k < 3; ++k) {
+        dipoles.emplace_back(e_.halfSpace(b.index), b.model == SubsurfaceSite::Model::BetterDipole, double(b.absorption[k]),
+                             std::max(double(b.scattering[k]), 1e-12));
+        share[k] = b.scattering[k] > 0 ? part[k] / sum : 0;
+    }
+    const Random random = e_.random(ray);
+    const Vec2 where = random.pair(a.vertex, kFlight, 0), how = random.pair(a.vertex, kFlight, 1);
+    const float which = random.one(a.vertex, kFlight, 0);
+    int channel = 2;
+    double at = how.x;
+    for (int k = 0; k < 2 && channel == 2; ++k)
+        if (at < share[k]) channel = k;
+        else at -= share[k];
+    const double r = dipoles[size_t(channel)].choose(random.one(a.vertex, kFlight, 1), where.x);
+    const Vec2 turn = unitCircle(where.y);
+    const Vec3 axes[3] = {about.n, about.t, about.u};
+    const double chances[3] = {.5, .25, .25};
+    const int k = which < .5f ? 0 : which < .75f ? 1 : 2;
+    const Vec3 axis = axes[k], x = axes[(k + 1) % 3], y = axes[(k + 2) % 3];
+    const geometry::Bounds box = world.accel_->bounds();
+    const float far = length(box.hi - box.lo) + length(p.P - (box.lo + box.hi) * 0.5f) + 1;
+    if (!(r < far)) return; // nothing is there
+    Walker line{asked, p.P + x * float(r * turn.x) + y * float(r * turn.y) + axis * far, -axis, a.weight, a.weight, a.vertex};
+    accel::Ray probe = rayOf(line, 2 * double(far));
+    accel::Hit hit;
+    for (int layer = 0; layer < limits::kShadowLayers && world.accel_->intersect(probe, hit); ++layer) {
+        world.goOn(probe, hit);
+        if (!belongs(hit.shape, b.group)) continue;
+        const geometry::SurfacePoint s = world.accel_->point(hit);
+        const Vec3 n = s.displaced ? s.displacedN : s.n, to = (s.displaced ? s.displacedP : s.P) - p.P;
+        double density = 0; // of all ways to come here
+        for (int j = 0; j < 3; ++j) {
+            const Vec3 beside = to - axes[j] * dot(to, axes[j]);
+            double d = 0;
+            for (int i = 0; i < 3; ++i)
+                if (share[i] > 0) d += share[i] * dipoles[size_t(i)].density(length(beside));
+            density += chances[j] * d * std::fabs(dot(n, axes[j]));
+        }
+        if (!(density > 0)) continue;
+        Exit exit{asked, {}, childVertex(a.vertex, kFlight, uint32_t(16 + layer)), hit.shape, s, turned ? -n : n};
+        for (int i = 0; i < 3; ++i)
+            exit.weight[i] = b.scattering[i] > 0 ? float(a.weight[i] * dipoles[size_t(i)].at(length(to)) / density) : 0;
+        if (isFinite(exit.weight)) exits_.push_back(exit);
+    }
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,233 @@
+// subsurface(): walks below surfaces against the half space of Chandrasekhar, furnaces, and the closed forms of the diffusion models.
+#include "transport/floorscene.h"
+#include "wave/halfspace.h"
+#include "wave/subsurface.h"
+#include <random>
+
+using namespace alpenglow;
+using namespace alpenglow::transport;
+using namespace alpenglow::transport::testing;
+
+namespace {
+
+class Subsurface : public ::testing::Test {
+protected:
+    void SetUp() override {
+        writeShader("skin", "surface skin(color sc = 1, ab = 0; float ior = 1, sc_ = 1; string group = \"\";) { Oi = 1;\n"
+                            "    Ci = subsurface(P, normalize(N), \"scattering\", sc, \"absorption\", ab, \"ior\", ior, \"scale\", sc_); }\n");
+        writeShader("plain", "surface plain() { Oi = 1; Ci = subsurface(P); }\n");
+        writeShader("dipole", "surface dipole(float ior = 1.3; color r = .5, mfp = 1;) { Oi = 1;\n"
+                              "    Ci = subsurface(P, N, \"model\", \"jensen\", \"reflectance\", r, \"meanfreepath\", mfp, \"ior\", ior); }\n");
+        writeShader("better", "surface better(float ior = 1.3; color r = .5, mfp = 1;) { Oi = 1;\n"
+                              "    Ci = subsurface(P, N, \"model\", \"grosjean\", \"reflectance\", r, \"meanfreepath\", mfp, \"ior\", ior); }\n");
+        writeShader("coloured", "surface coloured(color r = .5; float ior = 1.3;) { Oi = 1;\n"
+                                "    Ci = subsurface(\"raytrace\", P, N, \"reflectance\", r, \"meanfreepath\", .2, \"ior\", ior); }\n");
+        writeShader("waits", "surface waits(color r = .5;) { Oi = 1; color c = subsurface(P, N, \"reflectance\", r, \"meanfreepath\", .2);\n"
+                             "    Ci = (c == color(0)) ? color(0) : c; }\n");
+    }
+};
+const std::string kSky = "LightSource \"envlight\" 1\n";
+const std::string kAbove = "LightSource \"distantlight\" 1 \"intensity\" .5 \"from\" [0 1 0] \"to\" [0 0 0]\n";
+
+/// What the half space gives back by walks through its layers, an independent one-dimensional count. Isotropic scattering.
+double counted(double albedo, double index, int n) {
+    std::mt19937_64 random(5);
+    const auto u = [&] { return std::generate_canonical<double, 53>(random); };
+    double sum = 0, all = 0;
+    for (int i = 0; i < n; ++i) {
+        const double outside = std::sqrt(u()), inside = std::sqrt(1 - (1 - outside * outside) / (index * index));
+        const double enters = 1 - fresnelInside(inside, index);
+        all += enters;
+        double depth = 0, mu = inside, weight = enters;
+        for (int k = 0; k < 5000; ++k) {
+            depth += mu * -std::log(1 - u());
+            if (depth <= 0) {
+                // Back to the surface: how much goes out and how much is reflected.
+                const double f = fresnelInside(-mu, index);
+                sum += weight * (1 - f);
+                weight *= f;
+                mu = -mu;
+                depth = 0;
+            } else {
+                weight *= albedo;
+                mu = 2 * u() - 1;
+            }
+            if (weight < 1e-9) break;
+        }
+    }
+    return sum / all;
+}
+
+TEST_F(Subsurface, TheHalfSpaceOfTheTableIsThatOfACount) {
+    // A count that reflects at the surface and walks on with a fresh distance: distances forget.
+    for (const double index : {1., 1.3, 1.5, .8})
+        for (const double albedo : {.3, .9}) {
+            const int n = 400000;
+            EXPECT_NEAR(HalfSpace(index).reflectance(albedo), counted(albedo, index, n), 3.5 * .5 / std::sqrt(double(n))) << index << " " << albedo;
+        }
+    const HalfSpace h(1.3);
+    for (const double r : {.01, .2, .5, .8, .97}) EXPECT_NEAR(h.reflectance(h.albedo(r)), r, 1e-9);
+    EXPECT_EQ(h.albedo(0), 0);
+    EXPECT_EQ(h.reflectance(1), 1);
+}
+
+TEST_F(Subsurface, WithoutABoundaryItIsChandrasekhars) {
+    // 1 - 2 sqrt(1 - w) int H(m) m dm, by H on a plain rule.
+    for (const double w : {.2, .6, .95}) {
+        const int n = 800;
+        std::vector<double> h(n, 1), next(n);
+        for (int round = 0; round < 200; ++round) {
+            for (int i = 0; i < n; ++i) {
+                double sum = std::sqrt(1 - w);
+                for (int k = 0; k < n; ++k) sum += w / 2 * (k + .5) / n * h[size_t(k)] / ((i + .5) / n + (k + .5) / n) / n;
+                next[size_t(i)] = 1 / sum;
+            }
+            for (int i = 0; i < n; ++i) h[size_t(i)] = .5 * (h[size_t(i)] + next[size_t(i)]);
+        }
+        double first = 0;
+        for (int i = 0; i < n; ++i) first += (i + .5) / n * h[size_t(i)] / n;
+        EXPECT_NEAR(HalfSpace(1).reflectance(w), 1 - 2 * std::sqrt(1 - w) * first, 2e-4) << w;
+    }
+}
+
+TEST_F(Subsurface, AFurnaceGivesWhatComesIn) {
+    for (const char* ior : {"1", "1.3"})
+        for (const char* shape : {"Sphere 1 -1 1 360\n", "Rotate 20 1 2 0 Torus .8 .3 0 360 360\n"}) {
+            Scene s(world(kSky + "Translate 0 0 5 Surface \"skin\" \"color sc\" [3 2 5] \"ior\" " + std::string(ior) + " " + shape), withShaders(Hider::Path));
+            const Moments m = s.estimate(rayTo({.7f, .1f, 0}, {.7f, .1f, 5}), samples(20000));
+            for (int k = 0; k < 3; ++k) EXPECT_NEAR(m.mean(k), 1, kZ * m.se(k) + 1e-4) << ior << shape << k;
+            EXPECT_LT(m.se(), .02);
+        }
+}
+
+TEST_F(Subsurface, AHalfSpaceReflectsAsTheClosedFormHasIt) {
+    for (const Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path})
+        for (const char* ior : {"1", "1.375"}) {
+            Scene s(world(kAbove + "Surface \"skin\" \"color sc\" [.3 .8 .99] \"color ab\" [.7 .2 .01] \"sc_\" 20 \"ior\" " + std::string(ior) + " " + kFloor), withShaders(h));
+            const Moments m = s.estimate(kView, h == Hider::Path ? samples(20000) : 1500); // of 16 walks each
+            int k = 0;
+            const HalfSpace half(std::atof(ior));
+            for (const double albedo : {.3, .8, .99}) {
+                const double want = .5 * half.reflectance(albedo);
+                EXPECT_NEAR(m.mean(k), want, kZ * m.se(k) + 1e-5) << int(h) << " " << ior << " " << k;
+                EXPECT_LT(m.se(k), .03 * want);
+                ++k;
+            }
+        }
+}
+
+TEST_F(Subsurface, AReflectanceThatIsAskedForIsSeen) {
+    for (const char* shader : {"coloured", "waits"})
+        for (const Hider h : {Hider::Hidden, Hider::Path}) {
+            Scene s(world(kAbove + "Surface \"" + std::string(shader) + "\" \"color r\" [.2 .5 .9] " + kFloor), withShaders(h));
+            const Moments m = s.estimate(kView, h == Hider::Path ? samples(20000) : 1500);
+            int k = 0;
+            for (const double r : {.2, .5, .9}) {
+        EXPECT_NEAR(m.mean(k), .5 * r, kZ * m.se(k) + 2e-5) << shader << int(h) << k;
+        ++k;
+    }
+        }
+    // The same by attributes.
+    Scene s(world(kAbove + "Attribute \"subsurface\" \"color reflectance\" [.2 .5 .9] \"color meanfreepath\" [.1 .1 .1] \"float scale\" 2 "
+                           "\"float refractionindex\" 1.5 Surface \"plain\" " + kFloor), withShaders(Hider::Path));
+    const Moments m = s.estimate(kView, samples(20000));
+    int k = 0;
+    for (const double r : {.2, .5, .9}) {
+        EXPECT_NEAR(m.mean(k), .5 * r, kZ * m.se(k) + 2e-5);
+        ++k;
+    }
+}
+
+TEST_F(Subsurface, TheDiffusionModelsAreTheirIntegrals) {
+    for (const char* shader : {"dipole", "better"})
+        for (const char* ior : {"1", "1.3"}) {
+            Scene s(world(kAbove + "Surface \"" + std::string(shader) + "\" \"color r\" [.2 .5 .8] \"color mfp\" [.1 .05 .2] \"ior\" " + ior + " " + kFloor),
+                    withShaders(Hider::Path));
+            const Moments m = s.estimate(kView, samples(30000));
+            int k = 0;
+            for (const double r : {.2, .5, .8}) {
+                EXPECT_NEAR(m.mean(k), .5 * r, kZ * m.se(k) + 1e-5) << shader << ior << k;
+                EXPECT_LT(m.se(k), .03 * r);
+                ++k;
+            }
+        }
+    // The total is the integral over the plane.
+    for (const bool better : {false, true}) {
+        const Dipole d(HalfSpace(1.3), better, .1, .9);
+        double sum = 0, chosen = 0;
+        const int n = 400000;
+        for (int i = 0; i < n; ++i) {
+            const double r = std::exp((i + .5) / n * 24 - 14), dr = r * 24 / n;
+            sum += d.at(r) * 2 * kPi * r * dr;
+            chosen += d.density(r) * 2 * kPi * r * dr;
+        }
+        EXPECT_NEAR(sum, d.total(), 1e-5 * d.total());
+        EXPECT_NEAR(chosen, 1, 1e-4);
+    }
+    // Jensen's reflectance (2001, equation 5, summed up): a' / 2 (1 + exp(-4/3 A sqrt(3 (1 - a')))) exp(-sqrt(3 (1 - a'))).
+    const double a = .9, root = std::sqrt(3 * (1 - a));
+    EXPECT_NEAR(Dipole(HalfSpace(1), false, .1, .9).total(), a / 2 * (1 + std::exp(-4 / 3. * root)) * std::exp(-root), 1e-12);
+}
+
+TEST_F(Subsurface, GroupsBoundOneInside) {
+    // Two halves of a ball with attributes of their own: alone each is open, together they are a ball, of which a furnace gives 1.
+    const auto halves = [](const std::string& group) {
+        return "Translate 0 0 5 AttributeBegin " + group + "Surface \"skin\" \"color sc\" [.5 .5 .5] Sphere 1 0 1 360 AttributeEnd AttributeBegin " + group +
+               "Surface \"skin\" \"color sc\" [.5 .5 .5] Sphere 1 -1 0 360 AttributeEnd\n";
+    };
+    const CameraRay ray = rayTo({.3f, .1f, 0}, {.3f, .1f, 5});
+    Scene one(world(kSky + halves("Attribute \"subsurface\" \"string groupname\" \"ball\" ")), withShaders(Hider::Path));
+    const Moments m = one.estimate(ray, samples(5000));
+    EXPECT_NEAR(m.mean(), 1, kZ * m.se() + 1e-3); // a walk may slip through where both end
+    Scene apart(world(kSky + halves("")), withShaders(Hider::Path));
+    EXPECT_TRUE(std::isfinite(apart.estimate(ray, 2000).mean()));
+    // Balls that overlap in a group are one.
+    Scene both(world(kSky + "Attribute \"subsurface\" \"string groupname\" \"pair\" Surface \"skin\" \"color sc\" [.7 .7 .7] Translate -.4 0 5 Sphere 1 -1 1 360 Translate .8 0 0 Sphere 1 -1 1 360\n"),
+               withShaders(Hider::Path));
+    const Moments b = both.estimate(rayTo({.2f, .1f, 0}, {.2f, .1f, 5}), samples(5000));
+    EXPECT_NEAR(b.mean(), 1, kZ * b.se() + 1e-3);
+}
+
+TEST_F(Subsurface, ScaleIsMillimetresInAUnit) {
+    const auto seen = [](const std::string& values) {
+        Scene s(world("LightSource \"pointlight\" 1 \"from\" [0 2 3] Translate 0 0 5 Surface \"skin\" " + values + " Sphere 1 -1 1 360\n"), withShaders(Hider::Path));
+        return s.estimate(rayTo({.3f, .1f, 0}, {.3f, .1f, 5}), 300).mean();
+    };
+    EXPECT_EQ(seen("\"color sc\" [3 3 3] \"color ab\" [.5 .5 .5] \"sc_\" 2"), seen("\"color sc\" [6 6 6] \"color ab\" [1 1 1] \"sc_\" 1"));
+}
+
+TEST_F(Subsurface, WhatIsAskedForInVainIsSaid) {
+    writeShader("odd", "surface odd() { Oi = 1; Ci = subsurface(P, N, \"model\", \"mirror\", \"irradiance\", color(1)) + subsurface(\"pointcloud\", P, N, \"samples\", 1e9); }\n");
+    Scene s(world(kAbove + "Surface \"odd\" " + kFloor), withShaders(Hider::Path));
+    EXPECT_TRUE(std::isfinite(s.one(kView).x));
+    for (const char* word : {"no model \"mirror\"", "\"irradiance\" is not used", "point clouds are not yet read"})
+        EXPECT_NE(s.messages().find(word), std::string::npos) << s.messages();
+    for (const char* bad : {"\"color sc\" [0 0 0]", "\"color sc\" [-1 -1 -1]", "\"sc_\" 0", "\"ior\" 0", "\"ior\" 1e9", "\"color sc\" [1e30 1e30 1e30] \"color ab\" [1e30 1e30 1e30]"}) {
+        Scene b(world(kAbove + "Surface \"skin\" " + std::string(bad) + " " + kFloor), withShaders(Hider::Path));
+        const double v = b.estimate(kView, 50).mean();
+        EXPECT_TRUE(std::isfinite(v) && v >= 0) << bad;
+    }
+}
+
+TEST_F(Subsurface, NoBitDependsOnWhoSharesABatch) {
+    const std::string rib = world("LightSource \"pointlight\" 1 \"from\" [1 2 0] LightSource \"envlight\" 2 \"intensity\" .3\nTranslate 0 0 5 "
+                                  "Surface \"coloured\" \"color r\" [.3 .6 .9] Sphere 1 -1 1 360 AttributeBegin Surface \"dipole\" Translate .8 0 -.8 Sphere .5 -.5 .5 360 AttributeEnd\n");
+    std::vector<CameraRay> rays;
+    for (int i = 0; i < 100; ++i) {
+        rays.push_back(rayTo({0, 0, 0}, {float(i) * .02f - .7f, .1f, 4.5f}));
+        rays.back().px = i;
+    }
+    std::vector<Color> first;
+    for (const int lanes : {16, 4}) {
+        Settings set = withShaders(Hider::Path);
+        set.lanes = lanes;
+        Scene s(rib, set);
+        const auto all = s.trace(rays);
+        if (first.empty())
+            for (const SampleResult& r : all) first.push_back(r.color);
+        for (size_t i = 0; i < rays.size(); ++i) EXPECT_EQ(all[i].color, first[i]) << lanes << " " << i;
+        for (size_t i = 0; i < rays.size(); i += 17) EXPECT_EQ(s.trace({&rays[i], 1})[0].color, first[i]) << "alone, " << lanes;
+    }
+}
+
+} // namespace

@@ -49,11 +49,20 @@ bool Accel::Impl::meetInside(Query& q, const Inside& at, uint32_t prim) const {
     geometry::ExactHit h[4];
     const Shape& shape = *at.geometry->shape;
     const double from = exactFrom(r, at.shape, prim), to = std::min(double(r.tfar), q.best.t);
-    const int n = shape.exactHits(prim, at.org, at.dir, from, to, wantedOf(q, at.shape, *at.place), h);
+    const Shape::Wanted wanted = wantedOf(q, at.shape, *at.place);
+    const geometry::KeyedShape* keyed = at.place->keyed();
+    const int n = keyed ? keyed->exactHitsAt(prim, at.org, at.dir, from, to, wanted, r.time, h)
+                        : shape.exactHits(prim, at.org, at.dir, from, to, wanted, h);
+    const auto normal = [&](const geometry::ExactHit& hit) {
+        if (!keyed || !keyed->joined()) return shape.hitNormal(prim, hit.u, hit.v);
+        geometry::SurfacePoint p;
+        const geometry::HitRef ref{prim, hit.u, hit.v, &p, r.time};
+        keyed->points({&ref, 1}, 0);
+        return Vec3d(p.n);
+    };
     bool taken = false;
     for (int i = 0; i < n && !(taken && q.any); ++i)
-        taken |= take(q, at.shape, prim, h[i].t, h[i].u, h[i].v,
-                      [&] { return at.place->side() * dot(shape.hitNormal(prim, h[i].u, h[i].v), at.dir); });
+        taken |= take(q, at.shape, prim, h[i].t, h[i].u, h[i].v, [&] { return at.place->side() * dot(normal(h[i]), at.dir); });
     return taken;
 }
 

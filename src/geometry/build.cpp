@@ -197,11 +197,22 @@ ShapeRef FrameBuilder::geometryOf(const PrimitiveRef& p, const scene::Attributes
     }
     std::vector<ShapeRef> keys;
     for (float t : times) {
-        ShapeRef k = buildShape(scene::primitiveAt(p, shutter_.at(t)), a, toCamera, instance, diag_, facing_, keys.empty() ? nullptr : keys[0].get());
+        PrimitiveRef now = scene::primitiveAt(p, shutter_.at(t));
+        const bool pieces = p->kind == "Curves" || p->kind == "Points";
+        if (pieces && times.size() > 1 && keys.empty() && now->motionKeys.empty()) { // the shutter opens between keys: isKey()
+            auto first = std::make_shared<scene::Primitive>(*now);
+            first->motionKeys = p->motionKeys;
+            now = std::move(first);
+        }
+        ShapeRef k = buildShape(now, a, toCamera, instance, diag_, facing_, keys.empty() ? nullptr : keys[0].get());
         if (!k) return nullptr;
         keys.push_back(std::move(k));
     }
     if (keys.size() == 1) return keys[0];
+    if (auto keyed = std::dynamic_pointer_cast<KeyedShape>(keys[0])) {
+        if (!keyed->join({keys.begin() + 1, keys.end()}, std::move(times))) reportUnlike(*keyed, diag_);
+        return keyed;
+    }
     ShapeSource s = keys[0]->source();
     return std::make_shared<Deforming>(std::move(s), std::move(keys), std::move(times));
 }

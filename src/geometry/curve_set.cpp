@@ -1,5 +1,6 @@
 // The arrays of a Curves request.
 #include "geometry/curves.h"
+#include "geometry/keyed.h"
 #include <algorithm>
 #include <cmath>
 
@@ -131,6 +132,7 @@ bool CurveSet::layOut(const ShapeSource& s, Diagnostics& diag) {
         normal_ = q.numbers.data(); // takePrimvars() says what is wrong with others
         normalClass_ = q.cls;
     }
+    const bool key = isKey(s);
     size_t few = 0, notFinite = 0, still = 0, thin = 0;
     uint32_t vertex = 0, corner = 0;
     for (size_t face = 0; face < p.ints.size(); ++face) {
@@ -159,12 +161,13 @@ bool CurveSet::layOut(const ShapeSource& s, Diagnostics& diag) {
             ++notFinite;
             continue;
         }
-        if (std::all_of(width_.values + w, width_.values + w + ws, [](float f) { return !(f > 0); })) {
+        // A key of what moves may be nothing now and something later.
+        if (!key && std::all_of(width_.values + w, width_.values + w + ws, [](float f) { return !(f > 0); })) {
             ++thin;
             continue;
         }
         const Vec3d first = point(row.vertex);
-        bool moves = false;
+        bool moves = key;
         for (uint32_t i = 1; i < n && !moves; ++i) moves = !(point(row.vertex + i) == first);
         if (!moves) {
             ++still;

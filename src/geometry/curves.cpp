@@ -3,6 +3,7 @@
 #include "base/exact.h"
 #include "geometry/dice.h"
 #include "geometry/factories.h"
+#include "geometry/keyed.h"
 #include "geometry/parametric.h"
 #include <algorithm>
 #include <cmath>
@@ -13,47 +14,50 @@ namespace {
 /// Hits of ribbons that face the ray say how the ribbon was turned: ExactHit::u is 2 * turn + u, turn counting these parts of a circle.
 constexpr double kTurns = 1 << 24;
 
-class Curves final : public Shape {
+class Curves final : public KeyedShape {
 public:
     Curves(ShapeSource s, CurveSet set, Diagnostics&);
 
     uint32_t exactPrims() const override { return set_.segments() * parts_; }
-    Bounds exactBounds(uint32_t prim) const override;
-    Bounds bounds() const override { return bounds_; }
-    using Shape::exactHits;
-    int exactHits(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted, ExactHit out[4]) const override;
+    int exactHitsAt(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted, float time,
+                    ExactHit out[4]) const override;
 
     int faces() const override { return int(source_.primitive->ints.size()); }
     SurfacePoint evaluate(int face, double u, double v) const override {
         double f;
         const uint32_t segment = set_.segmentAt(face, v, f);
-        return pointOf(segment, u, f, Vec3d(0.0));
+        return pointOf(segment, u, f, Vec3d(0.0), 0);
     }
     double area() const override { return areas().empty() ? 0 : areas().back(); }
-    SurfacePoint sampleArea(double xi1, double xi2) const override { return samplePoint(xi1, xi2, Vec3d(0.0)); }
-    void sampleFrom(const Vec3& from, double xi1, double xi2, SurfacePoint& out, uint32_t) const override {
-        out = samplePoint(xi1, xi2, Vec3d(from));
-    }
+    SurfacePoint sampleFromAt(const Vec3& from, double xi1, double xi2, float time) const override;
     double sampleDensity(const SurfacePoint&) const override;
+    Vec3 velocity(const SurfacePoint&) const override;
     void dice(const DiceOptions&, Diagnostics&) override;
 
 protected:
+    Bounds keyBounds(uint32_t prim) const override;
+    bool fits(KeyedShape& later) const override {
+        auto& c = static_cast<Curves&>(later);
+        c.parts_ = parts_;
+        return set_.alike(c.set_);
+    }
+    SurfacePoint pointAt(uint32_t prim, double b1, double b2, float time) const override;
     size_t classCount(scene::Class c) const override { return set_.classCount(c); }
     int weights(scene::Class c, const SurfacePoint& p, Weight w[16]) const override {
         return set_.weights(c, p.prim / parts_, std::clamp(p.b2, 0.0, 1.0), w);
     }
-    SurfacePoint evaluateLocal(uint32_t prim, double b1, double b2) const override;
 
 private:
+    void load(uint32_t segment, float time, CurveSegment& out) const;
+    void load(uint32_t segment, size_t key, double way, CurveSegment& out) const;
     /// The part of a segment that a primitive is.
     void part(uint32_t prim, double& from, double& to) const {
         from = double(prim % parts_) / parts_;
         to = double(prim % parts_ + 1) / parts_;
     }
-    void choosePartsAndBounds();
+    void chooseParts();
     Vec3d toObject(const Vec3d& p) const { return transformPoint(toObject_, p); }
-    SurfacePoint pointOf(uint32_t segment, double u, double f, const Vec3d& from) const;
-    SurfacePoint samplePoint(double xi1, double xi2, const Vec3d& from) const;
+    SurfacePoint pointOf(uint32_t segment, double u, double f, const Vec3d& from, float time) const;
     LocalPoint local(const CurveSegment&, const CurveFacing&, double u, double f) const;
     double turnOf(const CurveSegment&, double f, const Vec3d& across) const;
     const std::vector<double>& areas() const;
@@ -65,12 +69,11 @@ private:
     Matrix toObject_;
     double side_ = 1;        ///< +1, -1: of Ng along dPdu ^ dPdv of object space
     double reach_[3];    ///< half the extent of a unit ball of object space along camera axes
-    Bounds bounds_;
     mutable std::once_flag made_;
-    mutable std::vector<double> areas_; ///< summed up by segment
+    mutable std::vector<double> areas_; ///< summed up by segment; of what moves, the mean of its keys
 };
 
-Curves::Curves(ShapeSource s, CurveSet set, Diagnostics& diag) : Shape(std::move(s)), set_(std::move(set)) {
+Curves::Curves(ShapeSource s, CurveSet set, Diagnostics& diag) : KeyedShape(std::move(s)), set_(std::move(set)) {
     toObject_ = inverse(toCamera());
     const bool mirrored = determinant3(toCamera()) < 0;
     side_ = (mirrored ? -1 : 1) * double(orientation_);
@@ -87,10 +90,12 @@ Curves::Curves(ShapeSource s, CurveSet set, Diagnostics& diag) : Shape(std::move
         else fromRay_ = true;
     }
     takePrimvars(diag);
-    choosePartsAndBounds();
+    source_.like = nullptr;
+    chooseParts();
+    measure();
 }
 
-void Curves::choosePartsAndBounds() {
+void Curves::chooseParts() {
     // Boxes around long thin pieces hold mostly air: short pieces have smaller ones. Beyond some millions memory counts more.
     constexpr uint32_t kProbes = 512;
     constexpr size_t kMost = 6'000'000;
@@ -104,10 +109,29 @@ void Curves::choosePartsAndBounds() {
     }
     if (facing_.kind != CurveFacing::Round || !set_.linear())
         while (parts_ < 8 && longs > 4 * parts_ * wides && 2 * size_t(n) * parts_ <= kMost) parts_ *= 2;
-    for (uint32_t i = 0; i < n * parts_; ++i) bounds_.add(exactBounds(i));
 }
 
-Bounds Curves::exactBounds(uint32_t prim) const {
+/// A segment at a time: positions, widths and normals are linear between keys.
+void Curves::load(uint32_t segment, float time, CurveSegment& g) const {
+    double way;
+    const size_t k = keyAt(time, way);
+    load(segment, k, way, g);
+}
+void Curves::load(uint32_t segment, size_t k, double way, CurveSegment& g) const {
+    static_cast<const Curves&>(key(k)).set_.load(segment, g);
+    CurveSegment to;
+    if (way != 0 && k + 1 < keys()) {
+        static_cast<const Curves&>(key(k + 1)).set_.load(segment, to);
+        for (int i = 0; i < 4; ++i) {
+            g.p[i] = g.p[i] * (1 - way) + to.p[i] * way;
+            g.h[i] = g.h[i] * (1 - way) + to.h[i] * way;
+            g.n[i] = g.n[i] * (1 - way) + to.n[i] * way;
+        }
+    }
+    if (k > 0) set_.load(segment, to), g.axis = to.axis; // one axis at all times, or the frame would turn over at a key
+}
+
+Bounds Curves::keyBounds(uint32_t prim) const {
     CurveSegment g;
     set_.load(prim / parts_, g);
     double from, to, wide = g.widest();
@@ -142,9 +166,10 @@ double Curves::turnOf(const CurveSegment& g, double f, const Vec3d& across) cons
     return std::min(std::floor(turn * kTurns), kTurns - 1);
 }
 
-int Curves::exactHits(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted wanted, ExactHit out[4]) const {
+int Curves::exactHitsAt(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted wanted, float time,
+                        ExactHit out[4]) const {
     CurveSegment g;
-    set_.load(prim / parts_, g);
+    load(prim / parts_, time, g);
     const Vec3d o = toObject(org), d = transformVector(toObject_, dir);
     const double dd = dot(d, d);
     if (!(dd > 0) || !std::isfinite(dd)) return 0;
@@ -197,10 +222,10 @@ LocalPoint Curves::local(const CurveSegment& g, const CurveFacing& facing, doubl
     return p;
 }
 
-SurfacePoint Curves::evaluateLocal(uint32_t prim, double b1, double b2) const {
+SurfacePoint Curves::pointAt(uint32_t prim, double b1, double b2, float time) const {
     const uint32_t segment = prim / parts_;
     CurveSegment g;
-    set_.load(segment, g);
+    load(segment, time, g);
     const CurveSet::Place place = set_.place(segment);
     CurveFacing facing = facing_;
     double u = b1, n = place.count;
@@ -240,6 +265,7 @@ SurfacePoint Curves::evaluateLocal(uint32_t prim, double b1, double b2) const {
     p.prim = prim;
     p.b1 = u;
     p.b2 = b2;
+    p.time = time;
     // What leaves a ribbon that faces the ray must not meet the same ribbon, now turned elsewhere: it begins half a width away.
     p.pError = 2 * roundingError(p.P) + (fromRay_ ? 0.26f * length(p.dPdu) : 0);
     finishPoint(p, true);
@@ -247,16 +273,16 @@ SurfacePoint Curves::evaluateLocal(uint32_t prim, double b1, double b2) const {
 }
 
 /// A point of a segment as it is seen from `from` (camera space).
-SurfacePoint Curves::pointOf(uint32_t segment, double u, double f, const Vec3d& from) const {
+SurfacePoint Curves::pointOf(uint32_t segment, double u, double f, const Vec3d& from, float time) const {
     double b1 = u;
     if (fromRay_) {
         CurveSegment g;
-        set_.load(segment, g);
+        load(segment, time, g);
         CurveFacing facing = facing_;
         facing.at = toObject(from) - curveAt(g, f).f;
         b1 += 2 * turnOf(g, f, sideAt(g, facing, f).f);
     }
-    return evaluateLocal(segment * parts_, b1, f);
+    return pointAt(segment * parts_, b1, f, time);
 }
 
 const std::vector<double>& Curves::areas() const {
@@ -268,25 +294,38 @@ const std::vector<double>& Curves::areas() const {
         double sum = 0;
         areas_.reserve(set_.segments());
         for (uint32_t i = 0; i < set_.segments(); ++i) {
-            const double n = set_.place(i).count;
-            for (int k = 0; k < 4; ++k)
-                for (int a = 0; a < around; ++a) {
-                    const SurfacePoint p = pointOf(i, (a + 0.5) / around, x[k], Vec3d(0.0));
-                    sum += w[k] * length(cross(Vec3d(p.dPdu), Vec3d(p.dPdv))) / (n * around);
-                }
+            const double n = set_.place(i).count * double(keys());
+            for (size_t j = 0; j < keys(); ++j)
+                for (int k = 0; k < 4; ++k)
+                    for (int a = 0; a < around; ++a) {
+                        const SurfacePoint p = static_cast<const Curves&>(key(j)).pointOf(i, (a + 0.5) / around, x[k], Vec3d(0.0), 0);
+                        sum += w[k] * length(cross(Vec3d(p.dPdu), Vec3d(p.dPdv))) / (n * around);
+                    }
             areas_.push_back(sum);
         }
     });
     return areas_;
 }
 
-SurfacePoint Curves::samplePoint(double xi1, double xi2, const Vec3d& from) const {
+SurfacePoint Curves::sampleFromAt(const Vec3& from, double xi1, double xi2, float time) const {
     const std::vector<double>& sums = areas();
     const double target = xi1 * sums.back();
     const size_t i = std::min(size_t(std::upper_bound(sums.begin(), sums.end(), target) - sums.begin()), sums.size() - 1);
     // What is left of the first number is uniform again within the segment.
     const double lo = i ? sums[i - 1] : 0, size = sums[i] - lo;
-    return pointOf(uint32_t(i), xi2, size > 0 ? std::clamp((target - lo) / size, 0.0, 1.0) : 0.5, from);
+    return pointOf(uint32_t(i), xi2, size > 0 ? std::clamp((target - lo) / size, 0.0, 1.0) : 0.5, Vec3d(from), time);
+}
+
+/// Of a ribbon that faces the ray that of its middle: who sees it from another place sees it turn otherwise.
+Vec3 Curves::velocity(const SurfacePoint& at) const {
+    double way;
+    const size_t k = keyAt(at.time, way);
+    if (k + 1 >= keys()) return Vec3(0.f);
+    return slopeOf(k, way, [&](double w) {
+        CurveSegment g;
+        load(at.prim / parts_, k, w, g);
+        return transformPoint(toCamera(), fromRay_ ? curveAt(g, at.b2).f : local(g, facing_, at.b1, at.b2).P);
+    });
 }
 
 double Curves::sampleDensity(const SurfacePoint& p) const {

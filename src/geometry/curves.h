@@ -5,6 +5,7 @@
 #pragma once
 #include "geometry/bernstein.h"
 #include "geometry/shape.h"
+#include <algorithm>
 #include <mutex>
 #include <optional>
 
@@ -97,6 +98,12 @@ public:
     /// Weights at f of a segment; `dv` by v of the whole curve.
     int weights(scene::Class, uint32_t segment, double f, Weight w[16]) const;
     bool linear() const { return linear_; }
+    /// Whether the same curves of both are drawn, cut into the same segments.
+    bool alike(const CurveSet& o) const {
+        const auto same = [](const Row& a, const Row& b) { return a.vertex == b.vertex && a.corner == b.corner && a.segment == b.segment && a.face == b.face; };
+        return linear_ == o.linear_ && periodic_ == o.periodic_ && step_ == o.step_ && !normal_ == !o.normal_ &&
+               std::equal(rows_.begin(), rows_.end(), o.rows_.begin(), o.rows_.end(), same);
+    }
     bool hasNormals() const { return normal_ != nullptr; }
 
 private:

@@ -17,13 +17,7 @@ Deforming::Deforming(ShapeSource s, std::vector<ShapeRef> keys, std::vector<floa
 }
 
 size_t Deforming::keyAt(float time, double& way) const {
-    way = 0;
-    const size_t n = times_.size();
-    if (n < 2 || !(time > times_.front())) return 0;
-    if (time >= times_.back()) return way = 1, n - 2;
-    const size_t k = size_t(std::upper_bound(times_.begin(), times_.end(), time) - times_.begin()) - 1;
-    way = (double(time) - times_[k]) / (double(times_[k + 1]) - times_[k]);
-    return k;
+    return keyBefore(times_, time, way);
 }
 
 void Deforming::corners(uint32_t prim, float time, Vec3d out[3]) const {
@@ -168,6 +162,11 @@ Vec3 Deforming::velocity(const SurfacePoint& at) const {
     return Vec3((point(keys_[k + 1]) - point(keys_[k])) / (double(times_[k + 1]) - times_[k]));
 }
 
+void reportUnlike(const Shape& s, Diagnostics& diag) {
+    diag.report(Severity::Warning, Rie::Incapable, s.place(),
+                "the keys of this moving " + s.kind() + " are not made of the same pieces: it is drawn where it is at its first time");
+}
+
 void Deforming::dice(const DiceOptions& options, Diagnostics& diag) {
     DiceOptions alike = options;
     alike.keys = keys_;
@@ -175,8 +174,7 @@ void Deforming::dice(const DiceOptions& options, Diagnostics& diag) {
     const TriMesh& first = keys_[0]->mesh();
     for (const ShapeRef& k : keys_)
         if (k->exact() || k->mesh().vertices != first.vertices || !std::equal(first.index.begin(), first.index.end(), k->mesh().index.begin(), k->mesh().index.end())) {
-            diag.report(Severity::Warning, Rie::Incapable, place(),
-                        "the keys of this moving " + kind() + " are not made of the same pieces: it is drawn where it is at its first time");
+            reportUnlike(*this, diag);
             keys_.resize(1);
             times_.resize(1);
             return;

@@ -6,23 +6,9 @@ namespace alpenglow::geometry {
 
 using scene::Type;
 
-namespace {
-
-/// The interval of increasing times that a time lies in.
-size_t intervalOf(const std::vector<float>& times, float time, double& way) {
-    const size_t n = times.size();
-    way = 0;
-    if (n < 2 || !(time > times.front())) return 0;
-    if (time >= times.back()) return way = 1, n - 2;
-    const size_t k = size_t(std::upper_bound(times.begin(), times.end(), time) - times.begin()) - 1;
-    way = (double(time) - times[k]) / (double(times[k + 1]) - times[k]);
-    return k;
-}
-
-} // namespace
-
 Placed::Placed(ShapeSource s, ShapeRef geometry, const scene::Transform& place)
-    : Shape(std::move(s)), geometry_(std::move(geometry)), deforming_(dynamic_cast<const Deforming*>(geometry_.get())) {
+    : Shape(std::move(s)), geometry_(std::move(geometry)), deforming_(dynamic_cast<const Deforming*>(geometry_.get())),
+      keyed_(dynamic_cast<const KeyedShape*>(geometry_.get())) {
     variables_ = &geometry_->primvars();
     out_ = Affine(place.first());
     if (!out_.inverse(in_)) in_ = Affine();
@@ -35,7 +21,7 @@ Placed::Placed(ShapeSource s, ShapeRef geometry, const scene::Transform& place)
     moving_ = std::move(moving);
 }
 
-size_t Placed::keyAt(float time, double& way) const { return intervalOf(moving_->times, time, way); }
+size_t Placed::keyAt(float time, double& way) const { return keyBefore(moving_->times, time, way); }
 
 Affine Placed::fromGeometry(float time) const {
     if (!moving_ || !(time > 0)) return out_;
@@ -162,6 +148,13 @@ void Placed::sampleAreaAt(double xi1, double xi2, float time, SurfacePoint& out,
     place(out, poseAt(time), time);
 }
 
+void Placed::sampleFromAt(const Vec3& from, double xi1, double xi2, float time, SurfacePoint& out, uint32_t needs) const {
+    if (!keyed_) return sampleAreaAt(xi1, xi2, time, out, needs);
+    const Pose m = poseAt(time);
+    out = keyed_->sampleFromAt(Vec3(m.in.point(Vec3d(from))), xi1, xi2, time);
+    place(out, m, time);
+}
+
 double Placed::sampleDensity(const SurfacePoint& p) const {
     const Pose m = poseAt(p.time);
     SurfacePoint q = p;
@@ -203,7 +196,7 @@ Vec3 Placed::velocity(const SurfacePoint& p) const {
         const double span = double(moving_->times[k + 1]) - moving_->times[k];
         v = (moving_->keys[k + 1].point(here) - moving_->keys[k].point(here)) / span;
     }
-    if (deforming_) v += m.out.vector(Vec3d(deforming_->velocity(p)));
+    if (deforming_ || keyed_) v += m.out.vector(Vec3d(geometry_->velocity(p)));
     return Vec3(v);
 }
 

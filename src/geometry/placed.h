@@ -6,6 +6,7 @@
 // rotations keys so close that this is exact enough.
 #pragma once
 #include "geometry/affine.h"
+#include "geometry/keyed.h"
 #include "geometry/shape.h"
 #include "scene/motion.h"
 
@@ -51,6 +52,9 @@ private:
     std::vector<float> times_;
 };
 
+/// Says that keys do not fit together.
+void reportUnlike(const Shape&, Diagnostics&);
+
 /// A geometry at a place.
 class Placed final : public Shape {
 public:
@@ -60,7 +64,9 @@ public:
     const ShapeRef& geometry() const { return geometry_; }
     /// Null where the geometry is the same at all times.
     const Deforming* deforming() const { return deforming_; }
-    bool moves() const { return moving_ || deforming_; }
+    /// Null where rays meet no primitives one by one that know the time.
+    const KeyedShape* keyed() const { return keyed_; }
+    bool moves() const { return moving_ || deforming_ || (keyed_ && keyed_->joined()); }
     /// From camera space at a time. False: there is no way back then, and nothing to be met.
     bool toGeometry(float time, Affine& out) const;
     Affine fromGeometry(float time) const;
@@ -77,6 +83,8 @@ public:
     using Shape::sampleArea;
     SurfacePoint sampleArea(double xi1, double xi2) const override;
     void sampleAreaAt(double xi1, double xi2, float time, SurfacePoint& out, uint32_t needs) const override;
+    /// The same for a point that is lit: what faces rays is where rays from there would meet it.
+    void sampleFromAt(const Vec3& from, double xi1, double xi2, float time, SurfacePoint& out, uint32_t needs) const;
     double sampleDensity(const SurfacePoint&) const override;
     void interpolate(int var, const SurfacePoint& at, float* out, float* du, float* dv) const override;
     const std::string& stringValue(int var, const SurfacePoint& at) const override { return geometry_->stringValue(var, at); }
@@ -98,6 +106,7 @@ private:
 
     ShapeRef geometry_;
     const Deforming* deforming_ = nullptr;
+    const KeyedShape* keyed_ = nullptr;
     std::unique_ptr<const Moving> moving_; ///< null: stands still
     Affine out_, in_;                      ///< at shutter open
     double side_ = 1;

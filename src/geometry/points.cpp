@@ -3,6 +3,7 @@
 #include "geometry/curves.h"
 #include "geometry/dice.h"
 #include "geometry/factories.h"
+#include "geometry/keyed.h"
 #include "geometry/parametric.h"
 #include "geometry/solve.h"
 #include <algorithm>
@@ -44,26 +45,22 @@ Vec3d unpackDirection(double x, double y) {
 
 enum class Kind { Disc, Ball, Square };
 
-class Points final : public Shape {
+class Points final : public KeyedShape {
 public:
-    Points(ShapeSource s, Kind kind) : Shape(std::move(s)), kind_(kind) {}
+    Points(ShapeSource s, Kind kind) : KeyedShape(std::move(s)), kind_(kind) {}
     bool take(Diagnostics&);
 
     uint32_t exactPrims() const override { return kept_.empty() ? count_ : uint32_t(kept_.size()); }
-    Bounds exactBounds(uint32_t prim) const override;
-    Bounds bounds() const override { return bounds_; }
-    using Shape::exactHits;
-    int exactHits(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted, ExactHit out[4]) const override;
+    int exactHitsAt(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted, float time,
+                    ExactHit out[4]) const override;
     /// face: the point.
     SurfacePoint evaluate(int face, double u, double v) const override {
-        return pointAt(uint32_t(std::clamp(face, 0, int(exactPrims()) - 1)), u, v, Vec3d(0.0));
+        return pointFrom(uint32_t(std::clamp(face, 0, int(exactPrims()) - 1)), u, v, Vec3d(0.0), 0);
     }
     double area() const override { return areas().back() * spread_ * (kind_ == Kind::Disc ? kPi : kind_ == Kind::Ball ? 4 * kPi : 4 * aspect_); }
-    SurfacePoint sampleArea(double xi1, double xi2) const override { return samplePoint(xi1, xi2, Vec3d(0.0)); }
-    void sampleFrom(const Vec3& from, double xi1, double xi2, SurfacePoint& out, uint32_t) const override {
-        out = samplePoint(xi1, xi2, Vec3d(from));
-    }
+    SurfacePoint sampleFromAt(const Vec3& from, double xi1, double xi2, float time) const override;
     double sampleDensity(const SurfacePoint&) const override;
+    Vec3 velocity(const SurfacePoint&) const override;
     void dice(const DiceOptions&, Diagnostics&) override;
 
 protected:
@@ -72,19 +69,36 @@ protected:
         w[0] = {c == Class::Constant || c == Class::Uniform ? 0 : numberOf(p.prim), 1, 0, 0};
         return 1;
     }
-    SurfacePoint evaluateLocal(uint32_t prim, double b1, double b2) const override;
+    SurfacePoint pointAt(uint32_t prim, double b1, double b2, float time) const override;
+    Bounds keyBounds(uint32_t prim) const override;
+    bool fits(KeyedShape& later) const override {
+        const auto& p = static_cast<const Points&>(later);
+        return kind_ == p.kind_ && count_ == p.count_ && kept_ == p.kept_ && !normal_ == !p.normal_;
+    }
 
 private:
+    /// A point at a time.
+    struct Now {
+        Vec3d centre, normal; ///< the variable "N" if given
+        double radius;
+    };
+    Now nowAt(uint32_t prim, float time) const {
+        double way;
+        const size_t k = keyAt(time, way);
+        return nowAt(prim, k, way);
+    }
+    Now nowAt(uint32_t prim, size_t key, double way) const;
     uint32_t numberOf(uint32_t prim) const { return kept_.empty() ? prim : kept_[prim]; }
     Vec3d centre(uint32_t prim) const {
         const float* p = P_ + 3 * size_t(numberOf(prim));
         return {p[0], p[1], p[2]};
     }
-    double radius(uint32_t prim) const { return 0.5 * width_[widthStep_ * numberOf(prim)]; }
-    Vec3d facing(uint32_t prim, const Vec3d& centre, const Vec3d& against) const;
+    double radius(uint32_t prim) const { return 0.5 * std::max(0.f, width_[widthStep_ * numberOf(prim)]); }
+    double meanSquare(uint32_t prim) const; ///< of the radii at the keys
+    Vec3d facing(const Now&, const Vec3d& against) const;
+    LocalPoint place(const Now&, const Vec3d& n, double u, double v) const;
     void sides(const Vec3d& n, Vec3d& a, Vec3d& b) const;
-    SurfacePoint pointAt(uint32_t prim, double u, double v, const Vec3d& from) const;
-    SurfacePoint samplePoint(double xi1, double xi2, const Vec3d& from) const;
+    SurfacePoint pointFrom(uint32_t prim, double u, double v, const Vec3d& from, float time) const;
     const std::vector<double>& areas() const;
     bool fromRay() const { return kind_ != Kind::Ball && !normal_ && source_.facing == Facing::Ray; }
 
@@ -98,9 +112,8 @@ private:
     Matrix toObject_;
     Vec3d eye_, backward_, up_;
     double side_ = 1, reach_[3], spread_ = 1;
-    Bounds bounds_;
     mutable std::once_flag made_;
-    mutable std::vector<double> areas_; ///< squares of radii, summed up
+    mutable std::vector<double> areas_; ///< squares of radii, summed up; of what moves, the mean of its keys
 };
 
 bool Points::take(Diagnostics& diag) {
@@ -155,10 +168,12 @@ bool Points::take(Diagnostics& diag) {
     }
     size_t notFinite = 0, thin = 0;
     std::vector<uint32_t> kept;
+    const bool key = isKey(source_); // a width may grow from nothing
+    source_.like = nullptr;
     for (uint32_t i = 0; i < count_; ++i) {
         const float *q = P_ + 3 * size_t(i), w = width_[widthStep_ * i], *n = normal_ ? normal_ + normalStep_ * i : q;
         if (!std::isfinite(q[0]) || !std::isfinite(q[1]) || !std::isfinite(q[2]) || !std::isfinite(w) || !std::isfinite(n[0] + n[1] + n[2])) ++notFinite;
-        else if (!(w > 0)) ++thin;
+        else if (!key && !(w > 0)) ++thin;
         else kept.push_back(i);
     }
     if (notFinite)
@@ -166,12 +181,12 @@ bool Points::take(Diagnostics& diag) {
     if (thin) diag.report(Severity::Warning, Rie::Range, p.place, "Points: " + std::to_string(thin) + " without a width; not drawn");
     if (kept.empty()) return false;
     if (kept.size() < count_) kept_ = std::move(kept);
-    for (uint32_t i = 0; i < exactPrims(); ++i) bounds_.add(exactBounds(i));
+    measure();
     takePrimvars(diag);
     return true;
 }
 
-Bounds Points::exactBounds(uint32_t prim) const {
+Bounds Points::keyBounds(uint32_t prim) const {
     const Vec3d c = transformPoint(toCamera(), centre(prim));
     const double r = radius(prim) * (kind_ == Kind::Square ? std::sqrt(1 + aspect_ * aspect_) : 1) * 1.000001;
     const double slack = 1e-6 * (std::fabs(c.x) + std::fabs(c.y) + std::fabs(c.z)) + 1e-30;
@@ -182,13 +197,23 @@ Bounds Points::exactBounds(uint32_t prim) const {
     return b;
 }
 
+/// Centres, radii and normals are linear between keys.
+Points::Now Points::nowAt(uint32_t prim, size_t k, double way) const {
+    const auto of = [&](size_t i) {
+        const Points& p = static_cast<const Points&>(key(i));
+        const float* n = p.normal_ ? p.normal_ + p.normalStep_ * numberOf(prim) : nullptr;
+        return Now{p.centre(prim), n ? Vec3d(n[0], n[1], n[2]) : Vec3d(0.0), p.radius(prim)};
+    };
+    const Now a = of(k);
+    if (way == 0 || k + 1 >= keys()) return a;
+    const Now b = of(k + 1);
+    return {a.centre * (1 - way) + b.centre * way, a.normal * (1 - way) + b.normal * way, a.radius * (1 - way) + b.radius * way};
+}
+
 /// What a disc looks to, not unit; `against` is what a ray comes from.
-Vec3d Points::facing(uint32_t prim, const Vec3d& centre, const Vec3d& against) const {
-    if (normal_) {
-        const float* n = normal_ + normalStep_ * numberOf(prim);
-        return Vec3d(n[0], n[1], n[2]) * (side_ * orientation_ < 0 ? -1.0 : 1.0);
-    }
-    return source_.facing == Facing::Ray ? against : source_.facing == Facing::Eye ? eye_ - centre : backward_;
+Vec3d Points::facing(const Now& now, const Vec3d& against) const {
+    if (normal_) return now.normal * (side_ * orientation_ < 0 ? -1.0 : 1.0);
+    return source_.facing == Facing::Ray ? against : source_.facing == Facing::Eye ? eye_ - now.centre : backward_;
 }
 
 /// Unit vectors along u and v: a ^ b looks along n (side_ tells in which hand).
@@ -204,9 +229,13 @@ void Points::sides(const Vec3d& n, Vec3d& a, Vec3d& b) const {
     if (side_ < 0) a = -a;
 }
 
-int Points::exactHits(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted wanted, ExactHit out[4]) const {
-    const Vec3d o = transformPoint(toObject_, org), d = transformVector(toObject_, dir), c = centre(prim);
-    const double r = radius(prim), dd = dot(d, d), shift = dot(c - o, d) / dd;
+int Points::exactHitsAt(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted wanted, float time,
+                        ExactHit out[4]) const {
+    const Now now = nowAt(prim, time);
+    const Vec3d o = transformPoint(toObject_, org), d = transformVector(toObject_, dir), c = now.centre;
+    const double r = now.radius;
+    if (!(r > 0)) return 0;
+    const double dd = dot(d, d), shift = dot(c - o, d) / dd;
     const Vec3d near = o + d * shift - c; // from the point nearest the centre
     if (kind_ == Kind::Ball) {
         double t[2];
@@ -222,7 +251,7 @@ int Points::exactHits(uint32_t prim, const Vec3d& org, const Vec3d& dir, double 
         }
         return n;
     }
-    Vec3d n = facing(prim, c, -d);
+    Vec3d n = facing(now, -d);
     const double along = dot(d, n);
     if (along == 0) return 0;
     const double step = -dot(near, n) / along, t = shift + step;
@@ -242,17 +271,15 @@ int Points::exactHits(uint32_t prim, const Vec3d& org, const Vec3d& dir, double 
     return 1;
 }
 
-SurfacePoint Points::evaluateLocal(uint32_t prim, double b1, double b2) const {
-    const Vec3d c = centre(prim);
-    const double r = radius(prim), x = fromRay() ? std::floor(0.5 * b1) : 0, y = fromRay() ? std::floor(0.5 * b2) : 0, u = b1 - 2 * x,
-                 v = b2 - 2 * y;
+/// Object space; n: what a disc looks to.
+LocalPoint Points::place(const Now& now, const Vec3d& n, double u, double v) const {
+    const double r = now.radius;
     LocalPoint o;
-    double side = orientation_;
     if (kind_ == Kind::Ball) {
         const auto [su, cu] = exact::sinCos(2 * kPi * u);
         const auto [sv, cv] = exact::sinCos(kPi * (v - 0.5));
         const Vec3d out(cu * cv, su * cv, sv);
-        o.P = c + out * r;
+        o.P = now.centre + out * r;
         o.Pu = Vec3d(-su * cv, cu * cv, 0) * (2 * kPi * r);
         o.Pv = Vec3d(-cu * sv, -su * sv, cv) * (kPi * r);
         o.Puu = Vec3d(-cu * cv, -su * cv, 0) * (4 * kPi * kPi * r);
@@ -260,14 +287,21 @@ SurfacePoint Points::evaluateLocal(uint32_t prim, double b1, double b2) const {
         o.Pvv = out * (-kPi * kPi * r);
         o.n = out * side_;
     } else {
-        const Vec3d n = fromRay() ? unpackDirection(x, y) : facing(prim, c, backward_);
         Vec3d a, b;
         sides(n, a, b);
         o.Pu = a * (2 * r);
         o.Pv = b * (2 * r * aspect_);
-        o.P = c + o.Pu * (u - 0.5) + o.Pv * (v - 0.5);
+        o.P = now.centre + o.Pu * (u - 0.5) + o.Pv * (v - 0.5);
         o.n = n;
     }
+    return o;
+}
+
+SurfacePoint Points::pointAt(uint32_t prim, double b1, double b2, float time) const {
+    const Now now = nowAt(prim, time);
+    const double x = fromRay() ? std::floor(0.5 * b1) : 0, y = fromRay() ? std::floor(0.5 * b2) : 0, u = b1 - 2 * x, v = b2 - 2 * y;
+    const double side = orientation_;
+    const LocalPoint o = place(now, fromRay() ? unpackDirection(x, y) : facing(now, backward_), u, v);
     const Matrix& m = toCamera();
     LocalPoint q{transformPoint(m, o.P), transformVector(m, o.Pu), transformVector(m, o.Pv), transformVector(m, o.Puu), transformVector(m, o.Puv), transformVector(m, o.Pvv), {}, {}, {}};
     const Vec3d across = cross(q.Pu, q.Pv) * side;
@@ -287,6 +321,7 @@ SurfacePoint Points::evaluateLocal(uint32_t prim, double b1, double b2) const {
     p.prim = prim;
     p.b1 = u;
     p.b2 = v;
+    p.time = time;
     // What leaves a disc that faces the ray must not meet the same disc, now turned elsewhere.
     p.pError = 2 * roundingError(p.P) + (fromRay() ? 0.26f * std::max(length(p.dPdu), length(p.dPdv)) : 0);
     finishPoint(p, true);
@@ -295,35 +330,57 @@ SurfacePoint Points::evaluateLocal(uint32_t prim, double b1, double b2) const {
     return p;
 }
 
-SurfacePoint Points::pointAt(uint32_t prim, double u, double v, const Vec3d& from) const {
+SurfacePoint Points::pointFrom(uint32_t prim, double u, double v, const Vec3d& from, float time) const {
     double x = 0, y = 0;
-    if (fromRay()) packDirection(transformPoint(toObject_, from) - centre(prim), x, y);
-    return evaluateLocal(prim, 2 * x + u, 2 * y + v);
+    if (fromRay()) packDirection(transformPoint(toObject_, from) - nowAt(prim, time).centre, x, y);
+    return pointAt(prim, 2 * x + u, 2 * y + v, time);
+}
+
+/// Of a disc that faces the ray that of its centre: who sees it from another place sees it turn otherwise.
+Vec3 Points::velocity(const SurfacePoint& at) const {
+    double way;
+    const size_t k = keyAt(at.time, way);
+    if (k + 1 >= keys()) return Vec3(0.f);
+    return slopeOf(k, way, [&](double w) {
+        const Now now = nowAt(at.prim, k, w);
+        if (fromRay()) return transformPoint(toCamera(), now.centre);
+        return transformPoint(toCamera(), place(now, facing(now, backward_), at.b1, at.b2).P);
+    });
+}
+
+double Points::meanSquare(uint32_t prim) const {
+    double sum = 0;
+    for (size_t k = 0; k < keys(); ++k) {
+        const double r = static_cast<const Points&>(key(k)).radius(prim);
+        sum += r * r;
+    }
+    return sum / double(keys());
 }
 
 const std::vector<double>& Points::areas() const {
     std::call_once(made_, [&] {
         double sum = 0;
         areas_.reserve(exactPrims());
-        for (uint32_t i = 0; i < exactPrims(); ++i) areas_.push_back(sum += radius(i) * radius(i));
+        for (uint32_t i = 0; i < exactPrims(); ++i) areas_.push_back(sum += meanSquare(i));
     });
     return areas_;
 }
 
-SurfacePoint Points::samplePoint(double xi1, double xi2, const Vec3d& from) const {
+SurfacePoint Points::sampleFromAt(const Vec3& whence, double xi1, double xi2, float time) const {
+    const Vec3d from(whence);
     const std::vector<double>& sums = areas();
     const double target = xi1 * sums.back();
     const size_t i = std::min(size_t(std::upper_bound(sums.begin(), sums.end(), target) - sums.begin()), sums.size() - 1);
     const double lo = i ? sums[i - 1] : 0, x = std::clamp((target - lo) / (sums[i] - lo), 0.0, 1.0);
-    if (kind_ == Kind::Square) return pointAt(uint32_t(i), x, xi2, from);
-    if (kind_ == Kind::Ball) return pointAt(uint32_t(i), xi2, exact::asin(std::clamp(2 * x - 1, -1.0, 1.0)) / kPi + 0.5, from);
+    if (kind_ == Kind::Square) return pointFrom(uint32_t(i), x, xi2, from, time);
+    if (kind_ == Kind::Ball) return pointFrom(uint32_t(i), xi2, exact::asin(std::clamp(2 * x - 1, -1.0, 1.0)) / kPi + 0.5, from, time);
     const auto [s, c] = exact::sinCos(2 * kPi * xi2);
     const double r = 0.5 * std::sqrt(x);
-    return pointAt(uint32_t(i), 0.5 + r * c, 0.5 + r * s, from);
+    return pointFrom(uint32_t(i), 0.5 + r * c, 0.5 + r * s, from, time);
 }
 
 double Points::sampleDensity(const SurfacePoint& p) const {
-    const double r = radius(p.prim), share = r * r / areas().back(), l = length(cross(Vec3d(p.dPdu), Vec3d(p.dPdv)));
+    const double r = nowAt(p.prim, p.time).radius, share = meanSquare(p.prim) / areas().back(), l = length(cross(Vec3d(p.dPdu), Vec3d(p.dPdv)));
     if (kind_ == Kind::Ball) { // even over the ball of object space, which the transformation stretches
         const double cosine = exact::cos(kPi * (p.b2 - 0.5));
         return l > 0 ? share * 2 * kPi * kPi * cosine / (4 * kPi * l) : share / (4 * kPi * r * r * spread_);

@@ -89,7 +89,7 @@ bool Emitter::findDisplaced() {
 
 void Emitter::place(const Entry& e, const Vec3& from, Vec2 u, float time, geometry::SurfacePoint& point, uint32_t needs) const {
     if (e.facets < 0) {
-        if (e.shape->placed()) e.shape->sampleAreaAt(u.x, u.y, time, point, needs);
+        if (const geometry::Placed* p = e.shape->placed()) p->sampleFromAt(from, u.x, u.y, time, point, needs);
         else e.shape->sampleFrom(from, u.x, u.y, point, needs);
         return;
     }

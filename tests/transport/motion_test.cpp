@@ -128,11 +128,77 @@ TEST(Motion, AreaLightsMove) {
     }
 }
 
+// A ribbon, half wide, goes from x = 0 to x = 2: each place on its way is behind it for a quarter of the time, less at both ends. So a
+// tube, and the bristle that bends: its foot stands, its tip goes twice as far.
+TEST(Motion, CoverageOfMovingCurves) {
+    const std::string line = "Curves \"linear\" [2] \"nonperiodic\" \"constantwidth\" .5 \"P\" ", cubic = "Curves \"cubic\" [4] \"nonperiodic\" \"constantwidth\" .5 \"P\" ";
+    struct { std::string before, first, last; } cases[] = {
+        {"", line + "[0 -1 0  0 1 0]\n", line + "[2 -1 0  2 1 0]\n"},
+        {"", cubic + "[0 -1 0  0 -.4 0  0 .4 0  0 1 0]\n", cubic + "[2 -1 0  2 -.4 0  2 .4 0  2 1 0]\n"},
+        {"Attribute \"dice\" \"roundcurve\" 1\n", cubic + "[0 -1 0  0 -.4 0  0 .4 0  0 1 0]\n", cubic + "[2 -1 0  2 -.4 0  2 .4 0  2 1 0]\n"},
+        {"", line + "[0 -1 0  0 1 0]\n", line + "[0 -1 0  4 1 0]\n"},
+    };
+    for (Hider h : {Hider::Hidden, Hider::Path})
+        for (int c = 0; c < 4; ++c) {
+            Scene s(shutter("Surface \"constant\"\n" + cases[c].before + "Translate 0 0 5\n" + moving(cases[c].first, cases[c].last)), withShaders(h));
+            for (float x : {-.3f, -.1f, .1f, .6f, 1.4f, 1.9f, 2.2f, 2.3f}) {
+                // In the middle of the bristle, at y = 0: it stands at x = 2 t with the slope 2 t, and is wider along x by 1 / cosine.
+                double want = 0;
+                for (int i = 0; i < 1000; ++i) {
+                    const double t = (i + .5) / 1000, half = c == 3 ? .25 * std::sqrt(1 + 4 * t * t) : .25;
+                    want += std::fabs(x - 2 * t) < half;
+                }
+                EXPECT_NEAR(coverage(s, rayTo({x, 0, 0}, {x, 0, 5})), want / 1000, 2.1e-3) << c << " " << x;
+            }
+        }
+}
+
+// A disc, a ball, a square go by: a chord of theirs, over the way of 2. What grows from nothing to a radius of 1 is there from its time on.
+TEST(Motion, CoverageOfMovingPoints) {
+    const auto dots = [](const std::string& type, const std::string& P, const std::string& width) {
+        return "Points \"P\" [" + P + "] \"width\" [" + width + "] \"uniform string type\" \"" + type + "\"\n";
+    };
+    for (const char* type : {"particle", "sphere", "patch"})
+        for (Hider h : {Hider::Hidden, Hider::Path}) {
+            Scene s(shutter("Surface \"constant\"\nTranslate 0 0 5\n" + moving(dots(type, "0 0 0", "1"), dots(type, "2 0 0", "1"))), withShaders(h));
+            for (float y : {0.f, .2f, .45f, .51f}) {
+                const double chord = y > .5 ? 0 : std::string(type) == "patch" ? 1 : 2 * std::sqrt(.25 - double(y) * y);
+                EXPECT_NEAR(coverage(s, rayTo({1, y, 0}, {1, y, 5})), chord / 2, 1.1e-3) << type << y;
+            }
+            Scene grows(shutter("Surface \"constant\"\nTranslate 0 0 5\n" + moving(dots(type, "0 0 0", "0"), dots(type, "0 0 0", "2"))), withShaders(h));
+            EXPECT_NEAR(coverage(grows, rayTo({.3f, 0, 0}, {.3f, 0, 5})), .7, 1.1e-3) << type;
+        }
+}
+
+// Lamps of curves and points that move light what they are where they are: as those that stand there.
+TEST(Motion, LampsOfCurvesAndPointsMove) {
+    const auto dots = [](float x, float y) {
+        return "Points \"P\" [" + std::to_string(x) + " " + std::to_string(y) + " 0  .5 " + std::to_string(y) + " .7] \"constantwidth\" .6\n";
+    };
+    const auto hair = [](float x, float y) {
+        return "Curves \"linear\" [2] \"nonperiodic\" \"P\" [-1 " + std::to_string(y) + " 0  " + std::to_string(x) + " " + std::to_string(y) + " 1] \"constantwidth\" .2\n";
+    };
+    const auto scene = [](const std::string& body) {
+        return shutter("AttributeBegin\nAreaLightSource \"arealight\" 1 \"intensity\" 1\nSurface \"constant\"\n" + body + "AttributeEnd\nSurface \"matte\" \"Ka\" 0 \"Kd\" 1\n" + kFloor);
+    };
+    const auto both = [&](const std::string& first, const std::string& last, const std::string& middle, const char* what) {
+        Scene moves(scene(moving(first, last)), withShaders(Hider::Path)), stands(scene(middle), withShaders(Hider::Path));
+        const Moments a = moves.estimate(at(.5f, kView), samples(20000)), b = stands.estimate(at(.5f, kView), samples(20000));
+        EXPECT_GT(a.mean(), 0);
+        EXPECT_NEAR(a.mean(), b.mean(), 5 * std::hypot(a.se(), b.se())) << what;
+    };
+    both(dots(0, 1), dots(1, 3), dots(.5f, 2), "points");
+    both(hair(0, 1), hair(1, 3), hair(.5f, 2), "curves");
+}
+
 // The same samples have the same bits, whoever shares their call.
 TEST(Motion, BitsDoNotDependOnTheBatch) {
     Scene s(shutter("LightSource \"pointlight\" 1 \"intensity\" 20 \"from\" [2 4 0]\nSurface \"matte\"\n" + std::string("Polygon \"P\" [-9 -2 0  -9 -2 20  9 -2 20  9 -2 0]\n") +
                     "Translate 0 0 5\n" + moving("Rotate 0 1 2 3", "Rotate 70 1 2 3") +
-                    moving("Sphere 1 -1 1 360", "Sphere 2 -2 2 360") + "Translate 1 0 0\n" + kSquare), withShaders(Hider::Path));
+                    moving("Sphere 1 -1 1 360", "Sphere 2 -2 2 360") + "Translate 1 0 0\n" + kSquare +
+                    moving("Points \"P\" [-1 0 -2  1 1 -2] \"constantwidth\" .5", "Points \"P\" [1 0 -2  1 -1 -1] \"constantwidth\" .9") +
+                    moving("Curves \"linear\" [3] \"nonperiodic\" \"P\" [-2 -2 -2  0 0 -2  2 2 -2] \"constantwidth\" .2",
+                           "Curves \"linear\" [3] \"nonperiodic\" \"P\" [-2 -2 -2  0 1 -2  2 -2 -2] \"constantwidth\" .4")), withShaders(Hider::Path));
     std::vector<CameraRay> rays;
     for (int i = 0; i < 300; ++i) {
         const float x = float(i % 20 - 10) / 5, y = float(i / 20 - 8) / 4;

@@ -1,0 +1,81 @@
+// Shapes that rays meet exactly, one primitive at a time, and that are what they are at each time of the shutter: their numbers are
+// linear between keys. (A mesh at several times is a Deforming, placed.h.)
+#pragma once
+#include "geometry/shape.h"
+#include <algorithm>
+
+namespace alpenglow::geometry {
+
+/// Among increasing times the last at or before `time` that another follows, and the way to that one, 0 to 1.
+inline size_t keyBefore(const std::vector<float>& times, float time, double& way) {
+    const size_t n = times.size();
+    way = 0;
+    if (n < 2 || !(time > times.front())) return 0;
+    if (time >= times.back()) return way = 1, n - 2;
+    const size_t k = size_t(std::upper_bound(times.begin(), times.end(), time) - times.begin()) - 1;
+    way = (double(time) - times[k]) / (double(times[k + 1]) - times[k]);
+    return k;
+}
+
+/// Whether a shape is made as a key of what moves: pieces that are nothing at one key may be something at another.
+inline bool isKey(const ShapeSource& s) { return s.like || !s.primitive->motionKeys.empty(); }
+
+class KeyedShape : public Shape {
+public:
+    using Shape::Shape;
+    /// Becomes the first key; `later` are shapes of the same class, made of the primitive at later times. times: one more, from 0 to 1.
+    /// False: they are not made of the same pieces, and this stays what it is.
+    bool join(std::vector<ShapeRef> later, std::vector<float> times);
+    bool joined() const { return !later_.empty(); }
+
+    using Shape::exactHits;
+    int exactHits(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted w, ExactHit out[4]) const final {
+        return exactHitsAt(prim, org, dir, lo, hi, w, 0, out);
+    }
+    /// exactHits() at a time of the shutter.
+    virtual int exactHitsAt(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted, float time,
+                            ExactHit out[4]) const = 0;
+    /// Boxes hold the shape at all times.
+    Bounds exactBounds(uint32_t prim) const final;
+    Bounds bounds() const final { return bounds_; }
+
+    using Shape::sampleArea;
+    SurfacePoint sampleArea(double xi1, double xi2) const final { return sampleFromAt(Vec3(0.f), xi1, xi2, 0); }
+    void sampleFrom(const Vec3& from, double xi1, double xi2, SurfacePoint& out, uint32_t) const final {
+        out = sampleFromAt(from, xi1, xi2, 0);
+    }
+    void sampleAreaAt(double xi1, double xi2, float time, SurfacePoint& out, uint32_t) const final {
+        out = sampleFromAt(Vec3(0.f), xi1, xi2, time);
+    }
+    /// sampleFrom() at a time of the shutter.
+    virtual SurfacePoint sampleFromAt(const Vec3& from, double xi1, double xi2, float time) const = 0;
+
+protected:
+    /// A primitive's box at this key alone.
+    virtual Bounds keyBounds(uint32_t prim) const = 0;
+    /// evaluateLocal() at a time.
+    virtual SurfacePoint pointAt(uint32_t prim, double b1, double b2, float time) const = 0;
+    /// Whether that is the same primitive piece for piece, at another time. May make it so.
+    virtual bool fits(KeyedShape& later) const = 0;
+    /// After primitives and keys are there.
+    void measure();
+    size_t keyAt(float time, double& way) const { return keyBefore(times_, time, way); }
+    const KeyedShape& key(size_t i) const { return i == 0 ? *this : static_cast<const KeyedShape&>(*later_[i - 1]); }
+    /// Change over the whole shutter of a place(way) between a key and the next, by a central difference: what turns is not linear there.
+    template <class Place> Vec3 slopeOf(size_t key, double way, Place place) const {
+        const double a = std::max(way - 1e-5, 0.0), b = std::min(way + 1e-5, 1.0);
+        return Vec3((place(b) - place(a)) / ((b - a) * (double(times_[key + 1]) - times_[key])));
+    }
+    size_t keys() const { return 1 + later_.size(); }
+
+    void interpolateVariable(const PrimVar&, const SurfacePoint& at, float* out, float* du, float* dv) const override;
+    SurfacePoint evaluateLocal(uint32_t prim, double b1, double b2) const final { return pointAt(prim, b1, b2, 0); }
+    void localPoints(std::span<const HitRef>, uint32_t needs) const final;
+
+private:
+    std::vector<ShapeRef> later_;
+    std::vector<float> times_;
+    Bounds bounds_;
+};
+
+} // namespace alpenglow::geometry

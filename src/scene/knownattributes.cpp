@@ -8,7 +8,7 @@ constexpr auto Used = Effect::Used;
 constexpr auto Asked = Effect::Asked;
 constexpr auto Ignored = Effect::Ignored;
 
-constexpr std::string_view kPrman = "PRMan", kDelight = "3Delight", kAqsis = "Aqsis", kBmrt = "BMRT",
+constexpr std::string_view kPrman = "PRMan", kAqsis = "Aqsis", kBmrt = "BMRT",
                            kSeveral = "several renderers", kRadiosity = "BMRT's radiosity; the hider path is the way here",
                            kCache = "irradiance caches of several renderers; nothing is cached here";
 

@@ -51,7 +51,7 @@ void Gather::choosePoint(size_t point) {
         }
         cut |= from.bounces + 1 - from.scattered - c_->between > world_.maxDepth_ && l.chosen > 0;
         const bool noIndirect = l.rays->type == RayType::Diffuse && !world_.settings_.indirect;
-        const bool stays = l.directOnly || (l.below < 0 && (tooDeep(l, from, b) || noIndirect)); // walks end in light, not in a ray
+        const bool stays = l.directOnly || (l.below < 0 && (tooDeep(l, from, b) || noIndirect)); // walks end in light
         if (stays) l.chosen = 0;
         l.followed = l.chosen > 0 || (l.ownsTarget && !stays);
     }

@@ -323,17 +323,14 @@ private:
     std::vector<FlightEvent*> events_; std::vector<Flight> flights_;
     void shine(const BatchContext&, Sched&);
     std::vector<class KernelStrip*> waiting_; ///< whose requests nobody has followed yet
-    std::vector<PathSample> samples_; ///< of the call of trace()
-    PathSample noSample_;
+    std::vector<PathSample> samples_; PathSample noSample_; ///< of the call of trace()
     std::vector<RayExtra> extras_; std::vector<int32_t> freeExtras_;
     const RayExtra noExtra_;
     std::unordered_map<uint64_t, std::deque<RayKind>> kinds_; ///< by hash
     const RayKind* lastKind_ = nullptr;
     std::deque<shading::Media> media_;
-    friend class KernelStrip;
-    friend class Gather;
-    friend class MediumFlights;
-    friend class Walks;
+    friend class KernelStrip; friend class Gather;
+    friend class MediumFlights; friend class Walks;
     std::unique_ptr<FlightEvent> flightsInMedia_; ///< where the world has media that scatter, or priorities
     int leaks_ = 0; ///< rays that left the scene inside of such a medium
     /// For rays that met a light: `of`, by query, is RayExtra::lit. It must outlive the result.
@@ -344,8 +341,7 @@ private:
     std::vector<std::shared_ptr<BatchContext>> pool_;
     std::unique_ptr<class Gather> gather_; ///< its memory is used again
     std::vector<accel::Ray> rays_, shadowRays_;
-    std::vector<accel::Hit> hits_;
-    std::vector<geometry::HitRef> run_;
+    std::vector<accel::Hit> hits_; std::vector<geometry::HitRef> run_;
     std::vector<uint8_t> blocked_;
     std::vector<shading::InstanceView> views_;
     std::vector<uint32_t> viewOf_, occurrence_;

@@ -96,10 +96,8 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     auto v = [&](int arg) { return Vec3(f(s.rows[arg]), f(s.rows[arg] + 1), f(s.rows[arg] + 2)); };
     auto number = [&](int row, float fallback) { return row < 0 ? fallback : f(row); };
     auto vector = [&](int row, Vec3 fallback) { return row < 0 ? fallback : Vec3(f(row), f(row + 1), f(row + 2)); };
-    if (s.kind == SiteKind::Transmission || s.kind == SiteKind::Occlusion) {
-        requestShadows(c, s, point, f, weight, target, owns, occurrence);
-        return;
-    }
+    if (s.kind == SiteKind::Transmission || s.kind == SiteKind::Occlusion)
+        return requestShadows(c, s, point, f, weight, target, owns, occurrence);
     if (!s.lobe) return; // under path ambient light is what escaping diffuse rays see
     if (s.kind == SiteKind::Trace && s.trace->records.call) {
         if (const auto light = recorded(c, s, point, f, raysOfTrace(s, f, p), occurrence)) {
@@ -146,14 +144,11 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         params.wo = unit(vector(s.rowWo, params.wo), params.wo);
         params.a = s.lobe->name == "slphong" ? number(s.rowExponent, 1000) : number(s.rowCone, 0);
         l.trace = s.trace.get();
-        if (s.rowHorizon >= 0) {
+        if ((params.hasHorizon = s.rowHorizon >= 0))
             params.horizon = unit(vector(s.rowHorizon, p.surface.n), p.surface.n);
-            params.hasHorizon = true;
-        }
         l.rays = raysOfTrace(s, f, p);
         l.lights = number(s.rowLights, 0) != 0;
-        l.bias = number(s.rays->bias, -1);
-        l.base = number(s.rays->base, 0);
+        l.bias = number(s.rays->bias, -1), l.base = number(s.rays->base, 0);
         if (s.trace->weight >= 0) l.importance = std::max(0.f, maxComponent(vector(s.trace->weight, Color(1))));
         if (s.trace->map) l.tint = vector(s.trace->tint, Color(1));
         // From a point that is not the surface's no light is sampled: rays that meet an emitter count in full.

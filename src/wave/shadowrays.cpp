@@ -175,8 +175,7 @@ void Engine::passSurfaces(std::span<const ShadowRay> rays, std::span<Color> out)
     struct Going { accel::Ray ray; size_t index; int layers; const shading::Media* media; Vec3 begin; };
     const auto medium = [](const Going& g) { return g.media ? g.media->top() : -1; };
     std::vector<MediumPart> parts;
-    std::vector<Going> now, next;
-    std::vector<OpacityQuery> met;
+    std::vector<Going> now, next; std::vector<OpacityQuery> met;
     blockedByOpaque(rays, out);
     for (size_t i = 0; i < rays.size(); ++i) {
         if (!meetsOpaqueAlone(rays[i])) {
@@ -187,8 +186,7 @@ void Engine::passSurfaces(std::span<const ShadowRay> rays, std::span<Color> out)
         }
     }
     while (!now.empty()) {
-        next.clear();
-        met.clear();
+        next.clear(), met.clear();
         for (Going& g : now) {
             Color& t = out[g.index];
             for (;; ++g.layers) {

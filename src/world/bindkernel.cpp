@@ -170,7 +170,10 @@ std::shared_ptr<const SubsurfaceSite> subsurfaceSite(const SiteInfo& i, const rs
             if (const auto f = i.named.find(name); f != i.named.end()) return f->second;
         return -1;
     };
-    const auto text = [&](const char* name) { const auto f = i.text.find(name); return f == i.text.end() ? std::string() : f->second; };
+    const auto text = [&](const char* name) {
+        const auto f = i.text.find(name);
+        return f == i.text.end() ? std::string() : f->second;
+    };
     const auto said = [&](const std::string& what, const std::string& message, const std::string& hint = {}) {
         world.diagnostics_->reportOnce("subsurface:" + what + place.file + std::to_string(place.line),
                                        {Severity::Warning, Rie::Unimplement, place, "subsurface(): " + message, hint, {}});
@@ -186,7 +189,8 @@ std::shared_ptr<const SubsurfaceSite> subsurfaceSite(const SiteInfo& i, const rs
     b->anisotropy = row({"anisotropy"});
     b->group = text("groupname");
     for (const char* name : {"model", "groupname"})
-        if (row({name}) >= 0) said(name, "\"" + std::string(name) + "\" must be known when the shader is compiled; it is taken as not given");
+        if (row({name}) >= 0)
+            said(name, "\"" + std::string(name) + "\" must be known when the shader is compiled; it is taken as not given");
     if (row({"irradiance"}) >= 0)
         said("irradiance", "\"irradiance\" is not used: what enters elsewhere on the surface is found there, from the lights");
     const std::string type = !text("type").empty() ? text("type") : s.strings.empty() ? "" : s.strings[0];

@@ -15,7 +15,7 @@ Media SurfaceBinding::beyond(const Media& from, const Vec3& n, const Vec3& in, c
     if (toInside) {
         const bool below = m.topPriority() > insidePriority && m.has(inside); // what counts there is another
         if (!fromInside) m.push(inside, insidePriority);
-        else if (inside >= 0 && m.top() != inside && !below) m.push(inside, insidePriority); // began in here where nobody knew of it
+        else if (inside >= 0 && m.top() != inside && !below) m.push(inside, insidePriority); // began in here unknown
         return m;
     }
     if (fromInside) m.leave(inside);

@@ -52,7 +52,7 @@ std::vector<Case> cases() {
     std::vector<float> concave = {-1, -1, 0, 1, -1, 0, 1, 1, 0, 0, -.2f, 0, -1, 1, 0};
     Primitives many; // more than are chosen by area alone
     for (int i = 0; i < 12; ++i) {
-        const float x = -1 + .18f * float(i), y = .8f * std::sin(float(i) * 2.1f), z = .5f * std::cos(float(i) * 1.7f), r = .1f + .03f * float(i);
+        const float x = -1 + .18f * float(i), y = .8f * std::sin(float(i) * 2.1f), z = .5f * std::cos(float(i) * 1.7f), r = .3f + .05f * float(i);
         many.push_back(polygon({x, y, z, x + r, y, z + r, x + r, y + r, z, x, y + r, z}));
     }
     return {

@@ -4,5 +4,5 @@
 surface translucent(string model = "walk"; float Ks = .15, roughness = .15;) {
     normal Nf = faceforward(normalize(N), I);
     Oi = 1;
-    Ci = subsurface(P, Nf, "model", model) + Ks * specular(Nf, -normalize(I), roughness);
+    Ci = (1 - Ks) * subsurface(P, Nf, "model", model) + Ks * specular(Nf, -normalize(I), roughness);
 }

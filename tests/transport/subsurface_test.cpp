@@ -196,7 +196,24 @@ TEST_F(Subsurface, ScaleIsMillimetresInAUnit) {
     EXPECT_EQ(seen("\"color sc\" [3 3 3] \"color ab\" [.5 .5 .5] \"sc_\" 2"), seen("\"color sc\" [6 6 6] \"color ab\" [1 1 1] \"sc_\" 1"));
 }
 
+// "albedo" is a reflectance; on a plane under even light no path length changes what comes back.
+TEST_F(Subsurface, OtherNamesOfParameters) {
+    writeShader("named", "surface named() { Oi = 1; Ci = subsurface(P, N, \"albedo\", color(.5), \"meanfreepath\", .2, \"ior\", 1.3); }\n");
+    writeShader("diffusely", "surface diffusely() { Oi = 1; Ci = subsurface(P, N, \"model\", \"jensen\", \"albedo\", color(.5), \"diffusemeanfreepath\", .2, \"ior\", 1.3); }\n");
+    const auto seen = [](const std::string& shader) {
+        return Scene(world(kAbove + "Surface \"" + shader + "\" " + kFloor), withShaders(Hider::Path)).estimate(kView, 4000);
+    };
+    for (const auto& [a, b] : {std::pair("named", "coloured"), std::pair("diffusely", "dipole")}) {
+        const Moments x = seen(a), y = seen(b);
+        EXPECT_GT(x.mean(), .05) << a;
+        EXPECT_LE(std::fabs(x.mean() - y.mean()), kZ * std::hypot(x.se(), y.se()) + 1e-6) << a << " " << x.mean() << " " << y.mean();
+    }
+}
+
 TEST_F(Subsurface, WhatIsAskedForInVainIsSaid) {
+    writeShader("everyword", "surface everyword() { Oi = 1; Ci = subsurface(P, N, \"label\", \"s1\", \"subset\", \"s1\", \"bias\", 1, \"hitmode\", \"s1\", \"hitsides\", \"s1\", \"maxdist\", 1, \"samplecone\", 1, \"samples\", 1, \"type\", \"s1\", \"weight\", color(1, 2, 3), \"minsamples\", 1, \"samplebase\", 1, \"excludesubset\", \"s1\", \"raytype\", \"s1\", \"raylabel\", \"s1\", \"maxhitdist\", 1, \"model\", \"s1\", \"irradiance\", color(1, 2, 3), \"scattering\", color(1, 2, 3), \"absorption\", color(1, 2, 3), \"meanfreepath\", color(1, 2, 3), \"reflectance\", color(1, 2, 3), \"albedo\", color(1, 2, 3), \"diffusemeanfreepath\", color(1, 2, 3), \"ior\", 1, \"refractionindex\", 1, \"scale\", 1, \"groupname\", \"s1\", \"unitlength\", 1, \"anisotropy\", .5); }\n");
+    Scene every(world(kAbove + "Surface \"everyword\" " + kFloor), withShaders(Hider::Path));
+    EXPECT_TRUE(std::isfinite(every.one(kView).x));
     writeShader("odd", "surface odd() { Oi = 1; Ci = subsurface(P, N, \"model\", \"mirror\", \"irradiance\", color(1)) + subsurface(\"pointcloud\", P, N, \"samples\", 1e9); }\n");
     Scene s(world(kAbove + "Surface \"odd\" " + kFloor), withShaders(Hider::Path));
     EXPECT_TRUE(std::isfinite(s.one(kView).x));

@@ -51,7 +51,7 @@ constexpr OldFlag kFlags[] = {
     {"-pause", 0, "aqsis", Use::Dropped, "there is no window to wait for"},
     {"-plugins", 1, "aqsis", Use::Dropped, "shaders find plug-ins along --searchpath"},
     {"-priority", 1, "aqsis", Use::Answered, "start the program with nice"},
-    {"-procedurals", 1, "aqsis", Use::Dropped, "there are no procedural plug-ins"},
+    {"-procedurals", 1, "aqsis", Use::Accepted, kPaths},
     {"-progress", 0, "prman, renderdl, aqsis", Use::Accepted, "--progress plain"},
     {"-rc", 1, "aqsis", Use::Dropped, "there is no file of settings"},
     {"-recover", 1, "prman", Use::Answered,

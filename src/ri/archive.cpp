@@ -198,23 +198,28 @@ void Interpreter::readArchive(const std::string& name, const SourcePlace& place)
 
 void Interpreter::readOpened(const std::string& key, const std::string& file, const std::shared_ptr<std::vector<Call>>& calls,
                              std::unique_ptr<ByteSource> source, const SourcePlace& place) {
+    inPart(key, place, [&] {
+        if (calls) {
+            for (const Call& c : *calls) {
+                if (stopped() || !mayReplay(c)) break;
+                execute(c);
+            }
+            return place;
+        }
+        Parser parser(inflating(std::move(source)), file, reporter, settings.comments);
+        run(parser);
+        return parser.here();
+    });
+}
+
+void Interpreter::inPart(const std::string& key, const SourcePlace& place, const std::function<SourcePlace()>& body) {
     bool wasReplaying = replaying_;
     if (!archivesRead_.insert(key).second) replaying_ = true;
     openArchives_.push_back(key);
     barriers_.push_back(blocks_.size());
     size_t conditions = conditions_.size();
     bool wasMoving = motion_.has_value();
-    SourcePlace end = place;
-    if (calls) {
-        for (const Call& c : *calls) {
-            if (stopped() || !mayReplay(c)) break;
-            execute(c);
-        }
-    } else {
-        Parser parser(inflating(std::move(source)), file, reporter, settings.comments);
-        run(parser);
-        end = parser.here();
-    }
+    const SourcePlace end = body();
     if (motion_.has_value() && !wasMoving) closeOpenEnds(std::max(conditions, conditions_.size()), end);
     while (conditions_.size() > conditions) {
         reporter.error(Rie::Nesting, conditions_.back().place, "IfBegin without IfEnd in an archive");

@@ -4,6 +4,7 @@
 #pragma once
 #include "ri/call.h"
 #include "ri/declare.h"
+#include "ri/library.h"
 #include "ri/program.h"
 #include "ri/reader.h"
 #include "ri/reporter.h"
@@ -102,6 +103,11 @@ public:
     void readArchive(const std::string& name, const SourcePlace& place);
     /// "DelayedReadArchive", "RunProgram" or "DynamicLoad". bound: six numbers, or none.
     void procedural(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound, const Call& call);
+    /// Content that `make` gives by calls of the C binding (ri/c), told how large it is in the picture (detail), with the graphics state
+    /// saved before and restored after. name: of who makes it, for messages.
+    void subdivide(const std::function<void(float)>& make, const std::string& name, const std::vector<float>& bound, const Call& call);
+    /// Numbers for lights and objects that libraries make: never the same twice.
+    int nextHandle() { return ++handleSerial_; }
     /// Executes requests of our own as if they stood at the place of `call`. Their primitives get the variables `everywhere`, too.
     void expand(const std::string& requests, const Call& call, scene::ParamList everywhere = {});
     void beginRecording(const Call& call);
@@ -173,8 +179,16 @@ private:
     /// Reads what was found: recorded calls, or a stream that messages call `file`. key tells it from other open ones.
     void readOpened(const std::string& key, const std::string& file, const std::shared_ptr<std::vector<Call>>& calls,
                     std::unique_ptr<ByteSource> source, const SourcePlace& place);
+    /// Does `body`, which gives back where it ended, within archives and procedurals that are open, and closes what it leaves open.
+    void inPart(const std::string& key, const SourcePlace& place, const std::function<SourcePlace()>& body);
     double detailOf(const std::vector<float>& bound) const;
-    std::string findProgram(const std::string& name, std::string& looked) const;
+    /// Whether one more program or library may make content here: how many there are and how deep they nest is bounded (reported).
+    bool mayMake(const Call& call);
+    /// Along Option "searchpath" "procedural", --searchpath and beside the scene, under the first of these names that is there and may be
+    /// executed (X_OK) or read (R_OK); "" otherwise. looked: the folders.
+    std::string findForeign(const std::vector<std::string>& names, int access, std::string& looked) const;
+    const Library* libraryOf(const std::string& name, const SourcePlace& place);
+    void runLibrary(const std::string& name, const std::string& data, const std::vector<float>& bound, const Call& call);
     Program* programOf(const std::string& command, const SourcePlace& place);
     void runProgram(const std::string& command, const std::string& data, const std::vector<float>& bound, const Call& call);
     /// Path of a file along the search paths of archives; "" when there is none or it may not be read: reported. named: whether a
@@ -235,7 +249,8 @@ private:
     std::set<std::string> archivesRead_;
     std::shared_ptr<const Model> lastModel_;
     std::map<std::string, std::unique_ptr<Program>> programs_; ///< by command; null: it is not asked again
-    int programCalls_ = 0, programSerial_ = 0;
+    std::map<std::string, std::unique_ptr<Library>> libraries_; ///< by name; null: there is none
+    int programCalls_ = 0, programSerial_ = 0, handleSerial_ = 0;
     bool replaying_ = false; ///< inside an archive that was read before
     Lasting base_;           ///< what a scene begins with
     size_t baseWorld_ = 0;   ///< worldSerial_ at that time

@@ -1,4 +1,4 @@
-// Procedurals: content from archives and programs, expanded where they stand, in the order of the file.
+// Procedurals: content from archives, programs and libraries, expanded where they stand, in the order of the file.
 #include "base/exact.h"
 #include "base/limits.h"
 #include "ri/interpreter.h"
@@ -34,10 +34,10 @@ double Interpreter::detailOf(const std::vector<float>& bound) const {
     return std::isfinite(area) ? area : INFINITY;
 }
 
-/// Where programs are looked for: Option "searchpath" "procedural", --searchpath, beside the scene. Not where the shell looks.
-std::string Interpreter::findProgram(const std::string& name, std::string& looked) const {
+/// Not where the shell or the loader looks: whose files these are is to be seen in the scene.
+std::string Interpreter::findForeign(const std::vector<std::string>& names, int access, std::string& looked) const {
     std::vector<std::string> folders;
-    if (name.find('/') != name.npos && fs::path(name).is_absolute()) folders.push_back("");
+    if (fs::path(names[0]).is_absolute()) folders.push_back("");
     else {
         if (auto o = options.values.find("searchpath:procedural"); o != options.values.end() && !o->second.strings.empty())
             for (const std::string& f : splitSearchPath(o->second.strings[0])) {
@@ -49,9 +49,11 @@ std::string Interpreter::findProgram(const std::string& name, std::string& looke
         folders.push_back(sceneFolder_.empty() ? "." : sceneFolder_);
     }
     for (const std::string& f : folders) {
-        const std::string path = f.empty() ? name : (fs::path(f) / name).string();
-        std::error_code ec;
-        if (fs::is_regular_file(path, ec) && ::access(path.c_str(), X_OK) == 0) return fs::absolute(path, ec).string();
+        for (const std::string& name : names) {
+            const std::string path = f.empty() ? name : (fs::path(f) / name).string();
+            std::error_code ec;
+            if (fs::is_regular_file(path, ec) && ::access(path.c_str(), access) == 0) return fs::absolute(path, ec).string();
+        }
         looked += (looked.empty() ? "" : ", ") + (f.empty() ? std::string("/") : f);
     }
     return {};
@@ -67,7 +69,7 @@ Program* Interpreter::programOf(const std::string& command, const SourcePlace& p
         reporter.error(Rie::MissingData, place, "RunProgram: the program has no name");
         return nullptr;
     }
-    const std::string path = findProgram(words[0], looked);
+    const std::string path = findForeign({words[0]}, X_OK, looked);
     if (path.empty()) {
         reporter.error(Rie::NoFile, place, fmt::format("program \"{}\" was not found", words[0]),
                        "looked in " + looked + "; Option \"searchpath\" \"procedural\" names folders");
@@ -79,19 +81,23 @@ Program* Interpreter::programOf(const std::string& command, const SourcePlace& p
     return slot->second.get();
 }
 
-void Interpreter::runProgram(const std::string& command, const std::string& data, const std::vector<float>& bound,
-                             const Call& call) {
+bool Interpreter::mayMake(const Call& call) {
     if (++programCalls_ > limits::kProgramCalls) {
         reporter.once("ri:programcalls", Severity::Error, Rie::Limit, call.place,
                       fmt::format("more than {} procedurals are run", limits::kProgramCalls));
-        return;
+        return false;
     }
     if (openArchives_.size() >= size_t(limits::kArchiveDepth)) {
         reporter.once("ri:programdepth", Severity::Error, Rie::Limit, call.place,
                       fmt::format("procedurals and archives are nested deeper than {}", limits::kArchiveDepth));
-        return;
+        return false;
     }
-    if (!frameWanted()) return;
+    return frameWanted();
+}
+
+void Interpreter::runProgram(const std::string& command, const std::string& data, const std::vector<float>& bound,
+                             const Call& call) {
+    if (!mayMake(call)) return;
     Program* program = programOf(command, call.place);
     if (!program) return;
     const double detail = detailOf(bound);
@@ -124,13 +130,10 @@ void Interpreter::procedural(const std::string& kind, const std::vector<std::str
     if (!settings.allowExec)
         return incapable(
             call, fmt::format("{} \"{}\" runs foreign code: it needs --allow-exec and is left out", call.request->name, kind));
-    if (kind == "DynamicLoad") {
-        incapable(call, "libraries of procedurals (DynamicLoad) call RenderMan's C binding, which this renderer does not have; "
-                        "RunProgram does the same");
-        return;
-    }
-    if (arguments.empty()) return needs("program");
-    runProgram(arguments[0], arguments.size() > 1 ? arguments[1] : "", bound, call);
+    if (arguments.empty() || arguments[0].empty()) return needs(kind == "DynamicLoad" ? "library" : "program");
+    const std::string data = arguments.size() > 1 ? arguments[1] : "";
+    if (kind == "DynamicLoad") runLibrary(arguments[0], data, bound, call);
+    else runProgram(arguments[0], data, bound, call);
 }
 
 } // namespace alpenglow::ri

@@ -86,7 +86,7 @@ constexpr OptionDescription kOptions[] = {
     {"searchpath:display", "string", "", "", Ignored, "several renderers; there are no display plug-ins here"},
     {"searchpath:dsolibs", "", "", "", Ignored, kAqsis},
     {"searchpath:plugin", "", "", "", Ignored, kAqsis},
-    {"searchpath:procedural", "string", "\"\"", "\"tools\"", Used, "Folders for programs of Procedural \"RunProgram\". After them: --searchpath, the scene's folder."},
+    {"searchpath:procedural", "string", "\"\"", "\"tools\"", Used, "Folders for programs and libraries of Procedural \"RunProgram\" and \"DynamicLoad\". After them: --searchpath, the scene's folder."},
     {"searchpath:resource", "string", "", "", Ignored, kSeveral},
     {"searchpath:rixplugin", "", "", "", Ignored, kPrman},
     {"searchpath:rslplugin", "string", "\"\"", "\"plugins:@\"", Used,

@@ -2,6 +2,7 @@
 #include "base/limits.h"
 #include "collect.h"
 #include "ri/program.h"
+#include "scene/motion.h"
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -130,4 +131,132 @@ TEST_F(Procedurals, HaveTheirLimits) {
     EXPECT_FALSE(talks->ask("1\n", 20, nullptr, answer, why, 4096));
     EXPECT_EQ(why, "its answer is too long");
     EXPECT_GT(limits::kProgramBytes, size_t(1) << 30); // what ask() takes by itself
+}
+
+// DynamicLoad: the libraries of tests/ri/procedurals.
+namespace {
+
+std::string library(const std::string& data, const std::string& name = ALPENGLOW_PROCEDURALS "/facets.so") {
+    return "Procedural \"DynamicLoad\" [\"" + name + "\" \"" + data + "\"]" + bound;
+}
+
+const scene::Param& variable(const scene::Primitive& p, const std::string& name) {
+    static const scene::Param none;
+    const scene::Param* v = scene::find(p.params, name);
+    EXPECT_NE(v, nullptr) << name;
+    return v ? *v : none;
+}
+
+} // namespace
+
+TEST_F(Procedurals, OfLibrariesArePartsOfTheSceneAtTheirPlace) {
+    auto c = readHere("Format 200 200 1 Projection \"perspective\" \"fov\" 90 Translate 0 0 4 WorldBegin Color [1 0 0] Translate 0 0 0 "
+                      "Procedural \"DynamicLoad\" [\"" ALPENGLOW_PROCEDURALS "/facets\" \"detail\"] [-.5 .5 -.5 .5 0 0] "
+                      "Sphere 5 -1 1 360 " + library("halves 2") + " WorldEnd");
+    EXPECT_EQ(c->messages(), "");
+    ASSERT_EQ(c->frame().primitives.size(), 6u);
+    EXPECT_NEAR(c->primitive(0).numbers[3], 25 * 25, 1e-3); // as AreToldHowLargeTheyAre
+    EXPECT_EQ(c->primitive(0).attributes->color.y, 0);
+    EXPECT_EQ(c->primitive(1).numbers[0], 5);
+    // Halves of 2: at 2 and 4 halves of 1, each with balls of a half at 1 and 2 behind.
+    const double x[] = {3, 4, 5, 6};
+    for (size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(c->primitive(2 + i).numbers[0], 0.5f);
+        EXPECT_EQ(c->primitive(2 + i).toWorld.first().m[3][0], x[i]);
+    }
+}
+
+TEST_F(Procedurals, OfLibrariesHaveVariablesOfEveryClass) {
+    auto c = readHere("WorldBegin " + library("variables") + " WorldEnd");
+    EXPECT_EQ(c->messages(), "");
+    ASSERT_EQ(c->frame().primitives.size(), 1u);
+    const scene::Primitive& p = c->primitive();
+    EXPECT_EQ(p.ints, (std::vector<int>{4, 4}));
+    EXPECT_EQ(p.ints2, (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7}));
+    EXPECT_EQ(variable(p, "P").numbers.size(), 24u);
+    EXPECT_EQ(variable(p, "Cs").numbers, (std::vector<float>{1, 0, 0, 0, 1, 0}));
+    EXPECT_EQ(variable(p, "kinds").numbers, (std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8}));
+    EXPECT_EQ(variable(p, "kinds").cls, scene::Class::FaceVarying);
+    EXPECT_EQ(variable(p, "weight").numbers, (std::vector<float>{9}));
+    EXPECT_EQ(variable(p, "label").strings, (std::vector<std::string>{"box"}));
+}
+
+TEST_F(Procedurals, OfLibrariesSetStateForThemselves) {
+    auto c = readHere("WorldBegin Translate 10 0 0 " + library("state") + " Sphere 4 -1 1 360 WorldEnd");
+    EXPECT_EQ(c->messages(), "");
+    const scene::Frame& f = c->frame();
+    ASSERT_EQ(f.primitives.size(), 3u);
+    ASSERT_EQ(f.instances.size(), 1u);
+    ASSERT_EQ(f.lights.size(), 1u);
+    EXPECT_EQ(f.lights[0].shader->name, "pointlight");
+    EXPECT_EQ(variable(scene::Primitive{.params = f.lights[0].shader->params}, "intensity").numbers[0], 3);
+    const scene::Attributes& a = *c->primitive(0).attributes;
+    EXPECT_EQ(a.color.y, 0);
+    EXPECT_EQ(a.surface->name, "matte");
+    EXPECT_EQ(a.surface->params[0].numbers[0], 0.25f);
+    EXPECT_EQ(a.value("displacementbound:sphere")->numbers[0], 0.5f);
+    EXPECT_EQ(a.value("dice:hair")->numbers[0], 1);
+    EXPECT_EQ(a.ubasis.name, "b-spline");
+    EXPECT_EQ(a.vbasis.name, "bezier");
+    // (1, 2, 3) of "here" is (11, 2, 4) of the world; the motion block moves by it from 10, 0, 1.
+    const Matrix begin = scene::at(c->primitive(0).toWorld, 0), close = scene::at(c->primitive(0).toWorld, 1);
+    expectMatrix(begin, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 21, 2, 5, 1});
+    expectMatrix(close, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 10, 0, 1, 1});
+    EXPECT_EQ(c->primitive(1).attributes->color.y, 1);
+    EXPECT_EQ(c->primitive(1).numbers[0], 3);
+    EXPECT_EQ(c->primitive(2).numbers[0], 4);
+    expectMatrix(c->primitive(2).toWorld.first(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 10, 0, 0, 1});
+}
+
+TEST_F(Procedurals, OfLibrariesReadArchivesAndAreFreed) {
+    std::ofstream(dir / "ball.rib") << "Sphere 6 -1 1 360";
+    auto c = readHere("WorldBegin " + library("archive") + library("count") + library("count") + " WorldEnd");
+    EXPECT_EQ(c->messages(), "");
+    ASSERT_EQ(c->frame().primitives.size(), 3u);
+    EXPECT_EQ(c->primitive(0).numbers[0], 6);
+    // Loaded once, asked for each, freed after each.
+    EXPECT_EQ(c->primitive(2).numbers[0], c->primitive(1).numbers[0] + 1);
+    EXPECT_EQ(c->primitive(2).numbers[3], c->primitive(1).numbers[3] + 1);
+}
+
+TEST_F(Procedurals, OfLibrariesThatAreWrongAreToldAtTheirPlace) {
+    auto c = readHere("WorldBegin\n" + library("mistakes") + "\nSphere 1 -1 1 360\nWorldEnd");
+    ASSERT_EQ(c->frame().primitives.size(), 2u);
+    EXPECT_EQ(c->primitive(0).kind, "Polygon");
+    const std::string said = c->messages();
+    for (const char* what :
+         {"RiPointsPolygons, called by a library: a count is negative", "RiPointsPolygons, called by a library: an argument is a null pointer",
+          "RiPolygon, called by a library: an argument is a null pointer", "RiSurface, called by a library: an argument is a null pointer",
+          "\"unheard\" is not declared", "RiColor, called by a library: an argument is a null pointer", "before the AttributeBegin"})
+        EXPECT_NE(said.find(what), std::string::npos) << what << "\n" << said;
+    for (const Diagnostic& d : c->diagnostics.all()) EXPECT_EQ(d.place.line, 2) << toString(d);
+    EXPECT_EQ(c->count(), 7u) << said;
+}
+
+TEST_F(Procedurals, OfLibrariesNeedToBeAllowedAndThere) {
+    const std::string text = library("detail");
+    auto c = readHere("WorldBegin " + text + "WorldEnd", false);
+    EXPECT_NE(c->only().message.find("--allow-exec"), std::string::npos);
+    EXPECT_EQ(c->frame().primitives.size(), 0u);
+
+    c = readHere("WorldBegin " + library("", "nowhere") + library("", "nowhere") + " Sphere 1 -1 1 360 WorldEnd");
+    EXPECT_EQ(c->only().code, Rie::NoFile);
+    EXPECT_NE(c->only().message.find("library \"nowhere\" of procedurals was not found"), std::string::npos);
+    EXPECT_EQ(c->frame().primitives.size(), 1u);
+
+    c = readHere("Option \"searchpath\" \"procedural\" \"" ALPENGLOW_PROCEDURALS "\" WorldBegin " + library("", "hollow") + "WorldEnd");
+    EXPECT_NE(c->only().message.find("it does not define Subdivide, Free"), std::string::npos) << c->messages();
+    c = readHere("WorldBegin " + library("", ALPENGLOW_PROCEDURALS "/stranger_calls.so") + "WorldEnd");
+    EXPECT_NE(c->only().message.find("RiNotThere"), std::string::npos) << c->messages();
+    std::ofstream(dir / "text.so") << "no library";
+    c = readHere("WorldBegin " + library("", "text") + "WorldEnd");
+    EXPECT_NE(c->only().message.find("it cannot be loaded"), std::string::npos) << c->messages();
+}
+
+TEST_F(Procedurals, OfLibrariesNestToALimit) {
+    auto c = readHere("WorldBegin " + library("forever") + " Sphere 1 -1 1 360 WorldEnd");
+    EXPECT_EQ(c->only().code, Rie::Limit);
+    EXPECT_EQ(c->frame().primitives.size(), 1u);
+    c = readHere("WorldBegin MotionBegin [0 1] " + library("detail") + " MotionEnd WorldEnd");
+    EXPECT_NE(c->messages().find("motion block"), std::string::npos);
 }

@@ -69,7 +69,8 @@ std::vector<Request> foreignRequests() {
          any, false, "Connects two layers of a shader network (Aqsis, 3Delight): not done.",
          "\"surface\" \"a\" \"Ci\" \"b\" \"Cs\"", layer},
         {"Procedural2", "string subdivide; string bound; ..", Kind::Primitive, kWorld | kObject, false,
-         "Content from an archive (\"DelayedReadArchive2\"), by named parameters, or with --allow-exec from a program (\"RunProgram2\": \"string command\", \"string data\").",
+         "Content from an archive (\"DelayedReadArchive2\"), by named parameters, or with --allow-exec from a program "
+         "(\"RunProgram2\": \"string command\", \"string data\") or a library (\"DynamicLoad2\": \"string dsoname\", \"string data\").",
          "\"RunProgram2\" \"SimpleBound\" \"float[6] bound\" [-1 1 -1 1 -1 1]", procedural2},
         {"Bxdf", named, Kind::Shader, any, false, risDoc, "\"PxrSurface\" \"s\"", ris},
         {"Pattern", named, Kind::Shader, any, false, risDoc, "\"PxrTexture\" \"t\"", ris},

@@ -204,7 +204,8 @@ std::vector<Request> primitiveRequests() {
         {"Volume", "string type; number[6] bound; int[] dimensions; ..", k, s, true,
          "A region filled by a volume shader. Not drawn yet.", "\"box\" [-1 1 -1 1 -1 1] [0 0 0]", volume},
         {"Procedural", "string kind; string[] arguments; number[6] bound; ..", k, s, false,
-         "Content from an archive (\"DelayedReadArchive\"), or with --allow-exec from a program (\"RunProgram\").",
+         "Content from an archive (\"DelayedReadArchive\"), or with --allow-exec from a program (\"RunProgram\") or a "
+         "library (\"DynamicLoad\", docs/plugins.md).",
          "\"RunProgram\" [\"maker\" \"data\"] [-1 1 -1 1 -1 1]", procedural},
         {"ObjectInstance", "handle object; ..", Kind::Other, s, false, "Draws a stored object.", "1",
          [](Interpreter& in, const Call& c) { in.instance(c); }},

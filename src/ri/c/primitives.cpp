@@ -1,0 +1,262 @@
+// ri.h: primitives, archives and procedurals of procedurals.
+#include "ri/c/client.h"
+#include <cstdlib>
+
+// The parameters before "..." are RtFloat in the specification's binding; the machines this runs on pass them as what they are.
+#pragma clang diagnostic ignored "-Wvarargs"
+
+using namespace alpenglow;
+using namespace alpenglow::ri;
+
+#define ALPENGLOW_PAIRS(last)                                                                                                \
+    va_list list;                                                                                                            \
+    va_start(list, last);                                                                                                    \
+    Pairs pairs(list);                                                                                                       \
+    va_end(list)
+#define ALPENGLOW_LIST pairs.count(), pairs.tokens.data(), pairs.values.data()
+
+namespace {
+
+/// What counts of variables follow from.
+scene::Primitive kindOf(const char* kind) {
+    scene::Primitive p;
+    p.kind = kind;
+    if (Client* c = Client::current()) p.attributes = c->in.snapshot();
+    return p;
+}
+
+/// n values of everything but constant and uniform variables.
+scene::VariableCounts points(int64_t n) {
+    scene::VariableCounts c;
+    c.varying = c.vertex = c.faceVarying = n;
+    return c;
+}
+
+void quadric(const char* request, std::initializer_list<RtFloat> shape, RtInt n, RtToken tokens[], RtPointer values[]) {
+    Building(request).numbers(shape.begin(), int64_t(shape.size())).variables(n, tokens, values, kindOf(request)).run();
+}
+
+/// Nothing in a list of counts may be negative: reported. The sum.
+int64_t sumOf(Building& b, const RtInt* counts, int64_t n) {
+    if (!b.may(n, {counts})) return 0;
+    const int64_t sum = total(counts, n);
+    return b.may(sum, {}) ? sum : 0;
+}
+
+/// One of the procedurals that every renderer has, with the strings that it takes.
+void builtIn(const char* kind, RtPointer data, int strings, const RtFloat* bound) {
+    static const RtFloat kUnbounded[6] = {-RI_INFINITY, RI_INFINITY, -RI_INFINITY, RI_INFINITY, -RI_INFINITY, RI_INFINITY};
+    Building("Procedural").text(kind).texts(static_cast<const RtToken*>(data), strings).numbers(bound ? bound : kUnbounded, 6).run();
+}
+
+} // namespace
+
+extern "C" {
+
+RtVoid RiPolygonV(RtInt nvertices, RtInt n, RtToken tokens[], RtPointer values[]) {
+    Building b("Polygon");
+    const scene::VariableCounts counts = points(nvertices);
+    if (b.may(nvertices, {})) b.parameters(n, tokens, values, &counts).run();
+}
+
+RtVoid RiGeneralPolygonV(RtInt nloops, RtInt nverts[], RtInt n, RtToken tokens[], RtPointer values[]) {
+    Building b("GeneralPolygon");
+    const scene::VariableCounts counts = points(sumOf(b, nverts, nloops));
+    b.ints(nverts, nloops).parameters(n, tokens, values, &counts).run();
+}
+
+RtVoid RiPointsPolygonsV(RtInt npolys, RtInt nverts[], RtInt verts[], RtInt n, RtToken tokens[], RtPointer values[]) {
+    Building b("PointsPolygons");
+    const int64_t corners = sumOf(b, nverts, npolys);
+    b.ints(nverts, npolys).ints(verts, corners);
+    if (!b.client()) return;
+    scene::Primitive p = kindOf("PointsPolygons");
+    p.ints.assign(nverts, nverts + npolys);
+    p.ints2.assign(verts, verts + corners);
+    b.variables(n, tokens, values, p).run();
+}
+
+RtVoid RiPointsGeneralPolygonsV(RtInt npolys, RtInt nloops[], RtInt nverts[], RtInt verts[], RtInt n, RtToken tokens[],
+                                RtPointer values[]) {
+    Building b("PointsGeneralPolygons");
+    const int64_t loops = sumOf(b, nloops, npolys), corners = sumOf(b, nverts, loops);
+    b.ints(nloops, npolys).ints(nverts, loops).ints(verts, corners);
+    if (!b.client()) return;
+    scene::Primitive p = kindOf("PointsGeneralPolygons");
+    p.ints.assign(nloops, nloops + npolys);
+    p.ints2.assign(nverts, nverts + loops);
+    p.ints3.assign(verts, verts + corners);
+    b.variables(n, tokens, values, p).run();
+}
+
+RtVoid RiPatchV(RtToken type, RtInt n, RtToken tokens[], RtPointer values[]) {
+    Building b("Patch");
+    b.text(type);
+    if (!b.client()) return;
+    scene::Primitive p = kindOf("Patch");
+    p.strings = {type};
+    b.variables(n, tokens, values, p).run();
+}
+
+RtVoid RiPatchMeshV(RtToken type, RtInt nu, RtToken uwrap, RtInt nv, RtToken vwrap, RtInt n, RtToken tokens[], RtPointer values[]) {
+    Building b("PatchMesh");
+    b.text(type).number(nu).text(uwrap).number(nv).text(vwrap);
+    if (!b.client()) return;
+    scene::Primitive p = kindOf("PatchMesh");
+    p.strings = {type, uwrap, vwrap};
+    p.ints = {nu, nv};
+    b.variables(n, tokens, values, p).run();
+}
+
+RtVoid RiNuPatchV(RtInt nu, RtInt uorder, RtFloat uknot[], RtFloat umin, RtFloat umax, RtInt nv, RtInt vorder, RtFloat vknot[],
+                  RtFloat vmin, RtFloat vmax, RtInt n, RtToken tokens[], RtPointer values[]) {
+    Building b("NuPatch");
+    const int64_t uknots = int64_t(nu) + uorder, vknots = int64_t(nv) + vorder;
+    b.number(nu).number(uorder).numbers(uknot, uknots).number(umin).number(umax);
+    b.number(nv).number(vorder).numbers(vknot, vknots).number(vmin).number(vmax);
+    if (!b.client()) return;
+    scene::Primitive p = kindOf("NuPatch");
+    p.ints = {nu, uorder, nv, vorder};
+    p.params.resize(2);
+    p.params[0].name = "uknot";
+    p.params[0].numbers.assign(uknot, uknot + uknots);
+    p.params[1].name = "vknot";
+    p.params[1].numbers.assign(vknot, vknot + vknots);
+    b.variables(n, tokens, values, p).run();
+}
+
+RtVoid RiSubdivisionMeshV(RtToken scheme, RtInt nfaces, RtInt nverts[], RtInt verts[], RtInt ntags, RtToken tags[], RtInt nargs[],
+                          RtInt intargs[], RtFloat floatargs[], RtInt n, RtToken tokens[], RtPointer values[]) {
+    Building b("SubdivisionMesh");
+    const int64_t corners = sumOf(b, nverts, nfaces);
+    b.text(scheme).ints(nverts, nfaces).ints(verts, corners);
+    if (!b.may(ntags, {tags, nargs})) return;
+    int64_t numbers[2] = {};
+    for (int64_t i = 0; i < 2 * int64_t(ntags); ++i) {
+        if (!b.may(nargs[i], {})) return;
+        numbers[i % 2] += nargs[i];
+    }
+    b.texts(tags, ntags).ints(nargs, 2 * int64_t(ntags)).ints(intargs, numbers[0]).numbers(floatargs, numbers[1]);
+    if (!b.client()) return;
+    scene::Primitive p = kindOf("PointsPolygons"); // the variables of both are counted alike
+    p.ints.assign(nverts, nverts + nfaces);
+    p.ints2.assign(verts, verts + corners);
+    b.variables(n, tokens, values, p).run();
+}
+
+RtVoid RiSphereV(RtFloat radius, RtFloat zmin, RtFloat zmax, RtFloat thetamax, RtInt n, RtToken tokens[], RtPointer values[]) {
+    quadric("Sphere", {radius, zmin, zmax, thetamax}, n, tokens, values);
+}
+RtVoid RiConeV(RtFloat height, RtFloat radius, RtFloat thetamax, RtInt n, RtToken tokens[], RtPointer values[]) {
+    quadric("Cone", {height, radius, thetamax}, n, tokens, values);
+}
+RtVoid RiCylinderV(RtFloat radius, RtFloat zmin, RtFloat zmax, RtFloat thetamax, RtInt n, RtToken tokens[], RtPointer values[]) {
+    quadric("Cylinder", {radius, zmin, zmax, thetamax}, n, tokens, values);
+}
+RtVoid RiHyperboloidV(RtPoint a, RtPoint b, RtFloat thetamax, RtInt n, RtToken tokens[], RtPointer values[]) {
+    if (!Building("Hyperboloid").may(1, {a, b})) return;
+    quadric("Hyperboloid", {a[0], a[1], a[2], b[0], b[1], b[2], thetamax}, n, tokens, values);
+}
+RtVoid RiParaboloidV(RtFloat rmax, RtFloat zmin, RtFloat zmax, RtFloat thetamax, RtInt n, RtToken tokens[], RtPointer values[]) {
+    quadric("Paraboloid", {rmax, zmin, zmax, thetamax}, n, tokens, values);
+}
+RtVoid RiDiskV(RtFloat height, RtFloat radius, RtFloat thetamax, RtInt n, RtToken tokens[], RtPointer values[]) {
+    quadric("Disk", {height, radius, thetamax}, n, tokens, values);
+}
+RtVoid RiTorusV(RtFloat major, RtFloat minor, RtFloat phimin, RtFloat phimax, RtFloat thetamax, RtInt n, RtToken tokens[],
+                RtPointer values[]) {
+    quadric("Torus", {major, minor, phimin, phimax, thetamax}, n, tokens, values);
+}
+
+RtVoid RiPointsV(RtInt npoints, RtInt n, RtToken tokens[], RtPointer values[]) {
+    Building b("Points");
+    const scene::VariableCounts counts = points(npoints);
+    if (b.may(npoints, {})) b.parameters(n, tokens, values, &counts).run();
+}
+
+RtVoid RiCurvesV(RtToken type, RtInt ncurves, RtInt nvertices[], RtToken wrap, RtInt n, RtToken tokens[], RtPointer values[]) {
+    Building b("Curves");
+    b.text(type).ints(nvertices, ncurves).text(wrap);
+    if (!b.client()) return;
+    scene::Primitive p = kindOf("Curves");
+    p.strings = {type, wrap};
+    p.ints.assign(nvertices, nvertices + ncurves);
+    b.variables(n, tokens, values, p).run();
+}
+
+RtVoid RiBlobbyV(RtInt nleaf, RtInt ncode, RtInt code[], RtInt nfloats, RtFloat floats[], RtInt nstrings, RtString strings[], RtInt n,
+                 RtToken tokens[], RtPointer values[]) {
+    Building b("Blobby");
+    const scene::VariableCounts counts = points(nleaf);
+    if (!b.may(nleaf, {})) return;
+    b.number(nleaf).ints(code, ncode).numbers(floats, nfloats).texts(strings, nstrings).parameters(n, tokens, values, &counts).run();
+}
+
+RtVoid RiGeometryV(RtToken type, RtInt n, RtToken tokens[], RtPointer values[]) {
+    Building("Geometry").text(type).variables(n, tokens, values, kindOf("Geometry")).run();
+}
+
+#define ALPENGLOW_BOTH(name, parameters, arguments, last)                                                                    \
+    RtVoid name parameters {                                                                                                 \
+        ALPENGLOW_PAIRS(last);                                                                                               \
+        name##V arguments;                                                                                                   \
+    }
+ALPENGLOW_BOTH(RiPolygon, (RtInt nvertices, ...), (nvertices, ALPENGLOW_LIST), nvertices)
+ALPENGLOW_BOTH(RiGeneralPolygon, (RtInt nloops, RtInt nverts[], ...), (nloops, nverts, ALPENGLOW_LIST), nverts)
+ALPENGLOW_BOTH(RiPointsPolygons, (RtInt npolys, RtInt nverts[], RtInt verts[], ...), (npolys, nverts, verts, ALPENGLOW_LIST), verts)
+ALPENGLOW_BOTH(RiPointsGeneralPolygons, (RtInt npolys, RtInt nloops[], RtInt nverts[], RtInt verts[], ...),
+               (npolys, nloops, nverts, verts, ALPENGLOW_LIST), verts)
+ALPENGLOW_BOTH(RiPatch, (RtToken type, ...), (type, ALPENGLOW_LIST), type)
+ALPENGLOW_BOTH(RiPatchMesh, (RtToken type, RtInt nu, RtToken uwrap, RtInt nv, RtToken vwrap, ...),
+               (type, nu, uwrap, nv, vwrap, ALPENGLOW_LIST), vwrap)
+ALPENGLOW_BOTH(RiNuPatch,
+               (RtInt nu, RtInt uorder, RtFloat uknot[], RtFloat umin, RtFloat umax, RtInt nv, RtInt vorder, RtFloat vknot[],
+                RtFloat vmin, RtFloat vmax, ...),
+               (nu, uorder, uknot, umin, umax, nv, vorder, vknot, vmin, vmax, ALPENGLOW_LIST), vmax)
+ALPENGLOW_BOTH(RiSubdivisionMesh,
+               (RtToken scheme, RtInt nfaces, RtInt nverts[], RtInt verts[], RtInt ntags, RtToken tags[], RtInt nargs[],
+                RtInt intargs[], RtFloat floatargs[], ...),
+               (scheme, nfaces, nverts, verts, ntags, tags, nargs, intargs, floatargs, ALPENGLOW_LIST), floatargs)
+ALPENGLOW_BOTH(RiSphere, (RtFloat radius, RtFloat zmin, RtFloat zmax, RtFloat thetamax, ...),
+               (radius, zmin, zmax, thetamax, ALPENGLOW_LIST), thetamax)
+ALPENGLOW_BOTH(RiCone, (RtFloat height, RtFloat radius, RtFloat thetamax, ...), (height, radius, thetamax, ALPENGLOW_LIST), thetamax)
+ALPENGLOW_BOTH(RiCylinder, (RtFloat radius, RtFloat zmin, RtFloat zmax, RtFloat thetamax, ...),
+               (radius, zmin, zmax, thetamax, ALPENGLOW_LIST), thetamax)
+ALPENGLOW_BOTH(RiHyperboloid, (RtPoint a, RtPoint b, RtFloat thetamax, ...), (a, b, thetamax, ALPENGLOW_LIST), thetamax)
+ALPENGLOW_BOTH(RiParaboloid, (RtFloat rmax, RtFloat zmin, RtFloat zmax, RtFloat thetamax, ...),
+               (rmax, zmin, zmax, thetamax, ALPENGLOW_LIST), thetamax)
+ALPENGLOW_BOTH(RiDisk, (RtFloat height, RtFloat radius, RtFloat thetamax, ...), (height, radius, thetamax, ALPENGLOW_LIST), thetamax)
+ALPENGLOW_BOTH(RiTorus, (RtFloat major, RtFloat minor, RtFloat phimin, RtFloat phimax, RtFloat thetamax, ...),
+               (major, minor, phimin, phimax, thetamax, ALPENGLOW_LIST), thetamax)
+ALPENGLOW_BOTH(RiPoints, (RtInt npoints, ...), (npoints, ALPENGLOW_LIST), npoints)
+ALPENGLOW_BOTH(RiCurves, (RtToken type, RtInt ncurves, RtInt nvertices[], RtToken wrap, ...),
+               (type, ncurves, nvertices, wrap, ALPENGLOW_LIST), wrap)
+ALPENGLOW_BOTH(RiBlobby,
+               (RtInt nleaf, RtInt ncode, RtInt code[], RtInt nfloats, RtFloat floats[], RtInt nstrings, RtString strings[], ...),
+               (nleaf, ncode, code, nfloats, floats, nstrings, strings, ALPENGLOW_LIST), strings)
+ALPENGLOW_BOTH(RiGeometry, (RtToken type, ...), (type, ALPENGLOW_LIST), type)
+
+RtVoid RiProcDelayedReadArchive(RtPointer data, RtFloat) { builtIn("DelayedReadArchive", data, 1, nullptr); }
+RtVoid RiProcRunProgram(RtPointer data, RtFloat) { builtIn("RunProgram", data, 2, nullptr); }
+RtVoid RiProcDynamicLoad(RtPointer data, RtFloat) { builtIn("DynamicLoad", data, 2, nullptr); }
+RtVoid RiProcFree(RtPointer data) { std::free(data); }
+
+RtVoid RiProcedural(RtPointer data, RtBound bound, RtProcSubdivFunc subdivide, RtProcFreeFunc free) {
+    Building b("Procedural");
+    if (b.may(1, {bound, reinterpret_cast<const void*>(subdivide)})) {
+        if (subdivide == RiProcDelayedReadArchive) builtIn("DelayedReadArchive", data, 1, bound);
+        else if (subdivide == RiProcRunProgram) builtIn("RunProgram", data, 2, bound);
+        else if (subdivide == RiProcDynamicLoad) builtIn("DynamicLoad", data, 2, bound);
+        else {
+            Call by = b.client()->by;
+            b.client()->in.subdivide([&](float detail) { subdivide(data, detail); }, "library", {bound, bound + 6}, by);
+        }
+    }
+    if (free) free(data);
+}
+
+RtVoid RiReadArchiveV(RtToken name, RtArchiveCallback, RtInt, RtToken[], RtPointer[]) { Building("ReadArchive").text(name).run(); }
+RtVoid RiReadArchive(RtToken name, RtArchiveCallback, ...) { RiReadArchiveV(name, nullptr, 0, nullptr, nullptr); }
+RtVoid RiArchiveRecord(RtToken, const char*, ...) {} // there is no archive that it could be written to
+
+} // extern "C"

@@ -1,0 +1,222 @@
+// ri.h: blocks, attributes, shaders, lights and transformations.
+#include "ri/c/client.h"
+#include <algorithm>
+#include <cstring>
+
+// The parameters before "..." are RtFloat in the specification's binding; the machines this runs on pass them as what they are.
+#pragma clang diagnostic ignored "-Wvarargs"
+
+using namespace alpenglow;
+using namespace alpenglow::ri;
+
+#define ALPENGLOW_PAIRS(last)                                                                                                \
+    va_list list;                                                                                                            \
+    va_start(list, last);                                                                                                    \
+    Pairs pairs(list);                                                                                                       \
+    va_end(list)
+#define ALPENGLOW_LIST pairs.count(), pairs.tokens.data(), pairs.values.data()
+
+namespace {
+
+/// A request without arguments.
+void bare(const char* request) { Building(request).run(); }
+
+void oneNumber(const char* request, double d) { Building(request).number(d).run(); }
+void oneText(const char* request, const char* s) { Building(request).text(s).run(); }
+void someNumbers(const char* request, const RtFloat* f, int64_t n) { Building(request).numbers(f, n).run(); }
+void someNumbers(const char* request, std::initializer_list<RtFloat> f) { someNumbers(request, f.begin(), int64_t(f.size())); }
+
+/// Colours have as many components as ColorSamples says.
+void color(const char* request, const RtFloat* c) {
+    const Client* client = Client::current();
+    someNumbers(request, c, client && !client->in.nRGB.empty() ? int64_t(client->in.nRGB.size() / 3) : 3);
+}
+
+RtPointer light(const char* request, const char* shader, RtInt n, RtToken tokens[], RtPointer values[]) {
+    Building b(request);
+    if (!b.client()) return nullptr;
+    std::string name;
+    const RtPointer handle = newHandle(*b.client(), name);
+    b.text(shader).text(name.c_str()).parameters(n, tokens, values).run();
+    return handle;
+}
+
+const char* basisName(const RtFloat* b) {
+    static const std::pair<const RtFloat*, const char*> kNames[] = {{RiBezierBasis[0], "bezier"},
+                                                                    {RiBSplineBasis[0], "b-spline"},
+                                                                    {RiCatmullRomBasis[0], "catmull-rom"},
+                                                                    {RiHermiteBasis[0], "hermite"},
+                                                                    {RiPowerBasis[0], "power"}};
+    for (const auto& [address, name] : kNames)
+        if (address == b) return name;
+    return nullptr;
+}
+
+Building& basis(Building& b, RtBasis m) {
+    if (const char* name = basisName(m ? m[0] : nullptr)) return b.text(name);
+    return b.numbers(m ? m[0] : nullptr, 16);
+}
+
+} // namespace
+
+extern "C" {
+
+#define ALPENGLOW_SIXTH RtFloat(1.0 / 6)
+#define ALPENGLOW_HALF RtFloat(0.5)
+RtBasis RiBezierBasis = {{-1, 3, -3, 1}, {3, -6, 3, 0}, {-3, 3, 0, 0}, {1, 0, 0, 0}};
+RtBasis RiBSplineBasis = {{-ALPENGLOW_SIXTH, ALPENGLOW_HALF, -ALPENGLOW_HALF, ALPENGLOW_SIXTH},
+                          {ALPENGLOW_HALF, -1, ALPENGLOW_HALF, 0},
+                          {-ALPENGLOW_HALF, 0, ALPENGLOW_HALF, 0},
+                          {ALPENGLOW_SIXTH, 4 * ALPENGLOW_SIXTH, ALPENGLOW_SIXTH, 0}};
+RtBasis RiCatmullRomBasis = {{-.5f, 1.5f, -1.5f, .5f}, {1, -2.5f, 2, -.5f}, {-.5f, 0, .5f, 0}, {0, 1, 0, 0}};
+RtBasis RiHermiteBasis = {{2, 1, -2, 1}, {-3, -2, 3, -1}, {0, 1, 0, 0}, {1, 0, 0, 0}};
+RtBasis RiPowerBasis = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+
+RtToken RiDeclare(const char* name, const char* declaration) {
+    Building("Declare").text(name).text(declaration).run();
+    return name;
+}
+
+RtVoid RiAttributeBegin(void) { bare("AttributeBegin"); }
+RtVoid RiAttributeEnd(void) { bare("AttributeEnd"); }
+RtVoid RiTransformBegin(void) { bare("TransformBegin"); }
+RtVoid RiTransformEnd(void) { bare("TransformEnd"); }
+RtVoid RiSolidBegin(RtToken operation) { oneText("SolidBegin", operation); }
+RtVoid RiSolidEnd(void) { bare("SolidEnd"); }
+
+RtObjectHandle RiObjectBegin(void) {
+    Building b("ObjectBegin");
+    if (!b.client()) return nullptr;
+    std::string name;
+    const RtPointer handle = newHandle(*b.client(), name);
+    b.text(name.c_str()).run();
+    return handle;
+}
+RtVoid RiObjectEnd(void) { bare("ObjectEnd"); }
+RtVoid RiObjectInstance(RtObjectHandle handle) { oneText("ObjectInstance", handleName(handle).c_str()); }
+
+RtVoid RiMotionBegin(RtInt n, ...) {
+    std::vector<RtFloat> times;
+    va_list list;
+    va_start(list, n);
+    for (RtInt i = 0; i < n && i < 100'000; ++i) times.push_back(RtFloat(va_arg(list, double)));
+    va_end(list);
+    RiMotionBeginV(RtInt(times.size()), times.data());
+}
+RtVoid RiMotionBeginV(RtInt n, RtFloat times[]) { someNumbers("MotionBegin", times, n); }
+RtVoid RiMotionEnd(void) { bare("MotionEnd"); }
+
+RtVoid RiColor(RtColor c) { color("Color", c); }
+RtVoid RiOpacity(RtColor c) { color("Opacity", c); }
+RtVoid RiTextureCoordinates(RtFloat s1, RtFloat t1, RtFloat s2, RtFloat t2, RtFloat s3, RtFloat t3, RtFloat s4, RtFloat t4) {
+    someNumbers("TextureCoordinates", {s1, t1, s2, t2, s3, t3, s4, t4});
+}
+RtVoid RiShadingRate(RtFloat size) { oneNumber("ShadingRate", size); }
+RtVoid RiShadingInterpolation(RtToken type) { oneText("ShadingInterpolation", type); }
+RtVoid RiMatte(RtBoolean on) { oneNumber("Matte", on); }
+RtVoid RiBound(RtBound bound) { someNumbers("Bound", bound, 6); }
+RtVoid RiDetail(RtBound bound) { someNumbers("Detail", bound, 6); }
+RtVoid RiDetailRange(RtFloat a, RtFloat b, RtFloat c, RtFloat d) { someNumbers("DetailRange", {a, b, c, d}); }
+RtVoid RiGeometricApproximation(RtToken type, RtFloat value) {
+    Building("GeometricApproximation").text(type).number(value).run();
+}
+RtVoid RiOrientation(RtToken orientation) { oneText("Orientation", orientation); }
+RtVoid RiReverseOrientation(void) { bare("ReverseOrientation"); }
+RtVoid RiSides(RtInt sides) { oneNumber("Sides", sides); }
+
+RtVoid RiBasis(RtBasis ubasis, RtInt ustep, RtBasis vbasis, RtInt vstep) {
+    Building b("Basis");
+    basis(b, ubasis).number(ustep);
+    basis(b, vbasis).number(vstep).run();
+}
+
+RtVoid RiTrimCurve(RtInt nloops, RtInt ncurves[], RtInt order[], RtFloat knot[], RtFloat min[], RtFloat max[], RtInt n[],
+                   RtFloat u[], RtFloat v[], RtFloat w[]) {
+    Building b("TrimCurve");
+    if (!b.may(nloops, {ncurves, order, knot, min, max, n, u, v, w})) return;
+    const int64_t curves = total(ncurves, nloops);
+    if (!b.may(curves, {})) return;
+    const int64_t points = total(n, curves), orders = total(order, curves);
+    if (!b.may(points, {}) || !b.may(orders, {})) return;
+    b.ints(ncurves, nloops).ints(order, curves).numbers(knot, points + orders).numbers(min, curves).numbers(max, curves);
+    b.ints(n, curves).numbers(u, points).numbers(v, points).numbers(w, points).run();
+}
+
+RtVoid RiAttributeV(const char* name, RtInt n, RtToken tokens[], RtPointer values[]) {
+    Building("Attribute").text(name).parameters(n, tokens, values, nullptr, name ? name : "").run();
+}
+RtVoid RiAttribute(const char* name, ...) {
+    ALPENGLOW_PAIRS(name);
+    RiAttributeV(name, ALPENGLOW_LIST);
+}
+
+#define ALPENGLOW_SHADER(request)                                                                                            \
+    RtVoid Ri##request##V(const char* name, RtInt n, RtToken tokens[], RtPointer values[]) {                                 \
+        Building(#request).text(name).parameters(n, tokens, values).run();                                                   \
+    }                                                                                                                        \
+    RtVoid Ri##request(const char* name, ...) {                                                                              \
+        ALPENGLOW_PAIRS(name);                                                                                               \
+        Ri##request##V(name, ALPENGLOW_LIST);                                                                                \
+    }
+ALPENGLOW_SHADER(Surface)
+ALPENGLOW_SHADER(Displacement)
+ALPENGLOW_SHADER(Atmosphere)
+ALPENGLOW_SHADER(Interior)
+ALPENGLOW_SHADER(Exterior)
+
+RtVoid RiShaderV(const char* name, const char* handle, RtInt n, RtToken tokens[], RtPointer values[]) {
+    Building("Shader").text(name).text(handle).parameters(n, tokens, values).run();
+}
+RtVoid RiShader(const char* name, const char* handle, ...) {
+    ALPENGLOW_PAIRS(handle);
+    RiShaderV(name, handle, ALPENGLOW_LIST);
+}
+
+RtLightHandle RiLightSourceV(const char* name, RtInt n, RtToken tokens[], RtPointer values[]) {
+    return light("LightSource", name, n, tokens, values);
+}
+RtLightHandle RiLightSource(const char* name, ...) {
+    ALPENGLOW_PAIRS(name);
+    return RiLightSourceV(name, ALPENGLOW_LIST);
+}
+RtLightHandle RiAreaLightSourceV(const char* name, RtInt n, RtToken tokens[], RtPointer values[]) {
+    return light("AreaLightSource", name, n, tokens, values);
+}
+RtLightHandle RiAreaLightSource(const char* name, ...) {
+    ALPENGLOW_PAIRS(name);
+    return RiAreaLightSourceV(name, ALPENGLOW_LIST);
+}
+RtVoid RiIlluminate(RtLightHandle light, RtBoolean on) {
+    Building("Illuminate").text(handleName(light).c_str()).number(on != 0).run();
+}
+
+RtVoid RiIdentity(void) { bare("Identity"); }
+RtVoid RiTransform(RtMatrix m) { someNumbers("Transform", m ? m[0] : nullptr, 16); }
+RtVoid RiConcatTransform(RtMatrix m) { someNumbers("ConcatTransform", m ? m[0] : nullptr, 16); }
+RtVoid RiPerspective(RtFloat fov) { oneNumber("Perspective", fov); }
+RtVoid RiTranslate(RtFloat x, RtFloat y, RtFloat z) { someNumbers("Translate", {x, y, z}); }
+RtVoid RiRotate(RtFloat angle, RtFloat x, RtFloat y, RtFloat z) { someNumbers("Rotate", {angle, x, y, z}); }
+RtVoid RiScale(RtFloat x, RtFloat y, RtFloat z) { someNumbers("Scale", {x, y, z}); }
+RtVoid RiSkew(RtFloat angle, RtFloat x1, RtFloat y1, RtFloat z1, RtFloat x2, RtFloat y2, RtFloat z2) {
+    someNumbers("Skew", {angle, x1, y1, z1, x2, y2, z2});
+}
+RtVoid RiCoordinateSystem(RtToken space) { oneText("CoordinateSystem", space); }
+RtVoid RiScopedCoordinateSystem(RtToken space) { oneText("ScopedCoordinateSystem", space); }
+RtVoid RiCoordSysTransform(RtToken space) { oneText("CoordSysTransform", space); }
+
+RtPoint* RiTransformPoints(RtToken from, RtToken to, RtInt n, RtPoint points[]) {
+    const Client* c = Client::current();
+    if (!c || !from || !to || n < 0 || !points) return nullptr;
+    const auto a = c->in.namedSystem(from), b = c->in.namedSystem(to);
+    if (!a || !b) return nullptr;
+    const Matrix m = a->first() * inverse(b->first());
+    for (RtInt i = 0; i < n; ++i) {
+        const Vec3d p = transformPoint(m, Vec3d(points[i][0], points[i][1], points[i][2]));
+        points[i][0] = toFloat(p.x);
+        points[i][1] = toFloat(p.y);
+        points[i][2] = toFloat(p.z);
+    }
+    return points;
+}
+
+} // extern "C"

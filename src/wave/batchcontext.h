@@ -25,6 +25,7 @@ struct BatchContext : KernelRun {
     std::vector<EmitRecord> emits;
     std::vector<float> arena;
     std::vector<shading::FreeFlight> flown;             ///< by point, where they lie inside of a medium (`between`)
+    std::vector<float> depths;                 ///< by point: camera z of the hit, if points are of another time; else empty
     std::vector<Haze> haze;                    ///< by point; only where a volume lies before some point
     std::vector<Color> clear;  ///< by point: what goes on behind it; only while gather() runs for a kernel that does not wait
     std::vector<float> passes; ///< by point: the chance with which its ray goes on, 0: another was taken; empty: it always does

@@ -1,5 +1,6 @@
 // Displacement again at hits, for P, N and what the surface's shader asks of it.
 #include "wave/engine.h"
+#include "world/turned.h"
 
 namespace alpenglow::transport {
 
@@ -13,7 +14,10 @@ std::shared_ptr<BatchContext> Engine::displace(const BatchContext& c) {
     d->points = c.points;
     d->rays = c.rays;
     d->bindings = c.bindings;
-    for (size_t k = 0; k < d->rays.size(); ++k) d->points[k].ray = &d->rays[k];
+    for (size_t k = 0; k < d->rays.size(); ++k) {
+        d->points[k].ray = &d->rays[k];
+        if (turnedOver(*d->points[k].shape)) turnOver(d->points[k]);
+    }
     const ShaderInstance& shader = *c.binding->displacement;
     const shading::InstanceView view = shader.view();
     d->batch = std::make_shared<shading::Batch>();
@@ -35,7 +39,8 @@ void Engine::takeDisplacement(BatchContext& c) {
     for (size_t k = 0; k < c.points.size(); ++k) {
         ShadePoint& p = c.points[k];
         if (po >= 0) { p.P = d->batch->color(po, int(k)); p.I = p.P - c.rays[k].begin(); }
-        if (no >= 0) p.N = d->batch->color(no, int(k));
+        const float turn = turnedOver(*p.shape) && !p.shape->givesNormals() ? -1.f : 1.f;
+        if (no >= 0) p.N = Vec3(d->batch->color(no, int(k))) * turn;
         // The surface shader's derivatives are those of the displaced surface. Its second partials stay those of the plain one.
         if (po >= 0 && dpu >= 0 && dpv >= 0) {
             p.surface.dPdu = d->batch->color(dpu, int(k));
@@ -43,8 +48,8 @@ void Engine::takeDisplacement(BatchContext& c) {
             p.surface.Ng = cross(p.surface.dPdu, p.surface.dPdv) * p.surface.orientation;
         }
         if (no >= 0 && dnu >= 0 && dnv >= 0) {
-            p.surface.dNdu = d->batch->color(dnu, int(k));
-            p.surface.dNdv = d->batch->color(dnv, int(k));
+            p.surface.dNdu = Vec3(d->batch->color(dnu, int(k))) * turn;
+            p.surface.dNdv = Vec3(d->batch->color(dnv, int(k))) * turn;
         }
         if (p.surface.displaced) { // rays left and met the facet; shading offsets start there
             p.surface.P = p.surface.displacedP;

@@ -94,6 +94,7 @@ void Engine::giveBack(std::shared_ptr<BatchContext> c) {
     c->failure = nullptr;
     c->arena.clear();
     c->haze.clear();
+    c->depths.clear();
     c->flown.clear();
     c->clear.clear();
     c->passes.clear();

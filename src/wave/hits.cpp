@@ -129,6 +129,9 @@ void Engine::placePoints(HitQueue& q, BatchContext& c) {
     c.rays.swap(q.rays);
     c.targets.swap(q.targets);
     for (const accel::Hit& h : q.hits) c.bindings.push_back(world_->bindingOf_[h.shape]);
+    c.depths.clear();
+    for (size_t i = 0; world_->shadesAtOpen_ && world_->moves_ && i < n; ++i)
+        c.depths.push_back(c.rays[i].origin.z + c.rays[i].dir.z * float(q.hits[i].distance));
     std::vector<geometry::HitRef>& run = run_; // of one shape
     for (size_t i = 0; i < n;) {
         const uint32_t shape = q.hits[i].shape;

@@ -108,7 +108,7 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, st
             if (const Vec3 n = c.points[size_t(i)].N; world_->settings_.firstSeen && length(n) > 0 && std::isfinite(length(n)))
                 r.normal += n / length(n) * luminance(ray.weight * opacity);
             if (!binding.matte) r.opacity += ray.weight * opacity;
-            float z = dot(c.points[i].P, Vec3(0, 0, 1));
+            const float z = c.depths.empty() ? c.points[size_t(i)].P.z : c.depths[size_t(i)];
             if (r.z >= 1e38f) r.z = z;
             else if (r.zSecond >= 1e38f) r.zSecond = z;
             size_t at = 0;

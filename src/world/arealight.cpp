@@ -2,6 +2,7 @@
 #include "base/limits.h"
 #include "geometry/placed.h"
 #include "lobes/sampling.h"
+#include "scene/solids.h"
 #include <algorithm>
 
 namespace alpenglow::transport {
@@ -42,6 +43,7 @@ Emitter::Emitter(std::vector<const geometry::Shape*> shapes, std::vector<uint32_
         Entry e{s, a, 0};
         if (i < visibility.size()) e.visibility = visibility[i];
         e.sphere = wholeSphere(*s, e.centre, e.radius);
+        e.inner = e.sphere && scene::solidTakenAway(s->attributes());
         entries_.push_back(e);
         area_ += a;
     }
@@ -156,6 +158,7 @@ bool Emitter::sample(const Vec3& from, Vec2 u, float choose, float time, Sample&
             int k = 0;
             while (k < n && !(hits[k].t > 0)) ++k;
             if (k == n) return false;
+            if (e.inner) k = n - 1;
             e.shape->evaluateHit(0, hits[k].u, hits[k].v, point, needs);
             out.pdf = float(share / (2 * kPi * cap));
             out.direction = w;

@@ -59,6 +59,7 @@ private:
         const geometry::Shape* shape;
         double share, cumulative; ///< probability, and its sum up to and with this shape
         bool sphere = false;
+        bool inner = false; ///< of a sphere: the wall of a hole in a solid, of which the far side is seen
         Vec3 centre;
         float radius = 0;
         uint32_t visibility = ~0u;

@@ -2,6 +2,7 @@
 #include "rsl/ir/edit.h"
 #include "geometry/dice.h"
 #include "world/impl.h"
+#include "world/turned.h"
 
 namespace alpenglow::transport {
 
@@ -75,6 +76,7 @@ void WorldImpl::displaceGrid(const SurfaceBinding& b, const geometry::Shape& sha
         p.I = frame_->options.projection == "perspective" ? p.P : Vec3(0, 0, p.P.z); // as the camera sees it
         p.du = grid.du[i];
         p.dv = grid.dv[i];
+        if (b.displacement && turnedOver(shape)) turnOver(p);
         points.push_back(p);
     }
     evaluators_(*this, d, settings_.stop)->run(bound, &b, points, shader.view(), [&](const shading::Batch& batch) {

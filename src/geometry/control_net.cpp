@@ -1,5 +1,6 @@
 #include "geometry/control_net.h"
 #include "base/limits.h"
+#include "geometry/edge_curve.h"
 #include <algorithm>
 #include <cmath>
 
@@ -144,6 +145,64 @@ BasisSpan NetDirection::at(double x) const {
         }
     }
     return s;
+}
+
+template <class Points>
+std::vector<std::array<double, 4>> NetDirection::bezier(int patch, double from, double to, const Points& points) const {
+    using Point = std::array<double, 4>;
+    std::vector<Point> out;
+    if (order_ > 0) { // blossoms: de Boor's scheme with `from` and `to` in place of the parameter
+        const double a = lo_ + from * (hi_ - lo_), b = lo_ + to * (hi_ - lo_);
+        const int k = order_ - 1, span = spanOf(0.5 * (a + b));
+        for (int r = 0; r <= k; ++r) {
+            std::vector<Point> d;
+            for (int i = 0; i <= k; ++i) d.push_back(points(span - k + i));
+            for (int p = 1; p <= k; ++p) {
+                const double t = p <= r ? b : a;
+                for (int i = k; i >= p; --i) {
+                    const double lower = knots_[size_t(span - k + i)], upper = knots_[size_t(span + 1 + i - p)];
+                    const double w = upper > lower ? (t - lower) / (upper - lower) : 0;
+                    for (size_t c = 0; c < 4; ++c) d[size_t(i)][c] = d[size_t(i) - 1][c] * (1 - w) + d[size_t(i)][c] * w;
+                }
+            }
+            out.push_back(d.back());
+        }
+        return out;
+    }
+    for (int i = 0; i < width_; ++i) {
+        const int at = patch * step_ + i;
+        out.push_back(points(wrap_ ? at % n_ : at));
+    }
+    constexpr std::array<std::array<double, 4>, 4> own{{{-1, 3, -3, 1}, {3, -6, 3, 0}, {-3, 3, 0, 0}, {1, 0, 0, 0}}};
+    if (width_ == 2 || m_ == own) return out;
+    for (size_t c = 0; c < 4; ++c) {
+        double k[4] = {}; // by power 3..0
+        for (size_t r = 0; r < 4; ++r)
+            for (size_t i = 0; i < 4; ++i) k[r] += m_[r][i] * out[i][c];
+        const double b[4] = {k[3], k[3] + k[2] / 3, k[3] + k[2] * 2 / 3 + k[1] / 3, k[3] + k[2] + k[1] + k[0]};
+        for (size_t i = 0; i < 4; ++i) out[i][c] = b[i];
+    }
+    return out;
+}
+
+bool ControlNet::edgeCurve(int side, int cell, double from, double to, EdgeCurve& out) const {
+    const bool alongU = side == 0 || side == 2;
+    const NetDirection &along = alongU ? u_ : v_, &across = alongU ? v_ : u_;
+    const BasisSpan b = across.at(side == 1 || side == 2 ? 1 : 0);
+    const auto point = [&](int i) {
+        std::array<double, 4> sum{};
+        for (int j = 0; j < b.count; ++j) {
+            const size_t k = alongU ? size_t(b.index[j]) * size_t(u_.points()) + size_t(i)
+                                    : size_t(i) * size_t(u_.points()) + size_t(b.index[j]);
+            for (size_t c = 0; c < 4; ++c) sum[c] += b.w[j] * points_[k][c];
+        }
+        return sum;
+    };
+    const auto bezier = along.bezier(cell, from, to, point);
+    for (const auto& p : bezier)
+        if (!(std::fabs(p[3]) > 1e-30)) return false; // a weight that vanishes
+    out = EdgeCurve::bezier(bezier);
+    return true;
 }
 
 ControlNet::ControlNet(ShapeSource s, NetDirection u, NetDirection v, std::vector<std::array<double, 4>> points,

@@ -37,6 +37,8 @@ public:
     std::vector<double> borders() const;
     /// Whether a knot is there so often that the two sides have no point in common.
     bool torn(double border) const;
+    /// Bezier points of a patch of a curve by this basis, between two borders; points: by control index.
+    template <class Points> std::vector<std::array<double, 4>> bezier(int patch, double from, double to, const Points& points) const;
     /// The patch at x, how far x lies in it (0..1), and how fast that grows. NURBS: between knots.
     struct Cell { int patch; double at, slope; };
     Cell cell(double x) const;
@@ -66,6 +68,7 @@ public:
 protected:
     LocalPoint cameraPoint(double u, double v) const override;
     Vec3d cameraPosition(double u, double v) const override;
+    bool edgeCurve(int side, int cell, double from, double to, EdgeCurve&) const override;
     int patchesU() const override { return u_.patches(); }
     int patchesV() const override { return v_.patches(); }
     std::vector<double> borders(int direction) const override { return (direction == 0 ? u_ : v_).borders(); }

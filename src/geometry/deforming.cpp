@@ -1,6 +1,7 @@
 #include "geometry/dice.h"
 #include "geometry/placed.h"
 #include "geometry/polygon_mesh.h"
+#include "geometry/seams.h"
 #include <algorithm>
 
 namespace alpenglow::geometry {
@@ -170,11 +171,18 @@ void reportUnlike(const Shape& s, Diagnostics& diag) {
 void Deforming::dice(const DiceOptions& options, Diagnostics& diag) {
     DiceOptions alike = options;
     alike.keys = keys_;
-    for (const ShapeRef& k : keys_) k->dice(alike, diag);
+    for (size_t k = 0; k < keys_.size(); ++k) { // what meets does so at every key
+        alike.seamWith = options.seamWith;
+        alike.seamWith.push_back(double(k));
+        for (float t : times_) alike.seamWith.push_back(double(t));
+        keys_[k]->dice(alike, diag);
+    }
     const TriMesh& first = keys_[0]->mesh();
     for (const ShapeRef& k : keys_)
         if (k->exact() || k->mesh().vertices != first.vertices || !std::equal(first.index.begin(), first.index.end(), k->mesh().index.begin(), k->mesh().index.end())) {
             reportUnlike(*this, diag);
+            for (const ShapeRef& other : keys_)
+                if (options.seams && other != keys_[0]) options.seams->drop(other->mesh());
             keys_.resize(1);
             times_.resize(1);
             return;

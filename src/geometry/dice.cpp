@@ -2,6 +2,7 @@
 #include "base/exact.h"
 #include "base/limits.h"
 #include "geometry/placed.h"
+#include "geometry/seams.h"
 #include <algorithm>
 #include <cmath>
 #include <tbb/parallel_for.h>
@@ -55,29 +56,59 @@ void reportNotDisplaced(const Shape& s, const DiceOptions& o, Diagnostics& diag)
 
 namespace {
 
-// Lengths in "object" and "shader" space scale by the largest stretch of the object's transform; "world", "camera" and "current" are
-// taken as they are, the camera being rigid.
-double stretch(const Shape& s, const std::string& space) {
-    if (space != "object" && space != "shader") return 1;
-    double scale = 0;
-    for (int i = 0; i < 3; ++i) {
-        Vec3d axis(i == 0, i == 1, i == 2);
-        scale = std::max(scale, length(transformVector(s.toCamera(), axis)));
-    }
-    return scale;
+/// How far points may go, in a space of its own; Attribute "displacementbound" and what the shaders say add up.
+struct Bound {
+    double radius = -1; ///< nothing was said
+    std::string space;
+    Matrix fromCamera;
+    double reach(const Vec3d& moved) const { return length(transformVector(fromCamera, moved)); }
+};
+
+/// Object space is the shape's own; without names for others they count as camera space.
+Matrix toCamera(const Shape& s, const DiceOptions& opt, const std::string& space) {
+    Matrix m;
+    if (opt.spaceOf && opt.spaceOf(s, space, m) && determinant3(m) != 0) return m;
+    return space == "object" || space == "shader" ? s.toCamera() : Matrix();
 }
 
-// Attribute "displacementbound" and what the shaders say: a length in camera space, or -1 when neither was given.
-double displacementBound(const Shape& s, const DiceOptions& opt) {
+/// The largest stretch of the linear part: its largest singular value, by powers of the matrix times its transpose.
+double stretch(const Matrix& m) {
+    Vec3d rows[3];
+    for (int i = 0; i < 3; ++i) rows[i] = Vec3d(m.m[i][0], m.m[i][1], m.m[i][2]);
+    Vec3d v(1, 0.7, 0.4);
+    double l = 0;
+    for (int k = 0; k < 100; ++k) {
+        const Vec3d w(dot(rows[0], v), dot(rows[1], v), dot(rows[2], v));
+        v = rows[0] * w.x + rows[1] * w.y + rows[2] * w.z;
+        l = length(v);
+        if (!(l > 0) || !std::isfinite(l)) return 0;
+        v = v / l;
+    }
+    return std::sqrt(l);
+}
+
+Bound displacementBound(const Shape& s, const DiceOptions& opt) {
     const scene::Param* sphere = s.attributes().value("displacementbound:sphere");
     const scene::Param* space = s.attributes().value("displacementbound:coordinatesystem");
     const DiceOptions::DeclaredBound declared = opt.declaredBound ? opt.declaredBound(s) : DiceOptions::DeclaredBound{};
     const bool given = sphere && !sphere->numbers.empty();
-    if (!given && !(declared.radius > 0)) return -1;
-    double bound = 0;
-    if (given) bound += double(sphere->numbers[0]) * stretch(s, space && !space->strings.empty() ? space->strings[0] : "object");
-    if (declared.radius > 0) bound += declared.radius * stretch(s, declared.space.empty() ? "object" : declared.space);
-    return bound;
+    Bound b;
+    if (!given && !(declared.radius > 0)) return b;
+    const std::string one = space && !space->strings.empty() ? space->strings[0] : "object",
+                      other = declared.space.empty() ? "object" : declared.space;
+    const double own = given ? double(sphere->numbers[0]) : 0, more = declared.radius > 0 ? declared.radius : 0;
+    b.space = given ? one : other;
+    const Matrix there = toCamera(s, opt, b.space);
+    b.fromCamera = inverse(there);
+    // Of two spaces, each as far as it reaches in its longest direction.
+    if (given && more > 0 && one != other) {
+        b.space = "camera";
+        b.fromCamera = Matrix();
+        b.radius = own * stretch(there) + more * stretch(toCamera(s, opt, other));
+    } else {
+        b.radius = own + more;
+    }
+    return b;
 }
 
 /// Rounded up to two digits behind the point, so that the product is enough.
@@ -96,7 +127,8 @@ void displaceMesh(const Shape& shape, const DiceOptions& opt, Diagnostics& diag,
                   TriMesh& mesh) {
     constexpr uint32_t kRun = 4096; // keeps the full points of a run in the cache, and kernels in wide batches
     uint32_t n = uint32_t(mesh.P.size());
-    double bound = displacementBound(shape, opt), farthest = 0;
+    const Bound bound = displacementBound(shape, opt);
+    double farthest = 0;
     size_t notFinite = 0, tooFar = 0;
     for (uint32_t begin = 0; begin < n && !(opt.stop && *opt.stop); begin += kRun) {
         uint32_t count = std::min(kRun, n - begin);
@@ -114,7 +146,7 @@ void displaceMesh(const Shape& shape, const DiceOptions& opt, Diagnostics& diag,
             double far = length(Vec3d(p) - Vec3d(g.points[i].P));
             if (!std::isfinite(far)) { ++notFinite; continue; }
             if (far > limits::kDisplacementBound) { ++tooFar; continue; }
-            farthest = std::max(farthest, far);
+            if (bound.radius >= 0) farthest = std::max(farthest, bound.reach(Vec3d(p) - Vec3d(g.points[i].P)));
             // An unmoved vertex keeps its bits, and with them the closed seams of the mesh.
             if (!(p == g.points[i].P)) mesh.P[begin + i] = p;
         }
@@ -128,30 +160,66 @@ void displaceMesh(const Shape& shape, const DiceOptions& opt, Diagnostics& diag,
         diag.report(Severity::Error, Rie::Limit, shape.place(),
                     "displacement of this " + shape.kind() + " moves " + std::to_string(tooFar) +
                         " points farther than the limit; they stay where they were");
-    if (bound >= 0 && farthest > bound * 1.001)
+    if (bound.radius >= 0 && farthest > bound.radius * 1.001)
         diag.report(Severity::Warning, Rie::Range, shape.place(),
                     "displacement of this " + shape.kind() + " reaches " + std::to_string(farthest) +
-                        ", beyond its displacementbound of " + std::to_string(bound) + " (camera units); it is drawn whole",
-                    bound > 0 ? "other renderers need the bound times " + factor(farthest / bound) : "other renderers need a bound that is not 0");
+                        ", beyond its displacementbound of " + std::to_string(bound.radius) + " in \"" + bound.space +
+                        "\" space; it is drawn whole",
+                    bound.radius > 0 ? "other renderers need the bound times " + factor(farthest / bound.radius) : "other renderers need a bound that is not 0");
 }
+
+void closeSeams(const DiceOptions& opt, TriMesh& mesh, std::vector<uint32_t> vertex, std::vector<Vec3> flat) {
+    if (vertex.empty()) return;
+    Seams own;
+    (opt.seams ? *opt.seams : own).add(mesh, std::move(vertex), std::move(flat), opt.seamOrder, opt.seamWith);
+    own.close();
+}
+
+namespace {
+
+/// What must be the same of two shapes for their borders to be one throughout the shutter: nothing for shapes that stand still. To some
+/// 1e-6, as the same motion comes through several products of matrices.
+std::vector<double> motionOf(const Placed* p) {
+    std::vector<double> out;
+    if (!p || !p->placeMoves()) return out;
+    for (const auto& [time, m] : p->placeKeys()) {
+        out.push_back(double(time));
+        for (const Vec3d* v : {&m.x, &m.y, &m.z, &m.o})
+            for (int i = 0; i < 3; ++i) out.push_back(std::round((*v)[i] * 0x1p20));
+    }
+    return out;
+}
+
+bool stitched(const Shape& s) {
+    const scene::Param* p = s.attributes().value("stitch:enable");
+    return !p || p->numbers.empty() || p->numbers[0] != 0;
+}
+
+} // namespace
 
 void diceShapes(const std::vector<ShapeRef>& all, const DiceOptions& opt, Diagnostics& diag) {
     // A geometry once for all its places.
     std::vector<ShapeRef> shapes;
+    std::vector<const Placed*> places;
     std::unordered_set<const Shape*> known;
     for (const ShapeRef& s : all) {
         const Placed* p = s->placed();
-        if (!p) shapes.push_back(s);
-        else if (known.insert(p->geometry().get()).second) shapes.push_back(p->geometry());
+        if (!p) shapes.push_back(s), places.push_back(nullptr);
+        else if (known.insert(p->geometry().get()).second) shapes.push_back(p->geometry()), places.push_back(p);
     }
+    Seams seams;
     // Messages are kept by shape and passed on in order, so that they do not depend on threads.
     std::vector<std::vector<Diagnostic>> said(shapes.size());
     tbb::parallel_for(size_t(0), shapes.size(), [&](size_t i) {
         if (opt.stop && *opt.stop) return;
         Diagnostics own;
-        shapes[i]->dice(opt, own);
+        DiceOptions mine = opt;
+        mine.seamOrder = uint32_t(i);
+        if (stitched(*shapes[i])) mine.seams = &seams, mine.seamWith = motionOf(places[i]);
+        shapes[i]->dice(mine, own);
         said[i] = own.all();
     });
+    if (!(opt.stop && *opt.stop)) seams.close();
     for (auto& list : said)
         for (auto& d : list) diag.report(std::move(d));
 }

@@ -24,6 +24,8 @@ struct DiceGrid {
     std::vector<Vec3> P;              ///< in: points[i].P; out: displaced
 };
 
+class Seams;
+
 struct DiceOptions {
     DiceCamera camera = {};
     const StopFlag* stop = nullptr; ///< set: shapes not yet diced stay as they are, and what is diced is void; null: never
@@ -41,6 +43,12 @@ struct DiceOptions {
     /// The shape to be diced and what it is at other times: all of them are diced alike, each finely enough for all, and also those
     /// that rays could meet exactly. Empty: a still shape.
     std::span<const ShapeRef> keys;
+    /// Where borders of displaced shapes are left, to be closed when all are diced; null: a shape closes its own.
+    Seams* seams = nullptr;
+    uint32_t seamOrder = 0;         ///< of this shape among all, one apart for each key
+    std::vector<double> seamWith;   ///< borders are closed among those for which this is the same: how they move
+    /// From a named space to camera space; null, or false: the space is not known.
+    std::function<bool(const Shape&, const std::string& space, Matrix& out)> spaceOf;
 };
 
 /// Edge of a micropolygon in pixels: sqrt(ShadingRate), within limits.
@@ -53,6 +61,9 @@ void reportNotDisplaced(const Shape&, const DiceOptions&, Diagnostics&);
 /// mesh.P. Non-finite results stay undisplaced, and what exceeds Attribute "displacementbound" is reported, once a shape.
 void displaceMesh(const Shape&, const DiceOptions&, Diagnostics&, const std::function<SurfacePoint(uint32_t)>& pointOf,
                   const std::function<Vec2(uint32_t)>& stepOf, TriMesh& mesh);
+
+/// Closes the border of a shape's mesh, or leaves it to opt.seams. vertex: on the border; flat: where they were.
+void closeSeams(const DiceOptions&, TriMesh&, std::vector<uint32_t> vertex, std::vector<Vec3> flat);
 
 /// Dices every shape that needs it, in parallel.
 void diceShapes(const std::vector<ShapeRef>&, const DiceOptions&, Diagnostics&);

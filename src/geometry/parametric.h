@@ -10,12 +10,7 @@ struct LocalPoint {
     Vec3d n, nu, nv;          ///< unit normal along Pu x Pv and its derivatives; defined where the product vanishes too
 };
 
-/// Parameter lines along which a surface is cut into quadrilaterals, both increasing from 0 to 1.
-struct DiceLines {
-    std::vector<float> u, v;
-    std::vector<bool> gapU, gapV;          ///< by line: nothing lies between it and the next one
-    bool closedU = false, closedV = false; ///< the last line is the first again: its points are made equal to the bit
-};
+class EdgeCurve;
 
 class Parametric : public Shape {
 public:
@@ -39,6 +34,9 @@ protected:
     virtual std::vector<double> borders(int direction) const;
     /// Whether the surface is torn at such a border.
     virtual bool torn(int direction, double border) const { return false; }
+    /// The edge of a patch on the border of the surface, in the direction of u or v; side 0: v = 0, 1: u = 1, 2: v = 1, 3: u = 0; cell: which
+    /// patch along it, between `from` and `to`. False: it is no data of its own.
+    virtual bool edgeCurve(int /*side*/, int /*cell*/, double /*from*/, double /*to*/, EdgeCurve&) const { return false; }
     /// Index of the uniform value at a point.
     virtual int faceAt(double u, double v) const;
     /// Takes away triangles of the mesh that rays are to meet; meshParam_ is set.
@@ -53,7 +51,7 @@ protected:
     double pointScale_ = 0; ///< bound on |P| in double computations before cancellation, for the error bound
 
 private:
-    DiceLines diceLines(const DiceOptions&, bool displaced, Diagnostics&) const;
+    struct Dicing; ///< parametric_dice.cpp
 };
 
 /// Derivatives of the unit normal along Pu x Pv from second partials; n must be set.

@@ -21,6 +21,12 @@ Placed::Placed(ShapeSource s, ShapeRef geometry, const scene::Transform& place)
     moving_ = std::move(moving);
 }
 
+std::vector<std::pair<float, Affine>> Placed::placeKeys() const {
+    std::vector<std::pair<float, Affine>> out;
+    for (size_t i = 0; moving_ && i < moving_->keys.size(); ++i) out.emplace_back(moving_->times[i], moving_->keys[i]);
+    return out;
+}
+
 size_t Placed::keyAt(float time, double& way) const { return keyBefore(moving_->times, time, way); }
 
 Affine Placed::fromGeometry(float time) const {

@@ -67,6 +67,9 @@ public:
     /// Null where rays meet no primitives one by one that know the time.
     const KeyedShape* keyed() const { return keyed_; }
     bool moves() const { return moving_ || deforming_ || (keyed_ && keyed_->joined()); }
+    bool placeMoves() const { return moving_ != nullptr; }
+    /// Where it is placed at times of the shutter, for one that is placeMoves().
+    std::vector<std::pair<float, Affine>> placeKeys() const;
     /// From camera space at a time. False: there is no way back then, and nothing to be met.
     bool toGeometry(float time, Affine& out) const;
     Affine fromGeometry(float time) const;

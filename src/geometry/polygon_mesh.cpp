@@ -1,11 +1,7 @@
 #include "geometry/polygon_mesh.h"
-#include "base/limits.h"
-#include "geometry/dice.h"
 #include "geometry/triangulate.h"
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <tuple>
 
 namespace alpenglow::geometry {
 
@@ -300,106 +296,6 @@ int PolygonMesh::weights(Class c, const SurfacePoint& p, Weight w[16]) const {
     w[1] = {index(1), p.b1, q.u1, q.v1};
     w[2] = {index(2), p.b2, q.u2, q.v2};
     return 3;
-}
-
-/// A point of the grid of n steps over a triangle. Points of an edge depend on nothing but where its ends lie, so that neighbours, also
-/// those with vertices of their own, have the same to the bit.
-Vec3 PolygonMesh::pointOnGrid(uint32_t tri, int n, int i, int j) const {
-    const int share[3] = {n - i - j, i, j};
-    const auto before = [](const Vec3d& a, const Vec3d& b) { return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z; };
-    for (int k = 0; k < 3; ++k) {
-        if (share[k] != 0) continue;
-        int first = (k + 1) % 3, second = (k + 2) % 3;
-        Vec3d a = cameraCorner(tri, first), b = cameraCorner(tri, second);
-        if (before(b, a)) std::swap(a, b), std::swap(first, second);
-        if (share[first] == 0) return Vec3(b);
-        if (share[second] == 0) return Vec3(a);
-        return Vec3((a * double(share[first]) + b * double(share[second])) / double(n));
-    }
-    const Vec3d a = cameraCorner(tri, 0), b = cameraCorner(tri, 1), c = cameraCorner(tri, 2);
-    return Vec3((a * double(share[0]) + b * double(share[1]) + c * double(share[2])) / double(n));
-}
-
-/// Points that were one before they were displaced are one after it: in the middle of where their faces, whose normals and variables may
-/// differ there, have moved them.
-static void closeCracks(const std::vector<Vec3>& flat, std::vector<Vec3>& moved) {
-    std::vector<uint32_t> order(flat.size());
-    std::iota(order.begin(), order.end(), 0u);
-    const auto key = [&](uint32_t i) { return std::tie(flat[i].x, flat[i].y, flat[i].z); };
-    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
-    for (size_t i = 0, j; i < order.size(); i = j) {
-        Vec3d sum(moved[order[i]]);
-        bool same = true;
-        for (j = i + 1; j < order.size() && key(order[j]) == key(order[i]); ++j) {
-            sum = sum + Vec3d(moved[order[j]]);
-            same &= moved[order[j]] == moved[order[i]];
-        }
-        if (same) continue;
-        const Vec3 middle(sum / double(j - i));
-        for (size_t k = i; k < j; ++k) moved[order[k]] = middle;
-    }
-}
-
-void PolygonMesh::dice(const DiceOptions& opt, Diagnostics& diag) {
-    if (!isDisplaced(*this, opt)) return;
-    // Every triangle is cut alike, so that neighbours within the primitive meet without cracks.
-    double edge = diceEdge(*source_.attributes), longest = 1;
-    const auto measure = [&](const PolygonMesh& mesh) {
-        for (uint32_t t = 0; t < mesh.triangles_; ++t)
-            for (int k = 0; k < 3; ++k) {
-                Vec3d a = mesh.cameraCorner(t, k), b = mesh.cameraCorner(t, (k + 1) % 3);
-                longest = std::max(longest, opt.camera.pixels((a + b) * 0.5, b - a) / edge);
-            }
-    };
-    if (opt.keys.empty()) measure(*this);
-    for (const ShapeRef& key : opt.keys)
-        if (const auto* mesh = dynamic_cast<const PolygonMesh*>(key.get())) measure(*mesh);
-    double cap = std::sqrt(2.0 * double(limits::kDiceQuads) / double(triangles_));
-    uint32_t n = uint32_t(std::clamp(std::ceil(longest), 1.0, std::clamp(std::floor(cap), 1.0, double(limits::kDiceEdge))));
-    if (longest > n)
-        diag.report(Severity::Info, Rie::Limit, place(),
-                    kind() + " would need more than " + std::to_string(limits::kDiceQuads) +
-                        " micropolygons; it is diced more coarsely");
-    uint32_t perTri = (n + 1) * (n + 2) / 2;
-    auto row = [&](uint32_t j) { return j * (n + 1) - j * (j - 1) / 2; }; // first vertex of row j, rows shrink by one
-    TriMesh m;
-    std::vector<Vec2> param;
-    for (uint32_t t = 0; t < triangles_; ++t) {
-        uint32_t base = t * perTri;
-        for (uint32_t j = 0; j <= n; ++j)
-            for (uint32_t i = 0; i + j <= n; ++i) {
-                param.push_back({float(double(i) / n), float(double(j) / n)});
-                m.P.push_back(pointOnGrid(t, int(n), int(i), int(j)));
-            }
-        for (uint32_t j = 0; j < n; ++j)
-            for (uint32_t i = 0; i + j < n; ++i) {
-                uint32_t a = base + row(j) + i, c = base + row(j + 1) + i;
-                m.made.insert(m.made.end(), {a, a + 1, c});
-                if (i + j + 1 < n) m.made.insert(m.made.end(), {a + 1, c + 1, c});
-            }
-    }
-    undiced_ = std::move(mesh_); // mesh_.vertices stays: the shape is none of exact hits
-    meshParam_ = std::move(param);
-    trianglesPerPrim_ = n * n;
-    displaced_ = true;
-    const std::vector<Vec3> flat = m.P;
-    float step = float(1.0 / n);
-    displaceMesh(*this, opt, diag,
-                 [&](uint32_t i) { return evaluateLocal(i / perTri, meshParam_[i].x, meshParam_[i].y); },
-                 [&](uint32_t i) {
-                     // A barycentric step turned to u and v: the extent of one micro-triangle.
-                     uint32_t t = i / perTri;
-                     Frame f = frame(faceNormal(t));
-                     Vec3d a = objectPoint(vertexOf(t, 0)), e1 = objectPoint(vertexOf(t, 1)) - a,
-                           e2 = objectPoint(vertexOf(t, 2)) - a;
-                     auto extent = [&](const Vec3d& d) {
-                         return float(std::max({std::fabs(dot(e1, d)), std::fabs(dot(e2, d)), 1e-12}));
-                     };
-                     return Vec2{extent(f.a) * step, extent(f.b) * step};
-                 }, m);
-    closeCracks(flat, m.P);
-    m.finish();
-    mesh_ = std::move(m);
 }
 
 } // namespace alpenglow::geometry

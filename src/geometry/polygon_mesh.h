@@ -69,7 +69,7 @@ private:
     void setVariables(SurfacePoint&, const Plane*, uint32_t needs) const;
     const Areas& areas() const;
     Vec3d faceNormal(uint32_t tri) const;
-    Vec3 pointOnGrid(uint32_t tri, int n, int i, int j) const;
+    struct Dicing; ///< polygon_dice.cpp
     Vec3d objectPoint(uint32_t vertex) const {
         return {objectP_[3 * vertex], objectP_[3 * vertex + 1], objectP_[3 * vertex + 2]};
     }

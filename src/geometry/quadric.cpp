@@ -1,5 +1,6 @@
 #include "geometry/quadric.h"
 #include "base/exact.h"
+#include "geometry/edge_curve.h"
 #include "geometry/solve.h"
 #include <algorithm>
 #include <cmath>
@@ -83,6 +84,24 @@ Vec3d Quadric::cameraPosition(double u, double v) const {
     Vec3d p = profile(v).p;
     const auto [s, c] = exact::sinCos(u * thetaMax_);
     return transformPoint(toCamera(), Vec3d(p.x * c - p.y * s, p.x * s + p.y * c, p.z));
+}
+
+/// Circles, and the straight lines of some.
+bool Quadric::edgeCurve(int side, int, double, double, EdgeCurve& out) const {
+    const auto& m = toCamera().m;
+    if (std::fabs(m[0][3]) + std::fabs(m[1][3]) + std::fabs(m[2][3]) + std::fabs(m[3][3] - 1) > 1e-7) return false; // a perspective
+    if (side & 1) {
+        const Profile p = profile(0.5);
+        if (p.dd.x != 0 || p.dd.y != 0 || p.dd.z != 0) return false;
+        const double u = side == 1 ? 1 : 0;
+        out = EdgeCurve::line(cameraPosition(u, 0), cameraPosition(u, 1));
+        return true;
+    }
+    Vec3d p = profile(side == 0 ? 0 : 1).p;
+    if (std::fabs(p.x) + std::fabs(p.y) < 1e-12 * radius_) p.x = p.y = 0; // the cosine of a quarter turn
+    out = EdgeCurve::arc(transformPoint(toCamera(), Vec3d(0, 0, p.z)), transformVector(toCamera(), Vec3d(p.x, p.y, 0)),
+                         transformVector(toCamera(), Vec3d(-p.y, p.x, 0)), thetaMax_);
+    return true;
 }
 
 LocalPoint Quadric::cameraPoint(double u, double v) const {

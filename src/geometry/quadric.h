@@ -41,6 +41,7 @@ protected:
 
     LocalPoint cameraPoint(double u, double v) const override;
     Vec3d cameraPosition(double u, double v) const override;
+    bool edgeCurve(int side, int cell, double from, double to, EdgeCurve&) const override;
     bool needsDicing() const override { return false; }
     bool closedU() const override { return fullTurn_; }
     size_t classCount(scene::Class) const override;

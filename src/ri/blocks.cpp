@@ -310,7 +310,7 @@ void Interpreter::resource(const Call& call) {
     if (part("geometrymodification")) {
         to.displacement = from.displacement;
         to.trimCurve = from.trimCurve;
-        values({"displacementbound", "trimcurve", "dice", "GeometricApproximation"});
+        values({"displacementbound", "trimcurve", "dice", "stitch", "GeometricApproximation"});
     }
     if (part("geometrydefinition")) {
         to.ubasis = from.ubasis;

@@ -111,6 +111,14 @@ void WorldImpl::diceShapes(Diagnostics& d) {
         }
         return bound;
     };
+    dice.spaceOf = [&](const geometry::Shape& shape, const std::string& space, Matrix& out) {
+        if (space == "object") return out = shape.toCamera(), true;
+        if (space == "shader") {
+            const InstanceRef& shader = bindingOf(shape).displacement ? bindingOf(shape).displacement : bindingOf(shape).surface;
+            return shader ? (out = shader->toCurrent, true) : false;
+        }
+        return matrix(space, "current", out);
+    };
     geometry::diceShapes(shapes_, dice, d);
 }
 

@@ -1,0 +1,60 @@
+// Edges of surfaces as data of their own. Where an edge is cut depends on this data, the camera and ShadingRate only, and the cuts are
+// dyadic: surfaces that have an edge in common are cut there at the same points to the bit, in whatever primitives and directions.
+#pragma once
+#include "geometry/dice.h"
+#include <array>
+#include <span>
+#include <vector>
+
+namespace alpenglow::geometry {
+
+/// A curve over 0..1 in camera space. Its data is rounded to single precision, as corners of polygons are, and evaluated from the end that
+/// comes first, so that at(t) of one direction and at(1 - t) of the other are the same to the bit for dyadic t.
+class EdgeCurve {
+public:
+    static EdgeCurve line(const Vec3d& from, const Vec3d& to);
+    /// Rational Bezier of any degree from 1 to limits::kNurbsOrder - 1: x, y and z times the weight, and the weight.
+    static EdgeCurve bezier(std::span<const std::array<double, 4>>);
+    /// centre + x cos(t sweep) + y sin(t sweep), sweep in radians. It keeps its direction.
+    static EdgeCurve arc(const Vec3d& centre, const Vec3d& x, const Vec3d& y, double sweep);
+
+    Vec3d at(double t) const { return along(reversed_ ? 1 - t : t); }
+    /// The same from the end that comes first, and on demand the first two derivatives.
+    Vec3d along(double c, Vec3d* slope = nullptr, Vec3d* bend = nullptr) const;
+    /// All of it is one point.
+    bool collapsed() const { return collapsed_; }
+    /// The fewest segments that keep its two sides apart: 1, or more where it turns about.
+    double fewest() const { return fewest_; }
+    bool reversed() const { return reversed_; }
+
+private:
+    Vec3d bezierAt(double c, Vec3d* slope, Vec3d* bend) const;
+    enum class Kind { Line, Bezier, Arc } kind_ = Kind::Line;
+    bool reversed_ = false, collapsed_ = false, rational_ = false;
+    double fewest_ = 1, sweep_ = 0;
+    Vec3d a_, b_, c_;                          ///< ends of a line; centre and axes of an arc
+    std::vector<std::array<double, 4>> points_; ///< of a Bezier curve, in the order in which it is evaluated
+};
+
+/// Where an edge is cut.
+class EdgeCuts {
+public:
+    /// curves: the edge at each of its times. displaced: into micropolygons; else as finely as it bends.
+    EdgeCuts(std::span<const EdgeCurve> curves, const DiceCamera&, double micropolygon, double deviation, bool displaced);
+    /// Of a part between dyadic places: how many equal segments, a power of two; 0: its halves are cut each for itself.
+    int segments(double t0, double t1) const;
+    /// Increasing, from 0 to 1.
+    std::vector<double> places() const;
+    /// Segments longer by this factor. Edges that other primitives may share keep theirs.
+    void coarsen(double by) { coarse_ *= by; }
+
+private:
+    double need(double t0, double t1) const;
+    template <class Visit> bool walk(double t0, double t1, Visit&) const;
+    std::span<const EdgeCurve> curves_;
+    const DiceCamera& camera_;
+    double edge_, deviation_, coarse_ = 1;
+    bool displaced_;
+};
+
+} // namespace alpenglow::geometry

@@ -13,6 +13,10 @@
 
 namespace alpenglow::geometry {
 
+namespace {
+constexpr int kDeepest = 20; ///< parts of parts: where the eye lies on a face, what is near it would look large at any size
+}
+
 struct PolygonMesh::Dicing {
     const PolygonMesh& s;
     const DiceOptions& opt;
@@ -25,7 +29,7 @@ struct PolygonMesh::Dicing {
     std::vector<uint32_t> prim;
     std::vector<float> step;    ///< size of a facet, as a part of the triangle
     std::vector<uint8_t> rim;   ///< on an open side
-    double facets = 0;          ///< when they are only counted
+    double facets = 0, most;    ///< when they are only counted: no further than to `most`
 
     /// A side of a part of a triangle: a piece of an edge, `from` at its first corner.
     struct Side {
@@ -42,6 +46,7 @@ struct PolygonMesh::Dicing {
             Vec3d P;    ///< as all parts that meet there have it
         } corner[3];
         Side side[3];   ///< from corner k to the next
+        int depth = 0;
     };
 
     Dicing(const PolygonMesh&, const DiceOptions&);
@@ -62,7 +67,8 @@ struct PolygonMesh::Dicing {
     }
 };
 
-PolygonMesh::Dicing::Dicing(const PolygonMesh& shape, const DiceOptions& o) : s(shape), opt(o) {
+PolygonMesh::Dicing::Dicing(const PolygonMesh& shape, const DiceOptions& o)
+    : s(shape), opt(o), most(std::max(2.0 * double(limits::kDiceQuads), 2.0 * shape.triangles_)) {
     for (const ShapeRef& key : opt.keys)
         if (const auto* k = dynamic_cast<const PolygonMesh*>(key.get()); k && k->triangles_ == s.triangles_) keys.push_back(k);
     if (keys.empty()) keys.push_back(&s);
@@ -106,6 +112,7 @@ void PolygonMesh::Dicing::cut(uint32_t tri, bool count) {
 void PolygonMesh::Dicing::cut(const Part& p, bool count) {
     int rates[3];
     bool split[3], any = false;
+    if (count && facets > most) return;
     for (int k = 0; k < 3; ++k) {
         rates[k] = p.side[k].cuts->segments(p.side[k].from, p.side[k].to);
         any |= split[k] = rates[k] == 0;
@@ -140,11 +147,12 @@ void PolygonMesh::Dicing::cutInside(const Part& p, const bool split[3], bool cou
         for (const PolygonMesh* m : keys) curves[n].push_back(EdgeCurve::line(at(*m, p.tri, a.b), at(*m, p.tri, b.b)));
         own[n] = EdgeCurve::line(a.P, b.P);
         cuts.push_back(cutsOf(curves[n], false));
+        while (p.depth >= kDeepest && cuts.back().segments(0, 1) == 0) cuts.back().coarsen(2);
         return Side{&cuts.back(), &own[n], 0, 1, false};
     };
     const auto back = [](Side k) { return std::swap(k.from, k.to), k; };
     const auto part = [&](const Part::Corner& a, const Part::Corner& b, const Part::Corner& c, const Side& ab, const Side& bc, const Side& ca) {
-        cut(Part{p.tri, {a, b, c}, {ab, bc, ca}}, count);
+        cut(Part{p.tri, {a, b, c}, {ab, bc, ca}, p.depth + 1}, count);
     };
     if (sides == 1) {
         const Part::Corner m = mid(0);
@@ -226,13 +234,12 @@ void PolygonMesh::dice(const DiceOptions& opt, Diagnostics& diag) {
     if (!isDisplaced(*this, opt)) return;
     Dicing d(*this, opt);
     d.findOpen();
-    const double most = std::max(2.0 * double(limits::kDiceQuads), 2.0 * triangles_);
     const auto total = [&] {
         d.facets = 0;
-        for (uint32_t t = 0; t < triangles_ && d.facets <= most; ++t) d.cut(t, true);
+        for (uint32_t t = 0; t < triangles_ && d.facets <= d.most; ++t) d.cut(t, true);
         return d.facets;
     };
-    while (total() > most && d.coarse < 1e9) d.coarse *= 2;
+    while (total() > d.most && d.coarse < 1e9) d.coarse *= 2;
     if (d.coarse > 1)
         diag.report(Severity::Info, Rie::Limit, place(),
                     kind() + " would need more than " + std::to_string(limits::kDiceQuads) +

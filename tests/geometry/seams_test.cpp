@@ -296,6 +296,23 @@ TEST(Dicing, FacetsAreMicropolygonsAtAnyDistance) {
     }
 }
 
+TEST(Dicing, EndsWhereTheEyeLiesOnAFace) {
+    // What is near the eye looks large however often it is cut. The box's first face lies at z = -1.3: at the eye, and beside it.
+    for (int kind : {0, 1, 3})
+        for (float x : {0.f, 0.3f}) {
+            Scene s(box(kind), translateMatrix(x, 0.1f, 1.3f), 20);
+            size_t triangles = 0;
+            for (const ShapeRef& shape : s.shapes) triangles += shape->mesh().triangles();
+            EXPECT_LT(triangles, 1'000'000u) << kind;
+            EXPECT_EQ(openEdges(s.shapes), 0u) << kind << " " << x;
+        }
+    for (const std::vector<float>& P : {std::vector<float>{-60, 0, -60, -60, 0, 60, 60, 0, 60, 60, 0, -60}, {0, 0, 0, 1e6f, 0, 0, 0, 0, 1e6f}, {-1, 0, 0, 1, 0, 0, 0, 1, 0}}) {
+        Scene s({polygon(P)}, Matrix(), 20);
+        EXPECT_GT(s.shapes[0]->mesh().triangles(), 100u);
+        EXPECT_LT(s.shapes[0]->mesh().triangles(), 1'000'000u);
+    }
+}
+
 TEST(Dicing, HeightsOfADisplacedBallAndPlane) {
     // Vertices lie where the shader puts them; between them facets are off by what their chords are.
     scene::Attributes a;

@@ -103,8 +103,10 @@ TEST(DisplacementBound, ShadersSayTheirOwn) {
     EXPECT_TRUE(warned("Displacement \"boundlift\" \"float __displacementbound_sphere\" .3\n" + surface));
     EXPECT_FALSE(warned("Attribute \"displacementbound\" \"sphere\" .3\nDisplacement \"boundlift\" \"float __displacementbound_sphere\" .3\n" + surface));
     EXPECT_FALSE(warned("Displacement \"boundlift\" \"float __displacementbound_sphere\" .3\nSurface \"boundheight\" \"float __displacementbound_sphere\" .3\n"));
-    // The space is the displacement's: in that of an object three times as large .3 are .9.
-    EXPECT_FALSE(warned("Scale 3 3 1\nDisplacement \"boundlift\" \"float __displacementbound_sphere\" .3 \"string __displacementbound_coordinatesystem\" \"object\"\n" + surface));
+    // The space is the displacement's: in that of an object three times as large .3 are .9, but not along the axis that is as it was.
+    const std::string ofObject = "Displacement \"boundlift\" \"float __displacementbound_sphere\" .3 \"string __displacementbound_coordinatesystem\" \"object\"\n";
+    EXPECT_FALSE(warned("Scale 3 3 3\n" + ofObject + surface));
+    EXPECT_TRUE(warned("Scale 3 3 1\n" + ofObject + surface));
 }
 
 TEST(CoShaders, ArraysOfHandlesAndOfTexts) {

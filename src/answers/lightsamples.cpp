@@ -283,7 +283,7 @@ uint64_t Answers::sampleLight(KernelRun& c, const LightLoop& loop, int li, int t
             toLight.x, toLight.y, toLight.z, v[i].Cl.x * factor[i], v[i].Cl.y * factor[i], v[i].Cl.z * factor[i],
             v[i].Ol.x, v[i].Ol.y, v[i].Ol.z};
         for (size_t r = 0; r < 9; ++r) kept.out[r * size_t(lanes) + lane] = rows[r];
-        kept.distance[lane] = sky || light.kind == LightKind::Distant ? 1e38f : length(toLight);
+        kept.distance[lane] = v[i].ownShadow ? 0 : sky || light.kind == LightKind::Distant ? 1e38f : length(toLight);
         lit |= uint64_t(1) << lane;
     }
     return lit;

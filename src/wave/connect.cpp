@@ -145,7 +145,8 @@ void Gather::send(const Reached& r) {
     shadow.share = share;
     shadow.path = path;
     if (path) shadow.light = e_.lightSymbols_[size_t(&light - world_.lights_.data())];
-    if (c_->below && !rules_.pickOne && !light.shadows) shadow.distance = 0; // as in light loops there: nothing is in the way
+    // As in light loops there, nothing is in the way; or the light's shader looked for itself.
+    if ((c_->below && !rules_.pickOne && !light.shadows) || queries_.value[k].ownShadow) shadow.distance = 0;
 }
 
 } // namespace alpenglow::transport

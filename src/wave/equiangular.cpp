@@ -116,6 +116,7 @@ private:
         c *= phase * n.scale * v.kept(RayType::Diffuse) * (area_ ? 1 / drawn_[i].pdf : float(kPi)); // Cl is irradiance / pi
         if (!(maxComponent(c) > 0)) return;
         ShadowRay shadow{p.Ps, way / far, far * (1 - (area_ ? 1e-6f : 1e-5f)), c, n.flight->target, p.shutter, &r};
+        if (v.ownShadow) shadow.distance = 0;
         shadow.media = r.media;
         shadow.share = e_.extraOf(r).share;
         e_.shadows.push_back(shadow);

@@ -14,7 +14,13 @@ shading::TargetValue Engine::rayOfLight(BatchContext& c, const SiteInfo& s, int 
         std::vector<ShadowRay> rays;
         transmissionRays(s, p, p.Ps, p.lit, row, Color(1), shading::kNoTarget, site, occurrence, rays);
         const auto point3 = [&](size_t arg) { return Vec3(row(s.rows[arg]), row(s.rows[arg] + 1), row(s.rows[arg] + 2)); };
-        shadowsInMedia(rays, point3(0), point3(1), p.Ps, p.lit, c.lit ? c.lit->binding(point) : nullptr);
+        const Vec3 from = point3(0), to = point3(1);
+        shadowsInMedia(rays, from, to, p.Ps, p.lit, c.lit ? c.lit->binding(point) : nullptr);
+        // The lit point as shaders give it, perhaps moved off its surface.
+        if (std::min(length(from - p.Ps), length(to - p.Ps)) <= 0.01f * length(to - from)) {
+            c.ownShadows.resize(c.points.size());
+            c.ownShadows[size_t(point)] = 1;
+        }
         for (const ShadowRay& r : rays) value.radiance += r.contribution * (r.distance > 0 ? transmittance(r) : Color(1));
         return value;
     }
@@ -241,6 +247,7 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
     c->bound = &bound;
     c->lit = call.lit;
     c->light = &light;
+    c->ownShadows.clear();
     c->points.swap(queries); // lent; given back below
     std::vector<shading::InstanceView> views;
     std::vector<uint32_t> viewOf;
@@ -281,6 +288,7 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
         }
     }
     addLightPairs(*c, queries, out);
+    for (size_t i = 0; i < c->ownShadows.size(); ++i) out[i].ownShadow = c->ownShadows[i] != 0;
     for (size_t i = 0; i < queries.size(); ++i) // the kernel divided by the squared distance: radiance does not
         if (const float scale = (call.of.empty() ? light : *call.of[i]).intensityScale; scale > 0)
             out[i].Cl *= dot(out[i].L, out[i].L) * scale;

@@ -81,6 +81,7 @@ struct LightValue {
     Vec3 L;
     Color Cl{0}, Ol{1};
     bool lit = false;
+    bool ownShadow = false; ///< its shader asked transmission() from or to the lit point: Cl has what is in the way already
     float nonDiffuse = 0, nonSpecular = 0; ///< weights of __nondiffuse and __nonspecular
     /// What a lobe of a lighting shadeop keeps of this light (rsl.md 9).
     float kept(RayType t) const { return std::max(0.f, 1 - (t == RayType::Diffuse ? nonDiffuse : nonSpecular)); }

@@ -40,7 +40,7 @@ TEST(LightShadows, ABallDoesNotShadowItself) {
 // A pane of opacity .25 between the light and the floor at the origin, L.N = 1.
 TEST(LightShadows, OthersShadow) {
     const std::string floor = "Surface \"matte\" \"Ka\" 0 \"Kd\" 1\nPolygon \"P\" [-60 0 -60  -60 0 60  60 0 60  60 0 -60]\n";
-    const std::string pane = "AttributeBegin Surface \"constant\" Opacity .25 .25 .25 Polygon \"P\" [-9 1 -9  -9 1 9  9 1 9  9 1 -9] AttributeEnd\n";
+    const std::string pane = "AttributeBegin Surface \"constant\" Color 0 0 0 Opacity .25 .25 .25 Polygon \"P\" [-9 1 -9  -9 1 9  9 1 9  9 1 -9] AttributeEnd\n";
     const CameraRay below = rayTo({.3f, .4f, -.4f}, {0, 0, 0});
     const struct { const char* light; float want; } cases[] = {
         {"\"shadowpoint\" 1 \"intensity\" 4 \"from\" [0 2 0]", 1},
@@ -50,8 +50,15 @@ TEST(LightShadows, OthersShadow) {
         {"\"shadowdistant\" 1 \"from\" [0 1 0] \"to\" [0 0 0]", 1},
         {"\"shadowdistant\" 1 \"from\" [0 1 0] \"to\" [0 0 0] \"string shadowname\" \"map\"", .75f}};
     for (const auto& c : cases) {
-        Scene s("WorldBegin\nSides 2\nLightSource " + std::string(c.light) + "\n" + floor + pane + "WorldEnd\n", withShaders(Hider::Hidden));
+        const std::string world = "WorldBegin\nSides 2\nLightSource " + std::string(c.light) + "\n";
+        Scene s(world + floor + pane + "WorldEnd\n", withShaders(Hider::Hidden));
         EXPECT_NEAR(s.one(below).x, c.want, 1e-5) << c.light << s.messages();
+        // Under path every light has shadows; those that the light's shader asks for are not cast twice.
+        writeShader("sumslights", "surface sumslights() { Oi = 1; illuminance(P, normalize(N), PI/2) Ci += Cl * (normalize(L) . normalize(N)); }\n");
+        for (const std::string& lit : {floor, "Surface \"sumslights\"" + floor.substr(floor.find('\n'))}) {
+            Scene path(world + lit + pane + "WorldEnd\n", withShaders(Hider::Path));
+            EXPECT_NEAR(path.one(below).x, .75f, 1e-5) << c.light << lit << path.messages();
+        }
     }
 }
 

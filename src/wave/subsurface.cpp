@@ -11,7 +11,7 @@ namespace alpenglow::transport {
 
 namespace {
 
-/// Marble, of which Jensen and others have measured 1/mm (2001): where nothing else is said.
+/// Defaults: marble, 1/mm (Jensen and others, A Practical Model for Subsurface Light Transport, 2001).
 const Color kScattering{2.19f, 2.62f, 3.f}, kAbsorption{.0021f, .0041f, .0071f};
 constexpr int kSamplesElsewhere = 16; ///< of a call under hidden and raytrace
 

@@ -7,7 +7,7 @@ namespace alpenglow::transport {
 /// Attribute "photon" of a surface; names that are not known are reported. `meets` and `meetsBoth`: WorldImpl::bindPhotons().
 PhotonBinding photonsOf(const scene::Attributes&, Diagnostics&);
 
-/// Tells surfaces apart whose photonsOf() or visibility differ; "" where nothing is said.
+/// Tells surfaces apart whose photonsOf() or visibility differ; "" without attributes of photons.
 std::string photonKey(const scene::Attributes&);
 
 /// A photonmap() or caustic(). The world is told which maps it asks for.

@@ -121,6 +121,21 @@ bool Engine::trace(std::span<const CameraRay> rays, std::span<SampleResult> out,
     }
 }
 
+void Engine::beginTrace() {
+    spoiled_.clear();
+    waiting_.clear();
+    hitQueues_.clear();
+    groupsWithHits_.clear();
+    hitsWaiting_ = 0;
+}
+
+void Engine::endTrace(const Sched& sched) {
+    counters.nonFinite += sched.nonFinite();
+    counters.overLimit += sched.overLimit();
+    counters.peakFrameBytes = std::max(counters.peakFrameBytes, sched.peakFrameBytes());
+    forget();
+}
+
 void Engine::forget() {
     lobes.clear();
     lobeRows_.clear();
@@ -179,11 +194,7 @@ bool Engine::traceAll(std::span<const CameraRay> rays, std::span<SampleResult> o
         if (lightPaths_) r.path = lightPaths_->begin();
     }
     counters.paths += rays.size();
-    spoiled_.clear();
-    waiting_.clear();
-    hitQueues_.clear();
-    groupsWithHits_.clear();
-    hitsWaiting_ = 0;
+    beginTrace();
     bool done = sched.run();
     if (done) keepRecordings(sched);
     float clampAt = world_->settings_.sampleClamp;
@@ -208,10 +219,7 @@ bool Engine::traceAll(std::span<const CameraRay> rays, std::span<SampleResult> o
         o = {std::min(o.x, 1.f), std::min(o.y, 1.f), std::min(o.z, 1.f)};
     }
     for (int i : spoiled_) out[size_t(i)].color = Color(std::numeric_limits<float>::quiet_NaN());
-    counters.nonFinite += sched.nonFinite();
-    counters.overLimit += sched.overLimit();
-    counters.peakFrameBytes = std::max(counters.peakFrameBytes, sched.peakFrameBytes());
-    forget();
+    endTrace(sched);
     return done;
 }
 

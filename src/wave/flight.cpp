@@ -4,6 +4,22 @@
 
 namespace alpenglow::transport {
 
+void BatchContext::move(size_t from, size_t to) {
+    if (from == to) return;
+    points[to] = points[from];
+    rays[to] = rays[from];
+    targets[to] = targets[from];
+    bindings[to] = bindings[from];
+    points[to].ray = &rays[to];
+}
+
+void BatchContext::keepFirst(size_t count) {
+    points.resize(count);
+    rays.resize(count);
+    targets.resize(count);
+    bindings.resize(count);
+}
+
 void Engine::fly(BatchContext& c, Sched& sched) {
     if (events_.empty()) return;
     flights_.clear();
@@ -21,19 +37,9 @@ void Engine::fly(BatchContext& c, Sched& sched) {
             continue;
         }
         c.rays[i].weight *= flights_[i].left;
-        if (kept != i) {
-            c.points[kept] = c.points[i];
-            c.rays[kept] = c.rays[i];
-            c.targets[kept] = c.targets[i];
-            c.bindings[kept] = c.bindings[i];
-            c.points[kept].ray = &c.rays[kept];
-        }
-        ++kept;
+        c.move(i, kept++);
     }
-    c.points.resize(kept);
-    c.rays.resize(kept);
-    c.targets.resize(kept);
-    c.bindings.resize(kept);
+    c.keepFirst(kept);
 }
 
 void Engine::fly(std::vector<const Sched::Task*>& missed, Sched& sched) {

@@ -123,19 +123,9 @@ void Engine::takeGlobalMaps(BatchContext& c, Sched& sched) {
             sched.release(c.targets[i]);
             continue;
         }
-        if (kept != i) {
-            c.points[kept] = c.points[i];
-            c.rays[kept] = c.rays[i];
-            c.targets[kept] = c.targets[i];
-            c.bindings[kept] = c.bindings[i];
-            c.points[kept].ray = &c.rays[kept];
-        }
-        ++kept;
+        c.move(i, kept++);
     }
-    c.points.resize(kept);
-    c.rays.resize(kept);
-    c.targets.resize(kept);
-    c.bindings.resize(kept);
+    c.keepFirst(kept);
 }
 
 } // namespace alpenglow::transport

@@ -114,16 +114,9 @@ bool Engine::emitAll(const PhotonJob& job, uint32_t first, uint32_t count) {
         r.media = world_->eye_.count ? &world_->eye_ : nullptr;
         if (world_->fades_) sample.level = random(r).one(0, kLevel, 0);
     }
-    spoiled_.clear();
-    waiting_.clear();
-    hitQueues_.clear();
-    groupsWithHits_.clear();
-    hitsWaiting_ = 0;
+    beginTrace();
     const bool done = sched.run();
-    counters.nonFinite += sched.nonFinite();
-    counters.overLimit += sched.overLimit();
-    counters.peakFrameBytes = std::max(counters.peakFrameBytes, sched.peakFrameBytes());
-    forget();
+    endTrace(sched);
     return done;
 }
 

@@ -33,7 +33,7 @@ struct BatchContext : KernelRun {
     std::exception_ptr failure;                ///< of a callback while the kernel ran: exceptions cannot pass generated code
     /// After each run of the kernel: throws what a callback threw.
     void ran() { if (failure) std::rethrow_exception(std::exchange(failure, nullptr)); }
-    /// Before the kernel runs, points that are not to be shaded leave: a point moves to a place before it, then the first are kept.
+    /// Before the kernel runs: points that are not shaded leave. A point moves to a place before it, then the first are kept.
     void move(size_t from, size_t to);
     void keepFirst(size_t count);
     size_t emitted = 0;                        ///< requests of all points so far

@@ -291,6 +291,8 @@ public:
     void takeGlobalMaps(BatchContext&, Sched&);
     const photons::PhotonMap* globalMapOf(int binding);
     std::unordered_map<int, const photons::PhotonMap*> globalMaps_; ///< by binding
+    void beginTrace();                  ///< nothing waits and nothing is spoiled
+    void endTrace(const Sched&);        ///< counts what the scheduler saw, and forgets
     bool emitAll(const PhotonJob&, uint32_t first, uint32_t count);
     void tiltPhotons(BatchContext&); ///< photonscatter.cpp
     // photonmodels.cpp
@@ -347,8 +349,6 @@ private:
     std::vector<uint32_t> viewOf_, occurrence_;
     std::vector<int> slotOf_;                  ///< by binding: its place in views_, else -1
     bool traceAll(std::span<const CameraRay>, std::span<SampleResult>, const StopFlag* stop);
-    void beginTrace();                  ///< nothing waits and nothing is spoiled
-    void endTrace(const Sched&);        ///< counts what the scheduler saw, and forgets
     void forget(); ///< what a trace() that has ended, or was given up, leaves behind
     /// Rays followed at once: enough to fill batches, few enough that their points stay in the cache of a core. Fewer once a
     /// shader has asked for more rays at the points of a batch than there is room for.

@@ -340,7 +340,9 @@ Interval divide(const Interval& a, const Interval& b) {
     return multiply(a, {1 / b.hi, 1 / b.lo});
 }
 
-Interval combined(const BlobOp& o, const Interval& a, const Interval& b) {
+} // namespace
+
+Interval combinedBounds(const BlobOp& o, const Interval& a, const Interval& b) {
     switch (o.kind) {
     case Kind::Add:
         return {a.lo + b.lo, a.hi + b.hi};
@@ -361,8 +363,9 @@ Interval combined(const BlobOp& o, const Interval& a, const Interval& b) {
     }
 }
 
-// How fast the segment's field changes, per radius: across its axis at most 1.812, along it 35/32; and its second derivatives.
-constexpr double kSegmentSlope = 2.12, kSegmentBend = 13.2;
+namespace {
+
+constexpr double kSegmentBend = 13.2; ///< bound on second derivatives of a segment's field
 
 } // namespace
 
@@ -385,7 +388,7 @@ Interval BlobField::leafBounds(const BlobLeaf& l, const Vec3d& lo, const Vec3d& 
     const double distance = length(e - l.along * std::clamp(dot(e, l.along), 0.0, l.length));
     if (distance - reach >= 1) return {0, 0};
     const double f = blobLeafField(l, q, nullptr, nullptr);
-    return {std::max(0.0, f - kSegmentSlope * reach), std::min(1.0, f + kSegmentSlope * reach)};
+    return {std::max(0.0, f - kBlobSegmentSlope * reach), std::min(1.0, f + kBlobSegmentSlope * reach)};
 }
 
 Interval BlobField::bounds(const BlobTape& tape, const Vec3d& lo, const Vec3d& hi, std::vector<Interval>& v) const {
@@ -394,7 +397,7 @@ Interval BlobField::bounds(const BlobTape& tape, const Vec3d& lo, const Vec3d& h
         const BlobOp& o = tape[i];
         if (o.kind == Kind::Leaf) v[i] = leafBounds(leaves_[o.a], lo, hi);
         else if (o.kind == Kind::Constant) v[i] = {o.c, o.c};
-        else v[i] = combined(o, v[o.a], v[o.b]);
+        else v[i] = combinedBounds(o, v[o.a], v[o.b]);
     }
     return v.back();
 }
@@ -471,14 +474,14 @@ Course segmentCourse(const BlobLeaf& l, const RayLeaf& r, double t0, double t1) 
     const double f = blobLeafField(l, r.o + r.d * middle, &g, nullptr), d = dot(g, r.d), bend = kSegmentBend * half * speed;
     const Vec3d e = r.o + r.d * middle - l.from;
     if (length(e - l.along * std::clamp(dot(e, l.along), 0.0, l.length)) - half >= 1) return {{0, 0}, {0, 0}};
-    const double by = std::min(kSegmentSlope * half, (std::fabs(d) + bend) * 0.5 * (t1 - t0));
+    const double by = std::min(kBlobSegmentSlope * half, (std::fabs(d) + bend) * 0.5 * (t1 - t0));
     return {{std::max(0.0, f - by), std::min(1.0, f + by)},
-            {std::max(d - bend, -kSegmentSlope * speed), std::min(d + bend, kSegmentSlope * speed)}};
+            {std::max(d - bend, -kBlobSegmentSlope * speed), std::min(d + bend, kBlobSegmentSlope * speed)}};
 }
 
 Course combinedCourse(const BlobOp& o, const Course& a, const Course& b) {
     Course r;
-    r.f = combined(o, a.f, b.f);
+    r.f = combinedBounds(o, a.f, b.f);
     switch (o.kind) {
     case Kind::Add:
         r.d = {a.d.lo + b.d.lo, a.d.hi + b.d.hi};

@@ -48,15 +48,23 @@ struct BlobLeaf {
     Vec3d from, along;   ///< segment: its begin and direction there
     double length = 0;
     uint32_t number = 0; ///< among all leaves of the request: of its vertex values
+    uint32_t at = 0;     ///< where its floats begin in those of the request
+    bool bySegment = false; ///< these are two ends and a radius, then the matrix; else the matrix alone
     double thin = 0;     ///< its smallest half axis, object space
     Vec3d lo, hi;        ///< it is 0 outside, object space
     std::shared_ptr<const BlobGround> ground;
     Vec3d inside(const Vec3d& p) const;
 };
 
+/// Makes of the floats of a leaf its shape, at and number left alone. segment: two ends and a radius, or null. False: the matrix has no
+/// inverse, or there is no radius.
+bool shapeBlobLeaf(const double matrix[16], const double segment[7], BlobLeaf&);
+/// The shape of a leaf that is 0 everywhere.
+void emptyBlobLeaf(BlobLeaf&);
+
 struct BlobOp {
     enum class Kind : uint8_t { Constant, Leaf, Add, Multiply, Maximum, Minimum, Subtract, Divide, Negate } kind = Kind::Constant;
-    uint32_t a = 0, b = 0; ///< earlier operations; Leaf: a is the leaf
+    uint32_t a = 0, b = 0; ///< earlier operations; Leaf: a is the leaf; Constant that moves: one more than the index of its float
     double c = 0;
 };
 using BlobTape = std::vector<BlobOp>;
@@ -66,9 +74,14 @@ struct BlobRay;
 
 class BlobField {
 public:
+    BlobField() = default;
+    /// For tapes over these leaves.
+    explicit BlobField(std::vector<BlobLeaf> leaves) : leaves_(std::move(leaves)) {}
     /// code, numbers, strings: those of the request. objectToWorld: depth maps are in world space. False after an error.
+    /// moves: the numbers may be others at other times, so that nothing is left out for what they are.
     bool read(int leaves, const std::vector<int>& code, const std::vector<float>& numbers,
-              const std::vector<std::string>& strings, const Matrix& objectToWorld, const SourcePlace&, Diagnostics&);
+              const std::vector<std::string>& strings, const Matrix& objectToWorld, const SourcePlace&, Diagnostics&,
+              bool moves = false);
     const BlobTape& whole() const { return tape_; }
     const std::vector<BlobLeaf>& leaves() const { return leaves_; }
 
@@ -89,12 +102,18 @@ public:
     /// Where the field passes the threshold between t0 and t1, by increasing t: all, each once. Stops after `most`.
     int crossings(const BlobTape&, const Vec3d& org, const Vec3d& dir, double t0, double t1, int most, double* out) const;
 
+    Interval leafBounds(const BlobLeaf&, const Vec3d& lo, const Vec3d& hi) const;
+
 private:
     struct Reader;
-    Interval leafBounds(const BlobLeaf&, const Vec3d& lo, const Vec3d& hi) const;
     BlobTape tape_;
     std::vector<BlobLeaf> leaves_;
 };
+
+/// Of an operation, by those of what it is made of.
+Interval combinedBounds(const BlobOp&, const Interval& a, const Interval& b);
+/// How fast a segment's field changes, per radius: across its axis at most 1.812, along it 35/32. So for either of its ends.
+inline constexpr double kBlobSegmentSlope = 2.12;
 
 /// The leaf's field in its own space, with gradient and second derivatives where asked for.
 double blobLeafField(const BlobLeaf&, const Vec3d& q, Vec3d* gradient, double* hessian);

@@ -18,6 +18,7 @@ struct BlobField::Reader {
     const Matrix& objectToWorld;
     const SourcePlace& place;
     Diagnostics& diag;
+    bool moves = false;
     std::vector<uint32_t> results; ///< by instruction: operation of the tape
     uint32_t leaves = 0;
     size_t at = 0, singular = 0;
@@ -73,16 +74,14 @@ Matrix matrixOf(const float* f) {
 
 } // namespace
 
-/// An ellipsoid, or with six numbers of two ends and a radius a segment.
-bool BlobField::Reader::matrixLeaf(const float* matrix, const float* segment) {
-    const Matrix m = matrixOf(matrix);
-    BlobLeaf l;
-    l.number = leaves;
+bool shapeBlobLeaf(const double matrix[16], const double segment[7], BlobLeaf& l) {
+    Matrix m;
+    for (int i = 0; i < 16; ++i) m.m[i / 4][i % 4] = matrix[i];
     double radius = 1;
     Vec3d a(0.0), b(0.0);
     if (segment) {
         a = Vec3d(segment[0], segment[1], segment[2]), b = Vec3d(segment[3], segment[4], segment[5]);
-        radius = std::fabs(double(segment[6]));
+        radius = std::fabs(segment[6]);
     }
     const Matrix inverse = determinant3(m) != 0 ? alpenglow::inverse(m) : Matrix();
     double norm = 0;
@@ -96,11 +95,7 @@ bool BlobField::Reader::matrixLeaf(const float* matrix, const float* segment) {
     bool sound = determinant3(m) != 0 && radius > 0 && std::isfinite(norm);
     for (auto& row : l.m)
         for (double x : row) sound = sound && std::isfinite(x);
-    if (!sound) { // no field at all
-        ++singular;
-        results.push_back(add({Kind::Constant, 0, 0, 0}));
-        return true;
-    }
+    if (!sound) return false;
     l.thin = std::sqrt(3 / norm);
     const double long_ = length(b - a) / radius;
     constexpr double kPoint = 1e-6; // a segment so short has no field of its own: it is a ball
@@ -117,6 +112,34 @@ bool BlobField::Reader::matrixLeaf(const float* matrix, const float* segment) {
         const double e = radius * std::sqrt(m.m[0][i] * m.m[0][i] + m.m[1][i] * m.m[1][i] + m.m[2][i] * m.m[2][i]);
         l.lo[i] = std::min(pa[i], pb[i]) - e;
         l.hi[i] = std::max(pa[i], pb[i]) + e;
+    }
+    return true;
+}
+
+void emptyBlobLeaf(BlobLeaf& l) {
+    l.kind = BlobLeaf::Kind::Ellipsoid;
+    for (auto& row : l.m) std::fill(row, row + 4, 0.0);
+    l.m[0][3] = 2; // all points are here, outside of the unit sphere
+    l.thin = INFINITY;
+    l.lo = Vec3d(INFINITY), l.hi = Vec3d(-INFINITY);
+}
+
+/// An ellipsoid, or with two ends and a radius a segment.
+bool BlobField::Reader::matrixLeaf(const float* matrix, const float* segment) {
+    BlobLeaf l;
+    l.number = leaves;
+    l.at = uint32_t((segment ? segment : matrix) - numbers.data());
+    l.bySegment = segment != nullptr;
+    double m[16], s[7] = {};
+    std::copy(matrix, matrix + 16, m);
+    if (segment) std::copy(segment, segment + 7, s);
+    if (!shapeBlobLeaf(m, segment ? s : nullptr, l)) { // no field at all
+        if (!moves) {
+            ++singular;
+            results.push_back(add({Kind::Constant, 0, 0, 0}));
+            return true;
+        }
+        emptyBlobLeaf(l);
     }
     field.leaves_.push_back(l);
     results.push_back(add({Kind::Leaf, uint32_t(field.leaves_.size() - 1), 0, 0}));
@@ -179,6 +202,7 @@ bool BlobField::Reader::ground() {
     BlobLeaf l;
     l.kind = BlobLeaf::Kind::Ground;
     l.number = leaves;
+    l.at = uint32_t(f - numbers.data());
     l.thin = g->a;
     l.ground = g;
     field.leaves_.push_back(l);
@@ -191,7 +215,7 @@ bool BlobField::Reader::leaf(int op) {
     bool good = false;
     if (op == 1000) {
         good = floats(1, f);
-        if (good) results.push_back(add({Kind::Constant, 0, 0, double(*f)}));
+        if (good) results.push_back(add({Kind::Constant, moves ? uint32_t(f - numbers.data()) + 1 : 0, 0, double(*f)}));
     } else if (op == 1001) {
         good = floats(16, f) && matrixLeaf(f, nullptr);
     } else if (op == 1002) {
@@ -254,7 +278,7 @@ bool BlobField::Reader::run() {
     field.tape_.resize(last + 1);
     std::vector<Interval> open(field.tape_.size(), Interval{-INFINITY, INFINITY});
     for (size_t i = 0; i < open.size(); ++i)
-        if (field.tape_[i].kind == Kind::Constant) open[i] = {field.tape_[i].c, field.tape_[i].c};
+        if (field.tape_[i].kind == Kind::Constant && field.tape_[i].a == 0) open[i] = {field.tape_[i].c, field.tape_[i].c};
     field.tape_ = simplified(field.tape_, open);
     if (singular)
         diag.report(Severity::Warning, Rie::Math, place,
@@ -265,10 +289,10 @@ bool BlobField::Reader::run() {
 
 bool BlobField::read(int count, const std::vector<int>& code, const std::vector<float>& numbers,
                      const std::vector<std::string>& strings, const Matrix& objectToWorld, const SourcePlace& place,
-                     Diagnostics& diag) {
+                     Diagnostics& diag, bool moves) {
     tape_.clear();
     leaves_.clear();
-    Reader r{*this, code, numbers, strings, objectToWorld, place, diag, {}};
+    Reader r{*this, code, numbers, strings, objectToWorld, place, diag, moves, {}};
     if (!r.run()) return false;
     if (int(r.leaves) != count) {
         diag.report(Severity::Error, Rie::Consistency, place,

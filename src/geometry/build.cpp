@@ -187,7 +187,7 @@ ShapeRef FrameBuilder::geometryOf(const PrimitiveRef& p, const scene::Attributes
     if (times.size() > 1) {
         // The numbers of a quadric are what moves linearly, not its points: keys between follow them.
         const PrimitiveRef last = scene::primitiveAt(p, shutter_.close);
-        if (!p->numbers.empty() && p->kind != "NuPatch" && p->numbers != last->numbers) {
+        if (!p->numbers.empty() && p->kind != "NuPatch" && p->kind != "Blobby" && p->numbers != last->numbers) {
             std::vector<float> more;
             for (size_t i = 0; i + 1 < times.size(); ++i)
                 for (int k = 0; k < 8; ++k) more.push_back(times[i] + (times[i + 1] - times[i]) * float(k) / 8);
@@ -198,7 +198,7 @@ ShapeRef FrameBuilder::geometryOf(const PrimitiveRef& p, const scene::Attributes
     std::vector<ShapeRef> keys;
     for (float t : times) {
         PrimitiveRef now = scene::primitiveAt(p, shutter_.at(t));
-        const bool pieces = p->kind == "Curves" || p->kind == "Points";
+        const bool pieces = p->kind == "Curves" || p->kind == "Points" || p->kind == "Blobby";
         if (pieces && times.size() > 1 && keys.empty() && now->motionKeys.empty()) { // the shutter opens between keys: isKey()
             auto first = std::make_shared<scene::Primitive>(*now);
             first->motionKeys = p->motionKeys;
@@ -210,7 +210,7 @@ ShapeRef FrameBuilder::geometryOf(const PrimitiveRef& p, const scene::Attributes
     }
     if (keys.size() == 1) return keys[0];
     if (auto keyed = std::dynamic_pointer_cast<KeyedShape>(keys[0])) {
-        if (!keyed->join({keys.begin() + 1, keys.end()}, std::move(times))) reportUnlike(*keyed, diag_);
+        if (!keyed->join({keys.begin() + 1, keys.end()}, std::move(times), diag_)) reportUnlike(*keyed, diag_);
         return keyed;
     }
     ShapeSource s = keys[0]->source();

@@ -3,7 +3,7 @@
 
 namespace alpenglow::geometry {
 
-bool KeyedShape::join(std::vector<ShapeRef> later, std::vector<float> times) {
+bool KeyedShape::join(std::vector<ShapeRef> later, std::vector<float> times, Diagnostics& diag) {
     for (const ShapeRef& s : later) {
         auto* k = dynamic_cast<KeyedShape*>(s.get());
         const auto same = [](const PrimVar& a, const PrimVar& b) { return a.cls == b.cls && a.type == b.type && a.outWidth() == b.outWidth(); };
@@ -13,6 +13,7 @@ bool KeyedShape::join(std::vector<ShapeRef> later, std::vector<float> times) {
     }
     later_ = std::move(later);
     times_ = std::move(times);
+    joinKeys(times_, diag);
     measure();
     return true;
 }

@@ -25,7 +25,7 @@ public:
     using Shape::Shape;
     /// Becomes the first key; `later` are shapes of the same class, made of the primitive at later times. times: one more, from 0 to 1.
     /// False: they are not made of the same pieces, and this stays what it is.
-    bool join(std::vector<ShapeRef> later, std::vector<float> times);
+    bool join(std::vector<ShapeRef> later, std::vector<float> times, Diagnostics&);
     bool joined() const { return !later_.empty(); }
 
     using Shape::exactHits;
@@ -36,7 +36,7 @@ public:
     virtual int exactHitsAt(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted, float time,
                             ExactHit out[4]) const = 0;
     /// Boxes hold the shape at all times.
-    Bounds exactBounds(uint32_t prim) const final;
+    Bounds exactBounds(uint32_t prim) const override;
     Bounds bounds() const final { return bounds_; }
 
     using Shape::sampleArea;
@@ -57,6 +57,8 @@ protected:
     virtual SurfacePoint pointAt(uint32_t prim, double b1, double b2, float time) const = 0;
     /// Whether that is the same primitive piece for piece, at another time. May make it so.
     virtual bool fits(KeyedShape& later) const = 0;
+    /// When all keys fit and are there, before measure().
+    virtual void joinKeys(const std::vector<float>& /*times*/, Diagnostics&) {}
     /// After primitives and keys are there.
     void measure();
     size_t keyAt(float time, double& way) const { return keyBefore(times_, time, way); }

@@ -170,6 +170,33 @@ TEST(Motion, CoverageOfMovingPoints) {
         }
 }
 
+// A Blobby's ball goes by, or grows from nothing, as the points above do.
+TEST(Motion, CoverageOfMovingBlobbies) {
+    const auto ball = [](double x, double radius) { // of its surface: half of that of its field
+        const std::string r = std::to_string(2 * radius);
+        return "Blobby 1 [1001 0] [" + r + " 0 0 0  0 " + r + " 0 0  0 0 " + r + " 0  " + std::to_string(x) + " 0 0 1] [\"\"]\n";
+    };
+    for (Hider h : {Hider::Hidden, Hider::Path}) {
+        Scene s(shutter("Surface \"constant\"\nTranslate 0 0 5\n" + moving(ball(0, .5), ball(2, .5))), withShaders(h));
+        for (float y : {0.f, .2f, .45f, .51f})
+            EXPECT_NEAR(coverage(s, rayTo({1, y, 0}, {1, y, 5})), y > .5 ? 0 : std::sqrt(.25 - double(y) * y), 1.1e-3) << y;
+        Scene grows(shutter("Surface \"constant\"\nTranslate 0 0 5\n" + moving(ball(0, 0), ball(0, 1))), withShaders(h));
+        EXPECT_NEAR(coverage(grows, rayTo({.3f, 0, 0}, {.3f, 0, 5})), .7, 1.1e-3);
+    }
+    // As a lamp it lights as one that stands where it is at the time: a ball of radiance 1, (r / d)^2.
+    const auto scene = [](const std::string& body) {
+        return shutter("AttributeBegin\nAttribute \"light\" \"string units\" \"radiance\"\nAreaLightSource \"arealight\" 1 \"intensity\" 1\nSurface \"constant\"\nTranslate 0 3 0\n" +
+                       body + "AttributeEnd\nSurface \"matte\" \"Ka\" 0 \"Kd\" 1\n" + kFloor);
+    };
+    Scene lamp(scene(moving(ball(0, .25), ball(0, .75))), withShaders(Hider::Path));
+    for (float t : {0.f, .5f, 1.f}) {
+        const double r = .25 + .5 * double(t);
+        const Moments m = lamp.estimate(at(t, kView), samples(40000));
+        EXPECT_NEAR(m.mean(), r * r / 9, 5 * m.se()) << t;
+        EXPECT_LT(m.se(), .08 * m.mean()) << t;
+    }
+}
+
 // Lamps of curves and points that move light what they are where they are: as those that stand there.
 TEST(Motion, LampsOfCurvesAndPointsMove) {
     const auto dots = [](float x, float y) {
@@ -198,7 +225,8 @@ TEST(Motion, BitsDoNotDependOnTheBatch) {
                     moving("Sphere 1 -1 1 360", "Sphere 2 -2 2 360") + "Translate 1 0 0\n" + kSquare +
                     moving("Points \"P\" [-1 0 -2  1 1 -2] \"constantwidth\" .5", "Points \"P\" [1 0 -2  1 -1 -1] \"constantwidth\" .9") +
                     moving("Curves \"linear\" [3] \"nonperiodic\" \"P\" [-2 -2 -2  0 0 -2  2 2 -2] \"constantwidth\" .2",
-                           "Curves \"linear\" [3] \"nonperiodic\" \"P\" [-2 -2 -2  0 1 -2  2 -2 -2] \"constantwidth\" .4")), withShaders(Hider::Path));
+                           "Curves \"linear\" [3] \"nonperiodic\" \"P\" [-2 -2 -2  0 1 -2  2 -2 -2] \"constantwidth\" .4") +
+                    moving("Blobby 1 [1001 0] [2 0 0 0  0 2 0 0  0 0 2 0  -2 1 -1 1] [\"\"]", "Blobby 1 [1001 0] [3 0 0 0  0 2 0 0  0 1 2 0  -1 2 -1 1] [\"\"]")), withShaders(Hider::Path));
     std::vector<CameraRay> rays;
     for (int i = 0; i < 300; ++i) {
         const float x = float(i % 20 - 10) / 5, y = float(i / 20 - 8) / 4;

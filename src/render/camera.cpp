@@ -177,6 +177,42 @@ void Camera::setProjection(const scene::Options& o, Diagnostics& diags) {
     if (!perspective_) bad("Projection: a stereo pair needs \"perspective\""), stereo_ = Stereo::None;
 }
 
+LensGrid lensGridOf(const scene::Options& o) {
+    constexpr float kMost = 256; // of one side: 65,536 rays a pixel
+    const scene::Param* p = o.hider == "raytrace" ? scene::find(o.hiderParams, "lensSamples") : nullptr;
+    if (!p || p->numbers.empty()) return {};
+    const float x = p->numbers[0], y = p->numbers.size() > 1 ? p->numbers[1] : x;
+    const auto good = [&](float n) { return n >= 1 && n <= kMost && n == std::floor(n); };
+    return good(x) && good(y) ? LensGrid{int(x), int(y)} : LensGrid{};
+}
+
+/// SLProject's lens: it takes the place of DepthOfField's.
+void Camera::setHiderLens(const scene::Options& o, Diagnostics& diags) {
+    const scene::Param *diameter = scene::find(o.hiderParams, "lensDiameter"), *samples = scene::find(o.hiderParams, "lensSamples"),
+                       *distance = scene::find(o.hiderParams, "focalDist");
+    const scene::Param* first = diameter ? diameter : samples ? samples : distance;
+    if (!first) return;
+    if (o.hider != "raytrace") {
+        diags.report(Severity::Warning, Rie::Incapable, first->place, "\"" + first->name + "\" is for the hider raytrace; it is ignored",
+                     "DepthOfField is for all hiders");
+        return;
+    }
+    const auto bad = [&](const scene::Param& p, const char* rule) {
+        diags.report(Severity::Error, Rie::Range, p.place, "hider parameter \"" + p.name + "\" " + rule);
+    };
+    const auto positive = [](const scene::Param& p) { return !p.numbers.empty() && p.numbers[0] > 0 && p.numbers[0] < 1e30f; };
+    if (distance && !positive(*distance)) bad(*distance, "is a distance above 0; that of DepthOfField is used");
+    else if (distance) focus_ = distance->numbers[0];
+    if (diameter && (diameter->numbers.empty() || !(diameter->numbers[0] >= 0 && diameter->numbers[0] < 1e30f)))
+        bad(*diameter, "is a length, 0 for a pinhole; that of DepthOfField is used");
+    else if (diameter && diameter->numbers[0] > 0 && !(distance && positive(*distance)) && !(lensRadius_ > 0))
+        bad(*diameter, "needs \"focalDist\", the distance that is in focus; everything is");
+    else if (diameter) lensRadius_ = 0.5 * diameter->numbers[0];
+    lensGrid_ = lensGridOf(o);
+    if (samples && !lensGrid_.on()) bad(*samples, "is two whole numbers from 1 to 256; PixelSamples is used");
+    if (lensGrid_.x * lensGrid_.y == 1) lensRadius_ = 0;
+}
+
 void Camera::setLens(const scene::Options& o, Diagnostics& diags) {
     auto bad = [&](const std::string& what) { diags.report(Severity::Error, Rie::Range, {}, what); };
     if (o.fstop > 0 && o.fstop < 1e30f) {
@@ -185,6 +221,7 @@ void Camera::setLens(const scene::Options& o, Diagnostics& diags) {
             focus_ = o.focalDistance;
         } else bad("DepthOfField: focal length and distance must be positive; everything is in focus");
     }
+    setHiderLens(o, diags);
     const scene::Param* a = scene::find(o.hiderParams, "aperture");
     if (!a)
         if (auto i = o.values.find("hider:aperture"); i != o.values.end()) a = &i->second;

@@ -29,6 +29,15 @@ private:
     std::vector<double> cumulative_; ///< of the area from the middle of a side to a corner, even steps of the angle
 };
 
+/// Hider "raytrace" "lensSamples", as SLProject's ray tracer has it: x by y rays through the middle of every pixel, from places that are
+/// spread evenly over the lens, the same in all pixels. 1 by 1: a pinhole.
+struct LensGrid {
+    int x = 0, y = 0; ///< 0: PixelSamples says how many rays there are, each from a place of its own
+    bool on() const { return x > 0; }
+};
+/// None under other hiders or with numbers that are no counts (the camera reports them).
+LensGrid lensGridOf(const scene::Options&);
+
 class Camera {
 public:
     /// Impossible values (sizes, windows, angles that are not positive) are reported and replaced by RI's defaults. Projections
@@ -42,7 +51,9 @@ public:
     float pixelAspect() const { return pixelAspect_; }
     /// The pixels of CropWindow.
     const Window& window() const { return window_; }
+    /// DepthOfField has one, or Hider "raytrace" "lensDiameter".
     bool hasLens() const { return lensRadius_ > 0; }
+    const LensGrid& lensGrid() const { return lensGrid_; }
     double shutterOpen() const { return shutter_.open; }
     double shutterClose() const { return shutter_.close; }
 
@@ -60,6 +71,7 @@ private:
     Matrix cameraToFirst(double time) const;
     void setProjection(const scene::Options&, Diagnostics&);
     void setLens(const scene::Options&, Diagnostics&);
+    void setHiderLens(const scene::Options&, Diagnostics&);
     /// The eye that a raster position is seen by: its x; the position becomes that in the picture of both.
     double eyeOf(double& rx, double& ry) const;
 
@@ -72,6 +84,7 @@ private:
     double fov_ = 90, tangent_ = 1; ///< degrees; tan(fov / 2)
     double near_ = 0;
     double lensRadius_ = 0, focus_ = 1;
+    LensGrid lensGrid_;
     scene::Shutter shutter_;
     ShutterOpening opening_;
     Aperture aperture_;

@@ -11,6 +11,11 @@
 namespace alpenglow::render {
 
 void gridOf(const scene::Options& o, const RenderSettings& s, int* nx, int* ny) {
+    if (const LensGrid lens = lensGridOf(o); lens.on()) {
+        *nx = lens.x;
+        *ny = lens.y;
+        return;
+    }
     auto whole = [](float v) { return v >= 1 ? int(std::min(v, 4096.f) + 0.5f) : 1; };
     *nx = whole(o.pixelSamplesX);
     *ny = whole(o.pixelSamplesY);
@@ -22,6 +27,7 @@ void gridOf(const scene::Options& o, const RenderSettings& s, int* nx, int* ny) 
 }
 
 Jitter jitterOf(const scene::Options& o, Diagnostics& diags) {
+    if (lensGridOf(o).on()) return Jitter::Middle;
     const scene::Param* p = scene::find(o.hiderParams, "jitter");
     if (!p)
         if (auto i = o.values.find("hider:jitter"); i != o.values.end()) p = &i->second;
@@ -38,6 +44,10 @@ transport::CameraRay imageRay(const Camera& camera, Vec2 position, uint64_t seed
     if (camera.hasLens() || camera.shutterClose() > camera.shutterOpen()) {
         Sampler numbers(seed, x, y);
         lens = numbers.get2(0, kUseLens, 0, sample);
+        if (const LensGrid& grid = camera.lensGrid(); grid.on()) {
+            const int k = int(sample);
+            lens = {(float(k % grid.x) + 0.5f) / float(grid.x), (float(k / grid.x) + 0.5f) / float(grid.y)};
+        }
         time = numbers.get1(0, kUseTime, 0, sample);
     }
     transport::CameraRay r = camera.ray(position.x, position.y, lens, time);
@@ -69,7 +79,7 @@ Refinement refinementOf(const scene::Options& o, const Camera& camera, Diagnosti
         diags.report(Severity::Error, Rie::Range, threshold->place, "hider parameter \"aaThreshold\" is at least 0; 0.3 is used");
         r.threshold = 0.3f;
     }
-    if (r.on() && (camera.hasLens() || camera.shutterClose() > camera.shutterOpen())) {
+    if (r.on() && (camera.hasLens() || camera.lensGrid().on() || camera.shutterClose() > camera.shutterOpen())) {
         diags.report(Severity::Warning, Rie::Incapable, first->place,
                      "\"aaSamples\" is ignored: a lens or an open shutter takes the rays of PixelSamples in every pixel");
         r.side = 1;
@@ -140,6 +150,7 @@ void ImageLoop::plan() {
         result_.of.push_back(size_t(same - filtered_.begin()));
         if (same == filtered_.end()) filtered_.push_back(&p);
     }
+    if (jitter_ == Jitter::Middle) xw_ = yw_ = 1;
     if (refinement_.on()) xw_ = yw_ = 3; // one pixel around, to compare with
     result_.images.resize(filtered_.size());
     for (Image& i : result_.images) {
@@ -284,7 +295,8 @@ std::vector<Wanted> ImageLoop::differing(const SampleBuffer& buffer, const Windo
 void ImageLoop::reconstruct(const SampleBuffer& buffer, const Window& part) {
     for (size_t p = 0; p < filtered_.size(); ++p) {
         Image& image = result_.images[p];
-        const PixelFilter filter = refinement_.on() ? PixelFilter{FilterKind::Box, 1, 1} : filtered_[p]->filter;
+        const bool own = refinement_.on() || jitter_ == Jitter::Middle;
+        const PixelFilter filter = own ? PixelFilter{FilterKind::Box, 1, 1} : filtered_[p]->filter;
         const size_t rowFloats = size_t(window_.width()) * image.channels.size();
         float* to = image.data.data() + size_t(part.y0 - window_.y0) * rowFloats;
         StopFlag go{0};

@@ -19,6 +19,8 @@ int border(double w) { return std::max(0, int(std::ceil(w / 2 - 0.5))); }
 
 Vec2 stratifiedOffset(uint64_t seed, int x, int y, int k, int nx, int ny, Jitter jitter) {
     Vec2 u{0.5f, 0.5f};
+    if (jitter == Jitter::Middle)
+        return u;
     if (jitter != Jitter::Grid)
         u = Sampler(seed, x, y).get2(0, kPositionSite, 0, uint32_t(k));
     if (jitter == Jitter::Scrambled)

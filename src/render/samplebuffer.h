@@ -14,7 +14,8 @@ namespace alpenglow::render {
 enum class Jitter {
     Grid = 0,      ///< centres of the nx x ny cells of a pixel
     Jittered = 1,  ///< one random place per cell
-    Scrambled = 2  ///< the pixel's own (0,2)-sequence (sampler.h), no cells
+    Scrambled = 2, ///< the pixel's own (0,2)-sequence (sampler.h), no cells
+    Middle = 3     ///< all of them in the middle of the pixel ("lensSamples")
 };
 
 /// Place of sample k (0 <= k < nx * ny) inside its pixel, each in [0,1).

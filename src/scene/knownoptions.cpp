@@ -147,9 +147,15 @@ constexpr OptionDescription kHiderParameters[] = {
     {"emit", "int", "200000", "1000000", Used,
      "photon: photons that are emitted. path with caustics: those of one sample of all pixels; one for four pixels, if it is not said."},
     {"extrememotiondof", "", "", "", Ignored, kPrman},
+    {"focalDist", "float", "that of DepthOfField", "5", Used, "raytrace: distance along the axis that a lens by lensDiameter has in focus."},
     {"jitter", "int", "1", "0", Used,
      "hidden and raytrace: 1: samples lie at random places of their cells; 0: in the middle of them; 2: all pixels have the same "
      "pattern."},
+    {"lensDiameter", "float", "that of DepthOfField", "0.2", Used,
+     "raytrace: diameter of the lens in camera units, as SLProject says it, with focalDist; 0: a pinhole. It takes the place of DepthOfField."},
+    {"lensSamples", "int[2]", "", "[7 7]", Used,
+     "raytrace: so many by so many rays (1 to 256) go through the middle of each pixel, from places spread evenly over the lens; 1 by 1: a "
+     "pinhole. A pixel is the mean of its own rays; PixelSamples, --spp and filters have no say."},
     {"mpcache", "", "", "", Ignored, kPrman},
     {"samplemotion", "int", "0", "1", Used, "hidden: surfaces are shaded at the time of each sample, not when the shutter opens."},
     {"samplepattern", "", "", "", Ignored, kSeveral},

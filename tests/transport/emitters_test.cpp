@@ -89,6 +89,34 @@ TEST(Emitters, CutOutOfASolid) {
     expectAll(lit(lamp("\"white5\" 1", cut)), 5. / 25 / 2, 1e-3, "half a ball");
 }
 
+// A sheet of NURBS two wide at height 2 that trim curves leave a disc of, a ring, a disc beside the middle: what these light (Howell B-13).
+TEST(Emitters, Trimmed) {
+    writeShader("both5", "light both5() { illuminate(P, N, PI) Cl = 5; }\n");
+    struct Circle { double u, v, r; };
+    const auto sheet = [](const std::vector<Circle>& circles) {
+        std::string counts, orders, knots, least, most, ns, u, v, w;
+        const double x[9] = {1, 1, 0, -1, -1, -1, 0, 1, 1}, y[9] = {0, 1, 1, 1, 0, -1, -1, -1, 0};
+        for (const Circle& c : circles) {
+            counts += "1 ", orders += "3 ", knots += "0 0 0 1 1 2 2 3 3 4 4 4 ", least += "0 ", most += "4 ", ns += "9 ";
+            for (int i = 0; i < 9; ++i) {
+                const double weight = i % 2 ? std::sqrt(.5) : 1;
+                u += std::to_string((c.u + c.r * x[i]) * weight) + " ";
+                v += std::to_string((c.v + c.r * y[i]) * weight) + " ";
+                w += std::to_string(weight) + " ";
+            }
+        }
+        return "Attribute \"trimcurve\" \"sense\" \"outside\"\nTrimCurve [" + counts + "] [" + orders + "] [" + knots + "] [" + least + "] [" + most + "] [" + ns + "] [" + u +
+               "] [" + v + "] [" + w + "]\nNuPatch 2 2 [0 0 1 1] 0 1 2 2 [0 0 1 1] 0 1 \"P\" [-1 2 -1  1 2 -1  -1 2 1  1 2 1]\n";
+    };
+    const auto disc = [](double a, double b) { // radius, beside the axis; twice those in u and v
+        const double d = 2, z = a * a + b * b + d * d;
+        return .5 * (1 - (z - 2 * a * a) / std::sqrt(z * z - 4 * a * a * b * b));
+    };
+    expectAll(lit(lamp("\"both5\" 1", sheet({{.5, .5, .4}}))), 5 * disc(.8, 0), 1e-3, "disc");
+    expectAll(lit(lamp("\"both5\" 1", sheet({{.5, .5, .45}, {.5, .5, .25}}))), 5 * (disc(.9, 0) - disc(.5, 0)), 1e-3, "ring");
+    expectAll(lit(lamp("\"both5\" 1", sheet({{.8, .5, .15}}))), 5 * disc(.3, .6), 1e-3, "disc beside the middle");
+}
+
 // One light of many shapes: samples go where they bring most.
 TEST(Emitters, ManyShapes) {
     std::string balls;

@@ -100,6 +100,7 @@ public:
 
     /// The polygons of a file as primitives of this place, with these constants beside the file's own variables.
     void drawModel(const std::string& name, const Call& call, const scene::ParamList& constants);
+    void volume(const Call& call);
     void readArchive(const std::string& name, const SourcePlace& place);
     /// "DelayedReadArchive", "RunProgram" or "DynamicLoad". bound: six numbers, or none.
     void procedural(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound, const Call& call);
@@ -176,6 +177,7 @@ private:
 
     /// False when an archive that is read again has used up its calls.
     bool mayReplay(const Call& call);
+    bool regionOf(const Call& call, std::vector<float>& bound);
     /// Reads what was found: recorded calls, or a stream that messages call `file`. key tells it from other open ones.
     void readOpened(const std::string& key, const std::string& file, const std::shared_ptr<std::vector<Call>>& calls,
                     std::unique_ptr<ByteSource> source, const SourcePlace& place);

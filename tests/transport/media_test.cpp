@@ -115,6 +115,38 @@ TEST_P(Media, TransmissionAndTheirMessages) {
     EXPECT_NEAR(c.z, 1, 1e-6);
 }
 
+TEST_P(Media, VolumesAreRegions) {
+    const auto region = [](const std::string& volume, const std::string& before = {}, const std::string& shader = "Interior") {
+        return kWall + ("AttributeBegin " + shader + " \"beer\" \"k\" .6 " + before + " Volume " + volume + " AttributeEnd\n");
+    };
+    const auto left = [](double way) { return std::exp(-.6 * way); };
+    const std::string box = "\"box\" [-1 .5 -2 2 -.25 1.25] [0 0 0]", egg = "\"ellipsoid\" [-1 1 -1 1 -2 2] [0 0 0]",
+                      can = "\"cylinder\" [-1 1 -2 2 -3 3] [0 0 0]", hat = "\"cone\" [-1 1 -1 1 0 2] [0 0 0]";
+    expectAll(seen(region(box)), left(1.5), "box");
+    expectAll(seen(region(box, "Rotate 20 0 1 0")), left(1.5 / std::cos(20 * kPi / 180)), "box, turned");
+    expectAll(seen(region(box), .7f), 1, "beside it");
+    for (float b : {0.f, .3f, .8f}) {
+        expectAll(seen(region(egg), b), left(4 * std::sqrt(1 - b * b)), "ellipsoid");
+        expectAll(seen(region(can), b), left(6), "cylinder, along it");
+        expectAll(seen(region(can, "Rotate 90 0 1 0"), b), left(2), "cylinder, across");
+        expectAll(seen(region(hat), b), left(2 * (1 - b)), "cone, along it");
+        if (b > 0) expectAll(seen(region(hat, "Rotate 90 0 1 0"), b), left(2 * (1 - b / 2)), "cone, across"); // 0: in its base
+    }
+    // However the sides of surfaces are said, and by the shader of the later name; mirrored and many times as large.
+    for (const char* before : {"ReverseOrientation", "Orientation \"lh\"", "Orientation \"rh\"", "Sides 1", "Scale -1 1 1", "Opacity .5 .5 .5",
+                               "Displacement \"bumpy\"", "Surface \"shine\""})
+        for (const std::string& v : {egg, can, hat, "\"box\" [-1 1 -1 1 -1 3] [0 0 0]" + std::string()})
+            expectAll(seen(region(v, before)), v == can ? left(6) : v == hat ? left(2) : left(4), before + v);
+    expectAll(seen(region(box, "Scale 2 2 2")), left(3), "scaled");
+    expectAll(seen(region(box, "", "VPAtmosphere")), left(1.5), "Atmosphere"); // and no fog before and behind it
+    expectAll(seen(region(box, "Atmosphere \"beer\" \"k\" 5 ")), left(1.5) * std::exp(-5 * 4.75), "both: before it, fog");
+    expectAll(seen(region("\"box\" [-1 1 -1 1 -1 3] [0 0 0]"), 0, 0), left(3), "the eye in it");
+    // Constant variables are the shader's.
+    expectAll(seen(region("\"box\" [-1 .5 -2 2 -.25 1.25] [2 2 2] \"constant float k\" [.2]")), std::exp(-.2 * 1.5), "variable");
+    expectAll(seen(region("\"box\" [-2 2 -2 2 -2 2] [0 0 0] AttributeEnd AttributeBegin Interior \"beer\" \"k\" .1 Volume " + box)),
+              left(2.5) * std::exp(-.1 * 1.5), "one in the other");
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Media, ::testing::Values(Hider::Hidden, Hider::Raytrace, Hider::Path));
 
 TEST(MediaLight, ThroughABall) {

@@ -145,14 +145,6 @@ void geometry(Interpreter& in, const Call& c) {
     in.emit(std::move(p), c);
 }
 
-void volume(Interpreter& in, const Call& c) {
-    scene::Primitive p = start(in, c);
-    p.strings = {c.text(0)};
-    p.numbers = c.reals(1);
-    p.ints = c.ints(2);
-    in.emit(std::move(p), c);
-}
-
 void procedural(Interpreter& in, const Call& c) {
     const std::string& kind = c.text(0);
     if (kind != "DelayedReadArchive" && kind != "RunProgram" && kind != "DynamicLoad") {
@@ -202,7 +194,9 @@ std::vector<Request> primitiveRequests() {
         {"Geometry", "string name; ..", k, s, true, "A shape the renderer knows: \"teapot\", \"cube\", \"sphere\"; or the polygons of a file of .ply or .obj.", "\"teapot\"",
          geometry},
         {"Volume", "string type; number[6] bound; int[] dimensions; ..", k, s, true,
-         "A region filled by a volume shader. Not drawn yet.", "\"box\" [-1 1 -1 1 -1 1] [0 0 0]", volume},
+         "A region that the Interior, or without one the Atmosphere, fills: \"box\", \"ellipsoid\", or along z \"cylinder\" and \"cone\", as large "
+         "as its bound. Constant variables are parameters of the shader.",
+         "\"box\" [-1 1 -1 1 -1 1] [0 0 0]", [](Interpreter& in, const Call& c) { in.volume(c); }},
         {"Procedural", "string kind; string[] arguments; number[6] bound; ..", k, s, false,
          "Content from an archive (\"DelayedReadArchive\"), or with --allow-exec from a program (\"RunProgram\") or a "
          "library (\"DynamicLoad\", docs/plugins.md).",

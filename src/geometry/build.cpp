@@ -142,7 +142,11 @@ public:
     std::vector<ShapeRef> run();
 
 private:
-    struct Shared { ShapeRef geometry; Matrix from; }; ///< from: its space to object space
+    struct Shared {
+        ShapeRef geometry;
+        Matrix from; ///< its space to object space
+        std::shared_ptr<SharedBounds> bounds;
+    };
     struct Usage { std::vector<const scene::Instance*> by; };
 
     bool full(const SourcePlace&);
@@ -296,6 +300,7 @@ void FrameBuilder::addShared(const PrimitiveRef& p, const scene::AttributesRef& 
         const Matrix& home = nearest(inst, *p);
         shared.geometry = geometryOf(p, a, home, instance);
         shared.from = inverse(home);
+        shared.bounds = std::make_shared<SharedBounds>();
     }
     if (!shared.geometry) return;
     for (const Matrix& m : place.keys)
@@ -306,7 +311,7 @@ void FrameBuilder::addShared(const PrimitiveRef& p, const scene::AttributesRef& 
     s.instance = instance;
     Transform from = place;
     for (Matrix& m : from.keys) m = shared.from * m;
-    out_.push_back(std::make_shared<Placed>(std::move(s), shared.geometry, from));
+    out_.push_back(std::make_shared<Placed>(std::move(s), shared.geometry, from, shared.bounds));
 }
 
 std::vector<ShapeRef> FrameBuilder::run() {

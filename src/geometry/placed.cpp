@@ -6,8 +6,21 @@ namespace alpenglow::geometry {
 
 using scene::Type;
 
-Placed::Placed(ShapeSource s, ShapeRef geometry, const scene::Transform& place)
-    : Shape(std::move(s)), geometry_(std::move(geometry)), deforming_(dynamic_cast<const Deforming*>(geometry_.get())),
+Bounds SharedBounds::of(const Shape& s) {
+    const std::lock_guard lock(mutex_);
+    const auto* deforming = dynamic_cast<const Deforming*>(&s);
+    const TriMesh& mesh = deforming ? deforming->keys()[0]->mesh() : s.mesh();
+    if (!known_ || points_ != mesh.P.data() || count_ != mesh.vertices) {
+        bounds_ = s.bounds();
+        points_ = mesh.P.data();
+        count_ = mesh.vertices;
+        known_ = true;
+    }
+    return bounds_;
+}
+
+Placed::Placed(ShapeSource s, ShapeRef geometry, const scene::Transform& place, std::shared_ptr<SharedBounds> bounds)
+    : Shape(std::move(s)), geometry_(std::move(geometry)), bounds_(std::move(bounds)), deforming_(dynamic_cast<const Deforming*>(geometry_.get())),
       keyed_(dynamic_cast<const KeyedShape*>(geometry_.get())) {
     variables_ = &geometry_->primvars();
     out_ = Affine(place.first());
@@ -119,7 +132,7 @@ SurfacePoint Placed::evaluate(int face, double u, double v) const {
 }
 
 Bounds Placed::bounds() const {
-    const Bounds in = geometry_->bounds();
+    const Bounds in = bounds_ ? bounds_->of(*geometry_) : geometry_->bounds();
     Bounds b;
     if (in.empty()) return b;
     const auto add = [&](const Affine& m) {

@@ -9,6 +9,7 @@
 #include "geometry/keyed.h"
 #include "geometry/shape.h"
 #include "scene/motion.h"
+#include <mutex>
 
 namespace alpenglow::geometry {
 
@@ -55,12 +56,26 @@ private:
 /// Says that keys do not fit together.
 void reportUnlike(const Shape&, Diagnostics&);
 
+/// The bounds of a geometry for all its places, which would each look at all its points.
+class SharedBounds {
+public:
+    /// Always of the same shape, whose points may have changed when it was diced.
+    Bounds of(const Shape&);
+
+private:
+    std::mutex mutex_;
+    bool known_ = false;
+    const void* points_ = nullptr; ///< of the mesh that bounds_ are of
+    uint32_t count_ = 0;
+    Bounds bounds_;
+};
+
 /// A geometry at a place.
 class Placed final : public Shape {
 public:
     /// toCamera of the source: at shutter open. place: from the space of the geometry to camera space; affine, and the same
-    /// handedness throughout.
-    Placed(ShapeSource, ShapeRef geometry, const scene::Transform& place);
+    /// handedness throughout. bounds: those of the geometry, shared with its other places; null: it has none.
+    Placed(ShapeSource, ShapeRef geometry, const scene::Transform& place, std::shared_ptr<SharedBounds> bounds = nullptr);
     const ShapeRef& geometry() const { return geometry_; }
     /// Null where the geometry is the same at all times.
     const Deforming* deforming() const { return deforming_; }
@@ -108,6 +123,7 @@ private:
     size_t keyAt(float time, double& way) const;
 
     ShapeRef geometry_;
+    std::shared_ptr<SharedBounds> bounds_;
     const Deforming* deforming_ = nullptr;
     const KeyedShape* keyed_ = nullptr;
     std::unique_ptr<const Moving> moving_; ///< null: stands still

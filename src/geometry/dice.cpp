@@ -40,6 +40,11 @@ double diceEdge(const scene::Attributes& a) {
     return std::isfinite(r) ? std::sqrt(std::clamp(r, 0.01, 1e4)) : 1;
 }
 
+double diceFlatness(const scene::Attributes& a) {
+    const scene::Param* f = a.value("GeometricApproximation:flatness");
+    return f && !f->numbers.empty() && f->numbers[0] > 0 ? std::clamp(double(f->numbers[0]), 1e-3, 1e3) : 0;
+}
+
 bool isDisplaced(const Shape& s, const DiceOptions& o) {
     return o.displace && (o.displaces ? o.displaces(s) : s.attributes().displacement != nullptr);
 }

@@ -53,6 +53,9 @@ struct DiceOptions {
 
 /// Edge of a micropolygon in pixels: sqrt(ShadingRate), within limits.
 double diceEdge(const scene::Attributes&);
+/// GeometricApproximation "flatness": pixels that facets of what is not displaced may stray from the surface, within limits, whatever
+/// ShadingRate says; 0: it says nothing.
+double diceFlatness(const scene::Attributes&);
 /// Whether dicing must displace this shape.
 bool isDisplaced(const Shape&, const DiceOptions&);
 /// For shapes that are met exactly and have no mesh to displace: a warning, once a kind, where a displacement shader wants to.

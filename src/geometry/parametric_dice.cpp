@@ -72,6 +72,10 @@ struct Parametric::Dicing {
     void fill(const Block&, const TriMesh&);
     std::vector<uint32_t> border() const;
     double edge() const { return diceEdge(s.attributes()); }
+    double tolerance() const {
+        const double flat = diceFlatness(s.attributes());
+        return flat > 0 ? flat : kDeviation * edge();
+    }
     std::vector<double> cells(int direction) const;
 };
 
@@ -87,7 +91,8 @@ Parametric::Dicing::Dicing(const Parametric& shape, const DiceOptions& o, bool m
 /// Facets along a block, by some points strictly inside of it, so that knots do not mix neighbours' second derivatives.
 void Parametric::Dicing::probe(const Parametric& shape, const Block& k, double& nu, double& nv) const {
     constexpr int kProbe = 5;
-    const double wu = k.u1 - k.u0, wv = k.v1 - k.v0, micro = edge(), tol = kDeviation * micro;
+    const double wu = k.u1 - k.u0, wv = k.v1 - k.v0, micro = edge(), tol = tolerance();
+    const bool flat = diceFlatness(s.attributes()) > 0;
     for (int b = 0; b < kProbe; ++b)
         for (int a = 0; a < kProbe; ++a) {
             const LocalPoint p = shape.cameraPoint(k.u0 + wu * (a + 0.5) / kProbe, k.v0 + wv * (b + 0.5) / kProbe);
@@ -97,8 +102,9 @@ void Parametric::Dicing::probe(const Parametric& shape, const Block& k, double& 
                 const double cv = std::sqrt(opt.camera.pixels(p.P, p.Pvv) / (8 * tol)) * wv;
                 const double twist = std::sqrt(opt.camera.pixels(p.P, p.Puv) / (4 * tol)) * std::sqrt(wu * wv);
                 // 1.5: the probes miss the peak of what they sample.
-                lu = std::min(lu, 1.5 * std::max(cu, twist));
-                lv = std::min(lv, 1.5 * std::max(cv, twist));
+                const double bu = 1.5 * std::max(cu, twist), bv = 1.5 * std::max(cv, twist);
+                lu = flat ? bu : std::min(lu, bu);
+                lv = flat ? bv : std::min(lv, bv);
             }
             nu = std::max(nu, lu);
             nv = std::max(nv, lv);
@@ -194,7 +200,8 @@ void Parametric::Dicing::giveEdge(int side, Line& line, const std::vector<double
             if (EdgeCurve e; key->edgeCurve(side, int(c), from, to, e)) curves.push_back(e);
         if (curves.size() != keys.size()) return;
         if (std::all_of(curves.begin(), curves.end(), [](const EdgeCurve& e) { return e.collapsed(); })) return;
-        for (double t : EdgeCuts(curves, opt.camera, edge(), kDeviation * edge(), displaced).places()) {
+        const double micro = !displaced && diceFlatness(s.attributes()) > 0 ? 1e-9 : edge(); // how it bends has the only say
+        for (double t : EdgeCuts(curves, opt.camera, micro, tolerance(), displaced).places()) {
             if (c > 0 && t == 0) continue;
             at.push_back(t == 1 ? to : from + (to - from) * t);
             points.push_back(own.at(t));

@@ -44,7 +44,7 @@ struct Subdivision::Dicing {
 void Subdivision::Dicing::measure(const Subdivision& of, uint32_t piece) {
     if (!limit.drawn(limit.pieceOf(piece).face)) return;
     constexpr double kDeviation = 0.05; // pixels that facets may stray from the surface
-    const double edge = diceEdge(s.attributes()), tol = kDeviation * edge;
+    const double edge = diceEdge(s.attributes()), flat = diceFlatness(s.attributes()), tol = flat > 0 ? flat : kDeviation * edge;
     const bool three = limit.triangles();
     double lu = 0, lv = 0;
     const auto probe = [&](double u, double v) {
@@ -56,8 +56,10 @@ void Subdivision::Dicing::measure(const Subdivision& of, uint32_t piece) {
                    cv = std::sqrt(opt.camera.pixels(p.P, p.Pvv) / (8 * tol));
             const double twist = std::sqrt(opt.camera.pixels(p.P, p.Puv) / (4 * tol));
             if (three) cu = cv = std::max({cu, cv, std::sqrt(opt.camera.pixels(p.P, p.Puu - p.Puv * 2 + p.Pvv) / (8 * tol))});
-            a = std::min(a, 1.5 * std::max(cu, twist)); // 1.5: the probes miss the peak of what they sample
-            b = std::min(b, 1.5 * std::max(cv, twist));
+            cu = 1.5 * std::max(cu, twist); // 1.5: the probes miss the peak of what they sample
+            cv = 1.5 * std::max(cv, twist);
+            a = flat > 0 ? cu : std::min(a, cu);
+            b = flat > 0 ? cv : std::min(b, cv);
         }
         lu = std::max(lu, a);
         lv = std::max(lv, b);

@@ -78,6 +78,7 @@ void Interpreter::subdivide(const std::function<void(float)>& make, const std::s
     }
     if (!mayMake(call)) return;
     const double detail = detailOf(bound);
+    if (detail < 0) return; // not in the picture
     if (!begin(BlockKind::Attribute, call)) return;
     inPart(fmt::format("library:{}", ++programSerial_), call.place, [&] {
         const Client client(*this, call);

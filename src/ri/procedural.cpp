@@ -13,25 +13,86 @@ namespace alpenglow::ri {
 
 namespace fs = std::filesystem;
 
-/// Area in pixels of the bound's rectangle in the picture, as programs are told it; infinite where it reaches behind the eye.
+namespace {
+
+/// What the default or given screen window covers, and the larger side of a pixel on it.
+struct Screen {
+    double left, right, bottom, top, pixel;
+    explicit Screen(const scene::Options& o) {
+        const double aspect = o.frameAspect ? double(*o.frameAspect) : double(o.xres) * o.pixelAspect / std::max(1, o.yres);
+        right = std::max(1.0, aspect), top = right / aspect, left = -right, bottom = -top;
+        if (o.screenWindow && o.screenWindow->size() == 4) {
+            const auto& w = *o.screenWindow;
+            left = std::min(w[0], w[1]), right = std::max(w[0], w[1]), bottom = std::min(w[2], w[3]), top = std::max(w[2], w[3]);
+        }
+        pixel = std::max((right - left) / std::max(1, o.xres), (top - bottom) / std::max(1, o.yres));
+    }
+};
+
+double tangentOf(const scene::Options& o) {
+    return o.projection == "perspective" ? exact::tan(std::clamp(double(o.fov), 1e-3, 179.9) * kPi / 360) : 1;
+}
+
+/// Whether a number of an attribute says so. fallback: where it says nothing.
+bool says(const scene::Attributes& a, const std::string& name, bool fallback) {
+    const scene::Param* p = a.value(name);
+    if (!p) return fallback;
+    return p->strings.empty() ? !p->numbers.empty() && p->numbers[0] != 0 : p->strings[0] != "transparent";
+}
+
+/// Whether nothing but the camera may meet what is made here, or the scene asks that what the camera does not meet is left out.
+bool forTheCameraOnly(const scene::Attributes& a) {
+    if (a.value("cull:hidden")) return says(a, "cull:hidden", true);
+    const bool traced = says(a, "visibility:trace", true);
+    return !says(a, "visibility:diffuse", traced) && !says(a, "visibility:specular", traced) &&
+           !says(a, "visibility:transmission", true) && !says(a, "visibility:photon", false);
+}
+
+/// Whether all corners lie beyond one side of the picture, a filter's width and more around it, or behind the eye.
+bool outside(const scene::Options& o, const Vec3d corners[8]) {
+    const Screen s(o);
+    const double more = (std::max(o.filter.xwidth, o.filter.ywidth) + 2) * s.pixel, t = tangentOf(o);
+    const bool perspective = o.projection == "perspective";
+    const auto all = [&](const auto& beyond) { return std::all_of(corners, corners + 8, beyond); };
+    const auto edge = [&](double at, const Vec3d& p) { return at * t * (perspective ? p.z : 1); };
+    return all([](const Vec3d& p) { return p.z < 0; }) || all([&](const Vec3d& p) { return p.x < edge(s.left - more, p); }) ||
+           all([&](const Vec3d& p) { return p.x > edge(s.right + more, p); }) ||
+           all([&](const Vec3d& p) { return p.y < edge(s.bottom - more, p); }) ||
+           all([&](const Vec3d& p) { return p.y > edge(s.top + more, p); });
+}
+
+} // namespace
+
+/// Area in pixels of the bound's rectangle in the picture, as programs are told it; infinite where it reaches behind the eye. Negative: what
+/// is in it cannot change the picture, as only the camera may meet it and it lies outside: under hidden, without a lens or movement,
+/// displacement, lights and solids.
 double Interpreter::detailOf(const std::vector<float>& bound) const {
     if (bound.size() != 6 || !inWorld()) return INFINITY;
-    const scene::Options& o = options;
-    const double aspect = o.frameAspect ? double(*o.frameAspect) : double(o.xres) * o.pixelAspect / std::max(1, o.yres);
-    const double wide = std::max(1.0, aspect), high = wide / aspect; // half the default screen window
+    scene::Options o = options;
+    if (settings.overrides) settings.overrides(o);
+    const Screen s(o);
     const bool perspective = o.projection == "perspective";
-    const double scale = perspective ? exact::tan(std::clamp(double(o.fov), 1e-3, 179.9) * kPi / 360) : 1;
+    const double scale = tangentOf(o);
     double lo[2] = {INFINITY, INFINITY}, hi[2] = {-INFINITY, -INFINITY};
     const Matrix m = state.ctm.first() * worldToCamera_.first();
+    Vec3d corners[8];
+    bool behind = false;
     for (int k = 0; k < 8; ++k) {
-        const Vec3d p = transformPoint(m, Vec3d(bound[k & 1 ? 1 : 0], bound[k & 2 ? 3 : 2], bound[k & 4 ? 5 : 4]));
+        const Vec3d p = corners[k] = transformPoint(m, Vec3d(bound[k & 1 ? 1 : 0], bound[k & 2 ? 3 : 2], bound[k & 4 ? 5 : 4]));
         const double w = perspective ? p.z * scale : 1;
-        if (!(w > 1e-9)) return INFINITY;
-        const double at[2] = {p.x / w / wide * 0.5 * o.xres, p.y / w / high * 0.5 * o.yres};
+        behind |= !(w > 1e-9);
+        const double at[2] = {p.x / w / (s.right - s.left) * o.xres, p.y / w / (s.top - s.bottom) * o.yres};
         for (int i = 0; i < 2; ++i) lo[i] = std::min(lo[i], at[i]), hi[i] = std::max(hi[i], at[i]);
     }
+    const scene::Attributes& a = *state.attributes;
+    const bool affine = m.m[0][3] == 0 && m.m[1][3] == 0 && m.m[2][3] == 0;
+    const bool still = !state.ctm.moves() && !worldToCamera_.moves() && affine && !(o.fstop > 0 && o.fstop < 1e30f);
+    const bool plain = (perspective || o.projection == "orthographic" || o.projection.empty()) && !scene::find(o.projectionParams, "stereo");
+    const bool placed = innermost(BlockKind::Object) == nullptr && innermost(BlockKind::Solid) == nullptr;
+    if (o.hider == "hidden" && still && plain && placed && a.areaLight < 0 && !a.displacement && forTheCameraOnly(a) && outside(o, corners))
+        return -1;
     const double area = (hi[0] - lo[0]) * (hi[1] - lo[1]);
-    return std::isfinite(area) ? area : INFINITY;
+    return !behind && std::isfinite(area) ? area : INFINITY;
 }
 
 /// Not where the shell or the loader looks: whose files these are is to be seen in the scene.
@@ -122,6 +183,7 @@ void Interpreter::procedural(const std::string& kind, const std::vector<std::str
     };
     if (kind == "DelayedReadArchive") {
         if (arguments.empty()) return needs("archive");
+        if (detailOf(bound) < 0) return;
         if (!begin(BlockKind::Attribute, call)) return;
         readArchive(arguments[0], call.place);
         end(BlockKind::Attribute, call);
@@ -130,6 +192,7 @@ void Interpreter::procedural(const std::string& kind, const std::vector<std::str
     if (!settings.allowExec)
         return incapable(
             call, fmt::format("{} \"{}\" runs foreign code: it needs --allow-exec and is left out", call.request->name, kind));
+    if (detailOf(bound) < 0) return;
     if (arguments.empty() || arguments[0].empty()) return needs(kind == "DynamicLoad" ? "library" : "program");
     const std::string data = arguments.size() > 1 ? arguments[1] : "";
     if (kind == "DynamicLoad") runLibrary(arguments[0], data, bound, call);

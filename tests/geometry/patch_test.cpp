@@ -139,3 +139,39 @@ TEST(NuPatch, DerivativesAcrossKnots) {
             EXPECT_LT(length((a.dPdu - b.dPdu) / float(2 * h) - c.Puu), 7e-3 * (1 + length(c.dPdu) + length(c.Puu)));
         }
 }
+
+TEST(Dicing, FlatnessIsThePixelsThatFacetsStray) {
+    // A quarter of a tube of radius 1, 100 pixels a unit: a cubic that strays from the circle by 0.03 pixels, so that n chords stray by
+    // 100 (1 - cos(pi / 4n)).
+    const double k = 0.5522847498;
+    std::vector<float> P;
+    for (int j = 0; j < 4; ++j)
+        for (const auto& [x, y] : {std::pair{1., 0.}, {1., k}, {k, 1.}, {0., 1.}}) P.insert(P.end(), {float(x), float(y), float(j)});
+    size_t before = 0;
+    for (const float flatness : {0.f, 0.5f, 4.f, 0.02f}) {
+        scene::Attributes a;
+        a.shadingRate = 4;
+        setBasis(a.ubasis, {-1, 3, -3, 1, 3, -6, 3, 0, -3, 3, 0, 0, 1, 0, 0, 0}, 3);
+        a.vbasis = a.ubasis;
+        if (flatness > 0) a.values["GeometricApproximation:flatness"] = param("flatness", scene::Class::Uniform, scene::Type::Float, {flatness});
+        Diagnostics diag;
+        ShapeRef s = build(patch("bicubic", P), Matrix(), diag, a);
+        DiceOptions o;
+        o.camera.pixelsPerUnit = 100;
+        diceShapes({s}, o, diag);
+        ASSERT_FALSE(s->exact());
+        const TriMesh& m = s->mesh();
+        double stray = 0;
+        for (size_t t = 0; t + 2 < m.index.size(); t += 3)
+            for (int e = 0; e < 3; ++e) {
+                const Vec3d p = (Vec3d(m.P[m.index[t + e]]) + Vec3d(m.P[m.index[t + (e + 1) % 3]])) * 0.5;
+                stray = std::max(stray, 100 * std::fabs(1 - std::hypot(p.x, p.y)));
+            }
+        const double allowed = flatness > 0 ? flatness : 0.05 * 2; // else by ShadingRate: the edge of a micropolygon is 2 pixels
+        EXPECT_LE(stray, allowed + 0.03) << flatness;
+        if (flatness == 0.5f || flatness == 4) EXPECT_LT(m.index.size(), before) << flatness; // fewer facets, as that is enough
+        if (flatness == 0.02f) EXPECT_GT(m.index.size(), 2 * before);
+        before = m.index.size();
+        EXPECT_EQ(diag.errors() + diag.warnings(), 0);
+    }
+}

@@ -260,3 +260,36 @@ TEST_F(Procedurals, OfLibrariesNestToALimit) {
     c = readHere("WorldBegin MotionBegin [0 1] " + library("detail") + " MotionEnd WorldEnd");
     EXPECT_NE(c->messages().find("motion block"), std::string::npos);
 }
+
+TEST_F(Procedurals, OutsideThePictureAreNotExpandedWhereOnlyTheCameraCouldSeeThem) {
+    std::ofstream(dir / "ball.rib") << "Sphere 1 -1 1 360";
+    const std::string camera = "Format 100 100 1 Projection \"perspective\" \"fov\" 90 ", box = " [-1 1 -1 1 -1 1] ",
+                      alone = "Attribute \"visibility\" \"int diffuse\" 0 \"int specular\" 0 \"int transmission\" 0 ";
+    const auto drawn = [&](const std::string& options, const std::string& inside) {
+        auto c = readHere(camera + options + " WorldBegin " + inside + " Procedural \"DelayedReadArchive\" [\"ball.rib\"]" + box +
+                          (inside.find("SolidBegin") != std::string::npos ? "SolidEnd WorldEnd" : "WorldEnd"));
+        EXPECT_EQ(c->messages(), "") << options << inside;
+        return c->frame().primitives.size();
+    };
+    // At z = 5 the picture is from -5 to 5, and 4 pixels more on all sides: the box of 1 is half seen, just seen, and not seen.
+    EXPECT_EQ(drawn("", alone + "Translate 5 0 5"), 1u);
+    EXPECT_EQ(drawn("", alone + "Translate 6.9 0 5"), 1u); // its far side is nearer to the middle: 5.9 / 6
+    EXPECT_EQ(drawn("", alone + "Translate 8 0 5"), 0u);
+    EXPECT_EQ(drawn("", alone + "Translate 0 -8 5"), 0u);
+    EXPECT_EQ(drawn("", alone + "Translate 0 0 -2"), 0u); // behind
+    EXPECT_EQ(drawn("", alone + "Translate 0 0 -.5"), 1u);
+    EXPECT_EQ(drawn("ScreenWindow -2 2 -2 2", alone + "Translate 8 0 5"), 1u);
+    EXPECT_EQ(drawn("Projection \"orthographic\"", alone + "Translate 5 0 5"), 0u);
+    // Who else could meet it, or what reaches out of its box.
+    const std::string away = " Translate 8 0 5 ";
+    EXPECT_EQ(drawn("", away), 1u);
+    EXPECT_EQ(drawn("", "Attribute \"cull\" \"int hidden\" 1" + away), 0u);
+    EXPECT_EQ(drawn("", "Attribute \"cull\" \"int hidden\" 0 " + alone + away), 1u);
+    EXPECT_EQ(drawn("", alone + "Attribute \"visibility\" \"int transmission\" 1" + away), 1u);
+    for (const char* hider : {"path", "raytrace"}) EXPECT_EQ(drawn("Hider \"" + std::string(hider) + "\"", alone + away), 1u);
+    EXPECT_EQ(drawn("DepthOfField 2 1 5", alone + away), 1u);
+    EXPECT_EQ(drawn("", alone + "Displacement \"bumpy\"" + away), 1u);
+    EXPECT_EQ(drawn("", alone + "AreaLightSource \"arealight\" 1" + away), 1u);
+    EXPECT_EQ(drawn("", alone + "MotionBegin [0 1] Translate 8 0 5 Translate 0 0 5 MotionEnd"), 1u);
+    EXPECT_EQ(drawn("", alone + "SolidBegin \"primitive\"" + away), 1u);
+}

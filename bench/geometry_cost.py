@@ -138,7 +138,7 @@ def main():
         if not wanted or "moving" in wanted:
             paths = {how: write(folder, how, lambda f: moving(f, how)) for how in ("still", "going", "deforming")}
             least = {}
-            for _ in range(5):  # in turns: what else the machine does meets all of them
+            for _ in range(3):  # in turns: what else the machine does meets all of them
                 for how, path in paths.items():
                     for spp in (1, 17):
                         least[how, spp] = min(least.get((how, spp), 1e9), run(program, path, spp)[0])

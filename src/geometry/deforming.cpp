@@ -59,7 +59,8 @@ SurfacePoint Deforming::between(const SurfacePoint& a, const SurfacePoint& b, do
 }
 
 /// What of a facet of a mesh that is its own surface depends on its shape at the time: the normal, and slopes by u and v, which
-/// for polygons are object x and y and so change with it. All of them follow from what the facet's corners have.
+/// for polygons are object x and y and so change with it. All of them follow from what the facet's corners have; where u and v are the
+/// same all over it, slopes stay what they are.
 void Deforming::facet(SurfacePoint& p, uint32_t prim, size_t key, double way, uint32_t needs) const {
     const ShapeRef &first = keys_[key], &last = keys_[std::min(key + 1, keys_.size() - 1)];
     Vec3d P[3];
@@ -107,11 +108,18 @@ void Deforming::localPoints(std::span<const HitRef> hits, uint32_t needs) const 
         } else {
             SurfacePoint a, b;
             const bool facets = !keys_[0]->diced(); // of a PolygonMesh, whose normal is not a product of partials
-            const uint32_t read = facets ? needs : needs | kNeedPartials;
-            keys_[k]->evaluateHit(h.prim, h.b1, h.b2, a, read);
-            keys_[k + 1]->evaluateHit(h.prim, h.b1, h.b2, b, read);
-            *h.out = between(a, b, way);
+            const auto read = [&](uint32_t wanted) {
+                keys_[k]->evaluateHit(h.prim, h.b1, h.b2, a, wanted);
+                keys_[k + 1]->evaluateHit(h.prim, h.b1, h.b2, b, wanted);
+                *h.out = between(a, b, way);
+            };
+            constexpr uint32_t kOfFacet = kNeedPartials | kNeedSTSlopes; // facet() finds them
+            read(facets ? needs & ~kOfFacet : needs | kNeedPartials);
             if (facets) facet(*h.out, h.prim, k, way, needs);
+            if (facets && (needs & kOfFacet) && h.out->dPdu == Vec3(0.f) && h.out->dPdv == Vec3(0.f)) {
+                read(needs);
+                facet(*h.out, h.prim, k, way, 0);
+            }
         }
         h.out->time = h.time;
     }
@@ -156,11 +164,22 @@ Vec3 Deforming::velocity(const SurfacePoint& at) const {
     double way;
     const size_t k = keyAt(at.time, way);
     if (k + 1 >= keys_.size()) return Vec3(0.f);
+    const double length = double(times_[k + 1]) - times_[k];
+    if (!keys_[0]->diced()) { // the facet itself
+        const TriMesh &from = keys_[k]->mesh(), &to = keys_[k + 1]->mesh();
+        const double share[3] = {1 - at.b1 - at.b2, at.b1, at.b2};
+        Vec3d moved(0.0);
+        for (size_t i = 0; i < 3; ++i) {
+            const uint32_t v = from.index[3 * size_t(at.prim) + i];
+            moved = moved + (Vec3d(to.P[v]) - Vec3d(from.P[v])) * share[i];
+        }
+        return Vec3(moved / length);
+    }
     const auto point = [&](const ShapeRef& s) { // of the undiced surface
-        if (s->diced() && at.prim == 0) return Vec3d(s->evaluate(at.face, at.b1, at.b2).P);
+        if (at.prim == 0) return Vec3d(s->evaluate(at.face, at.b1, at.b2).P);
         return Vec3d(s->evaluateHit(at.prim, at.b1, at.b2).P);
     };
-    return Vec3((point(keys_[k + 1]) - point(keys_[k])) / (double(times_[k + 1]) - times_[k]));
+    return Vec3((point(keys_[k + 1]) - point(keys_[k])) / length);
 }
 
 void reportUnlike(const Shape& s, Diagnostics& diag) {

@@ -56,7 +56,8 @@ struct stdrsl_SpecularAS
         uniform float i, first = arraylength(samples);
         resize(samples, first + m_sampleCount);
         for (i = 0; i < m_sampleCount; i += 1) {
-            float a = M_TWOPI * random();
+            float turn = M_TWOPI * random();
+            float a = atan(sqrt(m_roughValueU + 1) * sin(turn), sqrt(m_roughValueV + 1) * cos(turn));
             float e = m_roughValueU * cos(a) * cos(a) + m_roughValueV * sin(a) * sin(a);
             stdrsl_mirror(context, pow(1 - random(), 1 / (e + 1)), a, first + i, samples);
         }

@@ -85,6 +85,11 @@ public:
         if (!t) t = &world_->irradiance_.of(map, world_->textures_->latLong());
         return *t;
     }
+    const texture::SkyDirections& skyOf(texture::Handle map) { // likewise
+        const texture::SkyDirections*& t = skyOf_[map];
+        if (!t) t = &world_->skyMaps_.of(map, world_->textures_->latLong());
+        return *t;
+    }
 
 private:
     using LightsAsked = std::map<int, uint64_t>; ///< by light, the lanes that ask it
@@ -163,6 +168,7 @@ private:
     render::SampleNumbers noSample_; ///< of points that no camera sample has found
     AnswerMemo memo_;
     std::unordered_map<texture::Handle, const texture::IrradianceTable*> irradianceOf_;
+    std::unordered_map<texture::Handle, const texture::SkyDirections*> skyOf_;
     std::unordered_map<int32_t, const photons::PhotonMap*> photonMaps_; ///< by interned name
     std::unordered_map<int32_t, texture::Handle> mapsByName_;                          ///< by interned name
     std::unordered_map<int32_t, std::optional<texture::TextureInfo>> infosByName_;
@@ -178,6 +184,7 @@ void answerTextureInfo(Answers&, const ServiceCall&);
 // indirectdiffuse() of a map and a direction.
 void answerIrradiance(Answers&, const ServiceCall&);
 void answerPhotons(Answers&, const ServiceCall&); // photons.cpp
+void answerSky(Answers&, const ServiceCall&); // sky.cpp
 // messages.cpp: surface() and its kin, lightsource(), attribute(), shadername(), getvar() of the primitive.
 void answerMessage(Answers&, const ServiceCall&);
 void answerLightSource(Answers&, const ServiceCall&);

@@ -12,6 +12,7 @@ void Answers::service(KernelRun& c, int site, int first, uint64_t mask, int lane
     case SiteKind::Shadow: return answerShadow(*this, call);
     case SiteKind::TextureInfo: return answerTextureInfo(*this, call);
     case SiteKind::Photons: return answerPhotons(*this, call);
+    case SiteKind::SkySamples: return answerSky(*this, call);
     case SiteKind::Irradiance: return answerIrradiance(*this, call);
     case SiteKind::GatherTurn: return answerGatherTurn(call);
     case SiteKind::Ambient: return sumAmbient(call);

@@ -45,7 +45,7 @@ bool WithoutScene::answer(const rsl::CompiledKernel& k, int32_t site, int32_t fi
     bool asks = false;
     for (const char* name :
          {"texture", "environment", "shadow", "textureinfo", "rayinfo", "rendererinfo", "raylevel", "isindirectray",
-          "isshadowray"})
+          "isshadowray", "__skysample", "__skydensity"})
         asks |= op == name;
     if (!asks) return false;
     State& s = *state_;

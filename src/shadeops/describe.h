@@ -45,6 +45,7 @@ std::vector<Shadeop> textureShadeops();
 std::vector<Shadeop> raytracingShadeops();
 std::vector<Shadeop> bmrtShadeops();
 std::vector<Shadeop> publishedShadeops();
+std::vector<Shadeop> plausibleShadeops();
 
 /// What must be there besides the point of `alpenglow eval` (Example::when), where several shadeops need the same.
 inline constexpr const char* kOneLight = "one light with Cl = 1 stands straight over N";

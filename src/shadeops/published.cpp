@@ -4,7 +4,7 @@
 namespace alpenglow::rsl {
 namespace {
 
-constexpr Type kF{Base::Float, 0}, kC{Base::Color, 0};
+constexpr Type kF{Base::Float, 0};
 
 /// `text` once for each type: '$' is its name.
 std::string forTypes(const std::string& types, const std::string& text) {
@@ -138,38 +138,6 @@ void randomstrat(uniform float first; uniform float end; output $ a[]) {
                              "that name or the type does not fit.");
     evalparam.contexts = kAnyContext;
     evalparam.examples = {{"evalparam(\"none\", x) + x", "3", "float x = 3;"}};
-    add("emit", "Ray tracing", sigs({{"void emit(color light; pairs)"}}), Lowering::Unavailable,
-        "Called by area lights of PRMan in their method prelighting(): the light they send without sampling. Lights here are sampled by light().");
-    list.back().examples = {{"x", "2 2 2", "color x = 2; emit(x);"}};
-    Shadeop& areashadow =
-        add("areashadow", "Ray tracing",
-            sigs({{"void areashadow(string map; vector region; pairs)"}, {"void areashadow(string map; pairs)"}, {"color areashadow(point lit; float samples)"}}),
-            Lowering::Unavailable,
-            "In lights that ask BMRT's ray server (rayserver.h): how much of the light that L comes from reaches the point that is lit, traced; 1 is all. "
-            "The forms with a map are called by area lights of PRMan in their method shadowSamples() and are not available.");
-        list.back().examples = {{"areashadow(Ps, 4)", "1 1 1", "", "a light asks and nothing stands between it and Ps"}};
-    areashadow.source = "BMRT, PRMan";
-    areashadow.rsl = R"(
-color areashadow(point lit; float samples) {
-    extern vector L;
-    return transmission(lit, lit - L, "samples", samples);
-}
-)";
-    const std::vector<OptionalParameter> results = {{kC, "diffuseresult", true, "", "light times the diffuse material"},
-                                                    {kC, "specularresult", true, "", "light times the specular material"},
-                                                    {kC, "unshadoweddiffuseresult", true, "", "the same without shadows"},
-                                                    {kC, "unshadowedspecularresult", true, "", "the same without shadows"},
-                                                    {kF, "mis", false, "1", "how samples of lights and materials are joined"}};
-    for (const char* name : {"directlighting", "indirectspecular", "diffuselighting"}) {
-        const std::string n = name;
-        Shadeop& op = add(name, "Ray tracing",
-                          sigs({{("color " + n + "(shader handle; pairs)").c_str()}, {("color " + n + "(shader handle; shader lights[]; pairs)").c_str()}}),
-                          Lowering::Unavailable,
-                          "Called by class surfaces of PRMan: asks the lights, or rays, and the methods generateSamples() and evaluateSamples() of the material.");
-        op.contexts = kSurface;
-        op.optional = results;
-        op.examples = {{n + "(getshader(\"none\")" + (n == "directlighting" ? ", getlights())" : ")"), "0 0 0"}};
-    }
     Shadeop& shaderinfo = add("shaderinfo", "Messages", each("float string", "float shaderinfo(string name; output $ answer)"), Lowering::Rsl,
                               "What PRMan tells about the shader that runs (\"pipelinestage\", \"shadername\"). Nothing is known by these names: the result is 0, and "
                               "answer stays as it was.");
@@ -177,18 +145,6 @@ color areashadow(point lit; float samples) {
                             {"x", "none", "string x = \"none\"; shaderinfo(\"pipelinestage\", x);"}};
     shaderinfo.contexts = kAnyContext;
     shaderinfo.rsl = "float shaderinfo(string name; output float answer) { return 0; }\nfloat shaderinfo(string name; output string answer) { return 0; }\n";
-    const char* const samples = "Called by class lights and materials of PRMan in generateSamples() and evaluateSamples(): directions to an environment, or "
-                                "of the lobe of Ashikhmin and Shirley, and what is known about them.";
-    add("generateSamplesEnv", "Ray tracing", sigs({{"void generateSamplesEnv(string map; point p; normal n; float count; pairs)"}}), Lowering::Unavailable, samples);
-    list.back().examples = {{"x", "0 0 1", "normal x = N; generateSamplesEnv(\"sky.env\", P, x, 4);"}};
-    add("evaluateSamplesEnv", "Ray tracing", sigs({{"void evaluateSamplesEnv(string map; point p; normal n; pairs)"}}), Lowering::Unavailable, samples);
-    list.back().examples = {{"x", "0 0 1", "normal x = N; evaluateSamplesEnv(\"sky.env\", P, x);"}};
-    add("generateSamplesAS", "Ray tracing",
-        sigs({{"void generateSamplesAS(color response; float count, exponentU, exponentV; vector lobe, tangent, view; pairs)"}}), Lowering::Unavailable, samples);
-    list.back().examples = {{"x", "2 2 2", "color x = 2; generateSamplesAS(x, 4, 10, 10, N, dPdu, I);"}};
-    add("evaluateSamplesAS", "Ray tracing",
-        sigs({{"void evaluateSamplesAS(color response; float exponentU, exponentV; vector lobe, tangent, view; pairs)"}}), Lowering::Unavailable, samples);
-    list.back().examples = {{"x", "2 2 2", "color x = 2; evaluateSamplesAS(x, 10, 10, N, dPdu, I);"}};
     return list;
 }
 

@@ -1,5 +1,6 @@
 // Ray tracing: rsl.md 12.1 and 12.2 (seed 6.4.5). Answered by rays; here are signatures and optional parameters.
 #include "shadeops/describe.h"
+#include <array>
 
 namespace alpenglow::rsl {
 namespace {
@@ -206,6 +207,14 @@ std::vector<Shadeop> raytracingShadeops() {
     caustic.bias = Bias::Biased;
     caustic.biasReason = "density estimate over a disc";
     caustic.optional.clear();
+    for (const auto& [name, rest, doc] : {std::array<const char*, 3>{"__skysample", "float a, b; output vector w; output color light",
+                                                                     "Density per steradian of w, drawn in proportion to the light of an environment map, and that light; w in the map's space."},
+                                          std::array<const char*, 3>{"__skydensity", "vector w; output color light",
+                                                                     "Density with which __skysample() gives a direction of the map's space, and the light there."}}) {
+        Shadeop& sky = add(name, sigs({{("float " + std::string(name) + "(string map; " + rest + ")").c_str()}}), Lowering::Service, doc);
+        sky.source = "Alpenglow";
+        sky.optional.clear();
+    }
     Shadeop& gather = add("gather", sigs({{"float gather(string category; point p; vector dir; float angle, float samples; pairs)"}}), Lowering::Request,
         "A statement of the language: gather(category, P, dir, angle, samples, pairs) body else other. Its body runs for each ray that hits "
         "something, what stands behind else for each that misses. Rays are spread over the cone of half angle `angle` about dir, each "

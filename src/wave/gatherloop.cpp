@@ -174,7 +174,7 @@ void skySamples(const Asking& a, GatherRows& rows, int begin, int end, int count
     const GatherSite& g = *a.s.gather;
     for (int k = begin; k < end; ++k) {
         float* row = rows.of(a.lane, k - begin);
-        const SkyDirections::Direction d = g.sky->at(a.pair(k, count));
+        const texture::SkyDirections::Direction d = g.sky->at(a.pair(k, count));
         row[0] = 1;
         tellRay(g, row, a.triple(a.s.rows[0]), d.w, 1e38f);
         for (const Output& o : g.outputs) {
@@ -217,6 +217,17 @@ bool goesOn(const Asking& a, PathRay& sent, int count, uint32_t asked) {
     return true;
 }
 
+/// Rays that are cast for `count` turns, a power of two or all. A hit whose light is not followed is shaded for the outputs that
+/// the gather before it asks for: with all others there it casts about as many rays as one that is followed does, each for
+/// several turns. What a loop adds up over its turns keeps its mean, and gathers within gathers stay linear in their rays.
+int raysFor(const Asking& a, int count) {
+    const PathRay& from = *a.point().ray;
+    if (!from.quiet || from.asked < 2) return count;
+    const int fair = (count + int(from.asked) - 1) / int(from.asked);
+    const int rays = int(std::bit_ceil(uint32_t(fair)));
+    return rays <= rsl::kGatherRays && rays < count ? rays : count;
+}
+
 /// Rays of one lane that are cast.
 void castRays(const Asking& a, GatherRows& rows, int begin, int end, int count, uint32_t& asked, std::vector<GatherSent>& out) {
     Engine& e = a.e;
@@ -231,8 +242,15 @@ void castRays(const Asking& a, GatherRows& rows, int begin, int end, int count, 
     const bool deep = a.tooDeep(kind.type);
     const float far = std::min(a.number(r.maxDistance, 1e38f), a.number(r.maxHit, 1e38f)), reach = far >= 0 ? far : 1e38f;
     const float base = a.number(r.base, 0);
-    for (int k = begin; k < end; ++k) {
-        float* row = rows.of(a.lane, k - begin);
+    const int turns = count;
+    count = raysFor(a, turns);
+    for (int turn = begin; turn < end; ++turn) {
+        float* row = rows.of(a.lane, turn - begin);
+        if (turn - begin >= count) { // of no ray that goes on: see raysFor()
+            std::copy_n(rows.of(a.lane, turn - begin - count), g.width, row);
+            continue;
+        }
+        const int k = turn % count;
         const Vec3 w = a.direction(k, count);
         Vec3 from = a.origin(w);
         if (const geometry::SurfacePoint* s = a.surface(); base > 0 && s) {
@@ -272,6 +290,7 @@ void castRays(const Asking& a, GatherRows& rows, int begin, int end, int count, 
             if (p.ray->quiet || !g.asks) continue;
             sent.weight = Color(0);
             sent.quiet = true;
+            sent.asked = uint16_t(std::clamp(turns, int(sent.asked), 0xffff));
         }
         out.push_back({sent, row, e.world().shapes_[hit.shape].get(), &g, sent.quiet, false});
     }

@@ -40,6 +40,8 @@ SiteKind kindOf(const std::string& op) {
                                                           {"isindirectray", SiteKind::RayLevel},
                                                           {"isshadowray", SiteKind::RayLevel},
                                                           {"textureinfo", SiteKind::TextureInfo},
+                                                          {"__skysample", SiteKind::SkySamples},
+                                                          {"__skydensity", SiteKind::SkySamples},
                                                           {"photonmap", SiteKind::Photons},
                                                           {"caustic", SiteKind::Photons},
                                                           {"lightsetup", SiteKind::LightSetup},

@@ -73,7 +73,8 @@ void setLightKind(BoundLight& part, const std::string& block, bool area, bool pa
         part.samples = limits::kLightTurns;
         part.shadows |= !path && part.instance->parameters.numbers.count(rsl::kSentShadows) > 0;
     }
-    if (part.kind == LightKind::Area && givesMean(*part.source, part.instance->name, path, d)) {
+    const bool emits = part.instance->parameters.numbers.count(rsl::kEmits) > 0;
+    if (part.kind == LightKind::Area && givesMean(*part.source, part.instance->name, path || emits, d)) {
         part.mean = true;
         part.strategy = LightStrategy::Illuminance; // it has no radiance that trace() could find
     }

@@ -1,5 +1,4 @@
 #include "world/gathersite.h"
-#include "base/exact.h"
 #include "rsl/front/protocol.h"
 #include "rsl/front/visit.h"
 #include <cstdlib>
@@ -9,22 +8,6 @@ namespace alpenglow::transport {
 namespace {
 
 using Of = GatherSite::Of;
-
-constexpr int kAround = 128, kDown = 64; ///< cells, all of the same size: even in height and around
-
-Vec3 directionAt(double x, double y) {
-    const double z = 1 - 2 * y / kDown, r = std::sqrt(std::max(0.0, 1 - z * z)), turn = 2 * kPi * x / kAround;
-    return {float(r * exact::cos(turn)), float(r * exact::sin(turn)), float(z)};
-}
-
-Color lightAt(texture::Handle map, const texture::LatLong& axes, const Vec3& w, float side) {
-    texture::LookupOptions colours;
-    colours.asLight = true;
-    const Vec3 beside = std::fabs(w.z) < .9f ? cross(w, Vec3(0, 0, 1)) : cross(w, Vec3(1, 0, 0)), t = beside / length(beside);
-    float v[3] = {};
-    texture::environment(map, axes, 0, 3, w, t * side, cross(w, t) * side, colours, v);
-    return {v[0], v[1], v[2]};
-}
 
 /// What a name with its prefix means; nothing: it is not known.
 std::optional<std::pair<Of, std::string>> meaning(const std::string& name) {
@@ -83,34 +66,6 @@ void readOutputs(const rsl::ir::Site& turn, GatherSite& g, const std::function<v
 
 } // namespace
 
-SkyDirections::SkyDirections(texture::Handle map, const texture::LatLong& axes) : map_(map), axes_(axes) {
-    std::vector<float> light;
-    double all = 0;
-    for (int y = 0; y < kDown; ++y)
-        for (int x = 0; x < kAround; ++x) {
-            const float v = std::max(
-                0.f, luminance(lightAt(map, axes, directionAt(x + .5, y + .5), float(std::sqrt(4 * kPi / (kAround * kDown))))));
-            light.push_back(std::isfinite(v) ? v : 0);
-            all += light.back();
-        }
-    // A tenth of all goes everywhere alike: what a cell's middle says of it may be wrong.
-    double sum = 0;
-    for (const float v : light)
-        sums_.push_back(float(sum += .9 * (all > 0 ? v / all : 1.0 / double(light.size())) + .1 / double(light.size())));
-}
-
-SkyDirections::Direction SkyDirections::at(Vec2 e) const {
-    const size_t cell = size_t(
-        std::min<ptrdiff_t>(std::upper_bound(sums_.begin(), sums_.end(), e.x) - sums_.begin(), ptrdiff_t(sums_.size()) - 1));
-    const float before = cell ? sums_[cell - 1] : 0, chance = sums_[cell] - before;
-    const float inside = std::clamp((e.x - before) / chance, 0.f, 1.f); // what is left of the first number
-    Direction d;
-    d.w = directionAt(double(cell % kAround) + inside, double(cell / kAround) + e.y);
-    d.density = chance * float(kAround * kDown / (4 * kPi));
-    d.light = map_ ? lightAt(map_, axes_, d.w, 1e-3f) : Color(0);
-    return d;
-}
-
 void linkGathers(BoundKernel& b, const rsl::CompiledKernel& k, WorldImpl& world) {
     std::map<std::string, std::shared_ptr<GatherSite>> known;
     const auto numberOf = [](const SiteInfo& i) {
@@ -152,9 +107,8 @@ void linkGathers(BoundKernel& b, const rsl::CompiledKernel& k, WorldImpl& world)
             const rsl::Place& at = i.site->place;
             const SourcePlace place{at.file >= 0 && at.file < int(k.files().size()) ? k.files()[size_t(at.file)] : "", at.line,
                                     at.column};
-            g->sky = std::make_shared<SkyDirections>(
-                world.textures_->open(category.substr(kSky.size()), world.settings_.texturePaths, place),
-                world.textures_->latLong());
+            const auto map = world.textures_->open(category.substr(kSky.size()), world.settings_.texturePaths, place);
+            g->sky = &world.skyMaps_.of(map, world.textures_->latLong());
         } else if (!category.empty() && category != "illuminance") {
             told(i, "the category \"" + category + "\" is not known; \"illuminance\" is taken",
                  "illuminance, samplepattern, environment:MAP");

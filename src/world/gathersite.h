@@ -1,25 +1,9 @@
 // What a gather statement asks for, worked out when its kernel is bound.
 #pragma once
+#include "texture/skydirections.h"
 #include "world/impl.h"
 
 namespace alpenglow::transport {
-
-/// Directions in proportion to the light of an environment map, seen from anywhere.
-class SkyDirections {
-public:
-    SkyDirections(texture::Handle, const texture::LatLong&);
-    struct Direction {
-        Vec3 w;
-        float density;
-        Color light;
-    }; ///< density per steradian, > 0; light there
-    Direction at(Vec2 random) const;
-
-private:
-    texture::Handle map_;
-    texture::LatLong axes_;
-    std::vector<float> sums_; ///< by cell, of its light and all before
-};
 
 struct GatherSite {
     enum class Category : uint8_t { Rays, Directions, Sky };
@@ -56,7 +40,7 @@ struct GatherSite {
     bool shades = false; ///< shaders must run where a ray hits
     bool light = false;  ///< and what arrives from there counts
     bool opacity = false, asks = false; ///< surface:Oi; parameters and outputs of shaders
-    std::shared_ptr<const SkyDirections> sky;
+    const texture::SkyDirections* sky = nullptr; ///< the world's
 };
 
 /// Fills SiteInfo::gather of the sites of a kernel.

@@ -1,6 +1,7 @@
 // The inside of World, for the rooms of transport only: what hits, shaders and lights are bound to.
 #pragma once
 #include "texture/irradiance.h"
+#include "texture/skydirections.h"
 #include "rsl/passes/optimize.h"
 #include "rsl/printlog.h"
 #include "scene/motion.h"
@@ -154,6 +155,7 @@ public:
     Diagnostics* diagnostics_ = nullptr;
     mutable rsl::PrintLog prints_;
     texture::IrradianceTables irradiance_;
+    texture::SkyDirectionTables skyMaps_;
     std::shared_ptr<PhotonStore> photons_;     ///< changes between passes only, when nobody follows rays
     bool globalMaps_ = false;                  ///< some surface has a global photon map, and some indirectdiffuse() may meet it
     mutable LightRecords records_;

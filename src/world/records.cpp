@@ -60,6 +60,60 @@ void LightRecord::take(const std::array<Vec3, 3>& axes, int rings, int turns, co
     distance = std::max(std::min(std::max(r, least), std::max(most, kLeast) * pixel / change), 1e-30f);
 }
 
+namespace {
+
+struct Cube { int32_t x, y, z, level; bool operator==(const Cube&) const = default; };
+struct CubeHash {
+    size_t operator()(const Cube& c) const {
+        uint64_t h = 0;
+        for (const int32_t v : {c.x, c.y, c.z, c.level}) h = (h ^ uint32_t(v)) * 0x9e3779b97f4a7c15ull, h ^= h >> 29;
+        return size_t(h);
+    }
+};
+
+/// What is near to one of two neighbours is near to the other, too: none sees things farther away than the other does, and the
+/// way between them (Krivanek 2005). A record whose rays began behind a wall, or missed what touches the surface close by, says
+/// nothing of the surface about it. New are those from number `fresh` on, in their order: threads change nothing.
+void agreeOnDistances(std::vector<LightRecord>& all, size_t fresh) {
+    std::unordered_map<Cube, std::vector<uint32_t>, CubeHash> cubes;
+    std::vector<int> levels;
+    const auto levelAt = [&](const LightRecord& r) { return levelOf(r.change * r.distance); };
+    for (size_t i = fresh; i < all.size(); ++i) levels.push_back(levelAt(all[i]));
+    std::sort(levels.begin(), levels.end());
+    levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+    const auto cubeOf = [](const Vec3& p, int level) {
+        const float one = power(-level);
+        const auto whole = [&](float v) { return int32_t(std::clamp(std::floor(v * one), -1e9f, 1e9f)); };
+        return Cube{whole(p.x), whole(p.y), whole(p.z), level};
+    };
+    const auto enter = [&](size_t i) {
+        for (const int level : levels) cubes[cubeOf(all[i].P, level)].push_back(uint32_t(i));
+    };
+    for (size_t i = 0; i < fresh; ++i) enter(i);
+    for (size_t i = fresh; i < all.size(); ++i) {
+        LightRecord& r = all[i];
+        const float reach = r.change * r.distance;
+        const int level = levelAt(r);
+        const Cube lo = cubeOf(r.P - Vec3(reach), level), hi = cubeOf(r.P + Vec3(reach), level);
+        for (int32_t z = lo.z; z <= hi.z; ++z)
+            for (int32_t y = lo.y; y <= hi.y; ++y)
+                for (int32_t x = lo.x; x <= hi.x; ++x) {
+                    const auto cube = cubes.find({x, y, z, level});
+                    if (cube == cubes.end()) continue;
+                    for (const uint32_t n : cube->second) {
+                        LightRecord& other = all[n];
+                        const float apart = length(other.P - r.P);
+                        if (other.call != r.call || !(apart < reach)) continue;
+                        r.distance = std::min(r.distance, other.distance + apart);
+                        other.distance = std::min(other.distance, r.distance + apart);
+                    }
+                }
+        enter(i);
+    }
+}
+
+} // namespace
+
 size_t LightRecords::CellHash::operator()(const Cell& c) const {
     uint64_t h = 0;
     for (const int32_t v : {c.x, c.y, c.z, c.level}) h = (h ^ uint32_t(v)) * 0x9e3779b97f4a7c15ull, h ^= h >> 29;
@@ -107,17 +161,20 @@ void LightRecords::add(const LightRecord& r) {
 size_t LightRecords::keep() {
     std::lock_guard lock(mutex_);
     std::sort(added_.begin(), added_.end(), [](const LightRecord& a, const LightRecord& b) { return a.place < b.place; });
-    for (const LightRecord& r : added_) {
-        if (records_.size() >= kMostRecords) break;
+    const size_t fresh = records_.size();
+    const size_t room = kMostRecords - std::min(fresh, kMostRecords);
+    records_.insert(records_.end(), added_.begin(), added_.begin() + long(std::min(added_.size(), room)));
+    agreeOnDistances(records_, fresh);
+    for (size_t i = fresh; i < records_.size(); ++i) {
+        const LightRecord& r = records_[i];
         const float reach = r.change * r.distance;
         const int level = levelOf(reach);
         const Cell lo = cellOf(r.P - Vec3(reach), level), hi = cellOf(r.P + Vec3(reach), level);
         for (int32_t z = lo.z; z <= hi.z; ++z)
             for (int32_t y = lo.y; y <= hi.y; ++y)
-                for (int32_t x = lo.x; x <= hi.x; ++x) cells_[{x, y, z, level}].push_back(uint32_t(records_.size()));
+                for (int32_t x = lo.x; x <= hi.x; ++x) cells_[{x, y, z, level}].push_back(uint32_t(i));
         if (const auto p = std::lower_bound(levels_.begin(), levels_.end(), level); p == levels_.end() || *p != level)
             levels_.insert(p, level);
-        records_.push_back(r);
     }
     added_.clear();
     return records_.size();

@@ -144,6 +144,7 @@ enum class SiteKind : uint8_t {
     Text,
     GatherTurn,
     Photons,
+    SkySamples,
     Other
 };
 struct SiteInfo {

@@ -37,8 +37,7 @@ TEST(Registry, EveryDescriptorIsWhole) {
         EXPECT_FALSE(op.source.empty()) << op.name;
         EXPECT_FALSE(op.section.empty()) << op.name;
         EXPECT_FALSE(op.signatures.empty()) << op.name;
-        if (op.lowering != Lowering::Unavailable) // of these some forms may have a text
-            EXPECT_EQ(op.lowering == Lowering::Rsl, !op.rsl.empty()) << op.name;
+        EXPECT_EQ(op.lowering == Lowering::Rsl, !op.rsl.empty()) << op.name;
         EXPECT_EQ(op.bias == Bias::Unbiased, op.biasReason.empty()) << op.name;
         EXPECT_NE(op.contexts, 0u) << op.name;
         std::set<std::string> seen;

@@ -119,6 +119,28 @@ TEST(Gather, TellsAllOfHitsWhoseLightIsNotFollowed) {
     expectMean(s.estimate(kNear, 4000), .25, .02, "light behind the second hit");
 }
 
+// Outputs of hits whose shaders gather too: the rays of a point grow as their number does, not as its square, and what the outputs
+// tell is right in the mean. Inside a ball each ray meets it; of those about an axis, one half goes to one side of it.
+TEST(Gather, GathersForOutputsStayLinear) {
+    writeShader("gsends", "surface gsends() { Ci = trace(P, vector \"world\" (0, 1, 0)); Oi = 1; }\n");
+    double rays[2];
+    for (const int n : {16, 64}) {
+        const std::string name = "gtelling" + std::to_string(n), count = std::to_string(n);
+        writeShader(name, "surface " + name + "(output varying float bright = 0) { float f = 0, sum = 0, hits = 0; uniform float depth = 0; rayinfo(\"depth\", depth);"
+                          " color c = 0; vector d = 0, aside = P ^ vector(.3, .5, .8);\n"
+                          "gather(\"\", P, -P, PI / 2, " + count + ", \"ray:direction\", d, \"surface:bright\", f) { hits += 1; sum += (depth == 1) ? f : 2 * step(0, d . aside); }"
+                          "bright = sum / " + count + "; Ci = color(bright, hits / " + count + ", 0); Oi = 1; }\n");
+        Scene s(world(kSeen + "Surface \"gsends\"\n" + kSmall + "AttributeBegin Surface \"" + name + "\" Sphere 2 -2 2 360 AttributeEnd\n"), withShaders(Hider::Path));
+        Counters c;
+        const Moments m = s.estimate(kNear, 400, &c);
+        expectMean(m, 1, .02, count);
+        EXPECT_EQ(m.mean(1), 1);
+        rays[n == 64] = double(c.diffuse + c.specular) / double(c.paths);
+        EXPECT_LT(rays[n == 64], 24. * n);
+    }
+    EXPECT_LT(rays[1], 6 * rays[0]);
+}
+
 // Rays of one statement are spread among each other: the part that a wall takes is met far better than by as many drawn freely.
 TEST(Gather, SpreadsItsRays) {
     const double p = ofWall(.5, 1);

@@ -1,8 +1,10 @@
 // Growth of work with depth, memory of suspended frames, interruption.
 #include "base/limits.h"
+#include "sanitized.h"
 #include "render/camera.h"
 #include "transport/harness.h"
 #include <chrono>
+#include <fstream>
 #include <thread>
 
 using namespace alpenglow;
@@ -208,14 +210,28 @@ TEST(Growth, ManyRaysOfAWaitingShaderStayFinite) {
     EXPECT_NEAR(m.mean(), 1, 4.753 * m.se() + .0006);
     EXPECT_LT(m.se(), .1);
 }
-/// Traces rays that take far longer than 150 ms, asks to stop after those, and expects the end within the 0.2 s that the issue asks for.
-void expectPromptStop(Scene& scene, const std::vector<CameraRay>& rays) {
+/// What the process has of the machine's memory, in bytes; 0 where that is not told.
+size_t residentBytes() {
+    std::ifstream f("/proc/self/statm");
+    size_t all = 0, resident = 0;
+    f >> all >> resident;
+    return resident * 4096;
+}
+
+/// Traces rays that take far longer than `wait` ms, asks to stop after those, and expects the end within the 0.2 s that the issue asks
+/// for, without more than `most` bytes more than before.
+void expectPromptStop(Scene& scene, const std::vector<CameraRay>& rays, int wait = 150, size_t most = size_t(512) << 20) {
     std::vector<SampleResult> out(rays.size());
     StopFlag stop{0};
     using Clock = std::chrono::steady_clock;
     Clock::time_point asked;
+    const size_t before = residentBytes();
+    size_t peak = before;
     std::thread killer([&] {
-        std::this_thread::sleep_for(std::chrono::milliseconds(150));
+        for (int waited = 0; waited < wait; waited += 10) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+            peak = std::max(peak, residentBytes());
+        }
         asked = Clock::now();
         stop = 1;
     });
@@ -225,6 +241,7 @@ void expectPromptStop(Scene& scene, const std::vector<CameraRay>& rays) {
     killer.join();
     EXPECT_FALSE(done);
     EXPECT_LT(std::chrono::duration<double>(ended - asked).count(), .2);
+    EXPECT_LT(peak - before, most * (kSanitized ? 4 : 1));
 }
 
 TEST(Stop, EndlessLoopsEndPromptly) {
@@ -245,6 +262,60 @@ TEST(Stop, ManyRaysEndPromptly) {
     }());
     std::vector<CameraRay> rays(60000, kEye);
     expectPromptStop(scene, rays);
+}
+
+// 256 samples nested four deep are four thousand million rays a point: they take what they take, in bounded memory, and end when they
+// are asked to.
+TEST(Stop, NestedSamplesEndPromptlyInBoundedMemory) {
+    const char* const kBodies[][2] = {
+        {"gather", "color c = 0, sum = 0; gather(\"illuminance\", P, -P, PI / 2, 256, \"surface:Ci\", c) sum += c / 256; else sum += 1 / 256;"},
+        {"told", "color c = 0, sum = 0; float f = 0; gather(\"\", P, -P, PI / 2, 256, \"surface:Ci\", c, \"surface:shown\", f) sum += c / 256 + f * 1e-6;"},
+        {"trace", "color sum = trace(P, vector(-P), \"distribution\", \"cosine\", \"samplecone\", PI / 2, \"samples\", 256); if (comp(sum, 0) > 2) sum = 0;"},
+        {"indirect", "color sum = indirectdiffuse(P, vector(-P), 256); if (comp(sum, 0) > 2) sum = 0;"},
+        {"inside", "color c = 0, sum = 0; gather(\"\", P, -P, 1, 256) { gather(\"\", P, -P, 1, 256) { gather(\"\", P, -P, 1, 256) {"
+                   " gather(\"\", P, -P, 1, 256, \"surface:Ci\", c) sum += c * 1e-9; } } }"}};
+    for (const auto& [name, body] : kBodies) {
+        writeShader(std::string("deep") + name, "surface deep" + std::string(name) + "(output varying float shown = 0) { " + body + " shown = comp(sum, 0); Oi = 1; Ci = .1 + .5 * sum; }\n");
+        for (const Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path}) {
+            Settings s;
+            s.hider = h;
+            s.maxDepth = 4;
+            s.roulette = false;
+            Scene scene("WorldBegin\nSides 2\nAttribute \"trace\" \"int maxdiffusedepth\" 4 \"int maxspeculardepth\" 4\n"
+                        "Attribute \"visibility\" \"int diffuse\" 1 \"int specular\" 1 \"int transmission\" 1\nSurface \"deep" +
+                            std::string(name) + "\"\nSphere 1 -1 1 360\nWorldEnd\n", s);
+            ASSERT_TRUE(scene.world);
+            SCOPED_TRACE(std::string(name) + " " + std::to_string(int(h)));
+            expectPromptStop(scene, std::vector<CameraRay>(2000, rayTo({0, 0, 0}, {.1f, .2f, 1})), 600);
+        }
+    }
+}
+
+// Counts that ask for nothing, for no number, or for far too much: a message, a value that is finite, and a bounded number of rays.
+TEST(Growth, CountsThatMakeNoSense) {
+    const struct { const char *name, *call; } kCalls[] = {
+        {"trace", "trace(P, up, \"distribution\", \"cosine\", \"samplecone\", PI / 2, \"samples\", n)"},
+        {"indirect", "indirectdiffuse(P, up, n)"},
+        {"occlusion", "color occlusion(P, up, n)"},
+        {"transmission", "transmission(P, P + up, \"samplecone\", .5, \"samples\", n)"},
+        {"environment", "environment(\"raytrace\", up, \"samples\", n, \"samplecone\", 1)"}};
+    for (const auto& [name, call] : kCalls) {
+        writeShader(std::string("senseless") + name, "surface senseless" + std::string(name) + "(float n = 1) { vector up = vector(0, 0, -1); float k = n; if (n == 77) k = 0 * sqrt(-1 - n); Oi = 1; Ci = " +
+                                                         std::string(call).replace(std::string(call).find("n)") == std::string::npos ? std::string(call).find("n,") : std::string(call).rfind("n)"), 1, "k") + "; }\n");
+        for (const char* n : {"0", "-1", "77", "1e9"}) {
+            Settings s;
+            s.hider = Hider::Path;
+            Scene scene("WorldBegin\nSides 2\nSurface \"senseless" + std::string(name) + "\" \"n\" " + n +
+                            "\nPolygon \"P\" [-1 -1 1  1 -1 1  1 1 1  -1 1 1]\nWorldEnd\n", s);
+            ASSERT_TRUE(scene.world);
+            Counters c;
+            const CameraRay ray = rayTo({0, 0, 0}, {.1f, .2f, 1});
+            const Color got = scene.trace({&ray, 1}, &c)[0].color;
+            EXPECT_TRUE(std::isfinite(got.x)) << name << " " << n;
+            EXPECT_LE(c.diffuse + c.specular + c.transmission + c.shadow, 4096u * 2) << name << " " << n;
+            EXPECT_EQ(scene.messages().find("4096") != std::string::npos, n[1] == 'e') << name << " " << n << scene.messages();
+        }
+    }
 }
 
 } // namespace

@@ -80,4 +80,73 @@ TEST(Plausible, RaysWhereTheMaterialWantsThem) {
     EXPECT_NEAR(c[2], 1 * each, 1e-5);
 }
 
+// Of another shader object, and of some of the lights only: the light at 60 degrees gives 1 (diffuse) and 2 / 4, the other 1/2 and 1/8.
+TEST(Plausible, OtherObjectsAndChosenLights) {
+    writeShader("other", material(""));
+    writeShader("listing", material(R"(public void lighting(output color Ci, Oi) {
+        shader one[1];
+        one[0] = getlight("1");
+        Ci = color(comp(directlighting(this, one), 0), comp(diffuselighting(this, one), 0), comp(specularlighting(this, m_lights), 0));
+        Oi = 1;
+    }
+)"));
+    writeShader("asks", R"(class asks() { public void surface(output color Ci, Oi) {
+        shader one[1];
+        one[0] = getlight("2");
+        shader m = getshader("material");
+        color d = 0, s = 0, ud = 0, us = 0;
+        color both = directlighting(m, "diffuseresult", d, "specularresult", s, "unshadoweddiffuseresult", ud, "unshadowedspecularresult", us, "mis", 1,
+                                    "integrationdomain", "sphere");
+        Ci = color(comp(directlighting(m, one), 0), comp(diffuselighting(m, one), 0), comp(specularlighting(m, one), 0));
+        color sd = 0, ss = 0, su = 0, sv = 0;
+        if (specularlighting(m, "diffuseresult", sd, "specularresult", ss, "unshadoweddiffuseresult", su, "unshadowedspecularresult", sv, "mis", 0,
+                             "integrationdomain", "sphere") != ss || sd != d || su != d || sv != ss) Ci += 100;
+        if (diffuselighting(m, "integrationdomain", "sphere") != d) Ci += 100;
+        Ci += 10 * color(comp(both, 0), comp(diffuselighting(m), 0) + comp(d, 0) + comp(ud, 0), comp(specularlighting(m) + s + us, 0));
+        Oi = 1;
+    } }
+)");
+    for (Hider h : {Hider::Hidden, Hider::Path}) {
+        const Color listed = Scene(world(kTwoLights + std::string("Surface \"listing\"\n") + kFloor), under(h)).one(kView);
+        EXPECT_NEAR(listed[0], 1.5, 1e-5);
+        EXPECT_NEAR(listed[1], 1, 1e-5);
+        EXPECT_NEAR(listed[2], .625, 1e-5);
+        const Color asked = Scene(world(kTwoLights + std::string("Shader \"other\" \"material\"\nSurface \"asks\"\n") + kFloor), under(h)).one(kView);
+        EXPECT_NEAR(asked[0], .625 + 10 * 2.125, 1e-4);
+        EXPECT_NEAR(asked[1], .5 + 10 * 3 * 1.5, 1e-4);
+        EXPECT_NEAR(asked[2], .125 + 10 * 3 * .625, 1e-4);
+    }
+}
+
+// The rays that another object wants, and those that may not go as far as the card.
+TEST(Plausible, RaysWhereAnotherMaterialWantsThem) {
+    writeShader("card", "surface card() { Oi = 1; Ci = color(.5, .25, 1); }\n");
+    const std::string generates = R"(public void generateSamples(string type; output __radiancesample samples[]) {
+        resize(samples, 2);
+        samples[0]->direction = vector(0, 1, 0);
+        samples[0]->setMaterialResponse(.5, .25);
+        samples[1]->direction = vector(1, .001, 0);
+        samples[1]->setMaterialResponse(9, 1);
+    }
+)";
+    writeShader("wants", "class wants() {\n" + generates + "}\n");
+    writeShader("short", "class short() {\n" + generates + R"(public void surface(output color Ci, Oi) {
+        Ci = color(comp(indirectspecular(this, "maxdist", .5), 0), comp(indirectspecular(this, "maxdist", 2, "label", "far", "hitmode", "shader"), 0), 0); Oi = 1; } }
+)");
+    writeShader("sends", R"(class sends() { public void surface(output color Ci, Oi) {
+        shader m = getshader("material");
+        Ci = indirectspecular(m);
+        if (comp(indirectspecular(m, "bias", .01, "maxdist", .5, "label", "near", "subset", "", "hitmode", "default", "hitsides", "both"), 0) != 0) Ci = -1;
+        Oi = 1; } }
+)");
+    const std::string card = "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nSurface \"card\"\nPolygon \"P\" [-9 1 -9  -9 1 9  9 1 9  9 1 -9]\nAttributeEnd\n";
+    const Color c = Scene(world(card + "Shader \"wants\" \"material\"\nSurface \"sends\"\n" + kFloor), under(Hider::Raytrace)).one(kView);
+    EXPECT_NEAR(c[0], .5, 1e-5); // 2 / 2 of the card's .5
+    EXPECT_NEAR(c[1], .25, 1e-5);
+    EXPECT_NEAR(c[2], 1, 1e-5);
+    const Color s = Scene(world(card + "Surface \"short\"\n" + kFloor), under(Hider::Raytrace)).one(kView);
+    EXPECT_EQ(s[0], 0);
+    EXPECT_NEAR(s[1], .5, 1e-5);
+}
+
 } // namespace

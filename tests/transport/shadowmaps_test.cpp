@@ -124,4 +124,26 @@ TEST(ShadowMaps, AMissingMapIsSaidOnceAndLit) {
     EXPECT_EQ(s.diagnostics.errors(), 1) << s.messages();
 }
 
+// areashadow() of a class light with the map: the light of its samples is dark where the map says so, and nothing is traced.
+TEST(ShadowMaps, SamplesOfClassLights) {
+    writeShader("mapped", "class mapped(string map = \"\") {\n"
+                          "    public void generateSamples(string integrationdomain; output __radiancesample samples[]) {\n"
+                          "        vector to = point \"shader\" (0, 0, 0) - Ps; resize(samples, 1); samples[0]->direction = normalize(to); samples[0]->distance = length(to);\n"
+                          "        samples[0]->setLightRadiance(PI * color(1, .5, .25), 1);\n    }\n"
+                          "    public void shadowSamples(output __radiancesample samples[]) { filterregion f; f->calculate3d(Ps);\n"
+                          "        areashadow(map, f, samples, \"bias\", .01, \"blur\", 0, \"width\", 1, \"raytrace\", 0, \"label\", \"l\", \"subset\", \"\", \"hitmode\", \"shader\"); }\n}\n");
+    writeShader("shown", "surface shown() { Oi = 1; Ci = 0; illuminance(P) Ci += Cl; }\n");
+    const std::string light = "TransformBegin\nTranslate 0 4 0\nLightSource \"mapped\" 1 \"map\" " + lampMap("lamp.shd") + "\nTransformEnd\nSurface \"shown\"\n";
+    const std::string card = "AttributeBegin\nSurface \"constant\"\nAttribute \"visibility\" \"camera\" 0 \"transmission\" \"opaque\"\nPolygon \"P\" [-90 1 -90  -90 1 90  90 1 90  90 1 -90]\nAttributeEnd\n";
+    for (const Hider h : {Hider::Hidden, Hider::Raytrace}) { // under path lights trace their shadows
+        Scene s(world(light + kFloor), withShaders(h));
+        EXPECT_EQ(s.one(at(0)).x, 0);
+        EXPECT_EQ(s.one(at(-1.9f)).y, 0);
+        EXPECT_NEAR(s.one(at(2.5f)).x, 1, 1e-5);
+        EXPECT_NEAR(s.one(at(2.5f)).z, .25, 1e-5);
+        EXPECT_EQ(s.messages(), "");
+        EXPECT_NEAR(Scene(world(light + card + kFloor), withShaders(h)).one(at(2.5f)).x, 1, 1e-5);
+    }
+}
+
 } // namespace

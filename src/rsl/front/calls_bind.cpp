@@ -13,7 +13,10 @@ namespace alpenglow::rsl::front {
 namespace {
 /// How many optional parameters the text of a shadeop takes behind its own.
 size_t optionalInText(const Shadeop& op) {
-    static const std::set<std::string_view> kOps = {"bump", "visibility", "rayhittest", "fulltrace", "wnoise"};
+    static const std::set<std::string_view> kOps = {"bump",           "visibility",      "rayhittest",       "fulltrace",
+                                                    "wnoise",         "emit",            "areashadow",       "generateSamplesEnv",
+                                                    "directlighting", "diffuselighting", "specularlighting", "evaluateSamplesEnv",
+                                                    "indirectspecular"};
     return kOps.count(op.name) ? op.optional.size() : 0;
 }
 } // namespace
@@ -85,13 +88,12 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
         if (e.type.base != Base::Void) readsPoint(e, "what '" + op.name + "' gives");
     }
     if (op.name == "rayinfo") readsPoint(e, "what 'rayinfo' gives", false); // the same for the points of one batch, but of a ray
-    const bool written = op.lowering == Lowering::Unavailable && !op.rsl.empty() && !choice.signature->pairs; // this form has a text
     // shadow("raytrace", ...) sends rays. A map by that name is known here only where it is written down.
     const bool rays = op.name == "shadow" && !e.args.empty() && e.args[0]->kind == ExprKind::String && e.args[0]->text == "raytrace";
-    if (op.lowering == Lowering::Unavailable && !written && !rays && reportedUnavailable_.insert(&op).second)
+    if (op.lowering == Lowering::Unavailable && !rays && reportedUnavailable_.insert(&op).second)
         sources_.warning(e.place, "'" + op.name + "' is not yet available; " +
                                       (e.type.base == Base::Void ? "the call does nothing" : "its value is 0"));
-    if (op.lowering != Lowering::Rsl && !written) return;
+    if (op.lowering != Lowering::Rsl) return;
     std::pair<std::string, std::string> rename;
     for (const NamedArg& p : e.pairs) {
         // The one shadeop in RSL with a choice of kernels.

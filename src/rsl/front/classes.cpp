@@ -82,7 +82,7 @@ public:
             if (runs(e) && std::find(kinds.begin(), kinds.end(), e.kind) == kinds.end()) kinds.push_back(e.kind);
         if (names_.count("surface"))
             for (const char* part : {"prelighting", "lighting", "postlighting"})
-                if (names_.count(part) && !calls_["surface"].count(part))
+                if (names_.count(part) && !calls_["surface"].count(part) && !calls_["light"].count(part))
                     sources_.warning(method(part)->place, std::string("method '") + part + "' is not run where there is a method 'surface'");
         if (kinds.empty()) kinds.push_back(ShaderKind::Surface); // a shader for other shaders
         for (ShaderKind k : kinds) unit_.shaders.push_back(shader(k, k == kinds[0]));

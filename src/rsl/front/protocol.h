@@ -148,6 +148,8 @@ inline constexpr char kGroup[] = "__group"; ///< of a light: the name of its gro
 inline constexpr char kBoundSize[] = "__displacementbound_sphere", kBoundSpace[] = "__displacementbound_coordinatesystem";
 /// Of a light that sends through generateSamples(): ways and light of its samples, and whether their light is traced.
 inline constexpr char kSentL[] = "__sentL", kSentCl[] = "__sentCl", kSentShadows[] = "__sentShadows";
+/// A parameter of lights that send what emit() says: radiance under every hider.
+inline constexpr char kEmits[] = "__emits";
 
 // What gives light where, ir::KernelFacts::blocks.
 inline constexpr char kBlockOutside[] = "outside"; ///< outside of illuminate and solar statements

@@ -197,10 +197,10 @@ void Lowering::methodCall(Expr& e) {
 /// Where a function of the renderer is asked about a region instead of a point, the parts of the region that it understands.
 void Lowering::regions(Expr& call) {
     if (call.kind != ExprKind::ShadeopCall || functions_.count(call.text)) return;
-    // The samples of functions that only have a name: without them, and without the tokens before them, their calls can be checked.
-    const Shadeop* op = findShadeop(call.text);
+    // "materialsamples", samples: what was drawn is not told, as nothing is drawn from the material.
+    static const std::set<std::string_view> kSums = {"directlighting", "diffuselighting", "specularlighting", "indirectspecular"};
     const int sample = structNamed("__radiancesample");
-    if (sample >= 0 && op && op->lowering == rsl::Lowering::Unavailable)
+    if (sample >= 0 && kSums.count(call.text))
         for (size_t i = call.args.size(); i-- > 0;) {
             const Type t = typeOf(*call.args[i]);
             if (!isStruct(t) || t.base != structBase(size_t(sample))) continue;

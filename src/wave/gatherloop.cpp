@@ -205,7 +205,8 @@ Color opacityAt(const Asking& a, const accel::Hit& hit, const Vec3& from, const 
 }
 
 /// Behind the camera's hit light is not followed of all rays that met something; the others bring what those would have. What
-/// else a gather is told does not depend on it: all its rays are cast, and the shaders run that give its outputs.
+/// else a gather is told does not depend on it: all its rays are cast, and the shaders run that give its outputs. `asked`: the
+/// rays that the kernel asks for, as far as is known.
 bool goesOn(const Asking& a, PathRay& sent, int count, uint32_t asked) {
     if (!a.e.rules().roulette) return true;
     const PathRay& from = *a.point().ray;
@@ -217,12 +218,12 @@ bool goesOn(const Asking& a, PathRay& sent, int count, uint32_t asked) {
     return true;
 }
 
-/// Rays that are cast for `count` turns, a power of two or all. A hit whose light is not followed is shaded for the outputs that
-/// the gather before it asks for: with all others there it casts about as many rays as one that is followed does, each for
-/// several turns. What a loop adds up over its turns keeps its mean, and gathers within gathers stay linear in their rays.
+/// Rays that are cast for `count` turns, a power of two or all. Where a gather asks for outputs the shaders run at all that it
+/// meets. Behind one that has met such a gather each casts only its share of that one's rays, so that gathers within gathers stay
+/// linear in their rays: each ray for several turns. What a loop adds up over its turns keeps its mean.
 int raysFor(const Asking& a, int count) {
     const PathRay& from = *a.point().ray;
-    if (!from.quiet || from.asked < 2) return count;
+    if (!a.e.rules().roulette || from.bounces < 1 || from.asked < 2 || !(from.quiet || a.s.gather->asks)) return count;
     const int fair = (count + int(from.asked) - 1) / int(from.asked);
     const int rays = int(std::bit_ceil(uint32_t(fair)));
     return rays <= rsl::kGatherRays && rays < count ? rays : count;
@@ -246,8 +247,8 @@ void castRays(const Asking& a, GatherRows& rows, int begin, int end, int count, 
     count = raysFor(a, turns);
     for (int turn = begin; turn < end; ++turn) {
         float* row = rows.of(a.lane, turn - begin);
-        if (turn - begin >= count) { // of no ray that goes on: see raysFor()
-            std::copy_n(rows.of(a.lane, turn - begin - count), g.width, row);
+        if (turn - begin >= count) {
+            row[0] = -float(count);
             continue;
         }
         const int k = turn % count;
@@ -285,7 +286,8 @@ void castRays(const Asking& a, GatherRows& rows, int begin, int end, int count, 
         tellHit(e.world(), g, row, hit);
         if (!g.shades) continue;
         PathRay sent = a.ray(w, from, reach, kept, k, count);
-        if (p.ray->quiet || !goesOn(a, sent, count, ++asked)) {
+        ++asked;
+        if (p.ray->quiet || !goesOn(a, sent, count, g.asks ? std::max(asked, uint32_t(count)) : asked)) {
             endGatherRay(g, {Color(0), g.opacity ? Color(1) - opacityAt(a, hit, from, w, kept) : Color(1)}, row);
             if (p.ray->quiet || !g.asks) continue;
             sent.weight = Color(0);

@@ -33,9 +33,9 @@ const double kCone = 2 * M_PI * (1 - std::cos(.6)); // steradians within .6 of t
 
 // The mean of one over the density, over the directions within a cone, is its solid angle: what is said of the density is true.
 TEST(PlausibleSamples, DensityOfDirectionsToAnEnvironment) {
-    for (const std::string how : {"", ", \"distribution\", \"cosine\"", ", \"distribution\", \"uniform\""})
-        for (const std::string domain : {"", ", \"integrationdomain\", \"sphere\""})
-            for (const std::string map : {std::string("\"\""), sky()}) {
+    for (const char* how : {"", ", \"distribution\", \"cosine\"", ", \"distribution\", \"uniform\""})
+        for (const char* domain : {"", ", \"integrationdomain\", \"sphere\""})
+            for (const std::string& map : {std::string("\"\""), sky()}) {
                 const std::string call = "Env(" + map + ", P, up";
                 const Moments m = of(shows("density",
                                            "generateSamples" + call + ", 64, s" + how + domain + "); for (i = 0; i < 64; i += 1) {"
@@ -45,8 +45,8 @@ TEST(PlausibleSamples, DensityOfDirectionsToAnEnvironment) {
                                            "evaluateSamples" + call + ", t" + how + domain + "); for (i = 0; i < 64; i += 1) {"
                                            " c = max(c, abs(t[i]->lightPdf / s[i]->lightPdf - 1), length(vector(t[i]->radiance - s[i]->radiance)) / 100);"
                                            " c = max(c, abs(t[i]->distance - s[i]->distance)); }",
-                                           "color(a, b, c)"), 4000);
-                expectMean(m, kCone, .02, how + domain + map);
+                                           "color(a, b, c)"), 2000);
+                expectMean(m, kCone, .03, how + (domain + map));
                 EXPECT_LT(m.mean(1), 64e-5);
                 // Rounding leads across the edge of a cell of the table now and then: in the mean nothing remains of it.
                 EXPECT_LT(m.mean(2), 2e-3) << how << domain << map;
@@ -88,8 +88,8 @@ TEST(PlausibleSamples, ShadowsOfSamples) {
     const std::string card = "AttributeBegin\nSurface \"constant\"\nColor 0 0 0\nOpacity .5 .5 .5\nAttribute \"visibility\" \"camera\" 0 \"transmission\" \"Os\"\n"
                              "Polygon \"P\" [-900 1 -900  -900 1 900  900 1 900  900 1 -900]\nAttributeEnd\n";
     for (const Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path}) {
-        expectMean(of(envLight("") + wall + "Surface \"white\"\n" + kFloor, 4000, h), .5, .03, "wall");
-        expectMean(of(envLight("") + card + "Surface \"white\"\n" + kFloor, 4000, h), .5, .03, "card");
+        expectMean(of(envLight("") + wall + "Surface \"white\"\n" + kFloor, 4000, h), .5, .04, "wall");
+        expectMean(of(envLight("") + card + "Surface \"white\"\n" + kFloor, 4000, h), .5, .04, "card");
     }
 }
 

@@ -149,13 +149,49 @@ bool Film::add(int x, int y, uint32_t sampleIndex, const FilmSample& s) {
 
 bool Film::addRange(SampleRange r) {
     auto next = ranges_;
-    if (!insertRange(next, r) || total(next) > limits::kSamplesPerPixel)
+    if (spread_ || !insertRange(next, r) || total(next) > limits::kSamplesPerPixel)
         return false;
     ranges_ = std::move(next);
     return true;
 }
 
 uint32_t Film::samplesPerPixel() const { return uint32_t(total(ranges_)); }
+
+bool Film::spread(std::vector<uint16_t> rates) {
+    if (spread_ || ranges_.size() != 1 || ranges_[0].begin != 0 || rates.size() != pixels_.size()) return false;
+    if (std::any_of(rates.begin(), rates.end(), [](uint16_t r) { return r > Spread::kMost; })) return false;
+    spread_ = Spread{ranges_[0].end, 0, std::move(rates)};
+    return true;
+}
+
+bool Film::addSteps(uint32_t steps) {
+    if (!spread_ || steps > limits::kSamplesPerPixel) return false;
+    const uint64_t after = uint64_t(spread_->steps) + steps;
+    const size_t most = size_t(std::max_element(spread_->rates.begin(), spread_->rates.end()) - spread_->rates.begin());
+    if (after > limits::kSamplesPerPixel || spread_->held(most, after) > limits::kSamplesPerPixel) return false;
+    spread_->steps = uint32_t(after);
+    return true;
+}
+
+SampleRange Film::samplesOfSteps(int x, int y, uint32_t steps) const {
+    const size_t i = index(x, y);
+    return {uint32_t(spread_->held(i)), uint32_t(spread_->held(i, uint64_t(spread_->steps) + steps))};
+}
+
+Film::Samples Film::samplesAfter(uint32_t steps) const {
+    const uint64_t n = samplesPerPixel();
+    if (!spread_) return {double(n), n, n};
+    Samples s{0, ~0ull, 0};
+    uint64_t sum = 0;
+    for (size_t i = 0; i < pixels_.size(); ++i) {
+        const uint64_t held = spread_->held(i, uint64_t(spread_->steps) + steps);
+        sum += held;
+        s.least = std::min(s.least, held);
+        s.most = std::max(s.most, held);
+    }
+    s.mean = double(sum) / double(pixels_.size());
+    return s;
+}
 
 bool Film::merge(const Film& o, Diagnostics& diag, const SourcePlace& place) {
     auto bad = [&](Rie code, const std::string& what) {
@@ -172,6 +208,8 @@ bool Film::merge(const Film& o, Diagnostics& diag, const SourcePlace& place) {
                    "the parts have different seeds (" + std::to_string(a.seed) + " and " + std::to_string(b.seed) + ")");
     if (a.scene != b.scene)
         return bad(Rie::Consistency, "the parts come from different scenes or options");
+    if (spread_ || o.spread_)
+        return bad(Rie::Consistency, "pixels have different numbers of samples (--noise); such a render is no part of another");
     auto next = ranges_;
     for (auto r : o.ranges_)
         if (!insertRange(next, r))
@@ -310,6 +348,10 @@ uint64_t Film::digest() const {
         mix(uint64_t(r.begin) << 32 | r.end);
     for (uint64_t v : {nonFinite_, nonFiniteAovs_, saturated_})
         mix(v);
+    if (spread_) {
+        mix(uint64_t(spread_->base) << 32 | spread_->steps);
+        for (uint16_t v : spread_->rates) mix(v);
+    }
     return h;
 }
 

@@ -4,6 +4,7 @@
 #include "base/sampler.h"
 #include "base/vec.h"
 #include "render/fixed.h"
+#include <algorithm>
 #include <array>
 #include <map>
 #include <optional>
@@ -45,6 +46,21 @@ struct Channel {
 struct SampleRange {
     uint32_t begin = 0, end = 0;
     friend bool operator==(const SampleRange&, const SampleRange&) = default;
+};
+
+/// How many samples pixels have where they differ (adaptive sampling, adaptive.h). One whose rate is 1 has n = base / 8 + kReplicas
+/// steps of them, and others n times their rate, in whole multiples of kReplicas; but each at least `base`. Which ones follows from
+/// this alone, so it is all that a render needs to go on. At first only pixels of the greatest rate get more.
+struct Spread {
+    static constexpr uint16_t kOne = 256, kMost = 8 * kOne;
+    uint32_t base = 0, steps = 0;
+    std::vector<uint16_t> rates; ///< by pixel of the window, in rows; kOne is 1; at most kMost
+    uint64_t ofOne(uint64_t after) const { return base / 8 + kReplicas * after; }
+    /// Samples 0 <= index < held() of pixel i are in, after so many steps.
+    uint64_t held(size_t i, uint64_t after) const {
+        return std::max<uint64_t>(base, rates[i] * ofOne(after) / (kOne * kReplicas) * kReplicas);
+    }
+    uint64_t held(size_t i) const { return held(i, steps); }
 };
 
 /// What makes two films parts of one render. Parts merge only when all of it is equal.
@@ -106,10 +122,24 @@ public:
     bool addRange(SampleRange);
     /// The samples held, ascending, neighbours joined.
     const std::vector<SampleRange>& ranges() const { return ranges_; }
-    /// Samples per pixel: the sum of the ranges' lengths.
+    /// Samples per pixel: the sum of the ranges' lengths, which all pixels have.
     uint32_t samplesPerPixel() const;
+    /// From here on pixels get samples by these rates, one for each, beyond samplesPerPixel(). False unless the film holds samples
+    /// 0 to n - 1 of every pixel and no rate is above Spread::kMost.
+    bool spread(std::vector<uint16_t> rates);
+    /// Null: all pixels have the same samples.
+    const Spread* spread() const { return spread_ ? &*spread_ : nullptr; }
+    /// Says that the samples of further steps have been added. False when a pixel would have more than limits::kSamplesPerPixel.
+    bool addSteps(uint32_t steps);
+    /// Which samples of a pixel so many further steps bring.
+    SampleRange samplesOfSteps(int x, int y, uint32_t steps) const;
+    /// Samples a pixel, of all on average, and of those with the fewest and the most.
+    struct Samples { double mean = 0; uint64_t least = 0, most = 0; };
+    Samples samples() const { return samplesAfter(0); }
+    /// The same, after so many further steps.
+    Samples samplesAfter(uint32_t steps) const;
 
-    /// Adds the other film's integers. False with an error when the descriptions differ or sample ranges overlap.
+    /// Adds the other film's integers. False with an error when the descriptions differ, sample ranges overlap, or either is spread.
     bool merge(const Film& other, Diagnostics&, const SourcePlace& = {});
 
     uint32_t count(int x, int y) const;
@@ -161,6 +191,7 @@ private:
     std::vector<int> parts_[3];     ///< channels that are parts, by component
     std::vector<Int128> aovs_;      ///< pixels x channels; Min and Max hold the key of the value (film.cpp)
     std::vector<SampleRange> ranges_;
+    std::optional<Spread> spread_;
     uint64_t nonFinite_ = 0, nonFiniteAovs_ = 0, saturated_ = 0;
     uint64_t firstDropped_[2] = {~0ull, 0}; ///< {sample << 32 | y, x}; all ones: none
     std::vector<uint8_t> dropLock_ = {0};   ///< spin lock of firstDropped_, a vector so that films can move

@@ -90,7 +90,9 @@ bool writeFilm(const Film& film, const OutputPlan& plan, PictureFacts facts, con
     facts.window = film.window();
     const std::string ranges = rangesText(film.ranges());
     NoiseFigures n = noiseFigures(film);
-    facts.metadata["spp"] = std::to_string(film.samplesPerPixel());
+    const Film::Samples samples = film.samples();
+    facts.metadata["spp"] = number(samples.mean);
+    if (film.spread()) facts.metadata["adaptive"] = std::to_string(samples.least) + " to " + std::to_string(samples.most);
     facts.metadata["samples"] = ranges;
     facts.metadata["seed"] = std::to_string(film.description().seed);
     if (n.known) facts.metadata["noise"] = number(n.noise);

@@ -167,8 +167,13 @@ PooledError windowError(const Film& film, const Window& w) {
 PooledError pixelError(const Film& film, int x, int y, int radius) {
     const Window& w = film.window();
     Variances near;
+    const double own = film.count(x, y);
     for (int j = std::max(y - radius, w.y0); j < std::min(y + radius + 1, w.y1); ++j)
-        for (int i = std::max(x - radius, w.x0); i < std::min(x + radius + 1, w.x1); ++i) near.add(replicaError(film, i, j));
+        for (int i = std::max(x - radius, w.x0); i < std::min(x + radius + 1, w.x1); ++i) {
+            ReplicaError e = replicaError(film, i, j);
+            if (own > 0) e.se *= std::sqrt(film.count(i, j) / own); // as of a pixel with so many samples as this
+            near.add(e);
+        }
     if (near.degrees == 0) return {replicaError(film, x, y).mean, 0, 0};
     return {replicaError(film, x, y).mean, std::sqrt(near.sum / near.degrees), near.dof()};
 }

@@ -85,7 +85,7 @@ struct PooledError {
 /// SE_i^2, between 1 and the number of pixels.
 PooledError windowError(const Film&, const Window&);
 /// The error of one pixel's mean, its variance taken from the square of 2 radius + 1 pixels about it, cut off at the film's
-/// window. Honest where these have about the same variance; radius 0 is the pixel alone.
+/// window. Honest where samples of these have about the same variance; radius 0 is the pixel alone.
 PooledError pixelError(const Film&, int x, int y, int radius);
 
 /// Mean and half width of an interval that covers the true value with the given probability: m +- t SE, t of Student's

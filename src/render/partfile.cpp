@@ -10,6 +10,7 @@ namespace {
 
 constexpr char kMagic[8] = {'A', 'L', 'P', 'G', 'P', 'A', 'R', 'T'};
 constexpr uint32_t kVersion = 3;             // 1 had no sums of the samples that met a surface, 2 had eight replicas a pixel
+constexpr uint32_t kSpreadVersion = 4;       // of a film that is spread; others stay what older programs read
 constexpr size_t kPrefix = 20;               // magic, version, header size, header CRC
 constexpr size_t kPixelBytes = 16 * 4 + 16 * kReplicas + 32 + 4 * kReplicas + 16 + 4 * kReplicas;
 constexpr size_t kDeflateRatio = 1040;       // deflate cannot pack better than 1032 : 1
@@ -175,6 +176,7 @@ struct FilmIo {
             w.text(k);
             w.text(v);
         }
+        if (f.spread_) w.number(f.spread_->steps);
         return std::move(w.bytes);
     }
 
@@ -195,7 +197,12 @@ struct FilmIo {
             for (uint32_t v : p.surfaceCount) w.number(v);
             for (size_t c = 0; c < n; ++c)
                 w.number(UInt128(f.aovs_[i * n + c]));
+            if (f.spread_) w.number(f.spread_->rates[i]);
         }
+    }
+
+    static size_t pixelBytes(const Film& f) {
+        return kPixelBytes + 16 * f.description_.channels.size() + (f.spread_ ? sizeof f.spread_->rates[0] : 0);
     }
 
     /// False when the sums cannot come from the counted samples: then later arithmetic could overflow.
@@ -216,10 +223,13 @@ struct FilmIo {
             for (uint32_t& v : p.surfaceCount) v = r.number<uint32_t>();
             for (size_t c = 0; c < n; ++c)
                 f.aovs_[i * n + c] = Int128(r.number<UInt128>());
+            if (f.spread_) f.spread_->rates[i] = r.number<uint16_t>();
             uint64_t samples = 0;
             for (uint32_t v : p.replicaCount)
                 samples += v;
-            if (samples > limits::kSamplesPerPixel)
+            if (f.spread_ && f.spread_->rates[i] > Spread::kMost)
+                return false;
+            if (samples > limits::kSamplesPerPixel || (f.spread_ && f.spread_->held(i) > limits::kSamplesPerPixel))
                 return false;
             Int128 most = Int128(samples) << (60 + kFixedBits);
             auto fits = [&](Int128 v) { return v <= most && v >= -most; };
@@ -237,7 +247,7 @@ struct FilmIo {
     }
 
     /// The film without its sums; null when the header is not sound. packed = bytes of packed sums in the file.
-    static std::unique_ptr<Film> parseHeader(Reader& r, size_t packed, const std::string& name, Diagnostics& diag) {
+    static std::unique_ptr<Film> parseHeader(Reader& r, uint32_t version, size_t packed, const std::string& name, Diagnostics& diag) {
         FilmDescription d;
         for (int* v : {&d.width, &d.height, &d.window.x0, &d.window.y0, &d.window.x1, &d.window.y1})
             *v = int(r.number<uint32_t>());
@@ -266,6 +276,7 @@ struct FilmIo {
             std::string key = r.text();
             metadata[key] = r.text();
         }
+        const uint32_t steps = version == kSpreadVersion ? r.number<uint32_t>() : 0;
         SourcePlace place{name, 0, 0};
         if (!r.ok || r.at != r.bytes.size()) {
             diag.report(Severity::Error, Rie::BadFile, place, "the header of the part file is damaged");
@@ -284,6 +295,12 @@ struct FilmIo {
                 diag.report(Severity::Error, Rie::BadFile, place, "the part file holds the same samples twice");
                 return nullptr;
             }
+        if (version == kSpreadVersion) {
+            if (!film->spread(std::vector<uint16_t>(film->pixels_.size())) || !film->addSteps(steps)) {
+                diag.report(Severity::Error, Rie::BadFile, place, "the part file's numbers of samples are damaged");
+                return nullptr;
+            }
+        }
         film->nonFinite_ = counters[0];
         film->nonFiniteAovs_ = counters[1];
         film->saturated_ = counters[2];
@@ -308,7 +325,7 @@ bool savePart(const Film& film, const std::string& path, const OutputPolicy& pol
     Writer prefix;
     for (char c : kMagic)
         prefix.number(uint8_t(c));
-    prefix.number(kVersion);
+    prefix.number(film.spread() ? kSpreadVersion : kVersion);
     prefix.number(uint32_t(header.size()));
     prefix.number(crc(header));
     file->write(prefix.bytes.data(), prefix.bytes.size());
@@ -318,7 +335,7 @@ bool savePart(const Film& film, const std::string& path, const OutputPolicy& pol
     bool ok = true;
     for (int y = w.y0; ok && y < w.y1; ++y) {
         Writer row;
-        row.bytes.reserve(size_t(w.width()) * (kPixelBytes + 16 * film.description().channels.size()));
+        row.bytes.reserve(size_t(w.width()) * FilmIo::pixelBytes(film));
         FilmIo::row(film, y, row);
         ok = packer.put(row.bytes, y + 1 == w.y1);
     }
@@ -343,7 +360,7 @@ std::unique_ptr<Film> parsePart(std::span<const uint8_t> bytes, const std::strin
     uint32_t version = prefix.number<uint32_t>(), size = prefix.number<uint32_t>(), sum = prefix.number<uint32_t>();
     if (!prefix.ok)
         return bad(Rie::BadFile, "the part file is truncated");
-    if (version != kVersion)
+    if (version != kVersion && version != kSpreadVersion)
         return bad(Rie::Version, version < kVersion
                                      ? "a part file of an older version of this program, which kept other sums of each "
                                        "pixel; render that part again"
@@ -358,12 +375,12 @@ std::unique_ptr<Film> parsePart(std::span<const uint8_t> bytes, const std::strin
     if (trailer.number<uint32_t>() != crc(packed))
         return bad(Rie::BadFile, "the part file is damaged or truncated");
     Reader h{header};
-    auto film = FilmIo::parseHeader(h, packed.size(), name, diag);
+    auto film = FilmIo::parseHeader(h, version, packed.size(), name, diag);
     if (!film)
         return nullptr;
     Unpacker unpacker(packed);
     const Window& w = film->window();
-    std::vector<uint8_t> row(size_t(w.width()) * (kPixelBytes + 16 * film->description().channels.size()));
+    std::vector<uint8_t> row(size_t(w.width()) * FilmIo::pixelBytes(*film));
     for (int y = w.y0; y < w.y1; ++y) {
         if (!unpacker.get(row))
             return bad(Rie::BadFile, "the sums of the part file are damaged");

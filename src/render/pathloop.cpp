@@ -1,6 +1,7 @@
 // `path`: whole passes of samples over all pixels, into a film of exact sums.
 #include "base/limits.h"
 #include "base/numberlanes.h"
+#include "render/adaptive.h"
 #include "render/imaging.h"
 #include "render/noise.h"
 #include "render/photonpass.h"
@@ -16,7 +17,8 @@ constexpr size_t kRaysPerCall =
     8192; // of one trace(): enough to fill the lanes of rare shaders too, and few ends of calls, when lanes run empty
 constexpr int kPathTile = 32;         // pixels a side: eight samples of each are one call
 constexpr uint32_t kPass = 8; // samples a pixel; a multiple of kReplicas, so that noise is judged on replicas of equal size
-static_assert(kPass % kReplicas == 0);
+static_assert(kPass % kReplicas == 0 && kPilotSamples % kPass == 0);
+constexpr uint32_t kMostOfPass = 32; // samples a pixel, of passes that bring some pixels few
 
 } // namespace
 
@@ -69,6 +71,12 @@ struct Rays {
     std::vector<float> weights;
 };
 
+/// What all pixels get next: `count` samples from `first` on, or, where they differ, `steps` (Spread).
+struct Pass {
+    uint32_t first = 0, count = 0, steps = 0;
+    uint32_t samples() const { return count + kReplicas * steps; } ///< of a pixel whose rate is 1
+};
+
 /// One run of renderPath().
 class PathLoop {
 public:
@@ -76,11 +84,19 @@ public:
     bool run(const std::function<void(Film&)>& afterPass);
 
 private:
+    bool mayAdapt() const;
+    uint32_t mostOfPass() const;
+    uint32_t samplesWithinTime(uint32_t count) const;
     uint32_t samplesOfPass() const;
-    bool tracePass(uint32_t count);
-    void traceTile(int worker, size_t tile, uint32_t count);
+    uint32_t stepsOfPass() const;
+    Pass nextPass();
+    SampleRange samplesOf(const Pass&, int x, int y) const;
+    bool tracePass(const Pass&);
+    void traceTile(int worker, size_t tile, const Pass&);
     bool take(int worker, std::vector<float>& out, Rays&);
-    bool addPass(uint32_t count);
+    bool addPass(const Pass&);
+    uint32_t reached() const;
+    uint32_t firstJudged() const;
     void judge();
     void tell(double inPass, bool last);
 
@@ -94,10 +110,12 @@ private:
     const size_t stride_;         ///< floats of a sample that is held: colour, alpha, whether a surface was met, the rest
     std::vector<Window> tiles_;
     std::vector<std::vector<float>> held_; ///< by tile: the samples of the pass
-    uint32_t next_;               ///< the first sample of the pass
+    uint32_t next_;               ///< the first sample that no pixel has
+    const bool adapts_;           ///< pixels get samples by their noise once there are kPilotSamples
     bool any_;                    ///< some pass is whole
+    double samples_;              ///< a pixel, on average
     NoiseFigures noise_;
-    uint32_t nextNoise_ = 16;     ///< samples a pixel at which noise is judged again
+    uint32_t nextNoise_;          ///< samples a pixel at which noise is judged again
     bool judged_ = false;
     double secondsPerSample_ = 0; ///< of the last pass
     CausticPasses caustics_;
@@ -118,7 +136,7 @@ uint32_t behind(const Film& film, SampleRange wanted) {
 PathLoop::PathLoop(Job& job, Film& film, SampleRange wanted, uint64_t seed)
     : job_(job), film_(film), settings_(job.settings), wanted_(wanted), seed_(seed), filter_(job.plan.basis.filter),
       channels_(film.description().channels), stride_(5 + channels_.size()), next_(behind(film, wanted)),
-      any_(film.samplesPerPixel() > 0), caustics_(job) {
+      adapts_(mayAdapt()), any_(film.samplesPerPixel() > 0), samples_(film.samples().mean), caustics_(job) {
     if (filter_.degenerate())
         job.diagnostics.report(Severity::Error, Rie::Range, {},
                                "PixelFilter: its integral is not positive; a box of its widths is used");
@@ -126,12 +144,13 @@ PathLoop::PathLoop(Job& job, Film& film, SampleRange wanted, uint64_t seed)
     const bool large = film.window().pixels() >= size_t(kPathTile) * kPathTile * 8 * size_t(job.team.threads());
     tiles_ = tilesOf(film.window(), large ? kPathTile : kTile);
     held_.resize(tiles_.size());
+    nextNoise_ = firstJudged();
 }
 
 void PathLoop::tell(double inPass, bool last) {
     const uint64_t total = settings_.noise > 0 || settings_.seconds > 0 ? 0 : wanted_.end - wanted_.begin;
     ProgressState s;
-    const double done = double(film_.samplesPerPixel()) + inPass;
+    const double done = samples_ + inPass;
     s.samplesDone = done;
     s.samplesTotal = total;
     s.noise = noise_.known ? noise_.noise : -1;
@@ -145,23 +164,62 @@ void PathLoop::tell(double inPass, bool last) {
     else job_.progress.update(s, job_.what);
 }
 
-/// Passes are of 8 samples while they fit the memory that holds them back. The first eight come in passes of 1, 1, 2 and 4, so
-/// that there is soon something to keep. 0: the time is over.
-uint32_t PathLoop::samplesOfPass() const {
+/// Only where a render is one by itself: parts have the samples they are asked for. Photons of caustics belong to one sample of all
+/// pixels.
+bool PathLoop::mayAdapt() const {
+    const scene::Options& o = job_.world->frame().options;
+    const scene::Param* asked = scene::find(o.hiderParams, "adaptive");
+    const bool refused = asked && !asked->numbers.empty() && asked->numbers[0] == 0;
+    return settings_.noise > 0 && !settings_.samples && !settings_.part && !refused && !CausticPasses::asked(o);
+}
+
+/// Samples a pixel that fit the memory which holds them back.
+uint32_t PathLoop::mostOfPass() const {
     const size_t perSample = film_.window().pixels() * stride_ * sizeof(float);
-    const uint32_t most = uint32_t(std::clamp(kPassBytes / std::max(perSample, size_t(1)), size_t(1), size_t(kPass)));
-    uint32_t count = std::min(most, wanted_.end - next_);
+    return uint32_t(std::clamp(kPassBytes / std::max(perSample, size_t(1)), size_t(1), size_t(kMostOfPass)));
+}
+
+/// Of so many samples those for which there is time; 0: none.
+uint32_t PathLoop::samplesWithinTime(uint32_t count) const {
+    if (!(settings_.seconds > 0) || !any_) return count;
+    const double left = settings_.seconds - job_.elapsed();
+    if (left <= 0) return 0;
+    if (!(secondsPerSample_ > 0)) return count;
+    return left < 0.5 * secondsPerSample_ ? 0 : std::clamp(uint32_t(left / secondsPerSample_), 1u, count);
+}
+
+/// Passes are of 8 samples while they fit their memory. The first eight come in passes of 1, 1, 2 and 4, so that there is soon
+/// something to keep. 0: the time is over.
+uint32_t PathLoop::samplesOfPass() const {
+    uint32_t count = std::min({mostOfPass(), kPass, wanted_.end - next_});
     if (next_ % kPass != 0) count = std::min(count, kPass - next_ % kPass); // so that noise is judged on whole nets
     if (film_.samplesPerPixel() < kPass) count = std::min(count, std::max(1u, film_.samplesPerPixel()));
-    if (settings_.seconds > 0 && any_) {
-        const double left = settings_.seconds - job_.elapsed();
-        if (left <= 0) return 0;
-        if (secondsPerSample_ > 0) {
-            if (left < 0.5 * secondsPerSample_) return 0;
-            count = std::clamp(uint32_t(left / secondsPerSample_), 1u, count);
-        }
-    }
-    return count;
+    return samplesWithinTime(count);
+}
+
+/// Steps to where noise is judged next, as many as fit. 0: the time, or the samples that are wanted, are over.
+uint32_t PathLoop::stepsOfPass() const {
+    uint32_t samples = std::min(mostOfPass(), nextNoise_ > reached() ? nextNoise_ - reached() : kReplicas);
+    samples = samplesWithinTime(std::max(samples, kReplicas));
+    uint32_t steps = samples == 0 ? 0 : std::max(1u, samples / kReplicas);
+    while (steps > 0 && film_.samplesAfter(steps).mean > wanted_.end) steps /= 2;
+    return steps;
+}
+
+/// Nothing in it: the end.
+Pass PathLoop::nextPass() {
+    if (adapts_ && !film_.spread() && film_.samplesPerPixel() >= kPilotSamples && film_.samplesPerPixel() % kPass == 0 &&
+        film_.ranges().size() == 1 && film_.ranges().front().begin == 0 && film_.spread(ratesOf(film_)))
+        nextNoise_ = firstJudged();
+    Pass p;
+    p.first = next_;
+    if (film_.spread()) p.steps = stepsOfPass();
+    else if (next_ < wanted_.end) p.count = samplesOfPass();
+    return p;
+}
+
+SampleRange PathLoop::samplesOf(const Pass& p, int x, int y) const {
+    return p.steps ? film_.samplesOfSteps(x, y, p.steps) : SampleRange{p.first, p.first + p.count};
 }
 
 /// Traces the samples that are noted and appends them to `out`. False: halted.
@@ -185,31 +243,36 @@ bool PathLoop::take(int worker, std::vector<float>& out, Rays& r) {
     return true;
 }
 
-void PathLoop::traceTile(int worker, size_t tile, uint32_t count) {
+void PathLoop::traceTile(int worker, size_t tile, const Pass& pass) {
     const Window& t = tiles_[tile];
     std::vector<float>& out = held_[tile];
     out.clear();
-    out.reserve(t.pixels() * count * stride_);
+    size_t samples = 0;
+    for (int y = t.y0; y < t.y1; ++y)
+        for (int x = t.x0; x < t.x1; ++x) samples += samplesOf(pass, x, y).end - samplesOf(pass, x, y).begin;
+    out.reserve(samples * stride_);
     Rays rays;
     for (int y = t.y0; y < t.y1; ++y)
-        for (int x = t.x0; x < t.x1; ++x)
-            for (uint32_t s = next_; s < next_ + count; ++s) {
+        for (int x = t.x0; x < t.x1; ++x) {
+            const SampleRange of = samplesOf(pass, x, y);
+            for (uint32_t s = of.begin; s < of.end; ++s) {
                 rays.samples.push_back({x, y, s});
                 if (rays.samples.size() == kRaysPerCall && !take(worker, out, rays)) return;
             }
+        }
     if (!rays.samples.empty()) take(worker, out, rays);
 }
 
 /// False: not whole, because of the user, the time, or memory.
-bool PathLoop::tracePass(uint32_t count) {
+bool PathLoop::tracePass(const Pass& pass) {
     bool whole = false;
     try {
-        whole = caustics_.ready(next_, count) && job_.team.run(
-            tiles_.size(), &job_.halt, [&](int worker, size_t i) { traceTile(worker, i, count); },
+        whole = (pass.steps || caustics_.ready(pass.first, pass.count)) && job_.team.run(
+            tiles_.size(), &job_.halt, [&](int worker, size_t i) { traceTile(worker, i, pass); },
             [&](size_t done) {
                 job_.pollStop();
                 if (settings_.seconds > 0 && any_ && job_.elapsed() > settings_.seconds) job_.halt = 1;
-                tell(double(count) * double(done) / double(tiles_.size()), false);
+                tell(double(pass.samples()) * double(done) / double(tiles_.size()), false);
             });
     } catch (const std::bad_alloc&) { job_.outOfMemory = std::current_exception(); } // the film has whole passes only
     if (job_.world) job_.world->flushPrints(whole);
@@ -217,7 +280,7 @@ bool PathLoop::tracePass(uint32_t count) {
 }
 
 /// Puts a whole pass into the film. False: there is no room, which is reported.
-bool PathLoop::addPass(uint32_t count) {
+bool PathLoop::addPass(const Pass& pass) {
     StopFlag go{0};
     job_.team.run(
         tiles_.size(), &go,
@@ -225,8 +288,9 @@ bool PathLoop::addPass(uint32_t count) {
             const Window& t = tiles_[i];
             const float* p = held_[i].data();
             for (int y = t.y0; y < t.y1; ++y)
-                for (int x = t.x0; x < t.x1; ++x)
-                    for (uint32_t s = next_; s < next_ + count; ++s, p += stride_) {
+                for (int x = t.x0; x < t.x1; ++x) {
+                    const SampleRange of = samplesOf(pass, x, y);
+                    for (uint32_t s = of.begin; s < of.end; ++s, p += stride_) {
                         FilmSample f;
                         f.radiance = {p[0], p[1], p[2]};
                         f.alpha = p[3];
@@ -234,32 +298,50 @@ bool PathLoop::addPass(uint32_t count) {
                         f.aovs = {p + 5, channels_.size()};
                         film_.add(x, y, s, f);
                     }
+                }
         },
         [](size_t) {});
-    if (film_.addRange({next_, next_ + count})) return true;
+    if (pass.steps ? film_.addSteps(pass.steps) : film_.addRange({pass.first, pass.first + pass.count})) return true;
     job_.diagnostics.report(Severity::Error, Rie::Limit, {},
                             "more than " + std::to_string(limits::kSamplesPerPixel) + " samples a pixel");
     return false;
 }
 
+/// Samples of a pixel whose rate is 1, as if none had been there when pixels were spread.
+uint32_t PathLoop::reached() const {
+    return film_.spread() ? uint32_t(film_.spread()->ofOne(film_.spread()->steps)) : film_.samplesPerPixel();
+}
+
+/// Where noise is judged after so many samples.
+uint32_t judgedAfter(uint32_t n) { return n + std::max(kPass, n / 8 / kPass * kPass); }
+
+/// The first such number that is not behind; where pixels are spread, not before all have their share.
+uint32_t PathLoop::firstJudged() const {
+    const uint32_t from = film_.spread() ? std::max(reached(), film_.spread()->base) : reached();
+    uint32_t n = kPilotSamples;
+    while (n < from) n = judgedAfter(n);
+    return n;
+}
+
 void PathLoop::judge() {
-    if (film_.samplesPerPixel() < nextNoise_ || film_.samplesPerPixel() % kPass != 0) return;
+    if (reached() < nextNoise_ || reached() % kPass != 0) return;
     noise_ = noiseFigures(film_);
     judged_ = true;
-    nextNoise_ = film_.samplesPerPixel() + std::max(kPass, film_.samplesPerPixel() / 8 / kPass * kPass);
+    nextNoise_ = judgedAfter(reached());
 }
 
 bool PathLoop::run(const std::function<void(Film&)>& afterPass) {
-    while (next_ < wanted_.end && !job_.pollStop()) {
-        const uint32_t count = samplesOfPass();
+    judge(); // what a checkpoint brought may do
+    while (!job_.pollStop() && !(settings_.noise > 0 && judged_ && noise_.reached(settings_.noise))) {
+        const Pass pass = nextPass();
         const double begun = clockSeconds();
-        if (count == 0 || !tracePass(count) || !addPass(count)) break;
-        secondsPerSample_ = (clockSeconds() - begun) / count;
-        next_ += count;
+        if (pass.samples() == 0 || !tracePass(pass) || !addPass(pass)) break;
+        secondsPerSample_ = (clockSeconds() - begun) / pass.samples();
+        next_ += pass.count;
+        samples_ = film_.samples().mean;
         any_ = true;
         judge();
         if (afterPass) afterPass(film_);
-        if (settings_.noise > 0 && judged_ && noise_.reached(settings_.noise)) break;
     }
     if (any_) tell(0, true);
     else job_.progress.clear();

@@ -34,6 +34,7 @@ void addProvenance(PictureFacts& p, const RenderSettings& s, const scene::Frame&
     if (!s.sceneFile.empty()) m["scene"] = s.sceneFile;
     if (frame.options.frameNumber > 0) m["frame"] = std::to_string(frame.options.frameNumber);
     if (frame.options.projection == "perspective") m["fov"] = fmt::format("{:.9g}", frame.options.fov);
+    if (s.sampleClamp > 0) m["sampleClamp"] = fmt::format("{}", s.sampleClamp); // the picture is biased
     if (const std::string options = pixelOptions(s); !options.empty()) m["options"] = options;
 }
 

@@ -277,7 +277,10 @@ bool Renderer::renderSamples(FrameWork& f, Job& job) {
     } else {
         writeFrameFilm(f, *film, renderSec);
     }
-    stats_.spp = film->samplesPerPixel();
+    const Film::Samples samples = film->samples();
+    stats_.spp = uint64_t(samples.mean + 0.5);
+    stats_.sppLeast = samples.least;
+    stats_.sppMost = samples.most;
     stats_.noise = noiseFigures(*film);
     stats_.saturated += film->saturated();
     f.nonFinite = film->nonFinite();
@@ -310,7 +313,7 @@ void Renderer::renderGrid(FrameWork& f, Job& job) {
     stats_.classic.subsampledRays += made.refined.rays;
     f.nonFinite = dropped.count;
     stats_.renderSec += job.elapsed();
-    stats_.spp = f.spp;
+    stats_.spp = stats_.sppLeast = stats_.sppMost = f.spp;
     stats_.noise = {}; // not known: neighbouring pixels share samples
     outcome_.interrupted |= job.interrupted;
     ++outcome_.rendered;

@@ -32,6 +32,8 @@ std::string toJson(const RenderStats& s) {
     j["width"] = s.width;
     j["height"] = s.height;
     j["spp"] = s.spp;
+    j["sppLeast"] = s.sppLeast;
+    j["sppMost"] = s.sppMost;
     j["renderSec"] = finite(s.renderSec);
     j["cpuSec"] = finite(s.cpuSec);
     j["raysPerMS"] = finite(raysPerMS(s.totalRays, s.renderSec));
@@ -77,7 +79,8 @@ std::string toJson(const RenderStats& s) {
 std::string toTable(const RenderStats& s) {
     std::string t;
     auto row = [&](const char* name, const std::string& value) { t += fmt::format("  {:<12} {}\n", name, value); };
-    row("picture", fmt::format("{} x {}, {} samples per pixel", s.width, s.height, s.spp));
+    const std::string range = s.sppLeast < s.sppMost ? fmt::format(" ({} to {})", s.sppLeast, s.sppMost) : "";
+    row("picture", fmt::format("{} x {}, {} samples per pixel{}", s.width, s.height, s.spp, range));
     row("time", fmt::format("{:.2f} s ({:.2f} s of processor, {} threads)", s.renderSec, s.cpuSec, s.threads));
     row("before", fmt::format("parse {:.2f} s, compile {:.2f} s, build {:.2f} s", s.parseSec, s.compileSec, s.buildSec));
     std::string types;

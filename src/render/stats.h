@@ -10,7 +10,8 @@ namespace alpenglow::render {
 /// Field names are the keys of the JSON object (design, "Fixed from outside").
 struct RenderStats {
     int width = 0, height = 0;
-    uint64_t spp = 0;               ///< samples per pixel
+    uint64_t spp = 0;               ///< samples per pixel, on average
+    uint64_t sppLeast = 0, sppMost = 0; ///< of the pixels with the fewest and the most
     double renderSec = 0, cpuSec = 0; ///< wall and processor time of rendering
     uint64_t totalRays = 0;         ///< primary, reflected, refracted, internally reflected, sub-sampled and shadow rays
     NoiseFigures noise;

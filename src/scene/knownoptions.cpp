@@ -135,6 +135,9 @@ constexpr OptionDescription kHiderParameters[] = {
      "this many by this many rays: 3, 5, 7 or 9; 1: off. A pixel is the mean of its own rays; PixelSamples and filters have no say."},
     {"aaThreshold", "float", "0.3", "0.1", Used,
      "raytrace, with aaSamples: sum of the differences of red, green and blue (each from 0 to 1) above which pixels differ."},
+    {"adaptive", "int", "1", "0", Used,
+     "path: 1: under --noise pixels get samples by the noise about them, without bias (docs/noise.md); 0: all the same number. Parts, and "
+     "pictures with caustics, always have the latter."},
     {"aperture", "float[4]", "[0 0 0 0]", "[6 15 0.2 0]", Used,
      "The opening of the lens of DepthOfField: sides (0: a circle), degrees by which it is turned, roundness of the sides (0 to 1), and "
      "whether light grows toward the rim (1) or the middle (-1)."},

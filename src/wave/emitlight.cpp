@@ -32,18 +32,21 @@ void startArea(const WorldImpl& world, const EmissionPlan::Light& l, EmissionSta
     s.shape = emitter.samplePoint(s.drawn.place, s.drawn.choose, s.drawn.time, s.surface, perArea);
     if (!(perArea > 0) || !std::isfinite(perArea)) return;
     if (world.accel_->hasSolids() &&
-        !world.accel_->keeps(world.numberOfShape_.at(s.shape), s.surface.P, s.surface.n, s.drawn.time))
+        !world.accel_->keeps(world.numberOfShape_.at(s.shape), meetsAt(s.surface), meetsNormal(s.surface), s.drawn.time))
         return;
+    geometry::SurfacePoint facet = s.surface; // what rays meet
+    facet.P = meetsAt(s.surface);
+    facet.n = meetsNormal(s.surface);
     s.front = s.drawn.side < l.front;
     if (l.light->mean) {
         s.dir = evenDirection(s.drawn.way);
         s.factor = 4 * kPiF * kPiF / (perArea * float(emitter.area()));
     } else {
         if (!s.front && s.shape->oneSided()) return;
-        s.dir = Basis(s.front ? s.surface.n : -s.surface.n).toWorld(sampleCosine(s.drawn.way));
+        s.dir = Basis(s.front ? facet.n : -facet.n).toWorld(sampleCosine(s.drawn.way));
         s.factor = kPiF / (perArea * (s.front ? l.front : 1 - l.front));
     }
-    s.origin = geometry::offsetOrigin(s.surface, s.dir);
+    s.origin = geometry::offsetOrigin(facet, s.dir);
 }
 
 /// What a light's shader is asked about a photon that lights `at`.
@@ -57,7 +60,7 @@ ShadePoint queryOf(const WorldImpl& world, const EmissionPlan::Light& l, const E
     if (l.light->kind == LightKind::Area) {
         p.surface = s.surface;
         p.shape = s.shape;
-        p.P = s.surface.P;
+        p.P = meetsAt(s.surface);
         p.N = s.surface.n;
     } else if (l.light->kind == LightKind::Environment) {
         p.P = at - s.dir;
@@ -125,7 +128,7 @@ std::vector<Color> emittedPower(Engine& e, const EmissionPlan::Light& l, std::sp
     for (size_t k = 0; k < of.size(); ++k) {
         const EmissionStart& s = starts[of[k]];
         if (!v[k].lit || !isFinite(v[k].Cl)) continue;
-        const float far = length(q[k].Ps - (l.light->kind == LightKind::Point ? l.place : s.surface.P));
+        const float far = length(q[k].Ps - (l.light->kind == LightKind::Point ? l.place : meetsAt(s.surface)));
         const Color c = v[k].Cl * (s.factor * (falls ? far * far : 1));
         if (isFinite(c)) power[of[k]] = {std::max(c.x, 0.f), std::max(c.y, 0.f), std::max(c.z, 0.f)};
     }

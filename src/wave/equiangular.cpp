@@ -119,6 +119,8 @@ private:
         if (v.ownShadow) shadow.distance = 0;
         shadow.media = r.media;
         shadow.share = e_.extraOf(r).share;
+        shadow.path = e_.pathEvent(r.path, e_.volume_);
+        if (shadow.path) shadow.light = e_.lightSymbols_[size_t(&light_ - e_.world().lights_.data())];
         e_.shadows.push_back(shadow);
     }
 

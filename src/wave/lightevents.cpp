@@ -46,6 +46,7 @@ void Engine::prepareLightPaths() {
 uint16_t Engine::atLobe(const LobeVertex& l, const ShadePoint& p, const PathRay& ray, const Vec3& w) const {
     // What a kernel that waits asks for is its own business: only what it makes of it is light of the path.
     if (ray.path == 0 || l.ownsTarget) return 0;
+    if (p.surface.n == Vec3(0)) return pathEvent(ray.path, volume_); // a medium: there are no sides
     using scene::PathScattering;
     const PathScattering how = l.delta                             ? PathScattering::Singular
                                : l.rays->type == RayType::Diffuse ? PathScattering::Diffuse

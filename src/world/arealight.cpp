@@ -193,9 +193,10 @@ bool Emitter::sampleSurface(const Vec3& from, Vec2 u, float choose, float time, 
 const geometry::Shape* Emitter::samplePoint(Vec2 u, float choose, float time, geometry::SurfacePoint& point,
                                             float& perArea) const {
     const Entry& e = entryAt(choose);
-    if (e.shape->placed()) e.shape->sampleAreaAt(u.x, u.y, time, point, geometry::kNeedAll);
+    if (e.facets >= 0) place(e, {}, u, time, point, geometry::kNeedAll);
+    else if (e.shape->placed()) e.shape->sampleAreaAt(u.x, u.y, time, point, geometry::kNeedAll);
     else e.shape->sampleArea(u.x, u.y, point, geometry::kNeedAll);
-    perArea = float(e.share * e.shape->sampleDensity(point));
+    perArea = float(e.share * density(e, point));
     return e.shape;
 }
 

@@ -72,6 +72,20 @@ void keysOf(const Json& j, const std::string& before, std::set<std::string>* key
     }
 }
 
+// The firefly control is off unless asked for, and a picture whose samples it cut says so, merged ones too.
+TEST_F(Provenance, TheSampleClampIsNamed) {
+    run("render -q --frames 7 --spp 2 f.rib");
+    EXPECT_FALSE(textsOf("b.png").contains("sampleClamp"));
+    run("render -q --frames 7 --spp 2 --sample-clamp 2.5 f.rib");
+    EXPECT_EQ(textsOf("b.png")["sampleClamp"], "2.5");
+    EXPECT_NE(textsOf("b.png")["options"].find("--sample-clamp 2.5"), std::string::npos);
+    run("render -q --frames 7 --preset slproject --spp 2 f.rib");
+    EXPECT_EQ(textsOf("b.png")["sampleClamp"], "3");
+    run("render -q --frames 7 --samples 0:2 --sample-clamp 2.5 -o p.png f.rib");
+    run("merge p.png -o m.png");
+    EXPECT_EQ(textsOf("m.png")["sampleClamp"], "2.5");
+}
+
 } // namespace
 
 TEST_F(Provenance, VersionNamesTheCommit) {

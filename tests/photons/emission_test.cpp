@@ -58,6 +58,23 @@ TEST(Emission, PowerOfLights) {
     }
 }
 
+// A ball of radius 1 that a displacement makes one of radius 1.5 sends pi L A of the latter, from where it is: none starts within it. Its
+// facets have .3 % less area.
+TEST(Emission, DisplacedLamp) {
+    writeShader("swell", "displacement swell() { P += .5 * normalize(N); N = calculatenormal(P); }\n");
+    writeShader("white5", "light white5() { illuminate(P, N, PI / 2) Cl = 5; }\n");
+    const std::string lamp = "AttributeBegin AreaLightSource \"white5\" 1 Surface \"constant\" Color 0 0 0 Sides 1 Attribute \"displacementbound\" \"float sphere\" 1\n"
+                             "Displacement \"swell\"\nSphere 1 -1 1 360 AttributeEnd\nIlluminate 1 1\n";
+    // The inner ball, which photons would meet that started at radius 1.
+    const std::string inner = "AttributeBegin Color 0 0 0 " + kMatte + "Sphere 1.2 -1.2 1.2 360 AttributeEnd\n";
+    Scene s(world(lamp + inner + kBall), path());
+    const double power = 5 * kPi * 4 * kPi * 2.25;
+    double far = 0;
+    for (const StoredPhoton& p : emitted(s, 40000))
+        if (p.photon.bounces == 0 && length(p.photon.P) > 4) far += double(p.photon.power.x);
+    EXPECT_NEAR(far, power, .01 * power);
+}
+
 // A spot: its shader's own fall-off to the rim, integrated over directions.
 TEST(Emission, PowerOfASpot) {
     Scene s(world("LightSource \"spotlight\" 1 \"float intensity\" 2 \"point from\" [0 1 0] \"point to\" [0 0 0] \"float coneangle\" .6 "
@@ -232,13 +249,14 @@ TEST(PhotonMaps, HollowFurnace) {
         return "AttributeBegin Attribute \"visibility\" \"integer diffuse\" 0 \"integer specular\" 0 \"integer photon\" 0 Surface \"" + shader +
                "\" Polygon \"P\" [-.01 -4.99 -.01  -.01 -4.99 .01  .01 -4.99 .01  .01 -4.99 -.01] AttributeEnd\n";
     };
+    // Photons do not meet the plate.
+    Scene emitting(world(lamp + ball), path());
+    const auto stored = emitted(emitting, 400000);
+    const std::vector<std::string> names = {"room.photons"};
     struct Case { const char* shader; double want; };
     for (const Case& c : {Case{"photonroom", all}, {"photonroom1", other}, {"photongather", a * all}}) {
         for (const Hider h : {Hider::Path, Hider::Raytrace}) {
             Scene s(world(lamp + plate(c.shader) + ball), withShaders(h));
-            Scene emitting(world(lamp + plate(c.shader) + ball), path());
-            const auto stored = emitted(emitting, 400000);
-            const std::vector<std::string> names = {"room.photons"};
             for (auto& [name, photons] : photonsByMap(*emitting.world, names, stored)) setPhotonMap(*s.world, name, std::move(photons));
             const Moments m = s.estimate(rayTo({.003f, -4.9f, .002f}, {0, -4.99f, 0}), 16);
             EXPECT_NEAR(m.mean(), c.want, .04 * c.want) << c.shader << " " << int(h); // 1000 photons: 3 %

@@ -82,6 +82,41 @@ TEST_F(PartFile, RoundTrip) {
     EXPECT_EQ(g->digest(), f.digest());
 }
 
+// Of a film whose pixels have different numbers of samples: all that is needed to go on; damage is noticed as ever.
+TEST_F(PartFile, RatesComeBack) {
+    Film f = makeFilm(0, 4);
+    ASSERT_TRUE(f.spread({64, 256, 512, 32, 256, 1024}));
+    for (int y = 1; y <= 2; ++y)
+        for (int x = 1; x <= 3; ++x) {
+            const SampleRange r = f.samplesOfSteps(x, y, 5);
+            for (uint32_t i = r.begin; i < r.end; ++i) f.add(x, y, i, {Color(float(i)), 1, {}});
+        }
+    ASSERT_TRUE(f.addSteps(5));
+    Diagnostics diag;
+    ASSERT_TRUE(savePart(f, "a.part", policy, diag));
+    auto g = loadPart(path("a.part"), diag);
+    ASSERT_TRUE(g && g->spread());
+    EXPECT_EQ(g->digest(), f.digest());
+    EXPECT_EQ(g->spread()->rates, f.spread()->rates);
+    EXPECT_EQ(g->spread()->steps, 5u);
+    EXPECT_EQ(g->samples().most, 40u); // 1024 / 256 (4 / 8 + 2 5)
+    const auto good = bytes("a.part");
+    for (size_t i = 0; i < good.size(); i += 3) {
+        auto b = good;
+        b[i] ^= 0x41;
+        Diagnostics quiet;
+        ASSERT_FALSE(parsePart(b, "a", quiet)) << "byte " << i;
+    }
+    auto b = good; // a header that says more steps than there can be, its sum made right
+    uint32_t size;
+    std::memcpy(&size, &b[12], 4);
+    std::memset(&b[20 + size - 4], 0xff, 4);
+    fixHeaderCrc(b);
+    Diagnostics quiet;
+    EXPECT_FALSE(parsePart(b, "a", quiet));
+    EXPECT_EQ(quiet.errors(), 1);
+}
+
 TEST_F(PartFile, SevenPartsInAnyOrderEqualOneRender) {
     Diagnostics diag;
     const uint32_t cut[8] = {0, 8, 9, 16, 30, 31, 40, 64};

@@ -143,9 +143,37 @@ void MediumFlights::happen(Engine& e, std::span<Flight> flights, Sched& sched) {
     }
 }
 
+/// The direction of a light with a place that rays from a point in a medium may pass; 0 where none is near. Of several one, all with the
+/// same chance: a density for any of them is right.
+Vec3 MediumFlights::besideLight(const Engine& e, const Medium& m, const PathRay& r, const Vec3& from) {
+    const WorldImpl& w = e.world();
+    if (!e.rules().lightsAtRequests || w.settings_.mediumSampling == MediumSampling::Distance) return {};
+    const WorldImpl::LightList& list = w.lightLists_[size_t(w.bindings_[size_t(m.binding)].lightList)];
+    const LightChooser& chooser = w.chooserOf(list);
+    const std::vector<int>& on = w.sampledOf(list);
+    const uint32_t vertex = childVertex(r.vertex, kFlight, 3);
+    LightChooser::Chosen chosen;
+    for (size_t k = 0; k < on.size() && chooser.empty(); ++k) chosen.emplace_back(int(k), 1.f);
+    if (!chooser.empty()) chooser.choose(from, e.random(r).one(vertex, kChooseLight, 0), chosen);
+    const Color sigma = m.homogeneous->extinction();
+    const double reach = 12 / (double(sigma.x) + sigma.y + sigma.z); // four mean free paths: beyond them little is left
+    std::vector<Vec3> near;
+    for (const auto& [k, chance] : chosen) {
+        const int light = on[size_t(k)];
+        const BoundLight& l = w.lights_[size_t(light)];
+        if (!l.placed || (list.ofAll && !list.lights.contains(light))) continue;
+        const Vec3 to = l.place - from;
+        const double far = length(Vec3d(to));
+        if (far < reach && far > double(l.extent)) near.push_back(to / float(far));
+    }
+    if (near.empty()) return {};
+    const size_t k = near.size() == 1 ? 0 : size_t(e.random(r).one(vertex, kLightPoint, 0) * float(near.size()));
+    return near[std::min(k, near.size() - 1)];
+}
+
 /// Points where light is scattered gather it as surfaces do, by the lobe of the medium.
 void MediumFlights::scatter(Engine& e, std::span<Flight> flights, std::span<const Crossing> crossings, Sched& sched) {
-    static const LobeKind* const kind = findLobe("henyey-greenstein");
+    static const LobeKind *const plain = findLobe("henyey-greenstein"), *const beside = findLobe("henyey-greenstein-beside");
     auto c = e.takeContext();
     const Medium& m = e.world().media_[size_t(crossings[0].way.medium)];
     c->engine = &e;
@@ -181,7 +209,8 @@ void MediumFlights::scatter(Engine& e, std::span<Flight> flights, std::span<cons
         p.time = e.world().timeAt(p.shutter);
         p.ray = &r;
         LobeVertex& l = e.lobes.emplace_back();
-        l.kind = kind;
+        const Vec3 light = besideLight(e, m, r, p.P);
+        l.kind = light == Vec3(0) ? plain : beside;
         l.point = int(i);
         l.weight = Color(1);
         l.target = c->targets[i];
@@ -190,7 +219,7 @@ void MediumFlights::scatter(Engine& e, std::span<Flight> flights, std::span<cons
             l.lit = int(e.litValues_.size());
             e.litValues_.emplace_back();
         }
-        l.place = e.lobeRows_.add(*kind, {r.dir, -r.dir, {}, m.homogeneous->anisotropy});
+        l.place = e.lobeRows_.add(*l.kind, {r.dir, light == Vec3(0) ? -r.dir : light, {}, m.homogeneous->anisotropy});
     }
     if (n > 0) e.gather(*c, sched);
     e.giveBack(std::move(c));

@@ -21,7 +21,9 @@ private:
 /// The event of media that absorb and scatter, under path. On each way a distance is drawn in proportion to what is left of the
 /// light (of the three channels one, by what the path has left of it; all three make its density). What comes as far as its
 /// surface goes on, the others meet lights there, by Gather, and are scattered. Of a ray from the camera both is followed.
-/// Where lights with a place are near, more points are chosen by Equiangular; the power heuristic weighs both.
+/// Where lights with a place are near, more points are chosen by Equiangular; the power heuristic weighs both. What is scattered
+/// there goes also toward such a light, as rays that pass it bring the more the nearer they come (Georgiev et al., Joint
+/// Importance Sampling of Low-Order Anisotropic Volume Scattering, 2013).
 class MediumFlights final : public FlightEvent {
 public:
     void happen(Engine&, std::span<Flight>, Sched&) override;
@@ -32,6 +34,7 @@ public:
 
 private:
     struct Crossing { size_t flight; FreeFlight way; Color weight; bool stops = false; }; ///< weight: of the ray where it begins
+    static Vec3 besideLight(const Engine&, const Medium&, const PathRay&, const Vec3& from);
     static std::optional<Crossing> cross(Engine&, Flight&, size_t number, Sched&);
     static void pass(Engine&, Flight&, Sched&);
     static void scatter(Engine&, std::span<Flight>, std::span<const Crossing>, Sched&);

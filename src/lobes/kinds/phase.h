@@ -34,4 +34,30 @@ struct HenyeyGreenstein {
     }
 };
 
+/// The same value, where rays may pass a light: what a ray finds beside one falls off as the sine of the angle that it is off, so
+/// that draws by the phase function alone bring it with a variance that has no bound. wo = unit, toward the light.
+struct PhaseBesideLight {
+    static constexpr const char* name = "henyey-greenstein-beside";
+    static constexpr const char* doc = "As henyey-greenstein; three of ten draws are even in the angle to a light that rays may pass.";
+    static constexpr bool distribution = false;
+    static constexpr int needs = kNeedsA | kNeedsWo;
+    static constexpr float kShare = 0.3f;
+    static AL_MEMBER void prepare(const Rows& p) { HenyeyGreenstein::prepare(p); }
+    static AL_MEMBER Value evaluate(const Given& p, const Direction& w) {
+        Value v = HenyeyGreenstein::evaluate(p, w);
+        const Direction off = cross(w, p.wo());
+        const vf sine = maxLanes(rootLanes(dot(off, off)), vf(1e-6f));
+        v.pdf = mad(v.pdf, vf(1 - kShare), vf(kShare * 0.5f / (kPi * kPi)) / sine);
+        return v;
+    }
+    static AL_MEMBER vm sample(const Given& p, const Pair<vf>& u, Direction& w) {
+        const vm beside = u.a < kShare;
+        HenyeyGreenstein::sample(p, {maxLanes((u.a - kShare) / vf(1 - kShare), vf(0)), u.b}, w);
+        const Pair<vf> off = unitCircle(minLanes(u.a * vf(0.5f / kShare), vf(0.5f))), d = unitCircle(u.b);
+        const Direction b = toWorld(basisAbout(p.wo()), {off.b * d.a, off.b * d.b, off.a});
+        w = {select(beside, b.x, w.x), select(beside, b.y, w.y), select(beside, b.z, w.z)};
+        return u.a >= 0;
+    }
+};
+
 } // namespace alpenglow::transport::AL_NAMESPACE

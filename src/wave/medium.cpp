@@ -143,8 +143,8 @@ void MediumFlights::happen(Engine& e, std::span<Flight> flights, Sched& sched) {
     }
 }
 
-/// The direction of a light with a place that rays from a point in a medium may pass; 0 where none is near. Of several one, all with the
-/// same chance: a density for any of them is right.
+/// The direction of a light with a place that rays from a point in a medium may pass; 0 where none is near. Of several one, all
+/// with the same chance: a density for any of them is right.
 Vec3 MediumFlights::besideLight(const Engine& e, const Medium& m, const PathRay& r, const Vec3& from) {
     const WorldImpl& w = e.world();
     if (!e.rules().lightsAtRequests || w.settings_.mediumSampling == MediumSampling::Distance) return {};

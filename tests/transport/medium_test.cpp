@@ -254,7 +254,7 @@ struct Slab {
 
 // What comes back from a slab, and what comes through it: light that is scattered any number of times.
 TEST(Medium, ASlabReflectsAndLetsThroughAsItsEquationSays) {
-    const std::string faces = "PointsPolygons [4 4 4 4 4 4] [0 1 3 2  4 6 7 5  0 4 5 1  2 3 7 6  0 2 6 4  1 5 7 3] \"P\" "
+    const std::string faces = "ReverseOrientation PointsPolygons [4 4 4 4 4 4] [0 1 3 2  4 6 7 5  0 4 5 1  2 3 7 6  0 2 6 4  1 5 7 3] \"P\" "
                               "[-100 -1 -100  100 -1 -100  -100 0 -100  100 0 -100  -100 -1 100  100 -1 100  -100 0 100  100 0 100]\n";
     EXPECT_NEAR(Slab(.5, 12).out(1, true), .5 / 8 * H(.5)(.9999) * H(.5)(.9999), 2e-4); // deep enough, it is the half space
     struct Case { double albedo, depth; };

@@ -38,7 +38,7 @@ struct HenyeyGreenstein {
 /// that draws by the phase function alone bring it with a variance that has no bound. wo = unit, toward the light.
 struct PhaseBesideLight {
     static constexpr const char* name = "henyey-greenstein-beside";
-    static constexpr const char* doc = "As henyey-greenstein; three of ten draws are even in the angle to a light that rays may pass.";
+    static constexpr const char* doc = "As henyey-greenstein; three of ten draws are even in the angle to a light.";
     static constexpr bool distribution = false;
     static constexpr int needs = kNeedsA | kNeedsWo;
     static constexpr float kShare = 0.3f;

@@ -140,8 +140,10 @@ int meetRibbon(const CurveSegment& g, double from, double to, const CurveFacing&
 
 namespace {
 
-/// Where the ray, the z axis, meets the endless cone about p0 to p1; the nearest it comes where it does not quite. How many z.
-int meetCone(const Vec3d& p0, double h0, const Vec3d& p1, double h1, double z[2]) {
+/// Where the ray, the z axis, meets the endless cone about p0 to p1; how many z. Where it does not quite (`misses`), two about the nearest
+/// it comes.
+int meetCone(const Vec3d& p0, double h0, const Vec3d& p1, double h1, double z[2], bool& misses) {
+    misses = false;
     const double l = length(p1 - p0);
     const Vec3d t = (p1 - p0) / l;
     const double k = (h1 - h0) / l, kk = 1 + k * k, at = dot(p0, t);
@@ -150,6 +152,7 @@ int meetCone(const Vec3d& p0, double h0, const Vec3d& p1, double h1, double z[2]
     if (!(a > 0)) return 0;
     const double wide = std::max(h0, h1) / std::sqrt(a), gap = (c - b * b / a) / std::max(h0 * h0, h1 * h1);
     if (!(gap < 0.2)) return 0; // far from a silhouette
+    misses = true;
     z[0] = -b / a - 0.2 * wide;
     z[1] = -b / a + 0.2 * wide;
     return 2;
@@ -190,7 +193,8 @@ int meetRoundLine(const CurveSegment& g, const CurveRay& r, CurveHit out[4]) {
     const Vec3d ends[2] = {a, b};
     if (!passesBy(r, ends, 2, 2 * g.widest()) || a == b) return 0;
     double z[2];
-    const int roots = meetCone(a, g.h[0], b, g.h[1], z);
+    bool misses;
+    const int roots = meetCone(a, g.h[0], b, g.h[1], z, misses);
     const Vec3d along = normalize(b - a), before = normalize(a - r.placed(g.p[0])), behind = normalize(r.placed(g.p[3]) - b);
     // Planes that halve the angle with the neighbours; ends and turns of more than 120 degrees are cut straight.
     const Vec3d first = dot(before, along) > -0.5 ? along + before : along, second = dot(behind, along) > -0.5 ? along + behind : along;
@@ -228,7 +232,8 @@ int meetTube(const CurveSegment& g, double from, double to, const CurveRay& r, C
         const Vec3d* p = w.tube.p;
         const double bent = std::max(length(p[0] - p[1] * 2.0 + p[2]), length(p[1] - p[2] * 2.0 + p[3])), chord = length(p[3] - p[0]);
         const double narrowed = std::fabs(w.tube.h[3] - w.tube.h[0]);
-        if ((bent > 0.02 * widest || bent > 0.05 * chord || narrowed > widest) && w.to - w.from > 1. / 1024) {
+        const bool small = w.to - w.from <= 1. / 1024;
+        const auto halve = [&] {
             Waiting right;
             right.from = w.from + 0.5 * (w.to - w.from);
             right.to = w.to;
@@ -237,18 +242,26 @@ int meetTube(const CurveSegment& g, double from, double to, const CurveRay& r, C
             w.to = right.from;
             stack[size++] = right;
             stack[size++] = w;
+        };
+        if (!small && (bent > 0.02 * widest || bent > 0.05 * chord || narrowed > widest)) {
+            halve();
             continue;
         }
         if (!(chord > 0)) continue;
         double z[2];
-        const int roots = meetCone(p[0], w.tube.h[0], p[3], w.tube.h[3], z);
+        bool misses, lost = false; // lost: a ray along the tube, for which the cone is no good beginning
+        const int roots = meetCone(p[0], w.tube.h[0], p[3], w.tube.h[3], z, misses);
         for (int i = 0; i < roots; ++i) {
-            double f = std::clamp(dot(Vec3d(0, 0, z[i]) - p[0], p[3] - p[0]) / (chord * chord), 0.0, 1.0), at = z[i];
-            if (!refine(w.tube, at, f) || !(f >= -kEdge && f <= 1 + kEdge)) continue;
+            const double begin = dot(Vec3d(0, 0, z[i]) - p[0], p[3] - p[0]) / (chord * chord);
+            double f = std::clamp(begin, 0.0, 1.0), at = z[i];
+            const bool found = refine(w.tube, at, f);
+            lost |= !misses && (found ? std::fabs(f - begin) > 0.5 : begin > -1 && begin < 2);
+            if (!found || !(f >= -kEdge && f <= 1 + kEdge)) continue;
             const CurveHit h{r.t(at), 0, w.from + (w.to - w.from) * std::clamp(f, 0.0, 1.0), {}};
             const bool known = std::any_of(out, out + n, [&](const CurveHit& o) { return std::fabs(o.t - h.t) * r.length < 1e-7 * widest; });
             if (!known) keep(r, out, n, h);
         }
+        if (lost && !small) halve(); // what was found is known then
     }
     return n;
 }

@@ -256,6 +256,31 @@ TEST(Leaks, NoRayLeavesAClosedForm) {
         }
 }
 
+// Rays that look along a tube meet it at a flat angle, where a cone is no good beginning for Newton's iteration.
+TEST(Leaks, NoRayAlongATubeLeavesIt) {
+    const World w(kForms[0], Still);
+    Rng rng{std::mt19937(7 + teststat::seedBase())};
+    int leaks = 0;
+    for (int i = 0; i < teststat::samples(100'000, 1'000'000); ++i) {
+        const Vec3d along = normalize(Vec3d(0, i % 2 ? 1 : -1, 0) + rng.ball() * 0.5);
+        Ray r;
+        r.org = Vec3(transformPoint(skewed(), kForms[0].inside + rng.ball() * kForms[0].room));
+        r.dir = Vec3(transformVector(skewed(), along));
+        Hit h;
+        leaks += !w.accel->intersect(r, h) || !w.accel->occluded(r);
+    }
+    // Two that did.
+    const Vec3d rays[2][2] = {{{0.977919699, 0.057869051, 0.122842923}, {-0.202502422, 0.494063745, -0.135783362}},
+                              {{0.896145166, -0.0100087453, 0.0529654876}, {-0.0497586, -0.326921909, -0.0357304095}}};
+    for (const auto& [from, along] : rays) {
+        Ray r;
+        r.org = Vec3(transformPoint(skewed(), from));
+        r.dir = Vec3(transformVector(skewed(), along));
+        leaks += !w.accel->occluded(r);
+    }
+    EXPECT_EQ(leaks, 0);
+}
+
 TEST(Leaks, WhatLeavesAConvexFormDoesNotMeetItAgain) {
     const int n = teststat::samples(4'000, 1'000'000);
     for (const Form& form : kForms)

@@ -109,8 +109,8 @@ BlobMotion::Change BlobMotion::changeOf(const BlobLeaf& plan, const Span& s) con
     return c;
 }
 
-/// Each coordinate of an end is a product of two numbers that are linear in time: it strays from what its ends span by a quarter of
-/// the product of their changes. The reach about it is at most that of the larger radius and axes.
+/// Each coordinate of an end is a product of two numbers that are linear in time: it strays from what its ends span by a
+/// quarter of the product of their changes. The reach about it is at most that of the larger radius and axes.
 void BlobMotion::leafBox(const BlobLeaf& plan, const Span& s, Vec3d& lo, Vec3d& hi) const {
     lo = Vec3d(INFINITY), hi = Vec3d(-INFINITY);
     const Change c = changeOf(plan, s);
@@ -167,7 +167,8 @@ Interval BlobMotion::leafBounds(const BlobLeaf& plan, const Vec3d& lo, const Vec
     if (!(least > 0) || c.middle.kind != BlobLeaf::Kind::Segment) return all;
     // What of it moves against the radius. A change of either end counts as much as one of the point, at most.
     const double grows = c.radiusBy / (least * c.radius), ends = length(c.endBy[0]) + length(c.endBy[1]);
-    const double by = (moved + ends) / least + grows * (length(q - c.end[0]) + length(q - c.end[1]) + 2 * reach) + reach / c.radius;
+    const double away = length(q - c.end[0]) + length(q - c.end[1]) + 2 * reach;
+    const double by = (moved + ends) / least + grows * away + reach / c.radius;
     if (c.middle.length - by <= 1e-6) return all; // may be a ball at some time
     const Vec3d at = q / c.radius, e = at - c.middle.from;
     if (length(e - c.middle.along * std::clamp(dot(e, c.middle.along), 0.0, c.middle.length)) - by >= 1) return {0, 0};
@@ -175,7 +176,8 @@ Interval BlobMotion::leafBounds(const BlobLeaf& plan, const Vec3d& lo, const Vec
     return {std::max(0.0, f - kBlobSegmentSlope * by), std::min(1.0, f + kBlobSegmentSlope * by)};
 }
 
-Interval BlobMotion::bounds(const BlobTape& tape, const Vec3d& lo, const Vec3d& hi, float from, float to, std::vector<Interval>& v) const {
+Interval BlobMotion::bounds(const BlobTape& tape, const Vec3d& lo, const Vec3d& hi, float from, float to,
+                            std::vector<Interval>& v) const {
     const Span s = spanOf(from, to);
     v.resize(tape.size());
     for (size_t i = 0; i < tape.size(); ++i) {
@@ -233,7 +235,10 @@ Vec3d BlobMotion::carried(const BlobTape& tape, const Vec3d& p, float from, floa
         if (plan.kind == BlobLeaf::Kind::Ground || share == shares.end()) continue;
         const size_t matrix = plan.at + (plan.bySegment ? 7 : 0);
         Matrix a, b;
-        for (size_t i = 0; i < 16; ++i) a.m[i / 4][i % 4] = numberAt(matrix + i, k0, way0), b.m[i / 4][i % 4] = numberAt(matrix + i, k1, way1);
+        for (size_t i = 0; i < 16; ++i) {
+            a.m[i / 4][i % 4] = numberAt(matrix + i, k0, way0);
+            b.m[i / 4][i % 4] = numberAt(matrix + i, k1, way1);
+        }
         if (determinant3(a) == 0) continue;
         const Vec3d q = transformPoint(inverse(a), p);
         // Along a segment as far from its begin as before, in parts of the whole; across it in parts of the radius.

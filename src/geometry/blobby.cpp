@@ -41,7 +41,8 @@ bool Blobby::fits(KeyedShape& later) const {
     if (a.ints != b.ints || a.ints2 != b.ints2 || a.numbers.size() != b.numbers.size() || a.strings != b.strings) return false;
     // Repelling planes stand.
     for (const BlobLeaf& l : field_.leaves())
-        if (l.kind == BlobLeaf::Kind::Ground && !std::equal(&a.numbers[l.at], &a.numbers[l.at] + 4, &b.numbers[l.at])) return false;
+        if (l.kind == BlobLeaf::Kind::Ground && !std::equal(&a.numbers[l.at], &a.numbers[l.at] + 4, &b.numbers[l.at]))
+            return false;
     return true;
 }
 
@@ -87,12 +88,13 @@ std::vector<Blobby::Box> Blobby::roots() {
     return all;
 }
 
-Interval Blobby::fieldBounds(const Box& of, const Vec3d& lo, const Vec3d& hi, float from, float to, std::vector<Interval>& values) const {
+Interval Blobby::fieldBounds(const Box& of, const Vec3d& lo, const Vec3d& hi, float from, float to,
+                             std::vector<Interval>& values) const {
     return motion_ ? motion_->bounds(tapeOf(of), lo, hi, from, to, values) : field_.bounds(tapeOf(of), lo, hi, values);
 }
 
-/// Along which of its sides a box is longest, how long, and the smallest half axis of a blob in it. 3: in time, by half of what its blobs
-/// move: their way makes bounds as wide as the box itself does.
+/// Along which of its sides a box is longest, how long, and the smallest half axis of a blob in it. 3: in time, by half of
+/// what its blobs move: their way makes bounds as wide as the box itself does.
 int Blobby::longest(const Box& b, double& size, double& thin) const {
     int axis = largest(b.hi - b.lo);
     size = b.hi[axis] - b.lo[axis];

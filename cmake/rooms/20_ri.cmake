@@ -1,5 +1,5 @@
 find_package(ZLIB REQUIRED)
-room(ri DEPS scene base ZLIB::ZLIB ${CMAKE_DL_LIBS})
+room(ri DEPS scene base TBB::tbb ZLIB::ZLIB ${CMAKE_DL_LIBS})
 target_include_directories(ri PRIVATE ${CMAKE_SOURCE_DIR}/include)
 # Libraries of procedurals (DynamicLoad) find the C binding in whatever program has this room.
 target_link_options(ri INTERFACE "LINKER:--export-dynamic-symbol=Ri*")

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <string_view>
+#include <utility>
 
 namespace alpenglow::ri {
 namespace {
@@ -172,6 +173,7 @@ void Interpreter::readArchive(const std::string& name, const SourcePlace& place)
     }
     std::shared_ptr<std::vector<Call>> calls;
     std::unique_ptr<ByteSource> source;
+    std::unique_ptr<ParsedArchive> parsed;
     std::string key, file, why;
     if (auto i = inlineArchives_.find(name); i != inlineArchives_.end()) {
         calls = i->second;
@@ -193,7 +195,25 @@ void Interpreter::readArchive(const std::string& name, const SourcePlace& place)
         reporter.error(Rie::Nesting, place, fmt::format("archive \"{}\" reads itself", name));
         return;
     }
-    readOpened(key, file, calls, std::move(source), place);
+    if (source && openArchives_.empty() && !settings.comments) {
+        if (!unscanned_.empty()) ahead_.scan(std::exchange(unscanned_, {}));
+        parsed = ahead_.take(name, file);
+    }
+    if (parsed) executeParsed(*parsed, key, file, place);
+    else readOpened(key, file, calls, std::move(source), place);
+}
+
+void Interpreter::executeParsed(const ParsedArchive& archive, const std::string& key, const std::string& file, const SourcePlace& place) {
+    inPart(key, place, [&] {
+        auto outer = std::move(reporter.lineText);
+        reporter.lineText = [&](const SourcePlace& p) { return p.file == file ? lineOfFile(file, p.line) : std::string(); };
+        for (const Call& c : archive.calls) {
+            if (stopped() || !mayReplay(c)) break;
+            execute(c);
+        }
+        reporter.lineText = std::move(outer);
+        return archive.end;
+    });
 }
 
 void Interpreter::readOpened(const std::string& key, const std::string& file, const std::shared_ptr<std::vector<Call>>& calls,

@@ -76,6 +76,8 @@ void Interpreter::readStream(std::unique_ptr<ByteSource> raw, const std::string&
     SourcePlace end{name, 0, 0};
     size_t slash = name.find_last_of('/');
     sceneFolder_ = slash == std::string::npos ? "" : name.substr(0, slash);
+    ahead_ = ReadAhead();
+    unscanned_ = name;
     {
         auto outer = reporter.lineText;
         Parser parser(inflating(std::move(raw)), name, reporter, settings.comments);

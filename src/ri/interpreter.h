@@ -6,6 +6,7 @@
 #include "ri/declare.h"
 #include "ri/library.h"
 #include "ri/program.h"
+#include "ri/readahead.h"
 #include "ri/reader.h"
 #include "ri/reporter.h"
 #include "ri/requests/request.h"
@@ -183,6 +184,7 @@ private:
                     std::unique_ptr<ByteSource> source, const SourcePlace& place);
     /// Does `body`, which gives back where it ended, within archives and procedurals that are open, and closes what it leaves open.
     void inPart(const std::string& key, const SourcePlace& place, const std::function<SourcePlace()>& body);
+    void executeParsed(const ParsedArchive& archive, const std::string& key, const std::string& file, const SourcePlace& place);
     double detailOf(const std::vector<float>& bound) const;
     /// Whether one more program or library may make content here: how many there are and how deep they nest is bounded (reported).
     bool mayMake(const Call& call);
@@ -241,6 +243,8 @@ private:
     scene::Transform worldToCamera_;
     std::map<std::string, std::shared_ptr<std::vector<Call>>> inlineArchives_;
     std::string sceneFolder_; ///< of the stream that is read, or ""
+    ReadAhead ahead_;         ///< of the archives that it names
+    std::string unscanned_;   ///< the stream, before it reads one
     std::vector<std::string> openArchives_;
     std::vector<size_t> barriers_; ///< block depth at each open archive's start
     int archiveReads_ = 0;

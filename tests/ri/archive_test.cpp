@@ -154,3 +154,46 @@ TEST_F(Archives, SearchPathsKnowTheEnvironment) {
     ::setenv("HOME", "/home/somebody", 1);
     EXPECT_EQ(path("~:~/tx;x~"), "/home/somebody:/home/somebody/tx;x~");
 }
+
+// Archives that the scene names are parsed ahead, several at a time; those of Procedural2 are not. Both draw and say the same, in order.
+TEST_F(Archives, ParsedAheadAreTheSame) {
+    const int count = 40;
+    for (int i = 0; i < count; ++i) {
+        std::string text = "# an archive\nColor [1 0 0]\n";
+        for (int k = 0; k < 50; ++k) text += "Sphere " + std::to_string(100 * i + k + 1) + " -1 1 360\nTranslate 1 0 0\n";
+        if (i % 7 == 1) text += "Sphere 1 -1 \n";                      // said while it is parsed
+        if (i % 7 == 2) text += "Polygon \"P\" [0 0 0]\n";             // said while it is executed
+        if (i % 7 == 3) text += "AttributeBegin\n";                     // said when it ends
+        if (i % 7 == 4) text += "ReadArchive \"a0.rib\"\nIfBegin \"1\"\n";
+        if (i % 7 == 5) text += "Polygon \"P\" [0 0 0";                // ends in the middle
+        if (i % 7 == 6) text += std::string("Sphere 7 -1 1 360 \x93 \n"); // binary
+        write("a" + std::to_string(i) + ".rib", text);
+    }
+    const auto scene = [&](bool ahead) {
+        std::string text = "WorldBegin\n";
+        for (int i = 0; i < 2 * count; ++i) {
+            const std::string name = "\"a" + std::to_string(i * 3 % count) + ".rib\"";
+            if (i % 5 == 0) text += "IfBegin \"0\"\n"; // passed over
+            text += ahead ? "Procedural \"DelayedReadArchive\" [ " + name + "] [-1 1 -1 1 -1 1]\n"
+                          : "Procedural2 \"DelayedReadArchive2\" \"SimpleBound\" \"string filename\" " + name + " \"float[6] bound\" [-1 1 -1 1 -1 1]\n";
+            if (i % 5 == 0) text += "IfEnd\n";
+        }
+        return readHere(text + "WorldEnd\n");
+    };
+    const auto a = scene(true), b = scene(false);
+    ASSERT_EQ(a->frame().primitives.size(), b->frame().primitives.size());
+    EXPECT_GT(a->frame().primitives.size(), 3000u);
+    for (size_t i = 0; i < a->frame().primitives.size(); ++i) {
+        const scene::Primitive &p = a->primitive(i), &q = b->primitive(i);
+        EXPECT_EQ(p.numbers, q.numbers);
+        EXPECT_EQ(p.toWorld.first().m[3][0], q.toWorld.first().m[3][0]);
+        EXPECT_EQ(p.place.file, q.place.file);
+        EXPECT_EQ(p.place.line, q.place.line);
+        EXPECT_EQ(p.place.column, q.place.column);
+    }
+    ASSERT_EQ(a->count(), b->count());
+    EXPECT_GT(a->count(), 20u);
+    for (size_t i = 0; i < a->count(); ++i)
+        if (const Diagnostic &x = a->diagnostics.all()[i], &y = b->diagnostics.all()[i]; x.place.file.find("main") == std::string::npos)
+            EXPECT_EQ(toString(x), toString(y));
+}

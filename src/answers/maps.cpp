@@ -146,7 +146,7 @@ void answerShadow(Answers& answers, const ServiceCall& call) {
             const int r = t.rows[k];
             return Vec3d(call.at(r, lane), call.at(r + 1, lane), call.at(r + 2, lane));
         };
-        float v = 0;
+        Color v(0);
         if (t.rows.size() >= 4) {
             Vec3d q[4];
             for (size_t k = 0; k < 4; ++k) q[k] = transformPoint(toWorld, vec(k));
@@ -155,7 +155,7 @@ void answerShadow(Answers& answers, const ServiceCall& call) {
             v = texture::shadowLookup(map, transformPoint(toWorld, vec(0)), transformVector(toWorld, vec(1)),
                                       transformVector(toWorld, vec(2)), o);
         }
-        for (int k = 0; k < t.count; ++k) call.put(k, lane, v);
+        for (int k = 0; k < t.count; ++k) call.put(k, lane, t.count < 3 ? (v.x + v.y + v.z) / 3 : v[k]);
     });
 }
 

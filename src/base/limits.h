@@ -18,6 +18,7 @@ inline constexpr size_t kLights = 10'000'000;                  ///< lights of on
 inline constexpr size_t kObjectCopies = 250'000;                ///< primitives copied by instances inside objects, per reader
 inline constexpr size_t kReplayedCalls = 20'000'000;            ///< requests executed again because an archive is read again
 inline constexpr int kImageSide = 65536;
+inline constexpr size_t kDeepSteps = size_t(1) << 26;           ///< of a deep shadow map
 inline constexpr size_t kImageBytes = size_t(32) << 30;        ///< decoded, as floats
 inline constexpr int kImageChannels = 1024;
 inline constexpr size_t kImageExpansion = 4096;                ///< decoded bytes per byte of file, above kImageSmallBytes

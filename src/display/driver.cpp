@@ -14,7 +14,7 @@ std::string lower(std::string s) {
 const std::vector<const DriverDescriptor*>& drivers() {
     static const std::vector<const DriverDescriptor*> list{&openexrDriver, &tiffDriver,        &fileDriver, &pngDriver,
                                                            &jpegDriver,    &framebufferDriver, &nullDriver, &zfileDriver,
-                                                           &otherDriver};
+                                                           &deepDriver,    &otherDriver};
     return list;
 }
 

@@ -21,6 +21,7 @@ struct DriverSetup {
     bool quantizeAsked = false;        ///< false: rgba and z are RI's defaults, which drivers of float formats pass over
     std::map<std::string, std::string> metadata;
     std::optional<Matrix> worldToCamera, worldToNDC;
+    std::shared_ptr<const DeepSamples> deep; ///< for a deep shadow map (deepDriver); null: there is none, or no map
     OutputPolicy policy;
     SourcePlace place; ///< of the Display request
 };

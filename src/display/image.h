@@ -1,8 +1,10 @@
 // A picture in memory: what codecs read and write, drivers fill and textures are built from.
 #pragma once
 #include "base/matrix.h"
+#include "display/deep.h"
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,6 +29,8 @@ struct Image {
     float pixelAspect = 1;
     int bits = 32;             ///< per channel in the file it came from
     bool floating = true;      ///< that file held floating point
+    /// Of a deep shadow map: what is behind the first surfaces, which `data` holds as "z". Null: a flat picture.
+    std::shared_ptr<const DeepSamples> deep;
     std::vector<Image> levels; ///< reduced MIP-map levels 1, 2, ... when the file has them and they were asked for
 
     int channelCount() const { return int(channels.size()); }

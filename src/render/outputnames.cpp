@@ -71,7 +71,7 @@ bool isNumbered(const scene::Options& o) { return o.inFrame || o.frameNumber != 
 bool isMap(const scene::Display& d) {
     if (d.read) return true;
     const display::DriverDescriptor* driver = display::findDriver(d.type);
-    if (driver == &display::zfileDriver) return true;
+    if (driver == &display::zfileDriver || driver == &display::deepDriver) return true;
     return d.mode == "z" && driver != &display::framebufferDriver && !(driver && !driver->writes);
 }
 

@@ -1,6 +1,7 @@
 #include "render/outputs.h"
 #include "base/srgb.h"
 #include "display/driver.h"
+#include "display/drivers/picture.h"
 #include "display/mode.h"
 #include "render/curve.h"
 #include "render/imaging.h"
@@ -125,6 +126,14 @@ int OutputPlan::engineFloats() const {
     return n;
 }
 
+bool OutputPlan::anyDeep() const {
+    return std::any_of(pictures.begin(), pictures.end(), [](const OutputSpec& p) { return p.deep; });
+}
+
+bool OutputPlan::onlyDeep() const {
+    return std::all_of(pictures.begin(), pictures.end(), [](const OutputSpec& p) { return p.deep; });
+}
+
 bool OutputPlan::needs(Source s) const {
     return std::any_of(pictures.begin(), pictures.end(), [&](const OutputSpec& p) { return p.has(s); });
 }
@@ -224,7 +233,11 @@ OutputPlan planOutputs(const scene::Options& o, const RenderSettings& settings, 
     b.depth = depthFilterOf(o, diags);
     if (!file.empty()) plan.pictures.push_back(singleOutput(file, b, diags, formatOf(o.displays)));
     for (const NamedDisplay& d : displaysOf(o, settings, file.empty())) {
-        OutputSpec s = specOf(d.display, o, b, plan, diags);
+        const bool deep = display::findDriver(d.display.type) == &display::deepDriver;
+        scene::Display display = d.display;
+        if (deep) display.mode = "z"; // "deepopacity" and the like: it holds what it holds
+        OutputSpec s = specOf(display, o, b, plan, diags);
+        s.deep = deep;
         if (settings.gamma && s.ownExposure && !isMap(d.display)) s.gamma = *settings.gamma;
         s.map = isMap(d.display);
         s.userFile = d.user;
@@ -353,6 +366,7 @@ bool writeOutputs(const OutputPlan& plan, const PictureFacts& facts, const std::
         setup.worldToNDC = facts.worldToNDC;
         setup.policy.allowWrite = allowWrite || s.userFile;
         setup.place = s.place;
+        if (s.deep) setup.deep = facts.deep;
         display::Image out = display::makeImage(w, h, setup.channels);
         size_t stride = in.channels.size();
         for (int y = 0; y < h; ++y) {

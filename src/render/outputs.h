@@ -47,6 +47,7 @@ struct OutputSpec {
     bool quantizeAsked = false;
     bool userFile = false; ///< named by -o or --display: written where it says
     bool map = false;      ///< isMap()
+    bool deep = false;     ///< a deep shadow map: PictureFacts::deep is its pixels
     bool has(OutputVariable::Source) const;
     std::vector<std::string> channels() const;
 };
@@ -76,6 +77,8 @@ struct OutputPlan {
     /// Whether SampleResult::albedo and normal are asked for, or may be.
     bool needsFirstSeen() const;
     bool needs(OutputVariable::Source) const;
+    /// Some picture is a deep shadow map; all of them are.
+    bool anyDeep() const, onlyDeep() const;
     bool needsDepth(DepthFilter) const;
     /// Takes the widths the engine found and names the channels of what nobody had declared. `missing`: outputs that no shader
     /// has.
@@ -116,6 +119,7 @@ struct PictureFacts {
     Matrix worldToCamera, worldToNDC;
     std::map<std::string, std::string> metadata;
     bool imager = false; ///< the frame has an imager shader
+    std::shared_ptr<const display::DeepSamples> deep; ///< of deep shadow maps; null: none was made
 };
 
 /// Runs an imager over `count` pixels in place; see transport::World::runImager. False: the user stopped it, the pixels are void.

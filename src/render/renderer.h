@@ -64,6 +64,7 @@ private:
     FilmDescription filmOf(const FrameWork&) const;
     bool renderSamples(FrameWork&, struct Job&);
     void writeFrameFilm(FrameWork&, Film&, double renderSec);
+    bool makeDepths(FrameWork&, struct Job&);
     void renderGrid(FrameWork&, struct Job&);
     /// Hider "photon": writes the photon maps that the frame names. renderphotons.cpp
     void renderPhotons(FrameWork&, int threads);

@@ -2,6 +2,7 @@
 #include "base/limits.h"
 #include "base/processors.h"
 #include "render/curve.h"
+#include "render/deeppass.h"
 #include "render/digest.h"
 #include "render/filmpicture.h"
 #include "render/imagertext.h"
@@ -34,6 +35,18 @@ std::optional<SampleRange> partOf(const RenderSettings& s, uint32_t spp) {
     if (!s.part) return s.samples;
     const uint64_t k = (*s.part)[0], n = (*s.part)[1];
     return SampleRange{uint32_t((k - 1) * spp / n), uint32_t(k * spp / n)};
+}
+
+/// For frames of deep shadow maps alone: no colour is asked for.
+Reconstructions noImages(const Job& job) {
+    Reconstructions r;
+    Image black;
+    black.window = job.camera.window();
+    black.channels.resize(kImageFixedChannels);
+    black.data.resize(black.window.pixels() * black.channels.size());
+    r.images.push_back(std::move(black));
+    r.of.assign(job.plan.pictures.size(), 0);
+    return r;
 }
 
 } // namespace
@@ -74,7 +87,10 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
     if (settings_.pixel) {
         printPixel(job, f.o, f.wanted, f.path);
         ++outcome_.rendered;
-    } else if (!f.path) {
+    } else if (f.plan.anyDeep() && !makeDepths(f, job)) {
+        ++outcome_.refused;
+        return;
+    } else if (!f.path || f.plan.onlyDeep()) {
         renderGrid(f, job);
     } else if (!renderSamples(f, job)) {
         return;
@@ -304,11 +320,22 @@ void Renderer::writeFrameFilm(FrameWork& f, Film& film, double renderSec) {
     if (!f.checkpoint.empty()) outcome_.outputFailed |= !savePart(film, f.checkpoint, OutputPolicy{".", true}, diagnostics_);
 }
 
+/// The pixels of deep shadow maps. False: there are none, which was reported.
+bool Renderer::makeDepths(FrameWork& f, Job& job) {
+    if (f.path) gridOf(f.o, settings_, &f.nx, &f.ny);
+    f.picture.deep = seeDepths(job, f.nx, f.ny, jitterOf(f.o, diagnostics_), settings_.seed, deepShadowError(f.o, diagnostics_));
+    outcome_.interrupted |= job.interrupted;
+    if (job.interrupted)
+        diagnostics_.report(Severity::Warning, Rie::NoError, {}, "interrupted before the deep shadow map was whole; nothing is written");
+    return f.picture.deep != nullptr;
+}
+
 /// The hiders hidden and raytrace.
 void Renderer::renderGrid(FrameWork& f, Job& job) {
     DroppedSamples dropped;
-    Reconstructions made = renderImages(job, f.nx, f.ny, jitterOf(f.o, diagnostics_), refinementOf(f.o, job.camera, diagnostics_),
-                                        settings_.seed, &dropped);
+    Reconstructions made;
+    if (f.plan.onlyDeep()) made = noImages(job);
+    else made = renderImages(job, f.nx, f.ny, jitterOf(f.o, diagnostics_), refinementOf(f.o, job.camera, diagnostics_), settings_.seed, &dropped);
     stats_.classic.subsampledPixels += made.refined.pixels;
     stats_.classic.subsampledRays += made.refined.rays;
     f.nonFinite = dropped.count;

@@ -32,7 +32,7 @@ constexpr OptionDescription kOptions[] = {
     {"licenseserver:holdlicense", "", "", "", Ignored, kDelight},
     {"limits:brickmemory", "int", "", "", Ignored, kMemory},
     {"limits:bucketsize", "int[2]", "", "", Ignored, kSeveral},
-    {"limits:deepshadowerror", "", "", "", Ignored, kPrman},
+    {"limits:deepshadowerror", "float", "0.01", "0.002", Used, "Deep shadow maps: how far, as a part of the light, a pixel may lie from the mean of its samples. 0: nowhere."},
     {"limits:derivmemory", "", "", "", Ignored, kBmrt},
     {"limits:extremedisplacement", "", "", "", Ignored, kPrman},
     {"limits:eyesplits", "int", "", "", Ignored, "several renderers; nothing is split at the eye here"},

@@ -90,7 +90,7 @@ std::vector<Shadeop> textureShadeops() {
         each("float color", "$ shadow(string name; point p; pairs)") +
             each("float color", "$ shadow(string name; point p1, point p2, point p3, point p4; pairs)"),
         Lowering::Service, "The part of p's surroundings, 0 to 1, that a depth map puts in shadow: its comparisons with the map, not its depths, are filtered over the footprint of p, or over that "
-        "of four points. 0 where the map does not look. In light shaders under path maps are not read: lights trace their shadows there. \"raytrace\" sends the rays of transmission() from p to the light: "
+        "of four points. Of a deep map (Display \"deepshad\"), what its surfaces take of each colour; the float form is their mean. 0 where the map does not look. In light shaders under path maps are not read: lights trace their shadows there. \"raytrace\" sends the rays of transmission() from p to the light: "
         "where L comes from, in a light's own shader or in illuminance(); far away in solar(). The float form of it is the mean of the channels.");
     list.back().examples = {{"shadow(\"light.shd\", P)", "0"}};
     shadow.contexts = kSurface | kVolume | kLight;

@@ -106,6 +106,7 @@ bool makeShadow(const std::string& zfile, const std::string& shadow, const MakeO
     if (!image) return false;
     display::Image z = display::selectChannels(*image, {image->channel("z") >= 0 ? "z" : image->channels[0]});
     z.channels = {"z"};
+    z.deep = image->deep;
     z.metadata["textureformat"] = "Shadow";
     z.metadata["Software"] = "Alpenglow";
     z.bits = 32;

@@ -31,6 +31,24 @@ template <class Test> double part(const Level& map, double s, double t, Test&& t
     return sum;
 }
 
+/// The same of what a deep map has taken at depth z, channel by channel.
+Vec3d deepPart(const Texture& map, double s, double t, double z) {
+    const int width = map.width(), height = map.height();
+    const double x = std::clamp(s * width - 0.5, -2.0, width + 1.0), y = std::clamp(t * height - 0.5, -2.0, height + 1.0);
+    const int x0 = int(std::floor(x)), y0 = int(std::floor(y));
+    const double fx = x - x0, fy = y - y0;
+    Vec3d sum(0.0);
+    for (int j = 0; j < 2; ++j)
+        for (int i = 0; i < 2; ++i) {
+            const int px = x0 + i, py = y0 + j;
+            if (px < 0 || py < 0 || px >= width || py >= height) continue;
+            double left[3];
+            map.deep->leftAt(size_t(py) * size_t(width) + size_t(px), z, left);
+            sum = sum + Vec3d(1 - left[0], 1 - left[1], 1 - left[2]) * ((i ? fx : 1 - fx) * (j ? fy : 1 - fy));
+        }
+    return sum;
+}
+
 /// How many comparisons there are along one side of their grid.
 int gridOf(const ShadowOptions& o) {
     return int(std::ceil(std::sqrt(std::clamp(std::isfinite(o.samples) ? double(o.samples) : 1.0, 1.0, 1024.0))));
@@ -43,26 +61,30 @@ double spread(int i) {
 }
 
 /// A regular grid over a box of NDC: bilinear comparison makes it continuous, and the same everywhere.
-double overBox(const Level& map, double s, double t, double ws, double wt, double z, const ShadowOptions& o) {
+Color overBox(const Texture& of, double s, double t, double ws, double wt, double z, const ShadowOptions& o) {
+    const Level& map = of.levels[0];
     ws = std::isfinite(ws) ? std::clamp(ws, 0.0, 1.0) : 0;
     wt = std::isfinite(wt) ? std::clamp(wt, 0.0, 1.0) : 0;
     int k = gridOf(o);
     if (ws * map.width < 0.5 && wt * map.height < 0.5 && o.bias0 == o.bias1) k = 1;
     double sum = 0;
+    Vec3d sums(0.0);
     for (int j = 0; j < k; ++j)
         for (int i = 0; i < k; ++i) {
             const double at = z - o.bias0 - (double(o.bias1) - o.bias0) * spread(j * k + i);
-            sum += part(map, s + ((i + 0.5) / k - 0.5) * ws, t + ((j + 0.5) / k - 0.5) * wt, [&](double depth) { return at > depth; });
+            const double atS = s + ((i + 0.5) / k - 0.5) * ws, atT = t + ((j + 0.5) / k - 0.5) * wt;
+            if (of.deep) sums = sums + deepPart(of, atS, atT, at);
+            else sum += part(map, atS, atT, [&](double depth) { return at > depth; });
         }
-    return sum / (double(k) * k);
+    return of.deep ? Color(sums / (double(k) * k)) : Color(float(sum / (double(k) * k)));
 }
 
 /// The part of an area light that a point does not see. Between the point and each of k x k places on the source the map is asked
 /// at even steps: a surface is met where the way is behind it by no more than a step is deep, or than surfaces are thick.
-double overSource(const Texture& h, const Vec3d& p, const std::array<Vec3d, 4>& source, const ShadowOptions& o) {
+Color overSource(const Texture& h, const Vec3d& p, const std::array<Vec3d, 4>& source, const ShadowOptions& o) {
     constexpr int kSteps = 64;
     const int k = gridOf(o);
-    double sum = 0;
+    Vec3d sum(0.0);
     for (int n = 0; n < k * k; ++n) {
         const double u = (n % k + 0.5) / k, v = (n / k + 0.5) / k;
         const Vec3d q = (source[0] * (1 - u) + source[1] * u) * (1 - v) + (source[3] * (1 - u) + source[2] * u) * v;
@@ -71,16 +93,20 @@ double overSource(const Texture& h, const Vec3d& p, const std::array<Vec3d, 4>& 
         const double deep = std::fabs(transformPoint(*h.worldToCamera, q).z - transformPoint(*h.worldToCamera, p).z) / kSteps;
         const double gap = std::max(double(o.gapbias), deep * (1 + 1e-9));
         double blocked = 0;
+        Vec3d left(1.0); // of a deep map: each step takes what surfaces between it and the gap before it do
         for (int i = 0; i < kSteps && blocked < 1; ++i) {
             const Vec3d at = p + (q - p) * ((i + 0.5) / kSteps);
             double s, t;
             if (!project(*h.worldToNDC, at, s, t)) break;
             const double z = transformPoint(*h.worldToCamera, at).z;
-            blocked = std::max(blocked, part(h.levels[0], s, t, [&](double d) { return z - bias > d && z - bias - d <= gap; }));
+            if (h.deep) {
+                const Vec3d near = deepPart(h, s, t, z - bias - gap), far = deepPart(h, s, t, z - bias);
+                for (int c = 0; c < 3; ++c) left[c] *= near[c] < 1 ? (1 - far[c]) / (1 - near[c]) : 1;
+            } else blocked = std::max(blocked, part(h.levels[0], s, t, [&](double d) { return z - bias > d && z - bias - d <= gap; }));
         }
-        sum += blocked;
+        sum = sum + (h.deep ? Vec3d(1.0) - left : Vec3d(blocked));
     }
-    return sum / (double(k) * k);
+    return Color(sum / (double(k) * k));
 }
 
 /// Of a map with faces, the one in whose middle the point lies most; the map itself where it has none. Null: no face sees it.
@@ -103,11 +129,11 @@ bool finite(const Vec3d& v) { return std::isfinite(v.x) && std::isfinite(v.y) &&
 
 } // namespace
 
-float shadowLookup(Handle map, const Vec3d& p, const Vec3d& ddx, const Vec3d& ddy, const ShadowOptions& o) {
+Color shadowLookup(Handle map, const Vec3d& p, const Vec3d& ddx, const Vec3d& ddy, const ShadowOptions& o) {
     const Texture* h = faceOf(map, p);
     double s, t, xs, xt, ys, yt;
-    if (!h || !project(*h->worldToNDC, p, s, t)) return 0;
-    if (o.source) return float(overSource(*h, p, *o.source, o));
+    if (!h || !project(*h->worldToNDC, p, s, t)) return Color(0);
+    if (o.source) return overSource(*h, p, *o.source, o);
     if (!project(*h->worldToNDC, p + ddx, xs, xt)) {
         xs = s;
         xt = t;
@@ -118,24 +144,24 @@ float shadowLookup(Handle map, const Vec3d& p, const Vec3d& ddx, const Vec3d& dd
     }
     const double ws = (std::fabs(xs - s) + std::fabs(ys - s)) * double(o.swidth) + double(o.sblur);
     const double wt = (std::fabs(xt - t) + std::fabs(yt - t)) * double(o.twidth) + double(o.tblur);
-    return float(overBox(h->levels[0], s, t, ws, wt, transformPoint(*h->worldToCamera, p).z, o));
+    return overBox(*h, s, t, ws, wt, transformPoint(*h->worldToCamera, p).z, o);
 }
 
-float shadowLookupQuad(Handle map, const Vec3d world[4], const ShadowOptions& o) {
+Color shadowLookupQuad(Handle map, const Vec3d world[4], const ShadowOptions& o) {
     const Vec3d middle = (world[0] + world[1] + world[2] + world[3]) * 0.25;
     const Texture* h = faceOf(map, middle);
-    if (!h || !finite(middle)) return 0;
-    if (o.source) return float(overSource(*h, middle, *o.source, o));
+    if (!h || !finite(middle)) return Color(0);
+    if (o.source) return overSource(*h, middle, *o.source, o);
     double s0 = 1e300, s1 = -1e300, t0 = 1e300, t1 = -1e300, z = 0;
     for (int i = 0; i < 4; ++i) {
         double s, t;
-        if (!project(*h->worldToNDC, world[i], s, t)) return 0;
+        if (!project(*h->worldToNDC, world[i], s, t)) return Color(0);
         s0 = std::min(s0, s), s1 = std::max(s1, s);
         t0 = std::min(t0, t), t1 = std::max(t1, t);
         z += transformPoint(*h->worldToCamera, world[i]).z / 4;
     }
-    return float(overBox(h->levels[0], (s0 + s1) / 2, (t0 + t1) / 2, (s1 - s0) * double(o.swidth) + double(o.sblur),
-                         (t1 - t0) * double(o.twidth) + double(o.tblur), z, o));
+    return overBox(*h, (s0 + s1) / 2, (t0 + t1) / 2, (s1 - s0) * double(o.swidth) + double(o.sblur),
+                   (t1 - t0) * double(o.twidth) + double(o.tblur), z, o);
 }
 
 } // namespace alpenglow::texture

@@ -120,6 +120,7 @@ void toLight(display::Image& m) {
 size_t Texture::bytes() const {
     size_t n = 0;
     for (const Level& l : levels) n += l.bytes();
+    if (deep) n += deep->steps.size() * sizeof(display::DeepStep) + deep->first.size() * sizeof(uint64_t);
     for (auto& [number, tile] : tiles) n += tile->bytes();
     return n;
 }
@@ -168,6 +169,7 @@ std::shared_ptr<const Texture> makeTextureFrom(display::Image image, const Textu
     const bool codes = (image.bits == 8 && !image.floating) || (text("colorspace") == kEightBits && fitsCodes(image));
     if (tex->kind == Kind::Shadow) { // depths have no mean
         tex->levels.push_back(levelOf(image, codes));
+        tex->deep = image.deep;
         return tex;
     }
     // The levels that the file has; below the last of them (files may end at 2x1) they are made.

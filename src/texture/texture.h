@@ -38,6 +38,7 @@ struct Texture {
     bool floating = false;
     /// By UDIM number, 1001 + floor(s) + 10 floor(t); faces of a cube by 0..5: px nx py ny pz nz.
     std::map<int, std::shared_ptr<const Texture>> tiles;
+    std::shared_ptr<const display::DeepSamples> deep; ///< of a deep shadow map; levels[0] has its first surfaces
     float fovCotangent = 1; ///< of a cube face: 1 / tan(fov / 2)
     int width() const { return levels.empty() ? 0 : levels[0].width; }
     int height() const { return levels.empty() ? 0 : levels[0].height; }

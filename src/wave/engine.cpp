@@ -121,6 +121,20 @@ bool Engine::trace(std::span<const CameraRay> rays, std::span<SampleResult> out,
     }
 }
 
+void Engine::beginRay(const CameraRay& c, size_t i, PathRay& r) {
+    r.origin = c.origin;
+    r.dir = c.direction;
+    PathSample& sample = samples_[i];
+    sample = {c.px, c.py, c.sample, int(i), c.time, c.shutter, 0.5f, c.records,
+              render::SampleNumbers(render::Sampler(seed_, c.px, c.py), c.sample)};
+    r.sample = &sample;
+    r.footprint = {c.width, c.spread};
+    r.setStart(c.start);
+    r.media = world_->eye_.count ? &world_->eye_ : nullptr;
+    if (world_->fades_) sample.level = random(r).one(0, kLevel, 0);
+    r.counts = true;
+}
+
 void Engine::beginTrace() {
     spoiled_.clear();
     waiting_.clear();
@@ -158,6 +172,7 @@ void Engine::forget() {
 
 bool Engine::traceAll(std::span<const CameraRay> rays, std::span<SampleResult> out, const StopFlag* stopFlag) {
     stop = stopFlag;
+    if (!rays.empty() && rays[0].depths) return seeThrough(rays, out);
     if (!sched_) sched_ = std::make_unique<Sched>(*this, stopFlag, limits::kFrameBytesPerThread, raysAtOnce_);
     Sched& sched = *sched_;
     sched.restart(stopFlag);
@@ -179,18 +194,7 @@ bool Engine::traceAll(std::span<const CameraRay> rays, std::span<SampleResult> o
         for (size_t k = 0; k < world_->lightOutputs_.size(); ++k) lightTargets_.push_back(sched.newRoot());
         for (int k = 0; lightPaths_ && k < lightPaths_->parts(); ++k) partTargets_.push_back(sched.newRoot());
         PathRay& r = sched.spawn(0, roots[i]).payload;
-        r.origin = c.origin;
-        r.dir = c.direction;
-        PathSample& sample = samples_[i];
-        sample = {
-            c.px, c.py, c.sample, int(i), c.time, c.shutter, 0.5f, c.records,
-            render::SampleNumbers(render::Sampler(seed_, c.px, c.py), c.sample)};
-        r.sample = &sample;
-        r.footprint = {c.width, c.spread};
-        r.setStart(c.start);
-        r.media = world_->eye_.count ? &world_->eye_ : nullptr;
-        if (world_->fades_) sample.level = random(r).one(0, kLevel, 0);
-        r.counts = true;
+        beginRay(c, i, r);
         if (lightPaths_) r.path = lightPaths_->begin();
     }
     counters.paths += rays.size();

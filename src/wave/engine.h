@@ -293,6 +293,10 @@ public:
     std::unordered_map<int, const photons::PhotonMap*> globalMaps_; ///< by binding
     void beginTrace();                  ///< nothing waits and nothing is spoiled
     void endTrace(const Sched&);        ///< counts what the scheduler saw, and forgets
+    accel::Ray rayOf(const PathRay&) const; ///< as the tree follows it
+    void beginRay(const CameraRay&, size_t i, PathRay&); ///< the i-th of a call
+    /// What is left of light along camera rays, behind each surface that they meet: SampleResult::left. depths.cpp
+    bool seeThrough(std::span<const CameraRay>, std::span<SampleResult>);
     bool emitAll(const PhotonJob&, uint32_t first, uint32_t count);
     void tiltPhotons(BatchContext&); ///< photonscatter.cpp
     // photonmodels.cpp

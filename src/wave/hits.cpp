@@ -36,31 +36,36 @@ bool Engine::settle(Sched& sched) {
     return true;
 }
 
+/// A ray as the tree follows it: within the clipping planes, meeting what it may meet.
+accel::Ray Engine::rayOf(const PathRay& r) const {
+    accel::Ray ray;
+    ray.org = r.origin;
+    ray.dir = r.dir;
+    ray.tnear = 0;
+    ray.tfar = r.maxDistance;
+    if (r.camera())
+        for (const auto& [point, normal] : world_->clippingPlanes_) {
+            double height = dot(normal, Vec3d(r.origin) - point), climb = dot(normal, Vec3d(r.dir)), t = -height / climb;
+            if (climb > 0) ray.tfar = std::min(ray.tfar, float(std::max(t, 0.0)));
+            else if (climb < 0) ray.tnear = std::max(ray.tnear, float(std::min(t, 1e37)));
+            else if (height > 0) ray.tfar = 0; // along the plane, on its cut side
+        }
+    ray.time = world_->shutterOf(r);
+    ray.mask = visibilityBit(r.type());
+    ray.excludeShape = ray.excludePrim = geometry::kNone;
+    ray.sides = r.kind->set.sides;
+    ray.only = r.kind->set.only;
+    ray.level = r.sample->level;
+    return ray;
+}
+
 /// What the rays of a slice meet: hits_.
 void Engine::cast(std::span<const Sched::Task> slice) {
-    rays_.resize(slice.size()); // each is written whole
+    rays_.clear();
     hits_.resize(slice.size());
-    for (size_t i = 0; i < slice.size(); ++i) {
-        const PathRay& r = slice[i].payload;
-        accel::Ray& ray = rays_[i];
-        ray.org = r.origin;
-        ray.dir = r.dir;
-        ray.tnear = 0;
-        ray.tfar = r.maxDistance;
-        if (r.camera())
-            for (const auto& [point, normal] : world_->clippingPlanes_) {
-                double height = dot(normal, Vec3d(r.origin) - point), climb = dot(normal, Vec3d(r.dir)), t = -height / climb;
-                if (climb > 0) ray.tfar = std::min(ray.tfar, float(std::max(t, 0.0)));
-                else if (climb < 0) ray.tnear = std::max(ray.tnear, float(std::min(t, 1e37)));
-                else if (height > 0) ray.tfar = 0; // along the plane, on its cut side
-            }
-        ray.time = world_->shutterOf(r);
-        ray.mask = visibilityBit(r.type());
-        ray.excludeShape = ray.excludePrim = geometry::kNone;
-        ray.sides = r.kind->set.sides;
-        ray.only = r.kind->set.only;
-        ray.level = r.sample->level;
-        ++raysOf(r.type());
+    for (const Sched::Task& t : slice) {
+        rays_.push_back(rayOf(t.payload));
+        ++raysOf(t.payload.type());
     }
     world_->accel_->intersect(rays_, hits_);
 }

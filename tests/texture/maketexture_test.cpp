@@ -87,17 +87,17 @@ TEST(MakeTexture, LatLongAndShadow) {
     ASSERT_TRUE(sys.info(h)->projection);
     EXPECT_NEAR(sys.info(h)->projection->m[1][1], 1, 1e-12); // back to screen: y up
     ShadowOptions so;
-    EXPECT_EQ(shadowLookup(h, {-0.5, 0, 3}, {}, {}, so), 1); // behind the near half
-    EXPECT_EQ(shadowLookup(h, {0.5, 0, 3}, {}, {}, so), 0);  // before the far half
-    EXPECT_EQ(shadowLookup(h, {0.5, 0, 6}, {}, {}, so), 1);
-    EXPECT_EQ(shadowLookup(h, {-0.5, 0, 2}, {}, {}, so), 0);        // on the surface itself
-    EXPECT_EQ(shadowLookup(h, {3, 0, 100}, {}, {}, so), 0);         // where the map does not look
-    EXPECT_NEAR(shadowLookup(h, {0, 0, 3}, {}, {}, so), 0.5, 1e-6); // the edge, between two texels
+    EXPECT_EQ(shadowLookup(h, {-0.5, 0, 3}, {}, {}, so).x, 1); // behind the near half
+    EXPECT_EQ(shadowLookup(h, {0.5, 0, 3}, {}, {}, so).x, 0);  // before the far half
+    EXPECT_EQ(shadowLookup(h, {0.5, 0, 6}, {}, {}, so).x, 1);
+    EXPECT_EQ(shadowLookup(h, {-0.5, 0, 2}, {}, {}, so).x, 0);        // on the surface itself
+    EXPECT_EQ(shadowLookup(h, {3, 0, 100}, {}, {}, so).x, 0);         // where the map does not look
+    EXPECT_NEAR(shadowLookup(h, {0, 0, 3}, {}, {}, so).x, 0.5, 1e-6); // the edge, between two texels
     so.sblur = so.tblur = 0.2f;
-    EXPECT_NEAR(shadowLookup(h, {0, 0, 3}, {}, {}, so), 0.5, 1e-6);
+    EXPECT_NEAR(shadowLookup(h, {0, 0, 3}, {}, {}, so).x, 0.5, 1e-6);
     so.bias0 = so.bias1 = 2;
-    EXPECT_EQ(shadowLookup(h, {-0.5, 0, 3}, {}, {}, so), 0);
-    EXPECT_EQ(shadowLookup(nullptr, {0, 0, 3}, {}, {}, so), 0);
+    EXPECT_EQ(shadowLookup(h, {-0.5, 0, 3}, {}, {}, so).x, 0);
+    EXPECT_EQ(shadowLookup(nullptr, {0, 0, 3}, {}, {}, so).x, 0);
     EXPECT_TRUE(d.all().empty()) << messages(d);
     Image bare = constant(4, 4, 1, 1);
     save(s, "bare.z", bare, display::Format::Exr, display::Sample::Float);

@@ -103,10 +103,10 @@ TEST(PixarMaps, ShadowMap) {
     EXPECT_NEAR(info->projection->m[0][0], 0.5, 1e-12);
     EXPECT_NEAR(info->projection->m[1][1], 0.5, 1e-12);
     EXPECT_NEAR(info->viewing->m[3][2], 1, 1e-12);
-    EXPECT_EQ(shadowLookup(h, {-1, 1, 4.5}, {}, {}, {}), 1);  // depth 5.5, behind it; up is y > 0
-    EXPECT_EQ(shadowLookup(h, {-1, 1, 3.5}, {}, {}, {}), 0);  // before it
-    EXPECT_EQ(shadowLookup(h, {-1, -1, 4.5}, {}, {}, {}), 0); // beside it
-    EXPECT_EQ(shadowLookup(h, {1, 1, 4.5}, {}, {}, {}), 0);
+    EXPECT_EQ(shadowLookup(h, {-1, 1, 4.5}, {}, {}, {}).x, 1);  // depth 5.5, behind it; up is y > 0
+    EXPECT_EQ(shadowLookup(h, {-1, 1, 3.5}, {}, {}, {}).x, 0);  // before it
+    EXPECT_EQ(shadowLookup(h, {-1, -1, 4.5}, {}, {}, {}).x, 0); // beside it
+    EXPECT_EQ(shadowLookup(h, {1, 1, 4.5}, {}, {}, {}).x, 0);
     // MakeShadow takes it as well as a zfile.
     MakeOptions o;
     o.policy = s.policy();
@@ -114,7 +114,7 @@ TEST(PixarMaps, ShadowMap) {
     ASSERT_TRUE(makeShadow("a.shd", "b.shd", o, d)) << messages(d);
     Handle made = sys.open("b.shd", {s.dir.string()});
     ASSERT_TRUE(made);
-    EXPECT_EQ(shadowLookup(made, {-1, 1, 4.5}, {}, {}, {}), 1);
+    EXPECT_EQ(shadowLookup(made, {-1, 1, 4.5}, {}, {}, {}).x, 1);
     EXPECT_TRUE(d.all().empty()) << messages(d);
 }
 

@@ -29,6 +29,7 @@ bool PictureDriver::open(const DriverSetup& s, Diagnostics& diags) {
     image_.metadata = s.metadata;
     image_.worldToCamera = s.worldToCamera;
     image_.worldToNDC = s.worldToNDC;
+    image_.deep = s.deep;
     return true;
 }
 

@@ -30,6 +30,6 @@ std::string stringParam(const DriverSetup&, const std::string& name, const std::
 
 // The descriptors, one per file.
 extern const DriverDescriptor openexrDriver, tiffDriver, fileDriver, pngDriver, jpegDriver, framebufferDriver, nullDriver,
-    zfileDriver, otherDriver;
+    zfileDriver, deepDriver, otherDriver;
 
 } // namespace alpenglow::display

@@ -1,11 +1,12 @@
-// Display types "zfile" and "shadow": depth as floats in OpenEXR under the given name, with the matrices that shadow() needs.
+// Display types "zfile" and "shadow", and "deepshad" with what is behind the first surface: depth as floats in OpenEXR under the given name, with the matrices that shadow() needs.
 #include "display/drivers/picture.h"
 #include <algorithm>
 
 namespace alpenglow::display {
 namespace {
 
-class Zfile : public PictureDriver {
+/// OpenEXR of floats that shadow() takes for a map of depths.
+class DepthDriver : public PictureDriver {
     Format format(const DriverSetup&, Diagnostics&) override { return Format::Exr; }
     bool data() const override { return true; }
 
@@ -13,26 +14,48 @@ public:
     bool open(const DriverSetup& s, Diagnostics& diags) override {
         DriverSetup mine = s;
         mine.metadata["textureformat"] = "Shadow";
-        std::string type;
-        for (char c : s.type) type += char(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-        if (type == "deepshad")
-            diags.report(Severity::Warning, Rie::Unimplement, s.place,
-                         "display \"" + s.name + "\": deep shadow maps are written as plain ones (the first surface)");
+        return PictureDriver::open(mine, diags);
+    }
+};
+
+class Zfile : public DepthDriver {
+
+public:
+    bool open(const DriverSetup& s, Diagnostics& diags) override {
         bool depth = std::find(s.channels.begin(), s.channels.end(), "z") != s.channels.end();
         if (!depth)
             diags.report(Severity::Warning, Rie::Consistency, s.place,
                          "display \"" + s.name + "\" of type \"" + s.type + "\" has no depth; its mode should be \"z\"");
-        return PictureDriver::open(mine, diags);
+        return DepthDriver::open(s, diags);
+    }
+};
+
+/// Its pixels come with the setup.
+class DeepShadow : public DepthDriver {
+public:
+    bool open(const DriverSetup& s, Diagnostics& diags) override {
+        if (!s.deep)
+            diags.report(Severity::Warning, Rie::MissingData, s.place,
+                         "deep shadow map \"" + s.name + "\": a picture made of part files has no depths behind the first surfaces",
+                         "render the map whole");
+        return DepthDriver::open(s, diags);
     }
 };
 
 } // namespace
 
 const DriverDescriptor zfileDriver{
-    {"zfile", "shadow", "shadowmap", "z", "deepshad"},
+    {"zfile", "shadow", "shadowmap", "z"},
     "Depth, camera space, as floating point OpenEXR whatever the extension, with the matrices worldToCamera and worldToNDC in "
     "its header. "
-    "MakeShadow and shadow() read it. \"deepshad\" writes the same, without the layers behind the first surface.",
+    "MakeShadow and shadow() read it.",
     []() -> std::unique_ptr<Driver> { return std::make_unique<Zfile>(); }};
+
+const DriverDescriptor deepDriver{
+    {"deepshad", "dsm", "deepshadow", "dshadow"},
+    "Deep shadow map: for each pixel, with all of its samples, how much light of each colour is left behind every depth, so transparent, thin "
+    "and moving things cast the shadows that they do. Deep OpenEXR (channels Z, RA, GA, BA, A) whatever the extension and the mode; shadow() "
+    "and MakeShadow read it. Option \"limits\" \"float deepshadowerror\" says how exactly.",
+    []() -> std::unique_ptr<Driver> { return std::make_unique<DeepShadow>(); }};
 
 } // namespace alpenglow::display

@@ -1,18 +1,14 @@
 // OpenEXR: scan-line and tiled, flat, half/float/uint channels; MIP-mapped tiles for textures.
-// Not read: deep pictures, subsampled chroma; of several parts the first.
+// Deep scan lines: exrdeep.cpp. Not read: deep tiles, subsampled chroma; of several parts the first.
 #include "base/limits.h"
-#include "display/formats/codecs.h"
-#include <Iex.h>
+#include "display/formats/exr.h"
 #include <ImathBox.h>
 #include <ImfChannelList.h>
 #include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
-#include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfInputPart.h>
 #include <ImfIntAttribute.h>
 #include <ImfMatrixAttribute.h>
-#include <ImfMultiPartInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
@@ -20,7 +16,6 @@
 #include <ImfTiledInputPart.h>
 #include <ImfTiledOutputFile.h>
 #include <algorithm>
-#include <cstring>
 
 namespace alpenglow::display {
 namespace {
@@ -35,7 +30,6 @@ std::string checkHeaders(Bytes b) {
     if (b.size() < 8) return "it is truncated";
     uint32_t version = u32(b.data() + 4);
     bool multi = version & 0x1000, singleTiled = version & 0x200;
-    if (version & 0x800) return "deep pictures are not supported";
     size_t at = 8;
     for (int part = 0; part < 64; ++part) {
         if (at >= b.size()) return "it is truncated";
@@ -107,37 +101,6 @@ std::string checkHeaders(Bytes b) {
     return "it has too many parts";
 }
 
-class MemoryStream : public Imf::IStream {
-public:
-    MemoryStream(Bytes b, const std::string& name) : Imf::IStream(name.c_str()), bytes_(b) {}
-    bool read(char c[], int n) override {
-        if (n < 0 || at_ > bytes_.size() || bytes_.size() - at_ < size_t(n)) throw Iex::InputExc("it is truncated");
-        std::memcpy(c, bytes_.data() + at_, size_t(n));
-        at_ += uint64_t(n);
-        return at_ < bytes_.size();
-    }
-    uint64_t tellg() override { return at_; }
-    void seekg(uint64_t pos) override { at_ = pos; }
-    void clear() override {}
-
-private:
-    Bytes bytes_;
-    uint64_t at_ = 0;
-};
-
-class FileStream : public Imf::OStream {
-public:
-    explicit FileStream(OutputFile& f) : Imf::OStream(f.path().c_str()), file_(f) {}
-    void write(const char c[], int n) override {
-        if (!file_.write(c, size_t(n))) throw Iex::IoExc("write failed");
-    }
-    uint64_t tellp() override { return file_.tell(); }
-    void seekp(uint64_t pos) override { file_.seek(pos); }
-
-private:
-    OutputFile& file_;
-};
-
 /// EXR keeps channels in byte order of their names; we want r g b a z, then layers, each in its natural order.
 struct ChannelOrder {
     std::string layer;
@@ -172,19 +135,6 @@ std::string theirs(const std::string& n) {
     return n;
 }
 
-Matrix toMatrix(const Imath::M44f& m) {
-    Matrix r;
-    for (int i = 0; i < 4; ++i)
-        for (int j = 0; j < 4; ++j) r.m[i][j] = m[i][j];
-    return r;
-}
-Imath::M44f fromMatrix(const Matrix& m) {
-    Imath::M44f r;
-    for (int i = 0; i < 4; ++i)
-        for (int j = 0; j < 4; ++j) r[i][j] = float(m.m[i][j]);
-    return r;
-}
-
 Imf::FrameBuffer frameBuffer(Image& m, const std::vector<std::string>& fileNames, const Imath::Box2i& window) {
     Imf::FrameBuffer fb;
     size_t stride = sizeof(float) * m.channels.size();
@@ -192,6 +142,8 @@ Imf::FrameBuffer frameBuffer(Image& m, const std::vector<std::string>& fileNames
         fb.insert(fileNames[c], Imf::Slice::Make(Imf::FLOAT, m.data.data() + c, window, stride, stride * size_t(m.width)));
     return fb;
 }
+
+} // namespace
 
 void readAttributes(const Imf::Header& h, Image& m) {
     for (auto i = h.begin(); i != h.end(); ++i) {
@@ -208,7 +160,12 @@ void readAttributes(const Imf::Header& h, Image& m) {
     if (auto* a = h.findTypedAttribute<Imf::M44fAttribute>("worldToNDC")) m.worldToNDC = toMatrix(a->value());
 }
 
-} // namespace
+void writeAttributes(const Image& m, Imf::Header& h) {
+    if (m.worldToCamera) h.insert("worldToCamera", Imf::M44fAttribute(fromMatrix(*m.worldToCamera)));
+    if (m.worldToNDC) h.insert("worldToNDC", Imf::M44fAttribute(fromMatrix(*m.worldToNDC)));
+    for (auto& [key, value] : m.metadata)
+        if (!key.empty() && key.size() < 200 && h.find(key) == h.end()) h.insert(key, Imf::StringAttribute(value));
+}
 
 std::optional<Image> decodeExr(Bytes b, const DecodeContext& ctx) {
     if (std::string why = checkHeaders(b); !why.empty()) return ctx.refuse(why);
@@ -217,8 +174,9 @@ std::optional<Image> decodeExr(Bytes b, const DecodeContext& ctx) {
         Imf::MultiPartInputFile file(stream, 0);
         const Imf::Header& h = file.header(0);
         if (file.parts() > 1) ctx.warn("it has " + std::to_string(file.parts()) + " parts; the first is used");
+        if (h.hasType() && h.type() == Imf::DEEPSCANLINE) return decodeDeep(file, ctx);
         if (h.hasType() && h.type() != Imf::SCANLINEIMAGE && h.type() != Imf::TILEDIMAGE)
-            return ctx.refuse("deep pictures are not supported");
+            return ctx.refuse("deep pictures in tiles are not supported");
         Imath::Box2i dw = h.dataWindow(), full = h.displayWindow();
         Image m;
         m.bits = 0;
@@ -274,6 +232,7 @@ std::optional<Image> decodeExr(Bytes b, const DecodeContext& ctx) {
 }
 
 bool encodeExr(OutputFile& out, const Image& m, const WriteOptions& o, std::string& why) {
+    if (m.deep) return encodeDeep(out, m, why);
     try {
         Imath::Box2i dw({m.originX, m.originY}, {m.originX + m.width - 1, m.originY + m.height - 1}), full = dw;
         if (m.fullWidth > 0 && m.fullHeight > 0) full = {{0, 0}, {m.fullWidth - 1, m.fullHeight - 1}};
@@ -285,10 +244,7 @@ bool encodeExr(OutputFile& out, const Image& m, const WriteOptions& o, std::stri
         Imf::Header h(full, dw, m.pixelAspect, {0, 0}, 1, Imf::INCREASING_Y, compression);
         bool half = o.sample != Sample::Float;
         for (const std::string& c : m.channels) h.channels().insert(theirs(c), Imf::Channel(half ? Imf::HALF : Imf::FLOAT));
-        if (m.worldToCamera) h.insert("worldToCamera", Imf::M44fAttribute(fromMatrix(*m.worldToCamera)));
-        if (m.worldToNDC) h.insert("worldToNDC", Imf::M44fAttribute(fromMatrix(*m.worldToNDC)));
-        for (auto& [key, value] : m.metadata)
-            if (!key.empty() && key.size() < 200 && h.find(key) == h.end()) h.insert(key, Imf::StringAttribute(value));
+        writeAttributes(m, h);
 
         // OpenEXR wants the pixels in the file's type: halves are converted here, with values too large for them made infinite.
         std::vector<Imath::half> halves;

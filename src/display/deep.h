@@ -1,4 +1,5 @@
-// Deep shadow maps in memory: for each pixel how much light from the eye is left at each depth (Lokovic, Veach: Deep Shadow Maps, 2000).
+// Deep shadow maps in memory: for each pixel how much light from the eye is left at each depth (Lokovic, Veach: Deep Shadow
+// Maps, 2000).
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +13,8 @@ struct DeepStep {
     float left[3] = {1, 1, 1};
 };
 
-/// Staircases over depth, pixel by pixel in rows from the top. Before its first step a pixel has all light, behind its last what that leaves.
+/// Staircases over depth, pixel by pixel in rows from the top. Before its first step a pixel has all light, behind its last what
+/// that leaves.
 struct DeepSamples {
     std::vector<uint64_t> first; ///< of each pixel, and behind the last one the number of all steps
     std::vector<DeepStep> steps; ///< of a pixel by increasing z

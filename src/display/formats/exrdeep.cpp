@@ -14,8 +14,8 @@
 namespace alpenglow::display {
 namespace {
 
-/// Names of the file's channels: depth, its end where a sample is a slab, and opacity of red, green and blue (all of them "A" where it has
-/// but one).
+/// Names of the file's channels: depth, its end where a sample is a slab, and opacity of red, green and blue (all of them "A"
+/// where it has but one).
 const char* const kZ = "Z";
 const char* const kZBack = "ZBack";
 const char* const kColours[3] = {"RA", "GA", "BA"};
@@ -94,7 +94,8 @@ std::optional<Image> decodeDeep(Imf::MultiPartInputFile& file, const DecodeConte
     const auto has = [&](const char* name) { return channels.findChannel(name) != nullptr; };
     if (!has(kZ)) return ctx.refuse("it is a deep picture without the channel \"Z\"");
     const bool coloured = has(kColours[0]) && has(kColours[1]) && has(kColours[2]);
-    if (!coloured && !has(kAlpha)) return ctx.refuse("it is a deep picture without opacity (the channel \"A\", or \"RA\", \"GA\" and \"BA\")");
+    if (!coloured && !has(kAlpha))
+        return ctx.refuse("it is a deep picture without opacity (the channel \"A\", or \"RA\", \"GA\" and \"BA\")");
     const Imath::Box2i dw = h.dataWindow();
     Image m = makeImage(0, 0, {"z"});
     m.width = dw.max.x - dw.min.x + 1;
@@ -120,7 +121,8 @@ std::optional<Image> decodeDeep(Imf::MultiPartInputFile& file, const DecodeConte
         uint64_t all = 0;
         for (unsigned n : line.count) all += n;
         // zip makes nothing smaller than by a factor of 1032
-        if (all > limits::kDeepSteps || all * 4 > uint64_t(ctx.fileBytes) * 1100) return ctx.refuse("it has more samples than it has bytes for");
+        if (all > limits::kDeepSteps || all * 4 > uint64_t(ctx.fileBytes) * 1100)
+            return ctx.refuse("it has more samples than it has bytes for");
         line.point();
         part.readPixels(dw.min.y + y);
         size_t at = 0;
@@ -129,7 +131,8 @@ std::optional<Image> decodeDeep(Imf::MultiPartInputFile& file, const DecodeConte
             taken.clear();
             for (unsigned n = 0; n < line.count[size_t(x)]; ++n, ++at) {
                 const auto value = [&](size_t c) { return line.values[c][at]; };
-                taken.push_back({value(0), slabs ? value(names.size() - 1) : 0, {value(1), value(coloured ? 2 : 1), value(coloured ? 3 : 1)}});
+                taken.push_back({value(0), slabs ? value(names.size() - 1) : 0,
+                                 {value(1), value(coloured ? 2 : 1), value(coloured ? 3 : 1)}});
             }
             stairs.clear();
             addStairs(taken, stairs);

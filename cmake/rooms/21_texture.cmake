@@ -1,2 +1,2 @@
-room(texture DEPS base display)
+room(texture DEPS base display clouds)
 room_tests(texture DEPS texture)

@@ -1,2 +1,2 @@
-room(world DEPS lobes photons shading)
+room(world DEPS lobes clouds photons shading)
 target_compile_definitions(world PRIVATE ALPENGLOW_SHADER_DIR="${CMAKE_SOURCE_DIR}/shaders")

@@ -3,6 +3,7 @@
 #pragma once
 #include "answers/random.h"
 #include "answers/servicecall.h"
+#include "world/cloudstore.h"
 #include <set>
 
 namespace alpenglow::transport {
@@ -77,6 +78,13 @@ public:
     const photons::PhotonMap* photonsOf(int32_t id, const ServiceCall& call) {
         const auto [at, fresh] = photonMaps_.try_emplace(id, nullptr);
         if (fresh && id) at->second = world_->photons_->find(rsl::internedString(id), call.place());
+        return at->second;
+    }
+
+    /// The point cloud or brick map of an interned name, likewise.
+    const clouds::CloudMap* cloudOf(int32_t id, const ServiceCall& call) {
+        const auto [at, fresh] = clouds_.try_emplace(id, nullptr);
+        if (fresh && id) at->second = world_->clouds_->find(rsl::internedString(id), call.place());
         return at->second;
     }
 
@@ -170,6 +178,7 @@ private:
     std::unordered_map<texture::Handle, const texture::IrradianceTable*> irradianceOf_;
     std::unordered_map<texture::Handle, const texture::SkyDirections*> skyOf_;
     std::unordered_map<int32_t, const photons::PhotonMap*> photonMaps_; ///< by interned name
+    std::unordered_map<int32_t, const clouds::CloudMap*> clouds_;       ///< by interned name
     std::unordered_map<int32_t, texture::Handle> mapsByName_;                          ///< by interned name
     std::unordered_map<int32_t, std::optional<texture::TextureInfo>> infosByName_;
 };
@@ -185,6 +194,9 @@ void answerTextureInfo(Answers&, const ServiceCall&);
 void answerIrradiance(Answers&, const ServiceCall&);
 void answerPhotons(Answers&, const ServiceCall&); // photons.cpp
 void answerSky(Answers&, const ServiceCall&); // sky.cpp
+// clouds.cpp: bake() and bake3d(); texture3d().
+void answerBake(Answers&, const ServiceCall&);
+void answerTexture3d(Answers&, const ServiceCall&);
 // messages.cpp: surface() and its kin, lightsource(), attribute(), shadername(), getvar() of the primitive.
 void answerMessage(Answers&, const ServiceCall&);
 void answerLightSource(Answers&, const ServiceCall&);

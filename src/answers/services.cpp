@@ -13,6 +13,9 @@ void Answers::service(KernelRun& c, int site, int first, uint64_t mask, int lane
     case SiteKind::TextureInfo: return answerTextureInfo(*this, call);
     case SiteKind::Photons: return answerPhotons(*this, call);
     case SiteKind::SkySamples: return answerSky(*this, call);
+    case SiteKind::Bake:
+    case SiteKind::Bake3d: return answerBake(*this, call);
+    case SiteKind::Texture3d: return answerTexture3d(*this, call);
     case SiteKind::Irradiance: return answerIrradiance(*this, call);
     case SiteKind::GatherTurn: return answerGatherTurn(call);
     case SiteKind::Ambient: return sumAmbient(call);

@@ -1,5 +1,6 @@
 #include "answers/withoutscene.h"
 #include "answers/answers.h"
+#include "world/cloudstore.h"
 
 namespace alpenglow::transport {
 
@@ -18,6 +19,7 @@ WithoutScene::WithoutScene(std::vector<std::string> texturePaths, Diagnostics& d
     world->diagnostics_ = &d;
     world->textures_ = std::make_unique<texture::TextureSystem>(d);
     world->photons_ = std::make_shared<PhotonStore>(PhotonStore::Files{}, d);
+    world->clouds_ = std::make_shared<CloudStore>(CloudStore::Files{world->settings_.texturePaths, {}}, d);
     state_->world = world;
     state_->answers = std::make_unique<Answers>(*world, d, nullptr);
 }
@@ -44,7 +46,7 @@ bool WithoutScene::answer(const rsl::CompiledKernel& k, int32_t site, int32_t fi
     const std::string& op = k.sites()[size_t(site)].op;
     bool asks = false;
     for (const char* name :
-         {"texture", "environment", "shadow", "textureinfo", "rayinfo", "rendererinfo", "raylevel", "isindirectray",
+         {"texture", "environment", "shadow", "texture3d", "textureinfo", "rayinfo", "rendererinfo", "raylevel", "isindirectray",
           "isshadowray", "__skysample", "__skydensity"})
         asks |= op == name;
     if (!asks) return false;

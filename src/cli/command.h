@@ -34,6 +34,7 @@ void addCompile(CLI::App&, int* status);
 void addInfo(CLI::App&, int* status);
 void addProbe(CLI::App&, int* status);
 void addMaketx(CLI::App&, int* status);
+void addPtc(CLI::App&, int* status);
 void addDiff(CLI::App&, int* status);
 void addMerge(CLI::App&, int* status);
 void addLsp(CLI::App&, int* status);

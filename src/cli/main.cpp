@@ -162,6 +162,7 @@ int runProgram(int argc, char** argv) {
     addInfo(app, &status);
     addProbe(app, &status);
     addMaketx(app, &status);
+    addPtc(app, &status);
     addDiff(app, &status);
     addMerge(app, &status);
     addLsp(app, &status);

@@ -70,6 +70,7 @@ private:
     void renderPhotons(FrameWork&, int threads);
     /// Makes the maps that shaders ask for and that are not there, where lights emit photons.
     void makePhotonMaps(FrameWork&, struct Job&);
+    void writeBaked(FrameWork&, const struct Job&);
     void takeFigures(const FrameWork&, struct Job&);
     /// Takes the figures of the frame just rendered over into those of the run.
     void closeFrame(FrameStats);

@@ -1,6 +1,7 @@
 // One frame on its way through the renderer: what it needs, its rays, its pictures and its figures.
 #include "base/limits.h"
 #include "base/processors.h"
+#include "render/bakepass.h"
 #include "render/curve.h"
 #include "render/deeppass.h"
 #include "render/digest.h"
@@ -13,6 +14,7 @@
 #include "render/provenance.h"
 #include "render/framework.h"
 #include "render/rendering.h"
+#include "transport/bakes.h"
 #include <cmath>
 #include <tbb/global_control.h>
 
@@ -20,6 +22,8 @@ namespace alpenglow::render {
 namespace {
 
 using transport::Hider;
+
+constexpr uint32_t kBakeSamples = 256; ///< of a baked point, at most: --noise and --time have no number of their own
 
 uint32_t pathSamples(const scene::Options& o, const RenderSettings& s) {
     if (s.spp > 0) return std::min(s.spp, limits::kSamplesPerPixel);
@@ -84,6 +88,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
     describeFrame(f);
     makePhotonMaps(f, job);
     findRecords(job);
+    if (!settings_.pixel) bakeGrids(job, f.path ? std::min(f.spp, kBakeSamples) : 1);
     if (settings_.pixel) {
         printPixel(job, f.o, f.wanted, f.path);
         ++outcome_.rendered;
@@ -95,6 +100,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
     } else if (!renderSamples(f, job)) {
         return;
     }
+    if (!settings_.pixel) writeBaked(f, job);
     stats_.cpuSec += processCpuSeconds() - cpu;
     takeFigures(f, job);
 }
@@ -359,6 +365,14 @@ void Renderer::renderGrid(FrameWork& f, Job& job) {
     };
     if (settings_.stamp) addStamp(f.picture, settings_, job.elapsed());
     writtenPictures(f, writeOutputs(f.plan, f.picture, pixels, f.imager, settings_.allowWrite, diagnostics_));
+}
+
+/// Files of bake() and bake3d(), where the frame was not interrupted.
+void Renderer::writeBaked(FrameWork& f, const Job& job) {
+    if (!transport::bakes(*f.world)) return;
+    if (job.interrupted)
+        return diagnostics_.report(Severity::Warning, Rie::NoError, {}, "interrupted: what shaders bake is not written");
+    outcome_.outputFailed |= !transport::writeBakes(*f.world, settings_.allowWrite, diagnostics_);
 }
 
 void Renderer::takeFigures(const FrameWork& f, Job& job) {

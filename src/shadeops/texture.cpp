@@ -101,31 +101,37 @@ std::vector<Shadeop> textureShadeops() {
             each("float color", "$ ptexture(string name; uniform float channel; float face; " + quad),
         Lowering::Unavailable, "Lookup in a texture that has one image per face.");
     list.back().examples = {{"ptexture(\"none.ptx\", 0, 0)", "0"}};
-    Shadeop& bake = add("bake", each("float color point", "void bake(string file; float s, float t; $ value)"), Lowering::Unavailable,
-                        "Writes (s, t, value) to a file; binary when the name ends with \"&binary\".");
+    Shadeop& bake = add("bake", each("float color point", "void bake(string file; float s, float t; $ value)"), Lowering::Service,
+                        "Writes (s, t, value) to a file, which maketx or MakeTexture turn into a texture. Readable text, one line a point: s, t and the numbers of value; "
+                        "binary when the name ends with \"&binary\", which is no part of the name. Before the frame is rendered, each primitive whose surface shader bakes is shaded once at "
+                        "every corner of micropolygons of the size that ShadingRate says, seen or not, in their order; under path as often as a pixel has samples, and the mean is written. "
+                        "Curves, points and other primitives without a grid are baked where camera rays meet them. docs/pointclouds.md has the format.");
     list.back().examples = {{"x", "7", "float x = 7; bake(\"none.bake\", s, t, x);"}};
     bake.pure = false;
     bake.optional.clear();
     bake.bias = Bias::Unbiased;
     bake.biasReason.clear();
     bake.contexts = kSurface | kDisplacement | kVolume;
-    Shadeop& bake3d = add("bake3d", sigs({{"float bake3d(string file, string channels; point p; normal n; pairs)"}}), Lowering::Unavailable,
-                          "Writes values, given as pairs, to a point cloud. 1 on success.");
+    Shadeop& bake3d = add("bake3d", sigs({{"float bake3d(string file, string channels; point p; normal n; pairs)"}}), Lowering::Service,
+                          "Writes p, n, a radius and values, given as pairs, to a point cloud: .ply where the name says so, else of docs/pointclouds.md. 1 on success, 0 without a scene. The points are "
+                          "those of bake(). Points, vectors, normals and matrices among the values go to the space of the file, too. \"_area\" is the part of the surface that the point "
+                          "stands for (missing: of its micropolygon), \"_radiosity\" the light that it sends. \"channels\" is not read. Calls in lights, volumes and displacement write nothing.");
     list.back().examples = {{"bake3d(\"light.ptc\", \"\", P, N, \"light\", Cs)", "0"}};
     bake3d.pure = false;
     bake3d.bias = Bias::Unbiased;
     bake3d.biasReason.clear();
     bake3d.contexts = kAnyContext; // 3Delight bakes irradiance from lights
     bake3d.optional = {{kS, "coordsystem", false, "\"world\"", "space of the file"},
-                       {kF, "radius", false, "from the footprint", "radius of the sample"},
+                       {kF, "radius", false, "from the grid", "radius of the disk, or of the ball where n is 0; in the space of the file"},
                        {kF, "radiusscale", false, "1", "multiplies the radius"},
-                       {kF, "interpolate", false, "0", "1 writes the middles of micropolygons"}};
-    add("texture3d", sigs({{"float texture3d(string file; point p; normal n; pairs)"}}), Lowering::Unavailable,
-        "Reads values, named as output pairs, from a point cloud or brick map. 1 on success.")
+                       {kF, "interpolate", false, "0", "1 writes the middles of micropolygons instead of their corners"}};
+    add("texture3d", sigs({{"float texture3d(string file; point p; normal n; pairs)"}}), Lowering::Service,
+        "Reads values, named as output pairs, from a point cloud or brick map: means of the points about p whose normals fit n (0: all do). 1 on success; 0 where "
+        "there is nothing, and the variables stay as they are. What the file has no channel for is 0, and said once.")
         .optional = {{kS, "coordsystem", false, "\"world\"", "space of the file"},
-                     {kF, "filterradius", false, "from the footprint", "radius of the filter"},
+                     {kF, "filterradius", false, "half the step of p from sample to sample", "radius of the filter; in the space of the file"},
                      {kF, "filterscale", false, "1", "multiplies the radius"},
-                     {kF, "maxdepth", false, "deepest", "limit of the lookup's depth"}};
+                     {kF, "maxdepth", false, "deepest", "the finest level that is read, 0 the coarsest: each halves the cells of the cube about the points"}};
     list.back().examples = {{"texture3d(\"none.ptc\", P, N, \"light\", x)", "0", "float x = 3;"}};
     return list;
 }

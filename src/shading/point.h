@@ -54,6 +54,7 @@ struct RayKind {
 /// Of camera rays, and of rays that nothing is known of.
 inline constexpr RayKind kCameraKind{};
 
+struct GridPoint; // shading/gridpoint.h
 /// What all rays of one camera sample have in common.
 struct PathSample {
     int px = 0, py = 0;               ///< pixel and number of the sample: the key of its random numbers (design decision 10)
@@ -64,6 +65,7 @@ struct PathSample {
     float level = 0.5f;               ///< for what fades between levels of detail
     bool records = false;             ///< of a pass that finds the light that others interpolate (CameraRay::records)
     render::SampleNumbers numbers{render::Sampler(0, 0, 0), 0};
+    const GridPoint* grid = nullptr;  ///< not of the picture: this point is shaded, whatever lies before it (CameraRay::grid)
 };
 
 /// How much of a surface counts that a ray meets far away ("falloff", rsl.md table 6.11).

@@ -1,5 +1,8 @@
 #include "texture/maketexture.h"
 #include "base/exact.h"
+#include "clouds/bakefile.h"
+#include "clouds/brickmap.h"
+#include "clouds/cloudfile.h"
 #include "display/imageio.h"
 #include "texture/lookup.h"
 #include <cmath>
@@ -9,7 +12,24 @@ namespace {
 
 constexpr int tileSide = 64; // 48 KiB of rgb floats: a disk read, a few cache ways
 
-std::optional<display::Image> readPicture(const std::string& name, const MakeOptions& o, Diagnostics& diags) {
+/// What shaders have baked, as a picture of light or data.
+std::optional<display::Image> readBaked(const std::string& path, const MakeOptions& o, Diagnostics& diags) {
+    const auto baked = clouds::loadBaked(path, diags, o.place);
+    if (!baked) return {};
+    clouds::BakedPicture p = clouds::pictureOf(*baked);
+    if (p.outside > 0)
+        diags.report(Severity::Warning, Rie::Range, o.place,
+                     "\"" + path + "\": " + std::to_string(p.outside) + " of " + std::to_string(baked->size()) +
+                         " points have an s or t that is not of 0 to 1; they are left out");
+    display::Image image = display::makeImage(p.side, p.side, display::defaultChannels(p.channels));
+    image.data = std::move(p.pixels);
+    image.metadata["colorspace"] = kLight;
+    return image;
+}
+
+std::optional<display::Image> readPicture(const std::string& given, const MakeOptions& o, Diagnostics& diags) {
+    bool binary = false;
+    const std::string name = clouds::bakeFileName(given, &binary);
     std::string outside;
     auto found = findFile(name, o.searchPath, o.read, &outside);
     if (!found && !outside.empty()) {
@@ -23,6 +43,7 @@ std::optional<display::Image> readPicture(const std::string& name, const MakeOpt
     if (found->otherCase || found->baseNameOnly)
         diags.report(Severity::Warning, Rie::NoError, o.place,
                      "picture \"" + name + "\" was not found as named; \"" + found->path + "\" is used");
+    if (clouds::isBaked(found->path)) return readBaked(found->path, o, diags);
     display::ReadOptions r;
     r.place = o.place;
     auto image = display::readImage(found->path, diags, r);
@@ -156,6 +177,28 @@ bool makeCubeFaceEnvironment(const std::vector<std::string>& pictures, const std
     return writeMap(texture, all, o, diags);
 }
 
+bool makeBrickMap(const std::vector<std::string>& names, const std::string& bricks, const MakeOptions& o, Diagnostics& diags) {
+    std::vector<clouds::PointCloud> from;
+    for (const std::string& name : names) {
+        std::string outside;
+        const auto found = findFile(name, o.searchPath, o.read, &outside);
+        if (!found) {
+            if (outside.empty()) diags.report(Severity::Error, Rie::NoFile, o.place, "point cloud \"" + name + "\" was not found");
+            else diags.report(outsideMessage("point cloud", name, outside, o.place));
+            return false;
+        }
+        auto cloud = clouds::loadCloud(found->path, diags, o.place);
+        if (!cloud) return false;
+        from.push_back(std::move(*cloud));
+    }
+    clouds::PointCloud all;
+    if (const std::string fault = clouds::merge(from, all); !fault.empty()) {
+        diags.report(Severity::Error, Rie::Consistency, o.place, "brick map \"" + bricks + "\": " + fault);
+        return false;
+    }
+    return clouds::saveBrickMap(bricks, all, o.policy, diags, o.place);
+}
+
 bool runMakeRequest(const std::string& request, const std::vector<std::string>& strings, const std::vector<float>& numbers,
                     const MakeOptions& base, Diagnostics& diags) {
     MakeOptions o = base;
@@ -191,6 +234,7 @@ bool runMakeRequest(const std::string& request, const std::vector<std::string>& 
                                        o, diags);
     }
     if (request == "MakeShadow") return makeShadow(strings[0], strings[1], o, diags);
+    if (request == "MakeBrickMap") return makeBrickMap({strings.begin(), strings.end() - 1}, strings.back(), o, diags);
     diags.report(Severity::Error, Rie::Unimplement, o.place, request + " is not available");
     return false;
 }

@@ -19,6 +19,7 @@ struct MakeOptions {
     SourcePlace place;
 };
 
+/// Pictures may be files of bake() (clouds/bakefile.h), also "name&binary".
 /// False: an error was reported and an older map of that name is intact. Unknown wrap modes and filters, and widths that are not
 /// positive, are reported and replaced by the defaults.
 bool makeTexture(const std::string& picture, const std::string& texture, const MakeOptions&, Diagnostics&);
@@ -31,9 +32,12 @@ bool makeCubeFaceEnvironment(const std::vector<std::string>& pictures, const std
 /// written, with a warning that shadow() cannot place it.
 bool makeShadow(const std::string& zfile, const std::string& shadow, const MakeOptions&, Diagnostics&);
 
+/// Point clouds as one brick map (clouds/brickmap.h).
+bool makeBrickMap(const std::vector<std::string>& clouds, const std::string& bricks, const MakeOptions&, Diagnostics&);
+
 /// A request of RIB by its name: strings and numbers in the order of its arguments (MakeTexture: picture texture swrap twrap
 /// filter; swidth twidth). Where it has wrap modes, filter and widths they replace those of the options. Requests that are not
-/// done here (MakeBrickMap, MakeOcclusion) are reported. False: an error was reported.
+/// done here (MakeOcclusion) are reported. False: an error was reported.
 bool runMakeRequest(const std::string& request, const std::vector<std::string>& strings, const std::vector<float>& numbers,
                     const MakeOptions&, Diagnostics&);
 

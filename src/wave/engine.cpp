@@ -126,11 +126,11 @@ void Engine::beginRay(const CameraRay& c, size_t i, PathRay& r) {
     r.dir = c.direction;
     PathSample& sample = samples_[i];
     sample = {c.px, c.py, c.sample, int(i), c.time, c.shutter, 0.5f, c.records,
-              render::SampleNumbers(render::Sampler(seed_, c.px, c.py), c.sample)};
+              render::SampleNumbers(render::Sampler(seed_, c.px, c.py), c.sample), c.grid};
     r.sample = &sample;
     r.footprint = {c.width, c.spread};
     r.setStart(c.start);
-    r.media = world_->eye_.count ? &world_->eye_ : nullptr;
+    r.media = world_->eye_.count && !c.grid ? &world_->eye_ : nullptr;
     if (world_->fades_) sample.level = random(r).one(0, kLevel, 0);
     r.counts = true;
 }

@@ -1,5 +1,6 @@
 // Stages meet and settle: a slice of rays meets surfaces; hits wait by group (same program and lights) until enough of them are
 // there to fill the lanes of its kernel; then their points are worked out, emitters among them shine, and the kernel runs.
+#include "shading/gridpoint.h"
 #include "wave/engine.h"
 #include <algorithm>
 
@@ -68,6 +69,12 @@ void Engine::cast(std::span<const Sched::Task> slice) {
         ++raysOf(t.payload.type());
     }
     world_->accel_->intersect(rays_, hits_);
+    for (size_t i = 0; i < slice.size(); ++i) {
+        const PathRay& r = slice[i].payload;
+        if (!r.sample->grid || !r.camera() || r.bounces > 0 || r.layers > 0) continue;
+        const shading::GridPoint& g = *r.sample->grid;
+        hits_[i] = {g.distance, g.shape, g.prim, rays_[i].time, g.b1, g.b2, g.distance};
+    }
 }
 
 /// Points by program and light list. Those of rays that take primitives as they are have groups behind the others.

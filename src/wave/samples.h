@@ -5,6 +5,10 @@
 #include <cstdint>
 #include <vector>
 
+namespace alpenglow::shading {
+struct GridPoint; // shading/gridpoint.h
+}
+
 namespace alpenglow::transport {
 
 /// Counts of one integrator thread; added up by the renderer.
@@ -33,6 +37,8 @@ struct CameraRay {
     bool records = false;
     /// Not for the picture either: only SampleResult::left is asked for. All rays of a call alike.
     bool depths = false;
+    /// Not for the picture either: the ray meets this point and what lies behind it. It outlives the call. Null: it meets what is there.
+    const shading::GridPoint* grid = nullptr;
 };
 
 /// Light from the eye that is left behind a surface at this depth (camera-space z), channel by channel, 0 to 1.

@@ -1,5 +1,6 @@
 // What the call sites of a kernel mean to the engine, worked out once per kernel.
 #include "shadeops/specular.h"
+#include "world/cloudsite.h"
 #include "world/photonattributes.h"
 #include "world/gathersite.h"
 #include "world/raysets.h"
@@ -53,6 +54,9 @@ SiteKind kindOf(const std::string& op) {
                                                           {"currentlight", SiteKind::LightHandles},
                                                           {"lightcall", SiteKind::LightHandles},
                                                           {"lightparameter", SiteKind::LightHandles},
+                                                          {"bake", SiteKind::Bake},
+                                                          {"bake3d", SiteKind::Bake3d},
+                                                          {"texture3d", SiteKind::Texture3d},
                                                           {"depth", SiteKind::Depth},
                                                           {"random", SiteKind::Random},
                                                           {"transform", SiteKind::Transform},
@@ -365,6 +369,8 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         if (i.kind == SiteKind::Texture || i.kind == SiteKind::Environment || i.kind == SiteKind::Shadow)
             i.map = textureSite(i, s, world->frame_->options);
         if (i.kind == SiteKind::Photons) i.photons = photonSite(i, *k, *world);
+        if (i.kind == SiteKind::Bake || i.kind == SiteKind::Bake3d || i.kind == SiteKind::Texture3d)
+            i.cloud = cloudSite(i, *k, *world);
         if (i.kind == SiteKind::Trace && i.text.count(rsl::kPairHemisphere)) world->photons_->asksGlobal = true;
         if (i.kind == SiteKind::Diffuse) i.lobe = findLobe("diffuse");
         if (i.kind == SiteKind::Specular) i.lobe = findLobe("specular");

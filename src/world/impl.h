@@ -28,6 +28,8 @@ private:
     mutable std::map<std::string, std::vector<uint8_t>> kept_;
 };
 
+class CloudStore; // world/cloudstore.h
+
 class WorldImpl final : public World, public shading::SpaceResolver {
 public:
     const scene::Frame& frame() const override { return *frame_; }
@@ -157,6 +159,7 @@ public:
     texture::IrradianceTables irradiance_;
     texture::SkyDirectionTables skyMaps_;
     std::shared_ptr<PhotonStore> photons_;     ///< changes between passes only, when nobody follows rays
+    std::shared_ptr<CloudStore> clouds_;       ///< point clouds that are read, and what is baked; keeps itself safe
     bool globalMaps_ = false;                  ///< some surface has a global photon map, and some indirectdiffuse() may meet it
     mutable LightRecords records_;
     bool interpolates_ = false;                ///< some call may want records

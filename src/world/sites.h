@@ -77,6 +77,7 @@ struct SubsurfaceSite {
     std::string group;                    ///< "": the attribute's
 };
 struct GatherSite; // world/gathersite.h
+struct CloudSite;  // world/cloudsite.h
 
 /// What a photonmap() or caustic() asks. Rows, or -1.
 struct PhotonSite {
@@ -145,6 +146,9 @@ enum class SiteKind : uint8_t {
     GatherTurn,
     Photons,
     SkySamples,
+    Bake,
+    Bake3d,
+    Texture3d,
     Other
 };
 struct SiteInfo {
@@ -172,6 +176,7 @@ struct SiteInfo {
     std::shared_ptr<const RaySite> rays;       ///< Trace, Transmission, Occlusion, Gather
     std::shared_ptr<const TextureSite> map;    ///< Texture, Environment
     std::shared_ptr<const PhotonSite> photons; ///< Photons
+    std::shared_ptr<const CloudSite> cloud;    ///< Bake, Bake3d, Texture3d
     bool setUp = false, refresh = false;       ///< loops: they have a setup; "lightcache" "refresh"
     bool outside = false;                      ///< queries: outside of loops over lights
     bool once = false;                         ///< printf: in construct()

@@ -4,6 +4,7 @@
 #include "geometry/placed.h"
 #include "rsl/front/headers.h"
 #include "scene/numbers.h"
+#include "world/cloudstore.h"
 #include "world/surfaces.h"
 #include <chrono>
 #include <cstdlib>
@@ -141,6 +142,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     w->settings_.shaderPaths.push_back(shippedShaders());
     w->photons_ = std::make_shared<PhotonStore>(
         PhotonStore::Files{settings.texturePaths, settings.read, w->worldToCamera_}, d);
+    w->clouds_ = std::make_shared<CloudStore>(CloudStore::Files{settings.texturePaths, settings.read}, d);
     w->shapes_ = geometry::buildShapes(*frame, d);
     w->numberShapes();
     w->shadesAtOpen_ = shadesAtOpen(*frame, settings, w->shapes_);

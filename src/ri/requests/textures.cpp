@@ -49,8 +49,8 @@ std::vector<Request> textureRequests() {
          make},
         {"MakeShadow", "string picture; string shadow; ..", k, s, false, "Makes a shadow map of a depth picture.",
          "\"a.z\" \"a.shd\"", make},
-        {"MakeBrickMap", "string[] clouds; string brickmap; ..", k, s, false, "Makes a brick map of point clouds: not done.",
-         "[\"a.ptc\"] \"a.bkm\"", notMade},
+        {"MakeBrickMap", "string[] clouds; string brickmap; ..", k, s, false, "Makes a brick map of point clouds.",
+         "[\"a.ptc\"] \"a.bkm\"", make},
         {"MakeOcclusion", "string[] pictures; string shadow; ..", k, s, false,
          "Makes an occlusion map of depth pictures: not done.", "[\"a.z\" \"b.z\"] \"a.shd\"", notMade},
     };

@@ -175,7 +175,7 @@ Inst* Builder::service(const Expr& e, Op kind, int part) {
         for (int d = 0; d < 2; ++d)
             for (Inst* c : st) addArgument(s, args, footprint(c, d == 0 ? "du" : "dv", d == 0 ? Op::Du : Op::Dv), real);
     }
-    if ((op.name == "environment" || op.name == "shadow") && all.size() == 2) {
+    if (((op.name == "environment" || op.name == "shadow") && all.size() == 2) || (op.name == "texture3d" && all.size() == 3)) {
         addArgument(s, args, footprint(all[1], "du", Op::Du), vector);
         addArgument(s, args, footprint(all[1], "dv", Op::Dv), vector);
     }
@@ -251,20 +251,23 @@ Inst* Builder::service(const Expr& e, Op kind, int part) {
     const bool message = op.section == "Messages" && !s.resultKinds.empty() && s.resultNames[0].empty();
     const std::vector<Inst*> r = call(kind, std::move(s), std::move(args));
     Inst* found = message && !received.empty() ? emit(Op::NotEqual, Kind::Bool, {r[0], constant(0)}) : nullptr;
+    // What a file has nothing for stays as it was.
+    Inst* read = op.name == "texture3d" && kind == Op::Service ? emit(Op::NotEqual, Kind::Bool, {r[0], constant(0)}) : nullptr;
+    const auto either = [&](Inst* v, const auto& old) { return read ? emit(Op::Select, v->kind, {read, v, coerce(old(), v->kind)}) : v; };
     for (const auto& [receiver, first] : received) receive(receiver, std::span(r).subspan(static_cast<size_t>(first), static_cast<size_t>(receiver.rows)), found);
     for (const Out& o : outs) {
         if (o.lvalue->type.array) {
             Inst* a = array(*o.lvalue);
             for (int n = 0; n < o.count && a->op == Op::ArrayNew; ++n) {
                 Inst* at = constant(static_cast<float>(o.at + n));
-                Inst* v = r[static_cast<size_t>(o.first + n)];
+                Inst* v = either(r[static_cast<size_t>(o.first + n)], [&] { return emit(Op::ArrayLoad, a->element, {a, at}); });
                 emit(Op::ArrayStore, Kind::None, {a, at, v});
             }
             continue;
         }
-        Inst* v = r[static_cast<size_t>(o.first)];
         const Held held(*this, *o.lvalue);
-        assign(*o.lvalue, v);
+        Inst* v = r[static_cast<size_t>(o.first)];
+        assign(*o.lvalue, either(v, [&] { return expr(*o.lvalue); }));
     }
     return whole != Kind::None && !r.empty() ? r[0] : constant(0);
 }

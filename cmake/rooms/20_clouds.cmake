@@ -1,0 +1,2 @@
+find_package(ZLIB REQUIRED)
+room(clouds DEPS base ZLIB::ZLIB)

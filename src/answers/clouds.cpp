@@ -1,0 +1,179 @@
+// bake(), bake3d() and texture3d(): numbers to and from files of points.
+#include "answers/answers.h"
+#include "base/exact.h"
+#include "shading/grids.h"
+#include "world/cloudsite.h"
+#include "world/information.h"
+
+namespace alpenglow::transport {
+
+namespace {
+
+Vec3 tripleAt(const ServiceCall& call, int row, int lane) {
+    return row < 0 ? Vec3(0.f) : Vec3(call.at(row, lane), call.at(row + 1, lane), call.at(row + 2, lane));
+}
+
+/// From "current" to the space of the file.
+Matrix toFile(Answers& answers, const ServiceCall& call, int lane, const ShadePoint& p) {
+    const CloudSite& s = *call.s.cloud;
+    const std::string space = s.spaceRow < 0 ? s.space : rsl::internedString(std::bit_cast<int32_t>(call.at(s.spaceRow, lane)));
+    return spaceAt(answers.world(), "current", space.empty() ? "world" : space, p, call.binding(answers.world(), lane));
+}
+
+/// How much longer lengths are behind a matrix.
+float growth(const Matrix& m) { return float(exact::pow(std::fabs(determinant3(m)), 1.0 / 3)); }
+
+Vec3 unitOr0(const Vec3& n) {
+    const float l = length(n);
+    return l > 0 && std::isfinite(l) ? n / l : Vec3(0.f);
+}
+
+Vec3 normalTo(const Matrix& m, const Vec3& n) { return unitOr0(Vec3(transformNormal(m, Vec3d(n)))); }
+
+/// Takes the numbers of a channel from one space to another.
+void turn(clouds::ChannelType type, const Matrix& m, float* v) {
+    const Vec3d from(v[0], v[1], v[2]);
+    Vec3 to;
+    switch (type) {
+    case clouds::ChannelType::Point: to = Vec3(transformPoint(m, from)); break;
+    case clouds::ChannelType::Vector: to = Vec3(transformVector(m, from)); break;
+    case clouds::ChannelType::Normal: to = Vec3(transformNormal(m, from)); break;
+    default: return;
+    }
+    for (int k = 0; k < 3; ++k) v[k] = to[k];
+}
+void turnMatrix(const Matrix& m, float* v) {
+    Matrix of;
+    for (int k = 0; k < 16; ++k) of.m[k / 4][k % 4] = double(v[k]);
+    of = of * m;
+    for (int k = 0; k < 16; ++k) v[k] = float(of.m[k / 4][k % 4]);
+}
+
+/// Whether the point of a lane is one that bakes, and its place among all.
+bool keyOf(const ServiceCall& call, int lane, const ShadePoint& p, bool centre, clouds::BakeKey& key) {
+    const KernelRun& c = call.c;
+    if (c.aside || c.light || c.volume || c.forShadow || c.rays.empty() || !c.binding) return false;
+    const shading::PathRay& r = c.rays[size_t(call.first + lane)];
+    if (!r.camera() || r.bounces > 0 || !r.sample) return false;
+    if (const shading::GridPoint* g = r.sample->grid) {
+        if (r.layers > 0 || g->corner == centre) return false;
+        key = {false, r.sample->py, r.sample->px, 0, 0, r.sample->sample};
+        return true;
+    }
+    if (r.sample->records || !p.shape || shading::hasGrid(*p.shape)) return false; // its grid has been shaded
+    key = {true, r.sample->py, r.sample->px, r.layers, r.vertex, r.sample->sample};
+    return true;
+}
+
+/// The radius of the disk about a point, and the part of the surface that it stands for. Camera space.
+std::pair<float, float> extentOf(const ServiceCall& call, int lane, const ShadePoint& p) {
+    const shading::PathRay& r = call.c.rays[size_t(call.first + lane)];
+    if (r.sample->grid) return {r.sample->grid->radius, r.sample->grid->area};
+    const float half = r.footprint.at(length(p.P - r.origin)); // of a pixel
+    return {half * 1.41421356f, 4 * half * half};
+}
+
+void reportNotBaked(const ServiceCall& call) {
+    const KernelRun& c = call.c;
+    const char* who = c.light ? "light" : c.volume ? "volume" : c.rays.empty() ? "displacement" : nullptr;
+    if (!who || c.aside || (c.binding && c.bound == &c.binding->moveS)) return; // the surface shader bakes when it shades
+    call.diagnostics.reportOnce(std::string("bake:") + who,
+                                {Severity::Warning, Rie::Unimplement, call.place(),
+                                 call.d.op + "() of " + who + " shaders writes nothing", "the surface shader bakes", {}});
+}
+
+} // namespace
+
+void answerBake(Answers& answers, const ServiceCall& call) {
+    const CloudSite& s = *call.s.cloud;
+    const WorldImpl& world = answers.world();
+    std::vector<float> row;
+    reportNotBaked(call);
+    call.each([&](int lane, const ShadePoint& p) {
+        const std::string name = s.computed ? call.name(lane) : s.name;
+        if (name.empty()) return;
+        if (!s.layout.flat) call.put(0, lane, call.c.light || call.c.volume || call.c.rays.empty() ? 0.f : 1.f);
+        const bool centre = s.centres >= 0 && call.at(s.centres, lane) != 0;
+        clouds::BakeKey key;
+        if (!keyOf(call, lane, p, centre, key)) return;
+        row.clear();
+        Matrix to;
+        if (s.layout.flat) {
+            row = {call.at(s.s, lane), call.at(s.t, lane)};
+        } else {
+            to = toFile(answers, call, lane, p);
+            const Vec3 at(transformPoint(to, Vec3d(tripleAt(call, s.point, lane)))), n = normalTo(to, tripleAt(call, s.normal, lane));
+            const float radius = s.radius < 0 ? extentOf(call, lane, p).first * growth(to) : call.at(s.radius, lane);
+            const float scale = s.scale < 0 ? 1 : call.at(s.scale, lane);
+            row = {at.x, at.y, at.z, n.x, n.y, n.z, std::max(0.f, radius * scale)};
+        }
+        for (const CloudSite::Part& part : s.parts) {
+            const size_t from = row.size();
+            for (int k = 0; k < clouds::sizeOf(part.type); ++k) row.push_back(call.at(part.row + k, lane));
+            if (s.layout.flat) continue;
+            if (part.type == clouds::ChannelType::Matrix) turnMatrix(to, &row[from]);
+            else turn(part.type, to, &row[from]);
+        }
+        if (!s.layout.flat && s.addsArea) {
+            const float g = growth(to);
+            row.push_back(extentOf(call, lane, p).second * g * g);
+        }
+        const bool kept = world.clouds_->baked.add(name, s.layout, key, row);
+        if (!s.layout.flat) call.put(0, lane, kept ? 1.f : 0.f);
+    });
+}
+
+void answerTexture3d(Answers& answers, const ServiceCall& call) {
+    const CloudSite& s = *call.s.cloud;
+    std::vector<float> found;
+    std::vector<std::pair<const clouds::CloudMap*, std::vector<int>>> places; // by map, where its channels begin
+    call.each([&](int lane, const ShadePoint& p) {
+        const clouds::CloudMap* map = answers.cloudOf(s.computed ? std::bit_cast<int32_t>(call.at(0, lane)) : call.s.nameId, call);
+        if (!map) return;
+        auto known = std::find_if(places.begin(), places.end(), [&](const auto& k) { return k.first == map; });
+        if (known == places.end()) {
+            known = places.insert(places.end(), {map, {}});
+            for (const CloudSite::Part& part : s.parts) {
+                const auto same = [&](const clouds::Channel& c) { return c.name == part.name && clouds::sizeOf(c.type) == clouds::sizeOf(part.type); };
+                const bool there = std::any_of(map->channels().begin(), map->channels().end(), same);
+                known->second.push_back(there ? map->offsetOf(part.name) : -1);
+                if (!there)
+                    call.diagnostics.reportOnce("texture3d:" + call.name(lane) + ":" + part.name,
+                                                {Severity::Warning, Rie::MissingData, call.place(),
+                                                 "texture3d(): \"" + call.name(lane) + "\" has no channel \"" + part.name + "\" of " +
+                                                     std::to_string(clouds::sizeOf(part.type)) + " numbers; it is 0",
+                                                 "alpenglow ptc info tells what is in a file", {}});
+            }
+        }
+        const Matrix to = toFile(answers, call, lane, p);
+        clouds::Query q;
+        q.P = Vec3(transformPoint(to, Vec3d(tripleAt(call, s.point, lane))));
+        q.N = normalTo(to, tripleAt(call, s.normal, lane));
+        if (s.radius >= 0) q.radius = call.at(s.radius, lane);
+        else
+            for (const int step : {s.du, s.dv})
+                q.radius = std::max(q.radius, length(Vec3(transformVector(to, Vec3d(tripleAt(call, step, lane))))) / 2);
+        if (s.scale >= 0) q.radius *= call.at(s.scale, lane);
+        if (s.maxDepth >= 0 && call.at(s.maxDepth, lane) >= 0) q.maxDepth = int(std::min(call.at(s.maxDepth, lane), 1e3f));
+        if (!std::isfinite(dot(q.P, Vec3(1))) || !(q.radius >= 0)) return;
+        q.radius = std::min(q.radius, 1e18f);
+        found.assign(size_t(map->width()), 0.f);
+        if (!map->lookup(q, found)) return;
+        Matrix back;
+        bool turned = false;
+        for (size_t k = 0; k < s.parts.size(); ++k) {
+            const int from = known->second[k], n = clouds::sizeOf(s.parts[k].type);
+            if (from < 0) continue;
+            clouds::ChannelType type = clouds::ChannelType::Float;
+            for (const clouds::Channel& c : map->channels())
+                if (c.name == s.parts[k].name) type = c.type;
+            if (type >= clouds::ChannelType::Point && !std::exchange(turned, true)) back = inverse(to);
+            if (type == clouds::ChannelType::Matrix) turnMatrix(back, &found[size_t(from)]);
+            else turn(type, back, &found[size_t(from)]);
+            for (int i = 0; i < n; ++i) call.put(s.parts[k].row + i, lane, found[size_t(from + i)]);
+        }
+        call.put(0, lane, 1);
+    });
+}
+
+} // namespace alpenglow::transport

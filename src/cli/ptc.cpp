@@ -1,0 +1,205 @@
+// alpenglow ptc: point clouds and brick maps. What is in them, several as one, thinned and smoothed, as PLY, as pictures.
+#include "base/file.h"
+#include "cli/command.h"
+#include "cli/ranges.h"
+#include "clouds/brickmap.h"
+#include "clouds/cloudfile.h"
+#include "display/imageio.h"
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+
+namespace alpenglow::cli {
+
+namespace {
+
+struct Arguments {
+    std::string action, channel, view = "z";
+    std::vector<std::string> files, channels;
+    std::vector<float> box;
+    int depth = -1, size = 512;
+    float smooth = 0;
+};
+
+const OutputPolicy kAnywhere{".", true};
+
+std::string numbers(const Vec3& v) {
+    char text[96];
+    std::snprintf(text, sizeof text, "%.6g %.6g %.6g", double(v.x), double(v.y), double(v.z));
+    return text;
+}
+
+/// What is in a file: lines of name and value.
+bool printInfo(const std::string& name, Diagnostics& d) {
+    if (clouds::isBrickMap(name)) {
+        const auto map = clouds::openMap(name, d);
+        if (!map) return false;
+        std::printf("%s\n  kind brick map\n", name.c_str());
+        for (const clouds::Channel& c : map->channels()) std::printf("  channel %s %s\n", nameOf(c.type), c.name.c_str());
+        return true;
+    }
+    const auto cloud = clouds::loadCloud(name, d);
+    if (!cloud) return false;
+    Vec3 lo, hi;
+    cloud->bounds(lo, hi);
+    std::printf("%s\n  kind point cloud\n  points %zu\n  from %s\n  to %s\n", name.c_str(), cloud->size(), numbers(lo).c_str(),
+                numbers(hi).c_str());
+    if (cloud->size()) {
+        const auto [least, most] = std::minmax_element(cloud->radius.begin(), cloud->radius.end());
+        std::printf("  radius %.6g to %.6g\n", double(*least), double(*most));
+    }
+    for (const clouds::Channel& c : cloud->channels) {
+        const int at = cloud->offsetOf(c.name);
+        std::vector<double> sum(size_t(sizeOf(c.type)));
+        for (size_t i = 0; i < cloud->size(); ++i)
+            for (size_t k = 0; k < sum.size(); ++k) sum[k] += double(cloud->valuesOf(i)[size_t(at) + k]);
+        std::printf("  channel %s %s, mean", nameOf(c.type), c.name.c_str());
+        for (const double s : sum) std::printf(" %.6g", cloud->size() ? s / double(cloud->size()) : 0.0);
+        std::printf("\n");
+    }
+    return true;
+}
+
+/// The channels that are named, and the points in the box; one point a cell; means within a radius.
+clouds::PointCloud filtered(clouds::PointCloud from, const Arguments& a) {
+    clouds::PointCloud to;
+    std::vector<int> offsets;
+    for (const clouds::Channel& c : from.channels) {
+        if (!a.channels.empty() && std::find(a.channels.begin(), a.channels.end(), c.name) == a.channels.end()) continue;
+        to.channels.push_back(c);
+        for (int k = 0; k < sizeOf(c.type); ++k) offsets.push_back(from.offsetOf(c.name) + k);
+    }
+    std::vector<float> row(offsets.size());
+    for (size_t i = 0; i < from.size(); ++i) {
+        bool inside = true;
+        for (int k = 0; k < 3 && a.box.size() == 6; ++k)
+            inside &= from.P[i][k] >= a.box[size_t(k)] && from.P[i][k] <= a.box[size_t(k) + 3];
+        if (!inside) continue;
+        for (size_t k = 0; k < row.size(); ++k) row[k] = from.valuesOf(i)[size_t(offsets[k])];
+        to.add(from.P[i], from.N[i], from.radius[i], row);
+    }
+    if (a.depth >= 0) {
+        Vec3 corner;
+        float side = 0;
+        clouds::cubeAbout(to, &corner, &side);
+        to = clouds::coarser(to, corner, side, a.depth);
+    }
+    if (a.smooth > 0) {
+        const auto map = clouds::mapOf(to);
+        for (size_t i = 0; i < to.size(); ++i)
+            map->lookup({to.P[i], to.N[i], a.smooth, -1}, {to.values.data() + i * size_t(to.width()), size_t(to.width())});
+    }
+    return to;
+}
+
+/// Disks seen from far away along an axis, the nearest first; a channel, or how normals lie.
+display::Image pictureOf(const clouds::PointCloud& cloud, const Arguments& a) {
+    const bool back = a.view[0] == '-';
+    const int axis = a.view.back() - 'x', right = axis == 0 ? 2 : 0, up = axis == 1 ? 2 : 1;
+    Vec3 lo, hi;
+    cloud.bounds(lo, hi);
+    const float wide = std::max({hi[right] - lo[right], hi[up] - lo[up], 1e-30f}), scale = .96f * float(a.size) / wide;
+    display::Image image = display::makeImage(a.size, a.size, display::defaultChannels(4));
+    std::vector<float> nearest(size_t(a.size) * size_t(a.size), 1e38f);
+    int at = cloud.offsetOf(a.channel), count = 0;
+    for (const clouds::Channel& c : cloud.channels)
+        if (c.name == a.channel) count = sizeOf(c.type);
+    for (size_t i = 0; i < cloud.size(); ++i) {
+        const float depth = back ? -cloud.P[i][axis] : cloud.P[i][axis];
+        const float x = .5f * float(a.size) + (cloud.P[i][right] - (lo[right] + hi[right]) / 2) * scale * (back ? -1.f : 1.f);
+        const float y = .5f * float(a.size) - (cloud.P[i][up] - (lo[up] + hi[up]) / 2) * scale;
+        const float r = std::clamp(cloud.radius[i] * scale, .5f, float(a.size));
+        float colour[3];
+        for (int k = 0; k < 3; ++k)
+            colour[k] = at >= 0 ? cloud.valuesOf(i)[size_t(at + (count >= 3 ? k : 0))] : .5f + .5f * cloud.N[i][k];
+        for (int py = std::max(0, int(y - r)); py <= std::min(a.size - 1, int(y + r)); ++py)
+            for (int px = std::max(0, int(x - r)); px <= std::min(a.size - 1, int(x + r)); ++px) {
+                const float dx = float(px) + .5f - x, dy = float(py) + .5f - y;
+                float& z = nearest[size_t(py) * size_t(a.size) + size_t(px)];
+                if (dx * dx + dy * dy > r * r || depth >= z) continue;
+                z = depth;
+                float* to = image.pixel(px, py);
+                for (int k = 0; k < 3; ++k) to[k] = colour[k];
+                to[3] = 1;
+            }
+    }
+    return image;
+}
+
+bool writePicture(const std::string& name, const clouds::PointCloud& cloud, const Arguments& a, Diagnostics& d) {
+    display::WriteOptions o;
+    o.policy = kAnywhere;
+    const auto format = display::formatOfExtension(name);
+    o.format = format.value_or(display::Format::Exr);
+    if (o.format == display::Format::Exr) o.sample = display::Sample::Float;
+    return display::writeImage(name, pictureOf(cloud, a), o, d);
+}
+
+/// 0: done; else why not.
+int runPtc(const Arguments& a, Diagnostics& d) {
+    if (a.action == "info") {
+        bool all = true;
+        for (const std::string& f : a.files) all &= printInfo(f, d);
+        return all ? kDone : kNothingRendered;
+    }
+    std::vector<clouds::PointCloud> from;
+    for (size_t i = 0; i + 1 < a.files.size(); ++i) {
+        auto cloud = clouds::loadCloud(a.files[i], d);
+        if (!cloud) return kNothingRendered;
+        from.push_back(std::move(*cloud));
+    }
+    clouds::PointCloud all;
+    if (from.size() == 1) all = std::move(from[0]);
+    else if (const std::string fault = clouds::merge(from, all); !fault.empty()) {
+        d.report(Severity::Error, Rie::Consistency, {}, "these clouds cannot be merged: " + fault);
+        return kNothingRendered;
+    }
+    const std::string& out = a.files.back();
+    if (a.action == "filter") all = filtered(std::move(all), a);
+    if (a.action == "picture" && !a.channel.empty() && all.offsetOf(a.channel) < 0) {
+        d.report(Severity::Error, Rie::MissingData, {}, "there is no channel \"" + a.channel + "\" in it", "alpenglow ptc info tells what there is");
+        return kNothingRendered;
+    }
+    const bool written = a.action == "brick"     ? clouds::saveBrickMap(out, all, kAnywhere, d)
+                         : a.action == "picture" ? writePicture(out, all, a, d)
+                         : a.action == "toply"   ? clouds::savePly(out, all, kAnywhere, d, {})
+                                                 : clouds::saveCloud(out, all, kAnywhere, d);
+    return written ? kDone : kOutputFailed;
+}
+
+} // namespace
+
+void addPtc(CLI::App& app, int* status) {
+    auto a = std::make_shared<Arguments>();
+    CLI::App* c = app.add_subcommand("ptc", "Tell, merge, filter, convert and draw point clouds; make brick maps");
+    c->add_option("action", a->action,
+                  "info: what is in files; merge: several as one; filter: parts of one; toply, fromply: to and from PLY; brick: a brick map; "
+                  "picture: how it looks")
+        ->required()
+        ->check(CLI::IsMember({"info", "merge", "filter", "toply", "fromply", "brick", "picture"}));
+    c->add_option("files", a->files, "What is read, and last what is written; info only reads")->required();
+    auto* filter = c->add_option_group("Of filter");
+    filter->add_option("--channels", a->channels, "Channels that are kept, separated by commas")->delimiter(',')->type_name("NAMES");
+    filter->add_option("--box", a->box, "Corners of a box; points outside are left out")->expected(6)->type_name("X Y Z X Y Z");
+    filter->add_option("--depth", a->depth, "One point for each cell of a cube that is cut 2^DEPTH times along each side, and for each side of the surface")
+        ->check(between(0, 16))
+        ->type_name("DEPTH");
+    filter->add_option("--smooth", a->smooth, "Each value becomes the mean within this radius, as texture3d() finds it")->check(positive())->type_name("RADIUS");
+    auto* picture = c->add_option_group("Of picture");
+    picture->add_option("--channel", a->channel, "What is drawn; normals when none is given")->type_name("NAME");
+    picture->add_option("--view", a->view, "Direction of the view: x, y, z, -x, -y, -z")->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))->type_name("AXIS");
+    picture->add_option("--size", a->size, "Pixels of a side")->check(between(1, 8192))->type_name("PIXELS");
+    c->footer("alpenglow ptc brick room.ptc room.bkm. docs/pointclouds.md describes the files.");
+    c->callback([a, status] {
+        Diagnostics diags(printer());
+        const size_t least = a->action == "info" ? 1 : 2;
+        if (a->files.size() < least || (least == 2 && a->action != "merge" && a->files.size() != 2))
+            throw CLI::ValidationError("files", a->action + (a->action == "merge" ? " takes clouds and the name of what they become"
+                                                            : least == 1           ? " takes files"
+                                                                                   : " takes a file and the name of what is written"));
+        *status = runPtc(*a, diags);
+        if (*status == kDone && diags.errors()) *status = kDoneWithErrors;
+    });
+}
+
+} // namespace alpenglow::cli

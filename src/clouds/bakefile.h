@@ -1,0 +1,44 @@
+// What bake() writes: values at places of a texture, s and t. As text, "# bake 1 TYPE" and one line a point: s, t and the numbers; or,
+// little-endian:
+//   bytes 0-7    "ALPGBAKE"
+//   8-11         version, 1
+//   12-15        channel type (pointcloud.h)
+//   16-23        points
+//   then points: s, t and the numbers of the value, float
+//   last 4       CRC-32 of all before
+#pragma once
+#include "base/diagnostics.h"
+#include "clouds/pointcloud.h"
+#include <optional>
+
+namespace alpenglow {
+struct OutputPolicy;
+}
+
+namespace alpenglow::clouds {
+
+struct Baked {
+    ChannelType type = ChannelType::Float;
+    std::vector<float> rows; ///< s, t, then sizeOf(type) numbers, by point
+    size_t size() const { return rows.size() / (2 + size_t(sizeOf(type))); }
+};
+
+/// The name of a file without "&binary". *binary: whether that was there.
+std::string bakeFileName(const std::string& name, bool* binary);
+/// False: an error was reported, and what was there before still is.
+bool saveBaked(const std::string& name, const Baked&, const OutputPolicy&, Diagnostics&, const SourcePlace& = {});
+/// Whether a file begins as one of these does.
+bool isBaked(const std::string& path);
+std::optional<Baked> loadBaked(const std::string& path, Diagnostics&, const SourcePlace& = {});
+
+/// A picture of the points with s and t of 0 to 1, t downward: as many pixels as points, about, a power of two on each side. A pixel is
+/// the plane that fits the points within two pixels of its middle best, there (weights (1 - d^2 / 4)^2): linear functions of s and t
+/// come back as they are. Where points are missing coarser pictures fill in.
+struct BakedPicture {
+    int side = 0, channels = 0;
+    std::vector<float> pixels; ///< row by row
+    size_t outside = 0;        ///< points that are left out
+};
+BakedPicture pictureOf(const Baked&);
+
+} // namespace alpenglow::clouds

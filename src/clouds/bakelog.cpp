@@ -1,0 +1,177 @@
+#include "clouds/bakelog.h"
+#include "base/file.h"
+#include "clouds/bakefile.h"
+#include "clouds/cloudfile.h"
+#include "clouds/limits.h"
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <tuple>
+
+namespace alpenglow::clouds {
+
+namespace {
+
+size_t rowOf(const BakeLayout& l) { return size_t(l.width) + (l.flat ? 2 : 7); }
+
+/// All of a key but the sample, and the call.
+auto pointOf(const BakeKey& k, const BakeLayout& l) {
+    return std::tuple(k.camera, k.y, k.x, k.layers, k.vertex, std::string_view(l.where));
+}
+
+} // namespace
+
+bool BakeLog::add(const std::string& file, const BakeLayout& layout, const BakeKey& key, std::span<const float> numbers) {
+    const std::lock_guard lock(mutex_);
+    const size_t bytes = numbers.size() * sizeof(float) + sizeof(Entry);
+    if (full_ || bytes_ + bytes > limits::kCloudBytes) {
+        full_ = true;
+        return false;
+    }
+    bytes_ += bytes;
+    File& f = files_[file];
+    if (!std::all_of(numbers.begin(), numbers.end(), [](float v) { return std::isfinite(v); })) {
+        ++f.notFinite;
+        return true;
+    }
+    f.entries.push_back({key, &layout, f.pending.size()});
+    f.pending.insert(f.pending.end(), numbers.begin(), numbers.end());
+    return true;
+}
+
+void BakeLog::settle() {
+    const std::lock_guard lock(mutex_);
+    for (auto& [name, f] : files_) settle(f);
+}
+
+/// Entries of one point and call stand together, sample by sample. Where every sample has as many, they are averaged one by one.
+void BakeLog::settle(File& f) {
+    const auto less = [&](const Entry& a, const Entry& b) {
+        const auto x = pointOf(a.key, *a.layout), y = pointOf(b.key, *b.layout);
+        return x != y ? x < y : a.key.sample < b.key.sample;
+    };
+    std::stable_sort(f.entries.begin(), f.entries.end(), less);
+    std::vector<const Entry*> group;
+    for (size_t i = 0, end; i < f.entries.size(); i = end) {
+        const Entry& first = f.entries[i];
+        const size_t width = rowOf(*first.layout);
+        group.clear();
+        for (end = i; end < f.entries.size() && !less(first, f.entries[end]); ++end) {}
+        while (end < f.entries.size() &&
+               pointOf(f.entries[end].key, *f.entries[end].layout) == pointOf(first.key, *first.layout))
+            ++end;
+        std::vector<size_t> begins; // of samples, in group
+        for (size_t k = i, from = 0; k < end; ++k) { // twice, bit by bit: once
+            if (k == i || f.entries[k].key.sample != f.entries[k - 1].key.sample) begins.push_back(from = group.size());
+            const auto same = [&](const Entry* e) {
+                return std::memcmp(&f.pending[e->at], &f.pending[f.entries[k].at], width * sizeof(float)) == 0;
+            };
+            if (std::none_of(group.begin() + long(from), group.end(), same)) group.push_back(&f.entries[k]);
+        }
+        const auto put = [&](auto&& number) {
+            f.rows.push_back({first.layout, f.settled.size()});
+            for (size_t k = 0; k < width; ++k) f.settled.push_back(number(k));
+        };
+        const size_t samples = begins.size(), each = group.size() / samples;
+        bool even = !first.key.camera && samples > 1;
+        for (size_t s = 0; s < samples; ++s) even &= begins[s] == s * each;
+        even &= group.size() == samples * each;
+        if (!even) {
+            for (const Entry* e : group) put([&](size_t k) { return f.pending[e->at + k]; });
+            continue;
+        }
+        for (size_t n = 0; n < each; ++n)
+            put([&](size_t k) {
+                double sum = 0;
+                for (size_t s = 0; s < samples; ++s) sum += double(f.pending[group[s * each + n]->at + k]);
+                return float(sum / double(samples));
+            });
+    }
+    f.entries.clear();
+    f.pending.clear();
+}
+
+void BakeLog::discard() {
+    const std::lock_guard lock(mutex_);
+    for (auto& [name, f] : files_) {
+        f.entries.clear();
+        f.pending.clear();
+    }
+}
+
+bool BakeLog::writeFlat(const std::string& name, const File& f, const OutputPolicy& policy, Diagnostics& d) const {
+    const BakeLayout& first = *f.rows.front().layout;
+    Baked b;
+    b.type = first.channels.front().type;
+    for (const Row& r : f.rows) {
+        if (sizeOf(r.layout->channels.front().type) != sizeOf(b.type)) {
+            d.report(Severity::Error, Rie::Consistency, r.layout->place,
+                     "bake(): \"" + name + "\" has values of type " + nameOf(b.type) + " already; these are left out");
+            continue;
+        }
+        b.rows.insert(b.rows.end(), f.settled.begin() + long(r.at), f.settled.begin() + long(r.at + rowOf(*r.layout)));
+    }
+    return saveBaked(name, b, policy, d, first.place);
+}
+
+bool BakeLog::writeCloud(const std::string& name, const File& f, const OutputPolicy& policy, Diagnostics& d) const {
+    PointCloud cloud;
+    struct Known { bool fits = true; std::vector<int> to; };
+    std::map<const BakeLayout*, Known> known; // by layout, where its numbers go
+    std::vector<const BakeLayout*> order;
+    for (const Row& r : f.rows)
+        if (known.try_emplace(r.layout).second) order.push_back(r.layout);
+    for (const BakeLayout* l : order)
+        for (const Channel& c : l->channels) {
+            const auto same = [&](const Channel& other) { return other.name == c.name; };
+            const auto at = std::find_if(cloud.channels.begin(), cloud.channels.end(), same);
+            if (at == cloud.channels.end()) cloud.channels.push_back(c);
+            else if (at->type != c.type) known[l].fits = false;
+        }
+    for (const BakeLayout* l : order) {
+        Known& k = known[l];
+        if (!k.fits || l->flat)
+            d.report(Severity::Error, Rie::Consistency, l->place,
+                     "bake3d(): \"" + name + "\" has " + (l->flat ? "points of bake() as well" : "channels of these names and other types already") +
+                         "; these points are left out");
+        k.fits &= !l->flat;
+        for (const Channel& c : l->channels)
+            for (int n = 0, at = cloud.offsetOf(c.name); n < sizeOf(c.type); ++n) k.to.push_back(at + n);
+    }
+    std::vector<float> values;
+    cloud.reserve(f.rows.size());
+    for (const Row& r : f.rows) {
+        const Known& k = known[r.layout];
+        if (!k.fits) continue;
+        const float* n = &f.settled[r.at];
+        values.assign(size_t(cloud.width()), 0.f);
+        for (size_t i = 0; i < k.to.size(); ++i) values[size_t(k.to[i])] = n[7 + i];
+        cloud.add({n[0], n[1], n[2]}, {n[3], n[4], n[5]}, n[6], values);
+    }
+    return saveCloud(name, cloud, policy, d, f.rows.front().layout->place);
+}
+
+bool BakeLog::write(const OutputPolicy& policy, Diagnostics& d) {
+    settle();
+    bool all = true;
+    for (const auto& [name, f] : files_) {
+        if (f.notFinite)
+            d.report(Severity::Warning, Rie::Math, {},
+                     "\"" + name + "\": " + std::to_string(f.notFinite) + " baked points have numbers that are not finite; they are left out");
+        if (f.rows.empty()) continue;
+        const bool written = f.rows.front().layout->flat ? writeFlat(name, f, policy, d) : writeCloud(name, f, policy, d);
+        all &= written;
+        if (written)
+            d.report(Severity::Info, Rie::NoError, {}, "baked \"" + name + "\": " + std::to_string(f.rows.size()) + " points");
+    }
+    if (full_)
+        d.report(Severity::Error, Rie::Limit, {},
+                 "the frame bakes more than " + std::to_string(limits::kCloudBytes >> 30) + " GiB; the rest is not written",
+                 "a larger ShadingRate makes fewer points");
+    files_.clear();
+    bytes_ = 0;
+    full_ = false;
+    return all;
+}
+
+} // namespace alpenglow::clouds

@@ -1,0 +1,290 @@
+#include "clouds/brickmap.h"
+#include "base/file.h"
+#include "clouds/bytes.h"
+#include "clouds/cloudfile.h"
+#include "clouds/limits.h"
+#include "clouds/pointtree.h"
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <fcntl.h>
+#include <list>
+#include <map>
+#include <mutex>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace alpenglow::clouds {
+
+namespace {
+
+constexpr char kMagic[] = "ALPGBRIC";
+constexpr uint32_t kVersion = 1;
+constexpr size_t kFixed = 44, kEnd = 4, kOfBrick = 32;
+constexpr uint32_t kBrickSide = 8; ///< cells
+
+using BrickPlace = std::array<uint32_t, 4>; ///< level, x, y, z
+
+struct Brick {
+    BrickPlace at;
+    uint32_t points = 0;
+    uint64_t offset = 0;
+    uint32_t crc = 0;
+};
+
+uint32_t brickOf(double x, float corner, float side, int depth) {
+    const uint32_t cells = 1u << depth;
+    const double cell = side > 0 ? (x - double(corner)) / double(side) * cells : 0;
+    return uint32_t(std::clamp(cell, 0.0, double(cells - 1))) / kBrickSide;
+}
+
+/// The level whose cells are as wide as the middle one of the disks.
+int deepestOf(const PointCloud& cloud, float side) {
+    if (cloud.size() == 0) return 0;
+    std::vector<float> r = cloud.radius;
+    std::nth_element(r.begin(), r.begin() + long(r.size() / 2), r.end());
+    const float disk = 2 * r[r.size() / 2];
+    int depth = 0;
+    while (depth < kDeepest - 1 && side > disk) side /= 2, ++depth;
+    return depth;
+}
+
+/// A file that bricks are read from.
+class File {
+public:
+    explicit File(const std::string& path) : fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+        struct stat s;
+        if (fd_ >= 0 && fstat(fd_, &s) == 0 && S_ISREG(s.st_mode)) size_ = uint64_t(s.st_size), regular_ = true;
+    }
+    ~File() {
+        if (fd_ >= 0) ::close(fd_);
+    }
+    File(const File&) = delete;
+    File& operator=(const File&) = delete;
+    bool regular() const { return regular_; }
+    uint64_t size() const { return size_; }
+    bool read(uint64_t at, size_t n, std::vector<uint8_t>& to) const {
+        to.resize(n);
+        for (size_t done = 0; done < n;) {
+            const ssize_t k = ::pread(fd_, to.data() + done, n - done, off_t(at + done));
+            if (k <= 0) return false;
+            done += size_t(k);
+        }
+        return true;
+    }
+
+private:
+    int fd_;
+    uint64_t size_ = 0;
+    bool regular_ = false;
+};
+
+class BrickMap final : public CloudMap {
+public:
+    BrickMap(const std::string& path, Diagnostics& d, SourcePlace place, size_t cacheBytes)
+        : path_(path), diagnostics_(d), place_(std::move(place)), file_(path), most_(cacheBytes) {}
+    /// "": fine, else what is wrong.
+    std::string readDirectory();
+    const std::vector<Channel>& channels() const override { return channels_; }
+    bool lookup(const Query& q, std::span<float> out) const override {
+        const int levels = int(largest_.size());
+        int depth = std::min(depthFor(side_, q.radius), levels - 1);
+        if (q.maxDepth >= 0) depth = std::min(depth, q.maxDepth);
+        const double reach = double(q.radius) + 2 * double(largest_[size_t(depth)]);
+        uint32_t lo[3], hi[3];
+        for (int k = 0; k < 3; ++k) {
+            lo[k] = brickOf(double(q.P[k]) - reach, corner_[k], side_, depth);
+            hi[k] = brickOf(double(q.P[k]) + reach, corner_[k], side_, depth);
+        }
+        double weight = 0;
+        std::vector<double> sums(out.size());
+        const double boxes = (1.0 + hi[0] - lo[0]) * (1.0 + hi[1] - lo[1]) * (1.0 + hi[2] - lo[2]);
+        if (boxes > double(bricks_.size())) { // the same in the same order
+            for (const Brick& b : bricks_) {
+                bool near = b.at[0] == uint32_t(depth);
+                for (size_t k = 0; k < 3; ++k) near &= b.at[k + 1] >= lo[k] && b.at[k + 1] <= hi[k];
+                if (near) brick(b.at)->gather(q, &weight, sums);
+            }
+            return meanOf(weight, sums, out);
+        }
+        for (uint32_t x = lo[0]; x <= hi[0]; ++x)
+            for (uint32_t y = lo[1]; y <= hi[1]; ++y)
+                for (uint32_t z = lo[2]; z <= hi[2]; ++z)
+                    if (const auto tree = brick({uint32_t(depth), x, y, z})) tree->gather(q, &weight, sums);
+        return meanOf(weight, sums, out);
+    }
+
+private:
+    std::shared_ptr<const PointTree> brick(const BrickPlace&) const;
+    std::shared_ptr<const PointTree> load(const Brick&) const;
+    std::string path_;
+    Diagnostics& diagnostics_;
+    SourcePlace place_;
+    File file_;
+    size_t most_;
+    std::vector<Channel> channels_;
+    int width_ = 0;
+    Vec3 corner_;
+    float side_ = 0;
+    std::vector<float> largest_; ///< by level
+    std::vector<Brick> bricks_;
+    struct Kept { std::shared_ptr<const PointTree> tree; std::list<uint32_t>::iterator use; };
+    mutable std::mutex mutex_;
+    mutable std::map<uint32_t, Kept> kept_;
+    mutable std::list<uint32_t> used_; ///< the last one met first
+    mutable size_t bytes_ = 0;
+};
+
+std::string BrickMap::readDirectory() {
+    std::vector<uint8_t> b;
+    if (!file_.regular() || file_.size() < kFixed + kEnd || !file_.read(0, kFixed, b)) return "it is cut short";
+    if (takeNumber<uint32_t>(&b[8]) != kVersion) return "it has another version than this program reads";
+    const uint32_t channels = takeNumber<uint32_t>(&b[12]), levels = takeNumber<uint32_t>(&b[16]);
+    const uint32_t bricks = takeNumber<uint32_t>(&b[36]), header = takeNumber<uint32_t>(&b[40]);
+    corner_ = takeVec(&b[20]);
+    side_ = takeFloat(&b[32]);
+    if (header < kFixed + kEnd || header > file_.size()) return "it is cut short";
+    if (!file_.read(0, header, b)) return "it cannot be read";
+    const std::span<const uint8_t> head(b.data(), header - kEnd);
+    if (checksum(head) != takeNumber<uint32_t>(&b[header - kEnd])) return "its header is damaged";
+    if (levels < 1 || levels > uint32_t(kDeepest) || !std::isfinite(dot(corner_, Vec3(1))) || !(side_ >= 0) || !std::isfinite(side_))
+        return "its header is damaged";
+    size_t at = kFixed;
+    if (std::string fault = unpackChannels(head, channels, &at, channels_); !fault.empty()) return fault;
+    width_ = width();
+    if (head.size() != at + levels * 4 + uint64_t(bricks) * kOfBrick) return "its header does not say what its bricks are";
+    for (uint32_t i = 0; i < levels; ++i, at += 4) largest_.push_back(takeFloat(&b[at]));
+    for (const float r : largest_)
+        if (!(r >= 0) || !std::isfinite(r)) return "its header is damaged";
+    const uint64_t record = 28 + 4 * uint64_t(width_);
+    for (uint32_t i = 0; i < bricks; ++i, at += kOfBrick) {
+        Brick k;
+        for (size_t n = 0; n < 4; ++n) k.at[n] = takeNumber<uint32_t>(&b[at + 4 * n]);
+        k.points = takeNumber<uint32_t>(&b[at + 16]);
+        k.offset = takeNumber<uint64_t>(&b[at + 20]);
+        k.crc = takeNumber<uint32_t>(&b[at + 28]);
+        if (k.at[0] >= levels || k.offset > file_.size() || k.points * record > file_.size() - k.offset) return "it is cut short";
+        if (!bricks_.empty() && bricks_.back().at >= k.at) return "its bricks are not in order";
+        bricks_.push_back(k);
+    }
+    return "";
+}
+
+std::shared_ptr<const PointTree> BrickMap::load(const Brick& k) const {
+    const size_t record = 28 + 4 * size_t(width_);
+    std::vector<uint8_t> b;
+    bool fine = file_.read(k.offset, k.points * record, b) && checksum(b) == k.crc;
+    PointCloud cloud;
+    cloud.channels = channels_;
+    std::vector<float> room(static_cast<size_t>(width_));
+    for (size_t i = 0; fine && i < k.points; ++i) fine = unpackPoint(b.data() + i * record, width_, room, cloud);
+    if (fine) return std::make_shared<const PointTree>(std::move(cloud));
+    diagnostics_.reportOnce("brick:" + path_, {Severity::Error, Rie::BadFile, place_,
+                                               "brick map \"" + path_ + "\": some of its bricks are damaged, or the file has changed; there is nothing in them",
+                                               "alpenglow ptc brick makes it anew", {}});
+    return std::make_shared<const PointTree>();
+}
+
+/// Null: there is none at this place.
+std::shared_ptr<const PointTree> BrickMap::brick(const BrickPlace& at) const {
+    const auto found = std::lower_bound(bricks_.begin(), bricks_.end(), at, [](const Brick& b, const BrickPlace& p) { return b.at < p; });
+    if (found == bricks_.end() || found->at != at) return nullptr;
+    const uint32_t number = uint32_t(found - bricks_.begin());
+    const std::lock_guard lock(mutex_);
+    if (const auto kept = kept_.find(number); kept != kept_.end()) {
+        used_.splice(used_.begin(), used_, kept->second.use);
+        return kept->second.tree;
+    }
+    auto tree = load(*found);
+    used_.push_front(number);
+    kept_[number] = {tree, used_.begin()};
+    bytes_ += tree->bytes();
+    while (bytes_ > most_ && used_.size() > 1) {
+        const auto last = kept_.find(used_.back());
+        bytes_ -= last->second.tree->bytes();
+        kept_.erase(last);
+        used_.pop_back();
+    }
+    return tree;
+}
+
+/// Points of a level by brick.
+std::map<BrickPlace, std::vector<uint32_t>> bricksOf(const PointCloud& level, const Vec3& corner, float side, int depth) {
+    std::map<BrickPlace, std::vector<uint32_t>> by;
+    for (size_t i = 0; i < level.size(); ++i) {
+        BrickPlace at{uint32_t(depth), 0, 0, 0};
+        for (int k = 0; k < 3; ++k) at[size_t(k) + 1] = brickOf(double(level.P[i][k]), corner[k], side, depth);
+        by[at].push_back(uint32_t(i));
+    }
+    return by;
+}
+
+} // namespace
+
+bool isBrickMap(const std::string& path) {
+    char head[8];
+    std::FILE* f = std::fopen(path.c_str(), "rb");
+    if (!f) return false;
+    const bool is = std::fread(head, 1, 8, f) == 8 && std::memcmp(head, kMagic, 8) == 0;
+    std::fclose(f);
+    return is;
+}
+
+std::shared_ptr<const CloudMap> openBrickMap(const std::string& path, Diagnostics& d, const SourcePlace& place, size_t cacheBytes) {
+    auto map = std::make_shared<BrickMap>(path, d, place, cacheBytes);
+    const std::string fault = map->readDirectory();
+    if (fault.empty()) return map;
+    d.report(Severity::Error, Rie::BadFile, place, "brick map \"" + path + "\" cannot be read: " + fault,
+             "alpenglow ptc brick makes it anew");
+    return nullptr;
+}
+
+bool saveBrickMap(const std::string& name, const PointCloud& cloud, const OutputPolicy& policy, Diagnostics& d, const SourcePlace& place) {
+    Vec3 corner;
+    float side = 0;
+    cubeAbout(cloud, &corner, &side);
+    const int deepest = deepestOf(cloud, side);
+    std::vector<PointCloud> levels(size_t(deepest) + 1);
+    for (int depth = deepest; depth >= 0; --depth) // each from the next finer one: means by area of means by area
+        levels[size_t(depth)] = coarser(depth == deepest ? cloud : levels[size_t(depth) + 1], corner, side, depth);
+    std::vector<Brick> bricks;
+    std::vector<std::vector<uint8_t>> points;
+    std::vector<float> largest;
+    for (int depth = 0; depth <= deepest; ++depth) {
+        const PointCloud& level = levels[size_t(depth)];
+        largest.push_back(level.size() ? *std::max_element(level.radius.begin(), level.radius.end()) : 0.f);
+        for (const auto& [at, of] : bricksOf(level, corner, side, depth)) {
+            std::vector<uint8_t>& packed = points.emplace_back();
+            for (const uint32_t i : of) packPoint(level, i, packed);
+            bricks.push_back({at, uint32_t(of.size()), 0, checksum(packed)});
+        }
+    }
+    const std::vector<uint8_t> channels = packChannels(cloud.channels);
+    const size_t header = kFixed + channels.size() + 4 * largest.size() + kOfBrick * bricks.size() + kEnd;
+    uint64_t offset = header;
+    std::vector<uint8_t> head(kMagic, kMagic + 8);
+    for (const uint32_t v : {kVersion, uint32_t(cloud.channels.size()), uint32_t(largest.size())}) putNumber(head, v);
+    putVec(head, corner);
+    putFloat(head, side);
+    putNumber(head, uint32_t(bricks.size()));
+    putNumber(head, uint32_t(header));
+    head.insert(head.end(), channels.begin(), channels.end());
+    for (const float r : largest) putFloat(head, r);
+    for (size_t i = 0; i < bricks.size(); ++i) {
+        for (const uint32_t v : bricks[i].at) putNumber(head, v);
+        putNumber(head, bricks[i].points);
+        putNumber(head, offset);
+        putNumber(head, bricks[i].crc);
+        offset += points[i].size();
+    }
+    putNumber(head, checksum(head));
+    auto file = OutputFile::open(name, policy, d, place);
+    if (!file) return false;
+    file->write(head.data(), head.size());
+    for (const auto& p : points)
+        if (!file->write(p.data(), p.size())) break;
+    return file->commit(d);
+}
+
+} // namespace alpenglow::clouds

@@ -1,0 +1,56 @@
+// A pass before the picture: primitives whose shaders bake are shaded whole, on grids of micropolygons.
+#include "render/bakepass.h"
+#include "transport/bakes.h"
+
+namespace alpenglow::render {
+
+namespace {
+constexpr size_t kAtOnce = 1u << 16; ///< points whose samples wait for their mean
+constexpr size_t kRays = 64;         ///< of one trace(): their shaders may send thousands
+
+/// Traces all samples of some points.
+bool tracePoints(Job& job, std::vector<shading::GridPoint>& points, const std::vector<int>& numbers, uint32_t samples,
+                 const transport::CameraRay& pixel) {
+    const auto work = [&](int worker, size_t task) {
+        const size_t begin = task * kRays, end = std::min(points.size(), begin + kRays);
+        std::vector<transport::CameraRay> rays;
+        for (size_t i = begin; i < end; ++i) rays.push_back(transport::rayTo(*job.world, points[i], numbers[i], pixel));
+        std::vector<transport::SampleResult> results(rays.size());
+        for (uint32_t s = 0; s < samples; ++s) {
+            for (transport::CameraRay& r : rays) r.sample = s;
+            if (!job.trace(worker, rays, results)) return;
+        }
+    };
+    const bool whole = job.team.run((points.size() + kRays - 1) / kRays, &job.halt, work, [&](size_t) { job.pollStop(); });
+    transport::settleBakes(*job.world, whole);
+    return whole;
+}
+
+} // namespace
+
+bool bakeGrids(Job& job, uint32_t samples) {
+    if (!job.world || !transport::bakes(*job.world)) return true;
+    const transport::CameraRay pixel = job.camera.ray(job.camera.width() / 2., job.camera.height() / 2., {0.5f, 0.5f}, 0);
+    std::vector<shading::GridPoint> all, points;
+    std::vector<int> numbers;
+    bool whole = true;
+    const auto flush = [&] {
+        if (!points.empty()) whole = whole && tracePoints(job, points, numbers, samples, pixel);
+        points.clear();
+        numbers.clear();
+    };
+    for (const uint32_t shape : transport::bakedShapes(*job.world)) {
+        all.clear();
+        transport::bakedPoints(*job.world, shape, all);
+        for (size_t i = 0; i < all.size() && whole; ++i) {
+            points.push_back(all[i]);
+            numbers.push_back(int(i));
+            if (points.size() == kAtOnce) flush();
+        }
+    }
+    flush();
+    job.world->flushPrints(false);
+    return whole;
+}
+
+} // namespace alpenglow::render

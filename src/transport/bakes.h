@@ -1,0 +1,25 @@
+// Baking: the points of grids over primitives whose shaders bake, as rays that find them, and the files that come of it.
+#pragma once
+#include "base/diagnostics.h"
+#include "shading/gridpoint.h"
+#include "wave/samples.h"
+#include "world/world.h"
+#include <vector>
+
+namespace alpenglow::transport {
+
+/// Whether some shader of the frame bakes.
+bool bakes(const World&);
+/// The shapes with a grid whose surface shaders bake, by number.
+std::vector<uint32_t> bakedShapes(const World&);
+/// Adds the points of a shape's grid, in their order. Points of solids that bound nothing are left out.
+void bakedPoints(const World&, uint32_t shape, std::vector<shading::GridPoint>&);
+/// A ray from the eye that finds a point, whatever is before it; number: among those of its shape. `pixel`: a ray of the camera,
+/// whose footprint and time it gets. The point outlives the ray's trace, and gets its distance.
+CameraRay rayTo(const World&, shading::GridPoint&, int number, const CameraRay& pixel);
+/// What was baked since the last time goes behind what was baked before, or is forgotten. Nobody traces meanwhile.
+void settleBakes(const World&, bool keep);
+/// Writes what was baked. False: an error was reported.
+bool writeBakes(const World&, bool allowWrite, Diagnostics&);
+
+} // namespace alpenglow::transport

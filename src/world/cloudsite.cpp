@@ -1,0 +1,104 @@
+#include "world/cloudsite.h"
+#include "world/cloudstore.h"
+#include "world/impl.h"
+
+namespace alpenglow::transport {
+
+namespace {
+
+clouds::ChannelType channelOf(rsl::Type t) {
+    switch (t.base) {
+    case rsl::Base::Color: return clouds::ChannelType::Color;
+    case rsl::Base::Point: return clouds::ChannelType::Point;
+    case rsl::Base::Vector: return clouds::ChannelType::Vector;
+    case rsl::Base::Normal: return clouds::ChannelType::Normal;
+    case rsl::Base::Matrix: return clouds::ChannelType::Matrix;
+    default: return clouds::ChannelType::Float;
+    }
+}
+
+/// Where no type is known: by how many numbers there are.
+clouds::ChannelType channelOf(rsl::ir::Kind k) {
+    const int n = rsl::ir::components(k);
+    return n == 3 ? clouds::ChannelType::Color : n == 16 ? clouds::ChannelType::Matrix : clouds::ChannelType::Float;
+}
+
+bool isOption(const std::string& name) {
+    static const std::set<std::string> kOptions = {"coordsystem", "radius", "radiusscale", "interpolate", "filterradius", "filterscale", "maxdepth"};
+    return kOptions.count(name) > 0;
+}
+
+} // namespace
+
+std::shared_ptr<const CloudSite> cloudSite(const SiteInfo& i, const rsl::CompiledKernel& k, WorldImpl& world) {
+    auto c = std::make_shared<CloudSite>();
+    const rsl::ir::Site& s = *i.site;
+    const auto row = [&](const char* name) {
+        const auto f = i.named.find(name);
+        return f == i.named.end() ? -1 : f->second;
+    };
+    if (!s.strings.empty()) c->name = s.strings[0];
+    c->computed = c->name.empty() && !s.argKinds.empty() && s.argKinds[0] == rsl::ir::Kind::String;
+    std::vector<size_t> given; // positional arguments that are no strings
+    for (size_t a = 0; a < i.rows.size(); ++a)
+        if (s.argKinds[a] != rsl::ir::Kind::String) given.push_back(a);
+    const auto at = [&](size_t n) { return n < given.size() ? i.rows[given[n]] : -1; };
+    c->layout.flat = i.kind == SiteKind::Bake;
+    if (c->layout.flat) {
+        c->s = at(0);
+        c->t = at(1);
+        if (given.size() > 2) {
+            const auto type = given[2] < s.argTypes.size() ? channelOf(s.argTypes[given[2]]) : channelOf(s.argKinds[given[2]]);
+            c->parts.push_back({"value", type, at(2)});
+        }
+    } else {
+        c->point = at(0);
+        c->normal = at(1);
+        c->du = at(2);
+        c->dv = at(3);
+    }
+    if (const auto f = i.text.find("coordsystem"); f != i.text.end()) c->space = f->second;
+    c->spaceRow = row("coordsystem");
+    c->radius = row(i.kind == SiteKind::Texture3d ? "filterradius" : "radius");
+    c->scale = row(i.kind == SiteKind::Texture3d ? "filterscale" : "radiusscale");
+    c->centres = row("interpolate");
+    c->maxDepth = row("maxdepth");
+    if (i.kind == SiteKind::Texture3d) {
+        for (size_t r = 0; r < s.resultKinds.size(); ++r)
+            if (const std::string& name = s.resultNames[r]; !name.empty() && s.resultKinds[r] != rsl::ir::Kind::String)
+                c->parts.push_back({name, channelOf(s.resultKinds[r]), i.resultRows.at(name)});
+    } else if (!c->layout.flat) {
+        int begin = 0;
+        std::map<int, size_t> argument; // by row
+        for (size_t a = 0; a < s.argKinds.size(); begin += rsl::ir::components(s.argKinds[a++])) argument[begin] = a;
+        for (const std::string& name : s.names) { // in the order of the call
+            const int r = row(name.c_str());
+            if (r < 0 || isOption(name)) continue;
+            const size_t a = argument.at(r);
+            if (s.argKinds[a] == rsl::ir::Kind::String) continue;
+            c->parts.push_back({name, a < s.argTypes.size() && s.argTypes[a].base != rsl::Base::Void ? channelOf(s.argTypes[a]) : channelOf(s.argKinds[a]), r});
+        }
+    }
+    clouds::BakeLayout& l = c->layout;
+    l.place = {s.place.file < int(k.files().size()) ? k.files()[size_t(s.place.file)] : "", s.place.line, s.place.column};
+    char where[64];
+    std::snprintf(where, sizeof where, ":%08d:%06d", l.place.line, l.place.column);
+    l.where = l.place.file + where;
+    for (const CloudSite::Part& p : c->parts) {
+        l.channels.push_back({p.name, p.type});
+        l.width += clouds::sizeOf(p.type);
+    }
+    const auto area = [](const clouds::Channel& a) { return a.name == "_area"; };
+    if (i.kind == SiteKind::Bake3d && std::none_of(l.channels.begin(), l.channels.end(), area)) {
+        c->addsArea = true;
+        l.channels.push_back({"_area", clouds::ChannelType::Float});
+        ++l.width;
+    }
+    if (i.kind != SiteKind::Texture3d) {
+        world.clouds_->bakes = true;
+        world.clouds_->centres |= c->centres >= 0;
+    }
+    return c;
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,221 @@
+// Baking as a user has it: baked, read back, compared with what the shader says directly; the same bits for any number of threads.
+#include "cli/command_folder.h"
+#include "clouds/bakefile.h"
+#include "clouds/cloudfile.h"
+#include "clouds/make.h"
+#include "display/imageio.h"
+
+namespace {
+
+using namespace alpenglow;
+
+constexpr double kPi = 3.14159265358979323846;
+
+class Bake : public cli::testing::CommandFolder {
+protected:
+    const std::string ball = "Surface \"baker\"\nSphere 1 -1 1 360\nWorldEnd\n";
+    const std::string begin = "Projection \"perspective\" \"fov\" 40\nTranslate 0 0 4\nWorldBegin\n";
+    std::string header(const std::string& name, const std::string& hider = "hidden") const {
+        return "Format 48 48 1\nPixelSamples 2 2\nHider \"" + hider + "\"\nDisplay \"" + name + "\" \"openexr\" \"rgba\"\n";
+    }
+    void writeShader(const std::string& name, const std::string& body) const { write(name + ".sl", "surface " + name + "() { Oi = 1; Ci = Cs; " + body + " }\n"); }
+    std::string bytes(const std::string& name) const {
+        std::ifstream f(dir / name, std::ios::binary);
+        return {std::istreambuf_iterator<char>(f), {}};
+    }
+    clouds::PointCloud cloud(const std::string& name) const {
+        Diagnostics d;
+        auto c = clouds::loadCloud((dir / name).string(), d);
+        EXPECT_TRUE(c) << clouds::test::said(d);
+        return c ? std::move(*c) : clouds::PointCloud{};
+    }
+    /// Runs without a word.
+    void quiet(const std::string& arguments) {
+        EXPECT_EQ(run(arguments, "2>&1"), "") << arguments;
+        EXPECT_EQ(status, 0) << arguments;
+    }
+    std::vector<float> pixels(const std::string& name) const {
+        Diagnostics d;
+        const auto image = display::readImage((dir / name).string(), d);
+        return image ? image->data : std::vector<float>{};
+    }
+    double worst(const std::string& a, const std::string& b) const {
+        const auto x = pixels(a), y = pixels(b);
+        EXPECT_EQ(x.size(), y.size());
+        EXPECT_FALSE(x.empty());
+        double most = 0;
+        for (size_t i = 0; i < std::min(x.size(), y.size()); ++i) most = std::max(most, std::fabs(double(x[i]) - double(y[i])));
+        return most;
+    }
+};
+
+// All of the ball, its far side too: places, normals, values and the area of the surface.
+TEST_F(Bake, WholeSpheres) {
+    writeShader("baker", "point p = transform(\"world\", P); normal n = normalize(N); float ok = bake3d(\"ball.ptc\", \"\", P, n, \"_x\", xcomp(p), \"_p\", P); Ci = ok;");
+    for (const char* hider : {"hidden", "raytrace", "path"}) {
+        write("a.rib", header("a.exr", hider) + begin + ball);
+        quiet("render a.rib -t 2");
+        const clouds::PointCloud c = cloud("ball.ptc");
+        ASSERT_GT(c.size(), 500u);
+        double area = 0, far = 0;
+        float lo = 0, hi = 0;
+        for (size_t i = 0; i < c.size(); ++i) {
+            const double l = length(Vec3d(c.P[i]));
+            EXPECT_NEAR(l, 1, 1e-5);
+            EXPECT_NEAR(std::fabs(dot(c.P[i], c.N[i])), 1, 1e-4);
+            EXPECT_NEAR(c.valuesOf(i)[0], c.P[i].x, 1e-6);
+            for (int k = 0; k < 3; ++k) EXPECT_NEAR(c.valuesOf(i)[1 + size_t(k)], c.P[i][k], 1e-6) << "points are written in the space of the file";
+            area += double(c.valuesOf(i)[size_t(c.offsetOf("_area"))]);
+            far = std::max(far, double(c.P[i].z));
+            lo = std::min(lo, c.P[i].y), hi = std::max(hi, c.P[i].y);
+        }
+        // A cell of side h is flat: about h^2 / 12 of the area is missing, with h below 2 pi / 40 here.
+        EXPECT_NEAR(area, 4 * kPi, 4 * kPi * .0025) << hider;
+        EXPECT_NEAR(far, 1, .01);
+        EXPECT_NEAR(lo, -1, .01);
+        EXPECT_NEAR(hi, 1, .01);
+        for (const float v : pixels("a.exr")) EXPECT_GE(v, 0);
+        EXPECT_EQ(pixels("a.exr")[(24 * 48 + 24) * 4], 1) << "bake3d() gives 1";
+        std::filesystem::rename(dir / "ball.ptc", dir / (std::string(hider) + ".ptc"));
+    }
+    EXPECT_EQ(bytes("hidden.ptc"), bytes("raytrace.ptc"));
+    clouds::test::expectSame(cloud("hidden.ptc"), cloud("path.ptc"));
+}
+
+TEST_F(Bake, CornersAndMiddlesOfPolygons) {
+    writeShader("baker", "bake3d(\"c.ptc\", \"\", P, N, \"coordsystem\", \"object\"); bake3d(\"m.ptc\", \"\", P, N, \"interpolate\", 1, \"radius\", .25, \"radiusscale\", 2);");
+    write("a.rib", header("a.exr") + begin + "Translate 0 0 1 Surface \"baker\" PointsPolygons [4 4] [0 1 2 3 2 1 4 5] \"P\" [-1 -1 0 1 -1 0 1 1 0 -1 1 0 2 -1 0 2 1 0] WorldEnd\n");
+    run("render a.rib", "2>&1");
+    const clouds::PointCloud corners = cloud("c.ptc"), middles = cloud("m.ptc");
+    double area[2] = {0, 0};
+    for (size_t i = 0; i < corners.size(); ++i) {
+        area[0] += double(corners.valuesOf(i)[0]);
+        EXPECT_EQ(corners.P[i].z, 0) << "object space";
+        for (size_t k = 0; k < i; ++k) EXPECT_GT(length(corners.P[i] - corners.P[k]), 1e-4) << "each once";
+    }
+    for (size_t i = 0; i < middles.size(); ++i) {
+        area[1] += double(middles.valuesOf(i)[0]);
+        EXPECT_EQ(middles.radius[i], .5f);
+        EXPECT_NEAR(middles.P[i].z, 1, 1e-6);
+    }
+    EXPECT_GT(middles.size(), corners.size());
+    EXPECT_NEAR(area[0], area[1], 1e-4) << "the same surface";
+}
+
+TEST_F(Bake, SameBitsForAllThreads) {
+    writeShader("baker", "float o = occlusion(P, N, 16); bake3d(\"o.ptc\", \"\", P, N, \"_o\", o); bake(\"o.bake\", s, t, color(o, s, t));");
+    writeShader("hairs", "bake3d(\"o.ptc\", \"\", P, 0, \"_v\", v);");
+    const std::string scene = "Surface \"hairs\" Curves \"linear\" [4 4] \"nonperiodic\" \"P\" [-1 -1 -1.5 -1 0 -1.5 -1 .5 -1.5 -1 1 -1.5 1 -1 -1.5 1 0 -1.5 1 .5 -1.5 1 1 -1.5] \"constantwidth\" [.2]\n"
+                              "Surface \"baker\" Polygon \"P\" [-2 -2 2 2 -2 2 2 2 2 -2 2 2]\n" + ball;
+    for (const char* hider : {"hidden", "path"}) {
+        std::string first[2];
+        for (const char* threads : {"1", "2", "8"}) {
+            write("a.rib", header("a.exr", hider) + begin + scene);
+            run(std::string("render a.rib -t ") + threads, "2>&1");
+            EXPECT_EQ(status, 0);
+            const std::string now[2] = {bytes("o.ptc"), bytes("o.bake")};
+            ASSERT_GT(now[0].size(), 10000u);
+            for (int k = 0; k < 2; ++k) {
+                if (first[k].empty()) first[k] = now[k];
+                EXPECT_TRUE(now[k] == first[k]) << hider << " " << threads;
+            }
+        }
+        const clouds::PointCloud c = cloud("o.ptc");
+        const int v = c.offsetOf("_v");
+        size_t hairs = 0;
+        for (size_t i = 0; i < c.size(); ++i) hairs += length(c.N[i]) == 0 && c.valuesOf(i)[size_t(v)] > 0;
+        EXPECT_GT(hairs, 20u) << "where camera rays meet them";
+    }
+}
+
+// A frame bakes, MakeTexture makes a texture of it, and the next frame looks that up: all in one stream.
+TEST_F(Bake, TexturesInOneStream) {
+    const std::string f = "color(s * s, .5 + .5 * sin(6 * t), s * t)";
+    const std::string wall = "Patch \"bilinear\" \"P\" [-1 1 0 1 1 0 -1 -1 0 1 -1 0]\nWorldEnd\n";
+    for (const char* suffix : {"", "&binary"}) {
+        writeShader("baker", "bake(\"f.bake" + std::string(suffix) + "\", s, t, " + f + ");");
+        writeShader("direct", "Ci = " + f + ";");
+        writeShader("looked", "Ci = color texture(\"f.tex\", s, t);");
+        const std::string dice = "ShadingRate .25\nSurface ";
+        write("a.rib", "FrameBegin 1\n" + header("a.exr") + begin + dice + "\"baker\"\n" + wall + "FrameEnd\nMakeTexture \"f.bake" + suffix +
+                           "\" \"f.tex\" \"clamp\" \"clamp\" \"box\" 1 1\nFrameBegin 2\n" + header("b.exr") + begin + "Surface \"looked\"\n" + wall +
+                           "FrameEnd\nFrameBegin 3\n" + header("c.exr") + begin + "Surface \"direct\"\n" + wall + "FrameEnd\n");
+        quiet("render a.rib");
+        // The texture has 64 pixels or more on a side; its Gaussian, two pixels wide, takes less than 1e-3 of these curvatures.
+        EXPECT_LT(worst("b.exr", "c.exr"), .01) << suffix;
+    }
+    writeShader("baker", "bake(\"g.bake\", s, t, s);");
+    write("a.rib", header("a.exr") + begin + "Surface \"baker\"\n" + wall);
+    quiet("render a.rib");
+    EXPECT_EQ(bytes("g.bake").substr(0, 15), "# bake 1 float\n");
+    quiet("maketx g.bake g.tex");
+    const auto g = pixels("g.tex");
+    const int side = int(std::sqrt(double(g.size())));
+    for (int x = 0; x < side; ++x) EXPECT_NEAR(g[size_t(x)], (x + .5) / side, 1e-3) << "half floats";
+}
+
+TEST_F(Bake, CloudsAndBricksReadBack) {
+    const std::string f = "color(.5 + .5 * sin(4 * xcomp(p)), .5 + .5 * ycomp(p), .5 * zcomp(p) * zcomp(p))";
+    const std::string at = "point p = transform(\"world\", P); ";
+    writeShader("baker", at + "bake3d(\"f.ptc\", \"\", P, normalize(N), \"_f\", " + f + ");");
+    writeShader("direct", at + "Ci = " + f + ";");
+    for (const char* name : {"ptc", "bkm"})
+        writeShader(std::string("read") + name, at + "color c = 0; float ok = texture3d(\"f." + name + "\", P, normalize(N), \"_f\", c); Ci = ok * c;");
+    const auto frame = [&](const std::string& number, const std::string& picture, const std::string& shader) {
+        return "FrameBegin " + number + "\n" + header(picture) + begin + "ShadingRate .5\nSurface \"" + shader + "\"\nSphere 1 -1 1 360\nWorldEnd\nFrameEnd\n";
+    };
+    write("a.rib", frame("1", "a.exr", "baker") + "MakeBrickMap [\"f.ptc\"] \"f.bkm\"\n" + frame("2", "b.exr", "readptc") + frame("3", "c.exr", "readbkm") +
+                       frame("4", "d.exr", "direct"));
+    quiet("render a.rib");
+    // A mean over 1 to 2 micropolygons (.03 here) about a point: first order at the silhouette's filters, else second.
+    EXPECT_LT(worst("b.exr", "d.exr"), .03);
+    EXPECT_LT(worst("c.exr", "d.exr"), .08) << "cells are as wide as disks";
+}
+
+TEST_F(Bake, WhatCannotBe) {
+    writeShader("baker", "float ok = bake3d(\"../../out.ptc\", \"\", P, N); float x = 5; float r = texture3d(\"none.ptc\", P, N, \"_x\", x); Ci = color(ok, r, x / 10);");
+    write("a.rib", header("a.exr") + begin + ball);
+    const std::string said = run("render a.rib", "2>&1");
+    EXPECT_NE(said.find("no point cloud or brick map \"none.ptc\""), std::string::npos) << said;
+    EXPECT_NE(said.find("../../out.ptc"), std::string::npos) << said;
+    EXPECT_FALSE(std::filesystem::exists(dir.parent_path().parent_path() / "out.ptc"));
+    EXPECT_NE(status, 0);
+    const float* p = nullptr;
+    const auto image = pixels("a.exr");
+    p = &image[(24 * 48 + 24) * 4];
+    EXPECT_EQ(p[1], 0);
+    EXPECT_NEAR(p[2], .5f, 1e-3) << "x stays as it was";
+}
+
+TEST_F(Bake, ThePtcCommand) {
+    writeShader("baker", "bake3d(\"f.ptc\", \"\", P, N, \"_c\", color(1, .5, 0), \"_s\", s);");
+    write("a.rib", header("a.exr") + begin + ball);
+    quiet("render a.rib");
+    const size_t points = cloud("f.ptc").size();
+    const std::string info = run("ptc info f.ptc", "2>&1");
+    EXPECT_NE(info.find("points " + std::to_string(points) + "\n"), std::string::npos) << info;
+    EXPECT_NE(info.find("channel color _c, mean 1 0.5 0\n"), std::string::npos) << info;
+    quiet("ptc merge f.ptc f.ptc two.ptc");
+    EXPECT_EQ(cloud("two.ptc").size(), 2 * points);
+    quiet("ptc toply f.ptc f.ply");
+    quiet("ptc fromply f.ply g.ptc");
+    clouds::test::expectSame(cloud("f.ptc"), cloud("g.ptc"));
+    quiet("ptc filter --channels _c --box 0 -2 -2 2 2 2 f.ptc half.ptc");
+    EXPECT_NEAR(double(cloud("half.ptc").size()), double(points) / 2, double(points) / 20);
+    EXPECT_EQ(cloud("half.ptc").channels.size(), 1u);
+    quiet("ptc filter --depth 3 --smooth .5 f.ptc few.ptc");
+    EXPECT_LT(cloud("few.ptc").size(), 513u);
+    quiet("ptc brick f.ptc f.bkm");
+    EXPECT_NE(run("ptc info f.bkm", "2>&1").find("channel color _c"), std::string::npos);
+    quiet("ptc picture --channel _c --size 64 f.ptc f.exr");
+    const auto p = pixels("f.exr");
+    EXPECT_EQ(p[(32 * 64 + 32) * 4], 1);
+    EXPECT_EQ(p[(32 * 64 + 32) * 4 + 1], .5f);
+    EXPECT_EQ(p[3], 0) << "corners are empty";
+    EXPECT_NE(run("ptc info none.ptc", "2>&1").find("none.ptc"), std::string::npos);
+    EXPECT_EQ(status, 3);
+    run("ptc brick f.ptc", "2>&1");
+    EXPECT_EQ(status, 2);
+}
+
+} // namespace

@@ -35,10 +35,17 @@ void turn(clouds::ChannelType type, const Matrix& m, float* v) {
     const Vec3d from(v[0], v[1], v[2]);
     Vec3 to;
     switch (type) {
-    case clouds::ChannelType::Point: to = Vec3(transformPoint(m, from)); break;
-    case clouds::ChannelType::Vector: to = Vec3(transformVector(m, from)); break;
-    case clouds::ChannelType::Normal: to = Vec3(transformNormal(m, from)); break;
-    default: return;
+    case clouds::ChannelType::Point:
+        to = Vec3(transformPoint(m, from));
+        break;
+    case clouds::ChannelType::Vector:
+        to = Vec3(transformVector(m, from));
+        break;
+    case clouds::ChannelType::Normal:
+        to = Vec3(transformNormal(m, from));
+        break;
+    default:
+        return;
     }
     for (int k = 0; k < 3; ++k) v[k] = to[k];
 }
@@ -77,9 +84,12 @@ void reportNotBaked(const ServiceCall& call) {
     const KernelRun& c = call.c;
     const char* who = c.light ? "light" : c.volume ? "volume" : c.rays.empty() ? "displacement" : nullptr;
     if (!who || c.aside || (c.binding && c.bound == &c.binding->moveS)) return; // the surface shader bakes when it shades
-    call.diagnostics.reportOnce(std::string("bake:") + who,
-                                {Severity::Warning, Rie::Unimplement, call.place(),
-                                 call.d.op + "() of " + who + " shaders writes nothing", "the surface shader bakes", {}});
+    call.diagnostics.reportOnce(std::string("bake:") + who, {Severity::Warning,
+                                                             Rie::Unimplement,
+                                                             call.place(),
+                                                             call.d.op + "() of " + who + " shaders writes nothing",
+                                                             "the surface shader bakes",
+                                                             {}});
 }
 
 } // namespace
@@ -102,7 +112,8 @@ void answerBake(Answers& answers, const ServiceCall& call) {
             row = {call.at(s.s, lane), call.at(s.t, lane)};
         } else {
             to = toFile(answers, call, lane, p);
-            const Vec3 at(transformPoint(to, Vec3d(tripleAt(call, s.point, lane)))), n = normalTo(to, tripleAt(call, s.normal, lane));
+            const Vec3 at(transformPoint(to, Vec3d(tripleAt(call, s.point, lane)))),
+                n = normalTo(to, tripleAt(call, s.normal, lane));
             const float radius = s.radius < 0 ? extentOf(call, lane, p).first * growth(to) : call.at(s.radius, lane);
             const float scale = s.scale < 0 ? 1 : call.at(s.scale, lane);
             row = {at.x, at.y, at.z, n.x, n.y, n.z, std::max(0.f, radius * scale)};
@@ -128,21 +139,27 @@ void answerTexture3d(Answers& answers, const ServiceCall& call) {
     std::vector<float> found;
     std::vector<std::pair<const clouds::CloudMap*, std::vector<int>>> places; // by map, where its channels begin
     call.each([&](int lane, const ShadePoint& p) {
-        const clouds::CloudMap* map = answers.cloudOf(s.computed ? std::bit_cast<int32_t>(call.at(0, lane)) : call.s.nameId, call);
+        const clouds::CloudMap* map =
+            answers.cloudOf(s.computed ? std::bit_cast<int32_t>(call.at(0, lane)) : call.s.nameId, call);
         if (!map) return;
         auto known = std::find_if(places.begin(), places.end(), [&](const auto& k) { return k.first == map; });
         if (known == places.end()) {
             known = places.insert(places.end(), {map, {}});
             for (const CloudSite::Part& part : s.parts) {
-                const auto same = [&](const clouds::Channel& c) { return c.name == part.name && clouds::sizeOf(c.type) == clouds::sizeOf(part.type); };
+                const auto same = [&](const clouds::Channel& c) {
+                    return c.name == part.name && clouds::sizeOf(c.type) == clouds::sizeOf(part.type);
+                };
                 const bool there = std::any_of(map->channels().begin(), map->channels().end(), same);
                 known->second.push_back(there ? map->offsetOf(part.name) : -1);
                 if (!there)
                     call.diagnostics.reportOnce("texture3d:" + call.name(lane) + ":" + part.name,
-                                                {Severity::Warning, Rie::MissingData, call.place(),
-                                                 "texture3d(): \"" + call.name(lane) + "\" has no channel \"" + part.name + "\" of " +
-                                                     std::to_string(clouds::sizeOf(part.type)) + " numbers; it is 0",
-                                                 "alpenglow ptc info tells what is in a file", {}});
+                                                {Severity::Warning,
+                                                 Rie::MissingData,
+                                                 call.place(),
+                                                 "texture3d(): \"" + call.name(lane) + "\" has no channel \"" + part.name +
+                                                     "\" of " + std::to_string(clouds::sizeOf(part.type)) + " numbers; it is 0",
+                                                 "alpenglow ptc info tells what is in a file",
+                                                 {}});
             }
         }
         const Matrix to = toFile(answers, call, lane, p);

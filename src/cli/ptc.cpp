@@ -16,7 +16,8 @@ namespace {
 struct Arguments {
     std::string action, channel, view = "z";
     std::vector<std::string> files, channels;
-    std::vector<float> box;
+    std::string box;
+    std::vector<double> corners; ///< of box
     int depth = -1, size = 512;
     float smooth = 0;
 };
@@ -72,8 +73,8 @@ clouds::PointCloud filtered(clouds::PointCloud from, const Arguments& a) {
     std::vector<float> row(offsets.size());
     for (size_t i = 0; i < from.size(); ++i) {
         bool inside = true;
-        for (int k = 0; k < 3 && a.box.size() == 6; ++k)
-            inside &= from.P[i][k] >= a.box[size_t(k)] && from.P[i][k] <= a.box[size_t(k) + 3];
+        for (int k = 0; k < 3 && !a.corners.empty(); ++k)
+            inside &= double(from.P[i][k]) >= a.corners[size_t(k)] && double(from.P[i][k]) <= a.corners[size_t(k) + 3];
         if (!inside) continue;
         for (size_t k = 0; k < row.size(); ++k) row[k] = from.valuesOf(i)[size_t(offsets[k])];
         to.add(from.P[i], from.N[i], from.radius[i], row);
@@ -157,7 +158,8 @@ int runPtc(const Arguments& a, Diagnostics& d) {
     const std::string& out = a.files.back();
     if (a.action == "filter") all = filtered(std::move(all), a);
     if (a.action == "picture" && !a.channel.empty() && all.offsetOf(a.channel) < 0) {
-        d.report(Severity::Error, Rie::MissingData, {}, "there is no channel \"" + a.channel + "\" in it", "alpenglow ptc info tells what there is");
+        d.report(Severity::Error, Rie::MissingData, {}, "there is no channel \"" + a.channel + "\" in it",
+                 "alpenglow ptc info tells what there is");
         return kNothingRendered;
     }
     const bool written = a.action == "brick"     ? clouds::saveBrickMap(out, all, kAnywhere, d)
@@ -173,30 +175,46 @@ void addPtc(CLI::App& app, int* status) {
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("ptc", "Tell, merge, filter, convert and draw point clouds; make brick maps");
     c->add_option("action", a->action,
-                  "info: what is in files; merge: several as one; filter: parts of one; toply, fromply: to and from PLY; brick: a brick map; "
+                  "info: what is in files; merge: several as one; filter: parts of one; toply, fromply: to and from PLY; brick: "
+                  "a brick map; "
                   "picture: how it looks")
         ->required()
         ->check(CLI::IsMember({"info", "merge", "filter", "toply", "fromply", "brick", "picture"}));
     c->add_option("files", a->files, "What is read, and last what is written; info only reads")->required();
     auto* filter = c->add_option_group("Of filter");
-    filter->add_option("--channels", a->channels, "Channels that are kept, separated by commas")->delimiter(',')->type_name("NAMES");
-    filter->add_option("--box", a->box, "Corners of a box; points outside are left out")->expected(6)->type_name("X Y Z X Y Z");
-    filter->add_option("--depth", a->depth, "One point for each cell of a cube that is cut 2^DEPTH times along each side, and for each side of the surface")
+    filter->add_option("--channels", a->channels, "Channels that are kept, separated by commas")
+        ->delimiter(',')
+        ->type_name("NAMES");
+    filter->add_option("--box", a->box, "Corners of a box; points outside are left out")->type_name("X,Y,Z,X,Y,Z");
+    filter
+        ->add_option(
+            "--depth", a->depth,
+            "One point for each cell of a cube that is cut 2^DEPTH times along each side, and for each side of the surface")
         ->check(between(0, 16))
         ->type_name("DEPTH");
-    filter->add_option("--smooth", a->smooth, "Each value becomes the mean within this radius, as texture3d() finds it")->check(positive())->type_name("RADIUS");
+    filter->add_option("--smooth", a->smooth, "Each value becomes the mean within this radius, as texture3d() finds it")
+        ->check(positive())
+        ->type_name("RADIUS");
     auto* picture = c->add_option_group("Of picture");
     picture->add_option("--channel", a->channel, "What is drawn; normals when none is given")->type_name("NAME");
-    picture->add_option("--view", a->view, "Direction of the view: x, y, z, -x, -y, -z")->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))->type_name("AXIS");
+    picture->add_option("--view", a->view, "Direction of the view: x, y, z, -x, -y, -z")
+        ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
+        ->type_name("AXIS");
     picture->add_option("--size", a->size, "Pixels of a side")->check(between(1, 8192))->type_name("PIXELS");
     c->footer("alpenglow ptc brick room.ptc room.bkm. docs/pointclouds.md describes the files.");
     c->callback([a, status] {
         Diagnostics diags(printer());
         const size_t least = a->action == "info" ? 1 : 2;
         if (a->files.size() < least || (least == 2 && a->action != "merge" && a->files.size() != 2))
-            throw CLI::ValidationError("files", a->action + (a->action == "merge" ? " takes clouds and the name of what they become"
-                                                            : least == 1           ? " takes files"
-                                                                                   : " takes a file and the name of what is written"));
+            throw CLI::ValidationError("files",
+                                       a->action + (a->action == "merge" ? " takes clouds and the name of what they become"
+                                                    : least == 1         ? " takes files"
+                                                                         : " takes a file and the name of what is written"));
+        if (!a->box.empty()) {
+            const auto corners = parseNumbers(a->box, 6);
+            if (!corners) throw CLI::ValidationError("--box", "takes six numbers, not " + a->box);
+            a->corners = *corners;
+        }
         *status = runPtc(*a, diags);
         if (*status == kDone && diags.errors()) *status = kDoneWithErrors;
     });

@@ -15,7 +15,9 @@ constexpr std::string_view kText = "# bake 1", kBinary = "ALPGBAKE", kAmpersand 
 constexpr uint32_t kVersion = 1;
 constexpr size_t kHeader = 24;
 
-std::string_view headOf(std::span<const uint8_t> b) { return {reinterpret_cast<const char*>(b.data()), std::min<size_t>(b.size(), 8)}; }
+std::string_view headOf(std::span<const uint8_t> b) {
+    return {reinterpret_cast<const char*>(b.data()), std::min<size_t>(b.size(), 8)};
+}
 
 void appendNumber(std::string& to, float v) {
     char text[32];
@@ -53,7 +55,8 @@ std::string readText(std::span<const uint8_t> b, Baked& to) {
     size_t number = 1, inLine = 0;
     for (at = line; at < end;) {
         if (*at == '\n') {
-            if (inLine != 0 && inLine != width) return "line " + std::to_string(number) + " has not " + std::to_string(width) + " numbers";
+            if (inLine != 0 && inLine != width)
+                return "line " + std::to_string(number) + " has not " + std::to_string(width) + " numbers";
             inLine = 0, ++number, ++at;
         } else if (*at == '#') {
             at = std::find(at, end, '\n');
@@ -62,7 +65,8 @@ std::string readText(std::span<const uint8_t> b, Baked& to) {
         } else {
             float v = 0;
             const auto r = std::from_chars(at, end, v);
-            if (r.ec != std::errc() || ++inLine > width) return "line " + std::to_string(number) + " has not " + std::to_string(width) + " numbers";
+            if (r.ec != std::errc() || ++inLine > width)
+                return "line " + std::to_string(number) + " has not " + std::to_string(width) + " numbers";
             to.rows.push_back(v);
             at = r.ptr;
         }
@@ -82,10 +86,16 @@ struct Plane {
             v[k] += f, vx[k] += f * dx, vy[k] += f * dy;
         }
     }
+    double cxx() const { return xx - x * x / w; } // about the mean
+    double cyy() const { return yy - y * y / w; }
+    double cxy() const { return xy - x * y / w; }
+    /// Whether the points are no point and no line.
+    bool spans() const {
+        return w > 0 && cxx() > 1e-4 * w && cyy() > 1e-4 * w && cxx() * cyy() - cxy() * cxy() > 1e-3 * cxx() * cyy();
+    }
     float at0(int k) const {
-        const double cxx = xx - x * x / w, cyy = yy - y * y / w, cxy = xy - x * y / w; // about the mean
-        const double det = cxx * cyy - cxy * cxy;
-        if (!(det > 1e-6 * cxx * cyy) || !(cxx > 1e-9 * w) || !(cyy > 1e-9 * w)) return float(v[k] / w);
+        if (!spans()) return float(v[k] / w);
+        const double cxx = this->cxx(), cyy = this->cyy(), cxy = this->cxy(), det = cxx * cyy - cxy * cxy;
         const double fx = vx[k] - x * v[k] / w, fy = vy[k] - y * v[k] / w;
         const double b = (fx * cyy - fy * cxy) / det, c = (fy * cxx - fx * cxy) / det;
         return float((v[k] - b * x - c * y) / w);
@@ -107,7 +117,8 @@ void fillHoles(std::vector<float>& pixels, std::vector<uint8_t>& known, int side
                 const size_t from = at(2 * px + q % 2, 2 * py + q / 2);
                 if (!known[from]) continue;
                 ++n;
-                for (int k = 0; k < channels; ++k) small[to * size_t(channels) + size_t(k)] += pixels[from * size_t(channels) + size_t(k)];
+                for (int k = 0; k < channels; ++k)
+                    small[to * size_t(channels) + size_t(k)] += pixels[from * size_t(channels) + size_t(k)];
             }
             for (int k = 0; n && k < channels; ++k) small[to * size_t(channels) + size_t(k)] /= float(n);
             smallKnown[to] = n > 0;
@@ -116,7 +127,8 @@ void fillHoles(std::vector<float>& pixels, std::vector<uint8_t>& known, int side
     for (int py = 0; py < side; ++py)
         for (int px = 0; px < side; ++px)
             for (int k = 0; !known[at(px, py)] && k < channels; ++k)
-                pixels[at(px, py) * size_t(channels) + size_t(k)] = small[(size_t(py / 2) * size_t(half) + size_t(px / 2)) * size_t(channels) + size_t(k)];
+                pixels[at(px, py) * size_t(channels) + size_t(k)] =
+                    small[(size_t(py / 2) * size_t(half) + size_t(px / 2)) * size_t(channels) + size_t(k)];
 }
 
 } // namespace
@@ -126,7 +138,8 @@ std::string bakeFileName(const std::string& name, bool* binary) {
     return *binary ? name.substr(0, name.size() - kAmpersand.size()) : name;
 }
 
-bool saveBaked(const std::string& name, const Baked& baked, const OutputPolicy& policy, Diagnostics& d, const SourcePlace& place) {
+bool saveBaked(const std::string& name, const Baked& baked, const OutputPolicy& policy, Diagnostics& d,
+               const SourcePlace& place) {
     bool binary = false;
     auto file = OutputFile::open(bakeFileName(name, &binary), policy, d, place);
     if (!file) return false;
@@ -170,7 +183,8 @@ std::optional<Baked> loadBaked(const std::string& path, Diagnostics& d, const So
     std::string fault = headOf(*bytes) == kText     ? readText(*bytes, b)
                         : headOf(*bytes) == kBinary ? readBinary(*bytes, b)
                                                     : "it is no .bake file";
-    if (fault.empty() && b.size() > limits::kCloudPoints) fault = "it has more than " + std::to_string(limits::kCloudPoints) + " points";
+    if (fault.empty() && b.size() > limits::kCloudPoints)
+        fault = "it has more than " + std::to_string(limits::kCloudPoints) + " points";
     if (fault.empty() && !std::all_of(b.rows.begin(), b.rows.end(), [](float v) { return std::isfinite(v); }))
         fault = "a number in it is not finite";
     if (fault.empty()) return b;
@@ -204,19 +218,25 @@ BakedPicture pictureOf(const Baked& baked) {
     for (const uint32_t i : points) by[next[cellOf(i)]++] = i;
     p.pixels.resize(count * size_t(p.channels));
     std::vector<uint8_t> known(count);
+    const auto planeAt = [&](int x, int y, int reach) {
+        Plane plane;
+        for (int ny = std::max(0, y - reach); ny <= std::min(p.side - 1, y + reach); ++ny) {
+            const size_t row = size_t(ny) * size_t(p.side);
+            for (size_t c = row + size_t(std::max(0, x - reach)), end = row + size_t(std::min(p.side - 1, x + reach)); c <= end;
+                 ++c)
+                for (uint32_t k = first[c]; k < first[c + 1]; ++k) {
+                    const float* at = &baked.rows[by[k] * width];
+                    const double dx = double(at[0]) * p.side - (x + .5), dy = double(at[1]) * p.side - (y + .5);
+                    const double q = 1 - (dx * dx + dy * dy) / (reach * reach);
+                    if (q > 0) plane.add(q * q, dx, dy, at + 2, p.channels);
+                }
+        }
+        return plane;
+    };
     for (int y = 0; y < p.side; ++y)
         for (int x = 0; x < p.side; ++x) {
-            Plane plane;
-            for (int ny = std::max(0, y - 2); ny <= std::min(p.side - 1, y + 2); ++ny)
-                for (size_t c = size_t(ny) * size_t(p.side) + size_t(std::max(0, x - 2)),
-                            end = size_t(ny) * size_t(p.side) + size_t(std::min(p.side - 1, x + 2));
-                     c <= end; ++c)
-                    for (uint32_t k = first[c]; k < first[c + 1]; ++k) {
-                        const float* row = &baked.rows[by[k] * width];
-                        const double dx = double(row[0]) * p.side - (x + .5), dy = double(row[1]) * p.side - (y + .5);
-                        const double q = 1 - (dx * dx + dy * dy) / 4;
-                        if (q > 0) plane.add(q * q, dx, dy, row + 2, p.channels);
-                    }
+            Plane plane = planeAt(x, y, 2);
+            if (plane.w > 0 && !plane.spans()) plane = planeAt(x, y, 4);
             const size_t at = size_t(y) * size_t(p.side) + size_t(x);
             known[at] = plane.w > 0;
             for (int k = 0; plane.w > 0 && k < p.channels; ++k) p.pixels[at * size_t(p.channels) + size_t(k)] = plane.at0(k);

@@ -1,5 +1,5 @@
-// What bake() writes: values at places of a texture, s and t. As text, "# bake 1 TYPE" and one line a point: s, t and the numbers; or,
-// little-endian:
+// What bake() writes: values at places of a texture, s and t. As text, "# bake 1 TYPE" and one line a point: s, t and the
+// numbers; or, little-endian:
 //   bytes 0-7    "ALPGBAKE"
 //   8-11         version, 1
 //   12-15        channel type (pointcloud.h)
@@ -31,9 +31,9 @@ bool saveBaked(const std::string& name, const Baked&, const OutputPolicy&, Diagn
 bool isBaked(const std::string& path);
 std::optional<Baked> loadBaked(const std::string& path, Diagnostics&, const SourcePlace& = {});
 
-/// A picture of the points with s and t of 0 to 1, t downward: as many pixels as points, about, a power of two on each side. A pixel is
-/// the plane that fits the points within two pixels of its middle best, there (weights (1 - d^2 / 4)^2): linear functions of s and t
-/// come back as they are. Where points are missing coarser pictures fill in.
+/// A picture of the points with s and t of 0 to 1, t downward: as many pixels as points, about, a power of two on each side. A
+/// pixel is the plane that fits the points within two pixels of its middle best, there (weights (1 - d^2 / 4)^2): linear
+/// functions of s and t come back as they are. Where points are missing coarser pictures fill in.
 struct BakedPicture {
     int side = 0, channels = 0;
     std::vector<float> pixels; ///< row by row

@@ -57,10 +57,9 @@ void BakeLog::settle(File& f) {
         const size_t width = rowOf(*first.layout);
         group.clear();
         for (end = i; end < f.entries.size() && !less(first, f.entries[end]); ++end) {}
-        while (end < f.entries.size() &&
-               pointOf(f.entries[end].key, *f.entries[end].layout) == pointOf(first.key, *first.layout))
+        while (end < f.entries.size() && pointOf(f.entries[end].key, *f.entries[end].layout) == pointOf(first.key, *first.layout))
             ++end;
-        std::vector<size_t> begins; // of samples, in group
+        std::vector<size_t> begins;                  // of samples, in group
         for (size_t k = i, from = 0; k < end; ++k) { // twice, bit by bit: once
             if (k == i || f.entries[k].key.sample != f.entries[k - 1].key.sample) begins.push_back(from = group.size());
             const auto same = [&](const Entry* e) {
@@ -116,7 +115,10 @@ bool BakeLog::writeFlat(const std::string& name, const File& f, const OutputPoli
 
 bool BakeLog::writeCloud(const std::string& name, const File& f, const OutputPolicy& policy, Diagnostics& d) const {
     PointCloud cloud;
-    struct Known { bool fits = true; std::vector<int> to; };
+    struct Known {
+        bool fits = true;
+        std::vector<int> to;
+    };
     std::map<const BakeLayout*, Known> known; // by layout, where its numbers go
     std::vector<const BakeLayout*> order;
     for (const Row& r : f.rows)
@@ -132,7 +134,8 @@ bool BakeLog::writeCloud(const std::string& name, const File& f, const OutputPol
         Known& k = known[l];
         if (!k.fits || l->flat)
             d.report(Severity::Error, Rie::Consistency, l->place,
-                     "bake3d(): \"" + name + "\" has " + (l->flat ? "points of bake() as well" : "channels of these names and other types already") +
+                     "bake3d(): \"" + name + "\" has " +
+                         (l->flat ? "points of bake() as well" : "channels of these names and other types already") +
                          "; these points are left out");
         k.fits &= !l->flat;
         for (const Channel& c : l->channels)
@@ -157,7 +160,8 @@ bool BakeLog::write(const OutputPolicy& policy, Diagnostics& d) {
     for (const auto& [name, f] : files_) {
         if (f.notFinite)
             d.report(Severity::Warning, Rie::Math, {},
-                     "\"" + name + "\": " + std::to_string(f.notFinite) + " baked points have numbers that are not finite; they are left out");
+                     "\"" + name + "\": " + std::to_string(f.notFinite) +
+                         " baked points have numbers that are not finite; they are left out");
         if (f.rows.empty()) continue;
         const bool written = f.rows.front().layout->flat ? writeFlat(name, f, policy, d) : writeCloud(name, f, policy, d);
         all &= written;

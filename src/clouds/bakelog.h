@@ -1,4 +1,5 @@
-// What shaders bake, collected while they run, in an order that no thread and no batch decides, and written when the frame is done.
+// What shaders bake, collected while they run, in an order that no thread and no batch decides, and written when the frame is
+// done.
 #pragma once
 #include "base/diagnostics.h"
 #include "clouds/pointcloud.h"
@@ -13,29 +14,29 @@ namespace alpenglow::clouds {
 
 /// What one call of bake() or bake3d() writes.
 struct BakeLayout {
-    bool flat = false;             ///< bake(): s, t and the one channel; else bake3d(): P, N, radius and channels
+    bool flat = false; ///< bake(): s, t and the one channel; else bake3d(): P, N, radius and channels
     std::vector<Channel> channels;
-    int width = 0;                 ///< numbers of the channels
-    std::string where;             ///< file, line and column of the call: it orders the calls of one point
+    int width = 0;     ///< numbers of the channels
+    std::string where; ///< file, line and column of the call: it orders the calls of one point
     SourcePlace place;
 };
 
 /// To which point a record belongs: points of grids by shape and number, points that camera rays meet by pixel.
 struct BakeKey {
     bool camera = false;
-    int32_t y = 0, x = 0;          ///< grids: shape, point
-    int32_t layers = 0;            ///< camera: surfaces before it
+    int32_t y = 0, x = 0; ///< grids: shape, point
+    int32_t layers = 0;   ///< camera: surfaces before it
     uint32_t vertex = 0;
     uint32_t sample = 0;
 };
 
 class BakeLog {
 public:
-    /// The numbers of one call: s, t and the value; or P (3), N (3), radius and the channels, in the space of the file. Layouts outlive
-    /// the log. False: nothing is kept any more, which is reported when it is written. Thread safe.
+    /// The numbers of one call: s, t and the value; or P (3), N (3), radius and the channels, in the space of the file. Layouts
+    /// outlive the log. False: nothing is kept any more, which is reported when it is written. Thread safe.
     bool add(const std::string& file, const BakeLayout&, const BakeKey&, std::span<const float> numbers);
-    /// Puts what was added since the last call behind what was there, in the order of the keys. Of points of grids the samples are
-    /// averaged. What was added twice, bit by bit, is kept once: points may be shaded again. Nobody adds meanwhile.
+    /// Puts what was added since the last call behind what was there, in the order of the keys. Of points of grids the samples
+    /// are averaged. What was added twice, bit by bit, is kept once: points may be shaded again. Nobody adds meanwhile.
     void settle();
     /// Forgets what was added since the last settle(): the samples were void.
     void discard();
@@ -47,11 +48,11 @@ private:
     struct Entry {
         BakeKey key;
         const BakeLayout* layout;
-        size_t at;                 ///< in File::pending
+        size_t at; ///< in File::pending
     };
     struct Row {
         const BakeLayout* layout;
-        size_t at;                 ///< in File::settled
+        size_t at; ///< in File::settled
     };
     struct File {
         std::vector<Entry> entries;

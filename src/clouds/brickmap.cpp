@@ -129,7 +129,10 @@ private:
     float side_ = 0;
     std::vector<float> largest_; ///< by level
     std::vector<Brick> bricks_;
-    struct Kept { std::shared_ptr<const PointTree> tree; std::list<uint32_t>::iterator use; };
+    struct Kept {
+        std::shared_ptr<const PointTree> tree;
+        std::list<uint32_t>::iterator use;
+    };
     mutable std::mutex mutex_;
     mutable std::map<uint32_t, Kept> kept_;
     mutable std::list<uint32_t> used_; ///< the last one met first
@@ -148,7 +151,8 @@ std::string BrickMap::readDirectory() {
     if (!file_.read(0, header, b)) return "it cannot be read";
     const std::span<const uint8_t> head(b.data(), header - kEnd);
     if (checksum(head) != takeNumber<uint32_t>(&b[header - kEnd])) return "its header is damaged";
-    if (levels < 1 || levels > uint32_t(kDeepest) || !std::isfinite(dot(corner_, Vec3(1))) || !(side_ >= 0) || !std::isfinite(side_))
+    if (levels < 1 || levels > uint32_t(kDeepest) || !std::isfinite(dot(corner_, Vec3(1))) || !(side_ >= 0) ||
+        !std::isfinite(side_))
         return "its header is damaged";
     size_t at = kFixed;
     if (std::string fault = unpackChannels(head, channels, &at, channels_); !fault.empty()) return fault;
@@ -180,15 +184,21 @@ std::shared_ptr<const PointTree> BrickMap::load(const Brick& k) const {
     std::vector<float> room(static_cast<size_t>(width_));
     for (size_t i = 0; fine && i < k.points; ++i) fine = unpackPoint(b.data() + i * record, width_, room, cloud);
     if (fine) return std::make_shared<const PointTree>(std::move(cloud));
-    diagnostics_.reportOnce("brick:" + path_, {Severity::Error, Rie::BadFile, place_,
-                                               "brick map \"" + path_ + "\": some of its bricks are damaged, or the file has changed; there is nothing in them",
-                                               "alpenglow ptc brick makes it anew", {}});
+    diagnostics_.reportOnce(
+        "brick:" + path_,
+        {Severity::Error,
+         Rie::BadFile,
+         place_,
+         "brick map \"" + path_ + "\": some of its bricks are damaged, or the file has changed; there is nothing in them",
+         "alpenglow ptc brick makes it anew",
+         {}});
     return std::make_shared<const PointTree>();
 }
 
 /// Null: there is none at this place.
 std::shared_ptr<const PointTree> BrickMap::brick(const BrickPlace& at) const {
-    const auto found = std::lower_bound(bricks_.begin(), bricks_.end(), at, [](const Brick& b, const BrickPlace& p) { return b.at < p; });
+    const auto found =
+        std::lower_bound(bricks_.begin(), bricks_.end(), at, [](const Brick& b, const BrickPlace& p) { return b.at < p; });
     if (found == bricks_.end() || found->at != at) return nullptr;
     const uint32_t number = uint32_t(found - bricks_.begin());
     const std::lock_guard lock(mutex_);
@@ -231,7 +241,8 @@ bool isBrickMap(const std::string& path) {
     return is;
 }
 
-std::shared_ptr<const CloudMap> openBrickMap(const std::string& path, Diagnostics& d, const SourcePlace& place, size_t cacheBytes) {
+std::shared_ptr<const CloudMap> openBrickMap(const std::string& path, Diagnostics& d, const SourcePlace& place,
+                                             size_t cacheBytes) {
     auto map = std::make_shared<BrickMap>(path, d, place, cacheBytes);
     const std::string fault = map->readDirectory();
     if (fault.empty()) return map;
@@ -240,7 +251,8 @@ std::shared_ptr<const CloudMap> openBrickMap(const std::string& path, Diagnostic
     return nullptr;
 }
 
-bool saveBrickMap(const std::string& name, const PointCloud& cloud, const OutputPolicy& policy, Diagnostics& d, const SourcePlace& place) {
+bool saveBrickMap(const std::string& name, const PointCloud& cloud, const OutputPolicy& policy, Diagnostics& d,
+                  const SourcePlace& place) {
     Vec3 corner;
     float side = 0;
     cubeAbout(cloud, &corner, &side);

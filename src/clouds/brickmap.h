@@ -1,6 +1,6 @@
 // Brick maps: point clouds as tiles of an octree with levels, of which a render reads those that it meets (docs/pointclouds.md).
-// The finest level has the points of coarser() (pointcloud.h) in the cube about the cloud, each other level those of the one below it;
-// a brick has those of 8 x 8 x 8 cells of its level. Little-endian throughout:
+// The finest level has the points of coarser() (pointcloud.h) in the cube about the cloud, each other level those of the one
+// below it; a brick has those of 8 x 8 x 8 cells of its level. Little-endian throughout:
 //   bytes 0-7    "ALPGBRIC"
 //   8-11         version, 1
 //   12-15        channels
@@ -10,7 +10,8 @@
 //   40-43        bytes before the first brick, H
 //   then the channels as in point clouds (cloudfile.h)
 //   then by level the largest radius, float
-//   then by brick: level, x, y, z in bricks (uint32 each), points (uint32), place in the file (uint64), CRC-32 of its points; sorted
+//   then by brick: level, x, y, z in bricks (uint32 each), points (uint32), place in the file (uint64), CRC-32 of its points;
+//   sorted
 //                by level, x, y, z
 //   H-4 to H-1   CRC-32 of all before
 //   then the points of the bricks, as those of point clouds

@@ -30,7 +30,8 @@ std::string readCloud(std::span<const uint8_t> b, PointCloud& to) {
     const uint64_t count = takeNumber<uint64_t>(&b[16]), header = takeNumber<uint32_t>(&b[24]);
     const uint64_t record = takeNumber<uint32_t>(&b[28]);
     if (header < kFixed + kEnd || header > b.size() - kEnd) return "it is cut short";
-    if (checksum(b.first(size_t(header) - kEnd)) != takeNumber<uint32_t>(&b[size_t(header) - kEnd])) return "its header is damaged";
+    if (checksum(b.first(size_t(header) - kEnd)) != takeNumber<uint32_t>(&b[size_t(header) - kEnd]))
+        return "its header is damaged";
     size_t at = kFixed;
     if (std::string fault = unpackChannels(b.first(size_t(header) - kEnd), takeNumber<uint32_t>(&b[12]), &at, to.channels);
         !fault.empty())
@@ -64,7 +65,8 @@ std::vector<uint8_t> packChannels(std::span<const Channel> channels) {
 
 std::string unpackChannels(std::span<const uint8_t> b, uint32_t count, size_t* at, std::vector<Channel>& to) {
     int width = 0;
-    if (count > uint32_t(limits::kCloudChannels)) return "it has more than " + std::to_string(limits::kCloudChannels) + " channels";
+    if (count > uint32_t(limits::kCloudChannels))
+        return "it has more than " + std::to_string(limits::kCloudChannels) + " channels";
     for (uint32_t i = 0; i < count; ++i) {
         if (*at + 2 > b.size() || *at + 2 + b[*at + 1] > b.size() || b[*at] > uint8_t(ChannelType::Matrix) || b[*at + 1] == 0)
             return "its channels are damaged";
@@ -133,9 +135,9 @@ std::optional<PointCloud> loadCloud(const std::string& path, Diagnostics& d, con
         return bytes->size() >= std::strlen(with) && std::memcmp(bytes->data(), with, std::strlen(with)) == 0;
     };
     PointCloud cloud;
-    const std::string fault = begins(kMagic)                          ? readCloud(*bytes, cloud)
+    const std::string fault = begins(kMagic)                       ? readCloud(*bytes, cloud)
                               : begins("ply\n") || begins("ply\r") ? readPly(*bytes, cloud)
-                                                                      : "it is no point cloud";
+                                                                   : "it is no point cloud";
     if (fault.empty()) return cloud;
     d.report(Severity::Error, Rie::BadFile, place, "point cloud \"" + path + "\" cannot be read: " + fault,
              "bake3d() writes point clouds, and so does alpenglow ptc");

@@ -5,7 +5,8 @@
 //   16-23        points
 //   24-27        bytes before the points, H
 //   28-31        bytes of a point, 28 + 4 for each number of the channels
-//   then by channel: type (1 byte: 0 float, 1 color, 2 point, 3 vector, 4 normal, 5 matrix), length of its name (1 byte, 1 to 255),
+//   then by channel: type (1 byte: 0 float, 1 color, 2 point, 3 vector, 4 normal, 5 matrix), length of its name (1 byte, 1 to
+//   255),
 //                name
 //   H-4 to H-1   CRC-32 of all before
 //   then points: P (3 float), N (3 float), radius, the numbers of the channels

@@ -5,9 +5,9 @@
 
 namespace alpenglow::limits {
 
-inline constexpr uint64_t kCloudPoints = 200'000'000;          ///< of one point cloud
-inline constexpr size_t kCloudBytes = size_t(16) << 30;        ///< of its numbers in memory, and of all that one frame bakes
-inline constexpr int kCloudChannels = 256;                     ///< numbers beside position, normal and radius, of one point
-inline constexpr int kBakedSide = 8192;                        ///< of the picture that a .bake file becomes
+inline constexpr uint64_t kCloudPoints = 200'000'000;   ///< of one point cloud
+inline constexpr size_t kCloudBytes = size_t(16) << 30; ///< of its numbers in memory, and of all that one frame bakes
+inline constexpr int kCloudChannels = 256;              ///< numbers beside position, normal and radius, of one point
+inline constexpr int kBakedSide = 8192;                 ///< of the picture that a .bake file becomes
 
 } // namespace alpenglow::limits

@@ -18,30 +18,42 @@ constexpr size_t kHeaderBytes = 1u << 20;
 /// What the names of a channel's properties end in.
 std::vector<std::string> endingsOf(ChannelType t) {
     switch (t) {
-    case ChannelType::Float: return {""};
-    case ChannelType::Color: return {"_r", "_g", "_b"};
-    case ChannelType::Point: return {"_px", "_py", "_pz"};
-    case ChannelType::Vector: return {"_vx", "_vy", "_vz"};
-    case ChannelType::Normal: return {"_nx", "_ny", "_nz"};
-    case ChannelType::Matrix: break;
+    case ChannelType::Float:
+        return {""};
+    case ChannelType::Color:
+        return {"_r", "_g", "_b"};
+    case ChannelType::Point:
+        return {"_px", "_py", "_pz"};
+    case ChannelType::Vector:
+        return {"_vx", "_vy", "_vz"};
+    case ChannelType::Normal:
+        return {"_nx", "_ny", "_nz"};
+    case ChannelType::Matrix:
+        break;
     }
     std::vector<std::string> all;
     for (int i = 0; i < 16; ++i) all.push_back("_m" + std::to_string(i));
     return all;
 }
 
+constexpr const char* kReserved[] = {"x", "y", "z", "nx", "ny", "nz", "radius", "red", "green", "blue"};
+constexpr std::string_view kPrefix = "channel_"; ///< of channels that have such a name, or begin so
+
 enum class Number : uint8_t { I8, U8, I16, U16, I32, U32, F32, F64 };
 constexpr size_t kBytes[] = {1, 1, 2, 2, 4, 4, 4, 8};
 
 std::optional<Number> numberByName(const std::string& s) {
-    constexpr const char* names[][2] = {{"char", "int8"}, {"uchar", "uint8"}, {"short", "int16"}, {"ushort", "uint16"},
+    constexpr const char* names[][2] = {{"char", "int8"}, {"uchar", "uint8"}, {"short", "int16"},   {"ushort", "uint16"},
                                         {"int", "int32"}, {"uint", "uint32"}, {"float", "float32"}, {"double", "float64"}};
     for (size_t i = 0; i < 8; ++i)
         if (s == names[i][0] || s == names[i][1]) return Number(i);
     return {};
 }
 
-struct Property { std::string name; Number type; };
+struct Property {
+    std::string name;
+    Number type;
+};
 struct Header {
     enum class Form { Text, Little, Big } form = Form::Text;
     std::vector<Property> properties;
@@ -99,14 +111,22 @@ double numberAt(const uint8_t* from, Number type, bool big) {
     const size_t n = kBytes[size_t(type)];
     for (size_t i = 0; i < n; ++i) b[i] = from[big ? n - 1 - i : i];
     switch (type) {
-    case Number::I8: return double(int8_t(b[0]));
-    case Number::U8: return double(b[0]);
-    case Number::I16: return double(int16_t(takeNumber<uint16_t>(b)));
-    case Number::U16: return double(takeNumber<uint16_t>(b));
-    case Number::I32: return double(int32_t(takeNumber<uint32_t>(b)));
-    case Number::U32: return double(takeNumber<uint32_t>(b));
-    case Number::F32: return double(takeFloat(b));
-    case Number::F64: break;
+    case Number::I8:
+        return double(int8_t(b[0]));
+    case Number::U8:
+        return double(b[0]);
+    case Number::I16:
+        return double(int16_t(takeNumber<uint16_t>(b)));
+    case Number::U16:
+        return double(takeNumber<uint16_t>(b));
+    case Number::I32:
+        return double(int32_t(takeNumber<uint32_t>(b)));
+    case Number::U32:
+        return double(takeNumber<uint32_t>(b));
+    case Number::F32:
+        return double(takeFloat(b));
+    case Number::F64:
+        break;
     }
     return std::bit_cast<double>(takeNumber<uint64_t>(b));
 }
@@ -136,10 +156,10 @@ Places placesOf(const Header& h, std::vector<Channel>& channels) {
     for (int k = 0; k < 3 && normals; ++k) p.N[k] = take(find(normal[k]));
     p.radius = take(find("radius"));
     const auto addChannel = [&](const std::string& name, ChannelType type, const std::vector<int>& from) {
-        channels.push_back({name, type});
+        channels.push_back({name.starts_with(kPrefix) ? name.substr(kPrefix.size()) : name, type});
         for (const int i : from) {
             p.values.push_back(take(i));
-            p.scale.push_back(all[size_t(i)].type == Number::U8 ? 1 / 255.f : 1.f);
+            p.scale.push_back(all[size_t(i)].type == Number::U8 ? 255.f : 1.f);
         }
     };
     for (size_t i = 0; i < all.size(); ++i) {
@@ -185,7 +205,8 @@ public:
         }
         for (double& v : row) {
             while (at_ < b_.size() && std::isspace(b_[at_])) ++at_;
-            const char *from = reinterpret_cast<const char*>(b_.data()) + at_, *end = reinterpret_cast<const char*>(b_.data()) + b_.size();
+            const char *from = reinterpret_cast<const char*>(b_.data()) + at_,
+                       *end = reinterpret_cast<const char*>(b_.data()) + b_.size();
             const auto r = std::from_chars(from, end, v);
             if (r.ec != std::errc()) return false;
             at_ += size_t(r.ptr - from);
@@ -209,7 +230,8 @@ std::string readPly(std::span<const uint8_t> bytes, PointCloud& to) {
     const Places p = placesOf(h, to.channels);
     for (const int i : p.P)
         if (i < 0) return "its vertices have no x, y and z";
-    if (to.width() > limits::kCloudChannels) return "it has more than " + std::to_string(limits::kCloudChannels) + " numbers a point";
+    if (to.width() > limits::kCloudChannels)
+        return "it has more than " + std::to_string(limits::kCloudChannels) + " numbers a point";
     for (size_t i = 0; i < to.channels.size(); ++i)
         for (size_t k = 0; k < i; ++k)
             if (to.channels[k].name == to.channels[i].name) return "it has two channels \"" + to.channels[i].name + "\"";
@@ -224,7 +246,7 @@ std::string readPly(std::span<const uint8_t> bytes, PointCloud& to) {
         if (!vertices.next(row)) return "vertex " + std::to_string(i) + " is no row of numbers";
         for (const double v : row)
             if (!std::isfinite(float(v))) return "vertex " + std::to_string(i) + " has a number that is not finite";
-        for (size_t k = 0; k < values.size(); ++k) values[k] = number(p.values[k]) * p.scale[k];
+        for (size_t k = 0; k < values.size(); ++k) values[k] = number(p.values[k]) / p.scale[k];
         to.add({number(p.P[0]), number(p.P[1]), number(p.P[2])}, {number(p.N[0]), number(p.N[1]), number(p.N[2])},
                std::max(0.f, number(p.radius)), values);
     }
@@ -242,6 +264,9 @@ bool savePly(const std::string& name, const PointCloud& cloud, const OutputPolic
         std::string word = c.name; // a name with spaces would be several words
         for (char& l : word)
             if (std::isspace(static_cast<unsigned char>(l))) l = '_';
+        const auto reserved = [&](const char* r) { return word == r; };
+        if (std::any_of(std::begin(kReserved), std::end(kReserved), reserved) || word.starts_with(kPrefix))
+            word.insert(0, kPrefix);
         for (const std::string& e : endingsOf(c.type)) head += "property float " + word + e + "\n";
     }
     head += "end_header\n";

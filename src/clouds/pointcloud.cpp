@@ -1,4 +1,5 @@
 #include "clouds/pointcloud.h"
+#include "clouds/area.h"
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -97,13 +98,13 @@ struct Cell {
 void addMean(const PointCloud& from, std::span<const Cell> cell, std::vector<double>& sums, std::vector<float>& row,
              PointCloud& to) {
     const size_t width = size_t(from.width());
-    double area = 0;
-    for (const Cell& c : cell) area += double(from.radius[c.point]) * from.radius[c.point];
+    const int channel = areaChannel(from);
     Vec3d p(0.0), n(0.0);
-    double all = 0;
+    double all = 0, area = 0;
     sums.assign(width, 0);
     for (const Cell& c : cell) {
-        const double r = from.radius[c.point], w = area > 0 ? r * r : 1;
+        const double w = areaOf(from, c.point, channel);
+        area += from.radius[c.point] > 0 || channel >= 0 ? w : 0;
         all += w;
         p = p + Vec3d(from.P[c.point]) * w;
         n = n + Vec3d(from.N[c.point]) * w;
@@ -112,8 +113,9 @@ void addMean(const PointCloud& from, std::span<const Cell> cell, std::vector<dou
     }
     row.resize(width);
     for (size_t k = 0; k < width; ++k) row[k] = float(sums[k] / all);
+    if (channel >= 0) row[size_t(channel)] = float(all);
     const double l = length(n);
-    to.add(Vec3(p / all), l > 0 ? Vec3(n / l) : Vec3(0.f), float(std::sqrt(area)), row);
+    to.add(Vec3(p / all), l > 0 ? Vec3(n / l) : Vec3(0.f), float(std::sqrt(area / 2)), row);
 }
 
 } // namespace

@@ -1,4 +1,5 @@
 #include "clouds/pointtree.h"
+#include "clouds/area.h"
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -56,6 +57,7 @@ void PointTree::gather(const Query& q, double* weight, std::span<double> sums) c
     int depth = 0;
     stack[size_t(depth++)] = 0;
     const bool turned = dot(q.N, q.N) > 0;
+    const int channel = areaChannel(cloud_);
     while (depth > 0) {
         const uint32_t at = stack[size_t(--depth)];
         const Node& n = nodes_[at];
@@ -76,7 +78,7 @@ void PointTree::gather(const Query& q, double* weight, std::span<double> sums) c
             const double r = cloud_.radius[i], h = double(q.radius) + 2 * r, d2 = dot(d, d);
             if (!(d2 < h * h)) continue;
             const double near = 1 - d2 / (h * h);
-            double w = near * near;
+            double w = near * near * areaOf(cloud_, i, channel);
             if (const Vec3& m = cloud_.N[i]; turned && dot(m, m) > 0) {
                 const double sum = r + double(q.radius);
                 w *= std::max(0.0, 1 - (1 - double(dot(q.N, m))) * (1 + (sum > 0 ? 2 * r / sum : 0)));

@@ -17,9 +17,9 @@ public:
 private:
     struct Node {
         Vec3 lo, hi;
-        float radius = 0;       ///< the largest
+        float radius = 0; ///< the largest
         uint32_t begin = 0, end = 0;
-        uint32_t second = 0;    ///< the second half; the first is the next node. 0: a leaf
+        uint32_t second = 0; ///< the second half; the first is the next node. 0: a leaf
     };
     void build(std::vector<uint32_t>& order, const PointCloud& from, uint32_t begin, uint32_t end);
     PointCloud cloud_;

@@ -7,10 +7,10 @@ namespace alpenglow::shading {
 struct GridPoint {
     uint32_t shape = 0, prim = 0; ///< as a hit has them
     double b1 = 0, b2 = 0;
-    float distance = 0;           ///< from the origin of its ray
-    float radius = 0;             ///< of a disk that covers its part of the surface; camera space
-    float area = 0;               ///< of its part of the surface: of all points of a grid they add up to the shape
-    bool corner = true;           ///< of micropolygons; else the middle of one
+    float distance = 0; ///< from the origin of its ray
+    float radius = 0;   ///< of a disk that covers its part of the surface; camera space
+    float area = 0;     ///< of its part of the surface: of all points of a grid they add up to the shape
+    bool corner = true; ///< of micropolygons; else the middle of one
 };
 
 } // namespace alpenglow::shading

@@ -27,14 +27,19 @@ bool isQuadric(const Shape& s) {
 class Grid {
 public:
     Grid(const Shape& s, const geometry::DiceCamera& camera, bool middles, std::vector<GridPoint>& points, std::vector<Vec3>& P)
-        : shape_(s), base_(baseOf(s)), camera_(camera), edge_(geometry::diceEdge(s.attributes())), middles_(middles), points_(points),
-          P_(P) {}
+        : shape_(s), base_(baseOf(s)), camera_(camera), edge_(geometry::diceEdge(s.attributes())), middles_(middles),
+          points_(points), P_(P) {}
     void ofQuadric();
     void ofTriangles();
 
 private:
-    struct Corner { float area = 0, radius = 0; };
-    struct Edge { uint32_t owner; double area = 0; };
+    struct Corner {
+        float area = 0, radius = 0;
+    };
+    struct Edge {
+        uint32_t owner;
+        double area = 0;
+    };
     using Edges = std::map<std::pair<uint32_t, uint32_t>, Edge>;
     double pixels(const Vec3& a, const Vec3& b) const { return camera_.pixels(Vec3d(a), Vec3d(b) - Vec3d(a)); }
     Vec3 placeOf(uint32_t prim, double b1, double b2) const {
@@ -50,7 +55,11 @@ private:
     void stepsOfTriangles();
     void addCorners(uint32_t triangle, const Edges&, const std::vector<Corner>&, std::vector<bool>& seen);
     void addMiddles(uint32_t triangle);
-    struct Triangle { Vec3 p[3]; double longest = 0, area = 0; int n = 1; };
+    struct Triangle {
+        Vec3 p[3];
+        double longest = 0, area = 0;
+        int n = 1;
+    };
     const uint32_t* indices(size_t triangle) const { return &base_.mesh().index[3 * triangle]; }
     static std::pair<uint32_t, uint32_t> edge(uint32_t a, uint32_t b) { return {std::min(a, b), std::max(a, b)}; }
     const Shape &shape_, &base_;
@@ -102,7 +111,8 @@ void Grid::ofQuadric() {
     const auto cell = [&](size_t i, size_t j, double* area, float* radius) {
         const size_t a = j * row + i, b = a + 1, c = a + row, d = c + 1;
         *area = (length(cross(Vec3d(P[b]) - Vec3d(P[a]), Vec3d(P[c]) - Vec3d(P[a]))) +
-                 length(cross(Vec3d(P[b]) - Vec3d(P[d]), Vec3d(P[c]) - Vec3d(P[d])))) / 2;
+                 length(cross(Vec3d(P[b]) - Vec3d(P[d]), Vec3d(P[c]) - Vec3d(P[d])))) /
+                2;
         *radius = std::max(length(P[d] - P[a]), length(P[c] - P[b])) / 2;
     };
     for (size_t j = 0; j < size_t(nv); ++j)
@@ -213,7 +223,8 @@ void Grid::ofTriangles() {
 
 bool hasGrid(const Shape& s) { return !baseOf(s).exact() || isQuadric(baseOf(s)); }
 
-void gridOf(const Shape& s, const geometry::DiceCamera& camera, bool middles, std::vector<GridPoint>& points, std::vector<Vec3>& P) {
+void gridOf(const Shape& s, const geometry::DiceCamera& camera, bool middles, std::vector<GridPoint>& points,
+            std::vector<Vec3>& P) {
     if (!hasGrid(s)) return;
     Grid grid(s, camera, middles, points, P);
     if (baseOf(s).exact()) grid.ofQuadric();

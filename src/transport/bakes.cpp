@@ -45,7 +45,8 @@ void bakedPoints(const World& world, uint32_t shape, std::vector<shading::GridPo
     size_t kept = before;
     for (size_t i = before; i < to.size(); ++i) {
         to[i].shape = shape;
-        if (w.accel_->hasSolids() && !w.accel_->keeps(shape, P[i - before], s.evaluateHit(to[i].prim, to[i].b1, to[i].b2).n, 0)) continue;
+        if (w.accel_->hasSolids() && !w.accel_->keeps(shape, P[i - before], s.evaluateHit(to[i].prim, to[i].b1, to[i].b2).n, 0))
+            continue;
         to[kept++] = to[i];
     }
     to.resize(kept);

@@ -37,7 +37,7 @@ struct CameraRay {
     bool records = false;
     /// Not for the picture either: only SampleResult::left is asked for. All rays of a call alike.
     bool depths = false;
-    /// Not for the picture either: the ray meets this point and what lies behind it. It outlives the call. Null: it meets what is there.
+    /// Not for the picture either: the ray meets this point, which outlives the call. Null: it meets what is there.
     const shading::GridPoint* grid = nullptr;
 };
 

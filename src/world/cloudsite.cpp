@@ -8,12 +8,18 @@ namespace {
 
 clouds::ChannelType channelOf(rsl::Type t) {
     switch (t.base) {
-    case rsl::Base::Color: return clouds::ChannelType::Color;
-    case rsl::Base::Point: return clouds::ChannelType::Point;
-    case rsl::Base::Vector: return clouds::ChannelType::Vector;
-    case rsl::Base::Normal: return clouds::ChannelType::Normal;
-    case rsl::Base::Matrix: return clouds::ChannelType::Matrix;
-    default: return clouds::ChannelType::Float;
+    case rsl::Base::Color:
+        return clouds::ChannelType::Color;
+    case rsl::Base::Point:
+        return clouds::ChannelType::Point;
+    case rsl::Base::Vector:
+        return clouds::ChannelType::Vector;
+    case rsl::Base::Normal:
+        return clouds::ChannelType::Normal;
+    case rsl::Base::Matrix:
+        return clouds::ChannelType::Matrix;
+    default:
+        return clouds::ChannelType::Float;
     }
 }
 
@@ -24,7 +30,8 @@ clouds::ChannelType channelOf(rsl::ir::Kind k) {
 }
 
 bool isOption(const std::string& name) {
-    static const std::set<std::string> kOptions = {"coordsystem", "radius", "radiusscale", "interpolate", "filterradius", "filterscale", "maxdepth"};
+    static const std::set<std::string> kOptions = {"coordsystem",  "radius",      "radiusscale", "interpolate",
+                                                   "filterradius", "filterscale", "maxdepth"};
     return kOptions.count(name) > 0;
 }
 
@@ -76,7 +83,10 @@ std::shared_ptr<const CloudSite> cloudSite(const SiteInfo& i, const rsl::Compile
             if (r < 0 || isOption(name)) continue;
             const size_t a = argument.at(r);
             if (s.argKinds[a] == rsl::ir::Kind::String) continue;
-            c->parts.push_back({name, a < s.argTypes.size() && s.argTypes[a].base != rsl::Base::Void ? channelOf(s.argTypes[a]) : channelOf(s.argKinds[a]), r});
+            c->parts.push_back({name,
+                                a < s.argTypes.size() && s.argTypes[a].base != rsl::Base::Void ? channelOf(s.argTypes[a])
+                                                                                               : channelOf(s.argKinds[a]),
+                                r});
         }
     }
     clouds::BakeLayout& l = c->layout;

@@ -7,19 +7,23 @@ namespace alpenglow::transport {
 
 /// Rows of arguments, or -1.
 struct CloudSite {
-    std::string name;             ///< of the file; "" where `computed`, or there is none
-    bool computed = false;        ///< each point names its file, in row 0
-    int point = -1, normal = -1;  ///< bake3d(), texture3d()
-    int s = -1, t = -1;           ///< bake()
-    int du = -1, dv = -1;         ///< texture3d(): steps of P from one sample to the next
+    std::string name;            ///< of the file; "" where `computed`, or there is none
+    bool computed = false;       ///< each point names its file, in row 0
+    int point = -1, normal = -1; ///< bake3d(), texture3d()
+    int s = -1, t = -1;          ///< bake()
+    int du = -1, dv = -1;        ///< texture3d(): steps of P from one sample to the next
     std::string space = "world";
     int spaceRow = -1;
-    int radius = -1, scale = -1;  ///< of the disk, or of the filter
+    int radius = -1, scale = -1; ///< of the disk, or of the filter
     int centres = -1, maxDepth = -1;
-    struct Part { std::string name; clouds::ChannelType type; int row; }; ///< row: of arguments; texture3d(): of results
+    struct Part {
+        std::string name;
+        clouds::ChannelType type;
+        int row;
+    }; ///< row: of arguments; texture3d(): of results
     std::vector<Part> parts;
-    clouds::BakeLayout layout;    ///< not of texture3d()
-    bool addsArea = false;        ///< bake3d() without "_area": its channel follows the parts
+    clouds::BakeLayout layout; ///< not of texture3d()
+    bool addsArea = false;     ///< bake3d() without "_area": its channel follows the parts
 };
 
 std::shared_ptr<const CloudSite> cloudSite(const SiteInfo&, const rsl::CompiledKernel&, WorldImpl&);

@@ -19,7 +19,8 @@ const clouds::CloudMap* CloudStore::find(const std::string& name, const SourcePl
     } else if (!outside.empty()) {
         diagnostics_.report(outsideMessage("point cloud", name, outside, place));
     } else {
-        diagnostics_.report(Severity::Error, Rie::NoFile, place, "there is no point cloud or brick map \"" + name + "\"; texture3d() gives 0",
+        diagnostics_.report(Severity::Error, Rie::NoFile, place,
+                            "there is no point cloud or brick map \"" + name + "\"; texture3d() gives 0",
                             "bake3d() in a frame before this one makes it");
     }
     return at->second.get();

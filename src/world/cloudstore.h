@@ -14,8 +14,8 @@ public:
         ReadPolicy read;
     };
     CloudStore(Files files, Diagnostics& d) : files_(std::move(files)), diagnostics_(d) {}
-    /// The map of a name, read when it is first asked for. Null: there is none, which was reported once. Thread safe; the map lives
-    /// as long as the store.
+    /// The map of a name, read when it is first asked for. Null: there is none, which was reported once. Thread safe; the map
+    /// lives as long as the store.
     const clouds::CloudMap* find(const std::string& name, const SourcePlace&);
 
     clouds::BakeLog baked;

@@ -291,7 +291,7 @@ std::vector<Shadeop> plausibleShadeops() {
     };
     Shadeop& emit = add("emit", sigs({{"void emit(color light; pairs)"}}),
                         "void emit(color light; float specularcontribution; float diffusecontribution; float raytraceshadows; float shadowbias; float adaptiveshadow; "
-                        "float shadowmapbias; float shadowmapbias2; string environmentmap) {}\n",
+                        "float shadowmapbias; float shadowmapbias2; float areanormalized; string environmentmap) {}\n",
                         "In the method prelighting() of a class of PRMan: the radiance that the primitive sends along its normal, all calls added up. A class "
                         "that has neither light() nor generateSamples() lights by it, behind AreaLightSource; others light by those methods, and the "
                         "call does nothing more. The optional parameters are hints for the sampling of another renderer, and change nothing.");
@@ -299,7 +299,8 @@ std::vector<Shadeop> plausibleShadeops() {
     emit.optional = {{kF, "specularcontribution", false, "", "hint"}, {kF, "diffusecontribution", false, "", "hint"},
                      {kF, "raytraceshadows", false, "", "hint"},      {kF, "shadowbias", false, "", "hint"},
                      {kF, "adaptiveshadow", false, "", "hint"},       {kF, "shadowmapbias", false, "", "hint"},
-                     {kF, "shadowmapbias2", false, "", "hint"},       {kS, "environmentmap", false, "", "hint"}};
+                     {kF, "shadowmapbias2", false, "", "hint"},       {kF, "areanormalized", false, "0", "read over: light is the radiance, not divided by the area"},
+                     {kS, "environmentmap", false, "", "hint"}};
     Shadeop& shadow = add("areashadow", sigs({{"color areashadow(point lit; float samples)"}}), shadowText(),
                           "The form with samples multiplies the radiance of each sample of a light by what reaches the point in the middle of the region (a filterregion, or the "
                           "point) from there: by a shadow map, or by rays where the map is \"\" or \"raytrace\". Class lights call it in shadowSamples(), which "

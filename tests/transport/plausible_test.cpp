@@ -101,7 +101,8 @@ TEST(Plausible, OtherObjectsAndChosenLights) {
         color sd = 0, ss = 0, su = 0, sv = 0;
         if (specularlighting(m, "diffuseresult", sd, "specularresult", ss, "unshadoweddiffuseresult", su, "unshadowedspecularresult", sv, "mis", 0,
                              "integrationdomain", "sphere") != ss || sd != d || su != d || sv != ss) Ci += 100;
-        if (diffuselighting(m, "integrationdomain", "sphere") != d) Ci += 100;
+        if (diffuselighting(m, "diffuseresult", sd, "specularresult", ss, "unshadoweddiffuseresult", su, "unshadowedspecularresult", sv, "mis", 0,
+                            "integrationdomain", "sphere") != d || ss != s) Ci += 100;
         Ci += 10 * color(comp(both, 0), comp(diffuselighting(m), 0) + comp(d, 0) + comp(ud, 0), comp(specularlighting(m) + s + us, 0));
         Oi = 1;
     } }

@@ -71,9 +71,13 @@ std::string replaced(std::string text, std::string_view word, const std::string&
     return text;
 }
 
-/// The methods that calls of the class become.
-std::string methods(bool direct, bool indirect) {
-    std::string all;
+/// What a class without such a method answers: a material that nothing is known of gives back no light.
+constexpr const char* kNoAnswer = "    void evaluateSamples(string which; output __radiancesample samples[]) {}\n";
+constexpr const char* kNoSamples = "    void generateSamples(string which; output __radiancesample samples[]) {}\n";
+
+/// The methods that calls of the class become. `evaluates`, `generates`: it has what they ask.
+std::string methods(bool direct, bool indirect, bool evaluates, bool generates) {
+    std::string all = std::string(direct && !evaluates ? kNoAnswer : "") + (indirect && !generates ? kNoSamples : "");
     if (direct) {
         const std::string listed = replaced(kListed, "MOST", std::to_string(limits::kLightHandles));
         all += kOutputs;
@@ -201,11 +205,9 @@ void addDirectLighting(SourceSet& sources, Preprocessed& p) {
             direct |= ofThis(k) && partOf(t[k].text, "");
             indirect |= ofThis(k) && t[k].is("indirectspecular");
         }
-        direct &= evaluates;
-        indirect &= generates;
         if (!direct && !indirect) continue;
         copy(done, body + 1);
-        Preprocessed own = preprocess(sources, sources.add("<directlighting>", methods(direct, indirect)), {});
+        Preprocessed own = preprocess(sources, sources.add("<directlighting>", methods(direct, indirect, evaluates, generates)), {});
         own.tokens.pop_back(); // the end
         out.insert(out.end(), std::make_move_iterator(own.tokens.begin()), std::make_move_iterator(own.tokens.end()));
         done = body + 1;

@@ -110,6 +110,16 @@ const std::map<std::string, std::string>& elsewhere() {
         {"rayhittest", "what rays bring counts as constant"},
         {"fulltrace", "what rays bring counts as constant"},
         {"shaderinfo", "gives nothing that varies"},
+        {"emit", "gives nothing"},
+        {"areashadow", "what rays bring counts as constant"},
+        {"generateSamplesEnv", "samples are drawn"},
+        {"evaluateSamplesEnv", "what a map of the sky shows counts as constant"},
+        {"generateSamplesAS", "samples are drawn"},
+        {"evaluateSamplesAS", "takes an array of structures: tests/transport/plausiblesamples_test.cpp"},
+        {"directlighting", "asks lights and another shader: tests/transport/plausible_test.cpp"},
+        {"diffuselighting", "asks lights and another shader: tests/transport/plausible_test.cpp"},
+        {"specularlighting", "asks lights and another shader: tests/transport/plausible_test.cpp"},
+        {"indirectspecular", "what rays bring counts as constant"},
     };
     return all;
 }

@@ -179,7 +179,8 @@ TEST(FrontFunctions, EveryRslShadeopCompiles) {
                 const std::string name = "x" + std::to_string(i);
                 Type t = s.parameters[i].type;
                 if (t.array < 0) t.array = 4;
-                declarations += toString(t.element()) + " " + name + (t.array ? "[" + std::to_string(t.array) + "]" : "") + "; ";
+                const bool shader = s.text.find("shader " + s.parameters[i].name) != std::string::npos;
+                declarations += (shader ? "shader" : toString(t.element())) + " " + name + (t.array ? "[" + std::to_string(t.array) + "]" : "") + "; ";
                 arguments += (i ? ", " : "") + name;
             }
             const std::string cast =

@@ -19,7 +19,7 @@ public:
     static Client* current();
 
     Interpreter& in;
-    const Call& by; ///< the request that asked; what fails is said at its place
+    const Call& by; ///< the request that asked; failures are reported with its place
 private:
     Client* outer_;
 };

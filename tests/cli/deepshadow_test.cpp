@@ -62,7 +62,6 @@ TEST_F(DeepShadows, TransparentColouredPanes) {
             }
         }
         EXPECT_NEAR(read("f6.exr").pixel(16, 16)[0], (1 + .625f + .25f) / 3, 1e-5) << "one number: the mean of the colours";
-        // A border through the middle of the pixels' samples: each of them counts. x = 2 lies 6 of 8 units along 32 pixels.
         const display::Image map = read("lamp.dsm");
         ASSERT_TRUE(map.deep);
         EXPECT_EQ(map.width, 32);
@@ -89,7 +88,7 @@ TEST_F(DeepShadows, MovingThingsAndThreads) {
             m.deep->leftAt(size_t(y * 40 + i), 4, left);
             sum += left[1] / 4;
         }
-        EXPECT_NEAR(sum, (i - 20 + .5) / 16, .06) << i; // 256 samples: 3 deviations of a jittered half
+        EXPECT_NEAR(sum, (i - 20 + .5) / 16, .06) << i; // two deviations of 256 independent halves; strata are nearer
     }
 }
 

@@ -315,7 +315,7 @@ TEST(Growth, CountsThatMakeNoSense) {
             EXPECT_TRUE(std::isfinite(got.x)) << name << " " << n;
             const uint64_t rays = c.diffuse + c.specular + c.transmission + c.shadow;
             EXPECT_LE(rays, 4096u * 2) << name << " " << n;
-            // Those of a hemisphere; the others take what they can of it, or go one way a sample of the picture.
+            // indirectdiffuse() and occlusion() say what they cut; the others cut it and do not say so.
             const bool said = std::string(n) == "1e9" && (std::string(name) == "indirect" || std::string(name) == "occlusion");
             EXPECT_EQ(scene.messages().find("4096") != std::string::npos, said) << name << " " << n << scene.messages();
         }

@@ -26,7 +26,7 @@ constexpr int kSlab = 8; ///< steps that a sample with an extent becomes
 class Line {
 public:
     Line(int width, int left, size_t channels)
-        : count(size_t(width)), left_(left), values(channels), pointers_(channels, std::vector<char*>(size_t(width))) {}
+        : count(size_t(width)), values(channels), left_(left), pointers_(channels, std::vector<char*>(size_t(width))) {}
     /// Slices whose rows are all this one.
     Imf::DeepFrameBuffer buffer(const std::vector<const char*>& names) {
         Imf::DeepFrameBuffer fb;
@@ -50,15 +50,11 @@ public:
             }
         }
     }
-    std::vector<unsigned> count;
+    std::vector<unsigned> count;            ///< samples of each pixel
+    std::vector<std::vector<float>> values; ///< by channel, those of all pixels in order
 
 private:
-    long left_;
-
-public:
-    std::vector<std::vector<float>> values;
-
-private:
+    long left_; ///< x of the first pixel
     std::vector<std::vector<char*>> pointers_;
 };
 
@@ -74,8 +70,8 @@ void addStairs(std::vector<Taken>& samples, std::vector<DeepStep>& out) {
         for (int k = 0; k < (slab ? kSlab : 1); ++k) {
             s.z = slab ? t.z + (t.back - t.z) * (float(k) + 0.5f) / kSlab : t.z;
             for (int c = 0; c < 3; ++c) {
-                const float clear = 1 - std::clamp(t.opacity[c], 0.f, 1.f); // NaN: opaque to nothing
-                if (!(clear < 1)) continue;
+                const float clear = 1 - std::clamp(t.opacity[c], 0.f, 1.f);
+                if (!(clear < 1)) continue; // also NaN, which takes no light
                 s.left[c] *= slab ? float(exact::pow(double(clear), 1.0 / kSlab)) : clear;
             }
             out.push_back(s);

@@ -1,20 +1,10 @@
 // ri.h: blocks, attributes, shaders, lights and transformations.
-#include "ri/c/client.h"
+#include "ri/c/pairs.h"
 #include <algorithm>
 #include <cstring>
 
-// The parameters before "..." are RtFloat in the specification's binding; the machines this runs on pass them as what they are.
-#pragma clang diagnostic ignored "-Wvarargs"
-
 using namespace alpenglow;
 using namespace alpenglow::ri;
-
-#define ALPENGLOW_PAIRS(last)                                                                                                \
-    va_list list;                                                                                                            \
-    va_start(list, last);                                                                                                    \
-    Pairs pairs(list);                                                                                                       \
-    va_end(list)
-#define ALPENGLOW_LIST pairs.count(), pairs.tokens.data(), pairs.values.data()
 
 namespace {
 

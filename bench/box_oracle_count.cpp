@@ -8,6 +8,7 @@ namespace alpenglow::bench {
 double oracleRays(const OracleRun& r) {
     oracle::Box box;
     box.freeBounces = r.freeBounces;
+    box.rootRoulette = r.rootRoulette;
     uint64_t samples = 0;
     eachSample(r, box, [&](int, int, const oracle::V&) { ++samples; });
     return double(box.rays) / double(samples);

@@ -11,6 +11,7 @@ struct OracleRun {
     uint32_t samples = 0;      ///< of each pixel
     bool sameSequences = true; ///< numbers of the renderer's own sampler; else a Mersenne twister's
     int freeBounces = 4;       ///< roulette behind it
+    bool rootRoulette = false; ///< by the renderer's rule, 1.5 sqrt(throughput); else by the throughput
 };
 /// Sums of the pixels, three floats each; returns the mean of all.
 double runOracle(const OracleRun&, std::vector<double>& sums);

@@ -22,6 +22,7 @@ template <class Meet> double run(const oracle::Tracer<Meet>& box, const OracleRu
 double runOracle(const OracleRun& r, std::vector<double>& sums) {
     oracle::Box box;
     box.freeBounces = r.freeBounces;
+    box.rootRoulette = r.rootRoulette;
     return run(box, r, sums);
 }
 
@@ -29,6 +30,7 @@ OracleRunner oracleThroughEmbree() {
     auto box = std::make_shared<oracle::Tracer<oracle::ThroughEmbree>>();
     return [box](const OracleRun& r, std::vector<double>& sums) {
         box->freeBounces = r.freeBounces;
+        box->rootRoulette = r.rootRoulette;
         return run(*box, r, sums);
     };
 }

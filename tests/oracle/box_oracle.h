@@ -83,6 +83,7 @@ struct Analytic {
 template <class Meet> struct Tracer : Meet {
     bool indirect = true; ///< false: direct light only
     int freeBounces = 4;  ///< roulette decides behind hits past this one (the camera's hit is 0)
+    bool rootRoulette = false; ///< the chance to go on is 1.5 sqrt(throughput), the renderer's rule; false: the throughput
     static constexpr double kLe = 7;
     using Meet::meet, Meet::hides, Meet::kOff;
 
@@ -149,7 +150,7 @@ template <class Meet> struct Tracer : Meet {
                 countLight = true;
             }
             if (depth > freeBounces) {
-                double q = std::min(1.0, std::max(w.x, std::max(w.y, w.z)));
+                double most = std::max(w.x, std::max(w.y, w.z)), q = std::min(1.0, rootRoulette ? 1.5 * std::sqrt(most) : most);
                 if (u01(rng) >= q) return sum;
                 w = w * (1 / q);
             }

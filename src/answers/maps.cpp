@@ -159,9 +159,21 @@ void answerShadow(Answers& answers, const ServiceCall& call) {
     });
 }
 
+namespace {
+
+Information ofMatrix(const Matrix& m) {
+    Information i;
+    for (const auto& row : m.m)
+        for (const double x : row) i.numbers.push_back(float(x));
+    return i;
+}
+
+} // namespace
+
 void answerTextureInfo(Answers& answers, const ServiceCall& call) {
     const auto place = [&] { return call.place(); };
     const rsl::ir::Site& d = call.d;
+    const Matrix& fromCurrent = answers.world().cameraToWorld_; // maps hold matrices from the world, shaders ask from "current"
     call.each([&](int lane, const ShadePoint&) {
         int32_t asked[2] = {0, 0}; // the map and the field; each point may have its own
         const std::string* known[2] = {nullptr, nullptr};
@@ -180,6 +192,8 @@ void answerTextureInfo(Answers& answers, const ServiceCall& call) {
         else if (field == "channels") i.numbers = {float(info->channels)};
         else if (field == "bitsperchannel") i.numbers = {float(info->bits)};
         else if (field == "type") i = {{}, {info->type}, true};
+        else if (field == "viewingmatrix" && info->viewing) i = ofMatrix(fromCurrent * *info->viewing);
+        else if (field == "projectionmatrix" && info->projection) i = ofMatrix(fromCurrent * *info->projection);
         else return;
         call.answer(lane, Told(i));
     });

@@ -1,5 +1,7 @@
-// The expressions of IfBegin and ElseIf (ri.md 10.3): numbers, 'strings', $variables, defined(), concat(), the usual operators.
+// The expressions of IfBegin and ElseIf (ri.md 10.3): numbers, 'strings', $variables, defined(), concat(), the usual operators, and =~ for
+// patterns (PRMan).
 #include "base/limits.h"
+#include "base/pattern.h"
 #include "ri/interpreter.h"
 #include <cctype>
 #include <cmath>
@@ -43,10 +45,10 @@ private:
         return true;
     }
 
-    /// Precedence climbing: || && (== !=) (< <= > >=) (+ -) (* /).
+    /// Precedence climbing: || && (== != =~) (< <= > >=) (+ -) (* /).
     ConditionValue binary(int level) {
         static const std::vector<std::vector<std::string_view>> kOps = {
-            {"||"}, {"&&"}, {"==", "!="}, {"<=", ">=", "<", ">"}, {"+", "-"}, {"*", "/"}};
+            {"||"}, {"&&"}, {"==", "!=", "=~"}, {"<=", ">=", "<", ">"}, {"+", "-"}, {"*", "/"}};
         if (level == int(kOps.size())) return unary();
         ConditionValue a = binary(level + 1);
         while (!failed_) {
@@ -69,6 +71,7 @@ private:
     ConditionValue apply(std::string_view op, const ConditionValue& a, const ConditionValue& b) {
         if (op == "||") return num(truth(a) || truth(b));
         if (op == "&&") return num(truth(a) && truth(b));
+        if (op == "=~") return num(matches(asText(a), asText(b)));
         if (a.isString || b.isString) {
             int c = asText(a).compare(asText(b));
             if (op == "==") return num(c == 0);
@@ -95,6 +98,13 @@ private:
             return num(0);
         }
         return num(x / y);
+    }
+    /// As match() of the shading language: whether the pattern occurs anywhere in the text.
+    bool matches(const std::string& text, const std::string& pattern) {
+        std::string error;
+        const auto p = Pattern::make(pattern, error);
+        if (!p && !quiet_) fail("'" + pattern.substr(0, 40) + "' is no pattern (" + error + ")");
+        return p && p->occurs(text);
     }
     ConditionValue unary() {
         if (++depth_ > limits::kConditionDepth) {

@@ -1,8 +1,10 @@
 #include "ri/lexer.h"
 #include "base/limits.h"
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fast_float/fast_float.h>
+#include <fmt/format.h>
 
 namespace alpenglow::ri {
 namespace {
@@ -15,6 +17,39 @@ bool sticks(unsigned char c) { return letter(c) || startsNumber(c); }
 constexpr size_t kBuffer = 256u << 10; // comfortably above limits::kTokenBytes: a token always fits
 constexpr size_t kPlainNumber = 64;    // bytes that the fast way through numbers looks at
 constexpr size_t kLineKept = 16 << 10; // bytes of the current line kept for messages
+constexpr size_t kNotFinite = 24;      // bytes that show whether a word stands for no number
+constexpr double kInfinite = 1e38;     // RI_INFINITY
+
+/// Bytes at p that C libraries print for what is no number, 0 for others: nan, -inf, Infinity, -nan(ind). `value`: what is taken for it.
+size_t notFinite(const char* p, const char* e, double& value) {
+    const char* q = p < e && (*p == '+' || *p == '-') ? p + 1 : p;
+    const auto word = [&](const char* w) {
+        const size_t n = std::strlen(w);
+        return size_t(e - q) >= n && std::equal(w, w + n, q, [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
+    };
+    size_t n = 0;
+    for (const char* w : {"nan(ind)", "nan(snan)", "nan", "infinity", "inf"})
+        if (word(w)) {
+            n = std::strlen(w);
+            break;
+        }
+    if (n == 0 || (q + n < e && sticks(static_cast<unsigned char>(q[n])))) return 0;
+    value = *q == 'n' || *q == 'N' ? 0 : *p == '-' ? -kInfinite : kInfinite;
+    return size_t(q - p) + n;
+}
+
+/// The same of an old library of Windows, whose "-1.#IND00" has a '#' in it; p is behind the point.
+size_t notFiniteBehindPoint(const char* p, const char* e, double& value) {
+    for (const char* w : {"#IND", "#INF", "#QNAN", "#SNAN"}) {
+        const size_t n = std::strlen(w);
+        if (size_t(e - p) < n || std::memcmp(p, w, n) != 0) continue;
+        value = w[3] == 'F' ? std::copysign(kInfinite, value) : 0;
+        const char* q = p + n;
+        while (q < e && digit(static_cast<unsigned char>(*q))) ++q;
+        return q < e && letter(static_cast<unsigned char>(*q)) ? 0 : size_t(q - p);
+    }
+    return 0;
+}
 
 } // namespace
 
@@ -27,6 +62,14 @@ Lexer::Lexer(std::unique_ptr<ByteSource> source, std::string file, Reporter& rep
         if (end_ - pos_ >= 3 && std::memcmp(&buffer_[pos_], "\xef\xbb\xbf", 3) == 0) {
             pos_ += 3;
             lineStart_ = 3;
+        }
+    }
+    if (at() && (peek() == 0xfe || peek() == 0xff)) {
+        if (end_ - pos_ < 2) more();
+        if (end_ - pos_ >= 2 && (peek() ^ static_cast<unsigned char>(buffer_[pos_ + 1])) == 1) { // fe ff, ff fe
+            reporter_.error(Rie::BadFile, here(), "this is UTF-16, and RIB is ASCII or UTF-8", "iconv -f utf-16 -t utf-8");
+            pos_ = end_;
+            ended_ = true;
         }
     }
 }
@@ -139,6 +182,15 @@ bool Lexer::number(double& out) {
             if (more()) continue; // the rest of the number may only just have arrived
         }
         size_t length = size_t(stop - p);
+        if (size_t(e - stop) < kNotFinite && (!good || (stop < e && *stop == '#')) && more()) continue;
+        const size_t none = good ? (q[-1] == '.' ? notFiniteBehindPoint(q, e, out) : 0) : notFinite(p, e, out);
+        if (none > 0) {
+            length = none + (good ? size_t(q - p) : 0);
+            reporter_.once("ri:notfinite:" + file_, Severity::Error, Rie::Range, here(),
+                           "'" + std::string(p, length) + fmt::format("' is no number: {:g} is taken, and so on in this file", out));
+            pos_ += length;
+            return true;
+        }
         if (good && !huge && stop == q && length <= limits::kTokenBytes) {
             pos_ += length;
             return true;
@@ -189,7 +241,14 @@ void Lexer::plainNumbers(std::vector<double>& out) {
 
 void Lexer::numbers(std::vector<double>& out) {
     plainNumbers(out);
-    while (skipSpace() && startsNumber(peek())) {
+    const auto begins = [&] {
+        if (startsNumber(peek())) return true;
+        if (!std::strchr("nNiI", peek())) return false;
+        while (end_ - pos_ < kNotFinite && more()) {}
+        double v;
+        return notFinite(buffer_.data() + pos_, buffer_.data() + end_, v) > 0;
+    };
+    while (skipSpace() && begins()) {
         double v;
         if (number(v)) out.push_back(v);
         plainNumbers(out);

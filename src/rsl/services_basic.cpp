@@ -3,7 +3,7 @@
 #include "base/category.h"
 #include "base/limits.h"
 #include "rsl/front/protocol.h"
-#include "rsl/pattern.h"
+#include "base/pattern.h"
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -153,6 +153,8 @@ size_t parseConversion(const std::string& p, size_t at, Conversion& c) {
         c.precision = digits();
     }
     c.letter = i < p.size() ? p[i] : 0;
+    if (c.letter == 'v' || c.letter == 'n') c.letter = 'p'; // vectors and normals of Aqsis and Pixie
+    if (c.letter == 'i') c.letter = 'd';
     return i + 1;
 }
 

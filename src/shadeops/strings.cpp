@@ -18,8 +18,9 @@ std::vector<Shadeop> stringShadeops() {
         return list.back();
     };
     const std::string conversions =
-        "%f %e %g %d (= %.0f) for floats; %p for points, vectors, normals and %c for colours: [x y z]; %m for matrices, rows separated by commas; "
-        "%s for strings. All take a precision and a width. %g without precision is the shorter of %f and %e; with one it is %f.";
+        "%f %e %g %d (= %.0f, also %i) for floats; %p (also %v %n) for points, vectors, normals and %c for colours: "
+        "[x y z]; %m for matrices, rows separated by commas; %s for strings. "
+        "All take a precision and a width. %g without precision is the shorter of %f and %e; with one it is %f.";
     add("format", sigs({{"string format(string pattern)"}, {"string format(string pattern; any value, ...)"}}), Lowering::Service,
         ("The text of the pattern with its conversions filled in. " + conversions).c_str())
         .examples = {{"format(\"%s %d\", \"a\", 3)", "a 3"}, {"format(\"%.2f\", 0.5)", "0.50"}};

@@ -148,3 +148,35 @@ TEST(ForeignTiff, MipLevelsInDirectories) {
     EXPECT_EQ(m->metadata["wrapmodes"], "periodic,black");
     EXPECT_TRUE(readImage(s / "a.tex", d)->levels.empty());
 }
+
+// What a shader outputs as a colour or a normal is shown as colours, by whatever reads no names; other sets of channels as greys.
+TEST(OwnTiff, TriplesAreColours) {
+    Scratch s;
+    const std::pair<std::vector<std::string>, int> cases[] = {{{"r", "g", "b"}, PHOTOMETRIC_RGB},
+                                                              {{"Cs.r", "Cs.g", "Cs.b"}, PHOTOMETRIC_RGB},
+                                                              {{"N.x", "N.y", "N.z", "a"}, PHOTOMETRIC_RGB},
+                                                              {{"a.r", "b.g", "b.b"}, PHOTOMETRIC_MINISBLACK},
+                                                              {{"x", "y", "z"}, PHOTOMETRIC_MINISBLACK},
+                                                              {{"colour", "bag", "crab"}, PHOTOMETRIC_MINISBLACK},
+                                                              {{"u", "v"}, PHOTOMETRIC_MINISBLACK}};
+    for (const auto& [channels, photometric] : cases) {
+        Image m = makeImage(2, 1, channels);
+        for (size_t i = 0; i < m.data.size(); ++i) m.data[i] = float(i) / 16;
+        Diagnostics d;
+        WriteOptions o;
+        o.format = Format::Tiff;
+        o.sample = Sample::Float;
+        o.policy = s.policy();
+        ASSERT_TRUE(writeImage("own.tif", m, o, d)) << messages(d);
+        TIFF* t = TIFFOpen((s / "own.tif").c_str(), "r");
+        ASSERT_TRUE(t);
+        uint16_t shown = 99;
+        TIFFGetField(t, TIFFTAG_PHOTOMETRIC, &shown);
+        TIFFClose(t);
+        EXPECT_EQ(shown, photometric) << channels[0];
+        const auto again = readImage(s / "own.tif", d);
+        ASSERT_TRUE(again) << messages(d);
+        EXPECT_EQ(again->channels, channels);
+        EXPECT_EQ(again->data, m.data);
+    }
+}

@@ -27,6 +27,33 @@ TEST(Grammar, BadNumbersAreReportedInPlace) {
         EXPECT_FALSE(world(std::string("Translate 0 0 ") + bad)->ok) << bad;
 }
 
+// What C libraries print of numbers that are none; exporters write it. The other numbers stay where they are.
+TEST(Grammar, NotANumberIsSaidAndTaken) {
+    const std::string none[] = {"nan", "-nan", "-NaN(ind)", "1.#QNAN", "-1.#IND00"}, endless[] = {"inf", "Infinity", "1.#INF00", "+INF"};
+    for (const std::string& text : none) {
+        auto c = world("Polygon \"P\" [" + text + " 0 0 1 " + text + " 2 3 4 " + text + "] Sphere 1 -1 1 360");
+        EXPECT_EQ(c->frame().primitives.size(), 2u) << c->messages();
+        EXPECT_EQ(c->primitive().params[0].numbers, (std::vector<float>{0, 0, 0, 1, 0, 2, 3, 4, 0})) << text;
+        EXPECT_EQ(c->only().code, Rie::Range) << "said once";
+        EXPECT_EQ(c->only().place.column, 14);
+    }
+    for (const std::string& text : endless) {
+        auto c = read("Clipping .5 " + text + "\nWorldBegin WorldEnd");
+        EXPECT_EQ(c->frame().options.clipFar, 1e38f) << text;
+        EXPECT_EQ(c->only().code, Rie::Range);
+    }
+    EXPECT_EQ(world("Polygon \"P\" [0 0 0 1 -inf 2 3 4 5]")->primitive().params[0].numbers[4], -1e38f);
+    EXPECT_TRUE(world("Color 1 1 1.#INFO\nSphere 1 -1 1 360")->ok) << "a comment";
+    EXPECT_EQ(world("Color 1 1 1 info")->first().code, Rie::BadToken) << "a request";
+}
+
+TEST(Grammar, Utf16IsNamed) {
+    for (const std::string mark : {"\xff\xfe", "\xfe\xff"}) {
+        auto c = read(mark + "W\1o\1r\1l\1d\1");
+        EXPECT_NE(c->only().message.find("UTF-16"), std::string::npos);
+    }
+}
+
 TEST(Grammar, MessagesAboutARequestShowItsLine) {
     auto c = read("WorldBegin\n  Rotate 10\n  0 0 0\nSphere 1 -1 1 360\nWorldEnd");
     EXPECT_EQ(c->only().place.line, 2);

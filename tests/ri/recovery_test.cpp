@@ -175,6 +175,9 @@ TEST(Conditions, Expressions) {
     EXPECT_TRUE(holds("defined($user:s) && !defined(user:nothing)"));
     EXPECT_TRUE(holds("concat('a', 'b', 'c') == $user:s"));
     EXPECT_TRUE(holds("$(concat('user:', 'x')) == 3"));
+    EXPECT_TRUE(holds("$user:s =~ 'b' && $user:s =~ '^a.*c$' && $user:x =~ '[0-9]'"));
+    EXPECT_FALSE(holds("$user:s =~ '^b'"));
+    EXPECT_FALSE(holds("$user:s =~ '('", 1));
     EXPECT_FALSE(holds("$user:nothing == 1", 1));
     EXPECT_FALSE(holds("defined(user:nothing) && $user:nothing == 1")); // not looked at
     EXPECT_FALSE(holds("1 +", 1));

@@ -1,5 +1,5 @@
 // The regular expressions of match() against those of the C library, and such as nothing may take long.
-#include "rsl/pattern.h"
+#include "base/pattern.h"
 #include "base/limits.h"
 #include <chrono>
 #include <gtest/gtest.h>

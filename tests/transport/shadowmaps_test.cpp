@@ -71,6 +71,23 @@ TEST(ShadowMaps, FormsAgree) {
     EXPECT_EQ(s.messages(), "");
 }
 
+// RISpec 15.7.4: both matrices begin in "current" space; the picture reaches from -1 to 1 to the right and from 1 to -1 downward.
+TEST(ShadowMaps, MatricesOfTheMap) {
+    Scene camera = floorOf("viewing", "matrix m = 0; float f = textureinfo(map, \"viewingmatrix\", m); point q = transform(m, P);"
+                                      " Ci = f * color(xcomp(q), ycomp(q), zcomp(q));", "Translate 3 -1 2\n");
+    Scene screen = floorOf("projected", "matrix m = 0; float f = textureinfo(map, \"projectionmatrix\", m); point q = transform(m, P);"
+                                        " Ci = color(xcomp(q), ycomp(q), f);", "Translate 3 -1 2\n");
+    for (const float x : {-3.f, .5f})
+        for (const float z : {-1.f, 2.f}) { // the camera of the map has x to the right, z upward, and -y in front of it
+            const Color c = camera.one(at(x + 3, z + 2)), s = screen.one(at(x + 3, z + 2)); // rays are the camera's
+            for (int k = 0; k < 3; ++k) EXPECT_NEAR(c[k], (k == 0 ? x : k == 1 ? z : 4), 1e-5) << k;
+            EXPECT_NEAR(s.x, x / 4, 1e-6);
+            EXPECT_NEAR(s.y, z / 4, 1e-6);
+            EXPECT_EQ(s.z, 1);
+        }
+    EXPECT_EQ(camera.messages() + screen.messages(), "");
+}
+
 // A filter as wide as b of the map: the part of it that is dark falls linearly over the edge. 32 x 32 comparisons.
 TEST(ShadowMaps, BlurIsAPartOfTheMap) {
     Scene s = floorOf("blurred", "Ci = shadow(map, P, \"bias\", .01, \"blur\", .1, \"samples\", 1024);");

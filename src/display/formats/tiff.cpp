@@ -308,6 +308,22 @@ std::optional<Image> decodeTiff(Bytes b, const DecodeContext& ctx) {
     return m;
 }
 
+namespace {
+
+/// Whether the first three belong together: r g b, Cs.r Cs.g Cs.b, N.x N.y N.z. Viewers show those as colours, others as greys.
+bool beginWithATriple(const std::vector<std::string>& c) {
+    if (c.size() < 3) return false;
+    for (const std::string_view letters : {"rgb", "xyz"}) {
+        bool all = true;
+        for (size_t k = 0; k < 3; ++k)
+            all &= !c[k].empty() && c[k].back() == letters[k] && c[k].compare(0, c[k].size() - 1, c[0], 0, c[0].size() - 1) == 0;
+        if (all && (c[0].size() > 1 ? c[0][c[0].size() - 2] == '.' : letters == "rgb")) return true;
+    }
+    return false;
+}
+
+} // namespace
+
 bool encodeTiff(OutputFile& out, const Image& m, const WriteOptions& o, std::string& why) {
     Messages messages;
     auto options = openOptions(messages);
@@ -321,7 +337,7 @@ bool encodeTiff(OutputFile& out, const Image& m, const WriteOptions& o, std::str
         return false;
     }
     TIFF* f = t.get();
-    bool rgb = n >= 3 && m.channels[0] == "r" && m.channels[1] == "g" && m.channels[2] == "b";
+    bool rgb = beginWithATriple(m.channels);
     TIFFSetField(f, TIFFTAG_IMAGEWIDTH, uint32_t(m.width));
     TIFFSetField(f, TIFFTAG_IMAGELENGTH, uint32_t(m.height));
     TIFFSetField(f, TIFFTAG_BITSPERSAMPLE, int(bits));

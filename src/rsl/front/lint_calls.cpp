@@ -100,7 +100,7 @@ std::vector<char> conversions(const std::string& pattern) {
         if (pattern[i] != '%') continue;
         for (++i; i < pattern.size() && std::string_view("-+ #0123456789.*").find(pattern[i]) != std::string_view::npos;) ++i;
         const char c = i < pattern.size() ? pattern[i] : '\0';
-        if (c != '%') letters.push_back(c);
+        if (c != '%') letters.push_back(c == 'v' || c == 'n' ? 'p' : c == 'i' ? 'd' : c);
     }
     return letters;
 }

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace alpenglow::rsl {
+namespace alpenglow {
 
 /// A pattern, translated. Immutable: threads may share one.
 /// Understood: characters, `.`, `[...]` with ranges and classes, `( )`, `|`, `* + ? {n} {n,} {n,m}`, `^ $`, `\` before a
@@ -34,4 +34,4 @@ private:
     uint32_t start_ = 0;
 };
 
-} // namespace alpenglow::rsl
+} // namespace alpenglow

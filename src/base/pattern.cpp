@@ -1,10 +1,10 @@
-#include "rsl/pattern.h"
+#include "base/pattern.h"
 #include "base/limits.h"
 #include <cctype>
 #include <cstring>
 #include <functional>
 
-namespace alpenglow::rsl {
+namespace alpenglow {
 namespace {
 
 constexpr int kMostRepeats = 32767; // RE_DUP_MAX
@@ -367,4 +367,4 @@ bool Pattern::occurs(std::string_view text) const {
     return found;
 }
 
-} // namespace alpenglow::rsl
+} // namespace alpenglow

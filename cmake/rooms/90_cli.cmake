@@ -2,7 +2,7 @@
 file(GLOB cli_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/cli/*.cpp)
 find_package(CLI11 REQUIRED)
 add_executable(alpenglow ${cli_sources})
-target_link_libraries(alpenglow PRIVATE render ri transport shading texture display rsl_jit shadeops base CLI11::CLI11 nlohmann_json::nlohmann_json)
+target_link_libraries(alpenglow PRIVATE view render ri transport shading texture display rsl_jit shadeops base CLI11::CLI11 nlohmann_json::nlohmann_json)
 target_compile_definitions(alpenglow PRIVATE ALPENGLOW_VERSION="0.1")
 add_custom_target(commit_header
   COMMAND ${CMAKE_COMMAND} -DSOURCE=${CMAKE_SOURCE_DIR} -DOUT=${CMAKE_BINARY_DIR}/generated/alpenglow_commit.h -P ${CMAKE_SOURCE_DIR}/cmake/commit.cmake

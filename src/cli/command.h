@@ -28,6 +28,7 @@ enum Status : int {
 
 /// Each describes its options to the parser and, when its subcommand is called, does the work and sets *status.
 void addRender(CLI::App&, int* status, const std::string& command); ///< `command`: the whole line, for --stats and --stamp
+void addView(CLI::App&, int* status);
 void addEval(CLI::App&, int* status);
 void addShade(CLI::App&, int* status);
 void addCompile(CLI::App&, int* status);

@@ -156,6 +156,7 @@ int runProgram(int argc, char** argv) {
         "Exit status: 0 done; 1 done, but requests failed; 2 wrong use; 3 nothing could be rendered; 4 a limit or memory;\n"
         "5 an output could not be written; 130 interrupted, what was done is saved.");
     addRender(app, &status, commandText(argc, argv));
+    addView(app, &status);
     addEval(app, &status);
     addShade(app, &status);
     addCompile(app, &status);

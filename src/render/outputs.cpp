@@ -335,16 +335,65 @@ size_t floatOf(const OutputPlan& plan, const OutputVariable& v, const std::vecto
 }
 } // namespace
 
-bool writeOutputs(const OutputPlan& plan, const PictureFacts& facts, const std::function<const Image&(const OutputSpec&)>& pixels,
-                  const Imager& imager, bool allowWrite, Diagnostics& diags) {
-    bool all = true;
+std::optional<display::Image> finishedPicture(const OutputPlan& plan, const OutputSpec& s, const PictureFacts& facts, const Image& in,
+                                              const Imager& imager) {
     std::vector<int> firstFloat(plan.engineOutputs.size());
     for (size_t i = 0, n = 0; i < firstFloat.size(); n += size_t(plan.engineWidths[i++])) firstFloat[i] = int(n);
     const int w = facts.window.width(), h = facts.window.height();
     std::vector<float> rx(size_t(w), 0.f), ry(size_t(w), 0.f), row(size_t(w) * 4);
     const float zeros[16] = {}; // hidden and raytrace have no light by path
+    display::Image out = display::makeImage(w, h, s.channels());
+    size_t stride = in.channels.size();
+    for (int y = 0; y < h; ++y) {
+        const float* src = in.data.data() + size_t(y + facts.window.y0 - in.window.y0) * size_t(in.window.width()) * stride;
+        float *r = row.data(), *g = r + w, *b = g + w, *a = b + w;
+        for (int x = 0; x < w; ++x) {
+            const float* p = src + size_t(x) * stride;
+            r[x] = expose(p[0], s.gain, s.gamma);
+            g[x] = expose(p[1], s.gain, s.gamma);
+            b[x] = expose(p[2], s.gain, s.gamma);
+            a[x] = p[3];
+            rx[size_t(x)] = float(facts.window.x0 + x) + 0.5f;
+            ry[size_t(x)] = float(facts.window.y0 + y) + 0.5f;
+        }
+        if (imager && !imager(w, rx.data(), ry.data(), r, g, b, a)) return {};
+        if (s.srgb) // after the imager, which works on light
+            for (int i = 0; i < 3 * w; ++i) r[i] = srgbEncode(r[i]);
+        for (int x = 0; x < w; ++x) {
+            const float* p = src + size_t(x) * stride;
+            float* q = out.pixel(x, y);
+            for (const OutputVariable& v : s.variables) {
+                size_t n = v.channels.size();
+                switch (v.source) {
+                case Source::Ci:
+                    for (size_t k = 0; k < n; ++k) *q++ = k == 0 ? r[x] : k == 1 ? g[x] : b[x];
+                    break;
+                case Source::Alpha: *q++ = a[x]; break;
+                case Source::Z: *q++ = std::isfinite(p[7]) ? p[7] : kFarAway; break;
+                case Source::Oi:
+                    for (size_t k = 0; k < n; ++k) *q++ = p[4 + std::min(k, size_t(2))];
+                    break;
+                default: {
+                    const size_t at = 8 + floatOf(plan, v, firstFloat);
+                    const float* e = at + n <= stride ? p + at : zeros;
+                    for (size_t k = 0; k < n; ++k) {
+                        const float x1 = s.ownExposure && v.color ? expose(e[k], s.gain, s.gamma) : e[k];
+                        *q++ = s.srgb && v.shown() ? srgbEncode(x1) : x1;
+                    }
+                    break;
+                }
+                }
+            }
+        }
+    }
+    return out;
+}
+
+bool writeOutputs(const OutputPlan& plan, const PictureFacts& facts, const std::function<const Image&(const OutputSpec&)>& pixels,
+                  const Imager& imager, bool allowWrite, Diagnostics& diags) {
+    bool all = true;
+    const int w = facts.window.width(), h = facts.window.height();
     for (const OutputSpec& s : plan.pictures) {
-        const Image& in = pixels(s);
         display::DriverSetup setup;
         setup.name = s.name;
         setup.type = s.type;
@@ -367,51 +416,9 @@ bool writeOutputs(const OutputPlan& plan, const PictureFacts& facts, const std::
         setup.policy.allowWrite = allowWrite || s.userFile;
         setup.place = s.place;
         if (s.deep) setup.deep = facts.deep;
-        display::Image out = display::makeImage(w, h, setup.channels);
-        size_t stride = in.channels.size();
-        for (int y = 0; y < h; ++y) {
-            const float* src = in.data.data() + size_t(y + facts.window.y0 - in.window.y0) * size_t(in.window.width()) * stride;
-            float *r = row.data(), *g = r + w, *b = g + w, *a = b + w;
-            for (int x = 0; x < w; ++x) {
-                const float* p = src + size_t(x) * stride;
-                r[x] = expose(p[0], s.gain, s.gamma);
-                g[x] = expose(p[1], s.gain, s.gamma);
-                b[x] = expose(p[2], s.gain, s.gamma);
-                a[x] = p[3];
-                rx[size_t(x)] = float(facts.window.x0 + x) + 0.5f;
-                ry[size_t(x)] = float(facts.window.y0 + y) + 0.5f;
-            }
-            if (imager && !imager(w, rx.data(), ry.data(), r, g, b, a)) return all;
-            if (s.srgb) // after the imager, which works on light
-                for (int i = 0; i < 3 * w; ++i) r[i] = srgbEncode(r[i]);
-            for (int x = 0; x < w; ++x) {
-                const float* p = src + size_t(x) * stride;
-                float* q = out.pixel(x, y);
-                for (const OutputVariable& v : s.variables) {
-                    size_t n = v.channels.size();
-                    switch (v.source) {
-                    case Source::Ci:
-                        for (size_t k = 0; k < n; ++k) *q++ = k == 0 ? r[x] : k == 1 ? g[x] : b[x];
-                        break;
-                    case Source::Alpha: *q++ = a[x]; break;
-                    case Source::Z: *q++ = std::isfinite(p[7]) ? p[7] : kFarAway; break;
-                    case Source::Oi:
-                        for (size_t k = 0; k < n; ++k) *q++ = p[4 + std::min(k, size_t(2))];
-                        break;
-                    default: {
-                        const size_t at = 8 + floatOf(plan, v, firstFloat);
-                        const float* e = at + n <= stride ? p + at : zeros;
-                        for (size_t k = 0; k < n; ++k) {
-                            const float x1 = s.ownExposure && v.color ? expose(e[k], s.gain, s.gamma) : e[k];
-                            *q++ = s.srgb && v.shown() ? srgbEncode(x1) : x1;
-                        }
-                        break;
-                    }
-                    }
-                }
-            }
-        }
-        all &= display::writeDisplay(setup, out, diags);
+        const std::optional<display::Image> out = finishedPicture(plan, s, facts, pixels(s), imager);
+        if (!out) return all;
+        all &= display::writeDisplay(setup, *out, diags);
     }
     return all;
 }

@@ -126,6 +126,8 @@ struct PictureFacts {
 /// Null: none.
 using Imager = std::function<bool(int count, const float* x, const float* y, float* r, float* g, float* b, float* a)>;
 
+/// A picture of the plan as its driver gets it: `in` is what was reconstructed for it. Nothing: the imager was stopped.
+std::optional<display::Image> finishedPicture(const OutputPlan&, const OutputSpec&, const PictureFacts&, const Image& in, const Imager&);
 /// Writes all pictures of the plan. pixels(spec) gives what was reconstructed for it. False when any could not be written (an
 /// error was reported); the others are written all the same. What the imager was stopped in and what comes behind it is not.
 bool writeOutputs(const OutputPlan&, const PictureFacts&, const std::function<const Image&(const OutputSpec&)>& pixels,

@@ -6,6 +6,7 @@
 #include "render/noise.h"
 #include "render/photonpass.h"
 #include "render/rendering.h"
+#include "render/watcher.h"
 #include <algorithm>
 #include <cmath>
 #include <new>
@@ -99,6 +100,7 @@ private:
     uint32_t firstJudged() const;
     void judge();
     void tell(double inPass, bool last);
+    void show(bool grown);
 
     Job& job_;
     Film& film_;
@@ -162,6 +164,18 @@ void PathLoop::tell(double inPass, bool last) {
         s.fraction = std::max(s.fraction, std::min(1.0, settings_.noise / noise_.noise * (settings_.noise / noise_.noise)));
     if (last) job_.progress.finish(s, job_.what);
     else job_.progress.update(s, job_.what);
+}
+
+/// Lets who looks on see the whole passes.
+void PathLoop::show(bool grown) {
+    if (!settings_.watcher || !any_) return;
+    Glance g;
+    g.pixels = [this](const OutputSpec& s) { return filmImage(film_, job_.plan, s.depth); };
+    g.film = &film_;
+    g.seconds = job_.elapsed();
+    g.rays = job_.rayTotal;
+    g.grown = grown;
+    settings_.watcher->look(g);
 }
 
 /// Only where a render is one by itself: parts have the samples they are asked for. Photons of caustics belong to one sample of all
@@ -273,6 +287,7 @@ bool PathLoop::tracePass(const Pass& pass) {
                 job_.pollStop();
                 if (settings_.seconds > 0 && any_ && job_.elapsed() > settings_.seconds) job_.halt = 1;
                 tell(double(pass.samples()) * double(done) / double(tiles_.size()), false);
+                show(false);
             });
     } catch (const std::bad_alloc&) { job_.outOfMemory = std::current_exception(); } // the film has whole passes only
     if (job_.world) job_.world->flushPrints(whole);
@@ -342,6 +357,7 @@ bool PathLoop::run(const std::function<void(Film&)>& afterPass) {
         any_ = true;
         judge();
         if (afterPass) afterPass(film_);
+        show(true);
     }
     if (any_) tell(0, true);
     else job_.progress.clear();

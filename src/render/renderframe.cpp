@@ -14,6 +14,7 @@
 #include "render/provenance.h"
 #include "render/framework.h"
 #include "render/rendering.h"
+#include "render/watcher.h"
 #include "transport/bakes.h"
 #include <cmath>
 #include <tbb/global_control.h>
@@ -22,6 +23,9 @@ namespace alpenglow::render {
 namespace {
 
 using transport::Hider;
+
+/// Whether pictures become files.
+bool writesFiles(const RenderSettings& s) { return !s.watcher || s.watcher->writes(); }
 
 constexpr uint32_t kBakeSamples = 256; ///< of a baked point, at most: --noise and --time have no number of their own
 
@@ -86,6 +90,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
     if (f.o.frameNumber > 0) job.what += " (frame " + std::to_string(f.o.frameNumber) + ")";
     if (f.o.imager) f.imager = imagerOf(f);
     describeFrame(f);
+    if (settings_.watcher) settings_.watcher->begin({f.plan, f.picture, f.world, f.imager});
     makePhotonMaps(f, job);
     findRecords(job);
     if (!settings_.pixel) bakeGrids(job, f.path ? std::min(f.spp, kBakeSamples) : 1);
@@ -100,7 +105,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
     } else if (!renderSamples(f, job)) {
         return;
     }
-    if (!settings_.pixel) writeBaked(f, job);
+    if (!settings_.pixel && writesFiles(settings_)) writeBaked(f, job);
     stats_.cpuSec += processCpuSeconds() - cpu;
     takeFigures(f, job);
 }
@@ -138,6 +143,7 @@ bool Renderer::planFrame(FrameWork& f) {
         diagnostics_.report(Severity::Error, Rie::MissingData, {}, "no Display of this frame can be made; it is not rendered");
         return false;
     }
+    if (!writesFiles(settings_)) return true;
     names_.nextWorld();
     f.checkpoint = f.path ? checkpointFile(f.o) : "";
     nameOutputs(f.plan, f.o);
@@ -273,6 +279,7 @@ bool Renderer::renderSamples(FrameWork& f, Job& job) {
         ++outcome_.refused;
         return false;
     }
+    if (!film && settings_.watcher) film = settings_.watcher->filmFor(d);
     if (!film) film = std::make_unique<Film>(d);
     film->metadata[kPicturesKey] = planToText(f.plan, f.picture);
     if (settings_.part) film->metadata[kWholeKey] = rangeText({0, f.spp});
@@ -293,7 +300,7 @@ bool Renderer::renderSamples(FrameWork& f, Job& job) {
     }
     if (!any) {
         ++outcome_.refused;
-        if (job.interrupted)
+        if (job.interrupted && writesFiles(settings_))
             diagnostics_.report(Severity::Warning, Rie::NoError, {},
                                 "interrupted before the first pass was whole; nothing is written");
     } else {
@@ -303,9 +310,10 @@ bool Renderer::renderSamples(FrameWork& f, Job& job) {
     stats_.spp = uint64_t(samples.mean + 0.5);
     stats_.sppLeast = samples.least;
     stats_.sppMost = samples.most;
-    stats_.noise = noiseFigures(*film);
+    if (writesFiles(settings_)) stats_.noise = noiseFigures(*film);
     stats_.saturated += film->saturated();
     f.nonFinite = film->nonFinite();
+    if (settings_.watcher) settings_.watcher->finished(any ? std::move(film) : nullptr);
     return true;
 }
 
@@ -316,6 +324,7 @@ void Renderer::writeFrameFilm(FrameWork& f, Film& film, double renderSec) {
     if (film.saturated())
         diagnostics_.report(Severity::Warning, Rie::Range, {},
                             std::to_string(film.saturated()) + " values beyond 2^60 were cut there");
+    if (!writesFiles(settings_)) return;
     if (settings_.stamp) addStamp(f.picture, settings_, renderSec);
     writtenPictures(f, writeFilm(film, f.plan, f.picture, f.imager, settings_.allowWrite, diagnostics_));
     if (f.part) {
@@ -350,7 +359,7 @@ void Renderer::renderGrid(FrameWork& f, Job& job) {
     stats_.noise = {}; // not known: neighbouring pixels share samples
     outcome_.interrupted |= job.interrupted;
     ++outcome_.rendered;
-    if (job.interrupted)
+    if (job.interrupted && writesFiles(settings_))
         diagnostics_.report(Severity::Warning, Rie::NoError, {},
                             "interrupted: what was not reached stays black in the picture");
     if (f.nonFinite) {
@@ -363,6 +372,11 @@ void Renderer::renderGrid(FrameWork& f, Job& job) {
     auto pixels = [&](const OutputSpec& s) -> const Image& {
         return made.images[made.of[size_t(&s - f.plan.pictures.data())]];
     };
+    if (settings_.watcher) {
+        if (!job.interrupted) settings_.watcher->look({pixels, nullptr, job.elapsed(), job.rayTotal, true});
+        settings_.watcher->finished(nullptr);
+    }
+    if (!writesFiles(settings_)) return;
     if (settings_.stamp) addStamp(f.picture, settings_, job.elapsed());
     writtenPictures(f, writeOutputs(f.plan, f.picture, pixels, f.imager, settings_.allowWrite, diagnostics_));
 }

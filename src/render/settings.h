@@ -13,6 +13,8 @@
 
 namespace alpenglow::render {
 
+class Watcher;
+
 struct RenderSettings {
     std::string output; ///< -o: one picture instead of the scene's displays; "" = the displays
     std::vector<scene::Display> displays; ///< --display TYPE:NAME:MODE, added to the scene's own
@@ -55,6 +57,7 @@ struct RenderSettings {
     std::string sceneFile, command;     ///< the scene being read and the command line, for the same
     bool stamp = false;                 ///< --stamp: pictures name command, host, date and seconds
     const StopFlag* stop = nullptr; ///< non-zero: end soon and keep what is whole
+    Watcher* watcher = nullptr;     ///< who looks on (watcher.h); null: nobody
 };
 
 } // namespace alpenglow::render

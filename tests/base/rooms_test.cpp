@@ -33,7 +33,9 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
     {"render",
      {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "clouds", "photons", "transport", "display"}},
     {"cli", {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "lobes", "clouds", "photons", "world", "answers", "wave", "transport", "display",
-             "render", "ri"}},
+             "render", "ri", "view"}},
+    {"view",
+     {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "clouds", "photons", "transport", "display", "render", "ri"}},
 };
 
 // Header prefix -> the only folders that may include it.

@@ -1,0 +1,143 @@
+// alpenglow view: a scene in the browser while it renders.
+#include "base/limits.h"
+#include "base/memory.h"
+#include "base/processors.h"
+#include "cli/command.h"
+#include "cli/modelscene.h"
+#include "cli/ranges.h"
+#include "cli/shaderdescription.h"
+#include "cli/version.h"
+#include "ri/models/model.h"
+#include "rsl/compiler.h"
+#include "view/view.h"
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <unistd.h>
+
+namespace alpenglow::cli {
+namespace {
+
+struct Arguments {
+    render::RenderSettings settings;
+    std::string scene, format, memory, folder, gamma;
+    std::vector<std::string> searchPaths, rib;
+    int port = 0, frame = 0;
+    bool noDirect = false, noIndirect = false, watch = false, quiet = false, verbose = false, framed = false;
+};
+
+void checkLate(Arguments& a) {
+    render::RenderSettings& s = a.settings;
+    auto wrong = [](const std::string& option, const std::string& what) { throw CLI::ValidationError(option, what); };
+    if (!a.folder.empty() && chdir(a.folder.c_str()) != 0) wrong("--cwd", "there is no folder \"" + a.folder + "\"");
+    if (a.scene == "-") wrong("scene", "is a file: what comes from standard input cannot be read again");
+    if (!a.format.empty()) {
+        auto v = parseSize(a.format);
+        if (!v) wrong("--format", "takes WIDTHxHEIGHT, for example 640x480");
+        s.width = (*v)[0];
+        s.height = (*v)[1];
+        if (s.width > limits::kImageSide || s.height > limits::kImageSide) wrong("--format", "a side is too long");
+    }
+    s.memoryLimit = defaultMemoryLimit();
+    if (!a.memory.empty()) {
+        auto bytes = parseMemorySize(a.memory);
+        if (!bytes) wrong("--memory-limit", "takes a size like 800M or 4G");
+        s.memoryLimit = *bytes;
+    }
+    s.srgb = a.gamma == "srgb" || a.gamma == "sRGB";
+    if (!a.gamma.empty() && !s.srgb) {
+        auto v = parseNumbers(a.gamma, 1);
+        if (!v || !(v->front() >= 0.01 && v->front() <= 100)) wrong("--gamma", "takes a number from 0.01 to 100, or srgb, not " + a.gamma);
+        s.gamma = float(v->front());
+    }
+    s.texturePaths = s.shaderPaths = folders(a.searchPaths);
+    for (std::string& e : environmentShaders()) s.shaderPaths.push_back(std::move(e));
+    s.shippedShaders = shippedShaders();
+}
+
+/// What alpenglow info says of a shader, without what it says on the way.
+nlohmann::json aboutShader(const std::string& name, const std::vector<std::string>& folders, const std::string& dialect) {
+    Diagnostics quiet;
+    rsl::ShaderCompiler::Settings settings;
+    settings.dialect = dialect;
+    rsl::ShaderCompiler compiler(settings);
+    const auto shader = compiler.load(name, folders, quiet);
+    return shader ? nlohmann::json(descriptionJson(describe(compiler, shader, quiet))) : nlohmann::json();
+}
+
+int runView(const Arguments& a) {
+    const MemoryLimit limit(a.settings.memoryLimit, a.settings.threads > 0 ? a.settings.threads : defaultThreads());
+    const StopFlag* stop = watchInterrupts();
+    view::ViewOptions o;
+    o.settings = a.settings;
+    o.scene = a.scene;
+    o.watch = a.watch;
+    if (a.framed) o.frame = a.frame;
+    o.reader.searchPaths = folders(a.searchPaths);
+    o.reader.allowExec = a.settings.allowExec;
+    o.reader.allowRead = a.settings.allowRead;
+    o.read = [&a](ri::RibReader& reader) {
+        for (const std::string& r : a.rib) reader.readMemory(r, "--rib");
+        reader.nextScene();
+        if (ri::namedAsModel(a.scene) && ::access(a.scene.c_str(), R_OK) == 0) reader.readMemory(modelScene(a.scene), a.scene);
+        else reader.readFile(a.scene);
+    };
+    o.describe = [dialect = a.settings.dialect](const std::string& name, const std::vector<std::string>& paths) {
+        return aboutShader(name, paths, dialect);
+    };
+    const Diagnostics::Handler print = printer(a.quiet ? Severity::Error : a.verbose ? Severity::Info : Severity::Warning);
+    o.print = print;
+    std::string fault;
+    const view::ViewEnd end = view::view(std::move(o), a.port, stop, [&](const std::string& address) {
+        std::printf("%s\n", address.c_str());
+        std::fflush(stdout);
+        if (!a.quiet) std::fputs("alpenglow: open this address in a browser on this machine; Ctrl-C ends\n", stderr);
+    }, &fault);
+    if (end == view::ViewEnd::PortTaken) {
+        Diagnostic d{Severity::Error, Rie::System, {}, fault, "without --port a free one is taken", {}};
+        print(d);
+        return kWrongUse;
+    }
+    return end == view::ViewEnd::NoScene ? kNothingRendered : kDone;
+}
+
+} // namespace
+
+void addView(CLI::App& app, int* status) {
+    auto a = std::make_shared<Arguments>();
+    render::RenderSettings& s = a->settings;
+    s.software = softwareName();
+    CLI::App* c = app.add_subcommand("view", "Show a scene in the browser while it renders (docs/view.md)");
+    c->add_option("scene", a->scene, "RIB file, ASCII, binary or gzipped, or a model (.ply, .obj)")->required();
+    c->add_option("--port", a->port, "Port of 127.0.0.1; a free one when not given")->check(wholeBetween(1, 65535))->type_name("N");
+    c->add_flag("--watch", a->watch, "Read the scene again whenever a file changes that it uses; the camera stays");
+    CLI::Option* frame = c->add_option("--frame", a->frame, "Number of the frame; the first with a picture when not given")->type_name("N");
+    c->add_option("--format", a->format, "Size of the picture in pixels")->type_name("WxH");
+    c->add_option("--resolution-factor", s.resolutionFactor, "Scale both sides of the picture")->check(between(1e-4, 1e4))->type_name("F");
+    c->add_option("--hider", s.hider, "hidden, raytrace or path, instead of the scene's Hider")
+        ->check(CLI::IsMember({"hidden", "raytrace", "path"}))
+        ->type_name("NAME");
+    c->add_option("--gamma", a->gamma, "Curve that the page begins with: a display gamma, or srgb")->type_name("G|srgb");
+    c->add_option("--seed", s.seed, "Seed of all random numbers")->type_name("N");
+    c->add_option("--threads", s.threads, "Threads; when not given as many processors as the process may use")
+        ->check(wholeBetween(1, 1024))
+        ->type_name("N");
+    c->add_option("--memory-limit", a->memory, "Take no more memory than SIZE, for example 800M or 4G")->type_name("SIZE");
+    addDialect(*c, s.dialect);
+    c->add_option("--cwd", a->folder, "Work in this folder; pictures are saved there")->type_name("DIR");
+    c->add_option("--searchpath", a->searchPaths, "Folders for shaders, textures and archives, separated by :")
+        ->type_name("DIRS")
+        ->allow_extra_args(false);
+    c->add_option("--rib", a->rib, "Requests that are read before the scene")->type_name("'REQUESTS'")->allow_extra_args(false);
+    c->add_flag("--allow-exec", s.allowExec, "Let the scene run programs and load plug-ins");
+    c->add_flag("--allow-read", s.allowRead, "Let the scene read maps and archives anywhere, not only below its folders and --searchpath");
+    c->add_flag("-q,--quiet", a->quiet, "Errors only");
+    c->add_flag("-v,--verbose", a->verbose, "Notes too");
+    c->footer("Prints the address of the page, with a token that nobody else knows, and serves it on 127.0.0.1 until Ctrl-C.");
+    c->callback([a, frame, status] {
+        a->framed = frame->count() > 0;
+        checkLate(*a);
+        *status = runView(*a);
+    });
+}
+
+} // namespace alpenglow::cli

@@ -1,0 +1,42 @@
+// Who looks on while frames are rendered: a viewer, a preview in the terminal.
+#pragma once
+#include "render/outputs.h"
+#include "transport/integrator.h"
+#include <functional>
+#include <memory>
+
+namespace alpenglow::render {
+
+/// A frame that is about to be rendered. All of it lives until Watcher::finished().
+struct WatchedFrame {
+    const OutputPlan& plan;
+    const PictureFacts& picture;
+    std::shared_ptr<const transport::World> world;
+    const Imager& imager; ///< may be empty
+};
+
+/// The picture so far.
+struct Glance {
+    std::function<Image(const OutputSpec&)> pixels; ///< what writeOutputs() takes for a picture of the plan
+    const Film* film = nullptr;                     ///< path: whole passes; else null
+    double seconds = 0;                             ///< since rendering began
+    uint64_t rays = 0;                              ///< traced so far, those of the pass under way too
+    bool grown = true;                              ///< a pass came in; false: only time went by
+};
+
+/// All calls come from the thread that called Renderer::render().
+class Watcher {
+public:
+    virtual ~Watcher() = default;
+    /// False: pictures are only looked at. No file is written, and no name of one is checked.
+    virtual bool writes() const { return true; }
+    virtual void begin(const WatchedFrame&) {}
+    /// Under path the samples to go on with; null: none. What comes is of this description.
+    virtual std::unique_ptr<Film> filmFor(const FilmDescription&) { return nullptr; }
+    /// Under path after each pass, and about every 20 ms between; else once, when the picture is whole.
+    virtual void look(const Glance&) {}
+    /// The end of a frame; also of one that was interrupted. Under path with its film, if a pass is whole.
+    virtual void finished(std::unique_ptr<Film>) {}
+};
+
+} // namespace alpenglow::render

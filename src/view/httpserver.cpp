@@ -1,0 +1,399 @@
+#include "view/httpserver.h"
+#include <algorithm>
+#include <arpa/inet.h>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <fcntl.h>
+#include <list>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/random.h>
+#include <sys/socket.h>
+#include <thread>
+#include <unistd.h>
+#include <vector>
+
+namespace alpenglow::view {
+namespace {
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+const char* phrase(int status) {
+    switch (status) {
+    case 200: return "OK";
+    case 400: return "Bad Request";
+    case 403: return "Forbidden";
+    case 404: return "Not Found";
+    case 405: return "Method Not Allowed";
+    case 408: return "Request Timeout";
+    case 411: return "Length Required";
+    case 413: return "Content Too Large";
+    case 431: return "Request Header Fields Too Large";
+    case 503: return "Service Unavailable";
+    default: return "Error";
+    }
+}
+
+std::string headOf(const HttpResponse& r, bool close) {
+    return "HTTP/1.1 " + std::to_string(r.status) + " " + phrase(r.status) + "\r\nContent-Type: " + r.type +
+           "\r\nContent-Length: " + std::to_string(r.body.size()) +
+           "\r\nCache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nX-Frame-Options: DENY\r\nReferrer-Policy: no-referrer\r\n"
+           "Cross-Origin-Resource-Policy: same-origin\r\nContent-Security-Policy: default-src 'none'; script-src 'self'; "
+           "style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; "
+           "frame-ancestors 'none'\r\n" +
+           (close ? "Connection: close\r\n\r\n" : "\r\n");
+}
+
+int hexDigit(char c) {
+    return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+}
+
+std::string decoded(const std::string& s) {
+    std::string t;
+    for (size_t i = 0; i < s.size(); ++i) {
+        if (s[i] == '%' && i + 2 < s.size() && hexDigit(s[i + 1]) >= 0 && hexDigit(s[i + 2]) >= 0) {
+            t += char(hexDigit(s[i + 1]) * 16 + hexDigit(s[i + 2]));
+            i += 2;
+        } else t += s[i] == '+' ? ' ' : s[i];
+    }
+    return t;
+}
+
+std::map<std::string, std::string> argumentsOf(const std::string& query) {
+    std::map<std::string, std::string> all;
+    for (size_t at = 0; at < query.size();) {
+        const size_t end = std::min(query.find('&', at), query.size());
+        const std::string one = query.substr(at, end - at);
+        const size_t equals = one.find('=');
+        all[decoded(one.substr(0, equals))] = equals == one.npos ? "" : decoded(one.substr(equals + 1));
+        at = end + 1;
+    }
+    return all;
+}
+
+/// Header names are compared whatever their case; spaces around the value do not count.
+bool isHeader(const std::string& line, const char* name, std::string* value) {
+    const size_t n = std::strlen(name);
+    if (line.size() <= n || line[n] != ':' || strncasecmp(line.c_str(), name, n) != 0) return false;
+    const size_t a = line.find_first_not_of(" \t", n + 1), b = line.find_last_not_of(" \t");
+    *value = a == line.npos ? "" : line.substr(a, b - a + 1);
+    return true;
+}
+
+/// Draining: the last answer is written; what still comes in is thrown away, so that closing does not take the answer back.
+enum class State { Reading, Waiting, Writing, Draining };
+constexpr double kDrainSeconds = 1;
+constexpr size_t kDrainBytes = 1 << 18;
+
+struct Connection {
+    int fd = -1;
+    State state = State::Reading;
+    std::string in, out;
+    size_t written = 0;
+    HttpRequest request;
+    size_t body = 0; ///< bytes that the request's body has
+    bool headers = false, close = false, known = false;
+    double since = 0;   ///< when its state began, or its request
+    bool begun = false; ///< a byte of the request is there
+    ~Connection() {
+        if (fd >= 0) ::close(fd);
+    }
+};
+
+} // namespace
+
+struct HttpServer::Loop {
+    HttpLimits limits;
+    Handler handler;
+    int listener = -1, waker = -1;
+    std::atomic<bool> end{false};
+    std::list<Connection> connections; ///< the oldest first
+    std::thread thread;
+
+    ~Loop() {
+        if (listener >= 0) ::close(listener);
+        if (waker >= 0) ::close(waker);
+    }
+    void run();
+    void accept();
+    bool serve(Connection&, short events); ///< false: it is over
+    bool read(Connection&);
+    bool write(Connection&);
+    bool advance(Connection&);
+    bool takeHeaders(Connection&, size_t end);
+    void answer(Connection&, HttpResponse, bool close);
+    bool ask(Connection&, bool last);
+    bool timeOut(Connection&, double t);
+    int patience(double t) const;
+};
+
+/// Milliseconds until something has to be done about time.
+int HttpServer::Loop::patience(double t) const {
+    double least = 60;
+    for (const Connection& c : connections) {
+        const double s = c.state == State::Waiting ? limits.waitSeconds
+                         : c.state == State::Writing ? limits.writeSeconds
+                         : c.state == State::Draining ? kDrainSeconds
+                         : c.begun                   ? limits.requestSeconds
+                                                     : limits.idleSeconds;
+        least = std::min(least, c.since + s - t);
+    }
+    return std::max(1, int(least * 1000) + 1);
+}
+
+void HttpServer::Loop::run() {
+    std::vector<pollfd> fds;
+    while (!end) {
+        fds.assign({{listener, POLLIN, 0}, {waker, POLLIN, 0}});
+        for (const Connection& c : connections)
+            fds.push_back({c.fd, short(c.state == State::Writing ? POLLOUT : c.state == State::Waiting ? POLLRDHUP : POLLIN), 0});
+        if (::poll(fds.data(), fds.size(), patience(now())) < 0 && errno != EINTR) return;
+        bool woken = false;
+        if (fds[1].revents) {
+            uint64_t n;
+            woken = ::read(waker, &n, sizeof n) > 0;
+        }
+        const double t = now();
+        size_t i = 2;
+        for (auto c = connections.begin(); c != connections.end(); ++i) {
+            bool stays = !fds[i].revents || serve(*c, fds[i].revents);
+            if (stays && woken && c->state == State::Waiting) stays = ask(*c, false);
+            if (stays) stays = timeOut(*c, t);
+            c = stays ? std::next(c) : connections.erase(c);
+        }
+        if (fds[0].revents) accept();
+    }
+}
+
+void HttpServer::Loop::accept() {
+    for (int n = 0; n < 64; ++n) { // then those that are there get their turn
+        const int fd = ::accept4(listener, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+        if (fd < 0) return;
+        if (connections.size() >= limits.connections) {
+            auto oldest = std::find_if(connections.begin(), connections.end(), [](const Connection& c) { return !c.known; });
+            if (oldest == connections.end())
+                oldest = std::find_if(connections.begin(), connections.end(),
+                                      [](const Connection& c) { return c.state == State::Reading && !c.begun; });
+            if (oldest == connections.end()) {
+                HttpResponse r{503, "text/plain; charset=utf-8", "Too many viewers at a time.\n"};
+                const std::string text = headOf(r, true) + r.body;
+                [[maybe_unused]] ssize_t k = ::send(fd, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+                ::close(fd);
+                continue;
+            }
+            connections.erase(oldest);
+        }
+        const int one = 1;
+        setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &one, sizeof one);
+        Connection& c = connections.emplace_back();
+        c.fd = fd;
+        c.since = now();
+    }
+}
+
+bool HttpServer::Loop::serve(Connection& c, short events) {
+    if (events & (POLLERR | POLLNVAL)) return false;
+    if (c.state == State::Writing) return (events & POLLHUP) ? false : write(c);
+    if (c.state == State::Waiting) return !(events & (POLLHUP | POLLRDHUP)); // the browser went away
+    return read(c);
+}
+
+bool HttpServer::Loop::read(Connection& c) {
+    std::array<char, 16384> piece;
+    const ssize_t n = ::recv(c.fd, piece.data(), piece.size(), 0);
+    if (n < 0) return errno == EAGAIN || errno == EINTR;
+    if (n == 0) return false;
+    if (c.state == State::Draining) return (c.written += size_t(n)) < kDrainBytes;
+    if (!c.begun) c.since = now();
+    c.begun = true;
+    c.in.append(piece.data(), size_t(n));
+    return advance(c);
+}
+
+void HttpServer::Loop::answer(Connection& c, HttpResponse r, bool close) {
+    c.close |= close;
+    c.out = headOf(r, c.close) + std::move(r.body);
+    c.written = 0;
+    c.state = State::Writing;
+    c.since = now();
+}
+
+/// Takes a request out of what has come in, once it is whole.
+bool HttpServer::Loop::advance(Connection& c) {
+    if (c.state != State::Reading) return true;
+    if (!c.headers) {
+        const size_t end = c.in.find("\r\n\r\n");
+        if (end == c.in.npos || end > limits.headerBytes) {
+            if (c.in.size() <= limits.headerBytes) return true;
+            answer(c, {431, "text/plain; charset=utf-8", "The headers are too long.\n"}, true);
+            return write(c);
+        }
+        if (!takeHeaders(c, end)) return write(c);
+    }
+    if (c.in.size() < c.body) return true;
+    c.request.body = c.in.substr(0, c.body);
+    c.in.erase(0, c.body);
+    c.headers = c.begun = false;
+    c.since = now();
+    return ask(c, false);
+}
+
+/// Reads request line and headers. False: they are refused, and the answer is ready.
+bool HttpServer::Loop::takeHeaders(Connection& c, size_t end) {
+    const auto refuse = [&](int status, const char* text) {
+        answer(c, {status, "text/plain; charset=utf-8", text}, true);
+        return false;
+    };
+    const std::string head = c.in.substr(0, end);
+    c.in.erase(0, end + 4);
+    c.request = {};
+    c.body = 0;
+    bool length = false;
+    for (size_t at = 0, line = 0; at <= head.size(); ++line) {
+        const size_t stop = std::min(head.find("\r\n", at), head.size());
+        const std::string text = head.substr(at, stop - at);
+        at = stop + 2;
+        std::string value;
+        if (line == 0) {
+            const size_t a = text.find(' '), b = text.rfind(' ');
+            if (a == text.npos || b <= a + 1 || text[a + 1] != '/' || text.compare(b + 1, 7, "HTTP/1.") != 0)
+                return refuse(400, "This is no request of HTTP/1.\n");
+            c.request.method = text.substr(0, a);
+            const std::string target = text.substr(a + 1, b - a - 1);
+            const size_t query = target.find('?');
+            c.request.path = target.substr(0, query);
+            if (query != target.npos) c.request.arguments = argumentsOf(target.substr(query + 1));
+            if (text.compare(b + 1, text.npos, "HTTP/1.1") != 0) c.close = true;
+        } else if (isHeader(text, "Host", &value)) c.request.host = value;
+        else if (isHeader(text, "Origin", &value)) c.request.origin = value;
+        else if (isHeader(text, "Connection", &value)) c.close |= strcasecmp(value.c_str(), "close") == 0;
+        else if (isHeader(text, "Transfer-Encoding", &value)) return refuse(411, "A request needs Content-Length.\n");
+        else if (isHeader(text, "Content-Length", &value)) {
+            if (length || value.empty() || value.size() > 9 || value.find_first_not_of("0123456789") != value.npos)
+                return refuse(value.size() > 9 ? 413 : 400, "Content-Length makes no sense.\n");
+            length = true;
+            c.body = size_t(std::stoul(value));
+        }
+    }
+    if (c.request.method != "GET" && c.request.method != "POST") return refuse(405, "Only GET and POST are known.\n");
+    if (c.body > limits.bodyBytes) return refuse(413, "The request is too long.\n");
+    c.headers = true;
+    return true;
+}
+
+bool HttpServer::Loop::ask(Connection& c, bool last) {
+    std::optional<HttpResponse> r = handler(c.request, last, &c.known);
+    if (r) {
+        answer(c, std::move(*r), false);
+        return write(c);
+    }
+    c.state = State::Waiting;
+    return true;
+}
+
+bool HttpServer::Loop::write(Connection& c) {
+    while (c.written < c.out.size()) {
+        const ssize_t n = ::send(c.fd, c.out.data() + c.written, c.out.size() - c.written, MSG_NOSIGNAL);
+        if (n < 0) return errno == EAGAIN || errno == EINTR;
+        c.written += size_t(n);
+    }
+    std::string().swap(c.out);
+    if (c.close) {
+        ::shutdown(c.fd, SHUT_WR);
+        std::string().swap(c.in);
+        c.state = State::Draining;
+        c.written = 0;
+        c.since = now();
+        return true;
+    }
+    c.state = State::Reading;
+    c.since = now();
+    c.begun = !c.in.empty();
+    return c.in.empty() || advance(c);
+}
+
+bool HttpServer::Loop::timeOut(Connection& c, double t) {
+    const double spent = t - c.since;
+    switch (c.state) {
+    case State::Waiting: return spent < limits.waitSeconds || ask(c, true);
+    case State::Writing: return spent < limits.writeSeconds;
+    case State::Draining: return spent < kDrainSeconds;
+    case State::Reading:
+        if (!c.begun) return spent < limits.idleSeconds;
+        if (spent < limits.requestSeconds) return true;
+        answer(c, {408, "text/plain; charset=utf-8", "The request took too long.\n"}, true);
+        return write(c);
+    }
+    return true;
+}
+
+std::unique_ptr<HttpServer> HttpServer::listen(int port, std::string* fault, HttpLimits limits) {
+    std::unique_ptr<HttpServer> s(new HttpServer);
+    s->loop_ = std::make_unique<Loop>();
+    Loop& l = *s->loop_;
+    l.limits = limits;
+    l.listener = ::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    l.waker = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
+    const int one = 1;
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(uint16_t(port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    if (l.listener >= 0) setsockopt(l.listener, SOL_SOCKET, SO_REUSEADDR, &one, sizeof one);
+    if (l.listener < 0 || l.waker < 0 || ::bind(l.listener, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0 ||
+        ::listen(l.listener, 128) != 0 || ::getsockname(l.listener, reinterpret_cast<sockaddr*>(&address), &size) != 0) {
+        *fault = errno == EADDRINUSE ? "port " + std::to_string(port) + " of 127.0.0.1 is in use by another program"
+                 : errno == EACCES   ? "port " + std::to_string(port) + " may not be used"
+                                     : std::string("no socket can be opened: ") + std::strerror(errno);
+        return nullptr;
+    }
+    s->port_ = ntohs(address.sin_port);
+    return s;
+}
+
+void HttpServer::start(Handler handler) {
+    loop_->handler = std::move(handler);
+    loop_->thread = std::thread([l = loop_.get()] { l->run(); });
+}
+
+void HttpServer::wake() {
+    const uint64_t one = 1;
+    [[maybe_unused]] ssize_t n = ::write(loop_->waker, &one, sizeof one);
+}
+
+HttpServer::~HttpServer() { stop(); }
+
+void HttpServer::stop() {
+    if (!loop_ || !loop_->thread.joinable()) return;
+    loop_->end = true;
+    wake();
+    loop_->thread.join();
+}
+
+std::string randomToken() {
+    std::array<unsigned char, 16> bytes{};
+    for (size_t n = 0; n < bytes.size();) {
+        const ssize_t k = ::getrandom(bytes.data() + n, bytes.size() - n, 0);
+        if (k > 0) n += size_t(k);
+    }
+    std::string text;
+    for (unsigned char b : bytes) {
+        text += "0123456789abcdef"[b >> 4];
+        text += "0123456789abcdef"[b & 15];
+    }
+    return text;
+}
+
+bool sameText(const std::string& a, const std::string& b) {
+    unsigned char differs = a.size() != b.size();
+    for (size_t i = 0; i < a.size(); ++i) differs |= static_cast<unsigned char>(a[i] ^ b[i % std::max<size_t>(b.size(), 1)]);
+    return !differs;
+}
+
+} // namespace alpenglow::view

@@ -1,0 +1,67 @@
+// A small HTTP/1.1 server for the page of a view: one thread, 127.0.0.1 only, bounded in everything that a stranger can send.
+// Of its own, because the library in reach keeps headers without end and gives each connection a thread.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace alpenglow::view {
+
+struct HttpRequest {
+    std::string method; ///< "GET" or "POST"
+    std::string path;   ///< what stands before ?, as it was sent: nothing in it is decoded
+    std::map<std::string, std::string> arguments; ///< behind ?, decoded
+    std::string body;
+    std::string host, origin; ///< headers; "" when missing
+};
+
+struct HttpResponse {
+    int status = 200;
+    std::string type = "text/plain; charset=utf-8";
+    std::string body;
+};
+
+/// What a stranger may take of this process.
+struct HttpLimits {
+    size_t connections = 64;     ///< at a time; a further one takes the place of the oldest that has asked for nothing known
+    size_t headerBytes = 16384;  ///< of request line and headers
+    size_t bodyBytes = 1 << 16;  ///< of a request
+    double requestSeconds = 10;  ///< from a request's first byte to its last
+    double idleSeconds = 120;    ///< between two requests
+    double writeSeconds = 60;    ///< for an answer to be taken
+    double waitSeconds = 15;     ///< that an answer may be put off
+};
+
+class HttpServer {
+public:
+    /// Runs on the server's thread. Nothing: not yet; it is asked again after wake(), and with `last` when the time is over, when it
+    /// must answer. *known: set where the request comes from somebody who may ask.
+    using Handler = std::function<std::optional<HttpResponse>(const HttpRequest&, bool last, bool* known)>;
+
+    /// Listens on 127.0.0.1; port 0: a free one. Null: *fault says why.
+    static std::unique_ptr<HttpServer> listen(int port, std::string* fault, HttpLimits = {});
+    ~HttpServer();
+    int port() const { return port_; }
+    /// Begins to answer. Once.
+    void start(Handler);
+    /// Answers no more; the handler is not called again.
+    void stop();
+    /// From any thread: what was put off may be answered now.
+    void wake();
+
+private:
+    struct Loop;
+    HttpServer() = default;
+    int port_ = 0;
+    std::unique_ptr<Loop> loop_;
+};
+
+/// 32 hexadecimal digits that nobody can guess.
+std::string randomToken();
+/// Compares without telling by its time where the difference is.
+bool sameText(const std::string&, const std::string&);
+
+} // namespace alpenglow::view

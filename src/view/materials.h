@@ -1,0 +1,23 @@
+// The shaders of a frame with their parameters, and frames in which some of these are others.
+#pragma once
+#include "scene/scene.h"
+#include <map>
+
+namespace alpenglow::view {
+
+/// A shader call of a frame; calls that primitives share are one.
+struct ShaderUse {
+    std::string role; ///< "surface", "displacement", "atmosphere", "interior", "exterior", "light", "imager"
+    scene::ShaderRef call;
+    size_t primitives = 0; ///< that have it
+};
+
+/// In the order of the scene; the first `most` of them.
+std::vector<ShaderUse> shadersOf(const scene::Frame&, size_t most);
+
+/// By number in shadersOf(): parameters that take the place of the call's own of those names.
+using ParameterChanges = std::map<size_t, scene::ParamList>;
+/// The frame with these changes. What they do not reach is shared with it.
+std::shared_ptr<const scene::Frame> changed(const std::shared_ptr<const scene::Frame>&, const std::vector<ShaderUse>&, const ParameterChanges&);
+
+} // namespace alpenglow::view

@@ -1,0 +1,81 @@
+#include "view/picture.h"
+#include "render/noise.h"
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+namespace alpenglow::view {
+
+const Plane* Picture::plane(const std::string& name) const {
+    const auto i = std::find_if(planes.begin(), planes.end(), [&](const Plane& p) { return p.name == name; });
+    return i == planes.end() ? nullptr : &*i;
+}
+
+uint16_t toHalf(float f) {
+    const uint32_t bits = std::bit_cast<uint32_t>(f), sign = bits >> 16 & 0x8000, magnitude = bits & 0x7fffffff;
+    if (magnitude > 0x7f800000) return uint16_t(sign | 0x7e00);
+    if (magnitude >= 0x477ff000) return uint16_t(sign | 0x7c00); // rounds to 65536 or more
+    if (magnitude < 0x38800000) {                                // subnormal: the adder rounds
+        const float sum = std::bit_cast<float>(magnitude) + 0.5f;
+        return uint16_t(sign | (std::bit_cast<uint32_t>(sum) - 0x3f000000));
+    }
+    const uint32_t odd = magnitude >> 13 & 1;
+    return uint16_t(sign | ((magnitude - 0x38000000 + 0xfff + odd) >> 13));
+}
+
+display::Image noisePlane(const render::Film& film) {
+    const render::Window& w = film.window();
+    display::Image image = display::makeImage(w.width(), w.height(), {"noise"});
+    float* to = image.data.data();
+    for (int y = w.y0; y < w.y1; ++y)
+        for (int x = w.x0; x < w.x1; ++x) *to++ = float(render::relativeStandardError(film.moments(x, y)));
+    return image;
+}
+
+void overlay(Picture& onto, const Picture& from) {
+    const render::Window &a = onto.window, &b = from.window;
+    if (onto.stepX != from.stepX || onto.width != from.width || onto.height != from.height) return;
+    for (Plane& p : onto.planes) {
+        const Plane* q = from.plane(p.name);
+        if (!q || q->image->channels != p.image->channels) continue;
+        auto copy = std::make_shared<display::Image>(*p.image);
+        const size_t n = copy->channels.size();
+        const int x0 = std::max(a.x0, b.x0), x1 = std::min(a.x1, b.x1);
+        for (int y = std::max(a.y0, b.y0); y < std::min(a.y1, b.y1) && x0 < x1; ++y)
+            std::memcpy(copy->pixel(x0 - a.x0, y - a.y0), q->image->pixel(x0 - b.x0, y - b.y0), size_t(x1 - x0) * n * sizeof(float));
+        p.image = std::move(copy);
+    }
+}
+
+display::Image dimmed(const Picture& picture, const std::map<std::string, double>& dim) {
+    display::Image image = *picture.planes.front().image;
+    const size_t n = image.channels.size(), pixels = size_t(image.width) * size_t(image.height);
+    for (const auto& [handle, factor] : dim) {
+        const Plane* light = factor == 1 ? nullptr : picture.plane("light:" + handle);
+        if (!light || light->image->channels.size() != 3 || light->image->width != image.width || light->image->height != image.height) continue;
+        const float by = float(factor - 1);
+        for (size_t i = 0; i < pixels; ++i)
+            for (size_t k = 0; k < 3; ++k) image.data[i * n + k] += by * light->image->data[i * 3 + k];
+    }
+    return image;
+}
+
+std::string halves(const Picture& picture, const Plane& plane, const std::map<std::string, double>& dim) {
+    const bool mix = &plane == &picture.planes.front() &&
+                     std::any_of(dim.begin(), dim.end(), [&](const auto& d) { return d.second != 1 && picture.plane("light:" + d.first); });
+    const display::Image mixed = mix ? dimmed(picture, dim) : display::Image{};
+    const display::Image& image = mix ? mixed : *plane.image;
+    const size_t n = image.channels.size(), pixels = size_t(image.width) * size_t(image.height);
+    const bool alpha = &plane == &picture.planes.front() && n >= 4;
+    std::string bytes(pixels * 8, '\0');
+    const float* p = image.data.data();
+    char* to = bytes.data();
+    for (size_t i = 0; i < pixels; ++i, p += n, to += 8) {
+        const uint16_t one[4] = {toHalf(p[0]), toHalf(n > 1 ? p[1] : p[0]), toHalf(n > 2 ? p[2] : n > 1 ? 0 : p[0]),
+                                 alpha ? toHalf(p[3]) : uint16_t(0x3c00)};
+        std::memcpy(to, one, 8);
+    }
+    return bytes;
+}
+
+} // namespace alpenglow::view

@@ -1,0 +1,193 @@
+// A scene that is rendered while it is looked at: read, built, rendered pass by pass on a thread of its own, begun again whenever
+// somebody changes something, and shown.
+#pragma once
+#include "base/readlog.h"
+#include "render/renderer.h"
+#include "render/watcher.h"
+#include "ri/reader.h"
+#include "view/picture.h"
+#include "view/pose.h"
+#include "view/wishes.h"
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+namespace alpenglow::view {
+
+/// What the command line says.
+struct ViewOptions {
+    render::RenderSettings settings;
+    ri::ReaderOptions reader;
+    std::string scene;           ///< a file
+    std::optional<int> frame;    ///< by its number; nothing: the first with a picture
+    bool watch = false;          ///< read again when a file of the scene changes
+    std::function<void(ri::RibReader&)> read; ///< hands the scene to the reader
+    /// What a shader is (alpenglow info --json), found in these folders; null: nobody knows.
+    std::function<nlohmann::json(const std::string& name, const std::vector<std::string>& folders)> describe;
+    Diagnostics::Handler print;  ///< gets every message too
+};
+
+/// A message for the page, which may stand for several that are alike.
+struct Message {
+    Diagnostic diagnostic;
+    int count = 1;
+};
+
+class Session final : private render::Watcher {
+public:
+    /// `changed` is called, from any thread, when there is something new for viewers.
+    Session(ViewOptions, std::function<void()> changed);
+    ~Session() override;
+
+    /// Reads the scene for the first time. False: there is no picture in it (reported).
+    bool load();
+    void start();
+
+    // From the thread of the server.
+    /// What a viewer asks for: {"do": "set", ...}. The answer has "error" when it cannot be.
+    nlohmann::json act(const nlohmann::json&);
+    /// Counts whatever viewers see. Grows.
+    uint64_t serial() const;
+    struct Shot {
+        std::shared_ptr<const Picture> picture; ///< null: none yet
+        uint64_t serial = 0;
+        std::map<std::string, double> dim;
+    };
+    /// Somebody looks, at this plane ("picture", "noise", ...).
+    Shot look(const std::string& plane);
+    /// Everything but pixels; messages and points of the curves from these numbers on.
+    nlohmann::json state(size_t messages, size_t points) const;
+    /// Lights, outputs, shaders with their parameters.
+    nlohmann::json scene();
+
+private:
+    enum class Phase { Reading, Building, Coarse, Crop, Whole, Idle };
+    using Clock = std::chrono::steady_clock;
+    /// What turns sums into pictures.
+    struct Means {
+        render::OutputPlan plan;
+        render::PictureFacts facts;
+        std::shared_ptr<const transport::World> world;
+    };
+    struct Kept { ///< of the whole picture: to render on with, to show and to save
+        std::shared_ptr<const Means> means;
+        std::unique_ptr<render::Film> film;         ///< path
+        std::shared_ptr<const render::Image> image; ///< hidden and raytrace
+        double seconds = 0;
+        double rays = 0;
+    };
+    struct Save { std::string type; float gain = 1, gamma = 1; bool srgb = false; };
+    /// A scene that was read.
+    struct Loaded {
+        std::shared_ptr<const scene::Frame> frame;
+        std::vector<ShaderUse> shaders;
+        std::vector<std::string> lights; ///< handles, each once
+        std::vector<int> frames;         ///< the numbers of all
+    };
+
+    // session.cpp: the thread
+    void run();
+    bool waitForWork();
+    bool readScene();
+    void say(const Diagnostic&);
+    void interrupt();
+    void tell();
+    nlohmann::json moveCamera(const nlohmann::json&);
+    nlohmann::json askSave(const nlohmann::json&);
+
+    // rounds.cpp: rendering
+    void render();
+    struct Pass { Phase phase; double factor = 1; uint32_t spp = 1; std::optional<std::array<double, 4>> crop; };
+    bool renderPass(const Pass&);
+    std::vector<Pass> passes() const;
+    std::shared_ptr<const scene::Frame> frameFor() const;
+    void addOutputs(scene::Options&) const;
+    render::Engine engine();
+    uint32_t wanted() const;
+    bool isPath() const;
+
+    // looking.cpp: Watcher, shots and saved files
+    bool writes() const override { return false; }
+    void begin(const render::WatchedFrame&) override;
+    std::unique_ptr<render::Film> filmFor(const render::FilmDescription&) override;
+    void look(const render::Glance&) override;
+    void finished(std::unique_ptr<render::Film>) override;
+    void shoot(const render::Glance&, const Means&);
+    bool shotIsDue() const;
+    void lookAtRest();
+    bool save(const Save&, const Means&, const render::Film*, const render::Image&);
+    void savePending(const Means&, const render::Film*, const std::function<render::Image()>&);
+    std::string freeName(const std::string& type, const render::Film*) const;
+
+    void setPhase(Phase);
+    bool filesChanged();
+    std::set<std::string> wantedPlanes() const;
+
+    const ViewOptions options_;
+    const std::function<void()> changed_;
+    StopFlag stop_{0}, end_{0};
+    std::thread thread_;
+
+    // Guarded by mutex_.
+    mutable std::mutex mutex_;
+    std::condition_variable work_;
+    Wishes wishes_;
+    std::optional<Pose> pose_;
+    bool dragging_ = false, reload_ = false;
+    uint64_t generation_ = 1, serial_ = 1, sceneSerial_ = 0;
+    Phase phase_ = Phase::Reading;
+    Clock::time_point phaseSince_{};
+    std::shared_ptr<const Picture> picture_;
+    std::vector<Message> messages_;
+    std::map<std::string, size_t> messageAt_;
+    size_t messagesLost_ = 0;
+    std::vector<std::array<double, 5>> curve_; ///< seconds, samples, rays/ms, noiseRSE, efficiency
+    uint64_t curveOf_ = 0;                     ///< counts curves
+    std::vector<Save> saves_;
+    std::vector<std::string> saved_;
+    std::map<std::string, Clock::time_point> viewers_; ///< planes, and when somebody last looked
+    std::shared_ptr<const Loaded> scene_;
+    std::vector<std::string> outputs_;       ///< that shaders have, as far as is known
+    std::vector<std::string> shaderFolders_;
+    std::array<double, 3> curveAtFirst_{1, 1, 1}; ///< how render would show the picture: gain, gamma, whether as sRGB
+    int width_ = 0, height_ = 0;             ///< of the picture
+    std::map<std::string, nlohmann::json> descriptions_;
+
+    // The rendering thread's own.
+    std::unique_ptr<Diagnostics> diags_;
+    std::shared_ptr<ReadLog> reads_;
+    uint64_t done_ = 0;       ///< the generation that was rendered to its end
+    struct Round {            ///< what is being rendered
+        Wishes wishes;
+        std::optional<Pose> pose;
+        bool dragging = false;
+        uint64_t generation = 0;
+        std::shared_ptr<const scene::Frame> frame;
+        std::string filmKey, worldKey;
+        std::shared_ptr<const Loaded> scene;
+    } round_;
+    Pass pass_{};
+    std::shared_ptr<const transport::World> world_;
+    std::string worldKey_, filmKey_;
+    std::optional<Pose> worldPose_;
+    std::shared_ptr<const Means> means_;            ///< of the pass under way
+    const render::OutputPlan* plan_ = nullptr;      ///< the renderer's own, for Glance::pixels
+    double passSeconds_ = 0, passRays_ = 0;         ///< of the pass under way
+    double sampleSeconds_ = 0;                      ///< that a sample of a pixel took last; 0: not known
+    Kept kept_;
+    std::shared_ptr<const Picture> crop_;           ///< what was rendered first, for as long as it has more samples
+    std::optional<std::array<double, 4>> cropOf_;   ///< which part that is
+    double shotSeconds_ = 0;                        ///< what the last shot cost
+    Clock::time_point lastShot_{}, lastFileLook_{};
+    bool stale_ = true;                             ///< there is more than was shown
+    std::optional<Phase> shownOf_;                  ///< what the last shot of this round was of
+    std::set<std::string> shotPlanes_;
+};
+
+} // namespace alpenglow::view

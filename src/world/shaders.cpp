@@ -184,6 +184,10 @@ void WorldImpl::setParameters(ShaderInstance& instance, const scene::ShaderCall&
             names.push_back(q.name);
             if (q.name == given.name) p = &q;
         }
+        if (!p && given.name == rsl::kCategory && given.strings.size() == 1) { // what most lights of old have no parameter for
+            i->parameters.strings[rsl::kCategory] = given.strings[0];
+            continue;
+        }
         if (!p) {
             std::string near = nearestName(given.name, names);
             d.reportOnce("parameter:" + call.name + ":" + given.name,

@@ -209,5 +209,17 @@ TEST(Information, ShadowsOfAreaLights) {
     expectMean(Scene(world(disk("Attribute \"light\" \"string shadows\" \"on\"\n") + floor), under(Hider::Hidden)).estimate(kView, samples(4000)), want, .01, "nothing in the way");
     expectMean(Scene(world(disk("Attribute \"light\" \"string shadows\" \"off\"\n") + card + floor), under(Hider::Hidden)).estimate(kView, samples(4000)), want, .01, "off");
 }
+// The shipped lights have no parameter __category, as few of the old ones have; the scene's word counts all the same.
+TEST(Information, CategoriesOfLightsWithoutTheParameter) {
+    writeShader("bycategory", "surface bycategory() { color key = 0, other = 0, all = 0; Oi = 1; illuminance(\"key\", P) key += Cl;"
+                              " illuminance(\"-key\", P) other += Cl; illuminance(P) all += Cl; Ci = color(key[0], other[0], all[0]); }\n");
+    const std::string down = " \"from\" [0 1 0] \"to\" [0 0 0] \"string __category\" ";
+    for (Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path}) {
+        Scene s(world("LightSource \"distantlight\" 1 \"intensity\" .25" + down + "[\"warm,key\"]\nLightSource \"distantlight\" 2 \"intensity\" .5" + down +
+                      "\"fill\"\nLightSource \"distantlight\" 3 \"intensity\" 2 \"from\" [0 1 0] \"to\" [0 0 0]\nSurface \"bycategory\"\n" + kFloor), withShaders(h));
+        EXPECT_EQ(s.one(kView), Color(.25f, 2.5f, 2.75f));
+        EXPECT_EQ(s.messages(), "");
+    }
+}
 
 } // namespace

@@ -47,7 +47,7 @@ float photonFactor(const LobeColumns& rows, LobeColumns::Place place, const Lobe
 
 /// Light of all around comes to a lobe's point as it comes to the point: so photons may be gathered for it.
 bool Gather::spreads(const LobeVertex& l) const { return !l.delta && seesAll(l); }
-bool Gather::mirrors(const LobeVertex& l) const { return l.delta && !l.ownsTarget && seesAll(l); }
+bool Gather::mirrors(const LobeVertex& l) const { return l.delta && l.below < 0 && !l.ownsTarget && seesAll(l); }
 bool Gather::seesAll(const LobeVertex& l) const {
     const shading::RaySet& set = l.rays->set;
     return !l.elsewhere && !set.only && !(l.maxDistance < 1e37f) && set.mode == shading::HitMode::Default &&
@@ -75,7 +75,9 @@ void Gather::restPhotons() {
                 spread = true;
                 given += l.weight * l.albedo;
             }
-            if (t.job->caustics && !mirrors(l)) l.chosen = 0;
+            // Paths that walk below a surface gather where they come out; in maps photons rest where they come out.
+            spread |= l.below >= 0 && t.job->caustics;
+            if (t.job->caustics && !mirrors(l)) l.followed = false; // its chance is not another's
         }
         const bool caustic = from.bounces > 0 && !(from.trail & shading::kTrailSpread);
         const Color power = t.power[size_t(from.sample->path)] * from.weight * float(t.job->scale);

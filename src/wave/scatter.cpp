@@ -37,7 +37,7 @@ void Gather::pick(size_t point, float number) {
     const bool mayPass = passes_[point] < 1; // then lobes have the rest of the chance
     if (list.size() == 1 && !mayPass) { // what most vertices are
         const LobeVertex& l = e_.lobes[size_t(list[0])];
-        if (!(l.chosen > 0)) return;
+        if (!(l.chosen > 0) || !l.followed) return;
         const bool one = rules_.pickOne && !l.ownsTarget;
         const float scale = (one ? 1 / l.chosen : 1) * (l.lobeOfShader && l.below < 0 ? indirectScale_[point] : 1) * l.indirect;
         sent_.push_back({int(point), list[0], one ? 1 : l.samples, scale, true, Vec3(), {}});
@@ -57,6 +57,7 @@ void Gather::pick(size_t point, float number) {
             scale = 1 / l.chosen;
             count = 1;
         }
+        if (!l.followed) continue;
         if (l.lobeOfShader && l.below < 0) scale *= indirectScale_[point];
         scale *= l.indirect;
         sent_.push_back({int(point), i, count, scale, true, Vec3(), {}});

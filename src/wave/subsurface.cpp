@@ -82,7 +82,8 @@ void Engine::requestSubsurface(BatchContext&, const SiteInfo& s, const ShadePoin
     b.group = site.group.empty() ? of.group : groupNamed(site.group);
     const float index = number(site.index, of.index), scale = number(site.scale, of.scale);
     b.index = float(int((index > 1 / 3.f && index < 3 ? index : index >= 3 ? 3 : index > 0 ? 1 / 3.f : 1) * 32 + 0.5f)) / 32;
-    b.anisotropy = std::clamp(number(site.anisotropy, 0), -0.999f, 0.999f);
+    const float g = number(site.anisotropy, 0);
+    b.anisotropy = std::isfinite(g) ? std::clamp(g, -0.999f, 0.999f) : 0;
     const float perLength = scale > 0 && std::isfinite(scale) ? scale : 1;
     const bool coefficients = site.scattering >= 0 || site.absorption >= 0;
     const bool said = site.reflectance >= 0 || site.path >= 0 || site.diffusePath >= 0 ||
@@ -90,12 +91,12 @@ void Engine::requestSubsurface(BatchContext&, const SiteInfo& s, const ShadePoin
     if (said) { // of light that scatters evenly, whatever "anisotropy" says: the numbers are of what is seen
         b.anisotropy = 0;
         const Color r = above0(colour(site.reflectance, of.reflectance.x >= 0 ? of.reflectance : Color(0.8f)), 0.9999f);
-        const Color path = colour(site.path, of.path.x >= 0 ? of.path : Color(1));
+        const Color path = colour(site.path, of.path.x >= 0 ? of.path : Color(1)), diffusePath = colour(site.diffusePath, Color(0));
         for (int k = 0; k < 3; ++k) {
             const double albedo = albedoOf(b, r[k]);
             double sigma = 1 / std::max(double(path[k]), 1e-6);
             if (site.diffusePath >= 0)
-                sigma = 1 / (std::max(double(f(site.diffusePath + k)), 1e-6) * std::sqrt(3 * std::max(1 - albedo, 1e-6)));
+                sigma = 1 / (std::max(double(diffusePath[k]), 1e-6) * std::sqrt(3 * std::max(1 - albedo, 1e-6)));
             b.scattering[k] = float(sigma * albedo * perLength);
             b.absorption[k] = float(sigma * (1 - albedo) * perLength);
         }
@@ -106,7 +107,7 @@ void Engine::requestSubsurface(BatchContext&, const SiteInfo& s, const ShadePoin
     b.extinction = b.scattering + b.absorption;
     const float many = of.samples > 0 ? float(of.samples) : rules_.pickOne ? 1 : float(kSamplesElsewhere);
     const float samples = number(site.samples, many);
-    l.samples = int(std::clamp(samples, 1.f, 4096.f));
+    l.samples = samples >= 1 ? int(std::min(samples, 4096.f)) : 1; // not a number: 1
     l.rays = &kSpecularKind; // of one, that walks: --no-indirect leaves what lights bring by it
     l.lights = l.deltaLights = false;
     l.below = int32_t(below_.size());
@@ -296,6 +297,7 @@ void Walks::gatherAt(std::span<const Exit> exits, Sched& sched) {
         r.vertex = childVertex(x.vertex, kFlight, 4);
         r.counts = r.first = false;
         r.dir = -x.out; // as if it had come from outside
+        if (e_.photonTrace()) r.trail = shading::kTrailSpread;
         r.footprint = from.footprint.after(length(c_.points[size_t(a.point)].P - from.origin));
         if (r.camera()) r.setStart(0);
         const Vec3 at = x.point.displaced ? x.point.displacedP : x.point.P;

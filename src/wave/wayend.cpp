@@ -78,6 +78,7 @@ void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
             if (ambient ? r.type() != RayType::Diffuse : r.kind->fromTrace && l.strategy == LightStrategy::Illuminance) continue;
             // A lobe that samples lights: those that are off for its surface do not light it by chance either.
             if (r.lobeBinding >= 0 && !world_->bindings_[size_t(r.lobeBinding)].lights.contains(number)) continue;
+            if (bringsPhotons(r, number)) continue;
             ShadePoint& p = q.emplace_back();
             p.Ps = r.origin;
             p.P = r.origin + r.dir;

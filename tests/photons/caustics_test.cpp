@@ -85,6 +85,28 @@ TEST(Caustics, MirrorImageOfAPointLight) {
     EXPECT_LT(m.se(), .06 * image);
 }
 
+// Mirrors that spread light, too, whatever stands first, and a sheet that does and lets half of it through: each way has its own chance.
+TEST(Caustics, HalfOfAMirror) {
+    const char* const begin = "{ normal n = faceforward(normalize(N), I); Oi = 1; Ci = ";
+    writeShader("mirrorlast", std::string("surface mirrorlast() ") + begin + ".4 * diffuse(n) + .4 * trace(P, reflect(normalize(I), n)); }\n");
+    writeShader("mirrorfirst", std::string("surface mirrorfirst() ") + begin + ".4 * trace(P, reflect(normalize(I), n)) + .4 * diffuse(n); }\n");
+    writeShader("sheet", "surface sheet() { Oi = .5; Ci = .5 * diffuse(faceforward(normalize(N), I)); }\n");
+    const std::string light = "LightSource \"pointlight\" 1 \"float intensity\" 4 \"point from\" [0 1 0]\n",
+                      sheet = "AttributeBegin Surface \"sheet\" Polygon \"P\" [-.5 1.5 -.5  -.5 1.5 .5  .5 1.5 .5  .5 1.5 -.5] AttributeEnd\n",
+                      ceiling = "Surface \"slmaterial\" \"color diffusecolor\" [.1 .1 .1] Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n";
+    struct Case { std::string name, surface, more; double part; };
+    for (const Case& c : {Case{"last", "Surface \"mirrorlast\"", "", .4}, Case{"first", "Surface \"mirrorfirst\"", "", .4}, Case{"sheet", kMirror, sheet, .5}}) {
+        Scene s(world(light + "AttributeBegin " + c.surface + " Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" + c.more + ceiling), path());
+        const CameraRay ray = rayTo({.1f, 1.7f, 0}, {0, 2, 0});
+        const Moments paths = estimate(s, ray, 64, 100);
+        passes(s, 64, 12000, .3f);
+        const Moments both = estimate(s, ray, 64, 100);
+        const double image = c.part * .1 * 4 / 9, se = std::hypot(paths.se(), both.se());
+        EXPECT_NEAR(both.mean() - paths.mean(), image, 4.5 * se + .15 * image) << c.name; // and what the surfaces send on of it
+        EXPECT_LT(se, .08 * image) << c.name << ": not precise enough to decide";
+    }
+}
+
 // An area light: paths find its image in the mirror too. With photons these are left out, and the sum stays.
 TEST(Caustics, TogetherAsPathsAlone) {
     struct Case { std::string name, scene; CameraRay ray; double precision; };
@@ -103,7 +125,15 @@ TEST(Caustics, TogetherAsPathsAlone) {
         {"displaced lamp", "AttributeBegin AreaLightSource \"both5\" 1 Surface \"constant\" Color 0 0 0 Attribute \"displacementbound\" \"float sphere\" 2\n"
                            "Displacement \"lift\" Patch \"bilinear\" \"P\" [-.5 .1 -.5  .5 .1 -.5  -.5 .1 .5  .5 .1 .5] AttributeEnd\nIlluminate 1 1\nAttributeBegin " +
                                kMirror + "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" + kMatte + "Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n",
+         rayTo({1.1f, 1.2f, 0}, {1, 2, 0}), .06},
+        // A sky whose attribute says that it sends photons: paths that met the mirror find it, too.
+        {"sky", "Attribute \"light\" \"int emitphotons\" 1\nLightSource \"envlight\" 1\nAttributeBegin " + kMirror +
+                    "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" + kMatte + "Polygon \"P\" [-.5 1 -.5  -.5 1 .5  .5 1 .5  .5 1 -.5]\n",
+         rayTo({1.1f, .4f, 0}, {.1f, 1, 0}), .07},
+        // Light that a mirror sends into a surface walks there once, not once as photons and once more from the eye.
+        {"below a surface", lamp(1, .5, 5) + "AttributeBegin " + kMirror + "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\nSurface \"waxen\" Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n",
          rayTo({1.1f, 1.2f, 0}, {1, 2, 0}), .06}};
+    writeShader("waxen", "surface waxen() { Oi = 1; Ci = subsurface(P, N, \"reflectance\", color(.8, .6, .4), \"meanfreepath\", .01, \"ior\", 1); }\n");
     writeShader("lift", "displacement lift() { P += vector \"world\" (0, .9, 0); }\n");
     writeShader("both5", "light both5() { illuminate(P, N, PI) Cl = 5; }\n");
     for (const Case& c : cases) {

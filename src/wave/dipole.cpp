@@ -79,7 +79,9 @@ void Walks::probe(int asked) {
     const PathRay& ray = c_.rays[size_t(a.point)];
     const bool turned = dot(p.surface.n, ray.dir) > 0;
     const Basis about(turned ? -p.surface.n : p.surface.n);
-    const Color part(std::fabs(a.weight.x), std::fabs(a.weight.y), std::fabs(a.weight.z));
+    Color part(std::fabs(a.weight.x), std::fabs(a.weight.y), std::fabs(a.weight.z));
+    for (int k = 0; k < 3; ++k)
+        if (!(b.scattering[k] > 0)) part[k] = 0; // it brings nothing, and chooses nothing
     const double sum = double(part.x) + part.y + part.z;
     if (!(sum > 0)) return;
     std::vector<Dipole> dipoles;
@@ -87,7 +89,7 @@ void Walks::probe(int asked) {
     for (int k = 0; k < 3; ++k) {
         dipoles.emplace_back(e_.halfSpace(b.index), b.model == SubsurfaceSite::Model::BetterDipole, double(b.absorption[k]),
                              std::max(double(b.scattering[k]), 1e-12));
-        share[k] = b.scattering[k] > 0 ? part[k] / sum : 0;
+        share[k] = part[k] / sum;
     }
     const Random random = e_.random(ray);
     const Vec2 where = random.pair(a.vertex, kFlight, 0), how = random.pair(a.vertex, kFlight, 1);
@@ -97,6 +99,7 @@ void Walks::probe(int asked) {
     for (int k = 0; k < 2 && channel == 2; ++k)
         if (at < share[k]) channel = k;
         else at -= share[k];
+    while (channel > 0 && !(share[channel] > 0)) --channel; // rounding
     const double r = dipoles[size_t(channel)].choose(random.one(a.vertex, kFlight, 1), where.x);
     const Vec2 turn = unitCircle(where.y);
     const Vec3 axes[3] = {about.n, about.t, about.u};

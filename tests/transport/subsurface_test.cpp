@@ -169,6 +169,26 @@ TEST_F(Subsurface, TheDiffusionModelsAreTheirIntegrals) {
     EXPECT_NEAR(Dipole(HalfSpace(1), false, .1, .9).total(), a / 2 * (1 + std::exp(-4 / 3. * root)) * std::exp(-root), 1e-12);
 }
 
+// Where nothing is scattered in one colour the others are as bright as without it.
+TEST_F(Subsurface, TheDiffusionModelsOfSomeColoursAlone) {
+    writeShader("some", "surface some(color sc = 1, ab = .1;) { Oi = 1; Ci = subsurface(P, N, \"model\", \"jensen\", \"scattering\", sc, \"absorption\", ab, \"ior\", 1); }\n");
+    const double absorbs[3] = {2, 1, 3};
+    for (int dark = 0; dark < 3; ++dark) {
+        double scatters[3] = {20, 40, 30};
+        scatters[dark] = 0;
+        char text[200];
+        std::snprintf(text, sizeof text, "Surface \"some\" \"color sc\" [%g %g %g] \"color ab\" [%g %g %g] ", scatters[0], scatters[1], scatters[2],
+                      absorbs[0], absorbs[1], absorbs[2]);
+        Scene s(world(kAbove + text + kFloor), withShaders(Hider::Path));
+        const Moments m = s.estimate(kView, samples(20000));
+        for (int k = 0; k < 3; ++k) {
+            const double want = k == dark ? 0 : .5 * Dipole(HalfSpace(1), false, absorbs[k], scatters[k]).total();
+            EXPECT_NEAR(m.mean(k), want, kZ * m.se(k) + 1e-5) << dark << k;
+            EXPECT_LE(m.se(k), .03 * want) << dark << k;
+        }
+    }
+}
+
 TEST_F(Subsurface, GroupsBoundOneInside) {
     // Two halves of a ball with attributes of their own: alone each is open, together they are a ball, of which a furnace gives 1.
     const auto halves = [](const std::string& group) {

@@ -137,13 +137,14 @@ int Engine::fewer(const OcclusionSite& o, const std::function<float(int)>& f, in
 bool Engine::agree(std::vector<ShadowRay>& rays, size_t begin, HemisphereRays& of, const Color& weight) {
     const std::span<ShadowRay> first = std::span(rays).subspan(begin);
     std::vector<Color> left(first.size());
-    transmittances(first, left);
+    const size_t number = size_t(&of - hemispheres_.data());
+    transmittances(first, left); // what runs on the way may ask for hemispheres of its own, behind this one
     const auto [least, most] =
         std::minmax_element(left.begin(), left.end(), [](const Color& a, const Color& b) { return mean(a) < mean(b); });
     const bool same = mean(*most) - mean(*least) < kAgree;
     if (same) {
-        of.share = 1 / float(first.size());
-        for (ShadowRay& r : first) r.contribution = r.contribution == Color(0) ? Color(0) : weight * of.share;
+        const float share = hemispheres_[number].share = 1 / float(first.size());
+        for (ShadowRay& r : first) r.contribution = r.contribution == Color(0) ? Color(0) : weight * share;
     }
     for (size_t k = 0; k < first.size(); ++k)
         settled_.push_back({first[k].target, openLight(first[k], left[k], sumsOf(first[k].target)), LightEvent::Sampled,

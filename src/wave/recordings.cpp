@@ -42,7 +42,14 @@ std::optional<Color> Engine::recorded(const BatchContext& c, const SiteInfo& s, 
     n.fade = {std::max(0.f, number(fade.strength, 0)), reach, number(fade.mode, 0) != 0};
     record.call = mixed(mixed(render::mix64(site.call + uint64_t(b.group)), reach), n.fade.strength);
     record.call = mixed(record.call, float(n.fade.polynomial));
-    record.call = mixed(record.call, float(kind->set.sides == accel::Sides::Front));
+    // Of the same rays, to the same surfaces, and behind them the same sky.
+    record.call = render::mix64(record.call ^ reinterpret_cast<uintptr_t>(kind->set.only)); // of the world, for all threads
+    record.call = mixed(mixed(record.call, float(kind->set.sides)), float(kind->set.mode));
+    record.call = mixed(record.call, float(kind->type));
+    if (!s.occlusion && s.trace->map) {
+        n.tint = s.trace->tint < 0 ? Color(1) : triple(s.trace->tint);
+        for (int k = 0; k < 3; ++k) record.call = mixed(record.call, n.tint[k]);
+    }
     // Where an exact call's rays would go too deep it brings nothing, and so do records.
     const PathRay& from = *p.ray;
     const bool diffuse = kind->type == RayType::Diffuse;
@@ -73,7 +80,6 @@ std::optional<Color> Engine::recorded(const BatchContext& c, const SiteInfo& s, 
     n.kind = kind;
     n.site = s.trace.get();
     n.blocks = s.occlusion != nullptr;
-    if (!n.blocks && s.trace->map) n.tint = s.trace->tint < 0 ? Color(1) : triple(s.trace->tint);
     sendRecord(c, point, call, occurrence, n);
     ++counters.records;
     return Color(0); // the picture of such a pass is not looked at

@@ -14,6 +14,8 @@ constexpr float kLeast = 1.5f;                   ///< pixels that a record reach
 /// 2 to the power of it, the least that is no less than 2 x; x > 0 and finite.
 int levelOf(float x) { return std::clamp(int(std::bit_cast<uint32_t>(x) >> 23 & 255) - 127 + 2, -100, 100); }
 
+bool earlier(const LightRecord& a, const LightRecord& b) { return a.place < b.place; }
+
 float power(int level) { return std::bit_cast<float>(uint32_t(level + 127) << 23); }
 
 } // namespace
@@ -155,12 +157,17 @@ bool LightRecords::find(uint64_t call, const Vec3& P, const Vec3& N, Color& ligh
 
 void LightRecords::add(const LightRecord& r) {
     std::lock_guard lock(mutex_);
-    if (records_.size() + added_.size() < 2 * kMostRecords) added_.push_back(r);
+    added_.push_back(r);
+    const size_t room = kMostRecords - std::min(records_.size(), kMostRecords);
+    if (added_.size() < 2 * kMostRecords) return;
+    // Only the first are kept, whoever came first: the others may as well go now.
+    std::nth_element(added_.begin(), added_.begin() + long(room), added_.end(), earlier);
+    added_.resize(room);
 }
 
 size_t LightRecords::keep() {
     std::lock_guard lock(mutex_);
-    std::sort(added_.begin(), added_.end(), [](const LightRecord& a, const LightRecord& b) { return a.place < b.place; });
+    std::sort(added_.begin(), added_.end(), earlier);
     const size_t fresh = records_.size();
     const size_t room = kMostRecords - std::min(fresh, kMostRecords);
     records_.insert(records_.end(), added_.begin(), added_.begin() + long(std::min(added_.size(), room)));

@@ -176,4 +176,29 @@ TEST(Records, OnlyWhereTheyAreAskedFor) {
     }
 }
 
+// Two halves of a floor, side by side, of one shader: rays of one do not meet the wall. Each keeps records of its own.
+TEST(Records, AreOfTheRaysThatTheirSurfacesSend) {
+    writeShader("recgroups", "surface recgroups() { vector up = vector \"world\" (0, 1, 0); Oi = 1; Ci = color occlusion(P, up, 256, \"maxvariation\", .2); }\n");
+    const auto half = [](const char* subset, const char* x) {
+        return "AttributeBegin Attribute \"grouping\" \"string tracesubset\" \"" + std::string(subset) + "\" Surface \"recgroups\" Polygon \"P\" [" + x + "] AttributeEnd\n";
+    };
+    Scene s(world(kSeen + half("walls", "-60 0 -60  -60 0 0  60 0 0  60 0 -60") + half("others", "-60 0 0  -60 0 60  60 0 60  60 0 0") +
+                  "Attribute \"grouping\" \"string membership\" \"walls\"\n" + kWall),
+            withShaders(Hider::Raytrace));
+    for (int step = 4; step >= 1; step /= 2) {
+        for (int y = 0; y < 16; y += step)
+            for (int x = 0; x < 16; x += step) {
+                CameraRay ray = Interpolated::at(x, y);
+                ray.records = true;
+                s.trace({&ray, 1});
+            }
+        s.world->keepRecords();
+    }
+    for (int k = 0; k < 30; ++k) {
+        const CameraRay ray = Interpolated::at(.37 + k * .5, .4 + k % 5 + (k % 2 ? 9 : 0));
+        const Vec3 hit = ray.origin + ray.direction * (-ray.origin.y / ray.direction.y);
+        EXPECT_NEAR(s.one(ray).x, hit.z < 0 ? ofWall(.5 - hit.x, 1) : 0, .03) << hit.x << " " << hit.z;
+    }
+}
+
 } // namespace

@@ -40,8 +40,8 @@ public:
     /// From now on this may happen on the way of rays; before the first trace(). It must outlive the engine.
     void happens(FlightEvent& e) { events_.push_back(&e); }
     /// For events: the flight is over, and its ray goes on as `next`, a copy of it with what has changed (at least the vertex).
-    /// flight.cpp
-    void divert(Flight&, PathRay next, Sched&);
+    /// way: how far it has come, where it goes straight on. flight.cpp
+    void divert(Flight&, PathRay next, Sched&, float way = 0);
     Counters counters;
     uint64_t& raysOf(RayType); ///< the counter of such rays
 

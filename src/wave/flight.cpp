@@ -36,7 +36,9 @@ void Engine::fly(BatchContext& c, Sched& sched) {
             sched.release(c.targets[i]);
             continue;
         }
-        c.rays[i].weight *= flights_[i].left;
+        PathRay& r = c.rays[i];
+        r.weight *= flights_[i].left;
+        if (r.extra >= 0) extras_[size_t(r.extra)].whole *= flights_[i].left;
         c.move(i, kept++);
     }
     c.keepFirst(kept);
@@ -55,9 +57,11 @@ void Engine::fly(std::vector<const Sched::Task*>& missed, Sched& sched) {
     missed.resize(kept);
 }
 
-void Engine::divert(Flight& f, PathRay next, Sched& sched) {
+void Engine::divert(Flight& f, PathRay next, Sched& sched, float way) {
     next.trail = photonTrace_ ? shading::kTrailSpread : 0; // photons do not come this way
-    next.extra = newExtra(extraOf(*f.ray)); // each ray has its own
+    RayExtra extra = extraOf(*f.ray); // each ray has its own
+    if (extra.fade.fades()) extra.way += way;
+    next.extra = newExtra(extra);
     sched.spawn(next.bounces + next.layers, f.target, next);
     f.over = true;
 }

@@ -90,7 +90,8 @@ void MediumFlights::pass(Engine& e, Flight& f, Sched& sched) {
     const PathRay& ray = *f.ray;
     const ShadePoint& p = *f.point;
     PathRay r = ray;
-    r.weight = ray.weight * f.left;
+    const RayExtra& extra = e.extraOf(ray);
+    r.weight = (extra.fade.fades() ? extra.whole : ray.weight) * f.left;
     if (const int medium = ray.medium(); medium >= 0 && !e.world().media_[size_t(medium)].homogeneous) {
         std::vector<ShadePoint> at(1, p); // its shader runs up to here
         at[0].ray = &ray;
@@ -118,7 +119,7 @@ void MediumFlights::pass(Engine& e, Flight& f, Sched& sched) {
         f.over = true;
         return;
     }
-    e.divert(f, r, sched);
+    e.divert(f, r, sched, travelled);
 }
 
 void MediumFlights::happen(Engine& e, std::span<Flight> flights, Sched& sched) {

@@ -47,6 +47,30 @@ TEST(Medium, EmissionIsExactUnderEveryHider) {
     }
 }
 
+// Rays whose light fades with the distance, through a medium and a pane in it, and through a wall that bounds nothing there.
+TEST(Medium, DimsWhatFades) {
+    writeShader("shine", "surface shine() { Oi = Os; Ci = Os * Cs; }\n");
+    writeShader("looker", "surface looker() { Oi = 1; Ci = indirectdiffuse(P, vector \"camera\" (0, 0, 1), 1, \"coneangle\", .001, \"falloff\", .1); }\n");
+    const auto plane = [](const std::string& surface, const std::string& z, const std::string& size) {
+        return "AttributeBegin " + surface + " Translate 0 0 " + z + " Scale " + size + " " + size + " 1 Polygon \"P\" [-1 -1 0  -1 1 0  1 1 0  1 -1 0] AttributeEnd\n";
+    };
+    const std::string clear = "\"color scattering\" [0 0 0] \"color absorption\" [.2 .5 1.1]";
+    const std::string scene = plane("Surface \"looker\"", "5", "9") + plane("Surface \"shine\" Color .4 .4 .4 Opacity .5 .5 .5", "8", ".4") +
+                              plane("Surface \"shine\"", "12", "99") + "Translate 0 0 8\n";
+    for (const bool walls : {false, true}) {
+        const std::string ball = walls ? inside(clear + " \"priority\" 2") + inside("\"color scattering\" [0 0 0] \"priority\" 1", "Sphere .6 -.6 .6 360\n") : inside(clear);
+        Scene s(world(scene + ball), withShaders(Hider::Path));
+        const Moments m = s.estimate(along(), samples(4000));
+        int k = 0;
+        for (const double a : {.2, .5, 1.1}) {
+            const double want = .5 * .4 * std::exp(-a - .3) + .5 * std::exp(-2 * a - .7);
+            EXPECT_NEAR(m.mean(k), want, kZ * m.se(k) + 1e-5) << walls << k << s.messages();
+            EXPECT_LE(m.se(k), .02 * want);
+            ++k;
+        }
+    }
+}
+
 TEST(Medium, WhatTheCameraSeesThroughItIsNoMatterOfChance) {
     for (const Hider h : kHiders) {
         Scene s(at5(wall() + inside("\"color scattering\" [.2 .4 .8] \"color absorption\" [.1 .1 .1]")), withShaders(h));

@@ -42,6 +42,13 @@ bool BakeLog::add(const std::string& file, const BakeLayout& layout, const BakeK
 void BakeLog::settle() {
     const std::lock_guard lock(mutex_);
     for (auto& [name, f] : files_) settle(f);
+    count();
+}
+
+/// What is settled: many samples have become one.
+void BakeLog::count() {
+    bytes_ = 0;
+    for (const auto& [name, f] : files_) bytes_ += f.settled.size() * sizeof(float) + f.rows.size() * sizeof(Row);
 }
 
 /// Entries of one point and call stand together, sample by sample. Where every sample has as many, they are averaged one by one.
@@ -96,6 +103,7 @@ void BakeLog::discard() {
         f.entries.clear();
         f.pending.clear();
     }
+    count();
 }
 
 bool BakeLog::writeFlat(const std::string& name, const File& f, const OutputPolicy& policy, Diagnostics& d) const {

@@ -43,6 +43,8 @@ public:
     /// Settles, and writes all files; then the log is empty. False: an error was reported for each that was not written.
     bool write(const OutputPolicy&, Diagnostics&);
     bool empty() const { return files_.empty(); }
+    /// Of what is kept, in memory.
+    size_t bytes() const { return bytes_; }
 
 private:
     struct Entry {
@@ -61,6 +63,7 @@ private:
         uint64_t notFinite = 0;
     };
     void settle(File&);
+    void count();
     bool writeFlat(const std::string& name, const File&, const OutputPolicy&, Diagnostics&) const;
     bool writeCloud(const std::string& name, const File&, const OutputPolicy&, Diagnostics&) const;
     std::mutex mutex_;

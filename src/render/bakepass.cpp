@@ -1,11 +1,13 @@
 // A pass before the picture: primitives whose shaders bake are shaded whole, on grids of micropolygons.
 #include "render/bakepass.h"
 #include "transport/bakes.h"
+#include <algorithm>
 
 namespace alpenglow::render {
 
 namespace {
-constexpr size_t kAtOnce = 1u << 16; ///< points whose samples wait for their mean
+constexpr size_t kAtOnce = 1u << 16;      ///< points whose samples wait for their mean, at most
+constexpr size_t kSamplesWait = 1u << 22; ///< and these samples
 constexpr size_t kRays = 64;         ///< of one trace(): their shaders may send thousands
 
 /// Traces all samples of some points.
@@ -34,6 +36,7 @@ bool bakeGrids(Job& job, uint32_t samples) {
     std::vector<shading::GridPoint> all, points;
     std::vector<int> numbers;
     bool whole = true;
+    const size_t most = std::clamp(kSamplesWait / std::max<size_t>(samples, 1), 16 * kRays, kAtOnce);
     const auto flush = [&] {
         if (!points.empty()) whole = whole && tracePoints(job, points, numbers, samples, pixel);
         points.clear();
@@ -45,7 +48,7 @@ bool bakeGrids(Job& job, uint32_t samples) {
         for (size_t i = 0; i < all.size() && whole; ++i) {
             points.push_back(all[i]);
             numbers.push_back(int(i));
-            if (points.size() == kAtOnce) flush();
+            if (points.size() == most) flush();
         }
     }
     flush();

@@ -1,6 +1,7 @@
 // Baking as a user has it: baked, read back, compared with what the shader says directly; the same bits for any number of threads.
 #include "cli/command_folder.h"
 #include "clouds/bakefile.h"
+#include "clouds/bakelog.h"
 #include "clouds/cloudfile.h"
 #include "clouds/make.h"
 #include "display/imageio.h"
@@ -229,6 +230,32 @@ TEST_F(Bake, ThePtcCommand) {
     EXPECT_EQ(status, 3);
     run("ptc brick f.ptc", "2>&1");
     EXPECT_EQ(status, 2);
+}
+
+// Samples that are averaged take the room of one point afterwards, and what is forgotten takes none: the limit is for what is written.
+TEST(BakeLogs, KeepNoCountOfWhatIsGone) {
+    clouds::BakeLog log;
+    clouds::BakeLayout layout;
+    layout.channels = {{"_x", clouds::ChannelType::Float}};
+    layout.width = 1;
+    layout.where = "here";
+    const auto sample = [&](int point, uint32_t s) {
+        clouds::BakeKey key;
+        key.x = point;
+        key.sample = s;
+        const float numbers[] = {float(point), 0, 0, 0, 0, 1, .1f, float(s)};
+        EXPECT_TRUE(log.add("a.ptc", layout, key, numbers));
+    };
+    for (uint32_t s = 0; s < 100; ++s) sample(0, s);
+    log.settle();
+    const size_t one = log.bytes();
+    EXPECT_LT(one, 100u);
+    for (uint32_t s = 0; s < 100; ++s) sample(1, s);
+    log.discard();
+    EXPECT_EQ(log.bytes(), one);
+    for (uint32_t s = 0; s < 100; ++s) sample(1, s);
+    log.settle();
+    EXPECT_EQ(log.bytes(), 2 * one);
 }
 
 } // namespace

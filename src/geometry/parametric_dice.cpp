@@ -118,6 +118,8 @@ void Parametric::Dicing::refine(Block k, int depth) {
     for (const Parametric* key : keys) probe(*key, k, k.nu, k.nv);
     const bool u = k.nu > kBlock, v = k.nv > kBlock;
     if ((!u && !v) || depth >= kDeepest || cuts >= kMostBlocks) {
+        k.nu = std::min(k.nu, double(limits::kDiceEdge)); // a weight that vanishes makes it look as large as can be
+        k.nv = std::min(k.nv, double(limits::kDiceEdge));
         blocks.push_back(k);
         return;
     }

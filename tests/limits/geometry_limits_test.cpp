@@ -56,6 +56,21 @@ TEST(GeometryLimits, MicropolygonsOfOnePrimitive) {
     EXPECT_EQ(limitsSaid(d), 1);
 }
 
+// The weight of a patch vanishes along a line: it reaches as far as can be, and is cut no finer than others.
+TEST(GeometryLimits, MicropolygonsWhereAWeightVanishes) {
+    Diagnostics d;
+    auto p = std::make_shared<scene::Primitive>();
+    p->kind = "NuPatch";
+    p->ints = {2, 2, 2, 2};
+    p->numbers = {0, 1, 0, 1};
+    p->params = {param("uknot", scene::Class::Uniform, scene::Type::Float, {0, 0, 1, 1}),
+                 param("vknot", scene::Class::Uniform, scene::Type::Float, {0, 0, 1, 1}),
+                 param("Pw", scene::Class::Vertex, scene::Type::HPoint, {-1, -1, 0, 1, 1, -1, 0, -1, -1, 1, 0, 1, 1, 1, 0, -1})};
+    ShapeRef s = displaced(p, 50, 0, d);
+    ASSERT_TRUE(s);
+    EXPECT_LE(s->mesh().triangles(), 3 * limits::kDiceQuads); // sides may have twice as many
+}
+
 TEST(GeometryLimits, DisplacementTooFar) {
     Diagnostics d;
     ShapeRef s = displaced(patch("bilinear", square(1, 1)), 4, limits::kDisplacementBound * 1.5f, d);

@@ -36,18 +36,18 @@ bool DepthLoop::row(int worker, int y, Row& out) {
     std::vector<transport::CameraRay> rays;
     std::vector<transport::SampleResult> results;
     std::vector<display::DeepChange> changes;
-    int begun = 0; // of the samples of the row
+    int64_t begun = 0; // of the samples of the row
     const auto finish = [&] {
         const size_t before = out.steps.size();
         display::meanStairs(changes, size_t(samples), error_, out.steps);
         out.counts.push_back(uint32_t(out.steps.size() - before));
         changes.clear();
     };
-    const int all = samples * w.width();
+    const int64_t all = int64_t(samples) * w.width();
     while (begun < all) {
         rays.clear();
-        for (int i = begun; i < all && rays.size() < kSlice; ++i) {
-            const int x = w.x0 + i / samples, k = i % samples;
+        for (int64_t i = begun; i < all && rays.size() < kSlice; ++i) {
+            const int x = w.x0 + int(i / samples), k = int(i % samples);
             const Vec2 at = stratifiedOffset(seed_, x, y, k, nx_, ny_, jitter_);
             rays.push_back(imageRay(job_.camera, {float(x) + at.x, float(y) + at.y}, seed_, x, y, uint32_t(k)));
             rays.back().depths = true;

@@ -10,6 +10,7 @@ void BatchContext::move(size_t from, size_t to) {
     rays[to] = rays[from];
     targets[to] = targets[from];
     bindings[to] = bindings[from];
+    if (!depths.empty()) depths[to] = depths[from];
     points[to].ray = &rays[to];
 }
 
@@ -18,6 +19,7 @@ void BatchContext::keepFirst(size_t count) {
     rays.resize(count);
     targets.resize(count);
     bindings.resize(count);
+    if (!depths.empty()) depths.resize(count);
 }
 
 void Engine::fly(BatchContext& c, Sched& sched) {

@@ -124,8 +124,10 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
         !i.resultRows.empty() &&
         i.resultRows.count("arealightcontribution") + i.resultRows.count("unshadowedarealight") == i.resultRows.size();
     t->hemisphere = i.text.count(rsl::kPairHemisphere) > 0;
-    t->fade = {row("falloff"), row("falloffmode")};
-    if (t->hemisphere) t->records = recordSite(i, s, world);
+    if (t->hemisphere) { // trace() itself has no such parameters: the compiler has said so
+        t->fade = {row("falloff"), row("falloffmode")};
+        t->records = recordSite(i, s, world);
+    }
     return t;
 }
 

@@ -71,6 +71,24 @@ TEST(Medium, DimsWhatFades) {
     }
 }
 
+// Depths of what moves stay with their rays where others of the same shader go on behind walls that bound nothing.
+TEST(Medium, DepthsOfWhatMovesBesideSuchWalls) {
+    writeShader("shine", "surface shine() { Oi = 1; Ci = Cs; }\n");
+    const std::string clear = "\"color scattering\" [0 0 0] \"priority\" ";
+    Scene s("Shutter 0 1\n" +
+                world("AttributeBegin Surface \"shine\" MotionBegin [0 1] Translate 0 0 9 Translate 0 0 10 MotionEnd Polygon \"P\" [-9 -9 0  -9 9 0  9 9 0  9 -9 0] AttributeEnd\n" +
+                      inside(clear + "2", "Sphere 50 -50 50 360\n") + "Translate -2 0 5\n" + inside(clear + "1", "Sphere .5 -.5 .5 360\n", "shine")),
+            withShaders(Hider::Hidden));
+    std::vector<CameraRay> rays;
+    for (int i = 0; i < 40; ++i) {
+        rays.push_back(along(i % 3 ? 2.f : -2.f));
+        rays.back().px = i;
+        rays.back().time = rays.back().shutter = float(i) / 40;
+    }
+    const auto r = s.trace(rays);
+    for (size_t i = 0; i < rays.size(); ++i) EXPECT_NEAR(r[i].z, 9 + rays[i].shutter, 1e-5) << i;
+}
+
 TEST(Medium, WhatTheCameraSeesThroughItIsNoMatterOfChance) {
     for (const Hider h : kHiders) {
         Scene s(at5(wall() + inside("\"color scattering\" [.2 .4 .8] \"color absorption\" [.1 .1 .1]")), withShaders(h));

@@ -193,6 +193,12 @@ TEST(IndirectDiffuse, FallsOff) {
             }
 }
 
+// It is no parameter of trace(), as the compiler says: nothing comes of it.
+TEST(IndirectDiffuse, AloneFallsOff) {
+    for (const Hider h : kAll)
+        EXPECT_NEAR(of(shows("tracefall", "trace(P, up, \"falloff\", .7)"), kSmall + ball(2, "Color .5 .5 .5"), h, 16).mean(), .5, 1e-5) << int(h);
+}
+
 TEST(Occlusion, SendsFewerRaysWhereTheyAgree) {
     const auto rays = [](const std::string& scene, const std::string& pairs, double want) {
         Scene s(world(kSeen + shows("occadapt", "color occlusion(P, up, 64" + pairs + ")") + scene), withShaders(Hider::Path));

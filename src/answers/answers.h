@@ -3,8 +3,14 @@
 #pragma once
 #include "answers/random.h"
 #include "answers/servicecall.h"
+#include "clouds/hemisphere.h"
+#include "world/below.h"
 #include "world/cloudstore.h"
 #include <set>
+
+namespace alpenglow::ptex {
+class Texture;
+}
 
 namespace alpenglow::transport {
 
@@ -87,6 +93,16 @@ public:
         if (fresh && id) at->second = world_->clouds_->find(rsl::internedString(id), call.place());
         return at->second;
     }
+
+    /// The same for point-based shadeops. `light`: they want what its points send.
+    const clouds::PointOctree* octreeOf(int32_t id, bool light, const ServiceCall& call) {
+        const auto [at, fresh] = octrees_.try_emplace(int64_t(id) * 2 + light, nullptr);
+        if (fresh && id) at->second = world_->clouds_->octree(rsl::internedString(id), light, call.place());
+        return at->second;
+    }
+    const ptex::Texture* ptexOf(int32_t id, const ServiceCall& call); ///< the same of Ptex files. ptexture.cpp
+    clouds::Hemisphere& hemisphere() { return hemisphere_; }
+    HalfSpaces& halfSpaces() { return halfSpaces_; }
 
     const texture::IrradianceTable& irradianceOf(texture::Handle map) { // without a lock from the second time on
         const texture::IrradianceTable*& t = irradianceOf_[map];
@@ -179,6 +195,10 @@ private:
     std::unordered_map<texture::Handle, const texture::SkyDirections*> skyOf_;
     std::unordered_map<int32_t, const photons::PhotonMap*> photonMaps_; ///< by interned name
     std::unordered_map<int32_t, const clouds::CloudMap*> clouds_;       ///< by interned name
+    std::unordered_map<int64_t, const clouds::PointOctree*> octrees_;
+    std::unordered_map<int32_t, const ptex::Texture*> ptex_; ///< by interned name
+    clouds::Hemisphere hemisphere_;
+    HalfSpaces halfSpaces_;
     std::unordered_map<int32_t, texture::Handle> mapsByName_;                          ///< by interned name
     std::unordered_map<int32_t, std::optional<texture::TextureInfo>> infosByName_;
 };
@@ -197,6 +217,10 @@ void answerSky(Answers&, const ServiceCall&); // sky.cpp
 // clouds.cpp: bake() and bake3d(); texture3d().
 void answerBake(Answers&, const ServiceCall&);
 void answerTexture3d(Answers&, const ServiceCall&);
+// pointbased.cpp: occlusion(), indirectdiffuse() and subsurface() of point clouds.
+void answerPointHemisphere(Answers&, const ServiceCall&);
+void answerPointSubsurface(Answers&, const ServiceCall&);
+void answerPtexture(Answers&, const ServiceCall&); // ptexture.cpp
 // messages.cpp: surface() and its kin, lightsource(), attribute(), shadername(), getvar() of the primitive.
 void answerMessage(Answers&, const ServiceCall&);
 void answerLightSource(Answers&, const ServiceCall&);

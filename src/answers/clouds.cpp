@@ -1,6 +1,5 @@
 // bake(), bake3d() and texture3d(): numbers to and from files of points.
-#include "answers/answers.h"
-#include "base/exact.h"
+#include "answers/cloudspace.h"
 #include "shading/grids.h"
 #include "world/cloudsite.h"
 #include "world/information.h"
@@ -8,27 +7,6 @@
 namespace alpenglow::transport {
 
 namespace {
-
-Vec3 tripleAt(const ServiceCall& call, int row, int lane) {
-    return row < 0 ? Vec3(0.f) : Vec3(call.at(row, lane), call.at(row + 1, lane), call.at(row + 2, lane));
-}
-
-/// From "current" to the space of the file.
-Matrix toFile(Answers& answers, const ServiceCall& call, int lane, const ShadePoint& p) {
-    const CloudSite& s = *call.s.cloud;
-    const std::string space = s.spaceRow < 0 ? s.space : rsl::internedString(std::bit_cast<int32_t>(call.at(s.spaceRow, lane)));
-    return spaceAt(answers.world(), "current", space.empty() ? "world" : space, p, call.binding(answers.world(), lane));
-}
-
-/// How much longer lengths are behind a matrix.
-float growth(const Matrix& m) { return float(exact::pow(std::fabs(determinant3(m)), 1.0 / 3)); }
-
-Vec3 unitOr0(const Vec3& n) {
-    const float l = length(n);
-    return l > 0 && std::isfinite(l) ? n / l : Vec3(0.f);
-}
-
-Vec3 normalTo(const Matrix& m, const Vec3& n) { return unitOr0(Vec3(transformNormal(m, Vec3d(n)))); }
 
 /// Takes the numbers of a channel from one space to another.
 void turn(clouds::ChannelType type, const Matrix& m, float* v) {
@@ -98,6 +76,7 @@ void answerBake(Answers& answers, const ServiceCall& call) {
     const CloudSite& s = *call.s.cloud;
     const WorldImpl& world = answers.world();
     std::vector<float> row;
+    CloudSpace space(answers, call, s.space, s.spaceRow);
     reportNotBaked(call);
     call.each([&](int lane, const ShadePoint& p) {
         const std::string name = s.computed ? call.name(lane) : s.name;
@@ -107,14 +86,14 @@ void answerBake(Answers& answers, const ServiceCall& call) {
         clouds::BakeKey key;
         if (!keyOf(call, lane, p, centre, key)) return;
         row.clear();
-        Matrix to;
+        static const Matrix kSame;
+        const Matrix& to = s.layout.flat ? kSame : space.at(lane, p);
         if (s.layout.flat) {
             row = {call.at(s.s, lane), call.at(s.t, lane)};
         } else {
-            to = toFile(answers, call, lane, p);
             const Vec3 at(transformPoint(to, Vec3d(tripleAt(call, s.point, lane)))),
                 n = normalTo(to, tripleAt(call, s.normal, lane));
-            const float radius = s.radius < 0 ? extentOf(call, lane, p).first * growth(to) : call.at(s.radius, lane);
+            const float radius = s.radius < 0 ? extentOf(call, lane, p).first * space.growth() : call.at(s.radius, lane);
             const float scale = s.scale < 0 ? 1 : call.at(s.scale, lane);
             row = {at.x, at.y, at.z, n.x, n.y, n.z, std::max(0.f, radius * scale)};
         }
@@ -126,7 +105,7 @@ void answerBake(Answers& answers, const ServiceCall& call) {
             else turn(part.type, to, &row[from]);
         }
         if (!s.layout.flat && s.addsArea) {
-            const float g = growth(to);
+            const float g = space.growth();
             row.push_back(extentOf(call, lane, p).second * g * g);
         }
         const bool kept = world.clouds_->baked.add(name, s.layout, key, row);
@@ -137,6 +116,7 @@ void answerBake(Answers& answers, const ServiceCall& call) {
 void answerTexture3d(Answers& answers, const ServiceCall& call) {
     const CloudSite& s = *call.s.cloud;
     std::vector<float> found;
+    CloudSpace space(answers, call, s.space, s.spaceRow);
     std::vector<std::pair<const clouds::CloudMap*, std::vector<int>>> places; // by map, where its channels begin
     call.each([&](int lane, const ShadePoint& p) {
         const clouds::CloudMap* map =
@@ -162,7 +142,7 @@ void answerTexture3d(Answers& answers, const ServiceCall& call) {
                                                  {}});
             }
         }
-        const Matrix to = toFile(answers, call, lane, p);
+        const Matrix& to = space.at(lane, p);
         clouds::Query q;
         q.P = Vec3(transformPoint(to, Vec3d(tripleAt(call, s.point, lane))));
         q.N = normalTo(to, tripleAt(call, s.normal, lane));
@@ -176,17 +156,14 @@ void answerTexture3d(Answers& answers, const ServiceCall& call) {
         q.radius = std::min(q.radius, 1e18f);
         found.assign(size_t(map->width()), 0.f);
         if (!map->lookup(q, found)) return;
-        Matrix back;
-        bool turned = false;
         for (size_t k = 0; k < s.parts.size(); ++k) {
             const int from = known->second[k], n = clouds::sizeOf(s.parts[k].type);
             if (from < 0) continue;
             clouds::ChannelType type = clouds::ChannelType::Float;
             for (const clouds::Channel& c : map->channels())
                 if (c.name == s.parts[k].name) type = c.type;
-            if (type >= clouds::ChannelType::Point && !std::exchange(turned, true)) back = inverse(to);
-            if (type == clouds::ChannelType::Matrix) turnMatrix(back, &found[size_t(from)]);
-            else turn(type, back, &found[size_t(from)]);
+            if (type == clouds::ChannelType::Matrix) turnMatrix(space.back(), &found[size_t(from)]);
+            else if (type >= clouds::ChannelType::Point) turn(type, space.back(), &found[size_t(from)]);
             for (int i = 0; i < n; ++i) call.put(s.parts[k].row + i, lane, found[size_t(from + i)]);
         }
         call.put(0, lane, 1);

@@ -16,6 +16,9 @@ void Answers::service(KernelRun& c, int site, int first, uint64_t mask, int lane
     case SiteKind::Bake:
     case SiteKind::Bake3d: return answerBake(*this, call);
     case SiteKind::Texture3d: return answerTexture3d(*this, call);
+    case SiteKind::PointHemisphere: return answerPointHemisphere(*this, call);
+    case SiteKind::PointSubsurface: return answerPointSubsurface(*this, call);
+    case SiteKind::Ptexture: return answerPtexture(*this, call);
     case SiteKind::Irradiance: return answerIrradiance(*this, call);
     case SiteKind::GatherTurn: return answerGatherTurn(call);
     case SiteKind::Ambient: return sumAmbient(call);

@@ -1,5 +1,6 @@
 // alpenglow maketx: pictures to tiled MIP-mapped maps.
 #include "cli/command.h"
+#include "cli/ptexmesh.h"
 #include "cli/ranges.h"
 #include "texture/maketexture.h"
 #include <CLI/CLI.hpp>
@@ -14,7 +15,9 @@ void addMaketx(CLI::App& app, int* status) {
         std::string mode, smode, tmode, output;
         float fov = 90;
         std::vector<float> width;
-        bool latlong = false, cube = false, shadow = false, srgb = false, linear = false;
+        int side = 8;
+        std::string number = "half";
+        bool latlong = false, cube = false, shadow = false, faces = false, srgb = false, linear = false;
     };
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("maketx", "Make textures, environment and shadow maps of pictures");
@@ -24,7 +27,14 @@ void addMaketx(CLI::App& app, int* status) {
     kinds->add_flag("--envlatl", a->latlong, "A latitude-longitude environment map");
     kinds->add_flag("--envcube", a->cube, "A cube environment map");
     kinds->add_flag("--shadow", a->shadow, "A shadow map of a depth picture");
+    kinds->add_flag("--ptex", a->faces, "A Ptex file of a mesh with colours of its faces or vertices (PLY, in text)");
     kinds->require_option(0, 1);
+    c->add_option("--side", a->side, "Of Ptex: pixels along a side of a face whose colour is not one; a power of two")
+        ->check(between(1, 4096))
+        ->type_name("PIXELS");
+    c->add_option("--number", a->number, "Of Ptex: how numbers are stored")
+        ->check(CLI::IsMember({"byte", "word", "half", "float"}))
+        ->type_name("TYPE");
     auto wraps = CLI::IsMember({"black", "clamp", "periodic"});
     c->add_option("--mode", a->mode, "Wrap mode: black, clamp or periodic")->check(wraps)->type_name("MODE");
     c->add_option("--smode", a->smode, "Wrap mode in s alone")->check(wraps)->type_name("MODE");
@@ -41,7 +51,7 @@ void addMaketx(CLI::App& app, int* status) {
     c->add_option("--fov", a->fov, "Field of view of the six pictures, degrees")
         ->check(between(1, 179))
         ->type_name("DEGREES");
-    c->footer("The options of old tools are taken as well: -envlatl, -envcube, -shadow, -mode, -smode, -tmode, -filter.");
+    c->footer("The options of old tools are taken as well: -envlatl, -envcube, -shadow, -ptex, -mode, -smode, -tmode, -filter.");
     c->callback([a, status] {
         Diagnostics diags(printer());
         texture::MakeOptions& o = a->options;
@@ -62,7 +72,16 @@ void addMaketx(CLI::App& app, int* status) {
         o.policy.allowWrite = true;
         std::vector<std::string> in(a->files.begin(), a->files.end() - 1);
         const std::string& out = a->files.back();
-        bool ok = a->cube      ? texture::makeCubeFaceEnvironment(in, out, a->fov, o, diags)
+        PtexOptions faces;
+        faces.number = ptex::Number::Byte;
+        while (1 << faces.log < a->side) ++faces.log;
+        if (1 << faces.log != a->side) throw CLI::ValidationError("--side", "takes a power of two");
+        for (const char* name : {"byte", "word", "half", "float"}) {
+            if (a->number == name) break;
+            faces.number = ptex::Number(int(faces.number) + 1);
+        }
+        bool ok = a->faces     ? makePtex(in[0], out, faces, diags)
+                  : a->cube      ? texture::makeCubeFaceEnvironment(in, out, a->fov, o, diags)
                   : a->latlong ? texture::makeLatLongEnvironment(in[0], out, o, diags)
                   : a->shadow  ? texture::makeShadow(in[0], out, o, diags)
                                : texture::makeTexture(in[0], out, o, diags);

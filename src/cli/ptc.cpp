@@ -2,7 +2,10 @@
 #include "base/file.h"
 #include "cli/command.h"
 #include "cli/ranges.h"
+#include "base/processors.h"
+#include "clouds/bounce.h"
 #include "clouds/brickmap.h"
+#include "clouds/brickstream.h"
 #include "clouds/cloudfile.h"
 #include "display/imageio.h"
 #include <CLI/CLI.hpp>
@@ -18,7 +21,9 @@ struct Arguments {
     std::vector<std::string> files, channels;
     std::string box;
     std::vector<double> corners; ///< of box
-    int depth = -1, size = 512;
+    int depth = -1, size = 512, bounces = 1;
+    std::string albedo = "0.5"; ///< a number, three, or a channel
+    float solidAngle = .1f;
     float smooth = 0;
 };
 
@@ -136,12 +141,30 @@ bool writePicture(const std::string& name, const clouds::PointCloud& cloud, cons
     return display::writeImage(name, pictureOf(cloud, a), o, d);
 }
 
+/// Light after some bounces. "": done; else what is missing.
+std::string bounced(clouds::PointCloud& cloud, const Arguments& a) {
+    clouds::BounceOptions o;
+    o.bounces = a.bounces;
+    o.maxSolidAngle = a.solidAngle;
+    o.threads = defaultThreads();
+    if (const auto one = parseNumbers(a.albedo, 1)) o.albedo = Color(float((*one)[0]));
+    else if (const auto three = parseNumbers(a.albedo, 3))
+        o.albedo = Color(float((*three)[0]), float((*three)[1]), float((*three)[2]));
+    else o.albedoChannel = a.albedo;
+    return clouds::bounce(cloud, o);
+}
+
 /// 0: done; else why not.
 int runPtc(const Arguments& a, Diagnostics& d) {
     if (a.action == "info") {
         bool all = true;
         for (const std::string& f : a.files) all &= printInfo(f, d);
         return all ? kDone : kNothingRendered;
+    }
+    if (a.action == "brick") {
+        if (clouds::brickMapOfFile(a.files[0], a.files[1], kAnywhere, d)) return kDone;
+        const auto unread = [](const Diagnostic& m) { return m.code == Rie::NoFile || m.code == Rie::BadFile; };
+        return std::any_of(d.all().begin(), d.all().end(), unread) ? kNothingRendered : kOutputFailed;
     }
     std::vector<clouds::PointCloud> from;
     for (size_t i = 0; i + 1 < a.files.size(); ++i) {
@@ -157,13 +180,18 @@ int runPtc(const Arguments& a, Diagnostics& d) {
     }
     const std::string& out = a.files.back();
     if (a.action == "filter") all = filtered(std::move(all), a);
+    if (a.action == "bounce")
+        if (const std::string fault = bounced(all, a); !fault.empty()) {
+            d.report(Severity::Error, Rie::MissingData, {}, "\"" + a.files[0] + "\": " + fault,
+                     "alpenglow ptc info tells what there is");
+            return kNothingRendered;
+        }
     if (a.action == "picture" && !a.channel.empty() && all.offsetOf(a.channel) < 0) {
         d.report(Severity::Error, Rie::MissingData, {}, "there is no channel \"" + a.channel + "\" in it",
                  "alpenglow ptc info tells what there is");
         return kNothingRendered;
     }
-    const bool written = a.action == "brick"     ? clouds::saveBrickMap(out, all, kAnywhere, d)
-                         : a.action == "picture" ? writePicture(out, all, a, d)
+    const bool written = a.action == "picture" ? writePicture(out, all, a, d)
                          : a.action == "toply"   ? clouds::savePly(out, all, kAnywhere, d, {})
                                                  : clouds::saveCloud(out, all, kAnywhere, d);
     return written ? kDone : kOutputFailed;
@@ -176,10 +204,9 @@ void addPtc(CLI::App& app, int* status) {
     CLI::App* c = app.add_subcommand("ptc", "Tell, merge, filter, convert and draw point clouds; make brick maps");
     c->add_option("action", a->action,
                   "info: what is in files; merge: several as one; filter: parts of one; toply, fromply: to and from PLY; brick: "
-                  "a brick map; "
-                  "picture: how it looks")
+                  "a brick map; bounce: light that points send to each other; picture: how it looks")
         ->required()
-        ->check(CLI::IsMember({"info", "merge", "filter", "toply", "fromply", "brick", "picture"}));
+        ->check(CLI::IsMember({"info", "merge", "filter", "toply", "fromply", "brick", "bounce", "picture"}));
     c->add_option("files", a->files, "What is read, and last what is written; info only reads")->required();
     auto* filter = c->add_option_group("Of filter");
     filter->add_option("--channels", a->channels, "Channels that are kept, separated by commas")
@@ -195,6 +222,13 @@ void addPtc(CLI::App& app, int* status) {
     filter->add_option("--smooth", a->smooth, "Each value becomes the mean within this radius, as texture3d() finds it")
         ->check(positive())
         ->type_name("RADIUS");
+    auto* bounce = c->add_option_group("Of bounce");
+    bounce->add_option("--albedo", a->albedo, "What points send of light that arrives: a number, three of them with commas, or a channel")
+        ->type_name("NUMBER|R,G,B|NAME");
+    bounce->add_option("--bounces", a->bounces, "How many times light goes from point to point")->check(between(1, 100))->type_name("N");
+    bounce->add_option("--solid-angle", a->solidAngle, "Clusters of points that look larger are taken apart")
+        ->check(positive())
+        ->type_name("STERADIANS");
     auto* picture = c->add_option_group("Of picture");
     picture->add_option("--channel", a->channel, "What is drawn; normals when none is given")->type_name("NAME");
     picture->add_option("--view", a->view, "Direction of the view: x, y, z, -x, -y, -z")

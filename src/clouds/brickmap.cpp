@@ -1,4 +1,5 @@
 #include "clouds/brickmap.h"
+#include "clouds/brickparts.h"
 #include "base/file.h"
 #include "clouds/bytes.h"
 #include "clouds/cloudfile.h"
@@ -18,37 +19,6 @@
 namespace alpenglow::clouds {
 
 namespace {
-
-constexpr char kMagic[] = "ALPGBRIC";
-constexpr uint32_t kVersion = 1;
-constexpr size_t kFixed = 44, kEnd = 4, kOfBrick = 32;
-constexpr uint32_t kBrickSide = 8; ///< cells
-
-using BrickPlace = std::array<uint32_t, 4>; ///< level, x, y, z
-
-struct Brick {
-    BrickPlace at;
-    uint32_t points = 0;
-    uint64_t offset = 0;
-    uint32_t crc = 0;
-};
-
-uint32_t brickOf(double x, float corner, float side, int depth) {
-    const uint32_t cells = 1u << depth;
-    const double cell = side > 0 ? (x - double(corner)) / double(side) * cells : 0;
-    return uint32_t(std::clamp(cell, 0.0, double(cells - 1))) / kBrickSide;
-}
-
-/// The level whose cells are as wide as the middle one of the disks.
-int deepestOf(const PointCloud& cloud, float side) {
-    if (cloud.size() == 0) return 0;
-    std::vector<float> r = cloud.radius;
-    std::nth_element(r.begin(), r.begin() + long(r.size() / 2), r.end());
-    const float disk = 2 * r[r.size() / 2];
-    int depth = 0;
-    while (depth < kDeepest - 1 && side > disk) side /= 2, ++depth;
-    return depth;
-}
 
 /// A file that bricks are read from.
 class File {
@@ -141,20 +111,20 @@ private:
 
 std::string BrickMap::readDirectory() {
     std::vector<uint8_t> b;
-    if (!file_.regular() || file_.size() < kFixed + kEnd || !file_.read(0, kFixed, b)) return "it is cut short";
-    if (takeNumber<uint32_t>(&b[8]) != kVersion) return "it has another version than this program reads";
+    if (!file_.regular() || file_.size() < kBrickFixed + kBrickEnd || !file_.read(0, kBrickFixed, b)) return "it is cut short";
+    if (takeNumber<uint32_t>(&b[8]) != kBrickVersion) return "it has another version than this program reads";
     const uint32_t channels = takeNumber<uint32_t>(&b[12]), levels = takeNumber<uint32_t>(&b[16]);
     const uint32_t bricks = takeNumber<uint32_t>(&b[36]), header = takeNumber<uint32_t>(&b[40]);
     corner_ = takeVec(&b[20]);
     side_ = takeFloat(&b[32]);
-    if (header < kFixed + kEnd || header > file_.size()) return "it is cut short";
+    if (header < kBrickFixed + kBrickEnd || header > file_.size()) return "it is cut short";
     if (!file_.read(0, header, b)) return "it cannot be read";
-    const std::span<const uint8_t> head(b.data(), header - kEnd);
-    if (checksum(head) != takeNumber<uint32_t>(&b[header - kEnd])) return "its header is damaged";
+    const std::span<const uint8_t> head(b.data(), header - kBrickEnd);
+    if (checksum(head) != takeNumber<uint32_t>(&b[header - kBrickEnd])) return "its header is damaged";
     if (levels < 1 || levels > uint32_t(kDeepest) || !std::isfinite(dot(corner_, Vec3(1))) || !(side_ >= 0) ||
         !std::isfinite(side_))
         return "its header is damaged";
-    size_t at = kFixed;
+    size_t at = kBrickFixed;
     if (std::string fault = unpackChannels(head, channels, &at, channels_); !fault.empty()) return fault;
     width_ = width();
     if (head.size() != at + levels * 4 + uint64_t(bricks) * kOfBrick) return "its header does not say what its bricks are";
@@ -219,24 +189,13 @@ std::shared_ptr<const PointTree> BrickMap::brick(const BrickPlace& at) const {
     return tree;
 }
 
-/// Points of a level by brick.
-std::map<BrickPlace, std::vector<uint32_t>> bricksOf(const PointCloud& level, const Vec3& corner, float side, int depth) {
-    std::map<BrickPlace, std::vector<uint32_t>> by;
-    for (size_t i = 0; i < level.size(); ++i) {
-        BrickPlace at{uint32_t(depth), 0, 0, 0};
-        for (int k = 0; k < 3; ++k) at[size_t(k) + 1] = brickOf(double(level.P[i][k]), corner[k], side, depth);
-        by[at].push_back(uint32_t(i));
-    }
-    return by;
-}
-
 } // namespace
 
 bool isBrickMap(const std::string& path) {
     char head[8];
     std::FILE* f = std::fopen(path.c_str(), "rb");
     if (!f) return false;
-    const bool is = std::fread(head, 1, 8, f) == 8 && std::memcmp(head, kMagic, 8) == 0;
+    const bool is = std::fread(head, 1, 8, f) == 8 && std::memcmp(head, kBrickMagic, 8) == 0;
     std::fclose(f);
     return is;
 }
@@ -251,15 +210,40 @@ std::shared_ptr<const CloudMap> openBrickMap(const std::string& path, Diagnostic
     return nullptr;
 }
 
+std::vector<uint8_t> brickHead(std::span<const Channel> of, std::span<const float> largest, const Vec3& corner, float side,
+                               std::span<const Brick> bricks, uint64_t record) {
+    const std::vector<uint8_t> channels = packChannels(of);
+    const size_t header = kBrickFixed + channels.size() + 4 * largest.size() + kOfBrick * bricks.size() + kBrickEnd;
+    uint64_t offset = header;
+    std::vector<uint8_t> head(kBrickMagic, kBrickMagic + 8);
+    for (const uint32_t v : {kBrickVersion, uint32_t(of.size()), uint32_t(largest.size())}) putNumber(head, v);
+    putVec(head, corner);
+    putFloat(head, side);
+    putNumber(head, uint32_t(bricks.size()));
+    putNumber(head, uint32_t(header));
+    head.insert(head.end(), channels.begin(), channels.end());
+    for (const float r : largest) putFloat(head, r);
+    for (const Brick& b : bricks) {
+        for (const uint32_t v : b.at) putNumber(head, v);
+        putNumber(head, b.points);
+        putNumber(head, offset);
+        putNumber(head, b.crc);
+        offset += b.points * record;
+    }
+    putNumber(head, checksum(head));
+    return head;
+}
+
 bool saveBrickMap(const std::string& name, const PointCloud& cloud, const OutputPolicy& policy, Diagnostics& d,
                   const SourcePlace& place) {
     Vec3 corner;
     float side = 0;
     cubeAbout(cloud, &corner, &side);
-    const int deepest = deepestOf(cloud, side);
+    const int deepest = deepestOf(cloud.radius, side);
     std::vector<PointCloud> levels(size_t(deepest) + 1);
     for (int depth = deepest; depth >= 0; --depth) // each from the next finer one: means by area of means by area
         levels[size_t(depth)] = coarser(depth == deepest ? cloud : levels[size_t(depth) + 1], corner, side, depth);
+    const uint64_t record = 28 + 4 * uint64_t(cloud.width());
     std::vector<Brick> bricks;
     std::vector<std::vector<uint8_t>> points;
     std::vector<float> largest;
@@ -272,25 +256,7 @@ bool saveBrickMap(const std::string& name, const PointCloud& cloud, const Output
             bricks.push_back({at, uint32_t(of.size()), 0, checksum(packed)});
         }
     }
-    const std::vector<uint8_t> channels = packChannels(cloud.channels);
-    const size_t header = kFixed + channels.size() + 4 * largest.size() + kOfBrick * bricks.size() + kEnd;
-    uint64_t offset = header;
-    std::vector<uint8_t> head(kMagic, kMagic + 8);
-    for (const uint32_t v : {kVersion, uint32_t(cloud.channels.size()), uint32_t(largest.size())}) putNumber(head, v);
-    putVec(head, corner);
-    putFloat(head, side);
-    putNumber(head, uint32_t(bricks.size()));
-    putNumber(head, uint32_t(header));
-    head.insert(head.end(), channels.begin(), channels.end());
-    for (const float r : largest) putFloat(head, r);
-    for (size_t i = 0; i < bricks.size(); ++i) {
-        for (const uint32_t v : bricks[i].at) putNumber(head, v);
-        putNumber(head, bricks[i].points);
-        putNumber(head, offset);
-        putNumber(head, bricks[i].crc);
-        offset += points[i].size();
-    }
-    putNumber(head, checksum(head));
+    const std::vector<uint8_t> head = brickHead(cloud.channels, largest, corner, side, bricks, record);
     auto file = OutputFile::open(name, policy, d, place);
     if (!file) return false;
     file->write(head.data(), head.size());

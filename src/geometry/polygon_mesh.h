@@ -4,7 +4,7 @@
 // normal's z below 1e-4) uses an orthonormal frame of its plane instead: u along the horizontal direction in the plane, v up
 // the plane towards +z. dPdu, dPdv are the exact partials in the plane of the triangle.
 #pragma once
-#include "geometry/shape.h"
+#include "geometry/faceplace.h"
 #include <mutex>
 #include <span>
 
@@ -35,6 +35,8 @@ public:
     void dice(const DiceOptions&, Diagnostics&) override;
     /// u, v, s and t at the corners of a triangle that rays meet, before it is diced: evaluateHit() there.
     void cornerParameters(uint32_t tri, SurfacePoint out[3]) const;
+    /// facePlace() of a point of a triangle of the undiced mesh. False: its face has more than four corners. faceplace.cpp
+    bool placeOnFace(uint32_t tri, double b1, double b2, FacePlace&) const;
 
 protected:
     size_t classCount(scene::Class) const override;

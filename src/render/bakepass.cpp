@@ -8,7 +8,7 @@ namespace alpenglow::render {
 namespace {
 constexpr size_t kAtOnce = 1u << 16;      ///< points whose samples wait for their mean, at most
 constexpr size_t kSamplesWait = 1u << 22; ///< and these samples
-constexpr size_t kRays = 64;         ///< of one trace(): their shaders may send thousands
+constexpr size_t kRays = 256;             ///< of one trace(): their shaders may send thousands
 
 /// Traces all samples of some points.
 bool tracePoints(Job& job, std::vector<shading::GridPoint>& points, const std::vector<int>& numbers, uint32_t samples,

@@ -335,14 +335,17 @@ void Renderer::writeFrameFilm(FrameWork& f, Film& film, double renderSec) {
     if (!f.checkpoint.empty()) outcome_.outputFailed |= !savePart(film, f.checkpoint, OutputPolicy{".", true}, diagnostics_);
 }
 
-/// The pixels of deep shadow maps. False: there are none, which was reported.
+/// The pixels of deep shadow maps. Where these are refused, which was reported, the frame has its other pictures. False: it has
+/// none.
 bool Renderer::makeDepths(FrameWork& f, Job& job) {
     if (f.path) gridOf(f.o, settings_, &f.nx, &f.ny);
     f.picture.deep = seeDepths(job, f.nx, f.ny, jitterOf(f.o, diagnostics_), settings_.seed, deepShadowError(f.o, diagnostics_));
     outcome_.interrupted |= job.interrupted;
     if (job.interrupted)
         diagnostics_.report(Severity::Warning, Rie::NoError, {}, "interrupted before the deep shadow map was whole; nothing is written");
-    return f.picture.deep != nullptr;
+    if (f.picture.deep || job.interrupted) return f.picture.deep != nullptr;
+    std::erase_if(f.plan.pictures, [](const OutputSpec& p) { return p.deep; });
+    return !f.plan.pictures.empty();
 }
 
 /// The hiders hidden and raytrace.

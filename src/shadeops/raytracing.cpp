@@ -31,7 +31,6 @@ std::vector<OptionalParameter> rayParameters() {
 std::vector<OptionalParameter> hemisphereParameters(const char* falloff, const char* adaptive) {
     constexpr const char* kExact = "accepted and ignored: the result is exact for its rays";
     constexpr const char* kRecords = "above 0 light is interpolated between records, about this relative error: biased. Whole hemispheres without outputs; others are exact";
-    constexpr const char* kClouds = "of point clouds, which are not yet read; ignored";
     return {{kF, "coneangle", false, "PI/2", "half angle of the cone of directions, radians"},
             {kV, "axis", false, "0", "only directions toward the axis: a sky that is half a ball; none: all"},
             {kF, "adaptive", false, "0", adaptive},
@@ -47,13 +46,13 @@ std::vector<OptionalParameter> hemisphereParameters(const char* falloff, const c
             {kC, "environmentcolor", true, "", "the map's part: mean over the directions, 0 where they are blocked"},
             {kV, "environmentdir", true, "", "mean unoccluded direction, length 1; 0 where all is blocked"},
             {kF, "occlusion", true, "", "occlusion by the same rays"},
-            {kF, "pointbased", false, "0", "1 uses point clouds, which are not yet read: rays are traced instead"},
-            {kS, "filename", false, "\"\"", kClouds},
-            {{Base::String, -1}, "filenames", false, "{}", kClouds},
-            {kF, "maxsolidangle", false, "0.1", kClouds},
-            {kF, "clamp", false, "1", kClouds},
-            {kF, "sortbleeding", false, "0", kClouds},
-            {kS, "coordsystem", false, "\"world\"", kClouds}};
+            {kF, "pointbased", false, "0", "1: point clouds are looked at, and no ray is sent: biased; mean error against rays below .03 (docs/pointclouds.md). Of the others only coneangle, axis, distribution, falloff, falloffmode, maxdist, bias, hitsides (not given: both), environmentmap and outputs count then"},
+            {kS, "filename", false, "\"\"", "of point clouds: a file of bake3d() with _area, for light _radiosity, too"},
+            {{Base::String, -1}, "filenames", false, "{}", "of point clouds: several files"},
+            {kF, "maxsolidangle", false, "0.1", "of point clouds: steradians; clusters of points that look larger are taken apart. Smaller is slower and truer"},
+            {kF, "clamp", false, "1", "of point clouds: 1, what covers a direction several times counts once; 0, sums"},
+            {kF, "sortbleeding", false, "0", "of point clouds: 1, what is near hides what is behind it, also among clusters far away"},
+            {kS, "coordsystem", false, "\"world\"", "of point clouds: space of the files"}};
 }
 
 /// Those that occlusion() and indirectdiffuse() have of table 6.10: "samples" and "samplecone" are other names there.
@@ -69,7 +68,11 @@ std::vector<OptionalParameter> commonOfHemispheres() {
 }
 
 std::vector<OptionalParameter> subsurfaceParameters() {
-    return {{kS, "type", false, "\"raytrace\"", "raytrace; pointcloud traces rays, too"},
+    return {{kS, "type", false, "\"raytrace\"", "raytrace; pointcloud: what enters is read from the clouds of filename, by diffusion (Jensen and Buhler 2002): biased. Without a file rays are traced"},
+            {kS, "filename", false, "\"\"", "of pointcloud: a file of bake3d() with _area and _radiosity, the light that enters over PI, as diffuse() gives it"},
+            {{Base::String, -1}, "filenames", false, "{}", "of pointcloud: several files"},
+            {kF, "maxsolidangle", false, "0.1", "of pointcloud: steradians; clusters that look larger are taken apart"},
+            {kS, "coordsystem", false, "\"world\"", "of pointcloud: space of the files"},
             {kF, "samples", false, "attribute subsurface:samples; else 1 under path, 16 elsewhere", "walks of a call, 4096 at most"},
             {kS, "model", false, "\"walk\"", "walk: light is followed as it scatters; jensen: dipole (2001, 2002), grosjean: better dipole (d'Eon 2012), both biased where the surface is no half space"},
             {kC, "irradiance", false, "", "accepted and ignored: what enters elsewhere is found there"},

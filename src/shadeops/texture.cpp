@@ -99,7 +99,13 @@ std::vector<Shadeop> textureShadeops() {
         each("float color", "$ ptexture(string name; uniform float channel; float face; pairs)") +
             each("float color", "$ ptexture(string name; uniform float channel; float face, float s, float t; pairs)") +
             each("float color", "$ ptexture(string name; uniform float channel; float face; " + quad),
-        Lowering::Unavailable, "Lookup in a texture that has one image per face.");
+        Lowering::Service,
+        "Lookup in a Ptex file, which has a picture for each face of a mesh, at s, t of a face (0 to 1 from its first corner to the second and to the last), or over a quadrilateral. "
+        "Without coordinates those of the face at the hit: of triangles and quadrilaterals of polygon meshes, of subdivision surfaces u and v; of other faces s and t. Filters go across the edges of "
+        "faces, from picture to picture. Float: the channel of this number, color: three from it on. Values are linear and multiplied with alpha. A shader parameter \"float __faceindex\" that the primitive "
+        "has no variable for gets the number of the face.");
+    for (OptionalParameter& o : list.back().optional)
+        if (o.name == "filter") o.doc = "gaussian, triangle, box or point";
     list.back().examples = {{"ptexture(\"none.ptx\", 0, 0)", "0"}};
     Shadeop& bake = add("bake", each("float color point", "void bake(string file; float s, float t; $ value)"), Lowering::Service,
                         "Writes (s, t, value) to a file, which maketx or MakeTexture turn into a texture. Readable text, one line a point: s, t and the numbers of value; "

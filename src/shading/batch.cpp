@@ -1,4 +1,5 @@
 #include "shading/batch.h"
+#include "shading/faceindex.h"
 #include <algorithm>
 #include <bit>
 #include <cstddef>
@@ -389,6 +390,11 @@ void Batch::fillParameter(const BatchPlan::Source& s, float* row, std::span<cons
             overridden = !last->primvars().empty() && last->findPrimvar(s.name.name) >= 0;
         }
     if (overridden) return fillOverridden(s, row, points, views);
+    if (s.varying && s.name.name == kFaceIndex && comps == 1) {
+        for (int i = 0; i < count; ++i) row[i] = points[i].shape ? float(points[i].surface.face) : 0;
+        for (int p = 1; p < np && !s.scalar; ++p) std::fill_n(row + size_t(p) * stride, n, 0.f);
+        return;
+    }
     for (int c = 0; c < comps * s.elements; ++c) { // component by component: a value for each instance, then a row
         valueOf_.clear();
         for (const float* numbers : numbers_) valueOf_.push_back(numbers[c]);
@@ -430,6 +436,10 @@ void Batch::fillOverridden(const BatchPlan::Source& s, float* row, std::span<con
                 }
                 continue;
             }
+        }
+        if (points[i].shape && comps * s.elements == 1 && s.name.name == kFaceIndex) {
+            at(0, 0, i) = float(points[i].surface.face);
+            continue;
         }
         const float* numbers = numbers_[views.index(i)];
         for (int c = 0; c < comps * s.elements; ++c) {

@@ -1,73 +1,9 @@
-// The diffusion models of subsurface(), on demand: exact for a half space of high albedo, elsewhere an estimate with a bias.
-#include "base/exact.h"
+// Diffusion in place of walks: points of the surface about the shaded one.
 #include "wave/subsurface.h"
+#include "lobes/dipole.h"
 #include "lobes/sampling.h"
 
 namespace alpenglow::transport {
-
-Dipole::Dipole(const HalfSpace& boundary, bool better, double absorption, double scattering) {
-    const double sigma = absorption + scattering;
-    albedo_ = scattering / sigma;
-    depth_ = 1 / sigma;
-    if (better) { // d'Eon, A Better Dipole (2012): Grosjean's diffusion, boundary by both moments of the reflection
-        spread_ = (2 * absorption + scattering) / (3 * sigma * sigma);
-        const double c1 = boundary.first(), c2 = boundary.second(); // 2 C1 and 3 C2
-        const double edge = 2 * spread_ * (1 + c2) / (1 - c1);
-        image_ = depth_ + 2 * edge;
-        fluence_ = (1 - c1) / 4;
-        flux_ = (1 - c2) / 2;
-    } else { // Jensen and others, A Practical Model for Subsurface Light Transport (2001)
-        spread_ = 1 / (3 * sigma);
-        const double n = boundary.index();
-        const double fdr = n >= 1 ? -1.440 / (n * n) + 0.710 / n + 0.668 + 0.0636 * n
-                                  : -0.4399 + 0.7099 / n - 0.3319 / (n * n) + 0.0636 / (n * n * n);
-        const double a = n == 1 ? 1 : (1 + fdr) / (1 - fdr);
-        image_ = depth_ + 4 * a * spread_;
-        flux_ = 1;
-    }
-    fall_ = std::sqrt(absorption / spread_);
-}
-
-double Dipole::at(double r) const {
-    const auto part = [&](double z, double& fluence) {
-        const double d = std::sqrt(r * r + z * z), e = exact::exp(-fall_ * d);
-        fluence = e / d;
-        return z * (1 + fall_ * d) * e / (d * d * d);
-    };
-    double below, above;
-    const double flux = part(depth_, below) + part(image_, above);
-    return albedo_ / (4 * kPi) * (flux_ * flux + fluence_ / spread_ * (below - above));
-}
-
-double Dipole::total() const {
-    const double below = exact::exp(-fall_ * depth_), above = exact::exp(-fall_ * image_);
-    const double fluence = fall_ > 1e-9 ? (below - above) / fall_ : image_ - depth_;
-    return albedo_ / 2 * (flux_ * (below + above) + fluence_ / spread_ * fluence);
-}
-
-// Half by the exponential far away, half by the distance that the source below is seen from.
-double Dipole::choose(float which, float u) const {
-    if (which < 0.5f && fall_ > 0) return -exact::log(1 - std::min(double(u), 1 - 0x1p-24)) / fall_;
-    const double c = 1 - std::min(double(u), 1 - 0x1p-24);
-    return depth_ * std::sqrt(1 / (c * c) - 1);
-}
-
-double Dipole::density(double r) const {
-    const double d2 = r * r + depth_ * depth_, near = depth_ / (2 * kPi * d2 * std::sqrt(d2));
-    if (!(fall_ > 0)) return near;
-    return 0.5 * near + 0.5 * fall_ * exact::exp(-fall_ * r) / (2 * kPi * std::max(r, 1e-30));
-}
-
-double Engine::albedoOf(const Below& b, double reflectance) {
-    const HalfSpace& h = halfSpace(b.index);
-    if (b.model == SubsurfaceSite::Model::Walk) return h.albedo(reflectance);
-    double lo = 0, hi = 1;
-    for (int i = 0; i < 40; ++i) {
-        const double mid = 0.5 * (lo + hi);
-        (Dipole(h, b.model == SubsurfaceSite::Model::BetterDipole, 1 - mid, mid).total() < reflectance ? lo : hi) = mid;
-    }
-    return lo;
-}
 
 /// Points of the surface about the shaded one, met by lines along one of three axes, chosen by chance; all that a line meets
 /// count (King and others, BSSRDF Importance Sampling, 2013).
@@ -87,7 +23,7 @@ void Walks::probe(int asked) {
     std::vector<Dipole> dipoles;
     double share[3];
     for (int k = 0; k < 3; ++k) {
-        dipoles.emplace_back(e_.halfSpace(b.index), b.model == SubsurfaceSite::Model::BetterDipole, double(b.absorption[k]),
+        dipoles.emplace_back(e_.halfSpaces_.of(b.index), b.model == SubsurfaceSite::Model::BetterDipole, double(b.absorption[k]),
                              std::max(double(b.scattering[k]), 1e-12));
         share[k] = part[k] / sum;
     }

@@ -274,9 +274,7 @@ public:
     int groupNamed(const std::string&);
     std::map<const scene::Attributes*, std::shared_ptr<const SubsurfaceOfShape>> subsurfaces_;
     std::map<std::string, int> groups_;
-    std::map<int, std::shared_ptr<const class HalfSpace>> halfSpaces_; ///< by the index of refraction, in 32nds
-    const HalfSpace& halfSpace(float index);
-    double albedoOf(const Below&, double reflectance); ///< dipole.cpp
+    HalfSpaces halfSpaces_;
     std::vector<Below> below_; ///< of `lobes`
     std::vector<WalkAsked> walks_; ///< that the lobes of a batch have asked for; taken where these are done
     /// Follows the walks below surfaces that a batch has asked for. subsurface.cpp

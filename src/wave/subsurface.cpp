@@ -11,15 +11,7 @@ namespace alpenglow::transport {
 
 namespace {
 
-/// Defaults: marble, 1/mm (Jensen and others, A Practical Model for Subsurface Light Transport, 2001).
-const Color kScattering{2.19f, 2.62f, 3.f}, kAbsorption{.0021f, .0041f, .0071f};
 constexpr int kSamplesElsewhere = 16; ///< of a call under hidden and raytrace
-
-Color above0(const Color& c, float most) {
-    Color r;
-    for (int k = 0; k < 3; ++k) r[k] = c[k] > 0 ? std::min(c[k], most) : 0; // not a number: 0
-    return r;
-}
 
 Color absolute(const Color& c) { return {std::fabs(c.x), std::fabs(c.y), std::fabs(c.z)}; }
 
@@ -40,73 +32,21 @@ int Engine::groupNamed(const std::string& name) { return groups_.try_emplace(nam
 const Engine::SubsurfaceOfShape& Engine::subsurfaceOf(const scene::Attributes& a) {
     std::shared_ptr<const SubsurfaceOfShape>& known = subsurfaces_[&a];
     if (known) return *known;
-    auto s = std::make_shared<SubsurfaceOfShape>();
-    const auto colour = [&](const char* key, Color& to) {
-        if (const scene::Param* p = a.value(key); p && p->numbers.size() >= 3)
-            to = above0({float(p->numbers[0]), float(p->numbers[1]), float(p->numbers[2])}, 1e30f);
-        else if (p && !p->numbers.empty()) to = above0(Color(float(p->numbers[0])), 1e30f);
-    };
-    const auto number = [&](const char* key, float fallback) {
-        const scene::Param* p = a.value(key);
-        return p && !p->numbers.empty() && std::isfinite(p->numbers[0]) ? float(p->numbers[0]) : fallback;
-    };
-    colour("subsurface:scattering", s->scattering);
-    colour("subsurface:absorption", s->absorption);
-    colour("subsurface:meanfreepath", s->path);
-    colour("subsurface:reflectance", s->reflectance);
-    s->index = number("subsurface:refractionindex", s->index);
-    s->scale = number("subsurface:scale", s->scale);
-    s->samples = int(std::clamp(number("subsurface:samples", -1), -1.f, 4096.f));
+    auto s = std::make_shared<SubsurfaceOfShape>(a);
     const std::string name = attributeText(a, "subsurface:groupname");
     s->group = groupNamed(!name.empty() ? name : '\1' + std::to_string(subsurfaces_.size()));
     known = s;
     return *known;
 }
 
-const HalfSpace& Engine::halfSpace(float index) {
-    std::shared_ptr<const HalfSpace>& h = halfSpaces_[int(index * 32 + 0.5f)];
-    if (!h) h = std::make_shared<HalfSpace>(double(int(index * 32 + 0.5f)) / 32);
-    return *h;
-}
-
 void Engine::requestSubsurface(BatchContext&, const SiteInfo& s, const ShadePoint& p, const std::function<float(int)>& f,
                                LobeVertex& l) {
     const SubsurfaceSite& site = *s.subsurface;
     const SubsurfaceOfShape& of = subsurfaceOf(p.shape->attributes());
-    const auto number = [&](int row, float fallback) { return row < 0 ? fallback : f(row); };
-    const auto colour = [&](int row, const Color& fallback) {
-        return row < 0 ? fallback : above0({f(row), f(row + 1), f(row + 2)}, 1e30f);
-    };
-    Below b;
-    b.model = site.model;
+    Below b = belowOf(site, of, f, halfSpaces_);
     b.group = site.group.empty() ? of.group : groupNamed(site.group);
-    const float index = number(site.index, of.index), scale = number(site.scale, of.scale);
-    b.index = float(int((index > 1 / 3.f && index < 3 ? index : index >= 3 ? 3 : index > 0 ? 1 / 3.f : 1) * 32 + 0.5f)) / 32;
-    const float g = number(site.anisotropy, 0);
-    b.anisotropy = std::isfinite(g) ? std::clamp(g, -0.999f, 0.999f) : 0;
-    const float perLength = scale > 0 && std::isfinite(scale) ? scale : 1;
-    const bool coefficients = site.scattering >= 0 || site.absorption >= 0;
-    const bool said = site.reflectance >= 0 || site.path >= 0 || site.diffusePath >= 0 ||
-                      (!coefficients && of.scattering.x < 0 && of.absorption.x < 0 && (of.reflectance.x >= 0 || of.path.x >= 0));
-    if (said) { // of light that scatters evenly, whatever "anisotropy" says: the numbers are of what is seen
-        b.anisotropy = 0;
-        const Color r = above0(colour(site.reflectance, of.reflectance.x >= 0 ? of.reflectance : Color(0.8f)), 0.9999f);
-        const Color path = colour(site.path, of.path.x >= 0 ? of.path : Color(1)), diffusePath = colour(site.diffusePath, Color(0));
-        for (int k = 0; k < 3; ++k) {
-            const double albedo = albedoOf(b, r[k]);
-            double sigma = 1 / std::max(double(path[k]), 1e-6);
-            if (site.diffusePath >= 0)
-                sigma = 1 / (std::max(double(diffusePath[k]), 1e-6) * std::sqrt(3 * std::max(1 - albedo, 1e-6)));
-            b.scattering[k] = float(sigma * albedo * perLength);
-            b.absorption[k] = float(sigma * (1 - albedo) * perLength);
-        }
-    } else {
-        b.scattering = above0(colour(site.scattering, of.scattering.x >= 0 ? of.scattering : kScattering) * perLength, 1e12f);
-        b.absorption = above0(colour(site.absorption, of.absorption.x >= 0 ? of.absorption : kAbsorption) * perLength, 1e12f);
-    }
-    b.extinction = b.scattering + b.absorption;
     const float many = of.samples > 0 ? float(of.samples) : rules_.pickOne ? 1 : float(kSamplesElsewhere);
-    const float samples = number(site.samples, many);
+    const float samples = site.samples < 0 ? many : f(site.samples);
     l.samples = samples >= 1 ? int(std::min(samples, 4096.f)) : 1; // not a number: 1
     l.rays = &kSpecularKind; // of one, that walks: --no-indirect leaves what lights bring by it
     l.lights = l.deltaLights = false;
@@ -152,7 +92,7 @@ void Walks::start(int asked) {
     if (!(sine2 < 1)) return; // all of it is reflected
     const double cosine = std::sqrt(1 - sine2);
     const double through = 1 - fresnelInside(cosine, n); // over its mean, by the flux
-    const double mean = (1 - e_.halfSpace(b.index).first()) * n * n;
+    const double mean = (1 - e_.halfSpaces_.of(b.index).first()) * n * n;
     w.weight = w.begin = a.weight * float(b.index == 1 ? 1 : through / mean);
     w.dir = Basis(-out).toWorld({float(outside.x / n), float(outside.y / n), float(cosine)});
     w.dir = w.dir / length(w.dir);

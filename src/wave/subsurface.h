@@ -1,34 +1,12 @@
 // Light that walks below surfaces: subsurface().
 #pragma once
 #include "wave/engine.h"
-#include "wave/halfspace.h"
 
 namespace alpenglow::transport {
 
-/// What Attribute "subsurface" says; < 0: nothing.
-struct Engine::SubsurfaceOfShape {
-    Color scattering{-1}, absorption{-1}, path{-1}, reflectance{-1};
-    float index = 1.3f, scale = 1;
-    int samples = -1;
+struct Engine::SubsurfaceOfShape : SubsurfaceValues {
+    using SubsurfaceValues::SubsurfaceValues;
     int group = 0;
-};
-
-/// How far light spreads below a plane that it enters at one point: diffusion with two sources. Lengths of current space.
-class Dipole {
-public:
-    Dipole(const HalfSpace&, bool better, double absorption, double scattering);
-    /// Light that leaves at a distance from where 1 has entered, a unit of area.
-    double at(double distance) const;
-    /// Its integral over the plane.
-    double total() const;
-    /// With how much of it points are chosen at a distance, a unit of area; a distance for numbers of [0, 1).
-    double density(double distance) const;
-    double choose(float which, float u) const;
-
-private:
-    double depth_ = 0, image_ = 0, fall_ = 0; ///< of the source below the surface, of its image above; 1 / diffuse mean free path
-    double fluence_ = 0, flux_ = 0;           ///< factors of both
-    double albedo_ = 0, spread_ = 0;          ///< spread: the diffusion coefficient
 };
 
 /// The walks that a batch has asked for, and where they come out: points that gather light as diffuse() does.

@@ -3,6 +3,7 @@
 #pragma once
 #include "answers/kernelrun.h"
 #include "wave/rays.h"
+#include "world/below.h"
 
 namespace alpenglow::transport {
 
@@ -16,13 +17,6 @@ struct LitValues {
     bool output(const std::string& name, std::vector<float>& v) const;
 };
 
-/// What lies below a surface, for a subsurface(): coefficients a unit of length of current space.
-struct Below {
-    Color absorption{0}, scattering{0}, extinction{0};
-    float anisotropy = 0, index = 1; ///< index: of refraction, relative to outside
-    SubsurfaceSite::Model model = SubsurfaceSite::Model::Walk;
-    int group = 0;                   ///< Engine::groupOf(): of the shapes that bound it
-};
 /// A walk that chance has chosen: from `point` of the batch, with what it would bring to the target.
 struct WalkAsked {
     int point = 0;

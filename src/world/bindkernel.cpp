@@ -2,6 +2,8 @@
 #include "shadeops/specular.h"
 #include "world/cloudsite.h"
 #include "world/photonattributes.h"
+#include "world/pointsite.h"
+#include "world/ptexsite.h"
 #include "world/gathersite.h"
 #include "world/raysets.h"
 
@@ -57,6 +59,7 @@ SiteKind kindOf(const std::string& op) {
                                                           {"bake", SiteKind::Bake},
                                                           {"bake3d", SiteKind::Bake3d},
                                                           {"texture3d", SiteKind::Texture3d},
+                                                          {"ptexture", SiteKind::Ptexture},
                                                           {"depth", SiteKind::Depth},
                                                           {"random", SiteKind::Random},
                                                           {"transform", SiteKind::Transform},
@@ -202,7 +205,8 @@ std::shared_ptr<const SubsurfaceSite> subsurfaceSite(const SiteInfo& i, const rs
     if (row({"irradiance"}) >= 0)
         said("irradiance", "\"irradiance\" is not used: what enters elsewhere on the surface is found there, from the lights");
     const std::string type = !text("type").empty() ? text("type") : s.strings.empty() ? "" : s.strings[0];
-    if (type == "pointcloud") said("type", "point clouds are not yet read; rays are traced, which gives what they stand for");
+    if (type == "pointcloud" && !i.text.count(rsl::kPairPoints))
+        said("type", "a point cloud is read where \"filename\" names one; light is found by rays here");
     const std::string model = text("model");
     if (model == "jensen") b->model = SubsurfaceSite::Model::Dipole;
     else if (model == "grosjean") b->model = SubsurfaceSite::Model::BetterDipole;
@@ -356,6 +360,12 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         i.kind = kindOf(s.op);
         i.site = &s;
         bindRows(i, s);
+        if (readsPoints(i)) {
+            i.kind = s.op == "subsurface" ? SiteKind::PointSubsurface : SiteKind::PointHemisphere;
+            auto points = std::make_shared<PointSite>(*pointSite(i, *k, *world));
+            if (s.op == "subsurface") points->below = *subsurfaceSite(i, s, *k, *world);
+            i.points = std::move(points);
+        }
         if (!s.strings.empty() && !s.strings[0].empty()) i.nameId = rsl::internString(s.strings[0]);
         i.setUp = i.text.count(rsl::kPairSetUp) > 0;
         i.outside = i.text.count(rsl::kPairOutside) > 0;
@@ -370,6 +380,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         bindSent(i);
         if (i.kind == SiteKind::Texture || i.kind == SiteKind::Environment || i.kind == SiteKind::Shadow)
             i.map = textureSite(i, s, world->frame_->options);
+        if (i.kind == SiteKind::Ptexture) i.ptex = ptexSite(i, *k, *world);
         if (i.kind == SiteKind::Photons) i.photons = photonSite(i, *k, *world);
         if (i.kind == SiteKind::Bake || i.kind == SiteKind::Bake3d || i.kind == SiteKind::Texture3d)
             i.cloud = cloudSite(i, *k, *world);

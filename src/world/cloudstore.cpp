@@ -1,12 +1,11 @@
 #include "world/cloudstore.h"
+#include "clouds/brickmap.h"
+#include "clouds/cloudfile.h"
+#include "clouds/limits.h"
 
 namespace alpenglow::transport {
 
-const clouds::CloudMap* CloudStore::find(const std::string& name, const SourcePlace& place) {
-    if (name.empty()) return nullptr;
-    std::lock_guard lock(mutex_);
-    const auto [at, fresh] = maps_.try_emplace(name);
-    if (!fresh) return at->second.get();
+std::optional<std::string> CloudStore::pathOf(const std::string& name, const SourcePlace& place) {
     std::vector<std::string> folders = {""};
     folders.insert(folders.end(), files_.folders.begin(), files_.folders.end());
     std::string outside;
@@ -15,15 +14,64 @@ const clouds::CloudMap* CloudStore::find(const std::string& name, const SourcePl
         if (found->otherCase || found->baseNameOnly)
             diagnostics_.report(Severity::Warning, Rie::NoError, place,
                                 "point cloud \"" + name + "\" was not found as named; \"" + found->path + "\" is used");
-        at->second = clouds::openMap(found->path, diagnostics_, place);
-    } else if (!outside.empty()) {
-        diagnostics_.report(outsideMessage("point cloud", name, outside, place));
-    } else {
-        diagnostics_.report(Severity::Error, Rie::NoFile, place,
-                            "there is no point cloud or brick map \"" + name + "\"; texture3d() gives 0",
-                            "bake3d() in a frame before this one makes it");
+        return found->path;
     }
+    if (!outside.empty()) diagnostics_.report(outsideMessage("point cloud", name, outside, place));
+    else
+        diagnostics_.report(Severity::Error, Rie::NoFile, place,
+                            "there is no point cloud or brick map \"" + name + "\"; what reads it gives 0",
+                            "bake3d() in a frame before this one makes it");
+    return {};
+}
+
+const clouds::CloudMap* CloudStore::find(const std::string& name, const SourcePlace& place) {
+    if (name.empty()) return nullptr;
+    std::lock_guard lock(mutex_);
+    const auto [at, fresh] = maps_.try_emplace(name);
+    if (!fresh) return at->second.get();
+    if (const auto path = pathOf(name, place)) at->second = clouds::openMap(*path, diagnostics_, place);
     return at->second.get();
+}
+
+const clouds::PointOctree* CloudStore::octree(const std::string& name, bool light, const SourcePlace& place) {
+    if (name.empty()) return nullptr;
+    std::lock_guard lock(mutex_);
+    for (const bool lit : {light, true}) // one with light serves both
+        if (const auto known = octrees_.find({name, lit}); known != octrees_.end()) return known->second.get();
+    return (octrees_[{name, light}] = makeOctree(name, light, place)).get();
+}
+
+std::shared_ptr<const clouds::PointOctree> CloudStore::makeOctree(const std::string& name, bool light, const SourcePlace& place) {
+    const auto path = pathOf(name, place);
+    if (!path) return nullptr;
+    const auto report = [&](Severity s, const std::string& what, const std::string& hint) {
+        diagnostics_.report(s, Rie::BadFile, place, "point cloud \"" + name + "\" " + what, hint);
+    };
+    if (clouds::isBrickMap(*path)) {
+        report(Severity::Error, "is a brick map, which is no place for rays; it is left out", "give the point cloud that it was made of");
+        return nullptr;
+    }
+    const auto cloud = clouds::loadCloud(*path, diagnostics_, place);
+    if (!cloud) return nullptr;
+    if (cloud->size() > limits::kOctreePoints) {
+        report(Severity::Error, "has more than " + std::to_string(limits::kOctreePoints) + " points; it is left out",
+               "alpenglow ptc filter --depth thins it");
+        return nullptr;
+    }
+    std::string channel;
+    if (light)
+        for (const char* known : {"_irradiance", "_radiosity"})
+            if (cloud->offsetOf(known) >= 0) channel = known;
+    auto octree = std::make_shared<clouds::PointOctree>(*cloud, channel);
+    if (cloud->size() == 0) report(Severity::Warning, "has no points", "bake3d() says which surfaces it bakes");
+    else if (octree->leftOut() > 0)
+        report(octree->points().empty() ? Severity::Error : Severity::Warning,
+               "has " + std::to_string(octree->leftOut()) + " points without area, which are left out",
+               "bake3d() writes a radius and \"_area\"");
+    if (light && !octree->lit() && cloud->size() > 0)
+        report(Severity::Warning, "has no channel \"_radiosity\"; what its points send is 0",
+               "bake3d(..., \"_radiosity\", Ci) writes it");
+    return octree;
 }
 
 } // namespace alpenglow::transport

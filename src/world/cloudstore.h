@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "clouds/bakelog.h"
 #include "clouds/map.h"
+#include "clouds/octree.h"
 
 namespace alpenglow::transport {
 
@@ -18,15 +19,22 @@ public:
     /// lives as long as the store.
     const clouds::CloudMap* find(const std::string& name, const SourcePlace&);
 
+    /// The cloud of a name as point-based shadeops see it; `light`: they want what its points send or get. Null: there is none,
+    /// which was reported once. Thread safe; it lives as long as the store.
+    const clouds::PointOctree* octree(const std::string& name, bool light, const SourcePlace&);
+
     clouds::BakeLog baked;
     /// Some kernel of a surface bakes; some of these calls may want middles of micropolygons. While the world is made.
     bool bakes = false, centres = false;
 
 private:
+    std::optional<std::string> pathOf(const std::string& name, const SourcePlace&);
+    std::shared_ptr<const clouds::PointOctree> makeOctree(const std::string& name, bool light, const SourcePlace&);
     Files files_;
     Diagnostics& diagnostics_;
     std::mutex mutex_;
     std::map<std::string, std::shared_ptr<const clouds::CloudMap>> maps_; ///< null: none
+    std::map<std::pair<std::string, bool>, std::shared_ptr<const clouds::PointOctree>> octrees_; ///< null: none
 };
 
 } // namespace alpenglow::transport

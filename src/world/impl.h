@@ -29,6 +29,7 @@ private:
 };
 
 class CloudStore; // world/cloudstore.h
+class PtexStore;  // world/ptexstore.h
 
 class WorldImpl final : public World, public shading::SpaceResolver {
 public:
@@ -160,6 +161,7 @@ public:
     texture::SkyDirectionTables skyMaps_;
     std::shared_ptr<PhotonStore> photons_;     ///< changes between passes only, when nobody follows rays
     std::shared_ptr<CloudStore> clouds_;       ///< point clouds that are read, and what is baked; keeps itself safe
+    std::shared_ptr<PtexStore> ptex_;          ///< Ptex files that are read; keeps itself safe
     bool globalMaps_ = false;                  ///< some surface has a global photon map, and some indirectdiffuse() may meet it
     mutable LightRecords records_;
     bool interpolates_ = false;                ///< some call may want records

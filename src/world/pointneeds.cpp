@@ -17,6 +17,7 @@ uint32_t needsOf(const BoundLight& l) {
 void WorldImpl::setPointNeeds() {
     // Lights may ask about the surface that they light, and footprints are taken by partial derivatives.
     uint32_t always = footprints_ ? geometry::kNeedPartials : 0;
+    if (ptex_) always |= geometry::kNeedUV | geometry::kNeedPartials; // places on faces
     for (const BoundLight& l : lights_) {
         if (!l.kernel) continue;
         always |= l.kernel.plan->litNeeds();

@@ -78,6 +78,8 @@ struct SubsurfaceSite {
 };
 struct GatherSite; // world/gathersite.h
 struct CloudSite;  // world/cloudsite.h
+struct PointSite;  // world/pointsite.h
+struct PtexSite;   // world/ptexsite.h
 
 /// What a photonmap() or caustic() asks. Rows, or -1.
 struct PhotonSite {
@@ -149,6 +151,9 @@ enum class SiteKind : uint8_t {
     Bake,
     Bake3d,
     Texture3d,
+    PointHemisphere,
+    PointSubsurface,
+    Ptexture,
     Other
 };
 struct SiteInfo {
@@ -177,6 +182,8 @@ struct SiteInfo {
     std::shared_ptr<const TextureSite> map;    ///< Texture, Environment
     std::shared_ptr<const PhotonSite> photons; ///< Photons
     std::shared_ptr<const CloudSite> cloud;    ///< Bake, Bake3d, Texture3d
+    std::shared_ptr<const PointSite> points;   ///< PointHemisphere, PointSubsurface
+    std::shared_ptr<const PtexSite> ptex;      ///< Ptexture
     bool setUp = false, refresh = false;       ///< loops: they have a setup; "lightcache" "refresh"
     bool outside = false;                      ///< queries: outside of loops over lights
     bool once = false;                         ///< printf: in construct()

@@ -2,6 +2,7 @@
 #include "world/photonattributes.h"
 #include "world/gathersite.h"
 #include "rsl/front/leftmembers.h"
+#include "shading/faceindex.h"
 #include "world/told.h"
 #include <limits>
 #include <set>
@@ -97,6 +98,10 @@ SurfaceBinder::Names SurfaceBinder::varyingOf(const geometry::Shape& shape, cons
                                          {},
                                          {}});
         }
+    // The number of the face, where the primitive does not say it itself.
+    if (shape.findPrimvar(shading::kFaceIndex) < 0)
+        for (const auto& p : shader.program->parameters())
+            if (p.name == shading::kFaceIndex && p.type.base == rsl::Base::Float && !p.type.array) varying.push_back(p.name);
     // What a shader and its co-shaders ask about the primitive, with the type that the first of them wants.
     std::map<std::string, rsl::Type> all = shader.program->program().primitiveVariables;
     for (const rsl::CoShader& c : shader.coShaders)

@@ -1,6 +1,7 @@
 // A deep shadow pass and a picture that reads it, in one file, as published scenes have them.
 #include "command_folder.h"
 #include "display/imageio.h"
+#include <cmath>
 #include <fmt/format.h>
 
 using namespace alpenglow;
@@ -89,6 +90,98 @@ TEST_F(DeepShadows, MovingThingsAndThreads) {
             sum += left[1] / 4;
         }
         EXPECT_NEAR(sum, (i - 20 + .5) / 16, .06) << i; // two deviations of 256 independent halves; strata are nearer
+    }
+}
+
+// A box of fog between lamp and floor: what is left at a depth is exp(-extinction times the way through it), and below the fog what a
+// traced ray finds.
+TEST_F(DeepShadows, FogIsSeenByItsDepth) {
+    const std::string fog = "AttributeBegin Interior \"fog\" Surface \"clear\" Opacity [0 0 0]\n"
+                            "TransformBegin Translate 0 0 6 Polygon \"P\" [-2 -2 -2 -2 2 -2 2 2 -2 2 -2 -2] Polygon \"P\" [-2 -2 2 2 -2 2 2 2 2 -2 2 2]\n"
+                            "Polygon \"P\" [-2 -2 -2 -2 -2 2 -2 2 2 -2 2 -2] Polygon \"P\" [2 -2 -2 2 2 -2 2 2 2 2 -2 2]\n"
+                            "Polygon \"P\" [-2 -2 -2 2 -2 -2 2 -2 2 -2 -2 2] Polygon \"P\" [-2 2 -2 -2 2 2 2 2 2 2 2 -2] TransformEnd AttributeEnd\n";
+    write("clear.sl", "surface clear() { Oi = 0; Ci = 0; }\n");
+    write("fog.sl", "volume fog(color density = color(.2, .5, 1);) { color t = color(exp(-length(I) * comp(density, 0)), exp(-length(I) * comp(density, 1)), exp(-length(I) * comp(density, 2)));\n"
+                    "    Ci = Ci * t; Oi = 1 - (1 - Oi) * t; }\n");
+    write("s.rib", "Format 16 16 1\nPixelSamples 2 2\nProjection \"orthographic\"\nScreenWindow -4 4 -4 4\nDisplay \"fog.dsm\" \"deepshad\" \"deepopacity\"\n"
+                   "Option \"limits\" \"float deepshadowerror\" 0\nWorldBegin\nSides 2\n" + fog + "WorldEnd\n");
+    run("render --progress none s.rib", "2>err");
+    ASSERT_EQ(status, 0) << text("err");
+    const display::Image m = read("fog.dsm");
+    ASSERT_TRUE(m.deep);
+    const double density[] = {.2, .5, 1};
+    for (const double z : {3.9, 4.5, 5.0, 6.0, 7.5, 8.5}) {
+        double left[3];
+        m.deep->leftAt(8 * 16 + 8, z, left);
+        const double way = std::clamp(z - 4, 0.0, 4.0);
+        // Half of a step, which takes 1/64 of the light, either way.
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(left[k], std::exp(-way * density[k]), z > 8 ? 1e-4 : .012) << z << " " << k;
+        m.deep->leftAt(0, z, left);
+        EXPECT_EQ(left[0], 1) << "beside it";
+    }
+}
+
+// Hairs that let some light through: as much of a pixel as they cover, layer by layer.
+TEST_F(DeepShadows, HairTakesWhatItCovers) {
+    std::string hairs;
+    for (int layer = 0; layer < 3; ++layer) {
+        std::string points;
+        for (int i = 0; i < 16; ++i) points += fmt::format("{} -5 {} {} 5 {} ", -4 + .5 * i + .125, 3 + layer, -4 + .5 * i + .125, 3 + layer);
+        hairs += "Curves \"linear\" [" + [] { std::string n; for (int i = 0; i < 16; ++i) n += "2 "; return n; }() + "] \"nonperiodic\" \"P\" [" + points + "] \"constantwidth\" [.25]\n";
+    }
+    write("s.rib", "Format 16 16 1\nPixelSamples 8 8\nProjection \"orthographic\"\nScreenWindow -4 4 -4 4\nDisplay \"hair.dsm\" \"deepshad\" \"deepopacity\"\n"
+                   "WorldBegin\nSides 2\nSurface \"constant\" Opacity [.4 .4 .4]\n" + hairs + "WorldEnd\n");
+    run("render --progress none s.rib", "2>err");
+    ASSERT_EQ(status, 0) << text("err");
+    const display::Image m = read("hair.dsm");
+    ASSERT_TRUE(m.deep);
+    for (int layer = 0; layer < 3; ++layer) {
+        double left[3], sum = 0;
+        for (int x = 2; x < 14; ++x) {
+            m.deep->leftAt(size_t(8 * 16 + x), 3.5 + layer, left);
+            sum += left[1] / 12;
+        }
+        EXPECT_NEAR(sum, .5 + .5 * std::pow(.6, layer + 1), .02) << "half of each pixel is hair";
+    }
+}
+
+// A point light's six faces, one map each: shadow() of the face that looks there is what a ray finds.
+TEST_F(DeepShadows, SixFacesOfAPointLight) {
+    // The light stands at the origin in a ring of balls, one before each face and a bit beside its middle.
+    const char* turn[] = {"Rotate -90 0 1 0", "Rotate 90 0 1 0", "Rotate 90 1 0 0", "Rotate -90 1 0 0", "Rotate 0 1 0 0", "Rotate 180 0 1 0"};
+    const char* axis[] = {"2 .3 0", "-2 .3 0", ".3 2 0", ".3 -2 0", "0 .3 2", "0 .3 -2"};
+    std::string balls;
+    for (const char* a : axis) balls += std::string("TransformBegin Translate ") + a + " Sphere .4 -.4 .4 360 TransformEnd\n";
+    const std::string room = "TransformBegin ReverseOrientation Sphere 4 -4 4 360 TransformEnd\n";
+    std::string s = "Option \"statistics\" \"endofframe\" 0\n";
+    for (int f = 0; f < 6; ++f)
+        s += fmt::format("FrameBegin {}\nFormat 128 128 1\nPixelSamples 2 2\nProjection \"perspective\" \"fov\" 95\nDisplay \"face{}.dsm\" \"deepshad\" \"deepopacity\"\n{}\nWorldBegin\nSides 2\nSurface \"constant\"\n{}WorldEnd\nFrameEnd\n",
+                         f + 1, f, turn[f], balls + room);
+    write("six.sl", "surface six(float traced = 0;) {\n"
+                    "    point Q = transform(\"world\", P); float x = abs(xcomp(Q)), y = abs(ycomp(Q)), z = abs(zcomp(Q)), dark = 0;\n"
+                    "    if (traced != 0) dark = 1 - comp(transmission(P, point \"world\" (0, 0, 0), \"samplecone\", 0), 0);\n"
+                    "    else if (x >= y && x >= z) { if (xcomp(Q) > 0) dark = shadow(\"face0.dsm\", P, \"bias\", .05); else dark = shadow(\"face1.dsm\", P, \"bias\", .05); }\n"
+                    "    else if (y >= z) { if (ycomp(Q) > 0) dark = shadow(\"face2.dsm\", P, \"bias\", .05); else dark = shadow(\"face3.dsm\", P, \"bias\", .05); }\n"
+                    "    else { if (zcomp(Q) > 0) dark = shadow(\"face4.dsm\", P, \"bias\", .05); else dark = shadow(\"face5.dsm\", P, \"bias\", .05); }\n"
+                    "    Oi = 1; Ci = dark;\n}\n");
+    int frame = 7;
+    for (int traced = 0; traced < 2; ++traced)
+        for (int view = 0; view < 6; ++view, ++frame)
+            s += fmt::format("FrameBegin {}\nFormat 40 40 1\nPixelSamples 3 3\nProjection \"perspective\" \"fov\" 90\nDisplay \"v{}{}.exr\" \"openexr\" \"rgb\"\n{}\nWorldBegin\nSides 2\nSurface \"six\" \"traced\" {}\n{}"
+                             "Surface \"constant\" Attribute \"visibility\" \"int camera\" 0\n{}WorldEnd\nFrameEnd\n",
+                             frame, traced, view, turn[view], traced, room, balls);
+    write("s.rib", s);
+    run("render --progress none s.rib", "2>err");
+    ASSERT_EQ(status, 0) << text("err");
+    for (int view = 0; view < 6; ++view) {
+        const display::Image maps = read(fmt::format("v0{}.exr", view)), rays = read(fmt::format("v1{}.exr", view));
+        double error = 0, dark = 0;
+        for (size_t i = 0; i < maps.data.size(); ++i) {
+            error += std::fabs(double(maps.data[i]) - double(rays.data[i])) / double(maps.data.size());
+            dark += double(rays.data[i]) / double(maps.data.size());
+        }
+        EXPECT_GT(dark, .01) << view;
+        EXPECT_LT(error, .02) << view << ": edges of shadows are filtered over pixels of the map";
     }
 }
 

@@ -1,6 +1,10 @@
 // Deep shadow maps: staircases, files of them, and files that are damaged.
 #include "base/limits.h"
 #include "support.h"
+#include <ImfChannelList.h>
+#include <ImfDeepFrameBuffer.h>
+#include <ImfDeepTiledOutputFile.h>
+#include <ImfPartType.h>
 #include <cmath>
 #include <random>
 
@@ -128,6 +132,69 @@ TEST(Deep, WhatIsTooLargeOrDoesNotFitIsNotWritten) {
             EXPECT_NE(messages(d).find(pixels == 1 && steps > 1 ? std::to_string(limits::kDeepSteps) : "match"), std::string::npos);
             EXPECT_EQ(s.files(), 0u);
         }
+}
+
+/// The same picture in tiles of 4 x 2 pixels, as other programs write it.
+std::vector<uint8_t> tiledFileOf(const Image& m) {
+    Scratch s;
+    const std::string name = (s / "tiles.exr").string();
+    {
+        Imf::Header h(m.width, m.height);
+        h.setType(Imf::DEEPTILE);
+        h.setTileDescription(Imf::TileDescription(4, 2, Imf::ONE_LEVEL));
+        h.compression() = Imf::ZIPS_COMPRESSION;
+        const char* names[] = {"Z", "RA", "GA", "BA"};
+        for (const char* n : names) h.channels().insert(n, Imf::Channel(Imf::FLOAT));
+        Imf::DeepTiledOutputFile file(name.c_str(), h);
+        const size_t pixels = size_t(m.width * m.height);
+        std::vector<unsigned> count(pixels);
+        std::vector<std::vector<float>> values[4];
+        std::vector<float*> at[4];
+        for (size_t c = 0; c < 4; ++c) values[c].resize(pixels), at[c].resize(pixels);
+        for (size_t p = 0; p < pixels; ++p) {
+            count[p] = unsigned(m.deep->first[p + 1] - m.deep->first[p]);
+            float left[3] = {1, 1, 1};
+            for (size_t i = m.deep->first[p]; i < m.deep->first[p + 1]; ++i) {
+                values[0][p].push_back(m.deep->steps[i].z);
+                for (size_t c = 0; c < 3; ++c) {
+                    values[c + 1][p].push_back(left[c] > 0 ? 1 - m.deep->steps[i].left[c] / left[c] : 0);
+                    left[c] = m.deep->steps[i].left[c];
+                }
+            }
+            for (size_t c = 0; c < 4; ++c) at[c][p] = values[c][p].data();
+        }
+        Imf::DeepFrameBuffer fb;
+        fb.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(count.data()), 4, 4 * size_t(m.width)));
+        for (size_t c = 0; c < 4; ++c)
+            fb.insert(names[c], Imf::DeepSlice(Imf::FLOAT, reinterpret_cast<char*>(at[c].data()), sizeof(float*), sizeof(float*) * size_t(m.width), sizeof(float)));
+        file.setFrameBuffer(fb);
+        file.writeTiles(0, file.numXTiles() - 1, 0, file.numYTiles() - 1);
+    }
+    return bytesOf(s / "tiles.exr");
+}
+
+TEST(Deep, TilesAreReadAsLinesAre) {
+    const Image m = deepPicture();
+    const std::vector<uint8_t> file = tiledFileOf(m);
+    Diagnostics d;
+    const auto r = decodeImage(file, "tiles", d);
+    ASSERT_TRUE(r && r->deep) << messages(d);
+    ASSERT_EQ(r->deep->first, m.deep->first);
+    for (size_t i = 0; i < m.deep->steps.size(); ++i) {
+        EXPECT_EQ(r->deep->steps[i].z, m.deep->steps[i].z);
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(r->deep->steps[i].left[k], m.deep->steps[i].left[k], 1e-5);
+    }
+    for (size_t n = 0; n < file.size(); n += 16) {
+        Diagnostics said;
+        EXPECT_TRUE(decodeImage({file.data(), n}, "cut", said) || said.errors()) << n;
+    }
+    std::mt19937 random(5);
+    for (int trial = 0; trial < 2000; ++trial) {
+        std::vector<uint8_t> b = file;
+        for (int i = 0; i < 1 + trial % 5; ++i) b[random() % b.size()] = trial % 3 ? uint8_t(random()) : uint8_t(random() % 2 ? 255 : 0);
+        Diagnostics said;
+        EXPECT_TRUE(decodeImage(b, "damaged", said) || said.errors());
+    }
 }
 
 TEST(Deep, CutAndDamagedFilesAreRefusedOrRead) {

@@ -127,6 +127,12 @@ Bytes mendedBytes(Random& r, const Seeds& seeds) {
     return r.once(5) ? b : repaired(std::move(b));
 }
 
+Bytes summedBytes(Random& r, const Seeds& seeds) {
+    Bytes b = anyBytes(r, seeds);
+    return r.once(5) ? b : summed(std::move(b));
+}
+Seeds mapsOf(void (*make)(), std::vector<std::string> extensions) { return madeInChild(make, std::move(extensions)); }
+
 /// A small model of each form, and what may stand in their texts.
 Seeds models() {
     Bytes vertices;
@@ -346,6 +352,12 @@ std::vector<Target> allTargets() {
             {"pictures", "all decoders; maps and lookups", ".tx", 1, false, pictures, mendedBytes, decodePicture},
             {"picture-files", "diff, maketx and scenes with damaged pictures", ".tx", 2, false, pictures, mendedBytes, usePicture,
              true},
+            {"clouds", "point clouds, of ours and PLY; lookups", ".ptc", 1, false, [] { return mapsOf(makeClouds, {".ptc", ".ply"}); }, summedBytes, readCloud},
+            {"bricks", "brick maps and lookups", ".bkm", 1, false, [] { return mapsOf(makeClouds, {".bkm"}); }, summedBytes, readCloud},
+            {"baked", "what bake() writes", ".bake", 1, false, [] { return mapsOf(makeClouds, {".bake"}); }, summedBytes, readBaked},
+            {"photon-maps", "photon maps in files", ".photons", 1, false, [] { return mapsOf(makeClouds, {".photons"}); }, summedBytes, readPhotons},
+            {"ptex", "Ptex files and lookups", ".ptx", 1, false, [] { return mapsOf(makePtexFiles, {".ptx"}); }, anyBytes, readPtex},
+            {"deep-maps", "deep shadow maps", ".dsm", 1, false, [] { return mapsOf(makeDeepMaps, {".dsm"}); }, mendedBytes, decodePicture},
             {"parts", "merge and --resume with damaged part files", ".part", 4, false,
              [] { return madeInChild(makeParts, {".part"}); }, mendedBytes, usePart, true},
             {"lsp", "sessions of the language server", ".lsp", 2, false,

@@ -10,6 +10,9 @@ void putFile(const std::string& name, const Bytes&);
 // Seeds that our own writers make, in the current folder (madeInChild()).
 void makePictures();
 void makeParts();
+void makeClouds(); // maps.cpp
+void makePtexFiles();
+void makeDeepMaps();
 /// Map files that the scenes and shaders of the generators name: a.tx, a.shd.
 void putMaps();
 /// The scene that parts are of.
@@ -29,5 +32,12 @@ Outcome usePicture(const Bytes&);    ///< by diff, maketx or a scene
 Outcome usePart(const Bytes&);       ///< by merge or --resume
 Outcome serveEditor(const Bytes&);   ///< a session of the language server
 Outcome commandLine(const Bytes&);   ///< arguments, separated by blanks
+
+// maps.cpp: lookups in them, too.
+Outcome readCloud(const Bytes&);
+Outcome readBaked(const Bytes&);
+Outcome readPtex(const Bytes&);
+Outcome readPhotons(const Bytes&);
+Bytes summed(Bytes); ///< right check sums of our own formats
 
 } // namespace alpenglow::fuzz

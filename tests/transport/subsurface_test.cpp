@@ -1,6 +1,6 @@
 // subsurface(): walks below surfaces against the half space of Chandrasekhar, furnaces, and the closed forms of the diffusion models.
 #include "transport/floorscene.h"
-#include "wave/halfspace.h"
+#include "lobes/dipole.h"
 #include "wave/subsurface.h"
 #include <random>
 

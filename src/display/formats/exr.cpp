@@ -1,5 +1,5 @@
 // OpenEXR: scan-line and tiled, flat, half/float/uint channels; MIP-mapped tiles for textures.
-// Deep scan lines: exrdeep.cpp. Not read: deep tiles, subsampled chroma; of several parts the first.
+// Deep pictures: exrdeep.cpp. Not read: subsampled chroma; of several parts the first.
 #include "base/limits.h"
 #include "display/formats/exr.h"
 #include <ImathBox.h>
@@ -174,9 +174,9 @@ std::optional<Image> decodeExr(Bytes b, const DecodeContext& ctx) {
         Imf::MultiPartInputFile file(stream, 0);
         const Imf::Header& h = file.header(0);
         if (file.parts() > 1) ctx.warn("it has " + std::to_string(file.parts()) + " parts; the first is used");
-        if (h.hasType() && h.type() == Imf::DEEPSCANLINE) return decodeDeep(file, ctx);
+        if (h.hasType() && (h.type() == Imf::DEEPSCANLINE || h.type() == Imf::DEEPTILE)) return decodeDeep(file, ctx);
         if (h.hasType() && h.type() != Imf::SCANLINEIMAGE && h.type() != Imf::TILEDIMAGE)
-            return ctx.refuse("deep pictures in tiles are not supported");
+            return ctx.refuse("its type \"" + h.type() + "\" is unknown");
         Imath::Box2i dw = h.dataWindow(), full = h.displayWindow();
         Image m;
         m.bits = 0;

@@ -1,4 +1,5 @@
-// Deep OpenEXR pictures in scan lines, as far as deep shadow maps need them: depths and opacities; colours are passed over.
+// Deep OpenEXR pictures in scan lines or in tiles, as far as deep shadow maps need them: depths and opacities; colours are passed
+// over.
 #include "base/exact.h"
 #include "base/limits.h"
 #include "display/formats/exr.h"
@@ -7,6 +8,7 @@
 #include <ImfDeepFrameBuffer.h>
 #include <ImfDeepScanLineInputPart.h>
 #include <ImfDeepScanLineOutputFile.h>
+#include <ImfDeepTiledInputPart.h>
 #include <ImfPartType.h>
 #include <algorithm>
 #include <cmath>
@@ -22,19 +24,22 @@ const char* const kColours[3] = {"RA", "GA", "BA"};
 const char* const kAlpha = "A";
 constexpr int kSlab = 8; ///< steps that a sample with an extent becomes
 
-/// One line: samples by channel, and where those of each pixel begin.
+/// One line, or several: samples by channel, and where those of each pixel begin.
 class Line {
 public:
-    Line(int width, int left, size_t channels)
-        : count(size_t(width)), values(channels), left_(left), pointers_(channels, std::vector<char*>(size_t(width))) {}
-    /// Slices whose rows are all this one.
-    Imf::DeepFrameBuffer buffer(const std::vector<const char*>& names) {
+    Line(int width, int left, size_t channels, int height = 1)
+        : count(size_t(width) * size_t(height)), values(channels), left_(left), width_(width),
+          pointers_(channels, std::vector<char*>(count.size())) {}
+    /// Slices whose rows are all this one; of several lines the first of which is `top`.
+    Imf::DeepFrameBuffer buffer(const std::vector<const char*>& names, std::optional<int> top = {}) {
         Imf::DeepFrameBuffer fb;
+        const size_t row = top ? size_t(width_) : 0;
+        const long before = left_ + (top ? long(*top) * width_ : 0);
         fb.insertSampleCountSlice(
-            Imf::Slice(Imf::UINT, reinterpret_cast<char*>(count.data() - left_), sizeof(unsigned), 0));
+            Imf::Slice(Imf::UINT, reinterpret_cast<char*>(count.data() - before), sizeof(unsigned), row * sizeof(unsigned)));
         for (size_t c = 0; c < names.size(); ++c)
-            fb.insert(names[c], Imf::DeepSlice(Imf::FLOAT, reinterpret_cast<char*>(pointers_[c].data() - left_), sizeof(char*), 0,
-                                               sizeof(float)));
+            fb.insert(names[c], Imf::DeepSlice(Imf::FLOAT, reinterpret_cast<char*>(pointers_[c].data() - before), sizeof(char*),
+                                               row * sizeof(char*), sizeof(float)));
         return fb;
     }
     /// Makes room for what `count` says.
@@ -55,6 +60,7 @@ public:
 
 private:
     long left_; ///< x of the first pixel
+    int width_;
     std::vector<std::vector<char*>> pointers_;
 };
 
@@ -82,6 +88,80 @@ void addStairs(std::vector<Taken>& samples, std::vector<DeepStep>& out) {
         if (out[i].z < out[i - 1].z) out[i].z = out[i - 1].z;
 }
 
+/// What is read of a file.
+struct Layout {
+    std::vector<const char*> names;
+    bool coloured, slabs;
+    int left, top;
+    size_t fileBytes;
+};
+
+/// Whether so many samples can be in the file: zip makes nothing smaller than by a factor of 1032.
+bool fits(uint64_t samples, const Layout& l) { return samples <= limits::kDeepSteps && samples * 4 <= uint64_t(l.fileBytes) * 1100; }
+const char* const kTooMany = "it has more samples than it has bytes for";
+
+/// Appends pixels of a line that begin at a sample. "": fine.
+std::string addPixels(const Line& line, const Layout& l, size_t from, int width, int y, size_t& at, Image& m, DeepSamples& deep) {
+    std::vector<Taken> taken;
+    std::vector<DeepStep> stairs;
+    for (int x = 0; x < width; ++x) {
+        deep.first.push_back(deep.steps.size());
+        taken.clear();
+        for (unsigned n = 0; n < line.count[from + size_t(x)]; ++n, ++at) {
+            const auto value = [&](size_t c) { return line.values[c][at]; };
+            taken.push_back({value(0), l.slabs ? value(l.names.size() - 1) : 0,
+                             {value(1), value(l.coloured ? 2 : 1), value(l.coloured ? 3 : 1)}});
+        }
+        stairs.clear();
+        addStairs(taken, stairs);
+        if (!stairs.empty()) *m.pixel(x, y) = stairs.front().z;
+        if (deep.steps.size() + stairs.size() > limits::kDeepSteps)
+            return "it has more than " + std::to_string(limits::kDeepSteps) + " samples";
+        deep.steps.insert(deep.steps.end(), stairs.begin(), stairs.end());
+    }
+    return "";
+}
+
+std::string readLines(Imf::MultiPartInputFile& file, const Layout& l, Image& m, DeepSamples& deep) {
+    Line line(m.width, l.left, l.names.size());
+    Imf::DeepScanLineInputPart part(file, 0);
+    part.setFrameBuffer(line.buffer(l.names));
+    for (int y = 0; y < m.height; ++y) {
+        part.readPixelSampleCounts(l.top + y);
+        uint64_t all = 0;
+        for (unsigned n : line.count) all += n;
+        if (!fits(all, l)) return kTooMany;
+        line.point();
+        part.readPixels(l.top + y);
+        size_t at = 0;
+        if (std::string fault = addPixels(line, l, 0, m.width, y, at, m, deep); !fault.empty()) return fault;
+    }
+    return "";
+}
+
+/// The finest level, a row of tiles at a time.
+std::string readTiles(Imf::MultiPartInputFile& file, const Layout& l, Image& m, DeepSamples& deep) {
+    Imf::DeepTiledInputPart part(file, 0);
+    const int high = int(std::min<unsigned>(part.tileYSize(), unsigned(m.height)));
+    if (uint64_t(high) * uint64_t(m.width) > (uint64_t(l.fileBytes) + 4096) * 1100) return kTooMany; // counts are there, too
+    for (int row = 0; row < part.numYTiles(0); ++row) {
+        const int y0 = row * int(part.tileYSize()), lines = std::min(high, m.height - y0);
+        Line band(m.width, l.left, l.names.size(), lines);
+        part.setFrameBuffer(band.buffer(l.names, l.top + y0));
+        part.readPixelSampleCounts(0, part.numXTiles(0) - 1, row, row);
+        uint64_t all = 0;
+        for (unsigned n : band.count) all += n;
+        if (!fits(all, l)) return kTooMany;
+        band.point();
+        part.readTiles(0, part.numXTiles(0) - 1, row, row);
+        size_t at = 0;
+        for (int y = 0; y < lines; ++y)
+            if (std::string fault = addPixels(band, l, size_t(y) * size_t(m.width), m.width, y0 + y, at, m, deep); !fault.empty())
+                return fault;
+    }
+    return "";
+}
+
 } // namespace
 
 std::optional<Image> decodeDeep(Imf::MultiPartInputFile& file, const DecodeContext& ctx) {
@@ -105,39 +185,11 @@ std::optional<Image> decodeDeep(Imf::MultiPartInputFile& file, const DecodeConte
     else names.push_back(kAlpha);
     const bool slabs = has(kZBack);
     if (slabs) names.push_back(kZBack);
-    Line line(m.width, dw.min.x, names.size());
-    Imf::DeepScanLineInputPart part(file, 0);
-    part.setFrameBuffer(line.buffer(names));
     auto deep = std::make_shared<DeepSamples>();
     deep->first.reserve(size_t(m.width) * size_t(m.height) + 1);
-    std::vector<Taken> taken;
-    std::vector<DeepStep> stairs;
-    for (int y = 0; y < m.height; ++y) {
-        part.readPixelSampleCounts(dw.min.y + y);
-        uint64_t all = 0;
-        for (unsigned n : line.count) all += n;
-        // zip makes nothing smaller than by a factor of 1032
-        if (all > limits::kDeepSteps || all * 4 > uint64_t(ctx.fileBytes) * 1100)
-            return ctx.refuse("it has more samples than it has bytes for");
-        line.point();
-        part.readPixels(dw.min.y + y);
-        size_t at = 0;
-        for (int x = 0; x < m.width; ++x) {
-            deep->first.push_back(deep->steps.size());
-            taken.clear();
-            for (unsigned n = 0; n < line.count[size_t(x)]; ++n, ++at) {
-                const auto value = [&](size_t c) { return line.values[c][at]; };
-                taken.push_back({value(0), slabs ? value(names.size() - 1) : 0,
-                                 {value(1), value(coloured ? 2 : 1), value(coloured ? 3 : 1)}});
-            }
-            stairs.clear();
-            addStairs(taken, stairs);
-            if (!stairs.empty()) *m.pixel(x, y) = stairs.front().z;
-            if (deep->steps.size() + stairs.size() > limits::kDeepSteps)
-                return ctx.refuse("it has more than " + std::to_string(limits::kDeepSteps) + " samples", Rie::Limit);
-            deep->steps.insert(deep->steps.end(), stairs.begin(), stairs.end());
-        }
-    }
+    const bool tiles = h.hasType() && h.type() == Imf::DEEPTILE;
+    const std::string fault = (tiles ? readTiles : readLines)(file, Layout{names, coloured, slabs, dw.min.x, dw.min.y, ctx.fileBytes}, m, *deep);
+    if (!fault.empty()) return ctx.refuse(fault, fault.find("more than") == std::string::npos ? Rie::BadFile : Rie::Limit);
     deep->first.push_back(deep->steps.size());
     m.deep = std::move(deep);
     return m;

@@ -132,6 +132,7 @@ inline constexpr char kPairOutside[] = "__outside"; ///< outside of loops over l
 inline constexpr char kPairPart[] = "__part";       ///< of the form of trace() that gives an array: which element
 inline constexpr char kPairOnce[] = "__once";       ///< in construct(): once for the shader
 inline constexpr char kPairGather[] = "__gather";   ///< of the two sites of a gather, its rays and a turn: its number in the shader
+inline constexpr char kPairPoints[] = "__points"; ///< a call that is answered from point clouds
 inline constexpr char kPairHemisphere[] = "__hemisphere"; ///< a trace() that is an indirectdiffuse(): over the hemisphere
 inline constexpr char kPairUniform[] = "__uniform"; ///< the variable that takes the answer is uniform
 

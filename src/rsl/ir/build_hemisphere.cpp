@@ -65,9 +65,9 @@ void Builder::hemispherePairs(const Expr& e, Inst* normal, bool occlusion, Hemis
         Inst* v = expr(*p.value);
         if ((known->type.base == Base::String) != (v->kind == Kind::String) || v->kind == Kind::Matrix) continue;
         v = coerce(v, known->type.element());
-        if (p.name == "pointbased" && !isConst(v, 0))
-            warn(p.place,
-                 e.shadeop->name + "(): point clouds are not yet read; rays are traced, which gives what they stand for");
+        static const std::set<std::string_view> kOfPoints = {"pointbased", "filename", "filenames", "maxsolidangle", "clamp",
+                                                             "sortbleeding", "coordsystem"};
+        if (kOfPoints.count(p.name)) continue; // rays know nothing of them
         if (p.name == "samples" && h.given.count("samples")) continue;
         if (p.name == "axis") { // none: every direction
             if (isConst(v, 0)) continue;
@@ -84,14 +84,48 @@ void Builder::hemispherePairs(const Expr& e, Inst* normal, bool occlusion, Hemis
     for (const auto& [output, parameter] : messageSlots_) give(PairName::surface(output).text(), get(parameter.first), parameter.second);
 }
 
-/// Null where the call is another, or has a form that is no request.
+/// Whether a call is to be answered from point clouds: an instruction that tells, or null where it names none.
+Inst* Builder::readsPoints(const Expr& e) {
+    const bool below = e.shadeop->name == "subsurface";
+    bool named = false;
+    Inst* wanted = nullptr;
+    const auto isCloud = [&](Inst* type) {
+        if (type->op == Op::ConstString) return boolean(type->text == "pointcloud");
+        return emit(Op::Equal, Kind::Bool, {type, leaves_.string("pointcloud")});
+    };
+    if (below && !e.args.empty() && e.args[0]->type.base == Base::String) wanted = isCloud(expr(*e.args[0], Kind::String));
+    for (const NamedArg& p : e.pairs) {
+        if (!p.value || p.output) continue;
+        named |= p.name == "filename" || p.name == "filenames";
+        if (below && p.name == "type") wanted = isCloud(expr(*p.value, Kind::String));
+        if (below || p.name != "pointbased") continue;
+        Inst* v = expr(*p.value, Kind::Float);
+        wanted = v->op == Op::Const ? boolean(v->numbers[0] != 0) : emit(Op::NotEqual, Kind::Bool, {v, constant(0)});
+    }
+    return !wanted || (below && !named) || (wanted->op == Op::Const && wanted->numbers[0] == 0) ? nullptr : wanted;
+}
+
+/// Null where the call is no hemisphere, or has a form that is no request.
 Inst* Builder::hemisphere(const Expr& e) {
+    const std::string& op = e.shadeop->name;
+    if ((op != "occlusion" && op != "indirectdiffuse" && op != "subsurface") || !e.signature) return nullptr;
+    if (op == "indirectdiffuse" && e.args.size() == 2 && e.signature->parameters[0].type.base == Base::String)
+        return service(e, Op::Service); // from a map, at once
+    Inst* const points = readsPoints(e);
+    const auto traced = [&] { return op == "subsurface" ? service(e, Op::Request) : tracedHemisphere(e); };
+    if (!points) return op == "subsurface" ? nullptr : traced();
+    const auto read = [&] { return service(e, Op::Service, -1, true); };
+    if (points->op == Op::Const) return read();
+    const Kind k = kindOf(e.type);
+    return branch(
+        points, [&] { return std::vector<Inst*>{coerce(read(), k)}; }, [&] { return std::vector<Inst*>{coerce(traced(), k)}; })[0];
+}
+
+Inst* Builder::tracedHemisphere(const Expr& e) {
     const bool occlusion = e.shadeop->name == "occlusion";
-    if ((!occlusion && e.shadeop->name != "indirectdiffuse") || !e.signature) return nullptr;
     const Type real{Base::Float, 0}, point{Base::Point, 0}, vector{Base::Vector, 0};
     size_t at = 0;
     if (e.signature->parameters[0].type.base == Base::String) {
-        if (e.args.size() == 2) return service(e, Op::Service); // from a map, at once
         if (const Inst* map = expr(*e.args[0], Kind::String);
             map->op != Op::ConstString || !(map->text.empty() || map->text == "raytrace"))
             warn(e.args[0]->place, e.shadeop->name + "(): no file is read; rays are traced, which gives what it stands for");

@@ -75,8 +75,8 @@ std::vector<Inst*> Builder::traceParts(const Expr& e) {
     return parts;
 }
 
-/// `part`: of a call that gives an array; -1: all in one.
-Inst* Builder::service(const Expr& e, Op kind, int part) {
+/// `part`: of a call that gives an array; -1: all in one. `points`: it is answered from point clouds.
+Inst* Builder::service(const Expr& e, Op kind, int part, bool points) {
     const Shadeop& op = *e.shadeop;
     const Signature& sig = *e.signature;
     const bool parted = kind == Op::Request && sig.result.array;
@@ -161,11 +161,12 @@ Inst* Builder::service(const Expr& e, Op kind, int part) {
         Inst* step = coerce(global(size, Base::Float), v->kind);
         return isConst(step, 0.0f) ? zero(v->kind) : emit(Op::Mul, v->kind, {emit(d, v->kind, {v}), step});
     };
-    if (op.name == "texture" && all.size() <= 3) {
+    const bool faces = op.name == "ptexture";
+    if ((op.name == "texture" && all.size() <= 3) || (faces && all.size() <= 5)) {
         Inst* st[2];
-        if (all.size() == 3) {
-            st[0] = all[1];
-            st[1] = all[2];
+        if (all.size() == (faces ? 5 : 3)) {
+            st[0] = all[all.size() - 2];
+            st[1] = all[all.size() - 1];
         } else {
             st[0] = global("s", Base::Float);
             st[1] = global("t", Base::Float);
@@ -174,6 +175,7 @@ Inst* Builder::service(const Expr& e, Op kind, int part) {
         }
         for (int d = 0; d < 2; ++d)
             for (Inst* c : st) addArgument(s, args, footprint(c, d == 0 ? "du" : "dv", d == 0 ? Op::Du : Op::Dv), real);
+        if (faces && all.size() < 5) addArgument(s, args, constant(1), real); // those of the face, where it has some
     }
     if (((op.name == "environment" || op.name == "shadow") && all.size() == 2) || (op.name == "texture3d" && all.size() == 3)) {
         addArgument(s, args, footprint(all[1], "du", Op::Du), vector);
@@ -229,6 +231,10 @@ Inst* Builder::service(const Expr& e, Op kind, int part) {
     if (part >= 0) {
         s.names.push_back(kPairPart);
         s.pairStrings.push_back(std::to_string(part));
+    }
+    if (points) {
+        s.names.push_back(kPairPoints);
+        s.pairStrings.push_back("1");
     }
     // A uniform variable takes no varying parameter of another shader (answers/services.cpp).
     const auto isUniform = [](const Expr* l) {

@@ -293,7 +293,7 @@ private:
     Inst* runtimeCall(const Expr&);
     Inst* special(const Expr&);
     std::vector<Inst*> traceParts(const Expr&);
-    Inst* service(const Expr&, Op, int part = -1);
+    Inst* service(const Expr&, Op, int part = -1, bool points = false);
     struct SplineCall {
         Inst* value = nullptr;
         Kind kind{};
@@ -316,6 +316,8 @@ private:
     // build_hemisphere.cpp
     struct Hemisphere;
     void hemispherePairs(const Expr&, Inst* normal, bool occlusion, Hemisphere&);
+    Inst* readsPoints(const Expr&);
+    Inst* tracedHemisphere(const Expr&);
     Inst* hemisphere(const Expr&);
     Inst* random(const Expr&);
     bool hasGlobal(const char* name) const;

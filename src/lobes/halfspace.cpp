@@ -1,4 +1,4 @@
-#include "wave/halfspace.h"
+#include "lobes/halfspace.h"
 #include "base/exact.h"
 #include <algorithm>
 #include <array>

@@ -1,0 +1,2 @@
+find_package(ZLIB REQUIRED)
+room(ptex DEPS base ZLIB::ZLIB)

@@ -1,0 +1,62 @@
+// Between the space of a shader and that of a file of points.
+#pragma once
+#include "answers/answers.h"
+#include "base/exact.h"
+#include "world/information.h"
+#include <utility>
+
+namespace alpenglow::transport {
+
+inline Vec3 tripleAt(const ServiceCall& call, int row, int lane) {
+    return row < 0 ? Vec3(0.f) : Vec3(call.at(row, lane), call.at(row + 1, lane), call.at(row + 2, lane));
+}
+
+/// From "current" to a space: of this name, or of the one that the lane has in a row.
+inline Matrix toCloudSpace(Answers& answers, const ServiceCall& call, const std::string& name, int row, int lane,
+                           const ShadePoint& p) {
+    const std::string space = row < 0 ? name : rsl::internedString(std::bit_cast<int32_t>(call.at(row, lane)));
+    return spaceAt(answers.world(), "current", space.empty() ? "world" : space, p, call.binding(answers.world(), lane));
+}
+
+/// How much longer lengths are behind a matrix.
+inline float growth(const Matrix& m) { return float(exact::pow(std::fabs(determinant3(m)), 1.0 / 3)); }
+
+inline Vec3 unitOr0(const Vec3& n) {
+    const float l = length(n);
+    return l > 0 && std::isfinite(l) ? n / l : Vec3(0.f);
+}
+
+inline Vec3 normalTo(const Matrix& m, const Vec3& n) { return unitOr0(Vec3(transformNormal(m, Vec3d(n)))); }
+
+/// The way from "current" to the space of a file, for the points of a call: found once where it is the same for all.
+class CloudSpace {
+public:
+    CloudSpace(Answers& answers, const ServiceCall& call, const std::string& name, int row)
+        : answers_(answers), call_(call), name_(name), row_(row), same_(row < 0 && name != "object" && name != "shader") {}
+    /// For the point of a lane; good until the next call.
+    const Matrix& at(int lane, const ShadePoint& p) {
+        if (!known_ || !same_) {
+            to_ = toCloudSpace(answers_, call_, name_, row_, lane, p);
+            growth_ = transport::growth(to_);
+            known_ = true, turned_ = false;
+        }
+        return to_;
+    }
+    float growth() const { return growth_; } ///< of lengths
+    const Matrix& back() {
+        if (!std::exchange(turned_, true)) back_ = inverse(to_);
+        return back_;
+    }
+
+private:
+    Answers& answers_;
+    const ServiceCall& call_;
+    const std::string& name_;
+    const int row_;
+    const bool same_;
+    bool known_ = false, turned_ = false;
+    Matrix to_, back_;
+    float growth_ = 1;
+};
+
+} // namespace alpenglow::transport

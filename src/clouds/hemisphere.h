@@ -1,0 +1,75 @@
+// What a point sees of point clouds: a cube of pixels about it. Clusters far away cover as much of the pixels as they are seen,
+// disks nearby are drawn, the nearest in each pixel. An approximation: its errors do not go away with more samples.
+// Source: Christensen, Point-Based Approximate Color Bleeding, Pixar Technical Memo 08-01 (2008).
+#pragma once
+#include "clouds/octree.h"
+
+namespace alpenglow::clouds {
+
+/// Lengths and directions in the space of the cloud; angles in radians.
+struct HemisphereQuery {
+    Vec3 P, N;                 ///< N: unit
+    float cone = 1.57079633f;  ///< half angle about N
+    Vec3 axis;                 ///< only directions towards it; 0: all
+    bool uniform = false;      ///< directions count alike, else by the cosine
+    float maxDistance = 1e38f; ///< nothing beyond
+    float bias = 0;            ///< nothing nearer
+    float maxSolidAngle = .1f; ///< steradians: a cluster that looks larger is taken apart
+    bool clamp = true;         ///< what covers a pixel more than once counts once
+    bool sort = false;         ///< and what is nearest comes first
+    DiskSides sides = DiskSides::Both;
+    bool colours = true;       ///< light is wanted
+    /// How much of what is there at a distance counts: exp(-fall d), or (1 - d / maxDistance)^fall.
+    float fall = 0;
+    bool polynomial = false;
+};
+
+/// One a thread: it keeps its room.
+class Hemisphere {
+public:
+    void begin(const HemisphereQuery&);
+    void add(const PointOctree&);
+    void finish();
+    /// Behind finish(). Means over the directions of the query: how much is blocked, 0 to 1 where it is clamped; what light comes.
+    float blocked() const { return blocked_; }
+    const Color& light() const { return light_; }
+    /// f(direction, part of all directions that is open there), for each pixel in which something is; the parts add up to 1 -
+    /// blocked().
+    template <class F> void eachOpen(F&& f) const {
+        for (const uint32_t i : used_)
+            if (pixels_[i].open > 0) f(directions_[i], pixels_[i].open);
+    }
+    /// Half the width of a pixel, radians.
+    float spread() const { return 1 / float(side_); }
+
+private:
+    struct Pixel {
+        float weight, near, geometric, blocked, open;
+        Color nearLight, light;
+    };
+    struct Fragment {
+        uint32_t pixel;
+        float distance, cover;
+        Color light;
+    };
+    float fade(float distance) const;
+    uint32_t pixelOf(const Vec3& direction) const;
+    void cover(uint32_t pixel, float part, float distance, float kept, const Color& light);
+    void splat(const Vec3& direction, float solidAngle, float distance, const Color& light);
+    void cluster(const PointOctree::Node&, const Vec3& to, float distance);
+    void point(const PointOctree::Point&);
+    void draw(const PointOctree::Point&, const Vec3& to);
+    void drawOnFace(const PointOctree::Point&, const Vec3& to, int face);
+    void compose();
+    HemisphereQuery q_;
+    int side_ = 0; ///< pixels along an edge of the cube
+    std::vector<Vec3> directions_;
+    std::vector<float> angles_; ///< steradians
+    std::vector<Pixel> pixels_;
+    std::vector<uint32_t> used_, stack_;
+    std::vector<Fragment> fragments_;
+    float blocked_ = 0;
+    Color light_;
+};
+
+} // namespace alpenglow::clouds

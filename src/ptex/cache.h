@@ -1,0 +1,50 @@
+// Faces in memory.
+#pragma once
+#include "ptex/ptexfile.h"
+#include <atomic>
+#include <list>
+#include <mutex>
+#include <unordered_map>
+
+namespace alpenglow::ptex {
+
+class Cache {
+public:
+    explicit Cache(size_t bytes) : most_(bytes / kParts) {}
+    using Ref = std::shared_ptr<const Image>;
+    struct Key {
+        uint64_t texture;
+        uint32_t face;
+        int halvings;
+        bool operator==(const Key&) const = default;
+    };
+    uint64_t number() { return next_++; } ///< for Key::texture
+    /// Null: it is not here.
+    Ref find(const Key&);
+    void keep(const Key&, const Ref&);
+
+private:
+    static constexpr size_t kParts = 16;
+    struct Hash {
+        size_t operator()(const Key& k) const {
+            return size_t(((k.texture * 0x9e3779b97f4a7c15u + k.face) * 31 + uint64_t(k.halvings)) * 0x9e3779b97f4a7c15u >> 13);
+        }
+    };
+    struct Entry {
+        Key key;
+        Ref image;
+        size_t bytes;
+    };
+    struct Part {
+        std::mutex mutex;
+        std::list<Entry> entries; ///< the latest first
+        std::unordered_map<Key, std::list<Entry>::iterator, Hash> at;
+        size_t bytes = 0;
+    };
+    Part& partOf(const Key& k) { return parts_[Hash{}(k) % kParts]; }
+    std::atomic<uint64_t> next_{0};
+    size_t most_; ///< of each part
+    std::array<Part, kParts> parts_;
+};
+
+} // namespace alpenglow::ptex

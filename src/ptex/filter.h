@@ -1,0 +1,22 @@
+// Lookups in Ptex files, filtered across the edges of faces.
+#pragma once
+#include "ptex/ptexfile.h"
+
+namespace alpenglow::ptex {
+
+enum class Kernel : uint8_t { Gaussian, Triangle, Box, Point };
+
+struct Query {
+    uint32_t face = 0;
+    float u = 0, v = 0;          ///< 0 to 1 within the face
+    float wu = 0, wv = 0;        ///< how wide the footprint is along u and v
+    int channel = 0, count = 3;  ///< channels that are read, from this one on
+    float fill = 0;              ///< of those that the file does not have
+    Kernel kernel = Kernel::Gaussian;
+};
+
+/// Writes Query::count numbers. False: there is no such face, and they are 0. Thread safe; the same bits whoever asks.
+/// Where two ways lead around a corner both count half; where a face has no neighbour, the file's border mode says what is there.
+bool lookup(const Texture&, const Query&, float* out);
+
+} // namespace alpenglow::ptex

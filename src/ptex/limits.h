@@ -1,0 +1,15 @@
+// Limits of Ptex files, beside those of base/limits.h.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+namespace alpenglow::limits {
+
+inline constexpr uint32_t kPtexFaces = 50'000'000;
+inline constexpr int kPtexChannels = 64;
+inline constexpr int kPtexSide = 15;                         ///< logarithm of the pixels along a side of a face
+inline constexpr size_t kPtexFaceNumbers = size_t(1) << 27;  ///< of all channels of one face
+inline constexpr size_t kPtexMetaBytes = size_t(256) << 20;  ///< of what is in a file beside faces
+inline constexpr size_t kPtexCacheBytes = size_t(256) << 20; ///< of faces that a frame keeps
+
+} // namespace alpenglow::limits

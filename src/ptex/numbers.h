@@ -1,0 +1,35 @@
+// Numbers of Ptex files, little-endian whatever the machine.
+#pragma once
+#include "ptex/ptexfile.h"
+#include <bit>
+#include <span>
+#include <zlib.h>
+
+namespace alpenglow::ptex {
+
+inline size_t sizeOf(Number n) { return n == Number::Byte ? 1 : n == Number::Float ? 4 : 2; }
+
+template <class T> T take(const uint8_t* from) {
+    T v = 0;
+    for (size_t i = 0; i < sizeof(T); ++i) v = T(v | T(from[i]) << (8 * i));
+    return v;
+}
+template <class T> void put(std::vector<uint8_t>& to, T v) {
+    for (size_t i = 0; i < sizeof(T); ++i) to.push_back(uint8_t(v >> (8 * i)));
+}
+
+float toFloat(Number, const uint8_t*);
+void fromFloat(Number, float, std::vector<uint8_t>& to);
+
+/// Exactly `size` bytes. False: the stream is damaged, or of another size.
+bool inflated(std::span<const uint8_t>, size_t size, std::vector<uint8_t>& to);
+std::vector<uint8_t> deflated(std::span<const uint8_t>);
+/// A stream of so many bytes cannot become more than this.
+inline uint64_t mostInflated(uint64_t bytes) { return bytes * 1040 + 1024; }
+
+/// Sizes and encodings of data blocks: bits 30 and 31 say how.
+enum Encoding : uint32_t { kConstant = 0, kZipped = 1, kDifferences = 2, kTiled = 3 };
+inline uint32_t blockSize(uint32_t header) { return header & 0x3fffffffu; }
+inline Encoding encodingOf(uint32_t header) { return Encoding(header >> 30); }
+
+} // namespace alpenglow::ptex

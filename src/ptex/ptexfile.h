@@ -1,0 +1,75 @@
+// Ptex files: a picture for each face of a mesh, and which faces lie beside each other. Source: Ptex File Format Specification,
+// version 1.3r1 (ptex.us/PtexFile.html), and the pages on adjacency and on triangles beside it. u and v go from 0 to 1 over a face,
+// from its first corner to the second and to the last.
+#pragma once
+#include "base/diagnostics.h"
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace alpenglow {
+struct OutputPolicy;
+}
+
+namespace alpenglow::ptex {
+
+enum class Mesh : uint8_t { Triangle = 0, Quad = 1 };
+enum class Number : uint8_t { Byte = 0, Word = 1, Half = 2, Float = 3 }; ///< bytes and words stand for 0 to 1
+enum class Border : uint8_t { Clamp = 0, Black = 1, Periodic = 2 };      ///< where a face has no neighbour
+
+struct Face {
+    uint8_t ulog = 0, vlog = 0;                        ///< logarithms of the pixels along u and v; triangles: the same
+    bool constant = false, subface = false;            ///< subface: a quarter, or so, of a face that is no quadrilateral
+    std::array<int32_t, 4> adjacent{-1, -1, -1, -1};   ///< by edge, from the first corner on; -1: none
+    std::array<uint8_t, 4> edge{};                     ///< which of the neighbour's edges it is
+};
+
+/// Rows of constant v, from v = 0; channels of a pixel side by side. Of triangles: pixel (i, j) with i + j < n is the triangle at
+/// (i / n, j / n), the others are those that stand on their heads, turned about the middle of the square.
+struct Image {
+    int u = 1, v = 1;
+    std::vector<float> values;
+};
+
+struct Meta {
+    std::string key;
+    uint8_t type = 0; ///< 0 text, 1 to 3 integers of 1, 2, 4 bytes, 4 float, 5 double
+    std::vector<uint8_t> bytes;
+};
+
+struct Head {
+    Mesh mesh = Mesh::Quad;
+    Number number = Number::Byte;
+    int channels = 3, alpha = -1; ///< alpha: its channel, or none
+    Border uBorder = Border::Clamp, vBorder = Border::Clamp;
+    std::vector<Face> faces;
+    std::vector<Meta> metas;
+};
+
+/// Faces of any number of files, those that were looked at last; bounded. Thread safe.
+class Cache;
+std::shared_ptr<Cache> makeCache(size_t bytes);
+
+/// A file that is open. Thread safe.
+class Texture {
+public:
+    virtual ~Texture() = default;
+    virtual const Head& head() const = 0;
+    /// A face with its sides halved so many times, not below one pixel, multiplied with alpha. The mean of it where it cannot be
+    /// read, which is said once.
+    virtual std::shared_ptr<const Image> image(uint32_t face, int halvings) const = 0;
+};
+/// Null: an error was reported.
+std::shared_ptr<const Texture> openTexture(const std::string& path, std::shared_ptr<Cache>, Diagnostics&, const SourcePlace& = {});
+
+/// Writes a file: faces of `images`, by number, with the sides that the head says; what is coarser is made of them. False: an error
+/// was reported, and what was there before still is.
+bool writeTexture(const std::string& name, Head, const std::vector<Image>& images, const OutputPolicy&, Diagnostics&,
+                  const SourcePlace& = {});
+
+/// A picture of half the sides, not below one pixel: means.
+Image halved(const Image&, int channels, Mesh);
+
+} // namespace alpenglow::ptex

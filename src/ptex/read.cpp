@@ -1,0 +1,433 @@
+// Reading Ptex files. Nothing in them is believed: every size is checked against the file before memory is taken for it.
+#include "ptex/cache.h"
+#include "ptex/limits.h"
+#include "ptex/numbers.h"
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <fcntl.h>
+#include <map>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace alpenglow::ptex {
+
+namespace {
+
+constexpr size_t kHeader = 64, kExtended = 40, kFaceInfo = 20, kLevelInfo = 16, kBarrier = 8;
+
+class Bytes {
+public:
+    explicit Bytes(const std::string& path) : fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+        struct stat s;
+        if (fd_ >= 0 && fstat(fd_, &s) == 0 && S_ISREG(s.st_mode)) size_ = uint64_t(s.st_size), regular_ = true;
+    }
+    ~Bytes() {
+        if (fd_ >= 0) ::close(fd_);
+    }
+    Bytes(const Bytes&) = delete;
+    Bytes& operator=(const Bytes&) = delete;
+    bool regular() const { return regular_; }
+    uint64_t size() const { return size_; }
+    /// False: they are not there.
+    bool read(uint64_t at, uint64_t n, std::vector<uint8_t>& to) const {
+        if (at > size_ || n > size_ - at) return false;
+        to.resize(size_t(n));
+        for (size_t done = 0; done < n;) {
+            const ssize_t k = ::pread(fd_, to.data() + done, size_t(n) - done, off_t(at + done));
+            if (k <= 0) return false;
+            done += size_t(k);
+        }
+        return true;
+    }
+
+private:
+    int fd_;
+    uint64_t size_ = 0;
+    bool regular_ = false;
+};
+
+Face faceOf(const uint8_t* b) {
+    Face f;
+    f.ulog = b[0];
+    f.vlog = b[1];
+    f.constant = b[3] & 1;
+    f.subface = b[3] & 8;
+    for (size_t k = 0; k < 4; ++k) {
+        f.edge[k] = b[2] >> (2 * k) & 3;
+        f.adjacent[k] = int32_t(take<uint32_t>(b + 4 + 4 * k));
+    }
+    return f;
+}
+
+/// Where the data of a face lie, and how.
+struct Block {
+    uint64_t at = 0;
+    uint32_t header = 0;
+};
+
+class File final : public Texture {
+public:
+    File(const std::string& path, std::shared_ptr<Cache> cache, Diagnostics& d) : bytes_(path), path_(path), cache_(std::move(cache)), diagnostics_(d) {
+        number_ = cache_->number();
+    }
+    /// "": fine.
+    std::string open();
+    const Head& head() const override { return head_; }
+    std::shared_ptr<const Image> image(uint32_t face, int halvings) const override;
+
+private:
+    std::string readHeader();
+    std::string readFaces();
+    std::string readLevels();
+    std::string readLevel(size_t k, uint64_t at, uint64_t size, uint32_t headerSize, uint32_t count);
+    std::string readMetas(std::span<const uint8_t>);
+    std::string readLargeMetas();
+    std::string readEdits();
+    std::string editFace(std::span<const uint8_t>, uint64_t at);
+    std::string checkFace(const Face&) const;
+    size_t pixelBytes() const { return sizeOf(head_.number) * size_t(head_.channels); }
+    bool decode(const Block&, int ulog, int vlog, std::vector<float>& to) const;
+    bool decodeTiles(std::span<const uint8_t>, int ulog, int vlog, std::vector<float>& to) const;
+    bool decodePlain(std::span<const uint8_t>, Encoding, size_t pixels, std::vector<float>& to) const;
+    Image constantOf(uint32_t face) const;
+    Image make(uint32_t face, int halvings) const;
+    void multiply(std::vector<float>&) const;
+
+    Bytes bytes_;
+    std::string path_;
+    std::shared_ptr<Cache> cache_;
+    Diagnostics& diagnostics_;
+    uint64_t number_ = 0;
+    Head head_;
+    std::vector<uint8_t> constants_;
+    uint32_t extended_ = 0, faceInfoSize_ = 0, constantSize_ = 0, levelInfoSize_ = 0, levels_ = 0, faceCount_ = 0;
+    uint64_t levelDataSize_ = 0, largeSize_ = 0, editAt_ = 0;
+    uint32_t metaZip_ = 0, metaSize_ = 0, largeZip_ = 0, largeHeader_ = 0;
+    std::vector<std::vector<Block>> blocks_;         ///< by level, then by face in the level
+    std::vector<uint32_t> place_;                    ///< by face: in levels behind the first
+    std::map<uint32_t, Block> edited_;               ///< faces that were edited: their data
+    std::vector<bool> stale_;                        ///< their levels are not made of them
+};
+
+std::string File::open() {
+    if (!bytes_.regular()) return "it is no file that can be read";
+    if (std::string f = readHeader(); !f.empty()) return f;
+    if (std::string f = readFaces(); !f.empty()) return f;
+    if (std::string f = readLevels(); !f.empty()) return f;
+    std::vector<uint8_t> zip, metas;
+    const uint64_t at = kHeader + extended_ + uint64_t(faceInfoSize_) + constantSize_ + levelInfoSize_ + levelDataSize_;
+    if (metaSize_ > limits::kPtexMetaBytes) return "its meta data are too large";
+    if (metaSize_ > 0) {
+        if (!bytes_.read(at, metaZip_, zip) || !inflated(zip, metaSize_, metas)) return "its meta data are damaged";
+        if (std::string f = readMetas(metas); !f.empty()) return f;
+    }
+    if (std::string f = readLargeMetas(); !f.empty()) return f;
+    return readEdits();
+}
+
+std::string File::readHeader() {
+    std::vector<uint8_t> b;
+    if (!bytes_.read(0, kHeader, b)) return "it is cut short";
+    if (std::memcmp(b.data(), "Ptex", 4) != 0) return "it is no Ptex file";
+    const auto u32 = [&](size_t at) { return take<uint32_t>(&b[at]); };
+    if (u32(4) != 1) return "it has version " + std::to_string(u32(4)) + ", this program reads version 1";
+    if (u32(8) > 1 || u32(12) > 3) return "its header is damaged";
+    head_.mesh = Mesh(u32(8));
+    head_.number = Number(u32(12));
+    head_.channels = take<uint16_t>(&b[20]);
+    head_.alpha = int32_t(u32(16));
+    if (head_.channels < 1 || head_.channels > limits::kPtexChannels)
+        return "it has " + std::to_string(head_.channels) + " channels, 1 to " + std::to_string(limits::kPtexChannels) + " can be read";
+    if (head_.alpha < 0 || head_.alpha >= head_.channels) head_.alpha = -1;
+    levels_ = take<uint16_t>(&b[22]);
+    faceCount_ = u32(24);
+    extended_ = u32(28);
+    faceInfoSize_ = u32(32);
+    constantSize_ = u32(36);
+    levelInfoSize_ = u32(40);
+    levelDataSize_ = take<uint64_t>(&b[48]);
+    metaZip_ = u32(56);
+    metaSize_ = u32(60);
+    if (faceCount_ > limits::kPtexFaces) return "it has more than " + std::to_string(limits::kPtexFaces) + " faces";
+    if (levels_ > 32 || levelInfoSize_ != levels_ * kLevelInfo) return "its header does not say what its levels are";
+    if (uint64_t(extended_) + faceInfoSize_ + constantSize_ + levelInfoSize_ + kHeader > bytes_.size() || levelDataSize_ > bytes_.size())
+        return "it is cut short";
+    std::vector<uint8_t> e;
+    if (!bytes_.read(kHeader, std::min<uint64_t>(extended_, kExtended), e)) return "it is cut short";
+    e.resize(kExtended); // what older files do not have is 0
+    const auto border = [&](size_t at) { return take<uint32_t>(&e[at]) <= 2 ? Border(e[at]) : Border::Clamp; };
+    head_.uBorder = border(0);
+    head_.vBorder = border(4);
+    largeZip_ = take<uint32_t>(&e[8]);
+    largeHeader_ = take<uint32_t>(&e[12]);
+    largeSize_ = take<uint64_t>(&e[16]);
+    editAt_ = take<uint64_t>(&e[32]);
+    return "";
+}
+
+std::string File::checkFace(const Face& f) const {
+    if (f.ulog > limits::kPtexSide || f.vlog > limits::kPtexSide) return "it has a face of more than 32768 pixels along a side";
+    if ((size_t(head_.channels) << (f.ulog + f.vlog)) > limits::kPtexFaceNumbers) return "it has a face of too many pixels";
+    if (head_.mesh == Mesh::Triangle && f.ulog != f.vlog) return "it has a triangle that is not square";
+    for (const int32_t a : f.adjacent)
+        if (a < -1 || a >= int64_t(faceCount_)) return "it has a face beside one that does not exist";
+    return "";
+}
+
+std::string File::readFaces() {
+    std::vector<uint8_t> zip, b;
+    if (!bytes_.read(kHeader + extended_, faceInfoSize_, zip) || !inflated(zip, faceCount_ * kFaceInfo, b))
+        return "what it says of its faces is damaged";
+    head_.faces.reserve(faceCount_);
+    for (uint32_t i = 0; i < faceCount_; ++i) {
+        head_.faces.push_back(faceOf(&b[i * kFaceInfo]));
+        if (std::string fault = checkFace(head_.faces.back()); !fault.empty()) return fault;
+    }
+    if (!bytes_.read(kHeader + uint64_t(extended_) + faceInfoSize_, constantSize_, zip) ||
+        !inflated(zip, faceCount_ * pixelBytes(), constants_))
+        return "the means of its faces are damaged";
+    stale_.assign(faceCount_, false);
+    return "";
+}
+
+std::string File::readLevels() {
+    const uint64_t infos = kHeader + uint64_t(extended_) + faceInfoSize_ + constantSize_;
+    std::vector<uint8_t> b;
+    if (!bytes_.read(infos, levelInfoSize_, b)) return "it is cut short";
+    std::vector<uint32_t> order;
+    for (uint32_t f = 0; f < faceCount_; ++f)
+        if (!head_.faces[f].constant) order.push_back(f);
+    const auto least = [&](uint32_t f) { return std::min(head_.faces[f].ulog, head_.faces[f].vlog); };
+    std::stable_sort(order.begin(), order.end(), [&](uint32_t x, uint32_t y) { return least(x) > least(y); });
+    place_.assign(faceCount_, ~0u);
+    for (uint32_t i = 0; i < order.size(); ++i) place_[order[i]] = i;
+    uint64_t at = infos + levelInfoSize_, left = levelDataSize_;
+    for (uint32_t k = 0; k < levels_; ++k) {
+        const uint8_t* info = &b[k * kLevelInfo];
+        const uint64_t size = take<uint64_t>(info);
+        if (size > left) return "its levels are larger than it says";
+        if (std::string f = readLevel(k, at, size, take<uint32_t>(info + 8), take<uint32_t>(info + 12)); !f.empty()) return f;
+        at += size, left -= size;
+    }
+    if (levels_ == 0 && !order.empty()) return "it has faces without pixels";
+    return "";
+}
+
+std::string File::readLevel(size_t k, uint64_t at, uint64_t size, uint32_t headerSize, uint32_t count) {
+    if (headerSize > size || count > faceCount_ || (k == 0 && count != faceCount_)) return "a level of it is damaged";
+    std::vector<uint8_t> zip, b;
+    if (!bytes_.read(at, headerSize, zip)) return "it is cut short";
+    if (!inflated(zip, count * size_t(4), b)) return "a level of it is damaged";
+    std::vector<Block>& blocks = blocks_.emplace_back();
+    blocks.reserve(count);
+    uint64_t next = at + headerSize;
+    for (uint32_t i = 0; i < count; ++i) {
+        const uint32_t header = take<uint32_t>(&b[4 * size_t(i)]);
+        // Constant faces have their pixel elsewhere.
+        const bool elsewhere = k == 0 && head_.faces[i].constant;
+        const uint64_t bytes = elsewhere ? 0 : blockSize(header);
+        if (next + bytes > at + size) return "the faces of a level are larger than it says";
+        blocks.push_back({next, header});
+        next += bytes;
+    }
+    return next > bytes_.size() ? "it is cut short" : "";
+}
+
+/// A stream of small items. Those of a key that is there already replace it.
+std::string File::readMetas(std::span<const uint8_t> b) {
+    for (size_t at = 0; at < b.size();) {
+        const size_t key = b[at];
+        if (key < 1 || at + 1 + key + 5 > b.size()) return "its meta data are damaged";
+        Meta m{std::string(reinterpret_cast<const char*>(&b[at + 1]), key - 1), b[at + 1 + key], {}};
+        const uint32_t size = take<uint32_t>(&b[at + 2 + key]);
+        at += 6 + key;
+        if (m.type > 5 || size > b.size() - at) return "its meta data are damaged";
+        m.bytes.assign(b.begin() + long(at), b.begin() + long(at + size));
+        at += size;
+        std::erase_if(head_.metas, [&](const Meta& old) { return old.key == m.key; });
+        head_.metas.push_back(std::move(m));
+    }
+    return "";
+}
+
+std::string File::readLargeMetas() {
+    if (largeHeader_ == 0) return "";
+    uint64_t at = kHeader + uint64_t(extended_) + faceInfoSize_ + constantSize_ + levelInfoSize_ + levelDataSize_ + metaZip_ + kBarrier;
+    if (largeHeader_ > limits::kPtexMetaBytes) return "its meta data are too large";
+    std::vector<uint8_t> zip, b;
+    if (!bytes_.read(at, largeZip_, zip) || !inflated(zip, largeHeader_, b)) return "its large meta data are damaged";
+    at += largeZip_;
+    uint64_t all = 0;
+    for (size_t i = 0; i < b.size();) {
+        const size_t key = b[i];
+        if (key < 1 || i + 1 + key + 9 > b.size()) return "its large meta data are damaged";
+        Meta m{std::string(reinterpret_cast<const char*>(&b[i + 1]), key - 1), b[i + 1 + key], {}};
+        const uint32_t size = take<uint32_t>(&b[i + 2 + key]), packed = take<uint32_t>(&b[i + 6 + key]);
+        i += 10 + key;
+        if ((all += size) > limits::kPtexMetaBytes) return "its meta data are too large";
+        if (m.type > 5 || !bytes_.read(at, packed, zip) || !inflated(zip, size, m.bytes)) return "its large meta data are damaged";
+        at += packed;
+        head_.metas.push_back(std::move(m));
+    }
+    return "";
+}
+
+std::string File::readEdits() {
+    if (editAt_ == 0) return "";
+    std::vector<uint8_t> b;
+    for (uint64_t at = editAt_; at + 5 <= bytes_.size();) {
+        if (!bytes_.read(at, 5, b)) return "it is cut short";
+        const uint8_t type = b[0];
+        const uint32_t size = take<uint32_t>(&b[1]);
+        if (type == 0 && size == 0) break;
+        at += 5;
+        if (size > bytes_.size() - at) return "an edit in it is cut short";
+        if (type == 1) {
+            if (!bytes_.read(at, std::min<uint64_t>(size, 28 + pixelBytes()), b)) return "it is cut short";
+            if (std::string f = editFace(b, at + 28 + pixelBytes()); !f.empty()) return f;
+        } else if (type == 2) {
+            std::vector<uint8_t> metas;
+            if (!bytes_.read(at, size, b) || size < 8 || take<uint32_t>(&b[4]) > limits::kPtexMetaBytes ||
+                take<uint32_t>(&b[0]) > size - 8 || !inflated(std::span(b).subspan(8, take<uint32_t>(&b[0])), take<uint32_t>(&b[4]), metas))
+                return "an edit of its meta data is damaged";
+            if (std::string f = readMetas(metas); !f.empty()) return f;
+        }
+        at += size;
+    }
+    return "";
+}
+
+std::string File::editFace(std::span<const uint8_t> b, uint64_t at) {
+    if (b.size() < 28 + pixelBytes()) return "an edit in it is damaged";
+    const uint32_t face = take<uint32_t>(b.data());
+    if (face >= faceCount_) return "an edit in it is of a face that does not exist";
+    const Face f = faceOf(&b[4]);
+    if (std::string fault = checkFace(f); !fault.empty()) return fault;
+    const uint32_t header = take<uint32_t>(&b[24]);
+    if (blockSize(header) > bytes_.size() - std::min(at, bytes_.size())) return "an edit in it is cut short";
+    head_.faces[face] = f;
+    stale_[face] = true;
+    edited_[face] = {at, header};
+    std::copy(b.begin() + 28, b.begin() + 28 + long(pixelBytes()), constants_.begin() + long(face * pixelBytes()));
+    return "";
+}
+
+/// Pixels side by side from channels one behind the other.
+bool File::decodePlain(std::span<const uint8_t> b, Encoding how, size_t pixels, std::vector<float>& to) const {
+    const size_t channels = size_t(head_.channels), size = sizeOf(head_.number);
+    to.resize(pixels * channels);
+    if (how == kConstant) {
+        if (b.size() < pixelBytes()) return false;
+        for (size_t c = 0; c < channels; ++c) {
+            const float v = toFloat(head_.number, &b[c * size]);
+            for (size_t i = 0; i < pixels; ++i) to[i * channels + c] = v;
+        }
+        return true;
+    }
+    std::vector<uint8_t> data;
+    if (how == kTiled || !inflated(b, pixels * pixelBytes(), data)) return false;
+    if (how == kDifferences && size == 1)
+        for (size_t i = 1; i < data.size(); ++i) data[i] = uint8_t(data[i] + data[i - 1]);
+    if (how == kDifferences && size == 2)
+        for (size_t i = 2; i < data.size(); i += 2) {
+            const uint16_t v = uint16_t(take<uint16_t>(&data[i]) + take<uint16_t>(&data[i - 2]));
+            data[i] = uint8_t(v), data[i + 1] = uint8_t(v >> 8);
+        }
+    for (size_t c = 0; c < channels; ++c)
+        for (size_t i = 0; i < pixels; ++i) to[i * channels + c] = toFloat(head_.number, &data[(c * pixels + i) * size]);
+    return true;
+}
+
+bool File::decodeTiles(std::span<const uint8_t> b, int ulog, int vlog, std::vector<float>& to) const {
+    if (b.size() < 6 || b[0] > ulog || b[1] > vlog) return false;
+    const int tu = b[0], tv = b[1];
+    const size_t across = size_t(1) << (ulog - tu), count = across << (vlog - tv), header = take<uint32_t>(&b[2]);
+    std::vector<uint8_t> headers;
+    if (header > b.size() - 6 || !inflated(b.subspan(6, header), count * 4, headers)) return false;
+    const size_t channels = size_t(head_.channels), row = channels << ulog, part = channels << tu;
+    to.resize(row << vlog);
+    std::vector<float> tile;
+    size_t at = 6 + header;
+    for (size_t i = 0; i < count; ++i) {
+        const uint32_t h = take<uint32_t>(&headers[4 * i]);
+        if (blockSize(h) > b.size() - at || !decodePlain(b.subspan(at, blockSize(h)), encodingOf(h), size_t(1) << (tu + tv), tile))
+            return false;
+        at += blockSize(h);
+        for (size_t j = 0; j < size_t(1) << tv; ++j)
+            std::copy(tile.begin() + long(j * part), tile.begin() + long((j + 1) * part),
+                      to.begin() + long(((i / across << tv) + j) * row + i % across * part));
+    }
+    return true;
+}
+
+bool File::decode(const Block& block, int ulog, int vlog, std::vector<float>& to) const {
+    std::vector<uint8_t> b;
+    if (!bytes_.read(block.at, blockSize(block.header), b)) return false;
+    if (encodingOf(block.header) == kTiled) return decodeTiles(b, ulog, vlog, to);
+    return decodePlain(b, encodingOf(block.header), size_t(1) << (ulog + vlog), to);
+}
+
+void File::multiply(std::vector<float>& values) const {
+    const size_t channels = size_t(head_.channels), a = size_t(head_.alpha);
+    for (size_t i = 0; i < values.size(); i += channels)
+        for (size_t c = 0; c < channels; ++c)
+            if (c != a) values[i + c] *= values[i + a];
+}
+
+Image File::constantOf(uint32_t face) const {
+    Image m;
+    for (int c = 0; c < head_.channels; ++c)
+        m.values.push_back(toFloat(head_.number, &constants_[face * pixelBytes() + size_t(c) * sizeOf(head_.number)]));
+    if (head_.alpha >= 0) multiply(m.values);
+    return m;
+}
+
+Image File::make(uint32_t face, int halvings) const {
+    const Face& f = head_.faces[face];
+    const int most = std::max(f.ulog, f.vlog), k = std::min(halvings, most);
+    const auto edit = edited_.find(face);
+    const Block* block = nullptr;
+    if (k == 0 && edit != edited_.end()) block = &edit->second;
+    else if (k == 0 && !blocks_.empty()) block = &blocks_[0][face];
+    else if (k > 0 && !stale_[face] && size_t(k) < blocks_.size() && place_[face] < blocks_[size_t(k)].size() && k <= f.ulog && k <= f.vlog)
+        block = &blocks_[size_t(k)][place_[face]];
+    if (f.constant || (k == 0 && !block)) return constantOf(face);
+    if (!block) return halved(*image(face, k - 1), head_.channels, head_.mesh);
+    Image m{1 << (f.ulog - k), 1 << (f.vlog - k), {}};
+    if (!decode(*block, f.ulog - k, f.vlog - k, m.values)) {
+        diagnostics_.reportOnce("ptex:" + path_ + std::to_string(face),
+                                {Severity::Error,
+                                 Rie::BadFile,
+                                 {},
+                                 "Ptex file \"" + path_ + "\": face " + std::to_string(face) + " is damaged; its mean is shown",
+                                 {},
+                                 {}});
+        return constantOf(face);
+    }
+    for (float& v : m.values)
+        if (!std::isfinite(v)) v = 0;
+    if (head_.alpha >= 0 && k == 0) multiply(m.values); // coarser ones are stored so
+    return m;
+}
+
+std::shared_ptr<const Image> File::image(uint32_t face, int halvings) const {
+    const Cache::Key key{number_, face, halvings};
+    if (auto known = cache_->find(key)) return known;
+    auto made = std::make_shared<const Image>(make(face, halvings));
+    cache_->keep(key, made);
+    return made;
+}
+
+} // namespace
+
+std::shared_ptr<const Texture> openTexture(const std::string& path, std::shared_ptr<Cache> cache, Diagnostics& d, const SourcePlace& place) {
+    auto file = std::make_shared<File>(path, std::move(cache), d);
+    const std::string fault = file->open();
+    if (fault.empty()) return file;
+    d.report(Severity::Error, Rie::BadFile, place, "Ptex file \"" + path + "\" cannot be read: " + fault,
+             "alpenglow maketx -ptex makes such files");
+    return nullptr;
+}
+
+} // namespace alpenglow::ptex

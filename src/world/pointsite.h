@@ -1,0 +1,33 @@
+// What a point-based occlusion(), indirectdiffuse() or subsurface() says, worked out when the kernel is bound.
+#pragma once
+#include "clouds/hemisphere.h"
+#include "world/sites.h"
+
+namespace alpenglow::transport {
+
+/// Rows of arguments, or -1; `value` and what follows it: rows of results, or -1.
+struct PointSite {
+    std::vector<int32_t> names; ///< of clouds: interned
+    std::vector<int> nameRows;  ///< of those that are known only when the shader runs
+    std::string space = "world";
+    int spaceRow = -1;
+    int point = -1, normal = -1;
+    int cone = -1, axis = -1, maxDistance = -1, maxHit = -1, bias = -1, solidAngle = -1, clamp = -1, sort = -1;
+    FadeSite fade;
+    int sidesRow = -1;
+    clouds::DiskSides sides = clouds::DiskSides::Both;
+    bool uniform = false;
+    bool blocks = false;           ///< occlusion()
+    texture::Handle map = nullptr; ///< "environmentmap"
+    Matrix toMap;                  ///< current to "environmentspace"
+    int value = -1, environment = -1, openTowards = -1, blocked = -1;
+    SubsurfaceSite below;          ///< of subsurface()
+};
+
+/// Whether a call is answered from point clouds.
+bool readsPoints(const SiteInfo&);
+std::shared_ptr<const PointSite> pointSite(const SiteInfo&, const rsl::CompiledKernel&, WorldImpl&);
+/// "front", "back", "both" or "reversed".
+clouds::DiskSides diskSides(const std::string& word);
+
+} // namespace alpenglow::transport

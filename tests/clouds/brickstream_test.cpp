@@ -1,0 +1,67 @@
+// Brick maps of clouds that do not fit into memory.
+#include "clouds/brickstream.h"
+#include "clouds/make.h"
+#include <random>
+
+namespace {
+
+using namespace alpenglow;
+using namespace alpenglow::clouds;
+using alpenglow::clouds::test::Clouds;
+
+PointCloud scattered(size_t n) {
+    PointCloud c;
+    c.channels = {{"x", ChannelType::Float}, {"c", ChannelType::Color}};
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> u(0, 1);
+    for (size_t i = 0; i < n; ++i) {
+        const Vec3 p(u(random), 2 * u(random), .5f + .1f * u(random));
+        const float v[4] = {p.x, p.y, p.z, 1};
+        c.add(p, i % 3 ? Vec3(0, 0, 1) : Vec3(0, 1, 0), .01f, v);
+    }
+    return c;
+}
+
+// With room for a fiftieth of the points the map answers as the one that is made in memory.
+TEST_F(Clouds, BrickMapsOfCloudsThatDoNotFit) {
+    const PointCloud c = scattered(60000);
+    Diagnostics d;
+    ASSERT_TRUE(saveCloud(path("a.ptc"), c, policy(), d));
+    ASSERT_TRUE(saveBrickMap(path("whole.bkm"), c, policy(), d));
+    ASSERT_TRUE(brickMapOfFile(path("a.ptc"), path("parts.bkm"), policy(), d, {}, size_t(200) << 10));
+    const auto whole = openMap(path("whole.bkm"), d), parts = openMap(path("parts.bkm"), d);
+    ASSERT_TRUE(whole && parts);
+    EXPECT_EQ(bytes("whole.bkm").size(), bytes("parts.bkm").size());
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> u(0, 1);
+    size_t found = 0;
+    for (int i = 0; i < 2000; ++i) {
+        Query q;
+        q.P = {u(random), 2 * u(random), .5f + .1f * u(random)};
+        q.N = {0, 0, 1};
+        q.radius = i % 2 ? .02f : u(random);
+        q.maxDepth = i % 5 - 1;
+        std::vector<float> a(4), b(4);
+        const bool there = whole->lookup(q, a);
+        ASSERT_EQ(there, parts->lookup(q, b));
+        found += there;
+        for (size_t k = 0; k < 4; ++k) EXPECT_NEAR(a[k], b[k], 1e-5) << i;
+    }
+    EXPECT_GT(found, 1000u);
+    EXPECT_EQ(d.errors(), 0u);
+}
+
+TEST_F(Clouds, CloudsThatDoNotFitAndAreDamaged) {
+    Diagnostics d;
+    ASSERT_TRUE(saveCloud(path("a.ptc"), scattered(5000), policy(), d));
+    const std::string b = bytes("a.ptc");
+    for (size_t n = 0; n < b.size(); n += 997) {
+        std::ofstream(path("cut.ptc"), std::ios::binary) << b.substr(0, n);
+        Diagnostics said;
+        EXPECT_FALSE(brickMapOfFile(path("cut.ptc"), path("cut.bkm"), policy(), said, {}, 1000));
+        EXPECT_GT(said.errors(), 0u) << n;
+    }
+    EXPECT_FALSE(std::filesystem::exists(path("cut.bkm")));
+}
+
+} // namespace

@@ -124,8 +124,8 @@ void answerPointSubsurface(Answers& answers, const ServiceCall& call) {
         const double scale = double(space.growth()); // the file's lengths
         const Vec3 at(transformPoint(to, Vec3d(tripleAt(call, s.point, lane))));
         if (!std::isfinite(dot(at, Vec3(1))) || !(scale > 0)) return;
-        const Below b = belowOf(site, SubsurfaceValues(p.shape->attributes()), [&](int row) { return call.at(row, lane); },
-                                answers.halfSpaces());
+        const Below b = belowOf(
+            site, SubsurfaceValues(p.shape->attributes()), [&](int row) { return call.at(row, lane); }, answers.halfSpaces());
         std::vector<Dipole> dipoles;
         for (int k = 0; k < 3; ++k)
             dipoles.emplace_back(answers.halfSpaces().of(b.index), better, double(b.absorption[k]),

@@ -223,9 +223,13 @@ void addPtc(CLI::App& app, int* status) {
         ->check(positive())
         ->type_name("RADIUS");
     auto* bounce = c->add_option_group("Of bounce");
-    bounce->add_option("--albedo", a->albedo, "What points send of light that arrives: a number, three of them with commas, or a channel")
+    bounce
+        ->add_option("--albedo", a->albedo,
+                     "What points send of light that arrives: a number, three of them with commas, or a channel")
         ->type_name("NUMBER|R,G,B|NAME");
-    bounce->add_option("--bounces", a->bounces, "How many times light goes from point to point")->check(between(1, 100))->type_name("N");
+    bounce->add_option("--bounces", a->bounces, "How many times light goes from point to point")
+        ->check(between(1, 100))
+        ->type_name("N");
     bounce->add_option("--solid-angle", a->solidAngle, "Clusters of points that look larger are taken apart")
         ->check(positive())
         ->type_name("STERADIANS");

@@ -82,7 +82,10 @@ std::string Reader::row(const Element& e, Mesh& to) {
             if (p.name == "vertex_indices" || p.name == "vertex_index") corners = std::move(list);
             continue;
         }
-        const size_t axis = std::string("xyz").find(p.name), channel = p.name == "red" ? 0 : p.name == "green" ? 1 : p.name == "blue" ? 2 : 3;
+        const size_t axis = std::string("xyz").find(p.name), channel = p.name == "red"     ? 0
+                                                                       : p.name == "green" ? 1
+                                                                       : p.name == "blue"  ? 2
+                                                                                           : 3;
         if (axis < 3 && p.name.size() == 1) point[int(axis)] = float(v);
         if (channel < 3) colour[int(channel)] = float(p.byte ? v / 255 : v), coloured = true;
     }
@@ -116,8 +119,7 @@ void findNeighbours(const Mesh& m, std::vector<ptex::Face>& faces) {
     std::map<std::pair<int, int>, std::pair<int32_t, uint8_t>> edges;
     const size_t n = m.faces[0].size();
     for (size_t f = 0; f < m.faces.size(); ++f)
-        for (size_t e = 0; e < n; ++e)
-            edges.try_emplace({m.faces[f][e], m.faces[f][(e + 1) % n]}, int32_t(f), uint8_t(e));
+        for (size_t e = 0; e < n; ++e) edges.try_emplace({m.faces[f][e], m.faces[f][(e + 1) % n]}, int32_t(f), uint8_t(e));
     for (size_t f = 0; f < m.faces.size(); ++f)
         for (size_t e = 0; e < n; ++e)
             if (const auto at = edges.find({m.faces[f][(e + 1) % n], m.faces[f][e]}); at != edges.end()) {

@@ -16,7 +16,8 @@ const Channel* colourNamed(const PointCloud& c, const std::string& name) {
 }
 
 /// What arrives at points from `begin` on, where they are disks.
-void arrive(const PointCloud& cloud, const PointOctree& octree, float solidAngle, size_t begin, size_t end, std::vector<Color>& to) {
+void arrive(const PointCloud& cloud, const PointOctree& octree, float solidAngle, size_t begin, size_t end,
+            std::vector<Color>& to) {
     Hemisphere h;
     for (size_t i = begin; i < end; ++i) {
         const float l = length(cloud.N[i]);
@@ -38,7 +39,8 @@ std::string bounce(PointCloud& cloud, const BounceOptions& o) {
     const Channel* light = colourNamed(cloud, "_radiosity");
     if (!light || light->type != ChannelType::Color) return "there is no colour \"_radiosity\" in it";
     const Channel* albedo = o.albedoChannel.empty() ? nullptr : colourNamed(cloud, o.albedoChannel);
-    if (!albedo && !o.albedoChannel.empty()) return "there is no channel \"" + o.albedoChannel + "\" in it that is a colour or a float";
+    if (!albedo && !o.albedoChannel.empty())
+        return "there is no channel \"" + o.albedoChannel + "\" in it that is a colour or a float";
     const size_t at = size_t(cloud.offsetOf("_radiosity")), width = size_t(cloud.width());
     const std::vector<float> before = cloud.values;
     std::vector<Color> arrived(cloud.size());
@@ -56,8 +58,9 @@ std::string bounce(PointCloud& cloud, const BounceOptions& o) {
         for (std::thread& t : others) t.join();
         for (size_t i = 0; i < cloud.size(); ++i)
             for (size_t k = 0; k < 3; ++k) {
-                const float a = !albedo ? o.albedo[int(k)]
-                                        : before[i * width + size_t(cloud.offsetOf(albedo->name)) + (sizeOf(albedo->type) == 3 ? k : 0)];
+                const float a =
+                    !albedo ? o.albedo[int(k)]
+                            : before[i * width + size_t(cloud.offsetOf(albedo->name)) + (sizeOf(albedo->type) == 3 ? k : 0)];
                 cloud.values[i * width + at + k] = before[i * width + at + k] + a * arrived[i][int(k)];
             }
     }

@@ -12,9 +12,9 @@ struct BounceOptions {
     int threads = 1;
 };
 
-/// Every point gets radiosity + albedo times what arrives from the others, `bounces` times, each with the light of the one before.
-/// Disks get and send on the side to which their normal looks; balls are left as they are. "": done; else what is missing. The same
-/// bits for any number of threads. An estimate with a bias, as hemisphere.h is.
+/// Every point gets radiosity + albedo times what arrives from the others, `bounces` times, each with the light of the one
+/// before. Disks get and send on the side to which their normal looks; balls are left as they are. "": done; else what is
+/// missing. The same bits for any number of threads. An estimate with a bias, as hemisphere.h is.
 std::string bounce(PointCloud&, const BounceOptions&);
 
 } // namespace alpenglow::clouds

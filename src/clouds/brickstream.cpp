@@ -53,7 +53,8 @@ std::string Stream::open() {
     if (std::fread(&b[32], 1, header_ - 32, file_.get()) != header_ - 32) return "it is cut short";
     if (checksum(std::span(b).first(header_ - 4)) != takeNumber<uint32_t>(&b[header_ - 4])) return "its header is damaged";
     size_t at = 32;
-    if (std::string f = unpackChannels(std::span(b).first(header_ - 4), takeNumber<uint32_t>(&b[12]), &at, channels_); !f.empty()) return f;
+    if (std::string f = unpackChannels(std::span(b).first(header_ - 4), takeNumber<uint32_t>(&b[12]), &at, channels_); !f.empty())
+        return f;
     int width = 0;
     for (const Channel& c : channels_) width += sizeOf(c.type);
     if (at != header_ - 4 || record_ != 28 + 4 * size_t(width)) return "its header does not say what its points are";
@@ -228,8 +229,10 @@ bool Maker::write(const std::string& name, const OutputPolicy& policy, Diagnosti
     std::vector<uint8_t> b;
     for (const Brick& k : bricks_) {
         b.resize(k.points * stream_.record());
-        if (std::fseek(bricksOut_.get(), long(k.offset), SEEK_SET) != 0 || std::fread(b.data(), 1, b.size(), bricksOut_.get()) != b.size()) {
-            d.report(Severity::Error, Rie::System, place, "brick map \"" + name + "\": there is no room for files in between", "TMPDIR has too little");
+        if (std::fseek(bricksOut_.get(), long(k.offset), SEEK_SET) != 0 ||
+            std::fread(b.data(), 1, b.size(), bricksOut_.get()) != b.size()) {
+            d.report(Severity::Error, Rie::System, place, "brick map \"" + name + "\": there is no room for files in between",
+                     "TMPDIR has too little");
             return false;
         }
         if (!file->write(b.data(), b.size())) break;
@@ -247,8 +250,8 @@ bool isOurs(const std::string& path, uint64_t* bytes) {
 
 } // namespace
 
-bool brickMapOfFile(const std::string& cloud, const std::string& name, const OutputPolicy& policy, Diagnostics& d, const SourcePlace& place,
-                    size_t memory) {
+bool brickMapOfFile(const std::string& cloud, const std::string& name, const OutputPolicy& policy, Diagnostics& d,
+                    const SourcePlace& place, size_t memory) {
     uint64_t bytes = 0;
     if (!isOurs(cloud, &bytes) || bytes * 4 <= memory) {
         const auto whole = loadCloud(cloud, d, place);

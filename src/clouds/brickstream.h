@@ -1,4 +1,5 @@
-// Brick maps of point clouds that need not fit into memory: the cloud is sorted into cubes on disk, which become bricks one by one.
+// Brick maps of point clouds that need not fit into memory: the cloud is sorted into cubes on disk, which become bricks one by
+// one.
 #pragma once
 #include "base/diagnostics.h"
 #include "clouds/limits.h"
@@ -11,9 +12,9 @@ struct OutputPolicy;
 
 namespace alpenglow::clouds {
 
-/// The same map as of saveBrickMap(), but that means of the coarsest levels may differ in their last bits. `memory`: bytes that points take
-/// at a time, about; more where very many lie in one place. Clouds that fit, and PLY files, are read whole. False: an error was reported, and
-/// what was there before still is.
+/// The same map as of saveBrickMap(), but that means of the coarsest levels may differ in their last bits. `memory`: bytes that
+/// points take at a time, about; more where very many lie in one place. Clouds that fit, and PLY files, are read whole. False: an
+/// error was reported, and what was there before still is.
 bool brickMapOfFile(const std::string& cloud, const std::string& name, const OutputPolicy&, Diagnostics&, const SourcePlace& = {},
                     size_t memory = limits::kBrickMemory);
 

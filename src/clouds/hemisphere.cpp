@@ -18,8 +18,8 @@ constexpr float kEdgeOn = 1e-4f;
 /// Of a disk no farther above P than this part of its radius, whose normal is like that at P.
 constexpr float kSame = .3f, kAlike = .7f;
 
-/// How much of a pixel is covered, where this much of it is: squares of clusters do not fit together exactly, so that what covers most of
-/// a pixel covers it; less stays as it is.
+/// How much of a pixel is covered, where this much of it is: squares of clusters do not fit together exactly, so that what covers
+/// most of a pixel covers it; less stays as it is.
 float closed(float part) { return part <= .4f ? part : std::min(1.f, .4f + 2 * (part - .4f)); }
 } // namespace
 
@@ -75,9 +75,7 @@ float Hemisphere::fade(float d) const {
 uint32_t Hemisphere::pixelOf(const Vec3& d) const {
     const Vec3 a(std::fabs(d.x), std::fabs(d.y), std::fabs(d.z));
     const int axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
-    const auto place = [&](int k) {
-        return std::clamp(int((d[k % 3] / a[axis] + 1) * .5f * float(side_)), 0, side_ - 1);
-    };
+    const auto place = [&](int k) { return std::clamp(int((d[k % 3] / a[axis] + 1) * .5f * float(side_)), 0, side_ - 1); };
     return uint32_t(((2 * axis + (d[axis] < 0)) * side_ + place(axis + 2)) * side_ + place(axis + 1));
 }
 

@@ -18,7 +18,7 @@ struct HemisphereQuery {
     bool clamp = true;         ///< what covers a pixel more than once counts once
     bool sort = false;         ///< and what is nearest comes first
     DiskSides sides = DiskSides::Both;
-    bool colours = true;       ///< light is wanted
+    bool colours = true; ///< light is wanted
     /// How much of what is there at a distance counts: exp(-fall d), or (1 - d / maxDistance)^fall.
     float fall = 0;
     bool polynomial = false;
@@ -30,7 +30,8 @@ public:
     void begin(const HemisphereQuery&);
     void add(const PointOctree&);
     void finish();
-    /// Behind finish(). Means over the directions of the query: how much is blocked, 0 to 1 where it is clamped; what light comes.
+    /// Behind finish(). Means over the directions of the query: how much is blocked, 0 to 1 where it is clamped; what light
+    /// comes.
     float blocked() const { return blocked_; }
     const Color& light() const { return light_; }
     /// f(direction, part of all directions that is open there), for each pixel in which something is; the parts add up to 1 -

@@ -26,8 +26,7 @@ PointOctree::Harmonics harmonics(const Vec3& d) {
 }
 
 /// The bands of max(0, cos) (Ramamoorthi and Hanrahan 2001).
-constexpr float kBand[9] = {kPi,     2 * kPi / 3, 2 * kPi / 3, 2 * kPi / 3, kPi / 4,
-                            kPi / 4, kPi / 4,     kPi / 4,     kPi / 4};
+constexpr float kBand[9] = {kPi, 2 * kPi / 3, 2 * kPi / 3, 2 * kPi / 3, kPi / 4, kPi / 4, kPi / 4, kPi / 4, kPi / 4};
 
 /// Length of the mean of unit normals: from here on a node begins to be, and is, a piece of a plane.
 constexpr float kCurved = .85f, kFlat = .97f;
@@ -43,9 +42,7 @@ uint64_t spread(uint64_t x) {
 
 } // namespace
 
-float PointOctree::Point::radius() const {
-    return dot(N, N) > 0 ? std::sqrt(area / 2) : std::sqrt(area / kPi);
-}
+float PointOctree::Point::radius() const { return dot(N, N) > 0 ? std::sqrt(area / 2) : std::sqrt(area / kPi); }
 
 PointOctree::PointOctree(const PointCloud& cloud, const std::string& lightChannel) {
     const int area = areaChannel(cloud);
@@ -154,8 +151,7 @@ void PointOctree::sum(Node& n) const {
         for (uint32_t c = n.first; c < n.first + n.children; ++c)
             reach = std::max(reach, length(nodes_[c].centre - n.centre) + nodes_[c].reach);
     else
-        for (uint32_t i = n.begin; i < n.end; ++i)
-            reach = std::max(reach, length(points_[i].P - n.centre) + points_[i].radius());
+        for (uint32_t i = n.begin; i < n.end; ++i) reach = std::max(reach, length(points_[i].P - n.centre) + points_[i].radius());
     n.reach = reach;
 }
 

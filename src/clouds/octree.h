@@ -14,25 +14,25 @@ enum class DiskSides : uint8_t { Both, Front, Back };
 class PointOctree {
 public:
     struct Point {
-        Vec3 P, N;       ///< N: unit, or 0: a ball
-        float area = 0;  ///< > 0
-        Color light;     ///< what the surface sends, radiance; for subsurface() what enters it over PI
+        Vec3 P, N;      ///< N: unit, or 0: a ball
+        float area = 0; ///< > 0
+        Color light;    ///< what the surface sends, radiance; for subsurface() what enters it over PI
         /// The disk without gaps between the squares that points stand for; a ball of this area seen from anywhere.
         float radius() const;
     };
     /// A function of the direction from which the node is seen, by real spherical harmonics of bands 0 to 2.
     using Harmonics = std::array<float, 9>;
     struct Node {
-        Vec3 centre;     ///< mean by area
-        float reach = 0; ///< no disk in it goes farther from the centre
-        float area = 0;  ///< of all
-        Color power;     ///< area times light, of all
-        Harmonics seen;  ///< of disks: projected area of their front sides
+        Vec3 centre;                   ///< mean by area
+        float reach = 0;               ///< no disk in it goes farther from the centre
+        float area = 0;                ///< of all
+        Color power;                   ///< area times light, of all
+        Harmonics seen;                ///< of disks: projected area of their front sides
         std::array<Harmonics, 3> sent; ///< the same times light
-        float ball = 0;  ///< area of balls
+        float ball = 0;                ///< area of balls
         Color ballPower;
-        uint32_t begin = 0, end = 0;          ///< points
-        uint32_t first = 0, children = 0;     ///< nodes; none: a leaf
+        uint32_t begin = 0, end = 0;      ///< points
+        uint32_t first = 0, children = 0; ///< nodes; none: a leaf
     };
     /// `lightChannel`: of a colour or float; "": none. Points without area, which nothing sees, are left out.
     PointOctree(const PointCloud&, const std::string& lightChannel);

@@ -6,9 +6,9 @@
 namespace alpenglow::geometry {
 
 struct FacePlace {
-    int face = 0;          ///< of the request
-    float u = 0, v = 0;    ///< 0 to 1 from its first corner to the second, and to the last
-    Vec3 Pu, Pv;           ///< how the point moves with them; camera space, as the shape stands when the shutter opens
+    int face = 0;       ///< of the request
+    float u = 0, v = 0; ///< 0 to 1 from its first corner to the second, and to the last
+    Vec3 Pu, Pv;        ///< how the point moves with them; camera space, as the shape stands when the shutter opens
 };
 /// Of triangles and quadrilaterals of polygon meshes, which are linear over each triangle that they are cut into, and of faces of
 /// subdivision surfaces and patches, which have u and v. Nothing: the face has more corners, or holes.

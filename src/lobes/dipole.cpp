@@ -43,7 +43,7 @@ double Dipole::at(double r) const {
 double Dipole::over(double distance, double radius) const {
     if (!(radius > 0)) return at(distance);
     constexpr int kRings = 6, kTurns = 6;
-    static constexpr double kCos[kTurns] = {0.9659258262890683, 0.7071067811865476,  0.2588190451025207,
+    static constexpr double kCos[kTurns] = {0.9659258262890683,  0.7071067811865476,  0.2588190451025207,
                                             -0.2588190451025207, -0.7071067811865476, -0.9659258262890683};
     double sum = 0;
     for (int i = 0; i < kRings; ++i) {

@@ -8,9 +8,9 @@ namespace alpenglow::ptex {
 
 namespace {
 
-constexpr float kLeastSpread = .6f;  ///< of the Gaussian, pixels: below, it would show them
-constexpr float kMostPixels = 8;     ///< that a footprint is wide in the level that is read
-constexpr int kMostSteps = 8;        ///< from face to face
+constexpr float kLeastSpread = .6f; ///< of the Gaussian, pixels: below, it would show them
+constexpr float kMostPixels = 8;    ///< that a footprint is wide in the level that is read
+constexpr int kMostSteps = 8;       ///< from face to face
 
 /// A place on some face. `black`: beyond a border that is black.
 struct Place {
@@ -97,7 +97,7 @@ bool Filter::cross(Place& p, int edge) const {
     alongEdge(edge, p.u, p.v, t, d);
     uint32_t to = uint32_t(f.adjacent[size_t(edge)]);
     int at = f.edge[size_t(edge)];
-    t = 1 - t; // neighbours go along their common edge in opposite directions
+    t = 1 - t;                                   // neighbours go along their common edge in opposite directions
     if (head_.faces[to].subface && !f.subface) { // two parts share the edge: the first of them, as we go, is the last as they do
         d *= 2;
         if (t >= .5f) t = 2 * t - 1;

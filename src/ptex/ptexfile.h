@@ -1,6 +1,6 @@
 // Ptex files: a picture for each face of a mesh, and which faces lie beside each other. Source: Ptex File Format Specification,
-// version 1.3r1 (ptex.us/PtexFile.html), and the pages on adjacency and on triangles beside it. u and v go from 0 to 1 over a face,
-// from its first corner to the second and to the last.
+// version 1.3r1 (ptex.us/PtexFile.html), and the pages on adjacency and on triangles beside it. u and v go from 0 to 1 over a
+// face, from its first corner to the second and to the last.
 #pragma once
 #include "base/diagnostics.h"
 #include <array>
@@ -20,10 +20,10 @@ enum class Number : uint8_t { Byte = 0, Word = 1, Half = 2, Float = 3 }; ///< by
 enum class Border : uint8_t { Clamp = 0, Black = 1, Periodic = 2 };      ///< where a face has no neighbour
 
 struct Face {
-    uint8_t ulog = 0, vlog = 0;                        ///< logarithms of the pixels along u and v; triangles: the same
-    bool constant = false, subface = false;            ///< subface: a quarter, or so, of a face that is no quadrilateral
-    std::array<int32_t, 4> adjacent{-1, -1, -1, -1};   ///< by edge, from the first corner on; -1: none
-    std::array<uint8_t, 4> edge{};                     ///< which of the neighbour's edges it is
+    uint8_t ulog = 0, vlog = 0;                      ///< logarithms of the pixels along u and v; triangles: the same
+    bool constant = false, subface = false;          ///< subface: a quarter, or so, of a face that is no quadrilateral
+    std::array<int32_t, 4> adjacent{-1, -1, -1, -1}; ///< by edge, from the first corner on; -1: none
+    std::array<uint8_t, 4> edge{};                   ///< which of the neighbour's edges it is
 };
 
 /// Rows of constant v, from v = 0; channels of a pixel side by side. Of triangles: pixel (i, j) with i + j < n is the triangle at
@@ -62,10 +62,11 @@ public:
     virtual std::shared_ptr<const Image> image(uint32_t face, int halvings) const = 0;
 };
 /// Null: an error was reported.
-std::shared_ptr<const Texture> openTexture(const std::string& path, std::shared_ptr<Cache>, Diagnostics&, const SourcePlace& = {});
+std::shared_ptr<const Texture> openTexture(const std::string& path, std::shared_ptr<Cache>, Diagnostics&,
+                                           const SourcePlace& = {});
 
-/// Writes a file: faces of `images`, by number, with the sides that the head says; what is coarser is made of them. False: an error
-/// was reported, and what was there before still is.
+/// Writes a file: faces of `images`, by number, with the sides that the head says; what is coarser is made of them. False: an
+/// error was reported, and what was there before still is.
 bool writeTexture(const std::string& name, Head, const std::vector<Image>& images, const OutputPolicy&, Diagnostics&,
                   const SourcePlace& = {});
 

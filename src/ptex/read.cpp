@@ -68,7 +68,8 @@ struct Block {
 
 class File final : public Texture {
 public:
-    File(const std::string& path, std::shared_ptr<Cache> cache, Diagnostics& d) : bytes_(path), path_(path), cache_(std::move(cache)), diagnostics_(d) {
+    File(const std::string& path, std::shared_ptr<Cache> cache, Diagnostics& d)
+        : bytes_(path), path_(path), cache_(std::move(cache)), diagnostics_(d) {
         number_ = cache_->number();
     }
     /// "": fine.
@@ -104,10 +105,10 @@ private:
     uint32_t extended_ = 0, faceInfoSize_ = 0, constantSize_ = 0, levelInfoSize_ = 0, levels_ = 0, faceCount_ = 0;
     uint64_t levelDataSize_ = 0, largeSize_ = 0, editAt_ = 0;
     uint32_t metaZip_ = 0, metaSize_ = 0, largeZip_ = 0, largeHeader_ = 0;
-    std::vector<std::vector<Block>> blocks_;         ///< by level, then by face in the level
-    std::vector<uint32_t> place_;                    ///< by face: in levels behind the first
-    std::map<uint32_t, Block> edited_;               ///< faces that were edited: their data
-    std::vector<bool> stale_;                        ///< their levels are not made of them
+    std::vector<std::vector<Block>> blocks_; ///< by level, then by face in the level
+    std::vector<uint32_t> place_;            ///< by face: in levels behind the first
+    std::map<uint32_t, Block> edited_;       ///< faces that were edited: their data
+    std::vector<bool> stale_;                ///< their levels are not made of them
 };
 
 std::string File::open() {
@@ -138,7 +139,8 @@ std::string File::readHeader() {
     head_.channels = take<uint16_t>(&b[20]);
     head_.alpha = int32_t(u32(16));
     if (head_.channels < 1 || head_.channels > limits::kPtexChannels)
-        return "it has " + std::to_string(head_.channels) + " channels, 1 to " + std::to_string(limits::kPtexChannels) + " can be read";
+        return "it has " + std::to_string(head_.channels) + " channels, 1 to " + std::to_string(limits::kPtexChannels) +
+               " can be read";
     if (head_.alpha < 0 || head_.alpha >= head_.channels) head_.alpha = -1;
     levels_ = take<uint16_t>(&b[22]);
     faceCount_ = u32(24);
@@ -151,7 +153,8 @@ std::string File::readHeader() {
     metaSize_ = u32(60);
     if (faceCount_ > limits::kPtexFaces) return "it has more than " + std::to_string(limits::kPtexFaces) + " faces";
     if (levels_ > 32 || levelInfoSize_ != levels_ * kLevelInfo) return "its header does not say what its levels are";
-    if (uint64_t(extended_) + faceInfoSize_ + constantSize_ + levelInfoSize_ + kHeader > bytes_.size() || levelDataSize_ > bytes_.size())
+    if (uint64_t(extended_) + faceInfoSize_ + constantSize_ + levelInfoSize_ + kHeader > bytes_.size() ||
+        levelDataSize_ > bytes_.size())
         return "it is cut short";
     std::vector<uint8_t> e;
     if (!bytes_.read(kHeader, std::min<uint64_t>(extended_, kExtended), e)) return "it is cut short";
@@ -253,7 +256,8 @@ std::string File::readMetas(std::span<const uint8_t> b) {
 
 std::string File::readLargeMetas() {
     if (largeHeader_ == 0) return "";
-    uint64_t at = kHeader + uint64_t(extended_) + faceInfoSize_ + constantSize_ + levelInfoSize_ + levelDataSize_ + metaZip_ + kBarrier;
+    uint64_t at =
+        kHeader + uint64_t(extended_) + faceInfoSize_ + constantSize_ + levelInfoSize_ + levelDataSize_ + metaZip_ + kBarrier;
     if (largeHeader_ > limits::kPtexMetaBytes) return "its meta data are too large";
     std::vector<uint8_t> zip, b;
     if (!bytes_.read(at, largeZip_, zip) || !inflated(zip, largeHeader_, b)) return "its large meta data are damaged";
@@ -266,7 +270,8 @@ std::string File::readLargeMetas() {
         const uint32_t size = take<uint32_t>(&b[i + 2 + key]), packed = take<uint32_t>(&b[i + 6 + key]);
         i += 10 + key;
         if ((all += size) > limits::kPtexMetaBytes) return "its meta data are too large";
-        if (m.type > 5 || !bytes_.read(at, packed, zip) || !inflated(zip, size, m.bytes)) return "its large meta data are damaged";
+        if (m.type > 5 || !bytes_.read(at, packed, zip) || !inflated(zip, size, m.bytes))
+            return "its large meta data are damaged";
         at += packed;
         head_.metas.push_back(std::move(m));
     }
@@ -289,7 +294,8 @@ std::string File::readEdits() {
         } else if (type == 2) {
             std::vector<uint8_t> metas;
             if (!bytes_.read(at, size, b) || size < 8 || take<uint32_t>(&b[4]) > limits::kPtexMetaBytes ||
-                take<uint32_t>(&b[0]) > size - 8 || !inflated(std::span(b).subspan(8, take<uint32_t>(&b[0])), take<uint32_t>(&b[4]), metas))
+                take<uint32_t>(&b[0]) > size - 8 ||
+                !inflated(std::span(b).subspan(8, take<uint32_t>(&b[0])), take<uint32_t>(&b[4]), metas))
                 return "an edit of its meta data is damaged";
             if (std::string f = readMetas(metas); !f.empty()) return f;
         }
@@ -351,7 +357,8 @@ bool File::decodeTiles(std::span<const uint8_t> b, int ulog, int vlog, std::vect
     size_t at = 6 + header;
     for (size_t i = 0; i < count; ++i) {
         const uint32_t h = take<uint32_t>(&headers[4 * i]);
-        if (blockSize(h) > b.size() - at || !decodePlain(b.subspan(at, blockSize(h)), encodingOf(h), size_t(1) << (tu + tv), tile))
+        if (blockSize(h) > b.size() - at ||
+            !decodePlain(b.subspan(at, blockSize(h)), encodingOf(h), size_t(1) << (tu + tv), tile))
             return false;
         at += blockSize(h);
         for (size_t j = 0; j < size_t(1) << tv; ++j)
@@ -390,7 +397,8 @@ Image File::make(uint32_t face, int halvings) const {
     const Block* block = nullptr;
     if (k == 0 && edit != edited_.end()) block = &edit->second;
     else if (k == 0 && !blocks_.empty()) block = &blocks_[0][face];
-    else if (k > 0 && !stale_[face] && size_t(k) < blocks_.size() && place_[face] < blocks_[size_t(k)].size() && k <= f.ulog && k <= f.vlog)
+    else if (k > 0 && !stale_[face] && size_t(k) < blocks_.size() && place_[face] < blocks_[size_t(k)].size() && k <= f.ulog &&
+             k <= f.vlog)
         block = &blocks_[size_t(k)][place_[face]];
     if (f.constant || (k == 0 && !block)) return constantOf(face);
     if (!block) return halved(*image(face, k - 1), head_.channels, head_.mesh);
@@ -421,7 +429,8 @@ std::shared_ptr<const Image> File::image(uint32_t face, int halvings) const {
 
 } // namespace
 
-std::shared_ptr<const Texture> openTexture(const std::string& path, std::shared_ptr<Cache> cache, Diagnostics& d, const SourcePlace& place) {
+std::shared_ptr<const Texture> openTexture(const std::string& path, std::shared_ptr<Cache> cache, Diagnostics& d,
+                                           const SourcePlace& place) {
     auto file = std::make_shared<File>(path, std::move(cache), d);
     const std::string fault = file->open();
     if (fault.empty()) return file;

@@ -9,9 +9,9 @@ namespace alpenglow::ptex {
 
 namespace {
 
-constexpr size_t kTileBytes = 65536;     ///< faces that are larger are cut
-constexpr int kLeastReduced = 2;         ///< logarithm of the smaller side, below which faces have no coarser level
-constexpr size_t kLargeMeta = 1024;      ///< bytes, from which on an item has a block of its own
+constexpr size_t kTileBytes = 65536; ///< faces that are larger are cut
+constexpr int kLeastReduced = 2;     ///< logarithm of the smaller side, below which faces have no coarser level
+constexpr size_t kLargeMeta = 1024;  ///< bytes, from which on an item has a block of its own
 constexpr uint32_t kExtended = 40;
 
 class Writer {
@@ -110,7 +110,8 @@ std::vector<uint8_t> Writer::faceInfo() const {
         for (const int32_t a : f.adjacent)
             if (a >= 0 && same)
                 same = head_.faces[size_t(a)].constant &&
-                       std::equal(images_[i].values.begin(), images_[i].values.begin() + long(pixel), images_[size_t(a)].values.begin());
+                       std::equal(images_[i].values.begin(), images_[i].values.begin() + long(pixel),
+                                  images_[size_t(a)].values.begin());
         b.push_back(f.ulog);
         b.push_back(f.vlog);
         b.push_back(uint8_t(f.edge[0] | f.edge[1] << 2 | f.edge[2] << 4 | f.edge[3] << 6));
@@ -171,7 +172,8 @@ std::vector<uint8_t> Writer::all() {
     for (int k = 1;; ++k) {
         while (!coarse.empty() && least(coarse.back()) - k < kLeastReduced) coarse.pop_back();
         if (coarse.empty()) break;
-        for (const uint32_t f : coarse) reduced[f] = halved(k == 1 ? premultiplied(images_[f]) : reduced[f], head_.channels, head_.mesh);
+        for (const uint32_t f : coarse)
+            reduced[f] = halved(k == 1 ? premultiplied(images_[f]) : reduced[f], head_.channels, head_.mesh);
         level(coarse, reduced, false);
     }
     std::vector<uint8_t> metas, largeHeader, largeData;
@@ -186,7 +188,8 @@ std::vector<uint8_t> Writer::all() {
         }
     }
     const auto packedOr0 = [](const std::vector<uint8_t>& b) { return b.empty() ? b : deflated(b); };
-    const std::vector<uint8_t> info = faceInfo(), means = constants(), metaZip = packedOr0(metas), largeZip = packedOr0(largeHeader);
+    const std::vector<uint8_t> info = faceInfo(), means = constants(), metaZip = packedOr0(metas),
+                               largeZip = packedOr0(largeHeader);
     std::vector<uint8_t> b = {'P', 't', 'e', 'x'};
     put(b, uint32_t(1));
     put(b, uint32_t(head_.mesh));
@@ -194,7 +197,8 @@ std::vector<uint8_t> Writer::all() {
     put(b, uint32_t(head_.alpha));
     put(b, uint16_t(head_.channels));
     put(b, levels_);
-    for (const size_t n : {head_.faces.size(), size_t(kExtended), info.size(), means.size(), levelInfo_.size(), size_t(3)}) put(b, uint32_t(n));
+    for (const size_t n : {head_.faces.size(), size_t(kExtended), info.size(), means.size(), levelInfo_.size(), size_t(3)})
+        put(b, uint32_t(n));
     put(b, uint64_t(levelData_.size()));
     put(b, uint32_t(metaZip.size()));
     put(b, uint32_t(metas.size()));
@@ -206,8 +210,8 @@ std::vector<uint8_t> Writer::all() {
     put(b, uint64_t(0)); // no edits
     put(b, uint64_t(0));
     const std::vector<uint8_t> barrier(8);
-    for (const std::vector<uint8_t>* part : std::initializer_list<const std::vector<uint8_t>*>{&info, &means, &levelInfo_, &levelData_, &metaZip,
-                                                                                             &barrier, &largeZip, &largeData})
+    for (const std::vector<uint8_t>* part : std::initializer_list<const std::vector<uint8_t>*>{
+             &info, &means, &levelInfo_, &levelData_, &metaZip, &barrier, &largeZip, &largeData})
         b.insert(b.end(), part->begin(), part->end());
     return b;
 }
@@ -219,26 +223,34 @@ Image halved(const Image& m, int channels, Mesh mesh) {
     const size_t n = size_t(channels);
     to.values.resize(size_t(to.u) * size_t(to.v) * n);
     const auto at = [&](int i, int j, size_t c) { return m.values[(size_t(j) * size_t(m.u) + size_t(i)) * n + c]; };
-    const auto triangle = [&](int i, int j, bool upright, size_t c) { return upright ? at(i, j, c) : at(m.u - 1 - i, m.u - 1 - j, c); };
+    const auto triangle = [&](int i, int j, bool upright, size_t c) {
+        return upright ? at(i, j, c) : at(m.u - 1 - i, m.u - 1 - j, c);
+    };
     for (int j = 0; j < to.v; ++j)
         for (int i = 0; i < to.u; ++i)
             for (size_t c = 0; c < n; ++c) {
-                const int x = m.u > 1 ? 2 * i : 0, y = m.v > 1 ? 2 * j : 0, x1 = std::min(x + 1, m.u - 1), y1 = std::min(y + 1, m.v - 1);
+                const int x = m.u > 1 ? 2 * i : 0, y = m.v > 1 ? 2 * j : 0, x1 = std::min(x + 1, m.u - 1),
+                          y1 = std::min(y + 1, m.v - 1);
                 float& v = to.values[(size_t(j) * size_t(to.u) + size_t(i)) * n + c];
                 if (mesh == Mesh::Quad || m.u < 2) v = (at(x, y, c) + at(x1, y, c) + at(x, y1, c) + at(x1, y1, c)) / 4;
                 else if (i + j < to.u) // upright: three, and one on its head between them
-                    v = (triangle(x, y, true, c) + triangle(x + 1, y, true, c) + triangle(x, y + 1, true, c) + triangle(x, y, false, c)) / 4;
+                    v = (triangle(x, y, true, c) + triangle(x + 1, y, true, c) + triangle(x, y + 1, true, c) +
+                         triangle(x, y, false, c)) /
+                        4;
                 else {
                     const int a = 2 * (to.u - 1 - i), b = 2 * (to.u - 1 - j);
-                    v = (triangle(a + 1, b + 1, false, c) + triangle(a, b + 1, false, c) + triangle(a + 1, b, false, c) + triangle(a + 1, b + 1, true, c)) / 4;
+                    v = (triangle(a + 1, b + 1, false, c) + triangle(a, b + 1, false, c) + triangle(a + 1, b, false, c) +
+                         triangle(a + 1, b + 1, true, c)) /
+                        4;
                 }
             }
     return to;
 }
 
-bool writeTexture(const std::string& name, Head head, const std::vector<Image>& images, const OutputPolicy& policy, Diagnostics& d,
-                  const SourcePlace& place) {
-    for (size_t i = 0; i < images.size() && i < head.faces.size(); ++i) head.faces[i].constant = isConstant(images[i], size_t(head.channels));
+bool writeTexture(const std::string& name, Head head, const std::vector<Image>& images, const OutputPolicy& policy,
+                  Diagnostics& d, const SourcePlace& place) {
+    for (size_t i = 0; i < images.size() && i < head.faces.size(); ++i)
+        head.faces[i].constant = isConstant(images[i], size_t(head.channels));
     auto file = OutputFile::open(name, policy, d, place);
     if (!file) return false;
     const std::vector<uint8_t> b = Writer(head, images).all();

@@ -11,7 +11,8 @@ namespace {
 constexpr float kHazeStep = 1 / 64.f;
 constexpr int kHazeSteps = 64;
 
-/// Where steps of equal light end on a way through a medium that leaves `left` of it, were it the same all along: parts of the way.
+/// Where steps of equal light end on a way through a medium that leaves `left` of it, were it the same all along: parts of the
+/// way.
 std::vector<float> hazeSteps(const Color& left) {
     const float least = std::clamp(std::min({left.x, left.y, left.z}), 1e-4f, 1.f);
     const int count = std::clamp(int((1 - least) / kHazeStep) + 1, 1, kHazeSteps);
@@ -36,7 +37,8 @@ void enterMedia(const Engine& e, const shading::Media* m, const Vec3& begin, con
 }
 
 /// Adds what is left within them; `left`, by way: what comes to it, and then what leaves it.
-void seeHaze(Engine& e, std::span<const HazyWay> ways, std::span<const ShadowRay> asked, std::span<SampleResult> out, std::span<Color> left) {
+void seeHaze(Engine& e, std::span<const HazyWay> ways, std::span<const ShadowRay> asked, std::span<SampleResult> out,
+             std::span<Color> left) {
     // All of each way first: it says how finely to cut.
     std::vector<ShadowRay> rays;
     std::vector<Engine::MediumPart> parts;

@@ -48,7 +48,8 @@ std::shared_ptr<const clouds::PointOctree> CloudStore::makeOctree(const std::str
         diagnostics_.report(s, Rie::BadFile, place, "point cloud \"" + name + "\" " + what, hint);
     };
     if (clouds::isBrickMap(*path)) {
-        report(Severity::Error, "is a brick map, which is no place for rays; it is left out", "give the point cloud that it was made of");
+        report(Severity::Error, "is a brick map, which is no place for rays; it is left out",
+               "give the point cloud that it was made of");
         return nullptr;
     }
     const auto cloud = clouds::loadCloud(*path, diagnostics_, place);

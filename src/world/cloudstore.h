@@ -33,7 +33,7 @@ private:
     Files files_;
     Diagnostics& diagnostics_;
     std::mutex mutex_;
-    std::map<std::string, std::shared_ptr<const clouds::CloudMap>> maps_; ///< null: none
+    std::map<std::string, std::shared_ptr<const clouds::CloudMap>> maps_;                        ///< null: none
     std::map<std::pair<std::string, bool>, std::shared_ptr<const clouds::PointOctree>> octrees_; ///< null: none
 };
 

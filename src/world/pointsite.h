@@ -21,7 +21,7 @@ struct PointSite {
     texture::Handle map = nullptr; ///< "environmentmap"
     Matrix toMap;                  ///< current to "environmentspace"
     int value = -1, environment = -1, openTowards = -1, blocked = -1;
-    SubsurfaceSite below;          ///< of subsurface()
+    SubsurfaceSite below; ///< of subsurface()
 };
 
 /// Whether a call is answered from point clouds.

@@ -36,14 +36,14 @@ std::shared_ptr<const PtexSite> ptexSite(const SiteInfo& i, const rsl::CompiledK
         else if (name == "triangle" || name == "bilinear") p->kernel = ptex::Kernel::Triangle;
         else if (name == "point") p->kernel = ptex::Kernel::Point;
         else if (name != "gaussian" && name != "default")
-            world.diagnostics_->reportOnce("ptexture:" + name,
-                                           {Severity::Warning,
-                                            Rie::Unimplement,
-                                            {s.place.file < int(k.files().size()) ? k.files()[size_t(s.place.file)] : "", s.place.line,
-                                             s.place.column},
-                                            "ptexture(): there is no filter \"" + name + "\"; gaussian is used",
-                                            "filters are gaussian, triangle, box and point",
-                                            {}});
+            world.diagnostics_->reportOnce(
+                "ptexture:" + name,
+                {Severity::Warning,
+                 Rie::Unimplement,
+                 {s.place.file < int(k.files().size()) ? k.files()[size_t(s.place.file)] : "", s.place.line, s.place.column},
+                 "ptexture(): there is no filter \"" + name + "\"; gaussian is used",
+                 "filters are gaussian, triangle, box and point",
+                 {}});
     }
     return p;
 }

@@ -97,7 +97,6 @@ const Case kWarnings[] = {
     {"f = 1.0f;", "2:5: warning: numbers take no suffix"},
     {"c = texture(\"a\", \"blurr\", 1);",
      "2:18: warning: 'texture' has no parameter \"blurr\"; it is ignored (did you mean \"blur\"?)"},
-    {"f = ptexture(\"a\", 0, 1);", "2:5: warning: 'ptexture' is not yet available; its value is 0"},
     {"f = pow(f; 2);", "2:10: warning: arguments are separated by ',', not ';'"},
 };
 

@@ -362,6 +362,21 @@ TEST_F(PointScenes, WhatCannotBeReadIsSaidOnce) {
     }
 }
 
+// Names of clouds in other ways, and in another space: the plane is the same wherever the file has it.
+TEST_F(PointScenes, SpacesAndSeveralClouds) {
+    write("lit.sl", "surface lit() { Oi = 1; Ci = 1; bake3d(\"w.ptc\", \"\", P, normalize(N), \"interpolate\", 1, \"_radiosity\", color(1)); bake3d(\"c.ptc\", \"\", P, normalize(N), \"interpolate\", 1, \"coordsystem\", \"camera\", \"_radiosity\", color(1)); }\n");
+    write("asks.sl", "surface asks(string f[] = {\"w.ptc\"}; float which = 0;) { Oi = 1; color a = subsurface(P, N, \"type\", \"pointcloud\", \"filename\", \"w.ptc\", \"maxsolidangle\", .05, \"reflectance\", .5, \"meanfreepath\", .1);\n"
+                     " color b = subsurface(P, N, \"type\", \"pointcloud\", \"filenames\", f, \"coordsystem\", \"world\", \"maxsolidangle\", .05, \"reflectance\", .5, \"meanfreepath\", .1);\n"
+                     " color c = subsurface(P, N, \"type\", \"pointcloud\", \"filename\", \"c.ptc\", \"coordsystem\", \"camera\", \"maxsolidangle\", .05, \"reflectance\", .5, \"meanfreepath\", .1);\n"
+                     " Ci = which == 0 ? a : which == 1 ? b : c; }\n");
+    const std::string plane = quad({-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0});
+    bake(plane, "Surface \"lit\"\n");
+    const auto a = picture(plane, "Surface \"asks\" \"which\" 0\n"), b = picture(plane, "Surface \"asks\" \"which\" 1\n"), c = picture(plane, "Surface \"asks\" \"which\" 2\n");
+    EXPECT_TRUE(a == b);
+    EXPECT_LT(meanError(a, c), .01);
+    EXPECT_NEAR(a[size_t(kSide * kSide / 2 + kSide / 2) * 4], .5, .025);
+}
+
 // Points do not see threads.
 TEST_F(PointScenes, SameBitsForAllThreads) {
     shader("baker", "", "bake3d(\"o.ptc\", \"\", P, normalize(N), \"interpolate\", 1, \"_radiosity\", Cs); Ci = 1;");

@@ -105,6 +105,7 @@ private:
     Done told(int b, double begin, size_t tasks);
     void trace(SampleBuffer&, size_t tasks, const std::function<void(size_t, std::vector<Wanted>&)>& list, const Done&);
     bool traceSlice(SampleBuffer&, int worker, std::span<const Wanted>);
+    bool traceBehind(int worker, std::span<const transport::CameraRay>, std::span<transport::SampleResult>) const;
     void refine(SampleBuffer&, const Window& part, int b);
     std::vector<Wanted> differing(const SampleBuffer&, const Window& part) const;
     void reconstruct(const SampleBuffer&, const Window& part);
@@ -231,12 +232,37 @@ void ImageLoop::trace(SampleBuffer& buffer, size_t tasks, const std::function<vo
         done);
 }
 
+/// The depths of the second surfaces, which a sample has by itself only where the first lets light through: rays that begin behind
+/// the first. False: interrupted.
+bool ImageLoop::traceBehind(int worker, std::span<const transport::CameraRay> rays,
+                            std::span<transport::SampleResult> results) const {
+    constexpr float kBehind = 1 + 1e-5f; // of the depth: beyond its rounding, before what lies behind it
+    std::vector<transport::CameraRay> behind;
+    std::vector<size_t> of;
+    for (size_t k = 0; k < rays.size(); ++k) {
+        if (!(results[k].z < 1e38f) || results[k].zSecond < 1e38f || !(rays[k].direction.z > 0)) continue;
+        transport::CameraRay r = rays[k];
+        const float way = (results[k].z * kBehind - r.origin.z) / r.direction.z;
+        r.origin += r.direction * way;
+        r.start += way;
+        r.width += r.spread * way;
+        behind.push_back(r);
+        of.push_back(k);
+    }
+    if (behind.empty()) return true;
+    std::vector<transport::SampleResult> found(behind.size());
+    if (!job_.trace(worker, behind, found)) return false;
+    for (size_t k = 0; k < of.size(); ++k) results[of[k]].zSecond = found[k].z;
+    return true;
+}
+
 bool ImageLoop::traceSlice(SampleBuffer& buffer, int worker, std::span<const Wanted> wanted) {
     std::vector<transport::CameraRay> rays;
     for (const Wanted& w : wanted)
         rays.push_back(imageRay(job_.camera, buffer.position(w.x, w.y, w.k), seed_, w.x, w.y, uint32_t(w.k)));
     std::vector<transport::SampleResult> results(rays.size());
     if (!job_.trace(worker, rays, results)) return false;
+    if (job_.plan.needsDepth(DepthFilter::Midpoint) && !traceBehind(worker, rays, results)) return false;
     for (size_t k = 0; k < rays.size(); ++k) {
         transport::SampleResult& r = results[k];
         r.aovs.resize(aovs_.size());

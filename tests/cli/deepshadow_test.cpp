@@ -193,4 +193,26 @@ TEST_F(DeepShadows, WrongNumbersAreSaid) {
     EXPECT_TRUE(read("a.dsm").deep);
 }
 
+class DepthMaps : public DeepShadows {};
+
+// Between the two nearest surfaces, whether light comes through the first or not; nothing where there is but one. From the left: a wall
+// alone at 2, the same with another at 4 behind it, and a ball of radius .4 about 6.
+TEST_F(DepthMaps, InTheMiddleOfTwoSurfaces) {
+    for (const char* opacity : {"1 1 1", ".5 .5 .5"})
+        for (const char* hider : {"hidden", "raytrace"}) {
+            write("m.rib", fmt::format("Format 16 16 1\nPixelSamples 1 1\nPixelFilter \"box\" 1 1\nProjection \"orthographic\"\n"
+                                       "Hider \"{}\" \"string depthfilter\" \"midpoint\" \"jitter\" 0\nDisplay \"m.exr\" \"openexr\" \"z\"\n"
+                                       "WorldBegin\nSurface \"constant\"\nOpacity {}\nPolygon \"P\" [-1 -1 2 0 -1 2 0 1 2 -1 1 2]\n"
+                                       "Polygon \"P\" [-.5 -1 4 0 -1 4 0 1 4 -.5 1 4]\nTranslate .5625 .0625 6\nSphere .4 -.4 .4 360\nWorldEnd\n",
+                                       hider, opacity));
+            run("render --progress none m.rib", "2>err");
+            ASSERT_EQ(status, 0) << text("err");
+            const display::Image m = read("m.exr");
+            EXPECT_NEAR(m.pixel(6, 8)[0], 3, 1e-6) << hider << opacity;
+            EXPECT_NEAR(m.pixel(12, 7)[0], 6, 1e-5) << "from 5.6 to 6.4";
+            EXPECT_GT(m.pixel(1, 8)[0], 1e30f) << "one wall";
+            EXPECT_GT(m.pixel(14, 1)[0], 1e30f) << "none";
+        }
+}
+
 } // namespace

@@ -2,18 +2,24 @@
 // (TextureSite); per point only the numbers are read.
 #include "answers/answers.h"
 #include "texture/shadow.h"
+#include "world/unknownfilter.h"
 
 namespace alpenglow::transport {
 
 namespace {
 
+/// The filter that a point names; a name that no filter has is said once.
+texture::Filter filterOf(const TextureSite& t, const ServiceCall& call, int lane) {
+    const std::string& name = rsl::internedString(std::bit_cast<int32_t>(call.at(t.filter, lane)));
+    if (const auto known = texture::filterByName(name)) return *known;
+    call.diagnostics.reportOnce("texturefilter:" + name, unknownFilter(name, call.d.op, call.place()));
+    return t.options.filter;
+}
+
 /// The options of a lookup at one point.
 void readOptions(const TextureSite& t, const ServiceCall& call, int lane, texture::LookupOptions& o) {
     const auto number = [&](int row, float fallback) { return row < 0 ? fallback : call.at(row, lane); };
-    if (t.filter >= 0) {
-        const auto known = texture::filterByName(rsl::internedString(std::bit_cast<int32_t>(call.at(t.filter, lane))));
-        o.filter = known ? *known : t.options.filter;
-    }
+    if (t.filter >= 0) o.filter = filterOf(t, call, lane);
     const float width = number(t.width, 1), blur = number(t.blur, 0);
     o.swidth = number(t.swidth, width);
     o.twidth = number(t.twidth, width);
@@ -54,6 +60,52 @@ void lookupEnvironment(const TextureSite& t, const ServiceCall& call, int lane, 
     }
 }
 
+/// What shaders see of a map that cannot be read: the color of Option "texture" "missing", channel by channel; where there is none the
+/// fill value.
+void answerMissing(const TextureSite& t, const ServiceCall& call, const Color& colour) {
+    call.each([&](int lane, const ShadePoint&) {
+        const int first = t.channel < 0 ? 0 : int(call.at(t.channel, lane));
+        for (int k = 0; k < t.count; ++k)
+            call.put(k, lane, first + k >= 0 && first + k < 3 ? colour[first + k] : t.fill < 0 ? 0.f : call.at(t.fill, lane));
+    });
+}
+
+/// Points side by side, where none wants slopes: texture() with one place of each, in a map that is the same for all.
+bool lookupTogether(const TextureSite& t, const ServiceCall& call, texture::Handle map) {
+    if (t.computed || t.slopes > 0 || t.rows.size() < 6 || t.rows.size() >= 8 || t.count < 1) return false;
+    constexpr int kMost = texture::LookupLanes::kLanes;
+    for (int from = 0; from < call.lanes; from += kMost) {
+        texture::LookupLanes l;
+        l.mask = uint32_t(call.mask >> from) & 0xffff;
+        const int n = std::min(kMost, call.lanes - from);
+        if (const size_t points = call.c.points.size(); size_t(call.first + from + n) > points)
+            l.mask &= size_t(call.first + from) >= points ? 0u : (1u << (points - size_t(call.first + from))) - 1;
+        if (!l.mask) continue;
+        l.set(t.options);
+        const auto take = [&](int row, float* to) {
+            if (row >= 0) std::copy_n(call.in + size_t(row) * size_t(call.lanes) + from, n, to);
+        };
+        float* places[6] = {l.s, l.t, l.dsdx, l.dtdx, l.dsdy, l.dtdy};
+        for (size_t k = 0; k < 6; ++k) take(t.rows[k], places[k]);
+        take(t.width, l.swidth), take(t.width, l.twidth), take(t.swidth, l.swidth), take(t.twidth, l.twidth);
+        take(t.blur, l.sblur), take(t.blur, l.tblur), take(t.sblur, l.sblur), take(t.tblur, l.tblur);
+        take(t.fill, l.fill);
+        const int leader = std::countr_zero(l.mask);
+        if (t.filter >= 0)
+            for (int i = 0; i < n; ++i)
+                if (l.mask >> i & 1) l.filter[i] = filterOf(t, call, from + i);
+        const int channel = t.channel < 0 ? 0 : int(call.at(t.channel, from + leader));
+        if (t.channel >= 0) // points that name other channels take another turn
+            for (int i = 0; i < n; ++i)
+                if ((l.mask >> i & 1) && int(call.at(t.channel, from + i)) != channel) return false;
+        texture::lookup2DLanes(map, channel, t.count, t.options.asLight, l);
+        for (int k = 0; k < t.count; ++k)
+            for (uint32_t left = l.mask; left; left &= left - 1)
+                call.put(k, from + std::countr_zero(left), l.out[k][std::countr_zero(left)]);
+    }
+    return true;
+}
+
 } // namespace
 
 void answerTexture(Answers& answers, const ServiceCall& call) {
@@ -62,8 +114,17 @@ void answerTexture(Answers& answers, const ServiceCall& call) {
     const auto place = [&] { return call.place(); };
     texture::LookupOptions o = t.options;
     texture::Handle map = t.computed ? nullptr : t.map(world, place);
+    world.textures_->keepWithinLimit();
+    const std::optional<Color>& missing = world.textures_->settings().missing;
+    if (!t.computed && !map && missing && !t.name.empty()) return answerMissing(t, call, *missing);
+    if (call.s.kind == SiteKind::Texture && lookupTogether(t, call, map)) return;
     call.each([&](int lane, const ShadePoint&) {
-        if (t.computed) map = answers.mapOfName(std::bit_cast<int32_t>(call.at(0, lane)), place);
+        const int32_t name = t.computed ? std::bit_cast<int32_t>(call.at(0, lane)) : 0;
+        if (t.computed) map = answers.mapOfName(name, place);
+        if (name && !map && missing) {
+            for (int k = 0; k < t.count; ++k) call.put(k, lane, (*missing)[std::min(k, 2)]);
+            return;
+        }
         readOptions(t, call, lane, o);
         const int channel = t.channel < 0 ? 0 : int(call.at(t.channel, lane));
         float v[3] = {}, slopes[27] = {};
@@ -194,6 +255,10 @@ void answerTextureInfo(Answers& answers, const ServiceCall& call) {
         else if (field == "type") i = {{}, {info->type}, true};
         else if (field == "viewingmatrix" && info->viewing) i = ofMatrix(fromCurrent * *info->viewing);
         else if (field == "projectionmatrix" && info->projection) i = ofMatrix(fromCurrent * *info->projection);
+        else if (field == "wrapmodes") i = {{}, {std::string(texture::nameOf(info->swrap)) + "," + texture::nameOf(info->twrap)}, true};
+        else if (field == "gamma") i.numbers = {info->gamma};
+        else if (field == "facecount") i.numbers = {float(info->faces)};
+        else if (field == "format") i = {{}, {info->floating ? info->bits == 16 ? "half" : "float" : "uint" + std::to_string(info->bits)}, true};
         else return;
         call.answer(lane, Told(i));
     });

@@ -3,6 +3,7 @@
 #include "cli/ptexmesh.h"
 #include "cli/ranges.h"
 #include "texture/maketexture.h"
+#include "texture/volume.h"
 #include <CLI/CLI.hpp>
 #include <memory>
 
@@ -15,9 +16,9 @@ void addMaketx(CLI::App& app, int* status) {
         std::string mode, smode, tmode, output;
         float fov = 90;
         std::vector<float> width;
-        int side = 8;
+        int side = 8, radius = 1, smooth = 0;
         std::string number = "half";
-        bool latlong = false, cube = false, shadow = false, faces = false, srgb = false, linear = false;
+        bool latlong = false, cube = false, shadow = false, faces = false, gradients = false, srgb = false, linear = false;
     };
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("maketx", "Make textures, environment and shadow maps of pictures");
@@ -28,6 +29,8 @@ void addMaketx(CLI::App& app, int* status) {
     kinds->add_flag("--envcube", a->cube, "A cube environment map");
     kinds->add_flag("--shadow", a->shadow, "A shadow map of a depth picture");
     kinds->add_flag("--ptex", a->faces, "A Ptex file of a mesh with colours of its faces or vertices (PLY, in text)");
+    kinds->add_flag("--gradients", a->gradients,
+                    "A volume with the gradients of its opacity, of slices (\"s%03d.png\", \"strip.png*64\") or a grid of OpenVDB");
     kinds->require_option(0, 1);
     c->add_option("--side", a->side, "Of Ptex: pixels along a side of a face whose colour is not one; a power of two")
         ->check(between(1, 4096))
@@ -35,8 +38,8 @@ void addMaketx(CLI::App& app, int* status) {
     c->add_option("--number", a->number, "Of Ptex: how numbers are stored")
         ->check(CLI::IsMember({"byte", "word", "half", "float"}))
         ->type_name("TYPE");
-    auto wraps = CLI::IsMember({"black", "clamp", "periodic"});
-    c->add_option("--mode", a->mode, "Wrap mode: black, clamp or periodic")->check(wraps)->type_name("MODE");
+    auto wraps = CLI::IsMember({"black", "clamp", "periodic", "mirror"});
+    c->add_option("--mode", a->mode, "Wrap mode: black, clamp, periodic or mirror")->check(wraps)->type_name("MODE");
     c->add_option("--smode", a->smode, "Wrap mode in s alone")->check(wraps)->type_name("MODE");
     c->add_option("--tmode", a->tmode, "Wrap mode in t alone")->check(wraps)->type_name("MODE");
     c->add_option("--filter", a->options.filter, "Filter of the reduction, for example box, gaussian, sinc")->type_name("NAME");
@@ -51,7 +54,9 @@ void addMaketx(CLI::App& app, int* status) {
     c->add_option("--fov", a->fov, "Field of view of the six pictures, degrees")
         ->check(between(1, 179))
         ->type_name("DEGREES");
-    c->footer("The options of old tools are taken as well: -envlatl, -envcube, -shadow, -ptex, -mode, -smode, -tmode, -filter.");
+    c->add_option("--radius", a->radius, "--gradients: half the way of a difference, in voxels")->check(between(1, 64))->type_name("N");
+    c->add_option("--smooth", a->smooth, "--gradients: the mean over as many voxels on either side")->check(between(0, 64))->type_name("N");
+    c->footer("The options of old tools are taken as well: -envlatl, -envcube, -shadow, -ptex, -mode, -smode, -tmode, -filter, -gradients.");
     c->callback([a, status] {
         Diagnostics diags(printer());
         texture::MakeOptions& o = a->options;
@@ -83,6 +88,7 @@ void addMaketx(CLI::App& app, int* status) {
         bool ok = a->faces     ? makePtex(in[0], out, faces, diags)
                   : a->cube      ? texture::makeCubeFaceEnvironment(in, out, a->fov, o, diags)
                   : a->latlong ? texture::makeLatLongEnvironment(in[0], out, o, diags)
+                  : a->gradients ? texture::makeGradients(in[0], out, a->radius, a->smooth, o, diags)
                   : a->shadow  ? texture::makeShadow(in[0], out, o, diags)
                                : texture::makeTexture(in[0], out, o, diags);
         *status = ok ? (diags.errors() ? kDoneWithErrors : kDone) : kOutputFailed;

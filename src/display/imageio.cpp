@@ -1,5 +1,6 @@
 #include "display/imageio.h"
 #include "base/limits.h"
+#include "display/foreign.h"
 #include "display/formats/codecs.h"
 #include <algorithm>
 #include <cmath>
@@ -73,9 +74,7 @@ unsigned toCode(float value, unsigned maximum, bool quantised) {
     return unsigned(std::floor(v + 0.5f));
 }
 
-std::optional<Image> decodeImage(std::span<const uint8_t> b, const std::string& name, Diagnostics& diags,
-                                 const ReadOptions& options) {
-    DecodeContext ctx{name, diags, options, b.size()};
+static std::optional<Image> decodeAs(std::span<const uint8_t> b, const DecodeContext& ctx) {
     auto starts = [&](std::initializer_list<int> magic) {
         if (b.size() < magic.size()) return false;
         size_t i = 0;
@@ -93,17 +92,24 @@ std::optional<Image> decodeImage(std::span<const uint8_t> b, const std::string& 
         if (starts({0x2f, 0x08, 0x67, 0xab}) || starts({0xab, 0x67, 0x08, 0x2f})) return decodeZfile(b, ctx);
         if (starts({'#', '?'})) return decodeRadiance(b, ctx);
         if (starts({0xfa, 0xce}) || starts({0xce, 0xfa})) return decodePixar(b, ctx);
+        if (looksLikeTarga(b)) return decodeTarga(b, ctx); // last: it has nothing of its own to be known by
+        if (ctx.file) return readForeign(pictureModule(), ctx.name, ctx);
     } catch (const std::bad_alloc&) { return ctx.refuse("out of memory", Rie::NoMem); } catch (const std::length_error&) {
         return ctx.refuse("out of memory", Rie::NoMem);
     }
     return ctx.refuse(
-        "it is not a picture in a known format (OpenEXR, TIFF, PNG, JPEG, Radiance, zfile, Pixar's native textures)");
+        "it is not a picture in a known format (OpenEXR, TIFF, PNG, JPEG, Radiance, Targa, zfile, Pixar's native textures)");
+}
+
+std::optional<Image> decodeImage(std::span<const uint8_t> bytes, const std::string& name, Diagnostics& diags,
+                                 const ReadOptions& options) {
+    return decodeAs(bytes, {name, diags, options, bytes.size()});
 }
 
 std::optional<Image> readImage(const std::string& path, Diagnostics& diags, const ReadOptions& options) {
     auto bytes = readWholeFile(path, limits::kImageBytes, diags, options.place);
     if (!bytes) return {};
-    return decodeImage(*bytes, path, diags, options);
+    return decodeAs(*bytes, {path, diags, options, bytes->size(), true});
 }
 
 bool writeImage(const std::string& path, const Image& image, const WriteOptions& options, Diagnostics& diags) {

@@ -1,4 +1,5 @@
-// Reading and writing pictures: OpenEXR, TIFF, PNG, JPEG; reading only: Radiance, zfiles, Pixar's native textures.
+// Reading and writing pictures: OpenEXR, TIFF, PNG, JPEG; reading only: Radiance, Targa, zfiles, Pixar's
+// native textures, and through a module (display/foreign.h) whatever OpenImageIO reads.
 #pragma once
 #include "base/file.h"
 #include "display/image.h"

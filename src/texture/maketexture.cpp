@@ -77,7 +77,7 @@ Wrap wrapOr(const std::string& name, Wrap fallback, const MakeOptions& o, Diagno
     if (auto w = wrapByName(name)) return *w;
     diags.report(Severity::Error, Rie::BadToken, o.place,
                  "unknown wrap mode \"" + name + "\"; \"" + nameOf(fallback) + "\" is used",
-                 "wrap modes are black, clamp, periodic");
+                 "wrap modes are black, clamp, periodic, mirror");
     return fallback;
 }
 

@@ -18,26 +18,33 @@ struct Pair {
 float position(float coordinate, int n, Wrap wrap) {
     if (!std::isfinite(coordinate)) coordinate = 0;
     if (wrap == Wrap::Periodic) coordinate -= std::floor(coordinate);
+    if (wrap == Wrap::Mirror) coordinate -= 2 * std::floor(coordinate * 0.5f);
     float x = coordinate * float(n) - 0.5f;
-    return wrap == Wrap::Periodic ? x : std::clamp(x, -2.0f, float(n) + 1.0f); // beyond there nothing changes
+    return wrap == Wrap::Periodic || wrap == Wrap::Mirror ? x : std::clamp(x, -2.0f, float(n) + 1.0f); // beyond there nothing changes
+}
+
+/// The texel that texel i of an endless row shows; -1: none, black.
+int placed(int i, int n, Wrap wrap) {
+    switch (wrap) {
+    case Wrap::Periodic:
+        return (i % n + n) % n;
+    case Wrap::Clamp:
+        return std::clamp(i, 0, n - 1);
+    case Wrap::Mirror: {
+        const int k = (i % (2 * n) + 2 * n) % (2 * n);
+        return k < n ? k : 2 * n - 1 - k;
+    }
+    case Wrap::Black:
+        break;
+    }
+    return i < 0 || i >= n ? -1 : i;
 }
 
 Pair texelsAt(float coordinate, int n, Wrap wrap) {
     float x = position(coordinate, n, wrap);
     float fl = std::floor(x);
     int i0 = int(fl), i1 = i0 + 1;
-    auto place = [&](int i) {
-        switch (wrap) {
-        case Wrap::Periodic:
-            return i < 0 ? i + n : i >= n ? i - n : i;
-        case Wrap::Clamp:
-            return std::clamp(i, 0, n - 1);
-        case Wrap::Black:
-            break;
-        }
-        return i < 0 || i >= n ? -1 : i;
-    };
-    return {place(i0), place(i1), x - fl};
+    return {placed(i0, n, wrap), placed(i1, n, wrap), x - fl};
 }
 
 /// The three texels that a central difference over one texel needs: the slope is that from the first to the second, blended by f
@@ -50,10 +57,7 @@ struct Neighbours {
 Neighbours neighboursAt(float coordinate, int n, Wrap wrap) {
     float x = position(coordinate, n, wrap) + 0.5f, fl = std::floor(x);
     Neighbours r{{}, x - fl};
-    for (int k = 0; k < 3; ++k) {
-        int i = int(fl) - 1 + k;
-        r.i[k] = wrap == Wrap::Periodic ? (i % n + n) % n : wrap == Wrap::Clamp ? std::clamp(i, 0, n - 1) : i < 0 || i >= n ? -1 : i;
-    }
+    for (int k = 0; k < 3; ++k) r.i[k] = placed(int(fl) - 1 + k, n, wrap);
     return r;
 }
 
@@ -132,9 +136,8 @@ Taps tapsFor(int from, int to, const Kernel& k, float width, Wrap wrap) {
         for (size_t j = 0; j < w.size(); ++j) {
             if (w[j] == 0) continue;
             int s = lo + int(j);
-            if (wrap == Wrap::Periodic) s = ((s % from) + from) % from;
-            else if (wrap == Wrap::Clamp) s = std::clamp(s, 0, from - 1);
-            else if (s < 0 || s >= from) continue; // black: its weight counts, its value is 0
+            s = placed(s, from, wrap);
+            if (s < 0) continue; // black: its weight counts, its value is 0
             taps.source.push_back(s);
             taps.weight.push_back(float(w[j] / sum));
         }
@@ -149,10 +152,14 @@ std::optional<Wrap> wrapByName(std::string_view n) {
     if (n == "black") return Wrap::Black;
     if (n == "clamp") return Wrap::Clamp;
     if (n == "periodic") return Wrap::Periodic;
+    if (n == "mirror") return Wrap::Mirror;
     return {};
 }
 
-const char* nameOf(Wrap w) { return w == Wrap::Black ? "black" : w == Wrap::Clamp ? "clamp" : "periodic"; }
+const char* nameOf(Wrap w) {
+    constexpr const char* names[] = {"black", "clamp", "periodic", "mirror"};
+    return names[int(w)];
+}
 
 bool isReductionFilter(std::string_view n) {
     for (const char* k : {"box", "triangle", "gaussian", "catmull-rom", "separable-catmull-rom", "mitchell", "lanczos", "sinc",

@@ -10,8 +10,8 @@
 
 namespace alpenglow::texture {
 
-/// What lies outside 0..1. Black: zeros.
-enum class Wrap { Black, Clamp, Periodic };
+/// What lies outside 0..1. Black: zeros. Mirror: the map again, each copy turned over.
+enum class Wrap { Black, Clamp, Periodic, Mirror };
 std::optional<Wrap> wrapByName(std::string_view name);
 const char* nameOf(Wrap);
 
@@ -23,17 +23,48 @@ inline constexpr CodeTable kCodeValues = [] {
     return v;
 }();
 
+/// Numbers of a level, never changed once they are there: in memory of their own, or in a mapped scratch file (texture/scratch.h).
+/// kBeyond more may be read behind the last; they mean nothing. Copies share the numbers.
+template <class T> class Texels {
+public:
+    static constexpr size_t kBeyond = 4;
+    Texels() = default;
+    Texels(std::vector<T> own) : size_(own.size()) {
+        if (own.empty()) return;
+        own.resize(size_ + kBeyond);
+        const auto kept = std::make_shared<const std::vector<T>>(std::move(own));
+        data_ = kept->data();
+        owner_ = kept;
+    }
+    /// Mapped: `owner` keeps what `data` points into.
+    Texels(std::shared_ptr<const void> owner, const T* data, size_t size)
+        : owner_(std::move(owner)), data_(data), size_(size), mapped_(true) {}
+    bool empty() const { return size_ == 0; }
+    size_t size() const { return size_; }
+    const T* data() const { return data_; }
+    const T& operator[](size_t i) const { return data_[i]; }
+    bool mapped() const { return mapped_; }
+    /// Bytes of memory of its own.
+    size_t bytes() const { return mapped_ ? 0 : size_ * sizeof(T); }
+
+private:
+    std::shared_ptr<const void> owner_;
+    const T* data_ = nullptr;
+    size_t size_ = 0;
+    bool mapped_ = false;
+};
+
 /// One level. 8-bit pictures, and maps made of them, keep codes at level 0 (a quarter of the memory; the values k/255 are the
 /// same floats); reduced levels are floats. A map whose numbers are a curve of light has both readings: the numbers of the file, and light.
 /// Each level holds means of either, since the light of a mean is not the mean of light.
 struct Level {
     int width = 0, height = 0, channels = 0;
-    std::vector<float> values;
-    std::vector<uint8_t> codes; ///< when not empty, instead of values
-    std::vector<float> light;   ///< the values as light; empty: where there are codes by `table`, else there is no difference
+    Texels<float> values;
+    Texels<uint8_t> codes; ///< when not empty, instead of values
+    Texels<float> light;   ///< the values as light; empty: where there are codes by `table`, else there is no difference
     std::shared_ptr<const CodeTable> table; ///< the light of codes; null: there is no difference
     uint32_t colours = 0;                   ///< bit c: `table` holds for channel c
-    size_t bytes() const { return (values.size() + light.size()) * sizeof(float) + codes.size(); }
+    size_t bytes() const { return values.bytes() + light.bytes() + codes.bytes(); }
     /// Channel c of a texel; `at` counts all channels.
     float texel(size_t at, int c, bool asLight) const {
         if (codes.empty()) return asLight && !light.empty() ? light[at] : values[at];

@@ -3,10 +3,13 @@
 #include "base/file.h"
 #include "base/srgb.h"
 #include "display/imageio.h"
+#include "base/memory.h"
 #include "texture/lookup.h"
+#include "texture/scratch.h"
 #include "texture/texture.h"
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <functional>
 
 namespace alpenglow::texture {
@@ -15,6 +18,9 @@ const char* const cubeFormat = "CubeFace Environment";
 
 namespace {
 
+constexpr const char* kFace = "<FACE>";
+constexpr const char* kFaceNames[] = {"px", "nx", "py", "ny", "pz", "nz"};
+
 /// A level of the picture's numbers, which it takes along.
 Level levelOf(display::Image& m, bool codes) {
     Level l;
@@ -22,9 +28,11 @@ Level levelOf(display::Image& m, bool codes) {
     l.height = m.height;
     l.channels = m.channelCount();
     if (codes) {
-        l.codes.resize(m.data.size());
-        for (size_t i = 0; i < m.data.size(); ++i) l.codes[i] = uint8_t(std::lround(std::clamp(m.data[i], 0.0f, 1.0f) * 255.0f));
+        std::vector<uint8_t> numbers;
+        numbers.reserve(m.data.size() + Texels<uint8_t>::kBeyond);
+        for (float v : m.data) numbers.push_back(uint8_t(std::lround(std::clamp(v, 0.0f, 1.0f) * 255.0f)));
         m.data = {};
+        l.codes = std::move(numbers);
     } else {
         l.values = std::move(m.data);
     }
@@ -79,7 +87,7 @@ bool fitsCodes(const display::Image& m) {
 display::Image lightOf(const display::Image& picture, const Level& level, const Decode& curve) {
     display::Image light = display::makeImage(picture.width, picture.height, picture.channels);
     if (level.codes.empty()) {
-        light.data = level.values;
+        light.data.assign(level.values.data(), level.values.data() + level.values.size());
         decode(light, curve);
         return light;
     }
@@ -144,6 +152,7 @@ std::shared_ptr<const Texture> makeTextureFrom(display::Image image, const Textu
     tex->worldToCamera = image.worldToCamera;
     tex->worldToNDC = image.worldToNDC;
     tex->swrap = tex->twrap = settings.plainWrap;
+    tex->gamma = float(std::atof(text("gamma").c_str()));
     std::string wraps = text("wrapmodes");
     size_t comma = wraps.find(',');
     if (auto w = wrapByName(wraps.substr(0, comma))) tex->swrap = tex->twrap = *w;
@@ -191,7 +200,10 @@ struct TextureSystem::Entry {
     std::shared_ptr<const Texture> texture;
 };
 
-TextureSystem::TextureSystem(Diagnostics& d, TextureSettings s) : diags_(d), settings_(s) {}
+TextureSystem::TextureSystem(Diagnostics& d, TextureSettings s) : diags_(d), settings_(s), limit_(s.memory) {
+    constexpr size_t unknown = size_t(1) << 30; // where the system does not say what it has
+    if (!limit_) limit_ = machineMemory() ? machineMemory() / 4 : unknown;
+}
 TextureSystem::~TextureSystem() = default;
 
 std::shared_ptr<const Texture> TextureSystem::load(const std::string& path, const SourcePlace& place) {
@@ -216,6 +228,7 @@ std::shared_ptr<const Texture> TextureSystem::load(const std::string& path, cons
             }
             auto tex = std::const_pointer_cast<Texture>(makeTextureFrom(std::move(*image), settings_));
             tex->path = path;
+            settle(*tex, place);
             entry->texture = tex;
         } catch (const std::bad_alloc&) {
             diags_.report(Severity::Error, Rie::NoMem, place, "texture \"" + path + "\": out of memory");
@@ -253,13 +266,16 @@ std::shared_ptr<const Texture> TextureSystem::loadFile(const std::string& name, 
     return load(found->path, place);
 }
 
+std::optional<std::pair<size_t, size_t>> tileNumberIn(const std::string& name) {
+    // Longer spellings first: they hold the shorter ones.
+    for (const std::string_view spelling : {"<UDIM>", "<udim>", "%(UDIM)d", "_MAPID_", "UDIM"})
+        if (const size_t at = name.find(spelling); at != std::string::npos) return {{at, spelling.size()}};
+    return {};
+}
+
 std::shared_ptr<const Texture> TextureSystem::loadTiles(const std::string& name, const std::vector<std::string>& searchPath,
                                                         const SourcePlace& place) {
-    size_t at = name.find("UDIM"), from = at, length = 4;
-    if (at > 0 && name[at - 1] == '<' && at + 4 < name.size() && name[at + 4] == '>') {
-        --from;
-        length = 6;
-    }
+    const auto [from, length] = *tileNumberIn(name);
     auto tex = std::make_shared<Texture>();
     tex->path = name;
     for (int number = 1001; number <= 1100; ++number) {
@@ -286,6 +302,31 @@ std::shared_ptr<const Texture> TextureSystem::loadTiles(const std::string& name,
     return tex;
 }
 
+std::shared_ptr<const Texture> TextureSystem::loadFaces(const std::string& name, const std::vector<std::string>& searchPath,
+                                                        const SourcePlace& place) {
+    auto cube = std::make_shared<Texture>();
+    cube->path = name;
+    cube->kind = Kind::Cube;
+    int face = 0;
+    for (const char* which : kFaceNames) {
+        std::string one = name;
+        const auto map = loadFile(one.replace(name.find(kFace), std::strlen(kFace), which), searchPath, place);
+        if (!map) return {};
+        if (map->levels.empty()) {
+            diags_.reportOnce("texture:" + name,
+                              {Severity::Error, Rie::BadFile, place, "cube map \"" + name + "\": face " + which + " is no picture", {}, {}});
+            return {};
+        }
+        if (face == 0) {
+            cube->channels = map->channels;
+            cube->bits = map->bits;
+            cube->floating = map->floating;
+        }
+        cube->tiles[face++] = map;
+    }
+    return cube;
+}
+
 bool TextureSystem::find(const std::string& name, const std::vector<std::string>& searchPath) const {
     std::string outside;
     return findFile(name, searchPath, settings_.read, &outside).has_value();
@@ -302,7 +343,9 @@ Handle TextureSystem::open(const std::string& name, const std::vector<std::strin
         entry = e;
     }
     std::call_once(entry->once, [&] {
-        bool tiles = name.find("UDIM") != std::string::npos && !find(name, searchPath);
+        const bool faces = name.find(kFace) != std::string::npos && !find(name, searchPath);
+        if (faces) return void(entry->texture = loadFaces(name, searchPath, place));
+        bool tiles = tileNumberIn(name) && !find(name, searchPath);
         entry->texture = tiles ? loadTiles(name, searchPath, place) : loadFile(name, searchPath, place);
     });
     return entry->texture.get();
@@ -315,13 +358,14 @@ bool TextureSystem::present(const std::string& name, const std::vector<std::stri
     const auto [known, fresh] = present_.try_emplace(key, false);
     if (!fresh) return known->second;
     bool there = find(name, searchPath);
-    if (size_t at = name.find("UDIM"); !there && at != std::string::npos) {
-        size_t length = 4;
-        if (at > 0 && name[at - 1] == '<' && at + 4 < name.size() && name[at + 4] == '>') --at, length = 6;
-        for (int number = 1001; number <= 1100 && !there; ++number) {
+    if (const auto number = tileNumberIn(name); !there && number)
+        for (int k = 1001; k <= 1100 && !there; ++k) {
             std::string tile = name;
-            there = find(tile.replace(at, length, std::to_string(number)), searchPath);
+            there = find(tile.replace(number->first, number->second, std::to_string(k)), searchPath);
         }
+    if (const size_t at = name.find(kFace); !there && at != std::string::npos) {
+        there = true;
+        for (const char* which : kFaceNames) there = there && find(std::string(name).replace(at, std::strlen(kFace), which), searchPath);
     }
     return known->second = there;
 }
@@ -338,6 +382,8 @@ std::optional<TextureInfo> TextureSystem::info(Handle h) const {
     i.type = t.kind == Kind::Shadow ? "shadow" : h->kind == Kind::LatLong || h->kind == Kind::Cube ? "environment" : "texture";
     i.swrap = t.swrap;
     i.twrap = t.twrap;
+    if (t.gamma > 0) i.gamma = t.gamma;
+    i.faces = h->kind == Kind::Cube ? 6 : 0;
     i.viewing = t.worldToCamera;
     if (t.worldToNDC) i.projection = *t.worldToNDC * inverse(display::screenToNDC());
     return i;
@@ -348,13 +394,18 @@ size_t TextureSystem::bytes() const {
     size_t n = 0;
     for (auto& [path, e] : byPath_)
         if (e->texture) n += e->texture->bytes();
-    return n;
+    return n + scratchBytes();
 }
 
 void TextureSystem::forget() {
     std::lock_guard lock(mutex_);
     byRequest_.clear();
     byPath_.clear();
+    present_.clear();
+    std::lock_guard trimming(trimming_);
+    files_.clear();
+    scratches_ = 0;
+    held_ = 0;
 }
 
 } // namespace alpenglow::texture

@@ -14,7 +14,9 @@
 #include "base/file.h"
 #include "base/matrix.h"
 #include "base/readlog.h"
+#include "texture/lookuplanes.h"
 #include "texture/pyramid.h"
+#include <atomic>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -25,6 +27,8 @@
 namespace alpenglow::texture {
 
 enum class Kind { Texture, LatLong, Cube, Shadow };
+
+class ScratchFile;
 
 /// A loaded map; immutable. Of a UDIM set and of a cube map: no levels, only tiles.
 struct Texture {
@@ -40,15 +44,21 @@ struct Texture {
     std::map<int, std::shared_ptr<const Texture>> tiles;
     std::shared_ptr<const display::DeepSamples> deep; ///< of a deep shadow map; levels[0] has its first surfaces
     float fovCotangent = 1; ///< of a cube face: 1 / tan(fov / 2)
+    float gamma = 0;        ///< that the file declares; 0: none
+    std::shared_ptr<const ScratchFile> scratch; ///< where its levels lie, when not in memory
+    /// The tile of a UDIM set that (floor(s), floor(t)) lies on; null: none.
+    const Texture* tileAt(float column, float row) const {
+        if (!(column >= 0 && column < 10 && row >= 0 && row < 10)) return nullptr;
+        const auto i = tiles.find(1001 + int(column) + 10 * int(row));
+        return i == tiles.end() ? nullptr : i->second.get();
+    }
     int width() const { return levels.empty() ? 0 : levels[0].width; }
     int height() const { return levels.empty() ? 0 : levels[0].height; }
     size_t bytes() const;
 };
-/// Null: the map is missing; every lookup gives the fill value. Valid as long as the system is, or until forget().
+/// Null: the map is missing; every lookup gives the fill value (colourOfMissing() is what shaders see). Valid as long as the system is, or until forget().
 using Handle = const Texture*;
 
-/// Lookup filters. Negative-lobed ones of RISpec are taken as Box, the sharpest without ringing.
-enum class Filter { Box, Triangle, Gaussian };
 /// By RISpec name; nothing when unknown.
 std::optional<Filter> filterByName(std::string_view name);
 
@@ -80,11 +90,8 @@ void lookup2D(Handle, int first, int count, float s, float t, float dsdx, float 
 /// all corners move together.
 void lookupQuad(Handle, int first, int count, const float s[4], const float t[4], const LookupOptions&, float* out,
                 float* slopes = nullptr, float* curves = nullptr);
-/// n lanes; lanes with active[i] == 0 are left alone (active may be null). Options are one, or one per lane (perLane).
-/// out[c * n + i] is channel c of lane i.
-void lookup2DLanes(Handle, int first, int count, int n, const unsigned char* active, const float* s, const float* t,
-                   const float* dsdx, const float* dtdx, const float* dsdy, const float* dtdy, const LookupOptions* options,
-                   bool perLane, float* out);
+/// Sixteen at a time (texture/lookuplanes.h), of one map; count: 1 to 4.
+void lookup2DLanes(Handle, int first, int count, bool asLight, LookupLanes&);
 
 /// Where a direction lies on a lat-long map: latitude +90 (along pole) at the top, longitude 0 (towards zero) at the left edge,
 /// growing towards `quarter`. Renderers differ in axes and sense (ri.md 11). The default has z up, as RISpec-era maps have it,
@@ -126,6 +133,8 @@ struct TextureInfo {
     bool floating = false;
     std::string type; ///< "texture", "environment", "shadow"
     Wrap swrap = Wrap::Clamp, twrap = Wrap::Clamp;
+    float gamma = 1; ///< file value = light ^ gamma, as the file declares it
+    int faces = 0;   ///< 6: a cube map
     std::optional<Matrix> viewing, projection; ///< world to camera, world to screen (x -1..1, y 1..-1) of the map
 };
 
@@ -138,6 +147,9 @@ struct TextureSettings {
     LatLong latLong;
     ReadPolicy read{};            ///< where the names of maps may lead
     std::shared_ptr<ReadLog> reads{}; ///< gets every file that is read or missed; may be null
+    std::optional<Color> missing{}; ///< of maps that cannot be read; nothing: lookups give their fill value
+    /// Bytes that maps hold in memory; what is more lies in scratch files. 0: a quarter of what the machine has.
+    size_t memory = 0;
 };
 
 /// The maps of a render. Thread safe.
@@ -147,15 +159,24 @@ public:
     ~TextureSystem();
     /// The map called name along a search path (base/file.h findFile: also with other case, backslashes, or by its base name,
     /// which is said). "UDIM" in the name opens tiles 1001 to 1100 that exist. A missing or damaged file is reported once; the
-    /// handle is null. Threads that ask for the same file wait for one load.
+    /// handle is null. Other spellings of "UDIM": "<UDIM>", "<udim>", "%(UDIM)d", "_MAPID_".
+    /// "<FACE>" in a name stands for six pictures, px nx py ny pz nz, that are a cube map. Threads that ask for the same file wait for one load.
     Handle open(const std::string& name, const std::vector<std::string>& searchPath = {""}, const SourcePlace& = {});
     /// Whether open() finds a file of that name, or a tile. Says nothing.
     bool present(const std::string& name, const std::vector<std::string>& searchPath = {""});
     std::optional<TextureInfo> info(Handle) const;
     const LatLong& latLong() const { return settings_.latLong; }
     const TextureSettings& settings() const { return settings_; }
-    /// Memory held by maps, in bytes.
+    /// Memory that maps hold, in bytes, and how many of them lie in pages of scratch files.
     size_t bytes() const;
+    size_t scratchBytes() const;
+    /// What they may hold (TextureSettings::memory).
+    size_t memoryLimit() const { return limit_; }
+    /// Gives pages of scratch files back when there are more than the limit allows. To be called now and then while maps are
+    /// looked up; any thread may, while others look up. Nothing to do, and next to no time, as long as all maps fit.
+    void keepWithinLimit() {
+        if (scratches_.load(std::memory_order_relaxed)) trim();
+    }
     /// Drops every map, so that files made anew are read anew. No handle survives; no lookup may run.
     void forget();
 
@@ -167,12 +188,27 @@ private:
                                             const SourcePlace&);
     std::shared_ptr<const Texture> loadTiles(const std::string& name, const std::vector<std::string>& searchPath,
                                              const SourcePlace&);
+    void trim();
+    /// Moves the levels of a map that does not fit into a scratch file. Where there is no room for one it stays, which is said.
+    void settle(Texture&, const SourcePlace&);
+    std::shared_ptr<const Texture> loadFaces(const std::string& name, const std::vector<std::string>& searchPath,
+                                             const SourcePlace&);
     Diagnostics& diags_;
     TextureSettings settings_;
+    size_t limit_ = 0;
+    std::atomic<size_t> held_{0};          ///< bytes of maps in memory of their own
+    std::atomic<int> scratches_{0};        ///< scratch files
+    std::atomic<size_t> filesAtTrim_{0};
+    mutable std::mutex trimming_;                ///< of what follows
+    std::vector<std::weak_ptr<const ScratchFile>> files_;
+    size_t handFile_ = 0, handByte_ = 0;   ///< where the next pages are given back
     std::map<std::string, bool> present_; ///< by name and search path
     mutable std::mutex mutex_;
     std::map<std::string, std::shared_ptr<Entry>> byRequest_, byPath_;
 };
+
+/// Where a name says the number of a tile: position and length of "UDIM" in any of its spellings. Nothing: it names one file.
+std::optional<std::pair<size_t, size_t>> tileNumberIn(const std::string& name);
 
 /// A texture from a picture already in memory (its levels are used when complete, else built).
 std::shared_ptr<const Texture> makeTextureFrom(display::Image, const TextureSettings& = {});

@@ -1,5 +1,6 @@
 // What the call sites of a kernel mean to the engine, worked out once per kernel.
 #include "shadeops/specular.h"
+#include "world/unknownfilter.h"
 #include "world/cloudsite.h"
 #include "world/photonattributes.h"
 #include "world/pointsite.h"
@@ -216,7 +217,9 @@ std::shared_ptr<const SubsurfaceSite> subsurfaceSite(const SiteInfo& i, const rs
     return b;
 }
 
-std::shared_ptr<const TextureSite> textureSite(const SiteInfo& i, const rsl::ir::Site& s, const scene::Options& options) {
+std::shared_ptr<const TextureSite> textureSite(const SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKernel& k,
+                                               WorldImpl& world) {
+    const scene::Options& options = world.frame_->options;
     auto t = std::make_shared<TextureSite>();
     const auto row = [&](const char* name) {
         const auto f = i.named.find(name);
@@ -231,8 +234,15 @@ std::shared_ptr<const TextureSite> textureSite(const SiteInfo& i, const rsl::ir:
     t->blur = row("blur");
     t->sblur = row("sblur");
     t->tblur = row("tblur");
-    if (const auto f = i.text.find("filter"); f != i.text.end())
-        if (const auto known = texture::filterByName(f->second)) t->options.filter = *known;
+    if (const auto f = i.text.find("filter"); f != i.text.end()) {
+        if (const auto known = texture::filterByName(f->second)) {
+            t->options.filter = *known;
+        } else {
+            const SourcePlace place{s.place.file < int(k.files().size()) ? k.files()[size_t(s.place.file)] : "", s.place.line,
+                                    s.place.column};
+            world.diagnostics_->reportOnce("texturefilter:" + f->second, unknownFilter(f->second, s.op, place));
+        }
+    }
     if (!s.strings.empty()) t->name = s.strings[0];
     t->computed = t->name.empty() && !s.argKinds.empty() && s.argKinds[0] == rsl::ir::Kind::String;
     t->count = s.resultKinds.empty() ? 0 : std::min(rsl::ir::components(s.resultKinds[0]), 3);
@@ -248,6 +258,11 @@ std::shared_ptr<const TextureSite> textureSite(const SiteInfo& i, const rsl::ir:
 }
 
 } // namespace
+
+Diagnostic unknownFilter(const std::string& name, const std::string& op, const SourcePlace& place) {
+    return {Severity::Warning, Rie::BadToken, place, op + "(): there is no filter \"" + name + "\"; \"gaussian\" is used",
+            "filters of maps are box, triangle, gaussian and those of RISpec that are near one of them", {}};
+}
 
 size_t rowsOf(const SiteInfo& i, int row) {
     int at = 0;
@@ -379,7 +394,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         if (const auto category = i.named.find("category"); category != i.named.end()) i.rowCategory = category->second;
         bindSent(i);
         if (i.kind == SiteKind::Texture || i.kind == SiteKind::Environment || i.kind == SiteKind::Shadow)
-            i.map = textureSite(i, s, world->frame_->options);
+            i.map = textureSite(i, s, *k, *world);
         if (i.kind == SiteKind::Ptexture) i.ptex = ptexSite(i, *k, *world);
         if (i.kind == SiteKind::Photons) i.photons = photonSite(i, *k, *world);
         if (i.kind == SiteKind::Bake || i.kind == SiteKind::Bake3d || i.kind == SiteKind::Texture3d)

@@ -2,6 +2,7 @@
 #include "clouds/brickmap.h"
 #include "clouds/cloudfile.h"
 #include "clouds/limits.h"
+#include "texture/volume.h"
 
 namespace alpenglow::transport {
 
@@ -29,7 +30,16 @@ const clouds::CloudMap* CloudStore::find(const std::string& name, const SourcePl
     std::lock_guard lock(mutex_);
     const auto [at, fresh] = maps_.try_emplace(name);
     if (!fresh) return at->second.get();
-    if (const auto path = pathOf(name, place)) at->second = clouds::openMap(*path, diagnostics_, place);
+    // A stack of pictures or a grid of voxels is looked up as points are.
+    const auto volume = [&]() -> std::shared_ptr<const clouds::CloudMap> {
+        std::vector<std::string> folders = {""};
+        folders.insert(folders.end(), files_.folders.begin(), files_.folders.end());
+        auto v = texture::loadVolume(name, {folders, files_.read, place}, diagnostics_);
+        return v ? texture::mapOf(std::move(*v)) : nullptr;
+    };
+    if (texture::namesVolume(name)) return (at->second = volume()).get();
+    if (const auto path = pathOf(name, place))
+        at->second = texture::holdsVolume(*path) ? volume() : clouds::openMap(*path, diagnostics_, place);
     return at->second.get();
 }
 

@@ -110,6 +110,22 @@ static void findLevels(WorldImpl& w) {
     if (w.fades_) w.accel_->setLevels(std::move(levels));
 }
 
+/// What the frame says of its maps.
+static texture::TextureSettings mapSettings(const scene::Options& o, const Settings& settings, Diagnostics& d) {
+    texture::TextureSettings t{
+        .light = scene::readsMapsAsLight(o, settings.hider == Hider::Path, d), .read = settings.read, .reads = settings.reads};
+    if (const auto i = o.values.find("texture:missing"); i != o.values.end() && i->second.numbers.size() >= 3)
+        t.missing = Color(i->second.numbers[0], i->second.numbers[1], i->second.numbers[2]);
+    if (const auto i = o.values.find("limits:texturememory"); i != o.values.end() && !i->second.numbers.empty()) {
+        const double kilobytes = double(i->second.numbers[0]);
+        if (kilobytes >= 1 && kilobytes < 1e15) t.memory = size_t(kilobytes) * 1024;
+        else
+            d.report(Severity::Error, Rie::Range, i->second.place,
+                     "Option \"limits\" \"texturememory\" is a number of kB, at least 1; what the machine has decides");
+    }
+    return t;
+}
+
 std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> frame, const Settings& settings,
                                           MakeEvaluator evaluators, Diagnostics& d) {
     double begin = seconds();
@@ -126,9 +142,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
         w->maxDepth_ = int(std::clamp(double(i->second.numbers[0]), -1.0, double(limits::kPathDepth))); // what no int holds, too
     if (settings.maxDepth >= 0) w->maxDepth_ = settings.maxDepth;
     w->maxDepth_ = std::min(w->maxDepth_, limits::kPathDepth);
-    w->textures_ = std::make_unique<texture::TextureSystem>(
-        d,
-        texture::TextureSettings{.light = scene::readsMapsAsLight(o, path, d), .read = settings.read, .reads = settings.reads});
+    w->textures_ = std::make_unique<texture::TextureSystem>(d, mapSettings(o, settings, d));
     rsl::ShaderCompiler::Settings cs;
     cs.cacheDirectory = settings.cacheDirectory;
     cs.dialect = settings.dialect;

@@ -262,30 +262,6 @@ TEST(Texture, QuadrilateralsInAnyOrder) {
     EXPECT_EQ(a, 0); // texel 0 itself
 }
 
-TEST(Texture, LanesAreTheSameAsOne) {
-    auto t = makeTextureFrom(pattern(50, 30, {"r", "g", "b"}));
-    const int n = 13;
-    float s[n], tt[n], a[n], b[n], c[n], d[n], out[3 * n];
-    unsigned char active[n];
-    for (int i = 0; i < n; ++i) {
-        s[i] = float(i) * 0.13f;
-        tt[i] = float(i) * 0.07f;
-        a[i] = 0.01f * float(i);
-        b[i] = -0.002f * float(i);
-        c[i] = 0.003f;
-        d[i] = 0.02f;
-        active[i] = i != 5;
-    }
-    for (float& v : out) v = -7;
-    LookupOptions o;
-    lookup2DLanes(t.get(), 0, 3, n, active, s, tt, a, b, c, d, &o, false, out);
-    for (int i = 0; i < n; ++i) {
-        float v[3] = {-7, -7, -7};
-        if (i != 5) lookup2D(t.get(), 0, 3, s[i], tt[i], a[i], b[i], c[i], d[i], o, v);
-        for (int k = 0; k < 3; ++k) EXPECT_EQ(out[k * n + i], v[k]);
-    }
-}
-
 TEST(Texture, InfinityInOneTexelStaysThere) {
     Image m = constant(4, 4, 1, 1);
     m.pixel(3, 3)[0] = std::numeric_limits<float>::infinity();

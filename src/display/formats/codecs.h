@@ -12,6 +12,7 @@ struct DecodeContext {
     Diagnostics& diags;
     const ReadOptions& options;
     size_t fileBytes;
+    bool file = false; ///< the name is that of a file: formats that are not known here are read through the module (foreign.h)
     /// Reports `cannot read "name": why` and returns nothing.
     std::nullopt_t refuse(const std::string& why, Rie code = Rie::BadFile) const;
     void warn(const std::string& why) const;
@@ -26,6 +27,9 @@ std::optional<Image> decodeJpeg(Bytes, const DecodeContext&);
 std::optional<Image> decodeZfile(Bytes, const DecodeContext&);
 std::optional<Image> decodeRadiance(Bytes, const DecodeContext&);
 std::optional<Image> decodePixar(Bytes, const DecodeContext&);
+std::optional<Image> decodeTarga(Bytes, const DecodeContext&);
+/// Whether a file may be a Targa picture, by its header, which looksLikeTarga() has read whole then.
+bool looksLikeTarga(Bytes);
 
 /// Encoders write to an open file; false: `why` says what went wrong (or the file holds the error).
 bool encodeExr(OutputFile&, const Image&, const WriteOptions&, std::string& why);

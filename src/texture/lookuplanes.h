@@ -1,0 +1,52 @@
+// Many lookups at a time: what the lanes (texture/lanes/lookup.inc) and what prepares them share. Plain data, and no header that brings
+// code: the lanes are compiled for several processors.
+#pragma once
+#include <cstdint>
+
+namespace alpenglow::texture {
+
+struct LookupOptions;
+
+/// Lookup filters. Negative-lobed ones of RISpec are taken as Box, the sharpest without ringing.
+enum class Filter { Box, Triangle, Gaussian };
+
+/// Sixteen lookups in one map, or fewer. Each gives the bits that lookup2D() would.
+struct LookupLanes {
+    static constexpr int kLanes = 16;
+    uint32_t mask = 0; ///< bit i: lane i looks up; the rows of the others are not looked at, and their results stay
+    alignas(64) float s[kLanes], t[kLanes], dsdx[kLanes], dtdx[kLanes], dsdy[kLanes], dtdy[kLanes];
+    alignas(64) float swidth[kLanes], twidth[kLanes], sblur[kLanes], tblur[kLanes], fill[kLanes]; ///< as in LookupOptions
+    Filter filter[kLanes];
+    alignas(64) float out[4][kLanes]; ///< channels first, first + 1, ... of each lane of the mask
+    /// All lanes take these options.
+    void set(const LookupOptions&);
+};
+
+/// A level, as lanes see it.
+struct LaneLevel {
+    const float* numbers;    ///< null: `codes`
+    const uint8_t* codes;
+    const float* tables[4];  ///< what codes of the channels that are asked for mean
+    int width, height, channels;
+};
+
+/// Where the probes of a lookup lie, and their weights, by filter, number less one, and probe.
+struct LaneProbes {
+    static constexpr int kMost = 32;
+    float position[3][kMost][kMost], weight[3][kMost][kMost];
+};
+
+/// What the lookups of a batch have in common.
+struct LaneJob {
+    const LaneLevel* levels;
+    int last;            ///< level
+    int first, count;    ///< channels, all of them present; 1 to 4
+    float width, height; ///< of level 0
+    int swrap, twrap;    ///< Wrap
+    float variance[3];   ///< of the filters
+    const LaneProbes* probes;
+};
+
+using LookUpLanes = void (*)(const LaneJob&, LookupLanes&, float* out); ///< out: 4 floats for each of the 16 lanes
+
+} // namespace alpenglow::texture

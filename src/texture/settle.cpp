@@ -1,0 +1,107 @@
+// TextureSystem: what maps may hold in memory. Maps stay in memory as long as all of them fit into the limit; the one that does not
+// goes to a scratch file, with all of its levels.
+#include "base/memory.h"
+#include "texture/scratch.h"
+#include "texture/texture.h"
+#include <functional>
+
+namespace alpenglow::texture {
+
+namespace {
+
+constexpr size_t kHand = size_t(256) << 10; ///< bytes that are given back at a time
+constexpr size_t kSmall = size_t(64) << 10; ///< maps that are no larger stay in memory
+
+/// Every array of numbers of a map and its tiles.
+void eachArray(Texture& t, const std::function<void(Level&)>& of) {
+    for (Level& l : t.levels) of(l);
+    for (auto& [number, tile] : t.tiles) eachArray(const_cast<Texture&>(*tile), of);
+}
+
+/// Where the arrays of a level begin in the file.
+struct Places {
+    size_t values = 0, codes = 0, light = 0;
+};
+
+template <class T> void pointInto(Texels<T>& texels, const std::shared_ptr<const ScratchFile>& file, size_t at) {
+    if (!texels.empty()) texels = Texels<T>(file, reinterpret_cast<const T*>(file->data() + at), texels.size());
+}
+
+} // namespace
+
+void TextureSystem::settle(Texture& t, const SourcePlace& place) {
+    const size_t bytes = t.bytes();
+    if (held_.fetch_add(bytes) + bytes <= limit_ || t.kind == Kind::Shadow || bytes < kSmall) return;
+    std::string why;
+    const std::shared_ptr<ScratchFile> file = ScratchFile::create(why);
+    std::vector<Places> places;
+    bool good = file != nullptr;
+    const auto append = [&](const auto& texels, size_t& at) {
+        if (good && !texels.empty()) good = file->append(texels.data(), texels.size() * sizeof(*texels.data()), at, why);
+    };
+    eachArray(t, [&](Level& l) {
+        Places& p = places.emplace_back();
+        append(l.values, p.values);
+        append(l.codes, p.codes);
+        append(l.light, p.light);
+    });
+    if (!good || !file->map(why)) {
+        diags_.reportOnce("texture:scratch",
+                          {Severity::Warning, Rie::System, place,
+                           "maps take more than " + memorySizeText(limit_) + " and stay in memory all the same: " + why,
+                           "TMPDIR names the folder of scratch files; Option \"limits\" \"texturememory\" the limit, in kB",
+                           {}});
+        return;
+    }
+    size_t n = 0;
+    eachArray(t, [&](Level& l) {
+        const Places& p = places[n++];
+        pointInto(l.values, file, p.values);
+        pointInto(l.codes, file, p.codes);
+        pointInto(l.light, file, p.light);
+    });
+    t.scratch = file;
+    held_ -= bytes;
+    std::lock_guard lock(trimming_);
+    files_.push_back(file);
+    ++scratches_;
+}
+
+size_t TextureSystem::scratchBytes() const {
+    std::lock_guard lock(trimming_);
+    size_t n = 0;
+    for (const auto& weak : files_)
+        if (const auto file = weak.lock()) n += file->resident();
+    return n;
+}
+
+void TextureSystem::trim() {
+    const size_t own = held_.load(), allowed = limit_ > own ? limit_ - own : 0, now = bytesOfFiles();
+    if (now < filesAtTrim_.load(std::memory_order_relaxed) + allowed / 4) return;
+    std::unique_lock lock(trimming_, std::try_to_lock);
+    if (!lock) return; // somebody is at it
+    size_t resident = 0, all = 0;
+    std::vector<std::shared_ptr<const ScratchFile>> files;
+    for (const auto& weak : files_)
+        if (const auto file = weak.lock()) {
+            files.push_back(file);
+            resident += file->resident();
+            all += file->size();
+        }
+    if (!files.empty() && resident > allowed - allowed / 4) {
+        // A hand goes round over all files: what it passes is given back, and what is still wanted comes again.
+        for (size_t passed = 0; resident > allowed / 2 && passed <= all;) {
+            if (handFile_ >= files.size()) handFile_ = handByte_ = 0;
+            const ScratchFile& f = *files[handFile_];
+            resident -= std::min(resident, f.release(handByte_, kHand));
+            passed += kHand;
+            handByte_ += kHand;
+            if (handByte_ < f.size()) continue;
+            handByte_ = 0;
+            ++handFile_;
+        }
+    }
+    filesAtTrim_ = bytesOfFiles();
+}
+
+} // namespace alpenglow::texture

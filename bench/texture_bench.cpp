@@ -121,6 +121,10 @@ struct Theirs {
         o.interpmode = OIIO::Tex::InterpMode::Bilinear;
         o.mipmode = OIIO::Tex::MipMode::Aniso;
         o.anisotropic = 32;
+        for (int k = 0; k < BatchWidth; ++k) { // its constructor leaves them open
+            o.sblur[k] = o.tblur[k] = o.rblur[k] = 0;
+            o.swidth[k] = o.twidth[k] = o.rwidth[k] = 1;
+        }
         const double begin = cpuSeconds();
         for (size_t i = 0; i + BatchWidth <= p.size(); i += BatchWidth) {
             alignas(64) float v[3 * BatchWidth] = {};

@@ -159,7 +159,7 @@ TEST(Volumes, GridsOfOpenVdbThroughTheirModule) {
         EXPECT_EQ(v->at(x, y, z)[2], float(y));
     }
     auto bytes = bytesOf(s / "a.vdb");
-    for (size_t n : {size_t(0), size_t(64), bytes.size() / 2, bytes.size() - 9}) {
+    for (size_t n : {size_t(64), bytes.size() / 2}) { // a child process each
         putBytes(s / "b.vdb", {bytes.begin(), bytes.begin() + std::ptrdiff_t(n)});
         Diagnostics e;
         if (!loadVolume("b.vdb", {{s.dir.string()}}, e)) EXPECT_EQ(e.errors(), 1) << messages(e);

@@ -12,6 +12,7 @@
 #include "ri/lookahead.h"
 #include "ri/models/model.h"
 #include "ri/reader.h"
+#include "view/preview.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
@@ -29,7 +30,8 @@ struct Arguments {
     render::RenderSettings settings;
     std::vector<std::string> scenes, searchPaths, displays, rib;
     std::string format, crop, samples, part, frames, pixel, preset, memory, folder, seed, progress = "auto";
-    std::string gamma;
+    std::string gamma, preview;
+    std::vector<std::pair<std::string, int>> tev; ///< hosts and ports
     bool noDirect = false, noIndirect = false, watch = false, quiet = false, verbose = false;
     std::vector<int> frameList;
 };
@@ -97,6 +99,13 @@ void checkLate(Arguments& a, const CLI::App& app) {
         if (second != d.npos) added.mode = d.substr(second + 1);
         if (added.type.empty() || added.name.empty() || added.mode.empty())
             wrong("--display", "takes TYPE:NAME or TYPE:NAME:MODE, for example png:view.png or openexr:all.exr:rgba,N,z");
+        if (added.type == "tev") { // a viewer, no file
+            char* end = nullptr;
+            const long port = std::strtol(added.mode.c_str(), &end, 10);
+            if (second == d.npos || *end || port < 1 || port > 65535) wrong("--display", "takes tev:HOST:PORT, for example tev:localhost:14158");
+            a.tev.emplace_back(added.name, int(port));
+            continue;
+        }
         s.displays.push_back(std::move(added));
     }
     s.srgb = a.gamma == "srgb" || a.gamma == "sRGB";
@@ -156,10 +165,43 @@ bool tellMissingFrames(const std::vector<int>& wanted, const std::vector<int>& s
     return true;
 }
 
+/// Who looks on: the terminal, viewers. `terminal` is the former, or null.
+view::Watchers watchersOf(const Arguments& a, Diagnostics& diags, view::TerminalPreview** terminal) {
+    view::Watchers all;
+    *terminal = nullptr;
+    if (!a.preview.empty()) {
+        const auto kind = view::terminalKindByName(a.preview);
+        if (!kind && !isatty(STDERR_FILENO))
+            diags.report(Severity::Warning, Rie::Incapable, {}, "--preview: standard error is no terminal; nothing is shown",
+                         "--preview=sixel, kitty or blocks writes it all the same");
+        else {
+            auto preview = std::make_unique<view::TerminalPreview>(diags, kind ? *kind : view::terminalKind(), view::terminalSize(),
+                                                                   [](const std::string& text) {
+                                                                       std::fwrite(text.data(), 1, text.size(), stderr);
+                                                                       std::fflush(stderr);
+                                                                   });
+            *terminal = preview.get();
+            all.all.push_back(std::move(preview));
+        }
+    }
+    for (const auto& [host, port] : a.tev)
+        if (auto tev = view::TevPreview::connect(host, port, diags)) all.all.push_back(std::move(tev));
+    return all;
+}
+
 int renderOnce(const Arguments& a, const StopFlag* stop) {
-    Diagnostics diags(printer(a.quiet ? Severity::Error : a.verbose ? Severity::Info : Severity::Warning));
+    const Diagnostics::Handler print = printer(a.quiet ? Severity::Error : a.verbose ? Severity::Info : Severity::Warning);
+    Diagnostics diags(print);
     render::RenderSettings settings = a.settings;
     settings.stop = stop;
+    view::TerminalPreview* terminal = nullptr;
+    view::Watchers watchers = watchersOf(a, diags, &terminal);
+    if (!watchers.all.empty()) settings.watcher = &watchers;
+    if (terminal)
+        diags.setHandler([print, terminal](const Diagnostic& d) {
+            print(d);
+            terminal->scrolled();
+        });
     render::Progress progress(settings.pixel ? render::ProgressMode::None : settings.progress);
     render::Renderer renderer(settings, render::transportEngine(), diags, progress,
                               [](const std::string& line) { std::printf("%s\n", line.c_str()); });
@@ -259,9 +301,14 @@ void addRender(CLI::App& app, int* status, const std::string& command) {
              "scene's first display (openexr, tiff, jpeg), frames one after the other")
         ->type_name("FILE")
         ->group("Pictures");
-    c->add_option("--display", a->displays, "Add a display, for example png:view.png or openexr:all.exr:rgba,N,z")
+    c->add_option("--display", a->displays, "Add a display, for example png:view.png or openexr:all.exr:rgba,N,z; tev:HOST:PORT shows the growing pictures in that viewer")
         ->type_name("TYPE:NAME[:MODE]")
         ->allow_extra_args(false)
+        ->group("Pictures");
+    c->add_flag("--preview{auto}", a->preview,
+                "Show the picture in the terminal as it grows, by the graphics of kitty or sixels where it has them, else in half "
+                "blocks; --preview=kitty, sixel or blocks chooses")
+        ->check(CLI::IsMember({"auto", "kitty", "sixel", "blocks"}))
         ->group("Pictures");
     c->add_option("--format", a->format, "Size of the picture in pixels")->type_name("WxH")->group("Pictures");
     c->add_option("--resolution-factor", s.resolutionFactor, "Scale both sides of the picture")

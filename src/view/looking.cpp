@@ -49,6 +49,7 @@ std::unique_ptr<render::Film> Session::filmFor(const render::FilmDescription& d)
 }
 
 void Session::look(const render::Glance& g) {
+    if (pass_.phase != Phase::Coarse && overtaken()) stop_ = 1; // asked for while it was built, which is not interrupted
     passSeconds_ = g.seconds;
     passRays_ = double(g.rays);
     if (g.film && g.grown && pass_.phase == Phase::Whole && g.film->samplesPerPixel() > 0)
@@ -139,6 +140,7 @@ void Session::shoot(const render::Glance& g, const Means& means) {
         const bool first = &s == &means.plan.pictures.front();
         if (!first && !wanted.contains(s.name) && !s.name.starts_with("light:")) continue;
         auto finished = render::finishedPicture(means.plan, s, means.facts, image, first ? imager : render::Imager{});
+        if (finished && s.name.starts_with("light:") && finished->channels.size() == 3) finished->channels = {"r", "g", "b"};
         if (finished) picture->planes.push_back({s.name, std::make_shared<display::Image>(std::move(*finished))});
     }
     if (wanted.contains("noise") && g.film) picture->planes.push_back({"noise", std::make_shared<display::Image>(noisePlane(*g.film))});

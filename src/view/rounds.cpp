@@ -34,6 +34,12 @@ bool Session::isPath() const { return round_.frame && round_.frame->options.hide
 
 uint32_t Session::wanted() const { return round_.wishes.continuous ? limits::kSamplesPerPixel : round_.wishes.spp; }
 
+/// Something else is wanted by now.
+bool Session::overtaken() const {
+    std::lock_guard lock(mutex_);
+    return generation_ != round_.generation;
+}
+
 /// The picture, and what else is asked for, as displays that are never written.
 void Session::addOutputs(scene::Options& o) const {
     // An old scene is told by its displays, and its maps are read by that.
@@ -158,11 +164,13 @@ void Session::render() {
         render::imageSize(round_.frame->options, &width_, &height_);
     }
     filmKey_ = std::move(filmKey);
-    for (const Pass& p : passes())
+    for (const Pass& p : passes()) {
+        if (overtaken()) return;
         if (!renderPass(p)) {
-            if (stop_) return; // something else is wanted
+            if (stop_) return;
             break;
         }
+    }
     std::lock_guard lock(mutex_);
     done_ = round_.generation;
 }

@@ -194,6 +194,7 @@ void Session::run() {
             done_ = generation_;
         }
         setPhase(Phase::Idle);
+        tell(); // that all is done
     }
 }
 

@@ -111,6 +111,7 @@ private:
     render::Engine engine();
     uint32_t wanted() const;
     bool isPath() const;
+    bool overtaken() const;
 
     // looking.cpp: Watcher, shots and saved files
     bool writes() const override { return false; }

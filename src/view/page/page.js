@@ -18,6 +18,7 @@ let said = -1e9;
 function say(text) {
   $('status').textContent = text;
   said = performance.now();
+  setTimeout(() => { if (page.state && page.connected) showState(page.state); }, 4100);
 }
 const set = (wishes) => post({ do: 'set', wishes });
 /** One request of a kind at a time; what comes meanwhile is put together. */
@@ -129,7 +130,8 @@ function take(buffer) {
     curves.points.push(...s.points);
     page.points = s.pointCount;
   }
-  if (page.messages === s.messageCount - s.messages.length || page.messages === 0) {
+  if (s.messageCount < page.messages) { page.messages = 0; again(); }
+  else if (page.messages === s.messageCount - s.messages.length) {
     showMessages($('messages'), s.messages, page.messages);
     page.messages = s.messageCount;
     $('messagecount').textContent = s.messageCount + s.lost ? `(${s.messageCount + s.lost})` : '';

@@ -195,12 +195,14 @@ export class Stage {
     const y0 = Math.max(0, Math.floor(-oy / s)), y1 = Math.min(w.height, Math.ceil((c.clientHeight - oy) / s));
     g.font = `${Math.min(13, s / 5.2)}px ui-monospace, "DejaVu Sans Mono", monospace`;
     g.textAlign = 'center';
+    if (x1 <= x0 || y1 <= y0) return;
+    const codes = this.base.getContext('2d').getImageData(x0, y0, x1 - x0, y1 - y0).data;
     const grey = w.kind === 'range' || w.kind === 'heat';
     for (let y = y0; y < y1; ++y)
       for (let x = x0; x < x1; ++x) {
         const at = (y * w.width + x) * 4, list = grey ? [0] : [0, 1, 2];
-        const pixel = this.base.getContext('2d').getImageData(x, y, 1, 1).data;
-        g.fillStyle = 0.3 * pixel[0] + 0.6 * pixel[1] + 0.1 * pixel[2] > 110 ? '#000' : '#fff';
+        const p = ((y - y0) * (x1 - x0) + x - x0) * 4;
+        g.fillStyle = 0.3 * codes[p] + 0.6 * codes[p + 1] + 0.1 * codes[p + 2] > 110 ? '#000' : '#fff';
         list.forEach((k, i) => {
           const v = halfValues[w.half[at + k]];
           g.fillText(Math.abs(v) >= 100 || (v !== 0 && Math.abs(v) < 0.001) ? v.toExponential(1) : v.toFixed(3), ox + (x + 0.5) * s,

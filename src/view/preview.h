@@ -1,0 +1,113 @@
+// Pictures that grow elsewhere than on the page: in the terminal, and in a viewer that listens at a socket (tev).
+#pragma once
+#include "render/watcher.h"
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace alpenglow::view {
+
+/// Looks at a render from time to time, for at most a fiftieth of its time, and hands on what it sees: light, as floats.
+class Preview : public render::Watcher {
+public:
+    explicit Preview(Diagnostics& d) : diagnostics_(d) {}
+    void begin(const render::WatchedFrame&) final;
+    void look(const render::Glance&) final;
+    void finished(std::unique_ptr<render::Film>) final;
+
+protected:
+    /// Which pictures of the frame are wanted.
+    virtual bool wants(const render::OutputSpec&) const = 0;
+    /// One of them, with its window in the whole.
+    virtual void show(const render::OutputSpec&, const render::PictureFacts&, const display::Image&) = 0;
+    Diagnostics& diagnostics_;
+
+private:
+    void show(const render::Glance&, const render::OutputPlan& own);
+    const render::OutputPlan* own_ = nullptr;
+    std::optional<render::OutputPlan> plan_; ///< without curves
+    render::PictureFacts facts_;
+    std::shared_ptr<const transport::World> world_;
+    double last_ = -1, cost_ = 0;
+    bool stale_ = false;
+};
+
+/// Several that look on.
+class Watchers final : public render::Watcher {
+public:
+    std::vector<std::unique_ptr<render::Watcher>> all;
+    void begin(const render::WatchedFrame& f) override {
+        for (auto& w : all) w->begin(f);
+    }
+    void look(const render::Glance& g) override {
+        for (auto& w : all) w->look(g);
+    }
+    void finished(std::unique_ptr<render::Film>) override;
+};
+
+// --- the terminal ---
+
+/// Bytes to look at, rows from the top.
+struct Bytes { int width = 0, height = 0; std::vector<uint8_t> rgb; };
+/// The red, green and blue of a picture, each pixel the mean of what it covers, as sRGB.
+Bytes shrunk(const display::Image&, int width, int height);
+/// Two pixels a character, the upper half block in 24-bit colours: lines, each with its end.
+std::string halfBlocks(const Bytes&);
+/// DEC's sixels: 216 colours, dithered evenly.
+std::string sixels(const Bytes&);
+/// The graphics protocol of kitty; the cursor stays.
+std::string kittyGraphics(const Bytes&);
+
+enum class TerminalKind { Blocks, Sixel, Kitty };
+/// "blocks", "sixel", "kitty".
+std::optional<TerminalKind> terminalKindByName(const std::string&);
+/// What the terminal of this process can do: by its variables, and by asking it for its attributes.
+TerminalKind terminalKind();
+
+struct TerminalSize { int columns = 80, rows = 24, cellWidth = 8, cellHeight = 16; };
+/// Of standard error; defaults where it is no terminal.
+TerminalSize terminalSize();
+
+/// Draws over what it drew before, above the line of the progress.
+class TerminalPreview final : public Preview {
+public:
+    using Sink = std::function<void(const std::string&)>;
+    TerminalPreview(Diagnostics& d, TerminalKind k, TerminalSize s, Sink sink) : Preview(d), kind_(k), size_(s), sink_(std::move(sink)) {}
+    /// Something else was printed: the next picture comes below it.
+    void scrolled() { shown_ = 0; }
+
+private:
+    bool wants(const render::OutputSpec&) const override;
+    void show(const render::OutputSpec&, const render::PictureFacts&, const display::Image&) override;
+    const TerminalKind kind_;
+    const TerminalSize size_;
+    const Sink sink_;
+    int shown_ = 0; ///< lines that the last picture took
+};
+
+// --- tev ---
+
+/// Packets of tev's protocol (github.com/Tom94/tev): a count of bytes, a kind, little-endian.
+std::string tevCreate(const std::string& name, int width, int height, const std::vector<std::string>& channels);
+/// Rectangle of an image; floats interleaved by channel.
+std::string tevUpdate(const std::string& name, int x, int y, int width, int height, const std::vector<std::string>& channels, const std::vector<float>&);
+
+class TevPreview final : public Preview {
+public:
+    /// Connects. Null where nobody listens, or the name means nothing: a warning says so, and the render goes on without it.
+    static std::unique_ptr<TevPreview> connect(const std::string& host, int port, Diagnostics&);
+    ~TevPreview() override;
+
+private:
+    TevPreview(int socket, std::string where, Diagnostics& d) : Preview(d), socket_(socket), where_(std::move(where)) {}
+    bool wants(const render::OutputSpec&) const override;
+    void show(const render::OutputSpec&, const render::PictureFacts&, const display::Image&) override;
+    void send(const std::string&);
+    int socket_;
+    const std::string where_;
+    std::vector<std::string> made_; ///< images that are there, with their sizes
+};
+
+} // namespace alpenglow::view

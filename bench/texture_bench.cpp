@@ -1,5 +1,5 @@
-// Lookups a second in one thread, beside OpenImageIO's TextureSystem on the same file and the same footprints, in turns of one run.
-// texture_bench [FOLDER]: maps are made there (default: the folder of temporary files).
+// Lookups a second in one thread, beside OpenImageIO's TextureSystem on the same file and the same footprints, in turns of one
+// run. texture_bench [FOLDER]: maps are made there (default: the folder of temporary files).
 #include "display/imageio.h"
 #include "texture/maketexture.h"
 #include "texture/texture.h"
@@ -37,7 +37,8 @@ struct Set {
 
 constexpr int kSide = 2048;
 
-/// A plane that is turned by 30 degrees, in rows of pixels: `texels` of level 0 to a pixel along a row, `ratio` times as many across.
+/// A plane that is turned by 30 degrees, in rows of pixels: `texels` of level 0 to a pixel along a row, `ratio` times as many
+/// across.
 Set plane(const char* name, float texels, float ratio) {
     Set p{name, {}, {}, {}, {}, {}, {}};
     const float step = texels / kSide, c = .8660254f, si = .5f;
@@ -128,7 +129,8 @@ struct Theirs {
         const double begin = cpuSeconds();
         for (size_t i = 0; i + BatchWidth <= p.size(); i += BatchWidth) {
             alignas(64) float v[3 * BatchWidth] = {};
-            system->texture(map, thread, o, OIIO::Tex::RunMaskOn, &p.s[i], &p.t[i], &p.dsdx[i], &p.dtdx[i], &p.dsdy[i], &p.dtdy[i], 3, v);
+            system->texture(map, thread, o, OIIO::Tex::RunMaskOn, &p.s[i], &p.t[i], &p.dsdx[i], &p.dtdx[i], &p.dsdy[i],
+                            &p.dtdy[i], 3, v);
             sum += double(v[0]);
         }
         return double(p.size()) / (cpuSeconds() - begin) / 1e6;
@@ -158,15 +160,18 @@ int main(int argc, char** argv) {
     make.swrap = make.twrap = "periodic";
     make.policy.allowWrite = true;
     const std::string picture = folder + "/picture.exr", file = folder + "/map.exr";
-    if (!display::writeImage(picture, m, w, d) || !makeTexture(picture, file, make, d)) return std::fprintf(stderr, "no map\n"), 1;
+    if (!display::writeImage(picture, m, w, d) || !makeTexture(picture, file, make, d))
+        return std::fprintf(stderr, "no map\n"), 1;
     TextureSystem maps(d);
     const Handle map = maps.open(file);
     if (!map) return std::fprintf(stderr, "no map\n"), 1;
     double sum = 0;
-    std::printf("%d x %d, 3 channels, half, tiled, all levels; million lookups a second of one thread, middle of 3 turns\n", kSide, kSide);
+    std::printf("%d x %d, 3 channels, half, tiled, all levels; million lookups a second of one thread, middle of 3 turns\n",
+                kSide, kSide);
     std::printf("%-34s %10s %10s %10s %10s %8s\n", "footprints", "ours x16", "ours x1", "OIIO", "OIIO x16", "ratio");
-    for (const Set& p : {plane("half a texel", .5f, 1), plane("1.5 texels", 1.5f, 1), plane("1.5 texels, 4 times as long", 1.5f, 4),
-                         plane("1.5 texels, 16 times as long", 1.5f, 16), scattered()}) {
+    for (const Set& p :
+         {plane("half a texel", .5f, 1), plane("1.5 texels", 1.5f, 1), plane("1.5 texels, 4 times as long", 1.5f, 4),
+          plane("1.5 texels, 16 times as long", 1.5f, 16), scattered()}) {
         std::vector<double> a, b, c, e;
 #ifdef ALPENGLOW_HAS_OPENIMAGEIO
         Theirs theirs(file);
@@ -185,7 +190,8 @@ int main(int argc, char** argv) {
         }
         const double best = std::max(middle(c), middle(e));
         std::fflush(stdout);
-        std::printf("%-34s %10.2f %10.2f %10.2f %10.2f %8.1f\n", p.name, middle(a), middle(b), middle(c), middle(e), best > 0 ? middle(a) / best : 0);
+        std::printf("%-34s %10.2f %10.2f %10.2f %10.2f %8.1f\n", p.name, middle(a), middle(b), middle(c), middle(e),
+                    best > 0 ? middle(a) / best : 0);
     }
     std::printf("(sum of what was read: %g)\n", sum);
     if (argc < 2) std::filesystem::remove_all(folder);

@@ -60,7 +60,7 @@ void lookupEnvironment(const TextureSite& t, const ServiceCall& call, int lane, 
     }
 }
 
-/// What shaders see of a map that cannot be read: the color of Option "texture" "missing", channel by channel; where there is none the
+/// What shaders see of a map that cannot be read: the color of Option "texture" "missing", channel by channel; beyond them the
 /// fill value.
 void answerMissing(const TextureSite& t, const ServiceCall& call, const Color& colour) {
     call.each([&](int lane, const ShadePoint&) {
@@ -229,6 +229,11 @@ Information ofMatrix(const Matrix& m) {
     return i;
 }
 
+/// "uint8", "half", ...
+std::string formatOf(const texture::TextureInfo& t) {
+    return t.floating ? t.bits == 16 ? "half" : "float" : "uint" + std::to_string(t.bits);
+}
+
 } // namespace
 
 void answerTextureInfo(Answers& answers, const ServiceCall& call) {
@@ -255,10 +260,11 @@ void answerTextureInfo(Answers& answers, const ServiceCall& call) {
         else if (field == "type") i = {{}, {info->type}, true};
         else if (field == "viewingmatrix" && info->viewing) i = ofMatrix(fromCurrent * *info->viewing);
         else if (field == "projectionmatrix" && info->projection) i = ofMatrix(fromCurrent * *info->projection);
-        else if (field == "wrapmodes") i = {{}, {std::string(texture::nameOf(info->swrap)) + "," + texture::nameOf(info->twrap)}, true};
+        else if (field == "wrapmodes")
+            i = {{}, {std::string(texture::nameOf(info->swrap)) + "," + texture::nameOf(info->twrap)}, true};
         else if (field == "gamma") i.numbers = {info->gamma};
         else if (field == "facecount") i.numbers = {float(info->faces)};
-        else if (field == "format") i = {{}, {info->floating ? info->bits == 16 ? "half" : "float" : "uint" + std::to_string(info->bits)}, true};
+        else if (field == "format") i = {{}, {formatOf(*info)}, true};
         else return;
         call.answer(lane, Told(i));
     });

@@ -21,7 +21,7 @@ namespace alpenglow::display {
 
 namespace {
 
-constexpr int kWhy = 512; ///< bytes of what a child has to say
+constexpr int kWhy = 512;                ///< bytes of what a child has to say
 constexpr int kKnown = 1, kNoModule = 2; ///< exit codes of the child: it said why; the module cannot be loaded
 
 /// A file descriptor that is closed.
@@ -92,7 +92,8 @@ std::optional<Image> pictureFrom(int file, const DecodeContext& ctx) {
         p.channels <= 0)
         return ctx.refuse("the module that reads it was built from other sources than this program");
     const uint64_t slices = std::max<uint64_t>(1, p.depth), side = uint64_t(limits::kImageSide);
-    if (slices > side || uint64_t(p.height) * slices * uint64_t(p.width) > limits::kImageBytes / sizeof(float) / uint64_t(p.channels))
+    if (slices > side ||
+        uint64_t(p.height) * slices * uint64_t(p.width) > limits::kImageBytes / sizeof(float) / uint64_t(p.channels))
         return ctx.refuse("its voxels would take more than " + std::to_string(limits::kImageBytes >> 30) + " GiB", Rie::Limit);
     if (!ctx.sizeAllowed(uint64_t(p.width), uint64_t(p.height), uint64_t(p.channels))) return {};
     const size_t names = size_t(p.channels) * kForeignName,
@@ -102,7 +103,8 @@ std::optional<Image> pictureFrom(int file, const DecodeContext& ctx) {
     if (all == MAP_FAILED) return ctx.refuse("out of memory", Rie::NoMem);
     const char* at = static_cast<const char*>(all) + sizeof p;
     std::vector<std::string> channels;
-    for (int c = 0; c < p.channels; ++c) channels.emplace_back(at + size_t(c) * kForeignName, strnlen(at + size_t(c) * kForeignName, kForeignName));
+    for (int c = 0; c < p.channels; ++c)
+        channels.emplace_back(at + size_t(c) * kForeignName, strnlen(at + size_t(c) * kForeignName, kForeignName));
     Image m = makeImage(p.width, int(uint64_t(p.height) * slices), channels);
     if (p.depth) m.metadata["depth"] = std::to_string(p.depth);
     std::memcpy(m.data.data(), at + names, numbers);
@@ -118,9 +120,10 @@ std::optional<Image> pictureFrom(int file, const DecodeContext& ctx) {
 } // namespace
 
 const ForeignModule& pictureModule() {
-    static const ForeignModule m{"libalpenglow_pictures.so", "ALPENGLOW_PICTURES", ALPENGLOW_PICTURES_MODULE, "OpenImageIO (libopenimageio2.4)",
-                                 "it is in none of the formats that are read here (OpenEXR, TIFF, PNG, JPEG, Radiance, Targa, zfile, "
-                                 "Pixar's native textures)"};
+    static const ForeignModule m{
+        "libalpenglow_pictures.so", "ALPENGLOW_PICTURES", ALPENGLOW_PICTURES_MODULE, "OpenImageIO (libopenimageio2.4)",
+        "it is in none of the formats that are read here (OpenEXR, TIFF, PNG, JPEG, Radiance, Targa, zfile, "
+        "Pixar's native textures)"};
     return m;
 }
 
@@ -149,7 +152,8 @@ std::optional<Image> readForeign(const ForeignModule& of, const std::string& pat
     if (module.empty()) return ctx.refuse(std::string(of.known) + ", and the module for others, " + of.file + ", is not there");
     Descriptor picture{memfd_create("alpenglow-picture", MFD_CLOEXEC)};
     int ends[2] = {-1, -1};
-    if (picture.fd < 0 || pipe2(ends, O_CLOEXEC) != 0) return ctx.refuse(std::string("no child process: ") + std::strerror(errno));
+    if (picture.fd < 0 || pipe2(ends, O_CLOEXEC) != 0)
+        return ctx.refuse(std::string("no child process: ") + std::strerror(errno));
     Descriptor from{ends[0]}, to{ends[1]};
     const pid_t child = fork();
     if (child == 0) readInChild(module, path, picture.fd, to.fd);
@@ -163,10 +167,12 @@ std::optional<Image> readForeign(const ForeignModule& of, const std::string& pat
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
     for (char& c : why)
         if (static_cast<unsigned char>(c) < ' ') c = ' ';
-    if (!ended) return ctx.refuse("its reader took more than " + std::to_string(limits::kProgramSeconds) + " seconds", Rie::Limit);
+    if (!ended)
+        return ctx.refuse("its reader took more than " + std::to_string(limits::kProgramSeconds) + " seconds", Rie::Limit);
     if (WIFSIGNALED(status)) return ctx.refuse("its reader ended by signal " + std::to_string(WTERMSIG(status)));
     if (WEXITSTATUS(status) == kNoModule)
-        return ctx.refuse(std::string(of.known) + ", and the module for others cannot be loaded: " + why + " (it needs " + of.needs + ")");
+        return ctx.refuse(std::string(of.known) + ", and the module for others cannot be loaded: " + why + " (it needs " +
+                          of.needs + ")");
     if (WEXITSTATUS(status) != 0) return ctx.refuse(why.empty() ? "its reader failed" : why);
     return pictureFrom(picture.fd, ctx);
 }

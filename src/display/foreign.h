@@ -1,25 +1,26 @@
-// Pictures in formats that are not read here: by the module libalpenglow_pictures.so (texture/modules/openimageio.cpp), which knows
-// OpenImageIO; and grids of OpenVDB by libalpenglow_grids.so. Both may be missing. They work in a child process: what goes wrong in a foreign decoder ends the child and is an error here.
+// Pictures in formats that are not read here: by the module libalpenglow_pictures.so (texture/modules/openimageio.cpp), which
+// knows OpenImageIO; and grids of OpenVDB by libalpenglow_grids.so. Both may be missing. They work in a child process: what goes
+// wrong in a foreign decoder ends the child and is an error here.
 #pragma once
 #include "display/formats/codecs.h"
 #include <cstdint>
 
 namespace alpenglow::display {
 
-/// What the two sides pass each other, in this order: this, `channels` names of kForeignName bytes, then width * height * channels
-/// floats, of a grid as many for each slice.
+/// What the two sides pass each other, in this order: this, `channels` names of kForeignName bytes, then width * height *
+/// channels floats, of a grid as many for each slice.
 inline constexpr int kForeignName = 64;
 struct ForeignPicture {
-    uint32_t stamp;       ///< kForeignStamp
+    uint32_t stamp; ///< kForeignStamp
     int32_t width, height, channels;
-    int32_t bits, floating; ///< of a channel in the file
+    int32_t bits, floating;         ///< of a channel in the file
     char colourSpace[kForeignName]; ///< "" where the file says nothing: "sRGB", "linear", or a gamma as text
-    uint32_t depth; ///< of grids: slices, each `height` rows, one below the other; pictures: 0
+    uint32_t depth;                 ///< of grids: slices, each `height` rows, one below the other; pictures: 0
 };
 inline constexpr uint32_t kForeignStamp = 0xa1f01;
 
-/// The one function of the module. Reads the file at `path` and writes it to the descriptor `to`; 0 when it is done. Else `why`, of
-/// `whySize` bytes, says what went wrong. Sizes beyond the limits are refused before pixels are read.
+/// The one function of the module. Reads the file at `path` and writes it to the descriptor `to`; 0 when it is done. Else `why`,
+/// of `whySize` bytes, says what went wrong. Sizes beyond the limits are refused before pixels are read.
 struct ForeignLimits {
     uint64_t side, channels, bytes, smallBytes, expansion;
 };
@@ -36,8 +37,8 @@ const ForeignModule& gridModule();
 
 /// Its file; "" where there is none: what the variable names, beside the program, in ../lib, where it was built.
 std::string fileOf(const ForeignModule&);
-/// What a module makes of a file; slices of grids lie one below the other, "depth" in the metadata says how many. Nothing: an error was
-/// reported, which says so when it is the module that is missing.
+/// What a module makes of a file; slices of grids lie one below the other, "depth" in the metadata says how many. Nothing: an
+/// error was reported, which says so when it is the module that is missing.
 std::optional<Image> readForeign(const ForeignModule&, const std::string& path, const DecodeContext&);
 
 } // namespace alpenglow::display

@@ -1,7 +1,7 @@
 // Grids of voxels in files of OpenVDB, read by a module (display/foreign.h).
 #pragma once
-#include "display/image.h"
 #include "base/diagnostics.h"
+#include "display/image.h"
 #include <optional>
 
 namespace alpenglow::display {

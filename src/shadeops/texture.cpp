@@ -132,7 +132,7 @@ std::vector<Shadeop> textureShadeops() {
                        {kF, "radiusscale", false, "1", "multiplies the radius"},
                        {kF, "interpolate", false, "0", "1 writes the middles of micropolygons instead of their corners"}};
     add("texture3d", sigs({{"float texture3d(string file; point p; normal n; pairs)"}}), Lowering::Service,
-        "Reads values, named as output pairs, from a point cloud or brick map: means of the points about p whose normals fit n (0: all do). 1 on success; 0 where "
+        "Reads values, named as output pairs, from a point cloud, brick map or volume (docs/maps.md): means of the points about p whose normals fit n (0: all do). 1 on success; 0 where "
         "there is nothing, and the variables stay as they are. What the file has no channel for is 0, and said once.")
         .optional = {{kS, "coordsystem", false, "\"world\"", "space of the file"},
                      {kF, "filterradius", false, "half the step of p from sample to sample", "radius of the filter; in the space of the file"},

@@ -1,5 +1,5 @@
-// Many lookups at a time: what the lanes (texture/lanes/lookup.inc) and what prepares them share. Plain data, and no header that brings
-// code: the lanes are compiled for several processors.
+// Many lookups at a time: what the lanes (texture/lanes/lookup.inc) and what prepares them share. Plain data, and no header that
+// brings code: the lanes are compiled for several processors.
 #pragma once
 #include <cstdint>
 
@@ -24,9 +24,9 @@ struct LookupLanes {
 
 /// A level, as lanes see it.
 struct LaneLevel {
-    const float* numbers;    ///< null: `codes`
+    const float* numbers; ///< null: `codes`
     const uint8_t* codes;
-    const float* tables[4];  ///< what codes of the channels that are asked for mean
+    const float* tables[4]; ///< what codes of the channels that are asked for mean
     int width, height, channels;
 };
 

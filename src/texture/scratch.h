@@ -1,6 +1,6 @@
-// Scratch files: where the levels of maps lie that do not fit into memory. A file without a name, mapped for reading: the system fetches
-// pages when they are looked at, and takes them back when it is asked to, whoever reads them meanwhile. So lookups take no lock and
-// find the same numbers whether a page is there or not.
+// Scratch files: where the levels of maps lie that do not fit into memory. A file without a name, mapped for reading: the system
+// fetches pages when they are looked at, and takes them back when it is asked to, whoever reads them meanwhile. So lookups take
+// no lock and find the same numbers whether a page is there or not.
 #pragma once
 #include <cstddef>
 #include <memory>

@@ -1,5 +1,5 @@
-// TextureSystem: what maps may hold in memory. Maps stay in memory as long as all of them fit into the limit; the one that does not
-// goes to a scratch file, with all of its levels.
+// TextureSystem: what maps may hold in memory. Maps stay in memory as long as all of them fit into the limit; the one that does
+// not goes to a scratch file, with all of its levels.
 #include "base/memory.h"
 #include "texture/scratch.h"
 #include "texture/texture.h"
@@ -47,7 +47,9 @@ void TextureSystem::settle(Texture& t, const SourcePlace& place) {
     });
     if (!good || !file->map(why)) {
         diags_.reportOnce("texture:scratch",
-                          {Severity::Warning, Rie::System, place,
+                          {Severity::Warning,
+                           Rie::System,
+                           place,
                            "maps take more than " + memorySizeText(limit_) + " and stay in memory all the same: " + why,
                            "TMPDIR names the folder of scratch files; Option \"limits\" \"texturememory\" the limit, in kB",
                            {}});

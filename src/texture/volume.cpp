@@ -96,7 +96,8 @@ public:
             if (m->width != v.width || m->height != v.height || m->channels != v.names)
                 return refuse("slice \"" + *path + "\" differs from the first one in size or channels");
             if ((v.values.size() + m->data.size()) * sizeof(float) > limits::kImageBytes)
-                return refuse("its slices would take more than " + std::to_string(limits::kImageBytes >> 30) + " GiB", Rie::Limit);
+                return refuse("its slices would take more than " + std::to_string(limits::kImageBytes >> 30) + " GiB",
+                              Rie::Limit);
             v.values.insert(v.values.end(), m->data.begin(), m->data.end());
             ++v.depth;
         }
@@ -183,7 +184,8 @@ Volume gradientsOf(const Volume& v, int radius) {
                 Vec3 n(0);
                 const bool inside = x >= r && y >= r && z >= r && x + r < v.width && y + r < v.height && z + r < v.depth;
                 if (inside)
-                    n = Vec3(opacity(v.at(x + r, y, z)) - opacity(v.at(x - r, y, z)), opacity(v.at(x, y + r, z)) - opacity(v.at(x, y - r, z)),
+                    n = Vec3(opacity(v.at(x + r, y, z)) - opacity(v.at(x - r, y, z)),
+                             opacity(v.at(x, y + r, z)) - opacity(v.at(x, y - r, z)),
                              opacity(v.at(x, y, z + r)) - opacity(v.at(x, y, z - r)));
                 const float l = length(n);
                 n = l > 1e-4f ? n / l : Vec3(0);
@@ -196,8 +198,8 @@ Volume gradientsOf(const Volume& v, int radius) {
 
 void smoothGradients(Volume& v, int radius) {
     if (radius < 1 || v.channels() < 3) return;
-    // One axis after the other: the mean over a box is the mean of means, weighed by how many voxels each has, which depends on the
-    // other axes in the same way for all.
+    // One axis after the other: the mean over a box is the mean of means, weighed by how many voxels each has, which depends on
+    // the other axes in the same way for all.
     const int sizes[3] = {v.width, v.height, v.depth};
     const size_t n = v.names.size();
     const size_t steps[3] = {n, n * size_t(v.width), n * size_t(v.width) * size_t(v.height)};
@@ -217,7 +219,8 @@ void smoothGradients(Volume& v, int radius) {
     }
 }
 
-bool makeGradients(const std::string& name, const std::string& picture, int radius, int smooth, const MakeOptions& o, Diagnostics& diags) {
+bool makeGradients(const std::string& name, const std::string& picture, int radius, int smooth, const MakeOptions& o,
+                   Diagnostics& diags) {
     auto v = loadVolume(name, {o.searchPath, o.read, o.place}, diags);
     if (!v) return false;
     if (size_t(v->height) * size_t(v->depth) > size_t(limits::kImageSide)) {
@@ -228,7 +231,8 @@ bool makeGradients(const std::string& name, const std::string& picture, int radi
     smoothGradients(g, smooth);
     display::Image m = display::makeImage(g.width, g.height * g.depth, g.names);
     m.data = std::move(g.values);
-    m.metadata = {{"textureformat", volumeFormat}, {"depth", std::to_string(g.depth)}, {"Software", "Alpenglow"}, {"colorspace", kLight}};
+    m.metadata = {
+        {"textureformat", volumeFormat}, {"depth", std::to_string(g.depth)}, {"Software", "Alpenglow"}, {"colorspace", kLight}};
     display::WriteOptions w;
     w.sample = display::Sample::Float;
     w.policy = o.policy;

@@ -16,8 +16,20 @@ public:
             return at == v.names.end() ? -1 : int(at - v.names.begin());
         };
         const int r = has("r"), g = has("g"), b = has("b"), a = has("a"), y = has("y");
-        const int colours[3] = {r >= 0 ? r : y >= 0 ? y : 0, g >= 0 ? g : r >= 0 ? r : y >= 0 ? y : 0, b >= 0 ? b : r >= 0 ? r : y >= 0 ? y : 0};
-        channels_ = {{"color", clouds::ChannelType::Color}, {"alpha", clouds::ChannelType::Float}, {"gradient", clouds::ChannelType::Vector}};
+        const int colours[3] = {r >= 0   ? r
+                                : y >= 0 ? y
+                                         : 0,
+                                g >= 0   ? g
+                                : r >= 0 ? r
+                                : y >= 0 ? y
+                                         : 0,
+                                b >= 0   ? b
+                                : r >= 0 ? r
+                                : y >= 0 ? y
+                                         : 0};
+        channels_ = {{"color", clouds::ChannelType::Color},
+                     {"alpha", clouds::ChannelType::Float},
+                     {"gradient", clouds::ChannelType::Vector}};
         for (const std::string& n : v.names)
             if (n != "color" && n != "alpha" && n != "gradient") channels_.push_back({n, clouds::ChannelType::Float});
         Volume all{v.width, v.height, v.depth, std::vector<std::string>(size_t(width())), {}};
@@ -32,7 +44,8 @@ public:
                 if (v.names[c] != "color" && v.names[c] != "alpha" && v.names[c] != "gradient") all.values.push_back(p[c]);
         }
         levels_.push_back(std::move(all));
-        while (levels_.back().width > 1 || levels_.back().height > 1 || levels_.back().depth > 1) levels_.push_back(half(levels_.back()));
+        while (levels_.back().width > 1 || levels_.back().height > 1 || levels_.back().depth > 1)
+            levels_.push_back(half(levels_.back()));
     }
     const std::vector<clouds::Channel>& channels() const override { return channels_; }
 

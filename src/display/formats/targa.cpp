@@ -1,5 +1,6 @@
 // Targa pictures (.tga), reading only: colour maps, true colour and grey, run lengths or not, 8 to 32 bits, rows from either end.
-// The format has no first bytes of its own; looksLikeTarga() goes by its header. Source: Truevision TGA file format specification 2.0.
+// The format has no first bytes of its own; looksLikeTarga() goes by its header. Source: Truevision TGA file format
+// specification 2.0.
 #include "display/formats/codecs.h"
 #include <cstring>
 

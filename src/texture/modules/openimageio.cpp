@@ -1,5 +1,5 @@
-// libalpenglow_pictures.so: pictures in the formats of OpenImageIO that the program does not read itself. Loaded when the first such file is
-// met, by a child process (display/foreign.h); nothing else of the program links OpenImageIO.
+// libalpenglow_pictures.so: pictures in the formats of OpenImageIO that the program does not read itself. Loaded when the first
+// such file is met, by a child process (display/foreign.h); nothing else of the program links OpenImageIO.
 #include "display/foreign.h"
 #include <OpenImageIO/imageio.h>
 #include <OpenImageIO/typedesc.h>
@@ -28,7 +28,8 @@ bool writeAll(int to, const void* bytes, size_t n) {
 /// Why a picture of this size is not read; "": it is.
 std::string tooLarge(const OIIO::ImageSpec& s, const ForeignLimits& l, uint64_t fileBytes) {
     if (s.width <= 0 || s.height <= 0 || s.nchannels <= 0) return "it has no pixels";
-    if (uint64_t(s.width) > l.side || uint64_t(s.height) > l.side) return "a side is longer than " + std::to_string(l.side) + " pixels";
+    if (uint64_t(s.width) > l.side || uint64_t(s.height) > l.side)
+        return "a side is longer than " + std::to_string(l.side) + " pixels";
     if (uint64_t(s.nchannels) > l.channels) return "it has more than " + std::to_string(l.channels) + " channels";
     const uint64_t bytes = uint64_t(s.width) * uint64_t(s.height) * uint64_t(s.nchannels) * sizeof(float);
     if (bytes > l.bytes) return "its pixels would take more than " + std::to_string(l.bytes >> 30) + " GiB";
@@ -88,9 +89,7 @@ extern "C" int alpenglow_read_picture(const char* path, int to, const ForeignLim
     std::string text;
     try {
         text = readTo(path, to, *limits);
-    } catch (const std::exception& e) {
-        text = e.what();
-    }
+    } catch (const std::exception& e) { text = e.what(); }
     std::strncpy(why, text.c_str(), size_t(whySize) - 1);
     return text.empty() ? 0 : 1;
 }

@@ -59,7 +59,8 @@ std::string readTo(const char* path, int to, const ForeignLimits& limits) {
     if (g.box.empty()) return "nothing in its grids is active";
     const openvdb::Coord size = g.box.dim();
     const uint64_t w = uint64_t(size.x()), h = uint64_t(size.y()), d = uint64_t(size.z()), n = g.names.size();
-    if (w > limits.side || h > limits.side || d > limits.side) return "a side is longer than " + std::to_string(limits.side) + " voxels";
+    if (w > limits.side || h > limits.side || d > limits.side)
+        return "a side is longer than " + std::to_string(limits.side) + " voxels";
     if (n > limits.channels) return "it has more than " + std::to_string(limits.channels) + " channels";
     const uint64_t bytes = w * h * d * n * sizeof(float);
     if (bytes > limits.bytes) return "its voxels would take more than " + std::to_string(limits.bytes >> 30) + " GiB";
@@ -99,9 +100,7 @@ extern "C" int alpenglow_read_picture(const char* path, int to, const ForeignLim
     std::string text;
     try {
         text = readTo(path, to, *limits);
-    } catch (const std::exception& e) {
-        text = e.what();
-    }
+    } catch (const std::exception& e) { text = e.what(); }
     std::strncpy(why, text.c_str(), size_t(whySize) - 1);
     return text.empty() ? 0 : 1;
 }

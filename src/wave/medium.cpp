@@ -140,7 +140,6 @@ void MediumFlights::happen(Engine& e, std::span<Flight> flights, Sched& sched) {
         const auto of = std::span<const Crossing>(crossings).subspan(first, end - first);
         if (e.rules().lightsAtRequests) nearLights(e, flights, of, sched);
         scatter(e, flights, of, sched);
-        e.flushShadows(sched);
     }
 }
 
@@ -223,6 +222,7 @@ void MediumFlights::scatter(Engine& e, std::span<Flight> flights, std::span<cons
         l.place = e.lobeRows_.add(*l.kind, {r.dir, light == Vec3(0) ? -r.dir : light, {}, m.homogeneous->anisotropy});
     }
     if (n > 0) e.gather(*c, sched);
+    e.flushShadows(sched); // they know its rays
     e.giveBack(std::move(c));
 }
 

@@ -46,7 +46,7 @@ float photonFactor(const LobeColumns& rows, LobeColumns::Place place, const Lobe
 }
 
 /// Light of all around comes to a lobe's point as it comes to the point: so photons may be gathered for it.
-bool Gather::spreads(const LobeVertex& l) const { return !l.delta && seesAll(l); }
+bool Gather::spreads(const LobeVertex& l) const { return !l.delta && !c_->between && seesAll(l); } // on surfaces alone
 bool Gather::mirrors(const LobeVertex& l) const { return l.delta && l.below < 0 && !l.ownsTarget && seesAll(l); }
 bool Gather::seesAll(const LobeVertex& l) const {
     const shading::RaySet& set = l.rays->set;
@@ -81,7 +81,7 @@ void Gather::restPhotons() {
         }
         const bool caustic = from.bounces > 0 && !(from.trail & shading::kTrailSpread);
         const Color power = t.power[size_t(from.sample->path)] * from.weight * float(t.job->scale);
-        if (!spread || (t.job->caustics && !caustic) || !isFinite(power) || !(maxComponent(power) > 0)) continue;
+        if (!spread || c_->between || (t.job->caustics && !caustic) || !isFinite(power) || !(maxComponent(power) > 0)) continue;
         StoredPhoton s;
         const Vec3& n = p.surface.displaced ? p.surface.displacedN : p.surface.n;
         s.photon.P = p.surface.displaced ? p.surface.displacedP : p.surface.P;

@@ -130,6 +130,10 @@ TEST(Caustics, TogetherAsPathsAlone) {
         {"sky", "Attribute \"light\" \"int emitphotons\" 1\nLightSource \"envlight\" 1\nAttributeBegin " + kMirror +
                     "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" + kMatte + "Polygon \"P\" [-.5 1 -.5  -.5 1 .5  .5 1 .5  .5 1 -.5]\n",
          rayTo({1.1f, .4f, 0}, {.1f, 1, 0}), .07},
+        // Nothing gathers photons in a medium: paths bring all that is scattered there, and none rests on what has such a normal.
+        {"fog", lamp(1, .8, 5) + "AttributeBegin " + kMirror + "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n"
+                    "AttributeBegin Surface \"null\" Interior \"medium\" \"color scattering\" [1 .7 .4] Translate 0 2 0 Sphere .5 -.5 .5 360 AttributeEnd\n",
+         rayTo({2, 2, 0}, {0, 2, 0}), .13},
         // Light that a mirror sends into a surface walks there once, not once as photons and once more from the eye.
         {"below a surface", lamp(1, .5, 5) + "AttributeBegin " + kMirror + "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\nSurface \"waxen\" Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n",
          rayTo({1.1f, 1.2f, 0}, {1, 2, 0}), .06}};

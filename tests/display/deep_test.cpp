@@ -3,7 +3,9 @@
 #include "support.h"
 #include <ImfChannelList.h>
 #include <ImfDeepFrameBuffer.h>
+#include <ImfCompression.h>
 #include <ImfDeepTiledOutputFile.h>
+#include <ImfHeader.h>
 #include <ImfPartType.h>
 #include <cmath>
 #include <random>
@@ -137,7 +139,7 @@ TEST(Deep, WhatIsTooLargeOrDoesNotFitIsNotWritten) {
 /// The same picture in tiles of 4 x 2 pixels, as other programs write it.
 std::vector<uint8_t> tiledFileOf(const Image& m) {
     Scratch s;
-    const std::string name = (s / "tiles.exr").string();
+    const std::string name = s / "tiles.exr";
     {
         Imf::Header h(m.width, m.height);
         h.setType(Imf::DEEPTILE);

@@ -33,6 +33,9 @@ clock() {
 
 echo "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1), $(nproc) processors, $(date -u +%F), load $(cut -d' ' -f1 /proc/loadavg)"
 echo
+echo "== Lookups in maps beside OpenImageIO's"
+"$build/bin/texture_bench" || misses=$((misses + 1))
+echo
 echo "== Patterns: shade against hand-written code"
 export ALPENGLOW_CACHE=$work/cache
 patterns=(bench/shaders/*.sl)

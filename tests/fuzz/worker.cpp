@@ -110,6 +110,7 @@ void becomeWorker(const fs::path& logs, const fs::path& folder, const std::strin
     const rlimit none{0, 0};
     setrlimit(RLIMIT_CORE, &none);
     setenv("ALPENGLOW_CACHE", cache.c_str(), 1);
+    for (const char* module : {"ALPENGLOW_PICTURES", "ALPENGLOW_GRIDS"}) setenv(module, "", 1); // each file would be a process
     std::signal(SIGINT, SIG_DFL);
     if (!kSanitized) {
         static char stack[1 << 16]; // a stack that overflowed cannot tell where

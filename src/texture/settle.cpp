@@ -31,7 +31,8 @@ template <class T> void pointInto(Texels<T>& texels, const std::shared_ptr<const
 
 void TextureSystem::settle(Texture& t, const SourcePlace& place) {
     const size_t bytes = t.bytes();
-    if (held_.fetch_add(bytes) + bytes <= limit_ || t.kind == Kind::Shadow || bytes < kSmall) return;
+    // A quarter is left to pages of scratch files, which would otherwise come and go for every lookup.
+    if (held_.fetch_add(bytes) + bytes <= limit_ - limit_ / 4 || t.kind == Kind::Shadow || bytes < kSmall) return;
     std::string why;
     const std::shared_ptr<ScratchFile> file = ScratchFile::create(why);
     std::vector<Places> places;

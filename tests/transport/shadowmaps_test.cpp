@@ -133,6 +133,23 @@ TEST(ShadowMaps, OfLights) {
     EXPECT_EQ(hidden.messages(), "");
 }
 
+// The shipped lights use the map where there is one: nothing but the map knows of the square. Without it, and under path, rays find none.
+TEST(ShadowMaps, OfShippedLights) {
+    const std::string names[] = {"\"shadowspot\" 1 \"coneangle\" 1.4 \"conedeltaangle\" .01 \"beamdistribution\" 0 \"from\" [0 4 0] \"to\" [0 0 0] \"shadowname\" ",
+                                 "\"shadowdistant\" 1 \"from\" [0 4 0] \"to\" [0 0 0] \"shadowname\" ",
+                                 "\"shadowpoint\" 1 \"from\" [0 4 0] \"shadowname\" ",
+                                 "\"shadowpoint\" 1 \"from\" [0 4 0] \"sfnx\" \"none\" \"sfpy\" \"none\" \"sfny\" "};
+    for (const std::string& name : names)
+        for (const std::string& map : {lampMap("lamp.shd"), std::string("\"none\"")})
+            for (const Hider h : {Hider::Hidden, Hider::Path}) {
+                Scene s(world("LightSource " + name + map + " \"bias\" .01\nSurface \"matte\" \"Ka\" 0 \"Kd\" 1 " + kFloor), withShaders(h));
+                const bool dark = h == Hider::Hidden && map != "\"none\"";
+                for (const float x : {0.f, -1.9f}) EXPECT_EQ(s.one(at(x, .5f)).x == 0, dark) << name << map << x;
+                for (const float x : {2.1f, 3.f}) EXPECT_GT(s.one(at(x, .5f)).x, .01f) << name << map << x;
+                EXPECT_EQ(s.messages().find("error"), std::string::npos) << s.messages();
+            }
+}
+
 TEST(ShadowMaps, AMissingMapIsSaidOnceAndLit) {
     writeShader("nomap", "surface nomap() { Ci = shadow(\"none.shd\", P); Oi = 1; }\n");
     Scene s(world("Surface \"nomap\" " + std::string(kFloor)), withShaders(Hider::Hidden));

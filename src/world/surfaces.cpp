@@ -612,7 +612,8 @@ static bool asksForLight(const BoundKernel& k) {
 void SurfaceBinder::bindLights(SurfaceBinding& b, const scene::Attributes& a) {
     // Lamps that only shine need no list: each has attributes of its own, and so its own lights.
     const bool asks = !a.coshaders.empty() || b.atmosphere.shader || b.inside >= 0 || b.outside >= 0 || b.moveS ||
-                      !b.lightOutputs.empty() || asksForLight(b.surfaceS) || asksForLight(b.displacementS);
+                      !b.lightOutputs.empty() || asksForLight(b.surfaceS) || asksForLight(b.displacementS) ||
+                      a.value("subsurface:groupname"); // walks below others of the group come out here
     if (asks) b.lights = world_.withParts(a.lights);
     b.lightList = lightLists_.try_emplace(b.lights, int(lightLists_.size())).first->second;
     if (size_t(b.lightList) != world_.lightLists_.size()) return;

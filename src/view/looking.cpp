@@ -140,7 +140,7 @@ void Session::shoot(const render::Glance& g, const Means& means) {
         const bool first = &s == &means.plan.pictures.front();
         if (!first && !wanted.contains(s.name) && !s.name.starts_with("light:")) continue;
         auto finished = render::finishedPicture(means.plan, s, means.facts, image, first ? imager : render::Imager{});
-        if (finished && s.name.starts_with("light:") && finished->channels.size() == 3) finished->channels = {"r", "g", "b"};
+        if (finished && (s.name.starts_with("light:") || s.name.starts_with("lpe:")) && finished->channels.size() == 3) finished->channels = {"r", "g", "b"};
         if (finished) picture->planes.push_back({s.name, std::make_shared<display::Image>(std::move(*finished))});
     }
     if (wanted.contains("noise") && g.film) picture->planes.push_back({"noise", std::make_shared<display::Image>(noisePlane(*g.film))});

@@ -53,22 +53,26 @@ void Session::addOutputs(scene::Options& o) const {
         o.displays.push_back(std::move(d));
     };
     add("picture", "rgbaz");
-    for (const std::string& c : round_.wishes.channels) add(c, c);
-    if (!round_.wishes.lights || o.hider != "path") return;
-    for (size_t i = 0; i < round_.scene->lights.size(); ++i) {
-        const std::string& handle = round_.scene->lights[i];
-        const std::string channel = "alpenglow_light" + std::to_string(i);
+    // Light by its path, under a name of ours.
+    const auto addPath = [&](const std::string& name, const std::string& expression) {
+        const std::string channel = "alpenglow_path" + std::to_string(o.displays.size());
         scene::Param declaration, source;
         declaration.name = channel;
         declaration.cls = scene::Class::Varying;
         declaration.type = scene::Type::Color;
         source.name = "source";
         source.type = scene::Type::String;
-        source.strings = {"color lpe:C.*<L.'" + handle + "'>"};
+        source.strings = {"color " + expression};
         o.displayChannels[channel] = declaration;
         o.displayChannelParams[channel] = {source};
-        add("light:" + handle, channel);
+        add(name, channel);
+    };
+    for (const std::string& c : round_.wishes.channels) {
+        if (c.starts_with("lpe:")) addPath(c, c);
+        else add(c, c);
     }
+    if (!round_.wishes.lights || o.hider != "path") return;
+    for (const std::string& handle : round_.scene->lights) addPath("light:" + handle, "lpe:C.*<L.'" + handle + "'>");
 }
 
 /// The frame as this round has it, at its full resolution.

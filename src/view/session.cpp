@@ -343,6 +343,8 @@ Json Session::scene() {
         j["outputs"] = outputs_;
         j["scene"] = sceneSerial_;
     }
+    if (s) // what the scene itself has declared
+        for (const auto& [name, declaration] : s->frame->options.displayChannels) j["outputs"].push_back(name);
     j["lights"] = s ? Json(s->lights) : Json::array();
     j["frames"] = s ? Json(s->frames) : Json::array();
     Json& shaders = j["shaders"] = Json::array();

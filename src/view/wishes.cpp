@@ -33,8 +33,10 @@ bool cropOf(const Json& j, std::optional<std::array<double, 4>>* to) {
     return true;
 }
 
-/// A name as a display's mode has it.
+/// A name as a display's mode has it, or a light path expression ("lpe:C<RD>L").
 bool isChannelName(const std::string& s) {
+    if (s.starts_with("lpe:"))
+        return s.size() > 4 && s.size() <= 200 && std::all_of(s.begin(), s.end(), [](unsigned char c) { return c > ' ' && c < 127 && c != '"'; });
     return !s.empty() && s.size() <= 200 && std::all_of(s.begin(), s.end(), [](unsigned char c) {
         return std::isalnum(c) || c == '_' || c == ':' || c == '.' || c == '[' || c == ']';
     });

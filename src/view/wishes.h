@@ -24,7 +24,7 @@ struct Wishes {
     double clamp = 0;               ///< of samples; 0: off
     std::string hider;              ///< "": the scene's
     std::optional<std::array<double, 4>> crop; ///< x0 x1 y0 y1 in 0..1: rendered first
-    std::vector<std::string> channels;         ///< outputs beside the picture, as a display's mode names them
+    std::vector<std::string> channels;         ///< outputs beside the picture, as a display's mode names them, or "lpe:..."
     bool lights = false;            ///< lights apart, so that they can be dimmed
     std::map<std::string, double> dim; ///< by a light's handle: times its light
     ParameterChanges parameters;    ///< of shaders

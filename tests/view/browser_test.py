@@ -175,6 +175,12 @@ def check_outputs(v):
     assert n[2] < -0.8, n
     assert near(v.seen(80, 50), [round((c + 1) / 2 * 255) for c in n], 3), (v.seen(80, 50), n)
     v.shot('normals')
+    v.set('add', 'lpe:C<RD>L')
+    v.click('addgo')
+    v.settled()
+    v.b.until("alpenglow.stage.whole.plane === 'lpe:C<RD>L'")
+    light = v.linear(70, 92, 'lpe:C<RD>L', 'rgb')
+    assert light[1] > 0.05 and near(v.seen(70, 92), [encode(c) for c in light]), (light, v.seen(70, 92))
     v.b.key('n')
     v.b.until("alpenglow.stage.whole.plane === 'noise'")
     assert v.seen(2, 2) == [0, 0, 4] and sum(v.seen(80, 92)) > 20, v.seen(80, 92)

@@ -223,6 +223,11 @@ TEST_F(ViewSession, OutputsAndTheMapOfTheNoise) {
     ASSERT_EQ(n.channels.size(), 3u);
     EXPECT_NEAR(n.pixel(20, 12)[2], -1, 0.35f); // the sphere looks back at the eye
     EXPECT_EQ(difference(*p->planes[0].image, rendered(scene)), 0); // outputs change no picture
+    set({{"channels", {"lpe:C<RD>L", "lpe:C<RD><RD>+L"}}});
+    const auto paths = done("lpe:C<RD>L");
+    ASSERT_TRUE(paths);
+    EXPECT_GT(paths->plane("lpe:C<RD>L")->image->pixel(24, 10)[0], 0.1f);
+    EXPECT_LE(paths->plane("lpe:C<RD>L")->image->pixel(24, 10)[0], paths->planes[0].image->pixel(24, 10)[0] * 1.00001f);
     const auto noisy = done("noise");
     EXPECT_GT(noisy->plane("noise")->image->pixel(20, 12)[0], 0);
     EXPECT_EQ(noisy->plane("noise")->image->pixel(0, 0)[0], 0);

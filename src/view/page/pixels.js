@@ -35,7 +35,7 @@ export function heat(x) {
 /** How a plane is shown: "colour", "signed" (-1 .. 1), "range" (grey between two numbers), "heat". */
 export function kindOf(plane, channels) {
   if (plane === 'noise' || plane === 'variance' || plane === 'samples') return 'heat';
-  if (plane === 'picture' || plane.startsWith('light:')) return 'colour';
+  if (plane === 'picture' || plane.startsWith('light:') || plane.startsWith('lpe:')) return 'colour';
   if (channels.length === 1) return 'range';
   return /^(N|Ng|normal|I|dPd[uv])$/.test(plane) ? 'signed' : 'colour';
 }

@@ -39,7 +39,7 @@ struct Descriptor {
     const rlimit noCore{0, 0};
     setrlimit(RLIMIT_CORE, &noCore);
     for (const int s : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTERM, SIGINT}) std::signal(s, SIG_DFL);
-    void* handle = dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);
+    void* handle = dlopen(module.c_str(), RTLD_LAZY | RTLD_LOCAL);
     const auto read = handle ? reinterpret_cast<ReadForeignPicture>(dlsym(handle, kReadForeignPicture)) : nullptr;
     if (read) {
         const ForeignLimits limits{uint64_t(limits::kImageSide), uint64_t(limits::kImageChannels), limits::kImageBytes,

@@ -20,7 +20,7 @@ void Answers::drawRandom(const ServiceCall& call) {
         uint32_t vertex = 0;
         if (uniform) {
             const auto shape = world_->numberOfShape_.find(p.shape);
-            vertex = childVertex(shape == world_->numberOfShape_.end() ? 0 : shape->second + 1, light, 1);
+            vertex = childVertex(shape == world_->numberOfShape_.end() ? 0 : world_->keyOfShape(shape->second) + 1, light, 1);
         } else {
             vertex = r ? r->vertex : uint32_t(at); // no ray: a vertex of a surface that is diced
         }

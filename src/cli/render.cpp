@@ -212,6 +212,7 @@ int renderOnce(const Arguments& a, const StopFlag* stop) {
     options.reads = settings.reads;
     options.stop = stop;
     options.frames = a.frameList;
+    options.defers = true;
     std::vector<int> seen;
     options.frameSeen = [&](int frame) { seen.push_back(frame); };
     options.overrides = [&](scene::Options& o) { renderer.override(o); };
@@ -219,6 +220,7 @@ int renderOnce(const Arguments& a, const StopFlag* stop) {
     if (!renderer.canBegin()) return kOutputFailed;
     try {
         ri::RibReader reader(options, renderer, diags);
+        renderer.setProcedurals([&reader](const scene::Frame& f, std::span<const int> which) { return reader.make(f, which); });
         for (const std::string& r : a.rib) reader.readMemory(r, "--rib");
         for (const std::string& s : a.scenes) {
             if (*stop) break;

@@ -5,10 +5,12 @@
 #include "geometry/factories.h"
 #include "geometry/instance_attributes.h"
 #include "geometry/placed.h"
+#include "scene/unmade.h"
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <tuple>
 
 namespace alpenglow::geometry {
 namespace {
@@ -167,8 +169,8 @@ private:
     Facing facing_;
     std::vector<ShapeRef> out_;
     std::vector<Usage> usage_;                                                     ///< by object
-    std::map<std::pair<const scene::Primitive*, const void*>, Shared> shared_;     ///< by primitive and what of the attributes it depends on
-    std::map<const scene::Primitive*, Matrix> nearest_;
+    std::map<std::tuple<int, const scene::Primitive*, const void*>, Shared> shared_; ///< by object, primitive and what of the attributes it depends on
+    std::map<std::pair<int, const scene::Primitive*>, Matrix> nearest_;
 };
 
 bool FrameBuilder::full(const SourcePlace& place) {
@@ -277,7 +279,7 @@ bool FrameBuilder::shares(const scene::Primitive& p, const scene::Attributes* a,
 
 /// Of the instances of a primitive, the one that is seen largest: what is diced finely enough there is so everywhere.
 const Matrix& FrameBuilder::nearest(const scene::Instance& inst, const scene::Primitive& p) {
-    const auto [at, fresh] = nearest_.try_emplace(&p);
+    const auto [at, fresh] = nearest_.try_emplace({inst.object, &p});
     if (!fresh) return at->second;
     const Vec3d centre = centreOf(p);
     double largest = -1;
@@ -294,7 +296,7 @@ void FrameBuilder::addShared(const PrimitiveRef& p, const scene::AttributesRef& 
                              int instance) {
     if (full(p->place)) return;
     const bool polygons = p->kind.find("Polygon") != std::string::npos;
-    auto [at, fresh] = shared_.try_emplace({p.get(), polygons ? nullptr : a.get()});
+    auto [at, fresh] = shared_.try_emplace({inst.object, p.get(), polygons ? nullptr : a.get()});
     Shared& shared = at->second;
     if (fresh) {
         const Matrix& home = nearest(inst, *p);
@@ -319,7 +321,7 @@ std::vector<ShapeRef> FrameBuilder::run() {
     for (const scene::Instance& i : frame_.instances)
         if (i.object >= 0 && size_t(i.object) < usage_.size()) usage_[size_t(i.object)].by.push_back(&i);
     for (const PrimitiveRef& p : frame_.primitives)
-        if (p) add(p, p->attributes, overShutter(p->toWorld), -1);
+        if (p && !scene::isProcedural(*p)) add(p, p->attributes, overShutter(p->toWorld), -1);
     for (size_t i = 0; i < frame_.instances.size(); ++i) {
         const scene::Instance& inst = frame_.instances[i];
         if (inst.object < 0 || size_t(inst.object) >= frame_.objects.size()) {

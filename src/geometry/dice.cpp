@@ -1,8 +1,12 @@
 #include "geometry/dice.h"
 #include "base/exact.h"
 #include "base/limits.h"
+#include "geometry/edge_corners.h"
+#include "geometry/parametric.h"
 #include "geometry/placed.h"
+#include "geometry/polygon_mesh.h"
 #include "geometry/seams.h"
+#include "scene/unmade.h"
 #include <algorithm>
 #include <cmath>
 #include <tbb/parallel_for.h>
@@ -213,6 +217,19 @@ void diceShapes(const std::vector<ShapeRef>& all, const DiceOptions& opt, Diagno
         else if (known.insert(p->geometry().get()).second) shapes.push_back(p->geometry()), places.push_back(p);
     }
     Seams seams;
+    std::vector<std::vector<double>> with(shapes.size()); // whose borders are closed among each other
+    EdgeCorners corners;
+    for (size_t i = 0; i < shapes.size(); ++i) {
+        with[i] = motionOf(places[i]);
+        // Procedurals that wait are made in any order: their borders are closed among themselves.
+        for (const char c : scene::partOf(shapes[i]->attributes())) with[i].push_back(double(c));
+        if (places[i] || !stitched(*shapes[i]) || !isDisplaced(*shapes[i], opt)) continue;
+        std::vector<Vec3> own;
+        if (const auto* mesh = dynamic_cast<const PolygonMesh*>(shapes[i].get())) mesh->borderCorners(own);
+        else if (const auto* patch = dynamic_cast<const Parametric*>(shapes[i].get())) patch->borderCorners(own);
+        corners.add(with[i], own);
+    }
+    corners.finish();
     // Messages are kept by shape and passed on in order, so that they do not depend on threads.
     std::vector<std::vector<Diagnostic>> said(shapes.size());
     tbb::parallel_for(size_t(0), shapes.size(), [&](size_t i) {
@@ -220,7 +237,8 @@ void diceShapes(const std::vector<ShapeRef>& all, const DiceOptions& opt, Diagno
         Diagnostics own;
         DiceOptions mine = opt;
         mine.seamOrder = uint32_t(i);
-        if (stitched(*shapes[i])) mine.seams = &seams, mine.seamWith = motionOf(places[i]);
+        if (stitched(*shapes[i])) mine.seams = &seams, mine.seamWith = with[i];
+        if (stitched(*shapes[i]) && !places[i]) mine.corners = &corners;
         shapes[i]->dice(mine, own);
         said[i] = own.all();
     });

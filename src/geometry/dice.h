@@ -25,6 +25,7 @@ struct DiceGrid {
 };
 
 class Seams;
+class EdgeCorners;
 
 struct DiceOptions {
     DiceCamera camera = {};
@@ -47,6 +48,7 @@ struct DiceOptions {
     Seams* seams = nullptr;
     uint32_t seamOrder = 0;         ///< of this shape among all, one apart for each key
     std::vector<double> seamWith;   ///< borders are closed among those for which this is the same: how they move
+    const EdgeCorners* corners = nullptr; ///< of all displaced shapes that stand still; null: only a shape's own edges cut it
     /// From a named space to camera space; null, or false: the space is not known.
     std::function<bool(const Shape&, const std::string& space, Matrix& out)> spaceOf;
 };

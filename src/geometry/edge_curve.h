@@ -21,6 +21,7 @@ public:
     Vec3d at(double t) const { return along(reversed_ ? 1 - t : t); }
     /// The same from the end that comes first, and on demand the first two derivatives.
     Vec3d along(double c, Vec3d* slope = nullptr, Vec3d* bend = nullptr) const;
+    bool straight() const { return kind_ == Kind::Line; }
     /// All of it is one point.
     bool collapsed() const { return collapsed_; }
     /// The fewest segments that keep its two sides apart: 1, or more where it turns about.

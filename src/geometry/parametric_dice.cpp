@@ -3,6 +3,7 @@
 // both sides of it. On the border of the surface, where its edges are data of their own (edge_curve.h), they are those that every
 // surface with the same edge has.
 #include "base/limits.h"
+#include "geometry/edge_corners.h"
 #include "geometry/edge_curve.h"
 #include "geometry/parametric.h"
 #include "geometry/seams.h"
@@ -203,10 +204,20 @@ void Parametric::Dicing::giveEdge(int side, Line& line, const std::vector<double
         if (curves.size() != keys.size()) return;
         if (std::all_of(curves.begin(), curves.end(), [](const EdgeCurve& e) { return e.collapsed(); })) return;
         const double micro = !displaced && diceFlatness(s.attributes()) > 0 ? 1e-9 : edge(); // how it bends has the only say
-        for (double t : EdgeCuts(curves, opt.camera, micro, tolerance(), displaced).places()) {
-            if (c > 0 && t == 0) continue;
-            at.push_back(t == 1 ? to : from + (to - from) * t);
-            points.push_back(own.at(t));
+        // Where others have a corner it is two edges.
+        std::vector<EdgeCorners::On> ends{{0, Vec3(own.at(0))}};
+        if (opt.corners && displaced && own.straight() && keys.size() == 1)
+            for (const EdgeCorners::On& k : opt.corners->within(opt.seamWith, own.at(0), own.at(1))) ends.push_back(k);
+        ends.push_back({1, Vec3(own.at(1))});
+        for (size_t k = 0; k + 1 < ends.size(); ++k) {
+            if (ends.size() > 2) curves = {own = EdgeCurve::line(Vec3d(ends[k].P), Vec3d(ends[k + 1].P))};
+            const double width = ends[k + 1].t - ends[k].t;
+            for (double t : EdgeCuts(curves, opt.camera, micro, tolerance(), displaced).places()) {
+                if ((c > 0 || k > 0) && t == 0) continue;
+                const double whole = t == 1 ? ends[k + 1].t : ends[k].t + width * t;
+                at.push_back(whole == 1 ? to : from + (to - from) * whole);
+                points.push_back(own.at(t));
+            }
         }
     }
     line.at = std::move(at);
@@ -396,6 +407,18 @@ std::vector<uint32_t> Parametric::Dicing::border() const {
     std::sort(out.begin(), out.end());
     out.erase(std::unique(out.begin(), out.end()), out.end());
     return out;
+}
+
+void Parametric::borderCorners(std::vector<Vec3>& out) const {
+    const DiceOptions none;
+    const Dicing d(*this, none, true);
+    for (int side = 0; side < 4; ++side) {
+        const int direction = side & 1; // sides 0 and 2 run along u
+        if (d.closed[1 - direction]) continue;
+        const std::vector<double> cells = d.cells(direction);
+        for (size_t c = 0; 2 * c + 1 < cells.size(); ++c)
+            if (EdgeCurve e; edgeCurve(side, int(c), cells[2 * c], cells[2 * c + 1], e)) out.insert(out.end(), {Vec3(e.at(0)), Vec3(e.at(1))});
+    }
 }
 
 void Parametric::dice(const DiceOptions& opt, Diagnostics& diag) {

@@ -1,6 +1,7 @@
 // Facets of displaced polygons. Each edge of a triangle is cut as its data and the camera say (edge_curve.h), so neighbours within the mesh
 // and in others have the same points there; triangles with edges of too many parts are cut into smaller ones first.
 #include "base/limits.h"
+#include "geometry/edge_corners.h"
 #include "geometry/edge_curve.h"
 #include "geometry/piece_grid.h"
 #include "geometry/polygon_mesh.h"
@@ -51,7 +52,14 @@ struct PolygonMesh::Dicing {
 
     Dicing(const PolygonMesh&, const DiceOptions&);
     void findOpen();
+    /// A triangle, or a part of one, with corners of others on its sides: it is cut there first.
+    struct Met {
+        Part::Corner corner[3];
+        std::vector<Part::Corner> on[3];
+        bool open[3];
+    };
     void cut(uint32_t tri, bool count);
+    void cutMet(uint32_t tri, const Met&, bool count);
     void cut(const Part&, bool count);
     void cutInside(const Part&, const bool split[3], bool count);
     void leaf(const Part&, const int rates[3], bool count);
@@ -100,6 +108,21 @@ void PolygonMesh::Dicing::cut(uint32_t tri, bool count) {
     std::vector<EdgeCuts> cuts;
     EdgeCurve own[3];
     Part p{tri, {{{0, 0}, s.cameraCorner(tri, 0)}, {{1, 0}, s.cameraCorner(tri, 1)}, {{0, 1}, s.cameraCorner(tri, 2)}}, {}};
+    if (opt.corners && keys.size() == 1) {
+        Met m{{p.corner[0], p.corner[1], p.corner[2]}, {}, {}};
+        bool any = false;
+        for (int k = 0; k < 3; ++k) {
+            m.open[k] = open[3 * size_t(tri) + size_t(k)] != 0;
+            if (!m.open[k]) continue;
+            const Part::Corner &a = p.corner[k], &b = p.corner[(k + 1) % 3];
+            for (const EdgeCorners::On& on : opt.corners->within(opt.seamWith, a.P, b.P)) {
+                const float t = float(on.t);
+                m.on[k].push_back({{a.b.x + (b.b.x - a.b.x) * t, a.b.y + (b.b.y - a.b.y) * t}, Vec3d(on.P)});
+            }
+            any |= !m.on[k].empty();
+        }
+        if (any) return cutMet(tri, m, count);
+    }
     for (int k = 0; k < 3; ++k) {
         for (const PolygonMesh* m : keys) curves[k].push_back(EdgeCurve::line(m->cameraCorner(tri, k), m->cameraCorner(tri, (k + 1) % 3)));
         own[k] = EdgeCurve::line(s.cameraCorner(tri, k), s.cameraCorner(tri, (k + 1) % 3));
@@ -107,6 +130,38 @@ void PolygonMesh::Dicing::cut(uint32_t tri, bool count) {
     }
     for (int k = 0; k < 3; ++k) p.side[k] = {&cuts[size_t(k)], &own[k], 0, 1, open[3 * size_t(tri) + size_t(k)] != 0};
     cut(p, count);
+}
+
+/// From the middle one of the corners on a side to the corner across. Sides are then edges from corner to corner, as others have them.
+void PolygonMesh::Dicing::cutMet(uint32_t tri, const Met& m, bool count) {
+    int k = 0;
+    while (k < 3 && m.on[k].empty()) ++k;
+    if (k == 3) {
+        EdgeCurve own[3];
+        std::vector<EdgeCuts> cuts;
+        cuts.reserve(3);
+        Part p{tri, {m.corner[0], m.corner[1], m.corner[2]}, {}};
+        for (int i = 0; i < 3; ++i) {
+            own[i] = EdgeCurve::line(m.corner[i].P, m.corner[(i + 1) % 3].P);
+            cuts.push_back(cutsOf({&own[i], 1}, m.open[i]));
+            p.side[i] = {&cuts.back(), &own[i], 0, 1, m.open[i]};
+        }
+        return cut(p, count);
+    }
+    const int next = (k + 1) % 3, last = (k + 2) % 3;
+    const std::vector<Part::Corner>& on = m.on[k];
+    const auto middle = on.begin() + std::ptrdiff_t(on.size() / 2);
+    cutMet(tri, {{m.corner[k], *middle, m.corner[last]}, {{on.begin(), middle}, {}, m.on[last]}, {m.open[k], false, m.open[last]}}, count);
+    cutMet(tri, {{*middle, m.corner[next], m.corner[last]}, {{middle + 1, on.end()}, m.on[next], {}}, {m.open[k], m.open[next], false}}, count);
+}
+
+void PolygonMesh::borderCorners(std::vector<Vec3>& out) const {
+    const DiceOptions none;
+    Dicing d(*this, none);
+    d.findOpen();
+    for (uint32_t side = 0; side < d.open.size(); ++side)
+        if (d.open[side])
+            for (const uint32_t k : {side % 3, (side + 1) % 3}) out.push_back(base().P[vertexOf(side / 3, int(k))]);
 }
 
 void PolygonMesh::Dicing::cut(const Part& p, bool count) {

@@ -37,6 +37,8 @@ public:
     void cornerParameters(uint32_t tri, SurfacePoint out[3]) const;
     /// facePlace() of a point of a triangle of the undiced mesh. False: its face has more than four corners. faceplace.cpp
     bool placeOnFace(uint32_t tri, double b1, double b2, FacePlace&) const;
+    /// Corners on sides that no other triangle of the mesh has, camera space. Before it is diced.
+    void borderCorners(std::vector<Vec3>& out) const;
 
 protected:
     size_t classCount(scene::Class) const override;

@@ -45,6 +45,10 @@ private:
     const Areas& areas() const;
     LocalPoint cameraPoint(uint32_t piece, double u, double v, int derivatives) const;
     Vec3d cameraPosition(uint32_t piece, double u, double v) const { return cameraPoint(piece, u, v, 0).P; }
+    Vec3d controlPoint(int vertex) const {
+        const float* p = objectP_ + 3 * size_t(vertex);
+        return transformPoint(toCamera(), Vec3d(p[0], p[1], p[2]));
+    }
     void setNormal(uint32_t piece, double u, double v, LocalPoint&) const;
     int channelOf(const PrimVar&) const;
     int corners(uint32_t face) const { return input_.cage.corners[face]; }

@@ -1,6 +1,7 @@
 // Facets of subdivision surfaces. Every edge of the cage has one rate and its points are made once, so neighbours meet to the
-// bit, whether displaced or not.
+// bit, whether displaced or not. So do separate meshes, whose borders are cut as their own data says (cage_border.h).
 #include "base/limits.h"
+#include "geometry/cage_border.h"
 #include "geometry/dice.h"
 #include "geometry/piece_grid.h"
 #include "geometry/subdivision.h"
@@ -8,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <tbb/parallel_for.h>
 
 namespace alpenglow::geometry {
@@ -28,7 +30,16 @@ struct Subdivision::Dicing {
     std::vector<uint8_t> even;              ///< per edge: it borders a split face, so its middle is a point
     std::vector<Point> points;
     std::vector<uint32_t> cornerPoint, edgePoint, middlePoint, spokePoint; ///< first of its points; kNone: none yet
+    struct Rim {
+        CageBorder border;
+        std::vector<EdgeCurve> curve; ///< of its edges
+        std::vector<int> rate;
+    };
+    std::optional<Rim> rim;
 
+    void cutBorder();
+    void placeBorder(std::vector<Vec3>& P) const;
+    std::vector<uint8_t> onBorder() const;
     void measure(const Subdivision& at, uint32_t piece);
     void rates(double scale);
     double quads() const;
@@ -103,8 +114,56 @@ void Subdivision::Dicing::rates(double scale) {
             even[edge(f, k)] = 1;
         }
     }
+    for (size_t i = 0; rim && i < rim->rate.size(); ++i) edgeRate[size_t(rim->border.edges()[i])] = rim->rate[i];
     for (size_t e = 0; e < edgeRate.size(); ++e)
         if (even[e]) edgeRate[e] += edgeRate[e] & 1;
+}
+
+/// How finely edges of the border are cut, by what they are at all times: whoever has the same edge cuts it alike.
+void Subdivision::Dicing::cutBorder() {
+    std::vector<const Subdivision*> keys;
+    for (const ShapeRef& key : opt.keys)
+        if (const auto* k = dynamic_cast<const Subdivision*>(key.get()); k && k->limit_->pieces() == limit.pieces()) keys.push_back(k);
+    if (keys.empty()) keys.push_back(&s);
+    rim.emplace(CageBorder(s.input_.cage, limit), std::vector<EdgeCurve>(), std::vector<int>());
+    const double edge = diceEdge(s.attributes()), flat = diceFlatness(s.attributes()), tolerance = flat > 0 ? flat : 0.05 * edge;
+    const double micro = !displaced && flat > 0 ? 1e-9 : edge; // how it bends has the only say
+    for (size_t i = 0; i < rim->border.edges().size(); ++i) {
+        std::vector<EdgeCurve> curves;
+        for (const Subdivision* k : keys) curves.push_back(rim->border.curve(i, [k](int v) { return k->controlPoint(v); }));
+        // In equal parts, as small as the smallest.
+        const std::vector<double> places = EdgeCuts(curves, opt.camera, micro, tolerance, displaced).places();
+        double least = 1;
+        for (size_t n = 1; n < places.size(); ++n) least = std::min(least, places[n] - places[n - 1]);
+        rim->rate.push_back(int(std::min(1 / least, double(limits::kDiceEdge))));
+        rim->curve.push_back(rim->border.curve(i, [this](int v) { return s.controlPoint(v); }));
+    }
+}
+
+void Subdivision::Dicing::placeBorder(std::vector<Vec3>& P) const {
+    for (size_t i = 0; i < rim->border.edges().size(); ++i) {
+        const size_t e = size_t(rim->border.edges()[i]);
+        if (edgePoint[e] == kNone) continue;
+        const EdgeCurve& curve = rim->curve[i];
+        const int rate = edgeRate[e];
+        for (int k = 1; k < rate; ++k) P[edgePoint[e] + uint32_t(k) - 1] = Vec3(curve.at(double(k) / rate));
+        const auto [first, last] = rim->border.ends(i);
+        P[cornerPoint[size_t(first)]] = Vec3(curve.at(0));
+        P[cornerPoint[size_t(last)]] = Vec3(curve.at(1));
+    }
+}
+
+/// By point: whether it lies on such an edge.
+std::vector<uint8_t> Subdivision::Dicing::onBorder() const {
+    std::vector<uint8_t> on(points.size(), 0);
+    for (size_t i = 0; i < rim->border.edges().size(); ++i) {
+        const size_t e = size_t(rim->border.edges()[i]);
+        if (edgePoint[e] == kNone) continue;
+        for (int k = 1; k < edgeRate[e]; ++k) on[edgePoint[e] + uint32_t(k) - 1] = 1;
+        const auto [first, last] = rim->border.ends(i);
+        on[cornerPoint[size_t(first)]] = on[cornerPoint[size_t(last)]] = 1;
+    }
+    return on;
 }
 
 /// Segments of the edges of a piece, by winding.
@@ -214,7 +273,7 @@ void Subdivision::Dicing::border(uint32_t piece, std::vector<uint32_t>& out) con
 
 void Subdivision::dice(const DiceOptions& opt, Diagnostics& diag) {
     displaced_ = isDisplaced(*this, opt);
-    Dicing d{*this, *limit_, opt, displaced_, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+    Dicing d{*this, *limit_, opt, displaced_, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
     d.need.resize(limit_->pieces());
     tbb::parallel_for(uint32_t(0), limit_->pieces(), [&](uint32_t k) {
         d.need[k] = {1, 1};
@@ -224,6 +283,7 @@ void Subdivision::dice(const DiceOptions& opt, Diagnostics& diag) {
                 other && other != this && other->limit_->pieces() == limit_->pieces())
                 d.measure(*other, k);
     });
+    d.cutBorder();
     double scale = 1;
     d.rates(scale);
     const double most = std::max(double(limits::kDiceQuads), 2.0 * limit_->pieces());
@@ -256,6 +316,9 @@ void Subdivision::dice(const DiceOptions& opt, Diagnostics& diag) {
         const Dicing::Point& p = d.points[i];
         shared.P[i] = Vec3(cameraPosition(p.piece, p.u, p.v));
     });
+    d.placeBorder(shared.P);
+    const std::vector<Vec3> flat = displaced_ ? shared.P : std::vector<Vec3>();
+    const std::vector<uint8_t> onBorder = d.onBorder();
     if (displaced_)
         displaceMesh(
             *this, opt, diag, [&](uint32_t i) { return evaluateLocal(d.points[i].piece, d.points[i].u, d.points[i].v); },
@@ -270,7 +333,8 @@ void Subdivision::dice(const DiceOptions& opt, Diagnostics& diag) {
     m.made.reserve(facets);
     meshParam_.reserve(vertices);
     meshPrim_.reserve(vertices);
-    std::vector<uint32_t> border;
+    std::vector<uint32_t> border, seam;
+    std::vector<Vec3> flatSeam;
     for (uint32_t k = 0; k < limit_->pieces(); ++k) {
         if (!gridOf[k]) continue;
         const PieceGrid& g = *gridOf[k];
@@ -278,6 +342,7 @@ void Subdivision::dice(const DiceOptions& opt, Diagnostics& diag) {
         const uint32_t base = uint32_t(m.P.size());
         for (size_t i = 0; i < g.param.size(); ++i) {
             const uint32_t point = i < border.size() ? border[i] : insideOf[k] + uint32_t(i) - uint32_t(g.border);
+            if (displaced_ && onBorder[point]) seam.push_back(uint32_t(m.P.size())), flatSeam.push_back(flat[point]);
             m.P.push_back(shared.P[point]);
             meshParam_.push_back(g.param[i]);
             meshPrim_.push_back(k);
@@ -287,6 +352,7 @@ void Subdivision::dice(const DiceOptions& opt, Diagnostics& diag) {
     limit_->forgetTopology();
     m.finish();
     mesh_ = std::move(m);
+    if (displaced_) closeSeams(opt, mesh_, std::move(seam), std::move(flatSeam));
 }
 
 } // namespace alpenglow::geometry

@@ -11,6 +11,7 @@ public:
         return integrator_.trace(rays, results, stop);
     }
     const transport::Counters& counters() const override { return integrator_.counters(); }
+    bool unfinished() const override { return integrator_.unfinished(); }
 
 private:
     transport::Integrator integrator_;

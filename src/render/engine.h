@@ -15,6 +15,8 @@ public:
     virtual bool trace(std::span<const transport::CameraRay>, std::span<transport::SampleResult>,
                        const StopFlag* stop) = 0;
     virtual const transport::Counters& counters() const = 0;
+    /// See transport::Integrator.
+    virtual bool unfinished() const { return false; }
 };
 
 struct Engine {

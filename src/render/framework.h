@@ -28,13 +28,18 @@ struct Renderer::FrameWork {
     OutputPlan plan;
     std::string checkpoint; ///< "": none
     transport::Settings settings;
+    std::shared_ptr<const scene::Frame> made; ///< the frame with the procedurals that are made by now
+    std::unique_ptr<Diagnostics> later;       ///< of worlds with further procedurals: says what was not said yet
     std::shared_ptr<const transport::World> world;
     PictureFacts picture;
     Imager imager;
     uint64_t nonFinite = 0; ///< samples that were left out
 
     FrameWork(std::shared_ptr<const scene::Frame> of, FrameStats& stats, Diagnostics& d)
-        : frame(std::move(of)), told(stats), o(frame->options), hider(hiderOf(o, d)), path(hider == Hider::Path), camera(o, d) {}
+        : frame(std::move(of)), told(stats), o(frame->options), hider(hiderOf(o, d)), path(hider == Hider::Path), camera(o, d), made(frame) {}
 };
+
+/// Notes how many procedurals of a frame waited, and how many were made. procedurals.cpp
+void sayProcedurals(const scene::Frame&, Diagnostics&);
 
 } // namespace alpenglow::render

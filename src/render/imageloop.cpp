@@ -4,6 +4,7 @@
 #include "render/imaging.h"
 #include "render/noise.h"
 #include "render/rendering.h"
+#include "transport/unmade.h"
 #include <algorithm>
 #include <cmath>
 #include <mutex>
@@ -179,6 +180,7 @@ void ImageLoop::run() {
 
 void ImageLoop::band(int b) {
     const Window part{window_.x0, window_.y0 + b * rows_, window_.x1, std::min(window_.y0 + (b + 1) * rows_, window_.y1)};
+    if (job_.world && transport::hasUnmade(*job_.world)) job_.world->flushPrints(true); // of samples that are not traced again
     SampleBuffer buffer(part, xw_, yw_, nx_, ny_, aovs_, seed_, jitter_);
     const std::vector<Window> tiles = tilesOf(buffer.sampled());
     const int first = refinement_.on() ? nx_ * ny_ / 2 : 0, last = refinement_.on() ? first + 1 : nx_ * ny_;
@@ -219,8 +221,8 @@ ImageLoop::Done ImageLoop::told(int b, double begin, size_t tasks) {
 /// Traces samples of a buffer: those that `list` names of task i.
 void ImageLoop::trace(SampleBuffer& buffer, size_t tasks, const std::function<void(size_t, std::vector<Wanted>&)>& list,
                       const Done& done) {
-    job_.team.run(
-        tasks, &job_.halt,
+    job_.run(
+        tasks,
         [&](int worker, size_t i) {
             std::vector<Wanted> wanted;
             list(i, wanted);
@@ -262,6 +264,7 @@ bool ImageLoop::traceSlice(SampleBuffer& buffer, int worker, std::span<const Wan
         rays.push_back(imageRay(job_.camera, buffer.position(w.x, w.y, w.k), seed_, w.x, w.y, uint32_t(w.k)));
     std::vector<transport::SampleResult> results(rays.size());
     if (!job_.trace(worker, rays, results)) return false;
+    if (job_.unfinished(worker)) return true; // these are traced again
     if (job_.plan.needsDepth(DepthFilter::Midpoint) && !traceBehind(worker, rays, results)) return false;
     for (size_t k = 0; k < rays.size(); ++k) {
         transport::SampleResult& r = results[k];

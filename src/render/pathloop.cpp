@@ -281,8 +281,8 @@ void PathLoop::traceTile(int worker, size_t tile, const Pass& pass) {
 bool PathLoop::tracePass(const Pass& pass) {
     bool whole = false;
     try {
-        whole = (pass.steps || caustics_.ready(pass.first, pass.count)) && job_.team.run(
-            tiles_.size(), &job_.halt, [&](int worker, size_t i) { traceTile(worker, i, pass); },
+        whole = (pass.steps || caustics_.ready(pass.first, pass.count)) && job_.run(
+            tiles_.size(), [&](int worker, size_t i) { traceTile(worker, i, pass); },
             [&](size_t done) {
                 job_.pollStop();
                 if (settings_.seconds > 0 && any_ && job_.elapsed() > settings_.seconds) job_.halt = 1;

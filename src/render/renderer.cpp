@@ -193,7 +193,9 @@ void Renderer::printPixel(Job& job, const scene::Options& o, SampleRange wanted,
             ray = imageRay(job.camera, {float(x) + p.x, float(y) + p.y}, settings_.seed, x, y, s);
         }
         transport::SampleResult r;
-        if (!job.trace(0, {&ray, 1}, {&r, 1})) break;
+        bool whole = job.trace(0, {&ray, 1}, {&r, 1});
+        while (whole && job.unfinished(0)) whole = job.makeMet() && job.trace(0, {&ray, 1}, {&r, 1});
+        if (!whole) break;
         Color c = clampSample(r.color, settings_.sampleClamp);
         for (int k = 0; k < 3; ++k) sum[k] += double(c[k] * weight);
         sum[3] += double((r.opacity.x + r.opacity.y + r.opacity.z) / 3 * weight);

@@ -9,6 +9,7 @@
 #include "scene/scene.h"
 #include <functional>
 #include <set>
+#include <span>
 
 namespace alpenglow::render {
 
@@ -25,6 +26,9 @@ public:
     /// The scene file that is read next; its folder is looked into for shaders and textures. `read`: pictures that its Make
     /// requests read, as far as known.
     void setScene(const std::string& path, const std::set<std::string>& read = {});
+    /// For ri::ReaderOptions::defers: makes what is in procedurals of a frame that is being rendered (ri::RibReader::make()).
+    using MakeProcedurals = std::function<std::shared_ptr<const scene::Frame>(const scene::Frame&, std::span<const int>)>;
+    void setProcedurals(MakeProcedurals make) { makeProcedurals_ = std::move(make); }
     /// Whether the files that are known before a scene is read (-o, --checkpoint, --stats) can be written. False: an error was
     /// reported.
     bool canBegin();
@@ -57,6 +61,8 @@ private:
     struct FrameWork;
     bool planFrame(FrameWork&);
     bool buildFrame(FrameWork&);
+    void makeAll(FrameWork&);
+    void makeWhatIsMet(FrameWork&, struct Job&);
     transport::Settings engineSettings(const FrameWork&) const;
     std::function<bool(int, const float*, const float*, float*, float*, float*, float*)> imagerOf(FrameWork&);
     void describeFrame(FrameWork&);
@@ -98,6 +104,7 @@ private:
     Diagnostics& diagnostics_;
     Progress& progress_;
     Print print_;
+    MakeProcedurals makeProcedurals_;
     std::set<std::string> read_; ///< fileIdentity() of setScene()'s pictures
     Outcome outcome_;
     RenderStats stats_;                 ///< of the frame being rendered

@@ -93,6 +93,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
     if (settings_.watcher) settings_.watcher->begin({f.plan, f.picture, f.world, f.imager});
     makePhotonMaps(f, job);
     findRecords(job);
+    makeWhatIsMet(f, job);
     if (!settings_.pixel) bakeGrids(job, f.path ? std::min(f.spp, kBakeSamples) : 1);
     if (settings_.pixel) {
         printPixel(job, f.o, f.wanted, f.path);
@@ -107,6 +108,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
     }
     if (!settings_.pixel && writesFiles(settings_)) writeBaked(f, job);
     stats_.cpuSec += processCpuSeconds() - cpu;
+    sayProcedurals(*f.made, diagnostics_);
     takeFigures(f, job);
 }
 
@@ -183,22 +185,6 @@ transport::Settings Renderer::engineSettings(const FrameWork& f) const {
     t.firstSeen = f.path && f.plan.needsFirstSeen();
     t.stop = settings_.stop;
     return t;
-}
-
-bool Renderer::buildFrame(FrameWork& f) {
-    f.settings = engineSettings(f);
-    f.world = engine_.build(drawnLevels(f.frame, f.camera), f.settings, diagnostics_);
-    if (!f.world) {
-        if (settings_.stop && *settings_.stop) outcome_.interrupted = true;
-        ++outcome_.refused;
-        return false;
-    }
-    f.plan.resolve(f.world->outputWidths(), diagnostics_, f.world->missingOutputs());
-    sayMissingOutputs(f.plan, *f.world, diagnostics_);
-    transport::World::Facts facts = f.world->facts();
-    stats_.buildSec += facts.buildSec;
-    stats_.compileSec += facts.compileSec;
-    return true;
 }
 
 /// Runs the imager of the frame; false: it was stopped.

@@ -1,22 +1,77 @@
 #include "render/rendering.h"
+#include "transport/unmade.h"
+#include <algorithm>
 #include <chrono>
+#include <numeric>
+#include <stdexcept>
 
 namespace alpenglow::render {
 
 Job::Job(const RenderSettings& s, const Camera& c, const OutputPlan& p, Engine& e, std::shared_ptr<const transport::World> w,
          int threads, Progress& progress_, Diagnostics& d)
     : settings(s), camera(c), plan(p), engine(e), world(std::move(w)), team(threads), progress(progress_), diagnostics(d),
-      startSeconds(clockSeconds()), rays(size_t(team.threads()), 0) {
+      startSeconds(clockSeconds()), unfinished_(size_t(team.threads()), 0) {
+    begin();
+}
+
+void Job::begin() {
+    tracers.clear();
+    rays.assign(size_t(team.threads()), 0);
     for (int i = 0; i < team.threads(); ++i) tracers.push_back(engine.tracer(world, diagnostics));
+}
+
+bool Job::run(size_t count, const std::function<void(int, size_t)>& work, const std::function<void(size_t)>& tick) {
+    std::vector<size_t> left(count);
+    std::iota(left.begin(), left.end(), size_t(0));
+    while (true) {
+        std::vector<uint8_t> again(left.size());
+        const size_t before = count - left.size();
+        const auto task = [&](int worker, size_t i) {
+            unfinished_[size_t(worker)] = 0;
+            work(worker, left[i]);
+            again[i] = unfinished_[size_t(worker)];
+        };
+        if (!team.run(left.size(), &halt, task, [&](size_t done) { tick(before + done); })) return false;
+        if (std::find(again.begin(), again.end(), 1) == again.end()) return true;
+        if (!transport::hasPrints(*world)) { // else nobody knows whose they are
+            size_t kept = 0;
+            for (size_t i = 0; i < left.size(); ++i)
+                if (again[i]) left[kept++] = left[i];
+            left.resize(kept);
+        } else {
+            world->flushPrints(false);
+            left.resize(count);
+            std::iota(left.begin(), left.end(), size_t(0));
+        }
+        if (!makeMet()) return false;
+    }
+}
+
+bool Job::makeMet() {
+    const std::vector<int> met = transport::procedurals(*world);
+    std::shared_ptr<const transport::World> next = make && !met.empty() ? make(met) : nullptr;
+    if (!next) {
+        if (!pollStop()) throw std::runtime_error("procedurals that rays came to cannot be made");
+        return false;
+    }
+    transport::takeOver(*next, *world);
+    // The nearest first; then twice as many each time, so that a long row of them does not take as many rounds.
+    transport::askForProcedurals(*next, 1 << std::min(++rounds_, 20));
+    earlier_ = counters();
+    world = std::move(next);
+    begin();
+    std::fill(unfinished_.begin(), unfinished_.end(), uint8_t(0));
+    return true;
 }
 
 bool Job::trace(int worker, std::span<const transport::CameraRay> in, std::span<transport::SampleResult> out) {
     Tracer& t = *tracers[size_t(worker)];
     bool whole = t.trace(in, out, &halt) && !halt;
+    if (t.unfinished()) unfinished_[size_t(worker)] = 1;
     uint64_t now = totalRays(t.counters());
     rayTotal += now - rays[size_t(worker)];
     rays[size_t(worker)] = now;
-    if (whole && !(met && shone))
+    if (whole && !t.unfinished() && !(met && shone))
         for (const transport::SampleResult& r : out) {
             if (!r.left.empty()) met = shone = true; // of depths no light is asked
             if (r.z < 1e38f || luminance(r.opacity) > 0) met = true;
@@ -34,7 +89,7 @@ bool Job::pollStop() {
 }
 
 transport::Counters Job::counters() const {
-    transport::Counters all;
+    transport::Counters all = earlier_;
     for (const auto& t : tracers) {
         const transport::Counters& c = t->counters();
         all.camera += c.camera;

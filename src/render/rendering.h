@@ -45,12 +45,28 @@ struct Job {
 
     Job(const RenderSettings&, const Camera&, const OutputPlan&, Engine&, std::shared_ptr<const transport::World>, int threads,
         Progress&, Diagnostics&);
+    /// The world with procedurals that rays came to (transport/unmade.h), by number; null: there is none, because the user wants to end or
+    /// because it was reported. Unset: there are no such procedurals.
+    std::function<std::shared_ptr<const transport::World>(std::span<const int>)> make;
+    /// Does tasks 0 to count - 1 as Team::run() does. Those whose rays came to procedurals that are not made yet are done again once they are:
+    /// what a task leaves behind must be that of its last time.
+    bool run(size_t count, const std::function<void(int, size_t)>& work, const std::function<void(size_t)>& tick);
+    /// Whether rays of the task that a worker does came to such procedurals: its results are void.
+    bool unfinished(int worker) const { return unfinished_[size_t(worker)] != 0; }
+    /// Makes what rays came to, between tasks. False: halted.
+    bool makeMet();
     /// Traces on a worker and counts its rays. False: halted, the results are void.
     bool trace(int worker, std::span<const transport::CameraRay>, std::span<transport::SampleResult>);
     /// Hands the user's stop on to the tracers; true when the user wants to end.
     bool pollStop();
     transport::Counters counters() const;
     double elapsed() const;
+
+private:
+    void begin();
+    std::vector<uint8_t> unfinished_; ///< by worker
+    transport::Counters earlier_;     ///< of tracers that are gone
+    int rounds_ = 0;                  ///< that procedurals were made in
 };
 
 /// Seconds of a clock that never goes backwards.

@@ -195,7 +195,7 @@ void Interpreter::readArchive(const std::string& name, const SourcePlace& place)
         reporter.error(Rie::Nesting, place, fmt::format("archive \"{}\" reads itself", name));
         return;
     }
-    if (source && openArchives_.empty() && !settings.comments) {
+    if (source && openArchives_.empty() && !settings.comments && !making_) {
         if (!unscanned_.empty()) ahead_.scan(std::exchange(unscanned_, {}));
         parsed = ahead_.take(name, file);
     }

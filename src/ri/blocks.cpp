@@ -53,6 +53,10 @@ bool Interpreter::begin(BlockKind kind, const Call& call) {
 
 void Interpreter::end(BlockKind kind, const Call& call) {
     bool outer = kind == BlockKind::Frame || kind == BlockKind::World;
+    if (making_ && outer) {
+        reporter.error(Rie::Nesting, call.place, fmt::format("{} inside a procedural", endName(kind)));
+        return;
+    }
     if (overflow_ > 0 && kind != BlockKind::World) {
         --overflow_;
         return;
@@ -153,6 +157,7 @@ void Interpreter::rebase(scene::Attributes& a, const scene::Transform& cameraToW
 
 void Interpreter::worldBegin(const Call& call) {
     if (inWorld()) {
+        if (making_) return reporter.error(Rie::Nesting, call.place, "WorldBegin inside a procedural: it is ignored");
         reporter.error(Rie::Nesting, call.place, "WorldBegin inside a world: the open one ends here");
         end(BlockKind::World, call);
     }
@@ -190,6 +195,8 @@ void Interpreter::worldBegin(const Call& call) {
 }
 
 void Interpreter::worldEnd(Block& b) {
+    nameWaiting(0);
+    if (!waiting_.empty()) ahead_.forget();
     std::shared_ptr<scene::Frame> frame = std::move(frame_);
     frame_.reset();
     frame->options = std::move(options);
@@ -205,6 +212,8 @@ void Interpreter::worldEnd(Block& b) {
     if (!frameWanted()) return consumer.passOver(frame->options);
     if (settings.overrides) settings.overrides(frame->options);
     consumer.render(std::move(frame));
+    waiting_.clear();
+    partsWithin_ = 0;
 }
 
 void Interpreter::objectBegin(const Call& call) {
@@ -330,6 +339,7 @@ void Interpreter::resource(const Call& call) {
     }
     if (part("transform")) state.ctm = i->second.ctm;
     if (all) to = from;
+    if (!part_.empty()) markPart(to);
     // Saved in a world that is over: its lights are gone.
     to.lights.keepBelow(int(lights().size()));
     if (to.areaLight >= int(lights().size())) to.areaLight = -1;

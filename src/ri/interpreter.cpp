@@ -24,17 +24,7 @@ void Interpreter::nextScene() {
         base_ = lasting();
         return;
     }
-    declarations = base_.declarations;
-    options = base_.options;
-    state = base_.state;
-    nRGB = base_.nRGB;
-    lights_ = base_.lights;
-    handles_ = base_.handles;
-    systems_ = base_.systems;
-    resources_ = base_.resources;
-    objects_ = base_.objects;
-    inlineArchives_ = base_.inlineArchives;
-    abort_ = base_.abort;
+    restore(base_);
     errorsBefore_ = abort_ ? reporter.errors() : 0;
     archiveReads_ = 0;
     objectCopies_ = replayedCalls_ = 0;

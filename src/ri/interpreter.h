@@ -56,6 +56,8 @@ public:
 
     /// RibReader::nextScene().
     void nextScene();
+    /// RibReader::make(). unmade.cpp
+    std::shared_ptr<const scene::Frame> make(const scene::Frame&, std::span<const int> which);
 
     // --- for handlers ---
     Reporter reporter;
@@ -153,6 +155,7 @@ private:
         int errorsBefore = 0;
     };
     Lasting lasting() const;
+    void restore(const Lasting&);
     struct Model {
         std::string file;
         std::vector<scene::Primitive> parts;
@@ -186,6 +189,20 @@ private:
     void inPart(const std::string& key, const SourcePlace& place, const std::function<SourcePlace()>& body);
     void executeParsed(const ParsedArchive& archive, const std::string& key, const std::string& file, const SourcePlace& place);
     double detailOf(const std::vector<float>& bound) const;
+    /// Makes what is in a procedural, here and now.
+    void makeNow(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound, const Call& call);
+    // unmade.cpp
+    /// Whether a procedural may wait until a ray comes to its bound; then it is put into the frame as one that is not yet made.
+    bool waits(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound, const Call& call);
+    struct Waiting;
+    using Wanted = std::function<bool(int)>; ///< whether the procedural of this number is to be made
+    void putWaiting(Waiting, std::vector<float> grown);
+    void nameWaiting(size_t from);
+    void markPart(scene::Attributes&) const;
+    void makeWaiting(const Waiting&, std::vector<scene::PrimitiveRef>& out, const Wanted&);
+    void putMade(const std::vector<scene::PrimitiveRef>& from, std::vector<scene::PrimitiveRef>& out, const Wanted&);
+    void orderInstances(scene::Frame&) const;
+    std::shared_ptr<scene::Frame> makeSome(const scene::Frame&, const Wanted&);
     /// Whether one more program or library may make content here: how many there are and how deep they nest is bounded (reported).
     bool mayMake(const Call& call);
     /// Along Option "searchpath" "procedural", --searchpath and beside the scene, under the first of these names that is there and may be
@@ -257,6 +274,10 @@ private:
     std::map<std::string, std::unique_ptr<Program>> programs_; ///< by command; null: it is not asked again
     std::map<std::string, std::unique_ptr<Library>> libraries_; ///< by name; null: there is none
     int programCalls_ = 0, programSerial_ = 0, handleSerial_ = 0;
+    std::vector<std::shared_ptr<const Waiting>> waiting_; ///< of this frame, by number
+    std::string part_;                                    ///< of what is made now
+    int partsWithin_ = 0;                                 ///< procedurals in it that wait
+    bool making_ = false;                                 ///< what is in procedurals that waited is being made
     bool replaying_ = false; ///< inside an archive that was read before
     Lasting base_;           ///< what a scene begins with
     size_t baseWorld_ = 0;   ///< worldSerial_ at that time

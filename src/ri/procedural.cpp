@@ -1,8 +1,9 @@
-// Procedurals: content from archives, programs and libraries, expanded where they stand, in the order of the file.
+// Procedurals: content from archives, programs and libraries, expanded where they stand, in the order of the file, or later (unmade.cpp).
 #include "base/exact.h"
 #include "base/limits.h"
 #include "ri/interpreter.h"
 #include "ri/program.h"
+#include "ri/unmade.h"
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -49,11 +50,11 @@ bool forTheCameraOnly(const scene::Attributes& a) {
 }
 
 /// Whether all corners lie beyond one side of the picture, a filter's width and more around it, or behind the eye.
-bool outside(const scene::Options& o, const Vec3d corners[8]) {
+bool outside(const scene::Options& o, std::span<const Vec3d> corners) {
     const Screen s(o);
     const double more = (std::max(o.filter.xwidth, o.filter.ywidth) + 2) * s.pixel, t = tangentOf(o);
     const bool perspective = o.projection == "perspective";
-    const auto all = [&](const auto& beyond) { return std::all_of(corners, corners + 8, beyond); };
+    const auto all = [&](const auto& beyond) { return std::all_of(corners.begin(), corners.end(), beyond); };
     const auto edge = [&](double at, const Vec3d& p) { return at * t * (perspective ? p.z : 1); };
     return all([](const Vec3d& p) { return p.z < 0; }) || all([&](const Vec3d& p) { return p.x < edge(s.left - more, p); }) ||
            all([&](const Vec3d& p) { return p.x > edge(s.right + more, p); }) ||
@@ -61,7 +62,57 @@ bool outside(const scene::Options& o, const Vec3d corners[8]) {
            all([&](const Vec3d& p) { return p.y > edge(s.top + more, p); });
 }
 
+bool affine(const Matrix& m) { return m.m[0][3] == 0 && m.m[1][3] == 0 && m.m[2][3] == 0; }
+
+Vec3d corner(const std::vector<float>& bound, int k) { return {bound[k & 1 ? 1 : 0], bound[k & 2 ? 3 : 2], bound[k & 4 ? 5 : 4]}; }
+
+/// The largest factor by which a matrix can make a vector longer, or more.
+double growth(const Matrix& m) {
+    double sum = 0;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) sum += m.m[i][j] * m.m[i][j];
+    return std::sqrt(sum);
+}
+
+/// How far displacement may move what is made with these attributes, object space. Negative: not known.
+double reachOf(const scene::Attributes& a, const Matrix& toWorld) {
+    const scene::Param* sphere = a.value("displacementbound:sphere");
+    if (!sphere || sphere->numbers.empty()) return a.displacement ? -1 : 0;
+    const scene::Param* space = a.value("displacementbound:coordinatesystem");
+    const std::string in = space && !space->strings.empty() ? space->strings[0] : "object";
+    const double r = std::fabs(double(sphere->numbers[0]));
+    if (in == "object" || in == "shader") return r;
+    return in == "world" || in == "camera" || in == "current" ? r * growth(inverse(toWorld)) : -1;
+}
+
 } // namespace
+
+/// What the camera need not meet, and what does not shine, can wait.
+bool Interpreter::waits(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& given,
+                        const Call& call) {
+    if (!settings.defers || !inWorld() || !frameWanted() || motion_ || capture_ || !everywhere_.empty() || given.size() != 6) return false;
+    if (innermost(BlockKind::Object) || innermost(BlockKind::Solid) || innermost(BlockKind::Edit)) return false;
+    const scene::Attributes& a = *state.attributes;
+    if (a.areaLight >= 0 || a.value(scene::kSolidAttribute)) return false;
+    std::vector<float> bound;
+    const double reach = reachOf(a, state.ctm.first());
+    for (size_t k = 0; k < 6; k += 2) {
+        bound.push_back(float(double(std::min(given[k], given[k + 1])) - reach));
+        bound.push_back(float(double(std::max(given[k], given[k + 1])) + reach));
+    }
+    if (!(reach >= 0) || !std::all_of(bound.begin(), bound.end(), [](float x) { return std::fabs(x) < 1e15f; })) return false;
+    scene::Options o = options;
+    if (settings.overrides) settings.overrides(o);
+    std::vector<Vec3d> corners;
+    for (const Matrix& key : state.ctm.keys) {
+        const Matrix m = key * worldToCamera_.first();
+        if (!affine(m)) return false;
+        for (int k = 0; k < 8; ++k) corners.push_back(transformPoint(m, corner(bound, k)));
+    }
+    if (o.hider == "photon" || !outside(o, corners)) return false;
+    putWaiting({kind, arguments, given, call, {}, {}, false, {}, {}}, std::move(bound));
+    return true;
+}
 
 /// Area in pixels of the bound's rectangle in the picture, as programs are told it; infinite where it reaches behind the eye. Negative: what
 /// is in it cannot change the picture, as only the camera may meet it and it lies outside: under hidden, without a lens or movement,
@@ -78,15 +129,14 @@ double Interpreter::detailOf(const std::vector<float>& bound) const {
     Vec3d corners[8];
     bool behind = false;
     for (int k = 0; k < 8; ++k) {
-        const Vec3d p = corners[k] = transformPoint(m, Vec3d(bound[k & 1 ? 1 : 0], bound[k & 2 ? 3 : 2], bound[k & 4 ? 5 : 4]));
+        const Vec3d p = corners[k] = transformPoint(m, corner(bound, k));
         const double w = perspective ? p.z * scale : 1;
         behind |= !(w > 1e-9);
         const double at[2] = {p.x / w / (s.right - s.left) * o.xres, p.y / w / (s.top - s.bottom) * o.yres};
         for (int i = 0; i < 2; ++i) lo[i] = std::min(lo[i], at[i]), hi[i] = std::max(hi[i], at[i]);
     }
     const scene::Attributes& a = *state.attributes;
-    const bool affine = m.m[0][3] == 0 && m.m[1][3] == 0 && m.m[2][3] == 0;
-    const bool still = !state.ctm.moves() && !worldToCamera_.moves() && affine && !(o.fstop > 0 && o.fstop < 1e30f);
+    const bool still = !state.ctm.moves() && !worldToCamera_.moves() && affine(m) && !(o.fstop > 0 && o.fstop < 1e30f);
     const bool plain = (perspective || o.projection == "orthographic" || o.projection.empty()) && !scene::find(o.projectionParams, "stereo");
     const bool placed = innermost(BlockKind::Object) == nullptr && innermost(BlockKind::Solid) == nullptr;
     if (o.hider == "hidden" && still && plain && placed && a.areaLight < 0 && !a.displacement && forTheCameraOnly(a) && outside(o, corners))
@@ -178,25 +228,25 @@ void Interpreter::runProgram(const std::string& command, const std::string& data
 
 void Interpreter::procedural(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound,
                              const Call& call) {
-    const auto needs = [&](const char* what) {
-        reporter.error(Rie::MissingData, call.place, fmt::format("{}: the {} has no name", call.request->name, what));
-    };
-    if (kind == "DelayedReadArchive") {
-        if (arguments.empty()) return needs("archive");
-        if (detailOf(bound) < 0) return;
-        if (!begin(BlockKind::Attribute, call)) return;
-        readArchive(arguments[0], call.place);
-        end(BlockKind::Attribute, call);
-        return;
-    }
-    if (!settings.allowExec)
+    const bool archive = kind == "DelayedReadArchive";
+    if (!archive && !settings.allowExec)
         return incapable(
             call, fmt::format("{} \"{}\" runs foreign code: it needs --allow-exec and is left out", call.request->name, kind));
-    if (detailOf(bound) < 0) return;
-    if (arguments.empty() || arguments[0].empty()) return needs(kind == "DynamicLoad" ? "library" : "program");
+    if (archive ? arguments.empty() : arguments.empty() || arguments[0].empty()) {
+        const char* what = archive ? "archive" : kind == "DynamicLoad" ? "library" : "program";
+        return reporter.error(Rie::MissingData, call.place, fmt::format("{}: the {} has no name", call.request->name, what));
+    }
+    if (detailOf(bound) >= 0 && !waits(kind, arguments, bound, call)) makeNow(kind, arguments, bound, call);
+}
+
+void Interpreter::makeNow(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound,
+                          const Call& call) {
     const std::string data = arguments.size() > 1 ? arguments[1] : "";
-    if (kind == "DynamicLoad") runLibrary(arguments[0], data, bound, call);
-    else runProgram(arguments[0], data, bound, call);
+    if (kind == "DynamicLoad") return runLibrary(arguments[0], data, bound, call);
+    if (kind == "RunProgram") return runProgram(arguments[0], data, bound, call);
+    if (!begin(BlockKind::Attribute, call)) return;
+    readArchive(arguments[0], call.place);
+    end(BlockKind::Attribute, call);
 }
 
 } // namespace alpenglow::ri

@@ -23,6 +23,9 @@ public:
     /// The requests of the archive that the scene calls `name` and that was found at `path`. Null: it is to be read in the ordinary way.
     std::unique_ptr<ParsedArchive> take(const std::string& name, const std::string& path);
 
+    /// Lets go of what was parsed and is not wanted yet.
+    void forget() { parsed_.clear(); }
+
 private:
     struct Ahead {
         std::string path;

@@ -33,4 +33,8 @@ bool RibReader::readStream(std::istream& in, const std::string& name) { return i
 
 void RibReader::nextScene() { in_->interpreter.nextScene(); }
 
+std::shared_ptr<const scene::Frame> RibReader::make(const scene::Frame& frame, std::span<const int> which) {
+    return in_->interpreter.make(frame, which);
+}
+
 } // namespace alpenglow::ri

@@ -50,6 +50,21 @@ void PrintLog::discard() {
     bytes_ = 0;
 }
 
+bool PrintLog::pending() {
+    const std::lock_guard lock(mutex_);
+    return !runs_.empty() || std::any_of(messages_.begin(), messages_.end(), [](const Message& m) { return !m.lasting; });
+}
+
+void PrintLog::goOn(PrintLog& from) {
+    for (const auto& said : from.said_) said_.insert(said);
+    std::erase_if(messages_, [&](const Message& m) { return m.lasting; });
+    for (Message& m : from.messages_) keep(std::move(m));
+    for (Run& r : from.runs_) runs_.push_back(std::move(r));
+    from.messages_.clear();
+    from.runs_.clear();
+    from.bytes_ = 0;
+}
+
 bool PrintLog::before(const Message& a, const Message& b) { return order(a.key) < order(b.key); }
 
 void PrintLog::sort() { std::stable_sort(messages_.begin(), messages_.end(), before); }

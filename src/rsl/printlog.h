@@ -43,6 +43,10 @@ public:
     void flush();
     /// Forgets it: the samples were void.
     void discard();
+    /// Whether there is something to write, or to forget.
+    bool pending();
+    /// Goes on where another log ended: what that has kept by once() is not kept again. Nobody adds meanwhile.
+    void goOn(PrintLog& before);
 
 private:
     struct Message {

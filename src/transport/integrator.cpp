@@ -19,6 +19,7 @@ Integrator::~Integrator() = default;
 bool Integrator::trace(std::span<const CameraRay> r, std::span<SampleResult> out, const StopFlag* stop) {
     return impl_->engine.trace(r, out, stop);
 }
+bool Integrator::unfinished() const { return impl_->engine.unfinished(); }
 const Counters& Integrator::counters() const { return impl_->engine.counters; }
 
 } // namespace alpenglow::transport

@@ -20,6 +20,8 @@ public:
     /// Follows all rays to the end. Results do not depend on which rays share a call. False when `stop` was set meanwhile: then
     /// the results are void. One Integrator per thread.
     bool trace(std::span<const CameraRay>, std::span<SampleResult>, const StopFlag* stop);
+    /// Whether a ray of the last trace() came to the bound of a procedural that is not made yet: its results are void (unmade.h).
+    bool unfinished() const;
     const Counters& counters() const;
 
 private:

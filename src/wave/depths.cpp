@@ -111,7 +111,7 @@ bool Engine::seeThrough(std::span<const CameraRay> rays, std::span<SampleResult>
         next.clear(), met.clear(), waiting.clear(), ways.clear();
         std::vector<accel::Hit> hits(now.size());
         for (size_t i = 0; i < now.size(); ++i)
-            if (world_->accel_->intersect(now[i].ray, hits[i]) && media)
+            if (meet(now[i].ray, hits[i]) && media)
                 enterMedia(*this, now[i].media, now[i].begin, hits[i], now[i].index, i, ways);
         if (!ways.empty()) {
             hazy.clear();

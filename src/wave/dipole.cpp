@@ -42,13 +42,13 @@ void Walks::probe(int asked) {
     const double chances[3] = {.5, .25, .25};
     const int k = which < .5f ? 0 : which < .75f ? 1 : 2;
     const Vec3 axis = axes[k], x = axes[(k + 1) % 3], y = axes[(k + 2) % 3];
-    const geometry::Bounds box = world.accel_->bounds();
+    const geometry::Bounds box = world.bounds();
     const float far = length(box.hi - box.lo) + length(p.P - (box.lo + box.hi) * 0.5f) + 1;
     if (!(r < far)) return; // nothing is there
     Walker line{asked, p.P + x * float(r * turn.x) + y * float(r * turn.y) + axis * far, -axis, a.weight, a.weight, a.vertex};
     accel::Ray probe = rayOf(line, 2 * double(far));
     accel::Hit hit;
-    for (int layer = 0; layer < limits::kShadowLayers && world.accel_->intersect(probe, hit); ++layer) {
+    for (int layer = 0; layer < limits::kShadowLayers && e_.meet(probe, hit); ++layer) {
         world.goOn(probe, hit);
         if (!belongs(hit.shape, b.group)) continue;
         const geometry::SurfacePoint s = world.accel_->point(hit);

@@ -19,7 +19,7 @@ bool mayEmit(const BoundLight& l, bool sky) {
 
 EmissionPlan::EmissionPlan(Engine& e, bool all, bool sky) : world_(e.world()) {
     if (!world_.accel_) return;
-    const geometry::Bounds box = world_.accel_->bounds();
+    const geometry::Bounds box = world_.bounds();
     centre = (box.lo + box.hi) * 0.5f;
     radius = length(box.hi - box.lo) * 0.5f * 1.0001f;
     if (!std::isfinite(radius) || !(radius > 0)) return;

@@ -172,6 +172,7 @@ void Engine::forget() {
 
 bool Engine::traceAll(std::span<const CameraRay> rays, std::span<SampleResult> out, const StopFlag* stopFlag) {
     stop = stopFlag;
+    unfinished_ = false;
     if (!rays.empty() && rays[0].depths) return seeThrough(rays, out);
     if (!sched_) sched_ = std::make_unique<Sched>(*this, stopFlag, limits::kFrameBytesPerThread, raysAtOnce_);
     Sched& sched = *sched_;

@@ -35,6 +35,13 @@ public:
     bool trace(std::span<const CameraRay>, std::span<SampleResult>, const StopFlag* stop);
     /// Whether what runs now is done again, with fewer points at a time, when a shader asks for more rays than there is room for.
     bool beginsAnew() const { return beginsAnew_; }
+    /// Whether a ray of the last trace() came to the bound of a procedural that is not made yet (Unmade): its results are void.
+    bool unfinished() const { return unfinished_; }
+    /// What rays meet, and whether they meet anything: all of the engine's go this way. One that comes to such a bound ends there, without a
+    /// hit.
+    void meet(std::span<const accel::Ray>, std::span<accel::Hit>);
+    bool meet(const accel::Ray&, accel::Hit&);
+    void block(std::span<const accel::Ray>, std::span<uint8_t>);
     void follow(std::span<const Sched::Task> slice, Sched&) override; // hits.cpp
     bool settle(Sched&) override;
     /// From now on this may happen on the way of rays; before the first trace(). It must outlive the engine.
@@ -356,6 +363,7 @@ private:
     /// shader has asked for more rays at the points of a batch than there is room for.
     static constexpr int kSliceOfPath = limits::kSliceRays / 8;
     int raysAtOnce_ = kSliceOfPath;
+    bool unfinished_ = false;
     bool beginsAnew_ = false;
     std::unique_ptr<Sched> sched_;
     /// The rays of a trace() in a light, by the engine that rayOfLight() keeps for it.

@@ -154,7 +154,7 @@ void tellHit(const WorldImpl& world, const GatherSite& g, float* row, const acce
 bool meet(Engine& e, accel::Ray ray, const ShadowRay& as, const Color& threshold, accel::Hit& hit) {
     Color through(1);
     for (int layers = 0; layers < limits::kShadowLayers; ++layers) {
-        if (!e.world().accel_->intersect(ray, hit)) return false;
+        if (!e.meet(ray, hit)) return false;
         if (!(maxComponent(threshold) > 0)) return true;
         const SurfaceBinding& b = e.world().bindings_[size_t(e.world().bindingOf_[hit.shape])];
         const Opacity& o = b.opacityFor(as.kind->set.mode);

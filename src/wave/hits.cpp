@@ -3,6 +3,7 @@
 #include "shading/gridpoint.h"
 #include "wave/engine.h"
 #include <algorithm>
+#include <cmath>
 
 namespace alpenglow::transport {
 
@@ -60,6 +61,35 @@ accel::Ray Engine::rayOf(const PathRay& r) const {
     return ray;
 }
 
+bool Engine::meet(const accel::Ray& ray, accel::Hit& hit) {
+    world_->accel_->intersect(ray, hit);
+    if (world_->unmade_ && world_->unmade_->meets(ray, hit.valid() ? hit.distance : INFINITY)) {
+        unfinished_ = true;
+        hit = {};
+    }
+    return hit.valid();
+}
+
+void Engine::meet(std::span<const accel::Ray> rays, std::span<accel::Hit> hits) {
+    world_->accel_->intersect(rays, hits);
+    if (!world_->unmade_) return;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        if (!world_->unmade_->meets(rays[i], hits[i].valid() ? hits[i].distance : INFINITY)) continue;
+        unfinished_ = true;
+        hits[i] = {};
+    }
+}
+
+void Engine::block(std::span<const accel::Ray> rays, std::span<uint8_t> blocked) {
+    world_->accel_->occluded(rays, blocked);
+    if (!world_->unmade_) return;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        if (blocked[i] || !world_->unmade_->meets(rays[i], INFINITY)) continue;
+        unfinished_ = true;
+        blocked[i] = 1;
+    }
+}
+
 /// What the rays of a slice meet: hits_.
 void Engine::cast(std::span<const Sched::Task> slice) {
     rays_.clear();
@@ -68,7 +98,7 @@ void Engine::cast(std::span<const Sched::Task> slice) {
         rays_.push_back(rayOf(t.payload));
         ++raysOf(t.payload.type());
     }
-    world_->accel_->intersect(rays_, hits_);
+    meet(rays_, hits_);
     for (size_t i = 0; i < slice.size(); ++i) {
         const PathRay& r = slice[i].payload;
         if (!r.sample->grid || !r.camera() || r.bounces > 0 || r.layers > 0) continue;

@@ -12,6 +12,8 @@ shading::TargetValue Engine::rayOfLight(BatchContext& c, const SiteInfo& s, int 
     const uint32_t site = uint32_t(s.site - c.bound->kernel->sites().data());
     if (s.kind == SiteKind::Transmission) {
         std::vector<ShadowRay> rays;
+        if (s.rays->samples >= 0 && s.rays->cone >= 0 && row(s.rays->cone) > 0)
+            samplesOf(std::max(1.f, row(s.rays->samples)), p.shape, s, c); // says when there are too many
         transmissionRays(s, p, p.Ps, p.lit, row, Color(1), shading::kNoTarget, site, occurrence, rays);
         const auto point3 = [&](size_t arg) { return Vec3(row(s.rows[arg]), row(s.rows[arg] + 1), row(s.rows[arg] + 2)); };
         const Vec3 from = point3(0), to = point3(1);

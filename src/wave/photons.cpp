@@ -34,7 +34,7 @@ std::vector<EmissionStart> startBlock(Engine& e, const PhotonJob& job, uint32_t 
             ray.time = world.shadesAtOpen_ ? 0 : s.drawn.time;
             ray.only = job.met;
             accel::Hit hit;
-            s.length = world.accel_->intersect(ray, hit) ? hit.t : 0;
+            s.length = e.meet(ray, hit) ? hit.t : 0;
         }
         const std::vector<Color> brings = emittedPower(e, plan.lights()[l], some);
         for (size_t k = 0; k < of[l].size(); ++k) {

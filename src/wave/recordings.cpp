@@ -161,7 +161,7 @@ void Engine::blockedRecord(Recording& n) {
         way.sides = n.kind->set.sides;
         way.only = n.kind->set.only;
         accel::Hit hit;
-        n.ways.push_back(world_->accel_->intersect(way, hit) ? float(hit.distance) : 1e38f);
+        n.ways.push_back(meet(way, hit) ? float(hit.distance) : 1e38f);
     }
     HemisphereRays h;
     h.site = n.site;

@@ -49,6 +49,8 @@ void Engine::requestShadows(BatchContext& c, const SiteInfo& s, int point, const
     const uint32_t site = uint32_t(s.site - c.bound->kernel->sites().data());
     const size_t had = shadows.size(), settled = settled_.size();
     if (s.kind == SiteKind::Transmission) {
+        if (s.rays->samples >= 0 && s.rays->cone >= 0 && f(s.rays->cone) > 0)
+            samplesOf(std::max(1.f, f(s.rays->samples)), p.shape, s, c); // says when there are too many
         transmissionRays(s, p, p.P, &p.surface, f, weight, target, site, occurrence, shadows);
         const auto v = [&](int arg) {
             return Vec3(f(s.rows[size_t(arg)]), f(s.rows[size_t(arg)] + 1), f(s.rows[size_t(arg)] + 2));
@@ -163,7 +165,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         if (const FadeSite& fade = s.trace->fade; fade.strength >= 0)
             l.fade = {std::max(0.f, f(fade.strength)), l.maxDistance, number(fade.mode, 0) != 0};
         if (s.trace->hemisphere) l.samples = samplesOf(number(s.rays->samples, 0), p.shape, s, c);
-        else l.samples = std::clamp(int(std::clamp(number(s.rays->samples, 1), 1.f, 4096.f)), 1, 4096);
+        else l.samples = samplesOf(std::max(1.f, number(s.rays->samples, 1)), p.shape, s, c);
         break;
     default: break;
     }

@@ -122,7 +122,7 @@ void Engine::blockedByOpaque(std::span<const ShadowRay> rays, std::span<Color> o
         of.push_back(i);
     }
     blocked_.resize(of.size());
-    world_->accel_->occluded(shadowRays_, blocked_);
+    block(shadowRays_, blocked_);
     for (size_t k = 0; k < of.size(); ++k)
         if (blocked_[k]) out[of[k]] = Color(0);
 }
@@ -168,7 +168,7 @@ void Engine::passSurfaces(std::span<const ShadowRay> rays, std::span<Color> out)
         shadowRays_.clear();
         for (const ShadowRay& r : rays) shadowRays_.push_back(shadowRay(r));
         blocked_.resize(rays.size());
-        world_->accel_->occluded(shadowRays_, blocked_);
+        block(shadowRays_, blocked_);
         for (size_t i = 0; i < rays.size(); ++i) out[i] = blocked_[i] ? Color(0) : Color(1);
         return;
     }
@@ -191,7 +191,7 @@ void Engine::passSurfaces(std::span<const ShadowRay> rays, std::span<Color> out)
             Color& t = out[g.index];
             for (;; ++g.layers) {
                 accel::Hit h;
-                if (!world_->accel_->intersect(g.ray, h)) {
+                if (!meet(g.ray, h)) {
                     if (const float end = rays[g.index].distance; medium(g) >= 0 && end < 1e30f)
                         parts.push_back({medium(g), g.index, g.begin, rays[g.index].origin + g.ray.dir * end});
                     break;

@@ -39,7 +39,7 @@ const Engine::SubsurfaceOfShape& Engine::subsurfaceOf(const scene::Attributes& a
     return *known;
 }
 
-void Engine::requestSubsurface(BatchContext&, const SiteInfo& s, const ShadePoint& p, const std::function<float(int)>& f,
+void Engine::requestSubsurface(BatchContext& c, const SiteInfo& s, const ShadePoint& p, const std::function<float(int)>& f,
                                LobeVertex& l) {
     const SubsurfaceSite& site = *s.subsurface;
     const SubsurfaceOfShape& of = subsurfaceOf(p.shape->attributes());
@@ -151,14 +151,14 @@ void Walks::step() {
         rays.push_back(rayOf(w, reach.back()));
     }
     std::vector<accel::Hit> hits(rays.size());
-    world.accel_->intersect(rays, hits);
+    e_.meet(rays, hits);
     going_.clear();
     for (size_t i = 0; i < walkers_.size(); ++i) {
         Walker& w = walkers_[i];
         const int group = below_[size_t(asked_[size_t(w.asked)].below)].group;
         for (int k = 0; hits[i].valid() && !belongs(hits[i].shape, group); ++k) { // what else stands there
             world.goOn(rays[i], hits[i]);
-            if (k >= limits::kShadowLayers || !world.accel_->intersect(rays[i], hits[i])) hits[i] = {};
+            if (k >= limits::kShadowLayers || !e_.meet(rays[i], hits[i])) hits[i] = {};
         }
         const bool goes = hits[i].valid() ? meet(w, hits[i], reach[i]) : scatter(w, reach[i]);
         w.vertex = childVertex(w.vertex, kFlight, 3);

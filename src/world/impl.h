@@ -10,6 +10,7 @@
 #include "world/lightchooser.h"
 #include "world/photonstore.h"
 #include "world/records.h"
+#include "world/unmade.h"
 #include "world/world.h"
 #include <functional>
 #include <unordered_map>
@@ -121,6 +122,18 @@ public:
     std::vector<geometry::ShapeRef> shapes_;
     /// Index into shapes_; of a placed geometry, its first place.
     std::unordered_map<const geometry::Shape*, uint32_t> numberOfShape_;
+    /// What numbers of a shape are drawn by: its number, or in frames with procedurals that wait, what does not depend on which were made.
+    uint32_t keyOfShape(uint32_t shape) const { return keysOfShapes_.empty() ? shape : keysOfShapes_[shape]; }
+    std::vector<uint32_t> keysOfShapes_;       ///< empty: their numbers
+    std::unique_ptr<Unmade> unmade_;           ///< null: the frame has no procedurals that wait
+    geometry::Bounds procedurals_;             ///< around all that wait or have waited
+    void findProcedurals();                    ///< fills these two
+    /// Encloses everything, and does not depend on which procedurals were made.
+    geometry::Bounds bounds() const {
+        geometry::Bounds b = accel_->bounds();
+        b.add(procedurals_);
+        return b;
+    }
     scene::Shutter shutter_;
     bool moves_ = false;                       ///< some shape does
     bool shadesAtOpen_ = false;                ///< surfaces are shaded where they are when the shutter opens, and send rays then

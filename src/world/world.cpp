@@ -4,6 +4,8 @@
 #include "geometry/placed.h"
 #include "rsl/front/headers.h"
 #include "scene/numbers.h"
+#include "scene/unmade.h"
+#include "base/hash.h"
 #include "world/cloudstore.h"
 #include "world/surfaces.h"
 #include <chrono>
@@ -31,20 +33,28 @@ bool shadesAtOpen(const scene::Frame& f, const Settings& settings, const std::ve
     if (settings.hider != Hider::Hidden) return false;
     const auto on = [](const scene::Param* p) { return p && !p->numbers.empty() && p->numbers[0] != 0; };
     if (on(scene::find(f.options.hiderParams, "samplemotion"))) return false;
-    const auto asks = [&](const geometry::ShapeRef& s) { return on(s->attributes().value("trace:samplemotion")); };
+    const auto asks = [&](const geometry::ShapeRef& s) { // not of what comes later, or the pixels before would mean something else
+        return on(s->attributes().value("trace:samplemotion")) && scene::partOf(s->attributes()).empty();
+    };
     return std::none_of(shapes.begin(), shapes.end(), asks);
 }
 
 // Whether the scene says who is visible to traced rays. BMRT's scenes never do, and their shaders trace.
-bool saysVisibility(const std::vector<geometry::ShapeRef>& shapes) {
+// Procedurals that wait are asked themselves, and not what is in them.
+bool saysVisibility(const std::vector<geometry::ShapeRef>& shapes, const scene::Frame& frame) {
+    const auto says = [](const scene::Attributes& a) {
+        for (const char* name : {"visibility:trace", "visibility:diffuse", "visibility:specular"})
+            if (a.value(name) && scene::partOf(a).empty()) return true;
+        return false;
+    };
     const scene::Attributes* last = nullptr; // of a row of shapes with the same attributes
     for (const geometry::ShapeRef& s : shapes) {
         if (&s->attributes() == last) continue;
         last = &s->attributes();
-        for (const char* name : {"visibility:trace", "visibility:diffuse", "visibility:specular"})
-            if (last->value(name)) return true;
+        if (says(*last)) return true;
     }
-    return false;
+    return std::any_of(frame.primitives.begin(), frame.primitives.end(),
+                       [&](const scene::PrimitiveRef& p) { return p && scene::isProcedural(*p) && says(*p->attributes); });
 }
 
 // Visibility bits. Unset: everything sees everything under path and where no one is told apart (all); elsewhere only camera and
@@ -97,6 +107,31 @@ void WorldImpl::numberShapes() {
         if (p->deforming())
             for (const auto& key : p->deforming()->keys()) numberOfShape_.emplace(key.get(), i);
     }
+    const auto waits = [](const scene::PrimitiveRef& p) { return p && scene::isProcedural(*p); };
+    if (std::none_of(frame_->primitives.begin(), frame_->primitives.end(), waits)) return;
+    std::map<std::string, uint32_t> within; // shapes of each part so far
+    for (const geometry::ShapeRef& s : shapes_) {
+        const std::string part = scene::partOf(s->attributes());
+        uint64_t key = 0;
+        for (const char c : part) key = render::mix64(key ^ uint64_t(uint8_t(c)));
+        keysOfShapes_.push_back(part.empty() ? within[part]++ : uint32_t(render::mix64(key + within[part]++)));
+    }
+}
+
+void WorldImpl::findProcedurals() {
+    std::vector<Unmade::Bound> bounds;
+    const Matrix toCamera = scene::at(frame_->options.worldToCamera, scene::Shutter(frame_->options).open);
+    for (const scene::PrimitiveRef& p : frame_->primitives) {
+        if (!p || !scene::isProcedural(*p)) continue;
+        Unmade::Bound b;
+        for (const Matrix& m : scene::overShutter(p->toWorld, scene::Shutter(frame_->options)).keys)
+            for (int k = 0; k < 8; ++k)
+                b.box.add(Vec3(transformPoint(m * toCamera, Vec3d(p->numbers[k & 1 ? 1 : 0], p->numbers[k & 2 ? 3 : 2], p->numbers[k & 4 ? 5 : 4]))));
+        b.number = scene::unmadeNumber(*p);
+        procedurals_.add(b.box);
+        if (scene::isUnmade(*p)) bounds.push_back(b);
+    }
+    if (!bounds.empty()) unmade_ = std::make_unique<Unmade>(std::move(bounds));
 }
 
 /// Which samples see a shape that fades between levels of detail.
@@ -164,7 +199,8 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     w->clippingPlanes_ = o.clippingPlanes;
     w->clipNear_ = o.clipNear;
     w->clipFar_ = o.clipFar;
-    const bool all = path || !saysVisibility(w->shapes_);
+    const bool all = path || !saysVisibility(w->shapes_, *frame);
+    w->findProcedurals();
     w->bindLights(d, [all](const geometry::Shape& s) { return visibilityOf(s.attributes(), all); });
     w->evaluators_ = std::move(evaluators);
     const std::unique_ptr<Evaluator> evaluator = w->evaluators_(*w, d, settings.stop);

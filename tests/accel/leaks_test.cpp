@@ -233,7 +233,7 @@ struct World {
 } // namespace
 
 TEST(Leaks, NoRayLeavesAClosedForm) {
-    const int n = teststat::samples(4'000, 1'000'000);
+    const int n = teststat::samples(4'000, 12'000); // of 15 forms in 6 ways: a million
     for (const Form& form : kForms)
         for (const How how : {Still, Goes, Deforms, Both, Instance, Instances}) {
             const World w(form, how);
@@ -282,7 +282,7 @@ TEST(Leaks, NoRayAlongATubeLeavesIt) {
 }
 
 TEST(Leaks, WhatLeavesAConvexFormDoesNotMeetItAgain) {
-    const int n = teststat::samples(4'000, 1'000'000);
+    const int n = teststat::samples(4'000, 42'000); // of six forms in 4 ways: a million
     for (const Form& form : kForms)
         for (const How how : {Still, Goes, Deforms, Both}) {
             if (!form.convex) continue;

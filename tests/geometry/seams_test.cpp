@@ -83,6 +83,71 @@ Made pillow() {
     return out;
 }
 
+/// A closed form of six meshes whose edges are curves: each face of a bent box has the points of a grid of `side` by `side` faces. kind 0: quadrilaterals of
+/// catmull-clark; 1: triangles of catmull-clark, which are cut in parts; 2: triangles of loop; 3: bilinear.
+Made cage(int kind, int side) {
+    Made out;
+    for (const auto& q : faces(1)) {
+        auto p = std::make_shared<scene::Primitive>();
+        p->kind = "SubdivisionMesh";
+        p->strings = {kind == 2 ? "loop" : kind == 3 ? "bilinear" : "catmull-clark", "interpolateboundary"};
+        p->ints3 = {1, 0};
+        scene::Param one;
+        one.name = "intargs";
+        one.numbers = {1};
+        p->params = {one};
+        std::vector<float> P;
+        for (int j = 0; j <= side; ++j)
+            for (int i = 0; i <= side; ++i) {
+                // The same arithmetic on both faces of an edge: parts of its ends, bent by where they lie. Corners stay.
+                const auto part = [&](const Vec3& a, const Vec3& b, int k) {
+                    return Vec3((a.x * float(side - k) + b.x * float(k)) / float(side), (a.y * float(side - k) + b.y * float(k)) / float(side),
+                                (a.z * float(side - k) + b.z * float(k)) / float(side));
+                };
+                const Vec3 at = part(part(q[0], q[1], i), part(q[2], q[3], i), j);
+                put(P, Vec3(at.x + 0.15f * at.y * at.z, at.y + 0.1f * at.z * at.z, at.z - 0.2f * at.x * at.x));
+            }
+        p->params.push_back(points(P));
+        const auto add = [&](std::vector<int> face) {
+            p->ints.push_back(int(face.size()));
+            p->ints2.insert(p->ints2.end(), face.begin(), face.end());
+        };
+        for (int j = 0; j < side; ++j)
+            for (int i = 0; i < side; ++i) {
+                const int a = j * (side + 1) + i, b = a + 1, c = b + side + 1, d = a + side + 1;
+                if (kind == 0 || kind == 3) add({a, b, c, d});
+                // Diagonals are such that each corner of the grid belongs to one face, which makes it sharp.
+                else if ((i + j) % 2) add({a, b, c}), add({a, c, d});
+                else add({a, b, d}), add({b, c, d});
+            }
+        out.push_back(p);
+    }
+    return out;
+}
+
+/// A box whose faces are cut in strips, each face in its own number and direction, so that an edge of one meets corners of others. kind 0: polygons;
+/// 1: patches; 2: either.
+Made strips(int kind) {
+    Made out;
+    int f = 0;
+    for (const auto& q : faces(1)) {
+        const int n = 1 + f % 4;
+        const auto between = [&](const Vec3& a, const Vec3& b, int k) { // the same from both ends, and for a half of two and two of four
+            const float v = float(n - k), w = float(k), all = float(n);
+            return Vec3((a.x * v + b.x * w) / all, (a.y * v + b.y * w) / all, (a.z * v + b.z * w) / all);
+        };
+        for (int k = 0; k < n; ++k) {
+            const Vec3 a = between(q[0], q[1], k), b = between(q[0], q[1], k + 1), c = between(q[2], q[3], k), d = between(q[2], q[3], k + 1);
+            std::vector<float> P;
+            const bool patches = kind == 1 || (kind == 2 && (f + k) % 2);
+            for (const Vec3& p : patches ? std::array{a, b, c, d} : std::array{a, b, d, c}) put(P, p);
+            out.push_back(patches ? patch("bilinear", P) : polygon(P));
+        }
+        ++f;
+    }
+    return out;
+}
+
 struct Scene {
     Diagnostics diag;
     std::vector<ShapeRef> shapes;
@@ -138,7 +203,15 @@ std::vector<Form> closedForms() {
             {"half a ball", {quadric("Sphere", {1, 0, 1, 360}), quadric("Disk", {0, 1, 360})}},
             {"a ball", {quadric("Sphere", {1, -1, 1, 360})}},
             {"a waist", {quadric("Hyperboloid", {1, 0, 0, 0.5f, 0, 1, 360}), quadric("Disk", {0, 1, 360}), quadric("Disk", {1, 0.5f, 360})}},
-            {"a ring", {quadric("Torus", {1, 0.4f, 0, 360, 360})}}};
+            {"a ring", {quadric("Torus", {1, 0.4f, 0, 360, 360})}},
+            {"strips of polygons", strips(0)},
+            {"strips of patches", strips(1)},
+            {"strips of either", strips(2)},
+            {"subdivision meshes", cage(0, 4)},
+            {"subdivision meshes of one face", cage(0, 1)},
+            {"subdivision meshes of triangles", cage(1, 2)},
+            {"loop meshes", cage(2, 2)},
+            {"bilinear meshes", cage(3, 2)}};
 }
 
 } // namespace

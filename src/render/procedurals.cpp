@@ -1,0 +1,77 @@
+// Procedurals that wait until a ray comes to their bound: whose content the frame needs from the beginning, and worlds with what was met.
+#include "render/framework.h"
+#include "render/lacks.h"
+#include "render/levels.h"
+#include "render/photonpass.h"
+#include "scene/unmade.h"
+#include "transport/unmade.h"
+#include <algorithm>
+#include <set>
+
+namespace alpenglow::render {
+
+void Renderer::makeAll(FrameWork& f) {
+    const auto waits = [](const scene::PrimitiveRef& p) { return p && scene::isUnmade(*p); };
+    if (!makeProcedurals_ || std::none_of(f.made->primitives.begin(), f.made->primitives.end(), waits)) return;
+    if (auto all = makeProcedurals_(*f.made, {})) f.made = std::move(all);
+}
+
+bool Renderer::buildFrame(FrameWork& f) {
+    // Maps and shadows of everything that there is.
+    if (f.plan.anyDeep() || CausticPasses::asked(f.o)) makeAll(f);
+    const auto build = [&] { return engine_.build(drawnLevels(f.made, f.camera), f.settings, diagnostics_); };
+    f.settings = engineSettings(f);
+    f.world = build();
+    if (f.world && makeProcedurals_ && transport::hasUnmade(*f.world) && transport::needsAllShapes(*f.world)) {
+        makeAll(f);
+        f.world.reset();
+        f.world = build();
+    }
+    if (!f.world) {
+        if (settings_.stop && *settings_.stop) outcome_.interrupted = true;
+        ++outcome_.refused;
+        return false;
+    }
+    f.plan.resolve(f.world->outputWidths(), diagnostics_, f.world->missingOutputs());
+    f.settings.outputWidths = f.plan.engineWidths;
+    sayMissingOutputs(f.plan, *f.world, diagnostics_);
+    transport::World::Facts facts = f.world->facts();
+    stats_.buildSec += facts.buildSec;
+    stats_.compileSec += facts.compileSec;
+    return true;
+}
+
+void Renderer::makeWhatIsMet(FrameWork& f, Job& job) {
+    if (!makeProcedurals_) return;
+    job.make = [&f, this](std::span<const int> met) -> std::shared_ptr<const transport::World> {
+        if (!f.later) {
+            auto said = std::make_shared<std::set<std::string>>();
+            for (const Diagnostic& d : diagnostics_.all()) said->insert(toString(d));
+            f.later = std::make_unique<Diagnostics>([said, this](const Diagnostic& d) {
+                if (said->insert(toString(d)).second) diagnostics_.report(d);
+            });
+        }
+        const auto begun = clockSeconds();
+        std::shared_ptr<const scene::Frame> made = makeProcedurals_(*f.made, met);
+        if (!made) return nullptr;
+        stats_.parseSec += clockSeconds() - begun;
+        f.made = std::move(made);
+        std::shared_ptr<const transport::World> next = engine_.build(drawnLevels(f.made, f.camera), f.settings, *f.later);
+        if (!next) return nullptr;
+        stats_.buildSec += next->facts().buildSec;
+        stats_.compileSec += next->facts().compileSec;
+        return f.world = std::move(next);
+    };
+}
+
+/// How many procedurals waited, and how many of them are made now.
+void sayProcedurals(const scene::Frame& f, Diagnostics& d) {
+    size_t all = 0, left = 0;
+    for (const scene::PrimitiveRef& p : f.primitives)
+        if (p && scene::isProcedural(*p)) ++all, left += scene::isUnmade(*p);
+    if (all)
+        d.report(Severity::Info, Rie::NoError, {},
+                 "of " + std::to_string(all) + " procedurals outside of the picture " + std::to_string(all - left) + " were made: no ray came to the others");
+}
+
+} // namespace alpenglow::render

@@ -20,7 +20,10 @@ struct Around {
 CageBorder::CageBorder(const SubdivisionCage& cage, const LimitSurface& limit) {
     straight_ = cage.scheme == SubdivisionScheme::Bilinear;
     if (cage.boundary == SubdivisionCage::Boundary::None || limit.blunted()) return;
-    struct Side { int first = -1, last = -1, faces = 0; bool drawn = false; };
+    struct Side {
+        int first = -1, last = -1, faces = 0;
+        bool drawn = false;
+    };
     std::vector<Side> sides(limit.edges());
     std::vector<Around> around(size_t(cage.vertices));
     for (uint32_t f = 0; f < limit.faces(); ++f) {
@@ -45,7 +48,8 @@ CageBorder::CageBorder(const SubdivisionCage& cage, const LimitSurface& limit) {
         } else if (s.faces > 1) {
             const auto crease = creases.find(std::minmax(s.first, s.last));
             if (crease == creases.end() || !(crease->second > 0)) continue;
-            for (const int v : {s.first, s.last}) (crease->second >= kSharp ? around[size_t(v)].sharp : around[size_t(v)].semiSharp) = true;
+            for (const int v : {s.first, s.last})
+                (crease->second >= kSharp ? around[size_t(v)].sharp : around[size_t(v)].semiSharp) = true;
         }
     }
     for (size_t i = 0; i < cage.cornerVertex.size() && i < cage.cornerSharpness.size(); ++i) {

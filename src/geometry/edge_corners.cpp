@@ -6,9 +6,9 @@
 namespace alpenglow::geometry {
 
 namespace {
-constexpr double kNear = 4e-7;        ///< of the largest coordinate: what single precision makes of a point on the edge
-constexpr double kApart = 0x1p-18;    ///< of the edge
-constexpr size_t kMost = 4096;        ///< on one edge
+constexpr double kNear = 4e-7;     ///< of the largest coordinate: what single precision makes of a point on the edge
+constexpr double kApart = 0x1p-18; ///< of the edge
+constexpr size_t kMost = 4096;     ///< on one edge
 } // namespace
 
 void EdgeCorners::add(const std::vector<double>& with, std::span<const Vec3> corners) {
@@ -28,7 +28,8 @@ void EdgeCorners::finish() {
 void EdgeCorners::divide(std::span<Vec3> p, int axis) {
     if (p.size() < 2) return;
     const size_t middle = p.size() / 2;
-    std::nth_element(p.begin(), p.begin() + std::ptrdiff_t(middle), p.end(), [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
+    std::nth_element(p.begin(), p.begin() + std::ptrdiff_t(middle), p.end(),
+                     [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
     divide(p.first(middle), (axis + 1) % 3);
     divide(p.subspan(middle + 1), (axis + 1) % 3);
 }

@@ -1,5 +1,5 @@
-// Corners of displaced primitives that lie within a straight edge of another one: it is cut there, so that one long edge meets several
-// short ones at the same points to the bit.
+// Corners of displaced primitives that lie within a straight edge of another one: it is cut there, so that one long edge
+// meets several short ones at the same points to the bit.
 #pragma once
 #include "base/vec.h"
 #include <map>
@@ -19,7 +19,8 @@ public:
     void add(const std::vector<double>& with, std::span<const Vec3> corners);
     /// After the last add().
     void finish();
-    /// Those strictly within the edge from a to b, by place, as far as rounding lets tell; places 2^-18 apart or less count as one. Thread safe.
+    /// Those strictly within the edge from a to b, by place, as far as rounding lets tell; places 2^-18 apart or less count
+    /// as one. Thread safe.
     std::vector<On> within(const std::vector<double>& with, const Vec3d& a, const Vec3d& b) const;
 
 private:

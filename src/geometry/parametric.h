@@ -21,6 +21,9 @@ public:
     double sampleDensity(const SurfacePoint&) const override;
     void dice(const DiceOptions&, Diagnostics&) override;
 
+    /// Corners of patches on the border of the surface, as far as its edges are data of their own (edgeCurve()), camera space.
+    void borderCorners(std::vector<Vec3>& out) const;
+
 protected:
     SurfacePoint evaluateLocal(uint32_t prim, double u, double v) const override;
     /// The surface in camera space in double; what evaluateLocal rounds.
@@ -34,8 +37,6 @@ protected:
     virtual std::vector<double> borders(int direction) const;
     /// Whether the surface is torn at such a border.
     virtual bool torn(int direction, double border) const { return false; }
-    /// Corners of patches on the border of the surface, as far as its edges are data of their own (edgeCurve()), camera space.
-    void borderCorners(std::vector<Vec3>& out) const;
     /// The edge of a patch on the border of the surface, in the direction of u or v; side 0: v = 0, 1: u = 1, 2: v = 1, 3: u = 0; cell: which
     /// patch along it, between `from` and `to`. False: it is no data of its own.
     virtual bool edgeCurve(int /*side*/, int /*cell*/, double /*from*/, double /*to*/, EdgeCurve&) const { return false; }

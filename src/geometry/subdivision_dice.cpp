@@ -123,7 +123,8 @@ void Subdivision::Dicing::rates(double scale) {
 void Subdivision::Dicing::cutBorder() {
     std::vector<const Subdivision*> keys;
     for (const ShapeRef& key : opt.keys)
-        if (const auto* k = dynamic_cast<const Subdivision*>(key.get()); k && k->limit_->pieces() == limit.pieces()) keys.push_back(k);
+        if (const auto* k = dynamic_cast<const Subdivision*>(key.get()); k && k->limit_->pieces() == limit.pieces())
+            keys.push_back(k);
     if (keys.empty()) keys.push_back(&s);
     rim.emplace(CageBorder(s.input_.cage, limit), std::vector<EdgeCurve>(), std::vector<int>());
     const double edge = diceEdge(s.attributes()), flat = diceFlatness(s.attributes()), tolerance = flat > 0 ? flat : 0.05 * edge;

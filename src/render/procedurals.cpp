@@ -1,4 +1,5 @@
-// Procedurals that wait until a ray comes to their bound: whose content the frame needs from the beginning, and worlds with what was met.
+// Procedurals that wait until a ray comes to their bound: whose content the frame needs from the beginning, and worlds with
+// what was met.
 #include "render/framework.h"
 #include "render/lacks.h"
 #include "render/levels.h"
@@ -71,7 +72,8 @@ void sayProcedurals(const scene::Frame& f, Diagnostics& d) {
         if (p && scene::isProcedural(*p)) ++all, left += scene::isUnmade(*p);
     if (all)
         d.report(Severity::Info, Rie::NoError, {},
-                 "of " + std::to_string(all) + " procedurals outside of the picture " + std::to_string(all - left) + " were made: no ray came to the others");
+                 "of " + std::to_string(all) + " procedurals outside of the picture " + std::to_string(all - left) +
+                     " were made, when rays came to them");
 }
 
 } // namespace alpenglow::render

@@ -45,11 +45,11 @@ struct Job {
 
     Job(const RenderSettings&, const Camera&, const OutputPlan&, Engine&, std::shared_ptr<const transport::World>, int threads,
         Progress&, Diagnostics&);
-    /// The world with procedurals that rays came to (transport/unmade.h), by number; null: there is none, because the user wants to end or
-    /// because it was reported. Unset: there are no such procedurals.
+    /// The world with procedurals that rays came to (transport/unmade.h), by number; null: there is none, because the user
+    /// wants to end or because it was reported. Unset: there are no such procedurals.
     std::function<std::shared_ptr<const transport::World>(std::span<const int>)> make;
-    /// Does tasks 0 to count - 1 as Team::run() does. Those whose rays came to procedurals that are not made yet are done again once they are:
-    /// what a task leaves behind must be that of its last time.
+    /// Does tasks 0 to count - 1 as Team::run() does. Those whose rays came to procedurals that are not made yet are done
+    /// again once they are: what a task leaves behind must be that of its last time.
     bool run(size_t count, const std::function<void(int, size_t)>& work, const std::function<void(size_t)>& tick);
     /// Whether rays of the task that a worker does came to such procedurals: its results are void.
     bool unfinished(int worker) const { return unfinished_[size_t(worker)] != 0; }
@@ -92,8 +92,9 @@ bool findRecords(Job&);
 /// The samples nx x ny of a pixel under hidden and raytrace.
 void gridOf(const scene::Options&, const RenderSettings&, int* nx, int* ny);
 Jitter jitterOf(const scene::Options&, Diagnostics&);
-/// Anti-aliasing by difference of colours, of the hider raytrace: a ray through the middle of each pixel; where two pixels side by side or one
-/// above the other differ, both get side x side of them, evenly spaced. A pixel is the mean of its own rays.
+/// Anti-aliasing by difference of colours, of the hider raytrace: a ray through the middle of each pixel; where two pixels
+/// side by side or one above the other differ, both get side x side of them, evenly spaced. A pixel is the mean of its own
+/// rays.
 struct Refinement {
     int side = 1;           ///< 3, 5, 7 or 9; 1: none
     float threshold = 0.3f; ///< sum of the differences of red, green and blue, each cut to 0 .. 1, above which pixels differ

@@ -1,4 +1,5 @@
-// Procedurals: content from archives, programs and libraries, expanded where they stand, in the order of the file, or later (unmade.cpp).
+// Procedurals: content from archives, programs and libraries, expanded where they stand, in the order of the file, or later
+// (unmade.cpp).
 #include "base/exact.h"
 #include "base/limits.h"
 #include "ri/interpreter.h"
@@ -64,7 +65,9 @@ bool outside(const scene::Options& o, std::span<const Vec3d> corners) {
 
 bool affine(const Matrix& m) { return m.m[0][3] == 0 && m.m[1][3] == 0 && m.m[2][3] == 0; }
 
-Vec3d corner(const std::vector<float>& bound, int k) { return {bound[k & 1 ? 1 : 0], bound[k & 2 ? 3 : 2], bound[k & 4 ? 5 : 4]}; }
+Vec3d corner(const std::vector<float>& bound, int k) {
+    return {bound[k & 1 ? 1 : 0], bound[k & 2 ? 3 : 2], bound[k & 4 ? 5 : 4]};
+}
 
 /// The largest factor by which a matrix can make a vector longer, or more.
 double growth(const Matrix& m) {
@@ -90,7 +93,8 @@ double reachOf(const scene::Attributes& a, const Matrix& toWorld) {
 /// What the camera need not meet, and what does not shine, can wait.
 bool Interpreter::waits(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& given,
                         const Call& call) {
-    if (!settings.defers || !inWorld() || !frameWanted() || motion_ || capture_ || !everywhere_.empty() || given.size() != 6) return false;
+    if (!settings.defers || !inWorld() || !frameWanted() || given.size() != 6) return false;
+    if (motion_ || capture_ || !everywhere_.empty()) return false;
     if (innermost(BlockKind::Object) || innermost(BlockKind::Solid) || innermost(BlockKind::Edit)) return false;
     const scene::Attributes& a = *state.attributes;
     if (a.areaLight >= 0 || a.value(scene::kSolidAttribute)) return false;
@@ -114,9 +118,9 @@ bool Interpreter::waits(const std::string& kind, const std::vector<std::string>&
     return true;
 }
 
-/// Area in pixels of the bound's rectangle in the picture, as programs are told it; infinite where it reaches behind the eye. Negative: what
-/// is in it cannot change the picture, as only the camera may meet it and it lies outside: under hidden, without a lens or movement,
-/// displacement, lights and solids.
+/// Area in pixels of the bound's rectangle in the picture, as programs are told it; infinite where it reaches behind the eye.
+/// Negative: what is in it cannot change the picture, as only the camera may meet it and it lies outside: under hidden,
+/// without a lens or movement, displacement, lights and solids.
 double Interpreter::detailOf(const std::vector<float>& bound) const {
     if (bound.size() != 6 || !inWorld()) return INFINITY;
     scene::Options o = options;

@@ -1,5 +1,5 @@
-// Procedurals whose content is made while their frame is rendered, once a ray comes to their bound. What is in one depends on the scene and on
-// what it stands in, never on which others were made before: names that one declares are its own.
+// Procedurals whose content is made while their frame is rendered, once a ray comes to their bound. What is in one depends on
+// the scene and on what it stands in, never on which others were made before: names that one declares are its own.
 #include "ri/unmade.h"
 #include <algorithm>
 #include <map>
@@ -56,7 +56,7 @@ void Interpreter::nameWaiting(size_t from) {
 /// What says of attributes which part they belong to.
 void Interpreter::markPart(scene::Attributes& a) const {
     scene::Param& p = a.values[scene::kPartAttribute];
-    p.name = "__part";
+    p.name = scene::kPartAttribute;
     p.cls = scene::Class::Constant;
     p.type = scene::Type::String;
     p.strings = {part_};

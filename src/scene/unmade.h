@@ -1,17 +1,17 @@
-// Procedurals whose content is not yet made: they stand among the primitives of a frame, and give way to what is in them once a ray comes to
-// their bound.
+// Procedurals whose content is not yet made: they stand among the primitives of a frame, and give way to what is in them once
+// a ray comes to their bound.
 #pragma once
 #include "scene/scene.h"
 
 namespace alpenglow::scene {
 
-/// Kind of such a primitive, which stays in the frame, before its content, when that is made. ints: its number in this frame, then 1 when its
-/// content follows, else 0. numbers: its bound, six numbers in object space, grown by how far its attributes let displacement move points.
-/// strings: what it is made from, by name.
+/// Kind of such a primitive, which stays in the frame, before its content, when that is made. ints: its number in this frame,
+/// then 1 when its content follows, else 0. numbers: its bound, six numbers in object space, grown by how far its attributes
+/// let displacement move points. strings: what it is made from, by name.
 inline constexpr const char* kUnmade = "Procedural";
 
-/// Attribute of what is in such a procedural: one string, the way there through procedurals ("3/1": the second of those in the fourth). What
-/// depends on it does not depend on which others have been made.
+/// Attribute of what is in such a procedural: one string, the way there through procedurals ("3/1": the second of those in
+/// the fourth). What depends on it does not depend on which others have been made.
 inline constexpr const char* kPartAttribute = "procedural:__part";
 
 inline bool isProcedural(const Primitive& p) { return p.kind == kUnmade && p.ints.size() == 2 && p.numbers.size() == 6; }

@@ -5,21 +5,24 @@
 
 namespace alpenglow::transport {
 namespace {
-const WorldImpl& inside(const World& w) { return static_cast<const WorldImpl&>(w); }
+/// Null: a world of somebody else's making, which has no procedurals.
+const WorldImpl* inside(const World& w) { return dynamic_cast<const WorldImpl*>(&w); }
 } // namespace
 
 void askForProcedurals(const World& w, int most) {
-    if (inside(w).unmade_) inside(w).unmade_->askFor(most);
+    if (hasUnmade(w)) inside(w)->unmade_->askFor(most);
 }
 
-std::vector<int> procedurals(const World& w) { return inside(w).unmade_ ? inside(w).unmade_->met() : std::vector<int>(); }
+std::vector<int> procedurals(const World& w) { return hasUnmade(w) ? inside(w)->unmade_->met() : std::vector<int>(); }
 
-bool hasUnmade(const World& w) { return inside(w).unmade_ != nullptr; }
+bool hasUnmade(const World& w) { return inside(w) && inside(w)->unmade_; }
 
-bool needsAllShapes(const World& w) { return bakes(w) || w.interpolates() || !photonMapsOf(w, true).empty(); }
+bool needsAllShapes(const World& w) { return inside(w) && (bakes(w) || w.interpolates() || !photonMapsOf(w, true).empty()); }
 
-void takeOver(const World& w, const World& before) { inside(w).prints_.goOn(inside(before).prints_); }
+void takeOver(const World& w, const World& before) {
+    if (inside(w) && inside(before)) inside(w)->prints_.goOn(inside(before)->prints_);
+}
 
-bool hasPrints(const World& w) { return inside(w).prints_.pending(); }
+bool hasPrints(const World& w) { return inside(w) && inside(w)->prints_.pending(); }
 
 } // namespace alpenglow::transport

@@ -37,8 +37,7 @@ public:
     bool beginsAnew() const { return beginsAnew_; }
     /// Whether a ray of the last trace() came to the bound of a procedural that is not made yet (Unmade): its results are void.
     bool unfinished() const { return unfinished_; }
-    /// What rays meet, and whether they meet anything: all of the engine's go this way. One that comes to such a bound ends there, without a
-    /// hit.
+    /// What rays meet, and whether anything is in their way: all of the engine's go here. One that comes to such a bound ends there.
     void meet(std::span<const accel::Ray>, std::span<accel::Hit>);
     bool meet(const accel::Ray&, accel::Hit&);
     void block(std::span<const accel::Ray>, std::span<uint8_t>);
@@ -363,8 +362,7 @@ private:
     /// shader has asked for more rays at the points of a batch than there is room for.
     static constexpr int kSliceOfPath = limits::kSliceRays / 8;
     int raysAtOnce_ = kSliceOfPath;
-    bool unfinished_ = false;
-    bool beginsAnew_ = false;
+    bool beginsAnew_ = false, unfinished_ = false;
     std::unique_ptr<Sched> sched_;
     /// The rays of a trace() in a light, by the engine that rayOfLight() keeps for it.
     shading::TargetValue follow(BatchContext&, const SiteInfo&, int point, const std::function<float(int)>& row,

@@ -11,14 +11,15 @@ namespace alpenglow::transport {
 class Unmade {
 public:
     struct Bound {
-        geometry::Bounds box;    ///< camera space, at all times of the shutter
+        geometry::Bounds box; ///< camera space, at all times of the shutter
 
-        int number = 0;          ///< scene::unmadeNumber()
+        int number = 0; ///< scene::unmadeNumber()
     };
     explicit Unmade(std::vector<Bound>);
     /// How many of the bounds on its way a ray asks for, those that it comes to first. Before any ray is sent.
     void askFor(int most) const { most_ = most; }
-    /// Whether a ray comes to some bound before `end`, in lengths of its direction: those that it asks for are noted. Thread safe.
+    /// Whether a ray comes to some bound before `end`, in lengths of its direction: those that it asks for are noted. Thread
+    /// safe.
     bool meets(const accel::Ray&, double end) const;
     /// Those that were noted, in ascending order.
     std::vector<int> met() const;

@@ -33,7 +33,7 @@ bool shadesAtOpen(const scene::Frame& f, const Settings& settings, const std::ve
     if (settings.hider != Hider::Hidden) return false;
     const auto on = [](const scene::Param* p) { return p && !p->numbers.empty() && p->numbers[0] != 0; };
     if (on(scene::find(f.options.hiderParams, "samplemotion"))) return false;
-    const auto asks = [&](const geometry::ShapeRef& s) { // not of what comes later, or the pixels before would mean something else
+    const auto asks = [&](const geometry::ShapeRef& s) { // not of what is made later: pixels before would mean another thing
         return on(s->attributes().value("trace:samplemotion")) && scene::partOf(s->attributes()).empty();
     };
     return std::none_of(shapes.begin(), shapes.end(), asks);
@@ -82,8 +82,8 @@ uint32_t visibilityOf(const scene::Attributes& a, bool all) {
     return bits;
 }
 
-/// Whether specular() has RISpec's exponent: Option "shade" "specular" "rispec" (or "prman", which is what it is without), or the
-/// dialect.
+/// Whether specular() has RISpec's exponent: Option "shade" "specular" "rispec" (or "prman", which is what it is without), or
+/// the dialect.
 bool rispecSpecular(const scene::Options& o, const std::string& dialect, Diagnostics& d) {
     const auto i = o.values.find("shade:specular");
     if (i == o.values.end()) return rsl::front::dialectRispecSpecular(dialect);
@@ -125,8 +125,10 @@ void WorldImpl::findProcedurals() {
         if (!p || !scene::isProcedural(*p)) continue;
         Unmade::Bound b;
         for (const Matrix& m : scene::overShutter(p->toWorld, scene::Shutter(frame_->options)).keys)
-            for (int k = 0; k < 8; ++k)
-                b.box.add(Vec3(transformPoint(m * toCamera, Vec3d(p->numbers[k & 1 ? 1 : 0], p->numbers[k & 2 ? 3 : 2], p->numbers[k & 4 ? 5 : 4]))));
+            for (int k = 0; k < 8; ++k) {
+                const Vec3d corner(p->numbers[k & 1 ? 1 : 0], p->numbers[k & 2 ? 3 : 2], p->numbers[k & 4 ? 5 : 4]);
+                b.box.add(Vec3(transformPoint(m * toCamera, corner)));
+            }
         b.number = scene::unmadeNumber(*p);
         procedurals_.add(b.box);
         if (scene::isUnmade(*p)) bounds.push_back(b);

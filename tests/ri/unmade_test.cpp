@@ -25,8 +25,8 @@ struct Renders : Collected {
 class Unmade : public ::testing::Test {
 protected:
     void SetUp() override {
-        dir = fs::temp_directory_path() /
-              ("alpenglow_unmade_" + std::to_string(::getpid()) + "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+        dir = fs::temp_directory_path() / ("alpenglow_unmade_" + std::to_string(::getpid()) + "_" +
+                                           ::testing::UnitTest::GetInstance()->current_test_info()->name());
         fs::create_directories(dir);
     }
     void TearDown() override { fs::remove_all(dir); }
@@ -55,7 +55,9 @@ std::string summary(const scene::Frame& f, bool procedurals = true) {
     std::string s;
     for (const scene::PrimitiveRef& p : f.primitives) {
         if (scene::isProcedural(*p)) s += !procedurals ? "" : scene::isUnmade(*p) ? "? " : "! ";
-        else s += p->kind.substr(0, 2) + std::to_string(int(p->numbers[0])) + "@" + std::to_string(int(p->toWorld.first().m[3][0])) + " ";
+        else
+            s += p->kind.substr(0, 2) + std::to_string(int(p->numbers[0])) + "@" +
+                 std::to_string(int(p->toWorld.first().m[3][0])) + " ";
     }
     for (const scene::Instance& i : f.instances)
         s += f.objects[size_t(i.object)].handle + "@" + std::to_string(int(i.toWorld.first().m[3][0])) + " ";
@@ -66,7 +68,8 @@ TEST_F(Unmade, ContentIsWhatItWouldHaveBeenAtOnce) {
     write("a.rib", "Color [1 0 0] Sphere 1 -1 1 360 Translate 1 0 0 Sphere 2 -2 2 360");
     write("b.rib", "Sphere 3 -3 3 360");
     write("seen.rib", "Sphere 7 -7 7 360");
-    const std::string scene = camera + "Color [0 0 1] Declare \"x\" \"uniform float\" " + left("a.rib") + "Sphere 4 -4 4 360 " + left("b.rib") +
+    const std::string scene = camera + "Color [0 0 1] Declare \"x\" \"uniform float\" " + left("a.rib") + "Sphere 4 -4 4 360 " +
+                              left("b.rib") +
                               "Translate 0 0 5 Procedural \"DelayedReadArchive\" [\"seen.rib\"] [-1 1 -1 1 -1 1] WorldEnd";
     Renders c;
     c.then = [](Renders& r, std::shared_ptr<const scene::Frame> f) {
@@ -103,9 +106,10 @@ TEST_F(Unmade, WhatIsNotAskedForIsNotRead) {
 
 TEST_F(Unmade, NestsAndComesInTheOrderOfTheSceneWhateverIsMadeFirst) {
     write("leaf.rib", "Sphere 1 -1 1 360 ObjectInstance \"o\"");
-    write("branch.rib", "Sphere 2 -2 2 360 " + left("leaf.rib") + "Sphere 3 -3 3 360 " + left("leaf.rib") + "ObjectInstance \"o\"");
-    const std::string scene = camera + "ObjectBegin \"o\" Sphere 9 -9 9 360 ObjectEnd " + left("branch.rib", "[-60 1 -1 1 -1 9]") + left("leaf.rib") +
-                              "ObjectInstance \"o\" WorldEnd";
+    write("branch.rib",
+          "Sphere 2 -2 2 360 " + left("leaf.rib") + "Sphere 3 -3 3 360 " + left("leaf.rib") + "ObjectInstance \"o\"");
+    const std::string scene = camera + "ObjectBegin \"o\" Sphere 9 -9 9 360 ObjectEnd " +
+                              left("branch.rib", "[-60 1 -1 1 -1 9]") + left("leaf.rib") + "ObjectInstance \"o\" WorldEnd";
     Renders c;
     c.then = [](Renders& r, std::shared_ptr<const scene::Frame> f) {
         EXPECT_EQ(summary(*f), "? ? o@0 ");
@@ -142,7 +146,8 @@ TEST_F(Unmade, LightsHaveNumbersByTheOrderOfTheScene) {
         EXPECT_EQ(made->primitives[5]->attributes->lights.last(), 2);
         EXPECT_EQ(made->primitives[3]->attributes->lights.last(), 0);
     };
-    readHere(c, camera + "LightSource \"distantlight\" 1 " + left("lamp.rib") + left("plain.rib") + left("lamp.rib") + "WorldEnd");
+    readHere(c,
+             camera + "LightSource \"distantlight\" 1 " + left("lamp.rib") + left("plain.rib") + left("lamp.rib") + "WorldEnd");
     EXPECT_EQ(c.messages(), "");
     ASSERT_EQ(c.frames.size(), 1u);
 }
@@ -152,13 +157,16 @@ TEST_F(Unmade, NamesAreItsOwnAndWorldsCannotEndInIt) {
     write("b.rib", "Sphere 2 -2 2 360 \"own\" [1]");
     Renders c;
     c.then = [](Renders& r, std::shared_ptr<const scene::Frame> f) {
+        if (r.frames.size() > 1) return; // the world behind it
         const auto made = r.make(*f, {});
         ASSERT_EQ(summary(*made), "! Sp1@-50 ! Sp2@-50 ");
+        ASSERT_EQ(made->primitives[1]->params.size(), 1u);
         EXPECT_TRUE(made->primitives[1]->params[0].declared);
-        EXPECT_FALSE(made->primitives[3]->params[0].declared);
+        EXPECT_TRUE(made->primitives[3]->params.empty() || !made->primitives[3]->params[0].declared);
         EXPECT_EQ(made->options.xres, 100);
     };
-    readHere(c, "Display \"x.tif\" \"file\" \"rgb\" " + camera + left("a.rib") + left("b.rib") + "WorldEnd Format 8 8 1 WorldBegin Sphere 3 -3 3 360 WorldEnd");
+    readHere(c, "Display \"x.tif\" \"file\" \"rgb\" " + camera + left("a.rib") + left("b.rib") +
+                    "WorldEnd Format 8 8 1 WorldBegin Sphere 3 -3 3 360 WorldEnd");
     ASSERT_EQ(c.frames.size(), 2u);
     EXPECT_EQ(c.frames[1]->options.xres, 8);
     EXPECT_EQ(summary(*c.frames[1]), "Sp3@0 ");
@@ -177,7 +185,7 @@ TEST_F(Unmade, WhatShinesOrIsSeenOrBelongsToOthersDoesNotWait) {
     EXPECT_TRUE(waits("Hider \"path\" " + camera + left("a.rib")));
     EXPECT_FALSE(waits("Hider \"photon\" " + camera + left("a.rib")));
     EXPECT_FALSE(waits(camera + "AreaLightSource \"arealight\" 1 " + left("a.rib")));
-    EXPECT_FALSE(waits(camera + left("a.rib", "[-1 50 -1 1 -1 1]")));          // reaches into the picture
+    EXPECT_FALSE(waits(camera + left("a.rib", "[-1 50 -1 1 -1 1]"))); // reaches into the picture
     EXPECT_FALSE(waits(camera + left("a.rib", "[-1e30 1 -1 1 -1 1]")));
     EXPECT_FALSE(waits(camera + "ObjectBegin 1 " + left("a.rib") + "ObjectEnd ObjectInstance 1"));
     EXPECT_FALSE(waits(camera + "SolidBegin \"union\" SolidBegin \"primitive\" " + left("a.rib") + "SolidEnd SolidEnd"));
@@ -185,8 +193,10 @@ TEST_F(Unmade, WhatShinesOrIsSeenOrBelongsToOthersDoesNotWait) {
     EXPECT_TRUE(waits(camera + "Displacement \"dented\" Attribute \"displacementbound\" \"sphere\" [1] " + left("a.rib")));
     EXPECT_FALSE(waits(camera + "Displacement \"dented\" Attribute \"displacementbound\" \"sphere\" [60] " + left("a.rib")));
     // Moving into the picture.
-    EXPECT_FALSE(waits("Shutter 0 1 " + camera + "MotionBegin [0 1] Translate 0 0 0 Translate 50 0 0 MotionEnd " + left("a.rib")));
-    EXPECT_TRUE(waits("Shutter 0 1 " + camera + "MotionBegin [0 1] Translate 0 0 0 Translate -50 0 0 MotionEnd " + left("a.rib")));
+    EXPECT_FALSE(
+        waits("Shutter 0 1 " + camera + "MotionBegin [0 1] Translate 0 0 0 Translate 50 0 0 MotionEnd " + left("a.rib")));
+    EXPECT_TRUE(
+        waits("Shutter 0 1 " + camera + "MotionBegin [0 1] Translate 0 0 0 Translate -50 0 0 MotionEnd " + left("a.rib")));
 }
 
 } // namespace

@@ -264,8 +264,8 @@ bool ImageLoop::traceSlice(SampleBuffer& buffer, int worker, std::span<const Wan
         rays.push_back(imageRay(job_.camera, buffer.position(w.x, w.y, w.k), seed_, w.x, w.y, uint32_t(w.k)));
     std::vector<transport::SampleResult> results(rays.size());
     if (!job_.trace(worker, rays, results)) return false;
+    if (job_.plan.needsDepth(DepthFilter::Midpoint) && !job_.unfinished(worker) && !traceBehind(worker, rays, results)) return false;
     if (job_.unfinished(worker)) return true; // these are traced again
-    if (job_.plan.needsDepth(DepthFilter::Midpoint) && !traceBehind(worker, rays, results)) return false;
     for (size_t k = 0; k < rays.size(); ++k) {
         transport::SampleResult& r = results[k];
         r.aovs.resize(aovs_.size());

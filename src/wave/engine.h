@@ -37,7 +37,7 @@ public:
     bool beginsAnew() const { return beginsAnew_; }
     /// Whether a ray of the last trace() came to the bound of a procedural that is not made yet (Unmade): its results are void.
     bool unfinished() const { return unfinished_; }
-    /// What rays meet, and whether anything is in their way: all of the engine's go here. One that comes to such a bound ends there.
+    /// What rays meet, whether anything is in their way: all of the engine's go here. At such a bound they end.
     void meet(std::span<const accel::Ray>, std::span<accel::Hit>);
     bool meet(const accel::Ray&, accel::Hit&);
     void block(std::span<const accel::Ray>, std::span<uint8_t>);

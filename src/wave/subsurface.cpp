@@ -47,7 +47,7 @@ void Engine::requestSubsurface(BatchContext& c, const SiteInfo& s, const ShadePo
     b.group = site.group.empty() ? of.group : groupNamed(site.group);
     const float many = of.samples > 0 ? float(of.samples) : rules_.pickOne ? 1 : float(kSamplesElsewhere);
     const float samples = site.samples < 0 ? many : f(site.samples);
-    l.samples = samples >= 1 ? int(std::min(samples, 4096.f)) : 1; // not a number: 1
+    l.samples = samplesOf(std::max(1.f, samples), p.shape, s, c); // not a number: 1
     l.rays = &kSpecularKind; // of one, that walks: --no-indirect leaves what lights bring by it
     l.lights = l.deltaLights = false;
     l.below = int32_t(below_.size());

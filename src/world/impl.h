@@ -122,7 +122,7 @@ public:
     std::vector<geometry::ShapeRef> shapes_;
     /// Index into shapes_; of a placed geometry, its first place.
     std::unordered_map<const geometry::Shape*, uint32_t> numberOfShape_;
-    /// What numbers of a shape are drawn by: its number, or in frames with procedurals that wait, what does not depend on which were made.
+    /// What numbers of a shape are drawn by: its own, or where procedurals wait, what does not depend on which were made.
     uint32_t keyOfShape(uint32_t shape) const { return keysOfShapes_.empty() ? shape : keysOfShapes_[shape]; }
     std::vector<uint32_t> keysOfShapes_;       ///< empty: their numbers
     std::unique_ptr<Unmade> unmade_;           ///< null: the frame has no procedurals that wait

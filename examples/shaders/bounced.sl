@@ -1,5 +1,5 @@
-/* Light that has gone to and fro between surfaces, by point clouds: a frame bakes what surfaces send ("to"), the next one looks at
-   that in place of sending rays ("from"). See examples/bleeding.rib and docs/pointclouds.md. */
+/* bounced: light that has gone to and fro between surfaces, by point clouds: a frame bakes what surfaces send ("to"), the next
+   one looks at that in place of sending rays ("from"). See examples/bleeding.rib and docs/pointclouds.md. */
 surface bounced(uniform string from = "", to = ""; uniform float maxsolidangle = 0.1; uniform float occluded = 0;)
 {
     normal n = normalize(N);

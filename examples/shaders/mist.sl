@@ -1,4 +1,5 @@
-/* Mist that fills what it is the Interior of, without light of its own: "density" is what a unit of length takes, by colour. */
+/* mist: mist that fills what it is the Interior of, without light of its own: "density" is what a unit of length takes, by
+   colour. */
 volume mist(color density = color(0.5, 0.7, 1.0); color tint = color(0.55, 0.6, 0.7);)
 {
     float l = length(I);

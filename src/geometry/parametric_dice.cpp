@@ -56,7 +56,7 @@ struct Parametric::Dicing {
     std::vector<Vec2> step; ///< by vertex: along u and v to the next ones
 
     Dicing(const Parametric& shape, const DiceOptions& o, bool displaced);
-    void probe(const Parametric&, const Block&, double& nu, double& nv) const;
+    void probe(const Parametric&, Block&, Block& least) const;
     void refine(Block, int depth);
     void cutPatches();
     bool limitFacets();
@@ -90,7 +90,8 @@ Parametric::Dicing::Dicing(const Parametric& shape, const DiceOptions& o, bool m
 }
 
 /// Facets along a block, by some points strictly inside of it, so that knots do not mix neighbours' second derivatives.
-void Parametric::Dicing::probe(const Parametric& shape, const Block& k, double& nu, double& nv) const {
+/// `least`: the fewest that a probe asks for.
+void Parametric::Dicing::probe(const Parametric& shape, Block& k, Block& least) const {
     constexpr int kProbe = 5;
     const double wu = k.u1 - k.u0, wv = k.v1 - k.v0, micro = edge(), tol = tolerance();
     const bool flat = diceFlatness(s.attributes()) > 0;
@@ -107,8 +108,10 @@ void Parametric::Dicing::probe(const Parametric& shape, const Block& k, double& 
                 lu = flat ? bu : std::min(lu, bu);
                 lv = flat ? bv : std::min(lv, bv);
             }
-            nu = std::max(nu, lu);
-            nv = std::max(nv, lv);
+            k.nu = std::max(k.nu, lu);
+            k.nv = std::max(k.nv, lv);
+            least.nu = std::min(least.nu, lu);
+            least.nv = std::min(least.nv, lv);
         }
 }
 
@@ -116,8 +119,12 @@ void Parametric::Dicing::refine(Block k, int depth) {
     // A closed line needs three distinct points, or its two facets would coincide.
     k.nu = closed[0] ? std::max(1.0, 4 * (k.u1 - k.u0)) : 1;
     k.nv = closed[1] ? std::max(1.0, 4 * (k.v1 - k.v0)) : 1;
-    for (const Parametric* key : keys) probe(*key, k, k.nu, k.nv);
-    const bool u = k.nu > kBlock, v = k.nv > kBlock;
+    Block least = k;
+    least.nu = least.nv = std::numeric_limits<double>::infinity();
+    for (const Parametric* key : keys) probe(*key, k, least);
+    // What asks for so much everywhere that no halving that is left brings it down is not halved: a patch at 1e39, say.
+    const double hopeless = std::ldexp(kBlock, kDeepest - depth);
+    const bool u = k.nu > kBlock && least.nu <= hopeless, v = k.nv > kBlock && least.nv <= hopeless;
     if ((!u && !v) || depth >= kDeepest || cuts >= kMostBlocks) {
         k.nu = std::min(k.nu, double(limits::kDiceEdge)); // a weight that vanishes makes it look as large as can be
         k.nv = std::min(k.nv, double(limits::kDiceEdge));

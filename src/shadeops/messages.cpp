@@ -64,6 +64,7 @@ std::vector<Shadeop> messageShadeops() {
                                "matrix from \"current\" space to the camera of a shadow map, \"projectionmatrix\" to its picture, x -1..1 and y 1..-1; "
                                "\"exists\" with a literal 0 as value: 1 if the file is there and valid.");
     list.back().examples = {{"textureinfo(\"none.tex\", \"channels\", x)", "0", "float x = 3;"}};
+    textureinfo.derivative = DerivativeRule::Zero; // of a map
     textureinfo.signatures = textureinfo.signatures + sigs({{"float textureinfo(string texture, string field; float none)"}});
     const auto rayFunction = [&](const char* name, const char* doc) {
         add(name, sigs({{(std::string("float ") + name + "()").c_str()}}), Lowering::Service, kSurface | kVolume, doc);

@@ -110,6 +110,7 @@ const std::map<std::string, std::string>& elsewhere() {
         {"rayhittest", "what rays bring counts as constant"},
         {"fulltrace", "what rays bring counts as constant"},
         {"shaderinfo", "gives nothing that varies"},
+        {"textureinfo", "gives nothing that varies, and leaves its variable as it was where there is no map"},
         {"emit", "gives nothing"},
         {"areashadow", "what rays bring counts as constant"},
         {"generateSamplesEnv", "samples are drawn"},

@@ -46,7 +46,8 @@ public:
 private:
     void overQuad();
     void overTriangle();
-    const Image& image(uint32_t face, int ulog);
+    const Image& image(uint32_t face, int halvings);
+    const Image& imageLike(uint32_t face);
     bool cross(Place&, int edge) const;
     bool crossTriangle(Place&, int edge) const;
     bool border(Place&, bool u) const;
@@ -74,13 +75,19 @@ int Filter::levelFor(const Face& f) const {
     return k;
 }
 
-const Image& Filter::image(uint32_t face, int ulog) {
-    const int k = std::max(0, int(head_.faces[face].ulog) - ulog);
+const Image& Filter::image(uint32_t face, int k) {
     const uint64_t key = uint64_t(face) << 8 | uint64_t(k);
     for (const auto& [known, image] : images_)
         if (known == key) return *image;
     images_.push_back({key, texture_.image(face, k)});
     return *images_.back().second;
+}
+
+/// Another face, its longer side of as many pixels as that of the level that is read: which of its sides is along u is its own
+/// affair.
+const Image& Filter::imageLike(uint32_t face) {
+    const Face& f = head_.faces[face];
+    return image(face, std::max(0, int(std::max(f.ulog, f.vlog)) - std::max(ulog_, vlog_)));
 }
 
 /// Where a place along an edge lies: t from its first to its last corner, d beyond it.
@@ -161,7 +168,7 @@ void Filter::addPixel(const Image& m, int i, int j, float weight) {
 void Filter::add(const Place& p, float weight) {
     weight_ += double(weight);
     if (p.black) return;
-    const Image& m = image(p.face, std::max(ulog_, vlog_));
+    const Image& m = imageLike(p.face);
     const float x = p.u * float(m.u) - .5f, y = p.v * float(m.v) - .5f;
     const int i = int(std::floor(x)), j = int(std::floor(y));
     const float a = x - float(i), b = y - float(j);
@@ -178,7 +185,7 @@ void Filter::overQuad() {
     const Face& f = head_.faces[q_.face];
     const int k = levelFor(f);
     ulog_ = std::max(0, f.ulog - k), vlog_ = std::max(0, f.vlog - k);
-    const Image& m = image(q_.face, ulog_);
+    const Image& m = image(q_.face, k);
     const float nu = float(1 << ulog_), nv = float(1 << vlog_), x = q_.u * nu - .5f, y = q_.v * nv - .5f;
     const bool flat = m.u == 1 && m.v == 1 && (ulog_ > 0 || vlog_ > 0); // of one colour
     const Shape su(q_.kernel, q_.wu * nu), sv(q_.kernel, q_.wv * nv);
@@ -231,7 +238,7 @@ void Filter::addTriangle(Place p, float weight) {
         break;
     }
     weight_ += double(weight);
-    const Image& m = image(p.face, ulog_);
+    const Image& m = imageLike(p.face);
     const float n = float(m.u), x = std::clamp(p.u, 0.f, 1.f) * n, y = std::clamp(p.v, 0.f, 1.f) * n;
     const int i = std::clamp(int(x), 0, m.u - 1), j = std::clamp(int(y), 0, m.u - 1);
     if (i + j + 1 >= m.u || x - float(i) + y - float(j) <= 1) { // upright
@@ -259,7 +266,7 @@ void Filter::run() {
     if (q_.kernel == Kernel::Point) {
         ulog_ = head_.faces[q_.face].ulog, vlog_ = head_.faces[q_.face].vlog;
         if (head_.mesh == Mesh::Triangle) return addTriangle({q_.face, q_.u, q_.v}, 1);
-        const Image& m = image(q_.face, 16);
+        const Image& m = image(q_.face, 0);
         weight_ = 1;
         return addPixel(m, std::clamp(int(q_.u * float(m.u)), 0, m.u - 1), std::clamp(int(q_.v * float(m.v)), 0, m.v - 1), 1);
     }

@@ -89,6 +89,55 @@ TEST_F(Ptex, ResolutionsMayDiffer) {
 }
 
 // Rotated neighbours: each edge of the one beside each edge of the other; what lies there is found.
+// Where one side of a face is down to a pixel, the other is halved on: what is read has to be as large as it is taken for.
+TEST_F(Ptex, FacesMuchLongerThanWide) {
+    for (const bool tall : {true, false}) {
+        Head head;
+        head.channels = 1;
+        head.number = Number::Float;
+        head.faces.resize(1);
+        head.faces[0].ulog = tall ? 1 : 8;
+        head.faces[0].vlog = tall ? 8 : 1;
+        Image m{tall ? 2 : 256, tall ? 256 : 2, {}};
+        for (int j = 0; j < m.v; ++j)
+            for (int i = 0; i < m.u; ++i) m.values.push_back(((tall ? j : i) + .5f) / 256);
+        ASSERT_TRUE(writeTexture(path("long.ptx"), head, {m}, policy(), d));
+        const auto t = open("long.ptx");
+        ASSERT_TRUE(t);
+        for (const float at : {.4f, .5f, .6f})
+            for (const Kernel kernel : {Kernel::Gaussian, Kernel::Triangle, Kernel::Box}) {
+                float out = -1;
+                const float along = .1f, over = .5f; // no filter reaches the ends along the long side
+                lookup(*t, {0, tall ? .5f : at, tall ? at : .5f, tall ? over : along, tall ? along : over, 0, 1, 0, kernel}, &out);
+                EXPECT_NEAR(out, at, 2e-3) << tall << int(kernel); // of a linear function any symmetric mean
+            }
+    }
+}
+
+// A neighbour of another shape is read at the level of the face that is looked up, whichever of its sides is long.
+TEST_F(Ptex, LongNeighboursAreHalvedToo) {
+    Head head;
+    head.channels = 1;
+    head.number = Number::Float;
+    head.faces.resize(2);
+    head.faces[0].ulog = head.faces[0].vlog = 3;
+    head.faces[0].adjacent = {-1, 1, -1, -1};
+    head.faces[0].edge[1] = 3;
+    head.faces[1].ulog = 0, head.faces[1].vlog = 8;
+    head.faces[1].adjacent = {-1, -1, -1, 0};
+    head.faces[1].edge[3] = 1;
+    Image flat{8, 8, std::vector<float>(64, .25f)}, rows{1, 256, {}};
+    for (int j = 0; j < 256; ++j) rows.values.push_back(j % 4 ? 0.f : 1.f); // on average a quarter
+    ASSERT_TRUE(writeTexture(path("rows.ptx"), head, {flat, rows}, policy(), d));
+    const auto t = open("rows.ptx");
+    ASSERT_TRUE(t);
+    for (const float v : {.3f, .5f, .7f}) {
+        float out = -1;
+        lookup(*t, {0, .95f, v, .2f, .2f, 0, 1}, &out);
+        EXPECT_NEAR(out, .25f, 1e-5f) << v;
+    }
+}
+
 TEST_F(Ptex, EdgesMeetInAllSixteenWays) {
     for (int e = 0; e < 4; ++e)
         for (int g = 0; g < 4; ++g) {

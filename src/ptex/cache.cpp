@@ -13,19 +13,28 @@ Cache::Ref Cache::find(const Key& k) {
     return found->second->image;
 }
 
-void Cache::keep(const Key& k, const Ref& image) {
-    Part& p = partOf(k);
+/// Gives up what a part has not used for the longest time, but for the latest, until all parts together are small enough.
+void Cache::forget(Part& p, size_t butFor) {
     std::lock_guard lock(p.mutex);
-    if (p.at.count(k)) return; // another thread was quicker
-    const size_t bytes = image->values.size() * sizeof(float) + 128;
-    p.entries.push_front({k, image, bytes});
-    p.at[k] = p.entries.begin();
-    p.bytes += bytes;
-    while (p.bytes > most_ && p.entries.size() > 1) {
-        p.bytes -= p.entries.back().bytes;
+    while (bytes_ > most_ && p.entries.size() > butFor) {
+        bytes_ -= p.entries.back().bytes;
         p.at.erase(p.entries.back().key);
         p.entries.pop_back();
     }
+}
+
+void Cache::keep(const Key& k, const Ref& image) {
+    const size_t own = size_t(&partOf(k) - parts_.data()), bytes = image->values.size() * sizeof(float) + 128;
+    {
+        Part& p = parts_[own];
+        std::lock_guard lock(p.mutex);
+        if (p.at.count(k)) return; // another thread was quicker
+        p.entries.push_front({k, image, bytes});
+        p.at[k] = p.entries.begin();
+        bytes_ += bytes;
+    }
+    // The others only where one face is larger than what a part may have.
+    for (size_t n = 0; n < kParts && bytes_ > most_; ++n) forget(parts_[(own + n) % kParts], n == 0 ? 1 : 0);
 }
 
 } // namespace alpenglow::ptex

@@ -10,7 +10,7 @@ namespace alpenglow::ptex {
 
 class Cache {
 public:
-    explicit Cache(size_t bytes) : most_(bytes / kParts) {}
+    explicit Cache(size_t bytes) : most_(bytes) {}
     using Ref = std::shared_ptr<const Image>;
     struct Key {
         uint64_t texture;
@@ -39,11 +39,12 @@ private:
         std::mutex mutex;
         std::list<Entry> entries; ///< the latest first
         std::unordered_map<Key, std::list<Entry>::iterator, Hash> at;
-        size_t bytes = 0;
     };
     Part& partOf(const Key& k) { return parts_[Hash{}(k) % kParts]; }
+    void forget(Part&, size_t butFor);
     std::atomic<uint64_t> next_{0};
-    size_t most_; ///< of each part
+    const size_t most_; ///< bytes of all parts
+    std::atomic<size_t> bytes_{0};
     std::array<Part, kParts> parts_;
 };
 

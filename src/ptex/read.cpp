@@ -9,6 +9,7 @@
 #include <map>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <unordered_map>
 
 namespace alpenglow::ptex {
 
@@ -87,6 +88,8 @@ private:
     std::string readEdits();
     std::string editFace(std::span<const uint8_t>, uint64_t at);
     std::string checkFace(const Face&) const;
+    std::string keep(Meta);
+    bool unpack(uint64_t at, uint64_t packed, uint64_t size, std::vector<uint8_t>& to) const;
     size_t pixelBytes() const { return sizeOf(head_.number) * size_t(head_.channels); }
     bool decode(const Block&, int ulog, int vlog, std::vector<float>& to) const;
     bool decodeTiles(std::span<const uint8_t>, int ulog, int vlog, std::vector<float>& to) const;
@@ -104,6 +107,8 @@ private:
     std::vector<uint8_t> constants_;
     uint32_t extended_ = 0, faceInfoSize_ = 0, constantSize_ = 0, levelInfoSize_ = 0, levels_ = 0, faceCount_ = 0;
     uint64_t levelDataSize_ = 0, largeSize_ = 0, editAt_ = 0;
+    uint64_t headBytes_ = 0; ///< of what is kept of all faces
+    std::unordered_map<std::string, size_t> metaAt_;
     uint32_t metaZip_ = 0, metaSize_ = 0, largeZip_ = 0, largeHeader_ = 0;
     std::vector<std::vector<Block>> blocks_; ///< by level, then by face in the level
     std::vector<uint32_t> place_;            ///< by face: in levels behind the first
@@ -116,15 +121,21 @@ std::string File::open() {
     if (std::string f = readHeader(); !f.empty()) return f;
     if (std::string f = readFaces(); !f.empty()) return f;
     if (std::string f = readLevels(); !f.empty()) return f;
-    std::vector<uint8_t> zip, metas;
+    std::vector<uint8_t> metas;
     const uint64_t at = kHeader + extended_ + uint64_t(faceInfoSize_) + constantSize_ + levelInfoSize_ + levelDataSize_;
     if (metaSize_ > limits::kPtexMetaBytes) return "its meta data are too large";
     if (metaSize_ > 0) {
-        if (!bytes_.read(at, metaZip_, zip) || !inflated(zip, metaSize_, metas)) return "its meta data are damaged";
+        if (!unpack(at, metaZip_, metaSize_, metas)) return "its meta data are damaged";
         if (std::string f = readMetas(metas); !f.empty()) return f;
     }
     if (std::string f = readLargeMetas(); !f.empty()) return f;
     return readEdits();
+}
+
+/// A stream that is much longer than what it stands for was not made by anybody who packs: nothing is read of it.
+bool File::unpack(uint64_t at, uint64_t packed, uint64_t size, std::vector<uint8_t>& to) const {
+    std::vector<uint8_t> zip;
+    return packed <= size + size / 8 + 1024 && bytes_.read(at, packed, zip) && inflated(zip, size_t(size), to);
 }
 
 std::string File::readHeader() {
@@ -152,6 +163,8 @@ std::string File::readHeader() {
     metaZip_ = u32(56);
     metaSize_ = u32(60);
     if (faceCount_ > limits::kPtexFaces) return "it has more than " + std::to_string(limits::kPtexFaces) + " faces";
+    headBytes_ = uint64_t(faceCount_) * (sizeof(Face) + sizeof(Block) + sizeof(uint32_t) + pixelBytes());
+    if (headBytes_ > limits::kPtexHeadBytes) return "what it says of its faces is too large";
     if (levels_ > 32 || levelInfoSize_ != levels_ * kLevelInfo) return "its header does not say what its levels are";
     if (uint64_t(extended_) + faceInfoSize_ + constantSize_ + levelInfoSize_ + kHeader > bytes_.size() ||
         levelDataSize_ > bytes_.size())
@@ -179,16 +192,15 @@ std::string File::checkFace(const Face& f) const {
 }
 
 std::string File::readFaces() {
-    std::vector<uint8_t> zip, b;
-    if (!bytes_.read(kHeader + extended_, faceInfoSize_, zip) || !inflated(zip, faceCount_ * kFaceInfo, b))
+    std::vector<uint8_t> b;
+    if (!unpack(kHeader + uint64_t(extended_), faceInfoSize_, uint64_t(faceCount_) * kFaceInfo, b))
         return "what it says of its faces is damaged";
     head_.faces.reserve(faceCount_);
     for (uint32_t i = 0; i < faceCount_; ++i) {
         head_.faces.push_back(faceOf(&b[i * kFaceInfo]));
         if (std::string fault = checkFace(head_.faces.back()); !fault.empty()) return fault;
     }
-    if (!bytes_.read(kHeader + uint64_t(extended_) + faceInfoSize_, constantSize_, zip) ||
-        !inflated(zip, faceCount_ * pixelBytes(), constants_))
+    if (!unpack(kHeader + uint64_t(extended_) + faceInfoSize_, constantSize_, uint64_t(faceCount_) * pixelBytes(), constants_))
         return "the means of its faces are damaged";
     stale_.assign(faceCount_, false);
     return "";
@@ -219,9 +231,9 @@ std::string File::readLevels() {
 
 std::string File::readLevel(size_t k, uint64_t at, uint64_t size, uint32_t headerSize, uint32_t count) {
     if (headerSize > size || count > faceCount_ || (k == 0 && count != faceCount_)) return "a level of it is damaged";
-    std::vector<uint8_t> zip, b;
-    if (!bytes_.read(at, headerSize, zip)) return "it is cut short";
-    if (!inflated(zip, count * size_t(4), b)) return "a level of it is damaged";
+    if (k > 0 && (headBytes_ += count * sizeof(Block)) > limits::kPtexHeadBytes) return "what it says of its faces is too large";
+    std::vector<uint8_t> b;
+    if (!unpack(at, headerSize, uint64_t(count) * 4, b)) return "a level of it is damaged";
     std::vector<Block>& blocks = blocks_.emplace_back();
     blocks.reserve(count);
     uint64_t next = at + headerSize;
@@ -248,9 +260,16 @@ std::string File::readMetas(std::span<const uint8_t> b) {
         if (m.type > 5 || size > b.size() - at) return "its meta data are damaged";
         m.bytes.assign(b.begin() + long(at), b.begin() + long(at + size));
         at += size;
-        std::erase_if(head_.metas, [&](const Meta& old) { return old.key == m.key; });
-        head_.metas.push_back(std::move(m));
+        if (std::string f = keep(std::move(m)); !f.empty()) return f;
     }
+    return "";
+}
+
+std::string File::keep(Meta m) {
+    const auto [at, fresh] = metaAt_.try_emplace(m.key, head_.metas.size());
+    if (!fresh) head_.metas[at->second] = std::move(m);
+    else if (head_.metas.size() >= limits::kPtexMetas) return "its meta data are too many";
+    else head_.metas.push_back(std::move(m));
     return "";
 }
 
@@ -259,8 +278,8 @@ std::string File::readLargeMetas() {
     uint64_t at =
         kHeader + uint64_t(extended_) + faceInfoSize_ + constantSize_ + levelInfoSize_ + levelDataSize_ + metaZip_ + kBarrier;
     if (largeHeader_ > limits::kPtexMetaBytes) return "its meta data are too large";
-    std::vector<uint8_t> zip, b;
-    if (!bytes_.read(at, largeZip_, zip) || !inflated(zip, largeHeader_, b)) return "its large meta data are damaged";
+    std::vector<uint8_t> b;
+    if (!unpack(at, largeZip_, largeHeader_, b)) return "its large meta data are damaged";
     at += largeZip_;
     uint64_t all = 0;
     for (size_t i = 0; i < b.size();) {
@@ -270,10 +289,9 @@ std::string File::readLargeMetas() {
         const uint32_t size = take<uint32_t>(&b[i + 2 + key]), packed = take<uint32_t>(&b[i + 6 + key]);
         i += 10 + key;
         if ((all += size) > limits::kPtexMetaBytes) return "its meta data are too large";
-        if (m.type > 5 || !bytes_.read(at, packed, zip) || !inflated(zip, size, m.bytes))
-            return "its large meta data are damaged";
+        if (m.type > 5 || !unpack(at, packed, size, m.bytes)) return "its large meta data are damaged";
         at += packed;
-        head_.metas.push_back(std::move(m));
+        if (std::string f = keep(std::move(m)); !f.empty()) return f;
     }
     return "";
 }
@@ -293,9 +311,8 @@ std::string File::readEdits() {
             if (std::string f = editFace(b, at + 28 + pixelBytes()); !f.empty()) return f;
         } else if (type == 2) {
             std::vector<uint8_t> metas;
-            if (!bytes_.read(at, size, b) || size < 8 || take<uint32_t>(&b[4]) > limits::kPtexMetaBytes ||
-                take<uint32_t>(&b[0]) > size - 8 ||
-                !inflated(std::span(b).subspan(8, take<uint32_t>(&b[0])), take<uint32_t>(&b[4]), metas))
+            if (size < 8 || !bytes_.read(at, 8, b) || take<uint32_t>(&b[4]) > limits::kPtexMetaBytes ||
+                take<uint32_t>(&b[0]) > size - 8 || !unpack(at + 8, take<uint32_t>(&b[0]), take<uint32_t>(&b[4]), metas))
                 return "an edit of its meta data is damaged";
             if (std::string f = readMetas(metas); !f.empty()) return f;
         }
@@ -370,6 +387,8 @@ bool File::decodeTiles(std::span<const uint8_t> b, int ulog, int vlog, std::vect
 
 bool File::decode(const Block& block, int ulog, int vlog, std::vector<float>& to) const {
     std::vector<uint8_t> b;
+    // Of tiles of one pixel more is said than they have.
+    if (blockSize(block.header) > ((pixelBytes() + 64) << (ulog + vlog)) + 1024) return false;
     if (!bytes_.read(block.at, blockSize(block.header), b)) return false;
     if (encodingOf(block.header) == kTiled) return decodeTiles(b, ulog, vlog, to);
     return decodePlain(b, encodingOf(block.header), size_t(1) << (ulog + vlog), to);
@@ -382,11 +401,17 @@ void File::multiply(std::vector<float>& values) const {
             if (c != a) values[i + c] *= values[i + a];
 }
 
+void makeFinite(std::vector<float>& values) {
+    for (float& v : values)
+        if (!std::isfinite(v)) v = 0;
+}
+
 Image File::constantOf(uint32_t face) const {
     Image m;
     for (int c = 0; c < head_.channels; ++c)
         m.values.push_back(toFloat(head_.number, &constants_[face * pixelBytes() + size_t(c) * sizeOf(head_.number)]));
     if (head_.alpha >= 0) multiply(m.values);
+    makeFinite(m.values);
     return m;
 }
 
@@ -413,9 +438,8 @@ Image File::make(uint32_t face, int halvings) const {
                                  {}});
         return constantOf(face);
     }
-    for (float& v : m.values)
-        if (!std::isfinite(v)) v = 0;
     if (head_.alpha >= 0 && k == 0) multiply(m.values); // coarser ones are stored so
+    makeFinite(m.values);
     return m;
 }
 

@@ -224,4 +224,76 @@ TEST_F(Ptex, PromisesThatNoFileKeeps) {
     }
 }
 
+// A thousand bytes that stand for gigabytes of faces.
+TEST_F(Ptex, ManyFacesAreRefusedBeforeMemoryIsTaken) {
+    Head head;
+    head.number = Number::Float;
+    head.channels = 1;
+    const auto images = noise(head, 1, 3, [](int) { return std::pair(1, 1); });
+    ASSERT_TRUE(writeTexture(path("a.ptx"), head, images, policy(), d));
+    std::string b = bytes("a.ptx");
+    const auto set = [&](size_t at, uint32_t v, size_t n) {
+        for (size_t k = 0; k < n; ++k) b[at + k] = char(v >> (8 * k));
+    };
+    set(20, 64, 2);         // channels
+    set(24, 40'000'000, 4); // faces: with their means 12 GiB
+    put("b.ptx", b);
+    Diagnostics said;
+    EXPECT_FALSE(openTexture(path("b.ptx"), makeCache(1000), said));
+    ASSERT_EQ(said.all().size(), 1u);
+    EXPECT_NE(said.all()[0].message.find("what it says of its faces is too large"), std::string::npos) << said.all()[0].message;
+}
+
+TEST_F(Ptex, MetaDataAreReadInTimeThatGrowsWithThem) {
+    Head head;
+    head.number = Number::Float;
+    head.channels = 1;
+    const auto images = noise(head, 1, 3, [](int) { return std::pair(1, 1); });
+    const auto metas = [&](int n) {
+        head.metas.clear();
+        for (int i = 0; i < n; ++i) head.metas.push_back({std::to_string(i), 0, {}});
+    };
+    metas(50'000);
+    head.metas.push_back({"7", 0, {1}});
+    ASSERT_TRUE(writeTexture(path("a.ptx"), head, images, policy(), d));
+    const auto t = open("a.ptx");
+    ASSERT_TRUE(t);
+    ASSERT_EQ(t->head().metas.size(), 50'000u); // the later of one key holds
+    EXPECT_EQ(t->head().metas[7].bytes, std::vector<uint8_t>{1});
+    metas(1'000'001);
+    ASSERT_TRUE(writeTexture(path("b.ptx"), head, images, policy(), d));
+    Diagnostics said;
+    EXPECT_FALSE(openTexture(path("b.ptx"), makeCache(1000), said));
+    EXPECT_EQ(said.errors(), 1u);
+}
+
+// Of all parts of the cache together no more is kept than it may have, or one face.
+TEST_F(Ptex, WhatIsKeptIsBounded) {
+    Head head;
+    head.number = Number::Byte;
+    head.channels = 1;
+    const auto images = noise(head, 40, 3, [](int) { return std::pair(6, 6); });
+    ASSERT_TRUE(writeTexture(path("a.ptx"), head, images, policy(), d));
+    const auto t = openTexture(path("a.ptx"), makeCache(30'000), d); // a face has 16,384 bytes and a few
+    ASSERT_TRUE(t);
+    std::vector<std::weak_ptr<const Image>> seen;
+    for (uint32_t f = 0; f < 40; ++f) {
+        seen.push_back(t->image(f, 0));
+        EXPECT_LE(std::count_if(seen.begin(), seen.end(), [](const auto& w) { return !w.expired(); }), 1) << f;
+    }
+}
+
+TEST_F(Ptex, NumbersThatAreNoneAreNothing) {
+    Head head;
+    head.number = Number::Float;
+    head.channels = 2;
+    head.alpha = 1;
+    head.faces.resize(2);
+    const std::vector<Image> images = {{1, 1, {INFINITY, 1}}, {1, 1, {3e38f, 3e38f}}}; // the product is beyond all numbers
+    ASSERT_TRUE(writeTexture(path("a.ptx"), head, images, policy(), d));
+    const auto t = open("a.ptx");
+    ASSERT_TRUE(t);
+    for (const uint32_t f : {0u, 1u}) EXPECT_EQ(t->image(f, 0)->values[0], 0) << f;
+}
+
 } // namespace

@@ -1,9 +1,11 @@
 // `hidden` and `raytrace`: PixelSamples image samples a pixel, reconstructed by each display's own filter, in bands of rows.
 #include "base/limits.h"
 #include "base/sampler.h"
+#include "render/growth.h"
 #include "render/imaging.h"
 #include "render/noise.h"
 #include "render/rendering.h"
+#include "render/watcher.h"
 #include "transport/unmade.h"
 #include <algorithm>
 #include <cmath>
@@ -110,6 +112,9 @@ private:
     void refine(SampleBuffer&, const Window& part, int b);
     std::vector<Wanted> differing(const SampleBuffer&, const Window& part) const;
     void reconstruct(const SampleBuffer&, const Window& part);
+    void show();
+    void grow();
+    PixelFilter filterOf(size_t image) const;
 
     Job& job_;
     int nx_, ny_;
@@ -125,6 +130,8 @@ private:
     int rows_ = 0, bands_ = 0;
     double reached_ = 0;
     std::mutex mutex_;
+    std::optional<Growth> growth_; ///< of the band under way, where somebody looks on
+    std::vector<uint8_t> there_;   ///< by pixel of the window: it is in the images. Only where somebody looks on
 };
 
 ImageLoop::ImageLoop(Job& job, int nx, int ny, Jitter jitter, const Refinement& refinement, uint64_t seed, DroppedSamples& dropped,
@@ -168,6 +175,7 @@ void ImageLoop::plan() {
     const int border = 2 * int(std::ceil(yw_ / 2));
     rows_ = int(std::clamp(kPassBytes / std::max(perRow, size_t(1)), size_t(1), size_t(limits::kImageSide))) - border;
     rows_ = std::max({rows_, 2 * border, kTile});
+    if (job_.settings.watcher) there_.assign(window_.pixels(), 0);
     bands_ = (window_.height() + rows_ - 1) / rows_;
 }
 
@@ -184,6 +192,9 @@ void ImageLoop::band(int b) {
     SampleBuffer buffer(part, xw_, yw_, nx_, ny_, aovs_, seed_, jitter_);
     const std::vector<Window> tiles = tilesOf(buffer.sampled());
     const int first = refinement_.on() ? nx_ * ny_ / 2 : 0, last = refinement_.on() ? first + 1 : nx_ * ny_;
+    // Tasks that may be done again, for what their rays came to, are never over while others work.
+    const bool watched = job_.settings.watcher && !(job_.world && transport::hasUnmade(*job_.world));
+    if (watched) growth_.emplace(buffer, part, kTile);
     trace(
         buffer, tiles.size(),
         [&](size_t i, std::vector<Wanted>& wanted) {
@@ -194,8 +205,40 @@ void ImageLoop::band(int b) {
         },
         told(b, 0, tiles.size()));
     if (refinement_.on() && !job_.pollStop()) refine(buffer, part, b);
+    growth_.reset();
     dropped_.count += buffer.nonFinite();
     reconstruct(buffer, part);
+}
+
+/// Lets who looks on see what is over.
+void ImageLoop::show() {
+    if (!growth_) return;
+    Glance g;
+    g.pixels = [this](const OutputSpec& s) {
+        grow();
+        return result_.images[result_.of[size_t(&s - job_.plan.pictures.data())]];
+    };
+    g.there = &there_;
+    g.seconds = job_.elapsed();
+    g.rays = job_.rayTotal;
+    g.grown = growth_->grown();
+    job_.settings.watcher->look(g);
+}
+
+/// Puts into the images what nobody works at any more.
+void ImageLoop::grow() {
+    growth_->take([this](const SampleBuffer& buffer, const Window& w) {
+        for (size_t p = 0; p < filtered_.size(); ++p) {
+            Image& image = result_.images[p];
+            const Image made = buffer.reconstruct(filterOf(p), filtered_[p]->depth, w);
+            const size_t n = image.channels.size(), row = size_t(w.width()) * n;
+            for (int y = w.y0; y < w.y1; ++y) {
+                const size_t at = size_t(y - window_.y0) * size_t(window_.width()) + size_t(w.x0 - window_.x0);
+                std::copy_n(made.data.begin() + long(size_t(y - w.y0) * row), row, image.data.begin() + long(at * n));
+                std::fill_n(there_.begin() + long(at), w.width(), uint8_t(1));
+            }
+        }
+    });
 }
 
 void ImageLoop::tell(double fraction, bool last) {
@@ -212,6 +255,7 @@ void ImageLoop::tell(double fraction, bool last) {
 ImageLoop::Done ImageLoop::told(int b, double begin, size_t tasks) {
     return [this, b, begin, tasks](size_t done) {
         job_.pollStop();
+        show();
         const double steps = refinement_.on() ? 2 : 1;
         reached_ = (b + (begin + double(done) / double(std::max<size_t>(tasks, 1))) / steps) / bands_;
         tell(reached_, false);
@@ -230,6 +274,7 @@ void ImageLoop::trace(SampleBuffer& buffer, size_t tasks, const std::function<vo
             constexpr size_t slice = 2048;
             for (size_t from = 0; from < wanted.size(); from += slice)
                 if (!traceSlice(buffer, worker, std::span(wanted).subspan(from, std::min(slice, wanted.size() - from)))) return;
+            if (growth_) growth_->over(i);
         },
         done);
 }
@@ -286,6 +331,12 @@ bool ImageLoop::traceSlice(SampleBuffer& buffer, int worker, std::span<const Wan
 void ImageLoop::refine(SampleBuffer& buffer, const Window& part, int b) {
     const std::vector<Wanted> pixels = differing(buffer, part);
     constexpr size_t kPixels = 64; // a task
+    if (growth_) { // all that is there so far, while nobody works at it
+        reconstruct(buffer, part);
+        std::vector<std::pair<int, int>> places;
+        for (const Wanted& w : pixels) places.push_back({w.x, w.y});
+        growth_.emplace(buffer, std::move(places), kPixels);
+    }
     const size_t tasks = (pixels.size() + kPixels - 1) / kPixels;
     trace(
         buffer, tasks,
@@ -324,8 +375,7 @@ std::vector<Wanted> ImageLoop::differing(const SampleBuffer& buffer, const Windo
 void ImageLoop::reconstruct(const SampleBuffer& buffer, const Window& part) {
     for (size_t p = 0; p < filtered_.size(); ++p) {
         Image& image = result_.images[p];
-        const bool own = refinement_.on() || jitter_ == Jitter::Middle;
-        const PixelFilter filter = own ? PixelFilter{FilterKind::Box, 1, 1} : filtered_[p]->filter;
+        const PixelFilter filter = filterOf(p);
         const size_t rowFloats = size_t(window_.width()) * image.channels.size();
         float* to = image.data.data() + size_t(part.y0 - window_.y0) * rowFloats;
         StopFlag go{0};
@@ -338,6 +388,13 @@ void ImageLoop::reconstruct(const SampleBuffer& buffer, const Window& part) {
             },
             [](size_t) {});
     }
+    if (!there_.empty())
+        std::fill_n(there_.begin() + long(size_t(part.y0 - window_.y0) * size_t(window_.width())), part.pixels(), uint8_t(1));
+}
+
+PixelFilter ImageLoop::filterOf(size_t image) const {
+    const bool own = refinement_.on() || jitter_ == Jitter::Middle;
+    return own ? PixelFilter{FilterKind::Box, 1, 1} : filtered_[image]->filter;
 }
 
 } // namespace

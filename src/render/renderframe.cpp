@@ -362,7 +362,7 @@ void Renderer::renderGrid(FrameWork& f, Job& job) {
         return made.images[made.of[size_t(&s - f.plan.pictures.data())]];
     };
     if (settings_.watcher) {
-        if (!job.interrupted) settings_.watcher->look({pixels, nullptr, job.elapsed(), job.rayTotal, true});
+        if (!job.interrupted) settings_.watcher->look({pixels, nullptr, nullptr, job.elapsed(), job.rayTotal, true});
         settings_.watcher->finished(nullptr);
     }
     if (!writesFiles(settings_)) return;

@@ -21,8 +21,8 @@ public:
     int threads() const { return threads_; }
 
     /// Calls work(worker, task) for tasks 0 .. count-1, each once, on `threads` threads; worker < threads. Meanwhile tick(done)
-    /// runs on the calling thread about every 20 ms. Once *halt is set no further task begins. Throws what a task threw, after
-    /// all have ended. True when every task was done.
+    /// runs on the calling thread about every 20 ms. Once *halt is set no further task begins. Throws what a task or tick() threw,
+    /// after all have ended. True when every task was done.
     /// A thread that cannot be started (no memory, or no more processes for this user) is done without; if none can be, the
     /// calling thread works, with tick() between its tasks.
     template <class Work, class Tick> bool run(size_t count, StopFlag* halt, Work work, Tick tick) {
@@ -66,11 +66,19 @@ public:
         if (threads.empty()) each(0, tick);
         {
             std::unique_lock lock(mutex);
+            bool broken = false;
             while (running > 0) {
                 ended.wait_for(lock, std::chrono::milliseconds(20));
                 lock.unlock();
-                tick(done.load());
+                std::exception_ptr fault;
+                try {
+                    if (!broken) tick(done.load());
+                } catch (...) { fault = std::current_exception(); }
                 lock.lock();
+                if (!fault) continue;
+                broken = true;
+                if (!thrown) thrown = fault;
+                *halt = 1;
             }
         }
         for (std::thread& t : threads) t.join();

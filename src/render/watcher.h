@@ -19,9 +19,13 @@ struct WatchedFrame {
 struct Glance {
     std::function<Image(const OutputSpec&)> pixels; ///< what writeOutputs() takes for a picture of the plan
     const Film* film = nullptr;                     ///< path: whole passes; else null
+    /// hidden and raytrace, while the picture grows: by pixel of its window in reading order whether it is there, as of the last
+    /// call of pixels(). What is not there is black. Null: all is there.
+    const std::vector<uint8_t>* there = nullptr;
+    bool whole() const { return !film && !there; }  ///< nothing comes behind it
     double seconds = 0;                             ///< since rendering began
     uint64_t rays = 0;                              ///< traced so far, those of the pass under way too
-    bool grown = true;                              ///< a pass came in; false: only time went by
+    bool grown = true;                              ///< a pass, or some tile, came in; false: only time went by
 };
 
 /// All calls come from the thread that called Renderer::render().
@@ -33,7 +37,7 @@ public:
     virtual void begin(const WatchedFrame&) {}
     /// Under path the samples to go on with; null: none. What comes is of this description.
     virtual std::unique_ptr<Film> filmFor(const FilmDescription&) { return nullptr; }
-    /// Under path after each pass, and about every 20 ms between; else once, when the picture is whole.
+    /// Under path after each pass, else when the picture is whole; and about every 20 ms between.
     virtual void look(const Glance&) {}
     /// The end of a frame; also of one that was interrupted. Under path with its film, if a pass is whole.
     virtual void finished(std::unique_ptr<Film>) {}

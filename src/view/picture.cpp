@@ -47,6 +47,29 @@ void overlay(Picture& onto, const Picture& from) {
     }
 }
 
+void fill(Picture& onto, const std::vector<uint8_t>& there, const Picture& from) {
+    if (onto.width != from.width || onto.height != from.height) return;
+    const auto under = [](int at, int first, double step, const Plane& q, bool along, int fromFirst, double fromStep) {
+        const int i = int((at + first + .5) * step / fromStep) - fromFirst;
+        return i >= 0 && i < (along ? q.image->width : q.image->height) ? i : -1;
+    };
+    for (Plane& p : onto.planes) {
+        const Plane* q = from.plane(p.name);
+        if (!q || q->image->channels != p.image->channels) continue;
+        auto copy = std::make_shared<display::Image>(*p.image);
+        const size_t n = copy->channels.size();
+        for (int y = 0; y < copy->height; ++y)
+            for (int x = 0; x < copy->width; ++x) {
+                const size_t at = size_t(y) * size_t(copy->width) + size_t(x);
+                if (at >= there.size() || there[at]) continue;
+                const int i = under(x, onto.window.x0, onto.stepX, *q, true, from.window.x0, from.stepX);
+                const int j = under(y, onto.window.y0, onto.stepY, *q, false, from.window.y0, from.stepY);
+                if (i >= 0 && j >= 0) std::memcpy(copy->pixel(x, y), q->image->pixel(i, j), n * sizeof(float));
+            }
+        p.image = std::move(copy);
+    }
+}
+
 display::Image dimmed(const Picture& picture, const std::map<std::string, double>& dim) {
     display::Image image = *picture.planes.front().image;
     const size_t n = image.channels.size(), pixels = size_t(image.width) * size_t(image.height);

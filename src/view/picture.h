@@ -28,6 +28,7 @@ struct Picture {
     double stepX = 1, stepY = 1; ///< pixels of the whole picture that one of the planes is wide and high: more than 1 for a coarse one
     std::vector<Plane> planes; ///< "picture" first
     Figures figures;
+    uint64_t number = 0;       ///< of all pictures of a session: no two have the same
     const Plane* plane(const std::string& name) const;
 };
 
@@ -36,6 +37,9 @@ display::Image noisePlane(const render::Film&);
 
 /// The pixels of `from` in `onto`, where planes of the same name are there.
 void overlay(Picture& onto, const Picture& from);
+
+/// The pixels of `from`, larger ones too, in `onto` where these are not there: `there` by pixel of its window, in reading order.
+void fill(Picture& onto, const std::vector<uint8_t>& there, const Picture& from);
 
 /// Four half floats a pixel, rows from the top, in the order of bytes of this machine: red, green, blue and alpha. A plane of one
 /// channel is grey. `dim`: of the plane "picture", the light of each "light:HANDLE" times that.

@@ -690,4 +690,8 @@ TEST(Team, EveryTaskOnceAndExceptionsArrive) {
                      [](size_t) {}),
                  std::bad_alloc);
     EXPECT_EQ(halt, 1);
+    halt = 0;
+    const auto wait = [](int, size_t) { std::this_thread::sleep_for(std::chrono::milliseconds(1)); };
+    EXPECT_THROW(team.run(1000, &halt, wait, [](size_t) { throw std::bad_alloc(); }), std::bad_alloc); // of who looks on, too
+    EXPECT_EQ(halt, 1);
 }

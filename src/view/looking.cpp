@@ -1,5 +1,6 @@
 // What a view sees of a render that is under way: shots for viewers, and pictures that are saved.
 #include "render/filmpicture.h"
+#include "render/imaging.h"
 #include "render/noise.h"
 #include "view/session.h"
 #include <algorithm>
@@ -22,20 +23,43 @@ render::Imager imagerOf(const std::shared_ptr<const transport::World>& world, Di
     };
 }
 
+/// An imager, and a curve behind it.
+render::Imager exposedBehind(render::Imager imager, float gain, float gamma) {
+    if (gain == 1 && gamma == 1) return imager;
+    return [imager = std::move(imager), gain, gamma](int n, const float* x, const float* y, float* r, float* g, float* b, float* a) {
+        if (!imager(n, x, y, r, g, b, a)) return false;
+        for (float* c : {r, g, b})
+            for (int i = 0; i < n; ++i) c[i] = render::expose(c[i], gain, gamma);
+        return true;
+    };
+}
+
 } // namespace
 
 void Session::begin(const render::WatchedFrame& f) {
     auto means = std::make_shared<Means>(Means{f.plan, f.picture, f.world});
     plan_ = &f.plan;
+    Diagnostics quiet;
+    render::OutputSpec png = render::singleOutput("view.png", f.plan.basis, quiet);
     for (render::OutputSpec& s : means->plan.pictures) { // light, not what is shown of it
         s.gain = s.gamma = 1;
         s.srgb = false;
         s.ownExposure = false;
     }
+    if (f.picture.imager) { // it works on what Exposure made: this is behind it, and the page's curve comes last
+        render::OutputSpec& first = means->plan.pictures.front();
+        first.gain = png.gain;
+        first.gamma = png.gamma;
+        png.gain = png.gamma = 1;
+        for (render::OutputSpec& s : means->plan.pictures)
+            if (s.name.starts_with("light:")) { // parts of what is seen
+                s.gain = first.gain;
+                s.ownExposure = true;
+            }
+    }
     means_ = means;
+    grew_ = false;
     if (pass_.phase == Phase::Whole) kept_.means = means;
-    Diagnostics quiet;
-    const render::OutputSpec png = render::singleOutput("view.png", f.plan.basis, quiet);
     std::lock_guard lock(mutex_);
     curveAtFirst_ = {double(png.gain), double(png.gamma), png.srgb ? 1.0 : 0.0};
 }
@@ -60,12 +84,14 @@ void Session::look(const render::Glance& g) {
         interrupt();
         stop_ = 1;
     }
-    if (!g.film) kept_.image = std::make_shared<render::Image>(g.pixels(plan_->pictures.front()));
-    if (!g.film && pass_.phase != Phase::Whole) kept_.image.reset();
-    if (pass_.phase == Phase::Whole)
+    if (!g.film) kept_.image.reset();
+    if (g.whole() && pass_.phase == Phase::Whole) kept_.image = std::make_shared<render::Image>(g.pixels(plan_->pictures.front()));
+    if (!g.there && pass_.phase == Phase::Whole)
         savePending(*means_, g.film, [&] { return g.pixels(plan_->pictures.front()); });
     stale_ |= g.grown;
-    if (shotIsDue()) shoot(g, *means_);
+    grew_ |= g.grown;
+    if (g.there && (!grew_ || pass_.factor != 1)) return; // there is nothing yet, or all will be there at once
+    if (g.whole() || shotIsDue()) shoot(g, *means_);
 }
 
 void Session::finished(std::unique_ptr<render::Film> film) {
@@ -126,6 +152,7 @@ void Session::lookAtRest() {
 void Session::shoot(const render::Glance& g, const Means& means) {
     const auto begun = Clock::now();
     auto picture = std::make_shared<Picture>();
+    picture->number = ++pictures_;
     picture->window = means.facts.window;
     const bool coarse = pass_.phase == Phase::Coarse;
     picture->width = coarse ? width_ : means.facts.width;
@@ -143,6 +170,13 @@ void Session::shoot(const render::Glance& g, const Means& means) {
         if (finished && (s.name.starts_with("light:") || s.name.starts_with("lpe:")) && finished->channels.size() == 3) finished->channels = {"r", "g", "b"};
         if (finished) picture->planes.push_back({s.name, std::make_shared<display::Image>(std::move(*finished))});
     }
+    if (g.there && shownOf_) { // what was shown of the same before
+        const std::shared_ptr<const Picture> before = [&] {
+            std::lock_guard lock(mutex_);
+            return picture_;
+        }();
+        if (before) fill(*picture, *g.there, *before);
+    }
     if (wanted.contains("noise") && g.film) picture->planes.push_back({"noise", std::make_shared<display::Image>(noisePlane(*g.film))});
     Figures& f = picture->figures;
     const bool whole = pass_.phase == Phase::Whole;
@@ -159,8 +193,10 @@ void Session::shoot(const render::Glance& g, const Means& means) {
         f.efficiency = render::efficiency(n.noiseRSE, f.seconds);
     }
     if (pass_.phase == Phase::Crop) {
-        crop_ = picture;
-        cropOf_ = pass_.crop;
+        if (!g.there) {
+            crop_ = picture;
+            cropOf_ = pass_.crop;
+        }
     } else if (whole && crop_ && crop_->figures.spp > f.spp && g.film) overlay(*picture, *crop_);
     shotPlanes_ = wanted;
     stale_ = false;
@@ -174,6 +210,7 @@ void Session::shoot(const render::Glance& g, const Means& means) {
             auto both = std::make_shared<Picture>(*picture_);
             overlay(*both, *picture);
             both->figures = picture->figures;
+            both->number = ++pictures_;
             picture_ = both;
         } else picture_ = picture;
         if (whole && g.film && (curve_.empty() || curve_.back()[1] < f.spp)) {
@@ -213,13 +250,22 @@ void Session::savePending(const Means& means, const render::Film* film, const st
 bool Session::save(const Save& s, const Means& means, const render::Film* film, const render::Image& image) {
     const std::string name = freeName(s.type, film);
     render::OutputPlan plan = means.plan;
-    plan.basis.gain = s.type == "png" ? s.gain : 1;
-    plan.basis.gamma = s.type == "png" ? s.gamma : 1;
-    plan.basis.gammaGiven = true;
-    plan.basis.srgbAsked = s.type == "png" && s.srgb;
-    plan.pictures.assign(1, render::singleOutput(name, plan.basis, *diags_));
+    render::OutputSpec spec = render::singleOutput(name, plan.basis, *diags_);
+    render::Imager imager = means.facts.imager ? imagerOf(means.world, *diags_) : render::Imager{};
+    if (s.type == "png") {
+        const float gamma = s.srgb ? 1 : s.gamma; // one or the other
+        spec.srgb = s.srgb;
+        if (imager) { // behind it, as on the page
+            spec.gain = means.plan.pictures.front().gain;
+            spec.gamma = means.plan.pictures.front().gamma;
+            imager = exposedBehind(std::move(imager), s.gain, gamma);
+        } else {
+            spec.gain = s.gain;
+            spec.gamma = gamma;
+        }
+    }
+    plan.pictures.assign(1, std::move(spec));
     plan.resolve(plan.engineWidths, *diags_);
-    const render::Imager imager = means.facts.imager ? imagerOf(means.world, *diags_) : render::Imager{};
     std::map<std::string, double> dim;
     {
         std::lock_guard lock(mutex_);
@@ -227,12 +273,13 @@ bool Session::save(const Save& s, const Means& means, const render::Film* film, 
     }
     render::Image mixed = image;
     bool mixes = false;
-    for (const render::OutputSpec& spec : means.plan.pictures) {
-        if (!spec.name.starts_with("light:") || !dim.contains(spec.name.substr(6)) || dim[spec.name.substr(6)] == 1) continue;
-        const auto light = render::finishedPicture(means.plan, spec, means.facts, image, {});
+    for (render::OutputSpec part : means.plan.pictures) {
+        if (!part.name.starts_with("light:") || !dim.contains(part.name.substr(6)) || dim[part.name.substr(6)] == 1) continue;
+        part.ownExposure = false; // they are put together before the imager
+        const auto light = render::finishedPicture(means.plan, part, means.facts, image, {});
         if (!light) continue;
         mixes = true;
-        const float by = float(dim[spec.name.substr(6)] - 1);
+        const float by = float(dim[part.name.substr(6)] - 1);
         const size_t n = mixed.channels.size();
         for (size_t i = 0; i < mixed.window.pixels(); ++i)
             for (size_t k = 0; k < 3; ++k) mixed.data[i * n + k] += by * light->data[i * 3 + k];

@@ -18,7 +18,7 @@ void Preview::begin(const render::WatchedFrame& f) {
     own_ = &f.plan;
     plan_ = f.plan;
     for (render::OutputSpec& s : plan_->pictures) {
-        s.gain = s.gamma = 1;
+        if (!f.picture.imager) s.gain = s.gamma = 1; // an imager works on what Exposure made
         s.srgb = s.ownExposure = false;
     }
     facts_ = f.picture;
@@ -31,7 +31,8 @@ void Preview::begin(const render::WatchedFrame& f) {
 void Preview::look(const render::Glance& g) {
     stale_ |= g.grown;
     const double t = now();
-    if (!stale_ || !own_ || (last_ >= 0 && t - last_ < std::max(kLeast, cost_ / kShare))) return;
+    const bool due = last_ < 0 || g.whole() || t - last_ >= std::max(kLeast, cost_ / kShare);
+    if (!stale_ || !own_ || !due) return;
     show(g, *own_);
     stale_ = false;
     last_ = now();

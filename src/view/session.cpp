@@ -177,25 +177,46 @@ bool Session::readScene() {
 }
 
 void Session::run() {
-    while (waitForWork()) {
-        bool reload;
-        {
-            std::lock_guard lock(mutex_);
-            reload = reload_;
-            stop_ = end_ ? 1 : 0;
-        }
-        bool there = true;
-        if (reload) there = readScene();
-        if (there && !end_) {
-            render();
-            if (!end_) lookAtRest(); // what was not due before
-        } else {
-            std::lock_guard lock(mutex_);
-            done_ = generation_;
-        }
-        setPhase(Phase::Idle);
-        tell(); // that all is done
+    while (true) try {
+            if (!waitForWork()) return;
+            bool reload;
+            {
+                std::lock_guard lock(mutex_);
+                reload = reload_;
+                stop_ = end_ ? 1 : 0;
+            }
+            bool there = true;
+            if (reload) there = readScene();
+            if (there && !end_) {
+                render();
+                if (!end_) lookAtRest(); // what was not due before
+            } else {
+                std::lock_guard lock(mutex_);
+                done_ = generation_;
+            }
+            setPhase(Phase::Idle);
+            tell(); // that all is done
+        } catch (const std::bad_alloc&) { giveUp("out of memory"); } catch (const std::exception& e) { giveUp(e.what()); }
+}
+
+/// What was begun is over; what is asked for next may fit.
+void Session::giveUp(const std::string& why) {
+    plan_ = nullptr;
+    kept_ = {};
+    crop_.reset();
+    world_.reset();
+    worldKey_.clear();
+    filmKey_.clear();
+    stale_ = false;
+    shotPlanes_ = wantedPlanes();
+    {
+        std::lock_guard lock(mutex_);
+        done_ = generation_;
+        reload_ = false;
     }
+    say({Severity::Severe, Rie::NoMem, {options_.scene}, "the picture is given up: " + why, {}, {}});
+    setPhase(Phase::Idle);
+    tell();
 }
 
 bool Session::filesChanged() {

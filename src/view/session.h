@@ -95,6 +95,7 @@ private:
     void run();
     bool waitForWork();
     bool readScene();
+    void giveUp(const std::string& why);
     void say(const Diagnostic&);
     void interrupt();
     void tell();
@@ -185,8 +186,10 @@ private:
     std::shared_ptr<const Picture> crop_;           ///< what was rendered first, for as long as it has more samples
     std::optional<std::array<double, 4>> cropOf_;   ///< which part that is
     double shotSeconds_ = 0;                        ///< what the last shot cost
+    uint64_t pictures_ = 0;                         ///< that were made
     Clock::time_point lastShot_{}, lastFileLook_{};
     bool stale_ = true;                             ///< there is more than was shown
+    bool grew_ = false;                             ///< tiles of the pass under way are there
     std::optional<Phase> shownOf_;                  ///< what the last shot of this round was of
     std::set<std::string> shotPlanes_;
 };

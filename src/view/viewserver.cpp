@@ -67,7 +67,8 @@ std::optional<HttpResponse> ViewServer::picture(const HttpRequest& r, bool last)
         const Plane* there = p.plane(plane);
         const Plane& shown = there ? *there : p.planes.front();
         // Who has them, and only figures are new, need not get them again.
-        const auto tag = std::to_string(reinterpret_cast<uintptr_t>(shot.picture.get())) + "." + std::to_string(std::hash<std::string>()(Json(shot.dim).dump())) + "." + shown.name;
+        const auto tag = std::to_string(p.number) + "." +
+                         std::to_string(std::hash<std::string>()(textOf(Json(shot.dim)))) + "." + shown.name;
         if (word(r, "tag") != tag) pixels = halves(p, shown, shot.dim);
         state["tag"] = tag;
         Json names = Json::array();

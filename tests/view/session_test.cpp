@@ -1,7 +1,10 @@
 // A view without its page: what is rendered after what was asked for, against what render makes of the same scene.
 #include "view/session.h"
+#include "view/viewserver.h"
 #include "display/imageio.h"
+#include <atomic>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -27,6 +30,7 @@ protected:
     std::condition_variable changed;
     std::unique_ptr<Session> session;
     std::vector<std::string> said;
+    std::atomic<bool> noMemory{false};
 
     void SetUp() override {
         std::string name = (std::filesystem::temp_directory_path() / "alpenglow-view-XXXXXX").string();
@@ -49,7 +53,8 @@ protected:
         o.settings.quiet = true;
         o.scene = "s.rib";
         o.watch = watch;
-        o.read = [](ri::RibReader& r) {
+        o.read = [this](ri::RibReader& r) {
+            if (noMemory) throw std::bad_alloc();
             r.nextScene();
             r.readFile("s.rib");
         };
@@ -90,7 +95,7 @@ protected:
     /// What render makes of this scene.
     static display::Image rendered(const std::string& rib, render::RenderSettings s = {}) {
         Diagnostics diags;
-        s.output = "expected.exr";
+        if (s.output.empty()) s.output = "expected.exr";
         s.threads = 2;
         s.shippedShaders = ALPENGLOW_SOURCE_DIR "/shaders";
         if (!s.spp) s.spp = 8;
@@ -100,7 +105,7 @@ protected:
         o.overrides = [&](scene::Options& of) { r.override(of); };
         ri::RibReader reader(o, r, diags);
         reader.readMemory(rib, "expected.rib");
-        auto image = display::readImage("expected.exr", diags);
+        auto image = display::readImage(s.output, diags);
         EXPECT_TRUE(image);
         return image ? *image : display::Image{};
     }
@@ -303,6 +308,123 @@ TEST_F(ViewSession, SavesWhatRenderWouldWrite) {
     const double code = std::pow(std::clamp(double(expected.pixel(20, 12)[0]), 0.0, 1.0), 1 / 2.2);
     EXPECT_NEAR(png->pixel(20, 12)[0], code, 1.01 / 255);
     EXPECT_FALSE(std::filesystem::exists("x.exr")); // a view leaves the scene's own pictures alone
+}
+
+// An imager works on what Exposure made: the page shows what it gives, and its own curve comes behind.
+TEST_F(ViewSession, ImagersWorkOnWhatExposureMade) {
+    write("square.sl", "imager square() { Ci = Ci * Ci + 0.125 * alpha; }\n");
+    scene = with(kScene, "Hider", "Exposure 2 1.5\nImager \"square\"\nHider");
+    ASSERT_TRUE(open());
+    const auto p = done();
+    ASSERT_TRUE(p);
+    const display::Image expected = rendered(scene);
+    EXPECT_GT(expected.pixel(20, 12)[0], .125f);
+    EXPECT_EQ(difference(*p->planes[0].image, expected), 0);
+    const Json curve = session->state(0, 0)["curve"];
+    EXPECT_EQ(curve, Json({{"gain", 1.0}, {"gamma", 1.0}, {"srgb", false}})); // as render writes it
+    const auto save = [&](const char* type, double gain, double gamma) {
+        const size_t before = session->state(0, 0)["saved"].size();
+        EXPECT_EQ(session->act({{"do", "save"}, {"type", type}, {"gain", gain}, {"gamma", gamma}, {"srgb", false}}), Json({{"ok", true}}));
+        EXPECT_TRUE(until([&] { return session->state(0, 0)["saved"].size() > before; }));
+        Diagnostics diags;
+        return *display::readImage(session->state(0, 0)["saved"].back(), diags);
+    };
+    EXPECT_EQ(save("exr", 1, 1).data, expected.data);
+    render::RenderSettings s;
+    s.output = "expected.png";
+    EXPECT_EQ(save("png", curve["gain"], curve["gamma"]).data, rendered(scene, s).data);
+    // The page's own curve, of what it shows.
+    const display::Image dark = save("png", .5, 2);
+    for (int x = 0; x < 40; x += 3)
+        EXPECT_NEAR(dark.pixel(x, 12)[0], std::sqrt(std::clamp(.5f * expected.pixel(x, 12)[0], 0.f, 1.f)), 1.01 / 255) << x;
+}
+
+// Without an imager the page shows light, and what is saved as numbers is what render writes.
+TEST_F(ViewSession, SavesNumbersAsExposureMadeThem) {
+    scene = with(kScene, "Hider", "Exposure 2 1.5\nHider");
+    ASSERT_TRUE(open());
+    ASSERT_TRUE(done());
+    EXPECT_EQ(session->act({{"do", "save"}, {"type", "exr"}}), Json({{"ok", true}}));
+    ASSERT_TRUE(until([&] { return session->state(0, 0)["saved"].size() == 1; }));
+    Diagnostics diags;
+    const auto a = display::readImage("Pathtraced_8_0.exr", diags);
+    ASSERT_TRUE(a);
+    EXPECT_EQ(a->data, rendered(scene).data);
+}
+
+// Tiles of the whole over the coarse picture, more and more of them.
+TEST_F(ViewSession, PicturesOfHiddenGrowTileByTile) {
+    write("busy.sl", "surface busy() { float i, s = 0; for (i = 0; i < 40; i += 1) s += noise(90 * s + 40 * transform(\"NDC\", P) * (1, 1, 0) + i);\n"
+                     "Ci = mod(s, 1); Oi = 1; }\n");
+    scene = "Display \"x.exr\" \"openexr\" \"rgba\"\nFormat 320 240 1\nPixelFilter \"box\" 1 1\nHider \"hidden\"\nPixelSamples 4 4\n"
+            "Projection \"perspective\" \"fov\" 40\nTranslate 0 0 5\nWorldBegin\nSurface \"busy\"\n"
+            "Polygon \"P\" [-9 -9 0  9 -9 0  9 9 0  -9 9 0]\nWorldEnd\n";
+    std::vector<std::shared_ptr<const Picture>> seen;
+    ASSERT_TRUE(open(false, {{"continuous", false}, {"spp", 36}}));
+    ASSERT_TRUE(until([&] {
+        const auto p = session->look("picture").picture;
+        if (p && (seen.empty() || seen.back() != p)) seen.push_back(p);
+        return session->state(0, 0)["done"] == true;
+    }));
+    seen.push_back(done());
+    const display::Image& last = *seen.back()->planes[0].image;
+    render::RenderSettings s;
+    s.spp = 36;
+    EXPECT_EQ(difference(last, rendered(scene, s)), 0);
+    size_t before = 0, between = 0, black = 0;
+    for (const auto& p : seen) {
+        const display::Image& image = *p->planes[0].image;
+        if (image.width != last.width) continue; // the first coarse one
+        size_t same = 0;
+        for (int y = 0; y < last.height; ++y)
+            for (int x = 0; x < last.width; ++x) {
+                same += image.pixel(x, y)[0] == last.pixel(x, y)[0];
+                black += image.pixel(x, y)[3] == 0;
+            }
+        EXPECT_GE(same, before);
+        between += same > 76800 / 20 && same < 76800 * 19 / 20;
+        before = same;
+    }
+    EXPECT_GE(between, 1u) << seen.size(); // half done
+    EXPECT_EQ(black, 0u);                  // what is not there is the coarse picture
+}
+
+TEST_F(ViewSession, GoesOnWhenASceneDoesNotFitIntoMemory) {
+    ASSERT_TRUE(open());
+    ASSERT_TRUE(done());
+    noMemory = true;
+    EXPECT_EQ(session->act({{"do", "reload"}}), Json({{"ok", true}}));
+    ASSERT_TRUE(until([&] { return session->state(0, 0)["messages"].dump().find("given up: out of memory") != std::string::npos; }));
+    noMemory = false;
+    EXPECT_EQ(session->act({{"do", "reload"}}), Json({{"ok", true}}));
+    ASSERT_TRUE(until([&] { return session->state(0, 0)["messages"].empty(); }));
+    EXPECT_EQ(difference(*done()->planes[0].image, rendered(scene)), 0);
+}
+
+// Who has a picture is told by its tag, which no later one may have, wherever it lies in memory.
+TEST_F(ViewSession, EachPictureHasATagOfItsOwn) {
+    ASSERT_TRUE(open(false, {{"continuous", true}}));
+    std::string fault;
+    const auto http = HttpServer::listen(0, &fault);
+    ASSERT_TRUE(http) << fault;
+    ViewServer server(*session, *http, "token");
+    HttpRequest r;
+    r.method = "GET";
+    r.path = "/token/picture";
+    r.host = "127.0.0.1:" + std::to_string(http->port());
+    std::map<std::string, double> at; // samples that the picture of a tag had
+    ASSERT_TRUE(until([&] {
+        bool known = false;
+        const auto answer = server.answer(r, true, &known);
+        uint32_t n;
+        std::memcpy(&n, answer->body.data(), 4);
+        const Json s = Json::parse(answer->body.substr(4, n));
+        if (s.contains("tag") && s["figures"]["spp"].get<double>() > 1) {
+            const double spp = s["figures"]["spp"];
+            EXPECT_EQ(at.try_emplace(s["tag"], spp).first->second, spp);
+        }
+        return at.size() >= 12;
+    }));
 }
 
 TEST_F(ViewSession, WatchesItsFilesAndKeepsTheCamera) {

@@ -51,14 +51,20 @@ inline float misWeight(float a, float b) {
 }
 
 /// The chance that a ray goes on which a waiting kernel asks for: of its result's use nothing is known, and a kernel may ask any
-/// number of times. `bounces` of the point that asks; `many`: the most rays known to be asked for at one point, by this one so
-/// far or by those that the path has met. At the camera's hit every ray goes. Behind the third bounce the chances at a point sum
-/// up to at most 1 once the path has met a point that asks as often (to .6 above three rays, where that takes longer to learn),
-/// so that the tree of rays ends; all rays of a point have about the same chance, which keeps their variance finite where kernels
-/// lose light. Unbiased: what is known depends only on rays asked for before.
-inline float rouletteWaiting(int bounces, uint32_t many) {
-    float n = float(many);
-    return bounces < 1 ? 1 : bounces < 3 ? std::min(1.f, 3 / n) : many <= 3 ? std::min(.5f, 1 / n) : .6f / n;
+/// number of times. `bounces` of the point that asks; `known`: the most rays that were asked for at a point of the path before;
+/// `count`: of the call that asks, behind calls of the same kernel that have asked for `before` rays there.
+/// At the camera's hit every ray goes, at the next two points three in the mean. From there on the chances at a point sum up to
+/// less than 1, so that the tree of rays ends: to s = .8 for two or three rays, .7 for more, where 1 / (1 - s) points follow in
+/// the mean. All rays of a point have about the same chance; where kernels give back a part r of light, the variance that the
+/// chances bring is finite while r^2 < s, and s about .8 makes variance times rays least for r from .5 to .8. A ray that is known
+/// alone has .5, for its kernel may ask for others; calls that the path did not know of have .4 together, for they teach it
+/// only by and by how many there are. Unbiased: what is known depends on no number that is drawn here.
+inline float rouletteWaiting(int bounces, uint32_t known, uint32_t before, uint32_t count) {
+    const uint32_t many = std::max(known, before + count);
+    const float n = float(many);
+    const bool learns = before > 0 && before + count > known;
+    if (bounces < 3) return bounces < 1 ? 1 : std::min(1.f, 3 / n);
+    return many < 2 ? .5f : (learns ? .4f : many < 4 ? .8f : .7f) / n;
 }
 
 /// The chance that a ray goes on which the shader of a light asks for, at a point that it lights after so many bounces. `many`:

@@ -87,7 +87,7 @@ private:
     void sendRay(const Sent&, int turn, Sched&);
     bool meetsEmitter(const LobeVertex&, const Vec3& w) const;
     /// Divides the weight by the chance that the ray goes on; false: it does not.
-    bool roulette(const LobeVertex&, const Sent&, int turn, uint16_t& asked, Color& weight) const;
+    bool roulette(const LobeVertex&, const Sent&, uint16_t& asked, Color& weight) const;
 
     // photonscatter.cpp
     bool spreads(const LobeVertex&) const;

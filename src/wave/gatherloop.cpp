@@ -205,17 +205,45 @@ Color opacityAt(const Asking& a, const accel::Hit& hit, const Vec3& from, const 
 }
 
 /// Behind the camera's hit light is not followed of all rays that met something; the others bring what those would have. What
-/// else a gather is told does not depend on it: all its rays are cast, and the shaders run that give its outputs. `asked`: the
-/// rays that the kernel asks for, as far as is known.
-bool goesOn(const Asking& a, PathRay& sent, int count, uint32_t asked) {
+/// else a gather is told does not depend on it: all its rays are cast, and the shaders run that give its outputs. `before`: rays
+/// that the kernel has asked for; `many`: those of this call, as far as is known.
+bool goesOn(const Asking& a, PathRay& sent, int count, uint32_t before, uint32_t many) {
     if (!a.e.rules().roulette) return true;
     const PathRay& from = *a.point().ray;
-    const uint32_t many = a.c.light ? uint32_t(count) : asked;
-    sent.asked = uint16_t(std::min<uint32_t>(std::max<uint32_t>(from.asked, many), 0xffff));
-    const float q = a.c.light ? rouletteOfLight(from.bounces, sent.asked) : rouletteWaiting(from.bounces, sent.asked);
+    const uint32_t all = a.c.light ? uint32_t(count) : before + many;
+    sent.asked = uint16_t(std::min<uint32_t>(std::max<uint32_t>(from.asked, all), 0xffff));
+    const float q = a.c.light ? rouletteOfLight(from.bounces, sent.asked)
+                              : rouletteWaiting(from.bounces, from.asked, before, many);
     if (q < 1 && !(a.e.random(from).one(sent.vertex, kRoulette, 0) < q)) return false;
     sent.weight = sent.weight / q;
     return true;
+}
+
+/// A ray of a gather that has met something whose shaders may have to run.
+struct GatherMet { PathRay ray; float* row; accel::Hit hit; };
+
+/// Of the rays of turns begin to end of `turns` those whose hits are shaded. All are cast before the first of them is chosen: how
+/// many have met something is known for all. `asked`: rays of the kernel before, and behind the call with these.
+void sendMet(const Asking& a, std::span<GatherMet> met, int begin, int end, int turns, int count, const RayKind* kind,
+             uint32_t& asked, std::vector<GatherSent>& out) {
+    const GatherSite& g = *a.s.gather;
+    if (met.empty()) return;
+    const uint64_t all = (uint64_t(met.size()) * uint64_t(turns - begin) + uint64_t(end - begin) - 1) / uint64_t(end - begin);
+    const uint32_t before = asked, many = g.asks ? std::max(uint32_t(all), uint32_t(count)) : uint32_t(all);
+    asked += uint32_t(met.size());
+    for (GatherMet& m : met) {
+        PathRay& sent = m.ray;
+        const bool quiet = a.point().ray->quiet;
+        if (quiet || !goesOn(a, sent, count, before, many)) {
+            const Color open = g.opacity ? Color(1) - opacityAt(a, m.hit, sent.origin, sent.dir, kind) : Color(1);
+            endGatherRay(g, {Color(0), open}, m.row);
+            if (quiet || !g.asks) continue;
+            sent.weight = Color(0);
+            sent.quiet = true;
+            sent.asked = uint16_t(std::clamp(turns, int(sent.asked), 0xffff));
+        }
+        out.push_back({sent, m.row, a.e.world().shapes_[m.hit.shape].get(), &g, sent.quiet, false});
+    }
 }
 
 /// Rays that are cast for `count` turns, a power of two or all. Where a gather asks for outputs the shaders run at all that it
@@ -245,6 +273,7 @@ void castRays(const Asking& a, GatherRows& rows, int begin, int end, int count, 
     const float base = a.number(r.base, 0);
     const int turns = count;
     count = raysFor(a, turns);
+    std::vector<GatherMet> shaded;
     for (int turn = begin; turn < end; ++turn) {
         float* row = rows.of(a.lane, turn - begin);
         if (turn - begin >= count) {
@@ -284,18 +313,9 @@ void castRays(const Asking& a, GatherRows& rows, int begin, int end, int count, 
         if (!met) continue;
         row[0] = 1;
         tellHit(e.world(), g, row, hit);
-        if (!g.shades) continue;
-        PathRay sent = a.ray(w, from, reach, kept, k, count);
-        ++asked;
-        if (p.ray->quiet || !goesOn(a, sent, count, g.asks ? std::max(asked, uint32_t(count)) : asked)) {
-            endGatherRay(g, {Color(0), g.opacity ? Color(1) - opacityAt(a, hit, from, w, kept) : Color(1)}, row);
-            if (p.ray->quiet || !g.asks) continue;
-            sent.weight = Color(0);
-            sent.quiet = true;
-            sent.asked = uint16_t(std::clamp(turns, int(sent.asked), 0xffff));
-        }
-        out.push_back({sent, row, e.world().shapes_[hit.shape].get(), &g, sent.quiet, false});
+        if (g.shades) shaded.push_back({a.ray(w, from, reach, kept, k, count), row, hit});
     }
+    sendMet(a, shaded, begin, end, turns, count, kept, asked, out);
 }
 
 } // namespace

@@ -131,13 +131,13 @@ bool Gather::meetsEmitter(const LobeVertex& l, const Vec3& w) const {
     return false;
 }
 
-bool Gather::roulette(const LobeVertex& l, const Sent& s, int turn, uint16_t& asked, Color& weight) const {
+bool Gather::roulette(const LobeVertex& l, const Sent& s, uint16_t& asked, Color& weight) const {
     const PathRay& from = rayOf(l);
     const auto dice = [&] { return s.dice; };
     float q = 1;
     if (l.ownsTarget) {
-        asked = uint16_t(std::min<uint32_t>(std::max<uint32_t>(from.asked, l.before + uint32_t(turn) + 1), 0xffff));
-        q = rouletteWaiting(from.bounces, asked);
+        asked = uint16_t(std::min<uint32_t>(std::max<uint32_t>(from.asked, l.before + uint32_t(s.count)), 0xffff));
+        q = rouletteWaiting(from.bounces, from.asked, l.before, uint32_t(s.count));
         if (q < 1 && dice() >= q) q = 0;
     } else if (world_.settings_.localRoulette) {
         q = rouletteLocal(from.bounces + 1, l.weight, from.bounces + 1 > 3 ? dice() : 0);
@@ -172,7 +172,7 @@ void Gather::sendRay(const Sent& s, int turn, Sched& sched) {
     if (!isFinite(weight)) return e_.notFinite(*c_, from, l.site);
     if (weight == Color(0) && !l.ownsTarget) return;
     uint16_t asked = from.asked;
-    if (rules_.roulette && !roulette(l, s, turn, asked, weight)) return;
+    if (rules_.roulette && !roulette(l, s, asked, weight)) return;
     if (l.below >= 0) {
         const float indirect = l.lobeOfShader ? indirectScale_[size_t(s.point)] : 1;
         e_.walks_.push_back({s.point, l.below, weight, l.target, s.vertex, shareOf(l), indirect});

@@ -22,7 +22,7 @@ void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId t
         float q = 1;
         if (asked > 0) { // one more of what the kernel has asked for
             r.asked = uint16_t(std::min<uint32_t>(std::max<uint32_t>(ray.asked, asked + 1), 0xffff));
-            q = std::min(rouletteWaiting(ray.bounces, r.asked), maxComponent(transparency));
+            q = std::min(rouletteWaiting(ray.bounces, ray.asked, asked, 1), maxComponent(transparency));
             if (q < 1 && dice() >= q) q = 0;
         } else if (set.localRoulette) {
             q = rouletteLocal(depth, t, depth > 3 ? dice() : 0);

@@ -4,7 +4,10 @@
 
 namespace alpenglow::photons {
 
-PhotonGrid::PhotonGrid(std::vector<Photon> photons, float radius) : radius_(radius), cell_(2.0 * double(radius)) {
+PhotonGrid::PhotonGrid(std::vector<Photon> photons, float radius) : PhotonGrid(std::move(photons), radius, {}, 1) {}
+
+PhotonGrid::PhotonGrid(std::vector<Photon> photons, float radius, std::span<const float> times, float window)
+    : times_(times.size()), halfWindow_(window / 2), radius_(radius), cell_(2.0 * double(radius)) {
     uint32_t buckets = 16;
     while (buckets < photons.size() && buckets < (1u << 30)) buckets *= 2;
     mask_ = buckets - 1;
@@ -18,7 +21,11 @@ PhotonGrid::PhotonGrid(std::vector<Photon> photons, float radius) : radius_(radi
     for (size_t b = 1; b < first_.size(); ++b) first_[b] += first_[b - 1];
     std::vector<uint32_t> next(first_.begin(), first_.end() - 1);
     photons_.resize(photons.size());
-    for (size_t i = 0; i < photons.size(); ++i) photons_[next[of[i]]++] = photons[i];
+    for (size_t i = 0; i < photons.size(); ++i) {
+        const uint32_t to = next[of[i]]++;
+        photons_[to] = photons[i];
+        if (!times.empty()) times_[to] = times[i];
+    }
 }
 
 uint32_t PhotonGrid::bucketOf(int64_t x, int64_t y, int64_t z) const {
@@ -51,6 +58,13 @@ float radiusOfPass(float first, uint32_t pass) {
     for (uint32_t j = 1; j <= std::min(pass, kExact); ++j) square *= (j + kAlpha) / (j + 1.0);
     if (pass > kExact) square *= exact::pow((kExact + 1.0) / (pass + 1.0), 1 - kAlpha);
     return float(double(first) * std::sqrt(square));
+}
+
+MovingStart movingStart(float radius, float travel) {
+    // Radius r and window w with w r^2 = radius^2 and w travel = r, so w = (radius / travel)^(2/3).
+    if (!(travel > radius)) return {radius, 1};
+    const float window = std::max(float(exact::pow(double(radius) / double(travel), 2.0 / 3)), kLeastWindow);
+    return {radius / std::sqrt(window), window};
 }
 
 } // namespace alpenglow::photons

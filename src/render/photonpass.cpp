@@ -1,7 +1,9 @@
 #include "render/photonpass.h"
+#include "base/hash.h"
 #include "photons/limits.h"
 #include "photons/photonmap.h"
 #include <algorithm>
+#include <utility>
 
 namespace alpenglow::render {
 
@@ -9,6 +11,9 @@ namespace {
 
 constexpr uint32_t kBlock = 8192;        ///< photons of a task
 constexpr uint64_t kBlocksAtOnce = 16;   ///< of an emission, before what came to rest is counted
+constexpr size_t kBlocksOfPasses = 32;   ///< of passes for samples, before what came to rest is counted
+constexpr float kWidth = .1f;            ///< radians: lobes that spread less are followed
+constexpr float kMostWidth = .5f;
 constexpr uint64_t kDefaultEmit = 200000;
 constexpr uint32_t kPilot = 0xffffffffu; ///< pass by which caustics are found
 constexpr int kTypical = 12;             ///< photons within the first radius, about, where they are dense
@@ -16,6 +21,17 @@ constexpr int kTypical = 12;             ///< photons within the first radius, a
 const scene::Param* hiderParam(const scene::Options& o, const char* name) {
     const scene::Param* p = scene::find(o.hiderParams, name);
     return p && !p->numbers.empty() ? p : nullptr;
+}
+
+/// About `most` of photons that are more, by chance: what is left carries the light of all.
+void thin(std::vector<transport::StoredPhoton>& stored, size_t most, uint32_t pass) {
+    if (stored.size() <= most) return;
+    const double part = double(most) / double(stored.size());
+    std::erase_if(stored, [&](const transport::StoredPhoton& s) {
+        const uint64_t key = mix64(uint64_t(pass) << 32 | s.number) + s.photon.bounces;
+        return double(mix64(key) >> 11) * 0x1p-53 >= part;
+    });
+    for (transport::StoredPhoton& s : stored) s.photon.power /= float(part);
 }
 
 } // namespace
@@ -91,22 +107,64 @@ bool PhotonPasses::emit(uint32_t pass, uint64_t count, std::vector<transport::St
     return true;
 }
 
-bool PhotonPasses::emit(uint32_t first, uint32_t passes, uint32_t count, std::vector<std::vector<transport::StoredPhoton>>& stored) {
+/// Blocks begin to end - 1, those of all passes from `first` on in a row: what came to rest, by block.
+bool PhotonPasses::emitBlocks(uint32_t first, uint32_t count, size_t begin, size_t end,
+                              std::vector<std::vector<transport::StoredPhoton>>& of) {
     const size_t blocks = (count + kBlock - 1) / kBlock;
-    std::vector<std::vector<transport::StoredPhoton>> of(blocks * passes);
-    const bool whole = job_.team.run(
+    of.assign(end - begin, {});
+    return job_.team.run(
         of.size(), &job_.halt,
         [&](int worker, size_t i) {
-            const uint32_t begin = uint32_t(i % blocks) * kBlock;
-            thread(worker).emit(first + uint32_t(i / blocks), begin, std::min(kBlock, count - begin), count, of[i], &job_.halt);
+            const size_t block = begin + i;
+            const uint32_t at = uint32_t(block % blocks) * kBlock;
+            thread(worker).emit(first + uint32_t(block / blocks), at, std::min(kBlock, count - at), count, of[i], &job_.halt);
         },
         [&](size_t) { job_.pollStop(); });
-    stored.assign(passes, {});
-    for (size_t i = 0; i < of.size() && whole; ++i) {
-        auto& to = stored[i / blocks];
-        to.insert(to.end(), of[i].begin(), of[i].end());
+}
+
+bool PhotonPasses::emit(uint32_t first, uint32_t passes, uint32_t count, size_t most,
+                        const std::function<void(uint32_t, std::vector<transport::StoredPhoton>)>& take) {
+    const size_t blocks = (count + kBlock - 1) / kBlock;
+    // Small passes together, for all threads to have something to do; of large ones a part at a time. Where they are parted depends
+    // on nothing else, so that a pass is the same whatever comes with it.
+    const size_t together = std::max<size_t>(1, kBlocksOfPasses / blocks);
+    std::vector<std::vector<transport::StoredPhoton>> of;
+    for (uint32_t pass = 0; pass < passes; pass += uint32_t(together)) {
+        const size_t now = std::min<size_t>(together, passes - pass);
+        std::vector<transport::StoredPhoton> stored;
+        for (size_t done = 0; done < blocks * now;) {
+            const size_t end = now > 1 || blocks <= kBlocksOfPasses ? blocks * now : std::min(done + kBlocksOfPasses, blocks);
+            if (!emitBlocks(first + pass, count, done, end, of)) return false;
+            for (size_t i = done; i < end; ++i) {
+                stored.insert(stored.end(), of[i - done].begin(), of[i - done].end());
+                of[i - done] = {};
+                if ((i + 1) % blocks != 0) continue;
+                const uint32_t whole = pass + uint32_t(i / blocks);
+                thin(stored, most, first + whole);
+                take(whole, std::exchange(stored, {}));
+            }
+            done = end;
+            if (stored.size() <= most || done >= blocks) continue;
+            const uint32_t emitted = uint32_t(done) * kBlock;
+            for (transport::StoredPhoton& s : stored) s.photon.power *= float(count) / float(emitted);
+            job_.diagnostics.reportOnce("photonsatrest",
+                                        {Severity::Warning, Rie::Limit, {},
+                                         "more than " + std::to_string(most) + " photons of a pass came to rest: it ends after " +
+                                             std::to_string(emitted) + " of " + std::to_string(count),
+                                         "they share the light of all lights, so caustics are right, and coarser", {}});
+            thin(stored, most, first + pass);
+            take(pass, std::exchange(stored, {}));
+            break;
+        }
     }
-    return whole;
+    return true;
+}
+
+float PhotonPasses::travel() const {
+    float most = 0;
+    for (const auto& t : threads_)
+        if (t) most = std::max(most, t->travel());
+    return most;
 }
 
 bool CausticPasses::asked(const scene::Options& o) {
@@ -130,40 +188,57 @@ bool CausticPasses::begin() {
                                     "a pass emits 1 to " + std::to_string(limits::kPhotonsOfPass) + " photons");
         count_ = uint32_t(std::clamp(double(p->numbers[0]), 1.0, double(limits::kPhotonsOfPass)));
     }
-    auto passes = std::make_unique<PhotonPasses>(job_, job_.world, transport::PhotonUse{true, false, true});
+    auto passes = std::make_unique<PhotonPasses>(job_, job_.world, transport::PhotonUse{true, false, true, widthOf(o)});
     if (!passes->emission().lights()) return true;
-    std::vector<std::vector<transport::StoredPhoton>> found;
+    std::vector<transport::StoredPhoton> found;
+    const auto take = [&](uint32_t, std::vector<transport::StoredPhoton> stored) { found = std::move(stored); };
     const uint32_t pilot = std::clamp(count_ * 4, 1u << 14, 1u << 17);
-    if (!passes->emit(kPilot, 1, pilot, found)) return false;
-    if (found[0].empty()) return true; // then paths find what there is
-    passes->emission().learn(found[0], kPilot, pilot);
-    if (!passes->emit(0, 1, count_, found)) return false;
+    if (!passes->emit(kPilot, 1, pilot, limits::kPhotonsAtRest, take)) return false;
+    if (found.empty()) return true; // then paths find what there is
+    passes->emission().learn(found, kPilot, pilot);
+    if (!passes->emit(0, 1, count_, limits::kPhotonsAtRest, take)) return false;
     std::vector<photons::Photon> some;
-    for (const transport::StoredPhoton& s : found[0]) some.push_back(s.photon);
+    for (const transport::StoredPhoton& s : found) some.push_back(s.photon);
+    found = {};
     radius_ = photons::typicalDistance(photons::PhotonMap(std::move(some)), kTypical, 128);
     if (!(radius_ > 0)) return true;
+    moves_ = passes->emission().moves();
+    if (moves_) {
+        const photons::MovingStart start = photons::movingStart(radius_, passes->travel());
+        radius_ = start.radius;
+        window_ = start.window;
+    }
     passes->emission().tellLights();
     passes_ = std::move(passes);
     return true;
 }
 
+/// Hider "path" "causticwidth": radians, 0 to kMostWidth.
+float CausticPasses::widthOf(const scene::Options& o) {
+    const scene::Param* p = hiderParam(o, "causticwidth");
+    if (!p) return kWidth;
+    if (!(p->numbers[0] >= 0 && p->numbers[0] <= kMostWidth))
+        job_.diagnostics.report(Severity::Error, Rie::Range, p->place, "\"causticwidth\" is an angle in radians, 0 to 0.5");
+    return p->numbers[0] >= 0 ? std::min(float(p->numbers[0]), kMostWidth) : 0;
+}
+
 bool CausticPasses::ready(uint32_t first, uint32_t count) {
     if (!begun_ && !begin()) return false;
     if (!passes_) return true;
-    std::vector<std::vector<transport::StoredPhoton>> stored;
-    if (!passes_->emit(first, count, count_, stored)) return false;
     std::vector<std::unique_ptr<photons::PhotonGrid>> grids(count);
-    StopFlag go{0};
-    job_.team.run(
-        count, &go,
-        [&](int, size_t i) {
-            std::vector<photons::Photon> all;
-            all.reserve(stored[i].size());
-            for (const transport::StoredPhoton& s : stored[i]) all.push_back(s.photon);
-            stored[i] = {};
-            grids[i] = std::make_unique<photons::PhotonGrid>(std::move(all), photons::radiusOfPass(radius_, first + uint32_t(i)));
-        },
-        [](size_t) {});
+    const auto take = [&](uint32_t pass, std::vector<transport::StoredPhoton> stored) {
+        std::vector<photons::Photon> all;
+        std::vector<float> times;
+        all.reserve(stored.size());
+        for (const transport::StoredPhoton& s : stored) all.push_back(s.photon);
+        if (moves_)
+            for (const transport::StoredPhoton& s : stored) times.push_back(s.time);
+        stored = {};
+        const float radius = photons::radiusOfPass(radius_, first + pass);
+        grids[pass] = std::make_unique<photons::PhotonGrid>(std::move(all), radius, times, window_ * (radius / radius_));
+    };
+    transport::setPhotonPasses(*job_.world, first, {}); // those of the samples before are not held beside
+    if (!passes_->emit(first, count, count_, limits::kPhotonsAtRest, take)) return false;
     transport::setPhotonPasses(*job_.world, first, std::move(grids));
     return true;
 }

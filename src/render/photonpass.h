@@ -2,6 +2,7 @@
 #pragma once
 #include "render/rendering.h"
 #include "transport/photons.h"
+#include <functional>
 
 namespace alpenglow::render {
 
@@ -13,10 +14,16 @@ public:
     /// All photons that come to rest of `count` of a pass. False: stopped, or more than limits::kPhotons came to rest, which was
     /// reported; then *emitted is how many were emitted of which these are.
     bool emit(uint32_t pass, uint64_t count, std::vector<transport::StoredPhoton>& stored, const std::string& what, uint64_t* emitted);
-    /// The same of several passes, first to first + passes - 1, each by itself. False: stopped.
-    bool emit(uint32_t first, uint32_t passes, uint32_t count, std::vector<std::vector<transport::StoredPhoton>>& stored);
+    /// Of passes first to first + passes - 1 each by itself: take(pass, stored) has what came to rest of `count` photons, pass by
+    /// pass. Once more than `most` did, no more are emitted of that pass, which is reported once; these then carry the light of
+    /// all. False: stopped.
+    bool emit(uint32_t first, uint32_t passes, uint32_t count, size_t most,
+              const std::function<void(uint32_t pass, std::vector<transport::StoredPhoton>)>& take);
+    /// How far lights, and the surfaces that photons have met so far, move while the shutter is open.
+    float travel() const;
 
 private:
+    bool emitBlocks(uint32_t first, uint32_t count, size_t begin, size_t end, std::vector<std::vector<transport::StoredPhoton>>& of);
     transport::PhotonEmission::Thread& thread(int worker);
     Job& job_;
     transport::PhotonEmission emission_;
@@ -37,11 +44,14 @@ public:
 
 private:
     bool begin();
+    float widthOf(const scene::Options&);
     Job& job_;
     std::unique_ptr<PhotonPasses> passes_; ///< null: there are no caustics, or nobody asks for them
     bool begun_ = false;
     uint32_t count_ = 0; ///< photons of a pass
     float radius_ = 0;   ///< of the first pass
+    float window_ = 1;   ///< and for how long its photons are there, of the time that the shutter is open
+    bool moves_ = false;
 };
 
 } // namespace alpenglow::render

@@ -146,8 +146,11 @@ constexpr OptionDescription kHiderParameters[] = {
      "The opening of the lens of DepthOfField: sides (0: a circle), degrees by which it is turned, roundness of the sides (0 to 1), and "
      "whether light grows toward the rim (1) or the middle (-1)."},
     {"caustics", "int", "0", "1", Used,
-     "path: 1: light that reaches surfaces by way of mirrors and glass is brought by photons, new ones for each sample; their bias "
+     "path: 1: light that reaches surfaces by way of mirrors, glass and narrow highlights is brought by photons, new ones for each sample; their bias "
      "vanishes with the number of samples."},
+    {"causticwidth", "float", "0.1", "0", Used,
+     "path with caustics: photons also bring what comes by way of narrow highlights and rough glass, whose lobes spread by less than this "
+     "half angle in radians (of trace()'s distributions about their roughness), 0 to 0.5. 0: mirrors and clear glass alone."},
     {"composite", "", "", "", Ignored, kDelight},
     {"depthfilter", "string", "\"min\"", "\"midpoint\"", Used,
      "hidden and raytrace: the depth of a pixel: min, max, average or midpoint."},

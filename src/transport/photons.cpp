@@ -18,6 +18,7 @@ struct PhotonEmission::Impl {
         j.pass = pass;
         j.caustics = use.caustics;
         j.models = !use.caustics;
+        j.width = use.caustics ? use.width : 0;
         j.scale = 1 / emitted;
         return j;
     }
@@ -33,6 +34,7 @@ PhotonEmission::PhotonEmission(std::shared_ptr<const World> w, const PhotonUse& 
 }
 PhotonEmission::~PhotonEmission() = default;
 bool PhotonEmission::lights() const { return !impl_->plan->empty(); }
+bool PhotonEmission::moves() const { return impl_->plan->moves(); }
 double PhotonEmission::power() const {
     double sum = 0;
     for (const EmissionPlan::Light& l : impl_->plan->lights()) sum += l.power;
@@ -41,7 +43,10 @@ double PhotonEmission::power() const {
 void PhotonEmission::learn(std::span<const StoredPhoton> stored, uint32_t pass, uint32_t emitted) {
     impl_->plan->learn(stored, impl_->job(pass, emitted), emitted);
 }
-void PhotonEmission::tellLights() const { impl_->world->photons_->lightsOfPasses = impl_->plan->emits(); }
+void PhotonEmission::tellLights() const {
+    impl_->world->photons_->lightsOfPasses = impl_->plan->emits();
+    impl_->world->photons_->widthOfPasses = impl_->use.width;
+}
 
 struct PhotonEmission::Thread::Impl {
     const PhotonEmission::Impl& of;
@@ -53,6 +58,10 @@ PhotonEmission::Thread::~Thread() = default;
 bool PhotonEmission::Thread::emit(uint32_t pass, uint32_t first, uint32_t count, double emitted, std::vector<StoredPhoton>& out,
                                   const StopFlag* stop) {
     return impl_->engine.emit(impl_->of.job(pass, emitted), first, count, out, stop);
+}
+float PhotonEmission::Thread::travel() const {
+    const PhotonTrace* t = impl_->engine.photonTrace();
+    return std::max(t ? t->fastest : 0, impl_->of.plan->travel());
 }
 const Counters& PhotonEmission::Thread::counters() const { return impl_->engine.counters; }
 

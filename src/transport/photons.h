@@ -19,6 +19,7 @@ struct PhotonUse {
     bool all = true;       ///< lights that say nothing about photons emit, where none says that it does
     bool sky = true;       ///< environments, too
     bool caustics = false; ///< only what mirrors and glass send is wanted
+    float width = 0;       ///< and lobes whose spread is below, in radians
 };
 
 /// How photons of one world are emitted. The world must have been made for the hider path.
@@ -27,6 +28,7 @@ public:
     PhotonEmission(std::shared_ptr<const World>, const PhotonUse&, Diagnostics&);
     ~PhotonEmission();
     bool lights() const; ///< whether some light emits
+    bool moves() const;  ///< whether anything moves that photons may meet or come from
     double power() const; ///< of them all, luminance, about
     /// From now on more photons are sent where those went that came to rest, of `emitted` of a pass. Nobody emits meanwhile.
     void learn(std::span<const StoredPhoton>, uint32_t pass, uint32_t emitted);
@@ -43,6 +45,8 @@ public:
         bool emit(uint32_t pass, uint32_t first, uint32_t count, double emitted, std::vector<StoredPhoton>& out,
                   const StopFlag* stop);
         const Counters& counters() const;
+        /// How far lights, and the surfaces that its photons have met, move while the shutter is open.
+        float travel() const;
 
     private:
         struct Impl;

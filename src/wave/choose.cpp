@@ -35,6 +35,7 @@ void Gather::choosePoint(size_t point) {
     const Color left = absolute(from.weight);
     const auto worth = [&](const Color& share) { return competes ? dot(share, left) / 3 : luminance(share); };
     const auto list = lobesOf(point);
+    const float narrowest = narrowBelow(e_, from);
     Color sum(0), seen(0);
     bool cut = false; // by the depth of the render, not by a depth that a primitive asks for
     for (int i : list) {
@@ -42,6 +43,7 @@ void Gather::choosePoint(size_t point) {
         const Color weight = absolute(l.weight);
         l.albedo = e_.lobeRows_.albedo(l.place);
         l.delta = e_.lobeRows_.delta(l.place);
+        l.narrow = isNarrow(l, narrowest);
         if (l.lobeOfShader) sum += weight * l.albedo;
         if (!l.ownsTarget) seen += l.weight * l.albedo;
         l.chosen = std::max(worth(weight) * l.albedo, 0.f);

@@ -44,6 +44,20 @@ std::vector<uint8_t> EmissionPlan::emits() const {
     return by;
 }
 
+bool EmissionPlan::moves() const {
+    return world_.moves_ || std::any_of(lights_.begin(), lights_.end(), [](const Light& l) { return l.light->instance->moving; });
+}
+
+float EmissionPlan::travel() const {
+    float most = 0;
+    for (const Light& l : lights_) {
+        if (!l.light->instance->moving) continue;
+        const auto at = [&](float shutter) { return Vec3(transformPoint(l.light->instance->toCurrentAt(shutter), {0, 0, 0})); };
+        most = std::max(most, length(at(1) - at(0)));
+    }
+    return most;
+}
+
 std::vector<uint8_t> EmissionPlan::met(bool both) const {
     std::vector<uint8_t> by;
     for (size_t i = 0; i < world_.shapes_.size(); ++i) {

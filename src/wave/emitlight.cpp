@@ -89,16 +89,30 @@ void startDistant(Engine& e, const EmissionPlan& plan, const EmissionPlan::Light
     }
 }
 
+/// From a light that has a place, and moves: its shader says where it stands.
+void startMoving(Engine& e, const EmissionPlan& plan, const EmissionPlan::Light& l, std::span<EmissionStart> starts) {
+    std::vector<ShadePoint> q;
+    for (EmissionStart& s : starts) {
+        s.dir = Vec3(0, 0, 1);
+        q.push_back(queryOf(e.world(), l, s, plan.centre + s.dir * plan.radius));
+    }
+    std::vector<LightValue> v(q.size());
+    e.evaluateLight(*l.light, q, v);
+    for (size_t i = 0; i < starts.size(); ++i) starts[i].origin = q[i].Ps - v[i].L;
+}
+
 } // namespace
 
 void startPhotons(Engine& e, const EmissionPlan& plan, const EmissionPlan::Light& l, std::span<EmissionStart> starts) {
+    const bool moves = l.light->kind == LightKind::Point && l.light->instance->moving;
     if (l.light->kind == LightKind::Distant) startDistant(e, plan, l, starts);
+    if (moves) startMoving(e, plan, l, starts);
     for (EmissionStart& s : starts) {
         switch (l.light->kind) {
         case LightKind::Area: startArea(e.world(), l, s); break;
         case LightKind::Point:
             s.dir = evenDirection(s.drawn.way);
-            s.origin = l.place;
+            if (!moves) s.origin = l.place;
             s.factor = 4 * kPiF * kPiF; // power: pi Cl d^2 a steradian
             break;
         case LightKind::Environment:
@@ -122,13 +136,16 @@ std::vector<Color> emittedPower(Engine& e, const EmissionPlan::Light& l, std::sp
         of.push_back(i);
     }
     std::vector<LightValue> v(q.size());
-    e.evaluateLight(*l.light, q, v);
+    const std::vector<char> apart(q.size(), 1); // an emitter's atmosphere counts where photons arrive
+    LightCall call;
+    call.inMedium = &apart;
+    e.evaluateLight(*l.light, q, v, call);
     std::vector<Color> power(starts.size(), Color(0));
     const bool falls = l.light->kind == LightKind::Point || l.light->mean; // what the shader says is irradiance
     for (size_t k = 0; k < of.size(); ++k) {
         const EmissionStart& s = starts[of[k]];
         if (!v[k].lit || !isFinite(v[k].Cl)) continue;
-        const float far = length(q[k].Ps - (l.light->kind == LightKind::Point ? l.place : meetsAt(s.surface)));
+        const float far = length(q[k].Ps - (l.light->kind == LightKind::Point ? s.origin : meetsAt(s.surface)));
         const Color c = v[k].Cl * (s.factor * (falls ? far * far : 1));
         if (isFinite(c)) power[of[k]] = {std::max(c.x, 0.f), std::max(c.y, 0.f), std::max(c.z, 0.f)};
     }

@@ -234,6 +234,7 @@ public:
     void finishStrip(BatchContext&, int first, int lanes, Sched&, std::span<const uint32_t> asked = {});
     /// The share of the light from behind a shaded point that comes through, 0 to 1.
     Color clearAt(const BatchContext&, int point) const;
+    Color leftBehind(const BatchContext&, int point) const; ///< of it, by what the volume before the point takes
     const WorldImpl& world() const { return *world_; }
     const Rules& rules() const { return rules_; }
     Diagnostics& diagnostics() { return diagnostics_; }
@@ -302,6 +303,7 @@ public:
     /// What is left of light along camera rays, behind each surface that they meet: SampleResult::left. depths.cpp
     bool seeThrough(std::span<const CameraRay>, std::span<SampleResult>);
     bool emitAll(const PhotonJob&, uint32_t first, uint32_t count);
+    const shading::Media* aboutLight(const EmissionPlan::Light&, const struct EmissionStart&);
     void tiltPhotons(BatchContext&); ///< photonscatter.cpp
     // photonmodels.cpp
     /// Photons at points whose surfaces scatter them by a model, or whose kernel waits for rays.

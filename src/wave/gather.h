@@ -21,7 +21,17 @@ private:
     struct Reached { int query, lobe, turn; Vec3 w; LobeValue value; };
     /// A lobe whose rays are sent: `count` of them, each with `scale` times its weight. `goes`, `w`: the ray of this turn.
     /// `vertex`: of that ray; `dice`: the number of its roulette.
-    struct Sent { int point, lobe, count; float scale; bool goes; Vec3 w; LobeValue value; uint32_t vertex = 0; float dice = 0; };
+    /// `back`, of photons along narrow lobes: what the other way gives back, in the place of its weight and value.
+    struct Sent {
+        int point, lobe, count;
+        float scale;
+        bool goes;
+        Vec3 w;
+        LobeValue value;
+        uint32_t vertex = 0;
+        float dice = 0;
+        Color back{0};
+    };
     /// What lights are asked for at points of the batch, one kernel call; row by row a query.
     struct LightQueries {
         std::vector<ShadePoint> at;          ///< the light's point; the first `count` are used
@@ -92,9 +102,12 @@ private:
     // photonscatter.cpp
     bool spreads(const LobeVertex&) const;
     bool mirrors(const LobeVertex&) const;
+    bool isNarrow(const LobeVertex& l, float below) const; ///< `below`: narrowBelow()
     bool seesAll(const LobeVertex&) const;
     uint8_t trailBehind(const LobeVertex&) const; ///< PathRay::trail
+    bool leftToPhotons(const LobeVertex&, const BoundLight&) const;
     void restPhotons();
+    void lookBack(Sched&);
     float photonWay(const LobeVertex&, Vec3& w) const;
     /// Gives lobes what they send on of the photons about their points.
     void takePhotons(Sched&);

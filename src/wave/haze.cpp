@@ -2,6 +2,7 @@
 // which the compiler proves where it can; the slope scales what is added later: requests, and the light of an emitter.
 #include "wave/engine.h"
 #include "world/outputs.h"
+#include <algorithm>
 
 namespace alpenglow::transport {
 
@@ -89,6 +90,51 @@ void Engine::hazeOfBatch(BatchContext& c, int first, int count, bool wantSlope) 
         out.resize(points.size());
         haze(*medium, b, points, out, wantSlope, &c, of);
         for (size_t k = 0; k < of.size(); ++k) c.haze[size_t(of[k])] = out[k];
+    }
+}
+
+void hazeOfPhotons(Engine& e, BatchContext& c) {
+    const WorldImpl& world = e.world();
+    c.haze.clear();
+    // Where each way is seen to begin and end, by the volume that it is in.
+    struct Way { const Medium* medium; int binding; size_t point; Vec3 end; };
+    std::vector<Way> ways;
+    for (size_t i = 0; i < c.rays.size(); ++i) {
+        const PathRay& r = c.rays[i];
+        const int in = r.medium();
+        const int binding = in >= 0 ? world.media_[size_t(in)].binding : r.lobeBinding;
+        if (binding < 0) continue;
+        const Medium& m = in >= 0 ? world.media_[size_t(in)] : world.bindings_[size_t(binding)].atmosphere;
+        if (!m.shader || m.homogeneous) continue; // flights see to the latter
+        ways.push_back({&m, binding, i, in >= 0 ? r.origin : r.lobeOrigin});
+    }
+    if (ways.empty()) return;
+    c.haze.resize(c.rays.size());
+    std::stable_sort(ways.begin(), ways.end(), [](const Way& a, const Way& b) { return a.binding < b.binding; });
+    std::vector<ShadePoint> points;
+    std::vector<Haze> out;
+    for (size_t first = 0, end; first < ways.size(); first = end) {
+        points.clear();
+        for (end = first; end < ways.size() && ways[end].medium == ways[first].medium; ++end) {
+            const ShadePoint& here = c.points[ways[end].point];
+            ShadePoint& p = points.emplace_back();
+            p.shape = ways[end].medium->shape;
+            p.P = p.surface.P = ways[end].end;
+            p.E = here.surface.displaced ? here.surface.displacedP : here.surface.P;
+            p.I = p.P - p.E;
+            p.N = p.surface.n = p.surface.N = p.surface.Ng = length(p.I) > 0 ? -normalize(p.I) : Vec3(0, 0, 1);
+            p.Ci = p.Oi = Color(1);
+            p.ray = &c.rays[ways[end].point];
+            p.shutter = here.shutter;
+            p.time = here.time;
+        }
+        out.assign(points.size(), {});
+        e.haze(*ways[first].medium, world.bindings_[size_t(ways[first].binding)], points, out, true);
+        for (size_t k = first; k < end; ++k) {
+            Color left = out[k - first].slope;
+            for (int i = 0; i < 3; ++i) left[i] = std::isfinite(left[i]) ? std::max(left[i], 0.f) : 0;
+            c.haze[ways[k].point] = {Color(0), Color(1), left, true};
+        }
     }
 }
 

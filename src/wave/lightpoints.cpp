@@ -34,6 +34,7 @@ void Gather::LightQueries::clear() {
 /// Whether a lobe asks this light for samples. trace() knows emitters only, and not those that are illuminance's.
 bool Gather::samples(const LobeVertex& l, const BoundLight& light) const {
     if (!light.importance && (l.trace || rules_.emissionCounts)) return false; // rays alone find it
+    if (leftToPhotons(l, light)) return false;
     return l.lights && !l.elsewhere && !l.delta && (light.kind == LightKind::Area || light.sky || l.deltaLights) &&
            (l.lobeOfShader || light.strategy != LightStrategy::Illuminance);
 }

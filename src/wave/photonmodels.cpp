@@ -90,6 +90,7 @@ void Engine::photonsByModel(BatchContext& c, Sched& sched) {
         c.clear[i] = b.photons.model == PhotonModel::Transparent
                          ? Color(1)
                          : Color(std::clamp(1 - o.x, 0.f, 1.f), std::clamp(1 - o.y, 0.f, 1.f), std::clamp(1 - o.z, 0.f, 1.f));
+        c.clear[i] = c.clear[i] * leftBehind(c, int(i));
     }
     gather(c, sched);
     for (size_t i = 0; i < n; ++i)

@@ -1,6 +1,7 @@
 // Emitting a block of photons: they start at their lights, and are followed as rays of a path are, through the same stages.
 #include "base/memory.h"
 #include "wave/emission.h"
+#include "world/mediaabout.h"
 #include <algorithm>
 #include <tuple>
 
@@ -86,11 +87,18 @@ bool Engine::emit(const PhotonJob& job, uint32_t first, uint32_t count, std::vec
     return done;
 }
 
+/// The volumes in which a photon begins; null: none.
+const shading::Media* Engine::aboutLight(const EmissionPlan::Light& l, const EmissionStart& s) {
+    if (world_->media_.empty() || (l.light->kind != LightKind::Point && l.light->kind != LightKind::Area)) return nullptr;
+    return kept(mediaAbout(*world_, s.origin, world_->shadesAtOpen_ ? 0 : s.drawn.time));
+}
+
 bool Engine::emitAll(const PhotonJob& job, uint32_t first, uint32_t count) {
     PhotonTrace& t = *photonTrace_;
     if (!sched_) sched_ = std::make_unique<Sched>(*this, stop, limits::kFrameBytesPerThread, raysAtOnce_);
     Sched& sched = *sched_;
     sched.restart(stop);
+    const EmissionPlan& plan = *job.plan;
     const std::vector<EmissionStart> starts = startBlock(*this, job, first, count, t.power);
     samples_.resize(count);
     results.clear();
@@ -111,7 +119,12 @@ bool Engine::emitAll(const PhotonJob& job, uint32_t first, uint32_t count) {
         t.power[i] = Color(most);
         r.sample = &sample;
         r.kind = kindOf(t.specular);
-        r.media = world_->eye_.count ? &world_->eye_ : nullptr;
+        r.media = aboutLight(plan.lights()[size_t(s.drawn.light)], s);
+        if (s.shape) // what its light loses in the atmosphere there is told where it arrives
+            if (const auto hazy = world_->hazyEmitters_.find(s.shape); hazy != world_->hazyEmitters_.end()) {
+                r.lobeBinding = hazy->second;
+                r.lobeOrigin = meetsAt(s.surface);
+            }
         if (world_->fades_) sample.level = random(r).one(0, kLevel, 0);
     }
     beginTrace();

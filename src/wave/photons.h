@@ -1,6 +1,6 @@
 // Emitting photons: where light of lights goes (EmissionPlan), what is wanted of it (PhotonJob), and what comes to rest.
 #pragma once
-#include "wave/rays.h"
+#include "wave/batchcontext.h"
 #include "wave/storedphoton.h"
 
 namespace alpenglow::transport {
@@ -38,6 +38,9 @@ public:
     EmissionPlan(Engine&, bool all, bool sky);
     bool empty() const { return lights_.empty(); }
     const std::vector<Light>& lights() const { return lights_; }
+    /// Whether anything moves that photons may meet or come from; and how far lights do while the shutter is open.
+    bool moves() const;
+    float travel() const;
     /// By light of the world, whether it emits.
     std::vector<uint8_t> emits() const;
     /// By shape, whether photons meet it. `both`: only what diffuse and specular rays meet.
@@ -69,6 +72,7 @@ struct PhotonJob {
     bool caustics = false;        ///< only photons that mirrors and glass sent are kept, and none goes on behind other lobes
     double scale = 1;             ///< of their power: one over how many are emitted
     bool models = true;           ///< Attribute "photon" "shadingmodel" counts
+    float width = 0;              ///< caustics: lobes whose spread is below, in radians, count as mirrors
     render::SampleNumbers numbers(uint32_t photon) const {
         return {render::Sampler(render::SeedKey(seed ^ 0x70686f746f6e7331ull), int(pass >> 24), int(pass & 0xffffffu)), photon};
     }
@@ -81,7 +85,11 @@ struct PhotonTrace {
     std::vector<Color> power;     ///< by path: of a ray of weight 1, in units of job->scale
     std::vector<StoredPhoton>* out = nullptr;
     RayKind diffuse, specular;
+    float fastest = 0;            ///< how far surfaces that photons have met move while the shutter is open
 };
+
+/// Lobes of a ray whose spread is below count as mirrors: radians. 0: none do.
+float narrowBelow(const Engine&, const shading::PathRay&);
 
 /// Radians between a photon's way and the normal below which the way is tilted (photonscatter.cpp).
 inline constexpr float kLeastTilt = 1e-3f;
@@ -90,5 +98,13 @@ inline constexpr float kLeastTilt = 1e-3f;
 /// `l`, for a photon that came from direction `from` and goes to `to`, both unit and away from the surface; n: its normal.
 float photonFactor(const LobeColumns&, LobeColumns::Place, const LobeKind&, bool delta, const Vec3& from, const Vec3& to,
                    const Vec3& n, const Vec3& N);
+
+/// Fills BatchContext::haze: what the way of each photon loses, which an eye would see the other way round from here. That is in
+/// the volume between, or in the atmosphere of the surface that the photon comes from. haze.cpp
+void hazeOfPhotons(Engine&, BatchContext&);
+/// The part that is left of it.
+inline Color leftOfPhoton(const BatchContext& c, size_t point) {
+    return c.haze.empty() || !c.haze[point].on ? Color(1) : c.haze[point].slope;
+}
 
 } // namespace alpenglow::transport

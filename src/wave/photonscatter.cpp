@@ -9,6 +9,8 @@
 #include "wave/gather.h"
 #include "wave/photons.h"
 #include "lobes/sampling.h"
+#include <map>
+#include <tuple>
 
 namespace alpenglow::transport {
 
@@ -45,9 +47,27 @@ float photonFactor(const LobeColumns& rows, LobeColumns::Place place, const Lobe
     return ways;
 }
 
+float narrowBelow(const Engine& e, const PathRay& ray) {
+    if (const PhotonTrace* t = e.photonTrace()) return t->job->width;
+    return e.passOf(ray) ? e.world().photons_->widthOfPasses : 0;
+}
+
 /// Light of all around comes to a lobe's point as it comes to the point: so photons may be gathered for it.
-bool Gather::spreads(const LobeVertex& l) const { return !l.delta && !c_->between && seesAll(l); } // on surfaces alone
-bool Gather::mirrors(const LobeVertex& l) const { return l.delta && l.below < 0 && !l.ownsTarget && seesAll(l); }
+// On surfaces alone.
+bool Gather::spreads(const LobeVertex& l) const { return !l.delta && !l.narrow && !c_->between && seesAll(l); }
+bool Gather::mirrors(const LobeVertex& l) const {
+    return (l.delta || l.narrow) && l.below < 0 && !l.ownsTarget && seesAll(l);
+}
+/// By what both a photon and a path know of it. Shaders that move P are not asked twice (lookBack()).
+bool Gather::isNarrow(const LobeVertex& l, float below) const {
+    return !l.delta && l.below < 0 && !c_->between && e_.lobeRows_.spread(l.place) < below && !c_->binding->moveS &&
+           !c_->bound->kernel->facts().suspends;
+}
+/// What photons bring is not to be sampled: the light comes by way of this lobe to a point where they are gathered.
+bool Gather::leftToPhotons(const LobeVertex& l, const BoundLight& light) const {
+    return l.narrow && (rayOf(l).trail & shading::kTrailSpread) && !e_.photonTrace() && mirrors(l) &&
+           world_.photons_->lightsOfPasses[size_t(&light - world_.lights_.data())];
+}
 bool Gather::seesAll(const LobeVertex& l) const {
     const shading::RaySet& set = l.rays->set;
     return !l.elsewhere && !set.only && !(l.maxDistance < 1e37f) && set.mode == shading::HitMode::Default &&
@@ -62,7 +82,10 @@ uint8_t Gather::trailBehind(const LobeVertex& l) const {
 }
 
 void Gather::restPhotons() {
-    const PhotonTrace& t = *e_.photonTrace();
+    PhotonTrace& t = *e_.photonTrace();
+    for (size_t point = 0; world_.moves_ && point < c_->points.size(); ++point)
+        if (const ShadePoint& p = c_->points[point]; p.shape)
+            t.fastest = std::max(t.fastest, length(p.shape->velocity(p.surface)));
     for (size_t point = 0; point < c_->points.size(); ++point) {
         if (begin_[point] == begin_[point + 1]) continue;
         const ShadePoint& p = c_->points[point];
@@ -71,7 +94,7 @@ void Gather::restPhotons() {
         bool spread = false;
         for (int i : lobesOf(point)) {
             LobeVertex& l = e_.lobes[size_t(i)];
-            if (!l.delta) {
+            if (!l.delta && !l.narrow) {
                 spread = true;
                 given += l.weight * l.albedo;
             }
@@ -80,7 +103,7 @@ void Gather::restPhotons() {
             if (t.job->caustics && !mirrors(l)) l.followed = false; // its chance is not another's
         }
         const bool caustic = from.bounces > 0 && !(from.trail & shading::kTrailSpread);
-        const Color power = t.power[size_t(from.sample->path)] * from.weight * float(t.job->scale);
+        const Color power = t.power[size_t(from.sample->path)] * from.weight * leftOfPhoton(*c_, point) * float(t.job->scale);
         if (!spread || c_->between || (t.job->caustics && !caustic) || !isFinite(power) || !(maxComponent(power) > 0)) continue;
         StoredPhoton s;
         const Vec3& n = p.surface.displaced ? p.surface.displacedN : p.surface.n;
@@ -93,6 +116,7 @@ void Gather::restPhotons() {
         s.number = t.first + uint32_t(from.sample->path);
         s.binding = c_->bindings[point];
         s.caustic = caustic;
+        s.time = from.sample->shutter;
         t.out->push_back(s);
     }
 }
@@ -104,6 +128,7 @@ float Gather::photonWay(const LobeVertex& l, Vec3& w) const {
     const ShadePoint& p = c_->points[size_t(l.point)];
     const PathRay& from = rayOf(l);
     const Vec3 n = p.surface.displaced ? p.surface.displacedN : p.surface.n, N = normalize(p.N);
+    if (l.narrow) return least(dot(w, n)) / least(dot(from.dir, n));
     const Vec3 in = normalize(p.I), tilt = in - from.dir;
     const float factor = photonFactor(e_.lobeRows_, l.place, *l.kind, l.delta, -in, w, n, N);
     if (l.delta && length(tilt) > kLeastTilt / 4) {
@@ -112,6 +137,75 @@ float Gather::photonWay(const LobeVertex& l, Vec3& w) const {
         w = normalize(w - aside * index);
     }
     return factor;
+}
+
+/// Paths meet the lobes of narrow highlights and rough glass from the other side, and what their shaders say may depend on that:
+/// the reflectance of Fresnel, the direction of what is refracted. So a photon that such a lobe sends on carries what the shader
+/// gives back when it is seen from where the photon goes; the lobe as the photon has met it only draws the way.
+void Gather::lookBack(Sched& sched) {
+    std::vector<Sent*> turned;
+    for (Sent& s : sent_)
+        if (s.goes && e_.lobes[size_t(s.lobe)].narrow) turned.push_back(&s);
+    if (turned.empty()) return;
+    const auto c = e_.takeContext();
+    c->engine = &e_;
+    c->ownsExtras = false; // those of the rays are the batch's
+    c->binding = c_->binding;
+    c->bound = c_->bound;
+    c->displaced = c_->displaced;
+    c->points = c_->points;
+    c->rays = c_->rays;
+    c->targets = c_->targets;
+    c->bindings = c_->bindings;
+    for (size_t i = 0; i < c->points.size(); ++i) c->points[i].ray = &c->rays[i];
+    for (const Sent* s : turned) {
+        ShadePoint& p = c->points[size_t(s->point)];
+        p.I = s->w * -length(p.I);
+        p.E = p.P - p.I;
+        c->rays[size_t(s->point)].dir = -s->w;
+    }
+    e_.fillBatch(*c);
+    if (c->displaced) c->batch->tell(*c->displaced->batch);
+    c->bound->kernel->run(&c->batch->call());
+    c->ran();
+    const size_t had = e_.lobes.size(), shadows = e_.shadows.size(), settled = e_.settled_.size();
+    const std::vector<Color> whole(c->points.size(), Color(1));
+    e_.requestPairs(*c, whole, nullptr, sched);
+    e_.shadows.erase(e_.shadows.begin() + long(std::min(shadows, e_.shadows.size())), e_.shadows.end());
+    e_.settled_.erase(e_.settled_.begin() + long(std::min(settled, e_.settled_.size())), e_.settled_.end());
+    e_.lobeRows_.prepare();
+    std::vector<Color> sum(c->points.size(), Color(0));
+    std::map<std::tuple<int, uint32_t, uint32_t>, int> known; // point, site, occurrence
+    for (size_t k = had; k < e_.lobes.size(); ++k) {
+        LobeVertex& l = e_.lobes[k];
+        l.albedo = e_.lobeRows_.albedo(l.place);
+        l.delta = e_.lobeRows_.delta(l.place);
+        l.narrow = isNarrow(l, e_.photonTrace()->job->width);
+        if (l.lobeOfShader)
+            for (int i = 0; i < 3; ++i) sum[size_t(l.point)][i] += std::fabs(l.weight[i]) * l.albedo;
+        known[{l.point, l.site, l.occurrence}] = int(k);
+    }
+    std::vector<int> back;
+    for (Sent* s : turned) {
+        const LobeVertex& l = e_.lobes[size_t(s->lobe)];
+        const auto found = known.find({s->point, l.site, l.occurrence});
+        back.push_back(found == known.end() ? -1 : found->second);
+        s->goes = back.back() >= 0 && mirrors(e_.lobes[size_t(back.back())]); // else paths bring this light
+        if (s->goes) e_.lobeRows_.ask(e_.lobes[size_t(back.back())].place, -c_->rays[size_t(s->point)].dir);
+    }
+    e_.lobeRows_.evaluate();
+    for (size_t k = 0; k < turned.size(); ++k) {
+        Sent& s = *turned[k];
+        if (!s.goes) continue;
+        const LobeVertex &l = e_.lobes[size_t(s.lobe)], &seen = e_.lobes[size_t(back[k])];
+        float scale = 1; // the energy rule of that side
+        if (l.lobeOfShader)
+            scale = energyScale(size_t(s.point), sum[size_t(s.point)], e_.clearAt(*c, s.point)) /
+                    indirectScale_[size_t(s.point)];
+        s.back = seen.weight * e_.lobeRows_.value(seen.place).colour * scale;
+    }
+    e_.lobes.erase(e_.lobes.begin() + long(had), e_.lobes.end());
+    e_.giveBack(c);
 }
 
 void Engine::tiltPhotons(BatchContext& c) {
@@ -133,9 +227,9 @@ void Gather::takePhotons(Sched& sched) {
         const ShadePoint& p = c_->points[point];
         const Vec3& n = p.surface.displaced ? p.surface.displacedN : p.surface.n;
         const Vec3& at = p.surface.displaced ? p.surface.displacedP : p.surface.P;
-        const float perArea = 1 / (float(kPi) * grid->radius() * grid->radius());
+        const float time = ray.shutter(), perArea = 1 / (float(kPi) * grid->radius() * grid->radius() * grid->lasts(time));
         near_.clear();
-        grid->within(at, [&](const photons::Photon& photon) {
+        grid->within(at, time, [&](const photons::Photon& photon) {
             if (!(std::fabs(dot(photons::unpackUnit(photon.normal), n)) > 0.7f)) return;
             const Vec3 w = photon.direction();
             near_.push_back({w, photon.power * (perArea / least(dot(w, n)))});

@@ -19,6 +19,7 @@ void Gather::scatter(Sched& sched) {
     for (const Sent& s : sent_) turns = std::max(turns, s.count);
     for (int turn = 0; turn < turns; ++turn) { // of each lobe a ray
         draw(turn);
+        if (e_.photonTrace()) lookBack(sched);
         throwDice(turn);
         for (const Sent& s : sent_)
             if (s.goes) sendRay(s, turn, sched);
@@ -160,7 +161,8 @@ void Gather::sendRay(const Sent& s, int turn, Sched& sched) {
     if (!photon && l.trace && l.trace->onlyLights && !(l.base > 0) && !meetsEmitter(l, w)) return;
     const float pdf = s.value.pdf;
     const Color f = l.delta ? s.value.colour : pdf > 0 ? s.value.colour / pdf : Color(0);
-    const Color through = l.weight * (f * s.scale / float(s.count));
+    const Color through = l.narrow && photon ? s.back * (pdf > 0 ? s.scale / (pdf * float(s.count)) : 0)
+                                             : l.weight * (f * s.scale / float(s.count));
     RayExtra extra;
     if (!photon && l.trace && l.trace->map) {
         extra.environment = l.tint * e_.mapTowards(*l.trace, w, from.footprint.spread);
@@ -168,7 +170,7 @@ void Gather::sendRay(const Sent& s, int turn, Sched& sched) {
             of->add(TraceSums::UnshadowedEnvironment, through * extra.environment);
     }
     Color weight = l.ownsTarget ? through : from.weight * through;
-    if (photon) weight *= photonWay(l, w);
+    if (photon) weight *= leftOfPhoton(*c_, size_t(s.point)) * photonWay(l, w);
     if (!isFinite(weight)) return e_.notFinite(*c_, from, l.site);
     if (weight == Color(0) && !l.ownsTarget) return;
     uint16_t asked = from.asked;
@@ -214,7 +216,7 @@ void Gather::sendRay(const Sent& s, int turn, Sched& sched) {
     const bool sampled = l.lights && !l.elsewhere && !l.delta;
     r.lobePdf = sampled && rules_.lightsAtRequests ? (rules_.pickOne || l.ownsTarget ? pdf * l.chosen : pdf) : -1;
     r.lobeOrigin = p.P;
-    r.lobeBinding = sampled ? c_->bindings[size_t(s.point)] : -1;
+    r.lobeBinding = sampled || (photon && !c_->between) ? c_->bindings[size_t(s.point)] : -1;
     r.footprint = from.footprint.after(length(p.P - from.origin));
     r.footprint.spread = spreadBehind(from, e_.lobeRows_.spread(l.place));
     r.counts = false;

@@ -19,22 +19,24 @@ void Engine::lightVisibility(BatchContext& c, const SiteInfo& s, int point, cons
     shadows.back().media = mediaTowards(c, point, w);
 }
 
+Color Engine::leftBehind(const BatchContext& c, int i) const {
+    // An atmosphere goes on behind what is not opaque, as if nothing were there. A medium ends, and another begins.
+    if (world_->media_.empty() || c.haze.empty() || !c.haze[size_t(i)].on) return Color(1);
+    const PathRay& ray = c.rays[size_t(i)];
+    const SurfaceBinding& binding = world_->bindings_[size_t(c.bindings[size_t(i)])];
+    const bool ends = ray.medium() >= 0 || binding.beyond(ray.media ? *ray.media : shading::Media(),
+                                                          c.points[size_t(i)].surface.n, ray.dir, ray.dir).top() >= 0;
+    return ends ? c.haze[size_t(i)].slope : Color(1);
+}
+
 Color Engine::clearAt(const BatchContext& c, int i) const {
     if (photonTrace_ && photonTrace_->job->models)
         if (const PhotonModel m = world_->bindings_[size_t(c.bindings[size_t(i)])].photons.model; m != PhotonModel::Shader)
-            return Color(m == PhotonModel::Transparent);
+            return Color(m == PhotonModel::Transparent) * leftBehind(c, i);
     const shading::Batch& b = *c.batch;
     const int oi = b.plan().Oi;
     if (oi < 0) return Color(0);
-    Color clear = Color(1) - b.color(oi, i);
-    // An atmosphere goes on behind what is not opaque, as if nothing were there. A medium ends, and another begins.
-    const PathRay& ray = c.rays[size_t(i)];
-    if (!world_->media_.empty() && !c.haze.empty() && c.haze[size_t(i)].on) {
-        const SurfaceBinding& binding = world_->bindings_[size_t(c.bindings[size_t(i)])];
-        if (ray.medium() >= 0 ||
-            binding.beyond(ray.media ? *ray.media : shading::Media(), c.points[size_t(i)].surface.n, ray.dir, ray.dir).top() >= 0)
-            clear = clear * c.haze[size_t(i)].slope;
-    }
+    Color clear = (Color(1) - b.color(oi, i)) * leftBehind(c, i);
     for (int k = 0; k < 3; ++k) clear[k] = clear[k] > 0 ? std::min(clear[k], 1.f) : 0; // not a number: opaque
     return clear;
 }
@@ -171,6 +173,7 @@ void Engine::fillBatch(BatchContext& c) {
 void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
     if (c->binding->displacement) takeDisplacement(*c);
     const auto& kernel = *c->bound->kernel;
+    if (photonTrace_) hazeOfPhotons(*this, *c);
     if (photonTrace_ && kernel.facts().suspends) return photonsByModel(*c, sched);
     fillBatch(*c);
     if (c->displaced) c->batch->tell(*c->displaced->batch);
@@ -195,7 +198,7 @@ void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
     bool hazy = media || std::any_of(c->bindings.begin(), c->bindings.end(),
                                      [&](int b) { return world_->bindings_[size_t(b)].atmosphere.shader != nullptr; });
     std::vector<Color> slope(n, Color(1));
-    if (hazy) {
+    if (hazy && !photonTrace_) {
         hazeOfBatch(*c, 0, n, media || !c->emits.empty() || lightPaths_);
         for (int i = 0; i < n; ++i)
             if (c->haze[size_t(i)].on) slope[size_t(i)] = c->haze[size_t(i)].slope;

@@ -46,6 +46,7 @@ struct LobeVertex {
     bool ownsTarget = false; ///< a suspended request: the target also gets distance and transmission
     bool followed = true;  ///< its ray may be sent
     bool delta = false;    ///< kind->isDelta(params)
+    bool narrow = false;   ///< no delta, but photons follow it as if it were one
     bool elsewhere = false; ///< trace() from a point that is not that of the surface: `from`
     Vec3 from;
     float bias = -1;       ///< < 0: the hit's own error bound

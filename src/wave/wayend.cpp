@@ -43,6 +43,10 @@ void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId t
     r.path = pathEvent(ray.path, straight_);
     r.media = mediaBeyond(b, ray.media, p.surface.n, ray.dir, ray.dir);
     tellLost(r.media, p);
+    if (photonTrace_ && (ray.medium() >= 0 || r.medium() >= 0)) { // from here on in another volume
+        r.lobeBinding = int(&b - world_->bindings_.data());
+        r.lobeOrigin = p.P;
+    }
     r.parted |= ray.camera() && (ray.medium() >= 0 || r.medium() >= 0);
     r.vertex = childVertex(ray.vertex, 0xfffff, 0);
     ++r.layers;

@@ -1,7 +1,7 @@
 // Interior and Exterior (RISpec 3.2): which volume a ray is in. A ray that goes on behind a surface, to the side that its N
 // points away from, is in the Interior of the primitive; on the other side in its Exterior. A surface with neither bounds
 // nothing.
-#include "world/impl.h"
+#include "world/mediaabout.h"
 #include <algorithm>
 
 namespace alpenglow::transport {
@@ -25,32 +25,38 @@ Media SurfaceBinding::beyond(const Media& from, const Vec3& n, const Vec3& in, c
     return m;
 }
 
-void WorldImpl::findEye() {
-    if (media_.empty()) return;
-    // The eye is inside of what rays to both sides leave without having entered it. Two opposite ways tell a closed surface from
+void WorldImpl::findEye() { eye_ = mediaAbout(*this, Vec3(0, 0, 0), 0); }
+
+Media mediaAbout(const WorldImpl& world, const Vec3& at, float time) {
+    Media about;
+    if (world.media_.empty()) return about;
+    // A point is inside of what rays to both sides leave without having entered it. Two opposite ways tell a closed surface from
     // one that is seen from behind; no axis, so that it is rarely along an edge.
     std::vector<int> left[2]; // bindings, the innermost first
     for (int side = 0; side < 2; ++side) {
         accel::Ray ray;
+        ray.org = at;
+        ray.time = time;
         ray.dir = normalize(Vec3(0.2617f, 0.3471f, 0.9006f)) * (side ? -1.f : 1.f);
         ray.sides = accel::Sides::Both;
         std::vector<int> entered;
         for (int layer = 0; layer < limits::kShadowLayers; ++layer) {
             accel::Hit h;
-            if (!accel_->intersect(ray, h)) break;
-            goOn(ray, h);
-            const int binding = bindingOf_[h.shape];
-            const int medium = bindings_[size_t(binding)].inside;
+            if (!world.accel_->intersect(ray, h)) break;
+            world.goOn(ray, h);
+            const int binding = world.bindingOf_[h.shape];
+            const int medium = world.bindings_[size_t(binding)].inside;
             if (medium < 0) continue;
-            if (dot(accel_->point(h).n, ray.dir) < 0) entered.push_back(medium);
+            if (dot(world.accel_->point(h).n, ray.dir) < 0) entered.push_back(medium);
             else if (const auto i = std::find(entered.rbegin(), entered.rend(), medium); i != entered.rend())
                 entered.erase(std::next(i).base());
             else left[side].push_back(medium);
         }
     }
     for (size_t i = left[0].size(); i-- > 0;)
-        if (std::find(left[1].begin(), left[1].end(), left[0][i]) != left[1].end()) 
-            eye_.push(left[0][i], media_[size_t(left[0][i])].priority);
+        if (std::find(left[1].begin(), left[1].end(), left[0][i]) != left[1].end())
+            about.push(left[0][i], world.media_[size_t(left[0][i])].priority);
+    return about;
 }
 
 } // namespace alpenglow::transport

@@ -44,6 +44,7 @@ public:
     /// Passes for samples from `first` on, in the place of those before. lights: by light, whether its photons are in them.
     void setPasses(uint32_t first, std::vector<std::unique_ptr<photons::PhotonGrid>> passes);
     std::vector<uint8_t> lightsOfPasses;
+    float widthOfPasses = 0; ///< photons follow lobes whose spread is below, in radians, as they do mirrors
 
 private:
     /// The file of a name; "": none, or it may not be read, and *outside says so.

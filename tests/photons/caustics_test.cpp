@@ -12,23 +12,29 @@ namespace {
 
 Settings path() { return withShaders(Hider::Path); }
 
+struct Gathering {
+    float width = 0;  ///< of lobes that photons follow, radians
+    float window = 0; ///< photons that are as near in time count; 0: all do
+};
 /// Sets photons for samples 0 to passes - 1. Of learning, as the renderer does it.
-void passes(Scene& s, uint32_t passes, uint32_t count, float radius, bool learn = true) {
-    PhotonEmission emission(s.world, {.all = true, .sky = false, .caustics = true}, s.diagnostics);
+void passes(Scene& s, uint32_t passes, uint32_t count, float radius, const Gathering& how = {}) {
+    PhotonEmission emission(s.world, {.all = true, .sky = false, .caustics = true, .width = how.width}, s.diagnostics);
     PhotonEmission::Thread thread(emission, s.diagnostics);
     std::vector<StoredPhoton> found;
-    if (learn) {
-        ASSERT_TRUE(thread.emit(0xffffffffu, 0, 20000, 20000, found, nullptr));
-        emission.learn(found, 0xffffffffu, 20000);
-    }
+    ASSERT_TRUE(thread.emit(0xffffffffu, 0, 20000, 20000, found, nullptr));
+    emission.learn(found, 0xffffffffu, 20000);
     emission.tellLights();
     std::vector<std::unique_ptr<photons::PhotonGrid>> grids;
     for (uint32_t pass = 0; pass < passes; ++pass) {
         found.clear();
         ASSERT_TRUE(thread.emit(pass, 0, count, count, found, nullptr));
         std::vector<photons::Photon> all;
-        for (const StoredPhoton& p : found) all.push_back(p.photon);
-        grids.push_back(std::make_unique<photons::PhotonGrid>(std::move(all), radius));
+        std::vector<float> times;
+        for (const StoredPhoton& p : found) {
+            all.push_back(p.photon);
+            if (how.window > 0) times.push_back(p.time);
+        }
+        grids.push_back(std::make_unique<photons::PhotonGrid>(std::move(all), radius, times, how.window));
     }
     setPhotonPasses(*s.world, 0, std::move(grids));
 }
@@ -85,6 +91,47 @@ TEST(Caustics, MirrorImageOfAPointLight) {
     EXPECT_LT(m.se(), .06 * image);
 }
 
+// The same in air that takes light. What an eye sees on each way is dimmed by the air of the surface that it sees: the way from the
+// mirror to the ceiling by the mirror's, over 2; the light has no surface, so its way to the mirror by nobody's.
+TEST(Caustics, MirrorImageInAtmospheres) {
+    writeShader("beer", "volume beer(float k = 1) { Ci *= exp(-k * length(I)); }\n");
+    const std::string light = "LightSource \"pointlight\" 1 \"float intensity\" 4 \"point from\" [0 1 0]\n";
+    Scene s(world(light + "AttributeBegin Atmosphere \"beer\" \"k\" .5 " + kMirror + "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" +
+                  "Atmosphere \"beer\" \"k\" .25 Surface \"slmaterial\" \"color diffusecolor\" [.1 .1 .1] Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n"),
+            path());
+    const CameraRay ray = rayTo({.1f, 1.2f, 0}, {0, 2, 0});
+    const double image = .1 * 4 / 9 * std::exp(-.5 * 2 - .25 * std::hypot(.1, .8));
+    const double paths = estimate(s, ray, 64, 64).mean();
+    passes(s, 64, 5000, .2f);
+    const Moments m = estimate(s, ray, 64, 64);
+    EXPECT_NEAR(m.mean() - paths, image, 4.5 * m.se() + .04 * image);
+    EXPECT_LT(m.se(), .06 * image);
+}
+
+// What moves while the shutter is open: each time has its own image. A mirror that sinks, and a light that rises.
+TEST(Caustics, MirrorImagesOfEachTime) {
+    const std::string mirror = "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2]", light = "LightSource \"pointlight\" 1 \"float intensity\" 4 \"point from\" [0 1 0]\n",
+                      ceiling = "Surface \"slmaterial\" \"color diffusecolor\" [.1 .1 .1] Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n";
+    const auto moving = [](double y) { return "MotionBegin [0 1] Translate 0 0 0 Translate 0 " + std::to_string(y) + " 0 MotionEnd "; };
+    struct Case { std::string name, scene; double first, last; }; // how far the image lies below the ceiling
+    for (const Case& c : {Case{"mirror", light + "AttributeBegin " + kMirror + moving(-1) + mirror + " AttributeEnd\n" + ceiling, 3, 5},
+                          Case{"light", "TransformBegin " + moving(-.75) + light + "TransformEnd AttributeBegin " + kMirror + mirror + " AttributeEnd\n" + ceiling, 3, 2.25}}) {
+        Scene s("Shutter 0 1\n" + world(c.scene), path());
+        CameraRay ray = rayTo({.1f, 1.6f, 0}, {0, 2, 0});
+        for (const float t : {0.f, .5f, 1.f}) {
+            if (t == .5f && !nightly()) continue;
+            ray.time = ray.shutter = t;
+            setPhotonPasses(*s.world, 0, {});
+            const double paths = estimate(s, ray, 4, 64).mean();
+            passes(s, 40, 14000, .3f, {.window = .1f});
+            const Moments m = estimate(s, ray, 40, 64);
+            const double d = c.first + (c.last - c.first) * double(t), image = .1 * 4 / (d * d);
+            EXPECT_NEAR(m.mean() - paths, image, 4.5 * m.se() + .08 * image) << c.name << " at " << t; // half a window at the ends: 4 %
+            EXPECT_LT(m.se(), .08 * image);
+        }
+    }
+}
+
 // Mirrors that spread light, too, whatever stands first, and a sheet that does and lets half of it through: each way has its own chance.
 TEST(Caustics, HalfOfAMirror) {
     const char* const begin = "{ normal n = faceforward(normalize(N), I); Oi = 1; Ci = ";
@@ -109,8 +156,9 @@ TEST(Caustics, HalfOfAMirror) {
 
 // An area light: paths find its image in the mirror too. With photons these are left out, and the sum stays.
 TEST(Caustics, TogetherAsPathsAlone) {
-    struct Case { std::string name, scene; CameraRay ray; double precision; };
+    struct Case { std::string name, scene; CameraRay ray; double precision; float width = 0; };
     const std::string floor = kMatte + "Polygon \"P\" [-3 0 -3  -3 0 3  3 0 3  3 0 -3]\n";
+    const std::string mirror = kMirror + "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2]\n", ceiling = kMatte + "Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n";
     const Case cases[] = {
         {"mirror", lamp(1, .5, 5) + "AttributeBegin " + kMirror + "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" + kMatte + "Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n",
          rayTo({1.1f, 1.2f, 0}, {1, 2, 0}), .06},
@@ -136,7 +184,13 @@ TEST(Caustics, TogetherAsPathsAlone) {
          rayTo({2, 2, 0}, {0, 2, 0}), .13},
         // Light that a mirror sends into a surface walks there once, not once as photons and once more from the eye.
         {"below a surface", lamp(1, .5, 5) + "AttributeBegin " + kMirror + "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\nSurface \"waxen\" Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n",
-         rayTo({1.1f, 1.2f, 0}, {1, 2, 0}), .06}};
+         rayTo({1.1f, 1.2f, 0}, {1, 2, 0}), .06},
+        // Air that differs from surface to surface; and a ball of a volume about the lamp, which some of the ways leave, others enter again.
+        {"air", "AttributeBegin Atmosphere \"beer\" \"k\" .3 " + lamp(1, .5, 5) + "AttributeEnd Illuminate 1 1 AttributeBegin Atmosphere \"beer\" \"k\" .5 " + mirror +
+                    "AttributeEnd Atmosphere \"beer\" \"k\" .2 " + ceiling, rayTo({1.1f, 1.2f, 0}, {1, 2, 0}), .06},
+        {"volume", lamp(1, .5, 5) + "AttributeBegin Surface \"null\" Interior \"beer\" \"k\" .4 Translate 0 1 0 Sphere .9 -.9 .9 360 AttributeEnd AttributeBegin " +
+                       "Atmosphere \"beer\" \"k\" .5 " + mirror + "AttributeEnd " + ceiling, rayTo({1.1f, 1.2f, 0}, {1, 2, 0}), .06}};
+    writeShader("beer", "volume beer(float k = 1) { Ci *= exp(-k * length(I)); }\n");
     writeShader("waxen", "surface waxen() { Oi = 1; Ci = subsurface(P, N, \"reflectance\", color(.8, .6, .4), \"meanfreepath\", .01, \"ior\", 1); }\n");
     writeShader("lift", "displacement lift() { P += vector \"world\" (0, .9, 0); }\n");
     writeShader("both5", "light both5() { illuminate(P, N, PI) Cl = 5; }\n");
@@ -145,6 +199,33 @@ TEST(Caustics, TogetherAsPathsAlone) {
         const Moments plain = s.estimate(c.ray, samples(40000));
         const uint32_t count = nightly() ? 100 : 40;
         passes(s, count, 10000, .06f);
+        expectSame(estimate(s, c.ray, count, nightly() ? 100 : 40), plain, (nightly() ? 1 : 2) * c.precision, c.name);
+    }
+}
+
+// Narrow lobes: photons follow them as mirrors, paths leave out their light, whether they would have sampled the lamp or met it.
+TEST(Caustics, NarrowLobesTogetherAsPathsAlone) {
+    // Weights that depend on where a surface is seen from: an eye sees another weight than the light does.
+    const char* const begin = "{ normal n = faceforward(normalize(N), I); vector V = -normalize(I); float c = n . V; Oi = 1; Ci = ";
+    const auto write = [&](const std::string& name, const std::string& value) { writeShader(name, "surface " + name + "() " + begin + value + "; }\n"); };
+    write("roughmetal", "mix(color(.9, .7, .5), color 1, pow(1 - c, 3)) * trace(P, n, \"distribution\", \"cook-torrance\", \"roughness\", .06, \"samplearealights\", 1, \"type\", \"specular\")");
+    write("grazing", ".9 * (1 - c) * trace(P, reflect(-V, n), \"distribution\", \"slphong\", \"horizon\", n, \"exponent\", 300, \"samplearealights\", 1, \"type\", \"specular\")");
+    write("coated", "color(.4, .3, .2) * diffuse(n) + 8 * (1 - .5 * c) * specular(n, V, .02)");
+    const std::string glass = "Surface \"slmaterial\" \"color diffusecolor\" [0 0 0] \"color transmissive\" [1 1 1] \"float kn\" 1.5 \"string fresnel\" \"exact\" \"float shininess\" 300 \"float translucency\" 300\n",
+                      ceiling = kMatte + "Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n", floor = kMatte + "Polygon \"P\" [-3 0 -3  -3 0 3  3 0 3  3 0 -3]\n";
+    const auto below = [&](const std::string& surface) {
+        return lamp(1, .5, 5) + "AttributeBegin " + surface + " Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" + ceiling;
+    };
+    const CameraRay up = rayTo({1.1f, 1.2f, 0}, {1, 2, 0});
+    struct Case { std::string name, scene; CameraRay ray; double precision; };
+    for (const Case& c : {Case{"metal", below("Surface \"roughmetal\""), up, .05}, Case{"grazing", below("Surface \"grazing\""), up, .06},
+                          Case{"coated", below("Surface \"coated\""), up, .05},
+                          Case{"rough glass", lamp(3, .8, 5) + "AttributeBegin " + glass + "Polygon \"P\" [-9 1 -9  -9 1 9  9 1 9  9 1 -9] AttributeEnd\n" + floor,
+                               rayTo({.3f, .6f, .4f}, {.1f, 0, .1f}), .05}}) {
+        Scene s(world(c.scene), path());
+        const Moments plain = s.estimate(c.ray, samples(60000));
+        const uint32_t count = nightly() ? 100 : 40;
+        passes(s, count, 10000, .06f, {.width = .1f});
         expectSame(estimate(s, c.ray, count, nightly() ? 100 : 40), plain, (nightly() ? 1 : 2) * c.precision, c.name);
     }
 }

@@ -1,6 +1,8 @@
 // Photons as a user has them: maps written, read, damaged, made on demand; more than there is room for; the same bits over threads.
 #include "cli/command_folder.h"
 #include "photons/limits.h"
+#include "statistics/nightly.h"
+#include <nlohmann/json.hpp>
 
 namespace {
 
@@ -55,6 +57,23 @@ TEST_F(PhotonHider, TooManyAreToldAndAnInterruptEndsThem) {
     write("pass.rib", "Hider \"path\" \"int caustics\" 1 \"int emit\" -1\nPixelSamples 1 1\n" + use + room + "Surface \"matte\" \"float Kd\" .5\n" + ball);
     EXPECT_NE(run("render pass.rib", "2>&1").find("1 to " + std::to_string(limits::kPhotonsOfPass)), std::string::npos);
     EXPECT_GE(limits::kPhotons, limits::kPhotonsOfPass); // a map holds a pass
+    write("pass.rib", "Hider \"path\" \"int caustics\" 1 \"float causticwidth\" -1\nPixelSamples 1 1\n" + use + room + "Surface \"matte\" \"float Kd\" .5\n" + ball);
+    EXPECT_NE(run("render pass.rib", "2>&1").find("\"causticwidth\" is an angle in radians"), std::string::npos);
+}
+
+// As many photons as may be asked for, where all come to rest: a point light above a mirror in a room.
+TEST_F(PhotonHider, PassesHoldNoMoreThanTheyMay) {
+    EXPECT_LE(8 * limits::kPhotonsAtRest * 48, size_t(1) << 30);
+    if (!teststat::nightly()) GTEST_SKIP() << "36 million photons";
+    const int samples = 8;
+    write("many.rib", "Hider \"path\" \"int caustics\" 1 \"int emit\" 4000000\nPixelSamples " + std::to_string(samples) + " 1\nFormat 8 8 1\nDisplay \"many.tif\" \"tiff\" \"rgb\"\nWorldBegin\n"
+                      "LightSource \"pointlight\" 1 \"float intensity\" 4 \"point from\" [0 -4.9 0]\nAttributeBegin Surface \"slmaterial\" \"color diffusecolor\" [0 0 0] \"color specularcolor\" [1 1 1]\n"
+                      "Sides 2 Polygon \"P\" [-9 -4.95 -9  -9 -4.95 9  9 -4.95 9  9 -4.95 -9] AttributeEnd\nSurface \"matte\" \"float Kd\" .5\n" + ball);
+    const std::string said = run("render --stats many.json many.rib", "2>&1");
+    EXPECT_EQ(status, 0) << said;
+    EXPECT_EQ(said.find("error: "), std::string::npos) << said;
+    const double held = double(nlohmann::json::parse(std::ifstream(dir / "many.json"))["peakMemoryBytes"]);
+    EXPECT_LT(held, double(1 << 30)) << said; // OLD before
 }
 
 TEST_F(PhotonHider, SameCausticsOverThreadsAndParts) {

@@ -109,11 +109,44 @@ TEST(PhotonGrid, FindsAllWithinTheRadiusOnce) {
         for (int turn = 0; turn < 100; ++turn) {
             const Vec3 at(number(state) * 1.2f - .1f, number(state) * .02f - .01f, number(state) * 1.2f - .1f);
             std::multiset<float> found, want;
-            grid.within(at, [&](const Photon& p) { found.insert(p.P.x); });
+            grid.within(at, 0, [&](const Photon& p) { found.insert(p.P.x); });
             for (const Photon& p : all)
                 if (dot(p.P - at, p.P - at) < radius * radius) want.insert(p.P.x);
             EXPECT_EQ(found, want) << radius;
         }
+    }
+}
+
+// Of what moves those count that were there at nearly the same time; at both ends of the shutter the window is cut.
+TEST(PhotonGrid, FindsThoseOfATime) {
+    const std::vector<Photon> all = evenly(5000, 4);
+    std::vector<float> times;
+    uint64_t state = 7;
+    for (size_t i = 0; i < all.size(); ++i) times.push_back(number(state));
+    const PhotonGrid grid(all, .3f, times, .2f);
+    for (const float time : {0.f, .05f, .5f, 1.f}) {
+        const Vec3 at(.5f, 0, .5f);
+        std::multiset<float> found, want;
+        grid.within(at, time, [&](const Photon& p) { found.insert(p.P.x); });
+        for (size_t i = 0; i < all.size(); ++i)
+            if (dot(all[i].P - at, all[i].P - at) < .09f && std::fabs(times[i] - time) < .1f) want.insert(all[i].P.x);
+        EXPECT_EQ(found, want) << time;
+        EXPECT_GT(want.size(), 50u);
+    }
+    EXPECT_FLOAT_EQ(grid.lasts(0), .1f);
+    EXPECT_FLOAT_EQ(grid.lasts(.05f), .15f);
+    EXPECT_FLOAT_EQ(grid.lasts(.5f), .2f);
+    EXPECT_EQ(PhotonGrid(all, .3f).lasts(.5f), 1);
+}
+
+// As many photons as in the circle of a scene that stands still; what is smeared is as wide as the circle, or the window is least.
+TEST(PhotonGrid, MovingStart) {
+    for (const float travel : {0.f, .5f, 2.f, 10.f, 1e6f}) {
+        const MovingStart s = movingStart(1, travel);
+        EXPECT_NEAR(s.radius * s.radius * s.window, 1, 1e-5f) << travel;
+        if (travel <= 1) EXPECT_EQ(s.window, 1);
+        else if (s.window > kLeastWindow) EXPECT_NEAR(s.window * travel, s.radius, 1e-4f * s.radius) << travel;
+        else EXPECT_GT(kLeastWindow * travel, s.radius);
     }
 }
 

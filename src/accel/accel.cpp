@@ -37,6 +37,7 @@ bool Accel::Impl::readyDirect() {
         if (s->exact()) exact += s->exactPrims();
         else count += s->mesh().triangles();
         if (count > DirectTriangles::kMost || exact > kDirectExact || (s->exact() && s->exactPrims() != 1)) return false;
+        if (!s->exact() && std::any_of(s->mesh().P.begin(), s->mesh().P.end(), Tree::reaches)) return false; // a tree leaves them out
     }
     for (uint32_t s = 0; s < shapes.size(); ++s) {
         const Shape& shape = *shapes[s];
@@ -90,6 +91,8 @@ Accel::Accel(std::vector<ShapeRef> shapes, std::vector<uint32_t> visibility, Dia
         impl_->refuse(diag);
         return;
     }
+    for (const auto& g : impl_->geometries)
+        if (g->tree.beyond()) impl_->sayBeyond(g->tree, *g->shape, diag);
     impl_->readyTrimmed();
     if (impl_->readyDirect()) return;
     impl_->bounds = {};
@@ -98,6 +101,7 @@ Accel::Accel(std::vector<ShapeRef> shapes, std::vector<uint32_t> visibility, Dia
     try {
         impl_->tree.build(impl_->shapes);
         impl_->bounds.add(impl_->tree.bounds());
+        if (impl_->tree.beyond()) impl_->sayBeyond(impl_->tree, *impl_->shapes[impl_->tree.beyondOf()], diag);
     } catch (const std::length_error&) {
         impl_->refuse(diag);
     }
@@ -109,6 +113,12 @@ void Accel::Impl::refuse(Diagnostics& diag) { // a scene without its tree would 
     shapes.clear();
     geometryOf.clear();
     diag.report(Severity::Severe, Rie::Limit, {}, "the frame has more than a thousand million triangles, curve segments and points");
+}
+
+void Accel::Impl::sayBeyond(const Tree& tree, const Shape& first, Diagnostics& diag) {
+    diag.report(Severity::Warning, Rie::Range, first.place(),
+                std::to_string(tree.beyond()) + " triangles, of this " + first.kind() +
+                    " among others, reach farther than 1e30 and are not drawn");
 }
 
 Accel::~Accel() = default;

@@ -81,6 +81,7 @@ struct Accel::Impl {
     Ball ballAround(uint32_t shape) const;
     bool readyDirect();
     void refuse(Diagnostics&);
+    static void sayBeyond(const Tree&, const Shape& first, Diagnostics&);
     void meetDirect(Query&) const;
 
     bool visible(const Ray& r, uint32_t s) const {

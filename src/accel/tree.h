@@ -9,6 +9,7 @@
 // rays are followed in turns, so that one waits for memory while the others work.
 #pragma once
 #include "geometry/shape.h"
+#include <cmath>
 #include <memory>
 #include <span>
 #include <vector>
@@ -20,6 +21,12 @@ public:
     static constexpr int kWide = 8; ///< children of a node
     static constexpr int kLeafTriangles = 6, kLeafVertices = 8;
     static constexpr int kDeepest = 80; ///< nodes above each other
+    /// No triangle reaches farther along an axis: distances to boxes beyond, over the parts of a direction, have no floats, and then
+    /// every ray would have to look at every leaf.
+    static constexpr float kFarthest = 1e30f;
+    static bool reaches(const Vec3& p) {
+        return !(std::fabs(p.x) <= kFarthest && std::fabs(p.y) <= kFarthest && std::fabs(p.z) <= kFarthest);
+    }
 
     /// A child: nothing, a node, a leaf of triangles, or one primitive of an exact shape.
     using Child = uint32_t;
@@ -62,6 +69,9 @@ public:
     /// The largest coordinate at any time.
     float extent() const { return extent_; }
 
+    /// Triangles that are left out, for a corner of theirs lies beyond kFarthest; and a shape that has some.
+    size_t beyond() const { return beyond_; }
+    uint32_t beyondOf() const { return beyondOf_; }
     const Node* nodes() const { return nodes_.data(); }
     const Leaf* leaves() const { return leaves_.data(); }
     bool empty() const { return nodes_.empty(); }
@@ -97,6 +107,8 @@ private:
     std::vector<uint8_t> loose_;
     size_t keys_ = 0;
     float extent_ = 0;
+    size_t beyond_ = 0;
+    uint32_t beyondOf_ = 0;
 };
 
 } // namespace alpenglow::accel

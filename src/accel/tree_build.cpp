@@ -322,6 +322,17 @@ struct Tree::Builder {
         return r;
     }
 
+    static bool reaches(const Ref& r) {
+        return Tree::reaches({r.lo[0], r.lo[1], r.lo[2]}) || Tree::reaches({r.hi[0], r.hi[1], r.hi[2]});
+    }
+    /// Triangles that reach too far, before all others are put into boxes.
+    void leaveOut(size_t count, uint32_t of) {
+        tree.beyond_ = count;
+        tree.beyondOf_ = of;
+        Ref* const end = &refs[0] + triangles + exact.size();
+        std::remove_if(&refs[0], end, [&](const Ref& r) { return r.id() < triangles && reaches(r); });
+    }
+
     void run() {
         size_t count = 0;
         for (uint32_t s = 0; s < shapes.size(); ++s) {
@@ -341,6 +352,8 @@ struct Tree::Builder {
         const size_t all = count + exact.size();
         if (!all) return;
         refs.reset(new Ref[all]);
+        std::atomic<size_t> beyond{0};
+        std::atomic<uint32_t> beyondOf{uint32_t(shapes.size())};
         tbb::parallel_for(size_t(0), tree.meshes_.size(), [&](size_t k) {
             const geometry::TriMesh& m = shapes[tree.meshes_[k].shape]->mesh();
             tbb::parallel_for(uint32_t(0), m.triangles(), [&](uint32_t t) {
@@ -356,6 +369,9 @@ struct Tree::Builder {
                 r.hi = b.hi;
                 r.setId(tree.meshes_[k].first + t);
                 refs[tree.meshes_[k].first + t] = r;
+                if (!reaches(r)) return;
+                ++beyond;
+                for (uint32_t s = tree.meshes_[k].shape, known = beyondOf; s < known && !beyondOf.compare_exchange_weak(known, s);) {}
             });
         });
         tree.exact_.reserve(exact.size());
@@ -363,7 +379,10 @@ struct Tree::Builder {
             refs[triangles + i] = exactRef(uint32_t(i), shapes[exact[i].shape]->exactBounds(exact[i].prim));
         });
         pieces.resize(all / kPiece + 2); // a node has two children at least
-        const Range root = measured(0, all);
+        if (beyond > 0) leaveOut(beyond, beyondOf);
+        const size_t kept = all - beyond;
+        if (!kept) return;
+        const Range root = measured(0, kept);
         for (int a = 0; a < 3; ++a) tree.bounds_.lo[a] = root.box.lo[a], tree.bounds_.hi[a] = root.box.hi[a];
         arrange(root.leaf ? lone(root) : makeNode(root, 0));
     }
@@ -435,7 +454,7 @@ struct Tree::Builder {
         }
         for (const geometry::ShapeRef& k : keys)
             for (const Vec3& p : k->mesh().P)
-                tree.extent_ = std::max({tree.extent_, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+                if (!Tree::reaches(p)) tree.extent_ = std::max({tree.extent_, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
     }
     size_t lone(const Range& r) {
         const size_t at = newNode();

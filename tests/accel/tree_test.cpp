@@ -135,6 +135,43 @@ TEST(Tree, NothingIsOverlooked) {
     EXPECT_GT(met, 4000u);
 }
 
+// Triangles at the end of all floats have no boxes that rays could pass by. They are left out, all else is met as without them.
+TEST(Tree, TrianglesThatReachTooFarAreLeftOut) {
+    for (const int n : {5, 3000}) { // without a tree, and with one
+        Rng rng(4);
+        Diagnostics quiet, diag;
+        const auto near = soup(rng, n, Vec3(0.f), 10);
+        std::vector<Vec3> corners;
+        std::vector<int> index;
+        for (int i = 0; i < 3 * n; ++i) {
+            corners.push_back(i % 3 == 1 ? within(rng, 1) * 3e38f : within(rng, 10));
+            index.push_back(i);
+        }
+        corners[1] = Vec3(1, 2, 3);
+        const ShapeRef a = build(near, Matrix(), quiet), b = build(trianglesOf(corners, index), Matrix(), quiet);
+        ASSERT_TRUE(a && b) << (quiet.all().empty() ? "" : quiet.all()[0].message);
+        const auto kept = build(trianglesOf({corners[0], corners[1], corners[2]}, {0, 1, 2}), Matrix(), quiet);
+        Accel all({a, b}, {}, diag), without({a, kept}, {}, quiet);
+        EXPECT_TRUE(quiet.all().empty());
+        ASSERT_EQ(diag.all().size(), 1u);
+        EXPECT_NE(diag.all()[0].message.find(std::to_string(n - 1) + " triangles"), std::string::npos) << diag.all()[0].message;
+        int met = 0;
+        for (int k = 0; k < 2000; ++k) {
+            Ray r;
+            r.org = within(rng, 30);
+            r.dir = within(rng, 10) - r.org;
+            Hit x, y;
+            ASSERT_EQ(all.intersect(r, x), without.intersect(r, y));
+            met += x.valid();
+            if (!x.valid()) continue;
+            ASSERT_EQ(x.shape, y.shape);
+            ASSERT_EQ(x.prim, y.prim);
+            ASSERT_EQ(x.distance, y.distance);
+        }
+        EXPECT_GT(met, n > 5 ? 500 : 5);
+    }
+}
+
 TEST(Tree, RaysAtCornersAndEdgesDoNotSlipThrough) {
     for (double scale : {1e-3, 1.0, 1e5}) {
         Diagnostics diag;

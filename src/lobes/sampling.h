@@ -2,6 +2,7 @@
 #pragma once
 #include "base/vec.h"
 #include <algorithm>
+#include <cstdint>
 
 namespace alpenglow::transport {
 

@@ -10,6 +10,7 @@ void Gather::run(BatchContext& c, Sched& sched) {
     if (world_.lightsAsk() && !e_.photonTrace()) tellLights();
     e_.lobeRows_.prepare();
     choose();
+    besideLights();
     if (rules_.lightsAtRequests) light();
     if (e_.photonTrace()) restPhotons();
     else if (rules_.pickOne) takePhotons(sched);

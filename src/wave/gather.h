@@ -1,5 +1,6 @@
 // What becomes of the lobes that a batch asks light for (Engine::lobes), stage by stage, each in a file of its own:
 //   choose   how much each lobe gives back, and the chance that its ray is followed (choose.cpp)
+//   beside   lights that rays of the lobes may pass in a medium (beside.cpp)
 //   light    points of lights for the points of the batch, and what the lights' kernels send from there (lightpoints.cpp)
 //   connect  lobes with those points: contributions, with one shadow ray for all lobes of a vertex that can share it
 //   (connect.cpp) scatter  directions of the lobes whose rays are followed, and the rays (scatter.cpp)
@@ -20,7 +21,7 @@ private:
     /// A lobe that light of a query reaches from direction w. `turn`: how many queries have reached it before.
     struct Reached { int query, lobe, turn; Vec3 w; LobeValue value; };
     /// A lobe whose rays are sent: `count` of them, each with `scale` times its weight. `goes`, `w`: the ray of this turn.
-    /// `vertex`: of that ray; `dice`: the number of its roulette.
+    /// `vertex`: of that ray; `dice`: the number of its roulette; `drawn`: beside a light.
     /// `back`, of photons along narrow lobes: what the other way gives back, in the place of its weight and value.
     struct Sent {
         int point, lobe, count;
@@ -31,6 +32,7 @@ private:
         uint32_t vertex = 0;
         float dice = 0;
         Color back{0};
+        bool drawn = false;
     };
     /// What lights are asked for at points of the batch, one kernel call; row by row a query.
     struct LightQueries {
@@ -69,6 +71,12 @@ private:
     void choosePoint(size_t point);
     bool tooDeep(const LobeVertex&, const PathRay&, const SurfaceBinding&) const;
     float energyScale(size_t point, const Color& reflected, const Color& clear);
+
+    // beside.cpp
+    void besideLights();
+    void besideLight(size_t point);
+    static float densityBeside(const LobeVertex&, const Vec3& w, float ofLobe);
+    static std::optional<Vec3> drawBeside(const LobeVertex&, Vec2& u);
 
     // lightpoints.cpp
     void light();
@@ -120,6 +128,7 @@ private:
     std::vector<int> begin_, order_,
         next_; ///< of point p the lobes order_[begin_[p]] to order_[begin_[p + 1]], as they were asked for
     std::vector<float> indirectScale_; ///< by point: of the rays of lighting shadeops
+    std::vector<int> aimed_;           ///< lobes with a light beside their rays
     std::vector<float> passes_;        ///< by point: the chance that its ray goes on behind it
     std::vector<std::vector<std::pair<int, float>>> chosenAt_; ///< many lights: by light of the list, points and chances
     std::vector<int> chosen_;               ///< places in the list that have some

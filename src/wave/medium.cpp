@@ -143,9 +143,7 @@ void MediumFlights::happen(Engine& e, std::span<Flight> flights, Sched& sched) {
     }
 }
 
-/// The direction of a light with a place that rays from a point in a medium may pass; 0 where none is near. Of several one, all
-/// with the same chance: a density for any of them is right.
-Vec3 MediumFlights::besideLight(const Engine& e, const Medium& m, const PathRay& r, const Vec3& from) {
+Vec3 MediumFlights::besideLight(const Engine& e, const Medium& m, const PathRay& r, const Vec3& from, float* away) {
     const WorldImpl& w = e.world();
     if (!e.rules().lightsAtRequests || w.settings_.mediumSampling == MediumSampling::Distance) return {};
     const WorldImpl::LightList& list = w.lightLists_[size_t(w.bindings_[size_t(m.binding)].lightList)];
@@ -157,18 +155,20 @@ Vec3 MediumFlights::besideLight(const Engine& e, const Medium& m, const PathRay&
     if (!chooser.empty()) chooser.choose(from, e.random(r).one(vertex, kChooseLight, 0), chosen);
     const Color sigma = m.homogeneous->extinction();
     const double reach = 12 / (double(sigma.x) + sigma.y + sigma.z); // four mean free paths: beyond them little is left
-    std::vector<Vec3> near;
+    std::vector<std::pair<Vec3, float>> near;
     for (const auto& [k, chance] : chosen) {
         const int light = on[size_t(k)];
         const BoundLight& l = w.lights_[size_t(light)];
         if (!l.placed || (list.ofAll && !list.lights.contains(light))) continue;
         const Vec3 to = l.place - from;
         const double far = length(Vec3d(to));
-        if (far < reach && far > double(l.extent)) near.push_back(to / float(far));
+        if (far < reach && far > double(l.extent)) near.emplace_back(to / float(far), float(far));
     }
     if (near.empty()) return {};
     const size_t k = near.size() == 1 ? 0 : size_t(e.random(r).one(vertex, kLightPoint, 0) * float(near.size()));
-    return near[std::min(k, near.size() - 1)];
+    const auto& [direction, distance] = near[std::min(k, near.size() - 1)];
+    if (away) *away = distance;
+    return direction;
 }
 
 /// Points where light is scattered gather it as surfaces do, by the lobe of the medium.

@@ -32,9 +32,12 @@ public:
     /// The part that a point chosen by distance has in the light of one with a place; the rest comes from other points.
     static float shareOfDistance(const Engine&, const FreeFlight&, const BoundLight&);
 
+    /// The direction of a light with a place that rays from a point in a medium may pass; 0 where none is near. Of several one,
+    /// all with the same chance: a density for any of them is right. `away`: how far it is.
+    static Vec3 besideLight(const Engine&, const Medium&, const PathRay&, const Vec3& from, float* away = nullptr);
+
 private:
     struct Crossing { size_t flight; FreeFlight way; Color weight; bool stops = false; }; ///< weight: of the ray where it begins
-    static Vec3 besideLight(const Engine&, const Medium&, const PathRay&, const Vec3& from);
     static std::optional<Crossing> cross(Engine&, Flight&, size_t number, Sched&);
     static void pass(Engine&, Flight&, Sched&);
     static void scatter(Engine&, std::span<Flight>, std::span<const Crossing>, Sched&);

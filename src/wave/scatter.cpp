@@ -80,13 +80,19 @@ void Gather::draw(int turn) {
     }
     numbers_.draw();
     size_t number = 0;
-    for (const Sent& s : sent_)
-        if (s.goes) rows.ask(e_.lobes[size_t(s.lobe)].place, numbers_.pair(number++));
+    for (Sent& s : sent_) {
+        if (!s.goes) continue;
+        const LobeVertex& l = e_.lobes[size_t(s.lobe)];
+        Vec2 u = numbers_.pair(number++);
+        const std::optional<Vec3> w = drawBeside(l, u);
+        if ((s.drawn = w.has_value())) s.w = *w;
+        else rows.ask(l.place, u);
+    }
     rows.sample();
     for (Sent& s : sent_) {
         if (!s.goes) continue;
         const LobeVertex& l = e_.lobes[size_t(s.lobe)];
-        s.goes = rows.drawn(l.place, s.w);
+        if (!s.drawn) s.goes = rows.drawn(l.place, s.w);
         if (s.goes && !l.delta) rows.ask(l.place, s.w);
     }
     rows.evaluate();
@@ -94,6 +100,7 @@ void Gather::draw(int turn) {
         if (!s.goes) continue;
         const LobeVertex& l = e_.lobes[size_t(s.lobe)];
         s.value = l.delta ? LobeValue{Color(l.albedo), l.albedo, 0} : rows.value(l.place);
+        s.value.pdf = densityBeside(l, s.w, s.value.pdf);
     }
 }
 

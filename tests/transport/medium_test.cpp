@@ -179,6 +179,44 @@ TEST(Medium, RaysThatPassALampBringNoOutliers) {
     EXPECT_LT(m[0].se(), .01 * m[0].mean());
 }
 
+// The same from surfaces: a small floor in a ball of fog, on which the lamp itself does not shine, sees the fog about the lamp. What is
+// scattered once (the fog's depth allows no more) by quadrature over the angle off the lamp, the angle about that axis, and along each
+// ray the angle at the lamp: there the sines cancel. The fog before the eye is below 2 parts in a thousand.
+TEST(Medium, SurfacesSeeTheFogAboutALampWithoutOutliers) {
+    const double sigma = .1, radius = 2, high = 1, aside = .5;
+    const Vec3d lamp(aside, high, 0);
+    const double far = std::sqrt(dot(lamp, lamp));
+    const Vec3d axis = lamp / far, e1(axis.y, -axis.x, 0), e2(0, 0, 1);
+    double sum = 0;
+    const int n = 160;
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+            const double theta = kPi * (i + .5) / n, phi = 2 * kPi * (j + .5) / n;
+            const Vec3d w = axis * std::cos(theta) + (e1 * std::cos(phi) + e2 * std::sin(phi)) * std::sin(theta);
+            if (!(w.y > 0)) continue;
+            const double near = far * std::cos(theta), away = far * std::sin(theta);
+            const double begin = std::atan2(-near, away), end = std::atan2(radius - near, away);
+            for (int k = 0; k < n; ++k) {
+                const double angle = begin + (k + .5) / n * (end - begin), t = near + away * std::tan(angle);
+                // I pi / d^2 dt = I pi / away dangle; the floor gives back cos / pi, the solid angle is sin theta dtheta dphi.
+                sum += w.y / kPi * sigma * std::exp(-sigma * (t + away / std::cos(angle))) / (4 * kPi) * kPi / far * (end - begin);
+            }
+        }
+    const double want = sum * (kPi / n) * (2 * kPi / n) / n;
+    Moments m[2];
+    for (int k = 0; k < 2; ++k) {
+        Settings set = withShaders(Hider::Path);
+        set.mediumSampling = k ? MediumSampling::Distance : MediumSampling::Both;
+        const std::string fog = "\"color scattering\" [.1 .1 .1]", floor = "Polygon \"P\" [-.01 0 -.01  -.01 0 .01  .01 0 .01  .01 0 -.01]\n";
+        Scene s(world("LightSource \"pointlight\" 1 \"from\" [" + std::to_string(aside) + " 1 0]\n" + "AttributeBegin Attribute \"trace\" \"integer maxdiffusedepth\" 0\n" + inside(fog, "Sphere 2 -2 2 360\n") + "AttributeEnd\n" +
+                      "AttributeBegin Illuminate 1 0 Surface \"matte\" \"Ka\" 0 \"Kd\" 1 " + floor + "AttributeEnd\n"),
+                set);
+        m[k] = s.estimate(rayTo({.002f, .005f, 0}, {0, 0, 0}), samples(40000));
+        EXPECT_NEAR(m[k].mean(), want, kZ * m[k].se() + .002 * want) << k << s.messages();
+    }
+    if (samples(40000) >= 40000) EXPECT_LT(m[0].se(), .01 * want); // by the lobe alone .0156
+}
+
 TEST(Medium, ASpotLightOutsideOfTheCentreOfItsShader) {
     // A cone from the side: what is scattered once where it crosses the way is by quadrature of both.
     Settings set = withShaders(Hider::Path);

@@ -9,6 +9,7 @@ namespace alpenglow::clouds {
 namespace {
 
 constexpr uint32_t kLeaf = 8;
+constexpr double kMostArea = 1e29; ///< of a point: the sum of all is a float
 constexpr int kBits = 21; ///< of each coordinate in a code
 constexpr float kPi = 3.14159265f;
 
@@ -55,7 +56,7 @@ PointOctree::PointOctree(const PointCloud& cloud, const std::string& lightChanne
     for (size_t i = 0; i < cloud.size(); ++i) {
         const bool has = cloud.radius[i] > 0 || (area >= 0 && cloud.valuesOf(i)[size_t(area)] > 0);
         const bool finite = std::isfinite(dot(cloud.P[i], Vec3(1))) && std::isfinite(dot(cloud.N[i], Vec3(1)));
-        if (has && finite && std::isfinite(areaOf(cloud, i, area))) order.push_back(uint32_t(i));
+        if (has && finite && areaOf(cloud, i, area) < kMostArea) order.push_back(uint32_t(i));
         else ++leftOut_;
     }
     if (order.empty()) return;

@@ -34,11 +34,12 @@ public:
         uint32_t begin = 0, end = 0;      ///< points
         uint32_t first = 0, children = 0; ///< nodes; none: a leaf
     };
-    /// `lightChannel`: of a colour or float; "": none. Points without area, which nothing sees, are left out.
+    /// `lightChannel`: of a colour or float; "": none. Points without area, which nothing sees, are left out, and those
+    /// whose area is beyond all scenes.
     PointOctree(const PointCloud&, const std::string& lightChannel);
     const std::vector<Node>& nodes() const { return nodes_; } ///< the root first; none: no points
     const std::vector<Point>& points() const { return points_; }
-    size_t leftOut() const { return leftOut_; } ///< points without area
+    size_t leftOut() const { return leftOut_; } ///< points
     bool lit() const { return lit_; }           ///< the channel is there
     size_t bytes() const { return points_.size() * sizeof(Point) + nodes_.size() * sizeof(Node); }
     /// How much of a node is seen from where `towards`, unit, points; and what it sends there.

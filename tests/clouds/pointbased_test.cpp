@@ -148,6 +148,10 @@ TEST(PointBased, WhatIsNoPoint) {
     EXPECT_LT(o.bytes(), 1000u * 100);
     same.P[3].x = NAN;
     EXPECT_EQ(PointOctree(same, "").leftOut(), 1u);
+    same.radius[5] = 1e25f; // its area has no float
+    const PointOctree left(same, "");
+    EXPECT_EQ(left.leftOut(), 2u);
+    EXPECT_TRUE(std::isfinite(left.nodes()[0].centre.x) && std::isfinite(left.nodes()[0].area));
 }
 
 // ---- scenes ----

@@ -64,6 +64,7 @@ Session::~Session() {
 bool Session::load() { return readScene(); }
 
 void Session::start() {
+    begun_ = true;
     thread_ = std::thread([this] { run(); });
 }
 
@@ -131,8 +132,10 @@ bool Session::readScene() {
     filmKey_.clear();
     diags_ = std::make_unique<Diagnostics>([this](const Diagnostic& d) { say(d); });
     reads_ = std::make_shared<ReadLog>();
+    // Before the thread is there, who waits for the scene may end it.
+    const StopFlag* const stop = begun_ || !options_.settings.stop ? &end_ : options_.settings.stop;
     render::RenderSettings s = options_.settings;
-    s.stop = &end_;
+    s.stop = stop;
     s.reads = reads_;
     render::Progress progress(render::ProgressMode::None);
     render::Renderer maps(s, render::transportEngine(), *diags_, progress);
@@ -140,13 +143,14 @@ bool Session::readScene() {
     Keeper keeper(maps, options_.frame);
     ri::ReaderOptions o = options_.reader;
     o.reads = reads_;
-    o.stop = &end_;
+    o.stop = stop;
     if (options_.frame) o.frames = {*options_.frame};
     o.overrides = [&](scene::Options& of) {
         if (render::isMapPass(of)) maps.override(of);
     };
     ri::RibReader reader(o, keeper, *diags_);
     options_.read(reader);
+    if (*stop) return false;
     if (!keeper.frame) {
         diags_->report(Severity::Error, Rie::MissingData, {options_.scene},
                        options_.frame ? "the scene has no frame " + std::to_string(*options_.frame) : "there is no picture in the scene");

@@ -134,6 +134,7 @@ private:
     const ViewOptions options_;
     const std::function<void()> changed_;
     StopFlag stop_{0}, end_{0};
+    bool begun_ = false; ///< the thread is, or will be, there
     std::thread thread_;
 
     // Guarded by mutex_.

@@ -31,6 +31,7 @@ protected:
     std::unique_ptr<Session> session;
     std::vector<std::string> said;
     std::atomic<bool> noMemory{false};
+    StopFlag stop{0};
 
     void SetUp() override {
         std::string name = (std::filesystem::temp_directory_path() / "alpenglow-view-XXXXXX").string();
@@ -53,6 +54,7 @@ protected:
         o.settings.quiet = true;
         o.scene = "s.rib";
         o.watch = watch;
+        o.settings.stop = &stop;
         o.read = [this](ri::RibReader& r) {
             if (noMemory) throw std::bad_alloc();
             r.nextScene();
@@ -387,6 +389,12 @@ TEST_F(ViewSession, PicturesOfHiddenGrowTileByTile) {
     }
     EXPECT_GE(between, 1u) << seen.size(); // half done
     EXPECT_EQ(black, 0u);                  // what is not there is the coarse picture
+}
+
+TEST_F(ViewSession, EndsWhileTheSceneIsRead) {
+    stop = 1; // Ctrl-C
+    EXPECT_FALSE(open());
+    EXPECT_TRUE(said.empty()) << said[0];
 }
 
 TEST_F(ViewSession, GoesOnWhenASceneDoesNotFitIntoMemory) {

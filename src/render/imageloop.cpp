@@ -331,6 +331,7 @@ bool ImageLoop::traceSlice(SampleBuffer& buffer, int worker, std::span<const Wan
 void ImageLoop::refine(SampleBuffer& buffer, const Window& part, int b) {
     const std::vector<Wanted> pixels = differing(buffer, part);
     constexpr size_t kPixels = 64; // a task
+    if (job_.world && transport::hasUnmade(*job_.world)) job_.world->flushPrints(true); // what is there is not traced again
     if (growth_) { // all that is there so far, while nobody works at it
         reconstruct(buffer, part);
         std::vector<std::pair<int, int>> places;

@@ -58,17 +58,21 @@ Vec2 SampleBuffer::position(int x, int y, int k) const {
 }
 
 bool SampleBuffer::set(int x, int y, int k, const ImageSample& s) {
-    std::atomic_ref<uint64_t> dropped(nonFinite_);
+    float* d = &data_[base(x, y, k)];
+    const bool again = d[0] >= 0 || d[1] > 0; // a task that is done again counts once
+    const auto drop = [&] {
+        if (!again) std::atomic_ref<uint64_t>(nonFinite_).fetch_add(1, std::memory_order_relaxed);
+    };
     for (int i = 0; i < 3; ++i)
         if (!std::isfinite(s.color[i]) || !std::isfinite(s.opacity[i])) {
-            dropped.fetch_add(1, std::memory_order_relaxed);
+            drop();
+            d[1] = 1;
             return false;
         }
-    float* d = &data_[base(x, y, k)];
     auto depth = [&](float z) {
         if (!std::isnan(z))
             return z;
-        dropped.fetch_add(1, std::memory_order_relaxed);
+        drop();
         return kInf;
     };
     for (int i = 0; i < 3; ++i) {
@@ -80,7 +84,7 @@ bool SampleBuffer::set(int x, int y, int k, const ImageSample& s) {
     for (size_t i = 0; i < aovs_.size(); ++i) {
         float v = i < s.aovs.size() ? s.aovs[i] : 0;
         if (std::isnan(v) || (aovs_[i].rule == ChannelRule::Average && std::isinf(v))) {
-            dropped.fetch_add(1, std::memory_order_relaxed);
+            drop();
             v = 0;
         }
         d[kAovs + i] = v;

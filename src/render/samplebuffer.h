@@ -55,7 +55,7 @@ public:
     /// Raster position of a sample, pixels.
     Vec2 position(int x, int y, int k) const;
     /// Stores sample k of a pixel of sampled(). One pixel by one thread at a time. A sample whose colour or opacity is not
-    /// finite is dropped and counted, false; a NaN in an AOV or depth makes that value 0 or "none", counted.
+    /// finite is dropped and counted, once, false; a NaN in an AOV or depth makes that value 0 or "none", counted.
     bool set(int x, int y, int k, const ImageSample&);
     /// Colour of a sample; black where there is none.
     Color color(int x, int y, int k) const;
@@ -81,7 +81,7 @@ private:
     uint64_t seed_;
     Jitter jitter_;
     size_t stride_;
-    std::vector<float> data_; ///< per sample: offset x (-1: no sample), offset y, colour, opacity, z, second z, AOVs
+    std::vector<float> data_; ///< per sample: offset x (-1: no sample), offset y (of no sample, 1: it was dropped), colour, opacity, z, second z, AOVs
     uint64_t nonFinite_ = 0;
 };
 

@@ -143,6 +143,9 @@ TEST(SampleBuffer, NonFiniteSamplesAreDroppedAndCounted) {
     EXPECT_TRUE(b.set(0, 0, 0, grey(3)));
     EXPECT_FALSE(b.set(0, 0, 1, grey(std::nanf(""))));
     EXPECT_EQ(b.nonFinite(), 1u);
+    EXPECT_TRUE(b.set(0, 0, 0, grey(3))); // a task that is done again
+    EXPECT_FALSE(b.set(0, 0, 1, grey(std::nanf(""))));
+    EXPECT_EQ(b.nonFinite(), 1u);
     EXPECT_EQ(b.reconstruct({FilterKind::Box, 1, 1}, DepthFilter::Min, {0, 0, 1, 1}).at(0, 0, 0), 3);
 }
 

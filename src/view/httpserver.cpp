@@ -290,7 +290,13 @@ bool HttpServer::Loop::takeHeaders(Connection& c, size_t end) {
 }
 
 bool HttpServer::Loop::ask(Connection& c, bool last) {
-    std::optional<HttpResponse> r = handler(c.request, last, &c.known);
+    std::optional<HttpResponse> r;
+    try {
+        r = handler(c.request, last, &c.known);
+    } catch (const std::exception&) { // no room for the answer
+        answer(c, {503, "text/plain; charset=utf-8", "There is no memory for this.\n"}, true);
+        return write(c);
+    }
     if (r) {
         answer(c, std::move(*r), false);
         return write(c);

@@ -124,7 +124,8 @@ std::string deviceAttributes() {
     if (tty < 0) return "";
     termios before{};
     std::string answer;
-    if (tcgetattr(tty, &before) == 0) {
+    // Who works in the background would be stopped for it.
+    if (tcgetpgrp(tty) == getpgrp() && tcgetattr(tty, &before) == 0) {
         termios raw = before;
         raw.c_lflag &= ~tcflag_t(ICANON | ECHO);
         tcsetattr(tty, TCSANOW, &raw);

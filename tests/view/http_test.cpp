@@ -25,6 +25,7 @@ protected:
         server->start([this](const HttpRequest& r, bool last, bool* known) -> std::optional<HttpResponse> {
             ++asked;
             *known = r.path == "/known" || r.path == "/wait";
+            if (r.path == "/large") throw std::bad_alloc();
             if (r.path == "/wait" && !ready && !last) return {};
             std::string text = r.method + " " + r.path + " [" + r.body + "]";
             for (const auto& [name, value] : r.arguments) text += " " + name + "=" + value;
@@ -49,6 +50,12 @@ TEST_F(Http, AnswersWhatItIsAsked) {
     EXPECT_EQ(bodyOf(ask(get(server->port(), "/a/b?x=1&y=%2Fc+d&z"))), "GET /a/b [] x=1 y=/c d z=");
     EXPECT_EQ(bodyOf(ask(post(server->port(), "/p", "hello"))), "POST /p [hello]");
     EXPECT_EQ(statusOf(ask(get(server->port(), "/none"))), 404);
+}
+
+TEST_F(Http, AnswersThatDoNotFitAreSaid) {
+    begin();
+    EXPECT_EQ(statusOf(ask(get(server->port(), "/large"))), 503);
+    EXPECT_EQ(statusOf(ask(get(server->port(), "/a"))), 200);
 }
 
 TEST_F(Http, OneConnectionServesManyRequestsAlsoThoseSentAtOnce) {

@@ -4,9 +4,13 @@
 #include "client.h"
 #include "display/imageio.h"
 #include <cmath>
+#include <csignal>
 #include <gtest/gtest.h>
 #include <map>
+#include <pty.h>
+#include <sys/wait.h>
 #include <thread>
+#include <unistd.h>
 
 using namespace alpenglow;
 using namespace alpenglow::view;
@@ -105,6 +109,33 @@ TEST(Terminal, KittyGetsEveryByte) {
         EXPECT_EQ(bytes, b.rgb);
         EXPECT_EQ(data.size() % 4, 0u);
     }
+}
+
+// A program in the background that sets its terminal up is stopped: it does without.
+TEST(Terminal, IsNotAskedFromTheBackground) {
+    int terminal = -1;
+    const pid_t shell = forkpty(&terminal, nullptr, nullptr, nullptr);
+    ASSERT_GE(shell, 0);
+    if (shell == 0) {
+        setenv("TERM", "xterm", 1);
+        unsetenv("KITTY_WINDOW_ID");
+        unsetenv("TERM_PROGRAM");
+        const pid_t job = fork();
+        if (job == 0) {
+            setpgid(0, 0);
+            _exit(terminalKind() == TerminalKind::Blocks ? 0 : 3);
+        }
+        setpgid(job, job);
+        int status = 0;
+        waitpid(job, &status, WUNTRACED);
+        if (WIFSTOPPED(status)) kill(job, SIGKILL);
+        _exit(WIFEXITED(status) ? WEXITSTATUS(status) : 7);
+    }
+    int status = 0;
+    waitpid(shell, &status, 0);
+    ::close(terminal);
+    EXPECT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
 TEST(Terminal, PicturesShrinkInLight) {

@@ -43,7 +43,7 @@ void Gather::choosePoint(size_t point) {
         const Color weight = absolute(l.weight);
         l.albedo = e_.lobeRows_.albedo(l.place);
         l.delta = e_.lobeRows_.delta(l.place);
-        l.narrow = isNarrow(l, narrowest);
+        l.narrow = isNarrow(l, narrowest, normalize(c_->points[point].I));
         if (l.lobeOfShader) sum += weight * l.albedo;
         if (!l.ownsTarget) seen += l.weight * l.albedo;
         l.chosen = std::max(worth(weight) * l.albedo, 0.f);

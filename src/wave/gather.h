@@ -110,7 +110,8 @@ private:
     // photonscatter.cpp
     bool spreads(const LobeVertex&) const;
     bool mirrors(const LobeVertex&) const;
-    bool isNarrow(const LobeVertex& l, float below) const; ///< `below`: narrowBelow()
+    /// `below`: narrowBelow(); in: the direction from which the lobe's point was seen, unit.
+    bool isNarrow(const LobeVertex& l, float below, const Vec3& in) const;
     bool seesAll(const LobeVertex&) const;
     uint8_t trailBehind(const LobeVertex&) const; ///< PathRay::trail
     bool leftToPhotons(const LobeVertex&, const BoundLight&) const;

@@ -58,10 +58,22 @@ bool Gather::spreads(const LobeVertex& l) const { return !l.delta && !l.narrow &
 bool Gather::mirrors(const LobeVertex& l) const {
     return (l.delta || l.narrow) && l.below < 0 && !l.ownsTarget && seesAll(l);
 }
-/// By what both a photon and a path know of it. Shaders that move P are not asked twice (lookBack()).
-bool Gather::isNarrow(const LobeVertex& l, float below) const {
-    return !l.delta && l.below < 0 && !c_->between && e_.lobeRows_.spread(l.place) < below && !c_->binding->moveS &&
-           !c_->bound->kernel->facts().suspends;
+/// By what both a photon and a path know of it: the roughness, and that the lobe is the same seen along any of its ways. So are
+/// those of facets, and highlights about the mirrored direction; what is thrown about another direction, as by refraction, is
+/// not: there are ways that only one of both finds. Shaders that move P are not asked twice (lookBack()).
+bool Gather::isNarrow(const LobeVertex& l, float below, const Vec3& in) const {
+    const LobeColumns& rows = e_.lobeRows_;
+    if (l.delta || l.below >= 0 || c_->between || !(rows.spread(l.place) < below)) return false;
+    if (c_->binding->moveS || c_->bound->kernel->facts().suspends) return false;
+    constexpr float kSame = 1e-3f; // of directions
+    if (l.kind->name == "slphong") {
+        const bool has = rows.row(l.place, kRowHasHorizon) != 0;
+        const Vec3 n = has ? rows.triple(l.place, kRowHorizon) : normalize(c_->points[size_t(l.point)].N);
+        return length(rows.triple(l.place, kRowAxis) - (in - n * (2 * dot(in, n)))) < kSame;
+    }
+    const bool facets = l.kind->distribution && l.kind->name != "hair";
+    if (!facets && l.kind->name != "specular" && l.kind->name != "phong") return false;
+    return length(rows.triple(l.place, kRowWo) + in) < kSame;
 }
 /// What photons bring is not to be sampled: the light comes by way of this lobe to a point where they are gathered.
 bool Gather::leftToPhotons(const LobeVertex& l, const BoundLight& light) const {
@@ -180,7 +192,7 @@ void Gather::lookBack(Sched& sched) {
         LobeVertex& l = e_.lobes[k];
         l.albedo = e_.lobeRows_.albedo(l.place);
         l.delta = e_.lobeRows_.delta(l.place);
-        l.narrow = isNarrow(l, e_.photonTrace()->job->width);
+        l.narrow = isNarrow(l, e_.photonTrace()->job->width, normalize(c->points[size_t(l.point)].I));
         if (l.lobeOfShader)
             for (int i = 0; i < 3; ++i) sum[size_t(l.point)][i] += std::fabs(l.weight[i]) * l.albedo;
         known[{l.point, l.site, l.occurrence}] = int(k);

@@ -10,6 +10,7 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <filesystem>
+#include <limits>
 #include <poll.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -92,7 +93,7 @@ std::optional<Image> pictureFrom(int file, const DecodeContext& ctx) {
         p.channels <= 0)
         return ctx.refuse("the module that reads it was built from other sources than this program");
     const uint64_t slices = std::max<uint64_t>(1, p.depth), side = uint64_t(limits::kImageSide);
-    if (slices > side ||
+    if (slices > side || uint64_t(p.height) * slices > uint64_t(std::numeric_limits<int>::max()) || // rows of an Image
         uint64_t(p.height) * slices * uint64_t(p.width) > limits::kImageBytes / sizeof(float) / uint64_t(p.channels))
         return ctx.refuse("its voxels would take more than " + std::to_string(limits::kImageBytes >> 30) + " GiB", Rie::Limit);
     if (!ctx.sizeAllowed(uint64_t(p.width), uint64_t(p.height), uint64_t(p.channels))) return {};

@@ -12,6 +12,7 @@ struct EmissionStart {
     const geometry::Shape* shape = nullptr;
     float factor = 0;           ///< of what the light's kernel says, before `length`
     float length = 0;           ///< of the way to what it meets first; 0: nothing
+    float kept = 1;             ///< LightValue::kept() of rays of highlights, where the photon arrives first
     bool front = false;         ///< Area: on the side of n
 };
 
@@ -19,6 +20,7 @@ struct EmissionStart {
 void startPhotons(Engine&, const EmissionPlan&, const EmissionPlan::Light&, std::span<EmissionStart>);
 
 /// The power of one photon that is emitted alone, by what the light's shader says where it arrives first. 0 where `length` is.
-std::vector<Color> emittedPower(Engine&, const EmissionPlan::Light&, std::span<const EmissionStart>);
+/// Fills `kept`.
+std::vector<Color> emittedPower(Engine&, const EmissionPlan::Light&, std::span<EmissionStart>);
 
 } // namespace alpenglow::transport

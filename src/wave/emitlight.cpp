@@ -126,7 +126,7 @@ void startPhotons(Engine& e, const EmissionPlan& plan, const EmissionPlan::Light
     }
 }
 
-std::vector<Color> emittedPower(Engine& e, const EmissionPlan::Light& l, std::span<const EmissionStart> starts) {
+std::vector<Color> emittedPower(Engine& e, const EmissionPlan::Light& l, std::span<EmissionStart> starts) {
     std::vector<ShadePoint> q;
     std::vector<size_t> of;
     for (size_t i = 0; i < starts.size(); ++i) {
@@ -143,7 +143,8 @@ std::vector<Color> emittedPower(Engine& e, const EmissionPlan::Light& l, std::sp
     std::vector<Color> power(starts.size(), Color(0));
     const bool falls = l.light->kind == LightKind::Point || l.light->mean; // what the shader says is irradiance
     for (size_t k = 0; k < of.size(); ++k) {
-        const EmissionStart& s = starts[of[k]];
+        EmissionStart& s = starts[of[k]];
+        s.kept = v[k].kept(RayType::Specular);
         if (!v[k].lit || !isFinite(v[k].Cl)) continue;
         const float far = length(q[k].Ps - (l.light->kind == LightKind::Point ? s.origin : meetsAt(s.surface)));
         const Color c = v[k].Cl * (s.factor * (falls ? far * far : 1));

@@ -116,6 +116,7 @@ private:
     uint8_t trailBehind(const LobeVertex&) const; ///< PathRay::trail
     bool leftToPhotons(const LobeVertex&, const BoundLight&) const;
     void restPhotons();
+    bool lit(const LobeVertex&) const;
     void lookBack(Sched&);
     float photonWay(const LobeVertex&, Vec3& w) const;
     /// Gives lobes what they send on of the photons about their points.

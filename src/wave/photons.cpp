@@ -100,6 +100,7 @@ bool Engine::emitAll(const PhotonJob& job, uint32_t first, uint32_t count) {
     sched.restart(stop);
     const EmissionPlan& plan = *job.plan;
     const std::vector<EmissionStart> starts = startBlock(*this, job, first, count, t.power);
+    t.from.assign(count, {});
     samples_.resize(count);
     results.clear();
     lightTargets_.clear();
@@ -119,6 +120,7 @@ bool Engine::emitAll(const PhotonJob& job, uint32_t first, uint32_t count) {
         t.power[i] = Color(most);
         r.sample = &sample;
         r.kind = kindOf(t.specular);
+        t.from[i] = {plan.lights()[size_t(s.drawn.light)].number, s.kept};
         r.media = aboutLight(plan.lights()[size_t(s.drawn.light)], s);
         if (s.shape) // what its light loses in the atmosphere there is told where it arrives
             if (const auto hazy = world_->hazyEmitters_.find(s.shape); hazy != world_->hazyEmitters_.end()) {

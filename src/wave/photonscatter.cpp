@@ -151,6 +151,14 @@ float Gather::photonWay(const LobeVertex& l, Vec3& w) const {
     return factor;
 }
 
+/// Whether the light from which a photon has just come is on for a lobe that samples lights.
+bool Gather::lit(const LobeVertex& l) const {
+    const PathRay& ray = rayOf(l);
+    if (ray.bounces > 0 || !l.lights || l.elsewhere || l.delta) return true;
+    return world_.bindings_[size_t(c_->bindings[size_t(l.point)])].lights.contains(
+        e_.photonTrace()->from[size_t(ray.sample->path)].light);
+}
+
 /// Paths meet the lobes of narrow highlights and rough glass from the other side, and what their shaders say may depend on that:
 /// the reflectance of Fresnel, the direction of what is refracted. So a photon that such a lobe sends on carries what the shader
 /// gives back when it is seen from where the photon goes; the lobe as the photon has met it only draws the way.
@@ -202,7 +210,7 @@ void Gather::lookBack(Sched& sched) {
         const LobeVertex& l = e_.lobes[size_t(s->lobe)];
         const auto found = known.find({s->point, l.site, l.occurrence});
         back.push_back(found == known.end() ? -1 : found->second);
-        s->goes = back.back() >= 0 && mirrors(e_.lobes[size_t(back.back())]); // else paths bring this light
+        s->goes = back.back() >= 0 && mirrors(e_.lobes[size_t(back.back())]) && lit(e_.lobes[size_t(back.back())]);
         if (s->goes) e_.lobeRows_.ask(e_.lobes[size_t(back.back())].place, -c_->rays[size_t(s->point)].dir);
     }
     e_.lobeRows_.evaluate();
@@ -214,6 +222,8 @@ void Gather::lookBack(Sched& sched) {
         if (l.lobeOfShader)
             scale = energyScale(size_t(s.point), sum[size_t(s.point)], e_.clearAt(*c, s.point)) /
                     indirectScale_[size_t(s.point)];
+        const PathRay& ray = rayOf(l);
+        if (ray.bounces == 0 && !l.rays->fromTrace) scale *= e_.photonTrace()->from[size_t(ray.sample->path)].kept;
         s.back = seen.weight * e_.lobeRows_.value(seen.place).colour * scale;
     }
     e_.lobes.erase(e_.lobes.begin() + long(had), e_.lobes.end());

@@ -236,6 +236,31 @@ TEST(Caustics, NarrowLobesTogetherAsPathsAlone) {
     }
 }
 
+// Lights that are off for a surface, or whose highlights are: neither photons nor paths bring them by way of its narrow lobes.
+TEST(Caustics, NarrowLobesOfLightsThatAreOff) {
+    writeShader("highlight", "surface highlight() { normal n = faceforward(normalize(N), I); Oi = 1; Ci = 4 * specular(n, -normalize(I), .02); }\n");
+    writeShader("nohighlight", "light nohighlight(float intensity = 1; output float __nonspecular = .75;) { illuminate(P, N, PI / 2) Cl = intensity; }\n");
+    const std::string off = "Illuminate 1 0\n", on = "", mirror = "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n",
+                      ceiling = "Surface \"slmaterial\" \"color diffusecolor\" [.1 .1 .1] Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n";
+    const auto scene = [&](const std::string& light, const std::string& illuminate) {
+        std::string with = lamp(1, .5, 5);
+        with.replace(with.find("slrect"), 6, light);
+        return world(with + "AttributeBegin " + illuminate + "Surface \"highlight\" " + mirror + ceiling);
+    };
+    const CameraRay ray = rayTo({1.1f, 1.2f, 0}, {1, 2, 0});
+    const auto seen = [&](const std::string& light, const std::string& illuminate) {
+        Scene s(scene(light, illuminate), path());
+        passes(s, 40, 10000, .1f, {.width = .1f});
+        return estimate(s, ray, 40, 40);
+    };
+    const Moments all = seen("slrect", on), none = seen("slrect", off), quarter = seen("nohighlight", on);
+    Scene plain(scene("slrect", off), path());
+    const double dark = plain.estimate(ray, 20000).mean(), image = all.mean() - dark;
+    EXPECT_GT(image, 20 * all.se());
+    EXPECT_NEAR(none.mean(), dark, kZ * none.se() + 1e-5);
+    EXPECT_NEAR(quarter.mean() - dark, image / 4, kZ * std::hypot(quarter.se(), all.se()) + .01 * image);
+}
+
 // Without photons of its sample a path is what it was, bit by bit.
 TEST(Caustics, NothingWithoutPasses) {
     const std::string scene = world(lamp(3, .8, 5) + "AttributeBegin " + kGlass + "Translate 0 1 0 Sphere .6 -.6 .6 360 AttributeEnd\n" + kMatte + "Polygon \"P\" [-3 0 -3  -3 0 3  3 0 3  3 0 -3]\n");

@@ -107,6 +107,11 @@ struct Accel::Impl {
         return false;
     }
 
+    /// Whether all that the ray meets of a shape counts, wherever it is.
+    bool plain(const Ray& r, uint32_t s) const {
+        return r.passed < 0 && r.excludeShape == kNone && visible(r, s) && (trimmed.empty() || !trimmed[s]) &&
+               (r.sides == Sides::Both || !shapes[s]->oneSided()) && !ofSolid(s);
+    }
     /// Whether a candidate counts; then q.best is it. t is ours. away(): how far its normal points along the ray, if one-sided.
     template <class Away> bool take(Query& q, uint32_t s, uint32_t prim, double t, double b1, double b2, Away away) const {
         const Ray& r = *q.ray;

@@ -121,6 +121,7 @@ public:
     /// nothing, 4096 at most; more are reported once.
     int samplesOf(float asked, const geometry::Shape*, const SiteInfo&, const BatchContext&);
     std::vector<HemisphereRays> hemispheres_; ///< of `shadows`
+    render::NumberRows hemisphereNumbers_;    ///< of the rays of one call
     std::vector<Deposit> settled_;            ///< of calls that no ray is sent for any more; taken with the shadow rays
     // recordings.cpp
     /// What records say of the hemisphere that a call asks for at a point of a batch. Nothing: it is to be found exactly. In a
@@ -157,6 +158,7 @@ public:
     /// Whether surfaces that block all light are looked for first and by themselves, the others only where a ray may meet them.
     bool meetsOpaqueAlone(const ShadowRay&) const;
     void blockedByOpaque(std::span<const ShadowRay>, std::span<Color> out);
+    void blockedByAll(std::span<const ShadowRay>, std::span<Color> out);
     // haze.cpp
     /// Runs a volume shader over points with Ci, Oi, I, P set. The points' Ci is void afterwards. The binding is that of what was
     /// met. `surface`, `of`: the run of the surface shader, and the points' numbers there; may be missing.

@@ -105,11 +105,24 @@ void Engine::hemisphereRays(const BatchContext& c, const SiteInfo& s, const Shad
     const bool here = surface && length(from - at) <= geometry::roundingError(from) + 4 * surface->pError;
     const size_t begin = out.size();
     const int few = fewer(o, f, count, c);
+    const bool once = few == count && o.axis < 0 && half > 0 && p.ray; // a pair for each, and nothing runs in between
+    if (once) {
+        hemisphereNumbers_.clear();
+        const Random of = random(*p.ray);
+        for (int k = 0; k < count; ++k)
+            hemisphereNumbers_.askPair(of.draw(uint32_t(k), uint32_t(count)).numbers(), p.ray->vertex, site, occurrence * 4096);
+        hemisphereNumbers_.draw();
+    }
     for (int k = 0; k < count; ++k) {
         const Random numbers = p.ray ? random(*p.ray).draw(uint32_t(k), uint32_t(count)) : Random(noSample_.numbers);
         const uint32_t vertex = p.ray ? p.ray->vertex : 0;
         int tries = 0;
-        do ray.dir = directions.at(half > 0 ? numbers.pair(vertex, site, occurrence * 4096 + uint32_t(tries)) : Vec2(0, 0));
+        const auto pair = [&] {
+            return once       ? hemisphereNumbers_.pair(size_t(k))
+                   : half > 0 ? numbers.pair(vertex, site, occurrence * 4096 + uint32_t(tries))
+                              : Vec2(0, 0);
+        };
+        do ray.dir = directions.at(pair());
         while (o.axis >= 0 && !(dot(ray.dir, towards) > 0) && dot(towards, towards) > 0 && ++tries < kTries);
         if (tries == kTries) ray.contribution = Color(0); // none is there, nearly
         else ray.contribution = weight * h.share;

@@ -127,6 +127,19 @@ void Engine::blockedByOpaque(std::span<const ShadowRay> rays, std::span<Color> o
         if (blocked_[k]) out[of[k]] = Color(0);
 }
 
+/// The same where all surfaces are such ones.
+void Engine::blockedByAll(std::span<const ShadowRay> rays, std::span<Color> out) {
+    constexpr size_t kAtOnce = 512; // they stay in a core's cache
+    blocked_.resize(std::min(rays.size(), kAtOnce));
+    for (size_t first = 0; first < rays.size(); first += kAtOnce) {
+        const size_t n = std::min(kAtOnce, rays.size() - first);
+        shadowRays_.clear();
+        for (const ShadowRay& r : rays.subspan(first, n)) shadowRays_.push_back(shadowRay(r));
+        block(shadowRays_, std::span(blocked_).first(n));
+        for (size_t i = 0; i < n; ++i) out[first + i] = blocked_[i] ? Color(0) : Color(1);
+    }
+}
+
 /// One batch a surface. The order inside a batch does not matter: a kernel's lanes know nothing of each other. `take` is told the
 /// number and the opacity of what was met.
 void Engine::takeOpacities(std::span<const OpacityQuery> met, const std::function<void(size_t, const Color&)>& take) {
@@ -164,14 +177,7 @@ void Engine::passSurfaces(std::span<const ShadowRay> rays, std::span<Color> out)
         if (fading && fades(rays[i])) taken[i] += out[i] * opacity * hemispheres_[size_t(rays[i].hemisphere)].fade.at(distance);
         out[i] *= Color(1) - opacity;
     };
-    if (world_->allOpaque_ && !media && !fading) {
-        shadowRays_.clear();
-        for (const ShadowRay& r : rays) shadowRays_.push_back(shadowRay(r));
-        blocked_.resize(rays.size());
-        block(shadowRays_, blocked_);
-        for (size_t i = 0; i < rays.size(); ++i) out[i] = blocked_[i] ? Color(0) : Color(1);
-        return;
-    }
+    if (world_->allOpaque_ && !media && !fading) return blockedByAll(rays, out);
     struct Going { accel::Ray ray; size_t index; int layers; const shading::Media* media; Vec3 begin; };
     const auto medium = [](const Going& g) { return g.media ? g.media->top() : -1; };
     std::vector<MediumPart> parts;
@@ -293,6 +299,7 @@ void Engine::flushShadows(Sched& s) {
             if (TraceSums* sums = areaLight ? sumsOf(target) : nullptr) sums->add(TraceSums::AreaLight, light);
         };
         if (r.hemisphere >= 0) { // only these, and nothing else goes their way
+            if (transmitted_[i] == Color(0) && isFinite(r.contribution)) continue;
             deposit(s, {r.target, openLight(r, transmitted_[i], sumsOf(r.target)), LightEvent::Sampled, r.ray, r.share, nullptr,
                         pathEvent(r.path, r.light)});
             continue;

@@ -135,6 +135,43 @@ TEST(Tree, NothingIsOverlooked) {
     EXPECT_GT(met, 4000u);
 }
 
+// Whether anything is met, of rays that end or begin about where the only triangle is: as the triangle itself has it.
+TEST(Tree, AnyHitAtTheEndsOfRays) {
+    Rng rng(5);
+    for (int k = 0; k < 3000; ++k) {
+        const float size = std::pow(10.f, uniform(rng, -3, 4));
+        const std::vector<Vec3> corners = {within(rng, size), within(rng, size), within(rng, size)};
+        Diagnostics diag;
+        const ShapeRef shape = build(trianglesOf(corners, {0, 1, 2}), Matrix(), diag);
+        if (!shape) continue;
+        Accel::Impl inside; // an Accel looks at one triangle without a tree
+        inside.shapes = {shape};
+        inside.visibility.assign(1, kAll);
+        inside.tree.build(inside.shapes);
+        const float s = uniform(rng, 0, 1), u = k % 3 ? uniform(rng, 0, 1 - s) : 0; // on an edge, too
+        const Vec3 aim = corners[0] + (corners[1] - corners[0]) * s + (corners[2] - corners[0]) * u;
+        Ray r;
+        r.org = within(rng, 3 * size);
+        r.dir = aim - r.org;
+        if (!(length(r.dir) > 0)) continue;
+        std::vector<Ray> rays;
+        for (const float end : {.5f, .999f, 1 - 0x1p-22f, 1 - 0x1p-24f, 1.f, 1 + 0x1p-23f, 1 + 0x1p-21f, 1.001f, 2.f}) {
+            rays.push_back(r);
+            rays.back().tfar = end;
+            rays.push_back(r);
+            rays.back().tnear = end;
+        }
+        std::vector<uint8_t> any(rays.size());
+        inside.walkAny(rays, any);
+        for (size_t i = 0; i < rays.size(); ++i) {
+            Query q{&rays[i], {INFINITY, kNone, kNone, 0, 0}, false};
+            const geometry::TriMesh& m = shape->mesh();
+            const bool want = inside.meetOne(q, 0, 0, m.P[m.index[0]], m.P[m.index[1]], m.P[m.index[2]]);
+            ASSERT_EQ(bool(any[i]), want) << k << " " << i;
+        }
+    }
+}
+
 // Triangles at the end of all floats have no boxes that rays could pass by. They are left out, all else is met as without them.
 TEST(Tree, TrianglesThatReachTooFarAreLeftOut) {
     for (const int n : {5, 3000}) { // without a tree, and with one

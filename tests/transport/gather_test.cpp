@@ -163,7 +163,7 @@ TEST(Gather, RaysOfWaitingKernelsEnd) {
             const double at = std::min(n, 3), chances = n < 2 ? .5 : n < 4 ? .8 : .7;
             const double ends = 1 + n * (1 + at + at * at / (1 - chances)); // where all is known
             const double points = double(counters.points) / double(counters.camera);
-            // Found: within 3 % of it, 173 for three calls in a loop and 1129 for eight. Critical chances took ten times as many.
+            // Found: within 3 % of it; 173 for three calls in a loop and 1129 for eight.
             EXPECT_LT(points, (name == "lends" && n > 2 ? n : 1.2) * ends) << called;
         }
 }

@@ -8,7 +8,7 @@ namespace alpenglow::transport {
 
 namespace {
 
-/// The filter that a point names; a name that no filter has is said once.
+/// The filter that a point names. A name that no filter has is reported once.
 texture::Filter filterOf(const TextureSite& t, const ServiceCall& call, int lane) {
     const std::string& name = rsl::internedString(std::bit_cast<int32_t>(call.at(t.filter, lane)));
     if (const auto known = texture::filterByName(name)) return *known;

@@ -18,8 +18,8 @@ WithoutScene::WithoutScene(std::vector<std::string> texturePaths, Diagnostics& d
     world->settings_.texturePaths = std::move(texturePaths);
     world->diagnostics_ = &d;
     world->textures_ = std::make_unique<texture::TextureSystem>(d);
-    world->photons_ = std::make_shared<PhotonStore>(PhotonStore::Files{}, d);
-    world->clouds_ = std::make_shared<CloudStore>(CloudStore::Files{world->settings_.texturePaths, {}}, d);
+    world->photons_ = std::make_shared<PhotonStore>(MapFiles{}, Matrix(), d);
+    world->clouds_ = std::make_shared<CloudStore>(MapFiles{world->settings_.texturePaths, {}}, d);
     state_->world = world;
     state_->answers = std::make_unique<Answers>(*world, d, nullptr);
 }

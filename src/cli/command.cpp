@@ -117,11 +117,13 @@ std::vector<std::string> folders(const std::vector<std::string>& lists) {
     return all;
 }
 
-std::optional<std::array<int, 2>> parseSize(const std::string& s) {
+void readFormat(const std::string& s, int* width, int* height) {
     int w = 0, h = 0, end = 0;
     if (std::sscanf(s.c_str(), "%6dx%6d%n", &w, &h, &end) != 2 || size_t(end) != s.size() || w <= 0 || h <= 0)
-        return std::nullopt;
-    return std::array<int, 2>{w, h};
+        throw CLI::ValidationError("--format", "takes WIDTHxHEIGHT, for example 640x480");
+    if (w > limits::kImageSide || h > limits::kImageSide) throw CLI::ValidationError("--format", "a side is too long");
+    *width = w;
+    *height = h;
 }
 
 std::optional<std::vector<double>> parseNumbers(const std::string& s, size_t count) {

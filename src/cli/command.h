@@ -60,8 +60,8 @@ void addDialect(CLI::App&, std::string& name);
 /// with `output`, "-" is standard output, as long as that is no terminal.
 std::string faultOfPictureName(const std::string& name, bool output);
 
-/// "640x480".
-std::optional<std::array<int, 2>> parseSize(const std::string&);
+/// What --format says, "640x480"; a side may have limits::kImageSide pixels. Throws CLI::ValidationError.
+void readFormat(const std::string&, int* width, int* height);
 /// Numbers separated by commas; nothing unless there are exactly `count` (0 = any number) and all are finite.
 std::optional<std::vector<double>> parseNumbers(const std::string&, size_t count = 0);
 /// "1,4-6" gives 1 4 5 6; nothing when it is not such a list, or longer than 100000.

@@ -162,7 +162,7 @@ int runPtc(const Arguments& a, Diagnostics& d) {
         return all ? kDone : kNothingRendered;
     }
     if (a.action == "brick") {
-        if (clouds::brickMapOfFile(a.files[0], a.files[1], kAnywhere, d)) return kDone;
+        if (clouds::brickMapOfFiles(std::span(&a.files[0], 1), a.files[1], kAnywhere, d)) return kDone;
         const auto unread = [](const Diagnostic& m) { return m.code == Rie::NoFile || m.code == Rie::BadFile; };
         return std::any_of(d.all().begin(), d.all().end(), unread) ? kNothingRendered : kOutputFailed;
     }

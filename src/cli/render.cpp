@@ -40,13 +40,7 @@ void checkLate(Arguments& a, const CLI::App& app) {
     render::RenderSettings& s = a.settings;
     auto wrong = [](const std::string& option, const std::string& what) { throw CLI::ValidationError(option, what); };
     if (!a.folder.empty() && chdir(a.folder.c_str()) != 0) wrong("--cwd", "there is no folder \"" + a.folder + "\"");
-    if (!a.format.empty()) {
-        auto v = parseSize(a.format);
-        if (!v) wrong("--format", "takes WIDTHxHEIGHT, for example 640x480");
-        s.width = (*v)[0];
-        s.height = (*v)[1];
-        if (s.width > limits::kImageSide || s.height > limits::kImageSide) wrong("--format", "a side is too long");
-    }
+    if (!a.format.empty()) readFormat(a.format, &s.width, &s.height);
     if (!a.crop.empty()) {
         auto v = parseNumbers(a.crop, 4);
         if (!v || !((*v)[0] <= (*v)[1] && (*v)[2] <= (*v)[3]))

@@ -97,9 +97,8 @@ display::Format pictureFormat(const std::string& name) {
 }
 
 int shade(const Arguments& a) {
-    auto size = parseSize(a.format);
-    if (!size || (*size)[0] > limits::kImageSide || (*size)[1] > limits::kImageSide)
-        throw CLI::ValidationError("--format", "takes WIDTHxHEIGHT, for example 256x256");
+    int width = 0, height = 0;
+    readFormat(a.format, &width, &height);
     if (const std::string fault = faultOfPictureName(a.output, true); !fault.empty()) throw CLI::ValidationError("-o", fault);
     const bool patch = a.patch || a.iterations > 0 || a.vectors > 0 || !a.outputs.empty();
     Diagnostics diags(printer()), quiet; // on a ball the renderer says what there is to say of the shader
@@ -169,7 +168,7 @@ int shade(const Arguments& a) {
         given.push_back(*i);
     }
     if (!patch)
-        return shadeBall({a.shader, shader->kind(), given, a.output, (*size)[0], (*size)[1], a.spp, a.lanes, a.gamma,
+        return shadeBall({a.shader, shader->kind(), given, a.output, width, height, a.spp, a.lanes, a.gamma,
                           folders(a.searchPaths), a.dialect, a.allowExec},
                          diags);
     if (!given.empty()) values = compiler.parameterValues(shader, diags, {}, given); // defaults may read what is given
@@ -200,7 +199,7 @@ int shade(const Arguments& a) {
         return kNothingRendered;
     }
 
-    const int w = (*size)[0], h = (*size)[1], side = std::max(1, int(std::lround(std::sqrt(double(std::max(1, a.spp))))));
+    const int w = width, h = height, side = std::max(1, int(std::lround(std::sqrt(double(std::max(1, a.spp))))));
     const float du = 1.f / float(w), dv = 1.f / float(h);
     std::vector<std::string> channels;
     for (const auto& o : kernel->outputs()) {

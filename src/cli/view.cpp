@@ -30,13 +30,7 @@ void checkLate(Arguments& a) {
     auto wrong = [](const std::string& option, const std::string& what) { throw CLI::ValidationError(option, what); };
     if (!a.folder.empty() && chdir(a.folder.c_str()) != 0) wrong("--cwd", "there is no folder \"" + a.folder + "\"");
     if (a.scene == "-") wrong("scene", "is a file: what comes from standard input cannot be read again");
-    if (!a.format.empty()) {
-        auto v = parseSize(a.format);
-        if (!v) wrong("--format", "takes WIDTHxHEIGHT, for example 640x480");
-        s.width = (*v)[0];
-        s.height = (*v)[1];
-        if (s.width > limits::kImageSide || s.height > limits::kImageSide) wrong("--format", "a side is too long");
-    }
+    if (!a.format.empty()) readFormat(a.format, &s.width, &s.height);
     s.memoryLimit = defaultMemoryLimit();
     if (!a.memory.empty()) {
         auto bytes = parseMemorySize(a.memory);

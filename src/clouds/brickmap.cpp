@@ -1,6 +1,7 @@
 #include "clouds/brickmap.h"
 #include "clouds/brickparts.h"
 #include "base/file.h"
+#include "base/randomfile.h"
 #include "clouds/bytes.h"
 #include "clouds/cloudfile.h"
 #include "clouds/limits.h"
@@ -19,36 +20,6 @@
 namespace alpenglow::clouds {
 
 namespace {
-
-/// A file that bricks are read from.
-class File {
-public:
-    explicit File(const std::string& path) : fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
-        struct stat s;
-        if (fd_ >= 0 && fstat(fd_, &s) == 0 && S_ISREG(s.st_mode)) size_ = uint64_t(s.st_size), regular_ = true;
-    }
-    ~File() {
-        if (fd_ >= 0) ::close(fd_);
-    }
-    File(const File&) = delete;
-    File& operator=(const File&) = delete;
-    bool regular() const { return regular_; }
-    uint64_t size() const { return size_; }
-    bool read(uint64_t at, size_t n, std::vector<uint8_t>& to) const {
-        to.resize(n);
-        for (size_t done = 0; done < n;) {
-            const ssize_t k = ::pread(fd_, to.data() + done, n - done, off_t(at + done));
-            if (k <= 0) return false;
-            done += size_t(k);
-        }
-        return true;
-    }
-
-private:
-    int fd_;
-    uint64_t size_ = 0;
-    bool regular_ = false;
-};
 
 class BrickMap final : public CloudMap {
 public:
@@ -91,7 +62,7 @@ private:
     std::string path_;
     Diagnostics& diagnostics_;
     SourcePlace place_;
-    File file_;
+    RandomFile file_;
     size_t most_;
     std::vector<Channel> channels_;
     int width_ = 0;

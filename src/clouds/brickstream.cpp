@@ -8,7 +8,7 @@
 #include <cstring>
 #include <functional>
 #include <memory>
-#include <optional>
+#include <span>
 
 namespace alpenglow::clouds {
 
@@ -23,9 +23,9 @@ struct Close {
 using Handle = std::unique_ptr<std::FILE, Close>;
 
 /// A point cloud that is read a slice at a time.
-class Stream {
+class Part {
 public:
-    explicit Stream(const std::string& path) : file_(std::fopen(path.c_str(), "rb")) {}
+    explicit Part(const std::string& path) : file_(std::fopen(path.c_str(), "rb")) {}
     std::string open();
     const std::vector<Channel>& channels() const { return channels_; }
     uint64_t points() const { return count_; }
@@ -40,8 +40,26 @@ private:
     size_t record_ = 0, header_ = 0;
 };
 
+/// Point clouds one behind the other, with the channels of all, as merge() joins them.
+class Stream {
+public:
+    explicit Stream(std::span<const std::string> paths) : paths_(paths.begin(), paths.end()) {}
+    /// "": fine, else which cloud is wrong, and what.
+    std::string open();
+    const std::vector<Channel>& channels() const { return all_.channels; }
+    size_t record() const { return 28 + 4 * size_t(all_.width()); } ///< bytes of a point
+    /// f(the bytes of a point), for all. "": fine.
+    std::string each(const std::function<void(const uint8_t*)>& f);
+
+private:
+    std::vector<std::string> paths_;
+    std::vector<Part> parts_;
+    std::vector<std::vector<size_t>> places_; ///< by part and number of a point: where it goes
+    PointCloud all_;                          ///< channels alone
+};
+
 /// The header as loadCloud() checks it.
-std::string Stream::open() {
+std::string Part::open() {
     std::vector<uint8_t> b(32);
     if (!file_ || std::fread(b.data(), 1, 32, file_.get()) != 32) return "it is cut short";
     header_ = takeNumber<uint32_t>(&b[24]);
@@ -62,7 +80,7 @@ std::string Stream::open() {
     return "";
 }
 
-std::string Stream::each(const std::function<void(const uint8_t*)>& f) {
+std::string Part::each(const std::function<void(const uint8_t*)>& f) {
     if (std::fseek(file_.get(), long(header_), SEEK_SET) != 0) return "it cannot be read";
     const size_t some = std::max<size_t>(1, kSlice / record_);
     std::vector<uint8_t> b(some * record_);
@@ -77,6 +95,42 @@ std::string Stream::each(const std::function<void(const uint8_t*)>& f) {
     uint8_t end[4];
     if (std::fread(end, 1, 4, file_.get()) != 4) return "it is cut short";
     return takeNumber<uint32_t>(end) == crc ? "" : "its points are damaged";
+}
+
+std::string named(const std::string& path, const std::string& fault) { return "point cloud \"" + path + "\" cannot be read: " + fault; }
+
+std::string Stream::open() {
+    std::vector<PointCloud> heads;
+    uint64_t points = 0;
+    for (const std::string& path : paths_) {
+        if (std::string f = parts_.emplace_back(path).open(); !f.empty()) return named(path, f);
+        points += parts_.back().points();
+        heads.emplace_back().channels = parts_.back().channels();
+    }
+    if (std::string f = merge(heads, all_); !f.empty()) return f;
+    if (points > limits::kCloudPoints) return "there are more than " + std::to_string(limits::kCloudPoints) + " points";
+    for (const PointCloud& head : heads) {
+        std::vector<size_t>& to = places_.emplace_back();
+        for (const Channel& c : head.channels)
+            for (int k = 0, at = all_.offsetOf(c.name); k < sizeOf(c.type); ++k) to.push_back(size_t(at + k));
+    }
+    return "";
+}
+
+std::string Stream::each(const std::function<void(const uint8_t*)>& f) {
+    std::vector<uint8_t> b(record());
+    for (size_t i = 0; i < parts_.size(); ++i) {
+        const std::vector<size_t>& to = places_[i];
+        const auto put = [&](const uint8_t* from) {
+            std::memcpy(b.data(), from, 28);
+            std::memset(&b[28], 0, b.size() - 28);
+            for (size_t k = 0; k < to.size(); ++k) std::memcpy(&b[28 + 4 * to[k]], from + 28 + 4 * k, 4);
+            f(b.data());
+        };
+        const bool same = parts_[i].channels() == all_.channels;
+        if (std::string fault = same ? parts_[i].each(f) : parts_[i].each(put); !fault.empty()) return named(paths_[i], fault);
+    }
+    return "";
 }
 
 class Maker {
@@ -250,25 +304,39 @@ bool isOurs(const std::string& path, uint64_t* bytes) {
 
 } // namespace
 
-bool brickMapOfFile(const std::string& cloud, const std::string& name, const OutputPolicy& policy, Diagnostics& d,
-                    const SourcePlace& place, size_t memory) {
+bool brickMapOfFiles(std::span<const std::string> paths, const std::string& name, const OutputPolicy& policy, Diagnostics& d,
+                     const SourcePlace& place, size_t memory) {
     uint64_t bytes = 0;
-    if (!isOurs(cloud, &bytes) || bytes * 4 <= memory) {
-        const auto whole = loadCloud(cloud, d, place);
-        return whole && saveBrickMap(name, *whole, policy, d, place);
+    bool ours = true;
+    for (const std::string& path : paths) {
+        uint64_t some = 0;
+        ours &= isOurs(path, &some);
+        bytes += some;
     }
-    Stream stream(cloud);
-    std::string fault = stream.open();
-    std::optional<Maker> maker;
-    if (fault.empty()) maker.emplace(stream, memory);
-    if (fault.empty()) fault = maker->measure();
-    if (fault.empty()) fault = maker->sort();
-    if (!fault.empty()) {
-        d.report(Severity::Error, Rie::BadFile, place, "point cloud \"" + cloud + "\" cannot be read: " + fault);
+    const auto refuse = [&](Rie code, const std::string& fault) {
+        d.report(Severity::Error, code, place, "brick map \"" + name + "\": " + fault);
         return false;
+    };
+    if (!ours || bytes * 4 <= memory) {
+        std::vector<PointCloud> from;
+        for (const std::string& path : paths) {
+            auto cloud = loadCloud(path, d, place);
+            if (!cloud) return false;
+            from.push_back(std::move(*cloud));
+        }
+        PointCloud all;
+        if (from.size() == 1) all = std::move(from[0]);
+        else if (const std::string fault = merge(from, all); !fault.empty()) return refuse(Rie::Consistency, fault);
+        return saveBrickMap(name, all, policy, d, place);
     }
-    maker->cubes();
-    return maker->write(name, policy, d, place);
+    Stream stream(paths);
+    if (const std::string fault = stream.open(); !fault.empty()) return refuse(Rie::BadFile, fault);
+    Maker maker(stream, memory);
+    std::string fault = maker.measure();
+    if (fault.empty()) fault = maker.sort();
+    if (!fault.empty()) return refuse(Rie::BadFile, fault);
+    maker.cubes();
+    return maker.write(name, policy, d, place);
 }
 
 } // namespace alpenglow::clouds

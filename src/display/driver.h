@@ -50,7 +50,7 @@ struct DriverDescriptor {
 const std::vector<const DriverDescriptor*>& drivers();
 /// By display type, ignoring case; null when there is none.
 const DriverDescriptor* findDriver(const std::string& type);
-/// The driver of a display type. An unknown type gets a picture driver that chooses by the name's extension; this is said once.
+/// The driver of a display type. An unknown type gets a picture driver that chooses by the name's extension, and one warning.
 std::unique_ptr<Driver> makeDriver(const std::string& type, Diagnostics&, const SourcePlace& = {});
 /// open, all rows, close of a finished picture. The image's channels must be setup.channels. False: an error was reported.
 bool writeDisplay(const DriverSetup&, const Image&, Diagnostics&);

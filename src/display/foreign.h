@@ -3,7 +3,9 @@
 // wrong in a foreign decoder ends the child and is an error here.
 #pragma once
 #include "display/formats/codecs.h"
+#include <algorithm>
 #include <cstdint>
+#include <unistd.h>
 
 namespace alpenglow::display {
 
@@ -18,6 +20,16 @@ struct ForeignPicture {
     uint32_t depth;                 ///< of grids: slices, each `height` rows, one below the other; pictures: 0
 };
 inline constexpr uint32_t kForeignStamp = 0xa1f01;
+
+/// What a module sends, all of it. False: nobody takes it.
+inline bool sendForeign(int to, const void* bytes, size_t n) {
+    for (size_t done = 0; done < n;) {
+        const ssize_t k = ::write(to, static_cast<const char*>(bytes) + done, std::min<size_t>(n - done, size_t(1) << 30));
+        if (k <= 0) return false;
+        done += size_t(k);
+    }
+    return true;
+}
 
 /// The one function of the module. Reads the file at `path` and writes it to the descriptor `to`; 0 when it is done. Else `why`,
 /// of `whySize` bytes, says what went wrong. Sizes beyond the limits are refused before pixels are read.

@@ -17,7 +17,12 @@ struct Bounds {
             hi[i] = std::max(hi[i], p[i]);
         }
     }
-    void add(const Bounds& b) { add(b.lo); add(b.hi); }
+    /// An empty box adds nothing.
+    void add(const Bounds& b) {
+        if (b.empty()) return;
+        add(b.lo);
+        add(b.hi);
+    }
 };
 
 } // namespace alpenglow::geometry

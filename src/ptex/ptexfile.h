@@ -58,7 +58,7 @@ public:
     virtual ~Texture() = default;
     virtual const Head& head() const = 0;
     /// A face with its sides halved so many times, not below one pixel, multiplied with alpha. The mean of it where it cannot be
-    /// read, which is said once.
+    /// read, which is reported once.
     virtual std::shared_ptr<const Image> image(uint32_t face, int halvings) const = 0;
 };
 /// Null: an error was reported.

@@ -1,14 +1,12 @@
 // Reading Ptex files. Nothing in them is believed: every size is checked against the file before memory is taken for it.
+#include "base/randomfile.h"
 #include "ptex/cache.h"
 #include "ptex/limits.h"
 #include "ptex/numbers.h"
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fcntl.h>
 #include <map>
-#include <sys/stat.h>
-#include <unistd.h>
 #include <unordered_map>
 
 namespace alpenglow::ptex {
@@ -16,37 +14,6 @@ namespace alpenglow::ptex {
 namespace {
 
 constexpr size_t kHeader = 64, kExtended = 40, kFaceInfo = 20, kLevelInfo = 16, kBarrier = 8;
-
-class Bytes {
-public:
-    explicit Bytes(const std::string& path) : fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
-        struct stat s;
-        if (fd_ >= 0 && fstat(fd_, &s) == 0 && S_ISREG(s.st_mode)) size_ = uint64_t(s.st_size), regular_ = true;
-    }
-    ~Bytes() {
-        if (fd_ >= 0) ::close(fd_);
-    }
-    Bytes(const Bytes&) = delete;
-    Bytes& operator=(const Bytes&) = delete;
-    bool regular() const { return regular_; }
-    uint64_t size() const { return size_; }
-    /// False: they are not there.
-    bool read(uint64_t at, uint64_t n, std::vector<uint8_t>& to) const {
-        if (at > size_ || n > size_ - at) return false;
-        to.resize(size_t(n));
-        for (size_t done = 0; done < n;) {
-            const ssize_t k = ::pread(fd_, to.data() + done, size_t(n) - done, off_t(at + done));
-            if (k <= 0) return false;
-            done += size_t(k);
-        }
-        return true;
-    }
-
-private:
-    int fd_;
-    uint64_t size_ = 0;
-    bool regular_ = false;
-};
 
 Face faceOf(const uint8_t* b) {
     Face f;
@@ -98,7 +65,7 @@ private:
     Image make(uint32_t face, int halvings) const;
     void multiply(std::vector<float>&) const;
 
-    Bytes bytes_;
+    RandomFile bytes_;
     std::string path_;
     std::shared_ptr<Cache> cache_;
     Diagnostics& diagnostics_;

@@ -1,8 +1,7 @@
 #include "texture/maketexture.h"
 #include "base/exact.h"
 #include "clouds/bakefile.h"
-#include "clouds/brickmap.h"
-#include "clouds/cloudfile.h"
+#include "clouds/brickstream.h"
 #include "display/imageio.h"
 #include "texture/lookup.h"
 #include <cmath>
@@ -178,7 +177,7 @@ bool makeCubeFaceEnvironment(const std::vector<std::string>& pictures, const std
 }
 
 bool makeBrickMap(const std::vector<std::string>& names, const std::string& bricks, const MakeOptions& o, Diagnostics& diags) {
-    std::vector<clouds::PointCloud> from;
+    std::vector<std::string> paths;
     for (const std::string& name : names) {
         std::string outside;
         const auto found = findFile(name, o.searchPath, o.read, &outside);
@@ -187,16 +186,9 @@ bool makeBrickMap(const std::vector<std::string>& names, const std::string& bric
             else diags.report(outsideMessage("point cloud", name, outside, o.place));
             return false;
         }
-        auto cloud = clouds::loadCloud(found->path, diags, o.place);
-        if (!cloud) return false;
-        from.push_back(std::move(*cloud));
+        paths.push_back(found->path);
     }
-    clouds::PointCloud all;
-    if (const std::string fault = clouds::merge(from, all); !fault.empty()) {
-        diags.report(Severity::Error, Rie::Consistency, o.place, "brick map \"" + bricks + "\": " + fault);
-        return false;
-    }
-    return clouds::saveBrickMap(bricks, all, o.policy, diags, o.place);
+    return clouds::brickMapOfFiles(paths, bricks, o.policy, diags, o.place);
 }
 
 bool runMakeRequest(const std::string& request, const std::vector<std::string>& strings, const std::vector<float>& numbers,

@@ -7,22 +7,9 @@
 namespace alpenglow::transport {
 
 std::optional<std::string> CloudStore::pathOf(const std::string& name, const SourcePlace& place) {
-    std::vector<std::string> folders = {""};
-    folders.insert(folders.end(), files_.folders.begin(), files_.folders.end());
-    std::string outside;
-    const auto found = findFile(name, folders, files_.read, &outside);
-    if (found) {
-        if (found->otherCase || found->baseNameOnly)
-            diagnostics_.report(Severity::Warning, Rie::NoError, place,
-                                "point cloud \"" + name + "\" was not found as named; \"" + found->path + "\" is used");
-        return found->path;
-    }
-    if (!outside.empty()) diagnostics_.report(outsideMessage("point cloud", name, outside, place));
-    else
-        diagnostics_.report(Severity::Error, Rie::NoFile, place,
-                            "there is no point cloud or brick map \"" + name + "\"; what reads it gives 0",
-                            "bake3d() in a frame before this one makes it");
-    return {};
+    static constexpr MapKind kKind{"point cloud", "what reads it gives 0", "bake3d() in a frame before this one makes it", true,
+                                   "point cloud or brick map"};
+    return findMap(name, files_, kKind, diagnostics_, place);
 }
 
 const clouds::CloudMap* CloudStore::find(const std::string& name, const SourcePlace& place) {

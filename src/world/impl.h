@@ -131,7 +131,7 @@ public:
     /// Encloses everything, and does not depend on which procedurals were made.
     geometry::Bounds bounds() const {
         geometry::Bounds b = accel_->bounds();
-        if (!procedurals_.empty()) b.add(procedurals_);
+        b.add(procedurals_);
         return b;
     }
     scene::Shutter shutter_;

@@ -1,9 +1,9 @@
 // The photon maps that a frame's shaders ask for, and the photons of progressive passes.
 #pragma once
-#include "base/file.h"
 #include "base/matrix.h"
 #include "photons/photongrid.h"
 #include "photons/photonmap.h"
+#include "world/mapfiles.h"
 #include <map>
 #include <mutex>
 #include <set>
@@ -13,13 +13,9 @@ namespace alpenglow::transport {
 
 class PhotonStore {
 public:
-    /// Where files are looked for, as textures are.
-    struct Files {
-        std::vector<std::string> folders;
-        ReadPolicy read;
-        Matrix worldToCamera;
-    };
-    PhotonStore(Files files, Diagnostics& d) : files_(std::move(files)), diagnostics_(d) {}
+    /// Photons come from files in the space of the world; `worldToCamera` takes them to that of rays.
+    PhotonStore(MapFiles files, const Matrix& worldToCamera, Diagnostics& d)
+        : files_(std::move(files)), worldToCamera_(worldToCamera), diagnostics_(d) {}
 
     // While a world is made: what its shaders ask for.
     /// A photonmap() of this name; where the call stands.
@@ -47,9 +43,8 @@ public:
     float widthOfPasses = 0; ///< photons follow lobes whose spread is below, in radians, as they do mirrors
 
 private:
-    /// The file of a name; "": none, or it may not be read, and *outside says so.
-    std::string fileOf(const std::string& name, std::string* outside) const;
-    Files files_;
+    MapFiles files_;
+    Matrix worldToCamera_;
     Diagnostics& diagnostics_;
     std::mutex mutex_;
     std::map<std::string, std::shared_ptr<const photons::PhotonMap>> maps_; ///< null: none

@@ -8,7 +8,7 @@ std::shared_ptr<const PtexSite> ptexSite(const SiteInfo& i, const rsl::CompiledK
     auto p = std::make_shared<PtexSite>();
     const rsl::ir::Site& s = *i.site;
     if (!world.ptex_)
-        world.ptex_ = std::make_shared<PtexStore>(PtexStore::Files{world.settings_.texturePaths, world.settings_.read},
+        world.ptex_ = std::make_shared<PtexStore>(MapFiles{world.settings_.texturePaths, world.settings_.read},
                                                   *world.diagnostics_);
     const auto row = [&](const char* name) {
         const auto f = i.named.find(name);

@@ -1,7 +1,7 @@
 // Ptex files that a frame's shaders read.
 #pragma once
-#include "base/file.h"
 #include "ptex/ptexfile.h"
+#include "world/mapfiles.h"
 #include <map>
 #include <mutex>
 
@@ -9,18 +9,13 @@ namespace alpenglow::transport {
 
 class PtexStore {
 public:
-    /// Where files are looked for, as textures are.
-    struct Files {
-        std::vector<std::string> folders;
-        ReadPolicy read;
-    };
-    PtexStore(Files files, Diagnostics& d);
+    PtexStore(MapFiles files, Diagnostics& d);
     /// The file of a name, opened when it is first asked for. Null: there is none, which was reported once. Thread safe; it lives
     /// as long as the store.
     const ptex::Texture* find(const std::string& name, const SourcePlace&);
 
 private:
-    Files files_;
+    MapFiles files_;
     Diagnostics& diagnostics_;
     std::shared_ptr<ptex::Cache> cache_;
     std::mutex mutex_;

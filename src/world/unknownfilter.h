@@ -1,4 +1,4 @@
-// What is said of a texture() that names a filter that there is not.
+// The warning about a texture() call with an unknown filter.
 #pragma once
 #include "base/diagnostics.h"
 #include <string>

@@ -192,8 +192,8 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
         for (auto& path : splitSearchPath(e)) w->settings_.shaderPaths.push_back(path);
     w->settings_.shaderPaths.push_back(shippedShaders());
     w->photons_ = std::make_shared<PhotonStore>(
-        PhotonStore::Files{settings.texturePaths, settings.read, w->worldToCamera_}, d);
-    w->clouds_ = std::make_shared<CloudStore>(CloudStore::Files{settings.texturePaths, settings.read}, d);
+        MapFiles{settings.texturePaths, settings.read}, w->worldToCamera_, d);
+    w->clouds_ = std::make_shared<CloudStore>(MapFiles{settings.texturePaths, settings.read}, d);
     w->shapes_ = geometry::buildShapes(*frame, d);
     w->numberShapes();
     w->shadesAtOpen_ = shadesAtOpen(*frame, settings, w->shapes_);

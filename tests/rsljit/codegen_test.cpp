@@ -69,6 +69,40 @@ TEST(Codegen, ArithmeticEverywhere) {
 }
 
 // x^3 / (1 + y), x = u, y = u v, with first and second derivatives.
+// A function so large that it gets the register allocator that does not take time for it (jit/llvm/allocator.h): a hundred
+// values that are all alive, against the same arithmetic here.
+TEST(Codegen, VeryLargeFunctions) {
+    constexpr size_t kAlive = 100, kSteps = 24000;
+    const auto other = [](size_t step) { return step * 7 % (kAlive - 1); };
+    Made m;
+    Inst *x = m.input("x"), *half = m.number(.5f);
+    std::vector<Inst*> v(kAlive, x);
+    for (size_t s = 0; s < kSteps; ++s) {
+        Inst*& at = v[s % kAlive];
+        at = m.put(Op::Add, Kind::Float, {m.put(Op::Mul, Kind::Float, {at, half}), v[other(s)]});
+        at = m.put(Op::Sub, Kind::Float, {at, m.put(Op::Mul, Kind::Float, {v[other(s + 1)], half})});
+    }
+    m.output("first", v.front());
+    m.output("last", v.back());
+    const KernelOptions o = configurations().front();
+    auto kernel = compile(m, o);
+    ASSERT_TRUE(kernel);
+    Batch run;
+    const auto value = [](int, int n, int) { return .01f * float(n) - .7f; };
+    run(*kernel, o, value);
+    for (int n = 0; n < kPoints; n++) {
+        std::vector<float> w(kAlive, value(0, n, 0));
+        for (size_t s = 0; s < kSteps; ++s) {
+            float& at = w[s % kAlive];
+            at = at * .5f + w[other(s)];
+            at = at - w[other(s + 1)] * .5f;
+        }
+        ASSERT_TRUE(std::isfinite(w.front()) && std::isfinite(w.back()));
+        ASSERT_EQ(run(0, 0, n), w.front()) << n;
+        ASSERT_EQ(run(1, 0, n), w.back()) << n;
+    }
+}
+
 TEST(Codegen, Jets) {
     Made m;
     Inst *x = m.input("x", Kind::Float, false, 2), *y = m.input("y", Kind::Float, false, 2);

@@ -5,7 +5,7 @@
 
 namespace alpenglow::rsl::front {
 
-/// Warns where ctransform() or `color "name" (...)` names a space that there is not (rsl.md 10.6: the colour stays as it is), each name
+/// Warns where ctransform() or `color "name" (...)` names an unknown space (rsl.md 10.6: the colour stays as it is), each name
 /// once. Names that are known only when the shader is bound or runs are the builder's and the renderer's.
 void checkColourNames(const Program&, SourceSet&);
 

@@ -15,7 +15,7 @@ using namespace front;
 
 namespace {
 
-/// What `plugin "name"` asks for. What is missing is said once; the calls of its functions then say nothing.
+/// What `plugin "name"` asks for. What is missing is reported once; the calls of its functions then say nothing.
 void findPlugins(Unit& unit, const FrontOptions& options, const std::string& file, SourceSet& sources, Program& program) {
     const size_t slash = file.find_last_of('/');
     const std::string beside = slash == std::string::npos ? "." : file.substr(0, slash);

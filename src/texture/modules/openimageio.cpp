@@ -7,7 +7,6 @@
 #include <cstring>
 #include <filesystem>
 #include <string>
-#include <unistd.h>
 #include <vector>
 
 namespace {
@@ -15,15 +14,7 @@ namespace {
 using alpenglow::display::ForeignLimits;
 using alpenglow::display::ForeignPicture;
 using alpenglow::display::kForeignName;
-
-bool writeAll(int to, const void* bytes, size_t n) {
-    for (size_t done = 0; done < n;) {
-        const ssize_t k = write(to, static_cast<const char*>(bytes) + done, std::min<size_t>(n - done, size_t(1) << 30));
-        if (k <= 0) return false;
-        done += size_t(k);
-    }
-    return true;
-}
+using alpenglow::display::sendForeign;
 
 /// Why a picture of this size is not read; "": it is.
 std::string tooLarge(const OIIO::ImageSpec& s, const ForeignLimits& l, uint64_t fileBytes) {
@@ -73,13 +64,13 @@ std::string readTo(const char* path, int to, const ForeignLimits& limits) {
         const std::string why = in->geterror();
         return why.empty() ? "it is damaged" : why;
     }
-    bool good = writeAll(to, &p, sizeof p);
+    bool good = sendForeign(to, &p, sizeof p);
     for (int c = 0; c < p.channels && good; ++c) {
         char name[kForeignName] = "";
         std::strncpy(name, channelName(s, c).c_str(), kForeignName - 1);
-        good = writeAll(to, name, kForeignName);
+        good = sendForeign(to, name, kForeignName);
     }
-    good = good && writeAll(to, pixels.data(), pixels.size() * sizeof(float));
+    good = good && sendForeign(to, pixels.data(), pixels.size() * sizeof(float));
     return good ? "" : "out of memory";
 }
 

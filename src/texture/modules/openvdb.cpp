@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <openvdb/openvdb.h>
 #include <string>
-#include <unistd.h>
 #include <vector>
 
 namespace {
@@ -14,15 +13,7 @@ namespace {
 using alpenglow::display::ForeignLimits;
 using alpenglow::display::ForeignPicture;
 using alpenglow::display::kForeignName;
-
-bool writeAll(int to, const void* bytes, size_t n) {
-    for (size_t done = 0; done < n;) {
-        const ssize_t k = write(to, static_cast<const char*>(bytes) + done, std::min<size_t>(n - done, size_t(1) << 30));
-        if (k <= 0) return false;
-        done += size_t(k);
-    }
-    return true;
-}
+using alpenglow::display::sendForeign;
 
 /// Those of the grids that hold numbers or vectors, and the box about what is active in any of them.
 struct Grids {
@@ -69,11 +60,11 @@ std::string readTo(const char* path, int to, const ForeignLimits& limits) {
     p.stamp = alpenglow::display::kForeignStamp;
     p.width = int(w), p.height = int(h), p.depth = uint32_t(d), p.channels = int(n);
     p.bits = 32, p.floating = 1;
-    bool good = writeAll(to, &p, sizeof p);
+    bool good = sendForeign(to, &p, sizeof p);
     for (const std::string& name : g.names) {
         char text[kForeignName] = "";
         std::strncpy(text, name.c_str(), kForeignName - 1);
-        good = good && writeAll(to, text, kForeignName);
+        good = good && sendForeign(to, text, kForeignName);
     }
     std::vector<openvdb::FloatGrid::ConstAccessor> floats;
     for (const auto& f : g.floats) floats.push_back(f->getConstAccessor());
@@ -89,7 +80,7 @@ std::string readTo(const char* path, int to, const ForeignLimits& limits) {
                 for (auto& v : vectors)
                     for (int k = 0; k < 3; ++k) slice.push_back(v.getValue(at)[k]);
             }
-        good = writeAll(to, slice.data(), slice.size() * sizeof(float));
+        good = sendForeign(to, slice.data(), slice.size() * sizeof(float));
     }
     return good ? "" : "out of memory";
 }

@@ -1,4 +1,5 @@
 // The LLVM side of the door: module set-up, passes, machine code. Everything else of LLVM's size is here and nowhere else.
+#include "rsl/jit/llvm/allocator.h"
 #include "rsl/jit/llvm/emitter.h"
 #include "rsl/jit/llvm/masks.h"
 #include "rsl/jit/stamp.h"
@@ -187,6 +188,7 @@ void compile(const ModuleRequest& request, ModuleResult& result) {
     llvm::SmallVector<char, 0> bytes;
     llvm::raw_svector_ostream out(bytes);
     llvm::legacy::PassManager emit;
+    const AllocatorFor allocator(*module, request.optimize > 0);
     if (tm->addPassesToEmitFile(emit, out, nullptr, llvm::CodeGenFileType::ObjectFile))
         throw CodegenError("no object file can be emitted");
     emit.run(*module);

@@ -1,0 +1,45 @@
+// A file that is read at any place of it.
+#pragma once
+#include <cstdint>
+#include <fcntl.h>
+#include <string>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <vector>
+
+namespace alpenglow {
+
+/// Open for reading while it lives. Pipes, devices and folders are not opened for what they give: regular() is false of them.
+class RandomFile {
+public:
+    explicit RandomFile(const std::string& path) : fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+        struct stat s;
+        if (fd_ >= 0 && fstat(fd_, &s) == 0 && S_ISREG(s.st_mode)) size_ = uint64_t(s.st_size), regular_ = true;
+    }
+    ~RandomFile() {
+        if (fd_ >= 0) ::close(fd_);
+    }
+    RandomFile(const RandomFile&) = delete;
+    RandomFile& operator=(const RandomFile&) = delete;
+    bool regular() const { return regular_; }
+    uint64_t size() const { return size_; } ///< bytes, when it was opened
+    /// The `n` bytes behind the first `at`. False: they are not there, also where the file became shorter since; no memory is
+    /// taken for bytes beyond its size. Thread safe.
+    bool read(uint64_t at, uint64_t n, std::vector<uint8_t>& to) const {
+        if (at > size_ || n > size_ - at) return false;
+        to.resize(size_t(n));
+        for (size_t done = 0; done < n;) {
+            const ssize_t k = ::pread(fd_, to.data() + done, size_t(n) - done, off_t(at + done));
+            if (k <= 0) return false;
+            done += size_t(k);
+        }
+        return true;
+    }
+
+private:
+    int fd_;
+    uint64_t size_ = 0;
+    bool regular_ = false;
+};
+
+} // namespace alpenglow

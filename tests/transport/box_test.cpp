@@ -47,13 +47,13 @@ TEST_P(BoxAgreement, LocalRoulette) {
     expectSame(with({}), with(s), kPerTile, .12, name("local roulette"), seed(5));
 }
 // Affine against suspending form of the same shaders. With glass every request of a waiting shader is followed: few samples
-// there.
+// there at night.
 TEST_P(BoxAgreement, Suspending) {
     Settings s;
     s.suspend = true;
     Counters c;
     expectSame(
-        with({}), [&](int n, uint32_t seed) { return boxTiles(rib_, s, n / (nightly() && GetParam() ? 8 : 2), seed, &c); },
+        with({}), [&](int n, uint32_t seed) { return boxTiles(rib_, s, nightly() && GetParam() ? n / 8 : n, seed, &c); },
         kPerTile, nightly() ? .24 : .15, name("suspending"), seed(6));
     EXPECT_EQ(c.overLimit, 0u);
     EXPECT_EQ(c.nonFinite, 0u);

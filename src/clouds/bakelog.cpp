@@ -7,10 +7,14 @@
 #include <cmath>
 #include <cstring>
 #include <tuple>
+#include <unordered_set>
 
 namespace alpenglow::clouds {
 
 namespace {
+
+/// As many entries of one sample are compared with each other.
+constexpr size_t kFew = 16;
 
 size_t rowOf(const BakeLayout& l) { return size_t(l.width) + (l.flat ? 2 : 7); }
 
@@ -59,6 +63,7 @@ void BakeLog::settle(File& f) {
     };
     std::stable_sort(f.entries.begin(), f.entries.end(), less);
     std::vector<const Entry*> group;
+    std::unordered_set<std::string_view> known; // the bits of those of one sample, where they are more than a few
     for (size_t i = 0, end; i < f.entries.size(); i = end) {
         const Entry& first = f.entries[i];
         const size_t width = rowOf(*first.layout);
@@ -67,12 +72,24 @@ void BakeLog::settle(File& f) {
         while (end < f.entries.size() && pointOf(f.entries[end].key, *f.entries[end].layout) == pointOf(first.key, *first.layout))
             ++end;
         std::vector<size_t> begins;                  // of samples, in group
+        known.clear();
         for (size_t k = i, from = 0; k < end; ++k) { // twice, bit by bit: once
-            if (k == i || f.entries[k].key.sample != f.entries[k - 1].key.sample) begins.push_back(from = group.size());
-            const auto same = [&](const Entry* e) {
-                return std::memcmp(&f.pending[e->at], &f.pending[f.entries[k].at], width * sizeof(float)) == 0;
+            if (k == i || f.entries[k].key.sample != f.entries[k - 1].key.sample) {
+                begins.push_back(from = group.size());
+                known.clear();
+            }
+            const auto bits = [&](const Entry& e) {
+                return std::string_view(reinterpret_cast<const char*>(&f.pending[e.at]), width * sizeof(float));
             };
-            if (std::none_of(group.begin() + long(from), group.end(), same)) group.push_back(&f.entries[k]);
+            const std::string_view mine = bits(f.entries[k]);
+            if (group.size() - from < kFew) {
+                if (std::any_of(group.begin() + long(from), group.end(), [&](const Entry* e) { return bits(*e) == mine; })) continue;
+            } else {
+                if (known.empty()) // a loop that bakes
+                    for (size_t j = from; j < group.size(); ++j) known.insert(bits(*group[j]));
+                if (!known.insert(mine).second) continue;
+            }
+            group.push_back(&f.entries[k]);
         }
         const auto put = [&](auto&& number) {
             f.rows.push_back({first.layout, f.settled.size()});

@@ -1,5 +1,6 @@
 #include "clouds/hemisphere.h"
 #include "base/exact.h"
+#include "clouds/limits.h"
 #include <algorithm>
 #include <cmath>
 
@@ -84,6 +85,7 @@ void Hemisphere::cover(uint32_t i, float part, float distance, float kept, const
     if (!(p.weight > 0)) return;
     if (q_.sort) {
         fragments_.push_back({i, distance, part, light});
+        if (fragments_.size() >= limits::kCloudFragments) thin();
         return;
     }
     p.geometric += part;
@@ -214,13 +216,39 @@ void Hemisphere::add(const PointOctree& octree) {
     }
 }
 
+void Hemisphere::sortFragments() {
+    std::stable_sort(fragments_.begin(), fragments_.end(), [](const Fragment& a, const Fragment& b) {
+        return a.pixel != b.pixel ? a.pixel < b.pixel : a.distance < b.distance;
+    });
+}
+
+/// Neighbours become one, two by two, in pixels in which so many lie that each covers little of it.
+void Hemisphere::thin() {
+    constexpr size_t kMany = 32;
+    static_assert(kMany * 6 * kMostSide * kMostSide <= limits::kCloudFragments * 3 / 4);
+    sortFragments();
+    size_t to = 0;
+    for (size_t i = 0, end; i < fragments_.size(); i = end) {
+        for (end = i + 1; end < fragments_.size() && fragments_[end].pixel == fragments_[i].pixel;) ++end;
+        const size_t step = end - i > kMany ? 2 : 1;
+        for (size_t k = i; k < end; k += step) {
+            Fragment f = fragments_[k];
+            if (step == 2 && k + 1 < end) {
+                const Fragment& next = fragments_[k + 1];
+                const float cover = f.cover + next.cover, part = cover > 0 ? next.cover / cover : .5f;
+                f = {f.pixel, f.distance + (next.distance - f.distance) * part, cover, f.light * (1 - part) + next.light * part};
+            }
+            fragments_[to++] = f;
+        }
+    }
+    fragments_.resize(to);
+}
+
 /// What lies in each pixel, the nearest first, until it is full.
 void Hemisphere::compose() {
     for (const uint32_t i : used_)
         if (pixels_[i].near < 1e38f) fragments_.push_back({i, pixels_[i].near, 1, pixels_[i].nearLight});
-    std::stable_sort(fragments_.begin(), fragments_.end(), [](const Fragment& a, const Fragment& b) {
-        return a.pixel != b.pixel ? a.pixel < b.pixel : a.distance < b.distance;
-    });
+    sortFragments();
     for (const Fragment& f : fragments_) {
         Pixel& p = pixels_[f.pixel];
         const float part = q_.clamp ? std::min(f.cover, 1 - p.geometric) : f.cover, kept = fade(f.distance);

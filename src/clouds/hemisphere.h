@@ -61,6 +61,8 @@ private:
     void point(const PointOctree::Point&);
     void draw(const PointOctree::Point&, const Vec3& to);
     void drawOnFace(const PointOctree::Point&, const Vec3& to, int face);
+    void sortFragments();
+    void thin();
     void compose();
     HemisphereQuery q_;
     int side_ = 0; ///< pixels along an edge of the cube

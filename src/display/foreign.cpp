@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <dlfcn.h>
@@ -33,12 +34,31 @@ struct Descriptor {
     }
 };
 
+/// Lets this process take so much memory beside what it has; what asks for more is told that there is none. Not under
+/// AddressSanitizer, whose own tables are larger than any limit.
+void limitMemory([[maybe_unused]] uint64_t bytes) {
+#if !__has_feature(address_sanitizer)
+    unsigned long has = 0; // pages of data
+    if (FILE* f = std::fopen("/proc/self/statm", "re")) {
+        if (std::fscanf(f, "%*u %*u %*u %*u %*u %lu", &has) != 1) has = 0;
+        std::fclose(f);
+    }
+    const rlim_t all = rlim_t(has) * rlim_t(sysconf(_SC_PAGESIZE)) + bytes;
+    rlimit now{};
+    if (getrlimit(RLIMIT_DATA, &now) == 0 && (now.rlim_cur == RLIM_INFINITY || now.rlim_cur > all)) {
+        now.rlim_cur = all;
+        setrlimit(RLIMIT_DATA, &now);
+    }
+#endif
+}
+
 /// The child: reads the picture into `to` and says to `tell` what went wrong. No destructor of the program runs in it.
-[[noreturn]] void readInChild(const std::string& module, const std::string& path, int to, int tell) {
+[[noreturn]] void readInChild(const std::string& module, const std::string& path, uint64_t memory, int to, int tell) {
     char why[kWhy] = "";
     int code = kNoModule;
     const rlimit noCore{0, 0};
     setrlimit(RLIMIT_CORE, &noCore);
+    limitMemory(memory);
     for (const int s : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTERM, SIGINT}) std::signal(s, SIG_DFL);
     void* handle = dlopen(module.c_str(), RTLD_LAZY | RTLD_LOCAL);
     const auto read = handle ? reinterpret_cast<ReadForeignPicture>(dlsym(handle, kReadForeignPicture)) : nullptr;
@@ -156,8 +176,11 @@ std::optional<Image> readForeign(const ForeignModule& of, const std::string& pat
     if (picture.fd < 0 || pipe2(ends, O_CLOEXEC) != 0)
         return ctx.refuse(std::string("no child process: ") + std::strerror(errno));
     Descriptor from{ends[0]}, to{ends[1]};
+    // Twice what the picture may be: as it is in the file, and as floats.
+    const uint64_t allowed = std::max<uint64_t>(limits::kImageSmallBytes, uint64_t(ctx.fileBytes) * limits::kImageExpansion);
+    const uint64_t memory = kForeignBytes + 2 * std::min<uint64_t>(limits::kImageBytes, allowed);
     const pid_t child = fork();
-    if (child == 0) readInChild(module, path, picture.fd, to.fd);
+    if (child == 0) readInChild(module, path, memory, picture.fd, to.fd);
     close(to.fd);
     to.fd = -1;
     if (child < 0) return ctx.refuse(std::string("no child process: ") + std::strerror(errno));

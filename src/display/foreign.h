@@ -19,6 +19,8 @@ struct ForeignPicture {
     char colourSpace[kForeignName]; ///< "" where the file says nothing: "sRGB", "linear", or a gamma as text
     uint32_t depth;                 ///< of grids: slices, each `height` rows, one below the other; pictures: 0
 };
+/// Bytes of memory that a module may take beside the picture.
+inline constexpr uint64_t kForeignBytes = uint64_t(1) << 30;
 inline constexpr uint32_t kForeignStamp = 0xa1f01;
 
 /// What a module sends, all of it. False: nobody takes it.

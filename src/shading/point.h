@@ -136,7 +136,8 @@ struct PathRay {
     bool first : 1 = true;            ///< one of those that its target asked for: writes distance and transmission
     bool counts : 1 = false;          ///< its hit writes opacity, depth and AOVs of its camera sample
     bool quiet : 1 = false;           ///< of a gather that wants no light of it: only shaders run that its hit's outputs need
-    bool parted : 1 = false;          ///< camera: passed a volume on its way, so that volumes have what lies before `origin`
+    bool parted : 1 = false;          ///< passed a volume on its way, so that volumes have what lies before `origin`
+    bool passed : 1 = false;          ///< no camera ray, and went through a surface: it began at lobeOrigin
     uint8_t trail = 0;                ///< Trail, as bits
     /// Density per steradian with which this direction was drawn, times the probability of drawing it at all; < 0: light sampling
     /// cannot have produced this direction, so emission counts in full (pathtracer.md 3).
@@ -155,11 +156,22 @@ struct PathRay {
     /// Camera: the way from the eye to the origin, before the near plane and through what was met. No lobe has drawn such a ray.
     float start() const { return camera() ? lobeOrigin.x : 0; }
     void setStart(float way) { lobeOrigin = Vec3(way, 0, 0); }
-    /// Where it began: the eye of a camera ray.
+    /// Where it began, before all that it passed through: the eye of a camera ray.
     Vec3 begin() const {
+        if (!camera()) return passed ? lobeOrigin : origin;
         const float s = start();
         const Vec3 e = origin - dir * s;
         return length(e) <= 1e-6f * s ? Vec3(0, 0, 0) : e;
+    }
+    /// Goes on at a point ahead, behind what it went through; the eye, or where it began, has not moved.
+    void goOnAt(const Vec3& at) {
+        if (camera()) {
+            setStart(start() + dot(at - origin, dir));
+        } else if (!passed) {
+            if (lobePdf < 0 && lobeBinding < 0) lobeOrigin = origin; // nobody asks for the point of its lobe
+            passed = true;
+        }
+        origin = at;
     }
     /// Where the way begins that a volume shader is to run over.
     Vec3 volumeBegin() const { return parted ? origin : begin(); }

@@ -110,7 +110,7 @@ struct Asking {
         r.maxDistance = reach;
         r.kind = kind;
         r.media = c.light ? nullptr : e.mediaTowards(c, first + lane, w);
-        r.parted = false;
+        r.parted = r.passed = false;
         r.extra = -1;
         r.lobePdf = -1; // no light is sampled for it: all that shines counts
         r.lobeBinding = -1;

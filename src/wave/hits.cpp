@@ -194,7 +194,7 @@ void Engine::placePoints(HitQueue& q, BatchContext& c) {
         p.P = p.surface.P;
         p.N = p.surface.N;
         p.I = p.P - r.begin(); // RISpec: P - E, though rays start at the near plane, or behind what they passed through
-        p.E = r.camera() ? Vec3(0, 0, 0) : r.origin;
+        p.E = r.camera() ? Vec3(0, 0, 0) : r.begin();
         p.shutter = p.surface.time = world_->shadesAtOpen_ ? 0 : r.shutter();
         p.time = world_->timeAt(p.shutter);
         p.dPdtime = world_->moves_ ? world_->pointsVelocity(*p.shape, p.surface) : Vec3(0.f);

@@ -122,7 +122,7 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
         r.origin = l.bias >= 0 ? start + w * l.bias
                    : leaves    ? geometry::offsetOrigin(*p.lit, w, 0)
                                : start + w * geometry::roundingError(start);
-        r.parted = false, r.trail = 0, r.path = 0; // what it brings is the light's
+        r.parted = r.passed = false, r.trail = 0, r.path = 0; // what it brings is the light's
         if (!leaves || (dot(from.dir, p.lit->n) < 0) != (dot(w, p.lit->n) > 0)) r.media = nullptr; // nobody knows
         r.dir = w;
         r.maxDistance = l.maxDistance;

@@ -105,13 +105,12 @@ void MediumFlights::pass(Engine& e, Flight& f, Sched& sched) {
         for (int k = 0; k < 3; ++k) r.weight[k] *= std::isfinite(h.slope[k]) ? std::max(h.slope[k], 0.f) : 0;
     }
     const float travelled = length(p.P - ray.origin);
-    r.origin = geometry::offsetOrigin(p.surface, ray.dir);
-    if (ray.camera()) r.setStart(ray.start() + dot(r.origin - ray.origin, ray.dir));
+    r.goOnAt(geometry::offsetOrigin(p.surface, ray.dir));
     r.maxDistance = ray.maxDistance - travelled;
     r.footprint = ray.footprint.after(travelled);
     r.media = e.mediaBeyond(e.world().bindings_[size_t(f.binding)], ray.media, p.surface.n, ray.dir, ray.dir);
     e.tellLost(r.media, p);
-    r.parted |= ray.camera();
+    r.parted = true;
     r.vertex = childVertex(ray.vertex, kFlight, 1);
     ++r.layers;
     if (r.layers > limits::kPathDepth / 32 || !(r.maxDistance > 0)) {

@@ -110,7 +110,7 @@ void Engine::sendRecord(const BatchContext& c, int point, uint32_t call, uint32_
         ray.maxDistance = n.reach;
         ray.kind = n.kind;
         ray.media = mediaTowards(c, point, w);
-        ray.parted = false;
+        ray.parted = ray.passed = false;
         ray.extra = -1;
         ray.lobePdf = -1; // no light is sampled for it: all that shines counts
         ray.lobeBinding = -1;

@@ -206,7 +206,7 @@ void Gather::sendRay(const Sent& s, int turn, Sched& sched) {
     r.kind = !photon ? l.rays : e_.kindOf(l.rays->type == RayType::Diffuse ? photon->diffuse : photon->specular);
     r.trail = trailBehind(l);
     r.media = e_.mediaTowards(*c_, s.point, w);
-    r.parted = false;
+    r.parted = r.passed = false;
     r.importance *= l.importance;
     if (l.rays->type == RayType::Specular)
         ++(dot(w, p.surface.n) * dot(from.dir, p.surface.n) > 0 ? e_.counters.refracted : e_.counters.reflected);

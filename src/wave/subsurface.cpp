@@ -240,6 +240,7 @@ void Walks::gatherAt(std::span<const Exit> exits, Sched& sched) {
         if (e_.photonTrace()) r.trail = shading::kTrailSpread;
         r.footprint = from.footprint.after(length(c_.points[size_t(a.point)].P - from.origin));
         if (r.camera()) r.setStart(0);
+        r.passed = false;
         const Vec3 at = x.point.displaced ? x.point.displacedP : x.point.P;
         r.origin = at;
         RayExtra extra;

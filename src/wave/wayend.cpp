@@ -35,8 +35,7 @@ void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId t
         chosen = q;
     }
     const float travelled = length(p.P - ray.origin);
-    r.origin = geometry::offsetOrigin(p.surface, ray.dir);
-    if (ray.camera()) r.setStart(ray.start() + dot(r.origin - ray.origin, ray.dir)); // the eye has not moved
+    r.goOnAt(geometry::offsetOrigin(p.surface, ray.dir));
     r.maxDistance = ray.maxDistance - travelled;
     r.footprint = ray.footprint.after(travelled);
     r.first = false;
@@ -47,7 +46,7 @@ void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId t
         r.lobeBinding = int(&b - world_->bindings_.data());
         r.lobeOrigin = p.P;
     }
-    r.parted |= ray.camera() && (ray.medium() >= 0 || r.medium() >= 0);
+    r.parted |= ray.medium() >= 0 || r.medium() >= 0;
     r.vertex = childVertex(ray.vertex, 0xfffff, 0);
     ++r.layers;
     if (r.layers > limits::kPathDepth / 32 || !(r.maxDistance > 0)) { ++counters.depthCap; return; }
@@ -128,7 +127,7 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
             ShadePoint& p = q.back();
             p.P = p.surface.displaced ? p.surface.displacedP : p.surface.P;
             p.N = p.surface.n;
-            p.Ps = r.lobePdf >= 0 ? r.lobeOrigin : r.origin;
+            p.Ps = r.lobePdf >= 0 ? r.lobeOrigin : r.begin();
             litBy_.push_back(extraOf(r).lit);
         }
         const BoundLight& light = world_->lights_[size_t(met[first].light)];

@@ -258,4 +258,25 @@ TEST(BakeLogs, KeepNoCountOfWhatIsGone) {
     EXPECT_EQ(log.bytes(), 2 * one);
 }
 
+// A loop that bakes at one point: what it bakes twice is kept once, in time that does not grow with the square of its turns (which
+// was minutes here).
+TEST(BakeLogs, LoopsThatBake) {
+    constexpr int kTurns = 200'000;
+    clouds::BakeLog log;
+    clouds::BakeLayout layout;
+    layout.channels = {{"_x", clouds::ChannelType::Float}};
+    layout.width = 1;
+    layout.where = "here";
+    const auto turn = [&](float x) {
+        const float numbers[] = {0, 0, 0, 0, 0, 1, .1f, x};
+        EXPECT_TRUE(log.add("a.ptc", layout, {}, numbers));
+    };
+    turn(0);
+    log.settle();
+    const size_t one = log.bytes();
+    for (int i = 0; i < kTurns; ++i) turn(float(i % (kTurns / 2)));
+    log.settle();
+    EXPECT_EQ(log.bytes(), one + one * kTurns / 2);
+}
+
 } // namespace

@@ -1,6 +1,7 @@
 // occlusion(), indirectdiffuse() and subsurface() of point clouds, against rays and closed forms, through scenes.
 #include "cli/command_folder.h"
 #include "clouds/hemisphere.h"
+#include "clouds/limits.h"
 #include "clouds/make.h"
 #include "display/imageio.h"
 #include <random>
@@ -92,6 +93,25 @@ TEST(PointBased, AClosedBallClosesAll) {
         q.maxDistance = .01f;
         EXPECT_LT(look(c, q).blocked, .01);
     }
+}
+
+// More parts of clusters than a sorted lookup keeps (limits::kCloudFragments): neighbours become one, and what is near still hides
+// what is behind. The part that is hidden is the form factor of a square, two of which look alike large here.
+TEST(PointBased, SortedLookupsOfManyPointsAreBounded) {
+    constexpr int kSide = 800;
+    static_assert(size_t(2 * kSide * kSide) > limits::kCloudFragments);
+    PointCloud c;
+    addRectangle(c, {0, 0, 1}, {8, 0, 0}, {0, -8, 0}, kSide, Color(1, 0, 0));
+    addRectangle(c, {0, 0, 2}, {16, 0, 0}, {0, -16, 0}, kSide, Color(0, 1, 0));
+    HemisphereQuery q;
+    q.N = {0, 0, 1};
+    q.sort = true;
+    q.maxSolidAngle = 1e-6f;
+    const Seen seen = look(c, q);
+    const double x = 8 / std::sqrt(65.), part = 2 / 3.14159265 * 2 * x * std::atan(x);
+    EXPECT_NEAR(seen.blocked, part, .01);
+    EXPECT_NEAR(seen.light.x, part, .03) << "toward the horizon a pixel holds many points of both";
+    EXPECT_NEAR(seen.light.y, 0, .03);
 }
 
 TEST(PointBased, ParametersDoWhatTheySay) {

@@ -1,4 +1,5 @@
 // Targa pictures against bytes written by the letter of the format, and pictures through the module for other formats.
+#include "base/limits.h"
 #include "display/foreign.h"
 #include "support.h"
 #include <chrono>
@@ -130,6 +131,21 @@ TEST(Foreign, CutAndDamagedFilesAreErrorsOrPictures) {
         if (m) EXPECT_EQ(m->data.size(), m->sampleCount());
         else EXPECT_EQ(d.errors(), 1) << messages(d);
     }
+}
+#endif
+
+#if !__has_feature(address_sanitizer) // its own tables are larger than any limit
+// Beside the picture, twice, a module has kForeignBytes.
+TEST(Foreign, TheModuleHasNoMoreMemoryThanItNeeds) {
+    static_assert(kForeignBytes + 2 * limits::kImageSmallBytes < size_t(16) << 30);
+    Scratch s;
+    putBytes(s / "a.ppm", {'P', '6', '\n', '1', ' ', '1', '\n', '2', '5', '5', '\n', 1, 2, 3});
+    setenv("ALPENGLOW_PICTURES", HUNGRY_MODULE, 1);
+    Diagnostics d;
+    EXPECT_FALSE(readImage(s / "a.ppm", d));
+    EXPECT_EQ(d.errors(), 1);
+    EXPECT_NE(messages(d).find("out of memory"), std::string::npos) << messages(d);
+    unsetenv("ALPENGLOW_PICTURES");
 }
 #endif
 

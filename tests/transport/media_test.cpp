@@ -51,6 +51,18 @@ TEST_P(Media, TheInsideOfGlass) {
     expectAll(seen(misty + kWall + ball(1, "Surface \"ahead\" " + beer)), std::exp(-.1 * 4 - .6 * 2 - .1 * 8), "with an atmosphere");
 }
 
+// As the eye's, the way of a traced ray goes on behind what it passes through: the Atmosphere of what it meets counts all of it.
+TEST_P(Media, TheWayOfTracedRaysThroughSheets) {
+    const auto square = [](const std::string& before, double z) {
+        const std::string d = std::to_string(z);
+        return "AttributeBegin " + before + " Polygon \"P\" [-9 -9 " + d + "  -9 9 " + d + "  9 9 " + d + "  9 -9 " + d + "] AttributeEnd\n";
+    };
+    const std::string sheets = square("Surface \"constant\" Opacity 0 0 0", 1) + square("Surface \"constant\" Opacity 0 0 0", 3);
+    const std::string air = "Atmosphere \"beer\" \"k\" .1 ", mirror = square("Surface \"ahead\"", -2);
+    expectAll(seen(sheets + mirror + square(air + "Surface \"shine\" Color 1 1 1", 9)), std::exp(-.1 * 11), "a surface");
+    expectAll(seen(sheets + square(air + "Surface \"shine\" Color 1 1 1", 9)), std::exp(-.1 * 14), "the eye itself");
+}
+
 TEST_P(Media, WhatIsNotOpaque) {
     const std::string beer = "Interior \"beer\" \"k\" .6 ", veil = "Surface \"constant\" Color 0 0 0 Opacity .25 .25 .25 ";
     expectAll(seen(kWall + ball(1, veil + beer)), .75 * .75 * std::exp(-.6 * 2), "seen through");

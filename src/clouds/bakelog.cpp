@@ -72,11 +72,10 @@ void BakeLog::settle(File& f) {
         while (end < f.entries.size() && pointOf(f.entries[end].key, *f.entries[end].layout) == pointOf(first.key, *first.layout))
             ++end;
         std::vector<size_t> begins;                  // of samples, in group
-        known.clear();
         for (size_t k = i, from = 0; k < end; ++k) { // twice, bit by bit: once
             if (k == i || f.entries[k].key.sample != f.entries[k - 1].key.sample) {
                 begins.push_back(from = group.size());
-                known.clear();
+                if (!known.empty()) known = {}; // to clear it takes as long as its largest loop did
             }
             const auto bits = [&](const Entry& e) {
                 return std::string_view(reinterpret_cast<const char*>(&f.pending[e.at]), width * sizeof(float));

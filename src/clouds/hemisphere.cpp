@@ -222,7 +222,8 @@ void Hemisphere::sortFragments() {
     });
 }
 
-/// Neighbours become one, two by two, in pixels in which so many lie that each covers little of it.
+/// What lies behind a full pixel goes, as far as it is over the brim: whatever comes in front later, it is never seen. Where that
+/// leaves many, each covers little of its pixel; there neighbours become one, two by two.
 void Hemisphere::thin() {
     constexpr size_t kMany = 32;
     static_assert(kMany * 6 * kMostSide * kMostSide <= limits::kCloudFragments * 3 / 4);
@@ -230,10 +231,21 @@ void Hemisphere::thin() {
     size_t to = 0;
     for (size_t i = 0, end; i < fragments_.size(); i = end) {
         for (end = i + 1; end < fragments_.size() && fragments_[end].pixel == fragments_[i].pixel;) ++end;
-        const size_t step = end - i > kMany ? 2 : 1;
-        for (size_t k = i; k < end; k += step) {
+        size_t seen = end;
+        float full = 0;
+        for (size_t k = i; k < end && q_.clamp; ++k) {
+            Fragment& f = fragments_[k];
+            if (!(full < 1)) {
+                seen = k;
+                break;
+            }
+            f.cover = std::min(f.cover, 1 - full);
+            full += f.cover;
+        }
+        const size_t step = seen - i > kMany ? 2 : 1;
+        for (size_t k = i; k < seen; k += step) {
             Fragment f = fragments_[k];
-            if (step == 2 && k + 1 < end) {
+            if (step == 2 && k + 1 < seen) {
                 const Fragment& next = fragments_[k + 1];
                 const float cover = f.cover + next.cover, part = cover > 0 ? next.cover / cover : .5f;
                 f = {f.pixel, f.distance + (next.distance - f.distance) * part, cover, f.light * (1 - part) + next.light * part};

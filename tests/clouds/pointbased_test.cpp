@@ -114,6 +114,34 @@ TEST(PointBased, SortedLookupsOfManyPointsAreBounded) {
     EXPECT_NEAR(seen.light.y, 0, .03);
 }
 
+// The same with many layers, each of which hides what is behind it: what lies behind the first three is seen nowhere, however many.
+TEST(PointBased, SortedLookupsOfManyLayersShowTheFirst) {
+    const auto shells = [](int count) {
+        PointCloud c;
+        c.channels = {{"_area", clouds::ChannelType::Float}, {"_radiosity", clouds::ChannelType::Color}};
+        const int n = 14000;
+        for (int k = 0; k < count; ++k)
+            for (int i = 0; i < n; ++i) {
+                const double z = 1 - (i + .5) / n, t = i * 2.399963229728653 + k, s = std::sqrt(1 - z * z);
+                const Vec3 d(float(s * std::cos(t)), float(s * std::sin(t)), float(z));
+                const float r = 1 + .1f * float(k), area = float(2 * kPi / n) * r * r;
+                const float row[4] = {area, k == 0 ? 1.f : 0.f, 0, k == 0 ? 0.f : 1.f};
+                c.add(d * r, -d, std::sqrt(area / 2), row);
+            }
+        return c;
+    };
+    HemisphereQuery q;
+    q.N = {0, 0, 1};
+    q.sort = true;
+    q.maxSolidAngle = 1e-6f;
+    const Seen few = look(shells(3), q), many = look(shells(40), q);
+    EXPECT_NEAR(few.blocked, 1, .01);
+    EXPECT_GT(few.light.x, .8);
+    EXPECT_NEAR(many.blocked, 1, .01);
+    EXPECT_NEAR(many.light.x, few.light.x, .02);
+    EXPECT_NEAR(many.light.z, few.light.z, .02);
+}
+
 TEST(PointBased, ParametersDoWhatTheySay) {
     PointCloud c;
     addRectangle(c, {0, 0, 1}, {8, 0, 0}, {0, -8, 0}, 160, Color(1, 0, 0));

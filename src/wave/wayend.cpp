@@ -127,7 +127,7 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
             ShadePoint& p = q.back();
             p.P = p.surface.displaced ? p.surface.displacedP : p.surface.P;
             p.N = p.surface.n;
-            p.Ps = r.lobePdf >= 0 ? r.lobeOrigin : r.begin();
+            p.Ps = r.lobePdf >= 0 ? r.lobeOrigin : r.volumeBegin();
             litBy_.push_back(extraOf(r).lit);
         }
         const BoundLight& light = world_->lights_[size_t(met[first].light)];

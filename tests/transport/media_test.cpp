@@ -175,6 +175,32 @@ TEST(MediaLight, ThroughABall) {
     }
 }
 
+// What shines by itself behind sheets and balls has the same ways before it as what its shader colours.
+TEST(MediaLight, TheWayToEmitters) {
+    writeShader("beer", "volume beer(float k = 1) { Ci *= exp(-k * length(I)); }\n");
+    writeShader("ahead", "surface ahead() { Oi = 1; Ci = trace(P, normalize(I)); }\n");
+    Settings set = withShaders(Hider::Path);
+    set.roulette = false;
+    const auto seen = [&](const std::string& inside) { return Scene(world("Attribute \"trace\" \"maxspeculardepth\" 9 Translate 0 0 5\n" + inside), set).one(rayTo({0, 0, 0}, {0, 0, 1})).x; };
+    const auto square = [](const std::string& before, double z) {
+        const std::string d = std::to_string(z);
+        return "AttributeBegin " + before + " Polygon \"P\" [-99 -99 " + d + "  -99 99 " + d + "  99 99 " + d + "  99 -99 " + d + "] AttributeEnd\n";
+    };
+    const std::string air = "Atmosphere \"beer\" \"k\" .1 ", beer = "Interior \"beer\" \"k\" .6 ", clear = "Surface \"constant\" Color 0 0 0 Opacity 0 0 0 ";
+    const std::string lamp = square("Attribute \"light\" \"string shadows\" \"off\" AreaLightSource \"slrect\" 7 \"float intensity\" 1 Surface \"constant\" Color 0 0 0", 9);
+    const float bare = seen(lamp);
+    ASSERT_GT(bare, 0);
+    const auto expectLeft = [&](const std::string& scene, double thick, const char* what) {
+        EXPECT_NEAR(std::log(seen(scene) / bare), -thick, 1e-4) << what;
+    };
+    expectLeft(air + lamp, .1 * 14, "alone");
+    expectLeft(square(clear, 1) + square(clear, 3) + air + lamp, .1 * 14, "sheets");
+    expectLeft(square("Surface \"ahead\"", -2) + square(clear, 1) + square(clear, 3) + air + lamp, .1 * 11, "sheets and a mirror");
+    expectLeft(air + lamp + ball(1, clear + beer), .1 * 4 + .6 * 2 + .1 * 8, "a ball");
+    expectLeft(air + lamp + ball(1, "Surface \"ahead\" " + beer), .1 * 4 + .6 * 2 + .1 * 8, "a ball that sends rays itself");
+    expectLeft(square("Surface \"ahead\"", -2) + air + lamp + ball(1, clear + beer), .1 * 1 + .6 * 2 + .1 * 8, "a ball and a mirror");
+}
+
 // Both sides of a ball take from a shadow ray, whatever it is that rays meet of it.
 TEST(MediaLight, BallsTakeTwice) {
     writeShader("straight", "surface straight() { Oi = 1; Ci = transmission(P, P + vector(0, 0, -8)); }\n");

@@ -104,7 +104,7 @@ void addCompile(CLI::App& app, int* status) {
         Json report = Json::array();
         const auto print = printer(a->quiet ? Severity::Error : Severity::Warning);
         std::string current, input; // the shader that is looked at, and what came by standard input
-        std::set<std::tuple<std::string, int, int, std::string>> told; // messages about what the shaders of a file share come once
+        std::set<std::tuple<std::string, int, int, std::string>> told; // what the shaders of a file share is said once
         Diagnostics diags([&, print](Diagnostic d) {
             if (d.place.line > 0 && !told.emplace(d.place.file, d.place.line, d.place.column, d.message).second) return;
             if (d.place.file.empty() && a->json) d.place.file = current;

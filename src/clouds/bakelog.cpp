@@ -82,7 +82,8 @@ void BakeLog::settle(File& f) {
             };
             const std::string_view mine = bits(f.entries[k]);
             if (group.size() - from < kFew) {
-                if (std::any_of(group.begin() + long(from), group.end(), [&](const Entry* e) { return bits(*e) == mine; })) continue;
+                const auto same = [&](const Entry* e) { return bits(*e) == mine; };
+                if (std::any_of(group.begin() + long(from), group.end(), same)) continue;
             } else {
                 if (known.empty()) // a loop that bakes
                     for (size_t j = from; j < group.size(); ++j) known.insert(bits(*group[j]));

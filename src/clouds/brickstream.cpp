@@ -97,7 +97,9 @@ std::string Part::each(const std::function<void(const uint8_t*)>& f) {
     return takeNumber<uint32_t>(end) == crc ? "" : "its points are damaged";
 }
 
-std::string named(const std::string& path, const std::string& fault) { return "point cloud \"" + path + "\" cannot be read: " + fault; }
+std::string named(const std::string& path, const std::string& fault) {
+    return "point cloud \"" + path + "\" cannot be read: " + fault;
+}
 
 std::string Stream::open() {
     std::vector<PointCloud> heads;

@@ -81,7 +81,8 @@ private:
     uint64_t seed_;
     Jitter jitter_;
     size_t stride_;
-    std::vector<float> data_; ///< per sample: offset x (-1: no sample), offset y (of no sample, 1: it was dropped), colour, opacity, z, second z, AOVs
+    /// Per sample: offset x (-1: no sample), offset y (of no sample, 1: it was dropped), colour, opacity, z, second z, AOVs.
+    std::vector<float> data_;
     uint64_t nonFinite_ = 0;
 };
 

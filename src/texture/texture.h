@@ -189,7 +189,8 @@ private:
     std::shared_ptr<const Texture> loadTiles(const std::string& name, const std::vector<std::string>& searchPath,
                                              const SourcePlace&);
     void trim();
-    /// Moves the levels of a map into a scratch file where they do not fit into memory. Where the disk has no room they stay, with a warning.
+    /// Moves the levels of a map into a scratch file where they do not fit into memory. Where the disk has no room they stay, with
+    /// a warning.
     void settle(Texture&, const SourcePlace&);
     std::shared_ptr<const Texture> loadFaces(const std::string& name, const std::vector<std::string>& searchPath,
                                              const SourcePlace&);

@@ -174,7 +174,8 @@ void HttpServer::Loop::accept() {
     for (int n = 0; n < 64; ++n) { // then those that are there get their turn
         const int fd = ::accept4(listener, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
         if (fd < 0) {
-            if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM) ::poll(nullptr, 0, 50); // it stays ready
+            const bool full = errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM;
+            if (full) ::poll(nullptr, 0, 50); // it stays ready
             return;
         }
         if (connections.size() >= limits.connections) {

@@ -41,7 +41,7 @@ struct Footprints {
             if (random() % 40 == 0) l.s[i] = random() % 2 ? nan : -inf;
             if (random() % 40 == 0) l.t[i] = 1e30f;
             if (random() % 40 == 0) l.sblur[i] = nan;
-            if (random() % 20 == 0) l.s[i] = float(int(l.s[i]));
+            if (random() % 20 == 0) l.s[i] = std::trunc(l.s[i]);
             if (random() % 20 == 0) l.dsdx[i] = l.dtdx[i] = l.dsdy[i] = l.dtdy[i] = 0;
         }
     }

@@ -55,7 +55,8 @@ TEST_P(Media, TheInsideOfGlass) {
 TEST_P(Media, TheWayOfTracedRaysThroughSheets) {
     const auto square = [](const std::string& before, double z) {
         const std::string d = std::to_string(z);
-        return "AttributeBegin " + before + " Polygon \"P\" [-9 -9 " + d + "  -9 9 " + d + "  9 9 " + d + "  9 -9 " + d + "] AttributeEnd\n";
+        return "AttributeBegin " + before + " Polygon \"P\" [-9 -9 " + d + "  -9 9 " + d + "  9 9 " + d + "  9 -9 " + d +
+               "] AttributeEnd\n";
     };
     const std::string sheets = square("Surface \"constant\" Opacity 0 0 0", 1) + square("Surface \"constant\" Opacity 0 0 0", 3);
     const std::string air = "Atmosphere \"beer\" \"k\" .1 ", mirror = square("Surface \"ahead\"", -2);

@@ -19,8 +19,9 @@ bool Gather::tooDeep(const LobeVertex& l, const PathRay& from, const SurfaceBind
     const bool diffuse = l.rays->type == RayType::Diffuse;
     if (from.scattered >= limits::kPathDepth) return true;
     const int scattered = from.scattered + c_->between; // inside of media ways are as long as they are
-    return from.bounces + 1 - scattered > world_.maxDepth_ ||
-           (b.maxDiffuse >= 0 && from.diffuseBounces + diffuse - scattered > b.maxDiffuse) ||
+    if (from.bounces + 1 - scattered > world_.maxDepth_) return true;
+    if (const PhotonTrace* t = e_.photonTrace(); t && t->job->caustics) return !depthsBehind(l, b);
+    return (b.maxDiffuse >= 0 && from.diffuseBounces + diffuse - scattered > b.maxDiffuse) ||
            (b.maxSpecular >= 0 && from.specularBounces + !diffuse > b.maxSpecular);
 }
 
@@ -52,7 +53,7 @@ void Gather::choosePoint(size_t point) {
             l.chosen = 0;
         }
         cut |= from.bounces + 1 - from.scattered - c_->between > world_.maxDepth_ && l.chosen > 0;
-        const bool noIndirect = l.rays->type == RayType::Diffuse && !world_.settings_.indirect;
+        const bool noIndirect = l.rays->type == RayType::Diffuse && !world_.settings_.indirect && !sampledByPaths(l);
         const bool stays = l.directOnly || (l.below < 0 && (tooDeep(l, from, b) || noIndirect)); // walks end in light
         if (stays) l.chosen = 0;
         l.followed = l.chosen > 0 || (l.ownsTarget && !stays);

@@ -8,6 +8,7 @@
 // depend on who shares the batch.
 #pragma once
 #include "wave/engine.h"
+#include "wave/photons.h"
 
 namespace alpenglow::transport {
 
@@ -22,7 +23,7 @@ private:
     struct Reached { int query, lobe, turn; Vec3 w; LobeValue value; };
     /// A lobe whose rays are sent: `count` of them, each with `scale` times its weight. `goes`, `w`: the ray of this turn.
     /// `vertex`: of that ray; `dice`: the number of its roulette; `drawn`: beside a light.
-    /// `back`, of photons along narrow lobes: what the other way gives back, in the place of its weight and value.
+    /// `back`, of photons along narrow lobes: what the other way gives back, over the density, in the place of weight and value.
     struct Sent {
         int point, lobe, count;
         float scale;
@@ -117,6 +118,10 @@ private:
     bool leftToPhotons(const LobeVertex&, const BoundLight&) const;
     void restPhotons();
     bool lit(const LobeVertex&) const;
+    bool sampledByPaths(const LobeVertex&) const;
+    /// Of a photon that goes on along a lobe; nothing: the surfaces' depths end its way.
+    std::optional<PhotonDepths> depthsBehind(const LobeVertex&, const SurfaceBinding&) const;
+    std::shared_ptr<BatchContext> shadeBack(std::span<Sent* const> turned, Sched&);
     void lookBack(Sched&);
     float photonWay(const LobeVertex&, Vec3& w) const;
     /// Gives lobes what they send on of the photons about their points.

@@ -120,6 +120,7 @@ bool Engine::emitAll(const PhotonJob& job, uint32_t first, uint32_t count) {
         t.power[i] = Color(most);
         r.sample = &sample;
         r.kind = kindOf(t.specular);
+        PhotonDepths().to(r);
         t.from[i] = {plan.lights()[size_t(s.drawn.light)].number, s.kept};
         r.media = aboutLight(plan.lights()[size_t(s.drawn.light)], s);
         if (s.shape) // what its light loses in the atmosphere there is told where it arrives

@@ -90,6 +90,15 @@ struct PhotonTrace {
     float fastest = 0;            ///< how far surfaces that photons have met move while the shutter is open
 };
 
+/// How many lobes of either kind those surfaces leave to a photon for caustics that have sent it on (Attribute "trace"
+/// "maxdiffusedepth", "maxspeculardepth"). In PathRay::asked: nothing waits for photons.
+struct PhotonDepths {
+    static constexpr int kAll = 255; ///< as many as there are
+    int diffuse = kAll, specular = kAll;
+    static PhotonDepths of(const shading::PathRay& r) { return {r.asked >> 8, r.asked & 255}; }
+    void to(shading::PathRay& r) const { r.asked = uint16_t(diffuse << 8 | specular); }
+};
+
 /// Lobes of a ray whose spread is below count as mirrors: radians. 0: none do.
 float narrowBelow(const Engine&, const shading::PathRay&);
 

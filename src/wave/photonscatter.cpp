@@ -9,8 +9,6 @@
 #include "wave/gather.h"
 #include "wave/photons.h"
 #include "lobes/sampling.h"
-#include <map>
-#include <tuple>
 
 namespace alpenglow::transport {
 
@@ -159,15 +157,29 @@ bool Gather::lit(const LobeVertex& l) const {
         e_.photonTrace()->from[size_t(ray.sample->path)].light);
 }
 
-/// Paths meet the lobes of narrow highlights and rough glass from the other side, and what their shaders say may depend on that:
-/// the reflectance of Fresnel, the direction of what is refracted. So a photon that such a lobe sends on carries what the shader
-/// gives back when it is seen from where the photon goes; the lobe as the photon has met it only draws the way.
-void Gather::lookBack(Sched& sched) {
-    std::vector<Sent*> turned;
-    for (Sent& s : sent_)
-        if (s.goes && e_.lobes[size_t(s.lobe)].narrow) turned.push_back(&s);
-    if (turned.empty()) return;
-    const auto c = e_.takeContext();
+/// A path samples the light from which a photon has come here, however deep it is.
+bool Gather::sampledByPaths(const LobeVertex& l) const {
+    return e_.photonTrace() && rayOf(l).bounces == 0 && l.narrow && l.lights && !l.elsewhere;
+}
+
+/// A path comes the other way, and the depths of the surfaces that it meets count from its end: each leaves so many lobes to
+/// those that a photon meets behind it.
+std::optional<PhotonDepths> Gather::depthsBehind(const LobeVertex& l, const SurfaceBinding& b) const {
+    const PhotonDepths before = PhotonDepths::of(rayOf(l));
+    if (sampledByPaths(l)) return before;
+    const bool diffuse = l.rays->type == RayType::Diffuse;
+    const auto left = [](int until, int most, bool takes) {
+        const int now = std::min(until, most < 0 ? PhotonDepths::kAll : std::min(most, PhotonDepths::kAll - 1));
+        return now == PhotonDepths::kAll ? now : now - takes;
+    };
+    const PhotonDepths d{left(before.diffuse, b.maxDiffuse, diffuse), left(before.specular, b.maxSpecular, !diffuse)};
+    if (d.diffuse < 0 || d.specular < 0) return {};
+    return d;
+}
+
+/// The batch as paths see it that come from where photons go: what its shader asks for there is added to Engine::lobes.
+std::shared_ptr<BatchContext> Gather::shadeBack(std::span<Sent* const> turned, Sched& sched) {
+    auto c = e_.takeContext();
     c->engine = &e_;
     c->ownsExtras = false; // those of the rays are the batch's
     c->binding = c_->binding;
@@ -178,9 +190,17 @@ void Gather::lookBack(Sched& sched) {
     c->targets = c_->targets;
     c->bindings = c_->bindings;
     for (size_t i = 0; i < c->points.size(); ++i) c->points[i].ray = &c->rays[i];
-    for (const Sent* s : turned) {
+    for (const Sent* s : turned) { // seen from what the photon meets next: shaders may ask how far away that is
+        const PathRay& from = c_->rays[size_t(s->point)];
+        accel::Ray way;
+        way.org = origin(e_.lobes[size_t(s->lobe)], s->w);
+        way.dir = s->w;
+        way.time = world_.shutterOf(from);
+        way.only = e_.photonTrace()->job->met;
+        way.level = from.sample->level;
+        accel::Hit hit;
         ShadePoint& p = c->points[size_t(s->point)];
-        p.I = s->w * -length(p.I);
+        p.I = s->w * -(e_.meet(way, hit) ? hit.t : length(p.I));
         p.E = p.P - p.I;
         c->rays[size_t(s->point)].dir = -s->w;
     }
@@ -188,43 +208,65 @@ void Gather::lookBack(Sched& sched) {
     if (c->displaced) c->batch->tell(*c->displaced->batch);
     c->bound->kernel->run(&c->batch->call());
     c->ran();
-    const size_t had = e_.lobes.size(), shadows = e_.shadows.size(), settled = e_.settled_.size();
+    const size_t settled = e_.settled_.size();
     const std::vector<Color> whole(c->points.size(), Color(1));
     e_.requestPairs(*c, whole, nullptr, sched);
-    e_.shadows.erase(e_.shadows.begin() + long(std::min(shadows, e_.shadows.size())), e_.shadows.end());
     e_.settled_.erase(e_.settled_.begin() + long(std::min(settled, e_.settled_.size())), e_.settled_.end());
     e_.lobeRows_.prepare();
+    return c;
+}
+
+/// Paths meet the lobes of narrow highlights and rough glass from the other side, and what their shaders say may depend on that:
+/// the reflectance of Fresnel, the direction of what is refracted, which call it is. So a photon that such a lobe sends on
+/// carries what all narrow lobes of its point give back when the shader is asked from where the photon goes; those as the photon
+/// has met them only draw the way, and the density is that of all.
+void Gather::lookBack(Sched& sched) {
+    std::vector<Sent*> turned;
+    for (Sent& s : sent_)
+        if (s.goes && e_.lobes[size_t(s.lobe)].narrow) turned.push_back(&s);
+    if (turned.empty()) return;
+    LobeColumns& rows = e_.lobeRows_;
+    const size_t had = e_.lobes.size();
+    const auto c = shadeBack(turned, sched);
     std::vector<Color> sum(c->points.size(), Color(0));
-    std::map<std::tuple<int, uint32_t, uint32_t>, int> known; // point, site, occurrence
+    std::vector<std::vector<int>> seen(c->points.size());
     for (size_t k = had; k < e_.lobes.size(); ++k) {
         LobeVertex& l = e_.lobes[k];
-        l.albedo = e_.lobeRows_.albedo(l.place);
-        l.delta = e_.lobeRows_.delta(l.place);
+        l.albedo = rows.albedo(l.place);
+        l.delta = rows.delta(l.place);
         l.narrow = isNarrow(l, e_.photonTrace()->job->width, normalize(c->points[size_t(l.point)].I));
         if (l.lobeOfShader)
             for (int i = 0; i < 3; ++i) sum[size_t(l.point)][i] += std::fabs(l.weight[i]) * l.albedo;
-        known[{l.point, l.site, l.occurrence}] = int(k);
+        if (l.narrow && mirrors(l) && lit(l)) seen[size_t(l.point)].push_back(int(k));
     }
-    std::vector<int> back;
+    const auto draws = [&](int i) { // a ray of its own may have gone this way
+        const LobeVertex& l = e_.lobes[size_t(i)];
+        return l.narrow && l.followed && l.chosen > 0;
+    };
+    for (Sent* s : turned) { // one of a point
+        s->goes = !seen[size_t(s->point)].empty();
+        for (int k : seen[size_t(s->point)]) rows.ask(e_.lobes[size_t(k)].place, -c_->rays[size_t(s->point)].dir);
+        for (int i : lobesOf(size_t(s->point)))
+            if (i != s->lobe && draws(i)) rows.ask(e_.lobes[size_t(i)].place, s->w);
+    }
+    rows.evaluate();
     for (Sent* s : turned) {
-        const LobeVertex& l = e_.lobes[size_t(s->lobe)];
-        const auto found = known.find({s->point, l.site, l.occurrence});
-        back.push_back(found == known.end() ? -1 : found->second);
-        s->goes = back.back() >= 0 && mirrors(e_.lobes[size_t(back.back())]) && lit(e_.lobes[size_t(back.back())]);
-        if (s->goes) e_.lobeRows_.ask(e_.lobes[size_t(back.back())].place, -c_->rays[size_t(s->point)].dir);
-    }
-    e_.lobeRows_.evaluate();
-    for (size_t k = 0; k < turned.size(); ++k) {
-        Sent& s = *turned[k];
-        if (!s.goes) continue;
-        const LobeVertex &l = e_.lobes[size_t(s.lobe)], &seen = e_.lobes[size_t(back[k])];
-        float scale = 1; // the energy rule of that side
-        if (l.lobeOfShader)
-            scale = energyScale(size_t(s.point), sum[size_t(s.point)], e_.clearAt(*c, s.point)) /
-                    indirectScale_[size_t(s.point)];
-        const PathRay& ray = rayOf(l);
-        if (ray.bounces == 0 && !l.rays->fromTrace) scale *= e_.photonTrace()->from[size_t(ray.sample->path)].kept;
-        s.back = seen.weight * e_.lobeRows_.value(seen.place).colour * scale;
+        if (!s->goes) continue;
+        const PathRay& ray = c_->rays[size_t(s->point)];
+        const float kept = ray.bounces == 0 ? e_.photonTrace()->from[size_t(ray.sample->path)].kept : 1;
+        const float energy = energyScale(size_t(s->point), sum[size_t(s->point)], e_.clearAt(*c, s->point));
+        Color back(0);
+        for (int k : seen[size_t(s->point)]) {
+            const LobeVertex& l = e_.lobes[size_t(k)];
+            back += l.weight * rows.value(l.place).colour * ((l.lobeOfShader ? energy : 1) * (l.rays->fromTrace ? 1 : kept));
+        }
+        float density = 0;
+        for (int i : lobesOf(size_t(s->point)))
+            if (draws(i)) {
+                const LobeVertex& l = e_.lobes[size_t(i)];
+                density += l.chosen * (i == s->lobe ? s->value.pdf : rows.value(l.place).pdf);
+            }
+        s->back = density > 0 ? back / density : Color(0);
     }
     e_.lobes.erase(e_.lobes.begin() + long(had), e_.lobes.end());
     e_.giveBack(c);

@@ -168,8 +168,7 @@ void Gather::sendRay(const Sent& s, int turn, Sched& sched) {
     if (!photon && l.trace && l.trace->onlyLights && !(l.base > 0) && !meetsEmitter(l, w)) return;
     const float pdf = s.value.pdf;
     const Color f = l.delta ? s.value.colour : pdf > 0 ? s.value.colour / pdf : Color(0);
-    const Color through = l.narrow && photon ? s.back * (pdf > 0 ? s.scale / (pdf * float(s.count)) : 0)
-                                             : l.weight * (f * s.scale / float(s.count));
+    const Color through = l.narrow && photon ? s.back : l.weight * (f * s.scale / float(s.count));
     RayExtra extra;
     if (!photon && l.trace && l.trace->map) {
         extra.environment = l.tint * e_.mapTowards(*l.trace, w, from.footprint.spread);
@@ -192,6 +191,8 @@ void Gather::sendRay(const Sent& s, int turn, Sched& sched) {
     r.weight = weight;
     r.vertex = s.vertex;
     r.asked = asked;
+    if (photon)
+        if (const auto depths = depthsBehind(l, world_.bindings_[size_t(c_->bindings[size_t(s.point)])])) depths->to(r);
     r.bounces = int16_t(bounces);
     r.scattered = int16_t(from.scattered + c_->between);
     ++(l.rays->type == RayType::Diffuse ? r.diffuseBounces : r.specularBounces);

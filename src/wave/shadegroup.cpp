@@ -237,6 +237,9 @@ void Engine::requestPairs(BatchContext& c, std::span<const Color> slope, std::ve
             if (weight == Color(0) || c.rays[size_t(point)].quiet) continue;
             if (world_->bindings_[c.bindings[point]].matte && c.rays[point].camera()) continue;
             const float* args = rows + size_t(3) * e.lanes;
+            if (photonTrace_ && (s.kind == SiteKind::LightVisibility || s.kind == SiteKind::Transmission ||
+                                 s.kind == SiteKind::Occlusion))
+                continue; // nobody asks what photons see
             if (s.kind == SiteKind::LightVisibility) {
                 const size_t had = shadows.size();
                 lightVisibility(c, s, point, args, e.lanes, lane, weight * c.rays[point].weight, c.targets[point],

@@ -236,6 +236,37 @@ TEST(Caustics, NarrowLobesTogetherAsPathsAlone) {
     }
 }
 
+// What a shader says of a narrow lobe that depends on how far away it is seen from, which of its calls it is, and how deep rays may go:
+// the same as without photons.
+TEST(Caustics, NarrowLobesAsTheirShadersAndDepthsSay) {
+    const std::string glass = "trace(P, n, \"distribution\", \"glass-ggx\", \"roughness\", .06, \"eta\", 1.5, \"samplearealights\", 1, \"type\", \"specular\"); ";
+    const std::string begin = "() { normal n = normalize(N); Oi = 1; ";
+    writeShader("plainglass", "surface plainglass" + begin + "Ci = " + glass + "}\n");
+    writeShader("tinted", "surface tinted" + begin + "float a = length(I); color k = 1; if (I . n > 0) k = color(exp(-.2 * a), exp(-a), exp(-2 * a)); Ci = k * " + glass + "}\n");
+    writeShader("twocalls", "surface twocalls" + begin + "if (I . n > 0) Ci = " + glass + "else Ci = " + glass + "}\n");
+    writeShader("twolobes", "surface twolobes" + begin + "n = faceforward(n, I); vector V = -normalize(I); Ci = 4 * specular(n, V, .02) + 2 * specular(n, V, .01); }\n");
+    const std::string floor = kMatte + "Polygon \"P\" [-3 0 -3  -3 0 3  3 0 3  3 0 -3]\n", ceiling = kMatte + "Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n";
+    const auto ball = [&](const std::string& surface) {
+        return lamp(3, .8, 5) + "AttributeBegin " + surface + " Translate 0 1 0 Sphere .6 -.6 .6 360 AttributeEnd\n" + floor;
+    };
+    const auto below = [&](const std::string& surface) {
+        return lamp(1, .5, 5) + "AttributeBegin " + surface + " Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" + ceiling;
+    };
+    const auto depth = [](int most) { return "Attribute \"trace\" \"int maxspeculardepth\" " + std::to_string(most) + " "; };
+    const CameraRay up = rayTo({1.1f, 1.2f, 0}, {1, 2, 0}), down = rayTo({.3f, .6f, 1.4f}, {.1f, 0, .1f});
+    struct Case { std::string name, scene; CameraRay ray; double precision; };
+    for (const Case& c : {Case{"length of I", ball("Surface \"tinted\""), down, .03}, Case{"two calls", ball("Surface \"twocalls\""), down, .03},
+                          Case{"two lobes", below("Surface \"twolobes\""), up, .05},
+                          // The last lobe before the lamp is sampled: it may be one deeper.
+                          Case{"no rays", below(depth(0) + "Surface \"twolobes\""), up, .07}, Case{"no second ray", ball(depth(1) + "Surface \"plainglass\""), down, .08}}) {
+        Scene s(world(c.scene), path());
+        const Moments plain = s.estimate(c.ray, samples(60000));
+        const uint32_t count = nightly() ? 100 : 40;
+        passes(s, count, 10000, .06f, {.width = .1f});
+        expectSame(estimate(s, c.ray, count, nightly() ? 100 : 40), plain, (nightly() ? 1 : 2) * c.precision, c.name);
+    }
+}
+
 // Lights that are off for a surface, or whose highlights are: neither photons nor paths bring them by way of its narrow lobes.
 TEST(Caustics, NarrowLobesOfLightsThatAreOff) {
     writeShader("highlight", "surface highlight() { normal n = faceforward(normalize(N), I); Oi = 1; Ci = 4 * specular(n, -normalize(I), .02); }\n");

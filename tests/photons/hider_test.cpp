@@ -97,4 +97,36 @@ TEST_F(PhotonHider, SameCausticsOverThreadsAndParts) {
     EXPECT_EQ(status, 1);
 }
 
+// Narrow lobes, whose shaders run twice, and photons of times.
+TEST_F(PhotonHider, SameNarrowLobesInMotionOverThreadsAndParts) {
+    write("rough.sl", "surface rough() { Oi = 1; Ci = trace(P, normalize(N), \"distribution\", \"glass-ggx\", \"roughness\", .06, \"eta\", 1.5, \"samplearealights\", 1, "
+                      "\"type\", \"specular\"); }\n");
+    write("coat.sl", "surface coat() { normal n = faceforward(normalize(N), I); Oi = 1; Ci = .3 * diffuse(n) + 4 * specular(n, -normalize(I), .02); }\n");
+    const std::string scene = "Format 24 24 1\nPixelSamples 3 2\nShutter 0 1\nProjection \"perspective\"\nTranslate 0 0 3\nWorldBegin\n"
+                              "AttributeBegin AreaLightSource \"slrect\" 1 \"float intensity\" 20 Translate .5 2 .2 Polygon \"P\" [-.3 0 -.3  -.3 0 .3  .3 0 .3  .3 0 -.3] AttributeEnd\n"
+                              "Illuminate 1 1\nLightSource \"pointlight\" 2 \"float intensity\" 3 \"point from\" [-.5 2 .2]\nSides 2\n"
+                              "AttributeBegin Surface \"rough\" MotionBegin [0 1] Translate 0 0 0 Translate .3 .2 0 MotionEnd Sphere .6 -.6 .6 360 AttributeEnd\n"
+                              "AttributeBegin Surface \"coat\" Polygon \"P\" [1.2 -1 -1  1.2 -1 1  1.2 2 1  1.2 2 -1] AttributeEnd\n"
+                              "Surface \"matte\"\nPolygon \"P\" [-3 -1 -3  -3 -1 3  3 -1 3  3 -1 -3]\nWorldEnd\n";
+    const auto render = [&](const std::string& name, const std::string& hider, const std::string& how) {
+        write(name + ".rib", "Display \"" + name + ".exr\" \"openexr\" \"rgba\"\nHider \"path\" \"int caustics\" 1" + hider + "\n" + scene);
+        const std::string said = run("render " + how + " " + name + ".rib", "2>&1");
+        EXPECT_EQ(status, 0) << said;
+    };
+    const auto differ = [&](const std::string& other) {
+        run("diff one.exr " + other, "2>&1");
+        return status;
+    };
+    render("one", "", "-t 1");
+    for (const char* threads : {"2", "3"}) {
+        render("more", "", std::string("-t ") + threads);
+        EXPECT_EQ(differ("more.exr"), 0) << threads;
+    }
+    for (const char* part : {"1", "2"}) render(std::string("part") + part, "", std::string("-t 2 --part ") + part + "/2");
+    run("merge -o merged.exr part1.exr.part part2.exr.part", "2>&1");
+    EXPECT_EQ(differ("merged.exr"), 0);
+    render("mirrors", " \"float causticwidth\" 0", "-t 2");
+    EXPECT_EQ(differ("mirrors.exr"), 1); // photons followed some
+}
+
 } // namespace

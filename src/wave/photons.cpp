@@ -9,6 +9,9 @@ namespace alpenglow::transport {
 
 namespace {
 
+/// Between levels of detail: what a photon meets on its whole way.
+float levelOf(const render::SampleNumbers& n) { return Random(n).one(0, kLevel, 0); }
+
 /// Photons of a block by light, and what they carry: light by light, since a kernel call is of one light.
 std::vector<EmissionStart> startBlock(Engine& e, const PhotonJob& job, uint32_t first, uint32_t count,
                                       std::vector<Color>& power) {
@@ -27,13 +30,15 @@ std::vector<EmissionStart> startBlock(Engine& e, const PhotonJob& job, uint32_t 
         some.clear();
         for (uint32_t i : of[l]) some.push_back(all[i]);
         startPhotons(e, plan, plan.lights()[l], some);
-        for (EmissionStart& s : some) { // what it meets first
+        for (size_t k = 0; k < some.size(); ++k) { // what it meets first
+            EmissionStart& s = some[k];
             if (s.dir == Vec3(0.f)) continue;
             accel::Ray ray;
             ray.org = s.origin;
             ray.dir = s.dir;
             ray.time = world.shadesAtOpen_ ? 0 : s.drawn.time;
             ray.only = job.met;
+            if (world.fades_) ray.level = levelOf(job.numbers(first + of[l][k]));
             accel::Hit hit;
             s.length = e.meet(ray, hit) ? hit.t : 0;
         }
@@ -128,7 +133,7 @@ bool Engine::emitAll(const PhotonJob& job, uint32_t first, uint32_t count) {
                 r.lobeBinding = hazy->second;
                 r.lobeOrigin = meetsAt(s.surface);
             }
-        if (world_->fades_) sample.level = random(r).one(0, kLevel, 0);
+        if (world_->fades_) sample.level = levelOf(sample.numbers);
     }
     beginTrace();
     const bool done = sched.run();

@@ -33,6 +33,17 @@ const std::string kMatte = "Surface \"matte\" \"float Ka\" 0 \"float Kd\" .5\n";
 const std::string kBall = kMatte + "Sphere 5 -5 5 360\n"; // about everything
 Settings path() { return withShaders(Hider::Path); }
 
+// Between levels of detail a shape is there for some photons, by the chance of that level, whichever it is.
+TEST(Emission, OfWhatFades) {
+    const std::string light = "LightSource \"pointlight\" 1 \"float intensity\" 3 \"point from\" [1 .5 2]\n";
+    const double power = 3 * kPi * 4 * kPi;
+    for (const auto& [levels, part] : {std::pair{"0 .3", .3}, std::pair{".3 1", .7}}) {
+        Scene s(world(light + "Attribute \"detail\" \"float[2] __level\" [" + levels + "]\n" + kBall), path());
+        const double n = 40000;
+        EXPECT_NEAR(powerOf(emitted(s, uint32_t(n)), 0), part * power, 4.5 * std::sqrt(part * (1 - part) / n) * power) << levels;
+    }
+}
+
 // A photon's power is the same whatever it meets first; all together carry what the light sends.
 TEST(Emission, PowerOfLights) {
     struct Case { std::string light; double power, error; };

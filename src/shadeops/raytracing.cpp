@@ -224,7 +224,8 @@ std::vector<Shadeop> raytracingShadeops() {
         "standing for the same part of it; 4096 at most. Categories: \"illuminance\" and \"\" cast rays; \"samplepattern\" casts none, and all "
         "count as misses; \"environment:MAP\" draws directions in proportion to the light of a map, from all around, and all count as hits. "
         "Pairs with a prefix name variables that the turn fills; what is not there leaves them as they were: surface:x displacement:x volume:x "
-        "(outputs and parameters of shaders at the hit; surface:Ci is what trace() would bring, surface:Oi its opacity), primitive:x (variables "
+        "(outputs and parameters of shaders at the hit; surface:Ci is what trace() would bring, surface:Oi its opacity, surface:x also P N Ng I "
+        "Cs Os u v s t dPdu dPdv there), primitive:x (variables "
         "of the primitive), attribute:x, ray:origin ray:direction ray:length (of misses too; 1e38), environment:color environment:direction "
         "environment:solidangle (that of one sample: the sum of color times solidangle is the integral of the map). Shaders run at a hit only "
         "where a pair asks for what they give.");

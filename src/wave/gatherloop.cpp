@@ -3,6 +3,7 @@
 #include "lobes/sampling.h"
 #include "world/raysets.h"
 #include <bit>
+#include <set>
 
 namespace alpenglow::transport {
 
@@ -131,12 +132,18 @@ void tellRay(const GatherSite& g, float* row, const Vec3& origin, const Vec3& di
     }
 }
 
-void tellHit(const WorldImpl& world, const GatherSite& g, float* row, const accel::Hit& hit) {
+void tellHit(const WorldImpl& world, const GatherSite& g, float* row, const accel::Hit& hit, const Vec3& dir) {
+    static const std::set<std::string> fixed = {"u", "v", "s", "t", "Ng", "dPdu", "dPdv", "I"};
     const geometry::Shape& shape = *world.shapes_[hit.shape];
     std::optional<geometry::SurfacePoint> at;
     for (const Output& o : g.outputs) {
-        if (o.of != Of::Primitive && o.of != Of::Attribute) continue;
+        if (o.of != Of::Primitive && o.of != Of::Attribute && o.of != Of::Surface) continue;
         const std::string& name = rsl::internedString(o.id);
+        if (o.of == Of::Surface && !fixed.count(name)) continue; // the shader tells
+        if (name == "I") {
+            put(row, o, dir * float(hit.distance));
+            continue;
+        }
         if (o.of == Of::Attribute) {
             const SurfaceBinding& b = world.bindings_[size_t(world.bindingOf_[hit.shape])];
             if (const auto i = attributeOf(world, shape.attributes(), name, nullptr, &b)) put(row, o, Told(*i));
@@ -312,7 +319,7 @@ void castRays(const Asking& a, GatherRows& rows, int begin, int end, int count, 
         tellRay(g, row, from, w, met ? float(hit.distance) : 1e38f);
         if (!met) continue;
         row[0] = 1;
-        tellHit(e.world(), g, row, hit);
+        tellHit(e.world(), g, row, hit, w);
         if (g.shades) shaded.push_back({a.ray(w, from, reach, kept, k, count), row, hit});
     }
     sendMet(a, shaded, begin, end, turns, count, kept, asked, out);

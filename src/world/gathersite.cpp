@@ -122,7 +122,7 @@ void linkGathers(BoundKernel& b, const rsl::CompiledKernel& k, WorldImpl& world)
     }
 }
 
-void gatheredNames(const rsl::Program& p, std::set<std::string>& names) {
+void gatheredNames(const rsl::Program& p, std::set<std::string>& surface, std::set<std::string>& displacement) {
     const auto in = [&](const rsl::StmtPtr& body) {
         if (!body) return;
         rsl::front::everyStmt(
@@ -130,8 +130,9 @@ void gatheredNames(const rsl::Program& p, std::set<std::string>& names) {
             [&](const rsl::Stmt& s) {
                 if (s.kind != rsl::StmtKind::Gather) return;
                 for (const rsl::NamedArg& a : s.pairs)
-                    if (const auto pair = rsl::PairName::parse(a.name); pair.kind == rsl::PairName::Kind::Surface)
-                        names.insert(pair.name);
+                    if (const auto known = meaning(a.name))
+                        if (known->first == Of::Surface || known->first == Of::Displacement)
+                            (known->first == Of::Surface ? surface : displacement).insert(known->second);
             },
             [](const rsl::Expr&) {});
     };

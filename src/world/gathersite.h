@@ -46,7 +46,7 @@ struct GatherSite {
 /// Fills SiteInfo::gather of the sites of a kernel.
 void linkGathers(BoundKernel&, const rsl::CompiledKernel&, WorldImpl&);
 
-/// Names that the gathers of a file of shaders ask surfaces for ("x" of "surface:x").
-void gatheredNames(const rsl::Program&, std::set<std::string>& names);
+/// Names that the gathers of a file of shaders ask surfaces and displacements for ("x" of "surface:x", "displacement:x").
+void gatheredNames(const rsl::Program&, std::set<std::string>& surface, std::set<std::string>& displacement);
 
 } // namespace alpenglow::transport

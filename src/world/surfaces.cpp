@@ -141,9 +141,9 @@ void SurfaceBinder::findGathers() {
     std::set<const rsl::Program*> seen;
     const auto look = [&](const InstanceRef& i) {
         if (!i || !i->program) return;
-        if (seen.insert(&i->program->program()).second) gatheredNames(i->program->program(), gathered_);
+        if (seen.insert(&i->program->program()).second) gatheredNames(i->program->program(), gathered_, gatheredDisplacements_);
         for (const rsl::CoShader& c : i->coShaders)
-            if (c.program && seen.insert(c.program).second) gatheredNames(*c.program, gathered_);
+            if (c.program && seen.insert(c.program).second) gatheredNames(*c.program, gathered_, gatheredDisplacements_);
     };
     const scene::Attributes* last = nullptr;
     for (const auto& shape : world_.shapes_) {
@@ -383,6 +383,7 @@ void SurfaceBinder::hearDisplacement(SurfaceBinding& b, const Names& varying, co
     if (!b.displacement || b.displacementS.kernel->facts().suspends) return;
     std::set<std::string> asked;
     asked = world_.lightDisplacements_;
+    asked.insert(gatheredDisplacements_.begin(), gatheredDisplacements_.end());
     bool all = asked.erase("") > 0;
     all |= questions(b.surfaceS, "displacement", asked);
     all |= b.atmosphere.shader && questions(b.atmosphere.kernel, "displacement", asked);

@@ -77,7 +77,7 @@ private:
     std::map<std::pair<const void*, std::string>, InstanceRef>
         volumes_; ///< by the shader as the scene gave it and what overrides it
     std::map<std::string, int> bindingByKey_;
-    std::set<std::string> gathered_; ///< names of outputs
+    std::set<std::string> gathered_, gatheredDisplacements_; ///< names of outputs that gathers ask for
     std::unordered_map<const scene::Attributes*, std::pair<geometry::ShapeRef, int>>
         bindingOfAttributes_; ///< of the last shape that had them
     std::map<std::vector<const void*>, int> programs_;

@@ -78,6 +78,24 @@ TEST(Gather, TellsOfRaysAndPrimitives) {
     EXPECT_EQ(of(runs("gstays", "f = 7; c = 3; gather(\"\", P, up, .1, 2, \"primitive:none\", f, \"surface:Ci\", c, \"maxdist\", 1) f = 0;", "color(f) + c"), scene).mean(), 10);
 }
 
+// What a displacement writes, and the variables of the surface that are no parameters of its shader.
+TEST(Gather, AsksDisplacementsAndVariablesAtTheHit) {
+    writeShader("gmoves", "displacement gmoves(float given = 2; output float own = 0; output varying color list[2] = {0, 0}) { own = 3 * given; list[1] = color(u, 1, 3); P += 0; }\n");
+    writeShader("gplain", "surface gplain() { Ci = Cs; Oi = Os; }\n");
+    const std::string scene = kSmall + std::string("AttributeBegin Surface \"gplain\" ShadingRate 90000 Displacement \"gmoves\" \"given\" 4 Sphere 2 -2 2 360 AttributeEnd\n");
+    for (const Hider h : kAll) {
+        Moments m = of(runs("gdisplaced", "color l[2] = {0, 0}; gather(\"\", P, up, .3, 4, \"displacement:given\", f, \"displacement:own\", g, \"displacement:list\", l, \"primitive:u\", hits) sum += color(f, g, comp(l[1], 2) + abs(comp(l[1], 0) - hits)) / 4;", "sum"), scene, h);
+        EXPECT_NEAR(m.mean(0), 4, 1e-4) << int(h);
+        EXPECT_NEAR(m.mean(1), 12, 1e-4) << int(h);
+        EXPECT_NEAR(m.mean(2), 3, 1e-4) << int(h);
+        m = of(runs("gvariables", "vector i = 0, n = 0; float u0 = 7, v0 = 7; point p = 0; gather(\"\", P, up, .3, 4, \"surface:I\", i, \"surface:Ng\", n, \"surface:P\", p, \"surface:u\", f, \"primitive:u\", u0, \"surface:t\", g, \"primitive:t\", v0)"
+                       " sum += color(length(p - P - i), abs(normalize(n) . normalize(p)), abs(f - u0) + abs(g - v0)) / 4;", "sum"), scene, h);
+        EXPECT_NEAR(m.mean(0), 0, 1e-3) << int(h);
+        EXPECT_NEAR(m.mean(1), 1, 1e-3) << int(h);
+        EXPECT_NEAR(m.mean(2), 0, 1e-5) << int(h);
+    }
+}
+
 TEST(Gather, AsksShadersAtTheHit) {
     writeShader("gtells", "surface gtells(float given = 2; output varying float own = 0; output varying color list[2] = {0, 0};) { own = 5 * v; list[1] = color(u, v, 3); Ci = Cs; Oi = Os; }\n");
     const std::string scene = kSmall + std::string("AttributeBegin Surface \"gtells\" \"given\" 4 Color 1 .5 .25 Opacity .5 .5 .5 Sphere 2 -2 2 360 AttributeEnd\n");

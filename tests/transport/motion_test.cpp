@@ -98,6 +98,32 @@ TEST(Motion, PointsTimesAndSpaces) {
     }
 }
 
+// Uniform in RSL, but rays that are shaded together have times and eyes of their own.
+TEST(Motion, EachPointOfABatchHasItsTimeAndItsEye) {
+    writeShader("tellstime", "surface tellstime() { uniform float twice = 2 * time; Ci = color(time, twice, (time > .5) ? 1 : 0); Oi = 1; }\n");
+    writeShader("tellseye", "surface tellseye() { Ci = color(E); Oi = 1; }\n");
+    writeShader("looksup", "surface looksup() { Ci = trace(P, vector (0, 1, 0)); Oi = 1; }\n");
+    for (const Hider h : {Hider::Raytrace, Hider::Path}) {
+        Scene moves(shutter("Surface \"tellstime\"\nTranslate 0 0 5\n" + moving("Translate 0 0 0", "Translate .1 0 0") + kSquare), under(h));
+        std::vector<CameraRay> rays;
+        for (int i = 0; i < 64; ++i) rays.push_back(at((float(i) + .5f) / 64, rayTo({0, .1f, 0}, {0, .1f, 5})));
+        const std::vector<SampleResult> times = moves.trace(rays);
+        const auto shown = [&](const SampleResult& r, int k) { return r.color[k]; };
+        for (size_t i = 0; i < rays.size(); ++i) {
+            EXPECT_EQ(shown(times[i], 0), rays[i].time) << i;
+            EXPECT_EQ(shown(times[i], 1), 2 * rays[i].time) << i;
+            EXPECT_EQ(shown(times[i], 2), rays[i].time > .5f ? 1 : 0) << i;
+        }
+        Scene eyes(world("AttributeBegin Surface \"tellseye\" Translate 0 5 0 " + std::string(kFloor) + "AttributeEnd\nSurface \"looksup\"\n" + kFloor), under(h));
+        for (size_t i = 0; i < rays.size(); ++i) rays[i] = rayTo({0, 1, 0}, {.25f + float(i), 0, .5f});
+        const std::vector<SampleResult> from = eyes.trace(rays);
+        for (size_t i = 0; i < rays.size() && .25f + float(i) < 60; ++i) {
+            EXPECT_NEAR(shown(from[i], 0), .25f + float(i), 1e-4) << i;
+            EXPECT_NEAR(shown(from[i], 2), .5f, 1e-4) << i;
+        }
+    }
+}
+
 // A point light goes from x = 0 to x = 2, one above the floor: cos / d^2 where it is at the time. A card hides it for half of that.
 TEST(Motion, LightsMoveAndSoDoShadows) {
     const std::string light = "AttributeBegin\n" + moving("Translate 0 1 0", "Translate 2 1 0") +

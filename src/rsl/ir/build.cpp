@@ -162,7 +162,10 @@ Inst* Builder::initialGlobal(const std::string& name, Type type) {
     bool uniform = false;
     for (const GlobalVariable& g : globalVariables(kind))
         if (name == g.name) uniform = g.uniform;
-    return input(name, type, uniform);
+    Inst* i = input(name, type, uniform);
+    // Uniform in RSL, where a grid has one time and one eye. Points of a batch each have their own.
+    if (name == "time" || name == "dtime" || name == "E") k_.inputs[size_t(i->index)].uniform = false;
+    return i;
 }
 
 Inst* Builder::get(int n) {

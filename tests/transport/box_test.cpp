@@ -53,7 +53,7 @@ TEST_P(BoxAgreement, Suspending) {
     s.suspend = true;
     Counters c;
     expectSame(
-        with({}), [&](int n, uint32_t seed) { return boxTiles(rib_, s, nightly() && GetParam() ? n / 8 : n, seed, &c); },
+        with({}), [&](int n, uint32_t seed) { return boxTiles(rib_, s, nightly() && GetParam() ? n / 4 : n, seed, &c); },
         kPerTile, nightly() ? .24 : .15, name("suspending"), seed(6));
     EXPECT_EQ(c.overLimit, 0u);
     EXPECT_EQ(c.nonFinite, 0u);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <tuple>
+#include <unordered_map>
 #include <unordered_set>
 
 namespace alpenglow::clouds {
@@ -17,6 +18,44 @@ namespace {
 constexpr size_t kFew = 16;
 
 size_t rowOf(const BakeLayout& l) { return size_t(l.width) + (l.flat ? 2 : 7); }
+
+/// The points of a cloud. Where several calls bake at one point, what is new goes to the point that is there, unless it has
+/// something else of that already.
+struct Joined {
+    PointCloud& cloud;
+    std::vector<size_t> counts; ///< of each number: points that have it
+    struct At { size_t point = 0; std::vector<bool> given; };
+    std::unordered_map<std::string_view, At> places; ///< by the bits of P, N and radius
+
+    /// `n`: P, N, radius, and the numbers that go `to` places among those of the channels.
+    void add(const float* n, const std::vector<int>& to, bool several) {
+        const size_t width = size_t(cloud.width());
+        At* at = several ? &places[{reinterpret_cast<const char*>(n), 7 * sizeof(float)}] : nullptr;
+        if (at && !at->given.empty()) {
+            float* there = &cloud.values[at->point * width];
+            bool fresh = false, same = true;
+            for (size_t i = 0; i < to.size(); ++i) {
+                const bool given = at->given[size_t(to[i])];
+                fresh |= !given;
+                same &= !given || there[to[i]] == n[7 + i];
+            }
+            if (fresh && same) return put(there, n, to, at);
+        }
+        if (at) *at = {cloud.size(), std::vector<bool>(width)};
+        const std::vector<float> zeros(width, 0.f);
+        cloud.add({n[0], n[1], n[2]}, {n[3], n[4], n[5]}, n[6], zeros);
+        put(width ? &cloud.values[(cloud.size() - 1) * width] : nullptr, n, to, at);
+    }
+
+private:
+    void put(float* there, const float* n, const std::vector<int>& to, At* at) {
+        for (size_t i = 0; i < to.size(); ++i) {
+            there[to[i]] = n[7 + i];
+            counts[size_t(to[i])] += !at || !at->given[size_t(to[i])];
+            if (at) at->given[size_t(to[i])] = true;
+        }
+    }
+};
 
 /// All of a key but the sample, and the call.
 auto pointOf(const BakeKey& k, const BakeLayout& l) {
@@ -166,16 +205,18 @@ bool BakeLog::writeCloud(const std::string& name, const File& f, const OutputPol
         for (const Channel& c : l->channels)
             for (int n = 0, at = cloud.offsetOf(c.name); n < sizeOf(c.type); ++n) k.to.push_back(at + n);
     }
-    std::vector<float> values;
+    Joined joined{cloud, std::vector<size_t>(size_t(cloud.width())), {}};
     cloud.reserve(f.rows.size());
-    for (const Row& r : f.rows) {
-        const Known& k = known[r.layout];
-        if (!k.fits) continue;
-        const float* n = &f.settled[r.at];
-        values.assign(size_t(cloud.width()), 0.f);
-        for (size_t i = 0; i < k.to.size(); ++i) values[size_t(k.to[i])] = n[7 + i];
-        cloud.add({n[0], n[1], n[2]}, {n[3], n[4], n[5]}, n[6], values);
-    }
+    bool several = false; // calls that give different channels
+    for (const auto& [layout, k] : known) several |= k.fits && k.to.size() < size_t(cloud.width());
+    for (const Row& r : f.rows)
+        if (const Known& k = known[r.layout]; k.fits) joined.add(&f.settled[r.at], k.to, several);
+    for (const Channel& c : cloud.channels)
+        if (const size_t n = joined.counts[size_t(cloud.offsetOf(c.name))]; n < cloud.size())
+            d.report(Severity::Warning, Rie::Consistency, order.front()->place,
+                     "bake3d(): " + std::to_string(cloud.size() - n) + " of " + std::to_string(cloud.size()) + " points of \"" + name +
+                         "\" have no channel \"" + c.name + "\"; it is 0 there",
+                     "all calls that bake into a file give the same channels, or others at the same points");
     return saveCloud(name, cloud, policy, d, f.rows.front().layout->place);
 }
 

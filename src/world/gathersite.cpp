@@ -33,10 +33,19 @@ std::optional<std::pair<Of, std::string>> meaning(const std::string& name) {
     return std::pair(i->second, rest);
 }
 
+/// Whether a variable holds what is asked for; what shaders, primitives and attributes have is not known here.
+bool fits(const GatherSite::Output& o) {
+    const bool number = o.of == Of::Length || o.of == Of::SkySolidAngle;
+    if (o.of == Of::Surface || o.of == Of::Displacement || o.of == Of::Volume || o.of == Of::Primitive || o.of == Of::Attribute) return true;
+    return o.elements == 0 && !o.open && o.kind == (number ? rsl::ir::Kind::Float : rsl::ir::Kind::Triple);
+}
+
 /// The outputs of a turn: flags are results that begin with '?', values follow them.
-void readOutputs(const rsl::ir::Site& turn, GatherSite& g, const std::function<void(const std::string&)>& unknown) {
+void readOutputs(const rsl::ir::Site& turn, GatherSite& g, const std::function<void(const std::string&)>& unknown,
+                 const std::function<void(const std::string&)>& unfit) {
     int row = 0;
     GatherSite::Output* open = nullptr;
+    std::vector<std::string> names;
     for (size_t r = 0; r < turn.resultKinds.size(); ++r) {
         const std::string& name = turn.resultNames[r];
         const int rows = rsl::ir::components(turn.resultKinds[r]);
@@ -44,6 +53,7 @@ void readOutputs(const rsl::ir::Site& turn, GatherSite& g, const std::function<v
             open = nullptr;
             if (const auto known = meaning(name.substr(1))) {
                 open = &g.outputs.emplace_back();
+                names.push_back(name.substr(1));
                 open->of = known->first;
                 open->id = rsl::internString(known->second);
                 open->at = row;
@@ -62,6 +72,8 @@ void readOutputs(const rsl::ir::Site& turn, GatherSite& g, const std::function<v
         row += rows;
     }
     g.width = row;
+    for (size_t k = 0; k < names.size(); ++k)
+        if (!fits(g.outputs[k])) unfit(names[k]);
 }
 
 } // namespace
@@ -87,9 +99,13 @@ void linkGathers(BoundKernel& b, const rsl::CompiledKernel& k, WorldImpl& world)
         g->number = std::atoi(numberOf(i).c_str());
         if (i.kind == SiteKind::GatherTurn) {
             g->outputs.clear();
-            readOutputs(*i.site, *g, [&](const std::string& name) {
+            const auto unknown = [&](const std::string& name) {
                 told(i, "\"" + name + "\" is not known; the variable stays as it is",
                      "names begin with surface: displacement: volume: primitive: attribute: ray: environment:");
+            };
+            readOutputs(*i.site, *g, unknown, [&](const std::string& name) {
+                told(i, "the variable of \"" + name + "\" has another type; it stays as it is",
+                     "ray:length and environment:solidangle are floats; the others a colour, a point or a vector");
             });
             for (const GatherSite::Output& o : g->outputs) {
                 g->light |= o.of == Of::Light;

@@ -186,6 +186,27 @@ TEST_F(Bake, CloudsAndBricksReadBack) {
     }
 }
 
+// Channels that a shader gives by several calls are those of the same points; where only some points have a channel, that is said.
+TEST_F(Bake, SeveralCallsForOneFile) {
+    writeShader("baker", "bake3d(\"f.ptc\", \"\", P, N, \"_x\", 3); bake3d(\"f.ptc\", \"\", P, N, \"_c\", color(1, .5, 0)); bake3d(\"g.ptc\", \"\", P, N, \"_x\", 3);"
+                         "bake3d(\"h.ptc\", \"\", P, N, \"_x\", 1); bake3d(\"h.ptc\", \"\", P + N, N, \"_y\", 1);");
+    for (const char* hider : {"hidden", "path"}) {
+        write("a.rib", header("a.exr", hider) + begin + ball);
+        const std::string said = run("render a.rib", "2>&1");
+        const clouds::PointCloud f = cloud("f.ptc"), h = cloud("h.ptc");
+        EXPECT_EQ(f.size(), cloud("g.ptc").size()) << hider;
+        ASSERT_GT(f.size(), 0u);
+        const int x = f.offsetOf("_x"), c = f.offsetOf("_c");
+        for (size_t i = 0; i < f.size(); ++i) {
+            EXPECT_EQ(f.valuesOf(i)[size_t(x)], 3);
+            EXPECT_EQ(f.valuesOf(i)[size_t(c) + 1], .5f);
+        }
+        EXPECT_EQ(h.size(), 2 * f.size()) << hider;
+        EXPECT_NE(said.find("points of \"h.ptc\" have no channel \"_y\""), std::string::npos) << said;
+        EXPECT_EQ(said.find("points of \"f.ptc\" have no"), std::string::npos) << said;
+    }
+}
+
 TEST_F(Bake, WhatCannotBe) {
     writeShader("baker", "float ok = bake3d(\"../../out.ptc\", \"\", P, N); float x = 5; float r = texture3d(\"none.ptc\", P, N, \"_x\", x); Ci = color(ok, r, x / 10);");
     write("a.rib", header("a.exr") + begin + ball);

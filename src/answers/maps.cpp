@@ -183,6 +183,15 @@ static texture::ShadowOptions shadowOptions(const TextureSite& t, const ServiceC
     return o;
 }
 
+/// A picture does not say from where it was seen.
+static void noteNoShadowMap(texture::Handle map, const ServiceCall& call) {
+    if (!map || !map->tiles.empty() || (map->worldToCamera && map->worldToNDC)) return;
+    call.diagnostics.reportOnce("noshadowmap:" + map->path,
+                                {Severity::Warning, Rie::BadFile, call.place(),
+                                 "shadow(): \"" + map->path + "\" is no shadow map: it has no matrices of a camera, and gives no shadow",
+                                 "Display of type \"zfile\" or \"deepshad\", or MakeShadow of the former, makes one", {}});
+}
+
 void answerShadow(Answers& answers, const ServiceCall& call) {
     const TextureSite& t = *call.s.map;
     const WorldImpl& world = answers.world();
@@ -197,8 +206,9 @@ void answerShadow(Answers& answers, const ServiceCall& call) {
         });
     }
     texture::Handle map = t.computed ? nullptr : t.map(world, place);
+    noteNoShadowMap(map, call);
     call.each([&](int lane, const ShadePoint&) {
-        if (t.computed) map = answers.mapOfName(std::bit_cast<int32_t>(call.at(0, lane)), place);
+        if (t.computed) noteNoShadowMap(map = answers.mapOfName(std::bit_cast<int32_t>(call.at(0, lane)), place), call);
         const SurfaceBinding* binding = call.binding(world, lane);
         const auto bias = biasOf(answers.memo(), binding ? binding->attributes.get() : nullptr);
         const Matrix& toWorld = world.cameraToWorld_;

@@ -50,6 +50,12 @@ std::shared_ptr<const CloudSite> cloudSite(const SiteInfo& i, const rsl::Compile
     for (size_t a = 0; a < i.rows.size(); ++a)
         if (s.argKinds[a] != rsl::ir::Kind::String) given.push_back(a);
     const auto at = [&](size_t n) { return n < given.size() ? i.rows[given[n]] : -1; };
+    const auto strings = [&](const std::string& name) {
+        const SourcePlace at{s.place.file < int(k.files().size()) ? k.files()[size_t(s.place.file)] : "", s.place.line, s.place.column};
+        world.diagnostics_->reportOnce("bakedstring:" + name + at.file + std::to_string(at.line),
+                                       {Severity::Warning, Rie::BadToken, at, "bake3d(): \"" + name + "\" is a string; it is not written",
+                                        "channels are floats, colours, points, vectors, normals and matrices", {}});
+    };
     c->layout.flat = i.kind == SiteKind::Bake;
     if (c->layout.flat) {
         c->s = at(0);
@@ -80,9 +86,10 @@ std::shared_ptr<const CloudSite> cloudSite(const SiteInfo& i, const rsl::Compile
         for (size_t a = 0; a < s.argKinds.size(); begin += rsl::ir::components(s.argKinds[a++])) argument[begin] = a;
         for (const std::string& name : s.names) { // in the order of the call
             const int r = row(name.c_str());
-            if (r < 0 || isOption(name)) continue;
-            const size_t a = argument.at(r);
-            if (s.argKinds[a] == rsl::ir::Kind::String) continue;
+            if (isOption(name)) continue;
+            const size_t a = r < 0 ? s.argKinds.size() : argument.at(r);
+            if (i.text.count(name) || (r >= 0 && s.argKinds[a] == rsl::ir::Kind::String)) strings(name);
+            if (r < 0 || s.argKinds[a] == rsl::ir::Kind::String) continue;
             c->parts.push_back({name,
                                 a < s.argTypes.size() && s.argTypes[a].base != rsl::Base::Void ? channelOf(s.argTypes[a])
                                                                                                : channelOf(s.argKinds[a]),

@@ -189,7 +189,7 @@ TEST_F(Bake, CloudsAndBricksReadBack) {
 // Channels that a shader gives by several calls are those of the same points; where only some points have a channel, that is said.
 TEST_F(Bake, SeveralCallsForOneFile) {
     writeShader("baker", "bake3d(\"f.ptc\", \"\", P, N, \"_x\", 3); bake3d(\"f.ptc\", \"\", P, N, \"_c\", color(1, .5, 0)); bake3d(\"g.ptc\", \"\", P, N, \"_x\", 3);"
-                         "bake3d(\"h.ptc\", \"\", P, N, \"_x\", 1); bake3d(\"h.ptc\", \"\", P + N, N, \"_y\", 1);");
+                         "bake3d(\"h.ptc\", \"\", P, N, \"_x\", 1, \"_name\", \"a\"); bake3d(\"h.ptc\", \"\", P + N, N, \"_y\", 1);");
     for (const char* hider : {"hidden", "path"}) {
         write("a.rib", header("a.exr", hider) + begin + ball);
         const std::string said = run("render a.rib", "2>&1");
@@ -204,6 +204,7 @@ TEST_F(Bake, SeveralCallsForOneFile) {
         EXPECT_EQ(h.size(), 2 * f.size()) << hider;
         EXPECT_NE(said.find("points of \"h.ptc\" have no channel \"_y\""), std::string::npos) << said;
         EXPECT_EQ(said.find("points of \"f.ptc\" have no"), std::string::npos) << said;
+        EXPECT_NE(said.find("\"_name\" is a string; it is not written"), std::string::npos) << said;
     }
 }
 

@@ -287,6 +287,10 @@ TEST(Gather, WhatIsNotKnownIsSaid) {
     Scene s(world(kSeen + runs("gwords", "gather(\"sideways\", P, up, 1, 2, \"distribution\", \"odd\", \"friend:x\", f) hits += 1;", "color(hits)") + kSmall + ball(2, "")), withShaders(Hider::Path));
     EXPECT_EQ(s.one(kNear).x, 2);
     for (const char* word : {"sideways", "odd", "friend:x"}) EXPECT_NE(s.messages().find(word), std::string::npos) << s.messages();
+    Scene t(world(kSeen + runs("gtypes", "gather(\"\", P, up, 1, 2, \"surface:Ci\", f, \"ray:length\", c, \"ray:origin\", o) hits += 1;", "color(hits) + f + c") + kSmall + ball(2, "")), withShaders(Hider::Path));
+    EXPECT_EQ(t.one(kNear).x, 2) << "the variables stay";
+    for (const char* word : {"\"surface:Ci\" has another type", "\"ray:length\" has another type"}) EXPECT_NE(t.messages().find(word), std::string::npos) << t.messages();
+    EXPECT_EQ(t.messages().find("ray:origin"), std::string::npos) << t.messages();
 }
 
 TEST(Gather, EveryParameter) {

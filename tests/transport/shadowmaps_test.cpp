@@ -158,6 +158,13 @@ TEST(ShadowMaps, AMissingMapIsSaidOnceAndLit) {
     EXPECT_EQ(s.diagnostics.errors(), 1) << s.messages();
 }
 
+TEST(ShadowMaps, APictureIsNoShadowMap) {
+    writeShader("picturemap", "surface picturemap(string map = \"\") { Ci = shadow(map, P); Oi = 1; }\n");
+    Scene s(world("Surface \"picturemap\" \"string map\" " + writeMap("picture.exr", 4, 4, Color(1)) + " " + kFloor), withShaders(Hider::Hidden));
+    EXPECT_EQ(s.one(at(0)).x, 0);
+    EXPECT_NE(s.messages().find("is no shadow map"), std::string::npos) << s.messages();
+}
+
 // areashadow() of a class light with the map: the light of its samples is dark where the map says so, and nothing is traced.
 TEST(ShadowMaps, SamplesOfClassLights) {
     writeShader("mapped", "class mapped(string map = \"\") {\n"

@@ -241,6 +241,7 @@ TEST_F(Subsurface, WhatIsAskedForInVainIsSaid) {
     writeShader("everyword", "surface everyword() { Oi = 1; Ci = subsurface(P, N, \"label\", \"s1\", \"subset\", \"s1\", \"bias\", 1, \"hitmode\", \"s1\", \"hitsides\", \"s1\", \"maxdist\", 1, \"samplecone\", 1, \"samples\", 1, \"type\", \"s1\", \"weight\", color(1, 2, 3), \"minsamples\", 1, \"samplebase\", 1, \"excludesubset\", \"s1\", \"raytype\", \"s1\", \"raylabel\", \"s1\", \"maxhitdist\", 1, \"model\", \"s1\", \"irradiance\", color(1, 2, 3), \"scattering\", color(1, 2, 3), \"absorption\", color(1, 2, 3), \"meanfreepath\", color(1, 2, 3), \"reflectance\", color(1, 2, 3), \"albedo\", color(1, 2, 3), \"diffusemeanfreepath\", color(1, 2, 3), \"ior\", 1, \"refractionindex\", 1, \"scale\", 1, \"groupname\", \"s1\", \"unitlength\", 1, \"anisotropy\", .5); }\n");
     Scene every(world(kAbove + "Surface \"everyword\" " + kFloor), withShaders(Hider::Path));
     EXPECT_TRUE(std::isfinite(every.one(kView).x));
+    EXPECT_NE(every.messages().find("no type \"s1\""), std::string::npos) << every.messages();
     writeShader("odd", "surface odd() { Oi = 1; Ci = subsurface(P, N, \"model\", \"mirror\", \"irradiance\", color(1)) + subsurface(\"pointcloud\", P, N, \"samples\", 1e9); }\n");
     Scene s(world(kAbove + "Surface \"odd\" " + kFloor), withShaders(Hider::Path));
     EXPECT_TRUE(std::isfinite(s.one(kView).x));

@@ -1,5 +1,6 @@
 // Texture mapping: rsl.md 12.3 (seed 6.4.6). The renderer answers; `name` may carry a channel, name[channel].
 #include "shadeops/describe.h"
+#include <algorithm>
 
 namespace alpenglow::rsl {
 namespace {
@@ -48,6 +49,20 @@ std::vector<OptionalParameter> shadowParameters() {
     return list;
 }
 
+/// What trace() takes besides, of environment("raytrace").
+std::vector<OptionalParameter> environmentParameters() {
+    std::vector<OptionalParameter> list = filterParameters();
+    for (const Shadeop& op : raytracingShadeops()) {
+        if (op.name != "trace") continue;
+        for (OptionalParameter o : op.optional) {
+            if (std::any_of(list.begin(), list.end(), [&](const OptionalParameter& k) { return k.name == o.name; })) continue;
+            o.doc = "of rays (\"raytrace\"), as for trace()";
+            list.push_back(std::move(o));
+        }
+    }
+    return list;
+}
+
 } // namespace
 
 std::vector<Shadeop> textureShadeops() {
@@ -85,6 +100,7 @@ std::vector<Shadeop> textureShadeops() {
         "parameters; \"blur\" is the part of all directions over which they spread (half angle blur * PI), and four vectors span a cone. Filters are those of maps. "
         "Derivatives go through, as for texture().")
         .derivative = DerivativeRule::Gradient;
+    list.back().optional = environmentParameters();
     list.back().examples = {{"color environment(\"sky.env\", N)", "0.5 0.7 1", "", "the map has this colour everywhere"}};
     Shadeop& shadow = add("shadow",
         each("float color", "$ shadow(string name; point p; pairs)") +

@@ -1,6 +1,7 @@
 // Whom rays meet: "subset", "hitsides", "hitmode", "bias", "maxdist", "label" of trace() and transmission(), the rays of
 // environment("raytrace") and shadow("raytrace"), and trace() in lights. Panes over a floor whose shader looks straight up.
 #include "transport/floorscene.h"
+#include "transport/maps.h"
 
 using namespace alpenglow;
 using namespace alpenglow::transport;
@@ -101,6 +102,25 @@ TEST(RaySets, HitModes) {
     const std::string varying = "AttributeBegin Surface \"redwall\" Polygon \"P\" [-9 1 -9  -9 1 9  9 1 9  9 1 -9] \"Os\" [.25 .25 .25  .25 .25 .25  .25 .25 .25  .25 .25 .25] AttributeEnd\n";
     expectColor(shows("mode9", "Ci = transmission(P, far, \"hitmode\", \"primitive\");", varying), Color(.75f), "Os");
     EXPECT_NEAR(shows("mode10", "Ci = environment(\"raytrace\", up, \"hitmode\", \"primitive\");", pane(1, shape)).y, .5, 1e-5);
+}
+
+// "this environment() also accepts the same optional parameters as trace" (seed 6.4.6): outputs and arrays, too.
+TEST(RaySets, EnvironmentTakesAllThatTraceTakes) {
+    const std::string map = writeMap("rayssky.exr", 8, 4, Color(.25f, .5f, .75f)).substr(1), sky = map.substr(0, map.size() - 1);
+    const std::string thin = pane(1, "Color 1 0 0 Opacity .75 .5 .25"), asked = ", \"environmentmap\", \"" + sky + "\", \"environmenttint\", color(2, 1, 1)";
+    for (Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path}) {
+        expectColor(shows("envall0", "Ci = environment(\"raytrace\", up" + asked + ");", thin, h), {.875f, .25f, .5625f}, "map and tint");
+        expectColor(shows("envall1", "color c = 0; Ci = 0 * environment(\"raytrace\", up, \"transmission\", c); Ci += c;", thin, h), {.25f, .5f, .75f}, "transmission");
+        expectColor(shows("envall2", "color c = 0; Ci = 0 * environment(\"raytrace\", up" + asked + ", \"environmentcontribution\", c); Ci += c;", thin, h), {.125f, .25f, .5625f}, "contribution");
+        expectColor(shows("envall3", "color c = 0; Ci = 0 * environment(\"raytrace\", up" + asked + ", \"unshadowedenvironment\", c); Ci += c;", thin, h), {.5f, .5f, .75f}, "unshadowed");
+        // Refraction alone: what stands below the floor, but for the .04 that glass reflects. (A path follows one of the rays.)
+        if (h != Hider::Path)
+            expectColor(shows("envall4", "Ci = environment(\"raytrace\", up, \"samples\", 4096, \"distribution\", \"glass-ggx\", \"roughness\", .01, \"wo\", up, \"lobeparameters\", {0, 1});",
+                              thin + pane(-1, "Color 0 0 1"), h), {0, 0, .96f}, "arrays", .02f);
+        // A file has no rays: what is theirs alone stays as it is.
+        expectColor(shows("envall5", "color c = color(0, 1, 0); color e = environment(\"" + sky + "\", up, \"transmission\", c, \"environmenttint\", color(9)); Ci = e + c;", thin, h),
+                    {.25f, 1.5f, .75f}, "a file", 1e-3f);
+    }
 }
 
 TEST(RaySets, DistancesTypesAndLabels) {

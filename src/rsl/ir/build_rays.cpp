@@ -2,6 +2,7 @@
 // transmission(), with their optional parameters.
 #include "rsl/front/protocol.h"
 #include "rsl/ir/builder.h"
+#include <algorithm>
 #include <set>
 
 namespace alpenglow::rsl::ir {
@@ -30,12 +31,26 @@ Inst* Builder::rays(const Expr& e, const char* name, const std::vector<std::pair
         if (v->op != Op::ConstString) addArgument(s, args, v, t);
     };
     bool samples = false, coned = false;
+    std::vector<const Expr*> outputs;
     for (const NamedArg& p : e.pairs) {
-        if (!p.value || p.output || p.value->type.array) continue;
         const OptionalParameter* known = nullptr;
         for (const OptionalParameter& o : op.optional)
-            if (o.name == p.name && !o.output) known = &o;
-        if (!known) continue; // filters of maps
+            if (o.name == p.name && o.output == p.output) known = &o;
+        if (!p.value || !known) continue; // filters of maps
+        if (p.value->type.array) {
+            if (p.output || !known->type.array || (known->type.base == Base::String) != (p.value->type.base == Base::String)) continue;
+            Inst* from = array(*p.value);
+            for (int n = 0; n < arrayLength(from); ++n)
+                give(p.name + "[" + std::to_string(n) + "]",
+                     emit(Op::ArrayLoad, from->element, {from, constant(static_cast<float>(n))}), p.value->type.element());
+            continue;
+        }
+        if (p.output) {
+            s.resultKinds.push_back(kindOf(p.value->type));
+            s.resultNames.push_back(p.name);
+            outputs.push_back(p.value.get());
+            continue;
+        }
         Inst* v = expr(*p.value);
         if ((known->type.base == Base::String) != (v->kind == Kind::String)) continue;
         samples |= p.name == "samples";
@@ -48,7 +63,22 @@ Inst* Builder::rays(const Expr& e, const char* name, const std::vector<std::pair
     for (const auto& [output, parameter] : messageSlots_)
         if (op.name == "trace") give(PairName::surface(output).text(), get(parameter.first), parameter.second);
     place_ = e.place;
-    return call(Op::Request, std::move(s), std::move(args))[0];
+    const std::vector<Inst*> r = call(Op::Request, std::move(s), std::move(args));
+    for (size_t n = 0; n < outputs.size(); ++n) {
+        const Held held(*this, *outputs[n]);
+        assign(*outputs[n], r[n + 1]);
+    }
+    return r[0];
+}
+
+/// Parameters of environment() that files have no use for.
+bool Builder::ofRaysOnly(const Expr& e, const std::string& parameter) {
+    if (e.shadeop->name != "environment") return false;
+    const auto known = [&](const char* op) {
+        const std::vector<OptionalParameter>& list = findShadeop(op)->optional;
+        return std::any_of(list.begin(), list.end(), [&](const OptionalParameter& o) { return o.name == parameter; });
+    };
+    return known("trace") && !known("texture");
 }
 
 /// environment() and shadow() where the map is rays; null where it is a file.

@@ -188,7 +188,7 @@ Inst* Builder::service(const Expr& e, Op kind, int part, bool points) {
         addArgument(s, args, expr(*e.channel, Kind::Float), real);
     }
     for (const NamedArg& p : e.pairs) {
-        if (!p.value) continue;
+        if (!p.value || ofRaysOnly(e, p.name)) continue;
         if (p.output) {
             output(*p.value, p.name);
             continue;

@@ -313,6 +313,7 @@ private:
     // build_rays.cpp
     Inst* rays(const Expr&, const char* name, const std::vector<std::pair<Inst*, Type>>& positional, Inst* cone);
     Inst* tracedMap(const Expr&);
+    bool ofRaysOnly(const Expr&, const std::string& parameter);
     // build_hemisphere.cpp
     struct Hemisphere;
     void hemispherePairs(const Expr&, Inst* normal, bool occlusion, Hemisphere&);

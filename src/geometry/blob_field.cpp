@@ -551,9 +551,13 @@ public:
             if (crosses) out_[found++] = refined(t0, f0, t1, f1);
             return;
         }
-        constexpr int kDeepest = 46;
+        // A line in the surface (along a tube, through a point of it) is at the threshold all along, and no piece of it is
+        // decided: what is there to find is where it leaves. Whatever else may take so long, no ray takes more than kPieces.
+        constexpr int kDeepest = 46, kCoarse = 6, kPieces = 1 << 16;
+        constexpr double kTouch = 1e-10;
+        const bool along = depth >= kCoarse && std::fabs(f0) < kTouch && std::fabs(f1) < kTouch;
         const double middle = 0.5 * (t0 + t1);
-        if (depth >= kDeepest ||
+        if (depth >= kDeepest || along || ++pieces_ > kPieces ||
             !(middle > t0 && middle < t1)) { // it touches, or there is no slope to trust: a change of sign counts
             if (crosses) out_[found++] = middle;
             return;
@@ -613,6 +617,7 @@ private:
     Vec3d org_, dir_;
     int most_;
     double* out_;
+    int pieces_ = 0;
     Results<RayLeaf> rays_;
     Results<Course> courses_;
 };

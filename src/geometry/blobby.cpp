@@ -34,6 +34,7 @@ Blobby::Blobby(ShapeSource s, BlobField field, int leaves, Diagnostics& diag)
     if (!source_.like) cut(diag); // later keys only tell their numbers
     measure();
     takePrimvars(diag);
+    takePlacedPoints();
 }
 
 bool Blobby::fits(KeyedShape& later) const {

@@ -35,6 +35,7 @@ protected:
     using Class = scene::Class;
     size_t classCount(Class c) const override { return c == Class::Constant || c == Class::Uniform ? 1 : size_t(leaves_); }
     int weights(Class, const SurfacePoint&, Weight w[16]) const override;
+    void interpolateVariable(const PrimVar&, const SurfacePoint& at, float* out, float* du, float* dv) const override;
     SurfacePoint pointAt(uint32_t prim, double b1, double b2, float time) const override;
     Bounds keyBounds(uint32_t prim) const override { return boundsOf(boxes_[prim].lo, boxes_[prim].hi); }
     bool fits(KeyedShape& later) const override;
@@ -75,6 +76,13 @@ private:
         const Part& at(float time) const;
     };
     const Areas& areas() const;
+    /// A vertex variable of type mpoint: what each blob does to the points of object space, to the variable's place in camera space.
+    struct PlacedPoints {
+        size_t var; ///< among primvars_, where it is a point (or an array of them)
+        std::vector<Matrix> maps; ///< of each blob in turn, elements() each
+    };
+    void takePlacedPoints();
+    void placePoint(const PlacedPoints&, const SurfacePoint& at, float* out, float* du, float* dv) const;
     double boxArea(uint32_t box, int lines) const;
     void cut(Diagnostics&);
     std::vector<Box> roots();
@@ -104,6 +112,7 @@ private:
     std::unique_ptr<const BlobMotion> motion_; ///< null: its numbers stand still
     const Blobby* owner_ = nullptr;            ///< of a later key: that which has its boxes
     mutable Areas areas_;
+    std::vector<PlacedPoints> placed_;
 };
 
 } // namespace alpenglow::geometry

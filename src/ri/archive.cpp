@@ -242,7 +242,8 @@ void Interpreter::inPart(const std::string& key, const SourcePlace& place, const
     const SourcePlace end = body();
     if (motion_.has_value() && !wasMoving) closeOpenEnds(std::max(conditions, conditions_.size()), end);
     while (conditions_.size() > conditions) {
-        reporter.error(Rie::Nesting, conditions_.back().place, "IfBegin without IfEnd in an archive");
+        if (!interrupted())
+            reporter.error(Rie::Nesting, conditions_.back().place, "IfBegin without IfEnd in an archive");
         conditions_.pop_back();
     }
     unwind(barriers_.back(), end, true);

@@ -90,7 +90,8 @@ void Interpreter::end(BlockKind kind, const Call& call) {
     for (size_t& b : barriers_) b = std::min(b, blocks_.size());
 }
 
-/// Closes blocks down to `depth` because the stream is over. keepWorld: frames and worlds stay open (an archive may open them).
+/// Closes blocks down to `depth` because the stream is over; of one that the user stopped before its end nothing is said. keepWorld:
+/// frames and worlds stay open (an archive may open them).
 void Interpreter::unwind(size_t depth, const SourcePlace& where, bool keepWorld) {
     while (blocks_.size() > depth) {
         Block& b = blocks_.back();
@@ -99,8 +100,9 @@ void Interpreter::unwind(size_t depth, const SourcePlace& where, bool keepWorld)
                           fmt::format("{} is left open by an archive", beginName(b.kind)));
             return;
         }
-        reporter.error(Rie::Nesting, where,
-                       fmt::format("{} ends before the {} of line {} is closed", where.file, beginName(b.kind), b.place.line));
+        if (!interrupted())
+            reporter.error(Rie::Nesting, where,
+                           fmt::format("{} ends before the {} of line {} is closed", where.file, beginName(b.kind), b.place.line));
         pop();
     }
 }

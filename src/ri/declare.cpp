@@ -1,6 +1,7 @@
 #include "ri/declare.h"
 #include "scene/knownoptions.h"
 #include <charconv>
+#include <limits>
 #include <vector>
 
 namespace alpenglow::ri {
@@ -131,7 +132,8 @@ std::optional<Type> typeNamed(std::string_view s) {
     if (s == "vector") return Type::Vector;
     if (s == "normal") return Type::Normal;
     if (s == "hpoint") return Type::HPoint;
-    if (s == "matrix" || s == "mpoint") return Type::Matrix; // mpoint: a blob's matrix, also bare numbers
+    if (s == "mpoint") return Type::HPoint; // a blob's matrix as its rows: an array of four hpoints (fromWords)
+    if (s == "matrix") return Type::Matrix;
     return {};
 }
 
@@ -147,6 +149,7 @@ std::optional<Declaration> fromWords(const std::vector<std::string_view>& w) {
     auto t = typeNamed(w[i]);
     if (!t) return {};
     d.type = *t;
+    const int each = w[i] == "mpoint" ? 4 : 1;
     ++i;
     if (i < w.size()) {
         std::string_view n = w[i];
@@ -156,8 +159,10 @@ std::optional<Declaration> fromWords(const std::vector<std::string_view>& w) {
         while (!n.empty() && space(n.back())) n.remove_suffix(1);
         auto r = std::from_chars(n.data(), n.data() + n.size(), d.arrayLength);
         if (r.ec != std::errc() || r.ptr != n.data() + n.size() || d.arrayLength < 1) return {};
+        if (d.arrayLength > std::numeric_limits<int>::max() / each) return {};
         ++i;
     }
+    if (each > 1) d.arrayLength = each * std::max(1, d.arrayLength);
     if (i != w.size()) return {};
     return d;
 }

@@ -192,13 +192,13 @@ void Interpreter::closeOpenEnds(size_t conditions, const SourcePlace& where) {
         recording_.reset();
     }
     if (motion_) {
-        reporter.error(Rie::Nesting, motion_->place, "MotionBegin without MotionEnd");
+        if (!interrupted()) reporter.error(Rie::Nesting, motion_->place, "MotionBegin without MotionEnd");
         Call end;
         end.place = where;
         endMotion(end);
     }
     while (conditions_.size() > conditions) {
-        reporter.error(Rie::Nesting, conditions_.back().place, "IfBegin without IfEnd");
+        if (!interrupted()) reporter.error(Rie::Nesting, conditions_.back().place, "IfBegin without IfEnd");
         conditions_.pop_back();
     }
 }

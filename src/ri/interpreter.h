@@ -50,8 +50,10 @@ public:
     /// Reads a whole stream at the outermost level and closes what it leaves open.
     void readStream(std::unique_ptr<ByteSource> raw, const std::string& name);
     void execute(const Call& call);
+    /// By the user: of what is not closed then, nothing is said.
+    bool interrupted() const { return settings.stop && *settings.stop; }
+    bool stopped() const { return aborted() || interrupted(); }
     /// ErrorHandler "abort" has met an error.
-    bool stopped() const { return aborted() || (settings.stop && *settings.stop); }
     bool aborted() const { return abort_ && reporter.errors() > errorsBefore_; }
 
     /// RibReader::nextScene().

@@ -241,13 +241,22 @@ InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const std::map<s
                                      Diagnostics& d, const scene::LightSet& lights) {
     if (!shader || !shader->program->program().handles) return shader;
     std::vector<std::pair<std::string, scene::ShaderRef>> called(coshaders.begin(), coshaders.end());
-    if (const std::set<std::string> names = lights.empty() ? std::set<std::string>{} : calledOfLights(shader->program->program());
-        !names.empty())
-        for (int l : lights) {
-            const BoundLight& light = lights_[size_t(l)];
-            if (light.source && light.source->shader && light.instance && answers(*light.instance->program, names))
-                called.emplace_back(rsl::LightHandle{l, light.handle}.text(), light.source->shader);
-        }
+    const auto instanceOf = [&](const scene::ShaderRef& call, Diagnostics& to) -> const InstanceRef& {
+        auto [i, fresh] = coShaders_.try_emplace(call.get());
+        if (fresh) i->second = instance(*call, rsl::ShaderKind::Surface, to, true);
+        return i->second;
+    };
+    std::set<std::string> names; // of lights' methods and members; an integrator that is a co-shader may be the one that asks for them
+    if (!lights.empty()) {
+        names = calledOfLights(shader->program->program());
+        for (const auto& [handle, call] : coshaders)
+            if (const InstanceRef& i = instanceOf(call, d)) names.merge(calledOfLights(i->program->program()));
+    }
+    for (int l : names.empty() ? scene::LightSet{} : lights) {
+        const BoundLight& light = lights_[size_t(l)];
+        if (light.source && light.source->shader && light.instance && answers(*light.instance->program, names))
+            called.emplace_back(rsl::LightHandle{l, light.handle}.text(), light.source->shader);
+    }
     if (called.empty() && shader->handlePlaces.empty()) return shader;
     std::vector<const void*> key{shader.get()};
     for (const auto& [handle, call] : called) key.push_back(call.get());
@@ -256,18 +265,17 @@ InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const std::map<s
     auto copy = std::make_shared<ShaderInstance>(*shader);
     dropMissingHandles(*shader, copy->parameters.strings, called, d);
     for (const auto& [handle, call] : called) {
-        auto [i, fresh] = coShaders_.try_emplace(call.get());
         Diagnostics said; // what is to be said of a light was said when it was bound
         const bool light = !coshaders.count(handle);
-        if (fresh) i->second = instance(*call, rsl::ShaderKind::Surface, light ? said : d, true);
-        if (!i->second) continue;
-        rsl::CoShader c = rsl::ShaderCompiler::coShader(i->second->program, handle);
+        const InstanceRef& i = instanceOf(call, light ? said : d);
+        if (!i) continue;
+        rsl::CoShader c = rsl::ShaderCompiler::coShader(i->program, handle);
         c.light = light;
-        if (!(i->second->toCurrent == shader->toCurrent)) c.space = spaceAt(i->second->toCurrent);
-        for (const auto& [name, v] : i->second->parameters.numbers) c.numbers[name] = v;
-        for (const auto& [name, v] : i->second->parameters.strings) c.strings[name] = v;
-        dropMissingHandles(*i->second, c.strings, called, d);
-        c.computed = i->second->program->computedParameters(i->second->given, {});
+        if (!(i->toCurrent == shader->toCurrent)) c.space = spaceAt(i->toCurrent);
+        for (const auto& [name, v] : i->parameters.numbers) c.numbers[name] = v;
+        for (const auto& [name, v] : i->parameters.strings) c.strings[name] = v;
+        dropMissingHandles(*i, c.strings, called, d);
+        c.computed = i->program->computedParameters(i->given, {});
         copy->coShaders.push_back(std::move(c));
     }
     return bound = copy;

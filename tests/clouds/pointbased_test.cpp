@@ -323,6 +323,21 @@ TEST_F(PointScenes, ColoursBleedAsByRays) {
     EXPECT_GT(meanError(rays, off), meanError(rays, points)) << "one ray a point where it is switched off";
 }
 
+// PRMan 12 and Aqsis knew no "pointbased": a file and no samples meant it.
+TEST_F(PointScenes, AFileAndNoSamplesMeanPoints) {
+    const std::string floor = quad({-2, -1, -2}, {2, -1, -2}, {2, -1, 1.5f}, {-2, -1, 1.5f}), ofBall = "Color [.9 .3 .1]\n" + ball(-.8f, -.4f, .4f, .6f);
+    shader("baker", "", "bake3d(\"o.ptc\", \"\", P, normalize(N), \"interpolate\", 1, \"_radiosity\", Cs); Ci = Cs;");
+    shader("points", "", "Ci = .1 + indirectdiffuse(P, n, 0, \"pointbased\", 1, \"filename\", \"o.ptc\") + occlusion(P, n, 0, \"pointbased\", 1, \"filename\", \"o.ptc\");");
+    shader("old", "", "Ci = .1 + indirectdiffuse(P, n, 0, \"filename\", \"o.ptc\") + occlusion(P, n, 0, \"filename\", \"o.ptc\");");
+    shader("asked", "string f = \"o.ptc\"; float most = 0;", "Ci = .1 + indirectdiffuse(P, n, most, \"filename\", f) + occlusion(P, n, most, \"filename\", f);");
+    bake(ofBall);
+    const auto points = picture(floor, "Surface \"points\"\n");
+    EXPECT_EQ(points, picture(floor, "Surface \"old\"\n"));
+    EXPECT_EQ(points, picture(floor, "Surface \"asked\"\n"));
+    EXPECT_NE(points, picture(floor, "Surface \"asked\" \"most\" 16\n")) << "rays: there is no ball in this world";
+    EXPECT_NE(points, picture(floor, "Surface \"asked\" \"f\" [\"\"]\n"));
+}
+
 // A closed room whose walls have the albedo .6 and shine by 1: what arrives after n bounces is the sum of a geometric series.
 TEST_F(PointScenes, BouncesAddUpAsTheSeriesSays) {
     const std::string walls = ball(0, 0, 0, 4); // the camera is inside

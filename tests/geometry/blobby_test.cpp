@@ -191,6 +191,24 @@ TEST(Blobby, ALongSegmentIsATube) {
     EXPECT_NEAR(t[1] - t[0], 8 + 2 * 0.5 * lo, 1e-9);
 }
 
+// Every point of such a line is a point of the surface, as far as numbers tell: no number of pieces decides about it. It took hours.
+TEST(Blobby, ALineInTheSurfaceOfATubeEnds) {
+    Diagnostics diag;
+    auto floats = std::vector<float>{-2, 0, 0, 2, 0, 0, 1};
+    const auto unit = matrixNumbers(Matrix());
+    floats.insert(floats.end(), unit.begin(), unit.end());
+    ShapeRef s = build(blobby(1, {1002, 0}, {floats}), Matrix(), diag);
+    ASSERT_TRUE(s);
+    const auto across = hits(*s, {0, -3, 0}, {0, 1, 0});
+    ASSERT_EQ(across.size(), 2u);
+    for (double off : {0.0, 1e-16, -1e-15, 1e-13, -1e-12, 1e-11}) {
+        const auto t = hits(*s, {-9, across[1] - 3 + off, 0}, {1, 0, 0});
+        for (double x : t) EXPECT_TRUE(x > 6 && x < 12) << "within the tube";
+    }
+    EXPECT_EQ(hits(*s, {-9, across[1] - 3 - 1e-6, 0}, {1, 0, 0}).size(), 2u);
+    EXPECT_EQ(hits(*s, {-9, across[1] - 3 + 1e-6, 0}, {1, 0, 0}).size(), 0u);
+}
+
 TEST(Blobby, OperatorsAreWhatTheyAreCalled) {
     // Along the x axis through two balls one unit apart the field is known: its roots by scanning it finely.
     const auto bump = [](double d) {
@@ -330,6 +348,49 @@ TEST(Blobby, VariablesBlendByTheField) {
         const Vec3d pu(q.dPdu), pv(q.dPdv), x(q.P);
         EXPECT_NEAR(du, (f(x + pu * 1e-5) - f(x - pu * 1e-5)) / 2e-5, 1e-3 * (1 + length(pu)));
         EXPECT_NEAR(dv, (f(x + pv * 1e-5) - f(x - pv * 1e-5)) / 2e-5, 1e-3 * (1 + length(pv)));
+    }
+}
+
+// A variable of type mpoint, which is read as the four rows of its matrix. Where the reference pose is the pose, every blob takes a point
+// to itself, so their mix is the point, in camera space; and one blob alone takes it by the inverse of its matrix and the other matrix.
+TEST(Blobby, ReferencePosesPlaceThePoints) {
+    const Matrix here = rotateMatrix(30, 1, 2, 0.5) * scaleMatrix(0.8, 1, 1.2) * translateMatrix(-0.3, 0.1, 0);
+    const Matrix there = rotateMatrix(-70, 0, 1, 1) * scaleMatrix(2, 1, 3) * translateMatrix(4, 5, 6);
+    const Matrix toCamera = rotateMatrix(20, 0, 1, 0) * translateMatrix(1, 2, 9);
+    std::vector<float> tube{-0.5, 0, 0, 0.5, 0, 0, 0.4f};
+    const auto second = ball(0.4, 0, 0.2, 0.9);
+    tube.insert(tube.end(), second.begin(), second.end());
+    struct Case { std::vector<int> code; std::vector<std::vector<float>> floats; std::vector<Matrix> poses; Matrix moves; };
+    const Matrix own = scaleMatrix(0.9, 0.9, 0.9) * translateMatrix(0.4, 0, 0.2);
+    const Case cases[] = {{{1001, 0, 1001, 16, 0, 2, 0, 1}, {matrixNumbers(here), second}, {here, own}, Matrix()},
+                          {{1001, 0, 1002, 16, 0, 2, 0, 1}, {matrixNumbers(here), tube}, {here, own}, Matrix()},
+                          {{1001, 0}, {matrixNumbers(here)}, {there}, inverse(here) * there},
+                          {{1002, 0}, {tube}, {there}, inverse(own) * there}};
+    for (const Case& c : cases) {
+        Diagnostics diag;
+        auto p = blobby(int(c.poses.size()), c.code, c.floats);
+        std::vector<float> rows;
+        for (const Matrix& m : c.poses)
+            for (float f : matrixNumbers(m)) rows.push_back(f);
+        p->params = {param("Pref", scene::Class::Vertex, scene::Type::HPoint, rows)};
+        p->params[0].arrayLength = 4;
+        ShapeRef s = build(p, toCamera, diag);
+        ASSERT_TRUE(s);
+        const int var = s->findPrimvar("Pref");
+        ASSERT_EQ(s->primvars()[size_t(var)].outWidth(), 3);
+        const Matrix all = inverse(toCamera) * c.moves * toCamera;
+        for (int i = 0; i < 20; ++i) {
+            const SurfacePoint q = s->sampleArea(random01(), random01());
+            if (!(s->sampleDensity(q) > 0)) continue;
+            float v[3], du[3], dv[3];
+            s->interpolate(var, q, v, du, dv);
+            const Vec3d want = transformPoint(all, Vec3d(q.P)), wu = transformVector(all, Vec3d(q.dPdu)), wv = transformVector(all, Vec3d(q.dPdv));
+            for (int k = 0; k < 3; ++k) {
+                EXPECT_NEAR(v[k], want[k], 1e-4);
+                EXPECT_NEAR(du[k], wu[k], 1e-4 * (1 + length(wu)));
+                EXPECT_NEAR(dv[k], wv[k], 1e-4 * (1 + length(wv)));
+            }
+        }
     }
 }
 

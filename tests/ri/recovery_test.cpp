@@ -6,6 +6,20 @@
 using namespace alpenglow;
 using namespace alpenglow::ri;
 
+TEST(Recovery, WhatTheUserStoppedIsNotCalledUnfinished) {
+    struct Stops : Collected {
+        StopFlag stop;
+        void render(std::shared_ptr<const scene::Frame> f) override { Collected::render(std::move(f)), stop = 1; }
+    };
+    Stops c;
+    ReaderOptions options;
+    options.stop = &c.stop;
+    RibReader reader(options, c, c.diagnostics);
+    reader.readMemory("FrameBegin 1\nReadArchive \"inner\"\nIfBegin \"1\"\nWorldBegin WorldEnd\nSphere 1 -1 1 360\nIfEnd\nFrameEnd\n", "t.rib");
+    EXPECT_EQ(c.frames.size(), 1u);
+    EXPECT_EQ(c.count(), 1u) << c.messages(); // the archive that is not there
+}
+
 TEST(Scopes, OutOfScopeIsDoneAndWarnedAboutOnce) {
     auto c = read("WorldBegin Imager \"background\" Imager \"background\" Sphere 1 -1 1 360 WorldEnd");
     EXPECT_EQ(c->only().severity, Severity::Warning);

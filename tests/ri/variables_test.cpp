@@ -17,6 +17,11 @@ TEST(Declarations, Parse) {
     EXPECT_EQ(parseDeclaration("int")->type, Type::Integer);
     EXPECT_EQ(parseDeclaration("float")->cls, Class::Uniform);
     EXPECT_EQ(parseDeclaration(" facevertex \t hpoint [ 2 ] ")->arrayLength, 2);
+    for (const auto& [text, length] : {std::pair{"vertex mpoint", 4}, {"vertex mpoint[3]", 12}}) { // rows of matrices
+        EXPECT_EQ(parseDeclaration(text)->type, Type::HPoint);
+        EXPECT_EQ(parseDeclaration(text)->arrayLength, length);
+    }
+    EXPECT_FALSE(parseDeclaration("vertex mpoint[2147483647]"));
     for (const char* bad : {"", "varying", "colour", "float[0]", "float[-1]", "float[", "float]", "float[2147483648]",
                             "color varying", "float x y"})
         EXPECT_FALSE(parseDeclaration(bad)) << bad;

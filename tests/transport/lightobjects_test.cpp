@@ -71,6 +71,18 @@ TEST(LightObjects, OtherLightsLeaveTheArgumentsAsTheyAre) {
     EXPECT_NE(s.messages().find("only class lights whose light() has these parameters"), std::string::npos) << s.messages();
 }
 
+// As exporters of 3Delight write it: the surface hands everything to an integrator, which asks the lights.
+TEST(LightObjects, ACoShaderAsksThem) {
+    writeSampled();
+    writeShader("integrates", "class integrates() { public void integrate(output color Ci, Oi) {\n    shader lights[] = getlights();\n"
+                              "    uniform float i, n = arraylength(lights), d; vector L; color Cl; Ci = 0; Oi = 1; rayinfo(\"depth\", d);\n"
+                              "    if (d > 2) return;\n" + std::string(kSum) + "\n    Ci *= transmission(P, P + vector(0, 1e-3, 0));\n} }\n");
+    // No warning either: P is handed to the lights, and none of them moves it.
+    writeShader("handsover", "class handsover() { public void surface(output color Ci, Oi) { shader to = getshader(\"to\"); to->integrate(Ci, Oi); } }\n");
+    expectEverywhere(scene("Shader \"integrates\" \"to\"\n" + at(3, "LightSource \"sampled\" 1") + at(5, "LightSource \"sampled\" 2 \"samples\" 2 \"intensity\" 1"), "handsover"),
+                     Color(6, 22, 9), "two lights");
+}
+
 TEST(LightObjects, MethodsAndMembers) {
     writeSampled();
     writeAsking("members", "    Ci = color(lights[0]->shares, lights[0]->twice(3), comp(lights[0]->tint, 2) + lights[0]->samples);");

@@ -378,6 +378,19 @@ std::string Builder::wayTo(size_t i, const Function& f) const {
     return text;
 }
 
+/// Whether a method that the call can mean has this argument (1 is the first) as an output.
+bool Builder::mayFill(const Expr& call, size_t argument) const {
+    if (call.text == "light" && argument <= 3) return true; // L, Cl and Ol, of lights that the renderer answers for
+    for (const Instance& i : instances_)
+        for (const auto& f : i.binding->shader->nested) {
+            std::vector<const Expr*> given;
+            if (f->name != call.text || !argumentsOf(*f, call, given)) continue;
+            for (size_t n = 0; n < given.size(); ++n)
+                if (given[n] == call.args[argument].get() && f->parameters[n]->output) return true;
+        }
+    return false;
+}
+
 /// What the methods that a call can mean assign.
 void Builder::scanMethod(const Expr& e, std::set<int>& out) {
     const bool outermost = scannedMethods_.empty();

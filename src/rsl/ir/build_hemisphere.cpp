@@ -84,11 +84,13 @@ void Builder::hemispherePairs(const Expr& e, Inst* normal, bool occlusion, Hemis
     for (const auto& [output, parameter] : messageSlots_) give(PairName::surface(output).text(), get(parameter.first), parameter.second);
 }
 
-/// Whether a call is to be answered from point clouds: an instruction that tells, or null where it names none.
+/// Whether a call is to be answered from point clouds: an instruction that tells, or null where it names none. PRMan 12 and Aqsis knew no
+/// "pointbased": there a file and no samples mean it.
 Inst* Builder::readsPoints(const Expr& e) {
     const bool below = e.shadeop->name == "subsurface";
     bool named = false;
     Inst* wanted = nullptr;
+    const Expr* file = nullptr;
     const auto isCloud = [&](Inst* type) {
         if (type->op == Op::ConstString) return boolean(type->text == "pointcloud");
         return emit(Op::Equal, Kind::Bool, {type, leaves_.string("pointcloud")});
@@ -97,10 +99,19 @@ Inst* Builder::readsPoints(const Expr& e) {
     for (const NamedArg& p : e.pairs) {
         if (!p.value || p.output) continue;
         named |= p.name == "filename" || p.name == "filenames";
+        if (!below && p.name == "filename") file = p.value.get();
         if (below && p.name == "type") wanted = isCloud(expr(*p.value, Kind::String));
         if (below || p.name != "pointbased") continue;
         Inst* v = expr(*p.value, Kind::Float);
         wanted = v->op == Op::Const ? boolean(v->numbers[0] != 0) : emit(Op::NotEqual, Kind::Bool, {v, constant(0)});
+    }
+    const bool bySamples = !wanted && file && e.args.size() > 2 && e.signature->parameters[2].type.base == Base::Float;
+    if (bySamples) {
+        Inst *name = expr(*file, Kind::String), *samples = expr(*e.args[2], Kind::Float);
+        Inst* none = samples->op == Op::Const ? boolean(samples->numbers[0] == 0) : emit(Op::Equal, Kind::Bool, {samples, constant(0)});
+        Inst* given = name->op == Op::ConstString ? boolean(!name->text.empty()) : emit(Op::NotEqual, Kind::Bool, {name, leaves_.string("")});
+        if (none->op == Op::Const && given->op == Op::Const) wanted = boolean(none->numbers[0] != 0 && given->numbers[0] != 0);
+        else wanted = emit(Op::And, Kind::Bool, {none, given});
     }
     return !wanted || (below && !named) || (wanted->op == Op::Const && wanted->numbers[0] == 0) ? nullptr : wanted;
 }

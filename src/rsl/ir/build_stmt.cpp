@@ -317,7 +317,8 @@ void Builder::scanAssigned(const Expr& e, std::set<int>& out, std::set<const Fun
     };
     if (e.kind == ExprKind::Assign) lvalue(e.args[0].get());
     if (e.kind == ExprKind::Method) {
-        for (size_t n = 1; n < e.args.size(); ++n) lvalue(e.args[n].get());
+        for (size_t n = 1; n < e.args.size(); ++n)
+            if (mayFill(e, n)) lvalue(e.args[n].get());
         scanMethod(e, out);
     }
     if (e.kind == ExprKind::ShadeopCall && e.signature)

@@ -263,6 +263,7 @@ private:
     std::vector<Inst*> handlesOf(const Expr&, std::vector<Inst*>* when = nullptr);
     Inst* storeHandles(Inst* to, const Expr&);
     std::vector<const Symbol*> membersOf(size_t instance) const;
+    bool mayFill(const Expr& call, size_t argument) const;
     void scanMethod(const Expr&, std::set<int>& out);
     // build_lighthandles.cpp: lights by their handles
     Inst* lightMethod(const Expr& call, Inst* handle);

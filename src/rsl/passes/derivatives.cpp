@@ -91,7 +91,7 @@ struct Orders {
         const Site& s = k.sites[static_cast<size_t>(i->site)];
         const DerivativeRule rule = s.shadeop ? s.shadeop->derivative : DerivativeRule::ZeroWarn;
         if (rule == DerivativeRule::ZeroWarn || (rule == DerivativeRule::Gradient && i->op != Op::Service)) // see gradients.h
-            warn(i, "the derivative of " + s.op + "() is taken as zero");
+            warn(i, "the derivative of " + (s.op == "gatherturn" ? "what gather() brings" : s.op + "()") + " is taken as zero");
     }
 
     /// Derivatives taken in a region, and by the functions that it calls. The bodies of functions are their own matter.

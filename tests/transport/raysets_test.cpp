@@ -117,9 +117,30 @@ TEST(RaySets, EnvironmentTakesAllThatTraceTakes) {
         if (h != Hider::Path)
             expectColor(shows("envall4", "Ci = environment(\"raytrace\", up, \"samples\", 4096, \"distribution\", \"glass-ggx\", \"roughness\", .01, \"wo\", up, \"lobeparameters\", {0, 1});",
                               thin + pane(-1, "Color 0 0 1"), h), {0, 0, .96f}, "arrays", .02f);
+        // Glass of the index of what is about it does nothing.
+        if (h != Hider::Path)
+            expectColor(shows("envall6", "Ci = environment(\"raytrace\", up, \"samples\", 4096, \"distribution\", \"glass-ggx\", \"roughness\", .2, \"eta\", 1, \"wo\", up);",
+                              thin + pane(-1, "Color 0 0 1"), h), {0, 0, 1}, "index 1", .02f);
         // A file has no rays: what is theirs alone stays as it is.
         expectColor(shows("envall5", "color c = color(0, 1, 0); color e = environment(\"" + sky + "\", up, \"transmission\", c, \"environmenttint\", color(9)); Ci = e + c;", thin, h),
                     {.25f, 1.5f, .75f}, "a file", 1e-3f);
+    }
+}
+
+TEST(RaySets, EnvironmentWithEveryParameter) {
+    writeShader("envevery", R"(surface envevery() { color a = 0, b = 0, c = 0, d = 0, e = 0; vector n = 0, up = vector "world" (0, 1, 0);
+        Ci = environment("raytrace", up, "type", "specular", "weight", color(.5), "samplebase", .5, "raytype", "specular", "raylabel", "l", "maxhitdist", 9,
+                         "distribution", "ward", "wo", up, "horizon", up, "roughness", .2, "roughnessv", .3, "udir", vector(1, 0, 0), "eta", color(0),
+                         "absorption", color(.1), "lobeparameters", {1, 1}, "environmentmap", "", "environmentspace", "world", "environmenttint", color(2),
+                         "exponent", 20, "samplearealights", 1, "transmission", a, "hitnormal", n, "environmentcontribution", b, "unshadowedenvironment", c,
+                         "arealightcontribution", d, "unshadowedarealight", e, "samples", 4)
+             + environment("raytrace", up, "bsdf", "cosine", "samplecone", .2);
+        Ci += 0 * (a + b + c + d + e + color(n)); Oi = 1; })");
+    for (const Hider h : {Hider::Hidden, Hider::Path}) {
+        Scene s(world("Surface \"envevery\" " + std::string(kFloor) + pane(1, "Color .25 .5 .75")), withShaders(h));
+        const Color c = s.one(kLow);
+        EXPECT_TRUE(std::isfinite(c.x) && c.y > 0) << c.x;
+        EXPECT_EQ(s.messages().find("has no parameter"), std::string::npos) << s.messages();
     }
 }
 

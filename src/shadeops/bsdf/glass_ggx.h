@@ -20,7 +20,9 @@ template <class T>
 AL_INLINE GlassSide<T> glassSide(const Triple<T>& front, const Triple<T>& o, const Triple<T>& udir, const T& roughness, const T& roughnessv, const T& eta) {
     const vm inside = value(dot(front, o)) < 0;
     const Triple<T> n = select3(inside, -front, front);
-    const T one = T(vf(1)), index = larger(eta, T(vf(kLeastRoughness)));
+    // Facets between equal indices have no normal: a way straight on has all. An index next to it bends by as good as nothing.
+    const T one = T(vf(1)), given = larger(eta, T(vf(kLeastRoughness)));
+    const T index = select(absLanes(value(given) - vf(1)) < vf(1e-3f), T(vf(1.001f)), given);
     const T here = select(inside, index, one), there = select(inside, one, index);
     return {o, n, tangents(n, udir), here, there, sane(roughness), sane(roughnessv)};
 }

@@ -47,6 +47,7 @@ void sayEmptyPicture(const Job& job, const scene::Frame& frame, Diagnostics& dia
         c.window().height() < c.height())
         return;
     const transport::World::Facts facts = job.world->facts();
+    if (!job.met && frame.options.imager) return; // it may paint all of the picture
     if (!job.met) {
         warn(diags, {}, "the picture is empty: the camera sees nothing of the scene", unseenHint(facts.shapes, facts.before));
         return;

@@ -128,6 +128,9 @@ std::vector<Shadeop> messageShadeops() {
     add("shadername", sigs({{"string shadername()"}, {"string shadername(string type)"}}), Lowering::Service, kAnyContext, "Name of the shader attached.")
         .source = "(k)";
     list.back().examples = {{"shadername()", "eval"}};
+    for (Shadeop& op : list) // the same all over a primitive
+        for (const char* name : {"attribute", "option", "rendererinfo", "shadername"})
+            if (op.name == name) op.derivative = DerivativeRule::Zero;
     return list;
 }
 

@@ -255,6 +255,8 @@ TEST_F(Said, PicturesWithNothingInThem) {
         EXPECT_TRUE(says("1 shape of 1 lies before it")) << errors();
         render(look + "WorldBegin\n" + lamp + "WorldEnd\n");
         EXPECT_TRUE(says("no primitives")) << errors();
+        render("Imager \"background\" \"color\" [1 0 0]\n" + look + "WorldBegin\nWorldEnd\n"); // what imagers paint is a picture
+        EXPECT_EQ(times("the picture is"), 0) << errors();
         render(look + "Translate 0 0 5\nWorldBegin\nSurface \"matte\"\n" + ball);
         EXPECT_TRUE(says("the picture is black: the scene has no lights")) << errors();
         render(look + "Translate 0 0 5\nWorldBegin\nAttributeBegin\n" + lamp + "AttributeEnd\nSurface \"matte\"\n" + ball);

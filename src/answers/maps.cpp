@@ -188,7 +188,8 @@ static void noteNoShadowMap(texture::Handle map, const ServiceCall& call) {
     if (!map || !map->tiles.empty() || (map->worldToCamera && map->worldToNDC)) return;
     call.diagnostics.reportOnce("noshadowmap:" + map->path,
                                 {Severity::Warning, Rie::BadFile, call.place(),
-                                 "shadow(): \"" + map->path + "\" is no shadow map: it has no matrices of a camera, and gives no shadow",
+                                 "shadow(): \"" + map->path +
+                                     "\" is no shadow map: it has no matrices of a camera, and gives no shadow",
                                  "Display of type \"zfile\" or \"deepshad\", or MakeShadow of the former, makes one", {}});
 }
 

@@ -209,7 +209,8 @@ std::shared_ptr<const SubsurfaceSite> subsurfaceSite(const SiteInfo& i, const rs
     if (type == "pointcloud" && !i.text.count(rsl::kPairPoints))
         said("type", "a point cloud is read where \"filename\" names one; light is found by rays here");
     else if (!type.empty() && type != "pointcloud" && type != "raytrace")
-        said("type " + type, "there is no type \"" + type + "\"; light is found by rays here", "types are raytrace and pointcloud");
+        said("type " + type, "there is no type \"" + type + "\"; light is found by rays here",
+             "types are raytrace and pointcloud");
     const std::string model = text("model");
     if (model == "jensen") b->model = SubsurfaceSite::Model::Dipole;
     else if (model == "grosjean") b->model = SubsurfaceSite::Model::BetterDipole;

@@ -35,11 +35,20 @@ bool isOption(const std::string& name) {
     return kOptions.count(name) > 0;
 }
 
+void noteString(const std::string& name, const SourcePlace& at, const WorldImpl& world) {
+    world.diagnostics_->reportOnce("bakedstring:" + name + at.file + std::to_string(at.line),
+                                   {Severity::Warning, Rie::BadToken, at,
+                                    "bake3d(): \"" + name + "\" is a string; it is not written",
+                                    "channels are floats, colours, points, vectors, normals and matrices", {}});
+}
+
 } // namespace
 
 std::shared_ptr<const CloudSite> cloudSite(const SiteInfo& i, const rsl::CompiledKernel& k, WorldImpl& world) {
     auto c = std::make_shared<CloudSite>();
     const rsl::ir::Site& s = *i.site;
+    clouds::BakeLayout& l = c->layout;
+    l.place = {s.place.file < int(k.files().size()) ? k.files()[size_t(s.place.file)] : "", s.place.line, s.place.column};
     const auto row = [&](const char* name) {
         const auto f = i.named.find(name);
         return f == i.named.end() ? -1 : f->second;
@@ -50,12 +59,6 @@ std::shared_ptr<const CloudSite> cloudSite(const SiteInfo& i, const rsl::Compile
     for (size_t a = 0; a < i.rows.size(); ++a)
         if (s.argKinds[a] != rsl::ir::Kind::String) given.push_back(a);
     const auto at = [&](size_t n) { return n < given.size() ? i.rows[given[n]] : -1; };
-    const auto strings = [&](const std::string& name) {
-        const SourcePlace at{s.place.file < int(k.files().size()) ? k.files()[size_t(s.place.file)] : "", s.place.line, s.place.column};
-        world.diagnostics_->reportOnce("bakedstring:" + name + at.file + std::to_string(at.line),
-                                       {Severity::Warning, Rie::BadToken, at, "bake3d(): \"" + name + "\" is a string; it is not written",
-                                        "channels are floats, colours, points, vectors, normals and matrices", {}});
-    };
     c->layout.flat = i.kind == SiteKind::Bake;
     if (c->layout.flat) {
         c->s = at(0);
@@ -88,7 +91,7 @@ std::shared_ptr<const CloudSite> cloudSite(const SiteInfo& i, const rsl::Compile
             const int r = row(name.c_str());
             if (isOption(name)) continue;
             const size_t a = r < 0 ? s.argKinds.size() : argument.at(r);
-            if (i.text.count(name) || (r >= 0 && s.argKinds[a] == rsl::ir::Kind::String)) strings(name);
+            if (i.text.count(name) || (r >= 0 && s.argKinds[a] == rsl::ir::Kind::String)) noteString(name, l.place, world);
             if (r < 0 || s.argKinds[a] == rsl::ir::Kind::String) continue;
             c->parts.push_back({name,
                                 a < s.argTypes.size() && s.argTypes[a].base != rsl::Base::Void ? channelOf(s.argTypes[a])
@@ -96,8 +99,6 @@ std::shared_ptr<const CloudSite> cloudSite(const SiteInfo& i, const rsl::Compile
                                 r});
         }
     }
-    clouds::BakeLayout& l = c->layout;
-    l.place = {s.place.file < int(k.files().size()) ? k.files()[size_t(s.place.file)] : "", s.place.line, s.place.column};
     char where[64];
     std::snprintf(where, sizeof where, ":%08d:%06d", l.place.line, l.place.column);
     l.where = l.place.file + where;

@@ -36,7 +36,8 @@ std::optional<std::pair<Of, std::string>> meaning(const std::string& name) {
 /// Whether a variable holds what is asked for; what shaders, primitives and attributes have is not known here.
 bool fits(const GatherSite::Output& o) {
     const bool number = o.of == Of::Length || o.of == Of::SkySolidAngle;
-    if (o.of == Of::Surface || o.of == Of::Displacement || o.of == Of::Volume || o.of == Of::Primitive || o.of == Of::Attribute) return true;
+    if (o.of == Of::Surface || o.of == Of::Displacement || o.of == Of::Volume || o.of == Of::Primitive || o.of == Of::Attribute)
+        return true;
     return o.elements == 0 && !o.open && o.kind == (number ? rsl::ir::Kind::Float : rsl::ir::Kind::Triple);
 }
 

@@ -98,7 +98,7 @@ inline void expectSame(const Technique& a, const Technique& b, int n, double dec
                 mb.push_back({tb.tile[size_t(i)].mean(k), tb.tile[size_t(i)].se(k), tb.tile[size_t(i)].effective(k)});
             }
             teststat::Agreement r = teststat::compareTiles(ma, mb);
-            if (!stage && k == 0) std::printf("%s: %s\n", what.c_str(), r.text().c_str());
+            if (k == 0) std::printf("%s: %s\n", what.c_str(), r.text().c_str());
             if (!stage && k == 0) teststat::keepP(what, r.imageP);
             ASSERT_GT(r.used, 20) << what;
             if (!r.ok(3)) {

@@ -246,7 +246,8 @@ InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const std::map<s
         if (fresh) i->second = instance(*call, rsl::ShaderKind::Surface, to, true);
         return i->second;
     };
-    std::set<std::string> names; // of lights' methods and members; an integrator that is a co-shader may be the one that asks for them
+    // Names of lights' methods and members that are asked for, perhaps by an integrator that is a co-shader.
+    std::set<std::string> names;
     if (!lights.empty()) {
         names = calledOfLights(shader->program->program());
         for (const auto& [handle, call] : coshaders)

@@ -255,6 +255,14 @@ TEST(Obj, MaterialsBecomeParts) {
     EXPECT_EQ(var(parts[2], "material").strings, std::vector<std::string>{"none"});
 }
 
+TEST(Obj, MaterialsOfNumbersThatAreNoFloats) {
+    Said said;
+    const auto parts = obj("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl a\nf 1 2 3\n", said, "newmtl a\nKd 1e39 0 0\n");
+    EXPECT_NE(said.text.find("Kd needs 3 numbers"), std::string::npos) << said.text;
+    ASSERT_EQ(parts.size(), 1u);
+    EXPECT_FALSE(has(parts[0], "Cs"));
+}
+
 TEST(Obj, SmoothingGroupsMakeNormals) {
     Said said; // two faces that meet at a right angle in one group, and the same in none
     const std::string roof = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 1 -1\nv 1 0 -1\n";

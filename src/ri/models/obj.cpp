@@ -218,7 +218,7 @@ void ObjReader::materials(std::string_view text, const std::string& name) {
         double x[3] = {};
         const auto read = [&](size_t n) {
             for (size_t i = 0; i < n; ++i)
-                if (i + 1 >= w.size() || !toNumber(w[i + 1], x[i]) || !std::isfinite(x[i])) {
+                if (i + 1 >= w.size() || !toNumber(w[i + 1], x[i]) || !std::isfinite(float(x[i]))) {
                     log_.error(Rie::Syntax, {name, lines.number(), 0}, fmt::format("{} needs {} numbers", w[0].substr(0, 20), n));
                     return false;
                 }
